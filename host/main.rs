@@ -1,0 +1,2 @@
+//! The program: three lines into the command line.
+fn main() {}

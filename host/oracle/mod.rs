@@ -1,0 +1,1 @@
+//! Answers by exact rational arithmetic; imports nothing from the kernels.

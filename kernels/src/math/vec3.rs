@@ -1,0 +1,77 @@
+//! Three numbers with a direction.
+
+use super::Real;
+use bytemuck::{Pod, Zeroable};
+use core::ops::{Add, Index, Mul, Neg, Sub};
+
+/// A point or a vector, as it lies in memory: three scalars, no padding.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(transparent)]
+pub struct Vec3<R>(pub [R; 3]);
+
+// SAFETY: repr(transparent) over [R; 3], which is Zeroable and Pod for every R that is.
+unsafe impl<R: Real> Zeroable for Vec3<R> {}
+// SAFETY: as above.
+unsafe impl<R: Real> Pod for Vec3<R> {}
+
+impl<R: Real> Vec3<R> {
+    /// The inner product, summed in the order x, y, z.
+    pub fn dot(self, o: Self) -> R {
+        self[0] * o[0] + self[1] * o[1] + self[2] * o[2]
+    }
+    /// The outer product; each component is one difference of two products.
+    pub fn cross(self, o: Self) -> Self {
+        Vec3([
+            self[1] * o[2] - self[2] * o[1],
+            self[2] * o[0] - self[0] * o[2],
+            self[0] * o[1] - self[1] * o[0],
+        ])
+    }
+    /// Component-wise, for example `v.map(Real::abs)`.
+    pub fn map<S: Real>(self, f: impl Fn(R) -> S) -> Vec3<S> {
+        Vec3([f(self[0]), f(self[1]), f(self[2])])
+    }
+    /// The component-wise smaller.
+    pub fn min(self, o: Self) -> Self {
+        Vec3([self[0].min(o[0]), self[1].min(o[1]), self[2].min(o[2])])
+    }
+    /// The component-wise larger.
+    pub fn max(self, o: Self) -> Self {
+        Vec3([self[0].max(o[0]), self[1].max(o[1]), self[2].max(o[2])])
+    }
+    /// Widened to f64; exact.
+    pub fn wide(self) -> Vec3<f64> {
+        self.map(Real::wide)
+    }
+}
+
+impl<R> Index<usize> for Vec3<R> {
+    type Output = R;
+    fn index(&self, i: usize) -> &R {
+        &self.0[i]
+    }
+}
+impl<R: Real> Add for Vec3<R> {
+    type Output = Self;
+    fn add(self, o: Self) -> Self {
+        Vec3([self[0] + o[0], self[1] + o[1], self[2] + o[2]])
+    }
+}
+impl<R: Real> Sub for Vec3<R> {
+    type Output = Self;
+    fn sub(self, o: Self) -> Self {
+        Vec3([self[0] - o[0], self[1] - o[1], self[2] - o[2]])
+    }
+}
+impl<R: Real> Mul<R> for Vec3<R> {
+    type Output = Self;
+    fn mul(self, s: R) -> Self {
+        Vec3([self[0] * s, self[1] * s, self[2] * s])
+    }
+}
+impl<R: Real> Neg for Vec3<R> {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Vec3([-self[0], -self[1], -self[2]])
+    }
+}

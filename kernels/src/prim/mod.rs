@@ -1,0 +1,1 @@
+//! Two primitives: the narrow tests.
