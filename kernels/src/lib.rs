@@ -1,5 +1,16 @@
 #![no_std]
 //! The kernels of nearmiss: what runs on the card, and on the CPU from the same source.
+//!
+//! Nothing here knows a host, a file or an allocator. Shelves hold what is used ([`abi`], [`exec`], [`math`], [`bv`],
+//! [`bvh`], [`queue`], [`prim`]); the corridor [`stage`] holds what happens, one file a stage, in the order in which
+//! data flows. [`entry`] is the kernel table.
 
+pub mod abi;
+pub mod bv;
+pub mod bvh;
+pub mod entry;
+pub mod exec;
 pub mod math;
 pub mod prim;
+pub mod queue;
+pub mod stage;

@@ -1,6 +1,7 @@
 //! Numbers only: scalars, vectors, rounding.
 
 mod real;
+pub mod ordered;
 pub mod round;
 pub mod tolerance;
 mod vec3;

@@ -1,0 +1,191 @@
+//! An NVIDIA card, through cust. The kernels' PTX is embedded; the driver compiles it for the card it finds.
+
+use crate::error::Error;
+use cust::context::Context;
+use cust::device::{Device as Card, DeviceAttribute};
+use cust::error::CudaError;
+use cust::event::{Event as CudaEvent, EventFlags};
+use cust::memory::{AsyncCopyDestination, CopyDestination, DeviceBuffer, LockedBuffer};
+use cust::module::Module;
+use cust::stream::{Stream, StreamFlags};
+use nearmiss_kernels::entry::Entry;
+use std::cell::RefCell;
+use std::ffi::{CString, c_void};
+
+/// The kernels, as build.rs found or made them.
+const PTX: &str = include_str!(concat!(env!("OUT_DIR"), "/nearmiss.ptx"));
+/// The stamp of the sources that this program was built with.
+const STAMP: &str = env!("NEARMISS_STAMP");
+/// The oldest card that the PTX is for: compute capability 8.0.
+const CAPABILITY: (i32, i32) = (8, 0);
+/// Bytes of page-locked memory that transfers go through. Larger ones go in pieces: a piece in flight costs about
+/// 0.1 ms of PCIe time, far above a copy's overhead.
+const STAGING: usize = 4 << 20;
+
+/// A card, its context, one stream, and the module.
+pub struct Cuda {
+    name: String,
+    resident_lanes: u32,
+    staging: RefCell<LockedBuffer<u8>>,
+    module: Module,
+    stream: Stream,
+    // Last, so that it is dropped last.
+    _context: Context,
+}
+
+/// Memory of the card.
+pub struct Memory(DeviceBuffer<u8>);
+
+impl Memory {
+    /// The address that kernels use.
+    pub fn addr(&self) -> u64 {
+        self.0.as_device_ptr().as_raw()
+    }
+}
+
+/// A point in the card's stream.
+pub struct Event(CudaEvent);
+
+impl Event {
+    /// Milliseconds to a later event; waits for it.
+    pub fn to(&self, later: &Event) -> Result<f64, Error> {
+        later.0.synchronize().map_err(refused("waiting for the card"))?;
+        later.0.elapsed_time_f32(&self.0).map(f64::from).map_err(refused("reading the card's clock"))
+    }
+}
+
+/// The driver's refusal as our error.
+fn refused(what: &'static str) -> impl Fn(CudaError) -> Error {
+    move |e| match e {
+        CudaError::OutOfMemory => Error::Room { what: what.into(), asked: 0, given: 0 },
+        _ => Error::Device {
+            what: what.into(),
+            text: e.to_string(),
+            advice: "look at `nvidia-smi`, or run with `--backend cpu`",
+        },
+    }
+}
+
+impl Cuda {
+    /// The first card.
+    pub fn new() -> Result<Self, Error> {
+        cust::init(cust::CudaFlags::empty()).map_err(refused("starting the CUDA driver"))?;
+        let card = Card::get_device(0).map_err(refused("looking for a card"))?;
+        let read = |what| card.get_attribute(what).map_err(refused("asking the card what it is"));
+        let name = card.name().map_err(refused("asking the card's name"))?;
+        let capability = (
+            read(DeviceAttribute::ComputeCapabilityMajor)?,
+            read(DeviceAttribute::ComputeCapabilityMinor)?,
+        );
+        if capability < CAPABILITY {
+            return Err(Error::Device {
+                what: format!("using the card {name}"),
+                text: format!("it has compute capability {}.{}, the kernels need 8.0", capability.0, capability.1),
+                advice: "run with `--backend cpu`",
+            });
+        }
+        let resident_lanes = (read(DeviceAttribute::MultiprocessorCount)?
+            * read(DeviceAttribute::MaxThreadsPerMultiprocessor)?) as u32;
+        let context = Context::new(card).map_err(refused("making a context"))?;
+        let stream = Stream::new(StreamFlags::NON_BLOCKING, None).map_err(refused("making a stream"))?;
+        let module = Module::from_ptx(PTX, &[]).map_err(refused("loading the kernels"))?;
+        // SAFETY: a page-locked buffer of bytes; every byte is written before it is read.
+        let staging = unsafe { LockedBuffer::uninitialized(STAGING) }.map_err(refused("locking host memory"))?;
+        let cuda = Cuda { name, resident_lanes, staging: RefCell::new(staging), module, stream, _context: context };
+        cuda.check_stamp()?;
+        Ok(cuda)
+    }
+
+    /// Refuses kernels that come from other sources than this program.
+    fn check_stamp(&self) -> Result<(), Error> {
+        let symbol = CString::new("NEARMISS_STAMP").map_err(|e| Error::Bug { what: e.to_string() })?;
+        let global = self.module.get_global::<u64>(&symbol).map_err(refused("looking for the kernels' stamp"))?;
+        let mut found = 0u64;
+        global.copy_to(&mut found).map_err(refused("reading the kernels' stamp"))?;
+        let found = format!("{found:016x}");
+        if found == STAMP {
+            return Ok(());
+        }
+        Err(Error::Stamp { found, wanted: STAMP.into() })
+    }
+
+    /// What the driver calls the card.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Blocks of that many lanes that fill the card.
+    pub fn resident_blocks(&self, lanes: u32) -> u32 {
+        self.resident_lanes / lanes
+    }
+
+    /// Zeroed memory of the card.
+    pub fn memory(&self, bytes: usize) -> Result<Memory, Error> {
+        // SAFETY: every byte is set below, before anything reads it: the stream orders the two.
+        let buffer = unsafe { DeviceBuffer::<u8>::uninitialized(bytes.max(16)) }
+            .map_err(|e| match e {
+                CudaError::OutOfMemory => {
+                    let (free, _) = cust::memory::mem_get_info().unwrap_or((0, 0));
+                    Error::Room { what: "memory of the card".into(), asked: bytes as u64, given: free as u64 }
+                }
+                other => refused("taking memory of the card")(other),
+            })?;
+        let mut memory = Memory(buffer);
+        self.clear(&mut memory)?;
+        Ok(memory)
+    }
+
+    /// Sets every byte to zero.
+    pub fn clear(&self, memory: &mut Memory) -> Result<(), Error> {
+        // SAFETY: freeing the buffer waits for the stream's work on it.
+        unsafe { memory.0.set_8_async(0, &self.stream) }.map_err(refused("clearing memory of the card"))
+    }
+
+    /// Copies bytes to the card, through page-locked memory.
+    pub fn write(&self, memory: &mut Memory, bytes: &[u8]) -> Result<(), Error> {
+        let what = refused("copying to the card");
+        let mut staging = self.staging.borrow_mut();
+        for (at, piece) in bytes.chunks(STAGING).enumerate() {
+            let from = &mut staging[..piece.len()];
+            from.copy_from_slice(piece);
+            let mut to = memory.0.index(at * STAGING..at * STAGING + piece.len());
+            // SAFETY: the copy is waited for before either side is touched again.
+            unsafe { to.async_copy_from(from, &self.stream) }.map_err(&what)?;
+            self.stream.synchronize().map_err(&what)?;
+        }
+        Ok(())
+    }
+
+    /// Copies bytes from the card, through page-locked memory; waits for all work before.
+    pub fn read(&self, memory: &Memory, bytes: &mut [u8]) -> Result<(), Error> {
+        let what = refused("copying from the card");
+        let mut staging = self.staging.borrow_mut();
+        for (at, piece) in bytes.chunks_mut(STAGING).enumerate() {
+            let to = &mut staging[..piece.len()];
+            let from = memory.0.index(at * STAGING..at * STAGING + piece.len());
+            // SAFETY: as in `write`.
+            unsafe { from.async_copy_to(to, &self.stream) }.map_err(&what)?;
+            self.stream.synchronize().map_err(&what)?;
+            piece.copy_from_slice(to);
+        }
+        self.stream.synchronize().map_err(what)
+    }
+
+    /// Starts a kernel.
+    pub fn launch<E: Entry>(&self, blocks: u32, args: &E::Args) -> Result<(), Error> {
+        let function = self.module.get_function(E::NAME).map_err(refused(E::NAME))?;
+        let mut args = *args;
+        let parameters = [(&raw mut args).cast::<c_void>()];
+        // SAFETY: the kernel takes one parameter of this type (the stamp says that host and PTX come from the same
+        // sources), and its spans are memory of this card that the caller's buffers keep alive: freeing a buffer waits
+        // for the launches before it.
+        unsafe { self.stream.launch(&function, blocks, E::LANES, E::SHARED, &parameters) }.map_err(refused(E::NAME))
+    }
+
+    /// A point in the stream.
+    pub fn mark(&self) -> Result<Event, Error> {
+        let event = CudaEvent::new(EventFlags::DEFAULT).map_err(refused("making an event"))?;
+        event.record(&self.stream).map_err(refused("recording an event"))?;
+        Ok(Event(event))
+    }
+}

@@ -1,0 +1,263 @@
+//! A block on the CPU: its phases are loops over its lanes.
+
+use super::microscope::{Access, Microscope, Place};
+use bytemuck::Pod;
+use nearmiss_kernels::abi::Span;
+use nearmiss_kernels::exec::{BINS, Block, Lane, Shared, Slot, Word};
+use std::ptr::with_exposed_provenance_mut;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+/// Who looks on. [`Blind`] costs nothing: every call is empty and vanishes.
+pub trait Watch: Copy {
+    /// The lanes of a phase, in their order.
+    fn lanes(&self, count: u32, phase: u32, body: impl FnMut(u32));
+    /// An access to device memory; false forbids it.
+    fn device(&self, access: Access, addr: u64, bytes: usize, inside: bool, place: Place) -> bool;
+    /// An access to shared memory; false forbids it.
+    fn shared(&self, access: Access, offset: u32, bytes: usize, inside: bool, place: Place) -> bool;
+}
+
+/// Nobody looks on.
+#[derive(Clone, Copy)]
+pub struct Blind;
+
+impl Watch for Blind {
+    #[inline(always)]
+    fn lanes(&self, count: u32, _: u32, body: impl FnMut(u32)) {
+        (0..count).for_each(body);
+    }
+    #[inline(always)]
+    fn device(&self, _: Access, _: u64, _: usize, inside: bool, _: Place) -> bool {
+        debug_assert!(inside, "a kernel left its span");
+        true
+    }
+    #[inline(always)]
+    fn shared(&self, _: Access, _: u32, _: usize, inside: bool, _: Place) -> bool {
+        debug_assert!(inside, "a kernel left its shared memory");
+        true
+    }
+}
+
+impl Watch for &Microscope {
+    fn lanes(&self, count: u32, phase: u32, body: impl FnMut(u32)) {
+        let turn = self.launches() << 20 | phase as u64;
+        self.order().sequence(count, turn).into_iter().for_each(body);
+    }
+    fn device(&self, access: Access, addr: u64, bytes: usize, inside: bool, place: Place) -> bool {
+        self.see_device(access, addr, bytes, inside, place)
+    }
+    fn shared(&self, access: Access, offset: u32, bytes: usize, inside: bool, place: Place) -> bool {
+        self.see_shared(access, offset, bytes, inside, place)
+    }
+}
+
+/// A block that runs on one thread.
+pub struct Emulated<W> {
+    block: u32,
+    blocks: u32,
+    lanes: u32,
+    /// Phases and collectives so far: what lies in different ones is ordered.
+    phase: u32,
+    /// Shared memory, and how many bytes of it are given out.
+    words: Vec<u64>,
+    taken: u32,
+    watch: W,
+}
+
+/// One lane of it, in one phase.
+pub struct EmulatedLane<W> {
+    place: Place,
+    global: u32,
+    words: *mut u64,
+    bytes: u32,
+    watch: W,
+}
+
+/// A value of each lane.
+pub struct PerLane<T>(Vec<T>);
+
+impl<T, W> Slot<T, EmulatedLane<W>> for PerLane<T> {
+    #[inline(always)]
+    fn of(&mut self, lane: &EmulatedLane<W>) -> &mut T {
+        &mut self.0[lane.place.lane as usize]
+    }
+}
+
+impl<W: Watch> Emulated<W> {
+    /// Block `block` of a launch.
+    pub fn new(block: u32, blocks: u32, lanes: u32, watch: W) -> Self {
+        Emulated { block, blocks, lanes, phase: 0, words: Vec::new(), taken: 0, watch }
+    }
+    fn lane(&mut self, lane: u32) -> EmulatedLane<W> {
+        EmulatedLane {
+            place: Place { block: self.block, phase: self.phase, lane },
+            global: self.block * self.lanes + lane,
+            words: self.words.as_mut_ptr(),
+            bytes: self.taken,
+            watch: self.watch,
+        }
+    }
+}
+
+/// The address of element `i`, if the watcher lets us have it.
+#[inline(always)]
+fn device<T, W: Watch>(watch: &W, access: Access, span: Span<T>, i: u32, place: Place) -> Option<*mut T> {
+    let addr = span.addr.wrapping_add(i as u64 * size_of::<T>() as u64);
+    let inside = (i as u64) < span.len;
+    watch
+        .device(access, addr, size_of::<T>(), inside, place)
+        .then(|| with_exposed_provenance_mut::<T>(addr as usize))
+}
+
+impl<W: Watch> EmulatedLane<W> {
+    #[inline(always)]
+    fn word<T: Word>(&self, access: Access, words: Shared<T>, i: u32) -> Option<*mut T> {
+        let offset = words.offset + i * size_of::<T>() as u32;
+        let inside = i < words.len && words.offset + words.len * size_of::<T>() as u32 <= self.bytes;
+        self.watch
+            .shared(access, offset, size_of::<T>(), inside, self.place)
+            .then(|| self.words.cast::<u8>().wrapping_add(offset as usize).cast::<T>())
+    }
+    #[inline(always)]
+    fn atomic(&self, span: Span<u64>, i: u32) -> Option<&AtomicU64> {
+        // SAFETY: inside a span of live, aligned device memory (kernels stay inside; the microscope and debug builds
+        // check it), touched only atomically in this launch.
+        device(&self.watch, Access::Atomic, span, i, self.place).map(|p| unsafe { AtomicU64::from_ptr(p) })
+    }
+}
+
+impl<W: Watch> Lane for EmulatedLane<W> {
+    #[inline(always)]
+    fn lane(&self) -> u32 {
+        self.place.lane
+    }
+    #[inline(always)]
+    fn global(&self) -> u32 {
+        self.global
+    }
+    #[inline(always)]
+    fn read<T: Pod>(&self, span: Span<T>, i: u32) -> T {
+        match device(&self.watch, Access::Read, span, i, self.place) {
+            // SAFETY: inside a span of live, aligned, initialised memory, and nobody writes it in this phase: rules of
+            // `Lane`, checked by the microscope.
+            Some(p) => unsafe { p.read() },
+            None => T::zeroed(),
+        }
+    }
+    #[inline(always)]
+    fn write<T: Pod>(&self, span: Span<T>, i: u32, value: T) {
+        if let Some(p) = device(&self.watch, Access::Write, span, i, self.place) {
+            // SAFETY: as for `read`; nobody else touches it in this phase.
+            unsafe { p.write(value) }
+        }
+    }
+    #[inline(always)]
+    fn fetch_max(&self, span: Span<u64>, i: u32, value: u64) {
+        if let Some(atomic) = self.atomic(span, i) {
+            atomic.fetch_max(value, Relaxed);
+        }
+    }
+    #[inline(always)]
+    fn fetch_min(&self, span: Span<u64>, i: u32, value: u64) {
+        if let Some(atomic) = self.atomic(span, i) {
+            atomic.fetch_min(value, Relaxed);
+        }
+    }
+    #[inline(always)]
+    fn fetch_add(&self, span: Span<u64>, i: u32, value: u64) -> u64 {
+        self.atomic(span, i).map_or(0, |atomic| atomic.fetch_add(value, Relaxed))
+    }
+    #[inline(always)]
+    fn get<T: Word>(&self, words: Shared<T>, i: u32) -> T {
+        // SAFETY: inside the block's words (checked as for device memory), which only this thread touches.
+        self.word(Access::Read, words, i).map_or(T::zeroed(), |p| unsafe { p.read() })
+    }
+    #[inline(always)]
+    fn put<T: Word>(&self, words: Shared<T>, i: u32, value: T) {
+        if let Some(p) = self.word(Access::Write, words, i) {
+            // SAFETY: as for `get`.
+            unsafe { p.write(value) }
+        }
+    }
+    #[inline(always)]
+    fn shared_add(&self, words: Shared<u32>, i: u32, value: u32) -> u32 {
+        let Some(p) = self.word(Access::Atomic, words, i) else { return 0 };
+        // SAFETY: as for `get`: one thread runs all lanes of a block, so this is atomic.
+        unsafe {
+            let before = p.read();
+            p.write(before.wrapping_add(value));
+            before
+        }
+    }
+    #[inline(always)]
+    fn shared_max(&self, words: Shared<u64>, i: u32, value: u64) {
+        if let Some(p) = self.word(Access::Atomic, words, i) {
+            // SAFETY: as for `shared_add`.
+            unsafe { p.write(p.read().max(value)) }
+        }
+    }
+}
+
+impl<W: Watch> Block for Emulated<W> {
+    type Lane = EmulatedLane<W>;
+    type Slot<T: Copy> = PerLane<T>;
+
+    fn block(&self) -> u32 {
+        self.block
+    }
+    fn blocks(&self) -> u32 {
+        self.blocks
+    }
+    fn lanes(&self) -> u32 {
+        self.lanes
+    }
+    fn shared<T: Word>(&mut self, len: u32) -> Shared<T> {
+        let offset = self.taken.next_multiple_of(8);
+        self.taken = offset + len * size_of::<T>() as u32;
+        self.words.resize(self.taken.div_ceil(8) as usize, 0);
+        Shared::at(offset, len)
+    }
+    fn slot<T: Copy>(&self, init: T) -> PerLane<T> {
+        PerLane(vec![init; self.lanes as usize])
+    }
+    #[inline(always)]
+    fn phase(&mut self, mut body: impl FnMut(&EmulatedLane<W>)) {
+        let watch = self.watch;
+        watch.lanes(self.lanes, self.phase, |lane| body(&self.lane(lane)));
+        self.phase += 1;
+    }
+    fn load<T: Pod>(&self, span: Span<T>, i: u32) -> T {
+        let place = Place { block: self.block, phase: self.phase, lane: 0 };
+        match device(&self.watch, Access::Read, span, i, place) {
+            // SAFETY: as for `EmulatedLane::read`.
+            Some(p) => unsafe { p.read() },
+            None => T::zeroed(),
+        }
+    }
+    fn peek<T: Word>(&self, words: Shared<T>, i: u32) -> T {
+        let offset = words.offset + i * size_of::<T>() as u32;
+        let place = Place { block: self.block, phase: self.phase, lane: 0 };
+        let inside = i < words.len;
+        if !self.watch.shared(Access::Read, offset, size_of::<T>(), inside, place) {
+            return T::zeroed();
+        }
+        let bytes: &[u8] = bytemuck::cast_slice(&self.words);
+        bytemuck::pod_read_unaligned(&bytes[offset as usize..][..size_of::<T>()])
+    }
+    fn any(&mut self, values: &mut PerLane<bool>) -> bool {
+        values.0.contains(&true)
+    }
+    fn scan(&mut self, values: &mut PerLane<u32>) -> u32 {
+        values.0.iter_mut().fold(0, |sum, value| sum + std::mem::replace(value, sum))
+    }
+    fn reserve(&mut self, counter: Span<u64>, i: u32, count: u64) -> u64 {
+        if count == 0 { 0 } else { self.lane(0).fetch_add(counter, i, count) }
+    }
+    fn ranks(&mut self, digits: &mut PerLane<u32>, bins: Shared<u32>, _scratch: Shared<u32>) {
+        let lane = self.lane(0);
+        for digit in digits.0.iter_mut().filter(|digit| **digit < BINS) {
+            *digit = lane.shared_add(bins, *digit, 1);
+        }
+        self.phase += 1;
+    }
+}

@@ -1,0 +1,242 @@
+//! One argument block for each kernel: what it is launched with, by value.
+
+use super::{Hit, Inner, Node, Pair, Span, Unit};
+use crate::math::{Real, Vec3};
+use bytemuck::{Pod, Zeroable};
+
+/// Declares argument blocks: `repr(C)`, plain old data, and an assertion that the fields leave no padding.
+macro_rules! arguments {
+    ($($(#[$doc:meta])* $name:ident $(<$r:ident>)? { $($(#[$fdoc:meta])* $field:ident: $ty:ty,)* })*) => { $(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug)]
+        #[repr(C)]
+        pub struct $name $(<$r: Real>)? { $($(#[$fdoc])* pub $field: $ty,)* }
+        // SAFETY: every field is Zeroable (they are all Pod, asserted below by use).
+        unsafe impl $(<$r: Real>)? Zeroable for $name $(<$r>)? {}
+        // SAFETY: repr(C), every field Pod, and `FITS` refuses to compile where padding would be.
+        unsafe impl $(<$r: Real>)? Pod for $name $(<$r>)? {}
+        impl $(<$r: Real>)? $name $(<$r>)? {
+            /// Evaluated for every block that is launched: no padding, every field plain old data.
+            pub const FITS: () = {
+                const fn pod<T: Pod>() -> usize { size_of::<T>() }
+                assert!(0 $(+ pod::<$ty>())* == size_of::<Self>());
+            };
+        }
+    )* };
+}
+
+arguments! {
+    /// Positions at both ends of a step; `t1` is empty where nothing moves.
+    Frames<R> {
+        /// Positions at t = 0.
+        t0: Span<Vec3<R>>,
+        /// Positions at t = 1, or empty.
+        t1: Span<Vec3<R>>,
+    }
+    /// `construct_bounds`, `construct_morton`: triangle centres, their box, their codes.
+    MortonArgs<R> {
+        /// Vertex positions at t = 0.
+        positions: Span<Vec3<R>>,
+        /// Vertex indices of every triangle.
+        faces: Span<[u32; 3]>,
+        /// The body's first triangle.
+        first: u32,
+        /// How many triangles the body has.
+        count: u32,
+        /// Six ordered keys: upper x, y, z, and lower x, y, z (complemented, so that all are maxima).
+        bounds: Span<u64>,
+        /// Out: Morton code of each triangle's centre.
+        keys: Span<u64>,
+        /// Out: the triangle.
+        values: Span<u32>,
+    }
+    /// `sort_count`, `sort_scan`, `sort_scatter`: one pass of the radix sort, over one byte of the keys.
+    SortArgs {
+        /// Keys in.
+        keys: Span<u64>,
+        /// Values in.
+        values: Span<u32>,
+        /// Keys out.
+        keys_out: Span<u64>,
+        /// Values out.
+        values_out: Span<u32>,
+        /// Counts: digit-major, then tile.
+        counts: Span<u32>,
+        /// Sum of each digit's counts.
+        totals: Span<u32>,
+        /// How many keys.
+        count: u32,
+        /// How many tiles of keys.
+        tiles: u32,
+        /// Which bits: the digit is `key >> shift & 255`.
+        shift: u32,
+        /// Rounds of one key a lane in a tile.
+        rounds: u32,
+    }
+    /// `construct_tree`, `construct_depth`, `construct_place`, `construct_levels`, `construct_emit`.
+    TreeArgs {
+        /// Sorted Morton codes.
+        codes: Span<u64>,
+        /// Triangles in the order of their codes.
+        triangles: Span<u32>,
+        /// Inner nodes of the radix tree.
+        inner: Span<Inner>,
+        /// Parent of each inner node.
+        parents: Span<u32>,
+        /// Out of `construct_depth`: depth of the inner node that splits behind leaf i.
+        depth_keys: Span<u64>,
+        /// Out of `construct_depth`: that inner node.
+        depth_values: Span<u32>,
+        /// Inner nodes in level order.
+        ordered: Span<u32>,
+        /// Place of each inner node in level order.
+        places: Span<u32>,
+        /// How many inner nodes each depth has.
+        totals: Span<u32>,
+        /// Out: number of levels, then where each begins, then where the last ends.
+        levels: Span<u32>,
+        /// Out: the tree.
+        nodes: Span<Node>,
+        /// Out: each leaf's node.
+        leaf_nodes: Span<u32>,
+        /// How many leaves.
+        leaves: u32,
+        /// Added to a triangle's index in its body.
+        first: u32,
+    }
+    /// `fit`: the boxes of the leaves.
+    FitArgs<R> {
+        /// Positions.
+        frames: Frames<R>,
+        /// Vertex indices of every triangle.
+        faces: Span<[u32; 3]>,
+        /// Each leaf's node.
+        leaf_nodes: Span<u32>,
+        /// The tree.
+        nodes: Span<Node>,
+    }
+    /// `refit`: the boxes of levels `from` to `to`, deepest first.
+    RefitArgs {
+        /// The tree.
+        nodes: Span<Node>,
+        /// Number of levels, then where each begins.
+        levels: Span<u32>,
+        /// The first level (nearest the root).
+        from: u32,
+        /// Behind the last level. More than one level only in a launch of one block.
+        to: u32,
+    }
+    /// `traverse_leaves`, `traverse_units`: leaf against tree.
+    TraverseArgs {
+        /// The queries' tree.
+        queries: Span<Node>,
+        /// Each query leaf's node.
+        query_leaves: Span<u32>,
+        /// The tree that is walked.
+        nodes: Span<Node>,
+        /// Vertex indices of every triangle.
+        faces: Span<[u32; 3]>,
+        /// Units to walk (`traverse_units`).
+        units: Span<Unit>,
+        /// Out: units left when a walk's budget was used up.
+        spilled: Span<Unit>,
+        /// Out: candidate triangle pairs.
+        pairs: Span<Pair>,
+        /// Counters, see [`counter`].
+        counters: Span<u64>,
+        /// Which counter tells how many units there are.
+        units_at: u32,
+        /// Which counter the spilled units add to.
+        spilled_at: u32,
+        /// Steps of a walk before it spills the rest of its stack.
+        budget: u32,
+        /// Bits: [`SELF`], [`KEEP_ADJACENT`].
+        flags: u32,
+    }
+    /// `narrow_sift`: triangle pairs to vertex/face and edge/edge candidates.
+    SiftArgs<R> {
+        /// Positions.
+        frames: Frames<R>,
+        /// Vertex indices of every triangle.
+        faces: Span<[u32; 3]>,
+        /// Edges of every triangle; edge k joins corners k and k + 1.
+        face_edges: Span<[u32; 3]>,
+        /// Which vertices (bits 0 to 2) and edges (bits 3 to 5) each triangle stands for.
+        owners: Span<u32>,
+        /// Candidate triangle pairs.
+        pairs: Span<Pair>,
+        /// Out: vertex, face.
+        vf: Span<Pair>,
+        /// Out: edge, edge.
+        ee: Span<Pair>,
+        /// Counters, see [`counter`].
+        counters: Span<u64>,
+    }
+    /// `narrow_moller`, `narrow_filter`, `narrow_exact`: triangle pairs that meet.
+    DiscreteArgs<R> {
+        /// Vertex positions.
+        positions: Span<Vec3<R>>,
+        /// Vertex indices of every triangle.
+        faces: Span<[u32; 3]>,
+        /// Pairs to test.
+        pairs: Span<Pair>,
+        /// Out: pairs that meet.
+        contacts: Span<Pair>,
+        /// Out: pairs that the filter leaves to the exact signs.
+        undecided: Span<Pair>,
+        /// Counters, see [`counter`].
+        counters: Span<u64>,
+        /// Which counter tells how many pairs there are.
+        pairs_at: u32,
+        /// Bits: [`KEEP_ADJACENT`].
+        flags: u32,
+    }
+    /// `narrow_vf`, `narrow_ee`: the first time of contact of two primitives in motion.
+    SolveArgs<R> {
+        /// Positions.
+        frames: Frames<R>,
+        /// Vertex indices of every triangle (`narrow_vf`).
+        faces: Span<[u32; 3]>,
+        /// End points of every edge (`narrow_ee`).
+        edges: Span<[u32; 2]>,
+        /// Candidates.
+        candidates: Span<Pair>,
+        /// Out: contacts; empty when only the earliest is asked for.
+        hits: Span<Hit>,
+        /// Out: the smallest toi so far, as bits; or empty.
+        earliest: Span<u64>,
+        /// Counters, see [`counter`].
+        counters: Span<u64>,
+    }
+}
+
+/// [`TraverseArgs::flags`]: one mesh against itself; each pair is found once, by its earlier leaf.
+pub const SELF: u32 = 1;
+/// [`TraverseArgs::flags`]: pairs that share a vertex are emitted too.
+pub const KEEP_ADJACENT: u32 = 2;
+
+/// The counters of a frame. Each is the exact demand for its list, also where the list was too short.
+pub mod counter {
+    /// Candidate triangle pairs.
+    pub const PAIRS: u32 = 0;
+    /// Vertex/face candidates.
+    pub const VF: u32 = 1;
+    /// Edge/edge candidates.
+    pub const EE: u32 = 2;
+    /// Pairs that the discrete filter could not decide.
+    pub const UNDECIDED: u32 = 3;
+    /// Triangle pairs in contact.
+    pub const CONTACTS: u32 = 4;
+    /// Vertex/face contacts.
+    pub const VF_HITS: u32 = 5;
+    /// Edge/edge contacts.
+    pub const EE_HITS: u32 = 6;
+    /// Node pairs tested by the traversal.
+    pub const STEPS: u32 = 7;
+    /// Units spilled by round r of the traversal: this and the following [`super::ROUNDS`].
+    pub const SPILLED: u32 = 8;
+    /// How many counters there are.
+    pub const COUNT: u32 = SPILLED + super::ROUNDS;
+}
+/// Rounds of the traversal that may spill; one more, without a budget, ends it.
+pub const ROUNDS: u32 = 4;

@@ -1,0 +1,87 @@
+//! The records that stages hand on in memory.
+
+use bytemuck::{Pod, Zeroable};
+
+/// A node of the level-ordered tree: an axis-aligned box and its place in the tree. Two siblings are neighbours and
+/// start at an even index, so a parent finds both children in one line of 64 bytes. Node 1 is the root; node 0 is
+/// not used.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C, align(16))]
+pub struct Node {
+    /// The box's lower corner, rounded down. Inclusive.
+    pub lo: [f32; 3],
+    /// An inner node: index of its first child. A leaf: [`LEAF`] and the triangle's index.
+    pub link: u32,
+    /// The box's upper corner, rounded up. Inclusive.
+    pub hi: [f32; 3],
+    /// The last leaf below this node (a leaf: itself), in leaf order.
+    pub last: u32,
+}
+const _: () = assert!(size_of::<Node>() == 32 && align_of::<Node>() == 16);
+
+/// Set in [`Node::link`] when the node is a leaf; the other bits are the triangle.
+pub const LEAF: u32 = 1 << 31;
+/// The root's index.
+pub const ROOT: u32 = 1;
+
+impl Node {
+    /// Whether the node is a leaf.
+    pub fn is_leaf(&self) -> bool {
+        self.link & LEAF != 0
+    }
+    /// A leaf's triangle.
+    pub fn triangle(&self) -> u32 {
+        self.link & !LEAF
+    }
+}
+
+/// Two indices: a triangle pair (discrete candidates and contacts), a vertex and a face, or two edges.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Pod, Zeroable)]
+#[repr(C, align(8))]
+pub struct Pair {
+    /// The first of the two.
+    pub a: u32,
+    /// The second.
+    pub b: u32,
+}
+const _: () = assert!(size_of::<Pair>() == 8);
+
+/// A pair of nodes still to be traversed: a query's leaf and the two children of a node.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C, align(8))]
+pub struct Unit {
+    /// The query's node (a leaf), or [`NONE`] for no unit.
+    pub query: u32,
+    /// First of the two sibling nodes to test.
+    pub pair: u32,
+}
+const _: () = assert!(size_of::<Unit>() == 8);
+
+/// No index.
+pub const NONE: u32 = u32::MAX;
+
+/// A contact of two primitives in motion, as the narrow stage leaves it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Hit {
+    /// The vertex, or the first edge.
+    pub a: u32,
+    /// The face, or the second edge.
+    pub b: u32,
+    /// First time of contact, in [0, 1].
+    pub toi: f64,
+}
+const _: () = assert!(size_of::<Hit>() == 16);
+
+/// An inner node of the radix tree, before it has a place in the level order.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Inner {
+    /// The first leaf of its range.
+    pub first: u32,
+    /// The last leaf of its left child; the right child begins behind it.
+    pub split: u32,
+    /// The last leaf of its range.
+    pub last: u32,
+}
+const _: () = assert!(size_of::<Inner>() == 12);

@@ -1,0 +1,64 @@
+//! The axis-aligned box: six numbers, six comparisons. Union and overlap are exact; only fitting rounds, outward.
+
+use crate::abi::Node;
+use crate::math::{Real, Vec3, round};
+
+/// A closed box, `lo <= p <= hi` on every axis. A box of no thickness is a box.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aabb {
+    /// The lower corner.
+    pub lo: [f32; 3],
+    /// The upper corner.
+    pub hi: [f32; 3],
+}
+
+impl Aabb {
+    /// Encloses nothing; the neutral element of [`Aabb::merge`].
+    pub const EMPTY: Aabb = Aabb { lo: [f32::INFINITY; 3], hi: [f32::NEG_INFINITY; 3] };
+
+    /// The box of points, rounded outward where they are finer than f32. Finite points only.
+    #[inline]
+    pub fn of<R: Real, const N: usize>(points: [Vec3<R>; N]) -> Aabb {
+        let (mut lo, mut hi) = (points[0], points[0]);
+        for &p in &points[1..] {
+            (lo, hi) = (lo.min(p), hi.max(p));
+        }
+        Aabb { lo: lo.map(|x| round::down(x.wide())).0, hi: hi.map(|x| round::up(x.wide())).0 }
+    }
+
+    /// The smallest box around both. Exact.
+    #[inline]
+    pub fn merge(self, o: Aabb) -> Aabb {
+        let mut box_ = self;
+        for k in 0..3 {
+            box_.lo[k] = self.lo[k].min(o.lo[k]);
+            box_.hi[k] = self.hi[k].max(o.hi[k]);
+        }
+        box_
+    }
+
+    /// Whether the closed boxes share a point. Exact: no rounding, no tolerance.
+    #[inline]
+    pub fn overlaps(&self, o: &Aabb) -> bool {
+        // One expression without branches: six comparisons that the machine may do side by side.
+        (self.lo[0] <= o.hi[0])
+            & (o.lo[0] <= self.hi[0])
+            & (self.lo[1] <= o.hi[1])
+            & (o.lo[1] <= self.hi[1])
+            & (self.lo[2] <= o.hi[2])
+            & (o.lo[2] <= self.hi[2])
+    }
+}
+
+impl Node {
+    /// The node's box.
+    #[inline]
+    pub fn volume(&self) -> Aabb {
+        Aabb { lo: self.lo, hi: self.hi }
+    }
+    /// The node with another box.
+    #[inline]
+    pub fn with(self, volume: Aabb) -> Node {
+        Node { lo: volume.lo, hi: volume.hi, ..self }
+    }
+}

@@ -1,0 +1,109 @@
+//! The kernel table: one line an entry. The PTX entries and the host's list come from the same line.
+
+use crate::abi::*;
+use crate::exec::{BINS, Block, WARP};
+use crate::stage::construct::{morton, sort, tree};
+use crate::stage::narrow::{discrete, sift, solve};
+use crate::stage::{fit, refit, traverse};
+use bytemuck::Pod;
+
+/// A kernel as the host knows it.
+pub trait Entry {
+    /// The name of the PTX entry, of the profiler's row and of this type: stage and step.
+    const NAME: &'static str;
+    /// What it is launched with.
+    type Args: Pod + Sync;
+    /// Lanes of a block.
+    const LANES: u32;
+    /// Bytes of shared memory of a block.
+    const SHARED: u32;
+    /// The kernel itself.
+    fn run<B: Block>(block: &mut B, args: &Self::Args);
+}
+
+/// From lines of `name: path [arguments] lanes, shared;` makes the types, the PTX entries and the list of names.
+macro_rules! kernels {
+    ($($name:ident: $path:expr, [$args:ty], $lanes:expr, $shared:expr;)*) => {
+        $(
+            #[doc = concat!("`", stringify!($name), "`")]
+            #[allow(non_camel_case_types, reason = "the type is the entry's name")]
+            #[derive(Clone, Copy, Debug)]
+            pub struct $name;
+            impl Entry for $name {
+                const NAME: &'static str = stringify!($name);
+                type Args = $args;
+                const LANES: u32 = $lanes;
+                const SHARED: u32 = $shared;
+                #[inline(always)]
+                fn run<B: Block>(block: &mut B, args: &$args) {
+                    const { <$args>::FITS };
+                    ($path)(block, args)
+                }
+            }
+        )*
+        /// Every kernel's name and the size of its arguments in bytes.
+        pub const TABLE: &[(&str, usize)] = &[$((stringify!($name), size_of::<$args>())),*];
+
+        /// The entries of the PTX.
+        #[cfg(target_arch = "nvptx64")]
+        mod card {
+            use super::*;
+            use crate::exec::ptx::Card;
+            $(
+                // SAFETY: called by the driver, once a thread, with arguments of the size in TABLE.
+                #[unsafe(no_mangle)]
+                unsafe extern "ptx-kernel" fn $name(args: $args) {
+                    // SAFETY: the one block of this kernel, made at its start.
+                    let mut block = unsafe { Card::new() };
+                    <super::$name as Entry>::run(&mut block, &args);
+                }
+            )*
+            /// Which sources this PTX came from; the host refuses another.
+            #[unsafe(no_mangle)]
+            pub static NEARMISS_STAMP: u64 = stamp::SOURCES;
+        }
+    };
+}
+
+/// Lanes of kernels whose work is the same for every lane.
+const WIDE: u32 = 256;
+/// Lanes of kernels with long or uneven work: small blocks, so that few lanes wait for a long one.
+const NARROW: u32 = 64;
+/// Shared memory of a radix scatter: the bins, and each warp's.
+const RANKS: u32 = 4 * BINS * (1 + WIDE / WARP);
+
+kernels! {
+    construct_bounds_f32: morton::bounds::<f32, B>, [MortonArgs<f32>], WIDE, 48;
+    construct_bounds_f64: morton::bounds::<f64, B>, [MortonArgs<f64>], WIDE, 48;
+    construct_morton_f32: morton::morton::<f32, B>, [MortonArgs<f32>], WIDE, 0;
+    construct_morton_f64: morton::morton::<f64, B>, [MortonArgs<f64>], WIDE, 0;
+    construct_sort_count: sort::count, [SortArgs], WIDE, 4 * BINS;
+    construct_sort_scan: sort::scan, [SortArgs], WIDE, 0;
+    construct_sort_scatter: sort::scatter, [SortArgs], WIDE, RANKS;
+    construct_tree: tree::tree, [TreeArgs], WIDE, 0;
+    construct_depth: tree::depth, [TreeArgs], WIDE, 0;
+    construct_place: tree::place, [TreeArgs], WIDE, 0;
+    construct_levels: tree::levels, [TreeArgs], WIDE, 0;
+    construct_emit: tree::emit, [TreeArgs], WIDE, 0;
+    fit_f32: fit::fit::<f32, B>, [FitArgs<f32>], WIDE, 0;
+    fit_f64: fit::fit::<f64, B>, [FitArgs<f64>], WIDE, 0;
+    refit_levels: refit::refit, [RefitArgs], WIDE, 0;
+    traverse_leaves: traverse::leaves, [TraverseArgs], NARROW, traverse::shared_bytes(NARROW);
+    traverse_units: traverse::units, [TraverseArgs], NARROW, traverse::shared_bytes(NARROW);
+    narrow_moller_f32: discrete::moller::<f32, B>, [DiscreteArgs<f32>], WIDE, 0;
+    narrow_moller_f64: discrete::moller::<f64, B>, [DiscreteArgs<f64>], WIDE, 0;
+    narrow_filter_f32: discrete::filter::<f32, B>, [DiscreteArgs<f32>], WIDE, 0;
+    narrow_filter_f64: discrete::filter::<f64, B>, [DiscreteArgs<f64>], WIDE, 0;
+    narrow_exact_f32: discrete::exact::<f32, B>, [DiscreteArgs<f32>], NARROW, 0;
+    narrow_exact_f64: discrete::exact::<f64, B>, [DiscreteArgs<f64>], NARROW, 0;
+    narrow_sift_f32: sift::sift::<f32, B>, [SiftArgs<f32>], WIDE, 0;
+    narrow_sift_f64: sift::sift::<f64, B>, [SiftArgs<f64>], WIDE, 0;
+    narrow_vf_f32_f32: solve::vf::<f32, f32, B>, [SolveArgs<f32>], WIDE, 0;
+    narrow_vf_f32_f64: solve::vf::<f32, f64, B>, [SolveArgs<f32>], WIDE, 0;
+    narrow_vf_f64_f32: solve::vf::<f64, f32, B>, [SolveArgs<f64>], WIDE, 0;
+    narrow_vf_f64_f64: solve::vf::<f64, f64, B>, [SolveArgs<f64>], WIDE, 0;
+    narrow_ee_f32_f32: solve::ee::<f32, f32, B>, [SolveArgs<f32>], WIDE, 0;
+    narrow_ee_f32_f64: solve::ee::<f32, f64, B>, [SolveArgs<f32>], WIDE, 0;
+    narrow_ee_f64_f32: solve::ee::<f64, f32, B>, [SolveArgs<f64>], WIDE, 0;
+    narrow_ee_f64_f64: solve::ee::<f64, f64, B>, [SolveArgs<f64>], WIDE, 0;
+}

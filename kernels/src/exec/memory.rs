@@ -1,0 +1,34 @@
+//! Shared memory, by value.
+
+use bytemuck::Pod;
+use core::marker::PhantomData;
+
+/// What shared memory holds: whole words of four or eight bytes.
+pub trait Word: Pod {}
+impl Word for u32 {}
+impl Word for u64 {}
+impl Word for [u32; 2] {}
+
+/// Words of a block's shared memory: an offset in bytes from its start, and a length.
+#[derive(Debug)]
+pub struct Shared<T> {
+    /// Offset from the start of the block's shared memory, in bytes.
+    pub offset: u32,
+    /// Length in words of `T`.
+    pub len: u32,
+    word: PhantomData<T>,
+}
+
+impl<T> Clone for Shared<T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+impl<T> Copy for Shared<T> {}
+
+impl<T> Shared<T> {
+    /// `len` words from `offset` bytes on.
+    pub const fn at(offset: u32, len: u32) -> Self {
+        Shared { offset, len, word: PhantomData }
+    }
+}

@@ -1,0 +1,105 @@
+//! The machine as a kernel sees it: blocks of lanes, memory, barriers.
+//!
+//! A kernel is a plain function over a [`Block`]. It is a sequence of *phases*: the body of a phase runs once for
+//! each lane, and the end of a phase is the block's barrier, so no lane can skip one. Code between phases is the
+//! same for all lanes (the card runs it in every lane, the emulator once), so it can only know uniform values.
+//! What a lane must remember from one phase to the next sits in a [`Slot`] (a register on the card, an array on
+//! the CPU) or in [`Shared`] words.
+//!
+//! A barrier for the whole grid is the same idea one level up: the end of the launch.
+
+mod memory;
+pub mod ptx;
+
+pub use memory::{Shared, Word};
+
+use crate::abi::Span;
+use bytemuck::Pod;
+
+/// One lane of a block, inside a phase: its number and its hands on memory.
+///
+/// Memory is read and written by value; nobody holds a reference to what another lane can reach. Plain accesses
+/// to one word by two lanes, one of them writing, must lie in different phases (one block) or different launches
+/// (two blocks); atomic accesses may meet. The emulator's microscope checks both rules and all bounds.
+pub trait Lane {
+    /// The lane's number in its block, from 0.
+    fn lane(&self) -> u32;
+    /// The lane's number in the launch, from 0.
+    fn global(&self) -> u32;
+
+    /// Element `i` of device memory.
+    fn read<T: Pod>(&self, span: Span<T>, i: u32) -> T;
+    /// Sets element `i` of device memory.
+    fn write<T: Pod>(&self, span: Span<T>, i: u32, value: T);
+    /// Atomic maximum on device memory.
+    fn fetch_max(&self, span: Span<u64>, i: u32, value: u64);
+    /// Atomic minimum on device memory.
+    fn fetch_min(&self, span: Span<u64>, i: u32, value: u64);
+    /// Atomic addition on device memory; the value before.
+    fn fetch_add(&self, span: Span<u64>, i: u32, value: u64) -> u64;
+
+    /// Word `i` of shared memory.
+    fn get<T: Word>(&self, words: Shared<T>, i: u32) -> T;
+    /// Sets word `i` of shared memory.
+    fn put<T: Word>(&self, words: Shared<T>, i: u32, value: T);
+    /// Atomic addition on shared memory; the value before.
+    fn shared_add(&self, words: Shared<u32>, i: u32, value: u32) -> u32;
+    /// Atomic maximum on shared memory.
+    fn shared_max(&self, words: Shared<u64>, i: u32, value: u64);
+}
+
+/// A value of each lane that lives across phases.
+pub trait Slot<T, L> {
+    /// This lane's value.
+    fn of(&mut self, lane: &L) -> &mut T;
+}
+
+/// A block of lanes: the phases of a kernel and the steps that its lanes take together.
+pub trait Block {
+    /// What a phase's body is given.
+    type Lane: Lane;
+    /// A value of each lane.
+    type Slot<T: Copy>: Slot<T, Self::Lane>;
+
+    /// The block's number in the launch.
+    fn block(&self) -> u32;
+    /// How many blocks the launch has.
+    fn blocks(&self) -> u32;
+    /// How many lanes a block has: a multiple of 32 on the card.
+    fn lanes(&self) -> u32;
+
+    /// Takes `len` words of the launch's shared memory; uninitialised.
+    fn shared<T: Word>(&mut self, len: u32) -> Shared<T>;
+    /// Gives each lane a value that lives across phases.
+    fn slot<T: Copy>(&self, init: T) -> Self::Slot<T>;
+    /// Runs `body` once for each lane, then waits for all of them.
+    fn phase(&mut self, body: impl FnMut(&Self::Lane));
+
+    /// A uniform read of device memory, between phases. Nothing in this launch may write it.
+    fn load<T: Pod>(&self, span: Span<T>, i: u32) -> T;
+    /// A uniform read of shared memory, between phases.
+    fn peek<T: Word>(&self, words: Shared<T>, i: u32) -> T;
+
+    /// Whether any lane's value is true.
+    fn any(&mut self, values: &mut Self::Slot<bool>) -> bool;
+    /// Replaces each lane's value by the sum of those of the lanes before it; returns the sum of all.
+    fn scan(&mut self, values: &mut Self::Slot<u32>) -> u32;
+    /// Adds `count` to a counter once for the whole block; the value before.
+    fn reserve(&mut self, counter: Span<u64>, i: u32, count: u64) -> u64;
+    /// As if the lanes, in their order, each took `bins[digit]` and added one to it: each lane's digit (under
+    /// [`BINS`]; others take nothing) is replaced by what it took. `scratch` has `BINS * lanes / 32` words.
+    fn ranks(&mut self, digits: &mut Self::Slot<u32>, bins: Shared<u32>, scratch: Shared<u32>);
+
+    /// Room in a list for what the lanes want to append: replaces each lane's wish by the number of entries
+    /// before its own, and returns where the block's entries begin. The counter goes past the end of the list,
+    /// so that its final value is the exact demand.
+    fn append(&mut self, wishes: &mut Self::Slot<u32>, counter: Span<u64>, i: u32) -> u64 {
+        let total = self.scan(wishes);
+        self.reserve(counter, i, total as u64)
+    }
+}
+
+/// How many bins [`Block::ranks`] has: one for each value of a byte.
+pub const BINS: u32 = 256;
+/// Lanes of a warp, on every card.
+pub const WARP: u32 = 32;

@@ -1,0 +1,86 @@
+//! Work units that wait: the stack of one walk.
+
+use crate::abi::Pair;
+use crate::exec::{Lane, Shared};
+use crate::stage::construct::MAX_LEVELS;
+use core::mem::MaybeUninit;
+
+/// Entries that a walk's stack can need: one waiting sibling a level, and two hits that found no room.
+const ROOM: usize = MAX_LEVELS as usize + 2;
+
+/// A stack of work that cannot overflow: a depth-first walk leaves at most one waiting entry a level behind.
+#[derive(Clone, Copy)]
+pub struct Stack {
+    items: [MaybeUninit<u32>; ROOM],
+    len: u32,
+}
+
+impl Stack {
+    /// No entries. The room behind them stays uninitialised: zeroing it costs more than a walk.
+    #[inline]
+    pub fn new() -> Self {
+        Stack { items: [MaybeUninit::uninit(); ROOM], len: 0 }
+    }
+    /// How many entries wait.
+    #[inline]
+    pub fn len(&self) -> u32 {
+        self.len
+    }
+    /// Whether none does.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+    /// Adds an entry.
+    #[inline]
+    pub fn push(&mut self, item: u32) {
+        debug_assert!((self.len as usize) < ROOM);
+        // SAFETY: a walk holds at most ROOM entries (see `ROOM`): a tree has at most MAX_LEVELS levels, which the
+        // checker of the tree confirms, and the walk stops when a hit finds no room.
+        unsafe { self.items.get_unchecked_mut(self.len as usize).write(item) };
+        self.len += 1;
+    }
+    /// Takes the entry that was added last.
+    #[inline]
+    pub fn pop(&mut self) -> Option<u32> {
+        if self.len == 0 {
+            return None;
+        }
+        self.len -= 1;
+        // SAFETY: entries below `len` were written by `push`, and len was at least 1.
+        Some(unsafe { self.items.get_unchecked(self.len as usize).assume_init() })
+    }
+}
+
+impl Default for Stack {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// A block's buffer of pairs in shared memory. Lanes append at any time; when it is full they wait for a flush.
+#[derive(Clone, Copy)]
+pub struct Buffer {
+    /// The pairs.
+    pub pairs: Shared<[u32; 2]>,
+    /// One word: how many were asked to be put in.
+    pub fill: Shared<u32>,
+}
+
+impl Buffer {
+    /// Puts a pair in; false when there is no room.
+    #[inline]
+    pub fn push<L: Lane>(&self, l: &L, pair: Pair) -> bool {
+        let at = l.shared_add(self.fill, 0, 1);
+        if at < self.pairs.len {
+            l.put(self.pairs, at, [pair.a, pair.b]);
+        }
+        at < self.pairs.len
+    }
+    /// A pair that was put in.
+    #[inline]
+    pub fn get<L: Lane>(&self, l: &L, i: u32) -> Pair {
+        let [a, b] = l.get(self.pairs, i);
+        Pair { a, b }
+    }
+}

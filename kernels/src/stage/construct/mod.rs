@@ -1,0 +1,17 @@
+//! # Construct: positions → level-ordered tree
+//! Paper    thesis chapter 5 and section 6.2.4, "the nodes will already be stored in that order".
+//! Steps    [`morton`] orders the triangles along a curve, [`sort`] sorts them, [`tree`] finds the hierarchy of the
+//!          sorted codes and puts it into level order. All of it on the device.
+//! Departs  the thesis splits nodes top-down with work queues, a level at a time. Here every inner node finds its range
+//!          on its own (Karras, "Maximizing parallelism in the construction of BVHs, octrees and k-d trees", 2012),
+//!          and one stable radix pass over the depths gives the same breadth-first order.
+//! Silent   the thesis does not say what equal codes do. Ties are split by the index in sorted order, as Karras
+//!          does, so a million equal triangles make a tree of 20 levels.
+
+pub mod morton;
+pub mod sort;
+pub mod tree;
+
+/// Levels that a tree can have: a path from the root splits on one of the 63 bits of the code or, between equal
+/// codes, on one of the 32 bits of the index, each at most once; and the leaves.
+pub const MAX_LEVELS: u32 = 63 + 32 + 1;

@@ -1,0 +1,17 @@
+//! The corridor: one file a stage, in the order in which data flows.
+//!
+//! | stage | reads | writes |
+//! | --- | --- | --- |
+//! | [`construct`] | positions at t = 0, faces | the level-ordered tree, without volumes |
+//! | [`fit`] | positions at t = 0 and t = 1, faces | volumes of the leaves |
+//! | [`refit`] | volumes of the leaves | all volumes, a barrier between levels |
+//! | [`traverse`] | the tree (or two) | candidates: triangle pairs |
+//! | [`narrow`] | candidates, positions | contacts |
+//!
+//! No stage calls another; they meet in memory, through [`crate::abi`].
+
+pub mod construct;
+pub mod fit;
+pub mod narrow;
+pub mod refit;
+pub mod traverse;

@@ -1,0 +1,49 @@
+//! # Narrow: candidates → contacts
+//! Paper    section 6.2.5, "a variant of the Moeller test"; "the cubic equation for each of the 15 elementary tests".
+//! Steps    discrete: [`discrete`]. Continuous: [`sift`] turns triangle pairs into vertex/face and edge/edge candidates,
+//!          each once; [`solve`] finds their first time of contact.
+
+pub mod discrete;
+pub mod sift;
+pub mod solve;
+
+use crate::abi::{Pair, Span};
+use crate::exec::{Block, Slot};
+
+/// Runs `body` for each of `count` items, a lane each, in a grid of any size; an item may `Some` an entry to append to
+/// `list`. The counter goes past the end of the list, so its final value is the exact demand.
+fn append_each<B: Block, T: bytemuck::Pod>(
+    b: &mut B,
+    count: u32,
+    (list, counters, at): (Span<T>, Span<u64>, u32),
+    mut body: impl FnMut(&B::Lane, u32) -> Option<T>,
+) {
+    use crate::exec::Lane;
+    let lanes = b.lanes();
+    let mut entries = b.slot(None);
+    let mut places = b.slot(0u32);
+    let mut base = b.block() * lanes;
+    while base < count {
+        b.phase(|l| {
+            let i = base + l.lane();
+            let entry = if i < count { body(l, i) } else { None };
+            *places.of(l) = entry.is_some() as u32;
+            *entries.of(l) = entry;
+        });
+        let start = b.append(&mut places, counters, at);
+        b.phase(|l| {
+            let place = start + *places.of(l) as u64;
+            if let Some(entry) = *entries.of(l)
+                && place < list.len
+            {
+                l.write(list, place as u32, entry);
+            }
+        });
+        base += b.blocks() * lanes;
+    }
+}
+
+/// How many entries of a list are there: its counter, or its room where that ran out.
+fn listed<B: Block>(b: &B, list: Span<Pair>, counters: Span<u64>, at: u32) -> u32 {
+    b.load(counters, at).min(list.len) as u32
+}

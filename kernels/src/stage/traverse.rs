@@ -1,0 +1,261 @@
+//! # Traverse: the tree (or two) → candidates
+//! Paper    section 6.2, pairs of nodes from work queues; per-leaf walks after Karras, "Thinking parallel", 2012.
+//! Launch   `leaves`: a lane a leaf of the queries' tree, in leaf order, so neighbours walk alike. Then `units`, [`crate::abi::ROUNDS`]
+//!          times: a lane a work unit that a longer walk left over. A grid of any size strides.
+//! Reads    nodes, two siblings at once (64 B); faces, to leave out pairs that share a vertex.
+//! Writes   candidate pairs (self: by index; between: queries first), each once, in no order.
+//! Before   all volumes are fitted and refitted.
+//! After    every pair of leaves whose boxes overlap is written, but for those that share a vertex index unless
+//!          [`KEEP_ADJACENT`] asks for them. In one mesh a pair is found by its earlier leaf: subtrees that end before it
+//!          are skipped.
+//! Room     `pairs` may be too short: the counter goes on, the host grows it and runs again. `spilled` may be too
+//!          short: then a walk goes on by itself and nothing is lost.
+//! Departs  the paper's queues hold pairs of inner nodes and are balanced between launches; here a walk that has used up
+//!          its budget gives the rest of its stack away, and the next round balances by giving a lane to each unit.
+//! Cost     64 B and 12 comparisons a step; hits wait on chip, so that the test for shared vertices and the append
+//!          run converged, with one atomic operation a block.
+
+use crate::abi::{KEEP_ADJACENT, LEAF, NONE, Pair, ROOT, SELF, TraverseArgs, Unit, counter};
+use crate::bv::Aabb;
+use crate::exec::{Block, Lane, Slot};
+use crate::queue::{Buffer, Stack};
+
+/// Pairs that a block's buffer holds, a lane.
+const BUFFER_A_LANE: u32 = 8;
+
+/// Bytes of shared memory for a launch with that many lanes.
+pub const fn shared_bytes(lanes: u32) -> u32 {
+    2 * (8 * BUFFER_A_LANE * lanes + 8)
+}
+
+/// A walk of one leaf through a tree, between two phases.
+#[derive(Clone, Copy)]
+struct Walk {
+    /// The leaf's box.
+    volume: Aabb,
+    /// The leaf's triangle.
+    triangle: u32,
+    /// The leaf's node; [`NONE`] when the lane has no walk.
+    query: u32,
+    /// Leaves before this one are not wanted.
+    from: u32,
+    /// Steps taken by all walks of this lane.
+    steps: u32,
+    /// Steps that this walk may still take.
+    budget: u32,
+    /// Siblings to test, and hits that found no room (marked [`LEAF`]).
+    stack: Stack,
+}
+
+/// One walk a leaf.
+pub fn leaves<B: Block>(b: &mut B, a: &TraverseArgs) {
+    let root = b.load(a.nodes, ROOT);
+    run(b, a, a.query_leaves.len as u32, |l, i, walk| {
+        start(l, a, walk, l.read(a.query_leaves, i));
+        if root.last >= walk.from && walk.volume.overlaps(&root.volume()) {
+            walk.stack.push(root.link);
+        }
+    });
+}
+
+/// One walk a unit that the round before left over.
+pub fn units<B: Block>(b: &mut B, a: &TraverseArgs) {
+    let count = b.load(a.counters, a.units_at).min(a.units.len) as u32;
+    run(b, a, count, |l, i, walk| {
+        let Unit { query, pair } = l.read(a.units, i);
+        if query != NONE {
+            start(l, a, walk, query);
+            walk.stack.push(pair);
+        }
+    });
+}
+
+/// A walk of the leaf at node `query`, with an empty stack.
+#[inline]
+fn start<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, query: u32) {
+    let leaf = l.read(a.queries, query);
+    *walk = Walk {
+        volume: leaf.volume(),
+        triangle: leaf.triangle(),
+        query,
+        from: if a.flags & SELF != 0 { leaf.last + 1 } else { 0 },
+        budget: a.budget,
+        ..*walk
+    };
+}
+
+/// Walks `total` walks, a lane each; `begin` starts one.
+#[inline]
+fn run<B: Block>(b: &mut B, a: &TraverseArgs, total: u32, begin: impl Fn(&B::Lane, u32, &mut Walk)) {
+    let lanes = b.lanes();
+    let found = Buffer { pairs: b.shared(BUFFER_A_LANE * lanes), fill: b.shared(2) };
+    let kept = Buffer { pairs: b.shared(BUFFER_A_LANE * lanes), fill: b.shared(2) };
+    let mut walks = b.slot(Walk {
+        volume: Aabb::EMPTY,
+        triangle: 0,
+        query: NONE,
+        from: 0,
+        steps: 0,
+        budget: 0,
+        stack: Stack::new(),
+    });
+    let mut busy = b.slot(false);
+    let mut base = b.block() * lanes;
+    b.phase(|l| clear(l, found, kept));
+    while base < total {
+        b.phase(|l| {
+            let i = base + l.lane();
+            if i < total {
+                begin(l, i, walks.of(l));
+            }
+        });
+        loop {
+            b.phase(|l| {
+                let walk = walks.of(l);
+                advance(l, a, walk, found);
+                if !walk.stack.is_empty() && walk.budget == 0 {
+                    spill(l, a, walk);
+                }
+                *busy.of(l) = !walk.stack.is_empty();
+            });
+            flush(b, a, found, kept);
+            if !b.any(&mut busy) {
+                break;
+            }
+        }
+        base += b.blocks() * lanes;
+    }
+    let mut steps = b.slot(0u32);
+    b.phase(|l| *steps.of(l) = walks.of(l).steps);
+    let sum = b.scan(&mut steps);
+    b.reserve(a.counters, counter::STEPS, sum as u64);
+}
+
+/// Walks on until the stack is empty, the budget is used up or the buffer is full.
+#[inline]
+fn advance<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, found: Buffer) {
+    let mut next = NONE;
+    loop {
+        if next == NONE {
+            match walk.stack.pop() {
+                None => return,
+                Some(hit) if hit & LEAF != 0 => {
+                    if !emit(l, a, walk, hit, found) {
+                        return;
+                    }
+                    continue;
+                }
+                Some(pair) => next = pair,
+            }
+        }
+        if walk.budget == 0 {
+            walk.stack.push(next);
+            return;
+        }
+        walk.budget -= 1;
+        walk.steps += 1;
+        let (left, right) = (l.read(a.nodes, next), l.read(a.nodes, next + 1));
+        let into_left = (left.last >= walk.from) & walk.volume.overlaps(&left.volume());
+        let into_right = (right.last >= walk.from) & walk.volume.overlaps(&right.volume());
+        next = NONE;
+        let mut room = true;
+        if into_right {
+            if right.is_leaf() {
+                room &= emit(l, a, walk, right.link, found);
+            } else {
+                next = right.link;
+            }
+        }
+        if into_left {
+            if left.is_leaf() {
+                room &= emit(l, a, walk, left.link, found);
+            } else {
+                if next != NONE {
+                    walk.stack.push(next);
+                }
+                next = left.link;
+            }
+        }
+        if !room {
+            if next != NONE {
+                walk.stack.push(next);
+            }
+            return;
+        }
+    }
+}
+
+/// Puts a hit into the buffer, or back on the stack when there is no room.
+#[inline]
+fn emit<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, leaf: u32, found: Buffer) -> bool {
+    let (mine, other) = (walk.triangle, leaf & !LEAF);
+    let ordered = a.flags & SELF == 0 || mine < other;
+    let room = found.push(l, if ordered { Pair { a: mine, b: other } } else { Pair { a: other, b: mine } });
+    if !room {
+        walk.stack.push(leaf);
+    }
+    room
+}
+
+/// Gives the rest of a walk away; where the list has no room for all of it, the walk goes on without a budget.
+fn spill<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk) {
+    let count = walk.stack.len() as u64;
+    let at = l.fetch_add(a.counters, a.spilled_at, count);
+    if at + count <= a.spilled.len {
+        let mut i = at as u32;
+        while let Some(pair) = walk.stack.pop() {
+            l.write(a.spilled, i, Unit { query: walk.query, pair });
+            i += 1;
+        }
+    } else {
+        walk.budget = u32::MAX;
+        let mut i = at;
+        while i < a.spilled.len.min(at + count) {
+            l.write(a.spilled, i as u32, Unit { query: NONE, pair: NONE });
+            i += 1;
+        }
+    }
+}
+
+/// Empties the buffer into the list of candidates, without the pairs that share a vertex.
+fn flush<B: Block>(b: &mut B, a: &TraverseArgs, found: Buffer, kept: Buffer) {
+    let lanes = b.lanes();
+    let count = b.peek(found.fill, 0).min(found.pairs.len);
+    b.phase(|l| {
+        let mut i = l.lane();
+        while i < count {
+            let pair = found.get(l, i);
+            if a.flags & KEEP_ADJACENT != 0 || !adjacent(l.read(a.faces, pair.a), l.read(a.faces, pair.b)) {
+                kept.push(l, pair);
+            }
+            i += lanes;
+        }
+    });
+    let count = b.peek(kept.fill, 0);
+    let base = b.reserve(a.counters, counter::PAIRS, count as u64);
+    b.phase(|l| {
+        let mut i = l.lane();
+        while i < count {
+            if base + (i as u64) < a.pairs.len {
+                l.write(a.pairs, (base + i as u64) as u32, kept.get(l, i));
+            }
+            i += lanes;
+        }
+        clear(l, found, kept);
+    });
+}
+
+/// Empties both buffers.
+fn clear<L: Lane>(l: &L, found: Buffer, kept: Buffer) {
+    if l.lane() == 0 {
+        l.put(found.fill, 0, 0);
+        l.put(kept.fill, 0, 0);
+    }
+}
+
+/// Whether two triangles share a vertex index.
+#[inline]
+fn adjacent(p: [u32; 3], q: [u32; 3]) -> bool {
+    let has = |v: u32| (v == q[0]) | (v == q[1]) | (v == q[2]);
+    has(p[0]) | has(p[1]) | has(p[2])
+}
