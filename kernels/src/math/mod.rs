@@ -1,10 +1,11 @@
 //! Numbers only: scalars, vectors, rounding.
 
-mod real;
 pub mod ordered;
+mod real;
+pub mod root;
 pub mod round;
 pub mod tolerance;
 mod vec3;
 
-pub use real::Real;
+pub use real::{Parts, Real};
 pub use vec3::Vec3;

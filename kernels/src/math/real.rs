@@ -1,13 +1,26 @@
 //! The two precisions that positions come in.
 
-use super::tolerance::{U32, U64};
+use super::root::{sqrt32, sqrt64};
+use super::tolerance::{Tolerance, U32, U64};
 use bytemuck::Pod;
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
+/// A finite number taken apart: the value is `±mantissa * 2^exponent`. Zero, of either sign, has mantissa 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Parts {
+    /// Below zero. Never set for -0.0.
+    pub negative: bool,
+    /// At most 24 bits (f32) or 53 bits (f64).
+    pub mantissa: u64,
+    /// From -149 (f32) or -1074 (f64).
+    pub exponent: i32,
+}
+
 /// A binary floating-point number: f32 or f64. Arithmetic is IEEE, round to nearest, never contracted.
 pub trait Real:
     Pod
+    + Tolerance
     + Debug
     + PartialOrd
     + Add<Output = Self>
@@ -22,6 +35,8 @@ pub trait Real:
     const ONE: Self;
     /// Unit roundoff.
     const U: Self;
+    /// f64: its exponents spread too far for the middle size of exact integers.
+    const WIDE: bool;
 
     /// The nearest value of this precision (exact where `x` is representable).
     fn of(x: f64) -> Self;
@@ -29,11 +44,19 @@ pub trait Real:
     fn wide(self) -> f64;
     /// The magnitude.
     fn abs(self) -> Self;
+    /// The square root, correctly rounded; of `self >= 0` only.
+    fn sqrt(self) -> Self;
+    /// Sign, integer mantissa and exponent; of finite numbers only. Exact, in integer operations.
+    fn parts(self) -> Parts;
+    /// `2^k`, exactly; for `k` in the range of normal numbers, elsewhere the nearest end of that range.
+    fn pow2(k: i32) -> Self;
     /// The smaller; of finite numbers only.
+    #[inline]
     fn min(self, o: Self) -> Self {
         if o < self { o } else { self }
     }
     /// The larger; of finite numbers only.
+    #[inline]
     fn max(self, o: Self) -> Self {
         if o > self { o } else { self }
     }
@@ -43,14 +66,31 @@ impl Real for f32 {
     const ZERO: f32 = 0.0;
     const ONE: f32 = 1.0;
     const U: f32 = U32;
+    const WIDE: bool = false;
+    #[inline]
     fn of(x: f64) -> f32 {
         x as f32
     }
+    #[inline]
     fn wide(self) -> f64 {
         self as f64
     }
+    #[inline]
     fn abs(self) -> f32 {
         f32::abs(self)
+    }
+    #[inline]
+    fn sqrt(self) -> f32 {
+        sqrt32(self)
+    }
+    fn parts(self) -> Parts {
+        let b = self.to_bits();
+        let (e, m) = ((b >> 23 & 0xff) as i32, (b & 0x7f_ffff) as u64);
+        let mantissa = if e == 0 { m } else { m | 1 << 23 };
+        Parts { negative: b >> 31 == 1 && mantissa != 0, mantissa, exponent: e.max(1) - 150 }
+    }
+    fn pow2(k: i32) -> f32 {
+        f32::from_bits(((k.clamp(-126, 127) + 127) as u32) << 23)
     }
 }
 
@@ -58,13 +98,30 @@ impl Real for f64 {
     const ZERO: f64 = 0.0;
     const ONE: f64 = 1.0;
     const U: f64 = U64;
+    const WIDE: bool = true;
+    #[inline]
     fn of(x: f64) -> f64 {
         x
     }
+    #[inline]
     fn wide(self) -> f64 {
         self
     }
+    #[inline]
     fn abs(self) -> f64 {
         f64::abs(self)
+    }
+    #[inline]
+    fn sqrt(self) -> f64 {
+        sqrt64(self)
+    }
+    fn parts(self) -> Parts {
+        let b = self.to_bits();
+        let (e, m) = ((b >> 52 & 0x7ff) as i32, b & ((1 << 52) - 1));
+        let mantissa = if e == 0 { m } else { m | 1 << 52 };
+        Parts { negative: b >> 63 == 1 && mantissa != 0, mantissa, exponent: e.max(1) - 1075 }
+    }
+    fn pow2(k: i32) -> f64 {
+        f64::from_bits(((k.clamp(-1022, 1023) + 1023) as u64) << 52)
     }
 }

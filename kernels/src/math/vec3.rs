@@ -16,10 +16,12 @@ unsafe impl<R: Real> Pod for Vec3<R> {}
 
 impl<R: Real> Vec3<R> {
     /// The inner product, summed in the order x, y, z.
+    #[inline]
     pub fn dot(self, o: Self) -> R {
         self[0] * o[0] + self[1] * o[1] + self[2] * o[2]
     }
     /// The outer product; each component is one difference of two products.
+    #[inline]
     pub fn cross(self, o: Self) -> Self {
         Vec3([
             self[1] * o[2] - self[2] * o[1],
@@ -28,18 +30,22 @@ impl<R: Real> Vec3<R> {
         ])
     }
     /// Component-wise, for example `v.map(Real::abs)`.
+    #[inline]
     pub fn map<S: Real>(self, f: impl Fn(R) -> S) -> Vec3<S> {
         Vec3([f(self[0]), f(self[1]), f(self[2])])
     }
     /// The component-wise smaller.
+    #[inline]
     pub fn min(self, o: Self) -> Self {
         Vec3([self[0].min(o[0]), self[1].min(o[1]), self[2].min(o[2])])
     }
     /// The component-wise larger.
+    #[inline]
     pub fn max(self, o: Self) -> Self {
         Vec3([self[0].max(o[0]), self[1].max(o[1]), self[2].max(o[2])])
     }
     /// Widened to f64; exact.
+    #[inline]
     pub fn wide(self) -> Vec3<f64> {
         self.map(Real::wide)
     }
@@ -47,30 +53,35 @@ impl<R: Real> Vec3<R> {
 
 impl<R> Index<usize> for Vec3<R> {
     type Output = R;
+    #[inline]
     fn index(&self, i: usize) -> &R {
         &self.0[i]
     }
 }
 impl<R: Real> Add for Vec3<R> {
     type Output = Self;
+    #[inline]
     fn add(self, o: Self) -> Self {
         Vec3([self[0] + o[0], self[1] + o[1], self[2] + o[2]])
     }
 }
 impl<R: Real> Sub for Vec3<R> {
     type Output = Self;
+    #[inline]
     fn sub(self, o: Self) -> Self {
         Vec3([self[0] - o[0], self[1] - o[1], self[2] - o[2]])
     }
 }
 impl<R: Real> Mul<R> for Vec3<R> {
     type Output = Self;
+    #[inline]
     fn mul(self, s: R) -> Self {
         Vec3([self[0] * s, self[1] * s, self[2] * s])
     }
 }
 impl<R: Real> Neg for Vec3<R> {
     type Output = Self;
+    #[inline]
     fn neg(self) -> Self {
         Vec3([-self[0], -self[1], -self[2]])
     }

@@ -1,1 +1,17 @@
 //! Two primitives: the narrow tests.
+//!
+//! Discrete, from fast to certain: [`moller`] (plain floats, can miss), [`tri_tri`] on the signs of [`orient`]
+//! (floats with a proven error bound: right or silent) and of [`exact`] (integers: always right).
+//! Continuous: [`cubic`] (the coplanarity cubic; can miss, and says how). [`stencil`] names the fifteen
+//! vertex/face and edge/edge tests of two triangles.
+
+pub mod adjacent;
+pub mod cubic;
+pub mod exact;
+mod flat;
+pub mod moller;
+pub mod orient;
+mod poly;
+pub mod signs;
+pub mod stencil;
+pub mod tri_tri;

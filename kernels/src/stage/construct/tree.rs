@@ -143,7 +143,8 @@ pub fn emit<B: Block>(b: &mut B, a: &TreeArgs) {
             return;
         }
         let Inner { first, split, last } = l.read(a.inner, l.read(a.ordered, place));
-        let link = |from: u32, to: u32, node: u32| if from == to { LEAF } else { children(l.read(a.places, node)) };
+        let link =
+            |from: u32, to: u32, node: u32| if from == to { LEAF } else { children(l.read(a.places, node)) };
         put(l, a, children(place), link(first, split, split), split);
         put(l, a, children(place) + 1, link(split + 1, last, split + 1), last);
     });

@@ -13,28 +13,13 @@ use super::{append_each, listed};
 use crate::abi::{DiscreteArgs, KEEP_ADJACENT, Pair, counter};
 use crate::exec::{Block, Lane, Slot};
 use crate::math::{Real, Vec3};
-use crate::prim::{Exact, Filter, meets, meets_beyond_shared, moller};
+use crate::prim::adjacent::{Shared, meets_beyond_shared};
+use crate::prim::moller;
+use crate::prim::tri_tri::{Certain, Filter, meets};
 
 /// The corners of a triangle.
 fn corners<R: Real, L: Lane>(l: &L, a: &DiscreteArgs<R>, face: [u32; 3]) -> [Vec3<R>; 3] {
     face.map(|v| l.read(a.positions, v))
-}
-
-/// Which corners of two triangles are the same vertex: pairs (corner of p, corner of q), and how many.
-fn shared(p: [u32; 3], q: [u32; 3]) -> ([(u8, u8); 3], usize) {
-    let mut found = [(0, 0); 3];
-    let mut count = 0;
-    for i in 0..3 {
-        for j in 0..3 {
-            // A face may name a vertex twice; the vertex is shared once.
-            let new = !p[..i].contains(&p[i]) && !q[..j].contains(&q[j]);
-            if p[i] == q[j] && new {
-                found[count] = (i as u8, j as u8);
-                count += 1;
-            }
-        }
-    }
-    (found, count)
 }
 
 /// The seed's test, in f32.
@@ -42,8 +27,8 @@ pub fn moller<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
     let count = listed(b, a.pairs, a.counters, a.pairs_at);
     append_each(b, count, (a.contacts, a.counters, counter::CONTACTS), |l, i| {
         let pair = l.read(a.pairs, i);
-        let narrow = |v: u32| corners(l, a, l.read(a.faces, v)).map(|p| p.map(|x| x.wide() as f32));
-        moller::meets(narrow(pair.a), narrow(pair.b)).then_some(pair)
+        let triangle = |t: u32| corners(l, a, l.read(a.faces, t));
+        moller::moller(&triangle(pair.a), &triangle(pair.b)).then_some(pair)
     });
 }
 
@@ -62,7 +47,7 @@ pub fn filter<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
             if i < count {
                 let pair = l.read(a.pairs, i);
                 let (p, q) = (l.read(a.faces, pair.a), l.read(a.faces, pair.b));
-                let beyond = a.flags & KEEP_ADJACENT != 0 && shared(p, q).1 > 0;
+                let beyond = a.flags & KEEP_ADJACENT != 0 && Shared::by_index(p, q) != Shared::Nothing;
                 *pairs.of(l) = pair;
                 *verdicts.of(l) =
                     if beyond { None } else { meets::<R, Filter>(&corners(l, a, p), &corners(l, a, q)) };
@@ -90,14 +75,9 @@ pub fn exact<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
     append_each(b, count, (a.contacts, a.counters, counter::CONTACTS), |l, i| {
         let pair = l.read(a.undecided, i);
         let (p, q) = (l.read(a.faces, pair.a), l.read(a.faces, pair.b));
-        let (common, n) = shared(p, q);
-        let (p, q) = (corners(l, a, p), corners(l, a, q));
-        let verdict = if n > 0 {
-            meets_beyond_shared::<R, Exact>(&p, &q, &common[..n])
-        } else {
-            meets::<f64, Filter>(&p.map(Vec3::wide), &q.map(Vec3::wide))
-                .or_else(|| meets::<R, Exact>(&p, &q))
-        };
+        let shared = Shared::by_index(p, q);
+        let verdict = meets_beyond_shared::<R, Certain>(&corners(l, a, p), &corners(l, a, q), shared);
+        // `Certain` always answers; were it not to, the pair stays.
         (verdict != Some(false)).then_some(pair)
     });
 }

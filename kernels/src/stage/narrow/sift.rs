@@ -88,7 +88,8 @@ fn wanted<R: Real>(p: &Triangle<R>, q: &Triangle<R>) -> u32 {
         let [from, to] = [p.corners[i], p.corners[(i + 1) % 3]];
         for j in 0..3 {
             let ends = [q.corners[j], q.corners[(j + 1) % 3]];
-            if q.owns_edge(j) && !ends.contains(&from) && !ends.contains(&to) && edge.overlaps(&q.edge_box(j)) {
+            if q.owns_edge(j) && !ends.contains(&from) && !ends.contains(&to) && edge.overlaps(&q.edge_box(j))
+            {
                 mask |= 1 << (6 + 3 * i + j);
             }
         }

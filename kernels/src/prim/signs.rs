@@ -1,0 +1,83 @@
+//! Where the signs of determinants come from: one decision logic, several sources.
+
+use super::exact::{orient2d_exact, orient3d_exact};
+use super::orient::{Plane, orient2d_filter};
+use crate::math::{Real, Vec3};
+
+/// A source of signs. Each sign is right or `None`; so a decision made of them is right or undecided.
+pub trait Signs<R: Real> {
+    /// The sign of det[a-d, b-d, c-d].
+    fn orient3d(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, d: Vec3<R>) -> Option<i32>;
+    /// The sign of the orientation of three points with coordinate `axis` dropped (1, 2 of 0; 2, 0 of 1; 0, 1 of 2).
+    fn orient2d(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, axis: usize) -> Option<i32>;
+    /// `orient3d(t[0], t[1], t[2], p)` for three points: what a source can do cheaper in one go.
+    #[inline]
+    fn sides(t: &[Vec3<R>; 3], p: &[Vec3<R>; 3]) -> [Option<i32>; 3] {
+        p.map(|d| Self::orient3d(t[0], t[1], t[2], d))
+    }
+}
+
+/// Floats of the input's precision with a proven bound; `None` where they cannot tell. See [`super::orient`].
+pub struct Filter;
+/// f64 with a proven bound, from f32 input: what the f32 filter leaves, this nearly always decides.
+pub struct Wide;
+/// Integers, never `None`. See [`super::exact`].
+pub struct Exact;
+/// [`Filter`], then [`Exact`] for the very signs that it leaves: never `None`, and what a CPU should use.
+pub struct Certain;
+
+impl<R: Real> Signs<R> for Filter {
+    #[inline]
+    fn orient3d(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, d: Vec3<R>) -> Option<i32> {
+        Plane::through(a, b, c).side(d)
+    }
+    #[inline]
+    fn orient2d(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, axis: usize) -> Option<i32> {
+        orient2d_filter(a, b, c, axis)
+    }
+    #[inline]
+    fn sides(t: &[Vec3<R>; 3], p: &[Vec3<R>; 3]) -> [Option<i32>; 3] {
+        let plane = Plane::through(t[0], t[1], t[2]);
+        p.map(|d| plane.side(d))
+    }
+}
+
+impl<R: Real> Signs<R> for Wide {
+    #[inline]
+    fn orient3d(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, d: Vec3<R>) -> Option<i32> {
+        Filter::orient3d(a.wide(), b.wide(), c.wide(), d.wide())
+    }
+    #[inline]
+    fn orient2d(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, axis: usize) -> Option<i32> {
+        Filter::orient2d(a.wide(), b.wide(), c.wide(), axis)
+    }
+    #[inline]
+    fn sides(t: &[Vec3<R>; 3], p: &[Vec3<R>; 3]) -> [Option<i32>; 3] {
+        Filter::sides(&t.map(Vec3::wide), &p.map(Vec3::wide))
+    }
+}
+
+impl<R: Real> Signs<R> for Exact {
+    fn orient3d(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, d: Vec3<R>) -> Option<i32> {
+        Some(orient3d_exact(a, b, c, d))
+    }
+    fn orient2d(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, axis: usize) -> Option<i32> {
+        Some(orient2d_exact(a, b, c, axis))
+    }
+}
+
+impl<R: Real> Signs<R> for Certain {
+    #[inline]
+    fn orient3d(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, d: Vec3<R>) -> Option<i32> {
+        Wide::orient3d(a, b, c, d).or_else(|| Exact::orient3d(a, b, c, d))
+    }
+    #[inline]
+    fn orient2d(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, axis: usize) -> Option<i32> {
+        Wide::orient2d(a, b, c, axis).or_else(|| Exact::orient2d(a, b, c, axis))
+    }
+    #[inline]
+    fn sides(t: &[Vec3<R>; 3], p: &[Vec3<R>; 3]) -> [Option<i32>; 3] {
+        let s = Wide::sides(t, p);
+        core::array::from_fn(|i| s[i].or_else(|| Exact::orient3d(t[0], t[1], t[2], p[i])))
+    }
+}

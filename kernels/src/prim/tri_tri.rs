@@ -1,0 +1,119 @@
+//! Whether two closed triangles share a point, by signs of determinants alone.
+//!
+//! The answer has no tolerance and constructs no point: it is a function of exact signs, so with a source that
+//! never errs it is exact, and the order of corners and of triangles cannot change it. Touching counts. A triangle
+//! without area is the segment or point that it is.
+
+pub use super::flat::{boxes_meet, segments_meet};
+pub use super::signs::{Certain, Exact, Filter, Signs, Wide};
+
+use super::flat::flat_meet;
+use crate::math::{Real, Vec3};
+
+/// Whether the closed triangles `p` and `q` share a point; `None` only if a needed sign is.
+///
+/// - All of one triangle strictly on one side of the other's plane: apart. 2 planes, 6 signs, the common case.
+/// - All six signs zero: one plane, or neither has area (a triangle with area in the other's plane makes both
+///   triples zero; one without area makes the other's triple zero): [`super::flat`].
+/// - Else two triangles meet where an edge of one pierces the other. An edge within the other's plane is left out:
+///   if it holds a common point, so does an end of it (then a neighbouring edge that leaves the plane finds it) or
+///   an edge of the other that crosses it. If one of the two is a segment or point, only its edges are asked.
+#[inline]
+pub fn meets<R: Real, S: Signs<R>>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> Option<bool> {
+    let q_of_p = S::sides(p, q);
+    if one_side(&q_of_p) {
+        return Some(false);
+    }
+    let p_of_q = S::sides(q, p);
+    if one_side(&p_of_q) {
+        return Some(false);
+    }
+    meets_on::<R, S>(p, q, known(&p_of_q)?, known(&q_of_p)?)
+}
+
+/// The exact answer at the least cost on one core: filter, wider filter, integers, sign by sign.
+#[inline]
+pub fn meets_exactly<R: Real>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> bool {
+    match meets::<R, Filter>(p, q) {
+        Some(answer) => answer,
+        // Certain is never undecided; `true` would keep the pair.
+        None => meets::<R, Certain>(p, q).unwrap_or(true),
+    }
+}
+
+/// All three strictly on one side.
+#[inline]
+fn one_side(s: &[Option<i32>; 3]) -> bool {
+    s[0].is_some_and(|x| x != 0) && s[0] == s[1] && s[1] == s[2]
+}
+
+#[inline]
+fn known(s: &[Option<i32>; 3]) -> Option<[i32; 3]> {
+    Some([s[0]?, s[1]?, s[2]?])
+}
+
+/// The rest of [`meets`], with the signs of `p`'s corners about `q`'s plane and the other way round.
+fn meets_on<R: Real, S: Signs<R>>(
+    p: &[Vec3<R>; 3],
+    q: &[Vec3<R>; 3],
+    p_of_q: [i32; 3],
+    q_of_p: [i32; 3],
+) -> Option<bool> {
+    let (p_proper, q_proper) = (q_of_p != [0; 3], p_of_q != [0; 3]);
+    if !p_proper && !q_proper {
+        return flat_meet::<R, S>(p, q);
+    }
+    let mut unsure = false;
+    if q_proper {
+        match edges_pierce::<R, S>(p, p_of_q, q) {
+            Some(false) => {}
+            Some(true) => return Some(true),
+            None => unsure = true,
+        }
+    }
+    if p_proper {
+        match edges_pierce::<R, S>(q, q_of_p, p) {
+            Some(false) => {}
+            Some(true) => return Some(true),
+            None => unsure = true,
+        }
+    }
+    if unsure { None } else { Some(false) }
+}
+
+/// Whether an edge of `p` that leaves the plane of `q` meets `q`, which has area; `side` is of `p`'s corners.
+fn edges_pierce<R: Real, S: Signs<R>>(p: &[Vec3<R>; 3], side: [i32; 3], q: &[Vec3<R>; 3]) -> Option<bool> {
+    let mut unsure = false;
+    for i in 0..3 {
+        let j = (i + 1) % 3;
+        if side[i] * side[j] > 0 || (side[i] == 0 && side[j] == 0) {
+            continue;
+        }
+        match line_stabs::<R, S>(p[i], p[j], q) {
+            Some(false) => {}
+            Some(true) => return Some(true),
+            None => unsure = true,
+        }
+    }
+    if unsure { None } else { Some(false) }
+}
+
+/// Whether the line through `u` and `v`, which crosses the plane of `q` in one point, does so within `q`: it then
+/// passes all three edges on the same side, or touches.
+#[inline]
+fn line_stabs<R: Real, S: Signs<R>>(u: Vec3<R>, v: Vec3<R>, q: &[Vec3<R>; 3]) -> Option<bool> {
+    let (mut left, mut right, mut unsure) = (false, false, false);
+    for k in 0..3 {
+        match S::orient3d(u, v, q[k], q[(k + 1) % 3]) {
+            Some(s) => {
+                left |= s < 0;
+                right |= s > 0;
+            }
+            None => unsure = true,
+        }
+        if left && right {
+            return Some(false);
+        }
+    }
+    if unsure { None } else { Some(true) }
+}
