@@ -32,11 +32,33 @@ mod machine {
     use core::arch::{asm, global_asm};
     use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
+    // What the lanes of a warp or block do together is an intrinsic, not assembly: the compiler knows that it must not
+    // move these into or out of branches (they are convergent), which it does not know of an `asm!`.
+    unsafe extern "C" {
+        #[link_name = "llvm.nvvm.barrier.cta.sync.aligned.all"]
+        fn barrier_sync(barrier: u32);
+        #[link_name = "llvm.nvvm.barrier.cta.red.or.aligned.all"]
+        fn barrier_or(barrier: u32, value: bool) -> bool;
+        #[link_name = "llvm.nvvm.shfl.sync.up.i32"]
+        fn shfl_up(mask: u32, value: u32, delta: u32, clamp: u32) -> u32;
+        #[link_name = "llvm.nvvm.match.any.sync.i32"]
+        fn match_any_sync(mask: u32, value: u32) -> u32;
+    }
+    /// All lanes of a warp.
+    const ALL: u32 = u32::MAX;
+
     global_asm!(".extern .shared .align 16 .b8 nearmiss_shared[];");
     // 32 warp sums and one broadcast value.
     global_asm!(".shared .align 16 .b8 nearmiss_scratch[144];");
     /// Where the broadcast value lies in the scratch words, in bytes.
     const BROADCAST: u32 = 128;
+
+    /// A panic stops the launch: the host sees an error, never half an answer.
+    #[panic_handler]
+    fn panic(_: &core::panic::PanicInfo) -> ! {
+        // SAFETY: ends the launch.
+        unsafe { core::arch::nvptx::trap() }
+    }
 
     /// The square root of an f32.
     pub fn sqrt32(x: f32) -> f32 {
@@ -87,7 +109,7 @@ mod machine {
     #[inline(always)]
     fn sync_threads() {
         // SAFETY: called by all threads of the block: phases and collectives are not inside a lane's control flow.
-        unsafe { asm!("bar.sync 0;") }
+        unsafe { barrier_sync(0) }
     }
 
     /// Address of byte `offset` of the launch's shared memory, in the shared window.
@@ -155,21 +177,14 @@ mod machine {
     /// The value of the lane `delta` before this one in its warp; its own where there is none.
     #[inline(always)]
     fn shuffle_up(v: u32, delta: u32) -> u32 {
-        let r: u32;
         // SAFETY: called by all threads of the warp.
-        unsafe {
-            asm!("shfl.sync.up.b32 {r}, {v}, {d}, 0, 0xffffffff;",
-                r = lateout(reg32) r, v = in(reg32) v, d = in(reg32) delta)
-        };
-        r
+        unsafe { shfl_up(ALL, v, delta, 0) }
     }
     /// Which lanes of the warp hold the same value.
     #[inline(always)]
     fn match_any(v: u32) -> u32 {
-        let r: u32;
         // SAFETY: called by all threads of the warp.
-        unsafe { asm!("match.any.sync.b32 {r}, {v}, 0xffffffff;", r = lateout(reg32) r, v = in(reg32) v) };
-        r
+        unsafe { match_any_sync(ALL, v) }
     }
 
     #[inline(always)]
@@ -311,13 +326,8 @@ mod machine {
         }
         #[inline(always)]
         fn any(&mut self, values: &mut Register<bool>) -> bool {
-            let r: u32;
             // SAFETY: called by all threads of the block.
-            unsafe {
-                asm!("{{ .reg .pred p, q; setp.ne.u32 p, {v}, 0; bar.red.or.pred q, 0, p; selp.u32 {r}, 1, 0, q; }}",
-                    r = lateout(reg32) r, v = in(reg32) values.0 as u32)
-            };
-            r != 0
+            unsafe { barrier_or(0, values.0) }
         }
         #[inline(always)]
         fn scan(&mut self, values: &mut Register<u32>) -> u32 {
