@@ -2,7 +2,7 @@
 
 use crate::mesh::Problem;
 
-/// Everything that can go wrong. `exit_code` groups the variants as the command line reports them.
+/// Everything that can go wrong. [`Error::exit_code`] groups the variants as the command line reports them.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -14,13 +14,65 @@ pub enum Error {
         /// What is wrong with it, and where.
         problem: Problem,
     },
+    /// Choices that do not exist or do not go together. Choose again.
+    #[error("{what}; {advice}")]
+    Choice {
+        /// What was asked for.
+        what: String,
+        /// What there is instead.
+        advice: String,
+    },
+    /// A result could not be written. Mend the path or the disk.
+    #[error("{file}: cannot be written: {text}")]
+    Output {
+        /// The file.
+        file: String,
+        /// The system's or the writer's text.
+        text: String,
+    },
+    /// The machine refused. See what its driver says.
+    #[error("{what}: {text}; {advice}")]
+    Device {
+        /// What was tried.
+        what: String,
+        /// The driver's or the system's text.
+        text: String,
+        /// What to do.
+        advice: &'static str,
+    },
+    /// Memory ran out. Nothing was lost in silence: there is no answer.
+    #[error("{what}: {asked} bytes were needed and {given} were free; use a smaller scene or a larger machine")]
+    Room {
+        /// Which memory, for what.
+        what: String,
+        /// Bytes needed.
+        asked: u64,
+        /// Bytes there were.
+        given: u64,
+    },
+    /// The card's kernels were made from other sources than this program. Build again.
+    #[error("the kernels carry the stamp {found}, this program was built from {wanted}; run `cargo build` again")]
+    Stamp {
+        /// What the PTX exports.
+        found: String,
+        /// What the program expects.
+        wanted: String,
+    },
+    /// A fault of nearmiss itself. Tell us.
+    #[error("a fault of nearmiss itself: {what}; please report it with the output of `nearmiss selftest`")]
+    Bug {
+        /// What was found.
+        what: String,
+    },
 }
 
 impl Error {
-    /// The exit status of the command line: 2 bad arguments, 3 bad input, 4 device or memory.
+    /// The exit status of the command line: 2 bad arguments, 3 bad input, 4 device, memory or output.
     pub fn exit_code(&self) -> u8 {
         match self {
+            Error::Choice { .. } => 2,
             Error::Input { .. } => 3,
+            _ => 4,
         }
     }
 }

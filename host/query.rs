@@ -1,0 +1,120 @@
+//! Choices are values: one configuration, the same for the library, the command line, the benches and the tests.
+
+use crate::error::Error;
+
+/// What is asked of two triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Motion {
+    /// Which triangle pairs share a point at t = 0?
+    #[default]
+    Discrete,
+    /// Which vertex/face and edge/edge pairs meet at some t in [0, 1], and when first?
+    Continuous,
+    /// When does the first of them meet?
+    Earliest,
+}
+
+/// How the tree is walked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Traversal {
+    /// A walk a leaf. A walk of more steps than `budget` gives the rest of its stack to the next round.
+    PerLeaf {
+        /// Steps before a walk spills; `None` never spills.
+        budget: Option<u32>,
+    },
+}
+
+impl Traversal {
+    /// Steps of a walk on a card before the rest of it is shared out: about the mean length of a walk on cloth, so
+    /// that half of the walks never spill and none makes its warp wait for long (measured, `benches/NOTES.md`).
+    pub const CARD_BUDGET: u32 = 64;
+}
+
+/// The test of a pair of triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Solver {
+    /// Discrete: exact signs by filter, then integers. Never wrong. The default.
+    #[default]
+    Exact,
+    /// Discrete: the seed's float test. Can miss, can err.
+    Moller,
+    /// Continuous: the seed's cubic in f32. Can miss, can be late.
+    CubicF32,
+    /// Continuous: the seed's cubic in f64. Can miss degenerate motion.
+    CubicF64,
+}
+
+impl Solver {
+    /// The solver of a motion when none is named.
+    pub fn default_for(motion: Motion) -> Solver {
+        if motion == Motion::Discrete { Solver::Exact } else { Solver::CubicF64 }
+    }
+    /// Whether the solver answers that kind of question.
+    pub fn answers(self, motion: Motion) -> bool {
+        matches!(self, Solver::Exact | Solver::Moller) == (motion == Motion::Discrete)
+    }
+    /// The promise, in a sentence for the user.
+    pub fn promise(self) -> &'static str {
+        match self {
+            Solver::Exact => "exact: no contact is missed, none is invented",
+            Solver::Moller => "moller: a float test that can miss contacts and invent some; use exact for certainty",
+            Solver::CubicF32 => {
+                "cubic-f32: a float solver that can miss contacts and report them late; docs/accuracy.md has figures"
+            }
+            Solver::CubicF64 => {
+                "cubic-f64: can miss contacts of degenerate motion (coplanar, parallel, slivers); docs/accuracy.md has \
+                 figures"
+            }
+        }
+    }
+}
+
+/// Everything that trades speed for accuracy, or one machine for another.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Query {
+    /// What is asked.
+    pub motion: Motion,
+    /// The test; `None` for the motion's default.
+    pub solver: Option<Solver>,
+    /// The walk; `None` for what is fastest on the machine.
+    pub traversal: Option<Traversal>,
+    /// Discrete: also triangles that share a vertex, where they meet beyond it.
+    pub adjacent: bool,
+}
+
+impl Query {
+    /// The query that asks this, with every other choice at its default.
+    pub fn of(motion: Motion) -> Query {
+        Query { motion, ..Query::default() }
+    }
+
+    /// The test that will be used.
+    pub fn solver(&self) -> Solver {
+        self.solver.unwrap_or(Solver::default_for(self.motion))
+    }
+
+    /// Whether the choices go together.
+    ///
+    /// # Errors
+    /// [`Error::Choice`] with what would.
+    pub fn check(&self) -> Result<(), Error> {
+        let solver = self.solver();
+        if !solver.answers(self.motion) {
+            let known = if self.motion == Motion::Discrete { "exact, moller" } else { "cubic-f64, cubic-f32" };
+            return Err(Error::Choice {
+                what: format!("the solver {solver:?} does not answer a {:?} query", self.motion),
+                advice: format!("choose one of: {known}"),
+            });
+        }
+        if self.adjacent && (self.motion != Motion::Discrete || solver != Solver::Exact) {
+            return Err(Error::Choice {
+                what: "adjacent triangles are decided by exact signs only".into(),
+                advice: "use --adjacent with a discrete query and the solver exact".into(),
+            });
+        }
+        Ok(())
+    }
+}
