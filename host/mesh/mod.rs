@@ -1,6 +1,6 @@
 //! Meshes: read, checked once at the door, then trusted.
 //!
-//! A [`Mesh`] is one frame, a [`Body`] one mesh at one or two frames. What
+//! A [`Mesh`] is one frame, a [`Body`] one mesh at one or two frames, a [`Topology`] the edges of its faces. What
 //! has passed [`Mesh::new`] needs no further check: finite where used, in range, indices valid.
 
 mod door;
@@ -14,6 +14,8 @@ mod positions;
 mod problem;
 mod read;
 mod sequence;
+mod topology;
+mod topology_check;
 
 pub use door::{MAX_ABS_F32, MAX_ABS_F64, MAX_FACES, MAX_VERTICES};
 pub use obj::ObjProblem;
@@ -22,6 +24,8 @@ pub use positions::Positions;
 pub use problem::Problem;
 pub use read::Format;
 pub use sequence::Body;
+pub use topology::{NO_EDGE, Topology};
+pub use topology_check::{Violation, check};
 
 use crate::Error;
 
