@@ -1,5 +1,96 @@
-//! Meshes, checked at the door.
+//! Meshes: read, checked once at the door, then trusted.
+//!
+//! A [`Mesh`] is one frame, a [`Body`] one mesh at one or two frames, a [`Topology`] the edges of its faces. What
+//! has passed [`Mesh::new`] needs no further check: finite where used, in range, indices valid.
 
-/// What is wrong with an input (to be written).
-#[derive(Debug, thiserror::Error)]
-pub enum Problem {}
+mod door;
+mod obj;
+mod ply_header;
+mod ply_problem;
+mod ply_read;
+mod ply_source;
+mod ply_write;
+mod positions;
+mod problem;
+mod read;
+mod sequence;
+mod topology;
+mod topology_check;
+
+pub use door::{MAX_ABS_F32, MAX_ABS_F64, MAX_FACES, MAX_VERTICES};
+pub use obj::ObjProblem;
+pub use ply_problem::PlyProblem;
+pub use positions::Positions;
+pub use problem::Problem;
+pub use read::Format;
+pub use sequence::Body;
+pub use topology::{NO_EDGE, Topology};
+pub use topology_check::{Violation, check};
+
+use crate::Error;
+
+/// One frame of a triangle mesh that has passed the door check.
+///
+/// Every vertex that a face uses is finite and at most [`MAX_ABS_F32`] or [`MAX_ABS_F64`] in size, and every index
+/// is in range. Degenerate and duplicate triangles, repeated indices and -0.0 are legal; a vertex that no face uses
+/// may be anything, even NaN.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mesh {
+    name: String,
+    positions: Positions,
+    faces: Vec<[u32; 3]>,
+}
+
+impl Mesh {
+    /// Checks and keeps a mesh given in memory; `name` stands in messages, as a file name would.
+    ///
+    /// A mesh without triangles is legal here; see [`Mesh::require_triangles`]. Cost: one pass over the positions
+    /// and one over the faces.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with [`Problem::NonFinite`], [`Problem::TooLarge`], [`Problem::IndexOutOfRange`] or
+    /// [`Problem::TooMany`], naming the first offender.
+    pub fn new(name: impl Into<String>, positions: Positions, faces: Vec<[u32; 3]>) -> Result<Mesh, Error> {
+        let name = name.into();
+        match door::check(&positions, &faces) {
+            Ok(()) => Ok(Mesh { name, positions, faces }),
+            Err(problem) => Err(Error::Input { file: name, problem }),
+        }
+    }
+
+    /// The file, scene or caller's name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// One point a vertex.
+    pub fn positions(&self) -> &Positions {
+        &self.positions
+    }
+
+    /// Three vertex indices a triangle.
+    pub fn faces(&self) -> &[[u32; 3]] {
+        &self.faces
+    }
+
+    /// Number of vertices, used or not.
+    pub fn vertex_count(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Number of triangles.
+    pub fn face_count(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// Refuses a mesh without triangles. Readers ask this; a caller that builds meshes may.
+    ///
+    /// # Errors
+    /// [`Problem::NoTriangles`].
+    pub fn require_triangles(&self) -> Result<(), Error> {
+        if self.faces.is_empty() {
+            return Err(Error::Input { file: self.name.clone(), problem: Problem::NoTriangles });
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,220 @@
+//! PLY files to positions and faces.
+//!
+//! We have our own reader because the crates there are either allocate by the counts in the header, which a damaged
+//! file may have at any size, or lose the number of the element at fault.
+
+use super::door::{self, MAX_FACES, MAX_VERTICES};
+use super::ply_header::{Element, Encoding, Header, Kind, Property, is_corners};
+use super::ply_problem::PlyProblem;
+use super::ply_source::{Failure, Scalar, Source, Value};
+use super::problem::shown;
+use super::{Positions, Problem};
+
+/// Reads the whole file; faces keep the file's order, polygons become fans around their first corner.
+pub(super) fn read(bytes: &[u8]) -> Result<(Positions, Vec<[u32; 3]>), Problem> {
+    let header = Header::read(bytes)?;
+    let vertex = header.elements.iter().find(|e| e.name == "vertex").ok_or(PlyProblem::NoVertices)?;
+    let mut source = Source::new(&bytes[header.size..], header.encoding);
+    let mut positions = Positions::F32(Vec::new());
+    let mut faces = Vec::new();
+    for element in &header.elements {
+        promise(element, &source)?;
+        match element.name {
+            "vertex" => positions = vertices(element, &mut source)?,
+            "face" => faces = polygons(element, vertex.count, &mut source)?,
+            _ if element.properties.is_empty() => {} // any number of entries, no room
+            _ => entries(element, &mut source, |_, _, _, _| Ok(()))?,
+        }
+    }
+    source.begin_entry();
+    match (source.left(), header.encoding) {
+        (0, _) => Ok((positions, faces)),
+        (_, Encoding::Ascii) => Err(PlyProblem::TrailingText { found: shown(source.end_entry()) }.into()),
+        (bytes, _) => Err(PlyProblem::Trailing { bytes }.into()),
+    }
+}
+
+/// Refuses a count that the rest of the file cannot hold, so that it may be allocated.
+fn promise(element: &Element<'_>, source: &Source<'_>) -> Result<(), PlyProblem> {
+    let least = |p: &Property<'_>| match p.kind {
+        Kind::One(scalar) | Kind::List { length: scalar, .. } => u128::from(source.least(scalar)),
+    };
+    let need = u128::from(element.count) * element.properties.iter().map(least).sum::<u128>();
+    if source.holds(need) {
+        return Ok(());
+    }
+    let element_name = shown(element.name.as_bytes());
+    Err(PlyProblem::Promise { element: element_name, count: element.count, need, left: source.left() })
+}
+
+fn vertices(element: &Element<'_>, source: &mut Source<'_>) -> Result<Positions, Problem> {
+    door::count("vertices", usize::try_from(element.count).unwrap_or(usize::MAX), MAX_VERTICES)?;
+    let mut single = true;
+    let mut columns = [0; 3];
+    for (column, axis) in columns.iter_mut().zip(['x', 'y', 'z']) {
+        let named = |p: &Property<'_>| p.name.len() == 1 && p.name.starts_with(axis);
+        *column = element.properties.iter().position(named).ok_or(PlyProblem::NoCoordinate { axis })?;
+        match element.properties[*column].kind {
+            Kind::One(scalar) => single &= scalar.fits_f32(),
+            Kind::List { .. } => return Err(PlyProblem::ListCoordinate { axis }.into()),
+        }
+    }
+    if single {
+        Ok(Positions::F32(coordinates(element, source, columns, to_f32)?))
+    } else {
+        Ok(Positions::F64(coordinates(element, source, columns, to_f64)?))
+    }
+}
+
+fn coordinates<T: Copy + Default>(
+    element: &Element<'_>,
+    source: &mut Source<'_>,
+    columns: [usize; 3],
+    convert: fn(Value) -> T,
+) -> Result<Vec<[T; 3]>, PlyProblem> {
+    let mut points = Vec::with_capacity(element.count as usize); // the file holds as many: see `promise`
+    entries(element, source, |index, column, _, value| {
+        if points.len() as u64 == index {
+            points.push([T::default(); 3]);
+        }
+        if let (Some(axis), Some(point)) = (columns.iter().position(|&c| c == column), points.last_mut()) {
+            point[axis] = convert(value);
+        }
+        Ok(())
+    })?;
+    Ok(points)
+}
+
+/// Exact: used only where every column fits (`Scalar::fits_f32`).
+fn to_f32(value: Value) -> f32 {
+    match value {
+        Value::Int(i) => i as f32,
+        Value::F32(x) => x,
+        Value::F64(x) => x as f32,
+    }
+}
+
+/// Exact: whole numbers of PLY have at most 32 bits.
+fn to_f64(value: Value) -> f64 {
+    match value {
+        Value::Int(i) => i as f64,
+        Value::F32(x) => x.into(),
+        Value::F64(x) => x,
+    }
+}
+
+fn polygons(element: &Element<'_>, vertices: u64, source: &mut Source<'_>) -> Result<Vec<[u32; 3]>, Problem> {
+    let mut lists = element.properties.iter().enumerate().filter(|(_, p)| is_corners(p.name));
+    let column = match (lists.next(), lists.next()) {
+        (Some((column, Property { kind: Kind::List { .. }, .. })), None) => column,
+        (Some(_), Some(_)) => return Err(PlyProblem::TwoCorners.into()),
+        _ => return Err(PlyProblem::NoCorners.into()),
+    };
+    let mut faces: Vec<[u32; 3]> = Vec::with_capacity(element.count as usize); // see `promise`
+    let (mut first, mut last) = (0, 0);
+    entries(element, source, |face, at, item, value| {
+        let Value::Int(index) = value else { return Ok(()) };
+        match item {
+            _ if at != column => return Ok(()),
+            Item::Length if index < 3 => return Err(PlyProblem::Corners { face, corners: index as u64 }),
+            Item::At(corner) => {
+                if index < 0 {
+                    return Err(PlyProblem::NegativeIndex { face, corner, index });
+                }
+                if index as u64 >= vertices {
+                    return Err(PlyProblem::Index { face, corner, index, vertices });
+                }
+                let index = index as u32; // below 2^32, as every whole number of PLY
+                match corner {
+                    0 => first = index,
+                    1 => {}
+                    _ => faces.push([first, last, index]),
+                }
+                last = index;
+            }
+            Item::Length | Item::Only => {}
+        }
+        Ok(())
+    })?;
+    door::count("triangles", faces.len(), MAX_FACES)?;
+    Ok(faces)
+}
+
+/// Which part of a property a value is.
+#[derive(Clone, Copy)]
+enum Item {
+    Only,
+    Length,
+    At(u64),
+}
+
+/// Reads all entries of an element, giving `each` the entry, the property's column, the part and the value.
+fn entries(
+    element: &Element<'_>,
+    source: &mut Source<'_>,
+    mut each: impl FnMut(u64, usize, Item, Value) -> Result<(), PlyProblem>,
+) -> Result<(), PlyProblem> {
+    for index in 0..element.count {
+        source.begin_entry();
+        for (column, property) in element.properties.iter().enumerate() {
+            let place = Place { element, index, property };
+            match property.kind {
+                Kind::One(scalar) => each(index, column, Item::Only, place.next(source, scalar)?)?,
+                Kind::List { length, item } => {
+                    let count = place.length(source, length, item)?;
+                    each(index, column, Item::Length, Value::Int(count as i64))?;
+                    for i in 0..count {
+                        each(index, column, Item::At(i), place.next(source, item)?)?;
+                    }
+                }
+            }
+        }
+        let extra = source.end_entry();
+        if !extra.is_empty() {
+            let element = shown(element.name.as_bytes());
+            return Err(PlyProblem::LongLine { element, index, found: shown(extra) });
+        }
+    }
+    Ok(())
+}
+
+/// Where in the file a value stands, for messages.
+struct Place<'a> {
+    element: &'a Element<'a>,
+    index: u64,
+    property: &'a Property<'a>,
+}
+
+impl Place<'_> {
+    fn names(&self) -> (String, u64, String) {
+        (shown(self.element.name.as_bytes()), self.index, shown(self.property.name.as_bytes()))
+    }
+
+    fn next(&self, source: &mut Source<'_>, scalar: Scalar) -> Result<Value, PlyProblem> {
+        source.next(scalar).map_err(|failure| {
+            let (element, index, property) = self.names();
+            match failure {
+                Failure::End => PlyProblem::Cut { element, index, property },
+                Failure::LineEnd => PlyProblem::ShortLine { element, index, property },
+                Failure::Token(token) => {
+                    PlyProblem::Number { element, index, property, found: shown(token), kind: scalar.name() }
+                }
+            }
+        })
+    }
+
+    /// The length of a list, refused if the rest of the file cannot hold its items.
+    fn length(&self, source: &mut Source<'_>, length: Scalar, item: Scalar) -> Result<u64, PlyProblem> {
+        let Value::Int(found) = self.next(source, length)? else { return Ok(0) }; // the header admits no other type
+        let Ok(length) = u64::try_from(found) else {
+            let (element, index, property) = self.names();
+            return Err(PlyProblem::NegativeLength { element, index, property, found });
+        };
+        let need = u128::from(length) * u128::from(source.least(item));
+        if source.holds(need) {
+            return Ok(length);
+        }
+        let (element, index, property) = self.names();
+        Err(PlyProblem::Length { element, index, property, length, need, left: source.left() })
+    }
+}

@@ -1,0 +1,56 @@
+//! Meshes to PLY files.
+
+use super::{Mesh, Positions, Problem};
+use crate::Error;
+use std::io::{BufWriter, Write};
+use std::path::Path;
+
+impl Mesh {
+    /// Writes the mesh as binary little-endian PLY, floats or doubles as they are; [`Mesh::read`] gives an equal mesh
+    /// back, bit by bit. Replaces the file.
+    ///
+    /// # Errors
+    /// [`Problem::Unwritable`] with the operating system's words.
+    pub fn write_ply(&self, path: &Path) -> Result<(), Error> {
+        let write = || {
+            let mut out = BufWriter::new(std::fs::File::create(path)?);
+            self.encode_ply(&mut out)?;
+            out.into_inner().map_err(std::io::IntoInnerError::into_error)?;
+            Ok(())
+        };
+        write().map_err(|error: std::io::Error| Error::Input {
+            file: path.display().to_string(),
+            problem: Problem::Unwritable { reason: error.to_string() },
+        })
+    }
+
+    /// Writes the bytes of such a file to `out`, in small pieces: give a buffered writer.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn encode_ply(&self, out: &mut impl Write) -> std::io::Result<()> {
+        let kind = if self.positions.is_f64() { "double" } else { "float" };
+        write!(out, "ply\nformat binary_little_endian 1.0\nelement vertex {}\n", self.vertex_count())?;
+        for axis in ['x', 'y', 'z'] {
+            writeln!(out, "property {kind} {axis}")?;
+        }
+        write!(
+            out,
+            "element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
+            self.face_count()
+        )?;
+        match &self.positions {
+            Positions::F32(points) => {
+                points.iter().flatten().try_for_each(|x| out.write_all(&x.to_le_bytes()))?
+            }
+            Positions::F64(points) => {
+                points.iter().flatten().try_for_each(|x| out.write_all(&x.to_le_bytes()))?
+            }
+        }
+        for face in &self.faces {
+            out.write_all(&[3])?;
+            face.iter().try_for_each(|index| out.write_all(&index.to_le_bytes()))?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,155 @@
+//! What can be wrong with an input, each message with its element, its value and what to do.
+
+use super::{ObjProblem, PlyProblem};
+
+/// What is wrong with a mesh, a pair of frames or a scene name. The file is named by [`crate::Error::Input`].
+///
+/// Vertices, faces and corners count from 0; lines of a file from 1.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Problem {
+    /// The file could not be read; the text is the operating system's.
+    #[error("cannot be read: {reason}; check the path, its kind and its permissions")]
+    Unreadable {
+        /// The operating system's words.
+        reason: String,
+    },
+    /// The file could not be written; the text is the operating system's.
+    #[error("cannot be written: {reason}; check the folder, its space and its permissions")]
+    Unwritable {
+        /// The operating system's words.
+        reason: String,
+    },
+    /// The extension names no reader.
+    #[error("has the extension {found:?}, which no reader knows; give a .ply or an .obj file")]
+    UnknownExtension {
+        /// The extension without its dot; empty if there is none.
+        found: String,
+    },
+    /// A vertex that a face uses is NaN or infinite.
+    #[error(
+        "vertex {vertex} has {axis} = {value}; a vertex that a face uses must be finite: mend it, or remove its faces"
+    )]
+    NonFinite {
+        /// Index of the vertex.
+        vertex: usize,
+        /// `x`, `y` or `z`.
+        axis: char,
+        /// NaN or an infinity.
+        value: f64,
+    },
+    /// A vertex that a face uses is larger than the arithmetic allows.
+    #[error(
+        "vertex {vertex} has {axis} = {value:e}; coordinates may be at most {limit} in size: scale the mesh down"
+    )]
+    TooLarge {
+        /// Index of the vertex.
+        vertex: usize,
+        /// `x`, `y` or `z`.
+        axis: char,
+        /// The coordinate.
+        value: f64,
+        /// The limit of the mesh's precision, in words.
+        limit: &'static str,
+    },
+    /// A face names a vertex that does not exist.
+    #[error(
+        "face {face} corner {corner} names vertex {index}, but there are {vertices} vertices, counted from 0: \
+         correct the index or remove the face"
+    )]
+    IndexOutOfRange {
+        /// Index of the face.
+        face: usize,
+        /// Corner in the face.
+        corner: usize,
+        /// The index as given.
+        index: i64,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// More vertices or triangles than index arithmetic allows.
+    #[error("has {count} {what}, and at most {limit} fit the index arithmetic: split the mesh")]
+    TooMany {
+        /// `vertices` or `triangles`.
+        what: &'static str,
+        /// How many.
+        count: u64,
+        /// How many are allowed.
+        limit: u64,
+    },
+    /// No triangles where some are needed.
+    #[error("has no triangles, and some are needed: give a mesh with at least one face")]
+    NoTriangles,
+    /// Two frames of one body with different numbers of vertices.
+    #[error(
+        "has {t1} vertices, but the first frame, {first}, has {t0}: two frames of one body must have the same vertices"
+    )]
+    FrameVertices {
+        /// Name of the first frame.
+        first: String,
+        /// Vertices at t0.
+        t0: usize,
+        /// Vertices at t1.
+        t1: usize,
+    },
+    /// Two frames of one body with different numbers of faces.
+    #[error(
+        "has {t1} faces, but the first frame, {first}, has {t0}: two frames of one body must have the same faces"
+    )]
+    FrameFaces {
+        /// Name of the first frame.
+        first: String,
+        /// Faces at t0.
+        t0: usize,
+        /// Faces at t1.
+        t1: usize,
+    },
+    /// Two frames of one body whose faces differ.
+    #[error(
+        "face {face} is {t1:?}, but in the first frame, {first}, it is {t0:?}: two frames of one body must have the \
+         same faces in the same order"
+    )]
+    FrameFace {
+        /// Name of the first frame.
+        first: String,
+        /// The first face that differs.
+        face: usize,
+        /// Its corners at t0.
+        t0: [u32; 3],
+        /// Its corners at t1.
+        t1: [u32; 3],
+    },
+    /// No such generated scene.
+    #[error("is no scene; known are: {known}")]
+    UnknownScene {
+        /// The names, with commas.
+        known: String,
+    },
+    /// A PLY file that cannot be used.
+    #[error(transparent)]
+    Ply(Box<PlyProblem>),
+    /// An OBJ file that cannot be used.
+    #[error(transparent)]
+    Obj(Box<ObjProblem>),
+}
+
+// Boxed, so that a `Result` stays small.
+impl From<PlyProblem> for Problem {
+    fn from(problem: PlyProblem) -> Problem {
+        Problem::Ply(Box::new(problem))
+    }
+}
+
+impl From<ObjProblem> for Problem {
+    fn from(problem: ObjProblem) -> Problem {
+        Problem::Obj(Box::new(problem))
+    }
+}
+
+/// A token as a message shows it: text with replaced bytes, and no more than a line's worth.
+pub(super) fn shown(token: &[u8]) -> String {
+    const MOST: usize = 40;
+    let cut = &token[..token.len().min(MOST)];
+    let dots = if token.len() > MOST { "…" } else { "" };
+    format!("{}{dots}", String::from_utf8_lossy(cut).escape_debug())
+}

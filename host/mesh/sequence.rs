@@ -1,0 +1,108 @@
+//! A body: one mesh at one frame, or at the two ends of a step.
+
+use super::{Mesh, Positions, Problem};
+use crate::Error;
+
+/// Faces with the positions of one frame (still), or of the two ends of a step (moving). Vertices move in straight
+/// lines from `positions_t0` to `positions_t1`, both of the same length and precision.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    name: String,
+    faces: Vec<[u32; 3]>,
+    positions_t0: Positions,
+    positions_t1: Option<Positions>,
+}
+
+impl Body {
+    /// A body at one frame.
+    pub fn still(mesh: Mesh) -> Body {
+        Body { name: mesh.name, faces: mesh.faces, positions_t0: mesh.positions, positions_t1: None }
+    }
+
+    /// A body at two frames. Where one frame is in single and one in double precision, both become double, exactly.
+    ///
+    /// # Errors
+    /// [`Problem::FrameVertices`], [`Problem::FrameFaces`] or [`Problem::FrameFace`] (the first face that differs),
+    /// against the second frame and naming the first. A vertex must be finite in both frames if a face uses it, which
+    /// [`Mesh`] has seen to.
+    pub fn moving(t0: Mesh, t1: Mesh) -> Result<Body, Error> {
+        if let Some(problem) = difference(&t0, &t1) {
+            return Err(Error::Input { file: t1.name, problem });
+        }
+        let (positions_t0, positions_t1) = match (t0.positions, t1.positions) {
+            (a, b) if a.is_f64() == b.is_f64() => (a, b),
+            (a, b) => (a.promoted(), b.promoted()),
+        };
+        Ok(Body { name: t0.name, faces: t0.faces, positions_t0, positions_t1: Some(positions_t1) })
+    }
+
+    /// The name of the mesh, or of its first frame.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Three vertex indices a triangle.
+    pub fn faces(&self) -> &[[u32; 3]] {
+        &self.faces
+    }
+
+    /// Positions at the start of the step, or of the only frame.
+    pub fn positions_t0(&self) -> &Positions {
+        &self.positions_t0
+    }
+
+    /// Positions at the end of the step; `None` for a still body.
+    pub fn positions_t1(&self) -> Option<&Positions> {
+        self.positions_t1.as_ref()
+    }
+
+    /// Number of vertices.
+    pub fn vertex_count(&self) -> usize {
+        self.positions_t0.len()
+    }
+
+    /// Number of triangles.
+    pub fn face_count(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// Whether there are two frames.
+    pub fn is_moving(&self) -> bool {
+        self.positions_t1.is_some()
+    }
+
+    /// The frames as meshes, to be written or handed on: one, or two. Copies.
+    pub fn frames(&self) -> Vec<Mesh> {
+        let mesh = |positions: &Positions| Mesh {
+            name: self.name.clone(),
+            positions: positions.clone(),
+            faces: self.faces.clone(),
+        };
+        std::iter::once(&self.positions_t0).chain(&self.positions_t1).map(mesh).collect()
+    }
+
+    /// xxh3 of the faces and of the bits of every position, in little-endian order: the same on every machine.
+    pub fn fingerprint(&self) -> u64 {
+        let mut hash = xxhash_rust::xxh3::Xxh3::new();
+        self.faces.iter().flatten().for_each(|i| hash.update(&i.to_le_bytes()));
+        for frame in std::iter::once(&self.positions_t0).chain(&self.positions_t1) {
+            match frame {
+                Positions::F32(points) => points.iter().flatten().for_each(|x| hash.update(&x.to_le_bytes())),
+                Positions::F64(points) => points.iter().flatten().for_each(|x| hash.update(&x.to_le_bytes())),
+            }
+        }
+        hash.digest()
+    }
+}
+
+fn difference(t0: &Mesh, t1: &Mesh) -> Option<Problem> {
+    let first = || t0.name.clone();
+    if t0.vertex_count() != t1.vertex_count() {
+        return Some(Problem::FrameVertices { first: first(), t0: t0.vertex_count(), t1: t1.vertex_count() });
+    }
+    if t0.face_count() != t1.face_count() {
+        return Some(Problem::FrameFaces { first: first(), t0: t0.face_count(), t1: t1.face_count() });
+    }
+    let face = t0.faces.iter().zip(&t1.faces).position(|(a, b)| a != b)?;
+    Some(Problem::FrameFace { first: first(), face, t0: t0.faces[face], t1: t1.faces[face] })
+}

@@ -1,0 +1,119 @@
+//! The checker of [`Topology`]: the definition again, by maps and without the construction's tricks.
+
+use super::topology::{NO_EDGE, Topology};
+use std::collections::HashMap;
+
+/// What a [`Topology`] gets wrong; the first found.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Violation {
+    /// There are not as many `face_edges` and `owners` as faces.
+    #[error("{faces} faces, but {face_edges} face_edges and {owners} owners")]
+    Lengths {
+        /// How many faces.
+        faces: usize,
+        /// How many triples of edge ids.
+        face_edges: usize,
+        /// How many owner words.
+        owners: usize,
+    },
+    /// An edge does not name its larger vertex first.
+    #[error("edge {edge} does not name its larger vertex first")]
+    SmallerFirst {
+        /// Edge id.
+        edge: usize,
+    },
+    /// An edge is not above the one before it.
+    #[error("edge {edge} is not above the one before it")]
+    Order {
+        /// Edge id.
+        edge: usize,
+    },
+    /// A face's edge id is not that of the edge between its corners.
+    #[error("face {face} edge {k} has the id {found}, not {expected}")]
+    FaceEdge {
+        /// Face.
+        face: usize,
+        /// Edge of the face.
+        k: usize,
+        /// The id that stands there.
+        found: u32,
+        /// The id of the edge between the corners, or [`NO_EDGE`] if it is missing from `edges` or is none.
+        expected: u32,
+    },
+    /// Corners of a face are joined by an edge that is not listed.
+    #[error("face {face} edge {k} is missing from the edges")]
+    Missing {
+        /// Face.
+        face: usize,
+        /// Edge of the face.
+        k: usize,
+    },
+    /// No face has this edge.
+    #[error("edge {edge} belongs to no face")]
+    Stray {
+        /// Edge id.
+        edge: usize,
+    },
+    /// A face owns what it must not, or does not own what it must.
+    #[error("face {face} has the owner bits {found:#b}, not {expected:#b}")]
+    Owner {
+        /// Face.
+        face: usize,
+        /// The bits that stand there.
+        found: u32,
+        /// The bits by definition.
+        expected: u32,
+    },
+}
+
+/// Checks every statement of [`Topology`]'s definition against `faces`. Slow (hash maps); for tests and self-tests.
+///
+/// # Errors
+/// The first [`Violation`].
+pub fn check(topology: &Topology, faces: &[[u32; 3]]) -> Result<(), Violation> {
+    let Topology { edges, face_edges, owners } = topology;
+    if face_edges.len() != faces.len() || owners.len() != faces.len() {
+        let (face_edges, owners) = (face_edges.len(), owners.len());
+        return Err(Violation::Lengths { faces: faces.len(), face_edges, owners });
+    }
+    for (edge, pair) in edges.iter().enumerate() {
+        if pair[0] <= pair[1] {
+            return Err(Violation::SmallerFirst { edge });
+        }
+        if edge > 0 && edges[edge - 1] >= *pair {
+            return Err(Violation::Order { edge });
+        }
+    }
+    let ids: HashMap<[u32; 2], u32> = edges.iter().copied().zip(0..).collect();
+    let mut edge_owner = HashMap::new();
+    let mut vertex_owner = HashMap::new();
+    for (face, corners) in faces.iter().enumerate() {
+        let mut expected_bits = 0;
+        for k in 0..3 {
+            let (a, b) = (corners[k], corners[(k + 1) % 3]);
+            if *vertex_owner.entry(a).or_insert((face, k)) == (face, k) {
+                expected_bits |= 1 << k;
+            }
+            let expected = if a == b {
+                NO_EDGE
+            } else {
+                *ids.get(&[a.max(b), a.min(b)]).ok_or(Violation::Missing { face, k })?
+            };
+            let found = face_edges[face][k];
+            if found != expected {
+                return Err(Violation::FaceEdge { face, k, found, expected });
+            }
+            if a != b && *edge_owner.entry(expected).or_insert((face, k)) == (face, k) {
+                expected_bits |= 1 << (3 + k);
+            }
+        }
+        if owners[face] != expected_bits {
+            return Err(Violation::Owner { face, found: owners[face], expected: expected_bits });
+        }
+    }
+    match (0..edges.len()).find(|&edge| !edge_owner.contains_key(&(edge as u32))) {
+        Some(edge) => Err(Violation::Stray { edge }),
+        None => Ok(()),
+    }
+}

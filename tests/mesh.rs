@@ -1,0 +1,185 @@
+//! Meshes, their frames, their edges: what is kept, what is refused, and each checker failing once.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use nearmiss::Error;
+use nearmiss::mesh::{Body, Format, Mesh, NO_EDGE, Positions, Problem, Topology, Violation, check};
+use std::path::PathBuf;
+
+const TETRAHEDRON: [[u32; 3]; 4] = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
+
+fn corners() -> Vec<[f32; 3]> {
+    vec![[0.0, -0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+}
+
+fn mesh(positions: Positions, faces: &[[u32; 3]]) -> Result<Mesh, Error> {
+    Mesh::new("given", positions, faces.to_vec())
+}
+
+fn problem<T: std::fmt::Debug>(result: Result<T, Error>) -> Problem {
+    match result.unwrap_err() {
+        Error::Input { problem, .. } => problem,
+        #[allow(unreachable_patterns)]
+        other => panic!("not an input error: {other}"),
+    }
+}
+
+#[test]
+fn the_door_refuses_each_fault() {
+    let with = |x: f32| {
+        let mut points = corners();
+        points[2][1] = x;
+        problem(mesh(Positions::F32(points), &TETRAHEDRON))
+    };
+    assert!(matches!(with(f32::NAN), Problem::NonFinite { vertex: 2, axis: 'y', value } if value.is_nan()));
+    assert!(matches!(with(f32::NEG_INFINITY), Problem::NonFinite { vertex: 2, axis: 'y', .. }));
+    assert!(matches!(with(-1.2e18), Problem::TooLarge { vertex: 2, axis: 'y', limit: "2^60", .. }));
+    let mut doubles = Positions::F32(corners()).to_f64();
+    doubles[3][2] = 1e145;
+    let found = problem(mesh(Positions::F64(doubles), &TETRAHEDRON));
+    assert!(matches!(found, Problem::TooLarge { vertex: 3, axis: 'z', limit: "2^480", .. }));
+    let found = problem(mesh(Positions::F32(corners()), &[[0, 1, 2], [0, 1, 4]]));
+    assert_eq!(found, Problem::IndexOutOfRange { face: 1, corner: 2, index: 4, vertices: 4 });
+    let found = problem(mesh(Positions::F32(vec![]), &[]).unwrap().require_triangles());
+    assert_eq!(found, Problem::NoTriangles);
+}
+
+#[test]
+fn the_door_lets_odd_but_legal_meshes_in() {
+    let mut points = corners();
+    points.push([f32::NAN, f32::INFINITY, 0.0]); // not used
+    points[1][0] = -(2.0f32.powi(60)); // the limit itself
+    let faces = [[0, 1, 2], [0, 1, 2], [2, 2, 3], [1, 1, 1]];
+    let kept = mesh(Positions::F32(points), &faces).unwrap();
+    assert_eq!((kept.name(), kept.vertex_count(), kept.face_count()), ("given", 5, 4));
+    assert_eq!(kept.positions().get_f64(0).unwrap()[1].to_bits(), (-0.0f64).to_bits());
+    assert_eq!(kept.positions().get_f64(5), None);
+}
+
+#[test]
+fn frames_of_different_precision_become_double_exactly() {
+    let t0 = mesh(Positions::F32(corners()), &TETRAHEDRON).unwrap();
+    let mut points = t0.positions().to_f64();
+    points[0][0] = 0.1;
+    let t1 = mesh(Positions::F64(points.clone()), &TETRAHEDRON).unwrap();
+    let body = Body::moving(t0.clone(), t1).unwrap();
+    assert_eq!(body.positions_t0(), &Positions::F64(t0.positions().to_f64()));
+    assert_eq!(body.positions_t1(), Some(&Positions::F64(points)));
+    assert!(!Body::still(t0).is_moving());
+}
+
+#[test]
+fn each_difference_of_two_frames_is_named() {
+    let named = |name: &str, points: Vec<[f32; 3]>, faces: &[[u32; 3]]| {
+        Mesh::new(name, Positions::F32(points), faces.to_vec()).unwrap()
+    };
+    let t0 = || named("a.ply", corners(), &TETRAHEDRON);
+    let first = || String::from("a.ply");
+    let mut more = corners();
+    more.push([0.0; 3]);
+    let found = problem(Body::moving(t0(), named("b.ply", more, &TETRAHEDRON)));
+    assert_eq!(found, Problem::FrameVertices { first: first(), t0: 4, t1: 5 });
+    let found = problem(Body::moving(t0(), named("b.ply", corners(), &TETRAHEDRON[..3])));
+    assert_eq!(found, Problem::FrameFaces { first: first(), t0: 4, t1: 3 });
+    let mut faces = TETRAHEDRON;
+    faces[2] = [3, 2, 1];
+    let error = Body::moving(t0(), named("b.ply", corners(), &faces)).unwrap_err();
+    for part in ["b.ply", "a.ply", "face 2", "[3, 2, 1]", "[1, 3, 2]", "same faces"] {
+        assert!(error.to_string().contains(part), "{error}");
+    }
+}
+
+#[test]
+fn what_is_written_reads_back_equal() {
+    let folder = std::env::temp_dir().join(format!("nearmiss-mesh-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = folder.join("round.PLY");
+    let single = mesh(Positions::F32(corners()), &TETRAHEDRON).unwrap();
+    let mut points = single.positions().to_f64();
+    points[1] = [0.1, f64::MIN_POSITIVE / 8.0, -1e140];
+    let double = mesh(Positions::F64(points), &TETRAHEDRON).unwrap();
+    for written in [single, double] {
+        written.write_ply(&path).unwrap();
+        let read = Mesh::read(&path).unwrap();
+        assert_eq!(read.faces(), written.faces());
+        assert_eq!(Body::still(read).fingerprint(), Body::still(written).fingerprint());
+    }
+    let nowhere =
+        mesh(Positions::F32(corners()), &TETRAHEDRON).unwrap().write_ply(&folder.join("no/such/folder.ply"));
+    assert!(matches!(problem(nowhere), Problem::Unwritable { .. }));
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+#[test]
+fn edges_are_numbered_by_larger_then_smaller_vertex() {
+    let topology = Topology::new(&TETRAHEDRON, 4);
+    assert_eq!(topology.edges, [[1, 0], [2, 0], [2, 1], [3, 0], [3, 1], [3, 2]]);
+    assert_eq!(topology.face_edges, [[0, 2, 1], [3, 4, 0], [4, 5, 2], [5, 3, 1]]);
+    // Face 0 owns its three vertices and edges; face 1 vertex 3 and two edges; face 2 the last edge; face 3 nothing.
+    assert_eq!(topology.owners, [0b111_111, 0b011_010, 0b010_000, 0]);
+    assert_eq!(check(&topology, &TETRAHEDRON), Ok(()));
+}
+
+#[test]
+fn repeated_indices_and_faces_have_edges_and_owners_too() {
+    let faces = [[5, 5, 7], [7, 5, 5], [2, 2, 2], [0, 1, 2], [0, 1, 2], [1, 0, 9]];
+    let topology = Topology::new(&faces, 10);
+    assert_eq!(topology.edges, [[1, 0], [2, 0], [2, 1], [7, 5], [9, 0], [9, 1]]);
+    assert_eq!(topology.face_edges[0], [NO_EDGE, 3, 3]);
+    assert_eq!(topology.face_edges[2], [NO_EDGE; 3]);
+    assert_eq!(topology.owners[..3], [0b010_101, 0, 0b000_001]);
+    assert_eq!(check(&topology, &faces), Ok(()));
+    assert_eq!(check(&Topology::new(&[], 0), &[]), Ok(()));
+}
+
+#[test]
+fn the_topology_checker_notices_each_fault() {
+    let planted = |fault: fn(&mut Topology)| {
+        let mut topology = Topology::new(&TETRAHEDRON, 4);
+        fault(&mut topology);
+        check(&topology, &TETRAHEDRON).unwrap_err()
+    };
+    let lengths = Violation::Lengths { faces: 4, face_edges: 4, owners: 3 };
+    assert_eq!(planted(|t| t.owners.truncate(3)), lengths);
+    assert_eq!(planted(|t| t.edges[2] = [1, 2]), Violation::SmallerFirst { edge: 2 });
+    assert_eq!(planted(|t| t.edges.swap(3, 4)), Violation::Order { edge: 4 });
+    assert_eq!(planted(|t| t.edges[5] = [4, 0]), Violation::Missing { face: 2, k: 1 });
+    assert_eq!(planted(|t| t.edges.push([9, 8])), Violation::Stray { edge: 6 });
+    let face_edge = Violation::FaceEdge { face: 1, k: 1, found: 0, expected: 4 };
+    assert_eq!(planted(|t| t.face_edges[1][1] = 0), face_edge);
+    let owner = |face, found, expected| Violation::Owner { face, found, expected };
+    assert_eq!(planted(|t| t.owners[0] &= !1), owner(0, 0b111_110, 0b111_111));
+    assert_eq!(planted(|t| t.owners[3] |= 1 << 4), owner(3, 0b010_000, 0));
+    assert_eq!(planted(|t| t.owners[2] |= 1 << 6), owner(2, 0b1_010_000, 0b010_000));
+}
+
+/// The public meshes, from `NEARMISS_DATA` or beside the repository.
+fn data(file: &str) -> Option<PathBuf> {
+    let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data");
+    let path = PathBuf::from(std::env::var_os("NEARMISS_DATA").unwrap_or(beside.into())).join(file);
+    if !path.exists() {
+        eprintln!("skipped: no {}; set NEARMISS_DATA", path.display());
+        return None;
+    }
+    Some(path)
+}
+
+#[test]
+fn the_cloth_of_unc_reads_and_its_topology_holds() {
+    // 46,598 vertices and 92,230 triangles: the header of the published file.
+    let Some(path) = data("cloth-ball/cloth_ball92.ply") else { return };
+    let t0 = Mesh::read(&path).unwrap();
+    assert_eq!((t0.vertex_count(), t0.face_count()), (46_598, 92_230));
+    let start = std::time::Instant::now();
+    let topology = Topology::new(t0.faces(), t0.vertex_count());
+    eprintln!("topology of {} faces: {:?}", t0.face_count(), start.elapsed());
+    assert_eq!(check(&topology, t0.faces()), Ok(()));
+    let t1 = Mesh::read(&path.with_file_name("cloth_ball93.ply")).unwrap();
+    let body = Body::moving(t0, t1).unwrap();
+    assert_eq!(body.frames().len(), 2);
+}
+
+#[test]
+fn a_format_is_known_by_its_extension() {
+    assert_eq!(Format::of("a/b.Obj".as_ref()), Ok(Format::Obj));
+    assert_eq!(Format::of("a.ply/b".as_ref()), Err(Problem::UnknownExtension { found: String::new() }));
+}
