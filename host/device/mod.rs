@@ -26,7 +26,8 @@ pub enum Backend {
     Auto,
 }
 
-/// A machine that runs kernels, and its memory. One thread uses it.
+/// A machine that runs kernels, and its memory. One thread uses it; clones are the same machine.
+#[derive(Clone)]
 pub struct Device {
     machine: Rc<Machine>,
     tally: Rc<Tally>,

@@ -158,11 +158,11 @@ impl Microscope {
         self.device.borrow_mut().insert(addr, vec![Shadow::default(); bytes / 4]);
     }
     /// Memory that is gone.
-    pub(super) fn forget(&self, addr: u64) {
+    pub(in crate::device) fn forget(&self, addr: u64) {
         self.device.borrow_mut().remove(&addr);
     }
     /// The host wrote the first `bytes` bytes of the memory at `addr`.
-    pub(super) fn host_wrote(&self, addr: u64, bytes: usize) {
+    pub(in crate::device) fn host_wrote(&self, addr: u64, bytes: usize) {
         if let Some(shadows) = self.device.borrow_mut().get_mut(&addr) {
             shadows[..bytes.div_ceil(4)].iter_mut().for_each(|shadow| shadow.written = true);
         }

@@ -1,0 +1,254 @@
+//! Results: contacts in canonical order, their hash, and the summary.
+
+use crate::device::Device;
+use crate::mesh::Body;
+use crate::pipeline::{Found, Layout, Stages};
+use crate::query::{Motion, Query, Solver, Traversal};
+use nearmiss_kernels::abi::counter;
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// Which features meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// `a` is a vertex (of the first body), `b` a face (of the second, or of the same).
+    Vf,
+    /// Between two bodies: `a` is a face of the first, `b` a vertex of the second.
+    Fv,
+    /// Two edges, numbered by (larger vertex, smaller vertex), ascending.
+    Ee,
+}
+
+/// How sure an answer is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Status {
+    /// A solver that can be wrong says so.
+    Contact,
+}
+
+/// Two features that meet within the step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Contact {
+    /// Which features.
+    pub kind: Kind,
+    /// The first feature's index in its body.
+    pub a: u32,
+    /// The second feature's index in its body.
+    pub b: u32,
+    /// First time of contact, in [0, 1].
+    pub toi: f64,
+    /// The time by which they have met, in [toi, 1].
+    pub toi_hi: f64,
+    /// How sure that is.
+    pub status: Status,
+}
+
+/// The answer to a query.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Answer {
+    /// Triangle pairs that share a point: (a, b) with a < b in one body, or a of the first body and b of the second.
+    /// Ascending.
+    Pairs(Vec<[u32; 2]>),
+    /// Feature pairs that meet, ascending by kind, a, b.
+    Contacts(Vec<Contact>),
+    /// The smallest time of contact.
+    Earliest(Option<f64>),
+}
+
+/// An answer with the figures of its making.
+#[derive(Clone, Debug)]
+pub struct Contacts {
+    /// The answer.
+    pub answer: Answer,
+    /// Milliseconds by stage.
+    pub stages: Stages,
+    /// Triangle pairs that the volumes let through.
+    pub triangle_pairs: u64,
+    /// Pairs that the narrow test was asked: triangle pairs (discrete), vertex/face and edge/edge pairs (continuous).
+    pub candidates: u64,
+    /// Candidates by kind: vertex/face, edge/edge. Zero for discrete queries.
+    pub candidates_vf_ee: [u64; 2],
+    /// Pairs that the float filter left to exact signs.
+    pub undecided: u64,
+    /// Pairs of sibling nodes that the traversal tested.
+    pub steps: u64,
+    /// Work units that long walks gave away.
+    pub spilled: u64,
+}
+
+impl Contacts {
+    /// No contacts, of bodies without triangles.
+    pub fn none(query: Query) -> Contacts {
+        let answer = match query.motion {
+            Motion::Discrete => Answer::Pairs(Vec::new()),
+            Motion::Continuous => Answer::Contacts(Vec::new()),
+            Motion::Earliest => Answer::Earliest(None),
+        };
+        Contacts {
+            answer,
+            stages: Stages::default(),
+            triangle_pairs: 0,
+            candidates: 0,
+            candidates_vf_ee: [0; 2],
+            undecided: 0,
+            steps: 0,
+            spilled: 0,
+        }
+    }
+
+    /// Puts what the kernels found into canonical order and into the numbering of the bodies.
+    pub(crate) fn new(found: Found, layout: &Layout, query: Query, stages: Stages) -> Contacts {
+        let second = if layout.bodies() == 2 { layout.starts[1] } else { Default::default() };
+        let answer = match query.motion {
+            Motion::Earliest => Answer::Earliest(found.earliest),
+            Motion::Discrete => {
+                let mut pairs: Vec<_> = found.pairs.par_iter().map(|p| [p.a, p.b - second.triangle]).collect();
+                pairs.par_sort_unstable();
+                Answer::Pairs(pairs)
+            }
+            Motion::Continuous => {
+                let contact = |kind, a, b, toi| Contact { kind, a, b, toi, toi_hi: toi, status: Status::Contact };
+                let vf = found.vf.par_iter().map(|hit| {
+                    if layout.bodies() == 2 && hit.a >= second.vertex {
+                        contact(Kind::Fv, hit.b, hit.a - second.vertex, hit.toi)
+                    } else {
+                        contact(Kind::Vf, hit.a, hit.b - second.triangle, hit.toi)
+                    }
+                });
+                let ee = found.ee.par_iter().map(|hit| contact(Kind::Ee, hit.a, hit.b - second.edge, hit.toi));
+                let mut contacts: Vec<_> = vf.chain(ee).collect();
+                contacts.par_sort_unstable_by_key(|c| (c.kind, c.a, c.b));
+                Answer::Contacts(contacts)
+            }
+        };
+        let count = |at: u32| found.counters[at as usize];
+        let vf_ee = [count(counter::VF), count(counter::EE)];
+        let discrete = query.motion == Motion::Discrete;
+        Contacts {
+            answer,
+            stages,
+            triangle_pairs: count(counter::PAIRS),
+            candidates: if discrete { count(counter::PAIRS) } else { vf_ee[0] + vf_ee[1] },
+            candidates_vf_ee: vf_ee,
+            undecided: count(counter::UNDECIDED),
+            steps: count(counter::STEPS),
+            spilled: found.counters[counter::SPILLED as usize..].iter().sum(),
+        }
+    }
+
+    /// How many contacts there are; of an earliest query, 1 or 0.
+    pub fn len(&self) -> usize {
+        match &self.answer {
+            Answer::Pairs(pairs) => pairs.len(),
+            Answer::Contacts(contacts) => contacts.len(),
+            Answer::Earliest(toi) => toi.iter().len(),
+        }
+    }
+
+    /// Whether nothing meets.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Triangle pairs, if that was asked.
+    pub fn pairs(&self) -> &[[u32; 2]] {
+        if let Answer::Pairs(pairs) = &self.answer { pairs } else { &[] }
+    }
+
+    /// Feature pairs, if that was asked.
+    pub fn contacts(&self) -> &[Contact] {
+        if let Answer::Contacts(contacts) = &self.answer { contacts } else { &[] }
+    }
+
+    /// The smallest time of contact of a continuous or earliest query.
+    pub fn earliest_toi(&self) -> Option<f64> {
+        match &self.answer {
+            Answer::Pairs(_) => None,
+            Answer::Contacts(contacts) => contacts.iter().map(|c| c.toi).min_by(f64::total_cmp),
+            Answer::Earliest(toi) => *toi,
+        }
+    }
+
+    /// xxh3 over the canonical answer: the same for equal answers on every machine. Each contact adds its kind, its
+    /// indices and the bits of its times, little-endian.
+    pub fn hash(&self) -> u64 {
+        let mut hash = xxhash_rust::xxh3::Xxh3::new();
+        match &self.answer {
+            Answer::Pairs(pairs) => pairs.iter().flatten().for_each(|i| hash.update(&i.to_le_bytes())),
+            Answer::Contacts(contacts) => contacts.iter().for_each(|c| {
+                hash.update(&[c.kind as u8, c.status as u8]);
+                hash.update(&c.a.to_le_bytes());
+                hash.update(&c.b.to_le_bytes());
+                hash.update(&c.toi.to_le_bytes());
+                hash.update(&c.toi_hi.to_le_bytes());
+            }),
+            Answer::Earliest(toi) => toi.iter().for_each(|toi| hash.update(&toi.to_le_bytes())),
+        }
+        hash.digest()
+    }
+}
+
+/// What the command line prints of a result, as JSON or for people.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// Triangles of all bodies.
+    pub triangles: usize,
+    /// Vertices of all bodies.
+    pub vertices: usize,
+    /// Frames: 1 still, 2 moving.
+    pub frames: usize,
+    /// What was asked.
+    pub query: Motion,
+    /// The bounding volume.
+    pub bv: &'static str,
+    /// The walk; absent when the machine's fastest was taken.
+    pub traversal: Option<Traversal>,
+    /// The test.
+    pub solver: Solver,
+    /// `cpu` or `cuda`.
+    pub backend: &'static str,
+    /// The machine's name.
+    pub device: String,
+    /// Triangle pairs that the volumes let through.
+    pub triangle_pairs: u64,
+    /// Pairs that the narrow test was asked.
+    pub candidates: u64,
+    /// Contacts found.
+    pub contacts: usize,
+    /// Contacts that no solver could confirm or refute: none of the present ones says so.
+    pub unresolved: usize,
+    /// The smallest time of contact.
+    pub earliest_toi: Option<f64>,
+    /// Hash of the canonical answer, sixteen hexadecimal digits.
+    pub hash: String,
+    /// Milliseconds by stage.
+    pub ms: Stages,
+    /// Most device memory held at once.
+    pub bytes: u64,
+}
+
+impl Summary {
+    pub(crate) fn new(bodies: &[Body], query: Query, device: &Device, contacts: &Contacts) -> Summary {
+        Summary {
+            triangles: bodies.iter().map(Body::face_count).sum(),
+            vertices: bodies.iter().map(Body::vertex_count).sum(),
+            frames: if bodies.iter().any(Body::is_moving) { 2 } else { 1 },
+            query: query.motion,
+            bv: "aabb",
+            traversal: query.traversal,
+            solver: query.solver(),
+            backend: device.backend(),
+            device: device.name(),
+            triangle_pairs: contacts.triangle_pairs,
+            candidates: contacts.candidates,
+            contacts: contacts.len(),
+            unresolved: 0,
+            earliest_toi: contacts.earliest_toi(),
+            hash: format!("{:016x}", contacts.hash()),
+            ms: contacts.stages,
+            bytes: device.bytes().1,
+        }
+    }
+}

@@ -1,0 +1,341 @@
+//! The corridor: a frame from positions to contacts, in the order of the stages.
+
+use super::layout::Layout;
+use super::precision::Precision;
+use super::room::List;
+use super::timing::Stages;
+use super::tree::Tree;
+use crate::device::{Buffer, Device};
+use crate::error::Error;
+use crate::mesh::Body;
+use crate::query::{Motion, Query, Solver, Traversal};
+use nearmiss_kernels::abi::{
+    DiscreteArgs, Frames, Hit, KEEP_ADJACENT, Pair, ROUNDS, SELF, SiftArgs, SolveArgs, Span, TraverseArgs, Unit, counter,
+};
+use nearmiss_kernels::entry;
+use nearmiss_kernels::entry::Entry;
+use nearmiss_kernels::math::Vec3;
+
+/// Candidates a triangle for which there is room at first. Cloth at rest has 8, swept over a step 50; a list that
+/// turns out too short grows within the frame.
+const PAIRS_A_TRIANGLE: usize = 16;
+/// The same for a continuous query.
+const SWEPT_PAIRS_A_TRIANGLE: usize = 64;
+/// Room that every list has at least: a scene of a few triangles may have all pairs.
+const LEAST_ROOM: usize = 1 << 12;
+
+/// What the kernels found, still in the numbering of the memory that all bodies share.
+pub struct Found {
+    /// Triangle pairs, discrete.
+    pub pairs: Vec<Pair>,
+    /// Vertex/face contacts.
+    pub vf: Vec<Hit>,
+    /// Edge/edge contacts.
+    pub ee: Vec<Hit>,
+    /// The smallest toi, if that was asked for and there is one.
+    pub earliest: Option<f64>,
+    /// The frame's counters, see [`counter`].
+    pub counters: Vec<u64>,
+}
+
+/// The memory of a query, and the way through it.
+pub struct Corridor<R: Precision> {
+    device: Device,
+    query: Query,
+    faces: Buffer<[u32; 3]>,
+    t0: Buffer<Vec3<R>>,
+    t1: Option<Buffer<Vec3<R>>>,
+    trees: Vec<Tree>,
+    counters: Buffer<u64>,
+    pairs: List<Pair>,
+    units: Option<[Buffer<Unit>; 2]>,
+    narrow: Narrow,
+    /// How often a list was too short and the frame was run again, so far.
+    pub reruns: u64,
+}
+
+/// What only one kind of query needs exists only there.
+enum Narrow {
+    Discrete { contacts: List<Pair>, undecided: Option<List<Pair>> },
+    Continuous(Box<Continuous>),
+}
+
+struct Continuous {
+    edges: Buffer<[u32; 2]>,
+    face_edges: Buffer<[u32; 3]>,
+    owners: Buffer<u32>,
+    vf: List<Pair>,
+    ee: List<Pair>,
+    vf_hits: List<Hit>,
+    ee_hits: List<Hit>,
+    earliest: Option<Buffer<u64>>,
+}
+
+impl<R: Precision> Corridor<R> {
+    /// Takes the memory that the query needs, uploads topology and positions, and constructs the trees. `layout` has
+    /// at least one triangle in every body.
+    pub fn new(device: Device, bodies: &[Body], layout: &Layout, query: Query) -> Result<(Self, f64), Error> {
+        let triangles = layout.faces.len();
+        let continuous = query.motion != Motion::Discrete;
+        let a_triangle = if continuous { SWEPT_PAIRS_A_TRIANGLE } else { PAIRS_A_TRIANGLE };
+        let room = (a_triangle * triangles).max(LEAST_ROOM);
+        let few = (4 * triangles).max(LEAST_ROOM);
+        let narrow = if continuous {
+            let earliest = query.motion == Motion::Earliest;
+            let hits = if earliest { 0 } else { few };
+            Narrow::Continuous(Box::new(Continuous {
+                edges: device.upload(&layout.edges)?,
+                face_edges: device.upload(&layout.face_edges)?,
+                owners: device.upload(&layout.owners)?,
+                vf: List::new(&device, "vertex/face candidates", counter::VF, room)?,
+                ee: List::new(&device, "edge/edge candidates", counter::EE, 2 * room)?,
+                vf_hits: List::new(&device, "vertex/face contacts", counter::VF_HITS, hits)?,
+                ee_hits: List::new(&device, "edge/edge contacts", counter::EE_HITS, hits)?,
+                earliest: if earliest { Some(device.buffer(1)?) } else { None },
+            }))
+        } else {
+            Narrow::Discrete {
+                contacts: List::new(&device, "contacts", counter::CONTACTS, few)?,
+                undecided: match query.solver() {
+                    Solver::Exact => Some(List::new(&device, "undecided pairs", counter::UNDECIDED, few)?),
+                    _ => None,
+                },
+            }
+        };
+        let units = match Self::budget(&device, query) {
+            None => None,
+            Some(_) => Some([device.buffer(4 * triangles)?, device.buffer(4 * triangles)?]),
+        };
+        let vertices = layout.starts[layout.bodies()].vertex as usize;
+        let mut corridor = Corridor {
+            query,
+            faces: device.upload(&layout.faces)?,
+            t0: device.buffer(vertices)?,
+            t1: if continuous { Some(device.buffer(vertices)?) } else { None },
+            trees: Vec::new(),
+            counters: device.buffer(counter::COUNT as usize)?,
+            pairs: List::new(&device, "candidate triangle pairs", counter::PAIRS, room)?,
+            units,
+            narrow,
+            reruns: 0,
+            device,
+        };
+        corridor.place(bodies)?;
+        let start = corridor.device.mark()?;
+        corridor.construct(layout)?;
+        let ms = start.to(&corridor.device.mark()?)?;
+        Ok((corridor, ms))
+    }
+
+    /// Steps of a walk before it spills.
+    fn budget(device: &Device, query: Query) -> Option<u32> {
+        match query.traversal {
+            Some(Traversal::PerLeaf { budget }) => budget,
+            None => device.is_card().then_some(Traversal::CARD_BUDGET),
+        }
+    }
+
+    /// Uploads positions. A body that stands still in a continuous query has the same positions at both ends.
+    pub fn place(&mut self, bodies: &[Body]) -> Result<(), Error> {
+        let t0: Vec<_> = bodies.iter().flat_map(|body| R::points(body.positions_t0())).collect();
+        self.t0.write(&t0)?;
+        if let Some(buffer) = &mut self.t1 {
+            let end = |body: &Body| R::points(body.positions_t1().unwrap_or(body.positions_t0()));
+            buffer.write(&bodies.iter().flat_map(end).collect::<Vec<_>>())?;
+        }
+        Ok(())
+    }
+
+    /// Builds the trees anew, from the positions at t = 0.
+    pub fn construct(&mut self, layout: &Layout) -> Result<(), Error> {
+        self.trees.clear();
+        for body in 0..layout.bodies() {
+            let triangles = layout.triangles(body);
+            self.trees.push(Tree::construct::<R>(&self.device, self.frames(), self.faces.span(), triangles)?);
+        }
+        Ok(())
+    }
+
+    /// The trees, one a body.
+    pub fn trees(&self) -> &[Tree] {
+        &self.trees
+    }
+
+    fn frames(&self) -> Frames<R> {
+        Frames { t0: self.t0.span(), t1: self.t1.as_ref().map_or(Span::EMPTY, Buffer::span) }
+    }
+
+    /// One frame: volumes, candidates, contacts. Runs again from the traversal on while a list is too short.
+    pub fn frame(&mut self) -> Result<(Found, Stages), Error> {
+        let start = self.device.mark()?;
+        self.trees.iter().try_for_each(|tree| tree.fit(&self.device, self.frames(), self.faces.span()))?;
+        let fitted = self.device.mark()?;
+        self.trees.iter().try_for_each(|tree| tree.refit(&self.device))?;
+        let refitted = self.device.mark()?;
+        loop {
+            self.counters.clear()?;
+            let begun = self.device.mark()?;
+            self.traverse()?;
+            let traversed = self.device.mark()?;
+            self.narrow()?;
+            let end = self.device.mark()?;
+            let counters = self.counters.read(counter::COUNT as usize)?;
+            if self.grow(&counters)? {
+                self.reruns += 1;
+                continue;
+            }
+            let stages = Stages {
+                construct: 0.0,
+                fit: start.to(&fitted)?,
+                refit: fitted.to(&refitted)?,
+                traverse: begun.to(&traversed)?,
+                narrow: traversed.to(&end)?,
+                total: start.to(&end)?,
+            };
+            return Ok((self.gather(counters)?, stages));
+        }
+    }
+
+    /// Candidates: a round of all leaves, then rounds of what longer walks left over.
+    fn traverse(&self) -> Result<(), Error> {
+        let (queries, target) = (&self.trees[0], &self.trees[self.trees.len() - 1]);
+        let own = if self.trees.len() == 1 { SELF } else { 0 };
+        // An elementary pair may be known by two adjacent triangles only: continuous queries keep them.
+        let adjacent = self.query.adjacent || self.query.motion != Motion::Discrete;
+        let budget = Self::budget(&self.device, self.query);
+        let mut args = TraverseArgs {
+            queries: queries.nodes.span(),
+            query_leaves: queries.leaf_nodes.span(),
+            nodes: target.nodes.span(),
+            faces: self.faces.span(),
+            units: Span::EMPTY,
+            spilled: self.units.as_ref().map_or(Span::EMPTY, |units| units[0].span()),
+            pairs: self.pairs.span(),
+            counters: self.counters.span(),
+            units_at: 0,
+            spilled_at: counter::SPILLED,
+            budget: budget.unwrap_or(u32::MAX),
+            flags: own | if adjacent { KEEP_ADJACENT } else { 0 },
+        };
+        let leaves = queries.leaf_nodes.len();
+        let blocks = if self.device.is_card() {
+            self.device.blocks_for::<entry::traverse_leaves>(leaves)
+        } else {
+            self.device.blocks_striding::<entry::traverse_leaves>(leaves)
+        };
+        self.device.launch::<entry::traverse_leaves>(blocks, &args)?;
+        let Some(units) = &self.units else { return Ok(()) };
+        let blocks = self.device.blocks_striding::<entry::traverse_units>(units[0].len());
+        for round in 0..ROUNDS {
+            args.units = args.spilled;
+            args.units_at = args.spilled_at;
+            args.spilled = units[(round as usize + 1) % 2].span();
+            args.spilled_at += 1;
+            if round + 1 == ROUNDS {
+                args.budget = u32::MAX;
+                args.spilled_at = 0;
+            }
+            self.device.launch::<entry::traverse_units>(blocks, &args)?;
+        }
+        Ok(())
+    }
+
+    /// Contacts.
+    fn narrow(&mut self) -> Result<(), Error> {
+        match &mut self.narrow {
+            Narrow::Discrete { contacts, undecided } => {
+                let args = DiscreteArgs {
+                    positions: self.t0.span(),
+                    faces: self.faces.span(),
+                    pairs: self.pairs.span(),
+                    contacts: contacts.span(),
+                    undecided: undecided.as_ref().map_or(Span::EMPTY, List::span),
+                    counters: self.counters.span(),
+                    pairs_at: counter::PAIRS,
+                    flags: if self.query.adjacent { KEEP_ADJACENT } else { 0 },
+                };
+                let room = self.pairs.room();
+                let Some(undecided) = undecided else {
+                    return launch_striding::<R::Moller>(&self.device, room, &args);
+                };
+                launch_striding::<R::Filter>(&self.device, room, &args)?;
+                launch_striding::<R::Exact>(&self.device, undecided.room(), &args)
+            }
+            Narrow::Continuous(c) => {
+                let frames =
+                    Frames { t0: self.t0.span(), t1: self.t1.as_ref().map_or(Span::EMPTY, Buffer::span) };
+                let sift = SiftArgs {
+                    frames,
+                    faces: self.faces.span(),
+                    face_edges: c.face_edges.span(),
+                    owners: c.owners.span(),
+                    pairs: self.pairs.span(),
+                    vf: c.vf.span(),
+                    ee: c.ee.span(),
+                    counters: self.counters.span(),
+                };
+                launch_striding::<R::Sift>(&self.device, self.pairs.room(), &sift)?;
+                if let Some(earliest) = &mut c.earliest {
+                    earliest.write(&[u64::MAX])?;
+                }
+                let solve = |candidates: &List<Pair>, hits: &List<Hit>| SolveArgs {
+                    frames,
+                    faces: self.faces.span(),
+                    edges: c.edges.span(),
+                    candidates: candidates.span(),
+                    hits: hits.span(),
+                    earliest: c.earliest.as_ref().map_or(Span::EMPTY, Buffer::span),
+                    counters: self.counters.span(),
+                };
+                let (vf, ee) = (solve(&c.vf, &c.vf_hits), solve(&c.ee, &c.ee_hits));
+                if self.query.solver() == Solver::CubicF32 {
+                    launch_striding::<R::Vf32>(&self.device, c.vf.room(), &vf)?;
+                    launch_striding::<R::Ee32>(&self.device, c.ee.room(), &ee)
+                } else {
+                    launch_striding::<R::Vf64>(&self.device, c.vf.room(), &vf)?;
+                    launch_striding::<R::Ee64>(&self.device, c.ee.room(), &ee)
+                }
+            }
+        }
+    }
+
+    /// Makes every list long enough for what was asked of it; whether one was not.
+    fn grow(&mut self, counters: &[u64]) -> Result<bool, Error> {
+        let device = &self.device;
+        let mut grown = self.pairs.grow(device, counters)?;
+        match &mut self.narrow {
+            Narrow::Discrete { contacts, undecided } => {
+                grown |= contacts.grow(device, counters)?;
+                if let Some(undecided) = undecided {
+                    grown |= undecided.grow(device, counters)?;
+                }
+            }
+            Narrow::Continuous(c) => {
+                grown |= c.vf.grow(device, counters)? | c.ee.grow(device, counters)?;
+                grown |= c.vf_hits.grow(device, counters)? | c.ee_hits.grow(device, counters)?;
+            }
+        }
+        Ok(grown)
+    }
+
+    fn gather(&self, counters: Vec<u64>) -> Result<Found, Error> {
+        let mut found = Found { pairs: Vec::new(), vf: Vec::new(), ee: Vec::new(), earliest: None, counters };
+        match &self.narrow {
+            Narrow::Discrete { contacts, .. } => found.pairs = contacts.read(&found.counters)?,
+            Narrow::Continuous(c) => {
+                found.vf = c.vf_hits.read(&found.counters)?;
+                found.ee = c.ee_hits.read(&found.counters)?;
+                if let Some(earliest) = &c.earliest {
+                    let bits = earliest.read(1)?[0];
+                    found.earliest = (bits != u64::MAX).then(|| f64::from_bits(bits));
+                }
+            }
+        }
+        Ok(found)
+    }
+}
+
+/// Launches a kernel over up to `room` items.
+fn launch_striding<E: Entry>(device: &Device, room: usize, args: &E::Args) -> Result<(), Error> {
+    device.launch::<E>(device.blocks_striding::<E>(room), args)
+}

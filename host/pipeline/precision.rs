@@ -1,0 +1,77 @@
+//! Which kernels serve positions of f32, and which of f64.
+
+use crate::mesh::Positions;
+use nearmiss_kernels::abi::{DiscreteArgs, FitArgs, MortonArgs, SiftArgs, SolveArgs};
+use nearmiss_kernels::entry::{self, Entry};
+use nearmiss_kernels::math::{Real, Vec3};
+
+/// A precision of positions, with its kernels.
+pub trait Precision: Real {
+    /// Box of the triangle centres.
+    type Bounds: Entry<Args = MortonArgs<Self>>;
+    /// Codes of the triangle centres.
+    type Morton: Entry<Args = MortonArgs<Self>>;
+    /// Boxes of the leaves.
+    type Fit: Entry<Args = FitArgs<Self>>;
+    /// The seed's discrete test.
+    type Moller: Entry<Args = DiscreteArgs<Self>>;
+    /// The discrete filter.
+    type Filter: Entry<Args = DiscreteArgs<Self>>;
+    /// The exact signs.
+    type Exact: Entry<Args = DiscreteArgs<Self>>;
+    /// Triangle pairs to elementary candidates.
+    type Sift: Entry<Args = SiftArgs<Self>>;
+    /// Vertex/face by the cubic in f32.
+    type Vf32: Entry<Args = SolveArgs<Self>>;
+    /// Vertex/face by the cubic in f64.
+    type Vf64: Entry<Args = SolveArgs<Self>>;
+    /// Edge/edge by the cubic in f32.
+    type Ee32: Entry<Args = SolveArgs<Self>>;
+    /// Edge/edge by the cubic in f64.
+    type Ee64: Entry<Args = SolveArgs<Self>>;
+
+    /// Positions in this precision, exactly: f32 is only asked for where all bodies are f32.
+    fn points(positions: &Positions) -> Vec<Vec3<Self>>;
+}
+
+impl Precision for f32 {
+    type Bounds = entry::construct_bounds_f32;
+    type Morton = entry::construct_morton_f32;
+    type Fit = entry::fit_f32;
+    type Moller = entry::narrow_moller_f32;
+    type Filter = entry::narrow_filter_f32;
+    type Exact = entry::narrow_exact_f32;
+    type Sift = entry::narrow_sift_f32;
+    type Vf32 = entry::narrow_vf_f32_f32;
+    type Vf64 = entry::narrow_vf_f32_f64;
+    type Ee32 = entry::narrow_ee_f32_f32;
+    type Ee64 = entry::narrow_ee_f32_f64;
+
+    fn points(positions: &Positions) -> Vec<Vec3<f32>> {
+        match positions {
+            Positions::F32(points) => bytemuck::cast_slice(points).to_vec(),
+            Positions::F64(points) => points.iter().map(|p| Vec3(p.map(|x| x as f32))).collect(),
+        }
+    }
+}
+
+impl Precision for f64 {
+    type Bounds = entry::construct_bounds_f64;
+    type Morton = entry::construct_morton_f64;
+    type Fit = entry::fit_f64;
+    type Moller = entry::narrow_moller_f64;
+    type Filter = entry::narrow_filter_f64;
+    type Exact = entry::narrow_exact_f64;
+    type Sift = entry::narrow_sift_f64;
+    type Vf32 = entry::narrow_vf_f64_f32;
+    type Vf64 = entry::narrow_vf_f64_f64;
+    type Ee32 = entry::narrow_ee_f64_f32;
+    type Ee64 = entry::narrow_ee_f64_f64;
+
+    fn points(positions: &Positions) -> Vec<Vec3<f64>> {
+        match positions {
+            Positions::F32(points) => points.iter().map(|p| Vec3(p.map(f64::from))).collect(),
+            Positions::F64(points) => bytemuck::cast_slice(points).to_vec(),
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! Lists that grow: counted past the end, enlarged to the exact demand, filled again within the frame.
+
+use crate::device::{Buffer, Device};
+use crate::error::Error;
+use bytemuck::Pod;
+use nearmiss_kernels::abi::Span;
+
+/// A list in device memory, whose entries a counter counts.
+pub struct List<T> {
+    name: &'static str,
+    counter: u32,
+    entries: Buffer<T>,
+}
+
+/// Longest list: entries are numbered with 32 bits.
+const LONGEST: u64 = u32::MAX as u64;
+
+impl<T: Pod> List<T> {
+    /// A list with room for `room` entries, counted by that counter.
+    ///
+    /// # Errors
+    /// [`Error::Room`].
+    pub fn new(device: &Device, name: &'static str, counter: u32, room: usize) -> Result<Self, Error> {
+        Ok(List { name, counter, entries: device.buffer(room.min(LONGEST as usize))? })
+    }
+
+    /// What a kernel is given.
+    pub fn span(&self) -> Span<T> {
+        self.entries.span()
+    }
+
+    /// How many entries there is room for.
+    pub fn room(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// How many entries the kernels asked for.
+    pub fn demand(&self, counters: &[u64]) -> u64 {
+        counters[self.counter as usize]
+    }
+
+    /// Makes room for what the kernels asked for, and an eighth more for the next frame; whether it had to.
+    ///
+    /// # Errors
+    /// [`Error::Room`] when there is no memory, or the list would be longer than an index reaches.
+    pub fn grow(&mut self, device: &Device, counters: &[u64]) -> Result<bool, Error> {
+        let demand = self.demand(counters);
+        if demand <= self.room() as u64 {
+            return Ok(false);
+        }
+        let room = |given| Error::Room {
+            what: format!("the list of {}", self.name),
+            asked: demand * size_of::<T>() as u64,
+            given,
+        };
+        if demand > LONGEST {
+            return Err(room(LONGEST * size_of::<T>() as u64));
+        }
+        let wanted = (demand + demand / 8).min(LONGEST) as usize;
+        // The old entries are not needed: the list is filled again.
+        self.entries = device.buffer(0)?;
+        self.entries = device.buffer(wanted)?;
+        Ok(true)
+    }
+
+    /// The entries.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn read(&self, counters: &[u64]) -> Result<Vec<T>, Error> {
+        self.entries.read(self.demand(counters) as usize)
+    }
+}

@@ -1,0 +1,18 @@
+//! Time by stage.
+
+/// Milliseconds of each stage of a frame, on the device's own clock. `construct` is that of the last build.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Stages {
+    /// Positions to level-ordered tree, all bodies.
+    pub construct: f64,
+    /// Volumes of the leaves.
+    pub fit: f64,
+    /// All other volumes.
+    pub refit: f64,
+    /// Candidates.
+    pub traverse: f64,
+    /// Contacts.
+    pub narrow: f64,
+    /// From positions to contacts, runs that were repeated for want of room included, construction not.
+    pub total: f64,
+}

@@ -1,0 +1,64 @@
+//! Discrete answers equal the exact ones: public meshes with lists decided in exact arithmetic by other programs.
+
+mod support;
+
+use nearmiss::mesh::Body;
+use nearmiss::query::Motion;
+use nearmiss::{Contacts, Query};
+use support::{ORDERS, ask, engine, mesh, microscope, rows};
+
+/// Pairs of a list.
+fn listed(path: &str) -> Option<Vec<[u32; 2]>> {
+    let number = |text: &String| text.trim().parse().expect("a number");
+    Some(rows(path)?.iter().map(|row| [number(&row[0]), number(&row[1])]).collect())
+}
+
+fn bodies(names: &[&str]) -> Option<Vec<Body>> {
+    names.iter().map(|name| mesh(name).map(Body::still)).collect()
+}
+
+/// First difference of two ascending lists: what is missing, or what is too many.
+fn difference(found: &[[u32; 2]], truth: &[[u32; 2]]) -> Option<String> {
+    let (found, truth): (std::collections::BTreeSet<_>, std::collections::BTreeSet<_>) =
+        (found.iter().collect(), truth.iter().collect());
+    let missed = truth.difference(&found).next().map(|pair| format!("missed {pair:?}"));
+    missed.or_else(|| found.difference(&truth).next().map(|pair| format!("invented {pair:?}")))
+}
+
+fn discrete(device: nearmiss::Device, bodies: Vec<Body>) -> Contacts {
+    ask(device, bodies, Query::of(Motion::Discrete))
+}
+
+/// Meshes (one against itself, two against each other), the list of their pairs, and whether the microscope, which
+/// is slow, looks at them too.
+const SETS: [(&[&str], &str, bool); 8] = [
+    (&["exact/bunny.ply"], "exact/bunny.pairs.csv.gz", true),
+    (&["exact/bunny.ply", "exact/bunny_b.ply"], "exact/bunny_with_bunny_b.pairs.csv.gz", true),
+    (&["exact/coplanar_same.ply"], "exact/coplanar_same.pairs.csv.gz", true),
+    (&["exact/coplanar_z0_shift.ply"], "exact/coplanar_z0_shift.pairs.csv.gz", true),
+    (&["exact/degenerate.ply"], "exact/degenerate.pairs.csv.gz", true),
+    (&["exact/height-field.ply"], "exact/height-field.pairs.csv.gz", true),
+    (&["cloth-ball/cloth_ball92.ply"], "exact/cloth_ball92.pairs.csv.gz", false),
+    (&["exact/noisy.ply"], "exact/noisy.pairs.csv.gz", false),
+];
+
+#[test]
+fn every_pair_set_equals_the_exact_one() {
+    for (meshes, pairs, small) in SETS {
+        let (Some(bodies), Some(truth)) = (bodies(meshes), listed(pairs)) else { continue };
+        let found = discrete(engine(), bodies.clone());
+        assert_eq!(difference(found.pairs(), &truth), None, "{meshes:?}");
+        for order in ORDERS.into_iter().filter(|_| small) {
+            let again = discrete(microscope(order), bodies.clone());
+            assert_eq!(again.hash(), found.hash(), "{meshes:?}, {order:?}");
+        }
+    }
+}
+
+#[test]
+fn the_comparison_can_fail() {
+    let truth = [[1, 2], [3, 4]];
+    assert_eq!(difference(&[[1, 2]], &truth), Some("missed [3, 4]".into()));
+    assert_eq!(difference(&[[1, 2], [3, 4], [3, 5]], &truth), Some("invented [3, 5]".into()));
+    assert_eq!(difference(&truth, &truth), None);
+}
