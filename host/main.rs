@@ -1,2 +1,7 @@
 //! The program: three lines into the command line.
-fn main() {}
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    nearmiss::cli::main()
+}

@@ -1,0 +1,158 @@
+//! What the command line takes.
+
+use crate::device::Backend;
+use crate::query::{Motion, Query, Solver, Traversal};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// Collision detection for deformable triangle meshes.
+#[derive(Parser)]
+#[command(version, arg_required_else_help = true)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Subcommand)]
+pub enum Command {
+    /// Find what touches: in one mesh, or (--with) between two.
+    Detect(Box<DetectArgs>),
+    /// Say what detect would run with the same arguments, on which machine and memory, and why.
+    Plan(Box<DetectArgs>),
+    /// Write a benchmark scene as PLY frames.
+    Scene(SceneArgs),
+    /// Check this machine: known answers, and the card and the CPU to the bit.
+    Selftest(SelftestArgs),
+}
+
+/// Bounding volumes that exist.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum BvArg {
+    /// Axis-aligned boxes, swept over the step.
+    #[default]
+    Aabb,
+}
+
+/// Walks that exist.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum TraversalArg {
+    /// A walk a leaf, to its end.
+    PerLeaf,
+    /// A walk a leaf; long walks give their rest to the next round.
+    PerLeafSpill,
+}
+
+impl TraversalArg {
+    fn choice(self) -> Traversal {
+        match self {
+            TraversalArg::PerLeaf => Traversal::PerLeaf { budget: None },
+            TraversalArg::PerLeafSpill => Traversal::PerLeaf { budget: Some(Traversal::CARD_BUDGET) },
+        }
+    }
+}
+
+#[derive(Args)]
+pub struct DetectArgs {
+    /// The mesh (.ply, .obj); with a second file, its positions at the end of the step.
+    #[arg(required_unless_present = "scene", num_args = 1..=2, value_name = "MESH")]
+    pub meshes: Vec<PathBuf>,
+    /// A generated scene instead of files; `nearmiss scene --help` lists them.
+    #[arg(long, conflicts_with_all = ["meshes", "with"], value_name = "NAME")]
+    pub scene: Option<String>,
+    /// Triangles of the generated scene, about.
+    #[arg(long, default_value_t = 92_230, requires = "scene")]
+    pub triangles: usize,
+    /// Seed of the generated scene.
+    #[arg(long, default_value_t = 1, requires = "scene")]
+    pub seed: u64,
+    /// Another mesh to test against, still or with its positions at the end of the step.
+    #[arg(long, num_args = 1..=2, value_name = "MESH")]
+    pub with: Vec<PathBuf>,
+    /// Triangle pairs that share a point at t = 0 (the default for one frame).
+    #[arg(long, conflicts_with_all = ["continuous", "earliest"])]
+    pub discrete: bool,
+    /// Vertex/face and edge/edge pairs that meet during the step (the default for two frames).
+    #[arg(long, conflicts_with = "earliest")]
+    pub continuous: bool,
+    /// Only the smallest time of contact: the step that a simulator may take.
+    #[arg(long)]
+    pub earliest: bool,
+    /// Bounding volume.
+    #[arg(long, value_enum, default_value_t)]
+    pub bv: BvArg,
+    /// How the tree is walked [default: the machine's fastest].
+    #[arg(long, value_enum)]
+    pub traversal: Option<TraversalArg>,
+    /// The test of a pair [default: exact for discrete, cubic-f64 for continuous].
+    #[arg(long, value_enum)]
+    pub solver: Option<Solver>,
+    /// Which machine.
+    #[arg(long, value_enum, default_value_t)]
+    pub backend: Backend,
+    /// CPU threads [default: all].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Discrete: also triangles that share a vertex, where they meet beyond it.
+    #[arg(long)]
+    pub adjacent: bool,
+    /// Where to write the contacts: .csv or .json.
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Print the summary as one JSON object.
+    #[arg(long)]
+    pub json: bool,
+    /// Ask the same frame this often (after one run to warm up) and report each stage's median.
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub repeat: u32,
+}
+
+impl DetectArgs {
+    /// The query for bodies that move, or do not.
+    pub fn query(&self, moving: bool) -> Query {
+        let motion = match (self.discrete, self.continuous, self.earliest) {
+            (_, _, true) => Motion::Earliest,
+            (_, true, _) => Motion::Continuous,
+            (true, _, _) => Motion::Discrete,
+            _ if moving => Motion::Continuous,
+            _ => Motion::Discrete,
+        };
+        Query {
+            motion,
+            solver: self.solver,
+            traversal: self.traversal.map(TraversalArg::choice),
+            adjacent: self.adjacent,
+        }
+    }
+}
+
+#[derive(Args)]
+pub struct SceneArgs {
+    /// Which scene.
+    #[arg(value_parser = clap::builder::PossibleValuesParser::new(crate::scene::NAMES))]
+    pub name: String,
+    /// Triangles, about.
+    #[arg(long, default_value_t = 92_230)]
+    pub triangles: usize,
+    /// Frames: 1 still, 2 the ends of a step.
+    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=2))]
+    pub frames: u32,
+    /// Seed.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Folder for NAME_t0.ply and NAME_t1.ply.
+    #[arg(long, value_name = "DIR")]
+    pub out: PathBuf,
+}
+
+#[derive(Args)]
+pub struct SelftestArgs {
+    /// Which machine to compare with the CPU's microscope and engine.
+    #[arg(long, value_enum, default_value_t)]
+    pub backend: Backend,
+    /// Triangles of the larger scenes, about.
+    #[arg(long, default_value_t = 20_000)]
+    pub triangles: usize,
+    /// More meshes to ask on both machines: one file, or two frames of one mesh.
+    #[arg(long, num_args = 1..=2, value_name = "MESH")]
+    pub mesh: Vec<PathBuf>,
+}

@@ -1,0 +1,176 @@
+//! `detect` and `plan`.
+
+use super::args::DetectArgs;
+use super::progress::during;
+use crate::contacts::{Contacts, Summary};
+use crate::device::Device;
+use crate::error::Error;
+use crate::mesh::{Body, Mesh};
+use crate::pipeline::{Session, Stages};
+use crate::query::{Motion, Query};
+use crate::report;
+use std::fmt::Write;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// A body from one file, or from two frames.
+pub fn body(files: &[PathBuf]) -> Result<Body, Error> {
+    match files {
+        [t0, t1] => Body::moving(Mesh::read(t0)?, Mesh::read(t1)?),
+        [still] => Ok(Body::still(Mesh::read(still)?)),
+        // clap asks for one or two.
+        _ => Err(Error::Bug { what: format!("{} files for a mesh", files.len()) }),
+    }
+}
+
+/// The bodies that the arguments name, and what is asked of them.
+fn question(args: &DetectArgs) -> Result<(Vec<Body>, Query), Error> {
+    let mut bodies = Vec::new();
+    match &args.scene {
+        Some(name) => bodies.push(during("making the scene", || {
+            crate::scene::scene(name, args.triangles, args.seed)
+        })?),
+        None => bodies.push(during("reading", || body(&args.meshes))?),
+    }
+    if !args.with.is_empty() {
+        bodies.push(during("reading", || body(&args.with))?);
+    }
+    let query = args.query(bodies.iter().any(Body::is_moving));
+    query.check()?;
+    Ok((bodies, query))
+}
+
+/// Finds contacts, writes and prints what was asked for.
+pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
+    if let Some(out) = &args.out {
+        report::Format::of(out)?;
+    }
+    let (bodies, query) = question(args)?;
+    let device = Device::open(args.backend, args.threads.map(usize::from))?;
+    if query.motion != Motion::Discrete {
+        eprintln!("nearmiss: the solver is {}", query.solver().promise());
+    }
+    let mut session = during("building", || Session::new(device, bodies, query))?;
+    let (contacts, runs) = during("detecting", || repeated(&mut session, args.repeat))?;
+    let mut summary = session.summary(&contacts);
+    summary.ms = median(&runs);
+    if let Some(out) = &args.out {
+        report::write(out, &contacts, &summary)?;
+    }
+    if args.json {
+        let text = serde_json::to_string(&summary).map_err(|e| Error::Bug { what: e.to_string() })?;
+        super::print(&(text + "\n"));
+    } else {
+        super::print(&human(&summary, &contacts));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The answer, and the times of each run; of several runs the first only warms up.
+fn repeated(session: &mut Session, repeat: u32) -> Result<(Contacts, Vec<Stages>), Error> {
+    let mut contacts = session.detect()?;
+    let mut runs = vec![contacts.stages];
+    if repeat > 1 {
+        runs.clear();
+        for _ in 0..repeat {
+            session.rebuild()?;
+            contacts = session.detect()?;
+            runs.push(contacts.stages);
+        }
+    }
+    Ok((contacts, runs))
+}
+
+/// Each stage's median.
+fn median(runs: &[Stages]) -> Stages {
+    let of = |stage: fn(&Stages) -> f64| {
+        let mut times: Vec<f64> = runs.iter().map(stage).collect();
+        times.sort_by(f64::total_cmp);
+        times[times.len() / 2]
+    };
+    Stages {
+        construct: of(|s| s.construct),
+        fit: of(|s| s.fit),
+        refit: of(|s| s.refit),
+        traverse: of(|s| s.traverse),
+        narrow: of(|s| s.narrow),
+        total: of(|s| s.total),
+    }
+}
+
+/// The summary for people.
+fn human(summary: &Summary, contacts: &Contacts) -> String {
+    let mut text = String::new();
+    let ms = &summary.ms;
+    // Writing to a String cannot fail.
+    let _ = writeln!(
+        text,
+        "{} triangles, {} vertices; {:?} by {:?} on {}",
+        summary.triangles, summary.vertices, summary.query, summary.solver, summary.device
+    );
+    let _ = writeln!(
+        text,
+        "  {} triangle pairs, {} candidates, {} contacts{}",
+        summary.triangle_pairs,
+        summary.candidates,
+        summary.contacts,
+        summary.earliest_toi.map_or(String::new(), |toi| format!(", the first at t = {toi}"))
+    );
+    let _ = writeln!(
+        text,
+        "  ms: construct {:.3}, fit {:.3}, refit {:.3}, traverse {:.3}, narrow {:.3}; a frame {:.3}",
+        ms.construct, ms.fit, ms.refit, ms.traverse, ms.narrow, ms.total
+    );
+    let _ = writeln!(
+        text,
+        "  {} node tests, {} units spilled, {} undecided by floats; {:.1} MB; hash {}",
+        contacts.steps,
+        contacts.spilled,
+        contacts.undecided,
+        summary.bytes as f64 / 1e6,
+        summary.hash
+    );
+    text
+}
+
+/// Says what `detect` would do.
+pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
+    let (bodies, query) = question(args)?;
+    let device = Device::open(args.backend, args.threads.map(usize::from))?;
+    let before = device.launches();
+    let session = Session::new(device.clone(), bodies.clone(), query)?;
+    let mut text = String::new();
+    for body in &bodies {
+        let _ = writeln!(
+            text,
+            "{}: {} triangles, {} vertices, positions in {}, {}",
+            body.name(),
+            body.face_count(),
+            body.vertex_count(),
+            if body.positions_t0().is_f64() { "f64" } else { "f32" },
+            if body.is_moving() { "two frames" } else { "one frame" }
+        );
+    }
+    let _ = writeln!(text, "query      {:?}, {}", query.motion, if bodies.len() == 1 { "self" } else { "between" });
+    let _ = writeln!(text, "machine    {} ({})", device.name(), device.backend());
+    let _ = writeln!(text, "volume     aabb{}", if query.motion == Motion::Discrete { "" } else { ", swept" });
+    let _ = writeln!(
+        text,
+        "traversal  {}",
+        match query.traversal {
+            Some(choice) => format!("{choice:?}, as asked"),
+            None if device.is_card() => "per leaf, long walks spill: a card must not wait for its longest walk".into(),
+            None => "per leaf, to the end: a CPU's threads balance by themselves".into(),
+        }
+    );
+    let _ = writeln!(text, "solver     {}", query.solver().promise());
+    let _ = writeln!(
+        text,
+        "tree       {} levels, built with {} launches",
+        session.depths().iter().map(usize::to_string).collect::<Vec<_>>().join(" and "),
+        device.launches() - before
+    );
+    let _ = writeln!(text, "memory     {:.1} MB to begin with; lists grow to the demand", device.bytes().0 as f64 / 1e6);
+    super::print(&text);
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,28 @@
+//! Something to look at while a long step runs: on a terminal, after a second.
+
+use indicatif::{ProgressBar, ProgressDrawTarget};
+use std::io::IsTerminal;
+use std::time::Duration;
+
+/// Runs `work`; when it takes over a second and standard error is a terminal, says what it does.
+pub fn during<T>(what: &'static str, work: impl FnOnce() -> T) -> T {
+    if !std::io::stderr().is_terminal() {
+        return work();
+    }
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
+    let shown = bar.clone();
+    let (done, waits) = std::sync::mpsc::channel::<()>();
+    let watcher = std::thread::spawn(move || {
+        if waits.recv_timeout(Duration::from_secs(1)).is_err_and(|e| e == std::sync::mpsc::RecvTimeoutError::Timeout) {
+            shown.set_draw_target(ProgressDrawTarget::stderr());
+            shown.set_message(what);
+            shown.enable_steady_tick(Duration::from_millis(100));
+        }
+    });
+    let result = work();
+    drop(done);
+    // The watcher only draws: that it failed changes nothing.
+    let _ = watcher.join();
+    bar.finish_and_clear();
+    result
+}
