@@ -139,15 +139,17 @@ WRAPPER
 }
 
 build() {
-    local out=$1 rustc home version sources targets
+    local out=$1 rustc cargo home version sources targets
     targets=${NEARMISS_PTX_TARGET_DIR:-${CARGO_TARGET_DIR:-$root/target}/ptx}
     rustc=$(need_compiler)
+    cargo=$(dirname "$rustc")/cargo # the toolchain's own, where it has one: it knows how to build its core
+    [ -x "$cargo" ] || cargo=cargo
     scrub
     home=$(sysroot "$rustc")
     version=$(cd / && "$rustc" --version)
     sources=$(stamp)
 
-    # A toolchain that has core uses it; otherwise core is built from source (half a minute, once).
+    # A toolchain that has core for the card uses it; otherwise core is built from source (half a minute, once).
     local std=()
     has_core "$home" || std=(-Zbuild-std=core)
 
@@ -164,7 +166,7 @@ build() {
         export NEARMISS_STAMP=$sources RUSTC=$rustc RUSTC_BOOTSTRAP=1
         CARGO_ENCODED_RUSTFLAGS=$(printf '%s\x1f' "${flags[@]}")
         export CARGO_ENCODED_RUSTFLAGS=${CARGO_ENCODED_RUSTFLAGS%$'\x1f'}
-        cargo rustc -p nearmiss-kernels --lib --crate-type cdylib --profile ptx --target "$target" \
+        "$cargo" rustc -p nearmiss-kernels --lib --crate-type cdylib --profile ptx --target "$target" \
             --target-dir "$targets" "${std[@]}" -- --emit=asm
     ) >&2
 

@@ -63,6 +63,7 @@ fn inexact(ptx: &str) -> Vec<String> {
 }
 
 #[test]
+#[cfg_attr(not(target_os = "linux"), ignore = "kernels/ptx.sh wants GNU tools")]
 fn the_committed_ptx_is_made_from_these_sources() {
     let stamp = stamp_of_the_sources();
     let ptx = committed();
@@ -83,6 +84,7 @@ fn the_committed_ptx_rounds_as_the_cpu_does() {
 /// build.rs and kernels/ptx.sh compute the stamp each in its own language: they agree.
 #[cfg(feature = "cuda")]
 #[test]
+#[cfg_attr(not(target_os = "linux"), ignore = "kernels/ptx.sh wants GNU tools")]
 fn the_build_script_and_the_shell_script_agree_on_the_stamp() {
     assert_eq!(env!("NEARMISS_STAMP"), stamp_of_the_sources());
 }
