@@ -69,6 +69,12 @@ fn refused(what: &'static str) -> impl Fn(CudaError) -> Error {
 impl Cuda {
     /// The first card.
     pub fn new() -> Result<Self, Error> {
+        #[cfg(target_os = "linux")]
+        super::driver::load().map_err(|text| Error::Device {
+            what: "looking for the CUDA driver".into(),
+            text: text.to_string(),
+            advice: "install NVIDIA's driver, or run with `--backend cpu`",
+        })?;
         cust::init(cust::CudaFlags::empty()).map_err(refused("starting the CUDA driver"))?;
         let card = Card::get_device(0).map_err(refused("looking for a card"))?;
         let read = |what| card.get_attribute(what).map_err(refused("asking the card what it is"));

@@ -2,6 +2,8 @@
 
 #[cfg(feature = "cuda")]
 mod cuda;
+#[cfg(all(feature = "cuda", target_os = "linux"))]
+mod driver;
 pub mod emulator;
 
 use crate::error::Error;
