@@ -3,5 +3,6 @@
 pub mod error;
 pub mod mesh;
 pub mod oracle;
+pub mod scene;
 
 pub use error::Error;
