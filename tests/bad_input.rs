@@ -259,6 +259,8 @@ fn frames_that_do_not_belong_together_are_refused() {
     assert!(text.contains("face 0 is [0, 2, 1], but in the first frame, t0.ply, it is [0, 1, 2]"), "{text}");
 }
 
+type Odd<'a> = (&'a str, Vec<u8>, &'a [[u32; 3]]);
+
 /// Every file here has the triangles that stand beside it.
 #[test]
 fn odd_but_legal_files_are_accepted() {
@@ -269,7 +271,7 @@ fn odd_but_legal_files_are_accepted() {
         "property list ushort double before\nproperty list uchar int vertex_index\nproperty uchar red\n";
     let mut latin = ply("element vertex", "comment Z\u{fc}rich\nobj_info x\ncomment\nelement vertex");
     latin.retain(|&b| b != 0xc3); // leaves a byte that is no UTF-8
-    let rows: Vec<(&str, Vec<u8>, &[[u32; 3]])> = vec![
+    let rows: Vec<Odd> = vec![
         ("crlf.ply", crlf.into_bytes(), one),
         ("cr.ply", cr.into_bytes(), one),
         ("comments.ply", latin, one),
