@@ -149,6 +149,11 @@ fn bad_files() -> Vec<Row> {
         ("large.ply", ply("1 0 0", "1 0 2e18"), &["vertex 1 has z = 2e18", "2^60", "scale"]),
         ("corners.ply", ply("3 0 1 2", "2 0 1"), &["face 0 has 2 corners", "at least 3"]),
         ("index.ply", ply("0 1 2", "0 1 3"), &["face 0 corner 2 names vertex 3", "there are 3 vertices"]),
+        (
+            "after_polygon.ply", // the face of the file, not the triangle of the fan
+            ply("face 1", "face 2").replace_text("3 0 1 2\n", "5 0 1 2 0 1\n3 0 0 7\n"),
+            &["face 1 corner 2 names vertex 7", "correct the index"],
+        ),
         ("negative.ply", ply("0 1 2", "0 -1 2"), &["face 0 corner 1 names vertex -1", "0 or more"]),
         (
             "no_face.ply",
