@@ -7,6 +7,7 @@ pub mod mesh;
 pub mod oracle;
 pub mod pipeline;
 pub mod query;
+pub mod scene;
 
 pub use contacts::{Answer, Contact, Contacts};
 pub use device::Device;

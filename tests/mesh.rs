@@ -18,7 +18,6 @@ fn mesh(positions: Positions, faces: &[[u32; 3]]) -> Result<Mesh, Error> {
 fn problem<T: std::fmt::Debug>(result: Result<T, Error>) -> Problem {
     match result.unwrap_err() {
         Error::Input { problem, .. } => problem,
-        #[allow(unreachable_patterns)]
         other => panic!("not an input error: {other}"),
     }
 }

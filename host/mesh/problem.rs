@@ -40,7 +40,8 @@ pub enum Problem {
     },
     /// A vertex that a face uses is larger than the arithmetic allows.
     #[error(
-        "vertex {vertex} has {axis} = {value:e}; coordinates may be at most {limit} in size: scale the mesh down"
+        "vertex {vertex} has {axis} = {}; coordinates may be at most {limit} in size: scale the mesh down",
+        short(*value)
     )]
     TooLarge {
         /// Index of the vertex.
@@ -144,6 +145,12 @@ impl From<ObjProblem> for Problem {
     fn from(problem: ObjProblem) -> Problem {
         Problem::Obj(Box::new(problem))
     }
+}
+
+/// The shortest text that reads back as the value: as a float where it is one.
+fn short(value: f64) -> String {
+    let float = value as f32;
+    if f64::from(float) == value { format!("{float:e}") } else { format!("{value:e}") }
 }
 
 /// A token as a message shows it: text with replaced bytes, and no more than a line's worth.

@@ -1,0 +1,109 @@
+//! Scenes made by formula: for the README, the self-test, tests and benches.
+//!
+//! A scene is the same, bit by bit, on every machine and in every version of every crate: random numbers come from
+//! our own [`Rng`], and coordinates only from `+ - * /`, `sqrt`, `floor` and comparisons in double precision, which
+//! IEEE 754 fixes, then one rounding to single. No `sin`, `cos` or `cbrt`, which differ between systems.
+
+mod balls;
+mod cloth;
+mod known;
+mod rng;
+mod soup;
+mod sphere;
+#[cfg(test)]
+mod tests;
+
+pub use balls::balls;
+pub use cloth::cloth_ball;
+pub use known::{grid, grid_pairs, identical, line, single};
+pub use rng::Rng;
+pub use soup::soup;
+
+use crate::Error;
+use crate::mesh::{Body, Mesh, Positions, Problem};
+
+/// The names that [`scene`] knows.
+pub const NAMES: [&str; 8] =
+    ["balls", "cloth-ball", "grid", "identical", "line", "single", "soup", "soup-moving"];
+
+/// Most triangles of a generated scene, 2^27: with three vertices each they stay below the limits of a mesh.
+pub const MAX_TRIANGLES: u64 = 1 << 27;
+
+/// The scene `name` with about `triangles` triangles (`single` has one whatever is asked; each generator says how
+/// near it comes). `seed` shifts the random ones: `balls`, `soup`, `soup-moving`.
+///
+/// # Errors
+/// [`Problem::UnknownScene`] with the known names, [`Problem::NoTriangles`] for 0, [`Problem::TooMany`] above
+/// [`MAX_TRIANGLES`]; each as [`Error::Input`] with the scene's name for a file.
+pub fn scene(name: &str, triangles: usize, seed: u64) -> Result<Body, Error> {
+    if triangles == 0 && NAMES.contains(&name) {
+        return Err(Error::Input { file: name.into(), problem: Problem::NoTriangles });
+    }
+    match name {
+        "balls" => {
+            let (count, subdivisions) = balls::nearest(triangles);
+            balls(count, subdivisions, seed)
+        }
+        "cloth-ball" => cloth_ball(triangles),
+        "grid" => grid(known::nearest(triangles)),
+        "identical" => identical(triangles),
+        "line" => line(triangles),
+        "single" => single(),
+        "soup" => soup(triangles, seed, false),
+        "soup-moving" => soup(triangles, seed, true),
+        _ => Err(Error::Input {
+            file: name.into(),
+            problem: Problem::UnknownScene { known: NAMES.join(", ") },
+        }),
+    }
+}
+
+/// Refuses more triangles than a scene may have, before anything is allocated for them.
+fn room(name: &str, triangles: u64) -> Result<(), Error> {
+    if triangles > MAX_TRIANGLES {
+        let problem = Problem::TooMany { what: "triangles", count: triangles, limit: MAX_TRIANGLES };
+        return Err(Error::Input { file: name.into(), problem });
+    }
+    Ok(())
+}
+
+/// Points and faces while a scene grows.
+#[derive(Default)]
+struct Builder {
+    t0: Vec<[f32; 3]>,
+    t1: Vec<[f32; 3]>,
+    faces: Vec<[u32; 3]>,
+}
+
+impl Builder {
+    /// Adds a vertex that stands still, or in a still scene; its index. `room` keeps indices below 2^32.
+    fn vertex(&mut self, p: [f64; 3]) -> u32 {
+        self.t0.push(p.map(|x| x as f32));
+        self.t0.len() as u32 - 1
+    }
+
+    /// Adds a vertex that moves from `p` to `q`; its index.
+    fn moving(&mut self, p: [f64; 3], q: [f64; 3]) -> u32 {
+        self.t1.push(q.map(|x| x as f32));
+        self.vertex(p)
+    }
+
+    /// The body: moving if its vertices were added as moving.
+    fn body(self, name: &str) -> Result<Body, Error> {
+        if self.t1.is_empty() {
+            return Ok(Body::still(Mesh::new(name, Positions::F32(self.t0), self.faces)?));
+        }
+        let t0 = Mesh::new(name, Positions::F32(self.t0), self.faces.clone())?;
+        Body::moving(t0, Mesh::new(name, Positions::F32(self.t1), self.faces)?)
+    }
+}
+
+/// The smallest whole number whose cube is at least `n`.
+fn cube_root_up(n: usize) -> usize {
+    (1..).find(|k: &usize| k.saturating_pow(3) >= n).unwrap_or(1)
+}
+
+/// The whole number nearest to the square root of `x`, at least 1.
+fn square_root(x: f64) -> u32 {
+    (x.sqrt() + 0.5).floor().clamp(1.0, 1e9) as u32
+}
