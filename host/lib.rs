@@ -1,5 +1,6 @@
 //! nearmiss: collision detection for deformable triangle meshes.
 
+pub mod cli;
 pub mod contacts;
 pub mod device;
 pub mod error;
@@ -7,6 +8,7 @@ pub mod mesh;
 pub mod oracle;
 pub mod pipeline;
 pub mod query;
+pub mod report;
 pub mod scene;
 
 pub use contacts::{Answer, Contact, Contacts};
