@@ -1,5 +1,133 @@
-//! `selftest`.
+//! `selftest`: known answers, every stage on every machine to the bit, on scenes that the program makes itself.
+
 use super::args::SelftestArgs;
+use super::detect::body;
+use super::progress::during;
+use crate::device::Device;
+use crate::device::emulator::{Emulator, Mode, Order};
 use crate::error::Error;
+use crate::mesh::Body;
+use crate::pipeline::Session;
+use crate::query::{Motion, Query, Solver, Traversal};
+use crate::scene;
+use std::fmt::Write;
 use std::process::ExitCode;
-pub fn selftest(_args: &SelftestArgs) -> Result<ExitCode, Error> { Ok(ExitCode::SUCCESS) }
+
+/// Every question, with every solver that answers it.
+pub const QUERIES: [(Motion, Solver); 6] = [
+    (Motion::Discrete, Solver::Exact),
+    (Motion::Discrete, Solver::Moller),
+    (Motion::Continuous, Solver::CubicF64),
+    (Motion::Continuous, Solver::CubicF32),
+    (Motion::Earliest, Solver::CubicF64),
+    (Motion::Earliest, Solver::CubicF32),
+];
+
+/// Triangles of the scenes that the microscope, which is some hundred times slower, looks at.
+const SMALL: usize = 600;
+
+/// One answer, and what every stage left behind.
+struct Print {
+    contacts: usize,
+    stages: Vec<(&'static str, u64)>,
+}
+
+fn print_of(device: &Device, bodies: &[Body], query: Query) -> Result<Print, Error> {
+    let mut session = Session::new(device.clone(), bodies.to_vec(), query)?;
+    let contacts = session.detect()?;
+    session.check_trees()?;
+    let mut stages = session.fingerprints()?;
+    stages.push(("contacts", contacts.hash()));
+    Ok(Print { contacts: contacts.len(), stages })
+}
+
+/// The first stage on which two machines differ.
+fn difference(one: &Print, other: &Print) -> Option<&'static str> {
+    one.stages.iter().zip(&other.stages).find(|(a, b)| a != b).map(|(a, _)| a.0)
+}
+
+/// Runs it all and prints a table that can be pasted into a bug report.
+pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
+    let machine = Device::open(args.backend, None)?;
+    let engine = Device::emulator(Emulator::new(Mode::Engine, None)?);
+    let mut table = String::new();
+    // Writing to a String cannot fail.
+    let _ = writeln!(table, "nearmiss {} selftest on {}", env!("CARGO_PKG_VERSION"), machine.name());
+    let mut faults = Vec::new();
+
+    let known = scene::grid(8)?;
+    let pairs = print_of(&machine, &[known], Query::of(Motion::Discrete))?.contacts as u64;
+    let _ = writeln!(table, "known answer   grid: {pairs} pairs, {} expected", scene::grid_pairs(8));
+    if pairs != scene::grid_pairs(8) {
+        faults.push("the grid's known answer".to_owned());
+    }
+
+    let mut scenes: Vec<(String, Vec<Body>)> = Vec::new();
+    for name in scene::NAMES {
+        scenes.push((name.to_owned(), vec![scene::scene(name, args.triangles, 1)?]));
+    }
+    scenes.push((
+        "cloth-ball with soup".into(),
+        vec![scene::scene("cloth-ball", args.triangles, 1)?, scene::scene("soup", args.triangles / 10, 2)?],
+    ));
+    if !args.mesh.is_empty() {
+        scenes.push((args.mesh[0].display().to_string(), vec![body(&args.mesh)?]));
+    }
+    for (name, bodies) in &scenes {
+        for (motion, solver) in QUERIES {
+            let query = Query { motion, solver: Some(solver), ..Query::default() };
+            let spill = Traversal::PerLeaf { budget: Some(8) };
+            let line = during("comparing machines", || -> Result<String, Error> {
+                let on_engine = print_of(&engine, bodies, query)?;
+                let mut others = vec![("machine", print_of(&machine, bodies, query)?)];
+                let spilling = Query { traversal: Some(spill), ..query };
+                others.push(("machine, spilling", print_of(&machine, bodies, spilling)?));
+                for (what, other) in &others {
+                    if let Some(stage) = difference(&on_engine, other) {
+                        faults.push(format!("{name}, {motion:?} by {solver:?}, {what}: {stage}"));
+                    }
+                }
+                // Zipping loses no stage: all prints of a query have the same ones, and contacts are always last.
+                let hash = on_engine.stages.last().map_or(0, |stage| stage.1);
+                Ok(format!("{hash:016x} {:>9} contacts  {name}, {motion:?} by {solver:?}", on_engine.contacts))
+            })?;
+            let _ = writeln!(table, "{line}");
+        }
+    }
+    for name in scene::NAMES {
+        let bodies = [scene::scene(name, SMALL, 3)?];
+        for (motion, solver) in QUERIES {
+            let query = Query { motion, solver: Some(solver), ..Query::default() };
+            let want = print_of(&machine, &bodies, query)?;
+            for order in [Order::Forward, Order::Reverse, Order::Shuffled(3)] {
+                let microscope = Device::emulator(Emulator::new(Mode::Microscope(order), None)?);
+                if let Some(stage) = difference(&print_of(&microscope, &bodies, query)?, &want) {
+                    faults.push(format!("{name}, {motion:?} by {solver:?}, microscope {order:?}: {stage}"));
+                }
+            }
+        }
+    }
+    let _ = writeln!(table, "microscope     {} scenes x {} queries x 3 orders", scene::NAMES.len(), QUERIES.len());
+    for fault in &faults {
+        let _ = writeln!(table, "DIFFERS        {fault}");
+    }
+    let _ = writeln!(table, "{}", if faults.is_empty() { "ok: every stage agrees to the bit" } else { "FAILED" });
+    super::print(&table);
+    match faults.first() {
+        None => Ok(ExitCode::SUCCESS),
+        Some(first) => Err(Error::Bug { what: format!("two machines disagree: {first}") }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_difference_is_named_by_its_stage() {
+        let one = Print { contacts: 1, stages: vec![("fit", 1), ("refit", 2), ("contacts", 3)] };
+        let other = Print { contacts: 1, stages: vec![("fit", 1), ("refit", 9), ("contacts", 3)] };
+        assert_eq!(difference(&one, &other), Some("refit"));
+        assert_eq!(difference(&one, &one), None);
+    }
+}

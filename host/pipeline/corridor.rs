@@ -15,6 +15,8 @@ use nearmiss_kernels::abi::{
 use nearmiss_kernels::entry;
 use nearmiss_kernels::entry::Entry;
 use nearmiss_kernels::math::Vec3;
+use rayon::prelude::*;
+use xxhash_rust::xxh3::xxh3_64;
 
 /// Candidates a triangle for which there is room at first. Cloth at rest has 8, swept over a step 50; a list that
 /// turns out too short grows within the frame.
@@ -52,6 +54,8 @@ pub struct Corridor<R: Precision> {
     narrow: Narrow,
     /// How often a list was too short and the frame was run again, so far.
     pub reruns: u64,
+    /// Counters of the last frame.
+    last: Vec<u64>,
 }
 
 /// What only one kind of query needs exists only there.
@@ -118,6 +122,7 @@ impl<R: Precision> Corridor<R> {
             units,
             narrow,
             reruns: 0,
+            last: Vec::new(),
             device,
         };
         corridor.place(bodies)?;
@@ -192,6 +197,7 @@ impl<R: Precision> Corridor<R> {
                 narrow: traversed.to(&end)?,
                 total: start.to(&end)?,
             };
+            self.last.clone_from(&counters);
             return Ok((self.gather(counters)?, stages));
         }
     }
@@ -316,6 +322,38 @@ impl<R: Precision> Corridor<R> {
             }
         }
         Ok(grown)
+    }
+
+    /// A hash of what each stage left in memory after the last frame, lists as sets: for comparing machines.
+    pub fn fingerprints(&self) -> Result<Vec<(&'static str, u64)>, Error> {
+        let mut prints = Vec::new();
+        let (mut links, mut leaves, mut inner) = (Vec::new(), Vec::new(), Vec::new());
+        for tree in &self.trees {
+            for node in &tree.download()?.0 {
+                links.push([node.link, node.last]);
+                let volume = [node.lo.map(f32::to_bits), node.hi.map(f32::to_bits)];
+                if node.is_leaf() { leaves.push(volume) } else { inner.push(volume) }
+            }
+        }
+        prints.push(("construct", xxh3_64(bytemuck::cast_slice(&links))));
+        prints.push(("fit", xxh3_64(bytemuck::cast_slice(&leaves))));
+        prints.push(("refit", xxh3_64(bytemuck::cast_slice(&inner))));
+        let mut list = |name, list: &List<Pair>| -> Result<(), Error> {
+            let mut pairs = list.read(&self.last)?;
+            pairs.par_sort_unstable();
+            prints.push((name, xxh3_64(bytemuck::cast_slice(&pairs))));
+            Ok(())
+        };
+        list("traverse", &self.pairs)?;
+        match &self.narrow {
+            Narrow::Discrete { undecided: Some(undecided), .. } => list("narrow: undecided", undecided)?,
+            Narrow::Discrete { .. } => {}
+            Narrow::Continuous(c) => {
+                list("narrow: vf", &c.vf)?;
+                list("narrow: ee", &c.ee)?;
+            }
+        }
+        Ok(prints)
     }
 
     fn gather(&self, counters: Vec<u64>) -> Result<Found, Error> {

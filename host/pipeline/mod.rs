@@ -158,6 +158,15 @@ impl Session {
         self.corridor.as_ref().map_or(0, |corridor| either!(corridor, c => c.reruns))
     }
 
+    /// What each stage left in the device's memory after the last [`Session::detect`], as hashes by stage: trees to
+    /// the bit, lists as sets. Two machines that agree on these agree on every kernel. For tests and `selftest`.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn fingerprints(&self) -> Result<Vec<(&'static str, u64)>, Error> {
+        self.corridor.as_ref().map_or(Ok(Vec::new()), |corridor| either!(corridor, c => c.fingerprints()))
+    }
+
     /// Checks every tree as it lies on the device; volumes too, which [`Session::detect`] sets.
     ///
     /// # Errors
