@@ -148,13 +148,19 @@ fn apply(bytes: &mut Vec<u8>, damage: &Damage) {
     }
 }
 
+/// 3,000 cases, a second or two, unless `PROPTEST_CASES` says otherwise.
+fn config() -> ProptestConfig {
+    let asked = std::env::var("PROPTEST_CASES").ok().and_then(|n| n.parse().ok());
+    ProptestConfig { cases: asked.unwrap_or(3000), failure_persistence: None, ..ProptestConfig::default() }
+}
+
 /// A count in a header: fitting, lying, or absurd.
 fn count() -> impl Strategy<Value = u64> {
     prop_oneof![8 => 0u64..40, 1 => 0u64..5_000_000, 1 => any::<u64>()]
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(3000) })]
+    #![proptest_config(config())]
 
     #[test]
     fn damaged_files_are_survived(which in 0usize..4, damages in proptest::collection::vec(damage(), 1..6)) {
