@@ -6,6 +6,7 @@ mod cubic;
 mod discrete;
 mod public;
 mod signs;
+mod timing;
 
 use nearmiss::oracle::Triangle;
 use nearmiss_kernels::math::{Real, Vec3};
