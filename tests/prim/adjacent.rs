@@ -26,7 +26,7 @@ fn check<R: Real>(p: &Triangle, q: &Triangle, shared: Shared, truth: bool) {
 fn all_ways_to_share() {
     let mut r = random(11);
     let mut tally = [[0; 2]; 4];
-    for i in 0..6000 {
+    for i in 0..2500 {
         let vertices: Vec<[f64; 3]> = (0..2).flat_map(|_| on_grid(&mut r, 2 + i % 3)).collect();
         let mut pick = || loop {
             let t: [u32; 3] = std::array::from_fn(|_| r.random_range(0..5));
@@ -48,7 +48,7 @@ fn all_ways_to_share() {
         check::<f64>(&p, &q, shared, truth);
     }
     println!("by number of shared corners, [apart, meet]: {tally:?}");
-    assert!(tally[1].iter().chain(&tally[2]).all(|n| *n > 100));
+    assert!(tally[1].iter().chain(&tally[2]).all(|n| *n > 50));
 }
 
 /// Neighbours folded flat onto each other meet; unfolded ones do not.

@@ -1,5 +1,11 @@
 //! The narrow tests against exact answers, by kinds of truth: known answers, the rational oracle, public data, laws.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::type_complexity,
+    reason = "tests: a failure should stop, a case is a row"
+)]
+
 mod adjacent;
 mod cases;
 mod cubic;
