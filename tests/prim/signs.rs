@@ -117,6 +117,33 @@ fn integers_and_filters_agree_with_rationals() {
     assert_eq!(orient2d_exact(z, Vec3([0.0, t, 0.0]), Vec3([t, 0.0, 0.0]), 2), -1);
 }
 
+/// Coordinates that need just as many bits as each size holds, one less and one more, at full carries.
+#[test]
+fn edges_of_the_sizes() {
+    let mut r = random(25);
+    for bits in [40, 53, 59, 60, 61, 62, 93, 94, 95, 96, 285, 286, 287, 288] {
+        for _ in 0..60 {
+            let top = 2f64.powi(bits - 1);
+            let mut x = || match r.random_range(0..4) {
+                0 => top,
+                1 => -top,
+                2 => {
+                    top * (2.0 - 2f64.powi(-r.random_range(0..53.min(bits))))
+                        * if r.random() { 1.0 } else { -1.0 }
+                }
+                _ => [1.0, -1.0, 0.0, 3.0][r.random_range(0..4)],
+            };
+            let mut p: [Vec3<f64>; 4] = std::array::from_fn(|_| Vec3(std::array::from_fn(|_| x())));
+            agree(p);
+            // Nearly flat: the last point differs by one from a sum of others.
+            p[3] = p[0] + p[1] - p[2];
+            agree(p);
+            p[3].0[0] = p[3][0] + 1.0;
+            agree(p);
+        }
+    }
+}
+
 /// The ends of the range: full carries through all limbs.
 #[test]
 fn extremes_of_the_range() {

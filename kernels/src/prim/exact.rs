@@ -5,7 +5,7 @@
 //! integer arithmetic: nothing rounds, underflows or contracts, and there is nothing to prove but the sizes.
 //!
 //! Sizes: an axis that spans `b` bits gives differences of `b+1`, minors of `2b+3` and a determinant of `3b+6`
-//! bits. Up to 40 bits (most f32 data) machine integers of 128 bits hold it all. Beyond, three sizes of stack arrays are
+//! bits. Up to 60 bits (most f32 data) two machine integers of 128 bits hold it all. Beyond, three sizes of stack arrays are
 //! compiled, and the run picks the smallest that fits: 94 bits (most f64 data), 286 bits (every finite f32 has 277),
 //! 2098 bits (every finite f64). Loops run over the limbs in use.
 
@@ -135,22 +135,26 @@ fn grid<R: Real, const K: usize>(points: [Vec3<R>; K]) -> ([i32; 3], i32) {
     (low, bits)
 }
 
-/// Bits of one axis for which the determinant fits i128: `3 * 40 + 6` and a sign.
-const TINY: i32 = 40;
+/// Bits of one axis up to which differences (61 bits) fit i64, minors (123) i128, and each half of the determinant, as
+/// [`Halves`] has it, i128 too: `61 + 64` bits, thrice.
+const TINY: i32 = 60;
 /// Bits of one axis that 3 limbs hold, with one for the difference.
 const SMALL: i32 = 94;
 /// The same for 9 limbs; every set of finite f32 numbers is within (128 + 149).
 const MIDDLE: i32 = 286;
 
-/// The exact sign of det[a-d, b-d, c-d], for any finite points. On a CPU core about 0.1 us for f32 of like size and
-/// 0.6 us for f64; grows with the square of the spread of exponents.
+/// The exact sign of det[a-d, b-d, c-d], for any finite points. On a CPU core about 0.2 us where
+/// exponents are alike; grows with the square of their spread, to 2 us when they are 1300 apart.
 pub fn orient3d_exact<R: Real>(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, d: Vec3<R>) -> i32 {
     let (low, bits) = grid([a, b, c, d]);
     if bits <= TINY {
         let minus = |x: Vec3<R>, y: Vec3<R>| difference(x, y, low);
         let (e, f, g) = (minus(a, c), minus(b, c), minus(c, d));
-        let part = |i: usize, j: usize, k: usize| (wide(e[i], f[j]) - wide(e[j], f[i])) * g[k] as i128;
-        sign(part(1, 2, 0) + part(2, 0, 1) + part(0, 1, 2))
+        let mut sum = Halves { high: 0, low: 0 };
+        sum.add(wide(e[1], f[2]) - wide(e[2], f[1]), g[0]);
+        sum.add(wide(e[2], f[0]) - wide(e[0], f[2]), g[1]);
+        sum.add(wide(e[0], f[1]) - wide(e[1], f[0]), g[2]);
+        sum.sign()
     } else if bits <= SMALL {
         det3::<R, 3, 6, 9>([a, b, c, d], low)
     } else if !R::WIDE || bits <= MIDDLE {
@@ -190,6 +194,25 @@ fn difference<R: Real>(x: Vec3<R>, y: Vec3<R>, low: [i32; 3]) -> [i64; 3] {
         if p.negative { -m } else { m }
     };
     core::array::from_fn(|k| to(x, k) - to(y, k))
+}
+
+/// `high * 2^64 + low`.
+struct Halves {
+    high: i128,
+    low: i128,
+}
+
+impl Halves {
+    #[inline]
+    fn add(&mut self, minor: i128, g: i64) {
+        self.high += (minor >> 64) * g as i128;
+        self.low += (minor as u64) as i128 * g as i128;
+    }
+    #[inline]
+    fn sign(&self) -> i32 {
+        let high = self.high + (self.low >> 64);
+        if high == 0 { sign((self.low as u64) as i128) } else { sign(high) }
+    }
 }
 
 #[inline]
