@@ -10,8 +10,15 @@
 //! It has tolerances ([`crate::math::tolerance`], `CUBIC_*`) where a proof would need bounds, so it guarantees
 //! nothing: a contact is missed, or its time is late, where a root is so ill-conditioned that the features have
 //! moved by more than `CUBIC_INSIDE` within the uncertainty of the root (nearly coplanar motion, slivers, double
-//! roots). False alarms are gaps below the same tolerance. In f64 that is 1e-11 of the local extent, and
-//! real cloth has no such case; in f32 it is 4e-6, and real cloth has some dozens in a million.
+//! roots). False alarms are gaps below the same tolerance: 1.5e-11 of the local extent in f64, 4e-6 in f32. Measured:
+//!
+//! | | f64 | f32 |
+//! | --- | --- | --- |
+//! | public cloth on ball, 92 to 93: 113,854 contacts of 6.9 M candidates | all, no other | none missed, 6 false |
+//! | public n-body: 50,490 contacts of 31.8 M candidates | all, no other | none missed, 12 false |
+//! | public handcrafted queries (1,500 vertex/face, 1,250 edge/edge) | 0 missed, 66 and 99 false | 0 missed, 125 and 193 false |
+//! | 48,000 contacts built in integers, degenerate ones among them | 0 missed, 0 late | 35 missed, 13 late, all edge/edge |
+//!
 //! The rejection by signs alone (the common case) is proven: it misses nothing in either precision.
 //! Times are in [0, 1], never -0.0 and never NaN for finite input.
 
@@ -176,6 +183,8 @@ fn earlier<S: Real>(a: Option<S>, b: Option<S>) -> Option<S> {
 
 /// The earliest time at which a point passes a segment and the features are together: for motion in a plane.
 /// The first contact of such a motion is one of these or at time 0.
+#[cold]
+#[inline(never)]
 fn events<S: Real>(m: &Relative<S>, kind: Kind, together: impl Fn(S, bool) -> bool) -> Option<S> {
     let c_a = m.c.minus(&m.a);
     let pairs = match kind {

@@ -5,8 +5,9 @@
 //! integer arithmetic: nothing rounds, underflows or contracts, and there is nothing to prove but the sizes.
 //!
 //! Sizes: an axis that spans `b` bits gives differences of `b+1`, minors of `2b+3` and a determinant of `3b+6`
-//! bits. Three sizes of stack arrays are compiled, and the run picks the smallest that fits: 94 bits (nearly all
-//! data), 277 bits (every finite f32), 2098 bits (every finite f64). Loops run over the limbs in use.
+//! bits. Up to 60 bits (most f32 data) two machine integers of 128 bits hold it all. Beyond, three sizes of stack arrays are
+//! compiled, and the run picks the smallest that fits: 94 bits (most f64 data), 286 bits (every finite f32 has 277),
+//! 2098 bits (every finite f64). Loops run over the limbs in use.
 
 use super::orient::plane_of;
 use crate::math::{Real, Vec3};
@@ -134,16 +135,27 @@ fn grid<R: Real, const K: usize>(points: [Vec3<R>; K]) -> ([i32; 3], i32) {
     (low, bits)
 }
 
+/// Bits of one axis up to which differences (61 bits) fit i64, minors (123) i128, and each half of the determinant, as
+/// [`Halves`] has it, i128 too: `61 + 64` bits, thrice.
+const TINY: i32 = 60;
 /// Bits of one axis that 3 limbs hold, with one for the difference.
 const SMALL: i32 = 94;
 /// The same for 9 limbs; every set of finite f32 numbers is within (128 + 149).
 const MIDDLE: i32 = 286;
 
-/// The exact sign of det[a-d, b-d, c-d], for any finite points. About 0.2 us for ordinary data on a CPU core;
-/// grows with the square of the spread of exponents.
+/// The exact sign of det[a-d, b-d, c-d], for any finite points. On a CPU core about 0.2 us where
+/// exponents are alike; grows with the square of their spread, to 2 us when they are 1300 apart.
 pub fn orient3d_exact<R: Real>(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, d: Vec3<R>) -> i32 {
     let (low, bits) = grid([a, b, c, d]);
-    if bits <= SMALL {
+    if bits <= TINY {
+        let minus = |x: Vec3<R>, y: Vec3<R>| difference(x, y, low);
+        let (e, f, g) = (minus(a, c), minus(b, c), minus(c, d));
+        let mut sum = Halves { high: 0, low: 0 };
+        sum.add(wide(e[1], f[2]) - wide(e[2], f[1]), g[0]);
+        sum.add(wide(e[2], f[0]) - wide(e[0], f[2]), g[1]);
+        sum.add(wide(e[0], f[1]) - wide(e[1], f[0]), g[2]);
+        sum.sign()
+    } else if bits <= SMALL {
         det3::<R, 3, 6, 9>([a, b, c, d], low)
     } else if !R::WIDE || bits <= MIDDLE {
         det3::<R, 9, 18, 27>([a, b, c, d], low)
@@ -156,13 +168,61 @@ pub fn orient3d_exact<R: Real>(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, d: Vec3<R>) -
 /// [`super::orient::orient2d_filter`] has it; for any finite points.
 pub fn orient2d_exact<R: Real>(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, axis: usize) -> i32 {
     let (low, bits) = grid([a, b, c]);
-    if bits <= SMALL {
+    if bits <= TINY {
+        let (i, j) = plane_of(axis);
+        let (e, f) = (difference(a, c, low), difference(b, c, low));
+        sign(wide(e[i], f[j]) - wide(e[j], f[i]))
+    } else if bits <= SMALL {
         det2::<R, 3, 6>([a, b, c], low, axis).sign()
     } else if !R::WIDE || bits <= MIDDLE {
         det2::<R, 9, 18>([a, b, c], low, axis).sign()
     } else {
         det2::<R, 66, 132>([a, b, c], low, axis).sign()
     }
+}
+
+/// `x - y` in units of the grid; of at most [`TINY`] bits an axis.
+fn difference<R: Real>(x: Vec3<R>, y: Vec3<R>, low: [i32; 3]) -> [i64; 3] {
+    let to = |p: Vec3<R>, k: usize| {
+        let p = p[k].parts();
+        // Zero has no place on the grid; all else fits, so neither shift reaches 64.
+        let m = if p.exponent < low[k] {
+            p.mantissa.unbounded_shr((low[k] - p.exponent) as u32)
+        } else {
+            p.mantissa.unbounded_shl((p.exponent - low[k]) as u32)
+        } as i64;
+        if p.negative { -m } else { m }
+    };
+    core::array::from_fn(|k| to(x, k) - to(y, k))
+}
+
+/// `high * 2^64 + low`.
+struct Halves {
+    high: i128,
+    low: i128,
+}
+
+impl Halves {
+    #[inline]
+    fn add(&mut self, minor: i128, g: i64) {
+        self.high += (minor >> 64) * g as i128;
+        self.low += (minor as u64) as i128 * g as i128;
+    }
+    #[inline]
+    fn sign(&self) -> i32 {
+        let high = self.high + (self.low >> 64);
+        if high == 0 { sign((self.low as u64) as i128) } else { sign(high) }
+    }
+}
+
+#[inline]
+fn wide(x: i64, y: i64) -> i128 {
+    x as i128 * y as i128
+}
+
+#[inline]
+fn sign(x: i128) -> i32 {
+    (x > 0) as i32 - (x < 0) as i32
 }
 
 /// The 2x2 minor of a-c and b-c without `axis`: exact, `D` limbs a difference, `M` a product.

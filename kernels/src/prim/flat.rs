@@ -56,7 +56,11 @@ pub fn projection<R: Real, S: Signs<R>>(t: &[Vec3<R>; 3]) -> Option<Option<(usiz
 
 /// Whether two closed triangles meet that lie in one plane, or of which both are segments or points (then in one
 /// plane or not). Nine pairs of edges, then corners inside. Undecided only if the source is.
-pub fn flat_meet<R: Real, S: Signs<R>>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> Option<bool> {
+///
+/// By value and out of line: the common path of the caller then keeps its corners in registers and stays small.
+#[cold]
+#[inline(never)]
+pub fn flat_meet<R: Real, S: Signs<R>>(p: [Vec3<R>; 3], q: [Vec3<R>; 3]) -> Option<bool> {
     let mut unsure = false;
     for i in 0..3 {
         for j in 0..3 {
@@ -68,7 +72,7 @@ pub fn flat_meet<R: Real, S: Signs<R>>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> Op
             }
         }
     }
-    for (t, x) in [(p, q[0]), (q, p[0])] {
+    for (t, x) in [(&p, q[0]), (&q, p[0])] {
         match holds::<R, S>(t, x) {
             Some(true) => return Some(true),
             Some(false) => {}

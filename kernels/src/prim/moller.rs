@@ -30,11 +30,11 @@ pub fn moller<R: Real>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> bool {
     let along = n.cross(m);
     let axis = largest(along);
     if along[axis] == R::ZERO {
-        return flat_meet::<R, InPlane>(&p, &q).unwrap_or(false);
+        return flat_meet::<R, InPlane>(p, q).unwrap_or(false);
     }
     match (interval(p.map(|x| x[axis]), dp), interval(q.map(|x| x[axis]), dq)) {
         (Some(a), Some(b)) => a.0 <= b.1 && b.0 <= a.1,
-        _ => flat_meet::<R, InPlane>(&p, &q).unwrap_or(false),
+        _ => flat_meet::<R, InPlane>(p, q).unwrap_or(false),
     }
 }
 

@@ -115,7 +115,7 @@ pub fn orient2d_filter<R: Real>(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, axis: usize)
         Some(1)
     } else if det < -bound {
         Some(-1)
-    } else if ((e.0 == o || f.1 == o) && (e.1 == o || f.0 == o)) || e == f {
+    } else if ((e.0 == o || f.1 == o) && (e.1 == o || f.0 == o)) || (a[i] == b[i] && a[j] == b[j]) {
         Some(0)
     } else {
         None

@@ -61,18 +61,18 @@ fn meets_on<R: Real, S: Signs<R>>(
 ) -> Option<bool> {
     let (p_proper, q_proper) = (q_of_p != [0; 3], p_of_q != [0; 3]);
     if !p_proper && !q_proper {
-        return flat_meet::<R, S>(p, q);
+        return flat_meet::<R, S>(*p, *q);
     }
     let mut unsure = false;
     if q_proper {
-        match edges_pierce::<R, S>(p, p_of_q, q) {
+        match edges_pierce::<R, S>(*p, p_of_q, *q) {
             Some(false) => {}
             Some(true) => return Some(true),
             None => unsure = true,
         }
     }
     if p_proper {
-        match edges_pierce::<R, S>(q, q_of_p, p) {
+        match edges_pierce::<R, S>(*q, q_of_p, *p) {
             Some(false) => {}
             Some(true) => return Some(true),
             None => unsure = true,
@@ -82,14 +82,16 @@ fn meets_on<R: Real, S: Signs<R>>(
 }
 
 /// Whether an edge of `p` that leaves the plane of `q` meets `q`, which has area; `side` is of `p`'s corners.
-fn edges_pierce<R: Real, S: Signs<R>>(p: &[Vec3<R>; 3], side: [i32; 3], q: &[Vec3<R>; 3]) -> Option<bool> {
+/// By value and out of line, as few pairs come here: the common path keeps its corners in registers.
+#[inline(never)]
+fn edges_pierce<R: Real, S: Signs<R>>(p: [Vec3<R>; 3], side: [i32; 3], q: [Vec3<R>; 3]) -> Option<bool> {
     let mut unsure = false;
     for i in 0..3 {
         let j = (i + 1) % 3;
         if side[i] * side[j] > 0 || (side[i] == 0 && side[j] == 0) {
             continue;
         }
-        match line_stabs::<R, S>(p[i], p[j], q) {
+        match line_stabs::<R, S>(p[i], p[j], &q) {
             Some(false) => {}
             Some(true) => return Some(true),
             None => unsure = true,
