@@ -99,7 +99,7 @@ fn floats_at_every_scale() {
 fn mixed_exponents() {
     let mut r = random(4);
     let mut met = 0;
-    for i in 0..250 {
+    for i in 0..90 {
         let mut wild = || {
             let k = [-1074, -1000, -500, -60, 0, 60, 470][r.random_range(0..7)];
             let x = [0.0, -0.0, 1.0, -1.0, 0.75, -1.5][r.random_range(0..6)];
@@ -116,7 +116,7 @@ fn mixed_exponents() {
         met += truth as u32;
         some_sources::<f64>(&p, &q, i, truth);
     }
-    assert!(met > 50 && met < 250, "{met}");
+    assert!(met > 15 && met < 90, "{met}");
 }
 
 /// The floating test of the seed is right where nothing touches; how often it is not on grids is printed.

@@ -14,7 +14,7 @@ use crate::math::{Real, Vec3};
 ///
 /// - All of one triangle strictly on one side of the other's plane: apart. 2 planes, 6 signs, the common case.
 /// - All six signs zero: one plane, or neither has area (a triangle with area in the other's plane makes both
-///   triples zero; one without area makes the other's triple zero): [`super::flat`].
+///   triples zero; one without area makes the other's triple zero): `prim::flat`.
 /// - Else two triangles meet where an edge of one pierces the other. An edge within the other's plane is left out:
 ///   if it holds a common point, so does an end of it (then a neighbouring edge that leaves the plane finds it) or
 ///   an edge of the other that crosses it. If one of the two is a segment or point, only its edges are asked.
