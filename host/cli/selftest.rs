@@ -24,7 +24,7 @@ pub const QUERIES: [(Motion, Solver); 6] = [
 ];
 
 /// Triangles of the scenes that the microscope, which is some hundred times slower, looks at.
-const SMALL: usize = 600;
+const SMALL: usize = 300;
 
 /// One answer, and what every stage left behind.
 struct Print {
@@ -64,7 +64,9 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
 
     let mut scenes: Vec<(String, Vec<Body>)> = Vec::new();
     for name in scene::NAMES {
-        scenes.push((name.to_owned(), vec![scene::scene(name, args.triangles, 1)?]));
+        // Of n equal triangles all n² / 2 pairs meet: few will do.
+        let triangles = if name == "identical" { SMALL } else { args.triangles };
+        scenes.push((name.to_owned(), vec![scene::scene(name, triangles, 1)?]));
     }
     scenes.push((
         "cloth-ball with soup".into(),
