@@ -70,6 +70,8 @@ pub struct Contacts {
     pub candidates: u64,
     /// Candidates by kind: vertex/face, edge/edge. Zero for discrete queries.
     pub candidates_vf_ee: [u64; 2],
+    /// Candidates that signs alone could not reject, and the solver was asked: vertex/face, edge/edge.
+    pub survivors_vf_ee: [u64; 2],
     /// Pairs that the float filter left to exact signs.
     pub undecided: u64,
     /// Pairs of sibling nodes that the traversal tested.
@@ -92,6 +94,7 @@ impl Contacts {
             triangle_pairs: 0,
             candidates: 0,
             candidates_vf_ee: [0; 2],
+            survivors_vf_ee: [0; 2],
             undecided: 0,
             steps: 0,
             spilled: 0,
@@ -104,12 +107,14 @@ impl Contacts {
         let answer = match query.motion {
             Motion::Earliest => Answer::Earliest(found.earliest),
             Motion::Discrete => {
-                let mut pairs: Vec<_> = found.pairs.par_iter().map(|p| [p.a, p.b - second.triangle]).collect();
+                let mut pairs: Vec<_> =
+                    found.pairs.par_iter().map(|p| [p.a, p.b - second.triangle]).collect();
                 pairs.par_sort_unstable();
                 Answer::Pairs(pairs)
             }
             Motion::Continuous => {
-                let contact = |kind, a, b, toi| Contact { kind, a, b, toi, toi_hi: toi, status: Status::Contact };
+                let contact =
+                    |kind, a, b, toi| Contact { kind, a, b, toi, toi_hi: toi, status: Status::Contact };
                 let vf = found.vf.par_iter().map(|hit| {
                     if layout.bodies() == 2 && hit.a >= second.vertex {
                         contact(Kind::Fv, hit.b, hit.a - second.vertex, hit.toi)
@@ -117,7 +122,8 @@ impl Contacts {
                         contact(Kind::Vf, hit.a, hit.b - second.triangle, hit.toi)
                     }
                 });
-                let ee = found.ee.par_iter().map(|hit| contact(Kind::Ee, hit.a, hit.b - second.edge, hit.toi));
+                let ee =
+                    found.ee.par_iter().map(|hit| contact(Kind::Ee, hit.a, hit.b - second.edge, hit.toi));
                 let mut contacts: Vec<_> = vf.chain(ee).collect();
                 contacts.par_sort_unstable_by_key(|c| (c.kind, c.a, c.b));
                 Answer::Contacts(contacts)
@@ -132,6 +138,7 @@ impl Contacts {
             triangle_pairs: count(counter::PAIRS),
             candidates: if discrete { count(counter::PAIRS) } else { vf_ee[0] + vf_ee[1] },
             candidates_vf_ee: vf_ee,
+            survivors_vf_ee: [count(counter::VF_SURVIVORS), count(counter::EE_SURVIVORS)],
             undecided: count(counter::UNDECIDED),
             steps: count(counter::STEPS),
             spilled: found.counters[counter::SPILLED as usize..].iter().sum(),

@@ -43,10 +43,12 @@ pub enum TraversalArg {
 }
 
 impl TraversalArg {
-    fn choice(self) -> Traversal {
+    fn choice(self, budget: Option<u32>) -> Traversal {
         match self {
             TraversalArg::PerLeaf => Traversal::PerLeaf { budget: None },
-            TraversalArg::PerLeafSpill => Traversal::PerLeaf { budget: Some(Traversal::CARD_BUDGET) },
+            TraversalArg::PerLeafSpill => {
+                Traversal::PerLeaf { budget: Some(budget.unwrap_or(Traversal::CARD_BUDGET)) }
+            }
         }
     }
 }
@@ -83,6 +85,9 @@ pub struct DetectArgs {
     /// How the tree is walked [default: the machine's fastest].
     #[arg(long, value_enum)]
     pub traversal: Option<TraversalArg>,
+    /// Steps of a walk before it gives its rest away (per-leaf-spill).
+    #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u32).range(1..))]
+    pub budget: Option<u32>,
     /// The test of a pair [default: exact for discrete, cubic-f64 for continuous].
     #[arg(long, value_enum)]
     pub solver: Option<Solver>,
@@ -119,7 +124,7 @@ impl DetectArgs {
         Query {
             motion,
             solver: self.solver,
-            traversal: self.traversal.map(TraversalArg::choice),
+            traversal: self.traversal.map(|walk| walk.choice(self.budget)),
             adjacent: self.adjacent,
         }
     }

@@ -10,7 +10,8 @@ use crate::error::Error;
 use crate::mesh::Body;
 use crate::query::{Motion, Query, Solver, Traversal};
 use nearmiss_kernels::abi::{
-    DiscreteArgs, Frames, Hit, KEEP_ADJACENT, Pair, ROUNDS, SELF, SiftArgs, SolveArgs, Span, TraverseArgs, Unit, counter,
+    DiscreteArgs, Frames, Hit, KEEP_ADJACENT, Pair, ROUNDS, RejectArgs, SELF, SiftArgs, SolveArgs, Span,
+    TraverseArgs, Unit, counter,
 };
 use nearmiss_kernels::entry;
 use nearmiss_kernels::entry::Entry;
@@ -70,6 +71,8 @@ struct Continuous {
     owners: Buffer<u32>,
     vf: List<Pair>,
     ee: List<Pair>,
+    vf_survivors: List<Pair>,
+    ee_survivors: List<Pair>,
     vf_hits: List<Hit>,
     ee_hits: List<Hit>,
     earliest: Option<Buffer<u64>>,
@@ -93,6 +96,8 @@ impl<R: Precision> Corridor<R> {
                 owners: device.upload(&layout.owners)?,
                 vf: List::new(&device, "vertex/face candidates", counter::VF, room)?,
                 ee: List::new(&device, "edge/edge candidates", counter::EE, 2 * room)?,
+                vf_survivors: List::new(&device, "vertex/face survivors", counter::VF_SURVIVORS, few)?,
+                ee_survivors: List::new(&device, "edge/edge survivors", counter::EE_SURVIVORS, 2 * few)?,
                 vf_hits: List::new(&device, "vertex/face contacts", counter::VF_HITS, hits)?,
                 ee_hits: List::new(&device, "edge/edge contacts", counter::EE_HITS, hits)?,
                 earliest: if earliest { Some(device.buffer(1)?) } else { None },
@@ -126,8 +131,11 @@ impl<R: Precision> Corridor<R> {
             device,
         };
         corridor.place(bodies)?;
+        for body in 0..layout.bodies() {
+            corridor.trees.push(Tree::new(&corridor.device, layout.triangles(body))?);
+        }
         let start = corridor.device.mark()?;
-        corridor.construct(layout)?;
+        corridor.construct()?;
         let ms = start.to(&corridor.device.mark()?)?;
         Ok((corridor, ms))
     }
@@ -152,13 +160,10 @@ impl<R: Precision> Corridor<R> {
     }
 
     /// Builds the trees anew, from the positions at t = 0.
-    pub fn construct(&mut self, layout: &Layout) -> Result<(), Error> {
-        self.trees.clear();
-        for body in 0..layout.bodies() {
-            let triangles = layout.triangles(body);
-            self.trees.push(Tree::construct::<R>(&self.device, self.frames(), self.faces.span(), triangles)?);
-        }
-        Ok(())
+    pub fn construct(&mut self) -> Result<(), Error> {
+        let frames = self.frames();
+        let faces = self.faces.span();
+        self.trees.iter_mut().try_for_each(|tree| tree.construct::<R>(&self.device, frames, faces))
     }
 
     /// The trees, one a body.
@@ -284,22 +289,33 @@ impl<R: Precision> Corridor<R> {
                 if let Some(earliest) = &mut c.earliest {
                     earliest.write(&[u64::MAX])?;
                 }
-                let solve = |candidates: &List<Pair>, hits: &List<Hit>| SolveArgs {
+                let reject = |candidates: &List<Pair>, survivors: &List<Pair>| RejectArgs {
                     frames,
                     faces: self.faces.span(),
                     edges: c.edges.span(),
                     candidates: candidates.span(),
+                    survivors: survivors.span(),
+                    counters: self.counters.span(),
+                };
+                launch_striding::<R::RejectVf>(&self.device, c.vf.room(), &reject(&c.vf, &c.vf_survivors))?;
+                launch_striding::<R::RejectEe>(&self.device, c.ee.room(), &reject(&c.ee, &c.ee_survivors))?;
+                let solve = |survivors: &List<Pair>, hits: &List<Hit>| SolveArgs {
+                    frames,
+                    faces: self.faces.span(),
+                    edges: c.edges.span(),
+                    survivors: survivors.span(),
                     hits: hits.span(),
                     earliest: c.earliest.as_ref().map_or(Span::EMPTY, Buffer::span),
                     counters: self.counters.span(),
                 };
-                let (vf, ee) = (solve(&c.vf, &c.vf_hits), solve(&c.ee, &c.ee_hits));
+                let (vf, ee) = (solve(&c.vf_survivors, &c.vf_hits), solve(&c.ee_survivors, &c.ee_hits));
+                let (of_vf, of_ee) = (c.vf_survivors.room(), c.ee_survivors.room());
                 if self.query.solver() == Solver::CubicF32 {
-                    launch_striding::<R::Vf32>(&self.device, c.vf.room(), &vf)?;
-                    launch_striding::<R::Ee32>(&self.device, c.ee.room(), &ee)
+                    launch_striding::<R::Vf32>(&self.device, of_vf, &vf)?;
+                    launch_striding::<R::Ee32>(&self.device, of_ee, &ee)
                 } else {
-                    launch_striding::<R::Vf64>(&self.device, c.vf.room(), &vf)?;
-                    launch_striding::<R::Ee64>(&self.device, c.ee.room(), &ee)
+                    launch_striding::<R::Vf64>(&self.device, of_vf, &vf)?;
+                    launch_striding::<R::Ee64>(&self.device, of_ee, &ee)
                 }
             }
         }
@@ -318,6 +334,7 @@ impl<R: Precision> Corridor<R> {
             }
             Narrow::Continuous(c) => {
                 grown |= c.vf.grow(device, counters)? | c.ee.grow(device, counters)?;
+                grown |= c.vf_survivors.grow(device, counters)? | c.ee_survivors.grow(device, counters)?;
                 grown |= c.vf_hits.grow(device, counters)? | c.ee_hits.grow(device, counters)?;
             }
         }
@@ -351,6 +368,8 @@ impl<R: Precision> Corridor<R> {
             Narrow::Continuous(c) => {
                 list("narrow: vf", &c.vf)?;
                 list("narrow: ee", &c.ee)?;
+                list("narrow: vf that may meet", &c.vf_survivors)?;
+                list("narrow: ee that may meet", &c.ee_survivors)?;
             }
         }
         Ok(prints)

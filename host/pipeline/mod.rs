@@ -122,7 +122,7 @@ impl Session {
     pub fn rebuild(&mut self) -> Result<(), Error> {
         let Some(corridor) = &mut self.corridor else { return Ok(()) };
         let start = self.device.mark()?;
-        either!(corridor, c => c.construct(&self.layout))?;
+        either!(corridor, c => c.construct())?;
         self.construct_ms = start.to(&self.device.mark()?)?;
         Ok(())
     }
@@ -177,8 +177,9 @@ impl Session {
         for tree in trees {
             let (nodes, levels, leaves, first) = tree.download()?;
             let mut seen = vec![false; leaves.len()];
-            bvh::check(&nodes, &levels, &leaves, (first, &mut seen), true)
-                .map_err(|violation: Violation| Error::Bug { what: format!("a tree is broken: {violation:?}") })?;
+            bvh::check(&nodes, &levels, &leaves, (first, &mut seen), true).map_err(
+                |violation: Violation| Error::Bug { what: format!("a tree is broken: {violation:?}") },
+            )?;
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! Which kernels serve positions of f32, and which of f64.
 
 use crate::mesh::Positions;
-use nearmiss_kernels::abi::{DiscreteArgs, FitArgs, MortonArgs, SiftArgs, SolveArgs};
+use nearmiss_kernels::abi::{DiscreteArgs, FitArgs, MortonArgs, RejectArgs, SiftArgs, SolveArgs};
 use nearmiss_kernels::entry::{self, Entry};
 use nearmiss_kernels::math::{Real, Vec3};
 
@@ -21,6 +21,10 @@ pub trait Precision: Real {
     type Exact: Entry<Args = DiscreteArgs<Self>>;
     /// Triangle pairs to elementary candidates.
     type Sift: Entry<Args = SiftArgs<Self>>;
+    /// Vertex/face candidates that may meet.
+    type RejectVf: Entry<Args = RejectArgs<Self>>;
+    /// Edge/edge candidates that may meet.
+    type RejectEe: Entry<Args = RejectArgs<Self>>;
     /// Vertex/face by the cubic in f32.
     type Vf32: Entry<Args = SolveArgs<Self>>;
     /// Vertex/face by the cubic in f64.
@@ -42,6 +46,8 @@ impl Precision for f32 {
     type Filter = entry::narrow_filter_f32;
     type Exact = entry::narrow_exact_f32;
     type Sift = entry::narrow_sift_f32;
+    type RejectVf = entry::narrow_reject_vf_f32;
+    type RejectEe = entry::narrow_reject_ee_f32;
     type Vf32 = entry::narrow_vf_f32_f32;
     type Vf64 = entry::narrow_vf_f32_f64;
     type Ee32 = entry::narrow_ee_f32_f32;
@@ -63,6 +69,8 @@ impl Precision for f64 {
     type Filter = entry::narrow_filter_f64;
     type Exact = entry::narrow_exact_f64;
     type Sift = entry::narrow_sift_f64;
+    type RejectVf = entry::narrow_reject_vf_f64;
+    type RejectEe = entry::narrow_reject_ee_f64;
     type Vf32 = entry::narrow_vf_f64_f32;
     type Vf64 = entry::narrow_vf_f64_f64;
     type Ee32 = entry::narrow_ee_f64_f32;

@@ -3,7 +3,7 @@
 use crate::abi::*;
 use crate::exec::{BINS, Block, WARP};
 use crate::stage::construct::{morton, sort, tree};
-use crate::stage::narrow::{discrete, sift, solve};
+use crate::stage::narrow::{discrete, reject, sift, solve};
 use crate::stage::{fit, refit, traverse};
 use bytemuck::Pod;
 
@@ -98,6 +98,10 @@ kernels! {
     narrow_exact_f64: discrete::exact::<f64, B>, [DiscreteArgs<f64>], NARROW, 0;
     narrow_sift_f32: sift::sift::<f32, B>, [SiftArgs<f32>], WIDE, 0;
     narrow_sift_f64: sift::sift::<f64, B>, [SiftArgs<f64>], WIDE, 0;
+    narrow_reject_vf_f32: reject::vf::<f32, B>, [RejectArgs<f32>], WIDE, 0;
+    narrow_reject_vf_f64: reject::vf::<f64, B>, [RejectArgs<f64>], WIDE, 0;
+    narrow_reject_ee_f32: reject::ee::<f32, B>, [RejectArgs<f32>], WIDE, 0;
+    narrow_reject_ee_f64: reject::ee::<f64, B>, [RejectArgs<f64>], WIDE, 0;
     narrow_vf_f32_f32: solve::vf::<f32, f32, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_vf_f32_f64: solve::vf::<f32, f64, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_vf_f64_f32: solve::vf::<f64, f32, B>, [SolveArgs<f64>], WIDE, 0;

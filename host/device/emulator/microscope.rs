@@ -174,7 +174,14 @@ impl Microscope {
         }
     }
 
-    pub(super) fn see_device(&self, access: Access, addr: u64, bytes: usize, inside: bool, place: Place) -> bool {
+    pub(super) fn see_device(
+        &self,
+        access: Access,
+        addr: u64,
+        bytes: usize,
+        inside: bool,
+        place: Place,
+    ) -> bool {
         let mut device = self.device.borrow_mut();
         let shadows = device.range_mut(..=addr).next_back().and_then(|(&start, shadows)| {
             let first = ((addr - start) / 4) as usize;
@@ -190,7 +197,14 @@ impl Microscope {
         true
     }
 
-    pub(super) fn see_shared(&self, access: Access, offset: u32, bytes: usize, inside: bool, place: Place) -> bool {
+    pub(super) fn see_shared(
+        &self,
+        access: Access,
+        offset: u32,
+        bytes: usize,
+        inside: bool,
+        place: Place,
+    ) -> bool {
         if !inside {
             self.note(Some(Fault::Outside(place)));
             return false;

@@ -191,6 +191,21 @@ arguments! {
         /// Bits: [`KEEP_ADJACENT`].
         flags: u32,
     }
+    /// `narrow_reject_vf`, `narrow_reject_ee`: candidates that certainly stay apart, left out.
+    RejectArgs<R> {
+        /// Positions.
+        frames: Frames<R>,
+        /// Vertex indices of every triangle (`narrow_reject_vf`).
+        faces: Span<[u32; 3]>,
+        /// End points of every edge (`narrow_reject_ee`).
+        edges: Span<[u32; 2]>,
+        /// Candidates.
+        candidates: Span<Pair>,
+        /// Out: those that may meet.
+        survivors: Span<Pair>,
+        /// Counters, see [`counter`].
+        counters: Span<u64>,
+    }
     /// `narrow_vf`, `narrow_ee`: the first time of contact of two primitives in motion.
     SolveArgs<R> {
         /// Positions.
@@ -199,8 +214,8 @@ arguments! {
         faces: Span<[u32; 3]>,
         /// End points of every edge (`narrow_ee`).
         edges: Span<[u32; 2]>,
-        /// Candidates.
-        candidates: Span<Pair>,
+        /// Candidates that may meet.
+        survivors: Span<Pair>,
         /// Out: contacts; empty when only the earliest is asked for.
         hits: Span<Hit>,
         /// Out: the smallest toi so far, as bits; or empty.
@@ -233,8 +248,12 @@ pub mod counter {
     pub const EE_HITS: u32 = 6;
     /// Node pairs tested by the traversal.
     pub const STEPS: u32 = 7;
+    /// Vertex/face candidates that may meet.
+    pub const VF_SURVIVORS: u32 = 8;
+    /// Edge/edge candidates that may meet.
+    pub const EE_SURVIVORS: u32 = 9;
     /// Units spilled by round r of the traversal: this and the following [`super::ROUNDS`].
-    pub const SPILLED: u32 = 8;
+    pub const SPILLED: u32 = 10;
     /// How many counters there are.
     pub const COUNT: u32 = SPILLED + super::ROUNDS;
 }

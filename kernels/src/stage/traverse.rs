@@ -43,8 +43,6 @@ struct Walk {
     steps: u32,
     /// Steps that this walk may still take.
     budget: u32,
-    /// Siblings to test, and hits that found no room (marked [`LEAF`]).
-    stack: Stack,
 }
 
 /// One walk a leaf.
@@ -52,9 +50,7 @@ pub fn leaves<B: Block>(b: &mut B, a: &TraverseArgs) {
     let root = b.load(a.nodes, ROOT);
     run(b, a, a.query_leaves.len as u32, |l, i, walk| {
         start(l, a, walk, l.read(a.query_leaves, i));
-        if root.last >= walk.from && walk.volume.overlaps(&root.volume()) {
-            walk.stack.push(root.link);
-        }
+        (root.last >= walk.from && walk.volume.overlaps(&root.volume())).then_some(root.link)
     });
 }
 
@@ -63,14 +59,15 @@ pub fn units<B: Block>(b: &mut B, a: &TraverseArgs) {
     let count = b.load(a.counters, a.units_at).min(a.units.len) as u32;
     run(b, a, count, |l, i, walk| {
         let Unit { query, pair } = l.read(a.units, i);
-        if query != NONE {
-            start(l, a, walk, query);
-            walk.stack.push(pair);
+        if query == NONE {
+            return None;
         }
+        start(l, a, walk, query);
+        Some(pair)
     });
 }
 
-/// A walk of the leaf at node `query`, with an empty stack.
+/// Begins the walk of the leaf at node `query`.
 #[inline]
 fn start<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, query: u32) {
     let leaf = l.read(a.queries, query);
@@ -84,39 +81,41 @@ fn start<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, query: u32) {
     };
 }
 
-/// Walks `total` walks, a lane each; `begin` starts one.
+/// Walks `total` walks, a lane each; `begin` sets one up and gives what to put on its stack first.
 #[inline]
-fn run<B: Block>(b: &mut B, a: &TraverseArgs, total: u32, begin: impl Fn(&B::Lane, u32, &mut Walk)) {
+fn run<B: Block>(
+    b: &mut B,
+    a: &TraverseArgs,
+    total: u32,
+    begin: impl Fn(&B::Lane, u32, &mut Walk) -> Option<u32>,
+) {
     let lanes = b.lanes();
     let found = Buffer { pairs: b.shared(BUFFER_A_LANE * lanes), fill: b.shared(2) };
     let kept = Buffer { pairs: b.shared(BUFFER_A_LANE * lanes), fill: b.shared(2) };
-    let mut walks = b.slot(Walk {
-        volume: Aabb::EMPTY,
-        triangle: 0,
-        query: NONE,
-        from: 0,
-        steps: 0,
-        budget: 0,
-        stack: Stack::new(),
-    });
+    let mut walks =
+        b.slot(Walk { volume: Aabb::EMPTY, triangle: 0, query: NONE, from: 0, steps: 0, budget: 0 });
+    // Siblings to test, and hits that found no room (marked `LEAF`).
+    let mut stacks = b.slot(Stack::new());
     let mut busy = b.slot(false);
     let mut base = b.block() * lanes;
     b.phase(|l| clear(l, found, kept));
     while base < total {
         b.phase(|l| {
             let i = base + l.lane();
-            if i < total {
-                begin(l, i, walks.of(l));
+            if i < total
+                && let Some(first) = begin(l, i, walks.of(l))
+            {
+                stacks.of(l).push(first);
             }
         });
         loop {
             b.phase(|l| {
-                let walk = walks.of(l);
-                advance(l, a, walk, found);
-                if !walk.stack.is_empty() && walk.budget == 0 {
-                    spill(l, a, walk);
+                let (walk, stack) = (walks.of(l), stacks.of(l));
+                advance(l, a, walk, stack, found);
+                if !stack.is_empty() && walk.budget == 0 {
+                    spill(l, a, walk, stack);
                 }
-                *busy.of(l) = !walk.stack.is_empty();
+                *busy.of(l) = !stack.is_empty();
             });
             flush(b, a, found, kept);
             if !b.any(&mut busy) {
@@ -133,14 +132,14 @@ fn run<B: Block>(b: &mut B, a: &TraverseArgs, total: u32, begin: impl Fn(&B::Lan
 
 /// Walks on until the stack is empty, the budget is used up or the buffer is full.
 #[inline]
-fn advance<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, found: Buffer) {
+fn advance<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, stack: &mut Stack, found: Buffer) {
     let mut next = NONE;
     loop {
         if next == NONE {
-            match walk.stack.pop() {
+            match stack.pop() {
                 None => return,
                 Some(hit) if hit & LEAF != 0 => {
-                    if !emit(l, a, walk, hit, found) {
+                    if !emit(l, a, walk, stack, hit, found) {
                         return;
                     }
                     continue;
@@ -149,7 +148,7 @@ fn advance<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, found: Buffer) {
             }
         }
         if walk.budget == 0 {
-            walk.stack.push(next);
+            stack.push(next);
             return;
         }
         walk.budget -= 1;
@@ -161,24 +160,24 @@ fn advance<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, found: Buffer) {
         let mut room = true;
         if into_right {
             if right.is_leaf() {
-                room &= emit(l, a, walk, right.link, found);
+                room &= emit(l, a, walk, stack, right.link, found);
             } else {
                 next = right.link;
             }
         }
         if into_left {
             if left.is_leaf() {
-                room &= emit(l, a, walk, left.link, found);
+                room &= emit(l, a, walk, stack, left.link, found);
             } else {
                 if next != NONE {
-                    walk.stack.push(next);
+                    stack.push(next);
                 }
                 next = left.link;
             }
         }
         if !room {
             if next != NONE {
-                walk.stack.push(next);
+                stack.push(next);
             }
             return;
         }
@@ -187,23 +186,23 @@ fn advance<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, found: Buffer) {
 
 /// Puts a hit into the buffer, or back on the stack when there is no room.
 #[inline]
-fn emit<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, leaf: u32, found: Buffer) -> bool {
+fn emit<L: Lane>(l: &L, a: &TraverseArgs, walk: &Walk, stack: &mut Stack, leaf: u32, found: Buffer) -> bool {
     let (mine, other) = (walk.triangle, leaf & !LEAF);
     let ordered = a.flags & SELF == 0 || mine < other;
     let room = found.push(l, if ordered { Pair { a: mine, b: other } } else { Pair { a: other, b: mine } });
     if !room {
-        walk.stack.push(leaf);
+        stack.push(leaf);
     }
     room
 }
 
 /// Gives the rest of a walk away; where the list has no room for all of it, the walk goes on without a budget.
-fn spill<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk) {
-    let count = walk.stack.len() as u64;
+fn spill<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, stack: &mut Stack) {
+    let count = stack.len() as u64;
     let at = l.fetch_add(a.counters, a.spilled_at, count);
     if at + count <= a.spilled.len {
         let mut i = at as u32;
-        while let Some(pair) = walk.stack.pop() {
+        while let Some(pair) = stack.pop() {
             l.write(a.spilled, i, Unit { query: walk.query, pair });
             i += 1;
         }

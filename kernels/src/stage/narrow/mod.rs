@@ -1,14 +1,23 @@
 //! # Narrow: candidates → contacts
 //! Paper    section 6.2.5, "a variant of the Moeller test"; "the cubic equation for each of the 15 elementary tests".
 //! Steps    discrete: [`discrete`]. Continuous: [`sift`] turns triangle pairs into vertex/face and edge/edge candidates,
-//!          each once; [`solve`] finds their first time of contact.
+//!          each once; [`reject`] leaves out those that certainly stay apart; [`solve`] finds the first time of
+//!          contact of the others.
 
 pub mod discrete;
+pub mod reject;
 pub mod sift;
 pub mod solve;
 
-use crate::abi::{Pair, Span};
-use crate::exec::{Block, Slot};
+use crate::abi::{Frames, Pair, Span};
+use crate::exec::{Block, Lane, Slot};
+use crate::math::Real;
+use crate::prim::cubic::Moving;
+
+/// A vertex in motion.
+fn moving<R: Real, L: Lane>(l: &L, frames: &Frames<R>, vertex: u32) -> Moving<R> {
+    Moving { t0: l.read(frames.t0, vertex), t1: l.read(frames.t1, vertex) }
+}
 
 /// Runs `body` for each of `count` items, a lane each, in a grid of any size; an item may `Some` an entry to append to
 /// `list`. The counter goes past the end of the list, so its final value is the exact demand.
@@ -18,7 +27,6 @@ fn append_each<B: Block, T: bytemuck::Pod>(
     (list, counters, at): (Span<T>, Span<u64>, u32),
     mut body: impl FnMut(&B::Lane, u32) -> Option<T>,
 ) {
-    use crate::exec::Lane;
     let lanes = b.lanes();
     let mut entries = b.slot(None);
     let mut places = b.slot(0u32);

@@ -1,28 +1,22 @@
 //! # Solve: vertex/face and edge/edge candidates → contacts with their first time
 //! Paper    section 6.2.5, "we solve the cubic equation for each of the 15 elementary tests".
 //! Launch   `vf` and `ee`, a lane a candidate; a grid of any size strides.
-//! Reads    candidates, faces or edges, positions of both frames (four vertices).
+//! Reads    candidates that may meet, faces or edges, positions of both frames (four vertices).
 //! Writes   contacts with toi; or, when only the earliest is asked for, one number.
 //! Before   candidates are complete.
 //! After    the contacts that the solver finds. The cubic, the seed's, can miss and be late: see [`crate::prim::cubic`].
 //! Room     hits: counted past the end, grown, run again.
-//! Cost     8 B candidate, 12 B indices, 96 B positions (gathered); about 60 operations for a candidate whose
-//!          coplanarity polynomial keeps its sign, some hundreds for the others.
+//! Cost     8 B candidate, 12 B indices, 96 B positions (gathered); 400 to 1,500 operations.
 
-use super::{append_each, listed};
-use crate::abi::{Frames, Hit, Pair, SolveArgs, counter};
+use super::{append_each, listed, moving};
+use crate::abi::{Hit, Pair, SolveArgs, counter};
 use crate::exec::{Block, Lane};
 use crate::math::Real;
-use crate::prim::cubic::{Moving, ee_toi, vf_toi};
-
-/// A vertex in motion.
-fn moving<R: Real, L: Lane>(l: &L, frames: &Frames<R>, vertex: u32) -> Moving<R> {
-    Moving { t0: l.read(frames.t0, vertex), t1: l.read(frames.t1, vertex) }
-}
+use crate::prim::cubic::{ee_toi, vf_toi};
 
 /// Vertex/face, positions in R, the cubic in S.
 pub fn vf<R: Real, S: Real, B: Block>(b: &mut B, a: &SolveArgs<R>) {
-    solve(b, a, counter::VF, counter::VF_HITS, |l, pair| {
+    solve(b, a, counter::VF_SURVIVORS, counter::VF_HITS, |l, pair| {
         let face = l.read(a.faces, pair.b).map(|v| moving(l, &a.frames, v));
         vf_toi::<R, S>(moving(l, &a.frames, pair.a), face).map(Real::wide)
     });
@@ -30,7 +24,7 @@ pub fn vf<R: Real, S: Real, B: Block>(b: &mut B, a: &SolveArgs<R>) {
 
 /// Edge/edge, positions in R, the cubic in S.
 pub fn ee<R: Real, S: Real, B: Block>(b: &mut B, a: &SolveArgs<R>) {
-    solve(b, a, counter::EE, counter::EE_HITS, |l, pair| {
+    solve(b, a, counter::EE_SURVIVORS, counter::EE_HITS, |l, pair| {
         let ends = |e: u32| l.read(a.edges, e).map(|v| moving(l, &a.frames, v));
         ee_toi::<R, S>(ends(pair.a), ends(pair.b)).map(Real::wide)
     });
@@ -44,9 +38,9 @@ fn solve<R: Real, B: Block>(
     to: u32,
     toi: impl Fn(&B::Lane, Pair) -> Option<f64>,
 ) {
-    let count = listed(b, a.candidates, a.counters, from);
+    let count = listed(b, a.survivors, a.counters, from);
     append_each(b, count, (a.hits, a.counters, to), |l, i| {
-        let pair = l.read(a.candidates, i);
+        let pair = l.read(a.survivors, i);
         let toi = toi(l, pair)?;
         if a.earliest.is_empty() {
             return Some(Hit { a: pair.a, b: pair.b, toi });
