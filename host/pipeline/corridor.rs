@@ -10,12 +10,11 @@ use crate::error::Error;
 use crate::mesh::Body;
 use crate::query::{Motion, Query, Solver, Traversal};
 use nearmiss_kernels::abi::{
-    DiscreteArgs, Frames, Hit, KEEP_ADJACENT, Pair, ROUNDS, RejectArgs, SELF, SiftArgs, SolveArgs, Span,
-    TraverseArgs, Unit, counter,
+    DiscreteArgs, Frames, Hit, KEEP_ADJACENT, Motion as Ends, Pair, Point, ROUNDS, RejectArgs, SELF,
+    SiftArgs, SolveArgs, Span, TraverseArgs, Unit, counter,
 };
 use nearmiss_kernels::entry;
 use nearmiss_kernels::entry::Entry;
-use nearmiss_kernels::math::Vec3;
 use rayon::prelude::*;
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -46,8 +45,7 @@ pub struct Corridor<R: Precision> {
     device: Device,
     query: Query,
     faces: Buffer<[u32; 3]>,
-    t0: Buffer<Vec3<R>>,
-    t1: Option<Buffer<Vec3<R>>>,
+    vertices: Vertices<R>,
     trees: Vec<Tree>,
     counters: Buffer<u64>,
     pairs: List<Pair>,
@@ -57,6 +55,12 @@ pub struct Corridor<R: Precision> {
     pub reruns: u64,
     /// Counters of the last frame.
     last: Vec<u64>,
+}
+
+/// Positions, as the query needs them.
+enum Vertices<R: Precision> {
+    Still(Buffer<Point<R>>),
+    Moving(Buffer<Ends<R>>),
 }
 
 /// What only one kind of query needs exists only there.
@@ -119,8 +123,11 @@ impl<R: Precision> Corridor<R> {
         let mut corridor = Corridor {
             query,
             faces: device.upload(&layout.faces)?,
-            t0: device.buffer(vertices)?,
-            t1: if continuous { Some(device.buffer(vertices)?) } else { None },
+            vertices: if continuous {
+                Vertices::Moving(device.buffer(vertices)?)
+            } else {
+                Vertices::Still(device.buffer(vertices)?)
+            },
             trees: Vec::new(),
             counters: device.buffer(counter::COUNT as usize)?,
             pairs: List::new(&device, "candidate triangle pairs", counter::PAIRS, room)?,
@@ -150,13 +157,24 @@ impl<R: Precision> Corridor<R> {
 
     /// Uploads positions. A body that stands still in a continuous query has the same positions at both ends.
     pub fn place(&mut self, bodies: &[Body]) -> Result<(), Error> {
-        let t0: Vec<_> = bodies.iter().flat_map(|body| R::points(body.positions_t0())).collect();
-        self.t0.write(&t0)?;
-        if let Some(buffer) = &mut self.t1 {
-            let end = |body: &Body| R::points(body.positions_t1().unwrap_or(body.positions_t0()));
-            buffer.write(&bodies.iter().flat_map(end).collect::<Vec<_>>())?;
+        match &mut self.vertices {
+            Vertices::Still(buffer) => {
+                let mut points = Vec::with_capacity(buffer.len());
+                for body in bodies {
+                    points.extend(R::points(body.positions_t0()).map(Point::from));
+                }
+                buffer.write(&points)
+            }
+            Vertices::Moving(buffer) => {
+                let mut ends = Vec::with_capacity(buffer.len());
+                for body in bodies {
+                    let (t0, t1) = (body.positions_t0(), body.positions_t1().unwrap_or(body.positions_t0()));
+                    let both = R::points(t0).zip(R::points(t1));
+                    ends.extend(both.map(|(t0, t1)| Ends { t0: t0.into(), t1: t1.into() }));
+                }
+                buffer.write(&ends)
+            }
         }
-        Ok(())
     }
 
     /// Builds the trees anew, from the positions at t = 0.
@@ -172,7 +190,10 @@ impl<R: Precision> Corridor<R> {
     }
 
     fn frames(&self) -> Frames<R> {
-        Frames { t0: self.t0.span(), t1: self.t1.as_ref().map_or(Span::EMPTY, Buffer::span) }
+        match &self.vertices {
+            Vertices::Still(points) => Frames { still: points.span(), moving: Span::EMPTY },
+            Vertices::Moving(motions) => Frames { still: Span::EMPTY, moving: motions.span() },
+        }
     }
 
     /// One frame: volumes, candidates, contacts. Runs again from the traversal on while a list is too short.
@@ -253,10 +274,11 @@ impl<R: Precision> Corridor<R> {
 
     /// Contacts.
     fn narrow(&mut self) -> Result<(), Error> {
+        let frames = self.frames();
         match &mut self.narrow {
             Narrow::Discrete { contacts, undecided } => {
                 let args = DiscreteArgs {
-                    positions: self.t0.span(),
+                    positions: frames.still,
                     faces: self.faces.span(),
                     pairs: self.pairs.span(),
                     contacts: contacts.span(),
@@ -273,8 +295,10 @@ impl<R: Precision> Corridor<R> {
                 launch_striding::<R::Exact>(&self.device, undecided.room(), &args)
             }
             Narrow::Continuous(c) => {
-                let frames =
-                    Frames { t0: self.t0.span(), t1: self.t1.as_ref().map_or(Span::EMPTY, Buffer::span) };
+                let frames = match &self.vertices {
+                    Vertices::Still(points) => Frames { still: points.span(), moving: Span::EMPTY },
+                    Vertices::Moving(motions) => Frames { still: Span::EMPTY, moving: motions.span() },
+                };
                 let sift = SiftArgs {
                     frames,
                     faces: self.faces.span(),

@@ -35,7 +35,7 @@ pub trait Precision: Real {
     type Ee64: Entry<Args = SolveArgs<Self>>;
 
     /// Positions in this precision, exactly: f32 is only asked for where all bodies are f32.
-    fn points(positions: &Positions) -> Vec<Vec3<Self>>;
+    fn points(positions: &Positions) -> impl Iterator<Item = Vec3<Self>>;
 }
 
 impl Precision for f32 {
@@ -53,11 +53,12 @@ impl Precision for f32 {
     type Ee32 = entry::narrow_ee_f32_f32;
     type Ee64 = entry::narrow_ee_f32_f64;
 
-    fn points(positions: &Positions) -> Vec<Vec3<f32>> {
-        match positions {
-            Positions::F32(points) => bytemuck::cast_slice(points).to_vec(),
-            Positions::F64(points) => points.iter().map(|p| Vec3(p.map(|x| x as f32))).collect(),
-        }
+    fn points(positions: &Positions) -> impl Iterator<Item = Vec3<f32>> {
+        let (singles, doubles): (&[[f32; 3]], &[[f64; 3]]) = match positions {
+            Positions::F32(points) => (points, &[]),
+            Positions::F64(points) => (&[], points),
+        };
+        singles.iter().map(|&p| Vec3(p)).chain(doubles.iter().map(|p| Vec3(p.map(|x| x as f32))))
     }
 }
 
@@ -76,10 +77,11 @@ impl Precision for f64 {
     type Ee32 = entry::narrow_ee_f64_f32;
     type Ee64 = entry::narrow_ee_f64_f64;
 
-    fn points(positions: &Positions) -> Vec<Vec3<f64>> {
-        match positions {
-            Positions::F32(points) => points.iter().map(|p| Vec3(p.map(f64::from))).collect(),
-            Positions::F64(points) => bytemuck::cast_slice(points).to_vec(),
-        }
+    fn points(positions: &Positions) -> impl Iterator<Item = Vec3<f64>> {
+        let (singles, doubles): (&[[f32; 3]], &[[f64; 3]]) = match positions {
+            Positions::F32(points) => (points, &[]),
+            Positions::F64(points) => (&[], points),
+        };
+        singles.iter().map(|p| Vec3(p.map(f64::from))).chain(doubles.iter().map(|&p| Vec3(p)))
     }
 }

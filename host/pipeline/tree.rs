@@ -88,7 +88,7 @@ impl Tree {
         let s = &mut self.scratch;
         s.bounds.clear()?;
         let morton = MortonArgs {
-            positions: frames.t0,
+            frames,
             faces,
             first: self.first,
             count: self.count,

@@ -4,6 +4,7 @@ use super::microscope::{Access, Microscope, Place};
 use bytemuck::Pod;
 use nearmiss_kernels::abi::Span;
 use nearmiss_kernels::exec::{BINS, Block, Lane, Shared, Slot, Word};
+use std::mem::MaybeUninit;
 use std::ptr::with_exposed_provenance_mut;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
@@ -219,6 +220,12 @@ impl<W: Watch> Block for Emulated<W> {
     }
     fn slot<T: Copy>(&self, init: T) -> PerLane<T> {
         PerLane(vec![init; self.lanes as usize])
+    }
+    fn words<const N: usize>(&self) -> PerLane<[MaybeUninit<u32>; N]> {
+        let mut words = Vec::with_capacity(self.lanes as usize);
+        // SAFETY: the capacity is there, and words that may be unwritten are valid unwritten.
+        unsafe { words.set_len(self.lanes as usize) };
+        PerLane(words)
     }
     #[inline(always)]
     fn phase(&mut self, mut body: impl FnMut(&EmulatedLane<W>)) {

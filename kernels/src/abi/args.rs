@@ -1,7 +1,7 @@
 //! One argument block for each kernel: what it is launched with, by value.
 
-use super::{Hit, Inner, Node, Pair, Span, Unit};
-use crate::math::{Real, Vec3};
+use super::{Hit, Inner, Motion, Node, Pair, Point, Span, Unit};
+use crate::math::Real;
 use bytemuck::{Pod, Zeroable};
 
 /// Declares argument blocks: `repr(C)`, plain old data, and an assertion that the fields leave no padding.
@@ -26,17 +26,17 @@ macro_rules! arguments {
 }
 
 arguments! {
-    /// Positions at both ends of a step; `t1` is empty where nothing moves.
+    /// The vertices: in motion, or still; the other is empty.
     Frames<R> {
-        /// Positions at t = 0.
-        t0: Span<Vec3<R>>,
-        /// Positions at t = 1, or empty.
-        t1: Span<Vec3<R>>,
+        /// Vertices of a discrete query.
+        still: Span<Point<R>>,
+        /// Vertices of a continuous query.
+        moving: Span<Motion<R>>,
     }
     /// `construct_bounds`, `construct_morton`: triangle centres, their box, their codes.
     MortonArgs<R> {
-        /// Vertex positions at t = 0.
-        positions: Span<Vec3<R>>,
+        /// Positions.
+        frames: Frames<R>,
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
         /// The body's first triangle.
@@ -174,8 +174,8 @@ arguments! {
     }
     /// `narrow_moller`, `narrow_filter`, `narrow_exact`: triangle pairs that meet.
     DiscreteArgs<R> {
-        /// Vertex positions.
-        positions: Span<Vec3<R>>,
+        /// Positions.
+        positions: Span<Point<R>>,
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
         /// Pairs to test.

@@ -1,5 +1,6 @@
 //! The records that stages hand on in memory.
 
+use crate::math::{Real, Vec3};
 use bytemuck::{Pod, Zeroable};
 
 /// A node of the level-ordered tree: an axis-aligned box and its place in the tree. Two siblings are neighbours and
@@ -85,3 +86,39 @@ pub struct Inner {
     pub last: u32,
 }
 const _: () = assert!(size_of::<Inner>() == 12);
+
+/// A vertex that stands still, padded so that one aligned access of 16 bytes (f64: two) fetches it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(16))]
+pub struct Point<R> {
+    /// The position.
+    pub at: Vec3<R>,
+    pad: R,
+}
+const _: () = assert!(size_of::<Point<f32>>() == 16 && size_of::<Point<f64>>() == 32);
+
+impl<R: Real> From<Vec3<R>> for Point<R> {
+    fn from(at: Vec3<R>) -> Self {
+        Point { at, pad: R::ZERO }
+    }
+}
+
+/// A vertex in motion: both ends of the step lie together, since whoever needs one needs both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Motion<R> {
+    /// At t = 0.
+    pub t0: Point<R>,
+    /// At t = 1.
+    pub t1: Point<R>,
+}
+const _: () = assert!(size_of::<Motion<f32>>() == 32 && size_of::<Motion<f64>>() == 64);
+
+// SAFETY: four scalars of R (asserted above: no padding but the named one), each Zeroable and Pod.
+unsafe impl<R: Real> Zeroable for Point<R> {}
+// SAFETY: as above.
+unsafe impl<R: Real> Pod for Point<R> {}
+// SAFETY: two Points without padding, asserted above.
+unsafe impl<R: Real> Zeroable for Motion<R> {}
+// SAFETY: as above.
+unsafe impl<R: Real> Pod for Motion<R> {}

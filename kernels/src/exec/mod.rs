@@ -15,6 +15,7 @@ pub use memory::{Shared, Word};
 
 use crate::abi::Span;
 use bytemuck::Pod;
+use core::mem::MaybeUninit;
 
 /// One lane of a block, inside a phase: its number and its hands on memory.
 ///
@@ -72,6 +73,8 @@ pub trait Block {
     fn shared<T: Word>(&mut self, len: u32) -> Shared<T>;
     /// Gives each lane a value that lives across phases.
     fn slot<T: Copy>(&self, init: T) -> Self::Slot<T>;
+    /// Gives each lane words that live across phases and begin unwritten.
+    fn words<const N: usize>(&self) -> Self::Slot<[MaybeUninit<u32>; N]>;
     /// Runs `body` once for each lane, then waits for all of them.
     fn phase(&mut self, body: impl FnMut(&Self::Lane));
 

@@ -30,6 +30,7 @@ mod machine {
         _thread_idx_x as thread_idx_x,
     };
     use core::arch::{asm, global_asm};
+    use core::mem::MaybeUninit;
     use core::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
     // What the lanes of a warp or block do together is an intrinsic, not assembly: the compiler knows that it must not
@@ -310,6 +311,10 @@ mod machine {
         #[inline(always)]
         fn slot<T: Copy>(&self, init: T) -> Register<T> {
             Register(init)
+        }
+        #[inline(always)]
+        fn words<const N: usize>(&self) -> Register<[MaybeUninit<u32>; N]> {
+            Register([const { MaybeUninit::uninit() }; N])
         }
         #[inline(always)]
         fn phase(&mut self, mut body: impl FnMut(&Thread)) {

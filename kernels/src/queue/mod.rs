@@ -6,55 +6,44 @@ use crate::stage::construct::MAX_LEVELS;
 use core::mem::MaybeUninit;
 
 /// Entries that a walk's stack can need: one waiting sibling a level, and two hits that found no room.
-const ROOM: usize = MAX_LEVELS as usize + 2;
+pub const ROOM: usize = MAX_LEVELS as usize + 2;
 
-/// A stack of work that cannot overflow: a depth-first walk leaves at most one waiting entry a level behind.
-#[derive(Clone, Copy)]
-pub struct Stack {
-    items: [MaybeUninit<u32>; ROOM],
-    len: u32,
+/// The memory of a stack; see [`crate::exec::Block::words`].
+pub type Words = [MaybeUninit<u32>; ROOM];
+
+/// A stack of work that cannot overflow: a depth-first walk leaves at most one waiting entry a level behind. Between
+/// phases its words and its length lie in slots of their own, so that nothing copies the words.
+pub struct Stack<'a> {
+    /// The entries, as far as `len` reaches.
+    pub words: &'a mut Words,
+    /// How many entries wait.
+    pub len: &'a mut u32,
 }
 
-impl Stack {
-    /// No entries. The room behind them stays uninitialised: zeroing it costs more than a walk.
-    #[inline]
-    pub fn new() -> Self {
-        Stack { items: [MaybeUninit::uninit(); ROOM], len: 0 }
-    }
-    /// How many entries wait.
-    #[inline]
-    pub fn len(&self) -> u32 {
-        self.len
-    }
-    /// Whether none does.
+impl Stack<'_> {
+    /// Whether no entry waits.
     #[inline]
     pub fn is_empty(&self) -> bool {
-        self.len == 0
+        *self.len == 0
     }
     /// Adds an entry.
     #[inline]
     pub fn push(&mut self, item: u32) {
-        debug_assert!((self.len as usize) < ROOM);
+        debug_assert!((*self.len as usize) < ROOM);
         // SAFETY: a walk holds at most ROOM entries (see `ROOM`): a tree has at most MAX_LEVELS levels, which the
         // checker of the tree confirms, and the walk stops when a hit finds no room.
-        unsafe { self.items.get_unchecked_mut(self.len as usize).write(item) };
-        self.len += 1;
+        unsafe { self.words.get_unchecked_mut(*self.len as usize).write(item) };
+        *self.len += 1;
     }
     /// Takes the entry that was added last.
     #[inline]
     pub fn pop(&mut self) -> Option<u32> {
-        if self.len == 0 {
+        if *self.len == 0 {
             return None;
         }
-        self.len -= 1;
+        *self.len -= 1;
         // SAFETY: entries below `len` were written by `push`, and len was at least 1.
-        Some(unsafe { self.items.get_unchecked(self.len as usize).assume_init() })
-    }
-}
-
-impl Default for Stack {
-    fn default() -> Self {
-        Self::new()
+        Some(unsafe { self.words.get_unchecked(*self.len as usize).assume_init() })
     }
 }
 

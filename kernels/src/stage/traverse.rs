@@ -95,7 +95,8 @@ fn run<B: Block>(
     let mut walks =
         b.slot(Walk { volume: Aabb::EMPTY, triangle: 0, query: NONE, from: 0, steps: 0, budget: 0 });
     // Siblings to test, and hits that found no room (marked `LEAF`).
-    let mut stacks = b.slot(Stack::new());
+    let mut words = b.words();
+    let mut lens = b.slot(0u32);
     let mut busy = b.slot(false);
     let mut base = b.block() * lanes;
     b.phase(|l| clear(l, found, kept));
@@ -105,15 +106,15 @@ fn run<B: Block>(
             if i < total
                 && let Some(first) = begin(l, i, walks.of(l))
             {
-                stacks.of(l).push(first);
+                Stack { words: words.of(l), len: lens.of(l) }.push(first);
             }
         });
         loop {
             b.phase(|l| {
-                let (walk, stack) = (walks.of(l), stacks.of(l));
-                advance(l, a, walk, stack, found);
+                let (walk, mut stack) = (walks.of(l), Stack { words: words.of(l), len: lens.of(l) });
+                advance(l, a, walk, &mut stack, found);
                 if !stack.is_empty() && walk.budget == 0 {
-                    spill(l, a, walk, stack);
+                    spill(l, a, walk, &mut stack);
                 }
                 *busy.of(l) = !stack.is_empty();
             });
@@ -198,7 +199,7 @@ fn emit<L: Lane>(l: &L, a: &TraverseArgs, walk: &Walk, stack: &mut Stack, leaf: 
 
 /// Gives the rest of a walk away; where the list has no room for all of it, the walk goes on without a budget.
 fn spill<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, stack: &mut Stack) {
-    let count = stack.len() as u64;
+    let count = *stack.len as u64;
     let at = l.fetch_add(a.counters, a.spilled_at, count);
     if at + count <= a.spilled.len {
         let mut i = at as u32;

@@ -16,8 +16,11 @@ const CELLS: f64 = (1u32 << 21) as f64;
 
 /// The centre of a triangle, in f64: any point near it would do, but all machines must choose the same.
 fn centre<R: Real, L: Lane>(l: &L, a: &MortonArgs<R>, triangle: u32) -> Vec3<f64> {
-    let [i, j, k] = l.read(a.faces, a.first + triangle);
-    let (p, q, r) = (l.read(a.positions, i), l.read(a.positions, j), l.read(a.positions, k));
+    let start = |v: u32| {
+        let moving = a.frames.moving;
+        if moving.is_empty() { l.read(a.frames.still, v).at } else { l.read(moving, v).t0.at }
+    };
+    let [p, q, r] = l.read(a.faces, a.first + triangle).map(start);
     (p.wide() + q.wide() + r.wide()) * (1.0 / 3.0)
 }
 

@@ -7,7 +7,7 @@
 //!          filter, then exact  exactly the pairs whose closed triangles share a point; of pairs with a common vertex,
 //!          those that meet beyond it.
 //! Room     contacts, undecided: counted past the end, grown, run again.
-//! Cost     8 B pair, 24 B faces, 72 B positions (gathered); about 100 operations for a pair that a plane separates.
+//! Cost     8 B pair, 24 B faces, 96 B positions (gathered); about 100 operations for a pair that a plane separates.
 
 use super::{append_each, listed};
 use crate::abi::{DiscreteArgs, KEEP_ADJACENT, Pair, counter};
@@ -19,7 +19,7 @@ use crate::prim::tri_tri::{Certain, Filter, meets};
 
 /// The corners of a triangle.
 fn corners<R: Real, L: Lane>(l: &L, a: &DiscreteArgs<R>, face: [u32; 3]) -> [Vec3<R>; 3] {
-    face.map(|v| l.read(a.positions, v))
+    face.map(|v| l.read(a.positions, v).at)
 }
 
 /// The seed's test, in f32.

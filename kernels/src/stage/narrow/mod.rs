@@ -16,7 +16,8 @@ use crate::prim::cubic::Moving;
 
 /// A vertex in motion.
 fn moving<R: Real, L: Lane>(l: &L, frames: &Frames<R>, vertex: u32) -> Moving<R> {
-    Moving { t0: l.read(frames.t0, vertex), t1: l.read(frames.t1, vertex) }
+    let vertex = l.read(frames.moving, vertex);
+    Moving { t0: vertex.t0.at, t1: vertex.t1.at }
 }
 
 /// Runs `body` for each of `count` items, a lane each, in a grid of any size; an item may `Some` an entry to append to

@@ -11,11 +11,13 @@
 //! Room     vf, ee: counted past the end, grown, run again.
 //! Departs  the paper tests all 15 for every pair; owners (representative triangles: Curtis, Tamstorf, Manocha, "Fast
 //!          collision detection for deformable models using representative-triangles", 2008) leave about 3.
-//! Cost     8 B pair, 56 B topology, 144 B positions (gathered); 6 comparisons a test.
+//! Cost     8 B pair, 56 B topology, 192 B positions (gathered); 6 comparisons a test.
 
+use super::{listed, moving};
 use crate::abi::{Pair, SiftArgs, Span, counter};
 use crate::exec::{Block, Lane, Slot};
 use crate::math::{Real, Vec3};
+use crate::prim::cubic::Moving;
 
 /// A closed box in the precision of the positions: exact.
 #[derive(Clone, Copy)]
@@ -46,8 +48,8 @@ impl<R: Real> Triangle<R> {
         let corners = l.read(a.faces, index);
         let owned = l.read(a.owners, index);
         let boxes = corners.map(|v| {
-            let (p, q) = (l.read(a.frames.t0, v), l.read(a.frames.t1, v));
-            Swept { lo: p.min(q), hi: p.max(q) }
+            let Moving { t0, t1 } = moving(l, &a.frames, v);
+            Swept { lo: t0.min(t1), hi: t0.max(t1) }
         });
         Triangle { corners, owned, boxes }
     }
@@ -99,7 +101,7 @@ fn wanted<R: Real>(p: &Triangle<R>, q: &Triangle<R>) -> u32 {
 
 /// Vertex/face and edge/edge candidates of each triangle pair.
 pub fn sift<R: Real, B: Block>(b: &mut B, a: &SiftArgs<R>) {
-    let count = super::listed(b, a.pairs, a.counters, counter::PAIRS);
+    let count = listed(b, a.pairs, a.counters, counter::PAIRS);
     let lanes = b.lanes();
     let mut masks = b.slot(0u32);
     let mut pairs = b.slot(Pair::default());

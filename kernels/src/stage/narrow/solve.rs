@@ -6,7 +6,7 @@
 //! Before   candidates are complete.
 //! After    the contacts that the solver finds. The cubic, the seed's, can miss and be late: see [`crate::prim::cubic`].
 //! Room     hits: counted past the end, grown, run again.
-//! Cost     8 B candidate, 12 B indices, 96 B positions (gathered); 400 to 1,500 operations.
+//! Cost     8 B candidate, 12 B indices, 128 B positions (gathered); 400 to 1,500 operations.
 
 use super::{append_each, listed, moving};
 use crate::abi::{Hit, Pair, SolveArgs, counter};
