@@ -67,7 +67,8 @@ macro_rules! kernels {
 
 /// Lanes of kernels whose work is the same for every lane.
 const WIDE: u32 = 256;
-/// Lanes of kernels with long or uneven work: small blocks, so that few lanes wait for a long one.
+/// Lanes of kernels with long or uneven work: small blocks, so that few lanes wait for a long one (measured:
+/// `benches/NOTES.md`).
 const NARROW: u32 = 64;
 /// Shared memory of a radix scatter: the bins, and each warp's.
 const RANKS: u32 = 4 * BINS * (1 + WIDE / WARP);
@@ -96,8 +97,8 @@ kernels! {
     narrow_filter_f64: discrete::filter::<f64, B>, [DiscreteArgs<f64>], WIDE, 0;
     narrow_exact_f32: discrete::exact::<f32, B>, [DiscreteArgs<f32>], NARROW, 0;
     narrow_exact_f64: discrete::exact::<f64, B>, [DiscreteArgs<f64>], NARROW, 0;
-    narrow_sift_f32: sift::sift::<f32, B>, [SiftArgs<f32>], WIDE, 0;
-    narrow_sift_f64: sift::sift::<f64, B>, [SiftArgs<f64>], WIDE, 0;
+    narrow_sift_f32: sift::sift::<f32, B>, [SiftArgs<f32>], NARROW, 0;
+    narrow_sift_f64: sift::sift::<f64, B>, [SiftArgs<f64>], NARROW, 0;
     narrow_reject_vf_f32: reject::vf::<f32, B>, [RejectArgs<f32>], WIDE, 0;
     narrow_reject_vf_f64: reject::vf::<f64, B>, [RejectArgs<f64>], WIDE, 0;
     narrow_reject_ee_f32: reject::ee::<f32, B>, [RejectArgs<f32>], WIDE, 0;

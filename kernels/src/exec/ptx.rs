@@ -192,6 +192,47 @@ mod machine {
     fn element<T>(span: Span<T>, i: u32) -> *mut T {
         (span.addr as *mut T).wrapping_add(i as usize)
     }
+    /// A load that knows that its address is device memory, in the widest pieces that `T`'s alignment allows. (A
+    /// pointer out of an argument block is generic to the compiler: such a load asks at run time which memory it means.)
+    ///
+    /// # Safety
+    /// `from` is valid for reads, and nobody writes it in this phase.
+    #[inline(always)]
+    unsafe fn load_global<T: Pod>(from: *const T) -> T {
+        let (size, align) = (size_of::<T>(), align_of::<T>());
+        let at = from as u64;
+        let mut value = MaybeUninit::<T>::uninit();
+        let to = value.as_mut_ptr().cast::<u32>();
+        let mut word = 0;
+        while 4 * word < size {
+            let at = at + 4 * word as u64;
+            // SAFETY: the pieces lie in `from` and in `value`, and are aligned: sizes are multiples of alignments.
+            unsafe {
+                if align >= 16 {
+                    let (a, b, c, d): (u32, u32, u32, u32);
+                    asm!("ld.global.v4.b32 {{ {a}, {b}, {c}, {d} }}, [{at}];", a = lateout(reg32) a,
+                        b = lateout(reg32) b, c = lateout(reg32) c, d = lateout(reg32) d, at = in(reg64) at,
+                        options(pure, readonly, nostack));
+                    to.add(word).cast::<[u32; 4]>().write([a, b, c, d]);
+                    word += 4;
+                } else if align >= 8 {
+                    let a: u64;
+                    asm!("ld.global.b64 {a}, [{at}];", a = lateout(reg64) a, at = in(reg64) at,
+                        options(pure, readonly, nostack));
+                    to.add(word).cast::<u64>().write(a);
+                    word += 2;
+                } else {
+                    let a: u32;
+                    asm!("ld.global.b32 {a}, [{at}];", a = lateout(reg32) a, at = in(reg64) at,
+                        options(pure, readonly, nostack));
+                    to.add(word).write(a);
+                    word += 1;
+                }
+            }
+        }
+        // SAFETY: every word was written, and any bits are a T.
+        unsafe { value.assume_init() }
+    }
     #[inline(always)]
     fn atomic(span: Span<u64>, i: u32) -> &'static AtomicU64 {
         // SAFETY: the span is device memory that outlives the launch, aligned for u64, and `i` lies in it: kernels
@@ -211,7 +252,7 @@ mod machine {
         #[inline(always)]
         fn read<T: Pod>(&self, span: Span<T>, i: u32) -> T {
             // SAFETY: as for `atomic`; nobody writes it in this phase, which the emulator's race watch checks.
-            unsafe { element(span, i).read() }
+            unsafe { load_global(element(span, i)) }
         }
         #[inline(always)]
         fn write<T: Pod>(&self, span: Span<T>, i: u32, value: T) {

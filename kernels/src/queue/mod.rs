@@ -5,8 +5,8 @@ use crate::exec::{Lane, Shared};
 use crate::stage::construct::MAX_LEVELS;
 use core::mem::MaybeUninit;
 
-/// Entries that a walk's stack can need: one waiting sibling a level, and two hits that found no room.
-pub const ROOM: usize = MAX_LEVELS as usize + 2;
+/// Entries that a walk's stack can need: one waiting sibling a level.
+pub const ROOM: usize = MAX_LEVELS as usize;
 
 /// The memory of a stack; see [`crate::exec::Block::words`].
 pub type Words = [MaybeUninit<u32>; ROOM];
@@ -31,7 +31,7 @@ impl Stack<'_> {
     pub fn push(&mut self, item: u32) {
         debug_assert!((*self.len as usize) < ROOM);
         // SAFETY: a walk holds at most ROOM entries (see `ROOM`): a tree has at most MAX_LEVELS levels, which the
-        // checker of the tree confirms, and the walk stops when a hit finds no room.
+        // checker of the tree confirms.
         unsafe { self.words.get_unchecked_mut(*self.len as usize).write(item) };
         *self.len += 1;
     }
@@ -57,14 +57,19 @@ pub struct Buffer {
 }
 
 impl Buffer {
-    /// Puts a pair in; false when there is no room.
+    /// Asks for places of `count` pairs: the first of them, which may lie past the end.
     #[inline]
-    pub fn push<L: Lane>(&self, l: &L, pair: Pair) -> bool {
-        let at = l.shared_add(self.fill, 0, 1);
-        if at < self.pairs.len {
-            l.put(self.pairs, at, [pair.a, pair.b]);
+    pub fn take<L: Lane>(&self, l: &L, count: u32) -> u32 {
+        l.shared_add(self.fill, 0, count)
+    }
+    /// Puts a pair in its place; false when that lies past the end.
+    #[inline]
+    pub fn put<L: Lane>(&self, l: &L, place: u32, pair: Pair) -> bool {
+        let room = place < self.pairs.len;
+        if room {
+            l.put(self.pairs, place, [pair.a, pair.b]);
         }
-        at < self.pairs.len
+        room
     }
     /// A pair that was put in.
     #[inline]

@@ -15,7 +15,7 @@
 //! Cost     64 B and 12 comparisons a step; hits wait on chip, so that the test for shared vertices and the append
 //!          run converged, with one atomic operation a block.
 
-use crate::abi::{KEEP_ADJACENT, LEAF, NONE, Pair, ROOT, SELF, TraverseArgs, Unit, counter};
+use crate::abi::{KEEP_ADJACENT, NONE, Pair, ROOT, SELF, TraverseArgs, Unit, counter};
 use crate::bv::Aabb;
 use crate::exec::{Block, Lane, Slot};
 use crate::queue::{Buffer, Stack};
@@ -35,7 +35,7 @@ struct Walk {
     volume: Aabb,
     /// The leaf's triangle.
     triangle: u32,
-    /// The leaf's node; [`NONE`] when the lane has no walk.
+    /// The leaf's node.
     query: u32,
     /// Leaves before this one are not wanted.
     from: u32,
@@ -43,6 +43,17 @@ struct Walk {
     steps: u32,
     /// Steps that this walk may still take.
     budget: u32,
+    /// The siblings to test next; [`NONE`] when the walk is over.
+    next: u32,
+    /// Hits that found no room in the buffer; [`NONE`] for none.
+    held: [u32; 2],
+}
+
+impl Walk {
+    /// Whether there is something left to do.
+    fn is_busy(&self) -> bool {
+        self.next != NONE || self.held != [NONE; 2]
+    }
 }
 
 /// One walk a leaf.
@@ -50,7 +61,12 @@ pub fn leaves<B: Block>(b: &mut B, a: &TraverseArgs) {
     let root = b.load(a.nodes, ROOT);
     run(b, a, a.query_leaves.len as u32, |l, i, walk| {
         start(l, a, walk, l.read(a.query_leaves, i));
-        (root.last >= walk.from && walk.volume.overlaps(&root.volume())).then_some(root.link)
+        let wanted = root.last >= walk.from && walk.volume.overlaps(&root.volume());
+        match (wanted, root.is_leaf()) {
+            (false, _) => {}
+            (true, false) => walk.next = root.link,
+            (true, true) => walk.held[0] = root.triangle(),
+        }
     });
 }
 
@@ -59,11 +75,10 @@ pub fn units<B: Block>(b: &mut B, a: &TraverseArgs) {
     let count = b.load(a.counters, a.units_at).min(a.units.len) as u32;
     run(b, a, count, |l, i, walk| {
         let Unit { query, pair } = l.read(a.units, i);
-        if query == NONE {
-            return None;
+        if query != NONE {
+            start(l, a, walk, query);
+            walk.next = pair;
         }
-        start(l, a, walk, query);
-        Some(pair)
     });
 }
 
@@ -81,20 +96,23 @@ fn start<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, query: u32) {
     };
 }
 
-/// Walks `total` walks, a lane each; `begin` sets one up and gives what to put on its stack first.
+/// Walks `total` walks, a lane each; `begin` sets one up.
 #[inline]
-fn run<B: Block>(
-    b: &mut B,
-    a: &TraverseArgs,
-    total: u32,
-    begin: impl Fn(&B::Lane, u32, &mut Walk) -> Option<u32>,
-) {
+fn run<B: Block>(b: &mut B, a: &TraverseArgs, total: u32, begin: impl Fn(&B::Lane, u32, &mut Walk)) {
     let lanes = b.lanes();
     let found = Buffer { pairs: b.shared(BUFFER_A_LANE * lanes), fill: b.shared(2) };
     let kept = Buffer { pairs: b.shared(BUFFER_A_LANE * lanes), fill: b.shared(2) };
-    let mut walks =
-        b.slot(Walk { volume: Aabb::EMPTY, triangle: 0, query: NONE, from: 0, steps: 0, budget: 0 });
-    // Siblings to test, and hits that found no room (marked `LEAF`).
+    let mut walks = b.slot(Walk {
+        volume: Aabb::EMPTY,
+        triangle: 0,
+        query: NONE,
+        from: 0,
+        steps: 0,
+        budget: 0,
+        next: NONE,
+        held: [NONE; 2],
+    });
+    // Siblings that wait.
     let mut words = b.words();
     let mut lens = b.slot(0u32);
     let mut busy = b.slot(false);
@@ -103,20 +121,18 @@ fn run<B: Block>(
     while base < total {
         b.phase(|l| {
             let i = base + l.lane();
-            if i < total
-                && let Some(first) = begin(l, i, walks.of(l))
-            {
-                Stack { words: words.of(l), len: lens.of(l) }.push(first);
+            if i < total {
+                begin(l, i, walks.of(l));
             }
         });
         loop {
             b.phase(|l| {
                 let (walk, mut stack) = (walks.of(l), Stack { words: words.of(l), len: lens.of(l) });
                 advance(l, a, walk, &mut stack, found);
-                if !stack.is_empty() && walk.budget == 0 {
+                if walk.next != NONE && walk.budget == 0 {
                     spill(l, a, walk, &mut stack);
                 }
-                *busy.of(l) = !stack.is_empty();
+                *busy.of(l) = walk.is_busy();
             });
             flush(b, a, found, kept);
             if !b.any(&mut busy) {
@@ -131,80 +147,65 @@ fn run<B: Block>(
     b.reserve(a.counters, counter::STEPS, sum as u64);
 }
 
-/// Walks on until the stack is empty, the budget is used up or the buffer is full.
+/// Walks on until nothing is left, the budget is used up or the buffer is full.
 #[inline]
 fn advance<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, stack: &mut Stack, found: Buffer) {
-    let mut next = NONE;
-    loop {
-        if next == NONE {
-            match stack.pop() {
-                None => return,
-                Some(hit) if hit & LEAF != 0 => {
-                    if !emit(l, a, walk, stack, hit, found) {
-                        return;
-                    }
-                    continue;
-                }
-                Some(pair) => next = pair,
-            }
-        }
-        if walk.budget == 0 {
-            stack.push(next);
-            return;
-        }
+    emit(l, a, walk, found);
+    // One loop, one way out, and every lane does the same things in it: lanes of a warp stay together.
+    while walk.next != NONE && walk.budget > 0 && walk.held == [NONE; 2] {
         walk.budget -= 1;
         walk.steps += 1;
-        let (left, right) = (l.read(a.nodes, next), l.read(a.nodes, next + 1));
+        let (left, right) = (l.read(a.nodes, walk.next), l.read(a.nodes, walk.next + 1));
         let into_left = (left.last >= walk.from) & walk.volume.overlaps(&left.volume());
         let into_right = (right.last >= walk.from) & walk.volume.overlaps(&right.volume());
-        next = NONE;
-        let mut room = true;
-        if into_right {
-            if right.is_leaf() {
-                room &= emit(l, a, walk, stack, right.link, found);
-            } else {
-                next = right.link;
-            }
+        walk.held = [
+            if into_left & left.is_leaf() { left.triangle() } else { NONE },
+            if into_right & right.is_leaf() { right.triangle() } else { NONE },
+        ];
+        emit(l, a, walk, found);
+        let inner_left = into_left & !left.is_leaf();
+        let inner_right = into_right & !right.is_leaf();
+        if inner_left & inner_right {
+            stack.push(right.link);
         }
-        if into_left {
-            if left.is_leaf() {
-                room &= emit(l, a, walk, stack, left.link, found);
-            } else {
-                if next != NONE {
-                    stack.push(next);
-                }
-                next = left.link;
-            }
-        }
-        if !room {
-            if next != NONE {
-                stack.push(next);
-            }
-            return;
-        }
+        walk.next = match (inner_left, inner_right) {
+            (true, _) => left.link,
+            (false, true) => right.link,
+            (false, false) => stack.pop().unwrap_or(NONE),
+        };
     }
 }
 
-/// Puts a hit into the buffer, or back on the stack when there is no room.
+/// Puts the hits that a walk holds into the buffer; those without room it keeps.
 #[inline]
-fn emit<L: Lane>(l: &L, a: &TraverseArgs, walk: &Walk, stack: &mut Stack, leaf: u32, found: Buffer) -> bool {
-    let (mine, other) = (walk.triangle, leaf & !LEAF);
-    let ordered = a.flags & SELF == 0 || mine < other;
-    let room = found.push(l, if ordered { Pair { a: mine, b: other } } else { Pair { a: other, b: mine } });
-    if !room {
-        stack.push(leaf);
+fn emit<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, found: Buffer) {
+    let count = (walk.held[0] != NONE) as u32 + (walk.held[1] != NONE) as u32;
+    if count == 0 {
+        return;
     }
-    room
+    let mut place = found.take(l, count);
+    for held in &mut walk.held {
+        if *held != NONE {
+            let (mine, other) = (walk.triangle, *held);
+            let ordered = a.flags & SELF == 0 || mine < other;
+            let pair = if ordered { Pair { a: mine, b: other } } else { Pair { a: other, b: mine } };
+            if found.put(l, place, pair) {
+                *held = NONE;
+            }
+            place += 1;
+        }
+    }
 }
 
 /// Gives the rest of a walk away; where the list has no room for all of it, the walk goes on without a budget.
 fn spill<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, stack: &mut Stack) {
-    let count = *stack.len as u64;
+    let count = *stack.len as u64 + 1;
     let at = l.fetch_add(a.counters, a.spilled_at, count);
     if at + count <= a.spilled.len {
         let mut i = at as u32;
-        while let Some(pair) = stack.pop() {
-            l.write(a.spilled, i, Unit { query: walk.query, pair });
+        while walk.next != NONE {
+            l.write(a.spilled, i, Unit { query: walk.query, pair: walk.next });
+            walk.next = stack.pop().unwrap_or(NONE);
             i += 1;
         }
     } else {
@@ -226,7 +227,8 @@ fn flush<B: Block>(b: &mut B, a: &TraverseArgs, found: Buffer, kept: Buffer) {
         while i < count {
             let pair = found.get(l, i);
             if a.flags & KEEP_ADJACENT != 0 || !adjacent(l.read(a.faces, pair.a), l.read(a.faces, pair.b)) {
-                kept.push(l, pair);
+                let place = kept.take(l, 1);
+                kept.put(l, place, pair);
             }
             i += lanes;
         }
