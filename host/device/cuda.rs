@@ -1,5 +1,6 @@
 //! An NVIDIA card, through cust. The kernels' PTX is embedded; the driver compiles it for the card it finds.
 
+use super::ptx::Parts;
 use crate::error::Error;
 use cust::context::Context;
 use cust::device::{Device as Card, DeviceAttribute};
@@ -8,9 +9,11 @@ use cust::event::{Event as CudaEvent, EventFlags};
 use cust::memory::{AsyncCopyDestination, CopyDestination, DeviceBuffer, LockedBuffer};
 use cust::module::Module;
 use cust::stream::{Stream, StreamFlags};
-use nearmiss_kernels::entry::Entry;
+use nearmiss_kernels::entry::Entry as Kernel;
 use std::cell::RefCell;
-use std::ffi::{CString, c_void};
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::ffi::c_void;
 
 /// The kernels, as build.rs found or made them.
 const PTX: &str = include_str!(concat!(env!("OUT_DIR"), "/nearmiss.ptx"));
@@ -22,12 +25,13 @@ const CAPABILITY: (i32, i32) = (8, 0);
 /// 0.1 ms of PCIe time, far above a copy's overhead.
 const STAGING: usize = 4 << 20;
 
-/// A card, its context, one stream, and the module.
+/// A card, its context, one stream, and a module for each kernel that was used.
 pub struct Cuda {
     name: String,
     resident_lanes: u32,
     staging: RefCell<LockedBuffer<u8>>,
-    module: Module,
+    parts: Parts<'static>,
+    modules: RefCell<HashMap<&'static str, Module>>,
     stream: Stream,
     // Last, so that it is dropped last.
     _context: Context,
@@ -95,28 +99,21 @@ impl Cuda {
             * read(DeviceAttribute::MaxThreadsPerMultiprocessor)?) as u32;
         let context = Context::new(card).map_err(refused("making a context"))?;
         let stream = Stream::new(StreamFlags::NON_BLOCKING, None).map_err(refused("making a stream"))?;
-        let module = Module::from_ptx(PTX, &[]).map_err(refused("loading the kernels"))?;
+        let parts = Parts::new(PTX);
+        let common = Module::from_ptx(parts.common(), &[]).map_err(refused("loading the kernels"))?;
+        check_stamp(&common)?;
         // SAFETY: a page-locked buffer of bytes; every byte is written before it is read.
         let staging =
             unsafe { LockedBuffer::uninitialized(STAGING) }.map_err(refused("locking host memory"))?;
-        let cuda =
-            Cuda { name, resident_lanes, staging: RefCell::new(staging), module, stream, _context: context };
-        cuda.check_stamp()?;
-        Ok(cuda)
-    }
-
-    /// Refuses kernels that come from other sources than this program.
-    fn check_stamp(&self) -> Result<(), Error> {
-        let symbol = CString::new("NEARMISS_STAMP").map_err(|e| Error::Bug { what: e.to_string() })?;
-        let global =
-            self.module.get_global::<u64>(&symbol).map_err(refused("looking for the kernels' stamp"))?;
-        let mut found = 0u64;
-        global.copy_to(&mut found).map_err(refused("reading the kernels' stamp"))?;
-        let found = format!("{found:016x}");
-        if found == STAMP {
-            return Ok(());
-        }
-        Err(Error::Stamp { found, wanted: STAMP.into() })
+        Ok(Cuda {
+            name,
+            resident_lanes,
+            staging: RefCell::new(staging),
+            parts,
+            modules: RefCell::default(),
+            stream,
+            _context: context,
+        })
     }
 
     /// What the driver calls the card.
@@ -181,8 +178,18 @@ impl Cuda {
     }
 
     /// Starts a kernel.
-    pub fn launch<E: Entry>(&self, blocks: u32, args: &E::Args) -> Result<(), Error> {
-        let function = self.module.get_function(E::NAME).map_err(refused(E::NAME))?;
+    pub fn launch<E: Kernel>(&self, blocks: u32, args: &E::Args) -> Result<(), Error> {
+        let mut modules = self.modules.borrow_mut();
+        let module = match modules.entry(E::NAME) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(new) => {
+                let text = self.parts.module(E::NAME);
+                let text =
+                    text.ok_or_else(|| Error::Bug { what: format!("no kernel {} in the PTX", E::NAME) })?;
+                new.insert(Module::from_ptx(text, &[]).map_err(refused(E::NAME))?)
+            }
+        };
+        let function = module.get_function(E::NAME).map_err(refused(E::NAME))?;
         let mut args = *args;
         let parameters = [(&raw mut args).cast::<c_void>()];
         // SAFETY: the kernel takes one parameter of this type (the stamp says that host and PTX come from the same
@@ -198,4 +205,14 @@ impl Cuda {
         event.record(&self.stream).map_err(refused("recording an event"))?;
         Ok(Event(event))
     }
+}
+
+/// Refuses kernels that come from other sources than this program.
+fn check_stamp(module: &Module) -> Result<(), Error> {
+    let global =
+        module.get_global::<u64>(c"NEARMISS_STAMP").map_err(refused("looking for the kernels' stamp"))?;
+    let mut found = 0u64;
+    global.copy_to(&mut found).map_err(refused("reading the kernels' stamp"))?;
+    let found = format!("{found:016x}");
+    if found == STAMP { Ok(()) } else { Err(Error::Stamp { found, wanted: STAMP.into() }) }
 }

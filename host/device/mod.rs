@@ -5,6 +5,8 @@ mod cuda;
 #[cfg(all(feature = "cuda", target_os = "linux"))]
 mod driver;
 pub mod emulator;
+#[cfg(any(feature = "cuda", test))]
+mod ptx;
 
 use crate::error::Error;
 use bytemuck::Pod;

@@ -52,6 +52,9 @@ impl Watch for &Microscope {
     }
 }
 
+/// The lane of a read that all lanes make together.
+const EVERY_LANE: u32 = u32::MAX;
+
 /// A block that runs on one thread.
 pub struct Emulated<W> {
     block: u32,
@@ -234,17 +237,19 @@ impl<W: Watch> Block for Emulated<W> {
         self.phase += 1;
     }
     fn load<T: Pod>(&self, span: Span<T>, i: u32) -> T {
-        let place = Place { block: self.block, phase: self.phase, lane: 0 };
+        // Every lane reads it: no lane may write it in this phase.
+        let place = Place { block: self.block, phase: self.phase, lane: EVERY_LANE };
         match device(&self.watch, Access::Read, span, i, place) {
             // SAFETY: as for `EmulatedLane::read`.
             Some(p) => unsafe { p.read() },
             None => T::zeroed(),
         }
     }
-    fn peek<T: Word>(&self, words: Shared<T>, i: u32) -> T {
+    fn peek<T: Word>(&mut self, words: Shared<T>, i: u32) -> T {
         let offset = words.offset + i * size_of::<T>() as u32;
-        let place = Place { block: self.block, phase: self.phase, lane: 0 };
+        let place = Place { block: self.block, phase: self.phase, lane: EVERY_LANE };
         let inside = i < words.len;
+        self.phase += 1;
         if !self.watch.shared(Access::Read, offset, size_of::<T>(), inside, place) {
             return T::zeroed();
         }

@@ -80,8 +80,8 @@ pub trait Block {
 
     /// A uniform read of device memory, between phases. Nothing in this launch may write it.
     fn load<T: Pod>(&self, span: Span<T>, i: u32) -> T;
-    /// A uniform read of shared memory, between phases.
-    fn peek<T: Word>(&self, words: Shared<T>, i: u32) -> T;
+    /// A uniform read of shared memory, between phases; a barrier follows, so that the next phase may write the word.
+    fn peek<T: Word>(&mut self, words: Shared<T>, i: u32) -> T;
 
     /// Whether any lane's value is true.
     fn any(&mut self, values: &mut Self::Slot<bool>) -> bool;

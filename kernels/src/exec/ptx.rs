@@ -367,8 +367,10 @@ mod machine {
             self.lane.read(span, i)
         }
         #[inline(always)]
-        fn peek<T: Word>(&self, words: Shared<T>, i: u32) -> T {
-            self.lane.get(words, i)
+        fn peek<T: Word>(&mut self, words: Shared<T>, i: u32) -> T {
+            let value = self.lane.get(words, i);
+            sync_threads();
+            value
         }
         #[inline(always)]
         fn any(&mut self, values: &mut Register<bool>) -> bool {

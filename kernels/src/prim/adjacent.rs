@@ -19,28 +19,25 @@ pub enum Shared {
 }
 
 impl Shared {
-    /// What the triangles with these vertex indices share; indices within a triangle must differ.
+    /// What the triangles with these vertex indices share. A triangle may name a vertex twice: then it is a segment (or
+    /// a point), and a vertex counts once. Triangles over the same set of vertices are duplicates.
     pub fn by_index(p: [u32; 3], q: [u32; 3]) -> Self {
-        let (mut count, mut common, mut apex) = (0, (0, 0), (0, 0));
-        for (i, x) in p.iter().enumerate() {
-            match q.iter().position(|y| x == y) {
-                Some(j) => {
-                    count += 1;
-                    common = (i, j);
-                }
-                None => apex.0 = i,
+        let again = |t: [u32; 3]| (0..3).position(|k| t[..k].contains(&t[k]));
+        let foreign = |t: [u32; 3], o: [u32; 3]| t.iter().position(|v| !o.contains(v));
+        let mut common = None;
+        let mut count = 0;
+        for (i, v) in p.iter().enumerate() {
+            if let (false, Some(j)) = (p[..i].contains(v), q.iter().position(|w| v == w)) {
+                common = common.or(Some((i, j)));
+                count += 1;
             }
         }
-        for (j, y) in q.iter().enumerate() {
-            if !p.contains(y) {
-                apex.1 = j;
-            }
-        }
-        match count {
-            0 => Shared::Nothing,
-            1 => Shared::Corner(common.0, common.1),
-            2 => Shared::Edge(apex.0, apex.1),
-            _ => Shared::All,
+        match (common, foreign(p, q), foreign(q, p)) {
+            (None, ..) => Shared::Nothing,
+            (_, None, None) => Shared::All,
+            (Some((i, j)), ..) if count == 1 => Shared::Corner(i, j),
+            // The apex is the corner that is not shared, or, of a segment that is the shared edge, the one named twice.
+            (_, of_p, of_q) => Shared::Edge(of_p.or(again(p)).unwrap_or(0), of_q.or(again(q)).unwrap_or(0)),
         }
     }
 }
@@ -121,4 +118,26 @@ fn beyond_edge<R: Real, S: Signs<R>>(v: Vec3<R>, w: Vec3<R>, a: Vec3<R>, b: Vec3
         let (low, high) = (v[k].min(w[k]), v[k].max(w[k]));
         (a[k] > high && b[k] > high) || (a[k] < low && b[k] < low)
     }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Shared::{All, Corner, Edge, Nothing};
+    use super::*;
+
+    #[test]
+    fn what_is_shared_counts_each_vertex_once() {
+        assert_eq!(Shared::by_index([0, 1, 2], [3, 4, 5]), Nothing);
+        assert_eq!(Shared::by_index([0, 1, 2], [3, 1, 5]), Corner(1, 1));
+        assert_eq!(Shared::by_index([0, 1, 2], [2, 1, 5]), Edge(0, 2));
+        assert_eq!(Shared::by_index([0, 1, 2], [2, 0, 1]), All);
+        // A segment from a shared vertex is not two shared vertices.
+        assert_eq!(Shared::by_index([7, 7, 8], [7, 1, 2]), Corner(0, 0));
+        assert_eq!(Shared::by_index([1, 2, 7], [7, 8, 7]), Corner(2, 0));
+        // A segment that is an edge of the other triangle: its apex is the corner named twice.
+        assert_eq!(Shared::by_index([7, 7, 8], [7, 8, 2]), Edge(1, 2));
+        assert_eq!(Shared::by_index([7, 8, 2], [8, 7, 7]), Edge(2, 2));
+        assert_eq!(Shared::by_index([7, 7, 8], [8, 8, 7]), All);
+        assert_eq!(Shared::by_index([7, 7, 7], [7, 7, 7]), All);
+    }
 }

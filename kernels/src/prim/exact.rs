@@ -6,7 +6,7 @@
 //!
 //! Sizes: an axis that spans `b` bits gives differences of `b+1`, minors of `2b+3` and a determinant of `3b+6`
 //! bits. Up to 60 bits (most f32 data) two machine integers of 128 bits hold it all. Beyond, three sizes of stack arrays are
-//! compiled, and the run picks the smallest that fits: 94 bits (most f64 data), 286 bits (every finite f32 has 277),
+//! compiled (their steps out of line: they are rare, and a card compiles them at first use), and the run picks the smallest that fits: 94 bits (most f64 data), 286 bits (every finite f32 has 277),
 //! 2098 bits (every finite f64). Loops run over the limbs in use.
 
 use super::orient::plane_of;
@@ -25,6 +25,7 @@ impl<const N: usize> Int<N> {
     const ZERO: Self = Int { negative: false, len: 0, limb: [0; N] };
 
     /// `x / 2^grid`, where the grid divides `x`.
+    #[inline(never)]
     fn of<R: Real>(x: R, grid: i32) -> Self {
         let p = x.parts();
         let mut r = Self::ZERO;
@@ -71,6 +72,7 @@ impl<const N: usize> Int<N> {
     }
 
     /// `self - o`. The sizes of the module text leave room for the carry.
+    #[inline(never)]
     fn minus(&self, o: &Self) -> Self {
         let mut r = Self::ZERO;
         let n = self.len.max(o.len);
@@ -100,6 +102,7 @@ impl<const N: usize> Int<N> {
     }
 
     /// `self * o`; their lengths must add up to at most `P`.
+    #[inline(never)]
     fn times<const M: usize, const P: usize>(&self, o: &Int<M>) -> Int<P> {
         let mut r = Int::<P>::ZERO;
         for (i, a) in self.limb.iter().enumerate().take(self.len) {

@@ -66,16 +66,17 @@ impl<R: Real> Signs<R> for Exact {
     }
 }
 
+// Out of line: the decision around it has dozens of signs, and these are the rare ones.
 impl<R: Real> Signs<R> for Certain {
-    #[inline]
+    #[inline(never)]
     fn orient3d(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, d: Vec3<R>) -> Option<i32> {
         Wide::orient3d(a, b, c, d).or_else(|| Exact::orient3d(a, b, c, d))
     }
-    #[inline]
+    #[inline(never)]
     fn orient2d(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, axis: usize) -> Option<i32> {
         Wide::orient2d(a, b, c, axis).or_else(|| Exact::orient2d(a, b, c, axis))
     }
-    #[inline]
+    #[inline(never)]
     fn sides(t: &[Vec3<R>; 3], p: &[Vec3<R>; 3]) -> [Option<i32>; 3] {
         let s = Wide::sides(t, p);
         core::array::from_fn(|i| s[i].or_else(|| Exact::orient3d(t[0], t[1], t[2], p[i])))

@@ -143,7 +143,8 @@ pub fn sift<R: Real, B: Block>(b: &mut B, a: &SiftArgs<R>) {
             while mask != 0 {
                 let k = mask.trailing_zeros() as usize;
                 mask &= mask - 1;
-                let (ea, eb) = (of_p[k / 3], of_q[k % 3]);
+                // k is below 9; `% 3` tells the compiler.
+                let (ea, eb) = (of_p[k / 3 % 3], of_q[k % 3]);
                 put(l, a.ee, &mut place, ea.min(eb), ea.max(eb));
             }
         });

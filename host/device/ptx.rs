@@ -1,0 +1,128 @@
+//! The kernels' PTX, cut by kernel: the driver compiles a kernel when it is first used, not all of them at the start.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+/// PTX by its parts: what all kernels need, functions, kernels.
+pub struct Parts<'a> {
+    shared: String,
+    declarations: BTreeMap<&'a str, String>,
+    functions: BTreeMap<&'a str, String>,
+    entries: BTreeMap<&'a str, String>,
+}
+
+/// The name that a line defines, if it opens a function or a kernel.
+fn opens(line: &str) -> Option<(bool, &str)> {
+    let (is_entry, rest) = match line.strip_prefix(".visible .entry ") {
+        Some(rest) => (true, rest),
+        // `.func name(…` or `.func (.param …) name(…`.
+        None => (false, line.strip_prefix(".func")?.trim_start()),
+    };
+    let rest = if is_entry || !rest.starts_with('(') { rest } else { rest.split_once(") ")?.1 };
+    let end = rest.find(|c: char| !(c.is_alphanumeric() || c == '_' || c == '$')).unwrap_or(rest.len());
+    Some((is_entry, &rest[..end]))
+}
+
+impl<'a> Parts<'a> {
+    /// Cuts a text as rustc writes it: a function ends with a brace, a declaration with a semicolon, at a line's start.
+    pub fn new(ptx: &'a str) -> Parts<'a> {
+        let mut parts = Parts {
+            shared: String::new(),
+            declarations: BTreeMap::new(),
+            functions: BTreeMap::new(),
+            entries: BTreeMap::new(),
+        };
+        let mut lines = ptx.lines();
+        while let Some(line) = lines.next() {
+            let Some((is_entry, name)) = opens(line) else {
+                parts.shared += line;
+                parts.shared.push('\n');
+                continue;
+            };
+            let mut text = String::from(line) + "\n";
+            let mut has_body = false;
+            for line in lines.by_ref() {
+                text += line;
+                text.push('\n');
+                has_body |= line.starts_with('{');
+                if line.starts_with('}') || (!has_body && line.trim_end().ends_with(';')) {
+                    break;
+                }
+            }
+            match (has_body, is_entry) {
+                (false, _) => parts.declarations.insert(name, text),
+                (true, true) => parts.entries.insert(name, text),
+                (true, false) => parts.functions.insert(name, text),
+            };
+        }
+        parts
+    }
+
+    /// The names of the kernels.
+    #[cfg(test)]
+    fn kernels(&self) -> impl Iterator<Item = &'a str> {
+        self.entries.keys().copied()
+    }
+
+    /// A module of what all kernels share, without a kernel.
+    pub fn common(&self) -> &str {
+        &self.shared
+    }
+
+    /// A module of one kernel and all that it calls; `None` if there is no such kernel.
+    pub fn module(&self, kernel: &str) -> Option<String> {
+        let entry = self.entries.get(kernel)?;
+        let mut needed = BTreeSet::new();
+        let mut texts = vec![entry.as_str()];
+        while let Some(text) = texts.pop() {
+            for (name, body) in &self.functions {
+                if text.contains(name) && needed.insert(*name) {
+                    texts.push(body);
+                }
+            }
+        }
+        let mut module = self.shared.clone();
+        // What is only declared (a function that the driver brings) is declared for all.
+        for (name, text) in &self.declarations {
+            if needed.contains(name) || !self.functions.contains_key(name) {
+                module += text;
+            }
+        }
+        needed.iter().for_each(|name| module += &self.functions[name]);
+        module += entry;
+        Some(module)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "// head\n.version 7.5\n.func  (.param .b32 r) deep(\n\t.param .b32 p\n)\n;\n.func far()\n{\n\tret;\n}\n\
+        .func  (.param .b32 r) deep(\n\t.param .b32 p\n)\n{\n\tcall far;\n}\n.visible .entry one(\n)\n{\n\tcall deep;\n}\n\
+        .visible .entry two(\n)\n{\n\tret;\n}\n.file 1 \"a\"\n";
+
+    #[test]
+    fn a_kernel_brings_what_it_calls_and_no_more() {
+        let parts = Parts::new(TEXT);
+        assert_eq!(parts.kernels().collect::<Vec<_>>(), ["one", "two"]);
+        let one = parts.module("one").expect("a kernel");
+        for piece in [".version 7.5", "call far", "call deep", ".file 1", ".entry one", "p\n)\n;"] {
+            assert!(one.contains(piece), "{piece} in {one}");
+        }
+        assert!(!one.contains(".entry two"));
+        let two = parts.module("two").expect("a kernel");
+        assert!(!two.contains("far") && !two.contains("deep"));
+        assert!(parts.module("three").is_none());
+        assert!(!parts.common().contains(".entry") && !parts.common().contains(".func"));
+    }
+
+    #[test]
+    fn the_committed_text_has_every_kernel_of_the_table() {
+        let parts = Parts::new(include_str!("../../kernels/nearmiss.ptx"));
+        for (name, _) in nearmiss_kernels::entry::TABLE {
+            let module = parts.module(name).unwrap_or_else(|| panic!("{name} is missing"));
+            assert_eq!(module.matches("\n.visible .entry ").count(), 1, "{name}");
+        }
+        assert_eq!(parts.kernels().count(), nearmiss_kernels::entry::TABLE.len());
+    }
+}
