@@ -9,10 +9,8 @@ use std::path::PathBuf;
 
 /// The folder of public test data: `NEARMISS_DATA`, else beside the repository.
 pub fn data(path: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("NEARMISS_DATA").map_or_else(
-        || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data")),
-        PathBuf::from,
-    );
+    let root = std::env::var_os("NEARMISS_DATA")
+        .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data")), PathBuf::from);
     let path = root.join(path);
     if path.exists() {
         return Some(path);
