@@ -71,6 +71,22 @@ kernels! {
     atomic_and_read |b, a| {
         b.phase(|l| if l.lane() == 3 { l.read(a.long, 0); } else { l.fetch_max(a.long, 0, 1) });
     }
+    atomics_then_a_plain_write |b, a| {
+        b.phase(|l| {
+            l.fetch_add(a.long, 0, 1);
+            if l.lane() == 31 || l.lane() == 0 {
+                l.write(a.long, 0, 1);
+            }
+        });
+    }
+    atomics_then_a_plain_read |b, a| {
+        b.phase(|l| {
+            l.fetch_add(a.long, 0, 1);
+            if l.lane() == 31 {
+                l.read(a.long, 0);
+            }
+        });
+    }
     atomics_only |b, a| {
         b.phase(|l| { l.fetch_add(a.long, 0, 1); l.fetch_max(a.long, 0, 9); l.fetch_min(a.long, 0, 1) });
     }
@@ -153,6 +169,8 @@ fn a_race_is_seen() {
     condemned::<readers_and_a_writer>(RACE);
     condemned::<atomic_and_plain>(RACE);
     condemned::<atomic_and_read>(RACE);
+    condemned::<atomics_then_a_plain_write>(RACE);
+    condemned::<atomics_then_a_plain_read>(RACE);
     condemned::<shared_in_one_phase>(RACE);
     condemned::<shared_atomic_and_plain>(RACE);
     acquitted::<neighbours_in_two_phases>();
