@@ -224,6 +224,48 @@ fn places_that_strain_the_tree() {
 }
 
 #[test]
+fn doubles_that_no_float_can_hold() {
+    // Boxes are floats: of the large ones they know only the sign, of the small ones nothing. The signs know all.
+    for scale in [2f64.powi(470), 2f64.powi(200), 2f64.powi(-200), 2f64.powi(-1074)] {
+        for shift in [0.0, -60.0] {
+            let chain: Vec<_> = (0..60)
+                .flat_map(|i| at(2.0 * i as f32, 3.0).map(|p| p.map(|x| (f64::from(x) + shift) * scale)))
+                .collect();
+            let faces = (0..60).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+            let body = Body::still(Mesh::new("chain", Positions::F64(chain), faces).expect("a mesh"));
+            let truth: Vec<_> = (1..60).map(|b| [b - 1, b]).collect();
+            assert_eq!(pairs(engine(), vec![body.clone()]), truth, "{scale:e}");
+            let microscope = super::support::microscope(super::support::ORDERS[1]);
+            assert_eq!(pairs(microscope, vec![body]), truth, "{scale:e}");
+        }
+    }
+}
+
+#[test]
+fn vertices_that_no_face_uses_are_not_seen() {
+    let chain = (0..50).flat_map(|i| at(2.0 * i as f32, 3.0)).collect::<Vec<_>>();
+    let mut points = vec![[f32::NAN; 3], [f32::INFINITY, 0.0, 0.0], [1e30; 3]];
+    points.extend(chain);
+    let faces: Vec<_> = (1..51).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let truth: Vec<_> = (1..50).map(|b| [b - 1, b]).collect();
+    for device in machines() {
+        assert_eq!(pairs(device, vec![still(&points, &faces)]), truth);
+    }
+}
+
+#[test]
+fn zero_has_no_sign() {
+    let signed = |zero: f32| [[zero, zero, zero], [1.0, zero, zero], [zero, 1.0, zero]];
+    let crossing = |zero: f32| [[0.25, 0.25, -1.0], [0.25, 0.25, 1.0], [zero, zero, zero]];
+    for (p, q) in [(0.0, 0.0), (0.0, -0.0), (-0.0, 0.0), (-0.0, -0.0)] {
+        assert_eq!(
+            pairs(engine(), vec![loose(&[signed(p), signed(q), crossing(p)])]),
+            [[0, 1], [0, 2], [1, 2]]
+        );
+    }
+}
+
+#[test]
 fn doubles_are_not_rounded() {
     // Gaps of one unit in the last place of a double, which vanish in floats: the boxes overlap, the triangles do not.
     let gap = 2f64.powi(-52);

@@ -90,6 +90,14 @@ fn a_walk_that_never_spills_has_no_second_round() {
 }
 
 #[test]
+fn a_discrete_query_does_not_see_the_end_of_the_step() {
+    let ask = |body| super::support::ask(engine(), vec![body], Query::of(Motion::Discrete));
+    let first = Body::still(soup().frames().remove(0));
+    assert_eq!(ask(soup()).answer, ask(first).answer);
+    assert!(!ask(soup()).is_empty());
+}
+
+#[test]
 fn nothing_is_left_behind() {
     for motion in [Motion::Discrete, Motion::Continuous, Motion::Earliest] {
         let device = microscope(ORDERS[2]);
