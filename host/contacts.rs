@@ -104,12 +104,14 @@ impl Contacts {
         let answer = match query.motion {
             Motion::Earliest => Answer::Earliest(found.earliest),
             Motion::Discrete => {
-                let mut pairs: Vec<_> = found.pairs.par_iter().map(|p| [p.a, p.b - second.triangle]).collect();
+                let mut pairs: Vec<_> =
+                    found.pairs.par_iter().map(|p| [p.a, p.b - second.triangle]).collect();
                 pairs.par_sort_unstable();
                 Answer::Pairs(pairs)
             }
             Motion::Continuous => {
-                let contact = |kind, a, b, toi| Contact { kind, a, b, toi, toi_hi: toi, status: Status::Contact };
+                let contact =
+                    |kind, a, b, toi| Contact { kind, a, b, toi, toi_hi: toi, status: Status::Contact };
                 let vf = found.vf.par_iter().map(|hit| {
                     if layout.bodies() == 2 && hit.a >= second.vertex {
                         contact(Kind::Fv, hit.b, hit.a - second.vertex, hit.toi)
@@ -117,7 +119,8 @@ impl Contacts {
                         contact(Kind::Vf, hit.a, hit.b - second.triangle, hit.toi)
                     }
                 });
-                let ee = found.ee.par_iter().map(|hit| contact(Kind::Ee, hit.a, hit.b - second.edge, hit.toi));
+                let ee =
+                    found.ee.par_iter().map(|hit| contact(Kind::Ee, hit.a, hit.b - second.edge, hit.toi));
                 let mut contacts: Vec<_> = vf.chain(ee).collect();
                 contacts.par_sort_unstable_by_key(|c| (c.kind, c.a, c.b));
                 Answer::Contacts(contacts)

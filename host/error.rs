@@ -41,7 +41,9 @@ pub enum Error {
         advice: &'static str,
     },
     /// Memory ran out. Nothing was lost in silence: there is no answer.
-    #[error("{what}: {asked} bytes were needed and {given} were free; use a smaller scene or a larger machine")]
+    #[error(
+        "{what}: {asked} bytes were needed and {given} were free; use a smaller scene or a larger machine"
+    )]
     Room {
         /// Which memory, for what.
         what: String,
@@ -51,7 +53,9 @@ pub enum Error {
         given: u64,
     },
     /// The card's kernels were made from other sources than this program. Build again.
-    #[error("the kernels carry the stamp {found}, this program was built from {wanted}; run `cargo build` again")]
+    #[error(
+        "the kernels carry the stamp {found}, this program was built from {wanted}; run `cargo build` again"
+    )]
     Stamp {
         /// What the PTX exports.
         found: String,

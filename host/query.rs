@@ -60,7 +60,9 @@ impl Solver {
     pub fn promise(self) -> &'static str {
         match self {
             Solver::Exact => "exact: no contact is missed, none is invented",
-            Solver::Moller => "moller: a float test that can miss contacts and invent some; use exact for certainty",
+            Solver::Moller => {
+                "moller: a float test that can miss contacts and invent some; use exact for certainty"
+            }
             Solver::CubicF32 => {
                 "cubic-f32: a float solver that can miss contacts and report them late; docs/accuracy.md has figures"
             }
@@ -103,7 +105,8 @@ impl Query {
     pub fn check(&self) -> Result<(), Error> {
         let solver = self.solver();
         if !solver.answers(self.motion) {
-            let known = if self.motion == Motion::Discrete { "exact, moller" } else { "cubic-f64, cubic-f32" };
+            let known =
+                if self.motion == Motion::Discrete { "exact, moller" } else { "cubic-f64, cubic-f32" };
             return Err(Error::Choice {
                 what: format!("the solver {solver:?} does not answer a {:?} query", self.motion),
                 advice: format!("choose one of: {known}"),

@@ -27,9 +27,9 @@ pub fn body(files: &[PathBuf]) -> Result<Body, Error> {
 fn question(args: &DetectArgs) -> Result<(Vec<Body>, Query), Error> {
     let mut bodies = Vec::new();
     match &args.scene {
-        Some(name) => bodies.push(during("making the scene", || {
-            crate::scene::scene(name, args.triangles, args.seed)
-        })?),
+        Some(name) => {
+            bodies.push(during("making the scene", || crate::scene::scene(name, args.triangles, args.seed))?)
+        }
         None => bodies.push(during("reading", || body(&args.meshes))?),
     }
     if !args.with.is_empty() {
@@ -151,15 +151,22 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
             if body.is_moving() { "two frames" } else { "one frame" }
         );
     }
-    let _ = writeln!(text, "query      {:?}, {}", query.motion, if bodies.len() == 1 { "self" } else { "between" });
+    let _ = writeln!(
+        text,
+        "query      {:?}, {}",
+        query.motion,
+        if bodies.len() == 1 { "self" } else { "between" }
+    );
     let _ = writeln!(text, "machine    {} ({})", device.name(), device.backend());
-    let _ = writeln!(text, "volume     aabb{}", if query.motion == Motion::Discrete { "" } else { ", swept" });
+    let _ =
+        writeln!(text, "volume     aabb{}", if query.motion == Motion::Discrete { "" } else { ", swept" });
     let _ = writeln!(
         text,
         "traversal  {}",
         match query.traversal {
             Some(choice) => format!("{choice:?}, as asked"),
-            None if device.is_card() => "per leaf, long walks spill: a card must not wait for its longest walk".into(),
+            None if device.is_card() =>
+                "per leaf, long walks spill: a card must not wait for its longest walk".into(),
             None => "per leaf, to the end: a CPU's threads balance by themselves".into(),
         }
     );
@@ -170,7 +177,11 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
         session.depths().iter().map(usize::to_string).collect::<Vec<_>>().join(" and "),
         device.launches() - before
     );
-    let _ = writeln!(text, "memory     {:.1} MB to begin with; lists grow to the demand", device.bytes().0 as f64 / 1e6);
+    let _ = writeln!(
+        text,
+        "memory     {:.1} MB to begin with; lists grow to the demand",
+        device.bytes().0 as f64 / 1e6
+    );
     super::print(&text);
     Ok(ExitCode::SUCCESS)
 }

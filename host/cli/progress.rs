@@ -13,7 +13,10 @@ pub fn during<T>(what: &'static str, work: impl FnOnce() -> T) -> T {
     let shown = bar.clone();
     let (done, waits) = std::sync::mpsc::channel::<()>();
     let watcher = std::thread::spawn(move || {
-        if waits.recv_timeout(Duration::from_secs(1)).is_err_and(|e| e == std::sync::mpsc::RecvTimeoutError::Timeout) {
+        if waits
+            .recv_timeout(Duration::from_secs(1))
+            .is_err_and(|e| e == std::sync::mpsc::RecvTimeoutError::Timeout)
+        {
             shown.set_draw_target(ProgressDrawTarget::stderr());
             shown.set_message(what);
             shown.enable_steady_tick(Duration::from_millis(100));

@@ -91,7 +91,10 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
                 }
                 // Zipping loses no stage: all prints of a query have the same ones, and contacts are always last.
                 let hash = on_engine.stages.last().map_or(0, |stage| stage.1);
-                Ok(format!("{hash:016x} {:>9} contacts  {name}, {motion:?} by {solver:?}", on_engine.contacts))
+                Ok(format!(
+                    "{hash:016x} {:>9} contacts  {name}, {motion:?} by {solver:?}",
+                    on_engine.contacts
+                ))
             })?;
             let _ = writeln!(table, "{line}");
         }
@@ -109,11 +112,17 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
             }
         }
     }
-    let _ = writeln!(table, "microscope     {} scenes x {} queries x 3 orders", scene::NAMES.len(), QUERIES.len());
+    let _ = writeln!(
+        table,
+        "microscope     {} scenes x {} queries x 3 orders",
+        scene::NAMES.len(),
+        QUERIES.len()
+    );
     for fault in &faults {
         let _ = writeln!(table, "DIFFERS        {fault}");
     }
-    let _ = writeln!(table, "{}", if faults.is_empty() { "ok: every stage agrees to the bit" } else { "FAILED" });
+    let _ =
+        writeln!(table, "{}", if faults.is_empty() { "ok: every stage agrees to the bit" } else { "FAILED" });
     super::print(&table);
     match faults.first() {
         None => Ok(ExitCode::SUCCESS),

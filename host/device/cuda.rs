@@ -79,14 +79,15 @@ impl Cuda {
         let card = Card::get_device(0).map_err(refused("looking for a card"))?;
         let read = |what| card.get_attribute(what).map_err(refused("asking the card what it is"));
         let name = card.name().map_err(refused("asking the card's name"))?;
-        let capability = (
-            read(DeviceAttribute::ComputeCapabilityMajor)?,
-            read(DeviceAttribute::ComputeCapabilityMinor)?,
-        );
+        let capability =
+            (read(DeviceAttribute::ComputeCapabilityMajor)?, read(DeviceAttribute::ComputeCapabilityMinor)?);
         if capability < CAPABILITY {
             return Err(Error::Device {
                 what: format!("using the card {name}"),
-                text: format!("it has compute capability {}.{}, the kernels need 8.0", capability.0, capability.1),
+                text: format!(
+                    "it has compute capability {}.{}, the kernels need 8.0",
+                    capability.0, capability.1
+                ),
                 advice: "run with `--backend cpu`",
             });
         }
@@ -96,8 +97,10 @@ impl Cuda {
         let stream = Stream::new(StreamFlags::NON_BLOCKING, None).map_err(refused("making a stream"))?;
         let module = Module::from_ptx(PTX, &[]).map_err(refused("loading the kernels"))?;
         // SAFETY: a page-locked buffer of bytes; every byte is written before it is read.
-        let staging = unsafe { LockedBuffer::uninitialized(STAGING) }.map_err(refused("locking host memory"))?;
-        let cuda = Cuda { name, resident_lanes, staging: RefCell::new(staging), module, stream, _context: context };
+        let staging =
+            unsafe { LockedBuffer::uninitialized(STAGING) }.map_err(refused("locking host memory"))?;
+        let cuda =
+            Cuda { name, resident_lanes, staging: RefCell::new(staging), module, stream, _context: context };
         cuda.check_stamp()?;
         Ok(cuda)
     }
@@ -105,7 +108,8 @@ impl Cuda {
     /// Refuses kernels that come from other sources than this program.
     fn check_stamp(&self) -> Result<(), Error> {
         let symbol = CString::new("NEARMISS_STAMP").map_err(|e| Error::Bug { what: e.to_string() })?;
-        let global = self.module.get_global::<u64>(&symbol).map_err(refused("looking for the kernels' stamp"))?;
+        let global =
+            self.module.get_global::<u64>(&symbol).map_err(refused("looking for the kernels' stamp"))?;
         let mut found = 0u64;
         global.copy_to(&mut found).map_err(refused("reading the kernels' stamp"))?;
         let found = format!("{found:016x}");
@@ -128,14 +132,13 @@ impl Cuda {
     /// Zeroed memory of the card.
     pub fn memory(&self, bytes: usize) -> Result<Memory, Error> {
         // SAFETY: every byte is set below, before anything reads it: the stream orders the two.
-        let buffer = unsafe { DeviceBuffer::<u8>::uninitialized(bytes.max(16)) }
-            .map_err(|e| match e {
-                CudaError::OutOfMemory => {
-                    let (free, _) = cust::memory::mem_get_info().unwrap_or((0, 0));
-                    Error::Room { what: "memory of the card".into(), asked: bytes as u64, given: free as u64 }
-                }
-                other => refused("taking memory of the card")(other),
-            })?;
+        let buffer = unsafe { DeviceBuffer::<u8>::uninitialized(bytes.max(16)) }.map_err(|e| match e {
+            CudaError::OutOfMemory => {
+                let (free, _) = cust::memory::mem_get_info().unwrap_or((0, 0));
+                Error::Room { what: "memory of the card".into(), asked: bytes as u64, given: free as u64 }
+            }
+            other => refused("taking memory of the card")(other),
+        })?;
         let mut memory = Memory(buffer);
         self.clear(&mut memory)?;
         Ok(memory)
@@ -185,7 +188,8 @@ impl Cuda {
         // SAFETY: the kernel takes one parameter of this type (the stamp says that host and PTX come from the same
         // sources), and its spans are memory of this card that the caller's buffers keep alive: freeing a buffer waits
         // for the launches before it.
-        unsafe { self.stream.launch(&function, blocks, E::LANES, E::SHARED, &parameters) }.map_err(refused(E::NAME))
+        unsafe { self.stream.launch(&function, blocks, E::LANES, E::SHARED, &parameters) }
+            .map_err(refused(E::NAME))
     }
 
     /// A point in the stream.

@@ -148,7 +148,13 @@ impl Device {
         let t = &self.tally;
         t.bytes.set(t.bytes.get() + bytes as u64);
         t.peak.set(t.peak.get().max(t.bytes.get()));
-        Ok(Buffer { memory, len, machine: self.machine.clone(), tally: self.tally.clone(), element: PhantomData })
+        Ok(Buffer {
+            memory,
+            len,
+            machine: self.machine.clone(),
+            tally: self.tally.clone(),
+            element: PhantomData,
+        })
     }
 
     /// Memory that holds `items`.

@@ -10,7 +10,8 @@ use crate::error::Error;
 use crate::mesh::Body;
 use crate::query::{Motion, Query, Solver, Traversal};
 use nearmiss_kernels::abi::{
-    DiscreteArgs, Frames, Hit, KEEP_ADJACENT, Pair, ROUNDS, SELF, SiftArgs, SolveArgs, Span, TraverseArgs, Unit, counter,
+    DiscreteArgs, Frames, Hit, KEEP_ADJACENT, Pair, ROUNDS, SELF, SiftArgs, SolveArgs, Span, TraverseArgs,
+    Unit, counter,
 };
 use nearmiss_kernels::entry;
 use nearmiss_kernels::entry::Entry;

@@ -39,7 +39,8 @@ impl Layout {
                 let own = Topology::new(body.faces(), body.vertex_count());
                 all.edges.extend(own.edges.iter().map(|edge| edge.map(|v| v + at.vertex)));
                 // An edge that does not exist is owned by nobody, so its number is never used.
-                all.face_edges.extend(own.face_edges.iter().map(|face| face.map(|e| e.saturating_add(at.edge))));
+                all.face_edges
+                    .extend(own.face_edges.iter().map(|face| face.map(|e| e.saturating_add(at.edge))));
                 all.owners.extend(&own.owners);
             }
             at.vertex += body.vertex_count() as u32;

@@ -177,8 +177,9 @@ impl Session {
         for tree in trees {
             let (nodes, levels, leaves, first) = tree.download()?;
             let mut seen = vec![false; leaves.len()];
-            bvh::check(&nodes, &levels, &leaves, (first, &mut seen), true)
-                .map_err(|violation: Violation| Error::Bug { what: format!("a tree is broken: {violation:?}") })?;
+            bvh::check(&nodes, &levels, &leaves, (first, &mut seen), true).map_err(
+                |violation: Violation| Error::Bug { what: format!("a tree is broken: {violation:?}") },
+            )?;
         }
         Ok(())
     }

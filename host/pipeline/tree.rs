@@ -3,7 +3,9 @@
 use super::precision::Precision;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
-use nearmiss_kernels::abi::{FitArgs, Frames, Inner, MortonArgs, NONE, Node, RefitArgs, SortArgs, Span, TreeArgs};
+use nearmiss_kernels::abi::{
+    FitArgs, Frames, Inner, MortonArgs, NONE, Node, RefitArgs, SortArgs, Span, TreeArgs,
+};
 use nearmiss_kernels::entry::{self, Entry};
 use nearmiss_kernels::exec::BINS;
 use nearmiss_kernels::stage::construct::MAX_LEVELS;
@@ -42,7 +44,8 @@ impl Tree {
         (first, count): (u32, u32),
     ) -> Result<Tree, Error> {
         let n = count as usize;
-        let (mut keys, mut values) = ([device.buffer(n)?, device.buffer(n)?], [device.buffer(n)?, device.buffer(n)?]);
+        let (mut keys, mut values) =
+            ([device.buffer(n)?, device.buffer(n)?], [device.buffer(n)?, device.buffer(n)?]);
         let mut bounds = device.buffer(6)?;
         bounds.clear()?;
         let morton = MortonArgs {
@@ -100,7 +103,10 @@ impl Tree {
         }
         device.launch::<entry::construct_place>(device.blocks_for::<entry::construct_place>(inner), &args)?;
         device.launch::<entry::construct_levels>(1, &args)?;
-        device.launch::<entry::construct_emit>(device.blocks_for::<entry::construct_emit>(inner.max(1)), &args)?;
+        device.launch::<entry::construct_emit>(
+            device.blocks_for::<entry::construct_emit>(inner.max(1)),
+            &args,
+        )?;
         tree.known()
     }
 
@@ -110,7 +116,9 @@ impl Tree {
         let count = levels[0] as usize;
         self.starts = levels.get(1..count + 2).unwrap_or_default().to_vec();
         if self.starts.last() != Some(&(2 * self.count)) {
-            return Err(Error::Bug { what: format!("a tree of {} triangles has the levels {levels:?}", self.count) });
+            return Err(Error::Bug {
+                what: format!("a tree of {} triangles has the levels {levels:?}", self.count),
+            });
         }
         Ok(self)
     }
@@ -124,7 +132,12 @@ impl Tree {
     ///
     /// # Errors
     /// Those of the device.
-    pub fn fit<R: Precision>(&self, device: &Device, frames: Frames<R>, faces: Span<[u32; 3]>) -> Result<(), Error> {
+    pub fn fit<R: Precision>(
+        &self,
+        device: &Device,
+        frames: Frames<R>,
+        faces: Span<[u32; 3]>,
+    ) -> Result<(), Error> {
         let args = FitArgs { frames, faces, leaf_nodes: self.leaf_nodes.span(), nodes: self.nodes.span() };
         device.launch::<R::Fit>(device.blocks_for::<R::Fit>(self.count as usize), &args)
     }

@@ -38,11 +38,13 @@ impl Emulator {
     pub fn new(mode: Mode, threads: Option<usize>) -> Result<Self, Error> {
         let pool = match threads {
             None => None,
-            Some(n) => Some(rayon::ThreadPoolBuilder::new().num_threads(n).build().map_err(|e| Error::Device {
-                what: format!("starting {n} threads"),
-                text: e.to_string(),
-                advice: "ask for fewer with --threads",
-            })?),
+            Some(n) => {
+                Some(rayon::ThreadPoolBuilder::new().num_threads(n).build().map_err(|e| Error::Device {
+                    what: format!("starting {n} threads"),
+                    text: e.to_string(),
+                    advice: "ask for fewer with --threads",
+                })?)
+            }
         };
         let microscope = match mode {
             Mode::Engine => None,
@@ -130,8 +132,11 @@ unsafe impl Sync for Memory {}
 impl Memory {
     fn new(bytes: usize) -> Result<Self, Error> {
         let len = bytes.div_ceil(16).max(1);
-        let layout = std::alloc::Layout::array::<u128>(len)
-            .map_err(|_| Error::Room { what: "host memory".into(), asked: bytes as u64, given: isize::MAX as u64 })?;
+        let layout = std::alloc::Layout::array::<u128>(len).map_err(|_| Error::Room {
+            what: "host memory".into(),
+            asked: bytes as u64,
+            given: isize::MAX as u64,
+        })?;
         // SAFETY: the layout is not empty.
         let start = unsafe { std::alloc::alloc_zeroed(layout) }.cast::<u128>();
         let start = NonNull::new(start).ok_or(Error::Room {
