@@ -267,6 +267,7 @@ fn bad_arguments_are_refused_with_what_is_known() {
         (&["detect", "a.ply", "--backend", "abacus"], &["cpu", "cuda", "auto"]),
         (&["detect", "a.ply", "--bv", "sphere"], &["aabb"]),
         (&["scene", "cloth", "--out", "x"], &["cloth-ball", "grid", "soup"]),
+        (&["detect", "--scene", "cloth"], &["cloth-ball", "grid", "soup"]),
         (&["detect", "--scene", "grid", "--triangles", "4", "--out", "a.xlsx"], &[".csv", ".json"]),
         (&["detect", "--scene", "grid", "--triangles", "4", "--solver", "cubic-f64"], &["exact, moller"]),
         (
