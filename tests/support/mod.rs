@@ -72,13 +72,31 @@ pub fn loose(triangles: &[[[f32; 3]; 3]]) -> Body {
     still(triangles.as_flattened(), &faces)
 }
 
+/// The card, in a program that was built for one. Where there is none that is said; with `REQUIRE_CUDA=1` it is a
+/// failure.
+#[cfg(feature = "cuda")]
+fn card() -> Option<Device> {
+    match Device::open(nearmiss::device::Backend::Cuda, None) {
+        Ok(card) => Some(card),
+        Err(error @ nearmiss::Error::Device { .. }) => {
+            assert!(std::env::var_os("REQUIRE_CUDA").is_none(), "REQUIRE_CUDA is set: {error}");
+            eprintln!("skipped on the card: {error}");
+            None
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
+
 /// Every machine that a test must not be able to tell apart: the engine on all threads and on one, with other blocks
-/// than usual, and the microscope in each order.
+/// than usual, the microscope in each order, and the card.
 pub fn machines() -> Vec<Device> {
     let emulator = |mode, threads| Emulator::new(mode, threads).expect("threads");
     let mut all = vec![emulator(Mode::Engine, None), emulator(Mode::Engine, Some(1))];
     all.extend([1, 7, 33, 1024].map(|lanes| emulator(Mode::Engine, None).with_lanes(lanes)));
     all.extend(ORDERS.map(|order| emulator(Mode::Microscope(order), None)));
     all.push(emulator(Mode::Microscope(ORDERS[2]), None).with_lanes(32));
-    all.into_iter().map(Device::emulator).collect()
+    let machines = all.into_iter().map(Device::emulator);
+    #[cfg(feature = "cuda")]
+    let machines = machines.chain(card());
+    machines.collect()
 }
