@@ -58,8 +58,9 @@ pub struct DetectArgs {
     /// The mesh (.ply, .obj); with a second file, its positions at the end of the step.
     #[arg(required_unless_present = "scene", num_args = 1..=2, value_name = "MESH")]
     pub meshes: Vec<PathBuf>,
-    /// A generated scene instead of files; `nearmiss scene --help` lists them.
-    #[arg(long, conflicts_with_all = ["meshes", "with"], value_name = "NAME")]
+    /// A generated scene instead of files.
+    #[arg(long, conflicts_with_all = ["meshes", "with"], value_name = "NAME",
+        value_parser = clap::builder::PossibleValuesParser::new(crate::scene::NAMES))]
     pub scene: Option<String>,
     /// Triangles of the generated scene, about.
     #[arg(long, default_value_t = 92_230, requires = "scene")]

@@ -370,7 +370,7 @@ impl<R: Precision> Corridor<R> {
         let mut prints = Vec::new();
         let (mut links, mut leaves, mut inner) = (Vec::new(), Vec::new(), Vec::new());
         for tree in &self.trees {
-            for node in &tree.download()?.0 {
+            for node in &tree.download()?.nodes {
                 links.push([node.link, node.last]);
                 let volume = [node.lo.map(f32::to_bits), node.hi.map(f32::to_bits)];
                 if node.is_leaf() { leaves.push(volume) } else { inner.push(volume) }

@@ -175,9 +175,9 @@ impl Session {
         let Some(corridor) = &self.corridor else { return Ok(()) };
         let trees = either!(corridor, c => c.trees());
         for tree in trees {
-            let (nodes, levels, leaves, first) = tree.download()?;
-            let mut seen = vec![false; leaves.len()];
-            bvh::check(&nodes, &levels, &leaves, (first, &mut seen), true).map_err(
+            let t = tree.download()?;
+            let mut seen = vec![false; t.leaf_nodes.len()];
+            bvh::check(&t.nodes, &t.levels, &t.leaf_nodes, (t.first, &mut seen), true).map_err(
                 |violation: Violation| Error::Bug { what: format!("a tree is broken: {violation:?}") },
             )?;
         }

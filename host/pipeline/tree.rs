@@ -6,9 +6,9 @@ use crate::error::Error;
 use nearmiss_kernels::abi::{
     FitArgs, Frames, Inner, MortonArgs, NONE, Node, RefitArgs, SortArgs, Span, TreeArgs,
 };
+use nearmiss_kernels::bvh::MAX_LEVELS;
 use nearmiss_kernels::entry::{self, Entry};
 use nearmiss_kernels::exec::BINS;
-use nearmiss_kernels::stage::construct::MAX_LEVELS;
 
 /// Keys of a lane in a tile of the radix sort: a tile is 1,024 keys, 90 tiles on cloth-ball, so that most of a card's
 /// processors have one.
@@ -207,24 +207,36 @@ impl Tree {
         Ok(())
     }
 
-    /// Everything on the host, for the checker: nodes, levels, leaf nodes, first triangle.
+    /// Everything on the host, for the checker.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn download(&self) -> Result<(Vec<Node>, Vec<u32>, Vec<u32>, u32), Error> {
+    pub fn download(&self) -> Result<Copied, Error> {
         let nodes = {
             // Node 0 is not used and nothing writes it.
             let mut nodes = self.nodes.read(self.nodes.len())?;
             nodes[0] = Node { link: NONE, ..Node::default() };
             nodes
         };
-        Ok((
+        Ok(Copied {
             nodes,
-            self.levels.read(self.starts.len() + 1)?,
-            self.leaf_nodes.read(self.leaf_nodes.len())?,
-            self.first,
-        ))
+            levels: self.levels.read(self.starts.len() + 1)?,
+            leaf_nodes: self.leaf_nodes.read(self.leaf_nodes.len())?,
+            first: self.first,
+        })
     }
+}
+
+/// A tree as it lies on the device, on the host.
+pub struct Copied {
+    /// The nodes.
+    pub nodes: Vec<Node>,
+    /// Number of levels, then where each begins, then where the last ends.
+    pub levels: Vec<u32>,
+    /// Each leaf's node.
+    pub leaf_nodes: Vec<u32>,
+    /// The body's first triangle.
+    pub first: u32,
 }
 
 /// The memory of a radix sort.

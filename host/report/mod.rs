@@ -59,7 +59,7 @@ fn csv(out: impl Write, contacts: &Contacts) -> Result<(), String> {
             .and_then(|()| pairs.iter().try_for_each(|pair| csv.serialize(pair))),
         Answer::Contacts(all) => csv
             .write_record(["kind", "a", "b", "toi", "toi_hi", "status"])
-            .and_then(|()| all.iter().try_for_each(|c| csv.write_record(&row(c)))),
+            .and_then(|()| all.iter().try_for_each(|c| csv.write_record(row(c)))),
         Answer::Earliest(toi) => csv
             .write_record(["earliest_toi"])
             .and_then(|()| toi.iter().try_for_each(|toi| csv.write_record([toi.to_string()]))),

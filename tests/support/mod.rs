@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each binary uses a part")]
 
 use nearmiss::device::emulator::{Emulator, Mode, Order};
-use nearmiss::mesh::{Body, Mesh};
+use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::{Device, Query, Session};
 use std::io::Read;
 use std::path::PathBuf;
@@ -51,4 +51,52 @@ pub fn ask(device: Device, bodies: Vec<Body>, query: Query) -> nearmiss::Contact
     let contacts = session.detect().expect("an answer");
     session.check_trees().expect("sound trees");
     contacts
+}
+
+/// A still body of triangles given by their vertices.
+pub fn still(points: &[[f32; 3]], faces: &[[u32; 3]]) -> Body {
+    Body::still(Mesh::new("test", Positions::F32(points.to_vec()), faces.to_vec()).expect("a mesh"))
+}
+
+/// A body that moves from `t0` to `t1`.
+pub fn moving(t0: &[[f32; 3]], t1: &[[f32; 3]], faces: &[[u32; 3]]) -> Body {
+    let frame = |points: &[[f32; 3]]| {
+        Mesh::new("test", Positions::F32(points.to_vec()), faces.to_vec()).expect("a mesh")
+    };
+    Body::moving(frame(t0), frame(t1)).expect("two frames of one mesh")
+}
+
+/// A still body of triangles that share no vertex.
+pub fn loose(triangles: &[[[f32; 3]; 3]]) -> Body {
+    let faces: Vec<_> = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    still(triangles.as_flattened(), &faces)
+}
+
+/// The card, in a program that was built for one. Where there is none that is said; with `REQUIRE_CUDA=1` it is a
+/// failure.
+#[cfg(feature = "cuda")]
+fn card() -> Option<Device> {
+    match Device::open(nearmiss::device::Backend::Cuda, None) {
+        Ok(card) => Some(card),
+        Err(error @ nearmiss::Error::Device { .. }) => {
+            assert!(std::env::var_os("REQUIRE_CUDA").is_none(), "REQUIRE_CUDA is set: {error}");
+            eprintln!("skipped on the card: {error}");
+            None
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// Every machine that a test must not be able to tell apart: the engine on all threads and on one, with other blocks
+/// than usual, the microscope in each order, and the card.
+pub fn machines() -> Vec<Device> {
+    let emulator = |mode, threads| Emulator::new(mode, threads).expect("threads");
+    let mut all = vec![emulator(Mode::Engine, None), emulator(Mode::Engine, Some(1))];
+    all.extend([1, 7, 33, 1024].map(|lanes| emulator(Mode::Engine, None).with_lanes(lanes)));
+    all.extend(ORDERS.map(|order| emulator(Mode::Microscope(order), None)));
+    all.push(emulator(Mode::Microscope(ORDERS[2]), None).with_lanes(32));
+    let machines = all.into_iter().map(Device::emulator);
+    #[cfg(feature = "cuda")]
+    let machines = machines.chain(card());
+    machines.collect()
 }

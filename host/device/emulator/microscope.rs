@@ -75,6 +75,8 @@ struct Shadow {
     launch: u64,
     plain_write: Option<Place>,
     atomic: Option<Place>,
+    /// A second atomic access, unordered with the first.
+    other_atomic: Option<Place>,
     read: Option<Place>,
     /// A second reader, unordered with the first.
     other_read: Option<Place>,
@@ -89,9 +91,9 @@ impl Shadow {
             return Some(Fault::Unwritten(place));
         }
         let rivals = match access {
-            Access::Read => [self.plain_write, self.atomic, None, None],
-            Access::Atomic => [self.plain_write, None, self.read, self.other_read],
-            Access::Write => [self.plain_write, self.atomic, self.read, self.other_read],
+            Access::Read => [self.plain_write, self.atomic, self.other_atomic, None, None],
+            Access::Atomic => [self.plain_write, None, None, self.read, self.other_read],
+            Access::Write => [self.plain_write, self.atomic, self.other_atomic, self.read, self.other_read],
         };
         let race = rivals.into_iter().flatten().find(|rival| rival.meets(place));
         match access {
@@ -100,7 +102,10 @@ impl Shadow {
                 _ => self.read = Some(place),
             },
             Access::Write => self.plain_write = Some(place),
-            Access::Atomic => self.atomic = Some(place),
+            Access::Atomic => match self.atomic {
+                Some(first) if first.meets(place) => self.other_atomic = Some(place),
+                _ => self.atomic = Some(place),
+            },
         }
         self.written |= access != Access::Read;
         race.map(|rival| Fault::Race(rival, place))

@@ -2,6 +2,10 @@
 
 use crate::abi::{LEAF, Node, ROOT};
 
+/// Levels that a tree can have: a path from the root splits on one of the 63 bits of the code or, between equal
+/// codes, on one of the 32 bits of the index, each at most once; and the leaves.
+pub const MAX_LEVELS: u32 = 63 + 32 + 1;
+
 /// The first thing found wrong with a tree. Node numbers are indices into the nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Violation {
@@ -69,7 +73,11 @@ pub fn check(
                 continue;
             }
             let inside = level + 2 < starts.len() && node.link < starts[level + 2];
-            if node.link & LEAF != 0 || node.link % 2 != 0 || node.link < starts[level + 1] || !inside {
+            if node.link & LEAF != 0
+                || !node.link.is_multiple_of(2)
+                || node.link < starts[level + 1]
+                || !inside
+            {
                 return Err(Violation::Link { node: at });
             }
             if node.link != next {

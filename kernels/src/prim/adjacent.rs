@@ -20,7 +20,7 @@ pub enum Shared {
 
 impl Shared {
     /// What the triangles with these vertex indices share. A triangle may name a vertex twice: then it is a segment (or
-    /// a point), and a vertex counts once. Triangles over the same set of vertices are duplicates.
+    /// a point), and a vertex counts once.
     pub fn by_index(p: [u32; 3], q: [u32; 3]) -> Self {
         let again = |t: [u32; 3]| (0..3).position(|k| t[..k].contains(&t[k]));
         let foreign = |t: [u32; 3], o: [u32; 3]| t.iter().position(|v| !o.contains(v));
@@ -32,12 +32,15 @@ impl Shared {
                 count += 1;
             }
         }
-        match (common, foreign(p, q), foreign(q, p)) {
-            (None, ..) => Shared::Nothing,
-            (_, None, None) => Shared::All,
-            (Some((i, j)), ..) if count == 1 => Shared::Corner(i, j),
+        match common {
+            None => Shared::Nothing,
+            Some((i, j)) if count == 1 => Shared::Corner(i, j),
             // The apex is the corner that is not shared, or, of a segment that is the shared edge, the one named twice.
-            (_, of_p, of_q) => Shared::Edge(of_p.or(again(p)).unwrap_or(0), of_q.or(again(q)).unwrap_or(0)),
+            Some(_) if count == 2 => {
+                let apex = |t, o| foreign(t, o).or(again(t)).unwrap_or(0);
+                Shared::Edge(apex(p, q), apex(q, p))
+            }
+            Some(_) => Shared::All,
         }
     }
 }
@@ -137,7 +140,7 @@ mod tests {
         // A segment that is an edge of the other triangle: its apex is the corner named twice.
         assert_eq!(Shared::by_index([7, 7, 8], [7, 8, 2]), Edge(1, 2));
         assert_eq!(Shared::by_index([7, 8, 2], [8, 7, 7]), Edge(2, 2));
-        assert_eq!(Shared::by_index([7, 7, 8], [8, 8, 7]), All);
-        assert_eq!(Shared::by_index([7, 7, 7], [7, 7, 7]), All);
+        assert_eq!(Shared::by_index([7, 7, 8], [8, 8, 7]), Edge(1, 1));
+        assert_eq!(Shared::by_index([7, 7, 7], [7, 7, 7]), Corner(0, 0));
     }
 }

@@ -1,8 +1,8 @@
 //! Work units that wait: the stack of one walk.
 
 use crate::abi::Pair;
+use crate::bvh::MAX_LEVELS;
 use crate::exec::{Lane, Shared};
-use crate::stage::construct::MAX_LEVELS;
 use core::mem::MaybeUninit;
 
 /// Entries that a walk's stack can need: one waiting sibling a level.

@@ -11,7 +11,3 @@
 pub mod morton;
 pub mod sort;
 pub mod tree;
-
-/// Levels that a tree can have: a path from the root splits on one of the 63 bits of the code or, between equal
-/// codes, on one of the 32 bits of the index, each at most once; and the leaves.
-pub const MAX_LEVELS: u32 = 63 + 32 + 1;

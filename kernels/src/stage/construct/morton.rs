@@ -51,12 +51,10 @@ pub fn bounds<R: Real, B: Block>(b: &mut B, a: &MortonArgs<R>) {
 
 /// The code of each triangle's centre.
 pub fn morton<R: Real, B: Block>(b: &mut B, a: &MortonArgs<R>) {
-    let mut lo = [0.0; 3];
-    let mut extent = 0.0;
-    for k in 0..3 {
-        lo[k] = ordered::number(!b.load(a.bounds, k as u32 + 3));
-        extent = Real::max(extent, ordered::number(b.load(a.bounds, k as u32)) - lo[k]);
-    }
+    let upper = |b: &B, k: u32| ordered::number(b.load(a.bounds, k));
+    let lower = |b: &B, k: u32| ordered::number(!b.load(a.bounds, k + 3));
+    let lo = [lower(b, 0), lower(b, 1), lower(b, 2)];
+    let extent = (upper(b, 0) - lo[0]).max(upper(b, 1) - lo[1]).max(upper(b, 2) - lo[2]);
     let scale = if extent > 0.0 { CELLS / extent } else { 0.0 };
     let stride = b.blocks() * b.lanes();
     b.phase(|l| {

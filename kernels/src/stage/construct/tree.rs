@@ -7,13 +7,14 @@
 //!          T2 levels lie one behind the other, and within one nodes ascend by leaf.
 //!          T3 the leaves below a node are one range, and a node's `last` is its end.
 //!          T4 every leaf has one node, every triangle one leaf.  [`crate::bvh::check`] says which one is broken.
-//! Room     2n nodes, n - 1 inner nodes; at most [`super::MAX_LEVELS`] levels.
+//! Room     2n nodes, n - 1 inner nodes; at most [`MAX_LEVELS`] levels.
 //! Departs  Karras stores inner nodes by an end of their range; the second half of this file gives them breadth-first
 //!          places. An inner node is known by its split: n - 1 gaps between n leaves, each split once. Gaps sorted
 //!          stably by the depth of their node are the nodes in level order, left to right.
 //! Cost     a binary search of the codes (about 2 x 18 reads of 8 B) and a walk to the root (4 B a level) a node.
 
 use crate::abi::{Inner, LEAF, NONE, Node, ROOT, TreeArgs};
+use crate::bvh::MAX_LEVELS;
 use crate::exec::{BINS, Block, Lane, Slot};
 
 /// The order of leaves i and j: how many leading bits of (code, index) they share; -1 beyond the ends.
@@ -109,12 +110,12 @@ pub fn levels<B: Block>(b: &mut B, a: &TreeArgs) {
     let lanes = b.lanes();
     let (mut before, mut depth, mut deepest) = (0, 0, 0);
     let count = |l: &B::Lane, d: u32| if d < BINS && a.leaves > 1 { l.read(a.totals, d) } else { 0 };
-    while depth < super::MAX_LEVELS {
+    while depth < MAX_LEVELS {
         b.phase(|l| *sums.of(l) = count(l, depth + l.lane()));
         let total = b.scan(&mut sums);
         b.phase(|l| {
             let d = depth + l.lane();
-            if d < super::MAX_LEVELS {
+            if d < MAX_LEVELS {
                 l.write(a.levels, d + 2, ROOT + 1 + 2 * (before + *sums.of(l)));
             }
         });

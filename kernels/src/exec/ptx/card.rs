@@ -1,0 +1,255 @@
+//! A block of the card: each thread runs the kernel for its own lane.
+
+use super::raw::{
+    BROADCAST, address, atomic, barrier_or, element, load_global, load_shared32, load_shared64, load_word,
+    match_any, scratch_address, shuffle_up, store_shared32, store_shared64, store_word, sync_threads,
+};
+use crate::abi::Span;
+use crate::exec::{BINS, Block, Lane, Shared, Slot, WARP, Word};
+use bytemuck::Pod;
+use core::arch::asm;
+use core::arch::nvptx::{
+    _block_dim_x as block_dim_x, _block_idx_x as block_idx_x, _grid_dim_x as grid_dim_x,
+    _thread_idx_x as thread_idx_x,
+};
+use core::mem::MaybeUninit;
+use core::sync::atomic::Ordering::Relaxed;
+
+/// A panic stops the launch: the host sees an error, never half an answer.
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo) -> ! {
+    // SAFETY: ends the launch.
+    unsafe { core::arch::nvptx::trap() }
+}
+
+/// The block that this thread belongs to.
+pub struct Card {
+    /// Bytes of shared memory given out.
+    taken: u32,
+    lane: Thread,
+}
+
+/// This thread, as a lane.
+#[derive(Clone, Copy)]
+pub struct Thread {
+    lane: u32,
+    global: u32,
+}
+
+/// A value of this thread: a register.
+pub struct Register<T>(T);
+
+impl<T> Slot<T, Thread> for Register<T> {
+    #[inline(always)]
+    fn of(&mut self, _: &Thread) -> &mut T {
+        &mut self.0
+    }
+}
+
+impl Lane for Thread {
+    #[inline(always)]
+    fn lane(&self) -> u32 {
+        self.lane
+    }
+    #[inline(always)]
+    fn global(&self) -> u32 {
+        self.global
+    }
+    #[inline(always)]
+    fn read<T: Pod>(&self, span: Span<T>, i: u32) -> T {
+        // SAFETY: as for `atomic`; nobody writes it in this phase, which the emulator's race watch checks.
+        unsafe { load_global(element(span, i)) }
+    }
+    #[inline(always)]
+    fn write<T: Pod>(&self, span: Span<T>, i: u32, value: T) {
+        // SAFETY: as for `read`; nobody else touches it in this phase.
+        unsafe { element(span, i).write(value) }
+    }
+    #[inline(always)]
+    fn fetch_max(&self, span: Span<u64>, i: u32, value: u64) {
+        atomic(span, i).fetch_max(value, Relaxed);
+    }
+    #[inline(always)]
+    fn fetch_min(&self, span: Span<u64>, i: u32, value: u64) {
+        atomic(span, i).fetch_min(value, Relaxed);
+    }
+    #[inline(always)]
+    fn fetch_add(&self, span: Span<u64>, i: u32, value: u64) -> u64 {
+        atomic(span, i).fetch_add(value, Relaxed)
+    }
+    #[inline(always)]
+    fn get<T: Word>(&self, words: Shared<T>, i: u32) -> T {
+        load_word(address(words, i))
+    }
+    #[inline(always)]
+    fn put<T: Word>(&self, words: Shared<T>, i: u32, value: T) {
+        store_word(address(words, i), value);
+    }
+    #[inline(always)]
+    fn shared_add(&self, words: Shared<u32>, i: u32, value: u32) -> u32 {
+        let r: u32;
+        // SAFETY: as for `load_shared32`.
+        unsafe {
+            asm!("atom.shared.add.u32 {r}, [{at}], {v};",
+                r = lateout(reg32) r, at = in(reg32) address(words, i), v = in(reg32) value)
+        };
+        r
+    }
+    #[inline(always)]
+    fn shared_max(&self, words: Shared<u64>, i: u32, value: u64) {
+        // SAFETY: as for `load_shared32`.
+        unsafe {
+            asm!("red.shared.max.u64 [{at}], {v};", at = in(reg32) address(words, i), v = in(reg64) value)
+        };
+    }
+}
+
+impl Card {
+    /// This thread's block.
+    ///
+    /// # Safety
+    /// Once a kernel, at its start: shared memory is given out from the beginning.
+    #[inline(always)]
+    pub unsafe fn new() -> Self {
+        // SAFETY: reads special registers.
+        let (lane, global) = unsafe {
+            (thread_idx_x() as u32, block_idx_x() as u32 * block_dim_x() as u32 + thread_idx_x() as u32)
+        };
+        Card { taken: 0, lane: Thread { lane, global } }
+    }
+    /// A lane's value for all: lane 0 computes it.
+    #[inline(always)]
+    fn broadcast(&self, value: impl FnOnce() -> u64) -> u64 {
+        if self.lane.lane == 0 {
+            store_shared64(scratch_address(BROADCAST), value());
+        }
+        sync_threads();
+        let value = load_shared64(scratch_address(BROADCAST));
+        sync_threads();
+        value
+    }
+}
+
+impl Block for Card {
+    type Lane = Thread;
+    type Slot<T: Copy> = Register<T>;
+
+    #[inline(always)]
+    fn block(&self) -> u32 {
+        // SAFETY: reads a special register.
+        unsafe { block_idx_x() as u32 }
+    }
+    #[inline(always)]
+    fn blocks(&self) -> u32 {
+        // SAFETY: reads a special register.
+        unsafe { grid_dim_x() as u32 }
+    }
+    #[inline(always)]
+    fn lanes(&self) -> u32 {
+        // SAFETY: reads a special register.
+        unsafe { block_dim_x() as u32 }
+    }
+    #[inline(always)]
+    fn shared<T: Word>(&mut self, len: u32) -> Shared<T> {
+        let offset = self.taken.next_multiple_of(8);
+        self.taken = offset + len * size_of::<T>() as u32;
+        Shared::at(offset, len)
+    }
+    #[inline(always)]
+    fn slot<T: Copy>(&self, init: T) -> Register<T> {
+        Register(init)
+    }
+    #[inline(always)]
+    fn words<const N: usize>(&self) -> Register<[MaybeUninit<u32>; N]> {
+        Register([const { MaybeUninit::uninit() }; N])
+    }
+    #[inline(always)]
+    fn phase(&mut self, mut body: impl FnMut(&Thread)) {
+        body(&self.lane);
+        sync_threads();
+    }
+    #[inline(always)]
+    fn load<T: Pod>(&self, span: Span<T>, i: u32) -> T {
+        self.lane.read(span, i)
+    }
+    #[inline(always)]
+    fn peek<T: Word>(&mut self, words: Shared<T>, i: u32) -> T {
+        let value = self.lane.get(words, i);
+        sync_threads();
+        value
+    }
+    #[inline(always)]
+    fn any(&mut self, values: &mut Register<bool>) -> bool {
+        // SAFETY: called by all threads of the block.
+        unsafe { barrier_or(0, values.0) }
+    }
+    #[inline(always)]
+    fn scan(&mut self, values: &mut Register<u32>) -> u32 {
+        let (lane, warp) = (self.lane.lane % WARP, self.lane.lane / WARP);
+        let mut sum = values.0;
+        let mut delta = 1;
+        while delta < WARP {
+            let before = shuffle_up(sum, delta);
+            if lane >= delta {
+                sum += before;
+            }
+            delta *= 2;
+        }
+        if lane == WARP - 1 {
+            store_shared32(scratch_address(4 * warp), sum);
+        }
+        sync_threads();
+        let (mut before, mut total) = (0, 0);
+        for w in 0..self.lanes().div_ceil(WARP) {
+            if w == warp {
+                before = total;
+            }
+            total += load_shared32(scratch_address(4 * w));
+        }
+        sync_threads();
+        values.0 = before + sum - values.0;
+        total
+    }
+    #[inline(always)]
+    fn reserve(&mut self, counter: Span<u64>, i: u32, count: u64) -> u64 {
+        if count == 0 {
+            return 0;
+        }
+        self.broadcast(|| self.lane.fetch_add(counter, i, count))
+    }
+    #[inline(always)]
+    fn ranks(&mut self, digits: &mut Register<u32>, bins: Shared<u32>, scratch: Shared<u32>) {
+        let (lane, warp) = (self.lane.lane % WARP, self.lane.lane / WARP);
+        let (lanes, warps) = (self.lanes(), self.lanes() / WARP);
+        let at = |w: u32, bin: u32| address(scratch, w * BINS + bin);
+        let mut i = self.lane.lane;
+        while i < warps * BINS {
+            store_shared32(at(0, i), 0);
+            i += lanes;
+        }
+        sync_threads();
+        let digit = digits.0;
+        let alike = match_any(digit);
+        let before = (alike & ((1 << lane) - 1)).count_ones();
+        if digit < BINS && before == 0 {
+            store_shared32(at(warp, digit), alike.count_ones());
+        }
+        sync_threads();
+        let mut bin = self.lane.lane;
+        while bin < BINS {
+            let mut next = load_shared32(address(bins, bin));
+            for w in 0..warps {
+                let count = load_shared32(at(w, bin));
+                store_shared32(at(w, bin), next);
+                next += count;
+            }
+            store_shared32(address(bins, bin), next);
+            bin += lanes;
+        }
+        sync_threads();
+        if digit < BINS {
+            digits.0 = load_shared32(at(warp, digit)) + before;
+        }
+        sync_threads();
+    }
+}

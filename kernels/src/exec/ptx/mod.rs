@@ -1,0 +1,17 @@
+//! The card: the only room with intrinsics and assembly. Function names follow `cuda_std` where it has them.
+//!
+//! Shared memory is the launch's dynamic shared memory; the collectives have a few words of their own.
+
+#[cfg(target_arch = "nvptx64")]
+mod card;
+#[cfg(target_arch = "nvptx64")]
+mod raw;
+
+#[cfg(target_arch = "nvptx64")]
+pub use card::Card;
+/// The square root, correctly rounded on every machine.
+#[cfg(target_arch = "nvptx64")]
+pub use raw::{sqrt32, sqrt64};
+
+#[cfg(not(target_arch = "nvptx64"))]
+pub use libm::{sqrt as sqrt64, sqrtf as sqrt32};

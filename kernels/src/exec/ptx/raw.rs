@@ -1,0 +1,180 @@
+//! Single instructions, as functions. Intrinsics where lanes act together, assembly for loads, shared memory and roots.
+
+use crate::abi::Span;
+use crate::exec::{Shared, Word};
+use bytemuck::Pod;
+use core::arch::{asm, global_asm};
+use core::mem::MaybeUninit;
+use core::sync::atomic::AtomicU64;
+
+// What the lanes of a warp or block do together is an intrinsic, not assembly: the compiler knows that it must not
+// move these into or out of branches (they are convergent), which it does not know of an `asm!`.
+unsafe extern "C" {
+    #[link_name = "llvm.nvvm.barrier.cta.sync.aligned.all"]
+    pub fn barrier_sync(barrier: u32);
+    #[link_name = "llvm.nvvm.barrier.cta.red.or.aligned.all"]
+    pub fn barrier_or(barrier: u32, value: bool) -> bool;
+    #[link_name = "llvm.nvvm.shfl.sync.up.i32"]
+    pub fn shfl_up(mask: u32, value: u32, delta: u32, clamp: u32) -> u32;
+    #[link_name = "llvm.nvvm.match.any.sync.i32"]
+    pub fn match_any_sync(mask: u32, value: u32) -> u32;
+}
+/// All lanes of a warp.
+const ALL: u32 = u32::MAX;
+
+global_asm!(".extern .shared .align 16 .b8 nearmiss_shared[];");
+// 32 warp sums and one broadcast value.
+global_asm!(".shared .align 16 .b8 nearmiss_scratch[144];");
+/// Where the broadcast value lies in the scratch words, in bytes.
+pub const BROADCAST: u32 = 128;
+
+/// The square root of an f32.
+pub fn sqrt32(x: f32) -> f32 {
+    let r: u32;
+    // SAFETY: one instruction on registers.
+    unsafe {
+        asm!("{{ .reg .f32 t; mov.b32 t, {x}; sqrt.rn.f32 t, t; mov.b32 {r}, t; }}",
+            x = in(reg32) x.to_bits(), r = lateout(reg32) r, options(pure, nomem, nostack));
+    }
+    f32::from_bits(r)
+}
+/// The square root of an f64.
+pub fn sqrt64(x: f64) -> f64 {
+    let r: u64;
+    // SAFETY: one instruction on registers.
+    unsafe {
+        asm!("{{ .reg .f64 t; mov.b64 t, {x}; sqrt.rn.f64 t, t; mov.b64 {r}, t; }}",
+            x = in(reg64) x.to_bits(), r = lateout(reg64) r, options(pure, nomem, nostack));
+    }
+    f64::from_bits(r)
+}
+
+/// The barrier of the block.
+#[inline(always)]
+pub fn sync_threads() {
+    // SAFETY: called by all threads of the block: phases and collectives are not inside a lane's control flow.
+    unsafe { barrier_sync(0) }
+}
+
+/// Address of byte `offset` of the launch's shared memory, in the shared window.
+#[inline(always)]
+pub fn shared_address(offset: u32) -> u32 {
+    let base: u32;
+    // SAFETY: takes the address of a module variable.
+    unsafe { asm!("mov.u32 {}, nearmiss_shared;", out(reg32) base, options(pure, nomem, nostack)) };
+    base + offset
+}
+/// Address of byte `offset` of the collectives' scratch words.
+#[inline(always)]
+pub fn scratch_address(offset: u32) -> u32 {
+    let base: u32;
+    // SAFETY: takes the address of a module variable.
+    unsafe { asm!("mov.u32 {}, nearmiss_scratch;", out(reg32) base, options(pure, nomem, nostack)) };
+    base + offset
+}
+#[inline(always)]
+pub fn load_shared32(at: u32) -> u32 {
+    let v: u32;
+    // SAFETY: `at` is an aligned address inside the block's shared memory (kernels stay inside their words; the
+    // emulator checks it).
+    unsafe { asm!("ld.shared.b32 {}, [{}];", out(reg32) v, in(reg32) at) };
+    v
+}
+#[inline(always)]
+pub fn store_shared32(at: u32, v: u32) {
+    // SAFETY: as for `load_shared32`.
+    unsafe { asm!("st.shared.b32 [{}], {};", in(reg32) at, in(reg32) v) }
+}
+#[inline(always)]
+pub fn load_shared64(at: u32) -> u64 {
+    let v: u64;
+    // SAFETY: as for `load_shared32`.
+    unsafe { asm!("ld.shared.b64 {}, [{}];", out(reg64) v, in(reg32) at) };
+    v
+}
+#[inline(always)]
+pub fn store_shared64(at: u32, v: u64) {
+    // SAFETY: as for `load_shared32`.
+    unsafe { asm!("st.shared.b64 [{}], {};", in(reg32) at, in(reg64) v) }
+}
+#[inline(always)]
+pub fn load_word<T: Word>(at: u32) -> T {
+    if size_of::<T>() == 4 { bytemuck::cast(load_shared32(at)) } else { bytemuck::cast(load_shared64(at)) }
+}
+#[inline(always)]
+pub fn store_word<T: Word>(at: u32, v: T) {
+    if size_of::<T>() == 4 {
+        store_shared32(at, bytemuck::cast(v));
+    } else {
+        store_shared64(at, bytemuck::cast(v));
+    }
+}
+#[inline(always)]
+pub fn address<T: Word>(words: Shared<T>, i: u32) -> u32 {
+    shared_address(words.offset + i * size_of::<T>() as u32)
+}
+
+/// The value of the lane `delta` before this one in its warp; its own where there is none.
+#[inline(always)]
+pub fn shuffle_up(v: u32, delta: u32) -> u32 {
+    // SAFETY: called by all threads of the warp.
+    unsafe { shfl_up(ALL, v, delta, 0) }
+}
+/// Which lanes of the warp hold the same value.
+#[inline(always)]
+pub fn match_any(v: u32) -> u32 {
+    // SAFETY: called by all threads of the warp.
+    unsafe { match_any_sync(ALL, v) }
+}
+
+#[inline(always)]
+pub fn element<T>(span: Span<T>, i: u32) -> *mut T {
+    (span.addr as *mut T).wrapping_add(i as usize)
+}
+/// A load that knows that its address is device memory, in the widest pieces that `T`'s alignment allows. (A
+/// pointer out of an argument block is generic to the compiler: such a load asks at run time which memory it means.)
+///
+/// # Safety
+/// `from` is valid for reads, and nobody writes it in this phase.
+#[inline(always)]
+pub unsafe fn load_global<T: Pod>(from: *const T) -> T {
+    let (size, align) = (size_of::<T>(), align_of::<T>());
+    let at = from as u64;
+    let mut value = MaybeUninit::<T>::uninit();
+    let to = value.as_mut_ptr().cast::<u32>();
+    let mut word = 0;
+    while 4 * word < size {
+        let at = at + 4 * word as u64;
+        // SAFETY: the pieces lie in `from` and in `value`, and are aligned: sizes are multiples of alignments.
+        unsafe {
+            if align >= 16 {
+                let (a, b, c, d): (u32, u32, u32, u32);
+                asm!("ld.global.v4.b32 {{ {a}, {b}, {c}, {d} }}, [{at}];", a = lateout(reg32) a,
+                    b = lateout(reg32) b, c = lateout(reg32) c, d = lateout(reg32) d, at = in(reg64) at,
+                    options(pure, readonly, nostack));
+                to.add(word).cast::<[u32; 4]>().write([a, b, c, d]);
+                word += 4;
+            } else if align >= 8 {
+                let a: u64;
+                asm!("ld.global.b64 {a}, [{at}];", a = lateout(reg64) a, at = in(reg64) at,
+                    options(pure, readonly, nostack));
+                to.add(word).cast::<u64>().write(a);
+                word += 2;
+            } else {
+                let a: u32;
+                asm!("ld.global.b32 {a}, [{at}];", a = lateout(reg32) a, at = in(reg64) at,
+                    options(pure, readonly, nostack));
+                to.add(word).write(a);
+                word += 1;
+            }
+        }
+    }
+    // SAFETY: every word was written, and any bits are a T.
+    unsafe { value.assume_init() }
+}
+#[inline(always)]
+pub fn atomic(span: Span<u64>, i: u32) -> &'static AtomicU64 {
+    // SAFETY: the span is device memory that outlives the launch, aligned for u64, and `i` lies in it: kernels
+    // stay inside their spans, which the emulator checks on every access.
+    unsafe { AtomicU64::from_ptr(element(span, i)) }
+}

@@ -1,0 +1,10 @@
+//! Whole frames against brute force and known answers: the corridor loses nothing, invents nothing, and does no work
+//! that nobody asked for.
+
+#[path = "frame/continuous.rs"]
+mod continuous;
+#[path = "frame/discrete.rs"]
+mod discrete;
+mod support;
+#[path = "frame/work.rs"]
+mod work;

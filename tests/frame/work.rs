@@ -1,0 +1,114 @@
+//! What is not asked for is not done: launches and bytes are counted.
+
+use super::support::{ORDERS, engine, microscope, still};
+use nearmiss::mesh::Body;
+use nearmiss::query::{Motion, Solver, Traversal};
+use nearmiss::{Device, Query, Session, scene};
+
+/// Launches of construction and of each frame, and bytes held after the first frame.
+fn work(device: &Device, bodies: Vec<Body>, query: Query) -> (u64, u64, u64) {
+    let start = device.launches();
+    let mut session = Session::new(device.clone(), bodies, query).expect("a session");
+    let built = device.launches();
+    session.detect().expect("an answer");
+    let asked = device.launches();
+    session.detect().expect("an answer");
+    assert_eq!(device.launches() - asked, asked - built, "each frame is the same work");
+    assert_eq!(session.reruns(), 0, "a scene that fits");
+    (built - start, asked - built, device.bytes().0)
+}
+
+fn soup() -> Body {
+    scene::soup(200, 3, true).expect("a scene")
+}
+
+#[test]
+fn bodies_without_triangles_cost_nothing() {
+    let none = still(&[], &[]);
+    let unused = still(&[[1.0, 2.0, 3.0], [f32::NAN, 0.0, 0.0]], &[]);
+    for device in [engine(), microscope(ORDERS[0])] {
+        for bodies in [
+            vec![none.clone()],
+            vec![unused.clone()],
+            vec![none.clone(), soup()],
+            vec![soup(), unused.clone()],
+        ] {
+            for motion in [Motion::Discrete, Motion::Continuous, Motion::Earliest] {
+                assert_eq!(work(&device, bodies.clone(), Query::of(motion)), (0, 0, 0), "{motion:?}");
+            }
+        }
+        assert_eq!((device.launches(), device.bytes()), (0, (0, 0)));
+    }
+}
+
+#[test]
+fn each_query_launches_what_it_needs() {
+    let device = engine();
+    let frame = |query: Query| work(&device, vec![soup()], query);
+    let of = Query::of;
+    let exact = frame(of(Motion::Discrete));
+    let moller = frame(Query { solver: Some(Solver::Moller), ..of(Motion::Discrete) });
+    let continuous = frame(of(Motion::Continuous));
+    let earliest = frame(of(Motion::Earliest));
+    // Fit, refit (one launch for a small tree), the walk; then one float test, or filter and exact signs, or sift,
+    // then rejection and solving, each of vertex/face and of edge/edge.
+    assert_eq!([moller.1, exact.1, continuous.1, earliest.1], [4, 5, 8, 8]);
+    // Construction does not depend on the question, and nothing is kept when the session ends.
+    assert!([moller.0, continuous.0, earliest.0].iter().all(|n| *n == exact.0), "{}", exact.0);
+    assert_eq!(device.bytes().0, 0);
+}
+
+#[test]
+fn each_query_holds_what_it_needs() {
+    let bytes = |query: Query| {
+        let device = engine();
+        let mut session = Session::new(device.clone(), vec![soup()], query).expect("a session");
+        session.detect().expect("an answer");
+        device.bytes().0
+    };
+    let of = Query::of;
+    let exact = bytes(of(Motion::Discrete));
+    let moller = bytes(Query { solver: Some(Solver::Moller), ..of(Motion::Discrete) });
+    let [continuous, earliest] = [Motion::Continuous, Motion::Earliest].map(|motion| bytes(of(motion)));
+    assert!(moller < exact, "no list of undecided pairs: {moller} {exact}");
+    assert!(exact < earliest, "no edges, owners and second frame: {exact} {earliest}");
+    assert!(earliest < continuous, "no list of contacts: {earliest} {continuous}");
+    let spilling = Query { traversal: Some(Traversal::PerLeaf { budget: Some(8) }), ..of(Motion::Discrete) };
+    let whole = Query { traversal: Some(Traversal::PerLeaf { budget: None }), ..of(Motion::Discrete) };
+    assert!(bytes(whole) < bytes(spilling), "no list of units");
+}
+
+#[test]
+fn a_walk_that_never_spills_has_no_second_round() {
+    let device = engine();
+    let frame = |budget| {
+        let traversal = Some(Traversal::PerLeaf { budget });
+        work(&device, vec![soup()], Query { traversal, ..Query::of(Motion::Discrete) }).1
+    };
+    // As many rounds as nearmiss_kernels::abi::ROUNDS may spill.
+    assert_eq!(frame(Some(1)), frame(None) + u64::from(nearmiss_kernels::abi::ROUNDS));
+}
+
+#[test]
+fn a_discrete_query_does_not_see_the_end_of_the_step() {
+    let ask = |body| super::support::ask(engine(), vec![body], Query::of(Motion::Discrete));
+    let first = Body::still(soup().frames().remove(0));
+    assert_eq!(ask(soup()).answer, ask(first).answer);
+    assert!(!ask(soup()).is_empty());
+}
+
+#[test]
+fn nothing_is_left_behind() {
+    for motion in [Motion::Discrete, Motion::Continuous, Motion::Earliest] {
+        let device = microscope(ORDERS[2]);
+        let mut session =
+            Session::new(device.clone(), vec![soup(), soup()], Query::of(motion)).expect("a session");
+        session.detect().expect("an answer");
+        let held = device.bytes();
+        assert!(held.0 > 0 && held.1 >= held.0);
+        session.detect().expect("an answer");
+        assert_eq!(device.bytes(), held, "a second frame takes no more");
+        drop(session);
+        assert_eq!(device.bytes().0, 0);
+    }
+}

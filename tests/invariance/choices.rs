@@ -1,0 +1,132 @@
+//! The machine, its order, the size of its blocks, the walk, and whether a tree is new.
+
+use super::support::{machines, microscope};
+use super::*;
+use nearmiss::query::{Solver, Traversal};
+use nearmiss::{Device, Session};
+
+/// Every question, with every solver that answers it.
+const QUESTIONS: [(Motion, Solver); 6] = [
+    (Motion::Discrete, Solver::Exact),
+    (Motion::Discrete, Solver::Moller),
+    (Motion::Continuous, Solver::CubicF64),
+    (Motion::Continuous, Solver::CubicF32),
+    (Motion::Earliest, Solver::CubicF64),
+    (Motion::Earliest, Solver::CubicF32),
+];
+
+fn queries() -> impl Iterator<Item = Query> {
+    QUESTIONS.into_iter().map(|(motion, solver)| Query { solver: Some(solver), ..Query::of(motion) })
+}
+
+/// The answer's hash, and what every stage left behind.
+fn prints(device: Device, bodies: &[Body], query: Query) -> Vec<(&'static str, u64)> {
+    let mut session = Session::new(device, bodies.to_vec(), query).expect("a session");
+    let contacts = session.detect().expect("an answer");
+    session.check_trees().expect("sound trees");
+    let mut prints = session.fingerprints().expect("prints");
+    prints.push(("contacts", contacts.hash()));
+    prints.push(("candidates", contacts.candidates));
+    prints
+}
+
+#[test]
+fn every_machine_gives_the_same_bits_at_every_stage() {
+    let scenes = [
+        vec![scene::soup(150, 4, true).expect("a scene")],
+        vec![scene::cloth_ball(200).expect("a scene"), scene::soup(80, 6, true).expect("a scene")],
+    ];
+    for bodies in scenes {
+        for query in queries() {
+            let truth = prints(engine(), &bodies, query);
+            for device in machines() {
+                let name = device.name();
+                assert_eq!(prints(device, &bodies, query), truth, "{query:?}, {name}");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_walk_finds_the_same() {
+    let bodies = [scene::soup(200, 4, true).expect("a scene"), scene::cloth_ball(300).expect("a scene")];
+    for bodies in [&bodies[..1], &bodies[1..], &bodies[..]] {
+        for motion in [Motion::Discrete, Motion::Continuous] {
+            let truth = prints(engine(), bodies, Query::of(motion));
+            for budget in [Some(1), Some(3), Some(64), None] {
+                let query = Query { traversal: Some(Traversal::PerLeaf { budget }), ..Query::of(motion) };
+                assert_eq!(prints(engine(), bodies, query), truth, "{budget:?}");
+                let order = support::ORDERS[2];
+                assert_eq!(prints(microscope(order), bodies, query), truth, "{budget:?}, {order:?}");
+            }
+        }
+    }
+}
+
+/// The body with other positions: as if all time had passed, then some more.
+fn later(body: &Body, by: f64) -> Body {
+    let end = body.positions_t1().unwrap_or(body.positions_t0()).to_f64();
+    let start = body.positions_t0().to_f64();
+    let at = |t: f64| {
+        let points = start.iter().zip(&end);
+        let points = points.map(|(p, q)| [0, 1, 2].map(|k| (p[k] + (q[k] - p[k]) * t) as f32)).collect();
+        Mesh::new(body.name(), Positions::F32(points), body.faces().to_vec()).expect("a mesh")
+    };
+    Body::moving(at(by), at(by + 1.0)).expect("two frames")
+}
+
+#[test]
+fn a_refitted_tree_finds_what_a_new_one_does() {
+    for motion in [Motion::Discrete, Motion::Continuous, Motion::Earliest] {
+        for bodies in [moving_scenes()[..1].to_vec(), moving_scenes()[1..].to_vec()] {
+            let mut session = Session::new(engine(), bodies.clone(), Query::of(motion)).expect("a session");
+            session.detect().expect("an answer");
+            // A step on, three steps on, far off, and back where it began.
+            for by in [1.0, 3.0, 40.0, -2.0, 0.0] {
+                let moved: Vec<Body> = bodies.iter().map(|body| later(body, by)).collect();
+                for (i, body) in moved.iter().enumerate() {
+                    session.move_to(i, body.clone()).expect("a frame of the same mesh");
+                }
+                let refitted = session.detect().expect("an answer");
+                session.check_trees().expect("sound trees");
+                let fresh = found(&moved, motion);
+                assert_eq!(refitted.answer, fresh.answer, "{motion:?}, {by}");
+                assert_eq!(
+                    refitted.candidates, fresh.candidates,
+                    "boxes of leaves are the same in both trees"
+                );
+                if by == 3.0 {
+                    session.rebuild().expect("new trees");
+                    assert_eq!(session.detect().expect("an answer").answer, fresh.answer, "rebuilt");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_same_session_asked_again_says_the_same() {
+    for query in queries() {
+        let body = scene::cloth_ball(800).expect("a scene");
+        let mut session = Session::new(engine(), vec![body], query).expect("a session");
+        let first = session.detect().expect("an answer");
+        for _ in 0..3 {
+            assert_eq!(session.detect().expect("an answer").answer, first.answer, "{query:?}");
+        }
+    }
+}
+
+#[test]
+fn what_is_no_frame_of_the_mesh_is_refused() {
+    let body = scene::soup(20, 4, true).expect("a scene");
+    let mut session =
+        Session::new(engine(), vec![body.clone()], Query::of(Motion::Continuous)).expect("a session");
+    let before = session.detect().expect("an answer");
+    let other_faces = changed(&body, body.faces().iter().rev().copied().collect(), |points| points);
+    let fewer = scene::soup(19, 4, true).expect("a scene");
+    let f64s = Mesh::new("f64", Positions::F64(body.positions_t0().to_f64()), body.faces().to_vec());
+    for (at, frame) in [(0, other_faces), (0, fewer), (0, Body::still(f64s.expect("a mesh"))), (1, body)] {
+        assert_eq!(session.move_to(at, frame).expect_err("refused").exit_code(), 2);
+    }
+    assert_eq!(session.detect().expect("an answer").answer, before.answer, "nothing has moved");
+}

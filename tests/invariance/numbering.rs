@@ -1,0 +1,132 @@
+//! Triangles, corners, vertices and bodies in another order.
+
+use super::*;
+
+/// Discrete pairs in the original numbers of triangles: triangle i of the new mesh is `of[i]` of the old.
+fn renumbered(contacts: &Contacts, of: &[u32]) -> Vec<[u32; 2]> {
+    let mut pairs: Vec<_> = contacts
+        .pairs()
+        .iter()
+        .map(|[a, b]| {
+            let (a, b) = (of[*a as usize], of[*b as usize]);
+            [a.min(b), a.max(b)]
+        })
+        .collect();
+    pairs.sort_unstable();
+    pairs
+}
+
+#[test]
+fn triangles_in_another_order() {
+    for body in still_scenes() {
+        let truth = found(std::slice::from_ref(&body), Motion::Discrete);
+        assert!(!truth.is_empty(), "{}", body.name());
+        for seed in 0..3 {
+            let of = permutation(body.face_count(), seed);
+            let other =
+                changed(&body, of.iter().map(|i| body.faces()[*i as usize]).collect(), |points| points);
+            let again = found(&[other], Motion::Discrete);
+            assert_eq!(renumbered(&again, &of), truth.pairs(), "{}, {seed}", body.name());
+        }
+    }
+    for body in moving_scenes() {
+        let contacts = found(std::slice::from_ref(&body), Motion::Continuous);
+        assert!(!contacts.is_empty(), "{}", body.name());
+        let of = permutation(body.face_count(), 9);
+        let other = changed(&body, of.iter().map(|i| body.faces()[*i as usize]).collect(), |points| points);
+        let again = found(std::slice::from_ref(&other), Motion::Continuous);
+        // Faces keep their corners and edges their numbers: even the bits of the times are the same.
+        assert_eq!(
+            named(&other, again.contacts(), |v| v),
+            named(&body, contacts.contacts(), |v| v),
+            "{}",
+            body.name()
+        );
+        assert_eq!(again.candidates, contacts.candidates);
+    }
+}
+
+#[test]
+fn corners_in_another_order() {
+    const CORNERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
+    for body in still_scenes() {
+        let truth = found(std::slice::from_ref(&body), Motion::Discrete);
+        // Each triangle in its own order, and six times round.
+        for turn in 0..6 {
+            let corners = |(i, face): (usize, &[u32; 3])| CORNERS[(i + turn) % 6].map(|k| face[k]);
+            let other =
+                changed(&body, body.faces().iter().enumerate().map(corners).collect(), |points| points);
+            assert_eq!(found(&[other], Motion::Discrete).pairs(), truth.pairs(), "{}, {turn}", body.name());
+        }
+    }
+    for body in moving_scenes() {
+        let contacts = found(std::slice::from_ref(&body), Motion::Continuous);
+        for corners in CORNERS {
+            let faces = body.faces().iter().map(|face| corners.map(|k| face[k])).collect();
+            let other = changed(&body, faces, |points| points);
+            let again = found(std::slice::from_ref(&other), Motion::Continuous);
+            // The cubic takes another corner for its origin: times may differ in the last bits.
+            let (one, two) =
+                (named(&other, again.contacts(), |v| v), named(&body, contacts.contacts(), |v| v));
+            assert_close(&one, &two, body.name());
+        }
+    }
+}
+
+#[test]
+fn vertices_in_another_order() {
+    let shuffled = |body: &Body, of: &[u32]| {
+        // Vertex i of the new mesh is `of[i]` of the old.
+        let mut to = vec![0; of.len()];
+        of.iter().zip(0..).for_each(|(old, new)| to[*old as usize] = new);
+        let faces = body.faces().iter().map(|face| face.map(|v| to[v as usize])).collect();
+        changed(body, faces, |points| of.iter().map(|i| points[*i as usize]).collect())
+    };
+    for body in still_scenes() {
+        let other = shuffled(&body, &permutation(body.vertex_count(), 4));
+        let truth = found(std::slice::from_ref(&body), Motion::Discrete);
+        assert_eq!(found(&[other], Motion::Discrete).pairs(), truth.pairs(), "{}", body.name());
+    }
+    for body in moving_scenes() {
+        let contacts = found(std::slice::from_ref(&body), Motion::Continuous);
+        let of = permutation(body.vertex_count(), 5);
+        let other = shuffled(&body, &of);
+        let again = found(std::slice::from_ref(&other), Motion::Continuous);
+        let one = named(&other, again.contacts(), |v| of[v as usize]);
+        assert_close(&one, &named(&body, contacts.contacts(), |v| v), body.name());
+    }
+}
+
+#[test]
+fn bodies_exchanged() {
+    let scenes = still_scenes();
+    for (one, two) in [(&scenes[0], &scenes[1]), (&scenes[1], &scenes[2]), (&scenes[2], &scenes[0])] {
+        let there = found(&[one.clone(), two.clone()], Motion::Discrete);
+        let back = found(&[two.clone(), one.clone()], Motion::Discrete);
+        let mut turned: Vec<_> = back.pairs().iter().map(|[a, b]| [*b, *a]).collect();
+        turned.sort_unstable();
+        assert_eq!(turned, there.pairs());
+        assert!(!turned.is_empty());
+    }
+    let mut scenes = moving_scenes();
+    scenes.push(scene::soup(200, 6, true).expect("a scene"));
+    for (one, two) in [(&scenes[0], &scenes[3]), (&scenes[1], &scenes[2])] {
+        let there = found(&[one.clone(), two.clone()], Motion::Continuous);
+        let back = found(&[two.clone(), one.clone()], Motion::Continuous);
+        // A vertex/face pair is the same query to the cubic: same bits. Of two edges the first one changes.
+        let of = |contacts: &Contacts, kind| -> BTreeMap<[u32; 2], u64> {
+            let all = contacts.contacts().iter().filter(|c| c.kind == kind);
+            all.map(|c| ([c.a, c.b], c.toi.to_bits())).collect()
+        };
+        let turned = |kind| -> BTreeMap<[u32; 2], u64> {
+            of(&back, kind).into_iter().map(|([a, b], toi)| ([b, a], toi)).collect()
+        };
+        assert_eq!(turned(Kind::Fv), of(&there, Kind::Vf));
+        assert_eq!(turned(Kind::Vf), of(&there, Kind::Fv));
+        let edges = |of: BTreeMap<[u32; 2], u64>| -> BTreeMap<Named, u64> {
+            of.into_iter().map(|([a, b], toi)| ((Kind::Ee, vec![a], vec![b]), toi)).collect()
+        };
+        assert!(of(&there, Kind::Vf).len() > 3 && of(&there, Kind::Ee).len() > 3);
+        assert_close(&edges(turned(Kind::Ee)), &edges(of(&there, Kind::Ee)), "edges");
+    }
+}

@@ -1,0 +1,199 @@
+//! A list that is too short changes no answer: its counter is the exact demand, the frame runs again within itself.
+
+mod support;
+
+use nearmiss::device::emulator::Order;
+use nearmiss::mesh::Body;
+use nearmiss::query::{Motion, Solver, Traversal};
+use nearmiss::{Contacts, Device, Error, Query, Session, scene};
+use support::{engine, loose, microscope, moving};
+
+/// A first answer, the same frame again, and how often it ran again: within the first, in all.
+fn twice(device: Device, bodies: Vec<Body>, query: Query) -> (Contacts, [u64; 2]) {
+    let mut session = Session::new(device, bodies, query).expect("a session");
+    let first = session.detect().expect("an answer");
+    let reruns = session.reruns();
+    let second = session.detect().expect("an answer");
+    assert_eq!(first.answer, second.answer, "a frame after the lists have grown");
+    let figures = |c: &Contacts| (c.triangle_pairs, c.candidates, c.candidates_vf_ee, c.undecided, c.steps);
+    assert_eq!(figures(&first), figures(&second), "counters are the demand, whatever the room");
+    (first, [reruns, session.reruns()])
+}
+
+/// `n` equal triangles, each with its own vertices, sliding within their plane.
+fn sliding(n: usize) -> Body {
+    let t0: Vec<_> = [[0.0f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].repeat(n);
+    let t1: Vec<_> = t0.iter().map(|p| [p[0] + 0.5, p[1] + 0.25, p[2]]).collect();
+    let faces: Vec<_> = (0..n as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    moving(&t0, &t1, &faces)
+}
+
+/// All pairs below n, ascending.
+fn all_pairs(n: u32) -> Vec<[u32; 2]> {
+    (0..n).flat_map(|a| (a + 1..n).map(move |b| [a, b])).collect()
+}
+
+#[test]
+fn many_more_pairs_than_room() {
+    // 400 equal triangles: 79,800 pairs, and room for 6,400 at first (16 a triangle).
+    for solver in [Solver::Exact, Solver::Moller] {
+        let query = Query { solver: Some(solver), ..Query::of(Motion::Discrete) };
+        let (contacts, reruns) = twice(engine(), vec![scene::identical(400).expect("a scene")], query);
+        assert!(reruns[0] > 0, "{solver:?}: the scene no longer overflows the first room: make it larger");
+        assert_eq!(reruns[1], reruns[0], "lists stay long enough");
+        assert_eq!((contacts.triangle_pairs, contacts.candidates), (79_800, 79_800));
+        if solver == Solver::Exact {
+            assert_eq!(contacts.pairs(), all_pairs(400));
+        }
+    }
+}
+
+#[test]
+fn more_undecided_pairs_than_room() {
+    // Different triangles around the origin in the plane x + y + z = 0, corners on a fine grid: the sums are exact in
+    // floats, their products are not, so the filter cannot see the plane, and every pair meets in the origin.
+    const N: u32 = 110;
+    let mut rng = scene::Rng::new(8);
+    let mut corner = |x: f64, y: f64| {
+        let [dx, dy, _] = rng.point(0.1);
+        let [x, y] = [x + dx, y + dy].map(|x| (x * 1_048_576.0).round() / 1_048_576.0);
+        [x as f32, y as f32, (-x - y) as f32]
+    };
+    let triangles: Vec<_> =
+        (0..N).map(|_| [corner(0.5, 0.0), corner(-0.25, 0.5), corner(-0.25, -0.5)]).collect();
+    let (contacts, reruns) = twice(engine(), vec![loose(&triangles)], Query::of(Motion::Discrete));
+    assert_eq!(contacts.pairs(), all_pairs(N));
+    assert!(
+        contacts.undecided > 4_096,
+        "{} undecided: no longer more than the first room",
+        contacts.undecided
+    );
+    assert!(reruns[0] > 0);
+}
+
+#[test]
+fn many_more_pairs_than_room_between_two_bodies() {
+    let body = || scene::identical(120).expect("a scene");
+    let (contacts, reruns) = twice(engine(), vec![body(), body()], Query::of(Motion::Discrete));
+    assert!(reruns[0] > 0, "the scene no longer overflows the first room: make it larger");
+    assert!(contacts.pairs().iter().copied().eq((0..120).flat_map(|a| (0..120).map(move |b| [a, b]))));
+}
+
+/// `n` triangles that all meet, and `more` lonely pairs: n (n - 1) / 2 + more pairs in all.
+fn clique_and_couples(n: usize, more: usize) -> Body {
+    let at = |x: f32| [[x, 0.0, 0.0], [x + 1.0, 0.0, 0.0], [x, 1.0, 0.0]];
+    let mut all = vec![at(0.0); n];
+    (0..more).for_each(|i| all.extend([at(4.0 + 4.0 * i as f32); 2]));
+    loose(&all)
+}
+
+#[test]
+fn one_pair_more_than_room() {
+    // Every list has room for at least 4,096 (LEAST_ROOM in the corridor); 91 triangles that all meet are 4,095 pairs.
+    for device in [engine, || microscope(Order::Shuffled(4))] {
+        let counts = [0, 1, 2, 3].map(|more| {
+            let (contacts, reruns) =
+                twice(device(), vec![clique_and_couples(91, more)], Query::of(Motion::Discrete));
+            assert_eq!((contacts.len(), contacts.triangle_pairs), (4_095 + more, 4_095 + more as u64));
+            reruns[0]
+        });
+        assert_eq!(counts[..2], [0, 0], "room for 4,096 is enough for 4,096");
+        assert!(counts[2] > 0 && counts[3] > 0, "room for 4,096 is not enough for 4,097: {counts:?}");
+    }
+}
+
+#[test]
+fn many_more_elementary_pairs_than_room() {
+    // Each of 3n vertices meets n - 1 faces; each of the 9 edge pairs of each pair of triangles meets or not.
+    const N: u64 = 70;
+    for body in [scene::identical(N as usize).expect("a scene"), sliding(N as usize)] {
+        let (contacts, reruns) = twice(engine(), vec![body.clone()], Query::of(Motion::Continuous));
+        assert!(reruns[0] > 0, "the scene no longer overflows the first room: make it larger");
+        assert_eq!(contacts.candidates_vf_ee[0], 3 * N * (N - 1));
+        assert_eq!(contacts.candidates_vf_ee[1], 9 * N * (N - 1) / 2);
+        assert_eq!(contacts.len() as u64, 3 * N * (N - 1) + 9 * N * (N - 1) / 2);
+        assert!(contacts.contacts().iter().all(|c| c.toi == 0.0), "they touch from the start");
+
+        let (earliest, again) = twice(engine(), vec![body], Query::of(Motion::Earliest));
+        assert_eq!(earliest.earliest_toi(), Some(0.0));
+        assert!(again[0] > 0, "the candidates overflow here as well");
+    }
+}
+
+#[test]
+fn the_microscope_sees_no_fault_in_a_frame_that_runs_again() {
+    for order in support::ORDERS {
+        // 100 triangles: 4,950 pairs.
+        let bodies = || vec![scene::identical(100).expect("a scene")];
+        let (contacts, reruns) = twice(microscope(order), bodies(), Query::of(Motion::Discrete));
+        assert!(reruns[0] > 0 && contacts.pairs() == all_pairs(100), "{order:?}");
+    }
+    // 30 triangles: 2,610 + 3,915 elementary pairs, all of them contacts; between bodies twice as many and more.
+    let (one, two) = (sliding(40), scene::identical(40).expect("a scene"));
+    let ask = |device| twice(device, vec![one.clone(), two.clone()], Query::of(Motion::Continuous));
+    let (on_engine, reruns) = ask(engine());
+    assert!(reruns[0] > 0, "the scene no longer overflows the first room: make it larger");
+    assert_eq!(on_engine.len(), (3 + 3 + 9) * 40 * 40);
+    let (seen, again) = ask(microscope(Order::Reverse));
+    assert_eq!((seen.hash(), again), (on_engine.hash(), reruns));
+}
+
+#[test]
+fn units_that_find_no_room_are_walked_anyway() {
+    // A walk of equal triangles crosses the whole tree: spilling after one step asks for far more than four units a
+    // triangle.
+    let bodies = || vec![scene::identical(150).expect("a scene")];
+    for budget in [1, 2, 7] {
+        let spilling = Query {
+            traversal: Some(Traversal::PerLeaf { budget: Some(budget) }),
+            ..Query::of(Motion::Discrete)
+        };
+        for device in [engine(), microscope(Order::Shuffled(9))] {
+            let mut session = Session::new(device, bodies(), spilling).expect("a session");
+            let contacts = session.detect().expect("an answer");
+            assert_eq!(contacts.pairs(), all_pairs(150), "budget {budget}");
+            assert!(contacts.spilled > 0, "budget {budget}");
+        }
+    }
+}
+
+#[test]
+fn lists_grow_when_a_body_moves_into_a_crowd() {
+    // Apart at first, then all in one place, then apart again.
+    let apart: Vec<_> = (0..130)
+        .flat_map(|i| {
+            [[3.0 * i as f32, 0.0, 0.0], [3.0 * i as f32 + 1.0, 0.0, 0.0], [3.0 * i as f32, 1.0, 0.0]]
+        })
+        .collect();
+    let faces: Vec<_> = (0..130u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let crowd: Vec<_> =
+        apart.iter().enumerate().map(|(i, p)| [p[0] - 3.0 * (i / 3) as f32, p[1], p[2]]).collect();
+    let frame = |points: &[[f32; 3]]| support::still(points, &faces);
+    let mut session =
+        Session::new(engine(), vec![frame(&apart)], Query::of(Motion::Discrete)).expect("a session");
+    assert_eq!((session.detect().expect("an answer").len(), session.reruns()), (0, 0));
+    session.move_to(0, frame(&crowd)).expect("the same mesh");
+    assert_eq!(session.detect().expect("an answer").pairs(), all_pairs(130));
+    let reruns = session.reruns();
+    assert!(reruns > 0);
+    session.move_to(0, frame(&apart)).expect("the same mesh");
+    assert_eq!((session.detect().expect("an answer").len(), session.reruns()), (0, reruns));
+}
+
+#[test]
+fn no_memory_is_an_error() {
+    for device in [engine(), microscope(Order::Forward)] {
+        // More than an address space; more than a size can say; more than any machine has.
+        for len in [usize::MAX / 16, usize::MAX / 8 + 1, usize::MAX, 1 << 58] {
+            match device.buffer::<u64>(len).map(|_| ()) {
+                Err(error @ Error::Room { .. }) => {
+                    assert_eq!(error.exit_code(), 4);
+                    assert!(error.to_string().contains("use a smaller scene"), "{error}");
+                }
+                other => panic!("{len}: {other:?}"),
+            }
+        }
+        assert_eq!(device.bytes(), (0, 0), "what was refused is not counted");
+        assert_eq!(device.upload(&[1u64, 2]).expect("memory").read(2).expect("read"), [1, 2]);
+    }
+}
