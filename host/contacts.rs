@@ -210,8 +210,8 @@ pub struct Summary {
     pub query: Motion,
     /// The bounding volume.
     pub bv: &'static str,
-    /// The walk; absent when the machine's fastest was taken.
-    pub traversal: Option<Traversal>,
+    /// The walk.
+    pub traversal: Traversal,
     /// The test.
     pub solver: Solver,
     /// `cpu` or `cuda`.
@@ -244,7 +244,7 @@ impl Summary {
             frames: if bodies.iter().any(Body::is_moving) { 2 } else { 1 },
             query: query.motion,
             bv: "aabb",
-            traversal: query.traversal,
+            traversal: query.traversal.unwrap_or(Traversal::default_for(device.is_card())),
             solver: query.solver(),
             backend: device.backend(),
             device: device.name(),

@@ -30,6 +30,11 @@ impl Traversal {
     /// Steps of a walk on a card before the rest of it is shared out: about the mean length of a walk on cloth, so
     /// that half of the walks never spill and none makes its warp wait for long (measured, `benches/NOTES.md`).
     pub const CARD_BUDGET: u32 = 64;
+
+    /// The fastest walk of a machine: a card must not wait for its longest walk; a CPU's threads balance by themselves.
+    pub fn default_for(is_card: bool) -> Traversal {
+        Traversal::PerLeaf { budget: is_card.then_some(Traversal::CARD_BUDGET) }
+    }
 }
 
 /// The test of a pair of triangles.

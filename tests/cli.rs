@@ -145,6 +145,7 @@ fn the_summary_for_people_says_the_same() {
 fn a_promise_is_made_where_one_is_needed() {
     for (more, promised) in [
         (&["--discrete"][..], None),
+        (&["--discrete", "--solver", "moller"], Some("moller: a float test that can miss")),
         (&["--continuous"], Some("cubic-f64: can miss")),
         (&["--earliest", "--solver", "cubic-f32"], Some("cubic-f32: a float solver that can miss")),
     ] {

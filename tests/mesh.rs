@@ -182,3 +182,12 @@ fn a_format_is_known_by_its_extension() {
     assert_eq!(Format::of("a/b.Obj".as_ref()), Ok(Format::Obj));
     assert_eq!(Format::of("a.ply/b".as_ref()), Err(Problem::UnknownExtension { found: String::new() }));
 }
+
+#[test]
+fn points_of_nalgebra_keep_their_precision() {
+    use nalgebra::Point3;
+    let single = Positions::from(vec![Point3::new(0.1f32, 2.0, -3.0)]);
+    assert_eq!(single, Positions::F32(vec![[0.1, 2.0, -3.0]]));
+    let double = Positions::from(vec![Point3::new(0.1f64, 2.0, -3.0)]);
+    assert_eq!(double, Positions::F64(vec![[0.1, 2.0, -3.0]]));
+}

@@ -7,7 +7,7 @@ use crate::device::Device;
 use crate::error::Error;
 use crate::mesh::{Body, Mesh};
 use crate::pipeline::{Session, Stages};
-use crate::query::{Motion, Query};
+use crate::query::{Motion, Query, Solver};
 use crate::report;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -47,7 +47,7 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
     }
     let (bodies, query) = question(args)?;
     let device = Device::open(args.backend, args.threads.map(usize::from))?;
-    if query.motion != Motion::Discrete {
+    if query.solver() != Solver::Exact {
         eprintln!("nearmiss: the solver is {}", query.solver().promise());
     }
     let mut session = during("building", || Session::new(device, bodies, query))?;

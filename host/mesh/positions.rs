@@ -9,6 +9,18 @@ pub enum Positions {
     F64(Vec<[f64; 3]>),
 }
 
+impl From<Vec<nalgebra::Point3<f32>>> for Positions {
+    fn from(points: Vec<nalgebra::Point3<f32>>) -> Self {
+        Positions::F32(points.into_iter().map(Into::into).collect())
+    }
+}
+
+impl From<Vec<nalgebra::Point3<f64>>> for Positions {
+    fn from(points: Vec<nalgebra::Point3<f64>>) -> Self {
+        Positions::F64(points.into_iter().map(Into::into).collect())
+    }
+}
+
 impl Positions {
     /// Number of points.
     pub fn len(&self) -> usize {

@@ -149,10 +149,9 @@ impl<R: Precision> Corridor<R> {
 
     /// Steps of a walk before it spills.
     fn budget(device: &Device, query: Query) -> Option<u32> {
-        match query.traversal {
-            Some(Traversal::PerLeaf { budget }) => budget,
-            None => device.is_card().then_some(Traversal::CARD_BUDGET),
-        }
+        let Traversal::PerLeaf { budget } =
+            query.traversal.unwrap_or(Traversal::default_for(device.is_card()));
+        budget
     }
 
     /// Uploads positions. A body that stands still in a continuous query has the same positions at both ends.
