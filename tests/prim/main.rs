@@ -7,6 +7,8 @@
 )]
 
 mod adjacent;
+#[path = "../truth/built.rs"]
+mod built;
 mod cases;
 mod cubic;
 mod discrete;

@@ -1,0 +1,100 @@
+//! Stages and frames on the CPU: `cargo bench --bench stages`. See `benches/README.md`.
+//!
+//! Criterion times what can be asked alone: `construct` and whole frames. The stages of a frame cannot, so each
+//! frame's own clock is read, and their medians are printed after it. Public scenes are timed where their files are.
+
+use criterion::{Bencher, BenchmarkId, Criterion, criterion_group, criterion_main};
+use nearmiss::device::Backend;
+use nearmiss::mesh::Body;
+use nearmiss::pipeline::Stages;
+use nearmiss::query::Motion;
+use nearmiss::{Device, Mesh, Query, Session, scene};
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// Name and moving body of each scene.
+fn scenes() -> Vec<(&'static str, Body)> {
+    let mut all = vec![("cloth-ball-20k", scene::scene("cloth-ball", 20_000, 1).expect("a scene"))];
+    let root = std::env::var_os("NEARMISS_DATA")
+        .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data")), PathBuf::from);
+    let frame = |n: u32| Mesh::read(&root.join(format!("cloth-ball/cloth_ball{n}.ply")));
+    match (frame(92), frame(93)) {
+        (Ok(t0), Ok(t1)) => all.push(("cloth-ball-92", Body::moving(t0, t1).expect("two frames"))),
+        _ => eprintln!("without the public frames (set NEARMISS_DATA)"),
+    }
+    all
+}
+
+/// One thread, and all if there are more.
+fn threads() -> Vec<usize> {
+    let all = std::thread::available_parallelism().map_or(1, usize::from);
+    if all > 1 { vec![1, all] } else { vec![1] }
+}
+
+fn session(body: &Body, threads: usize, motion: Motion) -> Session {
+    let device = Device::open(Backend::Cpu, Some(threads)).expect("a CPU");
+    let mut session = Session::new(device, vec![body.clone()], Query::of(motion)).expect("a session");
+    // Lists grow to the demand once.
+    session.detect().expect("an answer");
+    session
+}
+
+fn construct(c: &mut Criterion) {
+    let mut group = c.benchmark_group("construct");
+    group.sample_size(10).warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(2));
+    for (name, body) in &scenes() {
+        for threads in threads() {
+            let mut session = session(body, threads, Motion::Discrete);
+            group.bench_function(BenchmarkId::new(*name, threads), |b| {
+                b.iter(|| session.rebuild().expect("a tree"));
+            });
+        }
+    }
+    group.finish();
+}
+
+fn frames(c: &mut Criterion) {
+    let mut report = Vec::new();
+    for (motion, group) in [(Motion::Discrete, "frame discrete"), (Motion::Continuous, "frame continuous")] {
+        let mut group = c.benchmark_group(group);
+        group.sample_size(10).warm_up_time(Duration::from_millis(300));
+        group.measurement_time(Duration::from_secs(3));
+        for (name, body) in &scenes() {
+            for threads in threads() {
+                let mut session = session(body, threads, motion);
+                let mut seen = Vec::new();
+                group.bench_function(BenchmarkId::new(*name, threads), |b| frame(b, &mut session, &mut seen));
+                // Nothing was timed where a filter left this one out.
+                if !seen.is_empty() {
+                    report.push((*name, motion, threads, seen));
+                }
+            }
+        }
+        group.finish();
+    }
+    println!("medians in ms, of the stages by their own clocks");
+    println!("scene,query,threads,runs,fit,refit,traverse,narrow,frame");
+    for (name, motion, threads, seen) in &report {
+        let stages: [fn(&Stages) -> f64; 5] =
+            [|s| s.fit, |s| s.refit, |s| s.traverse, |s| s.narrow, |s| s.total];
+        let medians =
+            stages.map(|stage| median(seen.iter().map(stage).collect())).map(|ms| format!("{ms:.3}"));
+        println!("{name},{motion:?},{threads},{},{}", seen.len(), medians.join(","));
+    }
+}
+
+fn frame(b: &mut Bencher, session: &mut Session, seen: &mut Vec<Stages>) {
+    b.iter(|| {
+        let contacts = session.detect().expect("an answer");
+        seen.push(contacts.stages);
+        contacts
+    });
+}
+
+fn median(mut times: Vec<f64>) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}
+
+criterion_group!(benches, construct, frames);
+criterion_main!(benches);
