@@ -1,20 +1,19 @@
 //! The corridor: a frame from positions to contacts, in the order of the stages.
 
 use super::layout::Layout;
+use super::narrow::{Given, Narrow, Step};
 use super::precision::Precision;
-use super::room::List;
+use super::room::{Growing, List};
 use super::timing::Stages;
 use super::tree::Tree;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::mesh::Body;
-use crate::query::{Motion, Query, Solver, Traversal};
+use crate::query::{Motion, Query, Traversal};
 use nearmiss_kernels::abi::{
-    DiscreteArgs, Frames, Hit, KEEP_ADJACENT, Motion as Ends, Pair, Point, ROUNDS, RejectArgs, SELF,
-    SiftArgs, SolveArgs, Span, TraverseArgs, Unit, counter,
+    Frames, Hit, KEEP_ADJACENT, Motion as Ends, Pair, Point, ROUNDS, SELF, Span, TraverseArgs, Unit, counter,
 };
 use nearmiss_kernels::entry;
-use nearmiss_kernels::entry::Entry;
 use rayon::prelude::*;
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -55,31 +54,14 @@ pub struct Corridor<R: Precision> {
     pub reruns: u64,
     /// Counters of the last frame.
     last: Vec<u64>,
+    /// Whether the lists were long enough for a whole frame: then the next one runs without waiting between steps.
+    settled: bool,
 }
 
 /// Positions, as the query needs them.
 enum Vertices<R: Precision> {
     Still(Buffer<Point<R>>),
     Moving(Buffer<Ends<R>>),
-}
-
-/// What only one kind of query needs exists only there.
-enum Narrow {
-    Discrete { contacts: List<Pair>, undecided: Option<List<Pair>> },
-    Continuous(Box<Continuous>),
-}
-
-struct Continuous {
-    edges: Buffer<[u32; 2]>,
-    face_edges: Buffer<[u32; 3]>,
-    owners: Buffer<u32>,
-    vf: List<Pair>,
-    ee: List<Pair>,
-    vf_survivors: List<Pair>,
-    ee_survivors: List<Pair>,
-    vf_hits: List<Hit>,
-    ee_hits: List<Hit>,
-    earliest: Option<Buffer<u64>>,
 }
 
 impl<R: Precision> Corridor<R> {
@@ -91,30 +73,7 @@ impl<R: Precision> Corridor<R> {
         let a_triangle = if continuous { SWEPT_PAIRS_A_TRIANGLE } else { PAIRS_A_TRIANGLE };
         let room = (a_triangle * triangles).max(LEAST_ROOM);
         let few = (4 * triangles).max(LEAST_ROOM);
-        let narrow = if continuous {
-            let earliest = query.motion == Motion::Earliest;
-            let hits = if earliest { 0 } else { few };
-            Narrow::Continuous(Box::new(Continuous {
-                edges: device.upload(&layout.edges)?,
-                face_edges: device.upload(&layout.face_edges)?,
-                owners: device.upload(&layout.owners)?,
-                vf: List::new(&device, "vertex/face candidates", counter::VF, room)?,
-                ee: List::new(&device, "edge/edge candidates", counter::EE, 2 * room)?,
-                vf_survivors: List::new(&device, "vertex/face survivors", counter::VF_SURVIVORS, few)?,
-                ee_survivors: List::new(&device, "edge/edge survivors", counter::EE_SURVIVORS, 2 * few)?,
-                vf_hits: List::new(&device, "vertex/face contacts", counter::VF_HITS, hits)?,
-                ee_hits: List::new(&device, "edge/edge contacts", counter::EE_HITS, hits)?,
-                earliest: if earliest { Some(device.buffer(1)?) } else { None },
-            }))
-        } else {
-            Narrow::Discrete {
-                contacts: List::new(&device, "contacts", counter::CONTACTS, few)?,
-                undecided: match query.solver() {
-                    Solver::Exact => Some(List::new(&device, "undecided pairs", counter::UNDECIDED, few)?),
-                    _ => None,
-                },
-            }
-        };
+        let narrow = Narrow::new(&device, layout, query, (room, few))?;
         let units = match Self::budget(&device, query) {
             None => None,
             Some(_) => Some([device.buffer(4 * triangles)?, device.buffer(4 * triangles)?]),
@@ -135,6 +94,7 @@ impl<R: Precision> Corridor<R> {
             narrow,
             reruns: 0,
             last: Vec::new(),
+            settled: false,
             device,
         };
         corridor.place(bodies)?;
@@ -195,7 +155,7 @@ impl<R: Precision> Corridor<R> {
         }
     }
 
-    /// One frame: volumes, candidates, contacts. Runs again from the traversal on while a list is too short.
+    /// One frame: volumes, candidates, contacts. Lists that were too short grow, and the frame runs again from there.
     pub fn frame(&mut self) -> Result<(Found, Stages), Error> {
         let start = self.device.mark()?;
         self.trees.iter().try_for_each(|tree| tree.fit(&self.device, self.frames(), self.faces.span()))?;
@@ -205,15 +165,18 @@ impl<R: Precision> Corridor<R> {
         loop {
             self.counters.clear()?;
             let begun = self.device.mark()?;
-            self.traverse()?;
+            self.step(Step::Traverse)?;
             let traversed = self.device.mark()?;
-            self.narrow()?;
+            self.narrow.steps().iter().try_for_each(|&step| self.step(step))?;
             let end = self.device.mark()?;
             let counters = self.counters.read(counter::COUNT as usize)?;
-            if self.grow(&counters)? {
+            if self.is_short(&counters) {
+                // Some list, somewhere: find out step by step.
+                self.settled = false;
                 self.reruns += 1;
                 continue;
             }
+            self.settled = true;
             let stages = Stages {
                 construct: 0.0,
                 fit: start.to(&fitted)?,
@@ -225,6 +188,59 @@ impl<R: Precision> Corridor<R> {
             self.last.clone_from(&counters);
             return Ok((self.gather(counters)?, stages));
         }
+    }
+
+    /// Runs a step. Until the lists have settled it waits for the step's demand and, where a list was too short, grows
+    /// it and runs the step again: no step works on a part of its input.
+    fn step(&mut self, step: Step) -> Result<(), Error> {
+        loop {
+            match step {
+                Step::Traverse => self.traverse()?,
+                _ => {
+                    let frames = self.frames();
+                    let given = Given {
+                        device: &self.device,
+                        query: self.query,
+                        frames,
+                        faces: self.faces.span(),
+                        pairs: self.pairs.span(),
+                        counters: self.counters.span(),
+                    };
+                    self.narrow.run(step, &given)?;
+                }
+            }
+            if self.settled {
+                return Ok(());
+            }
+            let mut counters = self.counters.read(counter::COUNT as usize)?;
+            let mut grown = false;
+            let mut again = Vec::new();
+            let lists = match step {
+                Step::Traverse => vec![&mut self.pairs as &mut dyn Growing],
+                _ => self.narrow.lists(step),
+            };
+            for list in lists {
+                grown |= list.grow(&self.device, &counters)?;
+                again.push(list.counter());
+            }
+            if !grown {
+                return Ok(());
+            }
+            self.reruns += 1;
+            if step == Step::Traverse {
+                again.extend(counter::SPILLED..counter::COUNT);
+                again.push(counter::STEPS);
+            }
+            again.iter().for_each(|&at| counters[at as usize] = 0);
+            self.counters.write(&counters)?;
+        }
+    }
+
+    /// Whether a list of any step had too little room.
+    fn is_short(&mut self, counters: &[u64]) -> bool {
+        let steps = self.narrow.steps();
+        self.pairs.is_short(counters)
+            || steps.iter().any(|&step| self.narrow.lists(step).iter().any(|list| list.is_short(counters)))
     }
 
     /// Candidates: a round of all leaves, then rounds of what longer walks left over.
@@ -271,99 +287,6 @@ impl<R: Precision> Corridor<R> {
         Ok(())
     }
 
-    /// Contacts.
-    fn narrow(&mut self) -> Result<(), Error> {
-        let frames = self.frames();
-        match &mut self.narrow {
-            Narrow::Discrete { contacts, undecided } => {
-                let args = DiscreteArgs {
-                    positions: frames.still,
-                    faces: self.faces.span(),
-                    pairs: self.pairs.span(),
-                    contacts: contacts.span(),
-                    undecided: undecided.as_ref().map_or(Span::EMPTY, List::span),
-                    counters: self.counters.span(),
-                    pairs_at: counter::PAIRS,
-                    flags: if self.query.adjacent { KEEP_ADJACENT } else { 0 },
-                };
-                let room = self.pairs.room();
-                let Some(undecided) = undecided else {
-                    return launch_striding::<R::Moller>(&self.device, room, &args);
-                };
-                launch_striding::<R::Filter>(&self.device, room, &args)?;
-                launch_striding::<R::Exact>(&self.device, undecided.room(), &args)
-            }
-            Narrow::Continuous(c) => {
-                let frames = match &self.vertices {
-                    Vertices::Still(points) => Frames { still: points.span(), moving: Span::EMPTY },
-                    Vertices::Moving(motions) => Frames { still: Span::EMPTY, moving: motions.span() },
-                };
-                let sift = SiftArgs {
-                    frames,
-                    faces: self.faces.span(),
-                    face_edges: c.face_edges.span(),
-                    owners: c.owners.span(),
-                    pairs: self.pairs.span(),
-                    vf: c.vf.span(),
-                    ee: c.ee.span(),
-                    counters: self.counters.span(),
-                };
-                launch_striding::<R::Sift>(&self.device, self.pairs.room(), &sift)?;
-                if let Some(earliest) = &mut c.earliest {
-                    earliest.write(&[u64::MAX])?;
-                }
-                let reject = |candidates: &List<Pair>, survivors: &List<Pair>| RejectArgs {
-                    frames,
-                    faces: self.faces.span(),
-                    edges: c.edges.span(),
-                    candidates: candidates.span(),
-                    survivors: survivors.span(),
-                    counters: self.counters.span(),
-                };
-                launch_striding::<R::RejectVf>(&self.device, c.vf.room(), &reject(&c.vf, &c.vf_survivors))?;
-                launch_striding::<R::RejectEe>(&self.device, c.ee.room(), &reject(&c.ee, &c.ee_survivors))?;
-                let solve = |survivors: &List<Pair>, hits: &List<Hit>| SolveArgs {
-                    frames,
-                    faces: self.faces.span(),
-                    edges: c.edges.span(),
-                    survivors: survivors.span(),
-                    hits: hits.span(),
-                    earliest: c.earliest.as_ref().map_or(Span::EMPTY, Buffer::span),
-                    counters: self.counters.span(),
-                };
-                let (vf, ee) = (solve(&c.vf_survivors, &c.vf_hits), solve(&c.ee_survivors, &c.ee_hits));
-                let (of_vf, of_ee) = (c.vf_survivors.room(), c.ee_survivors.room());
-                if self.query.solver() == Solver::CubicF32 {
-                    launch_striding::<R::Vf32>(&self.device, of_vf, &vf)?;
-                    launch_striding::<R::Ee32>(&self.device, of_ee, &ee)
-                } else {
-                    launch_striding::<R::Vf64>(&self.device, of_vf, &vf)?;
-                    launch_striding::<R::Ee64>(&self.device, of_ee, &ee)
-                }
-            }
-        }
-    }
-
-    /// Makes every list long enough for what was asked of it; whether one was not.
-    fn grow(&mut self, counters: &[u64]) -> Result<bool, Error> {
-        let device = &self.device;
-        let mut grown = self.pairs.grow(device, counters)?;
-        match &mut self.narrow {
-            Narrow::Discrete { contacts, undecided } => {
-                grown |= contacts.grow(device, counters)?;
-                if let Some(undecided) = undecided {
-                    grown |= undecided.grow(device, counters)?;
-                }
-            }
-            Narrow::Continuous(c) => {
-                grown |= c.vf.grow(device, counters)? | c.ee.grow(device, counters)?;
-                grown |= c.vf_survivors.grow(device, counters)? | c.ee_survivors.grow(device, counters)?;
-                grown |= c.vf_hits.grow(device, counters)? | c.ee_hits.grow(device, counters)?;
-            }
-        }
-        Ok(grown)
-    }
-
     /// A hash of what each stage left in memory after the last frame, lists as sets: for comparing machines.
     pub fn fingerprints(&self) -> Result<Vec<(&'static str, u64)>, Error> {
         let mut prints = Vec::new();
@@ -385,16 +308,7 @@ impl<R: Precision> Corridor<R> {
             Ok(())
         };
         list("traverse", &self.pairs)?;
-        match &self.narrow {
-            Narrow::Discrete { undecided: Some(undecided), .. } => list("narrow: undecided", undecided)?,
-            Narrow::Discrete { .. } => {}
-            Narrow::Continuous(c) => {
-                list("narrow: vf", &c.vf)?;
-                list("narrow: ee", &c.ee)?;
-                list("narrow: vf that may meet", &c.vf_survivors)?;
-                list("narrow: ee that may meet", &c.ee_survivors)?;
-            }
-        }
+        self.narrow.between().into_iter().try_for_each(|(name, pairs)| list(name, pairs))?;
         Ok(prints)
     }
 
@@ -413,9 +327,4 @@ impl<R: Precision> Corridor<R> {
         }
         Ok(found)
     }
-}
-
-/// Launches a kernel over up to `room` items.
-fn launch_striding<E: Entry>(device: &Device, room: usize, args: &E::Args) -> Result<(), Error> {
-    device.launch::<E>(device.blocks_striding::<E>(room), args)
 }

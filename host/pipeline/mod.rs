@@ -2,6 +2,7 @@
 
 mod corridor;
 mod layout;
+mod narrow;
 mod precision;
 mod room;
 mod timing;

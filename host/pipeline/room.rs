@@ -39,13 +39,38 @@ impl<T: Pod> List<T> {
         counters[self.counter as usize]
     }
 
+    /// The entries.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn read(&self, counters: &[u64]) -> Result<Vec<T>, Error> {
+        self.entries.read(self.demand(counters) as usize)
+    }
+}
+
+/// A list whose entries do not matter, only their number.
+pub trait Growing {
+    /// Which counter counts the entries.
+    fn counter(&self) -> u32;
+    /// Whether the kernels asked for more entries than there is room for.
+    fn is_short(&self, counters: &[u64]) -> bool;
     /// Makes room for what the kernels asked for, and an eighth more for the next frame; whether it had to.
     ///
     /// # Errors
     /// [`Error::Room`] when there is no memory, or the list would be longer than an index reaches.
-    pub fn grow(&mut self, device: &Device, counters: &[u64]) -> Result<bool, Error> {
+    fn grow(&mut self, device: &Device, counters: &[u64]) -> Result<bool, Error>;
+}
+
+impl<T: Pod> Growing for List<T> {
+    fn counter(&self) -> u32 {
+        self.counter
+    }
+    fn is_short(&self, counters: &[u64]) -> bool {
+        self.demand(counters) > self.room() as u64
+    }
+    fn grow(&mut self, device: &Device, counters: &[u64]) -> Result<bool, Error> {
         let demand = self.demand(counters);
-        if demand <= self.room() as u64 {
+        if !self.is_short(counters) {
             return Ok(false);
         }
         let room = |given| Error::Room {
@@ -61,13 +86,5 @@ impl<T: Pod> List<T> {
         self.entries = device.buffer(0)?;
         self.entries = device.buffer(wanted)?;
         Ok(true)
-    }
-
-    /// The entries.
-    ///
-    /// # Errors
-    /// Those of the device.
-    pub fn read(&self, counters: &[u64]) -> Result<Vec<T>, Error> {
-        self.entries.read(self.demand(counters) as usize)
     }
 }

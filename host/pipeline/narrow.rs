@@ -1,0 +1,247 @@
+//! Narrow: the lists and the launches of the last stage, step by step.
+
+use super::layout::Layout;
+use super::precision::Precision;
+use super::room::{Growing, List};
+use crate::device::{Buffer, Device};
+use crate::error::Error;
+use crate::query::{Motion, Query, Solver};
+use nearmiss_kernels::abi::{
+    DiscreteArgs, Frames, Hit, KEEP_ADJACENT, Pair, RejectArgs, SiftArgs, SolveArgs, Span, counter,
+};
+use nearmiss_kernels::entry::Entry;
+
+/// A step of a frame that fills lists; each reads what the one before filled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// Candidate triangle pairs.
+    Traverse,
+    /// Triangle pairs that meet.
+    Decide,
+    /// Vertex/face and edge/edge candidates.
+    Sift,
+    /// Those that may meet.
+    Reject,
+    /// Contacts in motion.
+    Solve,
+}
+
+/// What every step of the stage is given.
+pub struct Given<'a, R: Precision> {
+    /// The machine.
+    pub device: &'a Device,
+    /// The question.
+    pub query: Query,
+    /// Positions.
+    pub frames: Frames<R>,
+    /// Vertex indices of every triangle.
+    pub faces: Span<[u32; 3]>,
+    /// Candidate triangle pairs.
+    pub pairs: Span<Pair>,
+    /// The frame's counters.
+    pub counters: Span<u64>,
+}
+
+/// What only one kind of query needs exists only there.
+pub enum Narrow {
+    /// Triangle pairs at t = 0.
+    Discrete {
+        /// Pairs that meet.
+        contacts: List<Pair>,
+        /// Pairs that the filter left to exact signs; of the exact solver alone.
+        undecided: Option<List<Pair>>,
+    },
+    /// Features in motion.
+    Continuous(Box<Continuous>),
+}
+
+/// The lists and the topology of a continuous query.
+pub struct Continuous {
+    edges: Buffer<[u32; 2]>,
+    face_edges: Buffer<[u32; 3]>,
+    owners: Buffer<u32>,
+    vf: List<Pair>,
+    ee: List<Pair>,
+    vf_survivors: List<Pair>,
+    ee_survivors: List<Pair>,
+    /// Vertex/face contacts.
+    pub vf_hits: List<Hit>,
+    /// Edge/edge contacts.
+    pub ee_hits: List<Hit>,
+    /// The smallest toi, where only that is asked for.
+    pub earliest: Option<Buffer<u64>>,
+}
+
+impl Narrow {
+    /// Takes the memory that the query needs: `room` entries for candidates, `few` for what is left of them.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn new(
+        device: &Device,
+        layout: &Layout,
+        query: Query,
+        (room, few): (usize, usize),
+    ) -> Result<Self, Error> {
+        if query.motion == Motion::Discrete {
+            let exact = query.solver() == Solver::Exact;
+            let undecided = || List::new(device, "undecided pairs", counter::UNDECIDED, few);
+            return Ok(Narrow::Discrete {
+                contacts: List::new(device, "contacts", counter::CONTACTS, few)?,
+                undecided: exact.then(undecided).transpose()?,
+            });
+        }
+        let earliest = query.motion == Motion::Earliest;
+        let hits = if earliest { 0 } else { few };
+        Ok(Narrow::Continuous(Box::new(Continuous {
+            edges: device.upload(&layout.edges)?,
+            face_edges: device.upload(&layout.face_edges)?,
+            owners: device.upload(&layout.owners)?,
+            vf: List::new(device, "vertex/face candidates", counter::VF, room)?,
+            ee: List::new(device, "edge/edge candidates", counter::EE, 2 * room)?,
+            vf_survivors: List::new(device, "vertex/face survivors", counter::VF_SURVIVORS, few)?,
+            ee_survivors: List::new(device, "edge/edge survivors", counter::EE_SURVIVORS, 2 * few)?,
+            vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, hits)?,
+            ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, hits)?,
+            earliest: earliest.then(|| device.buffer(1)).transpose()?,
+        })))
+    }
+
+    /// The steps of this query, in their order.
+    pub fn steps(&self) -> &'static [Step] {
+        match self {
+            Narrow::Discrete { .. } => &[Step::Decide],
+            Narrow::Continuous(_) => &[Step::Sift, Step::Reject, Step::Solve],
+        }
+    }
+
+    /// The lists that a step fills.
+    pub fn lists(&mut self, step: Step) -> Vec<&mut dyn Growing> {
+        match (self, step) {
+            (Narrow::Discrete { contacts, undecided }, Step::Decide) => {
+                let undecided = undecided.as_mut().map(|list| list as &mut dyn Growing);
+                std::iter::once(contacts as &mut dyn Growing).chain(undecided).collect()
+            }
+            (Narrow::Continuous(c), Step::Sift) => vec![&mut c.vf, &mut c.ee],
+            (Narrow::Continuous(c), Step::Reject) => vec![&mut c.vf_survivors, &mut c.ee_survivors],
+            (Narrow::Continuous(c), Step::Solve) => vec![&mut c.vf_hits, &mut c.ee_hits],
+            _ => Vec::new(),
+        }
+    }
+
+    /// The lists between candidates and contacts, with names: for comparing machines.
+    pub fn between(&self) -> Vec<(&'static str, &List<Pair>)> {
+        match self {
+            Narrow::Discrete { undecided, .. } => {
+                undecided.iter().map(|list| ("narrow: undecided", list)).collect()
+            }
+            Narrow::Continuous(c) => vec![
+                ("narrow: vf", &c.vf),
+                ("narrow: ee", &c.ee),
+                ("narrow: vf that may meet", &c.vf_survivors),
+                ("narrow: ee that may meet", &c.ee_survivors),
+            ],
+        }
+    }
+
+    /// Launches a step.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn run<R: Precision>(&mut self, step: Step, given: &Given<R>) -> Result<(), Error> {
+        match (self, step) {
+            (Narrow::Discrete { contacts, undecided }, Step::Decide) => {
+                decide(contacts, undecided.as_ref(), given)
+            }
+            (Narrow::Continuous(c), Step::Sift) => c.sift(given),
+            (Narrow::Continuous(c), Step::Reject) => c.reject(given),
+            (Narrow::Continuous(c), Step::Solve) => c.solve(given),
+            _ => Err(Error::Bug { what: format!("the step {step:?} in another kind of query") }),
+        }
+    }
+}
+
+/// Triangle pairs that meet: by floats, or by floats with a bound and exact signs for what they leave.
+fn decide<R: Precision>(
+    contacts: &List<Pair>,
+    undecided: Option<&List<Pair>>,
+    given: &Given<R>,
+) -> Result<(), Error> {
+    let args = DiscreteArgs {
+        positions: given.frames.still,
+        faces: given.faces,
+        pairs: given.pairs,
+        contacts: contacts.span(),
+        undecided: undecided.map_or(Span::EMPTY, List::span),
+        counters: given.counters,
+        pairs_at: counter::PAIRS,
+        flags: if given.query.adjacent { KEEP_ADJACENT } else { 0 },
+    };
+    let room = given.pairs.len as usize;
+    match undecided {
+        None => launch_striding::<R::Moller>(given.device, room, &args),
+        Some(undecided) => {
+            launch_striding::<R::Filter>(given.device, room, &args)?;
+            launch_striding::<R::Exact>(given.device, undecided.room(), &args)
+        }
+    }
+}
+
+impl Continuous {
+    fn sift<R: Precision>(&self, given: &Given<R>) -> Result<(), Error> {
+        let args = SiftArgs {
+            frames: given.frames,
+            faces: given.faces,
+            face_edges: self.face_edges.span(),
+            owners: self.owners.span(),
+            pairs: given.pairs,
+            vf: self.vf.span(),
+            ee: self.ee.span(),
+            counters: given.counters,
+        };
+        launch_striding::<R::Sift>(given.device, given.pairs.len as usize, &args)
+    }
+
+    fn reject<R: Precision>(&self, given: &Given<R>) -> Result<(), Error> {
+        let args = |candidates: &List<Pair>, survivors: &List<Pair>| RejectArgs {
+            frames: given.frames,
+            faces: given.faces,
+            edges: self.edges.span(),
+            candidates: candidates.span(),
+            survivors: survivors.span(),
+            counters: given.counters,
+        };
+        let (vf, ee) = (args(&self.vf, &self.vf_survivors), args(&self.ee, &self.ee_survivors));
+        launch_striding::<R::RejectVf>(given.device, self.vf.room(), &vf)?;
+        launch_striding::<R::RejectEe>(given.device, self.ee.room(), &ee)
+    }
+
+    fn solve<R: Precision>(&mut self, given: &Given<R>) -> Result<(), Error> {
+        if let Some(earliest) = &mut self.earliest {
+            earliest.write(&[u64::MAX])?;
+        }
+        let args = |survivors: &List<Pair>, hits: &List<Hit>| SolveArgs {
+            frames: given.frames,
+            faces: given.faces,
+            edges: self.edges.span(),
+            survivors: survivors.span(),
+            hits: hits.span(),
+            earliest: self.earliest.as_ref().map_or(Span::EMPTY, Buffer::span),
+            counters: given.counters,
+        };
+        let (vf, ee) = (args(&self.vf_survivors, &self.vf_hits), args(&self.ee_survivors, &self.ee_hits));
+        let (of_vf, of_ee) = (self.vf_survivors.room(), self.ee_survivors.room());
+        if given.query.solver() == Solver::CubicF32 {
+            launch_striding::<R::Vf32>(given.device, of_vf, &vf)?;
+            launch_striding::<R::Ee32>(given.device, of_ee, &ee)
+        } else {
+            launch_striding::<R::Vf64>(given.device, of_vf, &vf)?;
+            launch_striding::<R::Ee64>(given.device, of_ee, &ee)
+        }
+    }
+}
+
+/// Launches a kernel over up to `room` items.
+fn launch_striding<E: Entry>(device: &Device, room: usize, args: &E::Args) -> Result<(), Error> {
+    device.launch::<E>(device.blocks_striding::<E>(room), args)
+}
