@@ -1,4 +1,7 @@
 //! nearmiss: collision detection for deformable triangle meshes.
+//!
+//! [`Session`] is the front door: bodies in, [`Contacts`] out, on the CPU or on an NVIDIA card, to the same bit. [`Query`]
+//! holds every choice; [`Device`] is where it runs; [`Error`] says who must act.
 
 pub mod cli;
 pub mod contacts;
@@ -17,3 +20,8 @@ pub use error::Error;
 pub use mesh::{Body, Mesh};
 pub use pipeline::Session;
 pub use query::Query;
+
+/// The front page's program is a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct Readme;
