@@ -1,5 +1,9 @@
 //! Results: contacts in canonical order, their hash, and the summary.
 
+mod triangles;
+
+pub use triangles::{TriangleContact, triangle_contacts};
+
 use crate::device::Device;
 use crate::mesh::Body;
 use crate::pipeline::{Found, Layout, Stages};

@@ -1,0 +1,82 @@
+//! From features to triangles: which triangle pairs meet in a step, and when first.
+
+use super::{Contact, Kind};
+use crate::mesh::{Body, Topology};
+use std::collections::HashMap;
+
+/// Two triangles without a common vertex whose features meet during the step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TriangleContact {
+    /// A triangle (of the first body); in one body the smaller index.
+    pub a: u32,
+    /// Another triangle (of the second body).
+    pub b: u32,
+    /// First time at which a feature of one meets a feature of the other, in [0, 1].
+    pub toi: f64,
+}
+
+/// Which triangles each vertex and each edge belongs to.
+struct Incidence<'a> {
+    faces: &'a [[u32; 3]],
+    of_vertex: Vec<Vec<u32>>,
+    of_edge: Vec<Vec<u32>>,
+}
+
+impl<'a> Incidence<'a> {
+    fn new(body: &'a Body) -> Self {
+        let faces = body.faces();
+        let topology = Topology::new(faces, body.vertex_count());
+        let mut of_vertex = vec![Vec::new(); body.vertex_count()];
+        let mut of_edge = vec![Vec::new(); topology.edges.len()];
+        for (triangle, (face, edges)) in faces.iter().zip(&topology.face_edges).enumerate() {
+            let triangle = triangle as u32;
+            for (k, &vertex) in face.iter().enumerate() {
+                if !face[..k].contains(&vertex) {
+                    of_vertex[vertex as usize].push(triangle);
+                }
+            }
+            for (k, &edge) in edges.iter().enumerate() {
+                // An edge of no length has no number.
+                if let Some(list) = of_edge.get_mut(edge as usize)
+                    && !edges[..k].contains(&edge)
+                {
+                    list.push(triangle);
+                }
+            }
+        }
+        Incidence { faces, of_vertex, of_edge }
+    }
+}
+
+/// Triangle pairs of `contacts`, ascending; of `bodies` as they were given to the session (one or two). Pairs that share
+/// a vertex are left out, as in a discrete query. Cost: the product of both features' triangles for each contact.
+pub fn triangle_contacts(contacts: &[Contact], bodies: &[Body]) -> Vec<TriangleContact> {
+    let Some(first) = bodies.first().map(Incidence::new) else { return Vec::new() };
+    let other = bodies.get(1).map(Incidence::new);
+    let second = other.as_ref().unwrap_or(&first);
+    let mut earliest: HashMap<[u32; 2], f64> = HashMap::new();
+    for contact in contacts {
+        let (a, b) = (contact.a as usize, contact.b as usize);
+        let whole = |face: u32| vec![face];
+        let (of_a, of_b) = match contact.kind {
+            Kind::Vf => (first.of_vertex[a].clone(), whole(contact.b)),
+            Kind::Fv => (whole(contact.a), second.of_vertex[b].clone()),
+            Kind::Ee => (first.of_edge[a].clone(), second.of_edge[b].clone()),
+        };
+        for &p in &of_a {
+            for &q in &of_b {
+                let within = other.is_none();
+                let (p_face, q_face) = (first.faces[p as usize], second.faces[q as usize]);
+                if within && p_face.iter().any(|v| q_face.contains(v)) {
+                    continue;
+                }
+                let pair = if within { [p.min(q), p.max(q)] } else { [p, q] };
+                let toi = earliest.entry(pair).or_insert(contact.toi);
+                *toi = toi.min(contact.toi);
+            }
+        }
+    }
+    let mut all: Vec<_> = earliest.into_iter().map(|([a, b], toi)| TriangleContact { a, b, toi }).collect();
+    all.sort_unstable_by_key(|pair| (pair.a, pair.b));
+    all
+}
