@@ -93,6 +93,19 @@ pub struct Query {
 }
 
 impl Query {
+    /// Every question with every solver that answers it, all other choices at their defaults: what tests and `selftest`
+    /// run over.
+    pub fn every() -> impl Iterator<Item = Query> {
+        let of = |motion: Motion, solvers: [Solver; 2]| {
+            solvers.map(|solver| Query { solver: Some(solver), ..Query::of(motion) })
+        };
+        let cubics = [Solver::CubicF64, Solver::CubicF32];
+        of(Motion::Discrete, [Solver::Exact, Solver::Moller])
+            .into_iter()
+            .chain(of(Motion::Continuous, cubics))
+            .chain(of(Motion::Earliest, cubics))
+    }
+
     /// The query that asks this, with every other choice at its default.
     pub fn of(motion: Motion) -> Query {
         Query { motion, ..Query::default() }

@@ -1,9 +1,12 @@
 //! Meshes, their frames, their edges: what is kept, what is refused, and each checker failing once.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+#[path = "support/data.rs"]
+mod data;
+
+use data::data;
 use nearmiss::Error;
 use nearmiss::mesh::{Body, Format, Mesh, NO_EDGE, Positions, Problem, Topology, Violation, check};
-use std::path::PathBuf;
 
 const TETRAHEDRON: [[u32; 3]; 4] = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
 
@@ -149,17 +152,6 @@ fn the_topology_checker_notices_each_fault() {
     assert_eq!(planted(|t| t.owners[0] &= !1), owner(0, 0b111_110, 0b111_111));
     assert_eq!(planted(|t| t.owners[3] |= 1 << 4), owner(3, 0b010_000, 0));
     assert_eq!(planted(|t| t.owners[2] |= 1 << 6), owner(2, 0b1_010_000, 0b010_000));
-}
-
-/// The public meshes, from `NEARMISS_DATA` or beside the repository.
-fn data(file: &str) -> Option<PathBuf> {
-    let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data");
-    let path = PathBuf::from(std::env::var_os("NEARMISS_DATA").unwrap_or(beside.into())).join(file);
-    if !path.exists() {
-        eprintln!("skipped: no {}; set NEARMISS_DATA", path.display());
-        return None;
-    }
-    Some(path)
 }
 
 #[test]

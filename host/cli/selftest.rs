@@ -8,20 +8,10 @@ use crate::device::emulator::{Emulator, Mode, Order};
 use crate::error::Error;
 use crate::mesh::Body;
 use crate::pipeline::Session;
-use crate::query::{Motion, Query, Solver, Traversal};
+use crate::query::{Motion, Query, Traversal};
 use crate::scene;
 use std::fmt::Write;
 use std::process::ExitCode;
-
-/// Every question, with every solver that answers it.
-pub const QUERIES: [(Motion, Solver); 6] = [
-    (Motion::Discrete, Solver::Exact),
-    (Motion::Discrete, Solver::Moller),
-    (Motion::Continuous, Solver::CubicF64),
-    (Motion::Continuous, Solver::CubicF32),
-    (Motion::Earliest, Solver::CubicF64),
-    (Motion::Earliest, Solver::CubicF32),
-];
 
 /// Triangles of the scenes that the microscope, which is some hundred times slower, looks at.
 const SMALL: usize = 300;
@@ -76,8 +66,8 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
         scenes.push((args.mesh[0].display().to_string(), vec![body(&args.mesh)?]));
     }
     for (name, bodies) in &scenes {
-        for (motion, solver) in QUERIES {
-            let query = Query { motion, solver: Some(solver), ..Query::default() };
+        for query in Query::every() {
+            let asked = format!("{:?} by {:?}", query.motion, query.solver());
             let spill = Traversal::PerLeaf { budget: Some(8) };
             let line = during("comparing machines", || -> Result<String, Error> {
                 let on_engine = print_of(&engine, bodies, query)?;
@@ -86,28 +76,25 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
                 others.push(("machine, spilling", print_of(&machine, bodies, spilling)?));
                 for (what, other) in &others {
                     if let Some(stage) = difference(&on_engine, other) {
-                        faults.push(format!("{name}, {motion:?} by {solver:?}, {what}: {stage}"));
+                        faults.push(format!("{name}, {asked}, {what}: {stage}"));
                     }
                 }
                 // Zipping loses no stage: all prints of a query have the same ones, and contacts are always last.
                 let hash = on_engine.stages.last().map_or(0, |stage| stage.1);
-                Ok(format!(
-                    "{hash:016x} {:>9} contacts  {name}, {motion:?} by {solver:?}",
-                    on_engine.contacts
-                ))
+                Ok(format!("{hash:016x} {:>9} contacts  {name}, {asked}", on_engine.contacts))
             })?;
             let _ = writeln!(table, "{line}");
         }
     }
     for name in scene::NAMES {
         let bodies = [scene::scene(name, SMALL, 3)?];
-        for (motion, solver) in QUERIES {
-            let query = Query { motion, solver: Some(solver), ..Query::default() };
+        for query in Query::every() {
+            let asked = format!("{:?} by {:?}", query.motion, query.solver());
             let want = print_of(&machine, &bodies, query)?;
             for order in [Order::Forward, Order::Reverse, Order::Shuffled(3)] {
                 let microscope = Device::emulator(Emulator::new(Mode::Microscope(order), None)?);
                 if let Some(stage) = difference(&print_of(&microscope, &bodies, query)?, &want) {
-                    faults.push(format!("{name}, {motion:?} by {solver:?}, microscope {order:?}: {stage}"));
+                    faults.push(format!("{name}, {asked}, microscope {order:?}: {stage}"));
                 }
             }
         }
@@ -116,7 +103,7 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
         table,
         "microscope     {} scenes x {} queries x 3 orders",
         scene::NAMES.len(),
-        QUERIES.len()
+        Query::every().count()
     );
     for fault in &faults {
         let _ = writeln!(table, "DIFFERS        {fault}");

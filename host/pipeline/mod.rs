@@ -15,7 +15,7 @@ pub use timing::Stages;
 use crate::contacts::{Contacts, Summary};
 use crate::device::Device;
 use crate::error::Error;
-use crate::mesh::Body;
+use crate::mesh::{Body, MAX_FACES, MAX_VERTICES};
 use crate::query::Query;
 use corridor::Corridor;
 use nearmiss_kernels::bvh::{self, Violation};
@@ -72,6 +72,7 @@ impl Session {
                 advice: "give one body to test against itself, or two to test against each other".into(),
             });
         }
+        fits(bodies.iter().map(Body::face_count).sum(), bodies.iter().map(Body::vertex_count).sum())?;
         let layout = Layout::new(&bodies, query.motion != crate::query::Motion::Discrete);
         let mut session = Session { device, bodies, layout, query, construct_ms: 0.0, corridor: None };
         // A body without triangles meets nothing: no memory, no launch.
@@ -183,5 +184,34 @@ impl Session {
             )?;
         }
         Ok(())
+    }
+}
+
+/// Whether indices of 32 bits reach all triangles, vertices and edges (at most three a triangle) of all bodies together.
+fn fits(triangles: usize, vertices: usize) -> Result<(), Error> {
+    let what = match (triangles > MAX_FACES, vertices > MAX_VERTICES) {
+        (true, _) => format!("bodies of {triangles} triangles in all"),
+        (_, true) => format!("bodies of {vertices} vertices in all"),
+        _ => return Ok(()),
+    };
+    let advice =
+        format!("give at most {MAX_FACES} triangles and {MAX_VERTICES} vertices; split the larger body");
+    Err(Error::Choice { what, advice })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_than_indices_reach_is_refused() {
+        assert!(fits(MAX_FACES, MAX_VERTICES).is_ok());
+        for (triangles, vertices) in [(MAX_FACES + 1, 3), (1, MAX_VERTICES + 1)] {
+            let error = fits(triangles, vertices).expect_err("too many").to_string();
+            assert!(
+                error.contains(&triangles.max(vertices).to_string()) && error.contains("at most"),
+                "{error}"
+            );
+        }
     }
 }

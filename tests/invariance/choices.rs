@@ -2,22 +2,8 @@
 
 use super::support::{machines, microscope};
 use super::*;
-use nearmiss::query::{Solver, Traversal};
+use nearmiss::query::Traversal;
 use nearmiss::{Device, Session};
-
-/// Every question, with every solver that answers it.
-const QUESTIONS: [(Motion, Solver); 6] = [
-    (Motion::Discrete, Solver::Exact),
-    (Motion::Discrete, Solver::Moller),
-    (Motion::Continuous, Solver::CubicF64),
-    (Motion::Continuous, Solver::CubicF32),
-    (Motion::Earliest, Solver::CubicF64),
-    (Motion::Earliest, Solver::CubicF32),
-];
-
-fn queries() -> impl Iterator<Item = Query> {
-    QUESTIONS.into_iter().map(|(motion, solver)| Query { solver: Some(solver), ..Query::of(motion) })
-}
 
 /// The answer's hash, and what every stage left behind.
 fn prints(device: Device, bodies: &[Body], query: Query) -> Vec<(&'static str, u64)> {
@@ -37,7 +23,7 @@ fn every_machine_gives_the_same_bits_at_every_stage() {
         vec![scene::cloth_ball(200).expect("a scene"), scene::soup(80, 6, true).expect("a scene")],
     ];
     for bodies in scenes {
-        for query in queries() {
+        for query in Query::every() {
             let truth = prints(engine(), &bodies, query);
             for device in machines() {
                 let name = device.name();
@@ -106,7 +92,7 @@ fn a_refitted_tree_finds_what_a_new_one_does() {
 
 #[test]
 fn the_same_session_asked_again_says_the_same() {
-    for query in queries() {
+    for query in Query::every() {
         let body = scene::cloth_ball(800).expect("a scene");
         let mut session = Session::new(engine(), vec![body], query).expect("a session");
         let first = session.detect().expect("an answer");

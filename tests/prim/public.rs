@@ -1,5 +1,9 @@
 //! Public data, found through NEARMISS_DATA: exact pairs of triangles, true contacts of moving meshes, queries.
 
+#[path = "../support/data.rs"]
+mod data;
+
+use data::data;
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::adjacent::Shared;
 use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};
@@ -7,17 +11,6 @@ use nearmiss_kernels::prim::tri_tri::{Filter, Wide, meets, meets_exactly};
 use std::collections::{HashMap, HashSet};
 use std::io::Read;
 use std::path::PathBuf;
-
-/// The file, or nothing and a line that says so.
-fn data(name: &str) -> Option<PathBuf> {
-    let root = std::env::var("NEARMISS_DATA").unwrap_or("../shared/data".into());
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(root).join(name);
-    if !path.exists() {
-        eprintln!("SKIPPED: no {} (set NEARMISS_DATA)", path.display());
-        return None;
-    }
-    Some(path)
-}
 
 fn table(path: PathBuf) -> Vec<csv::StringRecord> {
     let file = flate2::read::GzDecoder::new(std::fs::File::open(path).unwrap());

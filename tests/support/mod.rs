@@ -1,23 +1,14 @@
 //! What several test binaries share.
 #![allow(dead_code, reason = "each binary uses a part")]
 
+mod data;
+
+pub use data::data;
+
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::{Device, Query, Session};
 use std::io::Read;
-use std::path::PathBuf;
-
-/// The folder of public test data: `NEARMISS_DATA`, else beside the repository.
-pub fn data(path: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("NEARMISS_DATA")
-        .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data")), PathBuf::from);
-    let path = root.join(path);
-    if path.exists() {
-        return Some(path);
-    }
-    eprintln!("skipped: no {} (set NEARMISS_DATA to the folder of public test data)", path.display());
-    None
-}
 
 /// A mesh of the public test data.
 pub fn mesh(path: &str) -> Option<Mesh> {
