@@ -56,6 +56,18 @@ fn every_pair_set_equals_the_exact_one() {
 }
 
 #[test]
+#[ignore = "minutes: the microscope watches every access of two large scenes"]
+fn the_large_sets_are_the_same_in_every_order() {
+    for (meshes, pairs, _) in SETS.into_iter().filter(|(_, _, small)| !small) {
+        let (Some(bodies), Some(truth)) = (bodies(meshes), listed(pairs)) else { continue };
+        for order in ORDERS {
+            let found = discrete(microscope(order), bodies.clone());
+            assert_eq!(difference(found.pairs(), &truth), None, "{meshes:?}, {order:?}");
+        }
+    }
+}
+
+#[test]
 fn the_comparison_can_fail() {
     let truth = [[1, 2], [3, 4]];
     assert_eq!(difference(&[[1, 2]], &truth), Some("missed [3, 4]".into()));
