@@ -20,6 +20,8 @@ type ErrorString = unsafe extern "C" fn(code: u32, text: *mut *const c_char) -> 
 
 const STUB_LIBRARY: u32 = 34;
 
+// Never inlined, so that there is one of it and its address says that a slot is not filled.
+#[inline(never)]
 extern "C" fn absent() -> u32 {
     STUB_LIBRARY
 }
