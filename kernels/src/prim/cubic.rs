@@ -82,7 +82,8 @@ impl<S: Real> Linear<S> {
 }
 
 /// Whether vertex and face certainly do not meet within the step, by signs alone, whatever `S`: what this rejects needs
-/// no solver. See [`Relative::apart`]. About 150 operations.
+/// no solver: the relative motion stays on one side of a coordinate plane, or the coplanarity cubic has no root in
+/// [0, 1], both proven beyond rounding. About 150 operations.
 #[inline]
 pub fn vf_apart<R: Real, S: Real>(v: Moving<R>, f: [Moving<R>; 3]) -> bool {
     // The vertex lies on one side of all three corners, at both ends of the step: differences are linear in time and

@@ -1,5 +1,5 @@
 //! # Discrete: triangle pairs that share a point
-//! Paper    section 6.2.5 ([`moller`], the seed's); beyond it: [`filter`] and [`exact`], the default.
+//! Paper    section 6.2.5 ([`moller()`], the seed's); beyond it: [`filter`] and [`exact`], the default.
 //! Launch   a lane a pair; a grid of any size strides. `exact` after `filter`, over what that left undecided.
 //! Reads    candidates, faces, positions.   Writes   contacts; `filter` also the undecided pairs.
 //! Before   candidates are complete. Positions are finite.
