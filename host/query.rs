@@ -15,6 +15,15 @@ pub enum Motion {
     Earliest,
 }
 
+/// What the tree is dressed in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Bv {
+    /// Axis-aligned boxes; in a continuous query around both ends of the step.
+    #[default]
+    Aabb,
+}
+
 /// How the tree is walked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -86,6 +95,8 @@ pub struct Query {
     pub motion: Motion,
     /// The test; `None` for the motion's default.
     pub solver: Option<Solver>,
+    /// The volume; `None` for what is fastest.
+    pub bv: Option<Bv>,
     /// The walk; `None` for what is fastest on the machine.
     pub traversal: Option<Traversal>,
     /// Discrete: also triangles that share a vertex, where they meet beyond it.
@@ -114,6 +125,16 @@ impl Query {
     /// The test that will be used.
     pub fn solver(&self) -> Solver {
         self.solver.unwrap_or(Solver::default_for(self.motion))
+    }
+
+    /// The volume that will be used.
+    pub fn bv(&self) -> Bv {
+        self.bv.unwrap_or_default()
+    }
+
+    /// The walk that will be used on a card, or on a CPU.
+    pub fn traversal_on(&self, is_card: bool) -> Traversal {
+        self.traversal.unwrap_or(Traversal::default_for(is_card))
     }
 
     /// Whether the choices go together.

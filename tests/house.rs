@@ -6,8 +6,8 @@ mod prose;
 #[path = "house/sources.rs"]
 mod sources;
 
-use nearmiss_kernels::abi;
 use nearmiss_kernels::entry::TABLE;
+use nearmiss_kernels::{abi, bv};
 use sources::{NONE, Source, after, files, lines, planted, rust};
 
 // Kernels know no host.
@@ -196,9 +196,9 @@ fn another_entry_or_size_is_noticed() {
 /// The sizes that the cards of the stages count with ("8 B pair", "32 B node", "64 B" for two siblings).
 #[test]
 fn records_have_the_sizes_that_the_cards_count_with() {
-    let sizes =
-        [size_of::<abi::Node>(), size_of::<abi::Pair>(), size_of::<abi::Unit>(), size_of::<abi::Hit>()];
-    assert_eq!(sizes, [32, 8, 8, 16]);
+    let nodes = [size_of::<abi::Link>(), size_of::<abi::Node<bv::Aabb>>()];
+    assert_eq!(nodes, [8, 32]);
+    assert_eq!([size_of::<abi::Pair>(), size_of::<abi::Unit>(), size_of::<abi::Hit>()], [8, 8, 16]);
     assert_eq!((size_of::<abi::Inner>(), size_of::<abi::Span<u8>>()), (12, 16));
-    assert_eq!((align_of::<abi::Node>(), align_of::<abi::Pair>()), (16, 8));
+    assert_eq!((align_of::<abi::Node<bv::Aabb>>(), align_of::<abi::Pair>()), (16, 8));
 }

@@ -125,6 +125,7 @@ impl DetectArgs {
         Query {
             motion,
             solver: self.solver,
+            bv: None,
             traversal: self.traversal.map(|walk| walk.choice(self.budget)),
             adjacent: self.adjacent,
         }

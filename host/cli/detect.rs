@@ -93,6 +93,7 @@ fn median(runs: &[Stages]) -> Stages {
         fit: of(|s| s.fit),
         refit: of(|s| s.refit),
         traverse: of(|s| s.traverse),
+        balance: of(|s| s.balance),
         narrow: of(|s| s.narrow),
         total: of(|s| s.total),
     }

@@ -6,14 +6,14 @@ use super::precision::Precision;
 use super::room::{Growing, List};
 use super::timing::Stages;
 use super::tree::Tree;
+use super::volumes::{Kernels, Volumes};
+use super::walk::{Walk, Walked, flags, walk};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::mesh::Body;
-use crate::query::{Motion, Query, Traversal};
-use nearmiss_kernels::abi::{
-    Frames, Hit, KEEP_ADJACENT, Motion as Ends, Pair, Point, ROUNDS, SELF, Span, TraverseArgs, Unit, counter,
-};
-use nearmiss_kernels::entry;
+use crate::query::{Motion, Query};
+use nearmiss_kernels::abi::{self, Hit, Motion as Ends, Pair, Point, Span, counter};
+use nearmiss_kernels::bv::Axes;
 use rayon::prelude::*;
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -40,22 +40,54 @@ pub struct Found {
 }
 
 /// The memory of a query, and the way through it.
-pub struct Corridor<R: Precision> {
+pub struct Corridor<R: Precision, V: Kernels> {
     device: Device,
     query: Query,
     faces: Buffer<[u32; 3]>,
     vertices: Vertices<R>,
-    trees: Vec<Tree>,
+    bodies: Vec<(Tree, Volumes<V>)>,
     counters: Buffer<u64>,
     pairs: List<Pair>,
-    units: Option<[Buffer<Unit>; 2]>,
+    walk: Box<dyn Walk<V>>,
     narrow: Narrow,
-    /// How often a list was too short and the frame was run again, so far.
-    pub reruns: u64,
+    reruns: u64,
     /// Counters of the last frame.
     last: Vec<u64>,
     /// Whether the lists were long enough for a whole frame: then the next one runs without waiting between steps.
     settled: bool,
+}
+
+/// A corridor of any precision and any volume.
+pub trait Frames {
+    /// Uploads positions. A body that stands still in a continuous query has the same positions at both ends.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn place(&mut self, bodies: &[Body]) -> Result<(), Error>;
+    /// Builds the trees anew, from the positions at t = 0; the milliseconds it took.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn construct(&mut self) -> Result<f64, Error>;
+    /// One frame: volumes, candidates, contacts. Lists that were too short grow, and the frame runs again from there.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn frame(&mut self) -> Result<(Found, Stages), Error>;
+    /// Levels of each body's tree.
+    fn depths(&self) -> Vec<usize>;
+    /// How often a list was too short and the frame was run again, so far.
+    fn reruns(&self) -> u64;
+    /// A hash of what each stage left in memory after the last frame, lists as sets: for comparing machines.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn fingerprints(&self) -> Result<Vec<(&'static str, u64)>, Error>;
+    /// Checks every tree and its volumes.
+    ///
+    /// # Errors
+    /// [`Error::Bug`] with the first violation; those of the device.
+    fn check(&self) -> Result<(), Error>;
 }
 
 /// Positions, as the query needs them.
@@ -64,20 +96,23 @@ enum Vertices<R: Precision> {
     Moving(Buffer<Ends<R>>),
 }
 
-impl<R: Precision> Corridor<R> {
-    /// Takes the memory that the query needs, uploads topology and positions, and constructs the trees. `layout` has
-    /// at least one triangle in every body.
-    pub fn new(device: Device, bodies: &[Body], layout: &Layout, query: Query) -> Result<(Self, f64), Error> {
+impl<R: Precision, V: Kernels> Corridor<R, V> {
+    /// Takes the memory that the query needs and uploads topology and positions. `layout` has at least one triangle in
+    /// every body.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn new(
+        device: Device,
+        bodies: &[Body],
+        layout: &Layout,
+        (query, axes): (Query, Axes),
+    ) -> Result<Self, Error> {
         let triangles = layout.faces.len();
         let continuous = query.motion != Motion::Discrete;
         let a_triangle = if continuous { SWEPT_PAIRS_A_TRIANGLE } else { PAIRS_A_TRIANGLE };
         let room = (a_triangle * triangles).max(LEAST_ROOM);
         let few = (4 * triangles).max(LEAST_ROOM);
-        let narrow = Narrow::new(&device, layout, query, (room, few))?;
-        let units = match Self::budget(&device, query) {
-            None => None,
-            Some(_) => Some([device.buffer(4 * triangles)?, device.buffer(4 * triangles)?]),
-        };
         let vertices = layout.starts[layout.bodies()].vertex as usize;
         let mut corridor = Corridor {
             query,
@@ -87,11 +122,11 @@ impl<R: Precision> Corridor<R> {
             } else {
                 Vertices::Still(device.buffer(vertices)?)
             },
-            trees: Vec::new(),
+            bodies: Vec::new(),
             counters: device.buffer(counter::COUNT as usize)?,
             pairs: List::new(&device, "candidate triangle pairs", counter::PAIRS, room)?,
-            units,
-            narrow,
+            walk: walk(&device, &query, triangles)?,
+            narrow: Narrow::new(&device, layout, query, (room, few))?,
             reruns: 0,
             last: Vec::new(),
             settled: false,
@@ -99,94 +134,17 @@ impl<R: Precision> Corridor<R> {
         };
         corridor.place(bodies)?;
         for body in 0..layout.bodies() {
-            corridor.trees.push(Tree::new(&corridor.device, layout.triangles(body))?);
+            let tree = Tree::new(&corridor.device, layout.triangles(body))?;
+            let volumes = Volumes::new(&corridor.device, &tree, axes)?;
+            corridor.bodies.push((tree, volumes));
         }
-        let start = corridor.device.mark()?;
-        corridor.construct()?;
-        let ms = start.to(&corridor.device.mark()?)?;
-        Ok((corridor, ms))
+        Ok(corridor)
     }
 
-    /// Steps of a walk before it spills.
-    fn budget(device: &Device, query: Query) -> Option<u32> {
-        let Traversal::PerLeaf { budget } =
-            query.traversal.unwrap_or(Traversal::default_for(device.is_card()));
-        budget
-    }
-
-    /// Uploads positions. A body that stands still in a continuous query has the same positions at both ends.
-    pub fn place(&mut self, bodies: &[Body]) -> Result<(), Error> {
-        match &mut self.vertices {
-            Vertices::Still(buffer) => {
-                let mut points = Vec::with_capacity(buffer.len());
-                for body in bodies {
-                    points.extend(R::points(body.positions_t0()).map(Point::from));
-                }
-                buffer.write(&points)
-            }
-            Vertices::Moving(buffer) => {
-                let mut ends = Vec::with_capacity(buffer.len());
-                for body in bodies {
-                    let (t0, t1) = (body.positions_t0(), body.positions_t1().unwrap_or(body.positions_t0()));
-                    let both = R::points(t0).zip(R::points(t1));
-                    ends.extend(both.map(|(t0, t1)| Ends { t0: t0.into(), t1: t1.into() }));
-                }
-                buffer.write(&ends)
-            }
-        }
-    }
-
-    /// Builds the trees anew, from the positions at t = 0.
-    pub fn construct(&mut self) -> Result<(), Error> {
-        let frames = self.frames();
-        let faces = self.faces.span();
-        self.trees.iter_mut().try_for_each(|tree| tree.construct::<R>(&self.device, frames, faces))
-    }
-
-    /// The trees, one a body.
-    pub fn trees(&self) -> &[Tree] {
-        &self.trees
-    }
-
-    fn frames(&self) -> Frames<R> {
+    fn frames(&self) -> abi::Frames<R> {
         match &self.vertices {
-            Vertices::Still(points) => Frames { still: points.span(), moving: Span::EMPTY },
-            Vertices::Moving(motions) => Frames { still: Span::EMPTY, moving: motions.span() },
-        }
-    }
-
-    /// One frame: volumes, candidates, contacts. Lists that were too short grow, and the frame runs again from there.
-    pub fn frame(&mut self) -> Result<(Found, Stages), Error> {
-        let start = self.device.mark()?;
-        self.trees.iter().try_for_each(|tree| tree.fit(&self.device, self.frames(), self.faces.span()))?;
-        let fitted = self.device.mark()?;
-        self.trees.iter().try_for_each(|tree| tree.refit(&self.device))?;
-        let refitted = self.device.mark()?;
-        loop {
-            self.counters.clear()?;
-            let begun = self.device.mark()?;
-            self.step(Step::Traverse)?;
-            let traversed = self.device.mark()?;
-            self.narrow.steps().iter().try_for_each(|&step| self.step(step))?;
-            let end = self.device.mark()?;
-            let counters = self.counters.read(counter::COUNT as usize)?;
-            if self.is_short(&counters) {
-                // Some list, somewhere: find out step by step.
-                self.settled = false;
-                self.reruns += 1;
-                continue;
-            }
-            self.settled = true;
-            let stages = Stages {
-                construct: 0.0,
-                fit: start.to(&fitted)?,
-                refit: fitted.to(&refitted)?,
-                traverse: begun.to(&traversed)?,
-                narrow: traversed.to(&end)?,
-                total: start.to(&end)?,
-            };
-            self.last.clone_from(&counters);
-            return Ok((self.gather(counters)?, stages));
+            Vertices::Still(points) => abi::Frames { still: points.span(), moving: Span::EMPTY },
+            Vertices::Moving(motions) => abi::Frames { still: Span::EMPTY, moving: motions.span() },
         }
     }
 
@@ -216,7 +174,11 @@ impl<R: Precision> Corridor<R> {
             let mut grown = false;
             let mut again = Vec::new();
             let lists = match step {
-                Step::Traverse => vec![&mut self.pairs as &mut dyn Growing],
+                Step::Traverse => {
+                    let mut lists = self.walk.lists();
+                    lists.push(&mut self.pairs);
+                    lists
+                }
                 _ => self.narrow.lists(step),
             };
             for list in lists {
@@ -228,11 +190,12 @@ impl<R: Precision> Corridor<R> {
             }
             self.reruns += 1;
             if step == Step::Traverse {
-                again.extend(counter::SPILLED..counter::COUNT);
-                again.push(counter::STEPS);
+                // The first step: everything that was counted so far is its own.
+                self.counters.clear()?;
+            } else {
+                again.iter().for_each(|&at| counters[at as usize] = 0);
+                self.counters.write(&counters)?;
             }
-            again.iter().for_each(|&at| counters[at as usize] = 0);
-            self.counters.write(&counters)?;
         }
     }
 
@@ -240,76 +203,19 @@ impl<R: Precision> Corridor<R> {
     fn is_short(&mut self, counters: &[u64]) -> bool {
         let steps = self.narrow.steps();
         self.pairs.is_short(counters)
+            || self.walk.lists().iter().any(|list| list.is_short(counters))
             || steps.iter().any(|&step| self.narrow.lists(step).iter().any(|list| list.is_short(counters)))
     }
 
-    /// Candidates: a round of all leaves, then rounds of what longer walks left over.
-    fn traverse(&self) -> Result<(), Error> {
-        let (queries, target) = (&self.trees[0], &self.trees[self.trees.len() - 1]);
-        let own = if self.trees.len() == 1 { SELF } else { 0 };
-        // An elementary pair may be known by two adjacent triangles only: continuous queries keep them.
-        let adjacent = self.query.adjacent || self.query.motion != Motion::Discrete;
-        let budget = Self::budget(&self.device, self.query);
-        let mut args = TraverseArgs {
-            queries: queries.nodes.span(),
-            query_leaves: queries.leaf_nodes.span(),
-            nodes: target.nodes.span(),
+    fn traverse(&mut self) -> Result<(), Error> {
+        self.walk.launch(&Walked {
+            device: &self.device,
+            bodies: &self.bodies,
             faces: self.faces.span(),
-            units: Span::EMPTY,
-            spilled: self.units.as_ref().map_or(Span::EMPTY, |units| units[0].span()),
             pairs: self.pairs.span(),
             counters: self.counters.span(),
-            units_at: 0,
-            spilled_at: counter::SPILLED,
-            budget: budget.unwrap_or(u32::MAX),
-            flags: own | if adjacent { KEEP_ADJACENT } else { 0 },
-        };
-        let leaves = queries.leaf_nodes.len();
-        let blocks = if self.device.is_card() {
-            self.device.blocks_for::<entry::traverse_leaves>(leaves)
-        } else {
-            self.device.blocks_striding::<entry::traverse_leaves>(leaves)
-        };
-        self.device.launch::<entry::traverse_leaves>(blocks, &args)?;
-        let Some(units) = &self.units else { return Ok(()) };
-        let blocks = self.device.blocks_striding::<entry::traverse_units>(units[0].len());
-        for round in 0..ROUNDS {
-            args.units = args.spilled;
-            args.units_at = args.spilled_at;
-            args.spilled = units[(round as usize + 1) % 2].span();
-            args.spilled_at += 1;
-            if round + 1 == ROUNDS {
-                args.budget = u32::MAX;
-                args.spilled_at = 0;
-            }
-            self.device.launch::<entry::traverse_units>(blocks, &args)?;
-        }
-        Ok(())
-    }
-
-    /// A hash of what each stage left in memory after the last frame, lists as sets: for comparing machines.
-    pub fn fingerprints(&self) -> Result<Vec<(&'static str, u64)>, Error> {
-        let mut prints = Vec::new();
-        let (mut links, mut leaves, mut inner) = (Vec::new(), Vec::new(), Vec::new());
-        for tree in &self.trees {
-            for node in &tree.download()?.nodes {
-                links.push([node.link, node.last]);
-                let volume = [node.lo.map(f32::to_bits), node.hi.map(f32::to_bits)];
-                if node.is_leaf() { leaves.push(volume) } else { inner.push(volume) }
-            }
-        }
-        prints.push(("construct", xxh3_64(bytemuck::cast_slice(&links))));
-        prints.push(("fit", xxh3_64(bytemuck::cast_slice(&leaves))));
-        prints.push(("refit", xxh3_64(bytemuck::cast_slice(&inner))));
-        let mut list = |name, list: &List<Pair>| -> Result<(), Error> {
-            let mut pairs = list.read(&self.last)?;
-            pairs.par_sort_unstable();
-            prints.push((name, xxh3_64(bytemuck::cast_slice(&pairs))));
-            Ok(())
-        };
-        list("traverse", &self.pairs)?;
-        self.narrow.between().into_iter().try_for_each(|(name, pairs)| list(name, pairs))?;
-        Ok(prints)
+            flags: flags(&self.query, self.bodies.len()),
+        })
     }
 
     fn gather(&self, counters: Vec<u64>) -> Result<Found, Error> {
@@ -326,5 +232,112 @@ impl<R: Precision> Corridor<R> {
             }
         }
         Ok(found)
+    }
+}
+
+impl<R: Precision, V: Kernels> Frames for Corridor<R, V> {
+    fn place(&mut self, bodies: &[Body]) -> Result<(), Error> {
+        match &mut self.vertices {
+            Vertices::Still(buffer) => {
+                let mut points = Vec::with_capacity(buffer.len());
+                for body in bodies {
+                    points.extend(R::points(body.positions_t0()).map(Point::from));
+                }
+                buffer.write(&points)
+            }
+            Vertices::Moving(buffer) => {
+                let mut ends = Vec::with_capacity(buffer.len());
+                for body in bodies {
+                    let (t0, t1) = (body.positions_t0(), body.positions_t1().unwrap_or(body.positions_t0()));
+                    let both = R::points(t0).zip(R::points(t1));
+                    ends.extend(both.map(|(t0, t1)| Ends { t0: t0.into(), t1: t1.into() }));
+                }
+                buffer.write(&ends)
+            }
+        }
+    }
+
+    fn construct(&mut self) -> Result<f64, Error> {
+        self.walk.forget();
+        let start = self.device.mark()?;
+        let (frames, faces) = (self.frames(), self.faces.span());
+        self.bodies.iter_mut().try_for_each(|(tree, _)| tree.construct::<R>(&self.device, frames, faces))?;
+        start.to(&self.device.mark()?)
+    }
+
+    fn frame(&mut self) -> Result<(Found, Stages), Error> {
+        let start = self.device.mark()?;
+        let (device, frames, faces) = (&self.device, self.frames(), self.faces.span());
+        self.bodies.iter().try_for_each(|(tree, volumes)| volumes.fit(device, tree, frames, faces))?;
+        let fitted = self.device.mark()?;
+        self.bodies.iter().try_for_each(|(tree, volumes)| volumes.refit(device, tree))?;
+        let refitted = self.device.mark()?;
+        loop {
+            self.counters.clear()?;
+            let begun = self.device.mark()?;
+            self.step(Step::Traverse)?;
+            let traversed = self.device.mark()?;
+            self.narrow.steps().iter().try_for_each(|&step| self.step(step))?;
+            let end = self.device.mark()?;
+            let counters = self.counters.read(counter::COUNT as usize)?;
+            if self.is_short(&counters) {
+                // Some list, somewhere: find out step by step.
+                self.settled = false;
+                self.reruns += 1;
+                continue;
+            }
+            self.settled = true;
+            self.walk.finish(&counters)?;
+            let balance = self.walk.balance_ms()?;
+            let stages = Stages {
+                construct: 0.0,
+                fit: start.to(&fitted)?,
+                refit: fitted.to(&refitted)?,
+                traverse: begun.to(&traversed)? - balance,
+                balance,
+                narrow: traversed.to(&end)?,
+                total: start.to(&end)?,
+            };
+            self.last.clone_from(&counters);
+            return Ok((self.gather(counters)?, stages));
+        }
+    }
+
+    fn depths(&self) -> Vec<usize> {
+        self.bodies.iter().map(|(tree, _)| tree.depth()).collect()
+    }
+
+    fn reruns(&self) -> u64 {
+        self.reruns
+    }
+
+    fn fingerprints(&self) -> Result<Vec<(&'static str, u64)>, Error> {
+        let mut prints = Vec::new();
+        let (mut links, mut leaves, mut inner) = (Vec::new(), Vec::new(), Vec::new());
+        for (tree, volumes) in &self.bodies {
+            links.extend(tree.download()?);
+            for node in volumes.download()? {
+                if node.is_leaf() { leaves.push(node.volume) } else { inner.push(node.volume) }
+            }
+        }
+        prints.push(("construct", xxh3_64(bytemuck::cast_slice(&links))));
+        prints.push(("fit", xxh3_64(bytemuck::cast_slice(&leaves))));
+        prints.push(("refit", xxh3_64(bytemuck::cast_slice(&inner))));
+        let mut list = |name, list: &List<Pair>| -> Result<(), Error> {
+            let mut pairs = list.read(&self.last)?;
+            pairs.par_sort_unstable();
+            prints.push((name, xxh3_64(bytemuck::cast_slice(&pairs))));
+            Ok(())
+        };
+        list("traverse", &self.pairs)?;
+        self.narrow.between().into_iter().try_for_each(|(name, pairs)| list(name, pairs))?;
+        Ok(prints)
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        self.bodies.iter().try_for_each(|(tree, volumes)| {
+            tree.check()?;
+            volumes.check(tree)
+        })
     }
 }

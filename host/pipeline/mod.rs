@@ -7,6 +7,8 @@ mod precision;
 mod room;
 mod timing;
 mod tree;
+mod volumes;
+mod walk;
 
 pub(crate) use corridor::Found;
 pub use layout::{Layout, Offsets};
@@ -16,9 +18,9 @@ use crate::contacts::{Contacts, Summary};
 use crate::device::Device;
 use crate::error::Error;
 use crate::mesh::{Body, MAX_FACES, MAX_VERTICES};
-use crate::query::Query;
-use corridor::Corridor;
-use nearmiss_kernels::bvh::{self, Violation};
+use crate::query::{Bv, Query};
+use corridor::{Corridor, Frames};
+use nearmiss_kernels::bv::{Aabb, Axes};
 
 /// Bodies on a device, ready to be asked frame after frame.
 ///
@@ -40,23 +42,23 @@ pub struct Session {
     layout: Layout,
     query: Query,
     construct_ms: f64,
-    corridor: Option<AnyCorridor>,
+    corridor: Option<Box<dyn Frames>>,
 }
 
-/// Positions in f32 where all bodies have them so, else in f64: nothing is rounded.
-enum AnyCorridor {
-    F32(Corridor<f32>),
-    F64(Corridor<f64>),
-}
-
-/// The same expression for both precisions.
-macro_rules! either {
-    ($corridor:expr, $c:ident => $value:expr) => {
-        match $corridor {
-            AnyCorridor::F32($c) => $value,
-            AnyCorridor::F64($c) => $value,
+/// The corridor of a query: positions in f32 where all bodies have them so, else in f64, so that nothing is rounded.
+fn corridor(
+    device: Device,
+    bodies: &[Body],
+    layout: &Layout,
+    query: Query,
+) -> Result<Box<dyn Frames>, Error> {
+    let f64s = bodies.iter().any(|body| body.positions_t0().is_f64());
+    Ok(match (query.bv(), f64s) {
+        (Bv::Aabb, false) => {
+            Box::new(Corridor::<f32, Aabb>::new(device, bodies, layout, (query, Axes::PCA))?)
         }
-    };
+        (Bv::Aabb, true) => Box::new(Corridor::<f64, Aabb>::new(device, bodies, layout, (query, Axes::PCA))?),
+    })
 }
 
 impl Session {
@@ -77,17 +79,9 @@ impl Session {
         let mut session = Session { device, bodies, layout, query, construct_ms: 0.0, corridor: None };
         // A body without triangles meets nothing: no memory, no launch.
         if session.bodies.iter().all(|body| body.face_count() > 0) {
-            let (device, bodies, layout) = (session.device.clone(), &session.bodies, &session.layout);
-            let f64s = bodies.iter().any(|body| body.positions_t0().is_f64());
-            let (corridor, ms) = if f64s {
-                let (corridor, ms) = Corridor::new(device, bodies, layout, query)?;
-                (AnyCorridor::F64(corridor), ms)
-            } else {
-                let (corridor, ms) = Corridor::new(device, bodies, layout, query)?;
-                (AnyCorridor::F32(corridor), ms)
-            };
+            let mut corridor = corridor(session.device.clone(), &session.bodies, &session.layout, query)?;
+            session.construct_ms = corridor.construct()?;
             session.corridor = Some(corridor);
-            session.construct_ms = ms;
         }
         Ok(session)
     }
@@ -112,7 +106,7 @@ impl Session {
         }
         self.bodies[body] = frame;
         match &mut self.corridor {
-            Some(corridor) => either!(corridor, c => c.place(&self.bodies)),
+            Some(corridor) => corridor.place(&self.bodies),
             None => Ok(()),
         }
     }
@@ -123,9 +117,7 @@ impl Session {
     /// Those of the device.
     pub fn rebuild(&mut self) -> Result<(), Error> {
         let Some(corridor) = &mut self.corridor else { return Ok(()) };
-        let start = self.device.mark()?;
-        either!(corridor, c => c.construct())?;
-        self.construct_ms = start.to(&self.device.mark()?)?;
+        self.construct_ms = corridor.construct()?;
         Ok(())
     }
 
@@ -136,7 +128,7 @@ impl Session {
     pub fn detect(&mut self) -> Result<Contacts, Error> {
         let (found, stages) = match &mut self.corridor {
             None => return Ok(Contacts::none(self.query)),
-            Some(corridor) => either!(corridor, c => c.frame())?,
+            Some(corridor) => corridor.frame()?,
         };
         let stages = Stages { construct: self.construct_ms, ..stages };
         Ok(Contacts::new(found, &self.layout, self.query, stages))
@@ -149,15 +141,12 @@ impl Session {
 
     /// How many levels each body's tree has.
     pub fn depths(&self) -> Vec<usize> {
-        match &self.corridor {
-            None => Vec::new(),
-            Some(corridor) => either!(corridor, c => c.trees().iter().map(|tree| tree.depth()).collect()),
-        }
+        self.corridor.as_ref().map_or(Vec::new(), |corridor| corridor.depths())
     }
 
     /// How often a list was too short and a frame was run again within itself, so far.
     pub fn reruns(&self) -> u64 {
-        self.corridor.as_ref().map_or(0, |corridor| either!(corridor, c => c.reruns))
+        self.corridor.as_ref().map_or(0, |corridor| corridor.reruns())
     }
 
     /// What each stage left in the device's memory after the last [`Session::detect`], as hashes by stage: trees to
@@ -166,7 +155,7 @@ impl Session {
     /// # Errors
     /// Those of the device.
     pub fn fingerprints(&self) -> Result<Vec<(&'static str, u64)>, Error> {
-        self.corridor.as_ref().map_or(Ok(Vec::new()), |corridor| either!(corridor, c => c.fingerprints()))
+        self.corridor.as_ref().map_or(Ok(Vec::new()), |corridor| corridor.fingerprints())
     }
 
     /// Checks every tree as it lies on the device; volumes too, which [`Session::detect`] sets.
@@ -174,16 +163,7 @@ impl Session {
     /// # Errors
     /// [`Error::Bug`] with the first violation; those of the device.
     pub fn check_trees(&self) -> Result<(), Error> {
-        let Some(corridor) = &self.corridor else { return Ok(()) };
-        let trees = either!(corridor, c => c.trees());
-        for tree in trees {
-            let t = tree.download()?;
-            let mut seen = vec![false; t.leaf_nodes.len()];
-            bvh::check(&t.nodes, &t.levels, &t.leaf_nodes, (t.first, &mut seen), true).map_err(
-                |violation: Violation| Error::Bug { what: format!("a tree is broken: {violation:?}") },
-            )?;
-        }
-        Ok(())
+        self.corridor.as_ref().map_or(Ok(()), |corridor| corridor.check())
     }
 }
 

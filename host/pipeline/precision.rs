@@ -2,6 +2,7 @@
 
 use crate::mesh::Positions;
 use nearmiss_kernels::abi::{DiscreteArgs, FitArgs, MortonArgs, RejectArgs, SiftArgs, SolveArgs};
+use nearmiss_kernels::bv::Aabb;
 use nearmiss_kernels::entry::{self, Entry};
 use nearmiss_kernels::math::{Real, Vec3};
 
@@ -12,7 +13,7 @@ pub trait Precision: Real {
     /// Codes of the triangle centres.
     type Morton: Entry<Args = MortonArgs<Self>>;
     /// Boxes of the leaves.
-    type Fit: Entry<Args = FitArgs<Self>>;
+    type FitAabb: Entry<Args = FitArgs<Self, Aabb>>;
     /// The seed's discrete test.
     type Moller: Entry<Args = DiscreteArgs<Self>>;
     /// The discrete filter.
@@ -41,7 +42,7 @@ pub trait Precision: Real {
 impl Precision for f32 {
     type Bounds = entry::construct_bounds_f32;
     type Morton = entry::construct_morton_f32;
-    type Fit = entry::fit_f32;
+    type FitAabb = entry::fit_aabb_f32;
     type Moller = entry::narrow_moller_f32;
     type Filter = entry::narrow_filter_f32;
     type Exact = entry::narrow_exact_f32;
@@ -65,7 +66,7 @@ impl Precision for f32 {
 impl Precision for f64 {
     type Bounds = entry::construct_bounds_f64;
     type Morton = entry::construct_morton_f64;
-    type Fit = entry::fit_f64;
+    type FitAabb = entry::fit_aabb_f64;
     type Moller = entry::narrow_moller_f64;
     type Filter = entry::narrow_filter_f64;
     type Exact = entry::narrow_exact_f64;

@@ -9,8 +9,10 @@ pub struct Stages {
     pub fit: f64,
     /// All other volumes.
     pub refit: f64,
-    /// Candidates.
+    /// Candidates, without balancing.
     pub traverse: f64,
+    /// Evening out the queues of work between the rounds of the traversal, where that is a step of its own.
+    pub balance: f64,
     /// Contacts.
     pub narrow: f64,
     /// From positions to contacts, runs that were repeated for want of room included, construction not.

@@ -1,30 +1,27 @@
-//! Construct, fit and refit: a tree of one body, kept on the device.
+//! Construct: the tree of one body, kept on the device.
 
 use super::precision::Precision;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
-use nearmiss_kernels::abi::{
-    FitArgs, Frames, Inner, MortonArgs, NONE, Node, RefitArgs, SortArgs, Span, TreeArgs,
-};
-use nearmiss_kernels::bvh::MAX_LEVELS;
-use nearmiss_kernels::entry::{self, Entry};
+use nearmiss_kernels::abi::{Frames, Inner, Link, MortonArgs, SortArgs, Span, TreeArgs};
+use nearmiss_kernels::bvh::{self, MAX_LEVELS};
+use nearmiss_kernels::entry;
 use nearmiss_kernels::exec::BINS;
 
 /// Keys of a lane in a tile of the radix sort: a tile is 1,024 keys, 90 tiles on cloth-ball, so that most of a card's
 /// processors have one.
 const ROUNDS: u32 = 4;
-/// Levels of up to this many nodes are refitted together by one block: four nodes a lane, a few hundred nanoseconds
-/// a level, where a launch costs microseconds.
-const ONE_BLOCK: u32 = 4 * entry::refit_levels::LANES;
 
-/// A level-ordered tree, and what building it again needs.
+/// A level-ordered tree without volumes, and what building it again needs.
 pub struct Tree {
     /// The nodes; see [`nearmiss_kernels::stage::construct::tree`].
-    pub nodes: Buffer<Node>,
+    pub links: Buffer<Link>,
+    /// The parent of each pair of siblings.
+    pub pair_parents: Buffer<u32>,
     /// Each leaf's node.
     pub leaf_nodes: Buffer<u32>,
     /// Number of levels, then where each begins, then where the last ends.
-    levels: Buffer<u32>,
+    pub levels: Buffer<u32>,
     /// The same, as the host needs it to launch.
     starts: Vec<u32>,
     first: u32,
@@ -53,7 +50,8 @@ impl Tree {
     pub fn new(device: &Device, (first, count): (u32, u32)) -> Result<Tree, Error> {
         let (n, inner) = (count as usize, count as usize - 1);
         Ok(Tree {
-            nodes: device.buffer(2 * n)?,
+            links: device.buffer(2 * n)?,
+            pair_parents: device.buffer(n)?,
             leaf_nodes: device.buffer(n)?,
             levels: device.buffer(MAX_LEVELS as usize + 2)?,
             starts: Vec::new(),
@@ -73,7 +71,7 @@ impl Tree {
         })
     }
 
-    /// Builds the hierarchy, all on the device. The boxes are not set yet. Cost: 34 launches, 27 of them a radix sort;
+    /// Builds the hierarchy, all on the device. It has no volumes yet. Cost: 34 launches, 27 of them a radix sort;
     /// linear memory.
     ///
     /// # Errors
@@ -120,7 +118,8 @@ impl Tree {
             places: s.places.span(),
             totals: s.sorter.totals.span(),
             levels: self.levels.span(),
-            nodes: self.nodes.span(),
+            links: self.links.span(),
+            pair_parents: self.pair_parents.span(),
             leaf_nodes: self.leaf_nodes.span(),
             leaves: self.count,
             first: self.first,
@@ -163,80 +162,46 @@ impl Tree {
         self.starts.len() - 1
     }
 
-    /// Fits the boxes of the leaves.
-    ///
-    /// # Errors
-    /// Those of the device.
-    pub fn fit<R: Precision>(
-        &self,
-        device: &Device,
-        frames: Frames<R>,
-        faces: Span<[u32; 3]>,
-    ) -> Result<(), Error> {
-        let args = FitArgs { frames, faces, leaf_nodes: self.leaf_nodes.span(), nodes: self.nodes.span() };
-        device.launch::<R::Fit>(device.blocks_for::<R::Fit>(self.count as usize), &args)
+    /// How many leaves the tree has: at least one.
+    pub fn leaves(&self) -> usize {
+        self.count as usize
     }
 
-    /// Refits all other boxes, a launch a level; runs of narrow levels share one.
-    ///
-    /// # Errors
-    /// Those of the device.
-    pub fn refit(&self, device: &Device) -> Result<(), Error> {
-        let width = |level: usize| self.starts[level + 1] - self.starts[level];
-        // The deepest level holds only leaves.
-        let mut to = self.depth() - 1;
-        while to > 0 {
-            let mut from = to - 1;
-            if width(from) <= ONE_BLOCK {
-                while from > 0 && width(from - 1) <= ONE_BLOCK {
-                    from -= 1;
-                }
-            }
-            let narrow = width(to - 1) <= ONE_BLOCK;
-            let blocks =
-                if narrow { 1 } else { device.blocks_for::<entry::refit_levels>(width(from) as usize) };
-            let args = RefitArgs {
-                nodes: self.nodes.span(),
-                levels: self.levels.span(),
-                from: from as u32,
-                to: to as u32,
-            };
-            device.launch::<entry::refit_levels>(blocks, &args)?;
-            to = from;
-        }
-        Ok(())
+    /// Where each level begins, the root's first, and where the last ends.
+    pub fn starts(&self) -> &[u32] {
+        &self.starts
     }
 
-    /// Everything on the host, for the checker.
+    /// The nodes as they lie on the device.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn download(&self) -> Result<Copied, Error> {
-        let nodes = {
-            // Node 0 is not used and nothing writes it.
-            let mut nodes = self.nodes.read(self.nodes.len())?;
-            nodes[0] = Node { link: NONE, ..Node::default() };
-            nodes
-        };
-        Ok(Copied {
-            nodes,
-            levels: self.levels.read(self.starts.len() + 1)?,
-            leaf_nodes: self.leaf_nodes.read(self.leaf_nodes.len())?,
+    pub fn download(&self) -> Result<Vec<Link>, Error> {
+        let mut links = self.links.read(self.links.len())?;
+        // Node 0 is not used and nothing writes it.
+        links[0] = Link::default();
+        Ok(links)
+    }
+
+    /// Checks the tree as it lies on the device.
+    ///
+    /// # Errors
+    /// [`Error::Bug`] with the first violation; those of the device.
+    pub fn check(&self) -> Result<(), Error> {
+        let tree = bvh::Tree {
+            links: &self.download()?,
+            pair_parents: &self.pair_parents.read(self.pair_parents.len())?,
+            levels: &self.levels.read(self.starts.len() + 1)?,
+            leaf_nodes: &self.leaf_nodes.read(self.leaf_nodes.len())?,
             first: self.first,
-        })
+        };
+        bvh::check(&tree, &mut vec![false; self.leaves()]).map_err(broken)
     }
 }
 
-/// A tree as it lies on the device, on the host.
-pub struct Copied {
-    /// The nodes.
-    pub nodes: Vec<Node>,
-    /// Number of levels, then where each begins, then where the last ends.
-    pub levels: Vec<u32>,
-    /// Each leaf's node.
-    pub leaf_nodes: Vec<u32>,
-    /// The body's first triangle.
-    pub first: u32,
+/// A broken tree, as an error.
+pub fn broken(violation: bvh::Violation) -> Error {
+    Error::Bug { what: format!("a tree is broken: {violation:?}") }
 }
 
 /// The memory of a radix sort.

@@ -1,6 +1,7 @@
 //! The kernel table: one line an entry. The PTX entries and the host's list come from the same line.
 
 use crate::abi::*;
+use crate::bv::Aabb;
 use crate::exec::{BINS, Block, WARP};
 use crate::stage::construct::{morton, sort, tree};
 use crate::stage::narrow::{discrete, reject, sift, solve};
@@ -86,11 +87,11 @@ kernels! {
     construct_place: tree::place, [TreeArgs], WIDE, 0;
     construct_levels: tree::levels, [TreeArgs], WIDE, 0;
     construct_emit: tree::emit, [TreeArgs], WIDE, 0;
-    fit_f32: fit::fit::<f32, B>, [FitArgs<f32>], WIDE, 0;
-    fit_f64: fit::fit::<f64, B>, [FitArgs<f64>], WIDE, 0;
-    refit_levels: refit::refit, [RefitArgs], WIDE, 0;
-    traverse_leaves: traverse::leaves, [TraverseArgs], NARROW, traverse::shared_bytes(NARROW);
-    traverse_units: traverse::units, [TraverseArgs], NARROW, traverse::shared_bytes(NARROW);
+    fit_aabb_f32: fit::fit::<f32, Aabb, B>, [FitArgs<f32, Aabb>], WIDE, 0;
+    fit_aabb_f64: fit::fit::<f64, Aabb, B>, [FitArgs<f64, Aabb>], WIDE, 0;
+    refit_levels_aabb: refit::levels::<Aabb, B>, [RefitArgs<Aabb>], WIDE, 0;
+    traverse_leaves_aabb: traverse::leaves::<Aabb, B>, [TraverseArgs<Aabb>], NARROW, traverse::shared_bytes(NARROW);
+    traverse_units_aabb: traverse::units::<Aabb, B>, [TraverseArgs<Aabb>], NARROW, traverse::shared_bytes(NARROW);
     narrow_moller_f32: discrete::moller::<f32, B>, [DiscreteArgs<f32>], WIDE, 0;
     narrow_moller_f64: discrete::moller::<f64, B>, [DiscreteArgs<f64>], WIDE, 0;
     narrow_filter_f32: discrete::filter::<f32, B>, [DiscreteArgs<f32>], WIDE, 0;

@@ -1,21 +1,24 @@
 //! One argument block for each kernel: what it is launched with, by value.
 
-use super::{Hit, Inner, Motion, Node, Pair, Point, Span, Unit};
+use super::{Hit, Inner, Link, Motion, Node, Pair, Point, Span, Unit};
+use crate::bv::Axes;
 use crate::math::Real;
 use bytemuck::{Pod, Zeroable};
 
 /// Declares argument blocks: `repr(C)`, plain old data, and an assertion that the fields leave no padding.
 macro_rules! arguments {
-    ($($(#[$doc:meta])* $name:ident $(<$r:ident>)? { $($(#[$fdoc:meta])* $field:ident: $ty:ty,)* })*) => { $(
+    ($($(#[$doc:meta])* $name:ident $(<$($g:ident: $bound:path),*>)? {
+        $($(#[$fdoc:meta])* $field:ident: $ty:ty,)*
+    })*) => { $(
         $(#[$doc])*
         #[derive(Clone, Copy, Debug)]
         #[repr(C)]
-        pub struct $name $(<$r: Real>)? { $($(#[$fdoc])* pub $field: $ty,)* }
+        pub struct $name $(<$($g: $bound),*>)? { $($(#[$fdoc])* pub $field: $ty,)* }
         // SAFETY: every field is Zeroable (they are all Pod, asserted below by use).
-        unsafe impl $(<$r: Real>)? Zeroable for $name $(<$r>)? {}
+        unsafe impl $(<$($g: $bound),*>)? Zeroable for $name $(<$($g),*>)? {}
         // SAFETY: repr(C), every field Pod, and `FITS` refuses to compile where padding would be.
-        unsafe impl $(<$r: Real>)? Pod for $name $(<$r>)? {}
-        impl $(<$r: Real>)? $name $(<$r>)? {
+        unsafe impl $(<$($g: $bound),*>)? Pod for $name $(<$($g),*>)? {}
+        impl $(<$($g: $bound),*>)? $name $(<$($g),*>)? {
             /// Evaluated for every block that is launched: no padding, every field plain old data.
             pub const FITS: () = {
                 const fn pod<T: Pod>() -> usize { size_of::<T>() }
@@ -27,14 +30,14 @@ macro_rules! arguments {
 
 arguments! {
     /// The vertices: in motion, or still; the other is empty.
-    Frames<R> {
+    Frames<R: Real> {
         /// Vertices of a discrete query.
         still: Span<Point<R>>,
         /// Vertices of a continuous query.
         moving: Span<Motion<R>>,
     }
     /// `construct_bounds`, `construct_morton`: triangle centres, their box, their codes.
-    MortonArgs<R> {
+    MortonArgs<R: Real> {
         /// Positions.
         frames: Frames<R>,
         /// Vertex indices of every triangle.
@@ -96,7 +99,9 @@ arguments! {
         /// Out: number of levels, then where each begins, then where the last ends.
         levels: Span<u32>,
         /// Out: the tree.
-        nodes: Span<Node>,
+        links: Span<Link>,
+        /// Out: the parent of each pair of siblings, which begins at twice its index.
+        pair_parents: Span<u32>,
         /// Out: each leaf's node.
         leaf_nodes: Span<u32>,
         /// How many leaves.
@@ -104,8 +109,8 @@ arguments! {
         /// Added to a triangle's index in its body.
         first: u32,
     }
-    /// `fit`: the boxes of the leaves.
-    FitArgs<R> {
+    /// `fit`: the volumes of the leaves.
+    FitArgs<R: Real, V: Pod> {
         /// Positions.
         frames: Frames<R>,
         /// Vertex indices of every triangle.
@@ -113,27 +118,35 @@ arguments! {
         /// Each leaf's node.
         leaf_nodes: Span<u32>,
         /// The tree.
-        nodes: Span<Node>,
+        links: Span<Link>,
+        /// Out: the leaves.
+        nodes: Span<Node<V>>,
     }
-    /// `refit`: the boxes of levels `from` to `to`, deepest first.
-    RefitArgs {
+    /// `refit_levels`: the volumes of levels `from` to `to`, deepest first.
+    RefitArgs<V: Pod> {
         /// The tree.
-        nodes: Span<Node>,
+        links: Span<Link>,
+        /// The volumes: those of the leaves in, the others out.
+        nodes: Span<Node<V>>,
         /// Number of levels, then where each begins.
         levels: Span<u32>,
         /// The first level (nearest the root).
         from: u32,
         /// Behind the last level. More than one level only in a launch of one block.
         to: u32,
+        /// Which axes merged oriented boxes take, see [`crate::bv::Axes`].
+        axes: Axes,
+        /// Nothing.
+        pad: u32,
     }
     /// `traverse_leaves`, `traverse_units`: leaf against tree.
-    TraverseArgs {
+    TraverseArgs<V: Pod> {
         /// The queries' tree.
-        queries: Span<Node>,
+        queries: Span<Node<V>>,
         /// Each query leaf's node.
         query_leaves: Span<u32>,
         /// The tree that is walked.
-        nodes: Span<Node>,
+        nodes: Span<Node<V>>,
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
         /// Units to walk (`traverse_units`).
@@ -154,7 +167,7 @@ arguments! {
         flags: u32,
     }
     /// `narrow_sift`: triangle pairs to vertex/face and edge/edge candidates.
-    SiftArgs<R> {
+    SiftArgs<R: Real> {
         /// Positions.
         frames: Frames<R>,
         /// Vertex indices of every triangle.
@@ -173,7 +186,7 @@ arguments! {
         counters: Span<u64>,
     }
     /// `narrow_moller`, `narrow_filter`, `narrow_exact`: triangle pairs that meet.
-    DiscreteArgs<R> {
+    DiscreteArgs<R: Real> {
         /// Positions.
         positions: Span<Point<R>>,
         /// Vertex indices of every triangle.
@@ -192,7 +205,7 @@ arguments! {
         flags: u32,
     }
     /// `narrow_reject_vf`, `narrow_reject_ee`: candidates that certainly stay apart, left out.
-    RejectArgs<R> {
+    RejectArgs<R: Real> {
         /// Positions.
         frames: Frames<R>,
         /// Vertex indices of every triangle (`narrow_reject_vf`).
@@ -207,7 +220,7 @@ arguments! {
         counters: Span<u64>,
     }
     /// `narrow_vf`, `narrow_ee`: the first time of contact of two primitives in motion.
-    SolveArgs<R> {
+    SolveArgs<R: Real> {
         /// Positions.
         frames: Frames<R>,
         /// Vertex indices of every triangle (`narrow_vf`).

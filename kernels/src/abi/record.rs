@@ -3,29 +3,61 @@
 use crate::math::{Real, Vec3};
 use bytemuck::{Pod, Zeroable};
 
-/// A node of the level-ordered tree: an axis-aligned box and its place in the tree. Two siblings are neighbours and
-/// start at an even index, so a parent finds both children in one line of 64 bytes. Node 1 is the root; node 0 is
-/// not used.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-#[repr(C, align(16))]
-pub struct Node {
-    /// The box's lower corner, rounded down. Inclusive.
-    pub lo: [f32; 3],
+/// A node's place in the level-ordered tree. Two siblings are neighbours and start at an even index, so a parent finds
+/// both children in one line. Node 1 is the root; node 0 is not used.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C, align(8))]
+pub struct Link {
     /// An inner node: index of its first child. A leaf: [`LEAF`] and the triangle's index.
     pub link: u32,
-    /// The box's upper corner, rounded up. Inclusive.
-    pub hi: [f32; 3],
     /// The last leaf below this node (a leaf: itself), in leaf order.
     pub last: u32,
 }
-const _: () = assert!(size_of::<Node>() == 32 && align_of::<Node>() == 16);
+const _: () = assert!(size_of::<Link>() == 8);
 
-/// Set in [`Node::link`] when the node is a leaf; the other bits are the triangle.
+/// A node as a walk reads it: its volume, and its place in the tree again, so that one access brings both.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(16))]
+pub struct Node<V> {
+    /// Around everything below this node.
+    pub volume: V,
+    /// As in [`Link`].
+    pub link: u32,
+    /// As in [`Link`].
+    pub last: u32,
+}
+
+impl<V> Node<V> {
+    /// No padding: a volume fills two words short of a multiple of 16 bytes. Evaluated for every volume that is used.
+    pub const FITS: () = assert!(size_of::<Self>() == size_of::<V>() + size_of::<Link>());
+}
+// SAFETY: a Zeroable volume and two numbers.
+unsafe impl<V: Pod> Zeroable for Node<V> {}
+// SAFETY: a Pod volume and two numbers; `FITS`, which every entry with nodes evaluates, refuses padding.
+unsafe impl<V: Pod> Pod for Node<V> {}
+
+/// Set in [`Link::link`] when the node is a leaf; the other bits are the triangle.
 pub const LEAF: u32 = 1 << 31;
 /// The root's index.
 pub const ROOT: u32 = 1;
 
-impl Node {
+impl Link {
+    /// Whether the node is a leaf.
+    pub fn is_leaf(&self) -> bool {
+        self.link & LEAF != 0
+    }
+    /// A leaf's triangle.
+    pub fn triangle(&self) -> u32 {
+        self.link & !LEAF
+    }
+    /// The node with a volume.
+    pub fn with<V>(self, volume: V) -> Node<V> {
+        const { Node::<V>::FITS };
+        Node { volume, link: self.link, last: self.last }
+    }
+}
+
+impl<V> Node<V> {
     /// Whether the node is a leaf.
     pub fn is_leaf(&self) -> bool {
         self.link & LEAF != 0

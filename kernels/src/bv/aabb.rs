@@ -1,10 +1,12 @@
 //! The axis-aligned box: six numbers, six comparisons. Union and overlap are exact; only fitting rounds, outward.
 
-use crate::abi::Node;
+use super::{Axes, Volume};
 use crate::math::{Real, Vec3, round};
+use bytemuck::{Pod, Zeroable};
 
 /// A closed box, `lo <= p <= hi` on every axis. A box of no thickness is a box.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
 pub struct Aabb {
     /// The lower corner.
     pub lo: [f32; 3],
@@ -50,15 +52,22 @@ impl Aabb {
     }
 }
 
-impl Node {
-    /// The node's box.
+impl Volume for Aabb {
     #[inline]
-    pub fn volume(&self) -> Aabb {
-        Aabb { lo: self.lo, hi: self.hi }
+    fn still<R: Real>(corners: [Vec3<R>; 3]) -> Self {
+        Aabb::of(corners)
     }
-    /// The node with another box.
+    /// Vertices move linearly, so the box around both ends holds them at every time.
     #[inline]
-    pub fn with(self, volume: Aabb) -> Node {
-        Node { lo: volume.lo, hi: volume.hi, ..self }
+    fn moving<R: Real>([p, q, r]: [Vec3<R>; 3], [s, t, u]: [Vec3<R>; 3]) -> Self {
+        Aabb::of([p, q, r, s, t, u])
+    }
+    #[inline]
+    fn merge(&self, other: &Self, _: Axes) -> Self {
+        Aabb::merge(*self, *other)
+    }
+    #[inline]
+    fn overlaps(&self, other: &Self) -> bool {
+        Aabb::overlaps(self, other)
     }
 }

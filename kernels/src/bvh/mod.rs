@@ -1,6 +1,7 @@
 //! The level-ordered tree: what holds of it, and a checker that names what does not.
 
-use crate::abi::{LEAF, Node, ROOT};
+use crate::abi::{LEAF, Link, Node, ROOT};
+use crate::bv::{Axes, Volume};
 
 /// Levels that a tree can have: a path from the root splits on one of the 63 bits of the code or, between equal
 /// codes, on one of the 32 bits of the index, each at most once; and the leaves.
@@ -31,24 +32,40 @@ pub enum Violation {
         /// The leaf, in leaf order.
         leaf: u32,
     },
-    /// T5: a box is not exactly the union of its children's.
-    Union {
+    /// T5: a pair of siblings does not know its parent.
+    Parent {
         /// The parent.
         node: u32,
-        /// 0, 1, 2: x, y, z.
-        axis: u32,
+    },
+    /// T6: a node's volume is not the merge of its children's, or its links are not the tree's.
+    Merge {
+        /// The parent.
+        node: u32,
     },
 }
 
-/// Checks T1 to T4 (see [`crate::stage::construct::tree`]) and, with `volumes`, T5. `seen` is one false flag for each
-/// triangle of the body, whose first triangle is `first`. Cost: linear.
-pub fn check(
-    nodes: &[Node],
-    levels: &[u32],
-    leaf_nodes: &[u32],
-    (first, seen): (u32, &mut [bool]),
-    volumes: bool,
-) -> Result<(), Violation> {
+/// A tree on the host, to be checked.
+#[derive(Clone, Copy, Debug)]
+pub struct Tree<'a> {
+    /// The nodes; the first is not used.
+    pub links: &'a [Link],
+    /// The parent of each pair of siblings.
+    pub pair_parents: &'a [u32],
+    /// Number of levels, then where each begins, then where the last ends.
+    pub levels: &'a [u32],
+    /// Each leaf's node.
+    pub leaf_nodes: &'a [u32],
+    /// The body's first triangle.
+    pub first: u32,
+}
+
+/// Checks T1 to T5 (see [`crate::stage::construct::tree`]). `seen` is one false flag for each triangle of the body.
+/// Cost: linear.
+///
+/// # Errors
+/// The first violation.
+pub fn check(tree: &Tree, seen: &mut [bool]) -> Result<(), Violation> {
+    let Tree { links, pair_parents, levels, leaf_nodes, first } = *tree;
     let leaves = leaf_nodes.len();
     let count = levels.first().map_or(0, |&n| n as usize);
     let starts = levels.get(1..count + 2).ok_or(Violation::Levels)?;
@@ -56,13 +73,13 @@ pub fn check(
     if count == 0 || ends != (Some(&ROOT), Some(&(2 * leaves as u32))) || !starts.is_sorted() {
         return Err(Violation::Levels);
     }
-    if nodes.len() < 2 * leaves {
+    if links.len() < 2 * leaves {
         return Err(Violation::Levels);
     }
     for level in 0..count {
         let mut next = starts[level + 1];
         for at in starts[level]..starts[level + 1] {
-            let node = nodes[at as usize];
+            let node = links[at as usize];
             if node.is_leaf() {
                 let triangle = node.triangle().wrapping_sub(first) as usize;
                 let known = leaf_nodes.get(node.last as usize) == Some(&at);
@@ -84,15 +101,12 @@ pub fn check(
                 return Err(Violation::Order { node: at });
             }
             next += 2;
-            let (left, right) = (nodes[node.link as usize], nodes[node.link as usize + 1]);
+            let (left, right) = (links[node.link as usize], links[node.link as usize + 1]);
             if right.last != node.last || left.last >= right.last {
                 return Err(Violation::Range { node: at });
             }
-            let union = left.volume().merge(right.volume());
-            for axis in 0..3 {
-                if volumes && (union.lo[axis] != node.lo[axis] || union.hi[axis] != node.hi[axis]) {
-                    return Err(Violation::Union { node: at, axis: axis as u32 });
-                }
+            if pair_parents.get(node.link as usize / 2) != Some(&at) {
+                return Err(Violation::Parent { node: at });
             }
         }
     }
@@ -100,4 +114,22 @@ pub fn check(
         Some(missing) => Err(Violation::Leaf { leaf: missing as u32 }),
         None => Ok(()),
     }
+}
+
+/// Checks T6 on a sound tree. `nodes` has as many elements as `links`. Cost: a merge a node.
+///
+/// # Errors
+/// The first violation.
+pub fn check_volumes<V: Volume>(links: &[Link], nodes: &[Node<V>], axes: Axes) -> Result<(), Violation> {
+    for (at, (link, node)) in links.iter().zip(nodes).enumerate().skip(ROOT as usize) {
+        let merged = if link.is_leaf() {
+            node.volume
+        } else {
+            nodes[link.link as usize].volume.merge(&nodes[link.link as usize + 1].volume, axes)
+        };
+        if *node != link.with(merged) {
+            return Err(Violation::Merge { node: at as u32 });
+        }
+    }
+    Ok(())
 }

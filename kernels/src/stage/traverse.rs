@@ -5,18 +5,18 @@
 //! Reads    nodes, two siblings at once (64 B); faces, to leave out pairs that share a vertex.
 //! Writes   candidate pairs (self: by index; between: queries first), each once, in no order.
 //! Before   all volumes are fitted and refitted.
-//! After    every pair of leaves whose boxes overlap is written, but for those that share a vertex index unless
+//! After    every pair of leaves whose volumes overlap is written, but for those that share a vertex index unless
 //!          [`KEEP_ADJACENT`] asks for them. In one mesh a pair is found by its earlier leaf: subtrees that end before it
 //!          are skipped.
 //! Room     `pairs` may be too short: the counter goes on, the host grows it and runs again. `spilled` may be too
 //!          short: then a walk goes on by itself and nothing is lost.
 //! Departs  the paper's queues hold pairs of inner nodes and are balanced between launches; here a walk that has used up
 //!          its budget gives the rest of its stack away, and the next round balances by giving a lane to each unit.
-//! Cost     64 B and 12 comparisons a step; hits wait on chip, so that the test for shared vertices and the append
+//! Cost     two nodes and two overlap tests (AABB: 64 B, 12 comparisons) a step; hits wait on chip, so that the test for shared vertices and the append
 //!          run converged, with one atomic operation a block.
 
 use crate::abi::{KEEP_ADJACENT, NONE, Pair, ROOT, SELF, TraverseArgs, Unit, counter};
-use crate::bv::Aabb;
+use crate::bv::Volume;
 use crate::exec::{Block, Lane, Slot};
 use crate::queue::{Buffer, Stack};
 
@@ -30,9 +30,9 @@ pub const fn shared_bytes(lanes: u32) -> u32 {
 
 /// A walk of one leaf through a tree, between two phases.
 #[derive(Clone, Copy)]
-struct Walk {
-    /// The leaf's box.
-    volume: Aabb,
+struct Walk<V> {
+    /// The leaf's volume.
+    volume: V,
     /// The leaf's triangle.
     triangle: u32,
     /// The leaf's node.
@@ -49,7 +49,7 @@ struct Walk {
     held: [u32; 2],
 }
 
-impl Walk {
+impl<V> Walk<V> {
     /// Whether there is something left to do.
     fn is_busy(&self) -> bool {
         self.next != NONE || self.held != [NONE; 2]
@@ -57,11 +57,11 @@ impl Walk {
 }
 
 /// One walk a leaf.
-pub fn leaves<B: Block>(b: &mut B, a: &TraverseArgs) {
+pub fn leaves<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>) {
     let root = b.load(a.nodes, ROOT);
     run(b, a, a.query_leaves.len as u32, |l, i, walk| {
         start(l, a, walk, l.read(a.query_leaves, i));
-        let wanted = root.last >= walk.from && walk.volume.overlaps(&root.volume());
+        let wanted = root.last >= walk.from && walk.volume.overlaps(&root.volume);
         match (wanted, root.is_leaf()) {
             (false, _) => {}
             (true, false) => walk.next = root.link,
@@ -71,7 +71,7 @@ pub fn leaves<B: Block>(b: &mut B, a: &TraverseArgs) {
 }
 
 /// One walk a unit that the round before left over.
-pub fn units<B: Block>(b: &mut B, a: &TraverseArgs) {
+pub fn units<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>) {
     let count = b.load(a.counters, a.units_at).min(a.units.len) as u32;
     run(b, a, count, |l, i, walk| {
         let Unit { query, pair } = l.read(a.units, i);
@@ -84,10 +84,10 @@ pub fn units<B: Block>(b: &mut B, a: &TraverseArgs) {
 
 /// Begins the walk of the leaf at node `query`.
 #[inline]
-fn start<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, query: u32) {
+fn start<V: Volume, L: Lane>(l: &L, a: &TraverseArgs<V>, walk: &mut Walk<V>, query: u32) {
     let leaf = l.read(a.queries, query);
     *walk = Walk {
-        volume: leaf.volume(),
+        volume: leaf.volume,
         triangle: leaf.triangle(),
         query,
         from: if a.flags & SELF != 0 { leaf.last + 1 } else { 0 },
@@ -98,12 +98,17 @@ fn start<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, query: u32) {
 
 /// Walks `total` walks, a lane each; `begin` sets one up.
 #[inline]
-fn run<B: Block>(b: &mut B, a: &TraverseArgs, total: u32, begin: impl Fn(&B::Lane, u32, &mut Walk)) {
+fn run<V: Volume, B: Block>(
+    b: &mut B,
+    a: &TraverseArgs<V>,
+    total: u32,
+    begin: impl Fn(&B::Lane, u32, &mut Walk<V>),
+) {
     let lanes = b.lanes();
     let found = Buffer { pairs: b.shared(BUFFER_A_LANE * lanes), fill: b.shared(2) };
     let kept = Buffer { pairs: b.shared(BUFFER_A_LANE * lanes), fill: b.shared(2) };
     let mut walks = b.slot(Walk {
-        volume: Aabb::EMPTY,
+        volume: V::zeroed(),
         triangle: 0,
         query: NONE,
         from: 0,
@@ -149,15 +154,21 @@ fn run<B: Block>(b: &mut B, a: &TraverseArgs, total: u32, begin: impl Fn(&B::Lan
 
 /// Walks on until nothing is left, the budget is used up or the buffer is full.
 #[inline]
-fn advance<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, stack: &mut Stack, found: Buffer) {
+fn advance<V: Volume, L: Lane>(
+    l: &L,
+    a: &TraverseArgs<V>,
+    walk: &mut Walk<V>,
+    stack: &mut Stack,
+    found: Buffer,
+) {
     emit(l, a, walk, found);
     // One loop, one way out, and every lane does the same things in it: lanes of a warp stay together.
     while walk.next != NONE && walk.budget > 0 && walk.held == [NONE; 2] {
         walk.budget -= 1;
         walk.steps += 1;
         let (left, right) = (l.read(a.nodes, walk.next), l.read(a.nodes, walk.next + 1));
-        let into_left = (left.last >= walk.from) & walk.volume.overlaps(&left.volume());
-        let into_right = (right.last >= walk.from) & walk.volume.overlaps(&right.volume());
+        let into_left = (left.last >= walk.from) & walk.volume.overlaps(&left.volume);
+        let into_right = (right.last >= walk.from) & walk.volume.overlaps(&right.volume);
         walk.held = [
             if into_left & left.is_leaf() { left.triangle() } else { NONE },
             if into_right & right.is_leaf() { right.triangle() } else { NONE },
@@ -178,7 +189,7 @@ fn advance<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, stack: &mut Stack,
 
 /// Puts the hits that a walk holds into the buffer; those without room it keeps.
 #[inline]
-fn emit<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, found: Buffer) {
+fn emit<V: Volume, L: Lane>(l: &L, a: &TraverseArgs<V>, walk: &mut Walk<V>, found: Buffer) {
     let count = (walk.held[0] != NONE) as u32 + (walk.held[1] != NONE) as u32;
     if count == 0 {
         return;
@@ -198,7 +209,7 @@ fn emit<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, found: Buffer) {
 }
 
 /// Gives the rest of a walk away; where the list has no room for all of it, the walk goes on without a budget.
-fn spill<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, stack: &mut Stack) {
+fn spill<V: Volume, L: Lane>(l: &L, a: &TraverseArgs<V>, walk: &mut Walk<V>, stack: &mut Stack) {
     let count = *stack.len as u64 + 1;
     let at = l.fetch_add(a.counters, a.spilled_at, count);
     if at + count <= a.spilled.len {
@@ -219,7 +230,7 @@ fn spill<L: Lane>(l: &L, a: &TraverseArgs, walk: &mut Walk, stack: &mut Stack) {
 }
 
 /// Empties the buffer into the list of candidates, without the pairs that share a vertex.
-fn flush<B: Block>(b: &mut B, a: &TraverseArgs, found: Buffer, kept: Buffer) {
+fn flush<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>, found: Buffer, kept: Buffer) {
     let lanes = b.lanes();
     let count = b.peek(found.fill, 0).min(found.pairs.len);
     b.phase(|l| {

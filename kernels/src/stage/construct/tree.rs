@@ -1,7 +1,7 @@
 //! # Tree: sorted codes → level-ordered tree
 //! Launch   `tree`, `depth`, one radix pass by depth (see [`super::sort`]), `place`, `levels` (one block), `emit`;
 //!          a lane an inner node.
-//! Reads    sorted codes and triangles.    Writes   nodes with links, leaf ranges and leaf nodes; level offsets.
+//! Reads    sorted codes and triangles.    Writes   links, leaf ranges, parents and leaf nodes; level offsets.
 //! Before   codes ascend. One triangle: only `levels` and `emit`. None: no launch at all.
 //! After    T1 node 1 is the root; siblings are neighbours and begin at an even index.
 //!          T2 levels lie one behind the other, and within one nodes ascend by leaf.
@@ -13,7 +13,7 @@
 //!          stably by the depth of their node are the nodes in level order, left to right.
 //! Cost     a binary search of the codes (about 2 x 18 reads of 8 B) and a walk to the root (4 B a level) a node.
 
-use crate::abi::{Inner, LEAF, NONE, Node, ROOT, TreeArgs};
+use crate::abi::{Inner, LEAF, Link, NONE, ROOT, TreeArgs};
 use crate::bvh::MAX_LEVELS;
 use crate::exec::{BINS, Block, Lane, Slot};
 
@@ -156,12 +156,15 @@ fn children(place: u32) -> u32 {
     ROOT + 1 + 2 * place
 }
 
-/// Writes a node; a leaf learns its triangle, and its triangle's leaf its node.
+/// Writes a node's links. A leaf learns its triangle, and its triangle's leaf its node; an inner node's children learn
+/// their parent.
 fn put<L: Lane>(l: &L, a: &TreeArgs, at: u32, link: u32, last: u32) {
-    let mut node = Node { link, last, ..Node::default() };
+    let mut node = Link { link, last };
     if node.is_leaf() {
         node.link |= a.first + l.read(a.triangles, last);
         l.write(a.leaf_nodes, last, at);
+    } else {
+        l.write(a.pair_parents, link / 2, at);
     }
-    l.write(a.nodes, at, node);
+    l.write(a.links, at, node);
 }

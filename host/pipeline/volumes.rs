@@ -1,0 +1,121 @@
+//! Fit and refit: the volumes that a tree is dressed in.
+
+use super::precision::Precision;
+use super::tree::{Tree, broken};
+use crate::device::{Buffer, Device};
+use crate::error::Error;
+use nearmiss_kernels::abi::{FitArgs, Frames, Node, RefitArgs, Span, TraverseArgs};
+use nearmiss_kernels::bv::{Aabb, Axes, Volume};
+use nearmiss_kernels::bvh;
+use nearmiss_kernels::entry::{self, Entry};
+
+/// A bounding volume, with its kernels.
+pub trait Kernels: Volume {
+    /// Volumes of the leaves.
+    type Fit<R: Precision>: Entry<Args = FitArgs<R, Self>>;
+    /// All other volumes, a launch a level.
+    type Levels: Entry<Args = RefitArgs<Self>>;
+    /// A walk a leaf.
+    type Leaves: Entry<Args = TraverseArgs<Self>>;
+    /// A walk a unit that was left over.
+    type Units: Entry<Args = TraverseArgs<Self>>;
+}
+
+impl Kernels for Aabb {
+    type Fit<R: Precision> = R::FitAabb;
+    type Levels = entry::refit_levels_aabb;
+    type Leaves = entry::traverse_leaves_aabb;
+    type Units = entry::traverse_units_aabb;
+}
+
+/// The volumes of a tree, kept on the device.
+pub struct Volumes<V> {
+    /// The nodes, in the tree's order.
+    pub nodes: Buffer<Node<V>>,
+    axes: Axes,
+}
+
+impl<V: Kernels> Volumes<V> {
+    /// Takes the memory for the volumes of a tree.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn new(device: &Device, tree: &Tree, axes: Axes) -> Result<Self, Error> {
+        Ok(Volumes { nodes: device.buffer(2 * tree.leaves())?, axes })
+    }
+
+    /// Fits the volumes of the leaves.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn fit<R: Precision>(
+        &self,
+        device: &Device,
+        tree: &Tree,
+        frames: Frames<R>,
+        faces: Span<[u32; 3]>,
+    ) -> Result<(), Error> {
+        let args = FitArgs {
+            frames,
+            faces,
+            leaf_nodes: tree.leaf_nodes.span(),
+            links: tree.links.span(),
+            nodes: self.nodes.span(),
+        };
+        device.launch::<V::Fit<R>>(device.blocks_for::<V::Fit<R>>(tree.leaves()), &args)
+    }
+
+    /// Refits all other volumes, a launch a level; runs of narrow levels share one: levels of up to four nodes a lane,
+    /// a few hundred nanoseconds each in one block, where a launch costs microseconds.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn refit(&self, device: &Device, tree: &Tree) -> Result<(), Error> {
+        let one_block = 4 * V::Levels::LANES;
+        let starts = tree.starts();
+        let width = |level: usize| starts[level + 1] - starts[level];
+        // The deepest level holds only leaves.
+        let mut to = tree.depth() - 1;
+        while to > 0 {
+            let mut from = to - 1;
+            if width(from) <= one_block {
+                while from > 0 && width(from - 1) <= one_block {
+                    from -= 1;
+                }
+            }
+            let narrow = width(to - 1) <= one_block;
+            let blocks = if narrow { 1 } else { device.blocks_for::<V::Levels>(width(from) as usize) };
+            let args = RefitArgs {
+                links: tree.links.span(),
+                nodes: self.nodes.span(),
+                levels: tree.levels.span(),
+                from: from as u32,
+                to: to as u32,
+                axes: self.axes,
+                pad: 0,
+            };
+            device.launch::<V::Levels>(blocks, &args)?;
+            to = from;
+        }
+        Ok(())
+    }
+
+    /// The nodes as they lie on the device.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn download(&self) -> Result<Vec<Node<V>>, Error> {
+        let mut nodes = self.nodes.read(self.nodes.len())?;
+        // Node 0 is not used and nothing writes it.
+        nodes[0] = bytemuck::Zeroable::zeroed();
+        Ok(nodes)
+    }
+
+    /// Checks the volumes as they lie on the device.
+    ///
+    /// # Errors
+    /// [`Error::Bug`] with the first violation; those of the device.
+    pub fn check(&self, tree: &Tree) -> Result<(), Error> {
+        bvh::check_volumes(&tree.download()?, &self.download()?, self.axes).map_err(broken)
+    }
+}

@@ -1,0 +1,79 @@
+//! Traverse: the ways from a tree (or two) to candidates. Each is a strategy with its own memory; all give one set.
+
+mod per_leaf;
+
+use super::room::Growing;
+use super::tree::Tree;
+use super::volumes::{Kernels, Volumes};
+use crate::device::Device;
+use crate::error::Error;
+use crate::query::{Query, Traversal};
+use nearmiss_kernels::abi::{KEEP_ADJACENT, Pair, SELF, Span};
+use per_leaf::PerLeaf;
+
+/// What a walk is given: the machine, one body or two, and where candidates go.
+pub struct Walked<'a, V> {
+    /// The machine.
+    pub device: &'a Device,
+    /// A tree and its volumes, one a body.
+    pub bodies: &'a [(Tree, Volumes<V>)],
+    /// Vertex indices of every triangle.
+    pub faces: Span<[u32; 3]>,
+    /// Out: candidate triangle pairs.
+    pub pairs: Span<Pair>,
+    /// Counters, see [`nearmiss_kernels::abi::counter`].
+    pub counters: Span<u64>,
+    /// [`SELF`], [`KEEP_ADJACENT`].
+    pub flags: u32,
+}
+
+/// A way through the trees.
+pub trait Walk<V> {
+    /// Launches it. All counters are zero before.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn launch(&mut self, given: &Walked<V>) -> Result<(), Error>;
+
+    /// Its own lists, which may turn out too short: then they grow and it is launched again.
+    fn lists(&mut self) -> Vec<&mut dyn Growing> {
+        Vec::new()
+    }
+
+    /// The frame is answered: what was learnt may be kept for the next one.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn finish(&mut self, _counters: &[u64]) -> Result<(), Error> {
+        Ok(())
+    }
+
+    /// The trees were built anew: what was kept is worth nothing.
+    fn forget(&mut self) {}
+
+    /// Milliseconds that the last launch spent on balancing; waits for it.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn balance_ms(&self) -> Result<f64, Error> {
+        Ok(0.0)
+    }
+}
+
+/// The walk that a query asks for, with memory for trees of `triangles` triangles in all.
+///
+/// # Errors
+/// Those of the device.
+pub fn walk<V: Kernels>(device: &Device, query: &Query, triangles: usize) -> Result<Box<dyn Walk<V>>, Error> {
+    Ok(match query.traversal_on(device.is_card()) {
+        Traversal::PerLeaf { budget } => Box::new(PerLeaf::new(device, budget, triangles)?),
+    })
+}
+
+/// What a walk is told by flags.
+pub fn flags(query: &Query, bodies: usize) -> u32 {
+    let own = if bodies == 1 { SELF } else { 0 };
+    // A continuous query needs adjacent pairs too: their features without a common vertex may meet.
+    let adjacent = query.adjacent || query.motion != crate::query::Motion::Discrete;
+    own | if adjacent { KEEP_ADJACENT } else { 0 }
+}

@@ -1,0 +1,67 @@
+//! A walk a leaf, then rounds of what longer walks left over.
+
+use super::{Walk, Walked};
+use crate::device::{Buffer, Device};
+use crate::error::Error;
+use crate::pipeline::volumes::Kernels;
+use nearmiss_kernels::abi::{ROUNDS, Span, TraverseArgs, Unit, counter};
+
+/// See [`crate::query::Traversal::PerLeaf`].
+pub struct PerLeaf {
+    budget: Option<u32>,
+    /// What a round reads and what it leaves; of walks with a budget alone.
+    units: Option<[Buffer<Unit>; 2]>,
+}
+
+impl PerLeaf {
+    /// Takes the memory for walks of `triangles` leaves.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn new(device: &Device, budget: Option<u32>, triangles: usize) -> Result<Self, Error> {
+        let units = || Ok([device.buffer(4 * triangles)?, device.buffer(4 * triangles)?]);
+        Ok(PerLeaf { budget, units: budget.map(|_| units()).transpose()? })
+    }
+}
+
+impl<V: Kernels> Walk<V> for PerLeaf {
+    fn launch(&mut self, given: &Walked<V>) -> Result<(), Error> {
+        let (queries, target) = (&given.bodies[0], &given.bodies[given.bodies.len() - 1]);
+        let device = given.device;
+        let mut args = TraverseArgs {
+            queries: queries.1.nodes.span(),
+            query_leaves: queries.0.leaf_nodes.span(),
+            nodes: target.1.nodes.span(),
+            faces: given.faces,
+            units: Span::EMPTY,
+            spilled: self.units.as_ref().map_or(Span::EMPTY, |units| units[0].span()),
+            pairs: given.pairs,
+            counters: given.counters,
+            units_at: 0,
+            spilled_at: counter::SPILLED,
+            budget: self.budget.unwrap_or(u32::MAX),
+            flags: given.flags,
+        };
+        let leaves = queries.0.leaves();
+        let blocks = if device.is_card() {
+            device.blocks_for::<V::Leaves>(leaves)
+        } else {
+            device.blocks_striding::<V::Leaves>(leaves)
+        };
+        device.launch::<V::Leaves>(blocks, &args)?;
+        let Some(units) = &self.units else { return Ok(()) };
+        let blocks = device.blocks_striding::<V::Units>(units[0].len());
+        for round in 0..ROUNDS {
+            args.units = args.spilled;
+            args.units_at = args.spilled_at;
+            args.spilled = units[(round as usize + 1) % 2].span();
+            args.spilled_at += 1;
+            if round + 1 == ROUNDS {
+                args.budget = u32::MAX;
+                args.spilled_at = 0;
+            }
+            device.launch::<V::Units>(blocks, &args)?;
+        }
+        Ok(())
+    }
+}
