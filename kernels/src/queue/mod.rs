@@ -1,4 +1,6 @@
-//! Work units that wait: the stack of one walk.
+//! Work units that wait: the stack of one walk, a block's buffer; and the tree that pairs of nodes form.
+
+pub mod bvtt;
 
 use crate::abi::Pair;
 use crate::bvh::MAX_LEVELS;
