@@ -12,8 +12,14 @@ mod built;
 mod cases;
 mod cubic;
 mod discrete;
+mod inclusion;
+mod inclusion_public;
 mod public;
+#[path = "../truth/queries.rs"]
+mod queries;
 mod signs;
+#[path = "../support/mod.rs"]
+mod support;
 mod timing;
 
 use nearmiss::oracle::Triangle;

@@ -150,6 +150,58 @@ fn edges(m: &Mesh) -> Vec<[u32; 2]> {
     e.into_iter().map(|(big, small)| [small, big]).collect()
 }
 
+/// A vertex and a face (true), or two edges, by index.
+pub type Key = (bool, usize, usize);
+
+/// The true contacts of a table.
+fn truths(path: PathBuf) -> HashSet<Key> {
+    let rows = table(path);
+    rows.iter().skip(1).map(|r| (&r[0] == "vf", r[1].parse().unwrap(), r[2].parse().unwrap())).collect()
+}
+
+/// Visits all pairs without a common vertex whose swept boxes meet: vertex/face (true), then edge/edge; both indices
+/// and the four points.
+fn candidates_of(m: &Mesh, n: &Mesh, mut visit: impl FnMut(bool, usize, usize, [Moving<f32>; 4])) {
+    let at = |k: u32| Moving { t0: m.x[k as usize], t1: n.x[k as usize] };
+    let swept = |v: &[u32]| bounds(&v.iter().flat_map(|k| [at(*k).t0, at(*k).t1]).collect::<Vec<_>>());
+    let vertices: Vec<_> = (0..m.x.len() as u32).map(|v| swept(&[v])).collect();
+    let faces: Vec<_> = m.faces.iter().map(|f| swept(f)).collect();
+    overlaps(&vertices, &faces, |v, f| {
+        if !m.faces[f].contains(&(v as u32)) {
+            let [a, b, c] = m.faces[f].map(at);
+            visit(true, v, f, [at(v as u32), a, b, c]);
+        }
+    });
+    let e = edges(m);
+    let boxes: Vec<_> = e.iter().map(|x| swept(x)).collect();
+    overlaps(&boxes, &boxes, |i, j| {
+        if i < j && !e[i].iter().any(|v| e[j].contains(v)) {
+            let ([a, b], [c, d]) = (e[i].map(at), e[j].map(at));
+            visit(false, i, j, [a, b, c, d]);
+        }
+    });
+}
+
+/// A scene's candidates, its true contacts and its mean edge, where the data are.
+pub fn scene(
+    scene: &str,
+    before: &str,
+    after: &str,
+) -> Option<(Vec<(Key, [Moving<f32>; 4])>, HashSet<Key>, f64)> {
+    let frame = |name| data(&format!("{scene}/{name}.ply")).map(Mesh::read);
+    let (m, n) = (frame(before)?, frame(after)?);
+    let truth = truths(data(&format!("{scene}/true_contacts.csv.gz"))?);
+    let mut all = Vec::new();
+    candidates_of(&m, &n, |face, a, b, points| all.push(((face, a, b), points)));
+    let e = edges(&m);
+    let length = |e: &[u32; 2]| {
+        let d = m.x[e[0] as usize].wide() - m.x[e[1] as usize].wide();
+        d.dot(d).sqrt()
+    };
+    let mean = e.iter().map(length).sum::<f64>() / e.len() as f64;
+    Some((all, truth, mean))
+}
+
 #[test]
 fn true_contacts_of_cloth() {
     true_contacts("cloth-ball", "cloth_ball92", "cloth_ball93");
@@ -168,14 +220,7 @@ fn true_contacts(scene: &str, before: &str, after: &str) {
     let (Some(t0), Some(t1)) = (frame(before), frame(after)) else { return };
     let Some(truth) = data(&format!("{scene}/true_contacts.csv.gz")) else { return };
     let (m, n) = (Mesh::read(t0), Mesh::read(t1));
-    let e = edges(&m);
-    let truth: HashSet<(bool, usize, usize)> = table(truth)
-        .iter()
-        .skip(1)
-        .map(|r| (&r[0] == "vf", r[1].parse().unwrap(), r[2].parse().unwrap()))
-        .collect();
-    let at = |k: u32| Moving { t0: m.x[k as usize], t1: n.x[k as usize] };
-    let swept = |v: &[u32]| bounds(&v.iter().flat_map(|k| [at(*k).t0, at(*k).t1]).collect::<Vec<_>>());
+    let truth = truths(truth);
     let mut found: [HashSet<(bool, usize, usize)>; 2] = Default::default();
     let mut times: HashMap<(bool, usize, usize), (f64, f32)> = HashMap::new();
     let mut candidates = [0; 2];
@@ -191,19 +236,13 @@ fn true_contacts(scene: &str, before: &str, after: &str) {
             times.insert(key, (a, b));
         }
     };
-    let vertices: Vec<_> = (0..m.x.len() as u32).map(|v| swept(&[v])).collect();
-    let faces: Vec<_> = m.faces.iter().map(|f| swept(f)).collect();
-    overlaps(&vertices, &faces, |v, f| {
-        if !m.faces[f].contains(&(v as u32)) {
-            let (p, t) = (at(v as u32), m.faces[f].map(at));
-            note((true, v, f), vf_toi::<f32, f64>(p, t), vf_toi::<f32, f32>(p, t));
-        }
-    });
-    let boxes: Vec<_> = e.iter().map(|x| swept(x)).collect();
-    overlaps(&boxes, &boxes, |i, j| {
-        if i < j && !e[i].iter().any(|v| e[j].contains(v)) {
-            let (a, b) = (e[i].map(at), e[j].map(at));
-            note((false, i, j), ee_toi::<f32, f64>(a, b), ee_toi::<f32, f32>(a, b));
+    candidates_of(&m, &n, |face, a, b, [p, q, r, s]| {
+        if face {
+            let t = [q, r, s];
+            note((true, a, b), vf_toi::<f32, f64>(p, t), vf_toi::<f32, f32>(p, t));
+        } else {
+            let (x, y) = ([p, q], [r, s]);
+            note((false, a, b), ee_toi::<f32, f64>(x, y), ee_toi::<f32, f32>(x, y));
         }
     });
     let late = times.values().filter(|(a, b)| b.wide() > a + 1e-4).count();

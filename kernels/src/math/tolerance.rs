@@ -38,6 +38,38 @@ pub trait Tolerance: Sized {
     /// A squared sine below which two directions count as parallel: there the direction of their cross product has
     /// no correct digit (its relative error is `u` over the sine). `16 u^2`, ratio.
     const PARALLEL: Self;
+    /// Error of a computed corner of a vertex/face image, relative to the largest control component of its axis and to
+    /// the sum of the weights' magnitudes (1 within the face): `6.5u`. Three roundings to the point between the two
+    /// times (difference, product, sum), three more to the mixture (product, two sums); the half covers `u^2` and the
+    /// roundings of the bound.
+    const INCLUSION_FACE: Self;
+    /// The same for edge/edge: `7.5u`. Three roundings to the point between the times, two for each of two mixtures.
+    const INCLUSION_EDGE: Self;
+    /// Error of a difference of positions and of the sum that it is compared with: `4u`, relative to the largest of the
+    /// axis. One rounding, or one and a 2^-29th of f64 differences rounded to f32; the sum with a separation adds two.
+    const INCLUSION_INPUT: Self;
+    /// Error of a direction's inner product with control vectors: `6u`. One rounding of the input, three of the product.
+    const INCLUSION_HULL: Self;
+    /// Error of a direction's inner product with computed corners: `4u`, relative to the sum of magnitudes (three
+    /// roundings lie on the longest path).
+    const INCLUSION_SHADOW: Self;
+    /// The smallest tolerance: `64u` of the largest control component, eight errors of a corner. A box that was cut
+    /// twice its bound around a contact is smaller; below, boxes around each contact could be neither told from it nor
+    /// accepted, in numbers that grow with the square of what is asked for.
+    const INCLUSION_FINEST: Self;
+    /// Sums of few positive terms are below their computed value times this: `1 + 8u`. Ratio.
+    const INCLUSION_UP: Self;
+    /// A computed quotient of differences times this is below the exact one: `1 - 8u`. Two differences, the quotient,
+    /// this product and the one with the width of a cell round. Ratio.
+    const INCLUSION_DOWN: Self;
+    /// Underflow, of the conversion of inputs and of all products: 2^-120 in f32, 2^-960 in f64; what can be lost is at
+    /// most a hundred times half the smallest subnormal (2^-143, 2^-1068). Lengths, once the largest is about one.
+    const INCLUSION_UNDERFLOW: Self;
+    /// A determinant of three rows with components of magnitude at most 1 that exceeds this is not zero: `48u`. Its
+    /// error is five roundings of a permanent of at most six, `30u`.
+    const INCLUSION_REGULAR: Self;
+    /// A direction whose largest component is below this is not used: it could not be scaled to one. Of lengths cubed.
+    const INCLUSION_FAINT: Self;
 }
 
 impl Tolerance for f32 {
@@ -51,6 +83,17 @@ impl Tolerance for f32 {
     const CUBIC_UNDERFLOW: f32 = f32::from_bits(7 << 23);
     const CUBIC_INSIDE: f32 = 64.0 * U32;
     const PARALLEL: f32 = 16.0 * U32 * U32;
+    const INCLUSION_FACE: f32 = 6.5 * U32;
+    const INCLUSION_EDGE: f32 = 7.5 * U32;
+    const INCLUSION_INPUT: f32 = 4.0 * U32;
+    const INCLUSION_HULL: f32 = 6.0 * U32;
+    const INCLUSION_SHADOW: f32 = 4.0 * U32;
+    const INCLUSION_FINEST: f32 = 64.0 * U32;
+    const INCLUSION_UP: f32 = 1.0 + 8.0 * U32;
+    const INCLUSION_DOWN: f32 = 1.0 - 8.0 * U32;
+    const INCLUSION_UNDERFLOW: f32 = f32::from_bits(7 << 23);
+    const INCLUSION_REGULAR: f32 = 48.0 * U32;
+    const INCLUSION_FAINT: f32 = f32::from_bits(27 << 23);
 }
 
 impl Tolerance for f64 {
@@ -64,8 +107,25 @@ impl Tolerance for f64 {
     const CUBIC_UNDERFLOW: f64 = f64::from_bits(63 << 52);
     const CUBIC_INSIDE: f64 = 131072.0 * U64;
     const PARALLEL: f64 = 16.0 * U64 * U64;
+    const INCLUSION_FACE: f64 = 6.5 * U64;
+    const INCLUSION_EDGE: f64 = 7.5 * U64;
+    const INCLUSION_INPUT: f64 = 4.0 * U64;
+    const INCLUSION_HULL: f64 = 6.0 * U64;
+    const INCLUSION_SHADOW: f64 = 4.0 * U64;
+    const INCLUSION_FINEST: f64 = 64.0 * U64;
+    const INCLUSION_UP: f64 = 1.0 + 8.0 * U64;
+    const INCLUSION_DOWN: f64 = 1.0 - 8.0 * U64;
+    const INCLUSION_UNDERFLOW: f64 = f64::from_bits(63 << 52);
+    const INCLUSION_REGULAR: f64 = 48.0 * U64;
+    const INCLUSION_FAINT: f64 = f64::from_bits(223 << 52);
 }
 
 /// Largest extent, and one over the smallest, that a continuous test computes with as it is; outside, differences
 /// are first scaled by a power of two (exactly). `2^20`, so that cubes stay clear of both ends of f32. Length.
 pub const CUBIC_SCALE: f64 = 1048576.0;
+
+/// A cell that loses less than this part of every range is split, not clipped again. Ratio; costs, proves nothing.
+pub const INCLUSION_SHRUNK: f64 = 0.6;
+/// A motion whose directions span less than this part of their box is taken for flat, and clipped along its plane too.
+/// Ratio; costs, proves nothing.
+pub const INCLUSION_FLAT: f64 = 1.0 / 64.0;

@@ -1,0 +1,143 @@
+//! Directions along which a box is judged, and what a shadow along one leaves of it.
+
+use super::cell::Grid;
+use crate::math::Vec3;
+use crate::math::tolerance::INCLUSION_FLAT;
+
+/// A box's own directions, from how its image changes with `t`, `u` and `v`. Any is valid; these cut well: on the cross
+/// product of two changes only the third parameter has a shadow.
+pub struct Directions<S> {
+    c: [Vec3<S>; 3],
+    /// The normal, if the image is flat.
+    plane: Option<Vec3<S>>,
+}
+
+impl<S: Grid> Directions<S> {
+    /// From the changes with `t`, `u`, `v`.
+    #[inline(always)]
+    pub fn of(c: [Vec3<S>; 3]) -> Self {
+        let mut normal = (Vec3([S::ZERO; 3]), S::ZERO, S::ZERO);
+        for k in 0..3 {
+            let n = row(&c, k);
+            if largest(n) > normal.1 {
+                normal = (n, largest(n), largest(c[k]));
+            }
+        }
+        let flat = c[0].dot(row(&c, 0)).abs() <= S::of(INCLUSION_FLAT) * (normal.1 * normal.2);
+        Directions { c, plane: flat.then_some(normal.0) }
+    }
+
+    /// Whether the image is flat.
+    #[inline(always)]
+    pub fn flat(&self) -> bool {
+        self.plane.is_some()
+    }
+
+    /// How many there are; `towards` counts the one to the origin, which separations need.
+    #[inline(always)]
+    pub fn count(&self, towards: bool) -> usize {
+        7 + towards as usize + if self.plane.is_some() { 3 } else { 0 }
+    }
+
+    /// The direction `i`, of any length.
+    #[inline(always)]
+    pub fn get(&self, i: usize, centre: impl Fn() -> Vec3<S>) -> Vec3<S> {
+        let [t, u, v] = self.c;
+        match (i, self.plane) {
+            (0, _) => u.cross(v),
+            (1, _) => v.cross(t),
+            (2, _) => t.cross(u),
+            // Edges that stay parallel, faces without area: off the only direction that u and v have.
+            (3, _) => {
+                let along = if u.dot(u) < v.dot(v) { v } else { u };
+                t - along * (t.dot(along) / along.dot(along))
+            }
+            (4..7, _) => Vec3([4, 5, 6].map(|k| if k == i { S::ONE } else { S::ZERO })),
+            // Within the plane, off each.
+            (7, Some(n)) => n.cross(t),
+            (8, Some(n)) => n.cross(u),
+            (9, Some(n)) => n.cross(v),
+            _ => centre(),
+        }
+    }
+
+    /// Whether the first three, as used, are certainly linearly independent.
+    #[inline(never)]
+    pub fn independent(&self) -> bool {
+        let d = [0, 1, 2].map(|k| unit(row(&self.c, k)));
+        matches!(d, [Some(a), Some(b), Some(c)] if a.dot(b.cross(c)).abs() > S::INCLUSION_REGULAR)
+    }
+}
+
+#[inline(always)]
+fn row<S: Grid>(c: &[Vec3<S>; 3], k: usize) -> Vec3<S> {
+    match k {
+        0 => c[1].cross(c[2]),
+        1 => c[2].cross(c[0]),
+        _ => c[0].cross(c[1]),
+    }
+}
+
+#[inline(always)]
+fn largest<S: Grid>(d: Vec3<S>) -> S {
+    let d = d.map(S::abs);
+    d[0].max(d[1]).max(d[2])
+}
+
+/// The direction with a largest component of about 1, if it has a direction.
+#[inline(always)]
+pub fn unit<S: Grid>(d: Vec3<S>) -> Option<Vec3<S>> {
+    let most = largest(d);
+    (most > S::INCLUSION_FAINT).then(|| d * (S::ONE / most))
+}
+
+/// What shadows have left of a box.
+pub struct Cuts<S> {
+    /// The parts of the ranges of `t`, `u`, `v` that hold no contact, at their low ends.
+    pub low: [S; 3],
+    /// And at their high ends.
+    pub high: [S; 3],
+    /// Bit `k`: along direction `k` the two faces of parameter `k` lie on opposite sides.
+    pub signs: u32,
+}
+
+impl<S: Grid> Cuts<S> {
+    /// Takes the corners' products with direction `i`, each at a contact known to be within `bound` of zero. False if
+    /// the box holds no contact.
+    #[inline(always)]
+    pub fn shadow(&mut self, s: &[S; 8], bound: S, i: usize) -> bool {
+        let face = |k: usize, side: usize| {
+            let [a, b, c, d] = CORNERS[k].map(|c| s[c | side << k]);
+            (a.min(b).min(c.min(d)), a.max(b).max(c.max(d)))
+        };
+        // Twice the bound keeps faces on strict sides, so that a box that was cut can still be certain of its contact.
+        let wide = bound + bound;
+        for k in 0..3 {
+            let (low, high) = (face(k, 0), face(k, 1));
+            if k == 0 && (low.0.min(high.0) > bound || low.1.max(high.1) < -bound) {
+                return false;
+            }
+            if i == k && ((low.1 < -bound && high.0 > bound) || (low.0 > bound && high.1 < -bound)) {
+                self.signs |= 1 << k;
+            }
+            self.cut(k, low.0 - wide, high.0 - wide);
+            self.cut(k, -wide - low.1, -wide - high.1);
+        }
+        true
+    }
+
+    /// Keeps only where the line from `a` to `b` is not above zero.
+    #[inline(always)]
+    fn cut(&mut self, k: usize, a: S, b: S) {
+        if a > S::ZERO && b < a {
+            let x = a / (a - b);
+            self.low[k] = self.low[k].max(x);
+        } else if b > S::ZERO && a < b {
+            let x = b / (b - a);
+            self.high[k] = self.high[k].max(x);
+        }
+    }
+}
+
+/// The four corners with parameter `k` at its low end.
+const CORNERS: [[usize; 4]; 3] = [[0, 2, 4, 6], [0, 1, 4, 5], [0, 1, 2, 3]];

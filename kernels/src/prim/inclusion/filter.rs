@@ -1,0 +1,67 @@
+//! Rejection without a search: the hull of the control vectors lies on one side of the origin.
+
+use super::cell::Grid;
+use super::local::Local;
+use crate::math::Vec3;
+
+impl<S: Grid, const N: usize> Local<S, N> {
+    /// Whether the features certainly stay farther apart than the separation: on a coordinate axis all control vectors
+    /// are. About 60 operations.
+    #[inline]
+    pub fn apart_by_axes(&self) -> bool {
+        let (mut low, mut high) = (self.w[0][0], self.w[0][0]);
+        for w in self.w.iter().flatten() {
+            low = low.min(*w);
+            high = high.max(*w);
+        }
+        let more = |k: usize| self.separation + (S::INCLUSION_INPUT * self.reach[k] + S::INCLUSION_UNDERFLOW);
+        self.finite && (0..3).any(|k| low[k] > more(k) || high[k] < -more(k))
+    }
+
+    /// Whether the features certainly stay farther apart than the separation: all control vectors lie on one side of a
+    /// plane. Directions are tried from the middle of the hull towards its point nearest to the origin (Frank and
+    /// Wolfe's steps); any direction is valid, however badly computed. About 60 operations a step.
+    #[inline]
+    pub fn apart_by_planes(&self) -> bool {
+        let mut d = Vec3([S::ZERO; 3]);
+        for w in self.w.iter().flatten() {
+            d = d + *w;
+        }
+        d = d * S::of(0.5 / N as f64);
+        for _ in 0..=STEPS {
+            let (mut low, mut at) = (d.dot(self.w[0][0]), self.w[0][0]);
+            for w in self.w.iter().flatten().skip(1) {
+                let s = d.dot(*w);
+                if s < low {
+                    (low, at) = (s, *w);
+                }
+            }
+            let error = S::INCLUSION_HULL * d.map(S::abs).dot(self.reach) + S::INCLUSION_UNDERFLOW;
+            // A direction too short for its square to have correct digits says nothing of lengths.
+            if low > error + self.apart(d) && d.dot(d) > S::INCLUSION_UNDERFLOW {
+                return self.finite;
+            }
+            let e = d - at;
+            let (along, square) = (d.dot(e), e.dot(e));
+            if !(along > S::ZERO && square > S::INCLUSION_UNDERFLOW) {
+                break;
+            }
+            let step = along / square;
+            d = d - e * if step < S::ONE { step } else { S::ONE };
+        }
+        false
+    }
+
+    /// The separation along a direction that need not be of length one; not below the exact product.
+    #[inline]
+    pub(super) fn apart(&self, d: Vec3<S>) -> S {
+        if self.separation > S::ZERO {
+            self.separation * (d.dot(d).sqrt() * S::INCLUSION_UP + S::INCLUSION_UNDERFLOW)
+        } else {
+            self.separation
+        }
+    }
+}
+
+/// How often the direction is bettered. More steps find few more.
+const STEPS: usize = 4;

@@ -1,0 +1,111 @@
+//! Motions by differences: the control vectors of `F(t, u, v)`, one feature's point less the other's.
+//!
+//! `F` is a mixture (weights in [0, 1], sum 1) of the control vectors, for edges everywhere and for a vertex and a face
+//! within the face: it lies in their hull. Differences are taken in the positions' precision and rounded to `S` once,
+//! so errors are relative to the local extent, wherever the features are. All lengths are then multiplied by the power
+//! of two that brings the largest to [1, 2): exact, and neither the range of `S` nor the scale of a scene matters.
+
+use super::Params;
+use super::cell::Grid;
+use crate::math::{Real, Vec3};
+use crate::prim::cubic::Moving;
+
+/// The relative motion of a pair, with the lengths that it is compared with. `N` is 3 for a vertex and the corners
+/// of a face (vertex less corner), 4 for two edges (at `2j + k` end j of the first less end k of the second).
+#[derive(Clone, Copy, Debug)]
+pub struct Local<S, const N: usize> {
+    /// Control vectors at the start and at the end.
+    pub w: [[Vec3<S>; 2]; N],
+    /// The largest magnitude of an axis.
+    pub reach: Vec3<S>,
+    /// Whether all differences are finite numbers; nothing is ever rejected otherwise.
+    pub finite: bool,
+    /// The tolerance, in the same units as `w`; at least what can be told from zero.
+    pub tolerance: S,
+    /// The separation, rounded up.
+    pub separation: S,
+    /// Within this time no point moves by more than the tolerance, a multiple of [`Grid::STEP`].
+    pub pause: S,
+    /// The end of the step, rounded up to the grid.
+    pub end: S,
+    /// Whether `end` was rounded.
+    pub beyond: bool,
+}
+
+/// Vertex and face.
+pub type Face<S> = Local<S, 3>;
+/// Two edges.
+pub type Edges<S> = Local<S, 4>;
+
+impl<S: Grid> Face<S> {
+    /// The motion of a vertex relative to the corners of a face.
+    #[inline]
+    pub fn new<R: Real>(v: Moving<R>, f: [Moving<R>; 3], p: &Params) -> Self {
+        Local::of([(v, f[0]), (v, f[1]), (v, f[2])], p)
+    }
+}
+
+impl<S: Grid> Edges<S> {
+    /// The motion of the ends of an edge relative to those of another.
+    #[inline]
+    pub fn new<R: Real>(a: [Moving<R>; 2], b: [Moving<R>; 2], p: &Params) -> Self {
+        Local::of([(a[0], b[0]), (a[0], b[1]), (a[1], b[0]), (a[1], b[1])], p)
+    }
+}
+
+impl<S: Grid, const N: usize> Local<S, N> {
+    #[inline]
+    fn of<R: Real>(pairs: [(Moving<R>, Moving<R>); N], p: &Params) -> Self {
+        let (w, scale, finite) = if R::WIDE {
+            let (w, scale, finite) =
+                scaled(pairs.map(|(x, y)| [x.t0.wide() - y.t0.wide(), x.t1.wide() - y.t1.wide()]));
+            (w.map(|w| w.map(|w| w.map(S::of))), scale, finite)
+        } else {
+            let to = |x: Vec3<R>| x.map(|x| S::of(x.wide()));
+            scaled(pairs.map(|(x, y)| [to(x.t0) - to(y.t0), to(x.t1) - to(y.t1)]))
+        };
+        let (mut reach, mut speed) = (Vec3([S::ZERO; 3]), Vec3([S::ZERO; 3]));
+        for [start, end] in w {
+            reach = reach.max(start.map(S::abs)).max(end.map(S::abs));
+            speed = speed.max((end - start).map(S::abs));
+        }
+        let finest = S::INCLUSION_FINEST * reach[0].max(reach[1]).max(reach[2]);
+        let tolerance = S::of((p.tolerance * scale).max(0.0)).max(finest);
+        let fastest = speed[0].max(speed[1]).max(speed[2]);
+        // What divides to NaN never moves, or has no tolerance: only the time that is charged depends on it.
+        let pause = if fastest > S::ZERO { tolerance / fastest * S::INCLUSION_DOWN } else { S::ONE };
+        let (end, beyond) = S::end(p.end);
+        Local {
+            w,
+            reach,
+            finite: finite && !p.separation.is_nan(),
+            tolerance,
+            separation: S::of(p.separation.max(0.0) * scale) * S::INCLUSION_UP,
+            pause: if pause < S::ONE { S::down(pause) } else { S::ONE },
+            end,
+            beyond,
+        }
+    }
+
+    /// Whether every control vector is zero: in contact throughout. Not of rounded zeros: the largest was scaled to 1.
+    #[inline]
+    pub fn still_together(&self) -> bool {
+        self.finite && !(0..3).any(|k| self.reach[k] > S::ZERO)
+    }
+}
+
+/// The same vectors with the largest component in [1, 2), the factor, and whether all are finite.
+#[inline]
+fn scaled<T: Real, const N: usize>(w: [[Vec3<T>; 2]; N]) -> ([[Vec3<T>; 2]; N], f64, bool) {
+    let (mut most, mut sum) = (T::ZERO, T::ZERO);
+    for x in w.iter().flatten().flat_map(|w| w.0) {
+        most = most.max(x.abs());
+        sum = sum + (x - x); // 0, or NaN for ever
+    }
+    let p = most.wide().parts();
+    if sum != T::ZERO || p.mantissa == 0 {
+        return (w, 1.0, sum == T::ZERO);
+    }
+    let k = T::pow2(-(p.exponent + 63 - p.mantissa.leading_zeros() as i32));
+    (w.map(|w| w.map(|w| w * k)), k.wide(), true)
+}

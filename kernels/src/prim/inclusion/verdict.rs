@@ -1,0 +1,127 @@
+//! What is asked and what is answered.
+
+use bytemuck::{Pod, Zeroable};
+
+/// What a certified test is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Params {
+    /// How near to contact may be taken for contact, a length. Only how much is reported depends on it, and the work;
+    /// 0 asks for as much as the precision gives.
+    pub tolerance: f64,
+    /// Features this near are in contact, a length; 0 for touching.
+    pub separation: f64,
+    /// The end of the step, in (0, 1].
+    pub end: f64,
+    /// The most boxes that are looked at.
+    pub budget: u32,
+    /// Zero.
+    pub pad: u32,
+}
+
+impl Params {
+    /// Touching, within the whole step, with the usual budget.
+    pub fn new(tolerance: f64) -> Self {
+        Params { tolerance, separation: 0.0, end: 1.0, budget: Self::BUDGET, pad: 0 }
+    }
+
+    /// Boxes after which a pair is left unresolved, unless told: ten times what the hardest of public scenes take.
+    pub const BUDGET: u32 = 4096;
+}
+
+/// An answer in words of fixed size, as kernels write it.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Verdict {
+    /// No contact before; in [0, 1], never -0.0 or NaN.
+    pub toi: f64,
+    /// The first contact is not after; the end of the step, where there need be none.
+    pub toi_hi: f64,
+    /// 0 separated, 1 contact, 2 unresolved; and 4 where the budget or the stack ended.
+    pub state: u32,
+    /// Boxes looked at.
+    pub boxes: u32,
+}
+
+/// An answer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Answer {
+    /// No contact, certainly.
+    Separated,
+    /// A contact, certainly; the first in `[toi, toi_hi]`.
+    Contact {
+        /// Not before.
+        toi: f64,
+        /// Not after.
+        toi_hi: f64,
+    },
+    /// Near contact, or in it; no contact before `toi`, certainly.
+    Unresolved {
+        /// Not before.
+        toi: f64,
+        /// The end of the step.
+        toi_hi: f64,
+    },
+}
+
+const SEPARATED: u32 = 0;
+const CONTACT: u32 = 1;
+const UNRESOLVED: u32 = 2;
+const EXHAUSTED: u32 = 4;
+
+impl Verdict {
+    /// No contact until `end`.
+    #[inline]
+    pub fn separated(end: f64, boxes: u32) -> Self {
+        Verdict { toi: end, toi_hi: end, state: SEPARATED, boxes }
+    }
+
+    /// A contact, the first in `[toi, toi_hi]`.
+    #[inline]
+    pub fn contact(toi: f64, toi_hi: f64, boxes: u32, exhausted: bool) -> Self {
+        Verdict { toi, toi_hi, state: CONTACT | if exhausted { EXHAUSTED } else { 0 }, boxes }
+    }
+
+    /// No contact before `toi`.
+    #[inline]
+    pub fn unresolved(toi: f64, end: f64, boxes: u32, exhausted: bool) -> Self {
+        Verdict { toi, toi_hi: end, state: UNRESOLVED | if exhausted { EXHAUSTED } else { 0 }, boxes }
+    }
+
+    /// The answer.
+    #[inline]
+    pub fn answer(&self) -> Answer {
+        let Verdict { toi, toi_hi, state, .. } = *self;
+        match state & !EXHAUSTED {
+            SEPARATED => Answer::Separated,
+            CONTACT => Answer::Contact { toi, toi_hi },
+            _ => Answer::Unresolved { toi, toi_hi },
+        }
+    }
+
+    /// No contact, certainly.
+    #[inline]
+    pub fn is_separated(&self) -> bool {
+        self.state == SEPARATED
+    }
+
+    /// A contact, certainly.
+    #[inline]
+    pub fn is_contact(&self) -> bool {
+        self.state & CONTACT != 0
+    }
+
+    /// The budget or the stack ended: `toi` may be far too early.
+    #[inline]
+    pub fn exhausted(&self) -> bool {
+        self.state & EXHAUSTED != 0
+    }
+
+    /// This, if more precision would tell nothing that was asked: separated, or a contact whose time is known as well as
+    /// the tolerance demands (`pause` is the time that it takes).
+    #[inline]
+    pub(super) fn settled(self, pause: f32) -> Option<Self> {
+        let known = self.is_contact() && !self.exhausted() && self.toi_hi - self.toi <= 2.0 * pause as f64;
+        (self.is_separated() || known).then_some(self)
+    }
+}
