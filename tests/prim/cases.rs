@@ -70,7 +70,7 @@ const TRIANGLES: [(&str, Triangle, Triangle, bool, bool); 7] = [
 ];
 
 /// Report, vertex/face (else edge/edge), the four points at time 0 and 1, the longest time, the first contact.
-const MOTIONS: [(&str, bool, [[f64; 3]; 4], [[f64; 3]; 4], f64, Option<f64>); 12] = [
+pub const MOTIONS: [(&str, bool, [[f64; 3]; 4], [[f64; 3]; 4], f64, Option<f64>); 12] = [
     (
         "Tight-Inclusion#1: ti1",
         true,

@@ -13,6 +13,8 @@ mod cases;
 mod cubic;
 mod discrete;
 mod inclusion;
+mod inclusion_bounds;
+mod inclusion_extremes;
 mod inclusion_public;
 mod public;
 #[path = "../truth/queries.rs"]

@@ -39,9 +39,9 @@ impl<S: Grid, const N: usize> Local<S, N> {
             }
         }
         let (mut low, mut high) = (f[0], f[0]);
-        for x in &f[1..] {
-            low = low.min(*x);
-            high = high.max(*x);
+        for k in 1..8 {
+            low = low.min(f[k]);
+            high = high.max(f[k]);
         }
         Image { f, low, high, error: self.error(cell) }
     }

@@ -13,9 +13,10 @@ pub struct Directions<S> {
 }
 
 impl<S: Grid> Directions<S> {
-    /// From the changes with `t`, `u`, `v`.
+    /// Of the corners of an image.
     #[inline(always)]
-    pub fn of(c: [Vec3<S>; 3]) -> Self {
+    pub fn of(f: &[Vec3<S>; 8]) -> Self {
+        let c = [change(f, 0), change(f, 1), change(f, 2)];
         let mut normal = (Vec3([S::ZERO; 3]), S::ZERO, S::ZERO);
         for k in 0..3 {
             let n = row(&c, k);
@@ -25,6 +26,12 @@ impl<S: Grid> Directions<S> {
         }
         let flat = c[0].dot(row(&c, 0)).abs() <= S::of(INCLUSION_FLAT) * (normal.1 * normal.2);
         Directions { c, plane: flat.then_some(normal.0) }
+    }
+
+    /// How the image changes with `u` or with `v`.
+    #[inline(always)]
+    pub fn change(&self, k: usize) -> Vec3<S> {
+        if k == 1 { self.c[1] } else { self.c[2] }
     }
 
     /// Whether the image is flat.
@@ -62,11 +69,25 @@ impl<S: Grid> Directions<S> {
     }
 
     /// Whether the first three, as used, are certainly linearly independent.
-    #[inline(never)]
+    #[inline(always)]
     pub fn independent(&self) -> bool {
         let d = [0, 1, 2].map(|k| unit(row(&self.c, k)));
         matches!(d, [Some(a), Some(b), Some(c)] if a.dot(b.cross(c)).abs() > S::INCLUSION_REGULAR)
     }
+}
+
+/// How an image changes with parameter `k`, summed over four edges.
+#[inline(always)]
+fn change<S: Grid>(f: &[Vec3<S>; 8], k: usize) -> Vec3<S> {
+    let [a, b, c, d] = CORNERS[k].map(|c| f[c | 1 << k] - f[c]);
+    (a + b) + (c + d)
+}
+
+/// The largest component of an image's edges along parameter `k`.
+#[inline(always)]
+pub fn longest<S: Grid>(f: &[Vec3<S>; 8], k: usize) -> S {
+    let [a, b, c, d] = CORNERS[k].map(|c| largest(f[c | 1 << k] - f[c]));
+    a.max(b).max(c.max(d))
 }
 
 #[inline(always)]
@@ -106,24 +127,27 @@ impl<S: Grid> Cuts<S> {
     /// the box holds no contact.
     #[inline(always)]
     pub fn shadow(&mut self, s: &[S; 8], bound: S, i: usize) -> bool {
-        let face = |k: usize, side: usize| {
-            let [a, b, c, d] = CORNERS[k].map(|c| s[c | side << k]);
-            (a.min(b).min(c.min(d)), a.max(b).max(c.max(d)))
-        };
+        let ranges = [ranges(s, 0), ranges(s, 1), ranges(s, 2)];
+        let [low, high] = ranges[0];
+        if low.0.min(high.0) > bound || low.1.max(high.1) < -bound {
+            return false;
+        }
+        self.along(0, ranges[0], bound, i);
+        self.along(1, ranges[1], bound, i);
+        self.along(2, ranges[2], bound, i);
+        true
+    }
+
+    /// Takes the ranges on the low and the high face of parameter `k`.
+    #[inline(always)]
+    fn along(&mut self, k: usize, [low, high]: [(S, S); 2], bound: S, i: usize) {
+        if i == k && ((low.1 < -bound && high.0 > bound) || (low.0 > bound && high.1 < -bound)) {
+            self.signs |= 1 << k;
+        }
         // Twice the bound keeps faces on strict sides, so that a box that was cut can still be certain of its contact.
         let wide = bound + bound;
-        for k in 0..3 {
-            let (low, high) = (face(k, 0), face(k, 1));
-            if k == 0 && (low.0.min(high.0) > bound || low.1.max(high.1) < -bound) {
-                return false;
-            }
-            if i == k && ((low.1 < -bound && high.0 > bound) || (low.0 > bound && high.1 < -bound)) {
-                self.signs |= 1 << k;
-            }
-            self.cut(k, low.0 - wide, high.0 - wide);
-            self.cut(k, -wide - low.1, -wide - high.1);
-        }
-        true
+        self.cut(k, low.0 - wide, high.0 - wide);
+        self.cut(k, -wide - low.1, -wide - high.1);
     }
 
     /// Keeps only where the line from `a` to `b` is not above zero.
@@ -137,6 +161,15 @@ impl<S: Grid> Cuts<S> {
             self.high[k] = self.high[k].max(x);
         }
     }
+}
+
+/// The least and the largest of a shadow on the low and on the high face of parameter `k`.
+#[inline(always)]
+fn ranges<S: Grid>(s: &[S; 8], k: usize) -> [(S, S); 2] {
+    [0, 1 << k].map(|side| {
+        let [a, b, c, d] = CORNERS[k].map(|c| s[c | side]);
+        (a.min(b).min(c.min(d)), a.max(b).max(c.max(d)))
+    })
 }
 
 /// The four corners with parameter `k` at its low end.

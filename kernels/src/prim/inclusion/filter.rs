@@ -10,9 +10,9 @@ impl<S: Grid, const N: usize> Local<S, N> {
     #[inline]
     pub fn apart_by_axes(&self) -> bool {
         let (mut low, mut high) = (self.w[0][0], self.w[0][0]);
-        for w in self.w.iter().flatten() {
-            low = low.min(*w);
-            high = high.max(*w);
+        for k in 0..N {
+            low = low.min(self.w[k][0]).min(self.w[k][1]);
+            high = high.max(self.w[k][0]).max(self.w[k][1]);
         }
         let more = |k: usize| self.separation + (S::INCLUSION_INPUT * self.reach[k] + S::INCLUSION_UNDERFLOW);
         self.finite && (0..3).any(|k| low[k] > more(k) || high[k] < -more(k))
@@ -24,16 +24,18 @@ impl<S: Grid, const N: usize> Local<S, N> {
     #[inline]
     pub fn apart_by_planes(&self) -> bool {
         let mut d = Vec3([S::ZERO; 3]);
-        for w in self.w.iter().flatten() {
-            d = d + *w;
+        for k in 0..N {
+            d = d + (self.w[k][0] + self.w[k][1]);
         }
         d = d * S::of(0.5 / N as f64);
         for _ in 0..=STEPS {
             let (mut low, mut at) = (d.dot(self.w[0][0]), self.w[0][0]);
-            for w in self.w.iter().flatten().skip(1) {
-                let s = d.dot(*w);
-                if s < low {
-                    (low, at) = (s, *w);
+            for k in 0..N {
+                for i in 0..2 {
+                    let s = d.dot(self.w[k][i]);
+                    if s < low {
+                        (low, at) = (s, self.w[k][i]);
+                    }
                 }
             }
             let error = S::INCLUSION_HULL * d.map(S::abs).dot(self.reach) + S::INCLUSION_UNDERFLOW;

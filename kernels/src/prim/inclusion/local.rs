@@ -54,18 +54,20 @@ impl<S: Grid> Edges<S> {
 }
 
 impl<S: Grid, const N: usize> Local<S, N> {
-    #[inline]
+    #[inline(always)]
     fn of<R: Real>(pairs: [(Moving<R>, Moving<R>); N], p: &Params) -> Self {
         let (w, scale, finite) = if R::WIDE {
-            let (w, scale, finite) =
-                scaled(pairs.map(|(x, y)| [x.t0.wide() - y.t0.wide(), x.t1.wide() - y.t1.wide()]));
-            (w.map(|w| w.map(|w| w.map(S::of))), scale, finite)
+            let less =
+                |(x, y): (Moving<R>, Moving<R>)| [x.t0.wide() - y.t0.wide(), x.t1.wide() - y.t1.wide()];
+            let (wide, scale, finite) = scaled(pairs.map(less));
+            (wide.map(|[start, end]| [start.map(S::of), end.map(S::of)]), scale, finite)
         } else {
             let to = |x: Vec3<R>| x.map(|x| S::of(x.wide()));
             scaled(pairs.map(|(x, y)| [to(x.t0) - to(y.t0), to(x.t1) - to(y.t1)]))
         };
         let (mut reach, mut speed) = (Vec3([S::ZERO; 3]), Vec3([S::ZERO; 3]));
-        for [start, end] in w {
+        for k in 0..N {
+            let [start, end] = w[k];
             reach = reach.max(start.map(S::abs)).max(end.map(S::abs));
             speed = speed.max((end - start).map(S::abs));
         }
@@ -95,17 +97,27 @@ impl<S: Grid, const N: usize> Local<S, N> {
 }
 
 /// The same vectors with the largest component in [1, 2), the factor, and whether all are finite.
-#[inline]
-fn scaled<T: Real, const N: usize>(w: [[Vec3<T>; 2]; N]) -> ([[Vec3<T>; 2]; N], f64, bool) {
-    let (mut most, mut sum) = (T::ZERO, T::ZERO);
-    for x in w.iter().flatten().flat_map(|w| w.0) {
-        most = most.max(x.abs());
-        sum = sum + (x - x); // 0, or NaN for ever
+#[inline(always)]
+fn scaled<T: Real, const N: usize>(mut w: [[Vec3<T>; 2]; N]) -> ([[Vec3<T>; 2]; N], f64, bool) {
+    // Loops by index: they unroll, and nothing needs memory.
+    let (mut most, mut none) = (Vec3([T::ZERO; 3]), Vec3([T::ZERO; 3]));
+    for k in 0..N {
+        for i in 0..2 {
+            most = most.max(w[k][i].map(T::abs));
+            none = none + (w[k][i] - w[k][i]); // 0, or NaN for ever
+        }
     }
+    let most = most[0].max(most[1]).max(most[2]);
+    let finite = none[0] + none[1] + none[2] == T::ZERO;
     let p = most.wide().parts();
-    if sum != T::ZERO || p.mantissa == 0 {
-        return (w, 1.0, sum == T::ZERO);
+    if !finite || p.mantissa == 0 {
+        return (w, 1.0, finite);
     }
-    let k = T::pow2(-(p.exponent + 63 - p.mantissa.leading_zeros() as i32));
-    (w.map(|w| w.map(|w| w * k)), k.wide(), true)
+    let scale = T::pow2(-(p.exponent + 63 - p.mantissa.leading_zeros() as i32));
+    for k in 0..N {
+        for i in 0..2 {
+            w[k][i] = w[k][i] * scale;
+        }
+    }
+    (w, scale.wide(), true)
 }

@@ -2,7 +2,7 @@
 
 use super::bound::Image;
 use super::cell::{Cell, Grid};
-use super::direction::{Cuts, Directions, unit};
+use super::direction::{Cuts, Directions, longest, unit};
 use super::local::Local;
 use super::verdict::{Params, Verdict};
 use crate::math::Vec3;
@@ -106,23 +106,20 @@ impl<S: Grid, const N: usize> Local<S, N> {
     fn look(&self, cell: &Cell<S>, known: &mut Known<S>) -> Look<S> {
         let image = self.image(cell);
         let Image { f, low, high, error } = &image;
-        let width = *high - *low;
         if (0..3).any(|k| {
             let more = error[k] + self.separation;
             low[k] > more || high[k] < -more
         }) {
             return Look::Nothing;
         }
-        self.within_separation(cell, &image, known);
-        // How the image changes with each parameter, summed over four edges.
-        let mut c = [Vec3([S::ZERO; 3]); 3];
-        for k in 0..3 {
-            for i in (0..8).filter(|i| i >> k & 1 == 0) {
-                c[k] = c[k] + (f[i | 1 << k] - f[i]);
-            }
+        // Not kept for later: registers are dear.
+        let small = (0..3).all(|k| high[k] - low[k] <= self.tolerance)
+            || (0..3).all(|k| low[k] >= -error[k] && high[k] <= error[k]);
+        if self.separation > S::ZERO {
+            self.within_separation(cell, &image, known);
         }
         let mut cuts = Cuts { low: [S::ZERO; 3], high: [S::ZERO; 3], signs: 0 };
-        let directions = Directions::of(c);
+        let directions = Directions::of(f);
         let reach = low.map(S::abs).max(high.map(S::abs));
         let slack = Vec3([0, 1, 2].map(|k| error[k] + S::INCLUSION_SHADOW * reach[k]));
         for i in 0..directions.count(self.separation > S::ZERO) {
@@ -132,13 +129,12 @@ impl<S: Grid, const N: usize> Local<S, N> {
                 return Look::Nothing;
             }
         }
-        if cuts.signs == 7 && self.holds(cell) && directions.independent() {
+        let all_of_face = N != 3 || cell.high[1] <= S::ONE - cell.high[2];
+        if cuts.signs == 7 && all_of_face && self.within_step(cell) && directions.independent() {
             known.certain = known.certain.min(cell.high[0]);
         }
         let Some(part) = cell.without(cuts.low, cuts.high) else { return Look::Nothing };
         let Some(part) = (if N == 3 { part.in_face() } else { Some(part) }) else { return Look::Nothing };
-        let small = (0..3).all(|k| width[k] <= self.tolerance)
-            || (0..3).all(|k| low[k] >= -error[k] && high[k] <= error[k]);
         if small {
             return Look::Small(part.low[0]);
         }
@@ -147,53 +143,49 @@ impl<S: Grid, const N: usize> Local<S, N> {
             return Look::Part(part);
         }
         // The parameter along which the image is longest, of those that are wider than a step.
-        let (mut along, mut most) = (3, S::ZERO);
-        for k in 0..3 {
-            let mut longest = S::ZERO;
-            for i in (0..8).filter(|i| i >> k & 1 == 0) {
-                let edge = (f[i | 1 << k] - f[i]).map(S::abs);
-                longest = longest.max(edge[0]).max(edge[1]).max(edge[2]);
+        let mut along = (3, S::ZERO);
+        let mut consider = |k: usize, extent: S| {
+            if part.high[k] - part.low[k] > S::STEP && (along.0 == 3 || extent > along.1) {
+                along = (k, extent);
             }
-            // Of a flat image the roots are a curve: earlier times first, or both halves are followed to their ends.
-            if k == 0 && directions.flat() && longest > self.tolerance {
-                longest = S::of(64.0);
-            }
-            if part.high[k] - part.low[k] > S::STEP && (along == 3 || longest > most) {
-                (along, most) = (k, longest);
-            }
-        }
+        };
+        // Of a flat image the roots are a curve: earlier times first, or both halves are followed to their ends.
+        let lasting = longest(f, 0);
+        consider(0, if directions.flat() && lasting > self.tolerance { S::of(64.0) } else { lasting });
+        consider(1, longest(f, 1));
+        consider(2, longest(f, 2));
+        let along = along.0;
         if along == 3 {
             return Look::Small(part.low[0]);
         }
         let [a, b] = part.halves(along);
         // The earlier half; else that on the side of the face nearer to the origin.
-        let towards = if along == 1 { c[1] } else { c[2] };
-        if along > 0 && towards.dot(sum(f)) < S::ZERO { Look::Halves(b, a) } else { Look::Halves(a, b) }
-    }
-
-    /// Whether all of a box belongs to the features and to the step.
-    #[inline]
-    fn holds(&self, cell: &Cell<S>) -> bool {
-        (N != 3 || cell.high[1] <= S::ONE - cell.high[2]) && !(self.beyond && cell.high[0] >= self.end)
-    }
-
-    /// Notes a corner that is certainly within the separation.
-    #[inline]
-    fn within_separation(&self, cell: &Cell<S>, image: &Image<S>, known: &mut Known<S>) {
-        if !(self.separation > S::ZERO) {
-            return;
+        if along > 0 && directions.change(along).dot(sum(f)) < S::ZERO {
+            Look::Halves(b, a)
+        } else {
+            Look::Halves(a, b)
         }
-        // The separation was rounded up; this is below the one that was asked for.
-        // The square may lose to underflow what is far below the bound's margin, as the largest reach is about one.
+    }
+
+    /// Whether a box ends within the step, the end of which may have been rounded up to the grid.
+    #[inline(always)]
+    fn within_step(&self, cell: &Cell<S>) -> bool {
+        !(self.beyond && cell.high[0] >= self.end)
+    }
+
+    /// Notes the corner where the box begins, or where its time ends, if it is certainly within the separation. Both
+    /// belong to the features: a face's box is never wholly beyond `u + v = 1`.
+    #[inline(always)]
+    fn within_separation(&self, cell: &Cell<S>, image: &Image<S>, known: &mut Known<S>) {
+        // The separation was rounded up; this is below the one that was asked for. The square may lose to underflow
+        // what is far below the margin of the error, as the largest reach is about one.
         let less = self.separation * (S::ONE - S::of(16.0) * S::U) - S::INCLUSION_UNDERFLOW;
         let error = image.error[0] + image.error[1] + image.error[2];
-        for (i, x) in image.f.iter().enumerate() {
-            let at = |k: usize| if i >> k & 1 == 0 { cell.low[k] } else { cell.high[k] };
-            let inside = N != 3 || at(1) <= S::ONE - at(2);
-            let held = !(self.beyond && at(0) >= self.end);
-            if inside && held && (x.dot(*x).sqrt() + error) * S::INCLUSION_UP <= less {
-                known.certain = known.certain.min(at(0));
-            }
+        let held = |x: Vec3<S>| (x.dot(x).sqrt() + error) * S::INCLUSION_UP <= less;
+        if held(image.f[0]) {
+            known.certain = known.certain.min(cell.low[0]);
+        } else if held(image.f[1]) && self.within_step(cell) {
+            known.certain = known.certain.min(cell.high[0]);
         }
     }
 }
