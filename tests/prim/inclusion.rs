@@ -54,7 +54,7 @@ struct Judge {
 impl Judge {
     fn note(&mut self, v: Verdict, truth: f64) {
         self.missed += v.is_separated() as u32;
-        self.late += (v.toi > truth) as u32;
+        self.late += (v.toi > truth || v.toi > v.toi_hi) as u32;
         self.contacts += v.is_contact() as u32;
         self.exhausted += v.exhausted() as u32;
         self.boxes += v.boxes as u64;
@@ -148,7 +148,7 @@ fn searched<S: Grid>(
     planted: fn(Vec3<S>) -> Vec3<S>,
 ) -> Verdict {
     let mut stack = vec![MaybeUninit::<Cell<S>>::uninit(); places];
-    let v = if face {
+    let v: Verdict = if face {
         let mut m = Face::<S>::new(p, [q, r, s], params);
         m.reach = planted(m.reach);
         solve(&m, params, &mut stack)
@@ -157,7 +157,7 @@ fn searched<S: Grid>(
         m.reach = planted(m.reach);
         solve(&m, params, &mut stack)
     };
-    well_formed(&v, params);
+    assert!(v.boxes <= params.budget);
     v
 }
 
@@ -185,9 +185,9 @@ fn planted_faults_are_noticed() {
         wrong(built(80, 200, |x, face, p| searched::<f32>(x, face, p, 48, planted)))
     };
     assert_eq!(with(|reach| reach), 0);
-    let (none, little) = (with(|_| Vec3([0.0; 3])), with(|reach| reach * 0.05));
+    let (none, little) = (with(|reach| reach * 1e-9), with(|reach| reach * 0.05));
     println!("wrong without the bound {none}, with a twentieth {little}");
-    assert!(none > 0);
+    assert!(none > 100 && little > 0);
     let forgetful = built(81, 40, |x, face, p| {
         let v = certified::<f64, f64>(x, face, &Params { budget: 2, ..*p });
         if v.exhausted() && !v.is_contact() { Verdict::separated(p.end, v.boxes) } else { v }

@@ -139,7 +139,7 @@ fn lost<S: Grid>(r: &mut SmallRng, allowed: f64) -> u32 {
         let mut cuts = Cuts { low: [S::ZERO; 3], high: [S::ZERO; 3], signs: 0 };
         // Room for the rounding of the input itself.
         let bound = S::of(allowed * (bound + 4.0 * S::U.wide()));
-        let kept = cuts.shadow(&s, bound, 9);
+        let kept = cuts.shadow(&s, bound, S::ZERO, 9);
         let inside =
             (0..3).all(|k| cuts.low[k].wide() <= x[k] + 1e-12 && x[k] <= 1.0 - cuts.high[k].wide() + 1e-12);
         lost += (!kept || !inside) as u32;

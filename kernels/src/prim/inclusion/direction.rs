@@ -123,29 +123,30 @@ pub struct Cuts<S> {
 }
 
 impl<S: Grid> Cuts<S> {
-    /// Takes the corners' products with direction `i`, each at a contact known to be within `bound` of zero. False if
-    /// the box holds no contact.
+    /// Takes the corners' products with direction `i`, each wrong by at most `error`; at a contact the exact product is
+    /// within `apart` of zero. False if the box holds no contact.
     #[inline(always)]
-    pub fn shadow(&mut self, s: &[S; 8], bound: S, i: usize) -> bool {
+    pub fn shadow(&mut self, s: &[S; 8], error: S, apart: S, i: usize) -> bool {
+        let bound = error + apart;
+        // Twice the error keeps faces on strict sides, so that a box that was cut can still be certain of its contact.
+        let wide = bound + error;
         let ranges = [ranges(s, 0), ranges(s, 1), ranges(s, 2)];
         let [low, high] = ranges[0];
         if low.0.min(high.0) > bound || low.1.max(high.1) < -bound {
             return false;
         }
-        self.along(0, ranges[0], bound, i);
-        self.along(1, ranges[1], bound, i);
-        self.along(2, ranges[2], bound, i);
+        self.along(0, ranges[0], (bound, wide), i);
+        self.along(1, ranges[1], (bound, wide), i);
+        self.along(2, ranges[2], (bound, wide), i);
         true
     }
 
     /// Takes the ranges on the low and the high face of parameter `k`.
     #[inline(always)]
-    fn along(&mut self, k: usize, [low, high]: [(S, S); 2], bound: S, i: usize) {
+    fn along(&mut self, k: usize, [low, high]: [(S, S); 2], (bound, wide): (S, S), i: usize) {
         if i == k && ((low.1 < -bound && high.0 > bound) || (low.0 > bound && high.1 < -bound)) {
             self.signs |= 1 << k;
         }
-        // Twice the bound keeps faces on strict sides, so that a box that was cut can still be certain of its contact.
-        let wide = bound + bound;
         self.cut(k, low.0 - wide, high.0 - wide);
         self.cut(k, -wide - low.1, -wide - high.1);
     }

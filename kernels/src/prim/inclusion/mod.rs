@@ -45,9 +45,9 @@ use crate::math::Real;
 use core::mem::MaybeUninit;
 use search::solve;
 
-/// The largest number of boxes that wait. Depth first, a range is halved at most 24 (50) times, and each halving
-/// leaves one box; ranges that are cut need few. Where more would wait the answer stays certain, but early.
-pub const STACK: usize = 48;
+/// The largest number of boxes that wait: depth first, each halving leaves one. Ranges that are cut need few halvings;
+/// where more would wait (motion along one line, asked to 1e-9) the answer stays certain, but may be early.
+pub const STACK: usize = 64;
 
 /// Whether, and when, a vertex first comes within the separation of a closed face; positions in `R`, computed in `S`.
 /// About 130 operations where the first filter rejects, 400 where the second does, 1,200 a box beyond.

@@ -113,10 +113,12 @@ impl<S: Grid, const N: usize> Local<S, N> {
             return Look::Nothing;
         }
         // Not kept for later: registers are dear.
-        let small = (0..3).all(|k| high[k] - low[k] <= self.tolerance)
+        let mut small = (0..3).all(|k| high[k] - low[k] <= self.tolerance)
             || (0..3).all(|k| low[k] >= -error[k] && high[k] <= error[k]);
         if self.separation > S::ZERO {
             self.within_separation(cell, &image, known);
+            let near = self.separation + self.tolerance;
+            small = small || farthest(f) <= near * near;
         }
         let mut cuts = Cuts { low: [S::ZERO; 3], high: [S::ZERO; 3], signs: 0 };
         let directions = Directions::of(f);
@@ -124,8 +126,8 @@ impl<S: Grid, const N: usize> Local<S, N> {
         let slack = Vec3([0, 1, 2].map(|k| error[k] + S::INCLUSION_SHADOW * reach[k]));
         for i in 0..directions.count(self.separation > S::ZERO) {
             let Some(d) = unit(directions.get(i, || sum(f))) else { continue };
-            let more = d.map(S::abs).dot(slack) * S::INCLUSION_UP + S::INCLUSION_UNDERFLOW + self.apart(d);
-            if !cuts.shadow(&f.map(|x| d.dot(x)), more, i) {
+            let error = d.map(S::abs).dot(slack) * S::INCLUSION_UP + S::INCLUSION_UNDERFLOW;
+            if !cuts.shadow(&f.map(|x| d.dot(x)), error, self.apart(d), i) {
                 return Look::Nothing;
             }
         }
@@ -193,4 +195,11 @@ impl<S: Grid, const N: usize> Local<S, N> {
 #[inline]
 fn sum<S: Grid>(f: &[Vec3<S>; 8]) -> Vec3<S> {
     ((f[0] + f[1]) + (f[2] + f[3])) + ((f[4] + f[5]) + (f[6] + f[7]))
+}
+
+/// The largest square of a corner's distance from the origin.
+#[inline(always)]
+fn farthest<S: Grid>(f: &[Vec3<S>; 8]) -> S {
+    let [a, b, c, d, e, g, h, i] = f.map(|x| x.dot(x));
+    (a.max(b).max(c.max(d))).max(e.max(g).max(h.max(i)))
 }
