@@ -1,9 +1,6 @@
 //! Public data, found through NEARMISS_DATA: exact pairs of triangles, true contacts of moving meshes, queries.
 
-#[path = "../support/data.rs"]
-mod data;
-
-use data::data;
+use crate::support::data;
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::adjacent::Shared;
 use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};

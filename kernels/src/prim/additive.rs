@@ -3,6 +3,7 @@
 //!
 //! From the distance `d` now, and a bound `l` of the relative speed, nothing meets within `d / l`: the step is `ETA` of
 //! that, until the distance is below `1 - ETA` of the first. What is zero at the start is a contact at 0.
+#![allow(clippy::neg_cmp_op_on_partial_ord, reason = "comparisons that NaN fails")]
 
 use super::cubic::Moving;
 use crate::math::{Real, Vec3};

@@ -90,6 +90,13 @@ pub fn longest<S: Grid>(f: &[Vec3<S>; 8], k: usize) -> S {
     a.max(b).max(c.max(d))
 }
 
+/// The largest change with parameter `k` of the product with `d`.
+#[inline(always)]
+pub fn shift<S: Grid>(f: &[Vec3<S>; 8], k: usize, d: Vec3<S>) -> S {
+    let [a, b, c, e] = CORNERS[k].map(|c| d.dot(f[c | 1 << k] - f[c]).abs());
+    a.max(b).max(c.max(e))
+}
+
 #[inline(always)]
 fn row<S: Grid>(c: &[Vec3<S>; 3], k: usize) -> Vec3<S> {
     match k {

@@ -98,6 +98,7 @@ impl<S: Grid, const N: usize> Local<S, N> {
 
 /// The same vectors with the largest component in [1, 2), the factor, and whether all are finite.
 #[inline(always)]
+#[allow(clippy::eq_op, reason = "x - x is 0, or NaN where x is not finite")]
 fn scaled<T: Real, const N: usize>(mut w: [[Vec3<T>; 2]; N]) -> ([[Vec3<T>; 2]; N], f64, bool) {
     // Loops by index: they unroll, and nothing needs memory.
     let (mut most, mut none) = (Vec3([T::ZERO; 3]), Vec3([T::ZERO; 3]));

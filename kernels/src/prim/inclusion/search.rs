@@ -2,7 +2,7 @@
 
 use super::bound::Image;
 use super::cell::{Cell, Grid};
-use super::direction::{Cuts, Directions, longest, unit};
+use super::direction::{Cuts, Directions, longest, shift, unit};
 use super::local::Local;
 use super::verdict::{Params, Verdict};
 use crate::math::Vec3;
@@ -152,10 +152,10 @@ impl<S: Grid, const N: usize> Local<S, N> {
             }
         };
         // Of a flat image the roots are a curve: earlier times first, or both halves are followed to their ends.
-        let lasting = longest(f, 0);
+        let lasting = self.extent(f, 0);
         consider(0, if directions.flat() && lasting > self.tolerance { S::of(64.0) } else { lasting });
-        consider(1, longest(f, 1));
-        consider(2, longest(f, 2));
+        consider(1, self.extent(f, 1));
+        consider(2, self.extent(f, 2));
         let along = along.0;
         if along == 3 {
             return Look::Small(part.low[0]);
@@ -167,6 +167,19 @@ impl<S: Grid, const N: usize> Local<S, N> {
         } else {
             Look::Halves(a, b)
         }
+    }
+
+    /// How much a parameter changes what decides: the image; of features apart by a separation the distance from the
+    /// origin, to the first order along the direction there and to the second across it.
+    #[inline(always)]
+    fn extent(&self, f: &[Vec3<S>; 8], k: usize) -> S {
+        let most = longest(f, k);
+        if !(self.separation > S::ZERO) {
+            return most;
+        }
+        let centre = sum(f);
+        let along = shift(f, k, centre) / centre.dot(centre).sqrt();
+        most.min(along + most * most / self.separation)
     }
 
     /// Whether a box ends within the step, the end of which may have been rounded up to the grid.

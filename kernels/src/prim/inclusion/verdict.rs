@@ -9,7 +9,8 @@ pub struct Params {
     /// How near to contact may be taken for contact, a length. Only how much is reported depends on it, and the work;
     /// 0 asks for as much as the precision gives.
     pub tolerance: f64,
-    /// Features this near are in contact, a length; 0 for touching.
+    /// Features this near are in contact, a length; 0 for touching. With a separation a tolerance below a millionth of it
+    /// mostly ends as exhausted: the first contact of round shapes is tangent to them.
     pub separation: f64,
     /// The end of the step, in (0, 1].
     pub end: f64,
