@@ -13,7 +13,8 @@
 //! 2. Otherwise the first contact, if there is one, is not before `toi`.
 //! 3. [`Answer::Contact`]: there is a contact, and the first lies in `[toi, toi_hi]`.
 //! 4. [`Answer::Unresolved`] and [`Answer::Contact`] unless [`Verdict::exhausted`]: at `toi` the features are within
-//!    `separation + sqrt(3) (3 tolerance + 2 E)`, where `E` is at most `20 u` of the largest difference of positions.
+//!    `separation + sqrt(3) (3 tolerance + 2 E)`, where `E` is at most `20 u` of the largest difference of positions, and
+//!    a tolerance below `64 u` of that counts as `64 u`.
 //!
 //! The proof. (a) A computed corner errs by at most `E` per axis (`tolerance.rs`, INCLUSION_*), a computed inner product
 //! with a direction by at most the `bound` of [`search`]; at a contact the product is at most the separation times the
