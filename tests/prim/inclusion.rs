@@ -133,7 +133,7 @@ fn built_contacts_are_never_missed_or_late() {
 
 /// A million of each of twelve families, in each precision.
 #[test]
-#[ignore = "hours"]
+#[ignore = "ten minutes"]
 fn millions_of_built_contacts() {
     all_right(built(54, 1_000_000 / 6, certified::<f64, f64>));
     all_right(built(55, 1_000_000 / 6, certified::<f64, f32>));
