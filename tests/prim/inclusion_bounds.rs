@@ -38,7 +38,7 @@ fn corners<R: Real, S: Grid, const N: usize>(
     planted: f64,
 ) -> f64 {
     let (mut most, mut by) = (0f64, [0; 2]);
-    for i in 0..400 {
+    for i in 0..800 {
         let mut point = || Vec3(std::array::from_fn(|_| R::of(coordinate(r, i % 4))));
         let x: [Moving<R>; 4] = std::array::from_fn(|_| Moving { t0: point(), t1: point() });
         let m = build(x);
@@ -109,11 +109,11 @@ fn corners_err_less_than_their_bound() {
     let face = |x: [Moving<f32>; 4]| Face::<f32>::new(x[0], [x[1], x[2], x[3]], &p);
     let edges = |x: [Moving<f32>; 4]| Edges::<f32>::new([x[0], x[1]], [x[2], x[3]], &p);
     for (most, least) in [
-        (corners(&mut r, face, 1.0), 0.3),
-        (corners(&mut r, edges, 1.0), 0.3),
-        (corners(&mut r, |x: [Moving<f64>; 4]| Face::<f32>::new(x[0], [x[1], x[2], x[3]], &p), 1.0), 0.3),
-        (corners(&mut r, |x: [Moving<f64>; 4]| Edges::<f64>::new([x[0], x[1]], [x[2], x[3]], &p), 1.0), 0.2),
-        (corners(&mut r, |x: [Moving<f64>; 4]| Face::<f64>::new(x[0], [x[1], x[2], x[3]], &p), 1.0), 0.2),
+        (corners(&mut r, face, 1.0), 0.15),
+        (corners(&mut r, edges, 1.0), 0.15),
+        (corners(&mut r, |x: [Moving<f64>; 4]| Face::<f32>::new(x[0], [x[1], x[2], x[3]], &p), 1.0), 0.15),
+        (corners(&mut r, |x: [Moving<f64>; 4]| Edges::<f64>::new([x[0], x[1]], [x[2], x[3]], &p), 1.0), 0.15),
+        (corners(&mut r, |x: [Moving<f64>; 4]| Face::<f64>::new(x[0], [x[1], x[2], x[3]], &p), 1.0), 0.15),
     ] {
         assert!(most <= 1.0 && most > least, "{most}: a bound is broken, or far too wide");
     }
