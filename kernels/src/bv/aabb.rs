@@ -1,10 +1,13 @@
 //! The axis-aligned box: six numbers, six comparisons. Union and overlap are exact; only fitting rounds, outward.
 
+use super::{Axes, Volume};
 use crate::abi::Node;
 use crate::math::{Real, Vec3, round};
+use bytemuck::{Pod, Zeroable};
 
 /// A closed box, `lo <= p <= hi` on every axis. A box of no thickness is a box.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
 pub struct Aabb {
     /// The lower corner.
     pub lo: [f32; 3],
@@ -47,6 +50,25 @@ impl Aabb {
             & (o.lo[1] <= self.hi[1])
             & (self.lo[2] <= o.hi[2])
             & (o.lo[2] <= self.hi[2])
+    }
+}
+
+impl Volume for Aabb {
+    #[inline]
+    fn still<R: Real>(corners: [Vec3<R>; 3]) -> Self {
+        Aabb::of(corners)
+    }
+    #[inline]
+    fn moving<R: Real>([p, q, r]: [Vec3<R>; 3], [s, t, u]: [Vec3<R>; 3]) -> Self {
+        Aabb::of([p, q, r, s, t, u])
+    }
+    #[inline]
+    fn merge(&self, other: &Self, _: Axes) -> Self {
+        Aabb::merge(*self, *other)
+    }
+    #[inline]
+    fn overlaps(&self, other: &Self) -> bool {
+        Aabb::overlaps(self, other)
     }
 }
 
