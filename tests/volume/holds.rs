@@ -84,7 +84,7 @@ fn the_checker_is_exact() {
     let mut wild = Wild::new(5);
     let mut outside = 0;
     for _ in 0..3_000 {
-        wild.turn(30.0);
+        wild.turn(20.0);
         let triangle = wild.triangle::<f64>();
         let mut volume: Obb = leaf(triangle);
         let p = triangle[0][0];
