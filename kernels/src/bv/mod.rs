@@ -38,8 +38,8 @@ pub trait Volume: Pod + Sync + Send + core::fmt::Debug + PartialEq {
 pub struct Axes(pub u32);
 
 impl Axes {
-    /// The principal axes of what both children hold, or better ones if there are.
+    /// The principal axes of what both children hold, or a child's or the world's where these have less surface.
     pub const PCA: Axes = Axes(0);
-    /// Those of the child that has the larger box: cheap, and looser.
+    /// Those of the larger child: cheap, and a little looser.
     pub const CHILD: Axes = Axes(1);
 }
