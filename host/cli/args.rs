@@ -1,7 +1,7 @@
 //! What the command line takes.
 
 use crate::device::Backend;
-use crate::query::{Motion, Query, Solver, Traversal};
+use crate::query::{Motion, Query, Refit, Solver, Traversal};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -83,6 +83,9 @@ pub struct DetectArgs {
     /// Bounding volume.
     #[arg(long, value_enum, default_value_t)]
     pub bv: BvArg,
+    /// How the volumes follow the triangles [default: the machine's fastest].
+    #[arg(long, value_enum)]
+    pub refit: Option<Refit>,
     /// How the tree is walked [default: the machine's fastest].
     #[arg(long, value_enum)]
     pub traversal: Option<TraversalArg>,
@@ -126,6 +129,7 @@ impl DetectArgs {
             motion,
             solver: self.solver,
             bv: None,
+            refit: self.refit,
             traversal: self.traversal.map(|walk| walk.choice(self.budget)),
             adjacent: self.adjacent,
         }

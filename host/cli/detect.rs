@@ -163,6 +163,14 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
         writeln!(text, "volume     aabb{}", if query.motion == Motion::Discrete { "" } else { ", swept" });
     let _ = writeln!(
         text,
+        "refit      {}",
+        match (query.refit, query.refit_on(device.is_card())) {
+            (Some(choice), _) => format!("{choice:?}, as asked"),
+            (None, choice) => format!("{choice:?}: the fastest on this machine"),
+        }
+    );
+    let _ = writeln!(
+        text,
         "traversal  {}",
         match query.traversal {
             Some(choice) => format!("{choice:?}, as asked"),

@@ -1,7 +1,7 @@
 //! Which kernels serve positions of f32, and which of f64.
 
 use crate::mesh::Positions;
-use nearmiss_kernels::abi::{DiscreteArgs, FitArgs, MortonArgs, RejectArgs, SiftArgs, SolveArgs};
+use nearmiss_kernels::abi::{DiscreteArgs, FitArgs, MortonArgs, RejectArgs, SiftArgs, SolveArgs, TreeletsArgs};
 use nearmiss_kernels::bv::Aabb;
 use nearmiss_kernels::entry::{self, Entry};
 use nearmiss_kernels::math::{Real, Vec3};
@@ -14,6 +14,8 @@ pub trait Precision: Real {
     type Morton: Entry<Args = MortonArgs<Self>>;
     /// Boxes of the leaves.
     type FitAabb: Entry<Args = FitArgs<Self, Aabb>>;
+    /// All boxes, by treelets.
+    type TreeletsAabb: Entry<Args = TreeletsArgs<Self, Aabb>>;
     /// The seed's discrete test.
     type Moller: Entry<Args = DiscreteArgs<Self>>;
     /// The discrete filter.
@@ -43,6 +45,7 @@ impl Precision for f32 {
     type Bounds = entry::construct_bounds_f32;
     type Morton = entry::construct_morton_f32;
     type FitAabb = entry::fit_aabb_f32;
+    type TreeletsAabb = entry::refit_treelets_aabb_f32;
     type Moller = entry::narrow_moller_f32;
     type Filter = entry::narrow_filter_f32;
     type Exact = entry::narrow_exact_f32;
@@ -67,6 +70,7 @@ impl Precision for f64 {
     type Bounds = entry::construct_bounds_f64;
     type Morton = entry::construct_morton_f64;
     type FitAabb = entry::fit_aabb_f64;
+    type TreeletsAabb = entry::refit_treelets_aabb_f64;
     type Moller = entry::narrow_moller_f64;
     type Filter = entry::narrow_filter_f64;
     type Exact = entry::narrow_exact_f64;

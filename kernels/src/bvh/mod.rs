@@ -1,5 +1,7 @@
 //! The level-ordered tree: what holds of it, and a checker that names what does not.
 
+pub mod leaf;
+
 use crate::abi::{LEAF, Link, Node, ROOT};
 use crate::bv::{Axes, Volume};
 
