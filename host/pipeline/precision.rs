@@ -1,7 +1,9 @@
 //! Which kernels serve positions of f32, and which of f64.
 
 use crate::mesh::Positions;
-use nearmiss_kernels::abi::{DiscreteArgs, FitArgs, MortonArgs, RejectArgs, SiftArgs, SolveArgs, TreeletsArgs};
+use nearmiss_kernels::abi::{
+    DiscreteArgs, FitArgs, MortonArgs, RejectArgs, SiftArgs, SolveArgs, TreeletsArgs,
+};
 use nearmiss_kernels::bv::Aabb;
 use nearmiss_kernels::entry::{self, Entry};
 use nearmiss_kernels::math::{Real, Vec3};

@@ -5,7 +5,9 @@ use super::tree::{Tree, broken};
 use super::treelets::{Plan, Way};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
-use nearmiss_kernels::abi::{BottomUpArgs, FitArgs, Frames, Node, RefitArgs, Span, TraverseArgs, TreeletsArgs};
+use nearmiss_kernels::abi::{
+    BottomUpArgs, FitArgs, Frames, Node, RefitArgs, Span, TraverseArgs, TreeletsArgs,
+};
 use nearmiss_kernels::bv::{Aabb, Axes, Volume};
 use nearmiss_kernels::bvh;
 use nearmiss_kernels::entry::{self, Entry};

@@ -82,7 +82,8 @@ pub fn plan<B: Block>(b: &mut B, a: &PlanArgs) {
         }
     });
     // A chunk in which nothing begins is the last one, and empty.
-    let begin = |chunk: u32| if chunk < b.blocks() { a.leaves - b.load(a.begins, chunk) as u32 } else { a.leaves };
+    let begin =
+        |chunk: u32| if chunk < b.blocks() { a.leaves - b.load(a.begins, chunk) as u32 } else { a.leaves };
     let (first, end) = (begin(chunk), begin(chunk + 1));
     b.phase(|l| {
         let mut leaf = first + l.lane();
@@ -110,7 +111,8 @@ fn treelet<B: Block>(b: &mut B, a: &PlanArgs, first: u32, end: u32) {
             let Inner { first: from, split, last } = l.read(a.inner, l.read(a.by_gap, first + gap));
             let inside = last - from < TREELET;
             // An inner child's node of the radix tree has the number of the leaf where the parent splits.
-            let child = |is_leaf: bool, node: u32| if is_leaf { NONE } else { l.read(a.inner, node).split - first };
+            let child =
+                |is_leaf: bool, node: u32| if is_leaf { NONE } else { l.read(a.inner, node).split - first };
             if inside {
                 let both = [child(from == split, split), child(split + 1 == last, split + 1)];
                 l.put(children, gap, both);
