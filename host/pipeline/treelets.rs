@@ -113,3 +113,111 @@ impl Plan {
         self.treelets.len() as u32
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::Device;
+    use crate::device::emulator::{Emulator, Mode};
+    use crate::pipeline::tree::Tree;
+    use crate::pipeline::volumes::Volumes;
+    use crate::scene;
+    use nearmiss_kernels::abi::{Frames, Point, Span};
+    use nearmiss_kernels::bv::{Aabb, Axes};
+    use nearmiss_kernels::math::Vec3;
+
+    /// A tree that was refitted once, then moved and refitted again after `fault` was planted; on one thread, so that
+    /// blocks run in their order.
+    fn checked(refit: Refit, fault: impl Fn(&mut Tree)) -> Result<(), Error> {
+        let device = Device::emulator(Emulator::new(Mode::Engine, Some(1))?);
+        let body = scene::soup(2_000, 5, false)?;
+        let at = |scale: f64| -> Vec<Point<f32>> {
+            let points = body.positions_t0().to_f64().into_iter();
+            points.map(|p| Vec3(p.map(|x| (x * scale) as f32)).into()).collect()
+        };
+        let mut points = device.upload(&at(1.0))?;
+        let faces = device.upload(body.faces())?;
+        let frames = Frames { still: points.span(), moving: Span::EMPTY };
+        let mut tree = Tree::new(&device, (0, 2_000), refit)?;
+        tree.construct::<f32>(&device, frames, faces.span())?;
+        let volumes = Volumes::<Aabb>::new(&device, &tree, Axes::PCA)?;
+        let refit = |tree: &Tree| {
+            volumes.fit(&device, tree, frames, faces.span())?;
+            volumes.refit(&device, tree, frames, faces.span())
+        };
+        refit(&tree)?;
+        volumes.check(&tree)?;
+        points.write(&at(3.0))?;
+        fault(&mut tree);
+        refit(&tree)?;
+        volumes.check(&tree)
+    }
+
+    fn plan(tree: &mut Tree) -> &mut Plan {
+        match &mut tree.way {
+            Way::Treelets(plan) => plan,
+            _ => panic!("no plan was asked for"),
+        }
+    }
+
+    /// Every merge but one, which its neighbour takes the place of.
+    fn lose(list: &mut Buffer<Merge>, at: usize) {
+        let mut merges = list.read(list.len()).expect("read");
+        merges[at] = merges[at + 1];
+        list.write(&merges).expect("written");
+    }
+
+    #[test]
+    fn all_ways_pass_where_nothing_is_planted() {
+        for refit in [Refit::Levels, Refit::Treelets, Refit::BottomUp] {
+            checked(refit, |_| ()).expect("sound volumes");
+        }
+    }
+
+    #[test]
+    fn a_volume_that_stayed_behind_is_noticed() {
+        let faults: [fn(&mut Tree); 4] = [
+            // A merge that is lost, low and high.
+            |tree| lose(&mut plan(tree).merges, 3),
+            |tree| lose(&mut plan(tree).top, 1),
+            // Rounds or depths that are not done.
+            |tree| {
+                let mut treelets = plan(tree).treelets.read(2).expect("read");
+                treelets[1].rounds -= 1;
+                plan(tree).treelets.write(&treelets).expect("written");
+            },
+            |tree| {
+                let starts = plan(tree).top_starts.read(1).expect("read");
+                plan(tree).top_starts.write(&[starts[0] - 1]).expect("written");
+            },
+        ];
+        for (i, fault) in faults.into_iter().enumerate() {
+            let error = checked(Refit::Treelets, fault).expect_err("noticed").to_string();
+            assert!(error.contains("Merge"), "fault {i}: {error}");
+        }
+    }
+
+    #[test]
+    fn a_ticket_too_early_is_noticed() {
+        // The second block merges the top, of volumes that are not there yet.
+        let error = checked(Refit::Treelets, |tree| {
+            let plan = plan(tree);
+            plan.ticket.write(&[u64::from(plan.blocks()) - 2]).expect("written");
+        });
+        assert!(error.expect_err("noticed").to_string().contains("Merge"));
+    }
+
+    #[test]
+    fn who_comes_first_and_goes_on_is_noticed() {
+        let error = checked(Refit::BottomUp, |tree| match &mut tree.way {
+            Way::BottomUp(arrivals) => {
+                let mut counts = arrivals.read(arrivals.len()).expect("read");
+                assert!(counts[1..].iter().all(|&n| n == 2), "each pair is passed twice a frame");
+                counts.iter_mut().for_each(|n| *n += 1);
+                arrivals.write(&counts).expect("written");
+            }
+            _ => panic!("no counters were asked for"),
+        });
+        assert!(error.expect_err("noticed").to_string().contains("Merge"));
+    }
+}

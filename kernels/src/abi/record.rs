@@ -161,8 +161,8 @@ pub struct Merge {
 const _: () = assert!(size_of::<Merge>() == 16);
 
 impl Merge {
-    /// Bits of a slot: a treelet has fewer than 2 x 256 leaves.
-    const SLOT: u32 = 9;
+    /// Bits of a slot: a treelet has fewer than 1,024 leaves.
+    const SLOT: u32 = 10;
 
     /// [`Merge::slots`] of a merge in a treelet.
     pub fn in_treelet(left: u32, right: u32, round: u32) -> u32 {

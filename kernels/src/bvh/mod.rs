@@ -12,6 +12,7 @@ pub const MAX_LEVELS: u32 = 63 + 32 + 1;
 /// Leaves of the largest subtree of a treelet, and of the chunk in which a treelet's subtrees begin; so a treelet has
 /// fewer than twice as many. As many as a block has lanes; the volumes of 512 leaves, 56 bytes each, fit on chip.
 pub const TREELET: u32 = 256;
+const _: () = assert!(TREELET <= 512, "a merge counts slots with ten bits");
 
 /// The first thing found wrong with a tree. Node numbers are indices into the nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

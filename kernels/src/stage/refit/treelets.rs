@@ -12,7 +12,7 @@
 use crate::abi::{Link, Merge, Treelet, TreeletsArgs};
 use crate::bv::Volume;
 use crate::bvh::{MAX_LEVELS, TREELET, leaf};
-use crate::exec::{Block, Lane, Shared};
+use crate::exec::{Block, Lane, Shared, Slot};
 use crate::math::Real;
 
 /// Most leaves of a treelet, rounded up.
@@ -98,7 +98,19 @@ pub fn treelets<R: Real, V: Volume, B: Block>(b: &mut B, a: &TreeletsArgs<R, V>)
 fn top<R: Real, V: Volume, B: Block>(b: &mut B, a: &TreeletsArgs<R, V>, starts: Shared<u32>) {
     let lanes = b.lanes();
     let mut depth = b.load(a.top_starts, 0);
+    if depth == 0 {
+        return;
+    }
+    let deepest = [b.load(a.top_starts, depth), b.load(a.top_starts, depth + 1)];
+    // A lane's first merge of the next depth is on its way while volumes of this one are: one round trip, not two.
+    let mut ahead = b.slot(Merge::default());
+    let fetch = |l: &B::Lane, ahead: &mut B::Slot<Merge>, [start, end]: [u32; 2]| {
+        if start + l.lane() < end {
+            *ahead.of(l) = l.read(a.top, start + l.lane());
+        }
+    };
     b.phase(|l| {
+        fetch(l, &mut ahead, deepest);
         let mut i = l.lane();
         while i <= depth {
             l.put(starts, i, l.read(a.top_starts, i + 1));
@@ -108,13 +120,18 @@ fn top<R: Real, V: Volume, B: Block>(b: &mut B, a: &TreeletsArgs<R, V>, starts: 
     while depth > 0 {
         depth -= 1;
         b.phase(|l| {
-            let mut i = l.get(starts, depth) + l.lane();
-            let end = l.get(starts, depth + 1);
+            let (mut i, end) = (l.get(starts, depth) + l.lane(), l.get(starts, depth + 1));
+            let mut merge = *ahead.of(l);
+            if depth > 0 {
+                fetch(l, &mut ahead, [l.get(starts, depth - 1), l.get(starts, depth)]);
+            }
             while i < end {
-                let merge = l.read(a.top, i);
                 let (left, right) = (l.take(a.nodes, merge.link), l.take(a.nodes, merge.link + 1));
                 l.give(a.nodes, merge.node, merge.link().with(left.volume.merge(&right.volume, a.axes)));
                 i += lanes;
+                if i < end {
+                    merge = l.read(a.top, i);
+                }
             }
         });
     }
