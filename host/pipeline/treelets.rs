@@ -12,7 +12,7 @@ pub enum Way {
     /// A launch a level.
     Levels,
     /// A block a treelet.
-    Treelets(Plan),
+    Treelets(Box<Plan>),
     /// Whoever comes second to a pair goes on: how many came by each pair, in all frames.
     BottomUp(Buffer<u64>),
 }
@@ -25,7 +25,7 @@ impl Way {
     pub fn new(device: &Device, refit: Refit, count: u32) -> Result<Way, Error> {
         Ok(match refit {
             Refit::Levels => Way::Levels,
-            Refit::Treelets => Way::Treelets(Plan::new(device, count)?),
+            Refit::Treelets => Way::Treelets(Box::new(Plan::new(device, count)?)),
             Refit::BottomUp => Way::BottomUp(device.buffer(count as usize)?),
         })
     }
