@@ -92,8 +92,8 @@ fn machines_cannot_be_told_apart() {
     let bodies = [
         scene::single().expect("a scene"),
         scene::identical(3).expect("a scene"),
-        scene::soup(1_100, 9, false).expect("a scene"),
-        deep(20),
+        scene::soup(700, 9, false).expect("a scene"),
+        deep(12),
     ];
     let seeds = 0..3u64;
     for body in &bodies {
