@@ -2,12 +2,12 @@
 //! Paper    section 6.2.4: a barrier between levels. Here a level's barrier is a block's, not the launch's.
 //! Launch   a block a treelet, a lane a leaf and a lane a merge; the block that is done last merges the top.
 //! Reads    positions, faces, seats, merges; the last block volumes of others, taken.   Writes   all nodes, each once.
-//! Before   the plan is the tree's (see [`crate::stage`], `construct_treelets`); positions are finite.
+//! Before   `construct_treelets` has planned the tree; positions are finite.
 //! After    leaves enclose their triangles as after `fit`, every other volume is the merge of its children's.
 //! Room     fixed; cannot run out. Any number of merges in the top: rounds of as many as a block has lanes.
 //! Departs  fit is part of it: the volumes of a treelet stay on chip from the triangle to the treelet's root.
 //! Cost     8 B seat, 12 B face, 48 B positions a frame and leaf; 16 B a merge; two nodes out a leaf: 148 B (AABB). A
-//!          chain of about 15 rounds on chip, a ticket, and a round trip to L2 a depth of the top (about 14).
+//!          chain of some 12 rounds on chip, a ticket, and a round trip to L2 a depth of the top (13 on cloth-ball).
 
 use crate::abi::{Link, Merge, Treelet, TreeletsArgs};
 use crate::bv::Volume;
