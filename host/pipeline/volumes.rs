@@ -4,7 +4,7 @@ use super::precision::Precision;
 use super::tree::{Tree, broken};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
-use nearmiss_kernels::abi::{FitArgs, Frames, Node, RefitArgs, Span, TraverseArgs};
+use nearmiss_kernels::abi::{FitArgs, Frames, Node, QueueArgs, RefitArgs, Span, StealArgs, TraverseArgs};
 use nearmiss_kernels::bv::{Aabb, Axes, Volume};
 use nearmiss_kernels::bvh;
 use nearmiss_kernels::entry::{self, Entry};
@@ -19,6 +19,10 @@ pub trait Kernels: Volume {
     type Leaves: Entry<Args = TraverseArgs<Self>>;
     /// A walk a unit that was left over.
     type Units: Entry<Args = TraverseArgs<Self>>;
+    /// A round of work queues.
+    type Queue: Entry<Args = QueueArgs<Self>>;
+    /// Work queues that help each other out.
+    type Steal: Entry<Args = StealArgs<Self>>;
 }
 
 impl Kernels for Aabb {
@@ -26,6 +30,8 @@ impl Kernels for Aabb {
     type Levels = entry::refit_levels_aabb;
     type Leaves = entry::traverse_leaves_aabb;
     type Units = entry::traverse_units_aabb;
+    type Queue = entry::traverse_queue_aabb;
+    type Steal = entry::traverse_steal_aabb;
 }
 
 /// The volumes of a tree, kept on the device.

@@ -5,7 +5,8 @@ use crate::bv::Aabb;
 use crate::exec::{BINS, Block, WARP};
 use crate::stage::construct::{morton, sort, tree};
 use crate::stage::narrow::{discrete, reject, sift, solve};
-use crate::stage::{fit, refit, traverse};
+use crate::stage::traverse::{queue, steal, worker};
+use crate::stage::{balance, fit, refit, traverse};
 use bytemuck::Pod;
 
 /// A kernel as the host knows it.
@@ -71,6 +72,8 @@ const WIDE: u32 = 256;
 /// Lanes of kernels with long or uneven work: small blocks, so that few lanes wait for a long one (measured:
 /// `benches/NOTES.md`).
 const NARROW: u32 = 64;
+/// Lanes of the one block that evens the queues, as in the paper.
+const BALANCE: u32 = 512;
 /// Shared memory of a radix scatter: the bins, and each warp's.
 const RANKS: u32 = 4 * BINS * (1 + WIDE / WARP);
 
@@ -92,6 +95,9 @@ kernels! {
     refit_levels_aabb: refit::levels::<Aabb, B>, [RefitArgs<Aabb>], WIDE, 0;
     traverse_leaves_aabb: traverse::leaves::<Aabb, B>, [TraverseArgs<Aabb>], NARROW, traverse::shared_bytes(NARROW);
     traverse_units_aabb: traverse::units::<Aabb, B>, [TraverseArgs<Aabb>], NARROW, traverse::shared_bytes(NARROW);
+    traverse_queue_aabb: queue::queue::<Aabb, B>, [QueueArgs<Aabb>], NARROW, worker::shared_bytes(NARROW);
+    traverse_steal_aabb: steal::steal::<Aabb, B>, [StealArgs<Aabb>], NARROW, worker::shared_bytes(NARROW);
+    balance_copy: balance::copy, [BalanceArgs], BALANCE, 0;
     narrow_moller_f32: discrete::moller::<f32, B>, [DiscreteArgs<f32>], WIDE, 0;
     narrow_moller_f64: discrete::moller::<f64, B>, [DiscreteArgs<f64>], WIDE, 0;
     narrow_filter_f32: discrete::filter::<f32, B>, [DiscreteArgs<f32>], WIDE, 0;

@@ -15,6 +15,11 @@
 //! Cost     two nodes and two overlap tests (AABB: 64 B, 12 comparisons) a step; hits wait on chip, so that the test for shared vertices and the append
 //!          run converged, with one atomic operation a block.
 
+pub mod pair;
+pub mod queue;
+pub mod steal;
+pub mod worker;
+
 use crate::abi::{KEEP_ADJACENT, NONE, Pair, ROOT, SELF, TraverseArgs, Unit, counter};
 use crate::bv::Volume;
 use crate::exec::{Block, Lane, Slot};
