@@ -257,6 +257,13 @@ kernels! {
         });
         b.phase(|l| if l.lane() == 0 { l.fetch_add(a.counters, 0, 1); });
     }
+    all_wait_for_the_last |b, a| {
+        let last = b.block() + 1 == b.blocks();
+        b.phase(|l| if l.lane() == 0 {
+            if last { l.exchange(a.counters, 0, 1); }
+            while l.fetch_load(a.counters, 0) == 0 {}
+        });
+    }
     waits_for_a_lane |b, a| {
         // A lane waits for one of the same block that may come later.
         b.phase(|l| {
@@ -302,6 +309,14 @@ fn a_wait_for_a_block_that_has_not_started_is_named() {
     // Where all three run at once, or block 0 comes last, the wait ends: both hide it.
     assert!(verdict::<waits_for_a_block>(Order::Forward, Some(1), 3).contains("nothing seen"));
     assert!(verdict::<waits_for_a_block>(Order::Reverse, None, 3).contains("nothing seen"));
+}
+
+#[test]
+fn a_wait_of_all_that_run_for_one_that_cannot_start_is_named() {
+    // As many blocks as run at once, and one more.
+    assert!(verdict::<all_wait_for_the_last>(Order::Forward, Some(2), 64).contains("nothing seen"));
+    let verdict = verdict::<all_wait_for_the_last>(Order::Forward, Some(2), 65);
+    assert!(verdict.contains("kernel all_wait_for_the_last: a wait for what nobody does"), "{verdict}");
 }
 
 #[test]

@@ -4,7 +4,7 @@
 //! ahead of the others, which is what finds mistakes, would hardly be seen.
 //!
 //! At most [`SEATS`] blocks run at once, as on a card: the next one starts where one ends. So what a launch does is a
-//! matter of its seed alone, and a block that waits for one that has not started waits for ever.
+//! matter of its seed alone, and blocks that all wait for one that has not started wait for ever.
 
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};

@@ -1,14 +1,10 @@
 //! The microscope's eye on one block.
 
-use super::baton::{Baton, Stop};
+use super::baton::Baton;
 use super::block::Watch;
 use super::microscope::{Access, Fault, Microscope, Place};
 use super::shadow::Shadow;
-use std::cell::{Cell, RefCell};
-
-/// So many looks of a block at device memory, in which it changed nothing there, are a wait for what nobody does. Far
-/// above what a block looks while others do their part: the longest waits of the tests are a thousand times shorter.
-const LOOKS: u32 = 1 << 20;
+use std::cell::RefCell;
 
 /// Watches one block.
 pub struct Eye<'a> {
@@ -17,15 +13,12 @@ pub struct Eye<'a> {
     /// Where blocks interleave, what says whose turn it is, and this block's seat.
     baton: Option<(&'a Baton, usize)>,
     shared: RefCell<Vec<Shadow>>,
-    /// Looks since the block last changed device memory.
-    looks: Cell<u32>,
 }
 
 impl<'a> Eye<'a> {
     /// An eye on a block that begins: its shared memory is new.
     pub fn new(microscope: &'a Microscope, baton: Option<(&'a Baton, usize)>) -> Self {
-        let (shared, looks) = (RefCell::default(), Cell::new(0));
-        Eye { microscope, launch: microscope.launches(), baton, shared, looks }
+        Eye { microscope, launch: microscope.launches(), baton, shared: RefCell::default() }
     }
 }
 
@@ -35,15 +28,6 @@ impl Watch for &Eye<'_> {
         self.microscope.order().sequence(count, turn).into_iter().for_each(body);
     }
     fn device(&self, access: Access, addr: u64, bytes: usize, inside: bool, place: Place) -> bool {
-        match access {
-            Access::Read | Access::Take => {}
-            Access::Write | Access::Give | Access::Atomic => self.looks.set(0),
-            Access::Look | Access::Swap => self.looks.set(self.looks.get() + 1),
-        }
-        if self.looks.get() > LOOKS {
-            self.microscope.note(Fault::Waits(place));
-            Stop::now();
-        }
         if let (Some((baton, seat)), false) = (self.baton, matches!(access, Access::Read | Access::Write)) {
             baton.may_pass(seat);
         }
@@ -67,7 +51,7 @@ impl Watch for &Eye<'_> {
         true
     }
     fn changed(&self) {
-        self.looks.set(0);
+        self.microscope.changed();
     }
     fn barrier(&self) {
         if let Some((baton, seat)) = self.baton {

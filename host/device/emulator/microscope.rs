@@ -8,6 +8,7 @@
 //! Blocks run one after the other, each to its end, in the microscope's order; or interleaved (see the `baton`).
 
 use super::Order;
+use super::baton::Stop;
 use super::shadow::Shadow;
 use crate::error::Error;
 use std::collections::BTreeMap;
@@ -16,6 +17,10 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// What unwritten memory holds.
 pub const POISON: u8 = 0xcb;
+
+/// So many looks of a launch at device memory, between which no block changed it, are a wait for what nobody does.
+/// Lanes that poll while others work look some thousands of times.
+const LOOKS: u32 = 1 << 20;
 
 /// How a lane touches memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -97,6 +102,8 @@ struct Seen {
     launches: u64,
     name: &'static str,
     fault: Option<Fault>,
+    /// Looks since device memory last changed.
+    looks: u32,
     device: BTreeMap<u64, Vec<Shadow>>,
 }
 
@@ -125,6 +132,7 @@ impl Microscope {
     pub(super) fn begin(&self, name: &'static str) {
         let mut seen = self.seen();
         seen.launches += 1;
+        seen.looks = 0;
         seen.name = name;
     }
     /// The launch is over.
@@ -153,9 +161,24 @@ impl Microscope {
     pub(super) fn note(&self, fault: Fault) {
         self.seen().fault.get_or_insert(fault);
     }
-    /// An access to device memory; false where there is none.
+    /// Device memory has changed, though the access might only have looked.
+    pub(super) fn changed(&self) {
+        self.seen().looks = 0;
+    }
+    /// An access to device memory; false where there is none. Stops the launch where it waits for what nobody does.
     pub(super) fn see(&self, access: Access, addr: u64, bytes: usize, inside: bool, place: Place) -> bool {
-        let Seen { launches, fault, device, .. } = &mut *self.seen();
+        let mut seen = self.seen();
+        let Seen { launches, fault, looks, device, .. } = &mut *seen;
+        *looks = match access {
+            Access::Read | Access::Take => *looks,
+            Access::Write | Access::Give | Access::Atomic => 0,
+            Access::Look | Access::Swap => *looks + 1,
+        };
+        if *looks > LOOKS {
+            fault.get_or_insert(Fault::Waits(place));
+            drop(seen);
+            Stop::now();
+        }
         let shadows = device.range_mut(..=addr).next_back().and_then(|(&start, shadows)| {
             let first = ((addr - start) / 4) as usize;
             shadows.get_mut(first..first + bytes.div_ceil(4))

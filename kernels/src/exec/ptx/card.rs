@@ -1,6 +1,6 @@
 //! A block of the card: each thread runs the kernel for its own lane.
 
-use super::coherent::{fence, load_coherent, store_coherent};
+use super::coherent::{compare_and_swap, fence, load_coherent, store_coherent};
 use super::raw::{
     BROADCAST, address, atomic, barrier_or, element, load_global, load_shared32, load_shared64, load_word,
     match_any, scratch_address, shuffle_up, store_shared32, store_shared64, store_word, sync_threads,
@@ -88,9 +88,8 @@ impl Lane for Thread {
     }
     #[inline(always)]
     fn compare_exchange(&self, span: Span<u64>, i: u32, current: u64, new: u64) -> u64 {
-        match atomic(span, i).compare_exchange(current, new, Relaxed, Relaxed) {
-            Ok(before) | Err(before) => before,
-        }
+        // SAFETY: as for `atomic`.
+        unsafe { compare_and_swap(element(span, i), current, new) }
     }
     #[inline(always)]
     fn give<T: Pod>(&self, span: Span<T>, i: u32, value: T) {

@@ -13,6 +13,21 @@ pub fn fence() {
     unsafe { asm!("fence.acq_rel.gpu;", options(nostack)) }
 }
 
+/// Sets `at` to `new` if it holds `current`; the value before. (The compiler's own is of the whole system's scope.)
+///
+/// # Safety
+/// `at` is aligned device memory, valid for reads and writes; what meets it is relaxed or atomic too.
+#[inline(always)]
+pub unsafe fn compare_and_swap(at: *mut u64, current: u64, new: u64) -> u64 {
+    let before: u64;
+    // SAFETY: the caller's.
+    unsafe {
+        asm!("atom.relaxed.gpu.global.cas.b64 {r}, [{at}], {c}, {n};", r = lateout(reg64) before,
+            at = in(reg64) at as u64, c = in(reg64) current, n = in(reg64) new, options(nostack))
+    };
+    before
+}
+
 /// A load past the L1 cache, in the widest pieces that `T`'s alignment allows.
 ///
 /// # Safety
