@@ -9,7 +9,7 @@ mod ends;
 mod sizes;
 
 use nearmiss::mesh::Body;
-use nearmiss::query::{Balance, Motion, QueueShape, StealShape, Traversal};
+use nearmiss::query::{Motion, QueueShape, StealShape, Traversal};
 use nearmiss::{Contacts, Device, Query, Session, scene};
 use support::{ORDERS, engine, loose, microscope};
 
@@ -46,8 +46,22 @@ fn kinds() -> [Traversal; 4] {
     [
         Traversal::Queue(QueueShape { segment: 2_000, ..QueueShape::gtx285() }),
         Traversal::Queue(small),
-        Traversal::Steal(StealShape { cores: Some(5), segment: 64, pool: 500, tries: 8, eager: false, ..StealShape::native() }),
-        Traversal::Steal(StealShape { cores: Some(5), segment: 64, pool: 500, tries: 8, eager: true, ..StealShape::native() }),
+        Traversal::Steal(StealShape {
+            cores: Some(5),
+            segment: 64,
+            pool: 500,
+            tries: 8,
+            eager: false,
+            ..StealShape::native()
+        }),
+        Traversal::Steal(StealShape {
+            cores: Some(5),
+            segment: 64,
+            pool: 500,
+            tries: 8,
+            eager: true,
+            ..StealShape::native()
+        }),
     ]
 }
 
@@ -106,7 +120,8 @@ fn a_candidate_less_or_more_is_noticed() {
     // The same scene but for one triangle that moved away from the crowd, and one that came.
     let (with, without) = (scene::identical(12).expect("a scene"), scene::identical(11).expect("a scene"));
     for traversal in kinds() {
-        let print = |body: &Body| found(engine(), std::slice::from_ref(body), by(traversal, Motion::Discrete)).0;
+        let print =
+            |body: &Body| found(engine(), std::slice::from_ref(body), by(traversal, Motion::Discrete)).0;
         let (one, other) = (print(&with), print(&without));
         assert!(one.0 != other.0 && one.1 != other.1 && one.2 != other.2, "{one:?} {other:?}");
     }

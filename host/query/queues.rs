@@ -1,7 +1,7 @@
 //! The sizes of work queues.
 
 use crate::error::Error;
-use nearmiss_kernels::stage::traverse::worker::ROOM;
+use nearmiss_kernels::queue::worker::ROOM;
 
 /// How queues are evened between launches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -114,7 +114,8 @@ impl StealShape {
 const MOST_CORES: u32 = 1 << 16;
 
 fn sizes(cores: Option<u32>, local: u32, segment: u32) -> Result<(), Error> {
-    let fits = cores.is_none_or(|n| (1..=MOST_CORES).contains(&n)) && (1..=ROOM).contains(&local) && segment > 0;
+    let fits =
+        cores.is_none_or(|n| (1..=MOST_CORES).contains(&n)) && (1..=ROOM).contains(&local) && segment > 0;
     if fits {
         return Ok(());
     }

@@ -3,9 +3,10 @@
 use crate::abi::*;
 use crate::bv::Aabb;
 use crate::exec::{BINS, Block, WARP};
+use crate::queue::worker;
 use crate::stage::construct::{morton, sort, tree};
 use crate::stage::narrow::{discrete, reject, sift, solve};
-use crate::stage::traverse::{queue, steal, worker};
+use crate::stage::traverse::{queue, steal};
 use crate::stage::{balance, fit, refit, traverse};
 use bytemuck::Pod;
 

@@ -14,10 +14,10 @@
 //!
 //! [`FRONT`]: crate::abi::FRONT
 
-use super::worker::{Worker, Outside};
 use crate::abi::{LAST, Pair, QueueArgs, START, counter};
 use crate::bv::Volume;
 use crate::exec::{Block, Lane};
+use crate::queue::worker::{Outside, Worker};
 
 /// A round.
 pub fn queue<V: Volume, B: Block>(b: &mut B, a: &QueueArgs<V>) {
@@ -55,9 +55,8 @@ pub fn queue<V: Volume, B: Block>(b: &mut B, a: &QueueArgs<V>) {
             taken += count;
         }
         let heed = steps >= a.patience;
-        let voted = worker.step(b, &a.to, &mut outside, |l| {
-            heed && l.fetch_load(a.idle, a.round) > a.idle_limit as u64
-        });
+        let voted = worker
+            .step(b, &a.to, &mut outside, |l| heed && l.fetch_load(a.idle, a.round) > a.idle_limit as u64);
         steps += 1;
         if voted || worker.top > a.full {
             break;

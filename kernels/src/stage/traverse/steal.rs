@@ -13,10 +13,10 @@
 //! Nothing is lost in any schedule: an offer is made by a block that has work, and no block leaves before it has seen the
 //! pool empty. That a block without work waits for others while any has some is only for speed; its patience ends.
 
-use super::worker::{Worker, Outside};
 use crate::abi::{EAGER, Pair, Span, StealArgs, control, counter};
 use crate::bv::Volume;
 use crate::exec::{Block, Lane, Shared};
+use crate::queue::worker::{Outside, Worker};
 
 /// Units that a block offers at most at a time: one lane writes them.
 const OFFER: u32 = 32;
@@ -48,7 +48,8 @@ pub fn steal<V: Volume, B: Block>(b: &mut B, a: &StealArgs<V>) {
     let first = b.peek(count, 0) != 0;
     let mut worker = Worker::new(b, first);
     let begin = block * a.segment;
-    let mut outside = Outside { units: a.units, segment: (begin, a.segment), stored: 0, count: (Span::EMPTY, 0) };
+    let mut outside =
+        Outside { units: a.units, segment: (begin, a.segment), stored: 0, count: (Span::EMPTY, 0) };
     loop {
         if worker.top == 0 {
             let own = (outside.stored as u32).min(a.segment);
@@ -84,7 +85,13 @@ fn is_wanted<V: Volume, L: Lane>(l: &L, a: &StealArgs<V>) -> bool {
 }
 
 /// Offers the first `offered` units of the queue, as far as the pool has room.
-fn offer<V: Volume, B: Block>(b: &mut B, a: &StealArgs<V>, worker: &mut Worker<B>, offered: u32, count: Shared<u32>) {
+fn offer<V: Volume, B: Block>(
+    b: &mut B,
+    a: &StealArgs<V>,
+    worker: &mut Worker<B>,
+    offered: u32,
+    count: Shared<u32>,
+) {
     b.phase(|l| {
         if l.lane() == 0 {
             let place = l.fetch_add(a.control, control::TAIL, offered as u64);

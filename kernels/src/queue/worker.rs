@@ -2,11 +2,11 @@
 //!
 //! Sizes and places come from sums over the block, never from atomics: a block's work is the same each time.
 
-use super::adjacent;
 use super::pair::{Below, ROOTS, below};
 use crate::abi::{FRONT, KEEP_ADJACENT, Pair, PairArgs, Span, counter};
 use crate::bv::Volume;
 use crate::exec::{Block, Lane, Shared, Slot};
+use crate::prim::adjacent::share_a_vertex;
 
 /// Units that a block's queue has room for: with what else the block holds, a third of what a block may have and less
 /// than the 16 KB of the paper's cores, so that 18 blocks of 64 lanes fit on a core of today.
@@ -241,7 +241,8 @@ impl<B: Block> Worker<B> {
             let (mut i, mut bit, mut mask) = (l.lane(), 1, 0);
             while i < fill {
                 let [p, q] = l.get(found, i);
-                if to.flags & KEEP_ADJACENT != 0 || !adjacent(l.read(to.faces, p), l.read(to.faces, q)) {
+                if to.flags & KEEP_ADJACENT != 0 || !share_a_vertex(l.read(to.faces, p), l.read(to.faces, q))
+                {
                     mask |= bit;
                 }
                 bit <<= 1;

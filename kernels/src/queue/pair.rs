@@ -25,8 +25,13 @@ pub struct Below {
 
 impl Below {
     /// Nothing.
-    pub const NONE: Below =
-        Below { nodes: [Pair { a: 0, b: 0 }; 3], faces: [Pair { a: 0, b: 0 }; 2], units: 0, candidates: 0, ends: 0 };
+    pub const NONE: Below = Below {
+        nodes: [Pair { a: 0, b: 0 }; 3],
+        faces: [Pair { a: 0, b: 0 }; 2],
+        units: 0,
+        candidates: 0,
+        ends: 0,
+    };
 
     /// Says of pair `k` what it is, from whether it overlaps.
     #[inline(always)]
