@@ -1,7 +1,7 @@
 //! What the command line takes.
 
 use crate::device::Backend;
-use crate::query::{Motion, Query, QueueShape, Solver, StealShape, Traversal};
+use crate::query::{Bv, Motion, Query, QueueShape, Solver, StealShape, Traversal};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -23,14 +23,6 @@ pub enum Command {
     Scene(SceneArgs),
     /// Check this machine: known answers, and the card and the CPU to the bit.
     Selftest(SelftestArgs),
-}
-
-/// Bounding volumes that exist.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum BvArg {
-    /// Axis-aligned boxes, swept over the step.
-    #[default]
-    Aabb,
 }
 
 /// Walks that exist.
@@ -96,9 +88,9 @@ pub struct DetectArgs {
     /// Only the smallest time of contact: the step that a simulator may take.
     #[arg(long)]
     pub earliest: bool,
-    /// Bounding volume.
-    #[arg(long, value_enum, default_value_t)]
-    pub bv: BvArg,
+    /// Bounding volume [default: the fastest].
+    #[arg(long, value_enum)]
+    pub bv: Option<Bv>,
     /// How the tree is walked [default: the machine's fastest].
     #[arg(long, value_enum)]
     pub traversal: Option<TraversalArg>,
@@ -147,7 +139,7 @@ impl DetectArgs {
         Query {
             motion,
             solver: self.solver,
-            bv: None,
+            bv: self.bv,
             traversal: self.traversal.map(|walk| walk.choice(self)),
             adjacent: self.adjacent,
         }

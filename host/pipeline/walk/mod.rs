@@ -12,6 +12,7 @@ use crate::device::Device;
 use crate::error::Error;
 use crate::query::{Query, Traversal};
 use nearmiss_kernels::abi::{KEEP_ADJACENT, Pair, PairArgs, SELF, Span};
+use nearmiss_kernels::entry::Entry;
 use per_leaf::PerLeaf;
 use queue::Queue;
 use steal::Steal;
@@ -47,6 +48,12 @@ impl<V: Kernels> Walked<'_, V> {
             local,
         }
     }
+}
+
+/// Blocks of a kernel by pairs of nodes that a machine runs at once: half as many as its lanes allow, since registers (72 a
+/// lane of 128) and shared memory (12 KB a block) leave room for no more.
+fn resident<E: Entry>(device: &Device) -> u32 {
+    device.blocks_striding::<E>(u32::MAX as usize).div_ceil(2)
 }
 
 /// A way through the trees.

@@ -1,7 +1,7 @@
 //! Rounds of work queues, until nothing is left.
 
 use super::segments::Segments;
-use super::{Walk, Walked};
+use super::{Walk, Walked, resident};
 use crate::device::{Buffer, Device, Mark};
 use crate::error::Error;
 use crate::pipeline::room::Growing;
@@ -60,7 +60,7 @@ impl Queue {
     /// # Errors
     /// Those of the device.
     pub fn new<V: Kernels>(device: &Device, shape: QueueShape) -> Result<Self, Error> {
-        let cores = shape.cores.unwrap_or_else(|| device.blocks_striding::<V::Queue>(u32::MAX as usize));
+        let cores = shape.cores.unwrap_or_else(|| resident::<V::Queue>(device));
         let (segments, counts, rounds) = match shape.balance {
             Balance::Copy => ((cores, shape.segment as u64), [cores, cores], 1),
             Balance::View => ((1, cores as u64 * shape.segment as u64), [MOST_ROUNDS + 1, 0], MOST_ROUNDS),

@@ -1,7 +1,7 @@
 //! Work queues that help each other out, in one launch.
 
 use super::segments::Segments;
-use super::{Walk, Walked};
+use super::{Walk, Walked, resident};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::room::Growing;
@@ -24,7 +24,7 @@ impl Steal {
     /// # Errors
     /// Those of the device.
     pub fn new<V: Kernels>(device: &Device, shape: StealShape) -> Result<Self, Error> {
-        let cores = shape.cores.unwrap_or_else(|| device.blocks_striding::<V::Steal>(u32::MAX as usize));
+        let cores = shape.cores.unwrap_or_else(|| resident::<V::Steal>(device));
         let mut pool = device.buffer(shape.pool as usize)?;
         // Every launch leaves it so.
         pool.clear()?;

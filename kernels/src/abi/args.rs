@@ -339,18 +339,20 @@ pub const LAST: u32 = 2;
 /// [`StealArgs::flags`]: units are offered whether or not a block looks for some.
 pub const EAGER: u32 = 1;
 
-/// The words by which blocks of `traverse_steal` find each other.
+/// The words by which blocks of `traverse_steal` find each other, each in a line of its own.
 pub mod control {
+    /// Words of a line of 128 bytes.
+    const LINE: u32 = 16;
     /// Blocks that entered (upper half), and blocks that have work (lower half).
     pub const BUSY: u32 = 0;
     /// Blocks that look for work.
-    pub const HUNGRY: u32 = 1;
+    pub const HUNGRY: u32 = LINE;
     /// Units of the pool that were claimed.
-    pub const HEAD: u32 = 2;
+    pub const HEAD: u32 = 2 * LINE;
     /// Units of the pool that were offered, past its end too.
-    pub const TAIL: u32 = 3;
+    pub const TAIL: u32 = 3 * LINE;
     /// How many words.
-    pub const COUNT: u32 = 4;
+    pub const COUNT: u32 = 4 * LINE;
 }
 
 /// The counters of a frame. Each is the exact demand for its list, also where the list was too short.

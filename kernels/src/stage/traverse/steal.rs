@@ -20,6 +20,9 @@ use crate::queue::worker::{Outside, Worker};
 
 /// Units that a block offers at most at a time: one lane writes them.
 const OFFER: u32 = 32;
+/// Looks at a word of its own that a block without work takes at most between two looks at what all look at: some
+/// microseconds, so that those who have work find these words free.
+const NAP: u32 = 4;
 /// A block that entered and has work.
 const ENTER: u64 = 1 << 32 | 1;
 /// The blocks that have work, of [`control::BUSY`].
@@ -122,7 +125,7 @@ fn claim<V: Volume, B: Block>(b: &mut B, a: &StealArgs<V>, count: Shared<u32>) -
 
 /// Looks for units until there are some, nobody has work, or patience ends.
 fn search<V: Volume, L: Lane>(l: &L, a: &StealArgs<V>, most: u64) -> (u32, u32) {
-    let (mut hungry, mut tries) = (false, a.tries);
+    let (mut hungry, mut tries, mut nap) = (false, a.tries, 1);
     loop {
         let head = l.fetch_load(a.control, control::HEAD);
         let tail = l.fetch_load(a.control, control::TAIL).min(a.pool.len);
@@ -151,6 +154,12 @@ fn search<V: Volume, L: Lane>(l: &L, a: &StealArgs<V>, most: u64) -> (u32, u32) 
             return (0, 0);
         }
         tries -= 1;
+        // Words of the pool's memory stand in for time: they are 0 or a unit's, never u64::MAX.
+        let mine = (l.global() as u64 % a.pool.len.max(1)) as u32;
+        for _ in 0..if a.pool.is_empty() { 0 } else { nap } {
+            tries -= (l.fetch_load(a.pool, mine) == u64::MAX) as u32;
+        }
+        nap = (2 * nap).min(NAP);
     }
 }
 
