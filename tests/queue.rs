@@ -9,7 +9,7 @@ mod ends;
 mod sizes;
 
 use nearmiss::mesh::Body;
-use nearmiss::query::{Motion, QueueShape, StealShape, Traversal};
+use nearmiss::query::{Bv, Motion, QueueShape, StealShape, Traversal};
 use nearmiss::{Contacts, Device, Query, Session, scene};
 use support::{ORDERS, engine, loose, microscope};
 
@@ -97,6 +97,20 @@ fn every_traversal_finds_the_same() {
             for traversal in kinds() {
                 let found = found(engine(), &bodies, by(traversal, motion)).0;
                 assert_eq!(found, truth, "{name}, {motion:?}, {traversal:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn in_any_volume() {
+    for (name, bodies) in scenes() {
+        for bv in [Bv::Linear, Bv::Obb].map(Some) {
+            let ask =
+                |traversal| found(engine(), &bodies, Query { bv, ..by(traversal, Motion::Continuous) }).0.2;
+            let truth = ask(Traversal::PerLeaf { budget: None });
+            for traversal in kinds() {
+                assert_eq!(ask(traversal), truth, "{name}, {bv:?}, {traversal:?}");
             }
         }
     }

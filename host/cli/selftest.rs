@@ -8,7 +8,7 @@ use crate::device::emulator::{Emulator, Mode, Order};
 use crate::error::Error;
 use crate::mesh::Body;
 use crate::pipeline::Session;
-use crate::query::{Motion, Query, Traversal};
+use crate::query::{Motion, Query, QueueShape, StealShape, Traversal};
 use crate::scene;
 use std::fmt::Write;
 use std::process::ExitCode;
@@ -68,12 +68,19 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
     for (name, bodies) in &scenes {
         for query in Query::every() {
             let asked = format!("{:?} by {:?}", query.motion, query.solver());
-            let spill = Traversal::PerLeaf { budget: Some(8) };
+            let walks = [
+                ("machine, spilling", Traversal::PerLeaf { budget: Some(8) }),
+                ("machine, queues", Traversal::Queue(QueueShape::native())),
+                ("machine, the paper's queues", Traversal::Queue(QueueShape::gtx285())),
+                ("machine, stealing", Traversal::Steal(StealShape::native())),
+            ];
             let line = during("comparing machines", || -> Result<String, Error> {
                 let on_engine = print_of(&engine, bodies, query)?;
                 let mut others = vec![("machine", print_of(&machine, bodies, query)?)];
-                let spilling = Query { traversal: Some(spill), ..query };
-                others.push(("machine, spilling", print_of(&machine, bodies, spilling)?));
+                for (what, walk) in walks {
+                    let asked = Query { traversal: Some(walk), ..query };
+                    others.push((what, print_of(&machine, bodies, asked)?));
+                }
                 for (what, other) in &others {
                     if let Some(stage) = difference(&on_engine, other) {
                         faults.push(format!("{name}, {asked}, {what}: {stage}"));

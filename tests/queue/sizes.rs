@@ -168,6 +168,35 @@ fn what_is_offered_is_taken_and_a_full_pool_loses_nothing() {
 }
 
 #[test]
+fn a_frame_launches_the_rounds_of_the_one_before() {
+    let launches = |traversal| {
+        let device = engine();
+        let query = by(traversal, Motion::Discrete);
+        let mut session = Session::new(device.clone(), crowds()[0].clone(), query).expect("a session");
+        let frame = |session: &mut Session| {
+            let before = device.launches();
+            let rounds = session.detect().expect("an answer").queues.rounds;
+            (device.launches() - before, rounds)
+        };
+        frame(&mut session);
+        frame(&mut session)
+    };
+    let [copy, view] = profiles().map(|shape| QueueShape { cores: Some(3), idle: (1, 1), ..shape });
+    let whole = launches(Traversal::PerLeaf { budget: None }).0 - 1;
+    let (count, rounds) = launches(Traversal::Queue(view));
+    assert_eq!(count, whole + rounds + 2, "two more, should this frame need them");
+    assert_eq!(
+        launches(Traversal::Queue(copy)),
+        (whole + 1, 1),
+        "nobody leaves before all is done: no balance"
+    );
+    assert_eq!(
+        launches(Traversal::Steal(StealShape { cores: Some(3), ..StealShape::native() })).0,
+        whole + 1
+    );
+}
+
+#[test]
 fn fewer_rounds_planned_than_needed_are_noticed() {
     // Apart, a frame needs a round; then all triangles meet.
     let apart: Vec<_> = (0..100)
