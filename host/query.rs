@@ -1,5 +1,9 @@
 //! Choices are values: one configuration, the same for the library, the command line, the benches and the tests.
 
+mod queues;
+
+pub use queues::{Balance, QueueShape, StealShape};
+
 use crate::error::Error;
 
 /// What is asked of two triangles.
@@ -54,6 +58,10 @@ pub enum Traversal {
         /// Steps before a walk spills; `None` never spills.
         budget: Option<u32>,
     },
+    /// Pairs of nodes from work queues, one a core, evened between launches: the paper's.
+    Queue(QueueShape),
+    /// Pairs of nodes from work queues that help each other out within one launch.
+    Steal(StealShape),
 }
 
 impl Traversal {
@@ -197,6 +205,11 @@ impl Query {
                 what: format!("the solver {solver:?} does not answer a {:?} query", self.motion),
                 advice: format!("choose one of: {known}"),
             });
+        }
+        match self.traversal {
+            Some(Traversal::Queue(shape)) => shape.check()?,
+            Some(Traversal::Steal(shape)) => shape.check()?,
+            Some(Traversal::PerLeaf { .. }) | None => {}
         }
         if self.adjacent && (self.motion != Motion::Discrete || solver != Solver::Exact) {
             return Err(Error::Choice {

@@ -1,7 +1,7 @@
 //! What the command line takes.
 
 use crate::device::Backend;
-use crate::query::{Bv, Motion, Query, Refit, Solver, Traversal};
+use crate::query::{Bv, Motion, Query, QueueShape, Refit, Solver, StealShape, Traversal};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -32,14 +32,30 @@ pub enum TraversalArg {
     PerLeaf,
     /// A walk a leaf; long walks give their rest to the next round.
     PerLeafSpill,
+    /// Work queues of pairs of nodes, as many as the machine runs; evened between launches.
+    Queue,
+    /// The same with the paper's machine and constants: 30 queues, evened by copying.
+    QueueGtx285,
+    /// Work queues of pairs of nodes that help each other out within one launch.
+    Steal,
 }
 
 impl TraversalArg {
-    fn choice(self, budget: Option<u32>) -> Traversal {
+    fn choice(self, DetectArgs { budget, cores, queue, .. }: &DetectArgs) -> Traversal {
+        let queues = |shape: QueueShape| {
+            let (cores, local) = (cores.or(shape.cores), queue.unwrap_or(shape.local));
+            Traversal::Queue(QueueShape { cores, local, ..shape })
+        };
         match self {
             TraversalArg::PerLeaf => Traversal::PerLeaf { budget: None },
             TraversalArg::PerLeafSpill => {
                 Traversal::PerLeaf { budget: Some(budget.unwrap_or(Traversal::CARD_BUDGET)) }
+            }
+            TraversalArg::Queue => queues(QueueShape::native()),
+            TraversalArg::QueueGtx285 => queues(QueueShape::gtx285()),
+            TraversalArg::Steal => {
+                let shape = StealShape::native();
+                Traversal::Steal(StealShape { cores: *cores, local: queue.unwrap_or(shape.local), ..shape })
             }
         }
     }
@@ -84,6 +100,12 @@ pub struct DetectArgs {
     /// Steps of a walk before it gives its rest away (per-leaf-spill).
     #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u32).range(1..))]
     pub budget: Option<u32>,
+    /// Work queues (queue, queue-gtx285, steal) [default: what the machine runs at once, or the paper's 30].
+    #[arg(long, value_name = "N", requires = "traversal", value_parser = clap::value_parser!(u32).range(1..=65_536))]
+    pub cores: Option<u32>,
+    /// Units that a work queue holds on chip [default: 1024, or the paper's 600].
+    #[arg(long, value_name = "N", requires = "traversal", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub queue: Option<u32>,
     /// The test of a pair [default: exact for discrete, cubic-f64 for continuous].
     #[arg(long, value_enum)]
     pub solver: Option<Solver>,
@@ -122,7 +144,7 @@ impl DetectArgs {
             solver: self.solver,
             bv: self.bv,
             refit: self.refit,
-            traversal: self.traversal.map(|walk| walk.choice(self.budget)),
+            traversal: self.traversal.map(|walk| walk.choice(self)),
             adjacent: self.adjacent,
         }
     }
