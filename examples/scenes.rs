@@ -14,7 +14,8 @@ use std::time::Instant;
 
 /// Mean edge at the start of the step, then the mean and the largest motion of a vertex.
 fn motion(body: &Body) -> [f64; 3] {
-    let (t0, t1) = (body.positions_t0().to_f64(), body.positions_t1().unwrap_or(body.positions_t0()).to_f64());
+    let (t0, t1) =
+        (body.positions_t0().to_f64(), body.positions_t1().unwrap_or(body.positions_t0()).to_f64());
     let far = |p: &[f64; 3], q: &[f64; 3]| (0..3).map(|k| (p[k] - q[k]) * (p[k] - q[k])).sum::<f64>().sqrt();
     let edges = Topology::new(body.faces(), body.vertex_count()).edges;
     let lengths = edges.iter().map(|e| far(&t0[e[0] as usize], &t0[e[1] as usize]));

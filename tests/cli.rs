@@ -233,7 +233,7 @@ fn a_file_of_pairs_is_ascending() {
 #[test]
 fn a_scene_that_is_written_is_the_scene() {
     let folder = Folder::new("scene");
-    for name in ["cloth-ball", "grid", "soup-moving"] {
+    for name in ["draped", "cloth-ball", "grid", "soup-moving"] {
         let dir = folder.path("new/deep");
         let written = ok(&["scene", name, "--triangles", "500", "--seed", "4", "--out", &dir]);
         let files: Vec<&str> = written.lines().map(|line| line.split(": ").next().expect("a path")).collect();
@@ -246,6 +246,26 @@ fn a_scene_that_is_written_is_the_scene() {
     }
     let one = ok(&["scene", "balls", "--triangles", "64", "--frames", "1", "--out", &folder.path("one")]);
     assert_eq!(one.lines().count(), 1);
+}
+
+#[test]
+fn an_animation_is_written_frame_by_frame() {
+    let folder = Folder::new("animation");
+    let write = |dir: &str, more: &[&str]| {
+        let dir = folder.path(dir);
+        let written = ok(&[&["scene", "flamenco", "--triangles", "300", "--out", &dir][..], more].concat());
+        written.lines().map(|line| line.split(": ").next().expect("a path").to_owned()).collect::<Vec<_>>()
+    };
+    let all = write("all", &["--frames", "4", "--skip", "0"]);
+    assert_eq!(all.len(), 4);
+    assert!(all[0].ends_with("flamenco_0000.ply") && all[3].ends_with("flamenco_0003.ply"), "{all:?}");
+    let bytes = |path: &String| std::fs::read(path).expect("a frame");
+    let last = write("last", &["--frames", "1", "--skip", "3"]);
+    assert_eq!(bytes(&last[0]), bytes(&all[3]));
+    assert_ne!(bytes(&all[2]), bytes(&all[3]));
+    let kept = write("kept", &["--frames", "1", "--skip", "3", "--contact"]);
+    let pairs = |path: &str| summary(&["detect", path, "--adjacent", "--json"])["contacts"].as_u64();
+    assert!(pairs(&last[0]) > Some(0) && pairs(&kept[0]) == Some(0));
 }
 
 #[test]
@@ -268,6 +288,10 @@ fn bad_arguments_are_refused_with_what_is_known() {
         (&["detect", "a.ply", "--backend", "abacus"], &["cpu", "cuda", "auto"]),
         (&["detect", "a.ply", "--bv", "sphere"], &["aabb"]),
         (&["scene", "cloth", "--out", "x"], &["cloth-ball", "grid", "soup"]),
+        (&["scene", "draped", "--frames", "3", "--out", "x"], &["which has 2", "cloth-ball", "n-body"]),
+        (&["scene", "grid", "--triangles", "4", "--frames", "2", "--out", "x"], &["which has 1"]),
+        (&["scene", "grid", "--skip", "1", "--out", "x"], &["flamenco", "princess"]),
+        (&["scene", "n-body", "--contact", "--out", "x"], &["cloth-ball", "princess"]),
         (&["detect", "--scene", "cloth"], &["cloth-ball", "grid", "soup"]),
         (&["detect", "--scene", "grid", "--triangles", "4", "--out", "a.xlsx"], &[".csv", ".json"]),
         (&["detect", "--scene", "grid", "--triangles", "4", "--solver", "cubic-f64"], &["exact, moller"]),

@@ -36,7 +36,7 @@ pub(super) fn world(triangles: usize, seed: u64) -> World {
     let columns = at_least_one(cells / f64::from(rows)).max(3);
     let cell = LENGTH / f64::from(rows);
 
-    let obstacles = Obstacles { ellipsoid: None, floor: None, friction: 0.0 };
+    let obstacles = Obstacles { ellipsoid: None, floor: None, friction: [0.0; 2] };
     let mut world = World::new(Setting { pose, obstacles, gravity: 0.002, drag: 0.03 });
     let mut rng = Rng::new(seed);
     let shake = (SHAKE * cell).min(0.2 * HAIR);

@@ -34,8 +34,18 @@ use crate::mesh::{Body, Mesh, Positions, Problem};
 
 /// The names that [`scene`] knows.
 pub const NAMES: [&str; 12] = [
-    "balls", "cloth-ball", "draped", "flamenco", "grid", "identical", "line", "n-body", "princess", "single",
-    "soup", "soup-moving",
+    "balls",
+    "cloth-ball",
+    "draped",
+    "flamenco",
+    "grid",
+    "identical",
+    "line",
+    "n-body",
+    "princess",
+    "single",
+    "soup",
+    "soup-moving",
 ];
 
 /// Those of [`NAMES`] that are made by formula, still or with the two ends of a step; the others are [`ANIMATIONS`].

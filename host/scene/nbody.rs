@@ -1,10 +1,10 @@
 //! Hundreds of balls that bounce off each other, off five blocks and off the sides of a box: a stand-in for UNC's
 //! n-body.
 
-use super::animation::Act;
-use super::sphere::{Sphere, sphere};
 use super::Rng;
+use super::animation::Act;
 use super::known::{at_least_one, strip_faces};
+use super::sphere::{Sphere, sphere};
 use crate::Error;
 use nearmiss_kernels::math::Vec3;
 
@@ -28,10 +28,14 @@ const BLOCKS: [[[f64; 2]; 3]; 5] = [
 ];
 /// Cells along the edge of a block, at most.
 const CELLS: u32 = 6;
-/// Speed of a ball of mean size, a frame; most are slower, few much faster.
-const SPEED: f64 = 0.3;
-/// Substeps of a frame: the fastest ball moves by about its radius in one.
-const SUBSTEPS: u32 = 16;
+/// Speed of the largest ball, a frame; others are faster as they are lighter, and a few much faster.
+const SPEED: f64 = 0.2;
+/// Part of its own speed that a ball regains in a frame, whatever it lost.
+const DRIVE: f64 = 0.5;
+/// Part of the speed of approach that balls keep when they meet: little, so that many touch for a while, as UNC's do.
+const BOUNCE: f64 = 0.2;
+/// Substeps of a frame: few, so that a ball is well into another before they bounce, as in UNC's.
+const SUBSTEPS: u32 = 2;
 /// Tries to place a ball where none is yet; then it may overlap another.
 const TRIES: u32 = 64;
 
@@ -39,6 +43,8 @@ struct Ball {
     centre: V,
     velocity: V,
     radius: f64,
+    /// Its own speed.
+    speed: f64,
 }
 
 pub(super) struct NBody {
@@ -68,9 +74,8 @@ impl NBody {
         let mut rng = Rng::new(seed);
         let scale = cube_root(count as f64 / FULL);
         let sides = Vec3(BOX) * scale;
-        let blocks: Vec<_> = BLOCKS
-            .map(|block| [0, 1, 2].map(|axis| block[axis].map(|part| part * sides[axis])))
-            .to_vec();
+        let blocks: Vec<_> =
+            BLOCKS.map(|block| [0, 1, 2].map(|axis| block[axis].map(|part| part * sides[axis]))).to_vec();
         let mut bodies = NBody {
             balls: Vec::with_capacity(count),
             blocks,
@@ -96,16 +101,16 @@ impl NBody {
                     let (d, reach) = (other.centre - centre, other.radius + radius);
                     d.dot(d) > reach * reach
                 };
-                let outside = |block: &[[f64; 2]; 3]| beyond(block, centre).is_some_and(|d| d.dot(d) > radius * radius);
+                let outside =
+                    |block: &[[f64; 2]; 3]| beyond(block, centre).is_some_and(|d| d.dot(d) > radius * radius);
                 if self.blocks.iter().all(outside) && self.balls.iter().all(clear) {
                     break;
                 }
             }
-            // Small balls are faster, as if all had the same energy; 1 / (1.08 - u) makes a few very fast.
-            let direction = rng.point(1.0);
+            let direction = Vec3(rng.point(1.0));
             let light = RADII[1] / radius;
-            let speed = SPEED * light * (0.25 + 0.3 / (1.08 - rng.unit()));
-            self.balls.push(Ball { centre, velocity: Vec3(direction) * speed, radius });
+            let speed = SPEED * light * light * light * (0.25 + 0.3 / (1.08 - rng.unit()));
+            self.balls.push(Ball { centre, velocity: direction * speed, radius, speed });
         }
     }
 
@@ -127,7 +132,8 @@ impl NBody {
                             };
                             let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
                             let mut p = [0.0; 3];
-                            (p[axis], p[next], p[last]) = (block[axis][side], part(next, i as u32), part(last, j));
+                            (p[axis], p[next], p[last]) =
+                                (block[axis][side], part(next, i as u32), part(last, j));
                             row.push(first + self.resting.len() as u32);
                             self.resting.push(p);
                         }
@@ -144,6 +150,10 @@ impl NBody {
 
     fn step(&mut self, h: f64) {
         for ball in &mut self.balls {
+            let speed = ball.velocity.dot(ball.velocity).sqrt();
+            if speed > 0.0 {
+                ball.velocity = ball.velocity * (1.0 + DRIVE * h * (ball.speed / speed - 1.0));
+            }
             ball.centre = ball.centre + ball.velocity * h;
             for k in 0..3 {
                 let (low, high) = (ball.radius, self.sides[k] - ball.radius);
@@ -161,14 +171,15 @@ impl NBody {
                 }
             }
         }
-        self.bounce();
+        self.meet();
     }
 
-    /// Balls that overlap and approach exchange momentum, elastically; found by a sweep along x.
-    fn bounce(&mut self) {
+    /// Balls that overlap and approach exchange momentum and lose most of their approach; found by a sweep along x.
+    fn meet(&mut self) {
         let balls = &mut self.balls;
         let low = |ball: &Ball| ball.centre[0] - ball.radius;
-        self.order.sort_by(|&a, &b| low(&balls[a as usize]).total_cmp(&low(&balls[b as usize])).then(a.cmp(&b)));
+        self.order
+            .sort_by(|&a, &b| low(&balls[a as usize]).total_cmp(&low(&balls[b as usize])).then(a.cmp(&b)));
         for (at, &a) in self.order.iter().enumerate() {
             let a = a as usize;
             for &b in &self.order[at + 1..] {
@@ -176,15 +187,15 @@ impl NBody {
                 if low(&balls[b]) > balls[a].centre[0] + balls[a].radius {
                     break;
                 }
-                let (d, reach) = (balls[b].centre - balls[a].centre, balls[a].radius + balls[b].radius);
+                let (d, touch) = (balls[b].centre - balls[a].centre, balls[a].radius + balls[b].radius);
                 let square = d.dot(d);
                 let approach = (balls[b].velocity - balls[a].velocity).dot(d);
-                if square == 0.0 || square > reach * reach || approach >= 0.0 {
+                if square == 0.0 || square > touch * touch || approach >= 0.0 {
                     continue;
                 }
                 let mass = |ball: &Ball| ball.radius * ball.radius * ball.radius;
                 let (ma, mb) = (mass(&balls[a]), mass(&balls[b]));
-                let push = d * (2.0 * approach / (square * (ma + mb)));
+                let push = d * ((1.0 + BOUNCE) * approach / (square * (ma + mb)));
                 balls[a].velocity = balls[a].velocity + push * mb;
                 balls[b].velocity = balls[b].velocity - push * ma;
             }

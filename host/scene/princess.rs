@@ -44,7 +44,7 @@ pub(super) fn world(triangles: usize, seed: u64) -> World {
     let obstacles = Obstacles {
         ellipsoid: Some((Vec3([0.0, 0.0, CENTRE]), FIGURE.map(|radius| radius + margin))),
         floor: Some(margin),
-        friction: 0.3,
+        friction: [0.3; 2],
     };
     let mut world = World::new(Setting { pose, obstacles, gravity: 0.003, drag: 0.02 });
     let mut rng = Rng::new(seed);
@@ -65,7 +65,8 @@ pub(super) fn world(triangles: usize, seed: u64) -> World {
         .collect();
     world.cloth(&points, true, true, FABRIC);
     let figure = sphere(frequency);
-    let stretched = figure.points.iter().map(|p| [FIGURE[0] * p[0], FIGURE[0] * p[1], FIGURE[1] * p[2] + CENTRE]);
+    let stretched =
+        figure.points.iter().map(|p| [FIGURE[0] * p[0], FIGURE[0] * p[1], FIGURE[1] * p[2] + CENTRE]);
     world.carry(stretched, &figure.faces);
     world
 }

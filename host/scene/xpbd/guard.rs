@@ -1,9 +1,11 @@
 //! Keeps a cloth free of intersections by nearmiss's own detection.
 //!
 //! A substep is proposed as a straight motion of every vertex. What meets on the way is pushed apart; what still meets
-//! is held back where it began, and what meets that, in zones that grow. The end is accepted only if the exact discrete
-//! query finds no pair of triangles that meet; else nothing moves at all. The beginning had no such pair, so by
-//! induction no accepted state has one, whatever the continuous solver may have missed.
+//! is held, and what meets that, in zones that grow: held vertices stay where they began or, in a cloth that hangs from
+//! a body, go rigidly with the body. All vertices going so keep apart whatever is apart: from the ends of the step,
+//! straight lines between them are an affine map. The end is accepted only if the exact discrete query finds no pair of
+//! triangles that meet; else nothing moves at all. The beginning had no such pair, so by induction no accepted state has
+//! one, whatever the continuous solver may have missed.
 
 use super::V;
 use crate::contacts::{Contact, Kind};
@@ -16,7 +18,7 @@ use nearmiss_kernels::math::Vec3;
 
 /// Rounds that push what meets apart.
 const PUSHES: u32 = 4;
-/// Rounds that hold back what still meets; then nothing moves.
+/// Rounds that hold what still meets; then everything is held.
 const HOLDS: u32 = 24;
 /// How far apart features that would have met are put, in mean edges.
 const GAP: f64 = 0.02;
@@ -78,34 +80,35 @@ impl Guard {
     }
 
     /// Changes the step from `before`, which is free of intersections and in floats, to `x` so that it ends free and in
-    /// floats too. `w`: inverse masses; a vertex of 0 goes where it must, or nothing moves.
+    /// floats too. `held`: where held vertices go; `w`: inverse masses, a vertex of 0 goes where it must, or nothing
+    /// moves.
     ///
     /// # Errors
     /// Those of detection.
-    pub fn limit(&mut self, before: &[V], x: &mut [V], w: &[f64]) -> Result<Outcome, Error> {
-        let mut held = vec![false; x.len()];
-        for turn in 0..PUSHES + HOLDS {
+    pub fn limit(&mut self, before: &[V], x: &mut [V], held: &[V], w: &[f64]) -> Result<Outcome, Error> {
+        let mut is_held = vec![false; x.len()];
+        for turn in 0..=PUSHES + HOLDS {
+            if turn == PUSHES + HOLDS {
+                hold(x, held, |v| w[v] > 0.0);
+            }
             round(x);
             let contacts = self.contacts(before, x)?;
-            if contacts.is_empty() {
-                if self.is_free(x)? {
-                    return Ok(Outcome::Moved);
-                }
-                break;
+            if contacts.is_empty() && self.is_free(x)? {
+                return Ok(Outcome::Moved);
             }
             for contact in &contacts {
                 let (vertices, weights) = self.stencil(contact, before, x);
                 if turn < PUSHES {
                     self.push(&vertices, &weights, contact.toi, before, x, w);
-                    continue;
-                }
-                for &v in vertices.iter().filter(|&&v| w[v] > 0.0) {
-                    held[v] = true;
+                } else {
+                    vertices.iter().filter(|&&v| w[v] > 0.0).for_each(|&v| is_held[v] = true);
                 }
             }
-            for (v, _) in held.iter().enumerate().filter(|(_, held)| **held) {
-                x[v] = before[v];
+            if contacts.is_empty() {
+                // The solver missed something: no zone is known, so all of them.
+                is_held.iter_mut().zip(w).for_each(|(is_held, &w)| *is_held = w > 0.0);
             }
+            hold(x, held, |v| is_held[v]);
         }
         x.copy_from_slice(before);
         Ok(Outcome::Stopped)
@@ -128,7 +131,8 @@ impl Guard {
         let (a, b) = (contact.a as usize, contact.b as usize);
         let at = |v: usize| before[v] + (x[v] - before[v]) * contact.toi;
         if contact.kind == Kind::Ee {
-            let v = [self.edges[a][0], self.edges[a][1], self.edges[b][0], self.edges[b][1]].map(|v| v as usize);
+            let v =
+                [self.edges[a][0], self.edges[a][1], self.edges[b][0], self.edges[b][1]].map(|v| v as usize);
             let [p, q, r, s] = v.map(at);
             let (d, e, f) = (q - p, s - r, p - r);
             let (dd, de, ee) = (d.dot(d), d.dot(e), e.dot(e));
@@ -150,7 +154,15 @@ impl Guard {
     }
 
     /// Moves the ends of the step so that the two points are the gap apart, on the side where they began.
-    fn push(&self, vertices: &[usize; 4], weights: &[f64; 4], toi: f64, before: &[V], x: &mut [V], w: &[f64]) {
+    fn push(
+        &self,
+        vertices: &[usize; 4],
+        weights: &[f64; 4],
+        toi: f64,
+        before: &[V],
+        x: &mut [V],
+        w: &[f64],
+    ) {
         let sum = |at: &dyn Fn(usize) -> V| {
             let parts = vertices.iter().zip(weights).map(|(&v, &weight)| at(v) * weight);
             parts.fold(Vec3([0.0; 3]), |sum, part| sum + part)
@@ -182,6 +194,11 @@ impl Guard {
             }
         }
     }
+}
+
+/// Puts the vertices that `which` names where held ones go.
+fn hold(x: &mut [V], held: &[V], which: impl Fn(usize) -> bool) {
+    x.iter_mut().zip(held).enumerate().filter(|(v, _)| which(*v)).for_each(|(_, (x, held))| *x = *held);
 }
 
 /// To floats and back.

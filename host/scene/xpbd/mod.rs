@@ -32,6 +32,8 @@ pub(super) struct World {
     w: Vec<f64>,
     /// Vertices that the body carries, where they are in its frame.
     carried: Vec<(u32, V)>,
+    /// Whether the body carries a part of a cloth.
+    hung: bool,
     links: Vec<Link>,
     faces: Vec<[u32; 3]>,
     setting: Setting,
@@ -59,6 +61,7 @@ impl World {
             velocity: Vec::new(),
             w: Vec::new(),
             carried: Vec::new(),
+            hung: false,
             links: Vec::new(),
             faces: Vec::new(),
             setting,
@@ -70,6 +73,7 @@ impl World {
     /// Adds a cloth whose points stand in rows, at rest as they are given, in the body's frame at time 0. The body
     /// carries the first row if it is `hung`.
     pub fn cloth(&mut self, rows: &[Vec<[f64; 3]>], closed: bool, hung: bool, fabric: Fabric) {
+        self.hung |= hung;
         let pose = (self.setting.pose)(0.0);
         let mut ids: Vec<Vec<u32>> = Vec::with_capacity(rows.len());
         for (number, row) in rows.iter().enumerate() {
@@ -155,7 +159,10 @@ impl World {
         }
         let mut stopped = false;
         if let Some(guard) = &mut self.guard {
-            stopped = guard.limit(&self.before, &mut self.x, &self.w)? == Outcome::Stopped;
+            // What hangs from the body is held by going with it.
+            let with_body = |&p: &V| if self.hung { to.world(from.local(p)) } else { p };
+            let held: Vec<V> = self.before.iter().map(with_body).collect();
+            stopped = guard.limit(&self.before, &mut self.x, &held, &self.w)? == Outcome::Stopped;
         }
         // A step that was stopped did not take place: the body stays as well.
         self.time += if stopped { 0.0 } else { h };

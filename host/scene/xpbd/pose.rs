@@ -41,8 +41,9 @@ pub(in super::super) struct Obstacles {
     pub ellipsoid: Option<(V, [f64; 2])>,
     /// The floor's height.
     pub floor: Option<f64>,
-    /// Coulomb's friction: how much a vertex is held for each unit that it is pushed out.
-    pub friction: f64,
+    /// Coulomb's friction on the ellipsoid and on the floor: how much a vertex is held for each unit that it is pushed
+    /// out.
+    pub friction: [f64; 2],
 }
 
 impl Obstacles {
@@ -60,22 +61,22 @@ impl Obstacles {
                 let normal = to.world(normal * (1.0 / normal.dot(normal).sqrt())) - to.shift;
                 let (on, depth) = (to.world(centre + out), out - q);
                 let along_with = to.world(from.local(before));
-                x = self.held(on, on - along_with, normal, depth.dot(depth).sqrt());
+                x = held(on, on - along_with, normal, self.friction[0] * depth.dot(depth).sqrt());
             }
         }
         if let Some(floor) = self.floor
             && x[2] < floor
         {
             let on = Vec3([x[0], x[1], floor]);
-            x = self.held(on, on - before, Vec3([0.0, 0.0, 1.0]), floor - x[2]);
+            x = held(on, on - before, Vec3([0.0, 0.0, 1.0]), self.friction[1] * (floor - x[2]));
         }
         x
     }
+}
 
-    /// A point on a surface that has slipped along it: held back by friction.
-    fn held(&self, on: V, slip: V, normal: V, depth: f64) -> V {
-        let slip = slip - normal * slip.dot(normal);
-        let (length, most) = (slip.dot(slip).sqrt(), self.friction * depth);
-        on - slip * if length > most { most / length } else { 1.0 }
-    }
+/// A point on a surface that has slipped along it: held back by friction, by `most`.
+fn held(on: V, slip: V, normal: V, most: f64) -> V {
+    let slip = slip - normal * slip.dot(normal);
+    let length = slip.dot(slip).sqrt();
+    on - slip * if length > most { most / length } else { 1.0 }
 }
