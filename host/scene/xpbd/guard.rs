@@ -209,3 +209,45 @@ fn round(x: &mut [V]) {
 fn frame(name: &str, x: &[V], faces: &[[u32; 3]]) -> Result<Mesh, Error> {
     Mesh::new(name, Positions::F32(x.iter().map(|p| p.0.map(|c| c as f32)).collect()), faces.to_vec())
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+
+    /// A triangle at that height above another, which is much larger.
+    fn above(height: f64) -> (Vec<V>, Vec<[u32; 3]>) {
+        let low = [[-4.0, -4.0, 0.0], [4.0, -4.0, 0.0], [0.0, 6.0, 0.0]];
+        let high = [[-1.0, 0.0, height], [1.0, 0.0, height], [0.0, 1.0, height + 0.5]];
+        (low.into_iter().chain(high).map(Vec3).collect(), vec![[0, 1, 2], [3, 4, 5]])
+    }
+
+    #[test]
+    fn a_triangle_that_falls_through_another_ends_above_it() {
+        let (before, faces) = above(1.0);
+        let mut guard = Guard::new("fall", &mut before.clone(), &faces).unwrap();
+        let mut x = above(-1.0).0;
+        let w = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+        assert!(!guard.contacts(&before, &x).unwrap().is_empty());
+        assert_eq!(guard.limit(&before, &mut x, &before, &w).unwrap(), Outcome::Moved);
+        assert!(x[3..].iter().all(|p| p[2] > 0.0) && x[3] != before[3], "{x:?}");
+        assert!(guard.contacts(&before, &x).unwrap().is_empty() && guard.is_free(&x).unwrap());
+    }
+
+    #[test]
+    fn what_cannot_be_held_stops() {
+        let (before, faces) = above(1.0);
+        let mut guard = Guard::new("stop", &mut before.clone(), &faces).unwrap();
+        let mut x = above(-1.0).0;
+        assert_eq!(guard.limit(&before, &mut x, &before, &[0.0; 6]).unwrap(), Outcome::Stopped);
+        assert_eq!(x, before);
+    }
+
+    #[test]
+    fn triangles_that_meet_from_the_start_are_refused() {
+        let (mut x, faces) = above(-0.25);
+        let text = Guard::new("deep", &mut x, &faces).err().unwrap().to_string();
+        assert!(text.contains("triangles meet in the first frame"), "{text}");
+    }
+}
