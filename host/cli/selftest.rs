@@ -22,6 +22,13 @@ struct Print {
     stages: Vec<(&'static str, u64)>,
 }
 
+impl Print {
+    /// The answer alone.
+    fn answer(&self) -> Print {
+        Print { contacts: self.contacts, stages: self.stages.last().copied().into_iter().collect() }
+    }
+}
+
 fn print_of(device: &Device, bodies: &[Body], query: Query) -> Result<Print, Error> {
     let mut session = Session::new(device.clone(), bodies.to_vec(), query)?;
     let contacts = session.detect()?;
@@ -69,14 +76,14 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
     }
 
     let mut scenes: Vec<(String, Vec<Body>)> = Vec::new();
-    for name in scene::NAMES {
+    for name in scene::FORMULAS {
         // Of n equal triangles all n² / 2 pairs meet: few will do.
         let triangles = if name == "identical" { SMALL } else { args.triangles };
         scenes.push((name.to_owned(), vec![scene::scene(name, triangles, 1)?]));
     }
     scenes.push((
-        "cloth-ball with soup".into(),
-        vec![scene::scene("cloth-ball", args.triangles, 1)?, scene::scene("soup", args.triangles / 10, 2)?],
+        "draped with soup".into(),
+        vec![scene::scene("draped", args.triangles, 1)?, scene::scene("soup", args.triangles / 10, 2)?],
     ));
     if !args.mesh.is_empty() {
         scenes.push((args.mesh[0].display().to_string(), vec![body(&args.mesh)?]));
@@ -90,7 +97,14 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
                 let on_engine = during("comparing machines", || print_of(&engine, bodies, query))?;
                 for (what, other) in choices(query) {
                     let on_machine = during("comparing machines", || print_of(&machine, bodies, other))?;
-                    if let Some(stage) = difference(&on_engine, &on_machine) {
+                    // Overlap tests with a slack do not nest: whether a pair is a candidate may depend, by a hair, on
+                    // which pairs of nodes were asked before it. Contacts may not.
+                    let same_walk = matches!(other.traversal, None | Some(Traversal::PerLeaf { .. }));
+                    let (want, got) = match same_walk || bv == Bv::Aabb {
+                        true => (&on_engine, &on_machine),
+                        false => (&on_engine.answer(), &on_machine.answer()),
+                    };
+                    if let Some(stage) = difference(want, got) {
                         faults.push(format!("{name}, {asked}, {}, {what}: {stage}", bv.name()));
                     }
                 }
@@ -105,7 +119,7 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
             let _ = writeln!(table, "{hash:016x} {contacts:>9} contacts  {name}, {asked}");
         }
     }
-    for name in scene::NAMES {
+    for name in scene::FORMULAS {
         let bodies = [scene::scene(name, SMALL, 3)?];
         for query in Query::every() {
             let asked = format!("{:?} by {:?}", query.motion, query.solver());
@@ -121,7 +135,7 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
     let _ = writeln!(
         table,
         "microscope     {} scenes x {} queries x 3 orders",
-        scene::NAMES.len(),
+        scene::FORMULAS.len(),
         Query::every().count()
     );
     for fault in &faults {
