@@ -38,6 +38,12 @@ impl Bv {
     /// Every volume.
     pub const ALL: [Bv; 4] = [Bv::Aabb, Bv::Linear, Bv::Obb, Bv::ObbChild];
 
+    /// The fastest volume that the real scenes have (measured, `docs/performance.md`): what stands still needs no more
+    /// than a box; of what moves, boxes that move with it let a third to a tenth of the pairs through.
+    pub fn default_for(motion: Motion) -> Bv {
+        if motion == Motion::Discrete { Bv::Aabb } else { Bv::Linear }
+    }
+
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
@@ -179,7 +185,7 @@ impl Query {
 
     /// The volume that will be used.
     pub fn bv(&self) -> Bv {
-        self.bv.unwrap_or_default()
+        self.bv.unwrap_or(Bv::default_for(self.motion))
     }
 
     /// The refit that will be used on a card, or on a CPU.

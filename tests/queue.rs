@@ -77,11 +77,11 @@ fn scenes() -> Vec<(&'static str, Vec<Body>)> {
     vec![
         ("grid", vec![of(scene::grid(5))]),
         ("soup", vec![soup()]),
-        ("cloth-ball", vec![of(scene::cloth_ball(500))]),
+        ("cloth-ball", vec![of(scene::draped(500))]),
         ("identical", vec![of(scene::identical(40))]),
         ("single", vec![single()]),
         ("two", vec![loose(&[[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]; 2])]),
-        ("cloth and soup", vec![of(scene::cloth_ball(300)), soup()]),
+        ("cloth and soup", vec![of(scene::draped(300)), soup()]),
         ("soup and single", vec![soup(), single()]),
         ("single and soup", vec![single(), soup()]),
         ("single and single", vec![single(), single()]),

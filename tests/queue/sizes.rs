@@ -6,7 +6,7 @@ use nearmiss::device::emulator::{Emulator, Mode};
 /// Soup and cloth, self and between, with many candidates.
 fn crowds() -> [Vec<Body>; 2] {
     let soup = || scene::soup(120, 3, true).expect("a scene");
-    [vec![soup()], vec![scene::cloth_ball(200).expect("a scene"), soup()]]
+    [vec![soup()], vec![scene::draped(200).expect("a scene"), soup()]]
 }
 
 /// The traversal on the engine and under a microscope finds what a walk a leaf does; its figures there.
