@@ -2,7 +2,7 @@
 
 mod queues;
 
-pub use queues::{Balance, QueueShape, StealShape};
+pub use queues::{Balance, FrontShape, QueueShape, StealShape};
 
 use crate::error::Error;
 
@@ -68,6 +68,8 @@ pub enum Traversal {
     Queue(QueueShape),
     /// Pairs of nodes from work queues that help each other out within one launch.
     Steal(StealShape),
+    /// From where the last frame's descent ended: temporal coherence.
+    Front(FrontShape),
 }
 
 impl Traversal {
@@ -215,6 +217,7 @@ impl Query {
         match self.traversal {
             Some(Traversal::Queue(shape)) => shape.check()?,
             Some(Traversal::Steal(shape)) => shape.check()?,
+            Some(Traversal::Front(shape)) => shape.queue.check()?,
             Some(Traversal::PerLeaf { .. }) | None => {}
         }
         if self.adjacent && (self.motion != Motion::Discrete || solver != Solver::Exact) {

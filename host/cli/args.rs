@@ -1,7 +1,7 @@
 //! What the command line takes.
 
 use crate::device::Backend;
-use crate::query::{Bv, Motion, Query, QueueShape, Refit, Solver, StealShape, Traversal};
+use crate::query::{Bv, FrontShape, Motion, Query, QueueShape, Refit, Solver, StealShape, Traversal};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -38,24 +38,30 @@ pub enum TraversalArg {
     QueueGtx285,
     /// Work queues of pairs of nodes that help each other out within one launch.
     Steal,
+    /// Work queues that go on from where the last frame's descent ended.
+    Front,
 }
 
 impl TraversalArg {
     fn choice(self, DetectArgs { budget, cores, queue, .. }: &DetectArgs) -> Traversal {
         let queues = |shape: QueueShape| {
             let (cores, local) = (cores.or(shape.cores), queue.unwrap_or(shape.local));
-            Traversal::Queue(QueueShape { cores, local, ..shape })
+            QueueShape { cores, local, ..shape }
         };
         match self {
             TraversalArg::PerLeaf => Traversal::PerLeaf { budget: None },
             TraversalArg::PerLeafSpill => {
                 Traversal::PerLeaf { budget: Some(budget.unwrap_or(Traversal::CARD_BUDGET)) }
             }
-            TraversalArg::Queue => queues(QueueShape::native()),
-            TraversalArg::QueueGtx285 => queues(QueueShape::gtx285()),
+            TraversalArg::Queue => Traversal::Queue(queues(QueueShape::native())),
+            TraversalArg::QueueGtx285 => Traversal::Queue(queues(QueueShape::gtx285())),
             TraversalArg::Steal => {
                 let shape = StealShape::native();
                 Traversal::Steal(StealShape { cores: *cores, local: queue.unwrap_or(shape.local), ..shape })
+            }
+            TraversalArg::Front => {
+                let shape = FrontShape::native();
+                Traversal::Front(FrontShape { queue: queues(shape.queue), ..shape })
             }
         }
     }

@@ -68,12 +68,16 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
 
 /// The answer, and the times of each run; of several runs the first only warms up.
 fn repeated(session: &mut Session, repeat: u32) -> Result<(Contacts, Vec<Stages>), Error> {
+    let keeps_front = matches!(session.query().traversal, Some(Traversal::Front(_)));
     let mut contacts = session.detect()?;
     let mut runs = vec![contacts.stages];
     if repeat > 1 {
         runs.clear();
         for _ in 0..repeat {
-            session.rebuild()?;
+            // A tree built anew would forget the front.
+            if !keeps_front {
+                session.rebuild()?;
+            }
             contacts = session.detect()?;
             runs.push(contacts.stages);
         }
@@ -128,12 +132,20 @@ fn human(summary: &Summary, contacts: &Contacts) -> String {
         ms.narrow,
         ms.total
     );
-    if let Traversal::Queue(_) | Traversal::Steal(_) = summary.traversal {
+    if !matches!(summary.traversal, Traversal::PerLeaf { .. }) {
         let q = &summary.queues;
         let _ = writeln!(
             text,
             "  queues: {} rounds, {} times dry, {} units spilled, {} moved, {} stolen; {} waited at most",
             q.rounds, q.idle_exits, q.spills, q.moves, q.stolen, q.longest
+        );
+    }
+    if let Traversal::Front(_) = summary.traversal {
+        let f = &summary.front;
+        let _ = writeln!(
+            text,
+            "  front: {} pairs; {} tests of pairs kept, {} gave way to an ancestor",
+            f.pairs, f.tests, f.pruned
         );
     }
     let _ = writeln!(

@@ -214,6 +214,7 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
             bodies: &self.bodies,
             faces: self.faces.span(),
             pairs: self.pairs.span(),
+            ends: Span::EMPTY,
             counters: self.counters.span(),
             flags: flags(&self.query, self.bodies.len()),
         })

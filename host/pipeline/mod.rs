@@ -151,6 +151,11 @@ impl Session {
         Ok(Contacts::new(found, &self.layout, self.query, stages))
     }
 
+    /// What is asked.
+    pub fn query(&self) -> &Query {
+        &self.query
+    }
+
     /// What the command line prints of a result.
     pub fn summary(&self, contacts: &Contacts) -> Summary {
         Summary::new(&self.bodies, self.query, &self.device, contacts)

@@ -6,7 +6,8 @@ use super::treelets::{Plan, Way};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use nearmiss_kernels::abi::{
-    BottomUpArgs, FitArgs, Frames, Node, QueueArgs, RefitArgs, Span, StealArgs, TraverseArgs, TreeletsArgs,
+    BottomUpArgs, FitArgs, Frames, FrontArgs, Node, QueueArgs, RefitArgs, Span, StealArgs, TraverseArgs,
+    TreeletsArgs,
 };
 use nearmiss_kernels::bv::{Aabb, Axes, Linear, Obb, Volume};
 use nearmiss_kernels::bvh;
@@ -26,6 +27,8 @@ pub trait Kernels: Volume {
     type Leaves: Entry<Args = TraverseArgs<Self>>;
     /// A walk a unit that was left over.
     type Units: Entry<Args = TraverseArgs<Self>>;
+    /// A pass over the last frame's front.
+    type Front: Entry<Args = FrontArgs<Self>>;
     /// A round of work queues.
     type Queue: Entry<Args = QueueArgs<Self>>;
     /// Work queues that help each other out.
@@ -39,6 +42,7 @@ impl Kernels for Aabb {
     type BottomUp = entry::refit_bottom_up_aabb;
     type Leaves = entry::traverse_leaves_aabb;
     type Units = entry::traverse_units_aabb;
+    type Front = entry::traverse_front_aabb;
     type Queue = entry::traverse_queue_aabb;
     type Steal = entry::traverse_steal_aabb;
 }
@@ -50,6 +54,7 @@ impl Kernels for Linear {
     type BottomUp = entry::refit_bottom_up_linear;
     type Leaves = entry::traverse_leaves_linear;
     type Units = entry::traverse_units_linear;
+    type Front = entry::traverse_front_linear;
     type Queue = entry::traverse_queue_linear;
     type Steal = entry::traverse_steal_linear;
 }
@@ -61,6 +66,7 @@ impl Kernels for Obb {
     type BottomUp = entry::refit_bottom_up_obb;
     type Leaves = entry::traverse_leaves_obb;
     type Units = entry::traverse_units_obb;
+    type Front = entry::traverse_front_obb;
     type Queue = entry::traverse_queue_obb;
     type Steal = entry::traverse_steal_obb;
 }

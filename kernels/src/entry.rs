@@ -7,7 +7,7 @@ use crate::queue::worker;
 use crate::stage::construct::{morton, sort, tree, treelet};
 use crate::stage::narrow::{discrete, reject, sift, solve};
 use crate::stage::refit::{bottom_up, levels, treelets};
-use crate::stage::traverse::{queue, steal};
+use crate::stage::traverse::{front, queue, steal};
 use crate::stage::{balance, fit, traverse};
 use bytemuck::Pod;
 
@@ -118,6 +118,9 @@ kernels! {
     traverse_units_linear: traverse::units::<Linear, B>, [TraverseArgs<Linear>], NARROW, traverse::shared_bytes(NARROW);
     traverse_leaves_obb: traverse::leaves::<Obb, B>, [TraverseArgs<Obb>], NARROW, traverse::shared_bytes(NARROW);
     traverse_units_obb: traverse::units::<Obb, B>, [TraverseArgs<Obb>], NARROW, traverse::shared_bytes(NARROW);
+    traverse_front_aabb: front::front::<Aabb, B>, [FrontArgs<Aabb>], WIDE, 0;
+    traverse_front_linear: front::front::<Linear, B>, [FrontArgs<Linear>], WIDE, 0;
+    traverse_front_obb: front::front::<Obb, B>, [FrontArgs<Obb>], WIDE, 0;
     traverse_queue_aabb: queue::queue::<Aabb, B>, [QueueArgs<Aabb>], NARROW, worker::shared_bytes(NARROW);
     traverse_steal_aabb: steal::steal::<Aabb, B>, [StealArgs<Aabb>], NARROW, worker::shared_bytes(NARROW);
     traverse_queue_linear: queue::queue::<Linear, B>, [QueueArgs<Linear>], NARROW, worker::shared_bytes(NARROW);

@@ -361,8 +361,12 @@ pub mod counter {
     pub const MOVES: u32 = ENDS + 6;
     /// Units that a block took from the pool.
     pub const STOLEN: u32 = ENDS + 7;
+    /// Overlap tests made for pairs of the front.
+    pub const FRONT_TESTS: u32 = ENDS + 8;
+    /// Pairs of the front that gave way to an ancestor.
+    pub const PRUNED: u32 = ENDS + 9;
     /// How many counters there are.
-    pub const COUNT: u32 = ENDS + 8;
+    pub const COUNT: u32 = ENDS + 10;
 }
 /// Rounds of the traversal that may spill; one more, without a budget, ends it.
 pub const ROUNDS: u32 = 4;

@@ -22,6 +22,9 @@ use bytemuck::{Pod, Zeroable};
 
 /// A bounding volume: what a node of the tree says about everything below it.
 pub trait Volume: Pod + Sync + Send + core::fmt::Debug + PartialEq {
+    /// Whether overlap tests nest: whatever lies in two volumes that are apart is apart too. Not so where a slack, for
+    /// safety, makes a small volume meet what a large one around it does not.
+    const NESTS: bool;
     /// Around a triangle that stands still.
     fn still<R: Real>(corners: [Vec3<R>; 3]) -> Self;
     /// Around a triangle whose corners move linearly from t0 to t1: holds it at every t in [0, 1].

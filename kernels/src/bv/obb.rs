@@ -170,6 +170,8 @@ impl Obb {
 const SOLID: f32 = 0.577_350_26;
 
 impl Volume for Obb {
+    const NESTS: bool = false;
+
     /// The axes are the longest edge, across it, and the normal: no rectangle around a triangle is smaller, and they
     /// cost no rotations.
     #[inline]
