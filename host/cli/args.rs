@@ -1,6 +1,7 @@
 //! What the command line takes.
 
 use crate::device::Backend;
+use crate::pipeline::Stage;
 use crate::query::{Motion, Query, Solver, Traversal};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -110,6 +111,9 @@ pub struct DetectArgs {
     /// Ask the same frame this often (after one run to warm up) and report each stage's median.
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub repeat: u32,
+    /// With --repeat: run the frame once, then only this stage so often, and report its median. For profilers.
+    #[arg(long, value_enum, requires = "repeat", value_name = "STAGE")]
+    pub only: Option<Stage>,
 }
 
 impl DetectArgs {

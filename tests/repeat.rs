@@ -1,0 +1,84 @@
+//! One stage again and again: the session answers afterwards as if nothing had happened.
+
+use nearmiss::device::emulator::{Emulator, Mode, Order};
+use nearmiss::mesh::Body;
+use nearmiss::pipeline::Stage;
+use nearmiss::query::Motion;
+use nearmiss::{Device, Query, Session, scene};
+
+const STAGES: [Stage; 5] = [Stage::Construct, Stage::Fit, Stage::Refit, Stage::Traverse, Stage::Narrow];
+
+/// The body at the other end of its step.
+fn later(body: &Body) -> Body {
+    let mut frames = body.frames();
+    let (t1, t0) = (frames.pop().expect("two frames"), frames.pop().expect("two frames"));
+    Body::moving(t1, t0).expect("one mesh")
+}
+
+fn engine() -> Device {
+    Device::emulator(Emulator::new(Mode::Engine, Some(2)).expect("an engine"))
+}
+
+fn microscope() -> Device {
+    Device::emulator(Emulator::new(Mode::Microscope(Order::Shuffled(5)), None).expect("a microscope"))
+}
+
+#[test]
+fn a_repeated_stage_leaves_the_answer_as_it_is() {
+    let body = scene::scene("soup-moving", 300, 3).expect("a scene");
+    for device in [engine(), microscope()] {
+        for query in Query::every() {
+            for stage in STAGES {
+                let mut plain = Session::new(device.clone(), vec![body.clone()], query).expect("a session");
+                let mut session = Session::new(device.clone(), vec![body.clone()], query).expect("a session");
+                let mut same = |session: &mut Session, what: &str| {
+                    let (one, other) =
+                        (plain.detect().expect("an answer"), session.detect().expect("an answer"));
+                    assert_eq!(one.hash(), other.hash(), "{query:?} {stage:?} {what}");
+                    assert_eq!(one.candidates, other.candidates, "{query:?} {stage:?} {what}");
+                    let prints = session.fingerprints().expect("prints");
+                    assert_eq!(plain.fingerprints().expect("prints"), prints, "{query:?} {stage:?} {what}");
+                    prints
+                };
+                // Before any frame, between frames, and on the next frame with the old tree.
+                assert_eq!(session.repeat_stage(stage, 2).expect("runs").len(), 2);
+                let before = same(&mut session, "first");
+                let ms = session.repeat_stage(stage, 3).expect("runs");
+                assert!(ms.len() == 3 && ms.iter().all(|&ms| ms >= 0.0), "{ms:?}");
+                assert_eq!(session.fingerprints().expect("prints"), before, "{query:?} {stage:?}: in place");
+                same(&mut session, "between");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_stage_is_repeated_where_the_body_is_now() {
+    let body = scene::scene("cloth-ball", 500, 3).expect("a scene");
+    for stage in [Stage::Fit, Stage::Refit, Stage::Traverse, Stage::Narrow] {
+        let query = Query::of(Motion::Continuous);
+        let mut plain = Session::new(engine(), vec![body.clone()], query).expect("a session");
+        plain.move_to(0, later(&body)).expect("moved");
+        let want = plain.detect().expect("an answer").hash();
+        let prints = plain.fingerprints().expect("prints");
+
+        let mut session = Session::new(engine(), vec![body.clone()], query).expect("a session");
+        session.detect().expect("an answer");
+        session.move_to(0, later(&body)).expect("moved");
+        session.repeat_stage(stage, 2).expect("runs");
+        if matches!(stage, Stage::Traverse | Stage::Narrow) {
+            assert_eq!(session.fingerprints().expect("prints"), prints, "{stage:?}");
+        }
+        assert_eq!(session.detect().expect("an answer").hash(), want, "{stage:?}");
+    }
+}
+
+#[test]
+fn nothing_has_no_stages() {
+    let empty = nearmiss::Mesh::new("empty", nearmiss::mesh::Positions::F32(Vec::new()), Vec::new());
+    let bodies = vec![Body::still(empty.expect("a mesh"))];
+    let mut session = Session::new(engine(), bodies, Query::of(Motion::Discrete)).expect("a session");
+    for stage in STAGES {
+        assert_eq!(session.repeat_stage(stage, 4).expect("no runs"), Vec::<f64>::new());
+    }
+}
