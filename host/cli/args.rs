@@ -22,6 +22,8 @@ pub enum Command {
     Plan(Box<DetectArgs>),
     /// Write a benchmark scene as PLY frames.
     Scene(SceneArgs),
+    /// The thesis's figures 6.12 to 6.14, ours beside theirs: a table, CSV files and pictures.
+    Tables(TablesArgs),
     /// Check this machine: known answers, and the card and the CPU to the bit.
     Selftest(SelftestArgs),
 }
@@ -153,6 +155,58 @@ pub struct SceneArgs {
     /// Folder for NAME_t0.ply and NAME_t1.ply.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+}
+
+/// Figures of the thesis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Table {
+    /// Construction and refit.
+    #[value(name = "6.12")]
+    Build,
+    /// A frame: discrete and continuous, by volume, without and with a front.
+    #[value(name = "6.13")]
+    Frame,
+    /// Where a frame's time goes.
+    #[value(name = "6.14")]
+    Shares,
+}
+
+#[derive(Args)]
+pub struct TablesArgs {
+    /// Scenes [default: all]; with --mesh, the scene of the thesis that the frames are.
+    #[arg(long, num_args = 1.., value_name = "NAME",
+        value_parser = clap::builder::PossibleValuesParser::new(crate::tables::SCENES.map(|scene| scene.0)))]
+    pub scene: Vec<String>,
+    /// Triangles of a scene, about [default: as many as the thesis has].
+    #[arg(long, conflicts_with = "mesh")]
+    pub triangles: Option<usize>,
+    /// Frames of a scene, at least two.
+    #[arg(long, default_value_t = 8, value_name = "K", value_parser = clap::value_parser!(u32).range(2..=10_000))]
+    pub frames: u32,
+    /// Seed of the scenes.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Frames of one mesh from files instead, in their order.
+    #[arg(long, num_args = 2.., value_name = "FILE")]
+    pub mesh: Vec<PathBuf>,
+    /// Which figures [default: all].
+    #[arg(long, num_args = 1.., value_enum, value_name = "FIGURE")]
+    pub table: Vec<Table>,
+    /// Build the tree anew at every N-th frame; that time is not part of a frame's [default: only at the first].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub rebuild_every: Option<u32>,
+    /// Which machine.
+    #[arg(long, value_enum, default_value_t)]
+    pub backend: Backend,
+    /// CPU threads [default: all].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Folder for CSV files and SVG pictures.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Print everything as one JSON object.
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Args)]

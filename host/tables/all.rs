@@ -1,0 +1,149 @@
+//! All figures together: text, CSV files and pictures.
+
+use super::figures::{Figure612, Figure613, Figure614};
+use super::picture::{Bar, Panel, Stack, bars, stacks};
+use super::text::text;
+use super::theirs::CARD;
+use crate::error::Error;
+use serde::Serialize;
+use std::path::Path;
+
+/// The figures that were asked for; those that were not have no rows.
+#[derive(Debug, Serialize)]
+pub struct Figures {
+    /// Our machine.
+    pub device: String,
+    /// The thesis's machine.
+    pub theirs: &'static str,
+    /// Construction and refit.
+    pub figure_6_12: Vec<Figure612>,
+    /// Frames.
+    pub figure_6_13: Vec<Figure613>,
+    /// Shares.
+    pub figure_6_14: Vec<Figure614>,
+}
+
+impl Figures {
+    /// No figures yet.
+    pub fn new(device: String) -> Figures {
+        let (figure_6_12, figure_6_13, figure_6_14) = Default::default();
+        Figures { device, theirs: CARD, figure_6_12, figure_6_13, figure_6_14 }
+    }
+
+    /// For people.
+    pub fn text(&self) -> String {
+        let figures = [text(&self.figure_6_12), text(&self.figure_6_13), text(&self.figure_6_14)];
+        let remark: usize = self.figure_6_13.iter().map(|row| row.differing).sum();
+        let remark = if remark == 0 {
+            String::new()
+        } else {
+            format!(
+                "{remark} frames of a float solver differ between volumes or walks: it can err, and does so on other \
+                 candidates.\n"
+            )
+        };
+        format!(
+            "ours on {}\n\n{}{remark}",
+            self.device,
+            figures.map(|f| f + "\n").concat().replace("\n\n\n", "\n\n")
+        )
+    }
+
+    /// Writes `figure-6.12.csv`, `figure-6.12.svg` and so on into a folder, which is made where there is none; the files'
+    /// names.
+    ///
+    /// # Errors
+    /// [`Error::Output`].
+    pub fn write(&self, folder: &Path) -> Result<Vec<String>, Error> {
+        std::fs::create_dir_all(folder).map_err(|e| failed(folder, &e))?;
+        let mut names = Vec::new();
+        let mut both = |name: &str, rows: Result<Vec<u8>, String>, svg: Result<String, Error>| {
+            let csv = folder.join(format!("{name}.csv"));
+            let rows = rows.map_err(|e| failed(&csv, &e))?;
+            put(&csv, &rows)?;
+            put(&folder.join(format!("{name}.svg")), svg?.as_bytes())?;
+            names.extend(["csv", "svg"].map(|kind| format!("{name}.{kind}")));
+            Ok(())
+        };
+        if !self.figure_6_12.is_empty() {
+            let title = "Figure 6.12: construction and refit of a tree";
+            let panels = panels(
+                &self.figure_6_12,
+                |row| &row.scene,
+                |row| row.triangles,
+                |row| Bar {
+                    label: format!("{} {}", row.stage, row.bv.to_uppercase()),
+                    ours: row.ours_ms,
+                    theirs: row.theirs_ms,
+                },
+            );
+            both("figure-6.12", csv(&self.figure_6_12), bars(title, &self.device, &panels))?;
+        }
+        if !self.figure_6_13.is_empty() {
+            let title = "Figure 6.13: a frame, from positions to contacts";
+            let panels = panels(
+                &self.figure_6_13,
+                |row| &row.scene,
+                |row| row.triangles,
+                |row| Bar {
+                    label: label(row.motion, row.bv, row.front),
+                    ours: row.ours_ms,
+                    theirs: row.theirs_ms,
+                },
+            );
+            both("figure-6.13", csv(&self.figure_6_13), bars(title, &self.device, &panels))?;
+        }
+        if !self.figure_6_14.is_empty() {
+            let title = "Figure 6.14: where a frame's time goes";
+            let all: Vec<Stack> = self.figure_6_14.iter().map(stack).collect();
+            both("figure-6.14", csv(&self.figure_6_14), stacks(title, &self.device, &all))?;
+        }
+        Ok(names)
+    }
+}
+
+fn label(motion: &str, bv: &str, front: bool) -> String {
+    format!("{motion} {}{}", bv.to_uppercase(), if front { ", front" } else { "" })
+}
+
+fn titled(scene: &str, triangles: usize) -> String {
+    format!("{scene}, {triangles} triangles")
+}
+
+fn stack(row: &Figure614) -> Stack {
+    Stack {
+        panel: titled(&row.scene, row.triangles),
+        label: label(row.motion, row.bv, row.front),
+        shares: [row.refit, row.traverse, row.balance, row.triangle_tests],
+        ms: row.ms,
+    }
+}
+
+/// A panel a scene; a scene's rows stand together.
+fn panels<T>(
+    rows: &[T],
+    scene: fn(&T) -> &String,
+    triangles: fn(&T) -> usize,
+    bar: fn(&T) -> Bar,
+) -> Vec<Panel> {
+    let panel = |rows: &[T]| Panel {
+        title: rows.first().map_or(String::new(), |row| titled(scene(row), triangles(row))),
+        bars: rows.iter().map(bar).collect(),
+    };
+    rows.chunk_by(|a, b| scene(a) == scene(b)).map(panel).collect()
+}
+
+/// Rows with a head.
+fn csv<T: Serialize>(rows: &[T]) -> Result<Vec<u8>, String> {
+    let mut csv = csv::Writer::from_writer(Vec::new());
+    rows.iter().try_for_each(|row| csv.serialize(row)).map_err(|e| e.to_string())?;
+    csv.into_inner().map_err(|e| e.to_string())
+}
+
+fn put(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    std::fs::write(path, bytes).map_err(|e| failed(path, &e))
+}
+
+fn failed(path: &Path, text: &impl ToString) -> Error {
+    Error::Output { file: path.display().to_string(), text: text.to_string() }
+}

@@ -1,0 +1,65 @@
+//! A column of figure 6.13: how a frame is asked.
+
+use crate::query::{Bv, Motion, Query, Traversal};
+
+/// One way of asking a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Way {
+    /// Discrete or continuous.
+    pub motion: Motion,
+    /// The volume.
+    pub bv: Bv,
+    /// Whether the walk goes on from the last frame's front.
+    pub front: bool,
+}
+
+impl Way {
+    /// The volumes of the thesis that there are.
+    pub const VOLUMES: [Bv; 1] = [Bv::Aabb];
+    /// Without a front, and with one where there is one.
+    pub const FRONTS: [bool; 1] = [false];
+
+    /// Every way, in the order of the thesis's columns: without the front first.
+    pub fn every() -> Vec<Way> {
+        let mut ways = Vec::new();
+        for front in Way::FRONTS {
+            for motion in [Motion::Discrete, Motion::Continuous] {
+                ways.extend(Way::VOLUMES.map(|bv| Way { motion, bv, front }));
+            }
+        }
+        ways
+    }
+
+    /// The query that asks so; `walk` for ways without a front, or what is fastest.
+    pub fn query(self, walk: Option<Traversal>) -> Query {
+        Query { bv: Some(self.bv), traversal: walk, ..Query::of(self.motion) }
+    }
+
+    /// `aabb`, `obb`.
+    pub fn volume(self) -> &'static str {
+        volume(self.bv)
+    }
+
+    /// `discrete`, `continuous`.
+    pub fn asked(self) -> &'static str {
+        match self.motion {
+            Motion::Discrete => "discrete",
+            Motion::Continuous => "continuous",
+            Motion::Earliest => "earliest",
+        }
+    }
+}
+
+/// A volume's name on the command line and in files.
+pub fn volume(bv: Bv) -> &'static str {
+    match bv {
+        Bv::Aabb => "aabb",
+    }
+}
+
+impl std::fmt::Display for Way {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "{} {}", self.asked(), self.volume().to_uppercase())?;
+        if self.front { write!(f, ", front") } else { Ok(()) }
+    }
+}
