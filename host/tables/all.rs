@@ -1,6 +1,6 @@
 //! All figures together: text, CSV files and pictures.
 
-use super::figures::{Figure612, Figure613, Figure614};
+use super::figures::{Figure612, Figure613, Figure614, Paper};
 use super::picture::{Bar, Panel, Stack, bars, stacks};
 use super::text::text;
 use super::theirs::CARD;
@@ -33,20 +33,39 @@ impl Figures {
     /// For people.
     pub fn text(&self) -> String {
         let figures = [text(&self.figure_6_12), text(&self.figure_6_13), text(&self.figure_6_14)];
-        let remark: usize = self.figure_6_13.iter().map(|row| row.differing).sum();
-        let remark = if remark == 0 {
-            String::new()
-        } else {
-            format!(
-                "{remark} frames of a float solver differ between volumes or walks: it can err, and does so on other \
-                 candidates.\n"
-            )
-        };
-        format!(
-            "ours on {}\n\n{}{remark}",
-            self.device,
-            figures.map(|f| f + "\n").concat().replace("\n\n\n", "\n\n")
-        )
+        let mut all = format!("ours on {}\n\n", self.device);
+        for figure in figures.iter().filter(|figure| !figure.is_empty()) {
+            all += &format!("{figure}\n");
+        }
+        for remark in self.remarks() {
+            all += &format!("{remark}\n");
+        }
+        all
+    }
+
+    /// What a reader of the figures must know.
+    fn remarks(&self) -> Vec<String> {
+        let of_612 = self.figure_6_12.iter().map(|r| (&r.scene, r.triangles, r.their_triangles));
+        let of_613 = self.figure_6_13.iter().map(|r| (&r.scene, r.triangles, r.their_triangles));
+        let mut remarks = Vec::new();
+        for (scene, ours, theirs) in of_612.chain(of_613) {
+            let Some(theirs) = theirs.filter(|_| !is_like(scene, ours)) else { continue };
+            remarks.push(format!(
+                "{scene}: ours has {ours} triangles and theirs {theirs}; its ratios compare different scenes."
+            ));
+        }
+        remarks.dedup();
+        let differing: usize = self.figure_6_13.iter().map(|row| row.differing).sum();
+        if differing > 0 {
+            remarks.push(format!(
+                "{differing} frames differ between volumes or walks: their solver can err, and does so on other candidates."
+            ));
+        }
+        let reruns: u64 = self.figure_6_13.iter().map(|row| row.reruns).sum();
+        if reruns > 0 {
+            remarks.push(format!("{reruns} frames ran again for want of room: their times are too long."));
+        }
+        remarks
     }
 
     /// Writes `figure-6.12.csv`, `figure-6.12.svg` and so on into a folder, which is made where there is none; the files'
@@ -69,8 +88,7 @@ impl Figures {
             let title = "Figure 6.12: construction and refit of a tree";
             let panels = panels(
                 &self.figure_6_12,
-                |row| &row.scene,
-                |row| row.triangles,
+                |row| titled(&row.scene, row.triangles, row.their_triangles),
                 |row| Bar {
                     label: format!("{} {}", row.stage, row.bv.to_uppercase()),
                     ours: row.ours_ms,
@@ -83,8 +101,7 @@ impl Figures {
             let title = "Figure 6.13: a frame, from positions to contacts";
             let panels = panels(
                 &self.figure_6_13,
-                |row| &row.scene,
-                |row| row.triangles,
+                |row| titled(&row.scene, row.triangles, row.their_triangles),
                 |row| Bar {
                     label: label(row.motion, row.bv, row.front),
                     ours: row.ours_ms,
@@ -106,13 +123,23 @@ fn label(motion: &str, bv: &str, front: bool) -> String {
     format!("{motion} {}{}", bv.to_uppercase(), if front { ", front" } else { "" })
 }
 
-fn titled(scene: &str, triangles: usize) -> String {
-    format!("{scene}, {triangles} triangles")
+fn is_like(scene: &str, triangles: usize) -> bool {
+    Paper::new(scene, triangles, String::new()).is_like()
+}
+
+/// A panel's title, which says so where the thesis's scene has another size.
+fn titled(scene: &str, triangles: usize, theirs: Option<usize>) -> String {
+    match theirs {
+        Some(theirs) if !is_like(scene, triangles) => {
+            format!("{scene}, {triangles} triangles (theirs: {theirs})")
+        }
+        _ => format!("{scene}, {triangles} triangles"),
+    }
 }
 
 fn stack(row: &Figure614) -> Stack {
     Stack {
-        panel: titled(&row.scene, row.triangles),
+        panel: titled(&row.scene, row.triangles, None),
         label: label(row.motion, row.bv, row.front),
         shares: [row.refit, row.traverse, row.balance, row.triangle_tests],
         ms: row.ms,
@@ -120,17 +147,12 @@ fn stack(row: &Figure614) -> Stack {
 }
 
 /// A panel a scene; a scene's rows stand together.
-fn panels<T>(
-    rows: &[T],
-    scene: fn(&T) -> &String,
-    triangles: fn(&T) -> usize,
-    bar: fn(&T) -> Bar,
-) -> Vec<Panel> {
+fn panels<T>(rows: &[T], title: fn(&T) -> String, bar: fn(&T) -> Bar) -> Vec<Panel> {
     let panel = |rows: &[T]| Panel {
-        title: rows.first().map_or(String::new(), |row| titled(scene(row), triangles(row))),
+        title: rows.first().map(title).unwrap_or_default(),
         bars: rows.iter().map(bar).collect(),
     };
-    rows.chunk_by(|a, b| scene(a) == scene(b)).map(panel).collect()
+    rows.chunk_by(|a, b| title(a) == title(b)).map(panel).collect()
 }
 
 /// Rows with a head.

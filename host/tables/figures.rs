@@ -8,7 +8,7 @@ use crate::query::{Bv, Solver};
 use serde::Serialize;
 
 /// What all rows of a scene share.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct Paper {
     /// Our name of the scene.
     pub scene: String,
@@ -16,6 +16,8 @@ pub struct Paper {
     pub model: &'static str,
     /// Triangles of ours.
     pub triangles: usize,
+    /// Triangles of the thesis's.
+    pub their_triangles: Option<usize>,
     /// The machine.
     pub device: String,
 }
@@ -23,7 +25,19 @@ pub struct Paper {
 impl Paper {
     /// Of a scene on a machine.
     pub fn new(scene: &str, triangles: usize, device: String) -> Paper {
-        Paper { scene: scene.into(), model: theirs::of(scene).map_or("", |row| row.model), triangles, device }
+        let theirs = theirs::of(scene);
+        Paper {
+            scene: scene.into(),
+            model: theirs.map_or("", |row| row.model),
+            triangles,
+            their_triangles: theirs.map(|row| row.triangles),
+            device,
+        }
+    }
+
+    /// Whether both have about as many triangles, within a tenth: only then does a ratio compare machines and programs.
+    pub fn is_like(&self) -> bool {
+        self.their_triangles.is_none_or(|theirs| 10 * self.triangles.abs_diff(theirs) <= theirs)
     }
 }
 
@@ -33,6 +47,7 @@ pub struct Figure612 {
     pub scene: String,
     pub model: &'static str,
     pub triangles: usize,
+    pub their_triangles: Option<usize>,
     pub device: String,
     /// `construct` or `refit`.
     pub stage: &'static str,
@@ -51,6 +66,7 @@ pub struct Figure613 {
     pub scene: String,
     pub model: &'static str,
     pub triangles: usize,
+    pub their_triangles: Option<usize>,
     pub device: String,
     pub motion: &'static str,
     pub bv: &'static str,
@@ -80,6 +96,7 @@ pub struct Figure614 {
     pub scene: String,
     pub model: &'static str,
     pub triangles: usize,
+    pub their_triangles: Option<usize>,
     pub device: String,
     pub motion: &'static str,
     pub bv: &'static str,
@@ -109,6 +126,7 @@ pub fn figure_612(paper: &Paper, frames: usize, built: &[Built]) -> Vec<Figure61
             scene: paper.scene.clone(),
             model: paper.model,
             triangles: paper.triangles,
+            their_triangles: paper.their_triangles,
             device: paper.device.clone(),
             stage,
             bv: volume(bv),
@@ -138,6 +156,7 @@ pub fn figure_613(paper: &Paper, cells: &[Cell], differing: &[usize]) -> Vec<Fig
             scene: paper.scene.clone(),
             model: paper.model,
             triangles: paper.triangles,
+            their_triangles: paper.their_triangles,
             device: paper.device.clone(),
             motion: cell.way.asked(),
             bv: cell.way.volume(),
@@ -169,6 +188,7 @@ pub fn figure_614(paper: &Paper, cells: &[Cell]) -> Vec<Figure614> {
             scene: paper.scene.clone(),
             model: paper.model,
             triangles: paper.triangles,
+            their_triangles: paper.their_triangles,
             device: paper.device.clone(),
             motion: cell.way.asked(),
             bv: cell.way.volume(),
@@ -200,6 +220,12 @@ mod tests {
         assert_eq!((of("construct").ours_ms, of("construct").theirs_ms), (11.0, Some(22.0)));
         assert_eq!(of("construct").ratio, Some(0.5));
         assert_eq!((of("refit").ours_ms, of("refit").theirs_ms), (3.0, Some(1.73)));
+    }
+
+    #[test]
+    fn another_size_is_not_like() {
+        assert!(paper("flamenco").is_like() && Paper::new("soup", 9, String::new()).is_like());
+        assert!(!Paper::new("flamenco", 5_000, String::new()).is_like());
     }
 
     #[test]
