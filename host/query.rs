@@ -16,12 +16,33 @@ pub enum Motion {
 }
 
 /// What the tree is dressed in.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Bv {
     /// Axis-aligned boxes; in a continuous query around both ends of the step.
     #[default]
     Aabb,
+    /// Boxes that move: axis-aligned at both ends of the step, in between on straight lines.
+    Linear,
+    /// Oriented boxes along the principal axes of what they hold; the seed's.
+    Obb,
+    /// Oriented boxes that keep the axes of a child: the older rule.
+    ObbChild,
+}
+
+impl Bv {
+    /// Every volume.
+    pub const ALL: [Bv; 4] = [Bv::Aabb, Bv::Linear, Bv::Obb, Bv::ObbChild];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Bv::Aabb => "aabb",
+            Bv::Linear => "linear",
+            Bv::Obb => "obb",
+            Bv::ObbChild => "obb-child",
+        }
+    }
 }
 
 /// How the tree is walked.

@@ -135,7 +135,8 @@ fn a_row_stands_for_every_way_and_all_agree() {
         motion.iter().zip(bv).zip(front).map(|((m, b), f)| format!("{m} {b} {f}")).collect::<Vec<_>>()
     };
     let found = ways(&frames);
-    for want in ["discrete aabb false", "continuous aabb false"] {
+    for want in ["discrete aabb false", "discrete obb false", "continuous aabb false", "continuous obb false"]
+    {
         assert_eq!(found.iter().filter(|way| *way == want).count(), 1, "{want}: {found:?}");
     }
     assert_eq!(ways(&folder.csv("figure-6.14.csv")), found);
@@ -169,7 +170,7 @@ fn pictures_are_labelled() {
             "figure-6.12.svg",
             vec!["construct AABB", "refit AABB", "31.0", "ms (log)", "GTX 285", "ours / theirs"],
         ),
-        ("figure-6.13.svg", vec!["discrete AABB", "continuous AABB", "33.0", "ms (log)", "GTX 285"]),
+        ("figure-6.13.svg", vec!["discrete AABB", "continuous OBB", "33.0", "43.0", "ms (log)", "GTX 285"]),
         ("figure-6.14.svg", vec!["discrete AABB", "traverse", "triangle tests", "100 %"]),
     ];
     for (name, labels) in pictures {
@@ -227,6 +228,11 @@ fn files_are_a_scene() {
     // The same files, as a scene that the thesis has.
     ok(&[&mesh[..], &["--scene", "cloth-ball", "--out", folder.name()]].concat());
     assert!(column(&folder.csv("figure-6.13.csv"), "ratio").iter().all(|ratio| !ratio.is_empty()));
+    // A volume that the thesis has not has no ratio.
+    ok(&[&mesh[..], &["--scene", "cloth-ball", "--bv", "linear", "--out", folder.name()]].concat());
+    let csv = folder.csv("figure-6.13.csv");
+    assert!(column(&csv, "bv").iter().all(|bv| *bv == "linear"));
+    assert!(column(&csv, "ratio").iter().all(|ratio| ratio.is_empty()));
     // Frames of two meshes are none.
     let other = folder.0.join("other.ply");
     std::fs::write(&other, "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n").expect("written");
@@ -249,6 +255,8 @@ fn what_is_not_known_is_refused_with_what_is() {
     assert!(unknown.contains("possible values") && unknown.contains("cloth-ball"), "{unknown}");
     let unknown = refused(2, &["--table", "6.15"]);
     assert!(unknown.contains("6.12") && unknown.contains("6.14"), "{unknown}");
+    let unknown = refused(2, &["--bv", "sphere"]);
+    assert!(unknown.contains("aabb, linear, obb"), "{unknown}");
     refused(2, &["--frames", "1"]);
     refused(2, &["--mesh", "one.ply"]);
     refused(2, &["--rebuild-every", "0"]);

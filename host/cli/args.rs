@@ -2,7 +2,7 @@
 
 use crate::device::Backend;
 use crate::pipeline::Stage;
-use crate::query::{Motion, Query, Solver, Traversal};
+use crate::query::{Bv, Motion, Query, Solver, Traversal};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -26,14 +26,6 @@ pub enum Command {
     Tables(TablesArgs),
     /// Check this machine: known answers, and the card and the CPU to the bit.
     Selftest(SelftestArgs),
-}
-
-/// Bounding volumes that exist.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum BvArg {
-    /// Axis-aligned boxes, swept over the step.
-    #[default]
-    Aabb,
 }
 
 /// Walks that exist.
@@ -83,9 +75,9 @@ pub struct DetectArgs {
     /// Only the smallest time of contact: the step that a simulator may take.
     #[arg(long)]
     pub earliest: bool,
-    /// Bounding volume.
-    #[arg(long, value_enum, default_value_t)]
-    pub bv: BvArg,
+    /// Bounding volume [default: the fastest].
+    #[arg(long, value_enum)]
+    pub bv: Option<Bv>,
     /// How the tree is walked [default: the machine's fastest].
     #[arg(long, value_enum)]
     pub traversal: Option<TraversalArg>,
@@ -131,7 +123,7 @@ impl DetectArgs {
         Query {
             motion,
             solver: self.solver,
-            bv: None,
+            bv: self.bv,
             traversal: self.traversal.map(|walk| walk.choice(self.budget)),
             adjacent: self.adjacent,
         }
@@ -192,6 +184,9 @@ pub struct TablesArgs {
     /// Which figures [default: all].
     #[arg(long, num_args = 1.., value_enum, value_name = "FIGURE")]
     pub table: Vec<Table>,
+    /// Which volumes; the thesis has aabb and obb.
+    #[arg(long, num_args = 1.., value_enum, default_values_t = [Bv::Aabb, Bv::Obb])]
+    pub bv: Vec<Bv>,
     /// Build the tree anew at every N-th frame; that time is not part of a frame's [default: only at the first].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub rebuild_every: Option<u32>,

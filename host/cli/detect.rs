@@ -7,7 +7,7 @@ use crate::device::Device;
 use crate::error::Error;
 use crate::mesh::{Body, Mesh};
 use crate::pipeline::{Session, Stages};
-use crate::query::{Motion, Query, Solver};
+use crate::query::{Bv, Motion, Query, Solver};
 use crate::report;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -157,8 +157,8 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
         if bodies.len() == 1 { "self" } else { "between" }
     );
     let _ = writeln!(text, "machine    {} ({})", device.name(), device.backend());
-    let _ =
-        writeln!(text, "volume     aabb{}", if query.motion == Motion::Discrete { "" } else { ", swept" });
+    let swept = query.motion != Motion::Discrete && query.bv() != Bv::Linear;
+    let _ = writeln!(text, "volume     {}{}", query.bv().name(), if swept { ", swept" } else { "" });
     let _ = writeln!(
         text,
         "traversal  {}",

@@ -4,7 +4,7 @@ use super::args::{Table, TablesArgs};
 use super::progress::during;
 use crate::device::Device;
 use crate::error::Error;
-use crate::query::{Motion, Solver};
+use crate::query::{Bv, Motion, Solver};
 use crate::tables::{self, Figures, Frames, Paper, Way};
 use std::process::ExitCode;
 
@@ -52,22 +52,30 @@ fn scenes(args: &TablesArgs) -> Result<Vec<(String, usize)>, Error> {
     Ok(all.map(|&(name, triangles)| (name.to_owned(), args.triangles.unwrap_or(triangles))).collect())
 }
 
+/// The volumes asked for, each once.
+fn volumes(args: &TablesArgs) -> Vec<Bv> {
+    Bv::ALL.into_iter().filter(|bv| args.bv.contains(bv)).collect()
+}
+
 /// Measures one scene.
 fn scene(args: &TablesArgs, device: &Device, frames: &Frames, figures: &mut Figures) -> Result<(), Error> {
     let wanted = |table| args.table.is_empty() || args.table.contains(&table);
     let name = &frames.scene;
     let paper = Paper::new(name, frames.triangles(), device.name());
     if wanted(Table::Build) {
-        let built =
-            Way::VOLUMES.map(|bv| during(format!("{name}: trees"), || tables::build(device, frames, bv)));
-        let built = built.into_iter().collect::<Result<Vec<_>, _>>()?;
+        // Every construction is by way of axis-aligned boxes.
+        let mut built = Vec::new();
+        for bv in Bv::ALL.into_iter().filter(|bv| *bv == Bv::Aabb || args.bv.contains(bv)) {
+            let trees = || tables::build(device, frames, bv);
+            built.push(during(format!("{name}: trees in {}", bv.name()), trees)?);
+        }
         figures.figure_6_12.extend(tables::figure_612(&paper, frames.meshes.len(), &built));
     }
     if !wanted(Table::Frame) && !wanted(Table::Shares) {
         return Ok(());
     }
     let mut cells = Vec::new();
-    for way in Way::every() {
+    for way in Way::every(&volumes(args)) {
         let every = args.rebuild_every.map(|n| n as usize);
         let cell = || tables::measure(device, frames, way, way.query(None), every);
         cells.push(during(format!("{name}: {way}"), cell)?);

@@ -247,7 +247,7 @@ impl Summary {
             vertices: bodies.iter().map(Body::vertex_count).sum(),
             frames: if bodies.iter().any(Body::is_moving) { 2 } else { 1 },
             query: query.motion,
-            bv: "aabb",
+            bv: query.bv().name(),
             traversal: query.traversal.unwrap_or(Traversal::default_for(device.is_card())),
             solver: query.solver(),
             backend: device.backend(),

@@ -20,7 +20,8 @@ use crate::error::Error;
 use crate::mesh::{Body, MAX_FACES, MAX_VERTICES};
 use crate::query::{Bv, Query};
 use corridor::{Corridor, Frames};
-use nearmiss_kernels::bv::{Aabb, Axes};
+use nearmiss_kernels::bv::{Aabb, Axes, Linear, Obb};
+use volumes::Kernels;
 
 /// Bodies on a device, ready to be asked frame after frame.
 ///
@@ -55,11 +56,26 @@ fn corridor(
     query: Query,
 ) -> Result<Box<dyn Frames>, Error> {
     let f64s = bodies.iter().any(|body| body.positions_t0().is_f64());
-    Ok(match (query.bv(), f64s) {
-        (Bv::Aabb, false) => {
-            Box::new(Corridor::<f32, Aabb>::new(device, bodies, layout, (query, Axes::PCA))?)
-        }
-        (Bv::Aabb, true) => Box::new(Corridor::<f64, Aabb>::new(device, bodies, layout, (query, Axes::PCA))?),
+    match query.bv() {
+        Bv::Aabb => dressed::<Aabb>(device, bodies, layout, (query, Axes::PCA), f64s),
+        Bv::Linear => dressed::<Linear>(device, bodies, layout, (query, Axes::PCA), f64s),
+        Bv::Obb => dressed::<Obb>(device, bodies, layout, (query, Axes::PCA), f64s),
+        Bv::ObbChild => dressed::<Obb>(device, bodies, layout, (query, Axes::CHILD), f64s),
+    }
+}
+
+/// The corridor of a volume.
+fn dressed<V: Kernels>(
+    device: Device,
+    bodies: &[Body],
+    layout: &Layout,
+    (query, axes): (Query, Axes),
+    f64s: bool,
+) -> Result<Box<dyn Frames>, Error> {
+    Ok(if f64s {
+        Box::new(Corridor::<f64, V>::new(device, bodies, layout, (query, axes))?)
+    } else {
+        Box::new(Corridor::<f32, V>::new(device, bodies, layout, (query, axes))?)
     })
 }
 

@@ -5,7 +5,7 @@ use super::tree::{Tree, broken};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use nearmiss_kernels::abi::{FitArgs, Frames, Node, RefitArgs, Span, TraverseArgs};
-use nearmiss_kernels::bv::{Aabb, Axes, Volume};
+use nearmiss_kernels::bv::{Aabb, Axes, Linear, Obb, Volume};
 use nearmiss_kernels::bvh;
 use nearmiss_kernels::entry::{self, Entry};
 
@@ -26,6 +26,20 @@ impl Kernels for Aabb {
     type Levels = entry::refit_levels_aabb;
     type Leaves = entry::traverse_leaves_aabb;
     type Units = entry::traverse_units_aabb;
+}
+
+impl Kernels for Linear {
+    type Fit<R: Precision> = R::FitLinear;
+    type Levels = entry::refit_levels_linear;
+    type Leaves = entry::traverse_leaves_linear;
+    type Units = entry::traverse_units_linear;
+}
+
+impl Kernels for Obb {
+    type Fit<R: Precision> = R::FitObb;
+    type Levels = entry::refit_levels_obb;
+    type Leaves = entry::traverse_leaves_obb;
+    type Units = entry::traverse_units_obb;
 }
 
 /// The volumes of a tree, kept on the device.

@@ -3,7 +3,6 @@
 use super::build::Built;
 use super::measure::Cell;
 use super::theirs;
-use super::way::volume;
 use crate::query::{Bv, Solver};
 use serde::Serialize;
 
@@ -121,7 +120,7 @@ pub fn figure_612(paper: &Paper, frames: usize, built: &[Built]) -> Vec<Figure61
     let refit = |b: &Built| b.mean.fit + b.mean.refit;
     let plain = built.iter().find(|b| b.bv == Bv::Aabb).map(|b| b.mean.construct + refit(b));
     let mut rows = Vec::new();
-    let mut row = |stage, bv, ours_ms, theirs_ms| {
+    let mut row = |stage, bv: Bv, ours_ms, theirs_ms| {
         rows.push(Figure612 {
             scene: paper.scene.clone(),
             model: paper.model,
@@ -129,7 +128,7 @@ pub fn figure_612(paper: &Paper, frames: usize, built: &[Built]) -> Vec<Figure61
             their_triangles: paper.their_triangles,
             device: paper.device.clone(),
             stage,
-            bv: volume(bv),
+            bv: bv.name(),
             frames,
             ours_ms,
             theirs_ms,
@@ -159,7 +158,7 @@ pub fn figure_613(paper: &Paper, cells: &[Cell], differing: &[usize]) -> Vec<Fig
             their_triangles: paper.their_triangles,
             device: paper.device.clone(),
             motion: cell.way.asked(),
-            bv: cell.way.volume(),
+            bv: cell.way.bv.name(),
             front: cell.way.front,
             solver: cell.solver,
             frames: cell.hashes.len(),
@@ -191,7 +190,7 @@ pub fn figure_614(paper: &Paper, cells: &[Cell]) -> Vec<Figure614> {
             their_triangles: paper.their_triangles,
             device: paper.device.clone(),
             motion: cell.way.asked(),
-            bv: cell.way.volume(),
+            bv: cell.way.bv.name(),
             front: cell.way.front,
             refit: share(m.fit + m.refit),
             traverse: share(m.traverse),
@@ -215,7 +214,11 @@ mod tests {
     #[test]
     fn a_construction_is_a_tree_in_boxes() {
         let mean = Stages { construct: 8.0, fit: 1.0, refit: 2.0, ..Stages::default() };
-        let rows = figure_612(&paper("flamenco"), 3, &[Built { bv: Bv::Aabb, mean }]);
+        let oriented = Stages { construct: 9.0, fit: 3.0, refit: 13.0, ..Stages::default() };
+        let built = [Built { bv: Bv::Aabb, mean }, Built { bv: Bv::Obb, mean: oriented }];
+        let rows = figure_612(&paper("flamenco"), 3, &built);
+        let obb = rows.iter().find(|row| row.stage == "construct" && row.bv == "obb").expect("a row");
+        assert_eq!((obb.ours_ms, obb.theirs_ms, obb.ratio), (27.0, Some(27.0), Some(1.0)));
         let of = |stage: &str| rows.iter().find(|row| row.stage == stage).expect("a row");
         assert_eq!((of("construct").ours_ms, of("construct").theirs_ms), (11.0, Some(22.0)));
         assert_eq!(of("construct").ratio, Some(0.5));

@@ -66,6 +66,8 @@ pub fn of(scene: &str) -> Option<&'static Theirs> {
 fn column(bv: Bv) -> Option<usize> {
     match bv {
         Bv::Aabb => Some(0),
+        Bv::Obb => Some(1),
+        Bv::Linear | Bv::ObbChild => None,
     }
 }
 

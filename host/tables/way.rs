@@ -14,17 +14,15 @@ pub struct Way {
 }
 
 impl Way {
-    /// The volumes of the thesis that there are.
-    pub const VOLUMES: [Bv; 1] = [Bv::Aabb];
     /// Without a front, and with one where there is one.
     pub const FRONTS: [bool; 1] = [false];
 
-    /// Every way, in the order of the thesis's columns: without the front first.
-    pub fn every() -> Vec<Way> {
+    /// Every way with these volumes, in the order of the thesis's columns: without the front first.
+    pub fn every(volumes: &[Bv]) -> Vec<Way> {
         let mut ways = Vec::new();
         for front in Way::FRONTS {
             for motion in [Motion::Discrete, Motion::Continuous] {
-                ways.extend(Way::VOLUMES.map(|bv| Way { motion, bv, front }));
+                ways.extend(volumes.iter().map(|&bv| Way { motion, bv, front }));
             }
         }
         ways
@@ -33,11 +31,6 @@ impl Way {
     /// The query that asks so; `walk` for ways without a front, or what is fastest.
     pub fn query(self, walk: Option<Traversal>) -> Query {
         Query { bv: Some(self.bv), traversal: walk, ..Query::of(self.motion) }
-    }
-
-    /// `aabb`, `obb`.
-    pub fn volume(self) -> &'static str {
-        volume(self.bv)
     }
 
     /// `discrete`, `continuous`.
@@ -50,16 +43,9 @@ impl Way {
     }
 }
 
-/// A volume's name on the command line and in files.
-pub fn volume(bv: Bv) -> &'static str {
-    match bv {
-        Bv::Aabb => "aabb",
-    }
-}
-
 impl std::fmt::Display for Way {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        write!(f, "{} {}", self.asked(), self.volume().to_uppercase())?;
+        write!(f, "{} {}", self.asked(), self.bv.name().to_uppercase())?;
         if self.front { write!(f, ", front") } else { Ok(()) }
     }
 }

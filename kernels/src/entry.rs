@@ -1,7 +1,7 @@
 //! The kernel table: one line an entry. The PTX entries and the host's list come from the same line.
 
 use crate::abi::*;
-use crate::bv::Aabb;
+use crate::bv::{Aabb, Linear, Obb};
 use crate::exec::{BINS, Block, WARP};
 use crate::stage::construct::{morton, sort, tree};
 use crate::stage::narrow::{discrete, reject, sift, solve};
@@ -89,9 +89,19 @@ kernels! {
     construct_emit: tree::emit, [TreeArgs], WIDE, 0;
     fit_aabb_f32: fit::fit::<f32, Aabb, B>, [FitArgs<f32, Aabb>], WIDE, 0;
     fit_aabb_f64: fit::fit::<f64, Aabb, B>, [FitArgs<f64, Aabb>], WIDE, 0;
+    fit_linear_f32: fit::fit::<f32, Linear, B>, [FitArgs<f32, Linear>], WIDE, 0;
+    fit_linear_f64: fit::fit::<f64, Linear, B>, [FitArgs<f64, Linear>], WIDE, 0;
+    fit_obb_f32: fit::fit::<f32, Obb, B>, [FitArgs<f32, Obb>], WIDE, 0;
+    fit_obb_f64: fit::fit::<f64, Obb, B>, [FitArgs<f64, Obb>], WIDE, 0;
     refit_levels_aabb: refit::levels::<Aabb, B>, [RefitArgs<Aabb>], WIDE, 0;
+    refit_levels_linear: refit::levels::<Linear, B>, [RefitArgs<Linear>], WIDE, 0;
+    refit_levels_obb: refit::levels::<Obb, B>, [RefitArgs<Obb>], WIDE, 0;
     traverse_leaves_aabb: traverse::leaves::<Aabb, B>, [TraverseArgs<Aabb>], NARROW, traverse::shared_bytes(NARROW);
     traverse_units_aabb: traverse::units::<Aabb, B>, [TraverseArgs<Aabb>], NARROW, traverse::shared_bytes(NARROW);
+    traverse_leaves_linear: traverse::leaves::<Linear, B>, [TraverseArgs<Linear>], NARROW, traverse::shared_bytes(NARROW);
+    traverse_units_linear: traverse::units::<Linear, B>, [TraverseArgs<Linear>], NARROW, traverse::shared_bytes(NARROW);
+    traverse_leaves_obb: traverse::leaves::<Obb, B>, [TraverseArgs<Obb>], NARROW, traverse::shared_bytes(NARROW);
+    traverse_units_obb: traverse::units::<Obb, B>, [TraverseArgs<Obb>], NARROW, traverse::shared_bytes(NARROW);
     narrow_moller_f32: discrete::moller::<f32, B>, [DiscreteArgs<f32>], WIDE, 0;
     narrow_moller_f64: discrete::moller::<f64, B>, [DiscreteArgs<f64>], WIDE, 0;
     narrow_filter_f32: discrete::filter::<f32, B>, [DiscreteArgs<f32>], WIDE, 0;
