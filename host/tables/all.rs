@@ -35,7 +35,7 @@ impl Figures {
         let figures = [text(&self.figure_6_12), text(&self.figure_6_13), text(&self.figure_6_14)];
         let mut all = format!("ours on {}\n\n", self.device);
         for figure in figures.iter().filter(|figure| !figure.is_empty()) {
-            all += &format!("{figure}\n");
+            all += figure;
         }
         for remark in self.remarks() {
             all += &format!("{remark}\n");
