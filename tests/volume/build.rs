@@ -44,7 +44,7 @@ impl Wild {
             2 => [x, x, x],
             3 => [x, x + 1e-6 * y, x + 1e-7 * z],
             4 => [x.round(), y.round(), z.round()],
-            5 if rng.bits() % 3 == 0 => [0.0; 3],
+            5 if rng.bits().is_multiple_of(3) => [0.0; 3],
             _ => [x, y, z],
         }
     }

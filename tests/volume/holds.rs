@@ -22,11 +22,9 @@ fn check<V: Contain, R: Real>(cases: usize, levels: u32, largest: f64) {
         wild.turn(largest);
         let mut triangles = Vec::new();
         for i in 0..1 << levels {
-            // Half of the trees have one kind of triangle, the others mix.
-            if i > 0 && wild.rng.bits() & 1 == 0 && cases & 1 == 0 {
-                let place = wild.triangle::<R>();
-                triangles.push(place);
-                continue;
+            // Now and then another place and size in the same tree.
+            if i > 0 && wild.rng.bits().is_multiple_of(64) {
+                wild.turn(largest);
             }
             triangles.push(wild.triangle::<R>());
         }
@@ -158,8 +156,8 @@ fn merged_with_else_if(a: &Obb, b: &Obb) -> Obb {
         })
         .collect();
     let (mut lo, mut hi) = (Vec3([0f32; 3]), Vec3([0f32; 3]));
-    for k in 0..3 {
-        let dots: Vec<f32> = corners.iter().map(|p| axes[k].dot(*p - Vec3(a.c))).collect();
+    for (k, axis) in axes.into_iter().enumerate() {
+        let dots: Vec<f32> = corners.iter().map(|p| axis.dot(*p - Vec3(a.c))).collect();
         let (mut min, mut max) = (f32::MAX, f32::MIN);
         for d in dots {
             if d > max {

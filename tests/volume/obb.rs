@@ -49,7 +49,7 @@ fn touching(rng: &mut Rng) -> [[Vec3<f32>; 3]; 2] {
         1 => p.map(|c| c.map(|x| -x)),
         _ => around_origin(rng, normal.map(|x| -x), size),
     };
-    if rng.bits() % 4 == 0 {
+    if rng.bits().is_multiple_of(4) {
         // Nearly parallel: the corners that are not the origin are a unit off.
         let off = whole(rng, 1.0);
         let by = i64::from(q.contains(&[0; 3]));

@@ -24,11 +24,11 @@ use bytemuck::{Pod, Zeroable};
 pub trait Volume: Pod + Sync + Send + core::fmt::Debug + PartialEq {
     /// Around a triangle that stands still.
     fn still<R: Real>(corners: [Vec3<R>; 3]) -> Self;
-    /// Around a triangle whose corners move linearly from t0 to t1: holds it at every t in [0,1].
+    /// Around a triangle whose corners move linearly from t0 to t1: holds it at every t in [0, 1].
     fn moving<R: Real>(t0: [Vec3<R>; 3], t1: [Vec3<R>; 3]) -> Self;
     /// Around both, by the rule of axes (only oriented boxes have one).
     fn merge(&self, other: &Self, axes: Axes) -> Self;
-    /// False only if they certainly share no point (for a moving volume: at no t in [0,1]).
+    /// False only if they certainly share no point (for a moving volume: at no t in [0, 1]).
     fn overlaps(&self, other: &Self) -> bool;
 }
 
@@ -38,8 +38,8 @@ pub trait Volume: Pod + Sync + Send + core::fmt::Debug + PartialEq {
 pub struct Axes(pub u32);
 
 impl Axes {
-    /// The principal axes of what both children hold, or better ones if there are.
+    /// The principal axes of what both children hold, or a child's or the world's where these have less surface.
     pub const PCA: Axes = Axes(0);
-    /// Those of the child that has the larger box: cheap, and looser.
+    /// Those of the larger child: cheap, and a little looser.
     pub const CHILD: Axes = Axes(1);
 }

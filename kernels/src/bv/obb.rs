@@ -149,13 +149,13 @@ impl Obb {
         Obb::new(c, frame, reach(self, r).max(reach(o, q)))
     }
 
-    /// The principal axes of both boxes, each with its mass at its eight corners.
+    /// The principal axes of both boxes, each a solid of the same mass.
     #[inline]
     fn principal(&self, o: &Obb, scale: f32) -> Frame {
         let mut m = Covariance::ZERO;
         for b in [self, o] {
             for (axis, h) in b.axes().into_iter().zip(b.h) {
-                m.add(axis * (h / scale));
+                m.add(axis * (SOLID * (h / scale)));
             }
         }
         // Both centres are half of their difference away from the mean.
@@ -165,6 +165,9 @@ impl Obb {
         m.axes()
     }
 }
+
+/// Standard deviation of a solid slab, as a share of its half extent: the root of 1/3.
+const SOLID: f32 = 0.577_350_26;
 
 impl Volume for Obb {
     /// The axes are the longest edge, across it, and the normal: no rectangle around a triangle is smaller, and they
@@ -194,12 +197,19 @@ impl Volume for Obb {
         let from = (Vec3(self.c) + Vec3(o.c)) * 0.5;
         let t = (Vec3(o.c) - Vec3(self.c)).map(Real::abs);
         let scale = (self.h[0] + self.h[1] + self.h[2]) + (o.h[0] + o.h[1] + o.h[2]) + (t[0] + t[1] + t[2]);
-        let larger = if self.slack >= o.slack { self } else { o };
-        let mut frame = [Vec3(larger.a0), Vec3(larger.a1)];
+        let (mut one, mut two) = ([Vec3(self.a0), Vec3(self.a1)], [Vec3(o.a0), Vec3(o.a1)]);
+        if self.slack < o.slack {
+            (one, two) = (two, one);
+        }
+        let mut frame = one;
         if rule != Axes::CHILD {
-            frame = self.principal(o, scale);
-            if self.surface(o, axes::WORLD, from, scale) < self.surface(o, frame, from, scale) {
-                frame = axes::WORLD;
+            // The least surface; the first of equals.
+            let mut least = self.surface(o, one, from, scale);
+            for other in [two, axes::WORLD, self.principal(o, scale)] {
+                let surface = self.surface(o, other, from, scale);
+                if surface < least {
+                    (frame, least) = (other, surface);
+                }
             }
         }
         self.union(o, frame, from)
