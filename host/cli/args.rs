@@ -161,6 +161,8 @@ pub enum Table {
     /// Where a frame's time goes.
     #[value(name = "6.14")]
     Shares,
+    /// What a front saves, by the part of a step that things move.
+    Front,
 }
 
 #[derive(Args)]
@@ -181,7 +183,7 @@ pub struct TablesArgs {
     /// Frames of one mesh from files instead, in their order.
     #[arg(long, num_args = 2.., value_name = "FILE")]
     pub mesh: Vec<PathBuf>,
-    /// Which figures [default: all].
+    /// Which figures [default: 6.12, 6.13, 6.14].
     #[arg(long, num_args = 1.., value_enum, value_name = "FIGURE")]
     pub table: Vec<Table>,
     /// Which volumes; the thesis has aabb and obb.

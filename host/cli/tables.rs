@@ -71,6 +71,12 @@ fn scene(args: &TablesArgs, device: &Device, frames: &Frames, figures: &mut Figu
         }
         figures.figure_6_12.extend(tables::figure_612(&paper, frames.meshes.len(), &built));
     }
+    if args.table.contains(&Table::Front) {
+        let ways = Way::every(&volumes(args));
+        let rows =
+            during(format!("{name}: parts of a step"), || tables::front(&paper, device, frames, &ways))?;
+        figures.front.extend(rows);
+    }
     if !wanted(Table::Frame) && !wanted(Table::Shares) {
         return Ok(());
     }

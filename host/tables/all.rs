@@ -1,7 +1,8 @@
 //! All figures together: text, CSV files and pictures.
 
 use super::figures::{Figure612, Figure613, Figure614, Paper};
-use super::picture::{Bar, Panel, Stack, bars, stacks};
+use super::front::FrontRow;
+use super::picture::{Bar, Chart, Curve, Panel, Stack, bars, curves, stacks};
 use super::text::text;
 use super::theirs::CARD;
 use crate::error::Error;
@@ -21,18 +22,21 @@ pub struct Figures {
     pub figure_6_13: Vec<Figure613>,
     /// Shares.
     pub figure_6_14: Vec<Figure614>,
+    /// What a front saves.
+    pub front: Vec<FrontRow>,
 }
 
 impl Figures {
     /// No figures yet.
     pub fn new(device: String) -> Figures {
-        let (figure_6_12, figure_6_13, figure_6_14) = Default::default();
-        Figures { device, theirs: CARD, figure_6_12, figure_6_13, figure_6_14 }
+        let (figure_6_12, figure_6_13, figure_6_14, front) = Default::default();
+        Figures { device, theirs: CARD, figure_6_12, figure_6_13, figure_6_14, front }
     }
 
     /// For people.
     pub fn text(&self) -> String {
-        let figures = [text(&self.figure_6_12), text(&self.figure_6_13), text(&self.figure_6_14)];
+        let figures =
+            [text(&self.figure_6_12), text(&self.figure_6_13), text(&self.figure_6_14), text(&self.front)];
         let mut all = format!("ours on {}\n\n", self.device);
         for figure in figures.iter().filter(|figure| !figure.is_empty()) {
             all += figure;
@@ -115,8 +119,34 @@ impl Figures {
             let all: Vec<Stack> = self.figure_6_14.iter().map(stack).collect();
             both("figure-6.14", csv(&self.figure_6_14), stacks(title, &self.device, &all))?;
         }
+        if !self.front.is_empty() {
+            let title = "A front: its cost, of that of the same frame without it";
+            let bound = (50.0, "the thesis's bound on node tests, a half");
+            both("front", csv(&self.front), curves(title, &self.device, bound, &charts(&self.front)))?;
+        }
         Ok(names)
     }
+}
+
+/// A chart a scene, motion and volume; ways without a front are what the others are drawn against.
+fn charts(rows: &[FrontRow]) -> Vec<Chart> {
+    let fronts: Vec<&FrontRow> = rows.iter().filter(|row| row.front).collect();
+    let title = |row: &FrontRow| format!("{}, {}", row.scene, label(row.motion, row.bv, false));
+    let chart = |rows: &[&FrontRow]| {
+        let curve = |label: &str, is_time, of: fn(&FrontRow) -> f64| Curve {
+            label: label.into(),
+            points: rows.iter().map(|row| (row.part, 100.0 * of(row))).collect(),
+            is_time,
+        };
+        Chart {
+            title: rows.first().map(|row| title(row)).unwrap_or_default(),
+            curves: vec![
+                curve("node tests", false, |row| row.tests_ratio),
+                curve("traversal time", true, |row| row.time_ratio),
+            ],
+        }
+    };
+    fronts.chunk_by(|a, b| title(a) == title(b)).map(chart).collect()
 }
 
 fn label(motion: &str, bv: &str, front: bool) -> String {

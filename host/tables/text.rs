@@ -1,6 +1,7 @@
 //! The figures as text, for a terminal.
 
 use super::figures::{Figure612, Figure613, Figure614};
+use super::front::FrontRow;
 use super::theirs::CARD;
 use std::fmt::Write;
 
@@ -123,6 +124,35 @@ impl Printed for Figure614 {
             percent(self.balance),
             percent(self.triangle_tests),
             digits(self.ms),
+        ]
+    }
+}
+
+impl Printed for FrontRow {
+    const CAPTION: &'static str =
+        "A front, by the part of a step that things move; the thesis's bound is half of the node tests";
+    const HEADS: &'static [&'static str] = &[
+        "scene",
+        "motion",
+        "volume",
+        "front",
+        "part of a step",
+        "node tests",
+        "of those without",
+        "traverse ms",
+        "of that without",
+    ];
+    fn row(&self) -> Vec<String> {
+        vec![
+            self.scene.clone(),
+            self.motion.into(),
+            self.bv.into(),
+            yes(self.front),
+            format!("{:.4}", self.part),
+            self.node_tests.to_string(),
+            digits(self.tests_ratio),
+            digits(self.traverse_ms),
+            digits(self.time_ratio),
         ]
     }
 }

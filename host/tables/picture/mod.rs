@@ -2,9 +2,11 @@
 //! who see colours differently; every bar and line is labelled where it stands.
 
 mod bars;
+mod curves;
 mod stacks;
 
 pub use bars::{Bar, Panel, bars};
+pub use curves::{Chart, Curve, curves};
 pub use stacks::{Stack, stacks};
 
 use crate::error::Error;
