@@ -67,6 +67,25 @@ impl Traversal {
     }
 }
 
+/// How the volumes of a tree follow its triangles. All ways give the same bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Refit {
+    /// A launch a level, the seed's way.
+    Levels,
+    /// One launch for all volumes: a block a subtree, the rest by the block that is done last.
+    Treelets,
+    /// One launch without barriers: of two siblings, who comes second goes on to their parent.
+    BottomUp,
+}
+
+impl Refit {
+    /// The fastest way of a machine.
+    pub fn default_for(is_card: bool) -> Refit {
+        if is_card { Refit::Treelets } else { Refit::Levels }
+    }
+}
+
 /// The test of a pair of triangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -118,6 +137,8 @@ pub struct Query {
     pub solver: Option<Solver>,
     /// The volume; `None` for what is fastest.
     pub bv: Option<Bv>,
+    /// The refit; `None` for what is fastest on the machine.
+    pub refit: Option<Refit>,
     /// The walk; `None` for what is fastest on the machine.
     pub traversal: Option<Traversal>,
     /// Discrete: also triangles that share a vertex, where they meet beyond it.
@@ -151,6 +172,11 @@ impl Query {
     /// The volume that will be used.
     pub fn bv(&self) -> Bv {
         self.bv.unwrap_or_default()
+    }
+
+    /// The refit that will be used on a card, or on a CPU.
+    pub fn refit_on(&self, is_card: bool) -> Refit {
+        self.refit.unwrap_or(Refit::default_for(is_card))
     }
 
     /// The walk that will be used on a card, or on a CPU.

@@ -66,12 +66,13 @@ impl Drop for Folder {
 }
 
 const SCENE: [&str; 5] = ["detect", "--scene", "soup-moving", "--triangles", "300"];
-const KEYS: [&str; 17] = [
+const KEYS: [&str; 18] = [
     "triangles",
     "vertices",
     "frames",
     "query",
     "bv",
+    "refit",
     "traversal",
     "solver",
     "backend",
@@ -115,13 +116,16 @@ fn the_summary_has_its_keys() {
 fn choices_change_no_hash() {
     let hash = |more: &[&str]| summary(&[&SCENE[..], &["--json"], more].concat())["hash"].clone();
     let truth = hash(&[]);
-    let same: [&[&str]; 6] = [
+    let same: [&[&str]; 9] = [
         &["--backend", "cpu"],
         &["--threads", "1"],
         &["--threads", "3", "--traversal", "per-leaf"],
         &["--traversal", "per-leaf-spill"],
         &["--solver", "cubic-f64", "--bv", "aabb", "--continuous"],
         &["--repeat", "3"],
+        &["--refit", "levels"],
+        &["--refit", "treelets", "--repeat", "2"],
+        &["--refit", "bottom-up", "--repeat", "2"],
     ];
     for more in same {
         assert_eq!(hash(more), truth, "{more:?}");
@@ -265,6 +269,7 @@ fn bad_arguments_are_refused_with_what_is_known() {
     for (args, known) in [
         (&["detect", "a.ply", "--solver", "magic"][..], &["exact", "moller", "cubic-f32", "cubic-f64"][..]),
         (&["detect", "a.ply", "--traversal", "random"], &["per-leaf", "per-leaf-spill"]),
+        (&["detect", "a.ply", "--refit", "twice"], &["levels", "treelets", "bottom-up"]),
         (&["detect", "a.ply", "--backend", "abacus"], &["cpu", "cuda", "auto"]),
         (&["detect", "a.ply", "--bv", "sphere"], &["aabb"]),
         (&["scene", "cloth", "--out", "x"], &["cloth-ball", "grid", "soup"]),
@@ -352,6 +357,7 @@ fn a_plan_is_what_would_run() {
         "300 triangles, 900 vertices, positions in f32, two frames",
         "Continuous, self",
         "CPU, 2 threads (cpu)",
+        "Levels: the fastest on this machine",
         "aabb, swept",
         "cubic-f64: can miss",
         "MB to begin with",

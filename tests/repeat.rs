@@ -3,7 +3,7 @@
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::Body;
 use nearmiss::pipeline::Stage;
-use nearmiss::query::Motion;
+use nearmiss::query::{Motion, Refit};
 use nearmiss::{Device, Query, Session, scene};
 
 const STAGES: [Stage; 5] = [Stage::Construct, Stage::Fit, Stage::Refit, Stage::Traverse, Stage::Narrow];
@@ -71,6 +71,26 @@ fn a_stage_is_repeated_where_the_body_is_now() {
         }
         assert_eq!(session.detect().expect("an answer").hash(), want, "{stage:?}");
     }
+}
+
+#[test]
+fn every_way_to_refit_can_be_repeated() {
+    let body = scene::scene("cloth-ball", 500, 3).expect("a scene");
+    let mut hashes = Vec::new();
+    for device in [engine(), microscope()] {
+        for refit in [Refit::Levels, Refit::Treelets, Refit::BottomUp] {
+            let query = Query { refit: Some(refit), ..Query::of(Motion::Discrete) };
+            let mut session = Session::new(device.clone(), vec![body.clone()], query).expect("a session");
+            session.move_to(0, later(&body)).expect("moved");
+            assert_eq!(session.repeat_stage(Stage::Refit, 3).expect("runs").len(), 3);
+            session.check_trees().expect("volumes around all");
+            hashes.push(session.detect().expect("an answer").hash());
+            let prints = session.fingerprints().expect("prints");
+            session.repeat_stage(Stage::Refit, 3).expect("runs");
+            assert_eq!(session.fingerprints().expect("prints"), prints, "{refit:?}");
+        }
+    }
+    assert!(hashes.iter().all(|hash| *hash == hashes[0]), "{hashes:?}");
 }
 
 #[test]

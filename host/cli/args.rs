@@ -2,7 +2,7 @@
 
 use crate::device::Backend;
 use crate::pipeline::Stage;
-use crate::query::{Bv, Motion, Query, Solver, Traversal};
+use crate::query::{Bv, Motion, Query, Refit, Solver, Traversal};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -78,6 +78,9 @@ pub struct DetectArgs {
     /// Bounding volume [default: the fastest].
     #[arg(long, value_enum)]
     pub bv: Option<Bv>,
+    /// How the volumes follow the triangles [default: the machine's fastest].
+    #[arg(long, value_enum)]
+    pub refit: Option<Refit>,
     /// How the tree is walked [default: the machine's fastest].
     #[arg(long, value_enum)]
     pub traversal: Option<TraversalArg>,
@@ -124,6 +127,7 @@ impl DetectArgs {
             motion,
             solver: self.solver,
             bv: self.bv,
+            refit: self.refit,
             traversal: self.traversal.map(|walk| walk.choice(self.budget)),
             adjacent: self.adjacent,
         }

@@ -161,6 +161,14 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
     let _ = writeln!(text, "volume     {}{}", query.bv().name(), if swept { ", swept" } else { "" });
     let _ = writeln!(
         text,
+        "refit      {}",
+        match (query.refit, query.refit_on(device.is_card())) {
+            (Some(choice), _) => format!("{choice:?}, as asked"),
+            (None, choice) => format!("{choice:?}: the fastest on this machine"),
+        }
+    );
+    let _ = writeln!(
+        text,
         "traversal  {}",
         match query.traversal {
             Some(choice) => format!("{choice:?}, as asked"),

@@ -8,7 +8,7 @@ use crate::device::emulator::{Emulator, Mode, Order};
 use crate::error::Error;
 use crate::mesh::Body;
 use crate::pipeline::Session;
-use crate::query::{Motion, Query, Traversal};
+use crate::query::{Motion, Query, Refit, Traversal};
 use crate::scene;
 use std::fmt::Write;
 use std::process::ExitCode;
@@ -72,8 +72,14 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
             let line = during("comparing machines", || -> Result<String, Error> {
                 let on_engine = print_of(&engine, bodies, query)?;
                 let mut others = vec![("machine", print_of(&machine, bodies, query)?)];
-                let spilling = Query { traversal: Some(spill), ..query };
-                others.push(("machine, spilling", print_of(&machine, bodies, spilling)?));
+                for (what, refit) in [
+                    ("machine, spilling, by levels", Refit::Levels),
+                    ("machine, spilling, by treelets", Refit::Treelets),
+                    ("machine, spilling, bottom-up", Refit::BottomUp),
+                ] {
+                    let other = Query { traversal: Some(spill), refit: Some(refit), ..query };
+                    others.push((what, print_of(&machine, bodies, other)?));
+                }
                 for (what, other) in &others {
                     if let Some(stage) = difference(&on_engine, other) {
                         faults.push(format!("{name}, {asked}, {what}: {stage}"));

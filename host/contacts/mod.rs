@@ -7,7 +7,7 @@ pub use triangles::{TriangleContact, triangle_contacts};
 use crate::device::Device;
 use crate::mesh::Body;
 use crate::pipeline::{Found, Layout, Stages};
-use crate::query::{Motion, Query, Solver, Traversal};
+use crate::query::{Motion, Query, Refit, Solver, Traversal};
 use nearmiss_kernels::abi::counter;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -214,6 +214,8 @@ pub struct Summary {
     pub query: Motion,
     /// The bounding volume.
     pub bv: &'static str,
+    /// The refit.
+    pub refit: Refit,
     /// The walk.
     pub traversal: Traversal,
     /// The test.
@@ -248,6 +250,7 @@ impl Summary {
             frames: if bodies.iter().any(Body::is_moving) { 2 } else { 1 },
             query: query.motion,
             bv: query.bv().name(),
+            refit: query.refit_on(device.is_card()),
             traversal: query.traversal.unwrap_or(Traversal::default_for(device.is_card())),
             solver: query.solver(),
             backend: device.backend(),

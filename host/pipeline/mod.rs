@@ -7,6 +7,7 @@ mod precision;
 mod room;
 mod timing;
 mod tree;
+mod treelets;
 mod volumes;
 mod walk;
 

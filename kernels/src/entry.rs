@@ -3,9 +3,10 @@
 use crate::abi::*;
 use crate::bv::{Aabb, Linear, Obb};
 use crate::exec::{BINS, Block, WARP};
-use crate::stage::construct::{morton, sort, tree};
+use crate::stage::construct::{morton, sort, tree, treelet};
 use crate::stage::narrow::{discrete, reject, sift, solve};
-use crate::stage::{fit, refit, traverse};
+use crate::stage::refit::{bottom_up, levels, treelets};
+use crate::stage::{fit, traverse};
 use bytemuck::Pod;
 
 /// A kernel as the host knows it.
@@ -87,15 +88,26 @@ kernels! {
     construct_place: tree::place, [TreeArgs], WIDE, 0;
     construct_levels: tree::levels, [TreeArgs], WIDE, 0;
     construct_emit: tree::emit, [TreeArgs], WIDE, 0;
+    construct_mark: treelet::mark, [PlanArgs], WIDE, 0;
+    construct_treelets: treelet::plan, [PlanArgs], WIDE, treelet::SHARED;
     fit_aabb_f32: fit::fit::<f32, Aabb, B>, [FitArgs<f32, Aabb>], WIDE, 0;
     fit_aabb_f64: fit::fit::<f64, Aabb, B>, [FitArgs<f64, Aabb>], WIDE, 0;
     fit_linear_f32: fit::fit::<f32, Linear, B>, [FitArgs<f32, Linear>], WIDE, 0;
     fit_linear_f64: fit::fit::<f64, Linear, B>, [FitArgs<f64, Linear>], WIDE, 0;
     fit_obb_f32: fit::fit::<f32, Obb, B>, [FitArgs<f32, Obb>], WIDE, 0;
     fit_obb_f64: fit::fit::<f64, Obb, B>, [FitArgs<f64, Obb>], WIDE, 0;
-    refit_levels_aabb: refit::levels::<Aabb, B>, [RefitArgs<Aabb>], WIDE, 0;
-    refit_levels_linear: refit::levels::<Linear, B>, [RefitArgs<Linear>], WIDE, 0;
-    refit_levels_obb: refit::levels::<Obb, B>, [RefitArgs<Obb>], WIDE, 0;
+    refit_levels_aabb: levels::levels::<Aabb, B>, [RefitArgs<Aabb>], WIDE, 0;
+    refit_levels_linear: levels::levels::<Linear, B>, [RefitArgs<Linear>], WIDE, 0;
+    refit_levels_obb: levels::levels::<Obb, B>, [RefitArgs<Obb>], WIDE, 0;
+    refit_treelets_aabb_f32: treelets::treelets::<f32, Aabb, B>, [TreeletsArgs<f32, Aabb>], WIDE, treelets::shared_bytes::<Aabb>();
+    refit_treelets_aabb_f64: treelets::treelets::<f64, Aabb, B>, [TreeletsArgs<f64, Aabb>], WIDE, treelets::shared_bytes::<Aabb>();
+    refit_treelets_linear_f32: treelets::treelets::<f32, Linear, B>, [TreeletsArgs<f32, Linear>], WIDE, treelets::shared_bytes::<Linear>();
+    refit_treelets_linear_f64: treelets::treelets::<f64, Linear, B>, [TreeletsArgs<f64, Linear>], WIDE, treelets::shared_bytes::<Linear>();
+    refit_treelets_obb_f32: treelets::treelets::<f32, Obb, B>, [TreeletsArgs<f32, Obb>], WIDE, treelets::shared_bytes::<Obb>();
+    refit_treelets_obb_f64: treelets::treelets::<f64, Obb, B>, [TreeletsArgs<f64, Obb>], WIDE, treelets::shared_bytes::<Obb>();
+    refit_bottom_up_aabb: bottom_up::bottom_up::<Aabb, B>, [BottomUpArgs<Aabb>], WIDE, 0;
+    refit_bottom_up_linear: bottom_up::bottom_up::<Linear, B>, [BottomUpArgs<Linear>], WIDE, 0;
+    refit_bottom_up_obb: bottom_up::bottom_up::<Obb, B>, [BottomUpArgs<Obb>], WIDE, 0;
     traverse_leaves_aabb: traverse::leaves::<Aabb, B>, [TraverseArgs<Aabb>], NARROW, traverse::shared_bytes(NARROW);
     traverse_units_aabb: traverse::units::<Aabb, B>, [TraverseArgs<Aabb>], NARROW, traverse::shared_bytes(NARROW);
     traverse_leaves_linear: traverse::leaves::<Linear, B>, [TraverseArgs<Linear>], NARROW, traverse::shared_bytes(NARROW);
