@@ -1,5 +1,8 @@
 //! The program: exit codes, messages, the JSON summary, files. Scripts rely on these.
 
+#[path = "cli/scene.rs"]
+mod scene;
+
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -235,24 +238,6 @@ fn a_file_of_pairs_is_ascending() {
 }
 
 #[test]
-fn a_scene_that_is_written_is_the_scene() {
-    let folder = Folder::new("scene");
-    for name in ["cloth-ball", "grid", "soup-moving"] {
-        let dir = folder.path("new/deep");
-        let written = ok(&["scene", name, "--triangles", "500", "--seed", "4", "--out", &dir]);
-        let files: Vec<&str> = written.lines().map(|line| line.split(": ").next().expect("a path")).collect();
-        assert_eq!(files.len(), if name == "grid" { 1 } else { 2 }, "{written}");
-        let from_files = summary(&[&["detect", "--json"], &files[..]].concat());
-        let itself = summary(&["detect", "--scene", name, "--triangles", "500", "--seed", "4", "--json"]);
-        for key in ["hash", "triangles", "vertices", "frames", "contacts", "candidates", "query"] {
-            assert_eq!(from_files[key], itself[key], "{name}, {key}");
-        }
-    }
-    let one = ok(&["scene", "balls", "--triangles", "64", "--frames", "1", "--out", &folder.path("one")]);
-    assert_eq!(one.lines().count(), 1);
-}
-
-#[test]
 fn two_meshes_are_asked_against_each_other() {
     let folder = Folder::new("with");
     let a = folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -273,6 +258,10 @@ fn bad_arguments_are_refused_with_what_is_known() {
         (&["detect", "a.ply", "--backend", "abacus"], &["cpu", "cuda", "auto"]),
         (&["detect", "a.ply", "--bv", "sphere"], &["aabb"]),
         (&["scene", "cloth", "--out", "x"], &["cloth-ball", "grid", "soup"]),
+        (&["scene", "draped", "--frames", "3", "--out", "x"], &["which has 2", "cloth-ball", "n-body"]),
+        (&["scene", "grid", "--triangles", "4", "--frames", "2", "--out", "x"], &["which has 1"]),
+        (&["scene", "grid", "--skip", "1", "--out", "x"], &["flamenco", "princess"]),
+        (&["scene", "n-body", "--contact", "--out", "x"], &["cloth-ball", "princess"]),
         (&["detect", "--scene", "cloth"], &["cloth-ball", "grid", "soup"]),
         (&["detect", "--scene", "grid", "--triangles", "4", "--out", "a.xlsx"], &[".csv", ".json"]),
         (&["detect", "--scene", "grid", "--triangles", "4", "--solver", "cubic-f64"], &["exact, moller"]),

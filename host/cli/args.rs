@@ -142,13 +142,19 @@ pub struct SceneArgs {
     /// Triangles, about.
     #[arg(long, default_value_t = 92_230)]
     pub triangles: usize,
-    /// Frames: 1 still, 2 the ends of a step.
-    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=2))]
-    pub frames: u32,
+    /// Frames [default: 2, or what the scene has]. Only animations have more than two.
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..))]
+    pub frames: Option<u32>,
+    /// Frames of an animation to pass over [default: until cloth has fallen and folded, or balls have met].
+    #[arg(long, value_name = "K")]
+    pub skip: Option<u64>,
+    /// Keep cloth from passing through itself, by our own detection: for small meshes.
+    #[arg(long)]
+    pub contact: bool,
     /// Seed.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
-    /// Folder for NAME_t0.ply and NAME_t1.ply.
+    /// Folder for NAME_t0.ply and NAME_t1.ply, or of an animation NAME_0000.ply and so on.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 }

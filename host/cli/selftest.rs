@@ -53,14 +53,14 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
     }
 
     let mut scenes: Vec<(String, Vec<Body>)> = Vec::new();
-    for name in scene::NAMES {
+    for name in scene::FORMULAS {
         // Of n equal triangles all n² / 2 pairs meet: few will do.
         let triangles = if name == "identical" { SMALL } else { args.triangles };
         scenes.push((name.to_owned(), vec![scene::scene(name, triangles, 1)?]));
     }
     scenes.push((
-        "cloth-ball with soup".into(),
-        vec![scene::scene("cloth-ball", args.triangles, 1)?, scene::scene("soup", args.triangles / 10, 2)?],
+        "draped with soup".into(),
+        vec![scene::scene("draped", args.triangles, 1)?, scene::scene("soup", args.triangles / 10, 2)?],
     ));
     if !args.mesh.is_empty() {
         scenes.push((args.mesh[0].display().to_string(), vec![body(&args.mesh)?]));
@@ -92,7 +92,7 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
             let _ = writeln!(table, "{line}");
         }
     }
-    for name in scene::NAMES {
+    for name in scene::FORMULAS {
         let bodies = [scene::scene(name, SMALL, 3)?];
         for query in Query::every() {
             let asked = format!("{:?} by {:?}", query.motion, query.solver());
@@ -108,7 +108,7 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
     let _ = writeln!(
         table,
         "microscope     {} scenes x {} queries x 3 orders",
-        scene::NAMES.len(),
+        scene::FORMULAS.len(),
         Query::every().count()
     );
     for fault in &faults {

@@ -20,7 +20,7 @@ fn prints(device: Device, bodies: &[Body], query: Query) -> Vec<(&'static str, u
 fn every_machine_gives_the_same_bits_at_every_stage() {
     let scenes = [
         vec![scene::soup(150, 4, true).expect("a scene")],
-        vec![scene::cloth_ball(200).expect("a scene"), scene::soup(80, 6, true).expect("a scene")],
+        vec![scene::draped(200).expect("a scene"), scene::soup(80, 6, true).expect("a scene")],
     ];
     for bodies in scenes {
         for query in Query::every() {
@@ -35,7 +35,7 @@ fn every_machine_gives_the_same_bits_at_every_stage() {
 
 #[test]
 fn every_walk_finds_the_same() {
-    let bodies = [scene::soup(200, 4, true).expect("a scene"), scene::cloth_ball(300).expect("a scene")];
+    let bodies = [scene::soup(200, 4, true).expect("a scene"), scene::draped(300).expect("a scene")];
     for bodies in [&bodies[..1], &bodies[1..], &bodies[..]] {
         for motion in [Motion::Discrete, Motion::Continuous] {
             let truth = prints(engine(), bodies, Query::of(motion));
@@ -93,7 +93,7 @@ fn a_refitted_tree_finds_what_a_new_one_does() {
 #[test]
 fn the_same_session_asked_again_says_the_same() {
     for query in Query::every() {
-        let body = scene::cloth_ball(800).expect("a scene");
+        let body = scene::draped(800).expect("a scene");
         let mut session = Session::new(engine(), vec![body], query).expect("a session");
         let first = session.detect().expect("an answer");
         for _ in 0..3 {
