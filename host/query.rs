@@ -1,5 +1,9 @@
 //! Choices are values: one configuration, the same for the library, the command line, the benches and the tests.
 
+mod queues;
+
+pub use queues::{Balance, QueueShape, StealShape};
+
 use crate::error::Error;
 
 /// What is asked of two triangles.
@@ -34,6 +38,12 @@ impl Bv {
     /// Every volume.
     pub const ALL: [Bv; 4] = [Bv::Aabb, Bv::Linear, Bv::Obb, Bv::ObbChild];
 
+    /// The fastest volume that the real scenes have (measured, `docs/performance.md`): what stands still needs no more
+    /// than a box; of what moves, boxes that move with it let a third to a tenth of the pairs through.
+    pub fn default_for(motion: Motion) -> Bv {
+        if motion == Motion::Discrete { Bv::Aabb } else { Bv::Linear }
+    }
+
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
@@ -54,6 +64,10 @@ pub enum Traversal {
         /// Steps before a walk spills; `None` never spills.
         budget: Option<u32>,
     },
+    /// Pairs of nodes from work queues, one a core, evened between launches: the paper's.
+    Queue(QueueShape),
+    /// Pairs of nodes from work queues that help each other out within one launch.
+    Steal(StealShape),
 }
 
 impl Traversal {
@@ -171,7 +185,7 @@ impl Query {
 
     /// The volume that will be used.
     pub fn bv(&self) -> Bv {
-        self.bv.unwrap_or_default()
+        self.bv.unwrap_or(Bv::default_for(self.motion))
     }
 
     /// The refit that will be used on a card, or on a CPU.
@@ -197,6 +211,11 @@ impl Query {
                 what: format!("the solver {solver:?} does not answer a {:?} query", self.motion),
                 advice: format!("choose one of: {known}"),
             });
+        }
+        match self.traversal {
+            Some(Traversal::Queue(shape)) => shape.check()?,
+            Some(Traversal::Steal(shape)) => shape.check()?,
+            Some(Traversal::PerLeaf { .. }) | None => {}
         }
         if self.adjacent && (self.motion != Motion::Discrete || solver != Solver::Exact) {
             return Err(Error::Choice {

@@ -119,11 +119,14 @@ fn the_summary_has_its_keys() {
 fn choices_change_no_hash() {
     let hash = |more: &[&str]| summary(&[&SCENE[..], &["--json"], more].concat())["hash"].clone();
     let truth = hash(&[]);
-    let same: [&[&str]; 9] = [
+    let same: [&[&str]; 12] = [
         &["--backend", "cpu"],
         &["--threads", "1"],
         &["--threads", "3", "--traversal", "per-leaf"],
         &["--traversal", "per-leaf-spill"],
+        &["--traversal", "queue", "--repeat", "2"],
+        &["--traversal", "queue-gtx285", "--cores", "128"],
+        &["--traversal", "steal", "--cores", "3", "--queue", "5"],
         &["--solver", "cubic-f64", "--bv", "aabb", "--continuous"],
         &["--repeat", "3"],
         &["--refit", "levels"],
@@ -253,7 +256,10 @@ fn two_meshes_are_asked_against_each_other() {
 fn bad_arguments_are_refused_with_what_is_known() {
     for (args, known) in [
         (&["detect", "a.ply", "--solver", "magic"][..], &["exact", "moller", "cubic-f32", "cubic-f64"][..]),
-        (&["detect", "a.ply", "--traversal", "random"], &["per-leaf", "per-leaf-spill"]),
+        (
+            &["detect", "a.ply", "--traversal", "random"],
+            &["per-leaf", "per-leaf-spill", "queue", "queue-gtx285", "steal"],
+        ),
         (&["detect", "a.ply", "--refit", "twice"], &["levels", "treelets", "bottom-up"]),
         (&["detect", "a.ply", "--backend", "abacus"], &["cpu", "cuda", "auto"]),
         (&["detect", "a.ply", "--bv", "sphere"], &["aabb"]),
@@ -357,6 +363,10 @@ fn a_plan_is_what_would_run() {
         plan(&["--discrete", "--solver", "moller", "--traversal", "per-leaf-spill", "--backend", "cpu"]);
     for part in ["Discrete, self", "moller: a float test", "as asked", "aabb\n"] {
         assert!(other.contains(part), "{part} is not in {other}");
+    }
+    let queues = plan(&["--traversal", "queue-gtx285", "--queue", "100", "--backend", "cpu"]);
+    for part in ["cores: Some(30)", "local: 100", "take: 192", "balance: Copy"] {
+        assert!(queues.contains(part), "{part} is not in {queues}");
     }
     let folder = Folder::new("plan");
     let a = folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");

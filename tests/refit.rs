@@ -75,7 +75,7 @@ fn agree(device: impl Fn() -> Device, body: &Body) {
 
 #[test]
 fn every_way_gives_the_same_bits() {
-    let known = [scene::single(), scene::line(2_000), scene::soup(3_000, 5, false), scene::cloth_ball(4_000)];
+    let known = [scene::single(), scene::line(2_000), scene::soup(3_000, 5, false), scene::draped(4_000)];
     let mut bodies: Vec<Body> = known.map(|body| body.expect("a scene")).to_vec();
     // Around the sizes of treelets and their chunks; nodes of the top more than a block has lanes.
     let sizes = [2, 3, 255, 256, 257, 511, 512, 513, 140_000];

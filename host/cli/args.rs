@@ -2,7 +2,7 @@
 
 use crate::device::Backend;
 use crate::pipeline::Stage;
-use crate::query::{Bv, Motion, Query, Refit, Solver, Traversal};
+use crate::query::{Bv, Motion, Query, QueueShape, Refit, Solver, StealShape, Traversal};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -35,14 +35,30 @@ pub enum TraversalArg {
     PerLeaf,
     /// A walk a leaf; long walks give their rest to the next round.
     PerLeafSpill,
+    /// Work queues of pairs of nodes, as many as the machine runs; evened between launches.
+    Queue,
+    /// The same with the paper's machine and constants: 30 queues, evened by copying.
+    QueueGtx285,
+    /// Work queues of pairs of nodes that help each other out within one launch.
+    Steal,
 }
 
 impl TraversalArg {
-    fn choice(self, budget: Option<u32>) -> Traversal {
+    fn choice(self, DetectArgs { budget, cores, queue, .. }: &DetectArgs) -> Traversal {
+        let queues = |shape: QueueShape| {
+            let (cores, local) = (cores.or(shape.cores), queue.unwrap_or(shape.local));
+            Traversal::Queue(QueueShape { cores, local, ..shape })
+        };
         match self {
             TraversalArg::PerLeaf => Traversal::PerLeaf { budget: None },
             TraversalArg::PerLeafSpill => {
                 Traversal::PerLeaf { budget: Some(budget.unwrap_or(Traversal::CARD_BUDGET)) }
+            }
+            TraversalArg::Queue => queues(QueueShape::native()),
+            TraversalArg::QueueGtx285 => queues(QueueShape::gtx285()),
+            TraversalArg::Steal => {
+                let shape = StealShape::native();
+                Traversal::Steal(StealShape { cores: *cores, local: queue.unwrap_or(shape.local), ..shape })
             }
         }
     }
@@ -87,6 +103,12 @@ pub struct DetectArgs {
     /// Steps of a walk before it gives its rest away (per-leaf-spill).
     #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u32).range(1..))]
     pub budget: Option<u32>,
+    /// Work queues (queue, queue-gtx285, steal) [default: what the machine runs at once, or the paper's 30].
+    #[arg(long, value_name = "N", requires = "traversal", value_parser = clap::value_parser!(u32).range(1..=65_536))]
+    pub cores: Option<u32>,
+    /// Units that a work queue holds on chip [default: 1024, or the paper's 600].
+    #[arg(long, value_name = "N", requires = "traversal", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub queue: Option<u32>,
     /// The test of a pair [default: exact for discrete, cubic-f64 for continuous].
     #[arg(long, value_enum)]
     pub solver: Option<Solver>,
@@ -128,7 +150,7 @@ impl DetectArgs {
             solver: self.solver,
             bv: self.bv,
             refit: self.refit,
-            traversal: self.traversal.map(|walk| walk.choice(self.budget)),
+            traversal: self.traversal.map(|walk| walk.choice(self)),
             adjacent: self.adjacent,
         }
     }
@@ -173,6 +195,25 @@ pub enum Table {
     Shares,
 }
 
+/// Sizes of work queues.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Profile {
+    /// The thesis's: 30 queues, evened by copying.
+    Gtx285,
+    /// As many queues as the machine runs at once.
+    Native,
+}
+
+impl Profile {
+    /// The walk with those sizes.
+    pub fn walk(self) -> Traversal {
+        Traversal::Queue(match self {
+            Profile::Gtx285 => QueueShape::gtx285(),
+            Profile::Native => QueueShape::native(),
+        })
+    }
+}
+
 #[derive(Args)]
 pub struct TablesArgs {
     /// Scenes [default: all]; with --mesh, the scene of the thesis that the frames are.
@@ -197,6 +238,10 @@ pub struct TablesArgs {
     /// Which volumes; the thesis has aabb and obb.
     #[arg(long, num_args = 1.., value_enum, default_values_t = [Bv::Aabb, Bv::Obb])]
     pub bv: Vec<Bv>,
+    /// Walk by work queues, evened between launches, and refit a launch a level, as the thesis did: with its machine's sizes,
+    /// or with this one's [default: the fastest walk and refit, without queues].
+    #[arg(long, value_enum)]
+    pub profile: Option<Profile>,
     /// Build the tree anew at every N-th frame; that time is not part of a frame's [default: only at the first].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub rebuild_every: Option<u32>,

@@ -1,6 +1,6 @@
 //! `tables`.
 
-use super::args::{Table, TablesArgs};
+use super::args::{Profile, Table, TablesArgs};
 use super::progress::during;
 use crate::device::Device;
 use crate::error::Error;
@@ -77,7 +77,7 @@ fn scene(args: &TablesArgs, device: &Device, frames: &Frames, figures: &mut Figu
     let mut cells = Vec::new();
     for way in Way::every(&volumes(args)) {
         let every = args.rebuild_every.map(|n| n as usize);
-        let cell = || tables::measure(device, frames, way, way.query(None), every);
+        let cell = || tables::measure(device, frames, way, way.query(args.profile.map(Profile::walk)), every);
         cells.push(during(format!("{name}: {way}"), cell)?);
     }
     let differing = tables::agree(name, &cells)?;

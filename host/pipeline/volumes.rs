@@ -6,7 +6,7 @@ use super::treelets::{Plan, Way};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use nearmiss_kernels::abi::{
-    BottomUpArgs, FitArgs, Frames, Node, RefitArgs, Span, TraverseArgs, TreeletsArgs,
+    BottomUpArgs, FitArgs, Frames, Node, QueueArgs, RefitArgs, Span, StealArgs, TraverseArgs, TreeletsArgs,
 };
 use nearmiss_kernels::bv::{Aabb, Axes, Linear, Obb, Volume};
 use nearmiss_kernels::bvh;
@@ -26,6 +26,10 @@ pub trait Kernels: Volume {
     type Leaves: Entry<Args = TraverseArgs<Self>>;
     /// A walk a unit that was left over.
     type Units: Entry<Args = TraverseArgs<Self>>;
+    /// A round of work queues.
+    type Queue: Entry<Args = QueueArgs<Self>>;
+    /// Work queues that help each other out.
+    type Steal: Entry<Args = StealArgs<Self>>;
 }
 
 impl Kernels for Aabb {
@@ -35,6 +39,8 @@ impl Kernels for Aabb {
     type BottomUp = entry::refit_bottom_up_aabb;
     type Leaves = entry::traverse_leaves_aabb;
     type Units = entry::traverse_units_aabb;
+    type Queue = entry::traverse_queue_aabb;
+    type Steal = entry::traverse_steal_aabb;
 }
 
 impl Kernels for Linear {
@@ -44,6 +50,8 @@ impl Kernels for Linear {
     type BottomUp = entry::refit_bottom_up_linear;
     type Leaves = entry::traverse_leaves_linear;
     type Units = entry::traverse_units_linear;
+    type Queue = entry::traverse_queue_linear;
+    type Steal = entry::traverse_steal_linear;
 }
 
 impl Kernels for Obb {
@@ -53,6 +61,8 @@ impl Kernels for Obb {
     type BottomUp = entry::refit_bottom_up_obb;
     type Leaves = entry::traverse_leaves_obb;
     type Units = entry::traverse_units_obb;
+    type Queue = entry::traverse_queue_obb;
+    type Steal = entry::traverse_steal_obb;
 }
 
 /// The volumes of a tree, kept on the device.

@@ -3,10 +3,12 @@
 use crate::abi::*;
 use crate::bv::{Aabb, Linear, Obb};
 use crate::exec::{BINS, Block, WARP};
+use crate::queue::worker;
 use crate::stage::construct::{morton, sort, tree, treelet};
 use crate::stage::narrow::{discrete, reject, sift, solve};
 use crate::stage::refit::{bottom_up, levels, treelets};
-use crate::stage::{fit, traverse};
+use crate::stage::traverse::{queue, steal};
+use crate::stage::{balance, fit, traverse};
 use bytemuck::Pod;
 
 /// A kernel as the host knows it.
@@ -72,6 +74,8 @@ const WIDE: u32 = 256;
 /// Lanes of kernels with long or uneven work: small blocks, so that few lanes wait for a long one (measured:
 /// `benches/NOTES.md`).
 const NARROW: u32 = 64;
+/// Lanes of the one block that evens the queues, as in the paper.
+const BALANCE: u32 = 512;
 /// Shared memory of a radix scatter: the bins, and each warp's.
 const RANKS: u32 = 4 * BINS * (1 + WIDE / WARP);
 
@@ -114,6 +118,13 @@ kernels! {
     traverse_units_linear: traverse::units::<Linear, B>, [TraverseArgs<Linear>], NARROW, traverse::shared_bytes(NARROW);
     traverse_leaves_obb: traverse::leaves::<Obb, B>, [TraverseArgs<Obb>], NARROW, traverse::shared_bytes(NARROW);
     traverse_units_obb: traverse::units::<Obb, B>, [TraverseArgs<Obb>], NARROW, traverse::shared_bytes(NARROW);
+    traverse_queue_aabb: queue::queue::<Aabb, B>, [QueueArgs<Aabb>], NARROW, worker::shared_bytes(NARROW);
+    traverse_steal_aabb: steal::steal::<Aabb, B>, [StealArgs<Aabb>], NARROW, worker::shared_bytes(NARROW);
+    traverse_queue_linear: queue::queue::<Linear, B>, [QueueArgs<Linear>], NARROW, worker::shared_bytes(NARROW);
+    traverse_steal_linear: steal::steal::<Linear, B>, [StealArgs<Linear>], NARROW, worker::shared_bytes(NARROW);
+    traverse_queue_obb: queue::queue::<Obb, B>, [QueueArgs<Obb>], NARROW, worker::shared_bytes(NARROW);
+    traverse_steal_obb: steal::steal::<Obb, B>, [StealArgs<Obb>], NARROW, worker::shared_bytes(NARROW);
+    balance_copy: balance::copy, [BalanceArgs], BALANCE, 0;
     narrow_moller_f32: discrete::moller::<f32, B>, [DiscreteArgs<f32>], WIDE, 0;
     narrow_moller_f64: discrete::moller::<f64, B>, [DiscreteArgs<f64>], WIDE, 0;
     narrow_filter_f32: discrete::filter::<f32, B>, [DiscreteArgs<f32>], WIDE, 0;

@@ -2,7 +2,7 @@
 
 use super::support::{machines, microscope};
 use super::*;
-use nearmiss::query::Traversal;
+use nearmiss::query::{QueueShape, StealShape, Traversal};
 use nearmiss::{Device, Session};
 
 /// The answer's hash, and what every stage left behind.
@@ -39,11 +39,17 @@ fn every_walk_finds_the_same() {
     for bodies in [&bodies[..1], &bodies[1..], &bodies[..]] {
         for motion in [Motion::Discrete, Motion::Continuous] {
             let truth = prints(engine(), bodies, Query::of(motion));
-            for budget in [Some(1), Some(3), Some(64), None] {
-                let query = Query { traversal: Some(Traversal::PerLeaf { budget }), ..Query::of(motion) };
-                assert_eq!(prints(engine(), bodies, query), truth, "{budget:?}");
+            let walks = [Some(1), Some(3), Some(64), None].map(|budget| Traversal::PerLeaf { budget });
+            let queues = [
+                Traversal::Queue(QueueShape { cores: Some(9), ..QueueShape::native() }),
+                Traversal::Queue(QueueShape { segment: 999, ..QueueShape::gtx285() }),
+                Traversal::Steal(StealShape { cores: Some(9), pool: 9_999, ..StealShape::native() }),
+            ];
+            for traversal in walks.into_iter().chain(queues) {
+                let query = Query { traversal: Some(traversal), ..Query::of(motion) };
+                assert_eq!(prints(engine(), bodies, query), truth, "{traversal:?}");
                 let order = support::ORDERS[2];
-                assert_eq!(prints(microscope(order), bodies, query), truth, "{budget:?}, {order:?}");
+                assert_eq!(prints(microscope(order), bodies, query), truth, "{traversal:?}, {order:?}");
             }
         }
     }

@@ -345,8 +345,24 @@ pub mod counter {
     pub const EE_SURVIVORS: u32 = 9;
     /// Units spilled by round r of the traversal: this and the following [`super::ROUNDS`].
     pub const SPILLED: u32 = 10;
+    /// Pairs of nodes where the descent ended.
+    pub const ENDS: u32 = SPILLED + super::ROUNDS;
+    /// Most units that waited in the longest list of a queue, or past its end.
+    pub const QUEUED: u32 = ENDS + 1;
+    /// Units that were left when the last round was over.
+    pub const UNFINISHED: u32 = ENDS + 2;
+    /// Rounds of the queues that had work.
+    pub const QUEUE_ROUNDS: u32 = ENDS + 3;
+    /// How often a queue ran dry.
+    pub const IDLE_EXITS: u32 = ENDS + 4;
+    /// Units that a queue on chip had no room for.
+    pub const QUEUE_SPILLS: u32 = ENDS + 5;
+    /// Units that a balance moved.
+    pub const MOVES: u32 = ENDS + 6;
+    /// Units that a block took from the pool.
+    pub const STOLEN: u32 = ENDS + 7;
     /// How many counters there are.
-    pub const COUNT: u32 = SPILLED + super::ROUNDS;
+    pub const COUNT: u32 = ENDS + 8;
 }
 /// Rounds of the traversal that may spill; one more, without a budget, ends it.
 pub const ROUNDS: u32 = 4;
