@@ -81,7 +81,7 @@ fn every_figure_is_written() {
     for part in ["Figure 6.12", "Figure 6.13", "Figure 6.14", "ours on CPU", "GTX 285", "different scenes"] {
         assert!(text.contains(part), "{part}: {text}");
     }
-    let shared = ["scene", "model", "triangles", "their_triangles", "device"];
+    let shared = ["scene", "model", "triangles", "their_triangles", "device", "profile"];
     let asked = ["motion", "bv", "front"];
     let heads = [
         (
@@ -260,6 +260,11 @@ fn queues_of_either_size_answer_the_same() {
     let want = hashes(&[]);
     for profile in ["gtx285", "native"] {
         assert_eq!(hashes(&["--profile", profile]), want, "{profile}");
+        let folder = Folder::new(profile);
+        let text = small(&["--profile", profile, "--out", folder.name()]);
+        assert!(text.contains(&format!("work queues {profile}")), "{text}");
+        assert!(folder.read("figure-6.13.svg").contains(&format!("work queues {profile}")));
+        assert!(column(&folder.csv("figure-6.12.csv"), "profile").iter().all(|name| *name == profile));
     }
     assert!(refused(2, &["--profile", "h200"]).contains("gtx285, native"));
 }

@@ -205,6 +205,14 @@ pub enum Profile {
 }
 
 impl Profile {
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Profile::Gtx285 => "gtx285",
+            Profile::Native => "native",
+        }
+    }
+
     /// The walk with those sizes.
     pub fn walk(self) -> Traversal {
         Traversal::Queue(match self {

@@ -13,6 +13,8 @@ use std::path::Path;
 pub struct Figures {
     /// Our machine.
     pub device: String,
+    /// Work queues of which size, or `fastest`.
+    pub profile: &'static str,
     /// The thesis's machine.
     pub theirs: &'static str,
     /// Construction and refit.
@@ -25,15 +27,15 @@ pub struct Figures {
 
 impl Figures {
     /// No figures yet.
-    pub fn new(device: String) -> Figures {
+    pub fn new(device: String, profile: &'static str) -> Figures {
         let (figure_6_12, figure_6_13, figure_6_14) = Default::default();
-        Figures { device, theirs: CARD, figure_6_12, figure_6_13, figure_6_14 }
+        Figures { device, profile, theirs: CARD, figure_6_12, figure_6_13, figure_6_14 }
     }
 
     /// For people.
     pub fn text(&self) -> String {
         let figures = [text(&self.figure_6_12), text(&self.figure_6_13), text(&self.figure_6_14)];
-        let mut all = format!("ours on {}\n\n", self.device);
+        let mut all = format!("ours on {}\n\n", self.machine());
         for figure in figures.iter().filter(|figure| !figure.is_empty()) {
             all += figure;
         }
@@ -41,6 +43,13 @@ impl Figures {
             all += &format!("{remark}\n");
         }
         all
+    }
+
+    /// The machine, and the work queues where there are some.
+    fn machine(&self) -> String {
+        let queues =
+            if self.profile == "fastest" { String::new() } else { format!(", work queues {}", self.profile) };
+        format!("{}{queues}", self.device)
     }
 
     /// What a reader of the figures must know.
@@ -95,7 +104,7 @@ impl Figures {
                     theirs: row.theirs_ms,
                 },
             );
-            both("figure-6.12", csv(&self.figure_6_12), bars(title, &self.device, &panels))?;
+            both("figure-6.12", csv(&self.figure_6_12), bars(title, &self.machine(), &panels))?;
         }
         if !self.figure_6_13.is_empty() {
             let title = "Figure 6.13: a frame, from positions to contacts";
@@ -108,12 +117,12 @@ impl Figures {
                     theirs: row.theirs_ms,
                 },
             );
-            both("figure-6.13", csv(&self.figure_6_13), bars(title, &self.device, &panels))?;
+            both("figure-6.13", csv(&self.figure_6_13), bars(title, &self.machine(), &panels))?;
         }
         if !self.figure_6_14.is_empty() {
             let title = "Figure 6.14: where a frame's time goes";
             let all: Vec<Stack> = self.figure_6_14.iter().map(stack).collect();
-            both("figure-6.14", csv(&self.figure_6_14), stacks(title, &self.device, &all))?;
+            both("figure-6.14", csv(&self.figure_6_14), stacks(title, &self.machine(), &all))?;
         }
         Ok(names)
     }
@@ -124,7 +133,7 @@ fn label(motion: &str, bv: &str, front: bool) -> String {
 }
 
 fn is_like(scene: &str, triangles: usize) -> bool {
-    Paper::new(scene, triangles, String::new()).is_like()
+    Paper::new(scene, triangles, String::new(), "").is_like()
 }
 
 /// A panel's title, which says so where the thesis's scene has another size.
