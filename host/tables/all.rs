@@ -59,11 +59,13 @@ impl Figures {
         let mut remarks = Vec::new();
         for (scene, ours, theirs) in of_612.chain(of_613) {
             let Some(theirs) = theirs.filter(|_| !is_like(scene, ours)) else { continue };
-            remarks.push(format!(
+            let remark = format!(
                 "{scene}: ours has {ours} triangles and theirs {theirs}; its ratios compare different scenes."
-            ));
+            );
+            if !remarks.contains(&remark) {
+                remarks.push(remark);
+            }
         }
-        remarks.dedup();
         let differing: usize = self.figure_6_13.iter().map(|row| row.differing).sum();
         if differing > 0 {
             remarks.push(format!(
