@@ -390,16 +390,3 @@ fn a_small_selftest_passes() {
     assert!(text.contains("ok: every stage agrees to the bit"), "{text}");
     assert!(!text.contains("DIFFERS"));
 }
-
-#[test]
-fn one_stage_can_be_repeated() {
-    let plain = summary(&[&SCENE[..], &["--json"]].concat());
-    for stage in ["construct", "fit", "refit", "traverse", "narrow"] {
-        let only = summary(&[&SCENE[..], &["--json", "--repeat", "3", "--only", stage]].concat());
-        assert_eq!(only["hash"], plain["hash"], "{stage}");
-        assert!(only["ms"][stage].as_f64().expect("ms") >= 0.0, "{stage}");
-    }
-    assert!(refused(2, &[&SCENE[..], &["--only", "traverse"]].concat()).contains("--repeat"));
-    let unknown = refused(2, &[&SCENE[..], &["--repeat", "3", "--only", "sort"]].concat());
-    assert!(unknown.contains("construct, fit, refit, traverse, narrow"), "{unknown}");
-}

@@ -102,3 +102,29 @@ fn nothing_has_no_stages() {
         assert_eq!(session.repeat_stage(stage, 4).expect("no runs"), Vec::<f64>::new());
     }
 }
+
+#[test]
+fn the_program_repeats_one_stage() {
+    let run = |more: &[&str]| {
+        let scene = ["detect", "--scene", "soup-moving", "--triangles", "300", "--backend", "cpu", "--json"];
+        let mut program = std::process::Command::new(env!("CARGO_BIN_EXE_nearmiss"));
+        program.args(scene).args(more).output().expect("the program starts")
+    };
+    let summary = |more: &[&str]| -> serde_json::Value {
+        serde_json::from_slice(&run(more).stdout).expect("a summary")
+    };
+    let refused = |more: &[&str]| {
+        let output = run(more);
+        assert_eq!(output.status.code(), Some(2), "{more:?}");
+        String::from_utf8(output.stderr).expect("text")
+    };
+    let plain = summary(&[]);
+    for stage in ["construct", "fit", "refit", "traverse", "narrow"] {
+        let only = summary(&["--repeat", "3", "--only", stage]);
+        assert_eq!(only["hash"], plain["hash"], "{stage}");
+        assert!(only["ms"][stage].as_f64().expect("ms") >= 0.0, "{stage}");
+    }
+    assert!(refused(&["--only", "traverse"]).contains("--repeat"));
+    let unknown = refused(&["--repeat", "3", "--only", "sort"]);
+    assert!(unknown.contains("construct, fit, refit, traverse, narrow"), "{unknown}");
+}
