@@ -50,8 +50,8 @@ impl<V: Kernels> Walked<'_, V> {
     }
 }
 
-/// Blocks of a kernel by pairs of nodes that a machine runs at once: half as many as its lanes allow, since registers (72 a
-/// lane of 128) and shared memory (12 KB a block) leave room for no more.
+/// Blocks of a kernel by pairs of nodes that a machine runs at once: half as many as its lanes allow, since registers (64 to
+/// 127 a lane) and shared memory (12 KB a block) leave room for no more.
 fn resident<E: Entry>(device: &Device) -> u32 {
     device.blocks_striding::<E>(u32::MAX as usize).div_ceil(2)
 }

@@ -15,7 +15,7 @@ use nearmiss_kernels::entry::balance_copy;
 const BATCH: u32 = 8;
 /// Rounds that can be launched without the host.
 const MOST_ROUNDS: u32 = 128;
-/// Rounds that are launched beyond those that the last frame needed; one without work costs a launch.
+/// Rounds that are launched beyond those that the last frames needed; one without work costs a launch.
 const MORE_ROUNDS: u32 = 2;
 /// Units that the first block makes of the roots before the others help.
 const FIRST_UNITS: u32 = 64;
@@ -32,6 +32,8 @@ pub struct Queue {
     /// Copy: where each queue's units begin among all.
     starts: Buffer<u64>,
     plan: Plan,
+    /// The longest plan of late: each frame takes one off, since a machine's rounds vary from run to run.
+    longest: u32,
     balances: Vec<[Mark; 2]>,
 }
 
@@ -74,6 +76,7 @@ impl Queue {
             idle: words(rounds)?,
             starts: words(counts[1])?,
             plan: Plan(None),
+            longest: 0,
             balances: Vec::new(),
         })
     }
@@ -195,7 +198,9 @@ impl<V: Kernels> Walk<V> for Queue {
 
     fn finish(&mut self, counters: &[u64]) -> Result<(), Error> {
         let rounds = counters[counter::QUEUE_ROUNDS as usize] + MORE_ROUNDS as u64;
+        let rounds = rounds.max(self.longest.saturating_sub(1) as u64);
         self.plan.0 = (rounds <= MOST_ROUNDS as u64).then_some(rounds as u32);
+        self.longest = self.plan.0.unwrap_or(0);
         Ok(())
     }
 

@@ -16,9 +16,9 @@ arguments! {
         pairs: Span<Pair>,
         /// Out, with [`FRONT`]: the pairs of nodes where the descent ended.
         ends: Span<Pair>,
-        /// Counters, see [`counter`].
+        /// Counters, see [`counter`](super::counter).
         counters: Span<u64>,
-        /// Bits: [`SELF`], [`KEEP_ADJACENT`], [`FRONT`].
+        /// Bits: [`SELF`](super::SELF), [`KEEP_ADJACENT`](super::KEEP_ADJACENT), [`FRONT`].
         flags: u32,
         /// Units that a block's own queue may hold, at least 1.
         local: u32,
@@ -66,7 +66,7 @@ arguments! {
         even: Span<Pair>,
         /// Out: how many each segment holds.
         even_counts: Span<u64>,
-        /// Counters, see [`counter`].
+        /// Counters, see [`counter`](super::counter).
         counters: Span<u64>,
         /// How many segments.
         cores: u32,

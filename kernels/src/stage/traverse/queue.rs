@@ -81,8 +81,13 @@ fn leave<V: Volume, B: Block>(
     b.phase(|l| {
         if let Some(places) = &places {
             let mut i = l.lane();
-            while i < count {
-                places.put(l, i, if i < top { worker.unit(l, i) } else { unit(l, i - top) });
+            while i < top {
+                places.put(l, i, worker.unit(l, i));
+                i += lanes;
+            }
+            let mut i = l.lane();
+            while i < rest {
+                places.put(l, top + i, unit(l, i));
                 i += lanes;
             }
         }
