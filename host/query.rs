@@ -1,5 +1,9 @@
 //! Choices are values: one configuration, the same for the library, the command line, the benches and the tests.
 
+mod queues;
+
+pub use queues::{Balance, QueueShape, StealShape};
+
 use crate::error::Error;
 
 /// What is asked of two triangles.
@@ -34,6 +38,12 @@ impl Bv {
     /// Every volume.
     pub const ALL: [Bv; 4] = [Bv::Aabb, Bv::Linear, Bv::Obb, Bv::ObbChild];
 
+    /// The fastest volume that the real scenes have (measured, `docs/performance.md`): what stands still needs no more
+    /// than a box; of what moves, boxes that move with it let a third to a tenth of the pairs through.
+    pub fn default_for(motion: Motion) -> Bv {
+        if motion == Motion::Discrete { Bv::Aabb } else { Bv::Linear }
+    }
+
     /// Its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
@@ -54,6 +64,10 @@ pub enum Traversal {
         /// Steps before a walk spills; `None` never spills.
         budget: Option<u32>,
     },
+    /// Pairs of nodes from work queues, one a core, evened between launches: the paper's.
+    Queue(QueueShape),
+    /// Pairs of nodes from work queues that help each other out within one launch.
+    Steal(StealShape),
 }
 
 impl Traversal {
@@ -64,6 +78,25 @@ impl Traversal {
     /// The fastest walk of a machine: a card must not wait for its longest walk; a CPU's threads balance by themselves.
     pub fn default_for(is_card: bool) -> Traversal {
         Traversal::PerLeaf { budget: is_card.then_some(Traversal::CARD_BUDGET) }
+    }
+}
+
+/// How the volumes of a tree follow its triangles. All ways give the same bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Refit {
+    /// A launch a level, the seed's way.
+    Levels,
+    /// One launch for all volumes: a block a subtree, the rest by the block that is done last.
+    Treelets,
+    /// One launch without barriers: of two siblings, who comes second goes on to their parent.
+    BottomUp,
+}
+
+impl Refit {
+    /// The fastest way of a machine.
+    pub fn default_for(is_card: bool) -> Refit {
+        if is_card { Refit::Treelets } else { Refit::Levels }
     }
 }
 
@@ -118,6 +151,8 @@ pub struct Query {
     pub solver: Option<Solver>,
     /// The volume; `None` for what is fastest.
     pub bv: Option<Bv>,
+    /// The refit; `None` for what is fastest on the machine.
+    pub refit: Option<Refit>,
     /// The walk; `None` for what is fastest on the machine.
     pub traversal: Option<Traversal>,
     /// Discrete: also triangles that share a vertex, where they meet beyond it.
@@ -150,7 +185,12 @@ impl Query {
 
     /// The volume that will be used.
     pub fn bv(&self) -> Bv {
-        self.bv.unwrap_or_default()
+        self.bv.unwrap_or(Bv::default_for(self.motion))
+    }
+
+    /// The refit that will be used on a card, or on a CPU.
+    pub fn refit_on(&self, is_card: bool) -> Refit {
+        self.refit.unwrap_or(Refit::default_for(is_card))
     }
 
     /// The walk that will be used on a card, or on a CPU.
@@ -171,6 +211,11 @@ impl Query {
                 what: format!("the solver {solver:?} does not answer a {:?} query", self.motion),
                 advice: format!("choose one of: {known}"),
             });
+        }
+        match self.traversal {
+            Some(Traversal::Queue(shape)) => shape.check()?,
+            Some(Traversal::Steal(shape)) => shape.check()?,
+            Some(Traversal::PerLeaf { .. }) | None => {}
         }
         if self.adjacent && (self.motion != Motion::Discrete || solver != Solver::Exact) {
             return Err(Error::Choice {

@@ -24,13 +24,13 @@ fn found(bodies: &[Body], motion: Motion) -> Contacts {
 
 /// Scenes with discrete contacts, adjacent triangles among them.
 fn still_scenes() -> Vec<Body> {
-    let all = [scene::grid(3), scene::soup(250, 2, false), scene::cloth_ball(400)];
+    let all = [scene::grid(3), scene::soup(250, 2, false), scene::draped(400)];
     all.into_iter().map(|body| body.expect("a scene")).collect()
 }
 
 /// Scenes in motion.
 fn moving_scenes() -> Vec<Body> {
-    [scene::soup(250, 2, true), scene::cloth_ball(1_500), scene::balls(6, 1, 3)]
+    [scene::soup(250, 2, true), scene::draped(1_500), scene::balls(6, 1, 3)]
         .into_iter()
         .map(|body| body.expect("a scene"))
         .collect()

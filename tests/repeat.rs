@@ -3,7 +3,7 @@
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::Body;
 use nearmiss::pipeline::Stage;
-use nearmiss::query::Motion;
+use nearmiss::query::{Motion, Refit};
 use nearmiss::{Device, Query, Session, scene};
 
 const STAGES: [Stage; 5] = [Stage::Construct, Stage::Fit, Stage::Refit, Stage::Traverse, Stage::Narrow];
@@ -74,6 +74,26 @@ fn a_stage_is_repeated_where_the_body_is_now() {
 }
 
 #[test]
+fn every_way_to_refit_can_be_repeated() {
+    let body = scene::scene("cloth-ball", 500, 3).expect("a scene");
+    let mut hashes = Vec::new();
+    for device in [engine(), microscope()] {
+        for refit in [Refit::Levels, Refit::Treelets, Refit::BottomUp] {
+            let query = Query { refit: Some(refit), ..Query::of(Motion::Discrete) };
+            let mut session = Session::new(device.clone(), vec![body.clone()], query).expect("a session");
+            session.move_to(0, later(&body)).expect("moved");
+            assert_eq!(session.repeat_stage(Stage::Refit, 3).expect("runs").len(), 3);
+            session.check_trees().expect("volumes around all");
+            hashes.push(session.detect().expect("an answer").hash());
+            let prints = session.fingerprints().expect("prints");
+            session.repeat_stage(Stage::Refit, 3).expect("runs");
+            assert_eq!(session.fingerprints().expect("prints"), prints, "{refit:?}");
+        }
+    }
+    assert!(hashes.iter().all(|hash| *hash == hashes[0]), "{hashes:?}");
+}
+
+#[test]
 fn nothing_has_no_stages() {
     let empty = nearmiss::Mesh::new("empty", nearmiss::mesh::Positions::F32(Vec::new()), Vec::new());
     let bodies = vec![Body::still(empty.expect("a mesh"))];
@@ -81,4 +101,30 @@ fn nothing_has_no_stages() {
     for stage in STAGES {
         assert_eq!(session.repeat_stage(stage, 4).expect("no runs"), Vec::<f64>::new());
     }
+}
+
+#[test]
+fn the_program_repeats_one_stage() {
+    let run = |more: &[&str]| {
+        let scene = ["detect", "--scene", "soup-moving", "--triangles", "300", "--backend", "cpu", "--json"];
+        let mut program = std::process::Command::new(env!("CARGO_BIN_EXE_nearmiss"));
+        program.args(scene).args(more).output().expect("the program starts")
+    };
+    let summary = |more: &[&str]| -> serde_json::Value {
+        serde_json::from_slice(&run(more).stdout).expect("a summary")
+    };
+    let refused = |more: &[&str]| {
+        let output = run(more);
+        assert_eq!(output.status.code(), Some(2), "{more:?}");
+        String::from_utf8(output.stderr).expect("text")
+    };
+    let plain = summary(&[]);
+    for stage in ["construct", "fit", "refit", "traverse", "narrow"] {
+        let only = summary(&["--repeat", "3", "--only", stage]);
+        assert_eq!(only["hash"], plain["hash"], "{stage}");
+        assert!(only["ms"][stage].as_f64().expect("ms") >= 0.0, "{stage}");
+    }
+    assert!(refused(&["--only", "traverse"]).contains("--repeat"));
+    let unknown = refused(&["--repeat", "3", "--only", "sort"]);
+    assert!(unknown.contains("construct, fit, refit, traverse, narrow"), "{unknown}");
 }

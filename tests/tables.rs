@@ -57,7 +57,8 @@ impl Drop for Folder {
     }
 }
 
-const SMALL: [&str; 8] = ["--scene", "cloth-ball", "--triangles", "400", "--frames", "3", "--backend", "cpu"];
+const SMALL: [&str; 8] =
+    ["--scene", "cloth-ball", "--triangles", "1000", "--frames", "3", "--backend", "cpu"];
 
 fn small(more: &[&str]) -> String {
     ok(&[&SMALL, more].concat())
@@ -80,7 +81,7 @@ fn every_figure_is_written() {
     for part in ["Figure 6.12", "Figure 6.13", "Figure 6.14", "ours on CPU", "GTX 285", "different scenes"] {
         assert!(text.contains(part), "{part}: {text}");
     }
-    let shared = ["scene", "model", "triangles", "their_triangles", "device"];
+    let shared = ["scene", "model", "triangles", "their_triangles", "device", "profile"];
     let asked = ["motion", "bv", "front"];
     let heads = [
         (
@@ -247,6 +248,25 @@ fn a_tree_may_be_built_more_often() {
         all["figure_6_13"].as_array().expect("rows").iter().map(|row| row["hash"].clone()).collect::<Vec<_>>()
     };
     assert_eq!(hash(&["--rebuild-every", "1"]), hash(&[]));
+}
+
+#[test]
+fn queues_of_either_size_answer_the_same() {
+    let hashes = |more: &[&str]| {
+        let text = small(&[&["--json", "--table", "6.13"], more].concat());
+        let all: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+        all["figure_6_13"].as_array().expect("rows").iter().map(|row| row["hash"].clone()).collect::<Vec<_>>()
+    };
+    let want = hashes(&[]);
+    for profile in ["gtx285", "native"] {
+        assert_eq!(hashes(&["--profile", profile]), want, "{profile}");
+        let folder = Folder::new(profile);
+        let text = small(&["--profile", profile, "--out", folder.name()]);
+        assert!(text.contains(&format!("work queues {profile}")), "{text}");
+        assert!(folder.read("figure-6.13.svg").contains(&format!("work queues {profile}")));
+        assert!(column(&folder.csv("figure-6.12.csv"), "profile").iter().all(|name| *name == profile));
+    }
+    assert!(refused(2, &["--profile", "h200"]).contains("gtx285, native"));
 }
 
 #[test]

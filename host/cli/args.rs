@@ -2,7 +2,7 @@
 
 use crate::device::Backend;
 use crate::pipeline::Stage;
-use crate::query::{Bv, Motion, Query, Solver, Traversal};
+use crate::query::{Bv, Motion, Query, QueueShape, Refit, Solver, StealShape, Traversal};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -35,14 +35,30 @@ pub enum TraversalArg {
     PerLeaf,
     /// A walk a leaf; long walks give their rest to the next round.
     PerLeafSpill,
+    /// Work queues of pairs of nodes, as many as the machine runs; evened between launches.
+    Queue,
+    /// The same with the paper's machine and constants: 30 queues, evened by copying.
+    QueueGtx285,
+    /// Work queues of pairs of nodes that help each other out within one launch.
+    Steal,
 }
 
 impl TraversalArg {
-    fn choice(self, budget: Option<u32>) -> Traversal {
+    fn choice(self, DetectArgs { budget, cores, queue, .. }: &DetectArgs) -> Traversal {
+        let queues = |shape: QueueShape| {
+            let (cores, local) = (cores.or(shape.cores), queue.unwrap_or(shape.local));
+            Traversal::Queue(QueueShape { cores, local, ..shape })
+        };
         match self {
             TraversalArg::PerLeaf => Traversal::PerLeaf { budget: None },
             TraversalArg::PerLeafSpill => {
                 Traversal::PerLeaf { budget: Some(budget.unwrap_or(Traversal::CARD_BUDGET)) }
+            }
+            TraversalArg::Queue => queues(QueueShape::native()),
+            TraversalArg::QueueGtx285 => queues(QueueShape::gtx285()),
+            TraversalArg::Steal => {
+                let shape = StealShape::native();
+                Traversal::Steal(StealShape { cores: *cores, local: queue.unwrap_or(shape.local), ..shape })
             }
         }
     }
@@ -78,12 +94,21 @@ pub struct DetectArgs {
     /// Bounding volume [default: the fastest].
     #[arg(long, value_enum)]
     pub bv: Option<Bv>,
+    /// How the volumes follow the triangles [default: the machine's fastest].
+    #[arg(long, value_enum)]
+    pub refit: Option<Refit>,
     /// How the tree is walked [default: the machine's fastest].
     #[arg(long, value_enum)]
     pub traversal: Option<TraversalArg>,
     /// Steps of a walk before it gives its rest away (per-leaf-spill).
     #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u32).range(1..))]
     pub budget: Option<u32>,
+    /// Work queues (queue, queue-gtx285, steal) [default: what the machine runs at once, or the paper's 30].
+    #[arg(long, value_name = "N", requires = "traversal", value_parser = clap::value_parser!(u32).range(1..=65_536))]
+    pub cores: Option<u32>,
+    /// Units that a work queue holds on chip [default: 1024, or the paper's 600].
+    #[arg(long, value_name = "N", requires = "traversal", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub queue: Option<u32>,
     /// The test of a pair [default: exact for discrete, cubic-f64 for continuous].
     #[arg(long, value_enum)]
     pub solver: Option<Solver>,
@@ -124,7 +149,8 @@ impl DetectArgs {
             motion,
             solver: self.solver,
             bv: self.bv,
-            traversal: self.traversal.map(|walk| walk.choice(self.budget)),
+            refit: self.refit,
+            traversal: self.traversal.map(|walk| walk.choice(self)),
             adjacent: self.adjacent,
         }
     }
@@ -138,13 +164,19 @@ pub struct SceneArgs {
     /// Triangles, about.
     #[arg(long, default_value_t = 92_230)]
     pub triangles: usize,
-    /// Frames: 1 still, 2 the ends of a step.
-    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=2))]
-    pub frames: u32,
+    /// Frames [default: 2, or what the scene has]. Only animations have more than two.
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..))]
+    pub frames: Option<u32>,
+    /// Frames of an animation to pass over [default: until cloth has fallen and folded, or balls have met].
+    #[arg(long, value_name = "K")]
+    pub skip: Option<u64>,
+    /// Keep cloth from passing through itself, by our own detection: for small meshes.
+    #[arg(long)]
+    pub contact: bool,
     /// Seed.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
-    /// Folder for NAME_t0.ply and NAME_t1.ply.
+    /// Folder for NAME_t0.ply and NAME_t1.ply, or of an animation NAME_0000.ply and so on.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
 }
@@ -163,6 +195,33 @@ pub enum Table {
     Shares,
     /// What a front saves, by the part of a step that things move.
     Front,
+}
+
+/// Sizes of work queues.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Profile {
+    /// The thesis's: 30 queues, evened by copying.
+    Gtx285,
+    /// As many queues as the machine runs at once.
+    Native,
+}
+
+impl Profile {
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Profile::Gtx285 => "gtx285",
+            Profile::Native => "native",
+        }
+    }
+
+    /// The walk with those sizes.
+    pub fn walk(self) -> Traversal {
+        Traversal::Queue(match self {
+            Profile::Gtx285 => QueueShape::gtx285(),
+            Profile::Native => QueueShape::native(),
+        })
+    }
 }
 
 #[derive(Args)]
@@ -189,6 +248,10 @@ pub struct TablesArgs {
     /// Which volumes; the thesis has aabb and obb.
     #[arg(long, num_args = 1.., value_enum, default_values_t = [Bv::Aabb, Bv::Obb])]
     pub bv: Vec<Bv>,
+    /// Walk by work queues, evened between launches, and refit a launch a level, as the thesis did: with its machine's sizes,
+    /// or with this one's [default: the fastest walk and refit, without queues].
+    #[arg(long, value_enum)]
+    pub profile: Option<Profile>,
     /// Build the tree anew at every N-th frame; that time is not part of a frame's [default: only at the first].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub rebuild_every: Option<u32>,

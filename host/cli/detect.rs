@@ -7,7 +7,7 @@ use crate::device::Device;
 use crate::error::Error;
 use crate::mesh::{Body, Mesh};
 use crate::pipeline::{Session, Stages};
-use crate::query::{Bv, Motion, Query, Solver};
+use crate::query::{Bv, Motion, Query, Solver, Traversal};
 use crate::report;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -117,9 +117,23 @@ fn human(summary: &Summary, contacts: &Contacts) -> String {
     );
     let _ = writeln!(
         text,
-        "  ms: construct {:.3}, fit {:.3}, refit {:.3}, traverse {:.3}, narrow {:.3}; a frame {:.3}",
-        ms.construct, ms.fit, ms.refit, ms.traverse, ms.narrow, ms.total
+        "  ms: construct {:.3}, fit {:.3}, refit {:.3}, traverse {:.3}{}, narrow {:.3}; a frame {:.3}",
+        ms.construct,
+        ms.fit,
+        ms.refit,
+        ms.traverse,
+        if ms.balance > 0.0 { format!(", balance {:.3}", ms.balance) } else { String::new() },
+        ms.narrow,
+        ms.total
     );
+    if let Traversal::Queue(_) | Traversal::Steal(_) = summary.traversal {
+        let q = &summary.queues;
+        let _ = writeln!(
+            text,
+            "  queues: {} rounds, {} times dry, {} units spilled, {} moved, {} stolen; {} waited at most",
+            q.rounds, q.idle_exits, q.spills, q.moves, q.stolen, q.longest
+        );
+    }
     let _ = writeln!(
         text,
         "  {} node tests, {} units spilled, {} undecided by floats; {:.1} MB; hash {}",
@@ -159,6 +173,14 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
     let _ = writeln!(text, "machine    {} ({})", device.name(), device.backend());
     let swept = query.motion != Motion::Discrete && query.bv() != Bv::Linear;
     let _ = writeln!(text, "volume     {}{}", query.bv().name(), if swept { ", swept" } else { "" });
+    let _ = writeln!(
+        text,
+        "refit      {}",
+        match (query.refit, query.refit_on(device.is_card())) {
+            (Some(choice), _) => format!("{choice:?}, as asked"),
+            (None, choice) => format!("{choice:?}: the fastest on this machine"),
+        }
+    );
     let _ = writeln!(
         text,
         "traversal  {}",

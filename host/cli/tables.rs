@@ -1,6 +1,6 @@
 //! `tables`.
 
-use super::args::{Table, TablesArgs};
+use super::args::{Profile, Table, TablesArgs};
 use super::progress::during;
 use crate::device::Device;
 use crate::error::Error;
@@ -13,7 +13,7 @@ pub fn tables(args: &TablesArgs) -> Result<ExitCode, Error> {
     let device = Device::open(args.backend, args.threads.map(usize::from))?;
     let continuous = Solver::default_for(Motion::Continuous);
     eprintln!("nearmiss: the solver of continuous columns is {}", continuous.promise());
-    let mut figures = Figures::new(device.name());
+    let mut figures = Figures::new(device.name(), profile(args));
     for (name, triangles) in scenes(args)? {
         let frames = during(format!("making {name}"), || match args.mesh.is_empty() {
             true => tables::frames(&name, triangles, args.seed, args.frames as usize),
@@ -52,6 +52,11 @@ fn scenes(args: &TablesArgs) -> Result<Vec<(String, usize)>, Error> {
     Ok(all.map(|&(name, triangles)| (name.to_owned(), args.triangles.unwrap_or(triangles))).collect())
 }
 
+/// The profile's name.
+fn profile(args: &TablesArgs) -> &'static str {
+    args.profile.map_or("fastest", Profile::name)
+}
+
 /// The volumes asked for, each once.
 fn volumes(args: &TablesArgs) -> Vec<Bv> {
     Bv::ALL.into_iter().filter(|bv| args.bv.contains(bv)).collect()
@@ -61,20 +66,22 @@ fn volumes(args: &TablesArgs) -> Vec<Bv> {
 fn scene(args: &TablesArgs, device: &Device, frames: &Frames, figures: &mut Figures) -> Result<(), Error> {
     let wanted = |table| args.table.is_empty() || args.table.contains(&table);
     let name = &frames.scene;
-    let paper = Paper::new(name, frames.triangles(), device.name());
+    let walk = args.profile.map(Profile::walk);
+    let paper = Paper::new(name, frames.triangles(), device.name(), profile(args));
     if wanted(Table::Build) {
         // Every construction is by way of axis-aligned boxes.
         let mut built = Vec::new();
         for bv in Bv::ALL.into_iter().filter(|bv| *bv == Bv::Aabb || args.bv.contains(bv)) {
-            let trees = || tables::build(device, frames, bv);
+            let trees = || tables::build(device, frames, bv, walk);
             built.push(during(format!("{name}: trees in {}", bv.name()), trees)?);
         }
         figures.figure_6_12.extend(tables::figure_612(&paper, frames.meshes.len(), &built));
     }
     if args.table.contains(&Table::Front) {
         let ways = Way::every(&volumes(args));
-        let rows =
-            during(format!("{name}: parts of a step"), || tables::front(&paper, device, frames, &ways))?;
+        let rows = during(format!("{name}: parts of a step"), || {
+            tables::front(&paper, device, frames, &ways, walk)
+        })?;
         figures.front.extend(rows);
     }
     if !wanted(Table::Frame) && !wanted(Table::Shares) {
@@ -83,7 +90,7 @@ fn scene(args: &TablesArgs, device: &Device, frames: &Frames, figures: &mut Figu
     let mut cells = Vec::new();
     for way in Way::every(&volumes(args)) {
         let every = args.rebuild_every.map(|n| n as usize);
-        let cell = || tables::measure(device, frames, way, way.query(None), every);
+        let cell = || tables::measure(device, frames, way, way.query(walk), every);
         cells.push(during(format!("{name}: {way}"), cell)?);
     }
     let differing = tables::agree(name, &cells)?;

@@ -7,8 +7,8 @@ pub use triangles::{TriangleContact, triangle_contacts};
 use crate::device::Device;
 use crate::mesh::Body;
 use crate::pipeline::{Found, Layout, Stages};
-use crate::query::{Motion, Query, Solver, Traversal};
-use nearmiss_kernels::abi::counter;
+use crate::query::{Motion, Query, Refit, Solver, Traversal};
+use nearmiss_kernels::abi::{ROUNDS, counter};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -82,6 +82,39 @@ pub struct Contacts {
     pub steps: u64,
     /// Work units that long walks gave away.
     pub spilled: u64,
+    /// What the work queues did.
+    pub queues: Queues,
+}
+
+/// What the work queues of a traversal did. All zero where it had none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Queues {
+    /// Rounds with work: launches.
+    pub rounds: u64,
+    /// How often a queue ran dry.
+    pub idle_exits: u64,
+    /// Units that a queue on chip had no room for.
+    pub spills: u64,
+    /// Units that a balance moved.
+    pub moves: u64,
+    /// Units that a block took from those that others offered.
+    pub stolen: u64,
+    /// Most units that waited in a segment, or in the list of all.
+    pub longest: u64,
+}
+
+impl Queues {
+    fn new(counters: &[u64]) -> Queues {
+        let of = |at: u32| counters[at as usize];
+        Queues {
+            rounds: of(counter::QUEUE_ROUNDS),
+            idle_exits: of(counter::IDLE_EXITS),
+            spills: of(counter::QUEUE_SPILLS),
+            moves: of(counter::MOVES),
+            stolen: of(counter::STOLEN),
+            longest: of(counter::QUEUED),
+        }
+    }
 }
 
 impl Contacts {
@@ -102,6 +135,7 @@ impl Contacts {
             undecided: 0,
             steps: 0,
             spilled: 0,
+            queues: Queues::default(),
         }
     }
 
@@ -145,7 +179,8 @@ impl Contacts {
             survivors_vf_ee: [count(counter::VF_SURVIVORS), count(counter::EE_SURVIVORS)],
             undecided: count(counter::UNDECIDED),
             steps: count(counter::STEPS),
-            spilled: found.counters[counter::SPILLED as usize..].iter().sum(),
+            spilled: found.counters[counter::SPILLED as usize..][..ROUNDS as usize].iter().sum(),
+            queues: Queues::new(&found.counters),
         }
     }
 
@@ -214,6 +249,8 @@ pub struct Summary {
     pub query: Motion,
     /// The bounding volume.
     pub bv: &'static str,
+    /// The refit.
+    pub refit: Refit,
     /// The walk.
     pub traversal: Traversal,
     /// The test.
@@ -234,6 +271,8 @@ pub struct Summary {
     pub earliest_toi: Option<f64>,
     /// Hash of the canonical answer, sixteen hexadecimal digits.
     pub hash: String,
+    /// What the traversal's work queues did.
+    pub queues: Queues,
     /// Milliseconds by stage.
     pub ms: Stages,
     /// Most device memory held at once.
@@ -248,6 +287,7 @@ impl Summary {
             frames: if bodies.iter().any(Body::is_moving) { 2 } else { 1 },
             query: query.motion,
             bv: query.bv().name(),
+            refit: query.refit_on(device.is_card()),
             traversal: query.traversal.unwrap_or(Traversal::default_for(device.is_card())),
             solver: query.solver(),
             backend: device.backend(),
@@ -258,6 +298,7 @@ impl Summary {
             unresolved: 0,
             earliest_toi: contacts.earliest_toi(),
             hash: format!("{:016x}", contacts.hash()),
+            queues: contacts.queues,
             ms: contacts.stages,
             bytes: device.bytes().1,
         }

@@ -141,7 +141,8 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
         };
         corridor.place(bodies)?;
         for body in 0..layout.bodies() {
-            let tree = Tree::new(&corridor.device, layout.triangles(body))?;
+            let refit = query.refit_on(corridor.device.is_card());
+            let tree = Tree::new(&corridor.device, layout.triangles(body), refit)?;
             let volumes = Volumes::new(&corridor.device, &tree, axes)?;
             corridor.bodies.push((tree, volumes));
         }
@@ -277,7 +278,7 @@ impl<R: Precision, V: Kernels> Frames for Corridor<R, V> {
         let (device, frames, faces) = (&self.device, self.frames(), self.faces.span());
         self.bodies.iter().try_for_each(|(tree, volumes)| volumes.fit(device, tree, frames, faces))?;
         let fitted = self.device.mark()?;
-        self.bodies.iter().try_for_each(|(tree, volumes)| volumes.refit(device, tree))?;
+        self.bodies.iter().try_for_each(|(tree, volumes)| volumes.refit(device, tree, frames, faces))?;
         let refitted = self.device.mark()?;
         loop {
             self.counters.clear()?;

@@ -7,6 +7,7 @@ mod precision;
 mod room;
 mod timing;
 mod tree;
+mod treelets;
 mod volumes;
 mod walk;
 
@@ -30,7 +31,7 @@ use volumes::Kernels;
 /// ```
 /// use nearmiss::{Device, Query, Session, device::Backend, query::Motion, scene};
 ///
-/// let cloth = scene::scene("cloth-ball", 2_000, 7)?;
+/// let cloth = scene::scene("draped", 2_000, 7)?;
 /// let device = Device::open(Backend::Auto, None)?;
 /// let mut session = Session::new(device, vec![cloth], Query::of(Motion::Continuous))?;
 /// let contacts = session.detect()?;

@@ -1,7 +1,9 @@
 //! Which kernels serve positions of f32, and which of f64.
 
 use crate::mesh::Positions;
-use nearmiss_kernels::abi::{DiscreteArgs, FitArgs, MortonArgs, RejectArgs, SiftArgs, SolveArgs};
+use nearmiss_kernels::abi::{
+    DiscreteArgs, FitArgs, MortonArgs, RejectArgs, SiftArgs, SolveArgs, TreeletsArgs,
+};
 use nearmiss_kernels::bv::{Aabb, Linear, Obb};
 use nearmiss_kernels::entry::{self, Entry};
 use nearmiss_kernels::math::{Real, Vec3};
@@ -18,6 +20,12 @@ pub trait Precision: Real {
     type FitLinear: Entry<Args = FitArgs<Self, Linear>>;
     /// Leaves, in oriented boxes.
     type FitObb: Entry<Args = FitArgs<Self, Obb>>;
+    /// All boxes, by treelets.
+    type TreeletsAabb: Entry<Args = TreeletsArgs<Self, Aabb>>;
+    /// All boxes that move, by treelets.
+    type TreeletsLinear: Entry<Args = TreeletsArgs<Self, Linear>>;
+    /// All oriented boxes, by treelets.
+    type TreeletsObb: Entry<Args = TreeletsArgs<Self, Obb>>;
     /// The seed's discrete test.
     type Moller: Entry<Args = DiscreteArgs<Self>>;
     /// The discrete filter.
@@ -49,6 +57,9 @@ impl Precision for f32 {
     type FitAabb = entry::fit_aabb_f32;
     type FitLinear = entry::fit_linear_f32;
     type FitObb = entry::fit_obb_f32;
+    type TreeletsAabb = entry::refit_treelets_aabb_f32;
+    type TreeletsLinear = entry::refit_treelets_linear_f32;
+    type TreeletsObb = entry::refit_treelets_obb_f32;
     type Moller = entry::narrow_moller_f32;
     type Filter = entry::narrow_filter_f32;
     type Exact = entry::narrow_exact_f32;
@@ -75,6 +86,9 @@ impl Precision for f64 {
     type FitAabb = entry::fit_aabb_f64;
     type FitLinear = entry::fit_linear_f64;
     type FitObb = entry::fit_obb_f64;
+    type TreeletsAabb = entry::refit_treelets_aabb_f64;
+    type TreeletsLinear = entry::refit_treelets_linear_f64;
+    type TreeletsObb = entry::refit_treelets_obb_f64;
     type Moller = entry::narrow_moller_f64;
     type Filter = entry::narrow_filter_f64;
     type Exact = entry::narrow_exact_f64;

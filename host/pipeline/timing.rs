@@ -21,9 +21,9 @@ pub enum Stage {
 pub struct Stages {
     /// Positions to level-ordered tree, all bodies.
     pub construct: f64,
-    /// Volumes of the leaves.
+    /// Volumes of the leaves; 0 by treelets, whose one launch makes all volumes.
     pub fit: f64,
-    /// All other volumes.
+    /// All other volumes; by treelets all volumes.
     pub refit: f64,
     /// Candidates, without balancing.
     pub traverse: f64,

@@ -1,8 +1,10 @@
 //! Construct: the tree of one body, kept on the device.
 
 use super::precision::Precision;
+use super::treelets::Way;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
+use crate::query::Refit;
 use nearmiss_kernels::abi::{Frames, Inner, Link, MortonArgs, SortArgs, Span, TreeArgs};
 use nearmiss_kernels::bvh::{self, MAX_LEVELS};
 use nearmiss_kernels::entry;
@@ -22,6 +24,8 @@ pub struct Tree {
     pub leaf_nodes: Buffer<u32>,
     /// Number of levels, then where each begins, then where the last ends.
     pub levels: Buffer<u32>,
+    /// How it is refitted.
+    pub way: Way,
     /// The same, as the host needs it to launch.
     starts: Vec<u32>,
     first: u32,
@@ -43,17 +47,18 @@ struct Scratch {
 }
 
 impl Tree {
-    /// Takes the memory of a tree over `count` triangles (at least one) from `first` on.
+    /// Takes the memory of a tree over `count` triangles (at least one) from `first` on, and of its refit.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn new(device: &Device, (first, count): (u32, u32)) -> Result<Tree, Error> {
+    pub fn new(device: &Device, (first, count): (u32, u32), refit: Refit) -> Result<Tree, Error> {
         let (n, inner) = (count as usize, count as usize - 1);
         Ok(Tree {
             links: device.buffer(2 * n)?,
             pair_parents: device.buffer(n)?,
             leaf_nodes: device.buffer(n)?,
             levels: device.buffer(MAX_LEVELS as usize + 2)?,
+            way: Way::new(device, refit, count)?,
             starts: Vec::new(),
             first,
             count,
@@ -71,8 +76,8 @@ impl Tree {
         })
     }
 
-    /// Builds the hierarchy, all on the device. It has no volumes yet. Cost: 34 launches, 27 of them a radix sort;
-    /// linear memory.
+    /// Builds the hierarchy, all on the device. It has no volumes yet. Cost: 34 launches, 27 of them a radix sort,
+    /// and two for treelets where those are asked for; linear memory.
     ///
     /// # Errors
     /// Those of the device.
@@ -141,6 +146,7 @@ impl Tree {
             device.blocks_for::<entry::construct_emit>(inner.max(1)),
             &args,
         )?;
+        self.way.prepare(device, &args)?;
         self.learn_levels()
     }
 

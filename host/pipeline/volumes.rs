@@ -2,9 +2,12 @@
 
 use super::precision::Precision;
 use super::tree::{Tree, broken};
+use super::treelets::{Plan, Way};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
-use nearmiss_kernels::abi::{FitArgs, Frames, Node, RefitArgs, Span, TraverseArgs};
+use nearmiss_kernels::abi::{
+    BottomUpArgs, FitArgs, Frames, Node, QueueArgs, RefitArgs, Span, StealArgs, TraverseArgs, TreeletsArgs,
+};
 use nearmiss_kernels::bv::{Aabb, Axes, Linear, Obb, Volume};
 use nearmiss_kernels::bvh;
 use nearmiss_kernels::entry::{self, Entry};
@@ -15,31 +18,51 @@ pub trait Kernels: Volume {
     type Fit<R: Precision>: Entry<Args = FitArgs<R, Self>>;
     /// All other volumes, a launch a level.
     type Levels: Entry<Args = RefitArgs<Self>>;
+    /// All volumes, a block a treelet.
+    type Treelets<R: Precision>: Entry<Args = TreeletsArgs<R, Self>>;
+    /// All other volumes, by whoever comes second to a pair.
+    type BottomUp: Entry<Args = BottomUpArgs<Self>>;
     /// A walk a leaf.
     type Leaves: Entry<Args = TraverseArgs<Self>>;
     /// A walk a unit that was left over.
     type Units: Entry<Args = TraverseArgs<Self>>;
+    /// A round of work queues.
+    type Queue: Entry<Args = QueueArgs<Self>>;
+    /// Work queues that help each other out.
+    type Steal: Entry<Args = StealArgs<Self>>;
 }
 
 impl Kernels for Aabb {
     type Fit<R: Precision> = R::FitAabb;
     type Levels = entry::refit_levels_aabb;
+    type Treelets<R: Precision> = R::TreeletsAabb;
+    type BottomUp = entry::refit_bottom_up_aabb;
     type Leaves = entry::traverse_leaves_aabb;
     type Units = entry::traverse_units_aabb;
+    type Queue = entry::traverse_queue_aabb;
+    type Steal = entry::traverse_steal_aabb;
 }
 
 impl Kernels for Linear {
     type Fit<R: Precision> = R::FitLinear;
     type Levels = entry::refit_levels_linear;
+    type Treelets<R: Precision> = R::TreeletsLinear;
+    type BottomUp = entry::refit_bottom_up_linear;
     type Leaves = entry::traverse_leaves_linear;
     type Units = entry::traverse_units_linear;
+    type Queue = entry::traverse_queue_linear;
+    type Steal = entry::traverse_steal_linear;
 }
 
 impl Kernels for Obb {
     type Fit<R: Precision> = R::FitObb;
     type Levels = entry::refit_levels_obb;
+    type Treelets<R: Precision> = R::TreeletsObb;
+    type BottomUp = entry::refit_bottom_up_obb;
     type Leaves = entry::traverse_leaves_obb;
     type Units = entry::traverse_units_obb;
+    type Queue = entry::traverse_queue_obb;
+    type Steal = entry::traverse_steal_obb;
 }
 
 /// The volumes of a tree, kept on the device.
@@ -58,7 +81,7 @@ impl<V: Kernels> Volumes<V> {
         Ok(Volumes { nodes: device.buffer(2 * tree.leaves())?, axes })
     }
 
-    /// Fits the volumes of the leaves.
+    /// Fits the volumes of the leaves. Treelets do that in [`Volumes::refit`]: then nothing is done here.
     ///
     /// # Errors
     /// Those of the device.
@@ -69,6 +92,9 @@ impl<V: Kernels> Volumes<V> {
         frames: Frames<R>,
         faces: Span<[u32; 3]>,
     ) -> Result<(), Error> {
+        if matches!(tree.way, Way::Treelets(_)) {
+            return Ok(());
+        }
         let args = FitArgs {
             frames,
             faces,
@@ -79,12 +105,62 @@ impl<V: Kernels> Volumes<V> {
         device.launch::<V::Fit<R>>(device.blocks_for::<V::Fit<R>>(tree.leaves()), &args)
     }
 
-    /// Refits all other volumes, a launch a level; runs of narrow levels share one: levels of up to four nodes a lane,
-    /// a few hundred nanoseconds each in one block, where a launch costs microseconds.
+    /// Refits all other volumes, the way that the tree was made for; the positions are those of [`Volumes::fit`].
     ///
     /// # Errors
     /// Those of the device.
-    pub fn refit(&self, device: &Device, tree: &Tree) -> Result<(), Error> {
+    pub fn refit<R: Precision>(
+        &self,
+        device: &Device,
+        tree: &Tree,
+        frames: Frames<R>,
+        faces: Span<[u32; 3]>,
+    ) -> Result<(), Error> {
+        match &tree.way {
+            Way::Levels => self.levels(device, tree),
+            Way::Treelets(plan) => self.treelets(device, plan, frames, faces),
+            Way::BottomUp(arrivals) => {
+                let args = BottomUpArgs {
+                    links: tree.links.span(),
+                    pair_parents: tree.pair_parents.span(),
+                    leaf_nodes: tree.leaf_nodes.span(),
+                    arrivals: arrivals.span(),
+                    nodes: self.nodes.span(),
+                    axes: self.axes,
+                    pad: 0,
+                };
+                device.launch::<V::BottomUp>(device.blocks_for::<V::BottomUp>(tree.leaves()), &args)
+            }
+        }
+    }
+
+    /// All volumes, those of the leaves too, in one launch.
+    fn treelets<R: Precision>(
+        &self,
+        device: &Device,
+        plan: &Plan,
+        frames: Frames<R>,
+        faces: Span<[u32; 3]>,
+    ) -> Result<(), Error> {
+        let args = TreeletsArgs {
+            frames,
+            faces,
+            treelets: plan.treelets.span(),
+            seats: plan.seats.span(),
+            merges: plan.merges.span(),
+            top: plan.top.span(),
+            top_starts: plan.top_starts.span(),
+            ticket: plan.ticket.span(),
+            nodes: self.nodes.span(),
+            axes: self.axes,
+            pad: 0,
+        };
+        device.launch::<V::Treelets<R>>(plan.blocks(), &args)
+    }
+
+    /// A launch a level; runs of narrow levels share one: levels of up to four nodes a lane,
+    /// a few hundred nanoseconds each in one block, where a launch costs microseconds.
+    fn levels(&self, device: &Device, tree: &Tree) -> Result<(), Error> {
         let one_block = 4 * V::Levels::LANES;
         let starts = tree.starts();
         let width = |level: usize| starts[level + 1] - starts[level];

@@ -14,6 +14,8 @@ use std::path::Path;
 pub struct Figures {
     /// Our machine.
     pub device: String,
+    /// Work queues of which size, or `fastest`.
+    pub profile: &'static str,
     /// The thesis's machine.
     pub theirs: &'static str,
     /// Construction and refit.
@@ -28,16 +30,16 @@ pub struct Figures {
 
 impl Figures {
     /// No figures yet.
-    pub fn new(device: String) -> Figures {
+    pub fn new(device: String, profile: &'static str) -> Figures {
         let (figure_6_12, figure_6_13, figure_6_14, front) = Default::default();
-        Figures { device, theirs: CARD, figure_6_12, figure_6_13, figure_6_14, front }
+        Figures { device, profile, theirs: CARD, figure_6_12, figure_6_13, figure_6_14, front }
     }
 
     /// For people.
     pub fn text(&self) -> String {
         let figures =
             [text(&self.figure_6_12), text(&self.figure_6_13), text(&self.figure_6_14), text(&self.front)];
-        let mut all = format!("ours on {}\n\n", self.device);
+        let mut all = format!("ours on {}\n\n", self.machine());
         for figure in figures.iter().filter(|figure| !figure.is_empty()) {
             all += figure;
         }
@@ -47,6 +49,13 @@ impl Figures {
         all
     }
 
+    /// The machine, and the work queues where there are some.
+    fn machine(&self) -> String {
+        let queues =
+            if self.profile == "fastest" { String::new() } else { format!(", work queues {}", self.profile) };
+        format!("{}{queues}", self.device)
+    }
+
     /// What a reader of the figures must know.
     fn remarks(&self) -> Vec<String> {
         let of_612 = self.figure_6_12.iter().map(|r| (&r.scene, r.triangles, r.their_triangles));
@@ -54,11 +63,13 @@ impl Figures {
         let mut remarks = Vec::new();
         for (scene, ours, theirs) in of_612.chain(of_613) {
             let Some(theirs) = theirs.filter(|_| !is_like(scene, ours)) else { continue };
-            remarks.push(format!(
+            let remark = format!(
                 "{scene}: ours has {ours} triangles and theirs {theirs}; its ratios compare different scenes."
-            ));
+            );
+            if !remarks.contains(&remark) {
+                remarks.push(remark);
+            }
         }
-        remarks.dedup();
         let differing: usize = self.figure_6_13.iter().map(|row| row.differing).sum();
         if differing > 0 {
             remarks.push(format!(
@@ -99,7 +110,7 @@ impl Figures {
                     theirs: row.theirs_ms,
                 },
             );
-            both("figure-6.12", csv(&self.figure_6_12), bars(title, &self.device, &panels))?;
+            both("figure-6.12", csv(&self.figure_6_12), bars(title, &self.machine(), &panels))?;
         }
         if !self.figure_6_13.is_empty() {
             let title = "Figure 6.13: a frame, from positions to contacts";
@@ -112,17 +123,17 @@ impl Figures {
                     theirs: row.theirs_ms,
                 },
             );
-            both("figure-6.13", csv(&self.figure_6_13), bars(title, &self.device, &panels))?;
+            both("figure-6.13", csv(&self.figure_6_13), bars(title, &self.machine(), &panels))?;
         }
         if !self.figure_6_14.is_empty() {
             let title = "Figure 6.14: where a frame's time goes";
             let all: Vec<Stack> = self.figure_6_14.iter().map(stack).collect();
-            both("figure-6.14", csv(&self.figure_6_14), stacks(title, &self.device, &all))?;
+            both("figure-6.14", csv(&self.figure_6_14), stacks(title, &self.machine(), &all))?;
         }
         if !self.front.is_empty() {
             let title = "A front: its cost, of that of the same frame without it";
             let bound = (50.0, "the thesis's bound on node tests, a half");
-            both("front", csv(&self.front), curves(title, &self.device, bound, &charts(&self.front)))?;
+            both("front", csv(&self.front), curves(title, &self.machine(), bound, &charts(&self.front)))?;
         }
         Ok(names)
     }
@@ -154,7 +165,7 @@ fn label(motion: &str, bv: &str, front: bool) -> String {
 }
 
 fn is_like(scene: &str, triangles: usize) -> bool {
-    Paper::new(scene, triangles, String::new()).is_like()
+    Paper::new(scene, triangles, String::new(), "").is_like()
 }
 
 /// A panel's title, which says so where the thesis's scene has another size.

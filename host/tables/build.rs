@@ -2,10 +2,11 @@
 
 use super::frames::Frames;
 use super::measure::mean;
+use super::way::Way;
 use crate::device::Device;
 use crate::error::Error;
 use crate::pipeline::{Session, Stage, Stages};
-use crate::query::{Bv, Motion, Query};
+use crate::query::{Bv, Motion, Traversal};
 
 /// Milliseconds of the stages that make and dress a tree, means over all frames.
 #[derive(Clone, Copy, Debug)]
@@ -21,9 +22,9 @@ pub struct Built {
 ///
 /// # Errors
 /// Those of the device.
-pub fn build(device: &Device, frames: &Frames, bv: Bv) -> Result<Built, Error> {
+pub fn build(device: &Device, frames: &Frames, bv: Bv, walk: Option<Traversal>) -> Result<Built, Error> {
     let bodies = frames.bodies(Motion::Discrete)?;
-    let query = Query { bv: Some(bv), ..Query::of(Motion::Discrete) };
+    let query = Way { motion: Motion::Discrete, bv, front: false }.query(walk);
     let mut session = Session::new(device.clone(), vec![bodies[0].clone()], query)?;
     let mut all = vec![Stages::default(); bodies.len()];
     let last = |ms: Vec<f64>| ms.last().copied().unwrap_or(0.0);

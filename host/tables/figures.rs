@@ -19,11 +19,13 @@ pub struct Paper {
     pub their_triangles: Option<usize>,
     /// The machine.
     pub device: String,
+    /// Work queues of which size, or `fastest`.
+    pub profile: &'static str,
 }
 
 impl Paper {
     /// Of a scene on a machine.
-    pub fn new(scene: &str, triangles: usize, device: String) -> Paper {
+    pub fn new(scene: &str, triangles: usize, device: String, profile: &'static str) -> Paper {
         let theirs = theirs::of(scene);
         Paper {
             scene: scene.into(),
@@ -31,6 +33,7 @@ impl Paper {
             triangles,
             their_triangles: theirs.map(|row| row.triangles),
             device,
+            profile,
         }
     }
 
@@ -48,6 +51,7 @@ pub struct Figure612 {
     pub triangles: usize,
     pub their_triangles: Option<usize>,
     pub device: String,
+    pub profile: &'static str,
     /// `construct` or `refit`.
     pub stage: &'static str,
     pub bv: &'static str,
@@ -67,6 +71,7 @@ pub struct Figure613 {
     pub triangles: usize,
     pub their_triangles: Option<usize>,
     pub device: String,
+    pub profile: &'static str,
     pub motion: &'static str,
     pub bv: &'static str,
     pub front: bool,
@@ -97,6 +102,7 @@ pub struct Figure614 {
     pub triangles: usize,
     pub their_triangles: Option<usize>,
     pub device: String,
+    pub profile: &'static str,
     pub motion: &'static str,
     pub bv: &'static str,
     pub front: bool,
@@ -127,6 +133,7 @@ pub fn figure_612(paper: &Paper, frames: usize, built: &[Built]) -> Vec<Figure61
             triangles: paper.triangles,
             their_triangles: paper.their_triangles,
             device: paper.device.clone(),
+            profile: paper.profile,
             stage,
             bv: bv.name(),
             frames,
@@ -157,6 +164,7 @@ pub fn figure_613(paper: &Paper, cells: &[Cell], differing: &[usize]) -> Vec<Fig
             triangles: paper.triangles,
             their_triangles: paper.their_triangles,
             device: paper.device.clone(),
+            profile: paper.profile,
             motion: cell.way.asked(),
             bv: cell.way.bv.name(),
             front: cell.way.front,
@@ -189,6 +197,7 @@ pub fn figure_614(paper: &Paper, cells: &[Cell]) -> Vec<Figure614> {
             triangles: paper.triangles,
             their_triangles: paper.their_triangles,
             device: paper.device.clone(),
+            profile: paper.profile,
             motion: cell.way.asked(),
             bv: cell.way.bv.name(),
             front: cell.way.front,
@@ -208,7 +217,7 @@ mod tests {
     use crate::pipeline::Stages;
 
     fn paper(scene: &str) -> Paper {
-        Paper::new(scene, 49_000, "a machine".into())
+        Paper::new(scene, 49_000, "a machine".into(), "fastest")
     }
 
     #[test]
@@ -227,8 +236,8 @@ mod tests {
 
     #[test]
     fn another_size_is_not_like() {
-        assert!(paper("flamenco").is_like() && Paper::new("soup", 9, String::new()).is_like());
-        assert!(!Paper::new("flamenco", 5_000, String::new()).is_like());
+        assert!(paper("flamenco").is_like() && Paper::new("soup", 9, String::new(), "fastest").is_like());
+        assert!(!Paper::new("flamenco", 5_000, String::new(), "fastest").is_like());
     }
 
     #[test]

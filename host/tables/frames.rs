@@ -7,7 +7,8 @@ use crate::scene;
 use std::path::PathBuf;
 
 /// The scenes that stand in for the thesis's, with the triangles that it names.
-pub const SCENES: [(&str, usize); 1] = [("cloth-ball", 92_230)];
+pub const SCENES: [(&str, usize); 4] =
+    [("flamenco", 49_000), ("princess", 40_000), ("cloth-ball", 92_230), ("n-body", 146_480)];
 
 /// Frames of one mesh, in their order: at least two, all with the same faces.
 pub struct Frames {
@@ -48,13 +49,19 @@ impl Frames {
     }
 }
 
-/// The first `count` frames of a generated scene.
+/// `count` frames of an animation, one after the other, from where it is what it stands in for: before that, cloth falls
+/// and gathers. Cost: those frames too are computed.
 ///
 /// # Errors
 /// Those of the scene; [`Error::Choice`] for fewer than two frames.
 pub fn frames(name: &str, triangles: usize, seed: u64, count: usize) -> Result<Frames, Error> {
-    let mut meshes = scene::scene(name, triangles, seed)?.frames();
-    meshes.truncate(count);
+    let mut animation = scene::animation(name, triangles, seed)?;
+    animation.advance(animation.opening())?;
+    let mut meshes = vec![animation.mesh()?];
+    while meshes.len() < count {
+        animation.advance(1)?;
+        meshes.push(animation.mesh()?);
+    }
     Frames::new(name, meshes)
 }
 

@@ -7,7 +7,7 @@ use crate::device::Device;
 use crate::error::Error;
 use crate::mesh::{Body, Mesh, Positions};
 use crate::pipeline::Session;
-use crate::query::{Motion, Query};
+use crate::query::{Motion, Query, Traversal};
 use serde::Serialize;
 
 /// Parts of the step.
@@ -44,10 +44,16 @@ pub struct FrontRow {
 ///
 /// # Errors
 /// Those of the device; [`Error::Bug`] where two ways give an exact solver different contacts.
-pub fn front(paper: &Paper, device: &Device, frames: &Frames, ways: &[Way]) -> Result<Vec<FrontRow>, Error> {
+pub fn front(
+    paper: &Paper,
+    device: &Device,
+    frames: &Frames,
+    ways: &[Way],
+    walk: Option<Traversal>,
+) -> Result<Vec<FrontRow>, Error> {
     let mut rows: Vec<FrontRow> = Vec::new();
     for &way in ways {
-        let query = way.query(None);
+        let query = way.query(walk);
         for part in PARTS {
             let (first, second) = step(frames, way.motion, part)?;
             let mut row = one(paper, device, way, query, [first, second])?;

@@ -107,5 +107,5 @@ fn pass(
 
 /// Each stage's mean.
 pub fn mean(all: &[Stages]) -> Stages {
-    Stages::each(|stage| all.iter().map(stage).sum::<f64>() / all.len().max(1) as f64)
+    Stages::each(|stage| all.iter().map(stage).fold(0.0, |sum, ms| sum + ms) / all.len().max(1) as f64)
 }

@@ -1,6 +1,6 @@
 //! A column of figure 6.13: how a frame is asked.
 
-use crate::query::{Bv, Motion, Query, Traversal};
+use crate::query::{Bv, Motion, Query, Refit, Traversal};
 
 /// One way of asking a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,9 +28,10 @@ impl Way {
         ways
     }
 
-    /// The query that asks so; `walk` for ways without a front, or what is fastest.
+    /// The query that asks so: by that walk and with a launch a level, as the thesis, or by what is fastest.
     pub fn query(self, walk: Option<Traversal>) -> Query {
-        Query { bv: Some(self.bv), traversal: walk, ..Query::of(self.motion) }
+        let refit = walk.map(|_| Refit::Levels);
+        Query { bv: Some(self.bv), traversal: walk, refit, ..Query::of(self.motion) }
     }
 
     /// `discrete`, `continuous`.

@@ -2,7 +2,7 @@
 
 use super::support::{machines, microscope};
 use super::*;
-use nearmiss::query::Traversal;
+use nearmiss::query::{QueueShape, StealShape, Traversal};
 use nearmiss::{Device, Session};
 
 /// The answer's hash, and what every stage left behind.
@@ -20,7 +20,7 @@ fn prints(device: Device, bodies: &[Body], query: Query) -> Vec<(&'static str, u
 fn every_machine_gives_the_same_bits_at_every_stage() {
     let scenes = [
         vec![scene::soup(150, 4, true).expect("a scene")],
-        vec![scene::cloth_ball(200).expect("a scene"), scene::soup(80, 6, true).expect("a scene")],
+        vec![scene::draped(200).expect("a scene"), scene::soup(80, 6, true).expect("a scene")],
     ];
     for bodies in scenes {
         for query in Query::every() {
@@ -35,15 +35,21 @@ fn every_machine_gives_the_same_bits_at_every_stage() {
 
 #[test]
 fn every_walk_finds_the_same() {
-    let bodies = [scene::soup(200, 4, true).expect("a scene"), scene::cloth_ball(300).expect("a scene")];
+    let bodies = [scene::soup(200, 4, true).expect("a scene"), scene::draped(300).expect("a scene")];
     for bodies in [&bodies[..1], &bodies[1..], &bodies[..]] {
         for motion in [Motion::Discrete, Motion::Continuous] {
             let truth = prints(engine(), bodies, Query::of(motion));
-            for budget in [Some(1), Some(3), Some(64), None] {
-                let query = Query { traversal: Some(Traversal::PerLeaf { budget }), ..Query::of(motion) };
-                assert_eq!(prints(engine(), bodies, query), truth, "{budget:?}");
+            let walks = [Some(1), Some(3), Some(64), None].map(|budget| Traversal::PerLeaf { budget });
+            let queues = [
+                Traversal::Queue(QueueShape { cores: Some(9), ..QueueShape::native() }),
+                Traversal::Queue(QueueShape { segment: 999, ..QueueShape::gtx285() }),
+                Traversal::Steal(StealShape { cores: Some(9), pool: 9_999, ..StealShape::native() }),
+            ];
+            for traversal in walks.into_iter().chain(queues) {
+                let query = Query { traversal: Some(traversal), ..Query::of(motion) };
+                assert_eq!(prints(engine(), bodies, query), truth, "{traversal:?}");
                 let order = support::ORDERS[2];
-                assert_eq!(prints(microscope(order), bodies, query), truth, "{budget:?}, {order:?}");
+                assert_eq!(prints(microscope(order), bodies, query), truth, "{traversal:?}, {order:?}");
             }
         }
     }
@@ -93,7 +99,7 @@ fn a_refitted_tree_finds_what_a_new_one_does() {
 #[test]
 fn the_same_session_asked_again_says_the_same() {
     for query in Query::every() {
-        let body = scene::cloth_ball(800).expect("a scene");
+        let body = scene::draped(800).expect("a scene");
         let mut session = Session::new(engine(), vec![body], query).expect("a session");
         let first = session.detect().expect("an answer");
         for _ in 0..3 {

@@ -57,7 +57,9 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
             Stage::Fit => {
                 self.bodies.iter().try_for_each(|(tree, volumes)| volumes.fit(device, tree, frames, faces))
             }
-            Stage::Refit => self.bodies.iter().try_for_each(|(tree, volumes)| volumes.refit(device, tree)),
+            Stage::Refit => {
+                self.bodies.iter().try_for_each(|(tree, volumes)| volumes.refit(device, tree, frames, faces))
+            }
             Stage::Traverse => self.step(Step::Traverse),
             Stage::Narrow => self.narrow.steps().iter().try_for_each(|&step| self.step(step)),
         }

@@ -1,11 +1,18 @@
 //! The level-ordered tree: what holds of it, and a checker that names what does not.
 
+pub mod leaf;
+
 use crate::abi::{LEAF, Link, Node, ROOT};
 use crate::bv::{Axes, Volume};
 
 /// Levels that a tree can have: a path from the root splits on one of the 63 bits of the code or, between equal
 /// codes, on one of the 32 bits of the index, each at most once; and the leaves.
 pub const MAX_LEVELS: u32 = 63 + 32 + 1;
+
+/// Leaves of the largest subtree of a treelet, and of the chunk in which a treelet's subtrees begin; so a treelet has
+/// fewer than twice as many. As many as a block has lanes; the volumes of 512 leaves, 56 bytes each, fit on chip.
+pub const TREELET: u32 = 256;
+const _: () = assert!(TREELET <= 512, "a merge counts slots with ten bits");
 
 /// The first thing found wrong with a tree. Node numbers are indices into the nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,6 +9,7 @@
 
 use crate::abi::FitArgs;
 use crate::bv::Volume;
+use crate::bvh::leaf;
 use crate::exec::{Block, Lane};
 use crate::math::Real;
 
@@ -16,20 +17,13 @@ use crate::math::Real;
 pub fn fit<R: Real, V: Volume, B: Block>(b: &mut B, a: &FitArgs<R, V>) {
     let stride = b.blocks() * b.lanes();
     b.phase(|l| {
-        let mut leaf = l.global();
-        while (leaf as u64) < a.leaf_nodes.len {
-            let at = l.read(a.leaf_nodes, leaf);
+        let mut i = l.global();
+        while (i as u64) < a.leaf_nodes.len {
+            let at = l.read(a.leaf_nodes, i);
             let link = l.read(a.links, at);
-            let face = l.read(a.faces, link.triangle());
-            let moving = a.frames.moving;
-            let volume = if moving.is_empty() {
-                V::still(face.map(|v| l.read(a.frames.still, v).at))
-            } else {
-                let ends = face.map(|v| l.read(moving, v));
-                V::moving(ends.map(|v| v.t0.at), ends.map(|v| v.t1.at))
-            };
+            let volume: V = leaf::volume(l, &a.frames, a.faces, link.triangle());
             l.write(a.nodes, at, link.with(volume));
-            leaf += stride;
+            i += stride;
         }
     });
 }

@@ -1,4 +1,4 @@
-//! # Refit: leaf volumes → all volumes
+//! # Levels: leaf volumes → all volumes, a launch a level
 //! Paper    section 6.2.4, "Parallel hierarchy refitting"; table 6.12, right half.
 //! Launch   a lane a node, a launch a level, leaves first: the launch boundary is the barrier. Levels that one block can
 //!          hold are taken together by a launch of one block, whose phases are the barriers.
