@@ -51,9 +51,14 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
         eprintln!("nearmiss: the solver is {}", query.solver().promise());
     }
     let mut session = during("building", || Session::new(device, bodies, query))?;
-    let (contacts, runs) = during("detecting", || repeated(&mut session, args.repeat))?;
+    let often = if args.only.is_some() { 1 } else { args.repeat };
+    let (contacts, runs) = during("detecting", || repeated(&mut session, often))?;
     let mut summary = session.summary(&contacts);
     summary.ms = median(&runs);
+    if let Some(stage) = args.only {
+        let times = during("repeating a stage", || session.repeat_stage(stage, args.repeat))?;
+        *summary.ms.of_mut(stage) = middle(times);
+    }
     if let Some(out) = &args.out {
         report::write(out, &contacts, &summary)?;
     }
@@ -87,20 +92,13 @@ fn repeated(session: &mut Session, repeat: u32) -> Result<(Contacts, Vec<Stages>
 
 /// Each stage's median.
 fn median(runs: &[Stages]) -> Stages {
-    let of = |stage: fn(&Stages) -> f64| {
-        let mut times: Vec<f64> = runs.iter().map(stage).collect();
-        times.sort_by(f64::total_cmp);
-        times[times.len() / 2]
-    };
-    Stages {
-        construct: of(|s| s.construct),
-        fit: of(|s| s.fit),
-        refit: of(|s| s.refit),
-        traverse: of(|s| s.traverse),
-        balance: of(|s| s.balance),
-        narrow: of(|s| s.narrow),
-        total: of(|s| s.total),
-    }
+    Stages::each(|stage| middle(runs.iter().map(stage).collect()))
+}
+
+/// The median; of an even number the upper of the two in the middle, of none 0.
+fn middle(mut times: Vec<f64>) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times.get(times.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// The summary for people.

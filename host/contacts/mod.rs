@@ -216,6 +216,11 @@ impl Contacts {
         }
     }
 
+    /// Overlap tests of two volumes: two a step, and those of the front.
+    pub fn overlap_tests(&self) -> u64 {
+        2 * self.steps + self.front.tests
+    }
+
     /// Whether nothing meets.
     pub fn is_empty(&self) -> bool {
         self.len() == 0

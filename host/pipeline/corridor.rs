@@ -1,10 +1,12 @@
 //! The corridor: a frame from positions to contacts, in the order of the stages.
 
+mod repeat;
+
 use super::layout::Layout;
 use super::narrow::{Given, Narrow, Step};
 use super::precision::Precision;
 use super::room::{Growing, List};
-use super::timing::Stages;
+use super::timing::{Stage, Stages};
 use super::tree::Tree;
 use super::volumes::{Kernels, Volumes};
 use super::walk::{Walk, Walked, flags, walk};
@@ -74,6 +76,11 @@ pub trait Frames {
     /// # Errors
     /// Those of the device.
     fn frame(&mut self) -> Result<(Found, Stages), Error>;
+    /// Runs one stage again, so often; milliseconds of each run. See [`super::Session::repeat_stage`].
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn repeat(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error>;
     /// Levels of each body's tree.
     fn depths(&self) -> Vec<usize>;
     /// How often a list was too short and the frame was run again, so far.
@@ -303,6 +310,10 @@ impl<R: Precision, V: Kernels> Frames for Corridor<R, V> {
             self.last.clone_from(&counters);
             return Ok((self.gather(counters)?, stages));
         }
+    }
+
+    fn repeat(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
+        self.again(stage, times)
     }
 
     fn depths(&self) -> Vec<usize> {
