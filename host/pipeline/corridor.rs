@@ -16,6 +16,7 @@ use crate::mesh::Body;
 use crate::query::{Motion, Query};
 use nearmiss_kernels::abi::{self, Hit, Motion as Ends, Pair, Point, Span, counter};
 use nearmiss_kernels::bv::Axes;
+use nearmiss_kernels::math::Vec3;
 use rayon::prelude::*;
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -142,7 +143,8 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
         corridor.place(bodies)?;
         for body in 0..layout.bodies() {
             let refit = query.refit_on(corridor.device.is_card());
-            let tree = Tree::new(&corridor.device, layout.triangles(body), refit)?;
+            let groups = V::group(axes) > 0;
+            let tree = Tree::new(&corridor.device, layout.triangles(body), refit, groups)?;
             let volumes = Volumes::new(&corridor.device, &tree, axes)?;
             corridor.bodies.push((tree, volumes));
         }
@@ -154,6 +156,17 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
             Vertices::Still(points) => abi::Frames { still: points.span(), moving: Span::EMPTY },
             Vertices::Moving(motions) => abi::Frames { still: Span::EMPTY, moving: motions.span() },
         }
+    }
+
+    /// Positions as they lie on the device: at t = 0 and, when anything moves, at t = 1.
+    fn positions(&self) -> Result<Vec<Vec<Vec3<R>>>, Error> {
+        Ok(match &self.vertices {
+            Vertices::Still(points) => vec![points.read(points.len())?.iter().map(|p| p.at).collect()],
+            Vertices::Moving(motions) => {
+                let motions = motions.read(motions.len())?;
+                vec![motions.iter().map(|m| m.t0.at).collect(), motions.iter().map(|m| m.t1.at).collect()]
+            }
+        })
     }
 
     /// Runs a step. Until the lists have settled it waits for the step's demand and, where a list was too short, grows
@@ -348,9 +361,10 @@ impl<R: Precision, V: Kernels> Frames for Corridor<R, V> {
     }
 
     fn check(&self) -> Result<(), Error> {
+        let (faces, frames) = (self.faces.read(self.faces.len())?, self.positions()?);
         self.bodies.iter().try_for_each(|(tree, volumes)| {
             tree.check()?;
-            volumes.check(tree)
+            volumes.check(tree, &faces, &frames)
         })
     }
 }

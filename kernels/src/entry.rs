@@ -100,6 +100,8 @@ kernels! {
     fit_linear_f64: fit::fit::<f64, Linear, B>, [FitArgs<f64, Linear>], WIDE, 0;
     fit_obb_f32: fit::fit::<f32, Obb, B>, [FitArgs<f32, Obb>], WIDE, 0;
     fit_obb_f64: fit::fit::<f64, Obb, B>, [FitArgs<f64, Obb>], WIDE, 0;
+    fit_groups_obb_f32: fit::groups::<f32, B>, [GroupsArgs<f32, Obb>], NARROW, 0;
+    fit_groups_obb_f64: fit::groups::<f64, B>, [GroupsArgs<f64, Obb>], NARROW, 0;
     refit_levels_aabb: levels::levels::<Aabb, B>, [RefitArgs<Aabb>], WIDE, 0;
     refit_levels_linear: levels::levels::<Linear, B>, [RefitArgs<Linear>], WIDE, 0;
     refit_levels_obb: levels::levels::<Obb, B>, [RefitArgs<Obb>], WIDE, 0;

@@ -32,13 +32,23 @@ pub struct Queue {
     /// Copy: where each queue's units begin among all.
     starts: Buffer<u64>,
     plan: Plan,
-    /// The longest plan of late: each frame takes one off, since a machine's rounds vary from run to run.
-    longest: u32,
     balances: Vec<[Mark; 2]>,
 }
 
-/// How many rounds to launch; `None`: look.
-struct Plan(Option<u32>);
+/// How many rounds to launch, from the roots and from a seed; `None`: look.
+#[derive(Default)]
+struct Plan {
+    rounds: [Option<u32>; 2],
+    /// Whether the last launch was from a seed.
+    seeded: bool,
+}
+
+impl Plan {
+    /// The rounds of the last kind of launch.
+    fn of_last(&mut self) -> &mut Option<u32> {
+        &mut self.rounds[usize::from(self.seeded)]
+    }
+}
 
 impl Growing for Plan {
     fn counter(&self) -> u32 {
@@ -50,7 +60,7 @@ impl Growing for Plan {
     fn grow(&mut self, _: &Device, counters: &[u64]) -> Result<bool, Error> {
         let short = self.is_short(counters);
         if short {
-            self.0 = None;
+            *self.of_last() = None;
         }
         Ok(short)
     }
@@ -75,8 +85,7 @@ impl Queue {
             counts: [words(counts[0])?, words(counts[1])?],
             idle: words(rounds)?,
             starts: words(counts[1])?,
-            plan: Plan(None),
-            longest: 0,
+            plan: Plan::default(),
             balances: Vec::new(),
         })
     }
@@ -168,7 +177,8 @@ impl Queue {
         if let Some(seed) = seed {
             seed(self.units.span(0), self.counts[0].span())?;
         }
-        if let Some(rounds) = self.plan.0 {
+        self.plan.seeded = seed.is_some();
+        if let Some(rounds) = *self.plan.of_last() {
             return (0..rounds).try_for_each(|round| {
                 let start = if round == 0 { first } else { 0 };
                 let last = if round + 1 == rounds { LAST } else { 0 };
@@ -215,10 +225,10 @@ impl<V: Kernels> Walk<V> for Queue {
     }
 
     fn finish(&mut self, counters: &[u64]) -> Result<(), Error> {
+        // A machine's rounds vary from run to run: a plan shrinks by one a frame at most.
         let rounds = counters[counter::QUEUE_ROUNDS as usize] + MORE_ROUNDS as u64;
-        let rounds = rounds.max(self.longest.saturating_sub(1) as u64);
-        self.plan.0 = (rounds <= MOST_ROUNDS as u64).then_some(rounds as u32);
-        self.longest = self.plan.0.unwrap_or(0);
+        let rounds = rounds.max(self.plan.of_last().unwrap_or(0).saturating_sub(1) as u64);
+        *self.plan.of_last() = (rounds <= MOST_ROUNDS as u64).then_some(rounds as u32);
         Ok(())
     }
 

@@ -51,7 +51,7 @@ pub fn treelets<R: Real, V: Volume, B: Block>(b: &mut B, a: &TreeletsArgs<R, V>)
     let ranges = b.shared::<[u32; 2]>(SLOTS);
     let ends = b.shared::<u32>(MAX_LEVELS);
     let Treelet { first, leaves, merges, rounds } = b.load(a.treelets, b.block());
-    let lanes = b.lanes();
+    let (lanes, fitted) = (b.lanes(), V::group(a.axes));
     b.phase(|l| {
         let mut i = l.lane();
         while i < leaves {
@@ -80,11 +80,23 @@ pub fn treelets<R: Real, V: Volume, B: Block>(b: &mut B, a: &TreeletsArgs<R, V>)
             while i < end {
                 let ([node, link], [last, slots]) = (l.get(places, i), l.get(ranges, i));
                 let merge = Merge { node, link, last, slots };
-                let (left, right) = (chip.get::<V, _>(l, merge.left()), chip.get(l, merge.right()));
-                let volume = left.merge(&right, a.axes);
-                chip.put(l, merge.left(), volume);
-                l.give(a.nodes, node, merge.link().with(volume));
                 i += lanes;
+                let [from, split] = [merge.left(), merge.right()];
+                // The children's leaves. Those that were fitted are not on chip.
+                let counts = [split - from, last + 1 - first - split];
+                if counts[0] + counts[1] <= fitted {
+                    continue;
+                }
+                let child = |slot: u32, k: u32| {
+                    if (2..=fitted).contains(&counts[k as usize]) {
+                        l.read(a.nodes, link + k).volume
+                    } else {
+                        chip.get::<V, _>(l, slot)
+                    }
+                };
+                let volume = child(from, 0).merge(&child(split, 1), a.axes);
+                chip.put(l, from, volume);
+                l.give(a.nodes, node, merge.link().with(volume));
             }
         });
     }
