@@ -77,9 +77,15 @@ impl Traversal {
     /// that half of the walks never spill and none makes its warp wait for long (measured, `benches/NOTES.md`).
     pub const CARD_BUDGET: u32 = 64;
 
-    /// The fastest walk of a machine: a card must not wait for its longest walk; a CPU's threads balance by themselves.
-    pub fn default_for(is_card: bool) -> Traversal {
-        Traversal::PerLeaf { budget: is_card.then_some(Traversal::CARD_BUDGET) }
+    /// The fastest walk of a machine (measured, `docs/performance.md`). A CPU's threads balance by themselves. A card must
+    /// not wait for its longest walk: plain boxes are walked leaf by leaf, with their rest shared out; of volumes whose
+    /// tests cost more, fewer tests by pairs of nodes pay for the queues.
+    pub fn default_for(is_card: bool, bv: Bv) -> Traversal {
+        match (is_card, bv) {
+            (false, _) => Traversal::PerLeaf { budget: None },
+            (true, Bv::Aabb) => Traversal::PerLeaf { budget: Some(Traversal::CARD_BUDGET) },
+            (true, _) => Traversal::Queue(QueueShape::native()),
+        }
     }
 }
 
@@ -197,7 +203,7 @@ impl Query {
 
     /// The walk that will be used on a card, or on a CPU.
     pub fn traversal_on(&self, is_card: bool) -> Traversal {
-        self.traversal.unwrap_or(Traversal::default_for(is_card))
+        self.traversal.unwrap_or(Traversal::default_for(is_card, self.bv()))
     }
 
     /// Whether the choices go together.

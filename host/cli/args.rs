@@ -79,9 +79,9 @@ pub struct DetectArgs {
     #[arg(long, conflicts_with_all = ["meshes", "with"], value_name = "NAME",
         value_parser = clap::builder::PossibleValuesParser::new(crate::scene::NAMES))]
     pub scene: Option<String>,
-    /// Triangles of the generated scene, about.
-    #[arg(long, default_value_t = 92_230, requires = "scene")]
-    pub triangles: usize,
+    /// Triangles of the generated scene, about [default: the thesis's number for its scenes, else 92,230].
+    #[arg(long, requires = "scene", value_name = "N")]
+    pub triangles: Option<usize>,
     /// Seed of the generated scene.
     #[arg(long, default_value_t = 1, requires = "scene")]
     pub seed: u64,
@@ -167,9 +167,9 @@ pub struct SceneArgs {
     /// Which scene.
     #[arg(value_parser = clap::builder::PossibleValuesParser::new(crate::scene::NAMES))]
     pub name: String,
-    /// Triangles, about.
-    #[arg(long, default_value_t = 92_230)]
-    pub triangles: usize,
+    /// Triangles, about [default: the thesis's number for its scenes, else 92,230].
+    #[arg(long, value_name = "N")]
+    pub triangles: Option<usize>,
     /// Frames [default: 2, or what the scene has]. Only animations have more than two.
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..))]
     pub frames: Option<u32>,

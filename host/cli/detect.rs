@@ -27,9 +27,9 @@ pub fn body(files: &[PathBuf]) -> Result<Body, Error> {
 fn question(args: &DetectArgs) -> Result<(Vec<Body>, Query), Error> {
     let mut bodies = Vec::new();
     match &args.scene {
-        Some(name) => {
-            bodies.push(during("making the scene", || crate::scene::scene(name, args.triangles, args.seed))?)
-        }
+        Some(name) => bodies.push(during("making the scene", || {
+            crate::scene::scene(name, args.triangles.unwrap_or(crate::scene::usual(name)), args.seed)
+        })?),
         None => bodies.push(during("reading", || body(&args.meshes))?),
     }
     if !args.with.is_empty() {
@@ -198,9 +198,13 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
         "traversal  {}",
         match query.traversal {
             Some(choice) => format!("{choice:?}, as asked"),
-            None if device.is_card() =>
-                "per leaf, long walks spill: a card must not wait for its longest walk".into(),
-            None => "per leaf, to the end: a CPU's threads balance by themselves".into(),
+            None => match query.traversal_on(device.is_card()) {
+                Traversal::PerLeaf { budget: None } =>
+                    "per leaf, to the end: a CPU's threads balance by themselves".into(),
+                Traversal::PerLeaf { .. } =>
+                    "per leaf, long walks spill: a card must not wait for its longest walk".into(),
+                choice => format!("{choice:?}: fewer tests, where tests cost more"),
+            },
         }
     );
     let _ = writeln!(text, "solver     {}", query.solver().promise());

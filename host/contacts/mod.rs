@@ -318,7 +318,7 @@ impl Summary {
             query: query.motion,
             bv: query.bv().name(),
             refit: query.refit_on(device.is_card()),
-            traversal: query.traversal.unwrap_or(Traversal::default_for(device.is_card())),
+            traversal: query.traversal_on(device.is_card()),
             solver: query.solver(),
             backend: device.backend(),
             device: device.name(),

@@ -54,10 +54,10 @@ impl<V: Kernels> Walked<'_, V> {
     }
 }
 
-/// Blocks of a kernel by pairs of nodes that a machine runs at once: half as many as its lanes allow, since registers (64 to
-/// 127 a lane) and shared memory (12 KB a block) leave room for no more.
+/// Blocks of a kernel by pairs of nodes that a machine works with best: a quarter of what its lanes allow. On an H200 that
+/// is 8 of 64 lanes a processor; 6 and 10 are slower for most volumes, 16 for all (measured, `benches/NOTES.md`).
 fn resident<E: Entry>(device: &Device) -> u32 {
-    device.blocks_striding::<E>(u32::MAX as usize).div_ceil(2)
+    device.blocks_striding::<E>(u32::MAX as usize).div_ceil(4)
 }
 
 /// A way through the trees.
