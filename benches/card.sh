@@ -4,7 +4,7 @@
 #   benches/card.sh PROGRAM FRAMES OUT
 #
 # PROGRAM is nearmiss built with `--release --features cuda`; FRAMES a folder with the public frames cloth_ball92.ply,
-# cloth_ball93.ply, n-body_t0.ply, n-body_t1.ply (without them the generated cloth-ball stands in); OUT gets the
+# cloth_ball93.ply, n-body_t0.ply, n-body_t1.ply (without them the generated draped stands in); OUT gets the
 # results. compute-sanitizer and ncu are used where they are installed. Prints a short table last.
 set -euo pipefail
 program=$1 frames=$2 out=$3
@@ -24,8 +24,8 @@ if [ -f "$frames/cloth_ball92.ply" ]; then
     scenes+=("n-body discrete|$frames/n-body_t0.ply")
     scenes+=("n-body continuous|$frames/n-body_t0.ply $frames/n-body_t1.ply")
 fi
-scenes+=("generated cloth-ball discrete|--scene cloth-ball --discrete")
-scenes+=("generated cloth-ball continuous|--scene cloth-ball --continuous")
+scenes+=("generated draped discrete|--scene draped --discrete")
+scenes+=("generated draped continuous|--scene draped --continuous")
 
 # 1. Card and CPU agree to the bit, stage by stage.
 meshes=()
@@ -42,7 +42,7 @@ if have compute-sanitizer; then
         for query in --discrete "--discrete --adjacent" "--discrete --solver moller --traversal per-leaf" \
             --continuous "--continuous --solver cubic-f32 --traversal per-leaf-spill --budget 4" --earliest; do
             # shellcheck disable=SC2086
-            if compute-sanitizer --tool $tool --error-exitcode 9 "$program" detect --scene cloth-ball --triangles 6000 \
+            if compute-sanitizer --tool $tool --error-exitcode 9 "$program" detect --scene draped --triangles 6000 \
                 $query --backend cuda >"$out/sanitizer.txt" 2>&1; then
                 verdict "$tool" "clean: $query"
             else

@@ -14,7 +14,7 @@ use std::time::Duration;
 
 /// Name and moving body of each scene.
 fn scenes() -> Vec<(&'static str, Body)> {
-    let mut all = vec![("cloth-ball-20k", scene::scene("cloth-ball", 20_000, 1).expect("a scene"))];
+    let mut all = vec![("draped-20k", scene::scene("draped", 20_000, 1).expect("a scene"))];
     let root = std::env::var_os("NEARMISS_DATA")
         .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data")), PathBuf::from);
     let frame = |n: u32| Mesh::read(&root.join(format!("cloth-ball/cloth_ball{n}.ply")));

@@ -1,5 +1,9 @@
 //! Choices are values: one configuration, the same for the library, the command line, the benches and the tests.
 
+mod queues;
+
+pub use queues::{Balance, FrontShape, QueueShape, StealShape};
+
 use crate::error::Error;
 
 /// What is asked of two triangles.
@@ -16,12 +20,39 @@ pub enum Motion {
 }
 
 /// What the tree is dressed in.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Bv {
     /// Axis-aligned boxes; in a continuous query around both ends of the step.
     #[default]
     Aabb,
+    /// Boxes that move: axis-aligned at both ends of the step, in between on straight lines.
+    Linear,
+    /// Oriented boxes along the principal axes of what they hold; the seed's.
+    Obb,
+    /// Oriented boxes that keep the axes of a child: the older rule.
+    ObbChild,
+}
+
+impl Bv {
+    /// Every volume.
+    pub const ALL: [Bv; 4] = [Bv::Aabb, Bv::Linear, Bv::Obb, Bv::ObbChild];
+
+    /// The fastest volume that the real scenes have (measured, `docs/performance.md`): what stands still needs no more
+    /// than a box; of what moves, boxes that move with it let a third to a tenth of the pairs through.
+    pub fn default_for(motion: Motion) -> Bv {
+        if motion == Motion::Discrete { Bv::Aabb } else { Bv::Linear }
+    }
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Bv::Aabb => "aabb",
+            Bv::Linear => "linear",
+            Bv::Obb => "obb",
+            Bv::ObbChild => "obb-child",
+        }
+    }
 }
 
 /// How the tree is walked.
@@ -33,6 +64,12 @@ pub enum Traversal {
         /// Steps before a walk spills; `None` never spills.
         budget: Option<u32>,
     },
+    /// Pairs of nodes from work queues, one a core, evened between launches: the paper's.
+    Queue(QueueShape),
+    /// Pairs of nodes from work queues that help each other out within one launch.
+    Steal(StealShape),
+    /// From where the last frame's descent ended: temporal coherence.
+    Front(FrontShape),
 }
 
 impl Traversal {
@@ -40,9 +77,34 @@ impl Traversal {
     /// that half of the walks never spill and none makes its warp wait for long (measured, `benches/NOTES.md`).
     pub const CARD_BUDGET: u32 = 64;
 
-    /// The fastest walk of a machine: a card must not wait for its longest walk; a CPU's threads balance by themselves.
-    pub fn default_for(is_card: bool) -> Traversal {
-        Traversal::PerLeaf { budget: is_card.then_some(Traversal::CARD_BUDGET) }
+    /// The fastest walk of a machine (measured, `docs/performance.md`). A CPU's threads balance by themselves. A card must
+    /// not wait for its longest walk: plain boxes are walked leaf by leaf, with their rest shared out; of volumes whose
+    /// tests cost more, fewer tests by pairs of nodes pay for the queues.
+    pub fn default_for(is_card: bool, bv: Bv) -> Traversal {
+        match (is_card, bv) {
+            (false, _) => Traversal::PerLeaf { budget: None },
+            (true, Bv::Aabb) => Traversal::PerLeaf { budget: Some(Traversal::CARD_BUDGET) },
+            (true, _) => Traversal::Queue(QueueShape::native()),
+        }
+    }
+}
+
+/// How the volumes of a tree follow its triangles. All ways give the same bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Refit {
+    /// A launch a level, the seed's way.
+    Levels,
+    /// One launch for all volumes: a block a subtree, the rest by the block that is done last.
+    Treelets,
+    /// One launch without barriers: of two siblings, who comes second goes on to their parent.
+    BottomUp,
+}
+
+impl Refit {
+    /// The fastest way of a machine.
+    pub fn default_for(is_card: bool) -> Refit {
+        if is_card { Refit::Treelets } else { Refit::Levels }
     }
 }
 
@@ -97,6 +159,8 @@ pub struct Query {
     pub solver: Option<Solver>,
     /// The volume; `None` for what is fastest.
     pub bv: Option<Bv>,
+    /// The refit; `None` for what is fastest on the machine.
+    pub refit: Option<Refit>,
     /// The walk; `None` for what is fastest on the machine.
     pub traversal: Option<Traversal>,
     /// Discrete: also triangles that share a vertex, where they meet beyond it.
@@ -129,12 +193,17 @@ impl Query {
 
     /// The volume that will be used.
     pub fn bv(&self) -> Bv {
-        self.bv.unwrap_or_default()
+        self.bv.unwrap_or(Bv::default_for(self.motion))
+    }
+
+    /// The refit that will be used on a card, or on a CPU.
+    pub fn refit_on(&self, is_card: bool) -> Refit {
+        self.refit.unwrap_or(Refit::default_for(is_card))
     }
 
     /// The walk that will be used on a card, or on a CPU.
     pub fn traversal_on(&self, is_card: bool) -> Traversal {
-        self.traversal.unwrap_or(Traversal::default_for(is_card))
+        self.traversal.unwrap_or(Traversal::default_for(is_card, self.bv()))
     }
 
     /// Whether the choices go together.
@@ -150,6 +219,12 @@ impl Query {
                 what: format!("the solver {solver:?} does not answer a {:?} query", self.motion),
                 advice: format!("choose one of: {known}"),
             });
+        }
+        match self.traversal {
+            Some(Traversal::Queue(shape)) => shape.check()?,
+            Some(Traversal::Steal(shape)) => shape.check()?,
+            Some(Traversal::Front(shape)) => shape.queue.check()?,
+            Some(Traversal::PerLeaf { .. }) | None => {}
         }
         if self.adjacent && (self.motion != Motion::Discrete || solver != Solver::Exact) {
             return Err(Error::Choice {

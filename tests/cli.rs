@@ -1,5 +1,8 @@
 //! The program: exit codes, messages, the JSON summary, files. Scripts rely on these.
 
+#[path = "cli/scene.rs"]
+mod scene;
+
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -66,12 +69,13 @@ impl Drop for Folder {
 }
 
 const SCENE: [&str; 5] = ["detect", "--scene", "soup-moving", "--triangles", "300"];
-const KEYS: [&str; 17] = [
+const KEYS: [&str; 18] = [
     "triangles",
     "vertices",
     "frames",
     "query",
     "bv",
+    "refit",
     "traversal",
     "solver",
     "backend",
@@ -115,13 +119,19 @@ fn the_summary_has_its_keys() {
 fn choices_change_no_hash() {
     let hash = |more: &[&str]| summary(&[&SCENE[..], &["--json"], more].concat())["hash"].clone();
     let truth = hash(&[]);
-    let same: [&[&str]; 6] = [
+    let same: [&[&str]; 12] = [
         &["--backend", "cpu"],
         &["--threads", "1"],
         &["--threads", "3", "--traversal", "per-leaf"],
         &["--traversal", "per-leaf-spill"],
+        &["--traversal", "queue", "--repeat", "2"],
+        &["--traversal", "queue-gtx285", "--cores", "128"],
+        &["--traversal", "steal", "--cores", "3", "--queue", "5"],
         &["--solver", "cubic-f64", "--bv", "aabb", "--continuous"],
         &["--repeat", "3"],
+        &["--refit", "levels"],
+        &["--refit", "treelets", "--repeat", "2"],
+        &["--refit", "bottom-up", "--repeat", "2"],
     ];
     for more in same {
         assert_eq!(hash(more), truth, "{more:?}");
@@ -231,24 +241,6 @@ fn a_file_of_pairs_is_ascending() {
 }
 
 #[test]
-fn a_scene_that_is_written_is_the_scene() {
-    let folder = Folder::new("scene");
-    for name in ["cloth-ball", "grid", "soup-moving"] {
-        let dir = folder.path("new/deep");
-        let written = ok(&["scene", name, "--triangles", "500", "--seed", "4", "--out", &dir]);
-        let files: Vec<&str> = written.lines().map(|line| line.split(": ").next().expect("a path")).collect();
-        assert_eq!(files.len(), if name == "grid" { 1 } else { 2 }, "{written}");
-        let from_files = summary(&[&["detect", "--json"], &files[..]].concat());
-        let itself = summary(&["detect", "--scene", name, "--triangles", "500", "--seed", "4", "--json"]);
-        for key in ["hash", "triangles", "vertices", "frames", "contacts", "candidates", "query"] {
-            assert_eq!(from_files[key], itself[key], "{name}, {key}");
-        }
-    }
-    let one = ok(&["scene", "balls", "--triangles", "64", "--frames", "1", "--out", &folder.path("one")]);
-    assert_eq!(one.lines().count(), 1);
-}
-
-#[test]
 fn two_meshes_are_asked_against_each_other() {
     let folder = Folder::new("with");
     let a = folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
@@ -264,10 +256,18 @@ fn two_meshes_are_asked_against_each_other() {
 fn bad_arguments_are_refused_with_what_is_known() {
     for (args, known) in [
         (&["detect", "a.ply", "--solver", "magic"][..], &["exact", "moller", "cubic-f32", "cubic-f64"][..]),
-        (&["detect", "a.ply", "--traversal", "random"], &["per-leaf", "per-leaf-spill"]),
+        (
+            &["detect", "a.ply", "--traversal", "random"],
+            &["per-leaf", "per-leaf-spill", "queue", "queue-gtx285", "steal"],
+        ),
+        (&["detect", "a.ply", "--refit", "twice"], &["levels", "treelets", "bottom-up"]),
         (&["detect", "a.ply", "--backend", "abacus"], &["cpu", "cuda", "auto"]),
         (&["detect", "a.ply", "--bv", "sphere"], &["aabb"]),
         (&["scene", "cloth", "--out", "x"], &["cloth-ball", "grid", "soup"]),
+        (&["scene", "draped", "--frames", "3", "--out", "x"], &["which has 2", "cloth-ball", "n-body"]),
+        (&["scene", "grid", "--triangles", "4", "--frames", "2", "--out", "x"], &["which has 1"]),
+        (&["scene", "grid", "--skip", "1", "--out", "x"], &["flamenco", "princess"]),
+        (&["scene", "n-body", "--contact", "--out", "x"], &["cloth-ball", "princess"]),
         (&["detect", "--scene", "cloth"], &["cloth-ball", "grid", "soup"]),
         (&["detect", "--scene", "grid", "--triangles", "4", "--out", "a.xlsx"], &[".csv", ".json"]),
         (&["detect", "--scene", "grid", "--triangles", "4", "--solver", "cubic-f64"], &["exact, moller"]),
@@ -352,7 +352,8 @@ fn a_plan_is_what_would_run() {
         "300 triangles, 900 vertices, positions in f32, two frames",
         "Continuous, self",
         "CPU, 2 threads (cpu)",
-        "aabb, swept",
+        "Levels: the fastest on this machine",
+        "linear",
         "cubic-f64: can miss",
         "MB to begin with",
     ] {
@@ -362,6 +363,10 @@ fn a_plan_is_what_would_run() {
         plan(&["--discrete", "--solver", "moller", "--traversal", "per-leaf-spill", "--backend", "cpu"]);
     for part in ["Discrete, self", "moller: a float test", "as asked", "aabb\n"] {
         assert!(other.contains(part), "{part} is not in {other}");
+    }
+    let queues = plan(&["--traversal", "queue-gtx285", "--queue", "100", "--backend", "cpu"]);
+    for part in ["cores: Some(30)", "local: 100", "take: 192", "balance: Copy"] {
+        assert!(queues.contains(part), "{part} is not in {queues}");
     }
     let folder = Folder::new("plan");
     let a = folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");

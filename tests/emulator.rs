@@ -133,6 +133,9 @@ kernels! {
     }
 }
 
+#[path = "emulator/together.rs"]
+mod together;
+
 /// What a launch left behind.
 struct Left {
     lanes: usize,

@@ -103,7 +103,7 @@ fn across_stages(sources: &[Source]) -> Vec<String> {
 
 #[test]
 fn stages_never_import_each_other() {
-    assert_eq!(stages(), ["construct", "fit", "narrow", "refit", "traverse"]);
+    assert_eq!(stages(), ["balance", "construct", "fit", "narrow", "refit", "traverse"]);
     assert_eq!(across_stages(&rust(&["kernels/src/stage"])), NONE);
 }
 
@@ -173,8 +173,8 @@ fn kernels_are_named_by_stage_and_step() {
     let names: Vec<&str> = TABLE.iter().map(|(name, _)| *name).collect();
     assert_eq!(misnamed(&names), NONE);
     assert_eq!(
-        misnamed(&["fit_f32", "fitting_f32", "refit", "balance_all"]),
-        ["fitting_f32", "refit", "balance_all"]
+        misnamed(&["fit_f32", "fitting_f32", "refit", "sweep_all"]),
+        ["fitting_f32", "refit", "sweep_all"]
     );
 }
 

@@ -44,7 +44,7 @@ fn between_two_bodies_indices_are_their_own() {
 
 #[test]
 fn every_contact_has_its_pairs_and_every_pair_its_first_contact() {
-    let body = scene::scene("cloth-ball", 3000, 1).expect("a scene");
+    let body = scene::scene("draped", 3000, 1).expect("a scene");
     let found = ask(engine(), vec![body.clone()], Query::of(Motion::Continuous));
     let pairs = triangle_contacts(found.contacts(), std::slice::from_ref(&body));
     assert!(pairs.len() > 100 && pairs.is_sorted_by_key(|p| (p.a, p.b)));

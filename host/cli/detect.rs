@@ -7,7 +7,7 @@ use crate::device::Device;
 use crate::error::Error;
 use crate::mesh::{Body, Mesh};
 use crate::pipeline::{Session, Stages};
-use crate::query::{Motion, Query, Solver};
+use crate::query::{Bv, Motion, Query, Solver, Traversal};
 use crate::report;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -27,9 +27,9 @@ pub fn body(files: &[PathBuf]) -> Result<Body, Error> {
 fn question(args: &DetectArgs) -> Result<(Vec<Body>, Query), Error> {
     let mut bodies = Vec::new();
     match &args.scene {
-        Some(name) => {
-            bodies.push(during("making the scene", || crate::scene::scene(name, args.triangles, args.seed))?)
-        }
+        Some(name) => bodies.push(during("making the scene", || {
+            crate::scene::scene(name, args.triangles.unwrap_or(crate::scene::usual(name)), args.seed)
+        })?),
         None => bodies.push(during("reading", || body(&args.meshes))?),
     }
     if !args.with.is_empty() {
@@ -51,9 +51,14 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
         eprintln!("nearmiss: the solver is {}", query.solver().promise());
     }
     let mut session = during("building", || Session::new(device, bodies, query))?;
-    let (contacts, runs) = during("detecting", || repeated(&mut session, args.repeat))?;
+    let often = if args.only.is_some() { 1 } else { args.repeat };
+    let (contacts, runs) = during("detecting", || repeated(&mut session, often))?;
     let mut summary = session.summary(&contacts);
     summary.ms = median(&runs);
+    if let Some(stage) = args.only {
+        let times = during("repeating a stage", || session.repeat_stage(stage, args.repeat))?;
+        *summary.ms.of_mut(stage) = middle(times);
+    }
     if let Some(out) = &args.out {
         report::write(out, &contacts, &summary)?;
     }
@@ -68,12 +73,16 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
 
 /// The answer, and the times of each run; of several runs the first only warms up.
 fn repeated(session: &mut Session, repeat: u32) -> Result<(Contacts, Vec<Stages>), Error> {
+    let keeps_front = matches!(session.query().traversal, Some(Traversal::Front(_)));
     let mut contacts = session.detect()?;
     let mut runs = vec![contacts.stages];
     if repeat > 1 {
         runs.clear();
         for _ in 0..repeat {
-            session.rebuild()?;
+            // A tree built anew would forget the front.
+            if !keeps_front {
+                session.rebuild()?;
+            }
             contacts = session.detect()?;
             runs.push(contacts.stages);
         }
@@ -83,20 +92,13 @@ fn repeated(session: &mut Session, repeat: u32) -> Result<(Contacts, Vec<Stages>
 
 /// Each stage's median.
 fn median(runs: &[Stages]) -> Stages {
-    let of = |stage: fn(&Stages) -> f64| {
-        let mut times: Vec<f64> = runs.iter().map(stage).collect();
-        times.sort_by(f64::total_cmp);
-        times[times.len() / 2]
-    };
-    Stages {
-        construct: of(|s| s.construct),
-        fit: of(|s| s.fit),
-        refit: of(|s| s.refit),
-        traverse: of(|s| s.traverse),
-        balance: of(|s| s.balance),
-        narrow: of(|s| s.narrow),
-        total: of(|s| s.total),
-    }
+    Stages::each(|stage| middle(runs.iter().map(stage).collect()))
+}
+
+/// The median; of an even number the upper of the two in the middle, of none 0.
+fn middle(mut times: Vec<f64>) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times.get(times.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// The summary for people.
@@ -119,9 +121,31 @@ fn human(summary: &Summary, contacts: &Contacts) -> String {
     );
     let _ = writeln!(
         text,
-        "  ms: construct {:.3}, fit {:.3}, refit {:.3}, traverse {:.3}, narrow {:.3}; a frame {:.3}",
-        ms.construct, ms.fit, ms.refit, ms.traverse, ms.narrow, ms.total
+        "  ms: construct {:.3}, fit {:.3}, refit {:.3}, traverse {:.3}{}, narrow {:.3}; a frame {:.3}",
+        ms.construct,
+        ms.fit,
+        ms.refit,
+        ms.traverse,
+        if ms.balance > 0.0 { format!(", balance {:.3}", ms.balance) } else { String::new() },
+        ms.narrow,
+        ms.total
     );
+    if !matches!(summary.traversal, Traversal::PerLeaf { .. }) {
+        let q = &summary.queues;
+        let _ = writeln!(
+            text,
+            "  queues: {} rounds, {} times dry, {} units spilled, {} moved, {} stolen; {} waited at most",
+            q.rounds, q.idle_exits, q.spills, q.moves, q.stolen, q.longest
+        );
+    }
+    if let Traversal::Front(_) = summary.traversal {
+        let f = &summary.front;
+        let _ = writeln!(
+            text,
+            "  front: {} pairs; {} tests of pairs kept, {} gave way to an ancestor",
+            f.pairs, f.tests, f.pruned
+        );
+    }
     let _ = writeln!(
         text,
         "  {} node tests, {} units spilled, {} undecided by floats; {:.1} MB; hash {}",
@@ -159,16 +183,28 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
         if bodies.len() == 1 { "self" } else { "between" }
     );
     let _ = writeln!(text, "machine    {} ({})", device.name(), device.backend());
-    let _ =
-        writeln!(text, "volume     aabb{}", if query.motion == Motion::Discrete { "" } else { ", swept" });
+    let swept = query.motion != Motion::Discrete && query.bv() != Bv::Linear;
+    let _ = writeln!(text, "volume     {}{}", query.bv().name(), if swept { ", swept" } else { "" });
+    let _ = writeln!(
+        text,
+        "refit      {}",
+        match (query.refit, query.refit_on(device.is_card())) {
+            (Some(choice), _) => format!("{choice:?}, as asked"),
+            (None, choice) => format!("{choice:?}: the fastest on this machine"),
+        }
+    );
     let _ = writeln!(
         text,
         "traversal  {}",
         match query.traversal {
             Some(choice) => format!("{choice:?}, as asked"),
-            None if device.is_card() =>
-                "per leaf, long walks spill: a card must not wait for its longest walk".into(),
-            None => "per leaf, to the end: a CPU's threads balance by themselves".into(),
+            None => match query.traversal_on(device.is_card()) {
+                Traversal::PerLeaf { budget: None } =>
+                    "per leaf, to the end: a CPU's threads balance by themselves".into(),
+                Traversal::PerLeaf { .. } =>
+                    "per leaf, long walks spill: a card must not wait for its longest walk".into(),
+                choice => format!("{choice:?}: fewer tests, where tests cost more"),
+            },
         }
     );
     let _ = writeln!(text, "solver     {}", query.solver().promise());

@@ -7,8 +7,8 @@ pub use triangles::{TriangleContact, triangle_contacts};
 use crate::device::Device;
 use crate::mesh::Body;
 use crate::pipeline::{Found, Layout, Stages};
-use crate::query::{Motion, Query, Solver, Traversal};
-use nearmiss_kernels::abi::counter;
+use crate::query::{Motion, Query, Refit, Solver, Traversal};
+use nearmiss_kernels::abi::{ROUNDS, counter};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -82,6 +82,60 @@ pub struct Contacts {
     pub steps: u64,
     /// Work units that long walks gave away.
     pub spilled: u64,
+    /// What the work queues did.
+    pub queues: Queues,
+    /// What the front saved or cost.
+    pub front: Front,
+}
+
+/// The front of a frame. All zero where there was none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Front {
+    /// Pairs of nodes at which this frame's descent ended.
+    pub pairs: u64,
+    /// Overlap tests of the last frame's pairs and, where it was pruned, of their ancestors. Those of the pairs below them
+    /// are counted as those of any traversal: two a step.
+    pub tests: u64,
+    /// Pairs that gave way to an ancestor.
+    pub pruned: u64,
+}
+
+impl Front {
+    fn new(counters: &[u64]) -> Front {
+        let of = |at: u32| counters[at as usize];
+        Front { pairs: of(counter::ENDS), tests: of(counter::FRONT_TESTS), pruned: of(counter::PRUNED) }
+    }
+}
+
+/// What the work queues of a traversal did. All zero where it had none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Queues {
+    /// Rounds with work: launches.
+    pub rounds: u64,
+    /// How often a queue ran dry.
+    pub idle_exits: u64,
+    /// Units that a queue on chip had no room for.
+    pub spills: u64,
+    /// Units that a balance moved.
+    pub moves: u64,
+    /// Units that a block took from those that others offered.
+    pub stolen: u64,
+    /// Most units that waited in a segment, or in the list of all.
+    pub longest: u64,
+}
+
+impl Queues {
+    fn new(counters: &[u64]) -> Queues {
+        let of = |at: u32| counters[at as usize];
+        Queues {
+            rounds: of(counter::QUEUE_ROUNDS),
+            idle_exits: of(counter::IDLE_EXITS),
+            spills: of(counter::QUEUE_SPILLS),
+            moves: of(counter::MOVES),
+            stolen: of(counter::STOLEN),
+            longest: of(counter::QUEUED),
+        }
+    }
 }
 
 impl Contacts {
@@ -102,6 +156,8 @@ impl Contacts {
             undecided: 0,
             steps: 0,
             spilled: 0,
+            queues: Queues::default(),
+            front: Front::default(),
         }
     }
 
@@ -145,7 +201,9 @@ impl Contacts {
             survivors_vf_ee: [count(counter::VF_SURVIVORS), count(counter::EE_SURVIVORS)],
             undecided: count(counter::UNDECIDED),
             steps: count(counter::STEPS),
-            spilled: found.counters[counter::SPILLED as usize..].iter().sum(),
+            spilled: found.counters[counter::SPILLED as usize..][..ROUNDS as usize].iter().sum(),
+            queues: Queues::new(&found.counters),
+            front: Front::new(&found.counters),
         }
     }
 
@@ -156,6 +214,11 @@ impl Contacts {
             Answer::Contacts(contacts) => contacts.len(),
             Answer::Earliest(toi) => toi.iter().len(),
         }
+    }
+
+    /// Overlap tests of two volumes: two a step, and those of the front.
+    pub fn overlap_tests(&self) -> u64 {
+        2 * self.steps + self.front.tests
     }
 
     /// Whether nothing meets.
@@ -214,6 +277,8 @@ pub struct Summary {
     pub query: Motion,
     /// The bounding volume.
     pub bv: &'static str,
+    /// The refit.
+    pub refit: Refit,
     /// The walk.
     pub traversal: Traversal,
     /// The test.
@@ -234,6 +299,10 @@ pub struct Summary {
     pub earliest_toi: Option<f64>,
     /// Hash of the canonical answer, sixteen hexadecimal digits.
     pub hash: String,
+    /// What the traversal's work queues did.
+    pub queues: Queues,
+    /// What the traversal's front saved or cost.
+    pub front: Front,
     /// Milliseconds by stage.
     pub ms: Stages,
     /// Most device memory held at once.
@@ -247,8 +316,9 @@ impl Summary {
             vertices: bodies.iter().map(Body::vertex_count).sum(),
             frames: if bodies.iter().any(Body::is_moving) { 2 } else { 1 },
             query: query.motion,
-            bv: "aabb",
-            traversal: query.traversal.unwrap_or(Traversal::default_for(device.is_card())),
+            bv: query.bv().name(),
+            refit: query.refit_on(device.is_card()),
+            traversal: query.traversal_on(device.is_card()),
             solver: query.solver(),
             backend: device.backend(),
             device: device.name(),
@@ -258,6 +328,8 @@ impl Summary {
             unresolved: 0,
             earliest_toi: contacts.earliest_toi(),
             hash: format!("{:016x}", contacts.hash()),
+            queues: contacts.queues,
+            front: contacts.front,
             ms: contacts.stages,
             bytes: device.bytes().1,
         }

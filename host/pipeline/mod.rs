@@ -7,12 +7,13 @@ mod precision;
 mod room;
 mod timing;
 mod tree;
+mod treelets;
 mod volumes;
 mod walk;
 
 pub(crate) use corridor::Found;
 pub use layout::{Layout, Offsets};
-pub use timing::Stages;
+pub use timing::{Stage, Stages};
 
 use crate::contacts::{Contacts, Summary};
 use crate::device::Device;
@@ -20,7 +21,8 @@ use crate::error::Error;
 use crate::mesh::{Body, MAX_FACES, MAX_VERTICES};
 use crate::query::{Bv, Query};
 use corridor::{Corridor, Frames};
-use nearmiss_kernels::bv::{Aabb, Axes};
+use nearmiss_kernels::bv::{Aabb, Axes, Linear, Obb};
+use volumes::Kernels;
 
 /// Bodies on a device, ready to be asked frame after frame.
 ///
@@ -29,7 +31,7 @@ use nearmiss_kernels::bv::{Aabb, Axes};
 /// ```
 /// use nearmiss::{Device, Query, Session, device::Backend, query::Motion, scene};
 ///
-/// let cloth = scene::scene("cloth-ball", 2_000, 7)?;
+/// let cloth = scene::scene("draped", 2_000, 7)?;
 /// let device = Device::open(Backend::Auto, None)?;
 /// let mut session = Session::new(device, vec![cloth], Query::of(Motion::Continuous))?;
 /// let contacts = session.detect()?;
@@ -42,6 +44,8 @@ pub struct Session {
     layout: Layout,
     query: Query,
     construct_ms: f64,
+    /// Whether the device holds the answer for where the bodies are now.
+    answered: bool,
     corridor: Option<Box<dyn Frames>>,
 }
 
@@ -53,11 +57,26 @@ fn corridor(
     query: Query,
 ) -> Result<Box<dyn Frames>, Error> {
     let f64s = bodies.iter().any(|body| body.positions_t0().is_f64());
-    Ok(match (query.bv(), f64s) {
-        (Bv::Aabb, false) => {
-            Box::new(Corridor::<f32, Aabb>::new(device, bodies, layout, (query, Axes::PCA))?)
-        }
-        (Bv::Aabb, true) => Box::new(Corridor::<f64, Aabb>::new(device, bodies, layout, (query, Axes::PCA))?),
+    match query.bv() {
+        Bv::Aabb => dressed::<Aabb>(device, bodies, layout, (query, Axes::PCA), f64s),
+        Bv::Linear => dressed::<Linear>(device, bodies, layout, (query, Axes::PCA), f64s),
+        Bv::Obb => dressed::<Obb>(device, bodies, layout, (query, Axes::PCA), f64s),
+        Bv::ObbChild => dressed::<Obb>(device, bodies, layout, (query, Axes::CHILD), f64s),
+    }
+}
+
+/// The corridor of a volume.
+fn dressed<V: Kernels>(
+    device: Device,
+    bodies: &[Body],
+    layout: &Layout,
+    (query, axes): (Query, Axes),
+    f64s: bool,
+) -> Result<Box<dyn Frames>, Error> {
+    Ok(if f64s {
+        Box::new(Corridor::<f64, V>::new(device, bodies, layout, (query, axes))?)
+    } else {
+        Box::new(Corridor::<f32, V>::new(device, bodies, layout, (query, axes))?)
     })
 }
 
@@ -76,7 +95,8 @@ impl Session {
         }
         fits(bodies.iter().map(Body::face_count).sum(), bodies.iter().map(Body::vertex_count).sum())?;
         let layout = Layout::new(&bodies, query.motion != crate::query::Motion::Discrete);
-        let mut session = Session { device, bodies, layout, query, construct_ms: 0.0, corridor: None };
+        let mut session =
+            Session { device, bodies, layout, query, construct_ms: 0.0, answered: false, corridor: None };
         // A body without triangles meets nothing: no memory, no launch.
         if session.bodies.iter().all(|body| body.face_count() > 0) {
             let mut corridor = corridor(session.device.clone(), &session.bodies, &session.layout, query)?;
@@ -105,6 +125,7 @@ impl Session {
             });
         }
         self.bodies[body] = frame;
+        self.answered = false;
         match &mut self.corridor {
             Some(corridor) => corridor.place(&self.bodies),
             None => Ok(()),
@@ -118,6 +139,7 @@ impl Session {
     pub fn rebuild(&mut self) -> Result<(), Error> {
         let Some(corridor) = &mut self.corridor else { return Ok(()) };
         self.construct_ms = corridor.construct()?;
+        self.answered = false;
         Ok(())
     }
 
@@ -130,8 +152,37 @@ impl Session {
             None => return Ok(Contacts::none(self.query)),
             Some(corridor) => corridor.frame()?,
         };
+        self.answered = true;
         let stages = Stages { construct: self.construct_ms, ..stages };
         Ok(Contacts::new(found, &self.layout, self.query, stages))
+    }
+
+    /// Runs one stage of this frame `times` times, on the device alone, and gives each run's milliseconds: for profilers,
+    /// and for figures of one stage. What the stage needs runs before, once, where it has not yet: the leaves' volumes for
+    /// [`Stage::Refit`], a whole frame for [`Stage::Traverse`] and [`Stage::Narrow`]. The next [`Session::detect`] answers
+    /// as it would have. A body without triangles has no stages: no runs.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn repeat_stage(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
+        if !self.answered && matches!(stage, Stage::Traverse | Stage::Narrow) {
+            self.detect()?;
+        }
+        let Some(corridor) = &mut self.corridor else { return Ok(Vec::new()) };
+        if !self.answered && stage == Stage::Refit {
+            corridor.repeat(Stage::Fit, 1)?;
+        }
+        let ms = corridor.repeat(stage, times)?;
+        if stage == Stage::Construct {
+            self.answered = false;
+            self.construct_ms = ms.last().copied().unwrap_or(self.construct_ms);
+        }
+        Ok(ms)
+    }
+
+    /// What is asked.
+    pub fn query(&self) -> &Query {
+        &self.query
     }
 
     /// What the command line prints of a result.

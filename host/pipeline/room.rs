@@ -13,7 +13,7 @@ pub struct List<T> {
 }
 
 /// Longest list: entries are numbered with 32 bits.
-const LONGEST: u64 = u32::MAX as u64;
+pub const LONGEST: u64 = u32::MAX as u64;
 
 impl<T: Pod> List<T> {
     /// A list with room for `room` entries, counted by that counter.

@@ -1,8 +1,10 @@
 //! Construct: the tree of one body, kept on the device.
 
 use super::precision::Precision;
+use super::treelets::Way;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
+use crate::query::Refit;
 use nearmiss_kernels::abi::{Frames, Inner, Link, MortonArgs, SortArgs, Span, TreeArgs};
 use nearmiss_kernels::bvh::{self, MAX_LEVELS};
 use nearmiss_kernels::entry;
@@ -20,8 +22,12 @@ pub struct Tree {
     pub pair_parents: Buffer<u32>,
     /// Each leaf's node.
     pub leaf_nodes: Buffer<u32>,
+    /// The first leaf below each pair of siblings; empty where all nodes are merged.
+    pub firsts: Buffer<u32>,
     /// Number of levels, then where each begins, then where the last ends.
     pub levels: Buffer<u32>,
+    /// How it is refitted.
+    pub way: Way,
     /// The same, as the host needs it to launch.
     starts: Vec<u32>,
     first: u32,
@@ -43,17 +49,25 @@ struct Scratch {
 }
 
 impl Tree {
-    /// Takes the memory of a tree over `count` triangles (at least one) from `first` on.
+    /// Takes the memory of a tree over `count` triangles (at least one) from `first` on, and of its refit; `groups` tells
+    /// whether nodes of few leaves are fitted.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn new(device: &Device, (first, count): (u32, u32)) -> Result<Tree, Error> {
+    pub fn new(
+        device: &Device,
+        (first, count): (u32, u32),
+        refit: Refit,
+        groups: bool,
+    ) -> Result<Tree, Error> {
         let (n, inner) = (count as usize, count as usize - 1);
         Ok(Tree {
             links: device.buffer(2 * n)?,
             pair_parents: device.buffer(n)?,
             leaf_nodes: device.buffer(n)?,
+            firsts: device.buffer(if groups { n } else { 0 })?,
             levels: device.buffer(MAX_LEVELS as usize + 2)?,
+            way: Way::new(device, refit, count)?,
             starts: Vec::new(),
             first,
             count,
@@ -71,8 +85,8 @@ impl Tree {
         })
     }
 
-    /// Builds the hierarchy, all on the device. It has no volumes yet. Cost: 34 launches, 27 of them a radix sort;
-    /// linear memory.
+    /// Builds the hierarchy, all on the device. It has no volumes yet. Cost: 34 launches, 27 of them a radix sort,
+    /// and two for treelets where those are asked for; linear memory.
     ///
     /// # Errors
     /// Those of the device.
@@ -121,6 +135,7 @@ impl Tree {
             links: self.links.span(),
             pair_parents: self.pair_parents.span(),
             leaf_nodes: self.leaf_nodes.span(),
+            firsts: self.firsts.span(),
             leaves: self.count,
             first: self.first,
         };
@@ -141,6 +156,7 @@ impl Tree {
             device.blocks_for::<entry::construct_emit>(inner.max(1)),
             &args,
         )?;
+        self.way.prepare(device, &args)?;
         self.learn_levels()
     }
 
@@ -181,6 +197,16 @@ impl Tree {
         // Node 0 is not used and nothing writes it.
         links[0] = Link::default();
         Ok(links)
+    }
+
+    /// Triangles in leaf order, counted from the body's first.
+    pub fn triangles(&self) -> Span<u32> {
+        self.scratch.triangles[0].span()
+    }
+
+    /// The body's first triangle.
+    pub fn first(&self) -> u32 {
+        self.first
     }
 
     /// Checks the tree as it lies on the device.

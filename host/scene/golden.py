@@ -132,7 +132,7 @@ def wave(x):
     return 8.0 * t * (1.0 - 2.0 * abs(t))
 
 
-def draped(u, v, lift, lean, stand, turn):
+def lies(u, v, lift, lean, stand, turn):
     r = math.sqrt(u * u + v * v)
     if r == 0.0:
         return [0.0, 0.0, 1.0 + lift]
@@ -149,7 +149,7 @@ def draped(u, v, lift, lean, stand, turn):
     return [dx * out - dy * side, dy * out + dx * side, height + lift]
 
 
-def cloth_ball(triangles):
+def draped(triangles):
     f = root(triangles / 80.0)
     cells = max(1.0, triangles / 2.0 - 4.0 * f * f)
     columns = root(cells)
@@ -159,8 +159,8 @@ def cloth_ball(triangles):
         for column in range(columns + 1):
             u, v = (2.8 * (2.0 * i / n - 1.0) for i, n in ((column, columns), (row, rows)))
             off = rng.point(shake)
-            t0.append(add(draped(u, v, 0.0, 0.11, 0.08, 0.0), off))
-            t1.append(add(draped(u, v, -0.02, 0.125, 0.075, 0.1), off))
+            t0.append(add(lies(u, v, 0.0, 0.11, 0.08, 0.0), off))
+            t1.append(add(lies(u, v, -0.02, 0.125, 0.075, 0.1), off))
     faces = list(strips([list(range(r * (columns + 1), (r + 1) * (columns + 1))) for r in range(rows + 1)]))
     points, triangles = sphere(f)
     faces += [[i + len(t0) for i in t] for t in triangles]
@@ -178,7 +178,7 @@ def corners(n, at):
 UNIT = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
 for name, body in {
     "balls": balls(31, 1, 7),  # for 1000 triangles
-    "cloth-ball": cloth_ball(1000),
+    "draped": draped(1000),
     "grid": grid(16),
     "identical": corners(1000, lambda i: UNIT),
     "line": corners(1000, lambda i: [(i, 1, 0), (i, -1, 1), (i, 0, -1)]),

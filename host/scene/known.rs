@@ -27,11 +27,14 @@ pub fn grid(cells: u32) -> Result<Body, Error> {
     scene.body("grid")
 }
 
-/// Two triangles for each square between two rows of vertices.
+/// Adds two triangles for each square between two rows of vertices.
 pub(super) fn strip(scene: &mut Builder, low: &[u32], high: &[u32]) {
-    for (l, h) in low.windows(2).zip(high.windows(2)) {
-        scene.faces.extend([[l[0], l[1], h[1]], [l[0], h[1], h[0]]]);
-    }
+    scene.faces.extend(strip_faces(low, high));
+}
+
+/// Two triangles for each square between two rows of vertices.
+pub(super) fn strip_faces<'a>(low: &'a [u32], high: &'a [u32]) -> impl Iterator<Item = [u32; 3]> + 'a {
+    low.windows(2).zip(high.windows(2)).flat_map(|(l, h)| [[l[0], l[1], h[1]], [l[0], h[1], h[0]]])
 }
 
 /// How many pairs of triangles of [`grid`] meet and share no vertex: `cells (4 cells - 1)`.
@@ -46,6 +49,11 @@ pub fn grid_pairs(cells: u32) -> u64 {
 /// The `cells` for about `triangles`.
 pub(super) fn nearest(triangles: usize) -> u32 {
     square_root(triangles as f64 / 4.0)
+}
+
+/// The whole number nearest to `x`, at least 1.
+pub(super) fn at_least_one(x: f64) -> u32 {
+    (x + 0.5).floor().clamp(1.0, 1e9) as u32
 }
 
 /// `n` triangles with the same three corners, each with its own vertices: all `n (n - 1) / 2` pairs meet. Still.

@@ -1,20 +1,30 @@
-//! Scenes made by formula: for the README, the self-test, tests and benches.
+//! Scenes made by this program: for the README, the self-test, tests and benches.
+//!
+//! Those of [`FORMULAS`] have one or two frames; those of [`ANIMATIONS`] go on for ever, an [`Animation`] each.
 //!
 //! A scene is the same, bit by bit, on every machine and in every version of every crate: random numbers come from
 //! our own [`Rng`], and coordinates only from `+ - * /`, `sqrt`, `floor` and comparisons in double precision, which
 //! IEEE 754 fixes, then one rounding to single. No `sin`, `cos` or `cbrt`, which differ between systems.
 
+mod animation;
 mod balls;
-mod cloth;
+mod cloth_ball;
+mod draped;
+mod flamenco;
 mod known;
+mod nbody;
+mod princess;
 mod rng;
 mod soup;
 mod sphere;
 #[cfg(test)]
 mod tests;
+mod turn;
+mod xpbd;
 
+pub use animation::{ANIMATIONS, Animation, Options, animation, animation_with};
 pub use balls::balls;
-pub use cloth::cloth_ball;
+pub use draped::draped;
 pub use known::{grid, grid_pairs, identical, line, single};
 pub use rng::Rng;
 pub use soup::soup;
@@ -23,14 +33,42 @@ use crate::Error;
 use crate::mesh::{Body, Mesh, Positions, Problem};
 
 /// The names that [`scene`] knows.
-pub const NAMES: [&str; 8] =
-    ["balls", "cloth-ball", "grid", "identical", "line", "single", "soup", "soup-moving"];
+pub const NAMES: [&str; 12] = [
+    "balls",
+    "cloth-ball",
+    "draped",
+    "flamenco",
+    "grid",
+    "identical",
+    "line",
+    "n-body",
+    "princess",
+    "single",
+    "soup",
+    "soup-moving",
+];
+
+/// Those of [`NAMES`] that are made by formula, still or with the two ends of a step; the others are [`ANIMATIONS`].
+pub const FORMULAS: [&str; 8] =
+    ["balls", "draped", "grid", "identical", "line", "single", "soup", "soup-moving"];
+
+/// Triangles of a scene where none are asked for: the thesis's number for the scenes that it has, for the others that of
+/// UNC's cloth on a ball.
+pub fn usual(name: &str) -> usize {
+    match name {
+        "flamenco" => 49_000,
+        "princess" => 40_000,
+        "n-body" => 146_480,
+        _ => 92_230,
+    }
+}
 
 /// Most triangles of a generated scene, 2^27: with three vertices each they stay below the limits of a mesh.
 pub const MAX_TRIANGLES: u64 = 1 << 27;
 
 /// The scene `name` with about `triangles` triangles (`single` has one whatever is asked; each generator says how
-/// near it comes). `seed` shifts the random ones: `balls`, `soup`, `soup-moving`.
+/// near it comes). `seed` shifts the random ones: `balls`, `soup`, `soup-moving`, and the animations. Of an animation
+/// it is the step from its opening to the next frame; the frames before have to be computed first.
 ///
 /// # Errors
 /// [`Problem::UnknownScene`] with the known names, [`Problem::NoTriangles`] for 0, [`Problem::TooMany`] above
@@ -40,11 +78,16 @@ pub fn scene(name: &str, triangles: usize, seed: u64) -> Result<Body, Error> {
         return Err(Error::Input { file: name.into(), problem: Problem::NoTriangles });
     }
     match name {
+        _ if ANIMATIONS.contains(&name) => {
+            let mut animation = animation(name, triangles, seed)?;
+            animation.advance(animation.opening())?;
+            animation.next_step()
+        }
         "balls" => {
             let (count, subdivisions) = balls::nearest(triangles);
             balls(count, subdivisions, seed)
         }
-        "cloth-ball" => cloth_ball(triangles),
+        "draped" => draped(triangles),
         "grid" => grid(known::nearest(triangles)),
         "identical" => identical(triangles),
         "line" => line(triangles),

@@ -6,7 +6,7 @@ use crate::mesh::{Topology, check};
 /// Name, triangles and fingerprint for 1000 triangles and seed 7. From golden.py, a second implementation in Python.
 const GOLDEN: [(&str, usize, u64); 8] = [
     ("balls", 992, 0xd722cb011318a040),
-    ("cloth-ball", 1010, 0x080dfe1ea77463fa),
+    ("draped", 1010, 0x080dfe1ea77463fa),
     ("grid", 1024, 0x0b3bb50c98b808b6),
     ("identical", 1000, 0x0cef323985d13d97),
     ("line", 1000, 0x6acbd9d5347c5515),
@@ -17,7 +17,7 @@ const GOLDEN: [(&str, usize, u64); 8] = [
 
 #[test]
 fn every_scene_is_what_another_implementation_makes() {
-    assert_eq!(GOLDEN.map(|(name, ..)| name), NAMES);
+    assert_eq!(GOLDEN.map(|(name, ..)| name), FORMULAS);
     for (name, triangles, fingerprint) in GOLDEN {
         let body = scene(name, 1000, 7).unwrap();
         assert_eq!((body.name(), body.face_count()), (name, triangles));
@@ -37,7 +37,7 @@ fn the_fingerprint_notices_one_bit() {
 
 #[test]
 fn scenes_have_about_as_many_triangles_as_asked() {
-    for name in NAMES.into_iter().filter(|&name| name != "single") {
+    for name in FORMULAS.into_iter().filter(|&name| name != "single") {
         for asked in [1, 2, 10, 100, 5_000, 92_230] {
             let body = scene(name, asked, 1).unwrap();
             let off = body.face_count().abs_diff(asked) as f64 / asked as f64;
@@ -48,7 +48,7 @@ fn scenes_have_about_as_many_triangles_as_asked() {
                 .iter()
                 .all(|mesh| mesh.positions().to_f64().iter().flatten().all(|x| x.is_finite()));
             assert!(all, "{name} for {asked}");
-            let moves = matches!(name, "balls" | "cloth-ball" | "soup-moving");
+            let moves = matches!(name, "balls" | "draped" | "soup-moving");
             assert_eq!(body.is_moving(), moves, "{name}");
         }
     }
@@ -57,8 +57,8 @@ fn scenes_have_about_as_many_triangles_as_asked() {
 #[test]
 fn what_cannot_be_made_is_refused_before_it_is_tried() {
     let text = |name: &str, triangles: usize| scene(name, triangles, 0).unwrap_err().to_string();
-    assert!(text("cloth", 10).starts_with("cloth: is no scene; known are: balls, cloth-ball, grid"));
-    for name in NAMES {
+    assert!(text("cloth", 10).starts_with("cloth: is no scene; known are: balls, cloth-ball, draped"));
+    for name in FORMULAS {
         assert!(text(name, 0).contains("no triangles"));
         if name != "single" {
             let text = text(name, usize::MAX);
@@ -102,9 +102,9 @@ fn the_known_answers_are_the_answers() {
 
 #[test]
 fn the_cloth_folds_into_itself_and_meets_the_ball_in_the_step() {
-    let frames = cloth_ball(4_000).unwrap().frames();
+    let frames = draped(4_000).unwrap().frames();
     let pairs = [meeting(&frames[0]), meeting(&frames[1])];
-    eprintln!("cloth-ball 4000: pairs that meet at t0 and t1: {pairs:?}");
+    eprintln!("draped 4000: pairs that meet at t0 and t1: {pairs:?}");
     assert!(pairs[0] > 100 && pairs[1] > 2 * pairs[0], "{pairs:?}");
 }
 

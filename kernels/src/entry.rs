@@ -1,11 +1,14 @@
 //! The kernel table: one line an entry. The PTX entries and the host's list come from the same line.
 
 use crate::abi::*;
-use crate::bv::Aabb;
+use crate::bv::{Aabb, Linear, Obb};
 use crate::exec::{BINS, Block, WARP};
-use crate::stage::construct::{morton, sort, tree};
+use crate::queue::worker;
+use crate::stage::construct::{morton, sort, tree, treelet};
 use crate::stage::narrow::{discrete, reject, sift, solve};
-use crate::stage::{fit, refit, traverse};
+use crate::stage::refit::{bottom_up, levels, treelets};
+use crate::stage::traverse::{front, queue, steal};
+use crate::stage::{balance, fit, traverse};
 use bytemuck::Pod;
 
 /// A kernel as the host knows it.
@@ -71,6 +74,8 @@ const WIDE: u32 = 256;
 /// Lanes of kernels with long or uneven work: small blocks, so that few lanes wait for a long one (measured:
 /// `benches/NOTES.md`).
 const NARROW: u32 = 64;
+/// Lanes of the one block that evens the queues, as in the paper.
+const BALANCE: u32 = 512;
 /// Shared memory of a radix scatter: the bins, and each warp's.
 const RANKS: u32 = 4 * BINS * (1 + WIDE / WARP);
 
@@ -87,11 +92,44 @@ kernels! {
     construct_place: tree::place, [TreeArgs], WIDE, 0;
     construct_levels: tree::levels, [TreeArgs], WIDE, 0;
     construct_emit: tree::emit, [TreeArgs], WIDE, 0;
+    construct_mark: treelet::mark, [PlanArgs], WIDE, 0;
+    construct_treelets: treelet::plan, [PlanArgs], WIDE, treelet::SHARED;
     fit_aabb_f32: fit::fit::<f32, Aabb, B>, [FitArgs<f32, Aabb>], WIDE, 0;
     fit_aabb_f64: fit::fit::<f64, Aabb, B>, [FitArgs<f64, Aabb>], WIDE, 0;
-    refit_levels_aabb: refit::levels::<Aabb, B>, [RefitArgs<Aabb>], WIDE, 0;
+    fit_linear_f32: fit::fit::<f32, Linear, B>, [FitArgs<f32, Linear>], WIDE, 0;
+    fit_linear_f64: fit::fit::<f64, Linear, B>, [FitArgs<f64, Linear>], WIDE, 0;
+    fit_obb_f32: fit::fit::<f32, Obb, B>, [FitArgs<f32, Obb>], WIDE, 0;
+    fit_obb_f64: fit::fit::<f64, Obb, B>, [FitArgs<f64, Obb>], WIDE, 0;
+    fit_groups_obb_f32: fit::groups::<f32, B>, [GroupsArgs<f32, Obb>], NARROW, 0;
+    fit_groups_obb_f64: fit::groups::<f64, B>, [GroupsArgs<f64, Obb>], NARROW, 0;
+    refit_levels_aabb: levels::levels::<Aabb, B>, [RefitArgs<Aabb>], WIDE, 0;
+    refit_levels_linear: levels::levels::<Linear, B>, [RefitArgs<Linear>], WIDE, 0;
+    refit_levels_obb: levels::levels::<Obb, B>, [RefitArgs<Obb>], WIDE, 0;
+    refit_treelets_aabb_f32: treelets::treelets::<f32, Aabb, B>, [TreeletsArgs<f32, Aabb>], WIDE, treelets::shared_bytes::<Aabb>();
+    refit_treelets_aabb_f64: treelets::treelets::<f64, Aabb, B>, [TreeletsArgs<f64, Aabb>], WIDE, treelets::shared_bytes::<Aabb>();
+    refit_treelets_linear_f32: treelets::treelets::<f32, Linear, B>, [TreeletsArgs<f32, Linear>], WIDE, treelets::shared_bytes::<Linear>();
+    refit_treelets_linear_f64: treelets::treelets::<f64, Linear, B>, [TreeletsArgs<f64, Linear>], WIDE, treelets::shared_bytes::<Linear>();
+    refit_treelets_obb_f32: treelets::treelets::<f32, Obb, B>, [TreeletsArgs<f32, Obb>], WIDE, treelets::shared_bytes::<Obb>();
+    refit_treelets_obb_f64: treelets::treelets::<f64, Obb, B>, [TreeletsArgs<f64, Obb>], WIDE, treelets::shared_bytes::<Obb>();
+    refit_bottom_up_aabb: bottom_up::bottom_up::<Aabb, B>, [BottomUpArgs<Aabb>], WIDE, 0;
+    refit_bottom_up_linear: bottom_up::bottom_up::<Linear, B>, [BottomUpArgs<Linear>], WIDE, 0;
+    refit_bottom_up_obb: bottom_up::bottom_up::<Obb, B>, [BottomUpArgs<Obb>], WIDE, 0;
     traverse_leaves_aabb: traverse::leaves::<Aabb, B>, [TraverseArgs<Aabb>], NARROW, traverse::shared_bytes(NARROW);
     traverse_units_aabb: traverse::units::<Aabb, B>, [TraverseArgs<Aabb>], NARROW, traverse::shared_bytes(NARROW);
+    traverse_leaves_linear: traverse::leaves::<Linear, B>, [TraverseArgs<Linear>], NARROW, traverse::shared_bytes(NARROW);
+    traverse_units_linear: traverse::units::<Linear, B>, [TraverseArgs<Linear>], NARROW, traverse::shared_bytes(NARROW);
+    traverse_leaves_obb: traverse::leaves::<Obb, B>, [TraverseArgs<Obb>], NARROW, traverse::shared_bytes(NARROW);
+    traverse_units_obb: traverse::units::<Obb, B>, [TraverseArgs<Obb>], NARROW, traverse::shared_bytes(NARROW);
+    traverse_front_aabb: front::front::<Aabb, B>, [FrontArgs<Aabb>], WIDE, 0;
+    traverse_front_linear: front::front::<Linear, B>, [FrontArgs<Linear>], WIDE, 0;
+    traverse_front_obb: front::front::<Obb, B>, [FrontArgs<Obb>], WIDE, 0;
+    traverse_queue_aabb: queue::queue::<Aabb, B>, [QueueArgs<Aabb>], NARROW, worker::shared_bytes(NARROW);
+    traverse_steal_aabb: steal::steal::<Aabb, B>, [StealArgs<Aabb>], NARROW, worker::shared_bytes(NARROW);
+    traverse_queue_linear: queue::queue::<Linear, B>, [QueueArgs<Linear>], NARROW, worker::shared_bytes(NARROW);
+    traverse_steal_linear: steal::steal::<Linear, B>, [StealArgs<Linear>], NARROW, worker::shared_bytes(NARROW);
+    traverse_queue_obb: queue::queue::<Obb, B>, [QueueArgs<Obb>], NARROW, worker::shared_bytes(NARROW);
+    traverse_steal_obb: steal::steal::<Obb, B>, [StealArgs<Obb>], NARROW, worker::shared_bytes(NARROW);
+    balance_copy: balance::copy, [BalanceArgs], BALANCE, 0;
     narrow_moller_f32: discrete::moller::<f32, B>, [DiscreteArgs<f32>], WIDE, 0;
     narrow_moller_f64: discrete::moller::<f64, B>, [DiscreteArgs<f64>], WIDE, 0;
     narrow_filter_f32: discrete::filter::<f32, B>, [DiscreteArgs<f32>], WIDE, 0;

@@ -67,7 +67,7 @@ impl Tree {
             first: FIRST,
         };
         check(&tree, &mut vec![false; self.leaf_nodes.len()])?;
-        check_volumes(&self.links, &self.nodes, Axes::PCA)
+        check_volumes(&self.links, &self.nodes, Axes::PCA, |_, _| None)
     }
 
     /// What the checker says of a tree with a fault planted in it.

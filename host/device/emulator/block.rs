@@ -1,12 +1,13 @@
 //! A block on the CPU: its phases are loops over its lanes.
 
-use super::microscope::{Access, Microscope, Place};
+use super::coherent;
+use super::microscope::{Access, Place};
 use bytemuck::Pod;
 use nearmiss_kernels::abi::Span;
 use nearmiss_kernels::exec::{BINS, Block, Lane, Shared, Slot, Word};
 use std::mem::MaybeUninit;
 use std::ptr::with_exposed_provenance_mut;
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed, Ordering::SeqCst, fence};
 
 /// Who looks on. [`Blind`] costs nothing: every call is empty and vanishes.
 pub trait Watch: Copy {
@@ -16,6 +17,10 @@ pub trait Watch: Copy {
     fn device(&self, access: Access, addr: u64, bytes: usize, inside: bool, place: Place) -> bool;
     /// An access to shared memory; false forbids it.
     fn shared(&self, access: Access, offset: u32, bytes: usize, inside: bool, place: Place) -> bool;
+    /// An access that might only have looked, [`Access::Swap`], has changed memory.
+    fn changed(&self);
+    /// A barrier of the block: another block may go on.
+    fn barrier(&self);
 }
 
 /// Nobody looks on.
@@ -37,19 +42,10 @@ impl Watch for Blind {
         debug_assert!(inside, "a kernel left its shared memory");
         true
     }
-}
-
-impl Watch for &Microscope {
-    fn lanes(&self, count: u32, phase: u32, body: impl FnMut(u32)) {
-        let turn = self.launches() << 20 | phase as u64;
-        self.order().sequence(count, turn).into_iter().for_each(body);
-    }
-    fn device(&self, access: Access, addr: u64, bytes: usize, inside: bool, place: Place) -> bool {
-        self.see_device(access, addr, bytes, inside, place)
-    }
-    fn shared(&self, access: Access, offset: u32, bytes: usize, inside: bool, place: Place) -> bool {
-        self.see_shared(access, offset, bytes, inside, place)
-    }
+    #[inline(always)]
+    fn changed(&self) {}
+    #[inline(always)]
+    fn barrier(&self) {}
 }
 
 /// The lane of a read that all lanes make together.
@@ -123,10 +119,10 @@ impl<W: Watch> EmulatedLane<W> {
             .then(|| self.words.cast::<u8>().wrapping_add(offset as usize).cast::<T>())
     }
     #[inline(always)]
-    fn atomic(&self, span: Span<u64>, i: u32) -> Option<&AtomicU64> {
+    fn atomic(&self, access: Access, span: Span<u64>, i: u32) -> Option<&AtomicU64> {
         // SAFETY: inside a span of live, aligned device memory (kernels stay inside; the microscope and debug builds
-        // check it), touched only atomically in this launch.
-        device(&self.watch, Access::Atomic, span, i, self.place).map(|p| unsafe { AtomicU64::from_ptr(p) })
+        // check it), touched only atomically while others may touch it.
+        device(&self.watch, access, span, i, self.place).map(|p| unsafe { AtomicU64::from_ptr(p) })
     }
 }
 
@@ -157,19 +153,60 @@ impl<W: Watch> Lane for EmulatedLane<W> {
     }
     #[inline(always)]
     fn fetch_max(&self, span: Span<u64>, i: u32, value: u64) {
-        if let Some(atomic) = self.atomic(span, i) {
+        if let Some(atomic) = self.atomic(Access::Atomic, span, i) {
             atomic.fetch_max(value, Relaxed);
         }
     }
     #[inline(always)]
     fn fetch_min(&self, span: Span<u64>, i: u32, value: u64) {
-        if let Some(atomic) = self.atomic(span, i) {
+        if let Some(atomic) = self.atomic(Access::Atomic, span, i) {
             atomic.fetch_min(value, Relaxed);
         }
     }
     #[inline(always)]
     fn fetch_add(&self, span: Span<u64>, i: u32, value: u64) -> u64 {
-        self.atomic(span, i).map_or(0, |atomic| atomic.fetch_add(value, Relaxed))
+        self.atomic(Access::Atomic, span, i).map_or(0, |atomic| atomic.fetch_add(value, Relaxed))
+    }
+    #[inline(always)]
+    fn fetch_load(&self, span: Span<u64>, i: u32) -> u64 {
+        self.atomic(Access::Look, span, i).map_or(0, |atomic| atomic.load(Relaxed))
+    }
+    #[inline(always)]
+    fn exchange(&self, span: Span<u64>, i: u32, value: u64) -> u64 {
+        let Some(atomic) = self.atomic(Access::Swap, span, i) else { return 0 };
+        let before = atomic.swap(value, Relaxed);
+        if before != value {
+            self.watch.changed();
+        }
+        before
+    }
+    #[inline(always)]
+    fn compare_exchange(&self, span: Span<u64>, i: u32, current: u64, new: u64) -> u64 {
+        let Some(atomic) = self.atomic(Access::Swap, span, i) else { return 0 };
+        match atomic.compare_exchange(current, new, Relaxed, Relaxed) {
+            Ok(before) => {
+                self.watch.changed();
+                before
+            }
+            Err(before) => before,
+        }
+    }
+    #[inline(always)]
+    fn give<T: Pod>(&self, span: Span<T>, i: u32, value: T) {
+        if let Some(p) = device(&self.watch, Access::Give, span, i, self.place) {
+            // SAFETY: as for `atomic`.
+            unsafe { coherent::store(p, value) }
+        }
+    }
+    #[inline(always)]
+    fn take<T: Pod>(&self, span: Span<T>, i: u32) -> T {
+        // SAFETY: as for `atomic`.
+        device(&self.watch, Access::Take, span, i, self.place)
+            .map_or(T::zeroed(), |p| unsafe { coherent::load(p) })
+    }
+    #[inline(always)]
+    fn fence(&self) {
+        fence(SeqCst);
     }
     #[inline(always)]
     fn get<T: Word>(&self, words: Shared<T>, i: u32) -> T {
@@ -198,6 +235,25 @@ impl<W: Watch> Lane for EmulatedLane<W> {
         if let Some(p) = self.word(Access::Atomic, words, i) {
             // SAFETY: as for `shared_add`.
             unsafe { p.write(p.read().max(value)) }
+        }
+    }
+    #[inline(always)]
+    fn shared_min(&self, words: Shared<u64>, i: u32, value: u64) {
+        if let Some(p) = self.word(Access::Atomic, words, i) {
+            // SAFETY: as for `shared_add`.
+            unsafe { p.write(p.read().min(value)) }
+        }
+    }
+    #[inline(always)]
+    fn shared_cas(&self, words: Shared<u32>, i: u32, current: u32, new: u32) -> u32 {
+        let Some(p) = self.word(Access::Atomic, words, i) else { return 0 };
+        // SAFETY: as for `shared_add`.
+        unsafe {
+            let before = p.read();
+            if before == current {
+                p.write(new);
+            }
+            before
         }
     }
 }
@@ -235,6 +291,7 @@ impl<W: Watch> Block for Emulated<W> {
         let watch = self.watch;
         watch.lanes(self.lanes, self.phase, |lane| body(&self.lane(lane)));
         self.phase += 1;
+        watch.barrier();
     }
     fn load<T: Pod>(&self, span: Span<T>, i: u32) -> T {
         // Every lane reads it: no lane may write it in this phase.
@@ -263,7 +320,18 @@ impl<W: Watch> Block for Emulated<W> {
         values.0.iter_mut().fold(0, |sum, value| sum + std::mem::replace(value, sum))
     }
     fn reserve(&mut self, counter: Span<u64>, i: u32, count: u64) -> u64 {
-        if count == 0 { 0 } else { self.lane(0).fetch_add(counter, i, count) }
+        if count == 0 {
+            return 0;
+        }
+        let before = self.lane(0).fetch_add(counter, i, count);
+        self.watch.barrier();
+        before
+    }
+    fn ticket(&mut self, counter: Span<u64>, i: u32) -> u64 {
+        fence(SeqCst);
+        let ticket = self.reserve(counter, i, 1);
+        fence(SeqCst);
+        ticket
     }
     fn ranks(&mut self, digits: &mut PerLane<u32>, bins: Shared<u32>, _scratch: Shared<u32>) {
         let lane = self.lane(0);

@@ -1,16 +1,26 @@
 //! The microscope: a shadow of every word of memory, so that races, strays and unwritten reads are seen.
 //!
 //! Two accesses to a word, one of them a plain write, are a race when nothing orders them: other blocks of the same
-//! launch, or other lanes of the same block in the same phase. Atomic accesses may meet each other, not plain ones.
+//! launch, or other lanes of the same block in the same phase. Atomic accesses, gives and takes may meet each other; one
+//! of them and a plain access are a race when one of the two writes. Whether flags and fences order what is given and
+//! taken is not watched: answers that differ from order to order show it.
+//!
+//! Blocks run one after the other, each to its end, in the microscope's order; or interleaved (see the `baton`).
 
 use super::Order;
+use super::baton::Stop;
+use super::shadow::Shadow;
 use crate::error::Error;
-use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::fmt;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// What unwritten memory holds.
 pub const POISON: u8 = 0xcb;
+
+/// So many looks of a launch at device memory, between which no block changed it, are a wait for what nobody does.
+/// Lanes that poll while others work look some thousands of times.
+const LOOKS: u32 = 1 << 20;
 
 /// How a lane touches memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,8 +29,16 @@ pub enum Access {
     Read,
     /// A plain write.
     Write,
-    /// An atomic read and write.
+    /// An atomic read and write that changes memory.
     Atomic,
+    /// An atomic read and write that may leave memory as it is.
+    Swap,
+    /// An atomic read.
+    Look,
+    /// A write that other blocks may take.
+    Give,
+    /// A read of what other blocks may give.
+    Take,
 }
 
 /// Where in a launch an access happens.
@@ -36,7 +54,7 @@ pub struct Place {
 
 impl Place {
     /// Whether nothing orders this access and one by `other` of the same launch.
-    fn meets(self, other: Place) -> bool {
+    pub(super) fn meets(self, other: Place) -> bool {
         self.block != other.block || (self.phase == other.phase && self.lane != other.lane)
     }
 }
@@ -56,6 +74,8 @@ pub enum Fault {
     Unwritten(Place),
     /// Two accesses that nothing orders.
     Race(Place, Place),
+    /// A wait for what nobody does.
+    Waits(Place),
 }
 
 impl fmt::Display for Fault {
@@ -64,163 +84,111 @@ impl fmt::Display for Fault {
             Fault::Outside(at) => write!(f, "an access outside its memory at {at}"),
             Fault::Unwritten(at) => write!(f, "a read of what nothing wrote at {at}"),
             Fault::Race(one, other) => write!(f, "a race between {one} and {other}"),
+            Fault::Waits(at) => write!(f, "a wait for what nobody does at {at}"),
         }
     }
 }
 
-/// The last accesses to a word of four bytes, in one launch.
-#[derive(Clone, Copy, Default)]
-struct Shadow {
-    written: bool,
-    launch: u64,
-    plain_write: Option<Place>,
-    atomic: Option<Place>,
-    /// A second atomic access, unordered with the first.
-    other_atomic: Option<Place>,
-    read: Option<Place>,
-    /// A second reader, unordered with the first.
-    other_read: Option<Place>,
-}
-
-impl Shadow {
-    fn see(&mut self, access: Access, launch: u64, place: Place) -> Option<Fault> {
-        if self.launch != launch {
-            *self = Shadow { written: self.written, launch, ..Shadow::default() };
-        }
-        if access != Access::Write && !self.written {
-            return Some(Fault::Unwritten(place));
-        }
-        let rivals = match access {
-            Access::Read => [self.plain_write, self.atomic, self.other_atomic, None, None],
-            Access::Atomic => [self.plain_write, None, None, self.read, self.other_read],
-            Access::Write => [self.plain_write, self.atomic, self.other_atomic, self.read, self.other_read],
-        };
-        let race = rivals.into_iter().flatten().find(|rival| rival.meets(place));
-        match access {
-            Access::Read => match self.read {
-                Some(first) if first.meets(place) => self.other_read = Some(place),
-                _ => self.read = Some(place),
-            },
-            Access::Write => self.plain_write = Some(place),
-            Access::Atomic => match self.atomic {
-                Some(first) if first.meets(place) => self.other_atomic = Some(place),
-                _ => self.atomic = Some(place),
-            },
-        }
-        self.written |= access != Access::Read;
-        race.map(|rival| Fault::Race(rival, place))
-    }
-}
-
-/// Watches an emulator's launches. One thread only.
+/// Watches an emulator's launches. One block moves at a time, whichever thread runs it.
 pub struct Microscope {
     order: Order,
-    launches: Cell<u64>,
-    name: Cell<&'static str>,
-    fault: Cell<Option<Fault>>,
-    device: RefCell<BTreeMap<u64, Vec<Shadow>>>,
-    shared: RefCell<Vec<Shadow>>,
+    interleave: Option<u64>,
+    seen: Mutex<Seen>,
+}
+
+/// What it has seen.
+#[derive(Default)]
+struct Seen {
+    launches: u64,
+    name: &'static str,
+    fault: Option<Fault>,
+    /// Looks since device memory last changed.
+    looks: u32,
+    device: BTreeMap<u64, Vec<Shadow>>,
 }
 
 impl Microscope {
-    /// A microscope that runs blocks and lanes in that order.
-    pub fn new(order: Order) -> Self {
-        Microscope {
-            order,
-            launches: Cell::new(0),
-            name: Cell::new(""),
-            fault: Cell::new(None),
-            device: RefCell::default(),
-            shared: RefCell::default(),
-        }
+    /// A microscope that runs blocks and lanes in that order; with a seed, blocks start in that order and interleave.
+    pub fn new(order: Order, interleave: Option<u64>) -> Self {
+        Microscope { order, interleave, seen: Mutex::default() }
     }
     /// The order of blocks and lanes.
     pub fn order(&self) -> Order {
         self.order
     }
+    /// The seed by which blocks interleave; none where each runs to its end.
+    pub fn interleave(&self) -> Option<u64> {
+        self.interleave
+    }
     /// Launches so far.
     pub fn launches(&self) -> u64 {
-        self.launches.get()
+        self.seen().launches
+    }
+    fn seen(&self) -> MutexGuard<'_, Seen> {
+        // A kernel that panics leaves what was seen in order.
+        self.seen.lock().unwrap_or_else(PoisonError::into_inner)
     }
     /// A launch begins.
     pub(super) fn begin(&self, name: &'static str) {
-        self.launches.set(self.launches.get() + 1);
-        self.name.set(name);
-    }
-    /// A block begins: its shared memory is new.
-    pub(super) fn enter(&self, _block: u32) {
-        self.shared.borrow_mut().clear();
+        let mut seen = self.seen();
+        seen.launches += 1;
+        seen.looks = 0;
+        seen.name = name;
     }
     /// The launch is over.
     pub(super) fn verdict(&self) -> Result<(), Error> {
-        match self.fault.take() {
+        let mut seen = self.seen();
+        match seen.fault.take() {
             None => Ok(()),
-            Some(fault) => Err(Error::Bug { what: format!("kernel {}: {fault}", self.name.get()) }),
+            Some(fault) => Err(Error::Bug { what: format!("kernel {}: {fault}", seen.name) }),
         }
     }
     /// Memory that kernels may reach from now on.
     pub(super) fn adopt(&self, addr: u64, bytes: usize) {
-        self.device.borrow_mut().insert(addr, vec![Shadow::default(); bytes / 4]);
+        self.seen().device.insert(addr, vec![Shadow::default(); bytes / 4]);
     }
     /// Memory that is gone.
     pub(in crate::device) fn forget(&self, addr: u64) {
-        self.device.borrow_mut().remove(&addr);
+        self.seen().device.remove(&addr);
     }
     /// The host wrote the first `bytes` bytes of the memory at `addr`.
     pub(in crate::device) fn host_wrote(&self, addr: u64, bytes: usize) {
-        if let Some(shadows) = self.device.borrow_mut().get_mut(&addr) {
-            shadows[..bytes.div_ceil(4)].iter_mut().for_each(|shadow| shadow.written = true);
+        if let Some(shadows) = self.seen().device.get_mut(&addr) {
+            shadows[..bytes.div_ceil(4)].iter_mut().for_each(Shadow::host_wrote);
         }
     }
-
-    fn note(&self, fault: Option<Fault>) {
-        if self.fault.get().is_none() {
-            self.fault.set(fault);
-        }
+    /// A rule was broken; the first of a launch is kept.
+    pub(super) fn note(&self, fault: Fault) {
+        self.seen().fault.get_or_insert(fault);
     }
-
-    pub(super) fn see_device(
-        &self,
-        access: Access,
-        addr: u64,
-        bytes: usize,
-        inside: bool,
-        place: Place,
-    ) -> bool {
-        let mut device = self.device.borrow_mut();
+    /// Device memory has changed, though the access might only have looked.
+    pub(super) fn changed(&self) {
+        self.seen().looks = 0;
+    }
+    /// An access to device memory; false where there is none. Stops the launch where it waits for what nobody does.
+    pub(super) fn see(&self, access: Access, addr: u64, bytes: usize, inside: bool, place: Place) -> bool {
+        let mut seen = self.seen();
+        let Seen { launches, fault, looks, device, .. } = &mut *seen;
+        *looks = match access {
+            Access::Read | Access::Take => *looks,
+            Access::Write | Access::Give | Access::Atomic => 0,
+            Access::Look | Access::Swap => *looks + 1,
+        };
+        if *looks > LOOKS {
+            fault.get_or_insert(Fault::Waits(place));
+            drop(seen);
+            Stop::now();
+        }
         let shadows = device.range_mut(..=addr).next_back().and_then(|(&start, shadows)| {
             let first = ((addr - start) / 4) as usize;
             shadows.get_mut(first..first + bytes.div_ceil(4))
         });
         let Some(shadows) = shadows.filter(|_| inside) else {
-            self.note(Some(Fault::Outside(place)));
+            fault.get_or_insert(Fault::Outside(place));
             return false;
         };
         for shadow in shadows {
-            self.note(shadow.see(access, self.launches.get(), place));
-        }
-        true
-    }
-
-    pub(super) fn see_shared(
-        &self,
-        access: Access,
-        offset: u32,
-        bytes: usize,
-        inside: bool,
-        place: Place,
-    ) -> bool {
-        if !inside {
-            self.note(Some(Fault::Outside(place)));
-            return false;
-        }
-        let mut shared = self.shared.borrow_mut();
-        let (first, end) = (offset as usize / 4, (offset as usize + bytes) / 4);
-        if shared.len() < end {
-            shared.resize(end, Shadow::default());
-        }
-        for shadow in &mut shared[first..end] {
-            self.note(shadow.see(access, self.launches.get(), place));
+            *fault = fault.or(shadow.see(access, *launches, place));
         }
         true
     }

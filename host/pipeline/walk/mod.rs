@@ -1,6 +1,10 @@
 //! Traverse: the ways from a tree (or two) to candidates. Each is a strategy with its own memory; all give one set.
 
+mod front;
 mod per_leaf;
+mod queue;
+mod segments;
+mod steal;
 
 use super::room::Growing;
 use super::tree::Tree;
@@ -8,8 +12,12 @@ use super::volumes::{Kernels, Volumes};
 use crate::device::Device;
 use crate::error::Error;
 use crate::query::{Query, Traversal};
-use nearmiss_kernels::abi::{KEEP_ADJACENT, Pair, SELF, Span};
+use front::Front;
+use nearmiss_kernels::abi::{KEEP_ADJACENT, Pair, PairArgs, SELF, Span};
+use nearmiss_kernels::entry::Entry;
 use per_leaf::PerLeaf;
+use queue::Queue;
+use steal::Steal;
 
 /// What a walk is given: the machine, one body or two, and where candidates go.
 pub struct Walked<'a, V> {
@@ -21,10 +29,35 @@ pub struct Walked<'a, V> {
     pub faces: Span<[u32; 3]>,
     /// Out: candidate triangle pairs.
     pub pairs: Span<Pair>,
+    /// Out, with [`FRONT`](nearmiss_kernels::abi::FRONT): pairs of nodes where the descent ended.
+    pub ends: Span<Pair>,
     /// Counters, see [`nearmiss_kernels::abi::counter`].
     pub counters: Span<u64>,
-    /// [`SELF`], [`KEEP_ADJACENT`].
+    /// [`SELF`], [`KEEP_ADJACENT`], [`FRONT`](nearmiss_kernels::abi::FRONT).
     pub flags: u32,
+}
+
+impl<V: Kernels> Walked<'_, V> {
+    /// What a walk by pairs of nodes is told, with queues of `local` units on chip.
+    fn pair_args(&self, local: u32) -> PairArgs<V> {
+        let (queries, target) = (&self.bodies[0], &self.bodies[self.bodies.len() - 1]);
+        PairArgs {
+            queries: queries.1.nodes.span(),
+            nodes: target.1.nodes.span(),
+            faces: self.faces,
+            pairs: self.pairs,
+            ends: self.ends,
+            counters: self.counters,
+            flags: self.flags,
+            local,
+        }
+    }
+}
+
+/// Blocks of a kernel by pairs of nodes that a machine works with best: a quarter of what its lanes allow. On an H200 that
+/// is 8 of 64 lanes a processor; 6 and 10 are slower for most volumes, 16 for all (measured, `benches/NOTES.md`).
+fn resident<E: Entry>(device: &Device) -> u32 {
+    device.blocks_striding::<E>(u32::MAX as usize).div_ceil(4)
 }
 
 /// A way through the trees.
@@ -67,6 +100,9 @@ pub trait Walk<V> {
 pub fn walk<V: Kernels>(device: &Device, query: &Query, triangles: usize) -> Result<Box<dyn Walk<V>>, Error> {
     Ok(match query.traversal_on(device.is_card()) {
         Traversal::PerLeaf { budget } => Box::new(PerLeaf::new(device, budget, triangles)?),
+        Traversal::Queue(shape) => Box::new(Queue::new::<V>(device, shape)?),
+        Traversal::Steal(shape) => Box::new(Steal::new::<V>(device, shape)?),
+        Traversal::Front(shape) => Box::new(Front::new::<V>(device, shape, triangles)?),
     })
 }
 

@@ -8,6 +8,7 @@ use nearmiss_kernels::abi::{ROUNDS, Span, TraverseArgs, Unit, counter};
 
 /// See [`crate::query::Traversal::PerLeaf`].
 pub struct PerLeaf {
+    device: Device,
     budget: Option<u32>,
     /// What a round reads and what it leaves; of walks with a budget alone.
     units: Option<[Buffer<Unit>; 2]>,
@@ -20,7 +21,7 @@ impl PerLeaf {
     /// Those of the device.
     pub fn new(device: &Device, budget: Option<u32>, triangles: usize) -> Result<Self, Error> {
         let units = || Ok([device.buffer(4 * triangles)?, device.buffer(4 * triangles)?]);
-        Ok(PerLeaf { budget, units: budget.map(|_| units()).transpose()? })
+        Ok(PerLeaf { device: device.clone(), budget, units: budget.map(|_| units()).transpose()? })
     }
 }
 
@@ -61,6 +62,19 @@ impl<V: Kernels> Walk<V> for PerLeaf {
                 args.spilled_at = 0;
             }
             device.launch::<V::Units>(blocks, &args)?;
+        }
+        Ok(())
+    }
+
+    /// Units without room were walked on by their lanes, which is right and slow: the next frame has room for them.
+    fn finish(&mut self, counters: &[u64]) -> Result<(), Error> {
+        let Some(units) = &mut self.units else { return Ok(()) };
+        let spilled = &counters[counter::SPILLED as usize..][..ROUNDS as usize];
+        let most = spilled.iter().copied().max().unwrap_or(0) as usize;
+        if most > units[0].len() {
+            for list in units {
+                *list = self.device.buffer(most + most / 8)?;
+            }
         }
         Ok(())
     }

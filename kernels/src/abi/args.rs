@@ -1,6 +1,6 @@
 //! One argument block for each kernel: what it is launched with, by value.
 
-use super::{Hit, Inner, Link, Motion, Node, Pair, Point, Span, Unit};
+use super::{Hit, Inner, Link, Merge, Motion, Node, Pair, Point, Seat, Span, Treelet, Unit};
 use crate::bv::Axes;
 use crate::math::Real;
 use bytemuck::{Pod, Zeroable};
@@ -104,10 +104,48 @@ arguments! {
         pair_parents: Span<u32>,
         /// Out: each leaf's node.
         leaf_nodes: Span<u32>,
+        /// Out: the first leaf below each pair of siblings; empty where nobody asks.
+        firsts: Span<u32>,
         /// How many leaves.
         leaves: u32,
         /// Added to a triangle's index in its body.
         first: u32,
+    }
+    /// `construct_mark`, `construct_treelets`: what a refit by treelets needs to know of a tree.
+    PlanArgs {
+        /// Inner nodes of the radix tree.
+        inner: Span<Inner>,
+        /// Place of each inner node in level order.
+        places: Span<u32>,
+        /// Depth of the inner node that splits behind leaf i.
+        depths: Span<u64>,
+        /// That inner node.
+        by_gap: Span<u32>,
+        /// The tree.
+        links: Span<Link>,
+        /// The parent of each pair of siblings.
+        pair_parents: Span<u32>,
+        /// Each leaf's node.
+        leaf_nodes: Span<u32>,
+        /// Zeroed before `construct_mark`. For each chunk of leaves: how many leaves there are from the first on that
+        /// begins a subtree of a treelet; 0 where none does.
+        begins: Span<u64>,
+        /// Zeroed before `construct_mark`. For each depth: how many nodes span treelets; then as many cursors.
+        tops: Span<u64>,
+        /// Out: the treelets, one a chunk.
+        treelets: Span<Treelet>,
+        /// Out: the leaves' places.
+        seats: Span<Seat>,
+        /// Out: merges of each treelet from its first leaf's number on, by round.
+        merges: Span<Merge>,
+        /// Out: merges of the nodes that span treelets, by depth.
+        top: Span<Merge>,
+        /// Out: in how many depths there are such nodes, then where each depth begins in `top`, then where they end.
+        top_starts: Span<u32>,
+        /// How many leaves.
+        leaves: u32,
+        /// Nothing.
+        pad: u32,
     }
     /// `fit`: the volumes of the leaves.
     FitArgs<R: Real, V: Pod> {
@@ -122,6 +160,27 @@ arguments! {
         /// Out: the leaves.
         nodes: Span<Node<V>>,
     }
+    /// `fit_groups_obb`: the oriented boxes of inner nodes of few leaves, around the points below them.
+    GroupsArgs<R: Real, V: Pod> {
+        /// Positions.
+        frames: Frames<R>,
+        /// Vertex indices of every triangle.
+        faces: Span<[u32; 3]>,
+        /// Triangles in leaf order, counted from the body's first.
+        triangles: Span<u32>,
+        /// The tree.
+        links: Span<Link>,
+        /// The parent of each pair of siblings.
+        pair_parents: Span<u32>,
+        /// The first leaf below each pair of siblings.
+        firsts: Span<u32>,
+        /// Out: the nodes.
+        nodes: Span<Node<V>>,
+        /// The body's first triangle.
+        first: u32,
+        /// Nothing.
+        pad: u32,
+    }
     /// `refit_levels`: the volumes of levels `from` to `to`, deepest first.
     RefitArgs<V: Pod> {
         /// The tree.
@@ -130,10 +189,56 @@ arguments! {
         nodes: Span<Node<V>>,
         /// Number of levels, then where each begins.
         levels: Span<u32>,
+        /// The first leaf below each pair of siblings; empty where all nodes are merged.
+        firsts: Span<u32>,
         /// The first level (nearest the root).
         from: u32,
         /// Behind the last level. More than one level only in a launch of one block.
         to: u32,
+        /// Which axes merged oriented boxes take, see [`crate::bv::Axes`].
+        axes: Axes,
+        /// Nothing.
+        pad: u32,
+    }
+    /// `refit_treelets`: all volumes, those of the leaves too.
+    TreeletsArgs<R: Real, V: Pod> {
+        /// Positions.
+        frames: Frames<R>,
+        /// Vertex indices of every triangle.
+        faces: Span<[u32; 3]>,
+        /// The treelets, one a block.
+        treelets: Span<Treelet>,
+        /// The leaves' places.
+        seats: Span<Seat>,
+        /// Merges of each treelet from its first leaf's number on, by round.
+        merges: Span<Merge>,
+        /// Merges of the nodes that span treelets, by depth.
+        top: Span<Merge>,
+        /// In how many depths there are such nodes, then where each depth begins, then where they end.
+        top_starts: Span<u32>,
+        /// One counter: tickets drawn by blocks so far, in all launches.
+        ticket: Span<u64>,
+        /// Out: the volumes.
+        nodes: Span<Node<V>>,
+        /// Which axes merged oriented boxes take, see [`crate::bv::Axes`].
+        axes: Axes,
+        /// Nothing.
+        pad: u32,
+    }
+    /// `refit_bottom_up`: the volumes of the inner nodes, by whoever comes second.
+    BottomUpArgs<V: Pod> {
+        /// The tree.
+        links: Span<Link>,
+        /// The parent of each pair of siblings.
+        pair_parents: Span<u32>,
+        /// Each leaf's node.
+        leaf_nodes: Span<u32>,
+        /// The first leaf below each pair of siblings; empty where all nodes are merged.
+        firsts: Span<u32>,
+        /// For each pair of siblings: how many came by so far, in all launches.
+        arrivals: Span<u64>,
+        /// The volumes: those of the leaves in, the others out.
+        nodes: Span<Node<V>>,
         /// Which axes merged oriented boxes take, see [`crate::bv::Axes`].
         axes: Axes,
         /// Nothing.
@@ -267,8 +372,28 @@ pub mod counter {
     pub const EE_SURVIVORS: u32 = 9;
     /// Units spilled by round r of the traversal: this and the following [`super::ROUNDS`].
     pub const SPILLED: u32 = 10;
+    /// Pairs of nodes where the descent ended.
+    pub const ENDS: u32 = SPILLED + super::ROUNDS;
+    /// Most units that waited in the longest list of a queue, or past its end.
+    pub const QUEUED: u32 = ENDS + 1;
+    /// Units that were left when the last round was over.
+    pub const UNFINISHED: u32 = ENDS + 2;
+    /// Rounds of the queues that had work.
+    pub const QUEUE_ROUNDS: u32 = ENDS + 3;
+    /// How often a queue ran dry.
+    pub const IDLE_EXITS: u32 = ENDS + 4;
+    /// Units that a queue on chip had no room for.
+    pub const QUEUE_SPILLS: u32 = ENDS + 5;
+    /// Units that a balance moved.
+    pub const MOVES: u32 = ENDS + 6;
+    /// Units that a block took from the pool.
+    pub const STOLEN: u32 = ENDS + 7;
+    /// Overlap tests made for pairs of the front.
+    pub const FRONT_TESTS: u32 = ENDS + 8;
+    /// Pairs of the front that gave way to an ancestor.
+    pub const PRUNED: u32 = ENDS + 9;
     /// How many counters there are.
-    pub const COUNT: u32 = SPILLED + super::ROUNDS;
+    pub const COUNT: u32 = ENDS + 10;
 }
 /// Rounds of the traversal that may spill; one more, without a budget, ends it.
 pub const ROUNDS: u32 = 4;

@@ -2,11 +2,14 @@
 //!
 //! The law for records: `repr(C)`, plain old data, no padding; sizes are asserted at compile time.
 
+#[macro_use]
 mod args;
+mod queues;
 mod record;
 mod span;
 pub mod stamp;
 
 pub use args::*;
+pub use queues::*;
 pub use record::*;
 pub use span::Span;

@@ -119,6 +119,73 @@ pub struct Inner {
 }
 const _: () = assert!(size_of::<Inner>() == 12);
 
+/// Whole subtrees of neighbouring leaves that one block refits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C, align(16))]
+pub struct Treelet {
+    /// Its first leaf, and its first merge.
+    pub first: u32,
+    /// How many leaves it has.
+    pub leaves: u32,
+    /// How many merges.
+    pub merges: u32,
+    /// In how many rounds they can be done, each after those of its children.
+    pub rounds: u32,
+}
+const _: () = assert!(size_of::<Treelet>() == 16);
+
+/// Where a leaf lies, in leaf order.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C, align(8))]
+pub struct Seat {
+    /// Its node.
+    pub node: u32,
+    /// Its [`Link::link`].
+    pub link: u32,
+}
+const _: () = assert!(size_of::<Seat>() == 8);
+
+/// An inner node whose volume is to be made of its children's.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C, align(16))]
+pub struct Merge {
+    /// The node.
+    pub node: u32,
+    /// Its link: the first of the children.
+    pub link: u32,
+    /// Its last leaf.
+    pub last: u32,
+    /// In a treelet: where the children's volumes are on chip, and in which round. See [`Merge::in_treelet`].
+    pub slots: u32,
+}
+const _: () = assert!(size_of::<Merge>() == 16);
+
+impl Merge {
+    /// Bits of a slot: a treelet has fewer than 1,024 leaves.
+    const SLOT: u32 = 10;
+
+    /// [`Merge::slots`] of a merge in a treelet.
+    pub fn in_treelet(left: u32, right: u32, round: u32) -> u32 {
+        left | right << Self::SLOT | round << (2 * Self::SLOT)
+    }
+    /// Where the left child's volume is: at its first leaf, counted from the treelet's; the merged one takes its place.
+    pub fn left(&self) -> u32 {
+        self.slots & ((1 << Self::SLOT) - 1)
+    }
+    /// Where the right child's volume is.
+    pub fn right(&self) -> u32 {
+        self.slots >> Self::SLOT & ((1 << Self::SLOT) - 1)
+    }
+    /// Its round, from 0: after those of its children.
+    pub fn round(&self) -> u32 {
+        self.slots >> (2 * Self::SLOT)
+    }
+    /// Its link, as others have it.
+    pub fn link(&self) -> Link {
+        Link { link: self.link, last: self.last }
+    }
+}
+
 /// A vertex that stands still, padded so that one aligned access of 16 bytes (f64: two) fetches it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(16))]

@@ -1,11 +1,19 @@
 //! The level-ordered tree: what holds of it, and a checker that names what does not.
 
+pub mod group;
+pub mod leaf;
+
 use crate::abi::{LEAF, Link, Node, ROOT};
 use crate::bv::{Axes, Volume};
 
 /// Levels that a tree can have: a path from the root splits on one of the 63 bits of the code or, between equal
 /// codes, on one of the 32 bits of the index, each at most once; and the leaves.
 pub const MAX_LEVELS: u32 = 63 + 32 + 1;
+
+/// Leaves of the largest subtree of a treelet, and of the chunk in which a treelet's subtrees begin; so a treelet has
+/// fewer than twice as many. As many as a block has lanes; the volumes of 512 leaves, 56 bytes each, fit on chip.
+pub const TREELET: u32 = 256;
+const _: () = assert!(TREELET <= 512, "a merge counts slots with ten bits");
 
 /// The first thing found wrong with a tree. Node numbers are indices into the nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,6 +48,11 @@ pub enum Violation {
     /// T6: a node's volume is not the merge of its children's, or its links are not the tree's.
     Merge {
         /// The parent.
+        node: u32,
+    },
+    /// T7: a node's volume is not the one fitted to the points below it, or its links are not the tree's.
+    Fit {
+        /// The node.
         node: u32,
     },
 }
@@ -116,19 +129,32 @@ pub fn check(tree: &Tree, seen: &mut [bool]) -> Result<(), Violation> {
     }
 }
 
-/// Checks T6 on a sound tree. `nodes` has as many elements as `links`. Cost: a merge a node.
+/// Checks T6 and T7 on a sound tree. `nodes` has as many elements as `links`; `fitted` tells the volume of an inner
+/// node from its first and last leaf, if it is not a merge. Cost: a merge or a fit and a walk down a node.
 ///
 /// # Errors
 /// The first violation.
-pub fn check_volumes<V: Volume>(links: &[Link], nodes: &[Node<V>], axes: Axes) -> Result<(), Violation> {
+pub fn check_volumes<V: Volume>(
+    links: &[Link],
+    nodes: &[Node<V>],
+    axes: Axes,
+    fitted: impl Fn(u32, u32) -> Option<V>,
+) -> Result<(), Violation> {
     for (at, (link, node)) in links.iter().zip(nodes).enumerate().skip(ROOT as usize) {
-        let merged = if link.is_leaf() {
-            node.volume
+        let (at, mut first) = (at as u32, *link);
+        while !first.is_leaf() {
+            first = links[first.link as usize];
+        }
+        let (volume, violation) = if link.is_leaf() {
+            (node.volume, Violation::Merge { node: at })
+        } else if let Some(volume) = fitted(first.last, link.last) {
+            (volume, Violation::Fit { node: at })
         } else {
-            nodes[link.link as usize].volume.merge(&nodes[link.link as usize + 1].volume, axes)
+            let [left, right] = [0, 1].map(|i| nodes[link.link as usize + i].volume);
+            (left.merge(&right, axes), Violation::Merge { node: at })
         };
-        if *node != link.with(merged) {
-            return Err(Violation::Merge { node: at as u32 });
+        if *node != link.with(volume) {
+            return Err(violation);
         }
     }
     Ok(())

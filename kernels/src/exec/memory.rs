@@ -32,3 +32,10 @@ impl<T> Shared<T> {
         Shared { offset, len, word: PhantomData }
     }
 }
+
+/// Words of four bytes of a `T` that lanes give and take. What is not made of whole aligned words does not compile:
+/// call it in a `const` block.
+pub const fn whole_words<T>() -> usize {
+    assert!(align_of::<T>() >= 4, "lanes give and take whole words");
+    size_of::<T>() / 4
+}

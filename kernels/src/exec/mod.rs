@@ -7,11 +7,18 @@
 //! the CPU) or in [`Shared`] words.
 //!
 //! A barrier for the whole grid is the same idea one level up: the end of the launch.
+//!
+//! Blocks of one launch talk to each other by [`Lane::give`], [`Lane::take`] and atomics, ordered by [`Lane::fence`]
+//! or [`Block::ticket`]. **The law of giving:** what a lane gives before a `fence` and then an atomic on a flag, a lane
+//! that saw the flag's new value by an atomic and then called `fence` may take. **The law of waiting:** a lane may
+//! wait (look at a flag by [`Lane::fetch_load`] or [`Lane::compare_exchange`] until it changes) only for what a lane
+//! of which an atomic was seen, a reservation for example, does further on in the same phase, without waiting itself.
+//! Nobody waits for the end of a phase, nor for a block that may not have started: blocks may run one after the other.
 
 mod memory;
 pub mod ptx;
 
-pub use memory::{Shared, Word};
+pub use memory::{Shared, Word, whole_words};
 
 use crate::abi::Span;
 use bytemuck::Pod;
@@ -21,7 +28,8 @@ use core::mem::MaybeUninit;
 ///
 /// Memory is read and written by value; nobody holds a reference to what another lane can reach. Plain accesses
 /// to one word by two lanes, one of them writing, must lie in different phases (one block) or different launches
-/// (two blocks); atomic accesses may meet. The emulator's microscope checks both rules and all bounds.
+/// (two blocks); atomic accesses, gives and takes may meet each other, but not plain ones of which one writes. The
+/// emulator's microscope checks these rules and all bounds.
 pub trait Lane {
     /// The lane's number in its block, from 0.
     fn lane(&self) -> u32;
@@ -38,6 +46,23 @@ pub trait Lane {
     fn fetch_min(&self, span: Span<u64>, i: u32, value: u64);
     /// Atomic addition on device memory; the value before.
     fn fetch_add(&self, span: Span<u64>, i: u32, value: u64) -> u64;
+    /// Atomic read of device memory.
+    fn fetch_load(&self, span: Span<u64>, i: u32) -> u64;
+    /// Atomically sets device memory; the value before.
+    fn exchange(&self, span: Span<u64>, i: u32, value: u64) -> u64;
+    /// Atomically sets device memory to `new` if it holds `current`; the value before. It never fails without cause.
+    fn compare_exchange(&self, span: Span<u64>, i: u32, current: u64, new: u64) -> u64;
+
+    /// Sets element `i` of device memory so that other blocks of this launch may [`take`](Lane::take) it, under the law
+    /// of giving (see the [module](self)). Orders nothing by itself. Two gives of an element may meet, and a take may
+    /// meet a give: then pieces of `T`'s alignment, of 8 bytes at most, are whole, and not all need be of one value.
+    /// `T` is made of [whole words](whole_words), and an element is given and taken as the same `T`.
+    fn give<T: Pod>(&self, span: Span<T>, i: u32, value: T);
+    /// Element `i` of device memory as another block of this launch gave it: read afresh each time.
+    fn take<T: Pod>(&self, span: Span<T>, i: u32) -> T;
+    /// Orders what this lane gave, took and did by atomics before it against what it does after, as seen by all lanes of
+    /// the launch. Atomics by themselves order nothing. Plain accesses of other blocks stay races all the same.
+    fn fence(&self);
 
     /// Word `i` of shared memory.
     fn get<T: Word>(&self, words: Shared<T>, i: u32) -> T;
@@ -47,6 +72,10 @@ pub trait Lane {
     fn shared_add(&self, words: Shared<u32>, i: u32, value: u32) -> u32;
     /// Atomic maximum on shared memory.
     fn shared_max(&self, words: Shared<u64>, i: u32, value: u64);
+    /// Atomic minimum on shared memory.
+    fn shared_min(&self, words: Shared<u64>, i: u32, value: u64);
+    /// Atomically sets a word of shared memory to `new` if it holds `current`; the value before.
+    fn shared_cas(&self, words: Shared<u32>, i: u32, current: u32, new: u32) -> u32;
 }
 
 /// A value of each lane that lives across phases.
@@ -87,8 +116,15 @@ pub trait Block {
     fn any(&mut self, values: &mut Self::Slot<bool>) -> bool;
     /// Replaces each lane's value by the sum of those of the lanes before it; returns the sum of all.
     fn scan(&mut self, values: &mut Self::Slot<u32>) -> u32;
-    /// Adds `count` to a counter once for the whole block; the value before.
+    /// Adds `count` to a counter once for the whole block; the value before. No atomic, and 0, where `count` is 0.
+    ///
+    /// It orders nothing between blocks, even where each lane has called [`Lane::fence`] in the phase before: a fence
+    /// speaks for the atomics of its own lane, and here only lane 0 has one. [`Block::ticket`] does order.
     fn reserve(&mut self, counter: Span<u64>, i: u32, count: u64) -> u64;
+    /// Adds one to a counter once for the whole block, and orders it: what all lanes of all blocks that drew smaller
+    /// tickets gave before they drew, the lanes of this block may take. The block that draws the last ticket knows
+    /// that all others are past theirs. Lanes need no fence for it. Cost: an atomic and two fences of one lane.
+    fn ticket(&mut self, counter: Span<u64>, i: u32) -> u64;
     /// As if the lanes, in their order, each took `bins[digit]` and added one to it: each lane's digit (under
     /// [`BINS`]; others take nothing) is replaced by what it took. `scratch` has `BINS * lanes / 32` words.
     fn ranks(&mut self, digits: &mut Self::Slot<u32>, bins: Shared<u32>, scratch: Shared<u32>);

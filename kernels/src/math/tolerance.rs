@@ -129,3 +129,42 @@ pub const INCLUSION_SHRUNK: f64 = 0.6;
 /// A motion whose directions span less than this part of their box is taken for flat, and clipped along its plane too.
 /// Ratio; costs, proves nothing.
 pub const INCLUSION_FLAT: f64 = 1.0 / 64.0;
+/// Largest finite bound of a moving box; a bound beyond it becomes infinite. `2^125`, so that differences of bounds and
+/// sums of two such differences stay finite. Length.
+pub const MOVING_LIMIT: f32 = f32::from_bits((125 + 127) << 23);
+/// What the computed ends of an interval of time may be wrong by, both together, and the sum that compares them: each
+/// end is a quotient in [0, 1] of two roundings on either side, `5u`; `16u` in all. Fraction of the step.
+pub const MOVING_TIME: f32 = 16.0 * U32;
+
+/// How far `a_i . a_j` may be from 1 (i = j) or 0 in an oriented box, as computed: `12u`. The computation errs by less
+/// than `4u`, so the true value is within `16u`, on which the next three rest. Ratio.
+pub const BOX_AXES: f32 = 12.0 * U32;
+/// Error of `a . (p - c)`, relative to the sum of `|a_d| |p_d - c_d|`: four roundings (difference, product, two sums),
+/// and one more for those of the bound itself. Ratio.
+pub const BOX_POINT: f32 = 5.0 * U32;
+/// Error of `a . (p - b) - a . (c - b)`, relative to the sum of `|a_d| (|p_d - b_d| + |c_d - b_d|)`: four roundings of each
+/// product of vectors (five, the first tiny, for f64), one of their difference, and those of the bound itself: below
+/// `6u`. `8u`. Ratio.
+pub const BOX_GROUP: f32 = 8.0 * U32;
+/// Underflow of the products in one such half extent: at most sixteen of half the smallest subnormal each, twice
+/// over. Length.
+pub const BOX_GROUP_UNDERFLOW: f32 = f32::from_bits(16);
+/// What a child's slabs may reach beyond `sum g_k |a_i . b_k|` of its half extents g, relative to their sum: `28u` for
+/// axes not quite orthonormal and `7u` for roundings; and the error of `a_i . (c' - c)`, `5u` of the distance of the
+/// centres. `64u` covers both. Ratio.
+pub const BOX_CHILD: f32 = 64.0 * U32;
+/// What a separating axis of two oriented boxes may be wrong by, relative to the sum of all six half extents: `132u`
+/// for axes not quite orthonormal and `20u` for roundings, derived in `bv::obb`; `256u`. Ratio.
+pub const BOX_APART: f32 = 256.0 * U32;
+/// Every factor that a sum of positive terms needs so as not to fall below them: `1 + 4u` for up to three roundings.
+pub const BOX_UP: f32 = 1.0 + 4.0 * U32;
+/// Underflow of the products in one half extent: at most eleven of half the smallest subnormal each. Length.
+pub const BOX_UNDERFLOW: f32 = f32::from_bits(8);
+/// Underflow of the products in one separating axis, half of it for either box. Length.
+pub const BOX_APART_UNDERFLOW: f32 = f32::from_bits(16);
+/// Largest coordinate of the centre and largest half extent of an oriented box; what is larger gets the box of
+/// everything. `2^120`, so that sums of products with components of axes stay finite. Length.
+pub const BOX_LIMIT: f32 = f32::from_bits((120 + 127) << 23);
+/// An entry off the diagonal of a covariance below which it counts as zero; the largest entry is 1. `2^-40`: far
+/// below the roundings of the others, and its square does not underflow. Ratio.
+pub const COVARIANCE_ZERO: f32 = f32::from_bits((127 - 40) << 23);

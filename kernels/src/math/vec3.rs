@@ -44,6 +44,11 @@ impl<R: Real> Vec3<R> {
     pub fn max(self, o: Self) -> Self {
         Vec3([self[0].max(o[0]), self[1].max(o[1]), self[2].max(o[2])])
     }
+    /// Rounded to f32; f64 too large for it becomes infinite.
+    #[inline]
+    pub fn narrow(self) -> Vec3<f32> {
+        self.map(|x| x.wide() as f32)
+    }
     /// Widened to f64; exact.
     #[inline]
     pub fn wide(self) -> Vec3<f64> {

@@ -5,6 +5,13 @@ use super::signs::Signs;
 use super::tri_tri::meets;
 use crate::math::{Real, Vec3};
 
+/// Whether two triangles share a vertex index.
+#[inline]
+pub fn share_a_vertex(p: [u32; 3], q: [u32; 3]) -> bool {
+    let has = |v: u32| (v == q[0]) | (v == q[1]) | (v == q[2]);
+    has(p[0]) | has(p[1]) | has(p[2])
+}
+
 /// What two triangles share by index: corners numbered 0 to 2, first of `p`, then of `q`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shared {

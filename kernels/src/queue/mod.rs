@@ -1,6 +1,8 @@
-//! Work units that wait: the stack of one walk, a block's buffer; and the tree that pairs of nodes form.
+//! Work units that wait: the stack of one walk, a block's buffer, a block's queue; and the tree that pairs of nodes form.
 
 pub mod bvtt;
+pub mod pair;
+pub mod worker;
 
 use crate::abi::Pair;
 use crate::bvh::MAX_LEVELS;

@@ -6,10 +6,12 @@
 //! | [`fit`] | positions at t = 0 and t = 1, faces | volumes of the leaves |
 //! | [`refit`] | volumes of the leaves | all volumes, a barrier between levels |
 //! | [`traverse`] | the tree (or two) | candidates: triangle pairs |
+//! | [`balance`] | the traversal's queues of work | the same units, as many in each |
 //! | [`narrow`] | candidates, positions | contacts |
 //!
 //! No stage calls another; they meet in memory, through [`crate::abi`].
 
+pub mod balance;
 pub mod construct;
 pub mod fit;
 pub mod narrow;

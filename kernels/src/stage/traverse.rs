@@ -15,9 +15,14 @@
 //! Cost     two nodes and two overlap tests (AABB: 64 B, 12 comparisons) a step; hits wait on chip, so that the test for shared vertices and the append
 //!          run converged, with one atomic operation a block.
 
+pub mod front;
+pub mod queue;
+pub mod steal;
+
 use crate::abi::{KEEP_ADJACENT, NONE, Pair, ROOT, SELF, TraverseArgs, Unit, counter};
 use crate::bv::Volume;
 use crate::exec::{Block, Lane, Slot};
+use crate::prim::adjacent::share_a_vertex;
 use crate::queue::{Buffer, Stack};
 
 /// Pairs that a block's buffer holds, a lane.
@@ -237,7 +242,9 @@ fn flush<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>, found: Buffer, kep
         let mut i = l.lane();
         while i < count {
             let pair = found.get(l, i);
-            if a.flags & KEEP_ADJACENT != 0 || !adjacent(l.read(a.faces, pair.a), l.read(a.faces, pair.b)) {
+            if a.flags & KEEP_ADJACENT != 0
+                || !share_a_vertex(l.read(a.faces, pair.a), l.read(a.faces, pair.b))
+            {
                 let place = kept.take(l, 1);
                 kept.put(l, place, pair);
             }
@@ -264,11 +271,4 @@ fn clear<L: Lane>(l: &L, found: Buffer, kept: Buffer) {
         l.put(found.fill, 0, 0);
         l.put(kept.fill, 0, 0);
     }
-}
-
-/// Whether two triangles share a vertex index.
-#[inline]
-fn adjacent(p: [u32; 3], q: [u32; 3]) -> bool {
-    let has = |v: u32| (v == q[0]) | (v == q[1]) | (v == q[2]);
-    has(p[0]) | has(p[1]) | has(p[2])
 }

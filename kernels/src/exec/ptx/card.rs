@@ -1,5 +1,6 @@
 //! A block of the card: each thread runs the kernel for its own lane.
 
+use super::coherent::{compare_and_swap, fence, load_coherent, store_coherent};
 use super::raw::{
     BROADCAST, address, atomic, barrier_or, element, load_global, load_shared32, load_shared64, load_word,
     match_any, scratch_address, shuffle_up, store_shared32, store_shared64, store_word, sync_threads,
@@ -78,6 +79,33 @@ impl Lane for Thread {
         atomic(span, i).fetch_add(value, Relaxed)
     }
     #[inline(always)]
+    fn fetch_load(&self, span: Span<u64>, i: u32) -> u64 {
+        self.take(span, i)
+    }
+    #[inline(always)]
+    fn exchange(&self, span: Span<u64>, i: u32, value: u64) -> u64 {
+        atomic(span, i).swap(value, Relaxed)
+    }
+    #[inline(always)]
+    fn compare_exchange(&self, span: Span<u64>, i: u32, current: u64, new: u64) -> u64 {
+        // SAFETY: as for `atomic`.
+        unsafe { compare_and_swap(element(span, i), current, new) }
+    }
+    #[inline(always)]
+    fn give<T: Pod>(&self, span: Span<T>, i: u32, value: T) {
+        // SAFETY: as for `atomic`.
+        unsafe { store_coherent(element(span, i), value) }
+    }
+    #[inline(always)]
+    fn take<T: Pod>(&self, span: Span<T>, i: u32) -> T {
+        // SAFETY: as for `atomic`.
+        unsafe { load_coherent(element(span, i)) }
+    }
+    #[inline(always)]
+    fn fence(&self) {
+        fence();
+    }
+    #[inline(always)]
     fn get<T: Word>(&self, words: Shared<T>, i: u32) -> T {
         load_word(address(words, i))
     }
@@ -101,6 +129,23 @@ impl Lane for Thread {
         unsafe {
             asm!("red.shared.max.u64 [{at}], {v};", at = in(reg32) address(words, i), v = in(reg64) value)
         };
+    }
+    #[inline(always)]
+    fn shared_min(&self, words: Shared<u64>, i: u32, value: u64) {
+        // SAFETY: as for `load_shared32`.
+        unsafe {
+            asm!("red.shared.min.u64 [{at}], {v};", at = in(reg32) address(words, i), v = in(reg64) value)
+        };
+    }
+    #[inline(always)]
+    fn shared_cas(&self, words: Shared<u32>, i: u32, current: u32, new: u32) -> u32 {
+        let r: u32;
+        // SAFETY: as for `load_shared32`.
+        unsafe {
+            asm!("atom.shared.cas.b32 {r}, [{at}], {c}, {n};", r = lateout(reg32) r,
+                at = in(reg32) address(words, i), c = in(reg32) current, n = in(reg32) new)
+        };
+        r
     }
 }
 
@@ -216,6 +261,17 @@ impl Block for Card {
             return 0;
         }
         self.broadcast(|| self.lane.fetch_add(counter, i, count))
+    }
+    #[inline(always)]
+    fn ticket(&mut self, counter: Span<u64>, i: u32) -> u64 {
+        // The barrier at the end of the phase before puts the other lanes' gives before lane 0's fence, which with its
+        // atomic releases them all; atomic and fence acquire, and the broadcast's barrier passes that on to all lanes.
+        self.broadcast(|| {
+            fence();
+            let ticket = self.lane.fetch_add(counter, i, 1);
+            fence();
+            ticket
+        })
     }
     #[inline(always)]
     fn ranks(&mut self, digits: &mut Register<u32>, bins: Shared<u32>, scratch: Shared<u32>) {

@@ -5,6 +5,8 @@
 #[cfg(target_arch = "nvptx64")]
 mod card;
 #[cfg(target_arch = "nvptx64")]
+mod coherent;
+#[cfg(target_arch = "nvptx64")]
 mod raw;
 
 #[cfg(target_arch = "nvptx64")]

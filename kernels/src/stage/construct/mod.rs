@@ -2,6 +2,7 @@
 //! Paper    thesis chapter 5 and section 6.2.4, "the nodes will already be stored in that order".
 //! Steps    [`morton`] orders the triangles along a curve, [`sort`] sorts them, [`tree`] finds the hierarchy of the
 //!          sorted codes and puts it into level order. All of it on the device.
+//!          [`treelet`] cuts the tree into pieces of a block's size, where the refit asks for them.
 //! Departs  the thesis splits nodes top-down with work queues, a level at a time. Here every inner node finds its range
 //!          on its own (Karras, "Maximizing parallelism in the construction of BVHs, octrees and k-d trees", 2012),
 //!          and one stable radix pass over the depths gives the same breadth-first order.
@@ -11,3 +12,4 @@
 pub mod morton;
 pub mod sort;
 pub mod tree;
+pub mod treelet;

@@ -1,4 +1,4 @@
-//! # Refit: leaf volumes → all volumes
+//! # Levels: leaf volumes → all volumes, a launch a level
 //! Paper    section 6.2.4, "Parallel hierarchy refitting"; table 6.12, right half.
 //! Launch   a lane a node, a launch a level, leaves first: the launch boundary is the barrier. Levels that one block can
 //!          hold are taken together by a launch of one block, whose phases are the barriers.
@@ -11,6 +11,7 @@
 
 use crate::abi::RefitArgs;
 use crate::bv::Volume;
+use crate::bvh::group::is_fitted;
 use crate::exec::{Block, Lane};
 
 /// Volumes of the inner nodes of levels `from..to`, deepest level first.
@@ -24,7 +25,7 @@ pub fn levels<V: Volume, B: Block>(b: &mut B, a: &RefitArgs<V>) {
             let mut at = start + l.global();
             while at < end {
                 let link = l.read(a.links, at);
-                if !link.is_leaf() {
+                if !link.is_leaf() && !is_fitted::<V, _>(l, a.firsts, link, a.axes) {
                     let (left, right) = (l.read(a.nodes, link.link), l.read(a.nodes, link.link + 1));
                     l.write(a.nodes, at, link.with(left.volume.merge(&right.volume, a.axes)));
                 }

@@ -1,14 +1,14 @@
-//! A cloth on a ball, two frames of a step.
+//! A cloth draped on a ball, two frames of a step.
 //!
-//! A stand-in made by formula, not a simulation: a square cloth lies on the top of a ball, hangs down beyond its
+//! Made by formula, not by simulation (that is `cloth-ball`): a square cloth lies on the top of a ball, hangs down beyond its
 //! equator and is thrown into pleats that fold over each other. In the step the cloth sinks and turns a little,
-//! its pleats tighten, and the ball rises into it. The name and the size are those of UNC's cloth-ball; the numbers
-//! of contacts are our own: with 92,230 triangles 5,802 pairs meet at t0 and 10,504 at t1, and a vertex moves by 2.2
-//! mean edges.
+//! its pleats tighten, and the ball rises into it. With 92,230 triangles 5,802 pairs meet at t0 and 10,504 at t1, and
+//! a vertex moves by 2.2 mean edges.
 
-use super::known::strip;
+use super::known::{at_least_one, strip};
 use super::soup::add;
 use super::sphere::sphere;
+use super::turn::wave;
 use super::{Builder, Rng, room, square_root};
 use crate::Error;
 use crate::mesh::Body;
@@ -38,16 +38,16 @@ struct Frame {
 const T0: Frame = Frame { lift: 0.0, lean: 0.11, stand: 0.08, turn: 0.0, ball: 0.0 };
 const T1: Frame = Frame { lift: -0.02, lean: 0.125, stand: 0.075, turn: 0.1, ball: 0.025 };
 
-/// About `triangles` (within 2 % from 1,000 on; the scene of UNC has 92,230), a tenth of them in the ball.
+/// About `triangles` (within 2 % from 1,000 on), a tenth of them in the ball.
 ///
 /// # Errors
 /// More than [`super::MAX_TRIANGLES`].
-pub fn cloth_ball(triangles: usize) -> Result<Body, Error> {
-    room("cloth-ball", triangles as u64)?;
+pub fn draped(triangles: usize) -> Result<Body, Error> {
+    room("draped", triangles as u64)?;
     let frequency = square_root(triangles as f64 / 80.0);
     let cells = (triangles as f64 / 2.0 - 4.0 * f64::from(frequency) * f64::from(frequency)).max(1.0);
     let columns = square_root(cells);
-    let rows = (cells / f64::from(columns) + 0.5).floor().max(1.0) as u32;
+    let rows = at_least_one(cells / f64::from(columns));
 
     let mut scene = Builder::default();
     let mut rng = Rng::new(92);
@@ -58,7 +58,7 @@ pub fn cloth_ball(triangles: usize) -> Result<Body, Error> {
             let mut vertex = |column: u32| {
                 let u = HALF * (2.0 * f64::from(column) / f64::from(columns) - 1.0);
                 let off = rng.point(shake);
-                scene.moving(add(draped(u, v, &T0), off), add(draped(u, v, &T1), off))
+                scene.moving(add(lies(u, v, &T0), off), add(lies(u, v, &T1), off))
             };
             (0..=columns).map(&mut vertex).collect()
         })
@@ -72,11 +72,11 @@ pub fn cloth_ball(triangles: usize) -> Result<Body, Error> {
         scene.moving(add(p, [0.0, 0.0, T0.ball]), add(p, [0.0, 0.0, T1.ball]));
     }
     scene.faces.extend(ball.faces.iter().map(|face| face.map(|i| i + first)));
-    scene.body("cloth-ball")
+    scene.body("draped")
 }
 
 /// Where the point (u, v) of the cloth lies.
-fn draped(u: f64, v: f64, frame: &Frame) -> [f64; 3] {
+fn lies(u: f64, v: f64, frame: &Frame) -> [f64; 3] {
     let r = (u * u + v * v).sqrt();
     if r == 0.0 {
         return [0.0, 0.0, 1.0 + frame.lift];
@@ -102,10 +102,4 @@ fn quarter_turns(d: [f64; 2]) -> f64 {
         (false, _) => 2.0 - part,
         (true, false) => 4.0 + part,
     }
-}
-
-/// A wave of period 1 and height 1 made of two parabolas: nearly a sine, the same on every machine.
-fn wave(x: f64) -> f64 {
-    let t = x - (x + 0.5).floor();
-    8.0 * t * (1.0 - 2.0 * t.abs())
 }

@@ -1,0 +1,73 @@
+//! The shadow of a word of four bytes: who touched it last, and who of those is unordered with the next.
+
+use super::microscope::{Access, Fault, Place};
+
+/// Two accesses of a kind such that whoever races with any access of that kind races with one of the two: of two
+/// blocks where there were two, else of two lanes in the last phase.
+#[derive(Clone, Copy, Default)]
+struct Pair(Option<Place>, Option<Place>);
+
+impl Pair {
+    fn note(&mut self, place: Place) {
+        match (self.0, self.1) {
+            // Nobody is in the same block as both.
+            (Some(first), Some(other)) if first.block != other.block => {}
+            (Some(first), _) if first.meets(place) => self.1 = Some(place),
+            _ => self.0 = Some(place),
+        }
+    }
+    fn rival(&self, place: Place) -> Option<Place> {
+        [self.0, self.1].into_iter().flatten().find(|rival| rival.meets(place))
+    }
+}
+
+/// The last accesses to a word, in one launch.
+#[derive(Clone, Copy, Default)]
+pub struct Shadow {
+    written: bool,
+    launch: u64,
+    /// A second, unordered one is a race at once.
+    write: Option<Place>,
+    read: Pair,
+    /// Gives, and atomics that write.
+    give: Pair,
+    /// Takes, and atomics that read.
+    take: Pair,
+}
+
+impl Shadow {
+    /// The host wrote it.
+    pub fn host_wrote(&mut self) {
+        self.written = true;
+    }
+    /// An access by a kernel, and the rule that it broke.
+    pub fn see(&mut self, access: Access, launch: u64, place: Place) -> Option<Fault> {
+        use Access::*;
+        if self.launch != launch {
+            *self = Shadow { written: self.written, launch, ..Shadow::default() };
+        }
+        if !self.written && !matches!(access, Write | Give) {
+            return Some(Fault::Unwritten(place));
+        }
+        let mut rival = self.write.filter(|rival| rival.meets(place));
+        match access {
+            Read => {
+                rival = rival.or(self.give.rival(place));
+                self.read.note(place);
+            }
+            Look | Take => self.take.note(place),
+            Atomic | Swap | Give => {
+                rival = rival.or(self.read.rival(place));
+                self.give.note(place);
+                self.written = true;
+            }
+            Write => {
+                let others = [self.give, self.read, self.take];
+                rival = rival.or_else(|| others.iter().find_map(|pair| pair.rival(place)));
+                self.write = Some(place);
+                self.written = true;
+            }
+        }
+        rival.map(|rival| Fault::Race(rival, place))
+    }
+}

@@ -1,0 +1,238 @@
+//! What a refit needs beside the tree: the plan of its treelets, or counters of arrivals.
+
+use crate::device::{Buffer, Device};
+use crate::error::Error;
+use crate::query::Refit;
+use nearmiss_kernels::abi::{Merge, PlanArgs, Seat, TreeArgs, Treelet};
+use nearmiss_kernels::bvh::{MAX_LEVELS, TREELET};
+use nearmiss_kernels::entry;
+
+/// How a tree is refitted, with the memory for it.
+pub enum Way {
+    /// A launch a level.
+    Levels,
+    /// A block a treelet.
+    Treelets(Box<Plan>),
+    /// Whoever comes second to a pair goes on: how many came by each pair, in all frames.
+    BottomUp(Buffer<u64>),
+}
+
+impl Way {
+    /// Takes the memory for a tree of `count` leaves (at least one).
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn new(device: &Device, refit: Refit, count: u32) -> Result<Way, Error> {
+        Ok(match refit {
+            Refit::Levels => Way::Levels,
+            Refit::Treelets => Way::Treelets(Box::new(Plan::new(device, count)?)),
+            Refit::BottomUp => Way::BottomUp(device.buffer(count as usize)?),
+        })
+    }
+
+    /// Prepares for a tree that was just built.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn prepare(&mut self, device: &Device, tree: &TreeArgs) -> Result<(), Error> {
+        match self {
+            Way::Levels => Ok(()),
+            Way::Treelets(plan) => plan.make(device, tree),
+            Way::BottomUp(arrivals) => arrivals.clear(),
+        }
+    }
+}
+
+/// The treelets of a tree: see `nearmiss_kernels::stage::construct::treelet`. About 30 bytes a leaf.
+pub struct Plan {
+    /// The treelets, one a chunk of leaves.
+    pub treelets: Buffer<Treelet>,
+    /// The leaves' places.
+    pub seats: Buffer<Seat>,
+    /// Merges of the treelets.
+    pub merges: Buffer<Merge>,
+    /// Merges of the nodes that span treelets.
+    pub top: Buffer<Merge>,
+    /// How many depths of them there are, and where each begins.
+    pub top_starts: Buffer<u32>,
+    /// Tickets drawn by blocks of refits so far.
+    pub ticket: Buffer<u64>,
+    begins: Buffer<u64>,
+    tops: Buffer<u64>,
+}
+
+impl Plan {
+    fn new(device: &Device, count: u32) -> Result<Plan, Error> {
+        let (leaves, treelets) = (count as usize, count.div_ceil(TREELET) as usize);
+        // The nodes of one depth have different leaves, those of the top more than TREELET each.
+        let a_depth = leaves / (TREELET as usize + 1);
+        Ok(Plan {
+            treelets: device.buffer(treelets)?,
+            seats: device.buffer(leaves)?,
+            merges: device.buffer(leaves)?,
+            top: device.buffer((a_depth * MAX_LEVELS as usize).min(leaves))?,
+            top_starts: device.buffer(MAX_LEVELS as usize + 1)?,
+            ticket: device.upload(&[0])?,
+            begins: device.buffer(treelets)?,
+            tops: device.buffer(2 * MAX_LEVELS as usize)?,
+        })
+    }
+
+    fn make(&mut self, device: &Device, tree: &TreeArgs) -> Result<(), Error> {
+        self.begins.clear()?;
+        self.tops.clear()?;
+        let args = PlanArgs {
+            inner: tree.inner,
+            places: tree.places,
+            depths: tree.depth_keys,
+            by_gap: tree.depth_values,
+            links: tree.links,
+            pair_parents: tree.pair_parents,
+            leaf_nodes: tree.leaf_nodes,
+            begins: self.begins.span(),
+            tops: self.tops.span(),
+            treelets: self.treelets.span(),
+            seats: self.seats.span(),
+            merges: self.merges.span(),
+            top: self.top.span(),
+            top_starts: self.top_starts.span(),
+            leaves: tree.leaves,
+            pad: 0,
+        };
+        let inner = self.seats.len() - 1;
+        device.launch::<entry::construct_mark>(
+            device.blocks_for::<entry::construct_mark>(inner.max(1)),
+            &args,
+        )?;
+        device.launch::<entry::construct_treelets>(self.blocks(), &args)
+    }
+
+    /// Blocks of a refit: one a treelet.
+    pub fn blocks(&self) -> u32 {
+        // There are fewer than leaves, which 32 bits count.
+        self.treelets.len() as u32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::Device;
+    use crate::device::emulator::{Emulator, Mode};
+    use crate::pipeline::tree::Tree;
+    use crate::pipeline::volumes::{Kernels, Volumes};
+    use crate::scene;
+    use nearmiss_kernels::abi::{Frames, Point, Span};
+    use nearmiss_kernels::bv::{Aabb, Axes, Obb};
+    use nearmiss_kernels::math::Vec3;
+
+    /// A tree that was refitted once, then moved and refitted again after `fault` was planted; on one thread, so that
+    /// blocks run in their order.
+    fn checked<V: Kernels>(refit: Refit, fault: impl Fn(&mut Tree)) -> Result<(), Error> {
+        let device = Device::emulator(Emulator::new(Mode::Engine, Some(1))?);
+        let body = scene::soup(2_000, 5, false)?;
+        let at = |scale: f64| -> Vec<Vec3<f32>> {
+            let points = body.positions_t0().to_f64().into_iter();
+            points.map(|p| Vec3(p.map(|x| (x * scale) as f32))).collect()
+        };
+        let padded = |points: &[Vec3<f32>]| points.iter().map(|&p| p.into()).collect::<Vec<Point<f32>>>();
+        let mut points = device.upload(&padded(&at(1.0)))?;
+        let faces = device.upload(body.faces())?;
+        let frames = Frames { still: points.span(), moving: Span::EMPTY };
+        let mut tree = Tree::new(&device, (0, 2_000), refit, V::group(Axes::PCA) > 0)?;
+        tree.construct::<f32>(&device, frames, faces.span())?;
+        let volumes = Volumes::<V>::new(&device, &tree, Axes::PCA)?;
+        let refit = |tree: &Tree| {
+            volumes.fit(&device, tree, frames, faces.span())?;
+            volumes.refit(&device, tree, frames, faces.span())
+        };
+        refit(&tree)?;
+        volumes.check(&tree, body.faces(), &[at(1.0)])?;
+        points.write(&padded(&at(3.0)))?;
+        fault(&mut tree);
+        refit(&tree)?;
+        volumes.check(&tree, body.faces(), &[at(3.0)])
+    }
+
+    fn plan(tree: &mut Tree) -> &mut Plan {
+        match &mut tree.way {
+            Way::Treelets(plan) => plan,
+            _ => panic!("no plan was asked for"),
+        }
+    }
+
+    /// Every merge but one, which its neighbour takes the place of.
+    fn lose(list: &mut Buffer<Merge>, at: usize) {
+        let mut merges = list.read(list.len()).expect("read");
+        merges[at] = merges[at + 1];
+        list.write(&merges).expect("written");
+    }
+
+    #[test]
+    fn all_ways_pass_where_nothing_is_planted() {
+        for refit in [Refit::Levels, Refit::Treelets, Refit::BottomUp] {
+            checked::<Aabb>(refit, |_| ()).expect("sound volumes");
+            checked::<Obb>(refit, |_| ()).expect("sound volumes");
+        }
+    }
+
+    #[test]
+    fn a_volume_that_stayed_behind_is_noticed() {
+        let faults: [fn(&mut Tree); 4] = [
+            // A merge that is lost, low and high.
+            |tree| lose(&mut plan(tree).merges, 3),
+            |tree| lose(&mut plan(tree).top, 1),
+            // Rounds or depths that are not done.
+            |tree| {
+                let mut treelets = plan(tree).treelets.read(2).expect("read");
+                treelets[1].rounds -= 1;
+                plan(tree).treelets.write(&treelets).expect("written");
+            },
+            |tree| {
+                let starts = plan(tree).top_starts.read(1).expect("read");
+                plan(tree).top_starts.write(&[starts[0] - 1]).expect("written");
+            },
+        ];
+        for (i, fault) in faults.into_iter().enumerate() {
+            let error = checked::<Aabb>(Refit::Treelets, fault).expect_err("noticed").to_string();
+            assert!(error.contains("Merge"), "fault {i}: {error}");
+        }
+    }
+
+    /// The first leaf of a pair is another's: a node is fitted to too many points or too few, or to none.
+    #[test]
+    fn a_fit_to_other_points_is_noticed() {
+        for refit in [Refit::Levels, Refit::Treelets, Refit::BottomUp] {
+            let error = checked::<Obb>(refit, |tree| {
+                let mut firsts = tree.firsts.read(tree.firsts.len()).expect("read");
+                *firsts.last_mut().expect("a pair") -= 1;
+                tree.firsts.write(&firsts).expect("written");
+            });
+            assert!(error.expect_err("noticed").to_string().contains("Fit"), "{refit:?}");
+        }
+    }
+
+    #[test]
+    fn a_ticket_too_early_is_noticed() {
+        // The second block merges the top, of volumes that are not there yet.
+        let error = checked::<Aabb>(Refit::Treelets, |tree| {
+            let plan = plan(tree);
+            plan.ticket.write(&[u64::from(plan.blocks()) - 2]).expect("written");
+        });
+        assert!(error.expect_err("noticed").to_string().contains("Merge"));
+    }
+
+    #[test]
+    fn who_comes_first_and_goes_on_is_noticed() {
+        let error = checked::<Aabb>(Refit::BottomUp, |tree| match &mut tree.way {
+            Way::BottomUp(arrivals) => {
+                let mut counts = arrivals.read(arrivals.len()).expect("read");
+                assert!(counts[1..].iter().all(|&n| n == 2), "each pair is passed twice a frame");
+                counts.iter_mut().for_each(|n| *n += 1);
+                arrivals.write(&counts).expect("written");
+            }
+            _ => panic!("no counters were asked for"),
+        });
+        assert!(error.expect_err("noticed").to_string().contains("Merge"));
+    }
+}

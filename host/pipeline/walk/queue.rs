@@ -1,0 +1,239 @@
+//! Rounds of work queues, until nothing is left.
+
+use super::segments::Segments;
+use super::{Walk, Walked, resident};
+use crate::device::{Buffer, Device, Mark};
+use crate::error::Error;
+use crate::pipeline::room::Growing;
+use crate::pipeline::volumes::Kernels;
+use crate::query::{Balance, QueueShape};
+use nearmiss_kernels::abi::{BalanceArgs, LAST, Pair, QueueArgs, START, Span, counter};
+use nearmiss_kernels::entry::balance_copy;
+
+/// Rounds that are launched before the host looks whether anything is left, as long as it does not know. Even: the two
+/// copies of the list swap places each round.
+const BATCH: u32 = 8;
+/// Rounds that can be launched without the host.
+const MOST_ROUNDS: u32 = 128;
+/// Rounds that are launched beyond those that the last frames needed; one without work costs a launch.
+const MORE_ROUNDS: u32 = 2;
+/// Units that the first block makes of the roots before the others help.
+const FIRST_UNITS: u32 = 64;
+
+/// See [`crate::query::Traversal::Queue`].
+pub struct Queue {
+    shape: QueueShape,
+    cores: u32,
+    units: Segments<2>,
+    /// Copy: units of each queue, for each copy. View: units of each round; the second is not used.
+    counts: [Buffer<u64>; 2],
+    /// Queues that ran dry, of each round.
+    idle: Buffer<u64>,
+    /// Copy: where each queue's units begin among all.
+    starts: Buffer<u64>,
+    plan: Plan,
+    balances: Vec<[Mark; 2]>,
+}
+
+/// How many rounds to launch, from the roots and from a seed; `None`: look.
+#[derive(Default)]
+struct Plan {
+    rounds: [Option<u32>; 2],
+    /// Whether the last launch was from a seed.
+    seeded: bool,
+}
+
+impl Plan {
+    /// The rounds of the last kind of launch.
+    fn of_last(&mut self) -> &mut Option<u32> {
+        &mut self.rounds[usize::from(self.seeded)]
+    }
+}
+
+impl Growing for Plan {
+    fn counter(&self) -> u32 {
+        counter::UNFINISHED
+    }
+    fn is_short(&self, counters: &[u64]) -> bool {
+        counters[counter::UNFINISHED as usize] > 0
+    }
+    fn grow(&mut self, _: &Device, counters: &[u64]) -> Result<bool, Error> {
+        let short = self.is_short(counters);
+        if short {
+            *self.of_last() = None;
+        }
+        Ok(short)
+    }
+}
+
+impl Queue {
+    /// Takes the memory.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn new<V: Kernels>(device: &Device, shape: QueueShape) -> Result<Self, Error> {
+        let cores = shape.cores.unwrap_or_else(|| resident::<V::Queue>(device));
+        let (segments, counts, rounds) = match shape.balance {
+            Balance::Copy => ((cores, shape.segment as u64), [cores, cores], 1),
+            Balance::View => ((1, cores as u64 * shape.segment as u64), [MOST_ROUNDS + 1, 0], MOST_ROUNDS),
+        };
+        let words = |len: u32| device.buffer(len as usize);
+        Ok(Queue {
+            shape,
+            cores,
+            units: Segments::new(device, segments.0, segments.1)?,
+            counts: [words(counts[0])?, words(counts[1])?],
+            idle: words(rounds)?,
+            starts: words(counts[1])?,
+            plan: Plan::default(),
+            balances: Vec::new(),
+        })
+    }
+
+    /// Launches a round that reads copy `from`.
+    fn round<V: Kernels>(
+        &self,
+        given: &Walked<V>,
+        from: usize,
+        (round, flags): (u32, u32),
+    ) -> Result<(), Error> {
+        let QueueShape { local, take, idle, patience, balance, .. } = self.shape;
+        let lanes = given.device.lanes::<V::Queue>();
+        let start = flags & START != 0;
+        let copy = balance == Balance::Copy;
+        // One list for all: the first block alone, until there is something to share.
+        let alone = start && !copy;
+        let args = QueueArgs {
+            to: given.pair_args(local),
+            units: self.units.span(from),
+            counts: self.counts[if copy { from % 2 } else { 0 }].span(),
+            left: self.units.span(from + 1),
+            left_counts: self.counts[if copy { (from + 1) % 2 } else { 0 }].span(),
+            idle: self.idle.span(),
+            round,
+            segment: if copy { self.units.len() } else { 0 },
+            take,
+            // At most the number of cores, since the share is at most 1.
+            idle_limit: (self.cores as u64 * idle.0 as u64 / idle.1 as u64) as u32,
+            patience,
+            full: match (copy, alone) {
+                (true, _) => local.saturating_sub(lanes),
+                (false, true) => FIRST_UNITS.min(local / 2),
+                (false, false) => u32::MAX,
+            },
+            flags,
+            pad: 0,
+        };
+        given.device.launch::<V::Queue>(if alone { 1 } else { self.cores }, &args)
+    }
+
+    /// Rounds with a balance between them, until the host sees that nothing is left.
+    fn by_copy<V: Kernels>(&mut self, given: &Walked<V>) -> Result<(), Error> {
+        let (mut from, mut flags) = (0, START);
+        loop {
+            self.idle.clear()?;
+            self.round(given, from, (0, flags))?;
+            flags = 0;
+            let to = 1 - from;
+            let counts = self.counts[to].read(self.cores as usize)?;
+            let most = counts.iter().max().copied().unwrap_or(0);
+            // Nothing left; or a segment was too short, as the counter tells: it grows, and all begins anew.
+            if most == 0 || most > self.units.len() as u64 {
+                return Ok(());
+            }
+            let nearly_full = most + self.shape.local as u64 > self.units.len() as u64;
+            if nearly_full || counts.iter().any(|&count| count < self.shape.take as u64) {
+                let before = given.device.mark()?;
+                given.device.launch::<balance_copy>(
+                    1,
+                    &BalanceArgs {
+                        units: self.units.span(to),
+                        counts: self.counts[to].span(),
+                        starts: self.starts.span(),
+                        even: self.units.span(from),
+                        even_counts: self.counts[from].span(),
+                        counters: given.counters,
+                        cores: self.cores,
+                        segment: self.units.len(),
+                    },
+                )?;
+                self.balances.push([before, given.device.mark()?]);
+            } else {
+                from = to;
+            }
+        }
+    }
+
+    /// Rounds that share one list: as many as are planned, or until the host sees that nothing is left. They begin with
+    /// the roots, or with the units that `seed` writes to the list and counts.
+    fn by_view<V: Kernels>(&mut self, given: &Walked<V>, seed: Option<Seed>) -> Result<(), Error> {
+        let first = if seed.is_some() { 0 } else { START };
+        let begin = |queue: &mut Self, left: u64| -> Result<(), Error> {
+            queue.counts[0].clear()?;
+            queue.counts[0].write(&[left])?;
+            queue.idle.clear()
+        };
+        begin(self, 0)?;
+        if let Some(seed) = seed {
+            seed(self.units.span(0), self.counts[0].span())?;
+        }
+        self.plan.seeded = seed.is_some();
+        if let Some(rounds) = *self.plan.of_last() {
+            return (0..rounds).try_for_each(|round| {
+                let start = if round == 0 { first } else { 0 };
+                let last = if round + 1 == rounds { LAST } else { 0 };
+                self.round(given, round as usize, (round, start | last))
+            });
+        }
+        let mut flags = first;
+        loop {
+            for round in 0..BATCH {
+                self.round(given, round as usize, (round, flags))?;
+                flags = 0;
+            }
+            let left = self.counts[0].read(BATCH as usize + 1)?[BATCH as usize];
+            if left == 0 {
+                return Ok(());
+            }
+            begin(self, left)?;
+        }
+    }
+
+    /// Rounds that share one list and begin with what `seed` writes.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn launch_from<V: Kernels>(&mut self, given: &Walked<V>, seed: Seed) -> Result<(), Error> {
+        self.by_view(given, Some(seed))
+    }
+}
+
+/// Writes units to a list and counts them.
+pub type Seed<'a> = &'a dyn Fn(Span<Pair>, Span<u64>) -> Result<(), Error>;
+
+impl<V: Kernels> Walk<V> for Queue {
+    fn launch(&mut self, given: &Walked<V>) -> Result<(), Error> {
+        self.balances.clear();
+        match self.shape.balance {
+            Balance::Copy => self.by_copy(given),
+            Balance::View => self.by_view(given, None),
+        }
+    }
+
+    fn lists(&mut self) -> Vec<&mut dyn Growing> {
+        vec![&mut self.units, &mut self.plan]
+    }
+
+    fn finish(&mut self, counters: &[u64]) -> Result<(), Error> {
+        // A machine's rounds vary from run to run: a plan shrinks by one a frame at most.
+        let rounds = counters[counter::QUEUE_ROUNDS as usize] + MORE_ROUNDS as u64;
+        let rounds = rounds.max(self.plan.of_last().unwrap_or(0).saturating_sub(1) as u64);
+        *self.plan.of_last() = (rounds <= MOST_ROUNDS as u64).then_some(rounds as u32);
+        Ok(())
+    }
+
+    fn balance_ms(&self) -> Result<f64, Error> {
+        // From 0.0: the sum of nothing would be -0.0.
+        self.balances.iter().try_fold(0.0, |sum, [from, to]| Ok(sum + from.to(to)?))
+    }
+}

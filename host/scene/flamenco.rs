@@ -1,0 +1,61 @@
+//! Skirts over skirts, a hair apart, on a dancer who turns: a stand-in for UNC's Flamenco.
+
+use super::known::at_least_one;
+use super::turn::{circle, wave};
+use super::xpbd::{Fabric, Obstacles, Pose, Setting, World};
+use super::{Rng, square_root};
+
+/// Frames after which the skirts swing.
+pub(super) const OPENING: u64 = 30;
+
+/// Skirts.
+const LAYERS: u32 = 6;
+/// Radius of the waist of the innermost skirt, and length of a skirt.
+const WAIST: f64 = 0.3;
+const LENGTH: f64 = 2.0;
+/// Radius gained along a skirt.
+const FLARE: f64 = 1.0;
+/// Distance of a skirt from the next.
+const HAIR: f64 = 0.01;
+/// Ruffles around a skirt, and how far they stand out at the hem.
+const RUFFLES: f64 = 14.0;
+const STAND: f64 = 0.12;
+/// How far vertices are shaken, in cells; less than half of [`HAIR`] in any case.
+const SHAKE: f64 = 0.02;
+const FABRIC: Fabric = Fabric { stretch: 0.0, shear: 0.01, bend: 0.1 };
+
+/// The dancer turns to and fro, and sways.
+fn pose(time: f64) -> Pose {
+    Pose::new(0.35 * wave(time / 60.0), [0.2 * wave(time / 90.0), 0.1 * wave(time / 45.0), 0.0])
+}
+
+pub(super) fn world(triangles: usize, seed: u64) -> World {
+    // Cells are about square where the skirt is half as wide as at its hem.
+    let cells = triangles as f64 / f64::from(2 * LAYERS);
+    let rows = square_root(cells / 2.5);
+    let columns = at_least_one(cells / f64::from(rows)).max(3);
+    let cell = LENGTH / f64::from(rows);
+
+    let obstacles = Obstacles { ellipsoid: None, floor: None, friction: [0.0; 2] };
+    let mut world = World::new(Setting { pose, obstacles, gravity: 0.002, drag: 0.03 });
+    let mut rng = Rng::new(seed);
+    let shake = (SHAKE * cell).min(0.2 * HAIR);
+    for layer in 0..LAYERS {
+        let waist = WAIST + HAIR * f64::from(layer);
+        let points: Vec<Vec<[f64; 3]>> = (0..=rows)
+            .map(|row| {
+                let down = f64::from(row) / f64::from(rows);
+                let around = |column| {
+                    let turns = f64::from(column) / f64::from(columns);
+                    let [c, s] = circle(turns);
+                    let radius = waist + down * (FLARE + STAND * wave(RUFFLES * turns));
+                    let off = rng.point(shake);
+                    [radius * c + off[0], radius * s + off[1], -LENGTH * down + off[2]]
+                };
+                (0..columns).map(around).collect()
+            })
+            .collect();
+        world.cloth(&points, true, true, FABRIC);
+    }
+    world
+}

@@ -1,0 +1,210 @@
+//! The ends of the descent: with the flag for a front, a complete cut, whatever the queues.
+
+use super::*;
+use nearmiss_kernels::abi::{
+    FRONT, LEAF, Link, Node, Pair, PairArgs, QueueArgs, ROOT, SELF, START, Span, StealArgs,
+};
+use nearmiss_kernels::abi::{control, counter};
+use nearmiss_kernels::bv::{Aabb, Axes, Volume};
+use nearmiss_kernels::entry::{traverse_queue_aabb, traverse_steal_aabb};
+use nearmiss_kernels::queue::bvtt;
+use std::collections::HashSet;
+
+/// A tree in level order over `leaves` boxes in a row, each of that length and one apart; the parent of each node.
+fn tree(leaves: u32, length: f32) -> (Vec<Node<Aabb>>, Vec<u32>) {
+    let mut nodes = vec![Node::<Aabb>::default(); 2 * leaves as usize];
+    let mut parents = vec![u32::MAX; 2 * leaves as usize];
+    let (mut level, mut free) = (vec![(ROOT, 0, leaves)], 2);
+    while !level.is_empty() {
+        let mut next = Vec::new();
+        for (node, from, to) in level {
+            let link = if to - from == 1 { LEAF | from } else { free };
+            let lo = [from as f32, 0.0, 0.0];
+            let volume = Aabb { lo, hi: [lo[0] + length, 1.0, 1.0] };
+            nodes[node as usize] = Link { link, last: to - 1 }.with(volume);
+            if to - from > 1 {
+                // Uneven, so that leaves lie on many levels.
+                let split = from + 1 + (to - from - 2) * (from % 3) / 2;
+                next.extend([(free, from, split), (free + 1, split, to)]);
+                parents[free as usize] = node;
+                parents[free as usize + 1] = node;
+                free += 2;
+            }
+        }
+        level = next;
+    }
+    for at in (1..nodes.len()).rev() {
+        if nodes[at].is_leaf() {
+            continue;
+        }
+        let link = nodes[at].link as usize;
+        let (left, right) = (nodes[link].volume, nodes[link + 1].volume);
+        nodes[at].volume = Volume::merge(&left, &right, Axes::PCA);
+    }
+    (nodes, parents)
+}
+
+/// What a traversal left: ends, candidates, units left over, work.
+struct Left {
+    ends: Vec<Pair>,
+    pairs: Vec<Pair>,
+    units: Vec<Pair>,
+}
+
+/// Launches `rounds` rounds of three queues over one list, or a launch of three blocks that steal.
+fn run(device: &Device, trees: [&[Node<Aabb>]; 2], own: bool, rounds: Option<u32>) -> Left {
+    let room = 1 << 14;
+    let [queries, nodes] = trees.map(|nodes| device.upload(nodes).expect("memory"));
+    let (pairs, ends) =
+        (device.buffer::<Pair>(room).expect("memory"), device.buffer::<Pair>(room).expect("memory"));
+    let words = |n: u32| {
+        let mut words = device.buffer::<u64>(n as usize).expect("memory");
+        words.clear().expect("zero");
+        words
+    };
+    let counters = words(counter::COUNT);
+    let to = PairArgs {
+        queries: queries.span(),
+        nodes: nodes.span(),
+        faces: Span::EMPTY,
+        pairs: pairs.span(),
+        ends: ends.span(),
+        counters: counters.span(),
+        flags: FRONT | nearmiss_kernels::abi::KEEP_ADJACENT | if own { SELF } else { 0 },
+        local: 9,
+    };
+    let lists = [0, 1].map(|_| device.buffer::<Pair>(room).expect("memory"));
+    let units = match rounds {
+        Some(rounds) => {
+            let (counts, idle) = (words(rounds + 1), words(rounds));
+            for round in 0..rounds {
+                let args = QueueArgs {
+                    to,
+                    units: lists[round as usize % 2].span(),
+                    counts: counts.span(),
+                    left: lists[(round as usize + 1) % 2].span(),
+                    left_counts: counts.span(),
+                    idle: idle.span(),
+                    round,
+                    segment: 0,
+                    take: 2,
+                    idle_limit: 0,
+                    patience: 0,
+                    full: u32::MAX,
+                    flags: if round == 0 { START } else { 0 },
+                    pad: 0,
+                };
+                device.launch::<traverse_queue_aabb>(3, &args).expect("a round");
+            }
+            let left = counts.read(rounds as usize + 1).expect("counts")[rounds as usize];
+            lists[rounds as usize % 2].read(left as usize).expect("units")
+        }
+        None => {
+            let (pool, control) = (words(100), words(control::COUNT));
+            let args = StealArgs {
+                to,
+                units: lists[0].span(),
+                pool: pool.span(),
+                control: control.span(),
+                segment: room as u32 / 3,
+                tries: 5,
+                flags: nearmiss_kernels::abi::EAGER,
+                pad: 0,
+            };
+            device.launch::<traverse_steal_aabb>(3, &args).expect("a launch");
+            Vec::new()
+        }
+    };
+    let count = counters.read(counter::COUNT as usize).expect("counters");
+    let read = |list: &nearmiss::device::Buffer<Pair>, at: u32| {
+        list.read(count[at as usize] as usize).expect("entries")
+    };
+    Left { ends: read(&ends, counter::ENDS), pairs: read(&pairs, counter::PAIRS), units }
+}
+
+/// Checks that each pair of leaves has exactly one of the cut's pairs above it, and that ends are what they should be.
+fn cut(left: &Left, trees: [&(Vec<Node<Aabb>>, Vec<u32>); 2], own: bool) -> Result<(), String> {
+    let cut: HashSet<(u32, u32)> = left.ends.iter().chain(&left.units).map(|pair| (pair.a, pair.b)).collect();
+    if cut.len() != left.ends.len() + left.units.len() {
+        return Err("a pair twice".into());
+    }
+    let [(a, above_a), (b, above_b)] = trees;
+    let overlap = |pair: &Pair| a[pair.a as usize].volume.overlaps(&b[pair.b as usize].volume);
+    let leaves = |nodes: &[Node<Aabb>]| {
+        (1..nodes.len() as u32).filter(|&i| nodes[i as usize].is_leaf()).collect::<Vec<_>>()
+    };
+    let mut meeting = HashSet::new();
+    for &p in &leaves(a) {
+        for &q in &leaves(b) {
+            // In one tree a pair is descended to in the order of the leaves.
+            if own && a[p as usize].last >= b[q as usize].last {
+                continue;
+            }
+            let mut pair = Pair { a: p, b: q };
+            let mut met = cut.contains(&(p, q)) as u32;
+            while pair != (Pair { a: ROOT, b: ROOT }) {
+                pair = bvtt::parent(pair, above_a[pair.a as usize], above_b[pair.b as usize], own);
+                met += cut.contains(&(pair.a, pair.b)) as u32;
+            }
+            if met != 1 {
+                return Err(format!("the leaves {p} and {q} have {met} pairs above them"));
+            }
+            if overlap(&Pair { a: p, b: q }) {
+                meeting.insert((a[p as usize].triangle(), b[q as usize].triangle()));
+            }
+        }
+    }
+    let is_leaf = |pair: &Pair| a[pair.a as usize].is_leaf() && b[pair.b as usize].is_leaf();
+    if let Some(pair) = left.ends.iter().find(|pair| overlap(pair) && !is_leaf(pair)) {
+        return Err(format!("{pair:?} is no end"));
+    }
+    let found: HashSet<(u32, u32)> = left.pairs.iter().map(|pair| (pair.a, pair.b)).collect();
+    if found.len() != left.pairs.len()
+        || (left.units.is_empty() && found != meeting)
+        || !found.is_subset(&meeting)
+    {
+        return Err(format!("{} candidates, not {}", left.pairs.len(), meeting.len()));
+    }
+    Ok(())
+}
+
+#[test]
+fn ends_are_a_complete_cut() {
+    for (leaves, others, length) in
+        [(1, 1, 1.0), (2, 1, 1.0), (1, 23, 5.0), (30, 23, 2.5), (40, 9, 0.5), (25, 26, 30.0)]
+    {
+        let (one, other) = (tree(leaves, length), tree(others, 2.0 * length));
+        for device in [engine()].into_iter().chain(ORDERS.map(microscope)) {
+            for rounds in [Some(1), Some(2), Some(4), Some(400), None] {
+                for (second, own) in [(&one, true), (&other, false)] {
+                    let left = run(&device, [&one.0, &second.0], own, rounds);
+                    assert_eq!(
+                        cut(&left, [&one, second], own),
+                        Ok(()),
+                        "{leaves}, {others}, {rounds:?}, {own}"
+                    );
+                    assert!(left.units.is_empty() || rounds.is_some_and(|rounds| rounds < 400));
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_cut_with_a_hole_is_noticed() {
+    let one = tree(30, 2.5);
+    let whole = run(&engine(), [&one.0, &one.0], true, None);
+    let trees = [&one, &one];
+    assert_eq!(cut(&whole, trees, true), Ok(()));
+    let with = |ends: Vec<Pair>, pairs: &[Pair]| {
+        cut(&Left { ends, pairs: pairs.to_vec(), units: Vec::new() }, trees, true)
+    };
+    assert!(with(whole.ends[1..].to_vec(), &whole.pairs).is_err_and(|e| e.contains("0 pairs above")));
+    let twice = [&whole.ends[..], &whole.ends[..1]].concat();
+    assert!(with(twice, &whole.pairs).is_err_and(|e| e.contains("twice")));
+    let end = whole.ends.iter().find(|end| end.a != end.b).expect("an end");
+    let above = bvtt::parent(*end, one.1[end.a as usize], one.1[end.b as usize], true);
+    let also = [&whole.ends[..], &[above]].concat();
+    assert!(with(also, &whole.pairs).is_err_and(|e| e.contains("2 pairs above")));
+    assert!(with(whole.ends.clone(), &whole.pairs[1..]).is_err_and(|e| e.contains("candidates")));
+}

@@ -1,0 +1,259 @@
+//! Numbers and sizes of queues, from one up; memory that is too short at first.
+
+use super::*;
+use nearmiss::device::emulator::{Emulator, Mode};
+
+/// Soup and cloth, self and between, with many candidates.
+fn crowds() -> [Vec<Body>; 2] {
+    let soup = || scene::soup(120, 3, true).expect("a scene");
+    [vec![soup()], vec![scene::draped(200).expect("a scene"), soup()]]
+}
+
+/// The traversal on the engine and under a microscope finds what a walk a leaf does; its figures there.
+fn same(bodies: &[Body], traversal: Traversal) -> Contacts {
+    let truth = truth(bodies, Motion::Discrete);
+    let (print, contacts) = found(engine(), bodies, by(traversal, Motion::Discrete));
+    assert_eq!(print, truth, "{traversal:?}");
+    let order = ORDERS[contacts.steps as usize % ORDERS.len()];
+    let (print, seen) = found(microscope(order), bodies, by(traversal, Motion::Discrete));
+    assert_eq!(print, truth, "{traversal:?}, {order:?}");
+    assert_eq!(contacts.steps, seen.steps, "the work is the same in any order");
+    seen
+}
+
+/// Both profiles.
+fn profiles() -> [QueueShape; 2] {
+    [
+        QueueShape { segment: 3_000, ..QueueShape::gtx285() },
+        QueueShape { segment: 100, ..QueueShape::native() },
+    ]
+}
+
+#[test]
+fn any_number_of_queues() {
+    for bodies in crowds() {
+        for cores in [1, 2, 3, 30, 64].map(Some) {
+            for shape in profiles() {
+                let queues = same(&bodies, Traversal::Queue(QueueShape { cores, ..shape })).queues;
+                assert!(queues.rounds > 0 && queues.longest <= 3_000, "{queues:?}");
+            }
+            for eager in [false, true] {
+                let shape = StealShape { cores, segment: 100, tries: 4, eager, ..StealShape::native() };
+                same(&bodies, Traversal::Steal(shape));
+            }
+        }
+    }
+}
+
+#[test]
+fn any_room_on_chip() {
+    for bodies in crowds() {
+        for local in [1, 2, 7, 64, QueueShape::ROOM] {
+            for shape in profiles() {
+                for take in [1, 64] {
+                    let shape = QueueShape { local, take, cores: Some(7), ..shape };
+                    let queues = same(&bodies, Traversal::Queue(shape)).queues;
+                    assert!(local > 1 || queues.spills > 0, "{shape:?} {queues:?}");
+                }
+            }
+            let shape = StealShape {
+                local,
+                cores: Some(4),
+                segment: 2_000,
+                tries: 4,
+                eager: true,
+                ..StealShape::native()
+            };
+            let queues = same(&bodies, Traversal::Steal(shape)).queues;
+            assert!(local > 2 || queues.spills > 0, "{shape:?} {queues:?}");
+        }
+    }
+}
+
+#[test]
+fn segments_that_are_too_short_grow() {
+    for bodies in crowds() {
+        let reruns = |traversal| {
+            let truth = truth(&bodies, Motion::Discrete);
+            for device in [engine(), microscope(ORDERS[2])] {
+                let query = by(traversal, Motion::Discrete);
+                assert_eq!(found(device, &bodies, query).0, truth, "{traversal:?}");
+            }
+            let mut session =
+                Session::new(microscope(ORDERS[0]), bodies.clone(), by(traversal, Motion::Discrete))
+                    .expect("a session");
+            session.detect().expect("an answer");
+            session.reruns()
+        };
+        for (local, segment) in [(1, 1), (3, 2), (40, 5)] {
+            for shape in profiles() {
+                let shape = QueueShape { cores: Some(2), local, segment, ..shape };
+                assert!(
+                    reruns(Traversal::Queue(shape)) > 0,
+                    "{shape:?}: the first segments were long enough"
+                );
+            }
+            let shape =
+                StealShape { cores: Some(2), local, segment, pool: 10, tries: 2, ..StealShape::native() };
+            assert!(reruns(Traversal::Steal(shape)) > 0, "{shape:?}: the first segments were long enough");
+        }
+    }
+}
+
+#[test]
+fn any_share_of_idle_queues() {
+    for bodies in crowds() {
+        for shape in profiles() {
+            for patience in [0, 3] {
+                // In reverse order the blocks without work are through before the first begins with the roots.
+                let [never, at_once] = [(1, 1), (0, 1)].map(|idle| {
+                    let shape = QueueShape { idle, patience, cores: Some(6), ..shape };
+                    same(&bodies, Traversal::Queue(shape));
+                    found(microscope(ORDERS[1]), &bodies, by(Traversal::Queue(shape), Motion::Discrete))
+                        .1
+                        .queues
+                });
+                assert!(at_once.rounds > never.rounds, "{shape:?}: {at_once:?}, {never:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn blocks_that_interleave_lose_nothing() {
+    let mut stolen = 0;
+    for bodies in crowds() {
+        let truth = truth(&bodies, Motion::Discrete);
+        for seed in 1..5 {
+            let pool = [1_000_000, 20][seed as usize % 2];
+            let steal =
+                |eager| StealShape { cores: Some(7), segment: 100, local: 100, pool, tries: 50, eager };
+            let [copy, view] = profiles().map(|shape| QueueShape { cores: Some(7), ..shape });
+            let all = [
+                Traversal::Queue(copy),
+                Traversal::Queue(view),
+                Traversal::Steal(steal(false)),
+                Traversal::Steal(steal(true)),
+            ];
+            for traversal in all {
+                let device =
+                    Emulator::new(Mode::Microscope(ORDERS[2]), None).expect("threads").with_interleave(seed);
+                let (print, contacts) =
+                    found(Device::emulator(device), &bodies, by(traversal, Motion::Discrete));
+                assert_eq!(print, truth, "{traversal:?}, {seed}");
+                stolen +=
+                    if traversal == Traversal::Steal(steal(false)) { contacts.queues.stolen } else { 0 };
+            }
+        }
+    }
+    assert!(stolen > 100, "blocks that look for work are given some: {stolen}");
+}
+
+#[test]
+fn what_is_offered_is_taken_and_a_full_pool_loses_nothing() {
+    for bodies in crowds() {
+        for pool in [0, 1, 2, 33, 1_000_000] {
+            let shape = StealShape {
+                cores: Some(3),
+                pool,
+                segment: 2_000,
+                tries: 3,
+                eager: true,
+                ..StealShape::native()
+            };
+            let queues = same(&bodies, Traversal::Steal(shape)).queues;
+            let full = queues.stolen == pool as u64;
+            assert!(if pool < 100 { full } else { queues.stolen > 100 }, "{pool}: {queues:?}");
+        }
+    }
+}
+
+#[test]
+fn a_frame_launches_the_rounds_of_the_one_before() {
+    let launches = |traversal| {
+        let device = engine();
+        let query = by(traversal, Motion::Discrete);
+        let mut session = Session::new(device.clone(), crowds()[0].clone(), query).expect("a session");
+        let frame = |session: &mut Session| {
+            let before = device.launches();
+            let rounds = session.detect().expect("an answer").queues.rounds;
+            (device.launches() - before, rounds)
+        };
+        frame(&mut session);
+        frame(&mut session)
+    };
+    let [copy, view] = profiles().map(|shape| QueueShape { cores: Some(3), idle: (1, 1), ..shape });
+    let whole = launches(Traversal::PerLeaf { budget: None }).0 - 1;
+    let (count, rounds) = launches(Traversal::Queue(view));
+    assert_eq!(count, whole + rounds + 2, "two more, should this frame need them");
+    assert_eq!(
+        launches(Traversal::Queue(copy)),
+        (whole + 1, 1),
+        "nobody leaves before all is done: no balance"
+    );
+    assert_eq!(
+        launches(Traversal::Steal(StealShape { cores: Some(3), ..StealShape::native() })).0,
+        whole + 1
+    );
+}
+
+#[test]
+fn fewer_rounds_planned_than_needed_are_noticed() {
+    // Apart, a frame needs a round; then all triangles meet.
+    let apart: Vec<_> = (0..100)
+        .map(|i| [3.0 * i as f32, 0.0, 0.0])
+        .flat_map(|[x, y, z]| [[x, y, z], [x + 1.0, y, z], [x, 1.0, z]])
+        .collect();
+    let crowd: Vec<_> =
+        apart.iter().enumerate().map(|(i, p)| [p[0] - 3.0 * (i / 3) as f32, p[1], p[2]]).collect();
+    let faces: Vec<_> = (0..100u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let shape = QueueShape {
+        cores: Some(3),
+        local: 8,
+        segment: 4_000,
+        idle: (0, 1),
+        patience: 0,
+        ..QueueShape::native()
+    };
+    for (device, watched) in [(engine(), false), (microscope(ORDERS[1]), true)] {
+        let query = by(Traversal::Queue(shape), Motion::Discrete);
+        let mut session =
+            Session::new(device, vec![support::still(&apart, &faces)], query).expect("a session");
+        let few = session.detect().expect("an answer").queues.rounds;
+        assert_eq!(session.detect().expect("an answer").len(), 0);
+        assert!(!watched || session.reruns() == 0);
+        session.move_to(0, support::still(&crowd, &faces)).expect("the same mesh");
+        let many = session.detect().expect("an answer");
+        assert_eq!(many.len(), 100 * 99 / 2);
+        let reruns = session.reruns();
+        assert_eq!(session.detect().expect("an answer").hash(), many.hash());
+        // Under the microscope the same frame takes the same rounds; elsewhere blocks run dry sooner or later.
+        if watched {
+            assert!(many.queues.rounds > few + 2 && reruns > 0, "{few}, {:?}", many.queues);
+            assert_eq!(session.reruns(), reruns, "now the plan is long enough");
+        }
+    }
+}
+
+#[test]
+fn sizes_that_cannot_be_are_refused() {
+    let ok = QueueShape::gtx285();
+    for shape in [
+        QueueShape { cores: Some(0), ..ok },
+        QueueShape { local: 0, ..ok },
+        QueueShape { local: QueueShape::ROOM + 1, ..ok },
+        QueueShape { take: 0, ..ok },
+        QueueShape { segment: 0, ..ok },
+        QueueShape { idle: (1, 0), ..ok },
+        QueueShape { idle: (3, 2), ..ok },
+    ] {
+        let query = by(Traversal::Queue(shape), Motion::Discrete);
+        let error = Session::new(engine(), vec![single()], query).map(|_| ()).expect_err("refused");
+        assert_eq!(error.exit_code(), 2, "{shape:?}: {error}");
+    }
+    assert!(
+        by(Traversal::Steal(StealShape { local: 0, ..StealShape::native() }), Motion::Discrete)
+            .check()
+            .is_err()
+    );
+}

@@ -1,0 +1,119 @@
+//! Boxes that move: those that meet at one instant meet, those that never do are told apart.
+
+use nearmiss::scene::Rng;
+use nearmiss_kernels::bv::{Linear, Volume};
+use nearmiss_kernels::math::Vec3;
+
+type Swept = [[Vec3<f32>; 3]; 2];
+
+/// A whole number of size up to `size`.
+fn whole(rng: &mut Rng, size: f64) -> f64 {
+    rng.around(size).round()
+}
+
+/// Two triangles, each with a corner that is at the same point at t = k/8, and only then: on axis `a` the first comes
+/// nearer and on axis `b` it leaves, while it has everything else on the far side. All numbers are exact floats.
+fn meeting(rng: &mut Rng) -> [Swept; 2] {
+    let far = [0.0, 100.0, 1e5][(rng.bits() % 3) as usize];
+    let x = [(); 3].map(|()| whole(rng, far));
+    let k = (rng.bits() % 9) as f64;
+    let speed = [1.0, 3.0, 1000.0, 1e5][(rng.bits() % 4) as usize];
+    let mut first = [(); 3].map(|()| whole(rng, speed));
+    let second = [(); 3].map(|()| whole(rng, speed));
+    let a = (rng.bits() % 3) as usize;
+    let b = (a + 1 + (rng.bits() % 2) as usize) % 3;
+    first[a] = second[a] + whole(rng, speed).abs();
+    first[b] = second[b] - whole(rng, speed).abs();
+    let scale = 2f32.powi((rng.bits() % 40) as i32 - 20);
+    let mut triangle = |velocity: [f64; 3], side: f64| {
+        let corners = [0, 1, 2].map(|corner| {
+            let mut off = [(); 3].map(|()| if corner == 0 { 0.0 } else { whole(rng, 50.0) });
+            for axis in [a, b] {
+                off[axis] = side * off[axis].abs();
+            }
+            [-k, 8.0 - k].map(|t| Vec3([0, 1, 2].map(|i| (x[i] + t * velocity[i] + off[i]) as f32 * scale)))
+        });
+        [corners.map(|c| c[0]), corners.map(|c| c[1])]
+    };
+    [triangle(first, -1.0), triangle(second, 1.0)]
+}
+
+fn meet(cases: usize) {
+    let mut rng = Rng::new(21);
+    for _ in 0..cases {
+        let [[a0, a1], [b0, b1]] = meeting(&mut rng);
+        let (a, b) = (Linear::moving(a0, a1), Linear::moving(b0, b1));
+        assert!(a.overlaps(&b) && b.overlaps(&a), "{a:?}\n{b:?}");
+    }
+}
+
+#[test]
+fn boxes_that_meet_at_one_instant_are_not_apart() {
+    meet(100_000);
+}
+
+#[test]
+#[ignore = "a minute"]
+fn boxes_that_meet_at_one_instant_are_not_apart_at_length() {
+    meet(20_000_000);
+}
+
+/// The largest over t of the smallest overlap of the three axes, by trying every corner of the six lines. In doubles.
+fn depth(a: &Linear, b: &Linear) -> f64 {
+    let mut lines = Vec::new();
+    for k in 0..3 {
+        let line = |lo0: f32, lo1: f32, hi0: f32, hi1: f32| {
+            (f64::from(hi0) - f64::from(lo0), f64::from(hi1) - f64::from(lo1))
+        };
+        lines.push(line(a.lo0[k], a.lo1[k], b.hi0[k], b.hi1[k]));
+        lines.push(line(b.lo0[k], b.lo1[k], a.hi0[k], a.hi1[k]));
+    }
+    let mut times = vec![0.0, 1.0];
+    for (i, p) in lines.iter().enumerate() {
+        for q in &lines[..i] {
+            let t = (q.0 - p.0) / ((p.1 - p.0) - (q.1 - q.0));
+            if (0.0..=1.0).contains(&t) {
+                times.push(t);
+            }
+        }
+    }
+    let least = |t: f64| lines.iter().map(|l| (1.0 - t) * l.0 + t * l.1).fold(f64::INFINITY, f64::min);
+    times.into_iter().map(least).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// The answer is that of real arithmetic but for pairs within a hair of touching; it does not depend on the order.
+#[test]
+fn boxes_that_never_meet_are_told_apart() {
+    let mut rng = Rng::new(22);
+    let (mut apart, mut swept) = (0, 0);
+    for _ in 0..100_000 {
+        let size = [1e-20, 1.0, 1e12][(rng.bits() % 3) as usize];
+        let mut triangle = || {
+            let (at, to) = (rng.point(2.0), rng.point(2.0));
+            [at, to].map(|c| {
+                [(); 3].map(|()| {
+                    let d = rng.point(0.5);
+                    Vec3([0, 1, 2].map(|k| ((c[k] + d[k]) * size) as f32))
+                })
+            })
+        };
+        let [[a0, a1], [b0, b1]] = [triangle(), triangle()];
+        let (a, b) = (Linear::moving(a0, a1), Linear::moving(b0, b1));
+        let (meets, depth) = (a.overlaps(&b), depth(&a, &b) / size);
+        assert!(if depth.abs() < 1e-5 { true } else { meets == (depth > 0.0) }, "{depth} {a:?} {b:?}");
+        assert_eq!(meets, b.overlaps(&a));
+        apart += usize::from(!meets);
+        use nearmiss_kernels::bv::Aabb;
+        swept += usize::from(!Volume::overlaps(&<Aabb as Volume>::moving(a0, a1), &Volume::moving(b0, b1)));
+    }
+    // What swept boxes tell apart, and what moving ones do.
+    assert!(apart > 60_000 && swept < apart - 20_000, "{apart} {swept}");
+}
+
+/// A triangle that stands still is in one box at all times.
+#[test]
+fn what_stands_still_does_not_move() {
+    let corners = [[0.1, 0.2, 0.3], [1.0, 0.0, 2.0], [-1.0, 5.0, 3.0]].map(Vec3);
+    let (still, moving) = (Linear::still::<f64>(corners), Linear::moving(corners, corners));
+    assert_eq!((still, still.lo0, still.hi0), (moving, still.lo1, still.hi1));
+}

@@ -1,0 +1,7 @@
+//! Bounding volumes: they hold what they were made of, and never part what touches.
+
+mod aabb;
+mod build;
+mod holds;
+mod linear;
+mod obb;
