@@ -5,6 +5,7 @@ mod queues;
 pub use queues::{Balance, FrontShape, QueueShape, StealShape};
 
 use crate::error::Error;
+use nearmiss_kernels::prim::inclusion::Params;
 
 /// What is asked of two triangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
@@ -117,6 +118,12 @@ pub enum Solver {
     Exact,
     /// Discrete: the seed's float test. Can miss, can err.
     Moller,
+    /// Continuous: boxes of time and place, in f32 and, where that is not enough, in f64. Never misses, is never late.
+    Certified,
+    /// The same in f32 alone: leaves more unresolved.
+    CertifiedF32,
+    /// The same in f64 alone: costs more.
+    CertifiedF64,
     /// Continuous: the seed's cubic in f32. Can miss, can be late.
     CubicF32,
     /// Continuous: the seed's cubic in f64. Can miss degenerate motion.
@@ -124,13 +131,32 @@ pub enum Solver {
 }
 
 impl Solver {
+    /// Every solver.
+    pub const ALL: [Solver; 7] = [
+        Solver::Exact,
+        Solver::Moller,
+        Solver::Certified,
+        Solver::CertifiedF32,
+        Solver::CertifiedF64,
+        Solver::CubicF64,
+        Solver::CubicF32,
+    ];
+
     /// The solver of a motion when none is named.
     pub fn default_for(motion: Motion) -> Solver {
-        if motion == Motion::Discrete { Solver::Exact } else { Solver::CubicF64 }
+        if motion == Motion::Discrete { Solver::Exact } else { Solver::Certified }
     }
     /// Whether the solver answers that kind of question.
     pub fn answers(self, motion: Motion) -> bool {
         matches!(self, Solver::Exact | Solver::Moller) == (motion == Motion::Discrete)
+    }
+    /// Whether its answers are proven: no contact is missed or late.
+    pub fn is_certain(self) -> bool {
+        self == Solver::Exact || self.is_certified()
+    }
+    /// Whether it is one of those that take a tolerance and a budget.
+    pub fn is_certified(self) -> bool {
+        matches!(self, Solver::Certified | Solver::CertifiedF32 | Solver::CertifiedF64)
     }
     /// The promise, in a sentence for the user.
     pub fn promise(self) -> &'static str {
@@ -139,6 +165,13 @@ impl Solver {
             Solver::Moller => {
                 "moller: a float test that can miss contacts and invent some; use exact for certainty"
             }
+            Solver::Certified => {
+                "certified: no contact is missed, none is late; what is nearer than the tolerance may be listed as unresolved"
+            }
+            Solver::CertifiedF32 => {
+                "certified-f32: no contact is missed, none is late; what f32 cannot tell is listed as unresolved"
+            }
+            Solver::CertifiedF64 => "certified-f64: as certified, in f64 throughout",
             Solver::CubicF32 => {
                 "cubic-f32: a float solver that can miss contacts and report them late; docs/accuracy.md has figures"
             }
@@ -151,7 +184,7 @@ impl Solver {
 }
 
 /// Everything that trades speed for accuracy, or one machine for another.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Query {
     /// What is asked.
     pub motion: Motion,
@@ -165,20 +198,28 @@ pub struct Query {
     pub traversal: Option<Traversal>,
     /// Discrete: also triangles that share a vertex, where they meet beyond it.
     pub adjacent: bool,
+    /// Certified: how near to contact may count as one, a length; every time is early by what it takes to move that far,
+    /// or less. 0 asks for all that the precision gives. `None` for [`Query::TOLERANCE`] of the bodies' mean edge.
+    pub tolerance: Option<f64>,
+    /// Certified: the most boxes that are looked at for a pair before it is left unresolved; `None` for
+    /// [`Query::BOXES`].
+    pub boxes: Option<u32>,
 }
 
 impl Query {
+    /// The tolerance when none is named, in mean edges; rounded down to a power of two, so that it does not hang on the
+    /// order in which edges are summed. Smaller costs more; larger takes more near misses for contacts.
+    pub const TOLERANCE: f64 = 1e-4;
+    /// The budget when none is named: ten times what the hardest pairs of public scenes take.
+    pub const BOXES: u32 = Params::BUDGET;
+
     /// Every question with every solver that answers it, all other choices at their defaults: what tests and `selftest`
     /// run over.
     pub fn every() -> impl Iterator<Item = Query> {
-        let of = |motion: Motion, solvers: [Solver; 2]| {
-            solvers.map(|solver| Query { solver: Some(solver), ..Query::of(motion) })
-        };
-        let cubics = [Solver::CubicF64, Solver::CubicF32];
-        of(Motion::Discrete, [Solver::Exact, Solver::Moller])
-            .into_iter()
-            .chain(of(Motion::Continuous, cubics))
-            .chain(of(Motion::Earliest, cubics))
+        [Motion::Discrete, Motion::Continuous, Motion::Earliest].into_iter().flat_map(|motion| {
+            let solvers = Solver::ALL.into_iter().filter(move |solver| solver.answers(motion));
+            solvers.map(move |solver| Query { solver: Some(solver), ..Query::of(motion) })
+        })
     }
 
     /// The query that asks this, with every other choice at its default.
@@ -213,13 +254,16 @@ impl Query {
     pub fn check(&self) -> Result<(), Error> {
         let solver = self.solver();
         if !solver.answers(self.motion) {
-            let known =
-                if self.motion == Motion::Discrete { "exact, moller" } else { "cubic-f64, cubic-f32" };
+            let known = match self.motion {
+                Motion::Discrete => "exact, moller",
+                _ => "certified, certified-f32, certified-f64, cubic-f64, cubic-f32",
+            };
             return Err(Error::Choice {
                 what: format!("the solver {solver:?} does not answer a {:?} query", self.motion),
                 advice: format!("choose one of: {known}"),
             });
         }
+        self.check_limits()?;
         match self.traversal {
             Some(Traversal::Queue(shape)) => shape.check()?,
             Some(Traversal::Steal(shape)) => shape.check()?,
@@ -233,5 +277,28 @@ impl Query {
             });
         }
         Ok(())
+    }
+
+    /// Whether tolerance and budget mean something.
+    fn check_limits(&self) -> Result<(), Error> {
+        if (self.tolerance.is_some() || self.boxes.is_some()) && !self.solver().is_certified() {
+            return Err(Error::Choice {
+                what: format!("the solver {:?} takes no tolerance and no budget", self.solver()),
+                advice: "give --tolerance and --boxes to a certified solver".into(),
+            });
+        }
+        if self.tolerance.is_some_and(|t| !(0.0..f64::INFINITY).contains(&t)) || self.boxes == Some(0) {
+            return Err(Error::Choice {
+                what: "a tolerance that is no length, or a budget of no boxes".into(),
+                advice: "give --tolerance a length from 0, and --boxes at least 1".into(),
+            });
+        }
+        Ok(())
+    }
+
+    /// What a certified test is asked; `tolerance` must have been chosen.
+    pub(crate) fn params(&self) -> Params {
+        let budget = self.boxes.unwrap_or(Query::BOXES);
+        Params { budget, ..Params::new(self.tolerance.unwrap_or(0.0)) }
     }
 }

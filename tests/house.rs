@@ -198,7 +198,7 @@ fn another_entry_or_size_is_noticed() {
 fn records_have_the_sizes_that_the_cards_count_with() {
     let nodes = [size_of::<abi::Link>(), size_of::<abi::Node<bv::Aabb>>()];
     assert_eq!(nodes, [8, 32]);
-    assert_eq!([size_of::<abi::Pair>(), size_of::<abi::Unit>(), size_of::<abi::Hit>()], [8, 8, 16]);
+    assert_eq!([size_of::<abi::Pair>(), size_of::<abi::Unit>(), size_of::<abi::Hit>()], [8, 8, 32]);
     assert_eq!((size_of::<abi::Inner>(), size_of::<abi::Span<u8>>()), (12, 16));
     assert_eq!((align_of::<abi::Node<bv::Aabb>>(), align_of::<abi::Pair>()), (16, 8));
 }

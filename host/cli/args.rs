@@ -115,9 +115,16 @@ pub struct DetectArgs {
     /// Units that a work queue holds on chip [default: 1024, or the paper's 600].
     #[arg(long, value_name = "N", requires = "traversal", value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub queue: Option<u32>,
-    /// The test of a pair [default: exact for discrete, cubic-f64 for continuous].
+    /// The test of a pair [default: exact for discrete, certified for continuous].
     #[arg(long, value_enum)]
     pub solver: Option<Solver>,
+    /// Certified: how near to contact may count as one, a length; 0 for all that the precision gives [default: 1e-4 of the
+    /// mean edge, rounded down to a power of two].
+    #[arg(long, value_name = "LENGTH")]
+    pub tolerance: Option<f64>,
+    /// Certified: boxes that are looked at for a pair before it is left unresolved [default: 4096].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub boxes: Option<u32>,
     /// Which machine.
     #[arg(long, value_enum, default_value_t)]
     pub backend: Backend,
@@ -158,6 +165,8 @@ impl DetectArgs {
             refit: self.refit,
             traversal: self.traversal.map(|walk| walk.choice(self)),
             adjacent: self.adjacent,
+            tolerance: self.tolerance,
+            boxes: self.boxes,
         }
     }
 }

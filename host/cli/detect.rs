@@ -7,7 +7,7 @@ use crate::device::Device;
 use crate::error::Error;
 use crate::mesh::{Body, Mesh};
 use crate::pipeline::{Session, Stages};
-use crate::query::{Bv, Motion, Query, Solver, Traversal};
+use crate::query::{Bv, Motion, Query, Traversal};
 use crate::report;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -47,7 +47,7 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
     }
     let (bodies, query) = question(args)?;
     let device = Device::open(args.backend, args.threads.map(usize::from))?;
-    if query.solver() != Solver::Exact {
+    if !query.solver().is_certain() {
         eprintln!("nearmiss: the solver is {}", query.solver().promise());
     }
     let mut session = during("building", || Session::new(device, bodies, query))?;
@@ -119,6 +119,14 @@ fn human(summary: &Summary, contacts: &Contacts) -> String {
         summary.contacts,
         summary.earliest_toi.map_or(String::new(), |toi| format!(", the first at t = {toi}"))
     );
+    if let Some(tolerance) = summary.tolerance {
+        let escalated: u64 = contacts.escalated_vf_ee.iter().sum();
+        let _ = writeln!(
+            text,
+            "  {} unresolved, {escalated} asked again in f64; tolerance {tolerance:e}",
+            summary.unresolved
+        );
+    }
     let _ = writeln!(
         text,
         "  ms: construct {:.3}, fit {:.3}, refit {:.3}, traverse {:.3}{}, narrow {:.3}; a frame {:.3}",
@@ -208,6 +216,11 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
         }
     );
     let _ = writeln!(text, "solver     {}", query.solver().promise());
+    if let Some(tolerance) = session.tolerance() {
+        let why = if query.tolerance.is_some() { "as asked" } else { "about 1e-4 of the mean edge" };
+        let boxes = query.boxes.unwrap_or(Query::BOXES);
+        let _ = writeln!(text, "tolerance  {tolerance:e}, {why}; at most {boxes} boxes a pair");
+    }
     let _ = writeln!(
         text,
         "tree       {} levels, built with {} launches",

@@ -9,6 +9,7 @@ use crate::mesh::Body;
 use crate::pipeline::{Found, Layout, Stages};
 use crate::query::{Motion, Query, Refit, Solver, Traversal};
 use nearmiss_kernels::abi::{ROUNDS, counter};
+use nearmiss_kernels::prim::inclusion::Verdict;
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -30,6 +31,10 @@ pub enum Kind {
 pub enum Status {
     /// A solver that can be wrong says so.
     Contact,
+    /// They meet, proven, first in `[toi, toi_hi]`.
+    Certified,
+    /// They come nearer than the tolerance, or the budget ended; if they meet, not before `toi`. Proven as well.
+    Unresolved,
 }
 
 /// Two features that meet within the step.
@@ -41,9 +46,9 @@ pub struct Contact {
     pub a: u32,
     /// The second feature's index in its body.
     pub b: u32,
-    /// First time of contact, in [0, 1].
+    /// First time of contact, in [0, 1]; by a certified solver not after it.
     pub toi: f64,
-    /// The time by which they have met, in [toi, 1].
+    /// The time by which they have met, in [toi, 1]; of an unresolved pair the end of the step.
     pub toi_hi: f64,
     /// How sure that is.
     pub status: Status,
@@ -76,6 +81,10 @@ pub struct Contacts {
     pub candidates_vf_ee: [u64; 2],
     /// Candidates that signs alone could not reject, and the solver was asked: vertex/face, edge/edge.
     pub survivors_vf_ee: [u64; 2],
+    /// Candidates that f32 left to f64: vertex/face, edge/edge.
+    pub escalated_vf_ee: [u64; 2],
+    /// How many contacts are [`Status::Unresolved`]; of an earliest query, how many pairs.
+    pub unresolved: u64,
     /// Pairs that the float filter left to exact signs.
     pub undecided: u64,
     /// Pairs of sibling nodes that the traversal tested.
@@ -153,6 +162,8 @@ impl Contacts {
             candidates: 0,
             candidates_vf_ee: [0; 2],
             survivors_vf_ee: [0; 2],
+            escalated_vf_ee: [0; 2],
+            unresolved: 0,
             undecided: 0,
             steps: 0,
             spilled: 0,
@@ -173,17 +184,24 @@ impl Contacts {
                 Answer::Pairs(pairs)
             }
             Motion::Continuous => {
-                let contact =
-                    |kind, a, b, toi| Contact { kind, a, b, toi, toi_hi: toi, status: Status::Contact };
+                let certified = query.solver().is_certified();
+                let contact = |kind, a, b, verdict: &Verdict| {
+                    let status = match (certified, verdict.is_contact()) {
+                        (false, _) => Status::Contact,
+                        (true, true) => Status::Certified,
+                        (true, false) => Status::Unresolved,
+                    };
+                    Contact { kind, a, b, toi: verdict.toi, toi_hi: verdict.toi_hi, status }
+                };
                 let vf = found.vf.par_iter().map(|hit| {
                     if layout.bodies() == 2 && hit.a >= second.vertex {
-                        contact(Kind::Fv, hit.b, hit.a - second.vertex, hit.toi)
+                        contact(Kind::Fv, hit.b, hit.a - second.vertex, &hit.verdict)
                     } else {
-                        contact(Kind::Vf, hit.a, hit.b - second.triangle, hit.toi)
+                        contact(Kind::Vf, hit.a, hit.b - second.triangle, &hit.verdict)
                     }
                 });
                 let ee =
-                    found.ee.par_iter().map(|hit| contact(Kind::Ee, hit.a, hit.b - second.edge, hit.toi));
+                    found.ee.par_iter().map(|hit| contact(Kind::Ee, hit.a, hit.b - second.edge, &hit.verdict));
                 let mut contacts: Vec<_> = vf.chain(ee).collect();
                 contacts.par_sort_unstable_by_key(|c| (c.kind, c.a, c.b));
                 Answer::Contacts(contacts)
@@ -199,6 +217,8 @@ impl Contacts {
             candidates: if discrete { count(counter::PAIRS) } else { vf_ee[0] + vf_ee[1] },
             candidates_vf_ee: vf_ee,
             survivors_vf_ee: [count(counter::VF_SURVIVORS), count(counter::EE_SURVIVORS)],
+            escalated_vf_ee: [count(counter::VF_ESCALATED), count(counter::EE_ESCALATED)],
+            unresolved: count(counter::UNRESOLVED),
             undecided: count(counter::UNDECIDED),
             steps: count(counter::STEPS),
             spilled: found.counters[counter::SPILLED as usize..][..ROUNDS as usize].iter().sum(),
@@ -293,8 +313,10 @@ pub struct Summary {
     pub candidates: u64,
     /// Contacts found.
     pub contacts: usize,
-    /// Contacts that no solver could confirm or refute: none of the present ones says so.
-    pub unresolved: usize,
+    /// How many of the contacts are neither confirmed nor refuted; of an earliest query, how many pairs.
+    pub unresolved: u64,
+    /// The tolerance of a certified solver, a length.
+    pub tolerance: Option<f64>,
     /// The smallest time of contact.
     pub earliest_toi: Option<f64>,
     /// Hash of the canonical answer, sixteen hexadecimal digits.
@@ -325,7 +347,8 @@ impl Summary {
             triangle_pairs: contacts.triangle_pairs,
             candidates: contacts.candidates,
             contacts: contacts.len(),
-            unresolved: 0,
+            unresolved: contacts.unresolved,
+            tolerance: None,
             earliest_toi: contacts.earliest_toi(),
             hash: format!("{:016x}", contacts.hash()),
             queues: contacts.queues,

@@ -6,6 +6,7 @@ mod narrow;
 mod precision;
 mod room;
 mod timing;
+mod tolerance;
 mod tree;
 mod treelets;
 mod volumes;
@@ -43,6 +44,8 @@ pub struct Session {
     bodies: Vec<Body>,
     layout: Layout,
     query: Query,
+    /// The tolerance of a certified solver.
+    tolerance: Option<f64>,
     construct_ms: f64,
     /// Whether the device holds the answer for where the bodies are now.
     answered: bool,
@@ -95,10 +98,23 @@ impl Session {
         }
         fits(bodies.iter().map(Body::face_count).sum(), bodies.iter().map(Body::vertex_count).sum())?;
         let layout = Layout::new(&bodies, query.motion != crate::query::Motion::Discrete);
-        let mut session =
-            Session { device, bodies, layout, query, construct_ms: 0.0, answered: false, corridor: None };
+        let tolerance = query
+            .solver()
+            .is_certified()
+            .then(|| query.tolerance.unwrap_or_else(|| tolerance::of_edges(&bodies)));
+        let mut session = Session {
+            device,
+            bodies,
+            layout,
+            query,
+            tolerance,
+            construct_ms: 0.0,
+            answered: false,
+            corridor: None,
+        };
         // A body without triangles meets nothing: no memory, no launch.
         if session.bodies.iter().all(|body| body.face_count() > 0) {
+            let query = Query { tolerance, ..query };
             let mut corridor = corridor(session.device.clone(), &session.bodies, &session.layout, query)?;
             session.construct_ms = corridor.construct()?;
             session.corridor = Some(corridor);
@@ -185,9 +201,15 @@ impl Session {
         &self.query
     }
 
+    /// The tolerance of a certified solver, a length: as asked, or by default [`Query::TOLERANCE`] of the mean edge of the
+    /// bodies at the session's start, rounded down to a power of two. It stays when bodies move.
+    pub fn tolerance(&self) -> Option<f64> {
+        self.tolerance
+    }
+
     /// What the command line prints of a result.
     pub fn summary(&self, contacts: &Contacts) -> Summary {
-        Summary::new(&self.bodies, self.query, &self.device, contacts)
+        Summary { tolerance: self.tolerance, ..Summary::new(&self.bodies, self.query, &self.device, contacts) }
     }
 
     /// How many levels each body's tree has.

@@ -2,12 +2,13 @@
 
 use super::layout::Layout;
 use super::precision::Precision;
-use super::room::{Growing, List};
+use super::room::{Growing, List, Tally};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::query::{Motion, Query, Solver};
 use nearmiss_kernels::abi::{
-    DiscreteArgs, Frames, Hit, KEEP_ADJACENT, Pair, RejectArgs, SiftArgs, SolveArgs, Span, counter,
+    CertifyArgs, DiscreteArgs, ESCALATE, Frames, Hit, KEEP_ADJACENT, Pair, RejectArgs, SiftArgs, SolveArgs, Span,
+    counter,
 };
 use nearmiss_kernels::entry::Entry;
 
@@ -68,6 +69,10 @@ pub struct Continuous {
     pub vf_hits: List<Hit>,
     /// Edge/edge contacts.
     pub ee_hits: List<Hit>,
+    /// Pairs that f32 leaves to f64, vertex/face and edge/edge; where both are used.
+    escalated: Option<[List<Pair>; 2]>,
+    /// Hits that are not certain.
+    unresolved: Tally,
     /// The smallest toi, where only that is asked for.
     pub earliest: Option<Buffer<u64>>,
 }
@@ -93,6 +98,12 @@ impl Narrow {
         }
         let earliest = query.motion == Motion::Earliest;
         let hits = if earliest { 0 } else { few };
+        let escalated = || -> Result<_, Error> {
+            Ok([
+                List::new(device, "escalated vertex/face pairs", counter::VF_ESCALATED, few / 4)?,
+                List::new(device, "escalated edge/edge pairs", counter::EE_ESCALATED, few / 4)?,
+            ])
+        };
         Ok(Narrow::Continuous(Box::new(Continuous {
             edges: device.upload(&layout.edges)?,
             face_edges: device.upload(&layout.face_edges)?,
@@ -103,6 +114,8 @@ impl Narrow {
             ee_survivors: List::new(device, "edge/edge survivors", counter::EE_SURVIVORS, 2 * few)?,
             vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, hits)?,
             ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, hits)?,
+            escalated: (query.solver() == Solver::Certified).then(escalated).transpose()?,
+            unresolved: Tally(counter::UNRESOLVED),
             earliest: earliest.then(|| device.buffer(1)).transpose()?,
         })))
     }
@@ -124,7 +137,11 @@ impl Narrow {
             }
             (Narrow::Continuous(c), Step::Sift) => vec![&mut c.vf, &mut c.ee],
             (Narrow::Continuous(c), Step::Reject) => vec![&mut c.vf_survivors, &mut c.ee_survivors],
-            (Narrow::Continuous(c), Step::Solve) => vec![&mut c.vf_hits, &mut c.ee_hits],
+            (Narrow::Continuous(c), Step::Solve) => {
+                let mut lists: Vec<&mut dyn Growing> = vec![&mut c.vf_hits, &mut c.ee_hits, &mut c.unresolved];
+                lists.extend(c.escalated.iter_mut().flatten().map(|list| list as &mut dyn Growing));
+                lists
+            }
             _ => Vec::new(),
         }
     }
@@ -135,12 +152,18 @@ impl Narrow {
             Narrow::Discrete { undecided, .. } => {
                 undecided.iter().map(|list| ("narrow: undecided", list)).collect()
             }
-            Narrow::Continuous(c) => vec![
-                ("narrow: vf", &c.vf),
-                ("narrow: ee", &c.ee),
-                ("narrow: vf that may meet", &c.vf_survivors),
-                ("narrow: ee that may meet", &c.ee_survivors),
-            ],
+            Narrow::Continuous(c) => {
+                let mut lists = vec![
+                    ("narrow: vf", &c.vf),
+                    ("narrow: ee", &c.ee),
+                    ("narrow: vf that may meet", &c.vf_survivors),
+                    ("narrow: ee that may meet", &c.ee_survivors),
+                ];
+                if let Some([vf, ee]) = &c.escalated {
+                    lists.extend([("narrow: vf for f64", vf), ("narrow: ee for f64", ee)]);
+                }
+                lists
+            }
         }
     }
 
@@ -220,6 +243,9 @@ impl Continuous {
         if let Some(earliest) = &mut self.earliest {
             earliest.write(&[u64::MAX])?;
         }
+        if given.query.solver().is_certified() {
+            return self.certify(given);
+        }
         let args = |survivors: &List<Pair>, hits: &List<Hit>| SolveArgs {
             frames: given.frames,
             faces: given.faces,
@@ -237,6 +263,45 @@ impl Continuous {
         } else {
             launch_striding::<R::Vf64>(given.device, of_vf, &vf)?;
             launch_striding::<R::Ee64>(given.device, of_ee, &ee)
+        }
+    }
+
+    /// In f32 over the survivors, then in f64 over what that escalated; or in one of them over all.
+    fn certify<R: Precision>(&self, given: &Given<R>) -> Result<(), Error> {
+        let args = |pairs: &List<Pair>, hits: &List<Hit>, escalated: Option<&List<Pair>>| CertifyArgs {
+            frames: given.frames,
+            faces: given.faces,
+            edges: self.edges.span(),
+            pairs: pairs.span(),
+            hits: hits.span(),
+            escalated: escalated.map_or(Span::EMPTY, List::span),
+            earliest: self.earliest.as_ref().map_or(Span::EMPTY, Buffer::span),
+            counters: given.counters,
+            params: given.query.params(),
+            pairs_at: pairs.counter(),
+            hits_at: hits.counter(),
+            escalated_at: escalated.map_or(0, List::counter),
+            flags: if escalated.is_some() { ESCALATE } else { 0 },
+        };
+        let (of_vf, of_ee) = (&self.vf_survivors, &self.ee_survivors);
+        let (vf, ee) = (args(of_vf, &self.vf_hits, None), args(of_ee, &self.ee_hits, None));
+        let device = given.device;
+        match &self.escalated {
+            Some([vf, ee]) => {
+                let first = (args(of_vf, &self.vf_hits, Some(vf)), args(of_ee, &self.ee_hits, Some(ee)));
+                launch_striding::<R::CertifyVf32>(device, of_vf.room(), &first.0)?;
+                launch_striding::<R::CertifyEe32>(device, of_ee.room(), &first.1)?;
+                launch_striding::<R::CertifyVf64>(device, vf.room(), &args(vf, &self.vf_hits, None))?;
+                launch_striding::<R::CertifyEe64>(device, ee.room(), &args(ee, &self.ee_hits, None))
+            }
+            None if given.query.solver() == Solver::CertifiedF32 => {
+                launch_striding::<R::CertifyVf32>(device, of_vf.room(), &vf)?;
+                launch_striding::<R::CertifyEe32>(device, of_ee.room(), &ee)
+            }
+            None => {
+                launch_striding::<R::CertifyVf64>(device, of_vf.room(), &vf)?;
+                launch_striding::<R::CertifyEe64>(device, of_ee.room(), &ee)
+            }
         }
     }
 }

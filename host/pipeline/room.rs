@@ -48,7 +48,7 @@ impl<T: Pod> List<T> {
     }
 }
 
-/// A list whose entries do not matter, only their number.
+/// A list whose entries do not matter, only their number. Counted anew when the step that fills it runs again.
 pub trait Growing {
     /// Which counter counts the entries.
     fn counter(&self) -> u32;
@@ -59,6 +59,21 @@ pub trait Growing {
     /// # Errors
     /// [`Error::Room`] when there is no memory, or the list would be longer than an index reaches.
     fn grow(&mut self, device: &Device, counters: &[u64]) -> Result<bool, Error>;
+}
+
+/// A number that the kernels count and that has no list.
+pub struct Tally(pub u32);
+
+impl Growing for Tally {
+    fn counter(&self) -> u32 {
+        self.0
+    }
+    fn is_short(&self, _: &[u64]) -> bool {
+        false
+    }
+    fn grow(&mut self, _: &Device, _: &[u64]) -> Result<bool, Error> {
+        Ok(false)
+    }
 }
 
 impl<T: Pod> Growing for List<T> {

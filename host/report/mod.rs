@@ -76,6 +76,8 @@ fn row(c: &crate::contacts::Contact) -> [String; 6] {
     };
     let status = match c.status {
         Status::Contact => "contact",
+        Status::Certified => "certified",
+        Status::Unresolved => "unresolved",
     };
     let [a, b] = [c.a, c.b].map(|i| i.to_string());
     [kind.into(), a, b, c.toi.to_string(), c.toi_hi.to_string(), status.into()]

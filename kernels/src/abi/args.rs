@@ -3,6 +3,7 @@
 use super::{Hit, Inner, Link, Merge, Motion, Node, Pair, Point, Seat, Span, Treelet, Unit};
 use crate::bv::Axes;
 use crate::math::Real;
+use crate::prim::inclusion::Params;
 use bytemuck::{Pod, Zeroable};
 
 /// Declares argument blocks: `repr(C)`, plain old data, and an assertion that the fields leave no padding.
@@ -341,12 +342,44 @@ arguments! {
         /// Counters, see [`counter`].
         counters: Span<u64>,
     }
+    /// `narrow_certify_vf`, `narrow_certify_ee`: what meets, and bounds of the first time, with proof.
+    CertifyArgs<R: Real> {
+        /// Positions.
+        frames: Frames<R>,
+        /// Vertex indices of every triangle (`narrow_certify_vf`).
+        faces: Span<[u32; 3]>,
+        /// End points of every edge (`narrow_certify_ee`).
+        edges: Span<[u32; 2]>,
+        /// Candidates.
+        pairs: Span<Pair>,
+        /// Out: contacts and unresolved pairs; empty when only the earliest is asked for.
+        hits: Span<Hit>,
+        /// Out: pairs that need more precision; empty without [`ESCALATE`].
+        escalated: Span<Pair>,
+        /// Out: the smallest toi so far, as bits; or empty.
+        earliest: Span<u64>,
+        /// Counters, see [`counter`].
+        counters: Span<u64>,
+        /// What is asked.
+        params: Params,
+        /// Which counter tells how many pairs there are.
+        pairs_at: u32,
+        /// Which counter the hits add to.
+        hits_at: u32,
+        /// Which counter the escalated pairs add to.
+        escalated_at: u32,
+        /// Bits: [`ESCALATE`].
+        flags: u32,
+    }
 }
 
 /// [`TraverseArgs::flags`]: one mesh against itself; each pair is found once, by its earlier leaf.
 pub const SELF: u32 = 1;
 /// [`TraverseArgs::flags`]: pairs that share a vertex are emitted too.
 pub const KEEP_ADJACENT: u32 = 2;
+
+/// [`CertifyArgs::flags`]: pairs of which more precision may tell more go to their own list.
+pub const ESCALATE: u32 = 1;
 
 /// The counters of a frame. Each is the exact demand for its list, also where the list was too short.
 pub mod counter {
@@ -392,8 +425,14 @@ pub mod counter {
     pub const FRONT_TESTS: u32 = ENDS + 8;
     /// Pairs of the front that gave way to an ancestor.
     pub const PRUNED: u32 = ENDS + 9;
+    /// Vertex/face pairs that f32 leaves to f64.
+    pub const VF_ESCALATED: u32 = ENDS + 10;
+    /// Edge/edge pairs that f32 leaves to f64.
+    pub const EE_ESCALATED: u32 = ENDS + 11;
+    /// Hits that are neither certain contacts nor certainly none.
+    pub const UNRESOLVED: u32 = ENDS + 12;
     /// How many counters there are.
-    pub const COUNT: u32 = ENDS + 10;
+    pub const COUNT: u32 = ENDS + 13;
 }
 /// Rounds of the traversal that may spill; one more, without a budget, ends it.
 pub const ROUNDS: u32 = 4;

@@ -1,6 +1,7 @@
 //! The records that stages hand on in memory.
 
 use crate::math::{Real, Vec3};
+use crate::prim::inclusion::Verdict;
 use bytemuck::{Pod, Zeroable};
 
 /// A node's place in the level-ordered tree. Two siblings are neighbours and start at an even index, so a parent finds
@@ -101,10 +102,10 @@ pub struct Hit {
     pub a: u32,
     /// The face, or the second edge.
     pub b: u32,
-    /// First time of contact, in [0, 1].
-    pub toi: f64,
+    /// What is known of it: bounds of the first time of contact, and whether it is certain.
+    pub verdict: Verdict,
 }
-const _: () = assert!(size_of::<Hit>() == 16);
+const _: () = assert!(size_of::<Hit>() == 32);
 
 /// An inner node of the radix tree, before it has a place in the level order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]

@@ -73,16 +73,33 @@ fn certified<S: Grid, const N: usize>(m: &Local<S, N>, p: &Params) -> Verdict {
     solve(m, p, &mut [const { MaybeUninit::uninit() }; STACK])
 }
 
+/// [`vf_certified`], and whether more precision would tell nothing that was asked: separated, or a contact whose time is
+/// known as well as the tolerance demands.
+#[inline]
+pub fn vf_settled<R: Real, S: Grid>(v: Moving<R>, f: [Moving<R>; 3], p: &Params) -> (Verdict, bool) {
+    let m = Face::<S>::new(v, f, p);
+    let verdict = certified(&m, p);
+    (verdict, verdict.is_settled(m.pause.wide()))
+}
+
+/// [`ee_certified`], and whether more precision would tell nothing that was asked.
+#[inline]
+pub fn ee_settled<R: Real, S: Grid>(ea: [Moving<R>; 2], eb: [Moving<R>; 2], p: &Params) -> (Verdict, bool) {
+    let m = Edges::<S>::new(ea, eb, p);
+    let verdict = certified(&m, p);
+    (verdict, verdict.is_settled(m.pause.wide()))
+}
+
 /// The first of two passes over vertex and face, in f32: what it is sure of, or `None`: ask [`vf_certified`] in f64.
 #[inline]
 pub fn vf_first<R: Real>(v: Moving<R>, f: [Moving<R>; 3], p: &Params) -> Option<Verdict> {
-    let m = Face::<f32>::new(v, f, p);
-    certified(&m, p).settled(m.pause)
+    let (verdict, settled) = vf_settled::<R, f32>(v, f, p);
+    settled.then_some(verdict)
 }
 
 /// The first of two passes over two edges, in f32; as [`vf_first`].
 #[inline]
 pub fn ee_first<R: Real>(ea: [Moving<R>; 2], eb: [Moving<R>; 2], p: &Params) -> Option<Verdict> {
-    let m = Edges::<f32>::new(ea, eb, p);
-    certified(&m, p).settled(m.pause)
+    let (verdict, settled) = ee_settled::<R, f32>(ea, eb, p);
+    settled.then_some(verdict)
 }

@@ -31,7 +31,7 @@ impl Params {
 }
 
 /// An answer in words of fixed size, as kernels write it.
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Verdict {
     /// No contact before; in [0, 1], never -0.0 or NaN.
@@ -118,11 +118,11 @@ impl Verdict {
         self.state & EXHAUSTED != 0
     }
 
-    /// This, if more precision would tell nothing that was asked: separated, or a contact whose time is known as well as
+    /// Whether more precision would tell nothing that was asked: separated, or a contact whose time is known as well as
     /// the tolerance demands (`pause` is the time that it takes).
     #[inline]
-    pub(super) fn settled(self, pause: f32) -> Option<Self> {
-        let known = self.is_contact() && !self.exhausted() && self.toi_hi - self.toi <= 2.0 * pause as f64;
-        (self.is_separated() || known).then_some(self)
+    pub(super) fn is_settled(&self, pause: f64) -> bool {
+        let known = self.is_contact() && !self.exhausted() && self.toi_hi - self.toi <= 2.0 * pause;
+        self.is_separated() || known
     }
 }

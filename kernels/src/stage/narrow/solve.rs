@@ -2,7 +2,7 @@
 //! Paper    section 6.2.5, "we solve the cubic equation for each of the 15 elementary tests".
 //! Launch   `vf` and `ee`, a lane a candidate; a grid of any size strides.
 //! Reads    candidates that may meet, faces or edges, positions of both frames (four vertices).
-//! Writes   contacts with toi; or, when only the earliest is asked for, one number.
+//! Writes   contacts with toi, as if proven, which they are not; or, when only the earliest is asked for, one number.
 //! Before   candidates are complete.
 //! After    the contacts that the solver finds. The cubic, the seed's, can miss and be late: see [`crate::prim::cubic`].
 //! Room     hits: counted past the end, grown, run again.
@@ -13,6 +13,7 @@ use crate::abi::{Hit, Pair, SolveArgs, counter};
 use crate::exec::{Block, Lane};
 use crate::math::Real;
 use crate::prim::cubic::{ee_toi, vf_toi};
+use crate::prim::inclusion::Verdict;
 
 /// Vertex/face, positions in R, the cubic in S.
 pub fn vf<R: Real, S: Real, B: Block>(b: &mut B, a: &SolveArgs<R>) {
@@ -43,7 +44,7 @@ fn solve<R: Real, B: Block>(
         let pair = l.read(a.survivors, i);
         let toi = toi(l, pair)?;
         if a.earliest.is_empty() {
-            return Some(Hit { a: pair.a, b: pair.b, toi });
+            return Some(Hit { a: pair.a, b: pair.b, verdict: Verdict::contact(toi, toi, 0, false) });
         }
         // Times are in [0, 1]: their bits are ordered as they are.
         l.fetch_min(a.earliest, 0, toi.to_bits());
