@@ -127,7 +127,7 @@ fn choices_change_no_hash() {
         &["--traversal", "queue", "--repeat", "2"],
         &["--traversal", "queue-gtx285", "--cores", "128"],
         &["--traversal", "steal", "--cores", "3", "--queue", "5"],
-        &["--solver", "cubic-f64", "--bv", "aabb", "--continuous"],
+        &["--solver", "certified", "--bv", "aabb", "--continuous", "--boxes", "4096"],
         &["--repeat", "3"],
         &["--refit", "levels"],
         &["--refit", "treelets", "--repeat", "2"],
@@ -138,13 +138,14 @@ fn choices_change_no_hash() {
     }
     assert_ne!(hash(&["--seed", "2"]), truth);
     assert_ne!(hash(&["--discrete"]), truth);
+    assert_ne!(hash(&["--tolerance", "1e-3"]), truth, "times are charged what is tolerated");
 }
 
 #[test]
 fn the_summary_for_people_says_the_same() {
     let people = ok(&SCENE);
     let json = summary(&[&SCENE[..], &["--json"]].concat());
-    for part in ["300 triangles, 900 vertices", "by CubicF64"] {
+    for part in ["300 triangles, 900 vertices", "by Certified on", "0 unresolved", "tolerance 7.6"] {
         assert!(people.contains(part), "{people}");
     }
     assert!(people.contains(&format!("{} contacts", json["contacts"])), "{people}");
@@ -156,7 +157,9 @@ fn a_promise_is_made_where_one_is_needed() {
     for (more, promised) in [
         (&["--discrete"][..], None),
         (&["--discrete", "--solver", "moller"], Some("moller: a float test that can miss")),
-        (&["--continuous"], Some("cubic-f64: can miss")),
+        (&["--continuous"], None),
+        (&["--earliest", "--solver", "certified-f32"], None),
+        (&["--continuous", "--solver", "cubic-f64"], Some("cubic-f64: can miss")),
         (&["--earliest", "--solver", "cubic-f32"], Some("cubic-f32: a float solver that can miss")),
     ] {
         let output = run(&[&SCENE[..], more].concat());
@@ -255,7 +258,10 @@ fn two_meshes_are_asked_against_each_other() {
 #[test]
 fn bad_arguments_are_refused_with_what_is_known() {
     for (args, known) in [
-        (&["detect", "a.ply", "--solver", "magic"][..], &["exact", "moller", "cubic-f32", "cubic-f64"][..]),
+        (
+            &["detect", "a.ply", "--solver", "magic"][..],
+            &["exact", "moller", "certified", "certified-f32", "certified-f64", "cubic-f32", "cubic-f64"][..],
+        ),
         (
             &["detect", "a.ply", "--traversal", "random"],
             &["per-leaf", "per-leaf-spill", "queue", "queue-gtx285", "steal"],
@@ -273,9 +279,15 @@ fn bad_arguments_are_refused_with_what_is_known() {
         (&["detect", "--scene", "grid", "--triangles", "4", "--solver", "cubic-f64"], &["exact, moller"]),
         (
             &["detect", "--scene", "soup-moving", "--triangles", "4", "--solver", "exact"],
-            &["cubic-f64, cubic-f32"],
+            &["certified, certified-f32, certified-f64, cubic-f64, cubic-f32"],
         ),
         (&["detect", "--scene", "soup-moving", "--triangles", "4", "--adjacent"], &["discrete", "exact"]),
+        (
+            &["detect", "--scene", "grid", "--triangles", "4", "--tolerance", "1"],
+            &["takes no tolerance", "certified"],
+        ),
+        (&["detect", "--scene", "soup-moving", "--triangles", "4", "--tolerance=-1"], &["from 0"]),
+        (&["detect", "--scene", "soup-moving", "--triangles", "4", "--tolerance", "NaN"], &["from 0"]),
     ] {
         let text = refused(2, args);
         for name in known {
@@ -354,7 +366,8 @@ fn a_plan_is_what_would_run() {
         "CPU, 2 threads (cpu)",
         "Levels: the fastest on this machine",
         "linear",
-        "cubic-f64: can miss",
+        "certified: no contact is missed",
+        "tolerance  7.62939453125e-6, about 1e-4 of the mean edge; at most 4096 boxes a pair",
         "MB to begin with",
     ] {
         assert!(usual.contains(part), "{part} is not in {usual}");

@@ -105,8 +105,8 @@ fn named(body: &Body, contacts: &[Contact], vertex: impl Fn(u32) -> u32) -> BTre
     all
 }
 
-/// How late two times of one contact may differ where the cubic's rounding does: its own tolerance on these scenes.
-/// Only its set of contacts is promised here, and only on scenes whose contacts are far from its tolerances.
+/// By how much two times of one contact may differ where features are numbered or turned otherwise: then the solver rounds
+/// and splits otherwise. Promised is only that neither is late; measured, they differ by rounding. Step.
 const CLOSE: f64 = 1e-6;
 
 /// Asserts the same contacts, and times that are equal up to rounding.

@@ -121,6 +121,27 @@ fn many_more_elementary_pairs_than_room() {
 }
 
 #[test]
+fn a_short_list_of_escalated_pairs_alone() {
+    // 25 equal triangles that move as one: 1,800 and 2,700 elementary pairs, fewer than the 4,096 that other lists have
+    // room for. None of them is certain in f32, and the lists for f64 begin with 1,024.
+    let body = sliding(25);
+    for motion in [Motion::Continuous, Motion::Earliest] {
+        let query = Query { boxes: Some(8), ..Query::of(motion) };
+        for device in [engine(), microscope(Order::Shuffled(5))] {
+            let (contacts, reruns) = twice(device, vec![body.clone()], query);
+            assert!(contacts.escalated_vf_ee.iter().all(|n| *n > 1_024), "{:?}", contacts.escalated_vf_ee);
+            assert!(reruns[0] > 0);
+            assert_eq!(contacts.earliest_toi(), Some(0.0));
+            if motion == Motion::Continuous {
+                assert_eq!(contacts.len(), 1_800 + 2_700);
+            }
+            // Counted anew when the step runs again.
+            assert!(contacts.unresolved <= 1_800 + 2_700 && contacts.unresolved > 1_024);
+        }
+    }
+}
+
+#[test]
 fn the_microscope_sees_no_fault_in_a_frame_that_runs_again() {
     for order in support::ORDERS {
         // 100 triangles: 4,950 pairs.

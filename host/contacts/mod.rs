@@ -200,8 +200,10 @@ impl Contacts {
                         contact(Kind::Vf, hit.a, hit.b - second.triangle, &hit.verdict)
                     }
                 });
-                let ee =
-                    found.ee.par_iter().map(|hit| contact(Kind::Ee, hit.a, hit.b - second.edge, &hit.verdict));
+                let ee = found
+                    .ee
+                    .par_iter()
+                    .map(|hit| contact(Kind::Ee, hit.a, hit.b - second.edge, &hit.verdict));
                 let mut contacts: Vec<_> = vf.chain(ee).collect();
                 contacts.par_sort_unstable_by_key(|c| (c.kind, c.a, c.b));
                 Answer::Contacts(contacts)

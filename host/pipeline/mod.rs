@@ -209,7 +209,10 @@ impl Session {
 
     /// What the command line prints of a result.
     pub fn summary(&self, contacts: &Contacts) -> Summary {
-        Summary { tolerance: self.tolerance, ..Summary::new(&self.bodies, self.query, &self.device, contacts) }
+        Summary {
+            tolerance: self.tolerance,
+            ..Summary::new(&self.bodies, self.query, &self.device, contacts)
+        }
     }
 
     /// How many levels each body's tree has.

@@ -7,8 +7,8 @@ use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::query::{Motion, Query, Solver};
 use nearmiss_kernels::abi::{
-    CertifyArgs, DiscreteArgs, ESCALATE, Frames, Hit, KEEP_ADJACENT, Pair, RejectArgs, SiftArgs, SolveArgs, Span,
-    counter,
+    CertifyArgs, DiscreteArgs, ESCALATE, Frames, Hit, KEEP_ADJACENT, Pair, RejectArgs, SiftArgs, SolveArgs,
+    Span, counter,
 };
 use nearmiss_kernels::entry::Entry;
 
@@ -138,7 +138,8 @@ impl Narrow {
             (Narrow::Continuous(c), Step::Sift) => vec![&mut c.vf, &mut c.ee],
             (Narrow::Continuous(c), Step::Reject) => vec![&mut c.vf_survivors, &mut c.ee_survivors],
             (Narrow::Continuous(c), Step::Solve) => {
-                let mut lists: Vec<&mut dyn Growing> = vec![&mut c.vf_hits, &mut c.ee_hits, &mut c.unresolved];
+                let mut lists: Vec<&mut dyn Growing> =
+                    vec![&mut c.vf_hits, &mut c.ee_hits, &mut c.unresolved];
                 lists.extend(c.escalated.iter_mut().flatten().map(|list| list as &mut dyn Growing));
                 lists
             }

@@ -45,7 +45,9 @@ mod tests {
         assert_eq!(of_edges(&[triangle(1.0), triangle(3.0)]), 2f64.powi(-11));
         assert_eq!(of_edges(&[triangle(0.0)]), 0.0);
         assert_eq!(of_edges(&[]), 0.0);
-        for (x, below) in [(1.0, 1.0), (1.999, 1.0), (0.49, 0.25), (f64::NAN, 0.0), (f64::INFINITY, 0.0), (-1.0, 0.0)] {
+        for (x, below) in
+            [(1.0, 1.0), (1.999, 1.0), (0.49, 0.25), (f64::NAN, 0.0), (f64::INFINITY, 0.0), (-1.0, 0.0)]
+        {
             assert_eq!(power_below(x), below);
         }
     }

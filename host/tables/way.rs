@@ -1,6 +1,6 @@
 //! A column of figure 6.13: how a frame is asked.
 
-use crate::query::{Bv, FrontShape, Motion, Query, Refit, Traversal};
+use crate::query::{Bv, FrontShape, Motion, Query, Refit, Solver, Traversal};
 
 /// One way of asking a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,12 +28,13 @@ impl Way {
         ways
     }
 
-    /// The query that asks so: by that walk and with a launch a level, as the thesis, or by what is fastest. A front's own
+    /// The query that asks so: of what moves by the thesis's own solver, the cubic; by that walk and with a launch a level, as the thesis, or by what is fastest. A front's own
     /// descents go by native queues.
     pub fn query(self, walk: Option<Traversal>) -> Query {
         let refit = walk.map(|_| Refit::Levels);
         let traversal = if self.front { Some(Traversal::Front(FrontShape::native())) } else { walk };
-        Query { bv: Some(self.bv), traversal, refit, ..Query::of(self.motion) }
+        let solver = (self.motion == Motion::Continuous).then_some(Solver::CubicF64);
+        Query { bv: Some(self.bv), solver, traversal, refit, ..Query::of(self.motion) }
     }
 
     /// `discrete`, `continuous`.

@@ -11,15 +11,15 @@ use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};
 
 /// A body as the brute force sees it. Its vertices are doubles: exact, and what the cubic in f64 works with.
-struct Seen {
-    vertices: Vec<Moving<f64>>,
-    used: Vec<u32>,
-    faces: Vec<[u32; 3]>,
-    edges: Vec<[u32; 2]>,
+pub struct Seen {
+    pub vertices: Vec<Moving<f64>>,
+    pub used: Vec<u32>,
+    pub faces: Vec<[u32; 3]>,
+    pub edges: Vec<[u32; 2]>,
 }
 
 impl Seen {
-    fn of(body: &Body) -> Seen {
+    pub fn of(body: &Body) -> Seen {
         let t0 = body.positions_t0().to_f64();
         let t1 = body.positions_t1().map_or_else(|| t0.clone(), |t1| t1.to_f64());
         let mut used: Vec<u32> = body.faces().iter().flatten().copied().collect();
@@ -32,14 +32,14 @@ impl Seen {
             edges: Topology::new(body.faces(), body.vertex_count()).edges,
         }
     }
-    fn at<const N: usize>(&self, of: [u32; N]) -> [Moving<f64>; N] {
+    pub fn at<const N: usize>(&self, of: [u32; N]) -> [Moving<f64>; N] {
         of.map(|v| self.vertices[v as usize])
     }
 }
 
 /// Whether the closed boxes of two sets of moving vertices overlap: two features whose boxes are apart never meet,
 /// whatever a tolerance of the solver says.
-fn boxes_meet(p: &[Moving<f64>], q: &[Moving<f64>]) -> bool {
+pub fn boxes_meet(p: &[Moving<f64>], q: &[Moving<f64>]) -> bool {
     let reach = |of: &[Moving<f64>], axis: usize| {
         let all = || of.iter().flat_map(|m| [m.t0[axis], m.t1[axis]]);
         (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max))
@@ -128,7 +128,7 @@ fn everywhere(what: &str, bodies: &[Body]) -> Contacts {
 
 /// A sheet of `n` by `n` squares in a plane across axis `up`, whose vertices lie and move about at random: adjacent
 /// triangles fold over each other.
-fn crumpled(n: u32, seed: u64, up: usize, height: f64) -> Body {
+pub fn crumpled(n: u32, seed: u64, up: usize, height: f64) -> Body {
     let mut rng = Rng::new(seed);
     let mut frames = [Vec::new(), Vec::new()];
     for i in 0..=n {
@@ -152,7 +152,7 @@ fn crumpled(n: u32, seed: u64, up: usize, height: f64) -> Body {
 }
 
 /// Moving triangles on small whole coordinates, vertices shared at random, some without area, some that repeat a vertex.
-fn crowded(seed: u64, vertices: u32, count: usize) -> Body {
+pub fn crowded(seed: u64, vertices: u32, count: usize) -> Body {
     let mut rng = Rng::new(seed);
     let mut below = |n: u64| rng.bits() % n;
     let mut frame = || (0..vertices).map(|_| [(); 3].map(|()| below(6) as f32)).collect::<Vec<_>>();
@@ -224,18 +224,19 @@ fn a_body_that_stands_still_is_met() {
     }
 }
 
+/// The body in doubles: the precision of the positions decides how differences are rounded before a solver in floats.
+pub fn promoted(body: Body) -> Body {
+    let frames = body.frames();
+    let f64s = |mesh: &nearmiss::Mesh| {
+        let positions = nearmiss::mesh::Positions::F64(mesh.positions().to_f64());
+        nearmiss::Mesh::new(body.name(), positions, mesh.faces().to_vec()).expect("a mesh")
+    };
+    Body::moving(f64s(&frames[0]), f64s(&frames[1])).expect("two frames")
+}
+
 /// The cubic in f32 is not certain, but the corridor is the same: it must find what the brute force finds with it.
 #[test]
 fn the_solver_in_floats_gets_the_same_pairs() {
-    // In doubles: the precision of the positions decides how differences are rounded before the cubic.
-    let promoted = |body: Body| {
-        let frames = body.frames();
-        let f64s = |mesh: &nearmiss::Mesh| {
-            let positions = nearmiss::mesh::Positions::F64(mesh.positions().to_f64());
-            nearmiss::Mesh::new("test", positions, mesh.faces().to_vec()).expect("a mesh")
-        };
-        Body::moving(f64s(&frames[0]), f64s(&frames[1])).expect("two frames")
-    };
     for body in [crumpled(4, 12, 1, 0.0), scene::soup(80, 5, true).expect("a scene"), crowded(4, 40, 24)] {
         let bodies = vec![promoted(body)];
         let found = ask(engine(), bodies.clone(), query(Motion::Continuous, Solver::CubicF32));

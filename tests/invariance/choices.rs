@@ -97,7 +97,9 @@ fn later(body: &Body, by: f64) -> Body {
 fn a_refitted_tree_finds_what_a_new_one_does() {
     for motion in [Motion::Discrete, Motion::Continuous, Motion::Earliest] {
         for bodies in [moving_scenes()[..1].to_vec(), moving_scenes()[1..].to_vec()] {
-            let query = Query { bv: Some(Bv::Aabb), ..Query::of(motion) };
+            // The default tolerance hangs on where a session begins: named, the bits are the same.
+            let tolerance = (motion != Motion::Discrete).then_some(1e-5);
+            let query = Query { tolerance, bv: Some(Bv::Aabb), ..Query::of(motion) };
             let mut session = Session::new(engine(), bodies.clone(), query).expect("a session");
             session.detect().expect("an answer");
             // A step on, three steps on, far off, and back where it began.
@@ -108,7 +110,7 @@ fn a_refitted_tree_finds_what_a_new_one_does() {
                 }
                 let refitted = session.detect().expect("an answer");
                 session.check_trees().expect("sound trees");
-                let fresh = found(&moved, motion);
+                let fresh = ask(engine(), moved.clone(), Query { tolerance, ..Query::of(motion) });
                 assert_eq!(refitted.answer, fresh.answer, "{motion:?}, {by}");
                 assert_eq!(
                     (refitted.candidates_vf_ee, refitted.candidates),

@@ -66,7 +66,7 @@ fn corners_in_another_order() {
             let faces = body.faces().iter().map(|face| corners.map(|k| face[k])).collect();
             let other = changed(&body, faces, |points| points);
             let again = found(std::slice::from_ref(&other), Motion::Continuous);
-            // The cubic takes another corner for its origin: times may differ in the last bits.
+            // The parameters of a face begin at another corner: times may differ in the last bits.
             let (one, two) =
                 (named(&other, again.contacts(), |v| v), named(&body, contacts.contacts(), |v| v));
             assert_close(&one, &two, body.name());
@@ -114,7 +114,7 @@ fn bodies_exchanged() {
     for (one, two) in [(&scenes[0], &scenes[3]), (&scenes[1], &scenes[2])] {
         let there = found(&[one.clone(), two.clone()], Motion::Continuous);
         let back = found(&[two.clone(), one.clone()], Motion::Continuous);
-        // A vertex/face pair is the same query to the cubic: same bits. Of two edges the first one changes.
+        // A vertex/face pair is the same query to the solver: same bits. Of two edges the first one changes.
         let of = |contacts: &Contacts, kind| -> BTreeMap<[u32; 2], u64> {
             let all = contacts.contacts().iter().filter(|c| c.kind == kind);
             all.map(|c| ([c.a, c.b], c.toi.to_bits())).collect()

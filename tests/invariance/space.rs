@@ -73,7 +73,7 @@ fn other_axes() {
             let truth = found(std::slice::from_ref(&body), Motion::Continuous);
             let other = mapped(&body, turn);
             let again = found(std::slice::from_ref(&other), Motion::Continuous);
-            // Sums of products come in another order: the cubic's times may differ in the last bits, not its contacts.
+            // Sums of products come in another order: times may differ in the last bits, contacts may not.
             let (one, two) = (named(&other, again.contacts(), |v| v), named(&body, truth.contacts(), |v| v));
             assert_close(&one, &two, body.name());
             let of = |body: &Body| boxed(std::slice::from_ref(body), Motion::Continuous);
@@ -107,7 +107,7 @@ fn the_same_numbers_in_doubles() {
     for body in moving_scenes() {
         let truth = found(std::slice::from_ref(&body), Motion::Continuous);
         let again = found(&[promoted(&body)], Motion::Continuous);
-        // The cubic in f64 takes differences of doubles in both cases: exact for floats of like size, so the same bits.
+        // Differences of floats of like size are exact, in floats and in doubles: so the same bits.
         assert_eq!(again.answer, truth.answer, "{}", body.name());
         // One body in each precision: both are taken in doubles.
         let still = scene::soup(100, 8, false).expect("a scene");

@@ -13,7 +13,7 @@ use crate::device::{Backend, Device};
 use crate::error::Error;
 use crate::mesh::{Body, Mesh, Positions, Topology};
 use crate::pipeline::Session;
-use crate::query::{Motion, Query};
+use crate::query::{Motion, Query, Solver};
 use nearmiss_kernels::math::Vec3;
 
 /// Rounds that push what meets apart.
@@ -41,6 +41,11 @@ pub(super) struct Guard {
     gap: f64,
 }
 
+/// The cubic: it lists no near misses, which would be pushed apart without need. What it misses, [`meeting`] finds.
+fn passing() -> Query {
+    Query { solver: Some(Solver::CubicF64), ..Query::of(Motion::Continuous) }
+}
+
 /// Every meeting counts, that of triangles with a common vertex too.
 fn meeting() -> Query {
     Query { adjacent: true, ..Query::of(Motion::Discrete) }
@@ -64,7 +69,7 @@ impl Guard {
         let moving = Body::moving(still.clone(), still.clone())?;
         let mut guard = Guard {
             name: name.into(),
-            continuous: Session::new(device.clone(), vec![moving], Query::of(Motion::Continuous))?,
+            continuous: Session::new(device.clone(), vec![moving], passing())?,
             discrete: Session::new(device, vec![Body::still(still)], meeting())?,
             faces: faces.to_vec(),
             edges,

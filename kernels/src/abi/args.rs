@@ -1,9 +1,8 @@
 //! One argument block for each kernel: what it is launched with, by value.
 
-use super::{Hit, Inner, Link, Merge, Motion, Node, Pair, Point, Seat, Span, Treelet, Unit};
+use super::{Inner, Link, Merge, Motion, Node, Pair, Point, Seat, Span, Treelet, Unit};
 use crate::bv::Axes;
 use crate::math::Real;
-use crate::prim::inclusion::Params;
 use bytemuck::{Pod, Zeroable};
 
 /// Declares argument blocks: `repr(C)`, plain old data, and an assertion that the fields leave no padding.
@@ -272,114 +271,12 @@ arguments! {
         /// Bits: [`SELF`], [`KEEP_ADJACENT`].
         flags: u32,
     }
-    /// `narrow_sift`: triangle pairs to vertex/face and edge/edge candidates.
-    SiftArgs<R: Real> {
-        /// Positions.
-        frames: Frames<R>,
-        /// Vertex indices of every triangle.
-        faces: Span<[u32; 3]>,
-        /// Edges of every triangle; edge k joins corners k and k + 1.
-        face_edges: Span<[u32; 3]>,
-        /// Which vertices (bits 0 to 2) and edges (bits 3 to 5) each triangle stands for.
-        owners: Span<u32>,
-        /// Candidate triangle pairs.
-        pairs: Span<Pair>,
-        /// Out: vertex, face.
-        vf: Span<Pair>,
-        /// Out: edge, edge.
-        ee: Span<Pair>,
-        /// Counters, see [`counter`].
-        counters: Span<u64>,
-    }
-    /// `narrow_moller`, `narrow_filter`, `narrow_exact`: triangle pairs that meet.
-    DiscreteArgs<R: Real> {
-        /// Positions.
-        positions: Span<Point<R>>,
-        /// Vertex indices of every triangle.
-        faces: Span<[u32; 3]>,
-        /// Pairs to test.
-        pairs: Span<Pair>,
-        /// Out: pairs that meet.
-        contacts: Span<Pair>,
-        /// Out: pairs that the filter leaves to the exact signs.
-        undecided: Span<Pair>,
-        /// Counters, see [`counter`].
-        counters: Span<u64>,
-        /// Which counter tells how many pairs there are.
-        pairs_at: u32,
-        /// Bits: [`KEEP_ADJACENT`].
-        flags: u32,
-    }
-    /// `narrow_reject_vf`, `narrow_reject_ee`: candidates that certainly stay apart, left out.
-    RejectArgs<R: Real> {
-        /// Positions.
-        frames: Frames<R>,
-        /// Vertex indices of every triangle (`narrow_reject_vf`).
-        faces: Span<[u32; 3]>,
-        /// End points of every edge (`narrow_reject_ee`).
-        edges: Span<[u32; 2]>,
-        /// Candidates.
-        candidates: Span<Pair>,
-        /// Out: those that may meet.
-        survivors: Span<Pair>,
-        /// Counters, see [`counter`].
-        counters: Span<u64>,
-    }
-    /// `narrow_vf`, `narrow_ee`: the first time of contact of two primitives in motion.
-    SolveArgs<R: Real> {
-        /// Positions.
-        frames: Frames<R>,
-        /// Vertex indices of every triangle (`narrow_vf`).
-        faces: Span<[u32; 3]>,
-        /// End points of every edge (`narrow_ee`).
-        edges: Span<[u32; 2]>,
-        /// Candidates that may meet.
-        survivors: Span<Pair>,
-        /// Out: contacts; empty when only the earliest is asked for.
-        hits: Span<Hit>,
-        /// Out: the smallest toi so far, as bits; or empty.
-        earliest: Span<u64>,
-        /// Counters, see [`counter`].
-        counters: Span<u64>,
-    }
-    /// `narrow_certify_vf`, `narrow_certify_ee`: what meets, and bounds of the first time, with proof.
-    CertifyArgs<R: Real> {
-        /// Positions.
-        frames: Frames<R>,
-        /// Vertex indices of every triangle (`narrow_certify_vf`).
-        faces: Span<[u32; 3]>,
-        /// End points of every edge (`narrow_certify_ee`).
-        edges: Span<[u32; 2]>,
-        /// Candidates.
-        pairs: Span<Pair>,
-        /// Out: contacts and unresolved pairs; empty when only the earliest is asked for.
-        hits: Span<Hit>,
-        /// Out: pairs that need more precision; empty without [`ESCALATE`].
-        escalated: Span<Pair>,
-        /// Out: the smallest toi so far, as bits; or empty.
-        earliest: Span<u64>,
-        /// Counters, see [`counter`].
-        counters: Span<u64>,
-        /// What is asked.
-        params: Params,
-        /// Which counter tells how many pairs there are.
-        pairs_at: u32,
-        /// Which counter the hits add to.
-        hits_at: u32,
-        /// Which counter the escalated pairs add to.
-        escalated_at: u32,
-        /// Bits: [`ESCALATE`].
-        flags: u32,
-    }
 }
 
 /// [`TraverseArgs::flags`]: one mesh against itself; each pair is found once, by its earlier leaf.
 pub const SELF: u32 = 1;
 /// [`TraverseArgs::flags`]: pairs that share a vertex are emitted too.
 pub const KEEP_ADJACENT: u32 = 2;
-
-/// [`CertifyArgs::flags`]: pairs of which more precision may tell more go to their own list.
-pub const ESCALATE: u32 = 1;
 
 /// The counters of a frame. Each is the exact demand for its list, also where the list was too short.
 pub mod counter {

@@ -4,12 +4,14 @@
 
 #[macro_use]
 mod args;
+mod narrow;
 mod queues;
 mod record;
 mod span;
 pub mod stamp;
 
 pub use args::*;
+pub use narrow::*;
 pub use queues::*;
 pub use record::*;
 pub use span::Span;

@@ -1,0 +1,147 @@
+//! Certified contacts in whole frames, against all pairs asked one by one: nothing that meets is left out, whatever the
+//! tolerance and the budget, and no bit is other.
+
+use super::continuous::{Seen, boxes_meet, crowded, crumpled, promoted};
+use super::support::{ask, engine, machines};
+use nearmiss::contacts::{Contact, Kind, Status};
+use nearmiss::mesh::Body;
+use nearmiss::query::{Motion, Solver};
+use nearmiss::{Contacts, Query, Session, scene};
+use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};
+use nearmiss_kernels::prim::inclusion::{
+    Params, Verdict, ee_certified, ee_settled, vf_certified, vf_settled,
+};
+use std::collections::BTreeMap;
+
+const SOLVERS: [Solver; 3] = [Solver::Certified, Solver::CertifiedF32, Solver::CertifiedF64];
+
+fn vf(solver: Solver, v: Moving<f64>, f: [Moving<f64>; 3], p: &Params) -> Verdict {
+    let (first, settled) = vf_settled::<f64, f32>(v, f, p);
+    let in_f32 = solver == Solver::CertifiedF32 || solver == Solver::Certified && settled;
+    if in_f32 { first } else { vf_certified::<f64, f64>(v, f, p) }
+}
+
+fn ee(solver: Solver, a: [Moving<f64>; 2], b: [Moving<f64>; 2], p: &Params) -> Verdict {
+    let (first, settled) = ee_settled::<f64, f32>(a, b, p);
+    let in_f32 = solver == Solver::CertifiedF32 || solver == Solver::Certified && settled;
+    if in_f32 { first } else { ee_certified::<f64, f64>(a, b, p) }
+}
+
+type Row = (Kind, u32, u32);
+
+/// All pairs of one body with overlapping boxes that are not certainly apart, and those that the f64 cubic finds.
+fn brute(body: &Body, solver: Solver, p: &Params) -> (BTreeMap<Row, Verdict>, Vec<Row>) {
+    let seen = Seen::of(body);
+    let (mut near, mut cubic) = (BTreeMap::new(), Vec::new());
+    let mut put = |row: Row, verdict: Verdict, meets: bool| {
+        if !verdict.is_separated() {
+            near.insert(row, verdict);
+        }
+        cubic.extend(meets.then_some(row));
+    };
+    for &v in &seen.used {
+        for (f, face) in seen.faces.iter().enumerate().filter(|(_, face)| !face.contains(&v)) {
+            let ([m], c) = (seen.at([v]), seen.at(*face));
+            if boxes_meet(&[m], &c) {
+                put((Kind::Vf, v, f as u32), vf(solver, m, c, p), vf_toi::<f64, f64>(m, c).is_some());
+            }
+        }
+    }
+    for (i, a) in seen.edges.iter().enumerate() {
+        for (j, b) in seen.edges.iter().enumerate().skip(i + 1) {
+            let (m, c) = (seen.at(*a), seen.at(*b));
+            if !a.iter().any(|v| b.contains(v)) && boxes_meet(&m, &c) {
+                let row = (Kind::Ee, i as u32, j as u32);
+                put(row, ee(solver, m, c, p), ee_toi::<f64, f64>(m, c).is_some());
+            }
+        }
+    }
+    (near, cubic)
+}
+
+/// What is wrong with an answer. Pairs that are only near may be left out, where volumes or signs tell them apart.
+fn fault(found: &[Contact], near: &BTreeMap<Row, Verdict>, meet: &[Row]) -> Option<String> {
+    let mut listed = BTreeMap::new();
+    for c in found {
+        let row = (c.kind, c.a, c.b);
+        let Some(v) = near.get(&row) else { return Some(format!("{c:?} is apart")) };
+        let status = if v.is_contact() { Status::Certified } else { Status::Unresolved };
+        let same = [c.toi, c.toi_hi].map(f64::to_bits) == [v.toi, v.toi_hi].map(f64::to_bits);
+        if !same || c.status != status || listed.insert(row, ()).is_some() {
+            return Some(format!("{c:?} is {v:?}"));
+        }
+    }
+    let sure = near.iter().filter(|(_, v)| v.is_contact()).map(|(row, _)| row);
+    sure.chain(meet).find(|row| !listed.contains_key(row)).map(|row| format!("{row:?} is missed"))
+}
+
+fn asking(motion: Motion, solver: Solver, p: &Params) -> Query {
+    Query { solver: Some(solver), tolerance: Some(p.tolerance), boxes: Some(p.budget), ..Query::of(motion) }
+}
+
+fn unresolved(answer: &Contacts) -> usize {
+    answer.contacts().iter().filter(|c| c.status == Status::Unresolved).count()
+}
+
+#[test]
+fn nothing_is_lost_at_any_tolerance_and_budget() {
+    let bodies = [crumpled(4, 12, 1, 0.0), scene::soup(80, 5, true).expect("a scene"), crowded(4, 40, 24)];
+    for body in bodies.map(promoted) {
+        for solver in SOLVERS {
+            for (tolerance, budget) in [(1e-4, 4096), (0.0, 200), (0.1, 4096), (1e-4, 1)] {
+                let p = Params { budget, ..Params::new(tolerance) };
+                let (near, meet) = brute(&body, solver, &p);
+                let all = ask(engine(), vec![body.clone()], asking(Motion::Continuous, solver, &p));
+                let what = format!("{}, {solver:?}, {p:?}", body.name());
+                assert_eq!(fault(all.contacts(), &near, &meet), None, "{what}");
+                assert_eq!(unresolved(&all) as u64, all.unresolved, "{what}");
+                assert!(budget > 1 || all.unresolved > 10, "{what}: a budget of one box is not enough");
+                let first = ask(engine(), vec![body.clone()], asking(Motion::Earliest, solver, &p));
+                let least = [&first, &all].map(|a| (a.earliest_toi().map(f64::to_bits), a.unresolved));
+                assert_eq!(least[0], least[1], "{what}");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_machine_escalates_the_same() {
+    let body = crowded(3, 9, 20);
+    let p = Params { budget: 8, ..Params::new(1e-3) };
+    let print = |device, motion| {
+        let mut session = Session::new(device, vec![body.clone()], asking(motion, Solver::Certified, &p))
+            .expect("a session");
+        let all = session.detect().expect("an answer");
+        let prints = session.fingerprints().expect("prints");
+        (all.hash(), all.unresolved, all.escalated_vf_ee, prints)
+    };
+    for motion in [Motion::Continuous, Motion::Earliest] {
+        let truth = print(engine(), motion);
+        assert!(truth.1 > 0 && truth.2.iter().all(|n| *n > 0), "{truth:?}");
+        for device in machines() {
+            let name = device.name();
+            assert_eq!(print(device, motion), truth, "{motion:?}, {name}");
+        }
+    }
+}
+
+#[test]
+fn the_comparison_can_fail() {
+    let (body, p) = (promoted(crowded(4, 40, 24)), Params::new(1e-4));
+    let (near, meet) = brute(&body, Solver::Certified, &p);
+    let all = ask(engine(), vec![body], asking(Motion::Continuous, Solver::Certified, &p));
+    let with = |fault_in: fn(&mut Vec<Contact>)| {
+        let mut found = all.contacts().to_vec();
+        fault_in(&mut found);
+        fault(&found, &near, &meet)
+    };
+    assert_eq!(with(|_| ()), None);
+    let faults: [fn(&mut Vec<Contact>); 5] = [
+        |all| all.retain(|c| c.status != Status::Certified),
+        |all| all.truncate(all.len() / 2),
+        |all| all.insert(1, all[1]),
+        |all| all[0].toi_hi += 1e-9,
+        |all| all[0].b += 1000,
+    ];
+    assert!(faults.into_iter().all(|fault| with(fault).is_some()));
+}
