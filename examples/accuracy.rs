@@ -11,7 +11,7 @@ use nearmiss::mesh::Body;
 use nearmiss::query::{Motion, Solver};
 use nearmiss::{Contacts, Query};
 use nearmiss_kernels::math::Vec3;
-use nearmiss_kernels::prim::{moller::moller, tri_tri::meets_exactly};
+use nearmiss_kernels::prim::{inclusion::Params, moller::moller, tri_tri::meets_exactly};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 use support::{ask, engine, mesh, rows};
@@ -23,8 +23,10 @@ fn main() {
     println!("## Discrete\n");
     discrete();
     println!("\n## Continuous: two public pairs of frames\n");
-    println!("| frames | solver | candidates | contacts | missed | false | late by over 1e-4 | latest |");
-    println!("| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: |");
+    println!(
+        "| frames | solver | contacts | missed | false | unresolved | escalated | late | latest | early |"
+    );
+    println!("| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
     [CLOTH, BALLS].iter().for_each(frames);
     println!("\n## Continuous: handcrafted queries\n");
     handcrafted();
@@ -97,29 +99,37 @@ fn frames(scene: &Scene) {
     let (Some(body), Some(truth)) = (scene.body(), scene.truth()) else { return };
     let bodies = [body];
     let double = asked(&bodies, Motion::Continuous, Solver::CubicF64);
-    let single = asked(&bodies, Motion::Continuous, Solver::CubicF32);
-    for (name, answer) in [("cubic-f64", &double), ("cubic-f32", &single)] {
-        let errors = difference(&found(answer), &truth);
-        let (late, most) = later(answer, &double, 1e-4);
-        let late = if name == "cubic-f64" { "- | -".to_owned() } else { format!("{late} | {most:.1e}") };
+    let solvers = [Solver::Certified, Solver::CertifiedF32, Solver::CertifiedF64, Solver::CubicF32];
+    for solver in solvers.into_iter().chain([Solver::CubicF64]) {
+        let answer = asked(&bodies, Motion::Continuous, solver);
+        let errors = difference(&found(&answer), &truth);
+        let ((late, most), (_, early)) = (later(&answer, &double, 1e-6), later(&double, &answer, 0.0));
         println!(
-            "| {} | {name} | {} | {} | {} | {} | {late} |",
+            "| {} | {solver:?} | {} | {} | {} | {} | {} | {late} | {most:.1e} | {early:.1e} |",
             scene.name,
-            answer.candidates,
             truth.len(),
             errors.missed.len(),
-            errors.invented.len()
+            errors.invented.len(),
+            answer.unresolved,
+            answer.escalated_vf_ee.iter().sum::<u64>()
         );
+    }
+    for solver in [Solver::Certified, Solver::CertifiedF64, Solver::CubicF64] {
+        let toi = asked(&bodies, Motion::Earliest, solver).earliest_toi();
+        println!("\nearliest by {solver:?}: {toi:?}, exactly {:e}", scene.earliest);
     }
 }
 
 fn handcrafted() {
-    println!("| folder | kind | queries | true | f64: missed | false | f32: missed | false |");
-    println!("| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: |");
+    println!(
+        "| folder | kind | queries | true | certified: missed | false | f64: missed | false | f32: missed | false |"
+    );
+    println!("| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
     for folder in folders() {
-        let mut errors = [0; 4];
+        let mut errors = [0; 6];
         for m in &folder.motions {
-            let answers = [m.found::<f64, f64>(folder.face), m.found::<f64, f32>(folder.face)];
+            let certified = m.certified(folder.face, &Params::new(1e-6));
+            let answers = [certified, m.found::<f64, f64>(folder.face), m.found::<f64, f32>(folder.face)];
             for (k, answer) in answers.into_iter().enumerate() {
                 errors[2 * k] += (m.meets && !answer) as u32;
                 errors[2 * k + 1] += (!m.meets && answer) as u32;

@@ -146,7 +146,8 @@ fn cloth_on_a_ball() {
 #[test]
 fn balls_in_a_box() {
     let (Some(body), Some(truth)) = (BALLS.body(), BALLS.truth()) else { return };
-    double(&BALLS, &body, &truth);
+    let all = double(&BALLS, &body, &truth);
+    certified(&BALLS, &body, &truth, Solver::Certified, &all);
 }
 
 #[test]

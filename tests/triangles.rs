@@ -15,6 +15,11 @@ fn falling(gap: f32) -> Vec<[f32; 3]> {
     square.into_iter().chain(corner).collect()
 }
 
+/// Not late, and early by what the tolerance is worth: 1e-4 of a mean edge of about 6, at a speed of 2.
+fn at_half(toi: f64) -> bool {
+    (0.5 - 3e-4..=0.5).contains(&toi)
+}
+
 fn mesh(points: Vec<[f32; 3]>, faces: &[[u32; 3]]) -> Mesh {
     Mesh::new("falling", Positions::F32(points), faces.to_vec()).expect("a mesh")
 }
@@ -25,8 +30,8 @@ fn a_corner_that_falls_through_a_square_meets_one_triangle_of_it_first() {
     let body = Body::moving(mesh(falling(1.0), &faces), mesh(falling(-1.0), &faces)).expect("frames");
     let found = ask(engine(), vec![body.clone()], Query::of(Motion::Continuous));
     let pairs = triangle_contacts(found.contacts(), &[body]);
-    let known: Vec<_> = pairs.iter().map(|p| (p.a, p.b, p.toi)).collect();
-    assert_eq!(known, [(0, 2, 0.5)]);
+    let known: Vec<_> = pairs.iter().map(|p| (p.a, p.b, at_half(p.toi))).collect();
+    assert_eq!(known, [(0, 2, true)]);
 }
 
 #[test]
@@ -38,7 +43,7 @@ fn between_two_bodies_indices_are_their_own() {
     for (bodies, pair) in [(vec![square.clone(), corner.clone()], (0, 0)), (vec![corner, square], (0, 0))] {
         let found = ask(engine(), bodies.clone(), Query::of(Motion::Continuous));
         let pairs = triangle_contacts(found.contacts(), &bodies);
-        assert_eq!(pairs.iter().map(|p| ((p.a, p.b), p.toi)).collect::<Vec<_>>(), [(pair, 0.5)]);
+        assert_eq!(pairs.iter().map(|p| ((p.a, p.b), at_half(p.toi))).collect::<Vec<_>>(), [(pair, true)]);
     }
 }
 

@@ -106,8 +106,8 @@ fn nothing_is_lost_at_any_tolerance_and_budget() {
 
 #[test]
 fn every_machine_escalates_the_same() {
-    let body = crowded(3, 9, 20);
-    let p = Params { budget: 8, ..Params::new(1e-3) };
+    let body = crowded(4, 40, 24);
+    let p = Params { budget: 2, ..Params::new(1e-3) };
     let print = |device, motion| {
         let mut session = Session::new(device, vec![body.clone()], asking(motion, Solver::Certified, &p))
             .expect("a session");

@@ -3,6 +3,7 @@
 use crate::support::data;
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};
+use nearmiss_kernels::prim::inclusion::{Params, ee_certified, ee_first, vf_certified, vf_first};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
@@ -50,6 +51,22 @@ impl Motion {
         } else {
             ee_toi::<R, S>([p(0), p(1)], [p(2), p(3)]).is_some()
         }
+    }
+}
+
+#[allow(dead_code, reason = "each binary uses a part")]
+impl Motion {
+    /// Whether the certified solver, in f32 and then in f64, lists it: as a contact or as unresolved.
+    pub fn certified(&self, face: bool, params: &Params) -> bool {
+        let p = |i: usize| Moving { t0: Vec3(self.points[i]), t1: Vec3(self.points[i + 4]) };
+        let verdict = if face {
+            let (v, f) = (p(0), [p(1), p(2), p(3)]);
+            vf_first(v, f, params).unwrap_or_else(|| vf_certified::<f64, f64>(v, f, params))
+        } else {
+            let (a, b) = ([p(0), p(1)], [p(2), p(3)]);
+            ee_first(a, b, params).unwrap_or_else(|| ee_certified::<f64, f64>(a, b, params))
+        };
+        !verdict.is_separated()
     }
 }
 
