@@ -22,8 +22,8 @@
 //!
 //! `BOX_APART` is 256u, and what is lost when it is multiplied, added and compared with a difference is below 4u.
 
-use super::axes::{self, Covariance, Frame, three};
-use super::{Axes, GROUP, Volume};
+use super::axes::{self, Frame, three};
+use super::{Axes, GROUP, Points, Volume};
 use crate::math::tolerance::{
     BOX_APART, BOX_APART_UNDERFLOW, BOX_CHILD, BOX_LIMIT, BOX_POINT, BOX_UNDERFLOW, BOX_UP,
 };
@@ -82,7 +82,7 @@ impl Obb {
     ///
     /// `s = a . q` errs by at most four roundings (five, the first tiny, for f64) and, near zero, six underflows.
     #[inline]
-    fn around<R: Real, const N: usize>(points: &[Vec3<R>; N], frame: Frame) -> Obb {
+    fn around<R: Real>(points: &[Vec3<R>; 3], frame: Frame) -> Obb {
         let a = three(frame);
         let base = points[0];
         let (mut lo, mut hi) = (Vec3([0.0; 3]), Vec3([0.0; 3]));
@@ -130,6 +130,26 @@ impl Obb {
     }
 }
 
+/// The corners of a triangle at both ends of the step, gone through without a loop: they stay in registers.
+struct Corners<R>([Vec3<R>; 6]);
+
+impl<R: Real> Points<R> for Corners<R> {
+    #[inline(always)]
+    fn first(&self) -> Vec3<R> {
+        self.0[0]
+    }
+    #[inline(always)]
+    fn each(&self, mut visit: impl FnMut(Vec3<R>)) {
+        let [p, s, q, t, r, u] = self.0;
+        visit(p);
+        visit(s);
+        visit(q);
+        visit(t);
+        visit(r);
+        visit(u);
+    }
+}
+
 /// The surface, in no particular unit and without paddings, of the box around slabs of half extents h about the
 /// origin and others of r about t.
 #[inline]
@@ -156,15 +176,10 @@ impl Volume for Obb {
         Obb::around(&corners, axes::of_edges(e))
     }
 
-    /// The hull of both triangles holds the moving one. The axes are the principal axes of its six corners.
+    /// The hull of both triangles holds the moving one: fitted as a group is, to six points.
     #[inline]
     fn moving<R: Real>([p, q, r]: [Vec3<R>; 3], [s, t, u]: [Vec3<R>; 3]) -> Self {
-        let d = scaled([q, r, s, t, u].map(|x| (x - p).narrow()));
-        let mean = d.iter().fold(Vec3([0.0; 3]), |sum, &x| sum + x).map(|x| x / 6.0);
-        let mut m = Covariance::ZERO;
-        m.add(mean);
-        d.iter().for_each(|&x| m.add(x - mean));
-        Obb::around(&[p, q, r, s, t, u], m.axes())
+        Obb::of(&Corners([p, s, q, t, r, u]))
     }
 
     /// Along its own axes a box reaches as far as its extents, so only the other's reach is computed, for both choices
@@ -241,7 +256,7 @@ impl Volume for Obb {
 
 /// The vectors, divided by their largest component, so that squares neither overflow nor vanish.
 #[inline]
-fn scaled<const N: usize>(v: [Vec3<f32>; N]) -> [Vec3<f32>; N] {
+fn scaled(v: [Vec3<f32>; 3]) -> [Vec3<f32>; 3] {
     let most = v.iter().fold(Vec3([0.0; 3]), |most, x| most.max(x.map(Real::abs)));
     let most = Real::max(Real::max(most[0], most[1]), most[2]);
     v.map(|x| x.map(|x| x / most))
