@@ -192,12 +192,15 @@ fn merges_are_no_larger_than_need_be() {
                 (f64::max(s + reach(&a), t + reach(&b)) - f64::min(s - reach(&a), t - reach(&b))) / 2.0
             }))
         };
-        let merged = surface(a.merge(&b, Axes::PCA).h.map(f64::from));
+        let merged = a.merge(&b, Axes::PCA).h.map(f64::from);
+        // What paddings may add to plates and needles.
+        let size: f64 = merged.iter().sum();
+        let (merged, pad) = (surface(merged), 1e-4 * size * size);
         let (one, two) = (with(a.axes()), with(b.axes()));
-        assert!(merged <= 1.001 * one.min(two), "{merged} {one} {two}");
+        assert!(merged <= one.min(two) + pad, "{merged} {one} {two}");
         let larger = if a.slack >= b.slack { one } else { two };
         let child = surface(a.merge(&b, Axes::CHILD).h.map(f64::from));
-        assert!((child - larger).abs() <= 1e-3 * larger, "{child} {larger}");
+        assert!((child - larger).abs() <= 1e-3 * larger + pad, "{child} {larger}");
     }
 }
 

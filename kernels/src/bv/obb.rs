@@ -177,7 +177,7 @@ impl Volume for Obb {
     }
 
     /// The hull of both triangles holds the moving one: fitted as a group is, to six points.
-    #[inline]
+    #[inline(always)]
     fn moving<R: Real>([p, q, r]: [Vec3<R>; 3], [s, t, u]: [Vec3<R>; 3]) -> Self {
         Obb::of(&Corners([p, s, q, t, r, u]))
     }
