@@ -219,8 +219,7 @@ impl Volume for Obb {
     }
 
     /// Faces first, all six at once: they separate nearly all boxes that are apart. The slack is for all axes alike;
-    /// see the module's text. A comparison with NaN is false and a maximum drops it, which the box of everything relies
-    /// on.
+    /// see the module's text. Every comparison with NaN is false, which the box of everything relies on.
     #[inline]
     fn overlaps(&self, o: &Self) -> bool {
         let (a, b) = (self.axes(), o.axes());
@@ -230,14 +229,13 @@ impl Volume for Obb {
         let r = a.map(|a| Vec3([a.dot(b[0]), a.dot(b[1]), a.dot(b[2])]));
         let q = r.map(|r| r.map(Real::abs));
         let s = Vec3([a[0].dot(t), a[1].dot(t), a[2].dot(t)]);
-        // The widest gap so far.
-        let mut gap = 0.0f32;
+        let mut apart = false;
         for i in 0..3 {
             let column = Vec3([q[0][i], q[1][i], q[2][i]]);
-            gap = gap.max(s[i].abs() - (g[i] + h.dot(q[i])));
-            gap = gap.max(b[i].dot(t).abs() - (h[i] + g.dot(column)));
+            apart |= s[i].abs() - (g[i] + h.dot(q[i])) > slack;
+            apart |= b[i].dot(t).abs() - (h[i] + g.dot(column)) > slack;
         }
-        if gap > slack {
+        if apart {
             return false;
         }
         for i in 0..3 {
@@ -247,10 +245,10 @@ impl Volume for Obb {
                 let along = (s[l] * r[k][j] - s[k] * r[l][j]).abs();
                 let mine = g[k] * q[l][j] + g[l] * q[k][j];
                 let other = h[m] * q[i][n] + h[n] * q[i][m];
-                gap = gap.max(along - (mine + other));
+                apart |= along - (mine + other) > slack;
             }
         }
-        gap <= slack
+        !apart
     }
 }
 
