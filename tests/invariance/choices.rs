@@ -43,7 +43,7 @@ fn every_walk_finds_the_same() {
             let queues = [
                 Traversal::Queue(QueueShape { cores: Some(9), ..QueueShape::native() }),
                 Traversal::Queue(QueueShape { segment: 999, ..QueueShape::gtx285() }),
-                Traversal::Steal(StealShape { cores: Some(9), pool: 9_999, ..StealShape::native() }),
+                Traversal::Steal(StealShape { cores: Some(9), pool: Some(999), ..StealShape::native() }),
             ];
             for traversal in walks.into_iter().chain(queues) {
                 let query = Query { traversal: Some(traversal), ..Query::of(motion) };

@@ -38,7 +38,8 @@ fn any_number_of_queues() {
                 assert!(queues.rounds > 0 && queues.longest <= 3_000, "{queues:?}");
             }
             for eager in [false, true] {
-                let shape = StealShape { cores, segment: 100, tries: 4, eager, ..StealShape::native() };
+                let shape =
+                    StealShape { cores, segment: 100, tries: 4, eager, pool: Some(300), ..StealShape::native() };
                 same(&bodies, Traversal::Steal(shape));
             }
         }
@@ -60,6 +61,7 @@ fn any_room_on_chip() {
                 local,
                 cores: Some(4),
                 segment: 2_000,
+                pool: Some(300),
                 tries: 4,
                 eager: true,
                 ..StealShape::native()
@@ -94,7 +96,7 @@ fn segments_that_are_too_short_grow() {
                 );
             }
             let shape =
-                StealShape { cores: Some(2), local, segment, pool: 10, tries: 2, ..StealShape::native() };
+                StealShape { cores: Some(2), local, segment, pool: Some(10), tries: 2, ..StealShape::native() };
             assert!(reruns(Traversal::Steal(shape)) > 0, "{shape:?}: the first segments were long enough");
         }
     }
@@ -125,7 +127,7 @@ fn blocks_that_interleave_lose_nothing() {
     for bodies in crowds() {
         let truth = truth(&bodies, Motion::Discrete);
         for seed in 1..5 {
-            let pool = [1_000_000, 20][seed as usize % 2];
+            let pool = Some([2_000, 5][seed as usize % 2]);
             let steal =
                 |eager| StealShape { cores: Some(7), segment: 100, local: 100, pool, tries: 50, eager };
             let [copy, view] = profiles().map(|shape| QueueShape { cores: Some(7), ..shape });
@@ -152,10 +154,10 @@ fn blocks_that_interleave_lose_nothing() {
 #[test]
 fn what_is_offered_is_taken_and_a_full_pool_loses_nothing() {
     for bodies in crowds() {
-        for pool in [0, 1, 2, 33, 1_000_000] {
+        for pool in [0, 1, 2, 33, 2_000] {
             let shape = StealShape {
                 cores: Some(3),
-                pool,
+                pool: Some(pool),
                 segment: 2_000,
                 tries: 3,
                 eager: true,
