@@ -7,6 +7,8 @@ mod support;
 mod ends;
 #[path = "queue/sizes.rs"]
 mod sizes;
+#[path = "queue/words.rs"]
+mod words;
 
 use nearmiss::mesh::Body;
 use nearmiss::query::{Bv, Motion, QueueShape, StealShape, Traversal};

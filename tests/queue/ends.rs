@@ -100,7 +100,10 @@ fn run(device: &Device, trees: [&[Node<Aabb>]; 2], own: bool, rounds: Option<u32
             lists[rounds as usize % 2].read(left as usize).expect("units")
         }
         None => {
-            let (places, control) = (words(100), words(1));
+            let (mut places, control) = (words(100), words(1));
+            // What another launch left there counts as nothing.
+            let stale = [0, 1, pool::CHUNK as u64, pool::GONE].map(|state| 6 << pool::LAUNCH | state);
+            places.write(&stale.repeat(25)).expect("words");
             let chunks = device.buffer::<Pair>(100 * pool::CHUNK as usize).expect("memory");
             let args = StealArgs {
                 to,
@@ -108,7 +111,7 @@ fn run(device: &Device, trees: [&[Node<Aabb>]; 2], own: bool, rounds: Option<u32
                 pool: places.span(),
                 chunks: chunks.span(),
                 control: control.span(),
-                launch: 1 << pool::LAUNCH,
+                launch: 7 << pool::LAUNCH,
                 segment: room as u32 / 3,
                 tries: 5,
                 flags: nearmiss_kernels::abi::EAGER,
