@@ -244,7 +244,7 @@ fn wait<V: Volume, L: Lane>(l: &L, a: &StealArgs<V>, place: u32, tries: &mut u32
             return if before == word { 0 } else { (before & STATE) as u32 };
         }
         *tries -= 1;
-        if *tries % PLACE_LOOKS == 0 && Counts::of(l.fetch_load(a.control, 0)).work == 0 {
+        if tries.is_multiple_of(PLACE_LOOKS) && Counts::of(l.fetch_load(a.control, 0)).work == 0 {
             return 0;
         }
     }
