@@ -63,15 +63,8 @@ fn any_room_on_chip() {
                     assert!(local > 1 || queues.spills > 0, "{shape:?} {queues:?}");
                 }
             }
-            let shape = StealShape {
-                local,
-                cores: Some(4),
-                segment: 2_000,
-                pool: Some(300),
-                tries: 4,
-                eager: true,
-                ..StealShape::native()
-            };
+            let shape =
+                StealShape { local, cores: Some(4), segment: 2_000, pool: Some(300), tries: 4, eager: true };
             let queues = same(&bodies, Traversal::Steal(shape)).queues;
             assert!(local > 2 || queues.spills > 0, "{shape:?} {queues:?}");
         }

@@ -3,7 +3,7 @@
 //! Launch   once, as many blocks as the machine holds at once; any number is right, in any order, also one after another.
 //! Reads    as `traverse_queue`.
 //! Writes   candidate pairs, as `traverse_leaves`; with `FRONT` the ends of the descent.
-//! Before   all volumes are refitted; [`control`] is zero; no word of the pool has this launch's number.
+//! Before   all volumes are refitted; [`control`](crate::abi::control) is zero; no word of the pool has this launch's number.
 //! After    every pair of leaves lies below exactly one end; nothing waits in the pool.
 //! Room     `units` too short: counted, the host grows it and runs again. The pool may be too short: then blocks keep
 //!          their units and nothing is lost.
