@@ -13,6 +13,7 @@ pub mod pipeline;
 pub mod query;
 pub mod report;
 pub mod scene;
+mod tables;
 
 pub use contacts::{Answer, Contact, Contacts};
 pub use device::Device;

@@ -2,7 +2,7 @@
 
 mod queues;
 
-pub use queues::{Balance, QueueShape, StealShape};
+pub use queues::{Balance, FrontShape, QueueShape, StealShape};
 
 use crate::error::Error;
 
@@ -68,6 +68,8 @@ pub enum Traversal {
     Queue(QueueShape),
     /// Pairs of nodes from work queues that help each other out within one launch.
     Steal(StealShape),
+    /// From where the last frame's descent ended: temporal coherence.
+    Front(FrontShape),
 }
 
 impl Traversal {
@@ -75,9 +77,15 @@ impl Traversal {
     /// that half of the walks never spill and none makes its warp wait for long (measured, `benches/NOTES.md`).
     pub const CARD_BUDGET: u32 = 64;
 
-    /// The fastest walk of a machine: a card must not wait for its longest walk; a CPU's threads balance by themselves.
-    pub fn default_for(is_card: bool) -> Traversal {
-        Traversal::PerLeaf { budget: is_card.then_some(Traversal::CARD_BUDGET) }
+    /// The fastest walk of a machine (measured, `docs/performance.md`). A CPU's threads balance by themselves. A card must
+    /// not wait for its longest walk: plain boxes are walked leaf by leaf, with their rest shared out; of volumes whose
+    /// tests cost more, fewer tests by pairs of nodes pay for the queues.
+    pub fn default_for(is_card: bool, bv: Bv) -> Traversal {
+        match (is_card, bv) {
+            (false, _) => Traversal::PerLeaf { budget: None },
+            (true, Bv::Aabb) => Traversal::PerLeaf { budget: Some(Traversal::CARD_BUDGET) },
+            (true, _) => Traversal::Queue(QueueShape::native()),
+        }
     }
 }
 
@@ -195,7 +203,7 @@ impl Query {
 
     /// The walk that will be used on a card, or on a CPU.
     pub fn traversal_on(&self, is_card: bool) -> Traversal {
-        self.traversal.unwrap_or(Traversal::default_for(is_card))
+        self.traversal.unwrap_or(Traversal::default_for(is_card, self.bv()))
     }
 
     /// Whether the choices go together.
@@ -215,6 +223,7 @@ impl Query {
         match self.traversal {
             Some(Traversal::Queue(shape)) => shape.check()?,
             Some(Traversal::Steal(shape)) => shape.check()?,
+            Some(Traversal::Front(shape)) => shape.queue.check()?,
             Some(Traversal::PerLeaf { .. }) | None => {}
         }
         if self.adjacent && (self.motion != Motion::Discrete || solver != Solver::Exact) {

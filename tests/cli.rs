@@ -353,7 +353,7 @@ fn a_plan_is_what_would_run() {
         "Continuous, self",
         "CPU, 2 threads (cpu)",
         "Levels: the fastest on this machine",
-        "aabb, swept",
+        "linear",
         "cubic-f64: can miss",
         "MB to begin with",
     ] {

@@ -5,7 +5,7 @@ mod support;
 use nearmiss::mesh::Body;
 use nearmiss::query::Motion;
 use nearmiss::{Contacts, Query};
-use support::{ORDERS, ask, engine, mesh, microscope, rows};
+use support::{ORDERS, ask, engine, mesh, microscope, rows, ways};
 
 /// Pairs of a list.
 fn listed(path: &str) -> Option<Vec<[u32; 2]>> {
@@ -51,6 +51,20 @@ fn every_pair_set_equals_the_exact_one() {
         for order in ORDERS.into_iter().filter(|_| small) {
             let again = discrete(microscope(order), bodies.clone());
             assert_eq!(again.hash(), found.hash(), "{meshes:?}, {order:?}");
+        }
+    }
+}
+
+/// Whatever the tree wears, however it is refitted and walked.
+#[test]
+fn every_way_finds_the_exact_pairs() {
+    for (meshes, pairs, small) in SETS {
+        let (Some(bodies), Some(truth)) = (bodies(meshes), listed(pairs)) else { continue };
+        // Every volume with every walk; the refits take turns. Of the large sets a few.
+        let turn = |i: usize| i % 3 == i / 3 % 3 && (small || i % 5 == 0);
+        for (i, way) in ways(Query::of(Motion::Discrete)).enumerate().filter(|(i, _)| turn(*i)) {
+            let found = ask(engine(), bodies.clone(), way);
+            assert_eq!(difference(found.pairs(), &truth), None, "{meshes:?}, way {i}: {way:?}");
         }
     }
 }

@@ -11,7 +11,7 @@ mod space;
 
 use nearmiss::contacts::{Contact, Kind};
 use nearmiss::mesh::{Body, Mesh, Positions, Topology};
-use nearmiss::query::Motion;
+use nearmiss::query::{Bv, Motion};
 use nearmiss::scene::{self, Rng};
 use nearmiss::{Contacts, Query};
 use std::collections::BTreeMap;
@@ -20,6 +20,13 @@ use support::{ask, engine};
 /// The answer of the engine.
 fn found(bodies: &[Body], motion: Motion) -> Contacts {
     ask(engine(), bodies.to_vec(), Query::of(motion))
+}
+
+/// Candidates by kind, between plain boxes: those of leaves are known by the leaves alone. Boxes that move leave out pairs
+/// of features that their owners' boxes tell apart, and who owns a feature is a matter of order.
+fn boxed(bodies: &[Body], motion: Motion) -> ([u64; 2], u64) {
+    let contacts = ask(engine(), bodies.to_vec(), Query { bv: Some(Bv::Aabb), ..Query::of(motion) });
+    (contacts.candidates_vf_ee, contacts.candidates)
 }
 
 /// Scenes with discrete contacts, adjacent triangles among them.

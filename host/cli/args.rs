@@ -1,7 +1,8 @@
 //! What the command line takes.
 
 use crate::device::Backend;
-use crate::query::{Bv, Motion, Query, QueueShape, Refit, Solver, StealShape, Traversal};
+use crate::pipeline::Stage;
+use crate::query::{Bv, FrontShape, Motion, Query, QueueShape, Refit, Solver, StealShape, Traversal};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -21,6 +22,8 @@ pub enum Command {
     Plan(Box<DetectArgs>),
     /// Write a benchmark scene as PLY frames.
     Scene(SceneArgs),
+    /// The thesis's figures 6.12 to 6.14, ours beside theirs: a table, CSV files and pictures.
+    Tables(TablesArgs),
     /// Check this machine: known answers, and the card and the CPU to the bit.
     Selftest(SelftestArgs),
 }
@@ -38,24 +41,30 @@ pub enum TraversalArg {
     QueueGtx285,
     /// Work queues of pairs of nodes that help each other out within one launch.
     Steal,
+    /// Work queues that go on from where the last frame's descent ended.
+    Front,
 }
 
 impl TraversalArg {
     fn choice(self, DetectArgs { budget, cores, queue, .. }: &DetectArgs) -> Traversal {
         let queues = |shape: QueueShape| {
             let (cores, local) = (cores.or(shape.cores), queue.unwrap_or(shape.local));
-            Traversal::Queue(QueueShape { cores, local, ..shape })
+            QueueShape { cores, local, ..shape }
         };
         match self {
             TraversalArg::PerLeaf => Traversal::PerLeaf { budget: None },
             TraversalArg::PerLeafSpill => {
                 Traversal::PerLeaf { budget: Some(budget.unwrap_or(Traversal::CARD_BUDGET)) }
             }
-            TraversalArg::Queue => queues(QueueShape::native()),
-            TraversalArg::QueueGtx285 => queues(QueueShape::gtx285()),
+            TraversalArg::Queue => Traversal::Queue(queues(QueueShape::native())),
+            TraversalArg::QueueGtx285 => Traversal::Queue(queues(QueueShape::gtx285())),
             TraversalArg::Steal => {
                 let shape = StealShape::native();
                 Traversal::Steal(StealShape { cores: *cores, local: queue.unwrap_or(shape.local), ..shape })
+            }
+            TraversalArg::Front => {
+                let shape = FrontShape::native();
+                Traversal::Front(FrontShape { queue: queues(shape.queue), ..shape })
             }
         }
     }
@@ -70,9 +79,9 @@ pub struct DetectArgs {
     #[arg(long, conflicts_with_all = ["meshes", "with"], value_name = "NAME",
         value_parser = clap::builder::PossibleValuesParser::new(crate::scene::NAMES))]
     pub scene: Option<String>,
-    /// Triangles of the generated scene, about.
-    #[arg(long, default_value_t = 92_230, requires = "scene")]
-    pub triangles: usize,
+    /// Triangles of the generated scene, about [default: the thesis's number for its scenes, else 92,230].
+    #[arg(long, requires = "scene", value_name = "N")]
+    pub triangles: Option<usize>,
     /// Seed of the generated scene.
     #[arg(long, default_value_t = 1, requires = "scene")]
     pub seed: u64,
@@ -127,6 +136,9 @@ pub struct DetectArgs {
     /// Ask the same frame this often (after one run to warm up) and report each stage's median.
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub repeat: u32,
+    /// With --repeat: run the frame once, then only this stage so often, and report its median. For profilers.
+    #[arg(long, value_enum, requires = "repeat", value_name = "STAGE")]
+    pub only: Option<Stage>,
 }
 
 impl DetectArgs {
@@ -155,9 +167,9 @@ pub struct SceneArgs {
     /// Which scene.
     #[arg(value_parser = clap::builder::PossibleValuesParser::new(crate::scene::NAMES))]
     pub name: String,
-    /// Triangles, about.
-    #[arg(long, default_value_t = 92_230)]
-    pub triangles: usize,
+    /// Triangles, about [default: the thesis's number for its scenes, else 92,230].
+    #[arg(long, value_name = "N")]
+    pub triangles: Option<usize>,
     /// Frames [default: 2, or what the scene has]. Only animations have more than two.
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..))]
     pub frames: Option<u32>,
@@ -173,6 +185,94 @@ pub struct SceneArgs {
     /// Folder for NAME_t0.ply and NAME_t1.ply, or of an animation NAME_0000.ply and so on.
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+}
+
+/// Figures of the thesis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Table {
+    /// Construction and refit.
+    #[value(name = "6.12")]
+    Build,
+    /// A frame: discrete and continuous, by volume, without and with a front.
+    #[value(name = "6.13")]
+    Frame,
+    /// Where a frame's time goes.
+    #[value(name = "6.14")]
+    Shares,
+    /// What a front saves, by the part of a step that things move.
+    Front,
+}
+
+/// Sizes of work queues.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Profile {
+    /// The thesis's: 30 queues, evened by copying.
+    Gtx285,
+    /// As many queues as the machine runs at once.
+    Native,
+}
+
+impl Profile {
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Profile::Gtx285 => "gtx285",
+            Profile::Native => "native",
+        }
+    }
+
+    /// The walk with those sizes.
+    pub fn walk(self) -> Traversal {
+        Traversal::Queue(match self {
+            Profile::Gtx285 => QueueShape::gtx285(),
+            Profile::Native => QueueShape::native(),
+        })
+    }
+}
+
+#[derive(Args)]
+pub struct TablesArgs {
+    /// Scenes [default: all]; with --mesh, the scene of the thesis that the frames are.
+    #[arg(long, num_args = 1.., value_name = "NAME",
+        value_parser = clap::builder::PossibleValuesParser::new(crate::tables::SCENES.map(|scene| scene.0)))]
+    pub scene: Vec<String>,
+    /// Triangles of a scene, about [default: as many as the thesis has].
+    #[arg(long, conflicts_with = "mesh")]
+    pub triangles: Option<usize>,
+    /// Frames of a scene, at least two.
+    #[arg(long, default_value_t = 8, value_name = "K", value_parser = clap::value_parser!(u32).range(2..=10_000))]
+    pub frames: u32,
+    /// Seed of the scenes.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Frames of one mesh from files instead, in their order.
+    #[arg(long, num_args = 2.., value_name = "FILE")]
+    pub mesh: Vec<PathBuf>,
+    /// Which figures [default: 6.12, 6.13, 6.14].
+    #[arg(long, num_args = 1.., value_enum, value_name = "FIGURE")]
+    pub table: Vec<Table>,
+    /// Which volumes; the thesis has aabb and obb.
+    #[arg(long, num_args = 1.., value_enum, default_values_t = [Bv::Aabb, Bv::Obb])]
+    pub bv: Vec<Bv>,
+    /// Walk by work queues, evened between launches, and refit a launch a level, as the thesis did: with its machine's sizes,
+    /// or with this one's [default: the fastest walk and refit, without queues].
+    #[arg(long, value_enum)]
+    pub profile: Option<Profile>,
+    /// Build the tree anew at every N-th frame; that time is not part of a frame's [default: only at the first].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub rebuild_every: Option<u32>,
+    /// Which machine.
+    #[arg(long, value_enum, default_value_t)]
+    pub backend: Backend,
+    /// CPU threads [default: all].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Folder for CSV files and SVG pictures.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Print everything as one JSON object.
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Args)]

@@ -27,9 +27,9 @@ pub fn body(files: &[PathBuf]) -> Result<Body, Error> {
 fn question(args: &DetectArgs) -> Result<(Vec<Body>, Query), Error> {
     let mut bodies = Vec::new();
     match &args.scene {
-        Some(name) => {
-            bodies.push(during("making the scene", || crate::scene::scene(name, args.triangles, args.seed))?)
-        }
+        Some(name) => bodies.push(during("making the scene", || {
+            crate::scene::scene(name, args.triangles.unwrap_or(crate::scene::usual(name)), args.seed)
+        })?),
         None => bodies.push(during("reading", || body(&args.meshes))?),
     }
     if !args.with.is_empty() {
@@ -51,9 +51,14 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
         eprintln!("nearmiss: the solver is {}", query.solver().promise());
     }
     let mut session = during("building", || Session::new(device, bodies, query))?;
-    let (contacts, runs) = during("detecting", || repeated(&mut session, args.repeat))?;
+    let often = if args.only.is_some() { 1 } else { args.repeat };
+    let (contacts, runs) = during("detecting", || repeated(&mut session, often))?;
     let mut summary = session.summary(&contacts);
     summary.ms = median(&runs);
+    if let Some(stage) = args.only {
+        let times = during("repeating a stage", || session.repeat_stage(stage, args.repeat))?;
+        *summary.ms.of_mut(stage) = middle(times);
+    }
     if let Some(out) = &args.out {
         report::write(out, &contacts, &summary)?;
     }
@@ -68,12 +73,16 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
 
 /// The answer, and the times of each run; of several runs the first only warms up.
 fn repeated(session: &mut Session, repeat: u32) -> Result<(Contacts, Vec<Stages>), Error> {
+    let keeps_front = matches!(session.query().traversal, Some(Traversal::Front(_)));
     let mut contacts = session.detect()?;
     let mut runs = vec![contacts.stages];
     if repeat > 1 {
         runs.clear();
         for _ in 0..repeat {
-            session.rebuild()?;
+            // A tree built anew would forget the front.
+            if !keeps_front {
+                session.rebuild()?;
+            }
             contacts = session.detect()?;
             runs.push(contacts.stages);
         }
@@ -83,20 +92,13 @@ fn repeated(session: &mut Session, repeat: u32) -> Result<(Contacts, Vec<Stages>
 
 /// Each stage's median.
 fn median(runs: &[Stages]) -> Stages {
-    let of = |stage: fn(&Stages) -> f64| {
-        let mut times: Vec<f64> = runs.iter().map(stage).collect();
-        times.sort_by(f64::total_cmp);
-        times[times.len() / 2]
-    };
-    Stages {
-        construct: of(|s| s.construct),
-        fit: of(|s| s.fit),
-        refit: of(|s| s.refit),
-        traverse: of(|s| s.traverse),
-        balance: of(|s| s.balance),
-        narrow: of(|s| s.narrow),
-        total: of(|s| s.total),
-    }
+    Stages::each(|stage| middle(runs.iter().map(stage).collect()))
+}
+
+/// The median; of an even number the upper of the two in the middle, of none 0.
+fn middle(mut times: Vec<f64>) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times.get(times.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// The summary for people.
@@ -128,12 +130,20 @@ fn human(summary: &Summary, contacts: &Contacts) -> String {
         ms.narrow,
         ms.total
     );
-    if let Traversal::Queue(_) | Traversal::Steal(_) = summary.traversal {
+    if !matches!(summary.traversal, Traversal::PerLeaf { .. }) {
         let q = &summary.queues;
         let _ = writeln!(
             text,
             "  queues: {} rounds, {} times dry, {} units spilled, {} moved, {} stolen; {} waited at most",
             q.rounds, q.idle_exits, q.spills, q.moves, q.stolen, q.longest
+        );
+    }
+    if let Traversal::Front(_) = summary.traversal {
+        let f = &summary.front;
+        let _ = writeln!(
+            text,
+            "  front: {} pairs; {} tests of pairs kept, {} gave way to an ancestor",
+            f.pairs, f.tests, f.pruned
         );
     }
     let _ = writeln!(
@@ -188,9 +198,13 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
         "traversal  {}",
         match query.traversal {
             Some(choice) => format!("{choice:?}, as asked"),
-            None if device.is_card() =>
-                "per leaf, long walks spill: a card must not wait for its longest walk".into(),
-            None => "per leaf, to the end: a CPU's threads balance by themselves".into(),
+            None => match query.traversal_on(device.is_card()) {
+                Traversal::PerLeaf { budget: None } =>
+                    "per leaf, to the end: a CPU's threads balance by themselves".into(),
+                Traversal::PerLeaf { .. } =>
+                    "per leaf, long walks spill: a card must not wait for its longest walk".into(),
+                choice => format!("{choice:?}: fewer tests, where tests cost more"),
+            },
         }
     );
     let _ = writeln!(text, "solver     {}", query.solver().promise());

@@ -1,10 +1,11 @@
-//! The command line: `detect`, `plan`, `scene`, `selftest`.
+//! The command line: `detect`, `plan`, `scene`, `tables`, `selftest`.
 
 mod args;
 mod detect;
 mod progress;
 mod scene;
 mod selftest;
+mod tables;
 
 use crate::error::Error;
 use args::{Cli, Command};
@@ -27,6 +28,7 @@ fn run(command: Command) -> Result<ExitCode, Error> {
         Command::Detect(args) => detect::detect(&args),
         Command::Plan(args) => detect::plan(&args),
         Command::Scene(args) => scene::scene(&args),
+        Command::Tables(args) => tables::tables(&args),
         Command::Selftest(args) => selftest::selftest(&args),
     }
 }

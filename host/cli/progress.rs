@@ -1,14 +1,16 @@
 //! Something to look at while a long step runs: on a terminal, after a second.
 
 use indicatif::{ProgressBar, ProgressDrawTarget};
+use std::borrow::Cow;
 use std::io::IsTerminal;
 use std::time::Duration;
 
 /// Runs `work`; when it takes over a second and standard error is a terminal, says what it does.
-pub fn during<T>(what: &'static str, work: impl FnOnce() -> T) -> T {
+pub fn during<T>(what: impl Into<Cow<'static, str>>, work: impl FnOnce() -> T) -> T {
     if !std::io::stderr().is_terminal() {
         return work();
     }
+    let what = what.into();
     let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
     let shown = bar.clone();
     let (done, waits) = std::sync::mpsc::channel::<()>();

@@ -20,7 +20,7 @@ fn by_formula(args: &SceneArgs) -> Result<ExitCode, Error> {
             advice: format!("choose one of: {}", ANIMATIONS.join(", ")),
         });
     }
-    let body = during("making the scene", || formula(&args.name, args.triangles, args.seed))?;
+    let body = during("making the scene", || formula(&args.name, triangles_of(args), args.seed))?;
     let frames = body.frames();
     let asked = args.frames.map_or(frames.len() as u64, u64::from);
     if asked > frames.len() as u64 {
@@ -36,7 +36,7 @@ fn by_formula(args: &SceneArgs) -> Result<ExitCode, Error> {
 }
 
 fn animated(args: &SceneArgs) -> Result<ExitCode, Error> {
-    let options = Options { triangles: args.triangles, seed: args.seed, contact: args.contact };
+    let options = Options { triangles: triangles_of(args), seed: args.seed, contact: args.contact };
     let mut animation = during("making the scene", || {
         let mut animation = animation_with(&args.name, options)?;
         animation.advance(args.skip.unwrap_or(animation.opening()))?;
@@ -59,4 +59,9 @@ fn write(args: &SceneArgs, frame: &str, mesh: &Mesh) -> Result<(), Error> {
     mesh.write_ply(&path)?;
     super::print(&format!("{}: {} triangles\n", path.display(), mesh.face_count()));
     Ok(())
+}
+
+/// Triangles asked for, or those that the scene usually has.
+fn triangles_of(args: &SceneArgs) -> usize {
+    args.triangles.unwrap_or(crate::scene::usual(&args.name))
 }

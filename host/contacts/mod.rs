@@ -84,6 +84,27 @@ pub struct Contacts {
     pub spilled: u64,
     /// What the work queues did.
     pub queues: Queues,
+    /// What the front saved or cost.
+    pub front: Front,
+}
+
+/// The front of a frame. All zero where there was none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Front {
+    /// Pairs of nodes at which this frame's descent ended.
+    pub pairs: u64,
+    /// Overlap tests of the last frame's pairs and, where it was pruned, of their ancestors. Those of the pairs below them
+    /// are counted as those of any traversal: two a step.
+    pub tests: u64,
+    /// Pairs that gave way to an ancestor.
+    pub pruned: u64,
+}
+
+impl Front {
+    fn new(counters: &[u64]) -> Front {
+        let of = |at: u32| counters[at as usize];
+        Front { pairs: of(counter::ENDS), tests: of(counter::FRONT_TESTS), pruned: of(counter::PRUNED) }
+    }
 }
 
 /// What the work queues of a traversal did. All zero where it had none.
@@ -136,6 +157,7 @@ impl Contacts {
             steps: 0,
             spilled: 0,
             queues: Queues::default(),
+            front: Front::default(),
         }
     }
 
@@ -181,6 +203,7 @@ impl Contacts {
             steps: count(counter::STEPS),
             spilled: found.counters[counter::SPILLED as usize..][..ROUNDS as usize].iter().sum(),
             queues: Queues::new(&found.counters),
+            front: Front::new(&found.counters),
         }
     }
 
@@ -191,6 +214,11 @@ impl Contacts {
             Answer::Contacts(contacts) => contacts.len(),
             Answer::Earliest(toi) => toi.iter().len(),
         }
+    }
+
+    /// Overlap tests of two volumes: two a step, and those of the front.
+    pub fn overlap_tests(&self) -> u64 {
+        2 * self.steps + self.front.tests
     }
 
     /// Whether nothing meets.
@@ -273,6 +301,8 @@ pub struct Summary {
     pub hash: String,
     /// What the traversal's work queues did.
     pub queues: Queues,
+    /// What the traversal's front saved or cost.
+    pub front: Front,
     /// Milliseconds by stage.
     pub ms: Stages,
     /// Most device memory held at once.
@@ -288,7 +318,7 @@ impl Summary {
             query: query.motion,
             bv: query.bv().name(),
             refit: query.refit_on(device.is_card()),
-            traversal: query.traversal.unwrap_or(Traversal::default_for(device.is_card())),
+            traversal: query.traversal_on(device.is_card()),
             solver: query.solver(),
             backend: device.backend(),
             device: device.name(),
@@ -299,6 +329,7 @@ impl Summary {
             earliest_toi: contacts.earliest_toi(),
             hash: format!("{:016x}", contacts.hash()),
             queues: contacts.queues,
+            front: contacts.front,
             ms: contacts.stages,
             bytes: device.bytes().1,
         }

@@ -7,7 +7,7 @@ use cust::device::{Device as Card, DeviceAttribute};
 use cust::error::CudaError;
 use cust::event::{Event as CudaEvent, EventFlags};
 use cust::memory::{AsyncCopyDestination, CopyDestination, DeviceBuffer, LockedBuffer};
-use cust::module::Module;
+use cust::module::{Module, ModuleJitOption};
 use cust::stream::{Stream, StreamFlags};
 use nearmiss_kernels::entry::Entry as Kernel;
 use std::cell::RefCell;
@@ -36,6 +36,9 @@ pub struct Cuda {
     // Last, so that it is dropped last.
     _context: Context,
 }
+
+/// The driver keeps the lines of the Rust sources, for profilers; the machine code is the same.
+const LINES: [ModuleJitOption; 1] = [ModuleJitOption::GenerateLineInfo(true)];
 
 /// Memory of the card.
 pub struct Memory(DeviceBuffer<u8>);
@@ -186,7 +189,7 @@ impl Cuda {
                 let text = self.parts.module(E::NAME);
                 let text =
                     text.ok_or_else(|| Error::Bug { what: format!("no kernel {} in the PTX", E::NAME) })?;
-                new.insert(Module::from_ptx(text, &[]).map_err(refused(E::NAME))?)
+                new.insert(Module::from_ptx(text, &LINES).map_err(refused(E::NAME))?)
             }
         };
         let function = module.get_function(E::NAME).map_err(refused(E::NAME))?;

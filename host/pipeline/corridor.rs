@@ -1,10 +1,12 @@
 //! The corridor: a frame from positions to contacts, in the order of the stages.
 
+mod repeat;
+
 use super::layout::Layout;
 use super::narrow::{Given, Narrow, Step};
 use super::precision::Precision;
 use super::room::{Growing, List};
-use super::timing::Stages;
+use super::timing::{Stage, Stages};
 use super::tree::Tree;
 use super::volumes::{Kernels, Volumes};
 use super::walk::{Walk, Walked, flags, walk};
@@ -14,6 +16,7 @@ use crate::mesh::Body;
 use crate::query::{Motion, Query};
 use nearmiss_kernels::abi::{self, Hit, Motion as Ends, Pair, Point, Span, counter};
 use nearmiss_kernels::bv::Axes;
+use nearmiss_kernels::math::Vec3;
 use rayon::prelude::*;
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -74,6 +77,11 @@ pub trait Frames {
     /// # Errors
     /// Those of the device.
     fn frame(&mut self) -> Result<(Found, Stages), Error>;
+    /// Runs one stage again, so often; milliseconds of each run. See [`super::Session::repeat_stage`].
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn repeat(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error>;
     /// Levels of each body's tree.
     fn depths(&self) -> Vec<usize>;
     /// How often a list was too short and the frame was run again, so far.
@@ -135,7 +143,8 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
         corridor.place(bodies)?;
         for body in 0..layout.bodies() {
             let refit = query.refit_on(corridor.device.is_card());
-            let tree = Tree::new(&corridor.device, layout.triangles(body), refit)?;
+            let groups = V::group(axes) > 0;
+            let tree = Tree::new(&corridor.device, layout.triangles(body), refit, groups)?;
             let volumes = Volumes::new(&corridor.device, &tree, axes)?;
             corridor.bodies.push((tree, volumes));
         }
@@ -147,6 +156,17 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
             Vertices::Still(points) => abi::Frames { still: points.span(), moving: Span::EMPTY },
             Vertices::Moving(motions) => abi::Frames { still: Span::EMPTY, moving: motions.span() },
         }
+    }
+
+    /// Positions as they lie on the device: at t = 0 and, when anything moves, at t = 1.
+    fn positions(&self) -> Result<Vec<Vec<Vec3<R>>>, Error> {
+        Ok(match &self.vertices {
+            Vertices::Still(points) => vec![points.read(points.len())?.iter().map(|p| p.at).collect()],
+            Vertices::Moving(motions) => {
+                let motions = motions.read(motions.len())?;
+                vec![motions.iter().map(|m| m.t0.at).collect(), motions.iter().map(|m| m.t1.at).collect()]
+            }
+        })
     }
 
     /// Runs a step. Until the lists have settled it waits for the step's demand and, where a list was too short, grows
@@ -214,6 +234,7 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
             bodies: &self.bodies,
             faces: self.faces.span(),
             pairs: self.pairs.span(),
+            ends: Span::EMPTY,
             counters: self.counters.span(),
             flags: flags(&self.query, self.bodies.len()),
         })
@@ -304,6 +325,10 @@ impl<R: Precision, V: Kernels> Frames for Corridor<R, V> {
         }
     }
 
+    fn repeat(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
+        self.again(stage, times)
+    }
+
     fn depths(&self) -> Vec<usize> {
         self.bodies.iter().map(|(tree, _)| tree.depth()).collect()
     }
@@ -336,9 +361,10 @@ impl<R: Precision, V: Kernels> Frames for Corridor<R, V> {
     }
 
     fn check(&self) -> Result<(), Error> {
+        let (faces, frames) = (self.faces.read(self.faces.len())?, self.positions()?);
         self.bodies.iter().try_for_each(|(tree, volumes)| {
             tree.check()?;
-            volumes.check(tree)
+            volumes.check(tree, &faces, &frames)
         })
     }
 }

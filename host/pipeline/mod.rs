@@ -1,6 +1,8 @@
 //! From bodies to contacts: the front door of the library.
 
 mod corridor;
+#[cfg(test)]
+mod enclose;
 mod layout;
 mod narrow;
 mod precision;
@@ -13,7 +15,7 @@ mod walk;
 
 pub(crate) use corridor::Found;
 pub use layout::{Layout, Offsets};
-pub use timing::Stages;
+pub use timing::{Stage, Stages};
 
 use crate::contacts::{Contacts, Summary};
 use crate::device::Device;
@@ -44,6 +46,8 @@ pub struct Session {
     layout: Layout,
     query: Query,
     construct_ms: f64,
+    /// Whether the device holds the answer for where the bodies are now.
+    answered: bool,
     corridor: Option<Box<dyn Frames>>,
 }
 
@@ -93,7 +97,8 @@ impl Session {
         }
         fits(bodies.iter().map(Body::face_count).sum(), bodies.iter().map(Body::vertex_count).sum())?;
         let layout = Layout::new(&bodies, query.motion != crate::query::Motion::Discrete);
-        let mut session = Session { device, bodies, layout, query, construct_ms: 0.0, corridor: None };
+        let mut session =
+            Session { device, bodies, layout, query, construct_ms: 0.0, answered: false, corridor: None };
         // A body without triangles meets nothing: no memory, no launch.
         if session.bodies.iter().all(|body| body.face_count() > 0) {
             let mut corridor = corridor(session.device.clone(), &session.bodies, &session.layout, query)?;
@@ -122,6 +127,7 @@ impl Session {
             });
         }
         self.bodies[body] = frame;
+        self.answered = false;
         match &mut self.corridor {
             Some(corridor) => corridor.place(&self.bodies),
             None => Ok(()),
@@ -135,6 +141,7 @@ impl Session {
     pub fn rebuild(&mut self) -> Result<(), Error> {
         let Some(corridor) = &mut self.corridor else { return Ok(()) };
         self.construct_ms = corridor.construct()?;
+        self.answered = false;
         Ok(())
     }
 
@@ -147,8 +154,37 @@ impl Session {
             None => return Ok(Contacts::none(self.query)),
             Some(corridor) => corridor.frame()?,
         };
+        self.answered = true;
         let stages = Stages { construct: self.construct_ms, ..stages };
         Ok(Contacts::new(found, &self.layout, self.query, stages))
+    }
+
+    /// Runs one stage of this frame `times` times, on the device alone, and gives each run's milliseconds: for profilers,
+    /// and for figures of one stage. What the stage needs runs before, once, where it has not yet: the leaves' volumes for
+    /// [`Stage::Refit`], a whole frame for [`Stage::Traverse`] and [`Stage::Narrow`]. The next [`Session::detect`] answers
+    /// as it would have. A body without triangles has no stages: no runs.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn repeat_stage(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
+        if !self.answered && matches!(stage, Stage::Traverse | Stage::Narrow) {
+            self.detect()?;
+        }
+        let Some(corridor) = &mut self.corridor else { return Ok(Vec::new()) };
+        if !self.answered && stage == Stage::Refit {
+            corridor.repeat(Stage::Fit, 1)?;
+        }
+        let ms = corridor.repeat(stage, times)?;
+        if stage == Stage::Construct {
+            self.answered = false;
+            self.construct_ms = ms.last().copied().unwrap_or(self.construct_ms);
+        }
+        Ok(ms)
+    }
+
+    /// What is asked.
+    pub fn query(&self) -> &Query {
+        &self.query
     }
 
     /// What the command line prints of a result.

@@ -2,7 +2,7 @@
 
 use crate::mesh::Positions;
 use nearmiss_kernels::abi::{
-    DiscreteArgs, FitArgs, MortonArgs, RejectArgs, SiftArgs, SolveArgs, TreeletsArgs,
+    DiscreteArgs, FitArgs, GroupsArgs, MortonArgs, RejectArgs, SiftArgs, SolveArgs, TreeletsArgs,
 };
 use nearmiss_kernels::bv::{Aabb, Linear, Obb};
 use nearmiss_kernels::entry::{self, Entry};
@@ -20,6 +20,8 @@ pub trait Precision: Real {
     type FitLinear: Entry<Args = FitArgs<Self, Linear>>;
     /// Leaves, in oriented boxes.
     type FitObb: Entry<Args = FitArgs<Self, Obb>>;
+    /// Inner nodes of few leaves, in oriented boxes.
+    type GroupsObb: Entry<Args = GroupsArgs<Self, Obb>>;
     /// All boxes, by treelets.
     type TreeletsAabb: Entry<Args = TreeletsArgs<Self, Aabb>>;
     /// All boxes that move, by treelets.
@@ -57,6 +59,7 @@ impl Precision for f32 {
     type FitAabb = entry::fit_aabb_f32;
     type FitLinear = entry::fit_linear_f32;
     type FitObb = entry::fit_obb_f32;
+    type GroupsObb = entry::fit_groups_obb_f32;
     type TreeletsAabb = entry::refit_treelets_aabb_f32;
     type TreeletsLinear = entry::refit_treelets_linear_f32;
     type TreeletsObb = entry::refit_treelets_obb_f32;
@@ -86,6 +89,7 @@ impl Precision for f64 {
     type FitAabb = entry::fit_aabb_f64;
     type FitLinear = entry::fit_linear_f64;
     type FitObb = entry::fit_obb_f64;
+    type GroupsObb = entry::fit_groups_obb_f64;
     type TreeletsAabb = entry::refit_treelets_aabb_f64;
     type TreeletsLinear = entry::refit_treelets_linear_f64;
     type TreeletsObb = entry::refit_treelets_obb_f64;

@@ -1,5 +1,21 @@
 //! Time by stage.
 
+/// A stage of the corridor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Stage {
+    /// Positions to level-ordered tree.
+    Construct,
+    /// Volumes of the leaves.
+    Fit,
+    /// All other volumes.
+    Refit,
+    /// Candidates, with balancing.
+    Traverse,
+    /// Contacts.
+    Narrow,
+}
+
 /// Milliseconds of each stage of a frame, on the device's own clock. `construct` is that of the last build.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Stages {
@@ -17,4 +33,30 @@ pub struct Stages {
     pub narrow: f64,
     /// From positions to contacts, runs that were repeated for want of room included, construction not.
     pub total: f64,
+}
+
+impl Stages {
+    /// Each stage put through `of`, which is given the stage's getter: for means and medians over many frames.
+    pub fn each(of: impl Fn(fn(&Stages) -> f64) -> f64) -> Stages {
+        Stages {
+            construct: of(|s| s.construct),
+            fit: of(|s| s.fit),
+            refit: of(|s| s.refit),
+            traverse: of(|s| s.traverse),
+            balance: of(|s| s.balance),
+            narrow: of(|s| s.narrow),
+            total: of(|s| s.total),
+        }
+    }
+
+    /// The milliseconds of one stage.
+    pub fn of_mut(&mut self, stage: Stage) -> &mut f64 {
+        match stage {
+            Stage::Construct => &mut self.construct,
+            Stage::Fit => &mut self.fit,
+            Stage::Refit => &mut self.refit,
+            Stage::Traverse => &mut self.traverse,
+            Stage::Narrow => &mut self.narrow,
+        }
+    }
 }

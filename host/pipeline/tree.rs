@@ -22,6 +22,8 @@ pub struct Tree {
     pub pair_parents: Buffer<u32>,
     /// Each leaf's node.
     pub leaf_nodes: Buffer<u32>,
+    /// The first leaf below each pair of siblings; empty where all nodes are merged.
+    pub firsts: Buffer<u32>,
     /// Number of levels, then where each begins, then where the last ends.
     pub levels: Buffer<u32>,
     /// How it is refitted.
@@ -47,16 +49,23 @@ struct Scratch {
 }
 
 impl Tree {
-    /// Takes the memory of a tree over `count` triangles (at least one) from `first` on, and of its refit.
+    /// Takes the memory of a tree over `count` triangles (at least one) from `first` on, and of its refit; `groups` tells
+    /// whether nodes of few leaves are fitted.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn new(device: &Device, (first, count): (u32, u32), refit: Refit) -> Result<Tree, Error> {
+    pub fn new(
+        device: &Device,
+        (first, count): (u32, u32),
+        refit: Refit,
+        groups: bool,
+    ) -> Result<Tree, Error> {
         let (n, inner) = (count as usize, count as usize - 1);
         Ok(Tree {
             links: device.buffer(2 * n)?,
             pair_parents: device.buffer(n)?,
             leaf_nodes: device.buffer(n)?,
+            firsts: device.buffer(if groups { n } else { 0 })?,
             levels: device.buffer(MAX_LEVELS as usize + 2)?,
             way: Way::new(device, refit, count)?,
             starts: Vec::new(),
@@ -126,6 +135,7 @@ impl Tree {
             links: self.links.span(),
             pair_parents: self.pair_parents.span(),
             leaf_nodes: self.leaf_nodes.span(),
+            firsts: self.firsts.span(),
             leaves: self.count,
             first: self.first,
         };
@@ -187,6 +197,16 @@ impl Tree {
         // Node 0 is not used and nothing writes it.
         links[0] = Link::default();
         Ok(links)
+    }
+
+    /// Triangles in leaf order, counted from the body's first.
+    pub fn triangles(&self) -> Span<u32> {
+        self.scratch.triangles[0].span()
+    }
+
+    /// The body's first triangle.
+    pub fn first(&self) -> u32 {
+        self.first
     }
 
     /// Checks the tree as it lies on the device.

@@ -120,37 +120,38 @@ mod tests {
     use crate::device::Device;
     use crate::device::emulator::{Emulator, Mode};
     use crate::pipeline::tree::Tree;
-    use crate::pipeline::volumes::Volumes;
+    use crate::pipeline::volumes::{Kernels, Volumes};
     use crate::scene;
     use nearmiss_kernels::abi::{Frames, Point, Span};
-    use nearmiss_kernels::bv::{Aabb, Axes};
+    use nearmiss_kernels::bv::{Aabb, Axes, Obb};
     use nearmiss_kernels::math::Vec3;
 
     /// A tree that was refitted once, then moved and refitted again after `fault` was planted; on one thread, so that
     /// blocks run in their order.
-    fn checked(refit: Refit, fault: impl Fn(&mut Tree)) -> Result<(), Error> {
+    fn checked<V: Kernels>(refit: Refit, fault: impl Fn(&mut Tree)) -> Result<(), Error> {
         let device = Device::emulator(Emulator::new(Mode::Engine, Some(1))?);
         let body = scene::soup(2_000, 5, false)?;
-        let at = |scale: f64| -> Vec<Point<f32>> {
+        let at = |scale: f64| -> Vec<Vec3<f32>> {
             let points = body.positions_t0().to_f64().into_iter();
-            points.map(|p| Vec3(p.map(|x| (x * scale) as f32)).into()).collect()
+            points.map(|p| Vec3(p.map(|x| (x * scale) as f32))).collect()
         };
-        let mut points = device.upload(&at(1.0))?;
+        let padded = |points: &[Vec3<f32>]| points.iter().map(|&p| p.into()).collect::<Vec<Point<f32>>>();
+        let mut points = device.upload(&padded(&at(1.0)))?;
         let faces = device.upload(body.faces())?;
         let frames = Frames { still: points.span(), moving: Span::EMPTY };
-        let mut tree = Tree::new(&device, (0, 2_000), refit)?;
+        let mut tree = Tree::new(&device, (0, 2_000), refit, V::group(Axes::PCA) > 0)?;
         tree.construct::<f32>(&device, frames, faces.span())?;
-        let volumes = Volumes::<Aabb>::new(&device, &tree, Axes::PCA)?;
+        let volumes = Volumes::<V>::new(&device, &tree, Axes::PCA)?;
         let refit = |tree: &Tree| {
             volumes.fit(&device, tree, frames, faces.span())?;
             volumes.refit(&device, tree, frames, faces.span())
         };
         refit(&tree)?;
-        volumes.check(&tree)?;
-        points.write(&at(3.0))?;
+        volumes.check(&tree, body.faces(), &[at(1.0)])?;
+        points.write(&padded(&at(3.0)))?;
         fault(&mut tree);
         refit(&tree)?;
-        volumes.check(&tree)
+        volumes.check(&tree, body.faces(), &[at(3.0)])
     }
 
     fn plan(tree: &mut Tree) -> &mut Plan {
@@ -170,7 +171,8 @@ mod tests {
     #[test]
     fn all_ways_pass_where_nothing_is_planted() {
         for refit in [Refit::Levels, Refit::Treelets, Refit::BottomUp] {
-            checked(refit, |_| ()).expect("sound volumes");
+            checked::<Aabb>(refit, |_| ()).expect("sound volumes");
+            checked::<Obb>(refit, |_| ()).expect("sound volumes");
         }
     }
 
@@ -192,15 +194,28 @@ mod tests {
             },
         ];
         for (i, fault) in faults.into_iter().enumerate() {
-            let error = checked(Refit::Treelets, fault).expect_err("noticed").to_string();
+            let error = checked::<Aabb>(Refit::Treelets, fault).expect_err("noticed").to_string();
             assert!(error.contains("Merge"), "fault {i}: {error}");
+        }
+    }
+
+    /// The first leaf of a pair is another's: a node is fitted to too many points or too few, or to none.
+    #[test]
+    fn a_fit_to_other_points_is_noticed() {
+        for refit in [Refit::Levels, Refit::Treelets, Refit::BottomUp] {
+            let error = checked::<Obb>(refit, |tree| {
+                let mut firsts = tree.firsts.read(tree.firsts.len()).expect("read");
+                *firsts.last_mut().expect("a pair") -= 1;
+                tree.firsts.write(&firsts).expect("written");
+            });
+            assert!(error.expect_err("noticed").to_string().contains("Fit"), "{refit:?}");
         }
     }
 
     #[test]
     fn a_ticket_too_early_is_noticed() {
         // The second block merges the top, of volumes that are not there yet.
-        let error = checked(Refit::Treelets, |tree| {
+        let error = checked::<Aabb>(Refit::Treelets, |tree| {
             let plan = plan(tree);
             plan.ticket.write(&[u64::from(plan.blocks()) - 2]).expect("written");
         });
@@ -209,7 +224,7 @@ mod tests {
 
     #[test]
     fn who_comes_first_and_goes_on_is_noticed() {
-        let error = checked(Refit::BottomUp, |tree| match &mut tree.way {
+        let error = checked::<Aabb>(Refit::BottomUp, |tree| match &mut tree.way {
             Way::BottomUp(arrivals) => {
                 let mut counts = arrivals.read(arrivals.len()).expect("read");
                 assert!(counts[1..].iter().all(|&n| n == 2), "each pair is passed twice a frame");

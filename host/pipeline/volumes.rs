@@ -6,11 +6,13 @@ use super::treelets::{Plan, Way};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use nearmiss_kernels::abi::{
-    BottomUpArgs, FitArgs, Frames, Node, QueueArgs, RefitArgs, Span, StealArgs, TraverseArgs, TreeletsArgs,
+    BottomUpArgs, FitArgs, Frames, FrontArgs, GroupsArgs, Node, QueueArgs, RefitArgs, Span, StealArgs,
+    TraverseArgs, TreeletsArgs,
 };
 use nearmiss_kernels::bv::{Aabb, Axes, Linear, Obb, Volume};
 use nearmiss_kernels::bvh;
 use nearmiss_kernels::entry::{self, Entry};
+use nearmiss_kernels::math::Vec3;
 
 /// A bounding volume, with its kernels.
 pub trait Kernels: Volume {
@@ -26,10 +28,25 @@ pub trait Kernels: Volume {
     type Leaves: Entry<Args = TraverseArgs<Self>>;
     /// A walk a unit that was left over.
     type Units: Entry<Args = TraverseArgs<Self>>;
+    /// A pass over the last frame's front.
+    type Front: Entry<Args = FrontArgs<Self>>;
     /// A round of work queues.
     type Queue: Entry<Args = QueueArgs<Self>>;
     /// Work queues that help each other out.
     type Steal: Entry<Args = StealArgs<Self>>;
+
+    /// Fits the inner nodes that are not merged, for volumes that have such (see [`Volume::group`]).
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn fit_groups<R: Precision>(_: &Device, _: &GroupsArgs<R, Self>) -> Result<(), Error> {
+        Ok(())
+    }
+
+    /// The volume of such a node, from the points below it; none for volumes that have no such nodes.
+    fn of<R: Precision>(_: &[Vec3<R>]) -> Option<Self> {
+        None
+    }
 }
 
 impl Kernels for Aabb {
@@ -39,6 +56,7 @@ impl Kernels for Aabb {
     type BottomUp = entry::refit_bottom_up_aabb;
     type Leaves = entry::traverse_leaves_aabb;
     type Units = entry::traverse_units_aabb;
+    type Front = entry::traverse_front_aabb;
     type Queue = entry::traverse_queue_aabb;
     type Steal = entry::traverse_steal_aabb;
 }
@@ -50,6 +68,7 @@ impl Kernels for Linear {
     type BottomUp = entry::refit_bottom_up_linear;
     type Leaves = entry::traverse_leaves_linear;
     type Units = entry::traverse_units_linear;
+    type Front = entry::traverse_front_linear;
     type Queue = entry::traverse_queue_linear;
     type Steal = entry::traverse_steal_linear;
 }
@@ -61,8 +80,18 @@ impl Kernels for Obb {
     type BottomUp = entry::refit_bottom_up_obb;
     type Leaves = entry::traverse_leaves_obb;
     type Units = entry::traverse_units_obb;
+    type Front = entry::traverse_front_obb;
     type Queue = entry::traverse_queue_obb;
     type Steal = entry::traverse_steal_obb;
+
+    fn fit_groups<R: Precision>(device: &Device, args: &GroupsArgs<R, Self>) -> Result<(), Error> {
+        // One pair of siblings for each inner node; the first place is not used.
+        let inner = args.pair_parents.len as usize - 1;
+        device.launch::<R::GroupsObb>(device.blocks_for::<R::GroupsObb>(inner), args)
+    }
+    fn of<R: Precision>(points: &[Vec3<R>]) -> Option<Self> {
+        Some(Obb::of(points))
+    }
 }
 
 /// The volumes of a tree, kept on the device.
@@ -81,7 +110,8 @@ impl<V: Kernels> Volumes<V> {
         Ok(Volumes { nodes: device.buffer(2 * tree.leaves())?, axes })
     }
 
-    /// Fits the volumes of the leaves. Treelets do that in [`Volumes::refit`]: then nothing is done here.
+    /// Fits the volumes of the leaves, unless treelets do that in [`Volumes::refit`], and of the nodes of few leaves that
+    /// are not merged.
     ///
     /// # Errors
     /// Those of the device.
@@ -92,17 +122,31 @@ impl<V: Kernels> Volumes<V> {
         frames: Frames<R>,
         faces: Span<[u32; 3]>,
     ) -> Result<(), Error> {
-        if matches!(tree.way, Way::Treelets(_)) {
+        if !matches!(tree.way, Way::Treelets(_)) {
+            let args = FitArgs {
+                frames,
+                faces,
+                leaf_nodes: tree.leaf_nodes.span(),
+                links: tree.links.span(),
+                nodes: self.nodes.span(),
+            };
+            device.launch::<V::Fit<R>>(device.blocks_for::<V::Fit<R>>(tree.leaves()), &args)?;
+        }
+        if V::group(self.axes) == 0 {
             return Ok(());
         }
-        let args = FitArgs {
+        let args = GroupsArgs {
             frames,
             faces,
-            leaf_nodes: tree.leaf_nodes.span(),
+            triangles: tree.triangles(),
             links: tree.links.span(),
+            pair_parents: tree.pair_parents.span(),
+            firsts: tree.firsts.span(),
             nodes: self.nodes.span(),
+            first: tree.first(),
+            pad: 0,
         };
-        device.launch::<V::Fit<R>>(device.blocks_for::<V::Fit<R>>(tree.leaves()), &args)
+        V::fit_groups(device, &args)
     }
 
     /// Refits all other volumes, the way that the tree was made for; the positions are those of [`Volumes::fit`].
@@ -124,6 +168,7 @@ impl<V: Kernels> Volumes<V> {
                     links: tree.links.span(),
                     pair_parents: tree.pair_parents.span(),
                     leaf_nodes: tree.leaf_nodes.span(),
+                    firsts: tree.firsts.span(),
                     arrivals: arrivals.span(),
                     nodes: self.nodes.span(),
                     axes: self.axes,
@@ -179,6 +224,7 @@ impl<V: Kernels> Volumes<V> {
                 links: tree.links.span(),
                 nodes: self.nodes.span(),
                 levels: tree.levels.span(),
+                firsts: tree.firsts.span(),
                 from: from as u32,
                 to: to as u32,
                 axes: self.axes,
@@ -201,11 +247,29 @@ impl<V: Kernels> Volumes<V> {
         Ok(nodes)
     }
 
-    /// Checks the volumes as they lie on the device.
+    /// Checks the volumes as they lie on the device: merges, and nodes of few leaves against the points below them.
+    /// `frames` has the positions that they were fitted to, at t = 0 and, when anything moves, at t = 1.
     ///
     /// # Errors
     /// [`Error::Bug`] with the first violation; those of the device.
-    pub fn check(&self, tree: &Tree) -> Result<(), Error> {
-        bvh::check_volumes(&tree.download()?, &self.download()?, self.axes).map_err(broken)
+    pub fn check<R: Precision>(
+        &self,
+        tree: &Tree,
+        faces: &[[u32; 3]],
+        frames: &[Vec<Vec3<R>>],
+    ) -> Result<(), Error> {
+        let links = tree.download()?;
+        let leaves = tree.leaf_nodes.read(tree.leaves())?;
+        let fitted = |first: u32, last: u32| {
+            if last - first >= V::group(self.axes) {
+                return None;
+            }
+            let triangles =
+                leaves[first as usize..=last as usize].iter().map(|&at| links[at as usize].triangle());
+            let vertices = triangles.flat_map(|t| faces[t as usize]);
+            let points = vertices.flat_map(|v| frames.iter().map(move |frame| frame[v as usize]));
+            V::of(&points.collect::<Vec<_>>())
+        };
+        bvh::check_volumes(&links, &self.download()?, self.axes, fitted).map_err(broken)
     }
 }

@@ -51,6 +51,25 @@ pub struct StealShape {
     pub eager: bool,
 }
 
+/// A front of pairs of nodes, kept from frame to frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct FrontShape {
+    /// The queues by which pairs that meet anew go deeper. Their units come from one list, whatever `balance` says.
+    pub queue: QueueShape,
+    /// Every so many frames pairs that are apart give way to an ancestor that is; 0 for never. A test more for each pair,
+    /// and a shorter front.
+    pub prune_every: u32,
+    /// Whether the front is given up while it costs more overlap tests than a descent from the roots.
+    pub drop: bool,
+}
+
+impl FrontShape {
+    /// Native queues; pruned every fourth frame, given up where it does not pay.
+    pub const fn native() -> FrontShape {
+        FrontShape { queue: QueueShape::native(), prune_every: 4, drop: true }
+    }
+}
+
 impl QueueShape {
     /// Units that a queue can hold on chip.
     pub const ROOM: u32 = ROOM;

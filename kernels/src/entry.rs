@@ -7,7 +7,7 @@ use crate::queue::worker;
 use crate::stage::construct::{morton, sort, tree, treelet};
 use crate::stage::narrow::{discrete, reject, sift, solve};
 use crate::stage::refit::{bottom_up, levels, treelets};
-use crate::stage::traverse::{queue, steal};
+use crate::stage::traverse::{front, queue, steal};
 use crate::stage::{balance, fit, traverse};
 use bytemuck::Pod;
 
@@ -100,6 +100,8 @@ kernels! {
     fit_linear_f64: fit::fit::<f64, Linear, B>, [FitArgs<f64, Linear>], WIDE, 0;
     fit_obb_f32: fit::fit::<f32, Obb, B>, [FitArgs<f32, Obb>], WIDE, 0;
     fit_obb_f64: fit::fit::<f64, Obb, B>, [FitArgs<f64, Obb>], WIDE, 0;
+    fit_groups_obb_f32: fit::groups::<f32, B>, [GroupsArgs<f32, Obb>], NARROW, 0;
+    fit_groups_obb_f64: fit::groups::<f64, B>, [GroupsArgs<f64, Obb>], NARROW, 0;
     refit_levels_aabb: levels::levels::<Aabb, B>, [RefitArgs<Aabb>], WIDE, 0;
     refit_levels_linear: levels::levels::<Linear, B>, [RefitArgs<Linear>], WIDE, 0;
     refit_levels_obb: levels::levels::<Obb, B>, [RefitArgs<Obb>], WIDE, 0;
@@ -118,6 +120,9 @@ kernels! {
     traverse_units_linear: traverse::units::<Linear, B>, [TraverseArgs<Linear>], NARROW, traverse::shared_bytes(NARROW);
     traverse_leaves_obb: traverse::leaves::<Obb, B>, [TraverseArgs<Obb>], NARROW, traverse::shared_bytes(NARROW);
     traverse_units_obb: traverse::units::<Obb, B>, [TraverseArgs<Obb>], NARROW, traverse::shared_bytes(NARROW);
+    traverse_front_aabb: front::front::<Aabb, B>, [FrontArgs<Aabb>], WIDE, 0;
+    traverse_front_linear: front::front::<Linear, B>, [FrontArgs<Linear>], WIDE, 0;
+    traverse_front_obb: front::front::<Obb, B>, [FrontArgs<Obb>], WIDE, 0;
     traverse_queue_aabb: queue::queue::<Aabb, B>, [QueueArgs<Aabb>], NARROW, worker::shared_bytes(NARROW);
     traverse_steal_aabb: steal::steal::<Aabb, B>, [StealArgs<Aabb>], NARROW, worker::shared_bytes(NARROW);
     traverse_queue_linear: queue::queue::<Linear, B>, [QueueArgs<Linear>], NARROW, worker::shared_bytes(NARROW);

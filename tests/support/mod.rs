@@ -7,6 +7,7 @@ pub use data::data;
 
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::{Body, Mesh, Positions};
+use nearmiss::query::{Bv, FrontShape, QueueShape, Refit, StealShape, Traversal};
 use nearmiss::{Device, Query, Session};
 use std::io::Read;
 
@@ -35,6 +36,30 @@ pub fn microscope(order: Order) -> Device {
 
 /// Every order that the tests run.
 pub const ORDERS: [Order; 3] = [Order::Forward, Order::Reverse, Order::Shuffled(20_261_121)];
+
+/// Every walk, some with sizes so small that everything spills and grows.
+pub fn walks() -> Vec<Traversal> {
+    let small = QueueShape { cores: Some(5), local: 3, segment: 2, take: 1, ..QueueShape::native() };
+    vec![
+        Traversal::PerLeaf { budget: None },
+        Traversal::PerLeaf { budget: Some(3) },
+        Traversal::Queue(QueueShape { cores: Some(9), ..QueueShape::native() }),
+        Traversal::Queue(small),
+        Traversal::Queue(QueueShape { segment: 999, ..QueueShape::gtx285() }),
+        Traversal::Steal(StealShape { cores: Some(9), ..StealShape::native() }),
+        Traversal::Front(FrontShape { queue: small, ..FrontShape::native() }),
+    ]
+}
+
+/// That question with every volume, every walk and every refit.
+pub fn ways(query: Query) -> impl Iterator<Item = Query> {
+    let refits = [Refit::Levels, Refit::Treelets, Refit::BottomUp];
+    Bv::ALL.into_iter().flat_map(move |bv| {
+        walks().into_iter().flat_map(move |walk| {
+            refits.map(|refit| Query { bv: Some(bv), traversal: Some(walk), refit: Some(refit), ..query })
+        })
+    })
+}
 
 /// One answer on one device.
 pub fn ask(device: Device, bodies: Vec<Body>, query: Query) -> nearmiss::Contacts {

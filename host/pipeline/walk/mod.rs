@@ -1,5 +1,6 @@
 //! Traverse: the ways from a tree (or two) to candidates. Each is a strategy with its own memory; all give one set.
 
+mod front;
 mod per_leaf;
 mod queue;
 mod segments;
@@ -11,6 +12,7 @@ use super::volumes::{Kernels, Volumes};
 use crate::device::Device;
 use crate::error::Error;
 use crate::query::{Query, Traversal};
+use front::Front;
 use nearmiss_kernels::abi::{KEEP_ADJACENT, Pair, PairArgs, SELF, Span};
 use nearmiss_kernels::entry::Entry;
 use per_leaf::PerLeaf;
@@ -27,9 +29,11 @@ pub struct Walked<'a, V> {
     pub faces: Span<[u32; 3]>,
     /// Out: candidate triangle pairs.
     pub pairs: Span<Pair>,
+    /// Out, with [`FRONT`](nearmiss_kernels::abi::FRONT): pairs of nodes where the descent ended.
+    pub ends: Span<Pair>,
     /// Counters, see [`nearmiss_kernels::abi::counter`].
     pub counters: Span<u64>,
-    /// [`SELF`], [`KEEP_ADJACENT`].
+    /// [`SELF`], [`KEEP_ADJACENT`], [`FRONT`](nearmiss_kernels::abi::FRONT).
     pub flags: u32,
 }
 
@@ -42,7 +46,7 @@ impl<V: Kernels> Walked<'_, V> {
             nodes: target.1.nodes.span(),
             faces: self.faces,
             pairs: self.pairs,
-            ends: Span::EMPTY,
+            ends: self.ends,
             counters: self.counters,
             flags: self.flags,
             local,
@@ -50,10 +54,10 @@ impl<V: Kernels> Walked<'_, V> {
     }
 }
 
-/// Blocks of a kernel by pairs of nodes that a machine runs at once: half as many as its lanes allow, since registers (64 to
-/// 127 a lane) and shared memory (12 KB a block) leave room for no more.
+/// Blocks of a kernel by pairs of nodes that a machine works with best: a quarter of what its lanes allow. On an H200 that
+/// is 8 of 64 lanes a processor; 6 and 10 are slower for most volumes, 16 for all (measured, `benches/NOTES.md`).
 fn resident<E: Entry>(device: &Device) -> u32 {
-    device.blocks_striding::<E>(u32::MAX as usize).div_ceil(2)
+    device.blocks_striding::<E>(u32::MAX as usize).div_ceil(4)
 }
 
 /// A way through the trees.
@@ -98,6 +102,7 @@ pub fn walk<V: Kernels>(device: &Device, query: &Query, triangles: usize) -> Res
         Traversal::PerLeaf { budget } => Box::new(PerLeaf::new(device, budget, triangles)?),
         Traversal::Queue(shape) => Box::new(Queue::new::<V>(device, shape)?),
         Traversal::Steal(shape) => Box::new(Steal::new::<V>(device, shape)?),
+        Traversal::Front(shape) => Box::new(Front::new::<V>(device, shape, triangles)?),
     })
 }
 

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::pipeline::room::Growing;
 use crate::pipeline::volumes::Kernels;
 use crate::query::{Balance, QueueShape};
-use nearmiss_kernels::abi::{BalanceArgs, LAST, QueueArgs, START, counter};
+use nearmiss_kernels::abi::{BalanceArgs, LAST, Pair, QueueArgs, START, Span, counter};
 use nearmiss_kernels::entry::balance_copy;
 
 /// Rounds that are launched before the host looks whether anything is left, as long as it does not know. Even: the two
@@ -32,13 +32,23 @@ pub struct Queue {
     /// Copy: where each queue's units begin among all.
     starts: Buffer<u64>,
     plan: Plan,
-    /// The longest plan of late: each frame takes one off, since a machine's rounds vary from run to run.
-    longest: u32,
     balances: Vec<[Mark; 2]>,
 }
 
-/// How many rounds to launch; `None`: look.
-struct Plan(Option<u32>);
+/// How many rounds to launch, from the roots and from a seed; `None`: look.
+#[derive(Default)]
+struct Plan {
+    rounds: [Option<u32>; 2],
+    /// Whether the last launch was from a seed.
+    seeded: bool,
+}
+
+impl Plan {
+    /// The rounds of the last kind of launch.
+    fn of_last(&mut self) -> &mut Option<u32> {
+        &mut self.rounds[usize::from(self.seeded)]
+    }
+}
 
 impl Growing for Plan {
     fn counter(&self) -> u32 {
@@ -50,7 +60,7 @@ impl Growing for Plan {
     fn grow(&mut self, _: &Device, counters: &[u64]) -> Result<bool, Error> {
         let short = self.is_short(counters);
         if short {
-            self.0 = None;
+            *self.of_last() = None;
         }
         Ok(short)
     }
@@ -75,8 +85,7 @@ impl Queue {
             counts: [words(counts[0])?, words(counts[1])?],
             idle: words(rounds)?,
             starts: words(counts[1])?,
-            plan: Plan(None),
-            longest: 0,
+            plan: Plan::default(),
             balances: Vec::new(),
         })
     }
@@ -155,40 +164,59 @@ impl Queue {
         }
     }
 
-    /// Rounds that share one list: as many as are planned, or until the host sees that nothing is left.
-    fn by_view<V: Kernels>(&mut self, given: &Walked<V>) -> Result<(), Error> {
-        if let Some(rounds) = self.plan.0 {
-            self.counts[0].clear()?;
-            self.idle.clear()?;
+    /// Rounds that share one list: as many as are planned, or until the host sees that nothing is left. They begin with
+    /// the roots, or with the units that `seed` writes to the list and counts.
+    fn by_view<V: Kernels>(&mut self, given: &Walked<V>, seed: Option<Seed>) -> Result<(), Error> {
+        let first = if seed.is_some() { 0 } else { START };
+        let begin = |queue: &mut Self, left: u64| -> Result<(), Error> {
+            queue.counts[0].clear()?;
+            queue.counts[0].write(&[left])?;
+            queue.idle.clear()
+        };
+        begin(self, 0)?;
+        if let Some(seed) = seed {
+            seed(self.units.span(0), self.counts[0].span())?;
+        }
+        self.plan.seeded = seed.is_some();
+        if let Some(rounds) = *self.plan.of_last() {
             return (0..rounds).try_for_each(|round| {
-                let start = if round == 0 { START } else { 0 };
+                let start = if round == 0 { first } else { 0 };
                 let last = if round + 1 == rounds { LAST } else { 0 };
                 self.round(given, round as usize, (round, start | last))
             });
         }
-        let (mut left, mut flags) = (0, START);
+        let mut flags = first;
         loop {
-            self.counts[0].clear()?;
-            self.counts[0].write(&[left])?;
-            self.idle.clear()?;
             for round in 0..BATCH {
                 self.round(given, round as usize, (round, flags))?;
                 flags = 0;
             }
-            left = self.counts[0].read(BATCH as usize + 1)?[BATCH as usize];
+            let left = self.counts[0].read(BATCH as usize + 1)?[BATCH as usize];
             if left == 0 {
                 return Ok(());
             }
+            begin(self, left)?;
         }
     }
+
+    /// Rounds that share one list and begin with what `seed` writes.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn launch_from<V: Kernels>(&mut self, given: &Walked<V>, seed: Seed) -> Result<(), Error> {
+        self.by_view(given, Some(seed))
+    }
 }
+
+/// Writes units to a list and counts them.
+pub type Seed<'a> = &'a dyn Fn(Span<Pair>, Span<u64>) -> Result<(), Error>;
 
 impl<V: Kernels> Walk<V> for Queue {
     fn launch(&mut self, given: &Walked<V>) -> Result<(), Error> {
         self.balances.clear();
         match self.shape.balance {
             Balance::Copy => self.by_copy(given),
-            Balance::View => self.by_view(given),
+            Balance::View => self.by_view(given, None),
         }
     }
 
@@ -197,14 +225,15 @@ impl<V: Kernels> Walk<V> for Queue {
     }
 
     fn finish(&mut self, counters: &[u64]) -> Result<(), Error> {
+        // A machine's rounds vary from run to run: a plan shrinks by one a frame at most.
         let rounds = counters[counter::QUEUE_ROUNDS as usize] + MORE_ROUNDS as u64;
-        let rounds = rounds.max(self.longest.saturating_sub(1) as u64);
-        self.plan.0 = (rounds <= MOST_ROUNDS as u64).then_some(rounds as u32);
-        self.longest = self.plan.0.unwrap_or(0);
+        let rounds = rounds.max(self.plan.of_last().unwrap_or(0).saturating_sub(1) as u64);
+        *self.plan.of_last() = (rounds <= MOST_ROUNDS as u64).then_some(rounds as u32);
         Ok(())
     }
 
     fn balance_ms(&self) -> Result<f64, Error> {
-        self.balances.iter().map(|[from, to]| from.to(to)).sum()
+        // From 0.0: the sum of nothing would be -0.0.
+        self.balances.iter().try_fold(0.0, |sum, [from, to]| Ok(sum + from.to(to)?))
     }
 }

@@ -104,6 +104,8 @@ arguments! {
         pair_parents: Span<u32>,
         /// Out: each leaf's node.
         leaf_nodes: Span<u32>,
+        /// Out: the first leaf below each pair of siblings; empty where nobody asks.
+        firsts: Span<u32>,
         /// How many leaves.
         leaves: u32,
         /// Added to a triangle's index in its body.
@@ -158,6 +160,27 @@ arguments! {
         /// Out: the leaves.
         nodes: Span<Node<V>>,
     }
+    /// `fit_groups_obb`: the oriented boxes of inner nodes of few leaves, around the points below them.
+    GroupsArgs<R: Real, V: Pod> {
+        /// Positions.
+        frames: Frames<R>,
+        /// Vertex indices of every triangle.
+        faces: Span<[u32; 3]>,
+        /// Triangles in leaf order, counted from the body's first.
+        triangles: Span<u32>,
+        /// The tree.
+        links: Span<Link>,
+        /// The parent of each pair of siblings.
+        pair_parents: Span<u32>,
+        /// The first leaf below each pair of siblings.
+        firsts: Span<u32>,
+        /// Out: the nodes.
+        nodes: Span<Node<V>>,
+        /// The body's first triangle.
+        first: u32,
+        /// Nothing.
+        pad: u32,
+    }
     /// `refit_levels`: the volumes of levels `from` to `to`, deepest first.
     RefitArgs<V: Pod> {
         /// The tree.
@@ -166,6 +189,8 @@ arguments! {
         nodes: Span<Node<V>>,
         /// Number of levels, then where each begins.
         levels: Span<u32>,
+        /// The first leaf below each pair of siblings; empty where all nodes are merged.
+        firsts: Span<u32>,
         /// The first level (nearest the root).
         from: u32,
         /// Behind the last level. More than one level only in a launch of one block.
@@ -208,6 +233,8 @@ arguments! {
         pair_parents: Span<u32>,
         /// Each leaf's node.
         leaf_nodes: Span<u32>,
+        /// The first leaf below each pair of siblings; empty where all nodes are merged.
+        firsts: Span<u32>,
         /// For each pair of siblings: how many came by so far, in all launches.
         arrivals: Span<u64>,
         /// The volumes: those of the leaves in, the others out.
@@ -361,8 +388,12 @@ pub mod counter {
     pub const MOVES: u32 = ENDS + 6;
     /// Units that a block took from the pool.
     pub const STOLEN: u32 = ENDS + 7;
+    /// Overlap tests made for pairs of the front.
+    pub const FRONT_TESTS: u32 = ENDS + 8;
+    /// Pairs of the front that gave way to an ancestor.
+    pub const PRUNED: u32 = ENDS + 9;
     /// How many counters there are.
-    pub const COUNT: u32 = ENDS + 8;
+    pub const COUNT: u32 = ENDS + 10;
 }
 /// Rounds of the traversal that may spill; one more, without a budget, ends it.
 pub const ROUNDS: u32 = 4;

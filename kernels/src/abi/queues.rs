@@ -54,6 +54,25 @@ arguments! {
         /// Nothing.
         pad: u32,
     }
+    /// `traverse_front`: a pass over the last frame's front.
+    FrontArgs<V: Pod> {
+        /// The trees, and where candidates and ends go.
+        to: PairArgs<V>,
+        /// Where the last descent ended.
+        front: Span<Pair>,
+        /// Out: pairs that go deeper.
+        units: Span<Pair>,
+        /// How many they are.
+        unit_count: Span<u64>,
+        /// The parent of each pair of siblings of the first tree.
+        query_parents: Span<u32>,
+        /// The same of the second tree.
+        node_parents: Span<u32>,
+        /// Pairs of the front.
+        count: u32,
+        /// Bits: [`PRUNE`].
+        flags: u32,
+    }
     /// `balance_copy`: evens the blocks' segments.
     BalanceArgs {
         /// Units.
@@ -104,6 +123,8 @@ pub const FRONT: u32 = 4;
 pub const START: u32 = 1;
 /// [`QueueArgs::flags`]: what is left then is counted as unfinished.
 pub const LAST: u32 = 2;
+/// [`FrontArgs::flags`]: pairs give way to an ancestor that is apart.
+pub const PRUNE: u32 = 1;
 /// [`StealArgs::flags`]: units are offered whether or not a block looks for some.
 pub const EAGER: u32 = 1;
 

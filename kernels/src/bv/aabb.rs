@@ -53,6 +53,8 @@ impl Aabb {
 }
 
 impl Volume for Aabb {
+    const NESTS: bool = true;
+
     #[inline]
     fn still<R: Real>(corners: [Vec3<R>; 3]) -> Self {
         Aabb::of(corners)

@@ -90,6 +90,17 @@ impl Covariance {
         }
     }
 
+    /// About the mean of `count` vectors with this sum, all of which were added.
+    #[inline]
+    pub fn about(mut self, sum: Vec3<f32>, count: f32) -> Covariance {
+        let mean = sum.map(|x| x / count);
+        for k in 0..3 {
+            self.on[k] -= sum[k] * mean[k];
+            self.off[k] -= sum[(k + 1) % 3] * mean[(k + 2) % 3];
+        }
+        self
+    }
+
     /// The principal axes, those of the largest and of the second variance first; the world's where there are none
     /// (no variance, NaN). Cyclic Jacobi rotations on the matrix divided by its largest entry.
     #[inline]
@@ -145,5 +156,5 @@ impl Covariance {
     }
 }
 
-/// Sweeps of Jacobi rotations at most: convergence is quadratic, and f32 is reached after four to five.
-const SWEEPS: u32 = 6;
+/// Sweeps of Jacobi rotations at most. Convergence is quadratic; after three, boxes are as small as after six.
+const SWEEPS: u32 = 3;

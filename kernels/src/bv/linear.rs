@@ -44,6 +44,8 @@ fn bounded(b: Aabb) -> Aabb {
 }
 
 impl Volume for Linear {
+    const NESTS: bool = false;
+
     /// The same box at both ends.
     #[inline]
     fn still<R: Real>(corners: [Vec3<R>; 3]) -> Self {

@@ -9,11 +9,13 @@
 mod aabb;
 mod axes;
 mod contain;
+mod group;
 mod linear;
 mod obb;
 
 pub use aabb::Aabb;
 pub use contain::Contain;
+pub use group::{GROUP, Points};
 pub use linear::Linear;
 pub use obb::Obb;
 
@@ -22,12 +24,20 @@ use bytemuck::{Pod, Zeroable};
 
 /// A bounding volume: what a node of the tree says about everything below it.
 pub trait Volume: Pod + Sync + Send + core::fmt::Debug + PartialEq {
+    /// Whether overlap tests nest: whatever lies in two volumes that are apart is apart too. Not so where a slack, for
+    /// safety, makes a small volume meet what a large one around it does not.
+    const NESTS: bool;
     /// Around a triangle that stands still.
     fn still<R: Real>(corners: [Vec3<R>; 3]) -> Self;
     /// Around a triangle whose corners move linearly from t0 to t1: holds it at every t in [0, 1].
     fn moving<R: Real>(t0: [Vec3<R>; 3], t1: [Vec3<R>; 3]) -> Self;
     /// Around both, by the rule of axes (only oriented boxes have one).
     fn merge(&self, other: &Self, axes: Axes) -> Self;
+    /// Inner nodes of up to so many leaves are fitted to the points below them; the others are merged. 0: all are merged.
+    #[inline(always)]
+    fn group(_: Axes) -> u32 {
+        0
+    }
     /// False only if they certainly share no point (for a moving volume: at no t in [0, 1]).
     fn overlaps(&self, other: &Self) -> bool;
 }
@@ -38,7 +48,8 @@ pub trait Volume: Pod + Sync + Send + core::fmt::Debug + PartialEq {
 pub struct Axes(pub u32);
 
 impl Axes {
-    /// The principal axes of what both children hold, or a child's or the world's where these have less surface.
+    /// Nodes of up to [`GROUP`] leaves take the principal axes of the points below them, or the world's where these have
+    /// less surface; larger ones those of the child whose axes have less surface.
     pub const PCA: Axes = Axes(0);
     /// Those of the larger child: cheap, and a little looser.
     pub const CHILD: Axes = Axes(1);

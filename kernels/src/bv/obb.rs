@@ -20,10 +20,10 @@
 //!   `(tr E/2 - E) P Q^T + P Q^T (tr G/2 - G)`, at most `6.5 mu`: 104u; `28u` as above, and 11u of roundings in R and
 //!   in the sums. Sum: 152u S.
 //!
-//! `BOX_APART` is 256u, and what is lost when it is multiplied and added is below 3u.
+//! `BOX_APART` is 256u, and what is lost when it is multiplied, added and compared with a difference is below 4u.
 
-use super::axes::{self, Covariance, Frame, three};
-use super::{Axes, Volume};
+use super::axes::{self, Frame, three};
+use super::{Axes, GROUP, Points, Volume};
 use crate::math::tolerance::{
     BOX_APART, BOX_APART_UNDERFLOW, BOX_CHILD, BOX_LIMIT, BOX_POINT, BOX_UNDERFLOW, BOX_UP,
 };
@@ -49,9 +49,6 @@ pub struct Obb {
 }
 const _: () = assert!(size_of::<Obb>() == 56);
 
-/// The two children of a box, as its axes see them: centre and reach along each axis.
-type Shadow = [Vec3<f32>; 2];
-
 impl Obb {
     /// Holds every point.
     pub const EVERYTHING: Obb = Obb {
@@ -71,7 +68,7 @@ impl Obb {
 
     /// From its parts; the box of everything if one is too large for sums of products, or NaN.
     #[inline]
-    fn new(c: Vec3<f32>, frame: Frame, h: Vec3<f32>) -> Obb {
+    pub(super) fn new(c: Vec3<f32>, frame: Frame, h: Vec3<f32>) -> Obb {
         let fits = |x: f32| x.abs() <= BOX_LIMIT;
         if !(fits(c[0]) & fits(c[1]) & fits(c[2]) & fits(h[0]) & fits(h[1]) & fits(h[2])) {
             return Obb::EVERYTHING;
@@ -85,7 +82,7 @@ impl Obb {
     ///
     /// `s = a . q` errs by at most four roundings (five, the first tiny, for f64) and, near zero, six underflows.
     #[inline]
-    fn around<R: Real, const N: usize>(points: &[Vec3<R>; N], frame: Frame) -> Obb {
+    fn around<R: Real>(points: &[Vec3<R>; 3], frame: Frame) -> Obb {
         let a = three(frame);
         let base = points[0];
         let (mut lo, mut hi) = (Vec3([0.0; 3]), Vec3([0.0; 3]));
@@ -114,62 +111,64 @@ impl Obb {
         Obb::new(c, frame, h)
     }
 
-    /// The box's centre and reach along the axes `a`, seen from `from`.
+    /// The box around this one and another, with the axes of this one: `r` is how far the other reaches along them from
+    /// its centre.
     #[inline]
-    fn shadow(&self, a: &[Vec3<f32>; 3], from: Vec3<f32>) -> Shadow {
-        let (t, b, g) = (Vec3(self.c) - from, self.axes(), self.h);
-        let reach =
-            |a: Vec3<f32>| g[0] * a.dot(b[0]).abs() + g[1] * a.dot(b[1]).abs() + g[2] * a.dot(b[2]).abs();
-        [Vec3([a[0].dot(t), a[1].dot(t), a[2].dot(t)]), Vec3([reach(a[0]), reach(a[1]), reach(a[2])])]
-    }
-
-    /// The surface of the box around both with these axes, in units of `scale²`, without paddings.
-    #[inline]
-    fn surface(&self, o: &Obb, frame: Frame, from: Vec3<f32>, scale: f32) -> f32 {
-        let a = three(frame);
-        let ([s, r], [t, q]) = (self.shadow(&a, from), o.shadow(&a, from));
-        let e = ((s + r).max(t + q) - (s - r).min(t - q)).map(|x| x / scale);
-        e[0] * e[1] + e[1] * e[2] + e[2] * e[0]
-    }
-
-    /// The box around both with these axes.
-    #[inline]
-    fn union(&self, o: &Obb, frame: Frame, from: Vec3<f32>) -> Obb {
-        let a = three(frame);
-        let ([s, r], [t, q]) = (self.shadow(&a, from), o.shadow(&a, from));
-        let mid = ((s + r).max(t + q) + (s - r).min(t - q)) * 0.5;
-        let c = from + (a[0] * mid[0] + a[1] * mid[1] + a[2] * mid[2]);
+    fn union(&self, o: &Obb, r: Vec3<f32>) -> Obb {
+        let (a, c, h) = (self.axes(), Vec3(self.c), Vec3(self.h));
+        let along = |t: Vec3<f32>| Vec3([a[0].dot(t), a[1].dot(t), a[2].dot(t)]);
+        let t = along(Vec3(o.c) - c);
+        let mid = (h.max(t + r) + (-h).min(t - r)) * 0.5;
+        let c = c + (a[0] * mid[0] + a[1] * mid[1] + a[2] * mid[2]);
         let reach = |b: &Obb, r: Vec3<f32>| {
             let t = Vec3(b.c) - c;
             let [x, y, z] = t.map(Real::abs).0;
             let pad = BOX_CHILD * ((b.h[0] + b.h[1] + b.h[2]) + (x + y + z)) + BOX_UNDERFLOW;
-            let s = Vec3([a[0].dot(t), a[1].dot(t), a[2].dot(t)]);
-            (s.map(Real::abs) + r).map(|x| (x + pad) * BOX_UP)
+            (along(t).map(Real::abs) + r).map(|x| (x + pad) * BOX_UP)
         };
-        Obb::new(c, frame, reach(self, r).max(reach(o, q)))
-    }
-
-    /// The principal axes of both boxes, each a solid of the same mass.
-    #[inline]
-    fn principal(&self, o: &Obb, scale: f32) -> Frame {
-        let mut m = Covariance::ZERO;
-        for b in [self, o] {
-            for (axis, h) in b.axes().into_iter().zip(b.h) {
-                m.add(axis * (SOLID * (h / scale)));
-            }
-        }
-        // Both centres are half of their difference away from the mean.
-        let half = (Vec3(o.c) - Vec3(self.c)).map(|x| 0.5 * (x / scale));
-        m.add(half);
-        m.add(half);
-        m.axes()
+        Obb::new(c, [Vec3(self.a0), Vec3(self.a1)], reach(self, h).max(reach(o, r)))
     }
 }
 
-/// Standard deviation of a solid slab, as a share of its half extent: the root of 1/3.
-const SOLID: f32 = 0.577_350_26;
+/// The corners of a triangle at both ends of the step, gone through without a loop: they stay in registers.
+struct Corners<R>([Vec3<R>; 6]);
+
+impl<R: Real> Points<R> for Corners<R> {
+    #[inline(always)]
+    fn first(&self) -> Vec3<R> {
+        self.0[0]
+    }
+    #[inline(always)]
+    fn each(&self, mut visit: impl FnMut(Vec3<R>)) {
+        let [p, s, q, t, r, u] = self.0;
+        visit(p);
+        visit(s);
+        visit(q);
+        visit(t);
+        visit(r);
+        visit(u);
+    }
+}
+
+/// The surface, in no particular unit and without paddings, of the box around slabs of half extents h about the
+/// origin and others of r about t.
+#[inline]
+fn surface(h: Vec3<f32>, r: Vec3<f32>, t: Vec3<f32>) -> f32 {
+    let t = t.map(Real::abs);
+    let e = h.max(r + t) + h.max(r - t);
+    e[0] * e[1] + e[1] * e[2] + e[2] * e[0]
+}
+
+/// One of two, word by word: what a machine may select without keeping either in memory.
+#[inline]
+fn select(first: bool, x: [f32; 3], y: [f32; 3]) -> [f32; 3] {
+    let one = |k: usize| if first { x[k] } else { y[k] };
+    [one(0), one(1), one(2)]
+}
 
 impl Volume for Obb {
+    const NESTS: bool = false;
+
     /// The axes are the longest edge, across it, and the normal: no rectangle around a triangle is smaller, and they
     /// cost no rotations.
     #[inline]
@@ -179,47 +178,54 @@ impl Volume for Obb {
         Obb::around(&corners, axes::of_edges(e))
     }
 
-    /// The hull of both triangles holds the moving one. The axes are the principal axes of its six corners.
-    #[inline]
+    /// The hull of both triangles holds the moving one: fitted as a group is, to six points.
+    #[inline(always)]
     fn moving<R: Real>([p, q, r]: [Vec3<R>; 3], [s, t, u]: [Vec3<R>; 3]) -> Self {
-        let d = scaled([q, r, s, t, u].map(|x| (x - p).narrow()));
-        let mean = d.iter().fold(Vec3([0.0; 3]), |sum, &x| sum + x).map(|x| x / 6.0);
-        let mut m = Covariance::ZERO;
-        m.add(mean);
-        d.iter().for_each(|&x| m.add(x - mean));
-        Obb::around(&[p, q, r, s, t, u], m.axes())
+        Obb::of(&Corners([p, s, q, t, r, u]))
     }
 
+    /// Along its own axes a box reaches as far as its extents, so only the other's reach is computed, for both choices
+    /// from the same nine products. Sizes beyond `2^60` or below `2^-60` may take the axes with more surface.
+    #[inline]
     fn merge(&self, o: &Self, rule: Axes) -> Self {
-        if self.slack == f32::INFINITY || o.slack == f32::INFINITY {
+        if (self.slack == f32::INFINITY) | (o.slack == f32::INFINITY) {
             return Obb::EVERYTHING;
         }
-        let from = (Vec3(self.c) + Vec3(o.c)) * 0.5;
-        let t = (Vec3(o.c) - Vec3(self.c)).map(Real::abs);
-        let scale = (self.h[0] + self.h[1] + self.h[2]) + (o.h[0] + o.h[1] + o.h[2]) + (t[0] + t[1] + t[2]);
-        let (mut one, mut two) = ([Vec3(self.a0), Vec3(self.a1)], [Vec3(o.a0), Vec3(o.a1)]);
-        if self.slack < o.slack {
-            (one, two) = (two, one);
-        }
-        let mut frame = one;
-        if rule != Axes::CHILD {
-            // The least surface; the first of equals.
-            let mut least = self.surface(o, one, from, scale);
-            for other in [two, axes::WORLD, self.principal(o, scale)] {
-                let surface = self.surface(o, other, from, scale);
-                if surface < least {
-                    (frame, least) = (other, surface);
-                }
-            }
-        }
-        self.union(o, frame, from)
+        let (a, b) = (self.axes(), o.axes());
+        let (g, h, t) = (Vec3(self.h), Vec3(o.h), Vec3(o.c) - Vec3(self.c));
+        let q = a.map(|a| Vec3([a.dot(b[0]).abs(), a.dot(b[1]).abs(), a.dot(b[2]).abs()]));
+        let column = |j: usize| Vec3([q[0][j], q[1][j], q[2][j]]);
+        let theirs = Vec3([h.dot(q[0]), h.dot(q[1]), h.dot(q[2])]);
+        let mine = Vec3([g.dot(column(0)), g.dot(column(1)), g.dot(column(2))]);
+        let along = |a: [Vec3<f32>; 3]| Vec3([a[0].dot(t), a[1].dot(t), a[2].dot(t)]);
+        let first = if rule == Axes::CHILD {
+            self.slack >= o.slack
+        } else {
+            surface(g, theirs, along(a)) <= surface(h, mine, along(b))
+        };
+        let pick = |x: [f32; 3], y: [f32; 3]| select(first, x, y);
+        let of = |p: &Obb, q: &Obb| Obb {
+            c: pick(p.c, q.c),
+            a0: pick(p.a0, q.a0),
+            a1: pick(p.a1, q.a1),
+            h: pick(p.h, q.h),
+            slack: 0.0,
+            pad: 0,
+        };
+        of(self, o).union(&of(o, self), Vec3(pick(theirs.0, mine.0)))
     }
 
-    /// Faces first: they separate most boxes that are apart. The slack is for all axes alike; see the module's text.
-    /// Every comparison with NaN is false, which the box of everything relies on.
+    #[inline(always)]
+    fn group(axes: Axes) -> u32 {
+        if axes == Axes::CHILD { 0 } else { GROUP }
+    }
+
+    /// Faces first, all six at once: they separate nearly all boxes that are apart. The slack is for all axes alike;
+    /// see the module's text. Every comparison with NaN is false, which the box of everything relies on.
+    #[inline]
     fn overlaps(&self, o: &Self) -> bool {
         let (a, b) = (self.axes(), o.axes());
-        let (g, h) = (self.h, o.h);
+        let (g, h) = (Vec3(self.h), Vec3(o.h));
         let t = Vec3(o.c) - Vec3(self.c);
         let slack = self.slack + o.slack;
         let r = a.map(|a| Vec3([a.dot(b[0]), a.dot(b[1]), a.dot(b[2])]));
@@ -227,14 +233,9 @@ impl Volume for Obb {
         let s = Vec3([a[0].dot(t), a[1].dot(t), a[2].dot(t)]);
         let mut apart = false;
         for i in 0..3 {
-            apart |= s[i].abs() > (g[i] + Vec3(h).dot(q[i])) + slack;
-        }
-        if apart {
-            return false;
-        }
-        for j in 0..3 {
-            let column = Vec3([q[0][j], q[1][j], q[2][j]]);
-            apart |= b[j].dot(t).abs() > (h[j] + Vec3(g).dot(column)) + slack;
+            let column = Vec3([q[0][i], q[1][i], q[2][i]]);
+            apart |= s[i].abs() - (g[i] + h.dot(q[i])) > slack;
+            apart |= b[i].dot(t).abs() - (h[i] + g.dot(column)) > slack;
         }
         if apart {
             return false;
@@ -246,7 +247,7 @@ impl Volume for Obb {
                 let along = (s[l] * r[k][j] - s[k] * r[l][j]).abs();
                 let mine = g[k] * q[l][j] + g[l] * q[k][j];
                 let other = h[m] * q[i][n] + h[n] * q[i][m];
-                apart |= along > (mine + other) + slack;
+                apart |= along - (mine + other) > slack;
             }
         }
         !apart
@@ -255,7 +256,7 @@ impl Volume for Obb {
 
 /// The vectors, divided by their largest component, so that squares neither overflow nor vanish.
 #[inline]
-fn scaled<const N: usize>(v: [Vec3<f32>; N]) -> [Vec3<f32>; N] {
+fn scaled(v: [Vec3<f32>; 3]) -> [Vec3<f32>; 3] {
     let most = v.iter().fold(Vec3([0.0; 3]), |most, x| most.max(x.map(Real::abs)));
     let most = Real::max(Real::max(most[0], most[1]), most[2]);
     v.map(|x| x.map(|x| x / most))

@@ -1,5 +1,6 @@
 //! The level-ordered tree: what holds of it, and a checker that names what does not.
 
+pub mod group;
 pub mod leaf;
 
 use crate::abi::{LEAF, Link, Node, ROOT};
@@ -47,6 +48,11 @@ pub enum Violation {
     /// T6: a node's volume is not the merge of its children's, or its links are not the tree's.
     Merge {
         /// The parent.
+        node: u32,
+    },
+    /// T7: a node's volume is not the one fitted to the points below it, or its links are not the tree's.
+    Fit {
+        /// The node.
         node: u32,
     },
 }
@@ -123,19 +129,32 @@ pub fn check(tree: &Tree, seen: &mut [bool]) -> Result<(), Violation> {
     }
 }
 
-/// Checks T6 on a sound tree. `nodes` has as many elements as `links`. Cost: a merge a node.
+/// Checks T6 and T7 on a sound tree. `nodes` has as many elements as `links`; `fitted` tells the volume of an inner
+/// node from its first and last leaf, if it is not a merge. Cost: a merge or a fit and a walk down a node.
 ///
 /// # Errors
 /// The first violation.
-pub fn check_volumes<V: Volume>(links: &[Link], nodes: &[Node<V>], axes: Axes) -> Result<(), Violation> {
+pub fn check_volumes<V: Volume>(
+    links: &[Link],
+    nodes: &[Node<V>],
+    axes: Axes,
+    fitted: impl Fn(u32, u32) -> Option<V>,
+) -> Result<(), Violation> {
     for (at, (link, node)) in links.iter().zip(nodes).enumerate().skip(ROOT as usize) {
-        let merged = if link.is_leaf() {
-            node.volume
+        let (at, mut first) = (at as u32, *link);
+        while !first.is_leaf() {
+            first = links[first.link as usize];
+        }
+        let (volume, violation) = if link.is_leaf() {
+            (node.volume, Violation::Merge { node: at })
+        } else if let Some(volume) = fitted(first.last, link.last) {
+            (volume, Violation::Fit { node: at })
         } else {
-            nodes[link.link as usize].volume.merge(&nodes[link.link as usize + 1].volume, axes)
+            let [left, right] = [0, 1].map(|i| nodes[link.link as usize + i].volume);
+            (left.merge(&right, axes), Violation::Merge { node: at })
         };
-        if *node != link.with(merged) {
-            return Err(Violation::Merge { node: at as u32 });
+        if *node != link.with(volume) {
+            return Err(violation);
         }
     }
     Ok(())

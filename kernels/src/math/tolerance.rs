@@ -83,6 +83,13 @@ pub const BOX_AXES: f32 = 12.0 * U32;
 /// Error of `a . (p - c)`, relative to the sum of `|a_d| |p_d - c_d|`: four roundings (difference, product, two sums),
 /// and one more for those of the bound itself. Ratio.
 pub const BOX_POINT: f32 = 5.0 * U32;
+/// Error of `a . (p - b) - a . (c - b)`, relative to the sum of `|a_d| (|p_d - b_d| + |c_d - b_d|)`: four roundings of each
+/// product of vectors (five, the first tiny, for f64), one of their difference, and those of the bound itself: below
+/// `6u`. `8u`. Ratio.
+pub const BOX_GROUP: f32 = 8.0 * U32;
+/// Underflow of the products in one such half extent: at most sixteen of half the smallest subnormal each, twice
+/// over. Length.
+pub const BOX_GROUP_UNDERFLOW: f32 = f32::from_bits(16);
 /// What a child's slabs may reach beyond `sum g_k |a_i . b_k|` of its half extents g, relative to their sum: `28u` for
 /// axes not quite orthonormal and `7u` for roundings; and the error of `a_i . (c' - c)`, `5u` of the distance of the
 /// centres. `64u` covers both. Ratio.

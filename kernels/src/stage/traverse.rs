@@ -15,6 +15,7 @@
 //! Cost     two nodes and two overlap tests (AABB: 64 B, 12 comparisons) a step; hits wait on chip, so that the test for shared vertices and the append
 //!          run converged, with one atomic operation a block.
 
+pub mod front;
 pub mod queue;
 pub mod steal;
 

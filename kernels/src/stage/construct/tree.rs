@@ -138,7 +138,7 @@ pub fn emit<B: Block>(b: &mut B, a: &TreeArgs) {
         let place = l.global();
         if place == 0 {
             let link = if a.leaves == 1 { LEAF } else { children(0) };
-            put(l, a, ROOT, link, a.leaves - 1);
+            put(l, a, ROOT, link, [0, a.leaves - 1]);
         }
         if place + 1 >= a.leaves {
             return;
@@ -146,8 +146,8 @@ pub fn emit<B: Block>(b: &mut B, a: &TreeArgs) {
         let Inner { first, split, last } = l.read(a.inner, l.read(a.ordered, place));
         let link =
             |from: u32, to: u32, node: u32| if from == to { LEAF } else { children(l.read(a.places, node)) };
-        put(l, a, children(place), link(first, split, split), split);
-        put(l, a, children(place) + 1, link(split + 1, last, split + 1), last);
+        put(l, a, children(place), link(first, split, split), [first, split]);
+        put(l, a, children(place) + 1, link(split + 1, last, split + 1), [split + 1, last]);
     });
 }
 
@@ -156,15 +156,18 @@ fn children(place: u32) -> u32 {
     ROOT + 1 + 2 * place
 }
 
-/// Writes a node's links. A leaf learns its triangle, and its triangle's leaf its node; an inner node's children learn
-/// their parent.
-fn put<L: Lane>(l: &L, a: &TreeArgs, at: u32, link: u32, last: u32) {
+/// Writes the links of the node of a range of leaves. A leaf learns its triangle, and its triangle's leaf its node; an
+/// inner node's children learn their parent and, where that is asked for, their first leaf.
+fn put<L: Lane>(l: &L, a: &TreeArgs, at: u32, link: u32, [first, last]: [u32; 2]) {
     let mut node = Link { link, last };
     if node.is_leaf() {
         node.link |= a.first + l.read(a.triangles, last);
         l.write(a.leaf_nodes, last, at);
     } else {
         l.write(a.pair_parents, link / 2, at);
+        if !a.firsts.is_empty() {
+            l.write(a.firsts, link / 2, first);
+        }
     }
     l.write(a.links, at, node);
 }

@@ -2,7 +2,7 @@
 //! Launch   a lane a leaf; it climbs to the root, or until it comes first to a pair of siblings.
 //! Reads    links, parents, leaf nodes; volumes of siblings, taken.   Writes   inner nodes, each once, given.
 //! Before   the leaves are fitted; every counter of arrivals is even.
-//! After    every volume is the merge of its children's and encloses what they do; every counter is even again: each
+//! After    every volume that is not fitted is the merge of its children's and encloses what they do; every counter is even again: each
 //!          pair is passed twice, so nothing is cleared between frames.
 //! Room     fixed; cannot run out.
 //! Departs  the paper has a barrier a level (see [`super::levels`]); this is Karras 2012, section 5.
@@ -11,6 +11,7 @@
 
 use crate::abi::{BottomUpArgs, ROOT};
 use crate::bv::Volume;
+use crate::bvh::group::is_fitted;
 use crate::exec::{Block, Lane};
 
 /// Volumes of the inner nodes.
@@ -26,13 +27,19 @@ pub fn bottom_up<V: Volume, B: Block>(b: &mut B, a: &BottomUpArgs<V>) {
             if l.fetch_add(a.arrivals, at / 2, 1).is_multiple_of(2) {
                 return;
             }
-            l.fence();
-            let sibling = l.take(a.nodes, at ^ 1).volume;
-            let (left, right) = if at.is_multiple_of(2) { (volume, sibling) } else { (sibling, volume) };
-            volume = left.merge(&right, a.axes);
-            at = l.read(a.pair_parents, at / 2);
-            l.give(a.nodes, at, l.read(a.links, at).with(volume));
-            l.fence();
+            let parent = l.read(a.pair_parents, at / 2);
+            let link = l.read(a.links, parent);
+            if is_fitted::<V, _>(l, a.firsts, link, a.axes) {
+                volume = l.take(a.nodes, parent).volume;
+            } else {
+                l.fence();
+                let sibling = l.take(a.nodes, at ^ 1).volume;
+                let (left, right) = if at.is_multiple_of(2) { (volume, sibling) } else { (sibling, volume) };
+                volume = left.merge(&right, a.axes);
+                l.give(a.nodes, parent, link.with(volume));
+                l.fence();
+            }
+            at = parent;
         }
     });
 }

@@ -3,7 +3,7 @@
 //! Launch   a block a treelet, a lane a leaf and a lane a merge; the block that is done last merges the top.
 //! Reads    positions, faces, seats, merges; the last block volumes of others, taken.   Writes   all nodes, each once.
 //! Before   `construct_treelets` has planned the tree; positions are finite.
-//! After    leaves enclose their triangles as after `fit`, every other volume is the merge of its children's.
+//! After    leaves enclose their triangles as after `fit`, every other volume that is not fitted is the merge of its children's.
 //! Room     fixed; cannot run out. Any number of merges in the top: rounds of as many as a block has lanes.
 //! Departs  fit is part of it: the volumes of a treelet stay on chip from the triangle to the treelet's root.
 //! Cost     8 B seat, 12 B face, 48 B positions a frame and leaf; 16 B a merge; two nodes out a leaf: 148 B (AABB). A
@@ -51,7 +51,7 @@ pub fn treelets<R: Real, V: Volume, B: Block>(b: &mut B, a: &TreeletsArgs<R, V>)
     let ranges = b.shared::<[u32; 2]>(SLOTS);
     let ends = b.shared::<u32>(MAX_LEVELS);
     let Treelet { first, leaves, merges, rounds } = b.load(a.treelets, b.block());
-    let lanes = b.lanes();
+    let (lanes, fitted) = (b.lanes(), V::group(a.axes));
     b.phase(|l| {
         let mut i = l.lane();
         while i < leaves {
@@ -80,11 +80,23 @@ pub fn treelets<R: Real, V: Volume, B: Block>(b: &mut B, a: &TreeletsArgs<R, V>)
             while i < end {
                 let ([node, link], [last, slots]) = (l.get(places, i), l.get(ranges, i));
                 let merge = Merge { node, link, last, slots };
-                let (left, right) = (chip.get::<V, _>(l, merge.left()), chip.get(l, merge.right()));
-                let volume = left.merge(&right, a.axes);
-                chip.put(l, merge.left(), volume);
-                l.give(a.nodes, node, merge.link().with(volume));
                 i += lanes;
+                let [from, split] = [merge.left(), merge.right()];
+                // The children's leaves. Those that were fitted are not on chip.
+                let counts = [split - from, last + 1 - first - split];
+                if counts[0] + counts[1] <= fitted {
+                    continue;
+                }
+                let child = |slot: u32, k: u32| {
+                    if (2..=fitted).contains(&counts[k as usize]) {
+                        l.read(a.nodes, link + k).volume
+                    } else {
+                        chip.get::<V, _>(l, slot)
+                    }
+                };
+                let volume = child(from, 0).merge(&child(split, 1), a.axes);
+                chip.put(l, from, volume);
+                l.give(a.nodes, node, merge.link().with(volume));
             }
         });
     }

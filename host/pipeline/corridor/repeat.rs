@@ -1,0 +1,67 @@
+//! One stage again and again, on what the last frame left: for profilers and for figures of one stage.
+
+use super::{Corridor, Frames};
+use crate::error::Error;
+use crate::pipeline::narrow::Step;
+use crate::pipeline::precision::Precision;
+use crate::pipeline::timing::Stage;
+use crate::pipeline::volumes::Kernels;
+use nearmiss_kernels::abi::counter;
+
+impl<R: Precision, V: Kernels> Corridor<R, V> {
+    /// Milliseconds of each of `times` runs of a stage. What it reads must be there: volumes of the leaves for `Refit`,
+    /// a whole frame for `Traverse` and `Narrow`.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub(super) fn again(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
+        if stage == Stage::Construct {
+            return (0..times).map(|_| self.construct()).collect();
+        }
+        let counters = self.counters_before(stage);
+        if stage == Stage::Traverse {
+            // A walk that goes on from the frame's own end may need other lists: they grow outside of the clock.
+            self.settled = false;
+            self.counters.write(&counters)?;
+            self.run(stage)?;
+            self.settled = true;
+        }
+        let mut ms = Vec::new();
+        for _ in 0..times {
+            if matches!(stage, Stage::Traverse | Stage::Narrow) {
+                self.counters.write(&counters)?;
+            }
+            let start = self.device.mark()?;
+            self.run(stage)?;
+            ms.push(start.to(&self.device.mark()?)?);
+        }
+        Ok(ms)
+    }
+
+    /// The counters that a stage begins with: those of the last frame, without what the stage itself counted.
+    fn counters_before(&mut self, stage: Stage) -> Vec<u64> {
+        let mut counters = vec![0; counter::COUNT as usize];
+        if stage == Stage::Narrow {
+            counters.clone_from(&self.last);
+            for &step in self.narrow.steps() {
+                self.narrow.lists(step).iter().for_each(|list| counters[list.counter() as usize] = 0);
+            }
+        }
+        counters
+    }
+
+    fn run(&mut self, stage: Stage) -> Result<(), Error> {
+        let (device, frames, faces) = (&self.device, self.frames(), self.faces.span());
+        match stage {
+            Stage::Construct => self.construct().map(|_| ()),
+            Stage::Fit => {
+                self.bodies.iter().try_for_each(|(tree, volumes)| volumes.fit(device, tree, frames, faces))
+            }
+            Stage::Refit => {
+                self.bodies.iter().try_for_each(|(tree, volumes)| volumes.refit(device, tree, frames, faces))
+            }
+            Stage::Traverse => self.step(Step::Traverse),
+            Stage::Narrow => self.narrow.steps().iter().try_for_each(|&step| self.step(step)),
+        }
+    }
+}

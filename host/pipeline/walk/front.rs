@@ -1,0 +1,137 @@
+//! A front of pairs of nodes, kept from frame to frame.
+
+use super::queue::Queue;
+use super::{Walk, Walked};
+use crate::device::Device;
+use crate::error::Error;
+use crate::pipeline::room::{Growing, List};
+use crate::pipeline::volumes::Kernels;
+use crate::query::FrontShape;
+use nearmiss_kernels::abi::{FRONT, FrontArgs, PRUNE, Pair, counter};
+
+/// Pairs of the front a triangle for which there is room at first: cloth at rest has 30, swept over a step 100.
+const PAIRS_A_TRIANGLE: usize = 48;
+/// Frames without a front after one that did not pay even when it was new.
+const REST: u32 = 8;
+
+/// See [`crate::query::Traversal::Front`].
+pub struct Front {
+    shape: FrontShape,
+    queue: Queue,
+    /// Where the last descent ended.
+    front: List<Pair>,
+    /// Where this one ends.
+    ends: List<Pair>,
+    state: State,
+    /// Frames since the front was last pruned.
+    age: u32,
+    /// Overlap tests of the last descent from the roots.
+    from_roots: u64,
+}
+
+/// What is known of the last frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    /// Nothing: descend from the roots and list the ends.
+    New,
+    /// A front of that many pairs; whether it was made by the last frame from the roots.
+    Kept { count: u32, fresh: bool },
+    /// It does not pay: descend from the roots for that many frames more.
+    Resting(u32),
+}
+
+impl Front {
+    /// Takes the memory for fronts over trees of `triangles` triangles.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn new<V: Kernels>(device: &Device, shape: FrontShape, triangles: usize) -> Result<Self, Error> {
+        let list = || List::new(device, "pairs of the front", counter::ENDS, PAIRS_A_TRIANGLE * triangles);
+        let queue = crate::query::QueueShape { balance: crate::query::Balance::View, ..shape.queue };
+        Ok(Front {
+            shape,
+            queue: Queue::new::<V>(device, queue)?,
+            front: list()?,
+            ends: list()?,
+            state: State::New,
+            age: 0,
+            from_roots: 0,
+        })
+    }
+
+    /// Whether this frame prunes: volumes whose tests do not nest cannot.
+    fn prunes<V: Kernels>(&self) -> bool {
+        V::NESTS && self.shape.prune_every > 0 && self.age + 1 >= self.shape.prune_every
+    }
+}
+
+impl<V: Kernels> Walk<V> for Front {
+    fn launch(&mut self, given: &Walked<V>) -> Result<(), Error> {
+        if let State::Resting(_) = self.state {
+            return self.queue.launch(given);
+        }
+        let flags = given.flags | FRONT;
+        let given = Walked { ends: self.ends.span(), flags, ..*given };
+        let State::Kept { count, .. } = self.state else { return self.queue.launch(&given) };
+        let (queries, target) = (&given.bodies[0], &given.bodies[given.bodies.len() - 1]);
+        let blocks = given.device.blocks_striding::<V::Front>(count as usize);
+        let (front, flags) = (self.front.span(), if self.prunes::<V>() { PRUNE } else { 0 });
+        self.queue.launch_from(&given, &|units, unit_count| {
+            let args = FrontArgs {
+                to: given.pair_args(1),
+                front,
+                units,
+                unit_count,
+                query_parents: queries.0.pair_parents.span(),
+                node_parents: target.0.pair_parents.span(),
+                count,
+                flags,
+            };
+            given.device.launch::<V::Front>(blocks, &args)
+        })
+    }
+
+    fn lists(&mut self) -> Vec<&mut dyn Growing> {
+        let mut lists = Walk::<V>::lists(&mut self.queue);
+        lists.push(&mut self.ends);
+        lists
+    }
+
+    fn finish(&mut self, counters: &[u64]) -> Result<(), Error> {
+        Walk::<V>::finish(&mut self.queue, counters)?;
+        let of = |at: u32| counters[at as usize];
+        // A unit is a pair of siblings tested against a node.
+        let tests = of(counter::FRONT_TESTS) + 2 * of(counter::STEPS);
+        // Lists are no longer than an index reaches.
+        let count = of(counter::ENDS) as u32;
+        let pruned = self.prunes::<V>();
+        self.state = match self.state {
+            State::Resting(0 | 1) => State::New,
+            State::Resting(frames) => State::Resting(frames - 1),
+            State::New => {
+                self.from_roots = tests;
+                self.age = 0;
+                State::Kept { count, fresh: true }
+            }
+            State::Kept { fresh, .. } if self.shape.drop && tests > self.from_roots => {
+                if fresh {
+                    State::Resting(REST)
+                } else {
+                    State::New
+                }
+            }
+            State::Kept { .. } => {
+                self.age = if pruned { 0 } else { self.age + 1 };
+                State::Kept { count, fresh: false }
+            }
+        };
+        if let State::Kept { .. } = self.state {
+            std::mem::swap(&mut self.front, &mut self.ends);
+        }
+        Ok(())
+    }
+
+    fn forget(&mut self) {
+        self.state = State::New;
+    }
+}

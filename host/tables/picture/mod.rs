@@ -1,0 +1,98 @@
+//! Pictures as SVG text: pure Rust, no fonts of this machine. Colours are those of Okabe and Ito, which people tell apart
+//! who see colours differently; every bar and line is labelled where it stands.
+
+mod bars;
+mod curves;
+mod stacks;
+
+pub use bars::{Bar, Panel, bars};
+pub use curves::{Chart, Curve, curves};
+pub use stacks::{Stack, stacks};
+
+use crate::error::Error;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+const OURS: RGBColor = RGBColor(0, 114, 178);
+const THEIRS: RGBColor = RGBColor(230, 159, 0);
+const INK: RGBColor = RGBColor(30, 30, 30);
+const FAINT: RGBColor = RGBColor(110, 110, 110);
+const GRID: RGBColor = RGBColor(215, 215, 215);
+
+/// Width of every picture, pixels.
+const WIDTH: i32 = 900;
+/// Where bars begin and end; labels stand to the left, figures to the right.
+const LEFT: i32 = 215;
+const RIGHT: i32 = 770;
+
+/// How a text stands at its point.
+#[derive(Clone, Copy)]
+enum At {
+    Left,
+    Middle,
+    Right,
+}
+
+/// A sheet to draw on, in pixels from the upper left.
+struct Sheet<'a>(DrawingArea<SVGBackend<'a>, Shift>);
+
+/// Draws on a sheet of that height; the SVG.
+fn sheet(height: i32, draw: impl FnOnce(&Sheet) -> Drawn) -> Result<String, Error> {
+    let mut svg = String::new();
+    let sheet =
+        Sheet(SVGBackend::with_string(&mut svg, (WIDTH as u32, height.max(1) as u32)).into_drawing_area());
+    let drawn = sheet.0.fill(&WHITE).map_err(|e| e.to_string()).and_then(|()| draw(&sheet));
+    let done = drawn.and_then(|()| sheet.0.present().map_err(|e| e.to_string()));
+    drop(sheet);
+    done.map_err(|text| Error::Bug { what: format!("a picture could not be drawn: {text}") })?;
+    Ok(svg)
+}
+
+/// Drawn, or why not.
+type Drawn = Result<(), String>;
+
+impl Sheet<'_> {
+    /// A text of `size` pixels, its middle at that height.
+    fn text(&self, text: &str, (x, y): (i32, i32), size: i32, at: At, colour: RGBColor) -> Drawn {
+        let h = match at {
+            At::Left => HPos::Left,
+            At::Middle => HPos::Center,
+            At::Right => HPos::Right,
+        };
+        // The backend makes fonts smaller by this.
+        let font = ("sans-serif", f64::from(size) * 1.24).into_font();
+        let style = font.color(&colour).pos(Pos::new(h, VPos::Center));
+        self.0.draw_text(text, &style, (x, y)).map_err(|e| e.to_string())
+    }
+
+    fn bold(&self, text: &str, (x, y): (i32, i32), size: i32) -> Drawn {
+        let font = ("sans-serif", f64::from(size) * 1.24).into_font().style(FontStyle::Bold);
+        let style = font.color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
+        self.0.draw_text(text, &style, (x, y)).map_err(|e| e.to_string())
+    }
+
+    fn rectangle(&self, corners: [(i32, i32); 2], colour: RGBColor) -> Drawn {
+        self.0.draw(&Rectangle::new(corners, colour.filled())).map_err(|e| e.to_string())
+    }
+
+    fn line(&self, points: Vec<(i32, i32)>, colour: RGBColor, width: u32) -> Drawn {
+        self.0.draw(&PathElement::new(points, colour.stroke_width(width))).map_err(|e| e.to_string())
+    }
+
+    /// The picture's title, and lines of smaller print below it; where the picture goes on.
+    fn head(&self, title: &str, notes: &[(String, RGBColor)]) -> Result<i32, String> {
+        self.bold(title, (20, 26), 18)?;
+        let mut y = 50;
+        for (note, colour) in notes {
+            self.text(note, (20, y), 13, At::Left, *colour)?;
+            y += 18;
+        }
+        Ok(y + 4)
+    }
+}
+
+/// Height that [`Sheet::head`] takes with that many notes.
+fn head_height(notes: usize) -> i32 {
+    54 + 18 * notes as i32
+}

@@ -1,0 +1,75 @@
+//! Nodes of few leaves, whose volume is fitted to the points below them instead of merged.
+
+use crate::abi::{Frames, Link, Span};
+use crate::bv::{Axes, Points, Volume};
+use crate::exec::Lane;
+use crate::math::{Real, Vec3};
+
+/// Whether the volume of an inner node is fitted: then no refit touches it. `firsts` has the first leaf of each pair.
+#[inline(always)]
+pub fn is_fitted<V: Volume, L: Lane>(l: &L, firsts: Span<u32>, link: Link, axes: Axes) -> bool {
+    let most = V::group(axes);
+    most > 0 && link.last - l.read(firsts, link.link / 2) < most
+}
+
+/// The corners of the triangles of neighbouring leaves: leaf by leaf, each corner at t = 0 and, when there are two
+/// frames, at t = 1.
+pub struct Below<'a, R: Real, L> {
+    /// Who reads.
+    pub lane: &'a L,
+    /// Positions.
+    pub frames: Frames<R>,
+    /// Vertex indices of every triangle.
+    pub faces: Span<[u32; 3]>,
+    /// Triangles in leaf order, counted from `base`.
+    pub triangles: Span<u32>,
+    /// The body's first triangle.
+    pub base: u32,
+    /// The first leaf and the last.
+    pub leaves: [u32; 2],
+}
+
+impl<R: Real, L: Lane> Below<'_, R, L> {
+    #[inline(always)]
+    fn face(&self, leaf: u32) -> [u32; 3] {
+        self.lane.read(self.faces, self.base + self.lane.read(self.triangles, leaf))
+    }
+}
+
+impl<R: Real, L: Lane> Points<R> for Below<'_, R, L> {
+    #[inline(always)]
+    fn first(&self) -> Vec3<R> {
+        let vertex = self.face(self.leaves[0])[0];
+        if self.frames.moving.is_empty() {
+            self.lane.read(self.frames.still, vertex).at
+        } else {
+            self.lane.read(self.frames.moving, vertex).t0.at
+        }
+    }
+
+    /// The face of the next leaf is on its way while the corners of this one are.
+    #[inline(always)]
+    fn each(&self, mut visit: impl FnMut(Vec3<R>)) {
+        let [mut leaf, last] = self.leaves;
+        let mut next = self.face(leaf);
+        while leaf <= last {
+            let face = next;
+            leaf += 1;
+            next = self.face(leaf.min(last));
+            if self.frames.moving.is_empty() {
+                let [p, q, r] = face.map(|v| self.lane.read(self.frames.still, v).at);
+                visit(p);
+                visit(q);
+                visit(r);
+            } else {
+                let [p, q, r] = face.map(|v| self.lane.read(self.frames.moving, v));
+                visit(p.t0.at);
+                visit(p.t1.at);
+                visit(q.t0.at);
+                visit(q.t1.at);
+                visit(r.t0.at);
+                visit(r.t1.at);
+            }
+        }
+    }
+}

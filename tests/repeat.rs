@@ -1,0 +1,130 @@
+//! One stage again and again: the session answers afterwards as if nothing had happened.
+
+use nearmiss::device::emulator::{Emulator, Mode, Order};
+use nearmiss::mesh::Body;
+use nearmiss::pipeline::Stage;
+use nearmiss::query::{Motion, Refit};
+use nearmiss::{Device, Query, Session, scene};
+
+const STAGES: [Stage; 5] = [Stage::Construct, Stage::Fit, Stage::Refit, Stage::Traverse, Stage::Narrow];
+
+/// The body at the other end of its step.
+fn later(body: &Body) -> Body {
+    let mut frames = body.frames();
+    let (t1, t0) = (frames.pop().expect("two frames"), frames.pop().expect("two frames"));
+    Body::moving(t1, t0).expect("one mesh")
+}
+
+fn engine() -> Device {
+    Device::emulator(Emulator::new(Mode::Engine, Some(2)).expect("an engine"))
+}
+
+fn microscope() -> Device {
+    Device::emulator(Emulator::new(Mode::Microscope(Order::Shuffled(5)), None).expect("a microscope"))
+}
+
+#[test]
+fn a_repeated_stage_leaves_the_answer_as_it_is() {
+    let body = scene::scene("soup-moving", 300, 3).expect("a scene");
+    for device in [engine(), microscope()] {
+        for query in Query::every() {
+            for stage in STAGES {
+                let mut plain = Session::new(device.clone(), vec![body.clone()], query).expect("a session");
+                let mut session = Session::new(device.clone(), vec![body.clone()], query).expect("a session");
+                let mut same = |session: &mut Session, what: &str| {
+                    let (one, other) =
+                        (plain.detect().expect("an answer"), session.detect().expect("an answer"));
+                    assert_eq!(one.hash(), other.hash(), "{query:?} {stage:?} {what}");
+                    assert_eq!(one.candidates, other.candidates, "{query:?} {stage:?} {what}");
+                    let prints = session.fingerprints().expect("prints");
+                    assert_eq!(plain.fingerprints().expect("prints"), prints, "{query:?} {stage:?} {what}");
+                    prints
+                };
+                // Before any frame, between frames, and on the next frame with the old tree.
+                assert_eq!(session.repeat_stage(stage, 2).expect("runs").len(), 2);
+                let before = same(&mut session, "first");
+                let ms = session.repeat_stage(stage, 3).expect("runs");
+                assert!(ms.len() == 3 && ms.iter().all(|&ms| ms >= 0.0), "{ms:?}");
+                assert_eq!(session.fingerprints().expect("prints"), before, "{query:?} {stage:?}: in place");
+                same(&mut session, "between");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_stage_is_repeated_where_the_body_is_now() {
+    let body = scene::scene("cloth-ball", 500, 3).expect("a scene");
+    for stage in [Stage::Fit, Stage::Refit, Stage::Traverse, Stage::Narrow] {
+        let query = Query::of(Motion::Continuous);
+        let mut plain = Session::new(engine(), vec![body.clone()], query).expect("a session");
+        plain.move_to(0, later(&body)).expect("moved");
+        let want = plain.detect().expect("an answer").hash();
+        let prints = plain.fingerprints().expect("prints");
+
+        let mut session = Session::new(engine(), vec![body.clone()], query).expect("a session");
+        session.detect().expect("an answer");
+        session.move_to(0, later(&body)).expect("moved");
+        session.repeat_stage(stage, 2).expect("runs");
+        if matches!(stage, Stage::Traverse | Stage::Narrow) {
+            assert_eq!(session.fingerprints().expect("prints"), prints, "{stage:?}");
+        }
+        assert_eq!(session.detect().expect("an answer").hash(), want, "{stage:?}");
+    }
+}
+
+#[test]
+fn every_way_to_refit_can_be_repeated() {
+    let body = scene::scene("cloth-ball", 500, 3).expect("a scene");
+    let mut hashes = Vec::new();
+    for device in [engine(), microscope()] {
+        for refit in [Refit::Levels, Refit::Treelets, Refit::BottomUp] {
+            let query = Query { refit: Some(refit), ..Query::of(Motion::Discrete) };
+            let mut session = Session::new(device.clone(), vec![body.clone()], query).expect("a session");
+            session.move_to(0, later(&body)).expect("moved");
+            assert_eq!(session.repeat_stage(Stage::Refit, 3).expect("runs").len(), 3);
+            session.check_trees().expect("volumes around all");
+            hashes.push(session.detect().expect("an answer").hash());
+            let prints = session.fingerprints().expect("prints");
+            session.repeat_stage(Stage::Refit, 3).expect("runs");
+            assert_eq!(session.fingerprints().expect("prints"), prints, "{refit:?}");
+        }
+    }
+    assert!(hashes.iter().all(|hash| *hash == hashes[0]), "{hashes:?}");
+}
+
+#[test]
+fn nothing_has_no_stages() {
+    let empty = nearmiss::Mesh::new("empty", nearmiss::mesh::Positions::F32(Vec::new()), Vec::new());
+    let bodies = vec![Body::still(empty.expect("a mesh"))];
+    let mut session = Session::new(engine(), bodies, Query::of(Motion::Discrete)).expect("a session");
+    for stage in STAGES {
+        assert_eq!(session.repeat_stage(stage, 4).expect("no runs"), Vec::<f64>::new());
+    }
+}
+
+#[test]
+fn the_program_repeats_one_stage() {
+    let run = |more: &[&str]| {
+        let scene = ["detect", "--scene", "soup-moving", "--triangles", "300", "--backend", "cpu", "--json"];
+        let mut program = std::process::Command::new(env!("CARGO_BIN_EXE_nearmiss"));
+        program.args(scene).args(more).output().expect("the program starts")
+    };
+    let summary = |more: &[&str]| -> serde_json::Value {
+        serde_json::from_slice(&run(more).stdout).expect("a summary")
+    };
+    let refused = |more: &[&str]| {
+        let output = run(more);
+        assert_eq!(output.status.code(), Some(2), "{more:?}");
+        String::from_utf8(output.stderr).expect("text")
+    };
+    let plain = summary(&[]);
+    for stage in ["construct", "fit", "refit", "traverse", "narrow"] {
+        let only = summary(&["--repeat", "3", "--only", stage]);
+        assert_eq!(only["hash"], plain["hash"], "{stage}");
+        assert!(only["ms"][stage].as_f64().expect("ms") >= 0.0, "{stage}");
+    }
+    assert!(refused(&["--only", "traverse"]).contains("--repeat"));
+    let unknown = refused(&["--repeat", "3", "--only", "sort"]);
+    assert!(unknown.contains("construct, fit, refit, traverse, narrow"), "{unknown}");
+}
