@@ -74,8 +74,7 @@ fn outside<R: Precision, V: Kernels + Contain>(
 }
 
 fn all<R: Precision, V: Kernels + Contain>(axes: Axes) {
-    let bodies =
-        [scene::single(), scene::soup(700, 4, false), scene::soup(700, 4, true), scene::draped(800)];
+    let bodies = [scene::single(), scene::soup(700, 4, false), scene::soup(700, 4, true), scene::draped(800)];
     for (i, body) in bodies.map(|body| body.expect("a scene")).iter().enumerate() {
         for place in [(1.0, 0.0), (1e-3, 1e3), (1e25, 0.0)] {
             let refit = [Refit::Levels, Refit::Treelets, Refit::BottomUp][i % 3];
