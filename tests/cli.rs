@@ -125,7 +125,7 @@ fn choices_change_no_hash() {
         &["--threads", "3", "--traversal", "per-leaf"],
         &["--traversal", "per-leaf-spill"],
         &["--traversal", "queue", "--repeat", "2"],
-        &["--traversal", "queue-gtx285", "--cores", "128"],
+        &["--traversal", "queue-gtx285", "--cores", "30"],
         &["--traversal", "steal", "--cores", "3", "--queue", "5"],
         &["--solver", "certified", "--bv", "aabb", "--continuous", "--boxes", "4096"],
         &["--repeat", "3"],
@@ -373,7 +373,7 @@ fn a_plan_is_what_would_run() {
         assert!(other.contains(part), "{part} is not in {other}");
     }
     let queues = plan(&["--traversal", "queue-gtx285", "--queue", "100", "--backend", "cpu"]);
-    for part in ["cores: Some(30)", "local: 100", "take: 192", "balance: Copy"] {
+    for part in ["cores: Some(128)", "local: 100", "take: 192", "balance: Copy"] {
         assert!(queues.contains(part), "{part} is not in {queues}");
     }
     let folder = Folder::new("plan");

@@ -61,7 +61,7 @@ fn every_way_finds_the_exact_pairs() {
     for (meshes, pairs, small) in SETS {
         let (Some(bodies), Some(truth)) = (bodies(meshes), listed(pairs)) else { continue };
         // Every volume with every walk; the refits take turns. Of the large sets a few.
-        let turn = |i: usize| i % 3 == i / 3 % 3 && (small || i % 5 == 0);
+        let turn = |i: usize| i % 3 == i / 3 % 3 && (small || i.is_multiple_of(5));
         for (i, way) in ways(Query::of(Motion::Discrete)).enumerate().filter(|(i, _)| turn(*i)) {
             let found = ask(engine(), bodies.clone(), way);
             assert_eq!(difference(found.pairs(), &truth), None, "{meshes:?}, way {i}: {way:?}");

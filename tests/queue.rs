@@ -7,6 +7,8 @@ mod support;
 mod ends;
 #[path = "queue/sizes.rs"]
 mod sizes;
+#[path = "queue/words.rs"]
+mod words;
 
 use nearmiss::mesh::Body;
 use nearmiss::query::{Bv, Motion, QueueShape, StealShape, Traversal};
@@ -44,12 +46,12 @@ fn truth(bodies: &[Body], motion: Motion) -> Print {
 fn kinds() -> [Traversal; 4] {
     let small = QueueShape { cores: Some(5), segment: 64, ..QueueShape::native() };
     [
-        Traversal::Queue(QueueShape { segment: 2_000, ..QueueShape::gtx285() }),
+        Traversal::Queue(QueueShape { segment: 500, ..QueueShape::gtx285() }),
         Traversal::Queue(small),
         Traversal::Steal(StealShape {
             cores: Some(5),
             segment: 64,
-            pool: 500,
+            pool: Some(50),
             tries: 8,
             eager: false,
             ..StealShape::native()
@@ -57,7 +59,7 @@ fn kinds() -> [Traversal; 4] {
         Traversal::Steal(StealShape {
             cores: Some(5),
             segment: 64,
-            pool: 500,
+            pool: Some(50),
             tries: 8,
             eager: true,
             ..StealShape::native()

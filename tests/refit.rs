@@ -4,7 +4,7 @@ mod support;
 
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Motion, Refit};
+use nearmiss::query::{Bv, Motion, Refit};
 use nearmiss::{Device, Query, Session, scene};
 use support::{ORDERS, engine, machines};
 
@@ -43,8 +43,8 @@ fn frame(body: &Body, turn: u32) -> Body {
 type Prints = Vec<(&'static str, u64)>;
 
 /// What construction, fit and refit left after each frame: as built, moved three times, built anew, and moved again.
-fn prints(device: Device, body: &Body, refit: Refit) -> Vec<Prints> {
-    let query = Query { refit: Some(refit), ..Query::of(Motion::Discrete) };
+fn prints(device: Device, body: &Body, refit: Refit, bv: Bv) -> Vec<Prints> {
+    let query = Query { refit: Some(refit), bv: Some(bv), ..Query::of(Motion::Discrete) };
     let mut session = Session::new(device, vec![body.clone(), far()], query).expect("a session");
     let mut all = Vec::new();
     for turn in 0..5 {
@@ -64,12 +64,19 @@ fn prints(device: Device, body: &Body, refit: Refit) -> Vec<Prints> {
     all
 }
 
+/// Volumes that are merged all, and those of which small nodes are fitted to points.
+const VOLUMES: [Bv; 3] = [Bv::Aabb, Bv::Obb, Bv::ObbChild];
+
 fn agree(device: impl Fn() -> Device, body: &Body) {
-    let truth = prints(engine(), body, Refit::Levels);
-    for refit in WAYS {
-        let device = device();
-        let what = format!("{refit:?}, {} triangles, {}", body.face_count(), device.name());
-        assert_eq!(prints(device, body, refit), truth, "{what}");
+    // The largest is for what all volumes share.
+    let volumes = if body.face_count() > 100_000 { &VOLUMES[..1] } else { &VOLUMES };
+    for &bv in volumes {
+        let truth = prints(engine(), body, Refit::Levels, bv);
+        for refit in WAYS {
+            let device = device();
+            let what = format!("{bv:?}, {refit:?}, {} triangles, {}", body.face_count(), device.name());
+            assert_eq!(prints(device, body, refit, bv), truth, "{what}");
+        }
     }
 }
 
@@ -96,8 +103,8 @@ fn machines_cannot_be_told_apart() {
         deep(12),
     ];
     let seeds = 0..3u64;
-    for body in &bodies {
-        let truth = prints(engine(), body, Refit::Levels);
+    for (body, bv) in bodies.iter().flat_map(|body| [(body, Bv::Aabb), (body, Bv::Obb)]) {
+        let truth = prints(engine(), body, Refit::Levels, bv);
         let interleaved = seeds.clone().map(|seed| {
             let order = Mode::Microscope(ORDERS[seed as usize]);
             let emulator = Emulator::new(order, None).expect("threads").with_interleave(seed);
@@ -106,8 +113,8 @@ fn machines_cannot_be_told_apart() {
         });
         for device in machines().into_iter().chain(interleaved) {
             for refit in WAYS {
-                let what = format!("{refit:?}, {} triangles, {}", body.face_count(), device.name());
-                assert_eq!(prints(device.clone(), body, refit), truth, "{what}");
+                let what = format!("{bv:?}, {refit:?}, {} triangles, {}", body.face_count(), device.name());
+                assert_eq!(prints(device.clone(), body, refit, bv), truth, "{what}");
             }
         }
     }

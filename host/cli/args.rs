@@ -37,7 +37,7 @@ pub enum TraversalArg {
     PerLeafSpill,
     /// Work queues of pairs of nodes, as many as the machine runs; evened between launches.
     Queue,
-    /// The same with the paper's machine and constants: 30 queues, evened by copying.
+    /// The same with the paper's machine and constants: 128 queues, evened by copying.
     QueueGtx285,
     /// Work queues of pairs of nodes that help each other out within one launch.
     Steal,
@@ -109,7 +109,7 @@ pub struct DetectArgs {
     /// Steps of a walk before it gives its rest away (per-leaf-spill).
     #[arg(long, value_name = "STEPS", value_parser = clap::value_parser!(u32).range(1..))]
     pub budget: Option<u32>,
-    /// Work queues (queue, queue-gtx285, steal) [default: what the machine runs at once, or the paper's 30].
+    /// Work queues (queue, queue-gtx285, steal) [default: what the machine runs at once, or the released program's 128].
     #[arg(long, value_name = "N", requires = "traversal", value_parser = clap::value_parser!(u32).range(1..=65_536))]
     pub cores: Option<u32>,
     /// Units that a work queue holds on chip [default: 1024, or the paper's 600].

@@ -1,6 +1,8 @@
 //! From bodies to contacts: the front door of the library.
 
 mod corridor;
+#[cfg(test)]
+mod enclose;
 mod layout;
 mod narrow;
 mod precision;

@@ -1,6 +1,7 @@
 //! The sizes of work queues.
 
 use crate::error::Error;
+use nearmiss_kernels::abi::control::{MOST_BLOCKS, MOST_PLACES};
 use nearmiss_kernels::queue::worker::ROOM;
 
 /// How queues are evened between launches.
@@ -41,8 +42,9 @@ pub struct StealShape {
     pub local: u32,
     /// Units of a queue that device memory has room for at first. Too few are not an error: it grows.
     pub segment: u32,
-    /// Units that may be offered in one launch. When they have been, blocks keep what they have.
-    pub pool: u32,
+    /// Chunks of at most 64 units that may be offered in one launch, up to [`StealShape::MOST_POOL`]; when they have been,
+    /// blocks keep what they have. `None` for 32 a queue.
+    pub pool: Option<u32>,
     /// How often a block without work looks for some, while others have work, before it leaves.
     pub tries: u32,
     /// Whether units are offered even when no block looks for some.
@@ -72,10 +74,13 @@ impl QueueShape {
     /// Units that a queue can hold on chip.
     pub const ROOM: u32 = ROOM;
 
-    /// The paper's machine: 30 cores of 16 KB, and the constants of the released program.
+    /// The paper's machine with the constants of the released program. The paper gives each core a queue and balances
+    /// them; its machine has 30 cores. The released program runs 128 queues of 64 threads, about four a core, with room
+    /// for 600 units each: 4,800 B, of which the 16 KB of shared memory of a core hold three, with other state besides.
+    /// So not all 128 are on the machine at once: those that are not start when others leave.
     pub const fn gtx285() -> QueueShape {
         QueueShape {
-            cores: Some(30),
+            cores: Some(128),
             local: 600,
             take: 192,
             segment: 50_000,
@@ -115,9 +120,12 @@ impl QueueShape {
 }
 
 impl StealShape {
+    /// Chunks that a pool can hold.
+    pub const MOST_POOL: u32 = MOST_PLACES;
+
     /// As many queues as the machine runs at once.
     pub const fn native() -> StealShape {
-        StealShape { cores: None, local: ROOM, segment: 256, pool: 1 << 18, tries: 1 << 14, eager: false }
+        StealShape { cores: None, local: ROOM, segment: 256, pool: None, tries: 1 << 14, eager: false }
     }
 
     /// Whether the sizes are possible.
@@ -125,12 +133,19 @@ impl StealShape {
     /// # Errors
     /// [`Error::Choice`].
     pub fn check(&self) -> Result<(), Error> {
-        sizes(self.cores, self.local, self.segment)
+        sizes(self.cores, self.local, self.segment)?;
+        match self.pool {
+            Some(pool) if pool > Self::MOST_POOL => Err(Error::Choice {
+                what: format!("a pool of {pool} chunks"),
+                advice: format!("use at most {}", Self::MOST_POOL),
+            }),
+            _ => Ok(()),
+        }
     }
 }
 
 /// The most queues: more than any machine runs at once.
-const MOST_CORES: u32 = 1 << 16;
+const MOST_CORES: u32 = MOST_BLOCKS;
 
 fn sizes(cores: Option<u32>, local: u32, segment: u32) -> Result<(), Error> {
     let fits =

@@ -157,6 +157,25 @@ fn a_wrong_box_is_noticed_on_each_axis() {
     assert_eq!(Tree::with(|t| t.nodes[5].last = 2), Violation::Merge { node: 5 }, "a leaf's links");
 }
 
+/// Nodes of two leaves, fitted: each is asked for with its first leaf and its last, and each fault is named.
+#[test]
+fn t7_a_fit_that_is_none() {
+    let tree = Tree::sound();
+    let fitted = |fault: Option<u32>| {
+        let fit = |first: u32, last: u32| {
+            let node = [[0, 1, 2], [2, 3, 6]].into_iter().find(|n| n[..2] == [first, last])?[2];
+            let mut volume = tree.nodes[node as usize].volume;
+            volume.hi[1] += f32::from(u8::from(fault == Some(node)));
+            Some(volume)
+        };
+        check_volumes(&tree.links, &tree.nodes, Axes::PCA, fit)
+    };
+    assert_eq!(fitted(None), Ok(()));
+    for node in [2, 6] {
+        assert_eq!(fitted(Some(node)), Err(Violation::Fit { node }));
+    }
+}
+
 /// No other value of any one number of the tree passes.
 #[test]
 fn every_single_fault_is_noticed() {

@@ -4,7 +4,7 @@ use super::*;
 use nearmiss_kernels::abi::{
     FRONT, LEAF, Link, Node, Pair, PairArgs, QueueArgs, ROOT, SELF, START, Span, StealArgs,
 };
-use nearmiss_kernels::abi::{control, counter};
+use nearmiss_kernels::abi::{counter, pool};
 use nearmiss_kernels::bv::{Aabb, Axes, Volume};
 use nearmiss_kernels::entry::{traverse_queue_aabb, traverse_steal_aabb};
 use nearmiss_kernels::queue::bvtt;
@@ -100,12 +100,18 @@ fn run(device: &Device, trees: [&[Node<Aabb>]; 2], own: bool, rounds: Option<u32
             lists[rounds as usize % 2].read(left as usize).expect("units")
         }
         None => {
-            let (pool, control) = (words(100), words(control::COUNT));
+            let (mut places, control) = (words(100), words(1));
+            // What another launch left there counts as nothing.
+            let stale = [0, 1, pool::CHUNK as u64, pool::GONE].map(|state| 6 << pool::LAUNCH | state);
+            places.write(&stale.repeat(25)).expect("words");
+            let chunks = device.buffer::<Pair>(100 * pool::CHUNK as usize).expect("memory");
             let args = StealArgs {
                 to,
                 units: lists[0].span(),
-                pool: pool.span(),
+                pool: places.span(),
+                chunks: chunks.span(),
                 control: control.span(),
+                launch: 7 << pool::LAUNCH,
                 segment: room as u32 / 3,
                 tries: 5,
                 flags: nearmiss_kernels::abi::EAGER,

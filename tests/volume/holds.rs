@@ -66,6 +66,59 @@ fn volumes_hold_what_they_were_made_of_at_length() {
     check_all(2_000_000);
 }
 
+/// Boxes of points hold each of them, wherever they are; of what is not finite they hold everything.
+fn check_points<R: Real>(cases: usize, largest: f64) {
+    let mut wild = Wild::new(71 + largest as u64);
+    let mut everything = 0;
+    for case in 0..cases {
+        wild.turn(largest);
+        let triangles: Vec<Swept<R>> = (0..=case % 40).map(|_| wild.triangle()).collect();
+        let points: Vec<Vec3<R>> = triangles.iter().flatten().flatten().copied().collect();
+        let volume = Obb::of(points.as_slice());
+        everything += usize::from(volume == Obb::EVERYTHING);
+        assert!(triangles.iter().all(|t| holds(&volume, t)), "{volume:?} of {points:?}");
+        assert_eq!(volume, Obb::of(points.as_slice()));
+    }
+    assert_eq!(everything > 0, largest > 30.0, "{everything}");
+}
+
+#[test]
+fn boxes_of_points_hold_them() {
+    check_points::<f32>(4_000, 17.0);
+    check_points::<f64>(4_000, 17.0);
+    check_points::<f64>(4_000, 140.0);
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300] {
+        for at in 0..5 {
+            let mut points = [Vec3([0.0, 1.0, 2.0]); 5];
+            points[at].0[at % 3] = bad;
+            assert_eq!(Obb::of(points.as_slice()), Obb::EVERYTHING, "{bad} at {at}");
+            let narrow = points.map(Vec3::narrow);
+            assert_eq!(Obb::of(narrow.as_slice()), Obb::EVERYTHING, "{bad} at {at}");
+        }
+        assert_eq!(Obb::of([Vec3([bad; 3]); 2].as_slice()), Obb::EVERYTHING);
+        assert_eq!(Obb::of([Vec3([bad; 3]), Vec3([-bad; 3]), Vec3([0.0; 3])].as_slice()), Obb::EVERYTHING);
+    }
+}
+
+/// Without its padding, or without one of its points, such a box is noticed.
+#[test]
+fn a_faulty_box_of_points_is_noticed() {
+    let mut rng = Rng::new(72);
+    let (mut bare, mut forgotten) = (0, 0);
+    for _ in 0..1_000 {
+        let points: Vec<Vec3<f32>> = (0..30).map(|_| Vec3(rng.point(1.0)).narrow()).collect();
+        let sound = Obb::of(points.as_slice());
+        let all = |b: &Obb| points.iter().all(|p| b.holds(p.wide(), p.wide()));
+        assert!(all(&sound));
+        let reach = |i: usize| {
+            points.iter().fold(0f32, |most, p| most.max(sound.axes()[i].dot(*p - Vec3(sound.c)).abs()))
+        };
+        bare += usize::from(!all(&Obb { h: [0, 1, 2].map(reach), ..sound }));
+        forgotten += usize::from(!all(&Obb::of(&points[1..])));
+    }
+    assert!(bare > 300 && forgotten > 100, "{bare} {forgotten}");
+}
+
 /// The slabs by rational arithmetic.
 fn within(b: &Obb, p: Vec3<f64>) -> bool {
     let x = |x: f32| exact(f64::from(x));

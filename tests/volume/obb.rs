@@ -169,26 +169,65 @@ fn leaves_are_no_larger_than_need_be() {
     }
 }
 
-/// A merge is about as large as the box of world axes or smaller, and merging a box with itself changes little.
+/// Half the surface of a box of these extents.
+fn surface([x, y, z]: [f64; 3]) -> f64 {
+    x * y + y * z + z * x
+}
+
+/// A merge is about as large as the box with either child's axes or smaller, and merging a box with itself changes
+/// little.
 #[test]
 fn merges_are_no_larger_than_need_be() {
     let mut wild = Wild::new(34);
-    let surface = |b: &Obb| {
-        let [x, y, z] = b.h.map(f64::from);
-        x * y + y * z + z * x
-    };
     for _ in 0..100_000 {
         let [a, b]: [Obb; 2] = [(); 2].map(|()| leaf(wild.triangle::<f32>()));
         let child = a.merge(&a, Axes::CHILD);
         assert!((0..3).all(|k| child.h[k] <= a.h[k] * 1.0001 + 2e-5 * (a.h[0] + a.h[1] + a.h[2])));
-        let reach = |b: &Obb| {
-            let e = b.axes();
-            Vec3([0, 1, 2].map(|k| (0..3).map(|i| b.h[i] * e[i][k].abs()).sum::<f32>()))
+        let with = |axes: [Vec3<f32>; 3]| {
+            surface(axes.map(|axis| {
+                let reach = |b: &Obb| -> f64 {
+                    (0..3).map(|i| f64::from(b.h[i]) * b.axes()[i].wide().dot(axis.wide()).abs()).sum()
+                };
+                let (s, t) = (axis.wide().dot(Vec3(a.c).wide()), axis.wide().dot(Vec3(b.c).wide()));
+                (f64::max(s + reach(&a), t + reach(&b)) - f64::min(s - reach(&a), t - reach(&b))) / 2.0
+            }))
         };
-        let (p, q) = (reach(&a), reach(&b));
-        let lo = (Vec3(a.c) - p).min(Vec3(b.c) - q);
-        let hi = (Vec3(a.c) + p).max(Vec3(b.c) + q);
-        let world = Obb { h: ((hi - lo) * 0.5).0, ..a };
-        assert!(surface(&a.merge(&b, Axes::PCA)) <= 1.001 * surface(&world));
+        let merged = a.merge(&b, Axes::PCA).h.map(f64::from);
+        // What paddings may add to plates and needles.
+        let size: f64 = merged.iter().sum();
+        let (merged, pad) = (surface(merged), 1e-4 * size * size);
+        let (one, two) = (with(a.axes()), with(b.axes()));
+        assert!(merged <= one.min(two) + pad, "{merged} {one} {two}");
+        let larger = if a.slack >= b.slack { one } else { two };
+        let child = surface(a.merge(&b, Axes::CHILD).h.map(f64::from));
+        assert!((child - larger).abs() <= 1e-3 * larger + pad, "{child} {larger}");
     }
+}
+
+/// A box of points has the points' extents along its axes, and no more surface than the box of world axes; slanted
+/// plates get slanted boxes.
+#[test]
+fn boxes_of_points_are_no_larger_than_need_be() {
+    let mut wild = Wild::new(35);
+    let mut slanted = 0;
+    for case in 0..20_000 {
+        let points: Vec<Vec3<f32>> = (0..=case % 24).flat_map(|_| wild.triangle::<f32>()).flatten().collect();
+        let extents = |axes: [Vec3<f32>; 3]| {
+            axes.map(|axis| {
+                let s: Vec<f64> = points.iter().map(|p| axis.wide().dot(p.wide())).collect();
+                let least = s.iter().copied().fold(f64::INFINITY, f64::min);
+                (s.iter().copied().fold(f64::NEG_INFINITY, f64::max) - least) / 2.0
+            })
+        };
+        let volume = Obb::of(points.as_slice());
+        let span = points.iter().flat_map(|p| (*p - points[0]).0).fold(0f64, |m, x| m.max(x.abs().into()));
+        for (h, extent) in volume.h.into_iter().zip(extents(volume.axes())) {
+            assert!(f64::from(h) <= extent + 4e-6 * span + 1e-43, "{h} over {extent}: {volume:?}");
+        }
+        let world = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(Vec3);
+        let (own, straight) = (surface(volume.h.map(f64::from)), surface(extents(world)));
+        assert!(own <= 1.001 * straight + 1e-4 * span * span, "{own} {straight} {volume:?}");
+        slanted += usize::from(own < 0.5 * straight);
+    }
+    assert!(slanted > 500, "{slanted}");
 }

@@ -16,6 +16,7 @@ const REST: u32 = 8;
 
 /// See [`crate::query::Traversal::Front`].
 pub struct Front {
+    device: Device,
     shape: FrontShape,
     queue: Queue,
     /// Where the last descent ended.
@@ -46,9 +47,10 @@ impl Front {
     /// # Errors
     /// Those of the device.
     pub fn new<V: Kernels>(device: &Device, shape: FrontShape, triangles: usize) -> Result<Self, Error> {
-        let list = || List::new(device, "pairs of the front", counter::ENDS, PAIRS_A_TRIANGLE * triangles);
+        let list = || Self::list(device, PAIRS_A_TRIANGLE * triangles);
         let queue = crate::query::QueueShape { balance: crate::query::Balance::View, ..shape.queue };
         Ok(Front {
+            device: device.clone(),
             shape,
             queue: Queue::new::<V>(device, queue)?,
             front: list()?,
@@ -57,6 +59,10 @@ impl Front {
             age: 0,
             from_roots: 0,
         })
+    }
+
+    fn list(device: &Device, room: usize) -> Result<List<Pair>, Error> {
+        List::new(device, "pairs of the front", counter::ENDS, room)
     }
 
     /// Whether this frame prunes: volumes whose tests do not nest cannot.
@@ -127,6 +133,10 @@ impl<V: Kernels> Walk<V> for Front {
         };
         if let State::Kept { .. } = self.state {
             std::mem::swap(&mut self.front, &mut self.ends);
+            // What this frame needed the next one will need as well: no frame runs again for that.
+            if self.ends.room() < self.front.room() {
+                self.ends = Self::list(&self.device, self.front.room())?;
+            }
         }
         Ok(())
     }

@@ -7,7 +7,11 @@ use crate::error::Error;
 use crate::pipeline::room::Growing;
 use crate::pipeline::volumes::Kernels;
 use crate::query::StealShape;
-use nearmiss_kernels::abi::{EAGER, StealArgs, control};
+use nearmiss_kernels::abi::{EAGER, Pair, StealArgs, control, pool};
+
+/// Places of the pool a queue, where the query does not say: queues run dry some times each, whatever the size of the
+/// trees, since what they are given are large subtrees. 16 KB a queue.
+const PLACES: u32 = 32;
 
 /// See [`crate::query::Traversal::Steal`].
 pub struct Steal {
@@ -15,7 +19,10 @@ pub struct Steal {
     cores: u32,
     units: Segments<1>,
     pool: Buffer<u64>,
+    chunks: Buffer<Pair>,
     control: Buffer<u64>,
+    /// How many so far: what earlier ones left in the pool is known by it.
+    launches: u64,
 }
 
 impl Steal {
@@ -25,15 +32,18 @@ impl Steal {
     /// Those of the device.
     pub fn new<V: Kernels>(device: &Device, shape: StealShape) -> Result<Self, Error> {
         let cores = shape.cores.unwrap_or_else(|| resident::<V::Steal>(device));
-        let mut pool = device.buffer(shape.pool as usize)?;
-        // Every launch leaves it so.
-        pool.clear()?;
+        let places = shape.pool.unwrap_or((PLACES * cores).min(control::MOST_PLACES)) as usize;
+        let mut words = device.buffer(places)?;
+        // Once: later launches have other numbers.
+        words.clear()?;
         Ok(Steal {
             shape,
             cores,
             units: Segments::new(device, cores, shape.segment as u64)?,
-            pool,
-            control: device.buffer(control::COUNT as usize)?,
+            pool: words,
+            chunks: device.buffer(places * pool::CHUNK as usize)?,
+            control: device.buffer(1)?,
+            launches: 0,
         })
     }
 }
@@ -41,11 +51,14 @@ impl Steal {
 impl<V: Kernels> Walk<V> for Steal {
     fn launch(&mut self, given: &Walked<V>) -> Result<(), Error> {
         self.control.clear()?;
+        self.launches += 1;
         let args = StealArgs {
             to: given.pair_args(self.shape.local),
             units: self.units.span(0),
             pool: self.pool.span(),
+            chunks: self.chunks.span(),
             control: self.control.span(),
+            launch: self.launches << pool::LAUNCH,
             segment: self.units.len(),
             tries: self.shape.tries,
             flags: if self.shape.eager { EAGER } else { 0 },

@@ -98,13 +98,17 @@ arguments! {
         to: PairArgs<V>,
         /// A segment for each block: units that its own queue had no room for.
         units: Span<Pair>,
-        /// Units offered to all, as words; 0 where there is none.
+        /// The places of the pool, a word each: what became of it, and in which launch. See [`pool`].
         pool: Span<u64>,
-        /// See [`control`]; zero before the launch.
+        /// The units of the places, [`pool::CHUNK`] each.
+        chunks: Span<Pair>,
+        /// One word: see [`control`]. Zero before the launch.
         control: Span<u64>,
+        /// What marks the words of the pool as this launch's: see [`pool`].
+        launch: u64,
         /// Units of a block's segment.
         segment: u32,
-        /// How often a block without work looks for some.
+        /// How often a block without work looks for some before it leaves.
         tries: u32,
         /// Bits: [`EAGER`].
         flags: u32,
@@ -124,18 +128,70 @@ pub const PRUNE: u32 = 1;
 /// [`StealArgs::flags`]: units are offered whether or not a block looks for some.
 pub const EAGER: u32 = 1;
 
-/// The words by which blocks of `traverse_steal` find each other, each in a line of its own.
+/// The word by which blocks of `traverse_steal` find each other: three counts in one, so that one atomic changes them
+/// together and one look sees them at one moment. Zero stands for a pair of roots that is on its way to who draws the
+/// first ticket.
 pub mod control {
-    /// Words of a line of 128 bytes.
-    const LINE: u32 = 16;
-    /// Blocks that entered (upper half), and blocks that have work (lower half).
-    pub const BUSY: u32 = 0;
-    /// Blocks that look for work.
-    pub const HUNGRY: u32 = LINE;
-    /// Units of the pool that were claimed.
-    pub const HEAD: u32 = 2 * LINE;
-    /// Units of the pool that were offered, past its end too.
-    pub const TAIL: u32 = 3 * LINE;
-    /// How many words.
-    pub const COUNT: u32 = 4 * LINE;
+    /// A ticket drawn. Ticket 0 is for the roots, ticket `t` for place `t - 1` of the pool. At most one a place and, past
+    /// the end, one a block, and the first.
+    pub const TICKET: u64 = 1;
+    /// A place taken to offer units. Past the end at most [`MOST_OFFERS`] a block.
+    pub const OFFER: u64 = 1 << BITS;
+    /// One more at work: a block that has units, or a chunk of units on its way. Counted from 1: the roots.
+    pub const WORK: u64 = 1 << (2 * BITS);
+    /// Bits of a count; the last has one more.
+    const BITS: u32 = 21;
+    /// Chunks that a block offers at most at a time.
+    pub const MOST_OFFERS: u32 = 16;
+    /// The most places of a pool, and the most blocks: with these no count leaves its bits.
+    pub const MOST_PLACES: u32 = 1 << 18;
+    /// See [`MOST_PLACES`].
+    pub const MOST_BLOCKS: u32 = 1 << 16;
+    const _: () = assert!(1 + MOST_PLACES + MOST_BLOCKS < 1 << BITS);
+    const _: () = assert!(MOST_PLACES + MOST_BLOCKS * MOST_OFFERS < 1 << BITS);
+    const _: () = assert!(MOST_PLACES + MOST_BLOCKS * (MOST_OFFERS + 1) < u32::MAX >> (2 * BITS - 32));
+
+    /// The counts at one moment.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub struct Counts {
+        /// Tickets drawn.
+        pub tickets: u32,
+        /// Places taken.
+        pub offers: u32,
+        /// Blocks and chunks at work; 0: all is done, and nobody can ever have work again.
+        pub work: u32,
+    }
+
+    impl Counts {
+        /// Those of a word.
+        #[inline]
+        pub fn of(word: u64) -> Counts {
+            let count = |at: u32| (word >> (at * BITS)) as u32 & ((1 << BITS) - 1);
+            let work = (word >> (2 * BITS)) as u32;
+            Counts { tickets: count(0), offers: count(1), work: (work + 1) & (u32::MAX >> (2 * BITS - 32)) }
+        }
+        /// Tickets for places that nobody has taken.
+        #[inline]
+        pub fn waiting(self) -> u32 {
+            self.tickets.saturating_sub(self.offers + 1)
+        }
+        /// Whether each place that was taken has its ticket.
+        #[inline]
+        pub fn all_drawn(self) -> bool {
+            self.tickets > self.offers
+        }
+    }
+}
+
+/// The pool of `traverse_steal`. A word of it that this launch did not write counts as empty, whatever it is, so nobody
+/// clears it: the number of the launch is in the bits above [`STATE`](pool::STATE), and no number comes twice.
+pub mod pool {
+    /// Units of a place at most.
+    pub const CHUNK: u32 = 64;
+    /// The number of a launch begins at this bit.
+    pub const LAUNCH: u32 = 16;
+    /// What became of the place: so many units, or [`GONE`].
+    pub const STATE: u64 = (1 << LAUNCH) - 1;
+    /// Who had the ticket gave up.
+    pub const GONE: u64 = STATE;
 }

@@ -33,7 +33,7 @@ impl Obb {
     /// The box of points: their principal axes, or the world's where these have less surface (and where sizes beyond
     /// `2^60` or below `2^-60` leave no others). The box of everything where a point is not finite or too large.
     /// Deterministic: the same points in the same order give the same bits.
-    #[inline]
+    #[inline(always)]
     pub fn of<R: Real>(points: &(impl Points<R> + ?Sized)) -> Obb {
         let base = points.first();
         let zero = Vec3([0.0; 3]);

@@ -22,8 +22,8 @@
 //!
 //! `BOX_APART` is 256u, and what is lost when it is multiplied, added and compared with a difference is below 4u.
 
-use super::axes::{self, Covariance, Frame, three};
-use super::{Axes, GROUP, Volume};
+use super::axes::{self, Frame, three};
+use super::{Axes, GROUP, Points, Volume};
 use crate::math::tolerance::{
     BOX_APART, BOX_APART_UNDERFLOW, BOX_CHILD, BOX_LIMIT, BOX_POINT, BOX_UNDERFLOW, BOX_UP,
 };
@@ -82,7 +82,7 @@ impl Obb {
     ///
     /// `s = a . q` errs by at most four roundings (five, the first tiny, for f64) and, near zero, six underflows.
     #[inline]
-    fn around<R: Real, const N: usize>(points: &[Vec3<R>; N], frame: Frame) -> Obb {
+    fn around<R: Real>(points: &[Vec3<R>; 3], frame: Frame) -> Obb {
         let a = three(frame);
         let base = points[0];
         let (mut lo, mut hi) = (Vec3([0.0; 3]), Vec3([0.0; 3]));
@@ -130,6 +130,26 @@ impl Obb {
     }
 }
 
+/// The corners of a triangle at both ends of the step, gone through without a loop: they stay in registers.
+struct Corners<R>([Vec3<R>; 6]);
+
+impl<R: Real> Points<R> for Corners<R> {
+    #[inline(always)]
+    fn first(&self) -> Vec3<R> {
+        self.0[0]
+    }
+    #[inline(always)]
+    fn each(&self, mut visit: impl FnMut(Vec3<R>)) {
+        let [p, s, q, t, r, u] = self.0;
+        visit(p);
+        visit(s);
+        visit(q);
+        visit(t);
+        visit(r);
+        visit(u);
+    }
+}
+
 /// The surface, in no particular unit and without paddings, of the box around slabs of half extents h about the
 /// origin and others of r about t.
 #[inline]
@@ -158,15 +178,10 @@ impl Volume for Obb {
         Obb::around(&corners, axes::of_edges(e))
     }
 
-    /// The hull of both triangles holds the moving one. The axes are the principal axes of its six corners.
-    #[inline]
+    /// The hull of both triangles holds the moving one: fitted as a group is, to six points.
+    #[inline(always)]
     fn moving<R: Real>([p, q, r]: [Vec3<R>; 3], [s, t, u]: [Vec3<R>; 3]) -> Self {
-        let d = scaled([q, r, s, t, u].map(|x| (x - p).narrow()));
-        let mean = d.iter().fold(Vec3([0.0; 3]), |sum, &x| sum + x).map(|x| x / 6.0);
-        let mut m = Covariance::ZERO;
-        m.add(mean);
-        d.iter().for_each(|&x| m.add(x - mean));
-        Obb::around(&[p, q, r, s, t, u], m.axes())
+        Obb::of(&Corners([p, s, q, t, r, u]))
     }
 
     /// Along its own axes a box reaches as far as its extents, so only the other's reach is computed, for both choices
@@ -206,8 +221,7 @@ impl Volume for Obb {
     }
 
     /// Faces first, all six at once: they separate nearly all boxes that are apart. The slack is for all axes alike;
-    /// see the module's text. A comparison with NaN is false and a maximum drops it, which the box of everything relies
-    /// on.
+    /// see the module's text. Every comparison with NaN is false, which the box of everything relies on.
     #[inline]
     fn overlaps(&self, o: &Self) -> bool {
         let (a, b) = (self.axes(), o.axes());
@@ -217,14 +231,13 @@ impl Volume for Obb {
         let r = a.map(|a| Vec3([a.dot(b[0]), a.dot(b[1]), a.dot(b[2])]));
         let q = r.map(|r| r.map(Real::abs));
         let s = Vec3([a[0].dot(t), a[1].dot(t), a[2].dot(t)]);
-        // The widest gap so far.
-        let mut gap = 0.0f32;
+        let mut apart = false;
         for i in 0..3 {
             let column = Vec3([q[0][i], q[1][i], q[2][i]]);
-            gap = gap.max(s[i].abs() - (g[i] + h.dot(q[i])));
-            gap = gap.max(b[i].dot(t).abs() - (h[i] + g.dot(column)));
+            apart |= s[i].abs() - (g[i] + h.dot(q[i])) > slack;
+            apart |= b[i].dot(t).abs() - (h[i] + g.dot(column)) > slack;
         }
-        if gap > slack {
+        if apart {
             return false;
         }
         for i in 0..3 {
@@ -234,16 +247,16 @@ impl Volume for Obb {
                 let along = (s[l] * r[k][j] - s[k] * r[l][j]).abs();
                 let mine = g[k] * q[l][j] + g[l] * q[k][j];
                 let other = h[m] * q[i][n] + h[n] * q[i][m];
-                gap = gap.max(along - (mine + other));
+                apart |= along - (mine + other) > slack;
             }
         }
-        gap <= slack
+        !apart
     }
 }
 
 /// The vectors, divided by their largest component, so that squares neither overflow nor vanish.
 #[inline]
-fn scaled<const N: usize>(v: [Vec3<f32>; N]) -> [Vec3<f32>; N] {
+fn scaled(v: [Vec3<f32>; 3]) -> [Vec3<f32>; 3] {
     let most = v.iter().fold(Vec3([0.0; 3]), |most, x| most.max(x.map(Real::abs)));
     let most = Real::max(Real::max(most[0], most[1]), most[2]);
     v.map(|x| x.map(|x| x / most))

@@ -10,7 +10,8 @@
 //!
 //! Blocks of one launch talk to each other by [`Lane::give`], [`Lane::take`] and atomics, ordered by [`Lane::fence`]
 //! or [`Block::ticket`]. **The law of giving:** what a lane gives before a `fence` and then an atomic on a flag, a lane
-//! that saw the flag's new value by an atomic and then called `fence` may take. **The law of waiting:** a lane may
+//! that saw the flag's new value by an atomic and then called `fence` may take. A barrier passes this on within a block, at
+//! both ends: what its lanes gave in earlier phases, and what its lanes may take in later ones. **The law of waiting:** a lane may
 //! wait (look at a flag by [`Lane::fetch_load`] or [`Lane::compare_exchange`] until it changes) only for what a lane
 //! of which an atomic was seen, a reservation for example, does further on in the same phase, without waiting itself.
 //! Nobody waits for the end of a phase, nor for a block that may not have started: blocks may run one after the other.

@@ -135,6 +135,12 @@ impl<B: Block> Worker<B> {
         Pair { a, b }
     }
 
+    /// Puts a unit where there is room.
+    #[inline]
+    pub fn put(&self, l: &B::Lane, i: u32, unit: Pair) {
+        l.put(self.queue, i, [unit.a, unit.b]);
+    }
+
     /// Forgets the first `count` units, at most half of all.
     #[inline]
     pub fn drop_first(&mut self, b: &mut B, count: u32) {
@@ -150,26 +156,27 @@ impl<B: Block> Worker<B> {
     }
 
     /// A unit a lane, from the top: pairs below that go deeper go back on top, what has no room there `outside`. Whether
-    /// lane 0 voted.
+    /// lane 0 votes for what it looked at: it looks before the work and votes after, so that nobody waits for the look.
     #[inline]
     pub fn step<V: Volume>(
         &mut self,
         b: &mut B,
         to: &PairArgs<V>,
         outside: &mut Outside,
-        vote: impl Fn(&B::Lane) -> bool,
+        (look, vote): (impl Fn(&B::Lane) -> u64, impl Fn(&B::Lane, u64) -> bool),
     ) -> bool {
         let Worker { queue, found, below: slots, sums, .. } = self;
         let (queue, found, lanes) = (*queue, *found, b.lanes());
         let taken = self.top.min(lanes);
         let from = self.top - taken;
         b.phase(|l| {
-            let voted = l.lane() == 0 && vote(l);
+            let seen = if l.lane() == 0 { look(l) } else { 0 };
             let mut found = Below::NONE;
             if l.lane() < taken {
                 let [a, b] = l.get(queue, from + l.lane());
                 found = below(l, to, Pair { a, b });
             }
+            let voted = l.lane() == 0 && vote(l, seen);
             let candidates = found.candidates.count_ones() << FIELD;
             *sums.of(l) = found.units.count_ones() | candidates | (voted as u32) << (2 * FIELD);
             *slots.of(l) = found;

@@ -2,7 +2,7 @@
 //! Launch   a lane a leaf; it climbs to the root, or until it comes first to a pair of siblings.
 //! Reads    links, parents, leaf nodes; volumes of siblings, taken.   Writes   inner nodes, each once, given.
 //! Before   the leaves are fitted; every counter of arrivals is even.
-//! After    every volume is the merge of its children's and encloses what they do; every counter is even again: each
+//! After    every volume that is not fitted is the merge of its children's and encloses what they do; every counter is even again: each
 //!          pair is passed twice, so nothing is cleared between frames.
 //! Room     fixed; cannot run out.
 //! Departs  the paper has a barrier a level (see [`super::levels`]); this is Karras 2012, section 5.

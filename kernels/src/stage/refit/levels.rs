@@ -4,7 +4,7 @@
 //!          hold are taken together by a launch of one block, whose phases are the barriers.
 //! Reads    links; volumes of level l + 1.     Writes   inner nodes of level l, each once.
 //! Before   level l + 1 is fitted.
-//! After    every volume is the merge of its children's and encloses what they do.
+//! After    every volume that is not fitted is the merge of its children's and encloses what they do.
 //! Room     fixed; cannot run out.
 //! Departs  the paper stores a start and a count a level; here the start of the next level is the count.
 //! Cost     8 B and two nodes in, one out a node: 104 B (AABB), 200 B (others).

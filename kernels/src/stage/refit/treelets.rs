@@ -3,7 +3,7 @@
 //! Launch   a block a treelet, a lane a leaf and a lane a merge; the block that is done last merges the top.
 //! Reads    positions, faces, seats, merges; the last block volumes of others, taken.   Writes   all nodes, each once.
 //! Before   `construct_treelets` has planned the tree; positions are finite.
-//! After    leaves enclose their triangles as after `fit`, every other volume is the merge of its children's.
+//! After    leaves enclose their triangles as after `fit`, every other volume that is not fitted is the merge of its children's.
 //! Room     fixed; cannot run out. Any number of merges in the top: rounds of as many as a block has lanes.
 //! Departs  fit is part of it: the volumes of a treelet stay on chip from the triangle to the treelet's root.
 //! Cost     8 B seat, 12 B face, 48 B positions a frame and leaf; 16 B a merge; two nodes out a leaf: 148 B (AABB). A

@@ -55,8 +55,8 @@ pub fn queue<V: Volume, B: Block>(b: &mut B, a: &QueueArgs<V>) {
             taken += count;
         }
         let heed = steps >= a.patience;
-        let voted = worker
-            .step(b, &a.to, &mut outside, |l| heed && l.fetch_load(a.idle, a.round) > a.idle_limit as u64);
+        let look = |l: &B::Lane| if heed { l.fetch_load(a.idle, a.round) } else { 0 };
+        let voted = worker.step(b, &a.to, &mut outside, (look, |_, idle| idle > a.idle_limit as u64));
         steps += 1;
         if voted || worker.top > a.full {
             break;
