@@ -6,7 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 pub struct Parts<'a> {
     shared: String,
     declarations: BTreeMap<&'a str, String>,
-    functions: BTreeMap<&'a str, String>,
+    /// In the text's order: a function is declared or defined before it is called.
+    functions: Vec<(&'a str, String)>,
     entries: BTreeMap<&'a str, String>,
 }
 
@@ -28,7 +29,7 @@ impl<'a> Parts<'a> {
         let mut parts = Parts {
             shared: String::new(),
             declarations: BTreeMap::new(),
-            functions: BTreeMap::new(),
+            functions: Vec::new(),
             entries: BTreeMap::new(),
         };
         let mut lines = ptx.lines();
@@ -49,10 +50,10 @@ impl<'a> Parts<'a> {
                 }
             }
             match (has_body, is_entry) {
-                (false, _) => parts.declarations.insert(name, text),
-                (true, true) => parts.entries.insert(name, text),
-                (true, false) => parts.functions.insert(name, text),
-            };
+                (false, _) => drop(parts.declarations.insert(name, text)),
+                (true, true) => drop(parts.entries.insert(name, text)),
+                (true, false) => parts.functions.push((name, text)),
+            }
         }
         parts
     }
@@ -83,11 +84,12 @@ impl<'a> Parts<'a> {
         let mut module = self.shared.clone();
         // What is only declared (a function that the driver brings) is declared for all.
         for (name, text) in &self.declarations {
-            if needed.contains(name) || !self.functions.contains_key(name) {
+            if needed.contains(name) || self.functions.iter().all(|(defined, _)| defined != name) {
                 module += text;
             }
         }
-        needed.iter().for_each(|name| module += &self.functions[name]);
+        let called = self.functions.iter().filter(|(name, _)| needed.contains(name));
+        called.for_each(|(_, text)| module += text);
         module += entry;
         Some(module)
     }
@@ -116,12 +118,30 @@ mod tests {
         assert!(!parts.common().contains(".entry") && !parts.common().contains(".func"));
     }
 
+    /// A function of a module that is called before it is declared or defined: no assembler takes that.
+    fn called_too_early<'a>(parts: &Parts<'a>, module: &str) -> Option<&'a str> {
+        let opened = |name: &str| module.lines().position(|line| opens(line).is_some_and(|(_, n)| n == name));
+        let named = |name: &str| module.lines().position(|line| line.contains(name));
+        parts.functions.iter().map(|(name, _)| *name).find(|name| named(name) < opened(name))
+    }
+
+    #[test]
+    fn a_function_that_is_called_too_early_is_noticed() {
+        let parts = Parts::new(TEXT);
+        let one = parts.module("one").expect("a kernel");
+        assert_eq!(called_too_early(&parts, &one), None);
+        let (call, other) = ("call far;", ".func far()\n{\n\tret;\n}\n");
+        let swapped = one.replace(other, "") + other;
+        assert!(one.contains(call) && called_too_early(&parts, &swapped) == Some("far"), "{swapped}");
+    }
+
     #[test]
     fn the_committed_text_has_every_kernel_of_the_table() {
         let parts = Parts::new(include_str!("../../kernels/nearmiss.ptx"));
         for (name, _) in nearmiss_kernels::entry::TABLE {
             let module = parts.module(name).unwrap_or_else(|| panic!("{name} is missing"));
             assert_eq!(module.matches("\n.visible .entry ").count(), 1, "{name}");
+            assert_eq!(called_too_early(&parts, &module), None, "{name}");
         }
         assert_eq!(parts.kernels().count(), nearmiss_kernels::entry::TABLE.len());
     }
