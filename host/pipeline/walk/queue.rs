@@ -168,12 +168,11 @@ impl Queue {
     /// the roots, or with the units that `seed` writes to the list and counts.
     fn by_view<V: Kernels>(&mut self, given: &Walked<V>, seed: Option<Seed>) -> Result<(), Error> {
         let first = if seed.is_some() { 0 } else { START };
-        let begin = |queue: &mut Self, left: u64| -> Result<(), Error> {
+        let begin = |queue: &mut Self| -> Result<(), Error> {
             queue.counts[0].clear()?;
-            queue.counts[0].write(&[left])?;
             queue.idle.clear()
         };
-        begin(self, 0)?;
+        begin(self)?;
         if let Some(seed) = seed {
             seed(self.units.span(0), self.counts[0].span())?;
         }
@@ -195,7 +194,8 @@ impl Queue {
             if left == 0 {
                 return Ok(());
             }
-            begin(self, left)?;
+            begin(self)?;
+            self.counts[0].write(&[left])?;
         }
     }
 
