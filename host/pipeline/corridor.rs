@@ -169,6 +169,22 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
         })
     }
 
+    /// Runs a stage on what those before it left.
+    fn run(&mut self, stage: Stage) -> Result<(), Error> {
+        let (device, frames, faces) = (&self.device, self.frames(), self.faces.span());
+        match stage {
+            Stage::Construct => self.construct().map(|_| ()),
+            Stage::Fit => {
+                self.bodies.iter().try_for_each(|(tree, volumes)| volumes.fit(device, tree, frames, faces))
+            }
+            Stage::Refit => {
+                self.bodies.iter().try_for_each(|(tree, volumes)| volumes.refit(device, tree, frames, faces))
+            }
+            Stage::Traverse => self.step(Step::Traverse),
+            Stage::Narrow => self.narrow.steps().iter().try_for_each(|&step| self.step(step)),
+        }
+    }
+
     /// Runs a step. Until the lists have settled it waits for the step's demand and, where a list was too short, grows
     /// it and runs the step again: no step works on a part of its input.
     fn step(&mut self, step: Step) -> Result<(), Error> {
@@ -289,17 +305,16 @@ impl<R: Precision, V: Kernels> Frames for Corridor<R, V> {
 
     fn frame(&mut self) -> Result<(Found, Stages), Error> {
         let start = self.device.mark()?;
-        let (device, frames, faces) = (&self.device, self.frames(), self.faces.span());
-        self.bodies.iter().try_for_each(|(tree, volumes)| volumes.fit(device, tree, frames, faces))?;
+        self.run(Stage::Fit)?;
         let fitted = self.device.mark()?;
-        self.bodies.iter().try_for_each(|(tree, volumes)| volumes.refit(device, tree, frames, faces))?;
+        self.run(Stage::Refit)?;
         let refitted = self.device.mark()?;
         loop {
             self.counters.clear()?;
             let begun = self.device.mark()?;
-            self.step(Step::Traverse)?;
+            self.run(Stage::Traverse)?;
             let traversed = self.device.mark()?;
-            self.narrow.steps().iter().try_for_each(|&step| self.step(step))?;
+            self.run(Stage::Narrow)?;
             let end = self.device.mark()?;
             let counters = self.counters.read(counter::COUNT as usize)?;
             if self.is_short(&counters) {

@@ -2,7 +2,6 @@
 
 use super::{Corridor, Frames};
 use crate::error::Error;
-use crate::pipeline::narrow::Step;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::timing::Stage;
 use crate::pipeline::volumes::Kernels;
@@ -48,20 +47,5 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
             }
         }
         counters
-    }
-
-    fn run(&mut self, stage: Stage) -> Result<(), Error> {
-        let (device, frames, faces) = (&self.device, self.frames(), self.faces.span());
-        match stage {
-            Stage::Construct => self.construct().map(|_| ()),
-            Stage::Fit => {
-                self.bodies.iter().try_for_each(|(tree, volumes)| volumes.fit(device, tree, frames, faces))
-            }
-            Stage::Refit => {
-                self.bodies.iter().try_for_each(|(tree, volumes)| volumes.refit(device, tree, frames, faces))
-            }
-            Stage::Traverse => self.step(Step::Traverse),
-            Stage::Narrow => self.narrow.steps().iter().try_for_each(|&step| self.step(step)),
-        }
     }
 }
