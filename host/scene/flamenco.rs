@@ -1,9 +1,8 @@
 //! Skirts over skirts, a hair apart, on a dancer who turns: a stand-in for UNC's Flamenco.
 
-use super::known::at_least_one;
-use super::turn::{circle, wave};
+use super::Rng;
+use super::turn::{around, ring, wave};
 use super::xpbd::{Fabric, Obstacles, Pose, Setting, World};
-use super::{Rng, square_root};
 
 /// Frames after which the skirts swing.
 pub(super) const OPENING: u64 = 30;
@@ -30,11 +29,8 @@ fn pose(time: f64) -> Pose {
 }
 
 pub(super) fn world(triangles: usize, seed: u64) -> World {
-    // Cells are about square where the skirt is half as wide as at its hem.
-    let cells = triangles as f64 / f64::from(2 * LAYERS);
-    let rows = square_root(cells / 2.5);
-    let columns = at_least_one(cells / f64::from(rows)).max(3);
-    let cell = LENGTH / f64::from(rows);
+    let skirt = around(triangles as f64 / f64::from(2 * LAYERS));
+    let cell = LENGTH / f64::from(skirt[0]);
 
     let obstacles = Obstacles { ellipsoid: None, floor: None, friction: [0.0; 2] };
     let mut world = World::new(Setting { pose, obstacles, gravity: 0.002, drag: 0.03 });
@@ -42,19 +38,10 @@ pub(super) fn world(triangles: usize, seed: u64) -> World {
     let shake = (SHAKE * cell).min(0.2 * HAIR);
     for layer in 0..LAYERS {
         let waist = WAIST + HAIR * f64::from(layer);
-        let points: Vec<Vec<[f64; 3]>> = (0..=rows)
-            .map(|row| {
-                let down = f64::from(row) / f64::from(rows);
-                let around = |column| {
-                    let turns = f64::from(column) / f64::from(columns);
-                    let [c, s] = circle(turns);
-                    let radius = waist + down * (FLARE + STAND * wave(RUFFLES * turns));
-                    let off = rng.point(shake);
-                    [radius * c + off[0], radius * s + off[1], -LENGTH * down + off[2]]
-                };
-                (0..columns).map(around).collect()
-            })
-            .collect();
+        let points = ring(skirt, |down, turns| {
+            let radius = waist + down * (FLARE + STAND * wave(RUFFLES * turns));
+            ([radius, -LENGTH * down], rng.point(shake))
+        });
         world.cloth(&points, true, true, FABRIC);
     }
     world

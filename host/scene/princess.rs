@@ -1,8 +1,7 @@
 //! A wide dress on a figure that turns and sways, its train on the floor: a stand-in for UNC's Princess.
 
-use super::known::at_least_one;
 use super::sphere::sphere;
-use super::turn::{circle, wave};
+use super::turn::{around, ring, wave};
 use super::xpbd::{Fabric, Obstacles, Pose, Setting, World};
 use super::{Rng, square_root};
 use nearmiss_kernels::math::Vec3;
@@ -35,9 +34,8 @@ fn pose(time: f64) -> Pose {
 pub(super) fn world(triangles: usize, seed: u64) -> World {
     let frequency = square_root(triangles as f64 / 80.0);
     let cells = triangles as f64 / 2.0 - 4.0 * f64::from(frequency) * f64::from(frequency);
-    let rows = square_root(cells.max(1.0) / 2.5);
-    let columns = at_least_one(cells / f64::from(rows)).max(3);
-    let cell = LENGTH / f64::from(rows);
+    let dress = around(cells);
+    let cell = LENGTH / f64::from(dress[0]);
 
     // At the neckline the dress must begin outside of the figure.
     let margin = (MARGIN * cell).min(0.05);
@@ -50,19 +48,10 @@ pub(super) fn world(triangles: usize, seed: u64) -> World {
     let mut rng = Rng::new(seed);
     // A straight line down and out, so that length, drop and flare make a right triangle.
     let drop = (LENGTH * LENGTH - FLARE * FLARE).sqrt();
-    let points: Vec<Vec<[f64; 3]>> = (0..=rows)
-        .map(|row| {
-            let down = f64::from(row) / f64::from(rows);
-            let around = |column| {
-                let turns = f64::from(column) / f64::from(columns);
-                let [c, s] = circle(turns);
-                let radius = NECK[1] + down * (FLARE + STAND * wave(FOLDS * turns));
-                let off = rng.point(SHAKE * cell * down);
-                [radius * c + off[0], radius * s + off[1], NECK[0] - drop * down + off[2]]
-            };
-            (0..columns).map(around).collect()
-        })
-        .collect();
+    let points = ring(dress, |down, turns| {
+        let radius = NECK[1] + down * (FLARE + STAND * wave(FOLDS * turns));
+        ([radius, NECK[0] - drop * down], rng.point(SHAKE * cell * down))
+    });
     world.cloth(&points, true, true, FABRIC);
     let figure = sphere(frequency);
     let stretched =

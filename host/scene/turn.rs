@@ -1,4 +1,7 @@
-//! Circles and waves by `+ - * /` alone: the same on every machine.
+//! Circles and waves by `+ - * /` alone: the same on every machine; and the cloth that hangs around.
+
+use super::known::at_least_one;
+use super::square_root;
 
 /// Cosine and sine of so many whole turns: Taylor's series of an eighth of the angle, then doubled three times. Off by
 /// less than 1e-14.
@@ -23,6 +26,32 @@ pub(super) fn circle(turns: f64) -> [f64; 2] {
 pub(super) fn wave(x: f64) -> f64 {
     let t = x - (x + 0.5).floor();
     8.0 * t * (1.0 - 2.0 * t.abs())
+}
+
+/// How many rows and columns of a cloth around an axis make about so many cells, each about square where the cloth is
+/// half as wide as at its hem.
+pub(super) fn around(cells: f64) -> [u32; 2] {
+    let rows = square_root(cells.max(1.0) / 2.5);
+    [rows, at_least_one(cells / f64::from(rows)).max(3)]
+}
+
+/// A cloth around the vertical axis, row by row: `place` says of a part of the way down and a direction around which
+/// radius and which height it has there, and how far off the vertex is shaken.
+pub(super) fn ring(
+    [rows, columns]: [u32; 2],
+    mut place: impl FnMut(f64, f64) -> ([f64; 2], [f64; 3]),
+) -> Vec<Vec<[f64; 3]>> {
+    let row = |row| {
+        let down = f64::from(row) / f64::from(rows);
+        let vertex = |column| {
+            let turns = f64::from(column) / f64::from(columns);
+            let [c, s] = circle(turns);
+            let ([radius, height], off) = place(down, turns);
+            [radius * c + off[0], radius * s + off[1], height + off[2]]
+        };
+        (0..columns).map(vertex).collect()
+    };
+    (0..=rows).map(row).collect()
 }
 
 #[cfg(test)]
