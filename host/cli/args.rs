@@ -1,6 +1,7 @@
 //! What the command line takes.
 
-use crate::device::Backend;
+use crate::device::{Backend, Device};
+use crate::error::Error;
 use crate::pipeline::Stage;
 use crate::query::{Bv, FrontShape, Motion, Query, QueueShape, Refit, Solver, StealShape, Traversal};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -70,6 +71,27 @@ impl TraversalArg {
     }
 }
 
+/// Where to run.
+#[derive(Args)]
+pub struct MachineArgs {
+    /// Which machine.
+    #[arg(long, value_enum, default_value_t)]
+    backend: Backend,
+    /// CPU threads [default: all].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+}
+
+impl MachineArgs {
+    /// The machine that the arguments name.
+    ///
+    /// # Errors
+    /// Those of [`Device::open`].
+    pub fn open(&self) -> Result<Device, Error> {
+        Device::open(self.backend, self.threads.map(usize::from))
+    }
+}
+
 #[derive(Args)]
 pub struct DetectArgs {
     /// The mesh (.ply, .obj); with a second file, its positions at the end of the step.
@@ -125,12 +147,8 @@ pub struct DetectArgs {
     /// Certified: boxes that are looked at for a pair before it is left unresolved [default: 4096].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub boxes: Option<u32>,
-    /// Which machine.
-    #[arg(long, value_enum, default_value_t)]
-    pub backend: Backend,
-    /// CPU threads [default: all].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
+    #[command(flatten)]
+    pub machine: MachineArgs,
     /// Discrete: also triangles that share a vertex, where they meet beyond it.
     #[arg(long)]
     pub adjacent: bool,
@@ -215,7 +233,7 @@ pub enum Table {
 /// Sizes of work queues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Profile {
-    /// The thesis's: 30 queues, evened by copying.
+    /// The released program's: 128 queues, evened by copying.
     Gtx285,
     /// As many queues as the machine runs at once.
     Native,
@@ -270,12 +288,8 @@ pub struct TablesArgs {
     /// Build the tree anew at every N-th frame; that time is not part of a frame's [default: only at the first].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub rebuild_every: Option<u32>,
-    /// Which machine.
-    #[arg(long, value_enum, default_value_t)]
-    pub backend: Backend,
-    /// CPU threads [default: all].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    pub threads: Option<u16>,
+    #[command(flatten)]
+    pub machine: MachineArgs,
     /// Folder for CSV files and SVG pictures.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

@@ -3,7 +3,6 @@
 use super::args::DetectArgs;
 use super::progress::during;
 use crate::contacts::{Contacts, Summary};
-use crate::device::Device;
 use crate::error::Error;
 use crate::mesh::{Body, Mesh};
 use crate::pipeline::{Session, Stages};
@@ -46,7 +45,7 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
         report::Format::of(out)?;
     }
     let (bodies, query) = question(args)?;
-    let device = Device::open(args.backend, args.threads.map(usize::from))?;
+    let device = args.machine.open()?;
     if !query.solver().is_certain() {
         eprintln!("nearmiss: the solver is {}", query.solver().promise());
     }
@@ -169,7 +168,7 @@ fn human(summary: &Summary, contacts: &Contacts) -> String {
 /// Says what `detect` would do.
 pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
     let (bodies, query) = question(args)?;
-    let device = Device::open(args.backend, args.threads.map(usize::from))?;
+    let device = args.machine.open()?;
     let before = device.launches();
     let session = Session::new(device.clone(), bodies.clone(), query)?;
     let mut text = String::new();

@@ -10,7 +10,7 @@ use std::process::ExitCode;
 
 /// Measures what was asked for, prints it, and writes it where `--out` says.
 pub fn tables(args: &TablesArgs) -> Result<ExitCode, Error> {
-    let device = Device::open(args.backend, args.threads.map(usize::from))?;
+    let device = args.machine.open()?;
     let continuous = Solver::default_for(Motion::Continuous);
     eprintln!("nearmiss: the solver of continuous columns is {}", continuous.promise());
     let mut figures = Figures::new(device.name(), profile(args));
