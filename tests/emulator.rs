@@ -2,6 +2,9 @@
 //! of lanes and blocks.
 
 mod support;
+#[macro_use]
+#[path = "support/kernels.rs"]
+mod kernels;
 
 use bytemuck::{Pod, Zeroable};
 use nearmiss::Device;
@@ -30,22 +33,7 @@ struct Args {
     /// Two counters.
     counters: Span<u64>,
 }
-
-macro_rules! kernels {
-    ($($name:ident |$b:ident, $a:ident| $body:block)*) => { $(
-        #[allow(non_camel_case_types, reason = "the type is the entry's name")]
-        struct $name;
-        impl Entry for $name {
-            const NAME: &'static str = stringify!($name);
-            type Args = Args;
-            const LANES: u32 = 64;
-            const SHARED: u32 = 4096;
-            fn run<B: Block>($b: &mut B, $a: &Args) $body
-        }
-    )* };
-}
-
-kernels! {
+kernels! { [Args], 64, 4096;
     scan |b, a| {
         let mut values = b.slot(0u32);
         b.phase(|l| *values.of(l) = l.read(a.given, l.global()));
@@ -314,7 +302,7 @@ fn the_engine_runs_on_as_many_threads_as_asked() {
 }
 
 #[cfg(debug_assertions)]
-kernels! {
+kernels! { [Args], 64, 4096;
     stray |b, a| { b.phase(|l| if l.lane() == 2 { l.read(a.given, a.given.len as u32); }); }
     stray_in_shared_memory |b, _a| {
         let words = b.shared::<u32>(4);

@@ -2,6 +2,9 @@
 //! fault, the hash of an answer one bit. Kernels that break no rule pass.
 
 mod support;
+#[macro_use]
+#[path = "support/kernels.rs"]
+mod kernels;
 #[path = "oracles_can_fail/tree.rs"]
 mod tree;
 
@@ -23,23 +26,7 @@ struct Words {
     words: Span<u32>,
     long: Span<u64>,
 }
-
-/// Kernels: a name each, and what a block does.
-macro_rules! kernels {
-    ($($name:ident |$b:ident, $a:ident| $body:block)*) => { $(
-        #[allow(non_camel_case_types, reason = "the type is the entry's name")]
-        struct $name;
-        impl Entry for $name {
-            const NAME: &'static str = stringify!($name);
-            type Args = Words;
-            const LANES: u32 = 32;
-            const SHARED: u32 = 1024;
-            fn run<B: Block>($b: &mut B, $a: &Words) $body
-        }
-    )* };
-}
-
-kernels! {
+kernels! { [Words], 32, 1024;
     neighbours_in_one_phase |b, a| {
         let (lanes, base) = (b.lanes(), b.block() * b.lanes());
         b.phase(|l| l.write(a.words, l.global(), 1));

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 /// Seeds by which blocks interleave.
 const SEEDS: std::ops::Range<u64> = 1..13;
 
-kernels! {
+kernels! { [Args], 64, 4096;
     swaps |b, a| {
         // A sum by compare and exchange, a chain by exchange, and a look that sees at least one's own part.
         b.phase(|l| {
@@ -204,7 +204,7 @@ fn seeds_decide_how_blocks_interleave() {
 }
 
 // Kernels that break a rule.
-kernels! {
+kernels! { [Args], 64, 4096;
     plain_handover |b, a| {
         // As `last_block`, but with plain writes and reads.
         b.phase(|l| l.write(a.out, l.global(), l.read(a.given, l.global())));
