@@ -5,7 +5,7 @@
 //! that, until the distance is below `1 - ETA` of the first. What is zero at the start is a contact at 0.
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "comparisons that NaN fails")]
 
-use super::cubic::Moving;
+use super::cubic::{Moving, distance};
 use crate::math::{Real, Vec3};
 
 /// The part of the safe time that a step takes.
@@ -90,14 +90,5 @@ fn between<S: Real>(r: Vec3<S>, a: Vec3<S>, b: Vec3<S>) -> S {
 
 /// The squared distance of `p` from the segment from 0 to `a`.
 fn to_edge<S: Real>(p: Vec3<S>, a: Vec3<S>) -> S {
-    let (along, square) = (p.dot(a), a.dot(a));
-    let s = if along <= S::ZERO {
-        S::ZERO
-    } else if along >= square {
-        S::ONE
-    } else {
-        along / square
-    };
-    let r = p - a * s;
-    r.dot(r)
+    distance(p, Vec3([S::ZERO; 3]), a)
 }

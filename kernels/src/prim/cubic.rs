@@ -332,7 +332,7 @@ fn edges_at<S: Real>(m: &Relative<S>, t: S, rooted: bool) -> bool {
 
 /// The squared distance of `p` from the closed segment `ab`, which may be a point.
 #[inline]
-fn distance<S: Real>(p: Vec3<S>, a: Vec3<S>, b: Vec3<S>) -> S {
+pub(super) fn distance<S: Real>(p: Vec3<S>, a: Vec3<S>, b: Vec3<S>) -> S {
     let (d, q) = (b - a, p - a);
     let (along, square) = (q.dot(d), d.dot(d));
     let s = if along <= S::ZERO {
