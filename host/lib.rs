@@ -3,6 +3,7 @@
 //! [`Session`] is the front door: bodies in, [`Contacts`] out, on the CPU or on an NVIDIA card, to the same bit. [`Query`]
 //! holds every choice; [`Device`] is where it runs; [`Error`] says who must act.
 
+mod case;
 pub mod cli;
 pub mod contacts;
 pub mod device;
@@ -15,6 +16,7 @@ pub mod report;
 pub mod scene;
 mod tables;
 
+pub use case::{Case, Features};
 pub use contacts::{Answer, Contact, Contacts};
 pub use device::Device;
 pub use error::Error;
