@@ -132,6 +132,20 @@ impl Device {
         self.blocks_for::<E>(room).clamp(1, full)
     }
 
+    /// Blocks for up to `room` items whose number only the device knows, no more than run at once: for kernels whose
+    /// lanes draw items until there are no more.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn blocks_at_once<E: Entry>(&self, room: usize) -> Result<u32, Error> {
+        let full = match &*self.machine {
+            Machine::Emulator(_) => self.blocks_striding::<E>(room),
+            #[cfg(feature = "cuda")]
+            Machine::Cuda(c) => c.blocks_at_once::<E>()?,
+        };
+        Ok(self.blocks_for::<E>(room).clamp(1, full.max(1)))
+    }
+
     /// Memory for `len` elements: zeroed (poisoned under the microscope).
     ///
     /// # Errors

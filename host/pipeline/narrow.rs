@@ -290,18 +290,18 @@ impl Continuous {
         match &self.escalated {
             Some([vf, ee]) => {
                 let first = (args(of_vf, &self.vf_hits, Some(vf)), args(of_ee, &self.ee_hits, Some(ee)));
-                launch_striding::<R::CertifyVf32>(device, of_vf.room(), &first.0)?;
-                launch_striding::<R::CertifyEe32>(device, of_ee.room(), &first.1)?;
-                launch_striding::<R::CertifyVf64>(device, vf.room(), &args(vf, &self.vf_hits, None))?;
-                launch_striding::<R::CertifyEe64>(device, ee.room(), &args(ee, &self.ee_hits, None))
+                launch_drawing::<R::CertifyVf32>(device, of_vf.room(), &first.0)?;
+                launch_drawing::<R::CertifyEe32>(device, of_ee.room(), &first.1)?;
+                launch_drawing::<R::CertifyVf64>(device, vf.room(), &args(vf, &self.vf_hits, None))?;
+                launch_drawing::<R::CertifyEe64>(device, ee.room(), &args(ee, &self.ee_hits, None))
             }
             None if given.query.solver() == Solver::CertifiedF32 => {
-                launch_striding::<R::CertifyVf32>(device, of_vf.room(), &vf)?;
-                launch_striding::<R::CertifyEe32>(device, of_ee.room(), &ee)
+                launch_drawing::<R::CertifyVf32>(device, of_vf.room(), &vf)?;
+                launch_drawing::<R::CertifyEe32>(device, of_ee.room(), &ee)
             }
             None => {
-                launch_striding::<R::CertifyVf64>(device, of_vf.room(), &vf)?;
-                launch_striding::<R::CertifyEe64>(device, of_ee.room(), &ee)
+                launch_drawing::<R::CertifyVf64>(device, of_vf.room(), &vf)?;
+                launch_drawing::<R::CertifyEe64>(device, of_ee.room(), &ee)
             }
         }
     }
@@ -310,4 +310,9 @@ impl Continuous {
 /// Launches a kernel over up to `room` items.
 fn launch_striding<E: Entry>(device: &Device, room: usize, args: &E::Args) -> Result<(), Error> {
     device.launch::<E>(device.blocks_striding::<E>(room), args)
+}
+
+/// Launches a kernel whose lanes draw from up to `room` items.
+fn launch_drawing<E: Entry>(device: &Device, room: usize, args: &E::Args) -> Result<(), Error> {
+    device.launch::<E>(device.blocks_at_once::<E>(room)?, args)
 }
