@@ -209,8 +209,8 @@ impl<W: Watch> Lane for EmulatedLane<W> {
         fence(SeqCst);
     }
     #[inline(always)]
-    fn again(&self, more: bool) -> bool {
-        more
+    fn any(&self, mine: bool) -> bool {
+        mine
     }
     #[inline(always)]
     fn get<T: Word>(&self, words: Shared<T>, i: u32) -> T {

@@ -65,10 +65,10 @@ pub trait Lane {
     /// the launch. Atomics by themselves order nothing. Plain accesses of other blocks stay races all the same.
     fn fence(&self);
 
-    /// Whether to go round a loop again, of which this lane wants `more` or not: true if it does, and it may be true if it
-    /// does not, while others do. On a card the lanes of a warp meet here, so that those which took different ways through
-    /// the loop's body go on side by side; all lanes of a warp must come, and leave, with the phase.
-    fn again(&self, more: bool) -> bool;
+    /// True if `mine` is; and it may be true if it is not, while another lane's is. On a card the lanes of a warp meet here:
+    /// those that took different ways go on side by side, and leave a loop together of which this is the condition. All
+    /// lanes of a warp must come. Nothing but speed may hang on it: lanes that run one after another know only their own.
+    fn any(&self, mine: bool) -> bool;
 
     /// Word `i` of shared memory.
     fn get<T: Word>(&self, words: Shared<T>, i: u32) -> T;

@@ -168,3 +168,6 @@ pub const BOX_LIMIT: f32 = f32::from_bits((120 + 127) << 23);
 /// An entry off the diagonal of a covariance below which it counts as zero; the largest entry is 1. `2^-40`: far
 /// below the roundings of the others, and its square does not underflow. Ratio.
 pub const COVARIANCE_ZERO: f32 = f32::from_bits((127 - 40) << 23);
+/// A cell that loses more than this part of a range to the directions that decouple its parameters is looked at again before
+/// the others are tried. Ratio; costs, proves nothing.
+pub const INCLUSION_DEEP: f64 = 0.5;

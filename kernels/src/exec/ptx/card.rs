@@ -107,8 +107,8 @@ impl Lane for Thread {
         fence();
     }
     #[inline(always)]
-    fn again(&self, more: bool) -> bool {
-        warp_any(more)
+    fn any(&self, mine: bool) -> bool {
+        warp_any(mine)
     }
     #[inline(always)]
     fn get<T: Word>(&self, words: Shared<T>, i: u32) -> T {

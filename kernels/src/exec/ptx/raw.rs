@@ -125,7 +125,7 @@ pub fn shuffle_up(v: u32, delta: u32) -> u32 {
 /// Whether any lane of the warp votes for it; all lanes come.
 #[inline(always)]
 pub fn warp_any(vote: bool) -> bool {
-    // SAFETY: called by all lanes of the warp: `Lane::again` says so.
+    // SAFETY: called by all lanes of the warp: `Lane::any` says so.
     unsafe { vote_any(ALL, vote) }
 }
 

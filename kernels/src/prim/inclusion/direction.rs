@@ -2,7 +2,10 @@
 
 use super::cell::Grid;
 use crate::math::Vec3;
-use crate::math::tolerance::INCLUSION_FLAT;
+use crate::math::tolerance::{INCLUSION_DEEP, INCLUSION_FLAT};
+
+/// How many of the directions decouple the parameters: they come first.
+pub const DECOUPLING: usize = 3;
 
 /// A box's own directions, from how its image changes with `t`, `u` and `v`. Any is valid; these cut well: on the cross
 /// product of two changes only the third parameter has a shadow.
@@ -154,6 +157,14 @@ impl<S: Grid> Cuts<S> {
     #[inline(always)]
     pub fn none() -> Self {
         Cuts { low: [Share::NONE; 3], high: [Share::NONE; 3], signs: 0 }
+    }
+
+    /// Whether some range has been cut, at one end, by a part that is worth another look by itself.
+    #[inline(always)]
+    pub fn deep(&self) -> bool {
+        let part = S::of(INCLUSION_DEEP);
+        let deep = |end: &[Share<S>; 3]| (0..3).any(|k| end[k].over > part * end[k].under);
+        deep(&self.low) | deep(&self.high)
     }
 
     /// The parts of the three ranges that hold no contact, at their low and at their high ends.

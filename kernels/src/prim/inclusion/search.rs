@@ -2,7 +2,7 @@
 
 use super::bound::Image;
 use super::cell::{Cell, Grid};
-use super::direction::{Cuts, Directions, longest, shift, unit};
+use super::direction::{Cuts, DECOUPLING, Directions, longest, shift, unit};
 use super::local::Local;
 use super::verdict::{Params, Verdict};
 use crate::math::Vec3;
@@ -86,48 +86,62 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
     /// Looks at one box. Once no box is left: the verdict, and whether more precision would tell nothing that was asked.
     #[inline]
     pub fn step(&mut self, p: &Params) -> Option<(Verdict, bool)> {
-        let known = &mut self.known;
-        let start = self.cell.low[0];
-        let bound = known.accepted.min(known.certain);
-        let mut next = None;
-        if bound < S::NEVER && start + self.m.pause >= bound {
-            if !(start > known.certain) {
-                known.skipped = known.skipped.min(start);
+        self.boxes += 1;
+        let next = match self.m.look(&self.cell, &mut self.known) {
+            Look::Nothing => None,
+            Look::Small(start) => {
+                self.accept(start);
+                None
             }
-        } else if self.boxes >= p.budget {
-            self.exhausted = true;
-            known.accepted = known.accepted.min(start);
-        } else {
-            self.boxes += 1;
-            match self.m.look(&self.cell, known) {
-                Look::Nothing => {}
-                Look::Small(start) => known.accepted = known.accepted.min(start),
-                Look::Part(part) => next = Some(part),
-                Look::Halves(near, far) => {
-                    if let Some(place) = self.stack.get_mut(self.depth) {
-                        place.write(far);
-                        self.depth += 1;
-                    } else {
-                        self.exhausted = true;
-                        known.accepted = known.accepted.min(far.low[0]);
-                    }
-                    next = Some(near);
+            Look::Part(part) => Some(part),
+            Look::Halves(near, far) => {
+                if let Some(place) = self.stack.get_mut(self.depth) {
+                    place.write(far);
+                    self.depth += 1;
+                } else {
+                    self.exhausted = true;
+                    self.accept(far.low[0]);
                 }
-            }
-        }
-        self.cell = match next {
-            Some(cell) => cell,
-            None if self.depth == 0 => {
-                let verdict = self.verdict(p);
-                return Some((verdict, verdict.is_settled(self.m.pause.wide())));
-            }
-            None => {
-                self.depth -= 1;
-                // SAFETY: `depth` is this search's own, and places below it were written when it passed them.
-                unsafe { self.stack[self.depth].assume_init() }
+                Some(near)
             }
         };
-        None
+        self.go_on(next, p)
+    }
+
+    /// Takes up the next box that is worth a look, of those that wait if there is no `next`.
+    #[inline]
+    fn go_on(&mut self, mut next: Option<Cell<S>>, p: &Params) -> Option<(Verdict, bool)> {
+        loop {
+            if next.is_none() && self.depth > 0 {
+                self.depth -= 1;
+                // SAFETY: `depth` is this search's own, and places below it were written when it passed them.
+                next = Some(unsafe { self.stack[self.depth].assume_init() });
+            }
+            let Some(cell) = next else {
+                let verdict = self.verdict(p);
+                return Some((verdict, verdict.is_settled(self.m.pause.wide())));
+            };
+            let start = cell.low[0];
+            let bound = self.known.accepted.min(self.known.certain);
+            if bound < S::NEVER && start + self.m.pause >= bound {
+                if !(start > self.known.certain) {
+                    self.known.skipped = self.known.skipped.min(start);
+                }
+            } else if self.boxes >= p.budget {
+                self.exhausted = true;
+                self.accept(start);
+            } else {
+                self.cell = cell;
+                return None;
+            }
+            next = None;
+        }
+    }
+
+    /// There may be a contact in a box that starts there.
+    #[inline]
+    fn accept(&mut self, start: S) {
+        self.known.accepted = self.known.accepted.min(start);
     }
 
     /// What is known when no box is left.
@@ -174,6 +188,10 @@ impl<S: Grid, const N: usize> Local<S, N> {
         let reach = low.map(S::abs).max(high.map(S::abs));
         let slack = Vec3([0, 1, 2].map(|k| error[k] + S::INCLUSION_SHADOW * reach[k]));
         for i in 0..directions.count(self.separation > S::ZERO) {
+            // Those that decouple the parameters have cut it much: the others will cut the rest better.
+            if i == DECOUPLING && cuts.deep() {
+                break;
+            }
             let Some(d) = unit(directions.get(i, || sum(f))) else { continue };
             let error = d.map(S::abs).dot(slack) * S::INCLUSION_UP + S::INCLUSION_UNDERFLOW;
             if !cuts.shadow(&f.map(|x| d.dot(x)), error, self.apart(d), i) {

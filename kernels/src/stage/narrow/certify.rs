@@ -59,7 +59,7 @@ fn certify<R: Real, S: Grid, const N: usize, B: Block>(
         let mut stack = [const { MaybeUninit::uninit() }; STACK];
         let mut under_way: Option<(Pair, Search<S, N>)> = None;
         let mut more = true;
-        while l.again(more) {
+        while l.any(more) {
             let mut told = None;
             if more && under_way.is_none() {
                 let i = block + blocks * l.shared_add(drawn, 0, 1) as u64;
@@ -75,7 +75,9 @@ fn certify<R: Real, S: Grid, const N: usize, B: Block>(
                     };
                 }
             }
-            if let Some((pair, search)) = &mut under_way
+            // Lanes that drew and lanes that did not look side by side.
+            if l.any(under_way.is_some())
+                && let Some((pair, search)) = &mut under_way
                 && let Some((verdict, settled)) = search.step(&a.params)
             {
                 told = Some((*pair, verdict, settled));
