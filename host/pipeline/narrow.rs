@@ -7,8 +7,8 @@ use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::query::{Motion, Query, Solver};
 use nearmiss_kernels::abi::{
-    CertifyArgs, DiscreteArgs, ESCALATE, Frames, Hit, KEEP_ADJACENT, Pair, RejectArgs, SiftArgs, SolveArgs,
-    Span, counter,
+    CertifyArgs, DiscreteArgs, ESCALATE, Frames, Hit, KEEP_ADJACENT, Listed, Pair, RejectArgs, SiftArgs,
+    SolveArgs, Span, counter,
 };
 use nearmiss_kernels::entry::Entry;
 
@@ -313,39 +313,40 @@ impl Continuous {
 
     /// In f32 over the survivors, then in f64 over what that escalated; or in one of them over all.
     fn certify<R: Precision>(&self, given: &Given<R>) -> Result<(), Error> {
-        let args = |pairs: &List<Pair>, hits: &List<Hit>, escalated: Option<&List<Pair>>| CertifyArgs {
-            frames: given.frames,
-            faces: given.faces,
-            edges: self.edges.span(),
+        let listed = |pairs: &List<Pair>, hits: &List<Hit>, escalated: Option<&List<Pair>>| Listed {
             pairs: pairs.span(),
             hits: hits.span(),
             escalated: escalated.map_or(Span::EMPTY, List::span),
-            earliest: self.earliest.as_ref().map_or(Span::EMPTY, Buffer::span),
-            counters: given.counters,
-            params: given.query.params(),
             pairs_at: pairs.counter(),
             hits_at: hits.counter(),
             escalated_at: escalated.map_or(0, List::counter),
-            flags: if escalated.is_some() { ESCALATE } else { 0 },
+            pad: 0,
         };
-        let (of_vf, of_ee) = (&self.vf_survivors, &self.ee_survivors);
-        let (vf, ee) = (args(of_vf, &self.vf_hits, None), args(of_ee, &self.ee_hits, None));
+        let args = |[vf, ee]: [&List<Pair>; 2], escalated: Option<&[List<Pair>; 2]>| CertifyArgs {
+            frames: given.frames,
+            faces: given.faces,
+            edges: self.edges.span(),
+            vf: listed(vf, &self.vf_hits, escalated.map(|[vf, _]| vf)),
+            ee: listed(ee, &self.ee_hits, escalated.map(|[_, ee]| ee)),
+            earliest: self.earliest.as_ref().map_or(Span::EMPTY, Buffer::span),
+            counters: given.counters,
+            params: given.query.params(),
+            flags: if escalated.is_some() { ESCALATE } else { 0 },
+            pad: 0,
+        };
+        let survivors = [&self.vf_survivors, &self.ee_survivors];
+        let room = |[vf, ee]: [&List<Pair>; 2]| vf.room() + ee.room();
         let device = given.device;
-        match &self.escalated {
-            Some([vf, ee]) => {
-                let first = (args(of_vf, &self.vf_hits, Some(vf)), args(of_ee, &self.ee_hits, Some(ee)));
-                launch_drawing::<R::CertifyVf32>(device, of_vf.room(), &first.0)?;
-                launch_drawing::<R::CertifyEe32>(device, of_ee.room(), &first.1)?;
-                launch_drawing::<R::CertifyVf64>(device, vf.room(), &args(vf, &self.vf_hits, None))?;
-                launch_drawing::<R::CertifyEe64>(device, ee.room(), &args(ee, &self.ee_hits, None))
-            }
-            None if given.query.solver() == Solver::CertifiedF32 => {
-                launch_drawing::<R::CertifyVf32>(device, of_vf.room(), &vf)?;
-                launch_drawing::<R::CertifyEe32>(device, of_ee.room(), &ee)
-            }
-            None => {
-                launch_drawing::<R::CertifyVf64>(device, of_vf.room(), &vf)?;
-                launch_drawing::<R::CertifyEe64>(device, of_ee.room(), &ee)
+        let escalated = self.escalated.as_ref();
+        if given.query.solver() == Solver::CertifiedF64 {
+            return launch_drawing::<R::Certify64>(device, room(survivors), &args(survivors, None));
+        }
+        launch_drawing::<R::Certify32>(device, room(survivors), &args(survivors, escalated))?;
+        match escalated {
+            None => Ok(()),
+            Some(lists) => {
+                let lists = lists.each_ref();
+                launch_drawing::<R::Certify64>(device, room(lists), &args(lists, None))
             }
         }
     }

@@ -48,14 +48,10 @@ pub trait Precision: Real {
     type Ee32: Entry<Args = SolveArgs<Self>>;
     /// Edge/edge by the cubic in f64.
     type Ee64: Entry<Args = SolveArgs<Self>>;
-    /// Vertex/face by boxes in f32, proven.
-    type CertifyVf32: Entry<Args = CertifyArgs<Self>>;
-    /// Vertex/face by boxes in f64, proven.
-    type CertifyVf64: Entry<Args = CertifyArgs<Self>>;
-    /// Edge/edge by boxes in f32, proven.
-    type CertifyEe32: Entry<Args = CertifyArgs<Self>>;
-    /// Edge/edge by boxes in f64, proven.
-    type CertifyEe64: Entry<Args = CertifyArgs<Self>>;
+    /// What meets, by boxes in f32, proven.
+    type Certify32: Entry<Args = CertifyArgs<Self>>;
+    /// What meets, by boxes in f64, proven.
+    type Certify64: Entry<Args = CertifyArgs<Self>>;
 
     /// Positions in this precision, exactly: f32 is only asked for where all bodies are f32.
     fn points(positions: &Positions) -> impl Iterator<Item = Vec3<Self>>;
@@ -81,10 +77,8 @@ impl Precision for f32 {
     type Vf64 = entry::narrow_vf_f32_f64;
     type Ee32 = entry::narrow_ee_f32_f32;
     type Ee64 = entry::narrow_ee_f32_f64;
-    type CertifyVf32 = entry::narrow_certify_vf_f32_f32;
-    type CertifyVf64 = entry::narrow_certify_vf_f32_f64;
-    type CertifyEe32 = entry::narrow_certify_ee_f32_f32;
-    type CertifyEe64 = entry::narrow_certify_ee_f32_f64;
+    type Certify32 = entry::narrow_certify_f32_f32;
+    type Certify64 = entry::narrow_certify_f32_f64;
 
     fn points(positions: &Positions) -> impl Iterator<Item = Vec3<f32>> {
         let (singles, doubles): (&[[f32; 3]], &[[f64; 3]]) = match positions {
@@ -115,10 +109,8 @@ impl Precision for f64 {
     type Vf64 = entry::narrow_vf_f64_f64;
     type Ee32 = entry::narrow_ee_f64_f32;
     type Ee64 = entry::narrow_ee_f64_f64;
-    type CertifyVf32 = entry::narrow_certify_vf_f64_f32;
-    type CertifyVf64 = entry::narrow_certify_vf_f64_f64;
-    type CertifyEe32 = entry::narrow_certify_ee_f64_f32;
-    type CertifyEe64 = entry::narrow_certify_ee_f64_f64;
+    type Certify32 = entry::narrow_certify_f64_f32;
+    type Certify64 = entry::narrow_certify_f64_f64;
 
     fn points(positions: &Positions) -> impl Iterator<Item = Vec3<f64>> {
         let (singles, doubles): (&[[f32; 3]], &[[f64; 3]]) = match positions {

@@ -150,12 +150,8 @@ kernels! {
     narrow_ee_f32_f64: solve::ee::<f32, f64, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_ee_f64_f32: solve::ee::<f64, f32, B>, [SolveArgs<f64>], WIDE, 0;
     narrow_ee_f64_f64: solve::ee::<f64, f64, B>, [SolveArgs<f64>], WIDE, 0;
-    narrow_certify_vf_f32_f32: certify::vf::<f32, f32, B>, [CertifyArgs<f32>], NARROW, certify::SHARED;
-    narrow_certify_vf_f32_f64: certify::vf::<f32, f64, B>, [CertifyArgs<f32>], NARROW, certify::SHARED;
-    narrow_certify_vf_f64_f32: certify::vf::<f64, f32, B>, [CertifyArgs<f64>], NARROW, certify::SHARED;
-    narrow_certify_vf_f64_f64: certify::vf::<f64, f64, B>, [CertifyArgs<f64>], NARROW, certify::SHARED;
-    narrow_certify_ee_f32_f32: certify::ee::<f32, f32, B>, [CertifyArgs<f32>], NARROW, certify::SHARED;
-    narrow_certify_ee_f32_f64: certify::ee::<f32, f64, B>, [CertifyArgs<f32>], NARROW, certify::SHARED;
-    narrow_certify_ee_f64_f32: certify::ee::<f64, f32, B>, [CertifyArgs<f64>], NARROW, certify::SHARED;
-    narrow_certify_ee_f64_f64: certify::ee::<f64, f64, B>, [CertifyArgs<f64>], NARROW, certify::SHARED;
+    narrow_certify_f32_f32: certify::certify::<f32, f32, B>, [CertifyArgs<f32>], WARP, certify::SHARED;
+    narrow_certify_f32_f64: certify::certify::<f32, f64, B>, [CertifyArgs<f32>], WARP, certify::SHARED;
+    narrow_certify_f64_f32: certify::certify::<f64, f32, B>, [CertifyArgs<f64>], WARP, certify::SHARED;
+    narrow_certify_f64_f64: certify::certify::<f64, f64, B>, [CertifyArgs<f64>], WARP, certify::SHARED;
 }

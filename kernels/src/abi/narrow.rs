@@ -76,34 +76,45 @@ arguments! {
         /// Counters, see [`counter`](super::counter).
         counters: Span<u64>,
     }
-    /// `narrow_certify_vf`, `narrow_certify_ee`: what meets, and bounds of the first time, with proof.
-    CertifyArgs<R: Real> {
-        /// Positions.
-        frames: Frames<R>,
-        /// Vertex indices of every triangle (`narrow_certify_vf`).
-        faces: Span<[u32; 3]>,
-        /// End points of every edge (`narrow_certify_ee`).
-        edges: Span<[u32; 2]>,
+    /// Candidates of one kind for `narrow_certify`, and where they go.
+    Listed {
         /// Candidates.
         pairs: Span<Pair>,
         /// Out: contacts and unresolved pairs; empty when only the earliest is asked for.
         hits: Span<Hit>,
         /// Out: pairs that need more precision; empty without [`ESCALATE`].
         escalated: Span<Pair>,
-        /// Out: the smallest toi so far, as bits; or empty.
-        earliest: Span<u64>,
-        /// Counters, see [`counter`](super::counter).
-        counters: Span<u64>,
-        /// What is asked.
-        params: Params,
         /// Which counter tells how many pairs there are.
         pairs_at: u32,
         /// Which counter the hits add to.
         hits_at: u32,
         /// Which counter the escalated pairs add to.
         escalated_at: u32,
+        /// Zero.
+        pad: u32,
+    }
+    /// `narrow_certify`: what meets, and bounds of the first time, with proof.
+    CertifyArgs<R: Real> {
+        /// Positions.
+        frames: Frames<R>,
+        /// Vertex indices of every triangle.
+        faces: Span<[u32; 3]>,
+        /// End points of every edge.
+        edges: Span<[u32; 2]>,
+        /// Vertex/face candidates.
+        vf: Listed,
+        /// Edge/edge candidates.
+        ee: Listed,
+        /// Out: the smallest toi so far, as bits; or empty.
+        earliest: Span<u64>,
+        /// Counters, see [`counter`](super::counter).
+        counters: Span<u64>,
+        /// What is asked.
+        params: Params,
         /// Bits: [`ESCALATE`].
         flags: u32,
+        /// Zero.
+        pad: u32,
     }
 }
 

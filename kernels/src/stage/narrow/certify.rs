@@ -1,9 +1,10 @@
 //! # Certify: vertex/face and edge/edge candidates → contacts, proven, with bounds of their first time
 //! Paper    none: beyond it.
-//! Launch   `vf` and `ee`, a grid of any size. In f32 over what may meet; in f64 over the same, or over what f32 escalated.
-//!          Searches are of very different lengths: a lane looks at one box, then at the next, and a lane whose search has
-//!          ended draws the block's next candidate, so that few lanes wait. A block's candidates lie a grid apart, so that
-//!          a short list is spread over all blocks.
+//! Launch   a grid of any size, both kinds of candidates in one. In f32 over what may meet; in f64 over the same, or over
+//!          what f32 escalated. Searches are of very different lengths: a lane looks at one box, then at the next, and a
+//!          lane whose search has ended draws the block's next candidate, so that few lanes wait. A block's candidates lie
+//!          a grid apart, and the two kinds begin at opposite ends of the grid, so that short lists are spread over all
+//!          blocks, and none waits for the other.
 //! Reads    candidates, faces or edges, positions of both frames (four vertices).
 //! Writes   contacts and unresolved pairs with toi and toi_hi; or, when only the earliest is asked for, one number.
 //!          With [`ESCALATE`] the pairs, in their own list, of which more precision may tell more.
@@ -16,39 +17,39 @@
 //!          Boxes wait in a stack in local memory: 1.5 KB a lane in f32, 3 KB in f64.
 
 use super::{listed, moving};
-use crate::abi::{CertifyArgs, ESCALATE, Hit, Pair, counter};
+use crate::abi::{CertifyArgs, ESCALATE, Hit, Listed, Pair, counter};
 use crate::exec::{Block, Lane};
 use crate::math::Real;
 use crate::prim::inclusion::{Edges, Face, Grid, Local, STACK, Search, Verdict};
 use core::mem::MaybeUninit;
 
-/// Bytes of shared memory of a block: the number of candidates drawn.
-pub const SHARED: u32 = 4;
+/// Bytes of shared memory of a block: the numbers of candidates drawn.
+pub const SHARED: u32 = 8;
 
-/// Vertex/face, positions in R, boxes in S.
-pub fn vf<R: Real, S: Grid, B: Block>(b: &mut B, a: &CertifyArgs<R>) {
-    certify(b, a, |l, pair| {
+/// Positions in R, boxes in S.
+pub fn certify<R: Real, S: Grid, B: Block>(b: &mut B, a: &CertifyArgs<R>) {
+    let first = b.block();
+    search(b, a, &a.vf, first, |l, pair| {
         let face = l.read(a.faces, pair.b).map(|v| moving(l, &a.frames, v));
         Face::<S>::new(moving(l, &a.frames, pair.a), face, &a.params)
     });
-}
-
-/// Edge/edge, positions in R, boxes in S.
-pub fn ee<R: Real, S: Grid, B: Block>(b: &mut B, a: &CertifyArgs<R>) {
-    certify(b, a, |l, pair| {
+    let first = b.blocks() - 1 - first;
+    search(b, a, &a.ee, first, |l, pair| {
         let ends = |e: u32| l.read(a.edges, e).map(|v| moving(l, &a.frames, v));
         Edges::<S>::new(ends(pair.a), ends(pair.b), &a.params)
     });
 }
 
-/// Searches the motion of each candidate.
-fn certify<R: Real, S: Grid, const N: usize, B: Block>(
+/// Searches the motion of a block's share of the candidates of one kind: that numbered `first`, and every one a grid on.
+fn search<R: Real, S: Grid, const N: usize, B: Block>(
     b: &mut B,
     a: &CertifyArgs<R>,
+    of: &Listed,
+    first: u32,
     motion: impl Fn(&B::Lane, Pair) -> Local<S, N>,
 ) {
-    let count = listed(b, a.pairs, a.counters, a.pairs_at) as u64;
-    let (block, blocks) = (b.block() as u64, b.blocks() as u64);
+    let count = listed(b, of.pairs, a.counters, of.pairs_at) as u64;
+    let (first, blocks) = (first as u64, b.blocks() as u64);
     let drawn = b.shared::<u32>(1);
     b.phase(|l| {
         if l.lane() == 0 {
@@ -62,14 +63,14 @@ fn certify<R: Real, S: Grid, const N: usize, B: Block>(
         while l.any(more) {
             let mut told = None;
             if more && under_way.is_none() {
-                let i = block + blocks * l.shared_add(drawn, 0, 1) as u64;
+                let i = first + blocks * l.shared_add(drawn, 0, 1) as u64;
                 more = i < count;
                 if more {
-                    let pair = l.read(a.pairs, i as u32);
+                    let pair = l.read(of.pairs, i as u32);
                     under_way = match Search::begin(motion(l, pair), &a.params, &mut stack) {
                         Ok(search) => Some((pair, search)),
                         Err((verdict, settled)) => {
-                            told = Some((pair, verdict, settled));
+                            told = Some(Told { pair, verdict, settled });
                             None
                         }
                     };
@@ -80,22 +81,30 @@ fn certify<R: Real, S: Grid, const N: usize, B: Block>(
                 && let Some((pair, search)) = &mut under_way
                 && let Some((verdict, settled)) = search.step(&a.params)
             {
-                told = Some((*pair, verdict, settled));
+                told = Some(Told { pair: *pair, verdict, settled });
                 under_way = None;
             }
-            if let Some((pair, verdict, settled)) = told {
-                tell(l, a, pair, &verdict, settled);
+            if let Some(told) = told {
+                tell(l, a, of, told);
             }
         }
     });
 }
 
+/// An answer.
+struct Told {
+    pair: Pair,
+    verdict: Verdict,
+    /// More precision would tell nothing that was asked.
+    settled: bool,
+}
+
 /// Puts a pair where it belongs.
-fn tell<R: Real, L: Lane>(l: &L, a: &CertifyArgs<R>, pair: Pair, verdict: &Verdict, settled: bool) {
+fn tell<R: Real, L: Lane>(l: &L, a: &CertifyArgs<R>, of: &Listed, Told { pair, verdict, settled }: Told) {
     if a.flags & ESCALATE != 0 && !settled {
-        let place = l.fetch_add(a.counters, a.escalated_at, 1);
-        if place < a.escalated.len {
-            l.write(a.escalated, place as u32, pair);
+        let place = l.fetch_add(a.counters, of.escalated_at, 1);
+        if place < of.escalated.len {
+            l.write(of.escalated, place as u32, pair);
         }
     } else if !verdict.is_separated() {
         if !verdict.is_contact() {
@@ -105,9 +114,9 @@ fn tell<R: Real, L: Lane>(l: &L, a: &CertifyArgs<R>, pair: Pair, verdict: &Verdi
             // Times are in [0, 1]: their bits are ordered as they are.
             l.fetch_min(a.earliest, 0, verdict.toi.to_bits());
         } else {
-            let place = l.fetch_add(a.counters, a.hits_at, 1);
-            if place < a.hits.len {
-                l.write(a.hits, place as u32, Hit { a: pair.a, b: pair.b, verdict: *verdict });
+            let place = l.fetch_add(a.counters, of.hits_at, 1);
+            if place < of.hits.len {
+                l.write(of.hits, place as u32, Hit { a: pair.a, b: pair.b, verdict });
             }
         }
     }
