@@ -74,6 +74,9 @@ const WIDE: u32 = 256;
 /// Lanes of kernels with long or uneven work: small blocks, so that few lanes wait for a long one (measured:
 /// `benches/NOTES.md`).
 const NARROW: u32 = 64;
+/// Lanes that draw items of uneven work from their block's share: the more draw from one, the more even; registers allow
+/// two such blocks a core.
+const DRAWING: u32 = 128;
 /// Lanes of the one block that evens the queues, as in the paper.
 const BALANCE: u32 = 512;
 /// Shared memory of a radix scatter: the bins, and each warp's.
@@ -150,8 +153,8 @@ kernels! {
     narrow_ee_f32_f64: solve::ee::<f32, f64, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_ee_f64_f32: solve::ee::<f64, f32, B>, [SolveArgs<f64>], WIDE, 0;
     narrow_ee_f64_f64: solve::ee::<f64, f64, B>, [SolveArgs<f64>], WIDE, 0;
-    narrow_certify_f32_f32: certify::certify::<f32, f32, B>, [CertifyArgs<f32>], WARP, certify::SHARED;
-    narrow_certify_f32_f64: certify::certify::<f32, f64, B>, [CertifyArgs<f32>], WARP, certify::SHARED;
-    narrow_certify_f64_f32: certify::certify::<f64, f32, B>, [CertifyArgs<f64>], WARP, certify::SHARED;
-    narrow_certify_f64_f64: certify::certify::<f64, f64, B>, [CertifyArgs<f64>], WARP, certify::SHARED;
+    narrow_certify_f32_f32: certify::certify::<f32, f32, B>, [CertifyArgs<f32>], DRAWING, certify::SHARED;
+    narrow_certify_f32_f64: certify::certify::<f32, f64, B>, [CertifyArgs<f32>], DRAWING, certify::SHARED;
+    narrow_certify_f64_f32: certify::certify::<f64, f32, B>, [CertifyArgs<f64>], DRAWING, certify::SHARED;
+    narrow_certify_f64_f64: certify::certify::<f64, f64, B>, [CertifyArgs<f64>], DRAWING, certify::SHARED;
 }

@@ -18,7 +18,7 @@
 
 use super::{listed, moving};
 use crate::abi::{CertifyArgs, ESCALATE, Hit, Listed, Pair, counter};
-use crate::exec::{Block, Lane};
+use crate::exec::{Block, Lane, Shared};
 use crate::math::Real;
 use crate::prim::inclusion::{Edges, Face, Grid, Local, STACK, Search, Verdict};
 use core::mem::MaybeUninit;
@@ -28,67 +28,80 @@ pub const SHARED: u32 = 8;
 
 /// Positions in R, boxes in S.
 pub fn certify<R: Real, S: Grid, B: Block>(b: &mut B, a: &CertifyArgs<R>) {
-    let first = b.block();
-    search(b, a, &a.vf, first, |l, pair| {
-        let face = l.read(a.faces, pair.b).map(|v| moving(l, &a.frames, v));
-        Face::<S>::new(moving(l, &a.frames, pair.a), face, &a.params)
+    let share = |b: &B, of: &Listed, first: u32, drawn: u32| Share {
+        count: listed(b, of.pairs, a.counters, of.pairs_at) as u64,
+        first: first as u64,
+        stride: b.blocks() as u64,
+        drawn,
+    };
+    let vf = share(b, &a.vf, b.block(), 0);
+    let ee = share(b, &a.ee, b.blocks() - 1 - b.block(), 1);
+    let drawn = b.shared::<u32>(2);
+    b.phase(|l| {
+        if l.lane() < 2 {
+            l.put(drawn, l.lane(), 0);
+        }
     });
-    let first = b.blocks() - 1 - first;
-    search(b, a, &a.ee, first, |l, pair| {
-        let ends = |e: u32| l.read(a.edges, e).map(|v| moving(l, &a.frames, v));
-        Edges::<S>::new(ends(pair.a), ends(pair.b), &a.params)
+    b.phase(|l| {
+        search(l, a, &a.vf, (&vf, drawn), |pair| {
+            let face = l.read(a.faces, pair.b).map(|v| moving(l, &a.frames, v));
+            Face::<S>::new(moving(l, &a.frames, pair.a), face, &a.params)
+        });
+        search(l, a, &a.ee, (&ee, drawn), |pair| {
+            let ends = |e: u32| l.read(a.edges, e).map(|v| moving(l, &a.frames, v));
+            Edges::<S>::new(ends(pair.a), ends(pair.b), &a.params)
+        });
     });
 }
 
-/// Searches the motion of a block's share of the candidates of one kind: that numbered `first`, and every one a grid on.
-fn search<R: Real, S: Grid, const N: usize, B: Block>(
-    b: &mut B,
+/// A block's candidates of one kind: that numbered `first`, and every `stride` on.
+struct Share {
+    count: u64,
+    first: u64,
+    stride: u64,
+    /// Which shared word counts those that are drawn.
+    drawn: u32,
+}
+
+/// Draws candidates and searches their motion until there are no more.
+fn search<R: Real, S: Grid, const N: usize, L: Lane>(
+    l: &L,
     a: &CertifyArgs<R>,
     of: &Listed,
-    first: u32,
-    motion: impl Fn(&B::Lane, Pair) -> Local<S, N>,
+    (share, drawn): (&Share, Shared<u32>),
+    motion: impl Fn(Pair) -> Local<S, N>,
 ) {
-    let count = listed(b, of.pairs, a.counters, of.pairs_at) as u64;
-    let (first, blocks) = (first as u64, b.blocks() as u64);
-    let drawn = b.shared::<u32>(1);
-    b.phase(|l| {
-        if l.lane() == 0 {
-            l.put(drawn, 0, 0);
-        }
-    });
-    b.phase(|l| {
-        let mut stack = [const { MaybeUninit::uninit() }; STACK];
-        let mut under_way: Option<(Pair, Search<S, N>)> = None;
-        let mut more = true;
-        while l.any(more) {
-            let mut told = None;
-            if more && under_way.is_none() {
-                let i = first + blocks * l.shared_add(drawn, 0, 1) as u64;
-                more = i < count;
-                if more {
-                    let pair = l.read(of.pairs, i as u32);
-                    under_way = match Search::begin(motion(l, pair), &a.params, &mut stack) {
-                        Ok(search) => Some((pair, search)),
-                        Err((verdict, settled)) => {
-                            told = Some(Told { pair, verdict, settled });
-                            None
-                        }
-                    };
-                }
-            }
-            // Lanes that drew and lanes that did not look side by side.
-            if l.any(under_way.is_some())
-                && let Some((pair, search)) = &mut under_way
-                && let Some((verdict, settled)) = search.step(&a.params)
-            {
-                told = Some(Told { pair: *pair, verdict, settled });
-                under_way = None;
-            }
-            if let Some(told) = told {
-                tell(l, a, of, told);
+    let mut stack = [const { MaybeUninit::uninit() }; STACK];
+    let mut under_way: Option<(Pair, Search<S, N>)> = None;
+    let mut more = true;
+    while l.any(more) {
+        let mut told = None;
+        if more && under_way.is_none() {
+            let i = share.first + share.stride * l.shared_add(drawn, share.drawn, 1) as u64;
+            more = i < share.count;
+            if more {
+                let pair = l.read(of.pairs, i as u32);
+                under_way = match Search::begin(motion(pair), &a.params, &mut stack) {
+                    Ok(search) => Some((pair, search)),
+                    Err((verdict, settled)) => {
+                        told = Some(Told { pair, verdict, settled });
+                        None
+                    }
+                };
             }
         }
-    });
+        // Lanes that drew and lanes that did not look side by side.
+        if l.any(under_way.is_some())
+            && let Some((pair, search)) = &mut under_way
+            && let Some((verdict, settled)) = search.step(&a.params)
+        {
+            told = Some(Told { pair: *pair, verdict, settled });
+            under_way = None;
+        }
+        if let Some(told) = told {
+            tell(l, a, of, told);
+        }
+    }
 }
 
 /// An answer.
