@@ -33,7 +33,8 @@ pub enum Status {
     Contact,
     /// They meet, proven, first in `[toi, toi_hi]`.
     Certified,
-    /// They come nearer than the tolerance, or the budget ended; if they meet, not before `toi`. Proven as well.
+    /// They come nearer than the tolerance, or the budget ended; if they meet, not before `toi`. Proven as well, but for
+    /// [`Solver::Additive`], whose steps ended.
     Unresolved,
 }
 
@@ -187,7 +188,8 @@ impl Contacts {
                 let certified = query.solver().is_certified();
                 let contact = |kind, a, b, verdict: &Verdict| {
                     let status = match (certified, verdict.is_contact()) {
-                        (false, _) => Status::Contact,
+                        (_, false) => Status::Unresolved,
+                        (false, true) => Status::Contact,
                         (true, true) => Status::Certified,
                         (true, false) => Status::Unresolved,
                     };

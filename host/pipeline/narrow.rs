@@ -258,12 +258,19 @@ impl Continuous {
         };
         let (vf, ee) = (args(&self.vf_survivors, &self.vf_hits), args(&self.ee_survivors, &self.ee_hits));
         let (of_vf, of_ee) = (self.vf_survivors.room(), self.ee_survivors.room());
-        if given.query.solver() == Solver::CubicF32 {
-            launch_striding::<R::Vf32>(given.device, of_vf, &vf)?;
-            launch_striding::<R::Ee32>(given.device, of_ee, &ee)
-        } else {
-            launch_striding::<R::Vf64>(given.device, of_vf, &vf)?;
-            launch_striding::<R::Ee64>(given.device, of_ee, &ee)
+        match given.query.solver() {
+            Solver::CubicF32 => {
+                launch_striding::<R::Vf32>(given.device, of_vf, &vf)?;
+                launch_striding::<R::Ee32>(given.device, of_ee, &ee)
+            }
+            Solver::Additive => {
+                launch_striding::<R::AdditiveVf>(given.device, of_vf, &vf)?;
+                launch_striding::<R::AdditiveEe>(given.device, of_ee, &ee)
+            }
+            _ => {
+                launch_striding::<R::Vf64>(given.device, of_vf, &vf)?;
+                launch_striding::<R::Ee64>(given.device, of_ee, &ee)
+            }
         }
     }
 

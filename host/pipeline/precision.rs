@@ -52,6 +52,10 @@ pub trait Precision: Real {
     type CertifyVf32: Entry<Args = CertifyArgs<Self>>;
     /// Vertex/face by boxes in f64, proven.
     type CertifyVf64: Entry<Args = CertifyArgs<Self>>;
+    /// Vertex/face by additive advancement.
+    type AdditiveVf: Entry<Args = SolveArgs<Self>>;
+    /// Edge/edge by additive advancement.
+    type AdditiveEe: Entry<Args = SolveArgs<Self>>;
     /// Edge/edge by boxes in f32, proven.
     type CertifyEe32: Entry<Args = CertifyArgs<Self>>;
     /// Edge/edge by boxes in f64, proven.
@@ -87,6 +91,8 @@ impl Precision for f32 {
     type CertifyEe64 = entry::narrow_certify_ee_f32_f64;
 
     fn points(positions: &Positions) -> impl Iterator<Item = Vec3<f32>> {
+    type AdditiveVf = entry::narrow_additive_vf_f32;
+    type AdditiveEe = entry::narrow_additive_ee_f32;
         let (singles, doubles): (&[[f32; 3]], &[[f64; 3]]) = match positions {
             Positions::F32(points) => (points, &[]),
             Positions::F64(points) => (&[], points),
@@ -123,6 +129,8 @@ impl Precision for f64 {
     fn points(positions: &Positions) -> impl Iterator<Item = Vec3<f64>> {
         let (singles, doubles): (&[[f32; 3]], &[[f64; 3]]) = match positions {
             Positions::F32(points) => (points, &[]),
+    type AdditiveVf = entry::narrow_additive_vf_f64;
+    type AdditiveEe = entry::narrow_additive_ee_f64;
             Positions::F64(points) => (&[], points),
         };
         singles.iter().map(|p| Vec3(p.map(f64::from))).chain(doubles.iter().map(|&p| Vec3(p)))
