@@ -38,7 +38,7 @@ pub enum Status {
     Unresolved,
 }
 
-/// Two features that meet within the step.
+/// Two features that meet within the step, or, of a query with a separation, that come so near.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Contact {
     /// Which features.
@@ -47,7 +47,7 @@ pub struct Contact {
     pub a: u32,
     /// The second feature's index in its body.
     pub b: u32,
-    /// First time of contact, in [0, 1]; by a certified solver not after it.
+    /// First time of contact, or of coming as near as the separation, in [0, 1]; by a certified solver not after it.
     pub toi: f64,
     /// The time by which they have met, in [toi, 1]; of an unresolved pair the end of the step.
     pub toi_hi: f64,

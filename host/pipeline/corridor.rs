@@ -8,7 +8,7 @@ use super::precision::Precision;
 use super::room::{Growing, List};
 use super::timing::{Stage, Stages};
 use super::tree::Tree;
-use super::volumes::{Kernels, Volumes};
+use super::volumes::{Kernels, Volumes, growth};
 use super::walk::{Walk, Walked, flags, walk};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
@@ -145,7 +145,7 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
             let refit = query.refit_on(corridor.device.is_card());
             let groups = V::group(axes) > 0;
             let tree = Tree::new(&corridor.device, layout.triangles(body), refit, groups)?;
-            let volumes = Volumes::new(&corridor.device, &tree, axes)?;
+            let volumes = Volumes::new(&corridor.device, &tree, (axes, growth(query.params().separation)))?;
             corridor.bodies.push((tree, volumes));
         }
         Ok(corridor)

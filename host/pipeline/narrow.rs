@@ -222,6 +222,7 @@ impl Continuous {
             vf: self.vf.span(),
             ee: self.ee.span(),
             counters: given.counters,
+            separation: given.query.params().separation,
         };
         launch_striding::<R::Sift>(given.device, given.pairs.len as usize, &args)
     }
@@ -234,8 +235,13 @@ impl Continuous {
             candidates: candidates.span(),
             survivors: survivors.span(),
             counters: given.counters,
+            separation: given.query.params().separation,
         };
         let (vf, ee) = (args(&self.vf, &self.vf_survivors), args(&self.ee, &self.ee_survivors));
+        if vf.separation > 0.0 {
+            launch_striding::<R::RejectNearVf>(given.device, self.vf.room(), &vf)?;
+            return launch_striding::<R::RejectNearEe>(given.device, self.ee.room(), &ee);
+        }
         launch_striding::<R::RejectVf>(given.device, self.vf.room(), &vf)?;
         launch_striding::<R::RejectEe>(given.device, self.ee.room(), &ee)
     }
