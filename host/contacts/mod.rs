@@ -1,7 +1,9 @@
 //! Results: contacts in canonical order, their hash, and the summary.
 
+mod degraded;
 mod triangles;
 
+pub use degraded::Degraded;
 pub use triangles::{TriangleContact, triangle_contacts};
 
 use crate::device::Device;
@@ -96,6 +98,7 @@ pub struct Contacts {
     pub queues: Queues,
     /// What the front saved or cost.
     pub front: Front,
+    degraded: Vec<Degraded>,
 }
 
 /// The front of a frame. All zero where there was none.
@@ -170,11 +173,17 @@ impl Contacts {
             spilled: 0,
             queues: Queues::default(),
             front: Front::default(),
+            degraded: Vec::new(),
         }
     }
 
     /// Puts what the kernels found into canonical order and into the numbering of the bodies.
-    pub(crate) fn new(found: Found, layout: &Layout, query: Query, stages: Stages) -> Contacts {
+    pub(crate) fn new(
+        found: Found,
+        layout: &Layout,
+        query: Query,
+        (stages, degraded): (Stages, Vec<Degraded>),
+    ) -> Contacts {
         let second = if layout.bodies() == 2 { layout.starts[1] } else { Default::default() };
         let answer = match query.motion {
             Motion::Earliest => Answer::Earliest(found.earliest),
@@ -191,7 +200,6 @@ impl Contacts {
                         (_, false) => Status::Unresolved,
                         (false, true) => Status::Contact,
                         (true, true) => Status::Certified,
-                        (true, false) => Status::Unresolved,
                     };
                     Contact { kind, a, b, toi: verdict.toi, toi_hi: verdict.toi_hi, status }
                 };
@@ -228,6 +236,7 @@ impl Contacts {
             spilled: found.counters[counter::SPILLED as usize..][..ROUNDS as usize].iter().sum(),
             queues: Queues::new(&found.counters),
             front: Front::new(&found.counters),
+            degraded,
         }
     }
 
@@ -243,6 +252,11 @@ impl Contacts {
     /// Overlap tests of two volumes: two a step, and those of the front.
     pub fn overlap_tests(&self) -> u64 {
         2 * self.steps + self.front.tests
+    }
+
+    /// In what the frame came to less than all that was asked, each by its reason; empty where nothing did.
+    pub fn degraded(&self) -> &[Degraded] {
+        &self.degraded
     }
 
     /// Whether nothing meets.
@@ -319,8 +333,12 @@ pub struct Summary {
     pub contacts: usize,
     /// How many of the contacts are neither confirmed nor refuted; of an earliest query, how many pairs.
     pub unresolved: u64,
+    /// In what the frame came to less than all that was asked; empty where nothing did.
+    pub degraded: Vec<Degraded>,
     /// The tolerance of a certified solver, a length.
     pub tolerance: Option<f64>,
+    /// The separation of a certified solver, a length; 0 for touching.
+    pub separation: Option<f64>,
     /// The smallest time of contact.
     pub earliest_toi: Option<f64>,
     /// Hash of the canonical answer, sixteen hexadecimal digits.
@@ -352,7 +370,9 @@ impl Summary {
             candidates: contacts.candidates,
             contacts: contacts.len(),
             unresolved: contacts.unresolved,
+            degraded: contacts.degraded.clone(),
             tolerance: None,
+            separation: query.solver().is_certified().then_some(query.params().separation),
             earliest_toi: contacts.earliest_toi(),
             hash: format!("{:016x}", contacts.hash()),
             queues: contacts.queues,

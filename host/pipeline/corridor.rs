@@ -40,6 +40,10 @@ pub struct Found {
     pub earliest: Option<f64>,
     /// The frame's counters, see [`counter`].
     pub counters: Vec<u64>,
+    /// How often a list was too short and part of the frame ran again.
+    pub reruns: u64,
+    /// Whether the walk's front did not pay.
+    pub front_dropped: bool,
 }
 
 /// The memory of a query, and the way through it.
@@ -256,8 +260,16 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
         })
     }
 
-    fn gather(&self, counters: Vec<u64>) -> Result<Found, Error> {
-        let mut found = Found { pairs: Vec::new(), vf: Vec::new(), ee: Vec::new(), earliest: None, counters };
+    fn gather(&self, counters: Vec<u64>, reruns: u64) -> Result<Found, Error> {
+        let mut found = Found {
+            pairs: Vec::new(),
+            vf: Vec::new(),
+            ee: Vec::new(),
+            earliest: None,
+            counters,
+            reruns,
+            front_dropped: self.walk.front_dropped(),
+        };
         match &self.narrow {
             Narrow::Discrete { contacts, .. } => found.pairs = contacts.read(&found.counters)?,
             Narrow::Continuous(c) => {
@@ -304,6 +316,7 @@ impl<R: Precision, V: Kernels> Frames for Corridor<R, V> {
     }
 
     fn frame(&mut self) -> Result<(Found, Stages), Error> {
+        let reruns = self.reruns;
         let start = self.device.mark()?;
         self.run(Stage::Fit)?;
         let fitted = self.device.mark()?;
@@ -336,7 +349,7 @@ impl<R: Precision, V: Kernels> Frames for Corridor<R, V> {
                 total: start.to(&end)?,
             };
             self.last.clone_from(&counters);
-            return Ok((self.gather(counters)?, stages));
+            return Ok((self.gather(counters, self.reruns - reruns)?, stages));
         }
     }
 

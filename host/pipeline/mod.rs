@@ -18,7 +18,7 @@ pub(crate) use corridor::Found;
 pub use layout::{Layout, Offsets};
 pub use timing::{Stage, Stages};
 
-use crate::contacts::{Contacts, Summary};
+use crate::contacts::{Contacts, Degraded, Summary};
 use crate::device::Device;
 use crate::error::Error;
 use crate::mesh::{Body, MAX_FACES, MAX_VERTICES};
@@ -172,7 +172,9 @@ impl Session {
         };
         self.answered = true;
         let stages = Stages { construct: self.construct_ms, ..stages };
-        Ok(Contacts::new(found, &self.layout, self.query, stages))
+        let asked = Query { tolerance: self.tolerance, ..self.query };
+        let degraded = Degraded::of(&found, &self.layout, &self.bodies, &asked);
+        Ok(Contacts::new(found, &self.layout, self.query, (stages, degraded)))
     }
 
     /// Runs one stage of this frame `times` times, on the device alone, and gives each run's milliseconds: for profilers,
