@@ -1,5 +1,7 @@
 //! The corridor: a frame from positions to contacts, in the order of the stages.
 
+#[cfg(test)]
+mod near;
 mod repeat;
 
 use super::layout::Layout;

@@ -17,6 +17,7 @@ mod walk;
 pub(crate) use corridor::Found;
 pub use layout::{Layout, Offsets};
 pub use timing::{Stage, Stages};
+pub(crate) use tolerance::of_edges;
 
 use crate::contacts::{Contacts, Degraded, Summary};
 use crate::device::Device;
@@ -100,10 +101,8 @@ impl Session {
         }
         fits(bodies.iter().map(Body::face_count).sum(), bodies.iter().map(Body::vertex_count).sum())?;
         let layout = Layout::new(&bodies, query.motion != crate::query::Motion::Discrete);
-        let tolerance = query
-            .solver()
-            .is_certified()
-            .then(|| query.tolerance.unwrap_or_else(|| tolerance::of_edges(&bodies)));
+        let tolerance =
+            query.solver().is_certified().then(|| query.tolerance.unwrap_or_else(|| of_edges(&bodies)));
         let mut session = Session {
             device,
             bodies,
