@@ -125,7 +125,7 @@ fn a_tolerance_below_the_precision_is_told() {
         let query = Query { tolerance: Some(tolerance), motion, ..by(solver) };
         let all = ask(engine(), soup(), query);
         let told = all.degraded().iter().find_map(|reason| match reason {
-            Degraded::TolerancePrecision { pairs } => Some(*pairs),
+            Degraded::ToleranceBelowPrecision { pairs } => Some(*pairs),
             _ => None,
         });
         (told, all.len() as u64)

@@ -33,7 +33,7 @@ pub enum Degraded {
     },
     /// Listed pairs so large that the solver's precision cannot tell as little as the tolerance: there a larger one counts,
     /// 64 roundings of their extent. A tolerance of 0 asks for no more than that, and is never below.
-    TolerancePrecision {
+    ToleranceBelowPrecision {
         /// How many; `None` where pairs are not listed.
         pairs: Option<u64>,
     },
@@ -70,7 +70,7 @@ impl Degraded {
             put(ended, Degraded::Boxes { pairs: ended });
         }
         if let Some(pairs) = below_precision(found, layout, bodies, query) {
-            put(pairs.unwrap_or(1), Degraded::TolerancePrecision { pairs });
+            put(pairs.unwrap_or(1), Degraded::ToleranceBelowPrecision { pairs });
         }
         put(found.reruns, Degraded::ListsGrown { times: found.reruns });
         put(found.front_dropped as u64, Degraded::FrontDropped);
@@ -93,7 +93,7 @@ impl fmt::Display for Degraded {
             Degraded::Steps { pairs } => {
                 write!(f, "{pairs} pairs whose steps of advancement ended; use a certified solver")
             }
-            Degraded::TolerancePrecision { pairs } => {
+            Degraded::ToleranceBelowPrecision { pairs } => {
                 let pairs = pairs.map_or("some".to_owned(), |pairs| pairs.to_string());
                 write!(f, "{pairs} pairs too large for the tolerance in the solver's precision")
             }
