@@ -26,6 +26,7 @@ const fn plain() -> Query {
         adjacent: false,
         tolerance: None,
         boxes: None,
+        separation: None,
     }
 }
 

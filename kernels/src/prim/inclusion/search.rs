@@ -119,7 +119,8 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
             }
             let Some(cell) = next else {
                 let verdict = self.verdict(p);
-                return Some((verdict, verdict.is_settled(self.m.pause.wide())));
+                let settled = verdict.is_settled(self.m.pause.wide()) && !self.m.blunt;
+                return Some((verdict, settled || verdict.is_separated()));
             };
             let start = cell.low[0];
             let bound = self.known.accepted.min(self.known.certain);
