@@ -131,7 +131,7 @@ fn a_tolerance_below_the_precision_is_told() {
         (told, all.len() as u64)
     };
     for (solver, tolerance) in
-        [(Solver::CertifiedF32, 1e-9), (Solver::Certified, 1e-9), (Solver::CertifiedF64, 1e-18)]
+        [(Solver::CertifiedF32, 1e-9), (Solver::Certified, 1e-18), (Solver::CertifiedF64, 1e-18)]
     {
         let (pairs, listed) = told(solver, Motion::Continuous, tolerance);
         assert_eq!(pairs, Some(Some(listed)), "{solver:?}: no pair here is small enough");
