@@ -132,8 +132,21 @@ impl Printed for Row {
     const CAPTION: &'static str = "What each choice costs: wrong answers first, then alarms without contact, then how early times \
                                    are (in mean edges), then time";
     const HEADS: &'static [&'static str] = &[
-        "input", "choice", "at", "cases", "contacts", "missed", "late", "false", "breach", "unresolved", "early p99",
-        "early max", "boxes p99", "ns", "ms/frame",
+        "input",
+        "choice",
+        "at",
+        "cases",
+        "contacts",
+        "missed",
+        "late",
+        "false",
+        "breach",
+        "unresolved",
+        "early p99",
+        "early max",
+        "boxes p99",
+        "ns",
+        "ms/frame",
     ];
     fn row(&self) -> Vec<String> {
         let maybe = |x: Option<f64>| x.map_or("-".into(), digits);
