@@ -19,7 +19,8 @@ struct Folder(PathBuf);
 
 impl Folder {
     fn new(name: &str) -> Folder {
-        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("trade-{name}-{}", std::process::id()));
+        let path =
+            Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("trade-{name}-{}", std::process::id()));
         std::fs::create_dir_all(&path).expect("a folder");
         Folder(path)
     }
@@ -63,15 +64,19 @@ fn a_small_trade_has_every_part() {
             assert!(row["violations"].as_u64().unwrap_or(0) == 0, "{row}");
         }
     }
-    let of = |what: &str, column: &str, value: &str| rows(&all, what).iter().filter(|r| r[column] == value).count();
-    for solver in ["exact", "moller", "certified", "certified-f32", "certified-f64", "cubic-f64", "cubic-f32"] {
+    let of = |what: &str, column: &str, value: &str| {
+        rows(&all, what).iter().filter(|r| r[column] == value).count()
+    };
+    for solver in ["exact", "moller", "certified", "certified-f32", "certified-f64", "cubic-f64", "cubic-f32"]
+    {
         assert!(of("choices", "solver", solver) >= 2, "{solver}");
     }
     for bv in ["aabb", "linear", "obb", "obb-child"] {
         assert!(of("choices", "bv", bv) >= 2, "{bv}");
     }
     // Positions cast to f32 far from the origin ask another question, and that shows.
-    let cast = |row: &&Value| row["precision"] == "f32 cast" && row["solver"] == "certified" && row["at"] == 1e7;
+    let cast =
+        |row: &&Value| row["precision"] == "f32 cast" && row["solver"] == "certified" && row["at"] == 1e7;
     let far = rows(&all, "sweeps").iter().find(cast).expect("a row");
     assert!(far["missed"].as_u64() > Some(0) || far["late"].as_u64() > Some(0), "{far}");
     let headline = all["headline"].as_str().expect("a line");
@@ -84,7 +89,10 @@ fn a_small_trade_has_every_part() {
         assert!(csv.lines().count() > 2, "{name}");
     }
     let head = std::fs::read_to_string(folder.path("out/trade.csv")).expect("a file");
-    assert!(head.starts_with("input,reference,solver,tolerance_edges,tolerance,precision,bv,"), "{head:.100}");
+    assert!(
+        head.starts_with("input,reference,solver,tolerance_edges,tolerance,precision,bv,"),
+        "{head:.100}"
+    );
     for name in ["trade-pareto", "trade-tolerance", "trade-sweeps", "trade-funnel", "trade-refit"] {
         let svg = std::fs::read_to_string(folder.path(&format!("out/{name}.svg"))).expect("a picture");
         assert!(svg.contains("<svg") && svg.contains("nearmiss on"), "{name}");
@@ -108,7 +116,11 @@ fn query_files_are_read_decided_and_judged() {
     assert!(choices.len() > 10 && rows(&all, "sweeps").is_empty());
     for row in choices {
         assert_eq!((&row["cases"], &row["contacts"]), (&2.into(), &1.into()), "{row}");
-        assert_eq!((&row["missed"], &row["late"], &row["false_alarms"]), (&0.into(), &0.into(), &0.into()), "{row}");
+        assert_eq!(
+            (&row["missed"], &row["late"], &row["false_alarms"]),
+            (&0.into(), &0.into(), &0.into()),
+            "{row}"
+        );
     }
     // The tolerance of the public comparison is among them.
     assert!(choices.iter().any(|row| (row["tolerance"].as_f64().unwrap_or(0.0) - 1e-6).abs() < 1e-12));
@@ -135,7 +147,8 @@ fn a_list_of_contacts_judges_a_mesh() {
     let mesh = [folder.path("soup-moving_t0.ply"), folder.path("soup-moving_t1.ply")];
     let found = folder.path("found.csv");
     let detect = ["detect", &mesh[0], &mesh[1], "--backend", "cpu", "--tolerance", "0", "--out", &found];
-    let made = Command::new(env!("CARGO_BIN_EXE_nearmiss")).args(detect).output().expect("the program starts");
+    let made =
+        Command::new(env!("CARGO_BIN_EXE_nearmiss")).args(detect).output().expect("the program starts");
     assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
     let text = std::fs::read_to_string(&found).expect("a file");
     let key = |line: &str| line.split(',').take(3).collect::<Vec<_>>().join(",");
@@ -144,7 +157,8 @@ fn a_list_of_contacts_judges_a_mesh() {
     let judged = |keys: &[String]| {
         let truth = folder.write("truth.csv", &(keys.join("\n") + "\n"));
         let all = json(&["--mesh", &mesh[0], &mesh[1], "--truth", &truth]);
-        let row = rows(&all, "choices").iter().find(|row| row["solver"] == "certified-f64").expect("a row").clone();
+        let row =
+            rows(&all, "choices").iter().find(|row| row["solver"] == "certified-f64").expect("a row").clone();
         (row["contacts"].as_u64(), row["missed"].as_u64(), row["false_certificates"].as_u64())
     };
     let count = keys.len() as u64;

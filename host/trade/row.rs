@@ -110,7 +110,7 @@ impl Row {
         let mut all = vec![name(self.solver)];
         all.extend(self.tolerance_edges.map(|edges| format!("{edges:.0e}")));
         all.extend(self.bv.map(str::to_owned));
-        if self.precision == "f32 cast" {
+        if self.bv.is_none() && self.precision != "f64" {
             all.push(self.precision.into());
         }
         all.join(" ")

@@ -30,7 +30,8 @@ impl Axis {
         if low > high {
             return Axis::Even { low: 0.0, high: 1.0 };
         }
-        if low < 0.0 || (high <= 20.0 && high == high.trunc() && low == low.trunc() && high - low > 1.0) {
+        let whole = high <= 20.0 && high == high.trunc() && low == low.trunc() && high - low > 1.0;
+        if low < 0.0 || whole || (low > 0.0 && high < 10.0 * low) {
             return Axis::Even { low, high };
         }
         let least = finite.filter(|x| *x > 0.0).fold(f64::INFINITY, f64::min);
@@ -70,7 +71,7 @@ impl Axis {
             }
             Axis::Even { low, high } => {
                 let tick = |i: i32| low + f64::from(i) / 4.0 * (high - low);
-                let digits = if high - low >= 8.0 { 0 } else { 2 };
+                let digits = if high - low >= 8.0 || (high - low) % 4.0 == 0.0 { 0 } else { 2 };
                 (0..=4).map(|i| (tick(i), format!("{:.digits$}", tick(i)))).collect()
             }
         }
@@ -88,6 +89,7 @@ mod tests {
         assert_eq!((log.part(0.0), log.part(1000.0)), (0.0, 1.0));
         assert!(log.part(0.01) > 0.05);
         assert_eq!(Axis::of([-100.0, 100.0].into_iter()).part(0.0), 0.5);
+        assert_eq!(Axis::of([1.0, 1.3].into_iter()), Axis::Even { low: 1.0, high: 1.3 });
         assert_eq!(Axis::of([0.0, 12.0].into_iter()), Axis::Even { low: 0.0, high: 12.0 });
         assert_eq!(Axis::of([0.0, 0.0].into_iter()), Axis::Even { low: 0.0, high: 1.0 });
         assert_eq!(Axis::of(std::iter::empty()), Axis::Even { low: 0.0, high: 1.0 });

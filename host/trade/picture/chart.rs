@@ -92,7 +92,6 @@ fn chart(sheet: &Sheet, chart: &Chart, top: i32) -> Drawn {
     let (first, last) = (top + 28, top + 28 + FRAME);
     let at = frame(sheet, (&x, &y), [(LEFT / 2, first), (END, last)])?;
     sheet.text(&chart.x, ((LEFT / 2 + END) / 2, last + 27), 12, At::Middle, FAINT)?;
-    // Labels in the order of the curves' ends, each at least a line below the one above.
     let mut ends = Vec::new();
     for (curve, colour) in chart.curves.iter().zip(COLOURS.iter().cycle()) {
         let mut sorted = curve.points.clone();
@@ -105,15 +104,32 @@ fn chart(sheet: &Sheet, chart: &Chart, top: i32) -> Drawn {
         sheet.line(line, *colour, 2)?;
         ends.push((end.1, &curve.label, *colour));
     }
+    let all_same = chart.curves.len() > 2 && chart.curves.iter().all(|c| c.points == chart.curves[0].points);
+    if all_same {
+        ends.truncate(1);
+    }
     ends.sort_by_key(|end| end.0);
-    let mut next = first - 4;
-    for (y, label, colour) in ends {
-        let y = y.max(next).min(last + 8);
+    let places = apart(ends.iter().map(|end| end.0).collect(), last + 8);
+    for ((_, label, colour), y) in ends.into_iter().zip(places) {
         sheet.line(vec![(END + 6, y), (END + 20, y)], colour, 3)?;
+        let label = if all_same { "all of them" } else { label };
         sheet.text(label, (END + 26, y), 12, At::Left, INK)?;
-        next = y + 14;
     }
     Ok(())
+}
+
+/// Heights, ascending, moved apart so that a line of text fits between any two, none below `bottom`.
+fn apart(mut heights: Vec<i32>, bottom: i32) -> Vec<i32> {
+    const LINE: i32 = 13;
+    for i in 1..heights.len() {
+        heights[i] = heights[i].max(heights[i - 1] + LINE);
+    }
+    let mut most = bottom;
+    for height in heights.iter_mut().rev() {
+        *height = (*height).min(most);
+        most = *height - LINE;
+    }
+    heights
 }
 
 /// Bars on a logarithmic scale, each with its number and, where it has some, milliseconds: a panel an input.
@@ -153,6 +169,12 @@ pub fn bars(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn labels_stand_apart() {
+        assert_eq!(apart(vec![10, 10, 50], 100), [10, 23, 50]);
+        assert_eq!(apart(vec![95, 100, 100], 100), [74, 87, 100]);
+    }
 
     #[test]
     fn curves_and_bars_are_labelled() {

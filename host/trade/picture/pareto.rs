@@ -1,12 +1,13 @@
-//! What to choose: time against what it buys, a mark a choice. Choices that gave wrong answers are hollow, with their counts;
-//! of the others those are named that no other beats in both.
+//! What to choose: time against what it buys, a mark a choice. Choices that can give wrong answers are hollow, with the
+//! counts of those they gave; of the others those are named that no other beats in both.
 
 use super::axis::Axis;
 use super::chart::{COLOURS, frame};
 use crate::error::Error;
 use crate::query::Solver;
 use crate::tables::picture::{At, Drawn, FAINT, INK, LEFT, Sheet, head_height, sheet};
-use crate::trade::row::Row;
+use crate::trade::row::{Row, name};
+use plotters::style::RGBColor;
 
 /// Height of a frame, of what a panel has besides, and where frames end.
 const FRAME: i32 = 220;
@@ -39,10 +40,11 @@ pub fn pareto(device: &str, rows: &[Row]) -> Result<String, Error> {
     let tells = |(rows, (_, of)): &(&[Row], Quantity)| rows.iter().any(|row| of(row) > 0.0);
     let panels: Vec<(&[Row], Quantity)> =
         inputs.flat_map(|rows| QUANTITIES.map(|quantity| (rows, quantity))).filter(tells).collect();
-    sheet(head_height(2) + (FRAME + PANEL) * panels.len() as i32, |sheet| {
-        let hollow = "hollow: gave wrong answers, how many missed + late; named: right, and none better in both";
-        let notes = [(format!("nearmiss on {device}"), INK), (hollow.into(), FAINT)];
+    sheet(head_height(3) + (FRAME + PANEL) * panels.len() as i32, |sheet| {
+        let hollow = "hollow: can miss and be late, and how many missed + late; named: cannot, and none better in both";
+        let notes = [(format!("nearmiss on {device}"), INK), (hollow.into(), FAINT), (String::new(), INK)];
         let mut y = sheet.head("What to choose: left is faster, lower is better", &notes)?;
+        legend(sheet, y - 18)?;
         for (rows, quantity) in panels {
             panel(sheet, rows, quantity, y)?;
             y += FRAME + PANEL;
@@ -51,9 +53,32 @@ pub fn pareto(device: &str, rows: &[Row]) -> Result<String, Error> {
     })
 }
 
-/// Those that are right and that no other right one beats in both.
+/// A solver's colour.
+fn colour(solver: Solver) -> RGBColor {
+    let place = Solver::ALL.iter().position(|of| *of == solver).unwrap_or(0);
+    COLOURS[place % COLOURS.len()]
+}
+
+/// The solvers' colours, in a line.
+fn legend(sheet: &Sheet, y: i32) -> Drawn {
+    let mut x = 24;
+    for solver in Solver::ALL {
+        let name = name(solver);
+        sheet.dot((x, y), 5, colour(solver), solver.is_certain())?;
+        sheet.text(&name, (x + 10, y), 12, At::Left, INK)?;
+        x += 34 + 7 * name.len() as i32;
+    }
+    Ok(())
+}
+
+/// Whether answers may be relied on: by proof, and not by these counts alone, which must not speak against it.
+fn is_sure(row: &Row) -> bool {
+    row.solver.is_certain() && !row.is_wrong()
+}
+
+/// Those to rely on that no other such beats in both.
 fn best<'a>(marks: &'a [Mark]) -> impl Iterator<Item = &'a Mark<'a>> {
-    let right = |mark: &&Mark| !mark.row.is_wrong();
+    let right = |mark: &&Mark| is_sure(mark.row);
     let beaten = move |mark: &Mark| {
         let others = marks.iter().filter(right);
         others.into_iter().any(|o| o.x <= mark.x && o.y <= mark.y && (o.x < mark.x || o.y < mark.y))
@@ -76,15 +101,11 @@ fn panel(sheet: &Sheet, rows: &[Row], (what, of): Quantity, top: i32) -> Drawn {
     )?;
     let unit = if frames { "ms a frame" } else { "ns a pair" };
     sheet.text(unit, ((LEFT / 2 + END) / 2, last + 28), 12, At::Middle, FAINT)?;
-    let colour = |solver: Solver| {
-        let place = Solver::ALL.iter().position(|of| *of == solver).unwrap_or(0);
-        COLOURS[place % COLOURS.len()]
-    };
     for mark in &marks {
         let (x, y) = at((mark.x, mark.y));
-        let wrong = mark.row.is_wrong();
-        sheet.dot((x, y), if wrong { 6 } else { 5 }, colour(mark.row.solver), !wrong)?;
-        if wrong {
+        let sure = is_sure(mark.row);
+        sheet.dot((x, y), if sure { 5 } else { 6 }, colour(mark.row.solver), sure)?;
+        if !sure {
             let Row { missed, late, .. } = mark.row;
             let label = format!("{}: {missed} + {late}", mark.row.choice());
             sheet.text(&label, (x + 10, y - 8), 11, At::Left, FAINT)?;
