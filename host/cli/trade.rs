@@ -110,7 +110,8 @@ fn generated(args: &TradeArgs, device: &Device, all: &mut Trade) -> Result<(), E
         let frames = during(format!("making {name}"), || tables::frames(name, triangles, args.seed, count))?;
         let step = frames.bodies(Motion::Continuous)?.swap_remove(0);
         let mesh = frames.meshes[0].clone();
-        scene(args, device, &known(device, name, Body::still(mesh), None)?, all)?;
+        let still = known(device, &format!("{name}, still"), Body::still(mesh), None)?;
+        scene(args, device, &still, all)?;
         scene(args, device, &known(device, name, step, None)?, all)?;
         for bv in [Bv::Aabb, Bv::default_for(Motion::Continuous)] {
             let name = format!("{name}, {} triangles", frames.triangles());

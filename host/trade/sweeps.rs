@@ -56,7 +56,7 @@ pub fn offsets(device: &Device, extent: Extent) -> Result<Vec<Row>, Error> {
 pub fn scales(device: &Device, extent: Extent) -> Result<Vec<Row>, Error> {
     let input = Input::built("scale", built(extent.seed, extent.cases, 8))?;
     let mut rows = Vec::new();
-    for k in (-100..=100).step_by(50 / extent.step.clamp(1, 5) as usize) {
+    for k in (-100..=100).step_by(if extent.step == 1 { 10 } else { 25 }) {
         let scaled = input.with("scale, 2^k".into(), |x| x * 2f64.powi(k));
         for choice in choices() {
             let row = scaled.row(device, choice, Stored::F64, 0)?;

@@ -30,7 +30,7 @@ const CHART: i32 = 72;
 /// Where frames end; labels stand to the right.
 const END: i32 = 640;
 /// Colours of Okabe and Ito, which people tell apart who see colours differently.
-pub const COLOURS: [RGBColor; 7] = [
+pub const COLOURS: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(86, 180, 233),
     RGBColor(0, 158, 115),
@@ -38,6 +38,7 @@ pub const COLOURS: [RGBColor; 7] = [
     RGBColor(230, 159, 0),
     RGBColor(204, 121, 167),
     RGBColor(90, 90, 90),
+    RGBColor(0, 0, 0),
 ];
 
 /// The picture.

@@ -150,13 +150,9 @@ mod tests {
             row(Solver::CubicF32, 0.5, 1e-6, 7),
         ];
         let svg = pareto("a card", &rows).expect("a picture");
-        for text in [
-            "cubic-f32: 7 + 0",
-            "certified 1e-4",
-            "certified-f32 1e-3",
-            "ms a frame",
-            "a scene: 99 %",
-        ] {
+        for text in
+            ["cubic-f32: 7 + 0", "certified 1e-4", "certified-f32 1e-3", "ms a frame", "a scene: 99 %"]
+        {
             assert!(svg.contains(text), "{text}: {svg}");
         }
         assert!(!svg.contains("false alarms"), "there are none");
