@@ -87,8 +87,9 @@ fn best<'a>(marks: &'a [Mark]) -> impl Iterator<Item = &'a Mark<'a>> {
 fn panel(sheet: &Sheet, rows: &[Row], (what, of): Quantity, top: i32) -> Drawn {
     let frames = rows.iter().any(|row| row.ms.is_some());
     let time = |row: &Row| if frames { row.ms } else { row.ns };
-    let marks: Vec<Mark> =
-        rows.iter().filter_map(|row| Some(Mark { row, x: time(row)?, y: of(row) })).collect();
+    // How positions of single questions are stored changes no answer: such a mark would hide another.
+    let drawn = rows.iter().filter(|row| row.bv.is_some() || row.precision == "f64");
+    let marks: Vec<Mark> = drawn.filter_map(|row| Some(Mark { row, x: time(row)?, y: of(row) })).collect();
     let (xs, ys): (Vec<f64>, Vec<f64>) = marks.iter().map(|m| (m.x, m.y)).unzip();
     sheet.bold(&format!("{}: {what}", rows[0].input), (20, top + 12), 14)?;
     let (first, last) = (top + 30, top + 30 + FRAME);
