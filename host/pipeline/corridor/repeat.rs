@@ -7,13 +7,24 @@ use crate::pipeline::timing::Stage;
 use crate::pipeline::volumes::Kernels;
 use nearmiss_kernels::abi::counter;
 
-impl<R: Precision, V: Kernels> Corridor<R, V> {
+/// Stages again, on what the last frame left.
+pub trait Again {
     /// Milliseconds of each of `times` runs of a stage. What it reads must be there: volumes of the leaves for `Refit`,
-    /// a whole frame for `Traverse` and `Narrow`.
+    /// a whole frame for `Traverse` and `Narrow`. See [`crate::pipeline::Session::repeat_stage`].
     ///
     /// # Errors
     /// Those of the device.
-    pub(super) fn again(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
+    fn repeat(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error>;
+    /// The narrow stage once more, step by step: names and milliseconds. See
+    /// [`crate::pipeline::Session::narrow_steps`].
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn narrow_steps(&mut self) -> Result<Vec<(&'static str, f64)>, Error>;
+}
+
+impl<R: Precision, V: Kernels> Again for Corridor<R, V> {
+    fn repeat(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
         if stage == Stage::Construct {
             return (0..times).map(|_| self.construct()).collect();
         }
@@ -37,6 +48,20 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
         Ok(ms)
     }
 
+    fn narrow_steps(&mut self) -> Result<Vec<(&'static str, f64)>, Error> {
+        let counters = self.counters_before(Stage::Narrow);
+        self.counters.write(&counters)?;
+        let mut all = Vec::new();
+        for &step in self.narrow.steps() {
+            let start = self.device.mark()?;
+            self.step(step)?;
+            all.push((step.name(), start.to(&self.device.mark()?)?));
+        }
+        Ok(all)
+    }
+}
+
+impl<R: Precision, V: Kernels> Corridor<R, V> {
     /// The counters that a stage begins with: those of the last frame, without what the stage itself counted.
     fn counters_before(&mut self, stage: Stage) -> Vec<u64> {
         let mut counters = vec![0; counter::COUNT as usize];
