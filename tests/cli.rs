@@ -1,5 +1,7 @@
 //! The program: exit codes, messages, the JSON summary, files. Scripts rely on these.
 
+#[path = "cli/explain.rs"]
+mod explain;
 #[path = "cli/scene.rs"]
 mod scene;
 
@@ -385,7 +387,7 @@ fn a_plan_is_what_would_run() {
 fn the_program_says_what_it_is() {
     assert_eq!(ok(&["--version"]).trim(), format!("nearmiss {}", env!("CARGO_PKG_VERSION")));
     let help = ok(&["--help"]);
-    for command in ["detect", "plan", "scene", "selftest"] {
+    for command in ["detect", "plan", "explain", "scene", "selftest"] {
         assert!(help.contains(command), "{help}");
     }
     assert_eq!(run(&[]).status.code(), Some(2));

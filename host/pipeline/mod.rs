@@ -17,6 +17,7 @@ mod walk;
 pub(crate) use corridor::Found;
 pub use layout::{Layout, Offsets};
 pub use timing::{Stage, Stages};
+pub(crate) use tolerance::of_edges as default_tolerance;
 
 use crate::contacts::{Contacts, Summary};
 use crate::device::Device;
