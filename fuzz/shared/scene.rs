@@ -60,7 +60,9 @@ fn body(b: &mut Bytes) -> Result<Body, Error> {
 }
 
 thread_local! {
-    static ENGINE: Device = Device::emulator(Emulator::new(Mode::Engine, Some(1)).expect("a thread"));
+    /// Small blocks: scenes are.
+    static ENGINE: Device =
+        Device::emulator(Emulator::new(Mode::Engine, Some(1)).expect("a thread").with_lanes(16));
 }
 
 /// Asks, and judges the contacts as `lie` passes them on. A typed error is an answer; a fault of ours is none.
