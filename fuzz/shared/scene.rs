@@ -212,10 +212,10 @@ fn triangle_pairs(bodies: &[Body]) -> Vec<[u32; 2]> {
     let (p, q) = (triangles(a), triangles(b));
     let one = bodies.len() == 1;
     let mut pairs = Vec::new();
-    for i in 0..p.len() {
-        for j in if one { i + 1..q.len() } else { 0..q.len() } {
-            let apart = one && a.faces()[i].iter().any(|v| b.faces()[j].contains(v));
-            if !apart && triangles_meet(&p[i], &q[j]) {
+    for (i, first) in p.iter().enumerate() {
+        for (j, second) in q.iter().enumerate().skip(if one { i + 1 } else { 0 }) {
+            let adjacent = one && a.faces()[i].iter().any(|v| b.faces()[j].contains(v));
+            if !adjacent && triangles_meet(first, second) {
                 pairs.push([i as u32, j as u32]);
             }
         }

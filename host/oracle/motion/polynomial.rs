@@ -133,7 +133,7 @@ impl Polynomial {
     /// all: it would be one there as well, of the same degree unless the prime divides its leading coefficient, and so both
     /// of theirs. Cheap; most that have none are told by it.
     fn is_coprime_mod_prime(&self, other: &Polynomial) -> bool {
-        let residues = |p: &Polynomial| p.0.iter().map(|c| residue(c)).collect::<Vec<u64>>();
+        let residues = |p: &Polynomial| p.0.iter().map(residue).collect::<Vec<u64>>();
         let (mut a, mut b) = (residues(self), residues(other));
         if a.last().is_none_or(|c| *c == 0) || b.last().is_none_or(|c| *c == 0) {
             return false;
