@@ -10,6 +10,7 @@ pub mod device;
 pub mod error;
 pub mod mesh;
 pub mod oracle;
+pub mod pairs;
 pub mod pipeline;
 pub mod query;
 pub mod report;

@@ -6,6 +6,7 @@ use cust::context::Context;
 use cust::device::{Device as Card, DeviceAttribute};
 use cust::error::CudaError;
 use cust::event::{Event as CudaEvent, EventFlags};
+use cust::function::{BlockSize, Function};
 use cust::memory::{AsyncCopyDestination, CopyDestination, DeviceBuffer, LockedBuffer};
 use cust::module::{Module, ModuleJitOption};
 use cust::stream::{Stream, StreamFlags};
@@ -28,6 +29,7 @@ const STAGING: usize = 4 << 20;
 /// A card, its context, one stream, and a module for each kernel that was used.
 pub struct Cuda {
     name: String,
+    processors: u32,
     resident_lanes: u32,
     staging: RefCell<LockedBuffer<u8>>,
     parts: Parts<'static>,
@@ -98,8 +100,8 @@ impl Cuda {
                 advice: "run with `--backend cpu`",
             });
         }
-        let resident_lanes = (read(DeviceAttribute::MultiprocessorCount)?
-            * read(DeviceAttribute::MaxThreadsPerMultiprocessor)?) as u32;
+        let processors = read(DeviceAttribute::MultiprocessorCount)? as u32;
+        let resident_lanes = processors * read(DeviceAttribute::MaxThreadsPerMultiprocessor)? as u32;
         let context = Context::new(card).map_err(refused("making a context"))?;
         let stream = Stream::new(StreamFlags::NON_BLOCKING, None).map_err(refused("making a stream"))?;
         let parts = Parts::new(PTX);
@@ -110,6 +112,7 @@ impl Cuda {
             unsafe { LockedBuffer::uninitialized(STAGING) }.map_err(refused("locking host memory"))?;
         Ok(Cuda {
             name,
+            processors,
             resident_lanes,
             staging: RefCell::new(staging),
             parts,
@@ -182,6 +185,30 @@ impl Cuda {
 
     /// Starts a kernel.
     pub fn launch<E: Kernel>(&self, blocks: u32, args: &E::Args) -> Result<(), Error> {
+        let mut args = *args;
+        let parameters = [(&raw mut args).cast::<c_void>()];
+        self.with_function::<E, _>(|function| {
+            // SAFETY: the kernel takes one parameter of this type (the stamp says that host and PTX come from the same
+            // sources), and its spans are memory of this card that the caller's buffers keep alive: freeing a buffer
+            // waits for the launches before it.
+            unsafe { self.stream.launch(function, blocks, E::LANES, E::SHARED, &parameters) }
+        })
+    }
+
+    /// How many blocks of a kernel run at once: its registers and shared memory tell.
+    pub fn blocks_at_once<E: Kernel>(&self) -> Result<u32, Error> {
+        let lanes = BlockSize::x(E::LANES);
+        let each = self.with_function::<E, _>(|function| {
+            function.max_active_blocks_per_multiprocessor(lanes, E::SHARED as usize)
+        })?;
+        Ok(each * self.processors)
+    }
+
+    /// Hands a kernel to `body`; its module is loaded at the first time.
+    fn with_function<E: Kernel, T>(
+        &self,
+        body: impl FnOnce(&Function) -> Result<T, CudaError>,
+    ) -> Result<T, Error> {
         let mut modules = self.modules.borrow_mut();
         let module = match modules.entry(E::NAME) {
             Entry::Occupied(known) => known.into_mut(),
@@ -193,13 +220,7 @@ impl Cuda {
             }
         };
         let function = module.get_function(E::NAME).map_err(refused(E::NAME))?;
-        let mut args = *args;
-        let parameters = [(&raw mut args).cast::<c_void>()];
-        // SAFETY: the kernel takes one parameter of this type (the stamp says that host and PTX come from the same
-        // sources), and its spans are memory of this card that the caller's buffers keep alive: freeing a buffer waits
-        // for the launches before it.
-        unsafe { self.stream.launch(&function, blocks, E::LANES, E::SHARED, &parameters) }
-            .map_err(refused(E::NAME))
+        body(&function).map_err(refused(E::NAME))
     }
 
     /// A point in the stream.
@@ -216,6 +237,52 @@ fn check_stamp(module: &Module) -> Result<(), Error> {
         module.get_global::<u64>(c"NEARMISS_STAMP").map_err(refused("looking for the kernels' stamp"))?;
     let mut found = 0u64;
     global.copy_to(&mut found).map_err(refused("reading the kernels' stamp"))?;
+    is_ours(found)
+}
+
+/// Whether kernels with that stamp come from this program's sources.
+fn is_ours(found: u64) -> Result<(), Error> {
     let found = format!("{found:016x}");
     if found == STAMP { Ok(()) } else { Err(Error::Stamp { found, wanted: STAMP.into() }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kernels_of_other_sources_are_refused() {
+        let ours = u64::from_str_radix(STAMP, 16).expect("sixteen digits");
+        is_ours(ours).expect("our own");
+        for bit in 0..64 {
+            let error = is_ours(ours ^ 1 << bit).expect_err("another bit");
+            assert!(matches!(error, Error::Stamp { .. }) && error.exit_code() == 4, "{error}");
+            assert!(
+                error.to_string().contains(STAMP) && error.to_string().contains("cargo build"),
+                "{error}"
+            );
+        }
+    }
+
+    /// What a kernel comes to that cannot be launched, is killed, or reads what is not its own: an error with its name.
+    #[test]
+    fn a_failed_launch_names_its_kernel() {
+        for code in [
+            CudaError::LaunchFailed,
+            CudaError::LaunchTimeout,
+            CudaError::LaunchOutOfResources,
+            CudaError::IllegalAddress,
+            CudaError::InvalidPtx,
+            CudaError::NotFound,
+            CudaError::EccUncorrectable,
+            CudaError::UnknownError,
+        ] {
+            let error = refused("narrow_sift_f32")(code);
+            assert!(matches!(error, Error::Device { .. }) && error.exit_code() == 4, "{error:?}");
+            let text = error.to_string();
+            assert!(text.starts_with("narrow_sift_f32: ") && text.contains("--backend cpu"), "{text}");
+        }
+        let memory = refused("loading the kernels")(CudaError::OutOfMemory);
+        assert!(matches!(memory, Error::Room { .. }) && memory.exit_code() == 4, "{memory:?}");
+    }
 }

@@ -49,6 +49,8 @@ struct Tally {
     launches: Cell<u64>,
     bytes: Cell<u64>,
     peak: Cell<u64>,
+    /// Most bytes that may be held; `None` for what the machine has.
+    most: Cell<Option<u64>>,
 }
 
 impl Device {
@@ -80,6 +82,12 @@ impl Device {
     /// An emulator, for example one under the microscope.
     pub fn emulator(emulator: Emulator) -> Device {
         Self::with(Machine::Emulator(emulator))
+    }
+
+    /// The same machine with no more than `bytes` of memory, whatever it has; of its clones too.
+    pub fn limited(self, bytes: u64) -> Device {
+        self.tally.most.set(Some(bytes));
+        self
     }
 
     fn with(machine: Machine) -> Device {
@@ -132,22 +140,40 @@ impl Device {
         self.blocks_for::<E>(room).clamp(1, full)
     }
 
+    /// Blocks for up to `room` items whose number only the device knows, no more than run at once: for kernels whose
+    /// lanes draw items until there are no more.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn blocks_at_once<E: Entry>(&self, room: usize) -> Result<u32, Error> {
+        let full = match &*self.machine {
+            Machine::Emulator(_) => self.blocks_striding::<E>(room),
+            #[cfg(feature = "cuda")]
+            Machine::Cuda(c) => c.blocks_at_once::<E>()?,
+        };
+        Ok(self.blocks_for::<E>(room).clamp(1, full.max(1)))
+    }
+
     /// Memory for `len` elements: zeroed (poisoned under the microscope).
     ///
     /// # Errors
-    /// [`Error::Room`] when the machine has no more.
+    /// [`Error::Room`] when the machine has no more, or may use no more: see [`Device::limited`].
     pub fn buffer<T: Pod>(&self, len: usize) -> Result<Buffer<T>, Error> {
         let bytes = len.checked_mul(size_of::<T>()).ok_or(Error::Room {
             what: "device memory".into(),
             asked: u64::MAX,
             given: isize::MAX as u64,
         })?;
+        let t = &self.tally;
+        let given = t.most.get().map_or(u64::MAX, |most| most.saturating_sub(t.bytes.get()));
+        if bytes as u64 > given {
+            return Err(Error::Room { what: "device memory, as limited".into(), asked: bytes as u64, given });
+        }
         let memory = match &*self.machine {
             Machine::Emulator(e) => Memory::Host(e.memory(bytes)?),
             #[cfg(feature = "cuda")]
             Machine::Cuda(c) => Memory::Card(c.memory(bytes)?),
         };
-        let t = &self.tally;
         t.bytes.set(t.bytes.get() + bytes as u64);
         t.peak.set(t.peak.get().max(t.bytes.get()));
         Ok(Buffer {

@@ -21,11 +21,28 @@ fn frames<R: Precision>(body: &Body, size: f64, at: f64) -> Vec<Vec<Vec3<R>>> {
     positions.map(|p| p.to_f64().into_iter().map(moved).collect()).collect()
 }
 
-/// Pairs of a node and a corner below it that is not inside, after `fault`.
+/// Ways to go from a point, of a length just below 1: so that a coordinate of f64 may round on its way.
+const WAYS: [[f64; 3]; 7] = {
+    const L: f64 = 1.0 - 1e-6;
+    const S: f64 = L / 3.0;
+    [
+        [0.0; 3],
+        [L, 0.0, 0.0],
+        [0.0, -L, 0.0],
+        [0.0, 0.0, L],
+        [2.0 * S, 2.0 * S, -S],
+        [-S, 2.0 * S, 2.0 * S],
+        [-2.0 * S, -S, -2.0 * S],
+    ]
+};
+
+/// Pairs of a node and a corner below it around which it does not hold everything within `near`, of volumes that were told
+/// to grow by `grow`, after `fault`.
 fn outside<R: Precision, V: Kernels + Contain>(
     body: &Body,
     (size, at): (f64, f64),
     (refit, axes): (Refit, Axes),
+    (grow, near): (f32, f32),
     fault: impl Fn(&mut [Node<V>]),
 ) -> usize {
     let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
@@ -45,7 +62,7 @@ fn outside<R: Precision, V: Kernels + Contain>(
     let count = body.face_count() as u32;
     let mut tree = Tree::new(&device, (0, count), refit, V::group(axes) > 0).expect("a tree");
     tree.construct::<R>(&device, frames, faces.span()).expect("built");
-    let volumes = Volumes::<V>::new(&device, &tree, axes).expect("room");
+    let volumes = Volumes::<V>::new(&device, &tree, (axes, grow)).expect("room");
     volumes.fit(&device, &tree, frames, faces.span()).expect("fitted");
     volumes.refit(&device, &tree, frames, faces.span()).expect("refitted");
     volumes.check(&tree, body.faces(), &positions).expect("sound");
@@ -61,7 +78,10 @@ fn outside<R: Precision, V: Kernels + Contain>(
             let held = |v: u32| {
                 let motion = &moving[v as usize];
                 let t1 = if positions.len() == 1 { motion.t0 } else { motion.t1 };
-                volume.holds(motion.t0.at.wide(), t1.at.wide())
+                WAYS[..if near > 0.0 { WAYS.len() } else { 1 }].iter().all(|way| {
+                    let step = Vec3(*way) * f64::from(near);
+                    volume.holds(motion.t0.at.wide() + step, t1.at.wide() + step)
+                })
             };
             outside += face.iter().filter(|&&v| !held(v)).count();
             if at == ROOT {
@@ -78,12 +98,27 @@ fn all<R: Precision, V: Kernels + Contain>(axes: Axes) {
     for (i, body) in bodies.map(|body| body.expect("a scene")).iter().enumerate() {
         for place in [(1.0, 0.0), (1e-3, 1e3), (1e25, 0.0)] {
             let refit = [Refit::Levels, Refit::Treelets, Refit::BottomUp][i % 3];
-            assert_eq!(outside::<R, V>(body, place, (refit, axes), |_| ()), 0, "{} {place:?}", body.name());
+            assert_eq!(
+                outside::<R, V>(body, place, (refit, axes), (0.0, 0.0), |_| ()),
+                0,
+                "{} {place:?}",
+                body.name()
+            );
         }
     }
     let body = scene::soup(300, 8, true).expect("a scene");
+    for (refit, place) in
+        [(Refit::Levels, (1.0, 0.0)), (Refit::Treelets, (1e-3, 1e3)), (Refit::BottomUp, (1e25, 0.0))]
+    {
+        let near = 0.125 * place.0 as f32;
+        let out = |grow| outside::<R, V>(&body, place, (refit, axes), (grow, near), |_| ());
+        assert_eq!(out(near), 0, "{refit:?}, {place:?}: what is near is held as well");
+        assert!(out(0.0) > 0, "{refit:?}, {place:?}: forgotten growth is noticed");
+        // Far from the origin a hundredth of it is less than what bounds are rounded by.
+        assert!(place.1 > 0.0 || out(0.99 * near) > 0, "{refit:?}, {place:?}: too little growth is noticed");
+    }
     // A node with its left child's volume: what is below the right one shows.
-    let few = outside::<R, V>(&body, (1.0, 0.0), (Refit::Levels, axes), |nodes| {
+    let few = outside::<R, V>(&body, (1.0, 0.0), (Refit::Levels, axes), (0.0, 0.0), |nodes| {
         let at = (ROOT as usize..nodes.len()).rfind(|&at| !nodes[at].is_leaf()).expect("an inner node");
         nodes[at].volume = nodes[nodes[at].link as usize].volume;
     });

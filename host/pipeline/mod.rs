@@ -4,9 +4,9 @@ mod corridor;
 #[cfg(test)]
 mod enclose;
 mod layout;
-mod narrow;
-mod precision;
-mod room;
+pub(crate) mod narrow;
+pub(crate) mod precision;
+pub(crate) mod room;
 mod timing;
 mod tolerance;
 mod tree;
@@ -17,9 +17,9 @@ mod walk;
 pub(crate) use corridor::Found;
 pub use layout::{Layout, Offsets};
 pub use timing::{Stage, Stages};
-pub(crate) use tolerance::of_edges as default_tolerance;
+pub(crate) use tolerance::of_edges;
 
-use crate::contacts::{Contacts, Summary};
+use crate::contacts::{Contacts, Degraded, Summary};
 use crate::device::Device;
 use crate::error::Error;
 use crate::mesh::{Body, MAX_FACES, MAX_VERTICES};
@@ -101,10 +101,8 @@ impl Session {
         }
         fits(bodies.iter().map(Body::face_count).sum(), bodies.iter().map(Body::vertex_count).sum())?;
         let layout = Layout::new(&bodies, query.motion != crate::query::Motion::Discrete);
-        let tolerance = query
-            .solver()
-            .is_certified()
-            .then(|| query.tolerance.unwrap_or_else(|| tolerance::of_edges(&bodies)));
+        let tolerance =
+            query.solver().is_certified().then(|| query.tolerance.unwrap_or_else(|| of_edges(&bodies)));
         let mut session = Session {
             device,
             bodies,
@@ -173,7 +171,9 @@ impl Session {
         };
         self.answered = true;
         let stages = Stages { construct: self.construct_ms, ..stages };
-        Ok(Contacts::new(found, &self.layout, self.query, stages))
+        let asked = Query { tolerance: self.tolerance, ..self.query };
+        let degraded = Degraded::of(&found, &self.layout, &self.bodies, &asked);
+        Ok(Contacts::new(found, &self.layout, self.query, (stages, degraded)))
     }
 
     /// Runs one stage of this frame `times` times, on the device alone, and gives each run's milliseconds: for profilers,

@@ -7,8 +7,8 @@ use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::query::{Motion, Query, Solver};
 use nearmiss_kernels::abi::{
-    CertifyArgs, DiscreteArgs, ESCALATE, Frames, Hit, KEEP_ADJACENT, Pair, RejectArgs, SiftArgs, SolveArgs,
-    Span, counter,
+    CertifyArgs, DiscreteArgs, ESCALATE, Frames, Hit, KEEP_ADJACENT, Listed, Pair, RejectArgs, SiftArgs,
+    SolveArgs, Span, counter,
 };
 use nearmiss_kernels::entry::Entry;
 
@@ -41,6 +41,18 @@ pub struct Given<'a, R: Precision> {
     pub pairs: Span<Pair>,
     /// The frame's counters.
     pub counters: Span<u64>,
+}
+
+/// How many entries the lists of a continuous query have room for at first: vertex/face, edge/edge.
+pub struct Rooms {
+    /// Candidates.
+    pub candidates: [usize; 2],
+    /// Those that may meet.
+    pub survivors: [usize; 2],
+    /// Contacts.
+    pub hits: [usize; 2],
+    /// Pairs that f32 leaves to f64.
+    pub escalated: [usize; 2],
 }
 
 /// What only one kind of query needs exists only there.
@@ -96,28 +108,13 @@ impl Narrow {
                 undecided: exact.then(undecided).transpose()?,
             });
         }
-        let earliest = query.motion == Motion::Earliest;
-        let hits = if earliest { 0 } else { few };
-        let escalated = || -> Result<_, Error> {
-            Ok([
-                List::new(device, "escalated vertex/face pairs", counter::VF_ESCALATED, few / 4)?,
-                List::new(device, "escalated edge/edge pairs", counter::EE_ESCALATED, few / 4)?,
-            ])
+        let rooms = Rooms {
+            candidates: [room, 2 * room],
+            survivors: [few, 2 * few],
+            hits: [few, few],
+            escalated: [few / 4, few / 4],
         };
-        Ok(Narrow::Continuous(Box::new(Continuous {
-            edges: device.upload(&layout.edges)?,
-            face_edges: device.upload(&layout.face_edges)?,
-            owners: device.upload(&layout.owners)?,
-            vf: List::new(device, "vertex/face candidates", counter::VF, room)?,
-            ee: List::new(device, "edge/edge candidates", counter::EE, 2 * room)?,
-            vf_survivors: List::new(device, "vertex/face survivors", counter::VF_SURVIVORS, few)?,
-            ee_survivors: List::new(device, "edge/edge survivors", counter::EE_SURVIVORS, 2 * few)?,
-            vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, hits)?,
-            ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, hits)?,
-            escalated: (query.solver() == Solver::Certified).then(escalated).transpose()?,
-            unresolved: Tally(counter::UNRESOLVED),
-            earliest: earliest.then(|| device.buffer(1)).transpose()?,
-        })))
+        Ok(Narrow::Continuous(Box::new(Continuous::new(device, layout, query, rooms)?)))
     }
 
     /// The steps of this query, in their order.
@@ -212,6 +209,53 @@ fn decide<R: Precision>(
 }
 
 impl Continuous {
+    /// Takes the memory.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn new(device: &Device, layout: &Layout, query: Query, rooms: Rooms) -> Result<Self, Error> {
+        let earliest = query.motion == Motion::Earliest;
+        let hits = if earliest { [0, 0] } else { rooms.hits };
+        let Rooms { candidates, survivors, escalated, .. } = rooms;
+        let escalated = || -> Result<_, Error> {
+            Ok([
+                List::new(device, "escalated vertex/face pairs", counter::VF_ESCALATED, escalated[0])?,
+                List::new(device, "escalated edge/edge pairs", counter::EE_ESCALATED, escalated[1])?,
+            ])
+        };
+        Ok(Continuous {
+            edges: device.upload(&layout.edges)?,
+            face_edges: device.upload(&layout.face_edges)?,
+            owners: device.upload(&layout.owners)?,
+            vf: List::new(device, "vertex/face candidates", counter::VF, candidates[0])?,
+            ee: List::new(device, "edge/edge candidates", counter::EE, candidates[1])?,
+            vf_survivors: List::new(device, "vertex/face survivors", counter::VF_SURVIVORS, survivors[0])?,
+            ee_survivors: List::new(device, "edge/edge survivors", counter::EE_SURVIVORS, survivors[1])?,
+            vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, hits[0])?,
+            ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, hits[1])?,
+            escalated: (query.solver() == Solver::Certified).then(escalated).transpose()?,
+            unresolved: Tally(counter::UNRESOLVED),
+            earliest: earliest.then(|| device.buffer(1)).transpose()?,
+        })
+    }
+
+    /// Puts pairs where a step would leave them, vertex/face and edge/edge: [`Step::Sift`] candidates, [`Step::Reject`]
+    /// those that may meet. The counters that say how many they are.
+    ///
+    /// # Errors
+    /// Those of the device.
+    ///
+    /// # Panics
+    /// When there are more than the lists have room for: a fault of the caller.
+    pub fn give(&mut self, step: Step, [vf, ee]: [&[Pair]; 2]) -> Result<[(u32, u64); 2], Error> {
+        let lists = match step {
+            Step::Sift => [&mut self.vf, &mut self.ee],
+            _ => [&mut self.vf_survivors, &mut self.ee_survivors],
+        };
+        let [vf_list, ee_list] = lists;
+        Ok([vf_list.put(vf)?, ee_list.put(ee)?])
+    }
+
     fn sift<R: Precision>(&self, given: &Given<R>) -> Result<(), Error> {
         let args = SiftArgs {
             frames: given.frames,
@@ -222,6 +266,7 @@ impl Continuous {
             vf: self.vf.span(),
             ee: self.ee.span(),
             counters: given.counters,
+            separation: given.query.params().separation,
         };
         launch_striding::<R::Sift>(given.device, given.pairs.len as usize, &args)
     }
@@ -234,8 +279,13 @@ impl Continuous {
             candidates: candidates.span(),
             survivors: survivors.span(),
             counters: given.counters,
+            separation: given.query.params().separation,
         };
         let (vf, ee) = (args(&self.vf, &self.vf_survivors), args(&self.ee, &self.ee_survivors));
+        if vf.separation > 0.0 {
+            launch_striding::<R::RejectNearVf>(given.device, self.vf.room(), &vf)?;
+            return launch_striding::<R::RejectNearEe>(given.device, self.ee.room(), &ee);
+        }
         launch_striding::<R::RejectVf>(given.device, self.vf.room(), &vf)?;
         launch_striding::<R::RejectEe>(given.device, self.ee.room(), &ee)
     }
@@ -258,50 +308,58 @@ impl Continuous {
         };
         let (vf, ee) = (args(&self.vf_survivors, &self.vf_hits), args(&self.ee_survivors, &self.ee_hits));
         let (of_vf, of_ee) = (self.vf_survivors.room(), self.ee_survivors.room());
-        if given.query.solver() == Solver::CubicF32 {
-            launch_striding::<R::Vf32>(given.device, of_vf, &vf)?;
-            launch_striding::<R::Ee32>(given.device, of_ee, &ee)
-        } else {
-            launch_striding::<R::Vf64>(given.device, of_vf, &vf)?;
-            launch_striding::<R::Ee64>(given.device, of_ee, &ee)
+        match given.query.solver() {
+            Solver::CubicF32 => {
+                launch_striding::<R::Vf32>(given.device, of_vf, &vf)?;
+                launch_striding::<R::Ee32>(given.device, of_ee, &ee)
+            }
+            Solver::Additive => {
+                launch_striding::<R::AdditiveVf>(given.device, of_vf, &vf)?;
+                launch_striding::<R::AdditiveEe>(given.device, of_ee, &ee)
+            }
+            _ => {
+                launch_striding::<R::Vf64>(given.device, of_vf, &vf)?;
+                launch_striding::<R::Ee64>(given.device, of_ee, &ee)
+            }
         }
     }
 
     /// In f32 over the survivors, then in f64 over what that escalated; or in one of them over all.
     fn certify<R: Precision>(&self, given: &Given<R>) -> Result<(), Error> {
-        let args = |pairs: &List<Pair>, hits: &List<Hit>, escalated: Option<&List<Pair>>| CertifyArgs {
-            frames: given.frames,
-            faces: given.faces,
-            edges: self.edges.span(),
+        let listed = |pairs: &List<Pair>, hits: &List<Hit>, escalated: Option<&List<Pair>>| Listed {
             pairs: pairs.span(),
             hits: hits.span(),
             escalated: escalated.map_or(Span::EMPTY, List::span),
-            earliest: self.earliest.as_ref().map_or(Span::EMPTY, Buffer::span),
-            counters: given.counters,
-            params: given.query.params(),
             pairs_at: pairs.counter(),
             hits_at: hits.counter(),
             escalated_at: escalated.map_or(0, List::counter),
-            flags: if escalated.is_some() { ESCALATE } else { 0 },
+            pad: 0,
         };
-        let (of_vf, of_ee) = (&self.vf_survivors, &self.ee_survivors);
-        let (vf, ee) = (args(of_vf, &self.vf_hits, None), args(of_ee, &self.ee_hits, None));
+        let args = |[vf, ee]: [&List<Pair>; 2], escalated: Option<&[List<Pair>; 2]>| CertifyArgs {
+            frames: given.frames,
+            faces: given.faces,
+            edges: self.edges.span(),
+            vf: listed(vf, &self.vf_hits, escalated.map(|[vf, _]| vf)),
+            ee: listed(ee, &self.ee_hits, escalated.map(|[_, ee]| ee)),
+            earliest: self.earliest.as_ref().map_or(Span::EMPTY, Buffer::span),
+            counters: given.counters,
+            params: given.query.params(),
+            flags: if escalated.is_some() { ESCALATE } else { 0 },
+            pad: 0,
+        };
+        let survivors = [&self.vf_survivors, &self.ee_survivors];
+        let room = |[vf, ee]: [&List<Pair>; 2]| vf.room() + ee.room();
         let device = given.device;
-        match &self.escalated {
-            Some([vf, ee]) => {
-                let first = (args(of_vf, &self.vf_hits, Some(vf)), args(of_ee, &self.ee_hits, Some(ee)));
-                launch_striding::<R::CertifyVf32>(device, of_vf.room(), &first.0)?;
-                launch_striding::<R::CertifyEe32>(device, of_ee.room(), &first.1)?;
-                launch_striding::<R::CertifyVf64>(device, vf.room(), &args(vf, &self.vf_hits, None))?;
-                launch_striding::<R::CertifyEe64>(device, ee.room(), &args(ee, &self.ee_hits, None))
-            }
-            None if given.query.solver() == Solver::CertifiedF32 => {
-                launch_striding::<R::CertifyVf32>(device, of_vf.room(), &vf)?;
-                launch_striding::<R::CertifyEe32>(device, of_ee.room(), &ee)
-            }
-            None => {
-                launch_striding::<R::CertifyVf64>(device, of_vf.room(), &vf)?;
-                launch_striding::<R::CertifyEe64>(device, of_ee.room(), &ee)
+        let escalated = self.escalated.as_ref();
+        if given.query.solver() == Solver::CertifiedF64 {
+            return launch_drawing::<R::Certify64>(device, room(survivors), &args(survivors, None));
+        }
+        launch_drawing::<R::Certify32>(device, room(survivors), &args(survivors, escalated))?;
+        match escalated {
+            None => Ok(()),
+            Some(lists) => {
+                let lists = lists.each_ref();
+                launch_drawing::<R::Certify64>(device, room(lists), &args(lists, None))
             }
         }
     }
@@ -310,4 +368,9 @@ impl Continuous {
 /// Launches a kernel over up to `room` items.
 fn launch_striding<E: Entry>(device: &Device, room: usize, args: &E::Args) -> Result<(), Error> {
     device.launch::<E>(device.blocks_striding::<E>(room), args)
+}
+
+/// Launches a kernel whose lanes draw from up to `room` items.
+fn launch_drawing<E: Entry>(device: &Device, room: usize, args: &E::Args) -> Result<(), Error> {
+    device.launch::<E>(device.blocks_at_once::<E>(room)?, args)
 }

@@ -74,6 +74,9 @@ const WIDE: u32 = 256;
 /// Lanes of kernels with long or uneven work: small blocks, so that few lanes wait for a long one (measured:
 /// `benches/NOTES.md`).
 const NARROW: u32 = 64;
+/// Lanes that draw items of uneven work from their block's share: the more draw from one, the more even; registers allow
+/// two such blocks a core.
+const DRAWING: u32 = 128;
 /// Lanes of the one block that evens the queues, as in the paper.
 const BALANCE: u32 = 512;
 /// Shared memory of a radix scatter: the bins, and each warp's.
@@ -142,6 +145,10 @@ kernels! {
     narrow_reject_vf_f64: reject::vf::<f64, B>, [RejectArgs<f64>], WIDE, 0;
     narrow_reject_ee_f32: reject::ee::<f32, B>, [RejectArgs<f32>], WIDE, 0;
     narrow_reject_ee_f64: reject::ee::<f64, B>, [RejectArgs<f64>], WIDE, 0;
+    narrow_reject_near_vf_f32: reject::near_vf::<f32, B>, [RejectArgs<f32>], WIDE, 0;
+    narrow_reject_near_vf_f64: reject::near_vf::<f64, B>, [RejectArgs<f64>], WIDE, 0;
+    narrow_reject_near_ee_f32: reject::near_ee::<f32, B>, [RejectArgs<f32>], WIDE, 0;
+    narrow_reject_near_ee_f64: reject::near_ee::<f64, B>, [RejectArgs<f64>], WIDE, 0;
     narrow_vf_f32_f32: solve::vf::<f32, f32, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_vf_f32_f64: solve::vf::<f32, f64, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_vf_f64_f32: solve::vf::<f64, f32, B>, [SolveArgs<f64>], WIDE, 0;
@@ -150,12 +157,12 @@ kernels! {
     narrow_ee_f32_f64: solve::ee::<f32, f64, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_ee_f64_f32: solve::ee::<f64, f32, B>, [SolveArgs<f64>], WIDE, 0;
     narrow_ee_f64_f64: solve::ee::<f64, f64, B>, [SolveArgs<f64>], WIDE, 0;
-    narrow_certify_vf_f32_f32: certify::vf::<f32, f32, B>, [CertifyArgs<f32>], NARROW, 0;
-    narrow_certify_vf_f32_f64: certify::vf::<f32, f64, B>, [CertifyArgs<f32>], NARROW, 0;
-    narrow_certify_vf_f64_f32: certify::vf::<f64, f32, B>, [CertifyArgs<f64>], NARROW, 0;
-    narrow_certify_vf_f64_f64: certify::vf::<f64, f64, B>, [CertifyArgs<f64>], NARROW, 0;
-    narrow_certify_ee_f32_f32: certify::ee::<f32, f32, B>, [CertifyArgs<f32>], NARROW, 0;
-    narrow_certify_ee_f32_f64: certify::ee::<f32, f64, B>, [CertifyArgs<f32>], NARROW, 0;
-    narrow_certify_ee_f64_f32: certify::ee::<f64, f32, B>, [CertifyArgs<f64>], NARROW, 0;
-    narrow_certify_ee_f64_f64: certify::ee::<f64, f64, B>, [CertifyArgs<f64>], NARROW, 0;
+    narrow_additive_vf_f32: solve::additive_vf::<f32, B>, [SolveArgs<f32>], NARROW, 0;
+    narrow_additive_vf_f64: solve::additive_vf::<f64, B>, [SolveArgs<f64>], NARROW, 0;
+    narrow_additive_ee_f32: solve::additive_ee::<f32, B>, [SolveArgs<f32>], NARROW, 0;
+    narrow_additive_ee_f64: solve::additive_ee::<f64, B>, [SolveArgs<f64>], NARROW, 0;
+    narrow_certify_f32_f32: certify::certify::<f32, f32, B>, [CertifyArgs<f32>], DRAWING, certify::SHARED;
+    narrow_certify_f32_f64: certify::certify::<f32, f64, B>, [CertifyArgs<f32>], DRAWING, certify::SHARED;
+    narrow_certify_f64_f32: certify::certify::<f64, f32, B>, [CertifyArgs<f64>], DRAWING, certify::SHARED;
+    narrow_certify_f64_f64: certify::certify::<f64, f64, B>, [CertifyArgs<f64>], DRAWING, certify::SHARED;
 }

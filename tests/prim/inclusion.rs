@@ -5,9 +5,8 @@ use crate::built::{FAMILIES, Motion, REACH_F32, REACH_F64, motion};
 use crate::random;
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::Moving;
-use nearmiss_kernels::prim::inclusion::search::solve;
 use nearmiss_kernels::prim::inclusion::{
-    Cell, Edges, Face, Grid, Params, Verdict, ee_certified, ee_first, vf_certified, vf_first,
+    Cell, Edges, Face, Grid, Params, Search, Verdict, ee_certified, ee_first, vf_certified, vf_first,
 };
 use std::mem::MaybeUninit;
 
@@ -139,6 +138,17 @@ fn millions_of_built_contacts() {
     all_right(built(55, 1_000_000 / 6, certified::<f64, f32>));
 }
 
+fn to_its_end<S: Grid, const N: usize>(search: Result<Search<S, N>, (Verdict, bool)>, p: &Params) -> Verdict {
+    match search {
+        Ok(mut search) => loop {
+            if let Some((verdict, _)) = search.step(p) {
+                return verdict;
+            }
+        },
+        Err((verdict, _)) => verdict,
+    }
+}
+
 /// The answer of the search alone, with `planted` done to the motion and so many places on the stack.
 fn searched<S: Grid>(
     [p, q, r, s]: [Moving<f64>; 4],
@@ -151,11 +161,11 @@ fn searched<S: Grid>(
     let v: Verdict = if face {
         let mut m = Face::<S>::new(p, [q, r, s], params);
         m.reach = planted(m.reach);
-        solve(&m, params, &mut stack)
+        to_its_end(Search::unfiltered(m, params, &mut stack), params)
     } else {
         let mut m = Edges::<S>::new([p, q], [r, s], params);
         m.reach = planted(m.reach);
-        solve(&m, params, &mut stack)
+        to_its_end(Search::unfiltered(m, params, &mut stack), params)
     };
     assert!(v.boxes <= params.budget);
     v

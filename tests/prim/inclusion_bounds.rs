@@ -136,12 +136,12 @@ fn lost<S: Grid>(r: &mut SmallRng, allowed: f64) -> u32 {
         let value: f64 = (0..8).map(|c| weight(c) * s[c]).sum();
         let bound = 2f64.powi(r.random_range(-30..-5));
         let s: [S; 8] = s.map(|y| S::of(y - value + bound * 0.99 * r.random_range(-1i32..2) as f64));
-        let mut cuts = Cuts { low: [S::ZERO; 3], high: [S::ZERO; 3], signs: 0 };
+        let mut cuts = Cuts::none();
         // Room for the rounding of the input itself.
         let bound = S::of(allowed * (bound + 4.0 * S::U.wide()));
         let kept = cuts.shadow(&s, bound, S::ZERO, 9);
-        let inside =
-            (0..3).all(|k| cuts.low[k].wide() <= x[k] + 1e-12 && x[k] <= 1.0 - cuts.high[k].wide() + 1e-12);
+        let [low, high] = cuts.parts();
+        let inside = (0..3).all(|k| low[k].wide() <= x[k] + 1e-12 && x[k] <= 1.0 - high[k].wide() + 1e-12);
         lost += (!kept || !inside) as u32;
     }
     lost

@@ -187,3 +187,31 @@ fn nanoseconds() {
         time("certified f32, then f64", &|face, x| !in_passes(x, face, &p).is_separated());
     }
 }
+
+/// How many boxes the searches of real cloth take: `cargo test --release --test prim boxes -- --ignored --nocapture`.
+#[test]
+#[ignore = "figures, not truths"]
+fn boxes() {
+    let Some((all, _, mean)) = scene("cloth-ball", "cloth_ball92", "cloth_ball93") else { return };
+    let p = Params::new(1e-4 * mean);
+    for (name, solver) in [
+        ("f32", certified::<f32, f32> as fn([Moving<f32>; 4], bool, &Params) -> Verdict),
+        ("f64", certified::<f32, f64>),
+    ] {
+        let start = Instant::now();
+        let mut boxes: Vec<_> = all.iter().map(|(key, x)| solver(*x, key.0, &p).boxes).collect();
+        let ms = start.elapsed().as_secs_f64() * 1e3;
+        boxes.retain(|boxes| *boxes > 0);
+        boxes.sort_unstable();
+        let at = |part: f64| boxes[((boxes.len() - 1) as f64 * part) as usize];
+        println!(
+            "{name}: {} searched, {} boxes; median {}, 99 % {}, 99.9 % {}, most {}; {ms:.0} ms",
+            boxes.len(),
+            boxes.iter().sum::<u32>(),
+            at(0.5),
+            at(0.99),
+            at(0.999),
+            at(1.0)
+        );
+    }
+}

@@ -6,7 +6,7 @@ use crate::cli::detect::body;
 use crate::error::Error;
 use crate::mesh::{Body, Positions, Problem, Topology};
 use crate::oracle::Triangle;
-use crate::pipeline::default_tolerance;
+use crate::pipeline::of_edges;
 use crate::query::Query;
 use nearmiss_kernels::prim::adjacent::Shared;
 use nearmiss_kernels::prim::inclusion::Params;
@@ -90,7 +90,7 @@ pub fn of(args: &ExplainArgs) -> Result<Subject, Error> {
     }
     let case = Case { features, positions_t0: four(at(false)?)?, positions_t1: four(at(true)?)? };
     let single = bodies.iter().all(is_single);
-    Ok(Subject::Moving(Moving { of, case, single, notes, params: params(args, default_tolerance(&bodies)) }))
+    Ok(Subject::Moving(Moving { of, case, single, notes, params: params(args, of_edges(&bodies)) }))
 }
 
 fn params(args: &ExplainArgs, default: f64) -> Params {

@@ -209,6 +209,10 @@ impl<W: Watch> Lane for EmulatedLane<W> {
         fence(SeqCst);
     }
     #[inline(always)]
+    fn any(&self, mine: bool) -> bool {
+        mine
+    }
+    #[inline(always)]
     fn get<T: Word>(&self, words: Shared<T>, i: u32) -> T {
         // SAFETY: inside the block's words (checked as for device memory), which only this thread touches.
         self.word(Access::Read, words, i).map_or(T::zeroed(), |p| unsafe { p.read() })

@@ -24,6 +24,8 @@ arguments! {
         ee: Span<Pair>,
         /// Counters, see [`counter`](super::counter).
         counters: Span<u64>,
+        /// Features this near are in contact, a length; 0 for touching.
+        separation: f64,
     }
     /// `narrow_moller`, `narrow_filter`, `narrow_exact`: triangle pairs that meet.
     DiscreteArgs<R: Real> {
@@ -44,7 +46,8 @@ arguments! {
         /// Bits: [`KEEP_ADJACENT`](super::KEEP_ADJACENT).
         flags: u32,
     }
-    /// `narrow_reject_vf`, `narrow_reject_ee`: candidates that certainly stay apart, left out.
+    /// `narrow_reject_vf`, `narrow_reject_ee`, and with a separation `narrow_reject_near_vf` and `_ee`: candidates that
+    /// certainly stay apart, left out.
     RejectArgs<R: Real> {
         /// Positions.
         frames: Frames<R>,
@@ -58,8 +61,11 @@ arguments! {
         survivors: Span<Pair>,
         /// Counters, see [`counter`](super::counter).
         counters: Span<u64>,
+        /// Features this near are in contact, a length; only of the two kernels that heed it.
+        separation: f64,
     }
-    /// `narrow_vf`, `narrow_ee`: the first time of contact of two primitives in motion.
+    /// `narrow_vf`, `narrow_ee`, `narrow_additive_vf`, `narrow_additive_ee`: the first time of contact of two primitives in
+    /// motion.
     SolveArgs<R: Real> {
         /// Positions.
         frames: Frames<R>,
@@ -76,34 +82,45 @@ arguments! {
         /// Counters, see [`counter`](super::counter).
         counters: Span<u64>,
     }
-    /// `narrow_certify_vf`, `narrow_certify_ee`: what meets, and bounds of the first time, with proof.
-    CertifyArgs<R: Real> {
-        /// Positions.
-        frames: Frames<R>,
-        /// Vertex indices of every triangle (`narrow_certify_vf`).
-        faces: Span<[u32; 3]>,
-        /// End points of every edge (`narrow_certify_ee`).
-        edges: Span<[u32; 2]>,
+    /// Candidates of one kind for `narrow_certify`, and where they go.
+    Listed {
         /// Candidates.
         pairs: Span<Pair>,
         /// Out: contacts and unresolved pairs; empty when only the earliest is asked for.
         hits: Span<Hit>,
         /// Out: pairs that need more precision; empty without [`ESCALATE`].
         escalated: Span<Pair>,
-        /// Out: the smallest toi so far, as bits; or empty.
-        earliest: Span<u64>,
-        /// Counters, see [`counter`](super::counter).
-        counters: Span<u64>,
-        /// What is asked.
-        params: Params,
         /// Which counter tells how many pairs there are.
         pairs_at: u32,
         /// Which counter the hits add to.
         hits_at: u32,
         /// Which counter the escalated pairs add to.
         escalated_at: u32,
+        /// Zero.
+        pad: u32,
+    }
+    /// `narrow_certify`: what meets, and bounds of the first time, with proof.
+    CertifyArgs<R: Real> {
+        /// Positions.
+        frames: Frames<R>,
+        /// Vertex indices of every triangle.
+        faces: Span<[u32; 3]>,
+        /// End points of every edge.
+        edges: Span<[u32; 2]>,
+        /// Vertex/face candidates.
+        vf: Listed,
+        /// Edge/edge candidates.
+        ee: Listed,
+        /// Out: the smallest toi so far, as bits; or empty.
+        earliest: Span<u64>,
+        /// Counters, see [`counter`](super::counter).
+        counters: Span<u64>,
+        /// What is asked.
+        params: Params,
         /// Bits: [`ESCALATE`].
         flags: u32,
+        /// Zero.
+        pad: u32,
     }
 }
 

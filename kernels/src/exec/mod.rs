@@ -65,6 +65,11 @@ pub trait Lane {
     /// the launch. Atomics by themselves order nothing. Plain accesses of other blocks stay races all the same.
     fn fence(&self);
 
+    /// True if `mine` is; and it may be true if it is not, while another lane's is. On a card the lanes of a warp meet here:
+    /// those that took different ways go on side by side, and leave a loop together of which this is the condition. All
+    /// lanes of a warp must come. Nothing but speed may hang on it: lanes that run one after another know only their own.
+    fn any(&self, mine: bool) -> bool;
+
     /// Word `i` of shared memory.
     fn get<T: Word>(&self, words: Shared<T>, i: u32) -> T;
     /// Sets word `i` of shared memory.

@@ -4,6 +4,7 @@ use super::coherent::{compare_and_swap, fence, load_coherent, store_coherent};
 use super::raw::{
     BROADCAST, address, atomic, barrier_or, element, load_global, load_shared32, load_shared64, load_word,
     match_any, scratch_address, shuffle_up, store_shared32, store_shared64, store_word, sync_threads,
+    warp_any,
 };
 use crate::abi::Span;
 use crate::exec::{BINS, Block, Lane, Shared, Slot, WARP, Word};
@@ -104,6 +105,10 @@ impl Lane for Thread {
     #[inline(always)]
     fn fence(&self) {
         fence();
+    }
+    #[inline(always)]
+    fn any(&self, mine: bool) -> bool {
+        warp_any(mine)
     }
     #[inline(always)]
     fn get<T: Word>(&self, words: Shared<T>, i: u32) -> T {

@@ -16,6 +16,8 @@ unsafe extern "C" {
     pub fn barrier_or(barrier: u32, value: bool) -> bool;
     #[link_name = "llvm.nvvm.shfl.sync.up.i32"]
     pub fn shfl_up(mask: u32, value: u32, delta: u32, clamp: u32) -> u32;
+    #[link_name = "llvm.nvvm.vote.any.sync"]
+    pub fn vote_any(mask: u32, vote: bool) -> bool;
     #[link_name = "llvm.nvvm.match.any.sync.i32"]
     pub fn match_any_sync(mask: u32, value: u32) -> u32;
 }
@@ -120,6 +122,13 @@ pub fn shuffle_up(v: u32, delta: u32) -> u32 {
     // SAFETY: called by all threads of the warp.
     unsafe { shfl_up(ALL, v, delta, 0) }
 }
+/// Whether any lane of the warp votes for it; all lanes come.
+#[inline(always)]
+pub fn warp_any(vote: bool) -> bool {
+    // SAFETY: called by all lanes of the warp: `Lane::any` says so.
+    unsafe { vote_any(ALL, vote) }
+}
+
 /// Which lanes of the warp hold the same value.
 #[inline(always)]
 pub fn match_any(v: u32) -> u32 {

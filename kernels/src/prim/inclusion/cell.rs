@@ -6,6 +6,8 @@ use crate::math::{Real, Vec3};
 pub trait Grid: Real {
     /// The distance of neighbours.
     const STEP: Self;
+    /// A time after every step.
+    const NEVER: Self;
     /// The greatest grid number not above `x` in [0, 1]; NaN gives 0.
     fn down(x: Self) -> Self;
     /// The least grid number not below `x` in [0, 1], and whether it is another number than `x`.
@@ -22,6 +24,7 @@ fn end<S: Real>(x: f64, n: f64) -> (S, bool) {
 
 impl Grid for f32 {
     const STEP: f32 = 1.0 / 16777216.0;
+    const NEVER: f32 = 2.0;
     #[inline]
     fn down(x: f32) -> f32 {
         (x * 16777216.0) as u32 as f32 * Self::STEP
@@ -34,6 +37,7 @@ impl Grid for f32 {
 
 impl Grid for f64 {
     const STEP: f64 = 1.0 / 1125899906842624.0;
+    const NEVER: f64 = 2.0;
     #[inline]
     fn down(x: f64) -> f64 {
         (x * 1125899906842624.0) as u64 as f64 * Self::STEP

@@ -2,7 +2,10 @@
 
 use super::cell::Grid;
 use crate::math::Vec3;
-use crate::math::tolerance::INCLUSION_FLAT;
+use crate::math::tolerance::{INCLUSION_DEEP, INCLUSION_FLAT};
+
+/// How many of the directions decouple the parameters: they come first.
+pub const DECOUPLING: usize = 3;
 
 /// A box's own directions, from how its image changes with `t`, `u` and `v`. Any is valid; these cut well: on the cross
 /// product of two changes only the third parameter has a shadow.
@@ -119,17 +122,57 @@ pub fn unit<S: Grid>(d: Vec3<S>) -> Option<Vec3<S>> {
     (most > S::INCLUSION_FAINT).then(|| d * (S::ONE / most))
 }
 
+/// A part of a range as a fraction, of which the larger is kept: no division until all shadows are taken.
+#[derive(Clone, Copy)]
+struct Share<S> {
+    over: S,
+    under: S,
+}
+
+impl<S: Grid> Share<S> {
+    const NONE: Self = Share { over: S::ZERO, under: S::ONE };
+
+    /// Takes `over / under` if that is more; `under` must be positive. Any share that was taken is a valid cut, so it does
+    /// not matter that products round.
+    #[inline(always)]
+    fn take(&mut self, over: S, under: S, holds: bool) {
+        if holds & (over * self.under > self.over * under) {
+            *self = Share { over, under };
+        }
+    }
+}
+
 /// What shadows have left of a box.
 pub struct Cuts<S> {
     /// The parts of the ranges of `t`, `u`, `v` that hold no contact, at their low ends.
-    pub low: [S; 3],
+    low: [Share<S>; 3],
     /// And at their high ends.
-    pub high: [S; 3],
+    high: [Share<S>; 3],
     /// Bit `k`: along direction `k` the two faces of parameter `k` lie on opposite sides.
     pub signs: u32,
 }
 
 impl<S: Grid> Cuts<S> {
+    /// Nothing is cut.
+    #[inline(always)]
+    pub fn none() -> Self {
+        Cuts { low: [Share::NONE; 3], high: [Share::NONE; 3], signs: 0 }
+    }
+
+    /// Whether some range has been cut, at one end, by a part that is worth another look by itself.
+    #[inline(always)]
+    pub fn deep(&self) -> bool {
+        let part = S::of(INCLUSION_DEEP);
+        let deep = |end: &[Share<S>; 3]| (0..3).any(|k| end[k].over > part * end[k].under);
+        deep(&self.low) | deep(&self.high)
+    }
+
+    /// The parts of the three ranges that hold no contact, at their low and at their high ends.
+    #[inline(always)]
+    pub fn parts(&self) -> [[S; 3]; 2] {
+        [&self.low, &self.high].map(|end| [0, 1, 2].map(|k| end[k].over / end[k].under))
+    }
+
     /// Takes the corners' products with direction `i`, each wrong by at most `error`; at a contact the exact product is
     /// within `apart` of zero. False if the box holds no contact.
     #[inline(always)]
@@ -161,13 +204,8 @@ impl<S: Grid> Cuts<S> {
     /// Keeps only where the line from `a` to `b` is not above zero.
     #[inline(always)]
     fn cut(&mut self, k: usize, a: S, b: S) {
-        if a > S::ZERO && b < a {
-            let x = a / (a - b);
-            self.low[k] = self.low[k].max(x);
-        } else if b > S::ZERO && a < b {
-            let x = b / (b - a);
-            self.high[k] = self.high[k].max(x);
-        }
+        self.low[k].take(a, a - b, (a > S::ZERO) & (b < a));
+        self.high[k].take(b, b - a, (b > S::ZERO) & (a < b));
     }
 }
 

@@ -22,6 +22,8 @@ pub struct Local<S, const N: usize> {
     pub finite: bool,
     /// The tolerance, in the same units as `w`; at least what can be told from zero.
     pub tolerance: S,
+    /// Whether a smaller tolerance was asked for than can be told from zero.
+    pub blunt: bool,
     /// The separation, rounded up.
     pub separation: S,
     /// Within this time no point moves by more than the tolerance, a multiple of [`Grid::STEP`].
@@ -72,7 +74,8 @@ impl<S: Grid, const N: usize> Local<S, N> {
             speed = speed.max((end - start).map(S::abs));
         }
         let finest = S::INCLUSION_FINEST * reach[0].max(reach[1]).max(reach[2]);
-        let tolerance = S::of((p.tolerance * scale).max(0.0)).max(finest);
+        let asked = S::of((p.tolerance * scale).max(0.0));
+        let tolerance = asked.max(finest);
         let fastest = speed[0].max(speed[1]).max(speed[2]);
         // What divides to NaN never moves, or has no tolerance: only the time that is charged depends on it.
         let pause = if fastest > S::ZERO { tolerance / fastest * S::INCLUSION_DOWN } else { S::ONE };
@@ -82,6 +85,7 @@ impl<S: Grid, const N: usize> Local<S, N> {
             reach,
             finite: finite && !p.separation.is_nan(),
             tolerance,
+            blunt: asked < finest,
             separation: S::of(p.separation.max(0.0) * scale) * S::INCLUSION_UP,
             pause: if pause < S::ONE { S::down(pause) } else { S::ONE },
             end,

@@ -41,12 +41,12 @@ mod verdict;
 
 pub use cell::{Cell, Grid};
 pub use local::{Edges, Face, Local};
+pub use search::Search;
 pub use verdict::{Answer, Params, Verdict};
 
 use super::cubic::Moving;
 use crate::math::Real;
 use core::mem::MaybeUninit;
-use search::solve;
 
 /// The largest number of boxes that wait: depth first, each halving leaves one. Ranges that are cut need few halvings;
 /// where more would wait (motion along one line, asked to 1e-9) the answer stays certain, but may be early.
@@ -56,38 +56,46 @@ pub const STACK: usize = 64;
 /// About 130 operations where the first filter rejects, 400 where the second does, 1,200 a box beyond.
 #[inline]
 pub fn vf_certified<R: Real, S: Grid>(v: Moving<R>, f: [Moving<R>; 3], p: &Params) -> Verdict {
-    certified(&Face::<S>::new(v, f, p), p)
+    certified(Face::<S>::new(v, f, p), p)
 }
 
 /// Whether, and when, two closed edges first come within the separation; as [`vf_certified`].
 #[inline]
 pub fn ee_certified<R: Real, S: Grid>(ea: [Moving<R>; 2], eb: [Moving<R>; 2], p: &Params) -> Verdict {
-    certified(&Edges::<S>::new(ea, eb, p), p)
+    certified(Edges::<S>::new(ea, eb, p), p)
 }
 
 #[inline]
-fn certified<S: Grid, const N: usize>(m: &Local<S, N>, p: &Params) -> Verdict {
-    if m.apart_by_axes() || m.apart_by_planes() {
-        return Verdict::separated(p.end, 0);
+fn certified<S: Grid, const N: usize>(m: Local<S, N>, p: &Params) -> Verdict {
+    settled(m, p).0
+}
+
+/// The verdict, and whether more precision would tell nothing that was asked.
+#[inline]
+fn settled<S: Grid, const N: usize>(m: Local<S, N>, p: &Params) -> (Verdict, bool) {
+    let mut stack = [const { MaybeUninit::uninit() }; STACK];
+    let mut search = match Search::begin(m, p, &mut stack) {
+        Ok(search) => search,
+        Err(settled) => return settled,
+    };
+    loop {
+        if let Some(settled) = search.step(p) {
+            return settled;
+        }
     }
-    solve(m, p, &mut [const { MaybeUninit::uninit() }; STACK])
 }
 
 /// [`vf_certified`], and whether more precision would tell nothing that was asked: separated, or a contact whose time is
 /// known as well as the tolerance demands.
 #[inline]
 pub fn vf_settled<R: Real, S: Grid>(v: Moving<R>, f: [Moving<R>; 3], p: &Params) -> (Verdict, bool) {
-    let m = Face::<S>::new(v, f, p);
-    let verdict = certified(&m, p);
-    (verdict, verdict.is_settled(m.pause.wide()))
+    settled(Face::<S>::new(v, f, p), p)
 }
 
 /// [`ee_certified`], and whether more precision would tell nothing that was asked.
 #[inline]
 pub fn ee_settled<R: Real, S: Grid>(ea: [Moving<R>; 2], eb: [Moving<R>; 2], p: &Params) -> (Verdict, bool) {
-    let m = Edges::<S>::new(ea, eb, p);
-    let verdict = certified(&m, p);
-    (verdict, verdict.is_settled(m.pause.wide()))
+    settled(Edges::<S>::new(ea, eb, p), p)
 }
 
 /// The first of two passes over vertex and face, in f32: what it is sure of, or `None`: ask [`vf_certified`] in f64.

@@ -2,14 +2,15 @@
 
 use super::bound::Image;
 use super::cell::{Cell, Grid};
-use super::direction::{Cuts, Directions, longest, shift, unit};
+use super::direction::{Cuts, DECOUPLING, Directions, longest, shift, unit};
 use super::local::Local;
 use super::verdict::{Params, Verdict};
 use crate::math::Vec3;
 use crate::math::tolerance::INCLUSION_SHRUNK;
 use core::mem::MaybeUninit;
 
-/// What is known so far. Times after the step mean none.
+/// What is known so far; [`Grid::NEVER`] where there is none.
+#[derive(Clone, Copy, Debug)]
 struct Known<S> {
     /// The earliest start of an accepted box.
     accepted: S,
@@ -31,72 +32,134 @@ enum Look<S> {
     Halves(Cell<S>, Cell<S>),
 }
 
-/// Searches the whole motion. The stack needs [`super::STACK`] places at most; with fewer the answer may be early.
-#[inline]
-pub fn solve<S: Grid, const N: usize>(
-    m: &Local<S, N>,
-    p: &Params,
-    stack: &mut [MaybeUninit<Cell<S>>],
-) -> Verdict {
-    if m.still_together() {
-        return Verdict::contact(0.0, 0.0, 0, false);
-    }
-    if !m.finite {
-        return Verdict::unresolved(0.0, p.end, 0, true);
-    }
-    let never = S::of(2.0);
-    let mut known = Known { accepted: never, skipped: never, certain: never };
-    let (mut boxes, mut depth, mut exhausted) = (0, 0, false);
-    let mut cell = Cell::whole(m.end);
-    loop {
-        let start = cell.low[0];
-        let bound = known.accepted.min(known.certain);
-        let mut next = None;
-        if bound < never && start + m.pause >= bound {
-            if !(start > known.certain) {
-                known.skipped = known.skipped.min(start);
-            }
-        } else if boxes >= p.budget {
-            exhausted = true;
-            known.accepted = known.accepted.min(start);
-        } else {
-            boxes += 1;
-            match m.look(&cell, &mut known) {
-                Look::Nothing => {}
-                Look::Small(start) => known.accepted = known.accepted.min(start),
-                Look::Part(part) => next = Some(part),
-                Look::Halves(near, far) => {
-                    if let Some(place) = stack.get_mut(depth) {
-                        place.write(far);
-                        depth += 1;
-                    } else {
-                        exhausted = true;
-                        known.accepted = known.accepted.min(far.low[0]);
-                    }
-                    next = Some(near);
-                }
-            }
+/// A search under way: what is asked, what is known, and the box to look at next. One box a step, so that a card's lanes
+/// can take up new pairs as they are done with theirs.
+pub struct Search<'a, S, const N: usize> {
+    m: Local<S, N>,
+    known: Known<S>,
+    cell: Cell<S>,
+    /// Boxes that wait.
+    stack: &'a mut [MaybeUninit<Cell<S>>],
+    depth: usize,
+    boxes: u32,
+    exhausted: bool,
+}
+
+impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
+    /// Begins; or tells at once what the filters settle, and what is no number. The stack needs [`super::STACK`] places at
+    /// most; with fewer the answer may be early.
+    ///
+    /// # Errors
+    /// The verdict, where no search is needed, and whether more precision would tell nothing that was asked.
+    #[inline]
+    pub fn begin(
+        m: Local<S, N>,
+        p: &Params,
+        stack: &'a mut [MaybeUninit<Cell<S>>],
+    ) -> Result<Self, (Verdict, bool)> {
+        if m.apart_by_axes() || m.apart_by_planes() {
+            return Err((Verdict::separated(p.end, 0), true));
         }
-        cell = match next {
-            Some(cell) => cell,
-            None if depth == 0 => break,
-            None => {
-                depth -= 1;
-                // SAFETY: places below `depth` were written when it passed them.
-                unsafe { stack[depth].assume_init() }
+        Self::unfiltered(m, p, stack)
+    }
+
+    /// Begins without the filters.
+    ///
+    /// # Errors
+    /// The verdict, where no search is needed, and whether more precision would tell nothing that was asked.
+    #[inline]
+    pub fn unfiltered(
+        m: Local<S, N>,
+        p: &Params,
+        stack: &'a mut [MaybeUninit<Cell<S>>],
+    ) -> Result<Self, (Verdict, bool)> {
+        if m.still_together() {
+            return Err((Verdict::contact(0.0, 0.0, 0, false), true));
+        }
+        if !m.finite {
+            return Err((Verdict::unresolved(0.0, p.end, 0, true), false));
+        }
+        let known = Known { accepted: S::NEVER, skipped: S::NEVER, certain: S::NEVER };
+        Ok(Search { m, known, cell: Cell::whole(m.end), stack, depth: 0, boxes: 0, exhausted: false })
+    }
+
+    /// Looks at one box. Once no box is left: the verdict, and whether more precision would tell nothing that was asked.
+    #[inline]
+    pub fn step(&mut self, p: &Params) -> Option<(Verdict, bool)> {
+        self.boxes += 1;
+        let next = match self.m.look(&self.cell, &mut self.known) {
+            Look::Nothing => None,
+            Look::Small(start) => {
+                self.accept(start);
+                None
+            }
+            Look::Part(part) => Some(part),
+            Look::Halves(near, far) => {
+                if let Some(place) = self.stack.get_mut(self.depth) {
+                    place.write(far);
+                    self.depth += 1;
+                } else {
+                    self.exhausted = true;
+                    self.accept(far.low[0]);
+                }
+                Some(near)
             }
         };
+        self.go_on(next, p)
     }
-    let first = known.accepted.min(known.skipped);
-    if !(first < never) {
-        return Verdict::separated(p.end, boxes);
+
+    /// Takes up the next box that is worth a look, of those that wait if there is no `next`.
+    #[inline]
+    fn go_on(&mut self, mut next: Option<Cell<S>>, p: &Params) -> Option<(Verdict, bool)> {
+        loop {
+            if next.is_none() && self.depth > 0 {
+                self.depth -= 1;
+                // SAFETY: `depth` is this search's own, and places below it were written when it passed them.
+                next = Some(unsafe { self.stack[self.depth].assume_init() });
+            }
+            let Some(cell) = next else {
+                let verdict = self.verdict(p);
+                let settled = verdict.is_settled(self.m.pause.wide()) && !self.m.blunt;
+                return Some((verdict, settled || verdict.is_separated()));
+            };
+            let start = cell.low[0];
+            let bound = self.known.accepted.min(self.known.certain);
+            if bound < S::NEVER && start + self.m.pause >= bound {
+                if !(start > self.known.certain) {
+                    self.known.skipped = self.known.skipped.min(start);
+                }
+            } else if self.boxes >= p.budget {
+                self.exhausted = true;
+                self.accept(start);
+            } else {
+                self.cell = cell;
+                return None;
+            }
+            next = None;
+        }
     }
-    let first = first.wide();
-    let toi = if first < p.end { first } else { p.end };
-    if known.certain < never {
-        Verdict::contact(toi, known.certain.wide(), boxes, exhausted)
-    } else {
-        Verdict::unresolved(toi, p.end, boxes, exhausted)
+
+    /// There may be a contact in a box that starts there.
+    #[inline]
+    fn accept(&mut self, start: S) {
+        self.known.accepted = self.known.accepted.min(start);
+    }
+
+    /// What is known when no box is left.
+    #[inline]
+    fn verdict(&self, p: &Params) -> Verdict {
+        let (known, boxes, exhausted) = (&self.known, self.boxes, self.exhausted);
+        let first = known.accepted.min(known.skipped);
+        if !(first < S::NEVER) {
+            return Verdict::separated(p.end, boxes);
+        }
+        let first = first.wide();
+        let toi = if first < p.end { first } else { p.end };
+        if known.certain < S::NEVER {
+            Verdict::contact(toi, known.certain.wide(), boxes, exhausted)
+        } else {
+            Verdict::unresolved(toi, p.end, boxes, exhausted)
+        }
     }
 }
 
@@ -121,11 +184,15 @@ impl<S: Grid, const N: usize> Local<S, N> {
             let near = self.separation + self.tolerance;
             small = small || farthest(f) <= near * near;
         }
-        let mut cuts = Cuts { low: [S::ZERO; 3], high: [S::ZERO; 3], signs: 0 };
+        let mut cuts = Cuts::none();
         let directions = Directions::of(f);
         let reach = low.map(S::abs).max(high.map(S::abs));
         let slack = Vec3([0, 1, 2].map(|k| error[k] + S::INCLUSION_SHADOW * reach[k]));
         for i in 0..directions.count(self.separation > S::ZERO) {
+            // Those that decouple the parameters have cut it much: the others will cut the rest better.
+            if i == DECOUPLING && cuts.deep() {
+                break;
+            }
             let Some(d) = unit(directions.get(i, || sum(f))) else { continue };
             let error = d.map(S::abs).dot(slack) * S::INCLUSION_UP + S::INCLUSION_UNDERFLOW;
             if !cuts.shadow(&f.map(|x| d.dot(x)), error, self.apart(d), i) {
@@ -136,7 +203,8 @@ impl<S: Grid, const N: usize> Local<S, N> {
         if cuts.signs == 7 && all_of_face && self.within_step(cell.high[0]) && directions.independent() {
             known.certain = known.certain.min(cell.high[0]);
         }
-        let Some(part) = cell.without(cuts.low, cuts.high) else { return Look::Nothing };
+        let [low, high] = cuts.parts();
+        let Some(part) = cell.without(low, high) else { return Look::Nothing };
         let Some(part) = (if N == 3 { part.in_face() } else { Some(part) }) else { return Look::Nothing };
         if small {
             return Look::Small(part.low[0]);

@@ -1,7 +1,10 @@
 //! # Certify: vertex/face and edge/edge candidates → contacts, proven, with bounds of their first time
 //! Paper    none: beyond it.
-//! Launch   `vf` and `ee`, a lane a candidate; a grid of any size strides. In f32 over what may meet; in f64 over the same,
-//!          or over what f32 escalated.
+//! Launch   a grid of any size, both kinds of candidates in one. In f32 over what may meet; in f64 over the same, or over
+//!          what f32 escalated. Searches are of very different lengths: a lane looks at one box, then at the next, and a
+//!          lane whose search has ended draws the block's next candidate, so that few lanes wait. A block's candidates lie
+//!          a grid apart, and the two kinds begin at opposite ends of the grid, so that short lists are spread over all
+//!          blocks, and none waits for the other.
 //! Reads    candidates, faces or edges, positions of both frames (four vertices).
 //! Writes   contacts and unresolved pairs with toi and toi_hi; or, when only the earliest is asked for, one number.
 //!          With [`ESCALATE`] the pairs, in their own list, of which more precision may tell more.
@@ -14,96 +17,120 @@
 //!          Boxes wait in a stack in local memory: 1.5 KB a lane in f32, 3 KB in f64.
 
 use super::{listed, moving};
-use crate::abi::{CertifyArgs, ESCALATE, Hit, Pair, counter};
-use crate::exec::{Block, Lane, Slot};
+use crate::abi::{CertifyArgs, ESCALATE, Hit, Listed, Pair, counter};
+use crate::exec::{Block, Lane, Shared};
 use crate::math::Real;
-use crate::prim::inclusion::{Grid, Verdict, ee_settled, vf_settled};
+use crate::prim::inclusion::{Edges, Face, Grid, Local, STACK, Search, Verdict};
+use core::mem::MaybeUninit;
 
-/// Vertex/face, positions in R, boxes in S.
-pub fn vf<R: Real, S: Grid, B: Block>(b: &mut B, a: &CertifyArgs<R>) {
-    certify(b, a, |l, pair| {
-        let face = l.read(a.faces, pair.b).map(|v| moving(l, &a.frames, v));
-        vf_settled::<R, S>(moving(l, &a.frames, pair.a), face, &a.params)
+/// Bytes of shared memory of a block: the numbers of candidates drawn.
+pub const SHARED: u32 = 8;
+
+/// Positions in R, boxes in S.
+pub fn certify<R: Real, S: Grid, B: Block>(b: &mut B, a: &CertifyArgs<R>) {
+    let share = |b: &B, of: &Listed, first: u32, drawn: u32| Share {
+        count: listed(b, of.pairs, a.counters, of.pairs_at) as u64,
+        first: first as u64,
+        stride: b.blocks() as u64,
+        drawn,
+    };
+    let vf = share(b, &a.vf, b.block(), 0);
+    let ee = share(b, &a.ee, b.blocks() - 1 - b.block(), 1);
+    let drawn = b.shared::<u32>(2);
+    b.phase(|l| {
+        if l.lane() < 2 {
+            l.put(drawn, l.lane(), 0);
+        }
+    });
+    b.phase(|l| {
+        search(l, a, &a.vf, (&vf, drawn), |pair| {
+            let face = l.read(a.faces, pair.b).map(|v| moving(l, &a.frames, v));
+            Face::<S>::new(moving(l, &a.frames, pair.a), face, &a.params)
+        });
+        search(l, a, &a.ee, (&ee, drawn), |pair| {
+            let ends = |e: u32| l.read(a.edges, e).map(|v| moving(l, &a.frames, v));
+            Edges::<S>::new(ends(pair.a), ends(pair.b), &a.params)
+        });
     });
 }
 
-/// Edge/edge, positions in R, boxes in S.
-pub fn ee<R: Real, S: Grid, B: Block>(b: &mut B, a: &CertifyArgs<R>) {
-    certify(b, a, |l, pair| {
-        let ends = |e: u32| l.read(a.edges, e).map(|v| moving(l, &a.frames, v));
-        ee_settled::<R, S>(ends(pair.a), ends(pair.b), &a.params)
-    });
+/// A block's candidates of one kind: that numbered `first`, and every `stride` on.
+struct Share {
+    count: u64,
+    first: u64,
+    stride: u64,
+    /// Which shared word counts those that are drawn.
+    drawn: u32,
 }
 
-/// Where a pair goes.
-#[derive(Clone, Copy, PartialEq)]
-enum To {
-    Nowhere,
-    Hits,
-    Escalated,
-}
-
-/// Asks each candidate, and puts it where it belongs.
-fn certify<R: Real, B: Block>(
-    b: &mut B,
+/// Draws candidates and searches their motion until there are no more.
+fn search<R: Real, S: Grid, const N: usize, L: Lane>(
+    l: &L,
     a: &CertifyArgs<R>,
-    ask: impl Fn(&B::Lane, Pair) -> (Verdict, bool),
+    of: &Listed,
+    (share, drawn): (&Share, Shared<u32>),
+    motion: impl Fn(Pair) -> Local<S, N>,
 ) {
-    let count = listed(b, a.pairs, a.counters, a.pairs_at);
-    let lanes = b.lanes();
-    let mut hits = b.slot(Hit::default());
-    let mut goes = b.slot(To::Nowhere);
-    let mut places = b.slot(0u32);
-    let mut base = b.block() * lanes;
-    while base < count {
-        b.phase(|l| {
-            let i = base + l.lane();
-            *goes.of(l) = To::Nowhere;
-            if i < count {
-                let pair = l.read(a.pairs, i);
-                let (verdict, settled) = ask(l, pair);
-                *hits.of(l) = Hit { a: pair.a, b: pair.b, verdict };
-                *goes.of(l) = if a.flags & ESCALATE != 0 && !settled {
-                    To::Escalated
-                } else if verdict.is_separated() {
-                    To::Nowhere
-                } else {
-                    note(l, a, &verdict);
-                    To::Hits
+    let mut stack = [const { MaybeUninit::uninit() }; STACK];
+    let mut under_way: Option<(Pair, Search<S, N>)> = None;
+    let mut more = true;
+    while l.any(more) {
+        let mut told = None;
+        if more && under_way.is_none() {
+            let i = share.first + share.stride * l.shared_add(drawn, share.drawn, 1) as u64;
+            more = i < share.count;
+            if more {
+                let pair = l.read(of.pairs, i as u32);
+                under_way = match Search::begin(motion(pair), &a.params, &mut stack) {
+                    Ok(search) => Some((pair, search)),
+                    Err((verdict, settled)) => {
+                        told = Some(Told { pair, verdict, settled });
+                        None
+                    }
                 };
             }
-        });
-        if a.earliest.is_empty() {
-            b.phase(|l| *places.of(l) = (*goes.of(l) == To::Hits) as u32);
-            let start = b.append(&mut places, a.counters, a.hits_at);
-            b.phase(|l| {
-                let place = start + *places.of(l) as u64;
-                if *goes.of(l) == To::Hits && place < a.hits.len {
-                    l.write(a.hits, place as u32, *hits.of(l));
-                }
-            });
         }
-        if a.flags & ESCALATE != 0 {
-            b.phase(|l| *places.of(l) = (*goes.of(l) == To::Escalated) as u32);
-            let start = b.append(&mut places, a.counters, a.escalated_at);
-            b.phase(|l| {
-                let (place, Hit { a: one, b: other, .. }) = (start + *places.of(l) as u64, *hits.of(l));
-                if *goes.of(l) == To::Escalated && place < a.escalated.len {
-                    l.write(a.escalated, place as u32, Pair { a: one, b: other });
-                }
-            });
+        // Lanes that drew and lanes that did not look side by side.
+        if l.any(under_way.is_some())
+            && let Some((pair, search)) = &mut under_way
+            && let Some((verdict, settled)) = search.step(&a.params)
+        {
+            told = Some(Told { pair: *pair, verdict, settled });
+            under_way = None;
         }
-        base += b.blocks() * lanes;
+        if let Some(told) = told {
+            tell(l, a, of, told);
+        }
     }
 }
 
-/// Counts what is not certain; keeps the smallest time, where only that is asked for.
-fn note<R: Real, L: Lane>(l: &L, a: &CertifyArgs<R>, verdict: &Verdict) {
-    if !verdict.is_contact() {
-        l.fetch_add(a.counters, counter::UNRESOLVED, 1);
-    }
-    if !a.earliest.is_empty() {
-        // Times are in [0, 1]: their bits are ordered as they are.
-        l.fetch_min(a.earliest, 0, verdict.toi.to_bits());
+/// An answer.
+struct Told {
+    pair: Pair,
+    verdict: Verdict,
+    /// More precision would tell nothing that was asked.
+    settled: bool,
+}
+
+/// Puts a pair where it belongs.
+fn tell<R: Real, L: Lane>(l: &L, a: &CertifyArgs<R>, of: &Listed, Told { pair, verdict, settled }: Told) {
+    if a.flags & ESCALATE != 0 && !settled {
+        let place = l.fetch_add(a.counters, of.escalated_at, 1);
+        if place < of.escalated.len {
+            l.write(of.escalated, place as u32, pair);
+        }
+    } else if !verdict.is_separated() {
+        if !verdict.is_contact() {
+            l.fetch_add(a.counters, counter::UNRESOLVED, 1);
+        }
+        if !a.earliest.is_empty() {
+            // Times are in [0, 1]: their bits are ordered as they are.
+            l.fetch_min(a.earliest, 0, verdict.toi.to_bits());
+        } else {
+            let place = l.fetch_add(a.counters, of.hits_at, 1);
+            if place < of.hits.len {
+                l.write(of.hits, place as u32, Hit { a: pair.a, b: pair.b, verdict });
+            }
+        }
     }
 }
