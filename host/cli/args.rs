@@ -21,6 +21,8 @@ pub enum Command {
     Detect(Box<DetectArgs>),
     /// Say what detect would run with the same arguments, on which machine and memory, and why.
     Plan(Box<DetectArgs>),
+    /// Say what every solver answers about one pair, and what the exact answer is.
+    Explain(Box<super::explain::ExplainArgs>),
     /// Write a benchmark scene as PLY frames.
     Scene(SceneArgs),
     /// The thesis's figures 6.12 to 6.14, ours beside theirs: a table, CSV files and pictures.

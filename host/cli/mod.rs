@@ -1,7 +1,8 @@
-//! The command line: `detect`, `plan`, `scene`, `tables`, `trade`, `selftest`.
+//! The command line: `detect`, `plan`, `explain`, `scene`, `tables`, `trade`, `selftest`.
 
 mod args;
 mod detect;
+mod explain;
 mod progress;
 mod scene;
 mod selftest;
@@ -28,6 +29,7 @@ fn run(command: Command) -> Result<ExitCode, Error> {
     match command {
         Command::Detect(args) => detect::detect(&args),
         Command::Plan(args) => detect::plan(&args),
+        Command::Explain(args) => explain::explain(&args),
         Command::Scene(args) => scene::scene(&args),
         Command::Tables(args) => tables::tables(&args),
         Command::Trade(args) => trade::trade(&args),

@@ -120,6 +120,26 @@ pub enum Problem {
         /// Its corners at t1.
         t1: [u32; 3],
     },
+    /// An index that is past the end.
+    #[error("has no {what} {index}: it has {count} of them, counted from 0; give a smaller one")]
+    NoSuch {
+        /// `vertex`, `face`, `edge` or `query`.
+        what: &'static str,
+        /// What was asked for.
+        index: u64,
+        /// How many there are.
+        count: u64,
+    },
+    /// A row of a file of queries that cannot be used.
+    #[error("line {line}: {token:?} {why}; a row has three numerators and denominators, and 0 or 1")]
+    QueryRow {
+        /// The line, counted from 1.
+        line: usize,
+        /// What is wrong.
+        token: String,
+        /// Why.
+        why: &'static str,
+    },
     /// No such generated scene.
     #[error("is no scene; known are: {known}")]
     UnknownScene {

@@ -66,7 +66,7 @@ fn reported_motions() {
 fn contacts_built_in_integers() {
     let mut r = SmallRng::seed_from_u64(11);
     let (mut earlier, mut all) = (0, 0);
-    for family in 0..FAMILIES.len() {
+    for (family, name) in FAMILIES.iter().enumerate() {
         for i in 0..250 {
             let (face, time) = (i % 2 == 0, [0, 16, 1, 8, 11][i % 5]);
             let reach = [2, 1 << 12, REACH_F64][i % 3];
@@ -75,9 +75,8 @@ fn contacts_built_in_integers() {
             let toi = first_contact(&case(features(face), points[0], points[1]));
             // Built to meet at that time, so they meet then or before.
             let truth = time as f64 / 16.0;
-            let lateness =
-                toi.as_ref().unwrap_or_else(|| panic!("{}: {m:?}", FAMILIES[family])).lateness(truth);
-            assert!(lateness >= 0.0, "{}: by {lateness}, {m:?}", FAMILIES[family]);
+            let lateness = toi.as_ref().unwrap_or_else(|| panic!("{name}: {m:?}")).lateness(truth);
+            assert!(lateness >= 0.0, "{name}: by {lateness}, {m:?}");
             earlier += (lateness > 0.0) as usize;
             all += 1;
         }

@@ -1,7 +1,7 @@
 //! The certified continuous tests on public data with exact answers.
 
+use crate::cases::MOTIONS;
 use crate::inclusion::{certified, in_passes};
-use crate::motions::MOTIONS;
 use crate::public::{Key, scene};
 use crate::queries::folders;
 use nearmiss_kernels::math::{Real, Vec3};

@@ -1,7 +1,10 @@
 //! Motions that other libraries got wrong, as reported in public, with exact answers.
 
+/// See [`MOTIONS`].
+pub type Reported = (&'static str, bool, [[f64; 3]; 4], [[f64; 3]; 4], f64, Option<f64>);
+
 /// Report, vertex/face (else edge/edge), the four points at time 0 and 1, the longest time, the first contact.
-pub const MOTIONS: [(&str, bool, [[f64; 3]; 4], [[f64; 3]; 4], f64, Option<f64>); 12] = [
+pub const MOTIONS: [Reported; 12] = [
     (
         "Tight-Inclusion#1: ti1",
         true,

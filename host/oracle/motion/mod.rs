@@ -9,7 +9,7 @@
 //! coordinates are scaled by a power of two. So whether the features meet is constant between two roots of these, and,
 //! since it holds on a closed set of times, it begins to hold at t = 0 or at one of the roots (at one of the cubic's
 //! alone, unless the cubic is zero throughout: features only meet where the four points span no volume). The roots
-//! are isolated by Sturm's theorem and visited in ascending order; at each the signs of the minors are decided, by
+//! are isolated by Descartes' rule and visited in ascending order; at each the signs of the minors are decided, by
 //! narrowing the root until they are plain, or as zero by a common divisor. There is no tolerance and no rounding, and no
 //! motion is a special case: parallel, in one plane, along a line, standing still, faces without area, edges that are
 //! points.
@@ -51,7 +51,7 @@ pub fn first_contact_until(case: &Case, end: f64) -> Option<Toi> {
     if end < zero {
         return None;
     }
-    let mut roots: Vec<Root> = minors.events().iter().flat_map(|p| Root::all(p, &zero, &end)).collect();
+    let mut roots: Vec<Root> = minors.events().iter().flat_map(|p| Root::all(p, &end)).collect();
     roots.sort();
     std::iter::once(Root::at(zero)).chain(roots).find_map(|mut at| minors.meet(&mut at).then_some(Toi(at)))
 }

@@ -61,9 +61,9 @@ impl Minors {
         }
         let all = self.weights.iter().flatten().chain(self.along.iter().flatten());
         let mut events: Vec<Polynomial> = Vec::new();
-        for p in all.filter(|p| p.degree() > 0).map(Polynomial::reduced) {
-            if !events.contains(&p) && !events.contains(&p.negated()) {
-                events.push(p);
+        for p in all.filter(|p| p.degree() > 0) {
+            if !events.iter().any(|q| q.is_like(p)) {
+                events.push(p.clone());
             }
         }
         events

@@ -1,10 +1,31 @@
-//! Polynomials with integer coefficients: signs at a number and over an interval, divisors, and Sturm's count of roots.
+//! Polynomials with integer coefficients: signs at a number and over an interval, and divisors.
 
 use super::dyadic::Dyadic;
 use num_bigint::BigInt;
 use num_integer::Integer;
 use num_traits::{One, Signed, Zero};
 use std::cmp::Ordering;
+
+/// 2^61 - 1.
+const PRIME: u64 = (1 << 61) - 1;
+
+fn product(a: u64, b: u64) -> u64 {
+    (u128::from(a) * u128::from(b) % u128::from(PRIME)) as u64
+}
+
+fn power(base: u64, exponent: u64) -> u64 {
+    let bits = (0..64).rev().map(|i| exponent >> i & 1 == 1);
+    bits.fold(1, |all, bit| product(product(all, all), if bit { base } else { 1 }))
+}
+
+/// The remainder modulo [`PRIME`].
+fn residue(c: &BigInt) -> u64 {
+    let size = c
+        .iter_u64_digits()
+        .rev()
+        .fold(0, |r, digit| ((u128::from(r) << 64 | u128::from(digit)) % u128::from(PRIME)) as u64);
+    if c.is_negative() && size > 0 { PRIME - size } else { size }
+}
 
 /// Coefficients by ascending power; the last is not zero, and zero has none.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
@@ -63,7 +84,7 @@ impl Polynomial {
         Polynomial::new(product)
     }
 
-    fn derivative(&self) -> Polynomial {
+    pub fn derivative(&self) -> Polynomial {
         Polynomial(self.0.iter().enumerate().skip(1).map(|(i, c)| c * i).collect())
     }
 
@@ -95,20 +116,72 @@ impl Polynomial {
         (Polynomial::new(quotient), Polynomial::new(rest))
     }
 
-    /// The greatest common divisor, reduced.
+    /// The greatest common divisor, but for a factor that is a number.
     pub fn common(&self, other: &Polynomial) -> Polynomial {
-        let (mut a, mut b) = (self.reduced(), other.reduced());
+        if self.is_coprime_mod_prime(other) {
+            return Polynomial(vec![BigInt::one()]);
+        }
+        let (mut a, mut b) = (self.clone(), other.clone());
         while !b.is_zero() {
-            (a, b) =
-                (b.clone(), if b.degree() == 0 { Polynomial::default() } else { a.divided(&b).1.reduced() });
+            let rest = if b.degree() == 0 { Polynomial::default() } else { a.divided(&b).1.reduced() };
+            (a, b) = (b, rest);
         }
         a
     }
 
-    /// The polynomial with the same roots, each once, reduced.
+    /// Whether the two have no common divisor among polynomials over the integers modulo a prime. Then they have none at
+    /// all: it would be one there as well, of the same degree unless the prime divides its leading coefficient, and so both
+    /// of theirs. Cheap; most that have none are told by it.
+    fn is_coprime_mod_prime(&self, other: &Polynomial) -> bool {
+        let residues = |p: &Polynomial| p.0.iter().map(residue).collect::<Vec<u64>>();
+        let (mut a, mut b) = (residues(self), residues(other));
+        if a.last().is_none_or(|c| *c == 0) || b.last().is_none_or(|c| *c == 0) {
+            return false;
+        }
+        while let Some(lead) = b.last() {
+            if b.len() == 1 {
+                return true;
+            }
+            let inverse = power(*lead, PRIME - 2);
+            while a.len() >= b.len() {
+                let factor = product(a[a.len() - 1], inverse);
+                let from = a.len() - b.len();
+                for (x, y) in a[from..].iter_mut().zip(&b) {
+                    *x = (*x + PRIME - product(factor, *y)) % PRIME;
+                }
+                while a.last() == Some(&0) {
+                    a.pop();
+                }
+            }
+            (a, b) = (b, a);
+        }
+        false
+    }
+
+    /// A polynomial with the same roots, each once.
     pub fn simple(&self) -> Polynomial {
         let double = self.common(&self.derivative());
-        if double.degree() == 0 { self.reduced() } else { self.divided(&double).0.reduced() }
+        if double.degree() == 0 { self.clone() } else { self.divided(&double).0.reduced() }
+    }
+
+    /// Whether the two differ by a factor only, which is a number; neither is zero.
+    pub fn is_like(&self, other: &Polynomial) -> bool {
+        let (p, q) = (self.leading(), other.leading());
+        self.0.len() == other.0.len() && self.0.iter().zip(&other.0).all(|(a, b)| a * &q == b * &p)
+    }
+
+    /// Its coefficients in Bernstein's form on [0, `end`], times one positive number.
+    pub fn bernstein(&self, end: &Dyadic) -> Vec<BigInt> {
+        let d = self.degree();
+        let factorial = |n: usize| (1..=n).map(BigInt::from).product::<BigInt>();
+        let mut power = BigInt::one();
+        let mut scaled = Vec::new();
+        for (i, c) in self.0.iter().enumerate() {
+            scaled.push((c * &power * factorial(i) * factorial(d - i)) << (end.k * (d - i) as u64));
+            power *= &end.n;
+        }
+        let choose = |n: usize, k: usize| factorial(n) / (factorial(k) * factorial(n - k));
+        (0..=d).map(|j| (0..=j).map(|i| choose(j, i) * &scaled[i]).sum()).collect()
     }
 
     /// The value at `n / 2^k`, times `2^(k * degree)`.
@@ -137,32 +210,5 @@ impl Polynomial {
             return Some(Ordering::Greater);
         }
         (plus.value(&high, k) < minus.value(&low, k)).then_some(Ordering::Less)
-    }
-}
-
-/// Sturm's chain of a polynomial whose roots are simple.
-pub struct Sturm(Vec<Polynomial>);
-
-impl Sturm {
-    pub fn new(p: &Polynomial) -> Sturm {
-        let mut chain = vec![p.clone(), p.derivative()];
-        while let [.., a, b] = &chain[..]
-            && !b.is_zero()
-        {
-            let rest = if b.degree() == 0 { Polynomial::default() } else { a.divided(b).1 };
-            chain.push(rest.negated().reduced());
-        }
-        chain.pop();
-        Sturm(chain)
-    }
-
-    fn changes(&self, t: &Dyadic) -> usize {
-        let signs = self.0.iter().map(|p| p.sign_at(t)).filter(|s| s.is_ne()).collect::<Vec<_>>();
-        signs.windows(2).filter(|two| two[0] != two[1]).count()
-    }
-
-    /// How many roots lie in `(low, high]`.
-    pub fn roots(&self, low: &Dyadic, high: &Dyadic) -> usize {
-        self.changes(low) - self.changes(high)
     }
 }

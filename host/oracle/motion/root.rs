@@ -1,13 +1,13 @@
 //! Real roots of integer polynomials as numbers: told apart, compared, narrowed, all exactly.
 
 use super::dyadic::Dyadic;
-use super::polynomial::{Polynomial, Sturm};
+use super::polynomial::Polynomial;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};
 use std::cmp::Ordering;
 
-/// The one root of `of` in `(low, high]`; all roots of `of` are simple. `low == high` where the root is that number.
+/// The one root of `of` between `low` and `high`, a simple one; or, where `low == high`, that number.
 #[derive(Clone, Debug)]
 pub struct Root {
     of: Polynomial,
@@ -29,12 +29,27 @@ impl Root {
         Root { of, low: t.clone(), high: t, above: Ordering::Greater }
     }
 
-    /// All roots in `(low, high]` of a polynomial that is not zero, ascending.
-    pub fn all(p: &Polynomial, low: &Dyadic, high: &Dyadic) -> Vec<Root> {
-        let of = p.simple();
-        let sturm = Sturm::new(&of);
+    /// All roots in `(0, end]` of a polynomial that is not zero, ascending. By Descartes' rule in Bernstein's form: as many
+    /// roots as the coefficients have changes of sign, or fewer by an even number; halved until that tells.
+    pub fn all(p: &Polynomial, end: &Dyadic) -> Vec<Root> {
         let mut found = Vec::new();
-        isolate(&of, &sturm, low.clone(), high.clone(), &mut found);
+        if p.degree() == 0 || end.n.is_zero() {
+            return found;
+        }
+        let coefficients = p.bernstein(end);
+        let zero = Dyadic::of(0.0);
+        match changes(&coefficients) {
+            0 => {}
+            1 => isolate(p, coefficients, zero, end.clone(), &mut found),
+            // Halving ends where roots are simple.
+            _ => {
+                let simple = p.simple();
+                isolate(&simple, simple.bernstein(end), zero, end.clone(), &mut found);
+            }
+        }
+        if p.sign_at(end).is_eq() {
+            found.push(Root::at(end.clone()));
+        }
         found
     }
 
@@ -48,20 +63,19 @@ impl Root {
 
     /// The root against a number.
     pub fn against(&self, t: &Dyadic) -> Ordering {
-        if *t < self.low {
-            Ordering::Greater
-        } else if *t > self.high {
-            Ordering::Less
-        } else if self.is_number() {
-            Ordering::Equal
-        } else if *t == self.low {
-            Ordering::Greater
-        } else {
-            match self.of.sign_at(t) {
-                Ordering::Equal => Ordering::Equal,
-                sign if sign == self.above => Ordering::Less,
-                _ => Ordering::Greater,
-            }
+        if self.is_number() {
+            return self.low.cmp(t);
+        }
+        if *t <= self.low {
+            return Ordering::Greater;
+        }
+        if *t >= self.high {
+            return Ordering::Less;
+        }
+        match self.of.sign_at(t) {
+            Ordering::Equal => Ordering::Equal,
+            sign if sign == self.above => Ordering::Less,
+            _ => Ordering::Greater,
         }
     }
 
@@ -105,9 +119,20 @@ impl Root {
         q.sign_at(&self.low)
     }
 
+    /// Whether the root is one of `q` too: then of a common divisor, which changes its sign there, and nowhere else between
+    /// the bounds.
     fn is_root_of(&self, q: &Polynomial) -> bool {
-        let divisor = self.of.common(q);
-        divisor.degree() > 0 && Sturm::new(&divisor).roots(&self.low, &self.high) == 1
+        let divisor = self.of.common(q).simple();
+        if divisor.degree() == 0 {
+            return false;
+        }
+        let beside = |t: &Dyadic, turn: bool| match divisor.sign_at(t) {
+            // A bound that is another root: the slope tells the sign next to it.
+            Ordering::Equal if turn => divisor.derivative().sign_at(t).reverse(),
+            Ordering::Equal => divisor.derivative().sign_at(t),
+            sign => sign,
+        };
+        beside(&self.low, false) != beside(&self.high, true)
     }
 
     /// The root as a fraction, if it is one. With leading coefficient `c`, `c` times a rational root is an integer.
@@ -118,7 +143,7 @@ impl Root {
         if root.is_number() {
             return Some(root.low.ratio());
         }
-        let whole = (root.high.ratio() * &c).floor().to_integer();
+        let whole = (root.high.ratio() * &c).ceil().to_integer() - 1;
         let candidate = BigRational::new(whole, c);
         let value = root.of.coefficients().iter().rev();
         let value = value.fold(BigRational::zero(), |sum, a| sum * &candidate + a);
@@ -126,16 +151,40 @@ impl Root {
     }
 }
 
-fn isolate(of: &Polynomial, sturm: &Sturm, low: Dyadic, high: Dyadic, found: &mut Vec<Root>) {
-    let roots = if low < high { sturm.roots(&low, &high) } else { 0 };
-    if roots == 1 {
-        let above = of.sign_at(&high);
-        let low = if above.is_eq() { high.clone() } else { low };
-        found.push(Root { of: of.clone(), low, high, above });
-    } else if roots > 1 {
-        let middle = low.middle(&high);
-        isolate(of, sturm, low, middle.clone(), found);
-        isolate(of, sturm, middle, high, found);
+/// Changes of sign from one coefficient that is not zero to the next.
+fn changes(coefficients: &[BigInt]) -> usize {
+    let signs: Vec<bool> = coefficients.iter().filter(|c| !c.is_zero()).map(Signed::is_positive).collect();
+    signs.windows(2).filter(|two| two[0] != two[1]).count()
+}
+
+/// The roots between `low` and `high`, given the coefficients in Bernstein's form on that interval.
+fn isolate(of: &Polynomial, coefficients: Vec<BigInt>, low: Dyadic, high: Dyadic, found: &mut Vec<Root>) {
+    match changes(&coefficients) {
+        0 => {}
+        1 => {
+            // The last coefficient that is not zero has the sign just below the upper end.
+            let last = coefficients.iter().rev().find(|c| !c.is_zero()).map(Signed::is_positive);
+            let above = if last == Some(true) { Ordering::Greater } else { Ordering::Less };
+            found.push(Root { of: of.clone(), low, high, above });
+        }
+        _ => {
+            // De Casteljau's halving, times 2^degree.
+            let (mut row, mut left, mut right) = (coefficients, Vec::new(), Vec::new());
+            while let (Some(first), Some(last)) = (row.first(), row.last()) {
+                let shift = row.len() - 1;
+                left.push(first << shift);
+                right.push(last << shift);
+                row = row.windows(2).map(|two| &two[0] + &two[1]).collect();
+            }
+            right.reverse();
+            let middle = low.middle(&high);
+            let is_root = right[0].is_zero();
+            isolate(of, left, low, middle.clone(), found);
+            if is_root {
+                found.push(Root::at(middle.clone()));
+            }
+            isolate(of, right, middle, high, found);
+        }
     }
 }
 

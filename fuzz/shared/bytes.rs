@@ -1,0 +1,110 @@
+//! Bytes as coordinates that are likely to be hard: few different ones, nearly equal ones, powers of two, the smallest and
+//! the largest.
+
+/// Reads bytes; past the end all are zero.
+pub struct Bytes<'a> {
+    left: &'a [u8],
+    /// Coordinates read so far, for others to be equal or close to.
+    seen: Vec<f64>,
+    /// Coordinates are rounded to f32.
+    single: bool,
+    /// How most coordinates of this question are made.
+    style: u8,
+}
+
+impl<'a> Bytes<'a> {
+    /// The first byte says how coordinates are made and whether in f32.
+    pub fn new(bytes: &'a [u8]) -> Bytes<'a> {
+        let mut new = Bytes { left: bytes, seen: Vec::new(), single: false, style: 0 };
+        let first = new.byte();
+        new.single = first & 1 == 1;
+        new.style = first >> 1;
+        new
+    }
+
+    /// Whether all coordinates are exact in f32.
+    pub fn is_single(&self) -> bool {
+        self.single
+    }
+
+    /// The next byte.
+    pub fn byte(&mut self) -> u8 {
+        let Some((first, rest)) = self.left.split_first() else { return 0 };
+        self.left = rest;
+        *first
+    }
+
+    /// A number below `n`.
+    pub fn below(&mut self, n: usize) -> usize {
+        self.byte() as usize % n
+    }
+
+    /// Eight bytes.
+    fn word(&mut self) -> u64 {
+        (0..8).fold(0, |word, _| word << 8 | u64::from(self.byte()))
+    }
+
+    /// A finite coordinate.
+    pub fn coordinate(&mut self) -> f64 {
+        let byte = self.byte();
+        let small = f64::from(byte as i8 >> 3);
+        // Of eight, five are made as the question's style says.
+        let x = match if byte & 7 < 5 { self.style % 8 } else { byte & 7 } {
+            0 => f64::from(byte as i8 >> 6),
+            1 => small,
+            2 => small / 3.0,
+            3 => 1.0 + small * if self.single { f64::from(f32::EPSILON) } else { f64::EPSILON },
+            4 => 2f64.powi(i32::from(byte as i8 >> 2)) * if byte & 1 == 0 { 1.0 } else { -1.0 },
+            5 => self.again(byte, small),
+            6 => small * if self.single { f64::from(f32::from_bits(1)) } else { f64::from_bits(1) },
+            _ => self.any(small),
+        };
+        let x = if self.single { f64::from(x as f32) } else { x };
+        let x = if x.is_finite() { x } else { small };
+        self.seen.push(x);
+        x
+    }
+
+    /// One seen before, or next to it, or its negative.
+    fn again(&mut self, byte: u8, small: f64) -> f64 {
+        let Some(from) = self.seen.len().checked_sub(1) else { return small };
+        let x = self.seen[from - usize::from(byte >> 5) % self.seen.len()];
+        match byte >> 3 & 3 {
+            0 => x,
+            1 if self.single => f64::from((x as f32).next_up()),
+            1 => x.next_up(),
+            2 if self.single => f64::from((x as f32).next_down()),
+            2 => x.next_down(),
+            _ => -x,
+        }
+    }
+
+    /// Any number, or one far away.
+    fn any(&mut self, small: f64) -> f64 {
+        match self.below(4) {
+            0 if self.single => f64::from(f32::from_bits(self.word() as u32)),
+            0 => f64::from_bits(self.word()),
+            1 => f64::from(1 << 20) + small,
+            2 => small * if self.single { 2f64.powi(55) } else { 2f64.powi(470) },
+            _ => self.word() as i64 as f64 * 2f64.powi(-60),
+        }
+    }
+
+    /// A point.
+    pub fn point(&mut self) -> [f64; 3] {
+        [0; 3].map(|_| self.coordinate())
+    }
+
+    /// A point; half of the time one of those given.
+    pub fn point_or(&mut self, given: &[[f64; 3]]) -> [f64; 3] {
+        match self.byte() {
+            byte if byte & 1 == 1 && !given.is_empty() => given[usize::from(byte >> 1) % given.len()],
+            _ => self.point(),
+        }
+    }
+}
+
+/// The largest coordinate that a mesh may have, in its precision.
+pub fn largest(single: bool) -> f64 {
+    2f64.powi(if single { 60 } else { 480 })
+}

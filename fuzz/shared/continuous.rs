@@ -1,0 +1,110 @@
+//! Two features that move: every solver against the exact time.
+
+use super::bytes::{Bytes, largest};
+use nearmiss::oracle::{Toi, first_contact};
+use nearmiss::{Case, Features};
+use nearmiss_kernels::math::{Real, Vec3};
+use nearmiss_kernels::prim::additive::{ee_additive, vf_additive};
+use nearmiss_kernels::prim::cubic::{Moving, ee_apart, ee_toi, vf_apart, vf_toi};
+use nearmiss_kernels::prim::inclusion::{
+    Grid, Params, Verdict, ee_certified, ee_first, vf_certified, vf_first,
+};
+use std::hint::black_box;
+
+/// A question: the motion, what a certified solver is asked, and whether f32 holds all positions.
+pub fn decode(bytes: &[u8]) -> (Case, Params, bool) {
+    let mut b = Bytes::new(bytes);
+    let shape = b.byte();
+    let features = if shape & 1 == 0 { Features::VertexFace } else { Features::EdgeEdge };
+    let limit = largest(b.is_single());
+    let mut points: Vec<[f64; 3]> = Vec::new();
+    for i in 0..8 {
+        let point = match shape >> 1 & 7 {
+            // Some stand still; some motions lie in a plane.
+            1 if i > 4 => points[i - 4],
+            2 => {
+                let [x, y, _] = b.point_or(&points);
+                [x, y, 1.0]
+            }
+            _ => b.point_or(&points),
+        };
+        points.push(point.map(|x| x.clamp(-limit, limit)));
+    }
+    let tolerance = [1e-6, 0.0, 1e-3, 1e-9][usize::from(shape >> 4 & 3)];
+    let budget = [Params::BUDGET, 64][usize::from(shape >> 6 & 1)];
+    let at = |from: usize| [0, 1, 2, 3].map(|i| points[from + i]);
+    let case = Case { features, positions_t0: at(0), positions_t1: at(4) };
+    (case, Params { budget, ..Params::new(tolerance) }, b.is_single())
+}
+
+/// Asks, and judges the certified answers as `lie` passes them on.
+pub fn ask(bytes: &[u8], lie: impl Fn(Verdict) -> Verdict) -> Result<(), String> {
+    let (case, params, single) = decode(bytes);
+    let truth = first_contact(&case);
+    let mut answers = answers::<f64>(&case, &params, truth.as_ref())?;
+    if single {
+        answers.extend(self::answers::<f32>(&case, &params, truth.as_ref())?);
+    }
+    for (solver, verdict) in answers {
+        if let Some(fault) = fault(&lie(verdict), truth.as_ref()) {
+            let truth = truth.map(|toi| toi.bracket());
+            return Err(format!("{solver}: {fault}: {verdict:?}, exactly {truth:?}: {case:?}, {params:?}"));
+        }
+    }
+    Ok(())
+}
+
+/// What is wrong with a verdict that should be certain.
+pub fn fault(verdict: &Verdict, truth: Option<&Toi>) -> Option<&'static str> {
+    let Verdict { toi, toi_hi, .. } = *verdict;
+    if !(0.0 <= toi && toi <= toi_hi && toi_hi <= 1.0) {
+        return Some("times that are none");
+    }
+    match truth {
+        None => verdict.is_contact().then_some("a false certificate"),
+        Some(_) if verdict.is_separated() => Some("missed"),
+        Some(truth) if truth.cmp_f64(toi).is_lt() => Some("late"),
+        Some(truth) => (verdict.is_contact() && truth.cmp_f64(toi_hi).is_gt())
+            .then_some("a false certificate: the contact is after toi_hi"),
+    }
+}
+
+/// Every certified answer to positions in `R`. What others say need only be a time.
+fn answers<R: Real>(
+    case: &Case,
+    params: &Params,
+    truth: Option<&Toi>,
+) -> Result<Vec<(String, Verdict)>, String> {
+    let at = |p: [f64; 3]| Vec3(p.map(R::of));
+    let p = [0, 1, 2, 3].map(|i| Moving { t0: at(case.positions_t0[i]), t1: at(case.positions_t1[i]) });
+    let (f, ea, eb) = ([p[1], p[2], p[3]], [p[0], p[1]], [p[2], p[3]]);
+    let (guesses, apart, first) = match case.features {
+        Features::VertexFace => {
+            black_box((vf_additive::<R, f64>(p[0], f), vf_additive::<R, f32>(p[0], f)));
+            let guesses = [vf_toi::<R, f64>(p[0], f), vf_toi::<R, f32>(p[0], f).map(f64::from)];
+            (guesses, vf_apart::<R, f32>(p[0], f) || vf_apart::<R, f64>(p[0], f), vf_first(p[0], f, params))
+        }
+        Features::EdgeEdge => {
+            black_box((ee_additive::<R, f64>(ea, eb), ee_additive::<R, f32>(ea, eb)));
+            let guesses = [ee_toi::<R, f64>(ea, eb), ee_toi::<R, f32>(ea, eb).map(f64::from)];
+            (guesses, ee_apart::<R, f32>(ea, eb) || ee_apart::<R, f64>(ea, eb), ee_first(ea, eb, params))
+        }
+    };
+    if let Some(toi) = guesses.iter().flatten().find(|toi| !(0.0..=1.0).contains(*toi)) {
+        return Err(format!("the cubic says {toi}, which is no time: {case:?}"));
+    }
+    if apart && truth.is_some() {
+        return Err(format!("rejected by signs: {case:?}"));
+    }
+    let double = certified::<R, f64>(case.features, p, params);
+    let all = [("f32", certified::<R, f32>(case.features, p, params)), ("f64", double)];
+    let all = all.into_iter().chain([("f32, then f64", first.unwrap_or(double))]);
+    Ok(all.map(|(name, verdict)| (format!("{name}, of {} bytes", size_of::<R>()), verdict)).collect())
+}
+
+fn certified<R: Real, S: Grid>(features: Features, p: [Moving<R>; 4], params: &Params) -> Verdict {
+    match features {
+        Features::VertexFace => vf_certified::<R, S>(p[0], [p[1], p[2], p[3]], params),
+        Features::EdgeEdge => ee_certified::<R, S>([p[0], p[1]], [p[2], p[3]], params),
+    }
+}

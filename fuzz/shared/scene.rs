@@ -1,0 +1,224 @@
+//! A handful of triangles, whole: every solver, volume, walk and refit against every pair asked of the oracle.
+
+use super::bytes::Bytes;
+use nearmiss::contacts::{Answer, Contact, Kind, Status};
+use nearmiss::device::emulator::{Emulator, Mode};
+use nearmiss::mesh::{Body, Mesh, Positions, Topology};
+use nearmiss::oracle::{Toi, first_contact, triangles_meet};
+use nearmiss::query::{Bv, FrontShape, Motion, QueueShape, Refit, Solver, StealShape, Traversal};
+use nearmiss::{Case, Contacts, Device, Error, Features, Query, Session};
+use std::collections::BTreeMap;
+
+/// One or two bodies of one to eight triangles, moving or still; any index may be any corner.
+///
+/// # Errors
+/// Those of the door.
+pub fn decode(bytes: &[u8]) -> Result<(Vec<Body>, Query), Error> {
+    let mut b = Bytes::new(bytes);
+    let (choice, shape) = (b.byte(), b.byte());
+    let motion = [Motion::Continuous, Motion::Discrete, Motion::Earliest][usize::from(choice) % 3];
+    let solvers: Vec<Solver> = Solver::ALL.into_iter().filter(|solver| solver.answers(motion)).collect();
+    let queue = QueueShape { cores: Some(5), local: 3, segment: 2, take: 1, ..QueueShape::native() };
+    let walks = [
+        Traversal::PerLeaf { budget: None },
+        Traversal::PerLeaf { budget: Some(2) },
+        Traversal::Queue(queue),
+        Traversal::Steal(StealShape { cores: Some(3), ..StealShape::native() }),
+        Traversal::Front(FrontShape { queue, ..FrontShape::native() }),
+    ];
+    let query = Query {
+        solver: Some(solvers[usize::from(choice / 3) % solvers.len()]),
+        bv: Some(Bv::ALL[usize::from(shape) % 4]),
+        traversal: Some(walks[usize::from(shape >> 2 & 15) % walks.len()]),
+        refit: Some([Refit::Levels, Refit::Treelets, Refit::BottomUp][usize::from(shape >> 6) % 3]),
+        ..Query::of(motion)
+    };
+    let count = 1 + b.below(8) % 2;
+    let bodies = (0..count).map(|_| body(&mut b)).collect::<Result<_, _>>()?;
+    Ok((bodies, query))
+}
+
+fn body(b: &mut Bytes) -> Result<Body, Error> {
+    let (faces, vertices) = (1 + b.below(5), 3 + b.below(7));
+    let moves = b.below(4) > 0;
+    let faces: Vec<[u32; 3]> = (0..faces).map(|_| [0; 3].map(|_| b.below(vertices) as u32)).collect();
+    let mut points: Vec<[f64; 3]> = Vec::new();
+    for _ in 0..if moves { 2 * vertices } else { vertices } {
+        let point = b.point_or(&points);
+        points.push(point);
+    }
+    let mesh = |points: &[[f64; 3]]| {
+        let positions = if b.is_single() {
+            Positions::F32(points.iter().map(|p| p.map(|x| x as f32)).collect())
+        } else {
+            Positions::F64(points.to_vec())
+        };
+        Mesh::new("fuzz", positions, faces.clone())
+    };
+    let first = mesh(&points[..vertices])?;
+    if moves { Body::moving(first, mesh(&points[vertices..])?) } else { Ok(Body::still(first)) }
+}
+
+thread_local! {
+    /// Small blocks: scenes are.
+    static ENGINE: Device =
+        Device::emulator(Emulator::new(Mode::Engine, Some(1)).expect("a thread").with_lanes(16));
+}
+
+/// Asks, and judges the contacts as `lie` passes them on. A typed error is an answer; a fault of ours is none.
+pub fn ask(bytes: &[u8], lie: impl Fn(&mut Answer)) -> Result<(), String> {
+    let (bodies, query) = match decode(bytes) {
+        Ok(all) => all,
+        Err(error) => return typed(&error),
+    };
+    let mut contacts = match detect(&bodies, query) {
+        Ok(contacts) => contacts,
+        Err(error) => return typed(&error),
+    };
+    lie(&mut contacts.answer);
+    judge(&bodies, &query, &contacts.answer).map_err(|what| format!("{what}; {query:?}, {bodies:?}"))
+}
+
+fn detect(bodies: &[Body], query: Query) -> Result<Contacts, Error> {
+    ENGINE.with(|engine| Session::new(engine.clone(), bodies.to_vec(), query)?.detect())
+}
+
+fn typed(error: &Error) -> Result<(), String> {
+    if matches!(error, Error::Bug { .. }) { Err(error.to_string()) } else { Ok(()) }
+}
+
+/// A lie: the last contact is left out.
+pub fn forget(answer: &mut Answer) {
+    match answer {
+        Answer::Pairs(pairs) => pairs.truncate(pairs.len().saturating_sub(1)),
+        Answer::Contacts(all) => all.truncate(all.len().saturating_sub(1)),
+        Answer::Earliest(toi) => *toi = None,
+    }
+}
+
+/// What is wrong with an answer.
+pub fn judge(bodies: &[Body], query: &Query, answer: &Answer) -> Result<(), String> {
+    let certain = query.solver().is_certain();
+    match answer {
+        Answer::Pairs(pairs) => {
+            let truth = triangle_pairs(bodies);
+            if certain && *pairs != truth { Err(format!("pairs {pairs:?}, truly {truth:?}")) } else { Ok(()) }
+        }
+        Answer::Contacts(found) => {
+            let all = every_pair(bodies);
+            found.iter().try_for_each(|contact| judge_one(contact, &all, certain))?;
+            let listed = |key: &Key| found.iter().any(|c| (c.kind, c.a, c.b) == *key);
+            match all.iter().find(|(key, toi)| certain && toi.is_some() && !listed(key)) {
+                Some((key, toi)) => Err(format!("missed {key:?} at {:?}", toi.as_ref().map(Toi::bracket))),
+                None => Ok(()),
+            }
+        }
+        Answer::Earliest(found) => {
+            let all = every_pair(bodies);
+            let first = all.values().flatten().min();
+            match (found, first) {
+                (Some(toi), _) if !(0.0..=1.0).contains(toi) => {
+                    Err(format!("earliest {toi}, which is no time"))
+                }
+                (None, Some(first)) if certain => Err(format!("none, truly first at {:?}", first.bracket())),
+                (Some(toi), Some(first)) if certain && first.cmp_f64(*toi).is_lt() => {
+                    Err(format!("late: {toi}, truly {:?}", first.bracket()))
+                }
+                _ => Ok(()),
+            }
+        }
+    }
+}
+
+fn judge_one(c: &Contact, all: &BTreeMap<Key, Option<Toi>>, certain: bool) -> Result<(), String> {
+    let Some(truth) = all.get(&(c.kind, c.a, c.b)) else { return Err(format!("{c:?} is no pair")) };
+    if !(0.0 <= c.toi && c.toi <= c.toi_hi && c.toi_hi <= 1.0) {
+        return Err(format!("{c:?}: times that are none"));
+    }
+    let sure = c.status == Status::Certified;
+    match truth {
+        None if sure => Err(format!("{c:?}: a false certificate")),
+        Some(truth) if certain && truth.cmp_f64(c.toi).is_lt() => {
+            Err(format!("{c:?}: late, truly {:?}", truth.bracket()))
+        }
+        Some(truth) if sure && truth.cmp_f64(c.toi_hi).is_gt() => {
+            Err(format!("{c:?}: a false certificate, truly {:?}", truth.bracket()))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A pair of features as contacts name them.
+type Key = (Kind, u32, u32);
+
+/// Every pair of features that detect should ask about, and when first they meet.
+fn every_pair(bodies: &[Body]) -> BTreeMap<Key, Option<Toi>> {
+    let ends: Vec<[Vec<[f64; 3]>; 2]> = bodies
+        .iter()
+        .map(|body| {
+            let first = body.positions_t0().to_f64();
+            [first.clone(), body.positions_t1().map_or(first, Positions::to_f64)]
+        })
+        .collect();
+    let ask = |features, of: [(usize, u32); 4]| {
+        let at = |end: usize| of.map(|(body, v)| ends[body][end][v as usize]);
+        first_contact(&Case { features, positions_t0: at(0), positions_t1: at(1) })
+    };
+    let mut all = BTreeMap::new();
+    let (a, b) = (0, bodies.len() - 1);
+    let one = a == b;
+    let mut faces_of = |kind: Kind, v_of: usize, f_of: usize| {
+        for v in used(&bodies[v_of]) {
+            for (f, corners) in
+                bodies[f_of].faces().iter().enumerate().filter(|(_, c)| !one || !c.contains(&v))
+            {
+                let [i, j, k] = corners.map(|c| (f_of, c));
+                let toi = ask(Features::VertexFace, [(v_of, v), i, j, k]);
+                let key = if kind == Kind::Vf { (kind, v, f as u32) } else { (kind, f as u32, v) };
+                all.insert(key, toi);
+            }
+        }
+    };
+    faces_of(Kind::Vf, a, b);
+    if !one {
+        faces_of(Kind::Fv, b, a);
+    }
+    let edges = [a, b].map(|i| Topology::new(bodies[i].faces(), bodies[i].vertex_count()).edges);
+    for (i, e) in edges[0].iter().enumerate() {
+        let rest = edges[1].iter().enumerate().skip(if one { i + 1 } else { 0 });
+        for (j, g) in rest.filter(|(_, g)| !one || !e.iter().any(|v| g.contains(v))) {
+            let toi = ask(Features::EdgeEdge, [(a, e[0]), (a, e[1]), (b, g[0]), (b, g[1])]);
+            all.insert((Kind::Ee, i as u32, j as u32), toi);
+        }
+    }
+    all
+}
+
+/// The vertices that faces use.
+fn used(body: &Body) -> Vec<u32> {
+    let mut all: Vec<u32> = body.faces().iter().flatten().copied().collect();
+    all.sort_unstable();
+    all.dedup();
+    all
+}
+
+/// Triangle pairs that share a point at t = 0 and no vertex.
+fn triangle_pairs(bodies: &[Body]) -> Vec<[u32; 2]> {
+    let triangles = |body: &Body| {
+        let at = body.positions_t0().to_f64();
+        body.faces().iter().map(|f| f.map(|v| at[v as usize])).collect::<Vec<_>>()
+    };
+    let (a, b) = (&bodies[0], &bodies[bodies.len() - 1]);
+    let (p, q) = (triangles(a), triangles(b));
+    let one = bodies.len() == 1;
+    let mut pairs = Vec::new();
+    for (i, first) in p.iter().enumerate() {
+        for (j, second) in q.iter().enumerate().skip(if one { i + 1 } else { 0 }) {
+            let adjacent = one && a.faces()[i].iter().any(|v| b.faces()[j].contains(v));
+            if !adjacent && triangles_meet(first, second) {
+                pairs.push([i as u32, j as u32]);
+            }
+        }
+    }
+    pairs
+}
