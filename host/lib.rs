@@ -11,6 +11,7 @@ pub mod error;
 pub mod extremes;
 pub mod mesh;
 pub mod oracle;
+pub mod pairs;
 pub mod pipeline;
 pub mod query;
 pub mod report;

@@ -37,6 +37,17 @@ pub enum Status {
     Unresolved,
 }
 
+impl Status {
+    /// Of what a solver listed, certified or not.
+    pub(crate) fn of(certified: bool, verdict: &Verdict) -> Status {
+        match (certified, verdict.is_contact()) {
+            (false, _) => Status::Contact,
+            (true, true) => Status::Certified,
+            (true, false) => Status::Unresolved,
+        }
+    }
+}
+
 /// Two features that meet within the step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Contact {
@@ -186,11 +197,7 @@ impl Contacts {
             Motion::Continuous => {
                 let certified = query.solver().is_certified();
                 let contact = |kind, a, b, verdict: &Verdict| {
-                    let status = match (certified, verdict.is_contact()) {
-                        (false, _) => Status::Contact,
-                        (true, true) => Status::Certified,
-                        (true, false) => Status::Unresolved,
-                    };
+                    let status = Status::of(certified, verdict);
                     Contact { kind, a, b, toi: verdict.toi, toi_hi: verdict.toi_hi, status }
                 };
                 let vf = found.vf.par_iter().map(|hit| {

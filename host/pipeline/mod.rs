@@ -4,9 +4,9 @@ mod corridor;
 #[cfg(test)]
 mod enclose;
 mod layout;
-mod narrow;
-mod precision;
-mod room;
+pub(crate) mod narrow;
+pub(crate) mod precision;
+pub(crate) mod room;
 mod timing;
 mod tolerance;
 mod tree;

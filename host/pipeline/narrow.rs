@@ -43,6 +43,18 @@ pub struct Given<'a, R: Precision> {
     pub counters: Span<u64>,
 }
 
+/// How many entries the lists of a continuous query have room for at first: vertex/face, edge/edge.
+pub struct Rooms {
+    /// Candidates.
+    pub candidates: [usize; 2],
+    /// Those that may meet.
+    pub survivors: [usize; 2],
+    /// Contacts.
+    pub hits: [usize; 2],
+    /// Pairs that f32 leaves to f64.
+    pub escalated: [usize; 2],
+}
+
 /// What only one kind of query needs exists only there.
 pub enum Narrow {
     /// Triangle pairs at t = 0.
@@ -96,28 +108,13 @@ impl Narrow {
                 undecided: exact.then(undecided).transpose()?,
             });
         }
-        let earliest = query.motion == Motion::Earliest;
-        let hits = if earliest { 0 } else { few };
-        let escalated = || -> Result<_, Error> {
-            Ok([
-                List::new(device, "escalated vertex/face pairs", counter::VF_ESCALATED, few / 4)?,
-                List::new(device, "escalated edge/edge pairs", counter::EE_ESCALATED, few / 4)?,
-            ])
+        let rooms = Rooms {
+            candidates: [room, 2 * room],
+            survivors: [few, 2 * few],
+            hits: [few, few],
+            escalated: [few / 4, few / 4],
         };
-        Ok(Narrow::Continuous(Box::new(Continuous {
-            edges: device.upload(&layout.edges)?,
-            face_edges: device.upload(&layout.face_edges)?,
-            owners: device.upload(&layout.owners)?,
-            vf: List::new(device, "vertex/face candidates", counter::VF, room)?,
-            ee: List::new(device, "edge/edge candidates", counter::EE, 2 * room)?,
-            vf_survivors: List::new(device, "vertex/face survivors", counter::VF_SURVIVORS, few)?,
-            ee_survivors: List::new(device, "edge/edge survivors", counter::EE_SURVIVORS, 2 * few)?,
-            vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, hits)?,
-            ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, hits)?,
-            escalated: (query.solver() == Solver::Certified).then(escalated).transpose()?,
-            unresolved: Tally(counter::UNRESOLVED),
-            earliest: earliest.then(|| device.buffer(1)).transpose()?,
-        })))
+        Ok(Narrow::Continuous(Box::new(Continuous::new(device, layout, query, rooms)?)))
     }
 
     /// The steps of this query, in their order.
@@ -212,6 +209,53 @@ fn decide<R: Precision>(
 }
 
 impl Continuous {
+    /// Takes the memory.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn new(device: &Device, layout: &Layout, query: Query, rooms: Rooms) -> Result<Self, Error> {
+        let earliest = query.motion == Motion::Earliest;
+        let hits = if earliest { [0, 0] } else { rooms.hits };
+        let Rooms { candidates, survivors, escalated, .. } = rooms;
+        let escalated = || -> Result<_, Error> {
+            Ok([
+                List::new(device, "escalated vertex/face pairs", counter::VF_ESCALATED, escalated[0])?,
+                List::new(device, "escalated edge/edge pairs", counter::EE_ESCALATED, escalated[1])?,
+            ])
+        };
+        Ok(Continuous {
+            edges: device.upload(&layout.edges)?,
+            face_edges: device.upload(&layout.face_edges)?,
+            owners: device.upload(&layout.owners)?,
+            vf: List::new(device, "vertex/face candidates", counter::VF, candidates[0])?,
+            ee: List::new(device, "edge/edge candidates", counter::EE, candidates[1])?,
+            vf_survivors: List::new(device, "vertex/face survivors", counter::VF_SURVIVORS, survivors[0])?,
+            ee_survivors: List::new(device, "edge/edge survivors", counter::EE_SURVIVORS, survivors[1])?,
+            vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, hits[0])?,
+            ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, hits[1])?,
+            escalated: (query.solver() == Solver::Certified).then(escalated).transpose()?,
+            unresolved: Tally(counter::UNRESOLVED),
+            earliest: earliest.then(|| device.buffer(1)).transpose()?,
+        })
+    }
+
+    /// Puts pairs where a step would leave them, vertex/face and edge/edge: [`Step::Sift`] candidates, [`Step::Reject`]
+    /// those that may meet. The counters that say how many they are.
+    ///
+    /// # Errors
+    /// Those of the device.
+    ///
+    /// # Panics
+    /// When there are more than the lists have room for: a fault of the caller.
+    pub fn give(&mut self, step: Step, [vf, ee]: [&[Pair]; 2]) -> Result<[(u32, u64); 2], Error> {
+        let lists = match step {
+            Step::Sift => [&mut self.vf, &mut self.ee],
+            _ => [&mut self.vf_survivors, &mut self.ee_survivors],
+        };
+        let [vf_list, ee_list] = lists;
+        Ok([vf_list.put(vf)?, ee_list.put(ee)?])
+    }
+
     fn sift<R: Precision>(&self, given: &Given<R>) -> Result<(), Error> {
         let args = SiftArgs {
             frames: given.frames,

@@ -39,6 +39,18 @@ impl<T: Pod> List<T> {
         counters[self.counter as usize]
     }
 
+    /// Sets the first entries; the counter, and how many they are.
+    ///
+    /// # Errors
+    /// Those of the device.
+    ///
+    /// # Panics
+    /// When there are more than there is room for: a fault of the caller.
+    pub fn put(&mut self, entries: &[T]) -> Result<(u32, u64), Error> {
+        self.entries.write(entries)?;
+        Ok((self.counter, entries.len() as u64))
+    }
+
     /// The entries.
     ///
     /// # Errors

@@ -1,0 +1,152 @@
+//! Single questions: the answers of the solvers themselves, in the cases' order, on every machine and in every storage.
+
+mod support;
+
+use nearmiss::contacts::Status;
+use nearmiss::oracle::triangles_meet;
+use nearmiss::pairs::{Answers, How, Stored, ask, ask_triangles, mean_edge};
+use nearmiss::query::{Motion, Solver};
+use nearmiss::{Case, Error, Features, Query};
+use nearmiss_kernels::math::Vec3;
+use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};
+use nearmiss_kernels::prim::inclusion::{Params, ee_certified, vf_certified};
+use rand::rngs::SmallRng;
+use rand::{Rng, SeedableRng};
+use support::machines;
+
+const CONTINUOUS: Query = Query { motion: Motion::Continuous, tolerance: Some(1e-6), ..Query { ..plain() } };
+
+const fn plain() -> Query {
+    Query {
+        motion: Motion::Continuous,
+        solver: None,
+        bv: None,
+        refit: None,
+        traversal: None,
+        adjacent: false,
+        tolerance: None,
+        boxes: None,
+    }
+}
+
+/// Features among each other, every third an edge pair; exact in f32.
+fn cases(n: usize) -> Vec<Case> {
+    let mut r = SmallRng::seed_from_u64(11);
+    let mut point = || std::array::from_fn(|_| f64::from(r.random_range(-512..513)) / 256.0);
+    let features = |i: usize| if i.is_multiple_of(3) { Features::EdgeEdge } else { Features::VertexFace };
+    let mut case = |i| Case {
+        features: features(i),
+        positions_t0: std::array::from_fn(|_| point()),
+        positions_t1: std::array::from_fn(|_| point()),
+    };
+    (0..n).map(&mut case).collect()
+}
+
+fn moving(case: &Case) -> [Moving<f64>; 4] {
+    std::array::from_fn(|i| Moving { t0: Vec3(case.positions_t0[i]), t1: Vec3(case.positions_t1[i]) })
+}
+
+#[test]
+fn every_case_has_the_solvers_own_answer() {
+    let cases = cases(700);
+    for device in machines() {
+        for filters in [false, true] {
+            let how = How { filters, ..How::default() };
+            let query = Query { solver: Some(Solver::CertifiedF64), ..CONTINUOUS };
+            let certified = ask(&device, &cases, &query, how).expect("answers");
+            let query = Query { solver: Some(Solver::CubicF64), tolerance: None, ..CONTINUOUS };
+            let cubic = ask(&device, &cases, &query, how).expect("answers");
+            let params = Params::new(1e-6);
+            let mut met = 0;
+            for (i, case) in cases.iter().enumerate() {
+                let p = moving(case);
+                let (verdict, toi) = match case.features {
+                    Features::VertexFace => {
+                        let face = [p[1], p[2], p[3]];
+                        (vf_certified::<f64, f64>(p[0], face, &params), vf_toi::<f64, f64>(p[0], face))
+                    }
+                    Features::EdgeEdge => {
+                        let (a, b) = ([p[0], p[1]], [p[2], p[3]]);
+                        (ee_certified::<f64, f64>(a, b, &params), ee_toi::<f64, f64>(a, b))
+                    }
+                };
+                let own = certified.verdicts[i];
+                assert_eq!(own.is_none(), verdict.is_separated(), "case {i}");
+                if let Some(own) = own {
+                    met += 1;
+                    assert_eq!(
+                        (own.toi, own.toi_hi, own.boxes),
+                        (verdict.toi, verdict.toi_hi, verdict.boxes)
+                    );
+                    assert_eq!(own.status == Status::Certified, verdict.is_contact());
+                }
+                assert_eq!(cubic.verdicts[i].map(|own| own.toi), toi, "case {i}");
+            }
+            assert!(
+                met > 40 && certified.rejected[0] > 0 && filters || !filters && certified.rejected == [0; 2]
+            );
+            assert!(certified.bytes > 0 && certified.ns() > 0.0);
+        }
+    }
+}
+
+/// f32 and f64 together: the same cases meet, on every machine to the bit, stored either way.
+#[test]
+fn machines_and_storage_agree() {
+    let cases = cases(900);
+    let mut first: Option<Answers> = None;
+    for device in machines() {
+        for stored in [Stored::F64, Stored::F32] {
+            let how = How { filters: true, stored, repeats: 1 };
+            let one =
+                ask(&device, &cases, &Query { tolerance: Some(0.0), ..CONTINUOUS }, how).expect("answers");
+            assert!(one.escalated.iter().all(|&n| n > 0), "{:?}", one.escalated);
+            let first = first.get_or_insert(one.clone());
+            assert_eq!(
+                (&one.verdicts, one.rejected, one.escalated),
+                (&first.verdicts, first.rejected, first.escalated)
+            );
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_asked_is_refused() {
+    let device = support::engine();
+    let refused = |cases: &[Case], query: Query, stored| {
+        let error = ask(&device, cases, &query, How { stored, ..How::default() }).expect_err("refused");
+        assert!(matches!(error, Error::Choice { .. }), "{error}");
+        error.to_string()
+    };
+    let mut case = cases(1);
+    assert!(refused(&case, Query::of(Motion::Discrete), Stored::F64).contains("continuous"));
+    case[0].positions_t1[3][2] = 0.1;
+    assert!(refused(&case, CONTINUOUS, Stored::F32).contains("exact in f32"));
+    for x in [f64::NAN, f64::INFINITY, 1e300] {
+        case[0].positions_t0[2][1] = x;
+        assert!(refused(&case, CONTINUOUS, Stored::F64).contains("case 0"));
+    }
+    let none = ask(&device, &[], &CONTINUOUS, How::default()).expect("no answers");
+    assert!(none.verdicts.is_empty() && mean_edge(&[]) == 0.0);
+}
+
+#[test]
+fn triangles_meet_as_the_oracle_says() {
+    let mut r = SmallRng::seed_from_u64(3);
+    let mut corner = || std::array::from_fn(|_| f64::from(r.random_range(0..4)));
+    let pairs: Vec<_> =
+        (0..150).map(|_| std::array::from_fn(|_| std::array::from_fn(|_| corner()))).collect();
+    let truth: Vec<bool> = pairs.iter().map(|[p, q]| triangles_meet(p, q)).collect();
+    for device in machines() {
+        for stored in [Stored::F64, Stored::F32] {
+            let exact = ask_triangles(&device, &pairs, &Query::default(), stored).expect("answers");
+            assert_eq!(exact.meet, truth);
+            assert!(exact.undecided > 0);
+            let moller = Query { solver: Some(Solver::Moller), ..Query::default() };
+            let float = ask_triangles(&device, &pairs, &moller, stored).expect("answers");
+            assert_eq!(float.meet.len(), truth.len());
+        }
+    }
+    let device = support::engine();
+    assert!(ask_triangles(&device, &pairs, &CONTINUOUS, Stored::F64).is_err());
+}
