@@ -1,10 +1,18 @@
 //! The catalogue of extremes as data: what breaks other programs, and what must be said of it. `docs/extremes.md` lists
 //! every id with the tests that hold it; tests run it on the CPU, `nearmiss selftest` on the machine that it is on.
 
+mod ask;
 mod question;
 mod questions;
+mod refits;
+mod report;
 mod scenes;
+mod search;
 
+pub use ask::{ask_questions, ask_turned_questions};
 pub use question::{Expect, Fault, MOST_BOXES, Question};
 pub use questions::{questions, reported_motions};
-pub use scenes::{PATCH, PATCH_FACES, TRIANGLES};
+pub use refits::ask_refits;
+pub use report::Report;
+pub use scenes::{Finds, Numbers, PATCH, PATCH_FACES, Refused, Scene, TRIANGLES, refused, scenes};
+pub use search::{ask_refused, ask_scenes, ask_turned_scenes};

@@ -184,7 +184,7 @@ pub fn reported_motions() -> Vec<Question> {
         // Decimals of the truth are rounded.
         blur: 1e-11,
         tolerance: 1e-9,
-        early: 1e-5,
+        early: 1e-4,
         is_fine: true,
         ..Question::new(
             (id, what),

@@ -52,8 +52,7 @@ impl Numbers {
                 p.iter().zip(q).all(|(x, y)| *x == f64::from(*y) || x.is_nan())
             };
             let fits = !self.wide && points.iter().zip(&narrow).all(held);
-            let positions =
-                if fits { Positions::F32(narrow) } else { Positions::F64(points.to_vec()) };
+            let positions = if fits { Positions::F32(narrow) } else { Positions::F64(points.to_vec()) };
             Mesh::new("extreme", positions, self.faces.clone())
         };
         let t0 = mesh(&self.t0)?;
@@ -161,9 +160,7 @@ impl Scene {
             Finds::OracleByFilter if found.undecided > 0 => {
                 Some(format!("{} pairs needed exact signs", found.undecided))
             }
-            Finds::Pairs(_) | Finds::Oracle | Finds::OracleByFilter => {
-                differ(found.pairs(), &self.pairs())
-            }
+            Finds::Pairs(_) | Finds::Oracle | Finds::OracleByFilter => differ(found.pairs(), &self.pairs()),
             Finds::Contacts(truth) => contacts(found, truth),
             Finds::Includes(truth, first) => includes(found, truth, *first),
             Finds::EachVertex(vertices, time) => vertices.iter().find_map(|v| {
@@ -184,9 +181,8 @@ impl Scene {
 /// The first pair that is missed or invented.
 fn differ(found: &[[u32; 2]], truth: &[[u32; 2]]) -> Option<String> {
     let missed = truth.iter().find(|pair| !found.contains(pair)).map(|pair| format!("missed: {pair:?}"));
-    missed.or_else(|| {
-        found.iter().find(|pair| !truth.contains(pair)).map(|pair| format!("invented: {pair:?}"))
-    })
+    missed
+        .or_else(|| found.iter().find(|pair| !truth.contains(pair)).map(|pair| format!("invented: {pair:?}")))
 }
 
 /// Each contact within its time, and no certificate more.

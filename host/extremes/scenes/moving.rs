@@ -47,7 +47,12 @@ pub fn scenes() -> Vec<Scene> {
             vec![wide(shifted(point(3.0), [0.0, 0.0, -3.0 + 2f64.powi(-40)])), floor(1)],
             Contacts((0..3).map(|v| (Vf, v, 0, 2f64.powi(-42))).collect()),
         ),
-        Scene::new("X16", "nothing in the way", vec![shifted(point(3.0), [2.0, 0.0, 0.0]), floor(1)], Contacts(vec![])),
+        Scene::new(
+            "X16",
+            "nothing in the way",
+            vec![shifted(point(3.0), [2.0, 0.0, 0.0]), floor(1)],
+            Contacts(vec![]),
+        ),
         // On the diagonal: both triangles of the square, and their edge.
         Scene::new(
             "X36",
@@ -58,7 +63,10 @@ pub fn scenes() -> Vec<Scene> {
         Scene::new(
             "X36",
             "tips on the lines of a grid (rapier#165)",
-            vec![tips(&[[5.0, 2.63113], [2.63113, 5.0], [3.0, 3.0], [2.5, 2.5], [0.0, 0.0], [7.0, 1.25]]), wide(floor(7))],
+            vec![
+                tips(&[[5.0, 2.63113], [2.63113, 5.0], [3.0, 3.0], [2.5, 2.5], [0.0, 0.0], [7.0, 1.25]]),
+                wide(floor(7)),
+            ],
             EachVertex((0..6).map(|i| 3 * i).collect(), 0.75),
         ),
     ];
@@ -73,16 +81,21 @@ fn head_on() -> Vec<Scene> {
         let small = cuboid([1.0, 0.25, 0.25], [2.0, 0.75, 0.75]).by([common - 1.0, 0.0, common]);
         vec![wide(cuboid([0.0; 3], [0.5, 1.0, 1.0]).by([common, 0.0, common])), wide(small)]
     };
-    // The near side of the small box, x = 1, meets the side x = 1/2 of the large one at a half: its four corners,
-    // numbers 0, 2, 4 and 6, with one of the two triangles or, on their common line, both.
+    // The near side of the small box, x = 1, meets the side x = 1/2 of the large one at a half: corner 4 with
+    // the upper triangle of that side, corner 2 with the lower.
     let scene = |what, common: f64| {
-        Scene::new("FCL#555", what, boxes(common), Includes(vec![(Fv, 10, 2), (Fv, 11, 4)], 0.5))
+        Scene::new("FCL#555", what, boxes(common), Includes(vec![(Fv, 10, 4), (Fv, 11, 2)], 0.5))
     };
     let static_one = |swapped: bool| {
         let fall = tips(&[[0.25, 0.125]]);
         let bodies = if swapped { vec![floor(1), fall] } else { vec![fall, floor(1)] };
         let hit = if swapped { (Fv, 0, 0) } else { (Vf, 0, 0) };
-        Scene::new("X24", if swapped { "one at rest, exchanged" } else { "one at rest" }, bodies, Includes(vec![hit], 0.75))
+        Scene::new(
+            "X24",
+            if swapped { "one at rest, exchanged" } else { "one at rest" },
+            bodies,
+            Includes(vec![hit], 0.75),
+        )
     };
     vec![
         scene("boxes head on", 0.0),

@@ -49,7 +49,12 @@ pub fn refused() -> Vec<Refused> {
         row("X04", "2^480", with(true, 1, f64s), &[]),
         row("X04", "a bit more than 2^480", with(true, 1, least(f64s)), &["vertex 1 has y", "2^480"]),
         row("X46", "an index of 2^31", faces(&[[0, 1, 1 << 31]]), &["face 0 corner 2", "vertex 2147483648"]),
-        row("X46", "the largest index", faces(&[[0, 1, 2], [u32::MAX, 1, 2]]), &["face 1 corner 0", "4294967295"]),
+        row(
+            "X46",
+            "the largest index",
+            faces(&[[0, 1, 2], [u32::MAX, 1, 2]]),
+            &["face 1 corner 0", "4294967295"],
+        ),
         row("X46", "one past the end", faces(&[[0, 4, 2]]), &["face 0 corner 1", "vertex 4", "4 vertices"]),
         row("X46", "a vertex twice in a face", faces(&[[0, 1, 1], [2, 2, 2]]), &[]),
         row("X41", "vertices without faces", faces(&[]), &[]),

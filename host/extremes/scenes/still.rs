@@ -55,11 +55,20 @@ fn degenerate() -> Vec<Scene> {
         Numbers { faces: vec![[0, 1, 2], [2, 1, 0]], ..tile }
     }];
     let tiny = |x: f64| flat([x, 0.0, 0.0], 3.0).map(|p| p.map(|x| f64::from((x * 1e-41) as f32)));
-    let mixed = [flat([0.0; 3], 1e6), [[3.0, 3.0, -1e-3], [3.0, 3.0, 1e-3], [3.001, 3.0, 1e-3]], point([1e6, 1e6, 0.0])];
+    let mixed = [
+        flat([0.0; 3], 1e6),
+        [[3.0, 3.0, -1e-3], [3.0, 3.0, 1e-3], [3.001, 3.0, 1e-3]],
+        point([1e6, 1e6, 0.0]),
+    ];
     let bvh44 = [point([0.0; 3]), segment([0.0; 3], [0.0, 0.0, 1.0])];
     vec![
         Scene::new("X12", "points, segments and a face", vec![Numbers::loose(&crowd)], Oracle),
-        Scene::new("svenstaro/bvh#44", "a point and a segment", vec![Numbers::loose(&bvh44)], Pairs(vec![[0, 1]])),
+        Scene::new(
+            "svenstaro/bvh#44",
+            "a point and a segment",
+            vec![Numbers::loose(&bvh44)],
+            Pairs(vec![[0, 1]]),
+        ),
         Scene::new("Falcor#435", "a box and a tile without thickness", box_and_tile.into(), Oracle),
         Scene::new(
             "X06",
@@ -78,23 +87,53 @@ fn neighbours() -> Vec<Scene> {
         vec![Numbers { t0: t0.to_vec(), faces: faces.to_vec(), ..Numbers::default() }]
     };
     // Two faces that share vertex 0 and cross beyond it; and a pair that only shares it.
-    let cross = [[0.0; 3], [4.0, 0.0, 0.0], [4.0, 4.0, 0.0], [3.0, 1.0, -1.0], [3.0, 1.0, 1.0], [0.0, 0.0, 4.0], [0.0, -1.0, 4.0]];
+    let cross = [
+        [0.0; 3],
+        [4.0, 0.0, 0.0],
+        [4.0, 4.0, 0.0],
+        [3.0, 1.0, -1.0],
+        [3.0, 1.0, 1.0],
+        [0.0, 0.0, 4.0],
+        [0.0, -1.0, 4.0],
+    ];
     let crossing = [[0, 1, 2], [0, 3, 4], [0, 5, 6]];
     // Neighbours over the edge 0 1: folded onto each other, opposite, upright.
-    let fold = [[0.0; 3], [4.0, 0.0, 0.0], [1.0, 3.0, 0.0], [2.0, 2.0, 0.0], [2.0, -2.0, 0.0], [2.0, 0.0, 2.0]];
+    let fold =
+        [[0.0; 3], [4.0, 0.0, 0.0], [1.0, 3.0, 0.0], [2.0, 2.0, 0.0], [2.0, -2.0, 0.0], [2.0, 0.0, 2.0]];
     let folded = [[0, 1, 2], [1, 0, 3], [0, 1, 4], [0, 1, 5]];
     // Three faces at one edge, pierced by one more.
     let fin = [
-        [0.0; 3], [0.0, 0.0, 4.0], [4.0, 0.0, 1.0], [-4.0, 1.0, 1.0], [0.0, 4.0, 1.0],
-        [-1.0, 1.0, 1.0], [1.0, 1.0, 1.5], [1.0, -1.0, 1.25],
+        [0.0; 3],
+        [0.0, 0.0, 4.0],
+        [4.0, 0.0, 1.0],
+        [-4.0, 1.0, 1.0],
+        [0.0, 4.0, 1.0],
+        [-1.0, 1.0, 1.0],
+        [1.0, 1.0, 1.5],
+        [1.0, -1.0, 1.25],
     ];
     let fins = [[0, 1, 2], [1, 0, 3], [0, 1, 4], [5, 6, 7]];
     let reversed: Vec<[u32; 3]> = fins.iter().map(|f| [f[2], f[1], f[0]]).collect();
     vec![
         Scene::new("X14", "a cube that is not welded", vec![unwelded(&cuboid([0.0; 3], [1.0; 3]))], Oracle),
-        adjacent(Scene::new("X48", "a common vertex, crossing beyond it", of(&cross, &crossing), Pairs(vec![[0, 1]]))),
-        Scene::new("X48", "a common vertex, and neighbours are not asked for", of(&cross, &crossing), Pairs(vec![])),
-        adjacent(Scene::new("X49", "a common edge: folded, opposite, upright", of(&fold, &folded), Pairs(vec![[0, 1]]))),
+        adjacent(Scene::new(
+            "X48",
+            "a common vertex, crossing beyond it",
+            of(&cross, &crossing),
+            Pairs(vec![[0, 1]]),
+        )),
+        Scene::new(
+            "X48",
+            "a common vertex, and neighbours are not asked for",
+            of(&cross, &crossing),
+            Pairs(vec![]),
+        ),
+        adjacent(Scene::new(
+            "X49",
+            "a common edge: folded, opposite, upright",
+            of(&fold, &folded),
+            Pairs(vec![[0, 1]]),
+        )),
         Scene::new("X47", "three faces at an edge, pierced", of(&fin, &fins), Oracle),
         Scene::new("X47", "three faces at an edge, pierced, turned over", of(&fin, &reversed), Oracle),
         Scene::new("X47", "a Moebius strip and what pierces it", vec![moebius(), spikes()], Oracle),
@@ -140,6 +179,9 @@ fn flush() -> Vec<Scene> {
         }
         Numbers { t0, faces, ..Numbers::default() }
     };
+    // Right angles at the origin, each in a plane of two axes: they touch along legs, never along a slanted side.
+    let [x, y, z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let legs = [[[0.0; 3], x, y], [[0.0; 3], x, z], [[0.0; 3], y, z], [[0.0; 3], [-1.0, 0.0, 0.0], y]];
     let (c, s) = (3f64.sqrt() / 2.0, 0.5);
     let turned = |narrow: bool| {
         let turn = |[x, y, z]: [f64; 3]| {
@@ -150,7 +192,8 @@ fn flush() -> Vec<Scene> {
         Numbers { t0: of.t0.into_iter().map(turn).collect(), wide: !narrow, ..of }
     };
     vec![
-        Scene::new("X51", "cubes stacked along the axes", vec![cubes()], OracleByFilter),
+        Scene::new("X51", "cubes stacked along the axes", vec![cubes()], Oracle),
+        Scene::new("X51", "triangles that touch along the axes", vec![Numbers::loose(&legs)], OracleByFilter),
         Scene::new("X52", "cubes stacked and turned by 30 degrees, in f32", vec![turned(true)], Oracle),
         Scene::new("X52", "cubes stacked and turned by 30 degrees, in f64", vec![turned(false)], Oracle),
     ]
