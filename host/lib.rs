@@ -17,6 +17,7 @@ pub mod query;
 pub mod report;
 pub mod scene;
 mod tables;
+pub mod trade;
 
 pub use case::{Case, Features};
 pub use contacts::{Answer, Contact, Contacts};

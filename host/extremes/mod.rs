@@ -2,6 +2,8 @@
 //! every id with the tests that hold it; tests run it on the CPU, `nearmiss selftest` on the machine that it is on.
 
 mod ask;
+mod built;
+mod large;
 mod question;
 mod questions;
 mod refits;
@@ -10,8 +12,10 @@ mod scenes;
 mod search;
 
 pub use ask::{ask_questions, ask_turned_questions};
+pub use built::ask_built;
+pub use large::{Crowds, ask_crowds};
 pub use question::{Expect, Fault, MOST_BOXES, Question};
-pub use questions::{questions, reported_motions};
+pub use questions::{MOTIONS, questions, reported_motions};
 pub use refits::ask_refits;
 pub use report::Report;
 pub use scenes::{Finds, Numbers, PATCH, PATCH_FACES, Refused, Scene, TRIANGLES, refused, scenes};

@@ -1,9 +1,13 @@
 //! Answers by exact rational arithmetic; imports nothing from the kernels.
 //!
-//! The method shares nothing with theirs either: no determinant and no sign of one, but linear programming over the
-//! rationals. Slow (about a millisecond a question) and uniform: no input is a special case.
+//! Two triangles ([`triangles_meet`]): the method shares nothing with theirs either, no determinant and no sign of one,
+//! but linear programming over the rationals. Slow (about a millisecond a question) and uniform: no input is a special
+//! case. Two features that move ([`first_contact`]): by the roots of polynomials, as algebraic numbers.
 
+mod motion;
 pub mod simplex;
+
+pub use motion::{Toi, first_contact, first_contact_until, meet_at};
 
 use num_rational::BigRational;
 use num_traits::{One, Zero};

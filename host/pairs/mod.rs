@@ -5,6 +5,8 @@
 //! last stage of a frame.
 
 mod ask;
+pub mod built;
+pub mod degenerate;
 mod lay;
 mod triangles;
 

@@ -82,6 +82,11 @@ pub trait Frames {
     /// # Errors
     /// Those of the device.
     fn repeat(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error>;
+    /// Runs the narrow stage again step by step; names and milliseconds. See [`super::Session::narrow_steps`].
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn narrow_steps(&mut self) -> Result<Vec<(&'static str, f64)>, Error>;
     /// Levels of each body's tree.
     fn depths(&self) -> Vec<usize>;
     /// How often a list was too short and the frame was run again, so far.
@@ -342,6 +347,10 @@ impl<R: Precision, V: Kernels> Frames for Corridor<R, V> {
 
     fn repeat(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
         self.again(stage, times)
+    }
+
+    fn narrow_steps(&mut self) -> Result<Vec<(&'static str, f64)>, Error> {
+        self.step_by_step()
     }
 
     fn depths(&self) -> Vec<usize> {

@@ -16,6 +16,7 @@ mod walk;
 pub(crate) use corridor::Found;
 pub use layout::{Layout, Offsets};
 pub use timing::{Stage, Stages};
+pub(crate) use tolerance::mean_side;
 
 use crate::contacts::{Contacts, Summary};
 use crate::device::Device;
@@ -195,6 +196,18 @@ impl Session {
             self.construct_ms = ms.last().copied().unwrap_or(self.construct_ms);
         }
         Ok(ms)
+    }
+
+    /// Runs the narrow stage of this frame once more, step by step: each step's name and milliseconds on the device's own
+    /// clock. A frame must have been asked; a body without triangles has no steps.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn narrow_steps(&mut self) -> Result<Vec<(&'static str, f64)>, Error> {
+        if !self.answered {
+            self.detect()?;
+        }
+        self.corridor.as_mut().map_or(Ok(Vec::new()), |corridor| corridor.narrow_steps())
     }
 
     /// What is asked.

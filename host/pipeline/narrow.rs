@@ -27,6 +27,19 @@ pub enum Step {
     Solve,
 }
 
+impl Step {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Step::Traverse => "traverse",
+            Step::Decide => "decide",
+            Step::Sift => "sift",
+            Step::Reject => "reject",
+            Step::Solve => "solve",
+        }
+    }
+}
+
 /// What every step of the stage is given.
 pub struct Given<'a, R: Precision> {
     /// The machine.

@@ -6,6 +6,11 @@ use crate::query::Query;
 /// [`Query::TOLERANCE`] of the mean side of the triangles at t = 0, rounded down to a power of two; 0 where there is no
 /// side of a length. Cost: a root a side, on the host.
 pub fn of_edges(bodies: &[Body]) -> f64 {
+    power_below(Query::TOLERANCE * mean_side(bodies))
+}
+
+/// Mean side of the triangles at t = 0, each triangle's own three; 0 where there are none.
+pub fn mean_side(bodies: &[Body]) -> f64 {
     let (mut sum, mut count) = (0.0, 0u64);
     for body in bodies {
         let at = body.positions_t0().to_f64();
@@ -18,7 +23,7 @@ pub fn of_edges(bodies: &[Body]) -> f64 {
             }
         }
     }
-    power_below(Query::TOLERANCE * (sum / count.max(1) as f64))
+    sum / count.max(1) as f64
 }
 
 /// The largest power of two not above `x`; 0 for what is not a normal number above 0.

@@ -197,16 +197,18 @@ fn panels<T>(rows: &[T], title: fn(&T) -> String, bar: fn(&T) -> Bar) -> Vec<Pan
 }
 
 /// Rows with a head.
-fn csv<T: Serialize>(rows: &[T]) -> Result<Vec<u8>, String> {
+pub(crate) fn csv<T: Serialize>(rows: &[T]) -> Result<Vec<u8>, String> {
     let mut csv = csv::Writer::from_writer(Vec::new());
     rows.iter().try_for_each(|row| csv.serialize(row)).map_err(|e| e.to_string())?;
     csv.into_inner().map_err(|e| e.to_string())
 }
 
-fn put(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+/// Writes a file.
+pub(crate) fn put(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     std::fs::write(path, bytes).map_err(|e| failed(path, &e))
 }
 
-fn failed(path: &Path, text: &impl ToString) -> Error {
+/// A file that could not be written.
+pub(crate) fn failed(path: &Path, text: &impl ToString) -> Error {
     Error::Output { file: path.display().to_string(), text: text.to_string() }
 }

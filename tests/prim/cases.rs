@@ -1,9 +1,9 @@
 //! Triangle pairs and motions that other libraries got wrong, as reported in public, with exact answers.
 
 use crate::discrete::all_sources;
+use crate::motions::MOTIONS;
 use crate::{corners, seen};
-use nearmiss::Features;
-use nearmiss::extremes::{Expect, PATCH, PATCH_FACES, TRIANGLES, reported_motions as motions};
+use nearmiss::extremes::{PATCH, PATCH_FACES, TRIANGLES};
 use nearmiss::oracle::{Triangle, triangles_meet};
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::adjacent::Shared;
@@ -35,10 +35,8 @@ fn reported_patch_has_no_pairs() {
 /// The double cubic gets every reported motion right but those named; the single one is printed.
 #[test]
 fn reported_motions() {
-    for q in motions() {
-        let (name, face, longest) = (q.what, q.case.features == Features::VertexFace, q.end);
-        let truth = if let Expect::Meets(t) = q.expect { Some(t) } else { None };
-        let m = |i: usize| Moving { t0: Vec3(q.case.positions_t0[i]), t1: Vec3(q.case.positions_t1[i]) };
+    for (name, face, t0, t1, longest, truth) in MOTIONS {
+        let m = |i: usize| Moving { t0: Vec3(t0[i]), t1: Vec3(t1[i]) };
         let (double, single) = if face {
             (vf_toi::<f64, f64>(m(0), [m(1), m(2), m(3)]), vf_toi::<f64, f32>(m(0), [m(1), m(2), m(3)]))
         } else {

@@ -1,7 +1,7 @@
 //! The certified continuous tests on motions built to meet exactly, in integers: never missed, never late; and the
 //! judges of that, shown to condemn.
 
-use crate::built::{FAMILIES, Motion, REACH_F32, REACH_F64, motion};
+use crate::built::{FAMILIES, KINDS, Motion, REACH_F32, REACH_F64, motion, of_kind};
 use crate::random;
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::Moving;
@@ -64,35 +64,6 @@ impl Judge {
     }
 }
 
-/// Twelve families: those of the built motions; far from the origin; fast; backwards. With the time of contact.
-const KINDS: usize = FAMILIES.len() + 3;
-
-fn build(
-    r: &mut rand::rngs::SmallRng,
-    kind: usize,
-    face: bool,
-    i: usize,
-    reach: i64,
-) -> (Motion, f64, String) {
-    let time = [0, 16, 1, 8, 11][i % 5];
-    let family = if kind < FAMILIES.len() { kind } else { i % FAMILIES.len() };
-    let m = motion(r, family, face, time, reach);
-    let name = FAMILIES[family];
-    let over = |f: &dyn Fn(usize, usize, usize) -> i64| -> Motion {
-        [0, 1].map(|t| std::array::from_fn(|p| std::array::from_fn(|k| f(t, p, k))))
-    };
-    match kind - kind.min(FAMILIES.len()) + (kind >= FAMILIES.len()) as usize {
-        1 => (over(&|t, p, k| m[t][p][k] + (1 << 18)), time as f64 / 16.0, format!("far, {name}")),
-        2 => {
-            let speed = |p: usize, k: usize| (m[1][p][k] - m[0][p][k]) / 16;
-            let at = [-31 * time, 31 * (16 - time)];
-            (over(&|t, p, k| m[t][p][k] + at[t] * speed(p, k)), time as f64 / 16.0, format!("fast, {name}"))
-        }
-        3 => ([m[1], m[0]], 1.0 - time as f64 / 16.0, format!("backwards, {name}")),
-        _ => (m, time as f64 / 16.0, name.into()),
-    }
-}
-
 /// Asks `n` motions of each family, kind and reach; tolerances from a thousandth of it to none.
 fn built(
     seed: u64,
@@ -105,7 +76,7 @@ fn built(
         for (kind, face) in (0..KINDS).flat_map(|kind| [(kind, true), (kind, false)]) {
             let (mut judge, mut names) = (Judge::default(), String::new());
             for i in 0..n {
-                let (m, truth, name) = build(&mut r, kind, face, i, reach);
+                let (m, truth, name) = of_kind(&mut r, kind, face, i, reach);
                 let tolerance = [1e-6, 1e-3, 1e-9, 0.0][i / 5 % 4] * reach as f64;
                 judge.note(asked(points(&m, 1.0), face, &Params::new(tolerance)), truth);
                 names = name;

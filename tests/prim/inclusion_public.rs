@@ -1,6 +1,7 @@
 //! The certified continuous tests on public data with exact answers.
 
 use crate::inclusion::{certified, in_passes};
+use crate::motions::MOTIONS;
 use crate::public::{Key, scene};
 use crate::queries::folders;
 use nearmiss_kernels::math::{Real, Vec3};
@@ -51,6 +52,29 @@ fn queries() {
         );
         assert!(alarms[0][0] <= 137 && alarms[0][1] <= 85, "{alarms:?}");
         assert!(alarms[1][0] <= 219 && alarms[1][1] <= 133, "{alarms:?}");
+    }
+}
+
+/// Motions that other libraries got wrong, with their exact times.
+#[test]
+fn reported_motions() {
+    for (name, face, t0, t1, end, truth) in MOTIONS {
+        let x = [0, 1, 2, 3].map(|i| Moving { t0: Vec3(t0[i]), t1: Vec3(t1[i]) });
+        let p = Params { end, ..Params::new(1e-9) };
+        for v in
+            [certified::<f64, f64>(x, face, &p), certified::<f64, f32>(x, face, &p), in_passes(x, face, &p)]
+        {
+            println!("{name}: truth {truth:?}, {:?}, {} boxes", v.answer(), v.boxes);
+            match truth {
+                // Decimals of the truth are rounded.
+                Some(t) => {
+                    assert!(!v.is_separated() && v.toi <= t + 1e-11, "{name}");
+                    assert!(!v.is_contact() || v.toi_hi >= t - 1e-11, "{name}");
+                }
+                None => assert!(!v.is_contact(), "{name}"),
+            }
+            assert!(v.boxes <= 100, "{name}");
+        }
     }
 }
 

@@ -16,6 +16,8 @@ mod inclusion;
 mod inclusion_bounds;
 mod inclusion_extremes;
 mod inclusion_public;
+#[path = "../truth/motions.rs"]
+mod motions;
 mod public;
 #[path = "../truth/queries.rs"]
 mod queries;

@@ -3,4 +3,5 @@
 
 pub mod built;
 pub mod frames;
+pub mod motions;
 pub mod queries;

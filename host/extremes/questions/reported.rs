@@ -3,13 +3,10 @@
 use super::{Expect, Question};
 use crate::case::Features;
 
-/// Id, report, vertex/face (else edge/edge), the four points at time 0 and 1, the longest time, the first contact.
-type Motion = (&'static str, &'static str, bool, [[f64; 3]; 4], [[f64; 3]; 4], f64, Option<f64>);
-
-const MOTIONS: [Motion; 12] = [
+/// Report and id, vertex/face (else edge/edge), the four points at time 0 and 1, the longest time, the first contact.
+pub const MOTIONS: [(&str, bool, [[f64; 3]; 4], [[f64; 3]; 4], f64, Option<f64>); 12] = [
     (
-        "ti1",
-        "Tight-Inclusion#1",
+        "Tight-Inclusion#1: ti1",
         true,
         [
             [0.35, 0.0, 0.35],
@@ -27,8 +24,7 @@ const MOTIONS: [Motion; 12] = [
         None,
     ),
     (
-        "ipc-double-root-1",
-        "ipc-toolkit test",
+        "ipc-toolkit test: ipc-double-root-1",
         false,
         [
             [-3.00222, 0.236258, 0.0165247],
@@ -46,8 +42,7 @@ const MOTIONS: [Motion; 12] = [
         Some(0.13955201993126368),
     ),
     (
-        "ipc-double-root-2-1.0",
-        "ipc-toolkit/CCD-Wrapper teseo2",
+        "ipc-toolkit/CCD-Wrapper teseo2: ipc-double-root-2-1.0",
         false,
         [[0.0, 0.0, 1.0], [0.0, 1.0, 1.0], [0.1, 0.2, 2.0], [0.1, 0.2, -1.0]],
         [[1.0, 1.0, 0.0], [0.0, 0.0, 0.0], [0.1, 0.2, 2.0], [0.1, 0.2, -1.0]],
@@ -55,8 +50,7 @@ const MOTIONS: [Motion; 12] = [
         Some(0.11270166537925833),
     ),
     (
-        "ipc-slow-2",
-        "ipc-toolkit test",
+        "ipc-toolkit test: ipc-slow-2",
         false,
         [
             [1.00002232466453, 0.500004786049044, -2.06727783590977e-05],
@@ -74,8 +68,7 @@ const MOTIONS: [Motion; 12] = [
         Some(0.0017989057378277405),
     ),
     (
-        "ipc-adversarial-accd-1e-08",
-        "ipc-toolkit test",
+        "ipc-toolkit test: ipc-adversarial-accd-1e-08",
         false,
         [[-1.0, -5e-09, 0.0], [1.0, -5e-09, 0.0], [0.0, 5e-09, -1.0], [0.0, 5e-09, 1.0]],
         [[-1.001, 5e-09, -0.001], [1.001, 5e-09, 0.001], [0.001, -5e-09, -0.999], [-0.001, -5e-09, 0.999]],
@@ -83,8 +76,7 @@ const MOTIONS: [Motion; 12] = [
         Some(0.5),
     ),
     (
-        "zhongshi-neg",
-        "CCD-Wrapper/ipc-toolkit",
+        "CCD-Wrapper/ipc-toolkit: zhongshi-neg",
         true,
         [[0.0, -1.1920928955078125e-07, 0.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]],
         [[0.0, -1.1920928955078125e-07, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 1.0], [1.0, 0.0, 1.0]],
@@ -92,8 +84,7 @@ const MOTIONS: [Motion; 12] = [
         None,
     ),
     (
-        "zhongshi-zero",
-        "CCD-Wrapper/ipc-toolkit",
+        "CCD-Wrapper/ipc-toolkit: zhongshi-zero",
         true,
         [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]],
         [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 1.0], [1.0, 0.0, 1.0]],
@@ -101,8 +92,7 @@ const MOTIONS: [Motion; 12] = [
         Some(0.0),
     ),
     (
-        "zhongshi-pos",
-        "CCD-Wrapper/ipc-toolkit",
+        "CCD-Wrapper/ipc-toolkit: zhongshi-pos",
         true,
         [[0.0, 1.1920928955078125e-07, 0.0], [0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]],
         [[0.0, 1.1920928955078125e-07, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 1.0], [1.0, 0.0, 1.0]],
@@ -110,8 +100,7 @@ const MOTIONS: [Motion; 12] = [
         Some(0.0),
     ),
     (
-        "bsc-fn-2",
-        "CCD-Wrapper",
+        "CCD-Wrapper: bsc-fn-2",
         true,
         [[1.0, 0.5, 1.0], [0.0, 0.57, 1.0], [1.0, 0.57, 1.0], [1.0, 1.57, 1.0]],
         [[1.0, 0.5, 1.0], [0.0, 0.28, 1.0], [1.0, 0.28, 1.0], [1.0, 1.28, 1.0]],
@@ -119,8 +108,7 @@ const MOTIONS: [Motion; 12] = [
         Some(0.241379310345),
     ),
     (
-        "ti-head-filter",
-        "verified here",
+        "verified here: ti-head-filter",
         true,
         [
             [250.0, 250.0, 1169.8997011153376],
@@ -138,8 +126,7 @@ const MOTIONS: [Motion; 12] = [
         Some(1.0),
     ),
     (
-        "even-parity-1",
-        "cloth-ball 92 to 93",
+        "cloth-ball 92 to 93: even-parity-1",
         true,
         [
             [-4.162384033203125, 0.5617319941520691, -0.9193879961967468],
@@ -157,8 +144,7 @@ const MOTIONS: [Motion; 12] = [
         Some(0.4204869306864387),
     ),
     (
-        "f32cubic-late-1",
-        "cloth-ball 92 to 93",
+        "cloth-ball 92 to 93: f32cubic-late-1",
         true,
         [
             [-0.6831809878349304, 0.8276159763336182, -1.3828790187835693],
@@ -179,19 +165,16 @@ const MOTIONS: [Motion; 12] = [
 
 /// Those reported in public.
 pub fn reported_motions() -> Vec<Question> {
-    let question = |&(id, what, face, t0, t1, end, truth): &Motion| Question {
-        end,
-        // Decimals of the truth are rounded.
-        blur: 1e-11,
-        tolerance: 1e-9,
-        early: 1e-4,
-        is_fine: true,
-        ..Question::new(
-            (id, what),
-            if face { Features::VertexFace } else { Features::EdgeEdge },
-            [t0, t1],
-            truth.map_or(Expect::Near, Expect::Meets),
-        )
-    };
-    MOTIONS.iter().map(question).collect()
+    MOTIONS
+        .iter()
+        .map(|&(name, face, t0, t1, end, truth)| {
+            let (what, id) = name.rsplit_once(": ").unwrap_or((name, name));
+            let features = if face { Features::VertexFace } else { Features::EdgeEdge };
+            let expect = truth.map_or(Expect::Near, Expect::Meets);
+            // Decimals of the truth are rounded.
+            let (blur, tolerance, early) = (1e-11, 1e-9, 1e-4);
+            let question = Question::new((id, what), features, [t0, t1], expect);
+            Question { end, blur, tolerance, early, is_fine: true, ..question }
+        })
+        .collect()
 }

@@ -37,6 +37,22 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
         Ok(ms)
     }
 
+    /// The narrow stage once more, step by step, on what the last frame left.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub(super) fn step_by_step(&mut self) -> Result<Vec<(&'static str, f64)>, Error> {
+        let counters = self.counters_before(Stage::Narrow);
+        self.counters.write(&counters)?;
+        let mut all = Vec::new();
+        for &step in self.narrow.steps() {
+            let start = self.device.mark()?;
+            self.step(step)?;
+            all.push((step.name(), start.to(&self.device.mark()?)?));
+        }
+        Ok(all)
+    }
+
     /// The counters that a stage begins with: those of the last frame, without what the stage itself counted.
     fn counters_before(&mut self, stage: Stage) -> Vec<u64> {
         let mut counters = vec![0; counter::COUNT as usize];

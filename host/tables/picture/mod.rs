@@ -14,31 +14,31 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-const OURS: RGBColor = RGBColor(0, 114, 178);
-const THEIRS: RGBColor = RGBColor(230, 159, 0);
-const INK: RGBColor = RGBColor(30, 30, 30);
-const FAINT: RGBColor = RGBColor(110, 110, 110);
-const GRID: RGBColor = RGBColor(215, 215, 215);
+pub(crate) const OURS: RGBColor = RGBColor(0, 114, 178);
+pub(crate) const THEIRS: RGBColor = RGBColor(230, 159, 0);
+pub(crate) const INK: RGBColor = RGBColor(30, 30, 30);
+pub(crate) const FAINT: RGBColor = RGBColor(110, 110, 110);
+pub(crate) const GRID: RGBColor = RGBColor(215, 215, 215);
 
 /// Width of every picture, pixels.
 const WIDTH: i32 = 900;
 /// Where bars begin and end; labels stand to the left, figures to the right.
-const LEFT: i32 = 215;
-const RIGHT: i32 = 770;
+pub(crate) const LEFT: i32 = 215;
+pub(crate) const RIGHT: i32 = 770;
 
 /// How a text stands at its point.
 #[derive(Clone, Copy)]
-enum At {
+pub(crate) enum At {
     Left,
     Middle,
     Right,
 }
 
 /// A sheet to draw on, in pixels from the upper left.
-struct Sheet<'a>(DrawingArea<SVGBackend<'a>, Shift>);
+pub(crate) struct Sheet<'a>(DrawingArea<SVGBackend<'a>, Shift>);
 
 /// Draws on a sheet of that height; the SVG.
-fn sheet(height: i32, draw: impl FnOnce(&Sheet) -> Drawn) -> Result<String, Error> {
+pub(crate) fn sheet(height: i32, draw: impl FnOnce(&Sheet) -> Drawn) -> Result<String, Error> {
     let mut svg = String::new();
     let sheet =
         Sheet(SVGBackend::with_string(&mut svg, (WIDTH as u32, height.max(1) as u32)).into_drawing_area());
@@ -50,11 +50,11 @@ fn sheet(height: i32, draw: impl FnOnce(&Sheet) -> Drawn) -> Result<String, Erro
 }
 
 /// Drawn, or why not.
-type Drawn = Result<(), String>;
+pub(crate) type Drawn = Result<(), String>;
 
 impl Sheet<'_> {
     /// A text of `size` pixels, its middle at that height.
-    fn text(&self, text: &str, (x, y): (i32, i32), size: i32, at: At, colour: RGBColor) -> Drawn {
+    pub(crate) fn text(&self, text: &str, (x, y): (i32, i32), size: i32, at: At, colour: RGBColor) -> Drawn {
         let h = match at {
             At::Left => HPos::Left,
             At::Middle => HPos::Center,
@@ -66,22 +66,28 @@ impl Sheet<'_> {
         self.0.draw_text(text, &style, (x, y)).map_err(|e| e.to_string())
     }
 
-    fn bold(&self, text: &str, (x, y): (i32, i32), size: i32) -> Drawn {
+    pub(crate) fn bold(&self, text: &str, (x, y): (i32, i32), size: i32) -> Drawn {
         let font = ("sans-serif", f64::from(size) * 1.24).into_font().style(FontStyle::Bold);
         let style = font.color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
         self.0.draw_text(text, &style, (x, y)).map_err(|e| e.to_string())
     }
 
-    fn rectangle(&self, corners: [(i32, i32); 2], colour: RGBColor) -> Drawn {
+    pub(crate) fn rectangle(&self, corners: [(i32, i32); 2], colour: RGBColor) -> Drawn {
         self.0.draw(&Rectangle::new(corners, colour.filled())).map_err(|e| e.to_string())
     }
 
-    fn line(&self, points: Vec<(i32, i32)>, colour: RGBColor, width: u32) -> Drawn {
+    /// A disc, or a ring.
+    pub(crate) fn dot(&self, at: (i32, i32), radius: i32, colour: RGBColor, filled: bool) -> Drawn {
+        let style = if filled { colour.filled() } else { colour.stroke_width(2) };
+        self.0.draw(&Circle::new(at, radius, style)).map_err(|e| e.to_string())
+    }
+
+    pub(crate) fn line(&self, points: Vec<(i32, i32)>, colour: RGBColor, width: u32) -> Drawn {
         self.0.draw(&PathElement::new(points, colour.stroke_width(width))).map_err(|e| e.to_string())
     }
 
     /// The picture's title, and lines of smaller print below it; where the picture goes on.
-    fn head(&self, title: &str, notes: &[(String, RGBColor)]) -> Result<i32, String> {
+    pub(crate) fn head(&self, title: &str, notes: &[(String, RGBColor)]) -> Result<i32, String> {
         self.bold(title, (20, 26), 18)?;
         let mut y = 50;
         for (note, colour) in notes {
@@ -93,6 +99,6 @@ impl Sheet<'_> {
 }
 
 /// Height that [`Sheet::head`] takes with that many notes.
-fn head_height(notes: usize) -> i32 {
+pub(crate) fn head_height(notes: usize) -> i32 {
     54 + 18 * notes as i32
 }
