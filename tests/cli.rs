@@ -394,7 +394,7 @@ fn the_program_says_what_it_is() {
 #[test]
 #[ignore = "half a minute"]
 fn a_small_selftest_passes() {
-    let text = ok(&["selftest", "--backend", "cpu", "--triangles", "300"]);
-    assert!(text.contains("ok: every stage agrees to the bit"), "{text}");
-    assert!(!text.contains("DIFFERS"));
+    let text = ok(&["selftest", "--backend", "cpu", "--triangles", "300", "--cases", "24"]);
+    assert_eq!(text.lines().filter(|line| line.starts_with("extremes ")).count(), 8, "{text}");
+    assert!(text.contains("ok: every stage agrees to the bit") && !text.contains("DIFFERS"), "{text}");
 }

@@ -8,6 +8,7 @@ mod question;
 mod questions;
 mod refits;
 mod report;
+mod run;
 mod scenes;
 mod search;
 
@@ -18,5 +19,6 @@ pub use question::{Expect, Fault, MOST_BOXES, Question};
 pub use questions::{MOTIONS, questions, reported_motions};
 pub use refits::ask_refits;
 pub use report::Report;
+pub use run::{Amount, run};
 pub use scenes::{Finds, Numbers, PATCH, PATCH_FACES, Refused, Scene, TRIANGLES, refused, scenes};
 pub use search::{ask_refused, ask_scenes, ask_turned_scenes};
