@@ -6,8 +6,9 @@
 #[allow(dead_code, reason = "a part is used")]
 mod built;
 
-use built::{Motion, toi};
+use built::toi;
 use nearmiss::oracle::{Triangle, triangles_meet};
+use nearmiss::pairs::built::Motion;
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::{Moving, vf_toi};
 

@@ -14,19 +14,8 @@ use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 use support::machines;
 
-const CONTINUOUS: Query = Query { motion: Motion::Continuous, tolerance: Some(1e-6), ..Query { ..plain() } };
-
-const fn plain() -> Query {
-    Query {
-        motion: Motion::Continuous,
-        solver: None,
-        bv: None,
-        refit: None,
-        traversal: None,
-        adjacent: false,
-        tolerance: None,
-        boxes: None,
-    }
+fn continuous() -> Query {
+    Query { tolerance: Some(1e-6), ..Query::of(Motion::Continuous) }
 }
 
 /// Features among each other, every third an edge pair; exact in f32.
@@ -52,9 +41,9 @@ fn every_case_has_the_solvers_own_answer() {
     for device in machines() {
         for filters in [false, true] {
             let how = How { filters, ..How::default() };
-            let query = Query { solver: Some(Solver::CertifiedF64), ..CONTINUOUS };
+            let query = Query { solver: Some(Solver::CertifiedF64), ..continuous() };
             let certified = ask(&device, &cases, &query, how).expect("answers");
-            let query = Query { solver: Some(Solver::CubicF64), tolerance: None, ..CONTINUOUS };
+            let query = Query { solver: Some(Solver::CubicF64), tolerance: None, ..continuous() };
             let cubic = ask(&device, &cases, &query, how).expect("answers");
             let params = Params::new(1e-6);
             let mut met = 0;
@@ -99,7 +88,7 @@ fn machines_and_storage_agree() {
         for stored in [Stored::F64, Stored::F32] {
             let how = How { filters: true, stored, repeats: 1 };
             let one =
-                ask(&device, &cases, &Query { tolerance: Some(0.0), ..CONTINUOUS }, how).expect("answers");
+                ask(&device, &cases, &Query { tolerance: Some(0.0), ..continuous() }, how).expect("answers");
             assert!(one.escalated.iter().all(|&n| n > 0), "{:?}", one.escalated);
             let first = first.get_or_insert(one.clone());
             assert_eq!(
@@ -108,6 +97,21 @@ fn machines_and_storage_agree() {
             );
         }
     }
+}
+
+/// More than are asked at once, of which each has the answer that it has among few.
+#[test]
+#[ignore = "takes a gigabyte"]
+fn a_million_cases() {
+    let few = cases(1000);
+    let how = How { filters: true, ..How::default() };
+    let device = support::engine();
+    let want = ask(&device, &few, &continuous(), how).expect("answers");
+    let many: Vec<Case> = few.iter().copied().cycle().take(1_100_003).collect();
+    let answers = ask(&device, &many, &continuous(), how).expect("answers");
+    assert!(answers.verdicts.iter().zip(want.verdicts.iter().cycle()).all(|(a, b)| a == b));
+    assert_eq!(answers.verdicts.len(), many.len());
+    println!("{:.0} ns a case", answers.ns());
 }
 
 #[test]
@@ -121,12 +125,12 @@ fn what_cannot_be_asked_is_refused() {
     let mut case = cases(1);
     assert!(refused(&case, Query::of(Motion::Discrete), Stored::F64).contains("continuous"));
     case[0].positions_t1[3][2] = 0.1;
-    assert!(refused(&case, CONTINUOUS, Stored::F32).contains("exact in f32"));
+    assert!(refused(&case, continuous(), Stored::F32).contains("exact in f32"));
     for x in [f64::NAN, f64::INFINITY, 1e300] {
         case[0].positions_t0[2][1] = x;
-        assert!(refused(&case, CONTINUOUS, Stored::F64).contains("case 0"));
+        assert!(refused(&case, continuous(), Stored::F64).contains("case 0"));
     }
-    let none = ask(&device, &[], &CONTINUOUS, How::default()).expect("no answers");
+    let none = ask(&device, &[], &continuous(), How::default()).expect("no answers");
     assert!(none.verdicts.is_empty() && mean_edge(&[]) == 0.0);
 }
 
@@ -148,5 +152,5 @@ fn triangles_meet_as_the_oracle_says() {
         }
     }
     let device = support::engine();
-    assert!(ask_triangles(&device, &pairs, &CONTINUOUS, Stored::F64).is_err());
+    assert!(ask_triangles(&device, &pairs, &continuous(), Stored::F64).is_err());
 }

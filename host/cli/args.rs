@@ -25,6 +25,8 @@ pub enum Command {
     Scene(SceneArgs),
     /// The thesis's figures 6.12 to 6.14, ours beside theirs: a table, CSV files and pictures.
     Tables(TablesArgs),
+    /// What each faster choice costs in misses, lateness and false alarms, measured here: a table, CSV files and pictures.
+    Trade(TradeArgs),
     /// Check this machine: known answers, and the card and the CPU to the bit.
     Selftest(SelftestArgs),
 }
@@ -288,6 +290,49 @@ pub struct TablesArgs {
     /// Build the tree anew at every N-th frame; that time is not part of a frame's [default: only at the first].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub rebuild_every: Option<u32>,
+    #[command(flatten)]
+    pub machine: MachineArgs,
+    /// Folder for CSV files and SVG pictures.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Print everything as one JSON object.
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Args)]
+pub struct TradeArgs {
+    /// Query files in the layout of Sample-Queries (.csv, .csv.gz), anywhere below this folder; alone, unless --full.
+    #[arg(long, value_name = "DIR")]
+    pub queries: Option<PathBuf>,
+    /// One frame from a file, or the two ends of a step; alone, unless --full.
+    #[arg(long, num_args = 1..=2, value_name = "FILE")]
+    pub mesh: Vec<PathBuf>,
+    /// What truly meets in --mesh: rows of kind,a,b or of tri_a,tri_b (.csv, .csv.gz) [default: as the finest solver says].
+    #[arg(long, requires = "mesh", value_name = "FILE")]
+    pub truth: Option<PathBuf>,
+    /// Scenes that are made here.
+    #[arg(long, num_args = 1.., value_name = "NAME", default_values_t = ["cloth-ball".to_owned(), "n-body".to_owned()],
+        value_parser = clap::builder::PossibleValuesParser::new(crate::scene::ANIMATIONS))]
+    pub scene: Vec<String>,
+    /// Triangles of a scene, about [default: 10,000; with --full as many as the thesis has].
+    #[arg(long, value_name = "N")]
+    pub triangles: Option<usize>,
+    /// Frames of a scene, for refitting; at least two.
+    #[arg(long, default_value_t = 6, value_name = "K", value_parser = clap::value_parser!(u32).range(2..=10_000))]
+    pub frames: u32,
+    /// Built-in questions of a kind and size; there are 26 kinds and three sizes [default: 100; with --full 1,000].
+    #[arg(long, value_name = "N")]
+    pub cases: Option<usize>,
+    /// Runs of which the median time counts, after one to warm up.
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000))]
+    pub repeat: u32,
+    /// Everything, at full size: minutes to hours.
+    #[arg(long)]
+    pub full: bool,
+    /// Seed of scenes and questions.
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
     #[command(flatten)]
     pub machine: MachineArgs,
     /// Folder for CSV files and SVG pictures.

@@ -1,4 +1,4 @@
-//! The command line: `detect`, `plan`, `scene`, `tables`, `selftest`.
+//! The command line: `detect`, `plan`, `scene`, `tables`, `trade`, `selftest`.
 
 mod args;
 mod detect;
@@ -6,6 +6,7 @@ mod progress;
 mod scene;
 mod selftest;
 mod tables;
+mod trade;
 
 use crate::error::Error;
 use args::{Cli, Command};
@@ -29,6 +30,7 @@ fn run(command: Command) -> Result<ExitCode, Error> {
         Command::Plan(args) => detect::plan(&args),
         Command::Scene(args) => scene::scene(&args),
         Command::Tables(args) => tables::tables(&args),
+        Command::Trade(args) => trade::trade(&args),
         Command::Selftest(args) => selftest::selftest(&args),
     }
 }

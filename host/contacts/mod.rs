@@ -41,9 +41,9 @@ impl Status {
     /// Of what a solver listed, certified or not.
     pub(crate) fn of(certified: bool, verdict: &Verdict) -> Status {
         match (certified, verdict.is_contact()) {
-            (false, _) => Status::Contact,
+            (_, false) => Status::Unresolved,
+            (false, true) => Status::Contact,
             (true, true) => Status::Certified,
-            (true, false) => Status::Unresolved,
         }
     }
 }

@@ -50,11 +50,15 @@ pub fn funnel(device: &Device, name: &str, body: &Body) -> Result<Vec<FunnelRow>
     };
     let found = contacts.len() as u64;
     Ok(vec![
-        row("triangle pairs", contacts.triangle_pairs, Some(contacts.stages.traverse + contacts.stages.balance)),
+        row(
+            "triangle pairs",
+            contacts.triangle_pairs,
+            Some(contacts.stages.traverse + contacts.stages.balance),
+        ),
         both("features with swept boxes that meet", contacts.candidates_vf_ee, ms("sift")),
         both("left by the filters", contacts.survivors_vf_ee, ms("reject")),
-        both("asked in f64 after f32", contacts.escalated_vf_ee, ms("solve")),
-        row("listed", found, None),
+        both("asked in f64 after f32", contacts.escalated_vf_ee, None),
+        row("listed", found, ms("solve")),
         row("of them certain", found - contacts.unresolved, None),
     ])
 }

@@ -1,7 +1,7 @@
 //! Questions with known answers, and ways to ask them.
 
 use super::judge::{Judge, Truth};
-use super::row::Row;
+use super::row::{Row, name};
 use crate::case::{Case, Features};
 use crate::device::Device;
 use crate::error::Error;
@@ -53,6 +53,13 @@ impl Choice {
     }
 }
 
+impl std::fmt::Display for Choice {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str(&name(self.solver))?;
+        self.tolerance.map_or(Ok(()), |edges| write!(f, " at {edges:.0e}"))
+    }
+}
+
 impl Input {
     /// Cases whose first times the oracle finds: exact rational arithmetic, about a millisecond a case. What else is known of
     /// each, by when it has met if it meets, must not contradict it.
@@ -68,7 +75,12 @@ impl Input {
         };
         if let Some(at) = truths.iter().zip(meet).position(differs) {
             return Err(Error::Choice {
-                what: format!("{name}: query {} is said to meet: {:?}; exactly: {:?}", at + 1, meet[at], truths[at]),
+                what: format!(
+                    "{name}: query {} is said to meet: {:?}; exactly: {:?}",
+                    at + 1,
+                    meet[at],
+                    truths[at]
+                ),
                 advice: "mend the column that says whether queries meet".into(),
             });
         }

@@ -177,7 +177,11 @@ impl Judge {
     /// How far apart a certified solver may take features for contact: the bound of `kernels/src/prim/inclusion`, with the
     /// roundings of the precision that answers last, and our own of the gap.
     fn allowed(&self, case: &Case) -> f64 {
-        let unit = if self.solver == Solver::CertifiedF32 { f64::from(f32::EPSILON) / 2.0 } else { f64::EPSILON / 2.0 };
+        let unit = if self.solver == Solver::CertifiedF32 {
+            f64::from(f32::EPSILON) / 2.0
+        } else {
+            f64::EPSILON / 2.0
+        };
         let (mut most, a) = (0.0f64, case.positions_t0[0]);
         for p in case.positions_t0.iter().chain(&case.positions_t1) {
             (0..3).for_each(|k| most = most.max((p[k] - a[k]).abs()));

@@ -64,7 +64,8 @@ fn kind(file: &Path) -> Option<(&Path, Features)> {
 fn bad(file: &Path, what: impl std::fmt::Display) -> Error {
     Error::Choice {
         what: format!("{}: {what}", file.display()),
-        advice: "give query files of eight rows a query: three numerators and denominators, and 0 or 1".into(),
+        advice: "give query files of eight rows a query: three numerators and denominators, and 0 or 1"
+            .into(),
     }
 }
 
@@ -106,7 +107,8 @@ fn read(file: &Path, features: Features) -> Result<(Vec<Case>, Vec<bool>), Error
         let mut points = [[0.0; 3]; 8];
         let mut truth = false;
         for (i, row) in rows.iter().enumerate() {
-            (points[i], truth) = parse(row).map_err(|why| bad(file, format!("row {}: {why}", 8 * query + i + 1)))?;
+            (points[i], truth) =
+                parse(row).map_err(|why| bad(file, format!("row {}: {why}", 8 * query + i + 1)))?;
         }
         let [a, b, c, d, e, f, g, h] = points;
         cases.push(Case { features, positions_t0: [a, b, c, d], positions_t1: [e, f, g, h] });

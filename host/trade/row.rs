@@ -110,7 +110,7 @@ impl Row {
         let mut all = vec![name(self.solver)];
         all.extend(self.tolerance_edges.map(|edges| format!("{edges:.0e}")));
         all.extend(self.bv.map(str::to_owned));
-        if self.precision == "f32 cast" {
+        if self.bv.is_none() && self.precision != "f64" {
             all.push(self.precision.into());
         }
         all.join(" ")
@@ -132,8 +132,21 @@ impl Printed for Row {
     const CAPTION: &'static str = "What each choice costs: wrong answers first, then alarms without contact, then how early times \
                                    are (in mean edges), then time";
     const HEADS: &'static [&'static str] = &[
-        "input", "choice", "at", "cases", "contacts", "missed", "late", "false", "breach", "unresolved", "early p99",
-        "early max", "boxes p99", "ns", "ms/frame",
+        "input",
+        "choice",
+        "at",
+        "cases",
+        "contacts",
+        "missed",
+        "late",
+        "false",
+        "breach",
+        "unresolved",
+        "early p99",
+        "early max",
+        "boxes p99",
+        "ns",
+        "ms/frame",
     ];
     fn row(&self) -> Vec<String> {
         let maybe = |x: Option<f64>| x.map_or("-".into(), digits);

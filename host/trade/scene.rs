@@ -11,8 +11,8 @@ use crate::error::Error;
 use crate::mesh::{Body, Positions, Topology};
 use crate::pairs::{How, Met, ask};
 use crate::pipeline::{Session, mean_side};
-use rayon::prelude::*;
 use crate::query::{Bv, Motion, Query, Solver};
+use rayon::prelude::*;
 
 /// A body whose contacts are known.
 pub struct Scene {
@@ -50,7 +50,8 @@ impl Scene {
             edge,
             reference: if list.is_some() { "list" } else { "certified" },
             edges: Vec::new(),
-            ends: [body.positions_t0(), body.positions_t1().unwrap_or(body.positions_t0())].map(Positions::to_f64),
+            ends: [body.positions_t0(), body.positions_t1().unwrap_or(body.positions_t0())]
+                .map(Positions::to_f64),
             truths: Vec::new(),
             pairs: Vec::new(),
             body,
@@ -236,12 +237,24 @@ mod tests {
         late[3].toi_hi = 1.0;
         assert_eq!(of(&late).late, 1);
         let mut invented = found.contacts().to_vec();
-        let Some(free) = (0..120).find(|&f| invented.binary_search_by_key(&(Kind::Vf, 0, f), |c| (c.kind, c.a, c.b)).is_err() && f > 60) else {
+        let Some(free) = (0..120).find(|&f| {
+            invented.binary_search_by_key(&(Kind::Vf, 0, f), |c| (c.kind, c.a, c.b)).is_err() && f > 60
+        }) else {
             panic!("vertex 0 meets every face");
         };
-        invented.push(Contact { kind: Kind::Vf, a: 0, b: free, toi: 0.0, toi_hi: 0.0, status: Status::Certified });
+        invented.push(Contact {
+            kind: Kind::Vf,
+            a: 0,
+            b: free,
+            toi: 0.0,
+            toi_hi: 0.0,
+            status: Status::Certified,
+        });
         invented.sort_by_key(|c| (c.kind, c.a, c.b));
         let of_invented = of(&invented);
-        assert_eq!((of_invented.false_alarms, of_invented.false_certificates, of_invented.violations), (1, 1, 1));
+        assert_eq!(
+            (of_invented.false_alarms, of_invented.false_certificates, of_invented.violations),
+            (1, 1, 1)
+        );
     }
 }

@@ -32,7 +32,8 @@ fn parse(text: &str) -> Result<List, String> {
     let (mut contacts, mut triangles) = (Vec::new(), Vec::new());
     for (at, line) in text.lines().enumerate() {
         let fields: Vec<&str> = line.split(',').map(str::trim).collect();
-        let index = |text: &str| text.parse::<u32>().map_err(|_| format!("row {}: {text} is no index", at + 1));
+        let index =
+            |text: &str| text.parse::<u32>().map_err(|_| format!("row {}: {text} is no index", at + 1));
         match fields[..] {
             [""] => {}
             [kind @ ("vf" | "ee"), a, b] => {

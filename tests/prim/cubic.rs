@@ -1,7 +1,8 @@
 //! The continuous tests on motions built to meet exactly, in integers.
 
-use crate::built::{Count, FAMILIES, Motion, Point, REACH_F32, REACH_F64, count, motion, toi};
+use crate::built::{Count, count, toi};
 use crate::random;
+use nearmiss::pairs::built::{FAMILIES, Motion, Point, REACH_F32, REACH_F64, motion};
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};
 use rand::Rng;

@@ -1,8 +1,8 @@
 //! The certified continuous tests on motions built to meet exactly, in integers: never missed, never late; and the
 //! judges of that, shown to condemn.
 
-use crate::built::{FAMILIES, KINDS, Motion, REACH_F32, REACH_F64, motion, of_kind};
 use crate::random;
+use nearmiss::pairs::built::{FAMILIES, KINDS, Motion, REACH_F32, REACH_F64, motion, of_kind};
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::Moving;
 use nearmiss_kernels::prim::inclusion::search::solve;

@@ -1,7 +1,6 @@
-//! Questions with exact answers, for the tests and for `examples/accuracy.rs`, which prints how each solver does.
+//! Questions with exact answers.
 #![allow(dead_code, reason = "each binary uses a part")]
 
-pub mod built;
 pub mod frames;
 pub mod motions;
 pub mod queries;
