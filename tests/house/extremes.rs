@@ -145,7 +145,10 @@ fn an_extreme_without_a_test_is_noticed() {
         ["X59: tests/none.rs has no test an_inexact_instruction_is_noticed"]
     );
     assert_eq!(
-        with("apart | `tests/extremes.rs::questions_are_answered` |", "apart | `tests/extremes.rs::what_cannot_be_is_refused` |"),
+        with(
+            "apart | `tests/extremes.rs::questions_are_answered` |",
+            "apart | `tests/extremes.rs::what_cannot_be_is_refused` |"
+        ),
         ["X13: what_cannot_be_is_refused does not ask it"]
     );
     let more = format!("{table}\n| X99 | new | unknown | none |\n");
