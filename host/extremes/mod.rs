@@ -16,7 +16,7 @@ pub use ask::{ask_questions, ask_turned_questions};
 pub use built::ask_built;
 pub use large::{Crowds, ask_crowds};
 pub use question::{Expect, Fault, MOST_BOXES, Question};
-pub use questions::{MOTIONS, questions, reported_motions};
+pub use questions::{MOTIONS, Reported, questions, reported_motions};
 pub use refits::ask_refits;
 pub use report::Report;
 pub use run::{Amount, run};

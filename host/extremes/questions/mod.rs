@@ -5,7 +5,7 @@ mod face;
 mod limits;
 mod reported;
 
-pub use reported::{MOTIONS, reported_motions};
+pub use reported::{MOTIONS, Reported, reported_motions};
 
 use super::question::{Expect, Question};
 use crate::case::Features;

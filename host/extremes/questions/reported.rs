@@ -4,7 +4,10 @@ use super::{Expect, Question};
 use crate::case::Features;
 
 /// Report and id, vertex/face (else edge/edge), the four points at time 0 and 1, the longest time, the first contact.
-pub const MOTIONS: [(&str, bool, [[f64; 3]; 4], [[f64; 3]; 4], f64, Option<f64>); 12] = [
+pub type Reported = (&'static str, bool, [[f64; 3]; 4], [[f64; 3]; 4], f64, Option<f64>);
+
+/// All of them.
+pub const MOTIONS: [Reported; 12] = [
     (
         "Tight-Inclusion#1: ti1",
         true,
