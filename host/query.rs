@@ -128,11 +128,13 @@ pub enum Solver {
     CubicF32,
     /// Continuous: the seed's cubic in f64. Can miss degenerate motion.
     CubicF64,
+    /// Continuous: additive conservative advancement in f64, a baseline. Early; lists what comes near; no bound on rounding.
+    Additive,
 }
 
 impl Solver {
     /// Every solver.
-    pub const ALL: [Solver; 7] = [
+    pub const ALL: [Solver; 8] = [
         Solver::Exact,
         Solver::Moller,
         Solver::Certified,
@@ -140,6 +142,7 @@ impl Solver {
         Solver::CertifiedF64,
         Solver::CubicF64,
         Solver::CubicF32,
+        Solver::Additive,
     ];
 
     /// The solver of a motion when none is named.
@@ -179,6 +182,10 @@ impl Solver {
                 "cubic-f64: can miss contacts of degenerate motion (coplanar, parallel, slivers); docs/accuracy.md has \
                  figures"
             }
+            Solver::Additive => {
+                "additive: advances by distance over speed; lists what comes near as contact, and has no bound on rounding, \
+                 so that it can miss what nearly touches at the start"
+            }
         }
     }
 }
@@ -204,6 +211,9 @@ pub struct Query {
     /// Certified: the most boxes that are looked at for a pair before it is left unresolved; `None` for
     /// [`Query::BOXES`].
     pub boxes: Option<u32>,
+    /// Certified: features that come this near are in contact, a length; times are then of coming so near. `None`, or 0,
+    /// for touching.
+    pub separation: Option<f64>,
 }
 
 impl Query {
@@ -256,7 +266,7 @@ impl Query {
         if !solver.answers(self.motion) {
             let known = match self.motion {
                 Motion::Discrete => "exact, moller",
-                _ => "certified, certified-f32, certified-f64, cubic-f64, cubic-f32",
+                _ => "certified, certified-f32, certified-f64, cubic-f64, cubic-f32, additive",
             };
             return Err(Error::Choice {
                 what: format!("the solver {solver:?} does not answer a {:?} query", self.motion),
@@ -281,13 +291,24 @@ impl Query {
 
     /// Whether tolerance and budget mean something.
     fn check_limits(&self) -> Result<(), Error> {
-        if (self.tolerance.is_some() || self.boxes.is_some()) && !self.solver().is_certified() {
+        let limits = self.tolerance.is_some() || self.boxes.is_some() || self.separation.is_some();
+        if limits && !self.solver().is_certified() {
             return Err(Error::Choice {
-                what: format!("the solver {:?} takes no tolerance and no budget", self.solver()),
-                advice: "give --tolerance and --boxes to a certified solver".into(),
+                what: format!(
+                    "the solver {:?} takes no tolerance, no budget and no separation",
+                    self.solver()
+                ),
+                advice: "give --tolerance, --boxes and --separation to a certified solver".into(),
             });
         }
-        if self.tolerance.is_some_and(|t| !(0.0..f64::INFINITY).contains(&t)) || self.boxes == Some(0) {
+        let is_length = |x: f64| (0.0..f64::INFINITY).contains(&x);
+        if self.separation.is_some_and(|s| !is_length(s)) {
+            return Err(Error::Choice {
+                what: "a separation that is no length".into(),
+                advice: "give --separation a length from 0".into(),
+            });
+        }
+        if self.tolerance.is_some_and(|t| !is_length(t)) || self.boxes == Some(0) {
             return Err(Error::Choice {
                 what: "a tolerance that is no length, or a budget of no boxes".into(),
                 advice: "give --tolerance a length from 0, and --boxes at least 1".into(),
@@ -299,6 +320,8 @@ impl Query {
     /// What a certified test is asked; `tolerance` must have been chosen.
     pub(crate) fn params(&self) -> Params {
         let budget = self.boxes.unwrap_or(Query::BOXES);
-        Params { budget, ..Params::new(self.tolerance.unwrap_or(0.0)) }
+        // Adding zero turns -0.0 into 0.0.
+        let separation = self.separation.unwrap_or(0.0) + 0.0;
+        Params { budget, separation, ..Params::new(self.tolerance.unwrap_or(0.0)) }
     }
 }

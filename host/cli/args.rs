@@ -149,6 +149,9 @@ pub struct DetectArgs {
     /// Certified: boxes that are looked at for a pair before it is left unresolved [default: 4096].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub boxes: Option<u32>,
+    /// Certified: features that come this near are in contact, a length [default: 0, touching].
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    pub separation: Option<f64>,
     #[command(flatten)]
     pub machine: MachineArgs,
     /// Discrete: also triangles that share a vertex, where they meet beyond it.
@@ -187,6 +190,7 @@ impl DetectArgs {
             adjacent: self.adjacent,
             tolerance: self.tolerance,
             boxes: self.boxes,
+            separation: self.separation,
         }
     }
 }

@@ -122,9 +122,16 @@ fn human(summary: &Summary, contacts: &Contacts) -> String {
         let escalated: u64 = contacts.escalated_vf_ee.iter().sum();
         let _ = writeln!(
             text,
-            "  {} unresolved, {escalated} asked again in f64; tolerance {tolerance:e}",
-            summary.unresolved
+            "  {} unresolved, {escalated} asked again in f64; tolerance {tolerance:e}{}",
+            summary.unresolved,
+            match summary.separation {
+                Some(s) if s > 0.0 => format!(", separation {s:e}"),
+                _ => String::new(),
+            }
         );
+    }
+    for reason in &summary.degraded {
+        let _ = writeln!(text, "  degraded: {reason}");
     }
     let _ = writeln!(
         text,
@@ -219,6 +226,12 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
         let why = if query.tolerance.is_some() { "as asked" } else { "about 1e-4 of the mean edge" };
         let boxes = query.boxes.unwrap_or(Query::BOXES);
         let _ = writeln!(text, "tolerance  {tolerance:e}, {why}; at most {boxes} boxes a pair");
+        let separation = query.separation.filter(|s| *s > 0.0);
+        let _ = writeln!(
+            text,
+            "separation {}",
+            separation.map_or("none: what touches is in contact".into(), |s| format!("{s:e}, as asked"))
+        );
     }
     let _ = writeln!(
         text,

@@ -9,7 +9,7 @@ use crate::device::emulator::{Emulator, Mode, Order};
 use crate::error::Error;
 use crate::extremes::{self, Amount};
 use crate::mesh::Body;
-use crate::pipeline::Session;
+use crate::pipeline::{Session, of_edges};
 use crate::query::{Bv, FrontShape, Motion, Query, QueueShape, Refit, Solver, StealShape, Traversal};
 use crate::scene;
 use std::fmt::Write;
@@ -60,6 +60,16 @@ fn choices(query: Query) -> Vec<(&'static str, Query)> {
     ]
 }
 
+/// Every question with every solver, and what comes within a separation: about a hundredth of the mean edge.
+fn questions(bodies: &[Body]) -> impl Iterator<Item = (String, Query)> {
+    let separation = Some(0.01 / Query::TOLERANCE * of_edges(bodies));
+    let near = Query { separation, ..Query::of(Motion::Continuous) };
+    Query::every().chain([near]).map(|query| {
+        let how = if query.separation.is_some() { ", a separation" } else { "" };
+        (format!("{:?} by {:?}{how}", query.motion, query.solver()), query)
+    })
+}
+
 /// The first stage on which two machines differ.
 fn difference(one: &Print, other: &Print) -> Option<&'static str> {
     one.stages.iter().zip(&other.stages).find(|(a, b)| a != b).map(|(a, _)| a.0)
@@ -95,8 +105,7 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
         scenes.push((args.mesh[0].display().to_string(), vec![body(&args.mesh)?]));
     }
     for (name, bodies) in &scenes {
-        for query in Query::every() {
-            let asked = format!("{:?} by {:?}", query.motion, query.solver());
+        for (asked, query) in questions(bodies) {
             let mut hashes = Vec::new();
             for bv in Bv::ALL {
                 let query = Query { bv: Some(bv), ..query };
@@ -133,8 +142,7 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
     for name in scene::FORMULAS {
         let triangles = if name == "identical" { EQUAL } else { SMALL };
         let bodies = [scene::scene(name, triangles, 3)?];
-        for query in Query::every() {
-            let asked = format!("{:?} by {:?}", query.motion, query.solver());
+        for (asked, query) in questions(&bodies) {
             // The walk that is fastest on the machine, on both.
             let query = Query { traversal: Some(query.traversal_on(machine.is_card())), ..query };
             let want = print_of(&machine, &bodies, query)?;
@@ -150,7 +158,7 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
         table,
         "microscope     {} scenes x {} queries x 3 orders",
         scene::FORMULAS.len(),
-        Query::every().count()
+        questions(&[]).count()
     );
     if args.cases > 0 {
         let amount = Amount::on(machine.is_card(), args.cases);

@@ -1,7 +1,9 @@
 //! Results: contacts in canonical order, their hash, and the summary.
 
+mod degraded;
 mod triangles;
 
+pub use degraded::Degraded;
 pub use triangles::{TriangleContact, triangle_contacts};
 
 use crate::device::Device;
@@ -33,7 +35,8 @@ pub enum Status {
     Contact,
     /// They meet, proven, first in `[toi, toi_hi]`.
     Certified,
-    /// They come nearer than the tolerance, or the budget ended; if they meet, not before `toi`. Proven as well.
+    /// They come nearer than the tolerance, or the budget ended; if they meet, not before `toi`. Proven as well, but for
+    /// [`Solver::Additive`], whose steps ended.
     Unresolved,
 }
 
@@ -48,7 +51,7 @@ impl Status {
     }
 }
 
-/// Two features that meet within the step.
+/// Two features that meet within the step, or, of a query with a separation, that come so near.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Contact {
     /// Which features.
@@ -57,7 +60,7 @@ pub struct Contact {
     pub a: u32,
     /// The second feature's index in its body.
     pub b: u32,
-    /// First time of contact, in [0, 1]; by a certified solver not after it.
+    /// First time of contact, or of coming as near as the separation, in [0, 1]; by a certified solver not after it.
     pub toi: f64,
     /// The time by which they have met, in [toi, 1]; of an unresolved pair the end of the step.
     pub toi_hi: f64,
@@ -106,6 +109,7 @@ pub struct Contacts {
     pub queues: Queues,
     /// What the front saved or cost.
     pub front: Front,
+    degraded: Vec<Degraded>,
 }
 
 /// The front of a frame. All zero where there was none.
@@ -180,11 +184,17 @@ impl Contacts {
             spilled: 0,
             queues: Queues::default(),
             front: Front::default(),
+            degraded: Vec::new(),
         }
     }
 
     /// Puts what the kernels found into canonical order and into the numbering of the bodies.
-    pub(crate) fn new(found: Found, layout: &Layout, query: Query, stages: Stages) -> Contacts {
+    pub(crate) fn new(
+        found: Found,
+        layout: &Layout,
+        query: Query,
+        (stages, degraded): (Stages, Vec<Degraded>),
+    ) -> Contacts {
         let second = if layout.bodies() == 2 { layout.starts[1] } else { Default::default() };
         let answer = match query.motion {
             Motion::Earliest => Answer::Earliest(found.earliest),
@@ -233,6 +243,7 @@ impl Contacts {
             spilled: found.counters[counter::SPILLED as usize..][..ROUNDS as usize].iter().sum(),
             queues: Queues::new(&found.counters),
             front: Front::new(&found.counters),
+            degraded,
         }
     }
 
@@ -248,6 +259,11 @@ impl Contacts {
     /// Overlap tests of two volumes: two a step, and those of the front.
     pub fn overlap_tests(&self) -> u64 {
         2 * self.steps + self.front.tests
+    }
+
+    /// In what the frame came to less than all that was asked, each by its reason; empty where nothing did.
+    pub fn degraded(&self) -> &[Degraded] {
+        &self.degraded
     }
 
     /// Whether nothing meets.
@@ -324,8 +340,12 @@ pub struct Summary {
     pub contacts: usize,
     /// How many of the contacts are neither confirmed nor refuted; of an earliest query, how many pairs.
     pub unresolved: u64,
+    /// In what the frame came to less than all that was asked; empty where nothing did.
+    pub degraded: Vec<Degraded>,
     /// The tolerance of a certified solver, a length.
     pub tolerance: Option<f64>,
+    /// The separation of a certified solver, a length; 0 for touching.
+    pub separation: Option<f64>,
     /// The smallest time of contact.
     pub earliest_toi: Option<f64>,
     /// Hash of the canonical answer, sixteen hexadecimal digits.
@@ -357,7 +377,9 @@ impl Summary {
             candidates: contacts.candidates,
             contacts: contacts.len(),
             unresolved: contacts.unresolved,
+            degraded: contacts.degraded.clone(),
             tolerance: None,
+            separation: query.solver().is_certified().then_some(query.params().separation),
             earliest_toi: contacts.earliest_toi(),
             hash: format!("{:016x}", contacts.hash()),
             queues: contacts.queues,

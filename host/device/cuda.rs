@@ -216,6 +216,52 @@ fn check_stamp(module: &Module) -> Result<(), Error> {
         module.get_global::<u64>(c"NEARMISS_STAMP").map_err(refused("looking for the kernels' stamp"))?;
     let mut found = 0u64;
     global.copy_to(&mut found).map_err(refused("reading the kernels' stamp"))?;
+    is_ours(found)
+}
+
+/// Whether kernels with that stamp come from this program's sources.
+fn is_ours(found: u64) -> Result<(), Error> {
     let found = format!("{found:016x}");
     if found == STAMP { Ok(()) } else { Err(Error::Stamp { found, wanted: STAMP.into() }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kernels_of_other_sources_are_refused() {
+        let ours = u64::from_str_radix(STAMP, 16).expect("sixteen digits");
+        is_ours(ours).expect("our own");
+        for bit in 0..64 {
+            let error = is_ours(ours ^ 1 << bit).expect_err("another bit");
+            assert!(matches!(error, Error::Stamp { .. }) && error.exit_code() == 4, "{error}");
+            assert!(
+                error.to_string().contains(STAMP) && error.to_string().contains("cargo build"),
+                "{error}"
+            );
+        }
+    }
+
+    /// What a kernel comes to that cannot be launched, is killed, or reads what is not its own: an error with its name.
+    #[test]
+    fn a_failed_launch_names_its_kernel() {
+        for code in [
+            CudaError::LaunchFailed,
+            CudaError::LaunchTimeout,
+            CudaError::LaunchOutOfResources,
+            CudaError::IllegalAddress,
+            CudaError::InvalidPtx,
+            CudaError::NotFound,
+            CudaError::EccUncorrectable,
+            CudaError::UnknownError,
+        ] {
+            let error = refused("narrow_sift_f32")(code);
+            assert!(matches!(error, Error::Device { .. }) && error.exit_code() == 4, "{error:?}");
+            let text = error.to_string();
+            assert!(text.starts_with("narrow_sift_f32: ") && text.contains("--backend cpu"), "{text}");
+        }
+        let memory = refused("loading the kernels")(CudaError::OutOfMemory);
+        assert!(matches!(memory, Error::Room { .. }) && memory.exit_code() == 4, "{memory:?}");
+    }
 }

@@ -49,6 +49,8 @@ struct Tally {
     launches: Cell<u64>,
     bytes: Cell<u64>,
     peak: Cell<u64>,
+    /// Most bytes that may be held; `None` for what the machine has.
+    most: Cell<Option<u64>>,
 }
 
 impl Device {
@@ -80,6 +82,12 @@ impl Device {
     /// An emulator, for example one under the microscope.
     pub fn emulator(emulator: Emulator) -> Device {
         Self::with(Machine::Emulator(emulator))
+    }
+
+    /// The same machine with no more than `bytes` of memory, whatever it has; of its clones too.
+    pub fn limited(self, bytes: u64) -> Device {
+        self.tally.most.set(Some(bytes));
+        self
     }
 
     fn with(machine: Machine) -> Device {
@@ -135,19 +143,23 @@ impl Device {
     /// Memory for `len` elements: zeroed (poisoned under the microscope).
     ///
     /// # Errors
-    /// [`Error::Room`] when the machine has no more.
+    /// [`Error::Room`] when the machine has no more, or may use no more: see [`Device::limited`].
     pub fn buffer<T: Pod>(&self, len: usize) -> Result<Buffer<T>, Error> {
         let bytes = len.checked_mul(size_of::<T>()).ok_or(Error::Room {
             what: "device memory".into(),
             asked: u64::MAX,
             given: isize::MAX as u64,
         })?;
+        let t = &self.tally;
+        let given = t.most.get().map_or(u64::MAX, |most| most.saturating_sub(t.bytes.get()));
+        if bytes as u64 > given {
+            return Err(Error::Room { what: "device memory, as limited".into(), asked: bytes as u64, given });
+        }
         let memory = match &*self.machine {
             Machine::Emulator(e) => Memory::Host(e.memory(bytes)?),
             #[cfg(feature = "cuda")]
             Machine::Cuda(c) => Memory::Card(c.memory(bytes)?),
         };
-        let t = &self.tally;
         t.bytes.set(t.bytes.get() + bytes as u64);
         t.peak.set(t.peak.get().max(t.bytes.get()));
         Ok(Buffer {

@@ -31,13 +31,12 @@ pub(super) fn verdict(met: Option<Met>, end: f64) -> Verdict {
     }
 }
 
-/// Whether a query of a whole step without separation answers the question too: what meets before an end meets first
-/// without one.
+/// Whether a query of a whole step answers the question too: what meets before an end meets first without one.
 fn is_public(q: &Question) -> bool {
-    q.separation == 0.0 && (q.end == 1.0 || matches!(q.expect, Expect::Meets(_) | Expect::Sure(_)))
+    q.end == 1.0 || matches!(q.expect, Expect::Meets(_) | Expect::Sure(_))
 }
 
-/// Answers to questions that may have a tolerance each; `None` where it cannot be asked so.
+/// Answers to questions that may have a tolerance and a separation each; `None` where it cannot be asked so.
 pub(super) fn answers(
     device: &Device,
     questions: &[Question],
@@ -48,12 +47,16 @@ pub(super) fn answers(
     let asked = |q: &Question| is_public(q) && (how.stored == Stored::F64 || q.fits_f32());
     let mut left: Vec<usize> = (0..questions.len()).filter(|i| asked(&questions[*i])).collect();
     while let Some(first) = left.first() {
-        let tolerance = questions[*first].tolerance;
-        let (now, later): (Vec<_>, Vec<_>) =
-            left.into_iter().partition(|i| questions[*i].tolerance == tolerance);
+        let Question { tolerance, separation, .. } = questions[*first];
+        let alike = |q: &Question| (q.tolerance, q.separation) == (tolerance, separation);
+        let (now, later): (Vec<_>, Vec<_>) = left.into_iter().partition(|i| alike(&questions[*i]));
         let cases: Vec<Case> = now.iter().map(|i| questions[*i].case).collect();
-        let query =
-            Query { solver: Some(solver), tolerance: Some(tolerance), ..Query::of(Motion::Continuous) };
+        let query = Query {
+            solver: Some(solver),
+            tolerance: Some(tolerance),
+            separation: Some(separation),
+            ..Query::of(Motion::Continuous)
+        };
         for (i, met) in now.into_iter().zip(ask(device, &cases, &query, how)?.verdicts) {
             all[i] = Some(verdict(met, 1.0));
         }
@@ -131,8 +134,9 @@ fn scaled(q: &Question, power: i32) -> Option<Question> {
         Case { positions_t0: all(q.case.positions_t0), positions_t1: all(q.case.positions_t1), ..q.case };
     let size = |x: f64| x == 0.0 || (2f64.powi(-900)..2f64.powi(479)).contains(&(x * by).abs());
     let all = q.case.positions_t0.as_flattened().iter().chain(q.case.positions_t1.as_flattened());
-    let kept = all.chain([&q.tolerance]).all(|x| size(*x));
-    kept.then_some(Question { case, tolerance: q.tolerance * by, ..*q })
+    let kept = all.chain([&q.tolerance, &q.separation]).all(|x| size(*x));
+    let (tolerance, separation) = (q.tolerance * by, q.separation * by);
+    kept.then_some(Question { case, tolerance, separation, ..*q })
 }
 
 fn axes(q: &Question, f: fn([f64; 3]) -> [f64; 3]) -> Option<Question> {

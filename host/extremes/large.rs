@@ -31,7 +31,7 @@ impl Crowds {
         Crowds { against_one: 1_000_000, equal: 5_000, ties: 100_000, beyond_32_bits: true };
     /// Sizes for a CPU: seconds.
     pub const SMALL: Crowds =
-        Crowds { against_one: 200_000, equal: 600, ties: 10_000, beyond_32_bits: false };
+        Crowds { against_one: 1_000_000, equal: 1_500, ties: 50_000, beyond_32_bits: false };
 }
 
 /// Asks all crowds.

@@ -60,12 +60,12 @@ fn holds<V: Kernels + Contain>(
 ) -> Result<(), Error> {
     let at = |k| ribbon(k).into_iter().map(Vec3).collect::<Vec<_>>();
     let (mut t0, mut t1) = (at(0), at(1));
-    let mut tree = Enclosed::<f32, V>::new(device, &faces(), [&t0, &t1], (refit, axes))?;
+    let mut tree = Enclosed::<f32, V>::new(device, &faces(), [&t0, &t1], (refit, axes, 0.0))?;
     for k in 1..=frames {
         t0 = t1;
         t1 = at(k + 1);
         tree.move_to(&t0, &t1)?;
-        let outside = tree.outside(|_| ())?;
+        let outside = tree.outside(0.0, |_| ())?;
         report.asked += 1;
         if outside > 0 {
             report.missed += outside as u64;
@@ -132,13 +132,13 @@ mod tests {
             assert!(found.len() > 3, "{motion:?}: {}", found.len());
         }
         let at = |k| ribbon(k).into_iter().map(Vec3).collect::<Vec<_>>();
-        let way = (Refit::Levels, Axes::PCA);
+        let way = (Refit::Levels, Axes::PCA, 0.0);
         let mut tree = Enclosed::<f32, Obb>::new(&device, &faces(), [&at(0), &at(1)], way).expect("a tree");
         tree.move_to(&at(7), &at(8)).expect("a frame");
-        assert_eq!(tree.outside(|_| ()).expect("nodes"), 0);
+        assert_eq!(tree.outside(0.0, |_| ()).expect("nodes"), 0);
         let half = |nodes: &mut [nearmiss_kernels::abi::Node<Obb>]| {
             nodes.iter_mut().for_each(|node| node.volume.h = node.volume.h.map(|h| h * 0.999));
         };
-        assert!(tree.outside(half).expect("nodes") > 10);
+        assert!(tree.outside(0.0, half).expect("nodes") > 10);
     }
 }

@@ -1,5 +1,7 @@
 //! The corridor: a frame from positions to contacts, in the order of the stages.
 
+#[cfg(test)]
+mod near;
 mod repeat;
 
 use super::layout::Layout;
@@ -8,7 +10,7 @@ use super::precision::Precision;
 use super::room::{Growing, List};
 use super::timing::{Stage, Stages};
 use super::tree::Tree;
-use super::volumes::{Kernels, Volumes};
+use super::volumes::{Kernels, Volumes, growth};
 use super::walk::{Walk, Walked, flags, walk};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
@@ -40,6 +42,10 @@ pub struct Found {
     pub earliest: Option<f64>,
     /// The frame's counters, see [`counter`].
     pub counters: Vec<u64>,
+    /// How often a list was too short and part of the frame ran again.
+    pub reruns: u64,
+    /// Whether the walk's front did not pay.
+    pub front_dropped: bool,
 }
 
 /// The memory of a query, and the way through it.
@@ -150,7 +156,7 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
             let refit = query.refit_on(corridor.device.is_card());
             let groups = V::group(axes) > 0;
             let tree = Tree::new(&corridor.device, layout.triangles(body), refit, groups)?;
-            let volumes = Volumes::new(&corridor.device, &tree, axes)?;
+            let volumes = Volumes::new(&corridor.device, &tree, (axes, growth(query.params().separation)))?;
             corridor.bodies.push((tree, volumes));
         }
         Ok(corridor)
@@ -261,8 +267,16 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
         })
     }
 
-    fn gather(&self, counters: Vec<u64>) -> Result<Found, Error> {
-        let mut found = Found { pairs: Vec::new(), vf: Vec::new(), ee: Vec::new(), earliest: None, counters };
+    fn gather(&self, counters: Vec<u64>, reruns: u64) -> Result<Found, Error> {
+        let mut found = Found {
+            pairs: Vec::new(),
+            vf: Vec::new(),
+            ee: Vec::new(),
+            earliest: None,
+            counters,
+            reruns,
+            front_dropped: self.walk.front_dropped(),
+        };
         match &self.narrow {
             Narrow::Discrete { contacts, .. } => found.pairs = contacts.read(&found.counters)?,
             Narrow::Continuous(c) => {
@@ -309,6 +323,7 @@ impl<R: Precision, V: Kernels> Frames for Corridor<R, V> {
     }
 
     fn frame(&mut self) -> Result<(Found, Stages), Error> {
+        let reruns = self.reruns;
         let start = self.device.mark()?;
         self.run(Stage::Fit)?;
         let fitted = self.device.mark()?;
@@ -341,7 +356,7 @@ impl<R: Precision, V: Kernels> Frames for Corridor<R, V> {
                 total: start.to(&end)?,
             };
             self.last.clone_from(&counters);
-            return Ok((self.gather(counters)?, stages));
+            return Ok((self.gather(counters, self.reruns - reruns)?, stages));
         }
     }
 

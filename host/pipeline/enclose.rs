@@ -10,6 +10,21 @@ use nearmiss_kernels::abi::{Frames, Motion, Node, Point, ROOT, Span};
 use nearmiss_kernels::bv::{Axes, Contain};
 use nearmiss_kernels::math::Vec3;
 
+/// Ways to go from a point, of a length just below 1: so that a coordinate of f64 may round on its way.
+const WAYS: [[f64; 3]; 7] = {
+    const L: f64 = 1.0 - 1e-6;
+    const S: f64 = L / 3.0;
+    [
+        [0.0; 3],
+        [L, 0.0, 0.0],
+        [0.0, -L, 0.0],
+        [0.0, 0.0, L],
+        [2.0 * S, 2.0 * S, -S],
+        [-S, 2.0 * S, 2.0 * S],
+        [-2.0 * S, -S, -2.0 * S],
+    ]
+};
+
 /// A tree that is built once and refitted to frame after frame.
 pub struct Enclosed<R: Precision, V: Kernels> {
     device: Device,
@@ -24,7 +39,8 @@ pub struct Enclosed<R: Precision, V: Kernels> {
 }
 
 impl<R: Precision, V: Kernels + Contain> Enclosed<R, V> {
-    /// Builds the tree for where the vertices are: of at least one triangle. `t1` is empty where nothing moves.
+    /// Builds the tree for where the vertices are: of at least one triangle. `t1` is empty where nothing moves; volumes grow
+    /// by `grow`.
     ///
     /// # Errors
     /// Those of the device.
@@ -32,7 +48,7 @@ impl<R: Precision, V: Kernels + Contain> Enclosed<R, V> {
         device: &Device,
         triangles: &[[u32; 3]],
         [t0, t1]: [&[Vec3<R>]; 2],
-        (refit, axes): (Refit, Axes),
+        (refit, axes, grow): (Refit, Axes, f32),
     ) -> Result<Self, Error> {
         let tree = Tree::new(device, (0, triangles.len() as u32), refit, V::group(axes) > 0)?;
         let mut enclosed = Enclosed {
@@ -41,7 +57,7 @@ impl<R: Precision, V: Kernels + Contain> Enclosed<R, V> {
             still: device.buffer(t0.len())?,
             moving: device.buffer(t0.len())?,
             at: (Vec::new(), false),
-            volumes: Volumes::new(device, &tree, axes)?,
+            volumes: Volumes::new(device, &tree, (axes, grow))?,
             tree,
             device: device.clone(),
         };
@@ -81,12 +97,13 @@ impl<R: Precision, V: Kernels + Contain> Enclosed<R, V> {
         self.volumes.refit(&self.device, &self.tree, frames, faces)
     }
 
-    /// Pairs of a node and a corner of a triangle below it that is not inside all of the time, after `fault`. Cost: each
-    /// corner against each node above it, in exact arithmetic on the host.
+    /// Pairs of a node and a corner of a triangle below it around which it does not hold everything within `near` all of the
+    /// time, after `fault`. Cost: each corner against each node above it, in exact arithmetic on the host.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn outside(&self, fault: impl Fn(&mut [Node<V>])) -> Result<usize, Error> {
+    pub fn outside(&self, near: f32, fault: impl Fn(&mut [Node<V>])) -> Result<usize, Error> {
+        let ways = &WAYS[..if near > 0.0 { WAYS.len() } else { 1 }];
         let (mut nodes, links) = (self.volumes.download()?, self.tree.download()?);
         fault(&mut nodes);
         let parents = self.tree.pair_parents.read(self.tree.leaves())?;
@@ -96,7 +113,12 @@ impl<R: Precision, V: Kernels + Contain> Enclosed<R, V> {
             let mut at = leaf as u32;
             loop {
                 let volume = nodes[at as usize].volume;
-                let held = |[t0, t1]: &[Vec3<R>; 2]| volume.holds(t0.wide(), t1.wide());
+                let held = |[t0, t1]: &[Vec3<R>; 2]| {
+                    ways.iter().all(|way| {
+                        let step = Vec3(*way) * f64::from(near);
+                        volume.holds(t0.wide() + step, t1.wide() + step)
+                    })
+                };
                 outside += corners.iter().filter(|&c| !held(c)).count();
                 if at == ROOT {
                     break;
@@ -136,17 +158,20 @@ mod tests {
         [of(body.positions_t0()), body.positions_t1().map_or(Vec::new(), of)]
     }
 
+    /// Of volumes that were told to grow by `grow`.
     fn outside<R: Precision, V: Kernels + Contain>(
         body: &Body,
         (size, at): (f64, f64),
-        way: (Refit, Axes),
+        (refit, axes): (Refit, Axes),
+        (grow, near): (f32, f32),
         fault: impl Fn(&mut [Node<V>]),
     ) -> usize {
         let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
         let [t0, t1] = frames::<R>(body, size, at);
+        let way = (refit, axes, grow);
         let enclosed = Enclosed::<R, V>::new(&device, body.faces(), [&t0, &t1], way).expect("a tree");
         enclosed.check().expect("sound");
-        enclosed.outside(fault).expect("nodes")
+        enclosed.outside(near, fault).expect("nodes")
     }
 
     fn all<R: Precision, V: Kernels + Contain>(axes: Axes) {
@@ -155,13 +180,24 @@ mod tests {
         for (i, body) in bodies.map(|body| body.expect("a scene")).iter().enumerate() {
             for place in [(1.0, 0.0), (1e-3, 1e3), (1e25, 0.0)] {
                 let refit = [Refit::Levels, Refit::Treelets, Refit::BottomUp][i % 3];
-                let count = outside::<R, V>(body, place, (refit, axes), |_| ());
+                let count = outside::<R, V>(body, place, (refit, axes), (0.0, 0.0), |_| ());
                 assert_eq!(count, 0, "{} {place:?}", body.name());
             }
         }
         let body = scene::soup(300, 8, true).expect("a scene");
+        for (refit, place) in
+            [(Refit::Levels, (1.0, 0.0)), (Refit::Treelets, (1e-3, 1e3)), (Refit::BottomUp, (1e25, 0.0))]
+        {
+            let near = 0.125 * place.0 as f32;
+            let out = |grow| outside::<R, V>(&body, place, (refit, axes), (grow, near), |_| ());
+            assert_eq!(out(near), 0, "{refit:?}, {place:?}: what is near is held as well");
+            assert!(
+                out(0.0) > 100 && out(0.99 * near) > 0,
+                "{refit:?}, {place:?}: less growth, or none, is noticed"
+            );
+        }
         // A node with its left child's volume: what is below the right one shows.
-        let few = outside::<R, V>(&body, (1.0, 0.0), (Refit::Levels, axes), |nodes| {
+        let few = outside::<R, V>(&body, (1.0, 0.0), (Refit::Levels, axes), (0.0, 0.0), |nodes| {
             let at = (ROOT as usize..nodes.len()).rfind(|&at| !nodes[at].is_leaf()).expect("an inner node");
             nodes[at].volume = nodes[nodes[at].link as usize].volume;
         });

@@ -17,8 +17,9 @@ pub(crate) use corridor::Found;
 pub use layout::{Layout, Offsets};
 pub use timing::{Stage, Stages};
 pub(crate) use tolerance::mean_side;
+pub(crate) use tolerance::of_edges;
 
-use crate::contacts::{Contacts, Summary};
+use crate::contacts::{Contacts, Degraded, Summary};
 use crate::device::Device;
 use crate::error::Error;
 use crate::mesh::{Body, MAX_FACES, MAX_VERTICES};
@@ -100,10 +101,8 @@ impl Session {
         }
         fits(bodies.iter().map(Body::face_count).sum(), bodies.iter().map(Body::vertex_count).sum())?;
         let layout = Layout::new(&bodies, query.motion != crate::query::Motion::Discrete);
-        let tolerance = query
-            .solver()
-            .is_certified()
-            .then(|| query.tolerance.unwrap_or_else(|| tolerance::of_edges(&bodies)));
+        let tolerance =
+            query.solver().is_certified().then(|| query.tolerance.unwrap_or_else(|| of_edges(&bodies)));
         let mut session = Session {
             device,
             bodies,
@@ -172,7 +171,9 @@ impl Session {
         };
         self.answered = true;
         let stages = Stages { construct: self.construct_ms, ..stages };
-        Ok(Contacts::new(found, &self.layout, self.query, stages))
+        let asked = Query { tolerance: self.tolerance, ..self.query };
+        let degraded = Degraded::of(&found, &self.layout, &self.bodies, &asked);
+        Ok(Contacts::new(found, &self.layout, self.query, (stages, degraded)))
     }
 
     /// Runs one stage of this frame `times` times, on the device alone, and gives each run's milliseconds: for profilers,

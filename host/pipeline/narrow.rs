@@ -279,6 +279,7 @@ impl Continuous {
             vf: self.vf.span(),
             ee: self.ee.span(),
             counters: given.counters,
+            separation: given.query.params().separation,
         };
         launch_striding::<R::Sift>(given.device, given.pairs.len as usize, &args)
     }
@@ -291,8 +292,13 @@ impl Continuous {
             candidates: candidates.span(),
             survivors: survivors.span(),
             counters: given.counters,
+            separation: given.query.params().separation,
         };
         let (vf, ee) = (args(&self.vf, &self.vf_survivors), args(&self.ee, &self.ee_survivors));
+        if vf.separation > 0.0 {
+            launch_striding::<R::RejectNearVf>(given.device, self.vf.room(), &vf)?;
+            return launch_striding::<R::RejectNearEe>(given.device, self.ee.room(), &ee);
+        }
         launch_striding::<R::RejectVf>(given.device, self.vf.room(), &vf)?;
         launch_striding::<R::RejectEe>(given.device, self.ee.room(), &ee)
     }
@@ -315,12 +321,19 @@ impl Continuous {
         };
         let (vf, ee) = (args(&self.vf_survivors, &self.vf_hits), args(&self.ee_survivors, &self.ee_hits));
         let (of_vf, of_ee) = (self.vf_survivors.room(), self.ee_survivors.room());
-        if given.query.solver() == Solver::CubicF32 {
-            launch_striding::<R::Vf32>(given.device, of_vf, &vf)?;
-            launch_striding::<R::Ee32>(given.device, of_ee, &ee)
-        } else {
-            launch_striding::<R::Vf64>(given.device, of_vf, &vf)?;
-            launch_striding::<R::Ee64>(given.device, of_ee, &ee)
+        match given.query.solver() {
+            Solver::CubicF32 => {
+                launch_striding::<R::Vf32>(given.device, of_vf, &vf)?;
+                launch_striding::<R::Ee32>(given.device, of_ee, &ee)
+            }
+            Solver::Additive => {
+                launch_striding::<R::AdditiveVf>(given.device, of_vf, &vf)?;
+                launch_striding::<R::AdditiveEe>(given.device, of_ee, &ee)
+            }
+            _ => {
+                launch_striding::<R::Vf64>(given.device, of_vf, &vf)?;
+                launch_striding::<R::Ee64>(given.device, of_ee, &ee)
+            }
         }
     }
 

@@ -40,6 +40,10 @@ pub trait Precision: Real {
     type RejectVf: Entry<Args = RejectArgs<Self>>;
     /// Edge/edge candidates that may meet.
     type RejectEe: Entry<Args = RejectArgs<Self>>;
+    /// The same with a separation.
+    type RejectNearVf: Entry<Args = RejectArgs<Self>>;
+    /// The same with a separation.
+    type RejectNearEe: Entry<Args = RejectArgs<Self>>;
     /// Vertex/face by the cubic in f32.
     type Vf32: Entry<Args = SolveArgs<Self>>;
     /// Vertex/face by the cubic in f64.
@@ -48,6 +52,10 @@ pub trait Precision: Real {
     type Ee32: Entry<Args = SolveArgs<Self>>;
     /// Edge/edge by the cubic in f64.
     type Ee64: Entry<Args = SolveArgs<Self>>;
+    /// Vertex/face by additive advancement.
+    type AdditiveVf: Entry<Args = SolveArgs<Self>>;
+    /// Edge/edge by additive advancement.
+    type AdditiveEe: Entry<Args = SolveArgs<Self>>;
     /// Vertex/face by boxes in f32, proven.
     type CertifyVf32: Entry<Args = CertifyArgs<Self>>;
     /// Vertex/face by boxes in f64, proven.
@@ -77,10 +85,14 @@ impl Precision for f32 {
     type Sift = entry::narrow_sift_f32;
     type RejectVf = entry::narrow_reject_vf_f32;
     type RejectEe = entry::narrow_reject_ee_f32;
+    type RejectNearVf = entry::narrow_reject_near_vf_f32;
+    type RejectNearEe = entry::narrow_reject_near_ee_f32;
     type Vf32 = entry::narrow_vf_f32_f32;
     type Vf64 = entry::narrow_vf_f32_f64;
     type Ee32 = entry::narrow_ee_f32_f32;
     type Ee64 = entry::narrow_ee_f32_f64;
+    type AdditiveVf = entry::narrow_additive_vf_f32;
+    type AdditiveEe = entry::narrow_additive_ee_f32;
     type CertifyVf32 = entry::narrow_certify_vf_f32_f32;
     type CertifyVf64 = entry::narrow_certify_vf_f32_f64;
     type CertifyEe32 = entry::narrow_certify_ee_f32_f32;
@@ -111,10 +123,14 @@ impl Precision for f64 {
     type Sift = entry::narrow_sift_f64;
     type RejectVf = entry::narrow_reject_vf_f64;
     type RejectEe = entry::narrow_reject_ee_f64;
+    type RejectNearVf = entry::narrow_reject_near_vf_f64;
+    type RejectNearEe = entry::narrow_reject_near_ee_f64;
     type Vf32 = entry::narrow_vf_f64_f32;
     type Vf64 = entry::narrow_vf_f64_f64;
     type Ee32 = entry::narrow_ee_f64_f32;
     type Ee64 = entry::narrow_ee_f64_f64;
+    type AdditiveVf = entry::narrow_additive_vf_f64;
+    type AdditiveEe = entry::narrow_additive_ee_f64;
     type CertifyVf32 = entry::narrow_certify_vf_f64_f32;
     type CertifyVf64 = entry::narrow_certify_vf_f64_f64;
     type CertifyEe32 = entry::narrow_certify_ee_f64_f32;

@@ -141,7 +141,7 @@ mod tests {
         let frames = Frames { still: points.span(), moving: Span::EMPTY };
         let mut tree = Tree::new(&device, (0, 2_000), refit, V::group(Axes::PCA) > 0)?;
         tree.construct::<f32>(&device, frames, faces.span())?;
-        let volumes = Volumes::<V>::new(&device, &tree, Axes::PCA)?;
+        let volumes = Volumes::<V>::new(&device, &tree, (Axes::PCA, 0.0))?;
         let refit = |tree: &Tree| {
             volumes.fit(&device, tree, frames, faces.span())?;
             volumes.refit(&device, tree, frames, faces.span())

@@ -12,7 +12,7 @@ use nearmiss_kernels::abi::{
 use nearmiss_kernels::bv::{Aabb, Axes, Linear, Obb, Volume};
 use nearmiss_kernels::bvh;
 use nearmiss_kernels::entry::{self, Entry};
-use nearmiss_kernels::math::Vec3;
+use nearmiss_kernels::math::{Vec3, round};
 
 /// A bounding volume, with its kernels.
 pub trait Kernels: Volume {
@@ -94,20 +94,28 @@ impl Kernels for Obb {
     }
 }
 
+/// How much each of two volumes grows so that what comes within the separation makes them meet: half of it, rounded up.
+pub fn growth(separation: f64) -> f32 {
+    let half = round::up(0.5 * separation);
+    if 2.0 * f64::from(half) < separation { half.next_up() } else { half }
+}
+
 /// The volumes of a tree, kept on the device.
 pub struct Volumes<V> {
     /// The nodes, in the tree's order.
     pub nodes: Buffer<Node<V>>,
     axes: Axes,
+    /// How much they grow: half the separation, rounded up.
+    pub grow: f32,
 }
 
 impl<V: Kernels> Volumes<V> {
-    /// Takes the memory for the volumes of a tree.
+    /// Takes the memory for the volumes of a tree, which hold everything within `grow` of the triangles.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn new(device: &Device, tree: &Tree, axes: Axes) -> Result<Self, Error> {
-        Ok(Volumes { nodes: device.buffer(2 * tree.leaves())?, axes })
+    pub fn new(device: &Device, tree: &Tree, (axes, grow): (Axes, f32)) -> Result<Self, Error> {
+        Ok(Volumes { nodes: device.buffer(2 * tree.leaves())?, axes, grow })
     }
 
     /// Fits the volumes of the leaves, unless treelets do that in [`Volumes::refit`], and of the nodes of few leaves that
@@ -129,6 +137,8 @@ impl<V: Kernels> Volumes<V> {
                 leaf_nodes: tree.leaf_nodes.span(),
                 links: tree.links.span(),
                 nodes: self.nodes.span(),
+                grow: self.grow,
+                pad: 0,
             };
             device.launch::<V::Fit<R>>(device.blocks_for::<V::Fit<R>>(tree.leaves()), &args)?;
         }
@@ -144,7 +154,7 @@ impl<V: Kernels> Volumes<V> {
             firsts: tree.firsts.span(),
             nodes: self.nodes.span(),
             first: tree.first(),
-            pad: 0,
+            grow: self.grow,
         };
         V::fit_groups(device, &args)
     }
@@ -198,7 +208,7 @@ impl<V: Kernels> Volumes<V> {
             ticket: plan.ticket.span(),
             nodes: self.nodes.span(),
             axes: self.axes,
-            pad: 0,
+            grow: self.grow,
         };
         device.launch::<V::Treelets<R>>(plan.blocks(), &args)
     }
@@ -268,7 +278,8 @@ impl<V: Kernels> Volumes<V> {
                 leaves[first as usize..=last as usize].iter().map(|&at| links[at as usize].triangle());
             let vertices = triangles.flat_map(|t| faces[t as usize]);
             let points = vertices.flat_map(|v| frames.iter().map(move |frame| frame[v as usize]));
-            V::of(&points.collect::<Vec<_>>())
+            let volume = V::of(&points.collect::<Vec<_>>())?;
+            Some(if self.grow > 0.0 { volume.grown(self.grow) } else { volume })
         };
         bvh::check_volumes(&links, &self.download()?, self.axes, fitted).map_err(broken)
     }

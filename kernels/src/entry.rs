@@ -142,6 +142,10 @@ kernels! {
     narrow_reject_vf_f64: reject::vf::<f64, B>, [RejectArgs<f64>], WIDE, 0;
     narrow_reject_ee_f32: reject::ee::<f32, B>, [RejectArgs<f32>], WIDE, 0;
     narrow_reject_ee_f64: reject::ee::<f64, B>, [RejectArgs<f64>], WIDE, 0;
+    narrow_reject_near_vf_f32: reject::near_vf::<f32, B>, [RejectArgs<f32>], WIDE, 0;
+    narrow_reject_near_vf_f64: reject::near_vf::<f64, B>, [RejectArgs<f64>], WIDE, 0;
+    narrow_reject_near_ee_f32: reject::near_ee::<f32, B>, [RejectArgs<f32>], WIDE, 0;
+    narrow_reject_near_ee_f64: reject::near_ee::<f64, B>, [RejectArgs<f64>], WIDE, 0;
     narrow_vf_f32_f32: solve::vf::<f32, f32, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_vf_f32_f64: solve::vf::<f32, f64, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_vf_f64_f32: solve::vf::<f64, f32, B>, [SolveArgs<f64>], WIDE, 0;
@@ -150,6 +154,10 @@ kernels! {
     narrow_ee_f32_f64: solve::ee::<f32, f64, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_ee_f64_f32: solve::ee::<f64, f32, B>, [SolveArgs<f64>], WIDE, 0;
     narrow_ee_f64_f64: solve::ee::<f64, f64, B>, [SolveArgs<f64>], WIDE, 0;
+    narrow_additive_vf_f32: solve::additive_vf::<f32, B>, [SolveArgs<f32>], NARROW, 0;
+    narrow_additive_vf_f64: solve::additive_vf::<f64, B>, [SolveArgs<f64>], NARROW, 0;
+    narrow_additive_ee_f32: solve::additive_ee::<f32, B>, [SolveArgs<f32>], NARROW, 0;
+    narrow_additive_ee_f64: solve::additive_ee::<f64, B>, [SolveArgs<f64>], NARROW, 0;
     narrow_certify_vf_f32_f32: certify::vf::<f32, f32, B>, [CertifyArgs<f32>], NARROW, 0;
     narrow_certify_vf_f32_f64: certify::vf::<f32, f64, B>, [CertifyArgs<f32>], NARROW, 0;
     narrow_certify_vf_f64_f32: certify::vf::<f64, f32, B>, [CertifyArgs<f64>], NARROW, 0;

@@ -28,6 +28,8 @@ pub struct Front {
     age: u32,
     /// Overlap tests of the last descent from the roots.
     from_roots: u64,
+    /// Whether the last frame dropped it, or rested from it.
+    dropped: bool,
 }
 
 /// What is known of the last frame.
@@ -58,6 +60,7 @@ impl Front {
             state: State::New,
             age: 0,
             from_roots: 0,
+            dropped: false,
         })
     }
 
@@ -111,6 +114,8 @@ impl<V: Kernels> Walk<V> for Front {
         // Lists are no longer than an index reaches.
         let count = of(counter::ENDS) as u32;
         let pruned = self.prunes::<V>();
+        let rested = matches!(self.state, State::Resting(_));
+        let had = matches!(self.state, State::Kept { .. });
         self.state = match self.state {
             State::Resting(0 | 1) => State::New,
             State::Resting(frames) => State::Resting(frames - 1),
@@ -131,7 +136,9 @@ impl<V: Kernels> Walk<V> for Front {
                 State::Kept { count, fresh: false }
             }
         };
-        if let State::Kept { .. } = self.state {
+        let kept = matches!(self.state, State::Kept { .. });
+        self.dropped = rested || had && !kept;
+        if kept {
             std::mem::swap(&mut self.front, &mut self.ends);
             // What this frame needed the next one will need as well: no frame runs again for that.
             if self.ends.room() < self.front.room() {
@@ -139,6 +146,10 @@ impl<V: Kernels> Walk<V> for Front {
             }
         }
         Ok(())
+    }
+
+    fn front_dropped(&self) -> bool {
+        self.dropped
     }
 
     fn forget(&mut self) {

@@ -81,6 +81,11 @@ pub trait Walk<V> {
         Ok(())
     }
 
+    /// Whether the last frame, once finished, had no front though one was asked for, or dropped it.
+    fn front_dropped(&self) -> bool {
+        false
+    }
+
     /// The trees were built anew: what was kept is worth nothing.
     fn forget(&mut self) {}
 

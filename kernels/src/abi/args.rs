@@ -159,6 +159,10 @@ arguments! {
         links: Span<Link>,
         /// Out: the leaves.
         nodes: Span<Node<V>>,
+        /// How much the volumes grow: half the separation at which triangles are in contact; 0 for touching.
+        grow: f32,
+        /// Nothing.
+        pad: u32,
     }
     /// `fit_groups_obb`: the oriented boxes of inner nodes of few leaves, around the points below them.
     GroupsArgs<R: Real, V: Pod> {
@@ -178,8 +182,8 @@ arguments! {
         nodes: Span<Node<V>>,
         /// The body's first triangle.
         first: u32,
-        /// Nothing.
-        pad: u32,
+        /// How much the volumes grow: half the separation at which triangles are in contact; 0 for touching.
+        grow: f32,
     }
     /// `refit_levels`: the volumes of levels `from` to `to`, deepest first.
     RefitArgs<V: Pod> {
@@ -222,8 +226,8 @@ arguments! {
         nodes: Span<Node<V>>,
         /// Which axes merged oriented boxes take, see [`crate::bv::Axes`].
         axes: Axes,
-        /// Nothing.
-        pad: u32,
+        /// How much the volumes grow: half the separation at which triangles are in contact; 0 for touching.
+        grow: f32,
     }
     /// `refit_bottom_up`: the volumes of the inner nodes, by whoever comes second.
     BottomUpArgs<V: Pod> {

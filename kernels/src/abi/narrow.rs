@@ -24,6 +24,8 @@ arguments! {
         ee: Span<Pair>,
         /// Counters, see [`counter`](super::counter).
         counters: Span<u64>,
+        /// Features this near are in contact, a length; 0 for touching.
+        separation: f64,
     }
     /// `narrow_moller`, `narrow_filter`, `narrow_exact`: triangle pairs that meet.
     DiscreteArgs<R: Real> {
@@ -44,7 +46,8 @@ arguments! {
         /// Bits: [`KEEP_ADJACENT`](super::KEEP_ADJACENT).
         flags: u32,
     }
-    /// `narrow_reject_vf`, `narrow_reject_ee`: candidates that certainly stay apart, left out.
+    /// `narrow_reject_vf`, `narrow_reject_ee`, and with a separation `narrow_reject_near_vf` and `_ee`: candidates that
+    /// certainly stay apart, left out.
     RejectArgs<R: Real> {
         /// Positions.
         frames: Frames<R>,
@@ -58,8 +61,11 @@ arguments! {
         survivors: Span<Pair>,
         /// Counters, see [`counter`](super::counter).
         counters: Span<u64>,
+        /// Features this near are in contact, a length; only of the two kernels that heed it.
+        separation: f64,
     }
-    /// `narrow_vf`, `narrow_ee`: the first time of contact of two primitives in motion.
+    /// `narrow_vf`, `narrow_ee`, `narrow_additive_vf`, `narrow_additive_ee`: the first time of contact of two primitives in
+    /// motion.
     SolveArgs<R: Real> {
         /// Positions.
         frames: Frames<R>,

@@ -68,6 +68,11 @@ impl Volume for Aabb {
     fn merge(&self, other: &Self, _: Axes) -> Self {
         Aabb::merge(*self, *other)
     }
+    /// A sum is rounded by less than half the gap to the next number.
+    #[inline]
+    fn grown(&self, by: f32) -> Self {
+        Aabb { lo: self.lo.map(|x| (x - by).next_down()), hi: self.hi.map(|x| (x + by).next_up()) }
+    }
     #[inline]
     fn overlaps(&self, other: &Self) -> bool {
         Aabb::overlaps(self, other)

@@ -68,6 +68,13 @@ impl Volume for Linear {
         b
     }
 
+    /// Both ends grow, and what is between them as much.
+    #[inline]
+    fn grown(&self, by: f32) -> Self {
+        let grown = |lo, hi| Aabb { lo, hi }.grown(by);
+        Linear::between(grown(self.lo0, self.hi0), grown(self.lo1, self.hi1))
+    }
+
     /// Whether there is a t in [0, 1] at which the closed boxes share a point; true also where rounding leaves it
     /// open, that is where the overlap on one axis ends within `MOVING_TIME` of the begin of another's. Symmetric.
     ///

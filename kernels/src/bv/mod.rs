@@ -38,6 +38,8 @@ pub trait Volume: Pod + Sync + Send + core::fmt::Debug + PartialEq {
     fn group(_: Axes) -> u32 {
         0
     }
+    /// Around all points within `by`, a length above 0, of a point that it is around. Rounded outward.
+    fn grown(&self, by: f32) -> Self;
     /// False only if they certainly share no point (for a moving volume: at no t in [0, 1]).
     fn overlaps(&self, other: &Self) -> bool;
 }

@@ -25,7 +25,7 @@
 use super::axes::{self, Frame, three};
 use super::{Axes, GROUP, Points, Volume};
 use crate::math::tolerance::{
-    BOX_APART, BOX_APART_UNDERFLOW, BOX_CHILD, BOX_LIMIT, BOX_POINT, BOX_UNDERFLOW, BOX_UP,
+    BOX_APART, BOX_APART_UNDERFLOW, BOX_CHILD, BOX_LENGTH, BOX_LIMIT, BOX_POINT, BOX_UNDERFLOW, BOX_UP,
 };
 use crate::math::{Real, Vec3};
 use bytemuck::{Pod, Zeroable};
@@ -213,6 +213,13 @@ impl Volume for Obb {
             pad: 0,
         };
         of(self, o).union(&of(o, self), Vec3(pick(theirs.0, mine.0)))
+    }
+
+    /// A step of length `by` goes along an axis as far as `by` times the axis is long.
+    #[inline]
+    fn grown(&self, by: f32) -> Self {
+        let h = self.h.map(|h| (h + by * BOX_LENGTH + BOX_UNDERFLOW) * BOX_UP);
+        Obb::new(Vec3(self.c), [Vec3(self.a0), Vec3(self.a1)], Vec3(h))
     }
 
     #[inline(always)]

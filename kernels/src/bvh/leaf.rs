@@ -5,19 +5,21 @@ use crate::bv::Volume;
 use crate::exec::Lane;
 use crate::math::Real;
 
-/// Around a triangle, at every t in [0, 1] when there are two frames. Rounded outward.
+/// Around a triangle, at every t in [0, 1] when there are two frames, and around what is within `grow` of it. Rounded
+/// outward.
 #[inline(always)]
 pub fn volume<R: Real, V: Volume, L: Lane>(
     l: &L,
     frames: &Frames<R>,
     faces: Span<[u32; 3]>,
-    triangle: u32,
+    (triangle, grow): (u32, f32),
 ) -> V {
     let face = l.read(faces, triangle);
-    if frames.moving.is_empty() {
+    let volume = if frames.moving.is_empty() {
         V::still(face.map(|v| l.read(frames.still, v).at))
     } else {
         let ends = face.map(|v| l.read(frames.moving, v));
         V::moving(ends.map(|v| v.t0.at), ends.map(|v| v.t1.at))
-    }
+    };
+    if grow > 0.0 { volume.grown(grow) } else { volume }
 }

@@ -139,6 +139,9 @@ pub const MOVING_TIME: f32 = 16.0 * U32;
 /// How far `a_i . a_j` may be from 1 (i = j) or 0 in an oriented box, as computed: `12u`. The computation errs by less
 /// than `4u`, so the true value is within `16u`, on which the next three rest. Ratio.
 pub const BOX_AXES: f32 = 12.0 * U32;
+/// No axis of an oriented box is longer: its square is within `16u` of 1, so its length within `8u`; `16u` with the
+/// rounding of this product. Ratio.
+pub const BOX_LENGTH: f32 = 1.0 + 16.0 * U32;
 /// Error of `a . (p - c)`, relative to the sum of `|a_d| |p_d - c_d|`: four roundings (difference, product, two sums),
 /// and one more for those of the bound itself. Ratio.
 pub const BOX_POINT: f32 = 5.0 * U32;

@@ -4,7 +4,8 @@
 //!          that neighbours have about as many leaves and lie near each other.
 //! Reads    positions at t = 0 (and t = 1), faces, the leaf's node.    Writes   the nodes of the leaves, each once.
 //! Before   the tree is constructed; positions are finite.
-//! After    the volume encloses the triangle, at every t in [0, 1] when there are two frames. Rounded outward.
+//! After    the volume encloses the triangle, at every t in [0, 1] when there are two frames, and what is within `grow` of
+//!          it. Rounded outward.
 //! Room     fixed; cannot run out.
 //! Departs  the paper merges all inner nodes; boxes of boxes are twice as loose as boxes of points.
 //! Cost     12 B face, 48 B positions a frame (gathered), 8 B link in, 32 or 64 B node out.
@@ -25,7 +26,7 @@ pub fn fit<R: Real, V: Volume, B: Block>(b: &mut B, a: &FitArgs<R, V>) {
         while (i as u64) < a.leaf_nodes.len {
             let at = l.read(a.leaf_nodes, i);
             let link = l.read(a.links, at);
-            let volume: V = leaf::volume(l, &a.frames, a.faces, link.triangle());
+            let volume: V = leaf::volume(l, &a.frames, a.faces, (link.triangle(), a.grow));
             l.write(a.nodes, at, link.with(volume));
             i += stride;
         }
@@ -50,7 +51,9 @@ pub fn groups<R: Real, B: Block>(b: &mut B, a: &GroupsArgs<R, Obb>) {
                     leaves: [first, last],
                 };
                 let link = Link { link: 2 * pair, last };
-                l.write(a.nodes, l.read(a.pair_parents, pair), link.with(Obb::of(&points)));
+                let volume = Obb::of(&points);
+                let volume = if a.grow > 0.0 { volume.grown(a.grow) } else { volume };
+                l.write(a.nodes, l.read(a.pair_parents, pair), link.with(volume));
             }
             pair += stride;
         }

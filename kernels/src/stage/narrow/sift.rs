@@ -2,12 +2,13 @@
 //! Paper    section 6.2.5, "each of the 15 elementary vertex/face and edge/edge tests".
 //! Launch   a lane a triangle pair; a grid of any size strides.
 //! Reads    candidates (pairs that share a vertex among them), faces, edges, owners, positions of both frames.
-//! Writes   vertex/face and edge/edge candidates whose swept boxes overlap, each once.
-//! Before   every pair of triangles with overlapping swept boxes is listed, adjacent ones too.
-//! After    every vertex/face and edge/edge pair without a common vertex whose closed swept boxes overlap is listed.
+//! Writes   vertex/face and edge/edge candidates whose swept boxes overlap, or come within the separation, each once.
+//! Before   every pair of triangles that come within the separation is listed, adjacent ones too.
+//! After    every vertex/face and edge/edge pair without a common vertex that comes within the separation is listed;
+//!          without one every such pair whose closed swept boxes overlap.
 //!          Why once: each vertex and each edge is owned by one of its triangles, and a pair of features is tested only
-//!          where owners meet. Why none is lost: a feature's swept box lies in its owner's, so the owners' boxes overlap
-//!          too, and that pair of triangles, adjacent or not, is in the list.
+//!          where owners meet. Why none is lost: a feature lies in its owner, so what comes within the separation of
+//!          another brings the owners as near, and that pair of triangles, adjacent or not, is in the list.
 //! Room     vf, ee: counted past the end, grown, run again.
 //! Departs  the paper tests all 15 for every pair; owners (representative triangles: Curtis, Tamstorf, Manocha, "Fast
 //!          collision detection for deformable models using representative-triangles", 2008) leave about 3.
@@ -30,6 +31,12 @@ impl<R: Real> Swept<R> {
     fn merge(self, o: Self) -> Self {
         Swept { lo: self.lo.min(o.lo), hi: self.hi.max(o.hi) }
     }
+    /// Around what is within `gap` of it. A difference is rounded by at most u of the bound and of what is taken away;
+    /// `INCLUSION_INPUT` of the bound and what [`gap`] has to spare make up for it.
+    fn grown(self, gap: R) -> Self {
+        let out = |x: R| gap + x.abs() * R::INCLUSION_INPUT;
+        Swept { lo: self.lo.map(|x| x - out(x)), hi: self.hi.map(|x| x + out(x)) }
+    }
     fn overlaps(&self, o: &Self) -> bool {
         let axis = |k: usize| (self.lo[k] <= o.hi[k]) & (o.lo[k] <= self.hi[k]);
         axis(0) & axis(1) & axis(2)
@@ -44,12 +51,14 @@ struct Triangle<R> {
 }
 
 impl<R: Real> Triangle<R> {
-    fn read<L: Lane>(l: &L, a: &SiftArgs<R>, index: u32) -> Self {
+    /// `gap` as by [`gap`], or 0.
+    fn read<L: Lane>(l: &L, a: &SiftArgs<R>, index: u32, gap: R) -> Self {
         let corners = l.read(a.faces, index);
         let owned = l.read(a.owners, index);
         let boxes = corners.map(|v| {
             let Moving { t0, t1 } = moving(l, &a.frames, v);
-            Swept { lo: t0.min(t1), hi: t0.max(t1) }
+            let swept = Swept { lo: t0.min(t1), hi: t0.max(t1) };
+            if gap > R::ZERO { swept.grown(gap) } else { swept }
         });
         Triangle { corners, owned, boxes }
     }
@@ -68,6 +77,11 @@ impl<R: Real> Triangle<R> {
     fn has(&self, vertex: u32) -> bool {
         self.corners.contains(&vertex)
     }
+}
+
+/// By how much the boxes of one of two triangles grow: a little more than the separation, or not at all.
+fn gap<R: Real>(separation: f64) -> R {
+    if separation > 0.0 { R::of(separation) * R::INCLUSION_UP + R::INCLUSION_UNDERFLOW } else { R::ZERO }
 }
 
 /// Bits of the tests to make: 0 to 2 a vertex of p and q, 3 to 5 a vertex of q and p, 6 + 3 i + j edge i of p and j of q.
@@ -102,7 +116,7 @@ fn wanted<R: Real>(p: &Triangle<R>, q: &Triangle<R>) -> u32 {
 /// Vertex/face and edge/edge candidates of each triangle pair.
 pub fn sift<R: Real, B: Block>(b: &mut B, a: &SiftArgs<R>) {
     let count = listed(b, a.pairs, a.counters, counter::PAIRS);
-    let lanes = b.lanes();
+    let (lanes, gap) = (b.lanes(), gap(a.separation));
     let mut masks = b.slot(0u32);
     let mut pairs = b.slot(Pair::default());
     let mut places = b.slot(0u32);
@@ -114,7 +128,8 @@ pub fn sift<R: Real, B: Block>(b: &mut B, a: &SiftArgs<R>) {
             if i < count {
                 let pair = l.read(a.pairs, i);
                 *pairs.of(l) = pair;
-                *masks.of(l) = wanted(&Triangle::read(l, a, pair.a), &Triangle::read(l, a, pair.b));
+                let (p, q) = (Triangle::read(l, a, pair.a, gap), Triangle::read(l, a, pair.b, R::ZERO));
+                *masks.of(l) = wanted(&p, &q);
             }
             *places.of(l) = (*masks.of(l) & 63).count_ones();
         });

@@ -1,17 +1,21 @@
 //! # Solve: vertex/face and edge/edge candidates → contacts with their first time
 //! Paper    section 6.2.5, "we solve the cubic equation for each of the 15 elementary tests".
-//! Launch   `vf` and `ee`, a lane a candidate; a grid of any size strides.
+//! Launch   `vf` and `ee`, or `additive_vf` and `additive_ee`, a lane a candidate; a grid of any size strides.
 //! Reads    candidates that may meet, faces or edges, positions of both frames (four vertices).
 //! Writes   contacts with toi, as if proven, which they are not; or, when only the earliest is asked for, one number.
 //! Before   candidates are complete.
 //! After    the contacts that the solver finds. The cubic, the seed's, can miss and be late: see [`crate::prim::cubic`].
+//!          Additive advancement finds what comes near: see [`crate::prim::additive`]; a pair whose steps end is listed
+//!          as unresolved.
 //! Room     hits: counted past the end, grown, run again.
-//! Cost     8 B candidate, 12 B indices, 128 B positions (gathered); 400 to 1,500 operations.
+//! Cost     8 B candidate, 12 B indices, 128 B positions (gathered); 400 to 1,500 operations; of
+//!          additive advancement 150 a step.
 
 use super::{append_each, listed, moving};
 use crate::abi::{Hit, Pair, SolveArgs, counter};
 use crate::exec::{Block, Lane};
 use crate::math::Real;
+use crate::prim::additive::{Advance, ee_additive, vf_additive};
 use crate::prim::cubic::{ee_toi, vf_toi};
 use crate::prim::inclusion::Verdict;
 
@@ -19,7 +23,7 @@ use crate::prim::inclusion::Verdict;
 pub fn vf<R: Real, S: Real, B: Block>(b: &mut B, a: &SolveArgs<R>) {
     solve(b, a, counter::VF_SURVIVORS, counter::VF_HITS, |l, pair| {
         let face = l.read(a.faces, pair.b).map(|v| moving(l, &a.frames, v));
-        vf_toi::<R, S>(moving(l, &a.frames, pair.a), face).map(Real::wide)
+        vf_toi::<R, S>(moving(l, &a.frames, pair.a), face).map(contact)
     });
 }
 
@@ -27,27 +31,54 @@ pub fn vf<R: Real, S: Real, B: Block>(b: &mut B, a: &SolveArgs<R>) {
 pub fn ee<R: Real, S: Real, B: Block>(b: &mut B, a: &SolveArgs<R>) {
     solve(b, a, counter::EE_SURVIVORS, counter::EE_HITS, |l, pair| {
         let ends = |e: u32| l.read(a.edges, e).map(|v| moving(l, &a.frames, v));
-        ee_toi::<R, S>(ends(pair.a), ends(pair.b)).map(Real::wide)
+        ee_toi::<R, S>(ends(pair.a), ends(pair.b)).map(contact)
     });
 }
 
-/// Solves each candidate; keeps every contact, or only the smallest time.
+/// Vertex/face, positions in R, additive advancement in f64.
+pub fn additive_vf<R: Real, B: Block>(b: &mut B, a: &SolveArgs<R>) {
+    solve(b, a, counter::VF_SURVIVORS, counter::VF_HITS, |l, pair| {
+        let face = l.read(a.faces, pair.b).map(|v| moving(l, &a.frames, v));
+        vf_additive::<R, f64>(moving(l, &a.frames, pair.a), face).map(advanced)
+    });
+}
+
+/// Edge/edge, positions in R, additive advancement in f64.
+pub fn additive_ee<R: Real, B: Block>(b: &mut B, a: &SolveArgs<R>) {
+    solve(b, a, counter::EE_SURVIVORS, counter::EE_HITS, |l, pair| {
+        let ends = |e: u32| l.read(a.edges, e).map(|v| moving(l, &a.frames, v));
+        ee_additive::<R, f64>(ends(pair.a), ends(pair.b)).map(advanced)
+    });
+}
+
+fn contact<S: Real>(toi: S) -> Verdict {
+    Verdict::contact(toi.wide(), toi.wide(), 0, false)
+}
+
+fn advanced(found: Advance<f64>) -> Verdict {
+    if found.ended { Verdict::unresolved(found.toi, 1.0, 0, true) } else { contact(found.toi) }
+}
+
+/// Solves each candidate; keeps every contact, or only the smallest time; counts what is left unresolved.
 fn solve<R: Real, B: Block>(
     b: &mut B,
     a: &SolveArgs<R>,
     from: u32,
     to: u32,
-    toi: impl Fn(&B::Lane, Pair) -> Option<f64>,
+    ask: impl Fn(&B::Lane, Pair) -> Option<Verdict>,
 ) {
     let count = listed(b, a.survivors, a.counters, from);
     append_each(b, count, (a.hits, a.counters, to), |l, i| {
         let pair = l.read(a.survivors, i);
-        let toi = toi(l, pair)?;
+        let verdict = ask(l, pair)?;
+        if !verdict.is_contact() {
+            l.fetch_add(a.counters, counter::UNRESOLVED, 1);
+        }
         if a.earliest.is_empty() {
-            return Some(Hit { a: pair.a, b: pair.b, verdict: Verdict::contact(toi, toi, 0, false) });
+            return Some(Hit { a: pair.a, b: pair.b, verdict });
         }
         // Times are in [0, 1]: their bits are ordered as they are.
-        l.fetch_min(a.earliest, 0, toi.to_bits());
+        l.fetch_min(a.earliest, 0, verdict.toi.to_bits());
         None
     });
 }

@@ -57,7 +57,7 @@ pub fn treelets<R: Real, V: Volume, B: Block>(b: &mut B, a: &TreeletsArgs<R, V>)
         while i < leaves {
             let seat = l.read(a.seats, first + i);
             let link = Link { link: seat.link, last: first + i };
-            let volume: V = leaf::volume(l, &a.frames, a.faces, link.triangle());
+            let volume: V = leaf::volume(l, &a.frames, a.faces, (link.triangle(), a.grow));
             chip.put(l, i, volume);
             l.give(a.nodes, seat.node, link.with(volume));
             i += lanes;

@@ -1,0 +1,266 @@
+//! Every way in which an answer can be less than was asked is forced here, and must say so: by its reason, with a count, in
+//! the library, the text and the JSON. None of them may lose a contact.
+
+mod support;
+
+use nearmiss::contacts::{Contact, Degraded, Status};
+use nearmiss::mesh::{Body, Mesh, Positions};
+use nearmiss::query::{FrontShape, Motion, Solver, Traversal};
+use nearmiss::{Contacts, Device, Error, Query, Session, scene};
+use std::collections::BTreeMap;
+use std::process::Command;
+use support::{ask, engine, microscope};
+
+fn soup() -> Vec<Body> {
+    vec![scene::soup(60, 5, true).expect("a scene")]
+}
+
+fn by(solver: Solver) -> Query {
+    Query { solver: Some(solver), ..Query::of(Motion::Continuous) }
+}
+
+/// All contacts of the one are in the other, as early or earlier.
+fn none_is_lost(truth: &Contacts, other: &Contacts) {
+    let listed: BTreeMap<_, _> = other.contacts().iter().map(|c| ((c.kind, c.a, c.b), c.toi)).collect();
+    for c in truth.contacts().iter().filter(|c| c.status == Status::Certified) {
+        let toi = listed.get(&(c.kind, c.a, c.b)).unwrap_or_else(|| panic!("{c:?} is lost"));
+        assert!(*toi <= c.toi_hi, "{c:?} is late: {toi}");
+    }
+}
+
+fn count(all: &[Contact], is: impl Fn(&Contact) -> bool) -> u64 {
+    all.iter().filter(|c| is(c)).count() as u64
+}
+
+#[test]
+fn an_answer_that_is_all_that_was_asked_says_nothing() {
+    for query in Query::every().filter(|query| query.solver() != Solver::CertifiedF32) {
+        let contacts = ask(engine(), vec![scene::draped(300).expect("a scene")], query);
+        assert_eq!(contacts.degraded(), [], "{query:?}");
+        assert!(contacts.unresolved == 0 && !contacts.is_empty(), "{query:?}");
+    }
+    let none = ask(engine(), vec![support::still(&[], &[])], by(Solver::Certified));
+    assert_eq!(none.degraded(), []);
+}
+
+#[test]
+fn a_budget_that_ends_is_told() {
+    let truth = ask(engine(), soup(), by(Solver::Certified));
+    for solver in [Solver::Certified, Solver::CertifiedF32, Solver::CertifiedF64] {
+        for boxes in [1, 2] {
+            for device in [engine(), microscope(support::ORDERS[2])] {
+                let all = ask(device, soup(), Query { boxes: Some(boxes), ..by(solver) });
+                none_is_lost(&truth, &all);
+                let ended = all.degraded().iter().find_map(|reason| match reason {
+                    Degraded::Boxes { pairs } => Some(*pairs),
+                    _ => None,
+                });
+                let ended = ended.expect("a budget of a box or two ends");
+                let touching = all.degraded().iter().find_map(|reason| match reason {
+                    Degraded::Unresolved { pairs } => Some(*pairs),
+                    _ => None,
+                });
+                assert!(ended >= all.unresolved - touching.unwrap_or(0), "{solver:?}, {boxes}: {ended}");
+                assert!(ended > truth.len() as u64 / 4, "{solver:?}, {boxes}: {ended}");
+                assert!(all.degraded().iter().any(Degraded::touches_answer));
+            }
+        }
+        // Not told apart, but told.
+        let first = Query { motion: Motion::Earliest, boxes: Some(1), ..by(solver) };
+        let first = ask(engine(), soup(), first);
+        assert!(first.degraded().contains(&Degraded::Unresolved { pairs: first.unresolved }));
+        assert!(first.unresolved > 0 && first.earliest_toi() <= truth.earliest_toi());
+    }
+}
+
+#[test]
+fn what_touches_without_passing_is_told() {
+    // Equal triangles that stand still touch in every pair of features; certain is none that does not pass through.
+    let all = ask(engine(), vec![scene::identical(6).expect("a scene")], by(Solver::Certified));
+    let unresolved = count(all.contacts(), |c| c.status == Status::Unresolved);
+    assert!(unresolved > 0 && all.unresolved == unresolved);
+    let told = all.degraded().iter().map(|reason| match reason {
+        Degraded::Unresolved { pairs } | Degraded::Boxes { pairs } => *pairs,
+        other => panic!("{other:?}"),
+    });
+    assert_eq!(told.sum::<u64>(), unresolved, "{:?}", all.degraded());
+}
+
+/// Two long edges, a hundred-millionth apart, that pass along each other and then cross.
+fn needles() -> Vec<Body> {
+    let frame = |points: [[f64; 3]; 3]| Mesh::new("needle", Positions::F64(points.into()), vec![[0, 1, 2]]);
+    let body =
+        |t0, t1| Body::moving(frame(t0).expect("a mesh"), frame(t1).expect("a mesh")).expect("two frames");
+    vec![
+        body(
+            [[-1., -5e-9, 0.], [1., -5e-9, 0.], [0., -1., 0.]],
+            [[-1.001, 5e-9, -0.001], [1.001, 5e-9, 0.001], [0., -1., 0.]],
+        ),
+        body(
+            [[0., 5e-9, -1.], [0., 5e-9, 1.], [0., 1., 0.]],
+            [[0.001, -5e-9, -0.999], [-0.001, -5e-9, 0.999], [0., 1., 0.]],
+        ),
+    ]
+}
+
+#[test]
+fn steps_that_end_are_told() {
+    let truth = ask(engine(), needles(), by(Solver::CertifiedF64));
+    assert!(!truth.is_empty());
+    for device in [engine(), microscope(support::ORDERS[1])] {
+        let all = ask(device.clone(), needles(), by(Solver::Additive));
+        let ended = count(all.contacts(), |c| c.status == Status::Unresolved);
+        assert!(ended > 0 && all.degraded() == [Degraded::Steps { pairs: ended }], "{:?}", all.degraded());
+        assert!(count(all.contacts(), |c| c.status == Status::Certified) == 0);
+        none_is_lost(&truth, &all);
+        let first = ask(device, needles(), Query { motion: Motion::Earliest, ..by(Solver::Additive) });
+        assert_eq!(first.degraded(), [Degraded::Steps { pairs: ended }]);
+        assert_eq!(first.earliest_toi(), all.earliest_toi());
+    }
+}
+
+#[test]
+fn a_tolerance_below_the_precision_is_told() {
+    let told = |solver, motion, tolerance| {
+        let query = Query { tolerance: Some(tolerance), motion, ..by(solver) };
+        let all = ask(engine(), soup(), query);
+        let told = all.degraded().iter().find_map(|reason| match reason {
+            Degraded::ToleranceBelowPrecision { pairs } => Some(*pairs),
+            _ => None,
+        });
+        (told, all.len() as u64)
+    };
+    for (solver, tolerance) in
+        [(Solver::CertifiedF32, 1e-9), (Solver::Certified, 1e-9), (Solver::CertifiedF64, 1e-18)]
+    {
+        let (pairs, listed) = told(solver, Motion::Continuous, tolerance);
+        assert_eq!(pairs, Some(Some(listed)), "{solver:?}: no pair here is small enough");
+        assert_eq!(told(solver, Motion::Earliest, tolerance).0, Some(None), "{solver:?}");
+        // All that the precision gives is what was asked; or what it can tell.
+        for enough in [0.0, 1e-4] {
+            assert_eq!(told(solver, Motion::Continuous, enough).0, None, "{solver:?}");
+            assert_eq!(told(solver, Motion::Earliest, enough).0, None, "{solver:?}");
+        }
+    }
+    // A tolerance that large pairs cannot have and small ones can.
+    let (some, listed) = told(Solver::CertifiedF32, Motion::Continuous, 1.3e-6);
+    assert!(some.flatten().is_some_and(|some| 0 < some && some < listed), "{some:?} of {listed}");
+}
+
+#[test]
+fn lists_that_grew_are_told_once() {
+    for motion in [Motion::Discrete, Motion::Continuous] {
+        let bodies =
+            vec![scene::identical(if motion == Motion::Discrete { 150 } else { 60 }).expect("a scene")];
+        let solver = if motion == Motion::Discrete { Solver::Exact } else { Solver::CubicF64 };
+        let query = Query { motion, ..by(solver) };
+        let mut session = Session::new(engine(), bodies, query).expect("a session");
+        let first = session.detect().expect("an answer");
+        let times = session.reruns();
+        assert!(times > 0, "the scene no longer overflows the first room: make it larger");
+        assert_eq!(first.degraded(), [Degraded::ListsGrown { times }]);
+        assert!(!first.degraded()[0].touches_answer());
+        let second = session.detect().expect("an answer");
+        assert!(second.degraded().is_empty() && second.answer == first.answer);
+    }
+}
+
+#[test]
+fn a_front_that_is_dropped_is_told() {
+    // Far between two frames: what the front kept is worth less than a descent from the roots.
+    let bodies = [scene::soup(400, 7, false), scene::soup(400, 8, false)].map(|body| body.expect("a scene"));
+    let shape = FrontShape { drop: true, prune_every: 0, ..FrontShape::native() };
+    let told = |drop| {
+        let walk = Some(Traversal::Front(FrontShape { drop, ..shape }));
+        let query = Query { traversal: walk, ..Query::of(Motion::Discrete) };
+        let mut session = Session::new(engine(), vec![bodies[0].clone()], query).expect("a session");
+        let frames = (0..4).map(|i| {
+            let points = bodies[i % 2].positions_t0().clone();
+            let mesh = Mesh::new("soup", points, bodies[0].faces().to_vec()).expect("a mesh");
+            session.move_to(0, Body::still(mesh)).expect("the same mesh");
+            session.detect().expect("an answer").degraded().contains(&Degraded::FrontDropped)
+        });
+        frames.collect::<Vec<_>>()
+    };
+    let dropped = told(true);
+    assert!(!dropped[0] && dropped.contains(&true), "{dropped:?}");
+    assert_eq!(told(false), [false; 4]);
+}
+
+/// As much memory as a frame needs, a little less, and so on down to none: the answer, or an error that says how much was
+/// asked and given. Asked again, the same: no half-grown list answers.
+#[test]
+fn memory_that_ends_is_an_error() {
+    let bodies = || vec![scene::identical(150).expect("a scene")];
+    let ways = [Query::of(Motion::Discrete), by(Solver::CubicF32), by(Solver::Certified)];
+    for (query, bodies) in ways
+        .into_iter()
+        .map(|query| (query, if query.motion == Motion::Discrete { bodies() } else { soup() }))
+    {
+        let device = engine();
+        let truth = ask(device.clone(), bodies.clone(), query);
+        let (_, peak) = device.bytes();
+        let (mut answered, mut built, mut refused) = (0, 0, 0);
+        for part in 0..=40 {
+            let limited = engine().limited(peak * part / 40);
+            let mut session = match Session::new(limited.clone(), bodies.clone(), query) {
+                Ok(session) => session,
+                Err(error) => {
+                    is_room(&error, &limited);
+                    built += 1;
+                    continue;
+                }
+            };
+            match session.detect() {
+                Ok(contacts) => {
+                    assert_eq!(contacts.answer, truth.answer, "{part}");
+                    answered += 1;
+                }
+                Err(error) => {
+                    is_room(&error, &limited);
+                    is_room(&session.detect().expect_err("no more memory than before"), &limited);
+                    refused += 1;
+                }
+            }
+        }
+        assert!(answered > 0 && built > 0, "{answered} {refused} {built}");
+        assert!(refused > 0 || query.motion != Motion::Discrete, "lists that grow were refused: {refused}");
+    }
+}
+
+fn is_room(error: &Error, device: &Device) {
+    let Error::Room { asked, given, .. } = error else { panic!("{error}") };
+    assert!(asked > given && error.exit_code() == 4, "{error}");
+    assert!(error.to_string().contains("use a smaller scene"), "{error}");
+    assert!(device.bytes().0 <= device.bytes().1);
+}
+
+/// What the program prints, as text and as JSON.
+#[test]
+fn the_program_tells() {
+    let run = |more: &[&str]| {
+        let args = ["detect", "--scene", "draped", "--triangles", "400", "--backend", "cpu"];
+        let done = Command::new(env!("CARGO_BIN_EXE_nearmiss")).args(args).args(more).output();
+        let done = done.expect("the program starts");
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        String::from_utf8(done.stdout).expect("text")
+    };
+    let json = |more: &[&str]| -> serde_json::Value {
+        serde_json::from_str(&run(&[more, &["--json"]].concat())).expect("JSON")
+    };
+    let all = json(&["--boxes", "1"]);
+    let boxes = all["degraded"].as_array().expect("a list").iter().find(|r| r["reason"] == "boxes");
+    assert!(boxes.is_some_and(|r| r["pairs"].as_u64().is_some_and(|n| n > 0)), "{all}");
+    assert_eq!(all["separation"], 0.0);
+    let plain = json(&["--discrete"]);
+    assert_eq!(
+        (&plain["degraded"], &plain["separation"]),
+        (&serde_json::json!([]), &serde_json::Value::Null)
+    );
+    let text = run(&["--boxes", "1"]);
+    assert!(text.contains("  degraded: ") && text.contains("raise --boxes"), "{text}");
+    assert!(!run(&["--discrete"]).contains("degraded"));
+    let apart = json(&["--separation", "0.01"]);
+    assert!(apart["separation"] == 0.01 && apart["contacts"].as_u64() > all["contacts"].as_u64(), "{apart}");
+    assert!(run(&["--separation", "0.01"]).contains("separation 1e-2"));
+}

@@ -1,0 +1,243 @@
+//! Features that come within a separation: whole frames against all pairs asked one by one, and pairs whose distance is
+//! known exactly.
+
+#[path = "separation/exact.rs"]
+mod exact;
+mod support;
+
+use nearmiss::contacts::{Contact, Kind, Status};
+use nearmiss::mesh::{Body, Positions, Topology};
+use nearmiss::query::{Motion, Solver};
+use nearmiss::{Query, Session, scene};
+use nearmiss_kernels::math::Vec3;
+use nearmiss_kernels::prim::cubic::Moving;
+use nearmiss_kernels::prim::inclusion::{
+    Params, Verdict, ee_certified, ee_settled, vf_certified, vf_settled,
+};
+use std::collections::BTreeMap;
+use support::{ask, engine, machines, ways};
+
+const SOLVERS: [Solver; 3] = [Solver::Certified, Solver::CertifiedF32, Solver::CertifiedF64];
+/// Of every question here, a length.
+const TOLERANCE: f64 = 1e-3;
+
+type Row = (Kind, u32, u32);
+
+fn asking(motion: Motion, solver: Solver, separation: f64) -> Query {
+    let (solver, tolerance, separation) = (Some(solver), Some(TOLERANCE), Some(separation));
+    Query { solver, tolerance, separation, ..Query::of(motion) }
+}
+
+/// What the solver says of a pair by itself.
+fn verdict(solver: Solver, kind: Kind, [a, b, c, d]: [Moving<f64>; 4], p: &Params) -> Verdict {
+    let edges = kind == Kind::Ee;
+    let (first, settled) =
+        if edges { ee_settled::<_, f32>([a, b], [c, d], p) } else { vf_settled::<_, f32>(a, [b, c, d], p) };
+    if solver == Solver::CertifiedF32 || solver == Solver::Certified && settled {
+        first
+    } else if edges {
+        ee_certified::<_, f64>([a, b], [c, d], p)
+    } else {
+        vf_certified::<_, f64>(a, [b, c, d], p)
+    }
+}
+
+/// A body's vertices, in motion, those of its faces, and its edges.
+struct Seen<'a> {
+    at: Vec<Moving<f64>>,
+    used: Vec<u32>,
+    faces: &'a [[u32; 3]],
+    edges: Vec<[u32; 2]>,
+}
+
+impl Seen<'_> {
+    fn of(body: &Body) -> Seen<'_> {
+        let t0 = body.positions_t0().to_f64();
+        let t1 = body.positions_t1().map_or_else(|| t0.clone(), Positions::to_f64);
+        let mut used: Vec<u32> = body.faces().iter().flatten().copied().collect();
+        used.sort_unstable();
+        used.dedup();
+        let at = t0.iter().zip(t1).map(|(p, q)| Moving { t0: Vec3(*p), t1: Vec3(q) }).collect();
+        let edges = Topology::new(body.faces(), body.vertex_count()).edges;
+        Seen { at, used, faces: body.faces(), edges }
+    }
+    fn points<const N: usize>(&self, of: [u32; N]) -> [Moving<f64>; N] {
+        of.map(|v| self.at[v as usize])
+    }
+}
+
+/// All pairs without a common vertex that the solver does not say to be apart: of one body, or of two.
+fn brute(bodies: &[Body], solver: Solver, separation: f64) -> BTreeMap<Row, Verdict> {
+    let p = Params { separation, ..Params::new(TOLERANCE) };
+    let seen: Vec<Seen> = bodies.iter().map(Seen::of).collect();
+    let (one, other, own) = (&seen[0], &seen[seen.len() - 1], seen.len() == 1);
+    let mut near = BTreeMap::new();
+    let mut put = |kind, a: usize, b: usize, x| {
+        let v = verdict(solver, kind, x, &p);
+        if !v.is_separated() {
+            near.insert((kind, a as u32, b as u32), v);
+        }
+    };
+    let against = |v: u32, of: &Seen, f: usize, faces: &Seen| {
+        let ([m], [a, b, c]) = (of.points([v]), faces.points(faces.faces[f]));
+        [m, a, b, c]
+    };
+    for &v in &one.used {
+        for (f, face) in other.faces.iter().enumerate() {
+            if !(own && face.contains(&v)) {
+                put(Kind::Vf, v as usize, f, against(v, one, f, other));
+            }
+        }
+    }
+    for &v in other.used.iter().filter(|_| !own) {
+        (0..one.faces.len()).for_each(|f| put(Kind::Fv, f, v as usize, against(v, other, f, one)));
+    }
+    for (i, a) in one.edges.iter().enumerate() {
+        for (j, b) in other.edges.iter().enumerate() {
+            if !own || i < j && !a.iter().any(|v| b.contains(v)) {
+                let ([a, b], [c, d]) = (one.points(*a), other.points(*b));
+                put(Kind::Ee, i, j, [a, b, c, d]);
+            }
+        }
+    }
+    near
+}
+
+/// What is wrong with an answer. Pairs that are only near may be left out, where volumes or filters tell them apart.
+fn fault(found: &[Contact], near: &BTreeMap<Row, Verdict>) -> Option<String> {
+    let mut listed = BTreeMap::new();
+    for c in found {
+        let row = (c.kind, c.a, c.b);
+        let Some(v) = near.get(&row) else { return Some(format!("{c:?} is apart")) };
+        let status = if v.is_contact() { Status::Certified } else { Status::Unresolved };
+        let same = [c.toi, c.toi_hi].map(f64::to_bits) == [v.toi, v.toi_hi].map(f64::to_bits);
+        if !same || c.status != status || listed.insert(row, ()).is_some() {
+            return Some(format!("{c:?} is {v:?}"));
+        }
+    }
+    let mut sure = near.iter().filter(|(_, v)| v.is_contact()).map(|(row, _)| row);
+    sure.find(|row| !listed.contains_key(row)).map(|row| format!("{row:?} is missed"))
+}
+
+/// A body's positions in doubles that f32 does not hold.
+fn turned(body: Body) -> Body {
+    let turn = |p: &Positions| {
+        let turned = |[x, y, z]: [f64; 3]| [0.6 * x - 0.8 * y, 0.8 * x + 0.6 * y, z + x / 3.0];
+        Positions::F64(p.to_f64().into_iter().map(turned).collect())
+    };
+    let frame = |p| nearmiss::mesh::Mesh::new("turned", turn(p), body.faces().to_vec()).expect("a mesh");
+    let t1 = body.positions_t1().unwrap_or(body.positions_t0());
+    Body::moving(frame(body.positions_t0()), frame(t1)).expect("two frames")
+}
+
+fn soup(n: usize) -> Body {
+    scene::soup(n, 5, true).expect("a scene")
+}
+
+/// One body, a connected one, two; in f32 and in f64.
+fn scenes() -> Vec<Vec<Body>> {
+    vec![
+        vec![soup(50)],
+        vec![turned(scene::draped(100).expect("a scene"))],
+        vec![soup(30), scene::soup(40, 9, false).expect("a scene")],
+    ]
+}
+
+#[test]
+fn nothing_within_a_separation_is_lost() {
+    for bodies in scenes() {
+        let mut certain = Vec::new();
+        // Two lengths below the sizes of triangles, one about as large.
+        for separation in [1.0 / 256.0, 0.03, 0.25] {
+            let mut hits = [0; 3];
+            for (k, solver) in SOLVERS.into_iter().enumerate() {
+                let near = brute(&bodies, solver, separation);
+                let all = ask(engine(), bodies.clone(), asking(Motion::Continuous, solver, separation));
+                let what = format!("{}, {solver:?}, {separation}", bodies[0].name());
+                assert_eq!(fault(all.contacts(), &near), None, "{what}");
+                let first = ask(engine(), bodies.clone(), asking(Motion::Earliest, solver, separation));
+                let least = [&first, &all].map(|a| (a.earliest_toi().map(f64::to_bits), a.unresolved));
+                assert_eq!(least[0], least[1], "{what}");
+                hits[k] = near.values().filter(|v| v.is_contact()).count();
+            }
+            certain.push(hits[2]);
+        }
+        assert!(certain.is_sorted() && certain[2] > certain[0], "farther, more contacts: {certain:?}");
+    }
+}
+
+#[test]
+fn every_way_and_every_machine_finds_the_same() {
+    for bodies in scenes() {
+        let query = asking(Motion::Continuous, Solver::Certified, 0.03);
+        let near = brute(&bodies, Solver::Certified, 0.03);
+        let truth = ask(engine(), bodies.clone(), query);
+        assert_eq!(fault(truth.contacts(), &near), None);
+        for way in ways(query) {
+            assert_eq!(ask(engine(), bodies.clone(), way).answer, truth.answer, "{way:?}");
+        }
+        let print = |device| {
+            let mut session = Session::new(device, bodies.clone(), query).expect("a session");
+            let all = session.detect().expect("an answer");
+            session.check_trees().expect("sound trees");
+            (all.hash(), session.fingerprints().expect("prints"))
+        };
+        let on_engine = print(engine());
+        for device in machines() {
+            let name = device.name();
+            assert_eq!(print(device), on_engine, "{name}");
+        }
+    }
+}
+
+/// A separation of nothing is none: the same bits at every stage. And a moved body keeps its separation.
+#[test]
+fn none_is_touching() {
+    let prints = |separation| {
+        let query = Query { separation, ..asking(Motion::Continuous, Solver::Certified, 0.0) };
+        let mut session = Session::new(engine(), vec![soup(60)], query).expect("a session");
+        let hash = session.detect().expect("an answer").hash();
+        (hash, session.fingerprints().expect("prints"))
+    };
+    assert_eq!(prints(None), prints(Some(0.0)));
+    assert_eq!(prints(None), prints(Some(-0.0)));
+    assert_ne!(prints(None), prints(Some(0.1)));
+    let query = asking(Motion::Continuous, Solver::Certified, 0.1);
+    let mut session = Session::new(engine(), vec![soup(60)], query).expect("a session");
+    session.move_to(0, scene::soup(60, 5, true).expect("a scene")).expect("the same mesh");
+    let moved = session.detect().expect("an answer");
+    assert_eq!(moved.answer, ask(engine(), vec![soup(60)], query).answer);
+}
+
+#[test]
+fn the_comparison_can_fail() {
+    let near = brute(&[soup(50)], Solver::Certified, 0.03);
+    let fault_of = |separation| {
+        let all = ask(engine(), vec![soup(50)], asking(Motion::Continuous, Solver::Certified, separation));
+        fault(all.contacts(), &near)
+    };
+    assert_eq!(fault_of(0.03), None);
+    assert!(fault_of(0.0).is_some_and(|fault| fault.contains("is missed") || fault.contains(" is Verdict")));
+    assert!(fault_of(0.029).is_some() && fault_of(0.031).is_some());
+}
+
+#[test]
+fn what_is_no_separation_is_refused() {
+    let with = |separation, query: Query| Query { separation: Some(separation), ..query };
+    let certified = asking(Motion::Continuous, Solver::Certified, 0.0);
+    for bad in [-1.0, -f64::MIN_POSITIVE, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let error = with(bad, certified).check().expect_err("no length");
+        assert!(error.exit_code() == 2 && error.to_string().contains("--separation"), "{error}");
+    }
+    for good in [0.0, 5e-324, 1e-300, 1e300, f64::MAX] {
+        assert!(with(good, certified).check().is_ok());
+        let all = ask(engine(), vec![soup(20)], with(good, certified));
+        assert!(good < 1.0 || all.len() > 1000, "everything is within {good}: {}", all.len());
+    }
+    for solver in Solver::ALL.into_iter().filter(|solver| !solver.is_certified()) {
+        let motion = if solver.answers(Motion::Discrete) { Motion::Discrete } else { Motion::Earliest };
+        let query = Query { solver: Some(solver), ..Query::of(motion) };
+        assert!(query.check().is_ok());
+        assert_eq!(with(0.5, query).check().expect_err("no separation").exit_code(), 2, "{solver:?}");
+    }
+}
