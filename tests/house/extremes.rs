@@ -117,14 +117,19 @@ fn table() -> String {
     files("docs/extremes.md")[0].1.clone()
 }
 
+/// Where tests are.
+fn sources() -> Vec<Source> {
+    [files("tests"), files("host")].concat()
+}
+
 #[test]
 fn every_extreme_has_its_tests() {
-    assert_eq!(broken(&table(), &files("tests")), NONE);
+    assert_eq!(broken(&table(), &sources()), NONE);
 }
 
 #[test]
 fn an_extreme_without_a_test_is_noticed() {
-    let (table, sources) = (table(), files("tests"));
+    let (table, sources) = (table(), sources());
     let with = |from: &str, to: &str| {
         let changed = table.replacen(from, to, 1);
         assert_ne!(changed, table, "{from}");
