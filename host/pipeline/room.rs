@@ -122,7 +122,7 @@ mod tests {
     use crate::device::emulator::{Emulator, Mode};
     use nearmiss_kernels::abi::Pair;
 
-    /// 92,683 equal triangles have 4,295,022,903 pairs: 55,608 more than 32 bits number.
+    /// 92,683 equal triangles have 4,295,022,903 pairs: 55,607 more than 2^32.
     #[test]
     fn a_list_beyond_32_bits_is_refused_with_its_size() {
         let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
