@@ -181,7 +181,9 @@ pub fn ask_turned_questions(device: &Device, questions: &[Question]) -> Result<R
                     true => (is != *was).then_some(Fault::Unexpected),
                     // Another order may leave without a certificate what had one.
                     false => match turned.expect {
-                        Expect::Sure(t) => Question { expect: Expect::Meets(t), ..*turned }.judge(&is, narrow),
+                        Expect::Sure(t) => {
+                            Question { expect: Expect::Meets(t), ..*turned }.judge(&is, narrow)
+                        }
                         _ => turned.judge(&is, narrow),
                     },
                 };

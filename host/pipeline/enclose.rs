@@ -193,7 +193,10 @@ mod tests {
             assert_eq!(out(near), 0, "{refit:?}, {place:?}: what is near is held as well");
             assert!(out(0.0) > 0, "{refit:?}, {place:?}: forgotten growth is noticed");
             // Far from the origin a hundredth of it is less than what bounds are rounded by.
-            assert!(place.1 > 0.0 || out(0.99 * near) > 0, "{refit:?}, {place:?}: too little growth is noticed");
+            assert!(
+                place.1 > 0.0 || out(0.99 * near) > 0,
+                "{refit:?}, {place:?}: too little growth is noticed"
+            );
         }
         // A node with its left child's volume: what is below the right one shows.
         let few = outside::<R, V>(&body, (1.0, 0.0), (Refit::Levels, axes), (0.0, 0.0), |nodes| {
