@@ -56,7 +56,7 @@ fn a_small_trade_has_every_part() {
     let folder = Folder::new("small");
     let all = json(&["--cases", "2", "--triangles", "300", "--frames", "2", "--out", &folder.path("out")]);
     for row in rows(&all, "choices").iter().chain(rows(&all, "sweeps")) {
-        assert!(row["cases"].as_u64() > Some(0), "{row}");
+        assert!(row["input"].is_string() && row["ns"].as_f64() > Some(0.0), "{row}");
         if is_certain(row) && row["precision"] != "f32 cast" {
             for column in ["missed", "late", "false_certificates", "unknown"] {
                 assert_eq!(row[column], 0, "{column}: {row}");
@@ -76,7 +76,7 @@ fn a_small_trade_has_every_part() {
     }
     // Positions cast to f32 far from the origin ask another question, and that shows.
     let cast =
-        |row: &&Value| row["precision"] == "f32 cast" && row["solver"] == "certified" && row["at"] == 1e7;
+        |row: &&Value| row["precision"] == "f32 cast" && row["solver"] == "certified" && row["at"] == 1e5;
     let far = rows(&all, "sweeps").iter().find(cast).expect("a row");
     assert!(far["missed"].as_u64() > Some(0) || far["late"].as_u64() > Some(0), "{far}");
     let headline = all["headline"].as_str().expect("a line");

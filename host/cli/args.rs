@@ -329,7 +329,7 @@ pub struct TradeArgs {
     #[arg(long, value_name = "N")]
     pub cases: Option<usize>,
     /// Runs of which the median time counts, after one to warm up.
-    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000))]
+    #[arg(long, default_value_t = 3, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000))]
     pub repeat: u32,
     /// Everything, at full size: minutes to hours.
     #[arg(long)]

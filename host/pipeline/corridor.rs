@@ -67,7 +67,7 @@ pub struct Corridor<R: Precision, V: Kernels> {
 }
 
 /// A corridor of any precision and any volume.
-pub trait Frames {
+pub trait Frames: repeat::Again {
     /// Uploads positions. A body that stands still in a continuous query has the same positions at both ends.
     ///
     /// # Errors
@@ -83,16 +83,6 @@ pub trait Frames {
     /// # Errors
     /// Those of the device.
     fn frame(&mut self) -> Result<(Found, Stages), Error>;
-    /// Runs one stage again, so often; milliseconds of each run. See [`super::Session::repeat_stage`].
-    ///
-    /// # Errors
-    /// Those of the device.
-    fn repeat(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error>;
-    /// Runs the narrow stage again step by step; names and milliseconds. See [`super::Session::narrow_steps`].
-    ///
-    /// # Errors
-    /// Those of the device.
-    fn narrow_steps(&mut self) -> Result<Vec<(&'static str, f64)>, Error>;
     /// Levels of each body's tree.
     fn depths(&self) -> Vec<usize>;
     /// How often a list was too short and the frame was run again, so far.
@@ -358,14 +348,6 @@ impl<R: Precision, V: Kernels> Frames for Corridor<R, V> {
             self.last.clone_from(&counters);
             return Ok((self.gather(counters, self.reruns - reruns)?, stages));
         }
-    }
-
-    fn repeat(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
-        self.again(stage, times)
-    }
-
-    fn narrow_steps(&mut self) -> Result<Vec<(&'static str, f64)>, Error> {
-        self.step_by_step()
     }
 
     fn depths(&self) -> Vec<usize> {

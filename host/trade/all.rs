@@ -71,6 +71,8 @@ impl Trade {
         if !self.choices.is_empty() {
             write("trade.csv", csv(&self.choices))?;
             write("trade-pareto.svg", Ok(picture::pareto(&self.device, &self.choices)?.into_bytes()))?;
+        }
+        if self.choices.iter().any(|row| row.tolerance_edges.is_some()) {
             write("trade-tolerance.svg", Ok(picture::tolerance(&self.device, &self.choices)?.into_bytes()))?;
         }
         if !self.sweeps.is_empty() {

@@ -141,10 +141,8 @@ impl Judge {
             }
             (Truth::Meet { not_before, by }, Some(met)) => {
                 self.counts.contacts += 1;
-                // NaN is late, too.
-                if !(met.toi <= by + self.margin()) {
-                    self.counts.late += 1;
-                }
+                let late = met.toi.is_nan() || met.toi > by + self.margin();
+                self.counts.late += late as u64;
                 self.counts.latest = self.counts.latest.max(met.toi - by);
                 if met.status == Status::Certified && met.toi_hi < not_before {
                     // The first contact is later than a certificate claims.

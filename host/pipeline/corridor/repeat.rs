@@ -7,13 +7,24 @@ use crate::pipeline::timing::Stage;
 use crate::pipeline::volumes::Kernels;
 use nearmiss_kernels::abi::counter;
 
-impl<R: Precision, V: Kernels> Corridor<R, V> {
+/// Stages again, on what the last frame left.
+pub trait Again {
     /// Milliseconds of each of `times` runs of a stage. What it reads must be there: volumes of the leaves for `Refit`,
-    /// a whole frame for `Traverse` and `Narrow`.
+    /// a whole frame for `Traverse` and `Narrow`. See [`crate::pipeline::Session::repeat_stage`].
     ///
     /// # Errors
     /// Those of the device.
-    pub(super) fn again(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
+    fn repeat(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error>;
+    /// The narrow stage once more, step by step: names and milliseconds. See
+    /// [`crate::pipeline::Session::narrow_steps`].
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn narrow_steps(&mut self) -> Result<Vec<(&'static str, f64)>, Error>;
+}
+
+impl<R: Precision, V: Kernels> Again for Corridor<R, V> {
+    fn repeat(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
         if stage == Stage::Construct {
             return (0..times).map(|_| self.construct()).collect();
         }
@@ -37,11 +48,7 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
         Ok(ms)
     }
 
-    /// The narrow stage once more, step by step, on what the last frame left.
-    ///
-    /// # Errors
-    /// Those of the device.
-    pub(super) fn step_by_step(&mut self) -> Result<Vec<(&'static str, f64)>, Error> {
+    fn narrow_steps(&mut self) -> Result<Vec<(&'static str, f64)>, Error> {
         let counters = self.counters_before(Stage::Narrow);
         self.counters.write(&counters)?;
         let mut all = Vec::new();
@@ -52,7 +59,9 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
         }
         Ok(all)
     }
+}
 
+impl<R: Precision, V: Kernels> Corridor<R, V> {
     /// The counters that a stage begins with: those of the last frame, without what the stage itself counted.
     fn counters_before(&mut self, stage: Stage) -> Vec<u64> {
         let mut counters = vec![0; counter::COUNT as usize];

@@ -11,6 +11,9 @@ use crate::error::Error;
 use chart::{Chart, Curve, charts};
 pub use pareto::pareto;
 
+/// What a picture is drawn of: its name, and how to read it off a row.
+type Quantity = (&'static str, fn(&Row) -> f64);
+
 /// How early times are, and what an answer costs, over the tolerance: a chart an input and quantity.
 ///
 /// # Errors
@@ -18,10 +21,11 @@ pub use pareto::pareto;
 pub fn tolerance(device: &str, rows: &[Row]) -> Result<String, Error> {
     let with: Vec<&Row> =
         rows.iter().filter(|row| row.tolerance_edges.is_some_and(|t| t > 0.0) && is_plain(row)).collect();
-    let quantities: [(&str, fn(&Row) -> f64); 4] = [
+    let quantities: [Quantity; 5] = [
         ("99 % of times early by at most, in mean edges", |row| row.early_edges_p99),
         ("false alarms", |row| row.false_alarms as f64),
         ("asked in f64 after f32", |row| row.escalated as f64),
+        ("boxes of 99 % of the listed pairs", |row| row.boxes_p99),
         ("nanoseconds a pair", |row| row.ns.unwrap_or(0.0)),
     ];
     let mut all = Vec::new();

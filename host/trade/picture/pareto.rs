@@ -1,6 +1,7 @@
 //! What to choose: time against what it buys, a mark a choice. Choices that can give wrong answers are hollow, with the
 //! counts of those they gave; of the others those are named that no other beats in both.
 
+use super::Quantity;
 use super::axis::Axis;
 use super::chart::{COLOURS, frame};
 use crate::error::Error;
@@ -20,9 +21,6 @@ struct Mark<'a> {
     x: f64,
     y: f64,
 }
-
-/// A quantity that a panel is drawn of.
-type Quantity = (&'static str, fn(&Row) -> f64);
 
 /// The quantities: less is better.
 const QUANTITIES: [Quantity; 2] = [
@@ -135,6 +133,7 @@ mod tests {
             solver,
             tolerance_edges: (missed == 0).then_some(early),
             early_edges_p99: early,
+            precision: "f64",
             missed,
             cases: 100,
             ms: Some(ms),
@@ -156,7 +155,7 @@ mod tests {
             "certified 1e-4",
             "certified-f32 1e-3",
             "ms a frame",
-            "a scene: false alarms",
+            "a scene: 99 %",
         ] {
             assert!(svg.contains(text), "{text}: {svg}");
         }
