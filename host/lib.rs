@@ -8,6 +8,7 @@ pub mod cli;
 pub mod contacts;
 pub mod device;
 pub mod error;
+pub mod extremes;
 pub mod mesh;
 pub mod oracle;
 pub mod pairs;

@@ -1,6 +1,8 @@
 //! The walls of the house. A wall is a function from sources to the lines that break it, so that each can be shown
 //! to stand (the repository breaks none) and to be able to fail (a planted line is named).
 
+#[path = "house/extremes.rs"]
+mod extremes;
 #[path = "house/prose.rs"]
 mod prose;
 #[path = "house/sources.rs"]

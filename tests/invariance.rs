@@ -8,8 +8,10 @@ mod choices;
 mod numbering;
 #[path = "invariance/space.rs"]
 mod space;
+#[path = "invariance/volumes.rs"]
+mod volumes;
 
-use nearmiss::contacts::{Contact, Kind};
+use nearmiss::contacts::{Contact, Kind, Status};
 use nearmiss::mesh::{Body, Mesh, Positions, Topology};
 use nearmiss::query::{Bv, Motion};
 use nearmiss::scene::{self, Rng};

@@ -357,6 +357,10 @@ pub struct SelftestArgs {
     /// Triangles of the larger scenes, about.
     #[arg(long, default_value_t = 20_000)]
     pub triangles: usize,
+    /// Contacts built in integers that are asked of each of twelve families, of each certified solver; 0 leaves out the whole
+    /// catalogue of extremes.
+    #[arg(long, default_value_t = 2_000)]
+    pub cases: usize,
     /// More meshes to ask on both machines: one file, or two frames of one mesh.
     #[arg(long, num_args = 1..=2, value_name = "MESH")]
     pub mesh: Vec<PathBuf>,

@@ -1,4 +1,5 @@
-//! `selftest`: known answers, every stage on every machine to the bit, on scenes that the program makes itself.
+//! `selftest`: known answers, every stage on every machine to the bit, on scenes that the program makes itself; and the
+//! catalogue of extremes.
 
 use super::args::SelftestArgs;
 use super::detect::body;
@@ -6,6 +7,7 @@ use super::progress::during;
 use crate::device::Device;
 use crate::device::emulator::{Emulator, Mode, Order};
 use crate::error::Error;
+use crate::extremes::{self, Amount};
 use crate::mesh::Body;
 use crate::pipeline::{Session, of_edges};
 use crate::query::{Bv, FrontShape, Motion, Query, QueueShape, Refit, Solver, StealShape, Traversal};
@@ -158,6 +160,15 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
         scene::FORMULAS.len(),
         questions(&[]).count()
     );
+    if args.cases > 0 {
+        let amount = Amount::on(machine.is_card(), args.cases);
+        for report in during("asking the extremes", || extremes::run(&machine, amount, |_| ()))? {
+            let _ = writeln!(table, "extremes       {report}");
+            if !report.is_right() {
+                faults.push(format!("extremes, {}: {} failures", report.suite, report.failed));
+            }
+        }
+    }
     for fault in &faults {
         let _ = writeln!(table, "DIFFERS        {fault}");
     }
@@ -166,7 +177,7 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
     super::print(&table);
     match faults.first() {
         None => Ok(ExitCode::SUCCESS),
-        Some(first) => Err(Error::Bug { what: format!("two machines disagree: {first}") }),
+        Some(first) => Err(Error::Bug { what: format!("a check of this machine fails: {first}") }),
     }
 }
 

@@ -1,25 +1,14 @@
-//! Every node of every tree holds everything below it: asked exactly, of each volume, machine by machine.
+//! Does every node of a tree hold everything below it, frame after frame? Asked exactly, of each volume, on any machine.
 
 use super::precision::Precision;
 use super::tree::Tree;
 use super::volumes::{Kernels, Volumes};
-use crate::device::Device;
-use crate::device::emulator::{Emulator, Mode};
-use crate::mesh::Body;
+use crate::device::{Buffer, Device};
+use crate::error::Error;
 use crate::query::Refit;
-use crate::scene;
 use nearmiss_kernels::abi::{Frames, Motion, Node, Point, ROOT, Span};
-use nearmiss_kernels::bv::{Aabb, Axes, Contain, Linear, Obb};
+use nearmiss_kernels::bv::{Axes, Contain};
 use nearmiss_kernels::math::Vec3;
-
-/// A body's positions, one frame or two, turned and put elsewhere so that f64 is not f32.
-fn frames<R: Precision>(body: &Body, size: f64, at: f64) -> Vec<Vec<Vec3<R>>> {
-    let moved = |[x, y, z]: [f64; 3]| {
-        Vec3([0.6 * x - 0.8 * y, 0.8 * x + 0.6 * y, z + x / 3.0].map(|x| R::of(size * x + at)))
-    };
-    let positions = std::iter::once(body.positions_t0()).chain(body.positions_t1());
-    positions.map(|p| p.to_f64().into_iter().map(moved).collect()).collect()
-}
 
 /// Ways to go from a point, of a length just below 1: so that a coordinate of f64 may round on its way.
 const WAYS: [[f64; 3]; 7] = {
@@ -36,103 +25,196 @@ const WAYS: [[f64; 3]; 7] = {
     ]
 };
 
-/// Pairs of a node and a corner below it around which it does not hold everything within `near`, of volumes that were told
-/// to grow by `grow`, after `fault`.
-fn outside<R: Precision, V: Kernels + Contain>(
-    body: &Body,
-    (size, at): (f64, f64),
-    (refit, axes): (Refit, Axes),
-    (grow, near): (f32, f32),
-    fault: impl Fn(&mut [Node<V>]),
-) -> usize {
-    let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
-    let positions = frames::<R>(body, size, at);
-    let still: Vec<Point<R>> = positions[0].iter().map(|&p| p.into()).collect();
-    let points = device.upload(&still).expect("points");
-    let ends = positions.get(1).unwrap_or(&positions[0]).iter();
-    let moving: Vec<Motion<R>> =
-        still.iter().zip(ends).map(|(&t0, &t1)| Motion { t0, t1: t1.into() }).collect();
-    let motions = device.upload(&moving).expect("motions");
-    let frames = if positions.len() == 1 {
-        Frames { still: points.span(), moving: Span::EMPTY }
-    } else {
-        Frames { still: Span::EMPTY, moving: motions.span() }
-    };
-    let faces = device.upload(body.faces()).expect("faces");
-    let count = body.face_count() as u32;
-    let mut tree = Tree::new(&device, (0, count), refit, V::group(axes) > 0).expect("a tree");
-    tree.construct::<R>(&device, frames, faces.span()).expect("built");
-    let volumes = Volumes::<V>::new(&device, &tree, (axes, grow)).expect("room");
-    volumes.fit(&device, &tree, frames, faces.span()).expect("fitted");
-    volumes.refit(&device, &tree, frames, faces.span()).expect("refitted");
-    volumes.check(&tree, body.faces(), &positions).expect("sound");
-    let (mut nodes, links) = (volumes.download().expect("nodes"), tree.download().expect("links"));
-    fault(&mut nodes);
-    let parents = tree.pair_parents.read(tree.leaves()).expect("parents");
-    let mut outside = 0;
-    for (leaf, link) in links.iter().enumerate().skip(1).filter(|(_, link)| link.is_leaf()) {
-        let face = body.faces()[link.triangle() as usize];
-        let mut at = leaf as u32;
-        loop {
-            let volume = nodes[at as usize].volume;
-            let held = |v: u32| {
-                let motion = &moving[v as usize];
-                let t1 = if positions.len() == 1 { motion.t0 } else { motion.t1 };
-                WAYS[..if near > 0.0 { WAYS.len() } else { 1 }].iter().all(|way| {
-                    let step = Vec3(*way) * f64::from(near);
-                    volume.holds(motion.t0.at.wide() + step, t1.at.wide() + step)
-                })
-            };
-            outside += face.iter().filter(|&&v| !held(v)).count();
-            if at == ROOT {
-                break;
-            }
-            at = parents[at as usize / 2];
-        }
-    }
-    outside
+/// A tree that is built once and refitted to frame after frame.
+pub struct Enclosed<R: Precision, V: Kernels> {
+    device: Device,
+    triangles: Vec<[u32; 3]>,
+    faces: Buffer<[u32; 3]>,
+    still: Buffer<Point<R>>,
+    moving: Buffer<Motion<R>>,
+    /// What lies on the device, and whether it moves.
+    at: (Vec<[Vec3<R>; 2]>, bool),
+    tree: Tree,
+    volumes: Volumes<V>,
 }
 
-fn all<R: Precision, V: Kernels + Contain>(axes: Axes) {
-    let bodies = [scene::single(), scene::soup(700, 4, false), scene::soup(700, 4, true), scene::draped(800)];
-    for (i, body) in bodies.map(|body| body.expect("a scene")).iter().enumerate() {
-        for place in [(1.0, 0.0), (1e-3, 1e3), (1e25, 0.0)] {
-            let refit = [Refit::Levels, Refit::Treelets, Refit::BottomUp][i % 3];
-            assert_eq!(
-                outside::<R, V>(body, place, (refit, axes), (0.0, 0.0), |_| ()),
-                0,
-                "{} {place:?}",
-                body.name()
+impl<R: Precision, V: Kernels + Contain> Enclosed<R, V> {
+    /// Builds the tree for where the vertices are: of at least one triangle. `t1` is empty where nothing moves; volumes grow
+    /// by `grow`.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn new(
+        device: &Device,
+        triangles: &[[u32; 3]],
+        [t0, t1]: [&[Vec3<R>]; 2],
+        (refit, axes, grow): (Refit, Axes, f32),
+    ) -> Result<Self, Error> {
+        let tree = Tree::new(device, (0, triangles.len() as u32), refit, V::group(axes) > 0)?;
+        let mut enclosed = Enclosed {
+            triangles: triangles.to_vec(),
+            faces: device.upload(triangles)?,
+            still: device.buffer(t0.len())?,
+            moving: device.buffer(t0.len())?,
+            at: (Vec::new(), false),
+            volumes: Volumes::new(device, &tree, (axes, grow))?,
+            tree,
+            device: device.clone(),
+        };
+        enclosed.place(t0, t1)?;
+        let (frames, faces) = (enclosed.frames(), enclosed.faces.span());
+        enclosed.tree.construct::<R>(device, frames, faces)?;
+        enclosed.move_to(t0, t1)?;
+        Ok(enclosed)
+    }
+
+    fn place(&mut self, t0: &[Vec3<R>], t1: &[Vec3<R>]) -> Result<(), Error> {
+        let moves = !t1.is_empty();
+        let ends = if moves { t1 } else { t0 };
+        let ends = || t0.iter().zip(ends);
+        self.still.write(&t0.iter().map(|&p| p.into()).collect::<Vec<_>>())?;
+        self.moving
+            .write(&ends().map(|(&p, &q)| Motion { t0: p.into(), t1: q.into() }).collect::<Vec<_>>())?;
+        self.at = (ends().map(|(&p, &q)| [p, q]).collect(), moves);
+        Ok(())
+    }
+
+    fn frames(&self) -> Frames<R> {
+        match self.at.1 {
+            true => Frames { still: Span::EMPTY, moving: self.moving.span() },
+            false => Frames { still: self.still.span(), moving: Span::EMPTY },
+        }
+    }
+
+    /// Fits and refits all volumes to another frame.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn move_to(&mut self, t0: &[Vec3<R>], t1: &[Vec3<R>]) -> Result<(), Error> {
+        self.place(t0, t1)?;
+        let (frames, faces) = (self.frames(), self.faces.span());
+        self.volumes.fit(&self.device, &self.tree, frames, faces)?;
+        self.volumes.refit(&self.device, &self.tree, frames, faces)
+    }
+
+    /// Pairs of a node and a corner of a triangle below it around which it does not hold everything within `near` all of the
+    /// time, after `fault`. Cost: each corner against each node above it, in exact arithmetic on the host.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn outside(&self, near: f32, fault: impl Fn(&mut [Node<V>])) -> Result<usize, Error> {
+        let ways = &WAYS[..if near > 0.0 { WAYS.len() } else { 1 }];
+        let (mut nodes, links) = (self.volumes.download()?, self.tree.download()?);
+        fault(&mut nodes);
+        let parents = self.tree.pair_parents.read(self.tree.leaves())?;
+        let mut outside = 0;
+        for (leaf, link) in links.iter().enumerate().skip(1).filter(|(_, link)| link.is_leaf()) {
+            let corners = self.triangles[link.triangle() as usize].map(|v| self.at.0[v as usize]);
+            let mut at = leaf as u32;
+            loop {
+                let volume = nodes[at as usize].volume;
+                let held = |[t0, t1]: &[Vec3<R>; 2]| {
+                    ways.iter().all(|way| {
+                        let step = Vec3(*way) * f64::from(near);
+                        volume.holds(t0.wide() + step, t1.wide() + step)
+                    })
+                };
+                outside += corners.iter().filter(|&c| !held(c)).count();
+                if at == ROOT {
+                    break;
+                }
+                at = parents[at as usize / 2];
+            }
+        }
+        Ok(outside)
+    }
+
+    /// Checks the volumes against what they are merged of and fitted to.
+    ///
+    /// # Errors
+    /// [`Error::Bug`] with the first violation; those of the device.
+    #[cfg(test)]
+    fn check(&self) -> Result<(), Error> {
+        let frame = |k: usize| self.at.0.iter().map(|p| p[k]).collect::<Vec<_>>();
+        let frames = if self.at.1 { vec![frame(0), frame(1)] } else { vec![frame(0)] };
+        self.volumes.check(&self.tree, &self.triangles, &frames)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::emulator::{Emulator, Mode};
+    use crate::mesh::Body;
+    use crate::scene;
+    use nearmiss_kernels::bv::{Aabb, Linear, Obb};
+
+    /// A body's positions, one frame or two, turned and put elsewhere so that f64 is not f32.
+    fn frames<R: Precision>(body: &Body, size: f64, at: f64) -> [Vec<Vec3<R>>; 2] {
+        let moved = |[x, y, z]: [f64; 3]| {
+            Vec3([0.6 * x - 0.8 * y, 0.8 * x + 0.6 * y, z + x / 3.0].map(|x| R::of(size * x + at)))
+        };
+        let of = |p: &crate::mesh::Positions| p.to_f64().into_iter().map(moved).collect();
+        [of(body.positions_t0()), body.positions_t1().map_or(Vec::new(), of)]
+    }
+
+    /// Of volumes that were told to grow by `grow`.
+    fn outside<R: Precision, V: Kernels + Contain>(
+        body: &Body,
+        (size, at): (f64, f64),
+        (refit, axes): (Refit, Axes),
+        (grow, near): (f32, f32),
+        fault: impl Fn(&mut [Node<V>]),
+    ) -> usize {
+        let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
+        let [t0, t1] = frames::<R>(body, size, at);
+        let way = (refit, axes, grow);
+        let enclosed = Enclosed::<R, V>::new(&device, body.faces(), [&t0, &t1], way).expect("a tree");
+        enclosed.check().expect("sound");
+        enclosed.outside(near, fault).expect("nodes")
+    }
+
+    fn all<R: Precision, V: Kernels + Contain>(axes: Axes) {
+        let bodies =
+            [scene::single(), scene::soup(700, 4, false), scene::soup(700, 4, true), scene::draped(800)];
+        for (i, body) in bodies.map(|body| body.expect("a scene")).iter().enumerate() {
+            for place in [(1.0, 0.0), (1e-3, 1e3), (1e25, 0.0)] {
+                let refit = [Refit::Levels, Refit::Treelets, Refit::BottomUp][i % 3];
+                let count = outside::<R, V>(body, place, (refit, axes), (0.0, 0.0), |_| ());
+                assert_eq!(count, 0, "{} {place:?}", body.name());
+            }
+        }
+        let body = scene::soup(300, 8, true).expect("a scene");
+        for (refit, place) in
+            [(Refit::Levels, (1.0, 0.0)), (Refit::Treelets, (1e-3, 1e3)), (Refit::BottomUp, (1e25, 0.0))]
+        {
+            let near = 0.125 * place.0 as f32;
+            let out = |grow| outside::<R, V>(&body, place, (refit, axes), (grow, near), |_| ());
+            assert_eq!(out(near), 0, "{refit:?}, {place:?}: what is near is held as well");
+            assert!(out(0.0) > 0, "{refit:?}, {place:?}: forgotten growth is noticed");
+            // Far from the origin a hundredth of it is less than what bounds are rounded by.
+            assert!(
+                place.1 > 0.0 || out(0.99 * near) > 0,
+                "{refit:?}, {place:?}: too little growth is noticed"
             );
         }
+        // A node with its left child's volume: what is below the right one shows.
+        let few = outside::<R, V>(&body, (1.0, 0.0), (Refit::Levels, axes), (0.0, 0.0), |nodes| {
+            let at = (ROOT as usize..nodes.len()).rfind(|&at| !nodes[at].is_leaf()).expect("an inner node");
+            nodes[at].volume = nodes[nodes[at].link as usize].volume;
+        });
+        assert!((1..=3).contains(&few), "{few}");
     }
-    let body = scene::soup(300, 8, true).expect("a scene");
-    for (refit, place) in
-        [(Refit::Levels, (1.0, 0.0)), (Refit::Treelets, (1e-3, 1e3)), (Refit::BottomUp, (1e25, 0.0))]
-    {
-        let near = 0.125 * place.0 as f32;
-        let out = |grow| outside::<R, V>(&body, place, (refit, axes), (grow, near), |_| ());
-        assert_eq!(out(near), 0, "{refit:?}, {place:?}: what is near is held as well");
-        assert!(out(0.0) > 0, "{refit:?}, {place:?}: forgotten growth is noticed");
-        // Far from the origin a hundredth of it is less than what bounds are rounded by.
-        assert!(place.1 > 0.0 || out(0.99 * near) > 0, "{refit:?}, {place:?}: too little growth is noticed");
-    }
-    // A node with its left child's volume: what is below the right one shows.
-    let few = outside::<R, V>(&body, (1.0, 0.0), (Refit::Levels, axes), (0.0, 0.0), |nodes| {
-        let at = (ROOT as usize..nodes.len()).rfind(|&at| !nodes[at].is_leaf()).expect("an inner node");
-        nodes[at].volume = nodes[nodes[at].link as usize].volume;
-    });
-    assert!((1..=3).contains(&few), "{few}");
-}
 
-#[test]
-fn every_node_holds_what_is_below_it() {
-    all::<f32, Aabb>(Axes::PCA);
-    all::<f64, Aabb>(Axes::PCA);
-    all::<f32, Linear>(Axes::PCA);
-    all::<f64, Linear>(Axes::PCA);
-    for axes in [Axes::PCA, Axes::CHILD] {
-        all::<f32, Obb>(axes);
-        all::<f64, Obb>(axes);
+    #[test]
+    fn every_node_holds_what_is_below_it() {
+        all::<f32, Aabb>(Axes::PCA);
+        all::<f64, Aabb>(Axes::PCA);
+        all::<f32, Linear>(Axes::PCA);
+        all::<f64, Linear>(Axes::PCA);
+        for axes in [Axes::PCA, Axes::CHILD] {
+            all::<f32, Obb>(axes);
+            all::<f64, Obb>(axes);
+        }
     }
 }

@@ -1,8 +1,7 @@
 //! From bodies to contacts: the front door of the library.
 
 mod corridor;
-#[cfg(test)]
-mod enclose;
+pub(crate) mod enclose;
 mod layout;
 pub(crate) mod narrow;
 pub(crate) mod precision;
@@ -11,7 +10,7 @@ mod timing;
 mod tolerance;
 mod tree;
 mod treelets;
-mod volumes;
+pub(crate) mod volumes;
 mod walk;
 
 pub(crate) use corridor::Found;

@@ -115,3 +115,28 @@ impl<T: Pod> Growing for List<T> {
         Ok(true)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::emulator::{Emulator, Mode};
+    use nearmiss_kernels::abi::Pair;
+
+    /// 92,683 equal triangles have 4,295,022,903 pairs: 55,607 more than 2^32.
+    #[test]
+    fn a_list_beyond_32_bits_is_refused_with_its_size() {
+        let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
+        let mut list = List::<Pair>::new(&device, "pairs", 0, 16).expect("room");
+        let grow = |list: &mut List<Pair>, demand: u64| list.grow(&device, &[demand]);
+        assert!(!grow(&mut list, 16).expect("long enough"));
+        assert!(grow(&mut list, 17).expect("longer") && list.room() == 19);
+        for demand in [LONGEST + 1, 92_683 * 92_682 / 2, u64::MAX / 64] {
+            match grow(&mut list, demand) {
+                Err(Error::Room { asked, given, .. }) => {
+                    assert_eq!((asked, given), (demand * 8, LONGEST * 8));
+                }
+                other => panic!("{demand}: {other:?}"),
+            }
+        }
+    }
+}

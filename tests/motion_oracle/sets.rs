@@ -2,8 +2,8 @@
 //! the comparison shown to name an answer that is wrong.
 
 use crate::case;
-use crate::truth::motions::MOTIONS;
 use crate::truth::queries::folders;
+use nearmiss::extremes::MOTIONS;
 use nearmiss::oracle::{Toi, first_contact, first_contact_until};
 use nearmiss::pairs::built::{FAMILIES, REACH_F64, motion};
 use nearmiss::{Case, Features};

@@ -1,9 +1,9 @@
 //! The certified continuous tests on public data with exact answers.
 
-use crate::cases::MOTIONS;
 use crate::inclusion::{certified, in_passes};
 use crate::public::{Key, scene};
 use crate::queries::folders;
+use nearmiss::extremes::MOTIONS;
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::additive::{ee_additive, vf_additive};
 use nearmiss_kernels::prim::cubic::{Moving, ee_apart, ee_toi, vf_apart, vf_toi};

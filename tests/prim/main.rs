@@ -11,6 +11,7 @@ mod adjacent;
 mod built;
 mod cases;
 mod cubic;
+mod cubic_bounds;
 mod discrete;
 mod inclusion;
 mod inclusion_bounds;

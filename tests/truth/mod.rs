@@ -2,5 +2,4 @@
 #![allow(dead_code, reason = "each binary uses a part")]
 
 pub mod frames;
-pub mod motions;
 pub mod queries;

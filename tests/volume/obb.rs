@@ -5,7 +5,7 @@ use nearmiss::scene::Rng;
 use nearmiss_kernels::bv::{Axes, Obb, Volume};
 use nearmiss_kernels::math::Vec3;
 
-type Swept = [[Vec3<f32>; 3]; 2];
+pub type Swept = [[Vec3<f32>; 3]; 2];
 
 fn whole(rng: &mut Rng, size: f64) -> [i64; 3] {
     rng.point(size).map(|x| x.round() as i64)
@@ -40,7 +40,7 @@ fn around_origin(rng: &mut Rng, normal: [i64; 3], size: f64) -> [[i64; 3]; 3] {
 
 /// Two triangles that share a point and, unless they are in one plane, nothing else; with normals that may nearly
 /// agree, edges that may nearly be parallel, moved to a far place and scaled, all exactly in floats.
-fn touching(rng: &mut Rng) -> [[Vec3<f32>; 3]; 2] {
+pub fn touching(rng: &mut Rng) -> [[Vec3<f32>; 3]; 2] {
     let size = [3.0, 30.0, 300.0][(rng.bits() % 3) as usize];
     let normal = whole(rng, size / 3.0);
     let p = around_origin(rng, normal, size);

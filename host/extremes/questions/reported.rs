@@ -1,9 +1,12 @@
-//! Motions that other libraries got wrong, as reported in public, with exact answers.
+//! Motions that other solvers got wrong, as reported in public, with exact times.
 
-/// See [`MOTIONS`].
+use super::{Expect, Question};
+use crate::case::Features;
+
+/// Report and id, vertex/face (else edge/edge), the four points at time 0 and 1, the longest time, the first contact.
 pub type Reported = (&'static str, bool, [[f64; 3]; 4], [[f64; 3]; 4], f64, Option<f64>);
 
-/// Report, vertex/face (else edge/edge), the four points at time 0 and 1, the longest time, the first contact.
+/// All of them.
 pub const MOTIONS: [Reported; 12] = [
     (
         "Tight-Inclusion#1: ti1",
@@ -162,3 +165,19 @@ pub const MOTIONS: [Reported; 12] = [
         Some(0.919942303704163),
     ),
 ];
+
+/// Those reported in public.
+pub fn reported_motions() -> Vec<Question> {
+    MOTIONS
+        .iter()
+        .map(|&(name, face, t0, t1, end, truth)| {
+            let (what, id) = name.rsplit_once(": ").unwrap_or((name, name));
+            let features = if face { Features::VertexFace } else { Features::EdgeEdge };
+            let expect = truth.map_or(Expect::Near, Expect::Meets);
+            // Decimals of the truth are rounded.
+            let (blur, tolerance, early) = (1e-11, 1e-9, 1e-4);
+            let question = Question::new((id, what), features, [t0, t1], expect);
+            Question { end, blur, tolerance, early, is_fine: true, ..question }
+        })
+        .collect()
+}

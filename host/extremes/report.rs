@@ -1,0 +1,74 @@
+//! What a suite found.
+
+use super::question::Fault;
+use std::fmt;
+
+/// A suite's figures and its failures by id. Nothing is wrong where there are no failures.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Report {
+    /// The suite.
+    pub suite: &'static str,
+    /// How often something was asked.
+    pub asked: u64,
+    /// Contacts that were not found.
+    pub missed: u64,
+    /// Times after the contact.
+    pub late: u64,
+    /// Certificates of what is not so.
+    pub false_certificates: u64,
+    /// Answers without a certificate either way.
+    pub unresolved: u64,
+    /// The id of each failure, and what it was; at most [`Report::SHOWN`].
+    pub failures: Vec<String>,
+    /// How many failures there were.
+    pub failed: u64,
+}
+
+impl Report {
+    /// Failures that are kept in words.
+    pub const SHOWN: usize = 20;
+
+    /// Nothing asked yet.
+    pub fn new(suite: &'static str) -> Report {
+        Report { suite, ..Report::default() }
+    }
+
+    /// Whether nothing failed, and something was asked.
+    pub fn is_right(&self) -> bool {
+        self.failed == 0 && self.asked > 0
+    }
+
+    /// Notes a failure.
+    pub fn fail(&mut self, text: impl FnOnce() -> String) {
+        self.failed += 1;
+        if self.failures.len() < Report::SHOWN {
+            self.failures.push(text());
+        }
+    }
+
+    /// Notes a question and the fault of its answer, if it has one.
+    pub fn note(&mut self, fault: Option<Fault>, text: impl FnOnce() -> String) {
+        self.asked += 1;
+        let Some(fault) = fault else { return };
+        match fault {
+            Fault::Missed => self.missed += 1,
+            Fault::Late => self.late += 1,
+            Fault::FalseCertificate => self.false_certificates += 1,
+            Fault::Unexpected => {}
+        }
+        self.fail(|| format!("{fault:?}: {}", text()));
+    }
+}
+
+/// One line, and one for each failure.
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Report { suite, asked, missed, late, false_certificates, unresolved, failed, .. } = self;
+        write!(
+            f,
+            "{suite:<20} {asked:>9} asked, {missed} missed, {late} late, {false_certificates} falsely certain, \
+             {unresolved} unresolved, {failed} failures"
+        )?;
+        self.failures.iter().try_for_each(|failure| write!(f, "\n    {failure}"))
+    }
+}
