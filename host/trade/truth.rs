@@ -1,6 +1,6 @@
 //! Lists of the true contacts of a scene.
 
-use super::queries::text;
+use crate::case::file::text;
 use crate::contacts::Kind;
 use crate::error::Error;
 use std::path::Path;

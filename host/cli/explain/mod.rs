@@ -1,7 +1,6 @@
 //! `explain`: what each solver says of one question, and the exact answer.
 
 mod judge;
-mod query_file;
 mod solvers;
 mod subject;
 mod text;

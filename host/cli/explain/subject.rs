@@ -1,7 +1,7 @@
 //! What is asked about: from meshes, from a file of queries, or from numbers.
 
-use super::{Between, ExplainArgs, query_file};
-use crate::case::{Case, Features};
+use super::{Between, ExplainArgs};
+use crate::case::{Case, Features, file};
 use crate::cli::detect::body;
 use crate::error::Error;
 use crate::mesh::{Body, Positions, Problem, Topology};
@@ -99,12 +99,15 @@ fn params(args: &ExplainArgs, default: f64) -> Params {
 }
 
 fn from_file(args: &ExplainArgs, path: &Path, row: usize) -> Result<Subject, Error> {
-    let between = args.between.or(query_file::between(path)).ok_or_else(|| Error::Choice {
+    let features = args.between.map(features).or(file::features(path)).ok_or_else(|| Error::Choice {
         what: format!("{}: no folder called vertex-face or edge-edge says what it is about", path.display()),
         advice: "give --between vf or --between ee".into(),
     })?;
-    let features = features(between);
-    let (case, truth) = query_file::read(path, row, features)?;
+    let queries = file::queries(path, features)?;
+    let &(case, truth) = queries.get(row).ok_or_else(|| Error::Input {
+        file: path.display().to_string(),
+        problem: Problem::NoSuch { what: "query", index: row as u64, count: queries.len() as u64 },
+    })?;
     let notes = vec![format!("the file says that they {}", if truth { "meet" } else { "do not meet" })];
     let of = format!("query {row} of {}", path.display());
     let of = parts(features).map(|part| format!("{part} of {of}"));

@@ -1,5 +1,7 @@
 //! One question of the narrow phase by itself: do these two features meet during the step, and when first?
 
+pub mod file;
+
 /// Which features.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
