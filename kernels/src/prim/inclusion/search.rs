@@ -76,7 +76,7 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
         if m.still_together() {
             return Err((Verdict::contact(0.0, 0.0, 0, false), true));
         }
-        if !m.finite {
+        if !m.finite || p.budget == 0 {
             return Err((Verdict::unresolved(0.0, p.end, 0, true), false));
         }
         let known = Known { accepted: S::NEVER, skipped: S::NEVER, certain: S::NEVER };
