@@ -17,7 +17,7 @@ pub struct Queries {
 /// Walks a folder: every `.csv` and `.csv.gz` in a folder called `vertex-face` or `edge-edge` is read, in order of names.
 ///
 /// # Errors
-/// [`Error::Choice`] for a folder without such a file; those of [`file::queries`].
+/// [`Error::Choice`] for a folder without such a file; [`Error::Input`] for a row that cannot be used, with its line.
 pub fn queries(root: &Path) -> Result<Vec<Queries>, Error> {
     let mut files = Vec::new();
     walk(root, &mut files)?;
