@@ -96,6 +96,17 @@ impl MachineArgs {
     }
 }
 
+/// Where figures go.
+#[derive(Args)]
+pub struct ReportArgs {
+    /// Folder for CSV files and SVG pictures.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Print everything as one JSON object.
+    #[arg(long)]
+    pub json: bool,
+}
+
 #[derive(Args)]
 pub struct DetectArgs {
     /// The mesh (.ply, .obj); with a second file, its positions at the end of the step.
@@ -298,12 +309,8 @@ pub struct TablesArgs {
     pub rebuild_every: Option<u32>,
     #[command(flatten)]
     pub machine: MachineArgs,
-    /// Folder for CSV files and SVG pictures.
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-    /// Print everything as one JSON object.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub report: ReportArgs,
 }
 
 #[derive(Args)]
@@ -341,12 +348,8 @@ pub struct TradeArgs {
     pub seed: u64,
     #[command(flatten)]
     pub machine: MachineArgs,
-    /// Folder for CSV files and SVG pictures.
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-    /// Print everything as one JSON object.
-    #[arg(long)]
-    pub json: bool,
+    #[command(flatten)]
+    pub report: ReportArgs,
 }
 
 #[derive(Args)]

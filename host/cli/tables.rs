@@ -21,25 +21,14 @@ pub fn tables(args: &TablesArgs) -> Result<ExitCode, Error> {
         })?;
         scene(args, &device, &frames, &mut figures)?;
     }
-    if let Some(out) = &args.out {
-        let names = figures.write(out)?;
-        eprintln!("nearmiss: {} in {}", names.join(", "), out.display());
-    }
-    if args.json {
-        let text = serde_json::to_string(&figures).map_err(|e| Error::Bug { what: e.to_string() })?;
-        super::print(&(text + "\n"));
-    } else {
-        super::print(&figures.text());
-    }
-    Ok(ExitCode::SUCCESS)
+    super::report(&args.report, &figures, Figures::text, Figures::write)
 }
 
 /// Names and triangles.
 fn scenes(args: &TablesArgs) -> Result<Vec<(String, usize)>, Error> {
     if let Some(file) = args.mesh.first() {
-        let own = || file.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy().into_owned());
         return match args.scene.as_slice() {
-            [] => Ok(vec![(own(), 0)]),
+            [] => Ok(vec![(super::stem(file), 0)]),
             [name] => Ok(vec![(name.clone(), 0)]),
             several => Err(Error::Choice {
                 what: format!("--mesh with {} scenes", several.len()),

@@ -1,10 +1,11 @@
 //! `trade`.
 
-use super::args::{MachineArgs, TradeArgs};
+use super::args::TradeArgs;
+use super::detect::body;
 use super::progress::during;
 use crate::device::Device;
 use crate::error::Error;
-use crate::mesh::{Body, Mesh};
+use crate::mesh::Body;
 use crate::pairs::Stored;
 use crate::query::{Bv, Motion, Query, Solver};
 use crate::tables;
@@ -21,7 +22,7 @@ const OF_QUERIES: f64 = 1e-6;
 
 /// Measures what was asked for, prints it, and writes it where `--out` says.
 pub fn trade(args: &TradeArgs) -> Result<ExitCode, Error> {
-    let device = MachineArgs::open(&args.machine)?;
+    let device = args.machine.open()?;
     let mut all = Trade::new(device.name());
     let only_files = !args.mesh.is_empty() || args.queries.is_some();
     if !only_files || args.full {
@@ -40,17 +41,7 @@ pub fn trade(args: &TradeArgs) -> Result<ExitCode, Error> {
         generated(args, &device, &mut all)?;
     }
     all.sum_up();
-    if let Some(out) = &args.out {
-        let names = all.write(out)?;
-        eprintln!("nearmiss: {} in {}", names.join(", "), out.display());
-    }
-    if args.json {
-        let text = serde_json::to_string(&all).map_err(|e| Error::Bug { what: e.to_string() })?;
-        super::print(&(text + "\n"));
-    } else {
-        super::print(&all.text());
-    }
-    Ok(ExitCode::SUCCESS)
+    super::report(&args.report, &all, Trade::text, Trade::write)
 }
 
 /// How many cases of a kind.
@@ -125,16 +116,9 @@ fn generated(args: &TradeArgs, device: &Device, all: &mut Trade) -> Result<(), E
 
 /// One frame or two from files.
 fn files(args: &TradeArgs, device: &Device, all: &mut Trade) -> Result<(), Error> {
-    let name = args.mesh[0].file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy().into_owned());
-    let meshes = args.mesh.iter().map(|file| Mesh::read(file)).collect::<Result<Vec<_>, _>>()?;
-    let mut meshes = meshes.into_iter();
-    let body = match (meshes.next(), meshes.next()) {
-        (Some(t0), Some(t1)) => Body::moving(t0, t1)?,
-        (Some(t0), None) => Body::still(t0),
-        _ => return Err(Error::Bug { what: "no mesh".into() }),
-    };
+    let body = body(&args.mesh)?;
     let truth = args.truth.as_deref().map(list).transpose()?;
-    scene(args, device, &known(device, &name, body, truth)?, all)
+    scene(args, device, &known(device, &super::stem(&args.mesh[0]), body, truth)?, all)
 }
 
 fn known(device: &Device, name: &str, body: Body, truth: Option<crate::trade::List>) -> Result<Scene, Error> {
