@@ -23,3 +23,11 @@ pub struct Case {
     /// Where they are at t = 1; finite.
     pub positions_t1: [[f64; 3]; 4],
 }
+
+impl Case {
+    /// Whether f32 holds every coordinate.
+    pub fn fits_f32(&self) -> bool {
+        let mut all = self.positions_t0.iter().chain(&self.positions_t1).flatten();
+        all.all(|&x| f64::from(x as f32) == x)
+    }
+}

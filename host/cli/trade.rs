@@ -3,6 +3,7 @@
 use super::args::TradeArgs;
 use super::detect::body;
 use super::progress::during;
+use crate::case::Case;
 use crate::device::Device;
 use crate::error::Error;
 use crate::mesh::Body;
@@ -81,7 +82,7 @@ fn asked(
         })?;
         all.choices.push(row);
     }
-    if input.fits_f32() {
+    if input.cases.iter().all(Case::fits_f32) {
         for choice in Choice::every(Motion::Continuous, &[Query::TOLERANCE]) {
             all.choices.push(input.row(device, choice, Stored::F32, args.repeat)?);
         }

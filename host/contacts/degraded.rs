@@ -115,7 +115,7 @@ fn below_precision(found: &Found, layout: &Layout, bodies: &[Body], query: &Quer
     };
     // Positive, or not asked for.
     let tolerance = query.tolerance.filter(|t| *t > 0.0)?;
-    let frames: Vec<_> = bodies.iter().map(Frames::of).collect();
+    let frames: Vec<_> = bodies.iter().map(Body::ends).collect();
     if query.motion == Motion::Earliest {
         // The two ends of an edge differ from any one point by half of its length, one or the other.
         let mut sides = bodies.iter().zip(&frames).flat_map(|(body, frames)| {
@@ -147,13 +147,7 @@ fn below_precision(found: &Found, layout: &Layout, bodies: &[Body], query: &Quer
 }
 
 /// A body's positions at both ends of the step.
-struct Frames<'a>([&'a Positions; 2]);
-
-impl<'a> Frames<'a> {
-    fn of(body: &'a Body) -> Self {
-        Frames([body.positions_t0(), body.positions_t1().unwrap_or(body.positions_t0())])
-    }
-}
+type Ends<'a> = [&'a Positions; 2];
 
 fn point(positions: &Positions, v: u32) -> [f64; 3] {
     // Faces were checked when the mesh was made: every vertex is there.
@@ -161,18 +155,18 @@ fn point(positions: &Positions, v: u32) -> [f64; 3] {
 }
 
 /// The largest component of the difference of two vertices, at either end of the step.
-fn largest(one: &Frames, p: u32, other: &Frames, q: u32) -> f64 {
+fn largest(one: &Ends, p: u32, other: &Ends, q: u32) -> f64 {
     let apart = |i: usize| {
-        let (p, q) = (point(one.0[i], p), point(other.0[i], q));
+        let (p, q) = (point(one[i], p), point(other[i], q));
         (0..3).map(|k| (p[k] - q[k]).abs()).fold(0.0, f64::max)
     };
     apart(0).max(apart(1))
 }
 
 /// The largest difference of coordinates of all: no pair is larger.
-fn extent(frames: &[Frames]) -> f64 {
+fn extent(frames: &[Ends]) -> f64 {
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for positions in frames.iter().flat_map(|frames| frames.0) {
+    for positions in frames.iter().flatten() {
         for v in 0..positions.len() as u32 {
             let p = point(positions, v);
             for k in 0..3 {

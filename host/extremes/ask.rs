@@ -44,7 +44,7 @@ pub(super) fn answers(
     how: How,
 ) -> Result<Vec<Option<Verdict>>, Error> {
     let mut all = vec![None; questions.len()];
-    let asked = |q: &Question| is_public(q) && (how.stored == Stored::F64 || q.fits_f32());
+    let asked = |q: &Question| is_public(q) && (how.stored == Stored::F64 || q.case.fits_f32());
     let mut left: Vec<usize> = (0..questions.len()).filter(|i| asked(&questions[*i])).collect();
     while let Some(first) = left.first() {
         let Question { tolerance, separation, .. } = questions[*first];

@@ -50,9 +50,7 @@ pub fn ask_built(
             let seed = (of << 40) + at as u64 + 60;
             let motions = built(seed, chunk.min(each - at), reach);
             let cases: Vec<Case> = motions.iter().map(|m| m.case).collect();
-            let narrow = cases.iter().all(|c| {
-                c.positions_t0.iter().chain(&c.positions_t1).flatten().all(|x| f64::from(*x as f32) == *x)
-            });
+            let narrow = cases.iter().all(Case::fits_f32);
             let stored = if narrow && at % 2 == 1 { Stored::F32 } else { Stored::F64 };
             for solver in SOLVERS {
                 let query = Query {

@@ -84,12 +84,6 @@ impl Question {
         Params { separation: self.separation, end: self.end, ..Params::new(self.tolerance) }
     }
 
-    /// Whether f32 holds all its coordinates.
-    pub fn fits_f32(&self) -> bool {
-        let all = self.case.positions_t0.iter().chain(&self.case.positions_t1).flatten();
-        all.into_iter().all(|x| f64::from(*x as f32) == *x)
-    }
-
     /// What is wrong with an answer; `narrow`: it was made in f32 alone.
     pub fn judge(&self, said: &Verdict, narrow: bool) -> Option<Fault> {
         let lenient = narrow && self.is_fine;

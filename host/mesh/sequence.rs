@@ -56,6 +56,11 @@ impl Body {
         self.positions_t1.as_ref()
     }
 
+    /// Positions at both ends of the step: twice the same of a still body.
+    pub fn ends(&self) -> [&Positions; 2] {
+        [&self.positions_t0, self.positions_t1.as_ref().unwrap_or(&self.positions_t0)]
+    }
+
     /// Number of vertices.
     pub fn vertex_count(&self) -> usize {
         self.positions_t0.len()

@@ -295,7 +295,7 @@ impl<R: Precision, V: Kernels> Frames for Corridor<R, V> {
             Vertices::Moving(buffer) => {
                 let mut ends = Vec::with_capacity(buffer.len());
                 for body in bodies {
-                    let (t0, t1) = (body.positions_t0(), body.positions_t1().unwrap_or(body.positions_t0()));
+                    let [t0, t1] = body.ends();
                     let both = R::points(t0).zip(R::points(t1));
                     ends.extend(both.map(|(t0, t1)| Ends { t0: t0.into(), t1: t1.into() }));
                 }

@@ -98,12 +98,6 @@ impl Input {
         Input::new(name, cases, &meet)
     }
 
-    /// Whether f32 holds every coordinate.
-    pub fn fits_f32(&self) -> bool {
-        let fits = |points: &[[f64; 3]; 4]| points.iter().flatten().all(|&x| f64::from(x as f32) == x);
-        self.cases.iter().all(|case| fits(&case.positions_t0) && fits(&case.positions_t1))
-    }
-
     /// The same questions with every coordinate put through `of`, which must not change the answers.
     pub fn with(&self, name: String, of: impl Fn(f64) -> f64 + Sync) -> Input {
         let moved = |points: &[[f64; 3]; 4]| points.map(|p| p.map(&of));

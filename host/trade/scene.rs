@@ -50,8 +50,7 @@ impl Scene {
             edge,
             reference: if list.is_some() { "list" } else { "certified" },
             edges: Vec::new(),
-            ends: [body.positions_t0(), body.positions_t1().unwrap_or(body.positions_t0())]
-                .map(Positions::to_f64),
+            ends: body.ends().map(Positions::to_f64),
             truths: Vec::new(),
             pairs: Vec::new(),
             body,

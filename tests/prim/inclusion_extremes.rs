@@ -25,7 +25,7 @@ fn said(q: &Question) -> Vec<(&'static str, Verdict, bool)> {
         ("f32", certified::<f64, f32>(x, face, &p), true),
         ("in passes", in_passes(x, face, &p), false),
     ];
-    if q.fits_f32() {
+    if q.case.fits_f32() {
         let to = |x: Vec3<f64>| x.map(|x| x as f32);
         let x = x.map(|m| Moving { t0: to(m.t0), t1: to(m.t1) });
         all.push(("f32 positions, f32", certified::<f32, f32>(x, face, &p), true));
