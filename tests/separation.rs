@@ -5,65 +5,21 @@
 mod exact;
 mod support;
 
-use nearmiss::contacts::{Contact, Kind, Status};
-use nearmiss::mesh::{Body, Positions, Topology};
+use nearmiss::contacts::Kind;
+use nearmiss::mesh::{Body, Positions};
 use nearmiss::query::{Motion, Solver};
 use nearmiss::{Query, Session, scene};
-use nearmiss_kernels::math::Vec3;
-use nearmiss_kernels::prim::cubic::Moving;
-use nearmiss_kernels::prim::inclusion::{
-    Params, Verdict, ee_certified, ee_settled, vf_certified, vf_settled,
-};
+use nearmiss_kernels::prim::inclusion::{Params, Verdict};
 use std::collections::BTreeMap;
+use support::brute::{Row, SOLVERS, Seen, fault, verdict};
 use support::{ask, engine, machines, ways};
 
-const SOLVERS: [Solver; 3] = [Solver::Certified, Solver::CertifiedF32, Solver::CertifiedF64];
 /// Of every question here, a length.
 const TOLERANCE: f64 = 1e-3;
-
-type Row = (Kind, u32, u32);
 
 fn asking(motion: Motion, solver: Solver, separation: f64) -> Query {
     let (solver, tolerance, separation) = (Some(solver), Some(TOLERANCE), Some(separation));
     Query { solver, tolerance, separation, ..Query::of(motion) }
-}
-
-/// What the solver says of a pair by itself.
-fn verdict(solver: Solver, kind: Kind, [a, b, c, d]: [Moving<f64>; 4], p: &Params) -> Verdict {
-    let edges = kind == Kind::Ee;
-    let (first, settled) =
-        if edges { ee_settled::<_, f32>([a, b], [c, d], p) } else { vf_settled::<_, f32>(a, [b, c, d], p) };
-    if solver == Solver::CertifiedF32 || solver == Solver::Certified && settled {
-        first
-    } else if edges {
-        ee_certified::<_, f64>([a, b], [c, d], p)
-    } else {
-        vf_certified::<_, f64>(a, [b, c, d], p)
-    }
-}
-
-/// A body's vertices, in motion, those of its faces, and its edges.
-struct Seen<'a> {
-    at: Vec<Moving<f64>>,
-    used: Vec<u32>,
-    faces: &'a [[u32; 3]],
-    edges: Vec<[u32; 2]>,
-}
-
-impl Seen<'_> {
-    fn of(body: &Body) -> Seen<'_> {
-        let t0 = body.positions_t0().to_f64();
-        let t1 = body.positions_t1().map_or_else(|| t0.clone(), Positions::to_f64);
-        let mut used: Vec<u32> = body.faces().iter().flatten().copied().collect();
-        used.sort_unstable();
-        used.dedup();
-        let at = t0.iter().zip(t1).map(|(p, q)| Moving { t0: Vec3(*p), t1: Vec3(q) }).collect();
-        let edges = Topology::new(body.faces(), body.vertex_count()).edges;
-        Seen { at, used, faces: body.faces(), edges }
-    }
-    fn points<const N: usize>(&self, of: [u32; N]) -> [Moving<f64>; N] {
-        of.map(|v| self.at[v as usize])
-    }
 }
 
 /// All pairs without a common vertex that the solver does not say to be apart: of one body, or of two.
@@ -79,7 +35,7 @@ fn brute(bodies: &[Body], solver: Solver, separation: f64) -> BTreeMap<Row, Verd
         }
     };
     let against = |v: u32, of: &Seen, f: usize, faces: &Seen| {
-        let ([m], [a, b, c]) = (of.points([v]), faces.points(faces.faces[f]));
+        let ([m], [a, b, c]) = (of.at([v]), faces.at(faces.faces[f]));
         [m, a, b, c]
     };
     for &v in &one.used {
@@ -95,28 +51,12 @@ fn brute(bodies: &[Body], solver: Solver, separation: f64) -> BTreeMap<Row, Verd
     for (i, a) in one.edges.iter().enumerate() {
         for (j, b) in other.edges.iter().enumerate() {
             if !own || i < j && !a.iter().any(|v| b.contains(v)) {
-                let ([a, b], [c, d]) = (one.points(*a), other.points(*b));
+                let ([a, b], [c, d]) = (one.at(*a), other.at(*b));
                 put(Kind::Ee, i, j, [a, b, c, d]);
             }
         }
     }
     near
-}
-
-/// What is wrong with an answer. Pairs that are only near may be left out, where volumes or filters tell them apart.
-fn fault(found: &[Contact], near: &BTreeMap<Row, Verdict>) -> Option<String> {
-    let mut listed = BTreeMap::new();
-    for c in found {
-        let row = (c.kind, c.a, c.b);
-        let Some(v) = near.get(&row) else { return Some(format!("{c:?} is apart")) };
-        let status = if v.is_contact() { Status::Certified } else { Status::Unresolved };
-        let same = [c.toi, c.toi_hi].map(f64::to_bits) == [v.toi, v.toi_hi].map(f64::to_bits);
-        if !same || c.status != status || listed.insert(row, ()).is_some() {
-            return Some(format!("{c:?} is {v:?}"));
-        }
-    }
-    let mut sure = near.iter().filter(|(_, v)| v.is_contact()).map(|(row, _)| row);
-    sure.find(|row| !listed.contains_key(row)).map(|row| format!("{row:?} is missed"))
 }
 
 /// A body's positions in doubles that f32 does not hold.
@@ -126,8 +66,8 @@ fn turned(body: Body) -> Body {
         Positions::F64(p.to_f64().into_iter().map(turned).collect())
     };
     let frame = |p| nearmiss::mesh::Mesh::new("turned", turn(p), body.faces().to_vec()).expect("a mesh");
-    let t1 = body.positions_t1().unwrap_or(body.positions_t0());
-    Body::moving(frame(body.positions_t0()), frame(t1)).expect("two frames")
+    let [t0, t1] = body.ends();
+    Body::moving(frame(t0), frame(t1)).expect("two frames")
 }
 
 fn soup(n: usize) -> Body {
@@ -154,7 +94,7 @@ fn nothing_within_a_separation_is_lost() {
                 let near = brute(&bodies, solver, separation);
                 let all = ask(engine(), bodies.clone(), asking(Motion::Continuous, solver, separation));
                 let what = format!("{}, {solver:?}, {separation}", bodies[0].name());
-                assert_eq!(fault(all.contacts(), &near), None, "{what}");
+                assert_eq!(fault(all.contacts(), &near, &[]), None, "{what}");
                 let first = ask(engine(), bodies.clone(), asking(Motion::Earliest, solver, separation));
                 let least = [&first, &all].map(|a| (a.earliest_toi().map(f64::to_bits), a.unresolved));
                 assert_eq!(least[0], least[1], "{what}");
@@ -172,7 +112,7 @@ fn every_way_and_every_machine_finds_the_same() {
         let query = asking(Motion::Continuous, Solver::Certified, 0.03);
         let near = brute(&bodies, Solver::Certified, 0.03);
         let truth = ask(engine(), bodies.clone(), query);
-        assert_eq!(fault(truth.contacts(), &near), None);
+        assert_eq!(fault(truth.contacts(), &near, &[]), None);
         for way in ways(query) {
             assert_eq!(ask(engine(), bodies.clone(), way).answer, truth.answer, "{way:?}");
         }
@@ -214,7 +154,7 @@ fn the_comparison_can_fail() {
     let near = brute(&[soup(50)], Solver::Certified, 0.03);
     let fault_of = |separation| {
         let all = ask(engine(), vec![soup(50)], asking(Motion::Continuous, Solver::Certified, separation));
-        fault(all.contacts(), &near)
+        fault(all.contacts(), &near, &[])
     };
     assert_eq!(fault_of(0.03), None);
     assert!(fault_of(0.0).is_some_and(|fault| fault.contains("is missed") || fault.contains(" is Verdict")));

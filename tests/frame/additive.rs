@@ -1,6 +1,7 @@
 //! Additive advancement in whole frames, against all pairs advanced one by one.
 
-use super::continuous::{Seen, crowded, crumpled, promoted};
+use super::continuous::{crowded, crumpled, promoted};
+use super::support::brute::Seen;
 use super::support::{ask, engine, machines};
 use nearmiss::contacts::{Contact, Kind, Status};
 use nearmiss::mesh::Body;

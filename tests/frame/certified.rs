@@ -1,33 +1,16 @@
 //! Certified contacts in whole frames, against all pairs asked one by one: nothing that meets is left out, whatever the
 //! tolerance and the budget, and no bit is other.
 
-use super::continuous::{Seen, boxes_meet, crowded, crumpled, promoted};
+use super::continuous::{boxes_meet, crowded, crumpled, promoted};
+use super::support::brute::{Row, SOLVERS, Seen, fault, verdict};
 use super::support::{ask, engine, machines};
 use nearmiss::contacts::{Contact, Kind, Status};
 use nearmiss::mesh::Body;
 use nearmiss::query::{Motion, Solver};
 use nearmiss::{Contacts, Query, Session, scene};
-use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};
-use nearmiss_kernels::prim::inclusion::{
-    Params, Verdict, ee_certified, ee_settled, vf_certified, vf_settled,
-};
+use nearmiss_kernels::prim::cubic::{ee_toi, vf_toi};
+use nearmiss_kernels::prim::inclusion::{Params, Verdict};
 use std::collections::BTreeMap;
-
-const SOLVERS: [Solver; 3] = [Solver::Certified, Solver::CertifiedF32, Solver::CertifiedF64];
-
-fn vf(solver: Solver, v: Moving<f64>, f: [Moving<f64>; 3], p: &Params) -> Verdict {
-    let (first, settled) = vf_settled::<f64, f32>(v, f, p);
-    let in_f32 = solver == Solver::CertifiedF32 || solver == Solver::Certified && settled;
-    if in_f32 { first } else { vf_certified::<f64, f64>(v, f, p) }
-}
-
-fn ee(solver: Solver, a: [Moving<f64>; 2], b: [Moving<f64>; 2], p: &Params) -> Verdict {
-    let (first, settled) = ee_settled::<f64, f32>(a, b, p);
-    let in_f32 = solver == Solver::CertifiedF32 || solver == Solver::Certified && settled;
-    if in_f32 { first } else { ee_certified::<f64, f64>(a, b, p) }
-}
-
-type Row = (Kind, u32, u32);
 
 /// All pairs of one body with overlapping boxes that are not certainly apart, and those that the f64 cubic finds.
 fn brute(body: &Body, solver: Solver, p: &Params) -> (BTreeMap<Row, Verdict>, Vec<Row>) {
@@ -43,7 +26,11 @@ fn brute(body: &Body, solver: Solver, p: &Params) -> (BTreeMap<Row, Verdict>, Ve
         for (f, face) in seen.faces.iter().enumerate().filter(|(_, face)| !face.contains(&v)) {
             let ([m], c) = (seen.at([v]), seen.at(*face));
             if boxes_meet(&[m], &c) {
-                put((Kind::Vf, v, f as u32), vf(solver, m, c, p), vf_toi::<f64, f64>(m, c).is_some());
+                put(
+                    (Kind::Vf, v, f as u32),
+                    verdict(solver, Kind::Vf, [m, c[0], c[1], c[2]], p),
+                    vf_toi::<f64, f64>(m, c).is_some(),
+                );
             }
         }
     }
@@ -52,27 +39,15 @@ fn brute(body: &Body, solver: Solver, p: &Params) -> (BTreeMap<Row, Verdict>, Ve
             let (m, c) = (seen.at(*a), seen.at(*b));
             if !a.iter().any(|v| b.contains(v)) && boxes_meet(&m, &c) {
                 let row = (Kind::Ee, i as u32, j as u32);
-                put(row, ee(solver, m, c, p), ee_toi::<f64, f64>(m, c).is_some());
+                put(
+                    row,
+                    verdict(solver, Kind::Ee, [m[0], m[1], c[0], c[1]], p),
+                    ee_toi::<f64, f64>(m, c).is_some(),
+                );
             }
         }
     }
     (near, cubic)
-}
-
-/// What is wrong with an answer. Pairs that are only near may be left out, where volumes or signs tell them apart.
-fn fault(found: &[Contact], near: &BTreeMap<Row, Verdict>, meet: &[Row]) -> Option<String> {
-    let mut listed = BTreeMap::new();
-    for c in found {
-        let row = (c.kind, c.a, c.b);
-        let Some(v) = near.get(&row) else { return Some(format!("{c:?} is apart")) };
-        let status = if v.is_contact() { Status::Certified } else { Status::Unresolved };
-        let same = [c.toi, c.toi_hi].map(f64::to_bits) == [v.toi, v.toi_hi].map(f64::to_bits);
-        if !same || c.status != status || listed.insert(row, ()).is_some() {
-            return Some(format!("{c:?} is {v:?}"));
-        }
-    }
-    let sure = near.iter().filter(|(_, v)| v.is_contact()).map(|(row, _)| row);
-    sure.chain(meet).find(|row| !listed.contains_key(row)).map(|row| format!("{row:?} is missed"))
 }
 
 fn asking(motion: Motion, solver: Solver, p: &Params) -> Query {

@@ -1,41 +1,15 @@
 //! Elementary pairs in motion, against all of them asked one by one with the same cubic: what the volumes, the walk
 //! and the sift leave out must be what the solver would not have found.
 
+use super::support::brute::Seen;
 use super::support::{ask, engine, machines, moving, still};
 use nearmiss::contacts::{Contact, Kind, Status};
-use nearmiss::mesh::{Body, Topology};
+use nearmiss::mesh::Body;
 use nearmiss::query::{Motion, Solver};
 use nearmiss::scene::{self, Rng};
 use nearmiss::{Contacts, Query};
-use nearmiss_kernels::math::{Real, Vec3};
+use nearmiss_kernels::math::Real;
 use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};
-
-/// A body as the brute force sees it. Its vertices are doubles: exact, and what the cubic in f64 works with.
-pub struct Seen {
-    pub vertices: Vec<Moving<f64>>,
-    pub used: Vec<u32>,
-    pub faces: Vec<[u32; 3]>,
-    pub edges: Vec<[u32; 2]>,
-}
-
-impl Seen {
-    pub fn of(body: &Body) -> Seen {
-        let t0 = body.positions_t0().to_f64();
-        let t1 = body.positions_t1().map_or_else(|| t0.clone(), |t1| t1.to_f64());
-        let mut used: Vec<u32> = body.faces().iter().flatten().copied().collect();
-        used.sort_unstable();
-        used.dedup();
-        Seen {
-            vertices: t0.iter().zip(t1).map(|(p, q)| Moving { t0: Vec3(*p), t1: Vec3(q) }).collect(),
-            used,
-            faces: body.faces().to_vec(),
-            edges: Topology::new(body.faces(), body.vertex_count()).edges,
-        }
-    }
-    pub fn at<const N: usize>(&self, of: [u32; N]) -> [Moving<f64>; N] {
-        of.map(|v| self.vertices[v as usize])
-    }
-}
 
 /// Whether the closed boxes of two sets of moving vertices overlap: two features whose boxes are apart never meet,
 /// whatever a tolerance of the solver says.

@@ -149,7 +149,7 @@ fn what_is_exactly_that_far_is_found() {
         let bodies = bodies(&pairs, scale, at, wide);
         let s = DISTANCE as f64 * scale;
         for (i, bv) in Bv::ALL.into_iter().enumerate() {
-            let solver = super::SOLVERS[i % 3];
+            let solver = crate::support::brute::SOLVERS[i % 3];
             for separation in [s, s * (1.0 + f64::EPSILON), s * (1.0 + 1e-7)] {
                 let all = ask(engine(), bodies.clone(), query(solver, bv, separation, scale));
                 for (i, x) in pairs.iter().enumerate() {
@@ -192,7 +192,7 @@ fn a_separation_below_the_precision_loses_nothing() {
     let pairs = every(&mut SmallRng::seed_from_u64(43));
     let bodies = bodies(&pairs, 1.0, 0.0, true);
     for (i, bv) in Bv::ALL.into_iter().enumerate() {
-        let all = ask(engine(), bodies.clone(), query(super::SOLVERS[i % 3], bv, 1e-12, 1.0));
+        let all = ask(engine(), bodies.clone(), query(crate::support::brute::SOLVERS[i % 3], bv, 1e-12, 1.0));
         for (i, x) in pairs.iter().enumerate() {
             let hit = found(&all, i as u32, x.near);
             // Only what goes on to the other's place meets it, at the end.

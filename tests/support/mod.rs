@@ -1,6 +1,7 @@
 //! What several test binaries share.
 #![allow(dead_code, reason = "each binary uses a part")]
 
+pub mod brute;
 mod data;
 
 pub use data::data;
