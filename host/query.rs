@@ -323,10 +323,17 @@ impl Query {
     }
 
     /// How near two features must come for a pair of them to be a candidate, a length: 0 for touching; with a separation
-    /// that, and half of the tolerance, within which a pair may be listed as unresolved.
+    /// that, and the tolerance, within which a pair may be listed as unresolved.
     pub(crate) fn gap(&self) -> f64 {
+        if self.is_apart() { self.listed_within() } else { 0.0 }
+    }
+
+    /// Within what distance of each other a certified solver may list two features: the separation and the tolerance. The
+    /// volumes bring it all of these, whatever their shape; of a solver that is not certified 0.
+    pub(crate) fn listed_within(&self) -> f64 {
         let p = self.params();
-        if self.is_apart() { p.separation + p.tolerance } else { 0.0 }
+        // Above 0 also where nothing was asked for: what precision cannot tell has its own part of the growth.
+        if self.solver().is_certified() { (p.separation + p.tolerance).max(f64::MIN_POSITIVE) } else { 0.0 }
     }
 
     /// What a certified test is asked; `tolerance` must have been chosen.

@@ -19,7 +19,7 @@ use crate::math::Real;
 use crate::prim::cubic::Moving;
 use crate::prim::inclusion::{self, Grid, Params, STACK, Search, Verdict};
 use crate::prim::signs::Certain;
-use crate::prim::tri_tri::meets;
+use crate::prim::tri_tri::{point_on_triangle, segments_meet};
 use core::mem::MaybeUninit;
 
 /// Slices of a window, a lane each.
@@ -28,8 +28,9 @@ pub const SLICES: u32 = 32;
 const STEPS: [u32; 2] = [6, 12];
 /// How long around a suspect time is looked at, in pauses: first, and in a slice. Both sides are less than two pauses.
 const AROUND: [f64; 2] = [0.9, 0.03];
-/// Steps of advancement before the next rung is asked.
-const ADVANCES: u32 = 64;
+/// Steps of advancement before the next rung is asked: in f32, where few pairs take more and many lanes would wait for them,
+/// and in f64.
+const ADVANCES: [u32; 2] = [4, 64];
 
 /// Which rungs there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,7 +49,7 @@ pub enum Rungs {
 pub fn rejected<const N: usize>(pair: &Pair<f32, N>) -> bool {
     let Some((begin, end)) = pair.window() else { return true };
     let g = pair.cubic();
-    pair.finite && (g.rootless(0.0, 1.0) || g.rootless(begin, end))
+    pair.finite && (g.rootless_throughout() || g.rootless(begin, end))
 }
 
 /// What isolation decides: separated, or a contact whose time is known as well as the tolerance demands; of the `last` rung
@@ -74,14 +75,13 @@ fn met<S: Real>(from: S, to: S, p: &Params) -> Option<Verdict> {
 /// Whether a vertex touches a face at the start. Exact.
 #[inline]
 pub fn vf_touch<R: Real>(v: Moving<R>, f: [Moving<R>; 3]) -> bool {
-    // Triangles without area are the points and segments that they are.
-    meets::<R, Certain>(&[v.t0; 3], &f.map(|v| v.t0)) == Some(true)
+    point_on_triangle::<R, Certain>(v.t0, &f.map(|v| v.t0)) == Some(true)
 }
 
 /// Whether two edges touch at the start. Exact.
 #[inline]
 pub fn ee_touch<R: Real>(a: [Moving<R>; 2], b: [Moving<R>; 2]) -> bool {
-    meets::<R, Certain>(&[a[0].t0, a[1].t0, a[1].t0], &[b[0].t0, b[1].t0, b[1].t0]) == Some(true)
+    segments_meet::<R, Certain>(a.map(|v| v.t0), b.map(|v| v.t0)) == Some(true)
 }
 
 /// What a slice of the window holds.
@@ -128,13 +128,13 @@ pub fn sliced<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), i: 
 pub fn near<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), p: &Params) -> Verdict {
     let half = 0.5 * pair.scaled(p.tolerance).max(crate::math::tolerance::NEAR_FINEST * pair.reach);
     let distance = Distance::of(pair, pair.scaled(p.separation) + half, half);
-    let (told, steps) = pair.advance((begin, end), &distance, p.budget.max(ADVANCES));
+    let (told, steps) = pair.advance((begin, end), &distance, p.budget.max(ADVANCES[1]));
     match told {
         Advanced::Apart => Verdict::separated(p.end, 0),
         Advanced::Within { from, .. } | Advanced::Near { from } => {
             Verdict::unresolved(from.min(p.end), p.end, 0, false)
         }
-        Advanced::Open { from } => Verdict::unresolved(from.min(p.end), p.end, 0, steps >= ADVANCES),
+        Advanced::Open { from } => Verdict::unresolved(from.min(p.end), p.end, 0, steps >= ADVANCES[1]),
     }
 }
 
@@ -143,25 +143,19 @@ pub fn near<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), p: &P
 pub fn separated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bool) -> Option<Verdict> {
     let slack = pair.scaled(p.tolerance).max(S::ADVANCE_FINEST * pair.reach);
     let distance = Distance::of(pair, pair.scaled(p.separation), slack);
-    match pair.advance((S::ZERO, pair.end), &distance, ADVANCES).0 {
+    match pair.advance((S::ZERO, pair.end), &distance, ADVANCES[last as usize]).0 {
         Advanced::Apart => Some(Verdict::separated(p.end, 0)),
         Advanced::Within { from, to } if last || to - from <= distance.pause + distance.pause => {
             met(from, to, p)
         }
-        Advanced::Near { from } if last => {
-            Some(Verdict::unresolved(from.wide().min(p.end), p.end, 0, false))
-        }
+        Advanced::Near { from } if last => Some(Verdict::unresolved(from.wide().min(p.end), p.end, 0, false)),
         _ => None,
     }
 }
 
 /// Searches by boxes from `from` on what [`near`] left unresolved: the surer of both answers.
 #[inline]
-pub fn searched<const N: usize>(
-    local: inclusion::Local<f64, N>,
-    unresolved: Verdict,
-    p: &Params,
-) -> Verdict {
+pub fn searched<const N: usize>(local: inclusion::Local<f64, N>, unresolved: Verdict, p: &Params) -> Verdict {
     let mut stack = [const { MaybeUninit::uninit() }; STACK];
     let mut search = match Search::from(local, p, &mut stack, unresolved.toi) {
         Ok(search) => search,

@@ -16,14 +16,12 @@
 //!          f64 as many; settling some 30 exact signs for what touches at the start; a separation 150 operations a step.
 
 use super::{listed, moving};
-use crate::abi::{EVERYTHING, Hit, Pair, RungArgs, counter};
+use crate::abi::{EVERYTHING, Hit, Listed, Pair, RungArgs, counter};
 use crate::exec::{Block, Lane, Slot};
 use crate::math::Real;
 use crate::prim::cubic::Moving;
 use crate::prim::inclusion::{Grid, Verdict};
-use crate::prim::isolate::ladder::{
-    ee_touch, isolated, separated, separated_at_last, settled, vf_touch,
-};
+use crate::prim::isolate::ladder::{ee_touch, isolated, separated, separated_at_last, settled, vf_touch};
 use crate::prim::isolate::{self, Edges, Face};
 
 /// A vertex and the corners of a face, in motion.
@@ -134,7 +132,7 @@ fn unless_later<R: Real, S: Grid, L: Lane, const N: usize>(
 const LISTED: u32 = 1;
 const LEFT: u32 = 1 << 16;
 
-/// Asks each pair; lists what is unresolved or in contact, and leaves to the next rung what has no answer.
+/// Asks each pair of both kinds. The kinds begin at opposite ends of the grid, so that short lists are spread over it.
 #[inline(always)]
 fn rung<R: Real, B: Block>(
     b: &mut B,
@@ -142,25 +140,33 @@ fn rung<R: Real, B: Block>(
     vf: impl Fn(&B::Lane, Pair) -> Option<Verdict>,
     ee: impl Fn(&B::Lane, Pair) -> Option<Verdict>,
 ) {
-    let lanes = b.lanes();
-    let counts = [&a.vf, &a.ee].map(|of| listed(b, of.pairs, a.counters, of.pairs_at));
-    let tiles = counts.map(|count| count.div_ceil(lanes));
+    let (first, blocks) = (b.block(), b.blocks());
+    each(b, (a, &a.vf), first, vf);
+    each(b, (a, &a.ee), blocks - 1 - first, ee);
+}
+
+/// Asks each pair of one kind; lists what is unresolved or in contact, and leaves to the next rung what has no answer.
+#[inline(always)]
+fn each<R: Real, B: Block>(
+    b: &mut B,
+    (a, of): (&RungArgs<R>, &Listed),
+    first: u32,
+    ask: impl Fn(&B::Lane, Pair) -> Option<Verdict>,
+) {
+    let (lanes, stride) = (b.lanes(), b.blocks() * b.lanes());
+    let count = listed(b, of.pairs, a.counters, of.pairs_at);
     let mut hits = b.slot(Hit::default());
     let mut wishes = b.slot(0u32);
     let mut places = b.slot(0u32);
-    let mut tile = b.block();
-    while tile < tiles[0] + tiles[1] {
-        let is_vf = tile < tiles[0];
-        let (of, count) = if is_vf { (&a.vf, counts[0]) } else { (&a.ee, counts[1]) };
-        let base = (if is_vf { tile } else { tile - tiles[0] }) * lanes;
+    let mut base = first * lanes;
+    while base < count {
         b.phase(|l| {
             let i = base + l.lane();
             let mut wish = 0;
             if i < count {
                 let pair = l.read(of.pairs, i);
-                let told = if is_vf { vf(l, pair) } else { ee(l, pair) };
-                let verdict = told.unwrap_or_default();
-                *hits.of(l) = Hit { a: pair.a, b: pair.b, verdict };
+                let told = ask(l, pair);
+                *hits.of(l) = Hit { a: pair.a, b: pair.b, verdict: told.unwrap_or_default() };
                 wish = match told {
                     None => LEFT,
                     Some(verdict) if keep(l, a, verdict) => LISTED,
@@ -184,7 +190,7 @@ fn rung<R: Real, B: Block>(
                 l.write(of.left, place as u32, Pair { a: hit.a, b: hit.b });
             }
         });
-        tile += b.blocks();
+        base += stride;
     }
 }
 
