@@ -326,10 +326,6 @@ impl Continuous {
                 launch_striding::<R::Vf32>(given.device, of_vf, &vf)?;
                 launch_striding::<R::Ee32>(given.device, of_ee, &ee)
             }
-            Solver::Additive => {
-                launch_striding::<R::AdditiveVf>(given.device, of_vf, &vf)?;
-                launch_striding::<R::AdditiveEe>(given.device, of_ee, &ee)
-            }
             _ => {
                 launch_striding::<R::Vf64>(given.device, of_vf, &vf)?;
                 launch_striding::<R::Ee64>(given.device, of_ee, &ee)

@@ -52,10 +52,6 @@ pub trait Precision: Real {
     type Ee32: Entry<Args = SolveArgs<Self>>;
     /// Edge/edge by the cubic in f64.
     type Ee64: Entry<Args = SolveArgs<Self>>;
-    /// Vertex/face by additive advancement.
-    type AdditiveVf: Entry<Args = SolveArgs<Self>>;
-    /// Edge/edge by additive advancement.
-    type AdditiveEe: Entry<Args = SolveArgs<Self>>;
     /// What meets, by boxes in f32, proven.
     type Certify32: Entry<Args = CertifyArgs<Self>>;
     /// What meets, by boxes in f64, proven.
@@ -87,8 +83,6 @@ impl Precision for f32 {
     type Vf64 = entry::narrow_vf_f32_f64;
     type Ee32 = entry::narrow_ee_f32_f32;
     type Ee64 = entry::narrow_ee_f32_f64;
-    type AdditiveVf = entry::narrow_additive_vf_f32;
-    type AdditiveEe = entry::narrow_additive_ee_f32;
     type Certify32 = entry::narrow_certify_f32_f32;
     type Certify64 = entry::narrow_certify_f32_f64;
 
@@ -123,8 +117,6 @@ impl Precision for f64 {
     type Vf64 = entry::narrow_vf_f64_f64;
     type Ee32 = entry::narrow_ee_f64_f32;
     type Ee64 = entry::narrow_ee_f64_f64;
-    type AdditiveVf = entry::narrow_additive_vf_f64;
-    type AdditiveEe = entry::narrow_additive_ee_f64;
     type Certify32 = entry::narrow_certify_f64_f32;
     type Certify64 = entry::narrow_certify_f64_f64;
 

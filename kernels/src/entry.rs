@@ -157,10 +157,6 @@ kernels! {
     narrow_ee_f32_f64: solve::ee::<f32, f64, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_ee_f64_f32: solve::ee::<f64, f32, B>, [SolveArgs<f64>], WIDE, 0;
     narrow_ee_f64_f64: solve::ee::<f64, f64, B>, [SolveArgs<f64>], WIDE, 0;
-    narrow_additive_vf_f32: solve::additive_vf::<f32, B>, [SolveArgs<f32>], NARROW, 0;
-    narrow_additive_vf_f64: solve::additive_vf::<f64, B>, [SolveArgs<f64>], NARROW, 0;
-    narrow_additive_ee_f32: solve::additive_ee::<f32, B>, [SolveArgs<f32>], NARROW, 0;
-    narrow_additive_ee_f64: solve::additive_ee::<f64, B>, [SolveArgs<f64>], NARROW, 0;
     narrow_certify_f32_f32: certify::certify::<f32, f32, B>, [CertifyArgs<f32>], DRAWING, certify::SHARED;
     narrow_certify_f32_f64: certify::certify::<f32, f64, B>, [CertifyArgs<f32>], DRAWING, certify::SHARED;
     narrow_certify_f64_f32: certify::certify::<f64, f32, B>, [CertifyArgs<f64>], DRAWING, certify::SHARED;

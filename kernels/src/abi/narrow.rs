@@ -64,8 +64,7 @@ arguments! {
         /// Features this near are in contact, a length; only of the two kernels that heed it.
         separation: f64,
     }
-    /// `narrow_vf`, `narrow_ee`, `narrow_additive_vf`, `narrow_additive_ee`: the first time of contact of two primitives in
-    /// motion.
+    /// `narrow_vf`, `narrow_ee`: the first time of contact of two primitives in motion.
     SolveArgs<R: Real> {
         /// Positions.
         frames: Frames<R>,
