@@ -35,8 +35,7 @@ pub enum Status {
     Contact,
     /// They meet, proven, first in `[toi, toi_hi]`.
     Certified,
-    /// They come nearer than the tolerance, or the budget ended; if they meet, not before `toi`. Proven as well, but for
-    /// [`Solver::Additive`], whose steps ended.
+    /// They come nearer than the tolerance, or the budget ended; if they meet, not before `toi`. Proven as well.
     Unresolved,
 }
 

@@ -48,10 +48,6 @@ pub trait Precision: Real {
     type Ee32: Entry<Args = SolveArgs<Self>>;
     /// Edge/edge by the cubic in f64.
     type Ee64: Entry<Args = SolveArgs<Self>>;
-    /// Vertex/face by additive advancement.
-    type AdditiveVf: Entry<Args = SolveArgs<Self>>;
-    /// Edge/edge by additive advancement.
-    type AdditiveEe: Entry<Args = SolveArgs<Self>>;
     /// Isolation of roots in f32.
     type Isolate32: Entry<Args = RungArgs<Self>>;
     /// Isolation of roots in f64.
@@ -89,8 +85,6 @@ impl Precision for f32 {
     type Vf64 = entry::narrow_vf_f32_f64;
     type Ee32 = entry::narrow_ee_f32_f32;
     type Ee64 = entry::narrow_ee_f32_f64;
-    type AdditiveVf = entry::narrow_additive_vf_f32;
-    type AdditiveEe = entry::narrow_additive_ee_f32;
     type Isolate32 = entry::narrow_isolate_f32_f32;
     type Isolate64 = entry::narrow_isolate_f32_f64;
     type Settle = entry::narrow_settle_f32;
@@ -127,8 +121,6 @@ impl Precision for f64 {
     type Vf64 = entry::narrow_vf_f64_f64;
     type Ee32 = entry::narrow_ee_f64_f32;
     type Ee64 = entry::narrow_ee_f64_f64;
-    type AdditiveVf = entry::narrow_additive_vf_f64;
-    type AdditiveEe = entry::narrow_additive_ee_f64;
     type Isolate32 = entry::narrow_isolate_f64_f32;
     type Isolate64 = entry::narrow_isolate_f64_f64;
     type Settle = entry::narrow_settle_f64;

@@ -153,10 +153,6 @@ kernels! {
     narrow_ee_f32_f64: solve::ee::<f32, f64, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_ee_f64_f32: solve::ee::<f64, f32, B>, [SolveArgs<f64>], WIDE, 0;
     narrow_ee_f64_f64: solve::ee::<f64, f64, B>, [SolveArgs<f64>], WIDE, 0;
-    narrow_additive_vf_f32: solve::additive_vf::<f32, B>, [SolveArgs<f32>], NARROW, 0;
-    narrow_additive_vf_f64: solve::additive_vf::<f64, B>, [SolveArgs<f64>], NARROW, 0;
-    narrow_additive_ee_f32: solve::additive_ee::<f32, B>, [SolveArgs<f32>], NARROW, 0;
-    narrow_additive_ee_f64: solve::additive_ee::<f64, B>, [SolveArgs<f64>], NARROW, 0;
     narrow_isolate_f32_f32: climb::isolate::<f32, f32, B>, [RungArgs<f32>], RUNG, 0;
     narrow_isolate_f32_f64: climb::isolate::<f32, f64, B>, [RungArgs<f32>], NARROW, 0;
     narrow_isolate_f64_f32: climb::isolate::<f64, f32, B>, [RungArgs<f64>], RUNG, 0;

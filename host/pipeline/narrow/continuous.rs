@@ -199,10 +199,6 @@ impl Continuous {
                 launch_striding::<R::Vf32>(given.device, vf.room(), &of_vf)?;
                 launch_striding::<R::Ee32>(given.device, ee.room(), &of_ee)
             }
-            Solver::Additive => {
-                launch_striding::<R::AdditiveVf>(given.device, vf.room(), &of_vf)?;
-                launch_striding::<R::AdditiveEe>(given.device, ee.room(), &of_ee)
-            }
             _ => {
                 launch_striding::<R::Vf64>(given.device, vf.room(), &of_vf)?;
                 launch_striding::<R::Ee64>(given.device, ee.room(), &of_ee)

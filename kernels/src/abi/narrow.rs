@@ -63,8 +63,7 @@ arguments! {
         /// What is asked.
         params: Params,
     }
-    /// `narrow_vf`, `narrow_ee`, `narrow_additive_vf`, `narrow_additive_ee`: the first time of contact of two primitives in
-    /// motion.
+    /// `narrow_vf`, `narrow_ee`: the first time of contact of two primitives in motion.
     SolveArgs<R: Real> {
         /// Positions.
         frames: Frames<R>,
