@@ -5,11 +5,21 @@
 //! Each constant of `tolerance.rs` that a proof rests on has a test of its name; [`list`] holds the others and why.
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "NaN must fail")]
 
+#[path = "bounds/boxes.rs"]
+mod boxes;
 #[path = "bounds/cubic.rs"]
 mod cubic;
 #[path = "bounds/exact.rs"]
 mod exact;
 #[path = "bounds/hunt.rs"]
 mod hunt;
+#[path = "bounds/inclusion.rs"]
+mod inclusion;
+#[path = "bounds/list.rs"]
+mod list;
+#[path = "bounds/merged.rs"]
+mod merged;
+#[path = "bounds/moving.rs"]
+mod moving;
 #[path = "bounds/orient.rs"]
 mod orient;
