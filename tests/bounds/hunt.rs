@@ -25,7 +25,7 @@ pub const LEAST: f64 = 1.0 / 20.0;
 
 impl Hunt {
     pub fn new(seed: u64) -> Hunt {
-        Hunt { seed, starts: 6, steps: 700 }
+        Hunt { seed, starts: 8, steps: 1500 }
     }
 
     /// The largest ratio over inputs of numbers of `R`. `start` makes an input; `ratio` measures one, and gives NaN where
