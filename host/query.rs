@@ -317,6 +317,18 @@ impl Query {
         Ok(())
     }
 
+    /// Whether a separation above 0 is asked for.
+    pub(crate) fn is_apart(&self) -> bool {
+        self.separation.is_some_and(|separation| separation > 0.0)
+    }
+
+    /// How near two features must come for a pair of them to be a candidate, a length: 0 for touching; with a separation
+    /// that, and half of the tolerance, within which a pair may be listed as unresolved.
+    pub(crate) fn gap(&self) -> f64 {
+        let p = self.params();
+        if self.is_apart() { p.separation + p.tolerance } else { 0.0 }
+    }
+
     /// What a certified test is asked; `tolerance` must have been chosen.
     pub(crate) fn params(&self) -> Params {
         let budget = self.boxes.unwrap_or(Query::BOXES);

@@ -55,8 +55,8 @@ fn some<R: Precision>(device: &Device, cases: &[Case], query: Query, how: How) -
     let (layout, [vf, ee]) = topology(cases);
     let all = [vf.len(), ee.len()];
     // A case is listed once at most, so no list outgrows this.
-    let candidates = if how.filters { all } else { [0, 0] };
-    let rooms = Rooms { candidates, survivors: all, hits: all, escalated: all };
+    let candidates = if how.filters || query.is_apart() { all } else { [0, 0] };
+    let rooms = Rooms { candidates, survivors: all, hits: all, left: all };
     let mut features = Continuous::new(device, &layout, query, rooms)?;
     let first = if how.filters { Step::Sift } else { Step::Reject };
     let mut counts = vec![0; counter::COUNT as usize];

@@ -2,7 +2,7 @@
 
 use crate::mesh::Positions;
 use nearmiss_kernels::abi::{
-    CertifyArgs, DiscreteArgs, FitArgs, GroupsArgs, MortonArgs, RejectArgs, SiftArgs, SolveArgs, TreeletsArgs,
+    DiscreteArgs, FitArgs, GroupsArgs, MortonArgs, RejectArgs, RungArgs, SiftArgs, SolveArgs, TreeletsArgs,
 };
 use nearmiss_kernels::bv::{Aabb, Linear, Obb};
 use nearmiss_kernels::entry::{self, Entry};
@@ -40,10 +40,6 @@ pub trait Precision: Real {
     type RejectVf: Entry<Args = RejectArgs<Self>>;
     /// Edge/edge candidates that may meet.
     type RejectEe: Entry<Args = RejectArgs<Self>>;
-    /// The same with a separation.
-    type RejectNearVf: Entry<Args = RejectArgs<Self>>;
-    /// The same with a separation.
-    type RejectNearEe: Entry<Args = RejectArgs<Self>>;
     /// Vertex/face by the cubic in f32.
     type Vf32: Entry<Args = SolveArgs<Self>>;
     /// Vertex/face by the cubic in f64.
@@ -56,10 +52,18 @@ pub trait Precision: Real {
     type AdditiveVf: Entry<Args = SolveArgs<Self>>;
     /// Edge/edge by additive advancement.
     type AdditiveEe: Entry<Args = SolveArgs<Self>>;
-    /// What meets, by boxes in f32, proven.
-    type Certify32: Entry<Args = CertifyArgs<Self>>;
-    /// What meets, by boxes in f64, proven.
-    type Certify64: Entry<Args = CertifyArgs<Self>>;
+    /// Isolation of roots in f32.
+    type Isolate32: Entry<Args = RungArgs<Self>>;
+    /// Isolation of roots in f64.
+    type Isolate64: Entry<Args = RungArgs<Self>>;
+    /// What touches at the start, and flat motion.
+    type Settle: Entry<Args = RungArgs<Self>>;
+    /// What is left, in slices.
+    type Slice: Entry<Args = RungArgs<Self>>;
+    /// A separation in f32.
+    type Separate: Entry<Args = RungArgs<Self>>;
+    /// What that leaves, in f64.
+    type SeparateRest: Entry<Args = RungArgs<Self>>;
 
     /// Positions in this precision, exactly: f32 is only asked for where all bodies are f32.
     fn points(positions: &Positions) -> impl Iterator<Item = Vec3<Self>>;
@@ -81,16 +85,18 @@ impl Precision for f32 {
     type Sift = entry::narrow_sift_f32;
     type RejectVf = entry::narrow_reject_vf_f32;
     type RejectEe = entry::narrow_reject_ee_f32;
-    type RejectNearVf = entry::narrow_reject_near_vf_f32;
-    type RejectNearEe = entry::narrow_reject_near_ee_f32;
     type Vf32 = entry::narrow_vf_f32_f32;
     type Vf64 = entry::narrow_vf_f32_f64;
     type Ee32 = entry::narrow_ee_f32_f32;
     type Ee64 = entry::narrow_ee_f32_f64;
     type AdditiveVf = entry::narrow_additive_vf_f32;
     type AdditiveEe = entry::narrow_additive_ee_f32;
-    type Certify32 = entry::narrow_certify_f32_f32;
-    type Certify64 = entry::narrow_certify_f32_f64;
+    type Isolate32 = entry::narrow_isolate_f32_f32;
+    type Isolate64 = entry::narrow_isolate_f32_f64;
+    type Settle = entry::narrow_settle_f32;
+    type Slice = entry::narrow_slice_f32;
+    type Separate = entry::narrow_separate_f32;
+    type SeparateRest = entry::narrow_separate_rest_f32;
 
     fn points(positions: &Positions) -> impl Iterator<Item = Vec3<f32>> {
         let (singles, doubles): (&[[f32; 3]], &[[f64; 3]]) = match positions {
@@ -117,16 +123,18 @@ impl Precision for f64 {
     type Sift = entry::narrow_sift_f64;
     type RejectVf = entry::narrow_reject_vf_f64;
     type RejectEe = entry::narrow_reject_ee_f64;
-    type RejectNearVf = entry::narrow_reject_near_vf_f64;
-    type RejectNearEe = entry::narrow_reject_near_ee_f64;
     type Vf32 = entry::narrow_vf_f64_f32;
     type Vf64 = entry::narrow_vf_f64_f64;
     type Ee32 = entry::narrow_ee_f64_f32;
     type Ee64 = entry::narrow_ee_f64_f64;
     type AdditiveVf = entry::narrow_additive_vf_f64;
     type AdditiveEe = entry::narrow_additive_ee_f64;
-    type Certify32 = entry::narrow_certify_f64_f32;
-    type Certify64 = entry::narrow_certify_f64_f64;
+    type Isolate32 = entry::narrow_isolate_f64_f32;
+    type Isolate64 = entry::narrow_isolate_f64_f64;
+    type Settle = entry::narrow_settle_f64;
+    type Slice = entry::narrow_slice_f64;
+    type Separate = entry::narrow_separate_f64;
+    type SeparateRest = entry::narrow_separate_rest_f64;
 
     fn points(positions: &Positions) -> impl Iterator<Item = Vec3<f64>> {
         let (singles, doubles): (&[[f32; 3]], &[[f64; 3]]) = match positions {

@@ -5,7 +5,8 @@ use crate::bv::{Aabb, Linear, Obb};
 use crate::exec::{BINS, Block, WARP};
 use crate::queue::worker;
 use crate::stage::construct::{morton, sort, tree, treelet};
-use crate::stage::narrow::{certify, discrete, reject, sift, solve};
+use crate::prim::isolate::ladder::SLICES;
+use crate::stage::narrow::{climb, discrete, reject, sift, slice, solve};
 use crate::stage::refit::{bottom_up, levels, treelets};
 use crate::stage::traverse::{front, queue, steal};
 use crate::stage::{balance, fit, traverse};
@@ -74,9 +75,8 @@ const WIDE: u32 = 256;
 /// Lanes of kernels with long or uneven work: small blocks, so that few lanes wait for a long one (measured:
 /// `benches/NOTES.md`).
 const NARROW: u32 = 64;
-/// Lanes that draw items of uneven work from their block's share: the more draw from one, the more even; registers allow
-/// two such blocks a core.
-const DRAWING: u32 = 128;
+/// Lanes of a rung in f32 that many pairs climb: work is uneven, and two lists are appended to.
+const RUNG: u32 = 128;
 /// Lanes of the one block that evens the queues, as in the paper.
 const BALANCE: u32 = 512;
 /// Shared memory of a radix scatter: the bins, and each warp's.
@@ -145,10 +145,6 @@ kernels! {
     narrow_reject_vf_f64: reject::vf::<f64, B>, [RejectArgs<f64>], WIDE, 0;
     narrow_reject_ee_f32: reject::ee::<f32, B>, [RejectArgs<f32>], WIDE, 0;
     narrow_reject_ee_f64: reject::ee::<f64, B>, [RejectArgs<f64>], WIDE, 0;
-    narrow_reject_near_vf_f32: reject::near_vf::<f32, B>, [RejectArgs<f32>], WIDE, 0;
-    narrow_reject_near_vf_f64: reject::near_vf::<f64, B>, [RejectArgs<f64>], WIDE, 0;
-    narrow_reject_near_ee_f32: reject::near_ee::<f32, B>, [RejectArgs<f32>], WIDE, 0;
-    narrow_reject_near_ee_f64: reject::near_ee::<f64, B>, [RejectArgs<f64>], WIDE, 0;
     narrow_vf_f32_f32: solve::vf::<f32, f32, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_vf_f32_f64: solve::vf::<f32, f64, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_vf_f64_f32: solve::vf::<f64, f32, B>, [SolveArgs<f64>], WIDE, 0;
@@ -161,8 +157,16 @@ kernels! {
     narrow_additive_vf_f64: solve::additive_vf::<f64, B>, [SolveArgs<f64>], NARROW, 0;
     narrow_additive_ee_f32: solve::additive_ee::<f32, B>, [SolveArgs<f32>], NARROW, 0;
     narrow_additive_ee_f64: solve::additive_ee::<f64, B>, [SolveArgs<f64>], NARROW, 0;
-    narrow_certify_f32_f32: certify::certify::<f32, f32, B>, [CertifyArgs<f32>], DRAWING, certify::SHARED;
-    narrow_certify_f32_f64: certify::certify::<f32, f64, B>, [CertifyArgs<f32>], DRAWING, certify::SHARED;
-    narrow_certify_f64_f32: certify::certify::<f64, f32, B>, [CertifyArgs<f64>], DRAWING, certify::SHARED;
-    narrow_certify_f64_f64: certify::certify::<f64, f64, B>, [CertifyArgs<f64>], DRAWING, certify::SHARED;
+    narrow_isolate_f32_f32: climb::isolate::<f32, f32, B>, [RungArgs<f32>], RUNG, 0;
+    narrow_isolate_f32_f64: climb::isolate::<f32, f64, B>, [RungArgs<f32>], NARROW, 0;
+    narrow_isolate_f64_f32: climb::isolate::<f64, f32, B>, [RungArgs<f64>], RUNG, 0;
+    narrow_isolate_f64_f64: climb::isolate::<f64, f64, B>, [RungArgs<f64>], NARROW, 0;
+    narrow_settle_f32: climb::settle::<f32, B>, [RungArgs<f32>], NARROW, 0;
+    narrow_settle_f64: climb::settle::<f64, B>, [RungArgs<f64>], NARROW, 0;
+    narrow_slice_f32: slice::slice::<f32, B>, [RungArgs<f32>], SLICES, slice::SHARED;
+    narrow_slice_f64: slice::slice::<f64, B>, [RungArgs<f64>], SLICES, slice::SHARED;
+    narrow_separate_f32: climb::separate::<f32, B>, [RungArgs<f32>], RUNG, 0;
+    narrow_separate_f64: climb::separate::<f64, B>, [RungArgs<f64>], RUNG, 0;
+    narrow_separate_rest_f32: climb::separate_rest::<f32, B>, [RungArgs<f32>], NARROW, 0;
+    narrow_separate_rest_f64: climb::separate_rest::<f64, B>, [RungArgs<f64>], NARROW, 0;
 }

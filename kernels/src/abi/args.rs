@@ -332,8 +332,16 @@ pub mod counter {
     pub const EE_ESCALATED: u32 = ENDS + 11;
     /// Hits that are neither certain contacts nor certainly none.
     pub const UNRESOLVED: u32 = ENDS + 12;
+    /// Vertex/face pairs that isolation leaves.
+    pub const VF_OPEN: u32 = ENDS + 13;
+    /// Edge/edge pairs that isolation leaves.
+    pub const EE_OPEN: u32 = ENDS + 14;
+    /// Vertex/face pairs that are cut into slices.
+    pub const VF_HARD: u32 = ENDS + 15;
+    /// Edge/edge pairs that are cut into slices.
+    pub const EE_HARD: u32 = ENDS + 16;
     /// How many counters there are.
-    pub const COUNT: u32 = ENDS + 13;
+    pub const COUNT: u32 = ENDS + 17;
 }
 /// Rounds of the traversal that may spill; one more, without a budget, ends it.
 pub const ROUNDS: u32 = 4;

@@ -46,8 +46,7 @@ arguments! {
         /// Bits: [`KEEP_ADJACENT`](super::KEEP_ADJACENT).
         flags: u32,
     }
-    /// `narrow_reject_vf`, `narrow_reject_ee`, and with a separation `narrow_reject_near_vf` and `_ee`: candidates that
-    /// certainly stay apart, left out.
+    /// `narrow_reject_vf`, `narrow_reject_ee`: candidates that certainly stay apart, left out.
     RejectArgs<R: Real> {
         /// Positions.
         frames: Frames<R>,
@@ -61,8 +60,8 @@ arguments! {
         survivors: Span<Pair>,
         /// Counters, see [`counter`](super::counter).
         counters: Span<u64>,
-        /// Features this near are in contact, a length; only of the two kernels that heed it.
-        separation: f64,
+        /// What is asked.
+        params: Params,
     }
     /// `narrow_vf`, `narrow_ee`, `narrow_additive_vf`, `narrow_additive_ee`: the first time of contact of two primitives in
     /// motion.
@@ -82,34 +81,35 @@ arguments! {
         /// Counters, see [`counter`](super::counter).
         counters: Span<u64>,
     }
-    /// Candidates of one kind for `narrow_certify`, and where they go.
+    /// Pairs of one kind for a rung, and where they go.
     Listed {
-        /// Candidates.
+        /// Pairs.
         pairs: Span<Pair>,
         /// Out: contacts and unresolved pairs; empty when only the earliest is asked for.
         hits: Span<Hit>,
-        /// Out: pairs that need more precision; empty without [`ESCALATE`].
-        escalated: Span<Pair>,
+        /// Out: pairs for the next rung; empty where there is none.
+        left: Span<Pair>,
         /// Which counter tells how many pairs there are.
         pairs_at: u32,
         /// Which counter the hits add to.
         hits_at: u32,
-        /// Which counter the escalated pairs add to.
-        escalated_at: u32,
+        /// Which counter the pairs for the next rung add to.
+        left_at: u32,
         /// Zero.
         pad: u32,
     }
-    /// `narrow_certify`: what meets, and bounds of the first time, with proof.
-    CertifyArgs<R: Real> {
+    /// `narrow_isolate`, `narrow_settle`, `narrow_slice`, `narrow_separate`: what meets, and bounds of the first time, with
+    /// proof.
+    RungArgs<R: Real> {
         /// Positions.
         frames: Frames<R>,
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
         /// End points of every edge.
         edges: Span<[u32; 2]>,
-        /// Vertex/face candidates.
+        /// Vertex/face pairs.
         vf: Listed,
-        /// Edge/edge candidates.
+        /// Edge/edge pairs.
         ee: Listed,
         /// Out: the smallest toi so far, as bits; or empty.
         earliest: Span<u64>,
@@ -117,12 +117,13 @@ arguments! {
         counters: Span<u64>,
         /// What is asked.
         params: Params,
-        /// Bits: [`ESCALATE`].
+        /// Bits: [`EVERYTHING`].
         flags: u32,
         /// Zero.
         pad: u32,
     }
 }
 
-/// [`CertifyArgs::flags`]: pairs of which more precision may tell more go to their own list.
-pub const ESCALATE: u32 = 1;
+/// [`RungArgs::flags`]: of `narrow_isolate`, a contact is one however well its time is known; of `narrow_settle`, nothing is
+/// left to a next rung.
+pub const EVERYTHING: u32 = 1;

@@ -73,6 +73,35 @@ pub trait Tolerance: Sized {
     const INCLUSION_REGULAR: Self;
     /// A direction whose largest component is below this is not used: it could not be scaled to one. Of lengths cubed.
     const INCLUSION_FAINT: Self;
+    /// By how much a pair's window of time is widened at each end: `16u`. An end errs by at most `5u` and half a subnormal
+    /// (two differences and a quotient of them and their sum). Fraction of the step.
+    const ISOLATE_WINDOW: Self;
+    /// By how much a window is widened where roots are isolated, so that signs can be seen to change about one of no width:
+    /// 2^-12 in f32, 2^-26 in f64. Fraction of the step; costs, proves nothing.
+    const ISOLATE_MARGIN: Self;
+    /// Error of a Bernstein coefficient of the coplanarity cubic over any part of the step, relative to the permanent of the
+    /// largest components: `40u`. An outer coefficient of the step errs by `8u` (two inputs, product, difference, input,
+    /// product, two sums), an inner one by `12u` (one sum more, the sum of two determinants, the third and its product), and
+    /// each of three mixtures by `3u`: `21u`. The rest covers the permanent's own roundings.
+    const ISOLATE_CUBIC: Self;
+    /// How far a component of a computed control vector may be from the exact one, relative to the largest: `6u`. One
+    /// rounding of the input, three of the mixture, and two for the computed motion within the time around it.
+    const ISOLATE_PLACE: Self;
+    /// Roundings of `n . (x cross y)`, relative to six times the largest component of `n` and the square of that of `x`:
+    /// `10u`. Five roundings of a sum of six products are `5u`; as much again for the bound's own.
+    const ISOLATE_TURN: Self;
+    /// Roundings of an inner product with a direction, relative to the sum of its components and the largest of the other:
+    /// `6u`. Three of the product, and those of the bound.
+    const ISOLATE_SIDE: Self;
+    /// Underflow in the closed form: 2^-120 in f32, 2^-960 in f64. The largest component of a pair is in [1, 2), so what
+    /// products of up to six factors lose is at most a thousand times half the smallest subnormal (2^-140, 2^-1065).
+    const ISOLATE_UNDERFLOW: Self;
+    /// How far the computed nearest point of a hull is from a point of the exact one, a component, relative to the largest:
+    /// `16u`. The corners err by `4u`, mixing them by `6u` more (`prim::isolate::nearest`); and what a product with a
+    /// direction errs by, `7u`.
+    const ADVANCE_POINT: Self;
+    /// The least slack of a separation, relative to the extent: `64u`, four errors of a point. Ratio.
+    const ADVANCE_FINEST: Self;
 }
 
 impl Tolerance for f32 {
@@ -97,6 +126,15 @@ impl Tolerance for f32 {
     const INCLUSION_UNDERFLOW: f32 = f32::from_bits(7 << 23);
     const INCLUSION_REGULAR: f32 = 48.0 * U32;
     const INCLUSION_FAINT: f32 = f32::from_bits(27 << 23);
+    const ISOLATE_WINDOW: f32 = 16.0 * U32;
+    const ISOLATE_MARGIN: f32 = 1.0 / 4096.0;
+    const ISOLATE_CUBIC: f32 = 40.0 * U32;
+    const ISOLATE_PLACE: f32 = 6.0 * U32;
+    const ISOLATE_TURN: f32 = 10.0 * U32;
+    const ISOLATE_SIDE: f32 = 6.0 * U32;
+    const ISOLATE_UNDERFLOW: f32 = f32::from_bits(7 << 23);
+    const ADVANCE_POINT: f32 = 16.0 * U32;
+    const ADVANCE_FINEST: f32 = 64.0 * U32;
 }
 
 impl Tolerance for f64 {
@@ -121,11 +159,27 @@ impl Tolerance for f64 {
     const INCLUSION_UNDERFLOW: f64 = f64::from_bits(63 << 52);
     const INCLUSION_REGULAR: f64 = 48.0 * U64;
     const INCLUSION_FAINT: f64 = f64::from_bits(223 << 52);
+    const ISOLATE_WINDOW: f64 = 16.0 * U64;
+    const ISOLATE_MARGIN: f64 = 1.0 / 67108864.0;
+    const ISOLATE_CUBIC: f64 = 40.0 * U64;
+    const ISOLATE_PLACE: f64 = 6.0 * U64;
+    const ISOLATE_TURN: f64 = 10.0 * U64;
+    const ISOLATE_SIDE: f64 = 6.0 * U64;
+    const ISOLATE_UNDERFLOW: f64 = f64::from_bits(63 << 52);
+    const ADVANCE_POINT: f64 = 16.0 * U64;
+    const ADVANCE_FINEST: f64 = 64.0 * U64;
 }
 
 /// Largest extent, and one over the smallest, that a continuous test computes with as it is; outside, differences
 /// are first scaled by a power of two (exactly). `2^20`, so that cubes stay clear of both ends of f32. Length.
 pub const CUBIC_SCALE: f64 = 1048576.0;
+
+/// The least tolerance that decides what is listed, relative to a pair's extent: `256 u` of f64. Advancement to half of it
+/// leaves `128u`, four times what the two errors of a nearest point take. Ratio.
+pub const NEAR_FINEST: f64 = 256.0 * U64;
+/// By how much volumes grow for it, relative to the largest coordinate of what they hold: a pair's extent is at most the sum
+/// of both coordinates, so each side's part is [`NEAR_FINEST`]; twice that, for the roundings of f32. `2^-44`. Ratio.
+pub const NEAR_GROWTH: f32 = f32::from_bits((127 - 44) << 23);
 
 /// A cell that loses less than this part of every range is split, not clipped again. Ratio; costs, proves nothing.
 pub const INCLUSION_SHRUNK: f64 = 0.6;

@@ -58,15 +58,7 @@ impl<S: Grid> Edges<S> {
 impl<S: Grid, const N: usize> Local<S, N> {
     #[inline(always)]
     fn of<R: Real>(pairs: [(Moving<R>, Moving<R>); N], p: &Params) -> Self {
-        let (w, scale, finite) = if R::WIDE {
-            let less =
-                |(x, y): (Moving<R>, Moving<R>)| [x.t0.wide() - y.t0.wide(), x.t1.wide() - y.t1.wide()];
-            let (wide, scale, finite) = scaled(pairs.map(less));
-            (wide.map(|[start, end]| [start.map(S::of), end.map(S::of)]), scale, finite)
-        } else {
-            let to = |x: Vec3<R>| x.map(|x| S::of(x.wide()));
-            scaled(pairs.map(|(x, y)| [to(x.t0) - to(y.t0), to(x.t1) - to(y.t1)]))
-        };
+        let (w, scale, finite) = differences(pairs);
         let (mut reach, mut speed) = (Vec3([S::ZERO; 3]), Vec3([S::ZERO; 3]));
         for k in 0..N {
             let [start, end] = w[k];
@@ -97,6 +89,22 @@ impl<S: Grid, const N: usize> Local<S, N> {
     #[inline]
     pub fn still_together(&self) -> bool {
         self.finite && !(0..3).any(|k| self.reach[k] > S::ZERO)
+    }
+}
+
+/// The differences of pairs of points in motion, in the positions' precision, rounded to `S` once, with the largest component
+/// in [1, 2); the power of two by which they were multiplied, and whether all are finite.
+#[inline(always)]
+pub fn differences<R: Real, S: Grid, const N: usize>(
+    pairs: [(Moving<R>, Moving<R>); N],
+) -> ([[Vec3<S>; 2]; N], f64, bool) {
+    if R::WIDE {
+        let less = |(x, y): (Moving<R>, Moving<R>)| [x.t0.wide() - y.t0.wide(), x.t1.wide() - y.t1.wide()];
+        let (wide, scale, finite) = scaled(pairs.map(less));
+        (wide.map(|[start, end]| [start.map(S::of), end.map(S::of)]), scale, finite)
+    } else {
+        let to = |x: Vec3<R>| x.map(|x| S::of(x.wide()));
+        scaled(pairs.map(|(x, y)| [to(x.t0) - to(y.t0), to(x.t1) - to(y.t1)]))
     }
 }
 

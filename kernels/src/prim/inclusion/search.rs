@@ -63,6 +63,22 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
         Self::unfiltered(m, p, stack)
     }
 
+    /// Begins without the filters, at a time before which there is no contact.
+    ///
+    /// # Errors
+    /// The verdict, where no search is needed, and whether more precision would tell nothing that was asked.
+    #[inline]
+    pub fn from(
+        m: Local<S, N>,
+        p: &Params,
+        stack: &'a mut [MaybeUninit<Cell<S>>],
+        begin: f64,
+    ) -> Result<Self, (Verdict, bool)> {
+        let mut search = Self::unfiltered(m, p, stack)?;
+        search.cell.low.0[0] = S::down(S::of(begin));
+        Ok(search)
+    }
+
     /// Begins without the filters.
     ///
     /// # Errors

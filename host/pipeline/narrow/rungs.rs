@@ -1,0 +1,155 @@
+//! The ladder of certified solvers: which rungs a query has, the lists between them, their launches.
+
+use super::{Given, launch_striding};
+use crate::device::Device;
+use crate::error::Error;
+use crate::pipeline::precision::Precision;
+use crate::pipeline::room::{Growing, List};
+use crate::query::{Query, Solver};
+use nearmiss_kernels::abi::{EVERYTHING, Hit, Listed, Pair, RungArgs, Span, counter};
+use nearmiss_kernels::entry::Entry;
+
+/// A rung: one launch over the pairs that the one before left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Rung {
+    /// Isolation of roots in f32.
+    Isolate32,
+    /// Isolation of roots in f64.
+    Isolate64,
+    /// Touching at the start, and flat motion.
+    Settle,
+    /// The window in slices.
+    Slice,
+    /// A separation, in f32.
+    Separate,
+    /// A separation, in f64.
+    SeparateRest,
+}
+
+/// The rungs of a query.
+fn rungs(query: &Query) -> &'static [Rung] {
+    match (query.solver(), query.is_apart()) {
+        (Solver::CertifiedF64, true) => &[Rung::SeparateRest],
+        (_, true) => &[Rung::Separate, Rung::SeparateRest],
+        (Solver::CertifiedF32, false) => &[Rung::Isolate32, Rung::Settle],
+        (Solver::CertifiedF64, false) => &[Rung::Isolate64, Rung::Settle, Rung::Slice],
+        _ => &[Rung::Isolate32, Rung::Isolate64, Rung::Settle, Rung::Slice],
+    }
+}
+
+/// What a rung leaves: a name for machines to be compared by, and for a list that is too long; the counters.
+const LEFT: [[(&str, &str, u32); 2]; 3] = [
+    [
+        ("narrow: vf for f64", "vertex/face pairs for f64", counter::VF_ESCALATED),
+        ("narrow: ee for f64", "edge/edge pairs for f64", counter::EE_ESCALATED),
+    ],
+    [
+        ("narrow: vf not isolated", "vertex/face pairs not isolated", counter::VF_OPEN),
+        ("narrow: ee not isolated", "edge/edge pairs not isolated", counter::EE_OPEN),
+    ],
+    [
+        ("narrow: vf for slices", "vertex/face pairs for slices", counter::VF_HARD),
+        ("narrow: ee for slices", "edge/edge pairs for slices", counter::EE_HARD),
+    ],
+];
+
+impl Rung {
+    /// Which of the lists its rest goes to.
+    fn left(self) -> usize {
+        match self {
+            Rung::Isolate32 | Rung::Separate => 0,
+            Rung::Isolate64 => 1,
+            Rung::Settle | Rung::Slice | Rung::SeparateRest => 2,
+        }
+    }
+}
+
+/// The rungs of a certified query, and what lies between them; of another query nothing.
+pub struct Rungs {
+    rungs: &'static [Rung],
+    /// What each rung but the last leaves: vertex/face, edge/edge.
+    left: Vec<[List<Pair>; 2]>,
+    /// Which of [`LEFT`] each is.
+    names: Vec<usize>,
+}
+
+impl Rungs {
+    /// Takes the memory.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn new(device: &Device, query: &Query, room: [usize; 2]) -> Result<Self, Error> {
+        let rungs = if query.solver().is_certified() { rungs(query) } else { &[] };
+        let names: Vec<_> = rungs.iter().rev().skip(1).rev().map(|rung| rung.left()).collect();
+        let list = |(_, name, counter): (&str, &'static str, u32), room| List::new(device, name, counter, room);
+        let left = names
+            .iter()
+            .map(|&at| Ok([list(LEFT[at][0], room[0])?, list(LEFT[at][1], room[1])?]))
+            .collect::<Result<_, Error>>()?;
+        Ok(Rungs { rungs, left, names })
+    }
+
+    /// The lists that the rungs fill.
+    pub fn lists(&mut self) -> impl Iterator<Item = &mut dyn Growing> {
+        self.left.iter_mut().flatten().map(|list| list as &mut dyn Growing)
+    }
+
+    /// The lists, with names.
+    pub fn between(&self) -> impl Iterator<Item = (&'static str, &List<Pair>)> {
+        self.names.iter().zip(&self.left).flat_map(|(&at, [vf, ee])| [(LEFT[at][0].0, vf), (LEFT[at][1].0, ee)])
+    }
+
+    /// Launches all rungs, the first over `asked`.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn climb<R: Precision>(
+        &self,
+        given: &Given<R>,
+        edges: Span<[u32; 2]>,
+        (asked, hits, earliest): ([&List<Pair>; 2], [&List<Hit>; 2], Span<u64>),
+    ) -> Result<(), Error> {
+        let listed = |pairs: &List<Pair>, hits: &List<Hit>, left: Option<&List<Pair>>| Listed {
+            pairs: pairs.span(),
+            hits: hits.span(),
+            left: left.map_or(Span::EMPTY, List::span),
+            pairs_at: pairs.counter(),
+            hits_at: hits.counter(),
+            left_at: left.map_or(0, List::counter),
+            pad: 0,
+        };
+        let mut pairs = asked;
+        for (at, &rung) in self.rungs.iter().enumerate() {
+            let left = self.left.get(at).map(|lists| lists.each_ref());
+            let everything = given.query.solver() == Solver::CertifiedF32 || rung == Rung::Isolate64;
+            let args = RungArgs {
+                frames: given.frames,
+                faces: given.faces,
+                edges,
+                vf: listed(pairs[0], hits[0], left.map(|[vf, _]| vf)),
+                ee: listed(pairs[1], hits[1], left.map(|[_, ee]| ee)),
+                earliest,
+                counters: given.counters,
+                params: given.query.params(),
+                flags: if everything { EVERYTHING } else { 0 },
+                pad: 0,
+            };
+            let room = pairs[0].room() + pairs[1].room();
+            launch::<R>(rung, given.device, room, &args)?;
+            pairs = left.unwrap_or(pairs);
+        }
+        Ok(())
+    }
+}
+
+fn launch<R: Precision>(rung: Rung, device: &Device, room: usize, args: &RungArgs<R>) -> Result<(), Error> {
+    match rung {
+        Rung::Isolate32 => launch_striding::<R::Isolate32>(device, room, args),
+        Rung::Isolate64 => launch_striding::<R::Isolate64>(device, room, args),
+        Rung::Settle => launch_striding::<R::Settle>(device, room, args),
+        // A block a pair.
+        Rung::Slice => launch_striding::<R::Slice>(device, room.saturating_mul(R::Slice::LANES as usize), args),
+        Rung::Separate => launch_striding::<R::Separate>(device, room, args),
+        Rung::SeparateRest => launch_striding::<R::SeparateRest>(device, room, args),
+    }
+}

@@ -1,0 +1,152 @@
+//! The cubic that is zero where all control vectors lie in one plane through the origin, restricted to any part of the step.
+
+use super::pair::{Pair, most};
+use crate::math::{Real, Vec3};
+use crate::prim::inclusion::Grid;
+
+/// A cubic over [0, 1] by its Bernstein coefficients, and what a restricted coefficient errs by.
+#[derive(Clone, Copy, Debug)]
+pub struct Cubic<S> {
+    k: [S; 4],
+    /// A computed coefficient of a restriction beyond it has the exact one's sign: [`ISOLATE_CUBIC`] of the permanent.
+    ///
+    /// [`ISOLATE_CUBIC`]: crate::math::tolerance::Tolerance::ISOLATE_CUBIC
+    pub error: S,
+}
+
+/// A cubic over a part of the step: its four coefficients there. It lies in their hull.
+pub type Part<S> = [S; 4];
+
+impl<S: Grid, const N: usize> Pair<S, N> {
+    /// `det(edge, edge, w)` over the step. About 90 operations.
+    #[inline(always)]
+    pub fn cubic(&self) -> Cubic<S> {
+        let ([a, b], c) = (&self.edges, &self.w[0]);
+        let (n0, n1) = (a[0].cross(b[0]), a[1].cross(b[1]));
+        let mix = a[0].cross(b[1]) + a[1].cross(b[0]);
+        let third = S::of(1.0 / 3.0);
+        let k = [
+            n0.dot(c[0]),
+            (mix.dot(c[0]) + n0.dot(c[1])) * third,
+            (mix.dot(c[1]) + n1.dot(c[0])) * third,
+            n1.dot(c[1]),
+        ];
+        let reach = |v: &[Vec3<S>; 2]| v[0].map(S::abs).max(v[1].map(S::abs));
+        let (a, b, c) = (reach(a), reach(b), reach(c));
+        let two = |i: usize, j: usize| a[i] * b[j] + a[j] * b[i];
+        let permanent = two(1, 2) * c[0] + two(2, 0) * c[1] + two(0, 1) * c[2];
+        Cubic { k, error: S::ISOLATE_CUBIC * permanent + S::ISOLATE_UNDERFLOW }
+    }
+}
+
+#[inline(always)]
+fn mix<S: Real>(x: S, y: S, t: S) -> S {
+    x * (S::ONE - t) + y * t
+}
+
+impl<S: Real> Cubic<S> {
+    /// The coefficients over `[from, to]`, by blossoming: three mixtures, each of numbers within the hull of the four.
+    #[inline(always)]
+    pub fn part(&self, from: S, to: S) -> Part<S> {
+        let k = &self.k;
+        let once = |t: S| [mix(k[0], k[1], t), mix(k[1], k[2], t), mix(k[2], k[3], t)];
+        let (p, q) = (once(from), once(to));
+        let pp = [mix(p[0], p[1], from), mix(p[1], p[2], from)];
+        let pq = [mix(p[0], p[1], to), mix(p[1], p[2], to)];
+        let qq = [mix(q[0], q[1], to), mix(q[1], q[2], to)];
+        [mix(pp[0], pp[1], from), mix(pp[0], pp[1], to), mix(pq[0], pq[1], to), mix(qq[0], qq[1], to)]
+    }
+
+    /// Whether the cubic certainly has no root in a part: all coefficients are of one sign, beyond their error.
+    #[inline(always)]
+    pub fn one_sign(&self, part: &Part<S>) -> bool {
+        let [a, b, c, d] = *part;
+        a.min(b).min(c.min(d)) > self.error || a.max(b).max(c.max(d)) < -self.error
+    }
+
+    /// Whether a part is too near to zero throughout for any sign.
+    #[inline(always)]
+    pub fn is_flat(&self, part: &Part<S>) -> bool {
+        let [a, b, c, d] = part.map(S::abs);
+        !(a.max(b).max(c.max(d)) > self.error + self.error)
+    }
+
+    /// Whether the cubic certainly has no root in `[from, to]`.
+    #[inline(always)]
+    pub fn rootless(&self, from: S, to: S) -> bool {
+        self.one_sign(&self.part(from, to))
+    }
+
+    /// Whether its values at both ends have opposite signs, beyond their error: then it has a root between.
+    #[inline(always)]
+    pub fn changes_sign(&self, from: S, to: S) -> bool {
+        let [a, _, _, d] = self.part(from, to);
+        (a > self.error && d < -self.error) || (a < -self.error && d > self.error)
+    }
+}
+
+/// The value of a part at `s` in [0, 1]. For guesses: its rounding is in no bound.
+#[inline(always)]
+pub fn value<S: Real>(o: &Part<S>, s: S) -> S {
+    let (a, b, c) = (mix(o[0], o[1], s), mix(o[1], o[2], s), mix(o[2], o[3], s));
+    mix(mix(a, b, s), mix(b, c, s), s)
+}
+
+/// A part's slope at `s`, for guesses.
+#[inline(always)]
+pub fn slope<S: Real>(o: &Part<S>, s: S) -> S {
+    let (a, b, c) = (o[1] - o[0], o[2] - o[1], o[3] - o[2]);
+    mix(mix(a, b, s), mix(b, c, s), s) * S::of(3.0)
+}
+
+/// Where a part's slope may vanish within (0, 1), ascending; 1 where there is no such place. For guesses.
+#[inline(always)]
+pub fn turns<S: Real>(o: &Part<S>) -> [S; 2] {
+    let (d0, d1, d2) = (o[1] - o[0], o[2] - o[1], o[3] - o[2]);
+    let two = S::of(2.0);
+    let (a, b) = (d0 - two * d1 + d2, two * (d1 - d0));
+    let square = b * b - S::of(4.0) * a * d0;
+    if !(square > S::ZERO) {
+        return [S::ONE; 2];
+    }
+    let root = square.sqrt();
+    let q = S::of(-0.5) * if b < S::ZERO { b - root } else { b + root };
+    let (x, y) = (q / a, d0 / q);
+    let (x, y) = if x < y { (x, y) } else { (y, x) };
+    let within = |x: S| x > S::ZERO && x < S::ONE;
+    match (within(x), within(y)) {
+        (true, true) => [x, y],
+        (true, false) => [x, S::ONE],
+        (false, true) => [y, S::ONE],
+        _ => [S::ONE; 2],
+    }
+}
+
+/// A root of a part between `low` and `high`, where its values have opposite signs, near enough to be suspected: Newton's
+/// steps, kept in the bracket. A guess: where the root truly is is for the certificate to say.
+#[inline(always)]
+pub fn root<S: Real>(o: &Part<S>, (mut low, mut high): (S, S), (below, above): (S, S), steps: u32) -> S {
+    let mut s = low + (high - low) * (below.abs() / (below.abs() + above.abs()));
+    for _ in 0..steps {
+        let f = value(o, s);
+        if (f < S::ZERO) == (below < S::ZERO) {
+            low = s;
+        } else {
+            high = s;
+        }
+        let next = s - f / slope(o, s);
+        // Not strictly: that would bisect away from a root that is found. NaN bisects.
+        s = if next >= low && next <= high { next } else { (low + high) * S::of(0.5) };
+    }
+    s
+}
+
+/// The largest magnitude of the components of all.
+#[inline(always)]
+pub(super) fn largest<S: Real, const N: usize>(x: &[Vec3<S>; N]) -> S {
+    let mut reach = S::ZERO;
+    for k in 0..N {
+        reach = reach.max(most(x[k]));
+    }
+    reach
+}

@@ -1,0 +1,281 @@
+//! The ladder: each rung decides what it can, certainly, and leaves the rest to the next, which costs more.
+//!
+//! | rung | decides | in |
+//! | --- | --- | --- |
+//! | [`rejected`] | pairs whose cubic keeps its sign, over the step or over their window | f32 |
+//! | [`isolated`] | roots, by a certificate each | f32, then f64 |
+//! | [`vf_touch`], [`ee_touch`] | what touches at t = 0, by exact signs | integers |
+//! | [`sliced`] | the window in [`SLICES`] slices | f64 |
+//! | [`near`] | what stays farther than half the tolerance; and when what does not comes nearer | f64 |
+//! | the search of [`crate::prim::inclusion`] | what is left, by boxes | f64 |
+//!
+//! With a separation: [`separated`] in f32, then in f64, then [`near`]. Every rung is a function of the pair and of what is
+//! asked, so the answer is; [`vf_certified`] and [`ee_certified`] climb for one pair as the kernels do for a list.
+
+use super::advance::{Advanced, Distance};
+use super::find::{Found, Look};
+use super::pair::{Edges, Face, Pair};
+use crate::math::Real;
+use crate::prim::cubic::Moving;
+use crate::prim::inclusion::{self, Grid, Params, STACK, Search, Verdict};
+use crate::prim::signs::Certain;
+use crate::prim::tri_tri::meets;
+use core::mem::MaybeUninit;
+
+/// Slices of a window, a lane each.
+pub const SLICES: u32 = 32;
+/// Newton's steps where a root is isolated first, and in a slice.
+const STEPS: [u32; 2] = [6, 12];
+/// How long around a suspect time is looked at, in pauses: first, and in a slice. Both sides are less than two pauses.
+const AROUND: [f64; 2] = [0.9, 0.03];
+/// Steps of advancement before the next rung is asked.
+const ADVANCES: u32 = 64;
+
+/// Which rungs there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rungs {
+    /// All.
+    All,
+    /// Roots are isolated in f32 alone, and nothing is sliced or searched.
+    Single,
+    /// Roots are isolated in f64 alone.
+    Double,
+}
+
+/// Whether the features certainly do not meet in the step: not even their boxes do, or the four points never share a plane,
+/// by the signs of the cubic's coefficients over the step or over the window. About 150 operations.
+#[inline(always)]
+pub fn rejected<const N: usize>(pair: &Pair<f32, N>) -> bool {
+    let Some((begin, end)) = pair.window() else { return true };
+    let g = pair.cubic();
+    pair.finite && (g.rootless(0.0, 1.0) || g.rootless(begin, end))
+}
+
+/// What isolation decides: separated, or a contact whose time is known as well as the tolerance demands; of the `last` rung
+/// that isolates, any contact.
+#[inline(always)]
+pub fn isolated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bool) -> Option<Verdict> {
+    let Some(window) = pair.window() else { return Some(Verdict::separated(p.end, 0)) };
+    let pause = pair.pause(pair.scaled(p.tolerance));
+    let look = Look { around: pause * S::of(AROUND[0]), steps: STEPS[0] };
+    match pair.isolate(pair.with_margin(window), look) {
+        Found::Apart => Some(Verdict::separated(p.end, 0)),
+        Found::Meets { from, to } if last || to - from <= pause + pause => met(from, to, p),
+        _ => None,
+    }
+}
+
+/// A contact, if it is certain to be within the step.
+#[inline(always)]
+fn met<S: Real>(from: S, to: S, p: &Params) -> Option<Verdict> {
+    (to.wide() <= p.end).then(|| Verdict::contact(from.wide(), to.wide(), 0, false))
+}
+
+/// Whether a vertex touches a face at the start. Exact.
+#[inline]
+pub fn vf_touch<R: Real>(v: Moving<R>, f: [Moving<R>; 3]) -> bool {
+    // Triangles without area are the points and segments that they are.
+    meets::<R, Certain>(&[v.t0; 3], &f.map(|v| v.t0)) == Some(true)
+}
+
+/// Whether two edges touch at the start. Exact.
+#[inline]
+pub fn ee_touch<R: Real>(a: [Moving<R>; 2], b: [Moving<R>; 2]) -> bool {
+    meets::<R, Certain>(&[a[0].t0, a[1].t0, a[1].t0], &[b[0].t0, b[1].t0, b[1].t0]) == Some(true)
+}
+
+/// What a slice of the window holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Slice {
+    /// No contact.
+    Apart,
+    /// The first contact of the slice.
+    Meets(Verdict),
+    /// Not decided; no contact in the slice before that time.
+    Open(f64),
+}
+
+/// Whether all four points stay in one plane throughout the window, as far as f64 can tell: no slice will tell more.
+#[inline]
+pub fn is_flat<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64)) -> bool {
+    let g = pair.cubic();
+    g.is_flat(&g.part(begin, end))
+}
+
+/// Slice `i` of the window. About 3,000 operations.
+#[inline]
+pub fn sliced<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), i: u32, p: &Params) -> Slice {
+    // Both slices at a cut compute the same number; the last ends where the window does.
+    let (begin, end) = pair.with_margin((begin, end));
+    let cut = |i: u32| if i == SLICES { end } else { begin + (end - begin) * (i as f64 / SLICES as f64) };
+    let (from, to) = (cut(i), cut(i + 1));
+    let pause = pair.pause(pair.scaled(p.tolerance));
+    let look = Look { around: pause * AROUND[1], steps: STEPS[1] };
+    match pair.isolate((from, to), look) {
+        Found::Apart => Slice::Apart,
+        Found::Meets { from, to } => met(from, to, p).map_or(Slice::Open(from), Slice::Meets),
+        Found::Open { .. } if pair.misses_throughout(from, to) => Slice::Apart,
+        Found::Open { from, .. } => Slice::Open(from),
+    }
+}
+
+/// The last word without a search: separated, if the features stay farther apart than the separation and half the
+/// tolerance; else unresolved, from when they come within the separation and the tolerance. A tolerance counts as at least
+/// [`NEAR_FINEST`] of the pair's extent. Volumes that grow by half of both bring every pair that this lists.
+///
+/// [`NEAR_FINEST`]: crate::math::tolerance::NEAR_FINEST
+#[inline]
+pub fn near<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), p: &Params) -> Verdict {
+    let half = 0.5 * pair.scaled(p.tolerance).max(crate::math::tolerance::NEAR_FINEST * pair.reach);
+    let distance = Distance::of(pair, pair.scaled(p.separation) + half, half);
+    let (told, steps) = pair.advance((begin, end), &distance, p.budget.max(ADVANCES));
+    match told {
+        Advanced::Apart => Verdict::separated(p.end, 0),
+        Advanced::Within { from, .. } | Advanced::Near { from } => {
+            Verdict::unresolved(from.min(p.end), p.end, 0, false)
+        }
+        Advanced::Open { from } => Verdict::unresolved(from.min(p.end), p.end, 0, steps >= ADVANCES),
+    }
+}
+
+/// What advancement tells of a separation: separated, or when first within it.
+#[inline(always)]
+pub fn separated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bool) -> Option<Verdict> {
+    let slack = pair.scaled(p.tolerance).max(S::ADVANCE_FINEST * pair.reach);
+    let distance = Distance::of(pair, pair.scaled(p.separation), slack);
+    match pair.advance((S::ZERO, pair.end), &distance, ADVANCES).0 {
+        Advanced::Apart => Some(Verdict::separated(p.end, 0)),
+        Advanced::Within { from, to } if last || to - from <= distance.pause + distance.pause => {
+            met(from, to, p)
+        }
+        Advanced::Near { from } if last => {
+            Some(Verdict::unresolved(from.wide().min(p.end), p.end, 0, false))
+        }
+        _ => None,
+    }
+}
+
+/// Searches by boxes from `from` on what [`near`] left unresolved: the surer of both answers.
+#[inline]
+pub fn searched<const N: usize>(
+    local: inclusion::Local<f64, N>,
+    unresolved: Verdict,
+    p: &Params,
+) -> Verdict {
+    let mut stack = [const { MaybeUninit::uninit() }; STACK];
+    let mut search = match Search::from(local, p, &mut stack, unresolved.toi) {
+        Ok(search) => search,
+        Err((verdict, _)) => return later(verdict, unresolved, p),
+    };
+    loop {
+        if let Some((verdict, _)) = search.step(p) {
+            return later(verdict, unresolved, p);
+        }
+    }
+}
+
+/// The search's verdict, with the later of both bounds.
+#[inline]
+fn later(found: Verdict, known: Verdict, p: &Params) -> Verdict {
+    let toi = found.toi.max(known.toi);
+    if found.is_separated() {
+        found
+    } else if found.is_contact() {
+        Verdict::contact(toi, found.toi_hi, found.boxes, found.exhausted())
+    } else {
+        Verdict::unresolved(toi, p.end, found.boxes, found.exhausted())
+    }
+}
+
+/// Whether, and when, a vertex first comes within the separation of a closed face, by all rungs that there are.
+#[inline]
+pub fn vf_certified<R: Real>(v: Moving<R>, f: [Moving<R>; 3], rungs: Rungs, p: &Params) -> Verdict {
+    let touch = || vf_touch(v, f);
+    let search = |known| searched(inclusion::Face::<f64>::new(v, f, p), known, p);
+    climb(|| Face::<f32>::new(v, f, p), || Face::<f64>::new(v, f, p), (touch, search), rungs, p)
+}
+
+/// Whether, and when, two closed edges first come within the separation, by all rungs that there are.
+#[inline]
+pub fn ee_certified<R: Real>(a: [Moving<R>; 2], b: [Moving<R>; 2], rungs: Rungs, p: &Params) -> Verdict {
+    let touch = || ee_touch(a, b);
+    let search = |known| searched(inclusion::Edges::<f64>::new(a, b, p), known, p);
+    climb(|| Edges::<f32>::new(a, b, p), || Edges::<f64>::new(a, b, p), (touch, search), rungs, p)
+}
+
+fn climb<const N: usize>(
+    single: impl Fn() -> Pair<f32, N>,
+    double: impl Fn() -> Pair<f64, N>,
+    (touch, search): (impl Fn() -> bool, impl Fn(Verdict) -> Verdict),
+    rungs: Rungs,
+    p: &Params,
+) -> Verdict {
+    if p.separation > 0.0 {
+        let first = if rungs == Rungs::Double { None } else { separated(&single(), p, false) };
+        return first.unwrap_or_else(|| separated_at_last(&double(), p));
+    }
+    if rejected(&single()) {
+        return Verdict::separated(p.end, 0);
+    }
+    let first = if rungs == Rungs::Double { None } else { isolated(&single(), p, rungs == Rungs::Single) };
+    if let Some(verdict) = first {
+        return verdict;
+    }
+    let pair = double();
+    if rungs != Rungs::Single
+        && let Some(verdict) = isolated(&pair, p, true)
+    {
+        return verdict;
+    }
+    match settled(&pair, touch, rungs == Rungs::Single, p) {
+        Ok(verdict) => verdict,
+        Err(window) => {
+            let first = (0..SLICES).map(|i| sliced(&pair, window, i, p)).find(|s| *s != Slice::Apart);
+            decided(&pair, first.unwrap_or(Slice::Apart), window, search, p)
+        }
+    }
+}
+
+/// The rungs behind isolation that need no slices: what touches at the start, what has no window, what is flat; with
+/// `all`, everything. The window of what is left.
+///
+/// # Errors
+/// The window, where slices may tell more.
+#[inline]
+pub fn settled<const N: usize>(
+    pair: &Pair<f64, N>,
+    touch: impl Fn() -> bool,
+    all: bool,
+    p: &Params,
+) -> Result<Verdict, (f64, f64)> {
+    let Some(window) = pair.window() else { return Ok(Verdict::separated(p.end, 0)) };
+    if window.0 <= 0.0 && touch() {
+        return Ok(Verdict::contact(0.0, 0.0, 0, false));
+    }
+    if all || is_flat(pair, window) { Ok(near(pair, window, p)) } else { Err(window) }
+}
+
+/// The rungs behind the slices, given the first that is not apart.
+#[inline]
+pub fn decided<const N: usize>(
+    pair: &Pair<f64, N>,
+    first: Slice,
+    (_, end): (f64, f64),
+    search: impl Fn(Verdict) -> Verdict,
+    p: &Params,
+) -> Verdict {
+    match first {
+        Slice::Apart => Verdict::separated(p.end, 0),
+        Slice::Meets(verdict) => verdict,
+        Slice::Open(from) => {
+            let verdict = near(pair, (from, end), p);
+            if verdict.is_separated() { verdict } else { search(verdict) }
+        }
+    }
+}
+
+/// The last rungs of a separation.
+#[inline]
+pub fn separated_at_last<const N: usize>(pair: &Pair<f64, N>, p: &Params) -> Verdict {
+    separated(pair, p, true).unwrap_or_else(|| near(pair, (0.0, pair.end), p))
+}

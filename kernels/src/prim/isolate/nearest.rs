@@ -1,0 +1,65 @@
+//! The point of a triangle or a parallelogram nearest to the origin, as a mixture of its corners.
+
+use crate::math::{Real, Vec3};
+
+/// A point of the hull, near the one that is nearest to the origin: for 3 corners their triangle, for 4 the parallelogram of
+/// two edges (corner `2j + k`).
+///
+/// The weights are computed carelessly and then clamped, and the point is mixed of the corners with them: it is a point of
+/// the hull, but for roundings of at most `6u` of the largest component (weights that sum to 1 within `2u`, three roundings
+/// of the mixture, or twice three). With the `4u` of corners from [`super::Pair::at`] that is within `ADVANCE_POINT`.
+#[inline(always)]
+pub fn nearest<S: Real, const N: usize>(x: &[Vec3<S>; N]) -> Vec3<S> {
+    if N == 3 { of_triangle(x[0], x[1], x[2]) } else { of_parallelogram(x[0], x[1], x[2], x[N - 1]) }
+}
+
+#[inline(always)]
+fn clamped<S: Real>(x: S) -> S {
+    // NaN becomes 0.
+    if x > S::ZERO { x.min(S::ONE) } else { S::ZERO }
+}
+
+/// The region of the triangle in which the origin's foot lies (Ericson, Real-Time Collision Detection, 5.1.5).
+#[inline(always)]
+fn of_triangle<S: Real>(a: Vec3<S>, b: Vec3<S>, c: Vec3<S>) -> Vec3<S> {
+    let (ab, ac) = (b - a, c - a);
+    let (d1, d2) = (-ab.dot(a), -ac.dot(a));
+    let (d3, d4) = (-ab.dot(b), -ac.dot(b));
+    let (d5, d6) = (-ab.dot(c), -ac.dot(c));
+    let (va, vb, vc) = (d3 * d6 - d5 * d4, d5 * d2 - d1 * d6, d1 * d4 - d3 * d2);
+    let zero = S::ZERO;
+    // Weights of b and c.
+    let (v, w) = if d1 <= zero && d2 <= zero {
+        (zero, zero)
+    } else if d3 >= zero && d4 <= d3 {
+        (S::ONE, zero)
+    } else if vc <= zero && d1 >= zero && d3 <= zero {
+        (d1 / (d1 - d3), zero)
+    } else if d6 >= zero && d5 <= d6 {
+        (zero, S::ONE)
+    } else if vb <= zero && d2 >= zero && d6 <= zero {
+        (zero, d2 / (d2 - d6))
+    } else if va <= zero && d4 >= d3 && d5 >= d6 {
+        let w = clamped((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+        (S::ONE - w, w)
+    } else {
+        let whole = va + vb + vc;
+        (vb / whole, vc / whole)
+    };
+    let v = clamped(v);
+    let w = clamped(w).min(S::ONE - v);
+    a * ((S::ONE - v) - w) + b * v + c * w
+}
+
+/// The best of one edge, then of the other, clamped, and of the first again.
+#[inline(always)]
+fn of_parallelogram<S: Real>(w00: Vec3<S>, w01: Vec3<S>, w10: Vec3<S>, w11: Vec3<S>) -> Vec3<S> {
+    let (p, q) = (w10 - w00, w01 - w00);
+    let (pp, qq, pq) = (p.dot(p), q.dot(q), p.dot(q));
+    let (p0, q0) = (p.dot(w00), q.dot(w00));
+    let u = clamped((pq * q0 - p0 * qq) / (pp * qq - pq * pq));
+    let v = clamped((-q0 - pq * u) / qq);
+    let u = clamped((-p0 - pq * v) / pp);
+    let mix = |x: Vec3<S>, y: Vec3<S>, t: S| x * (S::ONE - t) + y * t;
+    mix(mix(w00, w01, v), mix(w10, w11, v), u)
+}

@@ -1,0 +1,155 @@
+//! A pair in motion, scaled to its own size: control vectors, edges, the window of time in which it can meet.
+
+use crate::math::{Real, Vec3};
+use crate::prim::cubic::Moving;
+use crate::prim::inclusion::local::differences;
+use crate::prim::inclusion::{Grid, Params};
+
+/// The relative motion of two features: `F(t)` is the hull of `N` control vectors that move linearly. `N` is 3 for a vertex
+/// and a face (vertex less corner), 4 for two edges (at `2j + k` end j of the first less end k of the second). Contact is
+/// where the hull holds the origin.
+#[derive(Clone, Copy, Debug)]
+pub struct Pair<S, const N: usize> {
+    /// Control vectors at the start and at the end, scaled: the largest component of these and the edges is in [1, 2).
+    pub w: [[Vec3<S>; 2]; N],
+    /// The two edges that span the hull, at both ends: differences of positions, rounded once. Of a face those from its
+    /// first corner; else both edges.
+    pub edges: [[Vec3<S>; 2]; 2],
+    /// The largest component of `w`.
+    pub reach: S,
+    /// The largest component by which a control vector moves, as computed.
+    pub speed: S,
+    /// Whether all differences are finite numbers; nothing is ever rejected otherwise.
+    pub finite: bool,
+    /// What lengths were multiplied by.
+    pub scale: f64,
+    /// The end of the step, rounded up to `S`.
+    pub end: S,
+}
+
+/// Vertex and face.
+pub type Face<S> = Pair<S, 3>;
+/// Two edges.
+pub type Edges<S> = Pair<S, 4>;
+
+impl<S: Grid> Face<S> {
+    /// The motion of a vertex relative to the corners of a face.
+    #[inline(always)]
+    pub fn new<R: Real>(v: Moving<R>, f: [Moving<R>; 3], p: &Params) -> Self {
+        let pairs = [(v, f[0]), (v, f[1]), (v, f[2]), (f[1], f[0]), (f[2], f[0])];
+        let ([w0, w1, w2, a, b], scale, finite) = differences(pairs);
+        Pair::of([w0, w1, w2], [a, b], (scale, finite), p)
+    }
+}
+
+impl<S: Grid> Edges<S> {
+    /// The motion of the ends of an edge relative to those of another.
+    #[inline(always)]
+    pub fn new<R: Real>(a: [Moving<R>; 2], b: [Moving<R>; 2], p: &Params) -> Self {
+        let pairs =
+            [(a[0], b[0]), (a[0], b[1]), (a[1], b[0]), (a[1], b[1]), (a[1], a[0]), (b[1], b[0])];
+        let ([w0, w1, w2, w3, along, across], scale, finite) = differences(pairs);
+        Pair::of([w0, w1, w2, w3], [along, across], (scale, finite), p)
+    }
+}
+
+impl<S: Grid, const N: usize> Pair<S, N> {
+    #[inline(always)]
+    fn of(
+        w: [[Vec3<S>; 2]; N],
+        edges: [[Vec3<S>; 2]; 2],
+        (scale, finite): (f64, bool),
+        p: &Params,
+    ) -> Self {
+        let (mut reach, mut speed) = (Vec3([S::ZERO; 3]), Vec3([S::ZERO; 3]));
+        for k in 0..N {
+            let [start, end] = w[k];
+            reach = reach.max(start.map(S::abs)).max(end.map(S::abs));
+            speed = speed.max((end - start).map(S::abs));
+        }
+        let (reach, speed) = (most(reach), most(speed));
+        let finite = finite && !p.separation.is_nan();
+        Pair { w, edges, reach, speed, finite, scale, end: S::end(p.end).0 }
+    }
+
+    /// A length, in the units of the control vectors.
+    #[inline]
+    pub fn scaled(&self, length: f64) -> S {
+        S::of((length * self.scale).max(0.0))
+    }
+
+    /// Within this time no component moves by more than that length; 1 where nothing moves.
+    #[inline]
+    pub fn pause(&self, length: S) -> S {
+        if self.speed > length { length / self.speed * S::INCLUSION_DOWN } else { S::ONE }
+    }
+
+    /// The control vectors at a time. Each component errs by less than 4u of `reach`: one rounding of the input, three of
+    /// the mixture.
+    #[inline(always)]
+    pub fn at(&self, t: S) -> [Vec3<S>; N] {
+        let before = S::ONE - t;
+        self.w.map(|[start, end]| start * before + end * t)
+    }
+
+    /// The part of the step in which the boxes around the two features, which move with them, can share a point: there is no
+    /// contact outside. None if there is no such time.
+    ///
+    /// The boxes overlap on an axis where the least component of the control vectors is not above zero and the largest not
+    /// below. Both are mixtures of their values at the ends of the step; a computed value has the exact one's sign, and the
+    /// time at which the sign changes is computed within `5u` and half a subnormal, as in [`crate::bv::Linear`].
+    #[inline]
+    pub fn window(&self) -> Option<(S, S)> {
+        let (mut apart, mut from, mut to) = (false, S::ZERO, S::ONE);
+        let mut clip = |d0: S, d1: S| {
+            let (before, after) = (d0 < S::ZERO, d1 < S::ZERO);
+            let q = d0.abs() / (d0.abs() + d1.abs());
+            apart |= before & after;
+            from = if before & (q > from) { q } else { from };
+            to = if after & (q < to) { q } else { to };
+        };
+        let ends = |i: usize| {
+            let (mut low, mut high) = (self.w[0][i], self.w[0][i]);
+            for k in 1..N {
+                (low, high) = (low.min(self.w[k][i]), high.max(self.w[k][i]));
+            }
+            (low, high)
+        };
+        let ((low0, high0), (low1, high1)) = (ends(0), ends(1));
+        for k in 0..3 {
+            clip(-low0[k], -low1[k]);
+            clip(high0[k], high1[k]);
+        }
+        if !self.finite {
+            return Some((S::ZERO, self.end));
+        }
+        if apart | (from > to + S::ISOLATE_WINDOW) {
+            return None;
+        }
+        let (from, to) = (from - S::ISOLATE_WINDOW, to + S::ISOLATE_WINDOW);
+        let (from, to) = (from.max(S::ZERO), to.min(self.end));
+        (from <= to).then_some((from, to))
+    }
+
+    /// A window with a margin, within the step: boxes that are flat share a moment only, too short for a sign to be seen to
+    /// change. Nothing meets in the margin; it costs, and proves nothing.
+    #[inline]
+    pub fn with_margin(&self, (begin, end): (S, S)) -> (S, S) {
+        let margin = S::ISOLATE_MARGIN;
+        ((begin - margin).max(S::ZERO), (end + margin).min(self.end))
+    }
+}
+
+/// The largest magnitude of a vector's components.
+#[inline(always)]
+pub(super) fn most<S: Real>(v: Vec3<S>) -> S {
+    let v = v.map(S::abs);
+    v[0].max(v[1]).max(v[2])
+}
+
+/// The sum of the magnitudes of a vector's components.
+#[inline(always)]
+pub(super) fn sum<S: Real>(v: Vec3<S>) -> S {
+    let v = v.map(S::abs);
+    v[0] + v[1] + v[2]
+}

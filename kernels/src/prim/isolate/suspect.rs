@@ -1,0 +1,133 @@
+//! What is so around a suspect time: the hull holds the origin at a moment, or at none, or neither can be told.
+
+use super::cubic::largest;
+use super::pair::{Pair, most, sum};
+use crate::math::Vec3;
+use crate::prim::inclusion::Grid;
+
+/// An answer about a short time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Around {
+    /// If all control vectors lie in one plane with the origin at some moment of it, the hull holds the origin then.
+    Holds,
+    /// At no moment of it the hull holds the origin.
+    Misses,
+    /// Neither is certain.
+    Unknown,
+}
+
+/// The corners in the order of the hull's border.
+const RING: [usize; 4] = [0, 1, 3, 2];
+
+#[inline(always)]
+fn ring<const N: usize>(k: usize) -> usize {
+    let k = if k == N { 0 } else { k };
+    if N == 3 { k } else { RING[k] }
+}
+
+impl<S: Grid, const N: usize> Pair<S, N> {
+    /// Looks at the hull at `t`, for all times within `half` of it. About 200 operations.
+    ///
+    /// Let `x` be the computed control vectors at `t` and `y` the exact ones at a time within `half`. No component of a
+    /// `y - x` is beyond `rho = ISOLATE_PLACE reach + half speed (1 + 8u)`.
+    ///
+    /// *Holds.* For any vector `n`, taken as the exact vector of its rounded components, the numbers
+    /// `n . (y_k x y_k+1)` around the ring have the computed ones' signs where those are beyond
+    /// `6 |n| (2 rho R + rho^2 + ISOLATE_TURN R^2)`, with R the largest component of `x` and |n| that of `n`: a component of
+    /// a cross product of `y` differs from that of `x` by at most `2 (2 rho R + rho^2)`, three such meet `n`, and five
+    /// roundings of products of at most `2 R^2` are `30u |n| R^2`. Let all be of one sign, and at some moment of the time all
+    /// `y` in one plane through the origin, with normal `m`. There `y_k x y_k+1` is `m` times the turn of edge k about the
+    /// origin, so all turns are of one sign, none is zero: the ring winds about the origin, which is inside.
+    ///
+    /// *Misses.* A direction `d` with all `d . x` on one side of zero beyond `|d|_1 (rho + ISOLATE_SIDE R)` has all `d . y`
+    /// there too, and with them the hull.
+    #[inline(always)]
+    pub fn around(&self, t: S, half: S) -> Around {
+        let x = self.at(t);
+        let reach = largest(&x);
+        let rho = S::ISOLATE_PLACE * self.reach + half * self.speed * S::INCLUSION_UP;
+        let n = (x[1] - x[0]).cross(x[2] - x[0]);
+        let bound = S::of(6.0)
+            * most(n)
+            * (S::of(2.0) * rho * reach + rho * rho + S::ISOLATE_TURN * reach * reach)
+            + S::ISOLATE_UNDERFLOW;
+        let mut turns = [S::ZERO; N];
+        let (mut above, mut below, mut total) = (true, true, S::ZERO);
+        for k in 0..N {
+            turns[k] = n.dot(x[ring::<N>(k)].cross(x[ring::<N>(k + 1)]));
+            above &= turns[k] > bound;
+            below &= turns[k] < -bound;
+            total = total + turns[k];
+        }
+        if above | below {
+            return Around::Holds;
+        }
+        // The edge of which the origin is farthest outside: by turn over length, compared as squares.
+        let (mut farthest, mut edge) = (S::ZERO, Vec3([S::ZERO; 3]));
+        for k in 0..N {
+            let e = x[ring::<N>(k + 1)] - x[ring::<N>(k)];
+            let turn = if total > S::ZERO { -turns[k] } else { turns[k] };
+            let far = turn * turn.abs() / e.dot(e).max(S::ISOLATE_UNDERFLOW);
+            if far > farthest {
+                (farthest, edge) = (far, e);
+            }
+        }
+        if self.beside(&x, n.cross(edge), rho + S::ISOLATE_SIDE * reach) {
+            Around::Misses
+        } else {
+            Around::Unknown
+        }
+    }
+
+    /// Whether all of `x` lie on one side of the origin along `d`, each known to `error` a component.
+    #[inline(always)]
+    fn beside(&self, x: &[Vec3<S>; N], d: Vec3<S>, error: S) -> bool {
+        let bound = sum(d) * error + S::ISOLATE_UNDERFLOW;
+        let (mut low, mut high) = (d.dot(x[0]), d.dot(x[0]));
+        for k in 1..N {
+            let s = d.dot(x[k]);
+            (low, high) = (low.min(s), high.max(s));
+        }
+        low > bound || high < -bound
+    }
+
+    /// Whether the hull certainly misses the origin throughout `[from, to]`: the control vectors at both ends lie on one side
+    /// of a plane. Directions are tried from the middle of all towards the point nearest to the origin (Frank and Wolfe's
+    /// steps). About 60 operations a step.
+    #[inline]
+    pub fn misses_throughout(&self, from: S, to: S) -> bool {
+        let ends = [self.at(from), self.at(to)];
+        let reach = largest(&ends[0]).max(largest(&ends[1]));
+        let error = S::ISOLATE_PLACE * self.reach + S::ISOLATE_SIDE * reach;
+        let mut d = Vec3([S::ZERO; 3]);
+        for k in 0..N {
+            d = d + (ends[0][k] + ends[1][k]);
+        }
+        d = d * S::of(0.5 / N as f64);
+        for _ in 0..=PLANES {
+            if self.beside(&ends[0], d, error) && self.beside(&ends[1], d, error) {
+                // Both beside, but of one side?
+                return self.finite && d.dot(ends[0][0]) > S::ZERO && d.dot(ends[1][0]) > S::ZERO;
+            }
+            let mut at = ends[0][0];
+            for i in 0..2 {
+                for k in 0..N {
+                    if d.dot(ends[i][k]) < d.dot(at) {
+                        at = ends[i][k];
+                    }
+                }
+            }
+            let e = d - at;
+            let (along, square) = (d.dot(e), e.dot(e));
+            if !(along > S::ZERO && square > S::ISOLATE_UNDERFLOW) {
+                break;
+            }
+            let step = along / square;
+            d = d - e * if step < S::ONE { step } else { S::ONE };
+        }
+        false
+    }
+}
+
+/// How often a direction is bettered. More steps find few more.
+const PLANES: usize = 5;

@@ -1,0 +1,105 @@
+//! # Slice: the few pairs that isolation leaves → contacts, proven, with bounds of their first time
+//! Paper    none: beyond it.
+//! Launch   a block of [`SLICES`] lanes a pair, a lane a slice of the pair's window; a grid of any size strides.
+//! Reads    pairs, faces or edges, positions of both frames (four vertices).
+//! Writes   contacts and unresolved pairs; or the earliest.
+//! Before   the pairs do not touch at the start: `climb::settle` has seen to it.
+//! After    every pair that meets is listed, none late. The first slice that is not apart decides; what it leaves open the
+//!          last rungs decide, in one lane: nearness, then a search by boxes. A pair whose budget ends is listed.
+//! Room     hits: counted past the end, grown, run again.
+//! Cost     about 3,000 operations of f64 a lane; a search 1,200 a box, one lane. Boxes wait in a stack in local memory, 3 KB.
+
+use super::climb::{edge_edge, keep, vertex_face};
+use super::listed;
+use crate::abi::{Hit, Listed, Pair, RungArgs};
+use crate::exec::{Block, Lane, Slot};
+use crate::math::Real;
+use crate::prim::inclusion::{self, Verdict};
+use crate::prim::isolate::ladder::{SLICES, Slice, decided, searched, sliced};
+use crate::prim::isolate::{self, Edges, Face};
+
+/// Bytes of shared memory of a block: which slices are not apart.
+pub const SHARED: u32 = 4;
+
+/// All slices of all pairs.
+pub fn slice<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
+    let p = &a.params;
+    each(
+        b,
+        (a, &a.vf),
+        |l, pair| {
+            let (v, f) = vertex_face(l, a, pair);
+            Face::new(v, f, p)
+        },
+        |l, pair, known| {
+            let (v, f) = vertex_face(l, a, pair);
+            searched(inclusion::Face::<f64>::new(v, f, p), known, p)
+        },
+    );
+    each(
+        b,
+        (a, &a.ee),
+        |l, pair| {
+            let [x, y] = edge_edge(l, a, pair);
+            Edges::new(x, y, p)
+        },
+        |l, pair, known| {
+            let [x, y] = edge_edge(l, a, pair);
+            searched(inclusion::Edges::<f64>::new(x, y, p), known, p)
+        },
+    );
+}
+
+/// All pairs of one kind.
+#[inline(always)]
+fn each<R: Real, B: Block, const N: usize>(
+    b: &mut B,
+    (a, of): (&RungArgs<R>, &Listed),
+    motion: impl Fn(&B::Lane, Pair) -> isolate::Pair<f64, N>,
+    search: impl Fn(&B::Lane, Pair, Verdict) -> Verdict,
+) {
+    let count = listed(b, of.pairs, a.counters, of.pairs_at);
+    let open = b.shared::<u32>(1);
+    let mut mine = b.slot(Slice::Apart);
+    let mut i = b.block();
+    while i < count {
+        b.phase(|l| {
+            if l.lane() == 0 {
+                l.put(open, 0, 0);
+            }
+        });
+        b.phase(|l| {
+            *mine.of(l) = Slice::Apart;
+            // A slice behind one that is not apart has nothing to say. Whether it heard of that in time is all the same.
+            let earlier = l.shared_add(open, 0, 0) & ((1 << l.lane()) - 1);
+            if earlier != 0 {
+                return;
+            }
+            let pair = motion(l, l.read(of.pairs, i));
+            if let Some(window) = pair.window() {
+                let told = sliced(&pair, window, l.lane(), &a.params);
+                *mine.of(l) = told;
+                if told != Slice::Apart {
+                    l.shared_add(open, 0, 1 << l.lane());
+                }
+            }
+        });
+        let first = b.peek(open, 0).trailing_zeros() % SLICES;
+        b.phase(|l| {
+            if l.lane() != first {
+                return;
+            }
+            let indices = l.read(of.pairs, i);
+            let pair = motion(l, indices);
+            let Some(window) = pair.window() else { return };
+            let verdict = decided(&pair, *mine.of(l), window, |known| search(l, indices, known), &a.params);
+            if keep(l, a, verdict) {
+                let place = l.fetch_add(a.counters, of.hits_at, 1);
+                if place < of.hits.len {
+                    l.write(of.hits, place as u32, Hit { a: indices.a, b: indices.b, verdict });
+                }
+            }
+        });
+        i += b.blocks();
+    }
+}
