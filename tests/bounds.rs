@@ -15,6 +15,8 @@ mod exact;
 mod hunt;
 #[path = "bounds/inclusion.rs"]
 mod inclusion;
+#[path = "bounds/isolate.rs"]
+mod isolate;
 #[path = "bounds/list.rs"]
 mod list;
 #[path = "bounds/merged.rs"]

@@ -3,9 +3,9 @@
 use crate::abi::*;
 use crate::bv::{Aabb, Linear, Obb};
 use crate::exec::{BINS, Block, WARP};
+use crate::prim::isolate::ladder::SLICES;
 use crate::queue::worker;
 use crate::stage::construct::{morton, sort, tree, treelet};
-use crate::prim::isolate::ladder::SLICES;
 use crate::stage::narrow::{climb, discrete, reject, sift, slice, solve};
 use crate::stage::refit::{bottom_up, levels, treelets};
 use crate::stage::traverse::{front, queue, steal};

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// What no proof of an answer rests on, or what is no allowance.
-const OTHERS: [(&str, &str); 14] = [
+const OTHERS: [(&str, &str); 18] = [
     ("U32", "the unit"),
     ("U64", "the unit"),
     ("CUBIC_VALUE", "a guess: the cubic's roots guarantee nothing"),
@@ -12,6 +12,10 @@ const OTHERS: [(&str, &str); 14] = [
     ("CUBIC_SCALE", "a range"),
     ("INCLUSION_FINEST", "a limit of what may be asked"),
     ("INCLUSION_FAINT", "a range"),
+    ("ISOLATE_MARGIN", "a cost"),
+    ("ADVANCE_FINEST", "a limit of what may be asked"),
+    ("NEAR_FINEST", "a limit of what may be asked"),
+    ("NEAR_GROWTH", "what is listed, not what is certain"),
     ("INCLUSION_SHRUNK", "a cost"),
     ("INCLUSION_FLAT", "a cost"),
     ("INCLUSION_DEEP", "a cost"),

@@ -87,7 +87,9 @@ impl Continuous {
     pub fn lists(&mut self, step: Step) -> Vec<&mut dyn Growing> {
         match step {
             Step::Sift => vec![&mut self.vf, &mut self.ee],
-            Step::Reject => self.survivors.iter_mut().flatten().map(|list| list as &mut dyn Growing).collect(),
+            Step::Reject => {
+                self.survivors.iter_mut().flatten().map(|list| list as &mut dyn Growing).collect()
+            }
             Step::Solve => {
                 let mut lists: Vec<&mut dyn Growing> =
                     vec![&mut self.vf_hits, &mut self.ee_hits, &mut self.unresolved];

@@ -81,7 +81,8 @@ impl Rungs {
     pub fn new(device: &Device, query: &Query, room: [usize; 2]) -> Result<Self, Error> {
         let rungs = if query.solver().is_certified() { rungs(query) } else { &[] };
         let names: Vec<_> = rungs.iter().rev().skip(1).rev().map(|rung| rung.left()).collect();
-        let list = |(_, name, counter): (&str, &'static str, u32), room| List::new(device, name, counter, room);
+        let list =
+            |(_, name, counter): (&str, &'static str, u32), room| List::new(device, name, counter, room);
         let left = names
             .iter()
             .map(|&at| Ok([list(LEFT[at][0], room[0])?, list(LEFT[at][1], room[1])?]))
@@ -96,7 +97,10 @@ impl Rungs {
 
     /// The lists, with names.
     pub fn between(&self) -> impl Iterator<Item = (&'static str, &List<Pair>)> {
-        self.names.iter().zip(&self.left).flat_map(|(&at, [vf, ee])| [(LEFT[at][0].0, vf), (LEFT[at][1].0, ee)])
+        self.names
+            .iter()
+            .zip(&self.left)
+            .flat_map(|(&at, [vf, ee])| [(LEFT[at][0].0, vf), (LEFT[at][1].0, ee)])
     }
 
     /// Launches all rungs, the first over `asked`.
@@ -148,7 +152,9 @@ fn launch<R: Precision>(rung: Rung, device: &Device, room: usize, args: &RungArg
         Rung::Isolate64 => launch_striding::<R::Isolate64>(device, room, args),
         Rung::Settle => launch_striding::<R::Settle>(device, room, args),
         // A block a pair.
-        Rung::Slice => launch_striding::<R::Slice>(device, room.saturating_mul(R::Slice::LANES as usize), args),
+        Rung::Slice => {
+            launch_striding::<R::Slice>(device, room.saturating_mul(R::Slice::LANES as usize), args)
+        }
         Rung::Separate => launch_striding::<R::Separate>(device, room, args),
         Rung::SeparateRest => launch_striding::<R::SeparateRest>(device, room, args),
     }

@@ -148,20 +148,14 @@ pub fn separated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: b
         Advanced::Within { from, to } if last || to - from <= distance.pause + distance.pause => {
             met(from, to, p)
         }
-        Advanced::Near { from } if last => {
-            Some(Verdict::unresolved(from.wide().min(p.end), p.end, 0, false))
-        }
+        Advanced::Near { from } if last => Some(Verdict::unresolved(from.wide().min(p.end), p.end, 0, false)),
         _ => None,
     }
 }
 
 /// Searches by boxes from `from` on what [`near`] left unresolved: the surer of both answers.
 #[inline]
-pub fn searched<const N: usize>(
-    local: inclusion::Local<f64, N>,
-    unresolved: Verdict,
-    p: &Params,
-) -> Verdict {
+pub fn searched<const N: usize>(local: inclusion::Local<f64, N>, unresolved: Verdict, p: &Params) -> Verdict {
     let mut stack = [const { MaybeUninit::uninit() }; STACK];
     let mut search = match Search::from(local, p, &mut stack, unresolved.toi) {
         Ok(search) => search,

@@ -46,8 +46,7 @@ impl<S: Grid> Edges<S> {
     /// The motion of the ends of an edge relative to those of another.
     #[inline(always)]
     pub fn new<R: Real>(a: [Moving<R>; 2], b: [Moving<R>; 2], p: &Params) -> Self {
-        let pairs =
-            [(a[0], b[0]), (a[0], b[1]), (a[1], b[0]), (a[1], b[1]), (a[1], a[0]), (b[1], b[0])];
+        let pairs = [(a[0], b[0]), (a[0], b[1]), (a[1], b[0]), (a[1], b[1]), (a[1], a[0]), (b[1], b[0])];
         let ([w0, w1, w2, w3, along, across], scale, finite) = differences(pairs);
         Pair::of([w0, w1, w2, w3], [along, across], (scale, finite), p)
     }
@@ -55,12 +54,7 @@ impl<S: Grid> Edges<S> {
 
 impl<S: Grid, const N: usize> Pair<S, N> {
     #[inline(always)]
-    fn of(
-        w: [[Vec3<S>; 2]; N],
-        edges: [[Vec3<S>; 2]; 2],
-        (scale, finite): (f64, bool),
-        p: &Params,
-    ) -> Self {
+    fn of(w: [[Vec3<S>; 2]; N], edges: [[Vec3<S>; 2]; 2], (scale, finite): (f64, bool), p: &Params) -> Self {
         let (mut reach, mut speed) = (Vec3([S::ZERO; 3]), Vec3([S::ZERO; 3]));
         for k in 0..N {
             let [start, end] = w[k];

@@ -47,10 +47,9 @@ impl<S: Grid, const N: usize> Pair<S, N> {
         let reach = largest(&x);
         let rho = S::ISOLATE_PLACE * self.reach + half * self.speed * S::INCLUSION_UP;
         let n = (x[1] - x[0]).cross(x[2] - x[0]);
-        let bound = S::of(6.0)
-            * most(n)
-            * (S::of(2.0) * rho * reach + rho * rho + S::ISOLATE_TURN * reach * reach)
-            + S::ISOLATE_UNDERFLOW;
+        let bound =
+            S::of(6.0) * most(n) * (S::of(2.0) * rho * reach + rho * rho + S::ISOLATE_TURN * reach * reach)
+                + S::ISOLATE_UNDERFLOW;
         let mut turns = [S::ZERO; N];
         let (mut above, mut below, mut total) = (true, true, S::ZERO);
         for k in 0..N {

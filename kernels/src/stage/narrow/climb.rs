@@ -21,9 +21,7 @@ use crate::exec::{Block, Lane, Slot};
 use crate::math::Real;
 use crate::prim::cubic::Moving;
 use crate::prim::inclusion::{Grid, Verdict};
-use crate::prim::isolate::ladder::{
-    ee_touch, isolated, separated, separated_at_last, settled, vf_touch,
-};
+use crate::prim::isolate::ladder::{ee_touch, isolated, separated, separated_at_last, settled, vf_touch};
 use crate::prim::isolate::{self, Edges, Face};
 
 /// A vertex and the corners of a face, in motion.
