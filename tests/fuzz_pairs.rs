@@ -12,7 +12,7 @@ use nearmiss::contacts::Answer;
 use nearmiss_kernels::prim::inclusion::Verdict;
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
-use shared::{continuous, discrete, scene};
+use shared::{bytes, continuous, discrete, scene};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -35,7 +35,7 @@ fn number(variable: &str) -> Option<u64> {
 }
 
 /// Random bytes, most of them few different ones.
-fn bytes(r: &mut SmallRng, most: usize) -> Vec<u8> {
+fn random_bytes(r: &mut SmallRng, most: usize) -> Vec<u8> {
     let mask = [0xff, 0xff, 0x1f, 0xe7][r.random_range(0..4)];
     (0..r.random_range(1..=most)).map(|_| r.random::<u8>() & mask).collect()
 }
@@ -47,7 +47,7 @@ fn search(question: Question, seed: u64, time: Duration) -> (u64, Option<String>
     let start = Instant::now();
     let mut asked = 0;
     while start.elapsed() < time {
-        let bytes = bytes(&mut r, length);
+        let bytes = random_bytes(&mut r, length);
         if let Err(what) = ask(&bytes) {
             let hex: String = bytes.iter().map(|b| format!("{b:02x}")).collect();
             return (
@@ -77,6 +77,24 @@ fn random_triangles() {
 #[test]
 fn random_motions() {
     random(1);
+}
+
+/// The same with the axes stretched to the ends of the range, a share for each family and precision.
+#[test]
+fn directed_motions() {
+    for first in (bytes::DIRECTED..=0xff).step_by(5) {
+        let mut r = SmallRng::seed_from_u64(SEED);
+        let mut met = 0;
+        for _ in 0..40 {
+            let mut bytes = random_bytes(&mut r, 80);
+            bytes[0] = first;
+            let said = continuous::ask(&bytes, |verdict| verdict);
+            assert!(said.is_ok(), "{first:#x}: {}", said.unwrap_err());
+            met += u32::from(continuous::ask(&bytes, |_| Verdict::separated(1.0, 0)).is_err());
+        }
+        println!("{first:#x}: {met} of 40 meet");
+        assert!(met > 0, "{first:#x}: a fault that is planted would not be noticed");
+    }
 }
 
 #[test]
@@ -121,7 +139,8 @@ fn planted_faults_are_named() {
     ];
     for ((plant, length, ask), named) in plants {
         let mut r = SmallRng::seed_from_u64(SEED);
-        let asked = (0..5000).find(|_| ask(&bytes(&mut r, length)).is_err_and(|fault| fault.contains(named)));
+        let asked =
+            (0..5000).find(|_| ask(&random_bytes(&mut r, length)).is_err_and(|fault| fault.contains(named)));
         println!("{plant}: {named:?} after {asked:?}");
         assert!(asked.is_some(), "{plant}: not noticed");
     }

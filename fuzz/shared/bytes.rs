@@ -10,16 +10,50 @@ pub struct Bytes<'a> {
     single: bool,
     /// How most coordinates of this question are made.
     style: u8,
+    /// What the axes are stretched by, as powers of two.
+    stretch: [i32; 3],
 }
 
+/// First bytes from here on ask for a stretch, by their two next bits: huge, mixed-scale, axes-extreme, tiny.
+pub const DIRECTED: u8 = 0xc0;
+
 impl<'a> Bytes<'a> {
-    /// The first byte says how coordinates are made and whether in f32.
+    /// The first byte says how coordinates are made, whether in f32, and whether axes are stretched.
     pub fn new(bytes: &'a [u8]) -> Bytes<'a> {
-        let mut new = Bytes { left: bytes, seen: Vec::new(), single: false, style: 0 };
+        let mut new = Bytes { left: bytes, seen: Vec::new(), single: false, style: 0, stretch: [0; 3] };
         let first = new.byte();
         new.single = first & 1 == 1;
         new.style = first >> 1;
+        if first >= DIRECTED {
+            new.stretch = new.stretched(first >> 4 & 3);
+        }
         new
+    }
+
+    /// By how much the axes of a directed family are stretched.
+    fn stretched(&mut self, family: u8) -> [i32; 3] {
+        let (least, most) = if self.single { (-149, 60) } else { (-1074, 480) };
+        let by = [0; 3].map(|_| i32::from(self.byte()));
+        let turn = by[0] as usize % 3;
+        let mut all = match family {
+            // Of coordinates that are mostly small.
+            0 => [most - 5 - by[0] % 16; 3],
+            1 => by.map(|by| most * (by - 128) / 256),
+            2 => {
+                let one = least / 2 - 5 + by[1] % 11;
+                [most - 5 - by[0] % 16, one, least + by[2] % 8 - one]
+            }
+            _ => [least + by[0] % 32; 3],
+        };
+        all.rotate_left(turn);
+        all
+    }
+
+    /// `x 2^e` in the question's precision; `x` where that is not finite.
+    fn stretch(&self, x: f64, e: i32) -> f64 {
+        let y = x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2);
+        let y = if self.single { f64::from(y as f32) } else { y };
+        if y.is_finite() { y } else { x }
     }
 
     /// Whether all coordinates are exact in f32.
@@ -92,7 +126,9 @@ impl<'a> Bytes<'a> {
 
     /// A point.
     pub fn point(&mut self) -> [f64; 3] {
-        [0; 3].map(|_| self.coordinate())
+        let x = [0; 3].map(|_| self.coordinate());
+        let by = self.stretch;
+        [0, 1, 2].map(|k| self.stretch(x[k], by[k]))
     }
 
     /// A point; half of the time one of those given.

@@ -92,7 +92,7 @@ pub fn of_kind(r: &mut SmallRng, kind: usize, face: bool, i: usize, reach: i64) 
 
 /// Features on two sides of a plane for the whole step, one of them one unit or more away from it, then sheared by
 /// integers.
-fn near_miss(r: &mut SmallRng, face: bool, reach: i64) -> Motion {
+pub(super) fn near_miss(r: &mut SmallRng, face: bool, reach: i64) -> Motion {
     let on_one_side = if face { 1 } else { 2 };
     let height = |r: &mut SmallRng| [1, 2, 12, 12 * reach][r.random_range(0..4)];
     let mut plain: Motion = [0, 1].map(|_| {

@@ -7,6 +7,7 @@
 mod ask;
 pub mod built;
 pub mod degenerate;
+pub mod directed;
 mod lay;
 mod triangles;
 

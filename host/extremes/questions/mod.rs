@@ -4,6 +4,7 @@ mod edges;
 mod face;
 mod limits;
 mod reported;
+mod scales;
 
 pub use reported::{MOTIONS, Reported, reported_motions};
 
@@ -20,6 +21,7 @@ pub fn questions() -> Vec<Question> {
     let mut all = face::questions();
     all.extend(edges::questions());
     all.extend(limits::questions());
+    all.extend(scales::questions());
     all.extend(reported_motions());
     all
 }

@@ -85,7 +85,7 @@ fn huge() -> Vec<Scene> {
         |t0: f64, t1: f64| Numbers { t1: vec![[0.0, 0.0, t1]; 3], ..Numbers::loose(&[[[0.0, 0.0, t0]; 3]]) };
     let met = |at: f64| Contacts((0..3).map(|v| (Vf, v, 0, at)).collect());
     let scene = |what: &str, s: f64, [t0, t1]: [f64; 2], at: f64| {
-        Scene::new("X61", what, vec![fall(t0, t1), face(s)], met(at))
+        Scene::new("X65", what, vec![fall(t0, t1), face(s)], met(at))
     };
     let mut all = vec![
         scene("to the ends of f32", MOST, [MOST, -MOST], 0.5),

@@ -104,10 +104,10 @@ fn huge() -> Vec<Scene> {
         flat([-1.0, -1.0, 0.0], 4.0),
         flat([-1.0, -1.0, f64::from(f32::MIN_POSITIVE)], 4.0),
     ];
-    let mut all = vec![Scene::new("X61", "to the ends of f32", vec![Numbers::loose(&most)], Oracle)];
+    let mut all = vec![Scene::new("X65", "to the ends of f32", vec![Numbers::loose(&most)], Oracle)];
     all.extend([59, 61, 100, 125].map(|power| {
         let scaled = crowd.map(|t| t.map(|p| p.map(|x| x * 2f64.powi(power))));
-        Scene::new("X61", &format!("times 2^{power}"), vec![Numbers::loose(&scaled)], Oracle)
+        Scene::new("X65", &format!("times 2^{power}"), vec![Numbers::loose(&scaled)], Oracle)
     }));
     all
 }

@@ -97,6 +97,16 @@ impl Volume for Linear {
     /// are zero; every comparison with NaN is false, so it clips nothing.
     #[inline]
     fn overlaps(&self, o: &Self) -> bool {
+        let (apart, from, to) = self.window(o);
+        !(apart | (from > to + MOVING_TIME))
+    }
+}
+
+impl Linear {
+    /// Whether the boxes are apart on one axis throughout; else from when and until when they overlap on all, as computed:
+    /// both ends together are wrong by less than `MOVING_TIME`.
+    #[inline]
+    pub fn window(&self, o: &Self) -> (bool, f32, f32) {
         let (mut apart, mut from, mut to) = (false, 0.0f32, 1.0f32);
         let mut clip = |d0: f32, d1: f32| {
             let (before, after) = (d0 < 0.0, d1 < 0.0);
@@ -109,6 +119,6 @@ impl Volume for Linear {
             clip(o.hi0[k] - self.lo0[k], o.hi1[k] - self.lo1[k]);
             clip(self.hi0[k] - o.lo0[k], self.hi1[k] - o.lo1[k]);
         }
-        !(apart | (from > to + MOVING_TIME))
+        (apart, from, to)
     }
 }

@@ -121,12 +121,20 @@ impl Obb {
         let mid = (h.max(t + r) + (-h).min(t - r)) * 0.5;
         let c = c + (a[0] * mid[0] + a[1] * mid[1] + a[2] * mid[2]);
         let reach = |b: &Obb, r: Vec3<f32>| {
-            let t = Vec3(b.c) - c;
-            let [x, y, z] = t.map(Real::abs).0;
-            let pad = BOX_CHILD * ((b.h[0] + b.h[1] + b.h[2]) + (x + y + z)) + BOX_UNDERFLOW;
-            (along(t).map(Real::abs) + r).map(|x| (x + pad) * BOX_UP)
+            let (x, pad) = b.reach(a, c, r);
+            x.map(|x| (x + pad) * BOX_UP)
         };
         Obb::new(c, [Vec3(self.a0), Vec3(self.a1)], reach(self, h).max(reach(o, r)))
+    }
+
+    /// How far the box reaches from a point `c` along three axes, of which `r` from its own centre, as computed; and the
+    /// most by which that is too little.
+    #[inline]
+    pub fn reach(&self, a: [Vec3<f32>; 3], c: Vec3<f32>, r: Vec3<f32>) -> (Vec3<f32>, f32) {
+        let t = Vec3(self.c) - c;
+        let [x, y, z] = t.map(Real::abs).0;
+        let pad = BOX_CHILD * ((self.h[0] + self.h[1] + self.h[2]) + (x + y + z)) + BOX_UNDERFLOW;
+        (Vec3([a[0].dot(t), a[1].dot(t), a[2].dot(t)]).map(Real::abs) + r, pad)
     }
 }
 

@@ -29,7 +29,10 @@ pub trait Tolerance: Sized {
     /// Error of a value of the cubic within [0, 1]: a convex mixture of the above (`10u`) and six roundings of the
     /// evaluation, `20u` in all. A value below it counts as zero if the features are then also close.
     const CUBIC_VALUE: Self;
-    /// Underflow of the cubic's products, whose factors are at most about `CUBIC_SCALE`. Length cubed.
+    /// Underflow in an inner coefficient of the cubic, whose factors are at most `CUBIC_SCALE`. In f32: 54 inputs (three of
+    /// each of 18 products of three) that were rounded from f64, half the smallest number times `CUBIC_SCALE` squared
+    /// each, is below 2^-104; products lose less. 2^-100. In f64: 18 inner products, times `CUBIC_SCALE` each, is below
+    /// 2^-1050. 2^-960. Length cubed.
     const CUBIC_UNDERFLOW: Self;
     /// How far outside of the face, or from the other edge, a vertex or edge may be at a root of the cubic and
     /// still count, relative to the largest difference of positions. A root is known to about `u` divided by
@@ -109,7 +112,7 @@ impl Tolerance for f32 {
     const CUBIC_OUTER: f32 = 12.0 * U32;
     const CUBIC_INNER: f32 = 40.0 * U32;
     const CUBIC_VALUE: f32 = 20.0 * U32;
-    const CUBIC_UNDERFLOW: f32 = f32::from_bits(7 << 23);
+    const CUBIC_UNDERFLOW: f32 = f32::from_bits(27 << 23);
     const CUBIC_INSIDE: f32 = 64.0 * U32;
     const PARALLEL: f32 = 16.0 * U32 * U32;
     const INCLUSION_FACE: f32 = 6.5 * U32;

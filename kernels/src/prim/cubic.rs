@@ -109,6 +109,30 @@ pub fn ee_apart<R: Real, S: Real>(ea: [Moving<R>; 2], eb: [Moving<R>; 2]) -> boo
     Relative::<S>::new([(ea[1], ea[0]), (eb[1], eb[0]), (eb[0], ea[0])]).apart()
 }
 
+/// The coplanarity cubic of a motion in Bernstein form, its inner coefficients times three, and how far they may be off.
+/// Of the motion as it is where its extent is within [`CUBIC_SCALE`] of one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coplanarity<S> {
+    /// The coefficients.
+    pub k: [S; 4],
+    /// The most that the first and the last err.
+    pub outer: S,
+    /// The most that the others err.
+    pub inner: S,
+}
+
+/// The coplanarity cubic of a vertex and a face, as signs reject by it.
+#[inline]
+pub fn vf_coplanarity<R: Real, S: Real>(v: Moving<R>, f: [Moving<R>; 3]) -> Coplanarity<S> {
+    Relative::new([(f[1], f[0]), (f[2], f[0]), (v, f[0])]).coplanarity()
+}
+
+/// The coplanarity cubic of two edges, as signs reject by it.
+#[inline]
+pub fn ee_coplanarity<R: Real, S: Real>(ea: [Moving<R>; 2], eb: [Moving<R>; 2]) -> Coplanarity<S> {
+    Relative::new([(ea[1], ea[0]), (eb[1], eb[0]), (eb[0], ea[0])]).coplanarity()
+}
+
 /// Whether on some axis all differences are strictly of one sign.
 #[inline]
 fn separated<R: Real, const N: usize>(differences: [[Vec3<R>; 2]; N]) -> bool {
@@ -176,13 +200,20 @@ impl<S: Real> Relative<S> {
         (k, two(1, 2) * c[0] + two(2, 0) * c[1] + two(0, 1) * c[2])
     }
 
+    /// The coefficients, and the most that they err.
+    #[inline]
+    fn coplanarity(&self) -> Coplanarity<S> {
+        let (k, permanent) = self.cubic();
+        let outer = S::CUBIC_OUTER * permanent + S::CUBIC_UNDERFLOW;
+        let inner = S::CUBIC_INNER * permanent + S::CUBIC_UNDERFLOW;
+        Coplanarity { k, outer, inner }
+    }
+
     /// Whether the cubic certainly has no root in [0, 1]: it lies in the hull of its coefficients, and those are of one
     /// sign beyond their rounding errors. Proven; a contact is never rejected.
     #[inline]
     fn apart(&self) -> bool {
-        let (k, permanent) = self.cubic();
-        let outer = S::CUBIC_OUTER * permanent + S::CUBIC_UNDERFLOW;
-        let inner = S::CUBIC_INNER * permanent + S::CUBIC_UNDERFLOW;
+        let Coplanarity { k, outer, inner } = self.coplanarity();
         (k[0] > outer && k[3] > outer && k[1] > inner && k[2] > inner)
             || (k[0] < -outer && k[3] < -outer && k[1] < -inner && k[2] < -inner)
     }

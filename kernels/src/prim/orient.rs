@@ -57,18 +57,24 @@ impl<R: Real> Plane<R> {
     /// points (module text). 3 differences, 7 products, 5 sums in the common case.
     #[inline]
     pub fn side(&self, d: Vec3<R>) -> Option<i32> {
-        let g = self.c - d;
-        let det = self.normal.dot(g);
-        let bound = R::ORIENT3D_RELATIVE * self.permanent.dot(g.map(R::abs)) + R::ORIENT_OUTER_UNDERFLOW;
+        let (det, bound) = self.measured(d);
         if det > bound {
             Some(1)
         } else if det < -bound {
             Some(-1)
-        } else if self.surely_zero(d, g) {
+        } else if self.surely_zero(d, self.c - d) {
             Some(0)
         } else {
             None
         }
+    }
+
+    /// det[a-d, b-d, c-d] as computed, and the most that it errs.
+    #[inline]
+    pub fn measured(&self, d: Vec3<R>) -> (R, R) {
+        let g = self.c - d;
+        let bound = R::ORIENT3D_RELATIVE * self.permanent.dot(g.map(R::abs)) + R::ORIENT_OUTER_UNDERFLOW;
+        (self.normal.dot(g), bound)
     }
 
     /// Whether every product of the determinant has an exactly zero factor, or two points coincide.
@@ -107,9 +113,7 @@ pub fn plane_of(axis: usize) -> (usize, usize) {
 pub fn orient2d_filter<R: Real>(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, axis: usize) -> Option<i32> {
     let (i, j) = plane_of(axis);
     let (e, f) = ((a[i] - c[i], a[j] - c[j]), (b[i] - c[i], b[j] - c[j]));
-    let (x, y) = (e.0 * f.1, e.1 * f.0);
-    let det = x - y;
-    let bound = R::ORIENT2D_RELATIVE * (x.abs() + y.abs()) + R::ORIENT_OUTER_UNDERFLOW;
+    let (det, bound) = area(e, f);
     let o = R::ZERO;
     if det > bound {
         Some(1)
@@ -120,4 +124,12 @@ pub fn orient2d_filter<R: Real>(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, axis: usize)
     } else {
         None
     }
+}
+
+/// The determinant of two rows, which are differences of positions, as computed; and the most that it errs from the
+/// determinant of the exact differences.
+#[inline]
+pub fn area<R: Real>(e: (R, R), f: (R, R)) -> (R, R) {
+    let (x, y) = (e.0 * f.1, e.1 * f.0);
+    (x - y, R::ORIENT2D_RELATIVE * (x.abs() + y.abs()) + R::ORIENT_OUTER_UNDERFLOW)
 }

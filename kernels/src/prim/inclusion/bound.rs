@@ -16,6 +16,22 @@ pub struct Image<S> {
     pub error: Vec3<S>,
 }
 
+impl<S: Grid> Image<S> {
+    /// What each component of a corner adds to the error of a product with it: its own, and the product's.
+    #[inline(always)]
+    pub fn slack(&self) -> Vec3<S> {
+        let reach = self.low.map(S::abs).max(self.high.map(S::abs));
+        Vec3([0, 1, 2].map(|k| self.error[k] + S::INCLUSION_SHADOW * reach[k]))
+    }
+
+    /// The corners' products with a direction, and the most that one errs; `slack` as by [`Image::slack`].
+    #[inline(always)]
+    pub fn shadow(&self, d: Vec3<S>, slack: Vec3<S>) -> ([S; 8], S) {
+        let error = d.map(S::abs).dot(slack) * S::INCLUSION_UP + S::INCLUSION_UNDERFLOW;
+        (self.f.map(|x| d.dot(x)), error)
+    }
+}
+
 impl<S: Grid, const N: usize> Local<S, N> {
     /// Computes the image of a box. About 250 operations.
     #[inline(always)]

@@ -75,8 +75,14 @@ impl<S: Grid> Directions<S> {
     #[inline(always)]
     pub fn independent(&self) -> bool {
         let d = [0, 1, 2].map(|k| unit(row(&self.c, k)));
-        matches!(d, [Some(a), Some(b), Some(c)] if a.dot(b.cross(c)).abs() > S::INCLUSION_REGULAR)
+        matches!(d, [Some(a), Some(b), Some(c)] if volume(a, b, c).abs() > S::INCLUSION_REGULAR)
     }
+}
+
+/// The determinant of three rows.
+#[inline(always)]
+pub fn volume<S: Grid>(a: Vec3<S>, b: Vec3<S>, c: Vec3<S>) -> S {
+    a.dot(b.cross(c))
 }
 
 /// How an image changes with parameter `k`, summed over four edges.

@@ -29,16 +29,7 @@ impl<S: Grid, const N: usize> Local<S, N> {
         }
         d = d * S::of(0.5 / N as f64);
         for _ in 0..=STEPS {
-            let (mut low, mut at) = (d.dot(self.w[0][0]), self.w[0][0]);
-            for k in 0..N {
-                for i in 0..2 {
-                    let s = d.dot(self.w[k][i]);
-                    if s < low {
-                        (low, at) = (s, self.w[k][i]);
-                    }
-                }
-            }
-            let error = S::INCLUSION_HULL * d.map(S::abs).dot(self.reach) + S::INCLUSION_UNDERFLOW;
+            let (low, at, error) = self.least(d);
             // A direction too short for its square to have correct digits says nothing of lengths.
             if low > error + self.apart(d) && d.dot(d) > S::INCLUSION_UNDERFLOW {
                 return self.finite;
@@ -54,9 +45,25 @@ impl<S: Grid, const N: usize> Local<S, N> {
         false
     }
 
+    /// The control vector that is least along a direction: its product with that, itself, and the most that the product
+    /// errs from that of exact differences.
+    #[inline]
+    pub fn least(&self, d: Vec3<S>) -> (S, Vec3<S>, S) {
+        let (mut low, mut at) = (d.dot(self.w[0][0]), self.w[0][0]);
+        for k in 0..N {
+            for i in 0..2 {
+                let s = d.dot(self.w[k][i]);
+                if s < low {
+                    (low, at) = (s, self.w[k][i]);
+                }
+            }
+        }
+        (low, at, S::INCLUSION_HULL * d.map(S::abs).dot(self.reach) + S::INCLUSION_UNDERFLOW)
+    }
+
     /// The separation along a direction that need not be of length one; not below the exact product.
     #[inline]
-    pub(super) fn apart(&self, d: Vec3<S>) -> S {
+    pub fn apart(&self, d: Vec3<S>) -> S {
         if self.separation > S::ZERO {
             self.separation * (d.dot(d).sqrt() * S::INCLUSION_UP + S::INCLUSION_UNDERFLOW)
         } else {

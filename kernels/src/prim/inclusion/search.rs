@@ -202,16 +202,15 @@ impl<S: Grid, const N: usize> Local<S, N> {
         }
         let mut cuts = Cuts::none();
         let directions = Directions::of(f);
-        let reach = low.map(S::abs).max(high.map(S::abs));
-        let slack = Vec3([0, 1, 2].map(|k| error[k] + S::INCLUSION_SHADOW * reach[k]));
+        let slack = image.slack();
         for i in 0..directions.count(self.separation > S::ZERO) {
             // Those that decouple the parameters have cut it much: the others will cut the rest better.
             if i == DECOUPLING && cuts.deep() {
                 break;
             }
             let Some(d) = unit(directions.get(i, || sum(f))) else { continue };
-            let error = d.map(S::abs).dot(slack) * S::INCLUSION_UP + S::INCLUSION_UNDERFLOW;
-            if !cuts.shadow(&f.map(|x| d.dot(x)), error, self.apart(d), i) {
+            let (products, error) = image.shadow(d, slack);
+            if !cuts.shadow(&products, error, self.apart(d), i) {
                 return Look::Nothing;
             }
         }
