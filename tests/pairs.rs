@@ -9,7 +9,8 @@ use nearmiss::query::{Motion, Solver};
 use nearmiss::{Case, Error, Features, Query};
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};
-use nearmiss_kernels::prim::inclusion::{Params, ee_certified, vf_certified};
+use nearmiss_kernels::prim::inclusion::Params;
+use nearmiss_kernels::prim::isolate::{Rungs, ee_certified, vf_certified};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 use support::machines;
@@ -52,11 +53,11 @@ fn every_case_has_the_solvers_own_answer() {
                 let (verdict, toi) = match case.features {
                     Features::VertexFace => {
                         let face = [p[1], p[2], p[3]];
-                        (vf_certified::<f64, f64>(p[0], face, &params), vf_toi::<f64, f64>(p[0], face))
+                        (vf_certified(p[0], face, Rungs::Double, &params), vf_toi::<f64, f64>(p[0], face))
                     }
                     Features::EdgeEdge => {
                         let (a, b) = ([p[0], p[1]], [p[2], p[3]]);
-                        (ee_certified::<f64, f64>(a, b, &params), ee_toi::<f64, f64>(a, b))
+                        (ee_certified(a, b, Rungs::Double, &params), ee_toi::<f64, f64>(a, b))
                     }
                 };
                 let own = certified.verdicts[i];

@@ -5,9 +5,8 @@ use nearmiss::oracle::{Toi, first_contact};
 use nearmiss::{Case, Features};
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::{Moving, ee_apart, ee_toi, vf_apart, vf_toi};
-use nearmiss_kernels::prim::inclusion::{
-    Grid, Params, Verdict, ee_certified, ee_first, vf_certified, vf_first,
-};
+use nearmiss_kernels::prim::inclusion::{self, Grid, Params, Verdict};
+use nearmiss_kernels::prim::isolate::{Rungs, ee_certified, vf_certified};
 
 /// A question: the motion, what a certified solver is asked, and whether f32 holds all positions.
 pub fn decode(bytes: &[u8]) -> (Case, Params, bool) {
@@ -76,14 +75,14 @@ fn answers<R: Real>(
     let at = |p: [f64; 3]| Vec3(p.map(R::of));
     let p = [0, 1, 2, 3].map(|i| Moving { t0: at(case.positions_t0[i]), t1: at(case.positions_t1[i]) });
     let (f, ea, eb) = ([p[1], p[2], p[3]], [p[0], p[1]], [p[2], p[3]]);
-    let (guesses, apart, first) = match case.features {
+    let (guesses, apart) = match case.features {
         Features::VertexFace => {
             let guesses = [vf_toi::<R, f64>(p[0], f), vf_toi::<R, f32>(p[0], f).map(f64::from)];
-            (guesses, vf_apart::<R, f32>(p[0], f) || vf_apart::<R, f64>(p[0], f), vf_first(p[0], f, params))
+            (guesses, vf_apart::<R, f32>(p[0], f) || vf_apart::<R, f64>(p[0], f))
         }
         Features::EdgeEdge => {
             let guesses = [ee_toi::<R, f64>(ea, eb), ee_toi::<R, f32>(ea, eb).map(f64::from)];
-            (guesses, ee_apart::<R, f32>(ea, eb) || ee_apart::<R, f64>(ea, eb), ee_first(ea, eb, params))
+            (guesses, ee_apart::<R, f32>(ea, eb) || ee_apart::<R, f64>(ea, eb))
         }
     };
     if let Some(toi) = guesses.iter().flatten().find(|toi| !(0.0..=1.0).contains(*toi)) {
@@ -92,15 +91,29 @@ fn answers<R: Real>(
     if apart && truth.is_some() {
         return Err(format!("rejected by signs: {case:?}"));
     }
-    let double = certified::<R, f64>(case.features, p, params);
-    let all = [("f32", certified::<R, f32>(case.features, p, params)), ("f64", double)];
-    let all = all.into_iter().chain([("f32, then f64", first.unwrap_or(double))]);
-    Ok(all.map(|(name, verdict)| (format!("{name}, of {} bytes", size_of::<R>()), verdict)).collect())
+    let ladder = |rungs| certified(case.features, p, rungs, params);
+    let all = [
+        ("all rungs", ladder(Rungs::All)),
+        ("f32", ladder(Rungs::Single)),
+        ("f64", ladder(Rungs::Double)),
+        ("the search in f32", searched::<R, f32>(case.features, p, params)),
+        ("the search in f64", searched::<R, f64>(case.features, p, params)),
+    ];
+    Ok(all.map(|(name, verdict)| (format!("{name}, of {} bytes", size_of::<R>()), verdict)).into())
 }
 
-fn certified<R: Real, S: Grid>(features: Features, p: [Moving<R>; 4], params: &Params) -> Verdict {
+/// By the rungs of a frame's solver.
+fn certified<R: Real>(features: Features, p: [Moving<R>; 4], rungs: Rungs, params: &Params) -> Verdict {
     match features {
-        Features::VertexFace => vf_certified::<R, S>(p[0], [p[1], p[2], p[3]], params),
-        Features::EdgeEdge => ee_certified::<R, S>([p[0], p[1]], [p[2], p[3]], params),
+        Features::VertexFace => vf_certified(p[0], [p[1], p[2], p[3]], rungs, params),
+        Features::EdgeEdge => ee_certified([p[0], p[1]], [p[2], p[3]], rungs, params),
+    }
+}
+
+/// By boxes alone: the last rung, of everything.
+fn searched<R: Real, S: Grid>(features: Features, p: [Moving<R>; 4], params: &Params) -> Verdict {
+    match features {
+        Features::VertexFace => inclusion::vf_certified::<R, S>(p[0], [p[1], p[2], p[3]], params),
+        Features::EdgeEdge => inclusion::ee_certified::<R, S>([p[0], p[1]], [p[2], p[3]], params),
     }
 }

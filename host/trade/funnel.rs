@@ -21,7 +21,7 @@ pub struct FunnelRow {
     pub edge_edge: Option<u64>,
     /// All pairs.
     pub pairs: u64,
-    /// Milliseconds of the step; the solver's two precisions run as one.
+    /// Milliseconds of the step; the solver's rungs run as one.
     pub ms: Option<f64>,
 }
 
@@ -58,6 +58,8 @@ pub fn funnel(device: &Device, name: &str, body: &Body) -> Result<Vec<FunnelRow>
         both("features with swept boxes that meet", contacts.candidates_vf_ee, ms("sift")),
         both("left by the filters", contacts.survivors_vf_ee, ms("reject")),
         both("asked in f64 after f32", contacts.escalated_vf_ee, None),
+        both("not isolated in f64 either", contacts.open_vf_ee, None),
+        both("cut into slices", contacts.sliced_vf_ee, None),
         row("listed", found, ms("solve")),
         row("of them certain", found - contacts.unresolved, None),
     ])

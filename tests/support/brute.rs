@@ -5,9 +5,8 @@ use nearmiss::mesh::{Body, Topology};
 use nearmiss::query::Solver;
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::cubic::Moving;
-use nearmiss_kernels::prim::inclusion::{
-    Params, Verdict, ee_certified, ee_settled, vf_certified, vf_settled,
-};
+use nearmiss_kernels::prim::inclusion::{Params, Verdict};
+use nearmiss_kernels::prim::isolate::{Rungs, ee_certified, vf_certified};
 use std::collections::BTreeMap;
 
 /// The certified solvers.
@@ -43,21 +42,25 @@ impl Seen {
     }
 }
 
-/// What the solver says of a pair by itself.
-pub fn verdict(solver: Solver, kind: Kind, [a, b, c, d]: [Moving<f64>; 4], p: &Params) -> Verdict {
-    let edges = kind == Kind::Ee;
-    let (first, settled) =
-        if edges { ee_settled::<_, f32>([a, b], [c, d], p) } else { vf_settled::<_, f32>(a, [b, c, d], p) };
-    if solver == Solver::CertifiedF32 || solver == Solver::Certified && settled {
-        first
-    } else if edges {
-        ee_certified::<_, f64>([a, b], [c, d], p)
-    } else {
-        vf_certified::<_, f64>(a, [b, c, d], p)
+/// The rungs that a certified solver climbs.
+pub fn rungs(solver: Solver) -> Rungs {
+    match solver {
+        Solver::CertifiedF32 => Rungs::Single,
+        Solver::CertifiedF64 => Rungs::Double,
+        _ => Rungs::All,
     }
 }
 
-/// What is wrong with an answer. Pairs that are only near may be left out, where volumes or signs tell them apart.
+/// What the solver says of a pair by itself.
+pub fn verdict(solver: Solver, kind: Kind, [a, b, c, d]: [Moving<f64>; 4], p: &Params) -> Verdict {
+    if kind == Kind::Ee {
+        ee_certified([a, b], [c, d], rungs(solver), p)
+    } else {
+        vf_certified(a, [b, c, d], rungs(solver), p)
+    }
+}
+
+/// What is wrong with an answer: every pair that is not certainly apart is listed, as it is by itself, and no other.
 pub fn fault(found: &[Contact], near: &BTreeMap<Row, Verdict>, meet: &[Row]) -> Option<String> {
     let mut listed = BTreeMap::new();
     for c in found {
@@ -69,6 +72,5 @@ pub fn fault(found: &[Contact], near: &BTreeMap<Row, Verdict>, meet: &[Row]) -> 
             return Some(format!("{c:?} is {v:?}"));
         }
     }
-    let sure = near.iter().filter(|(_, v)| v.is_contact()).map(|(row, _)| row);
-    sure.chain(meet).find(|row| !listed.contains_key(row)).map(|row| format!("{row:?} is missed"))
+    near.keys().chain(meet).find(|row| !listed.contains_key(row)).map(|row| format!("{row:?} is missed"))
 }

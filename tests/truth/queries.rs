@@ -3,7 +3,8 @@
 use crate::support::data;
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};
-use nearmiss_kernels::prim::inclusion::{Params, ee_certified, ee_first, vf_certified, vf_first};
+use nearmiss_kernels::prim::inclusion::Params;
+use nearmiss_kernels::prim::isolate::{Rungs, ee_certified, vf_certified};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
@@ -56,15 +57,13 @@ impl Motion {
 
 #[allow(dead_code, reason = "each binary uses a part")]
 impl Motion {
-    /// Whether the certified solver, in f32 and then in f64, lists it: as a contact or as unresolved.
+    /// Whether the certified solver lists it: as a contact or as unresolved.
     pub fn certified(&self, face: bool, params: &Params) -> bool {
         let p = |i: usize| Moving { t0: Vec3(self.points[i]), t1: Vec3(self.points[i + 4]) };
         let verdict = if face {
-            let (v, f) = (p(0), [p(1), p(2), p(3)]);
-            vf_first(v, f, params).unwrap_or_else(|| vf_certified::<f64, f64>(v, f, params))
+            vf_certified(p(0), [p(1), p(2), p(3)], Rungs::All, params)
         } else {
-            let (a, b) = ([p(0), p(1)], [p(2), p(3)]);
-            ee_first(a, b, params).unwrap_or_else(|| ee_certified::<f64, f64>(a, b, params))
+            ee_certified([p(0), p(1)], [p(2), p(3)], Rungs::All, params)
         };
         !verdict.is_separated()
     }

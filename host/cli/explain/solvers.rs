@@ -6,9 +6,8 @@ use crate::case::{Case, Features};
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::adjacent::{Shared, meets_beyond_shared};
 use nearmiss_kernels::prim::cubic::{Moving as Point, ee_toi, vf_toi};
-use nearmiss_kernels::prim::inclusion::{
-    Grid, Params, Verdict, ee_certified, ee_first, vf_certified, vf_first,
-};
+use nearmiss_kernels::prim::inclusion::{Params, Verdict};
+use nearmiss_kernels::prim::isolate::{Rungs, ee_certified, vf_certified};
 use nearmiss_kernels::prim::moller::moller;
 use nearmiss_kernels::prim::signs::Certain;
 
@@ -40,24 +39,20 @@ fn ask_in<R: Real>(case: &Case, params: &Params) -> Vec<Answer> {
     let proven =
         |solver, verdict: Verdict| Answer { solver, said: verdict.into(), boxes: Some(verdict.boxes) };
     let guess = |solver, toi: Option<f64>| Answer { solver, said: Said::of(toi), boxes: None };
-    let first = match case.features {
-        Features::VertexFace => vf_first(p[0], [p[1], p[2], p[3]], params),
-        Features::EdgeEdge => ee_first([p[0], p[1]], [p[2], p[3]], params),
-    };
-    let double = certified::<R, f64>(case.features, p, params);
+    let with = |rungs| certified(case.features, p, rungs, params);
     vec![
-        proven("certified", first.unwrap_or(double)),
-        proven("certified-f32", certified::<R, f32>(case.features, p, params)),
-        proven("certified-f64", double),
+        proven("certified", with(Rungs::All)),
+        proven("certified-f32", with(Rungs::Single)),
+        proven("certified-f64", with(Rungs::Double)),
         guess("cubic-f64", cubic::<R, f64>(case.features, p)),
         guess("cubic-f32", cubic::<R, f32>(case.features, p)),
     ]
 }
 
-fn certified<R: Real, S: Grid>(features: Features, p: [Point<R>; 4], params: &Params) -> Verdict {
+fn certified<R: Real>(features: Features, p: [Point<R>; 4], rungs: Rungs, params: &Params) -> Verdict {
     match features {
-        Features::VertexFace => vf_certified::<R, S>(p[0], [p[1], p[2], p[3]], params),
-        Features::EdgeEdge => ee_certified::<R, S>([p[0], p[1]], [p[2], p[3]], params),
+        Features::VertexFace => vf_certified(p[0], [p[1], p[2], p[3]], rungs, params),
+        Features::EdgeEdge => ee_certified([p[0], p[1]], [p[2], p[3]], rungs, params),
     }
 }
 

@@ -1,0 +1,194 @@
+//! What the certificates rest on, against contacts whose times are known exactly; and each of it weakened, which is seen
+//! to be wrong.
+
+use super::rung::{certified, deciding, fault, points};
+use nearmiss::Features;
+use nearmiss::oracle::first_contact;
+use nearmiss::pairs::built::{Built, REACH_F32, built};
+use nearmiss_kernels::math::Real;
+use nearmiss_kernels::math::tolerance::Tolerance;
+use nearmiss_kernels::prim::inclusion::{Grid, Params, Verdict};
+use nearmiss_kernels::prim::isolate::suspect::Around;
+use nearmiss_kernels::prim::isolate::{Edges, Face, Pair, Rungs};
+use rand::rngs::SmallRng;
+use rand::{Rng, SeedableRng};
+
+/// Contacts at a known time, of coordinates that f32 holds.
+fn contacts(seed: u64, n: usize) -> impl Iterator<Item = (Built, f64)> {
+    let fits = |built: &Built| built.case.fits_f32();
+    built(seed, n, REACH_F32).into_iter().filter(fits).filter_map(|built| built.toi.map(|toi| (built, toi)))
+}
+
+/// Something told of a pair of either kind.
+trait Ask {
+    type Told;
+    fn ask<const N: usize>(self, pair: &Pair<f32, N>) -> Self::Told;
+}
+
+fn of<A: Ask>(built: &Built, ask: A) -> A::Told {
+    let ([a, b, c, d], p) = (points::<f32>(&built.case), Params::new(0.0));
+    match built.case.features {
+        Features::VertexFace => ask.ask(&Face::new(a, [b, c, d], &p)),
+        Features::EdgeEdge => ask.ask(&Edges::new([a, b], [c, d], &p)),
+    }
+}
+
+/// By how much a time is outside of the window; what the window was widened by taken off.
+struct Outside(f64);
+impl Ask for Outside {
+    type Told = f64;
+    fn ask<const N: usize>(self, pair: &Pair<f32, N>) -> f64 {
+        let Some((from, to)) = pair.window() else { return f64::INFINITY };
+        (f64::from(from) - self.0).max(self.0 - f64::from(to))
+    }
+}
+
+/// Contacts are inside of their window. Flat boxes meet at one moment: there the window is nothing but its margin, and
+/// without it would often miss.
+#[test]
+fn a_window_that_is_not_widened_loses_contacts() {
+    let (mut lost, mut asked) = (0, 0);
+    for (built, toi) in contacts(21, 60) {
+        let outside = of(&built, Outside(toi));
+        assert!(outside <= 0.0, "{} at {toi}: outside by {outside}", built.name);
+        // Ends that are those of the step were not widened.
+        let narrow = outside + f64::from(f32::ISOLATE_WINDOW);
+        lost += u32::from(narrow > f64::from(f32::ISOLATE_WINDOW) / 2.0 && toi > 0.0 && toi < 1.0);
+        asked += 1;
+    }
+    println!("{lost} of {asked} would be lost, or next to it");
+    assert!(lost > 0);
+}
+
+/// The cubic at a time of contact, where it is zero: its largest computed value over its error.
+struct AtContact(f64);
+impl Ask for AtContact {
+    type Told = f64;
+    fn ask<const N: usize>(self, pair: &Pair<f32, N>) -> f64 {
+        let (g, t) = (pair.cubic(), f32::of(self.0));
+        let part = g.part(t, t);
+        part.iter().fold(0.0, |most: f64, x| most.max(f64::from(x.abs() / g.error)))
+    }
+}
+
+/// Times of contact are exact in f32. All coefficients of a moment are the value there.
+#[test]
+fn a_cubic_with_less_error_would_reject_contacts() {
+    let mut most = 0f64;
+    for (built, toi) in contacts(22, 120) {
+        let ratio = of(&built, AtContact(toi));
+        assert!(ratio <= 1.0, "{} at {toi}: {ratio} of its error", built.name);
+        most = most.max(ratio);
+    }
+    println!("at most {most} of the error");
+    assert!(most > 1.0 / 40.0, "an error of one rounding would be noticed: {most}");
+}
+
+/// What is said around a time, looking from a little off; and at that moment alone.
+struct Looks {
+    toi: f64,
+    off: f64,
+}
+impl Ask for Looks {
+    type Told = [Around; 2];
+    fn ask<const N: usize>(self, pair: &Pair<f32, N>) -> [Around; 2] {
+        let t = f32::of((self.toi + self.off).clamp(0.0, 1.0));
+        let half = (f64::from(t) - self.toi).abs();
+        // Rounded up.
+        [pair.around(t, f32::of(half).next_up()), pair.around(t, 0.0)]
+    }
+}
+
+/// No look around a time at which the features meet says that they miss. A look that takes no time into account does.
+#[test]
+fn a_look_that_ignores_its_time_misses_contacts() {
+    let mut r = SmallRng::seed_from_u64(23);
+    let (mut holds, mut misses) = (0, 0);
+    for (built, toi) in contacts(23, 60) {
+        for _ in 0..4 {
+            let off = 2f64.powi(-r.random_range(2..22)) * if r.random() { 1.0 } else { -1.0 };
+            let [around, alone] = of(&built, Looks { toi, off });
+            assert_ne!(around, Around::Misses, "{} at {toi}, looked at {off} off", built.name);
+            holds += u32::from(around == Around::Holds);
+            misses += u32::from(alone == Around::Misses);
+        }
+    }
+    println!("{holds} hold; {misses} would be missed");
+    assert!(holds > 100 && misses > 100);
+}
+
+/// Whether the hull holds the origin at some look, if only the four points share a plane: that they do is for the sign of
+/// the cubic to show.
+struct Holds;
+impl Ask for Holds {
+    type Told = [bool; 2];
+    fn ask<const N: usize>(self, pair: &Pair<f32, N>) -> [bool; 2] {
+        let mut told = [false; 2];
+        for i in 0..8 {
+            let (from, to) = (i as f32 / 8.0, (i + 1) as f32 / 8.0);
+            let holds = pair.around((from + to) * 0.5, 1.0 / 1024.0) == Around::Holds;
+            told[0] |= holds;
+            told[1] |= holds && pair.cubic().changes_sign((from + to) * 0.5 - 1.0 / 1024.0, (from + to) * 0.5 + 1.0 / 1024.0);
+        }
+        told
+    }
+}
+
+#[test]
+fn a_certificate_without_a_change_of_sign_would_be_false() {
+    let (mut alone, mut asked) = (0, 0);
+    for built in built(24, 150, 64).into_iter().filter(|built| built.toi.is_none()) {
+        let [holds, both] = of(&built, Holds);
+        assert!(!both, "a contact of what is apart: {:?}", built.case);
+        alone += u32::from(holds);
+        asked += 1;
+    }
+    println!("{alone} of {asked} near misses are held");
+    assert!(alone > 10);
+}
+
+/// The judge of these tests names every kind of lie.
+#[test]
+fn lies_are_named() {
+    let p = Params::new(1e-6);
+    let lies: [(fn(Verdict) -> Verdict, &str); 5] = [
+        (|_| Verdict::separated(1.0, 0), "missed"),
+        (|v| Verdict { toi: v.toi_hi + 1e-4, toi_hi: 1.0, ..v }, "late"),
+        (|v| Verdict { toi: 0.0, toi_hi: v.toi * 0.5, ..v }, "a false certificate: the contact is after toi_hi"),
+        (|v| Verdict { toi: f64::NAN, ..v }, "times that are none"),
+        (|v| Verdict { toi_hi: 0.0, ..v }, "times that are none"),
+    ];
+    let all: Vec<Built> = contacts(25, 2).filter(|(_, toi)| *toi == 0.5).map(|(built, _)| built).collect();
+    for (lie, named) in lies {
+        let named_so = all.iter().any(|built| {
+            let truth = first_contact(&built.case);
+            let said = certified::<f64>(&built.case, Rungs::All, &p);
+            assert_eq!(fault(&said, truth.as_ref()), None);
+            fault(&lie(said), truth.as_ref()) == Some(named)
+        });
+        assert!(named_so, "{named}");
+    }
+    let apart = built(26, 1, 8).into_iter().find(|built| built.toi.is_none()).expect("a near miss");
+    let (_, said) = deciding::<f64>(&apart.case, &p);
+    let lie = Verdict::contact(0.0, 1.0, 0, false);
+    assert_eq!((fault(&said, None), fault(&lie, None)), (None, Some("a false certificate")));
+}
+
+/// Half of what a window, a time and an error may be is named by the same questions in f64 too.
+#[test]
+fn in_doubles_contacts_are_in_their_windows_and_on_their_cubics() {
+    fn ask<S: Grid, const N: usize>(pair: &Pair<S, N>, toi: f64) -> bool {
+        let t = S::of(toi);
+        let Some((from, to)) = pair.window() else { return false };
+        let g = pair.cubic();
+        from <= t && t <= to && g.part(t, t).iter().all(|x| !(x.abs() > g.error)) && pair.around(t, S::ZERO) != Around::Misses
+    }
+    for (built, toi) in built(27, 60, 1 << 30).into_iter().filter_map(|b| b.toi.map(|toi| (b, toi))) {
+        let ([a, b, c, d], p) = (points::<f64>(&built.case), Params::new(0.0));
+        let right = match built.case.features {
+            Features::VertexFace => ask(&Face::<f64>::new(a, [b, c, d], &p), toi),
+            Features::EdgeEdge => ask(&Edges::<f64>::new([a, b], [c, d], &p), toi),
+        };
+        assert!(right, "{} at {toi}", built.name);
+    }
+}

@@ -1,0 +1,137 @@
+//! Which rung decides a pair, by the ladder's own parts, put together anew.
+
+use nearmiss::oracle::Toi;
+use nearmiss::{Case, Features};
+use nearmiss_kernels::math::{Real, Vec3};
+use nearmiss_kernels::prim::cubic::Moving;
+use nearmiss_kernels::prim::inclusion::{self, Params, Verdict};
+use nearmiss_kernels::prim::isolate::ladder::{
+    SLICES, Slice, ee_touch, is_flat, isolated, near, searched, sliced, vf_touch,
+};
+use nearmiss_kernels::prim::isolate::{Edges, Face, Pair, Rungs, ee_certified, vf_certified};
+
+/// What decides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Rung {
+    /// The moving boxes never meet.
+    Boxes,
+    /// The cubic keeps its sign over the step.
+    Signs,
+    /// It keeps its sign while the boxes meet.
+    Window,
+    /// Isolation in f32.
+    Single,
+    /// Isolation in f64.
+    Double,
+    /// Touching at the start.
+    Touch,
+    /// Nearness of flat motion.
+    Flat,
+    /// Slices.
+    Slices,
+    /// Nearness of what slices leave.
+    Near,
+    /// The search by boxes.
+    Search,
+}
+
+impl Rung {
+    pub const ALL: [Rung; 10] = [
+        Rung::Boxes,
+        Rung::Signs,
+        Rung::Window,
+        Rung::Single,
+        Rung::Double,
+        Rung::Touch,
+        Rung::Flat,
+        Rung::Slices,
+        Rung::Near,
+        Rung::Search,
+    ];
+}
+
+/// The four points.
+pub fn points<R: Real>(case: &Case) -> [Moving<R>; 4] {
+    let at = |p: [f64; 3]| Vec3(p.map(R::of));
+    [0, 1, 2, 3].map(|i| Moving { t0: at(case.positions_t0[i]), t1: at(case.positions_t1[i]) })
+}
+
+/// What the ladder says.
+pub fn certified<R: Real>(case: &Case, rungs: Rungs, p: &Params) -> Verdict {
+    let [a, b, c, d] = points::<R>(case);
+    match case.features {
+        Features::VertexFace => vf_certified(a, [b, c, d], rungs, p),
+        Features::EdgeEdge => ee_certified([a, b], [c, d], rungs, p),
+    }
+}
+
+/// The rung that decides with all of them, and its verdict.
+pub fn deciding<R: Real>(case: &Case, p: &Params) -> (Rung, Verdict) {
+    let [a, b, c, d] = points::<R>(case);
+    match case.features {
+        Features::VertexFace => {
+            let f = [b, c, d];
+            let search = |known| searched(inclusion::Face::<f64>::new(a, f, p), known, p);
+            climb(&Face::new(a, f, p), &Face::new(a, f, p), vf_touch(a, f), search, p)
+        }
+        Features::EdgeEdge => {
+            let (x, y) = ([a, b], [c, d]);
+            let search = |known| searched(inclusion::Edges::<f64>::new(x, y, p), known, p);
+            climb(&Edges::new(x, y, p), &Edges::new(x, y, p), ee_touch(x, y), search, p)
+        }
+    }
+}
+
+fn climb<const N: usize>(
+    single: &Pair<f32, N>,
+    double: &Pair<f64, N>,
+    touch: bool,
+    search: impl Fn(Verdict) -> Verdict,
+    p: &Params,
+) -> (Rung, Verdict) {
+    let apart = Verdict::separated(p.end, 0);
+    let Some((begin, end)) = single.window() else { return (Rung::Boxes, apart) };
+    let g = single.cubic();
+    if single.finite && g.rootless_throughout() {
+        return (Rung::Signs, apart);
+    }
+    if single.finite && g.rootless(begin, end) {
+        return (Rung::Window, apart);
+    }
+    if let Some(verdict) = isolated(single, p, false) {
+        return (Rung::Single, verdict);
+    }
+    let Some(window) = double.window() else { return (Rung::Double, apart) };
+    if let Some(verdict) = isolated(double, p, true) {
+        return (Rung::Double, verdict);
+    }
+    if window.0 <= 0.0 && touch {
+        return (Rung::Touch, Verdict::contact(0.0, 0.0, 0, false));
+    }
+    if is_flat(double, window) {
+        return (Rung::Flat, near(double, window, p));
+    }
+    match (0..SLICES).map(|i| sliced(double, window, i, p)).find(|slice| *slice != Slice::Apart) {
+        None | Some(Slice::Apart) => (Rung::Slices, apart),
+        Some(Slice::Meets(verdict)) => (Rung::Slices, verdict),
+        Some(Slice::Open(from)) => {
+            let verdict = near(double, (from, window.1), p);
+            if verdict.is_separated() { (Rung::Near, verdict) } else { (Rung::Search, search(verdict)) }
+        }
+    }
+}
+
+/// What is wrong with a verdict, given the exact time.
+pub fn fault(verdict: &Verdict, truth: Option<&Toi>) -> Option<&'static str> {
+    let Verdict { toi, toi_hi, .. } = *verdict;
+    if !(0.0 <= toi && toi <= toi_hi && toi_hi <= 1.0) {
+        return Some("times that are none");
+    }
+    match truth {
+        None => verdict.is_contact().then_some("a false certificate"),
+        Some(_) if verdict.is_separated() => Some("missed"),
+        Some(truth) if truth.cmp_f64(toi).is_lt() => Some("late"),
+        Some(truth) => (verdict.is_contact() && truth.cmp_f64(toi_hi).is_gt())
+            .then_some("a false certificate: the contact is after toi_hi"),
+    }
+}
