@@ -58,7 +58,8 @@ fn flat(n: usize, seed: u64, line: bool, together: bool) -> Vec<Moved> {
                 common = speed;
             }
             let speed = if together { common } else { speed };
-            [0.0, 1.0].map(|t| corners.map(|c| at(place[0] + c[0] + t * speed[0], place[1] + c[1] + t * speed[1])))
+            [0.0, 1.0]
+                .map(|t| corners.map(|c| at(place[0] + c[0] + t * speed[0], place[1] + c[1] + t * speed[1])))
         })
         .collect()
 }
@@ -96,7 +97,9 @@ fn turning() -> Vec<Moved> {
         let (time, x, y) = (0.25, 0.125, 3.625 + off);
         let corner = |t: f64| [x + t, y, (x + 2.0 * time) * t - time * time];
         let beside = |t: f64, by: Corner| [0, 1, 2].map(|k| corner(t)[k] + by[k]);
-        all.push([0.0, 1.0].map(|t| [corner(t), beside(t, [0.25, 0.5, -0.25]), beside(t, [0.5, 0.25, -0.5])]));
+        all.push(
+            [0.0, 1.0].map(|t| [corner(t), beside(t, [0.25, 0.5, -0.25]), beside(t, [0.5, 0.25, -0.5])]),
+        );
     }
     all
 }
@@ -195,7 +198,9 @@ fn differs(bodies: &[Body], query: Query) -> Result<Contacts, String> {
 fn near_misses_are_listed_by_every_way_or_by_none() {
     let mut counts = Vec::new();
     for (name, bodies) in scenes() {
-        for (tolerance, budget) in [(1e-1, None), (1e-2, Some(1)), (1e-3, None), (1e-6, Some(1)), (0.0, None), (0.0, Some(1))] {
+        for (tolerance, budget) in
+            [(1e-1, None), (1e-2, Some(1)), (1e-3, None), (1e-6, Some(1)), (0.0, None), (0.0, Some(1))]
+        {
             let query = asking(tolerance, budget);
             let what = format!("{name}, {tolerance:e}, {budget:?}");
             let answer = differs(&bodies, query).unwrap_or_else(|odd| panic!("{what}: {odd}"));
@@ -221,7 +226,12 @@ fn what_once_differed_is_alike() {
             for boxes in [None, Some(1)] {
                 let query = Query { tolerance, boxes, ..Query::of(Motion::Continuous) };
                 let said = differs(&bodies, query);
-                assert!(said.is_ok(), "{}, {tolerance:?}, {boxes:?}: {}", folder.display(), said.unwrap_err());
+                assert!(
+                    said.is_ok(),
+                    "{}, {tolerance:?}, {boxes:?}: {}",
+                    folder.display(),
+                    said.unwrap_err()
+                );
             }
         }
     }

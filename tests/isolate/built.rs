@@ -28,7 +28,8 @@ fn ask<R: Real>(all: &[Built], tolerances: &[f64], shares: &mut Shares) -> Optio
             note(shares, rung, &verdict);
             for rungs in [Rungs::All, Rungs::Single, Rungs::Double] {
                 let said = certified::<R>(&built.case, rungs, &p);
-                let what = || format!("{}, {rungs:?}, {p:?}: {said:?} by {rung:?}, {:?}", built.name, built.case);
+                let what =
+                    || format!("{}, {rungs:?}, {p:?}: {said:?} by {rung:?}, {:?}", built.name, built.case);
                 if rungs == Rungs::All && said != verdict {
                     return Some(format!("not {verdict:?}: {}", what()));
                 }
@@ -58,10 +59,12 @@ fn built_motions_are_judged_by_the_oracle() {
         assert_eq!(ask::<f32>(&single, &[tolerance], &mut shares), None);
     }
     print("all kinds", &shares);
-    let idle: Vec<Rung> = Rung::ALL.into_iter().filter(|rung| !shares.contains_key(rung)).collect();
+    // Of what slices leave nothing built in integers is far.
+    let idle = |rung: &Rung| *rung != Rung::Near && !shares.contains_key(rung);
+    let idle: Vec<Rung> = Rung::ALL.into_iter().filter(idle).collect();
     assert!(idle.is_empty(), "rungs that decide nothing: {idle:?}");
     let of = |rung: Rung, at: usize| shares[&rung][at];
-    assert!(of(Rung::Single, 0) > 9 && of(Rung::Single, 1) > 99 && of(Rung::Double, 1) > 9);
+    assert!(of(Rung::Single, 0) > 9 && of(Rung::Double, 0) > 9 && of(Rung::Double, 1) > 9);
     assert!([Rung::Boxes, Rung::Signs, Rung::Window].iter().all(|rung| shares[rung][1..] == [0, 0]));
     assert_eq!(shares[&Rung::Touch][1], shares[&Rung::Touch].iter().sum::<u32>());
 }
@@ -97,7 +100,12 @@ fn what_is_far_larger_is_scaled() {
             let one = certified::<f64>(&built.case, Rungs::All, &here);
             assert_eq!(certified::<f64>(&case, Rungs::All, &there), one, "{}, 2^{power}", built.name);
             if power.abs() == 20 && case.fits_f32() {
-                assert_eq!(certified::<f32>(&case, Rungs::All, &there), one, "{}, 2^{power}, f32", built.name);
+                assert_eq!(
+                    certified::<f32>(&case, Rungs::All, &there),
+                    one,
+                    "{}, 2^{power}, f32",
+                    built.name
+                );
             }
         }
     }

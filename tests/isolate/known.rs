@@ -20,14 +20,14 @@ fn falls(from: [f64; 3], to: [f64; 3]) -> [Points; 2] {
     [from, to].map(|v| [v, FACE[0], FACE[1], FACE[2]])
 }
 
-/// A vertex that touches the plane of a face at a time and turns back, `x` and `y` of its way given: it goes along a slope
-/// that rises, so that its height over it is a square. Exact for numbers of few digits.
-fn touches(time: f64, x: f64, y: f64) -> [Points; 2] {
+/// A vertex that touches the plane of a face at a time and turns back; its place at the start, and how far it goes along y.
+/// It goes along a slope that rises, so that its height over it is a square. Exact for numbers of few digits.
+fn touches(time: f64, [x, y]: [f64; 2], along: f64) -> [Points; 2] {
     // Over the plane z = t x' a point at x' = x + t with height h is at h - t (x + t); h is linear, and takes all of it
     // away but (t - time)^2.
     let at = |t: f64| {
         let h = (x + 2.0 * time) * t - time * time;
-        [[x + t, y, h], [0.0; 3], [4.0, 0.0, 4.0 * t], [0.0, 4.0, 0.0]]
+        [[x + t, y + t * along, h], [0.0; 3], [4.0, 0.0, 4.0 * t], [0.0, 4.0, 0.0]]
     };
     [at(0.0), at(1.0)]
 }
@@ -48,7 +48,7 @@ fn all() -> Vec<Known> {
         (
             "through the plane far off, then above a slope",
             VF,
-            [[-4.0, 0.25, -3.5], [0.5, 0.25, 0.75]].map(|v| [v, FACE[0], [1.0, 0.0, 1.0], FACE[2]]),
+            [[-4.0, 0.25, -4.5], [0.5, 0.25, 0.75]].map(|v| [v, FACE[0], [1.0, 0.0, 1.0], FACE[2]]),
             Rung::Window,
         ),
         ("falls on a face", VF, falls([0.25, 0.25, 1.0], [0.25, 0.25, -2.0]), Rung::Single),
@@ -59,12 +59,23 @@ fn all() -> Vec<Known> {
             [1.0, -2.0].map(|z| edges([[-1.0, 0.1, z], [1.0, 0.2, z]], [[0.0, -1.0, 0.0], [0.0, 1.0, 0.0]])),
             Rung::Single,
         ),
-        ("falls within 1e-9 of a side", VF, falls([0.25, 1e-9, 1.0], [0.25, 1e-9, -2.0]), Rung::Double),
-        ("falls 1e-9 beside a side", VF, falls([0.25, -1e-9, 1.0], [0.25, -1e-9, -2.0]), Rung::Double),
+        ("falls within 1e-5 of a side", VF, falls([0.25, 1e-5, 1.0], [0.25, 1e-5, -2.0]), Rung::Double),
+        ("falls 1e-5 beside a side", VF, falls([0.5, 0.50001, 1.0], [0.5, 0.50001, -2.0]), Rung::Double),
+        (
+            "falls within 1e-6 of a side of a slope",
+            VF,
+            [1.0, -2.0].map(|z| [[0.25, 1e-6, z], FACE[0], [1.0, 0.0, 0.5], FACE[2]]),
+            Rung::Slices,
+        ),
         ("lies on a face", VF, still([0.25, 0.25, 0.0], FACE), Rung::Touch),
         ("leaves a face", VF, falls([0.25, 0.25, 0.0], [0.25, 0.25, 1.0]), Rung::Touch),
         ("leaves a corner", VF, falls([1.0, 0.0, 0.0], [2.0, 0.5, 1.0]), Rung::Touch),
-        ("lies on a face that is a segment", VF, still([0.5, 0.5, 0.5], [[0.0; 3], [1.0; 3], [1.0; 3]]), Rung::Touch),
+        (
+            "lies on a face that is a segment",
+            VF,
+            still([0.5, 0.5, 0.5], [[0.0; 3], [1.0; 3], [1.0; 3]]),
+            Rung::Touch,
+        ),
         ("lies on a face that is a point", VF, still([1.0; 3], [[1.0; 3]; 3]), Rung::Touch),
         (
             "an edge that is a point leaves another edge",
@@ -83,14 +94,15 @@ fn all() -> Vec<Known> {
             Rung::Touch,
         ),
         ("slides into a side in its plane", VF, falls([-1.0, 0.25, 0.0], [0.5, 0.25, 0.0]), Rung::Flat),
+        ("passes a side in its plane", VF, falls([1.5, 0.25, 0.0], [0.25, 1.5, 0.0]), Rung::Flat),
+        ("touches the plane beside the face", VF, touches(0.25, [0.125, 3.75], 0.0), Rung::Slices),
         (
-            "passes a side in its plane",
+            "touches the plane a little beside a side and goes along it",
             VF,
-            falls([1.5, 0.25, 0.0], [0.25, 1.5, 0.0]),
-            Rung::Flat,
+            touches(0.25, [0.125, 3.875 + 1.0 / 65536.0], -1.0),
+            Rung::Near,
         ),
-        ("touches the plane beside the face", VF, touches(0.25, 0.125, 3.75), Rung::Slices),
-        ("touches the face and turns back", VF, touches(0.5, 0.5, 1.0), Rung::Search),
+        ("touches the face and turns back", VF, touches(0.5, [0.5, 1.0], 0.0), Rung::Search),
     ]
 }
 
@@ -102,7 +114,9 @@ fn case(features: Features, [positions_t0, positions_t1]: [Points; 2]) -> Case {
 fn known_motions_are_decided_by_their_rung() {
     let mut wrong = Vec::new();
     for (what, features, points, rung) in all() {
-        let (case, p) = (case(features, points), Params::new(1e-6));
+        // A time that f32 can tell, where it is to tell.
+        let p = Params::new(if rung == Rung::Single { 1e-4 } else { 1e-6 });
+        let case = case(features, points);
         let (by, verdict) = deciding::<f64>(&case, &p);
         println!("{what}: {by:?}, {verdict:?}");
         if by != rung {
@@ -120,9 +134,12 @@ fn known_motions_are_decided_by_their_rung() {
             {
                 assert!(said.is_contact(), "{name}");
                 assert!(rung != Rung::Touch || said.toi_hi == 0.0, "{name}");
-                assert!(truth.lateness(said.toi) > -1e-5, "{name}");
+                assert!(truth.lateness(said.toi) > -1e-4, "{name}");
             }
-            assert!(truth.is_some() || rung > Rung::Double || rungs == Rungs::Single || said.is_separated(), "{name}");
+            assert!(
+                truth.is_some() || rung > Rung::Double || rungs == Rungs::Single || said.is_separated(),
+                "{name}"
+            );
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
