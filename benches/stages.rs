@@ -3,6 +3,9 @@
 //! Criterion times what can be asked alone: `construct` and whole frames. The stages of a frame cannot, so each
 //! frame's own clock is read, and their medians are printed after it. Public scenes are timed where their files are.
 
+#[path = "hard/mod.rs"]
+mod hard;
+
 use criterion::{Bencher, BenchmarkId, Criterion, criterion_group, criterion_main};
 use nearmiss::device::Backend;
 use nearmiss::mesh::Body;
@@ -83,6 +86,26 @@ fn frames(c: &mut Criterion) {
     }
 }
 
+/// Scenes that nothing tells apart, on one thread: microseconds a candidate.
+fn hard_frames(c: &mut Criterion) {
+    let mut report = Vec::new();
+    let mut group = c.benchmark_group("hard");
+    group.sample_size(10).warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(2));
+    for (name, body) in hard::hard(1) {
+        let (mut session, mut seen) = (session(&body, 1, Motion::Continuous), Vec::new());
+        let candidates = session.detect().expect("an answer").candidates;
+        group.bench_function(name, |b| frame(b, &mut session, &mut seen));
+        if !seen.is_empty() {
+            report.push((name, candidates, median(seen.iter().map(|s: &Stages| s.total).collect())));
+        }
+    }
+    group.finish();
+    println!("scene,candidates,frame ms,us a candidate");
+    for (name, candidates, ms) in report {
+        println!("{name},{candidates},{ms:.1},{:.3}", ms * 1e3 / candidates as f64);
+    }
+}
+
 fn frame(b: &mut Bencher, session: &mut Session, seen: &mut Vec<Stages>) {
     b.iter(|| {
         let contacts = session.detect().expect("an answer");
@@ -96,5 +119,5 @@ fn median(mut times: Vec<f64>) -> f64 {
     times[times.len() / 2]
 }
 
-criterion_group!(benches, construct, frames);
+criterion_group!(benches, construct, frames, hard_frames);
 criterion_main!(benches);

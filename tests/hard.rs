@@ -1,0 +1,94 @@
+//! Nothing small takes seconds: scenes that once did leave few pairs to the rungs that cost much. Counted, not timed; the
+//! times are printed, and `cargo bench --bench stages -- hard` measures them.
+
+#[path = "../benches/hard/mod.rs"]
+mod hard;
+mod support;
+
+use nearmiss::contacts::Status;
+use nearmiss::device::Backend;
+use nearmiss::query::{Motion, Solver};
+use nearmiss::{Contacts, Device, Query, Session};
+use std::time::Instant;
+use support::{ask, data, engine};
+
+/// A test asks a fourth of the triangles.
+const PART: usize = 4;
+/// Of a hundred candidates, at most so many are cut into slices.
+const SLICED: u64 = 5;
+
+fn total([vf, ee]: [u64; 2]) -> u64 {
+    vf + ee
+}
+
+/// What the rungs had to do, and microseconds a candidate on one thread.
+fn asked(name: &str, bodies: Vec<nearmiss::Body>, solver: Solver) -> Contacts {
+    let device = Device::open(Backend::Cpu, Some(1)).expect("a CPU");
+    let query = Query { solver: Some(solver), ..Query::of(Motion::Continuous) };
+    let mut session = Session::new(device, bodies, query).expect("a session");
+    session.detect().expect("an answer");
+    let start = Instant::now();
+    let all = session.detect().expect("an answer");
+    let us = start.elapsed().as_secs_f64() * 1e6;
+    let sure = all.contacts().iter().filter(|c| c.status == Status::Certified).count();
+    println!(
+        "{name}, {solver:?}: {} candidates, {} for f64, {} open, {} in slices; {} listed, {sure} of them certain; \
+         {:.2} us a candidate",
+        all.candidates,
+        total(all.escalated_vf_ee),
+        total(all.open_vf_ee),
+        total(all.sliced_vf_ee),
+        all.len(),
+        us / all.candidates.max(1) as f64
+    );
+    all
+}
+
+#[test]
+fn few_pairs_reach_the_rungs_that_cost_much() {
+    for (name, body) in hard::hard(PART) {
+        for solver in [Solver::Certified, Solver::CertifiedF32, Solver::CertifiedF64] {
+            let all = asked(name, vec![body.clone()], solver);
+            assert!(all.candidates > 1_000, "{name}: nothing is asked");
+            assert!(
+                total(all.sliced_vf_ee) * 100 <= all.candidates * SLICED,
+                "{name}, {solver:?}: too many slices"
+            );
+            // Slices and searches are of what isolation leaves, and no rung has more than the one before.
+            let left = [all.escalated_vf_ee, all.open_vf_ee, all.sliced_vf_ee].map(total);
+            if solver == Solver::Certified {
+                assert!(left.is_sorted_by(|a, b| a >= b), "{name}: {left:?}");
+            }
+        }
+    }
+}
+
+/// What touches from the start is certain of it, by the exact rung: no search could be.
+#[test]
+fn what_rests_is_certain() {
+    for (name, body) in hard::hard(PART).into_iter().filter(|(name, _)| name.contains("equal")) {
+        let all = asked(name, vec![body], Solver::Certified);
+        let sure = |c: &&nearmiss::Contact| c.status == Status::Certified && c.toi_hi == 0.0;
+        assert_eq!(all.contacts().iter().filter(sure).count(), all.len(), "{name}");
+        assert_eq!((all.unresolved, total(all.sliced_vf_ee)), (0, 0), "{name}");
+        assert!(all.len() > 100_000, "{name}");
+    }
+}
+
+/// Inputs that took seconds where two triangles should take none.
+#[test]
+fn what_was_slow_is_not() {
+    for name in ["slow-sliver-2tri", "slow-sliver-100702"] {
+        let Some(folder) = data(&format!("finds/{name}")) else { continue };
+        let mesh = |name: &str| nearmiss::Mesh::read(&folder.join(name)).expect("a mesh");
+        let body = nearmiss::Body::moving(mesh("a0.ply"), mesh("a1.ply")).expect("two frames");
+        for solver in [Solver::Certified, Solver::CertifiedF32, Solver::CertifiedF64] {
+            asked(name, vec![body.clone()], solver);
+        }
+        // The same pairs by every machine's count of rungs.
+        let [one, two] = [0; 2].map(|_| ask(engine(), vec![body.clone()], Query::of(Motion::Continuous)));
+        assert_eq!((one.hash(), one.sliced_vf_ee), (two.hash(), two.sliced_vf_ee), "{name}");
+        let sliced = total(one.sliced_vf_ee);
+        assert!(sliced * 100 <= one.candidates * SLICED + 1_000, "{name}: {sliced} of {}", one.candidates);
+    }
+}
