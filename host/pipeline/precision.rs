@@ -34,8 +34,10 @@ pub trait Precision: Real {
     type Filter: Entry<Args = DiscreteArgs<Self>>;
     /// The exact signs.
     type Exact: Entry<Args = DiscreteArgs<Self>>;
-    /// Triangle pairs to elementary candidates.
+    /// Triangle pairs to pairs of features that may meet.
     type Sift: Entry<Args = SiftArgs<Self>>;
+    /// Triangle pairs to pairs of features within a separation.
+    type SiftNear: Entry<Args = SiftArgs<Self>>;
     /// Vertex/face candidates that may meet.
     type RejectVf: Entry<Args = RejectArgs<Self>>;
     /// Edge/edge candidates that may meet.
@@ -79,6 +81,7 @@ impl Precision for f32 {
     type Filter = entry::narrow_filter_f32;
     type Exact = entry::narrow_exact_f32;
     type Sift = entry::narrow_sift_f32;
+    type SiftNear = entry::narrow_sift_near_f32;
     type RejectVf = entry::narrow_reject_vf_f32;
     type RejectEe = entry::narrow_reject_ee_f32;
     type Vf32 = entry::narrow_vf_f32_f32;
@@ -115,6 +118,7 @@ impl Precision for f64 {
     type Filter = entry::narrow_filter_f64;
     type Exact = entry::narrow_exact_f64;
     type Sift = entry::narrow_sift_f64;
+    type SiftNear = entry::narrow_sift_near_f64;
     type RejectVf = entry::narrow_reject_vf_f64;
     type RejectEe = entry::narrow_reject_ee_f64;
     type Vf32 = entry::narrow_vf_f64_f32;

@@ -2,7 +2,7 @@
 //! Paper    none: beyond it.
 //! Launch   [`isolate`] in f32 over what may meet, then in f64 over what that left (or in one of them over all); [`settle`]
 //!          over what isolation left; the slices of [`super::slice`] over the rest. With a separation [`separate`] over all
-//!          candidates, then [`separate_rest`] over what that left (or over all). A lane a pair, both kinds in one launch: a block takes
+//!          candidates, then [`super::separate`] over what that left (or over all). A lane a pair, both kinds in one launch: a block takes
 //!          tiles of one kind; a grid of any size strides.
 //! Reads    pairs, faces or edges, positions of both frames (four vertices).
 //! Writes   contacts and unresolved pairs with toi and toi_hi; or, when only the earliest is asked for, one number. And what
@@ -21,7 +21,7 @@ use crate::exec::{Block, Lane, Slot};
 use crate::math::Real;
 use crate::prim::cubic::Moving;
 use crate::prim::inclusion::{Grid, Verdict};
-use crate::prim::isolate::ladder::{ee_touch, isolated, separated, separated_at_last, settled, vf_touch};
+use crate::prim::isolate::ladder::{ee_touch, isolated, separated, settled, vf_touch};
 use crate::prim::isolate::{self, Edges, Face};
 
 /// A vertex and the corners of a face, in motion.
@@ -86,27 +86,11 @@ pub fn separate<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
         a,
         |l, pair| {
             let (v, f) = vertex_face(l, a, pair);
-            separated(&Face::<f32>::new(v, f, &a.params), &a.params, false)
+            separated(&Face::new(v, f, &a.params), &a.params)
         },
         |l, pair| {
             let [x, y] = edge_edge(l, a, pair);
-            separated(&Edges::<f32>::new(x, y, &a.params), &a.params, false)
-        },
-    );
-}
-
-/// A separation, in f64: all that is left.
-pub fn separate_rest<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
-    rung(
-        b,
-        a,
-        |l, pair| {
-            let (v, f) = vertex_face(l, a, pair);
-            Some(separated_at_last(&Face::new(v, f, &a.params), &a.params))
-        },
-        |l, pair| {
-            let [x, y] = edge_edge(l, a, pair);
-            Some(separated_at_last(&Edges::new(x, y, &a.params), &a.params))
+            separated(&Edges::new(x, y, &a.params), &a.params)
         },
     );
 }
@@ -194,9 +178,20 @@ fn each<R: Real, B: Block>(
     }
 }
 
+/// Lists an answer that is to be listed; a lane by itself.
+#[inline(always)]
+pub(super) fn tell<R: Real, L: Lane>(l: &L, a: &RungArgs<R>, of: &Listed, (pair, verdict): (Pair, Verdict)) {
+    if keep(l, a, verdict) {
+        let place = l.fetch_add(a.counters, of.hits_at, 1);
+        if place < of.hits.len {
+            l.write(of.hits, place as u32, Hit { a: pair.a, b: pair.b, verdict });
+        }
+    }
+}
+
 /// Whether an answer is to be listed; counts what is unresolved, and keeps the earliest where only that is asked for.
 #[inline(always)]
-pub(super) fn keep<R: Real, L: Lane>(l: &L, a: &RungArgs<R>, verdict: Verdict) -> bool {
+fn keep<R: Real, L: Lane>(l: &L, a: &RungArgs<R>, verdict: Verdict) -> bool {
     if verdict.is_separated() {
         return false;
     }
