@@ -34,8 +34,9 @@ pub fn separate<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
     let ee = share(b, &a.ee, b.blocks() - 1 - b.block(), 1);
     let drawn = b.shared::<u32>(2);
     b.phase(|l| {
-        if l.lane() < 2 {
-            l.put(drawn, l.lane(), 0);
+        if l.lane() == 0 {
+            l.put(drawn, 0, 0);
+            l.put(drawn, 1, 0);
         }
     });
     b.phase(|l| {

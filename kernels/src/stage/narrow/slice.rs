@@ -1,6 +1,7 @@
 //! # Slice: the few pairs that isolation leaves → contacts, proven, with bounds of their first time
 //! Paper    none: beyond it.
-//! Launch   a block of [`SLICES`] lanes a pair, a lane a slice of the pair's window; a grid of any size strides.
+//! Launch   a block a pair, best of [`SLICES`] lanes: a lane a slice of the pair's window, and every so many lanes one more; a
+//!          grid of any size strides.
 //! Reads    pairs, faces or edges, positions of both frames (four vertices).
 //! Writes   contacts and unresolved pairs; or the earliest.
 //! Before   the pairs do not touch at the start: `climb::settle` has seen to it.
@@ -59,6 +60,7 @@ fn each<R: Real, B: Block, const N: usize>(
     search: impl Fn(&B::Lane, Pair, Verdict) -> Verdict,
 ) {
     let count = listed(b, of.pairs, a.counters, of.pairs_at);
+    let lanes = b.lanes();
     let open = b.shared::<u32>(1);
     let mut mine = b.slot(Slice::Apart);
     let mut i = b.block();
@@ -70,21 +72,26 @@ fn each<R: Real, B: Block, const N: usize>(
         });
         b.phase(|l| {
             *mine.of(l) = Slice::Apart;
-            // A slice behind one that is not apart has nothing to say. Whether it heard of that in time is all the same.
-            let earlier = l.shared_add(open, 0, 0) & ((1 << l.lane()) - 1);
-            if earlier != 0 {
-                return;
-            }
             let pair = motion(l, l.read(of.pairs, i));
-            if let Some(window) = pair.window() {
-                let told = sliced(&pair, window, l.lane(), &a.params);
-                *mine.of(l) = told;
-                if told != Slice::Apart {
-                    l.shared_add(open, 0, 1 << l.lane());
+            let Some(window) = pair.window() else { return };
+            let mut slice = l.lane();
+            while slice < SLICES {
+                // One behind another that is not apart has nothing to say. Whether it heard of that in time is all the same.
+                let earlier = l.shared_add(open, 0, 0) & ((1 << slice) - 1);
+                if earlier != 0 {
+                    return;
                 }
+                let told = sliced(&pair, window, slice, &a.params);
+                if told != Slice::Apart {
+                    *mine.of(l) = told;
+                    l.shared_add(open, 0, 1 << slice);
+                    return;
+                }
+                slice += lanes;
             }
         });
-        let first = b.peek(open, 0).trailing_zeros() % SLICES;
+        // The lane of the first slice that is not apart stopped at it.
+        let first = b.peek(open, 0).trailing_zeros() % SLICES % lanes;
         b.phase(|l| {
             if l.lane() != first {
                 return;
