@@ -63,6 +63,8 @@ fn nothing_is_lost_at_any_tolerance_and_budget() {
     let bodies = [crumpled(4, 12, 1, 0.0), scene::soup(80, 5, true).expect("a scene"), crowded(4, 40, 24)];
     for body in bodies.map(promoted) {
         for solver in SOLVERS {
+            // The budget is the last rung's: a small one can but leave more of what comes to it.
+            let mut ample = 0;
             for (tolerance, budget) in [(1e-4, 4096), (0.0, 200), (0.1, 4096), (1e-4, 1)] {
                 let p = Params { budget, ..Params::new(tolerance) };
                 let (near, meet) = brute(&body, solver, &p);
@@ -70,7 +72,10 @@ fn nothing_is_lost_at_any_tolerance_and_budget() {
                 let what = format!("{}, {solver:?}, {p:?}", body.name());
                 assert_eq!(fault(all.contacts(), &near, &meet), None, "{what}");
                 assert_eq!(unresolved(&all) as u64, all.unresolved, "{what}");
-                assert!(budget > 1 || all.unresolved > 10, "{what}: a budget of one box is not enough");
+                if (tolerance, budget) == (1e-4, 4096) {
+                    ample = all.unresolved;
+                }
+                assert!(budget > 1 || all.unresolved >= ample, "{what}: a budget of one box is not more");
                 let first = ask(engine(), vec![body.clone()], asking(Motion::Earliest, solver, &p));
                 let least = [&first, &all].map(|a| (a.earliest_toi().map(f64::to_bits), a.unresolved));
                 assert_eq!(least[0], least[1], "{what}");

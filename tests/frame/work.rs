@@ -52,13 +52,18 @@ fn each_query_launches_what_it_needs() {
     let earliest = frame(of(Motion::Earliest));
     let by = |solver, motion| frame(Query { solver: Some(solver), ..of(motion) }).1;
     // Fit, refit (one launch for a small tree), the walk; then one float test, or filter and exact signs, or sift and
-    // rejection of vertex/face and of edge/edge; then certified tests of both in one launch, by default in f32 and again
-    // in f64; or other solvers, of each kind a launch.
-    assert_eq!([moller.1, exact.1, continuous.1, earliest.1], [4, 5, 8, 8]);
+    // rejection of vertex/face and of edge/edge; then the rungs of certified solvers, both kinds in one launch: isolation,
+    // by default in f32 and again in f64, what touches or is flat, and slices unless f32 is alone; or other solvers, of each
+    // kind a launch.
+    assert_eq!([moller.1, exact.1, continuous.1, earliest.1], [4, 5, 10, 10]);
     for solver in Solver::ALL.into_iter().filter(|solver| solver.answers(Motion::Continuous)) {
         let launches = [Motion::Continuous, Motion::Earliest].map(|motion| by(solver, motion));
-        let one = matches!(solver, Solver::CertifiedF32 | Solver::CertifiedF64);
-        assert_eq!(launches, if one { [7, 7] } else { [8, 8] }, "{solver:?}");
+        let rungs = match solver {
+            Solver::Certified => 4,
+            Solver::CertifiedF64 => 3,
+            _ => 2,
+        };
+        assert_eq!(launches, [6 + rungs; 2], "{solver:?}");
     }
     // Construction does not depend on the question, and nothing is kept when the session ends.
     assert!([moller.0, continuous.0, earliest.0].iter().all(|n| *n == exact.0), "{}", exact.0);
