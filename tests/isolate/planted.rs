@@ -1,7 +1,7 @@
 //! What the certificates rest on, against contacts whose times are known exactly; and each of it weakened, which is seen
 //! to be wrong.
 
-use super::rung::{certified, deciding, fault, points};
+use super::rung::{Rung, certified, deciding, fault, points};
 use nearmiss::Features;
 use nearmiss::oracle::first_contact;
 use nearmiss::pairs::built::{Built, REACH_F32, built};
@@ -166,6 +166,26 @@ fn a_certificate_without_a_change_of_sign_would_be_false() {
     }
     println!("{alone} of {asked} near misses are held");
     assert!(alone > 10);
+}
+
+/// How far the time of a contact is from the middle of what is said of it, of what it may be: all of the time around a root
+/// that signs need is needed, but for what proofs have to spare.
+#[test]
+fn a_shorter_time_around_a_root_would_be_false() {
+    let p = Params::new(0.0);
+    let mut most = 0f64;
+    for (built, toi) in contacts(28, 200).filter(|(_, toi)| *toi > 0.0 && *toi < 1.0) {
+        let (rung, said) = deciding::<f32>(&built.case, &p);
+        let first = first_contact(&built.case).expect("a contact");
+        if rung != Rung::Double || !said.is_contact() || first.bracket() != (toi, toi) {
+            continue;
+        }
+        let (middle, half) = ((said.toi + said.toi_hi) * 0.5, (said.toi_hi - said.toi) * 0.5);
+        assert!((toi - middle).abs() <= half, "{} at {toi}: {said:?}", built.name);
+        most = most.max((toi - middle).abs() / half);
+    }
+    println!("at most {most} of the time");
+    assert!(most > 0.25, "a quarter would be noticed: {most}");
 }
 
 /// The judge of these tests names every kind of lie.
