@@ -201,7 +201,7 @@ fn isolate_turn() {
         };
         (0..N).map(|k| error(k).over(&bound)).fold(0.0, f64::max)
     }
-    each_pair!("ISOLATE_TURN", brief(74), 1, ratio);
+    each_pair!("ISOLATE_TURN", Hunt::new(74), 1, ratio);
 }
 
 /// Measured: how far a turn is from that of the exact corners at either end of a time around it, of the whole bound that
