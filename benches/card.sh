@@ -45,8 +45,7 @@ if [ "$half" != figures ]; then
                 "--discrete --solver moller --traversal per-leaf --refit bottom-up" \
                 --continuous "--continuous --solver cubic-f32 --traversal per-leaf-spill --budget 4" --earliest \
                 "--discrete --traversal queue-gtx285 --refit levels" "--continuous --bv obb-child --traversal steal" \
-                "--discrete --traversal front --repeat 5" "--continuous --separation 0.01 --bv obb" \
-                "--continuous --solver additive"; do
+                "--discrete --traversal front --repeat 5" "--continuous --separation 0.01 --bv obb"; do
                 # shellcheck disable=SC2086
                 if compute-sanitizer --tool $tool --error-exitcode 9 "$program" detect --scene draped --triangles 6000 \
                     $query --backend cuda >"$out/sanitizer.txt" 2>&1; then

@@ -128,13 +128,11 @@ pub enum Solver {
     CubicF32,
     /// Continuous: the seed's cubic in f64. Can miss degenerate motion.
     CubicF64,
-    /// Continuous: additive conservative advancement in f64, a baseline. Early; lists what comes near; no bound on rounding.
-    Additive,
 }
 
 impl Solver {
     /// Every solver.
-    pub const ALL: [Solver; 8] = [
+    pub const ALL: [Solver; 7] = [
         Solver::Exact,
         Solver::Moller,
         Solver::Certified,
@@ -142,7 +140,6 @@ impl Solver {
         Solver::CertifiedF64,
         Solver::CubicF64,
         Solver::CubicF32,
-        Solver::Additive,
     ];
 
     /// The solver of a motion when none is named.
@@ -181,10 +178,6 @@ impl Solver {
             Solver::CubicF64 => {
                 "cubic-f64: can miss contacts of degenerate motion (coplanar, parallel, slivers); docs/accuracy.md has \
                  figures"
-            }
-            Solver::Additive => {
-                "additive: advances by distance over speed; lists what comes near as contact, and has no bound on rounding, \
-                 so that it can miss what nearly touches at the start"
             }
         }
     }
@@ -266,7 +259,7 @@ impl Query {
         if !solver.answers(self.motion) {
             let known = match self.motion {
                 Motion::Discrete => "exact, moller",
-                _ => "certified, certified-f32, certified-f64, cubic-f64, cubic-f32, additive",
+                _ => "certified, certified-f32, certified-f64, cubic-f64, cubic-f32",
             };
             return Err(Error::Choice {
                 what: format!("the solver {solver:?} does not answer a {:?} query", self.motion),
@@ -323,10 +316,17 @@ impl Query {
     }
 
     /// How near two features must come for a pair of them to be a candidate, a length: 0 for touching; with a separation
-    /// that, and half of the tolerance, within which a pair may be listed as unresolved.
+    /// that, and the tolerance, within which a pair may be listed as unresolved.
     pub(crate) fn gap(&self) -> f64 {
+        if self.is_apart() { self.listed_within() } else { 0.0 }
+    }
+
+    /// Within what distance of each other a certified solver may list two features: the separation and the tolerance. The
+    /// volumes bring it all of these, whatever their shape; of a solver that is not certified 0.
+    pub(crate) fn listed_within(&self) -> f64 {
         let p = self.params();
-        if self.is_apart() { p.separation + p.tolerance } else { 0.0 }
+        // Above 0 also where nothing was asked for: what precision cannot tell has its own part of the growth.
+        if self.solver().is_certified() { (p.separation + p.tolerance).max(f64::MIN_POSITIVE) } else { 0.0 }
     }
 
     /// What a certified test is asked; `tolerance` must have been chosen.

@@ -146,7 +146,11 @@ fn bad_files() -> Vec<Row> {
         ("long_line.ply", ply("1 0 0", "1 0 0 7"), &["vertex 1 has \"7\" after its last property"]),
         ("nan.ply", ply("1 0 0", "1 nan 0"), &["vertex 1 has y = NaN", "must be finite", "mend"]),
         ("inf.ply", ply("0 1 0", "0 1 -inf"), &["vertex 2 has z = -inf", "must be finite"]),
-        ("large.ply", ply("1 0 0", "1 0 2e18"), &["vertex 1 has z = 2e18", "2^60", "scale"]),
+        (
+            "infinite.ply",
+            ply("1 0 0", "1 0 2e38").replace_text("0 1 0", "0 1 4e38"),
+            &["vertex 2 has z = inf", "finite"],
+        ),
         ("corners.ply", ply("3 0 1 2", "2 0 1"), &["face 0 has 2 corners", "at least 3"]),
         ("index.ply", ply("0 1 2", "0 1 3"), &["face 0 corner 2 names vertex 3", "there are 3 vertices"]),
         (

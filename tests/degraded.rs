@@ -4,7 +4,7 @@
 mod support;
 
 use nearmiss::contacts::{Contact, Degraded, Status};
-use nearmiss::mesh::{Body, Mesh, Positions};
+use nearmiss::mesh::{Body, Mesh};
 use nearmiss::query::{FrontShape, Motion, Solver, Traversal};
 use nearmiss::{Contacts, Device, Error, Query, Session, scene};
 use std::collections::BTreeMap;
@@ -84,39 +84,6 @@ fn what_touches_without_passing_is_told() {
         other => panic!("{other:?}"),
     });
     assert_eq!(told.sum::<u64>(), unresolved, "{:?}", all.degraded());
-}
-
-/// Two long edges, a hundred-millionth apart, that pass along each other and then cross.
-fn needles() -> Vec<Body> {
-    let frame = |points: [[f64; 3]; 3]| Mesh::new("needle", Positions::F64(points.into()), vec![[0, 1, 2]]);
-    let body =
-        |t0, t1| Body::moving(frame(t0).expect("a mesh"), frame(t1).expect("a mesh")).expect("two frames");
-    vec![
-        body(
-            [[-1., -5e-9, 0.], [1., -5e-9, 0.], [0., -1., 0.]],
-            [[-1.001, 5e-9, -0.001], [1.001, 5e-9, 0.001], [0., -1., 0.]],
-        ),
-        body(
-            [[0., 5e-9, -1.], [0., 5e-9, 1.], [0., 1., 0.]],
-            [[0.001, -5e-9, -0.999], [-0.001, -5e-9, 0.999], [0., 1., 0.]],
-        ),
-    ]
-}
-
-#[test]
-fn steps_that_end_are_told() {
-    let truth = ask(engine(), needles(), by(Solver::CertifiedF64));
-    assert!(!truth.is_empty());
-    for device in [engine(), microscope(support::ORDERS[1])] {
-        let all = ask(device.clone(), needles(), by(Solver::Additive));
-        let ended = count(all.contacts(), |c| c.status == Status::Unresolved);
-        assert!(ended > 0 && all.degraded() == [Degraded::Steps { pairs: ended }], "{:?}", all.degraded());
-        assert!(count(all.contacts(), |c| c.status == Status::Certified) == 0);
-        none_is_lost(&truth, &all);
-        let first = ask(device, needles(), Query { motion: Motion::Earliest, ..by(Solver::Additive) });
-        assert_eq!(first.degraded(), [Degraded::Steps { pairs: ended }]);
-        assert_eq!(first.earliest_toi(), all.earliest_toi());
-    }
 }
 
 #[test]

@@ -1,8 +1,6 @@
 //! Whole frames against brute force and known answers: the corridor loses nothing, invents nothing, and does no work
 //! that nobody asked for.
 
-#[path = "frame/additive.rs"]
-mod additive;
 #[path = "frame/certified.rs"]
 mod certified;
 #[path = "frame/continuous.rs"]

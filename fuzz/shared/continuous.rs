@@ -4,12 +4,10 @@ use super::bytes::{Bytes, largest};
 use nearmiss::oracle::{Toi, first_contact};
 use nearmiss::{Case, Features};
 use nearmiss_kernels::math::{Real, Vec3};
-use nearmiss_kernels::prim::additive::{ee_additive, vf_additive};
 use nearmiss_kernels::prim::cubic::{Moving, ee_apart, ee_toi, vf_apart, vf_toi};
 use nearmiss_kernels::prim::inclusion::{
     Grid, Params, Verdict, ee_certified, ee_first, vf_certified, vf_first,
 };
-use std::hint::black_box;
 
 /// A question: the motion, what a certified solver is asked, and whether f32 holds all positions.
 pub fn decode(bytes: &[u8]) -> (Case, Params, bool) {
@@ -80,12 +78,10 @@ fn answers<R: Real>(
     let (f, ea, eb) = ([p[1], p[2], p[3]], [p[0], p[1]], [p[2], p[3]]);
     let (guesses, apart, first) = match case.features {
         Features::VertexFace => {
-            black_box((vf_additive::<R, f64>(p[0], f), vf_additive::<R, f32>(p[0], f)));
             let guesses = [vf_toi::<R, f64>(p[0], f), vf_toi::<R, f32>(p[0], f).map(f64::from)];
             (guesses, vf_apart::<R, f32>(p[0], f) || vf_apart::<R, f64>(p[0], f), vf_first(p[0], f, params))
         }
         Features::EdgeEdge => {
-            black_box((ee_additive::<R, f64>(ea, eb), ee_additive::<R, f32>(ea, eb)));
             let guesses = [ee_toi::<R, f64>(ea, eb), ee_toi::<R, f32>(ea, eb).map(f64::from)];
             (guesses, ee_apart::<R, f32>(ea, eb) || ee_apart::<R, f64>(ea, eb), ee_first(ea, eb, params))
         }

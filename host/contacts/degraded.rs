@@ -26,11 +26,6 @@ pub enum Degraded {
         /// How many.
         pairs: u64,
     },
-    /// Pairs whose steps of additive advancement ended: listed as unresolved, at the time reached.
-    Steps {
-        /// How many.
-        pairs: u64,
-    },
     /// Listed pairs so large that the solver's precision cannot tell as little as the tolerance: there a larger one counts,
     /// 64 roundings of their extent. A tolerance of 0 asks for no more than that, and is never below.
     ToleranceBelowPrecision {
@@ -62,13 +57,8 @@ impl Degraded {
             hits().filter(|hit| hit.verdict.exhausted() && !hit.verdict.is_contact()).count() as u64;
         let unsure = found.counters[counter::UNRESOLVED as usize] - ended_unsure;
         let mut put = |count: u64, reason: Degraded| all.extend((count > 0).then_some(reason));
-        if query.solver() == Solver::Additive {
-            let pairs = unsure + ended;
-            put(pairs, Degraded::Steps { pairs });
-        } else {
-            put(unsure, Degraded::Unresolved { pairs: unsure });
-            put(ended, Degraded::Boxes { pairs: ended });
-        }
+        put(unsure, Degraded::Unresolved { pairs: unsure });
+        put(ended, Degraded::Boxes { pairs: ended });
         if let Some(pairs) = below_precision(found, layout, bodies, query) {
             put(pairs.unwrap_or(1), Degraded::ToleranceBelowPrecision { pairs });
         }
@@ -89,9 +79,6 @@ impl fmt::Display for Degraded {
             }
             Degraded::Boxes { pairs } => {
                 write!(f, "{pairs} pairs whose boxes ended, with times that may be too early; raise --boxes")
-            }
-            Degraded::Steps { pairs } => {
-                write!(f, "{pairs} pairs whose steps of advancement ended; use a certified solver")
             }
             Degraded::ToleranceBelowPrecision { pairs } => {
                 let pairs = pairs.map_or("some".to_owned(), |pairs| pairs.to_string());

@@ -35,8 +35,7 @@ pub enum Status {
     Contact,
     /// They meet, proven, first in `[toi, toi_hi]`.
     Certified,
-    /// They come nearer than the tolerance, or the budget ended; if they meet, not before `toi`. Proven as well, but for
-    /// [`Solver::Additive`], whose steps ended.
+    /// They come nearer than the tolerance, or the budget ended; if they meet, not before `toi`. Proven as well.
     Unresolved,
 }
 
@@ -97,6 +96,10 @@ pub struct Contacts {
     pub survivors_vf_ee: [u64; 2],
     /// Candidates that f32 left to f64: vertex/face, edge/edge.
     pub escalated_vf_ee: [u64; 2],
+    /// Candidates whose roots could not be isolated: vertex/face, edge/edge.
+    pub open_vf_ee: [u64; 2],
+    /// Of these, those that were cut into slices: vertex/face, edge/edge.
+    pub sliced_vf_ee: [u64; 2],
     /// How many contacts are [`Status::Unresolved`]; of an earliest query, how many pairs.
     pub unresolved: u64,
     /// Pairs that the float filter left to exact signs.
@@ -178,6 +181,8 @@ impl Contacts {
             candidates_vf_ee: [0; 2],
             survivors_vf_ee: [0; 2],
             escalated_vf_ee: [0; 2],
+            open_vf_ee: [0; 2],
+            sliced_vf_ee: [0; 2],
             unresolved: 0,
             undecided: 0,
             steps: 0,
@@ -237,6 +242,8 @@ impl Contacts {
             candidates_vf_ee: vf_ee,
             survivors_vf_ee: [count(counter::VF_SURVIVORS), count(counter::EE_SURVIVORS)],
             escalated_vf_ee: [count(counter::VF_ESCALATED), count(counter::EE_ESCALATED)],
+            open_vf_ee: [count(counter::VF_OPEN), count(counter::EE_OPEN)],
+            sliced_vf_ee: [count(counter::VF_HARD), count(counter::EE_HARD)],
             unresolved: count(counter::UNRESOLVED),
             undecided: count(counter::UNDECIDED),
             steps: count(counter::STEPS),

@@ -6,13 +6,15 @@ use super::{Positions, Problem};
 pub const MAX_VERTICES: usize = 1 << 30;
 /// Most triangles of one mesh: three corners of each still fit a `u32`, and the ids of 2n - 1 tree nodes an `i32`.
 pub const MAX_FACES: usize = 1 << 30;
-/// Largest size of a single precision coordinate, 2^60: dot products of differences stay finite, 3 (2^61)^2 < 2^124.
+/// Largest size of a coordinate that is kept in single precision, 2^60: dot products of differences stay finite,
+/// 3 (2^61)^2 < 2^124. A mesh with a larger one is kept in double precision.
 pub const MAX_ABS_F32: f32 = (1u64 << 60) as f32;
 /// Largest size of a double precision coordinate, 2^480: dot products of differences stay finite, 3 (2^481)^2 < 2^964.
 pub const MAX_ABS_F64: f64 = f64::from_bits((1023 + 480) << 52);
 
-/// The first violation, if any: counts, then indices in face order, then coordinates in vertex order.
-pub(super) fn check(positions: &Positions, faces: &[[u32; 3]]) -> Result<(), Problem> {
+/// The positions as they are kept: as given, or in double precision where single precision cannot be computed with.
+/// Or the first violation: counts, then indices in face order, then coordinates in vertex order.
+pub(super) fn check(positions: Positions, faces: &[[u32; 3]]) -> Result<Positions, Problem> {
     count("vertices", positions.len(), MAX_VERTICES)?;
     count("triangles", faces.len(), MAX_FACES)?;
     let vertices = positions.len();
@@ -23,10 +25,17 @@ pub(super) fn check(positions: &Positions, faces: &[[u32; 3]]) -> Result<(), Pro
             }
         }
     }
-    match positions {
-        Positions::F32(points) => coordinates(points, MAX_ABS_F32, "2^60", faces),
-        Positions::F64(points) => coordinates(points, MAX_ABS_F64, "2^480", faces),
+    let positions = match &positions {
+        Positions::F32(points) if coordinates(points, MAX_ABS_F32, "2^60", faces).is_ok() => {
+            return Ok(positions);
+        }
+        _ => positions.promoted(),
+    };
+    // Every finite float is small as a double.
+    if let Positions::F64(points) = &positions {
+        coordinates(points, MAX_ABS_F64, "2^480", faces)?;
     }
+    Ok(positions)
 }
 
 /// Refuses `found` of `what` over `limit`.

@@ -31,8 +31,8 @@ use crate::Error;
 
 /// One frame of a triangle mesh that has passed the door check.
 ///
-/// Every vertex that a face uses is finite and at most [`MAX_ABS_F32`] or [`MAX_ABS_F64`] in size, and every index
-/// is in range. Degenerate and duplicate triangles, repeated indices and -0.0 are legal; a vertex that no face uses
+/// Every vertex that a face uses is finite and at most [`MAX_ABS_F64`] in size, and every index is in range. Single
+/// precision is kept up to [`MAX_ABS_F32`]; a mesh that goes beyond is kept in double precision, exactly. Degenerate and duplicate triangles, repeated indices and -0.0 are legal; a vertex that no face uses
 /// may be anything, even NaN.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
@@ -52,8 +52,8 @@ impl Mesh {
     /// [`Problem::TooMany`], naming the first offender.
     pub fn new(name: impl Into<String>, positions: Positions, faces: Vec<[u32; 3]>) -> Result<Mesh, Error> {
         let name = name.into();
-        match door::check(&positions, &faces) {
-            Ok(()) => Ok(Mesh { name, positions, faces }),
+        match door::check(positions, &faces) {
+            Ok(positions) => Ok(Mesh { name, positions, faces }),
             Err(problem) => Err(Error::Input { file: name, problem }),
         }
     }

@@ -38,7 +38,7 @@ pub enum Problem {
         /// NaN or an infinity.
         value: f64,
     },
-    /// A vertex that a face uses is larger than the arithmetic allows.
+    /// A vertex that a face uses is larger than arithmetic in double precision allows.
     #[error(
         "vertex {vertex} has {axis} = {}; coordinates may be at most {limit} in size: scale the mesh down",
         short(*value)
@@ -50,7 +50,7 @@ pub enum Problem {
         axis: char,
         /// The coordinate.
         value: f64,
-        /// The limit of the mesh's precision, in words.
+        /// The limit, in words.
         limit: &'static str,
     },
     /// A face names a vertex that does not exist.

@@ -7,10 +7,11 @@ use crate::contacts::Status;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::Layout;
-use crate::pipeline::narrow::{Continuous, Given, Narrow, Rooms, Step};
+use crate::pipeline::narrow::{Continuous, Given, Rooms, Step};
 use crate::pipeline::precision::Precision;
+use crate::pipeline::room::List;
 use crate::query::{Motion, Query};
-use nearmiss_kernels::abi::{Frames, Hit, Span, counter};
+use nearmiss_kernels::abi::{Frames, Hit, Pair, Span, counter};
 
 /// Asks every case whether its features meet, and when first: by the query's solver, tolerance and budget, with the
 /// kernels of a frame. Without a tolerance, [`Query::TOLERANCE`] of the cases' mean edge. Any number of cases; a million
@@ -55,12 +56,21 @@ fn some<R: Precision>(device: &Device, cases: &[Case], query: Query, how: How) -
     let (layout, [vf, ee]) = topology(cases);
     let all = [vf.len(), ee.len()];
     // A case is listed once at most, so no list outgrows this.
-    let candidates = if how.filters || query.is_apart() { all } else { [0, 0] };
-    let rooms = Rooms { candidates, survivors: all, hits: all, left: all };
+    let rooms = Rooms { candidates: all, survivors: all, hits: all, left: all };
     let mut features = Continuous::new(device, &layout, query, rooms)?;
-    let first = if how.filters { Step::Sift } else { Step::Reject };
     let mut counts = vec![0; counter::COUNT as usize];
-    for (at, count) in features.give(first, [&vf, &ee])? {
+    // With a separation there is nothing that signs could reject.
+    let mut candidates = None;
+    let given = if how.filters && !query.is_apart() {
+        let mut vf_list = List::new(device, "vertex/face cases", counter::VF, all[0])?;
+        let mut ee_list = List::new(device, "edge/edge cases", counter::EE, all[1])?;
+        let given = [vf_list.put(&vf)?, ee_list.put(&ee)?];
+        candidates = Some([vf_list, ee_list]);
+        given
+    } else {
+        features.give([&vf, &ee])?
+    };
+    for (at, count) in given {
         counts[at as usize] = count;
     }
     let mut run = Run::<R> {
@@ -71,12 +81,13 @@ fn some<R: Precision>(device: &Device, cases: &[Case], query: Query, how: How) -
         layout,
         counters: device.buffer(counter::COUNT as usize)?,
         counts,
-        narrow: Narrow::Continuous(Box::new(features)),
+        candidates,
+        features,
     };
     let bytes = device.bytes().0 - before;
-    let mut ms = vec![run.run(how.filters)?];
+    let mut ms = vec![run.run()?];
     if how.repeats > 0 {
-        ms = (0..how.repeats).map(|_| run.run(how.filters)).collect::<Result<_, Error>>()?;
+        ms = (0..how.repeats).map(|_| run.run()).collect::<Result<_, Error>>()?;
         ms.sort_by(|a, b| (a[0] + a[1]).total_cmp(&(b[0] + b[1])));
     }
     let [filter_ms, solve_ms] = ms[ms.len() / 2];
@@ -93,12 +104,14 @@ struct Run<'a, R: Precision> {
     counters: Buffer<u64>,
     /// What the counters are before a run.
     counts: Vec<u64>,
-    narrow: Narrow,
+    /// The cases, where the filters are asked first.
+    candidates: Option<[List<Pair>; 2]>,
+    features: Continuous,
 }
 
 impl<R: Precision> Run<'_, R> {
     /// Runs the filters, if asked for, and the solver; milliseconds of each.
-    fn run(&mut self, filters: bool) -> Result<[f64; 2], Error> {
+    fn run(&mut self) -> Result<[f64; 2], Error> {
         self.counters.write(&self.counts)?;
         let given = Given {
             device: self.device,
@@ -109,11 +122,11 @@ impl<R: Precision> Run<'_, R> {
             counters: self.counters.span(),
         };
         let start = self.device.mark()?;
-        if filters {
-            self.narrow.run(Step::Reject, &given)?;
+        if let Some(candidates) = &self.candidates {
+            self.features.reject(&given, candidates)?;
         }
         let filtered = self.device.mark()?;
-        self.narrow.run(Step::Solve, &given)?;
+        self.features.run(Step::Solve, &given)?;
         let end = self.device.mark()?;
         Ok([start.to(&filtered)?, filtered.to(&end)?])
     }
@@ -121,9 +134,6 @@ impl<R: Precision> Run<'_, R> {
     /// The verdicts, where the cases are, and the counts.
     fn answers(&self, cases: usize) -> Result<Answers, Error> {
         let counters = self.counters.read(counter::COUNT as usize)?;
-        let Narrow::Continuous(features) = &self.narrow else {
-            return Err(Error::Bug { what: "features in motion asked as triangles".into() });
-        };
         let certified = self.query.solver().is_certified();
         let mut verdicts = vec![None; cases];
         let met = |hit: &Hit| Met {
@@ -133,10 +143,10 @@ impl<R: Precision> Run<'_, R> {
             exhausted: hit.verdict.exhausted(),
             boxes: hit.verdict.boxes,
         };
-        for hit in features.vf_hits.read(&counters)? {
+        for hit in self.features.vf_hits.read(&counters)? {
             verdicts[hit.a as usize / 4] = Some(met(&hit));
         }
-        for hit in features.ee_hits.read(&counters)? {
+        for hit in self.features.ee_hits.read(&counters)? {
             let [vertex, _] = self.layout.edges[hit.a as usize];
             verdicts[vertex as usize / 4] = Some(met(&hit));
         }

@@ -146,7 +146,7 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
             let refit = query.refit_on(corridor.device.is_card());
             let groups = V::group(axes) > 0;
             let tree = Tree::new(&corridor.device, layout.triangles(body), refit, groups)?;
-            let volumes = Volumes::new(&corridor.device, &tree, (axes, growth(query.params().separation)))?;
+            let volumes = Volumes::new(&corridor.device, &tree, (axes, growth(query.listed_within())))?;
             corridor.bodies.push((tree, volumes));
         }
         Ok(corridor)
@@ -377,7 +377,10 @@ impl<R: Precision, V: Kernels> Frames for Corridor<R, V> {
             Ok(())
         };
         list("traverse", &self.pairs)?;
-        self.narrow.between().into_iter().try_for_each(|(name, pairs)| list(name, pairs))?;
+        // What an earliest query asks of a pair hangs on what it found before.
+        if self.query.motion != Motion::Earliest {
+            self.narrow.between().into_iter().try_for_each(|(name, pairs)| list(name, pairs))?;
+        }
         Ok(prints)
     }
 

@@ -51,17 +51,20 @@ pub struct Session {
     construct_ms: f64,
     /// Whether the device holds the answer for where the bodies are now.
     answered: bool,
+    /// Whether the corridor holds positions in f64: where any body has them so, so that nothing is rounded.
+    f64s: bool,
+    /// None where a body has no triangles, or where memory ended: then the next frame asks for it again.
     corridor: Option<Box<dyn Frames>>,
 }
 
-/// The corridor of a query: positions in f32 where all bodies have them so, else in f64, so that nothing is rounded.
+/// The corridor of a query.
 fn corridor(
     device: Device,
     bodies: &[Body],
     layout: &Layout,
     query: Query,
+    f64s: bool,
 ) -> Result<Box<dyn Frames>, Error> {
-    let f64s = bodies.iter().any(|body| body.positions_t0().is_f64());
     match query.bv() {
         Bv::Aabb => dressed::<Aabb>(device, bodies, layout, (query, Axes::PCA), f64s),
         Bv::Linear => dressed::<Linear>(device, bodies, layout, (query, Axes::PCA), f64s),
@@ -110,42 +113,54 @@ impl Session {
             tolerance,
             construct_ms: 0.0,
             answered: false,
+            f64s: false,
             corridor: None,
         };
-        // A body without triangles meets nothing: no memory, no launch.
-        if session.bodies.iter().all(|body| body.face_count() > 0) {
-            let query = Query { tolerance, ..query };
-            let mut corridor = corridor(session.device.clone(), &session.bodies, &session.layout, query)?;
-            session.construct_ms = corridor.construct()?;
-            session.corridor = Some(corridor);
-        }
+        session.begun()?;
         Ok(session)
     }
 
-    /// Moves a body to other positions; the tree is kept and refitted at the next [`Session::detect`].
+    /// Moves a body to other positions; the tree is kept and refitted at the next [`Session::detect`]. At the first frame in
+    /// double precision a session in single precision goes over to it, with trees built anew; it does not go back.
     ///
     /// # Errors
-    /// [`Error::Choice`] when the body has other faces or another precision than the one it replaces; those of the
-    /// device.
+    /// [`Error::Choice`] when the body has other faces than the one it replaces; those of the device.
     pub fn move_to(&mut self, body: usize, frame: Body) -> Result<(), Error> {
         let old = self.bodies.get(body);
-        let fits = old.is_some_and(|old| {
-            old.faces() == frame.faces()
-                && old.vertex_count() == frame.vertex_count()
-                && (old.positions_t0().is_f64() == frame.positions_t0().is_f64())
-        });
+        let fits =
+            old.is_some_and(|old| old.faces() == frame.faces() && old.vertex_count() == frame.vertex_count());
         if !fits {
             return Err(Error::Choice {
                 what: format!("{} does not replace body {body} of this session", frame.name()),
-                advice: "give frames of the same mesh in the same precision, or start another session".into(),
+                advice: "give frames of the same mesh, or start another session".into(),
             });
         }
+        let widens = !self.f64s && frame.positions_t0().is_f64();
         self.bodies[body] = frame;
         self.answered = false;
-        match &mut self.corridor {
-            Some(corridor) => corridor.place(&self.bodies),
-            None => Ok(()),
+        // What was held makes room first. Where placing fails there is nothing left to ask of the old positions.
+        let held = self.corridor.take().filter(|_| !widens);
+        match held {
+            Some(mut corridor) => {
+                corridor.place(&self.bodies)?;
+                self.corridor = Some(corridor);
+                Ok(())
+            }
+            None => self.begun().map(drop),
         }
+    }
+
+    /// The corridor; where there is none yet, with memory for the bodies where they are and trees built. None where a body
+    /// has no triangles: it meets nothing, and costs no memory and no launch.
+    fn begun(&mut self) -> Result<Option<&mut Box<dyn Frames>>, Error> {
+        if self.corridor.is_none() && self.bodies.iter().all(|body| body.face_count() > 0) {
+            self.f64s = self.bodies.iter().any(|body| body.positions_t0().is_f64());
+            let query = Query { tolerance: self.tolerance, ..self.query };
+            let mut corridor = corridor(self.device.clone(), &self.bodies, &self.layout, query, self.f64s)?;
+            self.construct_ms = corridor.construct()?;
+            self.corridor = Some(corridor);
+        }
+        Ok(self.corridor.as_mut())
     }
 
     /// Builds the trees anew: pays when the bodies have moved far from where they were built.
@@ -153,7 +168,7 @@ impl Session {
     /// # Errors
     /// Those of the device.
     pub fn rebuild(&mut self) -> Result<(), Error> {
-        let Some(corridor) = &mut self.corridor else { return Ok(()) };
+        let Some(corridor) = self.begun()? else { return Ok(()) };
         self.construct_ms = corridor.construct()?;
         self.answered = false;
         Ok(())
@@ -164,7 +179,7 @@ impl Session {
     /// # Errors
     /// Those of the device: [`Error::Room`] when memory ends. There is no partial answer.
     pub fn detect(&mut self) -> Result<Contacts, Error> {
-        let (found, stages) = match &mut self.corridor {
+        let (found, stages) = match self.begun()? {
             None => return Ok(Contacts::none(self.query)),
             Some(corridor) => corridor.frame()?,
         };
@@ -186,8 +201,9 @@ impl Session {
         if !self.answered && matches!(stage, Stage::Traverse | Stage::Narrow) {
             self.detect()?;
         }
-        let Some(corridor) = &mut self.corridor else { return Ok(Vec::new()) };
-        if !self.answered && stage == Stage::Refit {
+        let answered = self.answered;
+        let Some(corridor) = self.begun()? else { return Ok(Vec::new()) };
+        if !answered && stage == Stage::Refit {
             corridor.repeat(Stage::Fit, 1)?;
         }
         let ms = corridor.repeat(stage, times)?;

@@ -21,10 +21,8 @@ pub enum Step {
     Traverse,
     /// Triangle pairs that meet.
     Decide,
-    /// Vertex/face and edge/edge candidates.
+    /// Vertex/face and edge/edge pairs that may meet.
     Sift,
-    /// Those that may meet.
-    Reject,
     /// Contacts in motion.
     Solve,
 }
@@ -36,7 +34,6 @@ impl Step {
             Step::Traverse => "traverse",
             Step::Decide => "decide",
             Step::Sift => "sift",
-            Step::Reject => "reject",
             Step::Solve => "solve",
         }
     }
@@ -103,7 +100,7 @@ impl Narrow {
     pub fn steps(&self) -> &'static [Step] {
         match self {
             Narrow::Discrete { .. } => &[Step::Decide],
-            Narrow::Continuous(c) => c.steps(),
+            Narrow::Continuous(_) => &[Step::Sift, Step::Solve],
         }
     }
 
@@ -138,7 +135,7 @@ impl Narrow {
             (Narrow::Discrete { contacts, undecided }, Step::Decide) => {
                 decide(contacts, undecided.as_ref(), given)
             }
-            (Narrow::Continuous(c), Step::Sift | Step::Reject | Step::Solve) => c.run(step, given),
+            (Narrow::Continuous(c), Step::Sift | Step::Solve) => c.run(step, given),
             _ => Err(Error::Bug { what: format!("the step {step:?} in another kind of query") }),
         }
     }

@@ -34,8 +34,10 @@ pub trait Precision: Real {
     type Filter: Entry<Args = DiscreteArgs<Self>>;
     /// The exact signs.
     type Exact: Entry<Args = DiscreteArgs<Self>>;
-    /// Triangle pairs to elementary candidates.
+    /// Triangle pairs to pairs of features that may meet.
     type Sift: Entry<Args = SiftArgs<Self>>;
+    /// Triangle pairs to pairs of features within a separation.
+    type SiftNear: Entry<Args = SiftArgs<Self>>;
     /// Vertex/face candidates that may meet.
     type RejectVf: Entry<Args = RejectArgs<Self>>;
     /// Edge/edge candidates that may meet.
@@ -48,10 +50,6 @@ pub trait Precision: Real {
     type Ee32: Entry<Args = SolveArgs<Self>>;
     /// Edge/edge by the cubic in f64.
     type Ee64: Entry<Args = SolveArgs<Self>>;
-    /// Vertex/face by additive advancement.
-    type AdditiveVf: Entry<Args = SolveArgs<Self>>;
-    /// Edge/edge by additive advancement.
-    type AdditiveEe: Entry<Args = SolveArgs<Self>>;
     /// Isolation of roots in f32.
     type Isolate32: Entry<Args = RungArgs<Self>>;
     /// Isolation of roots in f64.
@@ -83,14 +81,13 @@ impl Precision for f32 {
     type Filter = entry::narrow_filter_f32;
     type Exact = entry::narrow_exact_f32;
     type Sift = entry::narrow_sift_f32;
+    type SiftNear = entry::narrow_sift_near_f32;
     type RejectVf = entry::narrow_reject_vf_f32;
     type RejectEe = entry::narrow_reject_ee_f32;
     type Vf32 = entry::narrow_vf_f32_f32;
     type Vf64 = entry::narrow_vf_f32_f64;
     type Ee32 = entry::narrow_ee_f32_f32;
     type Ee64 = entry::narrow_ee_f32_f64;
-    type AdditiveVf = entry::narrow_additive_vf_f32;
-    type AdditiveEe = entry::narrow_additive_ee_f32;
     type Isolate32 = entry::narrow_isolate_f32_f32;
     type Isolate64 = entry::narrow_isolate_f32_f64;
     type Settle = entry::narrow_settle_f32;
@@ -121,14 +118,13 @@ impl Precision for f64 {
     type Filter = entry::narrow_filter_f64;
     type Exact = entry::narrow_exact_f64;
     type Sift = entry::narrow_sift_f64;
+    type SiftNear = entry::narrow_sift_near_f64;
     type RejectVf = entry::narrow_reject_vf_f64;
     type RejectEe = entry::narrow_reject_ee_f64;
     type Vf32 = entry::narrow_vf_f64_f32;
     type Vf64 = entry::narrow_vf_f64_f64;
     type Ee32 = entry::narrow_ee_f64_f32;
     type Ee64 = entry::narrow_ee_f64_f64;
-    type AdditiveVf = entry::narrow_additive_vf_f64;
-    type AdditiveEe = entry::narrow_additive_ee_f64;
     type Isolate32 = entry::narrow_isolate_f64_f32;
     type Isolate64 = entry::narrow_isolate_f64_f64;
     type Settle = entry::narrow_settle_f64;

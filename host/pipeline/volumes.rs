@@ -94,10 +94,11 @@ impl Kernels for Obb {
     }
 }
 
-/// How much each of two volumes grows so that what comes within the separation makes them meet: half of it, rounded up.
-pub fn growth(separation: f64) -> f32 {
-    let half = round::up(0.5 * separation);
-    if 2.0 * f64::from(half) < separation { half.next_up() } else { half }
+/// How much each of two volumes grows so that what is listed makes them meet: half of the distance within which it comes,
+/// rounded up.
+pub fn growth(distance: f64) -> f32 {
+    let half = round::up(0.5 * distance);
+    if 2.0 * f64::from(half) < distance { half.next_up() } else { half }
 }
 
 /// The volumes of a tree, kept on the device.
@@ -279,7 +280,7 @@ impl<V: Kernels> Volumes<V> {
             let vertices = triangles.flat_map(|t| faces[t as usize]);
             let points = vertices.flat_map(|v| frames.iter().map(move |frame| frame[v as usize]));
             let volume = V::of(&points.collect::<Vec<_>>())?;
-            Some(if self.grow > 0.0 { volume.grown(self.grow) } else { volume })
+            Some(volume.near(self.grow))
         };
         bvh::check_volumes(&links, &self.download()?, self.axes, fitted).map_err(broken)
     }

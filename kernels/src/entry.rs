@@ -6,7 +6,7 @@ use crate::exec::{BINS, Block, WARP};
 use crate::prim::isolate::ladder::SLICES;
 use crate::queue::worker;
 use crate::stage::construct::{morton, sort, tree, treelet};
-use crate::stage::narrow::{climb, discrete, reject, sift, slice, solve};
+use crate::stage::narrow::{climb, discrete, reject, separate, sift, slice, solve};
 use crate::stage::refit::{bottom_up, levels, treelets};
 use crate::stage::traverse::{front, queue, steal};
 use crate::stage::{balance, fit, traverse};
@@ -139,8 +139,10 @@ kernels! {
     narrow_filter_f64: discrete::filter::<f64, B>, [DiscreteArgs<f64>], WIDE, 0;
     narrow_exact_f32: discrete::exact::<f32, B>, [DiscreteArgs<f32>], NARROW, 0;
     narrow_exact_f64: discrete::exact::<f64, B>, [DiscreteArgs<f64>], NARROW, 0;
-    narrow_sift_f32: sift::sift::<f32, B>, [SiftArgs<f32>], NARROW, 0;
-    narrow_sift_f64: sift::sift::<f64, B>, [SiftArgs<f64>], NARROW, 0;
+    narrow_sift_f32: sift::sift::<f32, B>, [SiftArgs<f32>], RUNG, sift::shared_bytes(RUNG);
+    narrow_sift_f64: sift::sift::<f64, B>, [SiftArgs<f64>], RUNG, sift::shared_bytes(RUNG);
+    narrow_sift_near_f32: sift::sift_near::<f32, B>, [SiftArgs<f32>], RUNG, sift::shared_bytes(RUNG);
+    narrow_sift_near_f64: sift::sift_near::<f64, B>, [SiftArgs<f64>], RUNG, sift::shared_bytes(RUNG);
     narrow_reject_vf_f32: reject::vf::<f32, B>, [RejectArgs<f32>], WIDE, 0;
     narrow_reject_vf_f64: reject::vf::<f64, B>, [RejectArgs<f64>], WIDE, 0;
     narrow_reject_ee_f32: reject::ee::<f32, B>, [RejectArgs<f32>], WIDE, 0;
@@ -153,10 +155,6 @@ kernels! {
     narrow_ee_f32_f64: solve::ee::<f32, f64, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_ee_f64_f32: solve::ee::<f64, f32, B>, [SolveArgs<f64>], WIDE, 0;
     narrow_ee_f64_f64: solve::ee::<f64, f64, B>, [SolveArgs<f64>], WIDE, 0;
-    narrow_additive_vf_f32: solve::additive_vf::<f32, B>, [SolveArgs<f32>], NARROW, 0;
-    narrow_additive_vf_f64: solve::additive_vf::<f64, B>, [SolveArgs<f64>], NARROW, 0;
-    narrow_additive_ee_f32: solve::additive_ee::<f32, B>, [SolveArgs<f32>], NARROW, 0;
-    narrow_additive_ee_f64: solve::additive_ee::<f64, B>, [SolveArgs<f64>], NARROW, 0;
     narrow_isolate_f32_f32: climb::isolate::<f32, f32, B>, [RungArgs<f32>], RUNG, 0;
     narrow_isolate_f32_f64: climb::isolate::<f32, f64, B>, [RungArgs<f32>], NARROW, 0;
     narrow_isolate_f64_f32: climb::isolate::<f64, f32, B>, [RungArgs<f64>], RUNG, 0;
@@ -167,6 +165,6 @@ kernels! {
     narrow_slice_f64: slice::slice::<f64, B>, [RungArgs<f64>], SLICES, slice::SHARED;
     narrow_separate_f32: climb::separate::<f32, B>, [RungArgs<f32>], RUNG, 0;
     narrow_separate_f64: climb::separate::<f64, B>, [RungArgs<f64>], RUNG, 0;
-    narrow_separate_rest_f32: climb::separate_rest::<f32, B>, [RungArgs<f32>], NARROW, 0;
-    narrow_separate_rest_f64: climb::separate_rest::<f64, B>, [RungArgs<f64>], NARROW, 0;
+    narrow_separate_rest_f32: separate::separate::<f32, B>, [RungArgs<f32>], RUNG, separate::SHARED;
+    narrow_separate_rest_f64: separate::separate::<f64, B>, [RungArgs<f64>], RUNG, separate::SHARED;
 }

@@ -16,8 +16,7 @@ fn rows(report: &Value) -> Vec<(&str, &str)> {
         .collect()
 }
 
-const SOLVERS: [&str; 6] =
-    ["certified", "certified-f32", "certified-f64", "cubic-f64", "cubic-f32", "additive"];
+const SOLVERS: [&str; 5] = ["certified", "certified-f32", "certified-f64", "cubic-f64", "cubic-f32"];
 
 #[test]
 fn a_vertex_and_a_face_of_a_mesh() {

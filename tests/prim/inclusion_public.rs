@@ -5,7 +5,6 @@ use crate::public::{Key, scene};
 use crate::queries::folders;
 use nearmiss::extremes::MOTIONS;
 use nearmiss_kernels::math::{Real, Vec3};
-use nearmiss_kernels::prim::additive::{ee_additive, vf_additive};
 use nearmiss_kernels::prim::cubic::{Moving, ee_apart, ee_toi, vf_apart, vf_toi};
 use nearmiss_kernels::prim::inclusion::{Edges, Face, Params, Verdict};
 use std::collections::HashSet;
@@ -165,10 +164,6 @@ fn nanoseconds() {
             } else {
                 ee_toi::<f32, f64>([a, b], [c, d]).is_some()
             }
-        });
-        time("additive f64", &|face, [a, b, c, d]| {
-            let (f, e) = (vf_additive::<f32, f64>, ee_additive::<f32, f64>);
-            if face { f(a, [b, c, d]).is_some() } else { e([a, b], [c, d]).is_some() }
         });
         time("rejection by signs", &|face, [a, b, c, d]| {
             if face { vf_apart::<f32, f32>(a, [b, c, d]) } else { ee_apart::<f32, f32>([a, b], [c, d]) }

@@ -4,7 +4,6 @@ use super::judge::Said;
 use super::subject::{Moving, Still};
 use crate::case::{Case, Features};
 use nearmiss_kernels::math::{Real, Vec3};
-use nearmiss_kernels::prim::additive::{Advance, ee_additive, vf_additive};
 use nearmiss_kernels::prim::adjacent::{Shared, meets_beyond_shared};
 use nearmiss_kernels::prim::cubic::{Moving as Point, ee_toi, vf_toi};
 use nearmiss_kernels::prim::inclusion::{
@@ -52,7 +51,6 @@ fn ask_in<R: Real>(case: &Case, params: &Params) -> Vec<Answer> {
         proven("certified-f64", double),
         guess("cubic-f64", cubic::<R, f64>(case.features, p)),
         guess("cubic-f32", cubic::<R, f32>(case.features, p)),
-        Answer { solver: "additive", said: additive(case.features, p), boxes: None },
     ]
 }
 
@@ -69,17 +67,6 @@ fn cubic<R: Real, S: Real>(features: Features, p: [Point<R>; 4]) -> Option<f64> 
         Features::EdgeEdge => ee_toi::<R, S>([p[0], p[1]], [p[2], p[3]]),
     };
     toi.map(S::wide)
-}
-
-fn additive<R: Real>(features: Features, p: [Point<R>; 4]) -> Said {
-    let found = match features {
-        Features::VertexFace => vf_additive::<R, f64>(p[0], [p[1], p[2], p[3]]),
-        Features::EdgeEdge => ee_additive::<R, f64>([p[0], p[1]], [p[2], p[3]]),
-    };
-    match found {
-        Some(Advance { toi, ended: true }) => Said::Unresolved { toi },
-        found => Said::of(found.map(|advance| advance.toi)),
-    }
 }
 
 /// Every discrete solver: whether the triangles meet.

@@ -72,6 +72,30 @@ pub fn scenes() -> Vec<Scene> {
     ];
     all.extend(head_on());
     all.extend(together());
+    all.extend(huge());
+    all
+}
+
+/// Floats that single precision cannot be computed with: a point falls on a face, which the other frame or the other body
+/// takes to doubles.
+fn huge() -> Vec<Scene> {
+    const MOST: f64 = f32::MAX as f64;
+    let face = |s: f64| Numbers::loose(&[[[-s, -s, 0.0], [s, -s, 0.0], [0.0, s, 0.0]]]);
+    let fall =
+        |t0: f64, t1: f64| Numbers { t1: vec![[0.0, 0.0, t1]; 3], ..Numbers::loose(&[[[0.0, 0.0, t0]; 3]]) };
+    let met = |at: f64| Contacts((0..3).map(|v| (Vf, v, 0, at)).collect());
+    let scene = |what: &str, s: f64, [t0, t1]: [f64; 2], at: f64| {
+        Scene::new("X65", what, vec![fall(t0, t1), face(s)], met(at))
+    };
+    let mut all = vec![
+        scene("to the ends of f32", MOST, [MOST, -MOST], 0.5),
+        scene("from far away", 1.0, [3.0 * 2f64.powi(60), -(2f64.powi(60))], 0.75),
+        scene("onto a huge face", MOST, [3.0, -1.0], 0.75),
+    ];
+    all.extend([61, 100, 126].map(|power| {
+        let s = 2f64.powi(power);
+        scene(&format!("times 2^{power}"), s, [1.5 * s, -0.5 * s], 0.75)
+    }));
     all
 }
 

@@ -10,6 +10,7 @@ pub fn scenes() -> Vec<Scene> {
     all.extend(flush());
     all.extend(few());
     all.extend(reported());
+    all.extend(huge());
     all
 }
 
@@ -78,6 +79,37 @@ fn degenerate() -> Vec<Scene> {
         ),
         Scene::new("X08", "a million and a thousandth", vec![Numbers::loose(&mixed)], Oracle),
     ]
+}
+
+/// Floats that single precision cannot be computed with: they are kept as doubles.
+fn huge() -> Vec<Scene> {
+    const MOST: f64 = f32::MAX as f64;
+    let face = flat([-1.0, -1.0, 0.0], 4.0);
+    let crowd = [
+        face,
+        [[0.0; 3]; 3],
+        [[0.0; 3], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]],
+        [[0.0, 0.0, -1.0], [0.0, 0.0, 1.0], [0.0, 0.0, 3.0]],
+        [[0.0, 0.0, 1.0]; 3],
+        [[3.0, -1.0, 0.0], [3.0, -1.0, 7.0], [3.0, -1.0, 7.0]],
+        [[1.0, 1.0, -f64::from(f32::EPSILON)], [1.0, 1.0, -1.0], [2.0, 1.0, -1.0]],
+    ];
+    // From one end of the floats to the other: differences are no floats. A point, and what is far smaller, on it.
+    let across = [[-MOST, -MOST, 0.0], [MOST, -MOST, 0.0], [0.0, MOST, 0.0]];
+    let most = [
+        across,
+        [[0.0, 0.0, -MOST], [0.0, 0.0, MOST], [MOST, MOST, MOST]],
+        [[0.0, MOST, 0.0]; 3],
+        [[MOST, MOST, 0.0], [MOST, MOST, MOST], [MOST, 0.0, MOST]],
+        flat([-1.0, -1.0, 0.0], 4.0),
+        flat([-1.0, -1.0, f64::from(f32::MIN_POSITIVE)], 4.0),
+    ];
+    let mut all = vec![Scene::new("X65", "to the ends of f32", vec![Numbers::loose(&most)], Oracle)];
+    all.extend([59, 61, 100, 125].map(|power| {
+        let scaled = crowd.map(|t| t.map(|p| p.map(|x| x * 2f64.powi(power))));
+        Scene::new("X65", &format!("times 2^{power}"), vec![Numbers::loose(&scaled)], Oracle)
+    }));
+    all
 }
 
 /// Triangles that share vertices, by number or by place.

@@ -156,6 +156,8 @@ fn launch<R: Precision>(rung: Rung, device: &Device, room: usize, args: &RungArg
             launch_striding::<R::Slice>(device, room.saturating_mul(R::Slice::LANES as usize), args)
         }
         Rung::Separate => launch_striding::<R::Separate>(device, room, args),
-        Rung::SeparateRest => launch_striding::<R::SeparateRest>(device, room, args),
+        Rung::SeparateRest => {
+            device.launch::<R::SeparateRest>(device.blocks_at_once::<R::SeparateRest>(room)?, args)
+        }
     }
 }

@@ -159,7 +159,7 @@ arguments! {
         links: Span<Link>,
         /// Out: the leaves.
         nodes: Span<Node<V>>,
-        /// How much the volumes grow: half the separation at which triangles are in contact; 0 for touching.
+        /// How much the volumes grow: half of the distance within which pairs are listed; 0 for touching alone.
         grow: f32,
         /// Nothing.
         pad: u32,
@@ -182,7 +182,7 @@ arguments! {
         nodes: Span<Node<V>>,
         /// The body's first triangle.
         first: u32,
-        /// How much the volumes grow: half the separation at which triangles are in contact; 0 for touching.
+        /// How much the volumes grow: half of the distance within which pairs are listed; 0 for touching alone.
         grow: f32,
     }
     /// `refit_levels`: the volumes of levels `from` to `to`, deepest first.
@@ -226,7 +226,7 @@ arguments! {
         nodes: Span<Node<V>>,
         /// Which axes merged oriented boxes take, see [`crate::bv::Axes`].
         axes: Axes,
-        /// How much the volumes grow: half the separation at which triangles are in contact; 0 for touching.
+        /// How much the volumes grow: half of the distance within which pairs are listed; 0 for touching alone.
         grow: f32,
     }
     /// `refit_bottom_up`: the volumes of the inner nodes, by whoever comes second.

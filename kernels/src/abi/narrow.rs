@@ -1,21 +1,17 @@
 //! Argument blocks of the last stage: from triangle pairs to contacts.
 
-use super::{Frames, Hit, Pair, Point, Span};
+use super::{Facet, Frames, Hit, Pair, Point, Span};
 use crate::math::Real;
 use crate::prim::inclusion::Params;
 use bytemuck::{Pod, Zeroable};
 
 arguments! {
-    /// `narrow_sift`: triangle pairs to vertex/face and edge/edge candidates.
+    /// `narrow_sift`, `narrow_sift_near`: triangle pairs to vertex/face and edge/edge pairs.
     SiftArgs<R: Real> {
         /// Positions.
         frames: Frames<R>,
-        /// Vertex indices of every triangle.
-        faces: Span<[u32; 3]>,
-        /// Edges of every triangle; edge k joins corners k and k + 1.
-        face_edges: Span<[u32; 3]>,
-        /// Which vertices (bits 0 to 2) and edges (bits 3 to 5) each triangle stands for.
-        owners: Span<u32>,
+        /// Every triangle's vertices and edges, and what it owns of them.
+        facets: Span<Facet>,
         /// Candidate triangle pairs.
         pairs: Span<Pair>,
         /// Out: vertex, face.
@@ -24,8 +20,10 @@ arguments! {
         ee: Span<Pair>,
         /// Counters, see [`counter`](super::counter).
         counters: Span<u64>,
-        /// Features this near are in contact, a length; 0 for touching.
-        separation: f64,
+        /// Features within it are listed, a length; of `narrow_sift_near`.
+        gap: f64,
+        /// What is asked; of `narrow_sift`.
+        params: Params,
     }
     /// `narrow_moller`, `narrow_filter`, `narrow_exact`: triangle pairs that meet.
     DiscreteArgs<R: Real> {
@@ -63,8 +61,7 @@ arguments! {
         /// What is asked.
         params: Params,
     }
-    /// `narrow_vf`, `narrow_ee`, `narrow_additive_vf`, `narrow_additive_ee`: the first time of contact of two primitives in
-    /// motion.
+    /// `narrow_vf`, `narrow_ee`: the first time of contact of two primitives in motion.
     SolveArgs<R: Real> {
         /// Positions.
         frames: Frames<R>,

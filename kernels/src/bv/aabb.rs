@@ -74,6 +74,11 @@ impl Volume for Aabb {
         Aabb { lo: self.lo.map(|x| (x - by).next_down()), hi: self.hi.map(|x| (x + by).next_up()) }
     }
     #[inline]
+    fn reach(&self) -> f32 {
+        let one = |k: usize| Real::max(self.lo[k].abs(), self.hi[k].abs());
+        Real::max(one(0), Real::max(one(1), one(2)))
+    }
+    #[inline]
     fn overlaps(&self, other: &Self) -> bool {
         Aabb::overlaps(self, other)
     }

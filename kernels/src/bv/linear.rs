@@ -75,6 +75,12 @@ impl Volume for Linear {
         Linear::between(grown(self.lo0, self.hi0), grown(self.lo1, self.hi1))
     }
 
+    #[inline]
+    fn reach(&self) -> f32 {
+        let at = |lo, hi| Aabb { lo, hi }.reach();
+        Real::max(at(self.lo0, self.hi0), at(self.lo1, self.hi1))
+    }
+
     /// Whether there is a t in [0, 1] at which the closed boxes share a point; true also where rounding leaves it
     /// open, that is where the overlap on one axis ends within `MOVING_TIME` of the begin of another's. Symmetric.
     ///

@@ -19,6 +19,7 @@ pub use group::{GROUP, Points};
 pub use linear::Linear;
 pub use obb::Obb;
 
+use crate::math::tolerance::NEAR_GROWTH;
 use crate::math::{Real, Vec3};
 use bytemuck::{Pod, Zeroable};
 
@@ -40,6 +41,14 @@ pub trait Volume: Pod + Sync + Send + core::fmt::Debug + PartialEq {
     }
     /// Around all points within `by`, a length above 0, of a point that it is around. Rounded outward.
     fn grown(&self, by: f32) -> Self;
+    /// At least the largest magnitude of a coordinate of what it is around.
+    fn reach(&self) -> f32;
+    /// Around all points within `by`, and within what the last rung of a certified solver cannot tell, of a point that it is
+    /// around; itself where `by` is 0. See [`NEAR_GROWTH`](crate::math::tolerance::NEAR_GROWTH).
+    #[inline(always)]
+    fn near(&self, by: f32) -> Self {
+        if by > 0.0 { self.grown(by + NEAR_GROWTH * self.reach()) } else { *self }
+    }
     /// False only if they certainly share no point (for a moving volume: at no t in [0, 1]).
     fn overlaps(&self, other: &Self) -> bool;
 }

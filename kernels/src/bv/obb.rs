@@ -230,6 +230,13 @@ impl Volume for Obb {
         Obb::new(Vec3(self.c), [Vec3(self.a0), Vec3(self.a1)], Vec3(h))
     }
 
+    /// No component of an axis is above 1 by more than a rounding, which the centre's part outweighs where it is not alone.
+    #[inline]
+    fn reach(&self) -> f32 {
+        let (c, h) = (Vec3(self.c).map(Real::abs), Vec3(self.h));
+        (Real::max(c[0], Real::max(c[1], c[2])) + (h[0] + h[1] + h[2])) * BOX_UP
+    }
+
     #[inline(always)]
     fn group(axes: Axes) -> u32 {
         if axes == Axes::CHILD { 0 } else { GROUP }

@@ -21,5 +21,5 @@ pub fn volume<R: Real, V: Volume, L: Lane>(
         let ends = face.map(|v| l.read(frames.moving, v));
         V::moving(ends.map(|v| v.t0.at), ends.map(|v| v.t1.at))
     };
-    if grow > 0.0 { volume.grown(grow) } else { volume }
+    volume.near(grow)
 }

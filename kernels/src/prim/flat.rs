@@ -31,6 +31,22 @@ pub fn segments_meet<R: Real, S: Signs<R>>([a, b]: [Vec3<R>; 2], [c, d]: [Vec3<R
     Some(true)
 }
 
+/// Whether a point lies on a closed triangle, which may be a segment or a point. Undecided only if the source is.
+pub fn point_on_triangle<R: Real, S: Signs<R>>(x: Vec3<R>, t: &[Vec3<R>; 3]) -> Option<bool> {
+    if !boxes_meet(&[x], t) || S::orient3d(t[0], t[1], t[2], x)? != 0 {
+        return Some(false);
+    }
+    if projection::<R, S>(t)?.is_some() {
+        return holds::<R, S>(t, x);
+    }
+    for k in 0..3 {
+        if segments_meet::<R, S>([x, x], [t[k], t[(k + 1) % 3]])? {
+            return Some(true);
+        }
+    }
+    Some(false)
+}
+
 /// Whether the closed boxes of two sets of points meet. Comparisons only: exact.
 #[inline]
 pub fn boxes_meet<R: Real>(p: &[Vec3<R>], q: &[Vec3<R>]) -> bool {

@@ -3,10 +3,9 @@
 //! Discrete, from fast to certain: [`moller`] (plain floats, can miss), [`tri_tri`] on the signs of [`orient`]
 //! (floats with a proven error bound: right or silent) and of [`exact`] (integers: always right).
 //! Continuous: [`cubic`] (the coplanarity cubic; can miss, and says how), and certified, never missing, never late:
-//! [`isolate`] (in closed form) and behind it [`inclusion`] (by boxes). [`additive`] is a baseline; can miss. [`stencil`] names the fifteen
-//! vertex/face and edge/edge tests of two triangles.
+//! [`isolate`] (in closed form) and behind it [`inclusion`] (by boxes). [`stencil`] names the fifteen vertex/face and
+//! edge/edge tests of two triangles.
 
-pub mod additive;
 pub mod adjacent;
 pub mod cubic;
 pub mod exact;

@@ -4,7 +4,7 @@
 //! never errs it is exact, and the order of corners and of triangles cannot change it. Touching counts. A triangle
 //! without area is the segment or point that it is.
 
-pub use super::flat::{boxes_meet, segments_meet};
+pub use super::flat::{boxes_meet, point_on_triangle, segments_meet};
 pub use super::signs::{Certain, Exact, Filter, Signs, Wide};
 
 use super::flat::flat_meet;

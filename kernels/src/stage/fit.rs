@@ -52,8 +52,7 @@ pub fn groups<R: Real, B: Block>(b: &mut B, a: &GroupsArgs<R, Obb>) {
                 };
                 let link = Link { link: 2 * pair, last };
                 let volume = Obb::of(&points);
-                let volume = if a.grow > 0.0 { volume.grown(a.grow) } else { volume };
-                l.write(a.nodes, l.read(a.pair_parents, pair), link.with(volume));
+                l.write(a.nodes, l.read(a.pair_parents, pair), link.with(volume.near(a.grow)));
             }
             pair += stride;
         }

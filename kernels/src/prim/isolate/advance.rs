@@ -59,52 +59,105 @@ pub enum Advanced<S> {
     },
 }
 
-impl<S: Grid, const N: usize> Pair<S, N> {
-    /// Advances from `begin`, before which the features are farther apart than the distance, to `end`; and the steps it took.
-    /// About 150 operations a step, mostly two or three steps.
+/// An advancement under way, one step after the other, so that a card's lanes can take up new pairs as they are done.
+#[derive(Clone, Copy, Debug)]
+pub struct Advance<S, const N: usize> {
+    pair: Pair<S, N>,
+    distance: Distance<S>,
+    /// Until then the features are certainly farther apart.
+    at: S,
+    end: S,
+    /// Steps that were taken.
+    pub steps: u32,
+    most: u32,
+}
+
+impl<S: Grid, const N: usize> Advance<S, N> {
+    /// From `begin`, before which the features are farther apart than the distance, to `end`, in so many steps.
     #[inline(always)]
-    pub fn advance(&self, (begin, end): (S, S), d: &Distance<S>, most: u32) -> (Advanced<S>, u32) {
-        let error = S::ADVANCE_POINT * self.reach + S::ISOLATE_UNDERFLOW;
-        // No more than the distance of the origin from the exact hull, and no less than that of a point of it.
-        let at_most = |p: Vec3<S>| p.dot(p).sqrt() * S::INCLUSION_UP + (error + error);
-        let mut t = begin;
-        let mut steps = 0;
-        if !self.finite {
-            return (Advanced::Open { from: begin }, 0);
-        }
-        while steps < most {
-            steps += 1;
-            let x = self.at(t);
-            let p = nearest(&x);
-            let length = at_most(p);
-            if length <= d.under {
-                return (Advanced::Within { from: t, to: t }, steps);
-            }
-            let Some(next) = self.until(&x, p, (d.over, error)) else {
-                return (Advanced::Open { from: t }, steps);
-            };
-            if next >= end {
-                return (Advanced::Apart, steps);
-            }
-            let next = next.max(t);
-            let (near, step) = (length <= d.under + d.slack, next - t);
-            if near || step < d.pause * S::of(0.25) {
-                let later = (next + d.pause).min(end);
-                if at_most(nearest(&self.at(later))) <= d.under {
-                    return (Advanced::Within { from: next, to: later }, steps);
-                }
-                if near && step < d.pause * S::of(0.02) {
-                    return (self.look_ahead(next, end, d, at_most), steps);
-                }
-            }
-            if !(next > t) {
-                return (Advanced::Open { from: t }, steps);
-            }
-            t = next;
-        }
-        (Advanced::Open { from: t }, steps)
+    pub fn new(pair: Pair<S, N>, (begin, end): (S, S), distance: Distance<S>, most: u32) -> Self {
+        Advance { pair, distance, at: begin, end, steps: 0, most: if pair.finite { most } else { 0 } }
     }
 
+    /// All steps.
+    #[inline(always)]
+    pub fn run(&mut self) -> Advanced<S> {
+        loop {
+            if let Some(told) = self.step() {
+                return told;
+            }
+        }
+    }
+
+    /// The computed nearest point is within this of the origin, and so is a point of the exact hull.
+    #[inline(always)]
+    fn at_most(&self, p: Vec3<S>) -> S {
+        let error = self.error();
+        p.dot(p).sqrt() * S::INCLUSION_UP + (error + error)
+    }
+
+    #[inline(always)]
+    fn error(&self) -> S {
+        S::ADVANCE_POINT * self.pair.reach + S::ISOLATE_UNDERFLOW
+    }
+
+    /// One step; what is known, once that is all. About 150 operations, twice that where the distance is near.
+    #[inline(always)]
+    pub fn step(&mut self) -> Option<Advanced<S>> {
+        let (d, t) = (&self.distance, self.at);
+        if self.steps >= self.most {
+            return Some(Advanced::Open { from: t });
+        }
+        self.steps += 1;
+        let x = self.pair.at(t);
+        let p = nearest(&x);
+        let length = self.at_most(p);
+        if length <= d.under {
+            return Some(Advanced::Within { from: t, to: t });
+        }
+        let Some(next) = self.pair.until(&x, p, (d.over, self.error())) else {
+            return Some(Advanced::Open { from: t });
+        };
+        if next >= self.end {
+            return Some(Advanced::Apart);
+        }
+        let next = next.max(t);
+        let (near, step) = (length <= d.under + d.slack, next - t);
+        if near || step < d.pause * S::of(0.25) {
+            let later = (next + d.pause).min(self.end);
+            if self.at_most(nearest(&self.pair.at(later))) <= d.under {
+                return Some(Advanced::Within { from: next, to: later });
+            }
+            if near && step < d.pause * S::of(0.02) {
+                return Some(self.look_ahead(next));
+            }
+        }
+        if !(next > t) {
+            return Some(Advanced::Open { from: t });
+        }
+        self.at = next;
+        None
+    }
+
+    /// Near at `from`: whether some later time is certain.
+    #[inline(always)]
+    fn look_ahead(&self, from: S) -> Advanced<S> {
+        let mut ahead = self.distance.pause + self.distance.pause;
+        for _ in 0..AHEAD {
+            let to = from + ahead;
+            if to >= self.end || !(to > from) {
+                break;
+            }
+            if self.at_most(nearest(&self.pair.at(to))) <= self.distance.under {
+                return Advanced::Within { from, to };
+            }
+            ahead = ahead + ahead;
+        }
+        Advanced::Near { from }
+    }
+}
+
+impl<S: Grid, const N: usize> Pair<S, N> {
     /// Until when all control vectors are farther than the distance along `p`; None if they are not even at the time of `x`.
     ///
     /// With `n = p / |p|` as rounded, a control vector is farther where `n . w(t)` is above the distance times the length of
@@ -130,23 +183,6 @@ impl<S: Grid, const N: usize> Pair<S, N> {
             }
         }
         Some(next)
-    }
-
-    /// Near at `from`: whether some later time is certain.
-    #[inline(always)]
-    fn look_ahead(&self, from: S, end: S, d: &Distance<S>, at_most: impl Fn(Vec3<S>) -> S) -> Advanced<S> {
-        let mut ahead = d.pause + d.pause;
-        for _ in 0..AHEAD {
-            let to = from + ahead;
-            if to >= end || !(to > from) {
-                break;
-            }
-            if at_most(nearest(&self.at(to))) <= d.under {
-                return Advanced::Within { from, to };
-            }
-            ahead = ahead + ahead;
-        }
-        Advanced::Near { from }
     }
 }
 

@@ -71,6 +71,12 @@ impl<S: Real> Cubic<S> {
         !(a.max(b).max(c.max(d)) > self.error + self.error)
     }
 
+    /// Whether the cubic certainly has no root in the step: its own coefficients, not restricted.
+    #[inline(always)]
+    pub fn rootless_throughout(&self) -> bool {
+        self.one_sign(&self.k)
+    }
+
     /// Whether the cubic certainly has no root in `[from, to]`.
     #[inline(always)]
     pub fn rootless(&self, from: S, to: S) -> bool {

@@ -78,7 +78,7 @@ impl<S: Grid, const N: usize> Pair<S, N> {
                 // Far enough for the sign of the cubic to be certain on both sides.
                 let unsure = S::of(3.0) * g.error * width / slope(&part, s).abs() + S::of(4.0) * S::U;
                 let around = unsure.max(look.around.min(width * S::of(WIDEST)));
-                if !(around < S::of(WIDEST)) {
+                if !(around <= S::of(WIDEST)) {
                     return Found::Open { from, flat: false };
                 }
                 let (low, high) = ((t - around).max(S::ZERO), (t + around).min(self.end));

@@ -9,17 +9,17 @@
 //! | [`near`] | what stays farther than half the tolerance; and when what does not comes nearer | f64 |
 //! | the search of [`crate::prim::inclusion`] | what is left, by boxes | f64 |
 //!
-//! With a separation: [`separated`] in f32, then in f64, then [`near`]. Every rung is a function of the pair and of what is
+//! With a separation: [`separated`] in f32, then [`Separating`] in f64. Every rung is a function of the pair and of what is
 //! asked, so the answer is; [`vf_certified`] and [`ee_certified`] climb for one pair as the kernels do for a list.
 
-use super::advance::{Advanced, Distance};
+use super::advance::{Advance, Advanced, Distance};
 use super::find::{Found, Look};
 use super::pair::{Edges, Face, Pair};
 use crate::math::Real;
 use crate::prim::cubic::Moving;
 use crate::prim::inclusion::{self, Grid, Params, STACK, Search, Verdict};
 use crate::prim::signs::Certain;
-use crate::prim::tri_tri::meets;
+use crate::prim::tri_tri::{point_on_triangle, segments_meet};
 use core::mem::MaybeUninit;
 
 /// Slices of a window, a lane each.
@@ -28,8 +28,9 @@ pub const SLICES: u32 = 32;
 const STEPS: [u32; 2] = [6, 12];
 /// How long around a suspect time is looked at, in pauses: first, and in a slice. Both sides are less than two pauses.
 const AROUND: [f64; 2] = [0.9, 0.03];
-/// Steps of advancement before the next rung is asked.
-const ADVANCES: u32 = 64;
+/// Steps of advancement before the next rung is asked: in f32, where few pairs take more and many lanes would wait for them,
+/// and in f64.
+const ADVANCES: [u32; 2] = [4, 64];
 
 /// Which rungs there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,7 +49,7 @@ pub enum Rungs {
 pub fn rejected<const N: usize>(pair: &Pair<f32, N>) -> bool {
     let Some((begin, end)) = pair.window() else { return true };
     let g = pair.cubic();
-    pair.finite && (g.rootless(0.0, 1.0) || g.rootless(begin, end))
+    pair.finite && (g.rootless_throughout() || g.rootless(begin, end))
 }
 
 /// What isolation decides: separated, or a contact whose time is known as well as the tolerance demands; of the `last` rung
@@ -74,14 +75,13 @@ fn met<S: Real>(from: S, to: S, p: &Params) -> Option<Verdict> {
 /// Whether a vertex touches a face at the start. Exact.
 #[inline]
 pub fn vf_touch<R: Real>(v: Moving<R>, f: [Moving<R>; 3]) -> bool {
-    // Triangles without area are the points and segments that they are.
-    meets::<R, Certain>(&[v.t0; 3], &f.map(|v| v.t0)) == Some(true)
+    point_on_triangle::<R, Certain>(v.t0, &f.map(|v| v.t0)) == Some(true)
 }
 
 /// Whether two edges touch at the start. Exact.
 #[inline]
 pub fn ee_touch<R: Real>(a: [Moving<R>; 2], b: [Moving<R>; 2]) -> bool {
-    meets::<R, Certain>(&[a[0].t0, a[1].t0, a[1].t0], &[b[0].t0, b[1].t0, b[1].t0]) == Some(true)
+    segments_meet::<R, Certain>(a.map(|v| v.t0), b.map(|v| v.t0)) == Some(true)
 }
 
 /// What a slice of the window holds.
@@ -126,30 +126,83 @@ pub fn sliced<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), i: 
 /// [`NEAR_FINEST`]: crate::math::tolerance::NEAR_FINEST
 #[inline]
 pub fn near<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), p: &Params) -> Verdict {
+    let mut advance = nearness(pair, (begin, end), p);
+    nearly(advance.run(), advance.steps, p)
+}
+
+#[inline(always)]
+fn nearness<const N: usize>(pair: &Pair<f64, N>, window: (f64, f64), p: &Params) -> Advance<f64, N> {
     let half = 0.5 * pair.scaled(p.tolerance).max(crate::math::tolerance::NEAR_FINEST * pair.reach);
     let distance = Distance::of(pair, pair.scaled(p.separation) + half, half);
-    let (told, steps) = pair.advance((begin, end), &distance, p.budget.max(ADVANCES));
+    Advance::new(*pair, window, distance, p.budget.max(ADVANCES[1]))
+}
+
+#[inline(always)]
+fn nearly(told: Advanced<f64>, steps: u32, p: &Params) -> Verdict {
     match told {
         Advanced::Apart => Verdict::separated(p.end, 0),
         Advanced::Within { from, .. } | Advanced::Near { from } => {
             Verdict::unresolved(from.min(p.end), p.end, 0, false)
         }
-        Advanced::Open { from } => Verdict::unresolved(from.min(p.end), p.end, 0, steps >= ADVANCES),
+        Advanced::Open { from } => {
+            Verdict::unresolved(from.min(p.end), p.end, 0, steps >= p.budget.max(ADVANCES[1]))
+        }
     }
 }
 
-/// What advancement tells of a separation: separated, or when first within it.
 #[inline(always)]
-pub fn separated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bool) -> Option<Verdict> {
+fn separating<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, most: u32) -> Advance<S, N> {
     let slack = pair.scaled(p.tolerance).max(S::ADVANCE_FINEST * pair.reach);
     let distance = Distance::of(pair, pair.scaled(p.separation), slack);
-    match pair.advance((S::ZERO, pair.end), &distance, ADVANCES).0 {
+    Advance::new(*pair, (S::ZERO, pair.end), distance, most)
+}
+
+/// What a few steps of advancement in f32 tell of a separation: separated, or when first within it.
+#[inline(always)]
+pub fn separated<const N: usize>(pair: &Pair<f32, N>, p: &Params) -> Option<Verdict> {
+    let mut advance = separating(pair, p, ADVANCES[0]);
+    match advance.run() {
         Advanced::Apart => Some(Verdict::separated(p.end, 0)),
-        Advanced::Within { from, to } if last || to - from <= distance.pause + distance.pause => {
+        Advanced::Within { from, to } if to - from <= 2.0 * pair.pause(pair.scaled(p.tolerance)) => {
             met(from, to, p)
         }
-        Advanced::Near { from } if last => Some(Verdict::unresolved(from.wide().min(p.end), p.end, 0, false)),
         _ => None,
+    }
+}
+
+/// The last rungs of a separation, step by step: advancement to it; where that does not tell, [`near`].
+#[derive(Clone, Copy, Debug)]
+pub struct Separating<const N: usize> {
+    pair: Pair<f64, N>,
+    advance: Advance<f64, N>,
+    nearness: bool,
+}
+
+impl<const N: usize> Separating<N> {
+    /// Begins.
+    #[inline(always)]
+    pub fn begin(pair: Pair<f64, N>, p: &Params) -> Self {
+        Separating { pair, advance: separating(&pair, p, ADVANCES[1]), nearness: false }
+    }
+
+    /// A step; the verdict, once there is one.
+    #[inline(always)]
+    pub fn step(&mut self, p: &Params) -> Option<Verdict> {
+        let told = self.advance.step()?;
+        if self.nearness {
+            return Some(nearly(told, self.advance.steps, p));
+        }
+        let verdict = match told {
+            Advanced::Apart => Some(Verdict::separated(p.end, 0)),
+            Advanced::Within { from, to } => met(from, to, p),
+            Advanced::Near { from } => Some(Verdict::unresolved(from.min(p.end), p.end, 0, false)),
+            Advanced::Open { .. } => None,
+        };
+        if verdict.is_none() {
+            self.advance = nearness(&self.pair, (0.0, self.pair.end), p);
+            self.nearness = true;
+        }
+        verdict
     }
 }
 
@@ -205,8 +258,15 @@ fn climb<const N: usize>(
     p: &Params,
 ) -> Verdict {
     if p.separation > 0.0 {
-        let first = if rungs == Rungs::Double { None } else { separated(&single(), p, false) };
-        return first.unwrap_or_else(|| separated_at_last(&double(), p));
+        let first = if rungs == Rungs::Double { None } else { separated(&single(), p) };
+        return first.unwrap_or_else(|| {
+            let mut last = Separating::begin(double(), p);
+            loop {
+                if let Some(verdict) = last.step(p) {
+                    return verdict;
+                }
+            }
+        });
     }
     if rejected(&single()) {
         return Verdict::separated(p.end, 0);
@@ -266,10 +326,4 @@ pub fn decided<const N: usize>(
             if verdict.is_separated() { verdict } else { search(verdict) }
         }
     }
-}
-
-/// The last rungs of a separation.
-#[inline]
-pub fn separated_at_last<const N: usize>(pair: &Pair<f64, N>, p: &Params) -> Verdict {
-    separated(pair, p, true).unwrap_or_else(|| near(pair, (0.0, pair.end), p))
 }

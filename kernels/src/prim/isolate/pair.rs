@@ -90,33 +90,38 @@ impl<S: Grid, const N: usize> Pair<S, N> {
     /// contact outside. None if there is no such time.
     ///
     /// The boxes overlap on an axis where the least component of the control vectors is not above zero and the largest not
-    /// below. Both are mixtures of their values at the ends of the step; a computed value has the exact one's sign, and the
-    /// time at which the sign changes is computed within `5u` and half a subnormal, as in [`crate::bv::Linear`].
-    #[inline]
+    /// below. Both are mixtures of their values `d0`, `d1` at the ends of the step; a computed value has the exact one's sign
+    /// or is zero, and the sign changes at `|d0| / (|d0| + |d1|)`, computed within `5u` where the sum is above
+    /// [`ISOLATE_UNDERFLOW`] (a value below that may have lost its digits, and clips nothing). Of several ends the innermost
+    /// is picked by products, before the one division: an end that is picked wrongly is still an end.
+    ///
+    /// [`ISOLATE_UNDERFLOW`]: crate::math::tolerance::Tolerance::ISOLATE_UNDERFLOW
+    #[inline(always)]
     pub fn window(&self) -> Option<(S, S)> {
-        let (mut apart, mut from, mut to) = (false, S::ZERO, S::ONE);
+        // Begin and end as fractions of the step.
+        let (mut apart, mut from, mut to) = (false, (S::ZERO, S::ONE), (S::ONE, S::ONE));
         let mut clip = |d0: S, d1: S| {
             let (before, after) = (d0 < S::ZERO, d1 < S::ZERO);
-            let q = d0.abs() / (d0.abs() + d1.abs());
+            let (over, under) = (d0.abs(), d0.abs() + d1.abs());
+            let known = under > S::ISOLATE_UNDERFLOW;
             apart |= before & after;
-            from = if before & (q > from) { q } else { from };
-            to = if after & (q < to) { q } else { to };
+            from = if known & before & (over * from.1 > from.0 * under) { (over, under) } else { from };
+            to = if known & after & (over * to.1 < to.0 * under) { (over, under) } else { to };
         };
-        let ends = |i: usize| {
-            let (mut low, mut high) = (self.w[0][i], self.w[0][i]);
+        for i in 0..3 {
+            let (mut low0, mut high0) = (self.w[0][0][i], self.w[0][0][i]);
+            let (mut low1, mut high1) = (self.w[0][1][i], self.w[0][1][i]);
             for k in 1..N {
-                (low, high) = (low.min(self.w[k][i]), high.max(self.w[k][i]));
+                (low0, high0) = (low0.min(self.w[k][0][i]), high0.max(self.w[k][0][i]));
+                (low1, high1) = (low1.min(self.w[k][1][i]), high1.max(self.w[k][1][i]));
             }
-            (low, high)
-        };
-        let ((low0, high0), (low1, high1)) = (ends(0), ends(1));
-        for k in 0..3 {
-            clip(-low0[k], -low1[k]);
-            clip(high0[k], high1[k]);
+            clip(-low0, -low1);
+            clip(high0, high1);
         }
         if !self.finite {
             return Some((S::ZERO, self.end));
         }
+        let (from, to) = (from.0 / from.1, to.0 / to.1);
         if apart | (from > to + S::ISOLATE_WINDOW) {
             return None;
         }

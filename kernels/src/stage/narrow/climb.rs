@@ -2,7 +2,7 @@
 //! Paper    none: beyond it.
 //! Launch   [`isolate`] in f32 over what may meet, then in f64 over what that left (or in one of them over all); [`settle`]
 //!          over what isolation left; the slices of [`super::slice`] over the rest. With a separation [`separate`] over all
-//!          candidates, then [`separate_rest`] over what that left (or over all). A lane a pair, both kinds in one launch: a block takes
+//!          candidates, then [`super::separate`] over what that left (or over all). A lane a pair, both kinds in one launch: a block takes
 //!          tiles of one kind; a grid of any size strides.
 //! Reads    pairs, faces or edges, positions of both frames (four vertices).
 //! Writes   contacts and unresolved pairs with toi and toi_hi; or, when only the earliest is asked for, one number. And what
@@ -16,12 +16,12 @@
 //!          f64 as many; settling some 30 exact signs for what touches at the start; a separation 150 operations a step.
 
 use super::{listed, moving};
-use crate::abi::{EVERYTHING, Hit, Pair, RungArgs, counter};
+use crate::abi::{EVERYTHING, Hit, Listed, Pair, RungArgs, counter};
 use crate::exec::{Block, Lane, Slot};
 use crate::math::Real;
 use crate::prim::cubic::Moving;
 use crate::prim::inclusion::{Grid, Verdict};
-use crate::prim::isolate::ladder::{ee_touch, isolated, separated, separated_at_last, settled, vf_touch};
+use crate::prim::isolate::ladder::{ee_touch, isolated, separated, settled, vf_touch};
 use crate::prim::isolate::{self, Edges, Face};
 
 /// A vertex and the corners of a face, in motion.
@@ -86,27 +86,11 @@ pub fn separate<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
         a,
         |l, pair| {
             let (v, f) = vertex_face(l, a, pair);
-            separated(&Face::<f32>::new(v, f, &a.params), &a.params, false)
+            separated(&Face::new(v, f, &a.params), &a.params)
         },
         |l, pair| {
             let [x, y] = edge_edge(l, a, pair);
-            separated(&Edges::<f32>::new(x, y, &a.params), &a.params, false)
-        },
-    );
-}
-
-/// A separation, in f64: all that is left.
-pub fn separate_rest<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
-    rung(
-        b,
-        a,
-        |l, pair| {
-            let (v, f) = vertex_face(l, a, pair);
-            Some(separated_at_last(&Face::new(v, f, &a.params), &a.params))
-        },
-        |l, pair| {
-            let [x, y] = edge_edge(l, a, pair);
-            Some(separated_at_last(&Edges::new(x, y, &a.params), &a.params))
+            separated(&Edges::new(x, y, &a.params), &a.params)
         },
     );
 }
@@ -132,7 +116,7 @@ fn unless_later<R: Real, S: Grid, L: Lane, const N: usize>(
 const LISTED: u32 = 1;
 const LEFT: u32 = 1 << 16;
 
-/// Asks each pair; lists what is unresolved or in contact, and leaves to the next rung what has no answer.
+/// Asks each pair of both kinds. The kinds begin at opposite ends of the grid, so that short lists are spread over it.
 #[inline(always)]
 fn rung<R: Real, B: Block>(
     b: &mut B,
@@ -140,25 +124,33 @@ fn rung<R: Real, B: Block>(
     vf: impl Fn(&B::Lane, Pair) -> Option<Verdict>,
     ee: impl Fn(&B::Lane, Pair) -> Option<Verdict>,
 ) {
-    let lanes = b.lanes();
-    let counts = [&a.vf, &a.ee].map(|of| listed(b, of.pairs, a.counters, of.pairs_at));
-    let tiles = counts.map(|count| count.div_ceil(lanes));
+    let (first, blocks) = (b.block(), b.blocks());
+    each(b, (a, &a.vf), first, vf);
+    each(b, (a, &a.ee), blocks - 1 - first, ee);
+}
+
+/// Asks each pair of one kind; lists what is unresolved or in contact, and leaves to the next rung what has no answer.
+#[inline(always)]
+fn each<R: Real, B: Block>(
+    b: &mut B,
+    (a, of): (&RungArgs<R>, &Listed),
+    first: u32,
+    ask: impl Fn(&B::Lane, Pair) -> Option<Verdict>,
+) {
+    let (lanes, stride) = (b.lanes(), b.blocks() * b.lanes());
+    let count = listed(b, of.pairs, a.counters, of.pairs_at);
     let mut hits = b.slot(Hit::default());
     let mut wishes = b.slot(0u32);
     let mut places = b.slot(0u32);
-    let mut tile = b.block();
-    while tile < tiles[0] + tiles[1] {
-        let is_vf = tile < tiles[0];
-        let (of, count) = if is_vf { (&a.vf, counts[0]) } else { (&a.ee, counts[1]) };
-        let base = (if is_vf { tile } else { tile - tiles[0] }) * lanes;
+    let mut base = first * lanes;
+    while base < count {
         b.phase(|l| {
             let i = base + l.lane();
             let mut wish = 0;
             if i < count {
                 let pair = l.read(of.pairs, i);
-                let told = if is_vf { vf(l, pair) } else { ee(l, pair) };
-                let verdict = told.unwrap_or_default();
-                *hits.of(l) = Hit { a: pair.a, b: pair.b, verdict };
+                let told = ask(l, pair);
+                *hits.of(l) = Hit { a: pair.a, b: pair.b, verdict: told.unwrap_or_default() };
                 wish = match told {
                     None => LEFT,
                     Some(verdict) if keep(l, a, verdict) => LISTED,
@@ -182,13 +174,24 @@ fn rung<R: Real, B: Block>(
                 l.write(of.left, place as u32, Pair { a: hit.a, b: hit.b });
             }
         });
-        tile += b.blocks();
+        base += stride;
+    }
+}
+
+/// Lists an answer that is to be listed; a lane by itself.
+#[inline(always)]
+pub(super) fn tell<R: Real, L: Lane>(l: &L, a: &RungArgs<R>, of: &Listed, (pair, verdict): (Pair, Verdict)) {
+    if keep(l, a, verdict) {
+        let place = l.fetch_add(a.counters, of.hits_at, 1);
+        if place < of.hits.len {
+            l.write(of.hits, place as u32, Hit { a: pair.a, b: pair.b, verdict });
+        }
     }
 }
 
 /// Whether an answer is to be listed; counts what is unresolved, and keeps the earliest where only that is asked for.
 #[inline(always)]
-pub(super) fn keep<R: Real, L: Lane>(l: &L, a: &RungArgs<R>, verdict: Verdict) -> bool {
+fn keep<R: Real, L: Lane>(l: &L, a: &RungArgs<R>, verdict: Verdict) -> bool {
     if verdict.is_separated() {
         return false;
     }

@@ -1,12 +1,13 @@
 //! # Narrow: candidates → contacts
 //! Paper    section 6.2.5, "a variant of the Moeller test"; "the cubic equation for each of the 15 elementary tests".
 //! Steps    discrete: [`discrete`]. Continuous: [`sift`] turns triangle pairs into vertex/face and edge/edge candidates,
-//!          each once; [`reject`] leaves out those that certainly stay apart; the rungs of [`climb`] and [`slice`] find
+//!          each once; [`reject`] leaves out those that certainly stay apart; the rungs of [`climb`], [`slice`] and [`separate`] find
 //!          what meets of the others and bound its first time, with proof; or [`solve`] does so by the seed's cubic.
 
 pub mod climb;
 pub mod discrete;
 pub mod reject;
+pub mod separate;
 pub mod sift;
 pub mod slice;
 pub mod solve;

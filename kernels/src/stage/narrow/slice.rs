@@ -9,9 +9,9 @@
 //! Room     hits: counted past the end, grown, run again.
 //! Cost     about 3,000 operations of f64 a lane; a search 1,200 a box, one lane. Boxes wait in a stack in local memory, 3 KB.
 
-use super::climb::{edge_edge, keep, vertex_face};
+use super::climb::{edge_edge, tell, vertex_face};
 use super::listed;
-use crate::abi::{Hit, Listed, Pair, RungArgs};
+use crate::abi::{Listed, Pair, RungArgs};
 use crate::exec::{Block, Lane, Slot};
 use crate::math::Real;
 use crate::prim::inclusion::{self, Verdict};
@@ -93,12 +93,7 @@ fn each<R: Real, B: Block, const N: usize>(
             let pair = motion(l, indices);
             let Some(window) = pair.window() else { return };
             let verdict = decided(&pair, *mine.of(l), window, |known| search(l, indices, known), &a.params);
-            if keep(l, a, verdict) {
-                let place = l.fetch_add(a.counters, of.hits_at, 1);
-                if place < of.hits.len {
-                    l.write(of.hits, place as u32, Hit { a: indices.a, b: indices.b, verdict });
-                }
-            }
+            tell(l, a, of, (indices, verdict));
         });
         i += b.blocks();
     }

@@ -1,21 +1,17 @@
 //! # Solve: vertex/face and edge/edge candidates → contacts with their first time
 //! Paper    section 6.2.5, "we solve the cubic equation for each of the 15 elementary tests".
-//! Launch   `vf` and `ee`, or `additive_vf` and `additive_ee`, a lane a candidate; a grid of any size strides.
+//! Launch   `vf` and `ee`, a lane a candidate; a grid of any size strides.
 //! Reads    candidates that may meet, faces or edges, positions of both frames (four vertices).
 //! Writes   contacts with toi, as if proven, which they are not; or, when only the earliest is asked for, one number.
 //! Before   candidates are complete.
-//! After    the contacts that the solver finds. The cubic, the seed's, can miss and be late: see [`crate::prim::cubic`].
-//!          Additive advancement finds what comes near: see [`crate::prim::additive`]; a pair whose steps end is listed
-//!          as unresolved.
+//! After    the contacts that the cubic, the seed's, finds. It can miss and be late: see [`crate::prim::cubic`].
 //! Room     hits: counted past the end, grown, run again.
-//! Cost     8 B candidate, 12 B indices, 128 B positions (gathered); 400 to 1,500 operations; of
-//!          additive advancement 150 a step.
+//! Cost     8 B candidate, 12 B indices, 128 B positions (gathered); 400 to 1,500 operations.
 
 use super::{append_each, listed, moving};
 use crate::abi::{Hit, Pair, SolveArgs, counter};
 use crate::exec::{Block, Lane};
 use crate::math::Real;
-use crate::prim::additive::{Advance, ee_additive, vf_additive};
 use crate::prim::cubic::{ee_toi, vf_toi};
 use crate::prim::inclusion::Verdict;
 
@@ -35,28 +31,8 @@ pub fn ee<R: Real, S: Real, B: Block>(b: &mut B, a: &SolveArgs<R>) {
     });
 }
 
-/// Vertex/face, positions in R, additive advancement in f64.
-pub fn additive_vf<R: Real, B: Block>(b: &mut B, a: &SolveArgs<R>) {
-    solve(b, a, counter::VF_SURVIVORS, counter::VF_HITS, |l, pair| {
-        let face = l.read(a.faces, pair.b).map(|v| moving(l, &a.frames, v));
-        vf_additive::<R, f64>(moving(l, &a.frames, pair.a), face).map(advanced)
-    });
-}
-
-/// Edge/edge, positions in R, additive advancement in f64.
-pub fn additive_ee<R: Real, B: Block>(b: &mut B, a: &SolveArgs<R>) {
-    solve(b, a, counter::EE_SURVIVORS, counter::EE_HITS, |l, pair| {
-        let ends = |e: u32| l.read(a.edges, e).map(|v| moving(l, &a.frames, v));
-        ee_additive::<R, f64>(ends(pair.a), ends(pair.b)).map(advanced)
-    });
-}
-
 fn contact<S: Real>(toi: S) -> Verdict {
     Verdict::contact(toi.wide(), toi.wide(), 0, false)
-}
-
-fn advanced(found: Advance<f64>) -> Verdict {
-    if found.ended { Verdict::unresolved(found.toi, 1.0, 0, true) } else { contact(found.toi) }
 }
 
 /// Solves each candidate; keeps every contact, or only the smallest time; counts what is left unresolved.

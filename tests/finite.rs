@@ -1,0 +1,174 @@
+//! Floats of every finite size: beyond 2^60 they are kept as doubles, and every choice answers them as it answers the
+//! same scene at ordinary size.
+
+mod support;
+
+use nearmiss::contacts::{Contact, Status};
+use nearmiss::mesh::{Body, Mesh, Positions};
+use nearmiss::query::{Bv, Motion, Solver};
+use nearmiss::{Contacts, Query, Session, scene};
+use std::collections::BTreeMap;
+use support::{ask, engine, microscope, ways};
+
+/// The coordinates of a soup reach to about 1; the powers of two to beyond 2^60, half way, and just below the end of f32.
+const POWERS: [i32; 4] = [50, 62, 100, 126];
+
+/// The body times a power of two, by floats; exactly.
+fn times(body: &Body, power: i32) -> Body {
+    let size = 2f32.powi(power);
+    let mesh = |positions: &Positions| {
+        let Positions::F32(points) = positions else { panic!("floats") };
+        let points: Vec<_> = points.iter().map(|p| p.map(|x| x * size)).collect();
+        assert!(points.iter().flatten().all(|x| x.is_finite() && (*x == 0.0 || x.is_normal())));
+        Mesh::new("scaled", Positions::F32(points), body.faces().to_vec()).expect("a mesh")
+    };
+    let t0 = mesh(body.positions_t0());
+    match body.positions_t1() {
+        None => Body::still(t0),
+        Some(t1) => Body::moving(t0, mesh(t1)).expect("two frames"),
+    }
+}
+
+/// In numbers of at most 2.
+fn soup(moving: bool) -> Body {
+    let body = scene::soup(60, 5, moving).expect("a scene");
+    let most =
+        body.ends().into_iter().flat_map(Positions::to_f64).flatten().fold(0.0f64, |m, x| m.max(x.abs()));
+    times(&body, -(most.log2().floor() as i32))
+}
+
+/// What is wrong with an answer beside that of ordinary size. Times may have other certificates, as f32 cannot be used at
+/// the ends of its range: but both hold the truth, so they overlap.
+fn fault(truth: &Contacts, found: &Contacts) -> Option<String> {
+    if truth.pairs() != found.pairs() {
+        return Some(format!("{} pairs, not {}", found.pairs().len(), truth.pairs().len()));
+    }
+    let rows = |all: &Contacts| -> BTreeMap<_, Contact> {
+        all.contacts().iter().map(|c| ((c.kind, c.a, c.b), *c)).collect()
+    };
+    let (truth, found) = (rows(truth), rows(found));
+    let sure = |c: &&Contact| c.status == Status::Certified;
+    let missed = |one: &BTreeMap<_, Contact>, other: &BTreeMap<_, Contact>| {
+        one.values().filter(sure).find_map(|c| match other.get(&(c.kind, c.a, c.b)) {
+            None => Some(format!("{c:?} is only in one")),
+            Some(o) if o.toi > c.toi_hi || o.status == Status::Certified && c.toi > o.toi_hi => {
+                Some(format!("{c:?} and {o:?}"))
+            }
+            Some(_) => None,
+        })
+    };
+    missed(&truth, &found).or_else(|| missed(&found, &truth))
+}
+
+#[test]
+fn every_choice_answers_floats_of_any_size() {
+    for motion in [Motion::Discrete, Motion::Continuous] {
+        let body = soup(motion == Motion::Continuous);
+        let truth = ask(engine(), vec![body.clone()], Query::of(motion));
+        assert!(truth.len() > 3, "{} contacts", truth.len());
+        for power in POWERS {
+            let large = times(&body, power);
+            assert_eq!(large.positions_t0().is_f64(), power > 60);
+            for query in ways(Query::of(motion)) {
+                let found = ask(engine(), vec![large.clone()], query);
+                assert_eq!(fault(&truth, &found), None, "2^{power}, {query:?}");
+            }
+            for bv in Bv::ALL {
+                let query = Query { bv: Some(bv), ..Query::of(motion) };
+                let seen = ask(microscope(support::ORDERS[2]), vec![large.clone()], query);
+                assert_eq!(
+                    seen.answer,
+                    ask(engine(), vec![large.clone()], query).answer,
+                    "2^{power}, {bv:?}"
+                );
+            }
+        }
+    }
+}
+
+/// In doubles nothing but the exponents differs.
+#[test]
+fn in_doubles_the_times_are_the_same_bits() {
+    let body = soup(true);
+    let mesh =
+        |p: &Positions| Mesh::new("f64", Positions::F64(p.to_f64()), body.faces().to_vec()).expect("a mesh");
+    let [t0, t1] = body.ends().map(mesh);
+    let doubles = Body::moving(t0, t1).expect("two frames");
+    for motion in [Motion::Continuous, Motion::Earliest] {
+        let query = Query { solver: Some(Solver::CertifiedF64), ..Query::of(motion) };
+        let truth = ask(engine(), vec![doubles.clone()], query);
+        for power in POWERS {
+            assert_eq!(ask(engine(), vec![times(&body, power)], query).answer, truth.answer, "2^{power}");
+        }
+    }
+}
+
+#[test]
+fn a_separation_of_any_size() {
+    let body = soup(true);
+    let near = |power: i32| Query { separation: Some(2f64.powi(power - 6)), ..Query::of(Motion::Continuous) };
+    let truth = ask(engine(), vec![body.clone()], near(0));
+    for power in POWERS {
+        for bv in Bv::ALL {
+            let query = Query { bv: Some(bv), ..near(power) };
+            let found = ask(engine(), vec![times(&body, power)], query);
+            assert_eq!(fault(&truth, &found), None, "2^{power}, {query:?}");
+        }
+    }
+    // All within a separation that no float holds.
+    let all = Query { separation: Some(1e60), ..Query::of(Motion::Continuous) };
+    let few =
+        |bv| ask(engine(), vec![scene::soup(6, 5, true).expect("a scene")], Query { bv: Some(bv), ..all });
+    let pairs = few(Bv::Aabb).len();
+    assert!(Bv::ALL.into_iter().all(|bv| few(bv).len() == pairs) && pairs == 15 * (9 + 6), "{pairs}");
+}
+
+/// A session goes over to doubles when the first frame or body needs them, whichever it is.
+#[test]
+fn a_session_goes_over_to_doubles() {
+    for motion in [Motion::Discrete, Motion::Continuous] {
+        let body = soup(motion == Motion::Continuous);
+        let truth = ask(engine(), vec![body.clone()], Query::of(motion));
+        let mut session = Session::new(engine(), vec![body.clone()], Query::of(motion)).expect("a session");
+        for power in [0, 40, 62, 126, 0, 100] {
+            session.move_to(0, times(&body, power)).expect("a frame of the mesh");
+            let found = session.detect().expect("an answer");
+            assert_eq!(fault(&truth, &found), None, "{motion:?}, 2^{power}");
+            session.check_trees().expect("sound trees");
+        }
+        let pair = vec![body.clone(), times(&body, 100)];
+        let swapped = vec![times(&body, 100), body.clone()];
+        let [one, other] = [pair, swapped].map(|bodies| ask(engine(), bodies, Query::of(motion)).len());
+        assert_eq!(one, other);
+    }
+}
+
+/// A frame whose memory ends is an error, and stays one; no frame of old positions is given out.
+#[test]
+fn going_over_without_memory_is_an_error() {
+    let body = soup(false);
+    let device = engine();
+    let held = {
+        let session = Session::new(device.clone(), vec![body.clone()], Query::of(Motion::Discrete));
+        drop(session.expect("a session"));
+        device.bytes().1
+    };
+    let limited = engine().limited(held);
+    let mut session =
+        Session::new(limited, vec![body.clone()], Query::of(Motion::Discrete)).expect("as much as it needs");
+    session.detect().expect("an answer");
+    for _ in 0..2 {
+        assert_eq!(session.move_to(0, times(&body, 100)).expect_err("doubles take more").exit_code(), 4);
+        assert_eq!(session.detect().expect_err("still not enough").exit_code(), 4);
+    }
+}
+
+#[test]
+fn the_comparison_can_fail() {
+    let body = soup(true);
+    let truth = ask(engine(), vec![body.clone()], Query::of(Motion::Continuous));
+    let other = ask(engine(), vec![soup(false)], Query::of(Motion::Discrete));
+    assert!(fault(&truth, &other).is_some());
+    let nearer = Query { separation: Some(0.125), ..Query::of(Motion::Continuous) };
+    assert!(fault(&truth, &ask(engine(), vec![body], nearer)).is_some());
+}
