@@ -293,6 +293,13 @@ fn isolate_window() {
         if most.is_finite() { most } else { f64::NAN }
     }
     each_pair!("ISOLATE_WINDOW", Hunt { starts: 12, ..brief(77) }, 0, ratio);
+    // An axis on which differences underflow must not tell a time.
+    let faint = |r: &mut SmallRng| {
+        let size = |i: usize| if i % 3 == 0 { f64::from(f32::from_bits(4)) } else { 1.0 };
+        plain(r, 24).into_iter().enumerate().map(|(i, x)| size(i) * x).collect()
+    };
+    let hunt = Hunt { starts: 40, ..brief(77) };
+    held("ISOLATE_WINDOW", "f64 in f32, an axis faint", &hunt.most::<f64>(faint, ratio::<f64, f32, 3>));
 }
 
 /// Measured: the error of a direction's product with a control vector at a time, of what one component of a point may be
