@@ -125,7 +125,7 @@ fn isolate_underflow() {
         (most - covered).over(&(half * &six))
     }
     fn start(r: &mut SmallRng, least: f64) -> Vec<f64> {
-        let size = |i: usize| if i < 24 && i % 3 == 0 { least } else { 0.1 };
+        let size = |i: usize| if i < 24 && i.is_multiple_of(3) { least } else { 0.1 };
         (0..26).map(|i| size(i) * r.random_range(-9.0..9.0)).collect()
     }
     let least = f64::from(f32::from_bits(1));
@@ -295,7 +295,7 @@ fn isolate_window() {
     each_pair!("ISOLATE_WINDOW", Hunt { starts: 12, ..brief(77) }, 0, ratio);
     // An axis on which differences underflow must not tell a time.
     let faint = |r: &mut SmallRng| {
-        let size = |i: usize| if i % 3 == 0 { f64::from(f32::from_bits(4)) } else { 1.0 };
+        let size = |i: usize| if i.is_multiple_of(3) { f64::from(f32::from_bits(4)) } else { 1.0 };
         plain(r, 24).into_iter().enumerate().map(|(i, x)| size(i) * x).collect()
     };
     let hunt = Hunt { starts: 40, ..brief(77) };
