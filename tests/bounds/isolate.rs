@@ -125,7 +125,7 @@ fn isolate_underflow() {
         (most - covered).over(&(half * &six))
     }
     fn start(r: &mut SmallRng, least: f64) -> Vec<f64> {
-        let size = |i: usize| if i < 24 && i % 3 == 0 { least } else { 0.1 };
+        let size = |i: usize| if i < 24 && i.is_multiple_of(3) { least } else { 0.1 };
         (0..26).map(|i| size(i) * r.random_range(-9.0..9.0)).collect()
     }
     let least = f64::from(f32::from_bits(1));
@@ -201,7 +201,7 @@ fn isolate_turn() {
         };
         (0..N).map(|k| error(k).over(&bound)).fold(0.0, f64::max)
     }
-    each_pair!("ISOLATE_TURN", brief(74), 1, ratio);
+    each_pair!("ISOLATE_TURN", Hunt::new(74), 1, ratio);
 }
 
 /// Measured: how far a turn is from that of the exact corners at either end of a time around it, of the whole bound that
@@ -293,6 +293,13 @@ fn isolate_window() {
         if most.is_finite() { most } else { f64::NAN }
     }
     each_pair!("ISOLATE_WINDOW", Hunt { starts: 12, ..brief(77) }, 0, ratio);
+    // An axis on which differences underflow must not tell a time.
+    let faint = |r: &mut SmallRng| {
+        let size = |i: usize| if i.is_multiple_of(3) { f64::from(f32::from_bits(4)) } else { 1.0 };
+        plain(r, 24).into_iter().enumerate().map(|(i, x)| size(i) * x).collect()
+    };
+    let hunt = Hunt { starts: 40, ..brief(77) };
+    held("ISOLATE_WINDOW", "f64 in f32, an axis faint", &hunt.most::<f64>(faint, ratio::<f64, f32, 3>));
 }
 
 /// Measured: the error of a direction's product with a control vector at a time, of what one component of a point may be
