@@ -1,5 +1,6 @@
 //! Narrow: the lists and the launches of the last stage, step by step.
 
+use super::blunt::{self, Blunt};
 use super::layout::Layout;
 use super::precision::Precision;
 use super::room::{Growing, List, Tally};
@@ -96,8 +97,10 @@ pub struct Continuous {
     pub ee_hits: List<Hit>,
     /// Pairs that f32 leaves to f64, vertex/face and edge/edge; where both are used.
     escalated: Option<[List<Pair>; 2]>,
-    /// Hits that are not certain.
-    unresolved: Tally,
+    /// Hits that are not certain, those whose budget ended, those of both, and those too large for the tolerance.
+    tallies: [Tally; 4],
+    /// Whether pairs may be too large for the tolerance: see [`Blunt`].
+    pub blunt: Option<Blunt>,
     /// The smallest toi, where only that is asked for.
     pub earliest: Option<Buffer<u64>>,
 }
@@ -148,8 +151,8 @@ impl Narrow {
             (Narrow::Continuous(c), Step::Sift) => vec![&mut c.vf, &mut c.ee],
             (Narrow::Continuous(c), Step::Reject) => vec![&mut c.vf_survivors, &mut c.ee_survivors],
             (Narrow::Continuous(c), Step::Solve) => {
-                let mut lists: Vec<&mut dyn Growing> =
-                    vec![&mut c.vf_hits, &mut c.ee_hits, &mut c.unresolved];
+                let mut lists: Vec<&mut dyn Growing> = vec![&mut c.vf_hits, &mut c.ee_hits];
+                lists.extend(c.tallies.iter_mut().map(|tally| tally as &mut dyn Growing));
                 lists.extend(c.escalated.iter_mut().flatten().map(|list| list as &mut dyn Growing));
                 lists
             }
@@ -247,7 +250,9 @@ impl Continuous {
             vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, hits[0])?,
             ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, hits[1])?,
             escalated: (query.solver() == Solver::Certified).then(escalated).transpose()?,
-            unresolved: Tally(counter::UNRESOLVED),
+            tallies: [counter::UNRESOLVED, counter::ENDED, counter::ENDED_UNRESOLVED, counter::BLUNT]
+                .map(Tally),
+            blunt: None,
             earliest: earliest.then(|| device.buffer(1)).transpose()?,
         })
     }
@@ -308,7 +313,8 @@ impl Continuous {
             earliest.write(&[u64::MAX])?;
         }
         if given.query.solver().is_certified() {
-            return self.certify(given);
+            self.certify(given)?;
+            return blunt::count(self.blunt, (self.edges.span(), &self.vf_hits, &self.ee_hits), given);
         }
         let args = |survivors: &List<Pair>, hits: &List<Hit>| SolveArgs {
             frames: given.frames,
@@ -375,7 +381,7 @@ impl Continuous {
 }
 
 /// Launches a kernel over up to `room` items.
-fn launch_striding<E: Entry>(device: &Device, room: usize, args: &E::Args) -> Result<(), Error> {
+pub fn launch_striding<E: Entry>(device: &Device, room: usize, args: &E::Args) -> Result<(), Error> {
     device.launch::<E>(device.blocks_striding::<E>(room), args)
 }
 

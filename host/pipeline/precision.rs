@@ -2,7 +2,8 @@
 
 use crate::mesh::Positions;
 use nearmiss_kernels::abi::{
-    CertifyArgs, DiscreteArgs, FitArgs, GroupsArgs, MortonArgs, RejectArgs, SiftArgs, SolveArgs, TreeletsArgs,
+    BluntArgs, CertifyArgs, DiscreteArgs, FitArgs, GroupsArgs, MortonArgs, RejectArgs, SiftArgs, SolveArgs,
+    TreeletsArgs,
 };
 use nearmiss_kernels::bv::{Aabb, Linear, Obb};
 use nearmiss_kernels::entry::{self, Entry};
@@ -52,6 +53,8 @@ pub trait Precision: Real {
     type Ee32: Entry<Args = SolveArgs<Self>>;
     /// Edge/edge by the cubic in f64.
     type Ee64: Entry<Args = SolveArgs<Self>>;
+    /// Listed pairs that are too large for the tolerance.
+    type Blunt: Entry<Args = BluntArgs<Self>>;
     /// What meets, by boxes in f32, proven.
     type Certify32: Entry<Args = CertifyArgs<Self>>;
     /// What meets, by boxes in f64, proven.
@@ -83,6 +86,7 @@ impl Precision for f32 {
     type Vf64 = entry::narrow_vf_f32_f64;
     type Ee32 = entry::narrow_ee_f32_f32;
     type Ee64 = entry::narrow_ee_f32_f64;
+    type Blunt = entry::narrow_blunt_f32;
     type Certify32 = entry::narrow_certify_f32_f32;
     type Certify64 = entry::narrow_certify_f32_f64;
 
@@ -117,6 +121,7 @@ impl Precision for f64 {
     type Vf64 = entry::narrow_vf_f64_f64;
     type Ee32 = entry::narrow_ee_f64_f32;
     type Ee64 = entry::narrow_ee_f64_f64;
+    type Blunt = entry::narrow_blunt_f64;
     type Certify32 = entry::narrow_certify_f64_f32;
     type Certify64 = entry::narrow_certify_f64_f64;
 

@@ -5,7 +5,7 @@ use crate::bv::{Aabb, Linear, Obb};
 use crate::exec::{BINS, Block, WARP};
 use crate::queue::worker;
 use crate::stage::construct::{morton, sort, tree, treelet};
-use crate::stage::narrow::{certify, discrete, reject, sift, solve};
+use crate::stage::narrow::{blunt, certify, discrete, reject, sift, solve};
 use crate::stage::refit::{bottom_up, levels, treelets};
 use crate::stage::traverse::{front, queue, steal};
 use crate::stage::{balance, fit, traverse};
@@ -157,6 +157,8 @@ kernels! {
     narrow_ee_f32_f64: solve::ee::<f32, f64, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_ee_f64_f32: solve::ee::<f64, f32, B>, [SolveArgs<f64>], WIDE, 0;
     narrow_ee_f64_f64: solve::ee::<f64, f64, B>, [SolveArgs<f64>], WIDE, 0;
+    narrow_blunt_f32: blunt::blunt::<f32, B>, [BluntArgs<f32>], WIDE, 0;
+    narrow_blunt_f64: blunt::blunt::<f64, B>, [BluntArgs<f64>], WIDE, 0;
     narrow_certify_f32_f32: certify::certify::<f32, f32, B>, [CertifyArgs<f32>], DRAWING, certify::SHARED;
     narrow_certify_f32_f64: certify::certify::<f32, f64, B>, [CertifyArgs<f32>], DRAWING, certify::SHARED;
     narrow_certify_f64_f32: certify::certify::<f64, f32, B>, [CertifyArgs<f64>], DRAWING, certify::SHARED;

@@ -332,8 +332,14 @@ pub mod counter {
     pub const EE_ESCALATED: u32 = ENDS + 11;
     /// Hits that are neither certain contacts nor certainly none.
     pub const UNRESOLVED: u32 = ENDS + 12;
+    /// Hits whose budget of boxes ended.
+    pub const ENDED: u32 = ENDS + 13;
+    /// Those of them that are neither certain contacts nor certainly none.
+    pub const ENDED_UNRESOLVED: u32 = ENDS + 14;
+    /// Hits too large for the tolerance.
+    pub const BLUNT: u32 = ENDS + 15;
     /// How many counters there are.
-    pub const COUNT: u32 = ENDS + 13;
+    pub const COUNT: u32 = ENDS + 16;
 }
 /// Rounds of the traversal that may spill; one more, without a budget, ends it.
 pub const ROUNDS: u32 = 4;

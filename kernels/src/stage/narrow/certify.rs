@@ -127,6 +127,10 @@ fn tell<R: Real, L: Lane>(l: &L, a: &CertifyArgs<R>, of: &Listed, Told { pair, v
             // Times are in [0, 1]: their bits are ordered as they are.
             l.fetch_min(a.earliest, 0, verdict.toi.to_bits());
         } else {
+            if verdict.exhausted() {
+                l.fetch_add(a.counters, counter::ENDED, 1);
+                l.fetch_add(a.counters, counter::ENDED_UNRESOLVED, !verdict.is_contact() as u64);
+            }
             let place = l.fetch_add(a.counters, of.hits_at, 1);
             if place < of.hits.len {
                 l.write(of.hits, place as u32, Hit { a: pair.a, b: pair.b, verdict });
