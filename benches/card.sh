@@ -63,7 +63,7 @@ if [ "$half" = agreement ]; then
     exit
 fi
 
-# 3. Times: medians of the program's own report, which are device events.
+# 3. Times: medians of the program's own report: device events, and `wall`, what the caller of `detect` waits for.
 : >"$out/times.jsonl"
 for scene in "${scenes[@]}"; do
     # shellcheck disable=SC2086
@@ -112,7 +112,7 @@ python3 - "$out" "$(machine)" <<'PYTHON'
 import csv, glob, json, os, sys
 out, machine = sys.argv[1:]
 rows = [json.loads(line) for line in open(f"{out}/times.jsonl")]
-stages = ["construct", "fit", "refit", "traverse", "balance", "narrow", "total"]
+stages = ["construct", "fit", "refit", "traverse", "balance", "narrow", "total", "wall"]
 with open(f"{out}/times.csv", "w", newline="") as file:
     write = csv.writer(file)
     write.writerow(["machine", "scene", "triangles", "query", "solver", "triangle_pairs", "candidates", "contacts",

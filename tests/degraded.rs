@@ -88,15 +88,16 @@ fn what_touches_without_passing_is_told() {
 
 #[test]
 fn a_tolerance_below_the_precision_is_told() {
-    let told = |solver, motion, tolerance| {
+    let told_by = |device, solver, motion, tolerance| {
         let query = Query { tolerance: Some(tolerance), motion, ..by(solver) };
-        let all = ask(engine(), soup(), query);
+        let all = ask(device, soup(), query);
         let told = all.degraded().iter().find_map(|reason| match reason {
             Degraded::ToleranceBelowPrecision { pairs } => Some(*pairs),
             _ => None,
         });
         (told, all.len() as u64)
     };
+    let told = |solver, motion, tolerance| told_by(engine(), solver, motion, tolerance);
     for (solver, tolerance) in
         [(Solver::CertifiedF32, 1e-9), (Solver::Certified, 1e-18), (Solver::CertifiedF64, 1e-18)]
     {
@@ -112,6 +113,9 @@ fn a_tolerance_below_the_precision_is_told() {
     // A tolerance that large pairs cannot have and small ones can.
     let (some, listed) = told(Solver::CertifiedF32, Motion::Continuous, 1.3e-6);
     assert!(some.flatten().is_some_and(|some| 0 < some && some < listed), "{some:?} of {listed}");
+    for device in support::machines() {
+        assert_eq!(told_by(device, Solver::CertifiedF32, Motion::Continuous, 1.3e-6), (some, listed));
+    }
 }
 
 #[test]
@@ -152,6 +156,22 @@ fn a_front_that_is_dropped_is_told() {
     let dropped = told(true);
     assert!(!dropped[0] && dropped.contains(&true), "{dropped:?}");
     assert_eq!(told(false), [false; 4]);
+}
+
+/// What was counted for one frame is not told of the next, nor is what the bodies were before they moved.
+#[test]
+fn each_frame_is_told_by_itself() {
+    let query = Query { tolerance: Some(1.3e-6), boxes: Some(2), ..by(Solver::CertifiedF32) };
+    let frames = [scene::soup(60, 5, true), scene::soup(60, 6, true), scene::soup(60, 5, true)];
+    let mut session = Session::new(engine(), soup(), query).expect("a session");
+    for frame in frames.map(|frame| frame.expect("a scene")) {
+        session.move_to(0, frame.clone()).expect("a frame");
+        let alone = ask(engine(), vec![frame], query);
+        assert!(alone.degraded().len() >= 3, "{:?}", alone.degraded());
+        for _ in 0..2 {
+            assert_eq!(session.detect().expect("an answer").degraded(), alone.degraded());
+        }
+    }
 }
 
 /// As much memory as a frame needs, a little less, and so on down to none: the answer, or an error that says how much was

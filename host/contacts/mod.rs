@@ -10,7 +10,7 @@ use crate::device::Device;
 use crate::mesh::Body;
 use crate::pipeline::{Found, Layout, Stages};
 use crate::query::{Motion, Query, Refit, Solver, Traversal};
-use nearmiss_kernels::abi::{ROUNDS, counter};
+use nearmiss_kernels::abi::{Hit, Pair, ROUNDS, counter};
 use nearmiss_kernels::prim::inclusion::Verdict;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -204,8 +204,8 @@ impl Contacts {
         let answer = match query.motion {
             Motion::Earliest => Answer::Earliest(found.earliest),
             Motion::Discrete => {
-                let mut pairs: Vec<_> =
-                    found.pairs.par_iter().map(|p| [p.a, p.b - second.triangle]).collect();
+                let listed: &[Pair] = found.pairs.as_deref().unwrap_or_default();
+                let mut pairs: Vec<_> = listed.par_iter().map(|p| [p.a, p.b - second.triangle]).collect();
                 pairs.par_sort_unstable();
                 Answer::Pairs(pairs)
             }
@@ -215,17 +215,19 @@ impl Contacts {
                     let status = Status::of(certified, verdict);
                     Contact { kind, a, b, toi: verdict.toi, toi_hi: verdict.toi_hi, status }
                 };
-                let vf = found.vf.par_iter().map(|hit| {
+                let [of_vf, of_ee]: [&[Hit]; 2] = match &found.hits {
+                    Some([vf, ee]) => [vf, ee],
+                    None => [&[], &[]],
+                };
+                let vf = of_vf.par_iter().map(|hit| {
                     if layout.bodies() == 2 && hit.a >= second.vertex {
                         contact(Kind::Fv, hit.b, hit.a - second.vertex, &hit.verdict)
                     } else {
                         contact(Kind::Vf, hit.a, hit.b - second.triangle, &hit.verdict)
                     }
                 });
-                let ee = found
-                    .ee
-                    .par_iter()
-                    .map(|hit| contact(Kind::Ee, hit.a, hit.b - second.edge, &hit.verdict));
+                let ee =
+                    of_ee.par_iter().map(|hit| contact(Kind::Ee, hit.a, hit.b - second.edge, &hit.verdict));
                 let mut contacts: Vec<_> = vf.chain(ee).collect();
                 contacts.par_sort_unstable_by_key(|c| (c.kind, c.a, c.b));
                 Answer::Contacts(contacts)

@@ -1,17 +1,18 @@
 //! An NVIDIA card, through cust. The kernels' PTX is embedded; the driver compiles it for the card it finds.
 
 use super::ptx::Parts;
+use super::staging::Staging;
 use crate::error::Error;
 use cust::context::Context;
 use cust::device::{Device as Card, DeviceAttribute};
 use cust::error::CudaError;
 use cust::event::{Event as CudaEvent, EventFlags};
 use cust::function::{BlockSize, Function};
-use cust::memory::{AsyncCopyDestination, CopyDestination, DeviceBuffer, LockedBuffer};
+use cust::memory::{CopyDestination, DeviceBuffer};
 use cust::module::{Module, ModuleJitOption};
 use cust::stream::{Stream, StreamFlags};
 use nearmiss_kernels::entry::Entry as Kernel;
-use std::cell::RefCell;
+use std::cell::{Cell, Ref, RefCell, RefMut};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::ffi::c_void;
@@ -22,16 +23,15 @@ const PTX: &str = include_str!(concat!(env!("OUT_DIR"), "/nearmiss.ptx"));
 const STAMP: &str = env!("NEARMISS_STAMP");
 /// The oldest card that the PTX is for: compute capability 8.0.
 const CAPABILITY: (i32, i32) = (8, 0);
-/// Bytes of page-locked memory that transfers go through. Larger ones go in pieces: a piece in flight costs about
-/// 0.1 ms of PCIe time, far above a copy's overhead.
-const STAGING: usize = 4 << 20;
 
 /// A card, its context, one stream, and a module for each kernel that was used.
 pub struct Cuda {
     name: String,
     processors: u32,
     resident_lanes: u32,
-    staging: RefCell<LockedBuffer<u8>>,
+    staging: RefCell<Staging>,
+    /// Counts what may change the card's memory: what was read ahead holds until the next of these.
+    epoch: Cell<u64>,
     parts: Parts<'static>,
     modules: RefCell<HashMap<&'static str, Module>>,
     stream: Stream,
@@ -50,6 +50,10 @@ impl Memory {
     pub fn addr(&self) -> u64 {
         self.0.as_device_ptr().as_raw()
     }
+    /// Itself, as the driver's wrapper knows it.
+    pub fn buffer(&self) -> &DeviceBuffer<u8> {
+        &self.0
+    }
 }
 
 /// A point in the card's stream.
@@ -64,7 +68,7 @@ impl Event {
 }
 
 /// The driver's refusal as our error.
-fn refused(what: &'static str) -> impl Fn(CudaError) -> Error {
+pub fn refused(what: &'static str) -> impl Fn(CudaError) -> Error {
     move |e| match e {
         CudaError::OutOfMemory => Error::Room { what: what.into(), asked: 0, given: 0 },
         _ => Error::Device {
@@ -107,14 +111,12 @@ impl Cuda {
         let parts = Parts::new(PTX);
         let common = Module::from_ptx(parts.common(), &[]).map_err(refused("loading the kernels"))?;
         check_stamp(&common)?;
-        // SAFETY: a page-locked buffer of bytes; every byte is written before it is read.
-        let staging =
-            unsafe { LockedBuffer::uninitialized(STAGING) }.map_err(refused("locking host memory"))?;
         Ok(Cuda {
             name,
             processors,
             resident_lanes,
-            staging: RefCell::new(staging),
+            staging: RefCell::new(Staging::new()?),
+            epoch: Cell::new(0),
             parts,
             modules: RefCell::default(),
             stream,
@@ -149,42 +151,52 @@ impl Cuda {
 
     /// Sets every byte to zero.
     pub fn clear(&self, memory: &mut Memory) -> Result<(), Error> {
+        self.changes();
         // SAFETY: freeing the buffer waits for the stream's work on it.
         unsafe { memory.0.set_8_async(0, &self.stream) }.map_err(refused("clearing memory of the card"))
     }
 
-    /// Copies bytes to the card, through page-locked memory.
-    pub fn write(&self, memory: &mut Memory, bytes: &[u8]) -> Result<(), Error> {
-        let what = refused("copying to the card");
-        let mut staging = self.staging.borrow_mut();
-        for (at, piece) in bytes.chunks(STAGING).enumerate() {
-            let from = &mut staging[..piece.len()];
-            from.copy_from_slice(piece);
-            let mut to = memory.0.index(at * STAGING..at * STAGING + piece.len());
-            // SAFETY: the copy is waited for before either side is touched again.
-            unsafe { to.async_copy_from(from, &self.stream) }.map_err(&what)?;
-            self.stream.synchronize().map_err(&what)?;
-        }
-        Ok(())
+    /// What was read ahead holds no longer.
+    fn changes(&self) {
+        self.epoch.set(self.epoch.get() + 1);
     }
 
-    /// Copies bytes from the card, through page-locked memory; waits for all work before.
+    /// The staging memory, unless the host still looks at what was read ahead.
+    fn staging(&self) -> Result<RefMut<'_, Staging>, Error> {
+        let seen = |_| Error::Bug { what: "a transfer while the host looks at another".into() };
+        self.staging.try_borrow_mut().map_err(seen)
+    }
+
+    /// Copies bytes to the card, through page-locked memory; does not wait for the card.
+    pub fn write(&self, memory: &mut Memory, bytes: &[u8]) -> Result<(), Error> {
+        self.changes();
+        self.staging()?.write(&self.stream, &mut memory.0, bytes)
+    }
+
+    /// Copies bytes from the card, through page-locked memory; waits for all work before, unless it was read ahead.
     pub fn read(&self, memory: &Memory, bytes: &mut [u8]) -> Result<(), Error> {
-        let what = refused("copying from the card");
-        let mut staging = self.staging.borrow_mut();
-        for (at, piece) in bytes.chunks_mut(STAGING).enumerate() {
-            let to = &mut staging[..piece.len()];
-            let from = memory.0.index(at * STAGING..at * STAGING + piece.len());
-            // SAFETY: as in `write`.
-            unsafe { from.async_copy_to(to, &self.stream) }.map_err(&what)?;
-            self.stream.synchronize().map_err(&what)?;
-            piece.copy_from_slice(to);
+        if let Some(known) = self.known(memory, bytes.len()) {
+            bytes.copy_from_slice(&known);
+            return Ok(());
         }
-        self.stream.synchronize().map_err(what)
+        self.staging()?.read(&self.stream, &memory.0, bytes)
+    }
+
+    /// Copies the first bytes of several buffers, as many as fit into page-locked memory, with one wait: those that are
+    /// asked for next are then there.
+    pub fn read_ahead(&self, all: &[(&Memory, usize)]) -> Result<(), Error> {
+        self.staging()?.read_ahead(&self.stream, self.epoch.get(), all)
+    }
+
+    /// The first bytes of a buffer, if they were read ahead and nothing has changed since.
+    pub fn known(&self, memory: &Memory, bytes: usize) -> Option<Ref<'_, [u8]>> {
+        let staging = self.staging.try_borrow().ok()?;
+        Ref::filter_map(staging, |s| s.known(self.epoch.get(), memory.addr(), bytes)).ok()
     }
 
     /// Starts a kernel.
     pub fn launch<E: Kernel>(&self, blocks: u32, args: &E::Args) -> Result<(), Error> {
+        self.changes();
         let mut args = *args;
         let parameters = [(&raw mut args).cast::<c_void>()];
         self.with_function::<E, _>(|function| {
@@ -228,6 +240,14 @@ impl Cuda {
         let event = CudaEvent::new(EventFlags::DEFAULT).map_err(refused("making an event"))?;
         event.record(&self.stream).map_err(refused("recording an event"))?;
         Ok(Event(event))
+    }
+}
+
+impl Drop for Cuda {
+    /// Copies under way must not outlive the page-locked memory that they read.
+    fn drop(&mut self) {
+        // A card that fails here has failed before, and nobody is left to be told.
+        let _ = self.stream.synchronize();
     }
 }
 

@@ -7,6 +7,11 @@ mod driver;
 pub mod emulator;
 #[cfg(any(feature = "cuda", test))]
 mod ptx;
+#[cfg(feature = "cuda")]
+mod staging;
+mod view;
+
+pub use view::{Ahead, View};
 
 use crate::error::Error;
 use bytemuck::Pod;
@@ -49,6 +54,8 @@ struct Tally {
     launches: Cell<u64>,
     bytes: Cell<u64>,
     peak: Cell<u64>,
+    /// Views of memory that the host holds now.
+    views: Cell<u64>,
     /// Most bytes that may be held; `None` for what the machine has.
     most: Cell<Option<u64>>,
 }
@@ -198,10 +205,16 @@ impl Device {
     /// Starts a kernel behind all that was started before.
     ///
     /// # Errors
-    /// [`Error::Device`] with the driver's text; under the microscope [`Error::Bug`].
+    /// [`Error::Device`] with the driver's text; [`Error::Bug`] under the microscope, and while there is a [`View`].
     pub fn launch<E: Entry>(&self, blocks: u32, args: &E::Args) -> Result<(), Error> {
         if blocks == 0 {
             return Ok(());
+        }
+        // The memory under a view must not change.
+        if self.tally.views.get() > 0 {
+            return Err(Error::Bug {
+                what: format!("{} was launched while the host looks at memory", E::NAME),
+            });
         }
         self.tally.launches.set(self.tally.launches.get() + 1);
         match &*self.machine {
@@ -339,16 +352,17 @@ impl<T: Pod> Buffer<T> {
     /// When the buffer has fewer elements: a fault of the caller.
     pub fn read(&self, len: usize) -> Result<Vec<T>, Error> {
         assert!(len <= self.len, "more items than the buffer has elements");
-        let mut items = vec![T::zeroed(); len];
-        let bytes: &mut [u8] = bytemuck::cast_slice_mut(&mut items);
         match (&self.memory, &*self.machine) {
-            (Memory::Host(m), _) => bytes.copy_from_slice(m.as_slice(bytes.len())),
+            (Memory::Host(m), _) => Ok(bytemuck::cast_slice(m.as_slice(len * size_of::<T>())).to_vec()),
             #[cfg(feature = "cuda")]
-            (Memory::Card(m), Machine::Cuda(c)) => c.read(m, bytes)?,
+            (Memory::Card(m), Machine::Cuda(c)) => {
+                let mut items = vec![T::zeroed(); len];
+                c.read(m, bytemuck::cast_slice_mut(&mut items))?;
+                Ok(items)
+            }
             #[cfg(feature = "cuda")]
-            _ => return Err(Error::Bug { what: "memory of another machine".into() }),
+            _ => Err(Error::Bug { what: "memory of another machine".into() }),
         }
-        Ok(items)
     }
 }
 

@@ -1,9 +1,13 @@
 //! The corridor: a frame from positions to contacts, in the order of the stages.
 
+mod found;
 #[cfg(test)]
 mod near;
 mod repeat;
 
+pub use found::Found;
+
+use super::blunt::Blunt;
 use super::layout::Layout;
 use super::narrow::{Given, Narrow, Step};
 use super::precision::Precision;
@@ -16,7 +20,7 @@ use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::mesh::Body;
 use crate::query::{Motion, Query};
-use nearmiss_kernels::abi::{self, Hit, Motion as Ends, Pair, Point, Span, counter};
+use nearmiss_kernels::abi::{self, Motion as Ends, Pair, Point, Span, counter};
 use nearmiss_kernels::bv::Axes;
 use nearmiss_kernels::math::Vec3;
 use rayon::prelude::*;
@@ -29,24 +33,6 @@ const PAIRS_A_TRIANGLE: usize = 16;
 const SWEPT_PAIRS_A_TRIANGLE: usize = 64;
 /// Room that every list has at least: a scene of a few triangles may have all pairs.
 const LEAST_ROOM: usize = 1 << 12;
-
-/// What the kernels found, still in the numbering of the memory that all bodies share.
-pub struct Found {
-    /// Triangle pairs, discrete.
-    pub pairs: Vec<Pair>,
-    /// Vertex/face contacts.
-    pub vf: Vec<Hit>,
-    /// Edge/edge contacts.
-    pub ee: Vec<Hit>,
-    /// The smallest toi, if that was asked for and there is one.
-    pub earliest: Option<f64>,
-    /// The frame's counters, see [`counter`].
-    pub counters: Vec<u64>,
-    /// How often a list was too short and part of the frame ran again.
-    pub reruns: u64,
-    /// Whether the walk's front did not pay.
-    pub front_dropped: bool,
-}
 
 /// The memory of a query, and the way through it.
 pub struct Corridor<R: Precision, V: Kernels> {
@@ -82,7 +68,7 @@ pub trait Frames: repeat::Again {
     ///
     /// # Errors
     /// Those of the device.
-    fn frame(&mut self) -> Result<(Found, Stages), Error>;
+    fn frame(&mut self) -> Result<(Found<'_>, Stages), Error>;
     /// Levels of each body's tree.
     fn depths(&self) -> Vec<usize>;
     /// How often a list was too short and the frame was run again, so far.
@@ -256,34 +242,13 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
             flags: flags(&self.query, self.bodies.len()),
         })
     }
-
-    fn gather(&self, counters: Vec<u64>, reruns: u64) -> Result<Found, Error> {
-        let mut found = Found {
-            pairs: Vec::new(),
-            vf: Vec::new(),
-            ee: Vec::new(),
-            earliest: None,
-            counters,
-            reruns,
-            front_dropped: self.walk.front_dropped(),
-        };
-        match &self.narrow {
-            Narrow::Discrete { contacts, .. } => found.pairs = contacts.read(&found.counters)?,
-            Narrow::Continuous(c) => {
-                found.vf = c.vf_hits.read(&found.counters)?;
-                found.ee = c.ee_hits.read(&found.counters)?;
-                if let Some(earliest) = &c.earliest {
-                    let bits = earliest.read(1)?[0];
-                    found.earliest = (bits != u64::MAX).then(|| f64::from_bits(bits));
-                }
-            }
-        }
-        Ok(found)
-    }
 }
 
 impl<R: Precision, V: Kernels> Frames for Corridor<R, V> {
     fn place(&mut self, bodies: &[Body]) -> Result<(), Error> {
+        if let Narrow::Continuous(c) = &mut self.narrow {
+            c.blunt = Blunt::of(bodies, &self.query);
+        }
         match &mut self.vertices {
             Vertices::Still(buffer) => {
                 let mut points = Vec::with_capacity(buffer.len());
@@ -312,7 +277,7 @@ impl<R: Precision, V: Kernels> Frames for Corridor<R, V> {
         start.to(&self.device.mark()?)
     }
 
-    fn frame(&mut self) -> Result<(Found, Stages), Error> {
+    fn frame(&mut self) -> Result<(Found<'_>, Stages), Error> {
         let reruns = self.reruns;
         let start = self.device.mark()?;
         self.run(Stage::Fit)?;
@@ -326,6 +291,7 @@ impl<R: Precision, V: Kernels> Frames for Corridor<R, V> {
             let traversed = self.device.mark()?;
             self.run(Stage::Narrow)?;
             let end = self.device.mark()?;
+            self.read_ahead()?;
             let counters = self.counters.read(counter::COUNT as usize)?;
             if self.is_short(&counters) {
                 // Some list, somewhere: find out step by step.
@@ -344,6 +310,7 @@ impl<R: Precision, V: Kernels> Frames for Corridor<R, V> {
                 balance,
                 narrow: traversed.to(&end)?,
                 total: start.to(&end)?,
+                wall: 0.0,
             };
             self.last.clone_from(&counters);
             return Ok((self.gather(counters, self.reruns - reruns)?, stages));

@@ -1,5 +1,6 @@
 //! From bodies to contacts: the front door of the library.
 
+pub(crate) mod blunt;
 mod corridor;
 pub(crate) mod enclose;
 mod layout;
@@ -25,6 +26,7 @@ use crate::mesh::{Body, MAX_FACES, MAX_VERTICES};
 use crate::query::{Bv, Query};
 use corridor::{Corridor, Frames};
 use nearmiss_kernels::bv::{Aabb, Axes, Linear, Obb};
+use std::time::Instant;
 use volumes::Kernels;
 
 /// Bodies on a device, ready to be asked frame after frame.
@@ -179,15 +181,17 @@ impl Session {
     /// # Errors
     /// Those of the device: [`Error::Room`] when memory ends. There is no partial answer.
     pub fn detect(&mut self) -> Result<Contacts, Error> {
-        let (found, stages) = match self.begun()? {
-            None => return Ok(Contacts::none(self.query)),
-            Some(corridor) => corridor.frame()?,
-        };
+        let start = Instant::now();
+        self.begun()?;
+        let Some(corridor) = &mut self.corridor else { return Ok(Contacts::none(self.query)) };
+        self.answered = false;
+        let (found, stages) = corridor.frame()?;
         self.answered = true;
-        let stages = Stages { construct: self.construct_ms, ..stages };
-        let asked = Query { tolerance: self.tolerance, ..self.query };
-        let degraded = Degraded::of(&found, &self.layout, &self.bodies, &asked);
-        Ok(Contacts::new(found, &self.layout, self.query, (stages, degraded)))
+        let degraded = Degraded::of(&found);
+        let mut contacts = Contacts::new(found, &self.layout, self.query, (stages, degraded));
+        let wall = start.elapsed().as_secs_f64() * 1e3;
+        contacts.stages = Stages { construct: self.construct_ms, wall, ..stages };
+        Ok(contacts)
     }
 
     /// Runs one stage of this frame `times` times, on the device alone, and gives each run's milliseconds: for profilers,

@@ -168,6 +168,6 @@ fn decide<R: Precision>(
 }
 
 /// Launches a kernel over up to `room` items.
-fn launch_striding<E: Entry>(device: &Device, room: usize, args: &E::Args) -> Result<(), Error> {
+pub fn launch_striding<E: Entry>(device: &Device, room: usize, args: &E::Args) -> Result<(), Error> {
     device.launch::<E>(device.blocks_striding::<E>(room), args)
 }

@@ -2,7 +2,7 @@
 
 use crate::mesh::Positions;
 use nearmiss_kernels::abi::{
-    DiscreteArgs, FitArgs, GroupsArgs, MortonArgs, RejectArgs, RungArgs, SiftArgs, SolveArgs, TreeletsArgs,
+    BluntArgs, DiscreteArgs, FitArgs, GroupsArgs, MortonArgs, RejectArgs, RungArgs, SiftArgs, SolveArgs, TreeletsArgs,
 };
 use nearmiss_kernels::bv::{Aabb, Linear, Obb};
 use nearmiss_kernels::entry::{self, Entry};
@@ -50,6 +50,8 @@ pub trait Precision: Real {
     type Ee32: Entry<Args = SolveArgs<Self>>;
     /// Edge/edge by the cubic in f64.
     type Ee64: Entry<Args = SolveArgs<Self>>;
+    /// Listed pairs that are too large for the tolerance.
+    type Blunt: Entry<Args = BluntArgs<Self>>;
     /// Isolation of roots in f32.
     type Isolate32: Entry<Args = RungArgs<Self>>;
     /// Isolation of roots in f64.
@@ -88,6 +90,7 @@ impl Precision for f32 {
     type Vf64 = entry::narrow_vf_f32_f64;
     type Ee32 = entry::narrow_ee_f32_f32;
     type Ee64 = entry::narrow_ee_f32_f64;
+    type Blunt = entry::narrow_blunt_f32;
     type Isolate32 = entry::narrow_isolate_f32_f32;
     type Isolate64 = entry::narrow_isolate_f32_f64;
     type Settle = entry::narrow_settle_f32;
@@ -125,6 +128,7 @@ impl Precision for f64 {
     type Vf64 = entry::narrow_vf_f64_f64;
     type Ee32 = entry::narrow_ee_f64_f32;
     type Ee64 = entry::narrow_ee_f64_f64;
+    type Blunt = entry::narrow_blunt_f64;
     type Isolate32 = entry::narrow_isolate_f64_f32;
     type Isolate64 = entry::narrow_isolate_f64_f64;
     type Settle = entry::narrow_settle_f64;

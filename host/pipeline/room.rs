@@ -1,6 +1,6 @@
 //! Lists that grow: counted past the end, enlarged to the exact demand, filled again within the frame.
 
-use crate::device::{Buffer, Device};
+use crate::device::{Ahead, Buffer, Device, View};
 use crate::error::Error;
 use bytemuck::Pod;
 use nearmiss_kernels::abi::Span;
@@ -49,6 +49,20 @@ impl<T: Pod> List<T> {
     pub fn put(&mut self, entries: &[T]) -> Result<(u32, u64), Error> {
         self.entries.write(entries)?;
         Ok((self.counter, entries.len() as u64))
+    }
+
+    /// The first entries, as many as the kernels asked for in a frame with these counters and an eighth more, to be read ahead.
+    pub fn ahead(&self, counters: &[u64]) -> Ahead<'_> {
+        let demand = counters.get(self.counter as usize).copied().unwrap_or(0);
+        self.entries.ahead((demand + demand / 8) as usize)
+    }
+
+    /// The entries, to look at.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn view(&self, counters: &[u64]) -> Result<View<'_, T>, Error> {
+        self.entries.view(self.demand(counters) as usize)
     }
 
     /// The entries.

@@ -16,7 +16,8 @@ pub enum Stage {
     Narrow,
 }
 
-/// Milliseconds of each stage of a frame, on the device's own clock. `construct` is that of the last build.
+/// Milliseconds of each stage of a frame, on the device's own clock, and of the caller's wait. `construct` is that of the
+/// last build.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Stages {
     /// Positions to level-ordered tree, all bodies.
@@ -33,6 +34,9 @@ pub struct Stages {
     pub narrow: f64,
     /// From positions to contacts, runs that were repeated for want of room included, construction not.
     pub total: f64,
+    /// What the caller of [`Session::detect`](crate::Session::detect) waits for: `total`, launching, reading the contacts and
+    /// bringing them into order, on the host's clock.
+    pub wall: f64,
 }
 
 impl Stages {
@@ -46,6 +50,7 @@ impl Stages {
             balance: of(|s| s.balance),
             narrow: of(|s| s.narrow),
             total: of(|s| s.total),
+            wall: of(|s| s.wall),
         }
     }
 

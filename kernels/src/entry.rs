@@ -6,7 +6,7 @@ use crate::exec::{BINS, Block, WARP};
 use crate::prim::isolate::ladder::SLICES;
 use crate::queue::worker;
 use crate::stage::construct::{morton, sort, tree, treelet};
-use crate::stage::narrow::{climb, discrete, reject, separate, sift, slice, solve};
+use crate::stage::narrow::{blunt, climb, discrete, reject, separate, sift, slice, solve};
 use crate::stage::refit::{bottom_up, levels, treelets};
 use crate::stage::traverse::{front, queue, steal};
 use crate::stage::{balance, fit, traverse};
@@ -155,6 +155,8 @@ kernels! {
     narrow_ee_f32_f64: solve::ee::<f32, f64, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_ee_f64_f32: solve::ee::<f64, f32, B>, [SolveArgs<f64>], WIDE, 0;
     narrow_ee_f64_f64: solve::ee::<f64, f64, B>, [SolveArgs<f64>], WIDE, 0;
+    narrow_blunt_f32: blunt::blunt::<f32, B>, [BluntArgs<f32>], WIDE, 0;
+    narrow_blunt_f64: blunt::blunt::<f64, B>, [BluntArgs<f64>], WIDE, 0;
     narrow_isolate_f32_f32: climb::isolate::<f32, f32, B>, [RungArgs<f32>], RUNG, 0;
     narrow_isolate_f32_f64: climb::isolate::<f32, f64, B>, [RungArgs<f32>], NARROW, 0;
     narrow_isolate_f64_f32: climb::isolate::<f64, f32, B>, [RungArgs<f64>], RUNG, 0;

@@ -4,6 +4,7 @@ use super::rungs::Rungs;
 use super::{Given, Step, launch_striding};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
+use crate::pipeline::blunt::{self, Blunt};
 use crate::pipeline::layout::Layout;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::room::{Growing, List, Tally};
@@ -36,8 +37,10 @@ pub struct Continuous {
     pub ee_hits: List<Hit>,
     /// What certified solvers climb.
     rungs: Rungs,
-    /// Hits that are not certain.
-    unresolved: Tally,
+    /// Hits that are not certain, those whose budget ended, those of both, and those too large for the tolerance.
+    tallies: [Tally; 4],
+    /// Whether pairs may be too large for the tolerance: see [`Blunt`].
+    pub blunt: Option<Blunt>,
     /// The smallest toi, where only that is asked for.
     pub earliest: Option<Buffer<u64>>,
 }
@@ -70,7 +73,9 @@ impl Continuous {
             vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, hits[0])?,
             ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, hits[1])?,
             rungs: Rungs::new(device, &query, rooms.left)?,
-            unresolved: Tally(counter::UNRESOLVED),
+            tallies: [counter::UNRESOLVED, counter::ENDED, counter::ENDED_UNRESOLVED, counter::BLUNT]
+                .map(Tally),
+            blunt: None,
             earliest: earliest.then(|| device.buffer(1)).transpose()?,
         })
     }
@@ -80,8 +85,8 @@ impl Continuous {
         match step {
             Step::Sift => self.asked.iter_mut().map(|list| list as &mut dyn Growing).collect(),
             Step::Solve => {
-                let mut lists: Vec<&mut dyn Growing> =
-                    vec![&mut self.vf_hits, &mut self.ee_hits, &mut self.unresolved];
+                let mut lists: Vec<&mut dyn Growing> = vec![&mut self.vf_hits, &mut self.ee_hits];
+                lists.extend(self.tallies.iter_mut().map(|tally| tally as &mut dyn Growing));
                 lists.extend(self.rungs.lists());
                 lists
             }
@@ -168,7 +173,8 @@ impl Continuous {
         if solver.is_certified() {
             let hits = [&self.vf_hits, &self.ee_hits];
             let earliest = self.earliest.as_ref().map_or(Span::EMPTY, Buffer::span);
-            return self.rungs.climb(given, self.edges.span(), ([vf, ee], hits, earliest));
+            self.rungs.climb(given, self.edges.span(), ([vf, ee], hits, earliest))?;
+            return blunt::count(self.blunt, (self.edges.span(), &self.vf_hits, &self.ee_hits), given);
         }
         let args = |survivors: &List<Pair>, hits: &List<Hit>| SolveArgs {
             frames: given.frames,

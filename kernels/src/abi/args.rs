@@ -340,8 +340,14 @@ pub mod counter {
     pub const VF_HARD: u32 = ENDS + 15;
     /// Edge/edge pairs that are cut into slices.
     pub const EE_HARD: u32 = ENDS + 16;
+    /// Hits whose budget of boxes ended.
+    pub const ENDED: u32 = ENDS + 17;
+    /// Those of them that are neither certain contacts nor certainly none.
+    pub const ENDED_UNRESOLVED: u32 = ENDS + 18;
+    /// Hits too large for the tolerance.
+    pub const BLUNT: u32 = ENDS + 19;
     /// How many counters there are.
-    pub const COUNT: u32 = ENDS + 17;
+    pub const COUNT: u32 = ENDS + 20;
 }
 /// Rounds of the traversal that may spill; one more, without a budget, ends it.
 pub const ROUNDS: u32 = 4;

@@ -78,6 +78,25 @@ arguments! {
         /// Counters, see [`counter`](super::counter).
         counters: Span<u64>,
     }
+    /// `narrow_blunt`: hits so large that the solver's precision cannot tell as little as the tolerance.
+    BluntArgs<R: Real> {
+        /// Positions.
+        frames: Frames<R>,
+        /// Vertex indices of every triangle.
+        faces: Span<[u32; 3]>,
+        /// End points of every edge.
+        edges: Span<[u32; 2]>,
+        /// Vertex/face hits.
+        vf: Span<Hit>,
+        /// Edge/edge hits.
+        ee: Span<Hit>,
+        /// Counters, see [`counter`](super::counter).
+        counters: Span<u64>,
+        /// The tolerance that was asked for, a length.
+        tolerance: f64,
+        /// The least part of a pair's extent that the solver can tell.
+        finest: f64,
+    }
     /// Pairs of one kind for a rung, and where they go.
     Listed {
         /// Pairs.

@@ -199,6 +199,10 @@ fn keep<R: Real, L: Lane>(l: &L, a: &RungArgs<R>, verdict: Verdict) -> bool {
         l.fetch_add(a.counters, counter::UNRESOLVED, 1);
     }
     if a.earliest.is_empty() {
+        if verdict.exhausted() {
+            l.fetch_add(a.counters, counter::ENDED, 1);
+            l.fetch_add(a.counters, counter::ENDED_UNRESOLVED, !verdict.is_contact() as u64);
+        }
         return true;
     }
     // Times are in [0, 1]: their bits are ordered as they are. Most are late, and need no turn at the one word.

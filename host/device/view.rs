@@ -1,0 +1,128 @@
+//! What a device holds, looked at by the host: without a copy where the machine allows it.
+
+use super::{Buffer, Device, Machine, Memory, Tally};
+use crate::error::Error;
+use bytemuck::Pod;
+#[cfg(feature = "cuda")]
+use std::cell::Ref;
+use std::ops::Deref;
+
+/// Elements that the host looks at. As long as there is one, no kernel may be launched: [`Device::launch`] refuses.
+pub struct View<'a, T> {
+    elements: Elements<'a, T>,
+    tally: &'a Tally,
+}
+
+enum Elements<'a, T> {
+    Here(&'a [T]),
+    #[cfg(feature = "cuda")]
+    Staged(Ref<'a, [T]>),
+    #[cfg(feature = "cuda")]
+    Own(Vec<T>),
+}
+
+impl<T> Deref for View<'_, T> {
+    type Target = [T];
+    fn deref(&self) -> &[T] {
+        match &self.elements {
+            Elements::Here(elements) => elements,
+            #[cfg(feature = "cuda")]
+            Elements::Staged(elements) => elements,
+            #[cfg(feature = "cuda")]
+            Elements::Own(elements) => elements,
+        }
+    }
+}
+
+impl<T> Drop for View<'_, T> {
+    fn drop(&mut self) {
+        self.tally.views.set(self.tally.views.get() - 1);
+    }
+}
+
+/// The first bytes of a buffer, to be read ahead.
+#[cfg_attr(not(feature = "cuda"), allow(dead_code, reason = "the host reaches all memory"))]
+pub struct Ahead<'a> {
+    memory: &'a Memory,
+    bytes: usize,
+}
+
+impl<T: Pod> Buffer<T> {
+    /// The first `len` elements, or as many as there are, for [`Device::read_ahead`].
+    pub fn ahead(&self, len: usize) -> Ahead<'_> {
+        Ahead { memory: &self.memory, bytes: len.min(self.len) * size_of::<T>() }
+    }
+
+    /// The first `len` elements, to look at; waits for all that was started before, unless they were read ahead.
+    ///
+    /// # Errors
+    /// As for [`Buffer::read`].
+    ///
+    /// # Panics
+    /// When the buffer has fewer elements: a fault of the caller.
+    pub fn view(&self, len: usize) -> Result<View<'_, T>, Error> {
+        assert!(len <= self.len, "more items than the buffer has elements");
+        let bytes = len * size_of::<T>();
+        let elements = match (&self.memory, &*self.machine) {
+            (Memory::Host(m), _) => Elements::Here(bytemuck::cast_slice(m.as_slice(bytes))),
+            #[cfg(feature = "cuda")]
+            (Memory::Card(m), Machine::Cuda(c)) => match c.known(m, bytes) {
+                Some(known) => Elements::Staged(Ref::map(known, bytemuck::cast_slice)),
+                None => Elements::Own(self.read(len)?),
+            },
+            #[cfg(feature = "cuda")]
+            _ => return Err(Error::Bug { what: "memory of another machine".into() }),
+        };
+        self.tally.views.set(self.tally.views.get() + 1);
+        Ok(View { elements, tally: &self.tally })
+    }
+}
+
+impl Device {
+    /// Brings the first elements of several buffers to the host with one wait, so that what is read of them before the next
+    /// launch or write needs no other. Nothing on a machine whose memory the host reaches.
+    ///
+    /// # Errors
+    /// [`Error::Device`] with the driver's text, also of a kernel that failed before.
+    #[cfg_attr(not(feature = "cuda"), allow(unused_variables, reason = "the host reaches all memory"))]
+    pub fn read_ahead(&self, all: &[Ahead]) -> Result<(), Error> {
+        match &*self.machine {
+            Machine::Emulator(_) => Ok(()),
+            #[cfg(feature = "cuda")]
+            Machine::Cuda(c) => {
+                // What is of another machine is refused when it is asked for.
+                let card = all.iter().filter_map(|ahead| match ahead.memory {
+                    Memory::Card(memory) => Some((memory, ahead.bytes)),
+                    Memory::Host(_) => None,
+                });
+                c.read_ahead(&card.collect::<Vec<_>>())
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::emulator::{Emulator, Mode};
+    use nearmiss_kernels::abi::SortArgs;
+    use nearmiss_kernels::entry::construct_sort_scan;
+
+    #[test]
+    fn nothing_is_launched_while_the_host_looks() {
+        let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
+        let buffer = device.upload(&[1u64, 2, 3]).expect("memory");
+        let args: SortArgs = bytemuck::Zeroable::zeroed();
+        let launch = || device.launch::<construct_sort_scan>(1, &args);
+        {
+            let [one, other] = [2, 3].map(|len| buffer.view(len).expect("a view"));
+            device.read_ahead(&[buffer.ahead(9)]).expect("as many as there are");
+            assert_eq!((&*one, &*other), (&[1, 2][..], &[1, 2, 3][..]));
+            drop(one);
+            let error = launch().expect_err("the other is still there");
+            assert!(matches!(&error, Error::Bug { what } if what.contains("construct_sort_scan")), "{error}");
+        }
+        assert_eq!(device.launches(), 0);
+        assert_eq!(buffer.view(0).expect("a view").len(), 0);
+    }
+}

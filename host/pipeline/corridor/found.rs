@@ -1,0 +1,68 @@
+//! The end of a frame: what the kernels found comes to the host.
+
+use super::Corridor;
+use crate::device::View;
+use crate::error::Error;
+use crate::pipeline::blunt::Blunt;
+use crate::pipeline::narrow::Narrow;
+use crate::pipeline::precision::Precision;
+use crate::pipeline::volumes::Kernels;
+use nearmiss_kernels::abi::{Hit, Pair, counter};
+
+/// What the kernels found, still in the numbering of the memory that all bodies share, and where it is possible in that
+/// memory.
+pub struct Found<'a> {
+    /// Triangle pairs, discrete.
+    pub pairs: Option<View<'a, Pair>>,
+    /// Contacts in motion: vertex/face, edge/edge.
+    pub hits: Option<[View<'a, Hit>; 2]>,
+    /// The smallest toi, if that was asked for and there is one.
+    pub earliest: Option<f64>,
+    /// The frame's counters, see [`counter`].
+    pub counters: Vec<u64>,
+    /// How often a list was too short and part of the frame ran again.
+    pub reruns: u64,
+    /// Whether the walk's front did not pay.
+    pub front_dropped: bool,
+    /// Whether pairs may be too large for the tolerance in the solver's precision: those that are listed, as counted.
+    pub blunt: Option<Blunt>,
+}
+
+impl<R: Precision, V: Kernels> Corridor<R, V> {
+    /// Brings over with one wait what the end of a frame reads: counters, and as many contacts as the last frame had.
+    pub(super) fn read_ahead(&self) -> Result<(), Error> {
+        let mut all = vec![self.counters.ahead(counter::COUNT as usize)];
+        match &self.narrow {
+            Narrow::Discrete { contacts, .. } => all.push(contacts.ahead(&self.last)),
+            Narrow::Continuous(c) => {
+                all.extend([c.vf_hits.ahead(&self.last), c.ee_hits.ahead(&self.last)]);
+                all.extend(c.earliest.as_ref().map(|earliest| earliest.ahead(1)));
+            }
+        }
+        self.device.read_ahead(&all)
+    }
+
+    pub(super) fn gather(&self, counters: Vec<u64>, reruns: u64) -> Result<Found<'_>, Error> {
+        let mut found = Found {
+            pairs: None,
+            hits: None,
+            earliest: None,
+            counters,
+            reruns,
+            front_dropped: self.walk.front_dropped(),
+            blunt: None,
+        };
+        match &self.narrow {
+            Narrow::Discrete { contacts, .. } => found.pairs = Some(contacts.view(&found.counters)?),
+            Narrow::Continuous(c) => {
+                found.blunt = c.blunt;
+                found.hits = Some([c.vf_hits.view(&found.counters)?, c.ee_hits.view(&found.counters)?]);
+                if let Some(earliest) = &c.earliest {
+                    let bits = earliest.read(1)?[0];
+                    found.earliest = (bits != u64::MAX).then(|| f64::from_bits(bits));
+                }
+            }
+        }
+        Ok(found)
+    }
+}
