@@ -309,7 +309,9 @@ impl<R: Precision, V: Kernels> Frames for Corridor<R, V> {
         let start = self.device.mark()?;
         let (frames, faces) = (self.frames(), self.faces.span());
         self.bodies.iter_mut().try_for_each(|(tree, _)| tree.construct::<R>(&self.device, frames, faces))?;
-        start.to(&self.device.mark()?)
+        let end = self.device.mark()?;
+        self.bodies.iter_mut().try_for_each(|(tree, _)| tree.learn_levels())?;
+        start.to(&end)
     }
 
     fn frame(&mut self) -> Result<(Found, Stages), Error> {
