@@ -135,7 +135,7 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
             counters: device.buffer(counter::COUNT as usize)?,
             pairs: List::new(&device, "candidate triangle pairs", counter::PAIRS, room)?,
             walk: walk(&device, &query, triangles)?,
-            narrow: Narrow::new(&device, layout, query, (room, few))?,
+            narrow: Narrow::new::<R>(&device, layout, query, (room, few))?,
             reruns: 0,
             last: Vec::new(),
             settled: false,

@@ -132,6 +132,7 @@ kernels! {
     narrow_moller_f64: discrete::moller::<f64, B>, [DiscreteArgs<f64>], WIDE, 0;
     narrow_filter_f32: discrete::filter::<f32, B>, [DiscreteArgs<f32>], WIDE, 0;
     narrow_filter_f64: discrete::filter::<f64, B>, [DiscreteArgs<f64>], WIDE, 0;
+    narrow_wide_f32: discrete::wide, [DiscreteArgs<f32>], NARROW, 0;
     narrow_exact_f32: discrete::exact::<f32, B>, [DiscreteArgs<f32>], NARROW, 0;
     narrow_exact_f64: discrete::exact::<f64, B>, [DiscreteArgs<f64>], NARROW, 0;
     narrow_sift_f32: sift::sift::<f32, B>, [SiftArgs<f32>], NARROW, 0;

@@ -328,8 +328,10 @@ pub mod counter {
     pub const EE_ESCALATED: u32 = ENDS + 11;
     /// Hits that are neither certain contacts nor certainly none.
     pub const UNRESOLVED: u32 = ENDS + 12;
+    /// Pairs that the discrete filter could not decide in f64 either.
+    pub const UNDECIDED_WIDE: u32 = ENDS + 13;
     /// How many counters there are.
-    pub const COUNT: u32 = ENDS + 13;
+    pub const COUNT: u32 = ENDS + 14;
 }
 /// Rounds of the traversal that may spill; one more, without a budget, ends it.
 pub const ROUNDS: u32 = 4;

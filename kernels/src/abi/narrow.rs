@@ -27,7 +27,7 @@ arguments! {
         /// Features this near are in contact, a length; 0 for touching.
         separation: f64,
     }
-    /// `narrow_moller`, `narrow_filter`, `narrow_exact`: triangle pairs that meet.
+    /// `narrow_moller`, `narrow_filter`, `narrow_wide`, `narrow_exact`: triangle pairs that meet.
     DiscreteArgs<R: Real> {
         /// Positions.
         positions: Span<Point<R>>,
@@ -37,14 +37,18 @@ arguments! {
         pairs: Span<Pair>,
         /// Out: pairs that meet.
         contacts: Span<Pair>,
-        /// Out: pairs that the filter leaves to the exact signs.
+        /// Out: pairs that a filter leaves to what comes next; empty for the last one.
         undecided: Span<Pair>,
         /// Counters, see [`counter`](super::counter).
         counters: Span<u64>,
         /// Which counter tells how many pairs there are.
         pairs_at: u32,
+        /// Which counter the undecided pairs add to.
+        undecided_at: u32,
         /// Bits: [`KEEP_ADJACENT`](super::KEEP_ADJACENT).
         flags: u32,
+        /// Zero.
+        pad: u32,
     }
     /// `narrow_reject_vf`, `narrow_reject_ee`, and with a separation `narrow_reject_near_vf` and `_ee`: candidates that
     /// certainly stay apart, left out.
