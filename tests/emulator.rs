@@ -11,7 +11,7 @@ use nearmiss::Device;
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss_kernels::abi::Span;
 use nearmiss_kernels::entry::Entry;
-use nearmiss_kernels::exec::{BINS, Block, Lane, Slot, WARP};
+use nearmiss_kernels::exec::{BINS, Block, Lane, Slot, WARP, striped};
 use support::ORDERS;
 
 /// Numbers of lanes: one, a few, a warp and one more, the kernels' own, the most that a card has.
@@ -57,14 +57,20 @@ kernels! { [Args], 64, 4096;
         let bins = b.shared::<u32>(BINS);
         let lanes = b.lanes();
         let scratch = b.shared::<u32>(BINS * lanes.div_ceil(WARP));
-        let mut digits = b.slot(0u32);
+        let mut digits = b.slot([0u32; 2]);
         b.phase(|l| (l.lane()..BINS).step_by(lanes as usize).for_each(|bin| l.put(bins, bin, 1000 * bin)));
-        // Twice: the second goes on where the first ended.
-        b.phase(|l| *digits.of(l) = l.read(a.given, l.global()));
+        // Twice: the second goes on where the first ended. A lane's second digit is its first's neighbour's neighbour.
+        let from = b.block() * lanes;
+        let read = |l: &B::Lane| [0, 2].map(|k| l.read(a.given, from + (l.lane() + k) % lanes));
+        b.phase(|l| *digits.of(l) = read(l));
         b.ranks(&mut digits, bins, scratch);
-        b.phase(|l| *digits.of(l) = l.read(a.given, l.global()));
+        b.phase(|l| *digits.of(l) = read(l));
         b.ranks(&mut digits, bins, scratch);
-        b.phase(|l| l.write(a.out, l.global(), *digits.of(l)));
+        b.phase(|l| {
+            let [first, second] = *digits.of(l);
+            // Both, of which those that took something are below 2^18.
+            l.write(a.out, l.global(), first ^ second.rotate_left(13));
+        });
     }
     append |b, a| {
         // Each lane appends its own number that many times.
@@ -203,20 +209,29 @@ fn any_is_true_where_one_lane_is() {
 }
 
 #[test]
-fn ranks_are_taken_in_the_order_of_the_lanes() {
+fn ranks_are_taken_in_the_order_of_the_items() {
     // Digits 0 to 9, and 256 and more that take nothing.
     everywhere::<ranks>(
         |i| if noise(i) % 5 == 4 { BINS + noise(i) } else { noise(i) % 10 },
         |left| {
             for (block, given) in left.given.chunks(left.lanes).enumerate() {
                 let mut bins: Vec<u32> = (0..BINS).map(|bin| 1000 * bin).collect();
-                let mut take = |digit: &u32| match bins.get_mut(*digit as usize) {
-                    None => *digit,
+                let mut take = |digit: u32| match bins.get_mut(digit as usize) {
+                    None => digit,
                     Some(next) => std::mem::replace(next, *next + 1),
                 };
-                let twice: Vec<u32> = given.iter().chain(given).map(&mut take).collect();
-                let taken = &twice[given.len()..];
-                assert_eq!(&left.out[block * left.lanes..][..left.lanes], taken, "{}", left.what);
+                let n = left.lanes;
+                let mut taken = vec![[0; 2]; n];
+                for _ in 0..2 {
+                    // A warp's first digits, then its second ones, then the next warp's.
+                    for warp in (0..n).collect::<Vec<_>>().chunks(WARP as usize) {
+                        for k in 0..2 {
+                            warp.iter().for_each(|&i| taken[i][k] = take(given[(i + 2 * k) % n]));
+                        }
+                    }
+                }
+                let both: Vec<u32> = taken.iter().map(|[a, b]| a ^ b.rotate_left(13)).collect();
+                assert_eq!(&left.out[block * n..][..n], both, "{}", left.what);
             }
         },
     );
@@ -332,4 +347,17 @@ fn a_debug_engine_stops_at_a_stray_access() {
 #[should_panic(expected = "a kernel left its shared memory")]
 fn a_debug_engine_stops_at_a_stray_shared_access() {
     on_the_engine::<stray_in_shared_memory>();
+}
+
+/// What [`striped`] promises: each place once, and warps one after the other, items of a warp side by side.
+#[test]
+fn striped_items_are_all_items_in_the_order_of_ranks() {
+    for lanes in LANES {
+        let of = |warp: u32, k: u32| {
+            (32 * warp..lanes.min(32 * warp + 32)).map(move |lane| striped(lane, lanes, k, 3))
+        };
+        let places: Vec<u32> =
+            (0..lanes.div_ceil(WARP)).flat_map(|warp| (0..3).flat_map(move |k| of(warp, k))).collect();
+        assert!(places.iter().copied().eq(0..3 * lanes), "{lanes}: {places:?}");
+    }
 }

@@ -163,10 +163,11 @@ fn human(summary: &Summary, contacts: &Contacts) -> String {
     }
     let _ = writeln!(
         text,
-        "  {} node tests, {} units spilled, {} undecided by floats; {:.1} MB; hash {}",
+        "  {} node tests, {} units spilled, {} undecided by floats ({} in f64); {:.1} MB; hash {}",
         contacts.steps,
         contacts.spilled,
         contacts.undecided,
+        contacts.undecided_wide,
         summary.bytes as f64 / 1e6,
         summary.hash
     );

@@ -102,8 +102,10 @@ pub struct Contacts {
     pub sliced_vf_ee: [u64; 2],
     /// How many contacts are [`Status::Unresolved`]; of an earliest query, how many pairs.
     pub unresolved: u64,
-    /// Pairs that the float filter left to exact signs.
+    /// Pairs that the filter in the precision of the positions left undecided.
     pub undecided: u64,
+    /// Those of them that f64 left undecided too; none of f64 positions, which go straight to exact signs.
+    pub undecided_wide: u64,
     /// Pairs of sibling nodes that the traversal tested.
     pub steps: u64,
     /// Work units that long walks gave away.
@@ -185,6 +187,7 @@ impl Contacts {
             sliced_vf_ee: [0; 2],
             unresolved: 0,
             undecided: 0,
+            undecided_wide: 0,
             steps: 0,
             spilled: 0,
             queues: Queues::default(),
@@ -248,6 +251,7 @@ impl Contacts {
             sliced_vf_ee: [count(counter::VF_HARD), count(counter::EE_HARD)],
             unresolved: count(counter::UNRESOLVED),
             undecided: count(counter::UNDECIDED),
+            undecided_wide: count(counter::UNDECIDED_WIDE),
             steps: count(counter::STEPS),
             spilled: found.counters[counter::SPILLED as usize..][..ROUNDS as usize].iter().sum(),
             queues: Queues::new(&found.counters),

@@ -81,7 +81,7 @@ fn some<R: Precision>(device: &Device, mesh: &Mesh, query: Query) -> Result<Tria
     let (at, number) = list.put(&pairs)?;
     counts[at as usize] = number;
     // A pair is listed once at most, so no list outgrows this.
-    let mut narrow = Narrow::new(device, &Layout::default(), query, (count, count))?;
+    let mut narrow = Narrow::new::<R>(device, &Layout::default(), query, (count, count))?;
     let counters = device.upload(&counts)?;
     let given = Given {
         device,

@@ -121,7 +121,7 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
             counters: device.buffer(counter::COUNT as usize)?,
             pairs: List::new(&device, "candidate triangle pairs", counter::PAIRS, room)?,
             walk: walk(&device, &query, triangles)?,
-            narrow: Narrow::new(&device, layout, query, (room, few))?,
+            narrow: Narrow::new::<R>(&device, layout, query, (room, few))?,
             reruns: 0,
             last: Vec::new(),
             settled: false,
@@ -274,7 +274,9 @@ impl<R: Precision, V: Kernels> Frames for Corridor<R, V> {
         let start = self.device.mark()?;
         let (frames, faces) = (self.frames(), self.faces.span());
         self.bodies.iter_mut().try_for_each(|(tree, _)| tree.construct::<R>(&self.device, frames, faces))?;
-        start.to(&self.device.mark()?)
+        let end = self.device.mark()?;
+        self.bodies.iter_mut().try_for_each(|(tree, _)| tree.learn_levels())?;
+        start.to(&end)
     }
 
     fn frame(&mut self) -> Result<(Found<'_>, Stages), Error> {

@@ -64,6 +64,7 @@ impl<R: Precision, V: Kernels + Contain> Enclosed<R, V> {
         enclosed.place(t0, t1)?;
         let (frames, faces) = (enclosed.frames(), enclosed.faces.span());
         enclosed.tree.construct::<R>(device, frames, faces)?;
+        enclosed.tree.learn_levels()?;
         enclosed.move_to(t0, t1)?;
         Ok(enclosed)
     }

@@ -7,6 +7,7 @@ mod layout;
 pub(crate) mod narrow;
 pub(crate) mod precision;
 pub(crate) mod room;
+mod sorter;
 mod timing;
 mod tolerance;
 mod tree;

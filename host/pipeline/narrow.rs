@@ -61,31 +61,36 @@ pub enum Narrow {
     Discrete {
         /// Pairs that meet.
         contacts: List<Pair>,
-        /// Pairs that the filter left to exact signs; of the exact solver alone.
-        undecided: Option<List<Pair>>,
+        /// Pairs that each filter left to the next, the last one to exact signs; of the exact solver alone.
+        undecided: Vec<List<Pair>>,
     },
     /// Features in motion.
     Continuous(Box<Continuous>),
 }
 
 impl Narrow {
-    /// Takes the memory that the query needs: `room` entries for candidates, `few` for what is left of them.
+    /// Takes the memory that the query of positions of that precision needs: `room` entries for candidates, `few` for what is
+    /// left of them.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn new(
+    pub fn new<R: Precision>(
         device: &Device,
         layout: &Layout,
         query: Query,
         (room, few): (usize, usize),
     ) -> Result<Self, Error> {
         if query.motion == Motion::Discrete {
-            let exact = query.solver() == Solver::Exact;
-            let undecided = || List::new(device, "undecided pairs", counter::UNDECIDED, few);
-            return Ok(Narrow::Discrete {
-                contacts: List::new(device, "contacts", counter::CONTACTS, few)?,
-                undecided: exact.then(undecided).transpose()?,
-            });
+            let contacts = List::new(device, "contacts", counter::CONTACTS, few)?;
+            let mut undecided = Vec::new();
+            if query.solver() == Solver::Exact {
+                undecided.push(List::new(device, "undecided pairs", counter::UNDECIDED, few)?);
+                if R::WIDENS {
+                    let at = counter::UNDECIDED_WIDE;
+                    undecided.push(List::new(device, "pairs undecided in f64", at, few / 4)?);
+                }
+            }
+            return Ok(Narrow::Discrete { contacts, undecided });
         }
         let rooms = Rooms {
             candidates: [room, 2 * room],
@@ -108,7 +113,7 @@ impl Narrow {
     pub fn lists(&mut self, step: Step) -> Vec<&mut dyn Growing> {
         match (self, step) {
             (Narrow::Discrete { contacts, undecided }, Step::Decide) => {
-                let undecided = undecided.as_mut().map(|list| list as &mut dyn Growing);
+                let undecided = undecided.iter_mut().map(|list| list as &mut dyn Growing);
                 std::iter::once(contacts as &mut dyn Growing).chain(undecided).collect()
             }
             (Narrow::Continuous(c), step) => c.lists(step),
@@ -120,7 +125,8 @@ impl Narrow {
     pub fn between(&self) -> Vec<(&'static str, &List<Pair>)> {
         match self {
             Narrow::Discrete { undecided, .. } => {
-                undecided.iter().map(|list| ("narrow: undecided", list)).collect()
+                let names = ["narrow: undecided", "narrow: undecided in f64"];
+                names.into_iter().zip(undecided).collect()
             }
             Narrow::Continuous(c) => c.between(),
         }
@@ -132,39 +138,43 @@ impl Narrow {
     /// Those of the device.
     pub fn run<R: Precision>(&mut self, step: Step, given: &Given<R>) -> Result<(), Error> {
         match (self, step) {
-            (Narrow::Discrete { contacts, undecided }, Step::Decide) => {
-                decide(contacts, undecided.as_ref(), given)
-            }
+            (Narrow::Discrete { contacts, undecided }, Step::Decide) => decide(contacts, undecided, given),
             (Narrow::Continuous(c), Step::Sift | Step::Solve) => c.run(step, given),
             _ => Err(Error::Bug { what: format!("the step {step:?} in another kind of query") }),
         }
     }
 }
 
-/// Triangle pairs that meet: by floats, or by floats with a bound and exact signs for what they leave.
+/// Triangle pairs that meet: by floats, or by floats with a bound, in f32 and in f64, and exact signs for what they leave.
 fn decide<R: Precision>(
     contacts: &List<Pair>,
-    undecided: Option<&List<Pair>>,
+    undecided: &[List<Pair>],
     given: &Given<R>,
 ) -> Result<(), Error> {
-    let args = DiscreteArgs {
+    let args = |pairs: Span<Pair>, pairs_at: u32, undecided: Option<&List<Pair>>| DiscreteArgs {
         positions: given.frames.still,
         faces: given.faces,
-        pairs: given.pairs,
+        pairs,
         contacts: contacts.span(),
         undecided: undecided.map_or(Span::EMPTY, List::span),
         counters: given.counters,
-        pairs_at: counter::PAIRS,
+        pairs_at,
+        undecided_at: undecided.map_or(0, List::counter),
         flags: if given.query.adjacent { KEEP_ADJACENT } else { 0 },
+        pad: 0,
     };
-    let room = given.pairs.len as usize;
-    match undecided {
-        None => launch_striding::<R::Moller>(given.device, room, &args),
-        Some(undecided) => {
-            launch_striding::<R::Filter>(given.device, room, &args)?;
-            launch_striding::<R::Exact>(given.device, undecided.room(), &args)
-        }
-    }
+    let (device, room) = (given.device, given.pairs.len as usize);
+    let candidates = args(given.pairs, counter::PAIRS, undecided.first());
+    let (first, last) = match undecided {
+        [] => return launch_striding::<R::Moller>(device, room, &candidates),
+        [first, .., last] => (first, Some(last)),
+        [first] => (first, None),
+    };
+    launch_striding::<R::Filter>(device, room, &candidates)?;
+    let left = args(first.span(), first.counter(), last);
+    let Some(last) = last else { return launch_striding::<R::Exact>(device, first.room(), &left) };
+    launch_striding::<R::Wide>(device, first.room(), &left)?;
+    launch_striding::<R::Exact>(device, last.room(), &args(last.span(), last.counter(), None))
 }
 
 /// Launches a kernel over up to `room` items.

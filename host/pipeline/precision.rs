@@ -32,6 +32,10 @@ pub trait Precision: Real {
     type Moller: Entry<Args = DiscreteArgs<Self>>;
     /// The discrete filter.
     type Filter: Entry<Args = DiscreteArgs<Self>>;
+    /// The discrete filter in f64, where the positions are narrower.
+    type Wide: Entry<Args = DiscreteArgs<Self>>;
+    /// Whether they are: else that kernel is not launched.
+    const WIDENS: bool;
     /// The exact signs.
     type Exact: Entry<Args = DiscreteArgs<Self>>;
     /// Triangle pairs to pairs of features that may meet.
@@ -81,6 +85,8 @@ impl Precision for f32 {
     type TreeletsObb = entry::refit_treelets_obb_f32;
     type Moller = entry::narrow_moller_f32;
     type Filter = entry::narrow_filter_f32;
+    type Wide = entry::narrow_wide_f32;
+    const WIDENS: bool = true;
     type Exact = entry::narrow_exact_f32;
     type Sift = entry::narrow_sift_f32;
     type SiftNear = entry::narrow_sift_near_f32;
@@ -119,6 +125,8 @@ impl Precision for f64 {
     type TreeletsObb = entry::refit_treelets_obb_f64;
     type Moller = entry::narrow_moller_f64;
     type Filter = entry::narrow_filter_f64;
+    type Wide = entry::narrow_filter_f64;
+    const WIDENS: bool = false;
     type Exact = entry::narrow_exact_f64;
     type Sift = entry::narrow_sift_f64;
     type SiftNear = entry::narrow_sift_near_f64;

@@ -1,18 +1,21 @@
 //! Construct: the tree of one body, kept on the device.
 
 use super::precision::Precision;
+use super::sorter::{counted, sort, words};
 use super::treelets::Way;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::query::Refit;
-use nearmiss_kernels::abi::{Frames, Inner, Link, MortonArgs, SortArgs, Span, TreeArgs};
-use nearmiss_kernels::bvh::{self, MAX_LEVELS};
+use nearmiss_kernels::abi::{Frames, Inner, Link, MortonArgs, Span, TreeArgs};
+use nearmiss_kernels::bvh::{self, CODE_BITS, MAX_LEVELS};
 use nearmiss_kernels::entry;
-use nearmiss_kernels::exec::BINS;
+use nearmiss_kernels::stage::construct::morton;
 
-/// Keys of a lane in a tile of the radix sort: a tile is 1,024 keys, 90 tiles on cloth-ball, so that most of a card's
-/// processors have one.
-const ROUNDS: u32 = 4;
+/// The bytes of a Morton code, which lies above its triangle. As many as there are: the sort ends where it began.
+const BYTES: [u32; 4] = [32, 40, 48, 56];
+const _: () = assert!(8 * BYTES.len() as u32 == CODE_BITS && BYTES.len() % 2 == 0);
+/// Keys of the box of all centres.
+const BOUNDS: usize = 6;
 
 /// A level-ordered tree without volumes, and what building it again needs.
 pub struct Tree {
@@ -35,17 +38,16 @@ pub struct Tree {
     scratch: Scratch,
 }
 
-/// Memory of the construction, about 100 bytes a triangle; kept, so that building again takes none.
+/// Memory of the construction, about 36 bytes a triangle; kept, so that building again takes none.
 struct Scratch {
-    bounds: Buffer<u64>,
-    codes: [Buffer<u64>; 2],
-    triangles: [Buffer<u32>; 2],
+    /// What must be zero when a construction begins: the box of all centres; counts of each byte of the codes, and of the
+    /// depths; what the treelets count.
+    zeroed: Buffer<u64>,
+    items: [Buffer<u64>; 2],
     inner: Buffer<Inner>,
     parents: Buffer<u32>,
+    depths: Buffer<u32>,
     places: Buffer<u32>,
-    depths: [Buffer<u64>; 2],
-    ordered: [Buffer<u32>; 2],
-    sorter: Sorter,
 }
 
 impl Tree {
@@ -61,32 +63,31 @@ impl Tree {
         groups: bool,
     ) -> Result<Tree, Error> {
         let (n, inner) = (count as usize, count as usize - 1);
+        let way = Way::new(device, refit, count)?;
+        let zeroed = BOUNDS + (BYTES.len() + 1) * words(device, count) + way.zeroed();
         Ok(Tree {
             links: device.buffer(2 * n)?,
             pair_parents: device.buffer(n)?,
             leaf_nodes: device.buffer(n)?,
             firsts: device.buffer(if groups { n } else { 0 })?,
             levels: device.buffer(MAX_LEVELS as usize + 2)?,
-            way: Way::new(device, refit, count)?,
+            way,
             starts: Vec::new(),
             first,
             count,
             scratch: Scratch {
-                bounds: device.buffer(6)?,
-                codes: [device.buffer(n)?, device.buffer(n)?],
-                triangles: [device.buffer(n)?, device.buffer(n)?],
+                zeroed: device.buffer(zeroed)?,
+                items: [device.buffer(n)?, device.buffer(n)?],
                 inner: device.buffer(inner)?,
                 parents: device.buffer(inner)?,
+                depths: device.buffer(inner)?,
                 places: device.buffer(inner)?,
-                depths: [device.buffer(inner)?, device.buffer(inner)?],
-                ordered: [device.buffer(inner)?, device.buffer(inner)?],
-                sorter: Sorter::new(device, count)?,
             },
         })
     }
 
-    /// Builds the hierarchy, all on the device. It has no volumes yet. Cost: 34 launches, 27 of them a radix sort,
-    /// and two for treelets where those are asked for; linear memory.
+    /// Builds the hierarchy, all on the device; [`Tree::learn_levels`] ends it. It has no volumes yet. Cost: ten launches, four
+    /// of them a radix sort, and one for treelets where those are asked for; linear memory.
     ///
     /// # Errors
     /// Those of the device.
@@ -98,70 +99,55 @@ impl Tree {
     ) -> Result<(), Error> {
         let (n, inner) = (self.count as usize, self.count as usize - 1);
         let s = &mut self.scratch;
-        s.bounds.clear()?;
+        s.zeroed.clear()?;
+        let zeroed = s.zeroed.span();
+        let (at, lists) = (BOUNDS as u64, ((BYTES.len() + 1) * words(device, self.count)) as u64);
+        let counts = zeroed.part(at, lists);
+        let [begins, tops] = self.way.parts(zeroed.part(at + lists, zeroed.len - at - lists));
         let morton = MortonArgs {
             frames,
             faces,
             first: self.first,
             count: self.count,
-            bounds: s.bounds.span(),
-            keys: s.codes[0].span(),
-            values: s.triangles[0].span(),
+            bounds: zeroed.part(0, at),
+            items: s.items[0].span(),
+            tiles: counted(device, counts, self.count, 0),
         };
-        device.launch::<R::Bounds>(device.blocks_striding::<R::Bounds>(n), &morton)?;
+        let lanes = n.div_ceil(morton::TOGETHER as usize);
+        device.launch::<R::Bounds>(device.blocks_striding::<R::Bounds>(lanes), &morton)?;
         device.launch::<R::Morton>(device.blocks_striding::<R::Morton>(n), &morton)?;
-        for byte in 0..8 {
-            // An even number of passes: the last one ends where the first began.
-            let (from, to) = (byte % 2, (byte + 1) % 2);
-            s.sorter.pass(
-                device,
-                (s.codes[from].span(), s.codes[to].span()),
-                (s.triangles[from].span(), s.triangles[to].span()),
-                self.count,
-                8 * byte as u32,
-            )?;
-        }
+        sort::<entry::construct_sort>(device, s.items.each_ref(), self.count, counts, &BYTES)?;
         let args = TreeArgs {
-            codes: s.codes[0].span(),
-            triangles: s.triangles[0].span(),
+            items: s.items[0].span(),
             inner: s.inner.span(),
             parents: s.parents.span(),
-            depth_keys: s.depths[0].span(),
-            depth_values: s.ordered[0].span(),
-            ordered: s.ordered[1].span(),
+            depths: s.depths.span(),
+            tiles: counted(device, counts, self.count, BYTES.len()),
             places: s.places.span(),
-            totals: s.sorter.totals.span(),
             levels: self.levels.span(),
             links: self.links.span(),
             pair_parents: self.pair_parents.span(),
             leaf_nodes: self.leaf_nodes.span(),
             firsts: self.firsts.span(),
+            seats: self.way.seats(),
+            begins,
+            tops,
             leaves: self.count,
             first: self.first,
         };
-        device.launch::<entry::construct_tree>(device.blocks_for::<entry::construct_tree>(inner), &args)?;
-        device.launch::<entry::construct_depth>(device.blocks_for::<entry::construct_depth>(inner), &args)?;
-        if inner > 0 {
-            s.sorter.pass(
-                device,
-                (s.depths[0].span(), s.depths[1].span()),
-                (s.ordered[0].span(), s.ordered[1].span()),
-                inner as u32,
-                0,
-            )?;
-        }
-        device.launch::<entry::construct_place>(device.blocks_for::<entry::construct_place>(inner), &args)?;
-        device.launch::<entry::construct_levels>(1, &args)?;
-        device.launch::<entry::construct_emit>(
-            device.blocks_for::<entry::construct_emit>(inner.max(1)),
-            &args,
-        )?;
-        self.way.prepare(device, &args)?;
-        self.learn_levels()
+        let gaps = inner.max(1);
+        device.launch::<entry::construct_tree>(device.blocks_for::<entry::construct_tree>(gaps), &args)?;
+        device.launch::<entry::construct_depth>(device.blocks_for::<entry::construct_depth>(gaps), &args)?;
+        device.launch::<entry::construct_places>(args.tiles.count, &args)?;
+        device.launch::<entry::construct_emit>(device.blocks_for::<entry::construct_emit>(gaps), &args)?;
+        self.way.prepare(device, &args)
     }
 
-    /// Reads how many levels there are: the only thing about a tree that the host must know.
-    fn learn_levels(&mut self) -> Result<(), Error> {
+    /// Reads how many levels there are, of a tree that was just built: the only thing about it that the host must know.
+    ///
+    /// # Errors
+    /// [`Error::Bug`] for levels that are none; those of the device.
+    pub fn learn_levels(&mut self) -> Result<(), Error> {
         let levels = self.levels.read(self.levels.len())?;
         let count = levels[0] as usize;
         self.starts = levels.get(1..count + 2).unwrap_or_default().to_vec();
@@ -199,9 +185,9 @@ impl Tree {
         Ok(links)
     }
 
-    /// Triangles in leaf order, counted from the body's first.
-    pub fn triangles(&self) -> Span<u32> {
-        self.scratch.triangles[0].span()
+    /// Triangles in leaf order, counted from the body's first: the lower halves.
+    pub fn triangles(&self) -> Span<u64> {
+        self.scratch.items[0].span()
     }
 
     /// The body's first triangle.
@@ -228,48 +214,4 @@ impl Tree {
 /// A broken tree, as an error.
 pub fn broken(violation: bvh::Violation) -> Error {
     Error::Bug { what: format!("a tree is broken: {violation:?}") }
-}
-
-/// The memory of a radix sort.
-struct Sorter {
-    counts: Buffer<u32>,
-    totals: Buffer<u32>,
-}
-
-impl Sorter {
-    fn new(device: &Device, count: u32) -> Result<Sorter, Error> {
-        let tiles = Self::tiles(device, count);
-        Ok(Sorter { counts: device.buffer((BINS * tiles) as usize)?, totals: device.buffer(BINS as usize)? })
-    }
-
-    fn tiles(device: &Device, count: u32) -> u32 {
-        count.div_ceil(ROUNDS * device.lanes::<entry::construct_sort_scatter>()).max(1)
-    }
-
-    /// Sorts keys and values from the first span of each pair into the second, by one byte of the keys.
-    fn pass(
-        &self,
-        device: &Device,
-        keys: (Span<u64>, Span<u64>),
-        values: (Span<u32>, Span<u32>),
-        count: u32,
-        shift: u32,
-    ) -> Result<(), Error> {
-        let tiles = Self::tiles(device, count);
-        let args = SortArgs {
-            keys: keys.0,
-            values: values.0,
-            keys_out: keys.1,
-            values_out: values.1,
-            counts: self.counts.span(),
-            totals: self.totals.span(),
-            count,
-            tiles,
-            shift,
-            rounds: ROUNDS,
-        };
-        device.launch::<entry::construct_sort_count>(tiles, &args)?;
-        device.launch::<entry::construct_sort_scan>(BINS, &args)?;
-        device.launch::<entry::construct_sort_scatter>(tiles, &args)
-    }
 }

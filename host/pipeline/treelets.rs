@@ -3,7 +3,7 @@
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::query::Refit;
-use nearmiss_kernels::abi::{Merge, PlanArgs, Seat, TreeArgs, Treelet};
+use nearmiss_kernels::abi::{Merge, PlanArgs, Seat, Span, TreeArgs, Treelet};
 use nearmiss_kernels::bvh::{MAX_LEVELS, TREELET};
 use nearmiss_kernels::entry;
 
@@ -28,6 +28,33 @@ impl Way {
             Refit::Treelets => Way::Treelets(Box::new(Plan::new(device, count)?)),
             Refit::BottomUp => Way::BottomUp(device.buffer(count as usize)?),
         })
+    }
+
+    /// How many zeroed words a construction needs for it.
+    pub fn zeroed(&self) -> usize {
+        match self {
+            Way::Treelets(plan) => plan.treelets.len() + TOPS,
+            _ => 0,
+        }
+    }
+
+    /// Those words: where treelets begin, and how many nodes of the top there are.
+    pub fn parts(&self, zeroed: Span<u64>) -> [Span<u64>; 2] {
+        match self {
+            Way::Treelets(plan) => {
+                let begins = plan.treelets.len() as u64;
+                [zeroed.part(0, begins), zeroed.part(begins, TOPS as u64)]
+            }
+            _ => [Span::EMPTY; 2],
+        }
+    }
+
+    /// The leaves' places, where they are needed.
+    pub fn seats(&self) -> Span<Seat> {
+        match self {
+            Way::Treelets(plan) => plan.seats.span(),
+            _ => Span::EMPTY,
+        }
     }
 
     /// Prepares for a tree that was just built.
@@ -57,9 +84,10 @@ pub struct Plan {
     pub top_starts: Buffer<u32>,
     /// Tickets drawn by blocks of refits so far.
     pub ticket: Buffer<u64>,
-    begins: Buffer<u64>,
-    tops: Buffer<u64>,
 }
+
+/// Of each depth: how many nodes span treelets, and a cursor.
+const TOPS: usize = 2 * MAX_LEVELS as usize;
 
 impl Plan {
     fn new(device: &Device, count: u32) -> Result<Plan, Error> {
@@ -73,37 +101,25 @@ impl Plan {
             top: device.buffer((a_depth * MAX_LEVELS as usize).min(leaves))?,
             top_starts: device.buffer(MAX_LEVELS as usize + 1)?,
             ticket: device.upload(&[0])?,
-            begins: device.buffer(treelets)?,
-            tops: device.buffer(2 * MAX_LEVELS as usize)?,
         })
     }
 
-    fn make(&mut self, device: &Device, tree: &TreeArgs) -> Result<(), Error> {
-        self.begins.clear()?;
-        self.tops.clear()?;
+    fn make(&self, device: &Device, tree: &TreeArgs) -> Result<(), Error> {
         let args = PlanArgs {
             inner: tree.inner,
+            parents: tree.parents,
+            depths: tree.depths,
             places: tree.places,
-            depths: tree.depth_keys,
-            by_gap: tree.depth_values,
-            links: tree.links,
             pair_parents: tree.pair_parents,
-            leaf_nodes: tree.leaf_nodes,
-            begins: self.begins.span(),
-            tops: self.tops.span(),
+            begins: tree.begins,
+            tops: tree.tops,
             treelets: self.treelets.span(),
-            seats: self.seats.span(),
             merges: self.merges.span(),
             top: self.top.span(),
             top_starts: self.top_starts.span(),
             leaves: tree.leaves,
             pad: 0,
         };
-        let inner = self.seats.len() - 1;
-        device.launch::<entry::construct_mark>(
-            device.blocks_for::<entry::construct_mark>(inner.max(1)),
-            &args,
-        )?;
         device.launch::<entry::construct_treelets>(self.blocks(), &args)
     }
 
@@ -122,7 +138,7 @@ mod tests {
     use crate::pipeline::tree::Tree;
     use crate::pipeline::volumes::{Kernels, Volumes};
     use crate::scene;
-    use nearmiss_kernels::abi::{Frames, Point, Span};
+    use nearmiss_kernels::abi::{Frames, Point};
     use nearmiss_kernels::bv::{Aabb, Axes, Obb};
     use nearmiss_kernels::math::Vec3;
 
@@ -141,6 +157,7 @@ mod tests {
         let frames = Frames { still: points.span(), moving: Span::EMPTY };
         let mut tree = Tree::new(&device, (0, 2_000), refit, V::group(Axes::PCA) > 0)?;
         tree.construct::<f32>(&device, frames, faces.span())?;
+        tree.learn_levels()?;
         let volumes = Volumes::<V>::new(&device, &tree, (Axes::PCA, 0.0))?;
         let refit = |tree: &Tree| {
             volumes.fit(&device, tree, frames, faces.span())?;

@@ -2,10 +2,11 @@
 
 use crate::abi::*;
 use crate::bv::{Aabb, Linear, Obb};
-use crate::exec::{BINS, Block, WARP};
+use crate::exec::Block;
 use crate::prim::isolate::ladder::SLICES;
 use crate::queue::worker;
-use crate::stage::construct::{morton, sort, tree, treelet};
+use crate::sort;
+use crate::stage::construct::{morton, tree, treelet};
 use crate::stage::narrow::{blunt, climb, discrete, reject, separate, sift, slice, solve};
 use crate::stage::refit::{bottom_up, levels, treelets};
 use crate::stage::traverse::{front, queue, steal};
@@ -79,23 +80,17 @@ const NARROW: u32 = 64;
 const RUNG: u32 = 128;
 /// Lanes of the one block that evens the queues, as in the paper.
 const BALANCE: u32 = 512;
-/// Shared memory of a radix scatter: the bins, and each warp's.
-const RANKS: u32 = 4 * BINS * (1 + WIDE / WARP);
 
 kernels! {
-    construct_bounds_f32: morton::bounds::<f32, B>, [MortonArgs<f32>], WIDE, 48;
-    construct_bounds_f64: morton::bounds::<f64, B>, [MortonArgs<f64>], WIDE, 48;
+    construct_bounds_f32: morton::bounds::<f32, B>, [MortonArgs<f32>], WIDE, morton::shared_bytes(WIDE);
+    construct_bounds_f64: morton::bounds::<f64, B>, [MortonArgs<f64>], WIDE, morton::shared_bytes(WIDE);
     construct_morton_f32: morton::morton::<f32, B>, [MortonArgs<f32>], WIDE, 0;
     construct_morton_f64: morton::morton::<f64, B>, [MortonArgs<f64>], WIDE, 0;
-    construct_sort_count: sort::count, [SortArgs], WIDE, 4 * BINS;
-    construct_sort_scan: sort::scan, [SortArgs], WIDE, 0;
-    construct_sort_scatter: sort::scatter, [SortArgs], WIDE, RANKS;
+    construct_sort: sort::pass, [SortArgs], WIDE, sort::shared_bytes(WIDE);
     construct_tree: tree::tree, [TreeArgs], WIDE, 0;
     construct_depth: tree::depth, [TreeArgs], WIDE, 0;
-    construct_place: tree::place, [TreeArgs], WIDE, 0;
-    construct_levels: tree::levels, [TreeArgs], WIDE, 0;
+    construct_places: tree::places, [TreeArgs], WIDE, sort::shared_bytes(WIDE);
     construct_emit: tree::emit, [TreeArgs], WIDE, 0;
-    construct_mark: treelet::mark, [PlanArgs], WIDE, 0;
     construct_treelets: treelet::plan, [PlanArgs], WIDE, treelet::SHARED;
     fit_aabb_f32: fit::fit::<f32, Aabb, B>, [FitArgs<f32, Aabb>], WIDE, 0;
     fit_aabb_f64: fit::fit::<f64, Aabb, B>, [FitArgs<f64, Aabb>], WIDE, 0;
@@ -137,6 +132,7 @@ kernels! {
     narrow_moller_f64: discrete::moller::<f64, B>, [DiscreteArgs<f64>], WIDE, 0;
     narrow_filter_f32: discrete::filter::<f32, B>, [DiscreteArgs<f32>], WIDE, 0;
     narrow_filter_f64: discrete::filter::<f64, B>, [DiscreteArgs<f64>], WIDE, 0;
+    narrow_wide_f32: discrete::wide, [DiscreteArgs<f32>], NARROW, 0;
     narrow_exact_f32: discrete::exact::<f32, B>, [DiscreteArgs<f32>], NARROW, 0;
     narrow_exact_f64: discrete::exact::<f64, B>, [DiscreteArgs<f64>], NARROW, 0;
     narrow_sift_f32: sift::sift::<f32, B>, [SiftArgs<f32>], RUNG, sift::shared_bytes(RUNG);

@@ -2,7 +2,7 @@
 //! The kernels of nearmiss: what runs on the card, and on the CPU from the same source.
 //!
 //! Nothing here knows a host, a file or an allocator. Shelves hold what is used ([`abi`], [`exec`], [`math`], [`bv`],
-//! [`bvh`], [`queue`], [`prim`]); the corridor [`stage`] holds what happens, one file a stage, in the order in which
+//! [`bvh`], [`queue`], [`sort`], [`prim`]); the corridor [`stage`] holds what happens, one file a stage, in the order in which
 //! data flows. [`entry`] is the kernel table.
 
 pub mod abi;
@@ -13,4 +13,5 @@ pub mod exec;
 pub mod math;
 pub mod prim;
 pub mod queue;
+pub mod sort;
 pub mod stage;

@@ -4,7 +4,7 @@ use super::coherent;
 use super::microscope::{Access, Place};
 use bytemuck::Pod;
 use nearmiss_kernels::abi::Span;
-use nearmiss_kernels::exec::{BINS, Block, Lane, Shared, Slot, Word};
+use nearmiss_kernels::exec::{BINS, Block, Lane, Shared, Slot, WARP, Word};
 use std::mem::MaybeUninit;
 use std::ptr::with_exposed_provenance_mut;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed, Ordering::SeqCst, fence};
@@ -337,10 +337,19 @@ impl<W: Watch> Block for Emulated<W> {
         fence(SeqCst);
         ticket
     }
-    fn ranks(&mut self, digits: &mut PerLane<u32>, bins: Shared<u32>, _scratch: Shared<u32>) {
+    fn ranks<const K: usize>(
+        &mut self,
+        digits: &mut PerLane<[u32; K]>,
+        bins: Shared<u32>,
+        _scratch: Shared<u32>,
+    ) {
         let lane = self.lane(0);
-        for digit in digits.0.iter_mut().filter(|digit| **digit < BINS) {
-            *digit = lane.shared_add(bins, *digit, 1);
+        for warp in digits.0.chunks_mut(WARP as usize) {
+            for k in 0..K {
+                for digit in warp.iter_mut().map(|digits| &mut digits[k]).filter(|digit| **digit < BINS) {
+                    *digit = lane.shared_add(bins, *digit, 1);
+                }
+            }
         }
         self.phase += 1;
     }

@@ -48,54 +48,50 @@ arguments! {
         count: u32,
         /// Six ordered keys: upper x, y, z, and lower x, y, z (complemented, so that all are maxima).
         bounds: Span<u64>,
-        /// Out: Morton code of each triangle's centre.
-        keys: Span<u64>,
-        /// Out: the triangle.
-        values: Span<u32>,
+        /// Out: Morton code of each triangle's centre, above the triangle.
+        items: Span<u64>,
+        /// Out: counts of the codes' lowest bytes.
+        tiles: Tiles,
     }
-    /// `sort_count`, `sort_scan`, `sort_scatter`: one pass of the radix sort, over one byte of the keys.
-    SortArgs {
-        /// Keys in.
-        keys: Span<u64>,
-        /// Values in.
-        values: Span<u32>,
-        /// Keys out.
-        keys_out: Span<u64>,
-        /// Values out.
-        values_out: Span<u32>,
-        /// Counts: digit-major, then tile.
-        counts: Span<u32>,
-        /// Sum of each digit's counts.
-        totals: Span<u32>,
-        /// How many keys.
+    /// How often each digit comes in each tile of a list, see [`crate::sort`].
+    Tiles {
+        /// Four counts a word, [`crate::sort::WORDS`] words a tile. Zeroed before items are counted.
+        counts: Span<u64>,
+        /// How many tiles; 0 for none.
         count: u32,
-        /// How many tiles of keys.
-        tiles: u32,
-        /// Which bits: the digit is `key >> shift & 255`.
-        shift: u32,
-        /// Rounds of one key a lane in a tile.
-        rounds: u32,
+        /// How many items a tile has.
+        items: u32,
     }
-    /// `construct_tree`, `construct_depth`, `construct_place`, `construct_levels`, `construct_emit`.
+    /// `construct_sort`, `order_sort`: one pass of the radix sort, over one byte of the items.
+    SortArgs {
+        /// Items in.
+        items: Span<u64>,
+        /// Items out.
+        out: Span<u64>,
+        /// Counts of this byte.
+        tiles: Tiles,
+        /// Counts of the byte of the next pass; none for the last one.
+        next: Tiles,
+        /// The digit is `item >> shift & 255`.
+        shift: u32,
+        /// The next pass's.
+        next_shift: u32,
+    }
+    /// `construct_tree`, `construct_depth`, `construct_places`, `construct_emit`. An inner node is known by the gap between
+    /// leaves that it splits: gap i lies behind leaf i.
     TreeArgs {
-        /// Sorted Morton codes.
-        codes: Span<u64>,
-        /// Triangles in the order of their codes.
-        triangles: Span<u32>,
-        /// Inner nodes of the radix tree.
+        /// Sorted: a Morton code above its triangle.
+        items: Span<u64>,
+        /// The leaves of each inner node.
         inner: Span<Inner>,
         /// Parent of each inner node.
         parents: Span<u32>,
-        /// Out of `construct_depth`: depth of the inner node that splits behind leaf i.
-        depth_keys: Span<u64>,
-        /// Out of `construct_depth`: that inner node.
-        depth_values: Span<u32>,
-        /// Inner nodes in level order.
-        ordered: Span<u32>,
+        /// Depth of each inner node.
+        depths: Span<u32>,
+        /// Counts of the depths.
+        tiles: Tiles,
         /// Place of each inner node in level order.
         places: Span<u32>,
-        /// How many inner nodes each depth has.
-        totals: Span<u32>,
         /// Out: number of levels, then where each begins, then where the last ends.
         levels: Span<u32>,
         /// Out: the tree.
@@ -106,36 +102,36 @@ arguments! {
         leaf_nodes: Span<u32>,
         /// Out: the first leaf below each pair of siblings; empty where nobody asks.
         firsts: Span<u32>,
+        /// Out: the leaves' places; empty where nobody asks for treelets, as the next two are.
+        seats: Span<Seat>,
+        /// Out, zeroed before. For each chunk of leaves: how many leaves there are from the first on that begins a subtree of
+        /// a treelet; 0 where none does.
+        begins: Span<u64>,
+        /// Out, zeroed before. For each depth: how many nodes span treelets; then as many cursors.
+        tops: Span<u64>,
         /// How many leaves.
         leaves: u32,
         /// Added to a triangle's index in its body.
         first: u32,
     }
-    /// `construct_mark`, `construct_treelets`: what a refit by treelets needs to know of a tree.
+    /// `construct_treelets`: what a refit by treelets needs to know of a tree.
     PlanArgs {
-        /// Inner nodes of the radix tree.
+        /// The leaves of each inner node.
         inner: Span<Inner>,
+        /// Parent of each inner node.
+        parents: Span<u32>,
+        /// Depth of each inner node.
+        depths: Span<u32>,
         /// Place of each inner node in level order.
         places: Span<u32>,
-        /// Depth of the inner node that splits behind leaf i.
-        depths: Span<u64>,
-        /// That inner node.
-        by_gap: Span<u32>,
-        /// The tree.
-        links: Span<Link>,
         /// The parent of each pair of siblings.
         pair_parents: Span<u32>,
-        /// Each leaf's node.
-        leaf_nodes: Span<u32>,
-        /// Zeroed before `construct_mark`. For each chunk of leaves: how many leaves there are from the first on that
-        /// begins a subtree of a treelet; 0 where none does.
+        /// See [`TreeArgs`].
         begins: Span<u64>,
-        /// Zeroed before `construct_mark`. For each depth: how many nodes span treelets; then as many cursors.
+        /// See [`TreeArgs`].
         tops: Span<u64>,
         /// Out: the treelets, one a chunk.
         treelets: Span<Treelet>,
-        /// Out: the leaves' places.
-        seats: Span<Seat>,
         /// Out: merges of each treelet from its first leaf's number on, by round.
         merges: Span<Merge>,
         /// Out: merges of the nodes that span treelets, by depth.
@@ -170,8 +166,8 @@ arguments! {
         frames: Frames<R>,
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
-        /// Triangles in leaf order, counted from the body's first.
-        triangles: Span<u32>,
+        /// Triangles in leaf order, counted from the body's first: the lower halves.
+        triangles: Span<u64>,
         /// The tree.
         links: Span<Link>,
         /// The parent of each pair of siblings.
@@ -346,8 +342,10 @@ pub mod counter {
     pub const ENDED_UNRESOLVED: u32 = ENDS + 18;
     /// Hits too large for the tolerance.
     pub const BLUNT: u32 = ENDS + 19;
+    /// Pairs that the discrete filter could not decide in f64 either.
+    pub const UNDECIDED_WIDE: u32 = ENDS + 20;
     /// How many counters there are.
-    pub const COUNT: u32 = ENDS + 20;
+    pub const COUNT: u32 = ENDS + 21;
 }
 /// Rounds of the traversal that may spill; one more, without a budget, ends it.
 pub const ROUNDS: u32 = 4;

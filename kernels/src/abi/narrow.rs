@@ -25,7 +25,7 @@ arguments! {
         /// What is asked; of `narrow_sift`.
         params: Params,
     }
-    /// `narrow_moller`, `narrow_filter`, `narrow_exact`: triangle pairs that meet.
+    /// `narrow_moller`, `narrow_filter`, `narrow_wide`, `narrow_exact`: triangle pairs that meet.
     DiscreteArgs<R: Real> {
         /// Positions.
         positions: Span<Point<R>>,
@@ -35,14 +35,18 @@ arguments! {
         pairs: Span<Pair>,
         /// Out: pairs that meet.
         contacts: Span<Pair>,
-        /// Out: pairs that the filter leaves to the exact signs.
+        /// Out: pairs that a filter leaves to what comes next; empty for the last one.
         undecided: Span<Pair>,
         /// Counters, see [`counter`](super::counter).
         counters: Span<u64>,
         /// Which counter tells how many pairs there are.
         pairs_at: u32,
+        /// Which counter the undecided pairs add to.
+        undecided_at: u32,
         /// Bits: [`KEEP_ADJACENT`](super::KEEP_ADJACENT).
         flags: u32,
+        /// Zero.
+        pad: u32,
     }
     /// `narrow_reject_vf`, `narrow_reject_ee`: candidates that certainly stay apart, left out.
     RejectArgs<R: Real> {

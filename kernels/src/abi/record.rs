@@ -122,18 +122,17 @@ pub struct Hit {
 }
 const _: () = assert!(size_of::<Hit>() == 32);
 
-/// An inner node of the radix tree, before it has a place in the level order.
+/// An inner node of the radix tree, before it has a place in the level order: its range of leaves. It is known by the gap
+/// that it splits: its left child ends with the leaf of the gap's number, and its right child begins behind that.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
-#[repr(C)]
+#[repr(C, align(8))]
 pub struct Inner {
     /// The first leaf of its range.
     pub first: u32,
-    /// The last leaf of its left child; the right child begins behind it.
-    pub split: u32,
     /// The last leaf of its range.
     pub last: u32,
 }
-const _: () = assert!(size_of::<Inner>() == 12);
+const _: () = assert!(size_of::<Inner>() == 8);
 
 /// Whole subtrees of neighbouring leaves that one block refits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]

@@ -38,4 +38,8 @@ impl<T> Span<T> {
     pub const fn is_empty(&self) -> bool {
         self.len == 0
     }
+    /// `len` of its elements from element `from` on; they must lie in it.
+    pub const fn part(&self, from: u64, len: u64) -> Self {
+        Self::new(self.addr + from * size_of::<T>() as u64, len)
+    }
 }

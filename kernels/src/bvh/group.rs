@@ -21,8 +21,8 @@ pub struct Below<'a, R: Real, L> {
     pub frames: Frames<R>,
     /// Vertex indices of every triangle.
     pub faces: Span<[u32; 3]>,
-    /// Triangles in leaf order, counted from `base`.
-    pub triangles: Span<u32>,
+    /// Triangles in leaf order, counted from `base`: the lower halves.
+    pub triangles: Span<u64>,
     /// The body's first triangle.
     pub base: u32,
     /// The first leaf and the last.
@@ -32,7 +32,7 @@ pub struct Below<'a, R: Real, L> {
 impl<R: Real, L: Lane> Below<'_, R, L> {
     #[inline(always)]
     fn face(&self, leaf: u32) -> [u32; 3] {
-        self.lane.read(self.faces, self.base + self.lane.read(self.triangles, leaf))
+        self.lane.read(self.faces, self.base + self.lane.read(self.triangles, leaf) as u32)
     }
 }
 

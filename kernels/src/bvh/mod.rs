@@ -6,9 +6,12 @@ pub mod leaf;
 use crate::abi::{LEAF, Link, Node, ROOT};
 use crate::bv::{Axes, Volume};
 
-/// Levels that a tree can have: a path from the root splits on one of the 63 bits of the code or, between equal
-/// codes, on one of the 32 bits of the index, each at most once; and the leaves.
-pub const MAX_LEVELS: u32 = 63 + 32 + 1;
+/// Bits of a triangle's Morton code: four passes of the radix sort.
+pub const CODE_BITS: u32 = 32;
+
+/// Levels that a tree can have: a path from the root splits on one of the bits of the code or, between equal codes, on one
+/// of the 32 bits of the index, each at most once; and the leaves.
+pub const MAX_LEVELS: u32 = CODE_BITS + 32 + 1;
 
 /// Leaves of the largest subtree of a treelet, and of the chunk in which a treelet's subtrees begin; so a treelet has
 /// fewer than twice as many. As many as a block has lanes; the volumes of 512 leaves, 56 bytes each, fit on chip.

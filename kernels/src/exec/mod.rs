@@ -131,9 +131,14 @@ pub trait Block {
     /// tickets gave before they drew, the lanes of this block may take. The block that draws the last ticket knows
     /// that all others are past theirs. Lanes need no fence for it. Cost: an atomic and two fences of one lane.
     fn ticket(&mut self, counter: Span<u64>, i: u32) -> u64;
-    /// As if the lanes, in their order, each took `bins[digit]` and added one to it: each lane's digit (under
-    /// [`BINS`]; others take nothing) is replaced by what it took. `scratch` has `BINS * lanes / 32` words.
-    fn ranks(&mut self, digits: &mut Self::Slot<u32>, bins: Shared<u32>, scratch: Shared<u32>);
+    /// As if the block's `K` digits a lane, in the order of [`striped`], each took `bins[digit]` and added one to it: each
+    /// digit (under [`BINS`]; others take nothing) is replaced by what it took. `scratch` has `BINS * lanes / 32` words.
+    fn ranks<const K: usize>(
+        &mut self,
+        digits: &mut Self::Slot<[u32; K]>,
+        bins: Shared<u32>,
+        scratch: Shared<u32>,
+    );
 
     /// Room in a list for what the lanes want to append: replaces each lane's wish by the number of entries
     /// before its own, and returns where the block's entries begin. The counter goes past the end of the list,
@@ -148,3 +153,11 @@ pub trait Block {
 pub const BINS: u32 = 256;
 /// Lanes of a warp, on every card.
 pub const WARP: u32 = 32;
+
+/// The place of a lane's item `k` among the block's, `each` a lane: warps one after the other, and in a warp all first
+/// items, then all second ones. So a warp's accesses are neighbours, and what it ranks by itself is one stretch.
+pub const fn striped(lane: u32, lanes: u32, k: u32, each: u32) -> u32 {
+    let before = lane / WARP * WARP;
+    let width = if lanes - before < WARP { lanes - before } else { WARP };
+    before * each + k * width + (lane - before)
+}

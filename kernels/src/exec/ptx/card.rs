@@ -4,7 +4,7 @@ use super::coherent::{compare_and_swap, fence, load_coherent, store_coherent};
 use super::raw::{
     BROADCAST, address, atomic, barrier_or, element, load_global, load_shared32, load_shared64, load_word,
     match_any, scratch_address, shuffle_up, store_shared32, store_shared64, store_word, sync_threads,
-    warp_any,
+    sync_warp, warp_any,
 };
 use crate::abi::Span;
 use crate::exec::{BINS, Block, Lane, Shared, Slot, WARP, Word};
@@ -279,21 +279,35 @@ impl Block for Card {
         })
     }
     #[inline(always)]
-    fn ranks(&mut self, digits: &mut Register<u32>, bins: Shared<u32>, scratch: Shared<u32>) {
+    fn ranks<const K: usize>(
+        &mut self,
+        digits: &mut Register<[u32; K]>,
+        bins: Shared<u32>,
+        scratch: Shared<u32>,
+    ) {
         let (lane, warp) = (self.lane.lane % WARP, self.lane.lane / WARP);
         let (lanes, warps) = (self.lanes(), self.lanes() / WARP);
         let at = |w: u32, bin: u32| address(scratch, w * BINS + bin);
-        let mut i = self.lane.lane;
-        while i < warps * BINS {
-            store_shared32(at(0, i), 0);
-            i += lanes;
+        let mut bin = lane;
+        while bin < BINS {
+            store_shared32(at(warp, bin), 0);
+            bin += WARP;
         }
-        sync_threads();
-        let digit = digits.0;
-        let alike = match_any(digit);
-        let before = (alike & ((1 << lane) - 1)).count_ones();
-        if digit < BINS && before == 0 {
-            store_shared32(at(warp, digit), alike.count_ones());
+        sync_warp();
+        // Each warp counts by itself, an item a lane after the other: where its items lie among its own.
+        let mut before = [0; K];
+        for k in 0..K {
+            let digit = digits.0[k];
+            let alike = match_any(digit);
+            let lower = (alike & ((1 << lane) - 1)).count_ones();
+            let counted = digit < BINS;
+            let taken = if counted { load_shared32(at(warp, digit)) } else { 0 };
+            sync_warp();
+            if counted && lower == 0 {
+                store_shared32(at(warp, digit), taken + alike.count_ones());
+            }
+            sync_warp();
+            before[k] = taken + lower;
         }
         sync_threads();
         let mut bin = self.lane.lane;
@@ -308,8 +322,10 @@ impl Block for Card {
             bin += lanes;
         }
         sync_threads();
-        if digit < BINS {
-            digits.0 = load_shared32(at(warp, digit)) + before;
+        for k in 0..K {
+            if digits.0[k] < BINS {
+                digits.0[k] = load_shared32(at(warp, digits.0[k])) + before[k];
+            }
         }
         sync_threads();
     }

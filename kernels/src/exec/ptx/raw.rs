@@ -14,6 +14,8 @@ unsafe extern "C" {
     pub fn barrier_sync(barrier: u32);
     #[link_name = "llvm.nvvm.barrier.cta.red.or.aligned.all"]
     pub fn barrier_or(barrier: u32, value: bool) -> bool;
+    #[link_name = "llvm.nvvm.bar.warp.sync"]
+    pub fn barrier_warp(mask: u32);
     #[link_name = "llvm.nvvm.shfl.sync.up.i32"]
     pub fn shfl_up(mask: u32, value: u32, delta: u32, clamp: u32) -> u32;
     #[link_name = "llvm.nvvm.vote.any.sync"]
@@ -56,6 +58,13 @@ pub fn sqrt64(x: f64) -> f64 {
 pub fn sync_threads() {
     // SAFETY: called by all threads of the block: phases and collectives are not inside a lane's control flow.
     unsafe { barrier_sync(0) }
+}
+
+/// The barrier of the warp: what its lanes did to shared memory before it, all of them see behind it.
+#[inline(always)]
+pub fn sync_warp() {
+    // SAFETY: called by all lanes of the warp: collectives are not inside a lane's control flow.
+    unsafe { barrier_warp(ALL) }
 }
 
 /// Address of byte `offset` of the launch's shared memory, in the shared window.

@@ -1,153 +1,165 @@
 //! # Tree: sorted codes → level-ordered tree
-//! Launch   `tree`, `depth`, one radix pass by depth (see [`super::sort`]), `place`, `levels` (one block), `emit`;
-//!          a lane an inner node.
+//! Launch   `tree`, `depth` (a lane a gap between leaves), `places` (a block a tile of gaps), `emit` (a lane a gap); at
+//!          least one block each.
 //! Reads    sorted codes and triangles.    Writes   links, leaf ranges, parents and leaf nodes; level offsets.
-//! Before   codes ascend. One triangle: only `levels` and `emit`. None: no launch at all.
+//! Before   codes ascend. The counts of depths, and what `treelet` counts, are zero. No launch for no triangle.
 //! After    T1 node 1 is the root; siblings are neighbours and begin at an even index.
 //!          T2 levels lie one behind the other, and within one nodes ascend by leaf.
 //!          T3 the leaves below a node are one range, and a node's `last` is its end.
 //!          T4 every leaf has one node, every triangle one leaf.  [`crate::bvh::check`] says which one is broken.
 //! Room     2n nodes, n - 1 inner nodes; at most [`MAX_LEVELS`] levels.
-//! Departs  Karras stores inner nodes by an end of their range; the second half of this file gives them breadth-first
-//!          places. An inner node is known by its split: n - 1 gaps between n leaves, each split once. Gaps sorted
-//!          stably by the depth of their node are the nodes in level order, left to right.
-//! Cost     a binary search of the codes (about 2 x 18 reads of 8 B) and a walk to the root (4 B a level) a node.
+//! Departs  Karras finds from a node's number an end of its range, then the other end, then the split. Here a node's number
+//!          is its split: n - 1 gaps between n leaves, each split once. Its range is all around the gap that shares as many
+//!          bits as the leaves beside it, so both ends are searched for at once, and the parent is the gap at the end
+//!          where more bits are shared beyond. Gaps ranked stably by depth are the nodes in level order, left to right.
+//! Cost     tree    up to 27 reads of 2 x 8 B in a row (quadruple, then halve), 12 B out.
+//!          depth   a walk to the root (4 B a level), 4 B and an atomic out.
+//!          places  4 B in, 4 B out; the counts.      emit  28 B in, 28 B out.
 
-use crate::abi::{Inner, LEAF, Link, NONE, ROOT, TreeArgs};
+use super::treelet;
+use crate::abi::{Inner, LEAF, Link, NONE, ROOT, Seat, TreeArgs};
 use crate::bvh::MAX_LEVELS;
-use crate::exec::{BINS, Block, Lane, Slot};
+use crate::exec::{BINS, Block, Lane, Slot, striped};
+use crate::sort;
+use crate::sort::EACH;
 
-/// The order of leaves i and j: how many leading bits of (code, index) they share; -1 beyond the ends.
-fn shared_bits<L: Lane>(l: &L, a: &TreeArgs, i: u32, j: i64) -> i32 {
-    if j < 0 || j >= a.leaves as i64 {
-        return -1;
-    }
-    let (x, y) = (l.read(a.codes, i), l.read(a.codes, j as u32));
-    if x == y { 64 + (i ^ j as u32).leading_zeros() as i32 } else { (x ^ y).leading_zeros() as i32 }
+/// What leaves are ordered by: no two have the same.
+fn key<L: Lane>(l: &L, a: &TreeArgs, leaf: u32) -> u64 {
+    l.read(a.items, leaf) & !(u32::MAX as u64) | leaf as u64
 }
 
-/// Karras 2012, figure 4: inner node i finds its range and its split, and tells its inner children who they belong to.
+/// Each inner node finds its range and its parent.
 pub fn tree<B: Block>(b: &mut B, a: &TreeArgs) {
     b.phase(|l| {
-        let i = l.global();
-        if i + 1 >= a.leaves {
+        let gap = l.global();
+        if gap + 1 >= a.leaves {
             return;
         }
-        let bits = |j: i64| shared_bits(l, a, i, j);
-        let at = i as i64;
-        // The range runs towards the neighbour that shares more bits; the other neighbour bounds it.
-        let step: i64 = if bits(at + 1) > bits(at - 1) { 1 } else { -1 };
-        let outside = bits(at - step);
-        let mut reach = 2i64;
-        while bits(at + reach * step) > outside {
-            reach *= 2;
-        }
-        let mut length = 0i64;
-        let mut part = reach / 2;
-        while part > 0 {
-            if bits(at + (length + part) * step) > outside {
-                length += part;
-            }
-            part /= 2;
-        }
-        let end = at + length * step;
-        // The split: the last leaf that shares more bits with leaf i than the whole range does.
-        let common = bits(end);
-        let mut inside = 0i64;
-        let mut part = length;
-        while part > 1 {
-            part = (part + 1) / 2;
-            if bits(at + (inside + part) * step) > common {
-                inside += part;
+        let mine = key(l, a, gap);
+        // How many bits the leaf `n` beyond the gap's own shares with them; -1 beyond the ends. Both sides are read
+        // without a branch, so that both reads are under way together.
+        let bits = |side: usize, n: u32| {
+            let leaf = if side == 0 { gap.wrapping_sub(n) } else { gap + 1 + n };
+            let other = key(l, a, leaf.min(a.leaves - 1));
+            if leaf < a.leaves { (mine ^ other).leading_zeros() as i32 } else { -1 }
+        };
+        let common = bits(1, 0);
+        let (mut found, mut step, mut growing) = ([0u32; 2], [1u32; 2], [true; 2]);
+        while step[0] | step[1] != 0 {
+            let inside = [0, 1].map(|side| bits(side, found[side] + step[side]) >= common);
+            for side in 0..2 {
+                found[side] += if inside[side] { step[side] } else { 0 };
+                growing[side] &= inside[side];
+                // There are fewer than 2^31 leaves: no sum overflows.
+                step[side] = if growing[side] { 4 * step[side].min(1 << 28) } else { step[side] / 2 };
             }
         }
-        let split = (at + inside * step + step.min(0)) as u32;
-        let (first, last) = (at.min(end) as u32, at.max(end) as u32);
-        l.write(a.inner, i, Inner { first, split, last });
-        if first < split {
-            l.write(a.parents, split, i);
-        }
-        if split + 1 < last {
-            l.write(a.parents, split + 1, i);
-        }
-        if i == 0 {
-            l.write(a.parents, 0, NONE);
-        }
+        let (first, last) = (gap - found[0], gap + 1 + found[1]);
+        let beyond = [0, 1].map(|side| bits(side, found[side] + 1));
+        let parent = match beyond {
+            [-1, -1] => NONE,
+            [left, right] if left > right => first - 1,
+            _ => last,
+        };
+        l.write(a.inner, gap, Inner { first, last });
+        l.write(a.parents, gap, parent);
     });
 }
 
-/// The depth of each inner node, filed under its gap.
+/// The depth of each inner node, counted by tiles; and what the treelets need to know first.
 pub fn depth<B: Block>(b: &mut B, a: &TreeArgs) {
     b.phase(|l| {
-        let i = l.global();
-        if i + 1 >= a.leaves {
+        let gap = l.global();
+        if gap == 0 && !a.begins.is_empty() {
+            treelet::begin(l, a, 0);
+        }
+        if gap + 1 >= a.leaves {
             return;
         }
-        let (mut depth, mut node) = (0u64, l.read(a.parents, i));
+        let (mut depth, mut node) = (0, l.read(a.parents, gap));
         while node != NONE {
             node = l.read(a.parents, node);
             depth += 1;
         }
-        let gap = l.read(a.inner, i).split;
-        l.write(a.depth_keys, gap, depth);
-        l.write(a.depth_values, gap, i);
-    });
-}
-
-/// From place → inner node to inner node → place.
-pub fn place<B: Block>(b: &mut B, a: &TreeArgs) {
-    b.phase(|l| {
-        let place = l.global();
-        if place + 1 < a.leaves {
-            l.write(a.places, l.read(a.ordered, place), place);
+        l.write(a.depths, gap, depth);
+        sort::tally(l, &a.tiles, gap, depth);
+        if !a.begins.is_empty() {
+            treelet::mark(l, a, gap, depth);
         }
     });
 }
 
-/// Where each level begins: two nodes for each inner node of the levels before.
-pub fn levels<B: Block>(b: &mut B, a: &TreeArgs) {
-    let mut sums = b.slot(0u32);
-    let lanes = b.lanes();
-    let (mut before, mut depth, mut deepest) = (0, 0, 0);
-    let count = |l: &B::Lane, d: u32| if d < BINS && a.leaves > 1 { l.read(a.totals, d) } else { 0 };
-    while depth < MAX_LEVELS {
-        b.phase(|l| *sums.of(l) = count(l, depth + l.lane()));
-        let total = b.scan(&mut sums);
-        b.phase(|l| {
-            let d = depth + l.lane();
-            if d < MAX_LEVELS {
-                l.write(a.levels, d + 2, ROOT + 1 + 2 * (before + *sums.of(l)));
+/// Each inner node's place in level order; where each level begins: two nodes for each inner node of the levels before.
+pub fn places<B: Block>(b: &mut B, a: &TreeArgs) {
+    let bins = sort::starts(b, &a.tiles);
+    let (tile, lanes, gaps) = (b.block(), b.lanes(), a.leaves - 1);
+    if tile == 0 {
+        // No tile is before this one: its bins are how many inner nodes the levels before have.
+        sort::each_bin(b, |l, depth| {
+            let many = |depth: u32| depth < BINS && l.get(bins.totals, depth) > 0;
+            if depth < MAX_LEVELS {
+                l.write(a.levels, depth + 2, children(l.get(bins.next, depth)));
+            }
+            if depth == 0 {
+                l.write(a.levels, 1, ROOT);
+            }
+            // The deepest inner nodes, and a level of leaves below them; or one leaf.
+            if many(depth) && !many(depth + 1) || depth == 0 && gaps == 0 {
+                l.write(a.levels, 0, if gaps == 0 { 1 } else { depth + 2 });
             }
         });
-        b.phase(|l| *sums.of(l) = (count(l, depth + l.lane()) > 0) as u32);
-        deepest += b.scan(&mut sums);
-        before += total;
-        depth += lanes;
     }
-    b.phase(|l| {
-        if l.lane() == 0 {
-            l.write(a.levels, 0, deepest + 1);
-            l.write(a.levels, 1, ROOT);
-        }
-    });
+    let mut ranks = b.slot([BINS; EACH]);
+    let mut at = tile * a.tiles.items;
+    let end = gaps.min(at + a.tiles.items);
+    while at < end {
+        let gap = |l: &B::Lane, k: usize| at + striped(l.lane(), lanes, k as u32, EACH as u32);
+        b.phase(|l| {
+            for k in 0..EACH {
+                let depth = l.read(a.depths, gap(l, k).min(gaps - 1));
+                ranks.of(l)[k] = if gap(l, k) < end { depth } else { BINS };
+            }
+        });
+        b.ranks(&mut ranks, bins.next, bins.scratch);
+        b.phase(|l| {
+            for k in 0..EACH {
+                if gap(l, k) < end {
+                    l.write(a.places, gap(l, k), ranks.of(l)[k]);
+                }
+            }
+        });
+        at += EACH as u32 * lanes;
+    }
 }
 
-/// The nodes in their places: each inner node writes its two children, the first lane the root.
+/// The nodes in their places: each inner node writes itself and the leaves below it.
 pub fn emit<B: Block>(b: &mut B, a: &TreeArgs) {
     b.phase(|l| {
-        let place = l.global();
-        if place == 0 {
-            let link = if a.leaves == 1 { LEAF } else { children(0) };
-            put(l, a, ROOT, link, [0, a.leaves - 1]);
+        let gap = l.global();
+        if gap == 0 && a.leaves == 1 {
+            leaf(l, a, ROOT, 0);
         }
-        if place + 1 >= a.leaves {
+        if gap + 1 >= a.leaves {
             return;
         }
-        let Inner { first, split, last } = l.read(a.inner, l.read(a.ordered, place));
-        let link =
-            |from: u32, to: u32, node: u32| if from == to { LEAF } else { children(l.read(a.places, node)) };
-        put(l, a, children(place), link(first, split, split), [first, split]);
-        put(l, a, children(place) + 1, link(split + 1, last, split + 1), [split + 1, last]);
+        let (Inner { first, last }, parent) = (l.read(a.inner, gap), l.read(a.parents, gap));
+        let link = children(l.read(a.places, gap));
+        // A left child lies before the gap that its parent splits.
+        let at = match parent {
+            NONE => ROOT,
+            _ => children(l.read(a.places, parent)) + (parent < gap) as u32,
+        };
+        l.write(a.links, at, Link { link, last });
+        l.write(a.pair_parents, link / 2, at);
+        if !a.firsts.is_empty() {
+            l.write(a.firsts, link / 2, first);
+        }
+        if first == gap {
+            leaf(l, a, link, gap);
+        }
+        if last == gap + 1 {
+            leaf(l, a, link + 1, last);
+        }
     });
 }
 
@@ -156,18 +168,12 @@ fn children(place: u32) -> u32 {
     ROOT + 1 + 2 * place
 }
 
-/// Writes the links of the node of a range of leaves. A leaf learns its triangle, and its triangle's leaf its node; an
-/// inner node's children learn their parent and, where that is asked for, their first leaf.
-fn put<L: Lane>(l: &L, a: &TreeArgs, at: u32, link: u32, [first, last]: [u32; 2]) {
-    let mut node = Link { link, last };
-    if node.is_leaf() {
-        node.link |= a.first + l.read(a.triangles, last);
-        l.write(a.leaf_nodes, last, at);
-    } else {
-        l.write(a.pair_parents, link / 2, at);
-        if !a.firsts.is_empty() {
-            l.write(a.firsts, link / 2, first);
-        }
+/// Writes a leaf's node, and tells the leaf.
+fn leaf<L: Lane>(l: &L, a: &TreeArgs, at: u32, leaf: u32) {
+    let link = LEAF | a.first + l.read(a.items, leaf) as u32;
+    l.write(a.links, at, Link { link, last: leaf });
+    l.write(a.leaf_nodes, leaf, at);
+    if !a.seats.is_empty() {
+        l.write(a.seats, leaf, Seat { node: at, link });
     }
-    l.write(a.links, at, node);
 }

@@ -1,0 +1,158 @@
+//! A stable radix sort by bytes, a launch a byte, and what kernels share that rank items by a small number.
+//!
+//! A tile is what one block ranks: `rounds` times [`EACH`] items a lane. Whoever makes a list counts its digits, tile by
+//! tile, as it goes ([`tally`]); so when a pass begins it knows how often each digit comes in each tile, and each block
+//! sums on its own what lies before its items ([`starts`]): no launch that counts, none that sums, nobody who waits.
+//!
+//! Four counts of 16 bits share a word, so a tile has fewer than 65,536 items. Every block reads the counts of all tiles,
+//! 512 B each: their number is kept small ([`MOST_TILES`]), and more items make longer tiles.
+
+use crate::abi::{SortArgs, Tiles};
+use crate::exec::{BINS, Block, Lane, Shared, Slot, WARP, striped};
+
+/// Items of a lane that are read, and ranked, together.
+pub const EACH: usize = 8;
+/// Tiles that a list is cut into at most, while tiles may grow.
+pub const MOST_TILES: u32 = 512;
+/// Most items of a tile: their counts have 16 bits.
+pub const LONGEST_TILE: u32 = u16::MAX as u32;
+/// Counts in a word.
+const A_WORD: u32 = 4;
+/// Words of a tile's counts.
+pub const WORDS: u32 = BINS / A_WORD;
+/// Tiles whose counts a lane reads together.
+const AHEAD: u32 = 8;
+
+/// Bytes of shared memory of a block that calls [`starts`] and ranks.
+pub const fn shared_bytes(lanes: u32) -> u32 {
+    4 * BINS * (2 + lanes.div_ceil(WARP))
+}
+
+/// Counts an item that lies, or will lie, at a place.
+#[inline]
+pub fn tally<L: Lane>(l: &L, tiles: &Tiles, place: u32, digit: u32) {
+    l.fetch_add(tiles.counts, place / tiles.items * WORDS + digit / A_WORD, 1 << (16 * (digit % A_WORD)));
+}
+
+/// Shared memory for [`starts`] and for [`Block::ranks`].
+pub struct Bins {
+    /// Of each digit: where the block's next item goes.
+    pub next: Shared<u32>,
+    /// Of each digit: how many items there are in all.
+    pub totals: Shared<u32>,
+    /// For `ranks`.
+    pub scratch: Shared<u32>,
+}
+
+/// Where this block's items go, digit by digit: behind all smaller digits, and behind the same one in earlier tiles.
+#[inline]
+pub fn starts<B: Block>(b: &mut B, tiles: &Tiles) -> Bins {
+    let (tile, lanes) = (b.block(), b.lanes());
+    let bins =
+        Bins { next: b.shared(BINS), totals: b.shared(BINS), scratch: b.shared(BINS * lanes.div_ceil(WARP)) };
+    each_bin(b, |l, bin| {
+        l.put(bins.next, bin, 0);
+        l.put(bins.totals, bin, 0);
+    });
+    // A lane a word, and as many lanes a word as there are.
+    let shares = (lanes / WORDS).max(1);
+    b.phase(|l| {
+        let share = l.lane() / WORDS;
+        let mut word = if share < shares { l.lane() % WORDS } else { WORDS };
+        while word < WORDS {
+            let (mut before, mut total) = ([0u32; A_WORD as usize], [0u32; A_WORD as usize]);
+            let mut from = share;
+            while from < tiles.count {
+                let last = tiles.count - 1;
+                let counts: [u64; AHEAD as usize] = core::array::from_fn(|k| {
+                    l.read(tiles.counts, (from + k as u32 * shares).min(last) * WORDS + word)
+                });
+                for (k, counts) in counts.into_iter().enumerate() {
+                    let from = from + k as u32 * shares;
+                    for part in 0..A_WORD as usize {
+                        let count = (counts >> (16 * part)) as u32 & 0xffff;
+                        before[part] += if from < tile { count } else { 0 };
+                        total[part] += if from <= last { count } else { 0 };
+                    }
+                }
+                from += AHEAD * shares;
+            }
+            for part in 0..A_WORD {
+                l.shared_add(bins.next, A_WORD * word + part, before[part as usize]);
+                l.shared_add(bins.totals, A_WORD * word + part, total[part as usize]);
+            }
+            word += lanes.min(WORDS);
+        }
+    });
+    let mut values = b.slot(0u32);
+    let (mut smaller, mut bin) = (0, 0);
+    while bin < BINS {
+        b.phase(|l| {
+            let d = bin + l.lane();
+            *values.of(l) = if d < BINS { l.get(bins.totals, d) } else { 0 };
+        });
+        let sum = b.scan(&mut values);
+        b.phase(|l| {
+            let d = bin + l.lane();
+            if d < BINS {
+                l.put(bins.next, d, smaller + *values.of(l) + l.get(bins.next, d));
+            }
+        });
+        smaller += sum;
+        bin += lanes;
+    }
+    bins
+}
+
+/// # Pass: items in the order of one byte; equal bytes keep their order
+/// Launch   a block a tile.
+/// Reads    items, their digits' counts.   Writes   items; the counts of the next byte's digits in the tiles they go to.
+/// Before   the counts are complete; those of the next byte are zero.
+/// Room     fixed; cannot run out.
+/// Cost     8 B in, 8 B out and an atomic a key; 512 B a tile and block, summed by each. Three rounds to L2 in a row: items
+///          and counts together, places, atomics.
+pub fn pass<B: Block>(b: &mut B, a: &SortArgs) {
+    let bins = starts(b, &a.tiles);
+    let (tile, lanes) = (b.block(), b.lanes());
+    let count = a.items.len as u32;
+    let mut items = b.slot([0u64; EACH]);
+    let mut places = b.slot([BINS; EACH]);
+    let mut at = tile * a.tiles.items;
+    let end = count.min(at + a.tiles.items);
+    while at < end {
+        b.phase(|l| {
+            for k in 0..EACH {
+                let i = at + striped(l.lane(), lanes, k as u32, EACH as u32);
+                let item = l.read(a.items, i.min(count - 1));
+                items.of(l)[k] = item;
+                places.of(l)[k] = if i < end { (item >> a.shift) as u32 & (BINS - 1) } else { BINS };
+            }
+        });
+        b.ranks(&mut places, bins.next, bins.scratch);
+        b.phase(|l| {
+            for k in 0..EACH {
+                let (item, place) = (items.of(l)[k], places.of(l)[k]);
+                if at + striped(l.lane(), lanes, k as u32, EACH as u32) < end {
+                    l.write(a.out, place, item);
+                    if a.next.count > 0 {
+                        tally(l, &a.next, place, (item >> a.next_shift) as u32 & (BINS - 1));
+                    }
+                }
+            }
+        });
+        at += EACH as u32 * lanes;
+    }
+}
+
+/// A phase over all bins, whatever the number of lanes.
+#[inline]
+pub fn each_bin<B: Block>(b: &mut B, mut body: impl FnMut(&B::Lane, u32)) {
+    let lanes = b.lanes();
+    b.phase(|l| {
+        let mut bin = l.lane();
+        while bin < BINS {
+            body(l, bin);
+            bin += lanes;
+        }
+    });
+}
