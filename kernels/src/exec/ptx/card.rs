@@ -4,7 +4,7 @@ use super::coherent::{compare_and_swap, fence, load_coherent, store_coherent};
 use super::raw::{
     BROADCAST, address, atomic, barrier_or, element, load_global, load_shared32, load_shared64, load_word,
     match_any, scratch_address, shuffle_up, store_shared32, store_shared64, store_word, sync_threads,
-    warp_any,
+    sync_warp, warp_any,
 };
 use crate::abi::Span;
 use crate::exec::{BINS, Block, Lane, Shared, Slot, WARP, Word};
@@ -170,6 +170,7 @@ impl Card {
     /// A lane's value for all: lane 0 computes it.
     #[inline(always)]
     fn broadcast(&self, value: impl FnOnce() -> u64) -> u64 {
+        sync_warp();
         if self.lane.lane == 0 {
             store_shared64(scratch_address(BROADCAST), value());
         }
@@ -230,6 +231,7 @@ impl Block for Card {
     }
     #[inline(always)]
     fn any(&mut self, values: &mut Register<bool>) -> bool {
+        sync_warp();
         // SAFETY: called by all threads of the block.
         unsafe { barrier_or(0, values.0) }
     }
@@ -238,6 +240,7 @@ impl Block for Card {
         let (lane, warp) = (self.lane.lane % WARP, self.lane.lane / WARP);
         let mut sum = values.0;
         let mut delta = 1;
+        sync_warp();
         while delta < WARP {
             let before = shuffle_up(sum, delta);
             if lane >= delta {
