@@ -170,6 +170,7 @@ impl Card {
     /// A lane's value for all: lane 0 computes it.
     #[inline(always)]
     fn broadcast(&self, value: impl FnOnce() -> u64) -> u64 {
+        sync_warp();
         if self.lane.lane == 0 {
             store_shared64(scratch_address(BROADCAST), value());
         }
@@ -230,6 +231,7 @@ impl Block for Card {
     }
     #[inline(always)]
     fn any(&mut self, values: &mut Register<bool>) -> bool {
+        sync_warp();
         // SAFETY: called by all threads of the block.
         unsafe { barrier_or(0, values.0) }
     }
@@ -238,6 +240,7 @@ impl Block for Card {
         let (lane, warp) = (self.lane.lane % WARP, self.lane.lane / WARP);
         let mut sum = values.0;
         let mut delta = 1;
+        sync_warp();
         while delta < WARP {
             let before = shuffle_up(sum, delta);
             if lane >= delta {

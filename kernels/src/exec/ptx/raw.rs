@@ -12,10 +12,10 @@ use core::sync::atomic::AtomicU64;
 unsafe extern "C" {
     #[link_name = "llvm.nvvm.barrier.cta.sync.aligned.all"]
     pub fn barrier_sync(barrier: u32);
+    #[link_name = "llvm.nvvm.bar.warp.sync"]
+    pub fn bar_warp_sync(mask: u32);
     #[link_name = "llvm.nvvm.barrier.cta.red.or.aligned.all"]
     pub fn barrier_or(barrier: u32, value: bool) -> bool;
-    #[link_name = "llvm.nvvm.bar.warp.sync"]
-    pub fn barrier_warp(mask: u32);
     #[link_name = "llvm.nvvm.shfl.sync.up.i32"]
     pub fn shfl_up(mask: u32, value: u32, delta: u32, clamp: u32) -> u32;
     #[link_name = "llvm.nvvm.vote.any.sync"]
@@ -60,11 +60,23 @@ pub fn sync_threads() {
     unsafe { barrier_sync(0) }
 }
 
-/// The barrier of the warp: what its lanes did to shared memory before it, all of them see behind it.
+/// The lanes of a warp come together, for certain: what lanes do together begins with it. What they did to shared memory before
+/// it, all of them see behind it.
+///
+/// The names of 32 lanes in a shuffle's mask do not make it wait: ptxas (12.9, 13.0, the driver's) waits only where it does not
+/// believe the warp to be together, and it believes so, wrongly, behind loops that lanes leave at different turns. It
+/// leaves out a warp barrier as well where it believes, unless it does not know the mask. This one is all lanes, by two
+/// registers of which it knows nothing. `.ci/ptxas.sh` looks for the instruction. The registers are read afresh each time, or
+/// the mask would take a register between.
 #[inline(always)]
 pub fn sync_warp() {
-    // SAFETY: called by all lanes of the warp: collectives are not inside a lane's control flow.
-    unsafe { barrier_warp(ALL) }
+    let mask: u32;
+    // SAFETY: reads special registers; called by all 32 threads of the warp.
+    unsafe {
+        asm!("{{ .reg .b32 t; mov.u32 t, %lanemask_le; mov.u32 {m}, %lanemask_gt; or.b32 {m}, {m}, t; }}",
+            m = out(reg32) mask, options(nomem, nostack));
+        bar_warp_sync(mask)
+    }
 }
 
 /// Address of byte `offset` of the launch's shared memory, in the shared window.
@@ -125,13 +137,15 @@ pub fn address<T: Word>(words: Shared<T>, i: u32) -> u32 {
     shared_address(words.offset + i * size_of::<T>() as u32)
 }
 
-/// The value of the lane `delta` before this one in its warp; its own where there is none.
+/// The value of the lane `delta` before this one in its warp; its own where there is none. A [`sync_warp`] goes before.
 #[inline(always)]
 pub fn shuffle_up(v: u32, delta: u32) -> u32 {
     // SAFETY: called by all threads of the warp.
     unsafe { shfl_up(ALL, v, delta, 0) }
 }
-/// Whether any lane of the warp votes for it; all lanes come.
+/// Whether any lane of the warp votes for it; all lanes come. Without a [`sync_warp`]: lanes that vote by themselves lose time
+/// and no answer (`Lane::any`), the assembler asks the hardware whether all are there, and in the search's loop its way to
+/// wait for a mask that it does not know, a match and a reduction, costs 88 bytes of spills in f32.
 #[inline(always)]
 pub fn warp_any(vote: bool) -> bool {
     // SAFETY: called by all lanes of the warp: `Lane::any` says so.
@@ -141,6 +155,7 @@ pub fn warp_any(vote: bool) -> bool {
 /// Which lanes of the warp hold the same value.
 #[inline(always)]
 pub fn match_any(v: u32) -> u32 {
+    sync_warp();
     // SAFETY: called by all threads of the warp.
     unsafe { match_any_sync(ALL, v) }
 }
