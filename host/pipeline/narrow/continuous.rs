@@ -36,6 +36,8 @@ pub struct Continuous {
     pub ee_hits: List<Hit>,
     /// What certified solvers climb.
     rungs: Rungs,
+    /// Pairs of features whose boxes meet, where the first step counts them and lists fewer.
+    candidates: Option<[Tally; 2]>,
     /// Hits that are not certain.
     unresolved: Tally,
     /// The smallest toi, where only that is asked for.
@@ -70,6 +72,7 @@ impl Continuous {
             vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, hits[0])?,
             ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, hits[1])?,
             rungs: Rungs::new(device, &query, rooms.left)?,
+            candidates: (!query.is_apart()).then_some([Tally(counter::VF), Tally(counter::EE)]),
             unresolved: Tally(counter::UNRESOLVED),
             earliest: earliest.then(|| device.buffer(1)).transpose()?,
         })
@@ -78,7 +81,12 @@ impl Continuous {
     /// The lists that a step fills.
     pub fn lists(&mut self, step: Step) -> Vec<&mut dyn Growing> {
         match step {
-            Step::Sift => self.asked.iter_mut().map(|list| list as &mut dyn Growing).collect(),
+            Step::Sift => {
+                let lists = self.asked.iter_mut().map(|list| list as &mut dyn Growing);
+                lists
+                    .chain(self.candidates.iter_mut().flatten().map(|tally| tally as &mut dyn Growing))
+                    .collect()
+            }
             Step::Solve => {
                 let mut lists: Vec<&mut dyn Growing> =
                     vec![&mut self.vf_hits, &mut self.ee_hits, &mut self.unresolved];
