@@ -77,7 +77,8 @@ fn nothing_is_lost_at_any_tolerance_and_budget() {
                 }
                 assert!(budget > 1 || all.unresolved >= ample, "{what}: a budget of one box is not more");
                 let first = ask(engine(), vec![body.clone()], asking(Motion::Earliest, solver, &p));
-                let least = [&first, &all].map(|a| (a.earliest_toi().map(f64::to_bits), a.unresolved));
+                // Pairs that could not be earlier than one that is known are not asked, so not counted either.
+                let least = [&first, &all].map(|a| a.earliest_toi().map(f64::to_bits));
                 assert_eq!(least[0], least[1], "{what}");
             }
         }
@@ -93,11 +94,13 @@ fn every_machine_escalates_the_same() {
             .expect("a session");
         let all = session.detect().expect("an answer");
         let prints = session.fingerprints().expect("prints");
-        (all.hash(), all.unresolved, all.escalated_vf_ee, prints)
+        // Of the earliest, which pairs are asked hangs on what was found before them.
+        let counts = (motion == Motion::Continuous).then_some((all.unresolved, all.escalated_vf_ee));
+        (all.hash(), counts, prints)
     };
     for motion in [Motion::Continuous, Motion::Earliest] {
         let truth = print(engine(), motion);
-        assert!(truth.1 > 0 && truth.2.iter().all(|n| *n > 0), "{truth:?}");
+        assert!(truth.1.is_none_or(|(open, left)| open > 0 && left.iter().all(|n| *n > 0)), "{truth:?}");
         for device in machines() {
             let name = device.name();
             assert_eq!(print(device, motion), truth, "{motion:?}, {name}");

@@ -163,3 +163,20 @@ fn a_finer_tolerance_gives_finer_times() {
     }
     assert!(rungs.is_sorted() && rungs[0] == Rung::Single && rungs[5] == Rung::Double, "{rungs:?}");
 }
+
+/// A face that begins as a segment, two of its corners in one place, and a vertex far from it throughout: the nearest point is
+/// on the segment, not where the corners are.
+#[test]
+fn what_is_far_from_a_collapsed_face_is_separated() {
+    let from = [[-1.0, 2.0, 0.0], [0.0; 3], [0.0; 3], [4.0, 4.0, 0.0]];
+    let to = [[-1.0, 2.0, 0.0], [1.0, -4.0, 0.5], [0.0, -3.0, 1.0], [4.0, 1.0, 0.0]];
+    for turn in 0..3 {
+        let turned = |p: Points| [p[0], p[1 + turn], p[1 + (turn + 1) % 3], p[1 + (turn + 2) % 3]];
+        let case = case(VF, [turned(from), turned(to)]);
+        for rungs in [Rungs::All, Rungs::Single, Rungs::Double] {
+            let p = Params { separation: 0.25, ..Params::new(1e-2) };
+            let said = certified::<f64>(&case, rungs, &p);
+            assert!(said.is_separated(), "{turn}, {rungs:?}: {said:?}");
+        }
+    }
+}

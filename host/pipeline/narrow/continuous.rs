@@ -41,6 +41,8 @@ pub struct Continuous {
     tallies: [Tally; 4],
     /// Whether pairs may be too large for the tolerance: see [`Blunt`].
     pub blunt: Option<Blunt>,
+    /// Pairs of features whose boxes meet, where the first step counts them and lists fewer.
+    candidates: Option<[Tally; 2]>,
     /// The smallest toi, where only that is asked for.
     pub earliest: Option<Buffer<u64>>,
 }
@@ -76,6 +78,7 @@ impl Continuous {
             tallies: [counter::UNRESOLVED, counter::ENDED, counter::ENDED_UNRESOLVED, counter::BLUNT]
                 .map(Tally),
             blunt: None,
+            candidates: (!query.is_apart()).then_some([Tally(counter::VF), Tally(counter::EE)]),
             earliest: earliest.then(|| device.buffer(1)).transpose()?,
         })
     }
@@ -83,7 +86,12 @@ impl Continuous {
     /// The lists that a step fills.
     pub fn lists(&mut self, step: Step) -> Vec<&mut dyn Growing> {
         match step {
-            Step::Sift => self.asked.iter_mut().map(|list| list as &mut dyn Growing).collect(),
+            Step::Sift => {
+                let lists = self.asked.iter_mut().map(|list| list as &mut dyn Growing);
+                lists
+                    .chain(self.candidates.iter_mut().flatten().map(|tally| tally as &mut dyn Growing))
+                    .collect()
+            }
             Step::Solve => {
                 let mut lists: Vec<&mut dyn Growing> = vec![&mut self.vf_hits, &mut self.ee_hits];
                 lists.extend(self.tallies.iter_mut().map(|tally| tally as &mut dyn Growing));

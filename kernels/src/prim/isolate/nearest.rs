@@ -33,7 +33,8 @@ fn of_triangle<S: Real>(a: Vec3<S>, b: Vec3<S>, c: Vec3<S>) -> Vec3<S> {
         (zero, zero)
     } else if d3 >= zero && d4 <= d3 {
         (S::ONE, zero)
-    } else if vc <= zero && d1 >= zero && d3 <= zero {
+    } else if vc <= zero && d1 >= zero && d3 <= zero && d1 > d3 {
+        // Strictly: corners in one place have no side between them, and the others do.
         (d1 / (d1 - d3), zero)
     } else if d6 >= zero && d5 <= d6 {
         (zero, S::ONE)
