@@ -167,7 +167,7 @@ fn each_frame_is_told_by_itself() {
     for frame in frames.map(|frame| frame.expect("a scene")) {
         session.move_to(0, frame.clone()).expect("a frame");
         let alone = ask(engine(), vec![frame], query);
-        assert!(alone.degraded().len() >= 3, "{:?}", alone.degraded());
+        assert!(alone.degraded().len() >= 2, "{:?}", alone.degraded());
         for _ in 0..2 {
             assert_eq!(session.detect().expect("an answer").degraded(), alone.degraded());
         }
