@@ -179,7 +179,14 @@ impl Cuda {
             bytes.copy_from_slice(&known);
             return Ok(());
         }
-        self.staging()?.read(&self.stream, &memory.0, bytes)
+        match self.staging.try_borrow_mut() {
+            Ok(mut staging) => staging.read(&self.stream, &memory.0, bytes),
+            // The host still looks at what was read ahead, of which this is not: a copy of its own.
+            Err(_) => {
+                self.stream.synchronize().map_err(refused("waiting for the card"))?;
+                memory.0.index(0..bytes.len()).copy_to(bytes).map_err(refused("copying from the card"))
+            }
+        }
     }
 
     /// Copies the first bytes of several buffers, as many as fit into page-locked memory, with one wait: those that are

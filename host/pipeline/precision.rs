@@ -2,7 +2,8 @@
 
 use crate::mesh::Positions;
 use nearmiss_kernels::abi::{
-    BluntArgs, DiscreteArgs, FitArgs, GroupsArgs, MortonArgs, RejectArgs, RungArgs, SiftArgs, SolveArgs, TreeletsArgs,
+    BluntArgs, DiscreteArgs, FitArgs, GroupsArgs, MortonArgs, RejectArgs, RungArgs, SiftArgs, SolveArgs,
+    TreeletsArgs,
 };
 use nearmiss_kernels::bv::{Aabb, Linear, Obb};
 use nearmiss_kernels::entry::{self, Entry};
