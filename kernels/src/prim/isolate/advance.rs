@@ -115,13 +115,11 @@ impl<S: Grid, const N: usize> Advance<S, N> {
         if length <= d.under {
             return Some(Advanced::Within { from: t, to: t });
         }
-        let Some(next) = self.pair.until(&x, p, (d.over, self.error())) else {
-            return Some(Advanced::Open { from: t });
-        };
+        // Where the plane is reached to a rounding there is no next time: it may still be certain soon.
+        let next = self.pair.until(&x, p, (d.over, self.error())).map_or(t, |next| next.max(t));
         if next >= self.end {
             return Some(Advanced::Apart);
         }
-        let next = next.max(t);
         let (near, step) = (length <= d.under + d.slack, next - t);
         if near || step < d.pause * S::of(0.25) {
             let later = (next + d.pause).min(self.end);

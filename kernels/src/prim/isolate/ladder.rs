@@ -306,7 +306,13 @@ pub fn settled<const N: usize>(
     if window.0 <= 0.0 && touch() {
         return Ok(Verdict::contact(0.0, 0.0, 0, false));
     }
-    if all || is_flat(pair, window) { Ok(near(pair, window, p)) } else { Err(window) }
+    if !(all || is_flat(pair, window)) {
+        return Err(window);
+    }
+    if pair.misses_throughout(window.0, window.1) {
+        return Ok(Verdict::separated(p.end, 0));
+    }
+    Ok(near(pair, window, p))
 }
 
 /// The rungs behind the slices, given the first that is not apart.

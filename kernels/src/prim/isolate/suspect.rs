@@ -96,17 +96,24 @@ impl<S: Grid, const N: usize> Pair<S, N> {
     #[inline]
     pub fn misses_throughout(&self, from: S, to: S) -> bool {
         let ends = [self.at(from), self.at(to)];
-        let reach = largest(&ends[0]).max(largest(&ends[1]));
-        let error = S::ISOLATE_PLACE * self.reach + S::ISOLATE_SIDE * reach;
+        // An axis has its own errors: of a pair that is long on one axis, the others still tell.
+        let mut reach = Vec3([S::ZERO; 3]);
+        for k in 0..N {
+            reach = reach.max(self.w[k][0].map(S::abs)).max(self.w[k][1].map(S::abs));
+        }
+        let error = reach * ((S::ISOLATE_PLACE + S::ISOLATE_SIDE) * S::INCLUSION_UP);
+        let beyond = |d: Vec3<S>| {
+            let bound = d.map(S::abs).dot(error) * S::INCLUSION_UP + S::ISOLATE_UNDERFLOW;
+            (0..N).all(|k| d.dot(ends[0][k]) > bound && d.dot(ends[1][k]) > bound)
+        };
         let mut d = Vec3([S::ZERO; 3]);
         for k in 0..N {
             d = d + (ends[0][k] + ends[1][k]);
         }
         d = d * S::of(0.5 / N as f64);
         for _ in 0..=PLANES {
-            if self.beside(&ends[0], d, error) && self.beside(&ends[1], d, error) {
-                // Both beside, but of one side?
-                return self.finite && d.dot(ends[0][0]) > S::ZERO && d.dot(ends[1][0]) > S::ZERO;
+            if beyond(d) {
+                return self.finite;
             }
             let mut at = ends[0][0];
             for i in 0..2 {
