@@ -111,6 +111,10 @@ impl Lane for Thread {
         warp_any(mine)
     }
     #[inline(always)]
+    fn meet(&self) {
+        sync_warp();
+    }
+    #[inline(always)]
     fn get<T: Word>(&self, words: Shared<T>, i: u32) -> T {
         load_word(address(words, i))
     }

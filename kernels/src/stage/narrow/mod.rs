@@ -43,6 +43,7 @@ fn append_each<B: Block, T: bytemuck::Pod>(
             let entry = if i < count { body(l, i) } else { None };
             *places.of(l) = entry.is_some() as u32;
             *entries.of(l) = entry;
+            l.meet();
         });
         let start = b.append(&mut places, counters, at);
         b.phase(|l| {
