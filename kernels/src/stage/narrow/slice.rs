@@ -13,7 +13,7 @@
 use super::climb::{edge_edge, tell, vertex_face};
 use super::listed;
 use crate::abi::{Listed, Pair, RungArgs};
-use crate::exec::{Block, Lane, Slot};
+use crate::exec::{Block, Lane, Shared, Slot};
 use crate::math::Real;
 use crate::prim::inclusion::{self, Verdict};
 use crate::prim::isolate::ladder::{SLICES, Slice, decided, searched, sliced};
@@ -25,9 +25,10 @@ pub const SHARED: u32 = 4;
 /// All slices of all pairs.
 pub fn slice<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
     let p = &a.params;
+    let open = b.shared::<u32>(1);
     each(
         b,
-        (a, &a.vf),
+        (a, &a.vf, open),
         |l, pair| {
             let (v, f) = vertex_face(l, a, pair);
             Face::new(v, f, p)
@@ -39,7 +40,7 @@ pub fn slice<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
     );
     each(
         b,
-        (a, &a.ee),
+        (a, &a.ee, open),
         |l, pair| {
             let [x, y] = edge_edge(l, a, pair);
             Edges::new(x, y, p)
@@ -55,13 +56,12 @@ pub fn slice<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
 #[inline(always)]
 fn each<R: Real, B: Block, const N: usize>(
     b: &mut B,
-    (a, of): (&RungArgs<R>, &Listed),
+    (a, of, open): (&RungArgs<R>, &Listed, Shared<u32>),
     motion: impl Fn(&B::Lane, Pair) -> isolate::Pair<f64, N>,
     search: impl Fn(&B::Lane, Pair, Verdict) -> Verdict,
 ) {
     let count = listed(b, of.pairs, a.counters, of.pairs_at);
     let lanes = b.lanes();
-    let open = b.shared::<u32>(1);
     let mut mine = b.slot(Slice::Apart);
     let mut i = b.block();
     while i < count {
