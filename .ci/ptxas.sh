@@ -1,53 +1,75 @@
 #!/usr/bin/env bash
-# Assembles a PTX text as the driver would, without a card: what ptxas refuses, no card runs.
+# Assembles a PTX text as the driver would, without a card: what ptxas refuses, no card runs. And reads the machine code.
 #
-#   .ci/ptxas.sh FILE.ptx [ARCH]      ARCH: sm_80 unless told
+#   .ci/ptxas.sh FILE.ptx [ARCH...]      ARCH: sm_80 sm_90 sm_100 unless told
 #
-# Prints registers, stack, spills and shared memory of each kernel, and makes sure that no product and sum became one
-# operation: the code is the same where that is forbidden. ptxas is $PTXAS, or the one on the PATH or in
-# /usr/local/cuda, or else NVIDIA's Python package, unpacked into the cache (80 MB). Exit status 77: no ptxas to be had.
+# Prints registers, stack, spills and shared memory of each kernel for the first ARCH, and makes sure
+# - that no product and sum became one operation: the code is the same where that is forbidden;
+# - that the lanes of a warp are together wherever they must be (.ci/lanes.py says what is proven), for each ARCH.
+# Each is done by two assemblers, NVIDIA's Python packages, unpacked into the cache (150 MB); without them by $PTXAS, or the one
+# on the PATH or in /usr/local/cuda. Each check is first shown a text with a fault in it. Three minutes on two cores.
+# Exit status 77: no assembler or no disassembler to be had.
 set -euo pipefail
 
-[ $# -ge 1 ] || { echo "usage: .ci/ptxas.sh FILE.ptx [ARCH]" >&2; exit 2; }
-package=nvidia-cuda-nvcc-cu12==12.9.86
+[ $# -ge 1 ] || { echo "usage: .ci/ptxas.sh FILE.ptx [ARCH...]" >&2; exit 2; }
+text=$1
+shift
+archs=("$@")
+[ ${#archs[@]} -gt 0 ] || archs=(sm_80 sm_90 sm_100)
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+# The last of CUDA 12 and the newest: `python3 -m pip index versions nvidia-cuda-nvcc` tells of newer ones.
+packages=(nvidia-cuda-nvcc-cu12==12.9.86 nvidia-cuda-nvcc==13.5.37)
+reader=nvidia-cuda-nvdisasm==13.5.37
 cache=${XDG_CACHE_HOME:-$HOME/.cache}/nearmiss/ptxas
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
 
-find_ptxas() {
+# fetch PACKAGE PROGRAM: its path in the cache, or nothing.
+fetch() {
+    local program=$cache/$1/$2
+    if [ ! -x "$program" ]; then
+        rm -rf "$work/wheel"
+        python3 -m pip download --quiet --no-deps --only-binary=:all: --dest "$work/wheel" "$1" >&2 || return 1
+        python3 -m zipfile -e "$work"/wheel/*.whl "$work/wheel/all" || return 1
+        mkdir -p "$cache/$1" && cp "$work"/wheel/all/nvidia/*/bin/"$2" "$program.part" && chmod +x "$program.part" &&
+            mv "$program.part" "$program" || return 1
+    fi
+    echo "$program"
+}
+# installed PROGRAM: a toolkit's.
+installed() {
     local candidate
-    for candidate in "${PTXAS:-}" "$(command -v ptxas || true)" /usr/local/cuda/bin/ptxas "$cache/ptxas"; do
+    for candidate in "$(command -v "$1" || true)" "/usr/local/cuda/bin/$1"; do
         [ -x "$candidate" ] && echo "$candidate" && return
     done
     return 1
 }
 
-fetch_ptxas() {
-    local wheels
-    wheels=$(mktemp -d)
-    python3 -m pip download --quiet --no-deps --only-binary=:all: --dest "$wheels" "$package" >&2 &&
-        python3 -m zipfile -e "$wheels"/*.whl "$wheels/all" &&
-        mkdir -p "$cache" && cp "$wheels/all/nvidia/cuda_nvcc/bin/ptxas" "$cache/ptxas" && chmod +x "$cache/ptxas"
-    local got=$?
-    rm -rf "$wheels"
-    return "$got"
+assemblers=()
+for package in "${packages[@]}"; do
+    found=$(fetch "$package" ptxas) && assemblers+=("$found")
+done
+if [ ${#assemblers[@]} = 0 ]; then
+    if [ -x "${PTXAS:-}" ]; then found=$PTXAS; else found=$(installed ptxas) || found=; fi
+    [ -z "$found" ] || assemblers=("$found")
+fi
+nvdisasm=$(fetch "$reader" nvdisasm || installed nvdisasm) || nvdisasm=
+if [ ${#assemblers[@]} = 0 ] || [ -z "$nvdisasm" ]; then
+    echo "ptxas.sh: no ptxas or no nvdisasm: install a CUDA toolkit, or python3 with pip" >&2
+    exit 77
+fi
+die() { echo "ptxas.sh: error: $*" >&2; exit 1; }
+
+# disassembled PTXAS ARCH TEXT NAME OPTION...: the machine code of a text in words, in NAME.sass. (Files of code are not compared:
+# from 13 on they hold the options.)
+disassembled() {
+    local ptxas=$1 arch=$2 from=$3 name=$work/$4
+    shift 4
+    "$ptxas" -arch="$arch" "$@" -o "$name.cubin" "$from" >"$name.log" 2>&1 &&
+        "$nvdisasm" -c "$name.cubin" >"$name.sass" 2>"$name.noise" || { tail -n 3 "$name.log" "$name.noise" >"$name.said"; return 1; }
 }
 
-ptxas=$(find_ptxas) || { fetch_ptxas && ptxas=$cache/ptxas; } ||
-    { echo "ptxas.sh: no ptxas: install a CUDA toolkit, or python3 with pip" >&2; exit 77; }
-"$ptxas" --version | grep release
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-arch=${2:-sm_80}
-"$ptxas" -arch="$arch" --verbose -o /dev/null "$1" 2>&1 | sed -n "s/^ptxas info *: \(Compiling entry.*\)/\1/p;
-    s/^ptxas info *: \(Used.*\)/    \1/p; /spill/p; /error\|warning\|fatal/p"
-
-# Whether the assembler contracts products and sums of a text where it may: then forbidding it makes other code.
-contracts() {
-    "$ptxas" -arch="$arch" --fmad=true -o "$work/may" "$1" && "$ptxas" -arch="$arch" --fmad=false -o "$work/not" "$1" ||
-        { echo "ptxas.sh: cannot assemble $1" >&2; exit 1; }
-    ! cmp -s "$work/may" "$work/not"
-}
-
-# One product and one sum, with and without the mark that forbids contraction: the comparison sees the difference.
+# The judges are shown a fault. One product and one sum, with and without the mark that forbids contraction:
 for mark in .rn ""; do
     cat >"$work/two$mark.ptx" <<END
 .version 7.5
@@ -57,7 +79,7 @@ for mark in .rn ""; do
 {
     .reg .f32 %f<4>;
     .reg .b64 %q;
-    ld.param.u64 %q, [p];
+    ld.param.b64 %q, [p];
     ld.f32 %f0, [%q];
     ld.f32 %f1, [%q+4];
     ld.f32 %f2, [%q+8];
@@ -68,9 +90,93 @@ for mark in .rn ""; do
 }
 END
 done
-contracts "$work/two.ptx" || { echo "ptxas.sh: a contraction is not noticed" >&2; exit 1; }
-if contracts "$work/two.rn.ptx" || contracts "$1"; then
-    echo "ptxas.sh: error: a product and a sum were contracted" >&2
-    exit 1
-fi
+# A shuffle behind a loop that the lanes leave at different turns and at two places; the assembler puts a guard before it. The
+# judge must accept that, and name the kernel when the guard is taken out of the code, or waits for half of the lanes only.
+cat >"$work/apart.ptx" <<'END'
+.version 7.5
+.target sm_80
+.address_size 64
+.visible .entry apart(.param .u64 p)
+{
+    .reg .pred %p;
+    .reg .b32 %x, %y;
+    .reg .b64 %q;
+    ld.param.u64 %q, [p];
+    mov.u32 %x, %tid.x;
+    setp.gt.u32 %p, %x, 20;
+    @%p bra END;
+TURN:
+    ld.volatile.global.b32 %y, [%q];
+    add.u32 %x, %x, %y;
+    and.b32 %y, %x, 7;
+    setp.eq.u32 %p, %y, 3;
+    @%p bra FOUND;
+    setp.lt.u32 %p, %x, 1000;
+    @%p bra TURN;
+    mov.u32 %x, 5;
+    bra END;
+FOUND:
+    ld.volatile.global.b32 %x, [%q+8];
+END:
+    shfl.sync.up.b32 %y, %x, 1, 0, -1;
+    st.global.b32 [%q], %y;
+    ret;
+}
+END
+for ptxas in "${assemblers[@]}"; do
+    for arch in "${archs[@]}"; do
+        disassembled "$ptxas" "$arch" "$work/apart.ptx" apart || die "$(cat "$work/apart.said")"
+        python3 "$here/lanes.py" "guarded" "$work/apart.sass" >"$work/said" || die "a guard is not seen: $(cat "$work/said")"
+        for fault in 's/(WARPSYNC|BRA\.DIV|BRA\.CONV|BSYNC)[^;]*/NOP/' 's/WARPSYNC[^;]*/WARPSYNC 0xffff/; s/(BRA\.DIV|BSYNC)[^;]*/NOP/'; do
+            sed -E "$fault" "$work/apart.sass" >"$work/planted.sass"
+            if python3 "$here/lanes.py" planted "$work/planted.sass" >"$work/said" ||
+                ! grep -q "^planted: apart: SHFL" "$work/said"; then
+                die "a shuffle of lanes that may be apart is not noticed ($arch): $(cat "$work/said")"
+            fi
+        done
+    done
+    for mark in .rn ""; do
+        for fmad in true false; do
+            disassembled "$ptxas" "${archs[0]}" "$work/two$mark.ptx" "two$mark.$fmad" --fmad=$fmad || die "$(cat "$work"/two*.said)"
+        done
+    done
+    ! cmp -s "$work/two.true.sass" "$work/two.false.sass" || die "a contraction is not noticed"
+    cmp -s "$work/two.rn.true.sass" "$work/two.rn.false.sass" || die "a marked product and sum were contracted"
+done
+
+# One assembly with all that is asked of it; its words go to a file. And one with contraction forbidden.
+examine() {
+    disassembled "$1" "$2" "$text" "$3" --verbose && python3 "$here/lanes.py" "$3" "$work/$3.sass" >"$work/$3.said"
+}
+forbidden() { disassembled "$1" "$2" "$text" "$3" --fmad=false; }
+
+jobs=()
+for ptxas in "${assemblers[@]}"; do
+    release=$("$ptxas" --version | sed -n 's/.*release \([0-9.]*\),.*/\1/p')
+    echo "ptxas $release"
+    for arch in "${archs[@]}"; do jobs+=("examine $ptxas $arch ptxas-$release-$arch"); done
+    jobs+=("forbidden $ptxas ${archs[0]} ptxas-$release-${archs[0]}-not")
+done
+failed=0
+running=0
+for job in "${jobs[@]}"; do
+    if [ $running -ge "$(nproc)" ]; then
+        wait -n || failed=1
+        running=$((running - 1))
+    fi
+    $job &
+    running=$((running + 1))
+done
+while [ $running -gt 0 ]; do
+    wait -n || failed=1
+    running=$((running - 1))
+done
+
+first=$(echo "${jobs[0]}" | cut -d' ' -f4)
+sed -n "s/^.*info *: \(Compiling entry.*\)/\1/p; s/^.*info *: \(Used.*\)/    \1/p; /spill/p; /error\|warning\|fatal/p" "$work/$first.log"
+cat "$work"/ptxas-*.said 2>/dev/null || true
+[ $failed = 0 ] || die "an assembly fails, or lanes may be apart"
+for other in "$work"/ptxas-*-not.sass; do
+    cmp -s "${other%-not.sass}.sass" "$other" || die "a product and a sum were contracted"
+done
 echo "contracted: nothing (the same code with --fmad=false)"

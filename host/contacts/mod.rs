@@ -1,15 +1,15 @@
-//! Results: contacts in canonical order, their hash, and the summary.
+//! Results: contacts in canonical order, and their hash.
 
 mod degraded;
+mod summary;
 mod triangles;
 
 pub use degraded::Degraded;
+pub use summary::Summary;
 pub use triangles::{TriangleContact, triangle_contacts};
 
-use crate::device::Device;
-use crate::mesh::Body;
 use crate::pipeline::{Found, Layout, Stages};
-use crate::query::{Motion, Query, Refit, Solver, Traversal};
+use crate::query::{Motion, Query};
 use nearmiss_kernels::abi::{Hit, Pair, ROUNDS, counter};
 use nearmiss_kernels::prim::inclusion::Verdict;
 use rayon::prelude::*;
@@ -319,86 +319,5 @@ impl Contacts {
             Answer::Earliest(toi) => toi.iter().for_each(|toi| hash.update(&toi.to_le_bytes())),
         }
         hash.digest()
-    }
-}
-
-/// What the command line prints of a result, as JSON or for people.
-#[derive(Clone, Debug, Serialize)]
-pub struct Summary {
-    /// Triangles of all bodies.
-    pub triangles: usize,
-    /// Vertices of all bodies.
-    pub vertices: usize,
-    /// Frames: 1 still, 2 moving.
-    pub frames: usize,
-    /// What was asked.
-    pub query: Motion,
-    /// The bounding volume.
-    pub bv: &'static str,
-    /// The refit.
-    pub refit: Refit,
-    /// The walk.
-    pub traversal: Traversal,
-    /// The test.
-    pub solver: Solver,
-    /// `cpu` or `cuda`.
-    pub backend: &'static str,
-    /// The machine's name.
-    pub device: String,
-    /// Triangle pairs that the volumes let through.
-    pub triangle_pairs: u64,
-    /// Pairs that the narrow test was asked.
-    pub candidates: u64,
-    /// Contacts found.
-    pub contacts: usize,
-    /// How many of the contacts are neither confirmed nor refuted; of an earliest query, how many pairs.
-    pub unresolved: u64,
-    /// In what the frame came to less than all that was asked; empty where nothing did.
-    pub degraded: Vec<Degraded>,
-    /// The tolerance of a certified solver, a length.
-    pub tolerance: Option<f64>,
-    /// The separation of a certified solver, a length; 0 for touching.
-    pub separation: Option<f64>,
-    /// The smallest time of contact.
-    pub earliest_toi: Option<f64>,
-    /// Hash of the canonical answer, sixteen hexadecimal digits.
-    pub hash: String,
-    /// What the traversal's work queues did.
-    pub queues: Queues,
-    /// What the traversal's front saved or cost.
-    pub front: Front,
-    /// Milliseconds by stage.
-    pub ms: Stages,
-    /// Most device memory held at once.
-    pub bytes: u64,
-}
-
-impl Summary {
-    pub(crate) fn new(bodies: &[Body], query: Query, device: &Device, contacts: &Contacts) -> Summary {
-        Summary {
-            triangles: bodies.iter().map(Body::face_count).sum(),
-            vertices: bodies.iter().map(Body::vertex_count).sum(),
-            frames: if bodies.iter().any(Body::is_moving) { 2 } else { 1 },
-            query: query.motion,
-            bv: query.bv().name(),
-            refit: query.refit_on(device.is_card()),
-            traversal: query.traversal_on(device.is_card()),
-            solver: query.solver(),
-            backend: device.backend(),
-            device: device.name(),
-            triangle_pairs: contacts.triangle_pairs,
-            candidates: contacts.candidates,
-            contacts: contacts.len(),
-            unresolved: contacts.unresolved,
-            degraded: contacts.degraded.clone(),
-            tolerance: None,
-            separation: query.solver().is_certified().then_some(query.params().separation),
-            earliest_toi: contacts.earliest_toi(),
-            hash: format!("{:016x}", contacts.hash()),
-            queues: contacts.queues,
-            front: contacts.front,
-            ms: contacts.stages,
-            bytes: device.bytes().1,
-        }
     }
 }
