@@ -9,9 +9,8 @@ use crate::error::Error;
 use crate::pipeline::Layout;
 use crate::pipeline::narrow::{Continuous, Given, Rooms, Step};
 use crate::pipeline::precision::Precision;
-use crate::pipeline::room::List;
 use crate::query::{Motion, Query};
-use nearmiss_kernels::abi::{Frames, Hit, Pair, Span, counter};
+use nearmiss_kernels::abi::{Frames, Hit, Span, counter};
 
 /// Asks every case whether its features meet, and when first: by the query's solver, tolerance and budget, with the
 /// kernels of a frame. Without a tolerance, [`Query::TOLERANCE`] of the cases' mean edge. Any number of cases; a million
@@ -56,21 +55,12 @@ fn some<R: Precision>(device: &Device, cases: &[Case], query: Query, how: How) -
     let (layout, [vf, ee]) = topology(cases);
     let all = [vf.len(), ee.len()];
     // A case is listed once at most, so no list outgrows this.
-    let rooms = Rooms { candidates: all, survivors: all, hits: all, left: all };
+    let candidates = if how.filters || query.is_apart() { all } else { [0, 0] };
+    let rooms = Rooms { candidates, survivors: all, hits: all, left: all };
     let mut features = Continuous::new(device, &layout, query, rooms)?;
+    let first = if how.filters { Step::Sift } else { Step::Reject };
     let mut counts = vec![0; counter::COUNT as usize];
-    // With a separation there is nothing that signs could reject.
-    let mut candidates = None;
-    let given = if how.filters && !query.is_apart() {
-        let mut vf_list = List::new(device, "vertex/face cases", counter::VF, all[0])?;
-        let mut ee_list = List::new(device, "edge/edge cases", counter::EE, all[1])?;
-        let given = [vf_list.put(&vf)?, ee_list.put(&ee)?];
-        candidates = Some([vf_list, ee_list]);
-        given
-    } else {
-        features.give([&vf, &ee])?
-    };
-    for (at, count) in given {
+    for (at, count) in features.give(first, [&vf, &ee])? {
         counts[at as usize] = count;
     }
     let mut run = Run::<R> {
@@ -81,7 +71,7 @@ fn some<R: Precision>(device: &Device, cases: &[Case], query: Query, how: How) -
         layout,
         counters: device.buffer(counter::COUNT as usize)?,
         counts,
-        candidates,
+        filters: how.filters,
         features,
     };
     let bytes = device.bytes().0 - before;
@@ -104,8 +94,8 @@ struct Run<'a, R: Precision> {
     counters: Buffer<u64>,
     /// What the counters are before a run.
     counts: Vec<u64>,
-    /// The cases, where the filters are asked first.
-    candidates: Option<[List<Pair>; 2]>,
+    /// Whether the filters are asked first.
+    filters: bool,
     features: Continuous,
 }
 
@@ -122,8 +112,8 @@ impl<R: Precision> Run<'_, R> {
             counters: self.counters.span(),
         };
         let start = self.device.mark()?;
-        if let Some(candidates) = &self.candidates {
-            self.features.reject(&given, candidates)?;
+        if self.filters {
+            self.features.run(Step::Reject, &given)?;
         }
         let filtered = self.device.mark()?;
         self.features.run(Step::Solve, &given)?;

@@ -21,8 +21,10 @@ pub enum Step {
     Traverse,
     /// Triangle pairs that meet.
     Decide,
-    /// Vertex/face and edge/edge pairs that may meet.
+    /// Vertex/face and edge/edge candidates.
     Sift,
+    /// Those that may meet.
+    Reject,
     /// Contacts in motion.
     Solve,
 }
@@ -34,6 +36,7 @@ impl Step {
             Step::Traverse => "traverse",
             Step::Decide => "decide",
             Step::Sift => "sift",
+            Step::Reject => "reject",
             Step::Solve => "solve",
         }
     }
@@ -105,7 +108,7 @@ impl Narrow {
     pub fn steps(&self) -> &'static [Step] {
         match self {
             Narrow::Discrete { .. } => &[Step::Decide],
-            Narrow::Continuous(_) => &[Step::Sift, Step::Solve],
+            Narrow::Continuous(c) => c.steps(),
         }
     }
 
@@ -139,7 +142,7 @@ impl Narrow {
     pub fn run<R: Precision>(&mut self, step: Step, given: &Given<R>) -> Result<(), Error> {
         match (self, step) {
             (Narrow::Discrete { contacts, undecided }, Step::Decide) => decide(contacts, undecided, given),
-            (Narrow::Continuous(c), Step::Sift | Step::Solve) => c.run(step, given),
+            (Narrow::Continuous(c), Step::Sift | Step::Reject | Step::Solve) => c.run(step, given),
             _ => Err(Error::Bug { what: format!("the step {step:?} in another kind of query") }),
         }
     }

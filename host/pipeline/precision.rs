@@ -39,14 +39,10 @@ pub trait Precision: Real {
     const WIDENS: bool;
     /// The exact signs.
     type Exact: Entry<Args = DiscreteArgs<Self>>;
-    /// Triangle pairs to pairs of features that may meet.
+    /// Triangle pairs to pairs of features whose boxes meet.
     type Sift: Entry<Args = SiftArgs<Self>>;
-    /// Triangle pairs to pairs of features within a separation.
-    type SiftNear: Entry<Args = SiftArgs<Self>>;
-    /// Vertex/face candidates that may meet.
-    type RejectVf: Entry<Args = RejectArgs<Self>>;
-    /// Edge/edge candidates that may meet.
-    type RejectEe: Entry<Args = RejectArgs<Self>>;
+    /// Those that may meet.
+    type Reject: Entry<Args = RejectArgs<Self>>;
     /// Vertex/face by the cubic in f32.
     type Vf32: Entry<Args = SolveArgs<Self>>;
     /// Vertex/face by the cubic in f64.
@@ -90,9 +86,7 @@ impl Precision for f32 {
     const WIDENS: bool = true;
     type Exact = entry::narrow_exact_f32;
     type Sift = entry::narrow_sift_f32;
-    type SiftNear = entry::narrow_sift_near_f32;
-    type RejectVf = entry::narrow_reject_vf_f32;
-    type RejectEe = entry::narrow_reject_ee_f32;
+    type Reject = entry::narrow_reject_f32;
     type Vf32 = entry::narrow_vf_f32_f32;
     type Vf64 = entry::narrow_vf_f32_f64;
     type Ee32 = entry::narrow_ee_f32_f32;
@@ -130,9 +124,7 @@ impl Precision for f64 {
     const WIDENS: bool = false;
     type Exact = entry::narrow_exact_f64;
     type Sift = entry::narrow_sift_f64;
-    type SiftNear = entry::narrow_sift_near_f64;
-    type RejectVf = entry::narrow_reject_vf_f64;
-    type RejectEe = entry::narrow_reject_ee_f64;
+    type Reject = entry::narrow_reject_f64;
     type Vf32 = entry::narrow_vf_f64_f32;
     type Vf64 = entry::narrow_vf_f64_f64;
     type Ee32 = entry::narrow_ee_f64_f32;

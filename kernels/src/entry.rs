@@ -135,14 +135,10 @@ kernels! {
     narrow_wide_f32: discrete::wide, [DiscreteArgs<f32>], NARROW, 0;
     narrow_exact_f32: discrete::exact::<f32, B>, [DiscreteArgs<f32>], NARROW, 0;
     narrow_exact_f64: discrete::exact::<f64, B>, [DiscreteArgs<f64>], NARROW, 0;
-    narrow_sift_f32: sift::sift::<f32, B>, [SiftArgs<f32>], RUNG, sift::shared_bytes(RUNG);
-    narrow_sift_f64: sift::sift::<f64, B>, [SiftArgs<f64>], RUNG, sift::shared_bytes(RUNG);
-    narrow_sift_near_f32: sift::sift_near::<f32, B>, [SiftArgs<f32>], RUNG, sift::shared_bytes(RUNG);
-    narrow_sift_near_f64: sift::sift_near::<f64, B>, [SiftArgs<f64>], RUNG, sift::shared_bytes(RUNG);
-    narrow_reject_vf_f32: reject::vf::<f32, B>, [RejectArgs<f32>], WIDE, 0;
-    narrow_reject_vf_f64: reject::vf::<f64, B>, [RejectArgs<f64>], WIDE, 0;
-    narrow_reject_ee_f32: reject::ee::<f32, B>, [RejectArgs<f32>], WIDE, 0;
-    narrow_reject_ee_f64: reject::ee::<f64, B>, [RejectArgs<f64>], WIDE, 0;
+    narrow_sift_f32: sift::sift::<f32, B>, [SiftArgs<f32>], RUNG, 0;
+    narrow_sift_f64: sift::sift::<f64, B>, [SiftArgs<f64>], RUNG, 0;
+    narrow_reject_f32: reject::reject::<f32, B>, [RejectArgs<f32>], WIDE, 0;
+    narrow_reject_f64: reject::reject::<f64, B>, [RejectArgs<f64>], WIDE, 0;
     narrow_vf_f32_f32: solve::vf::<f32, f32, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_vf_f32_f64: solve::vf::<f32, f64, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_vf_f64_f32: solve::vf::<f64, f32, B>, [SolveArgs<f64>], WIDE, 0;

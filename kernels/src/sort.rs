@@ -83,6 +83,7 @@ pub fn starts<B: Block>(b: &mut B, tiles: &Tiles) -> Bins {
             }
             word += lanes.min(WORDS);
         }
+        l.meet();
     });
     let mut values = b.slot(0u32);
     let (mut smaller, mut bin) = (0, 0);
@@ -139,6 +140,7 @@ pub fn pass<B: Block>(b: &mut B, a: &SortArgs) {
                     }
                 }
             }
+            l.meet();
         });
         at += EACH as u32 * lanes;
     }
@@ -154,5 +156,6 @@ pub fn each_bin<B: Block>(b: &mut B, mut body: impl FnMut(&B::Lane, u32)) {
             body(l, bin);
             bin += lanes;
         }
+        l.meet();
     });
 }

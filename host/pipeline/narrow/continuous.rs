@@ -28,9 +28,10 @@ pub struct Continuous {
     query: Query,
     pub(super) edges: Buffer<[u32; 2]>,
     facets: Buffer<Facet>,
-    /// What the solver is asked, vertex/face and edge/edge: pairs that may meet; with a separation, pairs whose boxes come
-    /// within it.
-    asked: [List<Pair>; 2],
+    /// Vertex/face and edge/edge pairs whose boxes come within the separation.
+    candidates: [List<Pair>; 2],
+    /// Those that may meet; there is no such step with a separation.
+    survivors: Option<[List<Pair>; 2]>,
     /// Vertex/face contacts.
     pub vf_hits: List<Hit>,
     /// Edge/edge contacts.
@@ -41,8 +42,6 @@ pub struct Continuous {
     tallies: [Tally; 4],
     /// Whether pairs may be too large for the tolerance: see [`Blunt`].
     pub blunt: Option<Blunt>,
-    /// Pairs of features whose boxes meet, where the first step counts them and lists fewer.
-    candidates: Option<[Tally; 2]>,
     /// The smallest toi, where only that is asked for.
     pub earliest: Option<Buffer<u64>>,
 }
@@ -55,12 +54,12 @@ impl Continuous {
     pub fn new(device: &Device, layout: &Layout, query: Query, rooms: Rooms) -> Result<Self, Error> {
         let earliest = query.motion == Motion::Earliest;
         let hits = if earliest { [0, 0] } else { rooms.hits };
-        let (room, counters, [vf, ee]) = if query.is_apart() {
-            (rooms.candidates, [counter::VF, counter::EE], ["vertex/face candidates", "edge/edge candidates"])
-        } else {
-            let counters = [counter::VF_SURVIVORS, counter::EE_SURVIVORS];
-            (rooms.survivors, counters, ["vertex/face pairs that may meet", "edge/edge pairs that may meet"])
+        let lists = |[vf, ee]: [&'static str; 2], [vf_at, ee_at]: [u32; 2], room: [usize; 2]| {
+            Ok::<_, Error>([List::new(device, vf, vf_at, room[0])?, List::new(device, ee, ee_at, room[1])?])
         };
+        let candidates = ["vertex/face candidates", "edge/edge candidates"];
+        let may_meet = ["vertex/face pairs that may meet", "edge/edge pairs that may meet"];
+        let survivors = || lists(may_meet, [counter::VF_SURVIVORS, counter::EE_SURVIVORS], rooms.survivors);
         let facet = |((&corners, &edges), &owned)| Facet { corners, owned, edges, pad: 0 };
         let facets: Vec<_> =
             layout.faces.iter().zip(&layout.face_edges).zip(&layout.owners).map(facet).collect();
@@ -68,29 +67,32 @@ impl Continuous {
             query,
             edges: device.upload(&layout.edges)?,
             facets: device.upload(&facets)?,
-            asked: [
-                List::new(device, vf, counters[0], room[0])?,
-                List::new(device, ee, counters[1], room[1])?,
-            ],
+            candidates: lists(candidates, [counter::VF, counter::EE], rooms.candidates)?,
+            survivors: (!query.is_apart()).then(survivors).transpose()?,
             vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, hits[0])?,
             ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, hits[1])?,
             rungs: Rungs::new(device, &query, rooms.left)?,
             tallies: [counter::UNRESOLVED, counter::ENDED, counter::ENDED_UNRESOLVED, counter::BLUNT]
                 .map(Tally),
             blunt: None,
-            candidates: (!query.is_apart()).then_some([Tally(counter::VF), Tally(counter::EE)]),
             earliest: earliest.then(|| device.buffer(1)).transpose()?,
         })
+    }
+
+    /// The steps, in their order. With a separation there is nothing that signs could reject.
+    pub fn steps(&self) -> &'static [Step] {
+        match self.survivors {
+            Some(_) => &[Step::Sift, Step::Reject, Step::Solve],
+            None => &[Step::Sift, Step::Solve],
+        }
     }
 
     /// The lists that a step fills.
     pub fn lists(&mut self, step: Step) -> Vec<&mut dyn Growing> {
         match step {
-            Step::Sift => {
-                let lists = self.asked.iter_mut().map(|list| list as &mut dyn Growing);
-                lists
-                    .chain(self.candidates.iter_mut().flatten().map(|tally| tally as &mut dyn Growing))
-                    .collect()
+            Step::Sift => self.candidates.iter_mut().map(|list| list as &mut dyn Growing).collect(),
+            Step::Reject => {
+                self.survivors.iter_mut().flatten().map(|list| list as &mut dyn Growing).collect()
             }
             Step::Solve => {
                 let mut lists: Vec<&mut dyn Growing> = vec![&mut self.vf_hits, &mut self.ee_hits];
@@ -104,21 +106,33 @@ impl Continuous {
 
     /// The lists between candidates and contacts, with names: for comparing machines.
     pub fn between(&self) -> Vec<(&'static str, &List<Pair>)> {
-        let [vf, ee] = &self.asked;
+        let [vf, ee] = &self.candidates;
         let mut lists = vec![("narrow: vf", vf), ("narrow: ee", ee)];
+        if let Some([vf, ee]) = &self.survivors {
+            lists.extend([("narrow: vf that may meet", vf), ("narrow: ee that may meet", ee)]);
+        }
         lists.extend(self.rungs.between());
         lists
     }
 
-    /// Puts pairs where [`Step::Sift`] would leave them, vertex/face and edge/edge. The counters that say how many they are.
+    /// What the solver is asked.
+    fn asked(&self) -> [&List<Pair>; 2] {
+        self.survivors.as_ref().unwrap_or(&self.candidates).each_ref()
+    }
+
+    /// Puts pairs where a step would leave them, vertex/face and edge/edge: [`Step::Sift`] candidates, [`Step::Reject`]
+    /// those that may meet, or candidates where there is no such step. The counters that say how many they are.
     ///
     /// # Errors
     /// Those of the device.
     ///
     /// # Panics
     /// When there are more than the lists have room for: a fault of the caller.
-    pub fn give(&mut self, [vf, ee]: [&[Pair]; 2]) -> Result<[(u32, u64); 2], Error> {
-        let [vf_list, ee_list] = &mut self.asked;
+    pub fn give(&mut self, step: Step, [vf, ee]: [&[Pair]; 2]) -> Result<[(u32, u64); 2], Error> {
+        let [vf_list, ee_list] = match (step, &mut self.survivors) {
+            (Step::Reject, Some(lists)) => lists.each_mut(),
+            _ => self.candidates.each_mut(),
+        };
         Ok([vf_list.put(vf)?, ee_list.put(ee)?])
     }
 
@@ -129,12 +143,13 @@ impl Continuous {
     pub fn run<R: Precision>(&mut self, step: Step, given: &Given<R>) -> Result<(), Error> {
         match step {
             Step::Sift => self.sift(given),
+            Step::Reject => self.reject(given),
             _ => self.solve(given),
         }
     }
 
     fn sift<R: Precision>(&self, given: &Given<R>) -> Result<(), Error> {
-        let [vf, ee] = &self.asked;
+        let [vf, ee] = &self.candidates;
         let args = SiftArgs {
             frames: given.frames,
             facets: self.facets.span(),
@@ -143,40 +158,31 @@ impl Continuous {
             ee: ee.span(),
             counters: given.counters,
             gap: given.query.gap(),
-            params: given.query.params(),
         };
-        let room = given.pairs.len as usize;
-        if self.query.is_apart() {
-            launch_striding::<R::SiftNear>(given.device, room, &args)
-        } else {
-            launch_striding::<R::Sift>(given.device, room, &args)
-        }
+        launch_striding::<R::Sift>(given.device, given.pairs.len as usize, &args)
     }
 
-    /// Leaves out of `candidates` what certainly stays apart, as [`Step::Sift`] does.
-    ///
-    /// # Errors
-    /// Those of the device.
-    pub fn reject<R: Precision>(&self, given: &Given<R>, candidates: &[List<Pair>; 2]) -> Result<(), Error> {
-        let args = |candidates: &List<Pair>, survivors: &List<Pair>| RejectArgs {
+    fn reject<R: Precision>(&self, given: &Given<R>) -> Result<(), Error> {
+        let ([vf, ee], Some([may_vf, may_ee])) = (&self.candidates, &self.survivors) else { return Ok(()) };
+        let args = RejectArgs {
             frames: given.frames,
             faces: given.faces,
             edges: self.edges.span(),
-            candidates: candidates.span(),
-            survivors: survivors.span(),
+            vf: vf.span(),
+            ee: ee.span(),
+            may_vf: may_vf.span(),
+            may_ee: may_ee.span(),
             counters: given.counters,
             params: given.query.params(),
         };
-        let ([vf, ee], [may_vf, may_ee]) = (candidates, &self.asked);
-        launch_striding::<R::RejectVf>(given.device, vf.room(), &args(vf, may_vf))?;
-        launch_striding::<R::RejectEe>(given.device, ee.room(), &args(ee, may_ee))
+        launch_striding::<R::Reject>(given.device, vf.room() + ee.room(), &args)
     }
 
     fn solve<R: Precision>(&mut self, given: &Given<R>) -> Result<(), Error> {
         if let Some(earliest) = &mut self.earliest {
             earliest.write(&[u64::MAX])?;
         }
-        let [vf, ee] = &self.asked;
+        let [vf, ee] = self.asked();
         let solver = self.query.solver();
         if solver.is_certified() {
             let hits = [&self.vf_hits, &self.ee_hits];

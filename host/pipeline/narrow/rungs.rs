@@ -151,9 +151,10 @@ fn launch<R: Precision>(rung: Rung, device: &Device, room: usize, args: &RungArg
         Rung::Isolate32 => launch_striding::<R::Isolate32>(device, room, args),
         Rung::Isolate64 => launch_striding::<R::Isolate64>(device, room, args),
         Rung::Settle => launch_striding::<R::Settle>(device, room, args),
-        // A block a pair.
+        // A block a pair; there are few.
         Rung::Slice => {
-            launch_striding::<R::Slice>(device, room.saturating_mul(R::Slice::LANES as usize), args)
+            let lanes = room.saturating_mul(R::Slice::LANES as usize);
+            device.launch::<R::Slice>(device.blocks_at_once::<R::Slice>(lanes)?, args)
         }
         Rung::Separate => launch_striding::<R::Separate>(device, room, args),
         Rung::SeparateRest => {

@@ -6,7 +6,7 @@ use crate::prim::inclusion::Params;
 use bytemuck::{Pod, Zeroable};
 
 arguments! {
-    /// `narrow_sift`, `narrow_sift_near`: triangle pairs to vertex/face and edge/edge pairs.
+    /// `narrow_sift`: triangle pairs to vertex/face and edge/edge candidates.
     SiftArgs<R: Real> {
         /// Positions.
         frames: Frames<R>,
@@ -20,10 +20,8 @@ arguments! {
         ee: Span<Pair>,
         /// Counters, see [`counter`](super::counter).
         counters: Span<u64>,
-        /// Features within it are listed, a length; of `narrow_sift_near`.
+        /// Features whose boxes come within it are listed, a length; 0 for touching.
         gap: f64,
-        /// What is asked; of `narrow_sift`.
-        params: Params,
     }
     /// `narrow_moller`, `narrow_filter`, `narrow_wide`, `narrow_exact`: triangle pairs that meet.
     DiscreteArgs<R: Real> {
@@ -48,18 +46,22 @@ arguments! {
         /// Zero.
         pad: u32,
     }
-    /// `narrow_reject_vf`, `narrow_reject_ee`: candidates that certainly stay apart, left out.
+    /// `narrow_reject`: candidates that certainly stay apart, left out.
     RejectArgs<R: Real> {
         /// Positions.
         frames: Frames<R>,
-        /// Vertex indices of every triangle (`narrow_reject_vf`).
+        /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
-        /// End points of every edge (`narrow_reject_ee`).
+        /// End points of every edge.
         edges: Span<[u32; 2]>,
-        /// Candidates.
-        candidates: Span<Pair>,
-        /// Out: those that may meet.
-        survivors: Span<Pair>,
+        /// Vertex/face candidates.
+        vf: Span<Pair>,
+        /// Edge/edge candidates.
+        ee: Span<Pair>,
+        /// Out: vertex/face pairs that may meet.
+        may_vf: Span<Pair>,
+        /// Out: edge/edge pairs that may meet.
+        may_ee: Span<Pair>,
         /// Counters, see [`counter`](super::counter).
         counters: Span<u64>,
         /// What is asked.

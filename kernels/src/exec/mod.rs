@@ -70,9 +70,9 @@ pub trait Lane {
     /// lanes of a warp must come. Nothing but speed may hang on it: lanes that run one after another know only their own.
     fn any(&self, mine: bool) -> bool;
 
-    /// On a card the lanes of a warp come together here, and the assembler cannot leave it out: for the end of a phase whose loops
-    /// lanes leave by several ways, behind which it believes that they are together although they are not. All lanes of a
-    /// warp must come. Lanes that run one after another need not.
+    /// The end of a phase's body: on a card the lanes of a warp come together here, and the assembler cannot leave it out. For
+    /// bodies whose loops lanes leave at different turns: behind these it believes that they are together, although they are
+    /// not (`.ci/lanes.py` finds such places). All lanes of a warp must come. Lanes that run one after another need not.
     fn meet(&self) {}
 
     /// Word `i` of shared memory.

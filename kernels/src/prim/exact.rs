@@ -5,9 +5,10 @@
 //! integer arithmetic: nothing rounds, underflows or contracts, and there is nothing to prove but the sizes.
 //!
 //! Sizes: an axis that spans `b` bits gives differences of `b+1`, minors of `2b+3` and a determinant of `3b+6`
-//! bits. Up to 60 bits (most f32 data) two machine integers of 128 bits hold it all. Beyond, three sizes of stack arrays are
-//! compiled (their steps out of line: they are rare, and a card compiles them at first use), and the run picks the smallest that fits: 94 bits (most f64 data), 286 bits (every finite f32 has 277),
-//! 2098 bits (every finite f64). Loops run over the limbs in use.
+//! bits. Up to 60 bits (most f32 data) two machine integers of 128 bits hold it all, up to 94 (most f64 data; f32 data with
+//! a coordinate that is nearly zero) five. Beyond, two sizes of stack arrays are compiled (their steps out of line: they are
+//! rare, and a card compiles them at first use), and the run picks the smallest that fits: 286 bits (every finite f32 has
+//! 277), 2098 bits (every finite f64). Loops run over the limbs in use.
 
 use super::orient::plane_of;
 use crate::math::{Real, Vec3};
@@ -141,7 +142,7 @@ fn grid<R: Real, const K: usize>(points: [Vec3<R>; K]) -> ([i32; 3], i32) {
 /// Bits of one axis up to which differences (61 bits) fit i64, minors (123) i128, and each half of the determinant, as
 /// [`Halves`] has it, i128 too: `61 + 64` bits, thrice.
 const TINY: i32 = 60;
-/// Bits of one axis that 3 limbs hold, with one for the difference.
+/// Bits of one axis up to which a difference has two digits of [`DIGIT`] bits, a minor four, and a determinant five.
 const SMALL: i32 = 94;
 /// The same for 9 limbs; every set of finite f32 numbers is within (128 + 149).
 const MIDDLE: i32 = 286;
@@ -159,7 +160,17 @@ pub fn orient3d_exact<R: Real>(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, d: Vec3<R>) -
         sum.add(wide(e[0], f[1]) - wide(e[1], f[0]), g[2]);
         sum.sign()
     } else if bits <= SMALL {
-        det3::<R, 3, 6, 9>([a, b, c, d], low)
+        let minus = |x: Vec3<R>, y: Vec3<R>| digits(x, y, low);
+        let (e, f, g) = (minus(a, c), minus(b, c), minus(c, d));
+        let mut sum = [0; 5];
+        for (i, j, k) in [(1, 2, 0), (2, 0, 1), (0, 1, 2)] {
+            let minor = settled(minor([e[i], e[j]], [f[i], f[j]]));
+            for (at, digit) in minor.into_iter().enumerate() {
+                sum[at] += wide(digit, g[k][0]);
+                sum[at + 1] += wide(digit, g[k][1]);
+            }
+        }
+        digits_sign(sum)
     } else if !R::WIDE || bits <= MIDDLE {
         det3::<R, 9, 18, 27>([a, b, c, d], low)
     } else {
@@ -173,10 +184,14 @@ pub fn orient2d_exact<R: Real>(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, axis: usize) 
     let (low, bits) = grid([a, b, c]);
     if bits <= TINY {
         let (i, j) = plane_of(axis);
-        let (e, f) = (difference(a, c, low), difference(b, c, low));
+        let minus = |x: Vec3<R>, y: Vec3<R>| difference(x, y, low);
+        let (e, f) = (minus(a, c), minus(b, c));
         sign(wide(e[i], f[j]) - wide(e[j], f[i]))
     } else if bits <= SMALL {
-        det2::<R, 3, 6>([a, b, c], low, axis).sign()
+        let (i, j) = plane_of(axis);
+        let minus = |x: Vec3<R>, y: Vec3<R>| digits(x, y, low);
+        let (e, f) = (minus(a, c), minus(b, c));
+        digits_sign(minor([e[i], e[j]], [f[i], f[j]]))
     } else if !R::WIDE || bits <= MIDDLE {
         det2::<R, 9, 18>([a, b, c], low, axis).sign()
     } else {
@@ -185,18 +200,71 @@ pub fn orient2d_exact<R: Real>(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, axis: usize) 
 }
 
 /// `x - y` in units of the grid; of at most [`TINY`] bits an axis.
+#[inline]
 fn difference<R: Real>(x: Vec3<R>, y: Vec3<R>, low: [i32; 3]) -> [i64; 3] {
+    // Zero has no place on the grid; all else fits, so neither shift reaches 64.
     let to = |p: Vec3<R>, k: usize| {
-        let p = p[k].parts();
-        // Zero has no place on the grid; all else fits, so neither shift reaches 64.
-        let m = if p.exponent < low[k] {
-            p.mantissa.unbounded_shr((low[k] - p.exponent) as u32)
+        let (p, by) = (p[k].parts(), p[k].parts().exponent - low[k]);
+        let m = if by < 0 {
+            p.mantissa.unbounded_shr(by.unsigned_abs())
         } else {
-            p.mantissa.unbounded_shl((p.exponent - low[k]) as u32)
+            p.mantissa.unbounded_shl(by as u32)
         } as i64;
         if p.negative { -m } else { m }
     };
     core::array::from_fn(|k| to(x, k) - to(y, k))
+}
+
+/// The same of at most [`SMALL`] bits, as two digits: the low one, and what is above, which has the sign.
+#[inline]
+fn digits<R: Real>(x: Vec3<R>, y: Vec3<R>, low: [i32; 3]) -> [[i64; 2]; 3] {
+    let to = |p: Vec3<R>, k: usize| {
+        let (p, by) = (p[k].parts(), p[k].parts().exponent - low[k]);
+        let m = if by < 0 {
+            (p.mantissa as u128).unbounded_shr(by.unsigned_abs())
+        } else {
+            (p.mantissa as u128).unbounded_shl(by as u32)
+        } as i128;
+        if p.negative { -m } else { m }
+    };
+    core::array::from_fn(|k| {
+        let d = to(x, k) - to(y, k);
+        [(d & DIGIT_MASK) as i64, (d >> DIGIT) as i64]
+    })
+}
+
+/// Bits of a digit. Products of two have 96, and 128 hold the sums of as many as there are.
+const DIGIT: u32 = 48;
+const DIGIT_MASK: i128 = (1 << DIGIT) - 1;
+
+/// `e0 f1 - e1 f0`, a sum for each digit.
+#[inline]
+fn minor([e0, e1]: [[i64; 2]; 2], [f0, f1]: [[i64; 2]; 2]) -> [i128; 3] {
+    [
+        wide(e0[0], f1[0]) - wide(e1[0], f0[0]),
+        wide(e0[0], f1[1]) + wide(e0[1], f1[0]) - wide(e1[0], f0[1]) - wide(e1[1], f0[0]),
+        wide(e0[1], f1[1]) - wide(e1[1], f0[1]),
+    ]
+}
+
+/// A minor's digits, the last with the sign: 191 bits leave it 47.
+#[inline]
+fn settled([low, middle, high]: [i128; 3]) -> [i64; 4] {
+    let middle = middle + (low >> DIGIT);
+    let high = high + (middle >> DIGIT);
+    let digit = |x: i128| (x & DIGIT_MASK) as i64;
+    [digit(low), digit(middle), digit(high), (high >> DIGIT) as i64]
+}
+
+/// The sign of a number that is given by a sum for each digit.
+#[inline]
+fn digits_sign<const N: usize>(sums: [i128; N]) -> i32 {
+    let (mut carry, mut rest) = (0, 0);
+    for sum in sums {
+        rest |= carry & DIGIT_MASK;
+        carry = sum + (carry >> DIGIT);
+    }
+    if carry == 0 { (rest != 0) as i32 } else { sign(carry) }
 }
 
 /// `high * 2^64 + low`.

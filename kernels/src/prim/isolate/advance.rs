@@ -89,18 +89,6 @@ impl<S: Grid, const N: usize> Advance<S, N> {
         }
     }
 
-    /// The computed nearest point is within this of the origin, and so is a point of the exact hull.
-    #[inline(always)]
-    fn at_most(&self, p: Vec3<S>) -> S {
-        let error = self.error();
-        p.dot(p).sqrt() * S::INCLUSION_UP + (error + error)
-    }
-
-    #[inline(always)]
-    fn error(&self) -> S {
-        S::ADVANCE_POINT * self.pair.reach + S::ISOLATE_UNDERFLOW
-    }
-
     /// One step; what is known, once that is all. About 150 operations, twice that where the distance is near.
     #[inline(always)]
     pub fn step(&mut self) -> Option<Advanced<S>> {
@@ -111,30 +99,54 @@ impl<S: Grid, const N: usize> Advance<S, N> {
         self.steps += 1;
         let x = self.pair.at(t);
         let p = nearest(&x);
-        let length = self.at_most(p);
+        let length = self.pair.at_most(p);
         if length <= d.under {
             return Some(Advanced::Within { from: t, to: t });
         }
         // Where the plane is reached to a rounding there is no next time: it may still be certain soon.
-        let next = self.pair.until(&x, p, (d.over, self.error())).map_or(t, |next| next.max(t));
+        let next = self.pair.until(&x, p, (d.over, self.pair.point_error())).map_or(t, |next| next.max(t));
         if next >= self.end {
             return Some(Advanced::Apart);
         }
         let (near, step) = (length <= d.under + d.slack, next - t);
         if near || step < d.pause * S::of(0.25) {
             let later = (next + d.pause).min(self.end);
-            if self.at_most(nearest(&self.pair.at(later))) <= d.under {
+            if self.pair.at_most(nearest(&self.pair.at(later))) <= d.under {
                 return Some(Advanced::Within { from: next, to: later });
             }
-            if near && step < d.pause * S::of(0.02) {
+            if near && (step < d.pause * S::of(0.02) || self.steps > PATIENCE) {
                 return Some(self.look_ahead(next));
             }
         }
         if !(next > t) {
             return Some(Advanced::Open { from: t });
         }
-        self.at = next;
+        self.at = if S::WIDE && self.steps > FIXED { self.farther(t, next) } else { next };
         None
+    }
+
+    /// Where fixed planes take many steps, one that turns may take few: until when it is certain from `t` on, or `next`.
+    #[inline(always)]
+    fn farther(&self, t: S, next: S) -> S {
+        let turning = self.pair.turning();
+        let reached = turning.reaches((t, self.end), self.distance.over);
+        for i in 0..TURNING {
+            // First most of the time that it is expected to last, then some steps of the fixed one.
+            let to = match i {
+                0 => t + (reached - t) * S::of(0.9999),
+                1 => t + (reached - t) * S::of(0.96),
+                2 => t + (reached - t) * S::of(0.5),
+                3 => (t + (next - t) * S::of(64.0)).min(reached),
+                _ => (t + (next - t) * S::of(8.0)).min(reached),
+            };
+            if !(to > next) {
+                break;
+            }
+            if turning.is_farther((t, to), self.distance.over) {
+                return to;
+            }
+        }
+        next
     }
 
     /// Near at `from`: whether some later time is certain.
@@ -146,7 +158,7 @@ impl<S: Grid, const N: usize> Advance<S, N> {
             if to >= self.end || !(to > from) {
                 break;
             }
-            if self.at_most(nearest(&self.pair.at(to))) <= self.distance.under {
+            if self.pair.at_most(nearest(&self.pair.at(to))) <= self.distance.under {
                 return Advanced::Within { from, to };
             }
             ahead = ahead + ahead;
@@ -156,6 +168,18 @@ impl<S: Grid, const N: usize> Advance<S, N> {
 }
 
 impl<S: Grid, const N: usize> Pair<S, N> {
+    /// The computed nearest point is within this of the origin, and so is a point of the exact hull.
+    #[inline(always)]
+    pub fn at_most(&self, p: Vec3<S>) -> S {
+        let error = self.point_error();
+        p.dot(p).sqrt() * S::INCLUSION_UP + (error + error)
+    }
+
+    #[inline(always)]
+    fn point_error(&self) -> S {
+        S::ADVANCE_POINT * self.reach + S::ISOLATE_UNDERFLOW
+    }
+
     /// Until when all control vectors are farther than the distance along `p`; None if they are not even at the time of `x`.
     ///
     /// With `n = p / |p|` as rounded, a control vector is farther where `n . w(t)` is above the distance times the length of
@@ -184,5 +208,11 @@ impl<S: Grid, const N: usize> Pair<S, N> {
     }
 }
 
+/// Steps that a pair may take before it is told as near, where it is.
+const PATIENCE: u32 = 16;
+/// Steps by fixed planes before turning ones are tried; f32, which few steps are asked of, tries none.
+const FIXED: u32 = 1;
+/// How often a turning plane is tried.
+const TURNING: u32 = 5;
 /// How often the time that is looked ahead doubles.
 const AHEAD: u32 = 12;

@@ -1,6 +1,7 @@
 //! Isolation: the window is cut at suspect times; between them nothing meets, around each one certificate decides.
 
 use super::cubic::{Cubic, root, slope, turns, value};
+use super::nearest::nearest;
 use super::pair::Pair;
 use super::suspect::Around;
 use crate::math::Real;
@@ -18,6 +19,11 @@ pub enum Found<S> {
         /// Not after.
         to: S,
     },
+    /// Not decided, and no better look would: somewhere in that time they are certainly near.
+    Near {
+        /// No contact in the window before it.
+        from: S,
+    },
     /// Not decided.
     Open {
         /// No contact in the window before it.
@@ -34,16 +40,20 @@ pub struct Look<S> {
     pub around: S,
     /// Newton's steps towards it.
     pub steps: u32,
+    /// How often it is looked at again where a look tells nothing, each time for a [`CLOSER`]th of the time.
+    pub again: u32,
+    /// What is near: where no look tells anything, but the features come within this, that is told.
+    pub near: S,
 }
 
 impl<S: Grid, const N: usize> Pair<S, N> {
     /// Whether and when the features first meet within `[begin, end]`, a window outside of which they do not. About 1,100
     /// operations for a window with one root.
     ///
-    /// Contact needs all four points in one plane: a root of [`Pair::cubic`]. The window is cut where the cubic turns; a
-    /// piece whose ends differ in sign has a suspect time, around which one certificate decides ([`Pair::around`]). What lies between
-    /// is shown to be rootless by the signs of its coefficients. Pieces are closed and share their ends as the same numbers,
-    /// so together they are the window.
+    /// Contact needs all four points in one plane: a root of [`Pair::cubic`]. The window is cut where the cubic turns. Suspect are
+    /// the root of a piece whose ends differ in sign, and every end without a certain sign; around a suspect time one certificate
+    /// decides ([`Pair::around`]). What lies between is shown to be rootless by the signs of its coefficients. Pieces are closed
+    /// and share their ends as the same numbers, so together they are the window.
     #[inline(always)]
     pub fn isolate(&self, (begin, end): (S, S), look: Look<S>) -> Found<S> {
         let g = self.cubic();
@@ -58,50 +68,76 @@ impl<S: Grid, const N: usize> Pair<S, N> {
             return Found::Open { from: begin, flat: true };
         }
         let (width, faint) = (end - begin, g.error + g.error);
-        let cuts = turns(&part);
+        let [first, second] = turns(&part);
+        let cuts = [begin + first * width, begin + second * width];
         let (mut from, mut at, mut before) = (begin, S::ZERO, part[0]);
-        if !(before.abs() > faint) {
-            return Found::Open { from, flat: false };
-        }
-        for i in 0..3 {
-            let next = if i < 2 { cuts[i] } else { S::ONE };
-            if !(next > at) {
+        for i in 0..4 {
+            let next = match i {
+                0 => S::ZERO,
+                1 => first,
+                2 => second,
+                _ => S::ONE,
+            };
+            if i > 0 && !(next > at) {
                 continue;
             }
-            let after = if next < S::ONE { value(&part, next) } else { part[3] };
-            if !(after.abs() > faint) {
-                return Found::Open { from, flat: false };
+            let after = match i {
+                0 => part[0],
+                3 => part[3],
+                _ => value(&part, next),
+            };
+            let known = after.abs() > faint;
+            if known && (before < S::ZERO) == (after < S::ZERO) {
+                (at, before) = (next, after);
+                continue;
             }
-            if (before < S::ZERO) != (after < S::ZERO) {
+            let (s, unsure) = if known {
                 let s = root(&part, (at, next), (before, after), look.steps);
-                let t = begin + s * width;
                 // Far enough for the sign of the cubic to be certain on both sides.
-                let unsure = S::of(3.0) * g.error * width / slope(&part, s).abs() + S::of(4.0) * S::U;
-                let around = unsure.max(look.around.min(width * S::of(WIDEST)));
-                if !(around <= S::of(WIDEST)) {
-                    return Found::Open { from, flat: false };
-                }
+                (s, S::of(3.0) * g.error * width / slope(&part, s).abs())
+            } else {
+                (next, S::ZERO)
+            };
+            let (t, unsure) = (begin + s * width, unsure + S::of(4.0) * S::U);
+            let (mut half, mut again) = (look.around.min(width * S::of(WIDEST)), look.again);
+            from = loop {
+                let around = unsure.max(half);
                 let (low, high) = ((t - around).max(S::ZERO), (t + around).min(self.end));
-                if !(low <= t && t <= high) || !clear(&g, (from, low), &cuts, (begin, width)) {
+                let fits = around <= S::of(WIDEST) && low <= t && t <= high;
+                if !fits || !clear(&g, (from, low), cuts) {
                     return Found::Open { from, flat: false };
                 }
                 match self.around(t, (high - t).max(t - low)) {
-                    Around::Misses => from = high,
+                    Around::Misses => break high,
                     Around::Holds if g.changes_sign(low, high) => {
                         return Found::Meets { from: low, to: high };
                     }
-                    _ => return Found::Open { from, flat: false },
+                    _ => {}
+                }
+                if again == 0 || half <= unsure {
+                    // What touches at the start is for exact signs to tell.
+                    let near =
+                        look.again > 0 && t > S::ZERO && self.at_most(nearest(&self.at(t))) <= look.near;
+                    return if near { Found::Near { from: low } } else { Found::Open { from, flat: false } };
+                }
+                half = half * S::of(1.0 / CLOSER);
+                again -= 1;
+            };
+            (at, before) = (next, after);
+            if !known {
+                at = ((from - begin) / width).min(S::ONE);
+                before = value(&part, at);
+                if at < S::ONE && !(before.abs() > faint) {
+                    return Found::Open { from, flat: false };
                 }
             }
-            (at, before) = (next, after);
         }
-        if clear(&g, (from, end), &cuts, (begin, width)) {
-            Found::Apart
-        } else {
-            Found::Open { from, flat: false }
-        }
+        if clear(&g, (from, end), cuts) { Found::Apart } else { Found::Open { from, flat: false } }
     }
 }
+
+/// By how much a look is closer than the one before. Costs, proves nothing.
+const CLOSER: f64 = 64.0;
 
 /// The longest time around a suspect, of the step and of the window. Costs, proves nothing.
 const WIDEST: f64 = 1.0 / 16.0;
@@ -109,7 +145,7 @@ const WIDEST: f64 = 1.0 / 16.0;
 /// Whether the cubic certainly has no root in `[from, to]`: as a whole, or cut where it turns, each piece as a whole or as
 /// its two halves. NaN is not clear.
 #[inline(always)]
-fn clear<S: Real>(g: &Cubic<S>, (from, to): (S, S), cuts: &[S; 2], (begin, width): (S, S)) -> bool {
+fn clear<S: Real>(g: &Cubic<S>, (from, to): (S, S), cuts: [S; 2]) -> bool {
     if to <= from {
         return true;
     }
@@ -118,7 +154,7 @@ fn clear<S: Real>(g: &Cubic<S>, (from, to): (S, S), cuts: &[S; 2], (begin, width
     }
     let mut low = from;
     for i in 0..3 {
-        let high = if i < 2 { (begin + cuts[i] * width).min(to) } else { to };
+        let high = if i < 2 { cuts[i].min(to) } else { to };
         if !(high > low) {
             continue;
         }

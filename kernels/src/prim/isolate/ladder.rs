@@ -16,6 +16,7 @@ use super::advance::{Advance, Advanced, Distance};
 use super::find::{Found, Look};
 use super::pair::{Edges, Face, Pair};
 use crate::math::Real;
+use crate::math::tolerance::NEAR_FINEST;
 use crate::prim::cubic::Moving;
 use crate::prim::inclusion::{self, Grid, Params, STACK, Search, Verdict};
 use crate::prim::signs::Certain;
@@ -26,11 +27,13 @@ use core::mem::MaybeUninit;
 pub const SLICES: u32 = 32;
 /// Newton's steps where a root is isolated first, and in a slice.
 const STEPS: [u32; 2] = [6, 12];
+/// How often a suspect time is looked at again, where no other isolation follows.
+const AGAIN: u32 = 3;
 /// How long around a suspect time is looked at, in pauses: first, and in a slice. Both sides are less than two pauses.
 const AROUND: [f64; 2] = [0.9, 0.03];
 /// Steps of advancement before the next rung is asked: in f32, where few pairs take more and many lanes would wait for them,
 /// and in f64.
-const ADVANCES: [u32; 2] = [4, 64];
+const ADVANCES: [u32; 2] = [3, 32];
 
 /// Which rungs there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,10 +61,14 @@ pub fn rejected<const N: usize>(pair: &Pair<f32, N>) -> bool {
 pub fn isolated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bool) -> Option<Verdict> {
     let Some(window) = pair.window() else { return Some(Verdict::separated(p.end, 0)) };
     let pause = pair.pause(pair.scaled(p.tolerance));
-    let look = Look { around: pause * S::of(AROUND[0]), steps: STEPS[0] };
+    // f32 has a rung behind it that tells more.
+    let closer = last && S::WIDE;
+    let (again, near) = if closer { (AGAIN, near_enough(pair, p)) } else { (0, S::ZERO) };
+    let look = Look { around: pause * S::of(AROUND[0]), steps: STEPS[closer as usize], again, near };
     match pair.isolate(pair.with_margin(window), look) {
         Found::Apart => Some(Verdict::separated(p.end, 0)),
         Found::Meets { from, to } if last || to - from <= pause + pause => met(from, to, p),
+        Found::Near { from } => Some(Verdict::unresolved(from.wide(), p.end, 0, false)),
         _ => None,
     }
 }
@@ -91,6 +98,8 @@ pub enum Slice {
     Apart,
     /// The first contact of the slice.
     Meets(Verdict),
+    /// Near, and not decided; no contact in the slice before that time.
+    Near(f64),
     /// Not decided; no contact in the slice before that time.
     Open(f64),
 }
@@ -110,20 +119,31 @@ pub fn sliced<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), i: 
     let cut = |i: u32| if i == SLICES { end } else { begin + (end - begin) * (i as f64 / SLICES as f64) };
     let (from, to) = (cut(i), cut(i + 1));
     let pause = pair.pause(pair.scaled(p.tolerance));
-    let look = Look { around: pause * AROUND[1], steps: STEPS[1] };
+    let look = Look { around: pause * AROUND[1], steps: STEPS[1], again: AGAIN, near: near_enough(pair, p) };
     match pair.isolate((from, to), look) {
         Found::Apart => Slice::Apart,
         Found::Meets { from, to } => met(from, to, p).map_or(Slice::Open(from), Slice::Meets),
+        Found::Near { from } => Slice::Near(from),
         Found::Open { .. } if pair.misses_throughout(from, to) => Slice::Apart,
         Found::Open { from, .. } => Slice::Open(from),
     }
 }
 
+/// Half the tolerance, in the units of the control vectors. A tolerance counts as at least [`NEAR_FINEST`] of the pair's
+/// extent. Volumes that grow by this bring every pair that comes within it.
+#[inline(always)]
+fn half<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params) -> S {
+    S::of(0.5) * pair.scaled(p.tolerance).max(S::of(NEAR_FINEST) * pair.reach)
+}
+
+/// Certainly not more than [`half`].
+#[inline(always)]
+fn near_enough<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params) -> S {
+    half(pair, p) * S::INCLUSION_DOWN
+}
+
 /// The last word without a search: separated, if the features stay farther apart than the separation and half the
-/// tolerance; else unresolved, from when they come within the separation and the tolerance. A tolerance counts as at least
-/// [`NEAR_FINEST`] of the pair's extent. Volumes that grow by half of both bring every pair that this lists.
-///
-/// [`NEAR_FINEST`]: crate::math::tolerance::NEAR_FINEST
+/// tolerance; else unresolved, from when they come within that.
 #[inline]
 pub fn near<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), p: &Params) -> Verdict {
     let mut advance = nearness(pair, (begin, end), p);
@@ -132,7 +152,7 @@ pub fn near<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), p: &P
 
 #[inline(always)]
 fn nearness<const N: usize>(pair: &Pair<f64, N>, window: (f64, f64), p: &Params) -> Advance<f64, N> {
-    let half = 0.5 * pair.scaled(p.tolerance).max(crate::math::tolerance::NEAR_FINEST * pair.reach);
+    let half = half(pair, p);
     let distance = Distance::of(pair, pair.scaled(p.separation) + half, half);
     Advance::new(*pair, window, distance, p.budget.max(ADVANCES[1]))
 }
@@ -196,12 +216,12 @@ impl<const N: usize> Separating<N> {
             Advanced::Apart => Some(Verdict::separated(p.end, 0)),
             Advanced::Within { from, to } => met(from, to, p),
             Advanced::Near { from } => Some(Verdict::unresolved(from.min(p.end), p.end, 0, false)),
-            Advanced::Open { .. } => None,
+            Advanced::Open { from } => {
+                self.advance = nearness(&self.pair, (from, self.pair.end), p);
+                self.nearness = true;
+                None
+            }
         };
-        if verdict.is_none() {
-            self.advance = nearness(&self.pair, (0.0, self.pair.end), p);
-            self.nearness = true;
-        }
         verdict
     }
 }
@@ -327,6 +347,7 @@ pub fn decided<const N: usize>(
     match first {
         Slice::Apart => Verdict::separated(p.end, 0),
         Slice::Meets(verdict) => verdict,
+        Slice::Near(from) => Verdict::unresolved(from, p.end, 0, false),
         Slice::Open(from) => {
             let verdict = near(pair, (from, end), p);
             if verdict.is_separated() { verdict } else { search(verdict) }

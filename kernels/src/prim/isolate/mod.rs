@@ -23,6 +23,7 @@ pub mod ladder;
 pub mod nearest;
 pub mod pair;
 pub mod suspect;
+pub mod turning;
 
 pub use ladder::{Rungs, ee_certified, vf_certified};
 pub use pair::{Edges, Face, Pair};

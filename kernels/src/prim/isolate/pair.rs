@@ -90,44 +90,22 @@ impl<S: Grid, const N: usize> Pair<S, N> {
     /// contact outside. None if there is no such time.
     ///
     /// The boxes overlap on an axis where the least component of the control vectors is not above zero and the largest not
-    /// below. Both are mixtures of their values `d0`, `d1` at the ends of the step; a computed value has the exact one's sign
-    /// or is zero, and the sign changes at `|d0| / (|d0| + |d1|)`, computed within `5u` where the sum is above
-    /// [`ISOLATE_UNDERFLOW`] (a value below that may have lost its digits, and clips nothing). Of several ends the innermost
-    /// is picked by products, before the one division: an end that is picked wrongly is still an end.
-    ///
-    /// [`ISOLATE_UNDERFLOW`]: crate::math::tolerance::Tolerance::ISOLATE_UNDERFLOW
+    /// below.
     #[inline(always)]
     pub fn window(&self) -> Option<(S, S)> {
-        // Begin and end as fractions of the step.
-        let (mut apart, mut from, mut to) = (false, (S::ZERO, S::ONE), (S::ONE, S::ONE));
-        let mut clip = |d0: S, d1: S| {
-            let (before, after) = (d0 < S::ZERO, d1 < S::ZERO);
-            let (over, under) = (d0.abs(), d0.abs() + d1.abs());
-            let known = under > S::ISOLATE_UNDERFLOW;
-            apart |= before & after;
-            from = if known & before & (over * from.1 > from.0 * under) { (over, under) } else { from };
-            to = if known & after & (over * to.1 < to.0 * under) { (over, under) } else { to };
-        };
+        let mut window = Window::new();
         for i in 0..3 {
-            let (mut low0, mut high0) = (self.w[0][0][i], self.w[0][0][i]);
-            let (mut low1, mut high1) = (self.w[0][1][i], self.w[0][1][i]);
+            let (mut low, mut high) = (self.w[0].map(|w| w[i]), self.w[0].map(|w| w[i]));
             for k in 1..N {
-                (low0, high0) = (low0.min(self.w[k][0][i]), high0.max(self.w[k][0][i]));
-                (low1, high1) = (low1.min(self.w[k][1][i]), high1.max(self.w[k][1][i]));
+                for end in 0..2 {
+                    low[end] = low[end].min(self.w[k][end][i]);
+                    high[end] = high[end].max(self.w[k][end][i]);
+                }
             }
-            clip(-low0, -low1);
-            clip(high0, high1);
+            window.clip(low.map(|x| -x));
+            window.clip(high);
         }
-        if !self.finite {
-            return Some((S::ZERO, self.end));
-        }
-        let (from, to) = (from.0 / from.1, to.0 / to.1);
-        if apart | (from > to + S::ISOLATE_WINDOW) {
-            return None;
-        }
-        let (from, to) = (from - S::ISOLATE_WINDOW, to + S::ISOLATE_WINDOW);
-        let (from, to) = (from.max(S::ZERO), to.min(self.end));
-        (from <= to).then_some((from, to))
+        if self.finite { window.within(self.end) } else { Some((S::ZERO, self.end)) }
     }
 
     /// A window with a margin, within the step: boxes that are flat share a moment only, too short for a sign to be seen to
@@ -136,6 +114,54 @@ impl<S: Grid, const N: usize> Pair<S, N> {
     pub fn with_margin(&self, (begin, end): (S, S)) -> (S, S) {
         let margin = S::ISOLATE_MARGIN;
         ((begin - margin).max(S::ZERO), (end + margin).min(self.end))
+    }
+}
+
+/// The part of the step in which several numbers, each linear in time, are all not below zero.
+///
+/// A number is a mixture of its values at the ends of the step. Computed values err by at most `3u` of themselves, or lie above
+/// the exact ones. The sign changes at `|d0| / (|d0| + |d1|)`, computed within `8u` where the sum is above
+/// [`ISOLATE_UNDERFLOW`] (a value below that may have lost its digits, and clips nothing). Of several ends the innermost
+/// is picked by products, before the one division: an end that is picked wrongly is still an end.
+///
+/// [`ISOLATE_UNDERFLOW`]: crate::math::tolerance::Tolerance::ISOLATE_UNDERFLOW
+#[derive(Clone, Copy, Debug)]
+pub struct Window<S> {
+    empty: bool,
+    /// Begin and end as fractions.
+    from: (S, S),
+    to: (S, S),
+}
+
+impl<S: Real> Window<S> {
+    /// All of the step.
+    #[inline(always)]
+    #[allow(clippy::new_without_default, reason = "a beginning, not a value")]
+    pub fn new() -> Self {
+        Window { empty: false, from: (S::ZERO, S::ONE), to: (S::ONE, S::ONE) }
+    }
+
+    /// Leaves out when a number, given at both ends of the step, is below zero.
+    #[inline(always)]
+    pub fn clip(&mut self, [d0, d1]: [S; 2]) {
+        let (before, after) = (d0 < S::ZERO, d1 < S::ZERO);
+        let (over, under) = (d0.abs(), d0.abs() + d1.abs());
+        let known = under > S::ISOLATE_UNDERFLOW;
+        self.empty |= before & after;
+        let (from, to) = (self.from, self.to);
+        self.from = if known & before & (over * from.1 > from.0 * under) { (over, under) } else { from };
+        self.to = if known & after & (over * to.1 < to.0 * under) { (over, under) } else { to };
+    }
+
+    /// What is left of the step until `end`, widened by what the ends err by.
+    #[inline(always)]
+    pub fn within(&self, end: S) -> Option<(S, S)> {
+        let (from, to) = (self.from.0 / self.from.1, self.to.0 / self.to.1);
+        if self.empty | (from > to + S::ISOLATE_WINDOW) {
+            return None;
+        }
+        let (from, to) = ((from - S::ISOLATE_WINDOW).max(S::ZERO), (to + S::ISOLATE_WINDOW).min(end));
+        (from <= to).then_some((from, to))
     }
 }
 

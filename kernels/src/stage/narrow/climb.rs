@@ -159,6 +159,7 @@ fn each<R: Real, B: Block>(
             }
             *wishes.of(l) = wish;
             *places.of(l) = wish;
+            l.meet();
         });
         let total = b.scan(&mut places);
         let start = b.reserve(a.counters, of.hits_at, (total & (LEFT - 1)) as u64);
@@ -173,6 +174,7 @@ fn each<R: Real, B: Block>(
             if wish == LEFT && place < of.left.len {
                 l.write(of.left, place as u32, Pair { a: hit.a, b: hit.b });
             }
+            l.meet();
         });
         base += stride;
     }

@@ -1,6 +1,6 @@
 //! # Reject: candidates → candidates that may meet
 //! Paper    none: the paper solves the cubic for every candidate.
-//! Launch   `vf` and `ee`; a lane a candidate; a grid of any size strides.
+//! Launch   a lane a candidate, both kinds in one launch; a grid of any size strides.
 //! Reads    candidates, faces or edges, positions of both frames (four vertices).
 //! Writes   the candidates that may meet.
 //! Before   candidates are complete.
@@ -18,21 +18,17 @@ use crate::math::Real;
 use crate::prim::isolate::ladder::rejected;
 use crate::prim::isolate::{Edges, Face};
 
-/// Vertex/face.
-pub fn vf<R: Real, B: Block>(b: &mut B, a: &RejectArgs<R>) {
-    let count = listed(b, a.candidates, a.counters, counter::VF);
-    append_each(b, count, (a.survivors, a.counters, counter::VF_SURVIVORS), |l, i| {
-        let pair = l.read(a.candidates, i);
+/// Both kinds.
+pub fn reject<R: Real, B: Block>(b: &mut B, a: &RejectArgs<R>) {
+    let count = listed(b, a.vf, a.counters, counter::VF);
+    append_each(b, count, (a.may_vf, a.counters, counter::VF_SURVIVORS), |l, i| {
+        let pair = l.read(a.vf, i);
         let face = l.read(a.faces, pair.b).map(|v| moving(l, &a.frames, v));
         (!rejected(&Face::new(moving(l, &a.frames, pair.a), face, &a.params))).then_some(pair)
     });
-}
-
-/// Edge/edge.
-pub fn ee<R: Real, B: Block>(b: &mut B, a: &RejectArgs<R>) {
-    let count = listed(b, a.candidates, a.counters, counter::EE);
-    append_each(b, count, (a.survivors, a.counters, counter::EE_SURVIVORS), |l, i| {
-        let pair = l.read(a.candidates, i);
+    let count = listed(b, a.ee, a.counters, counter::EE);
+    append_each(b, count, (a.may_ee, a.counters, counter::EE_SURVIVORS), |l, i| {
+        let pair = l.read(a.ee, i);
         let [x, y] = [pair.a, pair.b].map(|e| l.read(a.edges, e).map(|v| moving(l, &a.frames, v)));
         (!rejected(&Edges::new(x, y, &a.params))).then_some(pair)
     });

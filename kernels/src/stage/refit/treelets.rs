@@ -72,7 +72,6 @@ pub fn treelets<R: Real, V: Volume, B: Block>(b: &mut B, a: &TreeletsArgs<R, V>)
             }
             i += lanes;
         }
-        l.meet();
     });
     for round in 0..rounds {
         b.phase(|l| {
@@ -99,7 +98,6 @@ pub fn treelets<R: Real, V: Volume, B: Block>(b: &mut B, a: &TreeletsArgs<R, V>)
                 chip.put(l, from, volume);
                 l.give(a.nodes, node, merge.link().with(volume));
             }
-            l.meet();
         });
     }
     let blocks = b.blocks() as u64;

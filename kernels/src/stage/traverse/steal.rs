@@ -198,7 +198,6 @@ fn find<V: Volume, B: Block>(b: &mut B, a: &StealArgs<V>, draw: u64, words: Shar
             let (ticket, some) = search(l, a, draw);
             l.put(words, MESSAGE, ticket << UNITS | some);
         }
-        l.meet();
     });
     let message = b.peek(words, MESSAGE);
     (message >> UNITS, message & ((1 << UNITS) - 1))
