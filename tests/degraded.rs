@@ -1,6 +1,8 @@
 //! Every way in which an answer can be less than was asked is forced here, and must say so: by its reason, with a count, in
 //! the library, the text and the JSON. None of them may lose a contact.
 
+#[path = "support/folder.rs"]
+mod folder;
 mod support;
 
 use nearmiss::contacts::{Contact, Degraded, Status};
@@ -13,6 +15,10 @@ use support::{ask, engine, microscope};
 
 fn soup() -> Vec<Body> {
     vec![scene::soup(60, 5, true).expect("a scene")]
+}
+
+fn shrinking() -> Vec<Body> {
+    vec![support::moving(&support::SHRINKING[0], &support::SHRINKING[1], &[[0, 1, 2], [3, 4, 5]])]
 }
 
 fn by(solver: Solver) -> Query {
@@ -45,12 +51,18 @@ fn an_answer_that_is_all_that_was_asked_says_nothing() {
 
 #[test]
 fn a_budget_that_ends_is_told() {
-    let truth = ask(engine(), soup(), by(Solver::Certified));
-    for solver in [Solver::Certified, Solver::CertifiedF32, Solver::CertifiedF64] {
+    let by = |solver| Query { tolerance: Some(4e-3), ..by(solver) };
+    let truth = ask(engine(), shrinking(), by(Solver::Certified));
+    let met =
+        |all: &Contacts| all.contacts().iter().filter(|c| c.toi <= 0.0625 && c.toi_hi >= 0.0625).count();
+    assert!(met(&truth) > 0, "{:?}", truth.contacts());
+    // In f32 alone nothing is searched by boxes.
+    for solver in [Solver::Certified, Solver::CertifiedF64] {
         for boxes in [1, 2] {
             for device in [engine(), microscope(support::ORDERS[2])] {
-                let all = ask(device, soup(), Query { boxes: Some(boxes), ..by(solver) });
+                let all = ask(device, shrinking(), Query { boxes: Some(boxes), ..by(solver) });
                 none_is_lost(&truth, &all);
+                assert!(met(&all) > 0, "{:?}", all.contacts());
                 let ended = all.degraded().iter().find_map(|reason| match reason {
                     Degraded::Boxes { pairs } => Some(*pairs),
                     _ => None,
@@ -61,13 +73,13 @@ fn a_budget_that_ends_is_told() {
                     _ => None,
                 });
                 assert!(ended >= all.unresolved - touching.unwrap_or(0), "{solver:?}, {boxes}: {ended}");
-                assert!(ended > truth.len() as u64 / 4, "{solver:?}, {boxes}: {ended}");
+                assert!(ended > 0, "{solver:?}, {boxes}: {ended}");
                 assert!(all.degraded().iter().any(Degraded::touches_answer));
             }
         }
         // Not told apart, but told.
         let first = Query { motion: Motion::Earliest, boxes: Some(1), ..by(solver) };
-        let first = ask(engine(), soup(), first);
+        let first = ask(engine(), shrinking(), first);
         assert!(first.degraded().contains(&Degraded::Unresolved { pairs: first.unresolved }));
         assert!(first.unresolved > 0 && first.earliest_toi() <= truth.earliest_toi());
     }
@@ -75,8 +87,12 @@ fn a_budget_that_ends_is_told() {
 
 #[test]
 fn what_touches_without_passing_is_told() {
-    // Equal triangles that stand still touch in every pair of features; certain is none that does not pass through.
-    let all = ask(engine(), vec![scene::identical(6).expect("a scene")], by(Solver::Certified));
+    // A triangle slides against the side of another, in its plane: they touch, and nothing passes through.
+    let still = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
+    let slides = |x: f32| [[x, 1.0, 0.0], [x - 2.0, 1.5, 0.0], [x - 2.0, 0.5, 0.0]];
+    let frame = |x: f32| [still, slides(x)].concat();
+    let body = support::moving(&frame(-1.0), &frame(1.0), &[[0, 1, 2], [3, 4, 5]]);
+    let all = ask(engine(), vec![body], by(Solver::Certified));
     let unresolved = count(all.contacts(), |c| c.status == Status::Unresolved);
     assert!(unresolved > 0 && all.unresolved == unresolved);
     let told = all.degraded().iter().map(|reason| match reason {
@@ -163,15 +179,18 @@ fn a_front_that_is_dropped_is_told() {
 fn each_frame_is_told_by_itself() {
     let query = Query { tolerance: Some(1.3e-6), boxes: Some(2), ..by(Solver::CertifiedF32) };
     let frames = [scene::soup(60, 5, true), scene::soup(60, 6, true), scene::soup(60, 5, true)];
+    let mut told = Vec::new();
     let mut session = Session::new(engine(), soup(), query).expect("a session");
     for frame in frames.map(|frame| frame.expect("a scene")) {
         session.move_to(0, frame.clone()).expect("a frame");
         let alone = ask(engine(), vec![frame], query);
-        assert!(alone.degraded().len() >= 2, "{:?}", alone.degraded());
+        assert!(!alone.degraded().is_empty());
+        told.push(alone.degraded().to_vec());
         for _ in 0..2 {
             assert_eq!(session.detect().expect("an answer").degraded(), alone.degraded());
         }
     }
+    assert!(told[0] != told[1] && told[0] == told[2], "{told:?}");
 }
 
 /// As much memory as a frame needs, a little less, and so on down to none: the answer, or an error that says how much was
@@ -225,26 +244,34 @@ fn is_room(error: &Error, device: &Device) {
 /// What the program prints, as text and as JSON.
 #[test]
 fn the_program_tells() {
-    let run = |more: &[&str]| {
-        let args = ["detect", "--scene", "draped", "--triangles", "400", "--backend", "cpu"];
+    let folder = folder::Folder::new("degraded");
+    let [t0, t1] = [0, 1].map(|end| {
+        let corners = support::SHRINKING[end].map(|[x, y, z]| format!("v {x} {y} {z}\n")).concat();
+        folder.write(&format!("t{end}.obj"), &(corners + "f 1 2 3\nf 4 5 6\n"))
+    });
+    let asked = |args: &[&str], more: &[&str]| {
+        let args = [&["detect", "--backend", "cpu"], args].concat();
         let done = Command::new(env!("CARGO_BIN_EXE_nearmiss")).args(args).args(more).output();
         let done = done.expect("the program starts");
         assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
         String::from_utf8(done.stdout).expect("text")
     };
+    let run = |more: &[&str]| asked(&["--scene", "draped", "--triangles", "400"], more);
     let json = |more: &[&str]| -> serde_json::Value {
         serde_json::from_str(&run(&[more, &["--json"]].concat())).expect("JSON")
     };
     let all = json(&["--boxes", "1"]);
-    let boxes = all["degraded"].as_array().expect("a list").iter().find(|r| r["reason"] == "boxes");
-    assert!(boxes.is_some_and(|r| r["pairs"].as_u64().is_some_and(|n| n > 0)), "{all}");
+    let shrinking = asked(&[&t0, &t1], &["--boxes", "1", "--tolerance", "4e-3", "--json"]);
+    let shrinking: serde_json::Value = serde_json::from_str(&shrinking).expect("JSON");
+    let boxes = shrinking["degraded"].as_array().expect("a list").iter().find(|r| r["reason"] == "boxes");
+    assert!(boxes.is_some_and(|r| r["pairs"].as_u64().is_some_and(|n| n > 0)), "{shrinking}");
     assert_eq!(all["separation"], 0.0);
     let plain = json(&["--discrete"]);
     assert_eq!(
         (&plain["degraded"], &plain["separation"]),
         (&serde_json::json!([]), &serde_json::Value::Null)
     );
-    let text = run(&["--boxes", "1"]);
+    let text = asked(&[&t0, &t1], &["--boxes", "1", "--tolerance", "4e-3"]);
     assert!(text.contains("  degraded: ") && text.contains("raise --boxes"), "{text}");
     assert!(!run(&["--discrete"]).contains("degraded"));
     let apart = json(&["--separation", "0.01"]);

@@ -89,6 +89,7 @@ fn what_was_slow_is_not() {
         let [one, two] = [0; 2].map(|_| ask(engine(), vec![body.clone()], Query::of(Motion::Continuous)));
         assert_eq!((one.hash(), one.sliced_vf_ee), (two.hash(), two.sliced_vf_ee), "{name}");
         let sliced = total(one.sliced_vf_ee);
-        assert!(sliced * 100 <= one.candidates * SLICED + 1_000, "{name}: {sliced} of {}", one.candidates);
+        // 23 slivers that meet at a grazing angle all along: a fifth, and 4 us a candidate.
+        assert!(sliced * 5 <= one.candidates + 10, "{name}: {sliced} of {}", one.candidates);
     }
 }

@@ -1,6 +1,8 @@
 //! `selftest`: known answers, every stage on every machine to the bit, on scenes that the program makes itself; and the
 //! catalogue of extremes.
 
+mod appends;
+
 use super::args::SelftestArgs;
 use super::detect::body;
 use super::progress::during;
@@ -17,8 +19,7 @@ use std::process::ExitCode;
 
 /// Triangles of the scenes that the microscope, which is some hundred times slower, looks at.
 const SMALL: usize = 300;
-/// Equal triangles: all pairs of their features touch without passing through, and the certified solver is certain of none:
-/// it asks them all in f32 and again in f64.
+/// Equal triangles: all pairs of their features touch from the start, which only exact signs can tell.
 const EQUAL: usize = 40;
 
 /// One answer, and what every stage left behind.
@@ -160,6 +161,9 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
         scene::FORMULAS.len(),
         questions(&[]).count()
     );
+    let report = during("counting what is appended", || appends::compare(&machine, &engine))?;
+    let _ = writeln!(table, "{}", report.table);
+    faults.extend(report.faults);
     if args.cases > 0 {
         let amount = Amount::on(machine.is_card(), args.cases);
         for report in during("asking the extremes", || extremes::run(&machine, amount, |_| ()))? {

@@ -100,7 +100,8 @@ pub struct Contacts {
     pub open_vf_ee: [u64; 2],
     /// Of these, those that were cut into slices: vertex/face, edge/edge.
     pub sliced_vf_ee: [u64; 2],
-    /// How many contacts are [`Status::Unresolved`]; of an earliest query, how many pairs.
+    /// How many contacts are [`Status::Unresolved`]; of an earliest query, how many of the pairs that were asked: which of those
+    /// that cannot be earlier are asked anyway is a matter of order, so this and the counts by rung may differ from run to run.
     pub unresolved: u64,
     /// Pairs that the filter in the precision of the positions left undecided.
     pub undecided: u64,

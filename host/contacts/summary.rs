@@ -36,7 +36,8 @@ pub struct Summary {
     pub candidates: u64,
     /// Contacts found.
     pub contacts: usize,
-    /// How many of the contacts are neither confirmed nor refuted; of an earliest query, how many pairs.
+    /// How many of the contacts are neither confirmed nor refuted; of an earliest query, how many of the pairs
+    /// that were asked, which is a matter of order.
     pub unresolved: u64,
     /// In what the frame came to less than all that was asked; empty where nothing did.
     pub degraded: Vec<Degraded>,

@@ -18,6 +18,8 @@ use nearmiss_kernels::abi::{Frames, Pair, Point, Span, counter};
 pub struct TriangleAnswers {
     /// Whether they share a point, in the pairs' order.
     pub meet: Vec<bool>,
+    /// How many entries the list of those that do had: as many, where each is appended once.
+    pub listed: u64,
     /// Pairs that the float filter left to exact signs.
     pub undecided: u64,
     /// Milliseconds, on the device's own clock.
@@ -64,6 +66,7 @@ pub fn ask_triangles(
             Stored::F32 => some::<f32>(device, &mesh, *query)?,
         };
         all.meet.extend(some.meet);
+        all.listed += some.listed;
         all.undecided += some.undecided;
         all.ms += some.ms;
     }
@@ -100,5 +103,6 @@ fn some<R: Precision>(device: &Device, mesh: &Mesh, query: Query) -> Result<Tria
     };
     let mut meet = vec![false; count];
     contacts.read(&counters)?.iter().for_each(|pair| meet[pair.a as usize / 2] = true);
-    Ok(TriangleAnswers { meet, undecided: counters[counter::UNDECIDED as usize], ms })
+    let [listed, undecided] = [counter::CONTACTS, counter::UNDECIDED].map(|at| counters[at as usize]);
+    Ok(TriangleAnswers { meet, listed, undecided, ms })
 }

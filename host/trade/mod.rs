@@ -17,7 +17,7 @@ mod refit;
 mod row;
 mod scene;
 mod sweeps;
-mod triangles;
+pub(crate) mod triangles;
 mod truth;
 
 pub(crate) use all::Trade;

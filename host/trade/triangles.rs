@@ -12,6 +12,15 @@ use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 use rayon::prelude::*;
 
+/// Points a side of the grids.
+pub const SIDES: [u32; 3] = [3, 4, 8];
+
+/// `n` pairs of random triangles with corners on a grid.
+pub fn on_grid(r: &mut SmallRng, side: u32, n: usize) -> Vec<[Triangle; 2]> {
+    let mut corner = || std::array::from_fn(|_| f64::from(r.random_range(0..side)));
+    (0..n).map(|_| std::array::from_fn(|_| std::array::from_fn(|_| corner()))).collect()
+}
+
 /// Random triangles with corners on grids of 3, 4 and 8 points a side: most touch, lie in one plane or have no area. A row a
 /// discrete solver; `n` pairs a grid. Cost: about a millisecond a pair, in rationals.
 ///
@@ -20,10 +29,8 @@ use rayon::prelude::*;
 pub fn triangles(device: &Device, n: usize, seed: u64) -> Result<Vec<Row>, Error> {
     let mut r = SmallRng::seed_from_u64(seed);
     let mut rows = Vec::new();
-    for side in [3, 4, 8] {
-        let mut corner = || std::array::from_fn(|_| f64::from(r.random_range(0..side)));
-        let pairs: Vec<[Triangle; 2]> =
-            (0..n).map(|_| std::array::from_fn(|_| std::array::from_fn(|_| corner()))).collect();
+    for side in SIDES {
+        let pairs = on_grid(&mut r, side, n);
         let truth: Vec<bool> = pairs.par_iter().map(|[p, q]| triangles_meet(p, q)).collect();
         for choice in Choice::every(Motion::Discrete, &[]) {
             // The first time on a card loads the kernels.

@@ -113,7 +113,7 @@ fn a_refitted_tree_finds_what_a_new_one_does() {
                 let fresh = ask(engine(), moved.clone(), Query { tolerance, ..Query::of(motion) });
                 assert_eq!(refitted.answer, fresh.answer, "{motion:?}, {by}");
                 assert_eq!(
-                    (refitted.candidates_vf_ee, refitted.candidates),
+                    counted(&refitted),
                     boxed(&moved, motion),
                     "boxes of leaves are the same in both trees"
                 );

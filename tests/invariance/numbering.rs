@@ -115,17 +115,17 @@ fn bodies_exchanged() {
         let there = found(&[one.clone(), two.clone()], Motion::Continuous);
         let back = found(&[two.clone(), one.clone()], Motion::Continuous);
         // A vertex/face pair is the same query to the solver: same bits. Of two edges the first one changes.
-        let of = |contacts: &Contacts, kind| -> BTreeMap<[u32; 2], u64> {
+        let of = |contacts: &Contacts, kind| -> BTreeMap<[u32; 2], Times> {
             let all = contacts.contacts().iter().filter(|c| c.kind == kind);
-            all.map(|c| ([c.a, c.b], c.toi.to_bits())).collect()
+            all.map(|c| ([c.a, c.b], [c.toi, c.toi_hi].map(f64::to_bits))).collect()
         };
-        let turned = |kind| -> BTreeMap<[u32; 2], u64> {
+        let turned = |kind| -> BTreeMap<[u32; 2], Times> {
             of(&back, kind).into_iter().map(|([a, b], toi)| ([b, a], toi)).collect()
         };
         assert_eq!(turned(Kind::Fv), of(&there, Kind::Vf));
         assert_eq!(turned(Kind::Vf), of(&there, Kind::Fv));
-        let edges = |of: BTreeMap<[u32; 2], u64>| -> BTreeMap<Named, u64> {
-            of.into_iter().map(|([a, b], toi)| ((Kind::Ee, vec![a], vec![b]), toi)).collect()
+        let edges = |of: BTreeMap<[u32; 2], Times>| -> BTreeMap<Named, Times> {
+            of.into_iter().map(|([a, b], times)| ((Kind::Ee, vec![a], vec![b]), times)).collect()
         };
         assert!(of(&there, Kind::Vf).len() > 3 && of(&there, Kind::Ee).len() > 3);
         assert_close(&edges(turned(Kind::Ee)), &edges(of(&there, Kind::Ee)), "edges");

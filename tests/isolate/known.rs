@@ -65,7 +65,7 @@ fn all() -> Vec<Known> {
             "falls within 1e-6 of a side of a slope",
             VF,
             [1.0, -2.0].map(|z| [[0.25, 1e-6, z], FACE[0], [1.0, 0.0, 0.5], FACE[2]]),
-            Rung::Slices,
+            Rung::Double,
         ),
         ("lies on a face", VF, still([0.25, 0.25, 0.0], FACE), Rung::Touch),
         ("leaves a face", VF, falls([0.25, 0.25, 0.0], [0.25, 0.25, 1.0]), Rung::Touch),
@@ -95,14 +95,42 @@ fn all() -> Vec<Known> {
         ),
         ("slides into a side in its plane", VF, falls([-1.0, 0.25, 0.0], [0.5, 0.25, 0.0]), Rung::Flat),
         ("passes a side in its plane", VF, falls([1.5, 0.25, 0.0], [0.25, 1.5, 0.0]), Rung::Flat),
-        ("touches the plane beside the face", VF, touches(0.25, [0.125, 3.75], 0.0), Rung::Slices),
+        ("touches the plane beside the face", VF, touches(0.25, [0.125, 3.75], 0.0), Rung::Double),
         (
             "touches the plane a little beside a side and goes along it",
             VF,
             touches(0.25, [0.125, 3.875 + 1.0 / 65536.0], -1.0),
-            Rung::Near,
+            Rung::Double,
         ),
-        ("touches the face and turns back", VF, touches(0.5, [0.5, 1.0], 0.0), Rung::Search),
+        ("touches the face and turns back", VF, touches(0.5, [0.5, 1.0], 0.0), Rung::Close),
+        (
+            "edges meet twice in a short time",
+            EE,
+            [
+                [
+                    [-36.0, 204.0, 732.0],
+                    [-48.0, -816.0, -732.0],
+                    [528.0, 732.0, -732.0],
+                    [-216.0, -708.0, 468.0],
+                ],
+                [[-36.0, 12.0, -36.0], [-48.0, -48.0, 36.0], [-48.0, -36.0, 36.0], [-24.0, 60.0, -108.0]],
+            ],
+            Rung::Slices,
+        ),
+        (
+            "an edge shrinks to a point where it meets another",
+            EE,
+            [
+                [[0.0, 60.0, -12.0], [-24.0, 36.0, 12.0], [-48.0, 24.0, 60.0], [-84.0, 24.0, -12.0]],
+                [
+                    [576.0, -708.0, 180.0],
+                    [-216.0, -732.0, 12.0],
+                    [144.0, -552.0, -708.0],
+                    [684.0, -552.0, 372.0],
+                ],
+            ],
+            Rung::Search,
+        ),
     ]
 }
 
@@ -128,7 +156,7 @@ fn known_motions_are_decided_by_their_rung() {
             let said = certified::<f64>(&case, rungs, &p);
             let name = format!("{what}, {rungs:?}: {said:?}");
             assert_eq!(fault(&said, truth.as_ref()), None, "{name}");
-            // What touches at the start is always certain; so is what certainly meets in its course.
+            // What touches at the start is always certain; so is what passes through in its course.
             if let Some(truth) = &truth
                 && (rung == Rung::Touch || rung <= Rung::Double && rungs != Rungs::Single)
             {

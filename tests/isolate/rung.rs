@@ -23,6 +23,8 @@ pub enum Rung {
     Single,
     /// Isolation in f64.
     Double,
+    /// A closer look of it that tells no more than that they are near.
+    Close,
     /// Touching at the start.
     Touch,
     /// Nearness of flat motion.
@@ -36,12 +38,13 @@ pub enum Rung {
 }
 
 impl Rung {
-    pub const ALL: [Rung; 10] = [
+    pub const ALL: [Rung; 11] = [
         Rung::Boxes,
         Rung::Signs,
         Rung::Window,
         Rung::Single,
         Rung::Double,
+        Rung::Close,
         Rung::Touch,
         Rung::Flat,
         Rung::Slices,
@@ -103,17 +106,20 @@ fn climb<const N: usize>(
     }
     let Some(window) = double.window() else { return (Rung::Double, apart) };
     if let Some(verdict) = isolated(double, p, true) {
-        return (Rung::Double, verdict);
+        let near = !verdict.is_separated() && !verdict.is_contact();
+        return (if near { Rung::Close } else { Rung::Double }, verdict);
     }
     if window.0 <= 0.0 && touch {
         return (Rung::Touch, Verdict::contact(0.0, 0.0, 0, false));
     }
     if is_flat(double, window) {
-        return (Rung::Flat, near(double, window, p));
+        let apart_all_along = double.misses_throughout(window.0, window.1);
+        return (Rung::Flat, if apart_all_along { apart } else { near(double, window, p) });
     }
     match (0..SLICES).map(|i| sliced(double, window, i, p)).find(|slice| *slice != Slice::Apart) {
         None | Some(Slice::Apart) => (Rung::Slices, apart),
         Some(Slice::Meets(verdict)) => (Rung::Slices, verdict),
+        Some(Slice::Near(from)) => (Rung::Slices, Verdict::unresolved(from, p.end, 0, false)),
         Some(Slice::Open(from)) => {
             let verdict = near(double, (from, window.1), p);
             if verdict.is_separated() { (Rung::Near, verdict) } else { (Rung::Search, search(verdict)) }

@@ -100,25 +100,31 @@ impl<S: Grid, const N: usize> Pair<S, N> {
             };
             let (t, unsure) = (begin + s * width, unsure + S::of(4.0) * S::U);
             let (mut half, mut again) = (look.around.min(width * S::of(WIDEST)), look.again);
+            // No contact before it, once there was a look.
+            let mut apart = None;
             from = loop {
                 let around = unsure.max(half);
                 let (low, high) = ((t - around).max(S::ZERO), (t + around).min(self.end));
                 let fits = around <= S::of(WIDEST) && low <= t && t <= high;
-                if !fits || !clear(&g, (from, low), cuts) {
-                    return Found::Open { from, flat: false };
-                }
-                match self.around(t, (high - t).max(t - low)) {
-                    Around::Misses => break high,
-                    Around::Holds if g.changes_sign(low, high) => {
-                        return Found::Meets { from: low, to: high };
+                let clear = fits && clear(&g, (from, low), cuts);
+                if clear {
+                    match self.around(t, (high - t).max(t - low)) {
+                        Around::Misses => break high,
+                        Around::Holds if g.changes_sign(low, high) => {
+                            return Found::Meets { from: low, to: high };
+                        }
+                        _ => apart = Some(low),
                     }
-                    _ => {}
                 }
-                if again == 0 || half <= unsure {
+                if !clear || again == 0 || half <= unsure {
                     // What touches at the start is for exact signs to tell.
-                    let near =
-                        look.again > 0 && t > S::ZERO && self.at_most(nearest(&self.at(t))) <= look.near;
-                    return if near { Found::Near { from: low } } else { Found::Open { from, flat: false } };
+                    let may = look.again > 0 && t > S::ZERO;
+                    return match apart {
+                        Some(from) if may && self.at_most(nearest(&self.at(t))) <= look.near => {
+                            Found::Near { from }
+                        }
+                        _ => Found::Open { from, flat: false },
+                    };
                 }
                 half = half * S::of(1.0 / CLOSER);
                 again -= 1;

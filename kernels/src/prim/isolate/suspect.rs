@@ -92,34 +92,38 @@ impl<S: Grid, const N: usize> Pair<S, N> {
 
     /// Whether the hull certainly misses the origin throughout `[from, to]`: the control vectors at both ends lie on one side
     /// of a plane. Directions are tried from the middle of all towards the point nearest to the origin (Frank and Wolfe's
-    /// steps). About 60 operations a step.
+    /// steps), with every axis in its own unit. About 70 operations a step.
     #[inline]
     pub fn misses_throughout(&self, from: S, to: S) -> bool {
         let ends = [self.at(from), self.at(to)];
-        // An axis has its own errors: of a pair that is long on one axis, the others still tell.
+        // An axis has its own errors, and its own unit: of a pair that is long on one axis, the others still tell.
         let mut reach = Vec3([S::ZERO; 3]);
         for k in 0..N {
             reach = reach.max(self.w[k][0].map(S::abs)).max(self.w[k][1].map(S::abs));
         }
         let error = reach * ((S::ISOLATE_PLACE + S::ISOLATE_SIDE) * S::INCLUSION_UP);
+        let unit = reach.map(|x| S::ONE / x.max(S::ISOLATE_UNDERFLOW));
+        let times = |x: Vec3<S>, y: Vec3<S>| Vec3([x[0] * y[0], x[1] * y[1], x[2] * y[2]]);
         let beyond = |d: Vec3<S>| {
+            let d = times(d, unit);
             let bound = d.map(S::abs).dot(error) * S::INCLUSION_UP + S::ISOLATE_UNDERFLOW;
             (0..N).all(|k| d.dot(ends[0][k]) > bound && d.dot(ends[1][k]) > bound)
         };
+        let scaled = ends.map(|end| end.map(|x| times(x, unit)));
         let mut d = Vec3([S::ZERO; 3]);
         for k in 0..N {
-            d = d + (ends[0][k] + ends[1][k]);
+            d = d + (scaled[0][k] + scaled[1][k]);
         }
         d = d * S::of(0.5 / N as f64);
         for _ in 0..=PLANES {
             if beyond(d) {
                 return self.finite;
             }
-            let mut at = ends[0][0];
+            let mut at = scaled[0][0];
             for i in 0..2 {
                 for k in 0..N {
-                    if d.dot(ends[i][k]) < d.dot(at) {
-                        at = ends[i][k];
+                    if d.dot(scaled[i][k]) < d.dot(at) {
+                        at = scaled[i][k];
                     }
                 }
             }
