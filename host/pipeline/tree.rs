@@ -13,7 +13,7 @@ use nearmiss_kernels::stage::construct::morton;
 
 /// The bytes of a Morton code, which lies above its triangle. As many as there are: the sort ends where it began.
 const BYTES: [u32; 4] = [32, 40, 48, 56];
-const _: () = assert!(8 * BYTES.len() as u32 == CODE_BITS && BYTES.len() % 2 == 0);
+const _: () = assert!(8 * BYTES.len() as u32 == CODE_BITS && BYTES.len().is_multiple_of(2));
 /// Keys of the box of all centres.
 const BOUNDS: usize = 6;
 

@@ -192,7 +192,8 @@ fn a_shorter_time_around_a_root_would_be_false() {
 #[test]
 fn lies_are_named() {
     let p = Params::new(1e-6);
-    let lies: [(fn(Verdict) -> Verdict, &str); 5] = [
+    type Lie = fn(Verdict) -> Verdict;
+    let lies: [(Lie, &str); 5] = [
         (|_| Verdict::separated(1.0, 0), "missed"),
         (|v| Verdict { toi: v.toi_hi + 1e-4, toi_hi: 1.0, ..v }, "late"),
         (
@@ -227,7 +228,7 @@ fn in_doubles_contacts_are_in_their_windows_and_on_their_cubics() {
         let g = pair.cubic();
         from <= t
             && t <= to
-            && g.part(t, t).iter().all(|x| !(x.abs() > g.error))
+            && g.part(t, t).iter().all(|x| x.abs() <= g.error)
             && pair.around(t, S::ZERO) != Around::Misses
     }
     for (built, toi) in built(27, 60, 1 << 30).into_iter().filter_map(|b| b.toi.map(|toi| (b, toi))) {

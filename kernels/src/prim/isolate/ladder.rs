@@ -216,17 +216,18 @@ impl<const N: usize> Separating<N> {
         if self.nearness {
             return Some(nearly(told, self.advance.steps, p));
         }
-        let verdict = match told {
-            Advanced::Apart => Some(Verdict::separated(p.end, 0)),
-            Advanced::Within { from, to } => met(from, to, p),
-            Advanced::Near { from } => Some(Verdict::unresolved(from.min(p.end), p.end, 0, false)),
-            Advanced::Open { from } => {
-                self.advance = nearness(&self.pair, (from, self.pair.end), p);
-                self.nearness = true;
-                None
-            }
+        let from = match told {
+            Advanced::Apart => return Some(Verdict::separated(p.end, 0)),
+            Advanced::Near { from } => return Some(Verdict::unresolved(from.min(p.end), p.end, 0, false)),
+            Advanced::Within { from, to } => match met(from, to, p) {
+                Some(verdict) => return Some(verdict),
+                None => from,
+            },
+            Advanced::Open { from } => from,
         };
-        verdict
+        self.advance = nearness(&self.pair, (from, self.pair.end), p);
+        self.nearness = true;
+        None
     }
 }
 

@@ -170,7 +170,7 @@ fn children(place: u32) -> u32 {
 
 /// Writes a leaf's node, and tells the leaf.
 fn leaf<L: Lane>(l: &L, a: &TreeArgs, at: u32, leaf: u32) {
-    let link = LEAF | a.first + l.read(a.items, leaf) as u32;
+    let link = LEAF | (a.first + l.read(a.items, leaf) as u32);
     l.write(a.links, at, Link { link, last: leaf });
     l.write(a.leaf_nodes, leaf, at);
     if !a.seats.is_empty() {

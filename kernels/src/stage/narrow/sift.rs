@@ -119,9 +119,9 @@ fn overlapping<R: Real>([p, q]: &[[Swept<R>; 3]; 2]) -> u32 {
         mask |= (q[k].overlaps(&of_p) as u32) << (3 + k);
     }
     let (p, q) = (edges(p), edges(q));
-    for i in 0..3 {
-        for j in 0..3 {
-            mask |= (p[i].overlaps(&q[j]) as u32) << (6 + 3 * i + j);
+    for (i, p) in p.iter().enumerate() {
+        for (j, q) in q.iter().enumerate() {
+            mask |= (p.overlaps(q) as u32) << (6 + 3 * i + j);
         }
     }
     mask
