@@ -91,18 +91,20 @@ impl<S: Grid, const N: usize> Pair<S, N> {
                 (at, before) = (next, after);
                 continue;
             }
-            let (s, unsure) = if known {
-                let s = root(&part, (at, next), (before, after), look.steps);
-                // Far enough for the sign of the cubic to be certain on both sides.
-                (s, S::of(3.0) * g.error * width / slope(&part, s).abs())
-            } else {
-                (next, S::ZERO)
-            };
-            let (t, unsure) = (begin + s * width, unsure + S::of(4.0) * S::U);
             let (mut half, mut again) = (look.around.min(width * S::of(WIDEST)), look.again);
             // No contact before it, once there was a look.
             let mut apart = None;
             from = loop {
+                let (s, unsure) = if known {
+                    // A closer look needs a closer root.
+                    let steps = if again < look.again { 2 * look.steps } else { look.steps };
+                    let s = root(&part, (at, next), (before, after), steps);
+                    // Far enough for the sign of the cubic to be certain on both sides.
+                    (s, S::of(3.0) * g.error * width / slope(&part, s).abs())
+                } else {
+                    (next, S::ZERO)
+                };
+                let (t, unsure) = (begin + s * width, unsure + S::of(4.0) * S::U);
                 let around = unsure.max(half);
                 let (low, high) = ((t - around).max(S::ZERO), (t + around).min(self.end));
                 let fits = around <= S::of(WIDEST) && low <= t && t <= high;
