@@ -40,7 +40,7 @@ if [ "$half" != figures ]; then
 
     # 2. Memory and shared memory, under the sanitizer.
     if have compute-sanitizer; then
-        for tool in memcheck racecheck initcheck; do
+        for tool in memcheck racecheck initcheck synccheck; do
             for query in --discrete "--discrete --adjacent --bv obb --traversal queue" \
                 "--discrete --solver moller --traversal per-leaf --refit bottom-up" \
                 --continuous "--continuous --solver cubic-f32 --traversal per-leaf-spill --budget 4" --earliest \

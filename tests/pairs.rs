@@ -155,3 +155,21 @@ fn triangles_meet_as_the_oracle_says() {
     let device = support::engine();
     assert!(ask_triangles(&device, &pairs, &continuous(), Stored::F64).is_err());
 }
+
+/// On a grid of three points a side most triangles touch or lie in one plane: more are left to exact signs than there is room
+/// for at first. Stored in f32, where f64 is asked between, or in f64, all are answered, each once.
+#[test]
+fn more_undecided_pairs_than_room() {
+    let mut r = SmallRng::seed_from_u64(7);
+    let mut corner = || std::array::from_fn(|_| f64::from(r.random_range(0..3)));
+    let pairs: Vec<[[[f64; 3]; 3]; 2]> =
+        (0..4_000).map(|_| std::array::from_fn(|_| std::array::from_fn(|_| corner()))).collect();
+    let truth: Vec<bool> = pairs.iter().map(|[p, q]| triangles_meet(p, q)).collect();
+    for (device, stored) in machines().into_iter().flat_map(|d| [(d.clone(), Stored::F32), (d, Stored::F64)])
+    {
+        let found = ask_triangles(&device, &pairs, &Query::default(), stored).expect("answers");
+        assert_eq!(found.meet, truth, "{stored:?}");
+        assert_eq!(found.listed, truth.iter().filter(|meet| **meet).count() as u64, "{stored:?}");
+        assert!(found.undecided > pairs.len() as u64 / 4, "{stored:?}: {}", found.undecided);
+    }
+}

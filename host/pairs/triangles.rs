@@ -83,21 +83,31 @@ fn some<R: Precision>(device: &Device, mesh: &Mesh, query: Query) -> Result<Tria
     let mut counts = vec![0; counter::COUNT as usize];
     let (at, number) = list.put(&pairs)?;
     counts[at as usize] = number;
-    // A pair is listed once at most, so no list outgrows this.
     let mut narrow = Narrow::new::<R>(device, &Layout::default(), query, (count, count))?;
-    let counters = device.upload(&counts)?;
-    let given = Given {
-        device,
-        query,
-        frames: Frames { still: points.span(), moving: Span::EMPTY },
-        faces: faces.span(),
-        pairs: list.span(),
-        counters: counters.span(),
+    let mut counters = device.buffer(counter::COUNT as usize)?;
+    // Until no list was too short.
+    let (counters, ms) = loop {
+        counters.write(&counts)?;
+        let given = Given {
+            device,
+            query,
+            frames: Frames { still: points.span(), moving: Span::EMPTY },
+            faces: faces.span(),
+            pairs: list.span(),
+            counters: counters.span(),
+        };
+        let start = device.mark()?;
+        narrow.run(Step::Decide, &given)?;
+        let ms = start.to(&device.mark()?)?;
+        let counted = counters.read(counter::COUNT as usize)?;
+        let mut grew = false;
+        for list in narrow.lists(Step::Decide) {
+            grew |= list.grow(device, &counted)?;
+        }
+        if !grew {
+            break (counted, ms);
+        }
     };
-    let start = device.mark()?;
-    narrow.run(Step::Decide, &given)?;
-    let ms = start.to(&device.mark()?)?;
-    let counters = counters.read(counter::COUNT as usize)?;
     let Narrow::Discrete { contacts, .. } = &narrow else {
         return Err(Error::Bug { what: "triangles that stand still asked as features".into() });
     };
