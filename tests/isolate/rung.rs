@@ -114,14 +114,14 @@ fn climb<const N: usize>(
     }
     if is_flat(double, window) {
         let apart_all_along = double.misses_throughout(window.0, window.1);
-        return (Rung::Flat, if apart_all_along { apart } else { near(double, window, p) });
+        return (Rung::Flat, if apart_all_along { apart } else { near(double, window, 1.0, p) });
     }
     match (0..SLICES).map(|i| sliced(double, window, i, p)).find(|slice| *slice != Slice::Apart) {
         None | Some(Slice::Apart) => (Rung::Slices, apart),
         Some(Slice::Meets(verdict)) => (Rung::Slices, verdict),
         Some(Slice::Near(from)) => (Rung::Slices, Verdict::unresolved(from, p.end, 0, false)),
         Some(Slice::Open(from)) => {
-            let verdict = near(double, (from, window.1), p);
+            let verdict = near(double, (from, window.1), 1.0, p);
             if verdict.is_separated() { (Rung::Near, verdict) } else { (Rung::Search, search(verdict)) }
         }
     }

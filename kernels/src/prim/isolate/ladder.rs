@@ -6,7 +6,7 @@
 //! | [`isolated`] | roots, by a certificate each | f32, then f64 |
 //! | [`vf_touch`], [`ee_touch`] | what touches at t = 0, by exact signs | integers |
 //! | [`sliced`] | the window in [`SLICES`] slices | f64 |
-//! | [`near`] | what stays farther than a sixteenth of the tolerance; and when what does not comes nearer | f64 |
+//! | [`near`] | what stays farther than half the tolerance; and when what does not comes nearer | f64 |
 //! | the search of [`crate::prim::inclusion`] | what is left, by boxes | f64 |
 //!
 //! With a separation: [`separated`] in f32, then [`Separating`] in f64. Every rung is a function of the pair and of what is
@@ -142,21 +142,26 @@ fn near_enough<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params) -> S {
     half(pair, p) * S::INCLUSION_DOWN
 }
 
-/// What part of [`half`] is asked of what nothing else decides: the less it is, the fewer pairs are listed that do not meet,
-/// at the cost of some steps.
+/// What part of [`half`] is asked where nothing but f32 has isolated: the less it is, the fewer pairs are listed that do not
+/// meet, at the cost of some steps.
 const NEARER: f64 = 1.0 / 8.0;
 
-/// The last word without a search: separated, if the features stay farther apart than the separation and an eighth of
-/// half the tolerance; else unresolved, from when they come within that.
+/// The last word without a search: separated, if the features stay farther apart than the separation and such a part of half
+/// the tolerance; else unresolved, from when they come within that.
 #[inline]
-pub fn near<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), p: &Params) -> Verdict {
-    let mut advance = nearness(pair, (begin, end), p);
+pub fn near<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), part: f64, p: &Params) -> Verdict {
+    let mut advance = nearness(pair, (begin, end), part, p);
     nearly(advance.run(), advance.steps, p)
 }
 
 #[inline(always)]
-fn nearness<const N: usize>(pair: &Pair<f64, N>, window: (f64, f64), p: &Params) -> Advance<f64, N> {
-    let near = f64::of(0.5) * (pair.scaled(p.tolerance) * NEARER).max(NEAR_FINEST * pair.reach);
+fn nearness<const N: usize>(
+    pair: &Pair<f64, N>,
+    window: (f64, f64),
+    part: f64,
+    p: &Params,
+) -> Advance<f64, N> {
+    let near = 0.5 * (pair.scaled(p.tolerance) * part).max(NEAR_FINEST * pair.reach);
     let distance = Distance::of(pair, pair.scaled(p.separation) + near, near);
     Advance::new(*pair, window, distance, p.budget.max(ADVANCES[1]))
 }
@@ -225,7 +230,7 @@ impl<const N: usize> Separating<N> {
             },
             Advanced::Open { from } => from,
         };
-        self.advance = nearness(&self.pair, (from, self.pair.end), p);
+        self.advance = nearness(&self.pair, (from, self.pair.end), 1.0, p);
         self.nearness = true;
         None
     }
@@ -337,7 +342,7 @@ pub fn settled<const N: usize>(
     if pair.misses_throughout(window.0, window.1) {
         return Ok(Verdict::separated(p.end, 0));
     }
-    Ok(near(pair, window, p))
+    Ok(near(pair, window, if all { NEARER } else { 1.0 }, p))
 }
 
 /// The rungs behind the slices, given the first that is not apart.
@@ -354,7 +359,7 @@ pub fn decided<const N: usize>(
         Slice::Meets(verdict) => verdict,
         Slice::Near(from) => Verdict::unresolved(from, p.end, 0, false),
         Slice::Open(from) => {
-            let verdict = near(pair, (from, end), p);
+            let verdict = near(pair, (from, end), 1.0, p);
             if verdict.is_separated() { verdict } else { search(verdict) }
         }
     }
