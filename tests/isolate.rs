@@ -9,3 +9,5 @@ mod known;
 mod planted;
 #[path = "isolate/rung.rs"]
 mod rung;
+#[path = "isolate/turning.rs"]
+mod turning;

@@ -306,3 +306,22 @@ fn inclusion_regular() {
     of::<f32>("f32");
     of::<f64>("f64");
 }
+
+/// Measured: a corner at a time, as `stage::narrow::sift` mixes it, of what its box grows by for it.
+#[test]
+fn inclusion_input_of_a_mixture() {
+    fn of<R: Real>() -> Found {
+        let ratio = |x: &[f64]| {
+            let [t0, t1, a, b] = [0, 1, 2, 3].map(|i| R::of(x[i]));
+            let t = a.abs() / (a.abs() + b.abs());
+            let said = t0 * (R::ONE - t) + t1 * t;
+            let [from, to, at] = [t0, t1, t].map(Exact::of);
+            let truth = &from * &(Exact::of(R::ONE) - &at) + &to * &at;
+            let bound = R::INCLUSION_INPUT * t0.abs().max(t1.abs()) + R::INCLUSION_UNDERFLOW;
+            (Exact::of(said) - &truth).abs().over(&Exact::of(bound))
+        };
+        Hunt::new(33).most::<R>(|r| plain(r, 4), ratio)
+    }
+    held("INCLUSION_INPUT", "a mixture, f32", &of::<f32>());
+    held("INCLUSION_INPUT", "a mixture, f64", &of::<f64>());
+}
