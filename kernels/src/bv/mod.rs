@@ -44,7 +44,7 @@ pub trait Volume: Pod + Sync + Send + core::fmt::Debug + PartialEq {
     /// At least the largest magnitude of a coordinate of what it is around.
     fn reach(&self) -> f32;
     /// Around all points within `by`, and within what the last rung of a certified solver cannot tell, of a point that it is
-    /// around; itself where `by` is 0. See [`NEAR_GROWTH`](crate::math::tolerance::NEAR_GROWTH).
+    /// around; itself where `by` is 0. See [`NEAR_GROWTH`].
     #[inline(always)]
     fn near(&self, by: f32) -> Self {
         if by > 0.0 { self.grown(by + NEAR_GROWTH * self.reach()) } else { *self }

@@ -40,7 +40,7 @@ pub struct Look<S> {
     pub around: S,
     /// Newton's steps towards it.
     pub steps: u32,
-    /// How often it is looked at again where a look tells nothing, each time for a [`CLOSER`]th of the time.
+    /// How often it is looked at again where a look tells nothing, each time for a 64th of the time.
     pub again: u32,
     /// What is near: where no look tells anything, but the features come within this, that is told.
     pub near: S,

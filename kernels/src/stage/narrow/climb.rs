@@ -1,6 +1,6 @@
 //! # Climb: vertex/face and edge/edge pairs → contacts, proven, with bounds of their first time; what is left, for the next rung
 //! Paper    none: beyond it.
-//! Launch   [`isolate`] in f32 over what may meet, then in f64 over what that left (or in one of them over all); [`settle`]
+//! Launch   [`isolate()`] in f32 over what may meet, then in f64 over what that left (or in one of them over all); [`settle`]
 //!          over what isolation left; the slices of [`super::slice`] over the rest. With a separation [`separate`] over all
 //!          candidates, then [`super::separate`] over what that left (or over all). A lane a pair, both kinds in one launch: a block takes
 //!          tiles of one kind; a grid of any size strides.

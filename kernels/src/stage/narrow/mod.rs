@@ -1,7 +1,7 @@
 //! # Narrow: candidates → contacts
 //! Paper    section 6.2.5, "a variant of the Moeller test"; "the cubic equation for each of the 15 elementary tests".
 //! Steps    discrete: [`discrete`]. Continuous: [`sift`] turns triangle pairs into vertex/face and edge/edge candidates,
-//!          each once; [`reject`] leaves out those that certainly stay apart; the rungs of [`climb`], [`slice`] and
+//!          each once; [`reject`] leaves out those that certainly stay apart; the rungs of [`climb`], [`mod@slice`] and
 //!          [`separate`] find what meets of the others and bound its first time, with proof; or [`solve`] does so by the
 //!          seed's cubic. [`blunt`] counts of what is listed what the precision was too blunt for, where that may be.
 
