@@ -24,9 +24,13 @@ if [ -f "$frames/cloth_ball92.ply" ]; then
     scenes+=("cloth-ball earliest|$frames/cloth_ball92.ply $frames/cloth_ball93.ply --earliest")
     scenes+=("n-body discrete|$frames/n-body_t0.ply")
     scenes+=("n-body continuous|$frames/n-body_t0.ply $frames/n-body_t1.ply")
+    for apart in 1e-5 1e-4 1e-3 1e-2; do
+        scenes+=("cloth-ball separation $apart|$frames/cloth_ball92.ply $frames/cloth_ball93.ply --separation $apart")
+    done
 fi
 scenes+=("generated draped discrete|--scene draped --discrete")
 scenes+=("generated draped continuous|--scene draped --continuous")
+scenes+=("generated cloth-ball continuous|--scene cloth-ball --triangles 92000 --continuous")
 
 if [ "$half" != figures ]; then
     # 1. Card and CPU agree to the bit, stage by stage.
@@ -80,7 +84,7 @@ choice() {
         sed "s/^{/{\"scene\":\"${scene%%|*}\",\"walk\":\"$3\",/" >>"$out/choices.jsonl"
 }
 for scene in "${scenes[@]}"; do
-    case ${scene%%|*} in *earliest | generated*) continue ;; esac
+    case ${scene%%|*} in *earliest | *separation* | generated*) continue ;; esac
     for bv in aabb linear obb obb-child; do
         for walk in per-leaf-spill queue queue-gtx285 steal front; do choice 20 $bv $walk treelets; done
         for refit in levels bottom-up; do choice 20 $bv queue $refit; done

@@ -118,7 +118,7 @@ pub enum Solver {
     Exact,
     /// Discrete: the seed's float test. Can miss, can err.
     Moller,
-    /// Continuous: boxes of time and place, in f32 and, where that is not enough, in f64. Never misses, is never late.
+    /// Continuous: isolated roots, in f32 and, where that is not enough, in f64 and beyond. Never misses, is never late.
     Certified,
     /// The same in f32 alone: leaves more unresolved.
     CertifiedF32,
