@@ -93,6 +93,15 @@ fn every_way_to_refit_can_be_repeated() {
     assert!(hashes.iter().all(|hash| *hash == hashes[0]), "{hashes:?}");
 }
 
+/// On a CPU the host orders the contacts.
+#[test]
+fn a_cpu_has_no_stage_that_orders() {
+    let body = scene::scene("cloth-ball", 500, 3).expect("a scene");
+    let mut session = Session::new(engine(), vec![body], Query::of(Motion::Continuous)).expect("a session");
+    assert_eq!(session.repeat_stage(Stage::Order, 4).expect("no runs"), Vec::<f64>::new());
+    assert_eq!(session.detect().expect("an answer").stages.order, 0.0);
+}
+
 #[test]
 fn nothing_has_no_stages() {
     let empty = nearmiss::Mesh::new("empty", nearmiss::mesh::Positions::F32(Vec::new()), Vec::new());
@@ -119,12 +128,12 @@ fn the_program_repeats_one_stage() {
         String::from_utf8(output.stderr).expect("text")
     };
     let plain = summary(&[]);
-    for stage in ["construct", "fit", "refit", "traverse", "narrow"] {
+    for stage in ["construct", "fit", "refit", "traverse", "narrow", "order"] {
         let only = summary(&["--repeat", "3", "--only", stage]);
         assert_eq!(only["hash"], plain["hash"], "{stage}");
         assert!(only["ms"][stage].as_f64().expect("ms") >= 0.0, "{stage}");
     }
     assert!(refused(&["--only", "traverse"]).contains("--repeat"));
     let unknown = refused(&["--repeat", "3", "--only", "sort"]);
-    assert!(unknown.contains("construct, fit, refit, traverse, narrow"), "{unknown}");
+    assert!(unknown.contains("construct, fit, refit, traverse, narrow, order"), "{unknown}");
 }

@@ -135,7 +135,7 @@ fn human(summary: &Summary, contacts: &Contacts) -> String {
     }
     let _ = writeln!(
         text,
-        "  ms: construct {:.3}, fit {:.3}, refit {:.3}, traverse {:.3}{}, narrow {:.3}; a frame {:.3}, waited for {:.3}",
+        "  ms: construct {:.3}, fit {:.3}, refit {:.3}, traverse {:.3}{}, narrow {:.3}; a frame {:.3}{}, waited for {:.3}",
         ms.construct,
         ms.fit,
         ms.refit,
@@ -143,6 +143,7 @@ fn human(summary: &Summary, contacts: &Contacts) -> String {
         if ms.balance > 0.0 { format!(", balance {:.3}", ms.balance) } else { String::new() },
         ms.narrow,
         ms.total,
+        if ms.order > 0.0 { format!(", ordering {:.3}", ms.order) } else { String::new() },
         ms.wall
     );
     if !matches!(summary.traversal, Traversal::PerLeaf { .. }) {

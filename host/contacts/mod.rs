@@ -8,9 +8,9 @@ pub use degraded::Degraded;
 pub use summary::Summary;
 pub use triangles::{TriangleContact, triangle_contacts};
 
-use crate::pipeline::{Found, Layout, Stages};
+use crate::pipeline::{Found, Hits, Layout, Stages};
 use crate::query::{Motion, Query};
-use nearmiss_kernels::abi::{Hit, Pair, ROUNDS, counter};
+use nearmiss_kernels::abi::{Pair, ROUNDS, counter};
 use nearmiss_kernels::prim::inclusion::Verdict;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -96,7 +96,8 @@ pub struct Contacts {
     pub survivors_vf_ee: [u64; 2],
     /// Candidates that f32 left to f64: vertex/face, edge/edge.
     pub escalated_vf_ee: [u64; 2],
-    /// Candidates whose roots could not be isolated: vertex/face, edge/edge.
+    /// Candidates whose roots could not be isolated; with a separation, those that the first step did not decide: vertex/face,
+    /// edge/edge.
     pub open_vf_ee: [u64; 2],
     /// Of these, those that were cut into slices: vertex/face, edge/edge.
     pub sliced_vf_ee: [u64; 2],
@@ -210,7 +211,9 @@ impl Contacts {
             Motion::Discrete => {
                 let listed: &[Pair] = found.pairs.as_deref().unwrap_or_default();
                 let mut pairs: Vec<_> = listed.par_iter().map(|p| [p.a, p.b - second.triangle]).collect();
-                pairs.par_sort_unstable();
+                if !found.ordered {
+                    pairs.par_sort_unstable();
+                }
                 Answer::Pairs(pairs)
             }
             Motion::Continuous => {
@@ -219,10 +222,7 @@ impl Contacts {
                     let status = Status::of(certified, verdict);
                     Contact { kind, a, b, toi: verdict.toi, toi_hi: verdict.toi_hi, status }
                 };
-                let [of_vf, of_ee]: [&[Hit]; 2] = match &found.hits {
-                    Some([vf, ee]) => [vf, ee],
-                    None => [&[], &[]],
-                };
+                let [of_vf, of_ee] = found.hits.as_ref().map_or([&[][..]; 2], Hits::each);
                 let vf = of_vf.par_iter().map(|hit| {
                     if layout.bodies() == 2 && hit.a >= second.vertex {
                         contact(Kind::Fv, hit.b, hit.a - second.vertex, &hit.verdict)
@@ -233,7 +233,9 @@ impl Contacts {
                 let ee =
                     of_ee.par_iter().map(|hit| contact(Kind::Ee, hit.a, hit.b - second.edge, &hit.verdict));
                 let mut contacts: Vec<_> = vf.chain(ee).collect();
-                contacts.par_sort_unstable_by_key(|c| (c.kind, c.a, c.b));
+                if !found.ordered {
+                    contacts.par_sort_unstable_by_key(|c| (c.kind, c.a, c.b));
+                }
                 Answer::Contacts(contacts)
             }
         };

@@ -106,21 +106,21 @@ mod tests {
     use super::*;
     use crate::device::emulator::{Emulator, Mode};
     use nearmiss_kernels::abi::SortArgs;
-    use nearmiss_kernels::entry::construct_sort;
+    use nearmiss_kernels::entry::sort_pass;
 
     #[test]
     fn nothing_is_launched_while_the_host_looks() {
         let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
         let buffer = device.upload(&[1u64, 2, 3]).expect("memory");
         let args: SortArgs = bytemuck::Zeroable::zeroed();
-        let launch = || device.launch::<construct_sort>(1, &args);
+        let launch = || device.launch::<sort_pass>(1, &args);
         {
             let [one, other] = [2, 3].map(|len| buffer.view(len).expect("a view"));
             device.read_ahead(&[buffer.ahead(9)]).expect("as many as there are");
             assert_eq!((&*one, &*other), (&[1, 2][..], &[1, 2, 3][..]));
             drop(one);
             let error = launch().expect_err("the other is still there");
-            assert!(matches!(&error, Error::Bug { what } if what.contains("construct_sort")), "{error}");
+            assert!(matches!(&error, Error::Bug { what } if what.contains("sort_pass")), "{error}");
         }
         assert_eq!(device.launches(), 0);
         assert_eq!(buffer.view(0).expect("a view").len(), 0);

@@ -2,10 +2,12 @@
 
 mod found;
 #[cfg(test)]
+mod in_order;
+#[cfg(test)]
 mod near;
 mod repeat;
 
-pub use found::Found;
+pub use found::{Found, Hits};
 
 use super::blunt::Blunt;
 use super::layout::Layout;
@@ -169,6 +171,8 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
             }
             Stage::Traverse => self.step(Step::Traverse),
             Stage::Narrow => self.narrow.steps().iter().try_for_each(|&step| self.step(step)),
+            Stage::Order if self.narrow.orders() => self.step(Step::Order),
+            Stage::Order => Ok(()),
         }
     }
 
@@ -225,10 +229,10 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
 
     /// Whether a list of any step had too little room.
     fn is_short(&mut self, counters: &[u64]) -> bool {
-        let steps = self.narrow.steps();
+        let steps = self.narrow.steps().iter().chain(&[Step::Order]);
         self.pairs.is_short(counters)
             || self.walk.lists().iter().any(|list| list.is_short(counters))
-            || steps.iter().any(|&step| self.narrow.lists(step).iter().any(|list| list.is_short(counters)))
+            || steps.clone().any(|&step| self.narrow.lists(step).iter().any(|list| list.is_short(counters)))
     }
 
     fn traverse(&mut self) -> Result<(), Error> {
@@ -293,6 +297,8 @@ impl<R: Precision, V: Kernels> Frames for Corridor<R, V> {
             let traversed = self.device.mark()?;
             self.run(Stage::Narrow)?;
             let end = self.device.mark()?;
+            self.run(Stage::Order)?;
+            let ordered = self.device.mark()?;
             self.read_ahead()?;
             let counters = self.counters.read(counter::COUNT as usize)?;
             if self.is_short(&counters) {
@@ -311,6 +317,7 @@ impl<R: Precision, V: Kernels> Frames for Corridor<R, V> {
                 traverse: begun.to(&traversed)? - balance,
                 balance,
                 narrow: traversed.to(&end)?,
+                order: if self.narrow.orders() { end.to(&ordered)? } else { 0.0 },
                 total: start.to(&end)?,
                 wall: 0.0,
             };

@@ -5,6 +5,7 @@ mod corridor;
 pub(crate) mod enclose;
 mod layout;
 pub(crate) mod narrow;
+mod order;
 pub(crate) mod precision;
 pub(crate) mod room;
 mod sorter;
@@ -15,7 +16,7 @@ mod treelets;
 pub(crate) mod volumes;
 mod walk;
 
-pub(crate) use corridor::Found;
+pub(crate) use corridor::{Found, Hits};
 pub use layout::{Layout, Offsets};
 pub use timing::{Stage, Stages};
 pub(crate) use tolerance::{mean_side, of_edges};
@@ -197,13 +198,14 @@ impl Session {
 
     /// Runs one stage of this frame `times` times, on the device alone, and gives each run's milliseconds: for profilers,
     /// and for figures of one stage. What the stage needs runs before, once, where it has not yet: the leaves' volumes for
-    /// [`Stage::Refit`], a whole frame for [`Stage::Traverse`] and [`Stage::Narrow`]. The next [`Session::detect`] answers
-    /// as it would have. A body without triangles has no stages: no runs.
+    /// [`Stage::Refit`], a whole frame for [`Stage::Traverse`], [`Stage::Narrow`] and
+    /// [`Stage::Order`]. The next [`Session::detect`] answers
+    /// as it would have. A body without triangles has no stages, and a CPU orders nothing: no runs.
     ///
     /// # Errors
     /// Those of the device.
     pub fn repeat_stage(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
-        if !self.answered && matches!(stage, Stage::Traverse | Stage::Narrow) {
+        if !self.answered && matches!(stage, Stage::Traverse | Stage::Narrow | Stage::Order) {
             self.detect()?;
         }
         let answered = self.answered;

@@ -6,6 +6,7 @@ mod rungs;
 pub use continuous::{Continuous, Rooms};
 
 use super::layout::Layout;
+use super::order::Order;
 use super::precision::Precision;
 use super::room::{Growing, List};
 use crate::device::Device;
@@ -27,6 +28,8 @@ pub enum Step {
     Reject,
     /// Contacts in motion.
     Solve,
+    /// Contacts in canonical order.
+    Order,
 }
 
 impl Step {
@@ -38,6 +41,7 @@ impl Step {
             Step::Sift => "sift",
             Step::Reject => "reject",
             Step::Solve => "solve",
+            Step::Order => "order",
         }
     }
 }
@@ -66,6 +70,8 @@ pub enum Narrow {
         contacts: List<Pair>,
         /// Pairs that each filter left to the next, the last one to exact signs; of the exact solver alone.
         undecided: Vec<List<Pair>>,
+        /// The contacts in order, where the device orders them.
+        ordered: Option<Box<Order<Pair>>>,
     },
     /// Features in motion.
     Continuous(Box<Continuous>),
@@ -93,7 +99,9 @@ impl Narrow {
                     undecided.push(List::new(device, "pairs undecided in f64", at, few / 4)?);
                 }
             }
-            return Ok(Narrow::Discrete { contacts, undecided });
+            let order = || Order::new(device, layout, u32::MAX, few / 4).map(Box::new);
+            let ordered = device.is_card().then(order).transpose()?;
+            return Ok(Narrow::Discrete { contacts, undecided, ordered });
         }
         let rooms = Rooms {
             candidates: [room, 2 * room],
@@ -104,7 +112,7 @@ impl Narrow {
         Ok(Narrow::Continuous(Box::new(Continuous::new(device, layout, query, rooms)?)))
     }
 
-    /// The steps of this query, in their order.
+    /// The steps of the stage, in their order; [`Step::Order`] is a stage of its own.
     pub fn steps(&self) -> &'static [Step] {
         match self {
             Narrow::Discrete { .. } => &[Step::Decide],
@@ -112,13 +120,22 @@ impl Narrow {
         }
     }
 
+    /// Whether the device puts contacts into order.
+    pub fn orders(&self) -> bool {
+        match self {
+            Narrow::Discrete { ordered, .. } => ordered.is_some(),
+            Narrow::Continuous(c) => c.ordered.is_some(),
+        }
+    }
+
     /// The lists that a step fills.
     pub fn lists(&mut self, step: Step) -> Vec<&mut dyn Growing> {
         match (self, step) {
-            (Narrow::Discrete { contacts, undecided }, Step::Decide) => {
+            (Narrow::Discrete { contacts, undecided, .. }, Step::Decide) => {
                 let undecided = undecided.iter_mut().map(|list| list as &mut dyn Growing);
                 std::iter::once(contacts as &mut dyn Growing).chain(undecided).collect()
             }
+            (Narrow::Discrete { ordered: Some(order), .. }, Step::Order) => vec![&mut order.list],
             (Narrow::Continuous(c), step) => c.lists(step),
             _ => Vec::new(),
         }
@@ -141,8 +158,15 @@ impl Narrow {
     /// Those of the device.
     pub fn run<R: Precision>(&mut self, step: Step, given: &Given<R>) -> Result<(), Error> {
         match (self, step) {
-            (Narrow::Discrete { contacts, undecided }, Step::Decide) => decide(contacts, undecided, given),
-            (Narrow::Continuous(c), Step::Sift | Step::Reject | Step::Solve) => c.run(step, given),
+            (Narrow::Discrete { contacts, undecided, .. }, Step::Decide) => {
+                decide(contacts, undecided, given)
+            }
+            (Narrow::Discrete { contacts, ordered: Some(order), .. }, Step::Order) => {
+                order.run(given.device, contacts, None, given.counters)
+            }
+            (Narrow::Continuous(c), Step::Sift | Step::Reject | Step::Solve | Step::Order) => {
+                c.run(step, given)
+            }
             _ => Err(Error::Bug { what: format!("the step {step:?} in another kind of query") }),
         }
     }

@@ -61,10 +61,12 @@ pub trait Precision: Real {
     type Settle: Entry<Args = RungArgs<Self>>;
     /// What is left, in slices.
     type Slice: Entry<Args = RungArgs<Self>>;
-    /// A separation in f32.
-    type Separate: Entry<Args = RungArgs<Self>>;
-    /// What that leaves, in f64.
-    type SeparateRest: Entry<Args = RungArgs<Self>>;
+    /// The first step to a separation, in f32.
+    type SeparateFirst: Entry<Args = RungArgs<Self>>;
+    /// A separation, in f32.
+    type Separate32: Entry<Args = RungArgs<Self>>;
+    /// A separation, in f64.
+    type Separate64: Entry<Args = RungArgs<Self>>;
 
     /// Positions in this precision, exactly: f32 is only asked for where all bodies are f32.
     fn points(positions: &Positions) -> impl Iterator<Item = Vec3<Self>>;
@@ -96,8 +98,9 @@ impl Precision for f32 {
     type Isolate64 = entry::narrow_isolate_f32_f64;
     type Settle = entry::narrow_settle_f32;
     type Slice = entry::narrow_slice_f32;
-    type Separate = entry::narrow_separate_f32;
-    type SeparateRest = entry::narrow_separate_rest_f32;
+    type SeparateFirst = entry::narrow_separate_first_f32;
+    type Separate32 = entry::narrow_separate_f32_f32;
+    type Separate64 = entry::narrow_separate_f32_f64;
 
     fn points(positions: &Positions) -> impl Iterator<Item = Vec3<f32>> {
         let (singles, doubles): (&[[f32; 3]], &[[f64; 3]]) = match positions {
@@ -134,8 +137,9 @@ impl Precision for f64 {
     type Isolate64 = entry::narrow_isolate_f64_f64;
     type Settle = entry::narrow_settle_f64;
     type Slice = entry::narrow_slice_f64;
-    type Separate = entry::narrow_separate_f64;
-    type SeparateRest = entry::narrow_separate_rest_f64;
+    type SeparateFirst = entry::narrow_separate_first_f64;
+    type Separate32 = entry::narrow_separate_f64_f32;
+    type Separate64 = entry::narrow_separate_f64_f64;
 
     fn points(positions: &Positions) -> impl Iterator<Item = Vec3<f64>> {
         let (singles, doubles): (&[[f32; 3]], &[[f64; 3]]) = match positions {

@@ -14,6 +14,8 @@ pub enum Stage {
     Traverse,
     /// Contacts.
     Narrow,
+    /// Contacts in canonical order, on a card; a CPU has none: the host orders them.
+    Order,
 }
 
 /// Milliseconds of each stage of a frame, on the device's own clock, and of the caller's wait. `construct` is that of the
@@ -32,10 +34,12 @@ pub struct Stages {
     pub balance: f64,
     /// Contacts.
     pub narrow: f64,
-    /// From positions to contacts, runs that were repeated for want of room included, construction not.
+    /// Contacts in canonical order, on a card. Zero where the host orders them, and where there is nothing to order.
+    pub order: f64,
+    /// From positions to contacts, runs that were repeated for want of room included, construction and ordering not.
     pub total: f64,
-    /// What the caller of [`Session::detect`](crate::Session::detect) waits for: `total`, launching, reading the contacts and
-    /// bringing them into order, on the host's clock.
+    /// What the caller of [`Session::detect`](crate::Session::detect) waits for: `total`, ordering, launching, and reading the
+    /// contacts, on the host's clock.
     pub wall: f64,
 }
 
@@ -49,6 +53,7 @@ impl Stages {
             traverse: of(|s| s.traverse),
             balance: of(|s| s.balance),
             narrow: of(|s| s.narrow),
+            order: of(|s| s.order),
             total: of(|s| s.total),
             wall: of(|s| s.wall),
         }
@@ -62,6 +67,7 @@ impl Stages {
             Stage::Refit => &mut self.refit,
             Stage::Traverse => &mut self.traverse,
             Stage::Narrow => &mut self.narrow,
+            Stage::Order => &mut self.order,
         }
     }
 }

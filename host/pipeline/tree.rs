@@ -116,7 +116,7 @@ impl Tree {
         let lanes = n.div_ceil(morton::TOGETHER as usize);
         device.launch::<R::Bounds>(device.blocks_striding::<R::Bounds>(lanes), &morton)?;
         device.launch::<R::Morton>(device.blocks_striding::<R::Morton>(n), &morton)?;
-        sort::<entry::construct_sort>(device, s.items.each_ref(), self.count, counts, &BYTES)?;
+        sort(device, s.items.each_ref(), (self.count, Span::EMPTY), counts, &BYTES)?;
         let args = TreeArgs {
             items: s.items[0].span(),
             inner: s.inner.span(),

@@ -4,13 +4,14 @@ use crate::abi::*;
 use crate::bv::{Aabb, Linear, Obb};
 use crate::exec::Block;
 use crate::prim::isolate::ladder::SLICES;
+use crate::prim::isolate::separation::{Double, Single};
 use crate::queue::worker;
 use crate::sort;
 use crate::stage::construct::{morton, tree, treelet};
 use crate::stage::narrow::{blunt, climb, discrete, reject, separate, sift, slice, solve};
 use crate::stage::refit::{bottom_up, levels, treelets};
 use crate::stage::traverse::{front, queue, steal};
-use crate::stage::{balance, fit, traverse};
+use crate::stage::{balance, fit, order, traverse};
 use bytemuck::Pod;
 
 /// A kernel as the host knows it.
@@ -86,7 +87,6 @@ kernels! {
     construct_bounds_f64: morton::bounds::<f64, B>, [MortonArgs<f64>], WIDE, morton::shared_bytes(WIDE);
     construct_morton_f32: morton::morton::<f32, B>, [MortonArgs<f32>], WIDE, 0;
     construct_morton_f64: morton::morton::<f64, B>, [MortonArgs<f64>], WIDE, 0;
-    construct_sort: sort::pass, [SortArgs], WIDE, sort::shared_bytes(WIDE);
     construct_tree: tree::tree, [TreeArgs], WIDE, 0;
     construct_depth: tree::depth, [TreeArgs], WIDE, 0;
     construct_places: tree::places, [TreeArgs], WIDE, sort::shared_bytes(WIDE);
@@ -135,10 +135,10 @@ kernels! {
     narrow_wide_f32: discrete::wide, [DiscreteArgs<f32>], NARROW, 0;
     narrow_exact_f32: discrete::exact::<f32, B>, [DiscreteArgs<f32>], NARROW, 0;
     narrow_exact_f64: discrete::exact::<f64, B>, [DiscreteArgs<f64>], NARROW, 0;
-    narrow_sift_f32: sift::sift::<f32, B>, [SiftArgs<f32>], RUNG, 0;
-    narrow_sift_f64: sift::sift::<f64, B>, [SiftArgs<f64>], RUNG, 0;
-    narrow_reject_f32: reject::reject::<f32, B>, [RejectArgs<f32>], WIDE, 0;
-    narrow_reject_f64: reject::reject::<f64, B>, [RejectArgs<f64>], WIDE, 0;
+    narrow_sift_f32: sift::sift::<f32, B>, [SiftArgs<f32>], NARROW, sift::shared_bytes(NARROW);
+    narrow_sift_f64: sift::sift::<f64, B>, [SiftArgs<f64>], NARROW, sift::shared_bytes(NARROW);
+    narrow_reject_f32: reject::reject::<f32, B>, [RejectArgs<f32>], RUNG, 0;
+    narrow_reject_f64: reject::reject::<f64, B>, [RejectArgs<f64>], RUNG, 0;
     narrow_vf_f32_f32: solve::vf::<f32, f32, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_vf_f32_f64: solve::vf::<f32, f64, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_vf_f64_f32: solve::vf::<f64, f32, B>, [SolveArgs<f64>], WIDE, 0;
@@ -157,8 +157,15 @@ kernels! {
     narrow_settle_f64: climb::settle::<f64, B>, [RungArgs<f64>], NARROW, 0;
     narrow_slice_f32: slice::slice::<f32, B>, [RungArgs<f32>], SLICES, slice::SHARED;
     narrow_slice_f64: slice::slice::<f64, B>, [RungArgs<f64>], SLICES, slice::SHARED;
-    narrow_separate_f32: climb::separate::<f32, B>, [RungArgs<f32>], RUNG, 0;
-    narrow_separate_f64: climb::separate::<f64, B>, [RungArgs<f64>], RUNG, 0;
-    narrow_separate_rest_f32: separate::separate::<f32, B>, [RungArgs<f32>], RUNG, separate::SHARED;
-    narrow_separate_rest_f64: separate::separate::<f64, B>, [RungArgs<f64>], RUNG, separate::SHARED;
+    narrow_separate_first_f32: climb::separate_at_once::<f32, B>, [RungArgs<f32>], RUNG, 0;
+    narrow_separate_first_f64: climb::separate_at_once::<f64, B>, [RungArgs<f64>], RUNG, 0;
+    narrow_separate_f32_f32: separate::separate::<f32, Single<3>, Single<4>, B>, [RungArgs<f32>], RUNG, separate::SHARED;
+    narrow_separate_f32_f64: separate::separate::<f32, Double<3>, Double<4>, B>, [RungArgs<f32>], RUNG, separate::SHARED;
+    narrow_separate_f64_f32: separate::separate::<f64, Single<3>, Single<4>, B>, [RungArgs<f64>], RUNG, separate::SHARED;
+    narrow_separate_f64_f64: separate::separate::<f64, Double<3>, Double<4>, B>, [RungArgs<f64>], RUNG, separate::SHARED;
+    order_keys_pair: order::keys::<Pair, B>, [OrderArgs<Pair>], WIDE, 0;
+    order_keys_hit: order::keys::<Hit, B>, [OrderArgs<Hit>], WIDE, 0;
+    sort_pass: sort::pass, [SortArgs], WIDE, sort::shared_bytes(WIDE);
+    order_gather_pair: order::gather::<Pair, B>, [OrderArgs<Pair>], WIDE, 0;
+    order_gather_hit: order::gather::<Hit, B>, [OrderArgs<Hit>], WIDE, 0;
 }

@@ -107,7 +107,7 @@ pub fn starts<B: Block>(b: &mut B, tiles: &Tiles) -> Bins {
 
 /// # Pass: items in the order of one byte; equal bytes keep their order
 /// Launch   a block a tile.
-/// Reads    items, their digits' counts.   Writes   items; the counts of the next byte's digits in the tiles they go to.
+/// Reads    items, their digits' counts; where only the device knows how many items there are, that number.   Writes   items; the counts of the next byte's digits in the tiles they go to.
 /// Before   the counts are complete; those of the next byte are zero.
 /// Room     fixed; cannot run out.
 /// Cost     8 B in, 8 B out and an atomic a key; 512 B a tile and block, summed by each. Three rounds to L2 in a row: items
@@ -115,7 +115,8 @@ pub fn starts<B: Block>(b: &mut B, tiles: &Tiles) -> Bins {
 pub fn pass<B: Block>(b: &mut B, a: &SortArgs) {
     let bins = starts(b, &a.tiles);
     let (tile, lanes) = (b.block(), b.lanes());
-    let count = a.items.len as u32;
+    let room = a.items.len as u32;
+    let count = if a.live.is_empty() { room } else { b.load(a.live, 0).min(room.into()) as u32 };
     let mut items = b.slot([0u64; EACH]);
     let mut places = b.slot([BINS; EACH]);
     let mut at = tile * a.tiles.items;

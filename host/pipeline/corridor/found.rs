@@ -14,8 +14,10 @@ use nearmiss_kernels::abi::{Hit, Pair, counter};
 pub struct Found<'a> {
     /// Triangle pairs, discrete.
     pub pairs: Option<View<'a, Pair>>,
-    /// Contacts in motion: vertex/face, edge/edge.
-    pub hits: Option<[View<'a, Hit>; 2]>,
+    /// Contacts in motion.
+    pub hits: Option<Hits<'a>>,
+    /// Whether pairs or hits are in canonical order already.
+    pub ordered: bool,
     /// The smallest toi, if that was asked for and there is one.
     pub earliest: Option<f64>,
     /// The frame's counters, see [`counter`].
@@ -28,14 +30,39 @@ pub struct Found<'a> {
     pub blunt: Option<Blunt>,
 }
 
+/// Contacts in motion, vertex/face and edge/edge.
+pub enum Hits<'a> {
+    /// A list of each.
+    Lists([View<'a, Hit>; 2]),
+    /// One list, those of vertices first, and how many they are.
+    One(View<'a, Hit>, usize),
+}
+
+impl Hits<'_> {
+    /// Both.
+    pub fn each(&self) -> [&[Hit]; 2] {
+        match self {
+            Hits::Lists([vf, ee]) => [vf, ee],
+            Hits::One(all, vf) => {
+                let (vf, ee) = all.split_at(*vf);
+                [vf, ee]
+            }
+        }
+    }
+}
+
 impl<R: Precision, V: Kernels> Corridor<R, V> {
     /// Brings over with one wait what the end of a frame reads: counters, and as many contacts as the last frame had.
     pub(super) fn read_ahead(&self) -> Result<(), Error> {
         let mut all = vec![self.counters.ahead(counter::COUNT as usize)];
         match &self.narrow {
+            Narrow::Discrete { ordered: Some(order), .. } => all.push(order.list.ahead(&self.last)),
             Narrow::Discrete { contacts, .. } => all.push(contacts.ahead(&self.last)),
             Narrow::Continuous(c) => {
-                all.extend([c.vf_hits.ahead(&self.last), c.ee_hits.ahead(&self.last)]);
+                match &c.ordered {
+                    Some(order) => all.push(order.list.ahead(&self.last)),
+                    None => all.extend([c.vf_hits.ahead(&self.last), c.ee_hits.ahead(&self.last)]),
+                }
                 all.extend(c.earliest.as_ref().map(|earliest| earliest.ahead(1)));
             }
         }
@@ -46,6 +73,7 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
         let mut found = Found {
             pairs: None,
             hits: None,
+            ordered: false,
             earliest: None,
             counters,
             reruns,
@@ -53,10 +81,22 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
             blunt: None,
         };
         match &self.narrow {
-            Narrow::Discrete { contacts, .. } => found.pairs = Some(contacts.view(&found.counters)?),
+            Narrow::Discrete { contacts, ordered, .. } => {
+                let ordered = ordered.as_ref().map(|order| order.view(&found.counters, &[contacts]));
+                let ordered = ordered.transpose()?.flatten();
+                found.ordered = ordered.is_some();
+                found.pairs = Some(ordered.map_or_else(|| contacts.view(&found.counters), Ok)?);
+            }
             Narrow::Continuous(c) => {
                 found.blunt = c.blunt;
-                found.hits = Some([c.vf_hits.view(&found.counters)?, c.ee_hits.view(&found.counters)?]);
+                let lists = [&c.vf_hits, &c.ee_hits];
+                let ordered = c.ordered.as_ref().map(|order| order.view(&found.counters, &lists));
+                let ordered = ordered.transpose()?.flatten();
+                found.ordered = ordered.is_some();
+                found.hits = Some(match ordered {
+                    Some(all) => Hits::One(all, c.vf_hits.demand(&found.counters) as usize),
+                    None => Hits::Lists([c.vf_hits.view(&found.counters)?, c.ee_hits.view(&found.counters)?]),
+                });
                 if let Some(earliest) = &c.earliest {
                     let bits = earliest.read(1)?[0];
                     found.earliest = (bits != u64::MAX).then(|| f64::from_bits(bits));

@@ -24,7 +24,7 @@ fn certain<V: Kernels>(axes: Axes, refit: Refit, told: bool) -> usize {
     }
     corridor.construct().expect("trees");
     let (found, _) = corridor.frame().expect("a frame");
-    found.hits.iter().flatten().flat_map(|hits| hits.iter()).filter(|hit| hit.verdict.is_contact()).count()
+    found.hits.iter().flat_map(Hits::each).flatten().filter(|hit| hit.verdict.is_contact()).count()
 }
 
 #[test]

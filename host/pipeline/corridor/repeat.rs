@@ -2,6 +2,7 @@
 
 use super::{Corridor, Frames};
 use crate::error::Error;
+use crate::pipeline::narrow::Step;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::timing::Stage;
 use crate::pipeline::volumes::Kernels;
@@ -10,7 +11,7 @@ use nearmiss_kernels::abi::counter;
 /// Stages again, on what the last frame left.
 pub trait Again {
     /// Milliseconds of each of `times` runs of a stage. What it reads must be there: volumes of the leaves for `Refit`,
-    /// a whole frame for `Traverse` and `Narrow`. See [`crate::pipeline::Session::repeat_stage`].
+    /// a whole frame for `Traverse`, `Narrow` and `Order`. See [`crate::pipeline::Session::repeat_stage`].
     ///
     /// # Errors
     /// Those of the device.
@@ -28,6 +29,9 @@ impl<R: Precision, V: Kernels> Again for Corridor<R, V> {
         if stage == Stage::Construct {
             return (0..times).map(|_| self.construct()).collect();
         }
+        if stage == Stage::Order && !self.narrow.orders() {
+            return Ok(Vec::new());
+        }
         let counters = self.counters_before(stage);
         if stage == Stage::Traverse {
             // A walk that goes on from the frame's own end may need other lists: they grow outside of the clock.
@@ -38,7 +42,7 @@ impl<R: Precision, V: Kernels> Again for Corridor<R, V> {
         }
         let mut ms = Vec::new();
         for _ in 0..times {
-            if matches!(stage, Stage::Traverse | Stage::Narrow) {
+            if matches!(stage, Stage::Traverse | Stage::Narrow | Stage::Order) {
                 self.counters.write(&counters)?;
             }
             let start = self.device.mark()?;
@@ -65,9 +69,10 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
     /// The counters that a stage begins with: those of the last frame, without what the stage itself counted.
     fn counters_before(&mut self, stage: Stage) -> Vec<u64> {
         let mut counters = vec![0; counter::COUNT as usize];
-        if stage == Stage::Narrow {
+        if matches!(stage, Stage::Narrow | Stage::Order) {
             counters.clone_from(&self.last);
-            for &step in self.narrow.steps() {
+            let steps = if stage == Stage::Order { &[] } else { self.narrow.steps() };
+            for &step in steps.iter().chain(&[Step::Order]) {
                 self.narrow.lists(step).iter().for_each(|list| counters[list.counter() as usize] = 0);
             }
         }

@@ -6,6 +6,7 @@ use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::blunt::{self, Blunt};
 use crate::pipeline::layout::Layout;
+use crate::pipeline::order::{self, Order};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::room::{Growing, List, Tally};
 use crate::query::{Motion, Query, Solver};
@@ -44,6 +45,8 @@ pub struct Continuous {
     pub blunt: Option<Blunt>,
     /// The smallest toi, where only that is asked for.
     pub earliest: Option<Buffer<u64>>,
+    /// All contacts in order, where the device orders them.
+    pub ordered: Option<Order<Hit>>,
 }
 
 impl Continuous {
@@ -76,6 +79,9 @@ impl Continuous {
                 .map(Tally),
             blunt: None,
             earliest: earliest.then(|| device.buffer(1)).transpose()?,
+            ordered: (device.is_card() && !earliest)
+                .then(|| Order::new(device, layout, order::turn(layout), hits[0] / 4))
+                .transpose()?,
         })
     }
 
@@ -100,6 +106,7 @@ impl Continuous {
                 lists.extend(self.rungs.lists());
                 lists
             }
+            Step::Order => self.ordered.iter_mut().map(|order| &mut order.list as &mut dyn Growing).collect(),
             Step::Traverse | Step::Decide => Vec::new(),
         }
     }
@@ -144,6 +151,7 @@ impl Continuous {
         match step {
             Step::Sift => self.sift(given),
             Step::Reject => self.reject(given),
+            Step::Order => self.order(given),
             _ => self.solve(given),
         }
     }
@@ -176,6 +184,13 @@ impl Continuous {
             params: given.query.params(),
         };
         launch_striding::<R::Reject>(given.device, vf.room() + ee.room(), &args)
+    }
+
+    fn order<R: Precision>(&mut self, given: &Given<R>) -> Result<(), Error> {
+        match &mut self.ordered {
+            None => Ok(()),
+            Some(order) => order.run(given.device, &self.vf_hits, Some(&self.ee_hits), given.counters),
+        }
     }
 
     fn solve<R: Precision>(&mut self, given: &Given<R>) -> Result<(), Error> {

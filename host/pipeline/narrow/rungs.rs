@@ -20,17 +20,19 @@ enum Rung {
     Settle,
     /// The window in slices.
     Slice,
+    /// The first step to a separation, in f32.
+    SeparateFirst,
     /// A separation, in f32.
-    Separate,
+    Separate32,
     /// A separation, in f64.
-    SeparateRest,
+    Separate64,
 }
 
 /// The rungs of a query.
 fn rungs(query: &Query) -> &'static [Rung] {
     match (query.solver(), query.is_apart()) {
-        (Solver::CertifiedF64, true) => &[Rung::SeparateRest],
-        (_, true) => &[Rung::Separate, Rung::SeparateRest],
+        (Solver::CertifiedF64, true) => &[Rung::Separate64],
+        (_, true) => &[Rung::SeparateFirst, Rung::Separate32, Rung::Separate64],
         (Solver::CertifiedF32, false) => &[Rung::Isolate32, Rung::Settle],
         (Solver::CertifiedF64, false) => &[Rung::Isolate64, Rung::Settle, Rung::Slice],
         _ => &[Rung::Isolate32, Rung::Isolate64, Rung::Settle, Rung::Slice],
@@ -44,8 +46,8 @@ const LEFT: [[(&str, &str, u32); 2]; 3] = [
         ("narrow: ee for f64", "edge/edge pairs for f64", counter::EE_ESCALATED),
     ],
     [
-        ("narrow: vf not isolated", "vertex/face pairs not isolated", counter::VF_OPEN),
-        ("narrow: ee not isolated", "edge/edge pairs not isolated", counter::EE_OPEN),
+        ("narrow: vf left open", "vertex/face pairs left open", counter::VF_OPEN),
+        ("narrow: ee left open", "edge/edge pairs left open", counter::EE_OPEN),
     ],
     [
         ("narrow: vf for slices", "vertex/face pairs for slices", counter::VF_HARD),
@@ -57,9 +59,9 @@ impl Rung {
     /// Which of the lists its rest goes to.
     fn left(self) -> usize {
         match self {
-            Rung::Isolate32 | Rung::Separate => 0,
-            Rung::Isolate64 => 1,
-            Rung::Settle | Rung::Slice | Rung::SeparateRest => 2,
+            Rung::Isolate32 | Rung::Separate32 => 0,
+            Rung::Isolate64 | Rung::SeparateFirst => 1,
+            Rung::Settle | Rung::Slice | Rung::Separate64 => 2,
         }
     }
 }
@@ -153,12 +155,15 @@ fn launch<R: Precision>(rung: Rung, device: &Device, room: usize, args: &RungArg
         Rung::Settle => launch_striding::<R::Settle>(device, room, args),
         // A block a pair; there are few.
         Rung::Slice => {
-            let lanes = room.saturating_mul(R::Slice::LANES as usize);
-            device.launch::<R::Slice>(device.blocks_at_once::<R::Slice>(lanes)?, args)
+            launch_at_once::<R::Slice>(device, room.saturating_mul(R::Slice::LANES as usize), args)
         }
-        Rung::Separate => launch_striding::<R::Separate>(device, room, args),
-        Rung::SeparateRest => {
-            device.launch::<R::SeparateRest>(device.blocks_at_once::<R::SeparateRest>(room)?, args)
-        }
+        Rung::SeparateFirst => launch_striding::<R::SeparateFirst>(device, room, args),
+        Rung::Separate32 => launch_at_once::<R::Separate32>(device, room, args),
+        Rung::Separate64 => launch_at_once::<R::Separate64>(device, room, args),
     }
+}
+
+/// Launches no more blocks than run at once: of kernels for which a few pairs are left, of many registers each.
+fn launch_at_once<E: Entry>(device: &Device, room: usize, args: &E::Args) -> Result<(), Error> {
+    device.launch::<E>(device.blocks_at_once::<E>(room)?, args)
 }

@@ -62,12 +62,14 @@ arguments! {
         /// How many items a tile has.
         items: u32,
     }
-    /// `construct_sort`, `order_sort`: one pass of the radix sort, over one byte of the items.
+    /// `sort_pass`: one pass of the radix sort, over one byte of the items.
     SortArgs {
         /// Items in.
         items: Span<u64>,
         /// Items out.
         out: Span<u64>,
+        /// How many items there are, where only the device knows; else empty: as many as there is room for.
+        live: Span<u64>,
         /// Counts of this byte.
         tiles: Tiles,
         /// Counts of the byte of the next pass; none for the last one.
@@ -344,8 +346,10 @@ pub mod counter {
     pub const BLUNT: u32 = ENDS + 19;
     /// Pairs that the discrete filter could not decide in f64 either.
     pub const UNDECIDED_WIDE: u32 = ENDS + 20;
+    /// Contacts that were put into order.
+    pub const ORDERED: u32 = ENDS + 21;
     /// How many counters there are.
-    pub const COUNT: u32 = ENDS + 21;
+    pub const COUNT: u32 = ENDS + 22;
 }
 /// Rounds of the traversal that may spill; one more, without a budget, ends it.
 pub const ROUNDS: u32 = 4;

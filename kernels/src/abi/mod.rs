@@ -5,6 +5,7 @@
 #[macro_use]
 mod args;
 mod narrow;
+mod order;
 mod queues;
 mod record;
 mod span;
@@ -12,6 +13,7 @@ pub mod stamp;
 
 pub use args::*;
 pub use narrow::*;
+pub use order::*;
 pub use queues::*;
 pub use record::*;
 pub use span::Span;

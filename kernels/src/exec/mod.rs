@@ -132,6 +132,10 @@ pub trait Block {
     /// It orders nothing between blocks, even where each lane has called [`Lane::fence`] in the phase before: a fence
     /// speaks for the atomics of its own lane, and here only lane 0 has one. [`Block::ticket`] does order.
     fn reserve(&mut self, counter: Span<u64>, i: u32, count: u64) -> u64;
+    /// [`Block::reserve`] of two counters, in the time of one.
+    fn reserve_both(&mut self, counters: Span<u64>, [i, j]: [u32; 2], [count, other]: [u64; 2]) -> [u64; 2] {
+        [self.reserve(counters, i, count), self.reserve(counters, j, other)]
+    }
     /// Adds one to a counter once for the whole block, and orders it: what all lanes of all blocks that drew smaller
     /// tickets gave before they drew, the lanes of this block may take. The block that draws the last ticket knows
     /// that all others are past theirs. Lanes need no fence for it. Cost: an atomic and two fences of one lane.

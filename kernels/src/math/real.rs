@@ -2,6 +2,7 @@
 
 use super::root::{sqrt32, sqrt64};
 use super::tolerance::{Tolerance, U32, U64};
+use crate::exec::ptx::{greater32, lesser32};
 use bytemuck::Pod;
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
@@ -44,6 +45,8 @@ pub trait Real:
     fn wide(self) -> f64;
     /// The magnitude.
     fn abs(self) -> Self;
+    /// In bit 31 the sign: set below zero, and of -0.
+    fn sign(self) -> u32;
     /// The square root, correctly rounded; of `self >= 0` only.
     fn sqrt(self) -> Self;
     /// Sign, integer mantissa and exponent; of finite numbers only. Exact, in integer operations.
@@ -59,6 +62,16 @@ pub trait Real:
     #[inline]
     fn max(self, o: Self) -> Self {
         if o > self { o } else { self }
+    }
+    /// As [`Real::min`], but of two zeros either, as is quickest on the machine: where nothing hangs on the sign of a zero.
+    #[inline]
+    fn lesser(self, o: Self) -> Self {
+        self.min(o)
+    }
+    /// As [`Real::max`], but of two zeros either.
+    #[inline]
+    fn greater(self, o: Self) -> Self {
+        self.max(o)
     }
 }
 
@@ -78,6 +91,18 @@ impl Real for f32 {
     #[inline]
     fn abs(self) -> f32 {
         f32::abs(self)
+    }
+    #[inline]
+    fn sign(self) -> u32 {
+        self.to_bits()
+    }
+    #[inline]
+    fn lesser(self, o: f32) -> f32 {
+        lesser32(self, o)
+    }
+    #[inline]
+    fn greater(self, o: f32) -> f32 {
+        greater32(self, o)
     }
     #[inline]
     fn sqrt(self) -> f32 {
@@ -110,6 +135,10 @@ impl Real for f64 {
     #[inline]
     fn abs(self) -> f64 {
         f64::abs(self)
+    }
+    #[inline]
+    fn sign(self) -> u32 {
+        (self.to_bits() >> 32) as u32
     }
     #[inline]
     fn sqrt(self) -> f64 {

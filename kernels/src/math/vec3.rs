@@ -44,6 +44,16 @@ impl<R: Real> Vec3<R> {
     pub fn max(self, o: Self) -> Self {
         Vec3([self[0].max(o[0]), self[1].max(o[1]), self[2].max(o[2])])
     }
+    /// The component-wise [`Real::lesser`].
+    #[inline]
+    pub fn lesser(self, o: Self) -> Self {
+        Vec3([self[0].lesser(o[0]), self[1].lesser(o[1]), self[2].lesser(o[2])])
+    }
+    /// The component-wise [`Real::greater`].
+    #[inline]
+    pub fn greater(self, o: Self) -> Self {
+        Vec3([self[0].greater(o[0]), self[1].greater(o[1]), self[2].greater(o[2])])
+    }
     /// Rounded to f32; f64 too large for it becomes infinite.
     #[inline]
     pub fn narrow(self) -> Vec3<f32> {

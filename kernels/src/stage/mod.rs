@@ -8,6 +8,7 @@
 //! | [`traverse`] | the tree (or two) | candidates: triangle pairs |
 //! | [`balance`] | the traversal's queues of work | the same units, as many in each |
 //! | [`narrow`] | candidates, positions | contacts |
+//! | [`order`] | contacts | the same in canonical order, on a card |
 //!
 //! No stage calls another; they meet in memory, through [`crate::abi`].
 
@@ -15,5 +16,6 @@ pub mod balance;
 pub mod construct;
 pub mod fit;
 pub mod narrow;
+pub mod order;
 pub mod refit;
 pub mod traverse;

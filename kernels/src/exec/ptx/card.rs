@@ -4,7 +4,7 @@ use super::coherent::{compare_and_swap, fence, load_coherent, store_coherent};
 use super::raw::{
     BROADCAST, address, atomic, barrier_or, element, load_global, load_shared32, load_shared64, load_word,
     match_any, scratch_address, shuffle_up, store_shared32, store_shared64, store_word, sync_threads,
-    sync_warp, warp_any,
+    sync_warp, warp_any, warp_sum,
 };
 use crate::abi::Span;
 use crate::exec::{BINS, Block, Lane, Shared, Slot, WARP, Word};
@@ -256,13 +256,12 @@ impl Block for Card {
             store_shared32(scratch_address(4 * warp), sum);
         }
         sync_threads();
-        let (mut before, mut total) = (0, 0);
-        for w in 0..self.lanes().div_ceil(WARP) {
-            if w == warp {
-                before = total;
-            }
-            total += load_shared32(scratch_address(4 * w));
-        }
+        // A lane for each of the warps, 32 at most.
+        let there = lane < self.lanes().div_ceil(WARP);
+        let of_warp = if there { load_shared32(scratch_address(4 * lane)) } else { 0 };
+        sync_warp();
+        let before = warp_sum(if lane < warp { of_warp } else { 0 });
+        let total = warp_sum(of_warp);
         sync_threads();
         values.0 = before + sum - values.0;
         total
@@ -273,6 +272,24 @@ impl Block for Card {
             return 0;
         }
         self.broadcast(|| self.lane.fetch_add(counter, i, count))
+    }
+    #[inline(always)]
+    fn reserve_both(&mut self, counters: Span<u64>, at: [u32; 2], counts: [u64; 2]) -> [u64; 2] {
+        if counts[0] | counts[1] == 0 {
+            return [0; 2];
+        }
+        let lane = self.lane.lane;
+        sync_warp();
+        // A lane each.
+        if lane < 2 {
+            let (at, count) = if lane == 0 { (at[0], counts[0]) } else { (at[1], counts[1]) };
+            let start = if count > 0 { self.lane.fetch_add(counters, at, count) } else { 0 };
+            store_shared64(scratch_address(BROADCAST + 8 * lane), start);
+        }
+        sync_threads();
+        let starts = [0, 8].map(|other| load_shared64(scratch_address(BROADCAST + other)));
+        sync_threads();
+        starts
     }
     #[inline(always)]
     fn ticket(&mut self, counter: Span<u64>, i: u32) -> u64 {

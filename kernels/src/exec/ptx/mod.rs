@@ -11,9 +11,13 @@ mod raw;
 
 #[cfg(target_arch = "nvptx64")]
 pub use card::Card;
-/// The square root, correctly rounded on every machine.
+/// The smaller and the larger of two finite numbers, of two zeros either; and the square root, correctly rounded on every machine.
 #[cfg(target_arch = "nvptx64")]
-pub use raw::{sqrt32, sqrt64};
+pub use raw::{greater32, lesser32, sqrt32, sqrt64};
 
+#[cfg(not(target_arch = "nvptx64"))]
+mod host;
+#[cfg(not(target_arch = "nvptx64"))]
+pub use host::{greater32, lesser32};
 #[cfg(not(target_arch = "nvptx64"))]
 pub use libm::{sqrt as sqrt64, sqrtf as sqrt32};

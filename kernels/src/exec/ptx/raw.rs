@@ -27,10 +27,21 @@ unsafe extern "C" {
 const ALL: u32 = u32::MAX;
 
 global_asm!(".extern .shared .align 16 .b8 nearmiss_shared[];");
-// 32 warp sums and one broadcast value.
+// 32 warp sums and two broadcast values.
 global_asm!(".shared .align 16 .b8 nearmiss_scratch[144];");
-/// Where the broadcast value lies in the scratch words, in bytes.
+/// Where the broadcast values lie in the scratch words, in bytes.
 pub const BROADCAST: u32 = 128;
+
+/// The smaller of two finite numbers; of two zeros the negative one. One instruction.
+#[inline(always)]
+pub fn lesser32(a: f32, b: f32) -> f32 {
+    f32::min(a, b)
+}
+/// The larger of two finite numbers; of two zeros the positive one. One instruction.
+#[inline(always)]
+pub fn greater32(a: f32, b: f32) -> f32 {
+    f32::max(a, b)
+}
 
 /// The square root of an f32.
 pub fn sqrt32(x: f32) -> f32 {
@@ -142,6 +153,17 @@ pub fn address<T: Word>(words: Shared<T>, i: u32) -> u32 {
 pub fn shuffle_up(v: u32, delta: u32) -> u32 {
     // SAFETY: called by all threads of the warp.
     unsafe { shfl_up(ALL, v, delta, 0) }
+}
+/// The sum of the values of a warp. A [`sync_warp`] goes before.
+#[inline(always)]
+pub fn warp_sum(v: u32) -> u32 {
+    let sum: u32;
+    // SAFETY: called by all threads of the warp.
+    unsafe {
+        asm!("redux.sync.add.u32 {s}, {v}, 0xffffffff;", s = lateout(reg32) sum, v = in(reg32) v,
+            options(nomem, nostack))
+    };
+    sum
 }
 /// Whether any lane of the warp votes for it; all lanes come. Without a [`sync_warp`]: lanes that vote by themselves lose time
 /// and no answer (`Lane::any`), the assembler asks the hardware whether all are there, and in the search's loop its way to

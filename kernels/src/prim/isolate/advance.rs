@@ -2,10 +2,12 @@
 //!
 //! At a time `t` the point of the hull nearest to the origin gives a direction `n`. Along it the control vectors are linear
 //! in time; as long as all are beyond the distance, so is the hull. The time at which the first of them no longer is begins
-//! the next step. (Conservative advancement, Mirtich 1996, with the plane's own motion instead of a bound of speeds.)
+//! the next step, or a later one that a turning plane reaches ([`super::turning`], [`super::normal`]). (Conservative advancement,
+//! Mirtich 1996, with the plane's own motion instead of a bound of speeds.)
 
 use super::nearest::nearest;
 use super::pair::{Pair, sum};
+use super::turning::Facing;
 use crate::math::Vec3;
 use crate::prim::inclusion::Grid;
 
@@ -67,6 +69,8 @@ pub struct Advance<S, const N: usize> {
     /// Until then the features are certainly farther apart.
     at: S,
     end: S,
+    /// For how long a turning plane is tried next.
+    stride: S,
     /// Steps that were taken.
     pub steps: u32,
     most: u32,
@@ -76,7 +80,8 @@ impl<S: Grid, const N: usize> Advance<S, N> {
     /// From `begin`, before which the features are farther apart than the distance, to `end`, in so many steps.
     #[inline(always)]
     pub fn new(pair: Pair<S, N>, (begin, end): (S, S), distance: Distance<S>, most: u32) -> Self {
-        Advance { pair, distance, at: begin, end, steps: 0, most: if pair.finite { most } else { 0 } }
+        let most = if pair.finite { most } else { 0 };
+        Advance { pair, distance, at: begin, end, stride: end - begin, steps: 0, most }
     }
 
     /// All steps.
@@ -89,63 +94,86 @@ impl<S: Grid, const N: usize> Advance<S, N> {
         }
     }
 
-    /// One step; what is known, once that is all. About 150 operations, twice that where the distance is near.
+    /// One step; what is known, once that is all. About 150 operations, twice that where the distance is near, and up to 1,000
+    /// more for a plane that turns.
     #[inline(always)]
     pub fn step(&mut self) -> Option<Advanced<S>> {
+        match self.fixed() {
+            Ok(told) => Some(told),
+            Err((now, next)) => {
+                self.at = self.farther(&now, next);
+                (self.at >= self.end).then_some(Advanced::Apart)
+            }
+        }
+    }
+
+    /// A step by a fixed plane: what is known, if that is all.
+    ///
+    /// # Errors
+    /// How the features lie now, and until when they certainly stay farther apart: the step is not at its end.
+    #[inline(always)]
+    pub fn fixed(&mut self) -> Result<Advanced<S>, (Facing<S, N>, S)> {
         let (d, t) = (&self.distance, self.at);
         if self.steps >= self.most {
-            return Some(Advanced::Open { from: t });
+            return Ok(Advanced::Open { from: t });
         }
         self.steps += 1;
-        let x = self.pair.at(t);
-        let p = nearest(&x);
-        let length = self.pair.at_most(p);
+        let now = self.pair.facing(t);
+        let length = self.pair.at_most(now.p);
         if length <= d.under {
-            return Some(Advanced::Within { from: t, to: t });
+            return Ok(Advanced::Within { from: t, to: t });
         }
         // Where the plane is reached to a rounding there is no next time: it may still be certain soon.
-        let next = self.pair.until(&x, p, (d.over, self.pair.point_error())).map_or(t, |next| next.max(t));
+        let next = self.pair.until(&now, (d.over, self.pair.point_error())).map_or(t, |next| next.max(t));
         if next >= self.end {
-            return Some(Advanced::Apart);
+            return Ok(Advanced::Apart);
         }
         let (near, step) = (length <= d.under + d.slack, next - t);
         if near || step < d.pause * S::of(0.25) {
             let later = (next + d.pause).min(self.end);
             if self.pair.at_most(nearest(&self.pair.at(later))) <= d.under {
-                return Some(Advanced::Within { from: next, to: later });
+                return Ok(Advanced::Within { from: next, to: later });
             }
             if near && (step < d.pause * S::of(0.02) || self.steps > PATIENCE) {
-                return Some(self.look_ahead(next));
+                return Ok(self.look_ahead(next));
             }
         }
         if !(next > t) {
-            return Some(Advanced::Open { from: t });
+            return Ok(Advanced::Open { from: t });
         }
-        self.at = if S::WIDE && self.steps > FIXED { self.farther(t, next) } else { next };
-        None
+        Err((now, next))
     }
 
-    /// Where fixed planes take many steps, one that turns may take few: until when it is certain from `t` on, or `next`.
+    /// Whether one plane that turns tells that the features stay farther apart until the end.
     #[inline(always)]
-    fn farther(&self, t: S, next: S) -> S {
-        let turning = self.pair.turning();
-        let reached = turning.reaches((t, self.end), self.distance.over);
-        for i in 0..TURNING {
-            // First most of the time that it is expected to last, then some steps of the fixed one.
-            let to = match i {
-                0 => t + (reached - t) * S::of(0.9999),
-                1 => t + (reached - t) * S::of(0.96),
-                2 => t + (reached - t) * S::of(0.5),
-                3 => (t + (next - t) * S::of(64.0)).min(reached),
-                _ => (t + (next - t) * S::of(8.0)).min(reached),
-            };
+    pub fn stays_to_the_end(&self, now: &Facing<S, N>) -> bool {
+        self.pair.stays_farther(now, &self.pair.facing(self.end), self.distance.over)
+    }
+
+    /// Where fixed planes take many steps, one that turns may take few: until when it is certain from now on, or `next`.
+    /// Tried is first four times as long as it was known to last before; where that was too long, until before the distance is
+    /// reached, if it is, as the line between the distances at both ends tells; else, or where that was too long too, for a
+    /// quarter of the time.
+    #[inline(always)]
+    fn farther(&mut self, now: &Facing<S, N>, next: S) -> S {
+        let (t, over) = (self.at, self.distance.over);
+        let mut stride = self.stride;
+        for i in 0..if S::WIDE { TURNING[1] } else { TURNING[0] } {
+            let to = (t + stride).min(self.end);
             if !(to > next) {
                 break;
             }
-            if turning.is_farther((t, to), self.distance.over) {
+            let then = self.pair.facing(to);
+            if self.pair.stays_farther(now, &then, over) || self.pair.normal().is_farther((t, to), over) {
+                self.stride = (to - t) * S::of(4.0);
                 return to;
             }
+            let (here, there) = (now.p.dot(now.p).sqrt(), then.p.dot(then.p).sqrt());
+            let reached = i == 0 && there < over;
+            let part = if reached { S::of(0.9) * (here - over) / (here - there) } else { S::of(0.25) };
+            stride = (to - t) * part;
         }
+        self.stride = stride.max((next - t) * S::of(4.0));
         next
     }
 
@@ -176,7 +204,7 @@ impl<S: Grid, const N: usize> Pair<S, N> {
     }
 
     #[inline(always)]
-    fn point_error(&self) -> S {
+    pub(super) fn point_error(&self) -> S {
         S::ADVANCE_POINT * self.reach + S::ISOLATE_UNDERFLOW
     }
 
@@ -187,8 +215,8 @@ impl<S: Grid, const N: usize> Pair<S, N> {
     /// product (3u). Where a computed value at the start is above `need` and at the end below, the line between them is
     /// below the exact one, and its root, a quotient of three roundings and this product, is rounded down.
     #[inline(always)]
-    fn until(&self, x: &[Vec3<S>; N], p: Vec3<S>, (over, error): (S, S)) -> Option<S> {
-        let n = p * (S::ONE / p.dot(p).sqrt());
+    fn until(&self, Facing { x, p }: &Facing<S, N>, (over, error): (S, S)) -> Option<S> {
+        let n = *p * (S::ONE / p.dot(*p).sqrt());
         let need = over * (n.dot(n).sqrt() * S::INCLUSION_UP) + sum(n) * error;
         let mut next = S::NEVER;
         for k in 0..N {
@@ -210,9 +238,7 @@ impl<S: Grid, const N: usize> Pair<S, N> {
 
 /// Steps that a pair may take before it is told as near, where it is.
 const PATIENCE: u32 = 16;
-/// Steps by fixed planes before turning ones are tried; f32, which few steps are asked of, tries none.
-const FIXED: u32 = 1;
-/// How often a turning plane is tried.
-const TURNING: u32 = 5;
+/// How often a turning plane is tried in a step: in f32, where many lanes would wait for a few, and in f64.
+const TURNING: [u32; 2] = [1, 3];
 /// How often the time that is looked ahead doubles.
 const AHEAD: u32 = 12;

@@ -31,7 +31,7 @@ impl<S: Grid, const N: usize> Pair<S, N> {
             (mix.dot(c[1]) + n1.dot(c[0])) * third,
             n1.dot(c[1]),
         ];
-        let reach = |v: &[Vec3<S>; 2]| v[0].map(S::abs).max(v[1].map(S::abs));
+        let reach = |v: &[Vec3<S>; 2]| v[0].map(S::abs).greater(v[1].map(S::abs));
         let (a, b, c) = (reach(a), reach(b), reach(c));
         let two = |i: usize, j: usize| a[i] * b[j] + a[j] * b[i];
         let permanent = two(1, 2) * c[0] + two(2, 0) * c[1] + two(0, 1) * c[2];
@@ -61,14 +61,14 @@ impl<S: Real> Cubic<S> {
     #[inline(always)]
     pub fn one_sign(&self, part: &Part<S>) -> bool {
         let [a, b, c, d] = *part;
-        a.min(b).min(c.min(d)) > self.error || a.max(b).max(c.max(d)) < -self.error
+        a.lesser(b).lesser(c.lesser(d)) > self.error || a.greater(b).greater(c.greater(d)) < -self.error
     }
 
     /// Whether a part is too near to zero throughout for any sign.
     #[inline(always)]
     pub fn is_flat(&self, part: &Part<S>) -> bool {
         let [a, b, c, d] = part.map(S::abs);
-        !(a.max(b).max(c.max(d)) > self.error + self.error)
+        !(a.greater(b).greater(c.greater(d)) > self.error + self.error)
     }
 
     /// Whether the cubic certainly has no root in the step: its own coefficients, not restricted.

@@ -9,12 +9,13 @@
 //! | [`near`] | what stays farther than half the tolerance; and when what does not comes nearer | f64 |
 //! | the search of [`crate::prim::inclusion`] | what is left, by boxes | f64 |
 //!
-//! With a separation: [`separated`] in f32, then [`Separating`] in f64. Every rung is a function of the pair and of what is
+//! With a separation, the rungs of [`super::separation`]. Every rung is a function of the pair and of what is
 //! asked, so the answer is; [`vf_certified`] and [`ee_certified`] climb for one pair as the kernels do for a list.
 
 use super::advance::{Advance, Advanced, Distance};
 use super::find::{Found, Look};
 use super::pair::{Edges, Face, Pair};
+use super::separation::{ADVANCES, Double, Rung, Single, at_once, stepped};
 use crate::math::Real;
 use crate::math::tolerance::NEAR_FINEST;
 use crate::prim::cubic::Moving;
@@ -31,10 +32,6 @@ const STEPS: [u32; 2] = [6, 12];
 const AGAIN: u32 = 3;
 /// How long around a suspect time is looked at, in pauses: first, and in a slice. Both sides are less than two pauses.
 const AROUND: [f64; 2] = [0.9, 0.03];
-/// Steps of advancement before the next rung is asked: in f32, where few pairs take more and many lanes would wait for them,
-/// and in f64.
-const ADVANCES: [u32; 2] = [3, 32];
-
 /// Which rungs there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rungs {
@@ -75,7 +72,7 @@ pub fn isolated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bo
 
 /// A contact, if it is certain to be within the step.
 #[inline(always)]
-fn met<S: Real>(from: S, to: S, p: &Params) -> Option<Verdict> {
+pub(super) fn met<S: Real>(from: S, to: S, p: &Params) -> Option<Verdict> {
     (to.wide() <= p.end).then(|| Verdict::contact(from.wide(), to.wide(), 0, false))
 }
 
@@ -148,14 +145,14 @@ const NEARER: f64 = 1.0 / 8.0;
 
 /// The last word without a search: separated, if the features stay farther apart than the separation and such a part of half
 /// the tolerance; else unresolved, from when they come within that.
-#[inline]
+#[inline(always)]
 pub fn near<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), part: f64, p: &Params) -> Verdict {
     let mut advance = nearness(pair, (begin, end), part, p);
     nearly(advance.run(), advance.steps, p)
 }
 
 #[inline(always)]
-fn nearness<const N: usize>(
+pub(super) fn nearness<const N: usize>(
     pair: &Pair<f64, N>,
     window: (f64, f64),
     part: f64,
@@ -163,76 +160,19 @@ fn nearness<const N: usize>(
 ) -> Advance<f64, N> {
     let near = 0.5 * (pair.scaled(p.tolerance) * part).max(NEAR_FINEST * pair.reach);
     let distance = Distance::of(pair, pair.scaled(p.separation) + near, near);
-    Advance::new(*pair, window, distance, p.budget.max(ADVANCES[1]))
+    Advance::new(*pair, window, distance, p.budget.max(ADVANCES))
 }
 
 #[inline(always)]
-fn nearly(told: Advanced<f64>, steps: u32, p: &Params) -> Verdict {
+pub(super) fn nearly(told: Advanced<f64>, steps: u32, p: &Params) -> Verdict {
     match told {
         Advanced::Apart => Verdict::separated(p.end, 0),
         Advanced::Within { from, .. } | Advanced::Near { from } => {
             Verdict::unresolved(from.min(p.end), p.end, 0, false)
         }
         Advanced::Open { from } => {
-            Verdict::unresolved(from.min(p.end), p.end, 0, steps >= p.budget.max(ADVANCES[1]))
+            Verdict::unresolved(from.min(p.end), p.end, 0, steps >= p.budget.max(ADVANCES))
         }
-    }
-}
-
-#[inline(always)]
-fn separating<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, most: u32) -> Advance<S, N> {
-    let slack = pair.scaled(p.tolerance).max(S::ADVANCE_FINEST * pair.reach);
-    let distance = Distance::of(pair, pair.scaled(p.separation), slack);
-    Advance::new(*pair, (S::ZERO, pair.end), distance, most)
-}
-
-/// What a few steps of advancement in f32 tell of a separation: separated, or when first within it.
-#[inline(always)]
-pub fn separated<const N: usize>(pair: &Pair<f32, N>, p: &Params) -> Option<Verdict> {
-    let mut advance = separating(pair, p, ADVANCES[0]);
-    match advance.run() {
-        Advanced::Apart => Some(Verdict::separated(p.end, 0)),
-        Advanced::Within { from, to } if to - from <= 2.0 * pair.pause(pair.scaled(p.tolerance)) => {
-            met(from, to, p)
-        }
-        _ => None,
-    }
-}
-
-/// The last rungs of a separation, step by step: advancement to it; where that does not tell, [`near`].
-#[derive(Clone, Copy, Debug)]
-pub struct Separating<const N: usize> {
-    pair: Pair<f64, N>,
-    advance: Advance<f64, N>,
-    nearness: bool,
-}
-
-impl<const N: usize> Separating<N> {
-    /// Begins.
-    #[inline(always)]
-    pub fn begin(pair: Pair<f64, N>, p: &Params) -> Self {
-        Separating { pair, advance: separating(&pair, p, ADVANCES[1]), nearness: false }
-    }
-
-    /// A step; the verdict, once there is one.
-    #[inline(always)]
-    pub fn step(&mut self, p: &Params) -> Option<Verdict> {
-        let told = self.advance.step()?;
-        if self.nearness {
-            return Some(nearly(told, self.advance.steps, p));
-        }
-        let from = match told {
-            Advanced::Apart => return Some(Verdict::separated(p.end, 0)),
-            Advanced::Near { from } => return Some(Verdict::unresolved(from.min(p.end), p.end, 0, false)),
-            Advanced::Within { from, to } => match met(from, to, p) {
-                Some(verdict) => return Some(verdict),
-                None => from,
-            },
-            Advanced::Open { from } => from,
-        };
-        self.advance = nearness(&self.pair, (from, self.pair.end), 1.0, p);
-        self.nearness = true;
-        None
     }
 }
 
@@ -288,15 +228,13 @@ fn climb<const N: usize>(
     p: &Params,
 ) -> Verdict {
     if p.separation > 0.0 {
-        let first = if rungs == Rungs::Double { None } else { separated(&single(), p) };
-        return first.unwrap_or_else(|| {
-            let mut last = Separating::begin(double(), p);
-            loop {
-                if let Some(verdict) = last.step(p) {
-                    return verdict;
-                }
-            }
-        });
+        let in_single = || {
+            let pair = single();
+            at_once(&pair, p).or_else(|| stepped(Single::begin(pair, p), p))
+        };
+        let first = if rungs == Rungs::Double { None } else { in_single() };
+        let last = || stepped(Double::begin(double(), p), p);
+        return first.or_else(last).unwrap_or_else(|| Verdict::unresolved(0.0, p.end, 0, true));
     }
     if rejected(&single()) {
         return Verdict::separated(p.end, 0);

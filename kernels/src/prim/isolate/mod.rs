@@ -5,7 +5,7 @@
 //! holds the origin. Then the four points lie in one plane: a root of a cubic. So the step is cut at its roots; that
 //! nothing meets between them is proven by the signs of Bernstein coefficients ([`cubic`]), and around each root one
 //! certificate tells whether the hull holds the origin or misses it ([`suspect`], [`find`]). What signs cannot tell goes up
-//! a [`ladder`]. A separation is asked by supporting planes ([`advance`]).
+//! a [`ladder`]. A separation is asked by supporting planes ([`advance`]), in rungs of its own ([`separation`]).
 //!
 //! What is proven is what [`crate::prim::inclusion`] says of its answers, whose words these are: nothing that meets is called
 //! separated, no time is late, a contact is one, and what is listed as unresolved comes within the tolerance. All
@@ -21,7 +21,9 @@ pub mod cubic;
 pub mod find;
 pub mod ladder;
 pub mod nearest;
+pub mod normal;
 pub mod pair;
+pub mod separation;
 pub mod suspect;
 pub mod turning;
 

@@ -58,8 +58,8 @@ impl<S: Grid, const N: usize> Pair<S, N> {
         let (mut reach, mut speed) = (Vec3([S::ZERO; 3]), Vec3([S::ZERO; 3]));
         for k in 0..N {
             let [start, end] = w[k];
-            reach = reach.max(start.map(S::abs)).max(end.map(S::abs));
-            speed = speed.max((end - start).map(S::abs));
+            reach = reach.greater(start.map(S::abs)).greater(end.map(S::abs));
+            speed = speed.greater((end - start).map(S::abs));
         }
         let (reach, speed) = (most(reach), most(speed));
         let finite = finite && !p.separation.is_nan();
@@ -98,8 +98,8 @@ impl<S: Grid, const N: usize> Pair<S, N> {
             let (mut low, mut high) = (self.w[0].map(|w| w[i]), self.w[0].map(|w| w[i]));
             for k in 1..N {
                 for end in 0..2 {
-                    low[end] = low[end].min(self.w[k][end][i]);
-                    high[end] = high[end].max(self.w[k][end][i]);
+                    low[end] = low[end].lesser(self.w[k][end][i]);
+                    high[end] = high[end].greater(self.w[k][end][i]);
                 }
             }
             window.clip(low.map(|x| -x));
@@ -169,7 +169,7 @@ impl<S: Real> Window<S> {
 #[inline(always)]
 pub(super) fn most<S: Real>(v: Vec3<S>) -> S {
     let v = v.map(S::abs);
-    v[0].max(v[1]).max(v[2])
+    v[0].greater(v[1]).greater(v[2])
 }
 
 /// The sum of the magnitudes of a vector's components.

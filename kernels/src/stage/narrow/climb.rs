@@ -1,9 +1,9 @@
 //! # Climb: vertex/face and edge/edge pairs → contacts, proven, with bounds of their first time; what is left, for the next rung
 //! Paper    none: beyond it.
 //! Launch   [`isolate()`] in f32 over what may meet, then in f64 over what that left (or in one of them over all); [`settle`]
-//!          over what isolation left; the slices of [`super::slice`] over the rest. With a separation [`separate`] over all
-//!          candidates, then [`super::separate`] over what that left (or over all). A lane a pair, both kinds in one launch: a block takes
-//!          tiles of one kind; a grid of any size strides.
+//!          over what isolation left; the slices of [`super::slice`] over the rest. With a separation [`separate_at_once`] over
+//!          all candidates, then [`super::separate`]. A lane a pair, both kinds in one launch: a block takes tiles of one kind; a
+//!          grid of any size strides.
 //! Reads    pairs, faces or edges, positions of both frames (four vertices).
 //! Writes   contacts and unresolved pairs with toi and toi_hi; or, when only the earliest is asked for, one number. And what
 //!          is left, in its own list.
@@ -13,7 +13,8 @@
 //!          is known is not asked: it could not be less. So it is the same in any order.
 //! Room     hits, left: counted past the end, grown, run again.
 //! Cost     8 B pair, 12 B indices, 128 B positions (gathered); isolation about 1,100 operations for a pair with a root, of
-//!          f64 as many; settling some 30 exact signs for what touches at the start; a separation 150 operations a step.
+//!          f64 as many; settling some 30 exact signs for what touches at the start; the first
+//!          planes of a separation 400 operations.
 
 use super::{listed, moving};
 use crate::abi::{EVERYTHING, Hit, Listed, Pair, RungArgs, counter};
@@ -21,7 +22,8 @@ use crate::exec::{Block, Lane, Slot};
 use crate::math::Real;
 use crate::prim::cubic::Moving;
 use crate::prim::inclusion::{Grid, Verdict};
-use crate::prim::isolate::ladder::{ee_touch, isolated, separated, settled, vf_touch};
+use crate::prim::isolate::ladder::{ee_touch, isolated, settled, vf_touch};
+use crate::prim::isolate::separation::at_once;
 use crate::prim::isolate::{self, Edges, Face};
 
 /// A vertex and the corners of a face, in motion.
@@ -79,18 +81,18 @@ pub fn settle<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
     );
 }
 
-/// A separation, in f32.
-pub fn separate<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
+/// The first rung of a separation, in f32.
+pub fn separate_at_once<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
     rung(
         b,
         a,
         |l, pair| {
             let (v, f) = vertex_face(l, a, pair);
-            separated(&Face::new(v, f, &a.params), &a.params)
+            at_once(&Face::new(v, f, &a.params), &a.params)
         },
         |l, pair| {
             let [x, y] = edge_edge(l, a, pair);
-            separated(&Edges::new(x, y, &a.params), &a.params)
+            at_once(&Edges::new(x, y, &a.params), &a.params)
         },
     );
 }
@@ -162,8 +164,8 @@ fn each<R: Real, B: Block>(
             l.meet();
         });
         let total = b.scan(&mut places);
-        let start = b.reserve(a.counters, of.hits_at, (total & (LEFT - 1)) as u64);
-        let start_left = b.reserve(a.counters, of.left_at, (total / LEFT) as u64);
+        let wanted = [(total & (LEFT - 1)) as u64, (total / LEFT) as u64];
+        let [start, start_left] = b.reserve_both(a.counters, [of.hits_at, of.left_at], wanted);
         b.phase(|l| {
             let (wish, before, hit) = (*wishes.of(l), *places.of(l), *hits.of(l));
             let place = start + (before & (LEFT - 1)) as u64;
@@ -177,6 +179,15 @@ fn each<R: Real, B: Block>(
             l.meet();
         });
         base += stride;
+    }
+}
+
+/// Leaves a pair to the next rung; a lane by itself.
+#[inline(always)]
+pub(super) fn leave<R: Real, L: Lane>(l: &L, a: &RungArgs<R>, of: &Listed, pair: Pair) {
+    let place = l.fetch_add(a.counters, of.left_at, 1);
+    if place < of.left.len {
+        l.write(of.left, place as u32, pair);
     }
 }
 

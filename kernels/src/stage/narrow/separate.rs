@@ -1,29 +1,30 @@
 //! # Separate: pairs that may come within a separation → contacts, proven, with bounds of their first time
 //! Paper    none: beyond it.
-//! Launch   as many blocks as run at once, both kinds of pairs in one; over what f32 left, or over all. Advancements are of
-//!          different lengths: a lane takes a step, then the next, and a lane that is done draws its block's next pair, so that
+//! Launch   as many blocks as run at once, both kinds of pairs in one: in f32 over what `climb::separate_at_once` left, then in
+//!          f64 over what that left, or over all. Advancements are of different lengths: a lane takes a step, then the next, and a lane that is done draws its block's next pair, so that
 //!          few lanes wait. A block's pairs lie a grid apart, and the kinds begin at opposite ends of the grid.
 //! Reads    pairs, faces or edges, positions of both frames (four vertices).
-//! Writes   contacts and unresolved pairs with toi and toi_hi; or the earliest.
+//! Writes   contacts and unresolved pairs with toi and toi_hi; or the earliest. And in f32 what is left, in its own list.
 //! Before   pairs are complete.
-//! After    every pair that comes within the separation is listed, none late; see [`crate::prim::isolate::advance`]. A pair whose
+//! After    every pair that comes within the separation is listed or left, none late; see [`crate::prim::isolate::advance`]. A pair whose
 //!          steps end is listed as unresolved.
-//! Room     hits: counted past the end, grown, run again.
-//! Cost     8 B pair, 12 B indices, 128 B positions (gathered); 150 operations of f64 a step, mostly two to ten steps.
+//! Room     hits, left: counted past the end, grown, run again.
+//! Cost     8 B pair, 12 B indices, 128 B positions (gathered); 300 to 600 operations a step, mostly two to
+//!          fifteen steps.
 
-use super::climb::{edge_edge, tell, vertex_face};
+use super::climb::{edge_edge, leave, tell, vertex_face};
 use super::listed;
 use crate::abi::{Listed, Pair, RungArgs};
 use crate::exec::{Block, Lane, Shared};
 use crate::math::Real;
-use crate::prim::isolate::ladder::Separating;
+use crate::prim::isolate::separation::Rung;
 use crate::prim::isolate::{self, Edges, Face};
 
 /// Bytes of shared memory of a block: the numbers of pairs drawn.
 pub const SHARED: u32 = 8;
 
-/// All that is left, in f64.
-pub fn separate<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
+/// All pairs of a list, by a rung.
+pub fn separate<R: Real, V: Rung<3>, E: Rung<4>, B: Block>(b: &mut B, a: &RungArgs<R>) {
     let share = |b: &B, of: &Listed, first: u32, drawn: u32| Share {
         count: listed(b, of.pairs, a.counters, of.pairs_at) as u64,
         first: first as u64,
@@ -40,11 +41,11 @@ pub fn separate<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
         }
     });
     b.phase(|l| {
-        advance(l, a, &a.vf, (&vf, drawn), |pair| {
+        advance::<R, V, 3, _>(l, a, &a.vf, (&vf, drawn), |pair| {
             let (v, f) = vertex_face(l, a, pair);
             Face::new(v, f, &a.params)
         });
-        advance(l, a, &a.ee, (&ee, drawn), |pair| {
+        advance::<R, E, 4, _>(l, a, &a.ee, (&ee, drawn), |pair| {
             let [x, y] = edge_edge(l, a, pair);
             Edges::new(x, y, &a.params)
         });
@@ -61,14 +62,14 @@ struct Share {
 }
 
 /// Draws pairs and advances them until there are no more.
-fn advance<R: Real, const N: usize, L: Lane>(
+fn advance<R: Real, T: Rung<N>, const N: usize, L: Lane>(
     l: &L,
     a: &RungArgs<R>,
     of: &Listed,
     (share, drawn): (&Share, Shared<u32>),
-    motion: impl Fn(Pair) -> isolate::Pair<f64, N>,
+    motion: impl Fn(Pair) -> isolate::Pair<T::S, N>,
 ) {
-    let mut under_way: Option<(Pair, Separating<N>)> = None;
+    let mut under_way: Option<(Pair, T)> = None;
     let mut more = true;
     while l.any(more || under_way.is_some()) {
         if more && under_way.is_none() {
@@ -76,15 +77,18 @@ fn advance<R: Real, const N: usize, L: Lane>(
             more = i < share.count;
             if more {
                 let pair = l.read(of.pairs, i as u32);
-                under_way = Some((pair, Separating::begin(motion(pair), &a.params)));
+                under_way = Some((pair, T::begin(motion(pair), &a.params)));
             }
         }
         // Lanes that drew and lanes that did not step side by side.
         if l.any(under_way.is_some())
-            && let Some((pair, separating)) = &mut under_way
-            && let Some(verdict) = separating.step(&a.params)
+            && let Some((pair, rung)) = &mut under_way
+            && let Some(told) = rung.step(&a.params)
         {
-            tell(l, a, of, (*pair, verdict));
+            match told {
+                Some(verdict) => tell(l, a, of, (*pair, verdict)),
+                None => leave(l, a, of, *pair),
+            }
             under_way = None;
         }
     }

@@ -14,7 +14,8 @@
 //! Departs  the paper tests all 15 for every pair; owners (representative triangles: Curtis, Tamstorf, Manocha, "Fast
 //!          collision detection for deformable models using representative-triangles", 2008) leave about 3, shorter sweeps
 //!          about 1.
-//! Cost     8 B pair, 64 B facets, 192 B positions (gathered); some 200 operations and 6 comparisons a test.
+//! Cost     8 B pair, 64 B facets, 192 B positions (gathered); some 500 operations, half of them for the 15 tests. What
+//!          is to be listed is numbered in shared memory first, so that all lanes write.
 
 use super::{listed, moving};
 use crate::abi::{Facet, Pair, SiftArgs, Span, counter};
@@ -32,11 +33,13 @@ struct Swept<R> {
 
 impl<R: Real> Swept<R> {
     fn merge(self, o: Self) -> Self {
-        Swept { lo: self.lo.min(o.lo), hi: self.hi.max(o.hi) }
+        Swept { lo: self.lo.lesser(o.lo), hi: self.hi.greater(o.hi) }
     }
-    fn overlaps(&self, o: &Self) -> bool {
-        let axis = |k: usize| (self.lo[k] <= o.hi[k]) & (o.lo[k] <= self.hi[k]);
-        axis(0) & axis(1) & axis(2)
+    /// In bit 31, whether two boxes share no point. The ends of [`swept`] are never -0 at the upper side, so a difference of
+    /// two that are equal is +0.
+    fn apart(&self, o: &Self) -> u32 {
+        let axis = |k: usize| (o.hi[k] - self.lo[k]).sign() | (self.hi[k] - o.lo[k]).sign();
+        axis(0) | axis(1) | axis(2)
     }
 }
 
@@ -61,13 +64,13 @@ fn swept<R: Real>(p: &Corners<R>, q: &Corners<R>, gap: R) -> (bool, [[Swept<R>; 
     let (of_p, of_q) = (ends(p), ends(q));
     // One axis after the other, each by a number that the compiler knows: nothing goes to memory on the card.
     let mut axis = |k: usize| {
-        let least = |c: &[Vec3<R>; 3]| c[0][k].min(c[1][k]).min(c[2][k]);
-        let most = |c: &[Vec3<R>; 3]| c[0][k].max(c[1][k]).max(c[2][k]);
+        let least = |c: &[Vec3<R>; 3]| c[0][k].lesser(c[1][k]).lesser(c[2][k]);
+        let most = |c: &[Vec3<R>; 3]| c[0][k].greater(c[1][k]).greater(c[2][k]);
         let (p_lo, p_hi) = ([least(&of_p[0]), least(&of_p[1])], [most(&of_p[0]), most(&of_p[1])]);
         let (q_lo, q_hi) = ([least(&of_q[0]), least(&of_q[1])], [most(&of_q[0]), most(&of_q[1])]);
         window.clip([p_hi[0] - q_lo[0] + gap, p_hi[1] - q_lo[1] + gap]);
         window.clip([q_hi[0] - p_lo[0] + gap, q_hi[1] - p_lo[1] + gap]);
-        let reach = |lo: [R; 2], hi: [R; 2]| (-lo[0].min(lo[1])).max(hi[0].max(hi[1]));
+        let reach = |lo: [R; 2], hi: [R; 2]| (-lo[0].lesser(lo[1])).greater(hi[0].greater(hi[1]));
         (reach(p_lo, p_hi) + reach(q_lo, q_hi)) * R::INCLUSION_INPUT + gap + R::INCLUSION_UNDERFLOW
     };
     let grow = Vec3([axis(0), axis(1), axis(2)]);
@@ -76,7 +79,7 @@ fn swept<R: Real>(p: &Corners<R>, q: &Corners<R>, gap: R) -> (bool, [[Swept<R>; 
     let way = |c: &Moving<R>, by: Vec3<R>| {
         let at = |t: R| c.t0 * (R::ONE - t) + c.t1 * t;
         let (x, y) = (at(from), at(to));
-        Swept { lo: x.min(y) - by, hi: x.max(y) + by }
+        Swept { lo: x.lesser(y) - by, hi: x.greater(y) + by }
     };
     let zero = Vec3([R::ZERO; 3]);
     let boxes = |c: &Corners<R>, by: Vec3<R>| [way(&c[0], by), way(&c[1], by), way(&c[2], by)];
@@ -87,44 +90,55 @@ fn swept<R: Real>(p: &Corners<R>, q: &Corners<R>, gap: R) -> (bool, [[Swept<R>; 
 /// and j of q; none of features that share a vertex.
 #[inline(always)]
 fn owned(p: &Facet, q: &Facet) -> u32 {
-    // Bit 3 i + j: corner i of p is corner j of q.
-    let mut same = 0;
+    // Bit j of row i: corner i of p is corner j of q.
+    let row = |i: usize| {
+        let same = |j: usize| ((p.corners[i] == q.corners[j]) as u32) << j;
+        same(0) | same(1) | same(2)
+    };
+    let rows = [row(0), row(1), row(2)];
+    let (of_p, of_q) = (p.owned, q.owned);
+    let mut mask = of_q & 7 & !(rows[0] | rows[1] | rows[2]);
+    mask <<= 3;
     for i in 0..3 {
-        for j in 0..3 {
-            same |= ((p.corners[i] == q.corners[j]) as u32) << (3 * i + j);
-        }
+        mask |= if rows[i] == 0 { of_p & 1 << i } else { 0 };
+        // Corners of q on edge i of p; edge j of q joins corners j and j + 1.
+        let on = rows[i] | rows[(i + 1) % 3];
+        let free = of_q >> 3 & !(on | on >> 1 | on << 2) & 7;
+        mask |= if of_p >> (3 + i) & 1 == 1 { free << (6 + 3 * i) } else { 0 };
     }
+    mask
+}
+
+/// Bits, as of [`owned`], of the pairs of features whose boxes share no point. No branches: some lane would take each. By
+/// signs of differences, as half of a card's lanes compare at a time.
+#[inline(always)]
+fn apart<R: Real>([p, q]: &[[Swept<R>; 3]; 2]) -> u32 {
+    let hull = |c: &[Swept<R>; 3]| c[0].merge(c[1]).merge(c[2]);
+    let edges = |c: &[Swept<R>; 3]| [c[0].merge(c[1]), c[1].merge(c[2]), c[2].merge(c[0])];
+    let (of_p, of_q) = (hull(p), hull(q));
     let mut mask = 0;
-    for i in 0..3 {
-        mask |= (p.owned >> i & 1 & (same >> (3 * i) & 7 == 0) as u32) << i;
-        mask |= (q.owned >> i & 1 & (same >> i & 0o111 == 0) as u32) << (3 + i);
-        for j in 0..3 {
-            let ends = (1 << (3 * i) | 1 << (3 * ((i + 1) % 3))) * (1 << j | 1 << ((j + 1) % 3));
-            let own = p.owned >> (3 + i) & q.owned >> (3 + j) & 1;
-            mask |= (own & (same & ends == 0) as u32) << (6 + 3 * i + j);
+    let mut tell = |bit: usize, apart: u32| mask |= apart >> (31 - bit) & 1 << bit;
+    for k in 0..3 {
+        tell(k, p[k].apart(&of_q));
+        tell(3 + k, q[k].apart(&of_p));
+    }
+    let (p, q) = (edges(p), edges(q));
+    for (i, p) in p.iter().enumerate() {
+        for (j, q) in q.iter().enumerate() {
+            tell(6 + 3 * i + j, p.apart(q));
         }
     }
     mask
 }
 
-/// Bits, as of [`owned`], of the pairs of features whose boxes overlap. No branches: some lane would take each.
-#[inline(always)]
-fn overlapping<R: Real>([p, q]: &[[Swept<R>; 3]; 2]) -> u32 {
-    let hull = |c: &[Swept<R>; 3]| c[0].merge(c[1]).merge(c[2]);
-    let edges = |c: &[Swept<R>; 3]| [c[0].merge(c[1]), c[1].merge(c[2]), c[2].merge(c[0])];
-    let (of_p, of_q) = (hull(p), hull(q));
-    let mut mask = 0;
-    for k in 0..3 {
-        mask |= (p[k].overlaps(&of_q) as u32) << k;
-        mask |= (q[k].overlaps(&of_p) as u32) << (3 + k);
-    }
-    let (p, q) = (edges(p), edges(q));
-    for (i, p) in p.iter().enumerate() {
-        for (j, q) in q.iter().enumerate() {
-            mask |= (p.overlaps(q) as u32) << (6 + 3 * i + j);
-        }
-    }
-    mask
+/// Most tests of two triangles.
+const MOST: u32 = 15;
+/// Numbers of tests of a lane, with one to spare.
+const TESTS: u32 = 16;
+
+/// Bytes of shared memory of a block: a number of each test that is to be listed.
+pub const fn shared_bytes(lanes: u32) -> u32 {
+    4 * MOST * lanes
 }
 
 /// Bits of [`owned`] that are vertices and faces.
@@ -136,6 +150,7 @@ const EE: u32 = 1 << 16;
 pub fn sift<R: Real, B: Block>(b: &mut B, a: &SiftArgs<R>) {
     let count = listed(b, a.pairs, a.counters, counter::PAIRS);
     let (lanes, gap) = (b.lanes(), more(a.gap));
+    let tests = b.shared::<u32>(MOST * lanes);
     let mut masks = b.slot(0u32);
     let mut places = b.slot(0u32);
     let mut base = b.block() * lanes;
@@ -151,39 +166,59 @@ pub fn sift<R: Real, B: Block>(b: &mut B, a: &SiftArgs<R>) {
                     [x, y, z].map(|v| moving(l, &a.frames, v))
                 };
                 let (meet, boxes) = swept(&corners(&p), &corners(&q), gap);
-                mask = if meet { owned(&p, &q) & overlapping(&boxes) } else { 0 };
+                mask = if meet { owned(&p, &q) & !apart(&boxes) } else { 0 };
             }
             *masks.of(l) = mask;
             *places.of(l) = (mask & VERTICES).count_ones() + EE * (mask & !VERTICES).count_ones();
             l.meet();
         });
         let total = b.scan(&mut places);
-        let vf_start = b.reserve(a.counters, counter::VF, (total % EE) as u64);
-        let ee_start = b.reserve(a.counters, counter::EE, (total / EE) as u64);
+        let (vf, ee) = (total % EE, total / EE);
+        let starts = b.reserve_both(a.counters, [counter::VF, counter::EE], [vf.into(), ee.into()]);
+        // Which lane's test each candidate is: written by few lanes that have many, read by all.
         b.phase(|l| {
             let (mut mask, before) = (*masks.of(l), *places.of(l));
-            if mask != 0 {
-                let pair = l.read(a.pairs, base + l.lane());
-                let (p, q) = (l.read(a.facets, pair.a), l.read(a.facets, pair.b));
-                let mut vf = vf_start + (before % EE) as u64;
-                let mut ee = ee_start + (before / EE) as u64;
-                while mask != 0 {
-                    let k = mask.trailing_zeros();
-                    mask &= mask - 1;
-                    if k < 3 {
-                        put(l, a.vf, &mut vf, pick(p.corners, k), pair.b);
-                    } else if k < 6 {
-                        put(l, a.vf, &mut vf, pick(q.corners, k - 3), pair.a);
-                    } else {
-                        let (x, y) = (pick(p.edges, (k - 6) / 3), pick(q.edges, (k - 6) % 3));
-                        put(l, a.ee, &mut ee, x.min(y), x.max(y));
-                    }
+            let (mut next_vf, mut next_ee) = (before % EE, vf + before / EE);
+            while mask != 0 {
+                let k = mask.trailing_zeros();
+                mask &= mask - 1;
+                let next = if k < 6 { &mut next_vf } else { &mut next_ee };
+                l.put(tests, *next, l.lane() * TESTS + k);
+                *next += 1;
+            }
+            l.meet();
+        });
+        b.phase(|l| {
+            let mut i = l.lane();
+            while i < vf + ee {
+                let test = l.get(tests, i);
+                let pair = l.read(a.pairs, base + test / TESTS);
+                if i < vf {
+                    put(l, a.vf, starts[0] + i as u64, vertex_face(l, a, pair, test % TESTS));
+                } else {
+                    put(l, a.ee, starts[1] + (i - vf) as u64, edge_edge(l, a, pair, test % TESTS - 6));
                 }
+                i += lanes;
             }
             l.meet();
         });
         base += b.blocks() * lanes;
     }
+}
+
+/// Test 0 to 5: a vertex of the first triangle and the second, or the other way round.
+#[inline(always)]
+fn vertex_face<R: Real, L: Lane>(l: &L, a: &SiftArgs<R>, pair: Pair, test: u32) -> Pair {
+    let (of, face, k) = if test < 3 { (pair.a, pair.b, test) } else { (pair.b, pair.a, test - 3) };
+    Pair { a: pick(l.read(a.facets, of).corners, k), b: face }
+}
+
+/// Test 6 to 14, less 6: an edge of each.
+#[inline(always)]
+fn edge_edge<R: Real, L: Lane>(l: &L, a: &SiftArgs<R>, pair: Pair, test: u32) -> Pair {
+    let edge = |of: u32, k: u32| pick(l.read(a.facets, of).edges, k);
+    let (x, y) = (edge(pair.a, test / 3), edge(pair.b, test % 3));
+    Pair { a: x.min(y), b: x.max(y) }
 }
 
 /// One of three, without memory.
@@ -198,11 +233,10 @@ fn pick([x, y, z]: [u32; 3], k: u32) -> u32 {
     }
 }
 
-/// Writes one candidate where there is room, and counts it anyway.
+/// Writes one candidate where there is room.
 #[inline(always)]
-fn put<L: Lane>(l: &L, list: Span<Pair>, place: &mut u64, a: u32, b: u32) {
-    if *place < list.len {
-        l.write(list, *place as u32, Pair { a, b });
+fn put<L: Lane>(l: &L, list: Span<Pair>, place: u64, pair: Pair) {
+    if place < list.len {
+        l.write(list, place as u32, pair);
     }
-    *place += 1;
 }

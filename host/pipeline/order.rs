@@ -1,0 +1,259 @@
+//! Order: contacts into canonical order on the device, where the host would be slower: on a card.
+
+use super::layout::Layout;
+use super::room::{Growing, List};
+use super::sorter::{counted, sort, words};
+use crate::device::{Buffer, Device, View};
+use crate::error::Error;
+use bytemuck::Pod;
+use nearmiss_kernels::abi::{Named, OrderArgs, Span, counter};
+use nearmiss_kernels::entry::{self, Entry};
+use nearmiss_kernels::stage::order::KIND_BITS;
+
+/// A kind of contact that the device can order.
+pub trait Ordered: Pod + Named {
+    /// Writes their keys.
+    type Keys: Entry<Args = OrderArgs<Self>>;
+    /// Puts them where their keys are.
+    type Gather: Entry<Args = OrderArgs<Self>>;
+}
+
+impl Ordered for nearmiss_kernels::abi::Pair {
+    type Keys = entry::order_keys_pair;
+    type Gather = entry::order_gather_pair;
+}
+
+impl Ordered for nearmiss_kernels::abi::Hit {
+    type Keys = entry::order_keys_hit;
+    type Gather = entry::order_gather_hit;
+}
+
+/// The ordered list, and what ordering needs.
+pub struct Order<T> {
+    /// All contacts, in order.
+    pub list: List<T>,
+    items: [Buffer<u64>; 2],
+    counts: Buffer<u64>,
+    /// Bits of a feature's number.
+    bits: u32,
+    /// The first vertex of the second body, where it may be a first feature.
+    turn: u32,
+}
+
+impl<T: Ordered> Order<T> {
+    /// Takes the memory for `room` contacts at first.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn new(device: &Device, layout: &Layout, turn: u32, room: usize) -> Result<Self, Error> {
+        let ends = layout.starts.last().copied().unwrap_or_default();
+        let most = ends.vertex.max(ends.triangle).max(ends.edge);
+        Ok(Order {
+            list: List::new(device, "contacts in order", counter::ORDERED, room)?,
+            items: [device.buffer(0)?, device.buffer(0)?],
+            counts: device.buffer(0)?,
+            bits: most.max(2).next_power_of_two().trailing_zeros(),
+            turn,
+        })
+    }
+
+    /// Bits of a contact's place in its list.
+    fn number_bits(&self) -> u32 {
+        (self.list.room().max(2) as u64).next_power_of_two().trailing_zeros()
+    }
+
+    /// Whether names and places share a word, a place having 32 bits at most. Else the lists stay as they are, and the host
+    /// orders them.
+    fn fits(&self) -> bool {
+        KIND_BITS + 2 * self.bits + self.number_bits() <= 64
+    }
+
+    /// The entries of the lists in order, if they were ordered.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn view(&self, counters: &[u64], lists: &[&List<T>]) -> Result<Option<View<'_, T>>, Error> {
+        let all: u64 = lists.iter().map(|list| list.demand(counters)).sum();
+        (self.list.demand(counters) == all).then(|| self.list.view(counters)).transpose()
+    }
+
+    /// Orders one list or two; what does not fit is counted and left.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn run(
+        &mut self,
+        device: &Device,
+        first: &List<T>,
+        second: Option<&List<T>>,
+        counters: Span<u64>,
+    ) -> Result<(), Error> {
+        // Without an answer nothing is counted as ordered.
+        if !self.fits() {
+            return Ok(());
+        }
+        let room = self.list.room();
+        let bytes: Vec<u32> =
+            (0..KIND_BITS + 2 * self.bits).step_by(8).map(|at| at + self.number_bits()).collect();
+        let words = bytes.len() * words(device, room as u32);
+        if self.items[0].len() != room || self.counts.len() != words {
+            self.items = [device.buffer(room)?, device.buffer(room)?];
+            self.counts = device.buffer(words)?;
+        }
+        self.counts.clear()?;
+        let counts = self.counts.span();
+        let args = |items: &Buffer<u64>| OrderArgs {
+            first: first.span(),
+            second: second.map_or(Span::EMPTY, List::span),
+            out: self.list.span(),
+            items: items.span(),
+            tiles: counted(device, counts, room as u32, 0),
+            counters,
+            first_at: first.counter(),
+            second_at: second.map_or(0, List::counter),
+            turn: self.turn,
+            bits: self.bits,
+            number_bits: self.number_bits(),
+            pad: 0,
+        };
+        let (keys, gather) = (args(&self.items[0]), args(&self.items[bytes.len() % 2]));
+        device.launch::<T::Keys>(device.blocks_striding::<T::Keys>(room), &keys)?;
+        let live = counters.part(counter::ORDERED.into(), 1);
+        sort(device, self.items.each_ref(), (room as u32, live), counts, &bytes)?;
+        device.launch::<T::Gather>(device.blocks_striding::<T::Gather>(room), &gather)
+    }
+}
+
+/// The first vertex of the second body; beyond all where there is none.
+pub fn turn(layout: &Layout) -> u32 {
+    if layout.bodies() == 2 { layout.starts[1].vertex } else { u32::MAX }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::emulator::{Emulator, Mode, Order as Blocks};
+    use crate::pipeline::Offsets;
+    use crate::scene::Rng;
+    use nearmiss_kernels::abi::{Hit, Pair};
+    use nearmiss_kernels::prim::inclusion::Verdict;
+    use std::collections::BTreeSet;
+
+    /// Vertices, triangles and edges of each of two bodies.
+    const OF_A_BODY: u32 = 700;
+
+    /// What was ordered, and how many were counted.
+    type Outcome<T> = (Option<Vec<T>>, u64);
+
+    fn machines() -> Vec<Device> {
+        let engine = |lanes| Emulator::new(Mode::Engine, None).expect("threads").with_lanes(lanes);
+        let order = |order| Emulator::new(Mode::Microscope(order), None).expect("threads").with_lanes(32);
+        let engines = [1, 7, 33, 256].map(engine).into_iter();
+        engines.chain([Blocks::Reverse, Blocks::Shuffled(3)].map(order)).map(Device::emulator).collect()
+    }
+
+    /// Contacts of two bodies, no two alike and in no order; each knows its place here by its time.
+    fn hits(seed: u64, count: usize) -> Vec<Hit> {
+        let (mut rng, mut seen, mut all) = (Rng::new(seed), BTreeSet::new(), Vec::new());
+        while all.len() < count {
+            let [a, b] = [0; 2].map(|_| (rng.bits() % u64::from(2 * OF_A_BODY)) as u32);
+            if seen.insert([a, b]) {
+                let toi = all.len() as f64;
+                all.push(Hit { a, b, verdict: Verdict { toi, ..Verdict::default() } });
+            }
+        }
+        all
+    }
+
+    /// Orders two lists on a device, with so much room.
+    fn ordered<T: Ordered>(device: &Device, lists: [&[T]; 2], turn: u32, room: usize) -> Outcome<T> {
+        let at = |n| Offsets { vertex: n, triangle: n, edge: n };
+        let layout = Layout { starts: vec![at(0), at(OF_A_BODY), at(2 * OF_A_BODY)], ..Layout::default() };
+        let mut order = Order::<T>::new(device, &layout, turn, room).expect("memory");
+        let mut counts = vec![0; counter::COUNT as usize];
+        let lists = [(counter::VF_HITS, lists[0]), (counter::EE_HITS, lists[1])].map(|(at, entries)| {
+            let mut list = List::new(device, "contacts", at, entries.len()).expect("memory");
+            counts[at as usize] = list.put(entries).expect("written").1;
+            list
+        });
+        let counters = device.upload(&counts).expect("memory");
+        // Twice: what a frame left must not reach the next one.
+        for _ in 0..2 {
+            let mut again = counters.read(counts.len()).expect("read");
+            again[counter::ORDERED as usize] = 0;
+            let counters = device.upload(&again).expect("memory");
+            order.run(device, &lists[0], Some(&lists[1]), counters.span()).expect("no rule is broken");
+            counts = counters.read(counts.len()).expect("read");
+        }
+        let demand = order.list.demand(&counts);
+        let whole = demand as usize <= room;
+        let all = whole.then(|| order.view(&counts, &[&lists[0], &lists[1]]).expect("read")).flatten();
+        let all = all.map(|view| view.to_vec());
+        (all, demand)
+    }
+
+    /// What they should become: by the first body's features, by the second's, then edges.
+    fn wanted<T: Ordered>(lists: [&[T]; 2], turn: u32) -> Vec<T> {
+        let key = |list: usize, [a, b]: [u32; 2]| match list {
+            0 if a >= turn => (1, b, a),
+            _ => (2 * list, a, b),
+        };
+        let mut all: Vec<(usize, T)> =
+            (0..2).flat_map(|i| lists[i].iter().map(move |&contact| (i, contact))).collect();
+        all.sort_by_key(|(list, contact)| key(*list, contact.name()));
+        all.into_iter().map(|(_, contact)| contact).collect()
+    }
+
+    #[test]
+    fn contacts_of_every_kind_come_in_canonical_order() {
+        for device in machines() {
+            for (vf, ee) in [(0, 0), (1, 0), (0, 1), (300, 0), (700, 900), (3, 2_500)] {
+                let (vf, ee) = (hits(5, vf), hits(6, ee));
+                for (turn, room) in [(OF_A_BODY, 4_096), (u32::MAX, vf.len() + ee.len())] {
+                    let lists = [&vf[..], &ee[..]];
+                    let (found, demand) = ordered(&device, lists, turn, room);
+                    assert_eq!(demand, (vf.len() + ee.len()) as u64);
+                    assert!(found.expect("room") == wanted(lists, turn), "{}: {lists:?}", device.name());
+                }
+            }
+            let pairs: Vec<Pair> = hits(7, 400).iter().map(|hit| Pair { a: hit.a, b: hit.b }).collect();
+            let (found, _) = ordered(&device, [&pairs, &[]], u32::MAX, 500);
+            assert_eq!(found, Some(wanted([&pairs, &[]], u32::MAX)));
+        }
+    }
+
+    /// The judge of the test above condemns two contacts that changed places.
+    #[test]
+    fn another_order_is_noticed() {
+        let all = hits(8, 100);
+        let mut right = wanted([&all, &[]], OF_A_BODY);
+        right.swap(40, 41);
+        assert!(right != wanted([&all, &[]], OF_A_BODY));
+    }
+
+    #[test]
+    fn more_contacts_than_room_are_counted() {
+        for device in machines() {
+            let all = hits(9, 300);
+            assert_eq!(ordered(&device, [&all[..100], &all[100..]], OF_A_BODY, 299), (None, 300));
+            assert_eq!(ordered(&device, [&all[..], &[]], OF_A_BODY, 0), (None, 300));
+        }
+    }
+
+    /// Names of 2 x 31 bits leave none for numbers: the host's turn.
+    #[test]
+    fn names_too_long_for_a_word_stay_unordered() {
+        let device = machines().remove(0);
+        let end = Offsets { vertex: 1 << 31, triangle: 5, edge: 9 };
+        let layout = Layout { starts: vec![Offsets::default(), end], ..Layout::default() };
+        let mut order = Order::<Pair>::new(&device, &layout, u32::MAX, 16).expect("memory");
+        let mut list = List::new(&device, "contacts", counter::CONTACTS, 1).expect("memory");
+        let mut counts = vec![0; counter::COUNT as usize];
+        counts[counter::CONTACTS as usize] = list.put(&[Pair { a: 1, b: 2 }]).expect("written").1;
+        let counters = device.upload(&counts).expect("memory");
+        let launches = device.launches();
+        order.run(&device, &list, None, counters.span()).expect("nothing to do");
+        assert_eq!(device.launches(), launches);
+        assert!(order.view(&counts, &[&list]).expect("read").is_none());
+    }
+}

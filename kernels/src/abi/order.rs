@@ -1,0 +1,50 @@
+//! Contacts into canonical order: what they are ordered by, and the argument block.
+
+use super::{Hit, Pair, Span, Tiles};
+use bytemuck::{Pod, Zeroable};
+
+/// What contacts are ordered by.
+pub trait Named {
+    /// The two features.
+    fn name(&self) -> [u32; 2];
+}
+impl Named for Pair {
+    fn name(&self) -> [u32; 2] {
+        [self.a, self.b]
+    }
+}
+impl Named for Hit {
+    fn name(&self) -> [u32; 2] {
+        [self.a, self.b]
+    }
+}
+
+arguments! {
+    /// `order_keys`, `order_gather`: contacts into canonical order.
+    OrderArgs<T: Pod> {
+        /// Contacts: triangle pairs, or vertices and faces.
+        first: Span<T>,
+        /// Contacts of edges; or none.
+        second: Span<T>,
+        /// Out: all, in order.
+        out: Span<T>,
+        /// Their keys, each above the contact's number.
+        items: Span<u64>,
+        /// Counts of the keys' lowest bytes.
+        tiles: Tiles,
+        /// Counters, see [`counter`](super::counter).
+        counters: Span<u64>,
+        /// Which counter tells how many contacts the first list has.
+        first_at: u32,
+        /// The same of the second.
+        second_at: u32,
+        /// First features of the first list from here on are of the second body.
+        turn: u32,
+        /// Bits of a feature.
+        bits: u32,
+        /// Bits of a number.
+        number_bits: u32,
+        /// Zero.
+        pad: u32,
+    }
+}

@@ -1,0 +1,13 @@
+//! What the card has an instruction for, where there is no card.
+
+/// The smaller of two finite numbers; of two zeros the first.
+#[inline(always)]
+pub fn lesser32(a: f32, b: f32) -> f32 {
+    if b < a { b } else { a }
+}
+
+/// The larger of two finite numbers; of two zeros the first.
+#[inline(always)]
+pub fn greater32(a: f32, b: f32) -> f32 {
+    if b > a { b } else { a }
+}
