@@ -116,14 +116,14 @@ python3 - "$out" "$(machine)" <<'PYTHON'
 import csv, glob, json, os, sys
 out, machine = sys.argv[1:]
 rows = [json.loads(line) for line in open(f"{out}/times.jsonl")]
-stages = ["construct", "fit", "refit", "traverse", "balance", "narrow", "total", "wall"]
+stages = ["construct", "fit", "refit", "traverse", "balance", "narrow", "total", "order", "wall"]
 with open(f"{out}/times.csv", "w", newline="") as file:
     write = csv.writer(file)
     write.writerow(["machine", "scene", "triangles", "query", "solver", "triangle_pairs", "candidates", "contacts",
-                    "hash", "bytes"] + [s + "_us" for s in stages])
+                    "unresolved", "hash", "bytes"] + [s + "_us" for s in stages])
     for r in rows:
         write.writerow([machine, r["scene"], r["triangles"], r["query"], r["solver"], r["triangle_pairs"],
-                        r["candidates"], r["contacts"], r["hash"], r["bytes"]] +
+                        r["candidates"], r["contacts"], r["unresolved"], r["hash"], r["bytes"]] +
                        [round(1e3 * r["ms"][s], 1) for s in stages])
 choices = [json.loads(line) for line in open(f"{out}/choices.jsonl")]
 with open(f"{out}/choices.csv", "w", newline="") as file:
