@@ -151,6 +151,9 @@ def full(state, part):
 def pass_by(step, state):
     """What an instruction that does not jump changes."""
     if step.op == "WARPSYNC":
+        # EXCLUSIVE, in front of a reduction on sm_80, is not believed to bring lanes together: they must be before.
+        if step.name == "WARPSYNC.EXCLUSIVE":
+            return
         if not step.guard and (step.name == "WARPSYNC.ALL" or full(state, step.parts[0])):
             state.together()
     elif step.op == "ENDCOLLECTIVE":

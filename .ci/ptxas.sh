@@ -127,7 +127,8 @@ for ptxas in "${assemblers[@]}"; do
     for arch in "${archs[@]}"; do
         disassembled "$ptxas" "$arch" "$work/apart.ptx" apart || die "$(cat "$work/apart.said")"
         python3 "$here/lanes.py" "guarded" "$work/apart.sass" >"$work/said" || die "a guard is not seen: $(cat "$work/said")"
-        for fault in 's/(WARPSYNC|BRA\.DIV|BRA\.CONV|BSYNC)[^;]*/NOP/' 's/WARPSYNC[^;]*/WARPSYNC 0xffff/; s/(BRA\.DIV|BSYNC)[^;]*/NOP/'; do
+        for fault in 's/(WARPSYNC|BRA\.DIV|BRA\.CONV|BSYNC)[^;]*/NOP/' 's/WARPSYNC[^;]*/WARPSYNC 0xffff/; s/(BRA\.DIV|BSYNC)[^;]*/NOP/' \
+            's/WARPSYNC[^;]*/WARPSYNC.EXCLUSIVE 0xffffffff/; s/(BRA\.DIV|BSYNC)[^;]*/NOP/'; do
             sed -E "$fault" "$work/apart.sass" >"$work/planted.sass"
             if python3 "$here/lanes.py" planted "$work/planted.sass" >"$work/said" ||
                 ! grep -q "^planted: apart: SHFL" "$work/said"; then

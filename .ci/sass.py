@@ -10,7 +10,7 @@ NAMES = re.compile(r"UR\d+|UP\d|SR_[\w.]+|SRZ|\bB\d+|R\d+(?:\.64)?|P\d|c\[[^\]]*
 SILENT = ("NOP", "BAR", "WARPSYNC", "BSSY", "BSYNC", "BREAK")
 # Where a block ends. A trap (BPT) ends the launch.
 ENDS = ("BRA", "BRX", "EXIT", "RET", "BPT")
-UNREADABLE = ("JMP", "JMX", "JMXU", "BRXU", "RTT", "KILL", "ELECT", "R2B", "WARPSYNC.EXCLUSIVE")
+UNREADABLE = ("JMP", "JMX", "JMXU", "BRXU", "RTT", "KILL", "ELECT", "R2B")
 
 
 class Unreadable(Exception):

@@ -49,6 +49,7 @@ pub fn separate<R: Real, V: Rung<3>, E: Rung<4>, B: Block>(b: &mut B, a: &RungAr
             let [x, y] = edge_edge(l, a, pair);
             Edges::new(x, y, &a.params)
         });
+        l.meet();
     });
 }
 
