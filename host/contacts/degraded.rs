@@ -17,8 +17,8 @@ pub enum Degraded {
         /// How many.
         pairs: u64,
     },
-    /// Pairs whose budget of boxes ended ([`Query::boxes`](crate::Query::boxes)): listed, but their times may be far too early. Not counted by an
-    /// earliest query.
+    /// Pairs whose budget of boxes ended ([`Query::boxes`](crate::Query::boxes)): listed, but their times may be far too
+    /// early. Not counted by an earliest query.
     Boxes {
         /// How many.
         pairs: u64,

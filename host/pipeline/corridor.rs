@@ -229,10 +229,10 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
 
     /// Whether a list of any step had too little room.
     fn is_short(&mut self, counters: &[u64]) -> bool {
-        let steps = self.narrow.steps().iter().chain(&[Step::Order]);
+        let mut steps = self.narrow.steps().iter().chain(&[Step::Order]);
         self.pairs.is_short(counters)
             || self.walk.lists().iter().any(|list| list.is_short(counters))
-            || steps.clone().any(|&step| self.narrow.lists(step).iter().any(|list| list.is_short(counters)))
+            || steps.any(|&step| self.narrow.lists(step).iter().any(|list| list.is_short(counters)))
     }
 
     fn traverse(&mut self) -> Result<(), Error> {

@@ -199,8 +199,7 @@ impl Session {
     /// Runs one stage of this frame `times` times, on the device alone, and gives each run's milliseconds: for profilers,
     /// and for figures of one stage. What the stage needs runs before, once, where it has not yet: the leaves' volumes for
     /// [`Stage::Refit`], a whole frame for [`Stage::Traverse`], [`Stage::Narrow`] and
-    /// [`Stage::Order`]. The next [`Session::detect`] answers
-    /// as it would have. A body without triangles has no stages, and a CPU orders nothing: no runs.
+    /// [`Stage::Order`]. The next [`Session::detect`] answers as it would have. A body without triangles has no stages, and a CPU orders nothing: no runs.
     ///
     /// # Errors
     /// Those of the device.

@@ -52,14 +52,14 @@ impl<T: Ordered> Order<T> {
             list: List::new(device, "contacts in order", counter::ORDERED, room)?,
             items: [device.buffer(0)?, device.buffer(0)?],
             counts: device.buffer(0)?,
-            bits: most.max(2).next_power_of_two().trailing_zeros(),
+            bits: bits(most.into()),
             turn,
         })
     }
 
     /// Bits of a contact's place in its list.
     fn number_bits(&self) -> u32 {
-        (self.list.room().max(2) as u64).next_power_of_two().trailing_zeros()
+        bits(self.list.room() as u64)
     }
 
     /// Whether names and places share a word, a place having 32 bits at most. Else the lists stay as they are, and the host
@@ -122,6 +122,11 @@ impl<T: Ordered> Order<T> {
         sort(device, self.items.each_ref(), (room as u32, live), counts, &bytes)?;
         device.launch::<T::Gather>(device.blocks_striding::<T::Gather>(room), &gather)
     }
+}
+
+/// Bits of numbers below `end`; one at least.
+fn bits(end: u64) -> u32 {
+    end.max(2).next_power_of_two().trailing_zeros()
 }
 
 /// The first vertex of the second body; beyond all where there is none.

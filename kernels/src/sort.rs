@@ -107,7 +107,8 @@ pub fn starts<B: Block>(b: &mut B, tiles: &Tiles) -> Bins {
 
 /// # Pass: items in the order of one byte; equal bytes keep their order
 /// Launch   a block a tile.
-/// Reads    items, their digits' counts; where only the device knows how many items there are, that number.   Writes   items; the counts of the next byte's digits in the tiles they go to.
+/// Reads    items, their digits' counts; where only the device knows how many items there are, that number.
+/// Writes   items; the counts of the next byte's digits in the tiles they go to.
 /// Before   the counts are complete; those of the next byte are zero.
 /// Room     fixed; cannot run out.
 /// Cost     8 B in, 8 B out and an atomic a key; 512 B a tile and block, summed by each. Three rounds to L2 in a row: items

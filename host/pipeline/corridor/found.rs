@@ -5,7 +5,9 @@ use crate::device::View;
 use crate::error::Error;
 use crate::pipeline::blunt::Blunt;
 use crate::pipeline::narrow::Narrow;
+use crate::pipeline::order::{Order, Ordered};
 use crate::pipeline::precision::Precision;
+use crate::pipeline::room::List;
 use crate::pipeline::volumes::Kernels;
 use nearmiss_kernels::abi::{Hit, Pair, counter};
 
@@ -51,6 +53,15 @@ impl Hits<'_> {
     }
 }
 
+/// The contacts of the lists in canonical order, if the device has put them so.
+fn in_order<'a, T: Ordered>(
+    order: Option<&'a Order<T>>,
+    counters: &[u64],
+    lists: &[&List<T>],
+) -> Result<Option<View<'a, T>>, Error> {
+    order.map_or(Ok(None), |order| order.view(counters, lists))
+}
+
 impl<R: Precision, V: Kernels> Corridor<R, V> {
     /// Brings over with one wait what the end of a frame reads: counters, and as many contacts as the last frame had.
     pub(super) fn read_ahead(&self) -> Result<(), Error> {
@@ -82,16 +93,13 @@ impl<R: Precision, V: Kernels> Corridor<R, V> {
         };
         match &self.narrow {
             Narrow::Discrete { contacts, ordered, .. } => {
-                let ordered = ordered.as_ref().map(|order| order.view(&found.counters, &[contacts]));
-                let ordered = ordered.transpose()?.flatten();
+                let ordered = in_order(ordered.as_deref(), &found.counters, &[contacts])?;
                 found.ordered = ordered.is_some();
                 found.pairs = Some(ordered.map_or_else(|| contacts.view(&found.counters), Ok)?);
             }
             Narrow::Continuous(c) => {
                 found.blunt = c.blunt;
-                let lists = [&c.vf_hits, &c.ee_hits];
-                let ordered = c.ordered.as_ref().map(|order| order.view(&found.counters, &lists));
-                let ordered = ordered.transpose()?.flatten();
+                let ordered = in_order(c.ordered.as_ref(), &found.counters, &[&c.vf_hits, &c.ee_hits])?;
                 found.ordered = ordered.is_some();
                 found.hits = Some(match ordered {
                     Some(all) => Hits::One(all, c.vf_hits.demand(&found.counters) as usize),

@@ -34,25 +34,30 @@ impl<R: Real> Vec3<R> {
     pub fn map<S: Real>(self, f: impl Fn(R) -> S) -> Vec3<S> {
         Vec3([f(self[0]), f(self[1]), f(self[2])])
     }
+    /// Component-wise with another.
+    #[inline]
+    fn zip(self, o: Self, f: impl Fn(R, R) -> R) -> Self {
+        Vec3([f(self[0], o[0]), f(self[1], o[1]), f(self[2], o[2])])
+    }
     /// The component-wise smaller.
     #[inline]
     pub fn min(self, o: Self) -> Self {
-        Vec3([self[0].min(o[0]), self[1].min(o[1]), self[2].min(o[2])])
+        self.zip(o, R::min)
     }
     /// The component-wise larger.
     #[inline]
     pub fn max(self, o: Self) -> Self {
-        Vec3([self[0].max(o[0]), self[1].max(o[1]), self[2].max(o[2])])
+        self.zip(o, R::max)
     }
     /// The component-wise [`Real::lesser`].
     #[inline]
     pub fn lesser(self, o: Self) -> Self {
-        Vec3([self[0].lesser(o[0]), self[1].lesser(o[1]), self[2].lesser(o[2])])
+        self.zip(o, R::lesser)
     }
     /// The component-wise [`Real::greater`].
     #[inline]
     pub fn greater(self, o: Self) -> Self {
-        Vec3([self[0].greater(o[0]), self[1].greater(o[1]), self[2].greater(o[2])])
+        self.zip(o, R::greater)
     }
     /// Rounded to f32; f64 too large for it becomes infinite.
     #[inline]

@@ -16,16 +16,21 @@ use bytemuck::Pod;
 /// Bits of a kind.
 pub const KIND_BITS: u32 = 2;
 
-/// How many contacts each list has.
-fn counts<T: Pod, B: Block>(b: &B, a: &OrderArgs<T>) -> [u32; 2] {
+/// How many contacts the first list has, and both.
+fn counts<T: Pod, B: Block>(b: &B, a: &OrderArgs<T>) -> (u32, u64) {
     let of = |list: Span<T>, at: u32| if list.is_empty() { 0 } else { b.load(a.counters, at).min(list.len) };
-    [of(a.first, a.first_at) as u32, of(a.second, a.second_at) as u32]
+    let first = of(a.first, a.first_at);
+    (first as u32, first + of(a.second, a.second_at))
+}
+
+/// A contact by its number.
+fn contact<T: Pod, L: Lane>(l: &L, a: &OrderArgs<T>, first: u32, i: u32) -> T {
+    if i < first { l.read(a.first, i) } else { l.read(a.second, i - first) }
 }
 
 /// A key of each contact: its kind and its name, above its number.
 pub fn keys<T: Pod + Named, B: Block>(b: &mut B, a: &OrderArgs<T>) {
-    let [first, second] = counts(b, a);
-    let all = first as u64 + second as u64;
+    let (first, all) = counts(b, a);
     let count = all.min(a.items.len) as u32;
     let stride = b.blocks() * b.lanes();
     b.phase(|l| {
@@ -34,8 +39,7 @@ pub fn keys<T: Pod + Named, B: Block>(b: &mut B, a: &OrderArgs<T>) {
             l.fetch_add(a.counters, counter::ORDERED, all);
         }
         while i < count {
-            let contact = if i < first { l.read(a.first, i) } else { l.read(a.second, i - first) };
-            let [x, y] = contact.name();
+            let [x, y] = contact(l, a, first, i).name();
             let (kind, x, y) = match (i < first, x < a.turn) {
                 (true, true) => (0u64, x, y),
                 (true, false) => (1, y, x),
@@ -51,15 +55,14 @@ pub fn keys<T: Pod + Named, B: Block>(b: &mut B, a: &OrderArgs<T>) {
 
 /// The contacts in the order of their keys.
 pub fn gather<T: Pod + Named, B: Block>(b: &mut B, a: &OrderArgs<T>) {
-    let [first, second] = counts(b, a);
-    let count = (first as u64 + second as u64).min(a.items.len) as u32;
+    let (first, all) = counts(b, a);
+    let count = all.min(a.items.len) as u32;
     let stride = b.blocks() * b.lanes();
     b.phase(|l| {
         let mut i = l.global();
         while i < count {
             let from = l.read(a.items, i) as u32 & u32::MAX >> (32 - a.number_bits);
-            let contact = if from < first { l.read(a.first, from) } else { l.read(a.second, from - first) };
-            l.write(a.out, i, contact);
+            l.write(a.out, i, contact(l, a, first, from));
             i = i.saturating_add(stride);
         }
     });

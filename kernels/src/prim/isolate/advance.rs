@@ -124,7 +124,7 @@ impl<S: Grid, const N: usize> Advance<S, N> {
             return Ok(Advanced::Within { from: t, to: t });
         }
         // Where the plane is reached to a rounding there is no next time: it may still be certain soon.
-        let next = self.pair.until(&now, (d.over, self.pair.point_error())).map_or(t, |next| next.max(t));
+        let next = self.pair.until(&now, d.over).map_or(t, |next| next.max(t));
         if next >= self.end {
             return Ok(Advanced::Apart);
         }
@@ -204,20 +204,26 @@ impl<S: Grid, const N: usize> Pair<S, N> {
     }
 
     #[inline(always)]
-    pub(super) fn point_error(&self) -> S {
+    fn point_error(&self) -> S {
         S::ADVANCE_POINT * self.reach + S::ISOLATE_UNDERFLOW
+    }
+
+    /// A control vector at a time is farther than the distance along `n`, whatever its length, where their product as computed is
+    /// above this: the distance times the length of `n`, and the error of the product, of which `ADVANCE_POINT` holds the
+    /// roundings of the vector (4u) and of the inner product (3u).
+    #[inline(always)]
+    pub(super) fn need(&self, n: Vec3<S>, over: S) -> S {
+        over * (n.dot(n).sqrt() * S::INCLUSION_UP) + sum(n) * self.point_error()
     }
 
     /// Until when all control vectors are farther than the distance along `p`; None if they are not even at the time of `x`.
     ///
-    /// With `n = p / |p|` as rounded, a control vector is farther where `n . w(t)` is above the distance times the length of
-    /// `n`. `need` is that and the error of the product: `ADVANCE_POINT` holds the roundings of `x` (4u) and of the inner
-    /// product (3u). Where a computed value at the start is above `need` and at the end below, the line between them is
+    /// `n` is `p / |p|` as rounded. Where a computed value at the start is above `need` and at the end below, the line between them is
     /// below the exact one, and its root, a quotient of three roundings and this product, is rounded down.
     #[inline(always)]
-    fn until(&self, Facing { x, p }: &Facing<S, N>, (over, error): (S, S)) -> Option<S> {
+    fn until(&self, Facing { x, p }: &Facing<S, N>, over: S) -> Option<S> {
         let n = *p * (S::ONE / p.dot(*p).sqrt());
-        let need = over * (n.dot(n).sqrt() * S::INCLUSION_UP) + sum(n) * error;
+        let need = self.need(n, over);
         let mut next = S::NEVER;
         for k in 0..N {
             if !(n.dot(x[k]) > need) {

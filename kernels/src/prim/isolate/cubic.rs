@@ -31,12 +31,23 @@ impl<S: Grid, const N: usize> Pair<S, N> {
             (mix.dot(c[1]) + n1.dot(c[0])) * third,
             n1.dot(c[1]),
         ];
-        let reach = |v: &[Vec3<S>; 2]| v[0].map(S::abs).greater(v[1].map(S::abs));
         let (a, b, c) = (reach(a), reach(b), reach(c));
         let two = |i: usize, j: usize| a[i] * b[j] + a[j] * b[i];
         let permanent = two(1, 2) * c[0] + two(2, 0) * c[1] + two(0, 1) * c[2];
         Cubic { k, error: S::ISOLATE_CUBIC * permanent + S::ISOLATE_UNDERFLOW }
     }
+}
+
+/// The largest magnitudes of a vector that moves.
+#[inline(always)]
+pub(super) fn reach<S: Real>([start, end]: &[Vec3<S>; 2]) -> Vec3<S> {
+    start.map(S::abs).greater(end.map(S::abs))
+}
+
+/// Whether all coefficients of a part are of one sign, and farther from zero than that.
+#[inline(always)]
+pub(super) fn beyond<S: Real>(&[a, b, c, d]: &Part<S>, by: S) -> bool {
+    a.lesser(b).lesser(c.lesser(d)) > by || a.greater(b).greater(c.greater(d)) < -by
 }
 
 #[inline(always)]
@@ -60,8 +71,7 @@ impl<S: Real> Cubic<S> {
     /// Whether the cubic certainly has no root in a part: all coefficients are of one sign, beyond their error.
     #[inline(always)]
     pub fn one_sign(&self, part: &Part<S>) -> bool {
-        let [a, b, c, d] = *part;
-        a.lesser(b).lesser(c.lesser(d)) > self.error || a.greater(b).greater(c.greater(d)) < -self.error
+        beyond(part, self.error)
     }
 
     /// Whether a part is too near to zero throughout for any sign.

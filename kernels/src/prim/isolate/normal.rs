@@ -4,7 +4,7 @@
 //! at least `|g| / |n|` from the origin at every time, and exactly that where its nearest point is inside. There, and where the
 //! distance is small to the features' extent, it tells more than the plane that [`super::turning`] turns.
 
-use super::cubic::Cubic;
+use super::cubic::{Cubic, beyond, reach};
 use super::pair::Pair;
 use crate::math::{Real, Vec3};
 use crate::prim::inclusion::Grid;
@@ -28,7 +28,6 @@ impl<S: Grid, const N: usize> Pair<S, N> {
     pub fn normal(&self) -> Normal<S> {
         let [a, b] = &self.edges;
         let between = (a[0].cross(b[1]) + a[1].cross(b[0])) * S::of(0.5);
-        let reach = |v: &[Vec3<S>; 2]| v[0].map(S::abs).greater(v[1].map(S::abs));
         let (x, y) = (reach(a), reach(b));
         let products = (x[0] + x[1] + x[2]) * (y[0] + y[1] + y[2]);
         Normal {
@@ -54,7 +53,6 @@ impl<S: Real> Normal<S> {
             .fold(S::ZERO, S::max);
         let length = longest.sqrt() * S::INCLUSION_UP + self.error;
         let need = (over * length + self.g.error) * S::INCLUSION_UP;
-        let [a, b, c, d] = self.g.part(from, to);
-        a.lesser(b).lesser(c.lesser(d)) > need || a.greater(b).greater(c.greater(d)) < -need
+        beyond(&self.g.part(from, to), need)
     }
 }

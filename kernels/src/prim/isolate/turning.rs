@@ -8,7 +8,7 @@
 //! turning; this one errs by the square of the angle only, whichever features are the nearest.
 
 use super::nearest::nearest;
-use super::pair::{Pair, sum};
+use super::pair::Pair;
 use crate::math::Vec3;
 use crate::prim::inclusion::Grid;
 
@@ -31,14 +31,10 @@ impl<S: Grid, const N: usize> Pair<S, N> {
 
     /// Whether the features certainly stay farther apart than `over` between the times of both. About 100 operations.
     ///
-    /// A product of a direction and a control vector errs by `point_error` of the direction's components, as
-    /// computed: its `16u` hold the `4u` of the vector and the roundings of the product. Of the coefficient in the middle,
-    /// half a sum of two products, twice is asked.
+    /// Of the coefficient in the middle, half a sum of two products, twice is asked.
     #[inline(always)]
     pub fn stays_farther(&self, from: &Facing<S, N>, to: &Facing<S, N>, over: S) -> bool {
-        let error = self.point_error();
-        let need = |p: Vec3<S>| over * (p.dot(p).sqrt() * S::INCLUSION_UP) + sum(p) * error;
-        let (first, last) = (need(from.p), need(to.p));
+        let (first, last) = (self.need(from.p, over), self.need(to.p, over));
         let middle = (first + last) * S::INCLUSION_UP;
         let mut farther = true;
         for k in 0..N {

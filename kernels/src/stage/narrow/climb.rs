@@ -13,11 +13,11 @@
 //!          is known is not asked: it could not be less. So it is the same in any order.
 //! Room     hits, left: counted past the end, grown, run again.
 //! Cost     8 B pair, 12 B indices, 128 B positions (gathered); isolation about 1,100 operations for a pair with a root, of
-//!          f64 as many; settling some 30 exact signs for what touches at the start; the first
-//!          planes of a separation 400 operations.
+//!          f64 as many; settling some 30 exact signs for what touches at the start; the first planes of a separation
+//!          400 operations.
 
 use super::{listed, moving};
-use crate::abi::{EVERYTHING, Hit, Listed, Pair, RungArgs, counter};
+use crate::abi::{EVERYTHING, Hit, Listed, Pair, RungArgs, Span, counter};
 use crate::exec::{Block, Lane, Slot};
 use crate::math::Real;
 use crate::prim::cubic::Moving;
@@ -25,6 +25,7 @@ use crate::prim::inclusion::{Grid, Verdict};
 use crate::prim::isolate::ladder::{ee_touch, isolated, settled, vf_touch};
 use crate::prim::isolate::separation::at_once;
 use crate::prim::isolate::{self, Edges, Face};
+use bytemuck::Pod;
 
 /// A vertex and the corners of a face, in motion.
 #[inline(always)]
@@ -185,9 +186,15 @@ fn each<R: Real, B: Block>(
 /// Leaves a pair to the next rung; a lane by itself.
 #[inline(always)]
 pub(super) fn leave<R: Real, L: Lane>(l: &L, a: &RungArgs<R>, of: &Listed, pair: Pair) {
-    let place = l.fetch_add(a.counters, of.left_at, 1);
-    if place < of.left.len {
-        l.write(of.left, place as u32, pair);
+    push(l, (of.left, a.counters, of.left_at), pair);
+}
+
+/// Appends to a list where there is room, and counts.
+#[inline(always)]
+fn push<T: Pod, L: Lane>(l: &L, (list, counters, at): (Span<T>, Span<u64>, u32), entry: T) {
+    let place = l.fetch_add(counters, at, 1);
+    if place < list.len {
+        l.write(list, place as u32, entry);
     }
 }
 
@@ -195,10 +202,7 @@ pub(super) fn leave<R: Real, L: Lane>(l: &L, a: &RungArgs<R>, of: &Listed, pair:
 #[inline(always)]
 pub(super) fn tell<R: Real, L: Lane>(l: &L, a: &RungArgs<R>, of: &Listed, (pair, verdict): (Pair, Verdict)) {
     if keep(l, a, verdict) {
-        let place = l.fetch_add(a.counters, of.hits_at, 1);
-        if place < of.hits.len {
-            l.write(of.hits, place as u32, Hit { a: pair.a, b: pair.b, verdict });
-        }
+        push(l, (of.hits, a.counters, of.hits_at), Hit { a: pair.a, b: pair.b, verdict });
     }
 }
 

@@ -1,16 +1,17 @@
 //! # Separate: pairs that may come within a separation → contacts, proven, with bounds of their first time
 //! Paper    none: beyond it.
 //! Launch   as many blocks as run at once, both kinds of pairs in one: in f32 over what `climb::separate_at_once` left, then in
-//!          f64 over what that left, or over all. Advancements are of different lengths: a lane takes a step, then the next, and a lane that is done draws its block's next pair, so that
-//!          few lanes wait. A block's pairs lie a grid apart, and the kinds begin at opposite ends of the grid.
+//!          f64 over what that left, or over all. Advancements are of different lengths: a lane takes a step, then the
+//!          next, and a lane that is done draws its block's next pair, so that few lanes wait. A block's pairs lie a grid apart,
+//!          and the kinds begin at opposite ends of the grid.
 //! Reads    pairs, faces or edges, positions of both frames (four vertices).
 //! Writes   contacts and unresolved pairs with toi and toi_hi; or the earliest. And in f32 what is left, in its own list.
 //! Before   pairs are complete.
-//! After    every pair that comes within the separation is listed or left, none late; see [`crate::prim::isolate::advance`]. A pair whose
-//!          steps end is listed as unresolved.
+//! After    every pair that comes within the separation is listed or left, none late; see [`crate::prim::isolate::advance`].
+//!          A pair whose steps end in f64 is listed as unresolved.
 //! Room     hits, left: counted past the end, grown, run again.
-//! Cost     8 B pair, 12 B indices, 128 B positions (gathered); 300 to 600 operations a step, mostly two to
-//!          fifteen steps.
+//! Cost     8 B pair, 12 B indices, 128 B positions (gathered); 300 to 600 operations a step, mostly two to fifteen
+//!          steps.
 
 use super::climb::{edge_edge, leave, tell, vertex_face};
 use super::listed;
