@@ -123,21 +123,44 @@ fn many_more_elementary_pairs_than_room() {
 /// The lists of a rung begin with room for so many.
 const RUNG: u64 = 1_024;
 
+/// In one plane, moving as one by a little: `n` small triangles that lie in a large one, each by itself; and beside it `m` long ones across `m`
+/// others. So 3 n vertices touch a face, and 4 m^2 edges an edge; no corner is where another is.
+fn lying(n: usize, m: usize) -> Body {
+    let small = |i: usize| {
+        let [x, y] = [i % 32, i / 32].map(|k| (k + 1) as f32 / 128.0);
+        let by = 1.0 / 256.0;
+        [[x, y, 0.0], [x + by, y, 0.0], [x, y + by, 0.0]]
+    };
+    let long = |i: usize, across: bool| {
+        let (at, by, length) = ((i + 1) as f32 / 32.0, 1.0 / 128.0, 1.0);
+        [[at, 0.0], [at + by, 0.0], [at, length]].map(|[x, y]| if across { [y, x, 0.0] } else { [x, y, 0.0] })
+    };
+    let large = [[0.0f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let beside = |p: [f32; 3]| [p[0] + 2.0, p[1], p[2]];
+    let mut t0: Vec<_> = large.to_vec();
+    t0.extend((0..n).flat_map(small));
+    t0.extend((0..2 * m).flat_map(|i| long(i % m, i >= m)).map(beside));
+    let t1: Vec<_> = t0.iter().map(|p| [p[0] + 1.0 / 1024.0, p[1], p[2]]).collect();
+    let faces: Vec<_> = (0..t0.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    moving(&t0, &t1, &faces)
+}
+
 #[test]
 fn short_lists_of_what_isolation_leaves_alone() {
-    // 25 equal triangles that move as one: 1,800 and 2,700 elementary pairs, fewer than the 4,096 that other lists have
-    // room for. None of them can be isolated, in f32 or in f64; all touch at the start, which is certain.
-    let body = sliding(25);
+    // Fewer than the 4,096 that other lists have room for. None of them can be isolated, in f32 or in f64; all touch at the
+    // start, which is certain.
+    let body = lying(400, 18);
     for motion in [Motion::Continuous, Motion::Earliest] {
         for device in [engine(), microscope(Order::Shuffled(5))] {
             let (contacts, reruns) = twice(device, vec![body.clone()], Query::of(motion));
             for left in [contacts.escalated_vf_ee, contacts.open_vf_ee] {
                 assert!(left.iter().all(|n| *n > RUNG), "{left:?}");
             }
+            assert!(contacts.candidates_vf_ee.iter().all(|n| *n <= 4_096), "{:?}", contacts.candidates_vf_ee);
             assert!(reruns[0] > 0 && contacts.sliced_vf_ee == [0, 0], "{reruns:?}");
             assert_eq!((contacts.earliest_toi(), contacts.unresolved), (Some(0.0), 0));
             if motion == Motion::Continuous {
-                assert_eq!(contacts.len(), 1_800 + 2_700);
+                assert_eq!(contacts.len(), 3 * 400 + 4 * 18 * 18);
             }
         }
     }

@@ -149,9 +149,9 @@ kernels! {
     narrow_ee_f64_f64: solve::ee::<f64, f64, B>, [SolveArgs<f64>], WIDE, 0;
     narrow_blunt_f32: blunt::blunt::<f32, B>, [BluntArgs<f32>], WIDE, 0;
     narrow_blunt_f64: blunt::blunt::<f64, B>, [BluntArgs<f64>], WIDE, 0;
-    narrow_isolate_f32_f32: climb::isolate::<f32, f32, B>, [RungArgs<f32>], RUNG, 0;
+    narrow_isolate_f32_f32: climb::isolate::<f32, f32, B>, [RungArgs<f32>], NARROW, 0;
     narrow_isolate_f32_f64: climb::isolate::<f32, f64, B>, [RungArgs<f32>], NARROW, 0;
-    narrow_isolate_f64_f32: climb::isolate::<f64, f32, B>, [RungArgs<f64>], RUNG, 0;
+    narrow_isolate_f64_f32: climb::isolate::<f64, f32, B>, [RungArgs<f64>], NARROW, 0;
     narrow_isolate_f64_f64: climb::isolate::<f64, f64, B>, [RungArgs<f64>], NARROW, 0;
     narrow_settle_f32: climb::settle::<f32, B>, [RungArgs<f32>], NARROW, 0;
     narrow_settle_f64: climb::settle::<f64, B>, [RungArgs<f64>], NARROW, 0;

@@ -66,7 +66,9 @@ fn built_motions_are_judged_by_the_oracle() {
     let of = |rung: Rung, at: usize| shares[&rung][at];
     assert!(of(Rung::Single, 0) > 9 && of(Rung::Double, 0) > 9 && of(Rung::Double, 1) > 9);
     assert!([Rung::Boxes, Rung::Signs, Rung::Window].iter().all(|rung| shares[rung][1..] == [0, 0]));
-    assert_eq!(shares[&Rung::Touch][1], shares[&Rung::Touch].iter().sum::<u32>());
+    for rung in [Rung::Together, Rung::Touch] {
+        assert_eq!(shares[&rung][1], shares[&rung].iter().sum::<u32>(), "{rung:?}");
+    }
 }
 
 #[test]

@@ -19,8 +19,12 @@ pub enum Rung {
     Signs,
     /// It keeps its sign while the boxes meet.
     Window,
+    /// A point in common at the start.
+    Together,
     /// Isolation in f32.
     Single,
+    /// A direction that parts what stays in one plane, as far as f32 can tell.
+    Parted,
     /// Isolation in f64.
     Double,
     /// A closer look of it that tells no more than that they are near.
@@ -38,11 +42,13 @@ pub enum Rung {
 }
 
 impl Rung {
-    pub const ALL: [Rung; 11] = [
+    pub const ALL: [Rung; 13] = [
         Rung::Boxes,
         Rung::Signs,
         Rung::Window,
+        Rung::Together,
         Rung::Single,
+        Rung::Parted,
         Rung::Double,
         Rung::Close,
         Rung::Touch,
@@ -101,8 +107,13 @@ fn climb<const N: usize>(
     if single.finite && g.rootless(begin, end) {
         return (Rung::Window, apart);
     }
+    if single.together {
+        return (Rung::Together, Verdict::contact(0.0, 0.0, 0, false));
+    }
     if let Some(verdict) = isolated(single, p, false) {
-        return (Rung::Single, verdict);
+        let (begin, end) = single.with_margin((begin, end));
+        let flat = g.is_flat(&g.part(begin, end));
+        return (if flat { Rung::Parted } else { Rung::Single }, verdict);
     }
     let Some(window) = double.window() else { return (Rung::Double, apart) };
     if let Some(verdict) = isolated(double, p, true) {
@@ -113,8 +124,7 @@ fn climb<const N: usize>(
         return (Rung::Touch, Verdict::contact(0.0, 0.0, 0, false));
     }
     if is_flat(double, window) {
-        let apart_all_along = double.misses_throughout(window.0, window.1);
-        return (Rung::Flat, if apart_all_along { apart } else { near(double, window, 1.0, p) });
+        return (Rung::Flat, near(double, window, 1.0, p));
     }
     match (0..SLICES).map(|i| sliced(double, window, i, p)).find(|slice| *slice != Slice::Apart) {
         None | Some(Slice::Apart) => (Rung::Slices, apart),

@@ -20,6 +20,7 @@ mod memory;
 pub mod ptx;
 
 pub use memory::{Shared, Word, whole_words};
+pub use ptx::ALONE;
 
 use crate::abi::Span;
 use bytemuck::Pod;

@@ -108,12 +108,14 @@ impl Real for f32 {
     fn sqrt(self) -> f32 {
         sqrt32(self)
     }
+    #[inline(always)]
     fn parts(self) -> Parts {
         let b = self.to_bits();
         let (e, m) = ((b >> 23 & 0xff) as i32, (b & 0x7f_ffff) as u64);
         let mantissa = if e == 0 { m } else { m | 1 << 23 };
         Parts { negative: b >> 31 == 1 && mantissa != 0, mantissa, exponent: e.max(1) - 150 }
     }
+    #[inline(always)]
     fn pow2(k: i32) -> f32 {
         f32::from_bits(((k.clamp(-126, 127) + 127) as u32) << 23)
     }
@@ -144,12 +146,14 @@ impl Real for f64 {
     fn sqrt(self) -> f64 {
         sqrt64(self)
     }
+    #[inline(always)]
     fn parts(self) -> Parts {
         let b = self.to_bits();
         let (e, m) = ((b >> 52 & 0x7ff) as i32, b & ((1 << 52) - 1));
         let mantissa = if e == 0 { m } else { m | 1 << 52 };
         Parts { negative: b >> 63 == 1 && mantissa != 0, mantissa, exponent: e.max(1) - 1075 }
     }
+    #[inline(always)]
     fn pow2(k: i32) -> f64 {
         f64::from_bits(((k.clamp(-1022, 1023) + 1023) as u64) << 52)
     }

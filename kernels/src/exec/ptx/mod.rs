@@ -11,6 +11,9 @@ mod raw;
 
 #[cfg(target_arch = "nvptx64")]
 pub use card::Card;
+/// Whether lanes run one after another: then one may leave out what its answer does not need. A card's lanes go side by side:
+/// what one of them needs costs all of them, and a branch around it more.
+pub const ALONE: bool = cfg!(not(target_arch = "nvptx64"));
 /// The smaller and the larger of two finite numbers, of two zeros either; and the square root, correctly rounded on every machine.
 #[cfg(target_arch = "nvptx64")]
 pub use raw::{greater32, lesser32, sqrt32, sqrt64};

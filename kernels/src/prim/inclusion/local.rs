@@ -58,7 +58,7 @@ impl<S: Grid> Edges<S> {
 impl<S: Grid, const N: usize> Local<S, N> {
     #[inline(always)]
     fn of<R: Real>(pairs: [(Moving<R>, Moving<R>); N], p: &Params) -> Self {
-        let (w, scale, finite) = differences(pairs);
+        let Differences { w, scale, finite, .. } = differences(pairs);
         let (mut reach, mut speed) = (Vec3([S::ZERO; 3]), Vec3([S::ZERO; 3]));
         for k in 0..N {
             let [start, end] = w[k];
@@ -92,39 +92,54 @@ impl<S: Grid, const N: usize> Local<S, N> {
     }
 }
 
-/// The differences of pairs of points in motion, in the positions' precision, rounded to `S` once, with the largest component
-/// in [1, 2); the power of two by which they were multiplied, and whether all are finite.
+/// The differences of pairs of points in motion.
+pub struct Differences<S, const N: usize> {
+    /// In the positions' precision, rounded to `S` once, with the largest component in [1, 2).
+    pub w: [[Vec3<S>; 2]; N],
+    /// The power of two by which they were multiplied.
+    pub scale: f64,
+    /// Whether their magnitudes add up to a finite number: then all are finite.
+    pub finite: bool,
+    /// Bits: the points of which pairs are one at the start. Exact.
+    pub together: u32,
+}
+
+/// The differences of pairs of points in motion.
 #[inline(always)]
 pub fn differences<R: Real, S: Grid, const N: usize>(
     pairs: [(Moving<R>, Moving<R>); N],
-) -> ([[Vec3<S>; 2]; N], f64, bool) {
+) -> Differences<S, N> {
     if R::WIDE {
         let less = |(x, y): (Moving<R>, Moving<R>)| [x.t0.wide() - y.t0.wide(), x.t1.wide() - y.t1.wide()];
-        let (wide, scale, finite) = scaled(pairs.map(less));
-        (wide.map(|[start, end]| [start.map(S::of), end.map(S::of)]), scale, finite)
+        let Differences { w, scale, finite, together } = scaled(pairs.map(less));
+        Differences { w: w.map(|[start, end]| [start.map(S::of), end.map(S::of)]), scale, finite, together }
     } else {
         let to = |x: Vec3<R>| x.map(|x| S::of(x.wide()));
         scaled(pairs.map(|(x, y)| [to(x.t0) - to(y.t0), to(x.t1) - to(y.t1)]))
     }
 }
 
-/// The same vectors with the largest component in [1, 2), the factor, and whether all are finite.
+/// The same vectors with the largest component in [1, 2).
 #[inline(always)]
-#[allow(clippy::eq_op, reason = "x - x is 0, or NaN where x is not finite")]
-fn scaled<T: Real, const N: usize>(mut w: [[Vec3<T>; 2]; N]) -> ([[Vec3<T>; 2]; N], f64, bool) {
+fn scaled<T: Real, const N: usize>(mut w: [[Vec3<T>; 2]; N]) -> Differences<T, N> {
     // Loops by index: they unroll, and nothing needs memory.
-    let (mut most, mut none) = (Vec3([T::ZERO; 3]), Vec3([T::ZERO; 3]));
+    let (mut most, mut sum) = (Vec3([T::ZERO; 3]), Vec3([T::ZERO; 3]));
+    let mut together = 0;
     for k in 0..N {
+        // Differences of floats are zero where the points are equal, and only there.
+        let [x, y, z] = w[k][0].0;
+        together |= (((x == T::ZERO) & (y == T::ZERO) & (z == T::ZERO)) as u32) << k;
         for i in 0..2 {
-            most = most.max(w[k][i].map(T::abs));
-            none = none + (w[k][i] - w[k][i]); // 0, or NaN for ever
+            most = most.greater(w[k][i].map(T::abs));
+            sum = sum + w[k][i].map(T::abs);
         }
     }
-    let most = most[0].max(most[1]).max(most[2]);
-    let finite = none[0] + none[1] + none[2] == T::ZERO;
+    let most = most[0].greater(most[1]).greater(most[2]);
+    // Infinite, or not a number, if one of them is.
+    let finite = sum[0] + sum[1] + sum[2] < T::of(f64::INFINITY);
     let p = most.wide().parts();
     if !finite || p.mantissa == 0 {
-        return (w, 1.0, finite);
+        return Differences { w, scale: 1.0, finite, together };
     }
     let scale = T::pow2(-(p.exponent + 63 - p.mantissa.leading_zeros() as i32));
     for k in 0..N {
@@ -132,5 +147,5 @@ fn scaled<T: Real, const N: usize>(mut w: [[Vec3<T>; 2]; N]) -> ([[Vec3<T>; 2]; 
             w[k][i] = w[k][i] * scale;
         }
     }
-    (w, scale.wide(), true)
+    Differences { w, scale: scale.wide(), finite, together }
 }

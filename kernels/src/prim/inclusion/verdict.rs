@@ -77,9 +77,12 @@ impl Verdict {
         Verdict { toi: end, toi_hi: end, state: SEPARATED, boxes }
     }
 
+    /// A contact at the start.
+    pub const TOUCHING: Verdict = Verdict::contact(0.0, 0.0, 0, false);
+
     /// A contact, the first in `[toi, toi_hi]`.
     #[inline]
-    pub fn contact(toi: f64, toi_hi: f64, boxes: u32, exhausted: bool) -> Self {
+    pub const fn contact(toi: f64, toi_hi: f64, boxes: u32, exhausted: bool) -> Self {
         Verdict { toi, toi_hi, state: CONTACT | if exhausted { EXHAUSTED } else { 0 }, boxes }
     }
 

@@ -138,23 +138,42 @@ pub fn turns<S: Real>(o: &Part<S>) -> [S; 2] {
     }
 }
 
-/// A root of a part between `low` and `high`, where its values have opposite signs, near enough to be suspected: Newton's
-/// steps, kept in the bracket. A guess: where the root truly is is for the certificate to say.
-#[inline(always)]
-pub fn root<S: Real>(o: &Part<S>, (mut low, mut high): (S, S), (below, above): (S, S), steps: u32) -> S {
-    let mut s = low + (high - low) * (below.abs() / (below.abs() + above.abs()));
-    for _ in 0..steps {
-        let f = value(o, s);
-        if (f < S::ZERO) == (below < S::ZERO) {
-            low = s;
-        } else {
-            high = s;
-        }
-        let next = s - f / slope(o, s);
-        // Not strictly: that would bisect away from a root that is found. NaN bisects.
-        s = if next >= low && next <= high { next } else { (low + high) * S::of(0.5) };
+/// A root of a part between two places where its values have opposite signs: a guess, bettered step by step and kept between
+/// them. Where the root truly is is for the certificate to say.
+#[derive(Clone, Copy, Debug)]
+pub struct Root<S> {
+    low: S,
+    high: S,
+    /// Whether the values below the root are below zero.
+    rises: bool,
+    /// The guess.
+    pub at: S,
+}
+
+impl<S: Real> Root<S> {
+    /// Between two places, given the values there.
+    #[inline(always)]
+    pub fn between((low, high): (S, S), (below, above): (S, S)) -> Self {
+        let at = low + (high - low) * (below.abs() / (below.abs() + above.abs()));
+        Root { low, high, rises: below < S::ZERO, at }
     }
-    s
+
+    /// Newton's step; where it would leave the bracket, the middle. Whether the guess moved: if not, it never will.
+    #[inline(always)]
+    pub fn step(&mut self, o: &Part<S>) -> bool {
+        let f = value(o, self.at);
+        if (f < S::ZERO) == self.rises {
+            self.low = self.at;
+        } else {
+            self.high = self.at;
+        }
+        let next = self.at - f / slope(o, self.at);
+        // Not strictly: that would bisect away from a root that is found. NaN bisects.
+        let inside = next >= self.low && next <= self.high;
+        let before = self.at;
+        self.at = if inside { next } else { (self.low + self.high) * S::of(0.5) };
+        self.at != before
+    }
 }
 
 /// The largest magnitude of the components of all.

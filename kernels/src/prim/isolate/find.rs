@@ -1,9 +1,10 @@
 //! Isolation: the window is cut at suspect times; between them nothing meets, around each one certificate decides.
 
-use super::cubic::{Cubic, root, slope, turns, value};
+use super::cubic::{Cubic, Root, slope, turns, value};
 use super::nearest::nearest;
 use super::pair::Pair;
 use super::suspect::Around;
+use crate::exec::ALONE;
 use crate::math::Real;
 use crate::prim::inclusion::Grid;
 
@@ -38,7 +39,7 @@ pub enum Found<S> {
 pub struct Look<S> {
     /// How long around it, at least; the certificate holds more easily in less time, the sign change in more.
     pub around: S,
-    /// Newton's steps towards it.
+    /// Newton's steps towards it, in each look.
     pub steps: u32,
     /// How often it is looked at again where a look tells nothing, each time for a 64th of the time.
     pub again: u32,
@@ -92,15 +93,19 @@ impl<S: Grid, const N: usize> Pair<S, N> {
                 continue;
             }
             let (mut half, mut again) = (look.around.min(width * S::of(WIDEST)), look.again);
+            let mut root = Root::between((at, next), (before, after));
             // No contact before it, once there was a look.
             let mut apart = None;
             from = loop {
                 let (s, unsure) = if known {
-                    // A closer look needs a closer root.
-                    let steps = if again < look.again { 2 * look.steps } else { look.steps };
-                    let s = root(&part, (at, next), (before, after), steps);
+                    // A closer look needs a closer root, and goes on from the last.
+                    for _ in 0..look.steps {
+                        if !root.step(&part) && ALONE {
+                            break;
+                        }
+                    }
                     // Far enough for the sign of the cubic to be certain on both sides.
-                    (s, S::of(3.0) * g.error * width / slope(&part, s).abs())
+                    (root.at, S::of(BEYOND) * g.error * width / slope(&part, root.at).abs())
                 } else {
                     (next, S::ZERO)
                 };
@@ -146,6 +151,10 @@ impl<S: Grid, const N: usize> Pair<S, N> {
 
 /// By how much a look is closer than the one before. Costs, proves nothing.
 const CLOSER: f64 = 64.0;
+
+/// How far from a root the sign of the cubic is looked for, in units of where its error would end if it were a straight
+/// line. The less, the shorter the interval of a contact; too little, and the sign is not seen. Costs, proves nothing.
+const BEYOND: f64 = 1.125;
 
 /// The longest time around a suspect, of the step and of the window. Costs, proves nothing.
 const WIDEST: f64 = 1.0 / 16.0;

@@ -3,7 +3,7 @@
 //! | rung | decides | in |
 //! | --- | --- | --- |
 //! | [`rejected`] | pairs whose cubic keeps its sign, over the step or over their window | f32 |
-//! | [`isolated`] | roots, by a certificate each | f32, then f64 |
+//! | [`isolated`] | a point in common at the start, by comparisons; roots, by a certificate each; what is flat, by a direction | f32, then f64 |
 //! | [`vf_touch`], [`ee_touch`] | what touches at t = 0, by exact signs | integers |
 //! | [`sliced`] | the window in [`SLICES`] slices | f64 |
 //! | [`near`] | what stays farther than half the tolerance; and when what does not comes nearer | f64 |
@@ -57,6 +57,9 @@ pub fn rejected<const N: usize>(pair: &Pair<f32, N>) -> bool {
 #[inline(always)]
 pub fn isolated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bool) -> Option<Verdict> {
     let Some(window) = pair.window() else { return Some(Verdict::separated(p.end, 0)) };
+    if pair.together {
+        return Some(Verdict::TOUCHING);
+    }
     let pause = pair.pause(pair.scaled(p.tolerance));
     // f32 has a rung behind it that tells more.
     let closer = last && S::WIDE;
@@ -66,6 +69,10 @@ pub fn isolated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bo
         Found::Apart => Some(Verdict::separated(p.end, 0)),
         Found::Meets { from, to } if last || to - from <= pause + pause => met(from, to, p),
         Found::Near { from } => Some(Verdict::unresolved(from.wide(), p.end, 0, false)),
+        // What stays in one plane, of a body that moves as a whole for example, has no sign to go by, but a direction.
+        Found::Open { from, flat: true } if pair.misses_throughout(from, window.1) => {
+            Some(Verdict::separated(p.end, 0))
+        }
         _ => None,
     }
 }
@@ -272,12 +279,13 @@ pub fn settled<const N: usize>(
 ) -> Result<Verdict, (f64, f64)> {
     let Some(window) = pair.window() else { return Ok(Verdict::separated(p.end, 0)) };
     if window.0 <= 0.0 && touch() {
-        return Ok(Verdict::contact(0.0, 0.0, 0, false));
+        return Ok(Verdict::TOUCHING);
     }
     if !(all || is_flat(pair, window)) {
         return Err(window);
     }
-    if pair.misses_throughout(window.0, window.1) {
+    // Else isolation has asked for a direction already.
+    if all && pair.misses_throughout(window.0, window.1) {
         return Ok(Verdict::separated(p.end, 0));
     }
     Ok(near(pair, window, if all { NEARER } else { 1.0 }, p))

@@ -1,8 +1,9 @@
 //! A pair in motion, scaled to its own size: control vectors, edges, the window of time in which it can meet.
 
+use crate::exec::ALONE;
 use crate::math::{Real, Vec3};
 use crate::prim::cubic::Moving;
-use crate::prim::inclusion::local::differences;
+use crate::prim::inclusion::local::{Differences, differences};
 use crate::prim::inclusion::{Grid, Params};
 
 /// The relative motion of two features: `F(t)` is the hull of `N` control vectors that move linearly. `N` is 3 for a vertex
@@ -21,6 +22,8 @@ pub struct Pair<S, const N: usize> {
     pub speed: S,
     /// Whether all differences are finite numbers; nothing is ever rejected otherwise.
     pub finite: bool,
+    /// Whether a corner of one feature is where a corner of the other is at the start: they touch. Exact.
+    pub together: bool,
     /// What lengths were multiplied by.
     pub scale: f64,
     /// The end of the step, rounded up to `S`.
@@ -37,8 +40,8 @@ impl<S: Grid> Face<S> {
     #[inline(always)]
     pub fn new<R: Real>(v: Moving<R>, f: [Moving<R>; 3], p: &Params) -> Self {
         let pairs = [(v, f[0]), (v, f[1]), (v, f[2]), (f[1], f[0]), (f[2], f[0])];
-        let ([w0, w1, w2, a, b], scale, finite) = differences(pairs);
-        Pair::of([w0, w1, w2], [a, b], (scale, finite), p)
+        let Differences { w: [w0, w1, w2, a, b], scale, finite, together } = differences(pairs);
+        Pair::of([w0, w1, w2], [a, b], (scale, finite, together), p)
     }
 }
 
@@ -47,14 +50,19 @@ impl<S: Grid> Edges<S> {
     #[inline(always)]
     pub fn new<R: Real>(a: [Moving<R>; 2], b: [Moving<R>; 2], p: &Params) -> Self {
         let pairs = [(a[0], b[0]), (a[0], b[1]), (a[1], b[0]), (a[1], b[1]), (a[1], a[0]), (b[1], b[0])];
-        let ([w0, w1, w2, w3, along, across], scale, finite) = differences(pairs);
-        Pair::of([w0, w1, w2, w3], [along, across], (scale, finite), p)
+        let Differences { w: [w0, w1, w2, w3, along, across], scale, finite, together } = differences(pairs);
+        Pair::of([w0, w1, w2, w3], [along, across], (scale, finite, together), p)
     }
 }
 
 impl<S: Grid, const N: usize> Pair<S, N> {
     #[inline(always)]
-    fn of(w: [[Vec3<S>; 2]; N], edges: [[Vec3<S>; 2]; 2], (scale, finite): (f64, bool), p: &Params) -> Self {
+    fn of(
+        w: [[Vec3<S>; 2]; N],
+        edges: [[Vec3<S>; 2]; 2],
+        (scale, finite, together): (f64, bool, u32),
+        p: &Params,
+    ) -> Self {
         let (mut reach, mut speed) = (Vec3([S::ZERO; 3]), Vec3([S::ZERO; 3]));
         for k in 0..N {
             let [start, end] = w[k];
@@ -63,7 +71,8 @@ impl<S: Grid, const N: usize> Pair<S, N> {
         }
         let (reach, speed) = (most(reach), most(speed));
         let finite = finite && !p.separation.is_nan();
-        Pair { w, edges, reach, speed, finite, scale, end: S::end(p.end).0 }
+        let together = together & ((1 << N) - 1) != 0;
+        Pair { w, edges, reach, speed, finite, together, scale, end: S::end(p.end).0 }
     }
 
     /// A length, in the units of the control vectors.
@@ -104,6 +113,9 @@ impl<S: Grid, const N: usize> Pair<S, N> {
             }
             window.clip(low.map(|x| -x));
             window.clip(high);
+            if ALONE && window.empty && self.finite {
+                return None;
+            }
         }
         if self.finite { window.within(self.end) } else { Some((S::ZERO, self.end)) }
     }

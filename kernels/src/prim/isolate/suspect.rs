@@ -95,39 +95,39 @@ impl<S: Grid, const N: usize> Pair<S, N> {
     /// steps), with every axis in its own unit. About 70 operations a step.
     #[inline]
     pub fn misses_throughout(&self, from: S, to: S) -> bool {
-        let ends = [self.at(from), self.at(to)];
         // An axis has its own errors, and its own unit: of a pair that is long on one axis, the others still tell.
         let mut reach = Vec3([S::ZERO; 3]);
         for k in 0..N {
-            reach = reach.max(self.w[k][0].map(S::abs)).max(self.w[k][1].map(S::abs));
+            reach = reach.greater(self.w[k][0].map(S::abs)).greater(self.w[k][1].map(S::abs));
         }
-        let error = reach * ((S::ISOLATE_PLACE + S::ISOLATE_SIDE) * S::INCLUSION_UP);
         let unit = reach.map(|x| S::ONE / x.max(S::ISOLATE_UNDERFLOW));
+        let error = (S::ISOLATE_PLACE + S::ISOLATE_SIDE) * S::INCLUSION_UP;
         let times = |x: Vec3<S>, y: Vec3<S>| Vec3([x[0] * y[0], x[1] * y[1], x[2] * y[2]]);
-        let beyond = |d: Vec3<S>| {
-            let d = times(d, unit);
-            let bound = d.map(S::abs).dot(error) * S::INCLUSION_UP + S::ISOLATE_UNDERFLOW;
-            (0..N).all(|k| d.dot(ends[0][k]) > bound && d.dot(ends[1][k]) > bound)
-        };
-        let scaled = ends.map(|end| end.map(|x| times(x, unit)));
+        // Points are computed anew each time, with the bits of `at`: kept, they would take registers from all who never ask.
+        let point = |k: usize, t: S| self.w[k][0] * (S::ONE - t) + self.w[k][1] * t;
         let mut d = Vec3([S::ZERO; 3]);
         for k in 0..N {
-            d = d + (scaled[0][k] + scaled[1][k]);
+            d = d + (point(k, from) + point(k, to));
         }
-        d = d * S::of(0.5 / N as f64);
+        d = times(d, unit) * S::of(0.5 / N as f64);
         for _ in 0..=PLANES {
-            if beyond(d) {
-                return self.finite;
-            }
-            let mut at = scaled[0][0];
-            for i in 0..2 {
+            let normal = times(d, unit);
+            let bound = normal.map(S::abs).dot(reach) * error * S::INCLUSION_UP + S::ISOLATE_UNDERFLOW;
+            let mut at = point(0, from);
+            let mut least = normal.dot(at);
+            for t in [from, to] {
                 for k in 0..N {
-                    if d.dot(scaled[i][k]) < d.dot(at) {
-                        at = scaled[i][k];
+                    let (x, along) = (point(k, t), normal.dot(point(k, t)));
+                    if along < least {
+                        (least, at) = (along, x);
                     }
                 }
             }
-            let e = d - at;
+            // Of finite numbers nothing above is NaN.
+            if least > bound {
+                return self.finite;
+            }
+            let e = d - times(at, unit);
             let (along, square) = (d.dot(e), e.dot(e));
             if !(along > S::ZERO && square > S::ISOLATE_UNDERFLOW) {
                 break;

@@ -9,8 +9,8 @@
 //! Room     none; cannot run out.
 //! Cost     8 of 32 B a hit, 12 B indices, 128 B positions (gathered); 50 operations.
 
-use super::moving;
-use crate::abi::{BluntArgs, Hit, Span, counter};
+use super::{edge_edge, vertex_face};
+use crate::abi::{BluntArgs, Hit, Pair, Span, counter};
 use crate::exec::{Block, Lane, Slot};
 use crate::math::Real;
 use crate::prim::cubic::Moving;
@@ -28,12 +28,12 @@ pub fn blunt<R: Real, B: Block>(b: &mut B, a: &BluntArgs<R>) {
         while i < vf + ee {
             let large = if i < vf {
                 let hit = l.read(a.vf, i as u32);
-                let face = l.read(a.faces, hit.b).map(|v| moving(l, &a.frames, v));
-                is_large(&[moving(l, &a.frames, hit.a)], &face)
+                let (v, f) = vertex_face(l, (&a.frames, a.faces), Pair { a: hit.a, b: hit.b });
+                is_large(&[v], &f)
             } else {
                 let hit = l.read(a.ee, (i - vf) as u32);
-                let ends = |e: u32| l.read(a.edges, e).map(|v| moving(l, &a.frames, v));
-                is_large(&ends(hit.a), &ends(hit.b))
+                let [x, y] = edge_edge(l, (&a.frames, a.edges), Pair { a: hit.a, b: hit.b });
+                is_large(&x, &y)
             };
             count += large as u32;
             i += stride;

@@ -16,33 +16,15 @@
 //!          f64 as many; settling some 30 exact signs for what touches at the start; the first planes of a separation
 //!          400 operations.
 
-use super::{listed, moving};
+use super::{edge_edge, listed, vertex_face};
 use crate::abi::{EVERYTHING, Hit, Listed, Pair, RungArgs, Span, counter};
 use crate::exec::{Block, Lane, Slot};
 use crate::math::Real;
-use crate::prim::cubic::Moving;
 use crate::prim::inclusion::{Grid, Verdict};
 use crate::prim::isolate::ladder::{ee_touch, isolated, settled, vf_touch};
 use crate::prim::isolate::separation::at_once;
 use crate::prim::isolate::{self, Edges, Face};
 use bytemuck::Pod;
-
-/// A vertex and the corners of a face, in motion.
-#[inline(always)]
-pub(super) fn vertex_face<R: Real, L: Lane>(
-    l: &L,
-    a: &RungArgs<R>,
-    pair: Pair,
-) -> (Moving<R>, [Moving<R>; 3]) {
-    let face = l.read(a.faces, pair.b).map(|v| moving(l, &a.frames, v));
-    (moving(l, &a.frames, pair.a), face)
-}
-
-/// The ends of two edges, in motion.
-#[inline(always)]
-pub(super) fn edge_edge<R: Real, L: Lane>(l: &L, a: &RungArgs<R>, pair: Pair) -> [[Moving<R>; 2]; 2] {
-    [pair.a, pair.b].map(|e| l.read(a.edges, e).map(|v| moving(l, &a.frames, v)))
-}
 
 /// Isolation of roots, positions in R, computed in S.
 pub fn isolate<R: Real, S: Grid, B: Block>(b: &mut B, a: &RungArgs<R>) {
@@ -51,12 +33,12 @@ pub fn isolate<R: Real, S: Grid, B: Block>(b: &mut B, a: &RungArgs<R>) {
         b,
         a,
         |l, pair| {
-            let (v, f) = vertex_face(l, a, pair);
+            let (v, f) = vertex_face(l, (&a.frames, a.faces), pair);
             let pair = Face::<S>::new(v, f, &a.params);
             unless_later(l, a, &pair, |pair| isolated(pair, &a.params, last))
         },
         |l, pair| {
-            let [x, y] = edge_edge(l, a, pair);
+            let [x, y] = edge_edge(l, (&a.frames, a.edges), pair);
             let pair = Edges::<S>::new(x, y, &a.params);
             unless_later(l, a, &pair, |pair| isolated(pair, &a.params, last))
         },
@@ -70,12 +52,12 @@ pub fn settle<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
         b,
         a,
         |l, pair| {
-            let (v, f) = vertex_face(l, a, pair);
+            let (v, f) = vertex_face(l, (&a.frames, a.faces), pair);
             let pair = Face::<f64>::new(v, f, &a.params);
             unless_later(l, a, &pair, |pair| settled(pair, || vf_touch(v, f), all, &a.params).ok())
         },
         |l, pair| {
-            let [x, y] = edge_edge(l, a, pair);
+            let [x, y] = edge_edge(l, (&a.frames, a.edges), pair);
             let pair = Edges::<f64>::new(x, y, &a.params);
             unless_later(l, a, &pair, |pair| settled(pair, || ee_touch(x, y), all, &a.params).ok())
         },
@@ -88,11 +70,11 @@ pub fn separate_at_once<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
         b,
         a,
         |l, pair| {
-            let (v, f) = vertex_face(l, a, pair);
+            let (v, f) = vertex_face(l, (&a.frames, a.faces), pair);
             at_once(&Face::new(v, f, &a.params), &a.params)
         },
         |l, pair| {
-            let [x, y] = edge_edge(l, a, pair);
+            let [x, y] = edge_edge(l, (&a.frames, a.edges), pair);
             at_once(&Edges::new(x, y, &a.params), &a.params)
         },
     );

@@ -20,9 +20,42 @@ use crate::math::Real;
 use crate::prim::cubic::Moving;
 
 /// A vertex in motion.
+#[inline(always)]
 fn moving<R: Real, L: Lane>(l: &L, frames: &Frames<R>, vertex: u32) -> Moving<R> {
     let vertex = l.read(frames.moving, vertex);
     Moving { t0: vertex.t0.at, t1: vertex.t1.at }
+}
+
+/// The corners of a triangle, in motion.
+#[inline(always)]
+fn triangle<R: Real, L: Lane>(l: &L, frames: &Frames<R>, [x, y, z]: [u32; 3]) -> [Moving<R>; 3] {
+    [moving(l, frames, x), moving(l, frames, y), moving(l, frames, z)]
+}
+
+/// The ends of an edge, in motion.
+#[inline(always)]
+fn edge<R: Real, L: Lane>(l: &L, frames: &Frames<R>, [x, y]: [u32; 2]) -> [Moving<R>; 2] {
+    [moving(l, frames, x), moving(l, frames, y)]
+}
+
+/// A vertex and the corners of a face, in motion.
+#[inline(always)]
+fn vertex_face<R: Real, L: Lane>(
+    l: &L,
+    (frames, faces): (&Frames<R>, Span<[u32; 3]>),
+    pair: Pair,
+) -> (Moving<R>, [Moving<R>; 3]) {
+    (moving(l, frames, pair.a), triangle(l, frames, l.read(faces, pair.b)))
+}
+
+/// The ends of two edges, in motion.
+#[inline(always)]
+fn edge_edge<R: Real, L: Lane>(
+    l: &L,
+    (frames, edges): (&Frames<R>, Span<[u32; 2]>),
+    pair: Pair,
+) -> [[Moving<R>; 2]; 2] {
+    [edge(l, frames, l.read(edges, pair.a)), edge(l, frames, l.read(edges, pair.b))]
 }
 
 /// Runs `body` for each of `count` items, a lane each, in a grid of any size; an item may `Some` an entry to append to

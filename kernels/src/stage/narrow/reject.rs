@@ -11,7 +11,7 @@
 //! Cost     8 B candidate, 12 B indices, 128 B positions (gathered); about 100 operations for half of the candidates of real
 //!          cloth, 300 for the others. A tenth survives.
 
-use super::{append_each, listed, moving};
+use super::{append_each, edge_edge, listed, vertex_face};
 use crate::abi::{RejectArgs, counter};
 use crate::exec::{Block, Lane};
 use crate::math::Real;
@@ -23,13 +23,13 @@ pub fn reject<R: Real, B: Block>(b: &mut B, a: &RejectArgs<R>) {
     let count = listed(b, a.vf, a.counters, counter::VF);
     append_each(b, count, (a.may_vf, a.counters, counter::VF_SURVIVORS), |l, i| {
         let pair = l.read(a.vf, i);
-        let face = l.read(a.faces, pair.b).map(|v| moving(l, &a.frames, v));
-        (!rejected(&Face::new(moving(l, &a.frames, pair.a), face, &a.params))).then_some(pair)
+        let (v, f) = vertex_face(l, (&a.frames, a.faces), pair);
+        (!rejected(&Face::new(v, f, &a.params))).then_some(pair)
     });
     let count = listed(b, a.ee, a.counters, counter::EE);
     append_each(b, count, (a.may_ee, a.counters, counter::EE_SURVIVORS), |l, i| {
         let pair = l.read(a.ee, i);
-        let [x, y] = [pair.a, pair.b].map(|e| l.read(a.edges, e).map(|v| moving(l, &a.frames, v)));
+        let [x, y] = edge_edge(l, (&a.frames, a.edges), pair);
         (!rejected(&Edges::new(x, y, &a.params))).then_some(pair)
     });
 }

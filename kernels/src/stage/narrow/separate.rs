@@ -13,8 +13,8 @@
 //! Cost     8 B pair, 12 B indices, 128 B positions (gathered); 300 to 600 operations a step, mostly two to fifteen
 //!          steps.
 
-use super::climb::{edge_edge, leave, tell, vertex_face};
-use super::listed;
+use super::climb::{leave, tell};
+use super::{edge_edge, listed, vertex_face};
 use crate::abi::{Listed, Pair, RungArgs};
 use crate::exec::{Block, Lane, Shared};
 use crate::math::Real;
@@ -25,6 +25,7 @@ use crate::prim::isolate::{self, Edges, Face};
 pub const SHARED: u32 = 8;
 
 /// All pairs of a list, by a rung.
+#[inline(always)]
 pub fn separate<R: Real, V: Rung<3>, E: Rung<4>, B: Block>(b: &mut B, a: &RungArgs<R>) {
     let share = |b: &B, of: &Listed, first: u32, drawn: u32| Share {
         count: listed(b, of.pairs, a.counters, of.pairs_at) as u64,
@@ -43,11 +44,11 @@ pub fn separate<R: Real, V: Rung<3>, E: Rung<4>, B: Block>(b: &mut B, a: &RungAr
     });
     b.phase(|l| {
         advance::<R, V, 3, _>(l, a, &a.vf, (&vf, drawn), |pair| {
-            let (v, f) = vertex_face(l, a, pair);
+            let (v, f) = vertex_face(l, (&a.frames, a.faces), pair);
             Face::new(v, f, &a.params)
         });
         advance::<R, E, 4, _>(l, a, &a.ee, (&ee, drawn), |pair| {
-            let [x, y] = edge_edge(l, a, pair);
+            let [x, y] = edge_edge(l, (&a.frames, a.edges), pair);
             Edges::new(x, y, &a.params)
         });
         l.meet();
@@ -64,6 +65,7 @@ struct Share {
 }
 
 /// Draws pairs and advances them until there are no more.
+#[inline(always)]
 fn advance<R: Real, T: Rung<N>, const N: usize, L: Lane>(
     l: &L,
     a: &RungArgs<R>,

@@ -17,9 +17,9 @@
 //! Cost     8 B pair, 64 B facets, 192 B positions (gathered); some 500 operations, half of them for the 15 tests. What
 //!          is to be listed is numbered in shared memory first, so that all lanes write.
 
-use super::{listed, moving};
+use super::{listed, triangle};
 use crate::abi::{Facet, Pair, SiftArgs, Span, counter};
-use crate::exec::{Block, Lane, Slot};
+use crate::exec::{ALONE, Block, Lane, Slot};
 use crate::math::{Real, Vec3};
 use crate::prim::cubic::Moving;
 use crate::prim::isolate::pair::Window;
@@ -109,23 +109,33 @@ fn owned(p: &Facet, q: &Facet) -> u32 {
     mask
 }
 
-/// Bits, as of [`owned`], of the pairs of features whose boxes share no point. No branches: some lane would take each. By
-/// signs of differences, as half of a card's lanes compare at a time.
+/// Those of the tests `asked`, bits as of [`owned`], whose features have boxes that share a point. No branches on a card: some
+/// lane would take each. By signs of differences, as half of a card's lanes compare at a time.
 #[inline(always)]
-fn apart<R: Real>([p, q]: &[[Swept<R>; 3]; 2]) -> u32 {
+fn meeting<R: Real>(asked: u32, [p, q]: &[[Swept<R>; 3]; 2]) -> u32 {
     let hull = |c: &[Swept<R>; 3]| c[0].merge(c[1]).merge(c[2]);
-    let edges = |c: &[Swept<R>; 3]| [c[0].merge(c[1]), c[1].merge(c[2]), c[2].merge(c[0])];
+    let edge = |c: &[Swept<R>; 3], i: usize| c[i].merge(c[(i + 1) % 3]);
     let (of_p, of_q) = (hull(p), hull(q));
-    let mut mask = 0;
-    let mut tell = |bit: usize, apart: u32| mask |= apart >> (31 - bit) & 1 << bit;
+    let mut mask = asked;
+    let mut test = |bit: usize, x: &Swept<R>, y: &Swept<R>| mask &= !(x.apart(y) >> (31 - bit) & 1 << bit);
+    let needs = |bits: u32| !ALONE || asked & bits != 0;
     for k in 0..3 {
-        tell(k, p[k].apart(&of_q));
-        tell(3 + k, q[k].apart(&of_p));
+        if needs(1 << k) {
+            test(k, &p[k], &of_q);
+        }
+        if needs(8 << k) {
+            test(3 + k, &q[k], &of_p);
+        }
     }
-    let (p, q) = (edges(p), edges(q));
-    for (i, p) in p.iter().enumerate() {
-        for (j, q) in q.iter().enumerate() {
-            tell(6 + 3 * i + j, p.apart(q));
+    let of_q = [edge(q, 0), edge(q, 1), edge(q, 2)];
+    for i in 0..3 {
+        if needs(7 << (6 + 3 * i)) {
+            let p = edge(p, i);
+            for j in 0..3 {
+                if needs(1 << (6 + 3 * i + j)) {
+                    test(6 + 3 * i + j, &p, &of_q[j]);
+                }
+            }
         }
     }
     mask
@@ -161,12 +171,12 @@ pub fn sift<R: Real, B: Block>(b: &mut B, a: &SiftArgs<R>) {
             if i < count {
                 let pair = l.read(a.pairs, i);
                 let (p, q) = (l.read(a.facets, pair.a), l.read(a.facets, pair.b));
-                let corners = |of: &Facet| {
-                    let [x, y, z] = of.corners;
-                    [x, y, z].map(|v| moving(l, &a.frames, v))
-                };
-                let (meet, boxes) = swept(&corners(&p), &corners(&q), gap);
-                mask = if meet { owned(&p, &q) & !apart(&boxes) } else { 0 };
+                let asked = owned(&p, &q);
+                if !(ALONE && asked == 0) {
+                    let (meet, boxes) =
+                        swept(&triangle(l, &a.frames, p.corners), &triangle(l, &a.frames, q.corners), gap);
+                    mask = if meet { meeting(asked, &boxes) } else { 0 };
+                }
             }
             *masks.of(l) = mask;
             *places.of(l) = (mask & VERTICES).count_ones() + EE * (mask & !VERTICES).count_ones();

@@ -10,8 +10,8 @@
 //! Room     hits: counted past the end, grown, run again.
 //! Cost     about 3,000 operations of f64 a lane; a search 1,200 a box, one lane. Boxes wait in a stack in local memory, 3 KB.
 
-use super::climb::{edge_edge, tell, vertex_face};
-use super::listed;
+use super::climb::tell;
+use super::{edge_edge, listed, vertex_face};
 use crate::abi::{Listed, Pair, RungArgs};
 use crate::exec::{Block, Lane, Shared, Slot};
 use crate::math::Real;
@@ -23,6 +23,7 @@ use crate::prim::isolate::{self, Edges, Face};
 pub const SHARED: u32 = 4;
 
 /// All slices of all pairs.
+#[inline(always)]
 pub fn slice<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
     let p = &a.params;
     let open = b.shared::<u32>(1);
@@ -30,11 +31,11 @@ pub fn slice<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
         b,
         (a, &a.vf, open),
         |l, pair| {
-            let (v, f) = vertex_face(l, a, pair);
+            let (v, f) = vertex_face(l, (&a.frames, a.faces), pair);
             Face::new(v, f, p)
         },
         |l, pair, known| {
-            let (v, f) = vertex_face(l, a, pair);
+            let (v, f) = vertex_face(l, (&a.frames, a.faces), pair);
             searched(inclusion::Face::<f64>::new(v, f, p), known, p)
         },
     );
@@ -42,11 +43,11 @@ pub fn slice<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
         b,
         (a, &a.ee, open),
         |l, pair| {
-            let [x, y] = edge_edge(l, a, pair);
+            let [x, y] = edge_edge(l, (&a.frames, a.edges), pair);
             Edges::new(x, y, p)
         },
         |l, pair, known| {
-            let [x, y] = edge_edge(l, a, pair);
+            let [x, y] = edge_edge(l, (&a.frames, a.edges), pair);
             searched(inclusion::Edges::<f64>::new(x, y, p), known, p)
         },
     );

@@ -8,7 +8,7 @@
 //! Room     hits: counted past the end, grown, run again.
 //! Cost     8 B candidate, 12 B indices, 128 B positions (gathered); 400 to 1,500 operations.
 
-use super::{append_each, listed, moving};
+use super::{append_each, edge_edge, listed, vertex_face};
 use crate::abi::{Hit, Pair, SolveArgs, counter};
 use crate::exec::{Block, Lane};
 use crate::math::Real;
@@ -18,16 +18,16 @@ use crate::prim::inclusion::Verdict;
 /// Vertex/face, positions in R, the cubic in S.
 pub fn vf<R: Real, S: Real, B: Block>(b: &mut B, a: &SolveArgs<R>) {
     solve(b, a, counter::VF_SURVIVORS, counter::VF_HITS, |l, pair| {
-        let face = l.read(a.faces, pair.b).map(|v| moving(l, &a.frames, v));
-        vf_toi::<R, S>(moving(l, &a.frames, pair.a), face).map(contact)
+        let (v, f) = vertex_face(l, (&a.frames, a.faces), pair);
+        vf_toi::<R, S>(v, f).map(contact)
     });
 }
 
 /// Edge/edge, positions in R, the cubic in S.
 pub fn ee<R: Real, S: Real, B: Block>(b: &mut B, a: &SolveArgs<R>) {
     solve(b, a, counter::EE_SURVIVORS, counter::EE_HITS, |l, pair| {
-        let ends = |e: u32| l.read(a.edges, e).map(|v| moving(l, &a.frames, v));
-        ee_toi::<R, S>(ends(pair.a), ends(pair.b)).map(contact)
+        let [x, y] = edge_edge(l, (&a.frames, a.edges), pair);
+        ee_toi::<R, S>(x, y).map(contact)
     });
 }
 
