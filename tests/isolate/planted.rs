@@ -68,6 +68,28 @@ fn no_direction_parts_what_meets() {
     assert!(parted > 100, "only {parted} are parted before they meet");
 }
 
+/// The same of pairs that are so flat on an axis that f32 has no digits for it, or nearly none.
+#[test]
+fn no_direction_parts_what_meets_on_a_flat_axis() {
+    let mut asked = 0;
+    for (built, toi) in contacts(29, 20) {
+        for (axis, power) in (0..3).flat_map(|axis| (90..160).step_by(5).map(move |power| (axis, power))) {
+            let mut case = built.case;
+            for p in case.positions_t0.iter_mut().chain(&mut case.positions_t1) {
+                p[axis] *= 2f64.powi(-power);
+            }
+            let ([a, b, c, d], p) = (points::<f64>(&case), Params::new(0.0));
+            let parted = match case.features {
+                Features::VertexFace => Face::<f32>::new(a, [b, c, d], &p).misses_throughout(0.0, 1.0),
+                Features::EdgeEdge => Edges::<f32>::new([a, b], [c, d], &p).misses_throughout(0.0, 1.0),
+            };
+            assert!(!parted, "{} at {toi}, axis {axis} by 2^-{power}", built.name);
+            asked += 1;
+        }
+    }
+    assert!(asked > 10_000, "{asked}");
+}
+
 #[test]
 fn contacts_are_inside_of_their_window() {
     for (built, toi) in contacts(21, 60) {
@@ -198,11 +220,12 @@ fn passes(r: &mut SmallRng) -> Case {
     let mut point = || [float(), float(), float()];
     let mut points = [[point(), point(), point(), point()], [point(), point(), point(), point()]];
     let (t, u, v) = (r.random_range(0.1..0.9), r.random_range(0.1..0.4), r.random_range(0.1..0.4));
-    for k in 0..3 {
+    let end = [0, 1, 2].map(|k| {
         let corner = |i: usize| points[0][i][k] * (1.0 - t) + points[1][i][k] * t;
         let through = corner(1) * (1.0 - u - v) + corner(2) * u + corner(3) * v;
-        points[1][0][k] = f64::from(((through - points[0][0][k] * (1.0 - t)) / t) as f32);
-    }
+        f64::from(((through - points[0][0][k] * (1.0 - t)) / t) as f32)
+    });
+    points[1][0] = end;
     let [positions_t0, positions_t1] = points;
     Case { features: Features::VertexFace, positions_t0, positions_t1 }
 }

@@ -93,14 +93,16 @@ impl<S: Grid, const N: usize> Pair<S, N> {
                 continue;
             }
             let (mut half, mut again) = (look.around.min(width * S::of(WIDEST)), look.again);
-            let mut root = Root::between((at, next), (before, after));
+            let (mut root, mut moves) = (Root::between((at, next), (before, after)), false);
             // No contact before it, once there was a look.
             let mut apart = None;
             from = loop {
                 let (s, unsure) = if known {
                     // A closer look needs a closer root, and goes on from the last.
+                    moves = true;
                     for _ in 0..look.steps {
-                        if !root.step(&part) && ALONE {
+                        moves = root.step(&part);
+                        if ALONE && !moves {
                             break;
                         }
                     }
@@ -110,6 +112,10 @@ impl<S: Grid, const N: usize> Pair<S, N> {
                     (next, S::ZERO)
                 };
                 let (t, unsure) = (begin + s * width, unsure + S::of(4.0) * S::U);
+                // No longer than signs need: in less time the certificate holds more easily.
+                if known {
+                    half = half.min(unsure * S::of(SPARE));
+                }
                 let around = unsure.max(half);
                 let (low, high) = ((t - around).max(S::ZERO), (t + around).min(self.end));
                 let fits = around <= S::of(WIDEST) && low <= t && t <= high;
@@ -123,7 +129,8 @@ impl<S: Grid, const N: usize> Pair<S, N> {
                         _ => apart = Some(low),
                     }
                 }
-                if !clear || again == 0 || half <= unsure {
+                let hopeless = if moves { false } else { !clear || half <= unsure };
+                if hopeless || again == 0 {
                     // What touches at the start is for exact signs to tell.
                     let may = look.again > 0 && t > S::ZERO;
                     return match apart {
@@ -155,6 +162,10 @@ const CLOSER: f64 = 64.0;
 /// How far from a root the sign of the cubic is looked for, in units of where its error would end if it were a straight
 /// line. The less, the shorter the interval of a contact; too little, and the sign is not seen. Costs, proves nothing.
 const BEYOND: f64 = 1.125;
+
+/// How much more of it is looked at first, where the tolerance allows: curved, the sign may be seen later. Costs, proves
+/// nothing.
+const SPARE: f64 = 4.0;
 
 /// The longest time around a suspect, of the step and of the window. Costs, proves nothing.
 const WIDEST: f64 = 1.0 / 16.0;

@@ -95,12 +95,13 @@ impl<S: Grid, const N: usize> Pair<S, N> {
     /// steps), with every axis in its own unit. About 70 operations a step.
     #[inline]
     pub fn misses_throughout(&self, from: S, to: S) -> bool {
-        // An axis has its own errors, and its own unit: of a pair that is long on one axis, the others still tell.
-        let mut reach = Vec3([S::ZERO; 3]);
+        // An axis has its own errors, and its own unit: of a pair that is long on one axis, the others still tell. It counts as
+        // at least so long: where numbers lose their digits they err by more than of themselves.
+        let mut reach = Vec3([S::ISOLATE_UNDERFLOW; 3]);
         for k in 0..N {
             reach = reach.greater(self.w[k][0].map(S::abs)).greater(self.w[k][1].map(S::abs));
         }
-        let unit = reach.map(|x| S::ONE / x.max(S::ISOLATE_UNDERFLOW));
+        let unit = reach.map(|x| S::ONE / x);
         let error = (S::ISOLATE_PLACE + S::ISOLATE_SIDE) * S::INCLUSION_UP;
         let times = |x: Vec3<S>, y: Vec3<S>| Vec3([x[0] * y[0], x[1] * y[1], x[2] * y[2]]);
         // Points are computed anew each time, with the bits of `at`: kept, they would take registers from all who never ask.

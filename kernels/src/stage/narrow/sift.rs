@@ -131,9 +131,9 @@ fn meeting<R: Real>(asked: u32, [p, q]: &[[Swept<R>; 3]; 2]) -> u32 {
     for i in 0..3 {
         if needs(7 << (6 + 3 * i)) {
             let p = edge(p, i);
-            for j in 0..3 {
+            for (j, q) in of_q.iter().enumerate() {
                 if needs(1 << (6 + 3 * i + j)) {
-                    test(6 + 3 * i + j, &p, &of_q[j]);
+                    test(6 + 3 * i + j, &p, q);
                 }
             }
         }

@@ -23,7 +23,6 @@ use crate::prim::isolate::{self, Edges, Face};
 pub const SHARED: u32 = 4;
 
 /// All slices of all pairs.
-#[inline(always)]
 pub fn slice<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
     let p = &a.params;
     let open = b.shared::<u32>(1);
