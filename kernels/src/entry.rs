@@ -77,7 +77,7 @@ const WIDE: u32 = 256;
 /// Lanes of kernels with long or uneven work: small blocks, so that few lanes wait for a long one (measured:
 /// `benches/NOTES.md`).
 const NARROW: u32 = 64;
-/// Lanes of a rung in f32 that many pairs climb: work is uneven, and two lists are appended to.
+/// Lanes of rejection and of the rungs of a separation: work is uneven, and two lists are appended to.
 const RUNG: u32 = 128;
 /// Lanes of the one block that evens the queues, as in the paper.
 const BALANCE: u32 = 512;

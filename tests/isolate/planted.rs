@@ -27,8 +27,13 @@ trait Ask {
 }
 
 fn of<A: Ask>(built: &Built, ask: A) -> A::Told {
-    let ([a, b, c, d], p) = (points::<f32>(&built.case), Params::new(0.0));
-    match built.case.features {
+    stored::<f32, A>(&built.case, ask)
+}
+
+/// The same, of positions in R.
+fn stored<R: Real, A: Ask>(case: &Case, ask: A) -> A::Told {
+    let ([a, b, c, d], p) = (points::<R>(case), Params::new(0.0));
+    match case.features {
         Features::VertexFace => ask.ask(&Face::new(a, [b, c, d], &p)),
         Features::EdgeEdge => ask.ask(&Edges::new([a, b], [c, d], &p)),
     }
@@ -78,11 +83,7 @@ fn no_direction_parts_what_meets_on_a_flat_axis() {
             for p in case.positions_t0.iter_mut().chain(&mut case.positions_t1) {
                 p[axis] *= 2f64.powi(-power);
             }
-            let ([a, b, c, d], p) = (points::<f64>(&case), Params::new(0.0));
-            let parted = match case.features {
-                Features::VertexFace => Face::<f32>::new(a, [b, c, d], &p).misses_throughout(0.0, 1.0),
-                Features::EdgeEdge => Edges::<f32>::new([a, b], [c, d], &p).misses_throughout(0.0, 1.0),
-            };
+            let parted = stored::<f64, _>(&case, Parted(0.0, 1.0));
             assert!(!parted, "{} at {toi}, axis {axis} by 2^-{power}", built.name);
             asked += 1;
         }

@@ -108,7 +108,7 @@ fn climb<const N: usize>(
         return (Rung::Window, apart);
     }
     if single.together {
-        return (Rung::Together, Verdict::contact(0.0, 0.0, 0, false));
+        return (Rung::Together, Verdict::TOUCHING);
     }
     if let Some(verdict) = isolated(single, p, false) {
         let (begin, end) = single.with_margin((begin, end));
@@ -121,7 +121,7 @@ fn climb<const N: usize>(
         return (if near { Rung::Close } else { Rung::Double }, verdict);
     }
     if window.0 <= 0.0 && touch {
-        return (Rung::Touch, Verdict::contact(0.0, 0.0, 0, false));
+        return (Rung::Touch, Verdict::TOUCHING);
     }
     if is_flat(double, window) {
         return (Rung::Flat, near(double, window, 1.0, p));

@@ -90,7 +90,7 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
         stack: &'a mut [MaybeUninit<Cell<S>>],
     ) -> Result<Self, (Verdict, bool)> {
         if m.still_together() {
-            return Err((Verdict::contact(0.0, 0.0, 0, false), true));
+            return Err((Verdict::TOUCHING, true));
         }
         if !m.finite || p.budget == 0 {
             return Err((Verdict::unresolved(0.0, p.end, 0, true), false));

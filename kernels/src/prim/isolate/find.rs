@@ -37,7 +37,8 @@ pub enum Found<S> {
 /// How a suspect time is looked at.
 #[derive(Clone, Copy, Debug)]
 pub struct Look<S> {
-    /// How long around it, at least; the certificate holds more easily in less time, the sign change in more.
+    /// How long around it: of a root at most, if signs need no more; of an end without a sign at first. The certificate holds more
+    /// easily in less time, the sign change in more.
     pub around: S,
     /// Newton's steps towards it, in each look.
     pub steps: u32,
@@ -99,7 +100,6 @@ impl<S: Grid, const N: usize> Pair<S, N> {
             from = loop {
                 let (s, unsure) = if known {
                     // A closer look needs a closer root, and goes on from the last.
-                    moves = true;
                     for _ in 0..look.steps {
                         moves = root.step(&part);
                         if ALONE && !moves {
@@ -129,7 +129,7 @@ impl<S: Grid, const N: usize> Pair<S, N> {
                         _ => apart = Some(low),
                     }
                 }
-                let hopeless = if moves { false } else { !clear || half <= unsure };
+                let hopeless = !moves && (!clear || half <= unsure);
                 if hopeless || again == 0 {
                     // What touches at the start is for exact signs to tell.
                     let may = look.again > 0 && t > S::ZERO;

@@ -30,7 +30,7 @@ pub const SLICES: u32 = 32;
 const STEPS: [u32; 2] = [6, 12];
 /// How often a suspect time is looked at again, where no other isolation follows.
 const AGAIN: u32 = 3;
-/// How long around a suspect time is looked at, in pauses: first, and in a slice. Both sides are less than two pauses.
+/// How long around a suspect time is looked at, in pauses, where signs need no more: first, and in a slice. Both sides are less than two pauses.
 const AROUND: [f64; 2] = [0.9, 0.03];
 /// Which rungs there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
