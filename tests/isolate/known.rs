@@ -54,6 +54,12 @@ fn all() -> Vec<Known> {
         ("falls on a face", VF, falls([0.25, 0.25, 1.0], [0.25, 0.25, -2.0]), Rung::Single),
         ("falls beside it", VF, falls([0.75, 0.5, 1.0], [0.75, 0.5, -2.0]), Rung::Single),
         (
+            "falls on a face at once, too soon for f32 to tell",
+            VF,
+            falls([0.25, 0.25, 1e-7], [0.25, 0.25, -2.0]),
+            Rung::Double,
+        ),
+        (
             "edges cross",
             EE,
             [1.0, -2.0].map(|z| edges([[-1.0, 0.1, z], [1.0, 0.2, z]], [[0.0, -1.0, 0.0], [0.0, 1.0, 0.0]])),

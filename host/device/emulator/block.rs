@@ -2,9 +2,10 @@
 
 use super::coherent;
 use super::microscope::{Access, Place};
+use super::rows::Rows;
 use bytemuck::Pod;
 use nearmiss_kernels::abi::Span;
-use nearmiss_kernels::exec::{BINS, Block, Lane, Shared, Slot, WARP, Word};
+use nearmiss_kernels::exec::{BINS, Block, Lane, RowMap, Shared, Slot, WARP, Word};
 use std::mem::MaybeUninit;
 use std::ptr::with_exposed_provenance_mut;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed, Ordering::SeqCst, fence};
@@ -294,6 +295,30 @@ impl<W: Watch> Block for Emulated<W> {
     fn phase(&mut self, mut body: impl FnMut(&EmulatedLane<W>)) {
         let watch = self.watch;
         watch.lanes(self.lanes, self.phase, |lane| body(&self.lane(lane)));
+        self.phase += 1;
+        watch.barrier();
+    }
+    fn map_rows<M: RowMap, T: Copy>(
+        &mut self,
+        map: &M,
+        mut find: impl FnMut(&EmulatedLane<W>) -> Option<T>,
+        mut gather: impl FnMut(&EmulatedLane<W>, T) -> M::Row,
+        mut scatter: impl FnMut(&EmulatedLane<W>, Option<(T, u32)>),
+    ) {
+        let (watch, lanes) = (self.watch, self.lanes);
+        let mut found = vec![None; lanes as usize];
+        watch.lanes(lanes, self.phase, |lane| found[lane as usize] = find(&self.lane(lane)));
+        let mut rows = Rows::<M>::new(lanes as usize);
+        watch.lanes(lanes, self.phase, |lane| {
+            if let Some(which) = found[lane as usize] {
+                rows.set(lane as usize, &gather(&self.lane(lane), which));
+            }
+        });
+        let results = rows.apply(map);
+        watch.lanes(lanes, self.phase, |lane| {
+            let told = found[lane as usize].map(|which| (which, results[lane as usize]));
+            scatter(&self.lane(lane), told);
+        });
         self.phase += 1;
         watch.barrier();
     }

@@ -6,6 +6,7 @@ mod coherent;
 mod eye;
 mod microscope;
 mod order;
+mod rows;
 mod shadow;
 
 pub use microscope::{Fault, Microscope, Place};

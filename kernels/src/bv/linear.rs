@@ -5,6 +5,7 @@
 //! outward twice, and union is exact, as for [`Aabb`].
 
 use super::{Aabb, Axes, Volume};
+use crate::exec::ALONE;
 use crate::math::tolerance::{MOVING_LIMIT, MOVING_TIME};
 use crate::math::{Real, Vec3};
 use bytemuck::{Pod, Zeroable};
@@ -107,17 +108,26 @@ impl Linear {
     /// both ends together are wrong by less than `MOVING_TIME`.
     #[inline]
     pub fn window(&self, o: &Self) -> (bool, f32, f32) {
-        let (mut apart, mut from, mut to) = (false, 0.0f32, 1.0f32);
-        let mut clip = |d0: f32, d1: f32| {
+        let (mut apart, mut partly, mut from, mut to) = (false, false, 0.0f32, 1.0f32);
+        let mut d = [[0.0f32; 2]; 6];
+        for k in 0..3 {
+            d[2 * k] = [o.hi0[k] - self.lo0[k], o.hi1[k] - self.lo1[k]];
+            d[2 * k + 1] = [self.hi0[k] - o.lo0[k], self.hi1[k] - o.lo1[k]];
+        }
+        for [d0, d1] in d {
+            let (before, after) = (d0 < 0.0, d1 < 0.0);
+            apart |= before & after;
+            partly |= before | after;
+        }
+        // Mostly the ends of the step are enough.
+        if ALONE && (apart | !partly) {
+            return (apart, from, to);
+        }
+        for [d0, d1] in d {
             let (before, after) = (d0 < 0.0, d1 < 0.0);
             let q = d0.abs() / (d0.abs() + d1.abs());
-            apart |= before & after;
             from = if before & (q > from) { q } else { from };
             to = if after & (q < to) { q } else { to };
-        };
-        for k in 0..3 {
-            clip(o.hi0[k] - self.lo0[k], o.hi1[k] - self.lo1[k]);
-            clip(self.hi0[k] - o.lo0[k], self.hi1[k] - o.lo1[k]);
         }
         (apart, from, to)
     }

@@ -96,6 +96,19 @@ pub trait Slot<T, L> {
     fn of(&mut self, lane: &L) -> &mut T;
 }
 
+/// A function of a row of numbers, without memory and without loops whose length depends on them.
+///
+/// A card's lanes each apply it to their row. A CPU collects rows first and applies it to many of them in a loop that its
+/// compiler can turn into vectors: so everything that it calls is inlined, and arrays are filled by index.
+pub trait RowMap {
+    /// The number that rows are made of.
+    type Number: Pod;
+    /// What is read of memory: a whole number of [`RowMap::Number`]s.
+    type Row: Pod;
+    /// What becomes of a row. To be `#[inline(always)]`.
+    fn apply(&self, row: Self::Row) -> u32;
+}
+
 /// A block of lanes: the phases of a kernel and the steps that its lanes take together.
 pub trait Block {
     /// What a phase's body is given.
@@ -118,6 +131,20 @@ pub trait Block {
     fn words<const N: usize>(&self) -> Self::Slot<[MaybeUninit<u32>; N]>;
     /// Runs `body` once for each lane, then waits for all of them.
     fn phase(&mut self, body: impl FnMut(&Self::Lane));
+
+    /// A phase in steps: each lane finds which row it has, or none; gathers it; rows are mapped; each lane is given what became
+    /// of its row. Where lanes run one after another, all take a step before the first takes the next: memory answers many at
+    /// once.
+    #[inline(always)]
+    fn map_rows<M: RowMap, T: Copy>(
+        &mut self,
+        map: &M,
+        mut find: impl FnMut(&Self::Lane) -> Option<T>,
+        mut gather: impl FnMut(&Self::Lane, T) -> M::Row,
+        mut scatter: impl FnMut(&Self::Lane, Option<(T, u32)>),
+    ) {
+        self.phase(|l| scatter(l, find(l).map(|which| (which, map.apply(gather(l, which))))));
+    }
 
     /// A uniform read of device memory, between phases. Nothing in this launch may write it.
     fn load<T: Pod>(&self, span: Span<T>, i: u32) -> T;

@@ -28,15 +28,22 @@
 use super::poly::{Cubic, quadratic};
 use crate::math::tolerance::CUBIC_SCALE;
 use crate::math::{Real, Vec3};
+use bytemuck::{Pod, Zeroable};
 
 /// A vertex at the start and at the end of a step; in between it moves on the straight line, at even speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Moving<R> {
     /// The position at time 0.
     pub t0: Vec3<R>,
     /// The position at time 1.
     pub t1: Vec3<R>,
 }
+
+// SAFETY: two of a type that is Zeroable.
+unsafe impl<R: Real> Zeroable for Moving<R> {}
+// SAFETY: repr(C), two of one type that is Pod: no padding.
+unsafe impl<R: Real> Pod for Moving<R> {}
 
 /// The first time in [0, 1] at which the vertex meets the closed face, computed in `S`; touching at 0 gives 0.
 /// Not certain: see the module text. About 130 operations where signs reject, 400 to 1500 else.

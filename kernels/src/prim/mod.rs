@@ -4,7 +4,7 @@
 //! (floats with a proven error bound: right or silent) and of [`exact`] (integers: always right).
 //! Continuous: [`cubic`] (the coplanarity cubic; can miss, and says how), and certified, never missing, never late:
 //! [`isolate`] (in closed form) and behind it [`inclusion`] (by boxes). [`stencil`] names the fifteen vertex/face and
-//! edge/edge tests of two triangles.
+//! edge/edge tests of two triangles; [`sweep`] tells which of them have boxes that meet.
 
 pub mod adjacent;
 pub mod cubic;
@@ -17,4 +17,5 @@ pub mod orient;
 mod poly;
 pub mod signs;
 pub mod stencil;
+pub mod sweep;
 pub mod tri_tri;

@@ -109,20 +109,33 @@ pub struct Differences<S, const N: usize> {
 pub fn differences<R: Real, S: Grid, const N: usize>(
     pairs: [(Moving<R>, Moving<R>); N],
 ) -> Differences<S, N> {
+    // Loops by index: they unroll, and nothing needs memory.
     if R::WIDE {
-        let less = |(x, y): (Moving<R>, Moving<R>)| [x.t0.wide() - y.t0.wide(), x.t1.wide() - y.t1.wide()];
-        let Differences { w, scale, finite, together } = scaled(pairs.map(less));
-        Differences { w: w.map(|[start, end]| [start.map(S::of), end.map(S::of)]), scale, finite, together }
+        let mut less = [[Vec3([0.0; 3]); 2]; N];
+        for k in 0..N {
+            let (x, y) = pairs[k];
+            less[k] = [x.t0.wide() - y.t0.wide(), x.t1.wide() - y.t1.wide()];
+        }
+        let Differences { w: less, scale, finite, together } = scaled(less);
+        let mut w = [[Vec3([S::ZERO; 3]); 2]; N];
+        for k in 0..N {
+            w[k] = [less[k][0].map(S::of), less[k][1].map(S::of)];
+        }
+        Differences { w, scale, finite, together }
     } else {
         let to = |x: Vec3<R>| x.map(|x| S::of(x.wide()));
-        scaled(pairs.map(|(x, y)| [to(x.t0) - to(y.t0), to(x.t1) - to(y.t1)]))
+        let mut w = [[Vec3([S::ZERO; 3]); 2]; N];
+        for k in 0..N {
+            let (x, y) = pairs[k];
+            w[k] = [to(x.t0) - to(y.t0), to(x.t1) - to(y.t1)];
+        }
+        scaled(w)
     }
 }
 
 /// The same vectors with the largest component in [1, 2).
 #[inline(always)]
 fn scaled<T: Real, const N: usize>(mut w: [[Vec3<T>; 2]; N]) -> Differences<T, N> {
-    // Loops by index: they unroll, and nothing needs memory.
     let (mut most, mut sum) = (Vec3([T::ZERO; 3]), Vec3([T::ZERO; 3]));
     let mut together = 0;
     for k in 0..N {

@@ -52,8 +52,8 @@ pub fn rejected<const N: usize>(pair: &Pair<f32, N>) -> bool {
     pair.finite && (g.rootless_throughout() || g.rootless(begin, end))
 }
 
-/// What isolation decides: separated, or a contact whose time is known as well as the tolerance demands; of the `last` rung
-/// that isolates, any contact.
+/// What isolation decides: separated, or a contact whose time is known as well as the tolerance demands and told from the
+/// start; of the `last` rung that isolates, any contact.
 #[inline(always)]
 pub fn isolated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bool) -> Option<Verdict> {
     let Some(window) = pair.window() else { return Some(Verdict::separated(p.end, 0)) };
@@ -67,7 +67,9 @@ pub fn isolated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bo
     let look = Look { around: pause * S::of(AROUND[0]), steps: STEPS[0], again, near };
     match pair.isolate(pair.with_margin(window), look) {
         Found::Apart => Some(Verdict::separated(p.end, 0)),
-        Found::Meets { from, to } if last || to - from <= pause + pause => met(from, to, p),
+        Found::Meets { from, to } if last || (from > S::ZERO && to - from <= pause + pause) => {
+            met(from, to, p)
+        }
         Found::Near { from } => Some(Verdict::unresolved(from.wide(), p.end, 0, false)),
         // What stays in one plane, of a body that moves as a whole for example, has no sign to go by, but a direction.
         Found::Open { from, flat: true } if pair.misses_throughout(from, window.1) => {

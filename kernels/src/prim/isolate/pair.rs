@@ -1,6 +1,5 @@
 //! A pair in motion, scaled to its own size: control vectors, edges, the window of time in which it can meet.
 
-use crate::exec::ALONE;
 use crate::math::{Real, Vec3};
 use crate::prim::cubic::Moving;
 use crate::prim::inclusion::local::{Differences, differences};
@@ -113,9 +112,6 @@ impl<S: Grid, const N: usize> Pair<S, N> {
             }
             window.clip(low.map(|x| -x));
             window.clip(high);
-            if ALONE && window.empty && self.finite {
-                return None;
-            }
         }
         if self.finite { window.within(self.end) } else { Some((S::ZERO, self.end)) }
     }

@@ -15,7 +15,7 @@ pub mod slice;
 pub mod solve;
 
 use crate::abi::{Frames, Pair, Span};
-use crate::exec::{Block, Lane, Slot};
+use crate::exec::{Block, Lane, RowMap, Slot};
 use crate::math::Real;
 use crate::prim::cubic::Moving;
 
@@ -63,31 +63,79 @@ fn edge_edge<R: Real, L: Lane>(
 fn append_each<B: Block, T: bytemuck::Pod>(
     b: &mut B,
     count: u32,
-    (list, counters, at): (Span<T>, Span<u64>, u32),
+    to: (Span<T>, Span<u64>, u32),
     mut body: impl FnMut(&B::Lane, u32) -> Option<T>,
 ) {
     let lanes = b.lanes();
-    let mut entries = b.slot(None);
-    let mut places = b.slot(0u32);
+    let mut entries = Entries::new(b);
     let mut base = b.block() * lanes;
     while base < count {
         b.phase(|l| {
             let i = base + l.lane();
-            let entry = if i < count { body(l, i) } else { None };
-            *places.of(l) = entry.is_some() as u32;
-            *entries.of(l) = entry;
-            l.meet();
+            entries.set(l, if i < count { body(l, i) } else { None });
         });
-        let start = b.append(&mut places, counters, at);
+        entries.append(b, to);
+        base += b.blocks() * lanes;
+    }
+}
+
+/// As [`append_each`], by a map of rows: an item is appended if its row is not mapped to 0.
+fn append_mapped<B: Block, M: RowMap, T: bytemuck::Pod, I: Copy>(
+    b: &mut B,
+    count: u32,
+    to: (Span<T>, Span<u64>, u32),
+    map: &M,
+    mut find: impl FnMut(&B::Lane, u32) -> (T, I),
+    mut gather: impl FnMut(&B::Lane, (T, I)) -> M::Row,
+) {
+    let lanes = b.lanes();
+    let mut entries = Entries::new(b);
+    let mut base = b.block() * lanes;
+    while base < count {
+        b.map_rows(
+            map,
+            |l| {
+                let i = base + l.lane();
+                (i < count).then(|| find(l, i))
+            },
+            &mut gather,
+            |l, told| entries.set(l, told.and_then(|((entry, _), keep)| (keep != 0).then_some(entry))),
+        );
+        entries.append(b, to);
+        base += b.blocks() * lanes;
+    }
+}
+
+/// What each lane of a block may have to append.
+struct Entries<B: Block, T: bytemuck::Pod> {
+    entries: B::Slot<Option<T>>,
+    places: B::Slot<u32>,
+}
+
+impl<B: Block, T: bytemuck::Pod> Entries<B, T> {
+    fn new(b: &B) -> Self {
+        Entries { entries: b.slot(None), places: b.slot(0) }
+    }
+
+    /// What a lane has; the last of a phase.
+    #[inline(always)]
+    fn set(&mut self, l: &B::Lane, entry: Option<T>) {
+        *self.places.of(l) = entry.is_some() as u32;
+        *self.entries.of(l) = entry;
+        l.meet();
+    }
+
+    /// Appends what there is, as far as there is room.
+    fn append(&mut self, b: &mut B, (list, counters, at): (Span<T>, Span<u64>, u32)) {
+        let start = b.append(&mut self.places, counters, at);
         b.phase(|l| {
-            let place = start + *places.of(l) as u64;
-            if let Some(entry) = *entries.of(l)
+            let place = start + *self.places.of(l) as u64;
+            if let Some(entry) = *self.entries.of(l)
                 && place < list.len
             {
                 l.write(list, place as u32, entry);
             }
         });
-        base += b.blocks() * lanes;
     }
 }
 

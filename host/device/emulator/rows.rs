@@ -1,0 +1,121 @@
+//! Functions of rows, applied to many rows in one go.
+
+use bytemuck::Zeroable;
+use nearmiss_kernels::exec::RowMap;
+
+/// Rows that are mapped side by side: two vectors of f32 on most machines, or one.
+const WIDTH: usize = 16;
+
+/// Rows by columns, [`WIDTH`] at a time: number `k` of row `i` is `columns[i / WIDTH * NUMBERS + k][i % WIDTH]`.
+pub struct Rows<M: RowMap> {
+    columns: Vec<[M::Number; WIDTH]>,
+}
+
+impl<M: RowMap> Rows<M> {
+    /// Numbers of a row.
+    const NUMBERS: usize = size_of::<M::Row>() / size_of::<M::Number>();
+
+    /// Rows of zeros.
+    pub fn new(len: usize) -> Self {
+        Rows { columns: vec![[M::Number::zeroed(); WIDTH]; len.div_ceil(WIDTH) * Self::NUMBERS] }
+    }
+
+    /// Sets a row.
+    #[inline(always)]
+    pub fn set(&mut self, i: usize, row: &M::Row) {
+        let columns = &mut self.columns[i / WIDTH * Self::NUMBERS..][..Self::NUMBERS];
+        let numbers: &[M::Number] = bytemuck::cast_slice(std::slice::from_ref(row));
+        for (column, number) in columns.iter_mut().zip(numbers) {
+            column[i % WIDTH] = *number;
+        }
+    }
+
+    /// What becomes of each row.
+    pub fn apply(&self, map: &M) -> Vec<u32> {
+        let columns = self.columns.chunks_exact(Self::NUMBERS);
+        let mut results = vec![[0; WIDTH]; columns.len()];
+        for (columns, results) in columns.zip(&mut results) {
+            apply::<M>(map, columns, results);
+        }
+        results.into_flattened()
+    }
+}
+
+#[inline(always)]
+fn apply<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [u32; WIDTH]) {
+    #[cfg(target_arch = "x86_64")]
+    if is_x86_feature_detected!("avx2") {
+        // SAFETY: the machine has what the function is compiled for.
+        return unsafe { apply_avx2(map, columns, results) };
+    }
+    each(map, columns, results);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn apply_avx2<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [u32; WIDTH]) {
+    each(map, columns, results);
+}
+
+/// The loop that becomes vectors.
+#[inline(always)]
+fn each<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [u32; WIDTH]) {
+    let columns = &columns[..Rows::<M>::NUMBERS];
+    for place in 0..WIDTH {
+        let mut row = M::Row::zeroed();
+        let numbers: &mut [M::Number] = bytemuck::cast_slice_mut(std::slice::from_mut(&mut row));
+        for k in 0..Rows::<M>::NUMBERS {
+            numbers[k] = columns[k][place];
+        }
+        results[place] = map.apply(row);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Rows, WIDTH, each};
+    use nearmiss_kernels::exec::RowMap;
+
+    /// What a row of four becomes: comparisons, a division, a choice; as kernels' maps are.
+    struct Mixed;
+
+    impl RowMap for Mixed {
+        type Number = f32;
+        type Row = [[f32; 2]; 2];
+        #[inline(always)]
+        fn apply(&self, [[a, b], [c, d]]: [[f32; 2]; 2]) -> u32 {
+            let q = a / (a.abs() + b.abs());
+            if q > c { (q - d).to_bits() } else { (a * b - c * d).to_bits() }
+        }
+    }
+
+    /// Numbers of all kinds, and rows that do not fill the last strip.
+    fn rows() -> Vec<[[f32; 2]; 2]> {
+        let kinds =
+            [0.0, -0.0, 1.0, -3.5, 1e-42, -1e38, f32::MIN_POSITIVE, f32::INFINITY, f32::NEG_INFINITY, 0.1];
+        let pick = |i: usize, k: usize| kinds[(i * (2 * k + 3) + i / 7 + k) % kinds.len()];
+        (0..5 * WIDTH + 3).map(|i| [[pick(i, 0), pick(i, 1)], [pick(i, 2), pick(i, 3)]]).collect()
+    }
+
+    /// NaN has many bits; which one is nobody's promise.
+    fn told(bits: u32) -> u32 {
+        if f32::from_bits(bits).is_nan() { f32::NAN.to_bits() } else { bits }
+    }
+
+    #[test]
+    fn vectors_give_what_each_row_gives_by_itself() {
+        let rows = rows();
+        let mut columns = Rows::<Mixed>::new(rows.len());
+        rows.iter().enumerate().for_each(|(i, row)| columns.set(i, row));
+        let together = columns.apply(&Mixed);
+        let mut plain = vec![[0; WIDTH]; columns.columns.len() / Rows::<Mixed>::NUMBERS];
+        for (columns, results) in columns.columns.chunks_exact(Rows::<Mixed>::NUMBERS).zip(&mut plain) {
+            each(&Mixed, columns, results);
+        }
+        for (i, row) in rows.iter().enumerate() {
+            let alone = told(Mixed.apply(*row));
+            assert_eq!(told(together[i]), alone, "row {i}, {row:?}");
+            assert_eq!(told(plain.as_flattened()[i]), alone, "row {i}, {row:?}, by the plain loop");
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! The boxes around the ways of the features of two triangles, and which of them come within a gap. Without branches: some lane of
+//! a card would take each, and a CPU makes vectors of it. Some 500 operations.
+
+use super::cubic::Moving;
+use super::isolate::pair::Window;
+use crate::math::{Real, Vec3};
+
+/// Tests of two triangles.
+pub const MOST: u32 = 15;
+/// Their bits.
+const ALL: u32 = (1 << MOST) - 1;
+
+/// A closed box.
+#[derive(Clone, Copy)]
+struct Swept<R> {
+    lo: Vec3<R>,
+    hi: Vec3<R>,
+}
+
+impl<R: Real> Swept<R> {
+    #[inline(always)]
+    fn merge(self, o: Self) -> Self {
+        Swept { lo: self.lo.lesser(o.lo), hi: self.hi.greater(o.hi) }
+    }
+    /// In bit 31, whether two boxes share no point. The ends of [`swept`] are never -0 at the upper side, so a difference of
+    /// two that are equal is +0.
+    #[inline(always)]
+    fn apart(&self, o: &Self) -> u32 {
+        let (x, y) = (o.hi - self.lo, self.hi - o.lo);
+        x[0].sign() | y[0].sign() | x[1].sign() | y[1].sign() | x[2].sign() | y[2].sign()
+    }
+}
+
+/// The corners of a triangle.
+pub type Corners<R> = [Moving<R>; 3];
+
+/// A box around the way of each corner of two triangles, over the part of the step in which the boxes around the triangles
+/// come within the gap; those of the first grown by the gap and by all roundings. And whether there is such a part.
+///
+/// A corner at a time of it errs by `3.1u` of the larger of its ends (the complement, two products, a sum), and growing by
+/// `u` more: `INCLUSION_INPUT` of the largest coordinate for each of both triangles. A product that underflows is within
+/// `INCLUSION_UNDERFLOW`.
+#[inline(always)]
+fn swept<R: Real>(p: &Corners<R>, q: &Corners<R>, gap: R) -> (bool, [[Swept<R>; 3]; 2]) {
+    let mut window = Window::new();
+    // One axis after the other, each by a number that the compiler knows: nothing goes to memory on the card.
+    let grow = Vec3([
+        axis(0, &mut window, p, q, gap),
+        axis(1, &mut window, p, q, gap),
+        axis(2, &mut window, p, q, gap),
+    ]);
+    let part = window.within(R::ONE);
+    let part_or_all = part.unwrap_or((R::ZERO, R::ONE));
+    (part.is_some(), [ways(p, part_or_all, grow), ways(q, part_or_all, Vec3([R::ZERO; 3]))])
+}
+
+/// Clips the part of the step by one axis; by how much boxes grow on it.
+#[inline(always)]
+fn axis<R: Real>(k: usize, window: &mut Window<R>, p: &Corners<R>, q: &Corners<R>, gap: R) -> R {
+    let (p, q) = (range(p, k), range(q, k));
+    window.clip([p[0].1 - q[0].0 + gap, p[1].1 - q[1].0 + gap]);
+    window.clip([q[0].1 - p[0].0 + gap, q[1].1 - p[1].0 + gap]);
+    (reach(p) + reach(q)) * R::INCLUSION_INPUT + gap + R::INCLUSION_UNDERFLOW
+}
+
+/// The least and the largest coordinate of three corners, at both ends of the step.
+#[inline(always)]
+fn range<R: Real>([x, y, z]: &Corners<R>, k: usize) -> [(R, R); 2] {
+    let least = |x: R, y: R, z: R| x.lesser(y).lesser(z);
+    let most = |x: R, y: R, z: R| x.greater(y).greater(z);
+    [
+        (least(x.t0[k], y.t0[k], z.t0[k]), most(x.t0[k], y.t0[k], z.t0[k])),
+        (least(x.t1[k], y.t1[k], z.t1[k]), most(x.t1[k], y.t1[k], z.t1[k])),
+    ]
+}
+
+/// The largest magnitude.
+#[inline(always)]
+fn reach<R: Real>([start, end]: [(R, R); 2]) -> R {
+    (-start.0.lesser(end.0)).greater(start.1.greater(end.1))
+}
+
+/// Boxes around the ways of three corners.
+#[inline(always)]
+fn ways<R: Real>([x, y, z]: &Corners<R>, part: (R, R), by: Vec3<R>) -> [Swept<R>; 3] {
+    [way(x, part, by), way(y, part, by), way(z, part, by)]
+}
+
+/// A box around the way of a corner.
+#[inline(always)]
+fn way<R: Real>(c: &Moving<R>, (from, to): (R, R), by: Vec3<R>) -> Swept<R> {
+    let x = c.t0 * (R::ONE - from) + c.t1 * from;
+    let y = c.t0 * (R::ONE - to) + c.t1 * to;
+    Swept { lo: x.lesser(y) - by, hi: x.greater(y) + by }
+}
+
+/// By how much boxes of one of two triangles grow: a little more than the gap, or not at all.
+pub fn more<R: Real>(gap: f64) -> R {
+    if gap > 0.0 { R::of(gap) * R::INCLUSION_UP + R::INCLUSION_UNDERFLOW } else { R::ZERO }
+}
+
+/// The tests of two triangles whose features have boxes that come within a gap, given as [`more`] of it.
+#[inline(always)]
+pub fn meeting<R: Real>(p: &Corners<R>, q: &Corners<R>, gap: R) -> u32 {
+    let (meet, boxes) = swept(p, q, gap);
+    if meet { sharing(&boxes) } else { 0 }
+}
+
+/// The tests whose features have boxes that share a point: bits 0 to 2 a vertex of p and q, 3 to 5 a vertex of q and p,
+/// 6 + 3 i + j edge i of p and j of q. By signs of differences, as half of a card's lanes compare at a time.
+#[inline(always)]
+fn sharing<R: Real>([p, q]: &[[Swept<R>; 3]; 2]) -> u32 {
+    let (of_p, of_q) = (p[0].merge(p[1]).merge(p[2]), q[0].merge(q[1]).merge(q[2]));
+    let mut apart = 0;
+    for k in 0..3 {
+        apart |= (p[k].apart(&of_q) >> 31) << k;
+        apart |= (q[k].apart(&of_p) >> 31) << (3 + k);
+    }
+    let (of_p, of_q) = (edges(p), edges(q));
+    for (i, p) in of_p.iter().enumerate() {
+        for (j, q) in of_q.iter().enumerate() {
+            apart |= (p.apart(q) >> 31) << (6 + 3 * i + j);
+        }
+    }
+    !apart & ALL
+}
+
+/// Boxes around the ways of the edges of three corners.
+#[inline(always)]
+fn edges<R: Real>([x, y, z]: &[Swept<R>; 3]) -> [Swept<R>; 3] {
+    [x.merge(*y), y.merge(*z), z.merge(*x)]
+}
