@@ -1,6 +1,10 @@
 //! Bad files and the words that must answer them; odd files that must be accepted.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+#[path = "support/folder.rs"]
+mod folder;
+
+use folder::Folder;
 use nearmiss::mesh::{Body, Mesh, Positions};
 use std::path::PathBuf;
 
@@ -198,18 +202,12 @@ impl ReplaceText for Vec<u8> {
     }
 }
 
-fn folder(name: &str) -> PathBuf {
-    let folder = std::env::temp_dir().join(format!("nearmiss-{name}-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
-    folder
-}
-
 #[test]
 fn every_bad_file_is_answered_with_its_element_value_and_advice() {
-    let folder = folder("bad");
+    let folder = Folder::new("bad");
     let mut wrong = Vec::new();
     for (file, bytes, parts) in bad_files() {
-        let path = folder.join(file);
+        let path = PathBuf::from(folder.path(file));
         std::fs::write(&path, bytes).unwrap();
         let read = std::panic::catch_unwind(|| Mesh::read(&path));
         match read {
@@ -224,29 +222,27 @@ fn every_bad_file_is_answered_with_its_element_value_and_advice() {
             }
         }
     }
-    std::fs::remove_dir_all(&folder).unwrap();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 #[test]
 fn what_is_no_file_is_answered_in_the_words_of_the_system() {
-    let folder = folder("none");
-    let text = |name: &str| Mesh::read(&folder.join(name)).unwrap_err().to_string();
+    let folder = Folder::new("none");
+    let text = |name: &str| Mesh::read(folder.path(name).as_ref()).unwrap_err().to_string();
     assert!(
         text("missing.ply").contains("missing.ply: cannot be read: No such file"),
         "{}",
         text("missing.ply")
     );
-    std::fs::create_dir_all(folder.join("a.obj")).unwrap();
+    std::fs::create_dir_all(folder.path("a.obj")).unwrap();
     assert!(text("a.obj").contains("a.obj: cannot be read: it is a directory; check the path"));
     let device = Mesh::read("/dev/zero.ply".as_ref()).unwrap_err().to_string();
     assert!(device.contains("/dev/zero.ply: cannot be read"));
     #[cfg(unix)]
     {
-        std::os::unix::fs::symlink("/dev/zero", folder.join("endless.ply")).unwrap();
+        std::os::unix::fs::symlink("/dev/zero", folder.path("endless.ply")).unwrap();
         assert!(text("endless.ply").contains("not a regular file"));
     }
-    std::fs::remove_dir_all(&folder).unwrap();
 }
 
 fn parse(name: &str, bytes: &[u8]) -> Mesh {

@@ -7,6 +7,7 @@ mod support;
 
 use nearmiss::contacts::Status;
 use nearmiss::device::Backend;
+use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Motion, Solver};
 use nearmiss::{Contacts, Device, Query, Session};
 use std::time::Instant;
@@ -60,6 +61,39 @@ fn few_pairs_reach_the_rungs_that_cost_much() {
                 assert!(left.is_sorted_by(|a, b| a >= b), "{name}: {left:?}");
             }
         }
+    }
+}
+
+/// A flat fan at rest round one vertex, which the boxes of all its triangles share.
+fn fan(n: usize) -> Body {
+    let rim = (0..n).map(|i| hard::around(i, n).map(|x| x as f32));
+    let faces = (0..n as u32).map(|i| [0, 1 + i, 1 + (i + 1) % n as u32]).collect();
+    let points = [[0.0; 3]].into_iter().chain(rim).collect();
+    let mesh = Mesh::new("fan", Positions::F32(points), faces).expect("a mesh");
+    Body::moving(mesh.clone(), mesh).expect("two frames")
+}
+
+/// Round one vertex the boxes of all triangles meet, so each pair is looked at; but nothing is asked of those that share it.
+#[test]
+fn a_fan_round_one_vertex_costs_a_look_a_pair() {
+    const TRIANGLES: u64 = 400;
+    for motion in [Motion::Discrete, Motion::Continuous] {
+        let all = ask(engine(), vec![fan(TRIANGLES as usize)], Query::of(motion));
+        let pairs = TRIANGLES * (TRIANGLES - 1) / 2;
+        println!(
+            "{motion:?}: {} node tests, {} triangle pairs, {} candidates",
+            all.overlap_tests(),
+            all.triangle_pairs,
+            all.candidates
+        );
+        // A walk of each leaf comes by each pair twice.
+        assert!((pairs..3 * pairs).contains(&all.overlap_tests()), "{}", all.overlap_tests());
+        assert!(
+            all.candidates < TRIANGLES / 10 && all.is_empty(),
+            "{} asked, {} listed",
+            all.candidates,
+            all.len()
+        );
     }
 }
 

@@ -3,10 +3,14 @@
 
 #[path = "support/data.rs"]
 mod data;
+#[path = "support/folder.rs"]
+mod folder;
 
 use data::data;
+use folder::Folder;
 use nearmiss::Error;
 use nearmiss::mesh::{Body, Format, Mesh, NO_EDGE, Positions, Problem, Topology, Violation, check};
+use std::path::PathBuf;
 
 const TETRAHEDRON: [[u32; 3]; 4] = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
 
@@ -109,9 +113,8 @@ fn each_difference_of_two_frames_is_named() {
 
 #[test]
 fn what_is_written_reads_back_equal() {
-    let folder = std::env::temp_dir().join(format!("nearmiss-mesh-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
-    let path = folder.join("round.PLY");
+    let folder = Folder::new("mesh");
+    let path = PathBuf::from(folder.path("round.PLY"));
     let single = mesh(Positions::F32(corners()), &TETRAHEDRON).unwrap();
     let mut points = single.positions().to_f64();
     points[1] = [0.1, f64::MIN_POSITIVE / 8.0, -1e140];
@@ -122,10 +125,9 @@ fn what_is_written_reads_back_equal() {
         assert_eq!(read.faces(), written.faces());
         assert_eq!(Body::still(read).fingerprint(), Body::still(written).fingerprint());
     }
-    let nowhere =
-        mesh(Positions::F32(corners()), &TETRAHEDRON).unwrap().write_ply(&folder.join("no/such/folder.ply"));
+    let nowhere = folder.path("no/such/folder.ply");
+    let nowhere = mesh(Positions::F32(corners()), &TETRAHEDRON).unwrap().write_ply(nowhere.as_ref());
     assert!(matches!(problem(nowhere), Problem::Unwritable { .. }));
-    std::fs::remove_dir_all(&folder).unwrap();
 }
 
 #[test]

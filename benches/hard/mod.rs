@@ -59,6 +59,18 @@ fn slivers(name: &str, n: usize, thick: f64) -> Body {
     loose(name, &(0..n).map(triangle).collect::<Vec<_>>())
 }
 
+/// Corner `i` of `n` on the unit circle.
+pub fn around(i: usize, n: usize) -> [f64; 3] {
+    let (sin, cos) = (std::f64::consts::TAU * i as f64 / n as f64).sin_cos();
+    [cos, sin, 0.0]
+}
+
+/// A flat fan of `n` triangles at rest, each with a corner of its own in the middle: they all touch there.
+fn split_fan(n: usize) -> Body {
+    let triangle = |i| moved([[0.0; 3], around(i, n), around(i + 1, n)], [0.0; 3]);
+    loose("split fan", &(0..n).map(triangle).collect::<Vec<_>>())
+}
+
 /// All of them, by name, of so many triangles or a part of them.
 pub fn hard(part: usize) -> Vec<(&'static str, Body)> {
     vec![
@@ -67,5 +79,6 @@ pub fn hard(part: usize) -> Vec<(&'static str, Body)> {
         ("equal-500-in-their-plane", equal("in their plane", 500 / part, [0.5, 0.25, 0.0])),
         ("coplanar-300", coplanar(300 / part)),
         ("collinear-300", slivers("collinear", 300 / part, 0.0)),
+        ("split-fan-1000", split_fan(1000 / part)),
     ]
 }

@@ -258,7 +258,8 @@ impl<V: Kernels> Volumes<V> {
         Ok(nodes)
     }
 
-    /// Checks the volumes as they lie on the device: merges, and nodes of few leaves against the points below them.
+    /// Checks the volumes as they lie on the device: leaves against their triangles, merges, and nodes of few leaves against
+    /// the points below them.
     /// `frames` has the positions that they were fitted to, at t = 0 and, when anything moves, at t = 1.
     ///
     /// # Errors
@@ -271,6 +272,14 @@ impl<V: Kernels> Volumes<V> {
     ) -> Result<(), Error> {
         let links = tree.download()?;
         let leaves = tree.leaf_nodes.read(tree.leaves())?;
+        let leaf = |triangle: u32| {
+            let corners = |frame: &Vec<Vec3<R>>| faces[triangle as usize].map(|v| frame[v as usize]);
+            let volume = match frames {
+                [t0, t1] => V::moving(corners(t0), corners(t1)),
+                _ => V::still(corners(&frames[0])),
+            };
+            volume.near(self.grow)
+        };
         let fitted = |first: u32, last: u32| {
             if last - first >= V::group(self.axes) {
                 return None;
@@ -282,6 +291,6 @@ impl<V: Kernels> Volumes<V> {
             let volume = V::of(&points.collect::<Vec<_>>())?;
             Some(volume.near(self.grow))
         };
-        bvh::check_volumes(&links, &self.download()?, self.axes, fitted).map_err(broken)
+        bvh::check_volumes(&links, &self.download()?, self.axes, leaf, fitted).map_err(broken)
     }
 }

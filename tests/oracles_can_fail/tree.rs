@@ -22,6 +22,20 @@ struct Tree {
 
 const FIRST: u32 = 10;
 
+/// The box of a triangle.
+fn box_of(triangle: u32) -> Aabb {
+    let at = triangle as f32;
+    Aabb { lo: [at, -at, 1.0], hi: [at + 0.5, 0.0, at + 2.0] }
+}
+
+/// Boxes of the inner nodes, from those of the leaves.
+fn merge(nodes: &mut [Node<Aabb>]) {
+    for at in [6, 3, 2, 1] {
+        let child = nodes[at].link as usize;
+        nodes[at].volume = nodes[child].volume.merge(nodes[child + 1].volume);
+    }
+}
+
 impl Tree {
     fn sound() -> Tree {
         let leaf = |last: u32, triangle: u32| Link { link: LEAF | (FIRST + triangle), last };
@@ -41,14 +55,11 @@ impl Tree {
         let mut nodes: Vec<Node<Aabb>> = links
             .iter()
             .map(|link: &Link| {
-                let at = link.last as f32;
-                link.with(Aabb { lo: [at, -at, 1.0], hi: [at + 0.5, 0.0, at + 2.0] })
+                let triangle = if link.is_leaf() { link.triangle() } else { 0 };
+                link.with(box_of(triangle))
             })
             .collect();
-        for at in [6, 3, 2, 1] {
-            let child = nodes[at].link as usize;
-            nodes[at].volume = nodes[child].volume.merge(nodes[child + 1].volume);
-        }
+        merge(&mut nodes);
         Tree {
             links,
             pair_parents: vec![0, 1, 2, 3, 6],
@@ -67,7 +78,7 @@ impl Tree {
             first: FIRST,
         };
         check(&tree, &mut vec![false; self.leaf_nodes.len()])?;
-        check_volumes(&self.links, &self.nodes, Axes::PCA, |_, _| None)
+        check_volumes(&self.links, &self.nodes, Axes::PCA, box_of, |_, _| None)
     }
 
     /// What the checker says of a tree with a fault planted in it.
@@ -154,7 +165,24 @@ fn a_wrong_box_is_noticed_on_each_axis() {
             }
         }
     }
-    assert_eq!(Tree::with(|t| t.nodes[5].last = 2), Violation::Merge { node: 5 }, "a leaf's links");
+    assert_eq!(Tree::with(|t| t.nodes[5].last = 2), Violation::Fit { node: 5 }, "a leaf's links");
+}
+
+/// A leaf that does not fit its triangle, in a tree whose merges are right.
+#[test]
+fn t7_a_leaf_that_is_anothers() {
+    for node in [4, 5, 7, 8, 9] {
+        let larger = |t: &mut Tree| {
+            t.nodes[node].volume.hi[1] += 0.25;
+            merge(&mut t.nodes);
+        };
+        assert_eq!(Tree::with(larger), Violation::Fit { node: node as u32 });
+    }
+    let swapped = |t: &mut Tree| {
+        (t.nodes[8].volume, t.nodes[9].volume) = (t.nodes[9].volume, t.nodes[8].volume);
+        merge(&mut t.nodes);
+    };
+    assert_eq!(Tree::with(swapped), Violation::Fit { node: 8 });
 }
 
 /// Nodes of two leaves, fitted: each is asked for with its first leaf and its last, and each fault is named.
@@ -168,7 +196,7 @@ fn t7_a_fit_that_is_none() {
             volume.hi[1] += f32::from(u8::from(fault == Some(node)));
             Some(volume)
         };
-        check_volumes(&tree.links, &tree.nodes, Axes::PCA, fit)
+        check_volumes(&tree.links, &tree.nodes, Axes::PCA, box_of, fit)
     };
     assert_eq!(fitted(None), Ok(()));
     for node in [2, 6] {

@@ -5,7 +5,7 @@ use super::microscope::{Access, Place};
 use super::rows::Rows;
 use bytemuck::Pod;
 use nearmiss_kernels::abi::Span;
-use nearmiss_kernels::exec::{BINS, Block, Lane, RowMap, Shared, Slot, WARP, Word};
+use nearmiss_kernels::exec::{BINS, Block, Lane, OPEN, RowMap, Shared, Slot, WARP, Word};
 use std::mem::MaybeUninit;
 use std::ptr::with_exposed_provenance_mut;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed, Ordering::SeqCst, fence};
@@ -302,22 +302,31 @@ impl<W: Watch> Block for Emulated<W> {
         &mut self,
         map: &M,
         mut find: impl FnMut(&EmulatedLane<W>) -> Option<T>,
-        mut gather: impl FnMut(&EmulatedLane<W>, T) -> M::Row,
+        mut gather: impl FnMut(&EmulatedLane<W>, T) -> Option<M::Row>,
         mut scatter: impl FnMut(&EmulatedLane<W>, Option<(T, u32)>),
     ) {
         let (watch, lanes) = (self.watch, self.lanes);
         let mut found = vec![None; lanes as usize];
         watch.lanes(lanes, self.phase, |lane| found[lane as usize] = find(&self.lane(lane)));
         let mut rows = Rows::<M>::new(lanes as usize);
+        let mut gathered = vec![false; lanes as usize];
         watch.lanes(lanes, self.phase, |lane| {
-            if let Some(which) = found[lane as usize] {
-                rows.set(lane as usize, &gather(&self.lane(lane), which));
+            if let Some(which) = found[lane as usize]
+                && let Some(row) = gather(&self.lane(lane), which)
+            {
+                rows.set(lane as usize, &row);
+                gathered[lane as usize] = true;
             }
         });
-        let results = rows.apply(map);
+        let results = rows.at_once(map);
         watch.lanes(lanes, self.phase, |lane| {
-            let told = found[lane as usize].map(|which| (which, results[lane as usize]));
-            scatter(&self.lane(lane), told);
+            let i = lane as usize;
+            let result = match (gathered[i], results[i]) {
+                (false, _) => OPEN,
+                (true, OPEN) => map.apply(rows.get(i)),
+                (true, result) => result,
+            };
+            scatter(&self.lane(lane), found[i].map(|which| (which, result)));
         });
         self.phase += 1;
         watch.barrier();

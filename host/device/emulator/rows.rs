@@ -30,30 +30,35 @@ impl<M: RowMap> Rows<M> {
         }
     }
 
-    /// What becomes of each row.
-    pub fn apply(&self, map: &M) -> Vec<u32> {
+    /// A row.
+    pub fn get(&self, i: usize) -> M::Row {
+        row::<M>(&self.columns[i / WIDTH * Self::NUMBERS..], i % WIDTH)
+    }
+
+    /// What becomes of each row in vectors, or that it is open.
+    pub fn at_once(&self, map: &M) -> Vec<u32> {
         let columns = self.columns.chunks_exact(Self::NUMBERS);
         let mut results = vec![[0; WIDTH]; columns.len()];
         for (columns, results) in columns.zip(&mut results) {
-            apply::<M>(map, columns, results);
+            at_once::<M>(map, columns, results);
         }
         results.into_flattened()
     }
 }
 
 #[inline(always)]
-fn apply<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [u32; WIDTH]) {
+fn at_once<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [u32; WIDTH]) {
     #[cfg(target_arch = "x86_64")]
     if is_x86_feature_detected!("avx2") {
         // SAFETY: the machine has what the function is compiled for.
-        return unsafe { apply_avx2(map, columns, results) };
+        return unsafe { at_once_avx2(map, columns, results) };
     }
     each(map, columns, results);
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn apply_avx2<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [u32; WIDTH]) {
+fn at_once_avx2<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [u32; WIDTH]) {
     each(map, columns, results);
 }
 
@@ -62,13 +67,19 @@ fn apply_avx2<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut 
 fn each<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [u32; WIDTH]) {
     let columns = &columns[..Rows::<M>::NUMBERS];
     for place in 0..WIDTH {
-        let mut row = M::Row::zeroed();
-        let numbers: &mut [M::Number] = bytemuck::cast_slice_mut(std::slice::from_mut(&mut row));
-        for k in 0..Rows::<M>::NUMBERS {
-            numbers[k] = columns[k][place];
-        }
-        results[place] = map.apply(row);
+        results[place] = map.at_once(row::<M>(columns, place));
     }
+}
+
+/// A row, of its columns.
+#[inline(always)]
+fn row<M: RowMap>(columns: &[[M::Number; WIDTH]], place: usize) -> M::Row {
+    let mut row = M::Row::zeroed();
+    let numbers: &mut [M::Number] = bytemuck::cast_slice_mut(std::slice::from_mut(&mut row));
+    for k in 0..Rows::<M>::NUMBERS {
+        numbers[k] = columns[k][place];
+    }
+    row
 }
 
 #[cfg(test)]
@@ -83,7 +94,7 @@ mod tests {
         type Number = f32;
         type Row = [[f32; 2]; 2];
         #[inline(always)]
-        fn apply(&self, [[a, b], [c, d]]: [[f32; 2]; 2]) -> u32 {
+        fn at_once(&self, [[a, b], [c, d]]: [[f32; 2]; 2]) -> u32 {
             let q = a / (a.abs() + b.abs());
             if q > c { (q - d).to_bits() } else { (a * b - c * d).to_bits() }
         }
@@ -107,12 +118,13 @@ mod tests {
         let rows = rows();
         let mut columns = Rows::<Mixed>::new(rows.len());
         rows.iter().enumerate().for_each(|(i, row)| columns.set(i, row));
-        let together = columns.apply(&Mixed);
+        let together = columns.at_once(&Mixed);
         let mut plain = vec![[0; WIDTH]; columns.columns.len() / Rows::<Mixed>::NUMBERS];
         for (columns, results) in columns.columns.chunks_exact(Rows::<Mixed>::NUMBERS).zip(&mut plain) {
             each(&Mixed, columns, results);
         }
         for (i, row) in rows.iter().enumerate() {
+            assert_eq!(columns.get(i).map(|x| x.map(f32::to_bits)), row.map(|x| x.map(f32::to_bits)));
             let alone = told(Mixed.apply(*row));
             assert_eq!(told(together[i]), alone, "row {i}, {row:?}");
             assert_eq!(told(plain.as_flattened()[i]), alone, "row {i}, {row:?}, by the plain loop");

@@ -53,7 +53,7 @@ pub enum Violation {
         /// The parent.
         node: u32,
     },
-    /// T7: a node's volume is not the one fitted to the points below it, or its links are not the tree's.
+    /// T7: a node's volume is not the one fitted to the points below it, a leaf's to its triangle, or its links are not the tree's.
     Fit {
         /// The node.
         node: u32,
@@ -132,8 +132,9 @@ pub fn check(tree: &Tree, seen: &mut [bool]) -> Result<(), Violation> {
     }
 }
 
-/// Checks T6 and T7 on a sound tree. `nodes` has as many elements as `links`; `fitted` tells the volume of an inner
-/// node from its first and last leaf, if it is not a merge. Cost: a merge or a fit and a walk down a node.
+/// Checks T6 and T7 on a sound tree. `nodes` has as many elements as `links`; `leaf` tells the volume of a leaf from its
+/// triangle, `fitted` that of an inner node from its first and last leaf, if it is not a merge. Cost: a merge or a fit and a
+/// walk down a node.
 ///
 /// # Errors
 /// The first violation.
@@ -141,6 +142,7 @@ pub fn check_volumes<V: Volume>(
     links: &[Link],
     nodes: &[Node<V>],
     axes: Axes,
+    leaf: impl Fn(u32) -> V,
     fitted: impl Fn(u32, u32) -> Option<V>,
 ) -> Result<(), Violation> {
     for (at, (link, node)) in links.iter().zip(nodes).enumerate().skip(ROOT as usize) {
@@ -149,7 +151,7 @@ pub fn check_volumes<V: Volume>(
             first = links[first.link as usize];
         }
         let (volume, violation) = if link.is_leaf() {
-            (node.volume, Violation::Merge { node: at })
+            (leaf(link.triangle()), Violation::Fit { node: at })
         } else if let Some(volume) = fitted(first.last, link.last) {
             (volume, Violation::Fit { node: at })
         } else {

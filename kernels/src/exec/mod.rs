@@ -96,18 +96,27 @@ pub trait Slot<T, L> {
     fn of(&mut self, lane: &L) -> &mut T;
 }
 
-/// A function of a row of numbers, without memory and without loops whose length depends on them.
+/// A function of a row of numbers, without memory.
 ///
-/// A card's lanes each apply it to their row. A CPU collects rows first and applies it to many of them in a loop that its
-/// compiler can turn into vectors: so everything that it calls is inlined, and arrays are filled by index.
+/// A card's lanes each apply it to their row. A CPU collects rows first and asks for many of them at once, in a loop that its
+/// compiler can turn into vectors: so everything that [`RowMap::at_once`] calls is inlined, arrays are filled by index, and no
+/// branch matters.
 pub trait RowMap {
     /// The number that rows are made of.
     type Number: Pod;
     /// What is read of memory: a whole number of [`RowMap::Number`]s.
     type Row: Pod;
-    /// What becomes of a row. To be `#[inline(always)]`.
-    fn apply(&self, row: Self::Row) -> u32;
+    /// What becomes of a row, or [`OPEN`] where that takes branches. To be `#[inline(always)]`.
+    fn at_once(&self, row: Self::Row) -> u32;
+    /// What becomes of a row.
+    #[inline(always)]
+    fn apply(&self, row: Self::Row) -> u32 {
+        self.at_once(row)
+    }
 }
+
+/// What becomes of a row is still open.
+pub const OPEN: u32 = u32::MAX;
 
 /// A block of lanes: the phases of a kernel and the steps that its lanes take together.
 pub trait Block {
@@ -132,18 +141,21 @@ pub trait Block {
     /// Runs `body` once for each lane, then waits for all of them.
     fn phase(&mut self, body: impl FnMut(&Self::Lane));
 
-    /// A phase in steps: each lane finds which row it has, or none; gathers it; rows are mapped; each lane is given what became
-    /// of its row. Where lanes run one after another, all take a step before the first takes the next: memory answers many at
-    /// once.
+    /// A phase in steps: each lane finds which row it has, or none; gathers it, or leaves it [`OPEN`]; rows are mapped; each
+    /// lane is given what became of its row. Where lanes run one after another, all take a step before the first takes the
+    /// next: memory answers many at once.
     #[inline(always)]
     fn map_rows<M: RowMap, T: Copy>(
         &mut self,
         map: &M,
         mut find: impl FnMut(&Self::Lane) -> Option<T>,
-        mut gather: impl FnMut(&Self::Lane, T) -> M::Row,
+        mut gather: impl FnMut(&Self::Lane, T) -> Option<M::Row>,
         mut scatter: impl FnMut(&Self::Lane, Option<(T, u32)>),
     ) {
-        self.phase(|l| scatter(l, find(l).map(|which| (which, map.apply(gather(l, which))))));
+        self.phase(|l| {
+            let told = find(l).map(|which| (which, gather(l, which).map_or(OPEN, |row| map.apply(row))));
+            scatter(l, told);
+        });
     }
 
     /// A uniform read of device memory, between phases. Nothing in this launch may write it.

@@ -41,15 +41,10 @@ pub struct Plane<R> {
 
 impl<R: Real> Plane<R> {
     /// Through `a`, `b`, `c`; any three finite points, collinear ones too. 6 differences, 6 products, 9 sums.
-    #[inline]
+    #[inline(always)]
     pub fn through(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>) -> Self {
         let (e, f) = (a - c, b - c);
-        let k = R::ORIENT3D_INNER_UNDERFLOW;
-        let pair = |i: usize, j: usize| {
-            let (x, y) = (e[i] * f[j], e[j] * f[i]);
-            (x - y, x.abs() + y.abs() + k)
-        };
-        let (x, y, z) = (pair(1, 2), pair(2, 0), pair(0, 1));
+        let (x, y, z) = (minor(e, f, 1, 2), minor(e, f, 2, 0), minor(e, f, 0, 1));
         Plane { a, b, c, e, f, normal: Vec3([x.0, y.0, z.0]), permanent: Vec3([x.1, y.1, z.1]) }
     }
 
@@ -69,8 +64,15 @@ impl<R: Real> Plane<R> {
         }
     }
 
+    /// Whether three points are certainly strictly on one side, without branches.
+    #[inline(always)]
+    pub fn beside(&self, [x, y, z]: &[Vec3<R>; 3]) -> bool {
+        let (x, y, z) = (self.measured(*x), self.measured(*y), self.measured(*z));
+        ((x.0 > x.1) & (y.0 > y.1) & (z.0 > z.1)) | ((x.0 < -x.1) & (y.0 < -y.1) & (z.0 < -z.1))
+    }
+
     /// det[a-d, b-d, c-d] as computed, and the most that it errs.
-    #[inline]
+    #[inline(always)]
     pub fn measured(&self, d: Vec3<R>) -> (R, R) {
         let g = self.c - d;
         let bound = R::ORIENT3D_RELATIVE * self.permanent.dot(g.map(R::abs)) + R::ORIENT_OUTER_UNDERFLOW;
@@ -89,6 +91,13 @@ impl<R: Real> Plane<R> {
             || self.c == d
             || self.a == self.b
     }
+}
+
+/// A minor of two rows, and its permanent.
+#[inline(always)]
+fn minor<R: Real>(e: Vec3<R>, f: Vec3<R>, i: usize, j: usize) -> (R, R) {
+    let (x, y) = (e[i] * f[j], e[j] * f[i]);
+    (x - y, x.abs() + y.abs() + R::ORIENT3D_INNER_UNDERFLOW)
 }
 
 /// The sign of det[a-d, b-d, c-d]: positive when `d` sees `a`, `b`, `c` clockwise. `None` where floats cannot tell.

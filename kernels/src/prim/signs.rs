@@ -38,7 +38,7 @@ impl<R: Real> Signs<R> for Filter {
     #[inline]
     fn sides(t: &[Vec3<R>; 3], p: &[Vec3<R>; 3]) -> [Option<i32>; 3] {
         let plane = Plane::through(t[0], t[1], t[2]);
-        p.map(|d| plane.side(d))
+        [plane.side(p[0]), plane.side(p[1]), plane.side(p[2])]
     }
 }
 

@@ -8,6 +8,7 @@ pub use super::flat::{boxes_meet, point_on_triangle, segments_meet};
 pub use super::signs::{Certain, Exact, Filter, Signs, Wide};
 
 use super::flat::flat_meet;
+use super::orient::Plane;
 use crate::math::{Real, Vec3};
 
 /// Whether the closed triangles `p` and `q` share a point; `None` only if a needed sign is.
@@ -29,6 +30,13 @@ pub fn meets<R: Real, S: Signs<R>>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> Option
         return Some(false);
     }
     meets_on::<R, S>(p, q, known(&p_of_q)?, known(&q_of_p)?)
+}
+
+/// Whether [`meets`] by [`Filter`] says at its first two questions that the triangles are apart: all of one is strictly on one
+/// side of the other's plane. Without branches.
+#[inline(always)]
+pub fn parted<R: Real>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> bool {
+    Plane::through(p[0], p[1], p[2]).beside(q) | Plane::through(q[0], q[1], q[2]).beside(p)
 }
 
 /// The exact answer at the least cost on one core: filter, wider filter, integers, sign by sign.

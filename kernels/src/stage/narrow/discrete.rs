@@ -13,15 +13,17 @@
 
 use super::{append_each, listed};
 use crate::abi::{DiscreteArgs, KEEP_ADJACENT, Pair, counter};
-use crate::exec::{Block, Lane, Slot};
+use crate::exec::{Block, Lane, OPEN, RowMap, Slot};
 use crate::math::{Real, Vec3};
 use crate::prim::adjacent::{Shared, meets_beyond_shared};
 use crate::prim::moller;
-use crate::prim::tri_tri::{Certain, Filter, Wide, meets};
+use crate::prim::tri_tri::{Certain, Filter, Wide, meets, parted};
+use core::marker::PhantomData;
 
 /// The corners of a triangle.
 fn corners<R: Real, L: Lane>(l: &L, a: &DiscreteArgs<R>, face: [u32; 3]) -> [Vec3<R>; 3] {
-    face.map(|v| l.read(a.positions, v).at)
+    let at = |v| l.read(a.positions, v).at;
+    [at(face[0]), at(face[1]), at(face[2])]
 }
 
 /// The seed's test, in f32.
@@ -34,63 +36,116 @@ pub fn moller<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
     });
 }
 
-/// Asks each pair; those that meet go to the contacts, those without an answer to the undecided.
-fn sort_out<R: Real, B: Block>(
-    b: &mut B,
-    a: &DiscreteArgs<R>,
-    mut ask: impl FnMut(&B::Lane, Pair) -> Option<bool>,
-) {
-    let count = listed(b, a.pairs, a.counters, a.pairs_at);
-    let lanes = b.lanes();
-    let mut pairs = b.slot(Pair::default());
-    let mut verdicts = b.slot(Some(false));
-    let mut places = b.slot(0u32);
-    let mut base = b.block() * lanes;
-    while base < count {
-        b.phase(|l| {
-            let i = base + l.lane();
-            *verdicts.of(l) = Some(false);
-            if i < count {
-                let pair = l.read(a.pairs, i);
-                *pairs.of(l) = pair;
-                *verdicts.of(l) = ask(l, pair);
-            }
-        });
+/// Pairs of a block and what is known of each.
+struct Verdicts<B: Block> {
+    pairs: B::Slot<Pair>,
+    verdicts: B::Slot<Option<bool>>,
+    places: B::Slot<u32>,
+}
+
+impl<B: Block> Verdicts<B> {
+    fn new(b: &B) -> Self {
+        Verdicts { pairs: b.slot(Pair::default()), verdicts: b.slot(Some(false)), places: b.slot(0) }
+    }
+
+    #[inline(always)]
+    fn set(&mut self, l: &B::Lane, pair: Pair, verdict: Option<bool>) {
+        *self.pairs.of(l) = pair;
+        *self.verdicts.of(l) = verdict;
+    }
+
+    /// Those that meet go to the contacts, those without an answer to the undecided.
+    fn sort_out<R: Real>(&mut self, b: &mut B, a: &DiscreteArgs<R>) {
         for (verdict, list, at) in
             [(Some(true), a.contacts, counter::CONTACTS), (None, a.undecided, a.undecided_at)]
         {
-            b.phase(|l| *places.of(l) = (*verdicts.of(l) == verdict) as u32);
-            let start = b.append(&mut places, a.counters, at);
+            b.phase(|l| *self.places.of(l) = (*self.verdicts.of(l) == verdict) as u32);
+            let start = b.append(&mut self.places, a.counters, at);
             b.phase(|l| {
-                let place = start + *places.of(l) as u64;
-                if *verdicts.of(l) == verdict && place < list.len {
-                    l.write(list, place as u32, *pairs.of(l));
+                let place = start + *self.places.of(l) as u64;
+                if *self.verdicts.of(l) == verdict && place < list.len {
+                    l.write(list, place as u32, *self.pairs.of(l));
                 }
             });
         }
-        base += b.blocks() * lanes;
+    }
+}
+
+/// Signs with an error bound, in the precision of the positions.
+struct Signed<R>(PhantomData<R>);
+
+/// What [`Signed`] makes of two triangles; undecided is [`OPEN`].
+const APART: u32 = 0;
+const MEET: u32 = 1;
+
+impl<R: Real> RowMap for Signed<R> {
+    type Number = R;
+    type Row = [[Vec3<R>; 3]; 2];
+    #[inline(always)]
+    fn at_once(&self, [p, q]: [[Vec3<R>; 3]; 2]) -> u32 {
+        if parted(&p, &q) { APART } else { OPEN }
+    }
+    #[inline(always)]
+    fn apply(&self, [p, q]: [[Vec3<R>; 3]; 2]) -> u32 {
+        meets::<R, Filter>(&p, &q).map_or(OPEN, |meet| if meet { MEET } else { APART })
     }
 }
 
 /// Signs with an error bound, in the precision of the positions: contacts, and pairs that it cannot decide.
 pub fn filter<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
-    sort_out(b, a, |l, pair| {
-        let (p, q) = (l.read(a.faces, pair.a), l.read(a.faces, pair.b));
-        let beyond = a.flags & KEEP_ADJACENT != 0 && Shared::by_index(p, q) != Shared::Nothing;
-        if beyond { None } else { meets::<R, Filter>(&corners(l, a, p), &corners(l, a, q)) }
-    });
+    let count = listed(b, a.pairs, a.counters, a.pairs_at);
+    let lanes = b.lanes();
+    let mut verdicts = Verdicts::new(b);
+    let mut base = b.block() * lanes;
+    while base < count {
+        b.map_rows(
+            &Signed(PhantomData),
+            |l| {
+                let i = base + l.lane();
+                if i >= count {
+                    return None;
+                }
+                let pair = l.read(a.pairs, i);
+                Some((pair, l.read(a.faces, pair.a), l.read(a.faces, pair.b)))
+            },
+            |l, (_, p, q)| {
+                let beyond = a.flags & KEEP_ADJACENT != 0 && Shared::by_index(p, q) != Shared::Nothing;
+                if beyond { None } else { Some([corners(l, a, p), corners(l, a, q)]) }
+            },
+            |l, told| match told {
+                Some(((pair, ..), what)) => verdicts.set(l, pair, (what != OPEN).then_some(what == MEET)),
+                None => verdicts.set(l, Pair::default(), Some(false)),
+            },
+        );
+        verdicts.sort_out(b, a);
+        base += b.blocks() * lanes;
+    }
 }
 
 /// The same in f64, for what f32 left undecided.
 pub fn wide<B: Block>(b: &mut B, a: &DiscreteArgs<f32>) {
-    sort_out(b, a, |l, pair| {
-        let (p, q) = (l.read(a.faces, pair.a), l.read(a.faces, pair.b));
-        let (x, y) = (corners(l, a, p), corners(l, a, q));
-        match Shared::by_index(p, q) {
-            Shared::Nothing => meets::<f32, Wide>(&x, &y),
-            shared => beyond(x, y, shared),
-        }
-    });
+    let count = listed(b, a.pairs, a.counters, a.pairs_at);
+    let lanes = b.lanes();
+    let mut verdicts = Verdicts::new(b);
+    let mut base = b.block() * lanes;
+    while base < count {
+        b.phase(|l| {
+            let i = base + l.lane();
+            if i >= count {
+                return verdicts.set(l, Pair::default(), Some(false));
+            }
+            let pair = l.read(a.pairs, i);
+            let (p, q) = (l.read(a.faces, pair.a), l.read(a.faces, pair.b));
+            let (x, y) = (corners(l, a, p), corners(l, a, q));
+            let verdict = match Shared::by_index(p, q) {
+                Shared::Nothing => meets::<f32, Wide>(&x, &y),
+                shared => beyond(x, y, shared),
+            };
+            verdicts.set(l, pair, verdict);
+        });
+        verdicts.sort_out(b, a);
+        base += b.blocks() * lanes;
+    }
 }
 
 /// Of a pair that shares corners. By value and out of line: few pairs are such, and the others keep their registers.

@@ -98,7 +98,7 @@ fn append_mapped<B: Block, M: RowMap, T: bytemuck::Pod, I: Copy>(
                 let i = base + l.lane();
                 (i < count).then(|| find(l, i))
             },
-            &mut gather,
+            |l, which| Some(gather(l, which)),
             |l, told| entries.set(l, told.and_then(|((entry, _), keep)| (keep != 0).then_some(entry))),
         );
         entries.append(b, to);

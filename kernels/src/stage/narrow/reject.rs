@@ -61,7 +61,7 @@ impl<R: Real> RowMap for VertexFace<R> {
     type Number = R;
     type Row = [Moving<R>; 4];
     #[inline(always)]
-    fn apply(&self, [v, x, y, z]: [Moving<R>; 4]) -> u32 {
+    fn at_once(&self, [v, x, y, z]: [Moving<R>; 4]) -> u32 {
         !rejected(&Face::new(v, [x, y, z], &self.0)) as u32
     }
 }
@@ -73,7 +73,7 @@ impl<R: Real> RowMap for EdgeEdge<R> {
     type Number = R;
     type Row = [[Moving<R>; 2]; 2];
     #[inline(always)]
-    fn apply(&self, [a, b]: [[Moving<R>; 2]; 2]) -> u32 {
+    fn at_once(&self, [a, b]: [[Moving<R>; 2]; 2]) -> u32 {
         !rejected(&Edges::new(a, b, &self.0)) as u32
     }
 }

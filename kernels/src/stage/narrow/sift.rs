@@ -55,7 +55,7 @@ impl<R: Real> RowMap for Meeting<R> {
     type Number = R;
     type Row = [Corners<R>; 2];
     #[inline(always)]
-    fn apply(&self, [p, q]: [Corners<R>; 2]) -> u32 {
+    fn at_once(&self, [p, q]: [Corners<R>; 2]) -> u32 {
         meeting(&p, &q, self.gap)
     }
 }
@@ -93,7 +93,7 @@ pub fn sift<R: Real, B: Block>(b: &mut B, a: &SiftArgs<R>) {
                 let (p, q) = (l.read(a.facets, pair.a), l.read(a.facets, pair.b));
                 Some((owned(&p, &q), p.corners, q.corners))
             },
-            |l, (_, p, q)| [triangle(l, &a.frames, p), triangle(l, &a.frames, q)],
+            |l, (_, p, q)| Some([triangle(l, &a.frames, p), triangle(l, &a.frames, q)]),
             |l, told| {
                 let mask = told.map_or(0, |((owned, ..), meeting)| owned & meeting);
                 *masks.of(l) = mask;
