@@ -66,8 +66,8 @@ fn at_once_avx2<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mu
 #[inline(always)]
 fn each<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [u32; WIDTH]) {
     let columns = &columns[..Rows::<M>::NUMBERS];
-    for place in 0..WIDTH {
-        results[place] = map.at_once(row::<M>(columns, place));
+    for (place, result) in results.iter_mut().enumerate() {
+        *result = map.at_once(row::<M>(columns, place));
     }
 }
 
