@@ -18,7 +18,7 @@ fn moving<R: Real>([x, y]: [f64; 2], [z0, z1]: Height<R>) -> Moving<R> {
     Moving { t0: at(z0), t1: at(z1) }
 }
 
-/// A triangle whose first corner is at the origin, first edge along x, and height of all corners the same.
+/// A triangle of one height, whose first edge runs through the origin along x, or along y.
 fn level<R: Real>(z: Height<R>, turned: bool) -> Corners<R> {
     let at = |x, y| moving(if turned { [y, x] } else { [x, y] }, z);
     [at(-4.0, 0.0), at(8.0, 0.0), at(-4.0, 8.0)]

@@ -37,17 +37,13 @@ impl<M: RowMap> Rows<M> {
 
     /// What becomes of each row in vectors, or that it is open.
     pub fn at_once(&self, map: &M) -> Vec<u32> {
-        let columns = self.columns.chunks_exact(Self::NUMBERS);
-        let mut results = vec![[0; WIDTH]; columns.len()];
-        for (columns, results) in columns.zip(&mut results) {
-            at_once::<M>(map, columns, results);
-        }
+        let mut results = vec![[0; WIDTH]; self.columns.len() / Self::NUMBERS];
+        at_once(map, &self.columns, &mut results);
         results.into_flattened()
     }
 }
 
-#[inline(always)]
-fn at_once<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [u32; WIDTH]) {
+fn at_once<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [[u32; WIDTH]]) {
     #[cfg(target_arch = "x86_64")]
     if is_x86_feature_detected!("avx2") {
         // SAFETY: the machine has what the function is compiled for.
@@ -58,16 +54,17 @@ fn at_once<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [u3
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn at_once_avx2<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [u32; WIDTH]) {
+fn at_once_avx2<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [[u32; WIDTH]]) {
     each(map, columns, results);
 }
 
-/// The loop that becomes vectors.
+/// The inner loop becomes vectors.
 #[inline(always)]
-fn each<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [u32; WIDTH]) {
-    let columns = &columns[..Rows::<M>::NUMBERS];
-    for (place, result) in results.iter_mut().enumerate() {
-        *result = map.at_once(row::<M>(columns, place));
+fn each<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [[u32; WIDTH]]) {
+    for (columns, results) in columns.chunks_exact(Rows::<M>::NUMBERS).zip(results) {
+        for (place, result) in results.iter_mut().enumerate() {
+            *result = map.at_once(row::<M>(columns, place));
+        }
     }
 }
 
@@ -120,9 +117,7 @@ mod tests {
         rows.iter().enumerate().for_each(|(i, row)| columns.set(i, row));
         let together = columns.at_once(&Mixed);
         let mut plain = vec![[0; WIDTH]; columns.columns.len() / Rows::<Mixed>::NUMBERS];
-        for (columns, results) in columns.columns.chunks_exact(Rows::<Mixed>::NUMBERS).zip(&mut plain) {
-            each(&Mixed, columns, results);
-        }
+        each(&Mixed, &columns.columns, &mut plain);
         for (i, row) in rows.iter().enumerate() {
             assert_eq!(columns.get(i).map(|x| x.map(f32::to_bits)), row.map(|x| x.map(f32::to_bits)));
             let alone = told(Mixed.apply(*row));

@@ -11,7 +11,7 @@
 //! Cost     8 B pair, 24 B faces, 96 B positions (gathered); about 100 operations for a pair that a plane separates. A sign
 //!          takes `wide` some 30 operations in f64, `exact` thousands on integers.
 
-use super::{append_each, listed};
+use super::{Entries, append_each, listed, stride};
 use crate::abi::{DiscreteArgs, KEEP_ADJACENT, Pair, counter};
 use crate::exec::{Block, Lane, OPEN, RowMap, Slot};
 use crate::math::{Real, Vec3};
@@ -40,12 +40,12 @@ pub fn moller<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
 struct Verdicts<B: Block> {
     pairs: B::Slot<Pair>,
     verdicts: B::Slot<Option<bool>>,
-    places: B::Slot<u32>,
+    entries: Entries<B, Pair>,
 }
 
 impl<B: Block> Verdicts<B> {
     fn new(b: &B) -> Self {
-        Verdicts { pairs: b.slot(Pair::default()), verdicts: b.slot(Some(false)), places: b.slot(0) }
+        Verdicts { pairs: b.slot(Pair::default()), verdicts: b.slot(Some(false)), entries: Entries::new(b) }
     }
 
     #[inline(always)]
@@ -59,14 +59,11 @@ impl<B: Block> Verdicts<B> {
         for (verdict, list, at) in
             [(Some(true), a.contacts, counter::CONTACTS), (None, a.undecided, a.undecided_at)]
         {
-            b.phase(|l| *self.places.of(l) = (*self.verdicts.of(l) == verdict) as u32);
-            let start = b.append(&mut self.places, a.counters, at);
             b.phase(|l| {
-                let place = start + *self.places.of(l) as u64;
-                if *self.verdicts.of(l) == verdict && place < list.len {
-                    l.write(list, place as u32, *self.pairs.of(l));
-                }
+                let mine = *self.verdicts.of(l) == verdict;
+                self.entries.set(l, mine.then_some(*self.pairs.of(l)));
             });
+            self.entries.append(b, (list, a.counters, at));
         }
     }
 }
@@ -94,10 +91,8 @@ impl<R: Real> RowMap for Signed<R> {
 /// Signs with an error bound, in the precision of the positions: contacts, and pairs that it cannot decide.
 pub fn filter<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
     let count = listed(b, a.pairs, a.counters, a.pairs_at);
-    let lanes = b.lanes();
     let mut verdicts = Verdicts::new(b);
-    let mut base = b.block() * lanes;
-    while base < count {
+    stride(b, count, |b, base| {
         b.map_rows(
             &Signed(PhantomData),
             |l| {
@@ -118,17 +113,14 @@ pub fn filter<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
             },
         );
         verdicts.sort_out(b, a);
-        base += b.blocks() * lanes;
-    }
+    });
 }
 
 /// The same in f64, for what f32 left undecided.
 pub fn wide<B: Block>(b: &mut B, a: &DiscreteArgs<f32>) {
     let count = listed(b, a.pairs, a.counters, a.pairs_at);
-    let lanes = b.lanes();
     let mut verdicts = Verdicts::new(b);
-    let mut base = b.block() * lanes;
-    while base < count {
+    stride(b, count, |b, base| {
         b.phase(|l| {
             let i = base + l.lane();
             if i >= count {
@@ -144,8 +136,7 @@ pub fn wide<B: Block>(b: &mut B, a: &DiscreteArgs<f32>) {
             verdicts.set(l, pair, verdict);
         });
         verdicts.sort_out(b, a);
-        base += b.blocks() * lanes;
-    }
+    });
 }
 
 /// Of a pair that shares corners. By value and out of line: few pairs are such, and the others keep their registers.

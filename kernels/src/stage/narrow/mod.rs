@@ -58,6 +58,18 @@ fn edge_edge<R: Real, L: Lane>(
     [edge(l, frames, l.read(edges, pair.a)), edge(l, frames, l.read(edges, pair.b))]
 }
 
+/// Runs `body` for each stretch of `count` items that a block takes, an item a lane, in a grid of any size: with the number of
+/// its first item. Blocks stride.
+#[inline(always)]
+fn stride<B: Block>(b: &mut B, count: u32, mut body: impl FnMut(&mut B, u32)) {
+    let lanes = b.lanes();
+    let mut base = b.block() * lanes;
+    while base < count {
+        body(b, base);
+        base += b.blocks() * lanes;
+    }
+}
+
 /// Runs `body` for each of `count` items, a lane each, in a grid of any size; an item may `Some` an entry to append to
 /// `list`. The counter goes past the end of the list, so its final value is the exact demand.
 fn append_each<B: Block, T: bytemuck::Pod>(
@@ -66,17 +78,14 @@ fn append_each<B: Block, T: bytemuck::Pod>(
     to: (Span<T>, Span<u64>, u32),
     mut body: impl FnMut(&B::Lane, u32) -> Option<T>,
 ) {
-    let lanes = b.lanes();
     let mut entries = Entries::new(b);
-    let mut base = b.block() * lanes;
-    while base < count {
+    stride(b, count, |b, base| {
         b.phase(|l| {
             let i = base + l.lane();
             entries.set(l, if i < count { body(l, i) } else { None });
         });
         entries.append(b, to);
-        base += b.blocks() * lanes;
-    }
+    });
 }
 
 /// As [`append_each`], by a map of rows: an item is appended if its row is not mapped to 0.
@@ -88,10 +97,8 @@ fn append_mapped<B: Block, M: RowMap, T: bytemuck::Pod, I: Copy>(
     mut find: impl FnMut(&B::Lane, u32) -> (T, I),
     mut gather: impl FnMut(&B::Lane, (T, I)) -> M::Row,
 ) {
-    let lanes = b.lanes();
     let mut entries = Entries::new(b);
-    let mut base = b.block() * lanes;
-    while base < count {
+    stride(b, count, |b, base| {
         b.map_rows(
             map,
             |l| {
@@ -102,8 +109,7 @@ fn append_mapped<B: Block, M: RowMap, T: bytemuck::Pod, I: Copy>(
             |l, told| entries.set(l, told.and_then(|((entry, _), keep)| (keep != 0).then_some(entry))),
         );
         entries.append(b, to);
-        base += b.blocks() * lanes;
-    }
+    });
 }
 
 /// What each lane of a block may have to append.
