@@ -1,7 +1,7 @@
 //! Embeds the kernels' PTX, with feature `cuda`; without it, does nothing.
 //!
-//! The committed kernels/nearmiss.ptx is taken if it carries the stamp of the present sources. Otherwise the
-//! kernels are compiled, if this machine has a device compiler (kernels/ptx.sh); if it has none, the build stops.
+//! The PTX in the kernels' package is taken if it carries the stamp of the sources beside it. Otherwise the kernels are
+//! compiled, if this machine has a device compiler (kernels/ptx.sh); if it has none, the build stops.
 //! The library gets `NEARMISS_STAMP` (16 hex digits) from the environment and the text from `OUT_DIR`.
 
 fn main() {
@@ -17,22 +17,24 @@ mod ptx {
     use std::process::Command;
     use std::{env, fs};
 
-    const COMMITTED: &str = "kernels/nearmiss.ptx";
+    const PTX: &str = "nearmiss.ptx";
 
     pub fn embed() {
-        for path in ["kernels/src", "kernels/Cargo.toml", "kernels/ptx.sh", COMMITTED] {
-            println!("cargo::rerun-if-changed={path}");
+        let folder = |name| PathBuf::from(env::var_os(name).unwrap_or_else(|| panic!("cargo sets {name}")));
+        // What kernels/build.rs tells: the folder of that package, in this repository or in a registry.
+        let (kernels, out) = (folder("DEP_NEARMISS_KERNELS_ROOT"), folder("OUT_DIR"));
+        for path in ["src", "Cargo.toml", PTX] {
+            println!("cargo::rerun-if-changed={}", kernels.join(path).display());
         }
         println!("cargo::rerun-if-env-changed=NEARMISS_DEVICE_RUSTC");
 
-        let out = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR"));
-        let text = out.join("nearmiss.ptx");
-        let stamp = stamp();
-        let committed = fs::read_to_string(COMMITTED).unwrap_or_default();
-        if is_made_from(&committed, &stamp) {
-            fs::write(&text, committed).expect("OUT_DIR takes the PTX");
+        let text = out.join(PTX);
+        let stamp = stamp(&kernels);
+        let packaged = fs::read_to_string(kernels.join(PTX)).unwrap_or_default();
+        if is_made_from(&packaged, &stamp) {
+            fs::write(&text, packaged).expect("OUT_DIR takes the PTX");
         } else {
-            compile(&out, &text, &stamp);
+            compile(&kernels, &out, &text, &stamp);
         }
         println!("cargo::rustc-env=NEARMISS_STAMP={stamp}");
     }
@@ -41,26 +43,32 @@ mod ptx {
         ptx.lines().next().is_some_and(|first| first.contains(&format!("sources {stamp},")))
     }
 
-    /// As `kernels/ptx.sh stamp` (tests/ptx.rs compares): a digest over one line a file, "digest  name".
-    fn stamp() -> String {
-        let mut names = vec!["kernels/Cargo.toml".to_owned()];
-        rust_files(Path::new("kernels/src"), &mut names);
+    /// As `kernels/ptx.sh stamp` (tests/ptx.rs compares): a digest over one line a file, "digest  kernels/name".
+    fn stamp(kernels: &Path) -> String {
+        let mut names = vec!["Cargo.toml".to_owned()];
+        rust_files(kernels, &kernels.join("src"), &mut names);
         names.sort();
         let mut all = Sha256::new();
         for name in names {
-            let bytes = fs::read(&name).expect("a kernel source is readable");
-            all.update(format!("{}  {name}\n", hex(&Sha256::digest(bytes))));
+            let path = kernels.join(&name);
+            // A package's manifest is rewritten; what was written by hand lies beside it.
+            let original = kernels.join("Cargo.toml.orig");
+            let path = if name == "Cargo.toml" && original.exists() { original } else { path };
+            let bytes = fs::read(path).expect("a kernel source is readable");
+            all.update(format!("{}  kernels/{name}\n", hex(&Sha256::digest(bytes))));
         }
         hex(&all.finalize())[..16].to_owned()
     }
 
-    fn rust_files(folder: &Path, names: &mut Vec<String>) {
-        for entry in fs::read_dir(folder).expect("kernels/src is a folder") {
-            let path = entry.expect("kernels/src is readable").path();
+    /// The Rust files below a folder, named from `root`.
+    fn rust_files(root: &Path, folder: &Path, names: &mut Vec<String>) {
+        for entry in fs::read_dir(folder).expect("the kernels' sources are a folder") {
+            let path = entry.expect("the kernels' sources are readable").path();
             if path.is_dir() {
-                rust_files(&path, names);
+                rust_files(root, &path, names);
             } else if path.extension().is_some_and(|e| e == "rs") {
-                names.push(path.to_string_lossy().replace('\\', "/"));
+                let name = path.strip_prefix(root).expect("below the root");
+                names.push(name.to_string_lossy().replace('\\', "/"));
             }
         }
     }
@@ -69,32 +77,31 @@ mod ptx {
         bytes.iter().map(|b| format!("{b:02x}")).collect()
     }
 
-    fn compile(out: &Path, text: &Path, stamp: &str) {
+    fn compile(kernels: &Path, out: &Path, text: &Path, stamp: &str) {
         // A build script that runs cargo needs another target folder: the outer cargo holds the lock of its own.
         let target = out.ancestors().nth(4).unwrap_or(out).join("ptx");
-        let built = Command::new("kernels/ptx.sh")
-            .arg("build")
-            .arg(text)
-            .env("NEARMISS_PTX_TARGET_DIR", target)
-            .output();
+        let script = kernels.join("ptx.sh");
+        let built =
+            Command::new(&script).arg("build").arg(text).env("NEARMISS_PTX_TARGET_DIR", target).output();
         let why = match built {
             Ok(done) if done.status.success() => {
                 println!(
-                    "cargo::warning={COMMITTED} is not made from the present kernels; they were compiled anew"
+                    "cargo::warning=kernels/{PTX} is not made from the present kernels; they were compiled anew"
                 );
                 return;
             }
             Ok(done) => String::from_utf8_lossy(&done.stderr).into_owned(),
-            Err(error) => format!("kernels/ptx.sh: {error}"),
+            Err(error) => format!("{}: {error}", script.display()),
         };
         eprintln!("{why}");
         eprintln!(
-            "The kernels' sources (stamp {stamp}) are not those that {COMMITTED} was made from, and they could"
+            "The kernels' sources (stamp {stamp}) are not those that {} was made from, and they could not be compiled",
+            kernels.join(PTX).display()
         );
         eprintln!(
-            "not be compiled here; the reason is above. With a device compiler (kernels/ptx.sh fetch) this builds"
+            "here; the reason is above. With a device compiler (kernels/ptx.sh fetch) this builds by itself; to renew"
         );
-        eprintln!("by itself; to renew the committed file: kernels/ptx.sh build {COMMITTED}");
+        eprintln!("the committed file: kernels/ptx.sh build kernels/{PTX}");
         std::process::exit(1);
     }
 }

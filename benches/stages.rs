@@ -11,7 +11,8 @@ use nearmiss::device::Backend;
 use nearmiss::mesh::Body;
 use nearmiss::pipeline::Stages;
 use nearmiss::query::Motion;
-use nearmiss::{Device, Mesh, Query, Session, scene};
+use nearmiss::{Device, Mesh, Query, Session};
+use nearmiss_lab::scene;
 use std::path::PathBuf;
 use std::time::Duration;
 

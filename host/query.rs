@@ -1,15 +1,18 @@
 //! Choices are values: one configuration, the same for the library, the command line, the benches and the tests.
 
+mod named;
 mod queues;
 
+pub use named::Named;
+pub(crate) use named::named;
 pub use queues::{Balance, FrontShape, QueueShape, StealShape};
 
 use crate::error::Error;
 use nearmiss_kernels::prim::inclusion::Params;
 
 /// What is asked of two triangles.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 pub enum Motion {
     /// Which triangle pairs share a point at t = 0?
     #[default]
@@ -20,45 +23,31 @@ pub enum Motion {
     Earliest,
 }
 
-/// What the tree is dressed in.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Bv {
-    /// Axis-aligned boxes; in a continuous query around both ends of the step.
-    #[default]
-    Aabb,
-    /// Boxes that move: axis-aligned at both ends of the step, in between on straight lines.
-    Linear,
-    /// Oriented boxes along the principal axes of what they hold; the seed's.
-    Obb,
-    /// Oriented boxes that keep the axes of a child: the older rule.
-    ObbChild,
+named! {
+    /// What the tree is dressed in.
+    pub enum Bv {
+        /// Axis-aligned boxes; in a continuous query around both ends of the step.
+        Aabb = "aabb",
+        /// Boxes that move: axis-aligned at both ends of the step, in between on straight lines.
+        Linear = "linear",
+        /// Oriented boxes along the principal axes of what they hold; the seed's.
+        Obb = "obb",
+        /// Oriented boxes that keep the axes of a child: the older rule.
+        ObbChild = "obb-child",
+    }
 }
 
 impl Bv {
-    /// Every volume.
-    pub const ALL: [Bv; 4] = [Bv::Aabb, Bv::Linear, Bv::Obb, Bv::ObbChild];
-
     /// The fastest volume that the real scenes have (measured, `docs/performance.md`): what stands still needs no more
     /// than a box; of what moves, boxes that move with it let a third to a tenth of the pairs through.
     pub fn default_for(motion: Motion) -> Bv {
         if motion == Motion::Discrete { Bv::Aabb } else { Bv::Linear }
     }
-
-    /// Its name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Bv::Aabb => "aabb",
-            Bv::Linear => "linear",
-            Bv::Obb => "obb",
-            Bv::ObbChild => "obb-child",
-        }
-    }
 }
 
 /// How the tree is walked.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 pub enum Traversal {
     /// A walk a leaf. A walk of more steps than `budget` gives the rest of its stack to the next round.
     PerLeaf {
@@ -90,16 +79,16 @@ impl Traversal {
     }
 }
 
-/// How the volumes of a tree follow its triangles. All ways give the same bits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Refit {
-    /// A launch a level, the seed's way.
-    Levels,
-    /// One launch for all volumes: a block a subtree, the rest by the block that is done last.
-    Treelets,
-    /// One launch without barriers: of two siblings, who comes second goes on to their parent.
-    BottomUp,
+named! {
+    /// How the volumes of a tree follow its triangles. All ways give the same bits.
+    pub enum Refit {
+        /// A launch a level, the seed's way.
+        Levels = "levels",
+        /// One launch for all volumes: a block a subtree, the rest by the block that is done last.
+        Treelets = "treelets",
+        /// One launch without barriers: of two siblings, who comes second goes on to their parent.
+        BottomUp = "bottom-up",
+    }
 }
 
 impl Refit {
@@ -109,39 +98,33 @@ impl Refit {
     }
 }
 
-/// The test of a pair of triangles.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Solver {
-    /// Discrete: exact signs by filter, then integers. Never wrong. The default.
-    #[default]
-    Exact,
-    /// Discrete: the seed's float test. Can miss, can err.
-    Moller,
-    /// Continuous: isolated roots, in f32 and, where that is not enough, in f64 and beyond. Never misses, is never late.
-    Certified,
-    /// The same in f32 alone: leaves more unresolved.
-    CertifiedF32,
-    /// The same in f64 alone: costs more.
-    CertifiedF64,
-    /// Continuous: the seed's cubic in f32. Can miss, can be late.
-    CubicF32,
-    /// Continuous: the seed's cubic in f64. Can miss degenerate motion.
-    CubicF64,
+named! {
+    /// The test of a pair of triangles.
+    pub enum Solver {
+        /// Discrete: exact signs by filter, then integers. Never wrong. The default.
+        Exact = "exact",
+        /// Discrete: the seed's float test. Can miss, can err.
+        Moller = "moller",
+        /// Continuous: isolated roots, in f32 and, where that is not enough, in f64 and beyond. Never misses, is never late.
+        Certified = "certified",
+        /// The same in f32 alone: leaves more unresolved.
+        CertifiedF32 = "certified-f32",
+        /// The same in f64 alone: costs more.
+        CertifiedF64 = "certified-f64",
+        /// Continuous: the seed's cubic in f64. Can miss degenerate motion.
+        CubicF64 = "cubic-f64",
+        /// Continuous: the seed's cubic in f32. Can miss, can be late.
+        CubicF32 = "cubic-f32",
+    }
+}
+
+impl Default for Solver {
+    fn default() -> Self {
+        Solver::Exact
+    }
 }
 
 impl Solver {
-    /// Every solver.
-    pub const ALL: [Solver; 7] = [
-        Solver::Exact,
-        Solver::Moller,
-        Solver::Certified,
-        Solver::CertifiedF32,
-        Solver::CertifiedF64,
-        Solver::CubicF64,
-        Solver::CubicF32,
-    ];
-
     /// The solver of a motion when none is named.
     pub fn default_for(motion: Motion) -> Solver {
         if motion == Motion::Discrete { Solver::Exact } else { Solver::Certified }
@@ -311,26 +294,30 @@ impl Query {
     }
 
     /// Whether a separation above 0 is asked for.
-    pub(crate) fn is_apart(&self) -> bool {
+    #[doc(hidden)]
+    pub fn is_apart(&self) -> bool {
         self.separation.is_some_and(|separation| separation > 0.0)
     }
 
     /// How near two features must come for a pair of them to be a candidate, a length: 0 for touching; with a separation
     /// that, and the tolerance, within which a pair may be listed as unresolved.
-    pub(crate) fn gap(&self) -> f64 {
+    #[doc(hidden)]
+    pub fn gap(&self) -> f64 {
         if self.is_apart() { self.listed_within() } else { 0.0 }
     }
 
     /// Within what distance of each other a certified solver may list two features: the separation and the tolerance. The
     /// volumes bring it all of these, whatever their shape; of a solver that is not certified 0.
-    pub(crate) fn listed_within(&self) -> f64 {
+    #[doc(hidden)]
+    pub fn listed_within(&self) -> f64 {
         let p = self.params();
         // Above 0 also where nothing was asked for: what precision cannot tell has its own part of the growth.
         if self.solver().is_certified() { (p.separation + p.tolerance).max(f64::MIN_POSITIVE) } else { 0.0 }
     }
 
     /// What a certified test is asked; `tolerance` must have been chosen.
-    pub(crate) fn params(&self) -> Params {
+    #[doc(hidden)]
+    pub fn params(&self) -> Params {
         let budget = self.boxes.unwrap_or(Query::BOXES);
         // Adding zero turns -0.0 into 0.0.
         let separation = self.separation.unwrap_or(0.0) + 0.0;

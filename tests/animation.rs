@@ -4,8 +4,8 @@ mod support;
 
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::Motion;
-use nearmiss::scene::{self, ANIMATIONS, Animation, Options, animation, animation_with};
 use nearmiss::{Error, Query};
+use nearmiss_lab::scene::{self, ANIMATIONS, Animation, Options, animation, animation_with};
 use support::{ask, engine};
 
 /// Faces and positions of the frames 0, 5 and 10.

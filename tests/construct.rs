@@ -4,7 +4,8 @@ mod support;
 
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::Motion;
-use nearmiss::{Query, Session, scene};
+use nearmiss::{Query, Session};
+use nearmiss_lab::scene;
 use support::{ORDERS, engine, microscope};
 
 /// A triangle far from everything.

@@ -194,7 +194,7 @@ fn edges_are_numbered_as_in_the_lists() {
 /// A row planted in the list is missed; a row taken from it is an invention; another numbering is both.
 #[test]
 fn the_comparison_can_fail() {
-    let body = nearmiss::scene::scene("draped", 2000, 1).expect("a scene");
+    let body = nearmiss_lab::scene::scene("draped", 2000, 1).expect("a scene");
     let rows = found(&asked(&body, Motion::Continuous, Solver::CubicF64));
     assert!(rows.len() > 10);
     let same = difference(&rows, &rows);

@@ -1,16 +1,13 @@
-//! Every way in which an answer can be less than was asked is forced here, and must say so: by its reason, with a count, in
-//! the library, the text and the JSON. None of them may lose a contact.
+//! Every way in which an answer can be less than was asked is forced here, and must say so: by its reason, with a count. None of them may lose a contact.
 
-#[path = "support/folder.rs"]
-mod folder;
 mod support;
 
 use nearmiss::contacts::{Contact, Degraded, Status};
 use nearmiss::mesh::{Body, Mesh};
 use nearmiss::query::{FrontShape, Motion, Solver, Traversal};
-use nearmiss::{Contacts, Device, Error, Query, Session, scene};
+use nearmiss::{Contacts, Device, Error, Query, Session};
+use nearmiss_lab::scene;
 use std::collections::BTreeMap;
-use std::process::Command;
 use support::{ask, engine, microscope};
 
 fn soup() -> Vec<Body> {
@@ -239,42 +236,4 @@ fn is_room(error: &Error, device: &Device) {
     assert!(asked > given && error.exit_code() == 4, "{error}");
     assert!(error.to_string().contains("use a smaller scene"), "{error}");
     assert!(device.bytes().0 <= device.bytes().1);
-}
-
-/// What the program prints, as text and as JSON.
-#[test]
-fn the_program_tells() {
-    let folder = folder::Folder::new("degraded");
-    let [t0, t1] = [0, 1].map(|end| {
-        let corners = support::SHRINKING[end].map(|[x, y, z]| format!("v {x} {y} {z}\n")).concat();
-        folder.write(&format!("t{end}.obj"), &(corners + "f 1 2 3\nf 4 5 6\n"))
-    });
-    let asked = |args: &[&str], more: &[&str]| {
-        let args = [&["detect", "--backend", "cpu"], args].concat();
-        let done = Command::new(env!("CARGO_BIN_EXE_nearmiss")).args(args).args(more).output();
-        let done = done.expect("the program starts");
-        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
-        String::from_utf8(done.stdout).expect("text")
-    };
-    let run = |more: &[&str]| asked(&["--scene", "draped", "--triangles", "400"], more);
-    let json = |more: &[&str]| -> serde_json::Value {
-        serde_json::from_str(&run(&[more, &["--json"]].concat())).expect("JSON")
-    };
-    let all = json(&["--boxes", "1"]);
-    let shrinking = asked(&[&t0, &t1], &["--boxes", "1", "--tolerance", "4e-3", "--json"]);
-    let shrinking: serde_json::Value = serde_json::from_str(&shrinking).expect("JSON");
-    let boxes = shrinking["degraded"].as_array().expect("a list").iter().find(|r| r["reason"] == "boxes");
-    assert!(boxes.is_some_and(|r| r["pairs"].as_u64().is_some_and(|n| n > 0)), "{shrinking}");
-    assert_eq!(all["separation"], 0.0);
-    let plain = json(&["--discrete"]);
-    assert_eq!(
-        (&plain["degraded"], &plain["separation"]),
-        (&serde_json::json!([]), &serde_json::Value::Null)
-    );
-    let text = asked(&[&t0, &t1], &["--boxes", "1", "--tolerance", "4e-3"]);
-    assert!(text.contains("  degraded: ") && text.contains("raise --boxes"), "{text}");
-    assert!(!run(&["--discrete"]).contains("degraded"));
-    let apart = json(&["--separation", "0.01"]);
-    assert!(apart["separation"] == 0.01 && apart["contacts"].as_u64() > all["contacts"].as_u64(), "{apart}");
-    assert!(run(&["--separation", "0.01"]).contains("separation 1e-2"));
 }

@@ -5,11 +5,11 @@
 mod planted;
 mod support;
 
-use nearmiss::extremes::{
+use nearmiss_lab::extremes::{
     Crowds, Expect, Report, ask_built, ask_crowds, ask_questions, ask_refits, ask_refused, ask_scenes,
     ask_turned_questions, ask_turned_scenes, questions, refused, scenes,
 };
-use nearmiss::oracle::first_contact_until;
+use nearmiss_lab::oracle::first_contact_until;
 use support::{ORDERS, engine, microscope};
 
 /// Prints the line and fails with every failure.

@@ -6,7 +6,8 @@ mod support;
 use nearmiss::contacts::{Contact, Status};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Bv, Motion, Solver};
-use nearmiss::{Contacts, Query, Session, scene};
+use nearmiss::{Contacts, Query, Session};
+use nearmiss_lab::scene;
 use std::collections::BTreeMap;
 use support::{ask, engine, microscope, ways};
 

@@ -5,7 +5,8 @@ mod support;
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Bv, FrontShape, Motion, QueueShape, Traversal};
-use nearmiss::{Device, Query, Session, scene};
+use nearmiss::{Device, Query, Session};
+use nearmiss_lab::scene;
 
 /// A soup that moves back and forth: frame k of the same triangles.
 fn frames(count: usize) -> Vec<Body> {

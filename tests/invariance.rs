@@ -14,8 +14,8 @@ mod volumes;
 use nearmiss::contacts::{Contact, Kind, Status};
 use nearmiss::mesh::{Body, Mesh, Positions, Topology};
 use nearmiss::query::{Bv, Motion};
-use nearmiss::scene::{self, Rng};
 use nearmiss::{Contacts, Query};
+use nearmiss_lab::scene::{self, Rng};
 use std::collections::BTreeMap;
 use support::{ask, engine};
 

@@ -7,10 +7,10 @@
 mod built;
 
 use built::toi;
-use nearmiss::oracle::{Triangle, triangles_meet};
-use nearmiss::pairs::built::Motion;
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::{Moving, vf_toi};
+use nearmiss_lab::oracle::{Triangle, triangles_meet};
+use nearmiss_lab::pairs::built::Motion;
 
 /// What it answers instead of the truth.
 #[derive(Clone, Copy, Debug, PartialEq)]

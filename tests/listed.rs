@@ -6,12 +6,13 @@ mod support;
 
 use nearmiss::contacts::{Kind, Status};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::pairs::built::built;
 use nearmiss::query::{Bv, Motion, Solver};
-use nearmiss::scene::Rng;
-use nearmiss::{Contacts, Features, Query};
+use nearmiss::{Contacts, Query};
 use nearmiss_kernels::prim::cubic::Moving;
 use nearmiss_kernels::prim::inclusion::{Params, Verdict};
+use nearmiss_lab::Features;
+use nearmiss_lab::pairs::built::built;
+use nearmiss_lab::scene::Rng;
 use std::collections::BTreeMap;
 use support::brute::{Row, Seen, fault, verdict};
 use support::{ask, data, engine, moving, ways};

@@ -11,7 +11,7 @@ mod sets;
 mod support;
 mod truth;
 
-use nearmiss::{Case, Features};
+use nearmiss_lab::{Case, Features};
 
 const TRIANGLE: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
 

@@ -1,7 +1,7 @@
 //! The oracle against answers that need no computing.
 
-use nearmiss::oracle::simplex::{Outcome, maximize};
-use nearmiss::oracle::{Triangle, exact, triangles_meet, triangles_meet_beyond};
+use nearmiss_lab::oracle::simplex::{Outcome, maximize};
+use nearmiss_lab::oracle::{Triangle, exact, triangles_meet, triangles_meet_beyond};
 
 const UNIT: Triangle = [[0., 0., 0.], [1., 0., 0.], [0., 1., 0.]];
 

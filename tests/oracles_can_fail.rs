@@ -11,10 +11,11 @@ mod tree;
 use bytemuck::{Pod, Zeroable};
 use nearmiss::contacts::{Answer, Contacts};
 use nearmiss::query::Motion;
-use nearmiss::{Device, Error, Query, scene};
+use nearmiss::{Device, Error, Query};
 use nearmiss_kernels::abi::Span;
 use nearmiss_kernels::entry::Entry;
 use nearmiss_kernels::exec::{Block, Lane};
+use nearmiss_lab::scene;
 use support::{ORDERS, ask, engine, microscope};
 
 // The microscope.

@@ -3,14 +3,15 @@
 mod support;
 
 use nearmiss::contacts::Status;
-use nearmiss::oracle::triangles_meet;
-use nearmiss::pairs::{Answers, How, Stored, ask, ask_triangles, mean_edge};
 use nearmiss::query::{Motion, Solver};
-use nearmiss::{Case, Error, Features, Query};
+use nearmiss::{Error, Query};
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};
 use nearmiss_kernels::prim::inclusion::Params;
 use nearmiss_kernels::prim::isolate::{Rungs, ee_certified, vf_certified};
+use nearmiss_lab::oracle::triangles_meet;
+use nearmiss_lab::pairs::{Answers, How, Stored, ask, ask_triangles, mean_edge};
+use nearmiss_lab::{Case, Features};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 use support::machines;

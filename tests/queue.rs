@@ -12,7 +12,8 @@ mod words;
 
 use nearmiss::mesh::Body;
 use nearmiss::query::{Bv, Motion, QueueShape, StealShape, Traversal};
-use nearmiss::{Contacts, Device, Query, Session, scene};
+use nearmiss::{Contacts, Device, Query, Session};
+use nearmiss_lab::scene;
 use support::{ORDERS, engine, loose, microscope};
 
 /// The candidates as a set, and the answer.

@@ -5,7 +5,8 @@ mod support;
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Bv, Motion, Refit};
-use nearmiss::{Device, Query, Session, scene};
+use nearmiss::{Device, Query, Session};
+use nearmiss_lab::scene;
 use support::{ORDERS, engine, machines};
 
 const WAYS: [Refit; 3] = [Refit::Levels, Refit::Treelets, Refit::BottomUp];

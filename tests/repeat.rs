@@ -4,7 +4,8 @@ use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::Body;
 use nearmiss::pipeline::Stage;
 use nearmiss::query::{Motion, Refit};
-use nearmiss::{Device, Query, Session, scene};
+use nearmiss::{Device, Query, Session};
+use nearmiss_lab::scene;
 
 const STAGES: [Stage; 5] = [Stage::Construct, Stage::Fit, Stage::Refit, Stage::Traverse, Stage::Narrow];
 
@@ -110,30 +111,4 @@ fn nothing_has_no_stages() {
     for stage in STAGES {
         assert_eq!(session.repeat_stage(stage, 4).expect("no runs"), Vec::<f64>::new());
     }
-}
-
-#[test]
-fn the_program_repeats_one_stage() {
-    let run = |more: &[&str]| {
-        let scene = ["detect", "--scene", "soup-moving", "--triangles", "300", "--backend", "cpu", "--json"];
-        let mut program = std::process::Command::new(env!("CARGO_BIN_EXE_nearmiss"));
-        program.args(scene).args(more).output().expect("the program starts")
-    };
-    let summary = |more: &[&str]| -> serde_json::Value {
-        serde_json::from_slice(&run(more).stdout).expect("a summary")
-    };
-    let refused = |more: &[&str]| {
-        let output = run(more);
-        assert_eq!(output.status.code(), Some(2), "{more:?}");
-        String::from_utf8(output.stderr).expect("text")
-    };
-    let plain = summary(&[]);
-    for stage in ["construct", "fit", "refit", "traverse", "narrow", "order"] {
-        let only = summary(&["--repeat", "3", "--only", stage]);
-        assert_eq!(only["hash"], plain["hash"], "{stage}");
-        assert!(only["ms"][stage].as_f64().expect("ms") >= 0.0, "{stage}");
-    }
-    assert!(refused(&["--only", "traverse"]).contains("--repeat"));
-    let unknown = refused(&["--repeat", "3", "--only", "sort"]);
-    assert!(unknown.contains("construct, fit, refit, traverse, narrow, order"), "{unknown}");
 }

@@ -5,7 +5,8 @@ mod support;
 use nearmiss::device::emulator::Order;
 use nearmiss::mesh::Body;
 use nearmiss::query::{Motion, Solver, Traversal};
-use nearmiss::{Contacts, Device, Error, Query, Session, scene};
+use nearmiss::{Contacts, Device, Error, Query, Session};
+use nearmiss_lab::scene;
 use support::{engine, loose, microscope, moving};
 
 /// A first answer, the same frame again, and how often it ran again: within the first, in all.

@@ -2,10 +2,11 @@
 
 mod support;
 
+use nearmiss::Query;
 use nearmiss::contacts::triangle_contacts;
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::Motion;
-use nearmiss::{Query, scene};
+use nearmiss_lab::scene;
 use support::{ask, engine};
 
 /// A square of two triangles at rest, and a triangle that falls through it corner first.

@@ -2,7 +2,7 @@
 //! meet. Each once took seconds or minutes; what is quadratic in them is their answer. Shared with `tests/hard.rs`.
 
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::scene::Rng;
+use nearmiss_lab::scene::Rng;
 
 type Corner = [f64; 3];
 

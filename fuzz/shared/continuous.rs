@@ -1,12 +1,12 @@
 //! Two features that move: every solver against the exact time.
 
 use super::bytes::{Bytes, largest};
-use nearmiss::oracle::{Toi, first_contact};
-use nearmiss::{Case, Features};
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::{Moving, ee_apart, ee_toi, vf_apart, vf_toi};
 use nearmiss_kernels::prim::inclusion::{self, Grid, Params, Verdict};
 use nearmiss_kernels::prim::isolate::{Rungs, ee_certified, vf_certified};
+use nearmiss_lab::oracle::{Toi, first_contact};
+use nearmiss_lab::{Case, Features};
 
 /// A question: the motion, what a certified solver is asked, and whether f32 holds all positions.
 pub fn decode(bytes: &[u8]) -> (Case, Params, bool) {

@@ -1,10 +1,10 @@
 //! Two triangles: exact signs against linear programs over the rationals.
 
 use super::bytes::{Bytes, largest};
-use nearmiss::oracle::{Triangle, triangles_meet};
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::moller::moller;
 use nearmiss_kernels::prim::tri_tri::meets_exactly;
+use nearmiss_lab::oracle::{Triangle, triangles_meet};
 use std::hint::black_box;
 
 /// The triangles that the bytes are, and whether f32 holds them.

@@ -4,9 +4,10 @@ use super::bytes::Bytes;
 use nearmiss::contacts::{Answer, Contact, Kind, Status};
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::{Body, Mesh, Positions, Topology};
-use nearmiss::oracle::{Toi, first_contact, triangles_meet};
 use nearmiss::query::{Bv, FrontShape, Motion, QueueShape, Refit, Solver, StealShape, Traversal};
-use nearmiss::{Case, Contacts, Device, Error, Features, Query, Session};
+use nearmiss::{Contacts, Device, Error, Query, Session};
+use nearmiss_lab::oracle::{Toi, first_contact, triangles_meet};
+use nearmiss_lab::{Case, Features};
 use std::collections::BTreeMap;
 
 /// One or two bodies of one to eight triangles, moving or still; any index may be any corner.

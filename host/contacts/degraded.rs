@@ -3,12 +3,11 @@
 use crate::pipeline::Found;
 use crate::pipeline::blunt::Blunt;
 use nearmiss_kernels::abi::counter;
-use serde::Serialize;
 use std::fmt;
 
 /// A way in which a frame came to less than all that was asked. Nothing is ever missed for any of them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(tag = "reason", rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(tag = "reason", rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Degraded {
     /// Pairs nearer than the tolerance that are neither certain to meet nor certain to stay apart. Of an earliest query
@@ -45,7 +44,8 @@ impl Degraded {
     }
 
     /// All that holds of a frame, as the kernels counted.
-    pub(crate) fn of(found: &Found) -> Vec<Degraded> {
+    #[doc(hidden)]
+    pub fn of(found: &Found) -> Vec<Degraded> {
         let mut all = Vec::new();
         let count = |at: u32| found.counters[at as usize];
         let unsure = count(counter::UNRESOLVED) - count(counter::ENDED_UNRESOLVED);

@@ -13,11 +13,10 @@ use crate::query::{Motion, Query};
 use nearmiss_kernels::abi::{Pair, ROUNDS, counter};
 use nearmiss_kernels::prim::inclusion::Verdict;
 use rayon::prelude::*;
-use serde::Serialize;
 
 /// Which features meet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 pub enum Kind {
     /// `a` is a vertex (of the first body), `b` a face (of the second, or of the same).
     Vf,
@@ -28,8 +27,8 @@ pub enum Kind {
 }
 
 /// How sure an answer is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 pub enum Status {
     /// A solver that can be wrong says so.
     Contact,
@@ -41,7 +40,8 @@ pub enum Status {
 
 impl Status {
     /// Of what a solver listed, certified or not.
-    pub(crate) fn of(certified: bool, verdict: &Verdict) -> Status {
+    #[doc(hidden)]
+    pub fn of(certified: bool, verdict: &Verdict) -> Status {
         match (certified, verdict.is_contact()) {
             (_, false) => Status::Unresolved,
             (false, true) => Status::Contact,
@@ -51,7 +51,8 @@ impl Status {
 }
 
 /// Two features that meet within the step, or, of a query with a separation, that come so near.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Contact {
     /// Which features.
     pub kind: Kind,
@@ -120,7 +121,8 @@ pub struct Contacts {
 }
 
 /// The front of a frame. All zero where there was none.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Front {
     /// Pairs of nodes at which this frame's descent ended.
     pub pairs: u64,
@@ -139,7 +141,8 @@ impl Front {
 }
 
 /// What the work queues of a traversal did. All zero where it had none.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Queues {
     /// Rounds with work: launches.
     pub rounds: u64,
@@ -199,7 +202,8 @@ impl Contacts {
     }
 
     /// Puts what the kernels found into canonical order and into the numbering of the bodies.
-    pub(crate) fn new(
+    #[doc(hidden)]
+    pub fn new(
         found: Found,
         layout: &Layout,
         query: Query,

@@ -5,10 +5,10 @@ use crate::device::Device;
 use crate::mesh::Body;
 use crate::pipeline::Stages;
 use crate::query::{Motion, Query, Refit, Solver, Traversal};
-use serde::Serialize;
 
 /// What the command line prints of a result, as JSON or for people.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Summary {
     /// Triangles of all bodies.
     pub triangles: usize,
@@ -60,7 +60,8 @@ pub struct Summary {
 }
 
 impl Summary {
-    pub(crate) fn new(bodies: &[Body], query: Query, device: &Device, contacts: &Contacts) -> Summary {
+    #[doc(hidden)]
+    pub fn new(bodies: &[Body], query: Query, device: &Device, contacts: &Contacts) -> Summary {
         Summary {
             triangles: bodies.iter().map(Body::face_count).sum(),
             vertices: bodies.iter().map(Body::vertex_count).sum(),

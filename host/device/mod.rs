@@ -14,6 +14,7 @@ mod view;
 pub use view::{Ahead, View};
 
 use crate::error::Error;
+use crate::query::named;
 use bytemuck::Pod;
 use emulator::{Emulator, Mode};
 use nearmiss_kernels::abi::Span;
@@ -23,16 +24,22 @@ use std::marker::PhantomData;
 use std::rc::Rc;
 use std::time::Instant;
 
-/// Which machine to take.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
-pub enum Backend {
-    /// The CPU, on all its cores.
-    Cpu,
-    /// The NVIDIA card.
-    Cuda,
-    /// The card where there is one, else the CPU.
-    #[default]
-    Auto,
+named! {
+    /// Which machine to take.
+    pub enum Backend {
+        /// The CPU, on all its cores.
+        Cpu = "cpu",
+        /// The NVIDIA card.
+        Cuda = "cuda",
+        /// The card where there is one, else the CPU.
+        Auto = "auto",
+    }
+}
+
+impl Default for Backend {
+    fn default() -> Self {
+        Backend::Auto
+    }
 }
 
 /// A machine that runs kernels, and its memory. One thread uses it; clones are the same machine.

@@ -147,7 +147,7 @@ mod tests {
     use super::*;
     use crate::device::emulator::{Emulator, Mode};
     use crate::mesh::Body;
-    use crate::scene;
+    use crate::samples::{sheet, soup};
     use nearmiss_kernels::bv::{Aabb, Linear, Obb};
 
     /// A body's positions, one frame or two, turned and put elsewhere so that f64 is not f32.
@@ -176,16 +176,15 @@ mod tests {
     }
 
     fn all<R: Precision, V: Kernels + Contain>(axes: Axes) {
-        let bodies =
-            [scene::single(), scene::soup(700, 4, false), scene::soup(700, 4, true), scene::draped(800)];
-        for (i, body) in bodies.map(|body| body.expect("a scene")).iter().enumerate() {
+        let bodies = [soup(1, 3, false), soup(700, 4, false), soup(700, 4, true), sheet(20)];
+        for (i, body) in bodies.iter().enumerate() {
             for place in [(1.0, 0.0), (1e-3, 1e3), (1e25, 0.0)] {
                 let refit = [Refit::Levels, Refit::Treelets, Refit::BottomUp][i % 3];
                 let count = outside::<R, V>(body, place, (refit, axes), (0.0, 0.0), |_| ());
                 assert_eq!(count, 0, "{} {place:?}", body.name());
             }
         }
-        let body = scene::soup(300, 8, true).expect("a scene");
+        let body = soup(300, 8, true);
         for (refit, place) in
             [(Refit::Levels, (1.0, 0.0)), (Refit::Treelets, (1e-3, 1e3)), (Refit::BottomUp, (1e25, 0.0))]
         {

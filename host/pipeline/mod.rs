@@ -1,25 +1,25 @@
 //! From bodies to contacts: the front door of the library.
 
-pub(crate) mod blunt;
+pub mod blunt;
 mod corridor;
-pub(crate) mod enclose;
+pub mod enclose;
 mod layout;
-pub(crate) mod narrow;
+pub mod narrow;
 mod order;
-pub(crate) mod precision;
-pub(crate) mod room;
+pub mod precision;
+pub mod room;
 mod sorter;
 mod timing;
 mod tolerance;
 mod tree;
 mod treelets;
-pub(crate) mod volumes;
+pub mod volumes;
 mod walk;
 
-pub(crate) use corridor::{Found, Hits};
+pub use corridor::{Found, Hits};
 pub use layout::{Layout, Offsets};
 pub use timing::{Stage, Stages};
-pub(crate) use tolerance::{mean_side, of_edges};
+pub use tolerance::{mean_side, of_edges};
 
 use crate::contacts::{Contacts, Degraded, Summary};
 use crate::device::Device;
@@ -36,11 +36,15 @@ use volumes::Kernels;
 /// One body is tested against itself, two against each other.
 ///
 /// ```
-/// use nearmiss::{Device, Query, Session, device::Backend, query::Motion, scene};
+/// use nearmiss::{Body, Device, Mesh, Query, Session, device::Backend, mesh::Positions, query::Motion};
 ///
-/// let cloth = scene::scene("draped", 2_000, 7)?;
+/// // A triangle that rests, and one whose corner falls through it.
+/// let faces = vec![[0, 1, 2], [3, 4, 5]];
+/// let at = |z| [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, z], [1.0, 9.0, 9.0], [9.0, 1.0, 9.0]];
+/// let frame = |z| Mesh::new("two triangles", Positions::F32(at(z).to_vec()), faces.clone());
 /// let device = Device::open(Backend::Auto, None)?;
-/// let mut session = Session::new(device, vec![cloth], Query::of(Motion::Continuous))?;
+/// let body = Body::moving(frame(1.0)?, frame(-1.0)?)?;
+/// let mut session = Session::new(device, vec![body], Query::of(Motion::Continuous))?;
 /// let contacts = session.detect()?;
 /// println!("{} contacts, first at {:?}", contacts.len(), contacts.earliest_toi());
 /// # Ok::<(), nearmiss::Error>(())

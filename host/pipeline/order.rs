@@ -139,7 +139,7 @@ mod tests {
     use super::*;
     use crate::device::emulator::{Emulator, Mode, Order as Blocks};
     use crate::pipeline::Offsets;
-    use crate::scene::Rng;
+    use crate::samples::words;
     use nearmiss_kernels::abi::{Hit, Pair};
     use nearmiss_kernels::prim::inclusion::Verdict;
     use std::collections::BTreeSet;
@@ -159,9 +159,9 @@ mod tests {
 
     /// Contacts of two bodies, no two alike and in no order; each knows its place here by its time.
     fn hits(seed: u64, count: usize) -> Vec<Hit> {
-        let (mut rng, mut seen, mut all) = (Rng::new(seed), BTreeSet::new(), Vec::new());
+        let (mut rng, mut seen, mut all) = (words(seed), BTreeSet::new(), Vec::new());
         while all.len() < count {
-            let [a, b] = [0; 2].map(|_| (rng.bits() % u64::from(2 * OF_A_BODY)) as u32);
+            let [a, b] = [0; 2].map(|_| (rng.next().expect("endless") % u64::from(2 * OF_A_BODY)) as u32);
             if seen.insert([a, b]) {
                 let toi = all.len() as f64;
                 all.push(Hit { a, b, verdict: Verdict { toi, ..Verdict::default() } });

@@ -60,7 +60,7 @@ pub fn sort(
 mod tests {
     use super::*;
     use crate::device::emulator::{Emulator, Mode, Order};
-    use crate::scene::Rng;
+    use crate::samples;
 
     const SHIFTS: [u32; 3] = [5, 13, 40];
 
@@ -86,10 +86,10 @@ mod tests {
     }
 
     fn items(count: usize) -> Vec<u64> {
-        let mut rng = Rng::new(count as u64);
         // Half of them with few digits, so that many are alike.
         (0..count as u64)
-            .map(|i| if i % 2 == 0 { rng.bits() } else { rng.bits() & 0x301_0000_2020 | i << 50 })
+            .zip(samples::words(count as u64))
+            .map(|(i, word)| if i % 2 == 0 { word } else { word & 0x301_0000_2020 | i << 50 })
             .collect()
     }
 

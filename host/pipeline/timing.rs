@@ -1,26 +1,29 @@
 //! Time by stage.
 
-/// A stage of the corridor.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Stage {
-    /// Positions to level-ordered tree.
-    Construct,
-    /// Volumes of the leaves.
-    Fit,
-    /// All other volumes.
-    Refit,
-    /// Candidates, with balancing.
-    Traverse,
-    /// Contacts.
-    Narrow,
-    /// Contacts in canonical order, on a card; a CPU has none: the host orders them.
-    Order,
+use crate::query::named;
+
+named! {
+    /// A stage of the corridor.
+    pub enum Stage {
+        /// Positions to level-ordered tree.
+        Construct = "construct",
+        /// Volumes of the leaves.
+        Fit = "fit",
+        /// All other volumes.
+        Refit = "refit",
+        /// Candidates, with balancing.
+        Traverse = "traverse",
+        /// Contacts.
+        Narrow = "narrow",
+        /// Contacts in canonical order, on a card; a CPU has none: the host orders them.
+        Order = "order",
+    }
 }
 
 /// Milliseconds of each stage of a frame, on the device's own clock, and of the caller's wait. `construct` is that of the
 /// last build.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Stages {
     /// Positions to level-ordered tree, all bodies.
     pub construct: f64,

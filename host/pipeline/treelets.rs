@@ -137,7 +137,7 @@ mod tests {
     use crate::device::emulator::{Emulator, Mode};
     use crate::pipeline::tree::Tree;
     use crate::pipeline::volumes::{Kernels, Volumes};
-    use crate::scene;
+    use crate::samples::soup;
     use nearmiss_kernels::abi::{Frames, Point};
     use nearmiss_kernels::bv::{Aabb, Axes, Obb};
     use nearmiss_kernels::math::Vec3;
@@ -146,7 +146,7 @@ mod tests {
     /// blocks run in their order.
     fn checked<V: Kernels>(refit: Refit, fault: impl Fn(&mut Tree)) -> Result<(), Error> {
         let device = Device::emulator(Emulator::new(Mode::Engine, Some(1))?);
-        let body = scene::soup(2_000, 5, false)?;
+        let body = soup(2_000, 5, false);
         let at = |scale: f64| -> Vec<Vec3<f32>> {
             let points = body.positions_t0().to_f64().into_iter();
             points.map(|p| Vec3(p.map(|x| (x * scale) as f32))).collect()

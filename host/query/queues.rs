@@ -5,8 +5,8 @@ use nearmiss_kernels::abi::control::{MOST_BLOCKS, MOST_PLACES};
 use nearmiss_kernels::queue::worker::ROOM;
 
 /// How queues are evened between launches.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 pub enum Balance {
     /// The paper's: a kernel copies units from segment to segment; the host looks after each round whether any are left.
     Copy,
@@ -15,7 +15,8 @@ pub enum Balance {
 }
 
 /// Work queues that are evened between launches.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct QueueShape {
     /// Queues, a block each; `None` for as many as the machine runs at once.
     pub cores: Option<u32>,
@@ -34,7 +35,8 @@ pub struct QueueShape {
 }
 
 /// Work queues that help each other out within one launch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct StealShape {
     /// Queues, a block each; `None` for as many as the machine runs at once.
     pub cores: Option<u32>,
@@ -52,7 +54,8 @@ pub struct StealShape {
 }
 
 /// A front of pairs of nodes, kept from frame to frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct FrontShape {
     /// The queues by which pairs that meet anew go deeper. Their units come from one list, whatever `balance` says.
     pub queue: QueueShape,

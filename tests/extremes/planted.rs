@@ -1,11 +1,11 @@
 //! The suites can fail: a wrong expectation, or a wrong answer, is named by its id.
 
 use super::support::engine;
-use nearmiss::extremes::{
+use nearmiss_lab::extremes::{
     Expect, Finds, Report, ask_built, ask_questions, ask_refused, ask_scenes, ask_turned_questions,
     ask_turned_scenes, questions, refused, scenes,
 };
-use nearmiss::pairs::Met;
+use nearmiss_lab::pairs::Met;
 
 /// Whether the suite failed, and named that id alone.
 fn names(report: &Report, id: &str) -> bool {

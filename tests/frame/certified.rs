@@ -7,9 +7,10 @@ use super::support::{ask, engine, machines};
 use nearmiss::contacts::{Contact, Kind, Status};
 use nearmiss::mesh::Body;
 use nearmiss::query::{Motion, Solver};
-use nearmiss::{Contacts, Query, Session, scene};
+use nearmiss::{Contacts, Query, Session};
 use nearmiss_kernels::prim::cubic::{ee_toi, vf_toi};
 use nearmiss_kernels::prim::inclusion::{Params, Verdict};
+use nearmiss_lab::scene;
 use std::collections::BTreeMap;
 
 /// All pairs of one body with overlapping boxes that are not certainly apart, and those that the f64 cubic finds.

@@ -6,10 +6,10 @@ use super::support::{ask, engine, machines, moving, still};
 use nearmiss::contacts::{Contact, Kind, Status};
 use nearmiss::mesh::Body;
 use nearmiss::query::{Motion, Solver};
-use nearmiss::scene::{self, Rng};
 use nearmiss::{Contacts, Query};
 use nearmiss_kernels::math::Real;
 use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};
+use nearmiss_lab::scene::{self, Rng};
 
 /// Whether the closed boxes of two sets of moving vertices overlap: two features whose boxes are apart never meet,
 /// whatever a tolerance of the solver says.

@@ -2,10 +2,10 @@
 
 use super::support::{ask, engine, loose, machines, still};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::oracle::{Triangle, triangles_meet, triangles_meet_beyond};
 use nearmiss::query::{Motion, Solver};
-use nearmiss::scene::{self, Rng};
 use nearmiss::{Device, Query};
+use nearmiss_lab::oracle::{Triangle, triangles_meet, triangles_meet_beyond};
+use nearmiss_lab::scene::{self, Rng};
 use std::collections::BTreeSet;
 
 fn pairs(device: Device, bodies: Vec<Body>) -> Vec<[u32; 2]> {

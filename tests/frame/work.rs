@@ -3,7 +3,8 @@
 use super::support::{ORDERS, engine, microscope, still};
 use nearmiss::mesh::Body;
 use nearmiss::query::{Motion, Solver, Traversal};
-use nearmiss::{Device, Query, Session, scene};
+use nearmiss::{Device, Query, Session};
+use nearmiss_lab::scene;
 
 /// Launches of construction and of each frame, and bytes held after the first frame.
 fn work(device: &Device, bodies: Vec<Body>, query: Query) -> (u64, u64, u64) {

@@ -2,7 +2,7 @@
 //! exists, is a test, and asks that id where it runs over the catalogue's data.
 
 use crate::sources::{NONE, Source, files};
-use nearmiss::extremes::{questions, refused, scenes};
+use nearmiss_lab::extremes::{questions, refused, scenes};
 
 /// Cases of the catalogue that have names instead of numbers, and the acceptance tests.
 const NAMED: [&str; 28] = [
@@ -119,7 +119,7 @@ fn table() -> String {
 
 /// Where tests are.
 fn sources() -> Vec<Source> {
-    [files("tests"), files("host")].concat()
+    [files("tests"), files("host"), files("lab"), files("cli")].concat()
 }
 
 #[test]

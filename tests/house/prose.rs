@@ -108,8 +108,10 @@ fn name_a_machine(sources: &[Source]) -> Vec<String> {
 #[test]
 fn no_text_names_a_machine() {
     let own = ["Cargo.toml", "build.rs", "README.md", "CHANGELOG.md", "CONTRIBUTING.md", "rustfmt.toml"];
-    let folders =
-        [".ci", ".cargo", ".github", "benches", "docs", "examples", "fuzz", "host", "kernels", "tests"];
+    let folders = [
+        ".ci", ".cargo", ".github", "benches", "cli", "docs", "examples", "fuzz", "host", "kernels", "lab",
+        "tests",
+    ];
     let ours =
         own.iter().chain(&folders).filter(|of| exists(of)).flat_map(|of| files(of)).collect::<Vec<_>>();
     assert!(ours.len() > 100, "only {} files", ours.len());

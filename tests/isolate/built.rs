@@ -2,12 +2,12 @@
 //! oracle, and every rung has its share.
 
 use super::rung::{Rung, certified, deciding, fault};
-use nearmiss::oracle::first_contact;
-use nearmiss::pairs::built::{Built, REACH_F32, built};
-use nearmiss::pairs::directed::{DIRECTED, directed};
 use nearmiss_kernels::math::Real;
 use nearmiss_kernels::prim::inclusion::{Params, Verdict};
 use nearmiss_kernels::prim::isolate::Rungs;
+use nearmiss_lab::oracle::first_contact;
+use nearmiss_lab::pairs::built::{Built, REACH_F32, built};
+use nearmiss_lab::pairs::directed::{DIRECTED, directed};
 use std::collections::BTreeMap;
 
 /// How many each rung decided: separated, in contact, unresolved.

@@ -1,10 +1,10 @@
 //! Known answers, and for each rung motions that it decides and no rung before it.
 
 use super::rung::{Rung, certified, deciding, fault};
-use nearmiss::oracle::first_contact;
-use nearmiss::{Case, Features};
 use nearmiss_kernels::prim::inclusion::Params;
 use nearmiss_kernels::prim::isolate::Rungs;
+use nearmiss_lab::oracle::first_contact;
+use nearmiss_lab::{Case, Features};
 
 type Points = [[f64; 3]; 4];
 

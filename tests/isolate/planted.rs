@@ -2,15 +2,15 @@
 //! to be wrong.
 
 use super::rung::{certified, deciding, fault, points};
-use nearmiss::oracle::first_contact;
-use nearmiss::pairs::built::{Built, REACH_F32, built};
-use nearmiss::{Case, Features};
 use nearmiss_kernels::math::tolerance::Tolerance;
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::Moving;
 use nearmiss_kernels::prim::inclusion::{Grid, Params, Verdict};
 use nearmiss_kernels::prim::isolate::suspect::Around;
 use nearmiss_kernels::prim::isolate::{Edges, Face, Pair, Rungs};
+use nearmiss_lab::oracle::first_contact;
+use nearmiss_lab::pairs::built::{Built, REACH_F32, built};
+use nearmiss_lab::{Case, Features};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 

@@ -1,7 +1,5 @@
 //! Which rung decides a pair, by the ladder's own parts, put together anew.
 
-use nearmiss::oracle::Toi;
-use nearmiss::{Case, Features};
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::Moving;
 use nearmiss_kernels::prim::inclusion::{self, Params, Verdict};
@@ -9,6 +7,8 @@ use nearmiss_kernels::prim::isolate::ladder::{
     SLICES, Slice, ee_touch, is_flat, isolated, near, searched, sliced, vf_touch,
 };
 use nearmiss_kernels::prim::isolate::{Edges, Face, Pair, Rungs, ee_certified, vf_certified};
+use nearmiss_lab::oracle::Toi;
+use nearmiss_lab::{Case, Features};
 
 /// What decides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

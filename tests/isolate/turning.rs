@@ -1,11 +1,11 @@
 //! The planes that turn with the features: what they say against the distance itself, and against contacts.
 
 use super::rung::points;
-use nearmiss::Features;
-use nearmiss::pairs::built::{Built, built};
 use nearmiss_kernels::prim::inclusion::{Grid, Params};
 use nearmiss_kernels::prim::isolate::nearest::nearest;
 use nearmiss_kernels::prim::isolate::{Edges, Face, Pair};
+use nearmiss_lab::Features;
+use nearmiss_lab::pairs::built::{Built, built};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 

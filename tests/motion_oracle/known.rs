@@ -1,9 +1,9 @@
 //! Answers that need no computing.
 
 use crate::{TRIANGLE, case, falling};
-use nearmiss::Case;
-use nearmiss::Features::{EdgeEdge, VertexFace};
-use nearmiss::oracle::{exact, first_contact, first_contact_until, meet_at};
+use nearmiss_lab::Case;
+use nearmiss_lab::Features::{EdgeEdge, VertexFace};
+use nearmiss_lab::oracle::{exact, first_contact, first_contact_until, meet_at};
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use std::cmp::Ordering;

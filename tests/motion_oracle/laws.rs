@@ -1,9 +1,9 @@
 //! Laws, and linear programs at fixed times: motions on small grids, where most contacts are degenerate.
 
 use crate::case;
-use nearmiss::oracle::simplex::{Outcome, maximize};
-use nearmiss::oracle::{exact, first_contact, meet_at};
-use nearmiss::{Case, Features};
+use nearmiss_lab::oracle::simplex::{Outcome, maximize};
+use nearmiss_lab::oracle::{exact, first_contact, meet_at};
+use nearmiss_lab::{Case, Features};
 use num_rational::BigRational;
 use num_traits::{One, Zero};
 use rand::rngs::SmallRng;

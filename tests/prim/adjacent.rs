@@ -1,10 +1,10 @@
 //! Pairs that share corners, against the oracle's definition.
 
 use crate::{corners, on_grid, random};
-use nearmiss::oracle::{Triangle, triangles_meet, triangles_meet_beyond};
 use nearmiss_kernels::math::Real;
 use nearmiss_kernels::prim::adjacent::{Shared, meets_beyond_shared};
 use nearmiss_kernels::prim::tri_tri::{Certain, Exact, Filter};
+use nearmiss_lab::oracle::{Triangle, triangles_meet, triangles_meet_beyond};
 use rand::Rng;
 
 fn check<R: Real>(p: &Triangle, q: &Triangle, shared: Shared, truth: bool) {

@@ -2,12 +2,12 @@
 
 use crate::discrete::all_sources;
 use crate::{corners, seen};
-use nearmiss::extremes::{MOTIONS, PATCH, PATCH_FACES, TRIANGLES};
-use nearmiss::oracle::{Triangle, triangles_meet};
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::adjacent::Shared;
 use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};
 use nearmiss_kernels::prim::tri_tri::meets_exactly;
+use nearmiss_lab::extremes::{MOTIONS, PATCH, PATCH_FACES, TRIANGLES};
+use nearmiss_lab::oracle::{Triangle, triangles_meet};
 
 #[test]
 fn reported_triangles() {

@@ -2,9 +2,9 @@
 
 use crate::built::{Count, count, toi};
 use crate::random;
-use nearmiss::pairs::built::{FAMILIES, Motion, Point, REACH_F32, REACH_F64, motion};
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};
+use nearmiss_lab::pairs::built::{FAMILIES, Motion, Point, REACH_F32, REACH_F64, motion};
 use rand::Rng;
 
 /// Each family costs no more than was measured (this is deterministic): missed and late together, in f64 and in f32,

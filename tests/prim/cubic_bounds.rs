@@ -2,9 +2,9 @@
 //! arithmetic. The arithmetic is written here again, and tied to the kernels' by what they reject.
 
 use crate::random;
-use nearmiss::oracle::exact;
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::{Moving, ee_apart, vf_apart};
+use nearmiss_lab::oracle::exact;
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
 use rand::Rng;

@@ -1,10 +1,10 @@
 //! Triangle/triangle against the oracle.
 
 use crate::{ORDERS, anywhere, corners, on_grid, random, seen};
-use nearmiss::oracle::{Triangle, triangles_meet};
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::moller::moller;
 use nearmiss_kernels::prim::tri_tri::{Certain, Exact, Filter, Signs, Wide, meets, meets_exactly};
+use nearmiss_lab::oracle::{Triangle, triangles_meet};
 use rand::Rng;
 
 /// Every source in every order of corners, given the truth: decided ones are right, and those that may not be silent

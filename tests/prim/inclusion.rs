@@ -2,12 +2,12 @@
 //! judges of that, shown to condemn.
 
 use crate::random;
-use nearmiss::pairs::built::{FAMILIES, KINDS, Motion, REACH_F32, REACH_F64, motion, of_kind};
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::Moving;
 use nearmiss_kernels::prim::inclusion::{
     Cell, Edges, Face, Grid, Params, Search, Verdict, ee_certified, ee_first, vf_certified, vf_first,
 };
+use nearmiss_lab::pairs::built::{FAMILIES, KINDS, Motion, REACH_F32, REACH_F64, motion, of_kind};
 use std::mem::MaybeUninit;
 
 /// The points of a motion in integers, times `scale`.

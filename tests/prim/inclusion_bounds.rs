@@ -1,11 +1,11 @@
 //! The error bounds of the certified tests against exact arithmetic, and cuts against known roots.
 
 use crate::random;
-use nearmiss::oracle::exact;
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::Moving;
 use nearmiss_kernels::prim::inclusion::direction::Cuts;
 use nearmiss_kernels::prim::inclusion::{Cell, Edges, Face, Grid, Local, Params};
+use nearmiss_lab::oracle::exact;
 use num_rational::BigRational;
 use num_traits::{One, ToPrimitive, Zero};
 use rand::Rng;

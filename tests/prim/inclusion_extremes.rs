@@ -2,11 +2,11 @@
 
 use crate::inclusion::{certified, in_passes};
 use crate::random;
-use nearmiss::Features;
-use nearmiss::extremes::{Question, questions};
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::cubic::Moving;
 use nearmiss_kernels::prim::inclusion::{Params, Verdict};
+use nearmiss_lab::Features;
+use nearmiss_lab::extremes::{Question, questions};
 use rand::Rng;
 
 type Four = [[f64; 3]; 4];

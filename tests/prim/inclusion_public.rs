@@ -3,10 +3,10 @@
 use crate::inclusion::{certified, in_passes};
 use crate::public::{Key, scene};
 use crate::queries::folders;
-use nearmiss::extremes::MOTIONS;
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::{Moving, ee_apart, ee_toi, vf_apart, vf_toi};
 use nearmiss_kernels::prim::inclusion::{Edges, Face, Params, Verdict};
+use nearmiss_lab::extremes::MOTIONS;
 use std::collections::HashSet;
 use std::hint::black_box;
 use std::time::Instant;

@@ -25,8 +25,8 @@ mod signs;
 mod support;
 mod timing;
 
-use nearmiss::oracle::Triangle;
 use nearmiss_kernels::math::{Real, Vec3};
+use nearmiss_lab::oracle::Triangle;
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 

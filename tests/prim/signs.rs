@@ -1,10 +1,10 @@
 //! The filters' constants and the integers, against determinants in rationals.
 
 use crate::{anywhere, corners, on_grid, random};
-use nearmiss::oracle::exact;
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::exact::{orient2d_exact, orient3d_exact};
 use nearmiss_kernels::prim::orient::{orient2d_filter, orient3d_filter, plane_of};
+use nearmiss_lab::oracle::exact;
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive};
 use rand::Rng;

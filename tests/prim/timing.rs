@@ -1,12 +1,12 @@
 //! Nanoseconds a call on one core: `cargo test --release --test prim timing -- --ignored --nocapture`.
 
 use crate::{anywhere, corners, on_grid, random};
-use nearmiss::oracle::Triangle;
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};
 use nearmiss_kernels::prim::exact::orient3d_exact;
 use nearmiss_kernels::prim::moller::moller;
 use nearmiss_kernels::prim::tri_tri::{Certain, Exact, Filter, Wide, meets};
+use nearmiss_lab::oracle::Triangle;
 use std::hint::black_box;
 use std::time::Instant;
 

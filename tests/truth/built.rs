@@ -5,7 +5,7 @@ use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};
 use rand::SeedableRng;
 use rand::rngs::SmallRng;
 
-use nearmiss::pairs::built::{FAMILIES, Motion, REACH_F32, motion};
+use nearmiss_lab::pairs::built::{FAMILIES, Motion, REACH_F32, motion};
 
 /// What the cubic in `S` says of positions in `R`; all numbers times `scale`.
 pub fn toi<R: Real, S: Real>(m: &Motion, face: bool, scale: f64) -> Option<S> {

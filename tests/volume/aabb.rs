@@ -1,8 +1,8 @@
 //! Boxes: they hold what they were made of, as tightly as floats allow; union and overlap are exact.
 
-use nearmiss::scene::Rng;
 use nearmiss_kernels::bv::Aabb;
 use nearmiss_kernels::math::Vec3;
+use nearmiss_lab::scene::Rng;
 
 /// Numbers of every size and sign that a mesh in doubles may have, some of them floats.
 fn number(rng: &mut Rng) -> f64 {

@@ -2,11 +2,11 @@
 
 use super::build::{Wild, leaf};
 use super::obb::{Swept, touching};
-use nearmiss::oracle::exact;
-use nearmiss::scene::Rng;
 use nearmiss_kernels::bv::{Axes, Contain, Obb, Volume};
 use nearmiss_kernels::math::tolerance::{BOX_POINT, BOX_UNDERFLOW};
 use nearmiss_kernels::math::{Real, Vec3};
+use nearmiss_lab::oracle::exact;
+use nearmiss_lab::scene::Rng;
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
 

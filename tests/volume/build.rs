@@ -1,8 +1,8 @@
 //! Wild triangles, still and moving, and the volumes around them.
 
-use nearmiss::scene::Rng;
 use nearmiss_kernels::bv::{Axes, Volume};
 use nearmiss_kernels::math::{Real, Vec3};
+use nearmiss_lab::scene::Rng;
 
 /// A triangle's corners at both ends of the step.
 pub type Swept<R> = [[Vec3<R>; 3]; 2];

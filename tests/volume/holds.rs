@@ -1,10 +1,10 @@
 //! Volumes hold what they were made of, in exact arithmetic, through every level; and what does not hold is noticed.
 
 use super::build::{Swept, Wild, leaf, root};
-use nearmiss::oracle::exact;
-use nearmiss::scene::Rng;
 use nearmiss_kernels::bv::{Aabb, Axes, Contain, Linear, Obb, Volume};
 use nearmiss_kernels::math::{Real, Vec3};
+use nearmiss_lab::oracle::exact;
+use nearmiss_lab::scene::Rng;
 use num_rational::BigRational;
 use num_traits::Signed;
 

@@ -1,8 +1,8 @@
 //! Boxes that move: those that meet at one instant meet, those that never do are told apart.
 
-use nearmiss::scene::Rng;
 use nearmiss_kernels::bv::{Linear, Volume};
 use nearmiss_kernels::math::Vec3;
+use nearmiss_lab::scene::Rng;
 
 type Swept = [[Vec3<f32>; 3]; 2];
 

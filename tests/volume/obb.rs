@@ -1,9 +1,9 @@
 //! Oriented boxes: those that share a point are never apart, clear gaps are seen, and boxes are no larger than need be.
 
 use super::build::{Wild, leaf};
-use nearmiss::scene::Rng;
 use nearmiss_kernels::bv::{Axes, Obb, Volume};
 use nearmiss_kernels::math::Vec3;
+use nearmiss_lab::scene::Rng;
 
 pub type Swept = [[Vec3<f32>; 3]; 2];
 

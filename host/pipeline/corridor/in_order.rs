@@ -5,7 +5,7 @@ use super::*;
 use crate::contacts::Contacts;
 use crate::device::emulator::{Emulator, Mode};
 use crate::pipeline::order::{Order, turn};
-use crate::scene;
+use crate::samples;
 use nearmiss_kernels::bv::Aabb;
 
 /// The answers of two frames, in the order in which the device or the host puts them; `told` is what the host believes.
@@ -43,7 +43,7 @@ fn answers(
 
 #[test]
 fn the_device_orders_as_the_host_does() {
-    let soup = |seed, moving| scene::soup(300, seed, moving).expect("a scene");
+    let soup = |seed, moving| samples::soup(300, seed, moving);
     for (motion, moving) in [(Motion::Discrete, false), (Motion::Continuous, true)] {
         for bodies in [vec![soup(5, moving)], vec![soup(6, moving), soup(7, moving)]] {
             let [host, device] = [false, true].map(|device| answers(&bodies, motion, device, |told| told));

@@ -3,13 +3,13 @@
 use super::*;
 use crate::device::emulator::{Emulator, Mode};
 use crate::query::{Bv, Refit, Solver};
-use crate::scene;
+use crate::samples::soup;
 use nearmiss_kernels::bv::{Aabb, Linear, Obb};
 
 /// How many pairs of random triangles certainly come within a tenth, with volumes that know of it or do not.
 fn certain<V: Kernels>(axes: Axes, refit: Refit, told: bool) -> usize {
     let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
-    let bodies = [scene::soup(60, 5, true).expect("a scene")];
+    let bodies = [soup(60, 5, true)];
     let query = Query {
         solver: Some(Solver::CertifiedF64),
         refit: Some(refit),

@@ -1,0 +1,72 @@
+//! The command line: `detect`, `plan`, `explain`, `scene`, `tables`, `trade`, `selftest`.
+
+mod args;
+mod detect;
+mod explain;
+mod progress;
+mod report;
+mod scene;
+mod selftest;
+mod tables;
+mod trade;
+
+use args::{Cli, Command, ReportArgs};
+use clap::Parser;
+use nearmiss::error::Error;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// 0 done (contacts or not), 2 bad arguments, 3 bad input, 4 device, memory or output.
+fn main() -> ExitCode {
+    match run(Cli::parse().command) {
+        Ok(code) => code,
+        Err(error) => {
+            eprintln!("nearmiss: {error}");
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
+
+fn run(command: Command) -> Result<ExitCode, Error> {
+    match command {
+        Command::Detect(args) => detect::detect(&args),
+        Command::Plan(args) => detect::plan(&args),
+        Command::Explain(args) => explain::explain(&args),
+        Command::Scene(args) => scene::scene(&args),
+        Command::Tables(args) => tables::tables(&args),
+        Command::Trade(args) => trade::trade(&args),
+        Command::Selftest(args) => selftest::selftest(&args),
+    }
+}
+
+/// Prints to standard output; a reader who has had enough is not an error.
+fn print(text: &str) {
+    use std::io::Write;
+    let mut out = std::io::stdout().lock();
+    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+}
+
+/// A mesh's name: its file's, without folder and extension.
+fn stem(file: &Path) -> String {
+    file.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy().into_owned())
+}
+
+/// Writes measured figures where `--out` says, and prints them as text or JSON.
+fn report<T: serde::Serialize>(
+    args: &ReportArgs,
+    figures: &T,
+    text: impl FnOnce(&T) -> String,
+    write: impl FnOnce(&T, &Path) -> Result<Vec<String>, Error>,
+) -> Result<ExitCode, Error> {
+    if let Some(out) = &args.out {
+        let names = write(figures, out)?;
+        eprintln!("nearmiss: {} in {}", names.join(", "), out.display());
+    }
+    if args.json {
+        let json = serde_json::to_string(figures).map_err(|e| Error::Bug { what: e.to_string() })?;
+        print(&(json + "\n"));
+    } else {
+        print(&text(figures));
+    }
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,127 @@
+//! What kernels append to their lists, on a machine and on the CPU, counted.
+//!
+//! Lanes that are not together lose what they append, or append it to another's place, while each lane's own verdict is
+//! right; no comparison of verdicts in small scenes notices. The grids on which that was seen are asked here, several times.
+
+use nearmiss::device::Device;
+use nearmiss::error::Error;
+use nearmiss::query::{Motion, Query, Solver};
+use nearmiss_lab::pairs::built::built;
+use nearmiss_lab::pairs::{Answers, How, Stored, TriangleAnswers, ask, ask_triangles};
+use nearmiss_lab::trade::triangles::{SIDES, on_grid};
+use rand::SeedableRng;
+use rand::rngs::SmallRng;
+
+/// Pairs of a grid: no multiple of a block, and many blocks.
+const PAIRS: usize = 22_501;
+/// How often a machine is asked.
+const TIMES: usize = 4;
+/// Built contacts of a kind; and their reach.
+const BUILT: (usize, i64) = (200, 64);
+
+/// A line for the table, and what differs.
+pub struct Report {
+    /// What was asked.
+    pub table: String,
+    /// Each difference.
+    pub faults: Vec<String>,
+}
+
+/// What of the answers to triangle pairs is wrong: the first difference, or entries that are not one a pair.
+fn fault(found: &TriangleAnswers, truth: &TriangleAnswers) -> Option<String> {
+    let meet = found.meet.iter().filter(|meet| **meet).count() as u64;
+    if found.listed != meet {
+        return Some(format!("{} entries for {meet} pairs", found.listed));
+    }
+    let other = found.meet.iter().zip(&truth.meet).filter(|(a, b)| a != b).count();
+    if other > 0 {
+        return Some(format!("{other} answers differ"));
+    }
+    (found.undecided != truth.undecided)
+        .then(|| format!("{} pairs left undecided for {}", found.undecided, truth.undecided))
+}
+
+/// The same of features in motion; what is rejected, left to the next rung and listed is counted by the kernels.
+fn fault_in_motion(found: &Answers, truth: &Answers) -> Option<String> {
+    let other = found.verdicts.iter().zip(&truth.verdicts).filter(|(a, b)| a != b).count();
+    if other > 0 {
+        return Some(format!("{other} verdicts differ"));
+    }
+    let counts = |of: &Answers| [of.rejected, of.escalated];
+    (counts(found) != counts(truth))
+        .then(|| format!("{:?} rejected and left for {:?}", counts(found), counts(truth)))
+}
+
+/// Asks grids of triangles and built contacts of both machines, by every solver, in both precisions.
+///
+/// # Errors
+/// Those of the devices.
+pub fn compare(machine: &Device, engine: &Device) -> Result<Report, Error> {
+    let mut faults = Vec::new();
+    let solvers = |motion| Solver::ALL.into_iter().filter(move |solver| solver.answers(motion));
+    let by = |motion, solver| Query { solver: Some(solver), ..Query::of(motion) };
+    let mut r = SmallRng::seed_from_u64(1);
+    for side in SIDES {
+        let pairs = on_grid(&mut r, side, PAIRS);
+        for (solver, stored) in solvers(Motion::Discrete).flat_map(|s| [(s, Stored::F32), (s, Stored::F64)]) {
+            let query = by(Motion::Discrete, solver);
+            let truth = ask_triangles(engine, &pairs, &query, stored)?;
+            for _ in 0..TIMES {
+                let found = ask_triangles(machine, &pairs, &query, stored)?;
+                let what = |fault| format!("triangles on a grid of {side}, {solver:?}, {stored:?}: {fault}");
+                faults.extend(fault(&found, &truth).map(what));
+            }
+        }
+    }
+    let cases: Vec<_> = built(1, BUILT.0, BUILT.1).into_iter().map(|built| built.case).collect();
+    for (solver, stored) in solvers(Motion::Continuous).flat_map(|s| [(s, Stored::F32), (s, Stored::F64)]) {
+        let how = How { filters: true, stored, ..How::default() };
+        let cases: Vec<_> =
+            cases.iter().copied().filter(|case| stored == Stored::F64 || case.fits_f32()).collect();
+        let query = by(Motion::Continuous, solver);
+        let truth = ask(engine, &cases, &query, how)?;
+        for _ in 0..TIMES {
+            let found = ask(machine, &cases, &query, how)?;
+            faults.extend(
+                fault_in_motion(&found, &truth)
+                    .map(|fault| format!("built motions, {solver:?}, {stored:?}: {fault}")),
+            );
+        }
+    }
+    let table = format!(
+        "appends        {} triangle pairs and {} motions x {TIMES} times, counted",
+        SIDES.len() * PAIRS,
+        cases.len()
+    );
+    Ok(Report { table, faults })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nearmiss::contacts::Status;
+    use nearmiss_lab::pairs::Met;
+
+    #[test]
+    fn what_is_lost_or_doubled_is_named() {
+        let truth = TriangleAnswers { meet: vec![true, false, true], listed: 2, undecided: 1, ms: 0.0 };
+        assert_eq!(fault(&truth, &truth), None);
+        let lost = TriangleAnswers { meet: vec![true, false, false], listed: 1, ..truth.clone() };
+        assert!(fault(&lost, &truth).is_some_and(|fault| fault == "1 answers differ"));
+        let twice = TriangleAnswers { listed: 3, ..truth.clone() };
+        assert!(fault(&twice, &truth).is_some_and(|fault| fault == "3 entries for 2 pairs"));
+        let left = TriangleAnswers { undecided: 0, ..truth.clone() };
+        assert!(fault(&left, &truth).is_some_and(|fault| fault.starts_with("0 pairs left")));
+    }
+
+    #[test]
+    fn motions_that_differ_are_counted() {
+        let truth = Answers { verdicts: vec![None], rejected: [3, 4], ..Answers::default() };
+        assert_eq!(fault_in_motion(&truth, &truth), None);
+        let less = Answers { rejected: [3, 3], ..truth.clone() };
+        assert!(fault_in_motion(&less, &truth).is_some());
+        let met = Met { status: Status::Certified, toi: 0.5, toi_hi: 0.5, exhausted: false, boxes: 0 };
+        let other = Answers { verdicts: vec![Some(met)], ..truth.clone() };
+        assert!(fault_in_motion(&other, &truth).is_some_and(|fault| fault == "1 verdicts differ"));
+    }
+}

@@ -1,0 +1,93 @@
+//! `tables`.
+
+use super::args::{Profile, Table, TablesArgs};
+use super::progress::during;
+use nearmiss::device::Device;
+use nearmiss::error::Error;
+use nearmiss::query::{Bv, Motion, Solver};
+use nearmiss_lab::tables::{self, Figures, Frames, Paper, Way};
+use std::process::ExitCode;
+
+/// Measures what was asked for, prints it, and writes it where `--out` says.
+pub fn tables(args: &TablesArgs) -> Result<ExitCode, Error> {
+    let device = args.machine.open()?;
+    let continuous = Solver::default_for(Motion::Continuous);
+    eprintln!("nearmiss: the solver of continuous columns is {}", continuous.promise());
+    let mut figures = Figures::new(device.name(), profile(args));
+    for (name, triangles) in scenes(args)? {
+        let frames = during(format!("making {name}"), || match args.mesh.is_empty() {
+            true => tables::frames(&name, triangles, args.seed, args.frames as usize),
+            false => tables::read(&name, &args.mesh),
+        })?;
+        scene(args, &device, &frames, &mut figures)?;
+    }
+    super::report(&args.report, &figures, Figures::text, Figures::write)
+}
+
+/// Names and triangles.
+fn scenes(args: &TablesArgs) -> Result<Vec<(String, usize)>, Error> {
+    if let Some(file) = args.mesh.first() {
+        return match args.scene.as_slice() {
+            [] => Ok(vec![(super::stem(file), 0)]),
+            [name] => Ok(vec![(name.clone(), 0)]),
+            several => Err(Error::Choice {
+                what: format!("--mesh with {} scenes", several.len()),
+                advice: "name the one scene of the thesis that the frames are, or none".into(),
+            }),
+        };
+    }
+    let wanted = |name: &str| args.scene.is_empty() || args.scene.iter().any(|of| of == name);
+    let all = tables::SCENES.iter().filter(|(name, _)| wanted(name));
+    Ok(all.map(|&(name, triangles)| (name.to_owned(), args.triangles.unwrap_or(triangles))).collect())
+}
+
+/// The profile's name.
+fn profile(args: &TablesArgs) -> &'static str {
+    args.profile.map_or("fastest", Profile::name)
+}
+
+/// The volumes asked for, each once.
+fn volumes(args: &TablesArgs) -> Vec<Bv> {
+    Bv::ALL.into_iter().filter(|bv| args.bv.contains(bv)).collect()
+}
+
+/// Measures one scene.
+fn scene(args: &TablesArgs, device: &Device, frames: &Frames, figures: &mut Figures) -> Result<(), Error> {
+    let wanted = |table| args.table.is_empty() || args.table.contains(&table);
+    let name = &frames.scene;
+    let walk = args.profile.map(Profile::walk);
+    let paper = Paper::new(name, frames.triangles(), device.name(), profile(args));
+    if wanted(Table::Build) {
+        // Every construction is by way of axis-aligned boxes.
+        let mut built = Vec::new();
+        for bv in Bv::ALL.into_iter().filter(|bv| *bv == Bv::Aabb || args.bv.contains(bv)) {
+            let trees = || tables::build(device, frames, bv, walk);
+            built.push(during(format!("{name}: trees in {}", bv.name()), trees)?);
+        }
+        figures.figure_6_12.extend(tables::figure_612(&paper, frames.meshes.len(), &built));
+    }
+    if args.table.contains(&Table::Front) {
+        let ways = Way::every(&volumes(args));
+        let rows = during(format!("{name}: parts of a step"), || {
+            tables::front(&paper, device, frames, &ways, walk)
+        })?;
+        figures.front.extend(rows);
+    }
+    if !wanted(Table::Frame) && !wanted(Table::Shares) {
+        return Ok(());
+    }
+    let mut cells = Vec::new();
+    for way in Way::every(&volumes(args)) {
+        let every = args.rebuild_every.map(|n| n as usize);
+        let cell = || tables::measure(device, frames, way, way.query(walk), every);
+        cells.push(during(format!("{name}: {way}"), cell)?);
+    }
+    let differing = tables::agree(name, &cells)?;
+    if wanted(Table::Frame) {
+        figures.figure_6_13.extend(tables::figure_613(&paper, &cells, &differing));
+    }
+    if wanted(Table::Shares) {
+        figures.figure_6_14.extend(tables::figure_614(&paper, &cells));
+    }
+    Ok(())
+}

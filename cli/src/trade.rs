@@ -1,0 +1,155 @@
+//! `trade`.
+
+use super::args::TradeArgs;
+use super::detect::body;
+use super::progress::during;
+use nearmiss::device::Device;
+use nearmiss::error::Error;
+use nearmiss::mesh::Body;
+use nearmiss::query::{Bv, Motion, Query, Solver};
+use nearmiss_lab::case::Case;
+use nearmiss_lab::pairs::Stored;
+use nearmiss_lab::tables;
+use nearmiss_lab::trade::{
+    Choice, Extent, Input, Scene, Trade, built_in, degeneracies, funnel, list, offsets, query_files, refit,
+    scales, triangles,
+};
+use std::process::ExitCode;
+
+/// Tolerances in mean edges.
+const TOLERANCES: [f64; 9] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9];
+/// The tolerance at which solvers are compared on query files, a length.
+const OF_QUERIES: f64 = 1e-6;
+
+/// Measures what was asked for, prints it, and writes it where `--out` says.
+pub fn trade(args: &TradeArgs) -> Result<ExitCode, Error> {
+    let device = args.machine.open()?;
+    let mut all = Trade::new(device.name());
+    let only_files = !args.mesh.is_empty() || args.queries.is_some();
+    if !only_files || args.full {
+        questions(args, &device, &mut all)?;
+    }
+    if let Some(root) = &args.queries {
+        let inputs = during("deciding the queries exactly", || query_files(root))?;
+        for input in inputs {
+            asked(args, &device, &input, &[OF_QUERIES / input.edge], &mut all)?;
+        }
+    }
+    if !args.mesh.is_empty() {
+        files(args, &device, &mut all)?;
+    }
+    if !only_files || args.full {
+        generated(args, &device, &mut all)?;
+    }
+    all.sum_up();
+    super::report(&args.report, &all, Trade::text, Trade::write)
+}
+
+/// How many cases of a kind.
+fn cases(args: &TradeArgs) -> usize {
+    args.cases.unwrap_or(if args.full { 1_000 } else { 100 })
+}
+
+/// Single questions: the built-in ones, and sweeps.
+fn questions(args: &TradeArgs, device: &Device, all: &mut Trade) -> Result<(), Error> {
+    let n = cases(args);
+    let grid = during("triangles on grids", || triangles(device, 40 * n, args.seed))?;
+    all.choices.extend(grid);
+    let inputs = during("deciding the built-in contacts exactly", || built_in(n, args.seed))?;
+    for input in inputs {
+        asked(args, device, &input, &[], all)?;
+    }
+    let step = if args.full { 1 } else { 2 };
+    let extent = Extent { cases: n.div_ceil(4), step, seed: args.seed };
+    all.sweeps.extend(during("offsets from the origin", || offsets(device, extent))?);
+    all.sweeps.extend(during("scales", || scales(device, extent))?);
+    all.sweeps.extend(during("degeneracies", || degeneracies(device, extent))?);
+    Ok(())
+}
+
+/// Every solver at every tolerance, and at some more.
+fn asked(
+    args: &TradeArgs,
+    device: &Device,
+    input: &Input,
+    more: &[f64],
+    all: &mut Trade,
+) -> Result<(), Error> {
+    let tolerances: Vec<f64> = TOLERANCES.iter().chain(more).copied().collect();
+    for choice in Choice::every(Motion::Continuous, &tolerances) {
+        let row = during(format!("{}: {choice}", input.name), || {
+            input.row(device, choice, Stored::F64, args.repeat)
+        })?;
+        all.choices.push(row);
+    }
+    if input.cases.iter().all(Case::fits_f32) {
+        for choice in Choice::every(Motion::Continuous, &[Query::TOLERANCE]) {
+            all.choices.push(input.row(device, choice, Stored::F32, args.repeat)?);
+        }
+    }
+    Ok(())
+}
+
+/// Scenes that are made here.
+fn generated(args: &TradeArgs, device: &Device, all: &mut Trade) -> Result<(), Error> {
+    for name in &args.scene {
+        let triangles = match args.triangles {
+            Some(triangles) => triangles,
+            None if args.full => nearmiss_lab::scene::usual(name),
+            None => 10_000,
+        };
+        let count = args.frames as usize;
+        let frames = during(format!("making {name}"), || tables::frames(name, triangles, args.seed, count))?;
+        let step = frames.bodies(Motion::Continuous)?.swap_remove(0);
+        let mesh = frames.meshes[0].clone();
+        let still = known(device, &format!("{name}, still"), Body::still(mesh), None)?;
+        scene(args, device, &still, all)?;
+        scene(args, device, &known(device, name, step, None)?, all)?;
+        for bv in [Bv::Aabb, Bv::default_for(Motion::Continuous)] {
+            let name = format!("{name}, {} triangles", frames.triangles());
+            let rows =
+                during(format!("{name}: refitting {}", bv.name()), || refit(device, &name, &frames, bv))?;
+            all.refit.extend(rows);
+        }
+    }
+    Ok(())
+}
+
+/// One frame or two from files.
+fn files(args: &TradeArgs, device: &Device, all: &mut Trade) -> Result<(), Error> {
+    let body = body(&args.mesh)?;
+    let truth = args.truth.as_deref().map(list).transpose()?;
+    scene(args, device, &known(device, &super::stem(&args.mesh[0]), body, truth)?, all)
+}
+
+fn known(
+    device: &Device,
+    name: &str,
+    body: Body,
+    truth: Option<nearmiss_lab::trade::List>,
+) -> Result<Scene, Error> {
+    during(format!("{name}: the truth"), || Scene::new(device, name, body, truth))
+}
+
+/// Every solver at every tolerance with the default volume, the default solver with every volume; and the funnel.
+fn scene(args: &TradeArgs, device: &Device, scene: &Scene, all: &mut Trade) -> Result<(), Error> {
+    let motion = if scene.body.is_moving() { Motion::Continuous } else { Motion::Discrete };
+    let few = [1e-1, 1e-2, 1e-4, 1e-6, 1e-9];
+    let tolerances: &[f64] = if args.full { &TOLERANCES } else { &few };
+    for choice in Choice::every(motion, tolerances) {
+        let row = || scene.row(device, choice, None, args.repeat);
+        all.choices.push(during(format!("{}: {choice}", scene.name), row)?);
+    }
+    let tolerance = (motion == Motion::Continuous).then_some(Query::TOLERANCE);
+    let choice = Choice { solver: Solver::default_for(motion), tolerance };
+    for bv in Bv::ALL.into_iter().filter(|bv| *bv != Bv::default_for(motion)) {
+        let row = || scene.row(device, choice, Some(bv), args.repeat);
+        all.choices.push(during(format!("{}: {}", scene.name, bv.name()), row)?);
+    }
+    if motion == Motion::Continuous {
+        let rows =
+            during(format!("{}: the funnel", scene.name), || funnel(device, &scene.name, &scene.body))?;
+        all.funnel.extend(rows);
+    }
+    Ok(())
+}

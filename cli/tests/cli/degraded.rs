@@ -1,0 +1,59 @@
+//! What the program says where an answer is less than was asked, as text and as JSON.
+
+use super::folder::Folder;
+use super::ok;
+
+/// Two edges, each of a triangle that reaches far, that meet at a sixteenth of the step as one of them shrinks to a point: no
+/// certificate holds then, and no slice tells. At the start and at the end.
+const SHRINKING: [[[f32; 3]; 6]; 2] = [
+    [
+        [0.0, 60.0, -12.0],
+        [-24.0, 36.0, 12.0],
+        [1e5, 0.0, 0.0],
+        [-48.0, 24.0, 60.0],
+        [-84.0, 24.0, -12.0],
+        [-1e5, 0.0, 0.0],
+    ],
+    [
+        [576.0, -708.0, 180.0],
+        [-216.0, -732.0, 12.0],
+        [1e5, 0.0, 0.0],
+        [144.0, -552.0, -708.0],
+        [684.0, -552.0, 372.0],
+        [-1e5, 0.0, 0.0],
+    ],
+];
+
+#[test]
+fn the_program_tells() {
+    let folder = Folder::new("degraded");
+    let [t0, t1] = [0, 1].map(|end| {
+        let corners = SHRINKING[end].map(|[x, y, z]| format!("v {x} {y} {z}\n")).concat();
+        folder.write(&format!("t{end}.obj"), &(corners + "f 1 2 3\nf 4 5 6\n"))
+    });
+    let asked = |args: &[&str], more: &[&str]| {
+        let args = [&["detect", "--backend", "cpu"], args].concat();
+        ok(&[&args[..], more].concat())
+    };
+    let run = |more: &[&str]| asked(&["--scene", "draped", "--triangles", "400"], more);
+    let json = |more: &[&str]| -> serde_json::Value {
+        serde_json::from_str(&run(&[more, &["--json"]].concat())).expect("JSON")
+    };
+    let all = json(&["--boxes", "1"]);
+    let shrinking = asked(&[&t0, &t1], &["--boxes", "1", "--tolerance", "4e-3", "--json"]);
+    let shrinking: serde_json::Value = serde_json::from_str(&shrinking).expect("JSON");
+    let boxes = shrinking["degraded"].as_array().expect("a list").iter().find(|r| r["reason"] == "boxes");
+    assert!(boxes.is_some_and(|r| r["pairs"].as_u64().is_some_and(|n| n > 0)), "{shrinking}");
+    assert_eq!(all["separation"], 0.0);
+    let plain = json(&["--discrete"]);
+    assert_eq!(
+        (&plain["degraded"], &plain["separation"]),
+        (&serde_json::json!([]), &serde_json::Value::Null)
+    );
+    let text = asked(&[&t0, &t1], &["--boxes", "1", "--tolerance", "4e-3"]);
+    assert!(text.contains("  degraded: ") && text.contains("raise --boxes"), "{text}");
+    assert!(!run(&["--discrete"]).contains("degraded"));
+    let apart = json(&["--separation", "0.01"]);
+    assert!(apart["separation"] == 0.01 && apart["contacts"].as_u64() > all["contacts"].as_u64(), "{apart}");
+    assert!(run(&["--separation", "0.01"]).contains("separation 1e-2"));
+}

@@ -1,0 +1,132 @@
+//! Crowds: one triangle against a million, all equal, all at one time, more pairs than 32 bits count.
+
+use super::report::Report;
+use crate::scene;
+use nearmiss::contacts::Status;
+use nearmiss::device::Device;
+use nearmiss::error::Error;
+use nearmiss::mesh::{Body, Mesh, Positions};
+use nearmiss::pipeline::Session;
+use nearmiss::query::{Motion, Query};
+use nearmiss_kernels::math::Vec3;
+use nearmiss_kernels::prim::tri_tri::meets_exactly;
+
+/// How large the crowds are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Crowds {
+    /// Triangles against one.
+    pub against_one: usize,
+    /// Equal triangles: all pairs meet.
+    pub equal: usize,
+    /// Contacts at one time.
+    pub ties: usize,
+    /// Whether to ask 92,683 equal triangles for their 4,295,022,903 pairs, which no list of 32 bits holds. For a card: a
+    /// CPU walks minutes.
+    pub beyond_32_bits: bool,
+}
+
+impl Crowds {
+    /// The sizes of the catalogue.
+    pub const FULL: Crowds =
+        Crowds { against_one: 1_000_000, equal: 5_000, ties: 100_000, beyond_32_bits: true };
+    /// Sizes for a CPU: seconds.
+    pub const SMALL: Crowds =
+        Crowds { against_one: 1_000_000, equal: 1_500, ties: 50_000, beyond_32_bits: false };
+}
+
+/// Asks all crowds.
+///
+/// # Errors
+/// Those of the device.
+pub fn ask_crowds(device: &Device, crowds: Crowds) -> Result<Report, Error> {
+    let mut report = Report::new("crowds");
+    against_one(device, crowds.against_one, &mut report)?;
+    equal(device, crowds.equal, &mut report)?;
+    ties(device, crowds.ties, &mut report)?;
+    if crowds.beyond_32_bits {
+        beyond_32_bits(device, &mut report)?;
+    }
+    Ok(report)
+}
+
+/// One large triangle against a soup: the pairs are those of asking all, one by one.
+fn against_one(device: &Device, n: usize, report: &mut Report) -> Result<(), Error> {
+    let soup = scene::soup(n, 42, false)?;
+    let points = soup.positions_t0().to_f64();
+    let corner = |v: u32| Vec3(points[v as usize].map(|x| x as f32));
+    let far = points.iter().flatten().fold(0f64, |most, x| most.max(x.abs())) as f32;
+    // Through the middle of the soup, slanted.
+    let one = [[-far, -far, -far * 0.5], [far, -far * 0.75, far * 0.25], [far * 0.125, far, far * 0.5]];
+    let truth: Vec<[u32; 2]> = (0u32..)
+        .zip(soup.faces())
+        .filter(|(_, face)| meets_exactly(&one.map(Vec3), &face.map(corner)))
+        .map(|(i, _)| [0, i])
+        .collect();
+    let one = Body::still(Mesh::new("one", Positions::F32(one.to_vec()), vec![[0, 1, 2]])?);
+    let found = Session::new(device.clone(), vec![one, soup], Query::of(Motion::Discrete))?.detect()?;
+    report.asked += 1;
+    report.missed += truth.len().saturating_sub(found.len()) as u64;
+    if found.pairs() != truth || truth.is_empty() {
+        report.fail(|| format!("X42 one against {n}: {} pairs, not {}", found.len(), truth.len()));
+    }
+    Ok(())
+}
+
+/// All pairs of equal triangles, in a tree that is not deep.
+fn equal(device: &Device, n: usize, report: &mut Report) -> Result<(), Error> {
+    let mut session = Session::new(device.clone(), vec![scene::identical(n)?], Query::of(Motion::Discrete))?;
+    let found = session.detect()?;
+    session.check_trees()?;
+    report.asked += 1;
+    let all = n * (n - 1) / 2;
+    let levels = n.next_power_of_two().trailing_zeros() as usize + 1;
+    report.missed += (all - found.len().min(all)) as u64;
+    if found.len() != all || session.depths() != [levels] {
+        report.fail(|| {
+            format!("X43 {n} equal: {} pairs, not {all}; depth {:?}", found.len(), session.depths())
+        });
+    }
+    Ok(())
+}
+
+/// `n` tips that fall on `n` triangles at once: the same bits of time for each, always.
+fn ties(device: &Device, n: usize, report: &mut Report) -> Result<(), Error> {
+    let side = (n as f64).sqrt().ceil() as usize;
+    let at = |i: usize| [(i % side * 4) as f32, (i / side * 4) as f32];
+    let (mut floor, mut tips) = (Vec::new(), Vec::new());
+    for [x, y] in (0..n).map(at) {
+        floor.extend([[x, y, 0.0], [x + 2.0, y, 0.0], [x, y + 2.0, 0.0]]);
+        tips.extend([[x + 0.5, y + 0.5, 1.0], [x + 0.5, y + 0.75, 9.0], [x + 0.75, y + 0.5, 9.0]]);
+    }
+    let faces: Vec<[u32; 3]> = (0..n as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let mesh = |points: &[[f32; 3]]| Mesh::new("ties", Positions::F32(points.to_vec()), faces.clone());
+    let fallen: Vec<[f32; 3]> = tips.iter().map(|p| [p[0], p[1], p[2] - 2.0]).collect();
+    let bodies = vec![Body::still(mesh(&floor)?), Body::moving(mesh(&tips)?, mesh(&fallen)?)?];
+    let asked = |motion| Query { tolerance: Some(1e-5), ..Query::of(motion) };
+    let mut session = Session::new(device.clone(), bodies.clone(), asked(Motion::Continuous))?;
+    let (found, again) = (session.detect()?, session.detect()?);
+    let earliest = Session::new(device.clone(), bodies, asked(Motion::Earliest))?.detect()?.earliest_toi();
+    report.asked += 2;
+    let first = found.contacts().first().map(|c| c.toi);
+    let alike = |c: &nearmiss::Contact| Some(c.toi) == first && c.status == Status::Certified && c.toi <= 0.5;
+    let right = found.len() == n && found.contacts().iter().all(alike) && earliest == first;
+    report.missed += n.saturating_sub(found.len()) as u64;
+    if !right || again.answer != found.answer {
+        report.fail(|| format!("X37 {n} at once: {} contacts, first {first:?}, {earliest:?}", found.len()));
+    }
+    Ok(())
+}
+
+/// More pairs than a list of 32 bits can hold: an error that says how much room was needed, to the byte.
+fn beyond_32_bits(device: &Device, report: &mut Report) -> Result<(), Error> {
+    const N: usize = 92_683;
+    let needed = (N * (N - 1) / 2 * size_of::<nearmiss_kernels::abi::Pair>()) as u64;
+    let mut session = Session::new(device.clone(), vec![scene::identical(N)?], Query::of(Motion::Discrete))?;
+    report.asked += 1;
+    match session.detect() {
+        Err(Error::Room { asked, .. }) if asked == needed => {}
+        Err(error) => report.fail(|| format!("X45: {needed} bytes are needed, but: {error}")),
+        Ok(found) => report.fail(|| format!("X45: {} pairs were found", found.len())),
+    }
+    Ok(())
+}

@@ -1,0 +1,144 @@
+//! A tree that is refitted ten thousand times: does it still hold its mesh, and find what a new one finds?
+
+use super::report::Report;
+use nearmiss::contacts::Contacts;
+use nearmiss::device::Device;
+use nearmiss::error::Error;
+use nearmiss::mesh::{Body, Mesh, Positions};
+use nearmiss::pipeline::Session;
+use nearmiss::pipeline::enclose::Enclosed;
+use nearmiss::pipeline::volumes::Kernels;
+use nearmiss::query::{Bv, Motion, Query, Refit};
+use nearmiss_kernels::bv::{Aabb, Axes, Contain, Linear, Obb};
+use nearmiss_kernels::math::Vec3;
+
+/// Triangles of the mesh: few, for each corner is judged in exact arithmetic in each node above it in each frame.
+const TRIANGLES: u32 = 24;
+/// Frames between those in which a new tree is asked too.
+const APART: u32 = 500;
+/// The ways to refit, one a volume.
+const WAYS: [Refit; 4] = [Refit::Levels, Refit::Treelets, Refit::BottomUp, Refit::Treelets];
+
+/// A ribbon that turns, waves and drifts, by sums and products alone; its vertices at frame `k`.
+fn ribbon(k: u32) -> Vec<[f32; 3]> {
+    let vertices = TRIANGLES + 2;
+    // A rotation by an angle that is no part of a whole turn: (3 + 4 i) / 5 to the k-th, from the last 64 steps alone, so
+    // that it costs the same in every frame.
+    let (mut c, mut s) = (1.0f64, 0.0f64);
+    for _ in 0..k % 64 {
+        (c, s) = (0.6 * c - 0.8 * s, 0.8 * c + 0.6 * s);
+    }
+    let drift = f64::from(k) * 0.01;
+    let vertex = |i: u32| {
+        let noise =
+            (i.wrapping_mul(2_654_435_761) ^ k.wrapping_mul(40_503)).wrapping_mul(2_246_822_519) >> 20;
+        let (x, y) = (f64::from(i / 2), f64::from(i % 2) + f64::from(noise) / 4096.0);
+        // Folded: the second half lies over the first.
+        let x = if i < vertices / 2 { x } else { f64::from(vertices / 2) - x };
+        let z = f64::from(noise % 64) / 32.0;
+        [c * x - s * y + drift, s * x + c * y, z - drift].map(|x| x as f32)
+    };
+    (0..vertices).map(vertex).collect()
+}
+
+fn faces() -> Vec<[u32; 3]> {
+    (0..TRIANGLES).map(|i| [i, i + 1, i + 2]).collect()
+}
+
+fn body(k: u32) -> Result<Body, Error> {
+    let mesh = |k| Mesh::new("ribbon", Positions::F32(ribbon(k)), faces());
+    Body::moving(mesh(k)?, mesh(k + 1)?)
+}
+
+/// Counts corners outside of nodes over all frames.
+fn holds<V: Kernels + Contain>(
+    device: &Device,
+    frames: u32,
+    (refit, axes): (Refit, Axes),
+    report: &mut Report,
+    name: &str,
+) -> Result<(), Error> {
+    let at = |k| ribbon(k).into_iter().map(Vec3).collect::<Vec<_>>();
+    let (mut t0, mut t1) = (at(0), at(1));
+    let mut tree = Enclosed::<f32, V>::new(device, &faces(), [&t0, &t1], (refit, axes, 0.0))?;
+    for k in 1..=frames {
+        t0 = t1;
+        t1 = at(k + 1);
+        tree.move_to(&t0, &t1)?;
+        let outside = tree.outside(0.0, |_| ())?;
+        report.asked += 1;
+        if outside > 0 {
+            report.missed += outside as u64;
+            report.fail(|| {
+                format!("X57 {name}, frame {k}: {outside} corners are outside of a node above them")
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Refits a small mesh in motion so often, in each volume, and judges in exact arithmetic whether every node holds every
+/// corner below it; and asks a session that goes the same way, whose contacts must now and then be those of a new one.
+///
+/// # Errors
+/// Those of the device.
+pub fn ask_refits(device: &Device, frames: u32) -> Result<Report, Error> {
+    let mut report = Report::new("refits");
+    let all = &mut report;
+    holds::<Aabb>(device, frames, (WAYS[0], Axes::PCA), all, "aabb")?;
+    holds::<Linear>(device, frames, (WAYS[1], Axes::PCA), all, "linear")?;
+    holds::<Obb>(device, frames, (WAYS[2], Axes::PCA), all, "obb")?;
+    holds::<Obb>(device, frames, (WAYS[3], Axes::CHILD), all, "obb-child")?;
+    for (bv, refit) in Bv::ALL.into_iter().zip(WAYS) {
+        for motion in [Motion::Discrete, Motion::Continuous] {
+            // The default tolerance hangs on where a session begins.
+            let tolerance = (motion == Motion::Continuous).then_some(1e-5);
+            let query = Query { bv: Some(bv), refit: Some(refit), tolerance, ..Query::of(motion) };
+            let mut session = Session::new(device.clone(), vec![body(0)?], query)?;
+            for k in (APART..=frames).step_by(APART as usize) {
+                // The frames in between are refitted by `holds`; here the tree jumps.
+                session.move_to(0, body(k)?)?;
+                let found: Contacts = session.detect()?;
+                let fresh = Session::new(device.clone(), vec![body(k)?], query)?.detect()?;
+                report.asked += 1;
+                report.unresolved += found.unresolved;
+                if found.answer != fresh.answer {
+                    report.fail(|| {
+                        let (was, is) = (found.len(), fresh.len());
+                        format!(
+                            "X57 {}, {motion:?}, frame {k}: {was} contacts, {is} by a new tree",
+                            bv.name()
+                        )
+                    });
+                }
+            }
+        }
+    }
+    Ok(report)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nearmiss::device::emulator::{Emulator, Mode};
+
+    /// The ribbon meets itself, and a tree of one frame does not hold another.
+    #[test]
+    fn the_ribbon_asks_something() {
+        let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
+        for motion in [Motion::Discrete, Motion::Continuous] {
+            let found = Session::new(device.clone(), vec![body(500).expect("a body")], Query::of(motion));
+            let found = found.expect("a session").detect().expect("an answer");
+            assert!(found.len() > 3, "{motion:?}: {}", found.len());
+        }
+        let at = |k| ribbon(k).into_iter().map(Vec3).collect::<Vec<_>>();
+        let way = (Refit::Levels, Axes::PCA, 0.0);
+        let mut tree = Enclosed::<f32, Obb>::new(&device, &faces(), [&at(0), &at(1)], way).expect("a tree");
+        tree.move_to(&at(7), &at(8)).expect("a frame");
+        assert_eq!(tree.outside(0.0, |_| ()).expect("nodes"), 0);
+        let half = |nodes: &mut [nearmiss_kernels::abi::Node<Obb>]| {
+            nodes.iter_mut().for_each(|node| node.volume.h = node.volume.h.map(|h| h * 0.999));
+        };
+        assert!(tree.outside(0.0, half).expect("nodes") > 10);
+    }
+}

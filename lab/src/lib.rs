@@ -1,0 +1,13 @@
+//! What judges nearmiss: exact answers in rational numbers, contacts built to be hard, scenes that are made here, what each
+//! faster choice costs, and the thesis's tables beside ours. A part of this project, not of the library: nothing here is
+//! promised to stay.
+
+pub mod case;
+pub mod extremes;
+pub mod oracle;
+pub mod pairs;
+pub mod scene;
+pub mod tables;
+pub mod trade;
+
+pub use case::{Case, Features};

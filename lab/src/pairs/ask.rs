@@ -1,0 +1,153 @@
+//! Features in motion.
+
+use super::lay::{AT_ONCE, check, mean_edge, topology, vertices};
+use super::{Answers, How, Met, Stored};
+use crate::case::Case;
+use nearmiss::contacts::Status;
+use nearmiss::device::{Buffer, Device};
+use nearmiss::error::Error;
+use nearmiss::pipeline::Layout;
+use nearmiss::pipeline::narrow::{Continuous, Given, Rooms, Step};
+use nearmiss::pipeline::precision::Precision;
+use nearmiss::query::{Motion, Query};
+use nearmiss_kernels::abi::{Frames, Hit, Span, counter};
+
+/// Asks every case whether its features meet, and when first: by the query's solver, tolerance and budget, with the
+/// kernels of a frame. Without a tolerance, [`Query::TOLERANCE`] of the cases' mean edge. Any number of cases; a million
+/// at a time, so that half a gigabyte of device memory is enough.
+///
+/// # Errors
+/// [`Error::Choice`] for a query that is not of [`Motion::Continuous`], and for coordinates that are not finite, too
+/// large, or not exact in the precision that they are to be stored in; those of the device.
+pub fn ask(device: &Device, cases: &[Case], query: &Query, how: How) -> Result<Answers, Error> {
+    query.check()?;
+    if query.motion != Motion::Continuous {
+        return Err(Error::Choice {
+            what: format!("a {:?} query of single features", query.motion),
+            advice: "ask continuous queries; of triangles that stand still, ask_triangles".into(),
+        });
+    }
+    check(cases, how.stored)?;
+    let default = || Query::TOLERANCE * mean_edge(cases);
+    let tolerance = query.solver().is_certified().then(|| query.tolerance.unwrap_or_else(default));
+    let query = Query { tolerance, ..*query };
+    let mut all = Answers::default();
+    for cases in cases.chunks(AT_ONCE) {
+        let some = match how.stored {
+            Stored::F64 => some::<f64>(device, cases, query, how)?,
+            Stored::F32 => some::<f32>(device, cases, query, how)?,
+        };
+        all.verdicts.extend(some.verdicts);
+        for kind in 0..2 {
+            all.rejected[kind] += some.rejected[kind];
+            all.escalated[kind] += some.escalated[kind];
+        }
+        all.filter_ms += some.filter_ms;
+        all.solve_ms += some.solve_ms;
+        all.bytes = all.bytes.max(some.bytes);
+    }
+    Ok(all)
+}
+
+/// Asks as many as are asked at once.
+fn some<R: Precision>(device: &Device, cases: &[Case], query: Query, how: How) -> Result<Answers, Error> {
+    let before = device.bytes().0;
+    let (layout, [vf, ee]) = topology(cases);
+    let all = [vf.len(), ee.len()];
+    // A case is listed once at most, so no list outgrows this.
+    let candidates = if how.filters || query.is_apart() { all } else { [0, 0] };
+    let rooms = Rooms { candidates, survivors: all, hits: all, left: all };
+    let mut features = Continuous::new(device, &layout, query, rooms)?;
+    let first = if how.filters { Step::Sift } else { Step::Reject };
+    let mut counts = vec![0; counter::COUNT as usize];
+    for (at, count) in features.give(first, [&vf, &ee])? {
+        counts[at as usize] = count;
+    }
+    let mut run = Run::<R> {
+        device,
+        query,
+        vertices: vertices(device, cases)?,
+        faces: device.upload(&layout.faces)?,
+        layout,
+        counters: device.buffer(counter::COUNT as usize)?,
+        counts,
+        filters: how.filters,
+        features,
+    };
+    let bytes = device.bytes().0 - before;
+    let mut ms = vec![run.run()?];
+    if how.repeats > 0 {
+        ms = (0..how.repeats).map(|_| run.run()).collect::<Result<_, Error>>()?;
+        ms.sort_by(|a, b| (a[0] + a[1]).total_cmp(&(b[0] + b[1])));
+    }
+    let [filter_ms, solve_ms] = ms[ms.len() / 2];
+    Ok(Answers { filter_ms, solve_ms, bytes, ..run.answers(cases.len())? })
+}
+
+/// The memory of a run.
+struct Run<'a, R: Precision> {
+    device: &'a Device,
+    query: Query,
+    vertices: Buffer<nearmiss_kernels::abi::Motion<R>>,
+    faces: Buffer<[u32; 3]>,
+    layout: Layout,
+    counters: Buffer<u64>,
+    /// What the counters are before a run.
+    counts: Vec<u64>,
+    /// Whether the filters are asked first.
+    filters: bool,
+    features: Continuous,
+}
+
+impl<R: Precision> Run<'_, R> {
+    /// Runs the filters, if asked for, and the solver; milliseconds of each.
+    fn run(&mut self) -> Result<[f64; 2], Error> {
+        self.counters.write(&self.counts)?;
+        let given = Given {
+            device: self.device,
+            query: self.query,
+            frames: Frames { still: Span::EMPTY, moving: self.vertices.span() },
+            faces: self.faces.span(),
+            pairs: Span::EMPTY,
+            counters: self.counters.span(),
+        };
+        let start = self.device.mark()?;
+        if self.filters {
+            self.features.run(Step::Reject, &given)?;
+        }
+        let filtered = self.device.mark()?;
+        self.features.run(Step::Solve, &given)?;
+        let end = self.device.mark()?;
+        Ok([start.to(&filtered)?, filtered.to(&end)?])
+    }
+
+    /// The verdicts, where the cases are, and the counts.
+    fn answers(&self, cases: usize) -> Result<Answers, Error> {
+        let counters = self.counters.read(counter::COUNT as usize)?;
+        let certified = self.query.solver().is_certified();
+        let mut verdicts = vec![None; cases];
+        let met = |hit: &Hit| Met {
+            status: Status::of(certified, &hit.verdict),
+            toi: hit.verdict.toi,
+            toi_hi: hit.verdict.toi_hi,
+            exhausted: hit.verdict.exhausted(),
+            boxes: hit.verdict.boxes,
+        };
+        for hit in self.features.vf_hits.read(&counters)? {
+            verdicts[hit.a as usize / 4] = Some(met(&hit));
+        }
+        for hit in self.features.ee_hits.read(&counters)? {
+            let [vertex, _] = self.layout.edges[hit.a as usize];
+            verdicts[vertex as usize / 4] = Some(met(&hit));
+        }
+        let of = |at: u32| counters[at as usize];
+        let asked = [of(counter::VF), of(counter::EE)];
+        let left = [of(counter::VF_SURVIVORS), of(counter::EE_SURVIVORS)];
+        Ok(Answers {
+            verdicts,
+            rejected: [0, 1].map(|kind| asked[kind].saturating_sub(left[kind])),
+            escalated: [of(counter::VF_ESCALATED), of(counter::EE_ESCALATED)],
+            ..Answers::default()
+        })
+    }
+}

@@ -1,0 +1,88 @@
+//! Cases as a soup of vertices, faces and edges.
+
+use super::Stored;
+use crate::case::{Case, Features};
+use nearmiss::device::{Buffer, Device};
+use nearmiss::error::Error;
+use nearmiss::mesh::{MAX_ABS_F32, MAX_ABS_F64};
+use nearmiss::pipeline::Layout;
+use nearmiss::pipeline::precision::Precision;
+use nearmiss_kernels::abi::{Motion, Pair};
+use nearmiss_kernels::math::Vec3;
+
+/// Cases that are asked at once: half a gigabyte of device memory, and far from the end of 32 bits.
+pub const AT_ONCE: usize = 1 << 20;
+
+/// Mean length of the edges of the features, at t = 0, of all cases together: three of a face, one of an edge. 0 where
+/// there are none.
+pub fn mean_edge(cases: &[Case]) -> f64 {
+    let (mut sum, mut count) = (0.0, 0u64);
+    for case in cases {
+        let edges: &[[usize; 2]] = match case.features {
+            Features::VertexFace => &[[1, 2], [2, 3], [3, 1]],
+            Features::EdgeEdge => &[[0, 1], [2, 3]],
+        };
+        for &[a, b] in edges {
+            let [p, q] = [a, b].map(|i| case.positions_t0[i]);
+            // Scaled by the largest, so that squares of small or large numbers are neither lost nor infinite.
+            let d = [0, 1, 2].map(|k| (p[k] - q[k]).abs());
+            let most = d[0].max(d[1]).max(d[2]);
+            if most > 0.0 {
+                let [x, y, z] = d.map(|d| d / most);
+                sum += most * (x * x + y * y + z * z).sqrt();
+            }
+            count += 1;
+        }
+    }
+    sum / count.max(1) as f64
+}
+
+/// Refuses coordinates that a mesh would not be let through with, and such as f32 does not hold where that is asked.
+pub fn check(cases: &[Case], stored: Stored) -> Result<(), Error> {
+    let most = if stored == Stored::F32 { f64::from(MAX_ABS_F32) } else { MAX_ABS_F64 };
+    let refused = |x: f64| match stored {
+        _ if x.is_nan() || x.abs() > most => Some("is not finite, or too large"),
+        Stored::F32 if f64::from(x as f32) != x => Some("is not exact in f32"),
+        _ => None,
+    };
+    for (at, case) in cases.iter().enumerate() {
+        for x in case.positions_t0.iter().chain(&case.positions_t1).flatten() {
+            if let Some(why) = refused(*x) {
+                return Err(Error::Choice {
+                    what: format!("case {at} has a coordinate {x:e} that {why}"),
+                    advice: format!("give finite coordinates up to {most:e}, and store them in f64"),
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The pairs of the cases, vertex/face and edge/edge, each in the cases' order; and faces and edges for them.
+pub fn topology(cases: &[Case]) -> (Layout, [Vec<Pair>; 2]) {
+    let mut layout = Layout::default();
+    let [mut vf, mut ee] = [Vec::new(), Vec::new()];
+    for (case, first) in cases.iter().zip((0u32..).step_by(4)) {
+        match case.features {
+            Features::VertexFace => {
+                vf.push(Pair { a: first, b: layout.faces.len() as u32 });
+                layout.faces.push([first + 1, first + 2, first + 3]);
+            }
+            Features::EdgeEdge => {
+                let edge = layout.edges.len() as u32;
+                ee.push(Pair { a: edge, b: edge + 1 });
+                layout.edges.extend([[first, first + 1], [first + 2, first + 3]]);
+            }
+        }
+    }
+    (layout, [vf, ee])
+}
+
+/// The vertices of the cases, in motion.
+pub fn vertices<R: Precision>(device: &Device, cases: &[Case]) -> Result<Buffer<Motion<R>>, Error> {
+    let at = |p: [f64; 3]| Vec3(p.map(R::of)).into();
+    let moving = |case: &Case| [0, 1, 2, 3].map(|i| (case.positions_t0[i], case.positions_t1[i]));
+    let all: Vec<Motion<R>> =
+        cases.iter().flat_map(moving).map(|(t0, t1)| Motion { t0: at(t0), t1: at(t1) }).collect();
+    device.upload(&all)
+}

@@ -1,0 +1,118 @@
+//! Triangles that stand still.
+
+use super::Stored;
+use super::lay::AT_ONCE;
+use crate::oracle::Triangle;
+use nearmiss::device::Device;
+use nearmiss::error::Error;
+use nearmiss::mesh::{Mesh, Positions};
+use nearmiss::pipeline::Layout;
+use nearmiss::pipeline::narrow::{Given, Narrow, Step};
+use nearmiss::pipeline::precision::Precision;
+use nearmiss::pipeline::room::List;
+use nearmiss::query::{Motion, Query};
+use nearmiss_kernels::abi::{Frames, Pair, Point, Span, counter};
+
+/// The answers to a number of triangle pairs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TriangleAnswers {
+    /// Whether they share a point, in the pairs' order.
+    pub meet: Vec<bool>,
+    /// How many entries the list of those that do had: as many, where each is appended once.
+    pub listed: u64,
+    /// Pairs that the float filter left to exact signs.
+    pub undecided: u64,
+    /// Milliseconds, on the device's own clock.
+    pub ms: f64,
+}
+
+/// Asks of every pair of triangles whether they share a point: by the query's solver, with the kernels of a frame.
+///
+/// # Errors
+/// [`Error::Choice`] for a query that is not of [`Motion::Discrete`], and for coordinates that are not exact in f32 where
+/// they are to be stored so; [`Error::Input`] for such as no mesh may have; those of the device.
+pub fn ask_triangles(
+    device: &Device,
+    pairs: &[[Triangle; 2]],
+    query: &Query,
+    stored: Stored,
+) -> Result<TriangleAnswers, Error> {
+    query.check()?;
+    if query.motion != Motion::Discrete {
+        return Err(Error::Choice {
+            what: format!("a {:?} query of triangles that stand still", query.motion),
+            advice: "ask a discrete query, or features in motion".into(),
+        });
+    }
+    let mut all = TriangleAnswers::default();
+    for pairs in pairs.chunks(AT_ONCE) {
+        let points: Vec<[f64; 3]> = pairs.iter().flatten().flatten().copied().collect();
+        if stored == Stored::F32
+            && let Some(x) = points.iter().flatten().find(|x| f64::from(**x as f32) != **x)
+        {
+            return Err(Error::Choice {
+                what: format!("a coordinate {x:e} that is not exact in f32"),
+                advice: "store it in f64".into(),
+            });
+        }
+        let positions = match stored {
+            Stored::F64 => Positions::F64(points),
+            Stored::F32 => Positions::F32(points.iter().map(|p| p.map(|x| x as f32)).collect()),
+        };
+        let faces = (0..2 * pairs.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let mesh = Mesh::new("triangle pairs", positions, faces)?;
+        let some = match stored {
+            Stored::F64 => some::<f64>(device, &mesh, *query)?,
+            Stored::F32 => some::<f32>(device, &mesh, *query)?,
+        };
+        all.meet.extend(some.meet);
+        all.listed += some.listed;
+        all.undecided += some.undecided;
+        all.ms += some.ms;
+    }
+    Ok(all)
+}
+
+/// Asks as many as are asked at once: triangles 2 i and 2 i + 1 are pair i.
+fn some<R: Precision>(device: &Device, mesh: &Mesh, query: Query) -> Result<TriangleAnswers, Error> {
+    let count = mesh.faces().len() / 2;
+    let points: Vec<Point<R>> = R::points(mesh.positions()).map(Point::from).collect();
+    let (points, faces) = (device.upload(&points)?, device.upload(mesh.faces())?);
+    let pairs: Vec<Pair> = (0..count as u32).map(|i| Pair { a: 2 * i, b: 2 * i + 1 }).collect();
+    let mut list = List::new(device, "triangle pairs", counter::PAIRS, count)?;
+    let mut counts = vec![0; counter::COUNT as usize];
+    let (at, number) = list.put(&pairs)?;
+    counts[at as usize] = number;
+    let mut narrow = Narrow::new::<R>(device, &Layout::default(), query, (count, count))?;
+    let mut counters = device.buffer(counter::COUNT as usize)?;
+    // Until no list was too short.
+    let (counters, ms) = loop {
+        counters.write(&counts)?;
+        let given = Given {
+            device,
+            query,
+            frames: Frames { still: points.span(), moving: Span::EMPTY },
+            faces: faces.span(),
+            pairs: list.span(),
+            counters: counters.span(),
+        };
+        let start = device.mark()?;
+        narrow.run(Step::Decide, &given)?;
+        let ms = start.to(&device.mark()?)?;
+        let counted = counters.read(counter::COUNT as usize)?;
+        let mut grew = false;
+        for list in narrow.lists(Step::Decide) {
+            grew |= list.grow(device, &counted)?;
+        }
+        if !grew {
+            break (counted, ms);
+        }
+    };
+    let Narrow::Discrete { contacts, .. } = &narrow else {
+        return Err(Error::Bug { what: "triangles that stand still asked as features".into() });
+    };
+    let mut meet = vec![false; count];
+    contacts.read(&counters)?.iter().for_each(|pair| meet[pair.a as usize / 2] = true);
+    let [listed, undecided] = [counter::CONTACTS, counter::UNDECIDED].map(|at| counters[at as usize]);
+    Ok(TriangleAnswers { meet, listed, undecided, ms })
+}

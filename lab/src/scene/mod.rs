@@ -1,0 +1,152 @@
+//! Scenes made by this program: for the README, the self-test, tests and benches.
+//!
+//! Those of [`FORMULAS`] have one or two frames; those of [`ANIMATIONS`] go on for ever, an [`Animation`] each.
+//!
+//! A scene is the same, bit by bit, on every machine and in every version of every crate: random numbers come from
+//! our own [`Rng`], and coordinates only from `+ - * /`, `sqrt`, `floor` and comparisons in double precision, which
+//! IEEE 754 fixes, then one rounding to single. No `sin`, `cos` or `cbrt`, which differ between systems.
+
+mod animation;
+mod balls;
+mod cloth_ball;
+mod draped;
+mod flamenco;
+mod known;
+mod nbody;
+mod princess;
+mod rng;
+mod soup;
+mod sphere;
+#[cfg(test)]
+mod tests;
+mod turn;
+mod xpbd;
+
+pub use animation::{ANIMATIONS, Animation, Options, animation, animation_with};
+pub use balls::balls;
+pub use draped::draped;
+pub use known::{grid, grid_pairs, identical, line, single};
+pub use rng::Rng;
+pub use soup::soup;
+
+use nearmiss::Error;
+use nearmiss::mesh::{Body, Mesh, Positions, Problem};
+
+/// The names that [`scene`] knows.
+pub const NAMES: [&str; 12] = [
+    "balls",
+    "cloth-ball",
+    "draped",
+    "flamenco",
+    "grid",
+    "identical",
+    "line",
+    "n-body",
+    "princess",
+    "single",
+    "soup",
+    "soup-moving",
+];
+
+/// Those of [`NAMES`] that are made by formula, still or with the two ends of a step; the others are [`ANIMATIONS`].
+pub const FORMULAS: [&str; 8] =
+    ["balls", "draped", "grid", "identical", "line", "single", "soup", "soup-moving"];
+
+/// Triangles of a scene where none are asked for: the thesis's number for the scenes that it has, for the others that of
+/// UNC's cloth on a ball.
+pub fn usual(name: &str) -> usize {
+    match name {
+        "flamenco" => 49_000,
+        "princess" => 40_000,
+        "n-body" => 146_480,
+        _ => 92_230,
+    }
+}
+
+/// Most triangles of a generated scene, 2^27: with three vertices each they stay below the limits of a mesh.
+pub const MAX_TRIANGLES: u64 = 1 << 27;
+
+/// The scene `name` with about `triangles` triangles (`single` has one whatever is asked; each generator says how
+/// near it comes). `seed` shifts the random ones: `balls`, `soup`, `soup-moving`, and the animations. Of an animation
+/// it is the step from its opening to the next frame; the frames before have to be computed first.
+///
+/// # Errors
+/// [`Problem::UnknownScene`] with the known names, [`Problem::NoTriangles`] for 0, [`Problem::TooMany`] above
+/// [`MAX_TRIANGLES`]; each as [`Error::Input`] with the scene's name for a file.
+pub fn scene(name: &str, triangles: usize, seed: u64) -> Result<Body, Error> {
+    if triangles == 0 && NAMES.contains(&name) {
+        return Err(Error::Input { file: name.into(), problem: Problem::NoTriangles });
+    }
+    match name {
+        _ if ANIMATIONS.contains(&name) => {
+            let mut animation = animation(name, triangles, seed)?;
+            animation.advance(animation.opening())?;
+            animation.next_step()
+        }
+        "balls" => {
+            let (count, subdivisions) = balls::nearest(triangles);
+            balls(count, subdivisions, seed)
+        }
+        "draped" => draped(triangles),
+        "grid" => grid(known::nearest(triangles)),
+        "identical" => identical(triangles),
+        "line" => line(triangles),
+        "single" => single(),
+        "soup" => soup(triangles, seed, false),
+        "soup-moving" => soup(triangles, seed, true),
+        _ => Err(Error::Input {
+            file: name.into(),
+            problem: Problem::UnknownScene { known: NAMES.join(", ") },
+        }),
+    }
+}
+
+/// Refuses more triangles than a scene may have, before anything is allocated for them.
+fn room(name: &str, triangles: u64) -> Result<(), Error> {
+    if triangles > MAX_TRIANGLES {
+        let problem = Problem::TooMany { what: "triangles", count: triangles, limit: MAX_TRIANGLES };
+        return Err(Error::Input { file: name.into(), problem });
+    }
+    Ok(())
+}
+
+/// Points and faces while a scene grows.
+#[derive(Default)]
+struct Builder {
+    t0: Vec<[f32; 3]>,
+    t1: Vec<[f32; 3]>,
+    faces: Vec<[u32; 3]>,
+}
+
+impl Builder {
+    /// Adds a vertex that stands still, or in a still scene; its index. `room` keeps indices below 2^32.
+    fn vertex(&mut self, p: [f64; 3]) -> u32 {
+        self.t0.push(p.map(|x| x as f32));
+        self.t0.len() as u32 - 1
+    }
+
+    /// Adds a vertex that moves from `p` to `q`; its index.
+    fn moving(&mut self, p: [f64; 3], q: [f64; 3]) -> u32 {
+        self.t1.push(q.map(|x| x as f32));
+        self.vertex(p)
+    }
+
+    /// The body: moving if its vertices were added as moving.
+    fn body(self, name: &str) -> Result<Body, Error> {
+        if self.t1.is_empty() {
+            return Ok(Body::still(Mesh::new(name, Positions::F32(self.t0), self.faces)?));
+        }
+        let t0 = Mesh::new(name, Positions::F32(self.t0), self.faces.clone())?;
+        Body::moving(t0, Mesh::new(name, Positions::F32(self.t1), self.faces)?)
+    }
+}
+
+/// The smallest whole number whose cube is at least `n`.
+fn cube_root_up(n: usize) -> usize {
+    (1..).find(|k: &usize| k.saturating_pow(3) >= n).unwrap_or(1)
+}
+
+/// The whole number nearest to the square root of `x`, at least 1.
+fn square_root(x: f64) -> u32 {
+    (x.sqrt() + 0.5).floor().clamp(1.0, 1e9) as u32
+}

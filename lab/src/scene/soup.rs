@@ -1,0 +1,31 @@
+//! Random triangles.
+
+use super::{Builder, Rng, cube_root_up, room};
+use nearmiss::Error;
+use nearmiss::mesh::Body;
+
+/// Exactly `n` random triangles in the unit cube, no two with a common vertex; still, or each corner moving on its
+/// own. Their size falls with the cube root of `n`, so that each meets a few others, however many there are.
+///
+/// # Errors
+/// More than [`super::MAX_TRIANGLES`].
+pub fn soup(n: usize, seed: u64, moving: bool) -> Result<Body, Error> {
+    let name = if moving { "soup-moving" } else { "soup" };
+    room(name, n as u64)?;
+    let size = 0.75 / cube_root_up(n) as f64;
+    let mut rng = Rng::new(seed);
+    let mut scene = Builder::default();
+    for _ in 0..n {
+        let centre = rng.point(0.5).map(|x| x + 0.5);
+        let face = [(); 3].map(|()| {
+            let p = add(centre, rng.point(size));
+            if moving { scene.moving(p, add(p, rng.point(0.5 * size))) } else { scene.vertex(p) }
+        });
+        scene.faces.push(face);
+    }
+    scene.body(name)
+}
+
+pub(super) fn add(p: [f64; 3], q: [f64; 3]) -> [f64; 3] {
+    [p[0] + q[0], p[1] + q[1], p[2] + q[2]]
+}

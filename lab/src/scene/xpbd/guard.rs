@@ -1,0 +1,258 @@
+//! Keeps a cloth free of intersections by nearmiss's own detection.
+//!
+//! A substep is proposed as a straight motion of every vertex. What meets on the way is pushed apart; what still meets
+//! is held, and what meets that, in zones that grow: held vertices stay where they began or, in a cloth that hangs from
+//! a body, go rigidly with the body. All vertices going so keep apart whatever is apart: from the ends of the step,
+//! straight lines between them are an affine map. The end is accepted only if the exact discrete query finds no pair of
+//! triangles that meet; else nothing moves at all. The beginning had no such pair, so by induction no accepted state has
+//! one, whatever the continuous solver may have missed.
+
+use super::V;
+use nearmiss::contacts::{Contact, Kind};
+use nearmiss::device::{Backend, Device};
+use nearmiss::error::Error;
+use nearmiss::mesh::{Body, Mesh, Positions, Topology};
+use nearmiss::pipeline::Session;
+use nearmiss::query::{Motion, Query, Solver};
+use nearmiss_kernels::math::Vec3;
+
+/// Rounds that push what meets apart.
+const PUSHES: u32 = 4;
+/// Rounds that hold what still meets; then everything is held.
+const HOLDS: u32 = 24;
+/// How far apart features that would have met are put, in mean edges.
+const GAP: f64 = 0.02;
+
+/// What became of a proposed step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Outcome {
+    /// It took place, perhaps changed.
+    Moved,
+    /// Nothing moved.
+    Stopped,
+}
+
+pub(super) struct Guard {
+    name: String,
+    continuous: Session,
+    discrete: Session,
+    faces: Vec<[u32; 3]>,
+    edges: Vec<[u32; 2]>,
+    gap: f64,
+}
+
+/// The cubic: it lists no near misses, which would be pushed apart without need. What it misses, [`meeting`] finds.
+fn passing() -> Query {
+    Query { solver: Some(Solver::CubicF64), ..Query::of(Motion::Continuous) }
+}
+
+/// Every meeting counts, that of triangles with a common vertex too.
+fn meeting() -> Query {
+    Query { adjacent: true, ..Query::of(Motion::Discrete) }
+}
+
+impl Guard {
+    /// Watches a mesh from positions `x` on, which it rounds to floats: what is checked is what is written.
+    ///
+    /// # Errors
+    /// [`Error::Choice`] if triangles meet already; those of detection.
+    pub fn new(name: &str, x: &mut [V], faces: &[[u32; 3]]) -> Result<Guard, Error> {
+        round(x);
+        let edges = Topology::new(faces, x.len()).edges;
+        let lengths = edges.iter().map(|e| {
+            let d = x[e[0] as usize] - x[e[1] as usize];
+            d.dot(d).sqrt()
+        });
+        let gap = GAP * lengths.sum::<f64>() / edges.len().max(1) as f64;
+        let device = Device::open(Backend::Cpu, None)?;
+        let still = frame(name, x, faces)?;
+        let moving = Body::moving(still.clone(), still.clone())?;
+        let mut guard = Guard {
+            name: name.into(),
+            continuous: Session::new(device.clone(), vec![moving], passing())?,
+            discrete: Session::new(device, vec![Body::still(still)], meeting())?,
+            faces: faces.to_vec(),
+            edges,
+            gap,
+        };
+        if !guard.is_free(x)? {
+            return Err(Error::Choice {
+                what: format!("{name}: triangles meet in the first frame, so nothing can keep them apart"),
+                advice: "ask for the scene without contact".into(),
+            });
+        }
+        Ok(guard)
+    }
+
+    /// Changes the step from `before`, which is free of intersections and in floats, to `x` so that it ends free and in
+    /// floats too. `held`: where held vertices go; `w`: inverse masses, a vertex of 0 goes where it must, or nothing
+    /// moves.
+    ///
+    /// # Errors
+    /// Those of detection.
+    pub fn limit(&mut self, before: &[V], x: &mut [V], held: &[V], w: &[f64]) -> Result<Outcome, Error> {
+        let mut is_held = vec![false; x.len()];
+        for turn in 0..=PUSHES + HOLDS {
+            if turn == PUSHES + HOLDS {
+                hold(x, held, |v| w[v] > 0.0);
+            }
+            round(x);
+            let contacts = self.contacts(before, x)?;
+            if contacts.is_empty() && self.is_free(x)? {
+                return Ok(Outcome::Moved);
+            }
+            for contact in &contacts {
+                let (vertices, weights) = self.stencil(contact, before, x);
+                if turn < PUSHES {
+                    self.push(&vertices, &weights, contact.toi, before, x, w);
+                } else {
+                    vertices.iter().filter(|&&v| w[v] > 0.0).for_each(|&v| is_held[v] = true);
+                }
+            }
+            if contacts.is_empty() {
+                // The solver missed something: no zone is known, so all of them.
+                is_held.iter_mut().zip(w).for_each(|(is_held, &w)| *is_held = w > 0.0);
+            }
+            hold(x, held, |v| is_held[v]);
+        }
+        x.copy_from_slice(before);
+        Ok(Outcome::Stopped)
+    }
+
+    fn contacts(&mut self, before: &[V], x: &[V]) -> Result<Vec<Contact>, Error> {
+        let (t0, t1) = (frame(&self.name, before, &self.faces)?, frame(&self.name, x, &self.faces)?);
+        self.continuous.move_to(0, Body::moving(t0, t1)?)?;
+        Ok(self.continuous.detect()?.contacts().to_vec())
+    }
+
+    fn is_free(&mut self, x: &[V]) -> Result<bool, Error> {
+        self.discrete.move_to(0, Body::still(frame(&self.name, x, &self.faces)?))?;
+        Ok(self.discrete.detect()?.is_empty())
+    }
+
+    /// The four vertices of a contact and the weights that make its two points' difference when they meet: positive on
+    /// the first feature, negative on the second.
+    fn stencil(&self, contact: &Contact, before: &[V], x: &[V]) -> ([usize; 4], [f64; 4]) {
+        let (a, b) = (contact.a as usize, contact.b as usize);
+        let at = |v: usize| before[v] + (x[v] - before[v]) * contact.toi;
+        if contact.kind == Kind::Ee {
+            let v =
+                [self.edges[a][0], self.edges[a][1], self.edges[b][0], self.edges[b][1]].map(|v| v as usize);
+            let [p, q, r, s] = v.map(at);
+            let (d, e, f) = (q - p, s - r, p - r);
+            let (dd, de, ee) = (d.dot(d), d.dot(e), e.dot(e));
+            let across = dd * ee - de * de;
+            // Parallel edges: their middles will do.
+            let along = if across > 0.0 { (de * e.dot(f) - ee * d.dot(f)) / across } else { 0.5 };
+            let along = along.clamp(0.0, 1.0);
+            let other = if ee > 0.0 { ((e.dot(f) + along * de) / ee).clamp(0.0, 1.0) } else { 0.5 };
+            (v, [1.0 - along, along, other - 1.0, -other])
+        } else {
+            let face = self.faces[b].map(|v| v as usize);
+            let (p, [q, r, s]) = (at(a), face.map(at));
+            let normal = (r - q).cross(s - q);
+            let area = normal.dot(normal);
+            let part = |u: V, v: V| if area > 0.0 { u.cross(v).dot(normal) / area } else { 1.0 / 3.0 };
+            let (j, k) = (part(p - q, s - q).clamp(0.0, 1.0), part(r - q, p - q).clamp(0.0, 1.0));
+            ([a, face[0], face[1], face[2]], [1.0, j + k - 1.0, -j, -k])
+        }
+    }
+
+    /// Moves the ends of the step so that the two points are the gap apart, on the side where they began.
+    fn push(
+        &self,
+        vertices: &[usize; 4],
+        weights: &[f64; 4],
+        toi: f64,
+        before: &[V],
+        x: &mut [V],
+        w: &[f64],
+    ) {
+        let sum = |at: &dyn Fn(usize) -> V| {
+            let parts = vertices.iter().zip(weights).map(|(&v, &weight)| at(v) * weight);
+            parts.fold(Vec3([0.0; 3]), |sum, part| sum + part)
+        };
+        // Where they met, the difference of the points is zero; just before, it shows the way back.
+        let start = sum(&|v| before[v]);
+        let met = vertices.map(|v| before[v] + (x[v] - before[v]) * toi);
+        let mut normal = if weights[1] > 0.0 || weights[0] != 1.0 {
+            (met[1] - met[0]).cross(met[3] - met[2])
+        } else {
+            (met[2] - met[1]).cross(met[3] - met[1])
+        };
+        if normal.dot(normal) == 0.0 {
+            normal = start;
+        }
+        if normal.dot(start) < 0.0 {
+            normal = -normal;
+        }
+        let length = normal.dot(normal).sqrt();
+        let mobile: f64 = vertices.iter().zip(weights).map(|(&v, weight)| w[v] * weight * weight).sum();
+        if length == 0.0 || mobile == 0.0 {
+            return;
+        }
+        let normal = normal * (1.0 / length);
+        let missing = self.gap - normal.dot(sum(&|v| x[v]));
+        if missing > 0.0 {
+            for (&v, weight) in vertices.iter().zip(weights) {
+                x[v] = x[v] + normal * (missing * w[v] * weight / mobile);
+            }
+        }
+    }
+}
+
+/// Puts the vertices that `which` names where held ones go.
+fn hold(x: &mut [V], held: &[V], which: impl Fn(usize) -> bool) {
+    x.iter_mut().zip(held).enumerate().filter(|(v, _)| which(*v)).for_each(|(_, (x, held))| *x = *held);
+}
+
+/// To floats and back.
+fn round(x: &mut [V]) {
+    x.iter_mut().for_each(|p| *p = p.map(|c| f64::from(c as f32)));
+}
+
+fn frame(name: &str, x: &[V], faces: &[[u32; 3]]) -> Result<Mesh, Error> {
+    Mesh::new(name, Positions::F32(x.iter().map(|p| p.0.map(|c| c as f32)).collect()), faces.to_vec())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+
+    use super::*;
+
+    /// A triangle at that height above another, which is much larger.
+    fn above(height: f64) -> (Vec<V>, Vec<[u32; 3]>) {
+        let low = [[-4.0, -4.0, 0.0], [4.0, -4.0, 0.0], [0.0, 6.0, 0.0]];
+        let high = [[-1.0, 0.0, height], [1.0, 0.0, height], [0.0, 1.0, height + 0.5]];
+        (low.into_iter().chain(high).map(Vec3).collect(), vec![[0, 1, 2], [3, 4, 5]])
+    }
+
+    #[test]
+    fn a_triangle_that_falls_through_another_ends_above_it() {
+        let (before, faces) = above(1.0);
+        let mut guard = Guard::new("fall", &mut before.clone(), &faces).unwrap();
+        let mut x = above(-1.0).0;
+        let w = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+        assert!(!guard.contacts(&before, &x).unwrap().is_empty());
+        assert_eq!(guard.limit(&before, &mut x, &before, &w).unwrap(), Outcome::Moved);
+        assert!(x[3..].iter().all(|p| p[2] > 0.0) && x[3] != before[3], "{x:?}");
+        assert!(guard.contacts(&before, &x).unwrap().is_empty() && guard.is_free(&x).unwrap());
+    }
+
+    #[test]
+    fn what_cannot_be_held_stops() {
+        let (before, faces) = above(1.0);
+        let mut guard = Guard::new("stop", &mut before.clone(), &faces).unwrap();
+        let mut x = above(-1.0).0;
+        assert_eq!(guard.limit(&before, &mut x, &before, &[0.0; 6]).unwrap(), Outcome::Stopped);
+        assert_eq!(x, before);
+    }
+
+    #[test]
+    fn triangles_that_meet_from_the_start_are_refused() {
+        let (mut x, faces) = above(-0.25);
+        let text = Guard::new("deep", &mut x, &faces).err().unwrap().to_string();
+        assert!(text.contains("triangles meet in the first frame"), "{text}");
+    }
+}

@@ -1,0 +1,80 @@
+//! Do all ways of asking one thing give one answer?
+
+use super::measure::Cell;
+use nearmiss::error::Error;
+use nearmiss::query::Solver;
+
+/// Frames of each cell whose contacts differ from those of the first cell of the same motion. Volumes and walks may not
+/// change the answer of a solver that is never wrong; one that can be may differ where a volume keeps from it a pair that
+/// it would have got wrong.
+///
+/// # Errors
+/// [`Error::Bug`] naming the first cell of an exact solver that differs, and its frame.
+pub fn agree(scene: &str, cells: &[Cell]) -> Result<Vec<usize>, Error> {
+    let mut differing = Vec::new();
+    for cell in cells {
+        // The cell itself is among them.
+        let first = cells.iter().find(|other| other.way.motion == cell.way.motion).unwrap_or(cell);
+        let differs = |at: &usize| first.hashes.get(*at) != cell.hashes.get(*at);
+        let frames: Vec<usize> = (0..first.hashes.len().max(cell.hashes.len())).filter(differs).collect();
+        if let (Solver::Exact, Some(frame)) = (cell.solver, frames.first()) {
+            return Err(Error::Bug {
+                what: format!(
+                    "{scene}, {}, frame {frame}: other contacts than {}, though both are exact",
+                    cell.way, first.way
+                ),
+            });
+        }
+        differing.push(frames.len());
+    }
+    Ok(differing)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::way::Way;
+    use super::*;
+    use nearmiss::pipeline::Stages;
+    use nearmiss::query::{Bv, Motion};
+
+    fn cell(motion: Motion, front: bool, hashes: &[u64]) -> Cell {
+        Cell {
+            way: Way { motion, bv: Bv::Aabb, front },
+            solver: Solver::default_for(motion),
+            mean: Stages::default(),
+            contacts: 0,
+            node_tests: 0,
+            triangle_pairs: 0,
+            hashes: hashes.to_vec(),
+            reruns: 0,
+            bytes: 0,
+        }
+    }
+
+    #[test]
+    fn equal_answers_agree() {
+        let cells = [cell(Motion::Discrete, false, &[1, 2]), cell(Motion::Continuous, false, &[3])];
+        assert_eq!(agree("s", &cells).expect("agreement"), [0, 0]);
+    }
+
+    #[test]
+    fn a_wrong_exact_answer_is_named() {
+        let cells = [cell(Motion::Discrete, false, &[1, 2, 3]), cell(Motion::Discrete, true, &[1, 9, 3])];
+        let error = agree("flamenco", &cells).expect_err("a planted fault").to_string();
+        for part in ["flamenco", "discrete AABB, front", "frame 1", "than discrete AABB,"] {
+            assert!(error.contains(part), "{part}: {error}");
+        }
+    }
+
+    #[test]
+    fn a_missing_frame_is_named() {
+        let cells = [cell(Motion::Discrete, false, &[1, 2]), cell(Motion::Discrete, true, &[1])];
+        assert!(agree("s", &cells).expect_err("a planted fault").to_string().contains("frame 1"));
+    }
+
+    #[test]
+    fn floats_that_differ_are_counted() {
+        let cells = [cell(Motion::Continuous, false, &[1, 2, 3]), cell(Motion::Continuous, true, &[1, 8, 9])];
+        assert_eq!(agree("s", &cells).expect("a count"), [0, 2]);
+    }
+}

@@ -1,0 +1,214 @@
+//! All figures together: text, CSV files and pictures.
+
+use super::figures::{Figure612, Figure613, Figure614, Paper};
+use super::front::FrontRow;
+use super::picture::{Bar, Chart, Curve, Panel, Stack, bars, curves, stacks};
+use super::text::text;
+use super::theirs::CARD;
+use nearmiss::error::Error;
+use serde::Serialize;
+use std::path::Path;
+
+/// The figures that were asked for; those that were not have no rows.
+#[derive(Debug, Serialize)]
+pub struct Figures {
+    /// Our machine.
+    pub device: String,
+    /// Work queues of which size, or `fastest`.
+    pub profile: &'static str,
+    /// The thesis's machine.
+    pub theirs: &'static str,
+    /// Construction and refit.
+    pub figure_6_12: Vec<Figure612>,
+    /// Frames.
+    pub figure_6_13: Vec<Figure613>,
+    /// Shares.
+    pub figure_6_14: Vec<Figure614>,
+    /// What a front saves.
+    pub front: Vec<FrontRow>,
+}
+
+impl Figures {
+    /// No figures yet.
+    pub fn new(device: String, profile: &'static str) -> Figures {
+        let (figure_6_12, figure_6_13, figure_6_14, front) = Default::default();
+        Figures { device, profile, theirs: CARD, figure_6_12, figure_6_13, figure_6_14, front }
+    }
+
+    /// For people.
+    pub fn text(&self) -> String {
+        let figures =
+            [text(&self.figure_6_12), text(&self.figure_6_13), text(&self.figure_6_14), text(&self.front)];
+        let mut all = format!("ours on {}\n\n", self.machine());
+        for figure in figures.iter().filter(|figure| !figure.is_empty()) {
+            all += figure;
+        }
+        for remark in self.remarks() {
+            all += &format!("{remark}\n");
+        }
+        all
+    }
+
+    /// The machine, and the work queues where there are some.
+    fn machine(&self) -> String {
+        let queues =
+            if self.profile == "fastest" { String::new() } else { format!(", work queues {}", self.profile) };
+        format!("{}{queues}", self.device)
+    }
+
+    /// What a reader of the figures must know.
+    fn remarks(&self) -> Vec<String> {
+        let of_612 = self.figure_6_12.iter().map(|r| (&r.scene, r.triangles, r.their_triangles));
+        let of_613 = self.figure_6_13.iter().map(|r| (&r.scene, r.triangles, r.their_triangles));
+        let mut remarks = Vec::new();
+        for (scene, ours, theirs) in of_612.chain(of_613) {
+            let Some(theirs) = theirs.filter(|_| !is_like(scene, ours)) else { continue };
+            let remark = format!(
+                "{scene}: ours has {ours} triangles and theirs {theirs}; its ratios compare different scenes."
+            );
+            if !remarks.contains(&remark) {
+                remarks.push(remark);
+            }
+        }
+        let differing: usize = self.figure_6_13.iter().map(|row| row.differing).sum();
+        if differing > 0 {
+            remarks.push(format!(
+                "{differing} frames differ between volumes or walks: their solver can err, and does so on other candidates."
+            ));
+        }
+        let reruns: u64 = self.figure_6_13.iter().map(|row| row.reruns).sum();
+        if reruns > 0 {
+            remarks.push(format!("{reruns} frames ran again for want of room: their times are too long."));
+        }
+        remarks
+    }
+
+    /// Writes `figure-6.12.csv`, `figure-6.12.svg` and so on into a folder, which is made where there is none; the files'
+    /// names.
+    ///
+    /// # Errors
+    /// [`Error::Output`].
+    pub fn write(&self, folder: &Path) -> Result<Vec<String>, Error> {
+        std::fs::create_dir_all(folder).map_err(|e| failed(folder, &e))?;
+        let mut names = Vec::new();
+        let mut both = |name: &str, rows: Result<Vec<u8>, String>, svg: Result<String, Error>| {
+            let csv = folder.join(format!("{name}.csv"));
+            let rows = rows.map_err(|e| failed(&csv, &e))?;
+            put(&csv, &rows)?;
+            put(&folder.join(format!("{name}.svg")), svg?.as_bytes())?;
+            names.extend(["csv", "svg"].map(|kind| format!("{name}.{kind}")));
+            Ok(())
+        };
+        if !self.figure_6_12.is_empty() {
+            let title = "Figure 6.12: construction and refit of a tree";
+            let panels = panels(
+                &self.figure_6_12,
+                |row| titled(&row.scene, row.triangles, row.their_triangles),
+                |row| Bar {
+                    label: format!("{} {}", row.stage, row.bv.to_uppercase()),
+                    ours: row.ours_ms,
+                    theirs: row.theirs_ms,
+                },
+            );
+            both("figure-6.12", csv(&self.figure_6_12), bars(title, &self.machine(), &panels))?;
+        }
+        if !self.figure_6_13.is_empty() {
+            let title = "Figure 6.13: a frame, from positions to contacts";
+            let panels = panels(
+                &self.figure_6_13,
+                |row| titled(&row.scene, row.triangles, row.their_triangles),
+                |row| Bar {
+                    label: label(row.motion, row.bv, row.front),
+                    ours: row.ours_ms,
+                    theirs: row.theirs_ms,
+                },
+            );
+            both("figure-6.13", csv(&self.figure_6_13), bars(title, &self.machine(), &panels))?;
+        }
+        if !self.figure_6_14.is_empty() {
+            let title = "Figure 6.14: where a frame's time goes";
+            let all: Vec<Stack> = self.figure_6_14.iter().map(stack).collect();
+            both("figure-6.14", csv(&self.figure_6_14), stacks(title, &self.machine(), &all))?;
+        }
+        if !self.front.is_empty() {
+            let title = "A front: its cost, of that of the same frame without it";
+            let bound = (50.0, "the thesis's bound on node tests, a half");
+            both("front", csv(&self.front), curves(title, &self.machine(), bound, &charts(&self.front)))?;
+        }
+        Ok(names)
+    }
+}
+
+/// A chart a scene, motion and volume; ways without a front are what the others are drawn against.
+fn charts(rows: &[FrontRow]) -> Vec<Chart> {
+    let fronts: Vec<&FrontRow> = rows.iter().filter(|row| row.front).collect();
+    let title = |row: &FrontRow| format!("{}, {}", row.scene, label(row.motion, row.bv, false));
+    let chart = |rows: &[&FrontRow]| {
+        let curve = |label: &str, is_time, of: fn(&FrontRow) -> f64| Curve {
+            label: label.into(),
+            points: rows.iter().map(|row| (row.part, 100.0 * of(row))).collect(),
+            is_time,
+        };
+        Chart {
+            title: rows.first().map(|row| title(row)).unwrap_or_default(),
+            curves: vec![
+                curve("node tests", false, |row| row.tests_ratio),
+                curve("traversal time", true, |row| row.time_ratio),
+            ],
+        }
+    };
+    fronts.chunk_by(|a, b| title(a) == title(b)).map(chart).collect()
+}
+
+fn label(motion: &str, bv: &str, front: bool) -> String {
+    format!("{motion} {}{}", bv.to_uppercase(), if front { ", front" } else { "" })
+}
+
+fn is_like(scene: &str, triangles: usize) -> bool {
+    Paper::new(scene, triangles, String::new(), "").is_like()
+}
+
+/// A panel's title, which says so where the thesis's scene has another size.
+fn titled(scene: &str, triangles: usize, theirs: Option<usize>) -> String {
+    match theirs {
+        Some(theirs) if !is_like(scene, triangles) => {
+            format!("{scene}, {triangles} triangles (theirs: {theirs})")
+        }
+        _ => format!("{scene}, {triangles} triangles"),
+    }
+}
+
+fn stack(row: &Figure614) -> Stack {
+    Stack {
+        panel: titled(&row.scene, row.triangles, None),
+        label: label(row.motion, row.bv, row.front),
+        shares: [row.refit, row.traverse, row.balance, row.triangle_tests],
+        ms: row.ms,
+    }
+}
+
+/// A panel a scene; a scene's rows stand together.
+fn panels<T>(rows: &[T], title: fn(&T) -> String, bar: fn(&T) -> Bar) -> Vec<Panel> {
+    let panel = |rows: &[T]| Panel {
+        title: rows.first().map(title).unwrap_or_default(),
+        bars: rows.iter().map(bar).collect(),
+    };
+    rows.chunk_by(|a, b| title(a) == title(b)).map(panel).collect()
+}
+
+/// Rows with a head.
+pub fn csv<T: Serialize>(rows: &[T]) -> Result<Vec<u8>, String> {
+    let mut csv = csv::Writer::from_writer(Vec::new());
+    rows.iter().try_for_each(|row| csv.serialize(row)).map_err(|e| e.to_string())?;
+    csv.into_inner().map_err(|e| e.to_string())
+}
+
+/// Writes a file.
+pub fn put(path: &Path, bytes: &[u8]) -> Result<(), Error> {
+    std::fs::write(path, bytes).map_err(|e| failed(path, &e))
+}
+
+/// A file that could not be written.
+pub fn failed(path: &Path, text: &impl ToString) -> Error {
+    Error::Output { file: path.display().to_string(), text: text.to_string() }
+}

@@ -1,0 +1,74 @@
+//! Where frames come from: a generated animation, or files.
+
+use crate::scene;
+use nearmiss::error::Error;
+use nearmiss::mesh::{Body, Mesh};
+use nearmiss::query::Motion;
+use std::path::PathBuf;
+
+/// The scenes that stand in for the thesis's, with the triangles that it names.
+pub const SCENES: [(&str, usize); 4] =
+    [("flamenco", 49_000), ("princess", 40_000), ("cloth-ball", 92_230), ("n-body", 146_480)];
+
+/// Frames of one mesh, in their order: at least two, all with the same faces.
+pub struct Frames {
+    /// The scene's name.
+    pub scene: String,
+    /// The frames.
+    pub meshes: Vec<Mesh>,
+}
+
+impl Frames {
+    /// What a motion asks in turn: every frame, or every pair of consecutive ones.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where two frames are not of one mesh.
+    pub fn bodies(&self, motion: Motion) -> Result<Vec<Body>, Error> {
+        if motion == Motion::Discrete {
+            return Ok(self.meshes.iter().cloned().map(Body::still).collect());
+        }
+        self.meshes.windows(2).map(|pair| Body::moving(pair[0].clone(), pair[1].clone())).collect()
+    }
+
+    /// Triangles of the mesh.
+    pub fn triangles(&self) -> usize {
+        self.meshes.first().map_or(0, Mesh::face_count)
+    }
+
+    fn new(scene: &str, meshes: Vec<Mesh>) -> Result<Frames, Error> {
+        let frames = Frames { scene: scene.into(), meshes };
+        if frames.meshes.len() < 2 {
+            return Err(Error::Choice {
+                what: format!("{scene} has {} frame(s)", frames.meshes.len()),
+                advice: "a step needs two: give more files after --mesh, or a larger --frames".into(),
+            });
+        }
+        // Every pair is checked, so that no measurement ends halfway.
+        frames.bodies(Motion::Continuous)?;
+        Ok(frames)
+    }
+}
+
+/// `count` frames of an animation, one after the other, from where it is what it stands in for: before that, cloth falls
+/// and gathers. Cost: those frames too are computed.
+///
+/// # Errors
+/// Those of the scene; [`Error::Choice`] for fewer than two frames.
+pub fn frames(name: &str, triangles: usize, seed: u64, count: usize) -> Result<Frames, Error> {
+    let mut animation = scene::animation(name, triangles, seed)?;
+    animation.advance(animation.opening())?;
+    let mut meshes = vec![animation.mesh()?];
+    while meshes.len() < count {
+        animation.advance(1)?;
+        meshes.push(animation.mesh()?);
+    }
+    Frames::new(name, meshes)
+}
+
+/// Frames from files, in the order given.
+///
+/// # Errors
+/// Those of reading; [`Error::Input`] where two files are not frames of one mesh; [`Error::Choice`] for one file.
+pub fn read(scene: &str, files: &[PathBuf]) -> Result<Frames, Error> {
+    Frames::new(scene, files.iter().map(|file| Mesh::read(file)).collect::<Result<_, _>>()?)
+}

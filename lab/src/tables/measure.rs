@@ -1,0 +1,111 @@
+//! One cell: an animation asked in one way.
+
+use super::frames::Frames;
+use super::way::Way;
+use nearmiss::contacts::Contacts;
+use nearmiss::device::Device;
+use nearmiss::error::Error;
+use nearmiss::mesh::Body;
+use nearmiss::pipeline::{Session, Stages};
+use nearmiss::query::{Query, Solver};
+
+/// What an animation asked in one way gave.
+#[derive(Clone, Debug)]
+pub struct Cell {
+    /// How it was asked.
+    pub way: Way,
+    /// The test that decided.
+    pub solver: Solver,
+    /// Each stage's mean over all frames, milliseconds.
+    pub mean: Stages,
+    /// Contacts of all frames.
+    pub contacts: u64,
+    /// Overlap tests of two volumes, of all frames.
+    pub node_tests: u64,
+    /// Triangle pairs that the volumes let through, of all frames.
+    pub triangle_pairs: u64,
+    /// Hash of every frame's contacts.
+    pub hashes: Vec<u64>,
+    /// Frames that ran again within themselves although the warm-up had grown the lists: their times are too long.
+    pub reruns: u64,
+    /// Device memory held after the last frame, bytes.
+    pub bytes: u64,
+}
+
+impl Cell {
+    /// One hash over those of all frames.
+    pub fn hash(&self) -> u64 {
+        xxhash_rust::xxh3::xxh3_64(bytemuck::cast_slice(
+            &self.hashes.iter().map(|h| h.to_le()).collect::<Vec<_>>(),
+        ))
+    }
+
+    /// Mean of a sum over all frames.
+    pub fn a_frame(&self, sum: u64) -> f64 {
+        sum as f64 / self.hashes.len().max(1) as f64
+    }
+}
+
+/// Asks all frames in one way, twice; the second time counts. The tree is that of the first frame, built anew at every
+/// `rebuild`th frame where that is asked for.
+///
+/// # Errors
+/// Those of the device.
+pub fn measure(
+    device: &Device,
+    frames: &Frames,
+    way: Way,
+    query: Query,
+    rebuild: Option<usize>,
+) -> Result<Cell, Error> {
+    let bodies = frames.bodies(way.motion)?;
+    let held = device.bytes().0;
+    let mut session = Session::new(device.clone(), vec![bodies[0].clone()], query)?;
+    pass(&mut session, &bodies, rebuild, |_| ())?;
+    let before = session.reruns();
+    let mut all = Vec::new();
+    let mut cell = Cell {
+        way,
+        solver: query.solver(),
+        mean: Stages::default(),
+        contacts: 0,
+        node_tests: 0,
+        triangle_pairs: 0,
+        hashes: Vec::new(),
+        reruns: 0,
+        bytes: 0,
+    };
+    pass(&mut session, &bodies, rebuild, |contacts| {
+        all.push(contacts.stages);
+        cell.contacts += contacts.len() as u64;
+        cell.node_tests += contacts.overlap_tests();
+        cell.triangle_pairs += contacts.triangle_pairs;
+        cell.hashes.push(contacts.hash());
+    })?;
+    cell.mean = mean(&all);
+    cell.reruns = session.reruns() - before;
+    cell.bytes = device.bytes().0 - held;
+    Ok(cell)
+}
+
+/// Asks every frame once, from the first on, with the first one's tree.
+fn pass(
+    session: &mut Session,
+    bodies: &[Body],
+    rebuild: Option<usize>,
+    mut each: impl FnMut(&Contacts),
+) -> Result<(), Error> {
+    for (at, body) in bodies.iter().enumerate() {
+        session.move_to(0, body.clone())?;
+        if at == 0 || rebuild.is_some_and(|every| at % every == 0) {
+            session.rebuild()?;
+        }
+        each(&session.detect()?);
+    }
+    Ok(())
+}
+
+/// Each stage's mean.
+pub fn mean(all: &[Stages]) -> Stages {
+    Stages::each(|stage| all.iter().map(stage).fold(0.0, |sum, ms| sum + ms) / all.len().max(1) as f64)
+}

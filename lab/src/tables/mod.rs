@@ -1,0 +1,27 @@
+//! Figures 6.12 to 6.14 of the thesis, measured here: what `nearmiss tables` prints, writes and draws.
+//!
+//! An animation is measured cell by cell: one motion, one volume, with or without a front. The tree is built at the first
+//! frame and refitted at all others, as the thesis does; a first pass over all frames warms up and is not counted.
+
+mod agree;
+mod all;
+mod build;
+mod figures;
+mod frames;
+mod front;
+mod measure;
+pub(crate) mod picture;
+mod text;
+mod theirs;
+mod way;
+
+pub use agree::agree;
+pub use all::Figures;
+pub use all::{csv, failed, put};
+pub use build::build;
+pub use figures::{Paper, figure_612, figure_613, figure_614};
+pub use frames::{Frames, SCENES, frames, read};
+pub use front::front;
+pub use measure::measure;
+pub use text::{Printed, digits, text};
+pub use way::Way;

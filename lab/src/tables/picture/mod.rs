@@ -1,0 +1,104 @@
+//! Pictures as SVG text: pure Rust, no fonts of this machine. Colours are those of Okabe and Ito, which people tell apart
+//! who see colours differently; every bar and line is labelled where it stands.
+
+mod bars;
+mod curves;
+mod stacks;
+
+pub use bars::{Bar, Panel, bars};
+pub use curves::{Chart, Curve, curves};
+pub use stacks::{Stack, stacks};
+
+use nearmiss::error::Error;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+pub const OURS: RGBColor = RGBColor(0, 114, 178);
+pub const THEIRS: RGBColor = RGBColor(230, 159, 0);
+pub const INK: RGBColor = RGBColor(30, 30, 30);
+pub const FAINT: RGBColor = RGBColor(110, 110, 110);
+pub const GRID: RGBColor = RGBColor(215, 215, 215);
+
+/// Width of every picture, pixels.
+const WIDTH: i32 = 900;
+/// Where bars begin and end; labels stand to the left, figures to the right.
+pub const LEFT: i32 = 215;
+pub const RIGHT: i32 = 770;
+
+/// How a text stands at its point.
+#[derive(Clone, Copy)]
+pub enum At {
+    Left,
+    Middle,
+    Right,
+}
+
+/// A sheet to draw on, in pixels from the upper left.
+pub struct Sheet<'a>(DrawingArea<SVGBackend<'a>, Shift>);
+
+/// Draws on a sheet of that height; the SVG.
+pub fn sheet(height: i32, draw: impl FnOnce(&Sheet) -> Drawn) -> Result<String, Error> {
+    let mut svg = String::new();
+    let sheet =
+        Sheet(SVGBackend::with_string(&mut svg, (WIDTH as u32, height.max(1) as u32)).into_drawing_area());
+    let drawn = sheet.0.fill(&WHITE).map_err(|e| e.to_string()).and_then(|()| draw(&sheet));
+    let done = drawn.and_then(|()| sheet.0.present().map_err(|e| e.to_string()));
+    drop(sheet);
+    done.map_err(|text| Error::Bug { what: format!("a picture could not be drawn: {text}") })?;
+    Ok(svg)
+}
+
+/// Drawn, or why not.
+pub type Drawn = Result<(), String>;
+
+impl Sheet<'_> {
+    /// A text of `size` pixels, its middle at that height.
+    pub fn text(&self, text: &str, (x, y): (i32, i32), size: i32, at: At, colour: RGBColor) -> Drawn {
+        let h = match at {
+            At::Left => HPos::Left,
+            At::Middle => HPos::Center,
+            At::Right => HPos::Right,
+        };
+        // The backend makes fonts smaller by this.
+        let font = ("sans-serif", f64::from(size) * 1.24).into_font();
+        let style = font.color(&colour).pos(Pos::new(h, VPos::Center));
+        self.0.draw_text(text, &style, (x, y)).map_err(|e| e.to_string())
+    }
+
+    pub fn bold(&self, text: &str, (x, y): (i32, i32), size: i32) -> Drawn {
+        let font = ("sans-serif", f64::from(size) * 1.24).into_font().style(FontStyle::Bold);
+        let style = font.color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
+        self.0.draw_text(text, &style, (x, y)).map_err(|e| e.to_string())
+    }
+
+    pub fn rectangle(&self, corners: [(i32, i32); 2], colour: RGBColor) -> Drawn {
+        self.0.draw(&Rectangle::new(corners, colour.filled())).map_err(|e| e.to_string())
+    }
+
+    /// A disc, or a ring.
+    pub fn dot(&self, at: (i32, i32), radius: i32, colour: RGBColor, filled: bool) -> Drawn {
+        let style = if filled { colour.filled() } else { colour.stroke_width(2) };
+        self.0.draw(&Circle::new(at, radius, style)).map_err(|e| e.to_string())
+    }
+
+    pub fn line(&self, points: Vec<(i32, i32)>, colour: RGBColor, width: u32) -> Drawn {
+        self.0.draw(&PathElement::new(points, colour.stroke_width(width))).map_err(|e| e.to_string())
+    }
+
+    /// The picture's title, and lines of smaller print below it; where the picture goes on.
+    pub fn head(&self, title: &str, notes: &[(String, RGBColor)]) -> Result<i32, String> {
+        self.bold(title, (20, 26), 18)?;
+        let mut y = 50;
+        for (note, colour) in notes {
+            self.text(note, (20, y), 13, At::Left, *colour)?;
+            y += 18;
+        }
+        Ok(y + 4)
+    }
+}
+
+/// Height that [`Sheet::head`] takes with that many notes.
+pub fn head_height(notes: usize) -> i32 {
+    54 + 18 * notes as i32
+}

@@ -1,0 +1,94 @@
+//! The thesis's own figures, milliseconds on its card (figures 6.12 and 6.13).
+
+use super::way::Way;
+use nearmiss::query::{Bv, Motion};
+
+/// The thesis's card.
+pub const CARD: &str = "GTX 285 (2008)";
+
+/// One scene's row of figures 6.12 and 6.13.
+pub struct Theirs {
+    /// Our name of the scene.
+    pub scene: &'static str,
+    /// The thesis's name of it.
+    pub model: &'static str,
+    /// Triangles, as the thesis rounds them.
+    pub triangles: usize,
+    /// Construction: axis-aligned, oriented boxes.
+    construct: [f64; 2],
+    /// Refit: the same.
+    refit: [f64; 2],
+    /// A frame, without and with the front: discrete axis-aligned, discrete oriented, continuous the same.
+    frame: [[f64; 4]; 2],
+}
+
+const ROWS: [Theirs; 4] = [
+    Theirs {
+        scene: "flamenco",
+        model: "Flamenco",
+        triangles: 49_000,
+        construct: [22.0, 27.0],
+        refit: [1.73, 4.6],
+        frame: [[35.0, 29.0, 40.0, 38.0], [27.0, 22.0, 37.0, 34.0]],
+    },
+    Theirs {
+        scene: "princess",
+        model: "Princess",
+        triangles: 40_000,
+        construct: [20.0, 24.0],
+        refit: [1.4, 3.9],
+        frame: [[22.0, 28.0, 27.0, 34.0], [17.0, 22.0, 26.0, 29.0]],
+    },
+    Theirs {
+        scene: "cloth-ball",
+        model: "Sphere/Cloth",
+        triangles: 92_000,
+        construct: [31.0, 39.0],
+        refit: [2.5, 7.9],
+        frame: [[33.0, 49.0, 47.0, 43.0], [28.0, 36.0, 42.0, 38.0]],
+    },
+    Theirs {
+        scene: "n-body",
+        model: "Balls",
+        triangles: 146_000,
+        construct: [56.0, 68.0],
+        refit: [3.2, 11.5],
+        frame: [[85.0, 75.0, 99.0, 81.0], [78.0, 70.0, 91.0, 74.0]],
+    },
+];
+
+/// The thesis's row of a scene, where it has one.
+pub fn of(scene: &str) -> Option<&'static Theirs> {
+    ROWS.iter().find(|row| row.scene == scene)
+}
+
+/// The column of a volume that the thesis has.
+fn column(bv: Bv) -> Option<usize> {
+    match bv {
+        Bv::Aabb => Some(0),
+        Bv::Obb => Some(1),
+        Bv::Linear | Bv::ObbChild => None,
+    }
+}
+
+impl Theirs {
+    /// Milliseconds of a construction in a volume.
+    pub fn construct(&self, bv: Bv) -> Option<f64> {
+        column(bv).map(|at| self.construct[at])
+    }
+
+    /// Milliseconds of a refit.
+    pub fn refit(&self, bv: Bv) -> Option<f64> {
+        column(bv).map(|at| self.refit[at])
+    }
+
+    /// Milliseconds of a frame.
+    pub fn frame(&self, way: Way) -> Option<f64> {
+        let motion = match way.motion {
+            Motion::Discrete => 0,
+            Motion::Continuous => 1,
+            Motion::Earliest => return None,
+        };
+        column(way.bv).map(|at| self.frame[usize::from(way.front)][2 * motion + at])
+    }
+}

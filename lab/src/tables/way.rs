@@ -1,0 +1,55 @@
+//! A column of figure 6.13: how a frame is asked.
+
+use nearmiss::query::{Bv, FrontShape, Motion, Query, Refit, Solver, Traversal};
+
+/// One way of asking a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Way {
+    /// Discrete or continuous.
+    pub motion: Motion,
+    /// The volume.
+    pub bv: Bv,
+    /// Whether the walk goes on from the last frame's front.
+    pub front: bool,
+}
+
+impl Way {
+    /// Without a front, and with one where there is one.
+    pub const FRONTS: [bool; 2] = [false, true];
+
+    /// Every way with these volumes, in the order of the thesis's columns: without the front first.
+    pub fn every(volumes: &[Bv]) -> Vec<Way> {
+        let mut ways = Vec::new();
+        for front in Way::FRONTS {
+            for motion in [Motion::Discrete, Motion::Continuous] {
+                ways.extend(volumes.iter().map(|&bv| Way { motion, bv, front }));
+            }
+        }
+        ways
+    }
+
+    /// The query that asks so: of what moves by the thesis's own solver, the cubic; by that walk and with a launch a level, as the thesis, or by what is fastest. A front's own
+    /// descents go by native queues.
+    pub fn query(self, walk: Option<Traversal>) -> Query {
+        let refit = walk.map(|_| Refit::Levels);
+        let traversal = if self.front { Some(Traversal::Front(FrontShape::native())) } else { walk };
+        let solver = (self.motion == Motion::Continuous).then_some(Solver::CubicF64);
+        Query { bv: Some(self.bv), solver, traversal, refit, ..Query::of(self.motion) }
+    }
+
+    /// `discrete`, `continuous`.
+    pub fn asked(self) -> &'static str {
+        match self.motion {
+            Motion::Discrete => "discrete",
+            Motion::Continuous => "continuous",
+            Motion::Earliest => "earliest",
+        }
+    }
+}
+
+impl std::fmt::Display for Way {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "{} {}", self.asked(), self.bv.name().to_uppercase())?;
+        if self.front { write!(f, ", front") } else { Ok(()) }
+    }
+}

@@ -1,0 +1,65 @@
+//! One line for those who read no more.
+
+use super::row::Row;
+use crate::tables::digits;
+use nearmiss::query::{Bv, Motion, Query, Solver};
+
+/// Whether a row is of what is used when nothing is chosen, and asks the question that was meant.
+fn is_default(row: &Row) -> bool {
+    let motion = if row.tolerance_edges.is_some() { Motion::Continuous } else { Motion::Discrete };
+    row.solver == Solver::default_for(motion)
+        && row.tolerance_edges.is_none_or(|edges| edges == Query::TOLERANCE)
+        && row.bv.is_none_or(|bv| bv == Bv::default_for(motion).name())
+        && row.precision != "f32 cast"
+}
+
+/// `0 missed, k late, x ppm unresolved, y ms at tolerance = z edge lengths`, of all rows of the default choice: missed and late
+/// of all that they asked; unresolved of the pairs, and milliseconds of a frame, of the largest moving scene.
+pub fn headline(rows: &[Row]) -> String {
+    let of: Vec<&Row> = rows.iter().filter(|row| is_default(row)).collect();
+    let sum = |count: fn(&Row) -> u64| of.iter().map(|row| count(row)).sum::<u64>();
+    let asked = format!("of {} pairs asked, {} of them contacts", sum(|r| r.cases), sum(|r| r.contacts));
+    let moving = of.iter().filter(|row| row.ms.is_some() && row.tolerance_edges.is_some());
+    let frame = match moving.max_by_key(|row| row.cases) {
+        Some(row) => format!(
+            ", {} ppm unresolved, {} ms at tolerance = {:.0e} edge lengths ({}, {}",
+            digits(row.unresolved as f64 * 1e6 / row.cases.max(1) as f64),
+            row.ms.map_or_else(String::new, digits),
+            Query::TOLERANCE,
+            row.solver.name(),
+            row.input,
+        ),
+        None => " (".to_owned() + Solver::default_for(Motion::Continuous).name(),
+    };
+    format!("{} missed, {} late{frame}; {asked})", sum(|r| r.missed), sum(|r| r.late))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(solver: Solver, tolerance: Option<f64>) -> Row {
+        Row {
+            input: "a scene".into(),
+            solver,
+            tolerance_edges: tolerance,
+            cases: 2_000_000,
+            contacts: 50,
+            ..Row::default()
+        }
+    }
+
+    #[test]
+    fn it_is_counted_not_claimed() {
+        let default = row(Solver::Certified, Some(Query::TOLERANCE));
+        let frame = Row { ms: Some(12.5), bv: Some("linear"), unresolved: 4, ..default.clone() };
+        let planted = Row { missed: 3, late: 2, ..default.clone() };
+        let cast = Row { missed: 9, precision: "f32 cast", ..default.clone() };
+        let other = Row { missed: 70, ..row(Solver::CubicF32, None) };
+        let line = headline(&[default, frame, planted, cast, other]);
+        let want = "3 missed, 2 late, 2.00 ppm unresolved, 12.5 ms at tolerance = 1e-4 edge lengths (certified, a scene; of \
+                    6000000 pairs asked, 150 of them contacts)";
+        assert_eq!(line, want);
+        assert!(headline(&[]).starts_with("0 missed, 0 late (certified; of 0 pairs"));
+    }
+}

@@ -1,0 +1,134 @@
+//! The pictures: what to choose, and what it costs.
+
+mod axis;
+mod chart;
+mod pareto;
+
+use super::funnel::FunnelRow;
+use super::refit::RefitRow;
+use super::row::Row;
+use chart::{Chart, Curve, charts};
+use nearmiss::error::Error;
+pub use pareto::pareto;
+
+/// What a picture is drawn of: its name, and how to read it off a row.
+type Quantity = (&'static str, fn(&Row) -> f64);
+
+/// How early times are, and what an answer costs, over the tolerance: a chart an input and quantity.
+///
+/// # Errors
+/// [`Error::Bug`] where it cannot be drawn.
+pub fn tolerance(device: &str, rows: &[Row]) -> Result<String, Error> {
+    let with: Vec<&Row> =
+        rows.iter().filter(|row| row.tolerance_edges.is_some_and(|t| t > 0.0) && is_plain(row)).collect();
+    let quantities: [Quantity; 5] = [
+        ("99 % of times early by at most, in mean edges", |row| row.early_edges_p99),
+        ("false alarms", |row| row.false_alarms as f64),
+        ("asked in f64 after f32", |row| row.escalated as f64),
+        ("boxes of 99 % of the listed pairs", |row| row.boxes_p99),
+        ("nanoseconds a pair", |row| row.ns.unwrap_or(0.0)),
+    ];
+    let mut all = Vec::new();
+    for rows in with.chunk_by(|a, b| a.input == b.input) {
+        for (what, of) in quantities {
+            let curves = curves(
+                rows,
+                |row| row.solver.name().to_owned(),
+                |row| row.tolerance_edges.unwrap_or(0.0),
+                of,
+            );
+            // A chart of zeros tells nothing.
+            if curves.iter().flat_map(|curve| &curve.points).any(|point| point.1 > 0.0) {
+                let title = format!("{}: {what}", rows[0].input);
+                all.push(Chart { title, x: "tolerance, mean edges".into(), curves });
+            }
+        }
+    }
+    charts("The tolerance: sharper times cost boxes", device, &all)
+}
+
+/// Whether nothing but solver and tolerance was chosen.
+fn is_plain(row: &Row) -> bool {
+    let default = nearmiss::query::Bv::default_for(nearmiss::query::Motion::Continuous).name();
+    row.bv.is_none_or(|bv| bv == default) && (row.bv.is_some() || row.precision == "f64")
+}
+
+/// Wrong answers over the offset, the scale and the degeneracy, and the boxes of the last: a chart a sweep.
+///
+/// # Errors
+/// [`Error::Bug`] where it cannot be drawn.
+pub fn sweeps(device: &str, rows: &[Row]) -> Result<String, Error> {
+    let mut sorted: Vec<&Row> = rows.iter().collect();
+    // Sweeps come in one piece each; within one, a curve a choice.
+    sorted.sort_by_key(|row| rows.iter().position(|other| other.input == row.input));
+    let mut all = Vec::new();
+    for rows in sorted.chunk_by(|a, b| a.input == b.input) {
+        let label = |row: &Row| {
+            let cast = if row.precision == "f32 cast" { ", cast to f32" } else { "" };
+            format!("{}{cast}", row.solver.name())
+        };
+        let wrong = |row: &Row| (row.missed + row.late) as f64 / row.contacts.max(1) as f64;
+        let at = |row: &Row| row.at.unwrap_or(0.0);
+        let x = rows[0].input.clone();
+        let title = format!("{x}: part of the contacts that is missed or late");
+        all.push(Chart { title, x: x.clone(), curves: curves(rows, label, at, wrong) });
+        if x.contains("10^") {
+            let certified: Vec<&Row> = rows.iter().filter(|row| row.boxes_max > 0.0).copied().collect();
+            let title = format!("{x}: boxes of 99 % of the listed pairs");
+            all.push(Chart { title, x, curves: curves(&certified, label, at, |row| row.boxes_p99) });
+        }
+    }
+    charts("Far away, large and small, degenerate", device, &all)
+}
+
+/// Pairs left by each step.
+///
+/// # Errors
+/// [`Error::Bug`] where it cannot be drawn.
+pub fn funnel(device: &str, rows: &[FunnelRow]) -> Result<String, Error> {
+    let panel = |rows: &[FunnelRow]| {
+        let bar = |row: &FunnelRow| (row.step.to_owned(), row.pairs as f64, row.ms);
+        (rows[0].input.clone(), rows.iter().map(bar).collect())
+    };
+    let panels: Vec<_> = rows.chunk_by(|a, b| a.input == b.input).map(panel).collect();
+    chart::bars("The funnel: pairs that each step leaves, and its time", device, &panels)
+}
+
+/// Tests of a refitted tree over those of a fresh one.
+///
+/// # Errors
+/// [`Error::Bug`] where it cannot be drawn.
+pub fn refit(device: &str, rows: &[RefitRow]) -> Result<String, Error> {
+    let mut all: Vec<Chart> = Vec::new();
+    for of in rows.chunk_by(|a, b| (&a.input, a.bv) == (&b.input, b.bv)) {
+        let quantity = |label: &str, of_row: fn(&RefitRow) -> f64| Curve {
+            label: label.into(),
+            points: of.iter().enumerate().map(|(at, row)| (at as f64, of_row(row))).collect(),
+        };
+        let curves = vec![
+            quantity("overlap tests", |row| row.refitted_tests as f64 / row.fresh_tests.max(1) as f64),
+            quantity("triangle pairs", |row| row.refitted_pairs as f64 / row.fresh_pairs.max(1) as f64),
+        ];
+        let title = format!("{}, {}: a refitted tree over a fresh one", of[0].input, of[0].bv);
+        all.push(Chart { title, x: "frame".into(), curves });
+    }
+    charts("Refitting: what it costs in quality", device, &all)
+}
+
+/// A curve a label.
+fn curves(
+    rows: &[&Row],
+    label: impl Fn(&Row) -> String,
+    x: impl Fn(&Row) -> f64,
+    y: impl Fn(&Row) -> f64,
+) -> Vec<Curve> {
+    let mut all: Vec<Curve> = Vec::new();
+    for row in rows {
+        let (label, point) = (label(row), (x(row), y(row)));
+        match all.iter_mut().find(|curve| curve.label == label) {
+            Some(curve) => curve.points.push(point),
+            None => all.push(Curve { label, points: vec![point] }),
+        }
+    }
+    all
+}

@@ -1,0 +1,152 @@
+//! What refitting costs in quality: candidates of a tree that was built at the first frame and refitted since, against those
+//! of a tree built anew for each frame.
+
+use crate::tables::{Frames, Printed, digits};
+use nearmiss::device::Device;
+use nearmiss::error::Error;
+use nearmiss::pipeline::Session;
+use nearmiss::query::{Bv, Motion, Query};
+use serde::Serialize;
+
+/// A frame of an animation.
+#[derive(Clone, Debug, Serialize)]
+pub struct RefitRow {
+    /// The scene.
+    pub input: String,
+    /// The volume.
+    pub bv: &'static str,
+    /// Frames since the tree was built.
+    pub frame: usize,
+    /// Triangle pairs that the refitted volumes let through.
+    pub refitted_pairs: u64,
+    /// Those of volumes built anew.
+    pub fresh_pairs: u64,
+    /// Overlap tests of the refitted tree.
+    pub refitted_tests: u64,
+    /// Of the one built anew.
+    pub fresh_tests: u64,
+    /// Milliseconds of refit, traversal and narrow stage with the refitted tree.
+    pub refitted_ms: f64,
+    /// With the one built anew.
+    pub fresh_ms: f64,
+    /// Milliseconds of building it.
+    pub build_ms: f64,
+    /// Milliseconds of traversal that all frames since the build have lost by not building anew: the fresh tree's time a test,
+    /// for the tests that the refitted one takes more. Tests do not waver as times do.
+    pub lost_ms: f64,
+    /// Whether that is more than building costs: the best time to build anew.
+    pub rebuild: bool,
+}
+
+/// Asks every frame with the first one's tree and with its own. After a frame that says `rebuild` the count begins anew.
+///
+/// # Errors
+/// Those of the device.
+pub fn refit(device: &Device, name: &str, frames: &Frames, bv: Bv) -> Result<Vec<RefitRow>, Error> {
+    let bodies = frames.bodies(Motion::Continuous)?;
+    let query = Query { bv: Some(bv), ..Query::of(Motion::Continuous) };
+    let mut old = Session::new(device.clone(), vec![bodies[0].clone()], query)?;
+    let mut fresh = Session::new(device.clone(), vec![bodies[0].clone()], query)?;
+    let (mut rows, mut since, mut lost) = (Vec::new(), 0, 0.0);
+    for body in bodies {
+        old.move_to(0, body.clone())?;
+        fresh.move_to(0, body)?;
+        fresh.rebuild()?;
+        // The first run of a frame grows its lists; the second counts.
+        old.detect()?;
+        fresh.detect()?;
+        let (a, b) = (old.detect()?, fresh.detect()?);
+        let (tests, fresh_tests) = (a.overlap_tests(), b.overlap_tests());
+        let traverse = b.stages.traverse + b.stages.balance;
+        lost += traverse * (tests as f64 / fresh_tests.max(1) as f64 - 1.0);
+        let rebuild = lost > b.stages.construct;
+        rows.push(RefitRow {
+            input: name.into(),
+            bv: bv.name(),
+            frame: since,
+            refitted_pairs: a.triangle_pairs,
+            fresh_pairs: b.triangle_pairs,
+            refitted_tests: tests,
+            fresh_tests,
+            refitted_ms: a.stages.total,
+            fresh_ms: b.stages.total,
+            build_ms: b.stages.construct,
+            lost_ms: lost,
+            rebuild,
+        });
+        since += 1;
+        if rebuild {
+            old.rebuild()?;
+            (since, lost) = (0, 0.0);
+        }
+    }
+    Ok(rows)
+}
+
+/// What follows from the rows of one scene, in a sentence.
+pub fn advice(rows: &[RefitRow]) -> String {
+    let Some(last) = rows.last() else { return String::new() };
+    let more = |row: &RefitRow| row.refitted_tests as f64 / row.fresh_tests.max(1) as f64;
+    let most = rows.iter().map(more).fold(1.0, f64::max);
+    let when = match rows.iter().find(|row| row.rebuild) {
+        Some(row) => format!("building anew pays after {} frames", row.frame + 1),
+        None => {
+            format!("building anew ({} ms) does not pay within {} frames", digits(last.build_ms), rows.len())
+        }
+    };
+    format!(
+        "{} {}: refitted trees take up to {most:.2} times the tests of fresh ones; {when}.",
+        last.input, last.bv
+    )
+}
+
+impl Printed for RefitRow {
+    const CAPTION: &'static str = "A refitted tree against a fresh one, frame by frame";
+    const HEADS: &'static [&'static str] = &[
+        "input", "volume", "frame", "pairs", "fresh", "tests", "fresh", "ms", "fresh", "build ms", "lost ms",
+        "rebuild",
+    ];
+    fn row(&self) -> Vec<String> {
+        vec![
+            self.input.clone(),
+            self.bv.into(),
+            self.frame.to_string(),
+            self.refitted_pairs.to_string(),
+            self.fresh_pairs.to_string(),
+            self.refitted_tests.to_string(),
+            self.fresh_tests.to_string(),
+            digits(self.refitted_ms),
+            digits(self.fresh_ms),
+            digits(self.build_ms),
+            format!("{:.1}", self.lost_ms),
+            if self.rebuild { "yes" } else { "" }.into(),
+        ]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_advice_is_of_the_first_frame_that_pays() {
+        let row = |frame, lost_ms, refitted_tests| RefitRow {
+            input: "a scene".into(),
+            bv: "aabb",
+            frame,
+            refitted_pairs: 1,
+            fresh_pairs: 1,
+            refitted_tests,
+            fresh_tests: 100,
+            refitted_ms: 1.0,
+            fresh_ms: 1.0,
+            build_ms: 5.0,
+            lost_ms,
+            rebuild: lost_ms > 5.0,
+        };
+        let rows = [row(0, 0.0, 100), row(1, 3.0, 130), row(2, 6.0, 180), row(0, 0.0, 100)];
+        assert!(advice(&rows).contains("1.80 times") && advice(&rows).contains("after 3 frames"));
+        assert!(advice(&rows[..2]).contains("does not pay within 2 frames"));
+        assert!(advice(&[]).is_empty());
+    }
+}

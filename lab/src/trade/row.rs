@@ -1,0 +1,166 @@
+//! One row a choice.
+
+use super::judge::Judged;
+use crate::tables::{Printed, digits};
+use nearmiss::query::Solver;
+use serde::Serialize;
+
+/// What was asked, how, and what it cost. A column that a choice does not have is empty.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Row {
+    /// What was asked.
+    pub input: String,
+    /// What its answers were judged by.
+    pub reference: &'static str,
+    /// The test.
+    pub solver: Solver,
+    /// Its tolerance in mean edges of the input.
+    pub tolerance_edges: Option<f64>,
+    /// The same as a length.
+    pub tolerance: Option<f64>,
+    /// How positions are stored.
+    pub precision: &'static str,
+    /// The volume, of whole scenes.
+    pub bv: Option<&'static str>,
+    /// What a sweep drives: offset in edges, exponent of the scale, degree of degeneracy.
+    pub at: Option<f64>,
+    /// Pairs of features asked (in whole scenes: what the volumes let through).
+    pub cases: u64,
+    /// Of them, those that meet.
+    pub contacts: u64,
+    /// Of them, listed ones of which it is not known whether they meet.
+    pub unknown: u64,
+    /// Contacts that were not listed.
+    pub missed: u64,
+    /// Contacts whose time is after the first.
+    pub late: u64,
+    /// The most of the step by which one is.
+    pub latest: f64,
+    /// Listed pairs that never meet.
+    pub false_alarms: u64,
+    /// Of them, those as near as the contract of the solver allows; empty for solvers without one.
+    pub within_contract: Option<u64>,
+    /// Of them, those farther apart.
+    pub violations: Option<u64>,
+    /// Pairs called certain that are not so.
+    pub false_certificates: u64,
+    /// Pairs listed as unresolved.
+    pub unresolved: u64,
+    /// Pairs whose budget of boxes ended.
+    pub exhausted: u64,
+    /// Pairs that f32 left to f64.
+    pub escalated: u64,
+    /// How early times are, in parts of the step: half are not more.
+    pub early_median: f64,
+    /// 99 of a hundred.
+    pub early_p99: f64,
+    /// The most.
+    pub early_max: f64,
+    /// The same as distances, in mean edges.
+    pub early_edges_median: f64,
+    /// 99 of a hundred.
+    pub early_edges_p99: f64,
+    /// The most.
+    pub early_edges_max: f64,
+    /// Boxes of the pairs that were listed: 99 of a hundred take no more.
+    pub boxes_p99: f64,
+    /// The most.
+    pub boxes_max: f64,
+    /// Nanoseconds a pair: single questions the filters and the solver, whole scenes the narrow stage.
+    pub ns: Option<f64>,
+    /// Milliseconds a frame, of whole scenes.
+    pub ms: Option<f64>,
+    /// Device memory, bytes.
+    pub bytes: u64,
+}
+
+impl Row {
+    /// The counts and spreads of a judged choice.
+    pub fn judged(self, solver: Solver, judged: &Judged) -> Row {
+        let Judged { counts, early, early_edges, boxes } = *judged;
+        let contract = |count| solver.is_certified().then_some(count);
+        Row {
+            solver,
+            cases: counts.cases,
+            contacts: counts.contacts,
+            unknown: counts.unknown,
+            missed: counts.missed,
+            late: counts.late,
+            latest: counts.latest,
+            false_alarms: counts.false_alarms,
+            within_contract: contract(counts.within_contract),
+            violations: contract(counts.violations),
+            false_certificates: counts.false_certificates,
+            unresolved: counts.unresolved,
+            exhausted: counts.exhausted,
+            early_median: early.median,
+            early_p99: early.p99,
+            early_max: early.most,
+            early_edges_median: early_edges.median,
+            early_edges_p99: early_edges.p99,
+            early_edges_max: early_edges.most,
+            boxes_p99: boxes.p99,
+            boxes_max: boxes.most,
+            ..self
+        }
+    }
+
+    /// What tells this choice from the others of the same input.
+    pub fn choice(&self) -> String {
+        let mut all = vec![self.solver.name().to_owned()];
+        all.extend(self.tolerance_edges.map(|edges| format!("{edges:.0e}")));
+        all.extend(self.bv.map(str::to_owned));
+        if self.bv.is_none() && self.precision != "f64" {
+            all.push(self.precision.into());
+        }
+        all.join(" ")
+    }
+
+    /// Whether it gave an answer that is wrong in a way that nobody may rely on.
+    pub fn is_wrong(&self) -> bool {
+        self.missed + self.late + self.false_certificates + self.violations.unwrap_or(0) > 0
+    }
+}
+
+impl Printed for Row {
+    const CAPTION: &'static str = "What each choice costs: wrong answers first, then alarms without contact, then how early times \
+                                   are (in mean edges), then time";
+    const HEADS: &'static [&'static str] = &[
+        "input",
+        "choice",
+        "at",
+        "cases",
+        "contacts",
+        "missed",
+        "late",
+        "false",
+        "breach",
+        "unresolved",
+        "early p99",
+        "early max",
+        "boxes p99",
+        "ns",
+        "ms/frame",
+    ];
+    fn row(&self) -> Vec<String> {
+        let maybe = |x: Option<f64>| x.map_or("-".into(), digits);
+        let small = |x: f64| if x == 0.0 { "0".into() } else { format!("{x:.1e}") };
+        vec![
+            self.input.clone(),
+            self.choice(),
+            self.at.map_or("-".into(), |at| if at.abs() < 1e4 { format!("{at}") } else { format!("{at:e}") }),
+            self.cases.to_string(),
+            self.contacts.to_string(),
+            self.missed.to_string(),
+            self.late.to_string(),
+            self.false_alarms.to_string(),
+            self.violations.map_or("-".into(), |n| (n + self.false_certificates).to_string()),
+            self.unresolved.to_string(),
+            small(self.early_edges_p99),
+            small(self.early_edges_max),
+            format!("{:.0}", self.boxes_p99),
+            maybe(self.ns),
+            maybe(self.ms),
+        ]
+    }
+}

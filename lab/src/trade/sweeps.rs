@@ -1,0 +1,86 @@
+//! Sweeps over what makes questions hard: distance from the origin, scale, degeneracy.
+
+use super::input::{Choice, Input};
+use super::row::Row;
+use crate::pairs::Stored;
+use crate::pairs::built::built;
+use crate::pairs::degenerate::{Degeneracy, MOST, degenerate};
+use nearmiss::device::Device;
+use nearmiss::error::Error;
+use nearmiss::query::{Motion, Query};
+
+/// How much to ask.
+#[derive(Clone, Copy, Debug)]
+pub struct Extent {
+    /// Cases of a kind.
+    pub cases: usize,
+    /// Steps between two points of a sweep.
+    pub step: u32,
+    /// Where random numbers begin.
+    pub seed: u64,
+}
+
+/// Every continuous solver at the default tolerance.
+fn choices() -> Vec<Choice> {
+    Choice::every(Motion::Continuous, &[Query::TOLERANCE])
+}
+
+/// The built contacts of small integers at so many edges from the origin: in f64, which holds them exactly; and cast to
+/// f32, which asks another question, answered for the one that was meant.
+///
+/// # Errors
+/// Those of the device.
+pub fn offsets(device: &Device, extent: Extent) -> Result<Vec<Row>, Error> {
+    let input = Input::built("offset", built(extent.seed, extent.cases, 8))?;
+    let mut rows = Vec::new();
+    for edges in [0.0, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7] {
+        let by = (edges * input.edge).round();
+        let moved = input.with("offset from the origin, edges".into(), |x| x + by);
+        let cast = moved.with(moved.name.clone(), |x| f64::from(x as f32));
+        for choice in choices() {
+            let exact = moved.row(device, choice, Stored::F64, 0)?;
+            rows.push(Row { at: Some(edges), ..exact });
+            // The tolerance that was asked for, though the edges have changed.
+            let cast = Input { edge: moved.edge, ..cast.with(cast.name.clone(), |x| x) };
+            let other = cast.row(device, choice, Stored::F32, 0)?;
+            rows.push(Row { at: Some(edges), precision: "f32 cast", ..other });
+        }
+    }
+    Ok(rows)
+}
+
+/// The built contacts of small integers times powers of two from 2^-100 to 2^100.
+///
+/// # Errors
+/// Those of the device.
+pub fn scales(device: &Device, extent: Extent) -> Result<Vec<Row>, Error> {
+    let input = Input::built("scale", built(extent.seed, extent.cases, 8))?;
+    let mut rows = Vec::new();
+    for k in (-100..=100).step_by(if extent.step == 1 { 10 } else { 25 }) {
+        let scaled = input.with("scale, 2^k".into(), |x| x * 2f64.powi(k));
+        for choice in choices() {
+            let row = scaled.row(device, choice, Stored::F64, 0)?;
+            rows.push(Row { at: Some(f64::from(k)), ..row });
+        }
+    }
+    Ok(rows)
+}
+
+/// Each kind of degeneracy by degrees.
+///
+/// # Errors
+/// Those of the device.
+pub fn degeneracies(device: &Device, extent: Extent) -> Result<Vec<Row>, Error> {
+    let mut rows = Vec::new();
+    for kind in Degeneracy::ALL {
+        for k in (0..=MOST).step_by(extent.step.max(1) as usize) {
+            let cases = degenerate(extent.seed, kind, k, 20 * extent.cases);
+            let input = Input::built(kind.name(), cases)?;
+            for choice in choices() {
+                let row = input.row(device, choice, Stored::F64, 0)?;
+                rows.push(Row { at: Some(f64::from(k)), ..row });
+            }
+        }
+    }
+    Ok(rows)
+}
