@@ -8,7 +8,6 @@ mod kernels;
 #[path = "oracles_can_fail/tree.rs"]
 mod tree;
 
-use bytemuck::{Pod, Zeroable};
 use nearmiss::contacts::{Answer, Contacts};
 use nearmiss::query::Motion;
 use nearmiss::{Device, Error, Query};
@@ -21,7 +20,7 @@ use support::{ORDERS, ask, engine, microscope};
 // The microscope.
 
 /// Memory that the kernels of this test touch.
-#[derive(Clone, Copy, Pod, Zeroable)]
+#[derive(Clone, Copy)]
 #[repr(C)]
 struct Words {
     words: Span<u32>,
@@ -49,10 +48,10 @@ kernels! { [Words], 32, 1024;
         b.phase(|l| l.write(a.words, l.lane(), 1));
         b.phase(|l| { l.read(a.words, l.lane()); });
     }
-    read_past_the_end |b, a| { b.phase(|l| if l.lane() == 9 { l.read(a.words, a.words.len as u32); }); }
-    write_past_the_end |b, a| { b.phase(|l| if l.lane() == 9 { l.write(a.words, a.words.len as u32, 0) }); }
-    count_past_the_end |b, a| { b.phase(|l| if l.lane() == 9 { l.fetch_add(a.long, a.long.len as u32, 1); }); }
-    load_past_the_end |b, a| { b.load(a.words, a.words.len as u32); }
+    read_past_the_end |b, a| { b.phase(|l| if l.lane() == 9 { l.read(a.words, a.words.len() as u32); }); }
+    write_past_the_end |b, a| { b.phase(|l| if l.lane() == 9 { l.write(a.words, a.words.len() as u32, 0) }); }
+    count_past_the_end |b, a| { b.phase(|l| if l.lane() == 9 { l.fetch_add(a.long, a.long.len() as u32, 1); }); }
+    load_past_the_end |b, a| { b.load(a.words, a.words.len() as u32); }
     atomic_and_plain |b, a| {
         b.phase(|l| if l.lane() == 3 { l.write(a.long, 0, 1) } else { l.fetch_add(a.long, 0, 1); });
     }
@@ -128,7 +127,8 @@ const RACE: &str = "a race between";
 fn launched<E: Entry<Args = Words>>(device: &Device) -> Result<(), Error> {
     let words = device.buffer::<u32>(96).expect("memory");
     let long = device.upload(&[5u64, 6]).expect("memory");
-    device.launch::<E>(3, &Words { words: words.span(), long: long.span() })
+    // SAFETY: a microscope lets no kernel touch what is not memory.
+    unsafe { device.launch::<E>(3, &Words { words: words.span(), long: long.span() }) }
 }
 
 fn condemned<E: Entry<Args = Words>>(fault: &str) {
@@ -177,8 +177,10 @@ fn blocks_of_one_launch_are_not_ordered_by_phases() {
         let device = microscope(order);
         let words = device.buffer::<u32>(32).expect("memory");
         let args = Words { words: words.span(), long: Span::EMPTY };
-        device.launch::<written_then_read>(1, &args).expect("one block");
-        device.launch::<read_before_written>(5, &args).expect("an earlier launch wrote it");
+        // SAFETY: the words outlive both.
+        unsafe { device.launch::<written_then_read>(1, &args) }.expect("one block");
+        // SAFETY: as above.
+        unsafe { device.launch::<read_before_written>(5, &args) }.expect("an earlier launch wrote it");
     }
 }
 
@@ -204,8 +206,12 @@ fn a_span_that_lies_about_its_memory_is_seen() {
     let device = microscope(ORDERS[0]);
     let words = device.upload(&[0u32; 16]).expect("memory");
     let stale = words.span();
-    let long = Span::new(stale.addr, 64);
-    let fault = |words| match device.launch::<read_before_written>(1, &Words { words, long: Span::EMPTY }) {
+    // SAFETY: a microscope, which is all that is given it, lets no kernel touch what is not memory.
+    let long = unsafe { Span::new(stale.addr(), 64) };
+    // SAFETY: as above.
+    let launch =
+        |words| unsafe { device.launch::<read_before_written>(1, &Words { words, long: Span::EMPTY }) };
+    let fault = |words| match launch(words) {
         Err(Error::Bug { what }) => what,
         other => panic!("{other:?}"),
     };

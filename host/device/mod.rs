@@ -213,7 +213,11 @@ impl Device {
     ///
     /// # Errors
     /// [`Error::Device`] with the driver's text; [`Error::Bug`] under the microscope, and while there is a [`View`].
-    pub fn launch<E: Entry>(&self, blocks: u32, args: &E::Args) -> Result<(), Error> {
+    ///
+    /// # Safety
+    /// The spans of `args` are of buffers of this device that live until the launch is done (dropping a buffer waits), and
+    /// what the kernel's card asks under "Before" holds.
+    pub unsafe fn launch<E: Entry>(&self, blocks: u32, args: &E::Args) -> Result<(), Error> {
         if blocks == 0 {
             return Ok(());
         }
@@ -310,7 +314,9 @@ impl<T: Pod> Buffer<T> {
             #[cfg(feature = "cuda")]
             Memory::Card(m) => m.addr(),
         };
-        Span::new(addr, self.len as u64)
+        // SAFETY: so many elements of zeroed memory of this device, aligned for any of them; what the kernels are given must
+        // live as long as they run, which who launches them promises.
+        unsafe { Span::new(addr, self.len as u64) }
     }
 
     /// Sets the first elements, behind all that was started before.

@@ -1,10 +1,11 @@
 //! Where the solver's precision may be too blunt for the tolerance: told from where the bodies are, once for each place.
 
-use super::narrow::{Given, launch_striding};
+use super::narrow::Given;
 use super::precision::Precision;
 use super::room::List;
 use crate::error::Error;
 use crate::mesh::{Body, Positions};
+use crate::pipeline::launch;
 use crate::query::{Motion, Query, Solver};
 use nearmiss_kernels::abi::{BluntArgs, Hit, Span};
 use nearmiss_kernels::math::tolerance::Tolerance;
@@ -71,7 +72,7 @@ pub fn count<R: Precision>(
         tolerance,
         finest,
     };
-    launch_striding::<R::Blunt>(given.device, vf.room() + ee.room(), &args)
+    launch::striding::<R::Blunt>(given.device, vf.room() + ee.room(), &args)
 }
 
 fn point(positions: &Positions, v: u32) -> [f64; 3] {

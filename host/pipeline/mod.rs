@@ -3,6 +3,7 @@
 pub mod blunt;
 mod corridor;
 pub mod enclose;
+mod launch;
 mod layout;
 pub mod narrow;
 mod order;

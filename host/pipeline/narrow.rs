@@ -11,9 +11,9 @@ use super::precision::Precision;
 use super::room::{Growing, List};
 use crate::device::Device;
 use crate::error::Error;
+use crate::pipeline::launch;
 use crate::query::{Motion, Query, Solver};
 use nearmiss_kernels::abi::{DiscreteArgs, Frames, KEEP_ADJACENT, Pair, Span, counter};
-use nearmiss_kernels::entry::Entry;
 
 /// A step of a frame that fills lists; each reads what the one before filled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -190,21 +190,16 @@ fn decide<R: Precision>(
         flags: if given.query.adjacent { KEEP_ADJACENT } else { 0 },
         pad: 0,
     };
-    let (device, room) = (given.device, given.pairs.len as usize);
+    let (device, room) = (given.device, given.pairs.len() as usize);
     let candidates = args(given.pairs, counter::PAIRS, undecided.first());
     let (first, last) = match undecided {
-        [] => return launch_striding::<R::Moller>(device, room, &candidates),
+        [] => return launch::striding::<R::Moller>(device, room, &candidates),
         [first, .., last] => (first, Some(last)),
         [first] => (first, None),
     };
-    launch_striding::<R::Filter>(device, room, &candidates)?;
+    launch::striding::<R::Filter>(device, room, &candidates)?;
     let left = args(first.span(), first.counter(), last);
-    let Some(last) = last else { return launch_striding::<R::Exact>(device, first.room(), &left) };
-    launch_striding::<R::Wide>(device, first.room(), &left)?;
-    launch_striding::<R::Exact>(device, last.room(), &args(last.span(), last.counter(), None))
-}
-
-/// Launches a kernel over up to `room` items.
-pub fn launch_striding<E: Entry>(device: &Device, room: usize, args: &E::Args) -> Result<(), Error> {
-    device.launch::<E>(device.blocks_striding::<E>(room), args)
+    let Some(last) = last else { return launch::striding::<R::Exact>(device, first.room(), &left) };
+    launch::striding::<R::Wide>(device, first.room(), &left)?;
+    launch::striding::<R::Exact>(device, last.room(), &args(last.span(), last.counter(), None))
 }

@@ -5,6 +5,7 @@ use super::room::{Growing, List};
 use super::sorter::{counted, sort, words};
 use crate::device::{Buffer, Device, View};
 use crate::error::Error;
+use crate::pipeline::launch;
 use bytemuck::Pod;
 use nearmiss_kernels::abi::{Named, OrderArgs, Span, counter};
 use nearmiss_kernels::entry::{self, Entry};
@@ -117,10 +118,10 @@ impl<T: Ordered> Order<T> {
             pad: 0,
         };
         let (keys, gather) = (args(&self.items[0]), args(&self.items[bytes.len() % 2]));
-        device.launch::<T::Keys>(device.blocks_striding::<T::Keys>(room), &keys)?;
+        launch::striding::<T::Keys>(device, room, &keys)?;
         let live = counters.part(counter::ORDERED.into(), 1);
         sort(device, self.items.each_ref(), (room as u32, live), counts, &bytes)?;
-        device.launch::<T::Gather>(device.blocks_striding::<T::Gather>(room), &gather)
+        launch::striding::<T::Gather>(device, room, &gather)
     }
 }
 

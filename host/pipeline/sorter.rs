@@ -2,6 +2,7 @@
 
 use crate::device::{Buffer, Device};
 use crate::error::Error;
+use crate::pipeline::launch;
 use nearmiss_kernels::abi::{SortArgs, Span, Tiles};
 use nearmiss_kernels::entry;
 use nearmiss_kernels::sort::{EACH, LONGEST_TILE, MOST_TILES, WORDS};
@@ -50,7 +51,7 @@ pub fn sort(
             shift,
             next_shift: next.copied().unwrap_or(0),
         };
-        device.launch::<entry::sort_pass>(args.tiles.count, &args)?;
+        launch::blocks::<entry::sort_pass>(device, args.tiles.count, &args)?;
         (from, to) = (to, from);
     }
     Ok(())

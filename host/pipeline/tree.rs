@@ -5,6 +5,7 @@ use super::sorter::{counted, sort, words};
 use super::treelets::Way;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
+use crate::pipeline::launch;
 use crate::query::Refit;
 use nearmiss_kernels::abi::{Frames, Inner, Link, MortonArgs, Span, TreeArgs};
 use nearmiss_kernels::bvh::{self, CODE_BITS, MAX_LEVELS};
@@ -103,7 +104,7 @@ impl Tree {
         let zeroed = s.zeroed.span();
         let (at, lists) = (BOUNDS as u64, ((BYTES.len() + 1) * words(device, self.count)) as u64);
         let counts = zeroed.part(at, lists);
-        let [begins, tops] = self.way.parts(zeroed.part(at + lists, zeroed.len - at - lists));
+        let [begins, tops] = self.way.parts(zeroed.part(at + lists, zeroed.len() - at - lists));
         let morton = MortonArgs {
             frames,
             faces,
@@ -114,8 +115,8 @@ impl Tree {
             tiles: counted(device, counts, self.count, 0),
         };
         let lanes = n.div_ceil(morton::TOGETHER as usize);
-        device.launch::<R::Bounds>(device.blocks_striding::<R::Bounds>(lanes), &morton)?;
-        device.launch::<R::Morton>(device.blocks_striding::<R::Morton>(n), &morton)?;
+        launch::striding::<R::Bounds>(device, lanes, &morton)?;
+        launch::striding::<R::Morton>(device, n, &morton)?;
         sort(device, s.items.each_ref(), (self.count, Span::EMPTY), counts, &BYTES)?;
         let args = TreeArgs {
             items: s.items[0].span(),
@@ -136,10 +137,10 @@ impl Tree {
             first: self.first,
         };
         let gaps = inner.max(1);
-        device.launch::<entry::construct_tree>(device.blocks_for::<entry::construct_tree>(gaps), &args)?;
-        device.launch::<entry::construct_depth>(device.blocks_for::<entry::construct_depth>(gaps), &args)?;
-        device.launch::<entry::construct_places>(args.tiles.count, &args)?;
-        device.launch::<entry::construct_emit>(device.blocks_for::<entry::construct_emit>(gaps), &args)?;
+        launch::each::<entry::construct_tree>(device, gaps, &args)?;
+        launch::each::<entry::construct_depth>(device, gaps, &args)?;
+        launch::blocks::<entry::construct_places>(device, args.tiles.count, &args)?;
+        launch::each::<entry::construct_emit>(device, gaps, &args)?;
         self.way.prepare(device, &args)
     }
 

@@ -2,6 +2,7 @@
 
 use crate::device::{Buffer, Device};
 use crate::error::Error;
+use crate::pipeline::launch;
 use crate::query::Refit;
 use nearmiss_kernels::abi::{Merge, PlanArgs, Seat, Span, TreeArgs, Treelet};
 use nearmiss_kernels::bvh::{MAX_LEVELS, TREELET};
@@ -120,7 +121,7 @@ impl Plan {
             leaves: tree.leaves,
             pad: 0,
         };
-        device.launch::<entry::construct_treelets>(self.blocks(), &args)
+        launch::blocks::<entry::construct_treelets>(device, self.blocks(), &args)
     }
 
     /// Blocks of a refit: one a treelet.

@@ -5,6 +5,7 @@ use super::tree::{Tree, broken};
 use super::treelets::{Plan, Way};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
+use crate::pipeline::launch;
 use nearmiss_kernels::abi::{
     BottomUpArgs, FitArgs, Frames, FrontArgs, GroupsArgs, Node, QueueArgs, RefitArgs, Span, StealArgs,
     TraverseArgs, TreeletsArgs,
@@ -86,8 +87,8 @@ impl Kernels for Obb {
 
     fn fit_groups<R: Precision>(device: &Device, args: &GroupsArgs<R, Self>) -> Result<(), Error> {
         // One pair of siblings for each inner node; the first place is not used.
-        let inner = args.pair_parents.len as usize - 1;
-        device.launch::<R::GroupsObb>(device.blocks_for::<R::GroupsObb>(inner), args)
+        let inner = args.pair_parents.len() as usize - 1;
+        launch::each::<R::GroupsObb>(device, inner, args)
     }
     fn of<R: Precision>(points: &[Vec3<R>]) -> Option<Self> {
         Some(Obb::of(points))
@@ -141,7 +142,7 @@ impl<V: Kernels> Volumes<V> {
                 grow: self.grow,
                 pad: 0,
             };
-            device.launch::<V::Fit<R>>(device.blocks_for::<V::Fit<R>>(tree.leaves()), &args)?;
+            launch::each::<V::Fit<R>>(device, tree.leaves(), &args)?;
         }
         if V::group(self.axes) == 0 {
             return Ok(());
@@ -185,7 +186,7 @@ impl<V: Kernels> Volumes<V> {
                     axes: self.axes,
                     pad: 0,
                 };
-                device.launch::<V::BottomUp>(device.blocks_for::<V::BottomUp>(tree.leaves()), &args)
+                launch::each::<V::BottomUp>(device, tree.leaves(), &args)
             }
         }
     }
@@ -211,7 +212,7 @@ impl<V: Kernels> Volumes<V> {
             axes: self.axes,
             grow: self.grow,
         };
-        device.launch::<V::Treelets<R>>(plan.blocks(), &args)
+        launch::blocks::<V::Treelets<R>>(device, plan.blocks(), &args)
     }
 
     /// A launch a level; runs of narrow levels share one: levels of up to four nodes a lane,
@@ -241,7 +242,7 @@ impl<V: Kernels> Volumes<V> {
                 axes: self.axes,
                 pad: 0,
             };
-            device.launch::<V::Levels>(blocks, &args)?;
+            launch::blocks::<V::Levels>(device, blocks, &args)?;
             to = from;
         }
         Ok(())

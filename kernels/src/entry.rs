@@ -12,14 +12,13 @@ use crate::stage::narrow::{blunt, climb, discrete, reject, separate, sift, slice
 use crate::stage::refit::{bottom_up, levels, treelets};
 use crate::stage::traverse::{front, queue, steal};
 use crate::stage::{balance, fit, order, traverse};
-use bytemuck::Pod;
 
 /// A kernel as the host knows it.
 pub trait Entry {
     /// The name of the PTX entry, of the profiler's row and of this type: stage and step.
     const NAME: &'static str;
     /// What it is launched with.
-    type Args: Pod + Sync;
+    type Args: Copy + Send + Sync + 'static;
     /// Lanes of a block.
     const LANES: u32;
     /// Bytes of shared memory of a block.

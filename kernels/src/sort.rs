@@ -116,7 +116,7 @@ pub fn starts<B: Block>(b: &mut B, tiles: &Tiles) -> Bins {
 pub fn pass<B: Block>(b: &mut B, a: &SortArgs) {
     let bins = starts(b, &a.tiles);
     let (tile, lanes) = (b.block(), b.lanes());
-    let room = a.items.len as u32;
+    let room = a.items.len() as u32;
     let count = if a.live.is_empty() { room } else { b.load(a.live, 0).min(room.into()) as u32 };
     let mut items = b.slot([0u64; EACH]);
     let mut places = b.slot([BINS; EACH]);

@@ -94,7 +94,8 @@ fn run(device: &Device, trees: [&[Node<Aabb>]; 2], own: bool, rounds: Option<u32
                     flags: if round == 0 { START } else { 0 },
                     pad: 0,
                 };
-                device.launch::<traverse_queue_aabb>(3, &args).expect("a round");
+                // SAFETY: buffers of this device that are read below; the tree is sound.
+                unsafe { device.launch::<traverse_queue_aabb>(3, &args) }.expect("a round");
             }
             let left = counts.read(rounds as usize + 1).expect("counts")[rounds as usize];
             lists[rounds as usize % 2].read(left as usize).expect("units")
@@ -117,7 +118,8 @@ fn run(device: &Device, trees: [&[Node<Aabb>]; 2], own: bool, rounds: Option<u32
                 flags: nearmiss_kernels::abi::EAGER,
                 pad: 0,
             };
-            device.launch::<traverse_steal_aabb>(3, &args).expect("a launch");
+            // SAFETY: as above.
+            unsafe { device.launch::<traverse_steal_aabb>(3, &args) }.expect("a launch");
             Vec::new()
         }
     };

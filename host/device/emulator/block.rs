@@ -103,8 +103,8 @@ impl<W: Watch> Emulated<W> {
 /// The address of element `i`, if the watcher lets us have it.
 #[inline(always)]
 fn device<T, W: Watch>(watch: &W, access: Access, span: Span<T>, i: u32, place: Place) -> Option<*mut T> {
-    let addr = span.addr.wrapping_add(i as u64 * size_of::<T>() as u64);
-    let inside = (i as u64) < span.len;
+    let addr = span.addr().wrapping_add(i as u64 * size_of::<T>() as u64);
+    let inside = (i as u64) < span.len();
     watch
         .device(access, addr, size_of::<T>(), inside, place)
         .then(|| with_exposed_provenance_mut::<T>(addr as usize))

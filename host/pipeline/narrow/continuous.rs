@@ -1,10 +1,11 @@
 //! Features in motion: their lists, and the launches from triangle pairs to contacts.
 
 use super::rungs::Rungs;
-use super::{Given, Step, launch_striding};
+use super::{Given, Step};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::blunt::{self, Blunt};
+use crate::pipeline::launch;
 use crate::pipeline::layout::Layout;
 use crate::pipeline::order::{self, Order};
 use crate::pipeline::precision::Precision;
@@ -167,7 +168,7 @@ impl Continuous {
             counters: given.counters,
             gap: given.query.gap(),
         };
-        launch_striding::<R::Sift>(given.device, given.pairs.len as usize, &args)
+        launch::striding::<R::Sift>(given.device, given.pairs.len() as usize, &args)
     }
 
     fn reject<R: Precision>(&self, given: &Given<R>) -> Result<(), Error> {
@@ -183,7 +184,7 @@ impl Continuous {
             counters: given.counters,
             params: given.query.params(),
         };
-        launch_striding::<R::Reject>(given.device, vf.room() + ee.room(), &args)
+        launch::striding::<R::Reject>(given.device, vf.room() + ee.room(), &args)
     }
 
     fn order<R: Precision>(&mut self, given: &Given<R>) -> Result<(), Error> {
@@ -217,12 +218,12 @@ impl Continuous {
         let (of_vf, of_ee) = (args(vf, &self.vf_hits), args(ee, &self.ee_hits));
         match solver {
             Solver::CubicF32 => {
-                launch_striding::<R::Vf32>(given.device, vf.room(), &of_vf)?;
-                launch_striding::<R::Ee32>(given.device, ee.room(), &of_ee)
+                launch::striding::<R::Vf32>(given.device, vf.room(), &of_vf)?;
+                launch::striding::<R::Ee32>(given.device, ee.room(), &of_ee)
             }
             _ => {
-                launch_striding::<R::Vf64>(given.device, vf.room(), &of_vf)?;
-                launch_striding::<R::Ee64>(given.device, ee.room(), &of_ee)
+                launch::striding::<R::Vf64>(given.device, vf.room(), &of_vf)?;
+                launch::striding::<R::Ee64>(given.device, ee.room(), &of_ee)
             }
         }
     }

@@ -1,8 +1,9 @@
 //! The ladder of certified solvers: which rungs a query has, the lists between them, their launches.
 
-use super::{Given, launch_striding};
+use super::Given;
 use crate::device::Device;
 use crate::error::Error;
+use crate::pipeline::launch;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::room::{Growing, List};
 use crate::query::{Query, Solver};
@@ -141,29 +142,24 @@ impl Rungs {
                 pad: 0,
             };
             let room = pairs[0].room() + pairs[1].room();
-            launch::<R>(rung, given.device, room, &args)?;
+            start::<R>(rung, given.device, room, &args)?;
             pairs = left.unwrap_or(pairs);
         }
         Ok(())
     }
 }
 
-fn launch<R: Precision>(rung: Rung, device: &Device, room: usize, args: &RungArgs<R>) -> Result<(), Error> {
+fn start<R: Precision>(rung: Rung, device: &Device, room: usize, args: &RungArgs<R>) -> Result<(), Error> {
     match rung {
-        Rung::Isolate32 => launch_striding::<R::Isolate32>(device, room, args),
-        Rung::Isolate64 => launch_striding::<R::Isolate64>(device, room, args),
-        Rung::Settle => launch_striding::<R::Settle>(device, room, args),
+        Rung::Isolate32 => launch::striding::<R::Isolate32>(device, room, args),
+        Rung::Isolate64 => launch::striding::<R::Isolate64>(device, room, args),
+        Rung::Settle => launch::striding::<R::Settle>(device, room, args),
         // A block a pair; there are few.
         Rung::Slice => {
-            launch_at_once::<R::Slice>(device, room.saturating_mul(R::Slice::LANES as usize), args)
+            launch::at_once::<R::Slice>(device, room.saturating_mul(R::Slice::LANES as usize), args)
         }
-        Rung::SeparateFirst => launch_striding::<R::SeparateFirst>(device, room, args),
-        Rung::Separate32 => launch_at_once::<R::Separate32>(device, room, args),
-        Rung::Separate64 => launch_at_once::<R::Separate64>(device, room, args),
+        Rung::SeparateFirst => launch::striding::<R::SeparateFirst>(device, room, args),
+        Rung::Separate32 => launch::at_once::<R::Separate32>(device, room, args),
+        Rung::Separate64 => launch::at_once::<R::Separate64>(device, room, args),
     }
-}
-
-/// Launches no more blocks than run at once: of kernels for which a few pairs are left, of many registers each.
-fn launch_at_once<E: Entry>(device: &Device, room: usize, args: &E::Args) -> Result<(), Error> {
-    device.launch::<E>(device.blocks_at_once::<E>(room)?, args)
 }

@@ -4,6 +4,7 @@ use super::queue::Queue;
 use super::{Walk, Walked};
 use crate::device::Device;
 use crate::error::Error;
+use crate::pipeline::launch;
 use crate::pipeline::room::{Growing, List};
 use crate::pipeline::volumes::Kernels;
 use crate::query::FrontShape;
@@ -96,7 +97,7 @@ impl<V: Kernels> Walk<V> for Front {
                 count,
                 flags,
             };
-            given.device.launch::<V::Front>(blocks, &args)
+            launch::blocks::<V::Front>(given.device, blocks, &args)
         })
     }
 

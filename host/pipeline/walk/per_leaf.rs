@@ -3,6 +3,7 @@
 use super::{Walk, Walked};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
+use crate::pipeline::launch;
 use crate::pipeline::volumes::Kernels;
 use nearmiss_kernels::abi::{ROUNDS, Span, TraverseArgs, Unit, counter};
 
@@ -49,7 +50,7 @@ impl<V: Kernels> Walk<V> for PerLeaf {
         } else {
             device.blocks_striding::<V::Leaves>(leaves)
         };
-        device.launch::<V::Leaves>(blocks, &args)?;
+        launch::blocks::<V::Leaves>(device, blocks, &args)?;
         let Some(units) = &self.units else { return Ok(()) };
         let blocks = device.blocks_striding::<V::Units>(units[0].len());
         for round in 0..ROUNDS {
@@ -61,7 +62,7 @@ impl<V: Kernels> Walk<V> for PerLeaf {
                 args.budget = u32::MAX;
                 args.spilled_at = 0;
             }
-            device.launch::<V::Units>(blocks, &args)?;
+            launch::blocks::<V::Units>(device, blocks, &args)?;
         }
         Ok(())
     }

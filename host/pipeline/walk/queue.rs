@@ -4,6 +4,7 @@ use super::segments::Segments;
 use super::{Walk, Walked, resident};
 use crate::device::{Buffer, Device, Mark};
 use crate::error::Error;
+use crate::pipeline::launch;
 use crate::pipeline::room::Growing;
 use crate::pipeline::volumes::Kernels;
 use crate::query::{Balance, QueueShape};
@@ -124,7 +125,7 @@ impl Queue {
             flags,
             pad: 0,
         };
-        given.device.launch::<V::Queue>(if alone { 1 } else { self.cores }, &args)
+        launch::blocks::<V::Queue>(given.device, if alone { 1 } else { self.cores }, &args)
     }
 
     /// Rounds with a balance between them, until the host sees that nothing is left.
@@ -144,7 +145,8 @@ impl Queue {
             let nearly_full = most + self.shape.local as u64 > self.units.len() as u64;
             if nearly_full || counts.iter().any(|&count| count < self.shape.take as u64) {
                 let before = given.device.mark()?;
-                given.device.launch::<balance_copy>(
+                launch::blocks::<balance_copy>(
+                    given.device,
                     1,
                     &BalanceArgs {
                         units: self.units.span(to),

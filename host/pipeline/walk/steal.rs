@@ -4,6 +4,7 @@ use super::segments::Segments;
 use super::{Walk, Walked, resident};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
+use crate::pipeline::launch;
 use crate::pipeline::room::Growing;
 use crate::pipeline::volumes::Kernels;
 use crate::query::StealShape;
@@ -64,7 +65,7 @@ impl<V: Kernels> Walk<V> for Steal {
             flags: if self.shape.eager { EAGER } else { 0 },
             pad: 0,
         };
-        given.device.launch::<V::Steal>(self.cores, &args)
+        launch::blocks::<V::Steal>(given.device, self.cores, &args)
     }
 
     fn lists(&mut self) -> Vec<&mut dyn Growing> {

@@ -5,7 +5,7 @@ use crate::bv::Axes;
 use crate::math::Real;
 use bytemuck::{Pod, Zeroable};
 
-/// Declares argument blocks: `repr(C)`, plain old data, and an assertion that the fields leave no padding.
+/// Declares argument blocks: `repr(C)`, and an assertion that the fields leave no padding.
 macro_rules! arguments {
     ($($(#[$doc:meta])* $name:ident $(<$($g:ident: $bound:path),*>)? {
         $($(#[$fdoc:meta])* $field:ident: $ty:ty,)*
@@ -14,15 +14,13 @@ macro_rules! arguments {
         #[derive(Clone, Copy, Debug)]
         #[repr(C)]
         pub struct $name $(<$($g: $bound),*>)? { $($(#[$fdoc])* pub $field: $ty,)* }
-        // SAFETY: every field is Zeroable (they are all Pod, asserted below by use).
+        // SAFETY: every field is Zeroable, which `FITS` asks.
         unsafe impl $(<$($g: $bound),*>)? Zeroable for $name $(<$($g),*>)? {}
-        // SAFETY: repr(C), every field Pod, and `FITS` refuses to compile where padding would be.
-        unsafe impl $(<$($g: $bound),*>)? Pod for $name $(<$($g),*>)? {}
         impl $(<$($g: $bound),*>)? $name $(<$($g),*>)? {
-            /// Evaluated for every block that is launched: no padding, every field plain old data.
+            /// Evaluated for every block that is launched: no padding, and every field may be zero.
             pub const FITS: () = {
-                const fn pod<T: Pod>() -> usize { size_of::<T>() }
-                assert!(0 $(+ pod::<$ty>())* == size_of::<Self>());
+                const fn bytes<T: Zeroable>() -> usize { size_of::<T>() }
+                assert!(0 $(+ bytes::<$ty>())* == size_of::<Self>());
             };
         }
     )* };

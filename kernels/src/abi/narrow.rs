@@ -3,7 +3,7 @@
 use super::{Facet, Frames, Hit, Pair, Point, Span};
 use crate::math::Real;
 use crate::prim::inclusion::Params;
-use bytemuck::{Pod, Zeroable};
+use bytemuck::Zeroable;
 
 arguments! {
     /// `narrow_sift`: triangle pairs to vertex/face and edge/edge candidates.

@@ -1,5 +1,6 @@
 //! The records that stages hand on in memory.
 
+use crate::bv::FillsNode;
 use crate::math::{Real, Vec3};
 use crate::prim::inclusion::Verdict;
 use bytemuck::{Pod, Zeroable};
@@ -28,14 +29,10 @@ pub struct Node<V> {
     pub last: u32,
 }
 
-impl<V> Node<V> {
-    /// No padding: a volume fills two words short of a multiple of 16 bytes. Evaluated for every volume that is used.
-    pub const FITS: () = assert!(size_of::<Self>() == size_of::<V>() + size_of::<Link>());
-}
 // SAFETY: a Zeroable volume and two numbers.
-unsafe impl<V: Pod> Zeroable for Node<V> {}
-// SAFETY: a Pod volume and two numbers; `FITS`, which every entry with nodes evaluates, refuses padding.
-unsafe impl<V: Pod> Pod for Node<V> {}
+unsafe impl<V: FillsNode> Zeroable for Node<V> {}
+// SAFETY: a Pod volume and two numbers, which fill it up without padding.
+unsafe impl<V: FillsNode> Pod for Node<V> {}
 
 /// Set in [`Link::link`] when the node is a leaf; the other bits are the triangle.
 pub const LEAF: u32 = 1 << 31;
@@ -53,7 +50,6 @@ impl Link {
     }
     /// The node with a volume.
     pub fn with<V>(self, volume: V) -> Node<V> {
-        const { Node::<V>::FITS };
         Node { volume, link: self.link, last: self.last }
     }
 }

@@ -1,16 +1,16 @@
 //! A stretch of device memory.
 
-use bytemuck::{Pod, Zeroable};
+use bytemuck::Zeroable;
 use core::marker::PhantomData;
 
 /// `len` elements of `T` at a device address. On the CPU the address is the host's.
+///
+/// Only a device's buffer makes one that is not empty: who has a span may hand it to a launch.
 #[derive(Debug)]
 #[repr(C)]
 pub struct Span<T> {
-    /// Where the first element lies; aligned for `T`. 0 for an empty span.
-    pub addr: u64,
-    /// How many elements.
-    pub len: u64,
+    addr: u64,
+    len: u64,
     element: PhantomData<T>,
 }
 
@@ -21,25 +21,42 @@ impl<T> Clone for Span<T> {
 }
 impl<T> Copy for Span<T> {}
 
-// SAFETY: two u64 and a zero-sized marker, repr(C): no padding, any bits are valid (an address is only a number
-// until a machine uses it).
+// SAFETY: two u64 and a zero-sized marker; all zeros are the empty span.
 unsafe impl<T> Zeroable for Span<T> {}
-// SAFETY: as above; T: 'static is what Pod asks for.
-unsafe impl<T: 'static> Pod for Span<T> {}
 
 impl<T> Span<T> {
+    /// No elements.
+    pub const EMPTY: Self = Span { addr: 0, len: 0, element: PhantomData };
+
     /// A span by address and length.
-    pub const fn new(addr: u64, len: u64) -> Self {
+    ///
+    /// # Safety
+    /// `addr` is aligned for `T`, and `len` elements from there on are memory of one device, valid as `T` whatever their
+    /// bits, for as long as launches are given the span.
+    pub const unsafe fn new(addr: u64, len: u64) -> Self {
         Span { addr, len, element: PhantomData }
     }
-    /// No elements.
-    pub const EMPTY: Self = Self::new(0, 0);
+    /// Where the first element lies; 0 for an empty span.
+    #[inline(always)]
+    pub const fn addr(&self) -> u64 {
+        self.addr
+    }
+    /// How many elements.
+    #[inline(always)]
+    pub const fn len(&self) -> u64 {
+        self.len
+    }
     /// Whether it has no elements.
+    #[inline(always)]
     pub const fn is_empty(&self) -> bool {
         self.len == 0
     }
-    /// `len` of its elements from element `from` on; they must lie in it.
+    /// `len` of its elements from element `from` on.
+    ///
+    /// # Panics
+    /// When they do not lie in it: a fault of the caller.
     pub const fn part(&self, from: u64, len: u64) -> Self {
-        Self::new(self.addr + from * size_of::<T>() as u64, len)
+        assert!(from <= self.len && len <= self.len - from, "a part of a span lies in it");
+        Span { addr: self.addr + from * size_of::<T>() as u64, len, element: PhantomData }
     }
 }

@@ -1,6 +1,6 @@
 //! The axis-aligned box: six numbers, six comparisons. Union and overlap are exact; only fitting rounds, outward.
 
-use super::{Axes, Volume};
+use super::{Axes, FillsNode, Volume, fills_node};
 use crate::math::{Real, Vec3, round};
 use bytemuck::{Pod, Zeroable};
 
@@ -13,6 +13,9 @@ pub struct Aabb {
     /// The upper corner.
     pub hi: [f32; 3],
 }
+const _: () = assert!(fills_node::<Aabb>());
+// SAFETY: asserted above.
+unsafe impl FillsNode for Aabb {}
 
 impl Aabb {
     /// Encloses nothing; the neutral element of [`Aabb::merge`].

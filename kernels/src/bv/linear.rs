@@ -4,7 +4,7 @@
 //! box to the second is in it at every t, since both sides of each inequality are the same mixture. So fitting rounds
 //! outward twice, and union is exact, as for [`Aabb`].
 
-use super::{Aabb, Axes, Volume};
+use super::{Aabb, Axes, FillsNode, Volume, fills_node};
 use crate::exec::ALONE;
 use crate::math::tolerance::{MOVING_LIMIT, MOVING_TIME};
 use crate::math::{Real, Vec3};
@@ -25,7 +25,9 @@ pub struct Linear {
     /// Zero.
     pub pad: [u32; 2],
 }
-const _: () = assert!(size_of::<Linear>() == 56);
+const _: () = assert!(size_of::<Linear>() == 56 && fills_node::<Linear>());
+// SAFETY: asserted above.
+unsafe impl FillsNode for Linear {}
 
 impl Linear {
     /// From the boxes at both ends of the step.

@@ -23,8 +23,19 @@ use crate::math::tolerance::NEAR_GROWTH;
 use crate::math::{Real, Vec3};
 use bytemuck::{Pod, Zeroable};
 
+/// What fits into a node of the tree without padding.
+///
+/// # Safety
+/// [`fills_node`] says yes.
+pub unsafe trait FillsNode: Pod {}
+
+/// Whether a volume and two words of four bytes fill up a multiple of 16 bytes, to which nodes are aligned.
+pub const fn fills_node<V>() -> bool {
+    (size_of::<V>() + 8).is_multiple_of(16) && align_of::<V>() <= 16
+}
+
 /// A bounding volume: what a node of the tree says about everything below it.
-pub trait Volume: Pod + Sync + Send + core::fmt::Debug + PartialEq {
+pub trait Volume: FillsNode + Sync + Send + core::fmt::Debug + PartialEq {
     /// Whether overlap tests nest: whatever lies in two volumes that are apart is apart too. Not so where a slack, for
     /// safety, makes a small volume meet what a large one around it does not.
     const NESTS: bool;

@@ -23,7 +23,7 @@
 //! `BOX_APART` is 256u, and what is lost when it is multiplied, added and compared with a difference is below 4u.
 
 use super::axes::{self, Frame, three};
-use super::{Axes, GROUP, Points, Volume};
+use super::{Axes, FillsNode, GROUP, Points, Volume, fills_node};
 use crate::math::tolerance::{
     BOX_APART, BOX_APART_UNDERFLOW, BOX_CHILD, BOX_LENGTH, BOX_LIMIT, BOX_POINT, BOX_UNDERFLOW, BOX_UP,
 };
@@ -47,7 +47,9 @@ pub struct Obb {
     /// Zero.
     pub pad: u32,
 }
-const _: () = assert!(size_of::<Obb>() == 56);
+const _: () = assert!(size_of::<Obb>() == 56 && fills_node::<Obb>());
+// SAFETY: asserted above.
+unsafe impl FillsNode for Obb {}
 
 impl Obb {
     /// Holds every point.

@@ -18,13 +18,24 @@ pub type Words = [MaybeUninit<u32>; ROOM];
 /// A stack of work that cannot overflow: a depth-first walk leaves at most one waiting entry a level behind. Between
 /// phases its words and its length lie in slots of their own, so that nothing copies the words.
 pub struct Stack<'a> {
-    /// The entries, as far as `len` reaches.
-    pub words: &'a mut Words,
-    /// How many entries wait.
-    pub len: &'a mut u32,
+    words: &'a mut Words,
+    len: &'a mut u32,
 }
 
-impl Stack<'_> {
+impl<'a> Stack<'a> {
+    /// A stack of the first `len` entries of `words`.
+    ///
+    /// # Safety
+    /// As many were pushed to these words, and a walk pushes no more than [`ROOM`]: a tree has at most [`MAX_LEVELS`] levels.
+    #[inline(always)]
+    pub unsafe fn new(words: &'a mut Words, len: &'a mut u32) -> Self {
+        Stack { words, len }
+    }
+    /// How many entries wait.
+    #[inline(always)]
+    pub fn len(&self) -> u32 {
+        *self.len
+    }
     /// Whether no entry waits.
     #[inline]
     pub fn is_empty(&self) -> bool {
@@ -34,8 +45,7 @@ impl Stack<'_> {
     #[inline]
     pub fn push(&mut self, item: u32) {
         debug_assert!((*self.len as usize) < ROOM);
-        // SAFETY: a walk holds at most ROOM entries (see `ROOM`): a tree has at most MAX_LEVELS levels, which the
-        // checker of the tree confirms.
+        // SAFETY: a walk holds at most ROOM entries: who made the stack promised it.
         unsafe { self.words.get_unchecked_mut(*self.len as usize).write(item) };
         *self.len += 1;
     }

@@ -58,7 +58,7 @@ impl Outside {
         self.stored += count as u64;
         if len == 0 {
             let first = b.reserve(self.count.0, self.count.1, count as u64);
-            Places { units: self.units, first, end: self.units.len, demand: first + count as u64 }
+            Places { units: self.units, first, end: self.units.len(), demand: first + count as u64 }
         } else {
             let (begin, len) = (begin as u64, len as u64);
             Places { units: self.units, first: begin + own, end: begin + len, demand: self.stored }
@@ -231,7 +231,7 @@ impl<B: Block> Worker<B> {
             let (below, mut at) = (slots.of(l), base + *sums.of(l) as u64);
             for k in 0..2 {
                 if below.ends >> k & 1 != 0 {
-                    if at < to.ends.len {
+                    if at < to.ends.len() {
                         l.write(to.ends, at as u32, below.nodes[k]);
                     }
                     at += 1;
@@ -264,7 +264,7 @@ impl<B: Block> Worker<B> {
             while mask != 0 {
                 if mask & 1 != 0 {
                     let [a, b] = l.get(found, i);
-                    if at < to.pairs.len {
+                    if at < to.pairs.len() {
                         l.write(to.pairs, at as u32, Pair { a, b });
                     }
                     at += 1;

@@ -23,7 +23,7 @@ pub fn fit<R: Real, V: Volume, B: Block>(b: &mut B, a: &FitArgs<R, V>) {
     let stride = b.blocks() * b.lanes();
     b.phase(|l| {
         let mut i = l.global();
-        while (i as u64) < a.leaf_nodes.len {
+        while (i as u64) < a.leaf_nodes.len() {
             let at = l.read(a.leaf_nodes, i);
             let link = l.read(a.links, at);
             let volume: V = leaf::volume(l, &a.frames, a.faces, (link.triangle(), a.grow));
@@ -39,7 +39,7 @@ pub fn groups<R: Real, B: Block>(b: &mut B, a: &GroupsArgs<R, Obb>) {
     b.phase(|l| {
         // Pairs of siblings are numbered from 1, in the order of their parents.
         let mut pair = 1 + l.global();
-        while (pair as u64) < a.pair_parents.len {
+        while (pair as u64) < a.pair_parents.len() {
             let (first, last) = (l.read(a.firsts, pair), l.read(a.links, 2 * pair + 1).last);
             if last - first < GROUP {
                 let points = Below {

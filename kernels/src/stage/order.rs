@@ -18,7 +18,8 @@ pub const KIND_BITS: u32 = 2;
 
 /// How many contacts the first list has, and both.
 fn counts<T: Pod, B: Block>(b: &B, a: &OrderArgs<T>) -> (u32, u64) {
-    let of = |list: Span<T>, at: u32| if list.is_empty() { 0 } else { b.load(a.counters, at).min(list.len) };
+    let of =
+        |list: Span<T>, at: u32| if list.is_empty() { 0 } else { b.load(a.counters, at).min(list.len()) };
     let first = of(a.first, a.first_at);
     (first as u32, first + of(a.second, a.second_at))
 }
@@ -31,7 +32,7 @@ fn contact<T: Pod, L: Lane>(l: &L, a: &OrderArgs<T>, first: u32, i: u32) -> T {
 /// A key of each contact: its kind and its name, above its number.
 pub fn keys<T: Pod + Named, B: Block>(b: &mut B, a: &OrderArgs<T>) {
     let (first, all) = counts(b, a);
-    let count = all.min(a.items.len) as u32;
+    let count = all.min(a.items.len()) as u32;
     let stride = b.blocks() * b.lanes();
     b.phase(|l| {
         let mut i = l.global();
@@ -56,7 +57,7 @@ pub fn keys<T: Pod + Named, B: Block>(b: &mut B, a: &OrderArgs<T>) {
 /// The contacts in the order of their keys.
 pub fn gather<T: Pod + Named, B: Block>(b: &mut B, a: &OrderArgs<T>) {
     let (first, all) = counts(b, a);
-    let count = all.min(a.items.len) as u32;
+    let count = all.min(a.items.len()) as u32;
     let stride = b.blocks() * b.lanes();
     b.phase(|l| {
         let mut i = l.global();

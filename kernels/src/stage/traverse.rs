@@ -64,7 +64,7 @@ impl<V> Walk<V> {
 /// One walk a leaf.
 pub fn leaves<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>) {
     let root = b.load(a.nodes, ROOT);
-    run(b, a, a.query_leaves.len as u32, |l, i, walk| {
+    run(b, a, a.query_leaves.len() as u32, |l, i, walk| {
         start(l, a, walk, l.read(a.query_leaves, i));
         let wanted = root.last >= walk.from && walk.volume.overlaps(&root.volume);
         match (wanted, root.is_leaf()) {
@@ -77,7 +77,7 @@ pub fn leaves<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>) {
 
 /// One walk a unit that the round before left over.
 pub fn units<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>) {
-    let count = b.load(a.counters, a.units_at).min(a.units.len) as u32;
+    let count = b.load(a.counters, a.units_at).min(a.units.len()) as u32;
     run(b, a, count, |l, i, walk| {
         let Unit { query, pair } = l.read(a.units, i);
         if query != NONE {
@@ -137,7 +137,9 @@ fn run<V: Volume, B: Block>(
         });
         loop {
             b.phase(|l| {
-                let (walk, mut stack) = (walks.of(l), Stack { words: words.of(l), len: lens.of(l) });
+                let walk = walks.of(l);
+                // SAFETY: the lane's own words and length, which nothing else changes; `advance` pushes one sibling a level.
+                let mut stack = unsafe { Stack::new(words.of(l), lens.of(l)) };
                 advance(l, a, walk, &mut stack, found);
                 if walk.next != NONE && walk.budget == 0 {
                     spill(l, a, walk, &mut stack);
@@ -215,9 +217,9 @@ fn emit<V: Volume, L: Lane>(l: &L, a: &TraverseArgs<V>, walk: &mut Walk<V>, foun
 
 /// Gives the rest of a walk away; where the list has no room for all of it, the walk goes on without a budget.
 fn spill<V: Volume, L: Lane>(l: &L, a: &TraverseArgs<V>, walk: &mut Walk<V>, stack: &mut Stack) {
-    let count = *stack.len as u64 + 1;
+    let count = stack.len() as u64 + 1;
     let at = l.fetch_add(a.counters, a.spilled_at, count);
-    if at + count <= a.spilled.len {
+    if at + count <= a.spilled.len() {
         let mut i = at as u32;
         while walk.next != NONE {
             l.write(a.spilled, i, Unit { query: walk.query, pair: walk.next });
@@ -227,7 +229,7 @@ fn spill<V: Volume, L: Lane>(l: &L, a: &TraverseArgs<V>, walk: &mut Walk<V>, sta
     } else {
         walk.budget = u32::MAX;
         let mut i = at;
-        while i < a.spilled.len.min(at + count) {
+        while i < a.spilled.len().min(at + count) {
             l.write(a.spilled, i as u32, Unit { query: NONE, pair: NONE });
             i += 1;
         }
@@ -256,7 +258,7 @@ fn flush<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>, found: Buffer, kep
     b.phase(|l| {
         let mut i = l.lane();
         while i < count {
-            if base + (i as u64) < a.pairs.len {
+            if base + (i as u64) < a.pairs.len() {
                 l.write(a.pairs, (base + i as u64) as u32, kept.get(l, i));
             }
             i += lanes;

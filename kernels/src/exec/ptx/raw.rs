@@ -184,7 +184,7 @@ pub fn match_any(v: u32) -> u32 {
 
 #[inline(always)]
 pub fn element<T>(span: Span<T>, i: u32) -> *mut T {
-    (span.addr as *mut T).wrapping_add(i as usize)
+    (span.addr() as *mut T).wrapping_add(i as usize)
 }
 /// A load that knows that its address is device memory, in the widest pieces that `T`'s alignment allows. (A
 /// pointer out of an argument block is generic to the compiler: such a load asks at run time which memory it means.)

@@ -17,7 +17,7 @@ use crate::prim::cubic::Moving;
 
 /// Counts them.
 pub fn blunt<R: Real, B: Block>(b: &mut B, a: &BluntArgs<R>) {
-    let there = |b: &B, list: Span<Hit>, at: u32| b.load(a.counters, at).min(list.len);
+    let there = |b: &B, list: Span<Hit>, at: u32| b.load(a.counters, at).min(list.len());
     let (vf, ee) = (there(b, a.vf, counter::VF_HITS), there(b, a.ee, counter::EE_HITS));
     let stride = (b.blocks() * b.lanes()) as u64;
     let mut counts = b.slot(0u32);

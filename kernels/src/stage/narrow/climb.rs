@@ -152,11 +152,11 @@ fn each<R: Real, B: Block>(
         b.phase(|l| {
             let (wish, before, hit) = (*wishes.of(l), *places.of(l), *hits.of(l));
             let place = start + (before & (LEFT - 1)) as u64;
-            if wish == LISTED && place < of.hits.len {
+            if wish == LISTED && place < of.hits.len() {
                 l.write(of.hits, place as u32, hit);
             }
             let place = start_left + (before / LEFT) as u64;
-            if wish == LEFT && place < of.left.len {
+            if wish == LEFT && place < of.left.len() {
                 l.write(of.left, place as u32, Pair { a: hit.a, b: hit.b });
             }
             l.meet();
@@ -175,7 +175,7 @@ pub(super) fn leave<R: Real, L: Lane>(l: &L, a: &RungArgs<R>, of: &Listed, pair:
 #[inline(always)]
 fn push<T: Pod, L: Lane>(l: &L, (list, counters, at): (Span<T>, Span<u64>, u32), entry: T) {
     let place = l.fetch_add(counters, at, 1);
-    if place < list.len {
+    if place < list.len() {
         l.write(list, place as u32, entry);
     }
 }

@@ -137,7 +137,7 @@ impl<B: Block, T: bytemuck::Pod> Entries<B, T> {
         b.phase(|l| {
             let place = start + *self.places.of(l) as u64;
             if let Some(entry) = *self.entries.of(l)
-                && place < list.len
+                && place < list.len()
             {
                 l.write(list, place as u32, entry);
             }
@@ -147,5 +147,5 @@ impl<B: Block, T: bytemuck::Pod> Entries<B, T> {
 
 /// How many entries of a list are there: its counter, or its room where that ran out.
 fn listed<B: Block>(b: &B, list: Span<Pair>, counters: Span<u64>, at: u32) -> u32 {
-    b.load(counters, at).min(list.len) as u32
+    b.load(counters, at).min(list.len()) as u32
 }

@@ -165,7 +165,7 @@ fn pick([x, y, z]: [u32; 3], k: u32) -> u32 {
 /// Writes one candidate where there is room.
 #[inline(always)]
 fn put<L: Lane>(l: &L, list: Span<Pair>, place: u64, pair: Pair) {
-    if place < list.len {
+    if place < list.len() {
         l.write(list, place as u32, pair);
     }
 }

@@ -18,7 +18,7 @@ use crate::exec::{Block, Lane};
 pub fn bottom_up<V: Volume, B: Block>(b: &mut B, a: &BottomUpArgs<V>) {
     b.phase(|l| {
         let leaf = l.global();
-        if leaf as u64 >= a.leaf_nodes.len {
+        if leaf as u64 >= a.leaf_nodes.len() {
             return;
         }
         let mut at = l.read(a.leaf_nodes, leaf);

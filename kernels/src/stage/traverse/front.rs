@@ -92,7 +92,7 @@ pub fn front<V: Volume, B: Block>(b: &mut B, a: &FrontArgs<V>) {
 /// Writes an entry of a list, where there is room for it.
 #[inline]
 fn put<L: Lane>(l: &L, list: Span<Pair>, at: u64, pair: Pair) {
-    if at < list.len {
+    if at < list.len() {
         l.write(list, at as u32, pair);
     }
 }

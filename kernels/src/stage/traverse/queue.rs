@@ -29,7 +29,7 @@ pub fn queue<V: Volume, B: Block>(b: &mut B, a: &QueueArgs<V>) {
     } else if a.segment > 0 {
         (block * a.segment, 1, b.load(a.counts, block).min(a.segment as u64) as u32)
     } else {
-        let all = b.load(a.counts, a.round).min(a.units.len) as u32;
+        let all = b.load(a.counts, a.round).min(a.units.len()) as u32;
         if all == 0 {
             return;
         }

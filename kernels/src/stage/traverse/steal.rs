@@ -110,7 +110,7 @@ pub fn steal<V: Volume, B: Block>(b: &mut B, a: &StealArgs<V>) {
 fn share<V: Volume>(a: &StealArgs<V>, seen: Counts, turn: u32) -> u32 {
     let waiting = seen.waiting();
     let eager = (a.flags & EAGER != 0) as u32;
-    if waiting + eager == 0 || seen.offers as u64 >= a.pool.len {
+    if waiting + eager == 0 || seen.offers as u64 >= a.pool.len() {
         return 0;
     }
     let work = seen.work.max(1);
@@ -138,7 +138,7 @@ fn offer<V: Volume, B: Block>(
             let units = (spare / chunks).min(CHUNK);
             let before = l.fetch_add(a.control, 0, chunks as u64 * (OFFER + WORK));
             let place = Counts::of(before).offers;
-            let room = a.pool.len.saturating_sub(place as u64).min(chunks as u64) as u32;
+            let room = a.pool.len().saturating_sub(place as u64).min(chunks as u64) as u32;
             if room < chunks {
                 l.fetch_add(a.control, 0, ((chunks - room) as u64 * WORK).wrapping_neg());
             }
@@ -212,7 +212,7 @@ fn search<V: Volume, L: Lane>(l: &L, a: &StealArgs<V>, mut draw: u64) -> (u32, u
         if ticket == 0 {
             return (0, 1);
         }
-        if ticket as u64 > a.pool.len || Counts::of(before.wrapping_add(draw)).work == 0 {
+        if ticket as u64 > a.pool.len() || Counts::of(before.wrapping_add(draw)).work == 0 {
             return (0, 0);
         }
         draw = TICKET;
