@@ -1,4 +1,4 @@
-//! Embeds the kernels' PTX, with feature `cuda`; without it, does nothing.
+//! Embeds the kernels' PTX, with feature `cuda`; and says to the tests whether there are public test data.
 //!
 //! The PTX in the kernels' package is taken if it carries the stamp of the sources beside it. Otherwise the kernels are
 //! compiled, if this machine has a device compiler (kernels/ptx.sh); if it has none, the build stops.
@@ -6,8 +6,24 @@
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
+    look_for_test_data();
     #[cfg(feature = "cuda")]
     ptx::embed();
+}
+
+/// Sets `public_data` where the folder of public test data is: below `NEARMISS_DATA`, else beside the repository. Without it the
+/// tests that need it are ignored; where `NEARMISS_REQUIRE_DATA` is set, as in CI, the build stops.
+fn look_for_test_data() {
+    println!("cargo::rustc-check-cfg=cfg(public_data)");
+    for name in ["NEARMISS_DATA", "NEARMISS_REQUIRE_DATA"] {
+        println!("cargo::rerun-if-env-changed={name}");
+    }
+    let folder = std::env::var("NEARMISS_DATA").unwrap_or("../shared/data".into());
+    if std::path::Path::new(&folder).is_dir() {
+        println!("cargo::rustc-cfg=public_data");
+    } else if std::env::var_os("NEARMISS_REQUIRE_DATA").is_some() {
+        panic!("no public test data in {folder}, and NEARMISS_REQUIRE_DATA is set");
+    }
 }
 
 #[cfg(feature = "cuda")]

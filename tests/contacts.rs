@@ -138,8 +138,9 @@ fn earliest(scene: &Scene, body: &Body, all: &Contacts) {
 }
 
 #[test]
+#[cfg_attr(not(public_data), ignore = "no public test data: set NEARMISS_DATA")]
 fn cloth_on_a_ball() {
-    let (Some(body), Some(truth)) = (CLOTH.body(), CLOTH.truth()) else { return };
+    let (body, truth) = (CLOTH.body(), CLOTH.truth());
     let all = double(&CLOTH, &body, &truth);
     single(&CLOTH, &body, &truth, &all, &Bounds { missed: 0, invented: 5, late: 0 });
     earliest(&CLOTH, &body, &all);
@@ -152,8 +153,9 @@ fn cloth_on_a_ball() {
 }
 
 #[test]
+#[cfg_attr(not(public_data), ignore = "no public test data: set NEARMISS_DATA")]
 fn balls_in_a_box() {
-    let (Some(body), Some(truth)) = (BALLS.body(), BALLS.truth()) else { return };
+    let (body, truth) = (BALLS.body(), BALLS.truth());
     let all = double(&BALLS, &body, &truth);
     certified(&BALLS, &body, &truth, Solver::Certified, &all);
 }
@@ -161,7 +163,7 @@ fn balls_in_a_box() {
 #[test]
 #[ignore = "half a minute"]
 fn balls_in_a_box_in_every_way() {
-    let (Some(body), Some(truth)) = (BALLS.body(), BALLS.truth()) else { return };
+    let (body, truth) = (BALLS.body(), BALLS.truth());
     let all = double(&BALLS, &body, &truth);
     single(&BALLS, &body, &truth, &all, &Bounds { missed: 0, invented: 12, late: 0 });
     earliest(&BALLS, &body, &all);
@@ -171,9 +173,10 @@ fn balls_in_a_box_in_every_way() {
 
 /// The lists number edges by (larger vertex, smaller vertex), ascending; found here once more, from the faces alone.
 #[test]
+#[cfg_attr(not(public_data), ignore = "no public test data: set NEARMISS_DATA")]
 fn edges_are_numbered_as_in_the_lists() {
     for scene in [CLOTH, BALLS] {
-        let (Some(mesh), Some(truth)) = (scene.mesh(), scene.truth()) else { return };
+        let (mesh, truth) = (scene.mesh(), scene.truth());
         let sides = |f: &[u32; 3]| [[f[0], f[1]], [f[1], f[2]], [f[2], f[0]]];
         let mut edges: Vec<[u32; 2]> =
             mesh.faces().iter().flat_map(sides).map(|[a, b]| [a.max(b), a.min(b)]).collect();

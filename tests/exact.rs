@@ -8,13 +8,13 @@ use nearmiss::{Contacts, Query};
 use support::{ORDERS, ask, engine, mesh, microscope, rows, ways};
 
 /// Pairs of a list.
-fn listed(path: &str) -> Option<Vec<[u32; 2]>> {
+fn listed(path: &str) -> Vec<[u32; 2]> {
     let number = |text: &String| text.trim().parse().expect("a number");
-    Some(rows(path)?.iter().map(|row| [number(&row[0]), number(&row[1])]).collect())
+    rows(path).iter().map(|row| [number(&row[0]), number(&row[1])]).collect()
 }
 
-fn bodies(names: &[&str]) -> Option<Vec<Body>> {
-    names.iter().map(|name| mesh(name).map(Body::still)).collect()
+fn bodies(names: &[&str]) -> Vec<Body> {
+    names.iter().map(|name| Body::still(mesh(name))).collect()
 }
 
 /// First difference of two ascending lists: what is missing, or what is too many.
@@ -43,9 +43,10 @@ const SETS: [(&[&str], &str, bool); 8] = [
 ];
 
 #[test]
+#[cfg_attr(not(public_data), ignore = "no public test data: set NEARMISS_DATA")]
 fn every_pair_set_equals_the_exact_one() {
     for (meshes, pairs, small) in SETS {
-        let (Some(bodies), Some(truth)) = (bodies(meshes), listed(pairs)) else { continue };
+        let (bodies, truth) = (bodies(meshes), listed(pairs));
         let found = discrete(engine(), bodies.clone());
         assert_eq!(difference(found.pairs(), &truth), None, "{meshes:?}");
         for order in ORDERS.into_iter().filter(|_| small) {
@@ -57,9 +58,10 @@ fn every_pair_set_equals_the_exact_one() {
 
 /// Whatever the tree wears, however it is refitted and walked.
 #[test]
+#[cfg_attr(not(public_data), ignore = "no public test data: set NEARMISS_DATA")]
 fn every_way_finds_the_exact_pairs() {
     for (meshes, pairs, small) in SETS {
-        let (Some(bodies), Some(truth)) = (bodies(meshes), listed(pairs)) else { continue };
+        let (bodies, truth) = (bodies(meshes), listed(pairs));
         // Every volume with every walk; the refits take turns. Of the large sets a few.
         let turn = |i: usize| i % 3 == i / 3 % 3 && (small || i.is_multiple_of(5));
         for (i, way) in ways(Query::of(Motion::Discrete)).enumerate().filter(|(i, _)| turn(*i)) {
@@ -73,7 +75,7 @@ fn every_way_finds_the_exact_pairs() {
 #[ignore = "minutes: the microscope watches every access of two large scenes"]
 fn the_large_sets_are_the_same_in_every_order() {
     for (meshes, pairs, _) in SETS.into_iter().filter(|(_, _, small)| !small) {
-        let (Some(bodies), Some(truth)) = (bodies(meshes), listed(pairs)) else { continue };
+        let (bodies, truth) = (bodies(meshes), listed(pairs));
         for order in ORDERS {
             let found = discrete(microscope(order), bodies.clone());
             assert_eq!(difference(found.pairs(), &truth), None, "{meshes:?}, {order:?}");

@@ -111,9 +111,10 @@ fn what_rests_is_certain() {
 
 /// Inputs that took seconds where two triangles should take none.
 #[test]
+#[cfg_attr(not(public_data), ignore = "no public test data: set NEARMISS_DATA")]
 fn what_was_slow_is_not() {
     for name in ["slow-sliver-2tri", "slow-sliver-100702"] {
-        let Some(folder) = data(&format!("finds/{name}")) else { continue };
+        let folder = data(&format!("finds/{name}"));
         let mesh = |name: &str| nearmiss::Mesh::read(&folder.join(name)).expect("a mesh");
         let body = nearmiss::Body::moving(mesh("a0.ply"), mesh("a1.ply")).expect("two frames");
         for solver in [Solver::Certified, Solver::CertifiedF32, Solver::CertifiedF64] {

@@ -20,6 +20,7 @@ fn wrong<'a>(answers: impl IntoIterator<Item = (&'a str, bool, bool)>) -> Vec<&'
 }
 
 #[test]
+#[cfg_attr(not(public_data), ignore = "no public test data: set NEARMISS_DATA")]
 fn public_queries() {
     let all = folders();
     let mut answers = Vec::new();

@@ -18,6 +18,7 @@ fn moving<R: Real>(x: &[[f64; 3]; 8]) -> [Moving<R>; 4] {
 
 /// None missed, no certificate false, in any precision; false alarms no more than Tight-Inclusion's, in doubles.
 #[test]
+#[cfg_attr(not(public_data), ignore = "no public test data: set NEARMISS_DATA")]
 fn queries() {
     for tolerance in [1e-3, 1e-6, 1e-9] {
         let p = Params::new(tolerance);
@@ -78,6 +79,7 @@ fn reported_motions() {
 }
 
 #[test]
+#[cfg_attr(not(public_data), ignore = "no public test data: set NEARMISS_DATA")]
 fn cloth() {
     frames("cloth-ball", "cloth_ball92", "cloth_ball93", 4);
 }
@@ -91,7 +93,7 @@ fn balls() {
 
 /// All true contacts, certificates that are true, false alarms of at most `most` in a million candidates.
 fn frames(folder: &str, before: &str, after: &str, most: usize) {
-    let Some((all, truth, mean)) = scene(folder, before, after) else { return };
+    let (all, truth, mean) = scene(folder, before, after);
     let p = Params::new(1e-4 * mean);
     for (name, solver) in [
         ("f32", certified::<f32, f32> as fn([Moving<f32>; 4], bool, &Params) -> Verdict),
@@ -149,7 +151,7 @@ fn filters(all: &[(Key, [Moving<f32>; 4])], truth: &HashSet<Key>, p: &Params) {
 #[test]
 #[ignore = "times, not truths"]
 fn nanoseconds() {
-    let Some((all, _, mean)) = scene("cloth-ball", "cloth_ball92", "cloth_ball93") else { return };
+    let (all, _, mean) = scene("cloth-ball", "cloth_ball92", "cloth_ball93");
     let p = Params::new(1e-4 * mean);
     let time = |name: &str, f: &dyn Fn(bool, [Moving<f32>; 4]) -> bool| {
         let start = Instant::now();
@@ -187,7 +189,7 @@ fn nanoseconds() {
 #[test]
 #[ignore = "figures, not truths"]
 fn boxes() {
-    let Some((all, _, mean)) = scene("cloth-ball", "cloth_ball92", "cloth_ball93") else { return };
+    let (all, _, mean) = scene("cloth-ball", "cloth_ball92", "cloth_ball93");
     let p = Params::new(1e-4 * mean);
     for (name, solver) in [
         ("f32", certified::<f32, f32> as fn([Moving<f32>; 4], bool, &Params) -> Verdict),

@@ -1,6 +1,6 @@
 //! Two public pairs of frames with lists of all true contacts, and lists compared.
 
-use crate::support::{data, mesh, rows};
+use crate::support::{mesh, rows};
 use nearmiss::contacts::Kind;
 use nearmiss::mesh::Body;
 use nearmiss::{Contacts, Mesh};
@@ -43,19 +43,18 @@ pub const BALLS: Scene = Scene {
 };
 
 impl Scene {
-    /// The moving mesh, where the data are.
-    pub fn body(&self) -> Option<Body> {
-        Some(Body::moving(mesh(self.t0)?, mesh(self.t1)?).expect("two frames of one mesh"))
+    /// The moving mesh.
+    pub fn body(&self) -> Body {
+        Body::moving(mesh(self.t0), mesh(self.t1)).expect("two frames of one mesh")
     }
 
     /// The first frame.
-    pub fn mesh(&self) -> Option<Mesh> {
+    pub fn mesh(&self) -> Mesh {
         mesh(self.t0)
     }
 
     /// All true contacts, ascending.
-    pub fn truth(&self) -> Option<Vec<Row>> {
-        data(self.list)?;
+    pub fn truth(&self) -> Vec<Row> {
         let row = |row: &Vec<String>| {
             let kind = match row[0].as_str() {
                 "vf" => Kind::Vf,
@@ -65,9 +64,9 @@ impl Scene {
             let index = |text: &String| text.trim().parse().expect("an index");
             (kind, index(&row[1]), index(&row[2]))
         };
-        let mut all: Vec<Row> = rows(self.list)?.iter().map(row).collect();
+        let mut all: Vec<Row> = rows(self.list).iter().map(row).collect();
         all.sort_unstable();
-        Some(all)
+        all
     }
 }
 
