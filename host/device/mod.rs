@@ -2,13 +2,9 @@
 
 #[cfg(feature = "cuda")]
 mod cuda;
-#[cfg(all(feature = "cuda", target_os = "linux"))]
-mod driver;
 pub mod emulator;
 #[cfg(any(feature = "cuda", test))]
 mod ptx;
-#[cfg(feature = "cuda")]
-mod staging;
 mod view;
 
 pub use view::{Ahead, View};
@@ -70,7 +66,7 @@ impl Device {
         match backend {
             Backend::Cpu => Ok(Self::emulator(Emulator::new(Mode::Engine, threads)?)),
             #[cfg(feature = "cuda")]
-            Backend::Cuda => Ok(Self::with(Machine::Cuda(cuda::Cuda::new()?))),
+            Backend::Cuda => Ok(Self::with(Machine::Cuda(cuda::Cuda::new(0)?))),
             #[cfg(not(feature = "cuda"))]
             Backend::Cuda => Err(Error::Device {
                 what: "opening the card".into(),

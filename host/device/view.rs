@@ -3,8 +3,6 @@
 use super::{Buffer, Device, Machine, Memory, Tally};
 use crate::error::Error;
 use bytemuck::Pod;
-#[cfg(feature = "cuda")]
-use std::cell::Ref;
 use std::ops::Deref;
 
 /// Elements that the host looks at. As long as there is one, no kernel may be launched: [`Device::launch`] refuses.
@@ -16,18 +14,18 @@ pub struct View<'a, T> {
 enum Elements<'a, T> {
     Here(&'a [T]),
     #[cfg(feature = "cuda")]
-    Staged(Ref<'a, [T]>),
+    Staged(super::cuda::Known),
     #[cfg(feature = "cuda")]
     Own(Vec<T>),
 }
 
-impl<T> Deref for View<'_, T> {
+impl<T: Pod> Deref for View<'_, T> {
     type Target = [T];
     fn deref(&self) -> &[T] {
         match &self.elements {
             Elements::Here(elements) => elements,
             #[cfg(feature = "cuda")]
-            Elements::Staged(elements) => elements,
+            Elements::Staged(known) => bytemuck::cast_slice(known.bytes()),
             #[cfg(feature = "cuda")]
             Elements::Own(elements) => elements,
         }
@@ -67,7 +65,7 @@ impl<T: Pod> Buffer<T> {
             (Memory::Host(m), _) => Elements::Here(bytemuck::cast_slice(m.as_slice(bytes))),
             #[cfg(feature = "cuda")]
             (Memory::Card(m), Machine::Cuda(c)) => match c.known(m, bytes) {
-                Some(known) => Elements::Staged(Ref::map(known, bytemuck::cast_slice)),
+                Some(known) => Elements::Staged(known),
                 None => Elements::Own(self.read(len)?),
             },
             #[cfg(feature = "cuda")]
