@@ -1,23 +1,27 @@
 //! Where kernels run: an NVIDIA card, or the CPU.
 
+mod buffer;
 #[cfg(feature = "cuda")]
 mod cuda;
 pub mod emulator;
 #[cfg(any(feature = "cuda", test))]
 mod ptx;
+mod tally;
 mod view;
 
+pub use buffer::Buffer;
 pub use view::{Ahead, View};
 
 use crate::error::Error;
+use buffer::Memory;
 use bytemuck::Pod;
 use emulator::{Emulator, Mode};
-use nearmiss_kernels::abi::Span;
 use nearmiss_kernels::entry::Entry;
-use std::cell::Cell;
 use std::marker::PhantomData;
-use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::time::Instant;
+use tally::Tally;
 
 /// Which machine to take.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -31,29 +35,18 @@ pub enum Backend {
     Auto,
 }
 
-/// A machine that runs kernels, and its memory. One thread uses it; clones are the same machine.
+/// A machine that runs kernels, and its memory. Any thread may use it, one at a time; clones are the same machine. For work
+/// side by side open one for each.
 #[derive(Clone)]
 pub struct Device {
-    machine: Rc<Machine>,
-    tally: Rc<Tally>,
+    machine: Arc<Machine>,
+    tally: Arc<Tally>,
 }
 
 enum Machine {
     Emulator(Emulator),
     #[cfg(feature = "cuda")]
     Cuda(cuda::Cuda),
-}
-
-/// What a device has been asked for.
-#[derive(Default)]
-struct Tally {
-    launches: Cell<u64>,
-    bytes: Cell<u64>,
-    peak: Cell<u64>,
-    /// Views of memory that the host holds now.
-    views: Cell<u64>,
-    /// Most bytes that may be held; `None` for what the machine has.
-    most: Cell<Option<u64>>,
 }
 
 impl Device {
@@ -89,12 +82,12 @@ impl Device {
 
     /// The same machine with no more than `bytes` of memory, whatever it has; of its clones too.
     pub fn limited(self, bytes: u64) -> Device {
-        self.tally.most.set(Some(bytes));
+        self.tally.most.store(bytes, Ordering::Relaxed);
         self
     }
 
     fn with(machine: Machine) -> Device {
-        Device { machine: Rc::new(machine), tally: Rc::default() }
+        Device { machine: Arc::new(machine), tally: Arc::new(Tally::new()) }
     }
 
     /// What the machine calls itself.
@@ -167,18 +160,16 @@ impl Device {
             asked: u64::MAX,
             given: isize::MAX as u64,
         })?;
-        let t = &self.tally;
-        let given = t.most.get().map_or(u64::MAX, |most| most.saturating_sub(t.bytes.get()));
-        if bytes as u64 > given {
-            return Err(Error::Room { what: "device memory, as limited".into(), asked: bytes as u64, given });
-        }
+        let most =
+            |given| Error::Room { what: "device memory, as limited".into(), asked: bytes as u64, given };
+        self.tally.take(bytes as u64).map_err(most)?;
         let memory = match &*self.machine {
-            Machine::Emulator(e) => Memory::Host(e.memory(bytes)?),
+            Machine::Emulator(e) => e.memory(bytes).map(Memory::Host),
             #[cfg(feature = "cuda")]
-            Machine::Cuda(c) => Memory::Card(c.memory(bytes)?),
+            Machine::Cuda(c) => c.memory(bytes).map(Memory::Card),
         };
-        t.bytes.set(t.bytes.get() + bytes as u64);
-        t.peak.set(t.peak.get().max(t.bytes.get()));
+        let memory = memory.inspect_err(|_| self.tally.give(bytes as u64))?;
+        self.tally.peak.fetch_max(self.bytes().0, Ordering::Relaxed);
         Ok(Buffer {
             memory,
             len,
@@ -198,7 +189,8 @@ impl Device {
         Ok(buffer)
     }
 
-    /// Starts a kernel behind all that was started before.
+    /// Starts a kernel behind all that was started before. Its spans are of buffers of this device that live until it is
+    /// over, and that no other thread touches meanwhile.
     ///
     /// # Errors
     /// [`Error::Device`] with the driver's text; [`Error::Bug`] under the microscope, and while there is a [`View`].
@@ -207,12 +199,12 @@ impl Device {
             return Ok(());
         }
         // The memory under a view must not change.
-        if self.tally.views.get() > 0 {
+        if self.tally.views.load(Ordering::Relaxed) > 0 {
             return Err(Error::Bug {
                 what: format!("{} was launched while the host looks at memory", E::NAME),
             });
         }
-        self.tally.launches.set(self.tally.launches.get() + 1);
+        self.tally.launches.fetch_add(1, Ordering::Relaxed);
         match &*self.machine {
             Machine::Emulator(e) => e.launch::<E>(blocks, args),
             #[cfg(feature = "cuda")]
@@ -234,12 +226,12 @@ impl Device {
 
     /// How many kernels were launched so far.
     pub fn launches(&self) -> u64 {
-        self.tally.launches.get()
+        self.tally.launches.load(Ordering::Relaxed)
     }
 
     /// Bytes of device memory held now, and the most held at once.
     pub fn bytes(&self) -> (u64, u64) {
-        (self.tally.bytes.get(), self.tally.peak.get())
+        (self.tally.bytes.load(Ordering::Relaxed), self.tally.peak.load(Ordering::Relaxed))
     }
 }
 
@@ -268,108 +260,28 @@ impl Mark {
     }
 }
 
-enum Memory {
-    Host(emulator::Memory),
-    #[cfg(feature = "cuda")]
-    Card(cuda::Memory),
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// Elements of `T` in a device's memory. Freed when dropped.
-pub struct Buffer<T> {
-    memory: Memory,
-    len: usize,
-    machine: Rc<Machine>,
-    tally: Rc<Tally>,
-    element: PhantomData<T>,
-}
-
-impl<T: Pod> Buffer<T> {
-    /// How many elements.
-    pub fn len(&self) -> usize {
-        self.len
-    }
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.len == 0
-    }
-    /// What a kernel is given.
-    pub fn span(&self) -> Span<T> {
-        let addr = match &self.memory {
-            Memory::Host(m) => m.addr(),
-            #[cfg(feature = "cuda")]
-            Memory::Card(m) => m.addr(),
-        };
-        Span::new(addr, self.len as u64)
-    }
-
-    /// Sets the first elements, behind all that was started before.
-    ///
-    /// # Errors
-    /// [`Error::Device`] when the transfer fails.
-    ///
-    /// # Panics
-    /// When there are more items than elements: a fault of the caller.
-    pub fn write(&mut self, items: &[T]) -> Result<(), Error> {
-        assert!(items.len() <= self.len, "more items than the buffer has elements");
-        let bytes: &[u8] = bytemuck::cast_slice(items);
-        match (&mut self.memory, &*self.machine) {
-            (Memory::Host(m), Machine::Emulator(e)) => {
-                m.as_mut_slice(bytes.len()).copy_from_slice(bytes);
-                if let Some(microscope) = e.microscope() {
-                    microscope.host_wrote(m.addr(), bytes.len());
-                }
-                Ok(())
-            }
-            #[cfg(feature = "cuda")]
-            (Memory::Card(m), Machine::Cuda(c)) => c.write(m, bytes),
-            #[cfg(feature = "cuda")]
-            _ => Err(Error::Bug { what: "memory of another machine".into() }),
-        }
-    }
-
-    /// Sets every byte to zero, behind all that was started before.
-    ///
-    /// # Errors
-    /// [`Error::Device`] with the driver's text.
-    pub fn clear(&mut self) -> Result<(), Error> {
-        match (&mut self.memory, &*self.machine) {
-            #[cfg(feature = "cuda")]
-            (Memory::Card(m), Machine::Cuda(c)) => c.clear(m),
-            _ => self.write(&vec![T::zeroed(); self.len]),
-        }
-    }
-
-    /// The first `len` elements; waits for all that was started before.
-    ///
-    /// # Errors
-    /// [`Error::Device`] with the driver's text, also of a kernel that failed before.
-    ///
-    /// # Panics
-    /// When the buffer has fewer elements: a fault of the caller.
-    pub fn read(&self, len: usize) -> Result<Vec<T>, Error> {
-        assert!(len <= self.len, "more items than the buffer has elements");
-        match (&self.memory, &*self.machine) {
-            (Memory::Host(m), _) => Ok(bytemuck::cast_slice(m.as_slice(len * size_of::<T>())).to_vec()),
-            #[cfg(feature = "cuda")]
-            (Memory::Card(m), Machine::Cuda(c)) => {
-                let mut items = vec![T::zeroed(); len];
-                c.read(m, bytemuck::cast_slice_mut(&mut items))?;
-                Ok(items)
-            }
-            #[cfg(feature = "cuda")]
-            _ => Err(Error::Bug { what: "memory of another machine".into() }),
-        }
-    }
-}
-
-impl<T> Drop for Buffer<T> {
-    fn drop(&mut self) {
-        let bytes = (self.len * size_of::<T>()) as u64;
-        self.tally.bytes.set(self.tally.bytes.get() - bytes);
-        if let (Memory::Host(m), Machine::Emulator(e)) = (&self.memory, &*self.machine)
-            && let Some(microscope) = e.microscope()
-        {
-            microscope.forget(m.addr());
-        }
+    #[test]
+    fn a_device_moves_between_threads_with_its_memory() {
+        fn send<T: Send>() {}
+        send::<Device>();
+        send::<Buffer<u64>>();
+        send::<View<u64>>();
+        send::<Mark>();
+        send::<crate::pipeline::Session>();
+        let device = Device::open(Backend::Cpu, Some(1)).expect("a thread");
+        let mut buffer = device.upload(&[1u32, 2, 3]).expect("memory");
+        let there = std::thread::spawn(move || {
+            buffer.write(&[4]).expect("written");
+            (buffer, device)
+        });
+        let (buffer, device) = there.join().expect("no panic");
+        assert_eq!(buffer.read(3).expect("read"), [4, 2, 3]);
+        assert_eq!(device.bytes(), (12, 12));
+        drop(buffer);
+        assert_eq!(device.bytes(), (0, 12));
     }
 }

@@ -1,9 +1,12 @@
 //! What a device holds, looked at by the host: without a copy where the machine allows it.
 
-use super::{Buffer, Device, Machine, Memory, Tally};
+use super::buffer::{Buffer, Memory};
+use super::tally::Tally;
+use super::{Device, Machine};
 use crate::error::Error;
 use bytemuck::Pod;
 use std::ops::Deref;
+use std::sync::atomic::Ordering;
 
 /// Elements that the host looks at. As long as there is one, no kernel may be launched: [`Device::launch`] refuses.
 pub struct View<'a, T> {
@@ -34,7 +37,7 @@ impl<T: Pod> Deref for View<'_, T> {
 
 impl<T> Drop for View<'_, T> {
     fn drop(&mut self) {
-        self.tally.views.set(self.tally.views.get() - 1);
+        self.tally.views.fetch_sub(1, Ordering::Relaxed);
     }
 }
 
@@ -71,7 +74,7 @@ impl<T: Pod> Buffer<T> {
             #[cfg(feature = "cuda")]
             _ => return Err(Error::Bug { what: "memory of another machine".into() }),
         };
-        self.tally.views.set(self.tally.views.get() + 1);
+        self.tally.views.fetch_add(1, Ordering::Relaxed);
         Ok(View { elements, tally: &self.tally })
     }
 }
