@@ -50,7 +50,7 @@ enum Machine {
 }
 
 impl Device {
-    /// The machine that `backend` names; `threads` of the CPU, or all.
+    /// The machine that `backend` names: the first card, or `threads` of the CPU, or all.
     ///
     /// # Errors
     /// [`Error::Device`] when there is no such machine or its driver refuses, with the driver's text;
@@ -58,14 +58,7 @@ impl Device {
     pub fn open(backend: Backend, threads: Option<usize>) -> Result<Device, Error> {
         match backend {
             Backend::Cpu => Ok(Self::emulator(Emulator::new(Mode::Engine, threads)?)),
-            #[cfg(feature = "cuda")]
-            Backend::Cuda => Ok(Self::with(Machine::Cuda(cuda::Cuda::new(0)?))),
-            #[cfg(not(feature = "cuda"))]
-            Backend::Cuda => Err(Error::Device {
-                what: "opening the card".into(),
-                text: "this program was built without the feature `cuda`".into(),
-                advice: "build it with `--features cuda`, or run with `--backend cpu`",
-            }),
+            Backend::Cuda => Self::card(0),
             Backend::Auto if cfg!(feature = "cuda") => match Self::open(Backend::Cuda, threads) {
                 // No card is what `auto` is for; a card that refuses our kernels is a fault to hear of.
                 Err(Error::Device { .. }) => Self::open(Backend::Cpu, threads),
@@ -73,6 +66,23 @@ impl Device {
             },
             Backend::Auto => Self::open(Backend::Cpu, threads),
         }
+    }
+
+    /// The card with that number, as the driver counts them. It shares the card's primary context with all of the program
+    /// that does, and leaves threads bound to the context that they were bound to.
+    ///
+    /// # Errors
+    /// As for [`Device::open`]; where there is no such card the text says how many there are.
+    #[cfg_attr(not(feature = "cuda"), allow(unused_variables, reason = "there is none"))]
+    pub fn card(ordinal: u32) -> Result<Device, Error> {
+        #[cfg(feature = "cuda")]
+        return Ok(Self::with(Machine::Cuda(cuda::Cuda::new(ordinal)?)));
+        #[cfg(not(feature = "cuda"))]
+        Err(Error::Device {
+            what: "opening the card".into(),
+            text: "this program was built without the feature `cuda`".into(),
+            advice: "build it with `--features cuda`, or run with `--backend cpu`",
+        })
     }
 
     /// An emulator, for example one under the microscope.
@@ -283,5 +293,14 @@ mod tests {
         assert_eq!(device.bytes(), (12, 12));
         drop(buffer);
         assert_eq!(device.bytes(), (0, 12));
+    }
+
+    #[test]
+    fn a_card_that_is_not_there_is_told() {
+        let Err(error) = Device::card(u32::MAX) else { panic!("there is none of that number") };
+        assert!(matches!(error, Error::Device { .. }) && error.exit_code() == 4, "{error:?}");
+        if Device::card(0).is_ok() {
+            assert!(error.to_string().starts_with("opening card 4294967295: there "), "{error}");
+        }
     }
 }
