@@ -1,28 +1,28 @@
 //! Where kernels run: an NVIDIA card, or the CPU.
 
+mod buffer;
 #[cfg(feature = "cuda")]
 mod cuda;
-#[cfg(all(feature = "cuda", target_os = "linux"))]
-mod driver;
 pub mod emulator;
 #[cfg(any(feature = "cuda", test))]
 mod ptx;
-#[cfg(feature = "cuda")]
-mod staging;
+mod tally;
 mod view;
 
+pub use buffer::Buffer;
 pub use view::{Ahead, View};
 
 use crate::error::Error;
 use crate::query::named;
+use buffer::Memory;
 use bytemuck::Pod;
 use emulator::{Emulator, Mode};
-use nearmiss_kernels::abi::Span;
 use nearmiss_kernels::entry::Entry;
-use std::cell::Cell;
 use std::marker::PhantomData;
-use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::time::Instant;
+use tally::Tally;
 
 named! {
     /// Which machine to take.
@@ -42,11 +42,12 @@ impl Default for Backend {
     }
 }
 
-/// A machine that runs kernels, and its memory. One thread uses it; clones are the same machine.
+/// A machine that runs kernels, and its memory. Any thread may use it, one at a time; clones are the same machine. For work
+/// side by side open one for each.
 #[derive(Clone)]
 pub struct Device {
-    machine: Rc<Machine>,
-    tally: Rc<Tally>,
+    machine: Arc<Machine>,
+    tally: Arc<Tally>,
 }
 
 enum Machine {
@@ -55,20 +56,8 @@ enum Machine {
     Cuda(cuda::Cuda),
 }
 
-/// What a device has been asked for.
-#[derive(Default)]
-struct Tally {
-    launches: Cell<u64>,
-    bytes: Cell<u64>,
-    peak: Cell<u64>,
-    /// Views of memory that the host holds now.
-    views: Cell<u64>,
-    /// Most bytes that may be held; `None` for what the machine has.
-    most: Cell<Option<u64>>,
-}
-
 impl Device {
-    /// The machine that `backend` names; `threads` of the CPU, or all.
+    /// The machine that `backend` names: the first card, or `threads` of the CPU, or all.
     ///
     /// # Errors
     /// [`Error::Device`] when there is no such machine or its driver refuses, with the driver's text;
@@ -76,14 +65,7 @@ impl Device {
     pub fn open(backend: Backend, threads: Option<usize>) -> Result<Device, Error> {
         match backend {
             Backend::Cpu => Ok(Self::emulator(Emulator::new(Mode::Engine, threads)?)),
-            #[cfg(feature = "cuda")]
-            Backend::Cuda => Ok(Self::with(Machine::Cuda(cuda::Cuda::new()?))),
-            #[cfg(not(feature = "cuda"))]
-            Backend::Cuda => Err(Error::Device {
-                what: "opening the card".into(),
-                text: "this program was built without the feature `cuda`".into(),
-                advice: "build it with `--features cuda`, or run with `--backend cpu`",
-            }),
+            Backend::Cuda => Self::card(0),
             Backend::Auto if cfg!(feature = "cuda") => match Self::open(Backend::Cuda, threads) {
                 // No card is what `auto` is for; a card that refuses our kernels is a fault to hear of.
                 Err(Error::Device { .. }) => Self::open(Backend::Cpu, threads),
@@ -93,6 +75,23 @@ impl Device {
         }
     }
 
+    /// The card with that number, as the driver counts them. It shares the card's primary context with all of the program
+    /// that does, and leaves threads bound to the context that they were bound to.
+    ///
+    /// # Errors
+    /// As for [`Device::open`]; where there is no such card the text says how many there are.
+    #[cfg_attr(not(feature = "cuda"), allow(unused_variables, reason = "there is none"))]
+    pub fn card(ordinal: u32) -> Result<Device, Error> {
+        #[cfg(feature = "cuda")]
+        return Ok(Self::with(Machine::Cuda(cuda::Cuda::new(ordinal)?)));
+        #[cfg(not(feature = "cuda"))]
+        Err(Error::Device {
+            what: "opening the card".into(),
+            text: "this program was built without the feature `cuda`".into(),
+            advice: "build it with `--features cuda`, or run with `--backend cpu`",
+        })
+    }
+
     /// An emulator, for example one under the microscope.
     pub fn emulator(emulator: Emulator) -> Device {
         Self::with(Machine::Emulator(emulator))
@@ -100,12 +99,12 @@ impl Device {
 
     /// The same machine with no more than `bytes` of memory, whatever it has; of its clones too.
     pub fn limited(self, bytes: u64) -> Device {
-        self.tally.most.set(Some(bytes));
+        self.tally.most.store(bytes, Ordering::Relaxed);
         self
     }
 
     fn with(machine: Machine) -> Device {
-        Device { machine: Rc::new(machine), tally: Rc::default() }
+        Device { machine: Arc::new(machine), tally: Arc::new(Tally::new()) }
     }
 
     /// What the machine calls itself.
@@ -178,18 +177,16 @@ impl Device {
             asked: u64::MAX,
             given: isize::MAX as u64,
         })?;
-        let t = &self.tally;
-        let given = t.most.get().map_or(u64::MAX, |most| most.saturating_sub(t.bytes.get()));
-        if bytes as u64 > given {
-            return Err(Error::Room { what: "device memory, as limited".into(), asked: bytes as u64, given });
-        }
+        let most =
+            |given| Error::Room { what: "device memory, as limited".into(), asked: bytes as u64, given };
+        self.tally.take(bytes as u64).map_err(most)?;
         let memory = match &*self.machine {
-            Machine::Emulator(e) => Memory::Host(e.memory(bytes)?),
+            Machine::Emulator(e) => e.memory(bytes).map(Memory::Host),
             #[cfg(feature = "cuda")]
-            Machine::Cuda(c) => Memory::Card(c.memory(bytes)?),
+            Machine::Cuda(c) => c.memory(bytes).map(Memory::Card),
         };
-        t.bytes.set(t.bytes.get() + bytes as u64);
-        t.peak.set(t.peak.get().max(t.bytes.get()));
+        let memory = memory.inspect_err(|_| self.tally.give(bytes as u64))?;
+        self.tally.peak.fetch_max(self.bytes().0, Ordering::Relaxed);
         Ok(Buffer {
             memory,
             len,
@@ -215,19 +212,19 @@ impl Device {
     /// [`Error::Device`] with the driver's text; [`Error::Bug`] under the microscope, and while there is a [`View`].
     ///
     /// # Safety
-    /// The spans of `args` are of buffers of this device that live until the launch is done (dropping a buffer waits), and
-    /// what the kernel's card asks under "Before" holds.
+    /// The spans of `args` are of buffers of this device that live until the kernel is over (dropping a buffer waits) and that no
+    /// other thread touches meanwhile, and what the kernel's card asks under "Before" holds.
     pub unsafe fn launch<E: Entry>(&self, blocks: u32, args: &E::Args) -> Result<(), Error> {
         if blocks == 0 {
             return Ok(());
         }
         // The memory under a view must not change.
-        if self.tally.views.get() > 0 {
+        if self.tally.views.load(Ordering::Relaxed) > 0 {
             return Err(Error::Bug {
                 what: format!("{} was launched while the host looks at memory", E::NAME),
             });
         }
-        self.tally.launches.set(self.tally.launches.get() + 1);
+        self.tally.launches.fetch_add(1, Ordering::Relaxed);
         match &*self.machine {
             Machine::Emulator(e) => e.launch::<E>(blocks, args),
             #[cfg(feature = "cuda")]
@@ -249,12 +246,12 @@ impl Device {
 
     /// How many kernels were launched so far.
     pub fn launches(&self) -> u64 {
-        self.tally.launches.get()
+        self.tally.launches.load(Ordering::Relaxed)
     }
 
     /// Bytes of device memory held now, and the most held at once.
     pub fn bytes(&self) -> (u64, u64) {
-        (self.tally.bytes.get(), self.tally.peak.get())
+        (self.tally.bytes.load(Ordering::Relaxed), self.tally.peak.load(Ordering::Relaxed))
     }
 }
 
@@ -283,110 +280,37 @@ impl Mark {
     }
 }
 
-enum Memory {
-    Host(emulator::Memory),
-    #[cfg(feature = "cuda")]
-    Card(cuda::Memory),
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// Elements of `T` in a device's memory. Freed when dropped.
-pub struct Buffer<T> {
-    memory: Memory,
-    len: usize,
-    machine: Rc<Machine>,
-    tally: Rc<Tally>,
-    element: PhantomData<T>,
-}
-
-impl<T: Pod> Buffer<T> {
-    /// How many elements.
-    pub fn len(&self) -> usize {
-        self.len
-    }
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.len == 0
-    }
-    /// What a kernel is given.
-    pub fn span(&self) -> Span<T> {
-        let addr = match &self.memory {
-            Memory::Host(m) => m.addr(),
-            #[cfg(feature = "cuda")]
-            Memory::Card(m) => m.addr(),
-        };
-        // SAFETY: so many elements of zeroed memory of this device, aligned for any of them; what the kernels are given must
-        // live as long as they run, which who launches them promises.
-        unsafe { Span::new(addr, self.len as u64) }
+    #[test]
+    fn a_device_moves_between_threads_with_its_memory() {
+        fn send<T: Send>() {}
+        send::<Device>();
+        send::<Buffer<u64>>();
+        send::<View<u64>>();
+        send::<Mark>();
+        send::<crate::pipeline::Session>();
+        let device = Device::open(Backend::Cpu, Some(1)).expect("a thread");
+        let mut buffer = device.upload(&[1u32, 2, 3]).expect("memory");
+        let there = std::thread::spawn(move || {
+            buffer.write(&[4]).expect("written");
+            (buffer, device)
+        });
+        let (buffer, device) = there.join().expect("no panic");
+        assert_eq!(buffer.read(3).expect("read"), [4, 2, 3]);
+        assert_eq!(device.bytes(), (12, 12));
+        drop(buffer);
+        assert_eq!(device.bytes(), (0, 12));
     }
 
-    /// Sets the first elements, behind all that was started before.
-    ///
-    /// # Errors
-    /// [`Error::Device`] when the transfer fails.
-    ///
-    /// # Panics
-    /// When there are more items than elements: a fault of the caller.
-    pub fn write(&mut self, items: &[T]) -> Result<(), Error> {
-        assert!(items.len() <= self.len, "more items than the buffer has elements");
-        let bytes: &[u8] = bytemuck::cast_slice(items);
-        match (&mut self.memory, &*self.machine) {
-            (Memory::Host(m), Machine::Emulator(e)) => {
-                m.as_mut_slice(bytes.len()).copy_from_slice(bytes);
-                if let Some(microscope) = e.microscope() {
-                    microscope.host_wrote(m.addr(), bytes.len());
-                }
-                Ok(())
-            }
-            #[cfg(feature = "cuda")]
-            (Memory::Card(m), Machine::Cuda(c)) => c.write(m, bytes),
-            #[cfg(feature = "cuda")]
-            _ => Err(Error::Bug { what: "memory of another machine".into() }),
-        }
-    }
-
-    /// Sets every byte to zero, behind all that was started before.
-    ///
-    /// # Errors
-    /// [`Error::Device`] with the driver's text.
-    pub fn clear(&mut self) -> Result<(), Error> {
-        match (&mut self.memory, &*self.machine) {
-            #[cfg(feature = "cuda")]
-            (Memory::Card(m), Machine::Cuda(c)) => c.clear(m),
-            _ => self.write(&vec![T::zeroed(); self.len]),
-        }
-    }
-
-    /// The first `len` elements; waits for all that was started before.
-    ///
-    /// # Errors
-    /// [`Error::Device`] with the driver's text, also of a kernel that failed before.
-    ///
-    /// # Panics
-    /// When the buffer has fewer elements: a fault of the caller.
-    pub fn read(&self, len: usize) -> Result<Vec<T>, Error> {
-        assert!(len <= self.len, "more items than the buffer has elements");
-        match (&self.memory, &*self.machine) {
-            (Memory::Host(m), _) => Ok(bytemuck::cast_slice(m.as_slice(len * size_of::<T>())).to_vec()),
-            #[cfg(feature = "cuda")]
-            (Memory::Card(m), Machine::Cuda(c)) => {
-                let mut items = vec![T::zeroed(); len];
-                c.read(m, bytemuck::cast_slice_mut(&mut items))?;
-                Ok(items)
-            }
-            #[cfg(feature = "cuda")]
-            _ => Err(Error::Bug { what: "memory of another machine".into() }),
-        }
-    }
-}
-
-impl<T> Drop for Buffer<T> {
-    fn drop(&mut self) {
-        let bytes = (self.len * size_of::<T>()) as u64;
-        self.tally.bytes.set(self.tally.bytes.get() - bytes);
-        if let (Memory::Host(m), Machine::Emulator(e)) = (&self.memory, &*self.machine)
-            && let Some(microscope) = e.microscope()
-        {
-            microscope.forget(m.addr());
+    #[test]
+    fn a_card_that_is_not_there_is_told() {
+        let Err(error) = Device::card(u32::MAX) else { panic!("there is none of that number") };
+        assert!(matches!(error, Error::Device { .. }) && error.exit_code() == 4, "{error:?}");
+        if Device::card(0).is_ok() {
+            assert!(error.to_string().starts_with("opening card 4294967295: there "), "{error}");
         }
     }
 }

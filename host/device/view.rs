@@ -1,11 +1,12 @@
 //! What a device holds, looked at by the host: without a copy where the machine allows it.
 
-use super::{Buffer, Device, Machine, Memory, Tally};
+use super::buffer::{Buffer, Memory};
+use super::tally::Tally;
+use super::{Device, Machine};
 use crate::error::Error;
 use bytemuck::Pod;
-#[cfg(feature = "cuda")]
-use std::cell::Ref;
 use std::ops::Deref;
+use std::sync::atomic::Ordering;
 
 /// Elements that the host looks at. As long as there is one, no kernel may be launched: [`Device::launch`] refuses.
 pub struct View<'a, T> {
@@ -16,18 +17,18 @@ pub struct View<'a, T> {
 enum Elements<'a, T> {
     Here(&'a [T]),
     #[cfg(feature = "cuda")]
-    Staged(Ref<'a, [T]>),
+    Staged(super::cuda::Known),
     #[cfg(feature = "cuda")]
     Own(Vec<T>),
 }
 
-impl<T> Deref for View<'_, T> {
+impl<T: Pod> Deref for View<'_, T> {
     type Target = [T];
     fn deref(&self) -> &[T] {
         match &self.elements {
             Elements::Here(elements) => elements,
             #[cfg(feature = "cuda")]
-            Elements::Staged(elements) => elements,
+            Elements::Staged(known) => bytemuck::cast_slice(known.bytes()),
             #[cfg(feature = "cuda")]
             Elements::Own(elements) => elements,
         }
@@ -36,7 +37,7 @@ impl<T> Deref for View<'_, T> {
 
 impl<T> Drop for View<'_, T> {
     fn drop(&mut self) {
-        self.tally.views.set(self.tally.views.get() - 1);
+        self.tally.views.fetch_sub(1, Ordering::Relaxed);
     }
 }
 
@@ -67,13 +68,13 @@ impl<T: Pod> Buffer<T> {
             (Memory::Host(m), _) => Elements::Here(bytemuck::cast_slice(m.as_slice(bytes))),
             #[cfg(feature = "cuda")]
             (Memory::Card(m), Machine::Cuda(c)) => match c.known(m, bytes) {
-                Some(known) => Elements::Staged(Ref::map(known, bytemuck::cast_slice)),
+                Some(known) => Elements::Staged(known),
                 None => Elements::Own(self.read(len)?),
             },
             #[cfg(feature = "cuda")]
             _ => return Err(Error::Bug { what: "memory of another machine".into() }),
         };
-        self.tally.views.set(self.tally.views.get() + 1);
+        self.tally.views.fetch_add(1, Ordering::Relaxed);
         Ok(View { elements, tally: &self.tally })
     }
 }

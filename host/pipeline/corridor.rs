@@ -55,7 +55,7 @@ pub struct Corridor<R: Precision, V: Kernels> {
 }
 
 /// A corridor of any precision and any volume.
-pub trait Frames: repeat::Again {
+pub trait Frames: repeat::Again + Send {
     /// Uploads positions. A body that stands still in a continuous query has the same positions at both ends.
     ///
     /// # Errors

@@ -183,8 +183,8 @@ impl Memory {
     /// The first `bytes` bytes.
     pub fn as_slice(&self, bytes: usize) -> &[u8] {
         assert!(bytes <= self.bytes());
-        // SAFETY: within the allocation, initialised from the start, and no kernel runs while the host reads
-        // (launches end before they return).
+        // SAFETY: within the allocation, initialised from the start, and no kernel writes while the host reads
+        // (launches end before they return, and no other thread touches a launch's memory: `Device::launch`).
         unsafe { std::slice::from_raw_parts(self.start.as_ptr().cast(), bytes) }
     }
     /// The first `bytes` bytes, to write.

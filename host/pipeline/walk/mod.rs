@@ -61,7 +61,7 @@ fn resident<E: Entry>(device: &Device) -> u32 {
 }
 
 /// A way through the trees.
-pub trait Walk<V> {
+pub trait Walk<V>: Send {
     /// Launches it. All counters are zero before.
     ///
     /// # Errors

@@ -1,0 +1,121 @@
+//! Memory of a device, by elements.
+
+#[cfg(feature = "cuda")]
+use super::cuda;
+use super::tally::Tally;
+use super::{Machine, emulator};
+use crate::error::Error;
+use bytemuck::Pod;
+use nearmiss_kernels::abi::Span;
+use std::marker::PhantomData;
+use std::sync::Arc;
+
+/// Memory of a machine.
+pub(super) enum Memory {
+    Host(emulator::Memory),
+    #[cfg(feature = "cuda")]
+    Card(cuda::Memory),
+}
+
+/// Elements of `T` in a device's memory. Freed when dropped.
+pub struct Buffer<T> {
+    pub(super) memory: Memory,
+    pub(super) len: usize,
+    pub(super) machine: Arc<Machine>,
+    pub(super) tally: Arc<Tally>,
+    // None is held as such: whether `T` may be sent does not matter.
+    pub(super) element: PhantomData<fn() -> T>,
+}
+
+impl<T: Pod> Buffer<T> {
+    /// How many elements.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+    /// What a kernel is given.
+    pub fn span(&self) -> Span<T> {
+        let addr = match &self.memory {
+            Memory::Host(m) => m.addr(),
+            #[cfg(feature = "cuda")]
+            Memory::Card(m) => m.addr(),
+        };
+        // SAFETY: so many elements of zeroed memory of this device, aligned for any of them; that they live as long as a kernel
+        // uses them, who launches it promises.
+        unsafe { Span::new(addr, self.len as u64) }
+    }
+
+    /// Sets the first elements, behind all that was started before.
+    ///
+    /// # Errors
+    /// [`Error::Device`] when the transfer fails.
+    ///
+    /// # Panics
+    /// When there are more items than elements: a fault of the caller.
+    pub fn write(&mut self, items: &[T]) -> Result<(), Error> {
+        assert!(items.len() <= self.len, "more items than the buffer has elements");
+        let bytes: &[u8] = bytemuck::cast_slice(items);
+        match (&mut self.memory, &*self.machine) {
+            (Memory::Host(m), Machine::Emulator(e)) => {
+                m.as_mut_slice(bytes.len()).copy_from_slice(bytes);
+                if let Some(microscope) = e.microscope() {
+                    microscope.host_wrote(m.addr(), bytes.len());
+                }
+                Ok(())
+            }
+            #[cfg(feature = "cuda")]
+            (Memory::Card(m), Machine::Cuda(c)) => c.write(m, bytes),
+            #[cfg(feature = "cuda")]
+            _ => Err(Error::Bug { what: "memory of another machine".into() }),
+        }
+    }
+
+    /// Sets every byte to zero, behind all that was started before.
+    ///
+    /// # Errors
+    /// [`Error::Device`] with the driver's text.
+    pub fn clear(&mut self) -> Result<(), Error> {
+        match (&mut self.memory, &*self.machine) {
+            #[cfg(feature = "cuda")]
+            (Memory::Card(m), Machine::Cuda(c)) => c.clear(m),
+            _ => self.write(&vec![T::zeroed(); self.len]),
+        }
+    }
+
+    /// The first `len` elements; waits for all that was started before.
+    ///
+    /// # Errors
+    /// [`Error::Device`] with the driver's text, also of a kernel that failed before.
+    ///
+    /// # Panics
+    /// When the buffer has fewer elements: a fault of the caller.
+    pub fn read(&self, len: usize) -> Result<Vec<T>, Error> {
+        assert!(len <= self.len, "more items than the buffer has elements");
+        match (&self.memory, &*self.machine) {
+            (Memory::Host(m), _) => Ok(bytemuck::cast_slice(m.as_slice(len * size_of::<T>())).to_vec()),
+            #[cfg(feature = "cuda")]
+            (Memory::Card(m), Machine::Cuda(c)) => {
+                let mut items = vec![T::zeroed(); len];
+                c.read(m, bytemuck::cast_slice_mut(&mut items))?;
+                Ok(items)
+            }
+            #[cfg(feature = "cuda")]
+            _ => Err(Error::Bug { what: "memory of another machine".into() }),
+        }
+    }
+}
+
+impl<T> Drop for Buffer<T> {
+    fn drop(&mut self) {
+        let bytes = (self.len * size_of::<T>()) as u64;
+        self.tally.give(bytes);
+        if let (Memory::Host(m), Machine::Emulator(e)) = (&self.memory, &*self.machine)
+            && let Some(microscope) = e.microscope()
+        {
+            microscope.forget(m.addr());
+        }
+    }
+}

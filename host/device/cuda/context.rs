@@ -1,0 +1,126 @@
+//! A card's context, and what it is made for: every call of the driver is made by a thread that is bound to it.
+
+use super::driver::{Driver, Refusal, answer, driver, refused};
+use super::types::{CUcontext, CUdevice, CUdevice_attribute};
+use crate::error::Error;
+use std::ffi::c_int;
+use std::ops::Deref;
+use std::ptr::null_mut;
+use std::sync::Arc;
+
+/// A card, as the driver numbers it.
+#[derive(Clone, Copy)]
+pub struct Card {
+    driver: &'static Driver,
+    device: CUdevice,
+}
+
+impl Card {
+    /// The card with that number.
+    pub fn new(ordinal: u32) -> Result<Card, Error> {
+        let driver = driver()?;
+        // SAFETY: it may be called at any time.
+        answer(unsafe { (driver.cuInit)(0) }).map_err(refused("starting the CUDA driver"))?;
+        let (mut count, mut device) = (0, 0);
+        // SAFETY: the driver is started, and writes one number.
+        answer(unsafe { (driver.cuDeviceGetCount)(&mut count) }).map_err(refused("looking for a card"))?;
+        let there = c_int::try_from(ordinal).ok().filter(|number| *number < count);
+        let number = there.ok_or_else(|| Error::Device {
+            what: format!("opening card {ordinal}"),
+            text: match count {
+                1 => "there is one card, number 0".into(),
+                _ => format!("there are {count} cards, numbered from 0"),
+            },
+            advice: "ask for a card that is there, or run with `--backend cpu`",
+        })?;
+        // SAFETY: as above.
+        answer(unsafe { (driver.cuDeviceGet)(&mut device, number) })
+            .map_err(refused("looking for a card"))?;
+        Ok(Card { driver, device })
+    }
+
+    /// What the driver calls it.
+    pub fn name(self) -> Result<String, Error> {
+        let mut bytes = [0u8; 256];
+        // SAFETY: the driver writes at most so many bytes.
+        let code = unsafe {
+            (self.driver.cuDeviceGetName)(bytes.as_mut_ptr().cast(), bytes.len() as c_int, self.device)
+        };
+        answer(code).map_err(refused("asking the card's name"))?;
+        let name = bytes.split(|byte| *byte == 0).next().unwrap_or_default();
+        Ok(String::from_utf8_lossy(name).into_owned())
+    }
+
+    /// One of its figures.
+    pub fn read(self, what: CUdevice_attribute) -> Result<i32, Error> {
+        let mut value = 0;
+        // SAFETY: the driver writes one number.
+        let code = unsafe { (self.driver.cuDeviceGetAttribute)(&mut value, what, self.device) };
+        answer(code).map_err(refused("asking the card what it is"))?;
+        Ok(value)
+    }
+
+    /// Its primary context: the one that all of a program shares, CUDA's runtime too.
+    pub fn context(self) -> Result<Arc<Context>, Error> {
+        let mut handle = null_mut();
+        // SAFETY: the driver writes one handle, which is released once: when this is dropped.
+        answer(unsafe { (self.driver.cuDevicePrimaryCtxRetain)(&mut handle, self.device) })
+            .map_err(refused("making a context"))?;
+        Ok(Arc::new(Context { card: self, handle }))
+    }
+}
+
+/// A card's primary context. Whatever lives in it holds it.
+pub struct Context {
+    card: Card,
+    handle: CUcontext,
+}
+
+// SAFETY: the handle is the driver's, whose functions any thread may call, several at once too.
+unsafe impl Send for Context {}
+// SAFETY: as above.
+unsafe impl Sync for Context {}
+
+impl Context {
+    /// Binds the calling thread to the context, as long as the answer lives. A thread that was bound to another is bound
+    /// to that again then; one that was bound to none stays, so that the next call is cheaper.
+    pub fn bind(&self) -> Result<Bound<'_>, Refusal> {
+        let mut before = null_mut();
+        // SAFETY: the driver is started, and writes one handle.
+        answer(unsafe { (self.card.driver.cuCtxGetCurrent)(&mut before) })?;
+        if before != self.handle {
+            // SAFETY: the context is held.
+            answer(unsafe { (self.card.driver.cuCtxSetCurrent)(self.handle) })?;
+        }
+        Ok(Bound { context: self, before })
+    }
+}
+
+impl Drop for Context {
+    fn drop(&mut self) {
+        // SAFETY: retained once, and nothing is left that lives in it. A refusal finds nobody to be told.
+        let _ = unsafe { (self.card.driver.cuDevicePrimaryCtxRelease_v2)(self.card.device) };
+    }
+}
+
+/// The driver, for a thread that is bound to a context. Its handles are pointers, so it stays on that thread.
+pub struct Bound<'a> {
+    context: &'a Context,
+    before: CUcontext,
+}
+
+impl Deref for Bound<'_> {
+    type Target = Driver;
+    fn deref(&self) -> &Driver {
+        self.context.card.driver
+    }
+}
+
+impl Drop for Bound<'_> {
+    fn drop(&mut self) {
+        if !self.before.is_null() && self.before != self.context.handle {
+            // SAFETY: the thread was bound to it before; if it is gone the driver refuses, and nobody is left to be told.
+            let _ = unsafe { (self.cuCtxSetCurrent)(self.before) };
+        }
+    }
+}

@@ -1,0 +1,218 @@
+//! # The driver, found when the program runs
+//!
+//! Every function is looked up once, before the first call; what is missing is told in a sentence. An answer is a number: a
+//! newer driver may have codes that no list of ours has.
+
+use super::types::{
+    self, CUcontext, CUdevice, CUdevice_attribute, CUdeviceptr, CUevent, CUfunction, CUjit_option, CUmodule,
+    CUstream,
+};
+use crate::error::Error;
+use libloading::Library;
+use std::ffi::{CStr, c_char, c_int, c_uchar, c_uint, c_void};
+use std::sync::OnceLock;
+
+/// The driver's refusal, by its code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Refusal(pub u32);
+
+impl Refusal {
+    /// The machine, or the card, has no more memory.
+    pub const OUT_OF_MEMORY: Refusal = Refusal(types::CUDA_ERROR_OUT_OF_MEMORY);
+
+    /// The driver's name and text of the error, where it has them.
+    pub fn text(self) -> String {
+        let words = |driver: &Driver| {
+            let (mut name, mut text) = (std::ptr::null(), std::ptr::null());
+            // SAFETY: both places are ours. The driver takes any code, and knows it or refuses.
+            let answers = unsafe {
+                [(driver.cuGetErrorName)(self.0, &mut name), (driver.cuGetErrorString)(self.0, &mut text)]
+            };
+            if answers != [0, 0] || name.is_null() || text.is_null() {
+                return None;
+            }
+            // SAFETY: what the driver names so are strings that end with zero and stay.
+            let [name, text] = [name, text].map(|words| unsafe { CStr::from_ptr(words) }.to_string_lossy());
+            Some(format!("{name}: {text}"))
+        };
+        let known = DRIVER.get().and_then(|found| found.as_ref().ok()).and_then(|(driver, _)| words(driver));
+        known.unwrap_or_else(|| format!("error {}, for which the driver has no words", self.0))
+    }
+}
+
+/// What the driver answered.
+pub fn answer(code: u32) -> Result<(), Refusal> {
+    if code == 0 { Ok(()) } else { Err(Refusal(code)) }
+}
+
+/// The driver's refusal as our error.
+pub fn refused(what: &'static str) -> impl Fn(Refusal) -> Error {
+    move |refusal| match refusal {
+        Refusal::OUT_OF_MEMORY => Error::Room { what: what.into(), asked: 0, given: 0 },
+        _ => Error::Device {
+            what: what.into(),
+            text: refusal.text(),
+            advice: "look at `nvidia-smi`, or run with `--backend cpu`",
+        },
+    }
+}
+
+macro_rules! functions {
+    (
+        as_cudarc { $($name:ident($($argument:ty),*);)* }
+        with_any_code { $($teller:ident($($told:ty),*);)* }
+    ) => {
+        /// The driver's functions that we call.
+        #[allow(non_snake_case, reason = "the driver's names")]
+        pub struct Driver {
+            $(pub $name: unsafe extern "C" fn($($argument),*) -> u32,)*
+            $(pub $teller: unsafe extern "C" fn($($told),*) -> u32,)*
+        }
+
+        impl Driver {
+            /// All of them, or the name of one that is missing.
+            fn new(library: &Library) -> Result<Driver, &'static str> {
+                // SAFETY: the types are the functions': those that cudarc has from the driver's header, which a test compares.
+                unsafe {
+                    Ok(Driver {
+                        $($name: function(library, stringify!($name)).ok_or(stringify!($name))?,)*
+                        $($teller: function(library, stringify!($teller)).ok_or(stringify!($teller))?,)*
+                    })
+                }
+            }
+        }
+
+        /// The arguments are those that cudarc has from the driver's header: else this does not compile.
+        #[cfg(test)]
+        mod as_declared {
+            use cudarc::driver::sys::{self, *};
+            use std::ffi::*;
+            $(const _: unsafe fn($($argument),*) -> CUresult = sys::$name;)*
+        }
+    };
+}
+
+functions! {
+    as_cudarc {
+        cuInit(c_uint);
+        cuDeviceGetCount(*mut c_int);
+        cuDeviceGet(*mut CUdevice, c_int);
+        cuDeviceGetName(*mut c_char, c_int, CUdevice);
+        cuDeviceGetAttribute(*mut c_int, CUdevice_attribute, CUdevice);
+        cuDevicePrimaryCtxRetain(*mut CUcontext, CUdevice);
+        cuDevicePrimaryCtxRelease_v2(CUdevice);
+        cuCtxGetCurrent(*mut CUcontext);
+        cuCtxSetCurrent(CUcontext);
+        cuStreamCreate(*mut CUstream, c_uint);
+        cuStreamSynchronize(CUstream);
+        cuStreamDestroy_v2(CUstream);
+        cuEventCreate(*mut CUevent, c_uint);
+        cuEventRecord(CUevent, CUstream);
+        cuEventSynchronize(CUevent);
+        cuEventElapsedTime(*mut f32, CUevent, CUevent);
+        cuEventDestroy_v2(CUevent);
+        cuModuleLoadDataEx(*mut CUmodule, *const c_void, c_uint, *mut CUjit_option, *mut *mut c_void);
+        cuModuleGetFunction(*mut CUfunction, CUmodule, *const c_char);
+        cuModuleGetGlobal_v2(*mut CUdeviceptr, *mut usize, CUmodule, *const c_char);
+        cuModuleUnload(CUmodule);
+        cuOccupancyMaxActiveBlocksPerMultiprocessor(*mut c_int, CUfunction, c_int, usize);
+        cuLaunchKernel(
+            CUfunction, c_uint, c_uint, c_uint, c_uint, c_uint, c_uint, c_uint, CUstream,
+            *mut *mut c_void, *mut *mut c_void
+        );
+        cuMemGetInfo_v2(*mut usize, *mut usize);
+        cuMemAlloc_v2(*mut CUdeviceptr, usize);
+        cuMemFree_v2(CUdeviceptr);
+        cuMemAllocHost_v2(*mut *mut c_void, usize);
+        cuMemFreeHost(*mut c_void);
+        cuMemsetD8Async(CUdeviceptr, c_uchar, usize, CUstream);
+        cuMemcpyHtoDAsync_v2(CUdeviceptr, *const c_void, usize, CUstream);
+        cuMemcpyDtoHAsync_v2(*mut c_void, CUdeviceptr, usize, CUstream);
+        cuMemcpyDtoH_v2(*mut c_void, CUdeviceptr, usize);
+    }
+    // A code is an enum there.
+    with_any_code {
+        cuGetErrorName(u32, *mut *const c_char);
+        cuGetErrorString(u32, *mut *const c_char);
+    }
+}
+
+/// A function of the driver's library.
+///
+/// # Safety
+/// `F` is the function's type.
+unsafe fn function<F: Copy>(library: &Library, name: &str) -> Option<F> {
+    // SAFETY: the caller's promise.
+    unsafe { library.get::<F>(name.as_bytes()) }.ok().map(|found| *found)
+}
+
+/// The driver's library, by system.
+const LIBRARY: &str = if cfg!(windows) { "nvcuda.dll" } else { "libcuda.so.1" };
+
+/// The functions, and the library that they are of: it is never unloaded.
+static DRIVER: OnceLock<Result<(Driver, Library), String>> = OnceLock::new();
+
+/// Finds the driver, once.
+///
+/// # Errors
+/// A sentence that says why there is none.
+pub fn driver() -> Result<&'static Driver, Error> {
+    let found = DRIVER.get_or_init(|| {
+        // SAFETY: loading NVIDIA's driver runs its initialisers, as linking against it would.
+        let library =
+            unsafe { Library::new(LIBRARY) }.map_err(|e| format!("no NVIDIA driver on this machine: {e}"))?;
+        let driver = Driver::new(&library)
+            .map_err(|name| format!("{LIBRARY} has no function {name}: the driver is too old"))?;
+        Ok((driver, library))
+    });
+    found.as_ref().map(|(driver, _)| driver).map_err(|text| Error::Device {
+        what: "looking for the CUDA driver".into(),
+        text: text.clone(),
+        advice: "install NVIDIA's driver, or run with `--backend cpu`",
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_machine_without_driver_is_told_in_a_sentence() {
+        let Err(error) = driver() else { return };
+        assert!(matches!(error, Error::Device { .. }) && error.exit_code() == 4, "{error:?}");
+        assert!(error.to_string().starts_with("looking for the CUDA driver: "), "{error}");
+    }
+
+    #[test]
+    fn an_error_always_has_a_text() {
+        // With a driver and without: one that it knows, and one that nobody does.
+        for code in [34, 12_345] {
+            assert!(!Refusal(code).text().is_empty());
+        }
+        let _ = driver();
+        assert!(Refusal(12_345).text().contains("12345"));
+    }
+
+    /// What a kernel comes to that cannot be launched, is killed, or reads what is not its own: an error with its name.
+    #[test]
+    fn a_failed_launch_names_its_kernel() {
+        use cudarc::driver::sys::CUresult::*;
+        for code in [
+            CUDA_ERROR_LAUNCH_FAILED,
+            CUDA_ERROR_LAUNCH_TIMEOUT,
+            CUDA_ERROR_LAUNCH_OUT_OF_RESOURCES,
+            CUDA_ERROR_ILLEGAL_ADDRESS,
+            CUDA_ERROR_INVALID_PTX,
+            CUDA_ERROR_NOT_FOUND,
+            CUDA_ERROR_ECC_UNCORRECTABLE,
+            CUDA_ERROR_UNKNOWN,
+        ] {
+            let error = refused("narrow_sift_f32")(Refusal(code as u32));
+            assert!(matches!(error, Error::Device { .. }) && error.exit_code() == 4, "{error:?}");
+            let text = error.to_string();
+            assert!(text.starts_with("narrow_sift_f32: ") && text.contains("--backend cpu"), "{text}");
+        }
+        let memory = refused("loading the kernels")(Refusal::OUT_OF_MEMORY);
+        assert!(matches!(memory, Error::Room { .. }) && memory.exit_code() == 4, "{memory:?}");
+    }
+}

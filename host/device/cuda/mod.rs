@@ -1,0 +1,271 @@
+//! An NVIDIA card, through its driver. The kernels' PTX is embedded; the driver compiles it for the card it finds.
+
+mod context;
+mod driver;
+mod memory;
+mod module;
+mod staging;
+mod stream;
+mod types;
+
+pub use memory::Memory;
+pub use staging::Known;
+
+use super::ptx::Parts;
+use crate::error::Error;
+use context::{Bound, Card, Context};
+use driver::{Refusal, refused};
+use module::{Function, Module};
+use nearmiss_kernels::entry::Entry as Kernel;
+use staging::Staging;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use stream::Stream;
+
+/// The kernels, as build.rs found or made them.
+const PTX: &str = include_str!(concat!(env!("OUT_DIR"), "/nearmiss.ptx"));
+/// The stamp of the sources that this program was built with.
+const STAMP: &str = env!("NEARMISS_STAMP");
+/// The oldest card that the PTX is for: compute capability 8.0.
+const CAPABILITY: (i32, i32) = (8, 0);
+
+/// What every call begins with.
+const BINDING: &str = "binding a thread to the card";
+
+/// A card, its context, one stream, and a module for each kernel that was used.
+pub struct Cuda {
+    name: String,
+    processors: u32,
+    resident_lanes: u32,
+    staging: Mutex<Staging>,
+    /// Counts what may change the card's memory: what was read ahead holds until the next of these.
+    epoch: AtomicU64,
+    parts: Parts<'static>,
+    functions: Mutex<HashMap<&'static str, Function>>,
+    stream: Stream,
+    context: Arc<Context>,
+}
+
+/// A point in the card's stream.
+pub struct Event(stream::Event);
+
+impl Event {
+    /// Milliseconds to a later event; waits for it.
+    pub fn to(&self, later: &Event) -> Result<f64, Error> {
+        later.0.wait().map_err(refused("waiting for the card"))?;
+        self.0.to(&later.0).map(f64::from).map_err(refused("reading the card's clock"))
+    }
+}
+
+/// What a lock guards, also after a panic: nothing is left half done that the next call would mind.
+fn locked<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
+    lock.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Cuda {
+    /// The card with that number.
+    pub fn new(ordinal: u32) -> Result<Self, Error> {
+        let card = Card::new(ordinal)?;
+        let name = card.name()?;
+        let capability = (
+            card.read(types::CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR)?,
+            card.read(types::CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MINOR)?,
+        );
+        if capability < CAPABILITY {
+            return Err(Error::Device {
+                what: format!("using the card {name}"),
+                text: format!(
+                    "it has compute capability {}.{}, the kernels need 8.0",
+                    capability.0, capability.1
+                ),
+                advice: "run with `--backend cpu`",
+            });
+        }
+        let processors = card.read(types::CU_DEVICE_ATTRIBUTE_MULTIPROCESSOR_COUNT)? as u32;
+        let lanes = card.read(types::CU_DEVICE_ATTRIBUTE_MAX_THREADS_PER_MULTIPROCESSOR)? as u32;
+        let context = card.context()?;
+        let stream = Stream::new(&context).map_err(refused("making a stream"))?;
+        let parts = Parts::new(PTX);
+        let bound = context.bind().map_err(refused(BINDING))?;
+        let common = Module::new(&context, &bound, parts.common()).map_err(refused("loading the kernels"))?;
+        is_ours(common.global(&bound, c"NEARMISS_STAMP").map_err(refused("reading the kernels' stamp"))?)?;
+        let staging = Staging::new(&context, &bound)?;
+        drop(bound);
+        Ok(Cuda {
+            name,
+            processors,
+            resident_lanes: processors * lanes,
+            staging: Mutex::new(staging),
+            epoch: AtomicU64::new(0),
+            parts,
+            functions: Mutex::default(),
+            stream,
+            context,
+        })
+    }
+
+    /// The driver, for this thread, which every call below asks for once.
+    fn bind(&self) -> Result<Bound<'_>, Error> {
+        self.context.bind().map_err(refused(BINDING))
+    }
+
+    /// What the driver calls the card.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Blocks of that many lanes that fill the card.
+    pub fn resident_blocks(&self, lanes: u32) -> u32 {
+        self.resident_lanes / lanes
+    }
+
+    /// Zeroed memory of the card.
+    pub fn memory(&self, bytes: usize) -> Result<Memory, Error> {
+        let card = self.bind()?;
+        let mut memory =
+            Memory::new(&self.context, &card, bytes.max(16)).map_err(|refusal| match refusal {
+                Refusal::OUT_OF_MEMORY => Error::Room {
+                    what: "memory of the card".into(),
+                    asked: bytes as u64,
+                    given: memory::free(&card),
+                },
+                other => refused("taking memory of the card")(other),
+            })?;
+        // What reads it comes behind this in the stream.
+        self.cleared(&card, &mut memory)?;
+        Ok(memory)
+    }
+
+    /// Sets every byte to zero.
+    pub fn clear(&self, memory: &mut Memory) -> Result<(), Error> {
+        self.cleared(&self.bind()?, memory)
+    }
+
+    fn cleared(&self, card: &Bound, memory: &mut Memory) -> Result<(), Error> {
+        self.changes();
+        memory.clear(card, &self.stream).map_err(refused("clearing memory of the card"))
+    }
+
+    /// What was read ahead holds no longer.
+    fn changes(&self) {
+        self.epoch.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// Copies bytes to the card, through page-locked memory; does not wait for the card.
+    pub fn write(&self, memory: &mut Memory, bytes: &[u8]) -> Result<(), Error> {
+        self.changes();
+        locked(&self.staging).write(&self.bind()?, &self.stream, memory, bytes)
+    }
+
+    /// Copies bytes from the card, through page-locked memory; waits for all work before, unless it was read ahead.
+    pub fn read(&self, memory: &Memory, bytes: &mut [u8]) -> Result<(), Error> {
+        if let Some(known) = self.known(memory, bytes.len()) {
+            bytes.copy_from_slice(known.bytes());
+            return Ok(());
+        }
+        let card = self.bind()?;
+        let mut staging = locked(&self.staging);
+        if !staging.is_looked_at() {
+            return staging.read(&card, &self.stream, memory, bytes);
+        }
+        drop(staging);
+        // The host still looks at what was read ahead, of which this is not: a copy of its own.
+        self.stream.wait(&card).map_err(refused("waiting for the card"))?;
+        memory.read_now(&card, bytes).map_err(refused("copying from the card"))
+    }
+
+    /// Copies the first bytes of several buffers, as many as fit into page-locked memory, with one wait: those that are
+    /// asked for next are then there.
+    pub fn read_ahead(&self, all: &[(&Memory, usize)]) -> Result<(), Error> {
+        let epoch = self.epoch.load(Ordering::Relaxed);
+        locked(&self.staging).read_ahead(&self.bind()?, &self.stream, epoch, all)
+    }
+
+    /// The first bytes of a buffer, if they were read ahead and nothing has changed since.
+    pub fn known(&self, memory: &Memory, bytes: usize) -> Option<Known> {
+        locked(&self.staging).known(self.epoch.load(Ordering::Relaxed), memory.addr(), bytes)
+    }
+
+    /// Starts a kernel.
+    pub fn launch<E: Kernel>(&self, blocks: u32, args: &E::Args) -> Result<(), Error> {
+        self.changes();
+        self.with_function::<E, _>(|card, function| {
+            // SAFETY: the kernel takes one parameter of this type (the stamp says that host and PTX come from the same
+            // sources), and its spans are memory of this card that the caller's buffers keep alive: freeing a buffer
+            // waits for the launches before it.
+            unsafe { function.launch(card, &self.stream, (blocks, E::LANES, E::SHARED), *args) }
+        })
+    }
+
+    /// How many blocks of a kernel run at once: its registers and shared memory tell.
+    pub fn blocks_at_once<E: Kernel>(&self) -> Result<u32, Error> {
+        let each =
+            self.with_function::<E, _>(|card, function| function.blocks_at_once(card, E::LANES, E::SHARED))?;
+        Ok(each * self.processors)
+    }
+
+    /// Hands a kernel to `body`; its module is loaded at the first time.
+    fn with_function<E: Kernel, T>(
+        &self,
+        body: impl FnOnce(&Bound, &Function) -> Result<T, Refusal>,
+    ) -> Result<T, Error> {
+        let card = self.bind()?;
+        let mut functions = locked(&self.functions);
+        let function = match functions.entry(E::NAME) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(new) => {
+                let text = self.parts.module(E::NAME);
+                let text =
+                    text.ok_or_else(|| Error::Bug { what: format!("no kernel {} in the PTX", E::NAME) })?;
+                let module = Module::new(&self.context, &card, &text).map_err(refused(E::NAME))?;
+                new.insert(module.function(&card, E::NAME).map_err(refused(E::NAME))?)
+            }
+        };
+        body(&card, function).map_err(refused(E::NAME))
+    }
+
+    /// A point in the stream.
+    pub fn mark(&self) -> Result<Event, Error> {
+        let card = self.bind()?;
+        let event = stream::Event::new(&self.context, &card).map_err(refused("making an event"))?;
+        event.record(&card, &self.stream).map_err(refused("recording an event"))?;
+        Ok(Event(event))
+    }
+}
+
+impl Drop for Cuda {
+    /// Copies under way must not outlive the page-locked memory that they read.
+    fn drop(&mut self) {
+        // A card that fails here has failed before, and nobody is left to be told.
+        if let Ok(card) = self.context.bind() {
+            let _ = self.stream.wait(&card);
+        }
+    }
+}
+
+/// Whether kernels with that stamp come from this program's sources.
+fn is_ours(found: u64) -> Result<(), Error> {
+    let found = format!("{found:016x}");
+    if found == STAMP { Ok(()) } else { Err(Error::Stamp { found, wanted: STAMP.into() }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kernels_of_other_sources_are_refused() {
+        let ours = u64::from_str_radix(STAMP, 16).expect("sixteen digits");
+        is_ours(ours).expect("our own");
+        for bit in 0..64 {
+            let error = is_ours(ours ^ 1 << bit).expect_err("another bit");
+            assert!(matches!(error, Error::Stamp { .. }) && error.exit_code() == 4, "{error}");
+            assert!(
+                error.to_string().contains(STAMP) && error.to_string().contains("cargo build"),
+                "{error}"
+            );
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! Kernels that the driver has compiled.
+
+use super::context::{Bound, Context};
+use super::driver::{Refusal, answer};
+use super::stream::Stream;
+use super::types::{self, CUfunction, CUmodule};
+use std::ffi::{CStr, CString, c_int, c_void};
+use std::ptr::null_mut;
+use std::sync::Arc;
+
+/// PTX that the driver has compiled for the card.
+pub struct Module {
+    context: Arc<Context>,
+    handle: CUmodule,
+}
+
+// SAFETY: the handle is the driver's, whose functions any thread may call, several at once too.
+unsafe impl Send for Module {}
+// SAFETY: as above.
+unsafe impl Sync for Module {}
+
+impl Module {
+    /// Compiles a text. The driver keeps the lines of the Rust sources, for profilers; the machine code is the same.
+    pub fn new(context: &Arc<Context>, card: &Bound, ptx: &str) -> Result<Module, Refusal> {
+        let ptx = text(ptx)?;
+        let mut options = [types::CU_JIT_GENERATE_LINE_INFO];
+        let mut values = [std::ptr::without_provenance_mut::<c_void>(1)];
+        let mut handle = null_mut();
+        // SAFETY: the text ends with zero; there is a value for the one option, a number in the place of a pointer; the
+        // driver writes one handle, which is unloaded once.
+        answer(unsafe {
+            (card.cuModuleLoadDataEx)(
+                &mut handle,
+                ptx.as_ptr().cast(),
+                options.len() as u32,
+                options.as_mut_ptr(),
+                values.as_mut_ptr(),
+            )
+        })?;
+        Ok(Module { context: context.clone(), handle })
+    }
+
+    /// A kernel of it.
+    pub fn function(self, card: &Bound, name: &str) -> Result<Function, Refusal> {
+        let name = text(name)?;
+        let mut handle = null_mut();
+        // SAFETY: the module lives, the name ends with zero, and the driver writes one handle.
+        answer(unsafe { (card.cuModuleGetFunction)(&mut handle, self.handle, name.as_ptr()) })?;
+        Ok(Function { handle, _module: self })
+    }
+
+    /// A number in the card's memory.
+    pub fn global(&self, card: &Bound, name: &CStr) -> Result<u64, Refusal> {
+        let (mut addr, mut bytes, mut value) = (0, 0, 0u64);
+        // SAFETY: the module lives, the name ends with zero, and the driver writes two numbers.
+        answer(unsafe { (card.cuModuleGetGlobal_v2)(&mut addr, &mut bytes, self.handle, name.as_ptr()) })?;
+        if bytes != size_of::<u64>() {
+            return Err(Refusal(types::CUDA_ERROR_NOT_FOUND));
+        }
+        // SAFETY: so many bytes are there, and as many here; the call waits for the copy.
+        answer(unsafe { (card.cuMemcpyDtoH_v2)((&raw mut value).cast(), addr, bytes) })?;
+        Ok(value)
+    }
+}
+
+/// A text that ends with zero. One with a zero inside is no text for the driver.
+fn text(text: &str) -> Result<CString, Refusal> {
+    CString::new(text).map_err(|_| Refusal(types::CUDA_ERROR_INVALID_VALUE))
+}
+
+impl Drop for Module {
+    fn drop(&mut self) {
+        if let Ok(card) = self.context.bind() {
+            // SAFETY: loaded once, unloaded once, after the card's work was waited for (`Cuda::drop`) or before there was
+            // any. A refusal finds nobody to be told.
+            let _ = unsafe { (card.cuModuleUnload)(self.handle) };
+        }
+    }
+}
+
+/// A kernel, with its module.
+pub struct Function {
+    handle: CUfunction,
+    _module: Module,
+}
+
+// SAFETY: the handle is the driver's, whose functions any thread may call, several at once too.
+unsafe impl Send for Function {}
+// SAFETY: as above.
+unsafe impl Sync for Function {}
+
+impl Function {
+    /// Starts it.
+    ///
+    /// # Safety
+    /// `parameter` is the kernel's only one, of its type, and what it names is memory that lives until the launch is over.
+    pub unsafe fn launch<T: Copy>(
+        &self,
+        card: &Bound,
+        stream: &Stream,
+        (blocks, lanes, shared): (u32, u32, u32),
+        mut parameter: T,
+    ) -> Result<(), Refusal> {
+        let mut parameters = [(&raw mut parameter).cast::<c_void>()];
+        // SAFETY: module and stream live; the driver copies the parameter before it returns; the rest is the caller's promise.
+        answer(unsafe {
+            (card.cuLaunchKernel)(
+                self.handle,
+                blocks,
+                1,
+                1,
+                lanes,
+                1,
+                1,
+                shared,
+                stream.handle(),
+                parameters.as_mut_ptr(),
+                null_mut(),
+            )
+        })
+    }
+
+    /// Blocks of it that a multiprocessor runs at once.
+    pub fn blocks_at_once(&self, card: &Bound, lanes: u32, shared: u32) -> Result<u32, Refusal> {
+        let mut blocks = 0;
+        // SAFETY: the module lives, and the driver writes one number.
+        answer(unsafe {
+            (card.cuOccupancyMaxActiveBlocksPerMultiprocessor)(
+                &mut blocks,
+                self.handle,
+                lanes as c_int,
+                shared as usize,
+            )
+        })?;
+        Ok(blocks as u32)
+    }
+}

@@ -1,0 +1,180 @@
+//! Page-locked memory that transfers go through: copies run beside the host, and what a frame is sure to be asked for is
+//! read ahead of being asked, all of it with one wait.
+
+use super::context::{Bound, Context};
+use super::driver::refused;
+use super::memory::{Locked, Memory};
+use super::stream::Stream;
+use crate::error::Error;
+use std::sync::Arc;
+
+/// Bytes of it at first, and of the largest piece of an upload.
+const FIRST: usize = 8 << 20;
+const PIECE: usize = 4 << 20;
+/// It grows up to so many bytes for what is read ahead; more is read when it is asked for, in pieces.
+const MOST: usize = 256 << 20;
+/// Where a copy may begin: enough for every element.
+const ALIGN: usize = 256;
+
+/// The memory. What lies before `used` may still be under way. Who looks at what was read ahead holds it too.
+pub struct Staging {
+    context: Arc<Context>,
+    memory: Arc<Locked>,
+    used: usize,
+    ahead: Vec<Ahead>,
+    /// The stream's epoch when `ahead` was read.
+    epoch: u64,
+}
+
+/// The first bytes of a buffer of the card.
+struct Ahead {
+    addr: u64,
+    at: usize,
+    bytes: usize,
+}
+
+/// Bytes that were read ahead. As long as there are some, nothing else goes through the memory.
+pub struct Known {
+    memory: Arc<Locked>,
+    at: usize,
+    bytes: usize,
+}
+
+impl Known {
+    /// The bytes.
+    pub fn bytes(&self) -> &[u8] {
+        self.memory.piece(self.at, self.bytes)
+    }
+}
+
+fn locked(context: &Arc<Context>, card: &Bound, bytes: usize) -> Result<Arc<Locked>, Error> {
+    Locked::new(context, card, bytes).map(Arc::new).map_err(refused("locking host memory"))
+}
+
+impl Staging {
+    /// Takes the memory.
+    pub fn new(context: &Arc<Context>, card: &Bound) -> Result<Staging, Error> {
+        let memory = locked(context, card, FIRST)?;
+        Ok(Staging { context: context.clone(), memory, used: 0, ahead: Vec::new(), epoch: 0 })
+    }
+
+    /// Whether the host still looks at what was read ahead.
+    pub fn is_looked_at(&mut self) -> bool {
+        self.own().is_err()
+    }
+
+    /// The memory, if nobody looks at it. Nobody but `known` hands it on, so that this holds as long as `self` is borrowed.
+    fn own(&mut self) -> Result<&mut Locked, Error> {
+        let seen = || Error::Bug { what: "a transfer while the host looks at another".into() };
+        Arc::get_mut(&mut self.memory).ok_or_else(seen)
+    }
+
+    /// Where so many bytes are free. Waits for what is under way only where there is no more room, and takes more memory
+    /// only where there never was.
+    fn room(&mut self, card: &Bound, stream: &Stream, bytes: usize) -> Result<usize, Error> {
+        let wanted = bytes.next_multiple_of(ALIGN);
+        let there = self.own()?.len();
+        if self.used + wanted > there {
+            stream.wait(card).map_err(refused("waiting for copies"))?;
+            self.used = 0;
+            self.ahead.clear();
+            if wanted > there {
+                self.memory = locked(&self.context, card, wanted.next_power_of_two())?;
+            }
+        }
+        let at = self.used;
+        self.used += wanted;
+        Ok(at)
+    }
+
+    /// Copies bytes to the card behind all that was started before; waits for nothing but room.
+    pub fn write(
+        &mut self,
+        card: &Bound,
+        stream: &Stream,
+        to: &mut Memory,
+        bytes: &[u8],
+    ) -> Result<(), Error> {
+        for (piece, start) in bytes.chunks(PIECE).zip((0..).step_by(PIECE)) {
+            let at = self.room(card, stream, piece.len())?;
+            let from = self.own()?.piece_mut(at, piece.len());
+            from.copy_from_slice(piece);
+            // SAFETY: this room is not touched again before the stream was waited for (`room`), nor given back (the card's
+            // drop waits).
+            unsafe { to.write(card, stream, start, from) }.map_err(refused("copying to the card"))?;
+        }
+        Ok(())
+    }
+
+    /// Starts the copy of a piece of a buffer, and says where it will be.
+    fn start(
+        &mut self,
+        card: &Bound,
+        stream: &Stream,
+        from: &Memory,
+        (start, bytes): (usize, usize),
+    ) -> Result<usize, Error> {
+        let at = self.room(card, stream, bytes)?;
+        let to = self.own()?.piece_mut(at, bytes);
+        // SAFETY: nobody reads this room before the stream was waited for, which every caller does; else as in `write`.
+        unsafe { from.read(card, stream, start, to) }.map_err(refused("copying from the card"))?;
+        Ok(at)
+    }
+
+    /// Waits for all work before: then all room is free, but for what was read ahead.
+    fn wait(&mut self, card: &Bound, stream: &Stream) -> Result<(), Error> {
+        stream.wait(card).map_err(refused("copying from the card"))?;
+        self.used = self.ahead.iter().map(|a| (a.at + a.bytes).next_multiple_of(ALIGN)).max().unwrap_or(0);
+        Ok(())
+    }
+
+    /// Copies bytes from the card, in pieces; waits for all work before.
+    pub fn read(
+        &mut self,
+        card: &Bound,
+        stream: &Stream,
+        from: &Memory,
+        bytes: &mut [u8],
+    ) -> Result<(), Error> {
+        for (piece, start) in bytes.chunks_mut(PIECE).zip((0..).step_by(PIECE)) {
+            let at = self.start(card, stream, from, (start, piece.len()))?;
+            self.wait(card, stream)?;
+            piece.copy_from_slice(self.memory.piece(at, piece.len()));
+        }
+        if bytes.is_empty() { self.wait(card, stream) } else { Ok(()) }
+    }
+
+    /// Copies the first bytes of several buffers from the card with one wait, where they fit; they hold for that epoch.
+    pub fn read_ahead(
+        &mut self,
+        card: &Bound,
+        stream: &Stream,
+        epoch: u64,
+        all: &[(&Memory, usize)],
+    ) -> Result<(), Error> {
+        self.own()?;
+        self.ahead.clear();
+        let sum: usize = all.iter().map(|(_, bytes)| bytes.next_multiple_of(ALIGN)).sum();
+        if sum > MOST {
+            return Ok(());
+        }
+        // Room for all at once, so that none of it makes room for another.
+        let whole = self.room(card, stream, sum)?;
+        self.used = whole;
+        let mut ahead = Vec::with_capacity(all.len());
+        for (memory, bytes) in all.iter().filter(|(_, bytes)| *bytes > 0) {
+            let at = self.start(card, stream, memory, (0, *bytes))?;
+            ahead.push(Ahead { addr: memory.addr(), at, bytes: *bytes });
+        }
+        (self.ahead, self.epoch) = (ahead, epoch);
+        // What could not be waited for is not there.
+        self.wait(card, stream).inspect_err(|_| self.ahead.clear())
+    }
+
+    /// The first bytes of the buffer at `addr`, if they were read ahead in this epoch.
+    pub fn known(&self, epoch: u64, addr: u64, bytes: usize) -> Option<Known> {
+        let fits = |a: &&Ahead| self.epoch == epoch && a.addr == addr && a.bytes >= bytes;
+        let found = self.ahead.iter().find(fits)?;
+        Some(Known { memory: self.memory.clone(), at: found.at, bytes })
+    }
+}

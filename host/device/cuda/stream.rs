@@ -1,0 +1,102 @@
+//! The order of the card's work: a stream, and points in it.
+
+use super::context::{Bound, Context};
+use super::driver::{Refusal, answer};
+use super::types::{self, CUevent, CUstream};
+use std::ptr::null_mut;
+use std::sync::Arc;
+
+/// Work that the card does in order. It waits for nobody else's.
+pub struct Stream {
+    context: Arc<Context>,
+    handle: CUstream,
+}
+
+// SAFETY: the handle is the driver's, whose functions any thread may call, several at once too.
+unsafe impl Send for Stream {}
+// SAFETY: as above.
+unsafe impl Sync for Stream {}
+
+impl Stream {
+    /// A stream of its own: nothing on the default stream holds it up.
+    pub fn new(context: &Arc<Context>) -> Result<Stream, Refusal> {
+        let card = context.bind()?;
+        let mut handle = null_mut();
+        // SAFETY: the driver writes one handle, which is destroyed once.
+        answer(unsafe { (card.cuStreamCreate)(&mut handle, types::CU_STREAM_NON_BLOCKING) })?;
+        Ok(Stream { context: context.clone(), handle })
+    }
+
+    /// Its handle.
+    pub fn handle(&self) -> CUstream {
+        self.handle
+    }
+
+    /// Waits for all work before.
+    pub fn wait(&self, card: &Bound) -> Result<(), Refusal> {
+        // SAFETY: the stream lives.
+        answer(unsafe { (card.cuStreamSynchronize)(self.handle) })
+    }
+}
+
+impl Drop for Stream {
+    fn drop(&mut self) {
+        if let Ok(card) = self.context.bind() {
+            // SAFETY: made once, destroyed once. A refusal finds nobody to be told.
+            let _ = unsafe { (card.cuStreamDestroy_v2)(self.handle) };
+        }
+    }
+}
+
+/// A point in a stream.
+pub struct Event {
+    context: Arc<Context>,
+    handle: CUevent,
+}
+
+// SAFETY: the handle is the driver's, whose functions any thread may call, several at once too.
+unsafe impl Send for Event {}
+// SAFETY: as above.
+unsafe impl Sync for Event {}
+
+impl Event {
+    /// An event that is not yet in a stream.
+    pub fn new(context: &Arc<Context>, card: &Bound) -> Result<Event, Refusal> {
+        let mut handle = null_mut();
+        // SAFETY: the driver writes one handle, which is destroyed once.
+        answer(unsafe { (card.cuEventCreate)(&mut handle, types::CU_EVENT_DEFAULT) })?;
+        Ok(Event { context: context.clone(), handle })
+    }
+
+    /// Puts it behind all work before.
+    pub fn record(&self, card: &Bound, stream: &Stream) -> Result<(), Refusal> {
+        // SAFETY: both live.
+        answer(unsafe { (card.cuEventRecord)(self.handle, stream.handle) })
+    }
+
+    /// Waits for it.
+    pub fn wait(&self) -> Result<(), Refusal> {
+        let card = self.context.bind()?;
+        // SAFETY: it lives.
+        answer(unsafe { (card.cuEventSynchronize)(self.handle) })
+    }
+
+    /// Milliseconds to a later event that was waited for.
+    pub fn to(&self, later: &Event) -> Result<f32, Refusal> {
+        let card = self.context.bind()?;
+        let mut ms = 0.0;
+        // SAFETY: both live, and the driver writes one number.
+        answer(unsafe { (card.cuEventElapsedTime)(&mut ms, self.handle, later.handle) })?;
+        Ok(ms)
+    }
+}
+
+impl Drop for Event {
+    fn drop(&mut self) {
+        if let Ok(card) = self.context.bind() {
+            // SAFETY: made once, destroyed once; the driver keeps what the stream still needs. A refusal finds nobody to
+            // be told.
+            let _ = unsafe { (card.cuEventDestroy_v2)(self.handle) };
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! The driver's types and constants, as far as we call it (CUDA Driver API reference, 11.8; none has changed since 8.0).
+
+#![allow(non_camel_case_types, reason = "the driver's names")]
+
+use std::ffi::{c_int, c_void};
+
+pub type CUcontext = *mut c_void;
+pub type CUdevice = c_int;
+pub type CUdeviceptr = u64;
+pub type CUdevice_attribute = u32;
+pub type CUevent = *mut c_void;
+pub type CUfunction = *mut c_void;
+pub type CUjit_option = u32;
+pub type CUmodule = *mut c_void;
+pub type CUstream = *mut c_void;
+
+pub const CUDA_ERROR_INVALID_VALUE: u32 = 1;
+pub const CUDA_ERROR_OUT_OF_MEMORY: u32 = 2;
+pub const CUDA_ERROR_NOT_FOUND: u32 = 500;
+
+pub const CU_DEVICE_ATTRIBUTE_MULTIPROCESSOR_COUNT: CUdevice_attribute = 16;
+pub const CU_DEVICE_ATTRIBUTE_MAX_THREADS_PER_MULTIPROCESSOR: CUdevice_attribute = 39;
+pub const CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR: CUdevice_attribute = 75;
+pub const CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MINOR: CUdevice_attribute = 76;
+
+pub const CU_EVENT_DEFAULT: u32 = 0;
+pub const CU_STREAM_NON_BLOCKING: u32 = 1;
+pub const CU_JIT_GENERATE_LINE_INFO: CUjit_option = 13;
+
+/// Ours are those of the driver's header, as cudarc has them from it.
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cudarc::driver::sys;
+
+    #[test]
+    fn sizes_and_constants_are_the_headers() {
+        let ours = [
+            size_of::<CUcontext>(),
+            size_of::<CUdevice>(),
+            size_of::<CUdeviceptr>(),
+            size_of::<CUdevice_attribute>(),
+            size_of::<CUevent>(),
+            size_of::<CUfunction>(),
+            size_of::<CUjit_option>(),
+            size_of::<CUmodule>(),
+            size_of::<CUstream>(),
+        ];
+        let theirs = [
+            size_of::<sys::CUcontext>(),
+            size_of::<sys::CUdevice>(),
+            size_of::<sys::CUdeviceptr>(),
+            size_of::<sys::CUdevice_attribute>(),
+            size_of::<sys::CUevent>(),
+            size_of::<sys::CUfunction>(),
+            size_of::<sys::CUjit_option>(),
+            size_of::<sys::CUmodule>(),
+            size_of::<sys::CUstream>(),
+        ];
+        assert_eq!(ours, theirs);
+        use sys::CUdevice_attribute as Attribute;
+        let pairs = [
+            (CUDA_ERROR_INVALID_VALUE, sys::CUresult::CUDA_ERROR_INVALID_VALUE as u32),
+            (CUDA_ERROR_OUT_OF_MEMORY, sys::CUresult::CUDA_ERROR_OUT_OF_MEMORY as u32),
+            (CUDA_ERROR_NOT_FOUND, sys::CUresult::CUDA_ERROR_NOT_FOUND as u32),
+            (
+                CU_DEVICE_ATTRIBUTE_MULTIPROCESSOR_COUNT,
+                Attribute::CU_DEVICE_ATTRIBUTE_MULTIPROCESSOR_COUNT as u32,
+            ),
+            (
+                CU_DEVICE_ATTRIBUTE_MAX_THREADS_PER_MULTIPROCESSOR,
+                Attribute::CU_DEVICE_ATTRIBUTE_MAX_THREADS_PER_MULTIPROCESSOR as u32,
+            ),
+            (
+                CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR,
+                Attribute::CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR as u32,
+            ),
+            (
+                CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MINOR,
+                Attribute::CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MINOR as u32,
+            ),
+            (CU_EVENT_DEFAULT, sys::CUevent_flags::CU_EVENT_DEFAULT as u32),
+            (CU_STREAM_NON_BLOCKING, sys::CUstream_flags::CU_STREAM_NON_BLOCKING as u32),
+            (CU_JIT_GENERATE_LINE_INFO, sys::CUjit_option::CU_JIT_GENERATE_LINE_INFO as u32),
+        ];
+        assert!(pairs.iter().all(|(ours, theirs)| ours == theirs), "{pairs:?}");
+    }
+}
