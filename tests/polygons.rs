@@ -294,3 +294,13 @@ fn frames_are_cut_as_the_first() {
     let cut = Mesh::new("cut", t1.positions().clone(), t0.faces().to_vec()).unwrap();
     assert!(Body::moving(t0, cut).is_ok());
 }
+
+#[test]
+fn a_welded_mesh_keeps_its_polygons() {
+    let text = DART.replace("v 9 9 9", "v -0 0 0");
+    let (mesh, merged) = parse(&text).unwrap().weld();
+    assert_eq!((merged, mesh.faces()), (1, [[0, 1, 0], [0, 1, 2], [3, 0, 2], [0, 3, 2]].as_slice()));
+    assert_eq!(mesh.file_face(2), 1);
+    let moved = parse(&frame("v 1 1 0\nv 3 1 0\n").replace("v 9 9 9", "v 0 0 0")).unwrap().weld().0;
+    assert_eq!(Body::moving(mesh.clone(), moved).unwrap().faces(), mesh.faces());
+}

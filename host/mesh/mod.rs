@@ -18,6 +18,7 @@ mod read;
 mod sequence;
 mod topology;
 mod topology_check;
+mod weld;
 
 pub use door::{MAX_ABS_F32, MAX_ABS_F64, MAX_FACES, MAX_VERTICES};
 pub use obj::ObjProblem;

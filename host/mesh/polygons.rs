@@ -59,6 +59,11 @@ impl Polygons {
         self.cut.push([face as u32, self.corners.len() as u32]);
         self.corners.extend(corners);
     }
+
+    /// Gives vertices other names.
+    pub fn rename(&mut self, names: &[u32]) {
+        self.corners.iter_mut().for_each(|vertex| *vertex = names[*vertex as usize]);
+    }
 }
 
 /// What readers gather: every face as a fan around its first corner, in the file's order.

@@ -1,6 +1,7 @@
 //! A body: one mesh at one frame, or at the two ends of a step.
 
 use super::polygons::Polygons;
+use super::weld::{self, Vertices};
 use super::{Mesh, Positions, Problem};
 use crate::Error;
 
@@ -79,6 +80,25 @@ impl Body {
     /// The face of the file that a triangle is part of, as [`Mesh::file_face`].
     pub fn file_face(&self, triangle: u32) -> u32 {
         self.polygons.of(triangle)
+    }
+
+    /// The body with vertices merged that coincide in all of its frames, and how many were merged; as [`Mesh::weld`].
+    pub fn weld(&self) -> (Body, usize) {
+        let vertices = self.vertices();
+        let mut welded = self.clone();
+        weld::rename(&vertices, &mut welded.faces, &mut welded.polygons);
+        (welded, vertices.merged)
+    }
+
+    /// How many vertices that a face uses share their place, in all frames, with an earlier one; as
+    /// [`Mesh::coincident`].
+    pub fn coincident(&self) -> usize {
+        self.vertices().merged
+    }
+
+    fn vertices(&self) -> Vertices {
+        let frames: Vec<&Positions> = std::iter::once(&self.positions_t0).chain(&self.positions_t1).collect();
+        Vertices::of(&frames, &self.faces)
     }
 
     /// Whether there are two frames.
