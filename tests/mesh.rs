@@ -10,6 +10,7 @@ use data::data;
 use folder::Folder;
 use nearmiss::Error;
 use nearmiss::mesh::{Body, Format, Mesh, NO_EDGE, Positions, Problem, Topology, Violation, check};
+use rand::{Rng, SeedableRng, rngs::SmallRng};
 use std::path::PathBuf;
 
 const TETRAHEDRON: [[u32; 3]; 4] = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
@@ -187,6 +188,80 @@ fn the_cloth_of_unc_reads_and_its_topology_holds() {
     let t1 = Mesh::read(&path.with_file_name("cloth_ball93.ply")).unwrap();
     let body = Body::moving(t0, t1).unwrap();
     assert_eq!(body.frames().len(), 2);
+}
+
+/// Two triangles that meet in a seam of vertices twice, and one that loses a corner.
+#[test]
+fn a_seam_is_welded() {
+    let mut points = corners(); // 0, x, y, z
+    points.extend([[-0.0, 1.0, 0.0], [1.0, 0.0, -0.0], [1.0, 1.0, 0.0], [f32::NAN; 3], [f32::NAN; 3]]);
+    points.push(points[0]);
+    points.insert(0, [1.0, 0.0, 0.0]); // not used: the next of its place stands for it
+    let faces = [[1, 2, 3], [6, 7, 5], [2, 6, 1]];
+    let torn = mesh(Positions::F32(points), &faces).unwrap();
+    assert_eq!(torn.coincident(), 2);
+    let (welded, merged) = torn.weld();
+    assert_eq!((merged, welded.coincident()), (2, 0));
+    assert_eq!(welded.faces(), [[1, 2, 3], [2, 7, 3], [2, 2, 1]].as_slice());
+    assert_eq!((welded.vertex_count(), welded.name()), (torn.vertex_count(), "given"));
+    let bits = |mesh: &Mesh| {
+        mesh.positions().to_f64().as_flattened().iter().map(|x| x.to_bits()).collect::<Vec<_>>()
+    };
+    assert_eq!(bits(&welded), bits(&torn));
+    let edges = |mesh: &Mesh| Topology::new(&mesh.faces()[..2], mesh.vertex_count()).edges.len();
+    assert_eq!((edges(&torn), edges(&welded)), (6, 5));
+    assert_eq!(mesh(Positions::F32(vec![]), &[]).unwrap().weld().1, 0);
+}
+
+/// By the definition, in square time: the first used vertex at the same place in every frame.
+#[test]
+fn frames_are_welded_where_vertices_coincide_in_all() {
+    let mut rng = SmallRng::seed_from_u64(3);
+    for case in 0..200 {
+        let n = 3 + case % 30;
+        let mut one = |wide: bool| {
+            let points: Vec<[f64; 3]> =
+                (0..n).map(|_| [0; 3].map(|_| [0.0, -0.0, 1.0][rng.random_range(0..3)])).collect();
+            if wide {
+                Positions::F64(points)
+            } else {
+                Positions::F32(points.iter().map(|p| p.map(|x| x as f32)).collect())
+            }
+        };
+        let frames = [one(false), one(case % 2 == 0), one(true)];
+        let faces: Vec<[u32; 3]> =
+            (0..n / 2).map(|_| [0; 3].map(|_| rng.random_range(0..n as u32))).collect();
+        let used = |v: u32| faces.iter().flatten().any(|&w| w == v);
+        for count in 1..4 {
+            let meshes: Vec<Mesh> =
+                frames[..count].iter().map(|p| mesh(p.clone(), &faces).unwrap()).collect();
+            let same = |v: u32, w: u32| {
+                frames[..count].iter().all(|p| p.get_f64(v as usize) == p.get_f64(w as usize))
+            };
+            let first = |v: u32| (0..=v).find(|&w| used(w) && same(w, v)).unwrap();
+            let merged = (0..n as u32).filter(|&v| used(v) && first(v) != v).count();
+            let wanted: Vec<[u32; 3]> = faces.iter().map(|face| face.map(first)).collect();
+            let (welded, found) = Mesh::weld_frames(&meshes).unwrap();
+            assert_eq!((welded.len(), found), (count, merged));
+            assert!(welded.iter().all(|mesh| mesh.faces() == wanted), "{case}");
+            assert_eq!(welded[count - 1].positions(), meshes[count - 1].positions());
+            let body = match &meshes[..] {
+                [still] => Body::still(still.clone()),
+                [t0, t1] => Body::moving(t0.clone(), t1.clone()).unwrap(),
+                _ => continue,
+            };
+            let (welded, found) = body.weld();
+            assert_eq!((welded.faces(), found, body.coincident()), (wanted.as_slice(), merged, merged));
+            assert_eq!((welded.coincident(), welded.positions_t1()), (0, body.positions_t1()));
+        }
+    }
+    let t0 = mesh(Positions::F32(corners()), &TETRAHEDRON).unwrap();
+    let found = problem(Mesh::weld_frames(&[
+        t0.clone(),
+        mesh(Positions::F32(corners()), &TETRAHEDRON[..2]).unwrap(),
+    ]));
+    assert!(matches!(found, Problem::FrameFaces { .. }));
+    assert_eq!(Mesh::weld_frames(&[]).unwrap().1, 0);
 }
 
 #[test]

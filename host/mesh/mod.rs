@@ -3,6 +3,7 @@
 //! A [`Mesh`] is one frame, a [`Body`] one mesh at one or two frames, a [`Topology`] the edges of its faces. What
 //! has passed [`Mesh::new`] needs no further check: finite where used, in range, indices valid.
 
+mod cut;
 mod door;
 mod obj;
 mod ply_header;
@@ -10,12 +11,14 @@ mod ply_problem;
 mod ply_read;
 mod ply_source;
 mod ply_write;
+mod polygons;
 mod positions;
 mod problem;
 mod read;
 mod sequence;
 mod topology;
 mod topology_check;
+mod weld;
 
 pub use door::{MAX_ABS_F32, MAX_ABS_F64, MAX_FACES, MAX_VERTICES};
 pub use obj::ObjProblem;
@@ -28,6 +31,7 @@ pub use topology::{NO_EDGE, Topology};
 pub use topology_check::{Violation, check};
 
 use crate::Error;
+use polygons::Polygons;
 
 /// One frame of a triangle mesh that has passed the door check.
 ///
@@ -39,6 +43,7 @@ pub struct Mesh {
     name: String,
     positions: Positions,
     faces: Vec<[u32; 3]>,
+    polygons: Polygons,
 }
 
 impl Mesh {
@@ -53,7 +58,7 @@ impl Mesh {
     pub fn new(name: impl Into<String>, positions: Positions, faces: Vec<[u32; 3]>) -> Result<Mesh, Error> {
         let name = name.into();
         match door::check(positions, &faces) {
-            Ok(positions) => Ok(Mesh { name, positions, faces }),
+            Ok(positions) => Ok(Mesh { name, positions, faces, polygons: Polygons::default() }),
             Err(problem) => Err(Error::Input { file: name, problem }),
         }
     }
@@ -81,6 +86,17 @@ impl Mesh {
     /// Number of triangles.
     pub fn face_count(&self) -> usize {
         self.faces.len()
+    }
+
+    /// The face of the file that a triangle, below [`Mesh::face_count`], is part of; counted from 0, in the file's order.
+    /// The triangle itself where every face was a triangle, and in a mesh given in memory. Cost: a binary search.
+    pub fn file_face(&self, triangle: u32) -> u32 {
+        self.polygons.of(triangle)
+    }
+
+    /// Number of faces in the file, [`Mesh::face_count`] where every face was a triangle.
+    pub fn file_face_count(&self) -> usize {
+        self.polygons.count(self.faces.len())
     }
 
     /// Refuses a mesh without triangles. Readers ask this; a caller that builds meshes may.

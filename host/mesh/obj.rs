@@ -1,5 +1,6 @@
 //! OBJ files to positions and faces: the keywords `v` and `f`; all others are skipped.
 
+use super::polygons::Fans;
 use super::problem::shown;
 use super::{Positions, Problem};
 
@@ -34,9 +35,9 @@ pub enum ObjProblem {
     Index { line: usize, index: i64, vertices: usize },
 }
 
-/// Reads the whole file. Polygons become fans around their first corner. Coordinates are parsed as doubles and kept as
+/// Reads the whole file. Coordinates are parsed as doubles and kept as
 /// floats only if each is one exactly.
-pub(super) fn read(bytes: &[u8]) -> Result<(Positions, Vec<[u32; 3]>), Problem> {
+pub(super) fn read(bytes: &[u8]) -> Result<(Positions, Fans), Problem> {
     let mut obj = Obj::default();
     let mut joined = Vec::new();
     let mut first = 0;
@@ -66,7 +67,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<(Positions, Vec<[u32; 3]>), Problem> 
 #[derive(Default)]
 struct Obj {
     points: Vec<[f64; 3]>,
-    faces: Vec<[u32; 3]>,
+    faces: Fans,
     /// The line and the index of the largest reference to a vertex that had not come yet.
     ahead: Option<(usize, i64)>,
 }
@@ -101,15 +102,9 @@ impl Obj {
 
     fn face<'a>(&mut self, line: usize, words: impl Iterator<Item = &'a [u8]>) -> Result<(), ObjProblem> {
         let mut corners = 0;
-        let (mut first, mut last) = (0, 0);
         for word in words {
             let index = self.corner(line, word)?;
-            match corners {
-                0 => first = index,
-                1 => {}
-                _ => self.faces.push([first, last, index]),
-            }
-            last = index;
+            self.faces.corner(corners as u64, index);
             corners += 1;
         }
         if corners < 3 {
@@ -144,7 +139,7 @@ impl Obj {
         Ok(index_u32)
     }
 
-    fn finish(self) -> Result<(Positions, Vec<[u32; 3]>), Problem> {
+    fn finish(self) -> Result<(Positions, Fans), Problem> {
         let vertices = self.points.len();
         if let Some((line, index)) = self.ahead.filter(|&(_, index)| index > vertices as i64) {
             return Err(ObjProblem::Index { line, index, vertices }.into());

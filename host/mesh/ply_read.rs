@@ -7,16 +7,17 @@ use super::door::{self, MAX_FACES, MAX_VERTICES};
 use super::ply_header::{Element, Encoding, Header, Kind, Property, is_corners};
 use super::ply_problem::PlyProblem;
 use super::ply_source::{Failure, Scalar, Source, Value};
+use super::polygons::Fans;
 use super::problem::shown;
 use super::{Positions, Problem};
 
-/// Reads the whole file; faces keep the file's order, polygons become fans around their first corner.
-pub(super) fn read(bytes: &[u8]) -> Result<(Positions, Vec<[u32; 3]>), Problem> {
+/// Reads the whole file; faces keep the file's order.
+pub(super) fn read(bytes: &[u8]) -> Result<(Positions, Fans), Problem> {
     let header = Header::read(bytes)?;
     let vertex = header.elements.iter().find(|e| e.name == "vertex").ok_or(PlyProblem::NoVertices)?;
     let mut source = Source::new(&bytes[header.size..], header.encoding);
     let mut positions = Positions::F32(Vec::new());
-    let mut faces = Vec::new();
+    let mut faces = Fans::default();
     for element in &header.elements {
         promise(element, &source)?;
         match element.name {
@@ -103,15 +104,14 @@ fn to_f64(value: Value) -> f64 {
     }
 }
 
-fn polygons(element: &Element<'_>, vertices: u64, source: &mut Source<'_>) -> Result<Vec<[u32; 3]>, Problem> {
+fn polygons(element: &Element<'_>, vertices: u64, source: &mut Source<'_>) -> Result<Fans, Problem> {
     let mut lists = element.properties.iter().enumerate().filter(|(_, p)| is_corners(p.name));
     let column = match (lists.next(), lists.next()) {
         (Some((column, Property { kind: Kind::List { .. }, .. })), None) => column,
         (Some(_), Some(_)) => return Err(PlyProblem::TwoCorners.into()),
         _ => return Err(PlyProblem::NoCorners.into()),
     };
-    let mut faces: Vec<[u32; 3]> = Vec::with_capacity(element.count as usize); // see `promise`
-    let (mut first, mut last) = (0, 0);
+    let mut faces = Fans::of(element.count as usize); // see `promise`
     entries(element, source, |face, at, item, value| {
         let Value::Int(index) = value else { return Ok(()) };
         match item {
@@ -124,19 +124,13 @@ fn polygons(element: &Element<'_>, vertices: u64, source: &mut Source<'_>) -> Re
                 if index as u64 >= vertices {
                     return Err(PlyProblem::Index { face, corner, index, vertices });
                 }
-                let index = index as u32; // below 2^32, as every whole number of PLY
-                match corner {
-                    0 => first = index,
-                    1 => {}
-                    _ => faces.push([first, last, index]),
-                }
-                last = index;
+                faces.corner(corner, index as u32); // below 2^32, as every whole number of PLY
             }
             Item::Length | Item::Only => {}
         }
         Ok(())
     })?;
-    door::count("triangles", faces.len(), MAX_FACES)?;
+    door::count("triangles", faces.faces.len(), MAX_FACES)?;
     Ok(faces)
 }
 

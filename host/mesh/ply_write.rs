@@ -6,8 +6,8 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 
 impl Mesh {
-    /// Writes the mesh as binary little-endian PLY, floats or doubles as they are; [`Mesh::read`] gives an equal mesh
-    /// back, bit by bit. Replaces the file.
+    /// Writes the mesh as binary little-endian PLY, floats or doubles as they are; [`Mesh::read`] gives equal
+    /// vertices and triangles back, bit by bit. Polygons are written as their triangles. Replaces the file.
     ///
     /// # Errors
     /// [`Problem::Unwritable`] with the operating system's words.

@@ -107,18 +107,57 @@ pub enum Problem {
     },
     /// Two frames of one body whose faces differ.
     #[error(
-        "face {face} is {t1:?}, but in the first frame, {first}, it is {t0:?}: two frames of one body must have the \
-         same faces in the same order"
+        "face {face} is {}, but in the first frame, {first}, it is {}: two frames of one body must have the same \
+         faces in the same order",
+        listed(t1),
+        listed(t0)
     )]
     FrameFace {
         /// Name of the first frame.
         first: String,
-        /// The first face that differs.
+        /// The first face of the file that differs.
         face: usize,
         /// Its corners at t0.
-        t0: [u32; 3],
+        t0: Vec<u32>,
         /// Its corners at t1.
-        t1: [u32; 3],
+        t1: Vec<u32>,
+    },
+    /// A polygon two of whose edges cross, seen along the axis on which its normal is longest.
+    #[error(
+        "face {face}, with {corners} corners, crosses itself: its edges between the vertices {} and {}, and {} and \
+         {}; put its corners in order around it, or split it",
+        edges[0][0], edges[0][1], edges[1][0], edges[1][1]
+    )]
+    FaceCrosses {
+        /// Index of the face in the file.
+        face: usize,
+        /// How many corners it has.
+        corners: usize,
+        /// The ends of both edges.
+        edges: [[u32; 2]; 2],
+    },
+    /// A polygon with too many corners, of which the fan is wrong.
+    #[error(
+        "face {face} has {corners} corners and must be cut by ears, which is done for at most {limit}: split it"
+    )]
+    FaceCorners {
+        /// Index of the face in the file.
+        face: usize,
+        /// How many corners it has.
+        corners: usize,
+        /// How many are allowed.
+        limit: usize,
+    },
+    /// A polygon that no triangles cover once, though none of its edges cross.
+    #[error(
+        "face {face}, with {corners} corners, folds over itself: no triangles cover it once; put its corners in order \
+         around it, or split it"
+    )]
+    FaceFolds {
+        /// Index of the face in the file.
+        face: usize,
+        /// How many corners it has.
+        corners: usize,
     },
     /// An index that is past the end.
     #[error("has no {what} {index}: it has {count} of them, counted from 0; give a smaller one")]
@@ -171,6 +210,15 @@ impl From<ObjProblem> for Problem {
 fn short(value: f64) -> String {
     let float = value as f32;
     if f64::from(float) == value { format!("{float:e}") } else { format!("{value:e}") }
+}
+
+/// Corners as a message shows them: no more than a line's worth.
+fn listed(corners: &[u32]) -> String {
+    const MOST: usize = 12;
+    match corners.get(..MOST) {
+        Some(most) if corners.len() > MOST => format!("{most:?} and {} more", corners.len() - MOST),
+        _ => format!("{corners:?}"),
+    }
 }
 
 /// A token as a message shows it: text with replaced bytes, and no more than a line's worth.

@@ -1,5 +1,7 @@
 //! A body: one mesh at one frame, or at the two ends of a step.
 
+use super::polygons::Polygons;
+use super::weld::{self, Vertices};
 use super::{Mesh, Positions, Problem};
 use crate::Error;
 
@@ -9,6 +11,7 @@ use crate::Error;
 pub struct Body {
     name: String,
     faces: Vec<[u32; 3]>,
+    polygons: Polygons,
     positions_t0: Positions,
     positions_t1: Option<Positions>,
 }
@@ -16,14 +19,16 @@ pub struct Body {
 impl Body {
     /// A body at one frame.
     pub fn still(mesh: Mesh) -> Body {
-        Body { name: mesh.name, faces: mesh.faces, positions_t0: mesh.positions, positions_t1: None }
+        let Mesh { name, positions, faces, polygons } = mesh;
+        Body { name, faces, polygons, positions_t0: positions, positions_t1: None }
     }
 
-    /// A body at two frames. Where one frame is in single and one in double precision, both become double, exactly.
+    /// A body at two frames, of the triangles of the first: polygons that are the same in both files are cut as there,
+    /// however they were cut in the second. Where one frame is in single and one in double precision, both become double, exactly.
     ///
     /// # Errors
-    /// [`Problem::FrameVertices`], [`Problem::FrameFaces`] or [`Problem::FrameFace`] (the first face that differs),
-    /// against the second frame and naming the first. A vertex must be finite in both frames if a face uses it, which
+    /// [`Problem::FrameVertices`], [`Problem::FrameFaces`] or [`Problem::FrameFace`] (the first face of the file that
+    /// differs), against the second frame and naming the first. A vertex must be finite in both frames if a face uses it, which
     /// [`Mesh`] has seen to.
     pub fn moving(t0: Mesh, t1: Mesh) -> Result<Body, Error> {
         if let Some(problem) = difference(&t0, &t1) {
@@ -33,7 +38,8 @@ impl Body {
             (a, b) if a.is_f64() == b.is_f64() => (a, b),
             (a, b) => (a.promoted(), b.promoted()),
         };
-        Ok(Body { name: t0.name, faces: t0.faces, positions_t0, positions_t1: Some(positions_t1) })
+        let Mesh { name, faces, polygons, .. } = t0;
+        Ok(Body { name, faces, polygons, positions_t0, positions_t1: Some(positions_t1) })
     }
 
     /// The name of the mesh, or of its first frame.
@@ -71,6 +77,30 @@ impl Body {
         self.faces.len()
     }
 
+    /// The face of the file that a triangle is part of, as [`Mesh::file_face`].
+    pub fn file_face(&self, triangle: u32) -> u32 {
+        self.polygons.of(triangle)
+    }
+
+    /// The body with vertices merged that coincide in all of its frames, and how many were merged; as [`Mesh::weld`].
+    pub fn weld(&self) -> (Body, usize) {
+        let vertices = self.vertices();
+        let mut welded = self.clone();
+        weld::rename(&vertices, &mut welded.faces, &mut welded.polygons);
+        (welded, vertices.merged)
+    }
+
+    /// How many vertices that a face uses share their place, in all frames, with an earlier one; as
+    /// [`Mesh::coincident`].
+    pub fn coincident(&self) -> usize {
+        self.vertices().merged
+    }
+
+    fn vertices(&self) -> Vertices {
+        let frames: Vec<&Positions> = std::iter::once(&self.positions_t0).chain(&self.positions_t1).collect();
+        Vertices::of(&frames, &self.faces)
+    }
+
     /// Whether there are two frames.
     pub fn is_moving(&self) -> bool {
         self.positions_t1.is_some()
@@ -82,6 +112,7 @@ impl Body {
             name: self.name.clone(),
             positions: positions.clone(),
             faces: self.faces.clone(),
+            polygons: self.polygons.clone(),
         };
         std::iter::once(&self.positions_t0).chain(&self.positions_t1).map(mesh).collect()
     }
@@ -100,14 +131,24 @@ impl Body {
     }
 }
 
-fn difference(t0: &Mesh, t1: &Mesh) -> Option<Problem> {
+/// What keeps two meshes from being frames of one; polygons are the same if their corners are, however they were cut.
+pub(super) fn difference(t0: &Mesh, t1: &Mesh) -> Option<Problem> {
     let first = || t0.name.clone();
     if t0.vertex_count() != t1.vertex_count() {
         return Some(Problem::FrameVertices { first: first(), t0: t0.vertex_count(), t1: t1.vertex_count() });
     }
-    if t0.face_count() != t1.face_count() {
-        return Some(Problem::FrameFaces { first: first(), t0: t0.face_count(), t1: t1.face_count() });
+    if t0.faces == t1.faces {
+        return None;
     }
-    let face = t0.faces.iter().zip(&t1.faces).position(|(a, b)| a != b)?;
-    Some(Problem::FrameFace { first: first(), face, t0: t0.faces[face], t1: t1.faces[face] })
+    let [count_t0, count_t1] = [t0, t1].map(Mesh::file_face_count);
+    if count_t0 != count_t1 {
+        return Some(Problem::FrameFaces { first: first(), t0: count_t0, t1: count_t1 });
+    }
+    let (mut a, mut b) = (Vec::new(), Vec::new());
+    let face = (0..count_t0).find(|&face| {
+        t0.polygons.corners(face, &t0.faces, &mut a);
+        t1.polygons.corners(face, &t1.faces, &mut b);
+        a != b
+    })?;
+    Some(Problem::FrameFace { first: first(), face, t0: a, t1: b })
 }

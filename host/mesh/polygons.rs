@@ -1,0 +1,105 @@
+//! The faces of a file, behind the triangles that were made of them.
+
+/// Which triangles are of which face of the file, and the corners of the faces that are no fans. Nothing is kept where
+/// every face was a triangle; else 4 bytes a face, and 8 and 4 a corner for a face that is no fan.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(super) struct Polygons {
+    /// The first triangle of each face, ascending; empty where every face was a triangle.
+    first: Vec<u32>,
+    /// The faces that are no fans, ascending, each with the place in `corners` where its corners begin.
+    cut: Vec<[u32; 2]>,
+    corners: Vec<u32>,
+}
+
+impl Polygons {
+    /// The number of faces, of which `triangles` were made.
+    pub fn count(&self, triangles: usize) -> usize {
+        if self.first.is_empty() { triangles } else { self.first.len() }
+    }
+
+    /// The face of a triangle. Cost: a binary search, or nothing where every face was a triangle.
+    pub fn of(&self, triangle: u32) -> u32 {
+        match self.first.partition_point(|&first| first <= triangle) {
+            0 => triangle,
+            after => after as u32 - 1,
+        }
+    }
+
+    /// The triangles of a face, among `triangles` of the mesh.
+    pub fn triangles(&self, face: usize, triangles: usize) -> std::ops::Range<usize> {
+        match self.first.get(face) {
+            None => face..face + 1,
+            Some(&first) => first as usize..self.first.get(face + 1).map_or(triangles, |&next| next as usize),
+        }
+    }
+
+    /// Whether every face was a triangle.
+    pub fn is_empty(&self) -> bool {
+        self.first.is_empty()
+    }
+
+    /// Writes the corners of a face, as the file has them, to `into`.
+    pub fn corners(&self, face: usize, faces: &[[u32; 3]], into: &mut Vec<u32>) {
+        into.clear();
+        let triangles = &faces[self.triangles(face, faces.len())];
+        match self.cut.binary_search_by_key(&(face as u32), |cut| cut[0]) {
+            Ok(at) => {
+                let from = self.cut[at][1] as usize;
+                into.extend(&self.corners[from..from + triangles.len() + 2]);
+            }
+            Err(_) => {
+                into.extend(&triangles[0][..2]);
+                into.extend(triangles.iter().map(|triangle| triangle[2]));
+            }
+        }
+    }
+
+    /// Keeps the corners of a face that will be no fan; faces come in ascending order.
+    pub fn keep(&mut self, face: usize, corners: &[u32]) {
+        self.cut.push([face as u32, self.corners.len() as u32]);
+        self.corners.extend(corners);
+    }
+
+    /// Gives vertices other names.
+    pub fn rename(&mut self, names: &[u32]) {
+        self.corners.iter_mut().for_each(|vertex| *vertex = names[*vertex as usize]);
+    }
+}
+
+/// What readers gather: every face as a fan around its first corner, in the file's order.
+#[derive(Debug, Default)]
+pub(super) struct Fans {
+    pub faces: Vec<[u32; 3]>,
+    pub polygons: Polygons,
+    read: u32,
+    first: u32,
+    last: u32,
+}
+
+impl Fans {
+    /// With room for `count` triangles.
+    pub fn of(count: usize) -> Fans {
+        Fans { faces: Vec::with_capacity(count), ..Fans::default() }
+    }
+
+    /// The next vertex, which is corner `corner` (from 0) of its face. A face has at least three.
+    pub fn corner(&mut self, corner: u64, vertex: u32) {
+        match corner {
+            0 => {
+                self.first = vertex;
+                if !self.polygons.is_empty() {
+                    self.polygons.first.push(self.faces.len() as u32);
+                }
+                self.read += 1;
+            }
+            1 => {}
+            // The first face with more than three corners: those before it are triangles.
+            3 if self.polygons.is_empty() => {
+                self.polygons.first.extend(0..self.read);
+                self.faces.push([self.first, self.last, vertex]);
+            }
+            _ => self.faces.push([self.first, self.last, vertex]),
+        }
+        self.last = vertex;
+    }
+}

@@ -1,0 +1,99 @@
+//! Vertices at one place made one, for meshes whose seams are vertices twice.
+
+use super::polygons::Polygons;
+use super::sequence::difference;
+use super::{Mesh, Positions};
+use crate::Error;
+use std::cmp::Ordering;
+
+/// Which vertex stands for each.
+pub(super) struct Vertices {
+    /// For each vertex the first that a face uses at its place; itself if none does.
+    names: Vec<u32>,
+    /// How many vertices that a face uses have another name.
+    pub merged: usize,
+}
+
+impl Vertices {
+    /// Those that are at one place in every frame, -0.0 and 0.0 being the same; among those that a face uses, which are
+    /// finite. Cost: a sort of the vertices, 8 bytes each.
+    pub fn of(frames: &[&Positions], faces: &[[u32; 3]]) -> Vertices {
+        let count = frames.first().map_or(0, |frame| frame.len());
+        let mut names: Vec<u32> = (0..count as u32).collect();
+        let mut used = vec![false; count];
+        faces.iter().flatten().for_each(|&vertex| used[vertex as usize] = true);
+        let mut order: Vec<u32> = names.iter().copied().filter(|&vertex| used[vertex as usize]).collect();
+        let places = |a: u32, b: u32| {
+            let each = frames.iter().map(|frame| place(frame, a as usize, b as usize));
+            each.fold(Ordering::Equal, Ordering::then)
+        };
+        order.sort_unstable_by(|&a, &b| places(a, b).then(a.cmp(&b)));
+        let mut merged = 0;
+        for group in order.chunk_by(|&a, &b| places(a, b).is_eq()) {
+            group.iter().for_each(|&vertex| names[vertex as usize] = group[0]);
+            merged += group.len() - 1;
+        }
+        Vertices { names, merged }
+    }
+}
+
+/// The order of the places of two vertices; no order is asked of NaN.
+fn place(frame: &Positions, a: usize, b: usize) -> Ordering {
+    match frame {
+        Positions::F32(points) => points[a].partial_cmp(&points[b]),
+        Positions::F64(points) => points[a].partial_cmp(&points[b]),
+    }
+    .unwrap_or(Ordering::Equal)
+}
+
+pub(super) fn rename(vertices: &Vertices, faces: &mut [[u32; 3]], polygons: &mut Polygons) {
+    faces.iter_mut().flatten().for_each(|vertex| *vertex = vertices.names[*vertex as usize]);
+    polygons.rename(&vertices.names);
+}
+
+impl Mesh {
+    /// The mesh with vertices at one place (equal coordinates, -0.0 and 0.0 being the same) merged into the first of
+    /// them that a face uses, and how many were merged. Faces that meet in a seam share vertices and edges then.
+    ///
+    /// Vertices keep their indices, and triangles theirs: faces name other vertices, and the merged ones stay as
+    /// vertices that no face uses. A triangle that loses a corner stays, as a segment or a point. Cost: a sort.
+    ///
+    /// For frames of one mesh use [`Mesh::weld_frames`] or [`Body::weld`](super::Body::weld).
+    pub fn weld(&self) -> (Mesh, usize) {
+        let vertices = Vertices::of(&[&self.positions], &self.faces);
+        let mut welded = self.clone();
+        rename(&vertices, &mut welded.faces, &mut welded.polygons);
+        (welded, vertices.merged)
+    }
+
+    /// Frames of one mesh with vertices merged that coincide in every frame, and how many were merged in each; as
+    /// [`Mesh::weld`]. All get the triangles of the first.
+    ///
+    /// # Errors
+    /// Those of [`Body::moving`](super::Body::moving), for the first frame that differs from the first of all.
+    pub fn weld_frames(frames: &[Mesh]) -> Result<(Vec<Mesh>, usize), Error> {
+        let Some(first) = frames.first() else { return Ok((Vec::new(), 0)) };
+        for frame in frames {
+            if let Some(problem) = difference(first, frame) {
+                return Err(Error::Input { file: frame.name.clone(), problem });
+            }
+        }
+        let positions: Vec<&Positions> = frames.iter().map(Mesh::positions).collect();
+        let vertices = Vertices::of(&positions, &first.faces);
+        let (mut faces, mut polygons) = (first.faces.clone(), first.polygons.clone());
+        rename(&vertices, &mut faces, &mut polygons);
+        let welded = frames.iter().map(|frame| Mesh {
+            name: frame.name.clone(),
+            positions: frame.positions.clone(),
+            faces: faces.clone(),
+            polygons: polygons.clone(),
+        });
+        Ok((welded.collect(), vertices.merged))
+    }
+
+    /// How many vertices that a face uses share their place with an earlier one: what [`Mesh::weld`] would merge; 0 of a
+    /// mesh without seams. Cost: a sort of the vertices, 8 bytes each.
+    pub fn coincident(&self) -> usize {
+        Vertices::of(&[&self.positions], &self.faces).merged
+    }
+}
