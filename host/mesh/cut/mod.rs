@@ -93,16 +93,13 @@ fn polygon(points: &[[f64; 3]]) -> Result<Option<Vec<[u32; 3]>>, Fault> {
             return Ok(Some(ears));
         }
     }
-    refuse(points, views[0].axis)
+    if short { refuse(points, views[0].axis) } else { Err(Fault::Long) }
 }
 
 /// A flat face is refused. One that is not has no right cut, so the fan is as good as any.
 fn refuse(points: &[[f64; 3]], axis: usize) -> Result<Option<Vec<[u32; 3]>>, Fault> {
     if !flat::is_flat(points) {
         return Ok(None);
-    }
-    if points.len() > MOST_CORNERS {
-        return Err(Fault::Long);
     }
     let all: Vec<u32> = (0..points.len() as u32).collect();
     Err(cross::crossing(&see(points, axis), &all).map_or(Fault::Folds, Fault::Crosses))
