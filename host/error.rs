@@ -70,6 +70,19 @@ pub enum Error {
     },
 }
 
+impl From<nearmiss_emulator::Error> for Error {
+    fn from(error: nearmiss_emulator::Error) -> Self {
+        use nearmiss_emulator::Error as E;
+        match error {
+            E::Threads { threads, text } => {
+                Error::Device { what: format!("starting {threads} threads"), text, advice: "ask for fewer" }
+            }
+            E::Memory { bytes } => Error::Room { what: "host memory".into(), asked: bytes as u64, given: 0 },
+            rule => Error::Bug { what: rule.to_string() },
+        }
+    }
+}
+
 impl Error {
     /// The exit status of the command line: 2 bad arguments, 3 bad input, 4 device, memory or output.
     pub fn exit_code(&self) -> u8 {

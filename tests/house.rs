@@ -22,7 +22,9 @@ fn host_crates() -> Vec<String> {
         let names = own.unwrap_or("").lines().filter_map(|line| line.split(['.', ' ']).next());
         names.filter(|name| !name.is_empty()).map(|name| name.replace('-', "_")).collect()
     };
-    let all = ["Cargo.toml", "lab/Cargo.toml", "cli/Cargo.toml"].iter().flat_map(|manifest| of(manifest));
+    let all = ["Cargo.toml", "emulator/Cargo.toml", "lab/Cargo.toml", "cli/Cargo.toml"]
+        .iter()
+        .flat_map(|manifest| of(manifest));
     all.filter(|name| name != "bytemuck" && name != "nearmiss_kernels")
         .chain(["std", "alloc", "nearmiss"].map(str::to_owned))
         .collect()

@@ -84,11 +84,11 @@ fn packages_build_anywhere() {
     let outside = Outside::new();
     let [folder, packed] = [outside.0.clone(), outside.0.join("packed")];
     let target = packed.to_str().expect("text");
-    let both = ["-p", "nearmiss-kernels", "-p", "nearmiss", "--target-dir", target];
+    let all = ["-p", "nearmiss-kernels", "-p", "nearmiss-emulator", "-p", "nearmiss", "--target-dir", target];
     let package = ["package", "--offline", "--no-verify", "--allow-dirty"];
-    cargo(Path::new(ROOT), &[&package[..], &both].concat()).expect("packages");
+    cargo(Path::new(ROOT), &[&package[..], &all].concat()).expect("packages");
     let version = env!("CARGO_PKG_VERSION");
-    for name in ["nearmiss-kernels", "nearmiss"] {
+    for name in ["nearmiss-kernels", "nearmiss-emulator", "nearmiss"] {
         let archive = packed.join(format!("package/{name}-{version}.crate"));
         let unpacked = Command::new("tar").arg("xzf").arg(&archive).current_dir(&folder).status();
         assert!(unpacked.expect("tar starts").success(), "{}", archive.display());
@@ -96,6 +96,7 @@ fn packages_build_anywhere() {
     let manifest = format!(
         "[package]\nname = \"stranger\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n[dependencies]\n\
          nearmiss = {{ path = \"nearmiss-{version}\", features = [\"cuda\"] }}\n\n[patch.crates-io]\n\
+         nearmiss-emulator = {{ path = \"nearmiss-emulator-{version}\" }}\n\
          nearmiss-kernels = {{ path = \"nearmiss-kernels-{version}\" }}\n\n[workspace]\n"
     );
     std::fs::write(folder.join("Cargo.toml"), manifest).expect("written");

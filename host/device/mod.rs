@@ -3,13 +3,14 @@
 mod buffer;
 #[cfg(feature = "cuda")]
 mod cuda;
-pub mod emulator;
 #[cfg(any(feature = "cuda", test))]
 mod ptx;
 mod tally;
 mod view;
 
 pub use buffer::Buffer;
+#[doc(hidden)]
+pub use nearmiss_emulator as emulator;
 pub use view::{Ahead, View};
 
 use crate::error::Error;
@@ -181,7 +182,7 @@ impl Device {
             |given| Error::Room { what: "device memory, as limited".into(), asked: bytes as u64, given };
         self.tally.take(bytes as u64).map_err(most)?;
         let memory = match &*self.machine {
-            Machine::Emulator(e) => e.memory(bytes).map(Memory::Host),
+            Machine::Emulator(e) => e.memory(bytes).map(Memory::Host).map_err(Error::from),
             #[cfg(feature = "cuda")]
             Machine::Cuda(c) => c.memory(bytes).map(Memory::Card),
         };
@@ -226,7 +227,8 @@ impl Device {
         }
         self.tally.launches.fetch_add(1, Ordering::Relaxed);
         match &*self.machine {
-            Machine::Emulator(e) => e.launch::<E>(blocks, args),
+            // SAFETY: the caller's promise.
+            Machine::Emulator(e) => unsafe { e.launch::<E>(blocks, args) }.map_err(Error::from),
             #[cfg(feature = "cuda")]
             Machine::Cuda(c) => c.launch::<E>(blocks, args),
         }

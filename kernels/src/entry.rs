@@ -14,7 +14,7 @@ use crate::stage::traverse::{front, queue, steal};
 use crate::stage::{balance, fit, order, traverse};
 
 /// A kernel as the host knows it.
-pub trait Entry {
+pub trait Entry: 'static {
     /// The name of the PTX entry, of the profiler's row and of this type: stage and step.
     const NAME: &'static str;
     /// What it is launched with.
@@ -23,8 +23,16 @@ pub trait Entry {
     const LANES: u32;
     /// Bytes of shared memory of a block.
     const SHARED: u32;
+    /// Its place in [`TABLE`]; none of kernels that are not in it, as tests have.
+    const PLACE: Option<usize> = None;
     /// The kernel itself.
     fn run<B: Block>(block: &mut B, args: &Self::Args);
+}
+
+/// Something that is done with every kernel of the table.
+pub trait Visit {
+    /// Does it.
+    fn kernel<E: Entry>(&mut self);
 }
 
 /// From lines of `name: path [arguments] lanes, shared;` makes the types, the PTX entries and the list of names.
@@ -40,6 +48,7 @@ macro_rules! kernels {
                 type Args = $args;
                 const LANES: u32 = $lanes;
                 const SHARED: u32 = $shared;
+                const PLACE: Option<usize> = Some(Place::$name as usize);
                 #[inline(always)]
                 fn run<B: Block>(block: &mut B, args: &$args) {
                     const { <$args>::FITS };
@@ -47,6 +56,14 @@ macro_rules! kernels {
                 }
             }
         )*
+        #[allow(non_camel_case_types, reason = "the kernels' names")]
+        enum Place { $($name),* }
+
+        /// Visits every kernel, in the order of [`TABLE`].
+        pub fn visit(visitor: &mut impl Visit) {
+            $(visitor.kernel::<$name>();)*
+        }
+
         /// Every kernel's name and the size of its arguments in bytes.
         pub const TABLE: &[(&str, usize)] = &[$((stringify!($name), size_of::<$args>())),*];
 

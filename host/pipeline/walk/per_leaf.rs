@@ -21,7 +21,7 @@ impl PerLeaf {
     /// # Errors
     /// Those of the device.
     pub fn new(device: &Device, budget: Option<u32>, triangles: usize) -> Result<Self, Error> {
-        let units = || Ok([device.buffer(4 * triangles)?, device.buffer(4 * triangles)?]);
+        let units = || Ok::<_, Error>([device.buffer(4 * triangles)?, device.buffer(4 * triangles)?]);
         Ok(PerLeaf { device: device.clone(), budget, units: budget.map(|_| units()).transpose()? })
     }
 }

@@ -97,7 +97,7 @@ impl Figures {
             put(&csv, &rows)?;
             put(&folder.join(format!("{name}.svg")), svg?.as_bytes())?;
             names.extend(["csv", "svg"].map(|kind| format!("{name}.{kind}")));
-            Ok(())
+            Ok::<_, Error>(())
         };
         if !self.figure_6_12.is_empty() {
             let title = "Figure 6.12: construction and refit of a tree";

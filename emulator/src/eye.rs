@@ -1,9 +1,9 @@
 //! The microscope's eye on one block.
 
-use super::baton::Baton;
-use super::block::Watch;
-use super::microscope::{Access, Fault, Microscope, Place};
-use super::shadow::Shadow;
+use crate::baton::Baton;
+use crate::block::Watch;
+use crate::microscope::{Access, Fault, Microscope, Place};
+use crate::shadow::Shadow;
 use std::cell::RefCell;
 
 /// Watches one block.

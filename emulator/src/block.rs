@@ -1,8 +1,8 @@
 //! A block on the CPU: its phases are loops over its lanes.
 
-use super::coherent;
-use super::microscope::{Access, Place};
-use super::rows::Rows;
+use crate::coherent;
+use crate::microscope::{Access, Place};
+use crate::rows::Rows;
 use bytemuck::Pod;
 use nearmiss_kernels::abi::Span;
 use nearmiss_kernels::exec::{BINS, Block, Lane, OPEN, RowMap, Shared, Slot, WARP, Word};

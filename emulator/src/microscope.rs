@@ -7,10 +7,10 @@
 //!
 //! Blocks run one after the other, each to its end, in the microscope's order; or interleaved (see the `baton`).
 
-use super::Order;
-use super::baton::Stop;
-use super::shadow::Shadow;
-use crate::error::Error;
+use crate::Error;
+use crate::Order;
+use crate::baton::Stop;
+use crate::shadow::Shadow;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -54,7 +54,7 @@ pub struct Place {
 
 impl Place {
     /// Whether nothing orders this access and one by `other` of the same launch.
-    pub(super) fn meets(self, other: Place) -> bool {
+    pub(crate) fn meets(self, other: Place) -> bool {
         self.block != other.block || (self.phase == other.phase && self.lane != other.lane)
     }
 }
@@ -129,44 +129,44 @@ impl Microscope {
         self.seen.lock().unwrap_or_else(PoisonError::into_inner)
     }
     /// A launch begins.
-    pub(super) fn begin(&self, name: &'static str) {
+    pub(crate) fn begin(&self, name: &'static str) {
         let mut seen = self.seen();
         seen.launches += 1;
         seen.looks = 0;
         seen.name = name;
     }
     /// The launch is over.
-    pub(super) fn verdict(&self) -> Result<(), Error> {
+    pub(crate) fn verdict(&self) -> Result<(), Error> {
         let mut seen = self.seen();
         match seen.fault.take() {
             None => Ok(()),
-            Some(fault) => Err(Error::Bug { what: format!("kernel {}: {fault}", seen.name) }),
+            Some(fault) => Err(Error::Rule { kernel: seen.name, fault }),
         }
     }
     /// Memory that kernels may reach from now on.
-    pub(super) fn adopt(&self, addr: u64, bytes: usize) {
+    pub(crate) fn adopt(&self, addr: u64, bytes: usize) {
         self.seen().device.insert(addr, vec![Shadow::default(); bytes / 4]);
     }
     /// Memory that is gone.
-    pub(in crate::device) fn forget(&self, addr: u64) {
+    pub fn forget(&self, addr: u64) {
         self.seen().device.remove(&addr);
     }
     /// The host wrote the first `bytes` bytes of the memory at `addr`.
-    pub(in crate::device) fn host_wrote(&self, addr: u64, bytes: usize) {
+    pub fn host_wrote(&self, addr: u64, bytes: usize) {
         if let Some(shadows) = self.seen().device.get_mut(&addr) {
             shadows[..bytes.div_ceil(4)].iter_mut().for_each(Shadow::host_wrote);
         }
     }
     /// A rule was broken; the first of a launch is kept.
-    pub(super) fn note(&self, fault: Fault) {
+    pub(crate) fn note(&self, fault: Fault) {
         self.seen().fault.get_or_insert(fault);
     }
     /// Device memory has changed, though the access might only have looked.
-    pub(super) fn changed(&self) {
+    pub(crate) fn changed(&self) {
         self.seen().looks = 0;
     }
     /// An access to device memory; false where there is none. Stops the launch where it waits for what nobody does.
-    pub(super) fn see(&self, access: Access, addr: u64, bytes: usize, inside: bool, place: Place) -> bool {
+    pub(crate) fn see(&self, access: Access, addr: u64, bytes: usize, inside: bool, place: Place) -> bool {
         let mut seen = self.seen();
         let Seen { launches, fault, looks, device, .. } = &mut *seen;
         *looks = match access {

@@ -3,6 +3,7 @@
 mod baton;
 mod block;
 mod coherent;
+mod compiled;
 mod eye;
 mod microscope;
 mod order;
@@ -12,13 +13,40 @@ mod shadow;
 pub use microscope::{Fault, Microscope, Place};
 pub use order::Order;
 
-use crate::error::Error;
 use baton::Baton;
 use block::{Blind, Emulated};
 use eye::Eye;
 use nearmiss_kernels::entry::Entry;
 use rayon::prelude::*;
 use std::ptr::NonNull;
+
+/// What an emulator cannot do, or found.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The threads cannot be started.
+    #[error("starting {threads} threads: {text}")]
+    Threads {
+        /// How many.
+        threads: usize,
+        /// The system's text.
+        text: String,
+    },
+    /// The machine has no more memory.
+    #[error("{bytes} bytes of host memory were needed")]
+    Memory {
+        /// How many were asked for.
+        bytes: usize,
+    },
+    /// A kernel broke a rule.
+    #[error("kernel {kernel}: {fault}")]
+    Rule {
+        /// Its name.
+        kernel: &'static str,
+        /// What it did, and where.
+        fault: Fault,
+    },
+}
 
 /// How the emulator runs.
 #[derive(Clone, Copy, Debug, Default)]
@@ -42,16 +70,13 @@ impl Emulator {
     /// An engine on `threads` threads, or on all cores; or a microscope, always on one thread.
     ///
     /// # Errors
-    /// [`Error::Device`] when the threads cannot be started.
+    /// [`Error::Threads`] when the threads cannot be started.
     pub fn new(mode: Mode, threads: Option<usize>) -> Result<Self, Error> {
         let pool = match threads {
             None => None,
-            Some(n) => {
-                Some(rayon::ThreadPoolBuilder::new().num_threads(n).build().map_err(|e| Error::Device {
-                    what: format!("starting {n} threads"),
-                    text: e.to_string(),
-                    advice: "ask for fewer with --threads",
-                })?)
+            Some(threads) => {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+                Some(pool.map_err(|e| Error::Threads { threads, text: e.to_string() })?)
             }
         };
         let microscope = match mode {
@@ -96,7 +121,7 @@ impl Emulator {
     /// Takes memory of at least `bytes`: zeroed for the engine, poisoned under the microscope.
     ///
     /// # Errors
-    /// [`Error::Room`] when the machine has no more.
+    /// [`Error::Memory`] when the machine has no more.
     pub fn memory(&self, bytes: usize) -> Result<Memory, Error> {
         let memory = Memory::new(bytes)?;
         if let Some(microscope) = &self.microscope {
@@ -107,14 +132,29 @@ impl Emulator {
         Ok(memory)
     }
 
-    /// Runs every block of a launch.
+    /// Runs every block of a launch, and returns when they are done.
     ///
     /// # Errors
-    /// Under the microscope, [`Error::Bug`] with the first access that broke a rule.
+    /// Under the microscope, [`Error::Rule`] with the first access that broke a rule.
     ///
     /// # Panics
     /// When the kernel does.
-    pub fn launch<E: Entry>(&self, blocks: u32, args: &E::Args) -> Result<(), Error> {
+    ///
+    /// # Safety
+    /// The spans of `args` are of this emulator's [`Memory`], which lives until the launch returns and which no other thread
+    /// touches meanwhile, and what the kernel's card asks under "Before" holds.
+    pub unsafe fn launch<E: Entry>(&self, blocks: u32, args: &E::Args) -> Result<(), Error> {
+        // A constant for each kernel, so that one of the table is not compiled again where it is launched.
+        if const { E::PLACE.is_some() } {
+            let place = E::PLACE.unwrap_or_default();
+            // SAFETY: the caller's promise.
+            return unsafe { compiled::launch::<E>(self, place, blocks, args) };
+        }
+        self.run::<E>(blocks, args)
+    }
+
+    /// Runs every block of a launch: [`Emulator::launch`], compiled where it is called.
+    fn run<E: Entry>(&self, blocks: u32, args: &E::Args) -> Result<(), Error> {
         let lanes = self.lanes::<E>();
         if let Some(microscope) = &self.microscope {
             microscope.begin(E::NAME);
@@ -158,18 +198,10 @@ unsafe impl Sync for Memory {}
 impl Memory {
     fn new(bytes: usize) -> Result<Self, Error> {
         let len = bytes.div_ceil(16).max(1);
-        let layout = std::alloc::Layout::array::<u128>(len).map_err(|_| Error::Room {
-            what: "host memory".into(),
-            asked: bytes as u64,
-            given: isize::MAX as u64,
-        })?;
+        let layout = std::alloc::Layout::array::<u128>(len).map_err(|_| Error::Memory { bytes })?;
         // SAFETY: the layout is not empty.
         let start = unsafe { std::alloc::alloc_zeroed(layout) }.cast::<u128>();
-        let start = NonNull::new(start).ok_or(Error::Room {
-            what: "host memory".into(),
-            asked: bytes as u64,
-            given: 0,
-        })?;
+        let start = NonNull::new(start).ok_or(Error::Memory { bytes })?;
         Ok(Memory { start, len })
     }
     /// The address that kernels use.
