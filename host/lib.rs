@@ -12,6 +12,8 @@ pub mod pipeline;
 pub mod query;
 #[cfg(test)]
 mod samples;
+#[doc(hidden)]
+pub mod words;
 
 pub use contacts::{Answer, Contact, Contacts};
 pub use device::Device;

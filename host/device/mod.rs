@@ -15,6 +15,7 @@ pub use view::{Ahead, View};
 
 use crate::error::Error;
 use crate::query::named;
+use crate::words::counted;
 use bytemuck::Pod;
 use emulator::{Emulator, Mode};
 use nearmiss_kernels::abi::Span;
@@ -112,7 +113,7 @@ impl Device {
     pub fn name(&self) -> String {
         match &*self.machine {
             Machine::Emulator(e) if e.microscope().is_some() => "CPU, under the microscope".into(),
-            Machine::Emulator(e) => format!("CPU, {} threads", e.threads()),
+            Machine::Emulator(e) => format!("CPU, {}", counted(e.threads() as u64, "thread", "threads")),
             #[cfg(feature = "cuda")]
             Machine::Cuda(c) => c.name().into(),
         }
