@@ -6,6 +6,7 @@
 pub mod contacts;
 pub mod device;
 pub mod error;
+pub mod memory;
 pub mod mesh;
 #[doc(hidden)]
 pub mod pipeline;

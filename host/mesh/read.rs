@@ -2,6 +2,7 @@
 
 use super::{Mesh, Positions, Problem, obj, ply_read};
 use crate::Error;
+use crate::memory;
 use std::path::Path;
 
 /// The formats that are read.
@@ -36,14 +37,16 @@ impl Mesh {
     ///
     /// # Errors
     /// [`Error::Input`], naming the file, the element and the value: a file that cannot be read or is no regular file,
-    /// an unknown extension, a malformed file, a mesh that fails [`Mesh::new`], or one without triangles.
+    /// an unknown extension, a malformed file, a mesh that fails [`Mesh::new`], or one without triangles. [`Error::Room`] for
+    /// a file that is too large for the memory there is.
     pub fn read(path: &Path) -> Result<Mesh, Error> {
         let file = path.display().to_string();
-        let opened = Format::of(path).and_then(|format| Ok((format, bytes(path)?)));
-        match opened {
-            Ok((format, bytes)) => Mesh::parse(file, format, &bytes),
-            Err(problem) => Err(Error::Input { file, problem }),
-        }
+        let input = |problem| Error::Input { file: file.clone(), problem };
+        let format = Format::of(path).map_err(input)?;
+        let size = size(path).map_err(input)?;
+        memory::require(&format!("reading {file}"), size.saturating_mul(MULTIPLE))?;
+        let bytes = std::fs::read(path).map_err(|e| input(unreadable(e)))?;
+        Mesh::parse(file, format, &bytes)
     }
 
     /// Reads a mesh from the bytes of a file; `name` stands in messages. As [`Mesh::read`] otherwise.
@@ -66,9 +69,15 @@ impl Mesh {
     }
 }
 
-/// The whole file. Only regular files: a pipe or a device may never end.
-fn bytes(path: &Path) -> Result<Vec<u8>, Problem> {
-    let unreadable = |error: std::io::Error| Problem::Unreadable { reason: error.to_string() };
+/// Most bytes of memory that a byte of a file takes, the file itself with it: texts of short numbers take most.
+const MULTIPLE: u64 = 8;
+
+fn unreadable(error: std::io::Error) -> Problem {
+    Problem::Unreadable { reason: error.to_string() }
+}
+
+/// The size of a file. Only of regular files: a pipe or a device may never end.
+fn size(path: &Path) -> Result<u64, Problem> {
     let kind = std::fs::metadata(path).map_err(unreadable)?;
     if kind.is_dir() {
         return Err(Problem::Unreadable { reason: "it is a directory".into() });
@@ -76,5 +85,5 @@ fn bytes(path: &Path) -> Result<Vec<u8>, Problem> {
     if !kind.is_file() {
         return Err(Problem::Unreadable { reason: "it is not a regular file".into() });
     }
-    std::fs::read(path).map_err(unreadable)
+    Ok(kind.len())
 }

@@ -98,6 +98,7 @@ impl Emulator {
     /// # Errors
     /// [`Error::Room`] when the machine has no more.
     pub fn memory(&self, bytes: usize) -> Result<Memory, Error> {
+        crate::memory::require("host memory", bytes as u64)?;
         let memory = Memory::new(bytes)?;
         if let Some(microscope) = &self.microscope {
             // SAFETY: the memory is ours, just made, and has that many bytes.
