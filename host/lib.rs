@@ -6,12 +6,15 @@
 pub mod contacts;
 pub mod device;
 pub mod error;
+pub mod memory;
 pub mod mesh;
 #[doc(hidden)]
 pub mod pipeline;
 pub mod query;
 #[cfg(test)]
 mod samples;
+#[doc(hidden)]
+pub mod words;
 
 pub use contacts::{Answer, Contact, Contacts};
 pub use device::Device;

@@ -128,7 +128,7 @@ fn what_is_written_reads_back_equal() {
     }
     let nowhere = folder.path("no/such/folder.ply");
     let nowhere = mesh(Positions::F32(corners()), &TETRAHEDRON).unwrap().write_ply(nowhere.as_ref());
-    assert!(matches!(problem(nowhere), Problem::Unwritable { .. }));
+    assert!(matches!(nowhere, Err(nearmiss::Error::Output { .. })));
 }
 
 #[test]

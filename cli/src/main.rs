@@ -1,8 +1,11 @@
-//! The command line: `detect`, `plan`, `explain`, `scene`, `tables`, `trade`, `selftest`.
+//! The program: `detect`, `plan`, `explain`, `scene`, `tables`, `trade`, `selftest`.
 
 mod args;
 mod detect;
 mod explain;
+mod memory;
+mod output;
+mod plan;
 mod progress;
 mod report;
 mod scene;
@@ -10,18 +13,23 @@ mod selftest;
 mod tables;
 mod trade;
 
-use args::{Cli, Command, ReportArgs};
-use clap::Parser;
+use args::{Command, ReportArgs};
 use nearmiss::error::Error;
+use output::{print, say};
 use std::path::Path;
 use std::process::ExitCode;
 
 /// 0 done (contacts or not), 2 bad arguments, 3 bad input, 4 device, memory or output.
 fn main() -> ExitCode {
-    match run(Cli::parse().command) {
+    let done = match args::parse() {
+        Ok(Ok(command)) => run(command),
+        Ok(Err(code)) => Ok(code),
+        Err(error) => Err(error),
+    };
+    match done {
         Ok(code) => code,
         Err(error) => {
-            eprintln!("nearmiss: {error}");
+            say(&error.to_string());
             ExitCode::from(error.exit_code())
         }
     }
@@ -30,20 +38,13 @@ fn main() -> ExitCode {
 fn run(command: Command) -> Result<ExitCode, Error> {
     match command {
         Command::Detect(args) => detect::detect(&args),
-        Command::Plan(args) => detect::plan(&args),
+        Command::Plan(args) => plan::plan(&args),
         Command::Explain(args) => explain::explain(&args),
         Command::Scene(args) => scene::scene(&args),
         Command::Tables(args) => tables::tables(&args),
         Command::Trade(args) => trade::trade(&args),
         Command::Selftest(args) => selftest::selftest(&args),
     }
-}
-
-/// Prints to standard output; a reader who has had enough is not an error.
-fn print(text: &str) {
-    use std::io::Write;
-    let mut out = std::io::stdout().lock();
-    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
 }
 
 /// A mesh's name: its file's, without folder and extension.
@@ -60,13 +61,13 @@ fn report<T: serde::Serialize>(
 ) -> Result<ExitCode, Error> {
     if let Some(out) = &args.out {
         let names = write(figures, out)?;
-        eprintln!("nearmiss: {} in {}", names.join(", "), out.display());
+        say(&format!("{} in {}", names.join(", "), out.display()));
     }
     if args.json {
         let json = serde_json::to_string(figures).map_err(|e| Error::Bug { what: e.to_string() })?;
-        print(&(json + "\n"));
+        print(&(json + "\n"))?;
     } else {
-        print(&text(figures));
+        print(&text(figures))?;
     }
     Ok(ExitCode::SUCCESS)
 }

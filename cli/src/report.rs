@@ -1,11 +1,23 @@
 //! Results as files: CSV and JSON.
 
+use crate::output::Target;
 use nearmiss::contacts::{Answer, Contacts, Kind, Status, Summary};
 use nearmiss::error::Error;
 use serde::Serialize;
-use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::Path;
+
+/// What is said of an answer.
+#[derive(Serialize)]
+pub struct Told {
+    /// Its figures.
+    #[serde(flatten)]
+    pub summary: Summary,
+    /// Of an earliest query, the triangle pairs that meet at the start of the step already.
+    pub pairs_at_start: Option<usize>,
+    /// What else a user should know.
+    pub notes: Vec<String>,
+}
 
 /// Formats that contacts can be written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,18 +48,12 @@ impl Format {
 /// Writes contacts in canonical order; times read back to the same bits.
 ///
 /// # Errors
-/// [`Error::Choice`] for an unknown format, [`Error::Output`] when the file cannot be written.
-pub fn write(path: &Path, contacts: &Contacts, summary: &Summary) -> Result<(), Error> {
-    let format = Format::of(path)?;
-    let failed = |text: String| Error::Output { file: path.display().to_string(), text };
-    let file = File::create(path).map_err(|e| failed(e.to_string()))?;
-    let mut out = BufWriter::new(file);
-    let written = match format {
-        Format::Csv => csv(&mut out, contacts),
-        Format::Json => json(&mut out, contacts, summary),
-    };
-    written.map_err(failed)?;
-    out.into_inner().map_err(|e| failed(e.to_string()))?.sync_all().map_err(|e| failed(e.to_string()))
+/// [`Error::Output`] when the file cannot be written.
+pub fn write(target: Target, format: Format, contacts: &Contacts, told: &Told) -> Result<(), Error> {
+    target.write(|out| match format {
+        Format::Csv => csv(out, contacts),
+        Format::Json => json(out, contacts, told),
+    })
 }
 
 /// Contacts as CSV. A time is printed as the shortest decimal that reads back to the same bits.
@@ -84,10 +90,10 @@ fn row(c: &nearmiss::contacts::Contact) -> [String; 6] {
 }
 
 /// The summary and the contacts as one JSON object.
-fn json(out: impl Write, contacts: &Contacts, summary: &Summary) -> Result<(), String> {
+fn json(out: impl Write, contacts: &Contacts, summary: &Told) -> Result<(), String> {
     #[derive(Serialize)]
     struct Whole<'a> {
-        summary: &'a Summary,
+        summary: &'a Told,
         contacts: Rows<'a>,
     }
     #[derive(Serialize)]

@@ -2,8 +2,10 @@
 
 use super::args::SceneArgs;
 use super::progress::during;
+use crate::output::{self, print};
 use nearmiss::error::Error;
 use nearmiss::mesh::Mesh;
+use nearmiss::words::counted;
 use nearmiss_lab::scene::{ANIMATIONS, Options, animation_with, scene as formula};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -14,22 +16,18 @@ pub fn scene(args: &SceneArgs) -> Result<ExitCode, Error> {
 }
 
 fn by_formula(args: &SceneArgs) -> Result<ExitCode, Error> {
-    if args.skip.is_some() || args.contact {
+    // Of any size it has as many.
+    let has = formula(&args.name, 8, args.seed)?.frames().len() as u64;
+    let asked = args.frames.map_or(has, u64::from);
+    if asked > has {
         return Err(Error::Choice {
-            what: format!("--skip or --contact of {}, which is made by formula", args.name),
-            advice: format!("choose one of: {}", ANIMATIONS.join(", ")),
-        });
-    }
-    let body = during("making the scene", || formula(&args.name, triangles_of(args), args.seed))?;
-    let frames = body.frames();
-    let asked = args.frames.map_or(frames.len() as u64, u64::from);
-    if asked > frames.len() as u64 {
-        return Err(Error::Choice {
-            what: format!("{asked} frames of {}, which has {}", args.name, frames.len()),
+            what: format!("{} of {}, which has {has}", counted(asked, "frame", "frames"), args.name),
             advice: format!("choose one that goes on: {}", ANIMATIONS.join(", ")),
         });
     }
-    for (frame, mesh) in frames.iter().take(asked as usize).enumerate() {
+    output::folder(&args.out)?;
+    let body = during("making the scene", || formula(&args.name, triangles_of(args), args.seed))?;
+    for (frame, mesh) in body.frames().iter().take(asked as usize).enumerate() {
         write(args, &format!("t{frame}"), mesh)?;
     }
     Ok(ExitCode::SUCCESS)
@@ -37,10 +35,11 @@ fn by_formula(args: &SceneArgs) -> Result<ExitCode, Error> {
 
 fn animated(args: &SceneArgs) -> Result<ExitCode, Error> {
     let options = Options { triangles: triangles_of(args), seed: args.seed, contact: args.contact };
-    let mut animation = during("making the scene", || {
-        let mut animation = animation_with(&args.name, options)?;
+    output::folder(&args.out)?;
+    let mut animation = animation_with(&args.name, options)?;
+    during("making the scene", || {
         animation.advance(args.skip.unwrap_or(animation.opening()))?;
-        Ok::<_, Error>(animation)
+        Ok::<_, Error>(())
     })?;
     for frame in 0..args.frames.unwrap_or(2) {
         if frame > 0 {
@@ -51,14 +50,12 @@ fn animated(args: &SceneArgs) -> Result<ExitCode, Error> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// One frame, into a folder that is made if need be.
+/// One frame.
 fn write(args: &SceneArgs, frame: &str, mesh: &Mesh) -> Result<(), Error> {
-    std::fs::create_dir_all(&args.out)
-        .map_err(|e| Error::Output { file: args.out.display().to_string(), text: e.to_string() })?;
     let path: PathBuf = args.out.join(format!("{}_{frame}.ply", args.name));
     mesh.write_ply(&path)?;
-    super::print(&format!("{}: {} triangles\n", path.display(), mesh.face_count()));
-    Ok(())
+    let triangles = counted(mesh.face_count() as u64, "triangle", "triangles");
+    print(&format!("{}: {triangles}\n", path.display()))
 }
 
 /// Triangles asked for, or those that the scene usually has.

@@ -5,6 +5,7 @@ mod appends;
 
 use super::args::SelftestArgs;
 use super::detect::body;
+use super::output::print;
 use super::progress::during;
 use nearmiss::device::Device;
 use nearmiss::device::emulator::{Emulator, Mode, Order};
@@ -12,9 +13,9 @@ use nearmiss::error::Error;
 use nearmiss::mesh::Body;
 use nearmiss::pipeline::{Session, of_edges};
 use nearmiss::query::{Bv, FrontShape, Motion, Query, QueueShape, Refit, Solver, StealShape, Traversal};
+use nearmiss::words::counted;
 use nearmiss_lab::extremes::{self, Amount};
 use nearmiss_lab::scene;
-use std::fmt::Write;
 use std::process::ExitCode;
 
 /// Triangles of the scenes that the microscope, which is some hundred times slower, looks at.
@@ -76,36 +77,72 @@ fn difference(one: &Print, other: &Print) -> Option<&'static str> {
     one.stages.iter().zip(&other.stages).find(|(a, b)| a != b).map(|(a, _)| a.0)
 }
 
-/// Runs it all and prints a table that can be pasted into a bug report.
+/// What was found so far: faults; all else is printed as it comes.
+struct Bench {
+    machine: Device,
+    engine: Device,
+    faults: Vec<String>,
+}
+
+/// Runs it all and prints a table that can be pasted into a bug report, line by line.
 pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
     let machine = Device::open(args.backend, None)?;
     let engine = Device::emulator(Emulator::new(Mode::Engine, None)?);
-    let mut table = String::new();
-    // Writing to a String cannot fail.
-    let _ = writeln!(table, "nearmiss {} selftest on {}", env!("CARGO_PKG_VERSION"), machine.name());
-    let mut faults = Vec::new();
+    line(format!("nearmiss {} selftest on {}", env!("CARGO_PKG_VERSION"), machine.name()))?;
+    let mut bench = Bench { machine, engine, faults: Vec::new() };
+    bench.known_answer()?;
+    bench.stages(args)?;
+    bench.under_the_microscope()?;
+    let report = during("counting what is appended", || appends::compare(&bench.machine, &bench.engine))?;
+    line(report.table)?;
+    bench.faults.extend(report.faults);
+    if args.cases > 0 {
+        bench.extremes(args.cases)?;
+    }
+    for fault in &bench.faults {
+        line(format!("DIFFERS        {fault}"))?;
+    }
+    line(if bench.faults.is_empty() { "ok: every stage agrees to the bit" } else { "FAILED" }.into())?;
+    match bench.faults.first() {
+        None => Ok(ExitCode::SUCCESS),
+        Some(first) => Err(Error::Bug { what: format!("a check of this machine fails: {first}") }),
+    }
+}
 
-    let known = scene::grid(8)?;
-    let pairs = print_of(&machine, &[known], Query::of(Motion::Discrete))?.contacts as u64;
-    let _ = writeln!(table, "known answer   grid: {pairs} pairs, {} expected", scene::grid_pairs(8));
-    if pairs != scene::grid_pairs(8) {
-        faults.push("the grid's known answer".to_owned());
+fn line(text: String) -> Result<(), Error> {
+    print(&(text + "\n"))
+}
+
+impl Bench {
+    fn known_answer(&mut self) -> Result<(), Error> {
+        let known = scene::grid(8)?;
+        let pairs = print_of(&self.machine, &[known], Query::of(Motion::Discrete))?.contacts as u64;
+        line(format!("known answer   grid: {pairs} pairs, {} expected", scene::grid_pairs(8)))?;
+        if pairs != scene::grid_pairs(8) {
+            self.faults.push("the grid's known answer".to_owned());
+        }
+        Ok(())
     }
 
-    let mut scenes: Vec<(String, Vec<Body>)> = Vec::new();
-    for name in scene::FORMULAS {
-        // Of n equal triangles all n² / 2 pairs meet: few will do.
-        let triangles = if name == "identical" { EQUAL } else { args.triangles };
-        scenes.push((name.to_owned(), vec![scene::scene(name, triangles, 1)?]));
+    /// Every scene, asked on the machine in every way and on the CPU.
+    fn stages(&mut self, args: &SelftestArgs) -> Result<(), Error> {
+        for name in scene::FORMULAS {
+            // Of n equal triangles all n² / 2 pairs meet: few will do.
+            let triangles = if name == "identical" { EQUAL } else { args.triangles };
+            self.compare(name, &[scene::scene(name, triangles, 1)?])?;
+        }
+        let [draped, soup] = [("draped", args.triangles, 1), ("soup", args.triangles / 10, 2)]
+            .map(|(name, triangles, seed)| scene::scene(name, triangles, seed));
+        self.compare("draped with soup", &[draped?, soup?])?;
+        if !args.mesh.is_empty() {
+            self.compare(&args.mesh[0].display().to_string(), &[body(&args.mesh)?])?;
+        }
+        Ok(())
     }
-    scenes.push((
-        "draped with soup".into(),
-        vec![scene::scene("draped", args.triangles, 1)?, scene::scene("soup", args.triangles / 10, 2)?],
-    ));
-    if !args.mesh.is_empty() {
-        scenes.push((args.mesh[0].display().to_string(), vec![body(&args.mesh)?]));
-    }
-    for (name, bodies) in &scenes {
+
+    /// One scene.
+    fn compare(&mut self, name: &str, bodies: &[Body]) -> Result<(), Error> {
+        let Bench { machine, engine, faults } = self;
         for (asked, query) in questions(bodies) {
             let mut hashes = Vec::new();
             for bv in Bv::ALL {
@@ -114,7 +151,7 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
                 // pairs of nodes were asked before it. Each kind of walk is compared with its own; contacts with all.
                 let on_engine = |walk| {
                     let query = Query { traversal: Some(walk), ..query };
-                    during("comparing machines", || print_of(&engine, bodies, query))
+                    during("comparing machines", || print_of(engine, bodies, query))
                 };
                 let by_leaf = on_engine(Traversal::PerLeaf { budget: None })?;
                 let by_pair = on_engine(Traversal::Queue(QueueShape::native()))?;
@@ -122,7 +159,7 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
                     faults.push(format!("{name}, {asked}, {}, two walks: {stage}", bv.name()));
                 }
                 for (what, other) in choices(query) {
-                    let on_machine = during("comparing machines", || print_of(&machine, bodies, other))?;
+                    let on_machine = during("comparing machines", || print_of(machine, bodies, other))?;
                     let walk = other.traversal_on(machine.is_card());
                     let want = if matches!(walk, Traversal::PerLeaf { .. }) { &by_leaf } else { &by_pair };
                     if let Some(stage) = difference(want, &on_machine) {
@@ -137,51 +174,49 @@ pub fn selftest(args: &SelftestArgs) -> Result<ExitCode, Error> {
             if query.solver() == Solver::Exact && hashes.iter().any(|other| *other != hashes[0]) {
                 faults.push(format!("{name}, {asked}: volumes disagree on the contacts"));
             }
-            let _ = writeln!(table, "{hash:016x} {contacts:>9} contacts  {name}, {asked}");
+            let noun = if contacts == 1 { "contact " } else { "contacts" };
+            line(format!("{hash:016x} {contacts:>9} {noun}  {name}, {asked}"))?;
         }
+        Ok(())
     }
-    for name in scene::FORMULAS {
-        let triangles = if name == "identical" { EQUAL } else { SMALL };
-        let bodies = [scene::scene(name, triangles, 3)?];
-        for (asked, query) in questions(&bodies) {
-            // The walk that is fastest on the machine, on both.
-            let query = Query { traversal: Some(query.traversal_on(machine.is_card())), ..query };
-            let want = print_of(&machine, &bodies, query)?;
-            for order in [Order::Forward, Order::Reverse, Order::Shuffled(3)] {
-                let microscope = Device::emulator(Emulator::new(Mode::Microscope(order), None)?);
-                if let Some(stage) = difference(&print_of(&microscope, &bodies, query)?, &want) {
-                    faults.push(format!("{name}, {asked}, microscope {order:?}: {stage}"));
+
+    /// Small scenes on the emulated card, in three orders.
+    fn under_the_microscope(&mut self) -> Result<(), Error> {
+        let Bench { machine, faults, .. } = self;
+        for name in scene::FORMULAS {
+            let triangles = if name == "identical" { EQUAL } else { SMALL };
+            let bodies = [scene::scene(name, triangles, 3)?];
+            for (asked, query) in questions(&bodies) {
+                // The walk that is fastest on the machine, on both.
+                let query = Query { traversal: Some(query.traversal_on(machine.is_card())), ..query };
+                let want = print_of(machine, &bodies, query)?;
+                for order in [Order::Forward, Order::Reverse, Order::Shuffled(3)] {
+                    let microscope = Device::emulator(Emulator::new(Mode::Microscope(order), None)?);
+                    if let Some(stage) = difference(&print_of(&microscope, &bodies, query)?, &want) {
+                        faults.push(format!("{name}, {asked}, microscope {order:?}: {stage}"));
+                    }
                 }
             }
         }
+        let (scenes, queries) = (scene::FORMULAS.len(), questions(&[]).count());
+        line(format!("microscope     {scenes} scenes x {queries} queries x 3 orders"))
     }
-    let _ = writeln!(
-        table,
-        "microscope     {} scenes x {} queries x 3 orders",
-        scene::FORMULAS.len(),
-        questions(&[]).count()
-    );
-    let report = during("counting what is appended", || appends::compare(&machine, &engine))?;
-    let _ = writeln!(table, "{}", report.table);
-    faults.extend(report.faults);
-    if args.cases > 0 {
-        let amount = Amount::on(machine.is_card(), args.cases);
-        for report in during("asking the extremes", || extremes::run(&machine, amount, |_| ()))? {
-            let _ = writeln!(table, "extremes       {report}");
-            if !report.is_right() {
-                faults.push(format!("extremes, {}: {} failures", report.suite, report.failed));
+
+    /// The catalogue, a line a suite as it ends.
+    fn extremes(&mut self, cases: usize) -> Result<(), Error> {
+        let amount = Amount::on(self.machine.is_card(), cases);
+        let mut told = Ok(());
+        let tell = |report: &extremes::Report| {
+            if told.is_ok() {
+                told = line(format!("extremes       {report}"));
             }
+        };
+        let reports = during("asking the extremes", || extremes::run(&self.machine, amount, tell))?;
+        for report in reports.iter().filter(|report| !report.is_right()) {
+            let failures = counted(report.failed, "failure", "failures");
+            self.faults.push(format!("extremes, {}: {failures}", report.suite));
         }
-    }
-    for fault in &faults {
-        let _ = writeln!(table, "DIFFERS        {fault}");
-    }
-    let _ =
-        writeln!(table, "{}", if faults.is_empty() { "ok: every stage agrees to the bit" } else { "FAILED" });
-    super::print(&table);
-    match faults.first() {
-        None => Ok(ExitCode::SUCCESS),
-        Some(first) => Err(Error::Bug { what: format!("a check of this machine fails: {first}") }),
+        told
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::args::{Profile, Table, TablesArgs};
 use super::progress::during;
+use crate::output;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::query::{Bv, Motion, Solver};
@@ -10,9 +11,10 @@ use std::process::ExitCode;
 
 /// Measures what was asked for, prints it, and writes it where `--out` says.
 pub fn tables(args: &TablesArgs) -> Result<ExitCode, Error> {
+    args.report.out.as_deref().map_or(Ok(()), output::folder)?;
     let device = args.machine.open()?;
     let continuous = Solver::default_for(Motion::Continuous);
-    eprintln!("nearmiss: the solver of continuous columns is {}", continuous.promise());
+    output::say(&format!("the solver of continuous columns is {}", continuous.promise()));
     let mut figures = Figures::new(device.name(), profile(args));
     for (name, triangles) in scenes(args)? {
         let frames = during(format!("making {name}"), || match args.mesh.is_empty() {

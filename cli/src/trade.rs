@@ -3,8 +3,10 @@
 use super::args::TradeArgs;
 use super::detect::body;
 use super::progress::during;
+use crate::output;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
+use nearmiss::memory;
 use nearmiss::mesh::Body;
 use nearmiss::query::{Bv, Motion, Query, Solver};
 use nearmiss_lab::case::Case;
@@ -21,8 +23,12 @@ const TOLERANCES: [f64; 9] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e
 /// The tolerance at which solvers are compared on query files, a length.
 const OF_QUERIES: f64 = 1e-6;
 
+/// Most bytes of all questions of a number of cases, each: kinds, sizes, answers.
+const OF_A_CASE: u64 = 64_000;
+
 /// Measures what was asked for, prints it, and writes it where `--out` says.
 pub fn trade(args: &TradeArgs) -> Result<ExitCode, Error> {
+    args.report.out.as_deref().map_or(Ok(()), output::folder)?;
     let device = args.machine.open()?;
     let mut all = Trade::new(device.name());
     let only_files = !args.mesh.is_empty() || args.queries.is_some();
@@ -53,6 +59,7 @@ fn cases(args: &TradeArgs) -> usize {
 /// Single questions: the built-in ones, and sweeps.
 fn questions(args: &TradeArgs, device: &Device, all: &mut Trade) -> Result<(), Error> {
     let n = cases(args);
+    memory::require("the built-in questions", n as u64 * OF_A_CASE)?;
     let grid = during("triangles on grids", || triangles(device, 40 * n, args.seed))?;
     all.choices.extend(grid);
     let inputs = during("deciding the built-in contacts exactly", || built_in(n, args.seed))?;

@@ -2,14 +2,29 @@
 
 #[path = "cli/degraded.rs"]
 mod degraded;
+#[path = "cli/earliest.rs"]
+mod earliest;
 #[path = "cli/explain.rs"]
 mod explain;
+#[path = "cli/idle.rs"]
+mod idle;
+#[path = "cli/memory.rs"]
+mod memory;
+#[path = "cli/numbers.rs"]
+mod numbers;
+#[path = "cli/output.rs"]
+mod output;
 #[path = "cli/repeat.rs"]
 mod repeat;
 #[path = "cli/scene.rs"]
 mod scene;
 #[path = "cli/selftest.rs"]
 mod selftest;
+
+#[path = "cli/with.rs"]
+mod with;
+#[path = "cli/words.rs"]
+mod words;
 
 #[path = "../../tests/support/folder.rs"]
 mod folder;
@@ -273,9 +288,8 @@ fn bad_arguments_are_refused_with_what_is_known() {
             assert!(text.contains(name), "{args:?} does not name {name}: {text}");
         }
     }
-    let bad: [&[&str]; 10] = [
+    let bad: [&[&str]; 9] = [
         &["detect"],
-        &["detect", "a.ply", "b.ply", "c.ply"],
         &["detect", "a.ply", "--threads", "0"],
         &["detect", "a.ply", "--threads", "-1"],
         &["detect", "a.ply", "--threads", "many"],
@@ -304,26 +318,6 @@ fn bad_input_is_named() {
     assert!(refused(3, &["detect", &t0, &t1]).contains("t1.obj"));
     assert!(refused(3, &["plan", &missing]).contains("no.ply"));
     assert!(refused(3, &["detect", "--scene", "grid", "--triangles", "0"]).contains("grid"));
-}
-
-#[test]
-fn what_cannot_be_written_is_named() {
-    let folder = Folder::new("output");
-    let scene = ["detect", "--scene", "grid", "--triangles", "16", "--out"];
-    let nowhere = folder.path("no/such/folder/a.csv");
-    assert!(refused(4, &[&scene[..], &[&nowhere]].concat()).contains("a.csv: cannot be written: "));
-    std::fs::create_dir(folder.path("folder.json")).expect("a folder");
-    assert!(refused(4, &[&scene[..], &[&folder.path("folder.json")]].concat()).contains("cannot be written"));
-    let file = folder.write("file", "");
-    assert!(
-        refused(4, &["scene", "grid", "--triangles", "16", "--out", &file]).contains("cannot be written")
-    );
-    // The disk is full: every byte is refused.
-    if cfg!(target_os = "linux") {
-        std::os::unix::fs::symlink("/dev/full", folder.path("full.csv")).expect("a link");
-        let text = refused(4, &[&scene[..], &[&folder.path("full.csv")]].concat());
-        assert!(text.contains("full.csv: cannot be written: "), "{text}");
-    }
 }
 
 #[cfg(not(feature = "cuda"))]

@@ -2,6 +2,7 @@
 
 use crate::pipeline::Found;
 use crate::pipeline::blunt::Blunt;
+use crate::words::counted;
 use nearmiss_kernels::abi::counter;
 use std::fmt;
 
@@ -28,11 +29,6 @@ pub enum Degraded {
         /// How many; `None` where pairs are not listed.
         pairs: Option<u64>,
     },
-    /// Lists were too short and grew, and that part of the frame ran again. The answer is whole; it took longer.
-    ListsGrown {
-        /// How often.
-        times: u64,
-    },
     /// The front did not pay: dropped, or not yet taken up again. The answer is whole.
     FrontDropped,
 }
@@ -40,7 +36,7 @@ pub enum Degraded {
 impl Degraded {
     /// Whether the answer itself is less than was asked, not only the time that it took.
     pub fn touches_answer(&self) -> bool {
-        !matches!(self, Degraded::ListsGrown { .. } | Degraded::FrontDropped)
+        !matches!(self, Degraded::FrontDropped)
     }
 
     /// All that holds of a frame, as the kernels counted.
@@ -56,7 +52,6 @@ impl Degraded {
         put(blunt, Degraded::ToleranceBelowPrecision { pairs: Some(blunt) });
         let unlisted = found.blunt == Some(Blunt::Unlisted);
         put(unlisted as u64, Degraded::ToleranceBelowPrecision { pairs: None });
-        put(found.reruns, Degraded::ListsGrown { times: found.reruns });
         put(found.front_dropped as u64, Degraded::FrontDropped);
         all
     }
@@ -66,20 +61,16 @@ impl fmt::Display for Degraded {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Degraded::Unresolved { pairs } => {
-                write!(
-                    f,
-                    "{pairs} pairs nearer than the tolerance, neither certain to meet nor to stay apart"
-                )
+                let pairs = counted(*pairs, "pair", "pairs");
+                write!(f, "{pairs} nearer than the tolerance, neither certain to meet nor to stay apart")
             }
             Degraded::Boxes { pairs } => {
-                write!(f, "{pairs} pairs whose boxes ended, with times that may be too early; raise --boxes")
+                let pairs = counted(*pairs, "pair", "pairs");
+                write!(f, "{pairs} whose boxes ended, with times that may be too early; raise --boxes")
             }
             Degraded::ToleranceBelowPrecision { pairs } => {
-                let pairs = pairs.map_or("some".to_owned(), |pairs| pairs.to_string());
-                write!(f, "{pairs} pairs too large for the tolerance in the solver's precision")
-            }
-            Degraded::ListsGrown { times } => {
-                write!(f, "lists were too short {times} times: they grew, the answer is whole")
+                let pairs = pairs.map_or("some pairs".to_owned(), |n| counted(n, "pair", "pairs"));
+                write!(f, "{pairs} too large for the tolerance in the solver's precision")
             }
             Degraded::FrontDropped => write!(f, "the front did not pay and was dropped; the answer is whole"),
         }

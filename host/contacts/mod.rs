@@ -113,6 +113,8 @@ pub struct Contacts {
     pub steps: u64,
     /// Work units that long walks gave away.
     pub spilled: u64,
+    /// How often a list was too short and grew, and a part of the frame ran again: it took longer, and the answer is whole.
+    pub reruns: u64,
     /// What the work queues did.
     pub queues: Queues,
     /// What the front saved or cost.
@@ -195,6 +197,7 @@ impl Contacts {
             undecided_wide: 0,
             steps: 0,
             spilled: 0,
+            reruns: 0,
             queues: Queues::default(),
             front: Front::default(),
             degraded: Vec::new(),
@@ -261,6 +264,7 @@ impl Contacts {
             undecided_wide: count(counter::UNDECIDED_WIDE),
             steps: count(counter::STEPS),
             spilled: found.counters[counter::SPILLED as usize..][..ROUNDS as usize].iter().sum(),
+            reruns: found.reruns,
             queues: Queues::new(&found.counters),
             front: Front::new(&found.counters),
             degraded,

@@ -49,6 +49,8 @@ pub struct Summary {
     pub earliest_toi: Option<f64>,
     /// Hash of the canonical answer, sixteen hexadecimal digits.
     pub hash: String,
+    /// How often a list was too short and grew, and a part of the frame ran again; the answer is whole.
+    pub reruns: u64,
     /// What the traversal's work queues did.
     pub queues: Queues,
     /// What the traversal's front saved or cost.
@@ -82,6 +84,7 @@ impl Summary {
             separation: query.solver().is_certified().then_some(query.params().separation),
             earliest_toi: contacts.earliest_toi(),
             hash: format!("{:016x}", contacts.hash()),
+            reruns: contacts.reruns,
             queues: contacts.queues,
             front: contacts.front,
             ms: contacts.stages,

@@ -14,7 +14,9 @@ pub use nearmiss_emulator as emulator;
 pub use view::{Ahead, View};
 
 use crate::error::Error;
+use crate::memory;
 use crate::query::named;
+use crate::words::counted;
 use buffer::Memory;
 use bytemuck::Pod;
 use emulator::{Emulator, Mode};
@@ -112,7 +114,7 @@ impl Device {
     pub fn name(&self) -> String {
         match &*self.machine {
             Machine::Emulator(e) if e.microscope().is_some() => "CPU, under the microscope".into(),
-            Machine::Emulator(e) => format!("CPU, {} threads", e.threads()),
+            Machine::Emulator(e) => format!("CPU, {}", counted(e.threads() as u64, "thread", "threads")),
             #[cfg(feature = "cuda")]
             Machine::Cuda(c) => c.name().into(),
         }
@@ -182,7 +184,8 @@ impl Device {
             |given| Error::Room { what: "device memory, as limited".into(), asked: bytes as u64, given };
         self.tally.take(bytes as u64).map_err(most)?;
         let memory = match &*self.machine {
-            Machine::Emulator(e) => e.memory(bytes).map(Memory::Host).map_err(Error::from),
+            Machine::Emulator(e) => memory::require("host memory", bytes as u64)
+                .and_then(|()| e.memory(bytes).map(Memory::Host).map_err(Error::from)),
             #[cfg(feature = "cuda")]
             Machine::Cuda(c) => c.memory(bytes).map(Memory::Card),
         };

@@ -1,6 +1,6 @@
 //! Meshes to PLY files.
 
-use super::{Mesh, Positions, Problem};
+use super::{Mesh, Positions};
 use crate::Error;
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -10,7 +10,7 @@ impl Mesh {
     /// vertices and triangles back, bit by bit. Polygons are written as their triangles. Replaces the file.
     ///
     /// # Errors
-    /// [`Problem::Unwritable`] with the operating system's words.
+    /// [`Error::Output`] with the operating system's words.
     pub fn write_ply(&self, path: &Path) -> Result<(), Error> {
         let write = || {
             let mut out = BufWriter::new(std::fs::File::create(path)?);
@@ -18,9 +18,9 @@ impl Mesh {
             out.into_inner().map_err(std::io::IntoInnerError::into_error)?;
             Ok(())
         };
-        write().map_err(|error: std::io::Error| Error::Input {
+        write().map_err(|error: std::io::Error| Error::Output {
             file: path.display().to_string(),
-            problem: Problem::Unwritable { reason: error.to_string() },
+            text: error.to_string(),
         })
     }
 

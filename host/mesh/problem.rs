@@ -14,12 +14,6 @@ pub enum Problem {
         /// The operating system's words.
         reason: String,
     },
-    /// The file could not be written; the text is the operating system's.
-    #[error("cannot be written: {reason}; check the folder, its space and its permissions")]
-    Unwritable {
-        /// The operating system's words.
-        reason: String,
-    },
     /// The extension names no reader.
     #[error("has the extension {found:?}, which no reader knows; give a .ply or an .obj file")]
     UnknownExtension {

@@ -3,6 +3,7 @@
 use super::sequence::difference;
 use super::{Mesh, Problem, cut, obj, ply_read};
 use crate::Error;
+use crate::memory;
 use std::path::Path;
 
 /// The formats that are read.
@@ -45,7 +46,8 @@ impl Mesh {
     /// [`Error::Input`], naming the file, the element and the value: a file that cannot be read or is no regular file,
     /// an unknown extension, a malformed file, a mesh that fails [`Mesh::new`], one without triangles, or a flat
     /// polygon that crosses itself ([`Problem::FaceCrosses`], [`Problem::FaceFolds`]), or one of more than 131,072
-    /// corners whose fan is wrong ([`Problem::FaceCorners`]).
+    /// corners whose fan is wrong ([`Problem::FaceCorners`]). [`Error::Room`] for a file that is too large for the memory there
+    /// is.
     pub fn read(path: &Path) -> Result<Mesh, Error> {
         let (file, format, bytes) = open(path)?;
         Mesh::parse(file, format, &bytes)
@@ -107,15 +109,23 @@ fn fans(name: String, format: Format, bytes: &[u8]) -> Result<Mesh, Error> {
 /// Name, format and bytes of a file.
 fn open(path: &Path) -> Result<(String, Format, Vec<u8>), Error> {
     let file = path.display().to_string();
-    match Format::of(path).and_then(|format| Ok((format, bytes(path)?))) {
-        Ok((format, bytes)) => Ok((file, format, bytes)),
-        Err(problem) => Err(Error::Input { file, problem }),
-    }
+    let input = |problem| Error::Input { file: file.clone(), problem };
+    let format = Format::of(path).map_err(input)?;
+    let size = size(path).map_err(input)?;
+    memory::require(&format!("reading {file}"), size.saturating_mul(MULTIPLE))?;
+    let bytes = std::fs::read(path).map_err(|e| input(unreadable(e)))?;
+    Ok((file, format, bytes))
 }
 
-/// The whole file. Only regular files: a pipe or a device may never end.
-fn bytes(path: &Path) -> Result<Vec<u8>, Problem> {
-    let unreadable = |error: std::io::Error| Problem::Unreadable { reason: error.to_string() };
+/// Most bytes of memory that a byte of a file takes, the file itself with it: texts of short numbers take most.
+const MULTIPLE: u64 = 8;
+
+fn unreadable(error: std::io::Error) -> Problem {
+    Problem::Unreadable { reason: error.to_string() }
+}
+
+/// The size of a file. Only of regular files: a pipe or a device may never end.
+fn size(path: &Path) -> Result<u64, Problem> {
     let kind = std::fs::metadata(path).map_err(unreadable)?;
     if kind.is_dir() {
         return Err(Problem::Unreadable { reason: "it is a directory".into() });
@@ -123,5 +133,5 @@ fn bytes(path: &Path) -> Result<Vec<u8>, Problem> {
     if !kind.is_file() {
         return Err(Problem::Unreadable { reason: "it is not a regular file".into() });
     }
-    std::fs::read(path).map_err(unreadable)
+    Ok(kind.len())
 }

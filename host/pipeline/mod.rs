@@ -25,6 +25,7 @@ pub use tolerance::{mean_side, of_edges};
 use crate::contacts::{Contacts, Degraded, Summary};
 use crate::device::Device;
 use crate::error::Error;
+use crate::memory;
 use crate::mesh::{Body, MAX_FACES, MAX_VERTICES};
 use crate::query::{Bv, Query};
 use corridor::{Corridor, Frames};
@@ -65,6 +66,9 @@ pub struct Session {
     /// None where a body has no triangles, or where memory ended: then the next frame asks for it again.
     corridor: Option<Box<dyn Frames>>,
 }
+
+/// Fewest bytes of the host's memory that a triangle takes in a session: its topology, and on a CPU its tree and first lists.
+const OF_A_TRIANGLE: u64 = 300;
 
 /// The corridor of a query.
 fn corridor(
@@ -111,6 +115,8 @@ impl Session {
             });
         }
         fits(bodies.iter().map(Body::face_count).sum(), bodies.iter().map(Body::vertex_count).sum())?;
+        let triangles: usize = bodies.iter().map(Body::face_count).sum();
+        memory::require("trees and lists", triangles as u64 * OF_A_TRIANGLE)?;
         let layout = Layout::new(&bodies, query.motion != crate::query::Motion::Discrete);
         let tolerance =
             query.solver().is_certified().then(|| query.tolerance.unwrap_or_else(|| of_edges(&bodies)));
@@ -195,6 +201,7 @@ impl Session {
         let (found, stages) = corridor.frame()?;
         self.answered = true;
         let degraded = Degraded::of(&found);
+        memory::require("the contacts", found.bytes())?;
         let mut contacts = Contacts::new(found, &self.layout, self.query, (stages, degraded));
         let wall = start.elapsed().as_secs_f64() * 1e3;
         contacts.stages = Stages { construct: self.construct_ms, wall, ..stages };

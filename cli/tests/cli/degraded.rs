@@ -53,6 +53,13 @@ fn the_program_tells() {
     let text = asked(&[&t0, &t1], &["--boxes", "1", "--tolerance", "4e-3"]);
     assert!(text.contains("  degraded: ") && text.contains("raise --boxes"), "{text}");
     assert!(!run(&["--discrete"]).contains("degraded"));
+    // Lists that grow make no answer less.
+    let grown = asked(&["--scene", "identical", "--triangles", "400"], &["--json"]);
+    let grown: serde_json::Value = serde_json::from_str(&grown).expect("JSON");
+    assert!(grown["reruns"].as_u64() > Some(0) && grown["degraded"] == serde_json::json!([]), "{grown}");
+    let grown = asked(&["--scene", "identical", "--triangles", "400"], &[]);
+    assert!(grown.contains("  lists grew") && !grown.contains("degraded"), "{grown}");
+    assert!(plain["reruns"] == 0 && !run(&["--discrete"]).contains("lists grew"));
     let apart = json(&["--separation", "0.01"]);
     assert!(apart["separation"] == 0.01 && apart["contacts"].as_u64() > all["contacts"].as_u64(), "{apart}");
     assert!(run(&["--separation", "0.01"]).contains("separation 1e-2"));

@@ -32,6 +32,15 @@ pub struct Found<'a> {
     pub blunt: Option<Blunt>,
 }
 
+impl Found<'_> {
+    /// Bytes of the answer.
+    pub fn bytes(&self) -> u64 {
+        let pairs = self.pairs.as_ref().map_or(0, |pairs| size_of_val(&**pairs));
+        let hits = self.hits.as_ref().map_or(0, |hits| hits.each().iter().map(|list| list.len()).sum());
+        (pairs + hits * size_of::<crate::Contact>()) as u64
+    }
+}
+
 /// Contacts in motion, vertex/face and edge/edge.
 pub enum Hits<'a> {
     /// A list of each.

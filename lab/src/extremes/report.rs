@@ -1,6 +1,7 @@
 //! What a suite found.
 
 use super::question::Fault;
+use nearmiss::words::counted;
 use std::fmt;
 
 /// A suite's figures and its failures by id. Nothing is wrong where there are no failures.
@@ -67,7 +68,8 @@ impl fmt::Display for Report {
         write!(
             f,
             "{suite:<20} {asked:>9} asked, {missed} missed, {late} late, {false_certificates} falsely certain, \
-             {unresolved} unresolved, {failed} failures"
+             {unresolved} unresolved, {}",
+            counted(*failed, "failure", "failures")
         )?;
         self.failures.iter().try_for_each(|failure| write!(f, "\n    {failure}"))
     }

@@ -2,10 +2,14 @@
 
 use super::{cloth_ball, flamenco, nbody, princess, room};
 use nearmiss::Error;
+use nearmiss::memory;
 use nearmiss::mesh::{Body, Mesh, Positions, Problem};
 
 /// The names that [`animation`] knows.
 pub const ANIMATIONS: [&str; 4] = ["cloth-ball", "flamenco", "n-body", "princess"];
+
+/// Most bytes that a triangle takes in an animation: points in doubles, their speeds, and what holds cloth together.
+const OF_A_TRIANGLE: u64 = 600;
 
 /// What is asked of an animation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,6 +72,7 @@ pub fn animation_with(name: &str, options: Options) -> Result<Animation, Error> 
         return Err(input(Problem::NoTriangles));
     }
     room(name, triangles as u64)?;
+    memory::require(&format!("the cloth or the balls of {name}"), triangles as u64 * OF_A_TRIANGLE)?;
     let (mut world, opening) = match name {
         "cloth-ball" => (cloth_ball::world(triangles, seed), cloth_ball::OPENING),
         "flamenco" => (flamenco::world(triangles, seed), flamenco::OPENING),

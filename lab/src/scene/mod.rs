@@ -30,6 +30,7 @@ pub use rng::Rng;
 pub use soup::soup;
 
 use nearmiss::Error;
+use nearmiss::memory;
 use nearmiss::mesh::{Body, Mesh, Positions, Problem};
 
 /// The names that [`scene`] knows.
@@ -101,13 +102,16 @@ pub fn scene(name: &str, triangles: usize, seed: u64) -> Result<Body, Error> {
     }
 }
 
-/// Refuses more triangles than a scene may have, before anything is allocated for them.
+/// Most bytes that a triangle takes while a scene is made: three vertices at two ends, lists that double as they grow.
+const OF_A_TRIANGLE: u64 = 200;
+
+/// Refuses more triangles than a scene may have, or than there is memory for, before anything is allocated for them.
 fn room(name: &str, triangles: u64) -> Result<(), Error> {
     if triangles > MAX_TRIANGLES {
         let problem = Problem::TooMany { what: "triangles", count: triangles, limit: MAX_TRIANGLES };
         return Err(Error::Input { file: name.into(), problem });
     }
-    Ok(())
+    memory::require(&format!("the scene {name}"), triangles * OF_A_TRIANGLE)
 }
 
 /// Points and faces while a scene grows.

@@ -6,6 +6,7 @@ use super::picture::{Bar, Chart, Curve, Panel, Stack, bars, curves, stacks};
 use super::text::text;
 use super::theirs::CARD;
 use nearmiss::error::Error;
+use nearmiss::words::counted;
 use serde::Serialize;
 use std::path::Path;
 
@@ -73,12 +74,16 @@ impl Figures {
         let differing: usize = self.figure_6_13.iter().map(|row| row.differing).sum();
         if differing > 0 {
             remarks.push(format!(
-                "{differing} frames differ between volumes or walks: their solver can err, and does so on other candidates."
+                "{} between volumes or walks: their solver can err, and does so on other candidates.",
+                counted(differing as u64, "frame differs", "frames differ")
             ));
         }
         let reruns: u64 = self.figure_6_13.iter().map(|row| row.reruns).sum();
         if reruns > 0 {
-            remarks.push(format!("{reruns} frames ran again for want of room: their times are too long."));
+            remarks.push(format!(
+                "{} again for want of room: times of such frames are too long.",
+                counted(reruns, "run was done", "runs were done")
+            ));
         }
         remarks
     }

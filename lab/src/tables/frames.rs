@@ -2,8 +2,10 @@
 
 use crate::scene;
 use nearmiss::error::Error;
+use nearmiss::memory;
 use nearmiss::mesh::{Body, Mesh};
 use nearmiss::query::Motion;
+use nearmiss::words::counted;
 use std::path::PathBuf;
 
 /// The scenes that stand in for the thesis's, with the triangles that it names.
@@ -39,7 +41,7 @@ impl Frames {
         let frames = Frames { scene: scene.into(), meshes };
         if frames.meshes.len() < 2 {
             return Err(Error::Choice {
-                what: format!("{scene} has {} frame(s)", frames.meshes.len()),
+                what: format!("{scene} has {}", counted(frames.meshes.len() as u64, "frame", "frames")),
                 advice: "a step needs two: give more files after --mesh, or a larger --frames".into(),
             });
         }
@@ -58,6 +60,9 @@ pub fn frames(name: &str, triangles: usize, seed: u64, count: usize) -> Result<F
     let mut animation = scene::animation(name, triangles, seed)?;
     animation.advance(animation.opening())?;
     let mut meshes = vec![animation.mesh()?];
+    let first = size_of_val(meshes[0].faces()) + meshes[0].vertex_count() * size_of::<[f32; 3]>();
+    // Each frame is kept, and handed on as a still body and as both ends of a step.
+    memory::require(&format!("{count} frames of {name}"), (first as u64).saturating_mul(4 * count as u64))?;
     while meshes.len() < count {
         animation.advance(1)?;
         meshes.push(animation.mesh()?);

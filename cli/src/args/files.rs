@@ -1,0 +1,35 @@
+//! Which of the files named are the mesh's, and which are those of `--with`.
+
+use clap::ArgMatches;
+use nearmiss::error::Error;
+use nearmiss::words::counted;
+use std::path::PathBuf;
+
+/// Parts the files. `--with` takes one file and may be given twice; files right behind it are its own as well where the mesh
+/// stands before it, and the mesh's where it does not.
+///
+/// # Errors
+/// [`Error::Choice`] for more than two of either.
+pub fn part(matches: &ArgMatches, meshes: &mut Vec<PathBuf>, with: &mut Vec<PathBuf>) -> Result<(), Error> {
+    let places = |id| matches.indices_of(id).into_iter().flatten().collect::<Vec<_>>();
+    let (of_mesh, mut of_with) = (places("meshes"), places("with"));
+    let before = of_mesh.first() < of_with.first();
+    let named = std::mem::take(meshes);
+    for (file, at) in named.into_iter().zip(of_mesh) {
+        if before && of_with.contains(&(at - 1)) {
+            of_with.push(at);
+            with.push(file);
+        } else {
+            meshes.push(file);
+        }
+    }
+    for (of, files) in [("the mesh", meshes.len()), ("--with", with.len())] {
+        if files > 2 {
+            return Err(Error::Choice {
+                what: format!("{} for {of}", counted(files as u64, "file", "files")),
+                advice: "give one, or two for both ends of a step".into(),
+            });
+        }
+    }
+    Ok(())
+}

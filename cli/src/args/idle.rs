@@ -1,0 +1,127 @@
+//! Options that would do nothing: refused, with why and what to do instead.
+
+use super::detect::TraversalArg;
+use super::{Command, DetectArgs, MachineArgs, SceneArgs, Table, TablesArgs, TradeArgs};
+use crate::explain::ExplainArgs;
+use clap::ArgMatches;
+use clap::parser::ValueSource;
+use nearmiss::device::Backend;
+use nearmiss::error::Error;
+use nearmiss_lab::scene::ANIMATIONS;
+
+/// Looks through a command's options.
+///
+/// # Errors
+/// [`Error::Choice`] with the first that would do nothing.
+pub fn check(command: &Command, own: &ArgMatches) -> Result<(), Error> {
+    let given = Given(own);
+    match command {
+        Command::Detect(args) => detect(args, given),
+        Command::Plan(args) => plan(args, given),
+        Command::Explain(args) => explain(args, given),
+        Command::Scene(args) => scene(args, given),
+        Command::Tables(args) => tables(args, given),
+        Command::Trade(args) => trade(args, given),
+        Command::Selftest(_) => Ok(()),
+    }
+}
+
+/// What stands on the command line, not by default.
+#[derive(Clone, Copy)]
+struct Given<'a>(&'a ArgMatches);
+
+impl Given<'_> {
+    fn has(self, option: &str) -> bool {
+        self.0.value_source(option) == Some(ValueSource::CommandLine)
+    }
+
+    /// Refuses the first of these options that is there.
+    fn none_of(self, options: &[&str], why: &str, advice: &str) -> Result<(), Error> {
+        match options.iter().find(|option| self.has(option)) {
+            None => Ok(()),
+            Some(option) => Err(Error::Choice {
+                what: format!("--{} would do nothing: {why}", option.replace('_', "-")),
+                advice: advice.into(),
+            }),
+        }
+    }
+}
+
+fn machine(args: &MachineArgs, given: Given) -> Result<(), Error> {
+    if args.backend == Backend::Cuda {
+        given.none_of(&["threads"], "a card takes no CPU threads", "leave it out, or give --backend cpu")?;
+    }
+    Ok(())
+}
+
+fn detect(args: &DetectArgs, given: Given) -> Result<(), Error> {
+    machine(&args.machine, given)?;
+    if args.traversal != Some(TraversalArg::PerLeafSpill) {
+        let why = "only the walk per-leaf-spill gives its rest away";
+        given.none_of(&["budget"], why, "add --traversal per-leaf-spill, or leave it out")?;
+    }
+    if !args.traversal.is_some_and(TraversalArg::has_queues) {
+        let why = "the walk has no queues";
+        let advice = "add --traversal queue, queue-gtx285, steal or front, or leave it out";
+        given.none_of(&["cores", "queue"], why, advice)?;
+    }
+    of_single(args.scene.as_deref(), given)
+}
+
+fn of_single(scene: Option<&str>, given: Given) -> Result<(), Error> {
+    if scene == Some("single") {
+        given.none_of(&["triangles"], "the scene single has one triangle", "leave it out, or choose soup")?;
+    }
+    Ok(())
+}
+
+fn plan(args: &DetectArgs, given: Given) -> Result<(), Error> {
+    let why = "a plan runs nothing and writes nothing";
+    given.none_of(&["repeat", "only", "out", "json"], why, "leave it out, or ask detect")?;
+    detect(args, given)
+}
+
+fn explain(args: &ExplainArgs, given: Given) -> Result<(), Error> {
+    if args.tt.is_some() {
+        let why = "triangles that stand still are decided exactly";
+        given.none_of(&["tolerance", "boxes"], why, "leave it out, or ask with --vf, --fv or --ee")?;
+    }
+    Ok(())
+}
+
+fn scene(args: &SceneArgs, given: Given) -> Result<(), Error> {
+    if !ANIMATIONS.contains(&args.name.as_str()) {
+        let why = format!("{} is made by formula", args.name);
+        let advice = format!("leave it out, or choose one of: {}", ANIMATIONS.join(", "));
+        given.none_of(&["skip", "contact"], &why, &advice)?;
+    }
+    if args.name == "n-body" {
+        let advice = "leave it out, or choose cloth-ball, flamenco or princess";
+        given.none_of(&["contact"], "n-body has no cloth", advice)?;
+    }
+    of_single(Some(&args.name), given)
+}
+
+fn tables(args: &TablesArgs, given: Given) -> Result<(), Error> {
+    machine(&args.machine, given)?;
+    if !args.mesh.is_empty() {
+        let why = "the frames come from the files of --mesh";
+        given.none_of(&["triangles", "frames", "seed"], why, "leave it out, or leave --mesh out")?;
+    }
+    let frames = |table: &Table| matches!(table, Table::Frame | Table::Shares);
+    if !args.table.is_empty() && !args.table.iter().any(frames) {
+        let why = "no frame is measured";
+        given.none_of(&["rebuild_every"], why, "add --table 6.13 or 6.14, or leave it out")?;
+    }
+    Ok(())
+}
+
+fn trade(args: &TradeArgs, given: Given) -> Result<(), Error> {
+    machine(&args.machine, given)?;
+    if !args.full && (!args.mesh.is_empty() || args.queries.is_some()) {
+        let why = "with --mesh or --queries nothing is made here";
+        let made = ["scene", "triangles", "frames", "cases", "seed"];
+        given.none_of(&made, why, "add --full, or leave it out")?;
+    }
+    Ok(())
+}

@@ -1,0 +1,98 @@
+//! What the command line takes: a file a command.
+
+mod detect;
+mod files;
+mod idle;
+mod machine;
+mod number;
+mod scene;
+mod selftest;
+mod tables;
+mod trade;
+
+pub use detect::DetectArgs;
+pub use machine::{MachineArgs, ReportArgs};
+pub use number::whole;
+pub use scene::SceneArgs;
+pub use selftest::SelftestArgs;
+pub use tables::{Profile, Table, TablesArgs};
+pub use trade::TradeArgs;
+
+use crate::explain::ExplainArgs;
+use crate::output::stdout_failed;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
+use nearmiss::error::Error;
+use nearmiss::query::Named;
+use std::io::Write;
+use std::process::ExitCode;
+
+/// Collision detection for deformable triangle meshes.
+#[derive(Parser)]
+#[command(name = "nearmiss", version, arg_required_else_help = true)]
+pub struct Cli {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Subcommand)]
+pub enum Command {
+    /// Find what touches: in one mesh, or (--with) between two.
+    Detect(Box<DetectArgs>),
+    /// Say what detect would run with the same arguments, on which machine and memory, and why.
+    Plan(Box<DetectArgs>),
+    /// Say what every solver answers about one pair, and what the exact answer is.
+    Explain(Box<ExplainArgs>),
+    /// Write a benchmark scene as PLY frames.
+    Scene(SceneArgs),
+    /// The thesis's figures 6.12 to 6.14, ours beside theirs: a table, CSV files and pictures.
+    Tables(TablesArgs),
+    /// What each faster choice costs in misses, lateness and false alarms, measured here: a table, CSV files and pictures.
+    Trade(TradeArgs),
+    /// Check this machine: known answers, and the card and the CPU to the bit.
+    Selftest(SelftestArgs),
+}
+
+/// Takes the name of one of the library's choices, and tells all of them in the help.
+fn choice<T: Named>() -> impl TypedValueParser<Value = T> {
+    let all = T::ALL.iter().map(|choice| PossibleValue::new(choice.name()).help(choice.about()));
+    PossibleValuesParser::new(all).try_map(|name| T::of(&name).ok_or("no such choice"))
+}
+
+/// The command, or the exit status where clap has said all that there is to say.
+///
+/// # Errors
+/// [`Error::Choice`] for options that do not go together, or that would do nothing; [`Error::Output`] for help that cannot be
+/// printed.
+pub fn parse() -> Result<Result<Command, ExitCode>, Error> {
+    let parsed = Cli::command().try_get_matches().and_then(|all| {
+        let cli = Cli::from_arg_matches(&all)?;
+        Ok((cli.command, all))
+    });
+    match parsed {
+        Ok((mut command, all)) => {
+            if let Some((_, own)) = all.subcommand() {
+                sort_out(&mut command, own)?;
+                idle::check(&command, own)?;
+            }
+            Ok(Ok(command))
+        }
+        Err(said) => {
+            let printed = said.print().and_then(|()| std::io::stdout().flush());
+            match printed {
+                Err(e) if !said.use_stderr() => Err(stdout_failed(&e)),
+                // The status says the rest: 2, or 0 after help.
+                _ => Ok(Err(ExitCode::from(if said.use_stderr() { 2 } else { 0 }))),
+            }
+        }
+    }
+}
+
+/// Gives each mesh its files.
+fn sort_out(command: &mut Command, own: &ArgMatches) -> Result<(), Error> {
+    match command {
+        Command::Detect(args) | Command::Plan(args) => files::part(own, &mut args.meshes, &mut args.with),
+        Command::Explain(args) => files::part(own, &mut args.meshes, &mut args.with),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,122 @@
+//! `detect`.
+
+mod notes;
+mod text;
+
+use crate::args::DetectArgs;
+use crate::output::{Target, print, say};
+use crate::progress::during;
+use crate::report::{self, Told};
+use nearmiss::contacts::Contacts;
+use nearmiss::error::Error;
+use nearmiss::mesh::{Body, Mesh};
+use nearmiss::pipeline::{Session, Stages};
+use nearmiss::query::{Motion, Query, Traversal};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// A body from one file, or from two frames.
+pub fn body(files: &[PathBuf]) -> Result<Body, Error> {
+    match files {
+        [t0, t1] => Body::moving(Mesh::read(t0)?, Mesh::read(t1)?),
+        [still] => Ok(Body::still(Mesh::read(still)?)),
+        // `args` asks for one or two.
+        _ => Err(Error::Bug { what: format!("{} files for a mesh", files.len()) }),
+    }
+}
+
+/// The bodies that the arguments name, and what is asked of them.
+pub fn question(args: &DetectArgs) -> Result<(Vec<Body>, Query), Error> {
+    if args.scene.is_none() {
+        // Before anything is read.
+        args.query([&args.meshes, &args.with].iter().any(|files| files.len() == 2)).check()?;
+    }
+    let mut bodies = Vec::new();
+    match &args.scene {
+        Some(name) => bodies.push(during("making the scene", || {
+            nearmiss_lab::scene::scene(
+                name,
+                args.triangles.unwrap_or(nearmiss_lab::scene::usual(name)),
+                args.seed,
+            )
+        })?),
+        None => bodies.push(during("reading", || body(&args.meshes))?),
+    }
+    if !args.with.is_empty() {
+        bodies.push(during("reading", || body(&args.with))?);
+    }
+    let query = args.query(bodies.iter().any(Body::is_moving));
+    query.check()?;
+    Ok((bodies, query))
+}
+
+/// Finds contacts, writes and prints what was asked for.
+pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
+    let target = match &args.out {
+        Some(out) => Some((report::Format::of(out)?, Target::open(out)?)),
+        None => None,
+    };
+    let (bodies, query) = question(args)?;
+    let device = args.machine.open()?;
+    if !query.solver().is_certain() {
+        say(&format!("the solver is {}", query.solver().promise()));
+    }
+    let moves = notes::Moves::of(&bodies);
+    let again = (query.motion == Motion::Earliest).then(|| (device.clone(), bodies.clone()));
+    let mut session = during("building", || Session::new(device, bodies, query))?;
+    let often = if args.only.is_some() { 1 } else { args.repeat };
+    let (contacts, runs) = during("detecting", || repeated(&mut session, often))?;
+    let mut summary = session.summary(&contacts);
+    summary.ms = median(&runs);
+    if let Some(stage) = args.only {
+        let times = during("repeating a stage", || session.repeat_stage(stage, args.repeat))?;
+        *summary.ms.of_mut(stage) = middle(times);
+    }
+    drop(session);
+    let pairs_at_start = match again {
+        Some((device, bodies)) => during("looking at the start", || notes::at_start(device, bodies))?,
+        None => None,
+    };
+    let notes = notes::of(query.motion, moves, &contacts, pairs_at_start);
+    let told = Told { summary, pairs_at_start, notes };
+    if let Some((format, target)) = target {
+        report::write(target, format, &contacts, &told)?;
+    }
+    if args.json {
+        let text = serde_json::to_string(&told).map_err(|e| Error::Bug { what: e.to_string() })?;
+        print(&(text + "\n"))?;
+    } else {
+        print(&text::human(&told, &contacts))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The answer, and the times of each run; of several runs the first only warms up.
+fn repeated(session: &mut Session, repeat: u32) -> Result<(Contacts, Vec<Stages>), Error> {
+    let keeps_front = matches!(session.query().traversal, Some(Traversal::Front(_)));
+    let mut contacts = session.detect()?;
+    let mut runs = vec![contacts.stages];
+    if repeat > 1 {
+        runs.clear();
+        for _ in 0..repeat {
+            // A tree built anew would forget the front.
+            if !keeps_front {
+                session.rebuild()?;
+            }
+            contacts = session.detect()?;
+            runs.push(contacts.stages);
+        }
+    }
+    Ok((contacts, runs))
+}
+
+/// Each stage's median.
+fn median(runs: &[Stages]) -> Stages {
+    Stages::each(|stage| middle(runs.iter().map(stage).collect()))
+}
+
+/// The median; of an even number the upper of the two in the middle, of none 0.
+fn middle(mut times: Vec<f64>) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times.get(times.len() / 2).copied().unwrap_or(0.0)
+}

@@ -1,0 +1,76 @@
+//! What a user should know about an answer that is right and says little.
+
+use nearmiss::contacts::{Answer, Contacts};
+use nearmiss::device::Device;
+use nearmiss::error::Error;
+use nearmiss::mesh::Body;
+use nearmiss::pipeline::Session;
+use nearmiss::query::{Motion, Query};
+use nearmiss::words::counted;
+
+/// Whether anything moves within the step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Moves {
+    /// There is a step, and something moves in it.
+    Yes,
+    /// There is one frame of everything.
+    OneFrame,
+    /// The frames are the same.
+    SameFrames,
+}
+
+impl Moves {
+    /// Whether these bodies move.
+    pub fn of(bodies: &[Body]) -> Moves {
+        let moves = |body: &Body| body.positions_t1().is_some_and(|t1| t1 != body.positions_t0());
+        match (bodies.iter().any(moves), bodies.iter().any(Body::is_moving)) {
+            (true, _) => Moves::Yes,
+            (false, true) => Moves::SameFrames,
+            (false, false) => Moves::OneFrame,
+        }
+    }
+}
+
+/// How many pairs of triangles meet at the start of the step already. A time of contact is silent about an edge that is
+/// through a face by then. `None` where there is no memory to find out.
+///
+/// # Errors
+/// Those of the device, but for memory.
+pub fn at_start(device: Device, bodies: Vec<Body>) -> Result<Option<usize>, Error> {
+    let found = Session::new(device, bodies, Query::of(Motion::Discrete)).and_then(|mut all| all.detect());
+    match found {
+        Ok(contacts) => Ok(Some(contacts.len())),
+        Err(Error::Room { .. }) => Ok(None),
+        Err(error) => Err(error),
+    }
+}
+
+/// The notes, a line each.
+pub fn of(motion: Motion, moves: Moves, contacts: &Contacts, at_start: Option<usize>) -> Vec<String> {
+    let mut notes = Vec::new();
+    let why = match moves {
+        Moves::OneFrame => {
+            Some("there is one frame; give a second file with the positions at the end of the step")
+        }
+        Moves::SameFrames => Some("both frames are the same"),
+        Moves::Yes => None,
+    };
+    if let Some(why) = why.filter(|_| motion != Motion::Discrete) {
+        notes.push(format!("nothing moves: {why}"));
+    }
+    match at_start {
+        Some(pairs @ 1..) => {
+            let meet = counted(pairs as u64, "triangle pair meets", "triangle pairs meet");
+            notes.push(format!(
+                "{meet} at the start of the step already: no step is free of contact; --discrete lists them"
+            ));
+        }
+        _ if contacts.answer == Answer::Earliest(Some(0.0)) => {
+            notes.push(
+                "in contact at the start of the step, or too near to tell: no step can be taken".into(),
+            );
+        }
+        _ => {}
+    }
+    notes
+}

@@ -1,0 +1,102 @@
+//! The summary for people.
+
+use crate::report::Told;
+use nearmiss::contacts::Contacts;
+use nearmiss::query::Traversal;
+use nearmiss::words::counted;
+use std::fmt::Write;
+
+/// The summary for people.
+pub fn human(told: &Told, contacts: &Contacts) -> String {
+    let mut text = String::new();
+    let summary = &told.summary;
+    let ms = &summary.ms;
+    // Writing to a String cannot fail.
+    let _ = writeln!(
+        text,
+        "{}, {}; {:?} by {:?} on {}",
+        counted(summary.triangles as u64, "triangle", "triangles"),
+        counted(summary.vertices as u64, "vertex", "vertices"),
+        summary.query,
+        summary.solver,
+        summary.device
+    );
+    let _ = writeln!(
+        text,
+        "  {}, {}, {}{}",
+        counted(summary.triangle_pairs, "triangle pair", "triangle pairs"),
+        counted(summary.candidates, "candidate", "candidates"),
+        counted(summary.contacts as u64, "contact", "contacts"),
+        summary.earliest_toi.map_or(String::new(), |toi| format!(", the first at t = {toi}"))
+    );
+    if let Some(tolerance) = summary.tolerance {
+        let escalated: u64 = contacts.escalated_vf_ee.iter().sum();
+        let _ = writeln!(
+            text,
+            "  {} unresolved, {escalated} asked again in f64; tolerance {tolerance:e}{}",
+            summary.unresolved,
+            match summary.separation {
+                Some(s) if s > 0.0 => format!(", separation {s:e}"),
+                _ => String::new(),
+            }
+        );
+    }
+    for note in &told.notes {
+        let _ = writeln!(text, "  {note}");
+    }
+    for reason in &summary.degraded {
+        let _ = writeln!(text, "  degraded: {reason}");
+    }
+    if summary.reruns > 0 {
+        let often = counted(summary.reruns, "time", "times");
+        let _ =
+            writeln!(text, "  lists grew, and a part of the frame ran again, {often}: the answer is whole");
+    }
+    let _ = writeln!(
+        text,
+        "  ms: construct {:.3}, fit {:.3}, refit {:.3}, traverse {:.3}{}, narrow {:.3}; a frame {:.3}{}, waited for {:.3}",
+        ms.construct,
+        ms.fit,
+        ms.refit,
+        ms.traverse,
+        if ms.balance > 0.0 { format!(", balance {:.3}", ms.balance) } else { String::new() },
+        ms.narrow,
+        ms.total,
+        if ms.order > 0.0 { format!(", ordering {:.3}", ms.order) } else { String::new() },
+        ms.wall
+    );
+    if !matches!(summary.traversal, Traversal::PerLeaf { .. }) {
+        let q = &summary.queues;
+        let _ = writeln!(
+            text,
+            "  queues: {}, {} dry, {} spilled, {} moved, {} stolen; {} waited at most",
+            counted(q.rounds, "round", "rounds"),
+            counted(q.idle_exits, "time", "times"),
+            counted(q.spills, "unit", "units"),
+            q.moves,
+            q.stolen,
+            q.longest
+        );
+    }
+    if let Traversal::Front(_) = summary.traversal {
+        let f = &summary.front;
+        let _ = writeln!(
+            text,
+            "  front: {}; {} of pairs kept, {} gave way to an ancestor",
+            counted(f.pairs, "pair", "pairs"),
+            counted(f.tests, "test", "tests"),
+            f.pruned
+        );
+    }
+    let _ = writeln!(
+        text,
+        "  {}, {} spilled, {} undecided by floats ({} in f64); {:.1} MB; hash {}",
+        counted(contacts.steps, "node test", "node tests"),
+        counted(contacts.spilled, "unit", "units"),
+        contacts.undecided,
+        contacts.undecided_wide,
+        summary.bytes as f64 / 1e6,
+        summary.hash
+    );
+    text
+}

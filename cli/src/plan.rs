@@ -1,0 +1,96 @@
+//! `plan`.
+
+use crate::args::DetectArgs;
+use crate::detect::question;
+use crate::output::print;
+use nearmiss::error::Error;
+use nearmiss::pipeline::Session;
+use nearmiss::query::{Bv, Motion, Query, Traversal};
+use nearmiss::words::counted;
+use std::fmt::Write;
+use std::process::ExitCode;
+
+/// Says what `detect` would do.
+pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
+    let (bodies, query) = question(args)?;
+    let device = args.machine.open()?;
+    let before = device.launches();
+    let session = Session::new(device.clone(), bodies.clone(), query)?;
+    let mut text = String::new();
+    for body in &bodies {
+        let _ = writeln!(
+            text,
+            "{}: {}, {}, positions in {}, {}",
+            body.name(),
+            counted(body.face_count() as u64, "triangle", "triangles"),
+            counted(body.vertex_count() as u64, "vertex", "vertices"),
+            if body.positions_t0().is_f64() { "f64" } else { "f32" },
+            if body.is_moving() { "two frames" } else { "one frame" }
+        );
+    }
+    let _ = writeln!(
+        text,
+        "query      {:?}, {}",
+        query.motion,
+        if bodies.len() == 1 { "self" } else { "between" }
+    );
+    let _ = writeln!(text, "machine    {} ({})", device.name(), device.backend());
+    let swept = query.motion != Motion::Discrete && query.bv() != Bv::Linear;
+    let _ = writeln!(text, "volume     {}{}", query.bv().name(), if swept { ", swept" } else { "" });
+    let _ = writeln!(
+        text,
+        "refit      {}",
+        match (query.refit, query.refit_on(device.is_card())) {
+            (Some(choice), _) => format!("{choice:?}, as asked"),
+            (None, choice) => format!("{choice:?}: the fastest on this machine"),
+        }
+    );
+    let _ = writeln!(
+        text,
+        "traversal  {}",
+        match query.traversal {
+            Some(choice) => format!("{choice:?}, as asked"),
+            None => match query.traversal_on(device.is_card()) {
+                Traversal::PerLeaf { budget: None } =>
+                    "per leaf, to the end: a CPU's threads balance by themselves".into(),
+                Traversal::PerLeaf { .. } =>
+                    "per leaf, long walks spill: a card must not wait for its longest walk".into(),
+                choice => format!("{choice:?}: fewer tests, where tests cost more"),
+            },
+        }
+    );
+    let _ = writeln!(text, "solver     {}", query.solver().promise());
+    if let Some(tolerance) = session.tolerance() {
+        let why = if query.tolerance.is_some() { "as asked" } else { "about 1e-4 of the mean edge" };
+        let boxes = query.boxes.unwrap_or(Query::BOXES);
+        let _ = writeln!(
+            text,
+            "tolerance  {tolerance:e}, {why}; at most {} a pair",
+            counted(boxes.into(), "box", "boxes")
+        );
+        let separation = query.separation.filter(|s| *s > 0.0);
+        let _ = writeln!(
+            text,
+            "separation {}",
+            separation.map_or("none: what touches is in contact".into(), |s| format!("{s:e}, as asked"))
+        );
+    }
+    let _ = writeln!(
+        text,
+        "tree       {}, built with {}",
+        session
+            .depths()
+            .iter()
+            .map(|&n| counted(n as u64, "level", "levels"))
+            .collect::<Vec<_>>()
+            .join(" and "),
+        counted(device.launches() - before, "launch", "launches")
+    );
+    let _ = writeln!(
+        text,
+        "memory     {:.1} MB to begin with; lists grow to the demand",
+        device.bytes().0 as f64 / 1e6
+    );
+    print(&text)?;
+    Ok(ExitCode::SUCCESS)
+}

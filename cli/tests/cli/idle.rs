@@ -1,0 +1,57 @@
+//! Options that would do nothing, command by command: refused, with why.
+
+use super::refused;
+
+#[test]
+fn options_that_would_do_nothing_are_refused() {
+    const SOUP: [&str; 2] = ["--scene", "soup"];
+    let walk = "gives its rest away; add --traversal per-leaf-spill";
+    let queues = "the walk has no queues; add --traversal queue";
+    let planned = "a plan runs nothing";
+    let files = "nothing is made here; add --full";
+    let table: [(&str, &[&str], &str); 36] = [
+        ("detect", &["--budget", "8"], walk),
+        ("detect", &["--budget", "8", "--traversal", "per-leaf"], walk),
+        ("detect", &["--budget", "8", "--traversal", "steal"], walk),
+        ("detect", &["--cores", "8"], queues),
+        ("detect", &["--queue", "8"], queues),
+        ("detect", &["--cores", "8", "--traversal", "per-leaf"], queues),
+        ("detect", &["--queue", "8", "--traversal", "per-leaf-spill"], queues),
+        ("detect", &["--threads", "1", "--backend", "cuda"], "a card takes no CPU threads"),
+        ("detect", &["--tolerance", "1"], "takes no tolerance"),
+        ("detect", &["--boxes", "1"], "takes no tolerance, no budget"),
+        ("detect", &["--separation", "1"], "no separation"),
+        ("detect", &["--earliest", "--adjacent"], "--adjacent with a discrete query"),
+        ("detect", &["--only", "narrow"], "--repeat"),
+        ("plan", &["--repeat", "2"], planned),
+        ("plan", &["--repeat", "2", "--only", "narrow"], planned),
+        ("plan", &["--out", "a.csv"], planned),
+        ("plan", &["--json"], planned),
+        ("plan", &["--budget", "8"], walk),
+        ("explain", &["a.ply", "--tt", "0", "1", "--tolerance", "1"], "decided exactly"),
+        ("explain", &["a.ply", "--tt", "0", "1", "--boxes", "1"], "decided exactly"),
+        ("scene", &["single", "--triangles", "5", "--out", "x"], "has one triangle"),
+        ("scene", &["grid", "--skip", "1", "--out", "x"], "made by formula"),
+        ("scene", &["soup", "--contact", "--out", "x"], "made by formula"),
+        ("scene", &["soup", "--frames", "2", "--out", "x"], "which has 1"),
+        ("scene", &["n-body", "--contact", "--out", "x"], "no cloth"),
+        ("tables", &["--mesh", "a.ply", "b.ply", "--frames", "3"], "the files of --mesh"),
+        ("tables", &["--mesh", "a.ply", "b.ply", "--seed", "3"], "the files of --mesh"),
+        ("tables", &["--mesh", "a.ply", "b.ply", "--triangles", "3"], "the files of --mesh"),
+        ("tables", &["--table", "6.12", "--rebuild-every", "3"], "no frame is measured"),
+        ("tables", &["--threads", "1", "--backend", "cuda"], "a card takes no CPU threads"),
+        ("trade", &["--mesh", "a.ply", "--scene", "n-body"], files),
+        ("trade", &["--mesh", "a.ply", "--triangles", "9"], files),
+        ("trade", &["--queries", "a", "--frames", "9"], files),
+        ("trade", &["--queries", "a", "--cases", "9"], files),
+        ("trade", &["--queries", "a", "--seed", "9"], files),
+        ("trade", &["--truth", "a.csv"], "--mesh"),
+    ];
+    for (command, options, why) in table {
+        let scene: &[&str] = if matches!(command, "detect" | "plan") { &SOUP } else { &[] };
+        let text = refused(2, &[&[command], options, scene].concat());
+        assert!(text.contains(why), "{command} {options:?}: {text}");
+    }
+    assert!(refused(2, &["detect", "--scene", "single", "--triangles", "5"]).contains("has one triangle"));
+    assert!(!std::path::Path::new("x").exists(), "nothing was made");
+}

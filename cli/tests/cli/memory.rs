@@ -1,0 +1,65 @@
+//! Memory that ends: exit 4 with a message, never an abort.
+#![cfg(target_os = "linux")]
+
+use super::Folder;
+use std::process::Command;
+
+/// Runs the program with so many kilobytes of addresses; the exit status, none where it was killed, and what it said.
+fn within(kilobytes: u32, args: &[&str]) -> (Option<i32>, String) {
+    let script = format!("ulimit -v {kilobytes}; exec \"$0\" \"$@\"");
+    let program = env!("CARGO_BIN_EXE_nearmiss");
+    let output = Command::new("sh").args(["-c", &script, program]).args(args).output().expect("a shell");
+    (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
+#[test]
+fn what_is_too_large_is_refused_before_it_is_made() {
+    let folder = Folder::new("too-large");
+    let dir = folder.path("scene");
+    let huge = "134217728";
+    let all: [&[&str]; 9] = [
+        &["detect", "--scene", "soup", "--triangles", huge],
+        &["detect", "--scene", "balls", "--triangles", huge],
+        &["detect", "--scene", "n-body", "--triangles", huge],
+        &["plan", "--scene", "cloth-ball", "--triangles", huge],
+        &["scene", "draped", "--triangles", huge, "--out", &dir],
+        &["tables", "--scene", "n-body", "--triangles", huge],
+        &["tables", "--scene", "n-body", "--triangles", "20000", "--frames", "10000"],
+        &["trade", "--cases", "1000000"],
+        &["selftest", "--triangles", huge],
+    ];
+    for args in all {
+        let (code, text) = within(2_000_000, args);
+        assert_eq!(code, Some(4), "{args:?}: {text}");
+        assert!(text.contains("bytes were needed"), "{args:?}: {text}");
+    }
+    // A file of which nothing is there but its size; and a header that promises what the file does not hold.
+    let sparse = folder.path("sparse.ply");
+    std::fs::File::create(&sparse).and_then(|file| file.set_len(1 << 40)).expect("a sparse file");
+    let (code, text) = within(2_000_000, &["detect", &sparse]);
+    assert!(code == Some(4) && text.contains("reading ") && text.contains("bytes were needed"), "{text}");
+    let header = "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\nproperty float y\n\
+        property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    let promise = folder.write("promise.ply", header);
+    let (code, text) = within(2_000_000, &["detect", &promise]);
+    assert!(code == Some(3) && text.contains("promise.ply"), "{text}");
+}
+
+#[test]
+fn memory_that_ends_anywhere_is_no_abort() {
+    let mut seen = Vec::new();
+    let mut ask = |scene: &str, triangles: &str| {
+        let (code, text) = within(500_000, &["detect", "--scene", scene, "--triangles", triangles]);
+        assert!(code == Some(0) || code == Some(4), "{scene}, {triangles}: {code:?} {text}");
+        assert!(code == Some(0) || text.contains("bytes were needed"), "{scene}, {triangles}: {text}");
+        seen.push(code);
+    };
+    for scene in ["soup-moving", "draped"] {
+        for triangles in ["2000", "20000", "60000", "150000", "400000", "1000000"] {
+            ask(scene, triangles);
+        }
+    }
+    // Few triangles, and a list of tens of millions of pairs.
+    ask("identical", "8000");
+    assert!(seen.contains(&Some(0)) && seen.contains(&Some(4)), "{seen:?}");
+}

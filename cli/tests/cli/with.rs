@@ -1,0 +1,54 @@
+//! Which files are the mesh's and which the other's: the rule of `--with`.
+
+use super::{Folder, ok, refused, summary};
+
+#[test]
+fn the_other_mesh_may_stand_before_or_behind() {
+    let folder = Folder::new("with-order");
+    let a = folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    // It falls through the first.
+    let [b0, b1] = [("b0.obj", 1), ("b1.obj", -1)].map(|(name, z)| {
+        folder.write(name, &format!("v 0.25 0.25 {z}\nv 0.25 0.25 {}\nv 5 5 3\nf 1 2 3\n", z + 2))
+    });
+    let hash = |args: &[&str]| {
+        let all = summary(&[&["detect", "--json"], args].concat());
+        (all["hash"].as_str().expect("a hash").to_owned(), all["frames"].as_u64())
+    };
+    let still = hash(&[&a, "--with", &b1]);
+    assert_eq!(still.1, Some(1));
+    assert_eq!(hash(&["--with", &b1, &a]), still);
+    assert_eq!(hash(&["--with", &b1, "--discrete", &a]), still);
+    let moving = hash(&[&a, &a, "--with", &b0, &b1]);
+    assert_eq!(moving.1, Some(2));
+    let same: [&[&str]; 6] = [
+        &[&a, &a, "--with", &b0, "--with", &b1],
+        &["--with", &b0, "--with", &b1, &a, &a],
+        &["--with", &b0, &a, &a, "--with", &b1],
+        &["--with", &b0, "--with", &b1, &a],
+        &[&a, "--with", &b0, &b1, "--continuous"],
+        &[&a, "--with", &b0, "--continuous", "--with", &b1],
+    ];
+    for args in same {
+        assert_eq!(hash(args), moving, "{args:?}");
+    }
+    // Not right behind it: the mesh's own.
+    assert_eq!(hash(&[&a, "--with", &b1, "--discrete", &a]).1, Some(2));
+    assert!(ok(&["plan", "--with", &b0, &a]).contains("Discrete, between"));
+    let explained = ok(&["explain", "--with", &b0, "--with", &b1, &a, &a, "--fv", "0", "0"]);
+    assert!(explained.contains("vertex 0 of ") && explained.contains("t = 1/2"), "{explained}");
+}
+
+#[test]
+fn three_files_are_too_many() {
+    for (args, said) in [
+        (&["detect", "a", "--with", "b", "c", "d"][..], "3 files for --with"),
+        (&["detect", "--with", "b", "--with", "c", "--with", "d", "a"], "3 files for --with"),
+        (&["detect", "a", "b", "c"], "3 files for the mesh"),
+        (&["detect", "--with", "b", "a", "c", "d"], "3 files for the mesh"),
+        (&["explain", "a", "b", "c", "--vf", "0", "0"], "3 files for the mesh"),
+    ] {
+        let text = refused(2, args);
+        assert!(text.contains(said) && text.contains("give one, or two"), "{args:?}: {text}");
+    }
+    assert!(ok(&["detect", "--help"]).contains("--with B0 --with B1 A0 A1"));
+}
