@@ -6,6 +6,7 @@
 pub mod contacts;
 pub mod device;
 pub mod error;
+#[doc(hidden)]
 pub mod memory;
 pub mod mesh;
 #[doc(hidden)]
@@ -13,6 +14,7 @@ pub mod pipeline;
 pub mod query;
 #[cfg(test)]
 mod samples;
+#[doc(hidden)]
 #[doc(hidden)]
 pub mod words;
 

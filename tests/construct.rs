@@ -6,7 +6,7 @@ use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::Motion;
 use nearmiss::{Query, Session};
 use nearmiss_lab::scene;
-use support::{ORDERS, engine, microscope};
+use support::{ORDERS, engine, sanitizer};
 
 /// A triangle far from everything.
 fn far() -> Body {
@@ -35,7 +35,7 @@ fn equal_triangles_make_a_balanced_tree() {
         assert_eq!(depth(engine(), body.clone()), balanced(n), "{n}");
         if n < 6 {
             for order in ORDERS {
-                assert_eq!(depth(microscope(order), body.clone()), balanced(n), "{n}, {order:?}");
+                assert_eq!(depth(sanitizer(order), body.clone()), balanced(n), "{n}, {order:?}");
             }
         }
     }

@@ -8,7 +8,7 @@ use nearmiss::query::{FrontShape, Motion, Solver, Traversal};
 use nearmiss::{Contacts, Device, Error, Query, Session};
 use nearmiss_lab::scene;
 use std::collections::BTreeMap;
-use support::{ask, engine, microscope};
+use support::{ask, engine, sanitizer};
 
 fn soup() -> Vec<Body> {
     vec![scene::soup(60, 5, true).expect("a scene")]
@@ -56,7 +56,7 @@ fn a_budget_that_ends_is_told() {
     // In f32 alone nothing is searched by boxes.
     for solver in [Solver::Certified, Solver::CertifiedF64] {
         for boxes in [1, 2] {
-            for device in [engine(), microscope(support::ORDERS[2])] {
+            for device in [engine(), sanitizer(support::ORDERS[2])] {
                 let all = ask(device, shrinking(), Query { boxes: Some(boxes), ..by(solver) });
                 none_is_lost(&truth, &all);
                 assert!(met(&all) > 0, "{:?}", all.contacts());

@@ -142,7 +142,7 @@ struct Left {
 
 /// Launches a kernel on every machine, for all numbers of lanes and blocks; `number` makes each lane's number.
 fn everywhere<E: Entry<Args = Args>>(number: impl Fn(u32) -> u32, judge: impl Fn(&Left)) {
-    let modes = [Mode::Engine].into_iter().chain(ORDERS.map(Mode::Microscope));
+    let modes = [Mode::Engine].into_iter().chain(ORDERS.map(Mode::Sanitizer));
     for (mode, lanes) in modes.flat_map(|mode| LANES.map(|lanes| (mode, lanes))) {
         let device = Device::emulator(Emulator::new(mode, None).expect("threads").with_lanes(lanes));
         assert_eq!(device.lanes::<E>(), lanes);
@@ -312,7 +312,7 @@ fn orders_are_permutations() {
 fn the_engine_runs_on_as_many_threads_as_asked() {
     let emulator = |mode, threads| Emulator::new(mode, threads).expect("threads").threads();
     assert_eq!(emulator(Mode::Engine, Some(3)), 3);
-    assert_eq!(emulator(Mode::Microscope(Order::Forward), Some(3)), 1);
+    assert_eq!(emulator(Mode::Sanitizer(Order::Forward), Some(3)), 1);
     assert!(emulator(Mode::Engine, None) >= 1);
 }
 

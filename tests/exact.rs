@@ -5,7 +5,7 @@ mod support;
 use nearmiss::mesh::Body;
 use nearmiss::query::Motion;
 use nearmiss::{Contacts, Query};
-use support::{ORDERS, ask, engine, mesh, microscope, rows, ways};
+use support::{ORDERS, ask, engine, mesh, rows, sanitizer, ways};
 
 /// Pairs of a list.
 fn listed(path: &str) -> Vec<[u32; 2]> {
@@ -29,7 +29,7 @@ fn discrete(device: nearmiss::Device, bodies: Vec<Body>) -> Contacts {
     ask(device, bodies, Query::of(Motion::Discrete))
 }
 
-/// Meshes (one against itself, two against each other), the list of their pairs, and whether the microscope, which
+/// Meshes (one against itself, two against each other), the list of their pairs, and whether the sanitizer, which
 /// is slow, looks at them too.
 const SETS: [(&[&str], &str, bool); 8] = [
     (&["exact/bunny.ply"], "exact/bunny.pairs.csv.gz", true),
@@ -50,7 +50,7 @@ fn every_pair_set_equals_the_exact_one() {
         let found = discrete(engine(), bodies.clone());
         assert_eq!(difference(found.pairs(), &truth), None, "{meshes:?}");
         for order in ORDERS.into_iter().filter(|_| small) {
-            let again = discrete(microscope(order), bodies.clone());
+            let again = discrete(sanitizer(order), bodies.clone());
             assert_eq!(again.hash(), found.hash(), "{meshes:?}, {order:?}");
         }
     }
@@ -72,12 +72,12 @@ fn every_way_finds_the_exact_pairs() {
 }
 
 #[test]
-#[ignore = "minutes: the microscope watches every access of two large scenes"]
+#[ignore = "minutes: the sanitizer watches every access of two large scenes"]
 fn the_large_sets_are_the_same_in_every_order() {
     for (meshes, pairs, _) in SETS.into_iter().filter(|(_, _, small)| !small) {
         let (bodies, truth) = (bodies(meshes), listed(pairs));
         for order in ORDERS {
-            let found = discrete(microscope(order), bodies.clone());
+            let found = discrete(sanitizer(order), bodies.clone());
             assert_eq!(difference(found.pairs(), &truth), None, "{meshes:?}, {order:?}");
         }
     }

@@ -9,7 +9,7 @@ use nearmiss::query::{Bv, Motion, Solver};
 use nearmiss::{Contacts, Query, Session};
 use nearmiss_lab::scene;
 use std::collections::BTreeMap;
-use support::{ask, engine, microscope, ways};
+use support::{ask, engine, sanitizer, ways};
 
 /// The coordinates of a soup reach to about 1; the powers of two to beyond 2^60, half way, and just below the end of f32.
 const POWERS: [i32; 4] = [50, 62, 100, 126];
@@ -76,7 +76,7 @@ fn every_choice_answers_floats_of_any_size() {
             }
             for bv in Bv::ALL {
                 let query = Query { bv: Some(bv), ..Query::of(motion) };
-                let seen = ask(microscope(support::ORDERS[2]), vec![large.clone()], query);
+                let seen = ask(sanitizer(support::ORDERS[2]), vec![large.clone()], query);
                 assert_eq!(
                     seen.answer,
                     ask(engine(), vec![large.clone()], query).answer,

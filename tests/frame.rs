@@ -1,4 +1,4 @@
-//! Whole frames against brute force and known answers: the corridor loses nothing, invents nothing, and does no work
+//! Whole frames against brute force and known answers: the pipeline loses nothing, invents nothing, and does no work
 //! that nobody asked for.
 
 #[path = "frame/certified.rs"]

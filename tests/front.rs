@@ -89,7 +89,7 @@ fn under_the_microscope_in_every_order() {
     let engine = Device::emulator(Emulator::new(Mode::Engine, None).expect("an engine"));
     let want = answers(&engine, query(Motion::Discrete, Bv::Aabb, None), &frames, None);
     for order in [Order::Forward, Order::Reverse, Order::Shuffled(4)] {
-        let device = Device::emulator(Emulator::new(Mode::Microscope(order), None).expect("a microscope"));
+        let device = Device::emulator(Emulator::new(Mode::Sanitizer(order), None).expect("a sanitizer"));
         for shape in shapes() {
             let asked = query(Motion::Discrete, Bv::Aabb, Some(Traversal::Front(shape)));
             assert_eq!(answers(&device, asked, &frames, None), want, "{order:?}, {shape:?}");

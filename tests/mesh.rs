@@ -31,7 +31,7 @@ fn problem<T: std::fmt::Debug>(result: Result<T, Error>) -> Problem {
 }
 
 #[test]
-fn the_door_refuses_each_fault() {
+fn validation_refuses_each_fault() {
     let with = |x: f32| {
         let mut points = corners();
         points[2][1] = x;

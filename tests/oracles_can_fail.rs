@@ -1,4 +1,4 @@
-//! Every judge is shown to condemn: the checker of trees one planted fault a clause, the microscope one kernel a
+//! Every judge is shown to condemn: the checker of trees one planted fault a clause, the sanitizer one kernel a
 //! fault, the hash of an answer one bit. Kernels that break no rule pass.
 
 mod support;
@@ -15,9 +15,9 @@ use nearmiss_kernels::abi::Span;
 use nearmiss_kernels::entry::Entry;
 use nearmiss_kernels::exec::{Block, Lane};
 use nearmiss_lab::scene;
-use support::{ORDERS, ask, engine, microscope};
+use support::{ORDERS, ask, engine, sanitizer};
 
-// The microscope.
+// The sanitizer.
 
 /// Memory that the kernels of this test touch.
 #[derive(Clone, Copy)]
@@ -127,13 +127,13 @@ const RACE: &str = "a race between";
 fn launched<E: Entry<Args = Words>>(device: &Device) -> Result<(), Error> {
     let words = device.buffer::<u32>(96).expect("memory");
     let long = device.upload(&[5u64, 6]).expect("memory");
-    // SAFETY: a microscope lets no kernel touch what is not memory.
+    // SAFETY: a sanitizer lets no kernel touch what is not memory.
     unsafe { device.launch::<E>(3, &Words { words: words.span(), long: long.span() }) }
 }
 
 fn condemned<E: Entry<Args = Words>>(fault: &str) {
     for order in ORDERS {
-        let device = microscope(order);
+        let device = sanitizer(order);
         let Err(Error::Bug { what }) = launched::<E>(&device) else {
             panic!("{}, {order:?}: no fault", E::NAME)
         };
@@ -145,7 +145,7 @@ fn condemned<E: Entry<Args = Words>>(fault: &str) {
 
 fn acquitted<E: Entry<Args = Words>>() {
     for order in ORDERS {
-        launched::<E>(&microscope(order)).unwrap_or_else(|e| panic!("{}, {order:?}: {e}", E::NAME));
+        launched::<E>(&sanitizer(order)).unwrap_or_else(|e| panic!("{}, {order:?}: {e}", E::NAME));
     }
 }
 
@@ -174,7 +174,7 @@ fn blocks_of_one_launch_are_not_ordered_by_phases() {
     // In each block the two phases are ordered, but its words are the other blocks' too.
     condemned::<written_then_read>(RACE);
     for order in ORDERS {
-        let device = microscope(order);
+        let device = sanitizer(order);
         let words = device.buffer::<u32>(32).expect("memory");
         let args = Words { words: words.span(), long: Span::EMPTY };
         // SAFETY: the words outlive both.
@@ -203,10 +203,10 @@ fn an_access_outside_is_seen() {
 
 #[test]
 fn a_span_that_lies_about_its_memory_is_seen() {
-    let device = microscope(ORDERS[0]);
+    let device = sanitizer(ORDERS[0]);
     let words = device.upload(&[0u32; 16]).expect("memory");
     let stale = words.span();
-    // SAFETY: a microscope, which is all that is given it, lets no kernel touch what is not memory.
+    // SAFETY: a sanitizer, which is all that is given it, lets no kernel touch what is not memory.
     let long = unsafe { Span::new(stale.addr(), 64) };
     // SAFETY: as above.
     let launch =

@@ -10,7 +10,7 @@ use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};
 use nearmiss_kernels::prim::inclusion::Params;
 use nearmiss_kernels::prim::isolate::{Rungs, ee_certified, vf_certified};
 use nearmiss_lab::oracle::triangles_meet;
-use nearmiss_lab::pairs::{Answers, How, Stored, ask, ask_triangles, mean_edge};
+use nearmiss_lab::pairs::{Answers, Options, Stored, ask, ask_triangles, mean_edge};
 use nearmiss_lab::{Case, Features};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
@@ -42,7 +42,7 @@ fn every_case_has_the_solvers_own_answer() {
     let cases = cases(700);
     for device in machines() {
         for filters in [false, true] {
-            let how = How { filters, ..How::default() };
+            let how = Options { filters, ..Options::default() };
             let query = Query { solver: Some(Solver::CertifiedF64), ..continuous() };
             let certified = ask(&device, &cases, &query, how).expect("answers");
             let query = Query { solver: Some(Solver::CubicF64), tolerance: None, ..continuous() };
@@ -88,7 +88,7 @@ fn machines_and_storage_agree() {
     let mut first: Option<Answers> = None;
     for device in machines() {
         for stored in [Stored::F64, Stored::F32] {
-            let how = How { filters: true, stored, repeats: 1 };
+            let how = Options { filters: true, stored, repeats: 1 };
             let one =
                 ask(&device, &cases, &Query { tolerance: Some(0.0), ..continuous() }, how).expect("answers");
             assert!(one.escalated.iter().all(|&n| n > 0), "{:?}", one.escalated);
@@ -106,7 +106,7 @@ fn machines_and_storage_agree() {
 #[ignore = "takes a gigabyte"]
 fn a_million_cases() {
     let few = cases(1000);
-    let how = How { filters: true, ..How::default() };
+    let how = Options { filters: true, ..Options::default() };
     let device = support::engine();
     let want = ask(&device, &few, &continuous(), how).expect("answers");
     let many: Vec<Case> = few.iter().copied().cycle().take(1_100_003).collect();
@@ -120,7 +120,8 @@ fn a_million_cases() {
 fn what_cannot_be_asked_is_refused() {
     let device = support::engine();
     let refused = |cases: &[Case], query: Query, stored| {
-        let error = ask(&device, cases, &query, How { stored, ..How::default() }).expect_err("refused");
+        let error =
+            ask(&device, cases, &query, Options { stored, ..Options::default() }).expect_err("refused");
         assert!(matches!(error, Error::Choice { .. }), "{error}");
         error.to_string()
     };
@@ -132,7 +133,7 @@ fn what_cannot_be_asked_is_refused() {
         case[0].positions_t0[2][1] = x;
         assert!(refused(&case, continuous(), Stored::F64).contains("case 0"));
     }
-    let none = ask(&device, &[], &continuous(), How::default()).expect("no answers");
+    let none = ask(&device, &[], &continuous(), Options::default()).expect("no answers");
     assert!(none.verdicts.is_empty() && mean_edge(&[]) == 0.0);
 }
 

@@ -14,7 +14,7 @@ use nearmiss::mesh::Body;
 use nearmiss::query::{Bv, Motion, QueueShape, StealShape, Traversal};
 use nearmiss::{Contacts, Device, Query, Session};
 use nearmiss_lab::scene;
-use support::{ORDERS, engine, loose, microscope};
+use support::{ORDERS, engine, loose, sanitizer};
 
 /// The candidates as a set, and the answer.
 type Print = (u64, u64, u64);
@@ -125,7 +125,7 @@ fn in_any_order_of_blocks() {
         let truth = truth(&bodies, Motion::Discrete);
         for traversal in kinds() {
             for order in ORDERS {
-                let found = found(microscope(order), &bodies, by(traversal, Motion::Discrete)).0;
+                let found = found(sanitizer(order), &bodies, by(traversal, Motion::Discrete)).0;
                 assert_eq!(found, truth, "{name}, {traversal:?}, {order:?}");
             }
         }

@@ -107,7 +107,7 @@ fn machines_cannot_be_told_apart() {
     for (body, bv) in bodies.iter().flat_map(|body| [(body, Bv::Aabb), (body, Bv::Obb)]) {
         let truth = prints(engine(), body, Refit::Levels, bv);
         let interleaved = seeds.clone().map(|seed| {
-            let order = Mode::Microscope(ORDERS[seed as usize]);
+            let order = Mode::Sanitizer(ORDERS[seed as usize]);
             let emulator = Emulator::new(order, None).expect("threads").with_interleave(seed);
             // Small blocks: many of them, and several rounds of lanes in each.
             Device::emulator(emulator.with_lanes(32))

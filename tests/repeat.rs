@@ -20,14 +20,14 @@ fn engine() -> Device {
     Device::emulator(Emulator::new(Mode::Engine, Some(2)).expect("an engine"))
 }
 
-fn microscope() -> Device {
-    Device::emulator(Emulator::new(Mode::Microscope(Order::Shuffled(5)), None).expect("a microscope"))
+fn sanitizer() -> Device {
+    Device::emulator(Emulator::new(Mode::Sanitizer(Order::Shuffled(5)), None).expect("a sanitizer"))
 }
 
 #[test]
 fn a_repeated_stage_leaves_the_answer_as_it_is() {
     let body = scene::scene("soup-moving", 300, 3).expect("a scene");
-    for device in [engine(), microscope()] {
+    for device in [engine(), sanitizer()] {
         for query in Query::every() {
             for stage in STAGES {
                 let mut plain = Session::new(device.clone(), vec![body.clone()], query).expect("a session");
@@ -78,7 +78,7 @@ fn a_stage_is_repeated_where_the_body_is_now() {
 fn every_way_to_refit_can_be_repeated() {
     let body = scene::scene("cloth-ball", 500, 3).expect("a scene");
     let mut hashes = Vec::new();
-    for device in [engine(), microscope()] {
+    for device in [engine(), sanitizer()] {
         for refit in [Refit::Levels, Refit::Treelets, Refit::BottomUp] {
             let query = Query { refit: Some(refit), ..Query::of(Motion::Discrete) };
             let mut session = Session::new(device.clone(), vec![body.clone()], query).expect("a session");

@@ -7,7 +7,7 @@ use nearmiss::mesh::Body;
 use nearmiss::query::{Motion, Solver, Traversal};
 use nearmiss::{Contacts, Device, Error, Query, Session};
 use nearmiss_lab::scene;
-use support::{engine, loose, microscope, moving};
+use support::{engine, loose, moving, sanitizer};
 
 /// A first answer, the same frame again, and how often it ran again: within the first, in all.
 fn twice(device: Device, bodies: Vec<Body>, query: Query) -> (Contacts, [u64; 2]) {
@@ -95,8 +95,8 @@ fn clique_and_couples(n: usize, more: usize) -> Body {
 
 #[test]
 fn one_pair_more_than_room() {
-    // Every list has room for at least 4,096 (LEAST_ROOM in the corridor); 91 triangles that all meet are 4,095 pairs.
-    for device in [engine, || microscope(Order::Shuffled(4))] {
+    // Every list has room for at least 4,096 (LEAST_ROOM in the pipeline); 91 triangles that all meet are 4,095 pairs.
+    for device in [engine, || sanitizer(Order::Shuffled(4))] {
         let counts = [0, 1, 2, 3].map(|more| {
             let (contacts, reruns) =
                 twice(device(), vec![clique_and_couples(91, more)], Query::of(Motion::Discrete));
@@ -156,7 +156,7 @@ fn short_lists_of_what_isolation_leaves_alone() {
     // start, which is certain.
     let body = lying(400, 18);
     for motion in [Motion::Continuous, Motion::Earliest] {
-        for device in [engine(), microscope(Order::Shuffled(5))] {
+        for device in [engine(), sanitizer(Order::Shuffled(5))] {
             let (contacts, reruns) = twice(device, vec![body.clone()], Query::of(motion));
             for left in [contacts.escalated_vf_ee, contacts.open_vf_ee] {
                 assert!(left.iter().all(|n| *n > RUNG), "{left:?}");
@@ -185,7 +185,7 @@ fn a_short_list_of_what_is_cut_into_slices() {
     // 36 edges that shrink to a point on 36 others: 1,296 pairs that no sign tells apart.
     let body = shrinking(36);
     let query = Query { tolerance: Some(4e-3), ..Query::of(Motion::Continuous) };
-    for device in [engine(), microscope(Order::Shuffled(6))] {
+    for device in [engine(), sanitizer(Order::Shuffled(6))] {
         let (contacts, reruns) = twice(device, vec![body.clone()], query);
         assert!(contacts.sliced_vf_ee[1] > RUNG, "{:?}", contacts.sliced_vf_ee);
         assert!(reruns[0] > 0);
@@ -197,7 +197,7 @@ fn the_microscope_sees_no_fault_in_a_frame_that_runs_again() {
     for order in support::ORDERS {
         // 100 triangles: 4,950 pairs.
         let bodies = || vec![scene::identical(100).expect("a scene")];
-        let (contacts, reruns) = twice(microscope(order), bodies(), Query::of(Motion::Discrete));
+        let (contacts, reruns) = twice(sanitizer(order), bodies(), Query::of(Motion::Discrete));
         assert!(reruns[0] > 0 && contacts.pairs() == all_pairs(100), "{order:?}");
     }
     // 30 triangles: 2,610 + 3,915 elementary pairs, all of them contacts; between bodies twice as many and more.
@@ -206,7 +206,7 @@ fn the_microscope_sees_no_fault_in_a_frame_that_runs_again() {
     let (on_engine, reruns) = ask(engine());
     assert!(reruns[0] > 0, "the scene no longer overflows the first room: make it larger");
     assert_eq!(on_engine.len(), (3 + 3 + 9) * 40 * 40);
-    let (seen, again) = ask(microscope(Order::Reverse));
+    let (seen, again) = ask(sanitizer(Order::Reverse));
     assert_eq!((seen.hash(), again), (on_engine.hash(), reruns));
 }
 
@@ -220,7 +220,7 @@ fn units_that_find_no_room_are_walked_anyway() {
             traversal: Some(Traversal::PerLeaf { budget: Some(budget) }),
             ..Query::of(Motion::Discrete)
         };
-        for device in [engine(), microscope(Order::Shuffled(9))] {
+        for device in [engine(), sanitizer(Order::Shuffled(9))] {
             let mut session = Session::new(device, bodies(), spilling).expect("a session");
             let contacts = session.detect().expect("an answer");
             assert_eq!(contacts.pairs(), all_pairs(150), "budget {budget}");
@@ -254,7 +254,7 @@ fn lists_grow_when_a_body_moves_into_a_crowd() {
 
 #[test]
 fn no_memory_is_an_error() {
-    for device in [engine(), microscope(Order::Forward)] {
+    for device in [engine(), sanitizer(Order::Forward)] {
         // More than an address space; more than a size can say; more than any machine has.
         for len in [usize::MAX / 16, usize::MAX / 8 + 1, usize::MAX, 1 << 58] {
             match device.buffer::<u64>(len).map(|_| ()) {

@@ -14,11 +14,11 @@ use nearmiss::mesh::Body;
 use nearmiss::pipeline::{Session, of_edges};
 use nearmiss::query::{Bv, FrontShape, Motion, Query, QueueShape, Refit, Solver, StealShape, Traversal};
 use nearmiss::words::counted;
-use nearmiss_lab::extremes::{self, Amount};
+use nearmiss_lab::robustness::{self, Amount};
 use nearmiss_lab::scene;
 use std::process::ExitCode;
 
-/// Triangles of the scenes that the microscope, which is some hundred times slower, looks at.
+/// Triangles of the scenes that the sanitizer, which is some hundred times slower, looks at.
 const SMALL: usize = 300;
 /// Equal triangles: all pairs of their features touch from the start, which only exact signs can tell.
 const EQUAL: usize = 40;
@@ -191,27 +191,27 @@ impl Bench {
                 let query = Query { traversal: Some(query.traversal_on(machine.is_card())), ..query };
                 let want = print_of(machine, &bodies, query)?;
                 for order in [Order::Forward, Order::Reverse, Order::Shuffled(3)] {
-                    let microscope = Device::emulator(Emulator::new(Mode::Microscope(order), None)?);
-                    if let Some(stage) = difference(&print_of(&microscope, &bodies, query)?, &want) {
-                        faults.push(format!("{name}, {asked}, microscope {order:?}: {stage}"));
+                    let sanitizer = Device::emulator(Emulator::new(Mode::Sanitizer(order), None)?);
+                    if let Some(stage) = difference(&print_of(&sanitizer, &bodies, query)?, &want) {
+                        faults.push(format!("{name}, {asked}, sanitizer {order:?}: {stage}"));
                     }
                 }
             }
         }
         let (scenes, queries) = (scene::FORMULAS.len(), questions(&[]).count());
-        line(format!("microscope     {scenes} scenes x {queries} queries x 3 orders"))
+        line(format!("sanitizer     {scenes} scenes x {queries} queries x 3 orders"))
     }
 
     /// The catalogue, a line a suite as it ends.
     fn extremes(&mut self, cases: usize) -> Result<(), Error> {
         let amount = Amount::on(self.machine.is_card(), cases);
         let mut told = Ok(());
-        let tell = |report: &extremes::Report| {
+        let tell = |report: &robustness::Report| {
             if told.is_ok() {
                 told = line(format!("extremes       {report}"));
             }
         };
-        let reports = during("asking the extremes", || extremes::run(&self.machine, amount, tell))?;
+        let reports = during("asking the extremes", || robustness::run(&self.machine, amount, tell))?;
         for report in reports.iter().filter(|report| !report.is_right()) {
             let failures = counted(report.failed, "failure", "failures");
             self.faults.push(format!("extremes, {}: {failures}", report.suite));

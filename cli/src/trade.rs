@@ -9,13 +9,13 @@ use nearmiss::error::Error;
 use nearmiss::memory;
 use nearmiss::mesh::Body;
 use nearmiss::query::{Bv, Motion, Query, Solver};
-use nearmiss_lab::case::Case;
-use nearmiss_lab::pairs::Stored;
-use nearmiss_lab::tables;
-use nearmiss_lab::trade::{
+use nearmiss_lab::accuracy::{
     Choice, Extent, Input, Scene, Trade, built_in, degeneracies, funnel, list, offsets, query_files, refit,
     scales, triangles,
 };
+use nearmiss_lab::case::Case;
+use nearmiss_lab::pairs::Stored;
+use nearmiss_lab::tables;
 use std::process::ExitCode;
 
 /// Tolerances in mean edges.
@@ -133,7 +133,7 @@ fn known(
     device: &Device,
     name: &str,
     body: Body,
-    truth: Option<nearmiss_lab::trade::List>,
+    truth: Option<nearmiss_lab::accuracy::List>,
 ) -> Result<Scene, Error> {
     during(format!("{name}: the truth"), || Scene::new(device, name, body, truth))
 }

@@ -1,8 +1,8 @@
 //! A block on the CPU: its phases are loops over its lanes.
 
 use crate::coherent;
-use crate::microscope::{Access, Place};
 use crate::rows::Rows;
+use crate::sanitizer::{Access, Place};
 use bytemuck::Pod;
 use nearmiss_kernels::abi::Span;
 use nearmiss_kernels::exec::{BINS, Block, Lane, OPEN, RowMap, Shared, Slot, WARP, Word};
@@ -10,7 +10,7 @@ use std::mem::MaybeUninit;
 use std::ptr::with_exposed_provenance_mut;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed, Ordering::SeqCst, fence};
 
-/// Who looks on. [`Blind`] costs nothing: every call is empty and vanishes.
+/// Who looks on. [`Unchecked`] costs nothing: every call is empty and vanishes.
 pub trait Watch: Copy {
     /// The lanes of a phase, in their order.
     fn lanes(&self, count: u32, phase: u32, body: impl FnMut(u32));
@@ -26,9 +26,9 @@ pub trait Watch: Copy {
 
 /// Nobody looks on.
 #[derive(Clone, Copy)]
-pub struct Blind;
+pub struct Unchecked;
 
-impl Watch for Blind {
+impl Watch for Unchecked {
     #[inline(always)]
     fn lanes(&self, count: u32, _: u32, body: impl FnMut(u32)) {
         (0..count).for_each(body);
@@ -121,7 +121,7 @@ impl<W: Watch> EmulatedLane<W> {
     }
     #[inline(always)]
     fn atomic(&self, access: Access, span: Span<u64>, i: u32) -> Option<&AtomicU64> {
-        // SAFETY: inside a span of live, aligned device memory (kernels stay inside; the microscope and debug builds
+        // SAFETY: inside a span of live, aligned device memory (kernels stay inside; the sanitizer and debug builds
         // check it), touched only atomically while others may touch it.
         device(&self.watch, access, span, i, self.place).map(|p| unsafe { AtomicU64::from_ptr(p) })
     }
@@ -140,7 +140,7 @@ impl<W: Watch> Lane for EmulatedLane<W> {
     fn read<T: Pod>(&self, span: Span<T>, i: u32) -> T {
         match device(&self.watch, Access::Read, span, i, self.place) {
             // SAFETY: inside a span of live, aligned, initialised memory, and nobody writes it in this phase: rules of
-            // `Lane`, checked by the microscope.
+            // `Lane`, checked by the sanitizer.
             Some(p) => unsafe { p.read() },
             None => T::zeroed(),
         }
@@ -193,14 +193,14 @@ impl<W: Watch> Lane for EmulatedLane<W> {
         }
     }
     #[inline(always)]
-    fn give<T: Pod>(&self, span: Span<T>, i: u32, value: T) {
+    fn store_relaxed<T: Pod>(&self, span: Span<T>, i: u32, value: T) {
         if let Some(p) = device(&self.watch, Access::Give, span, i, self.place) {
             // SAFETY: as for `atomic`.
             unsafe { coherent::store(p, value) }
         }
     }
     #[inline(always)]
-    fn take<T: Pod>(&self, span: Span<T>, i: u32) -> T {
+    fn load_relaxed<T: Pod>(&self, span: Span<T>, i: u32) -> T {
         // SAFETY: as for `atomic`.
         device(&self.watch, Access::Take, span, i, self.place)
             .map_or(T::zeroed(), |p| unsafe { coherent::load(p) })

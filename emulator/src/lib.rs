@@ -1,24 +1,24 @@
-//! The card, emulated: as an engine (all cores, no checks) or as a microscope (any order, every access watched).
+//! The card, emulated: as an engine (all cores, no checks) or as a sanitizer (any order, every access watched).
 
-mod baton;
 mod block;
 mod coherent;
 mod compiled;
-mod eye;
-mod microscope;
+mod observer;
 mod order;
 mod rows;
+mod sanitizer;
 mod shadow;
+mod turns;
 
-pub use microscope::{Fault, Microscope, Place};
 pub use order::Order;
+pub use sanitizer::{Fault, Place, Sanitizer};
 
-use baton::Baton;
-use block::{Blind, Emulated};
-use eye::Eye;
+use block::{Emulated, Unchecked};
 use nearmiss_kernels::entry::Entry;
+use observer::BlockObserver;
 use rayon::prelude::*;
 use std::ptr::NonNull;
+use turns::TurnScheduler;
 
 /// What an emulator cannot do, or found.
 #[derive(Debug, thiserror::Error)]
@@ -56,18 +56,18 @@ pub enum Mode {
     Engine,
     /// One block after the other, each to its end, blocks and lanes in the given order (or interleaved, see
     /// [`Emulator::with_interleave`]); races, bounds, unwritten memory and waits without end are watched.
-    Microscope(Order),
+    Sanitizer(Order),
 }
 
 /// A CPU that runs the kernels.
 pub struct Emulator {
     pool: Option<rayon::ThreadPool>,
-    microscope: Option<Microscope>,
+    sanitizer: Option<Sanitizer>,
     lanes: Option<u32>,
 }
 
 impl Emulator {
-    /// An engine on `threads` threads, or on all cores; or a microscope, always on one thread.
+    /// An engine on `threads` threads, or on all cores; or a sanitizer, always on one thread.
     ///
     /// # Errors
     /// [`Error::Threads`] when the threads cannot be started.
@@ -79,11 +79,11 @@ impl Emulator {
                 Some(pool.map_err(|e| Error::Threads { threads, text: e.to_string() })?)
             }
         };
-        let microscope = match mode {
+        let sanitizer = match mode {
             Mode::Engine => None,
-            Mode::Microscope(order) => Some(Microscope::new(order, None)),
+            Mode::Sanitizer(order) => Some(Sanitizer::new(order, None)),
         };
-        Ok(Emulator { pool, microscope, lanes: None })
+        Ok(Emulator { pool, sanitizer, lanes: None })
     }
 
     /// The same emulator with blocks of another size: answers must not depend on it.
@@ -91,17 +91,17 @@ impl Emulator {
         Emulator { lanes: Some(lanes), ..self }
     }
 
-    /// The same microscope, with blocks that interleave: up to 64 run at once, one of them moves at a time, and at the
+    /// The same sanitizer, with blocks that interleave: up to 64 run at once, one of them moves at a time, and at the
     /// ends of phases and at some accesses that blocks may share (atomics, gives, takes) another goes on, drawn by the
     /// seed. For kernels whose blocks work together in a launch. Cost: microseconds a change. The engine is as it was.
     pub fn with_interleave(self, seed: u64) -> Self {
-        let microscope = self.microscope.map(|microscope| Microscope::new(microscope.order(), Some(seed)));
-        Emulator { microscope, ..self }
+        let sanitizer = self.sanitizer.map(|sanitizer| Sanitizer::new(sanitizer.order(), Some(seed)));
+        Emulator { sanitizer, ..self }
     }
 
     /// How many threads run blocks.
     pub fn threads(&self) -> usize {
-        match (&self.microscope, &self.pool) {
+        match (&self.sanitizer, &self.pool) {
             (Some(_), _) => 1,
             (None, Some(pool)) => pool.current_num_threads(),
             (None, None) => rayon::current_num_threads(),
@@ -113,21 +113,21 @@ impl Emulator {
         self.lanes.unwrap_or(E::LANES)
     }
 
-    /// The microscope, if this is one.
-    pub fn microscope(&self) -> Option<&Microscope> {
-        self.microscope.as_ref()
+    /// The sanitizer, if this is one.
+    pub fn sanitizer(&self) -> Option<&Sanitizer> {
+        self.sanitizer.as_ref()
     }
 
-    /// Takes memory of at least `bytes`: zeroed for the engine, poisoned under the microscope.
+    /// Takes memory of at least `bytes`: zeroed for the engine, poisoned under the sanitizer.
     ///
     /// # Errors
     /// [`Error::Memory`] when the machine has no more.
     pub fn memory(&self, bytes: usize) -> Result<Memory, Error> {
         let memory = Memory::new(bytes)?;
-        if let Some(microscope) = &self.microscope {
+        if let Some(sanitizer) = &self.sanitizer {
             // SAFETY: the memory is ours, just made, and has that many bytes.
-            unsafe { memory.start.cast::<u8>().write_bytes(microscope::POISON, memory.bytes()) };
-            microscope.adopt(memory.addr(), memory.bytes());
+            unsafe { memory.start.cast::<u8>().write_bytes(sanitizer::POISON, memory.bytes()) };
+            sanitizer.adopt(memory.addr(), memory.bytes());
         }
         Ok(memory)
     }
@@ -135,7 +135,7 @@ impl Emulator {
     /// Runs every block of a launch, and returns when they are done.
     ///
     /// # Errors
-    /// Under the microscope, [`Error::Rule`] with the first access that broke a rule.
+    /// Under the sanitizer, [`Error::Rule`] with the first access that broke a rule.
     ///
     /// # Panics
     /// When the kernel does.
@@ -156,23 +156,27 @@ impl Emulator {
     /// Runs every block of a launch: [`Emulator::launch`], compiled where it is called.
     fn run<E: Entry>(&self, blocks: u32, args: &E::Args) -> Result<(), Error> {
         let lanes = self.lanes::<E>();
-        if let Some(microscope) = &self.microscope {
-            microscope.begin(E::NAME);
-            let run = |block, eye: &Eye| E::run(&mut Emulated::new(block, blocks, lanes, eye), args);
-            let sequence = microscope.order().sequence(blocks, microscope.launches());
-            if let Some(seed) = microscope.interleave() {
-                let seed = seed ^ microscope.launches().rotate_left(32);
-                Baton::run(sequence, seed, |block, baton, seat| {
-                    run(block, &Eye::new(microscope, Some((baton, seat))));
+        if let Some(sanitizer) = &self.sanitizer {
+            sanitizer.begin(E::NAME);
+            let run = |block, observer: &BlockObserver| {
+                E::run(&mut Emulated::new(block, blocks, lanes, observer), args)
+            };
+            let sequence = sanitizer.order().sequence(blocks, sanitizer.launches());
+            if let Some(seed) = sanitizer.interleave() {
+                let seed = seed ^ sanitizer.launches().rotate_left(32);
+                TurnScheduler::run(sequence, seed, |block, turns, slot| {
+                    run(block, &BlockObserver::new(sanitizer, Some((turns, slot))));
                 });
             } else {
-                let all = || sequence.into_iter().for_each(|block| run(block, &Eye::new(microscope, None)));
-                baton::to_its_end(all).unwrap_or_else(baton::pass_on);
+                let all = || {
+                    sequence.into_iter().for_each(|block| run(block, &BlockObserver::new(sanitizer, None)))
+                };
+                turns::to_its_end(all).unwrap_or_else(turns::pass_on);
             }
-            return microscope.verdict();
+            return sanitizer.verdict();
         }
         let run = || {
-            let block = |block| E::run(&mut Emulated::new(block, blocks, lanes, Blind), args);
+            let block = |block| E::run(&mut Emulated::new(block, blocks, lanes, Unchecked), args);
             // One block is not worth a thread's waking up.
             if blocks == 1 { block(0) } else { (0..blocks).into_par_iter().for_each(block) }
         };

@@ -1,6 +1,6 @@
 //! The shadow of a word of four bytes: who touched it last, and who of those is unordered with the next.
 
-use crate::microscope::{Access, Fault, Place};
+use crate::sanitizer::{Access, Fault, Place};
 
 /// Two accesses of a kind such that whoever races with any access of that kind races with one of the two: of two
 /// blocks where there were two, else of two lanes in the last phase.

@@ -1,7 +1,7 @@
 //! What an answer, or its making, owes to a limit: said aloud, each by its reason.
 
 use crate::pipeline::Found;
-use crate::pipeline::blunt::Blunt;
+use crate::pipeline::below_precision::BelowPrecision;
 use crate::words::counted;
 use nearmiss_kernels::abi::counter;
 use std::fmt;
@@ -45,12 +45,12 @@ impl Degraded {
         let mut all = Vec::new();
         let count = |at: u32| found.counters[at as usize];
         let unsure = count(counter::UNRESOLVED) - count(counter::ENDED_UNRESOLVED);
-        let (ended, blunt) = (count(counter::ENDED), count(counter::BLUNT));
+        let (ended, below_precision) = (count(counter::ENDED), count(counter::BELOW_PRECISION));
         let mut put = |count: u64, reason: Degraded| all.extend((count > 0).then_some(reason));
         put(unsure, Degraded::Unresolved { pairs: unsure });
         put(ended, Degraded::Boxes { pairs: ended });
-        put(blunt, Degraded::ToleranceBelowPrecision { pairs: Some(blunt) });
-        let unlisted = found.blunt == Some(Blunt::Unlisted);
+        put(below_precision, Degraded::ToleranceBelowPrecision { pairs: Some(below_precision) });
+        let unlisted = found.below_precision == Some(BelowPrecision::Unlisted);
         put(unlisted as u64, Degraded::ToleranceBelowPrecision { pairs: None });
         put(found.front_dropped as u64, Degraded::FrontDropped);
         all

@@ -2,7 +2,7 @@
 
 #[cfg(feature = "cuda")]
 use super::cuda;
-use super::tally::Tally;
+use super::usage::Usage;
 use super::{Machine, emulator};
 use crate::error::Error;
 use bytemuck::Pod;
@@ -22,7 +22,7 @@ pub struct Buffer<T> {
     pub(super) memory: Memory,
     pub(super) len: usize,
     pub(super) machine: Arc<Machine>,
-    pub(super) tally: Arc<Tally>,
+    pub(super) usage: Arc<Usage>,
     // None is held as such: whether `T` may be sent does not matter.
     pub(super) element: PhantomData<fn() -> T>,
 }
@@ -61,8 +61,8 @@ impl<T: Pod> Buffer<T> {
         match (&mut self.memory, &*self.machine) {
             (Memory::Host(m), Machine::Emulator(e)) => {
                 m.as_mut_slice(bytes.len()).copy_from_slice(bytes);
-                if let Some(microscope) = e.microscope() {
-                    microscope.host_wrote(m.addr(), bytes.len());
+                if let Some(sanitizer) = e.sanitizer() {
+                    sanitizer.host_wrote(m.addr(), bytes.len());
                 }
                 Ok(())
             }
@@ -111,11 +111,11 @@ impl<T: Pod> Buffer<T> {
 impl<T> Drop for Buffer<T> {
     fn drop(&mut self) {
         let bytes = (self.len * size_of::<T>()) as u64;
-        self.tally.give(bytes);
+        self.usage.give(bytes);
         if let (Memory::Host(m), Machine::Emulator(e)) = (&self.memory, &*self.machine)
-            && let Some(microscope) = e.microscope()
+            && let Some(sanitizer) = e.sanitizer()
         {
-            microscope.forget(m.addr());
+            sanitizer.invalidate(m.addr());
         }
     }
 }

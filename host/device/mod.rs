@@ -5,7 +5,7 @@ mod buffer;
 mod cuda;
 #[cfg(any(feature = "cuda", test))]
 mod ptx;
-mod tally;
+mod usage;
 mod view;
 
 pub use buffer::Buffer;
@@ -25,7 +25,7 @@ use std::marker::PhantomData;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
-use tally::Tally;
+use usage::Usage;
 
 named! {
     /// Which machine to take.
@@ -50,7 +50,7 @@ impl Default for Backend {
 #[derive(Clone)]
 pub struct Device {
     machine: Arc<Machine>,
-    tally: Arc<Tally>,
+    usage: Arc<Usage>,
 }
 
 enum Machine {
@@ -95,25 +95,25 @@ impl Device {
         })
     }
 
-    /// An emulator, for example one under the microscope.
+    /// An emulator, for example one under the sanitizer.
     pub fn emulator(emulator: Emulator) -> Device {
         Self::with(Machine::Emulator(emulator))
     }
 
     /// The same machine with no more than `bytes` of memory, whatever it has; of its clones too.
     pub fn limited(self, bytes: u64) -> Device {
-        self.tally.most.store(bytes, Ordering::Relaxed);
+        self.usage.most.store(bytes, Ordering::Relaxed);
         self
     }
 
     fn with(machine: Machine) -> Device {
-        Device { machine: Arc::new(machine), tally: Arc::new(Tally::new()) }
+        Device { machine: Arc::new(machine), usage: Arc::new(Usage::new()) }
     }
 
     /// What the machine calls itself.
     pub fn name(&self) -> String {
         match &*self.machine {
-            Machine::Emulator(e) if e.microscope().is_some() => "CPU, under the microscope".into(),
+            Machine::Emulator(e) if e.sanitizer().is_some() => "CPU, under the sanitizer".into(),
             Machine::Emulator(e) => format!("CPU, {}", counted(e.threads() as u64, "thread", "threads")),
             #[cfg(feature = "cuda")]
             Machine::Cuda(c) => c.name().into(),
@@ -170,7 +170,7 @@ impl Device {
         Ok(self.blocks_for::<E>(room).clamp(1, full.max(1)))
     }
 
-    /// Memory for `len` elements: zeroed (poisoned under the microscope).
+    /// Memory for `len` elements: zeroed (poisoned under the sanitizer).
     ///
     /// # Errors
     /// [`Error::Room`] when the machine has no more, or may use no more: see [`Device::limited`].
@@ -182,20 +182,20 @@ impl Device {
         })?;
         let most =
             |given| Error::Room { what: "device memory, as limited".into(), asked: bytes as u64, given };
-        self.tally.take(bytes as u64).map_err(most)?;
+        self.usage.take(bytes as u64).map_err(most)?;
         let memory = match &*self.machine {
             Machine::Emulator(e) => memory::require("host memory", bytes as u64)
                 .and_then(|()| e.memory(bytes).map(Memory::Host).map_err(Error::from)),
             #[cfg(feature = "cuda")]
             Machine::Cuda(c) => c.memory(bytes).map(Memory::Card),
         };
-        let memory = memory.inspect_err(|_| self.tally.give(bytes as u64))?;
-        self.tally.peak.fetch_max(self.bytes().0, Ordering::Relaxed);
+        let memory = memory.inspect_err(|_| self.usage.give(bytes as u64))?;
+        self.usage.peak.fetch_max(self.bytes().0, Ordering::Relaxed);
         Ok(Buffer {
             memory,
             len,
             machine: self.machine.clone(),
-            tally: self.tally.clone(),
+            usage: self.usage.clone(),
             element: PhantomData,
         })
     }
@@ -213,7 +213,7 @@ impl Device {
     /// Starts a kernel behind all that was started before.
     ///
     /// # Errors
-    /// [`Error::Device`] with the driver's text; [`Error::Bug`] under the microscope, and while there is a [`View`].
+    /// [`Error::Device`] with the driver's text; [`Error::Bug`] under the sanitizer, and while there is a [`View`].
     ///
     /// # Safety
     /// The spans of `args` are of buffers of this device that live until the kernel is over (dropping a buffer waits) and that no
@@ -223,12 +223,12 @@ impl Device {
             return Ok(());
         }
         // The memory under a view must not change.
-        if self.tally.views.load(Ordering::Relaxed) > 0 {
+        if self.usage.views.load(Ordering::Relaxed) > 0 {
             return Err(Error::Bug {
                 what: format!("{} was launched while the host looks at memory", E::NAME),
             });
         }
-        self.tally.launches.fetch_add(1, Ordering::Relaxed);
+        self.usage.launches.fetch_add(1, Ordering::Relaxed);
         match &*self.machine {
             // SAFETY: the caller's promise.
             Machine::Emulator(e) => unsafe { e.launch::<E>(blocks, args) }.map_err(Error::from),
@@ -241,27 +241,27 @@ impl Device {
     ///
     /// # Errors
     /// [`Error::Device`] with the driver's text.
-    pub fn mark(&self) -> Result<Mark, Error> {
+    pub fn event(&self) -> Result<Event, Error> {
         match &*self.machine {
-            Machine::Emulator(_) => Ok(Mark::Host(Instant::now())),
+            Machine::Emulator(_) => Ok(Event::Host(Instant::now())),
             #[cfg(feature = "cuda")]
-            Machine::Cuda(c) => Ok(Mark::Card(c.mark()?)),
+            Machine::Cuda(c) => Ok(Event::Card(c.event()?)),
         }
     }
 
     /// How many kernels were launched so far.
     pub fn launches(&self) -> u64 {
-        self.tally.launches.load(Ordering::Relaxed)
+        self.usage.launches.load(Ordering::Relaxed)
     }
 
     /// Bytes of device memory held now, and the most held at once.
     pub fn bytes(&self) -> (u64, u64) {
-        (self.tally.bytes.load(Ordering::Relaxed), self.tally.peak.load(Ordering::Relaxed))
+        (self.usage.bytes.load(Ordering::Relaxed), self.usage.peak.load(Ordering::Relaxed))
     }
 }
 
 /// A point in the stream of work.
-pub enum Mark {
+pub enum Event {
     /// On the CPU.
     Host(Instant),
     /// On the card.
@@ -269,16 +269,16 @@ pub enum Mark {
     Card(cuda::Event),
 }
 
-impl Mark {
+impl Event {
     /// Milliseconds from this mark to a later one; waits for it.
     ///
     /// # Errors
     /// [`Error::Device`] with the driver's text.
-    pub fn to(&self, later: &Mark) -> Result<f64, Error> {
+    pub fn to(&self, later: &Event) -> Result<f64, Error> {
         match (self, later) {
-            (Mark::Host(a), Mark::Host(b)) => Ok(b.duration_since(*a).as_secs_f64() * 1e3),
+            (Event::Host(a), Event::Host(b)) => Ok(b.duration_since(*a).as_secs_f64() * 1e3),
             #[cfg(feature = "cuda")]
-            (Mark::Card(a), Mark::Card(b)) => a.to(b),
+            (Event::Card(a), Event::Card(b)) => a.to(b),
             #[cfg(feature = "cuda")]
             _ => Err(Error::Bug { what: "two marks of different machines".into() }),
         }
@@ -295,7 +295,7 @@ mod tests {
         send::<Device>();
         send::<Buffer<u64>>();
         send::<View<u64>>();
-        send::<Mark>();
+        send::<Event>();
         send::<crate::pipeline::Session>();
         let device = Device::open(Backend::Cpu, Some(1)).expect("a thread");
         let mut buffer = device.upload(&[1u32, 2, 3]).expect("memory");

@@ -1,7 +1,7 @@
 //! What a device holds, looked at by the host: without a copy where the machine allows it.
 
 use super::buffer::{Buffer, Memory};
-use super::tally::Tally;
+use super::usage::Usage;
 use super::{Device, Machine};
 use crate::error::Error;
 use bytemuck::Pod;
@@ -11,7 +11,7 @@ use std::sync::atomic::Ordering;
 /// Elements that the host looks at. As long as there is one, no kernel may be launched: [`Device::launch`] refuses.
 pub struct View<'a, T> {
     elements: Elements<'a, T>,
-    tally: &'a Tally,
+    usage: &'a Usage,
 }
 
 enum Elements<'a, T> {
@@ -37,7 +37,7 @@ impl<T: Pod> Deref for View<'_, T> {
 
 impl<T> Drop for View<'_, T> {
     fn drop(&mut self) {
-        self.tally.views.fetch_sub(1, Ordering::Relaxed);
+        self.usage.views.fetch_sub(1, Ordering::Relaxed);
     }
 }
 
@@ -74,8 +74,8 @@ impl<T: Pod> Buffer<T> {
             #[cfg(feature = "cuda")]
             _ => return Err(Error::Bug { what: "memory of another machine".into() }),
         };
-        self.tally.views.fetch_add(1, Ordering::Relaxed);
-        Ok(View { elements, tally: &self.tally })
+        self.usage.views.fetch_add(1, Ordering::Relaxed);
+        Ok(View { elements, usage: &self.usage })
     }
 }
 

@@ -4,7 +4,6 @@
 //! has passed [`Mesh::new`] needs no further check: finite where used, in range, indices valid.
 
 mod cut;
-mod door;
 mod obj;
 mod ply_header;
 mod ply_problem;
@@ -18,9 +17,9 @@ mod read;
 mod sequence;
 mod topology;
 mod topology_check;
+mod validate;
 mod weld;
 
-pub use door::{MAX_ABS_F32, MAX_ABS_F64, MAX_FACES, MAX_VERTICES};
 pub use obj::ObjProblem;
 pub use ply_problem::PlyProblem;
 pub use positions::Positions;
@@ -29,11 +28,12 @@ pub use read::Format;
 pub use sequence::Body;
 pub use topology::{NO_EDGE, Topology};
 pub use topology_check::{Violation, check};
+pub use validate::{MAX_ABS_F32, MAX_ABS_F64, MAX_FACES, MAX_VERTICES};
 
 use crate::Error;
 use polygons::Polygons;
 
-/// One frame of a triangle mesh that has passed the door check.
+/// One frame of a triangle mesh that has passed the validation.
 ///
 /// Every vertex that a face uses is finite and at most [`MAX_ABS_F64`] in size, and every index is in range. Single
 /// precision is kept up to [`MAX_ABS_F32`]; a mesh that goes beyond is kept in double precision, exactly. Degenerate and duplicate triangles, repeated indices and -0.0 are legal; a vertex that no face uses
@@ -57,7 +57,7 @@ impl Mesh {
     /// [`Problem::TooMany`], naming the first offender.
     pub fn new(name: impl Into<String>, positions: Positions, faces: Vec<[u32; 3]>) -> Result<Mesh, Error> {
         let name = name.into();
-        match door::check(positions, &faces) {
+        match validate::check(positions, &faces) {
             Ok(positions) => Ok(Mesh { name, positions, faces, polygons: Polygons::default() }),
             Err(problem) => Err(Error::Input { file: name, problem }),
         }

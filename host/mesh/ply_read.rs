@@ -3,12 +3,12 @@
 //! We have our own reader because the crates there are either allocate by the counts in the header, which a damaged
 //! file may have at any size, or lose the number of the element at fault.
 
-use super::door::{self, MAX_FACES, MAX_VERTICES};
 use super::ply_header::{Element, Encoding, Header, Kind, Property, is_corners};
 use super::ply_problem::PlyProblem;
 use super::ply_source::{Failure, Scalar, Source, Value};
 use super::polygons::Fans;
 use super::problem::shown;
+use super::validate::{self, MAX_FACES, MAX_VERTICES};
 use super::{Positions, Problem};
 
 /// Reads the whole file; faces keep the file's order.
@@ -49,7 +49,7 @@ fn promise(element: &Element<'_>, source: &Source<'_>) -> Result<(), PlyProblem>
 }
 
 fn vertices(element: &Element<'_>, source: &mut Source<'_>) -> Result<Positions, Problem> {
-    door::count("vertices", usize::try_from(element.count).unwrap_or(usize::MAX), MAX_VERTICES)?;
+    validate::count("vertices", usize::try_from(element.count).unwrap_or(usize::MAX), MAX_VERTICES)?;
     let mut single = true;
     let mut columns = [0; 3];
     for (column, axis) in columns.iter_mut().zip(['x', 'y', 'z']) {
@@ -130,7 +130,7 @@ fn polygons(element: &Element<'_>, vertices: u64, source: &mut Source<'_>) -> Re
         }
         Ok(())
     })?;
-    door::count("triangles", faces.faces.len(), MAX_FACES)?;
+    validate::count("triangles", faces.faces.len(), MAX_FACES)?;
     Ok(faces)
 }
 

@@ -6,7 +6,7 @@ use super::volumes::{Kernels, Volumes};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::query::Refit;
-use nearmiss_kernels::abi::{Frames, Motion, Node, Point, ROOT, Span};
+use nearmiss_kernels::abi::{VertexMotion, Node, Point, Positions, ROOT, Span};
 use nearmiss_kernels::bv::{Axes, Contain};
 use nearmiss_kernels::math::Vec3;
 
@@ -31,7 +31,7 @@ pub struct Enclosed<R: Precision, V: Kernels> {
     triangles: Vec<[u32; 3]>,
     faces: Buffer<[u32; 3]>,
     still: Buffer<Point<R>>,
-    moving: Buffer<Motion<R>>,
+    moving: Buffer<VertexMotion<R>>,
     /// What lies on the device, and whether it moves.
     at: (Vec<[Vec3<R>; 2]>, bool),
     tree: Tree,
@@ -75,15 +75,15 @@ impl<R: Precision, V: Kernels + Contain> Enclosed<R, V> {
         let ends = || t0.iter().zip(ends);
         self.still.write(&t0.iter().map(|&p| p.into()).collect::<Vec<_>>())?;
         self.moving
-            .write(&ends().map(|(&p, &q)| Motion { t0: p.into(), t1: q.into() }).collect::<Vec<_>>())?;
+            .write(&ends().map(|(&p, &q)| VertexMotion { t0: p.into(), t1: q.into() }).collect::<Vec<_>>())?;
         self.at = (ends().map(|(&p, &q)| [p, q]).collect(), moves);
         Ok(())
     }
 
-    fn frames(&self) -> Frames<R> {
+    fn frames(&self) -> Positions<R> {
         match self.at.1 {
-            true => Frames { still: Span::EMPTY, moving: self.moving.span() },
-            false => Frames { still: self.still.span(), moving: Span::EMPTY },
+            true => Positions { still: Span::EMPTY, moving: self.moving.span() },
+            false => Positions { still: self.still.span(), moving: Span::EMPTY },
         }
     }
 

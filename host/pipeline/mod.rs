@@ -1,7 +1,6 @@
 //! From bodies to contacts: the front door of the library.
 
-pub mod blunt;
-mod corridor;
+pub mod below_precision;
 pub mod enclose;
 mod launch;
 mod layout;
@@ -14,13 +13,14 @@ mod timing;
 mod tolerance;
 mod tree;
 mod treelets;
+mod typed;
 pub mod volumes;
 mod walk;
 
-pub use corridor::{Found, Hits};
 pub use layout::{Layout, Offsets};
 pub use timing::{Stage, Stages};
 pub use tolerance::{mean_side, of_edges};
+pub use typed::{Found, Hits};
 
 use crate::contacts::{Contacts, Degraded, Summary};
 use crate::device::Device;
@@ -28,9 +28,9 @@ use crate::error::Error;
 use crate::memory;
 use crate::mesh::{Body, MAX_FACES, MAX_VERTICES};
 use crate::query::{Bv, Query};
-use corridor::{Corridor, Frames};
 use nearmiss_kernels::bv::{Aabb, Axes, Linear, Obb};
 use std::time::Instant;
+use typed::{Pipeline, TypedPipeline};
 use volumes::Kernels;
 
 /// Bodies on a device, ready to be asked frame after frame.
@@ -61,43 +61,43 @@ pub struct Session {
     construct_ms: f64,
     /// Whether the device holds the answer for where the bodies are now.
     answered: bool,
-    /// Whether the corridor holds positions in f64: where any body has them so, so that nothing is rounded.
+    /// Whether the pipeline holds positions in f64: where any body has them so, so that nothing is rounded.
     f64s: bool,
     /// None where a body has no triangles, or where memory ended: then the next frame asks for it again.
-    corridor: Option<Box<dyn Frames>>,
+    pipeline: Option<Box<dyn Pipeline>>,
 }
 
 /// Fewest bytes of the host's memory that a triangle takes in a session: its topology, and on a CPU its tree and first lists.
 const OF_A_TRIANGLE: u64 = 300;
 
-/// The corridor of a query.
-fn corridor(
+/// The pipeline of a query.
+fn pipeline(
     device: Device,
     bodies: &[Body],
     layout: &Layout,
     query: Query,
     f64s: bool,
-) -> Result<Box<dyn Frames>, Error> {
+) -> Result<Box<dyn Pipeline>, Error> {
     match query.bv() {
-        Bv::Aabb => dressed::<Aabb>(device, bodies, layout, (query, Axes::PCA), f64s),
-        Bv::Linear => dressed::<Linear>(device, bodies, layout, (query, Axes::PCA), f64s),
-        Bv::Obb => dressed::<Obb>(device, bodies, layout, (query, Axes::PCA), f64s),
-        Bv::ObbChild => dressed::<Obb>(device, bodies, layout, (query, Axes::CHILD), f64s),
+        Bv::Aabb => typed::<Aabb>(device, bodies, layout, (query, Axes::PCA), f64s),
+        Bv::Linear => typed::<Linear>(device, bodies, layout, (query, Axes::PCA), f64s),
+        Bv::Obb => typed::<Obb>(device, bodies, layout, (query, Axes::PCA), f64s),
+        Bv::ObbChild => typed::<Obb>(device, bodies, layout, (query, Axes::CHILD), f64s),
     }
 }
 
-/// The corridor of a volume.
-fn dressed<V: Kernels>(
+/// The pipeline of a volume.
+fn typed<V: Kernels>(
     device: Device,
     bodies: &[Body],
     layout: &Layout,
     (query, axes): (Query, Axes),
     f64s: bool,
-) -> Result<Box<dyn Frames>, Error> {
+) -> Result<Box<dyn Pipeline>, Error> {
     Ok(if f64s {
-        Box::new(Corridor::<f64, V>::new(device, bodies, layout, (query, axes))?)
+        Box::new(TypedPipeline::<f64, V>::new(device, bodies, layout, (query, axes))?)
     } else {
-        Box::new(Corridor::<f32, V>::new(device, bodies, layout, (query, axes))?)
+        Box::new(TypedPipeline::<f32, V>::new(device, bodies, layout, (query, axes))?)
     })
 }
 
@@ -129,7 +129,7 @@ impl Session {
             construct_ms: 0.0,
             answered: false,
             f64s: false,
-            corridor: None,
+            pipeline: None,
         };
         session.begun()?;
         Ok(session)
@@ -154,28 +154,28 @@ impl Session {
         self.bodies[body] = frame;
         self.answered = false;
         // What was held makes room first. Where placing fails there is nothing left to ask of the old positions.
-        let held = self.corridor.take().filter(|_| !widens);
+        let held = self.pipeline.take().filter(|_| !widens);
         match held {
-            Some(mut corridor) => {
-                corridor.place(&self.bodies)?;
-                self.corridor = Some(corridor);
+            Some(mut pipeline) => {
+                pipeline.place(&self.bodies)?;
+                self.pipeline = Some(pipeline);
                 Ok(())
             }
             None => self.begun().map(drop),
         }
     }
 
-    /// The corridor; where there is none yet, with memory for the bodies where they are and trees built. None where a body
+    /// The pipeline; where there is none yet, with memory for the bodies where they are and trees built. None where a body
     /// has no triangles: it meets nothing, and costs no memory and no launch.
-    fn begun(&mut self) -> Result<Option<&mut Box<dyn Frames>>, Error> {
-        if self.corridor.is_none() && self.bodies.iter().all(|body| body.face_count() > 0) {
+    fn begun(&mut self) -> Result<Option<&mut Box<dyn Pipeline>>, Error> {
+        if self.pipeline.is_none() && self.bodies.iter().all(|body| body.face_count() > 0) {
             self.f64s = self.bodies.iter().any(|body| body.positions_t0().is_f64());
             let query = Query { tolerance: self.tolerance, ..self.query };
-            let mut corridor = corridor(self.device.clone(), &self.bodies, &self.layout, query, self.f64s)?;
-            self.construct_ms = corridor.construct()?;
-            self.corridor = Some(corridor);
+            let mut pipeline = pipeline(self.device.clone(), &self.bodies, &self.layout, query, self.f64s)?;
+            self.construct_ms = pipeline.construct()?;
+            self.pipeline = Some(pipeline);
         }
-        Ok(self.corridor.as_mut())
+        Ok(self.pipeline.as_mut())
     }
 
     /// Builds the trees anew: pays when the bodies have moved far from where they were built.
@@ -183,8 +183,8 @@ impl Session {
     /// # Errors
     /// Those of the device.
     pub fn rebuild(&mut self) -> Result<(), Error> {
-        let Some(corridor) = self.begun()? else { return Ok(()) };
-        self.construct_ms = corridor.construct()?;
+        let Some(pipeline) = self.begun()? else { return Ok(()) };
+        self.construct_ms = pipeline.construct()?;
         self.answered = false;
         Ok(())
     }
@@ -196,9 +196,9 @@ impl Session {
     pub fn detect(&mut self) -> Result<Contacts, Error> {
         let start = Instant::now();
         self.begun()?;
-        let Some(corridor) = &mut self.corridor else { return Ok(Contacts::none(self.query)) };
+        let Some(pipeline) = &mut self.pipeline else { return Ok(Contacts::none(self.query)) };
         self.answered = false;
-        let (found, stages) = corridor.frame()?;
+        let (found, stages) = pipeline.frame()?;
         self.answered = true;
         let degraded = Degraded::of(&found);
         memory::require("the contacts", found.bytes())?;
@@ -220,11 +220,11 @@ impl Session {
             self.detect()?;
         }
         let answered = self.answered;
-        let Some(corridor) = self.begun()? else { return Ok(Vec::new()) };
+        let Some(pipeline) = self.begun()? else { return Ok(Vec::new()) };
         if !answered && stage == Stage::Refit {
-            corridor.repeat(Stage::Fit, 1)?;
+            pipeline.repeat(Stage::Fit, 1)?;
         }
-        let ms = corridor.repeat(stage, times)?;
+        let ms = pipeline.repeat(stage, times)?;
         if stage == Stage::Construct {
             self.answered = false;
             self.construct_ms = ms.last().copied().unwrap_or(self.construct_ms);
@@ -241,7 +241,7 @@ impl Session {
         if !self.answered {
             self.detect()?;
         }
-        self.corridor.as_mut().map_or(Ok(Vec::new()), |corridor| corridor.narrow_steps())
+        self.pipeline.as_mut().map_or(Ok(Vec::new()), |pipeline| pipeline.narrow_steps())
     }
 
     /// What is asked.
@@ -265,12 +265,12 @@ impl Session {
 
     /// How many levels each body's tree has.
     pub fn depths(&self) -> Vec<usize> {
-        self.corridor.as_ref().map_or(Vec::new(), |corridor| corridor.depths())
+        self.pipeline.as_ref().map_or(Vec::new(), |pipeline| pipeline.depths())
     }
 
     /// How often a list was too short and a frame was run again within itself, so far.
     pub fn reruns(&self) -> u64 {
-        self.corridor.as_ref().map_or(0, |corridor| corridor.reruns())
+        self.pipeline.as_ref().map_or(0, |pipeline| pipeline.reruns())
     }
 
     /// What each stage left in the device's memory after the last [`Session::detect`], as hashes by stage: trees to
@@ -279,7 +279,7 @@ impl Session {
     /// # Errors
     /// Those of the device.
     pub fn fingerprints(&self) -> Result<Vec<(&'static str, u64)>, Error> {
-        self.corridor.as_ref().map_or(Ok(Vec::new()), |corridor| corridor.fingerprints())
+        self.pipeline.as_ref().map_or(Ok(Vec::new()), |pipeline| pipeline.fingerprints())
     }
 
     /// Checks every tree as it lies on the device; volumes too, which [`Session::detect`] sets.
@@ -287,7 +287,7 @@ impl Session {
     /// # Errors
     /// [`Error::Bug`] with the first violation; those of the device.
     pub fn check_trees(&self) -> Result<(), Error> {
-        self.corridor.as_ref().map_or(Ok(()), |corridor| corridor.check())
+        self.pipeline.as_ref().map_or(Ok(()), |pipeline| pipeline.check())
     }
 }
 

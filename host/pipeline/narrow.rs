@@ -8,12 +8,12 @@ pub use continuous::{Continuous, Rooms};
 use super::layout::Layout;
 use super::order::Order;
 use super::precision::Precision;
-use super::room::{Growing, List};
+use super::room::{GrowableOutput, List};
 use crate::device::Device;
 use crate::error::Error;
 use crate::pipeline::launch;
 use crate::query::{Motion, Query, Solver};
-use nearmiss_kernels::abi::{DiscreteArgs, Frames, KEEP_ADJACENT, Pair, Span, counter};
+use nearmiss_kernels::abi::{DiscreteArgs, KEEP_ADJACENT, Pair, Positions, Span, counter};
 
 /// A step of a frame that fills lists; each reads what the one before filled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,9 +23,9 @@ pub enum Step {
     /// Triangle pairs that meet.
     Decide,
     /// Vertex/face and edge/edge candidates.
-    Sift,
+    Features,
     /// Those that may meet.
-    Reject,
+    Cull,
     /// Contacts in motion.
     Solve,
     /// Contacts in canonical order.
@@ -38,8 +38,8 @@ impl Step {
         match self {
             Step::Traverse => "traverse",
             Step::Decide => "decide",
-            Step::Sift => "sift",
-            Step::Reject => "reject",
+            Step::Features => "features",
+            Step::Cull => "cull",
             Step::Solve => "solve",
             Step::Order => "order",
         }
@@ -47,13 +47,13 @@ impl Step {
 }
 
 /// What every step of the stage is given.
-pub struct Given<'a, R: Precision> {
+pub struct NarrowContext<'a, R: Precision> {
     /// The machine.
     pub device: &'a Device,
     /// The question.
     pub query: Query,
     /// Positions.
-    pub frames: Frames<R>,
+    pub frames: Positions<R>,
     /// Vertex indices of every triangle.
     pub faces: Span<[u32; 3]>,
     /// Candidate triangle pairs.
@@ -129,11 +129,11 @@ impl Narrow {
     }
 
     /// The lists that a step fills.
-    pub fn lists(&mut self, step: Step) -> Vec<&mut dyn Growing> {
+    pub fn lists(&mut self, step: Step) -> Vec<&mut dyn GrowableOutput> {
         match (self, step) {
             (Narrow::Discrete { contacts, undecided, .. }, Step::Decide) => {
-                let undecided = undecided.iter_mut().map(|list| list as &mut dyn Growing);
-                std::iter::once(contacts as &mut dyn Growing).chain(undecided).collect()
+                let undecided = undecided.iter_mut().map(|list| list as &mut dyn GrowableOutput);
+                std::iter::once(contacts as &mut dyn GrowableOutput).chain(undecided).collect()
             }
             (Narrow::Discrete { ordered: Some(order), .. }, Step::Order) => vec![&mut order.list],
             (Narrow::Continuous(c), step) => c.lists(step),
@@ -156,7 +156,7 @@ impl Narrow {
     ///
     /// # Errors
     /// Those of the device.
-    pub fn run<R: Precision>(&mut self, step: Step, given: &Given<R>) -> Result<(), Error> {
+    pub fn run<R: Precision>(&mut self, step: Step, given: &NarrowContext<R>) -> Result<(), Error> {
         match (self, step) {
             (Narrow::Discrete { contacts, undecided, .. }, Step::Decide) => {
                 decide(contacts, undecided, given)
@@ -164,7 +164,7 @@ impl Narrow {
             (Narrow::Discrete { contacts, ordered: Some(order), .. }, Step::Order) => {
                 order.run(given.device, contacts, None, given.counters)
             }
-            (Narrow::Continuous(c), Step::Sift | Step::Reject | Step::Solve | Step::Order) => {
+            (Narrow::Continuous(c), Step::Features | Step::Cull | Step::Solve | Step::Order) => {
                 c.run(step, given)
             }
             _ => Err(Error::Bug { what: format!("the step {step:?} in another kind of query") }),
@@ -176,7 +176,7 @@ impl Narrow {
 fn decide<R: Precision>(
     contacts: &List<Pair>,
     undecided: &[List<Pair>],
-    given: &Given<R>,
+    given: &NarrowContext<R>,
 ) -> Result<(), Error> {
     let args = |pairs: Span<Pair>, pairs_at: u32, undecided: Option<&List<Pair>>| DiscreteArgs {
         positions: given.frames.still,

@@ -1,7 +1,7 @@
 //! Order: contacts into canonical order on the device, where the host would be slower: on a card.
 
 use super::layout::Layout;
-use super::room::{Growing, List};
+use super::room::{GrowableOutput, List};
 use super::sorter::{counted, sort, words};
 use crate::device::{Buffer, Device, View};
 use crate::error::Error;
@@ -153,7 +153,7 @@ mod tests {
 
     fn machines() -> Vec<Device> {
         let engine = |lanes| Emulator::new(Mode::Engine, None).expect("threads").with_lanes(lanes);
-        let order = |order| Emulator::new(Mode::Microscope(order), None).expect("threads").with_lanes(32);
+        let order = |order| Emulator::new(Mode::Sanitizer(order), None).expect("threads").with_lanes(32);
         let engines = [1, 7, 33, 256].map(engine).into_iter();
         engines.chain([Blocks::Reverse, Blocks::Shuffled(3)].map(order)).map(Device::emulator).collect()
     }

@@ -2,8 +2,8 @@
 
 use crate::mesh::Positions;
 use nearmiss_kernels::abi::{
-    BluntArgs, DiscreteArgs, FitArgs, GroupsArgs, MortonArgs, RejectArgs, RungArgs, SiftArgs, SolveArgs,
-    TreeletsArgs,
+    BelowPrecisionArgs, CullArgs, DiscreteArgs, FeaturesArgs, FitArgs, GroupsArgs, MortonArgs, RungArgs,
+    SolveArgs, TreeletsArgs,
 };
 use nearmiss_kernels::bv::{Aabb, Linear, Obb};
 use nearmiss_kernels::entry::{self, Entry};
@@ -40,9 +40,9 @@ pub trait Precision: Real {
     /// The exact signs.
     type Exact: Entry<Args = DiscreteArgs<Self>>;
     /// Triangle pairs to pairs of features whose boxes meet.
-    type Sift: Entry<Args = SiftArgs<Self>>;
+    type Features: Entry<Args = FeaturesArgs<Self>>;
     /// Those that may meet.
-    type Reject: Entry<Args = RejectArgs<Self>>;
+    type Cull: Entry<Args = CullArgs<Self>>;
     /// Vertex/face by the cubic in f32.
     type Vf32: Entry<Args = SolveArgs<Self>>;
     /// Vertex/face by the cubic in f64.
@@ -52,7 +52,7 @@ pub trait Precision: Real {
     /// Edge/edge by the cubic in f64.
     type Ee64: Entry<Args = SolveArgs<Self>>;
     /// Listed pairs that are too large for the tolerance.
-    type Blunt: Entry<Args = BluntArgs<Self>>;
+    type BelowPrecision: Entry<Args = BelowPrecisionArgs<Self>>;
     /// Isolation of roots in f32.
     type Isolate32: Entry<Args = RungArgs<Self>>;
     /// Isolation of roots in f64.
@@ -87,13 +87,13 @@ impl Precision for f32 {
     type Wide = entry::narrow_wide_f32;
     const WIDENS: bool = true;
     type Exact = entry::narrow_exact_f32;
-    type Sift = entry::narrow_sift_f32;
-    type Reject = entry::narrow_reject_f32;
+    type Features = entry::narrow_features_f32;
+    type Cull = entry::narrow_cull_f32;
     type Vf32 = entry::narrow_vf_f32_f32;
     type Vf64 = entry::narrow_vf_f32_f64;
     type Ee32 = entry::narrow_ee_f32_f32;
     type Ee64 = entry::narrow_ee_f32_f64;
-    type Blunt = entry::narrow_blunt_f32;
+    type BelowPrecision = entry::narrow_below_precision_f32;
     type Isolate32 = entry::narrow_isolate_f32_f32;
     type Isolate64 = entry::narrow_isolate_f32_f64;
     type Settle = entry::narrow_settle_f32;
@@ -126,13 +126,13 @@ impl Precision for f64 {
     type Wide = entry::narrow_filter_f64;
     const WIDENS: bool = false;
     type Exact = entry::narrow_exact_f64;
-    type Sift = entry::narrow_sift_f64;
-    type Reject = entry::narrow_reject_f64;
+    type Features = entry::narrow_features_f64;
+    type Cull = entry::narrow_cull_f64;
     type Vf32 = entry::narrow_vf_f64_f32;
     type Vf64 = entry::narrow_vf_f64_f64;
     type Ee32 = entry::narrow_ee_f64_f32;
     type Ee64 = entry::narrow_ee_f64_f64;
-    type Blunt = entry::narrow_blunt_f64;
+    type BelowPrecision = entry::narrow_below_precision_f64;
     type Isolate32 = entry::narrow_isolate_f64_f32;
     type Isolate64 = entry::narrow_isolate_f64_f64;
     type Settle = entry::narrow_settle_f64;

@@ -75,11 +75,11 @@ impl<T: Pod> List<T> {
 }
 
 /// A list whose entries do not matter, only their number. Counted anew when the step that fills it runs again.
-pub trait Growing {
+pub trait GrowableOutput {
     /// Which counter counts the entries.
     fn counter(&self) -> u32;
     /// Whether the kernels asked for more entries than there is room for.
-    fn is_short(&self, counters: &[u64]) -> bool;
+    fn has_overflowed(&self, counters: &[u64]) -> bool;
     /// Makes room for what the kernels asked for, and an eighth more for the next frame; whether it had to.
     ///
     /// # Errors
@@ -88,13 +88,13 @@ pub trait Growing {
 }
 
 /// A number that the kernels count and that has no list.
-pub struct Tally(pub u32);
+pub struct Counter(pub u32);
 
-impl Growing for Tally {
+impl GrowableOutput for Counter {
     fn counter(&self) -> u32 {
         self.0
     }
-    fn is_short(&self, _: &[u64]) -> bool {
+    fn has_overflowed(&self, _: &[u64]) -> bool {
         false
     }
     fn grow(&mut self, _: &Device, _: &[u64]) -> Result<bool, Error> {
@@ -102,16 +102,16 @@ impl Growing for Tally {
     }
 }
 
-impl<T: Pod> Growing for List<T> {
+impl<T: Pod> GrowableOutput for List<T> {
     fn counter(&self) -> u32 {
         self.counter
     }
-    fn is_short(&self, counters: &[u64]) -> bool {
+    fn has_overflowed(&self, counters: &[u64]) -> bool {
         self.demand(counters) > self.room() as u64
     }
     fn grow(&mut self, device: &Device, counters: &[u64]) -> Result<bool, Error> {
         let demand = self.demand(counters);
-        if !self.is_short(counters) {
+        if !self.has_overflowed(counters) {
             return Ok(false);
         }
         let room = |given| Error::Room {

@@ -116,7 +116,7 @@ mod tests {
             }
         }
         for order in [Order::Forward, Order::Reverse, Order::Shuffled(9)] {
-            let emulator = Emulator::new(Mode::Microscope(order), None).expect("threads").with_lanes(32);
+            let emulator = Emulator::new(Mode::Sanitizer(order), None).expect("threads").with_lanes(32);
             let items = items(1_500);
             assert!(sorted(&Device::emulator(emulator), &items, |_| ()) == wanted(&items), "{order:?}");
         }

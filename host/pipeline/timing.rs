@@ -3,7 +3,7 @@
 use crate::query::named;
 
 named! {
-    /// A stage of the corridor.
+    /// A stage of the pipeline.
     pub enum Stage {
         /// Positions to level-ordered tree.
         Construct = "construct",

@@ -2,12 +2,12 @@
 
 use super::precision::Precision;
 use super::sorter::{counted, sort, words};
-use super::treelets::Way;
+use super::treelets::RefitPlan;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::launch;
 use crate::query::Refit;
-use nearmiss_kernels::abi::{Frames, Inner, Link, MortonArgs, Span, TreeArgs};
+use nearmiss_kernels::abi::{Inner, Link, MortonArgs, Positions, Span, TreeArgs};
 use nearmiss_kernels::bvh::{self, CODE_BITS, MAX_LEVELS};
 use nearmiss_kernels::entry;
 use nearmiss_kernels::stage::construct::morton;
@@ -31,7 +31,7 @@ pub struct Tree {
     /// Number of levels, then where each begins, then where the last ends.
     pub levels: Buffer<u32>,
     /// How it is refitted.
-    pub way: Way,
+    pub way: RefitPlan,
     /// The same, as the host needs it to launch.
     starts: Vec<u32>,
     first: u32,
@@ -64,7 +64,7 @@ impl Tree {
         groups: bool,
     ) -> Result<Tree, Error> {
         let (n, inner) = (count as usize, count as usize - 1);
-        let way = Way::new(device, refit, count)?;
+        let way = RefitPlan::new(device, refit, count)?;
         let zeroed = BOUNDS + (BYTES.len() + 1) * words(device, count) + way.zeroed();
         Ok(Tree {
             links: device.buffer(2 * n)?,
@@ -95,7 +95,7 @@ impl Tree {
     pub fn construct<R: Precision>(
         &mut self,
         device: &Device,
-        frames: Frames<R>,
+        frames: Positions<R>,
         faces: Span<[u32; 3]>,
     ) -> Result<(), Error> {
         let (n, inner) = (self.count as usize, self.count as usize - 1);
@@ -130,7 +130,7 @@ impl Tree {
             pair_parents: self.pair_parents.span(),
             leaf_nodes: self.leaf_nodes.span(),
             firsts: self.firsts.span(),
-            seats: self.way.seats(),
+            leaf_places: self.way.leaf_places(),
             begins,
             tops,
             leaves: self.count,

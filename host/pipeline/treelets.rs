@@ -4,12 +4,12 @@ use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::launch;
 use crate::query::Refit;
-use nearmiss_kernels::abi::{Merge, PlanArgs, Seat, Span, TreeArgs, Treelet};
+use nearmiss_kernels::abi::{LeafPlace, Merge, PlanArgs, Span, TreeArgs, Treelet};
 use nearmiss_kernels::bvh::{MAX_LEVELS, TREELET};
 use nearmiss_kernels::entry;
 
 /// How a tree is refitted, with the memory for it.
-pub enum Way {
+pub enum RefitPlan {
     /// A launch a level.
     Levels,
     /// A block a treelet.
@@ -18,23 +18,23 @@ pub enum Way {
     BottomUp(Buffer<u64>),
 }
 
-impl Way {
+impl RefitPlan {
     /// Takes the memory for a tree of `count` leaves (at least one).
     ///
     /// # Errors
     /// Those of the device.
-    pub fn new(device: &Device, refit: Refit, count: u32) -> Result<Way, Error> {
+    pub fn new(device: &Device, refit: Refit, count: u32) -> Result<RefitPlan, Error> {
         Ok(match refit {
-            Refit::Levels => Way::Levels,
-            Refit::Treelets => Way::Treelets(Box::new(Plan::new(device, count)?)),
-            Refit::BottomUp => Way::BottomUp(device.buffer(count as usize)?),
+            Refit::Levels => RefitPlan::Levels,
+            Refit::Treelets => RefitPlan::Treelets(Box::new(Plan::new(device, count)?)),
+            Refit::BottomUp => RefitPlan::BottomUp(device.buffer(count as usize)?),
         })
     }
 
     /// How many zeroed words a construction needs for it.
     pub fn zeroed(&self) -> usize {
         match self {
-            Way::Treelets(plan) => plan.treelets.len() + TOPS,
+            RefitPlan::Treelets(plan) => plan.treelets.len() + TOPS,
             _ => 0,
         }
     }
@@ -42,7 +42,7 @@ impl Way {
     /// Those words: where treelets begin, and how many nodes of the top there are.
     pub fn parts(&self, zeroed: Span<u64>) -> [Span<u64>; 2] {
         match self {
-            Way::Treelets(plan) => {
+            RefitPlan::Treelets(plan) => {
                 let begins = plan.treelets.len() as u64;
                 [zeroed.part(0, begins), zeroed.part(begins, TOPS as u64)]
             }
@@ -51,9 +51,9 @@ impl Way {
     }
 
     /// The leaves' places, where they are needed.
-    pub fn seats(&self) -> Span<Seat> {
+    pub fn leaf_places(&self) -> Span<LeafPlace> {
         match self {
-            Way::Treelets(plan) => plan.seats.span(),
+            RefitPlan::Treelets(plan) => plan.leaf_places.span(),
             _ => Span::EMPTY,
         }
     }
@@ -64,9 +64,9 @@ impl Way {
     /// Those of the device.
     pub fn prepare(&mut self, device: &Device, tree: &TreeArgs) -> Result<(), Error> {
         match self {
-            Way::Levels => Ok(()),
-            Way::Treelets(plan) => plan.make(device, tree),
-            Way::BottomUp(arrivals) => arrivals.clear(),
+            RefitPlan::Levels => Ok(()),
+            RefitPlan::Treelets(plan) => plan.make(device, tree),
+            RefitPlan::BottomUp(arrivals) => arrivals.clear(),
         }
     }
 }
@@ -76,7 +76,7 @@ pub struct Plan {
     /// The treelets, one a chunk of leaves.
     pub treelets: Buffer<Treelet>,
     /// The leaves' places.
-    pub seats: Buffer<Seat>,
+    pub leaf_places: Buffer<LeafPlace>,
     /// Merges of the treelets.
     pub merges: Buffer<Merge>,
     /// Merges of the nodes that span treelets.
@@ -97,7 +97,7 @@ impl Plan {
         let a_depth = leaves / (TREELET as usize + 1);
         Ok(Plan {
             treelets: device.buffer(treelets)?,
-            seats: device.buffer(leaves)?,
+            leaf_places: device.buffer(leaves)?,
             merges: device.buffer(leaves)?,
             top: device.buffer((a_depth * MAX_LEVELS as usize).min(leaves))?,
             top_starts: device.buffer(MAX_LEVELS as usize + 1)?,
@@ -139,7 +139,7 @@ mod tests {
     use crate::pipeline::tree::Tree;
     use crate::pipeline::volumes::{Kernels, Volumes};
     use crate::samples::soup;
-    use nearmiss_kernels::abi::{Frames, Point};
+    use nearmiss_kernels::abi::{Point, Positions};
     use nearmiss_kernels::bv::{Aabb, Axes, Obb};
     use nearmiss_kernels::math::Vec3;
 
@@ -155,7 +155,7 @@ mod tests {
         let padded = |points: &[Vec3<f32>]| points.iter().map(|&p| p.into()).collect::<Vec<Point<f32>>>();
         let mut points = device.upload(&padded(&at(1.0)))?;
         let faces = device.upload(body.faces())?;
-        let frames = Frames { still: points.span(), moving: Span::EMPTY };
+        let frames = Positions { still: points.span(), moving: Span::EMPTY };
         let mut tree = Tree::new(&device, (0, 2_000), refit, V::group(Axes::PCA) > 0)?;
         tree.construct::<f32>(&device, frames, faces.span())?;
         tree.learn_levels()?;
@@ -174,7 +174,7 @@ mod tests {
 
     fn plan(tree: &mut Tree) -> &mut Plan {
         match &mut tree.way {
-            Way::Treelets(plan) => plan,
+            RefitPlan::Treelets(plan) => plan,
             _ => panic!("no plan was asked for"),
         }
     }
@@ -243,7 +243,7 @@ mod tests {
     #[test]
     fn who_comes_first_and_goes_on_is_noticed() {
         let error = checked::<Aabb>(Refit::BottomUp, |tree| match &mut tree.way {
-            Way::BottomUp(arrivals) => {
+            RefitPlan::BottomUp(arrivals) => {
                 let mut counts = arrivals.read(arrivals.len()).expect("read");
                 assert!(counts[1..].iter().all(|&n| n == 2), "each pair is passed twice a frame");
                 counts.iter_mut().for_each(|n| *n += 1);

@@ -2,12 +2,12 @@
 
 use super::precision::Precision;
 use super::tree::{Tree, broken};
-use super::treelets::{Plan, Way};
+use super::treelets::{Plan, RefitPlan};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::launch;
 use nearmiss_kernels::abi::{
-    BottomUpArgs, FitArgs, Frames, FrontArgs, GroupsArgs, Node, QueueArgs, RefitArgs, Span, StealArgs,
+    BottomUpArgs, FitArgs, FrontArgs, GroupsArgs, Node, Positions, QueueArgs, RefitArgs, Span, StealArgs,
     TraverseArgs, TreeletsArgs,
 };
 use nearmiss_kernels::bv::{Aabb, Axes, Linear, Obb, Volume};
@@ -129,10 +129,10 @@ impl<V: Kernels> Volumes<V> {
         &self,
         device: &Device,
         tree: &Tree,
-        frames: Frames<R>,
+        frames: Positions<R>,
         faces: Span<[u32; 3]>,
     ) -> Result<(), Error> {
-        if !matches!(tree.way, Way::Treelets(_)) {
+        if !matches!(tree.way, RefitPlan::Treelets(_)) {
             let args = FitArgs {
                 frames,
                 faces,
@@ -169,13 +169,13 @@ impl<V: Kernels> Volumes<V> {
         &self,
         device: &Device,
         tree: &Tree,
-        frames: Frames<R>,
+        frames: Positions<R>,
         faces: Span<[u32; 3]>,
     ) -> Result<(), Error> {
         match &tree.way {
-            Way::Levels => self.levels(device, tree),
-            Way::Treelets(plan) => self.treelets(device, plan, frames, faces),
-            Way::BottomUp(arrivals) => {
+            RefitPlan::Levels => self.levels(device, tree),
+            RefitPlan::Treelets(plan) => self.treelets(device, plan, frames, faces),
+            RefitPlan::BottomUp(arrivals) => {
                 let args = BottomUpArgs {
                     links: tree.links.span(),
                     pair_parents: tree.pair_parents.span(),
@@ -196,14 +196,14 @@ impl<V: Kernels> Volumes<V> {
         &self,
         device: &Device,
         plan: &Plan,
-        frames: Frames<R>,
+        frames: Positions<R>,
         faces: Span<[u32; 3]>,
     ) -> Result<(), Error> {
         let args = TreeletsArgs {
             frames,
             faces,
             treelets: plan.treelets.span(),
-            seats: plan.seats.span(),
+            leaf_places: plan.leaf_places.span(),
             merges: plan.merges.span(),
             top: plan.top.span(),
             top_starts: plan.top_starts.span(),

@@ -8,7 +8,7 @@ use crate::prim::isolate::separation::{Double, Single};
 use crate::queue::worker;
 use crate::sort;
 use crate::stage::construct::{morton, tree, treelet};
-use crate::stage::narrow::{blunt, climb, discrete, reject, separate, sift, slice, solve};
+use crate::stage::narrow::{below_precision, climb, cull, discrete, features, separate, slice, solve};
 use crate::stage::refit::{bottom_up, levels, treelets};
 use crate::stage::traverse::{front, queue, steal};
 use crate::stage::{balance, fit, order, traverse};
@@ -69,15 +69,15 @@ macro_rules! kernels {
 
         /// The entries of the PTX.
         #[cfg(target_arch = "nvptx64")]
-        mod card {
+        mod gpu {
             use super::*;
-            use crate::exec::ptx::Card;
+            use crate::exec::ptx::Gpu;
             $(
                 // SAFETY: called by the driver, once a thread, with arguments of the size in TABLE.
                 #[unsafe(no_mangle)]
                 unsafe extern "ptx-kernel" fn $name(args: $args) {
                     // SAFETY: the one block of this kernel, made at its start.
-                    let mut block = unsafe { Card::new() };
+                    let mut block = unsafe { Gpu::new() };
                     <super::$name as Entry>::run(&mut block, &args);
                 }
             )*
@@ -151,10 +151,10 @@ kernels! {
     narrow_wide_f32: discrete::wide, [DiscreteArgs<f32>], NARROW, 0;
     narrow_exact_f32: discrete::exact::<f32, B>, [DiscreteArgs<f32>], NARROW, 0;
     narrow_exact_f64: discrete::exact::<f64, B>, [DiscreteArgs<f64>], NARROW, 0;
-    narrow_sift_f32: sift::sift::<f32, B>, [SiftArgs<f32>], NARROW, sift::shared_bytes(NARROW);
-    narrow_sift_f64: sift::sift::<f64, B>, [SiftArgs<f64>], NARROW, sift::shared_bytes(NARROW);
-    narrow_reject_f32: reject::reject::<f32, B>, [RejectArgs<f32>], RUNG, 0;
-    narrow_reject_f64: reject::reject::<f64, B>, [RejectArgs<f64>], RUNG, 0;
+    narrow_features_f32: features::features::<f32, B>, [FeaturesArgs<f32>], NARROW, features::shared_bytes(NARROW);
+    narrow_features_f64: features::features::<f64, B>, [FeaturesArgs<f64>], NARROW, features::shared_bytes(NARROW);
+    narrow_cull_f32: cull::cull::<f32, B>, [CullArgs<f32>], RUNG, 0;
+    narrow_cull_f64: cull::cull::<f64, B>, [CullArgs<f64>], RUNG, 0;
     narrow_vf_f32_f32: solve::vf::<f32, f32, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_vf_f32_f64: solve::vf::<f32, f64, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_vf_f64_f32: solve::vf::<f64, f32, B>, [SolveArgs<f64>], WIDE, 0;
@@ -163,8 +163,8 @@ kernels! {
     narrow_ee_f32_f64: solve::ee::<f32, f64, B>, [SolveArgs<f32>], WIDE, 0;
     narrow_ee_f64_f32: solve::ee::<f64, f32, B>, [SolveArgs<f64>], WIDE, 0;
     narrow_ee_f64_f64: solve::ee::<f64, f64, B>, [SolveArgs<f64>], WIDE, 0;
-    narrow_blunt_f32: blunt::blunt::<f32, B>, [BluntArgs<f32>], WIDE, 0;
-    narrow_blunt_f64: blunt::blunt::<f64, B>, [BluntArgs<f64>], WIDE, 0;
+    narrow_below_precision_f32: below_precision::below_precision::<f32, B>, [BelowPrecisionArgs<f32>], WIDE, 0;
+    narrow_below_precision_f64: below_precision::below_precision::<f64, B>, [BelowPrecisionArgs<f64>], WIDE, 0;
     narrow_isolate_f32_f32: climb::isolate::<f32, f32, B>, [RungArgs<f32>], NARROW, 0;
     narrow_isolate_f32_f64: climb::isolate::<f32, f64, B>, [RungArgs<f32>], NARROW, 0;
     narrow_isolate_f64_f32: climb::isolate::<f64, f32, B>, [RungArgs<f64>], NARROW, 0;

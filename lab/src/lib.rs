@@ -2,12 +2,12 @@
 //! faster choice costs, and the thesis's tables beside ours. A part of this project, not of the library: nothing here is
 //! promised to stay.
 
+pub mod accuracy;
 pub mod case;
-pub mod extremes;
 pub mod oracle;
 pub mod pairs;
+pub mod robustness;
 pub mod scene;
 pub mod tables;
-pub mod trade;
 
 pub use case::{Case, Features};

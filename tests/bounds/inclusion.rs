@@ -176,7 +176,7 @@ fn inclusion_shadow() {
     fn of<S: Grid>(name: &str) {
         let ratio = |x: &[f64]| {
             let (image, d) = image::<S>(x);
-            let (said, bound) = image.shadow(d, image.slack());
+            let (said, bound) = image.projection(d, image.slack());
             let error = |i: usize| (Exact::of(said[i]) - dot(&point(d), &point(image.f[i]))).abs();
             (0..8).map(|i| error(i).over(&Exact::of(bound))).fold(0.0, f64::max)
         };
@@ -192,7 +192,7 @@ fn used_up<S: Grid>(said: S, truth: &Exact) -> f64 {
     (Exact::of(S::INCLUSION_UP) * truth - Exact::of(said)).over(&(more * truth))
 }
 
-/// Measured: how much of the factor roundings use up, where a sum of products bounds a shadow's error, and where a
+/// Measured: how much of the factor roundings use up, where a sum of products bounds a projection's error, and where a
 /// separation is taken along a direction (its square, so twice as much).
 #[test]
 fn inclusion_up() {
@@ -200,7 +200,7 @@ fn inclusion_up() {
         let sum = |x: &[f64]| {
             let (image, d) = image::<S>(x);
             let slack = image.slack();
-            used_up(image.shadow(d, slack).1, &dot_abs(&point(d), &point(slack)))
+            used_up(image.projection(d, slack).1, &dot_abs(&point(d), &point(slack)))
         };
         held("INCLUSION_UP", &format!("{name}, of a sum"), &Hunt::new(35).most::<S>(|r| plain(r, 27), sum));
         let length = |x: &[f64]| {
@@ -232,7 +232,7 @@ fn inclusion_down() {
             let mut cuts = Cuts::none();
             let s: [S; 8] = std::array::from_fn(|i| if i % 2 == 0 { a } else { -b });
             let cell = Cell { low: Vec3([S::ZERO; 3]), high: Vec3([width, S::ONE, S::ONE]) };
-            if !cuts.shadow(&s, error, S::ZERO, 9) {
+            if !cuts.projection(&s, error, S::ZERO, 9) {
                 return f64::NAN;
             }
             let [low, high] = cuts.parts();
@@ -268,7 +268,7 @@ fn inclusion_underflow() {
             if N == 3 && parameter::<S>(x[25]) + parameter::<S>(x[26]) > S::ONE {
                 return f64::NAN;
             }
-            let (said, _) = image.shadow(d, image.slack());
+            let (said, _) = image.projection(d, image.slack());
             // All relative bounds together are below that.
             let reach = point(image.low.map(S::abs).max(image.high.map(S::abs)));
             let covered = Exact::of(S::U) * Exact::of(20.0) * dot_abs(&point(d), &reach);

@@ -1,5 +1,5 @@
 //! Blocks of one launch that work together: atomics, gives and takes, fences, tickets, on the engine and under the
-//! microscope, with blocks one after the other and interleaved.
+//! sanitizer, with blocks one after the other and interleaved.
 
 use super::*;
 use nearmiss::Error;
@@ -40,21 +40,21 @@ kernels! { [Args], 64, 4096;
     }
     last_block |b, a| {
         // Each block gives its lanes' numbers; whoever draws the last ticket adds up all of them.
-        b.phase(|l| l.give(a.out, l.global(), l.read(a.given, l.global())));
+        b.phase(|l| l.store_relaxed(a.out, l.global(), l.read(a.given, l.global())));
         let (ticket, lanes, blocks) = (b.ticket(a.counters, 0), b.lanes(), b.blocks());
         if ticket + 1 == blocks as u64 {
             b.phase(|l| for block in 0..blocks {
-                l.fetch_add(a.counters, 1, l.take(a.out, block * lanes + l.lane()) as u64);
+                l.fetch_add(a.counters, 1, l.load_relaxed(a.out, block * lanes + l.lane()) as u64);
             });
         }
     }
     last_by_number |b, a| {
         // The same without the ticket: the block of the last number takes itself for the last.
-        b.phase(|l| l.give(a.out, l.global(), l.read(a.given, l.global())));
+        b.phase(|l| l.store_relaxed(a.out, l.global(), l.read(a.given, l.global())));
         let (lanes, block, blocks) = (b.lanes(), b.block(), b.blocks());
         if block + 1 == blocks {
             b.phase(|l| for block in 0..blocks {
-                l.fetch_add(a.counters, 1, l.take(a.out, block * lanes + l.lane()) as u64);
+                l.fetch_add(a.counters, 1, l.load_relaxed(a.out, block * lanes + l.lane()) as u64);
             });
         }
     }
@@ -64,15 +64,15 @@ kernels! { [Args], 64, 4096;
         let all = b.lanes() * b.blocks();
         b.phase(|l| {
             let tail = l.fetch_add(a.counters, 0, 1) as u32;
-            l.give(a.list, 2 * tail, l.global());
-            l.give(a.list, 2 * tail + 1, !l.global());
+            l.store_relaxed(a.list, 2 * tail, l.global());
+            l.store_relaxed(a.list, 2 * tail + 1, !l.global());
             l.fence();
             l.exchange(a.counters, 2 + tail, 1);
             let head = l.fetch_add(a.counters, 1, 1) as u32;
             assert!(head < all);
             while l.fetch_load(a.counters, 2 + head) == 0 {}
             l.fence();
-            let (one, other) = (l.take(a.list, 2 * head), l.take(a.list, 2 * head + 1));
+            let (one, other) = (l.load_relaxed(a.list, 2 * head), l.load_relaxed(a.list, 2 * head + 1));
             assert_eq!(one, !other, "two halves of one record");
             l.write(a.out, l.global(), one);
         });
@@ -81,7 +81,7 @@ kernels! { [Args], 64, 4096;
         for _ in 0..3 {
             b.phase(|l| if l.lane() == 0 {
                 let turn = l.fetch_add(a.counters, 0, 1);
-                l.give(a.list, turn as u32, l.global());
+                l.store_relaxed(a.list, turn as u32, l.global());
             });
         }
     }
@@ -96,10 +96,10 @@ fn emulator(mode: Mode, interleave: Option<u64>) -> Device {
     })
 }
 
-/// The engine, and the microscope in all orders, interleaved and not.
+/// The engine, and the sanitizer in all orders, interleaved and not.
 fn devices() -> impl Iterator<Item = (Device, String)> {
-    let orders = ORDERS.map(|order| (Mode::Microscope(order), None));
-    let interleaved = SEEDS.map(|seed| (Mode::Microscope(ORDERS[seed as usize % 3]), Some(seed)));
+    let orders = ORDERS.map(|order| (Mode::Sanitizer(order), None));
+    let interleaved = SEEDS.map(|seed| (Mode::Sanitizer(ORDERS[seed as usize % 3]), Some(seed)));
     let all = [(Mode::Engine, None)].into_iter().chain(orders).chain(interleaved);
     all.map(|(mode, seed)| (emulator(mode, seed), format!("{mode:?}, interleaved {seed:?}")))
 }
@@ -121,9 +121,9 @@ fn launch<E: Entry<Args = Args>>(device: &Device, blocks: u32) -> Result<Words, 
     Ok((out.read(all)?, of_block.read(blocks as usize)?, list.read(2 * all)?, counters.read(2 + all)?))
 }
 
-/// What the microscope says of a kernel that breaks a rule.
+/// What the sanitizer says of a kernel that breaks a rule.
 fn verdict<E: Entry<Args = Args>>(order: Order, interleave: Option<u64>, blocks: u32) -> String {
-    match launch::<E>(&emulator(Mode::Microscope(order), interleave), blocks) {
+    match launch::<E>(&emulator(Mode::Sanitizer(order), interleave), blocks) {
         Ok(_) => format!("{}: nothing seen in {order:?}, interleaved {interleave:?}", E::NAME),
         Err(error) => error.to_string(),
     }
@@ -171,7 +171,7 @@ fn the_last_ticket_sees_what_all_blocks_gave() {
 fn a_last_block_without_a_ticket_is_wrong_where_blocks_interleave() {
     let sum: u64 = (0..64 * 7).map(|lane| noise(lane) as u64).sum();
     let right = |order, interleave| {
-        let device = emulator(Mode::Microscope(order), interleave);
+        let device = emulator(Mode::Sanitizer(order), interleave);
         launch::<last_by_number>(&device, 7).expect("gives and takes may meet").3[1] == sum
     };
     assert!(right(Order::Forward, None), "one after the other hides it");
@@ -191,7 +191,7 @@ fn what_is_given_under_a_flag_is_taken_whole() {
 #[test]
 fn seeds_decide_how_blocks_interleave() {
     let blocks_in_turn = |seed| {
-        let device = emulator(Mode::Microscope(Order::Forward), seed);
+        let device = emulator(Mode::Sanitizer(Order::Forward), seed);
         let (_, _, list, _) = launch::<turns>(&device, 8).expect("a sound kernel");
         list[..24].iter().map(|lane| lane / 64).collect::<Vec<u32>>()
     };
@@ -218,15 +218,15 @@ kernels! { [Args], 64, 4096;
     }
     give_meets_read |b, a| {
         let block = b.block();
-        b.phase(|l| if block == 0 { l.give(a.out, l.lane(), 1) } else { l.read(a.out, l.lane()); });
+        b.phase(|l| if block == 0 { l.store_relaxed(a.out, l.lane(), 1) } else { l.read(a.out, l.lane()); });
     }
     take_meets_write |b, a| {
         let block = b.block();
-        b.phase(|l| if block == 0 { l.write(a.out, l.lane(), 1) } else { l.take(a.out, l.lane()); });
+        b.phase(|l| if block == 0 { l.write(a.out, l.lane(), 1) } else { l.load_relaxed(a.out, l.lane()); });
     }
     give_meets_write |b, a| {
         let block = b.block();
-        b.phase(|l| if block == 0 { l.write(a.out, l.lane(), 1) } else { l.give(a.out, l.lane(), 2) });
+        b.phase(|l| if block == 0 { l.write(a.out, l.lane(), 1) } else { l.store_relaxed(a.out, l.lane(), 2) });
     }
     look_meets_write |b, a| {
         let block = b.block();
@@ -238,10 +238,10 @@ kernels! { [Args], 64, 4096;
     }
     lanes_take_and_write |b, a| {
         // Two lanes of one block in one phase.
-        b.phase(|l| if l.lane() == 3 { l.write(a.out, 9, 1) } else if l.lane() == 5 { l.take(a.out, 9); });
+        b.phase(|l| if l.lane() == 3 { l.write(a.out, 9, 1) } else if l.lane() == 5 { l.load_relaxed(a.out, 9); });
     }
     lanes_give_and_read |b, a| {
-        b.phase(|l| if l.lane() == 3 { l.give(a.out, 9, 1) } else if l.lane() == 5 { l.read(a.out, 9); });
+        b.phase(|l| if l.lane() == 3 { l.store_relaxed(a.out, 9, 1) } else if l.lane() == 5 { l.read(a.out, 9); });
     }
     third_reader |b, a| {
         // Lanes of two blocks read; then the first block writes, two phases on.

@@ -208,7 +208,7 @@ pub fn promoted(body: Body) -> Body {
     Body::moving(f64s(&frames[0]), f64s(&frames[1])).expect("two frames")
 }
 
-/// The cubic in f32 is not certain, but the corridor is the same: it must find what the brute force finds with it.
+/// The cubic in f32 is not certain, but the pipeline is the same: it must find what the brute force finds with it.
 #[test]
 fn the_solver_in_floats_gets_the_same_pairs() {
     for body in [crumpled(4, 12, 1, 0.0), scene::soup(80, 5, true).expect("a scene"), crowded(4, 40, 24)] {

@@ -176,7 +176,7 @@ fn at(x: f32, size: f32) -> [[f32; 3]; 3] {
 
 #[test]
 fn bodies_of_few_triangles() {
-    for device in [engine, || super::support::microscope(super::support::ORDERS[1])] {
+    for device in [engine, || super::support::sanitizer(super::support::ORDERS[1])] {
         let found = |bodies: Vec<Body>| pairs(device(), bodies);
         let [none, one, two] = [0, 1, 2].map(|n| loose(&vec![at(0.0, 1.0); n]));
         assert_eq!(found(vec![none.clone()]), [[0; 2]; 0]);
@@ -237,8 +237,8 @@ fn doubles_that_no_float_can_hold() {
             let body = Body::still(Mesh::new("chain", Positions::F64(chain), faces).expect("a mesh"));
             let truth: Vec<_> = (1..60).map(|b| [b - 1, b]).collect();
             assert_eq!(pairs(engine(), vec![body.clone()]), truth, "{scale:e}");
-            let microscope = super::support::microscope(super::support::ORDERS[1]);
-            assert_eq!(pairs(microscope, vec![body]), truth, "{scale:e}");
+            let sanitizer = super::support::sanitizer(super::support::ORDERS[1]);
+            assert_eq!(pairs(sanitizer, vec![body]), truth, "{scale:e}");
         }
     }
 }
@@ -285,7 +285,7 @@ fn doubles_are_not_rounded() {
     }
 }
 
-/// The float test is asked for scenes where it cannot err: the corridor is the same for both.
+/// The float test is asked for scenes where it cannot err: the pipeline is the same for both.
 #[test]
 fn the_float_test_finds_the_known_pairs_too() {
     let query = Query { solver: Some(Solver::Moller), ..Query::of(Motion::Discrete) };

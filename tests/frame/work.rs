@@ -1,6 +1,6 @@
 //! What is not asked for is not done: launches and bytes are counted.
 
-use super::support::{ORDERS, engine, microscope, still};
+use super::support::{ORDERS, engine, sanitizer, still};
 use nearmiss::mesh::Body;
 use nearmiss::query::{Motion, Solver, Traversal};
 use nearmiss::{Device, Query, Session};
@@ -27,7 +27,7 @@ fn soup() -> Body {
 fn bodies_without_triangles_cost_nothing() {
     let none = still(&[], &[]);
     let unused = still(&[[1.0, 2.0, 3.0], [f32::NAN, 0.0, 0.0]], &[]);
-    for device in [engine(), microscope(ORDERS[0])] {
+    for device in [engine(), sanitizer(ORDERS[0])] {
         for bodies in [
             vec![none.clone()],
             vec![unused.clone()],
@@ -67,9 +67,9 @@ fn each_query_launches_what_it_needs() {
         assert_eq!(launches, [5 + rungs; 2], "{solver:?}");
     }
     // Listed pairs are measured only where some may be too large for the tolerance.
-    let blunt =
+    let below_precision =
         |motion| frame(Query { solver: Some(Solver::CertifiedF32), tolerance: Some(1e-9), ..of(motion) }).1;
-    assert_eq!([Motion::Continuous, Motion::Earliest].map(blunt), [8, 7]);
+    assert_eq!([Motion::Continuous, Motion::Earliest].map(below_precision), [8, 7]);
     // Construction does not depend on the question, and nothing is kept when the session ends.
     assert!([moller.0, continuous.0, earliest.0].iter().all(|n| *n == exact.0), "{}", exact.0);
     assert_eq!(device.bytes().0, 0);
@@ -117,7 +117,7 @@ fn a_discrete_query_does_not_see_the_end_of_the_step() {
 #[test]
 fn nothing_is_left_behind() {
     for motion in [Motion::Discrete, Motion::Continuous, Motion::Earliest] {
-        let device = microscope(ORDERS[2]);
+        let device = sanitizer(ORDERS[2]);
         let mut session =
             Session::new(device.clone(), vec![soup(), soup()], Query::of(motion)).expect("a session");
         session.detect().expect("an answer");

@@ -1,6 +1,6 @@
 //! The machine, its order, the size of its blocks, the walk, and whether a tree is new.
 
-use super::support::{machines, microscope};
+use super::support::{machines, sanitizer};
 use super::*;
 use nearmiss::query::Bv;
 use nearmiss::{Device, Session};
@@ -44,7 +44,7 @@ fn every_walk_finds_the_same() {
                 let query = Query { traversal: Some(traversal), bv: Some(Bv::Aabb), ..Query::of(motion) };
                 assert_eq!(prints(engine(), bodies, query), truth, "{traversal:?}");
                 let order = support::ORDERS[2];
-                assert_eq!(prints(microscope(order), bodies, query), truth, "{traversal:?}, {order:?}");
+                assert_eq!(prints(sanitizer(order), bodies, query), truth, "{traversal:?}, {order:?}");
             }
         }
     }
@@ -74,7 +74,7 @@ fn every_way_finds_the_same_contacts() {
                 assert_eq!(answer(engine(), way), truth, "{way:?}");
                 if (i + at) % 7 == 0 {
                     let order = support::ORDERS[i % 3];
-                    assert_eq!(answer(microscope(order), way), truth, "{way:?}, {order:?}");
+                    assert_eq!(answer(sanitizer(order), way), truth, "{way:?}, {order:?}");
                 }
             }
         }

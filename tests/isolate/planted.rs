@@ -22,16 +22,16 @@ fn contacts(seed: u64, n: usize) -> impl Iterator<Item = (Built, f64)> {
 
 /// Something told of a pair of either kind.
 trait Ask {
-    type Told;
-    fn ask<const N: usize>(self, pair: &Pair<f32, N>) -> Self::Told;
+    type Outcome;
+    fn ask<const N: usize>(self, pair: &Pair<f32, N>) -> Self::Outcome;
 }
 
-fn of<A: Ask>(built: &Built, ask: A) -> A::Told {
+fn of<A: Ask>(built: &Built, ask: A) -> A::Outcome {
     stored::<f32, A>(&built.case, ask)
 }
 
 /// The same, of positions in R.
-fn stored<R: Real, A: Ask>(case: &Case, ask: A) -> A::Told {
+fn stored<R: Real, A: Ask>(case: &Case, ask: A) -> A::Outcome {
     let ([a, b, c, d], p) = (points::<R>(case), Params::new(0.0));
     match case.features {
         Features::VertexFace => ask.ask(&Face::new(a, [b, c, d], &p)),
@@ -42,7 +42,7 @@ fn stored<R: Real, A: Ask>(case: &Case, ask: A) -> A::Told {
 /// By how much a time is outside of the window.
 struct Outside(f64);
 impl Ask for Outside {
-    type Told = f64;
+    type Outcome = f64;
     fn ask<const N: usize>(self, pair: &Pair<f32, N>) -> f64 {
         let Some((from, to)) = pair.window() else { return f64::INFINITY };
         (f64::from(from) - self.0).max(self.0 - f64::from(to))
@@ -52,7 +52,7 @@ impl Ask for Outside {
 /// Whether a direction is said to part the features from a time until another.
 struct Parted(f32, f32);
 impl Ask for Parted {
-    type Told = bool;
+    type Outcome = bool;
     fn ask<const N: usize>(self, pair: &Pair<f32, N>) -> bool {
         pair.misses_throughout(self.0, self.1)
     }
@@ -128,7 +128,7 @@ fn a_window_that_is_not_widened_loses_contacts() {
 /// The cubic at a time of contact, where it is zero: its largest computed value over its error.
 struct AtContact(f64);
 impl Ask for AtContact {
-    type Told = f64;
+    type Outcome = f64;
     fn ask<const N: usize>(self, pair: &Pair<f32, N>) -> f64 {
         let (g, t) = (pair.cubic(), f32::of(self.0));
         let part = g.part(t, t);
@@ -155,7 +155,7 @@ struct Looks {
     off: f64,
 }
 impl Ask for Looks {
-    type Told = [Around; 2];
+    type Outcome = [Around; 2];
     fn ask<const N: usize>(self, pair: &Pair<f32, N>) -> [Around; 2] {
         let t = f32::of((self.toi + self.off).clamp(0.0, 1.0));
         let half = (f64::from(t) - self.toi).abs();
@@ -186,7 +186,7 @@ fn a_look_that_ignores_its_time_misses_contacts() {
 /// the cubic to show.
 struct Holds;
 impl Ask for Holds {
-    type Told = [bool; 2];
+    type Outcome = [bool; 2];
     fn ask<const N: usize>(self, pair: &Pair<f32, N>) -> [bool; 2] {
         let mut told = [false; 2];
         for i in 0..8 {

@@ -11,7 +11,7 @@ use rand::{Rng, SeedableRng};
 
 /// What came of the claims: how many, how many of half the distance that are false of all of it, and a false one.
 #[derive(Default)]
-struct Told {
+struct Outcome {
     claims: u32,
     weaker: u32,
     fault: Option<String>,
@@ -33,7 +33,7 @@ fn ask<S: Grid, const N: usize>(
     (pair, plane): (&Pair<S, N>, Plane<S, N>),
     (exact, toi): (&Pair<f64, N>, Option<f64>),
     r: &mut SmallRng,
-    told: &mut Told,
+    told: &mut Outcome,
 ) {
     let scale = exact.scale / pair.scale;
     // No point of the hull is nearer than this says, but for roundings.
@@ -55,8 +55,8 @@ fn ask<S: Grid, const N: usize>(
     }
 }
 
-fn told<S: Grid>(seed: u64, vf: Plane<S, 3>, ee: Plane<S, 4>) -> Told {
-    let (mut told, mut r) = (Told::default(), SmallRng::seed_from_u64(seed));
+fn told<S: Grid>(seed: u64, vf: Plane<S, 3>, ee: Plane<S, 4>) -> Outcome {
+    let (mut told, mut r) = (Outcome::default(), SmallRng::seed_from_u64(seed));
     for Built { case, toi, .. } in built(seed, 40, 64) {
         let ([a, b, c, d], p) = (points::<f64>(&case), Params::new(0.0));
         match case.features {
@@ -74,7 +74,7 @@ fn told<S: Grid>(seed: u64, vf: Plane<S, 3>, ee: Plane<S, 4>) -> Told {
     told
 }
 
-fn judged(name: &str, told: Told) {
+fn judged(name: &str, told: Outcome) {
     println!("{name}: {} claims; {} would be false of twice the distance", told.claims, told.weaker);
     assert_eq!(told.fault, None, "{name}");
     assert!(told.claims > 1_000, "{name}: {}", told.claims);

@@ -3,9 +3,9 @@
 
 use crate::case;
 use crate::truth::queries::folders;
-use nearmiss_lab::extremes::MOTIONS;
 use nearmiss_lab::oracle::{Toi, first_contact, first_contact_until};
 use nearmiss_lab::pairs::built::{FAMILIES, REACH_F64, motion};
+use nearmiss_lab::robustness::MOTIONS;
 use nearmiss_lab::{Case, Features};
 use rand::SeedableRng;
 use rand::rngs::SmallRng;

@@ -10,7 +10,7 @@ pub fn comb(teeth: i64, length: i64) -> Vec<Flat> {
     back.into_iter().chain((0..teeth).rev().flat_map(tooth)).collect()
 }
 
-/// A corridor that winds inward by right angles.
+/// A pipeline that winds inward by right angles.
 pub fn spiral(turns: i64) -> Vec<Flat> {
     let size = 4 * turns + 8;
     let corner = |k: i64, inset: i64| {

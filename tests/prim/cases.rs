@@ -6,8 +6,8 @@ use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::adjacent::Shared;
 use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};
 use nearmiss_kernels::prim::tri_tri::meets_exactly;
-use nearmiss_lab::extremes::{MOTIONS, PATCH, PATCH_FACES, TRIANGLES};
 use nearmiss_lab::oracle::{Triangle, triangles_meet};
+use nearmiss_lab::robustness::{MOTIONS, PATCH, PATCH_FACES, TRIANGLES};
 
 #[test]
 fn reported_triangles() {

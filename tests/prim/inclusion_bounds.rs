@@ -120,7 +120,7 @@ fn corners_err_less_than_their_bound() {
     assert!(corners(&mut r, edges, 4.0) > 1.0, "a quarter of the bound must be noticed");
 }
 
-/// How many of random shadows with a known zero lose it, when their corners are wrong by up to `bound` and the cut
+/// How many of random projections with a known zero lose it, when their corners are wrong by up to `bound` and the cut
 /// allows for `allowed` of it.
 fn lost<S: Grid>(r: &mut SmallRng, allowed: f64) -> u32 {
     let mut lost = 0;
@@ -139,7 +139,7 @@ fn lost<S: Grid>(r: &mut SmallRng, allowed: f64) -> u32 {
         let mut cuts = Cuts::none();
         // Room for the rounding of the input itself.
         let bound = S::of(allowed * (bound + 4.0 * S::U.wide()));
-        let kept = cuts.shadow(&s, bound, S::ZERO, 9);
+        let kept = cuts.projection(&s, bound, S::ZERO, 9);
         let [low, high] = cuts.parts();
         let inside = (0..3).all(|k| low[k].wide() <= x[k] + 1e-12 && x[k] <= 1.0 - high[k].wide() + 1e-12);
         lost += (!kept || !inside) as u32;

@@ -6,7 +6,7 @@ use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::cubic::Moving;
 use nearmiss_kernels::prim::inclusion::{Params, Verdict};
 use nearmiss_lab::Features;
-use nearmiss_lab::extremes::{Question, questions};
+use nearmiss_lab::robustness::{Question, questions};
 use rand::Rng;
 
 type Four = [[f64; 3]; 4];

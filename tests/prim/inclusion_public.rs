@@ -6,7 +6,7 @@ use crate::queries::folders;
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::{Moving, ee_apart, ee_toi, vf_apart, vf_toi};
 use nearmiss_kernels::prim::inclusion::{Edges, Face, Params, Verdict};
-use nearmiss_lab::extremes::MOTIONS;
+use nearmiss_lab::robustness::MOTIONS;
 use std::collections::HashSet;
 use std::hint::black_box;
 use std::time::Instant;

@@ -182,7 +182,7 @@ fn ends_are_a_complete_cut() {
         [(1, 1, 1.0), (2, 1, 1.0), (1, 23, 5.0), (30, 23, 2.5), (40, 9, 0.5), (25, 26, 30.0)]
     {
         let (one, other) = (tree(leaves, length), tree(others, 2.0 * length));
-        for device in [engine()].into_iter().chain(ORDERS.map(microscope)) {
+        for device in [engine()].into_iter().chain(ORDERS.map(sanitizer)) {
             for rounds in [Some(1), Some(2), Some(4), Some(400), None] {
                 for (second, own) in [(&one, true), (&other, false)] {
                     let left = run(&device, [&one.0, &second.0], own, rounds);

@@ -9,13 +9,13 @@ fn crowds() -> [Vec<Body>; 2] {
     [vec![soup()], vec![scene::draped(200).expect("a scene"), soup()]]
 }
 
-/// The traversal on the engine and under a microscope finds what a walk a leaf does; its figures there.
+/// The traversal on the engine and under a sanitizer finds what a walk a leaf does; its figures there.
 fn same(bodies: &[Body], traversal: Traversal) -> Contacts {
     let truth = truth(bodies, Motion::Discrete);
     let (print, contacts) = found(engine(), bodies, by(traversal, Motion::Discrete));
     assert_eq!(print, truth, "{traversal:?}");
     let order = ORDERS[contacts.steps as usize % ORDERS.len()];
-    let (print, seen) = found(microscope(order), bodies, by(traversal, Motion::Discrete));
+    let (print, seen) = found(sanitizer(order), bodies, by(traversal, Motion::Discrete));
     assert_eq!(print, truth, "{traversal:?}, {order:?}");
     assert_eq!(contacts.steps, seen.steps, "the work is the same in any order");
     seen
@@ -76,12 +76,12 @@ fn segments_that_are_too_short_grow() {
     for bodies in crowds() {
         let reruns = |traversal| {
             let truth = truth(&bodies, Motion::Discrete);
-            for device in [engine(), microscope(ORDERS[2])] {
+            for device in [engine(), sanitizer(ORDERS[2])] {
                 let query = by(traversal, Motion::Discrete);
                 assert_eq!(found(device, &bodies, query).0, truth, "{traversal:?}");
             }
             let mut session =
-                Session::new(microscope(ORDERS[0]), bodies.clone(), by(traversal, Motion::Discrete))
+                Session::new(sanitizer(ORDERS[0]), bodies.clone(), by(traversal, Motion::Discrete))
                     .expect("a session");
             session.detect().expect("an answer");
             session.reruns()
@@ -116,7 +116,7 @@ fn any_share_of_idle_queues() {
                 let [never, at_once] = [(1, 1), (0, 1)].map(|idle| {
                     let shape = QueueShape { idle, patience, cores: Some(6), ..shape };
                     same(&bodies, Traversal::Queue(shape));
-                    found(microscope(ORDERS[1]), &bodies, by(Traversal::Queue(shape), Motion::Discrete))
+                    found(sanitizer(ORDERS[1]), &bodies, by(Traversal::Queue(shape), Motion::Discrete))
                         .1
                         .queues
                 });
@@ -145,7 +145,7 @@ fn blocks_that_interleave_lose_nothing() {
             ];
             for traversal in all {
                 let device =
-                    Emulator::new(Mode::Microscope(ORDERS[2]), None).expect("threads").with_interleave(seed);
+                    Emulator::new(Mode::Sanitizer(ORDERS[2]), None).expect("threads").with_interleave(seed);
                 let (print, contacts) =
                     found(Device::emulator(device), &bodies, by(traversal, Motion::Discrete));
                 assert_eq!(print, truth, "{traversal:?}, {seed}");
@@ -224,7 +224,7 @@ fn fewer_rounds_planned_than_needed_are_noticed() {
         patience: 0,
         ..QueueShape::native()
     };
-    for (device, watched) in [(engine(), false), (microscope(ORDERS[1]), true)] {
+    for (device, watched) in [(engine(), false), (sanitizer(ORDERS[1]), true)] {
         let query = by(Traversal::Queue(shape), Motion::Discrete);
         let mut session =
             Session::new(device, vec![support::still(&apart, &faces)], query).expect("a session");
@@ -236,7 +236,7 @@ fn fewer_rounds_planned_than_needed_are_noticed() {
         assert_eq!(many.len(), 100 * 99 / 2);
         let reruns = session.reruns();
         assert_eq!(session.detect().expect("an answer").hash(), many.hash());
-        // Under the microscope the same frame takes the same rounds; elsewhere blocks run dry sooner or later.
+        // Under the sanitizer the same frame takes the same rounds; elsewhere blocks run dry sooner or later.
         if watched {
             assert!(many.queues.rounds > few + 2 && reruns > 0, "{few}, {:?}", many.queues);
             assert_eq!(session.reruns(), reruns, "now the plan is long enough");

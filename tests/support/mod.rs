@@ -30,9 +30,9 @@ pub fn engine() -> Device {
     Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"))
 }
 
-/// A microscope in that order.
-pub fn microscope(order: Order) -> Device {
-    Device::emulator(Emulator::new(Mode::Microscope(order), None).expect("threads"))
+/// A sanitizer in that order.
+pub fn sanitizer(order: Order) -> Device {
+    Device::emulator(Emulator::new(Mode::Sanitizer(order), None).expect("threads"))
 }
 
 /// Every order that the tests run.
@@ -117,13 +117,13 @@ fn card() -> Device {
 }
 
 /// Every machine that a test must not be able to tell apart: the engine on all threads and on one, with other blocks
-/// than usual, the microscope in each order, and the card.
+/// than usual, the sanitizer in each order, and the card.
 pub fn machines() -> Vec<Device> {
     let emulator = |mode, threads| Emulator::new(mode, threads).expect("threads");
     let mut all = vec![emulator(Mode::Engine, None), emulator(Mode::Engine, Some(1))];
     all.extend([1, 7, 33, 1024].map(|lanes| emulator(Mode::Engine, None).with_lanes(lanes)));
-    all.extend(ORDERS.map(|order| emulator(Mode::Microscope(order), None)));
-    all.push(emulator(Mode::Microscope(ORDERS[2]), None).with_lanes(32));
+    all.extend(ORDERS.map(|order| emulator(Mode::Sanitizer(order), None)));
+    all.push(emulator(Mode::Sanitizer(ORDERS[2]), None).with_lanes(32));
     let machines = all.into_iter().map(Device::emulator);
     #[cfg(feature = "cuda")]
     let machines = machines.chain([card()]);

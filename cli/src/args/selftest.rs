@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 #[derive(Args)]
 pub struct SelftestArgs {
-    /// Which machine to compare with the CPU's microscope and engine.
+    /// Which machine to compare with the CPU's sanitizer and engine.
     #[arg(long, value_parser = choice::<Backend>(), default_value_t)]
     pub backend: Backend,
     /// Triangles of the larger scenes, about.

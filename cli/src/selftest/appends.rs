@@ -6,9 +6,9 @@
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::query::{Motion, Query, Solver};
+use nearmiss_lab::accuracy::triangles::{SIDES, on_grid};
 use nearmiss_lab::pairs::built::built;
-use nearmiss_lab::pairs::{Answers, How, Stored, TriangleAnswers, ask, ask_triangles};
-use nearmiss_lab::trade::triangles::{SIDES, on_grid};
+use nearmiss_lab::pairs::{Answers, Options, Stored, TriangleAnswers, ask, ask_triangles};
 use rand::SeedableRng;
 use rand::rngs::SmallRng;
 
@@ -75,7 +75,7 @@ pub fn compare(machine: &Device, engine: &Device) -> Result<Report, Error> {
     }
     let cases: Vec<_> = built(1, BUILT.0, BUILT.1).into_iter().map(|built| built.case).collect();
     for (solver, stored) in solvers(Motion::Continuous).flat_map(|s| [(s, Stored::F32), (s, Stored::F64)]) {
-        let how = How { filters: true, stored, ..How::default() };
+        let how = Options { filters: true, stored, ..Options::default() };
         let cases: Vec<_> =
             cases.iter().copied().filter(|case| stored == Stored::F64 || case.fits_f32()).collect();
         let query = by(Motion::Continuous, solver);
@@ -100,7 +100,7 @@ pub fn compare(machine: &Device, engine: &Device) -> Result<Report, Error> {
 mod tests {
     use super::*;
     use nearmiss::contacts::Status;
-    use nearmiss_lab::pairs::Met;
+    use nearmiss_lab::pairs::Outcome;
 
     #[test]
     fn what_is_lost_or_doubled_is_named() {
@@ -120,7 +120,7 @@ mod tests {
         assert_eq!(fault_in_motion(&truth, &truth), None);
         let less = Answers { rejected: [3, 3], ..truth.clone() };
         assert!(fault_in_motion(&less, &truth).is_some());
-        let met = Met { status: Status::Certified, toi: 0.5, toi_hi: 0.5, exhausted: false, boxes: 0 };
+        let met = Outcome { status: Status::Certified, toi: 0.5, toi_hi: 0.5, exhausted: false, boxes: 0 };
         let other = Answers { verdicts: vec![Some(met)], ..truth.clone() };
         assert!(fault_in_motion(&other, &truth).is_some_and(|fault| fault == "1 verdicts differ"));
     }

@@ -207,10 +207,10 @@ mod tests {
             CUDA_ERROR_ECC_UNCORRECTABLE,
             CUDA_ERROR_UNKNOWN,
         ] {
-            let error = refused("narrow_sift_f32")(Refusal(code as u32));
+            let error = refused("narrow_features_f32")(Refusal(code as u32));
             assert!(matches!(error, Error::Device { .. }) && error.exit_code() == 4, "{error:?}");
             let text = error.to_string();
-            assert!(text.starts_with("narrow_sift_f32: ") && text.contains("--backend cpu"), "{text}");
+            assert!(text.starts_with("narrow_features_f32: ") && text.contains("--backend cpu"), "{text}");
         }
         let memory = refused("loading the kernels")(Refusal::OUT_OF_MEMORY);
         assert!(matches!(memory, Error::Room { .. }) && memory.exit_code() == 4, "{memory:?}");

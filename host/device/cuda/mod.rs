@@ -227,7 +227,7 @@ impl Cuda {
     }
 
     /// A point in the stream.
-    pub fn mark(&self) -> Result<Event, Error> {
+    pub fn event(&self) -> Result<Event, Error> {
         let card = self.bind()?;
         let event = stream::Event::new(&self.context, &card).map_err(refused("making an event"))?;
         event.record(&card, &self.stream).map_err(refused("recording an event"))?;

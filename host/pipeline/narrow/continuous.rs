@@ -1,17 +1,17 @@
 //! Features in motion: their lists, and the launches from triangle pairs to contacts.
 
 use super::rungs::Rungs;
-use super::{Given, Step};
+use super::{NarrowContext, Step};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
-use crate::pipeline::blunt::{self, Blunt};
+use crate::pipeline::below_precision::{self, BelowPrecision};
 use crate::pipeline::launch;
 use crate::pipeline::layout::Layout;
 use crate::pipeline::order::{self, Order};
 use crate::pipeline::precision::Precision;
-use crate::pipeline::room::{Growing, List, Tally};
+use crate::pipeline::room::{Counter, GrowableOutput, List};
 use crate::query::{Motion, Query, Solver};
-use nearmiss_kernels::abi::{Facet, Hit, Pair, RejectArgs, SiftArgs, SolveArgs, Span, counter};
+use nearmiss_kernels::abi::{CullArgs, Facet, FeaturesArgs, Hit, Pair, SolveArgs, Span, counter};
 
 /// How many entries the lists of a continuous query have room for at first: vertex/face, edge/edge.
 pub struct Rooms {
@@ -41,9 +41,9 @@ pub struct Continuous {
     /// What certified solvers climb.
     rungs: Rungs,
     /// Hits that are not certain, those whose budget ended, those of both, and those too large for the tolerance.
-    tallies: [Tally; 4],
-    /// Whether pairs may be too large for the tolerance: see [`Blunt`].
-    pub blunt: Option<Blunt>,
+    counters_of: [Counter; 4],
+    /// Whether pairs may be too large for the tolerance: see [`BelowPrecision`].
+    pub below_precision: Option<BelowPrecision>,
     /// The smallest toi, where only that is asked for.
     pub earliest: Option<Buffer<u64>>,
     /// All contacts in order, where the device orders them.
@@ -76,9 +76,14 @@ impl Continuous {
             vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, hits[0])?,
             ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, hits[1])?,
             rungs: Rungs::new(device, &query, rooms.left)?,
-            tallies: [counter::UNRESOLVED, counter::ENDED, counter::ENDED_UNRESOLVED, counter::BLUNT]
-                .map(Tally),
-            blunt: None,
+            counters_of: [
+                counter::UNRESOLVED,
+                counter::ENDED,
+                counter::ENDED_UNRESOLVED,
+                counter::BELOW_PRECISION,
+            ]
+            .map(Counter),
+            below_precision: None,
             earliest: earliest.then(|| device.buffer(1)).transpose()?,
             ordered: (device.is_card() && !earliest)
                 .then(|| Order::new(device, layout, order::turn(layout), hits[0] / 4))
@@ -89,25 +94,29 @@ impl Continuous {
     /// The steps, in their order. With a separation there is nothing that signs could reject.
     pub fn steps(&self) -> &'static [Step] {
         match self.survivors {
-            Some(_) => &[Step::Sift, Step::Reject, Step::Solve],
-            None => &[Step::Sift, Step::Solve],
+            Some(_) => &[Step::Features, Step::Cull, Step::Solve],
+            None => &[Step::Features, Step::Solve],
         }
     }
 
     /// The lists that a step fills.
-    pub fn lists(&mut self, step: Step) -> Vec<&mut dyn Growing> {
+    pub fn lists(&mut self, step: Step) -> Vec<&mut dyn GrowableOutput> {
         match step {
-            Step::Sift => self.candidates.iter_mut().map(|list| list as &mut dyn Growing).collect(),
-            Step::Reject => {
-                self.survivors.iter_mut().flatten().map(|list| list as &mut dyn Growing).collect()
+            Step::Features => {
+                self.candidates.iter_mut().map(|list| list as &mut dyn GrowableOutput).collect()
+            }
+            Step::Cull => {
+                self.survivors.iter_mut().flatten().map(|list| list as &mut dyn GrowableOutput).collect()
             }
             Step::Solve => {
-                let mut lists: Vec<&mut dyn Growing> = vec![&mut self.vf_hits, &mut self.ee_hits];
-                lists.extend(self.tallies.iter_mut().map(|tally| tally as &mut dyn Growing));
+                let mut lists: Vec<&mut dyn GrowableOutput> = vec![&mut self.vf_hits, &mut self.ee_hits];
+                lists.extend(self.counters_of.iter_mut().map(|tally| tally as &mut dyn GrowableOutput));
                 lists.extend(self.rungs.lists());
                 lists
             }
-            Step::Order => self.ordered.iter_mut().map(|order| &mut order.list as &mut dyn Growing).collect(),
+            Step::Order => {
+                self.ordered.iter_mut().map(|order| &mut order.list as &mut dyn GrowableOutput).collect()
+            }
             Step::Traverse | Step::Decide => Vec::new(),
         }
     }
@@ -128,7 +137,7 @@ impl Continuous {
         self.survivors.as_ref().unwrap_or(&self.candidates).each_ref()
     }
 
-    /// Puts pairs where a step would leave them, vertex/face and edge/edge: [`Step::Sift`] candidates, [`Step::Reject`]
+    /// Puts pairs where a step would leave them, vertex/face and edge/edge: [`Step::Features`] candidates, [`Step::Cull`]
     /// those that may meet, or candidates where there is no such step. The counters that say how many they are.
     ///
     /// # Errors
@@ -138,7 +147,7 @@ impl Continuous {
     /// When there are more than the lists have room for: a fault of the caller.
     pub fn give(&mut self, step: Step, [vf, ee]: [&[Pair]; 2]) -> Result<[(u32, u64); 2], Error> {
         let [vf_list, ee_list] = match (step, &mut self.survivors) {
-            (Step::Reject, Some(lists)) => lists.each_mut(),
+            (Step::Cull, Some(lists)) => lists.each_mut(),
             _ => self.candidates.each_mut(),
         };
         Ok([vf_list.put(vf)?, ee_list.put(ee)?])
@@ -148,18 +157,18 @@ impl Continuous {
     ///
     /// # Errors
     /// Those of the device.
-    pub fn run<R: Precision>(&mut self, step: Step, given: &Given<R>) -> Result<(), Error> {
+    pub fn run<R: Precision>(&mut self, step: Step, given: &NarrowContext<R>) -> Result<(), Error> {
         match step {
-            Step::Sift => self.sift(given),
-            Step::Reject => self.reject(given),
+            Step::Features => self.features(given),
+            Step::Cull => self.cull(given),
             Step::Order => self.order(given),
             _ => self.solve(given),
         }
     }
 
-    fn sift<R: Precision>(&self, given: &Given<R>) -> Result<(), Error> {
+    fn features<R: Precision>(&self, given: &NarrowContext<R>) -> Result<(), Error> {
         let [vf, ee] = &self.candidates;
-        let args = SiftArgs {
+        let args = FeaturesArgs {
             frames: given.frames,
             facets: self.facets.span(),
             pairs: given.pairs,
@@ -168,12 +177,12 @@ impl Continuous {
             counters: given.counters,
             gap: given.query.gap(),
         };
-        launch::striding::<R::Sift>(given.device, given.pairs.len() as usize, &args)
+        launch::striding::<R::Features>(given.device, given.pairs.len() as usize, &args)
     }
 
-    fn reject<R: Precision>(&self, given: &Given<R>) -> Result<(), Error> {
+    fn cull<R: Precision>(&self, given: &NarrowContext<R>) -> Result<(), Error> {
         let ([vf, ee], Some([may_vf, may_ee])) = (&self.candidates, &self.survivors) else { return Ok(()) };
-        let args = RejectArgs {
+        let args = CullArgs {
             frames: given.frames,
             faces: given.faces,
             edges: self.edges.span(),
@@ -184,17 +193,17 @@ impl Continuous {
             counters: given.counters,
             params: given.query.params(),
         };
-        launch::striding::<R::Reject>(given.device, vf.room() + ee.room(), &args)
+        launch::striding::<R::Cull>(given.device, vf.room() + ee.room(), &args)
     }
 
-    fn order<R: Precision>(&mut self, given: &Given<R>) -> Result<(), Error> {
+    fn order<R: Precision>(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
         match &mut self.ordered {
             None => Ok(()),
             Some(order) => order.run(given.device, &self.vf_hits, Some(&self.ee_hits), given.counters),
         }
     }
 
-    fn solve<R: Precision>(&mut self, given: &Given<R>) -> Result<(), Error> {
+    fn solve<R: Precision>(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
         if let Some(earliest) = &mut self.earliest {
             earliest.write(&[u64::MAX])?;
         }
@@ -204,7 +213,11 @@ impl Continuous {
             let hits = [&self.vf_hits, &self.ee_hits];
             let earliest = self.earliest.as_ref().map_or(Span::EMPTY, Buffer::span);
             self.rungs.climb(given, self.edges.span(), ([vf, ee], hits, earliest))?;
-            return blunt::count(self.blunt, (self.edges.span(), &self.vf_hits, &self.ee_hits), given);
+            return below_precision::count(
+                self.below_precision,
+                (self.edges.span(), &self.vf_hits, &self.ee_hits),
+                given,
+            );
         }
         let args = |survivors: &List<Pair>, hits: &List<Hit>| SolveArgs {
             frames: given.frames,

@@ -1,11 +1,11 @@
 //! The ladder of certified solvers: which rungs a query has, the lists between them, their launches.
 
-use super::Given;
+use super::NarrowContext;
 use crate::device::Device;
 use crate::error::Error;
 use crate::pipeline::launch;
 use crate::pipeline::precision::Precision;
-use crate::pipeline::room::{Growing, List};
+use crate::pipeline::room::{GrowableOutput, List};
 use crate::query::{Query, Solver};
 use nearmiss_kernels::abi::{EVERYTHING, Hit, Listed, Pair, RungArgs, Span, counter};
 use nearmiss_kernels::entry::Entry;
@@ -94,8 +94,8 @@ impl Rungs {
     }
 
     /// The lists that the rungs fill.
-    pub fn lists(&mut self) -> impl Iterator<Item = &mut dyn Growing> {
-        self.left.iter_mut().flatten().map(|list| list as &mut dyn Growing)
+    pub fn lists(&mut self) -> impl Iterator<Item = &mut dyn GrowableOutput> {
+        self.left.iter_mut().flatten().map(|list| list as &mut dyn GrowableOutput)
     }
 
     /// The lists, with names.
@@ -112,7 +112,7 @@ impl Rungs {
     /// Those of the device.
     pub fn climb<R: Precision>(
         &self,
-        given: &Given<R>,
+        given: &NarrowContext<R>,
         edges: Span<[u32; 2]>,
         (asked, hits, earliest): ([&List<Pair>; 2], [&List<Hit>; 2], Span<u64>),
     ) -> Result<(), Error> {

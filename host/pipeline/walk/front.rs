@@ -1,18 +1,18 @@
 //! A front of pairs of nodes, kept from frame to frame.
 
 use super::queue::Queue;
-use super::{Walk, Walked};
+use super::{Walk, WalkContext};
 use crate::device::Device;
 use crate::error::Error;
 use crate::pipeline::launch;
-use crate::pipeline::room::{Growing, List};
+use crate::pipeline::room::{GrowableOutput, List};
 use crate::pipeline::volumes::Kernels;
 use crate::query::FrontShape;
 use nearmiss_kernels::abi::{FRONT, FrontArgs, PRUNE, Pair, counter};
 
 /// Pairs of the front a triangle for which there is room at first: cloth at rest has 30, swept over a step 100.
 const PAIRS_A_TRIANGLE: usize = 48;
-/// Frames without a front after one that did not pay even when it was new.
+/// Positions without a front after one that did not pay even when it was new.
 const REST: u32 = 8;
 
 /// See [`crate::query::Traversal::Front`].
@@ -25,7 +25,7 @@ pub struct Front {
     /// Where this one ends.
     ends: List<Pair>,
     state: State,
-    /// Frames since the front was last pruned.
+    /// Positions since the front was last pruned.
     age: u32,
     /// Overlap tests of the last descent from the roots.
     from_roots: u64,
@@ -76,12 +76,12 @@ impl Front {
 }
 
 impl<V: Kernels> Walk<V> for Front {
-    fn launch(&mut self, given: &Walked<V>) -> Result<(), Error> {
+    fn launch(&mut self, given: &WalkContext<V>) -> Result<(), Error> {
         if let State::Resting(_) = self.state {
             return self.queue.launch(given);
         }
         let flags = given.flags | FRONT;
-        let given = Walked { ends: self.ends.span(), flags, ..*given };
+        let given = WalkContext { ends: self.ends.span(), flags, ..*given };
         let State::Kept { count, .. } = self.state else { return self.queue.launch(&given) };
         let (queries, target) = (&given.bodies[0], &given.bodies[given.bodies.len() - 1]);
         let blocks = given.device.blocks_striding::<V::Front>(count as usize);
@@ -101,7 +101,7 @@ impl<V: Kernels> Walk<V> for Front {
         })
     }
 
-    fn lists(&mut self) -> Vec<&mut dyn Growing> {
+    fn lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
         let mut lists = Walk::<V>::lists(&mut self.queue);
         lists.push(&mut self.ends);
         lists
@@ -153,7 +153,7 @@ impl<V: Kernels> Walk<V> for Front {
         self.dropped
     }
 
-    fn forget(&mut self) {
+    fn invalidate(&mut self) {
         self.state = State::New;
     }
 }

@@ -6,7 +6,7 @@ mod queue;
 mod segments;
 mod steal;
 
-use super::room::Growing;
+use super::room::GrowableOutput;
 use super::tree::Tree;
 use super::volumes::{Kernels, Volumes};
 use crate::device::Device;
@@ -20,7 +20,7 @@ use queue::Queue;
 use steal::Steal;
 
 /// What a walk is given: the machine, one body or two, and where candidates go.
-pub struct Walked<'a, V> {
+pub struct WalkContext<'a, V> {
     /// The machine.
     pub device: &'a Device,
     /// A tree and its volumes, one a body.
@@ -37,7 +37,7 @@ pub struct Walked<'a, V> {
     pub flags: u32,
 }
 
-impl<V: Kernels> Walked<'_, V> {
+impl<V: Kernels> WalkContext<'_, V> {
     /// What a walk by pairs of nodes is told, with queues of `local` units on chip.
     fn pair_args(&self, local: u32) -> PairArgs<V> {
         let (queries, target) = (&self.bodies[0], &self.bodies[self.bodies.len() - 1]);
@@ -66,10 +66,10 @@ pub trait Walk<V>: Send {
     ///
     /// # Errors
     /// Those of the device.
-    fn launch(&mut self, given: &Walked<V>) -> Result<(), Error>;
+    fn launch(&mut self, given: &WalkContext<V>) -> Result<(), Error>;
 
     /// Its own lists, which may turn out too short: then they grow and it is launched again.
-    fn lists(&mut self) -> Vec<&mut dyn Growing> {
+    fn lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
         Vec::new()
     }
 
@@ -87,7 +87,7 @@ pub trait Walk<V>: Send {
     }
 
     /// The trees were built anew: what was kept is worth nothing.
-    fn forget(&mut self) {}
+    fn invalidate(&mut self) {}
 
     /// Milliseconds that the last launch spent on balancing; waits for it.
     ///

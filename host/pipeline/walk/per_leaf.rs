@@ -1,6 +1,6 @@
 //! A walk a leaf, then rounds of what longer walks left over.
 
-use super::{Walk, Walked};
+use super::{Walk, WalkContext};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::launch;
@@ -27,7 +27,7 @@ impl PerLeaf {
 }
 
 impl<V: Kernels> Walk<V> for PerLeaf {
-    fn launch(&mut self, given: &Walked<V>) -> Result<(), Error> {
+    fn launch(&mut self, given: &WalkContext<V>) -> Result<(), Error> {
         let (queries, target) = (&given.bodies[0], &given.bodies[given.bodies.len() - 1]);
         let device = given.device;
         let mut args = TraverseArgs {

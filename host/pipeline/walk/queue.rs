@@ -1,11 +1,11 @@
 //! Rounds of work queues, until nothing is left.
 
 use super::segments::Segments;
-use super::{Walk, Walked, resident};
-use crate::device::{Buffer, Device, Mark};
+use super::{Walk, WalkContext, resident};
+use crate::device::{Buffer, Device, Event};
 use crate::error::Error;
 use crate::pipeline::launch;
-use crate::pipeline::room::Growing;
+use crate::pipeline::room::GrowableOutput;
 use crate::pipeline::volumes::Kernels;
 use crate::query::{Balance, QueueShape};
 use nearmiss_kernels::abi::{BalanceArgs, LAST, Pair, QueueArgs, START, Span, counter};
@@ -33,7 +33,7 @@ pub struct Queue {
     /// Copy: where each queue's units begin among all.
     starts: Buffer<u64>,
     plan: Plan,
-    balances: Vec<[Mark; 2]>,
+    balances: Vec<[Event; 2]>,
 }
 
 /// How many rounds to launch, from the roots and from a seed; `None`: look.
@@ -51,15 +51,15 @@ impl Plan {
     }
 }
 
-impl Growing for Plan {
+impl GrowableOutput for Plan {
     fn counter(&self) -> u32 {
         counter::UNFINISHED
     }
-    fn is_short(&self, counters: &[u64]) -> bool {
+    fn has_overflowed(&self, counters: &[u64]) -> bool {
         counters[counter::UNFINISHED as usize] > 0
     }
     fn grow(&mut self, _: &Device, counters: &[u64]) -> Result<bool, Error> {
-        let short = self.is_short(counters);
+        let short = self.has_overflowed(counters);
         if short {
             *self.of_last() = None;
         }
@@ -94,7 +94,7 @@ impl Queue {
     /// Launches a round that reads copy `from`.
     fn round<V: Kernels>(
         &self,
-        given: &Walked<V>,
+        given: &WalkContext<V>,
         from: usize,
         (round, flags): (u32, u32),
     ) -> Result<(), Error> {
@@ -129,7 +129,7 @@ impl Queue {
     }
 
     /// Rounds with a balance between them, until the host sees that nothing is left.
-    fn by_copy<V: Kernels>(&mut self, given: &Walked<V>) -> Result<(), Error> {
+    fn by_copy<V: Kernels>(&mut self, given: &WalkContext<V>) -> Result<(), Error> {
         let (mut from, mut flags) = (0, START);
         loop {
             self.idle.clear()?;
@@ -144,7 +144,7 @@ impl Queue {
             }
             let nearly_full = most + self.shape.local as u64 > self.units.len() as u64;
             if nearly_full || counts.iter().any(|&count| count < self.shape.take as u64) {
-                let before = given.device.mark()?;
+                let before = given.device.event()?;
                 launch::blocks::<balance_copy>(
                     given.device,
                     1,
@@ -159,7 +159,7 @@ impl Queue {
                         segment: self.units.len(),
                     },
                 )?;
-                self.balances.push([before, given.device.mark()?]);
+                self.balances.push([before, given.device.event()?]);
             } else {
                 from = to;
             }
@@ -168,7 +168,7 @@ impl Queue {
 
     /// Rounds that share one list: as many as are planned, or until the host sees that nothing is left. They begin with
     /// the roots, or with the units that `seed` writes to the list and counts.
-    fn by_view<V: Kernels>(&mut self, given: &Walked<V>, seed: Option<Seed>) -> Result<(), Error> {
+    fn by_view<V: Kernels>(&mut self, given: &WalkContext<V>, seed: Option<Seed>) -> Result<(), Error> {
         let first = if seed.is_some() { 0 } else { START };
         let begin = |queue: &mut Self| -> Result<(), Error> {
             queue.counts[0].clear()?;
@@ -205,7 +205,7 @@ impl Queue {
     ///
     /// # Errors
     /// Those of the device.
-    pub fn launch_from<V: Kernels>(&mut self, given: &Walked<V>, seed: Seed) -> Result<(), Error> {
+    pub fn launch_from<V: Kernels>(&mut self, given: &WalkContext<V>, seed: Seed) -> Result<(), Error> {
         self.by_view(given, Some(seed))
     }
 }
@@ -214,7 +214,7 @@ impl Queue {
 pub type Seed<'a> = &'a dyn Fn(Span<Pair>, Span<u64>) -> Result<(), Error>;
 
 impl<V: Kernels> Walk<V> for Queue {
-    fn launch(&mut self, given: &Walked<V>) -> Result<(), Error> {
+    fn launch(&mut self, given: &WalkContext<V>) -> Result<(), Error> {
         self.balances.clear();
         match self.shape.balance {
             Balance::Copy => self.by_copy(given),
@@ -222,7 +222,7 @@ impl<V: Kernels> Walk<V> for Queue {
         }
     }
 
-    fn lists(&mut self) -> Vec<&mut dyn Growing> {
+    fn lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
         vec![&mut self.units, &mut self.plan]
     }
 

@@ -2,7 +2,7 @@
 
 use crate::device::{Buffer, Device};
 use crate::error::Error;
-use crate::pipeline::room::{Growing, LONGEST};
+use crate::pipeline::room::{GrowableOutput, LONGEST};
 use nearmiss_kernels::abi::{Pair, Span, counter};
 
 /// `N` copies of the queues' memory, cut into segments of one length.
@@ -38,16 +38,16 @@ impl<const N: usize> Segments<N> {
     }
 }
 
-impl<const N: usize> Growing for Segments<N> {
+impl<const N: usize> GrowableOutput for Segments<N> {
     fn counter(&self) -> u32 {
         counter::QUEUED
     }
-    fn is_short(&self, counters: &[u64]) -> bool {
+    fn has_overflowed(&self, counters: &[u64]) -> bool {
         counters[counter::QUEUED as usize] > self.len as u64
     }
     /// The demand is that of a run that lost units, a lower bound: twice the length at least.
     fn grow(&mut self, device: &Device, counters: &[u64]) -> Result<bool, Error> {
-        if !self.is_short(counters) {
+        if !self.has_overflowed(counters) {
             return Ok(false);
         }
         let demand = counters[counter::QUEUED as usize];

@@ -1,11 +1,11 @@
 //! Work queues that help each other out, in one launch.
 
 use super::segments::Segments;
-use super::{Walk, Walked, resident};
+use super::{Walk, WalkContext, resident};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::launch;
-use crate::pipeline::room::Growing;
+use crate::pipeline::room::GrowableOutput;
 use crate::pipeline::volumes::Kernels;
 use crate::query::StealShape;
 use nearmiss_kernels::abi::{EAGER, Pair, StealArgs, control, pool};
@@ -50,7 +50,7 @@ impl Steal {
 }
 
 impl<V: Kernels> Walk<V> for Steal {
-    fn launch(&mut self, given: &Walked<V>) -> Result<(), Error> {
+    fn launch(&mut self, given: &WalkContext<V>) -> Result<(), Error> {
         self.control.clear()?;
         self.launches += 1;
         let args = StealArgs {
@@ -68,7 +68,7 @@ impl<V: Kernels> Walk<V> for Steal {
         launch::blocks::<V::Steal>(given.device, self.cores, &args)
     }
 
-    fn lists(&mut self) -> Vec<&mut dyn Growing> {
+    fn lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
         vec![&mut self.units]
     }
 }

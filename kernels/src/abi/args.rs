@@ -1,6 +1,6 @@
 //! One argument block for each kernel: what it is launched with, by value.
 
-use super::{Inner, Link, Merge, Motion, Node, Pair, Point, Seat, Span, Treelet, Unit};
+use super::{Inner, LeafPlace, Link, Merge, Node, Pair, Point, Span, Treelet, Unit, VertexMotion};
 use crate::bv::Axes;
 use crate::math::Real;
 use bytemuck::{Pod, Zeroable};
@@ -28,16 +28,16 @@ macro_rules! arguments {
 
 arguments! {
     /// The vertices: in motion, or still; the other is empty.
-    Frames<R: Real> {
+    Positions<R: Real> {
         /// Vertices of a discrete query.
         still: Span<Point<R>>,
         /// Vertices of a continuous query.
-        moving: Span<Motion<R>>,
+        moving: Span<VertexMotion<R>>,
     }
     /// `construct_bounds`, `construct_morton`: triangle centres, their box, their codes.
     MortonArgs<R: Real> {
         /// Positions.
-        frames: Frames<R>,
+        frames: Positions<R>,
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
         /// The body's first triangle.
@@ -103,7 +103,7 @@ arguments! {
         /// Out: the first leaf below each pair of siblings; empty where nobody asks.
         firsts: Span<u32>,
         /// Out: the leaves' places; empty where nobody asks for treelets, as the next two are.
-        seats: Span<Seat>,
+        leaf_places: Span<LeafPlace>,
         /// Out, zeroed before. For each chunk of leaves: how many leaves there are from the first on that begins a subtree of
         /// a treelet; 0 where none does.
         begins: Span<u64>,
@@ -146,7 +146,7 @@ arguments! {
     /// `fit`: the volumes of the leaves.
     FitArgs<R: Real, V: Pod> {
         /// Positions.
-        frames: Frames<R>,
+        frames: Positions<R>,
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
         /// Each leaf's node.
@@ -163,7 +163,7 @@ arguments! {
     /// `fit_groups_obb`: the oriented boxes of inner nodes of few leaves, around the points below them.
     GroupsArgs<R: Real, V: Pod> {
         /// Positions.
-        frames: Frames<R>,
+        frames: Positions<R>,
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
         /// Triangles in leaf order, counted from the body's first: the lower halves.
@@ -203,13 +203,13 @@ arguments! {
     /// `refit_treelets`: all volumes, those of the leaves too.
     TreeletsArgs<R: Real, V: Pod> {
         /// Positions.
-        frames: Frames<R>,
+        frames: Positions<R>,
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
         /// The treelets, one a block.
         treelets: Span<Treelet>,
         /// The leaves' places.
-        seats: Span<Seat>,
+        leaf_places: Span<LeafPlace>,
         /// Merges of each treelet from its first leaf's number on, by round.
         merges: Span<Merge>,
         /// Merges of the nodes that span treelets, by depth.
@@ -341,7 +341,7 @@ pub mod counter {
     /// Those of them that are neither certain contacts nor certainly none.
     pub const ENDED_UNRESOLVED: u32 = ENDS + 18;
     /// Hits too large for the tolerance.
-    pub const BLUNT: u32 = ENDS + 19;
+    pub const BELOW_PRECISION: u32 = ENDS + 19;
     /// Pairs that the discrete filter could not decide in f64 either.
     pub const UNDECIDED_WIDE: u32 = ENDS + 20;
     /// Contacts that were put into order.

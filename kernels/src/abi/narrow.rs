@@ -1,15 +1,15 @@
 //! Argument blocks of the last stage: from triangle pairs to contacts.
 
-use super::{Facet, Frames, Hit, Pair, Point, Span};
+use super::{Facet, Hit, Pair, Point, Positions, Span};
 use crate::math::Real;
 use crate::prim::inclusion::Params;
 use bytemuck::Zeroable;
 
 arguments! {
     /// `narrow_sift`: triangle pairs to vertex/face and edge/edge candidates.
-    SiftArgs<R: Real> {
+    FeaturesArgs<R: Real> {
         /// Positions.
-        frames: Frames<R>,
+        frames: Positions<R>,
         /// Every triangle's vertices and edges, and what it owns of them.
         facets: Span<Facet>,
         /// Candidate triangle pairs.
@@ -47,9 +47,9 @@ arguments! {
         pad: u32,
     }
     /// `narrow_reject`: candidates that certainly stay apart, left out.
-    RejectArgs<R: Real> {
+    CullArgs<R: Real> {
         /// Positions.
-        frames: Frames<R>,
+        frames: Positions<R>,
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
         /// End points of every edge.
@@ -70,7 +70,7 @@ arguments! {
     /// `narrow_vf`, `narrow_ee`: the first time of contact of two primitives in motion.
     SolveArgs<R: Real> {
         /// Positions.
-        frames: Frames<R>,
+        frames: Positions<R>,
         /// Vertex indices of every triangle (`narrow_vf`).
         faces: Span<[u32; 3]>,
         /// End points of every edge (`narrow_ee`).
@@ -85,9 +85,9 @@ arguments! {
         counters: Span<u64>,
     }
     /// `narrow_blunt`: hits so large that the solver's precision cannot tell as little as the tolerance.
-    BluntArgs<R: Real> {
+    BelowPrecisionArgs<R: Real> {
         /// Positions.
-        frames: Frames<R>,
+        frames: Positions<R>,
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
         /// End points of every edge.
@@ -124,7 +124,7 @@ arguments! {
     /// proof.
     RungArgs<R: Real> {
         /// Positions.
-        frames: Frames<R>,
+        frames: Positions<R>,
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
         /// End points of every edge.

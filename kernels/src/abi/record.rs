@@ -148,13 +148,13 @@ const _: () = assert!(size_of::<Treelet>() == 16);
 /// Where a leaf lies, in leaf order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C, align(8))]
-pub struct Seat {
+pub struct LeafPlace {
     /// Its node.
     pub node: u32,
     /// Its [`Link::link`].
     pub link: u32,
 }
-const _: () = assert!(size_of::<Seat>() == 8);
+const _: () = assert!(size_of::<LeafPlace>() == 8);
 
 /// An inner node whose volume is to be made of its children's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
@@ -216,19 +216,19 @@ impl<R: Real> From<Vec3<R>> for Point<R> {
 /// A vertex in motion: both ends of the step lie together, since whoever needs one needs both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
-pub struct Motion<R> {
+pub struct VertexMotion<R> {
     /// At t = 0.
     pub t0: Point<R>,
     /// At t = 1.
     pub t1: Point<R>,
 }
-const _: () = assert!(size_of::<Motion<f32>>() == 32 && size_of::<Motion<f64>>() == 64);
+const _: () = assert!(size_of::<VertexMotion<f32>>() == 32 && size_of::<VertexMotion<f64>>() == 64);
 
 // SAFETY: four scalars of R (asserted above: no padding but the named one), each Zeroable and Pod.
 unsafe impl<R: Real> Zeroable for Point<R> {}
 // SAFETY: as above.
 unsafe impl<R: Real> Pod for Point<R> {}
 // SAFETY: two Points without padding, asserted above.
-unsafe impl<R: Real> Zeroable for Motion<R> {}
+unsafe impl<R: Real> Zeroable for VertexMotion<R> {}
 // SAFETY: as above.
-unsafe impl<R: Real> Pod for Motion<R> {}
+unsafe impl<R: Real> Pod for VertexMotion<R> {}

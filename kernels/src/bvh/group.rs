@@ -1,6 +1,6 @@
 //! Nodes of few leaves, whose volume is fitted to the points below them instead of merged.
 
-use crate::abi::{Frames, Link, Span};
+use crate::abi::{Link, Positions, Span};
 use crate::bv::{Axes, Points, Volume};
 use crate::exec::Lane;
 use crate::math::{Real, Vec3};
@@ -14,11 +14,11 @@ pub fn is_fitted<V: Volume, L: Lane>(l: &L, firsts: Span<u32>, link: Link, axes:
 
 /// The corners of the triangles of neighbouring leaves: leaf by leaf, each corner at t = 0 and, when there are two
 /// frames, at t = 1.
-pub struct Below<'a, R: Real, L> {
+pub struct GroupPoints<'a, R: Real, L> {
     /// Who reads.
     pub lane: &'a L,
     /// Positions.
-    pub frames: Frames<R>,
+    pub frames: Positions<R>,
     /// Vertex indices of every triangle.
     pub faces: Span<[u32; 3]>,
     /// Triangles in leaf order, counted from `base`: the lower halves.
@@ -29,14 +29,14 @@ pub struct Below<'a, R: Real, L> {
     pub leaves: [u32; 2],
 }
 
-impl<R: Real, L: Lane> Below<'_, R, L> {
+impl<R: Real, L: Lane> GroupPoints<'_, R, L> {
     #[inline(always)]
     fn face(&self, leaf: u32) -> [u32; 3] {
         self.lane.read(self.faces, self.base + self.lane.read(self.triangles, leaf) as u32)
     }
 }
 
-impl<R: Real, L: Lane> Points<R> for Below<'_, R, L> {
+impl<R: Real, L: Lane> Points<R> for GroupPoints<'_, R, L> {
     #[inline(always)]
     fn first(&self) -> Vec3<R> {
         let vertex = self.face(self.leaves[0])[0];

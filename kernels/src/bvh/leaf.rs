@@ -1,6 +1,6 @@
 //! The volume of a leaf, as `fit` and `refit_treelets` make it.
 
-use crate::abi::{Frames, Span};
+use crate::abi::{Positions, Span};
 use crate::bv::Volume;
 use crate::exec::Lane;
 use crate::math::Real;
@@ -10,7 +10,7 @@ use crate::math::Real;
 #[inline(always)]
 pub fn volume<R: Real, V: Volume, L: Lane>(
     l: &L,
-    frames: &Frames<R>,
+    frames: &Positions<R>,
     faces: Span<[u32; 3]>,
     (triangle, grow): (u32, f32),
 ) -> V {

@@ -31,7 +31,7 @@ use core::mem::MaybeUninit;
 /// Memory is read and written by value; nobody holds a reference to what another lane can reach. Plain accesses
 /// to one word by two lanes, one of them writing, must lie in different phases (one block) or different launches
 /// (two blocks); atomic accesses, gives and takes may meet each other, but not plain ones of which one writes. The
-/// emulator's microscope checks these rules and all bounds.
+/// emulator's sanitizer checks these rules and all bounds.
 pub trait Lane {
     /// The lane's number in its block, from 0.
     fn lane(&self) -> u32;
@@ -59,9 +59,9 @@ pub trait Lane {
     /// of giving (see the [module](self)). Orders nothing by itself. Two gives of an element may meet, and a take may
     /// meet a give: then pieces of `T`'s alignment, of 8 bytes at most, are whole, and not all need be of one value.
     /// `T` is made of [whole words](whole_words), and an element is given and taken as the same `T`.
-    fn give<T: Pod>(&self, span: Span<T>, i: u32, value: T);
+    fn store_relaxed<T: Pod>(&self, span: Span<T>, i: u32, value: T);
     /// Element `i` of device memory as another block of this launch gave it: read afresh each time.
-    fn take<T: Pod>(&self, span: Span<T>, i: u32) -> T;
+    fn load_relaxed<T: Pod>(&self, span: Span<T>, i: u32) -> T;
     /// Orders what this lane gave, took and did by atomics before it against what it does after, as seen by all lanes of
     /// the launch. Atomics by themselves order nothing. Plain accesses of other blocks stay races all the same.
     fn fence(&self);

@@ -11,7 +11,7 @@ pub const ROOTS: Pair = Pair { a: ROOT, b: ROOT };
 
 /// The pairs below a unit, at most three, and what each of them is (bit k: pair k).
 #[derive(Clone, Copy)]
-pub struct Below {
+pub struct ChildPairs {
     /// The pairs.
     pub nodes: [Pair; 3],
     /// Their triangles, where both nodes are leaves; never the third.
@@ -24,9 +24,9 @@ pub struct Below {
     pub ends: u32,
 }
 
-impl Below {
+impl ChildPairs {
     /// Nothing.
-    pub const NONE: Below = Below {
+    pub const NONE: ChildPairs = ChildPairs {
         nodes: [Pair { a: 0, b: 0 }; 3],
         faces: [Pair { a: 0, b: 0 }; 2],
         units: 0,
@@ -51,8 +51,8 @@ impl Below {
 
 /// The pairs below `unit`. A leaf with itself is no pair; two roots that are leaves are the pair below themselves.
 #[inline(always)]
-pub fn below<V: Volume, L: Lane>(l: &L, to: &PairArgs<V>, unit: Pair) -> Below {
-    let mut below = Below::NONE;
+pub fn below<V: Volume, L: Lane>(l: &L, to: &PairArgs<V>, unit: Pair) -> ChildPairs {
+    let mut below = ChildPairs::NONE;
     let own = to.flags & SELF != 0;
     let (a, b) = (l.read(to.queries, unit.a), l.read(to.nodes, unit.b));
     if a.is_leaf() & b.is_leaf() {

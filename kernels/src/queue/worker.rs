@@ -2,7 +2,7 @@
 //!
 //! Sizes and places come from sums over the block, never from atomics: a block's work is the same each time.
 
-use super::pair::{Below, ROOTS, below};
+use super::pair::{ChildPairs, ROOTS, below};
 use crate::abi::{FRONT, KEEP_ADJACENT, Pair, PairArgs, Span, counter};
 use crate::bv::Volume;
 use crate::exec::{Block, Lane, Shared, Slot};
@@ -77,7 +77,7 @@ impl Places {
     }
     /// Tells the host how many units there are. For one lane.
     #[inline]
-    pub fn tell<L: Lane>(&self, l: &L, counters: Span<u64>) {
+    pub fn report<L: Lane>(&self, l: &L, counters: Span<u64>) {
         l.fetch_max(counters, counter::QUEUED, self.demand);
     }
 }
@@ -86,7 +86,7 @@ impl Places {
 pub struct Worker<B: Block> {
     queue: Shared<[u32; 2]>,
     found: Shared<[u32; 2]>,
-    below: B::Slot<Below>,
+    below: B::Slot<ChildPairs>,
     sums: B::Slot<u32>,
     kept: B::Slot<u32>,
     /// Units in the queue.
@@ -102,7 +102,7 @@ impl<B: Block> Worker<B> {
     pub fn new(b: &mut B, roots: bool) -> Self {
         let lanes = b.lanes();
         let (queue, found) = (b.shared::<[u32; 2]>(ROOM), b.shared(FOUND_A_LANE * lanes));
-        let (below, sums, kept) = (b.slot(Below::NONE), b.slot(0u32), b.slot(0u32));
+        let (below, sums, kept) = (b.slot(ChildPairs::NONE), b.slot(0u32), b.slot(0u32));
         if roots {
             b.phase(|l| {
                 if l.lane() == 0 {
@@ -171,7 +171,7 @@ impl<B: Block> Worker<B> {
         let from = self.top - taken;
         b.phase(|l| {
             let seen = if l.lane() == 0 { look(l) } else { 0 };
-            let mut found = Below::NONE;
+            let mut found = ChildPairs::NONE;
             if l.lane() < taken {
                 let [a, b] = l.get(queue, from + l.lane());
                 found = below(l, to, Pair { a, b });
@@ -206,7 +206,7 @@ impl<B: Block> Worker<B> {
                 }
             }
             if let (0, Some(places)) = (l.lane(), &places) {
-                places.tell(l, to.counters);
+                places.report(l, to.counters);
             }
         });
         self.top = from + units - spilled;

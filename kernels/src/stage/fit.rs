@@ -13,7 +13,7 @@
 
 use crate::abi::{FitArgs, GroupsArgs, Link};
 use crate::bv::{GROUP, Obb, Volume};
-use crate::bvh::group::Below;
+use crate::bvh::group::GroupPoints;
 use crate::bvh::leaf;
 use crate::exec::{Block, Lane};
 use crate::math::Real;
@@ -42,7 +42,7 @@ pub fn groups<R: Real, B: Block>(b: &mut B, a: &GroupsArgs<R, Obb>) {
         while (pair as u64) < a.pair_parents.len() {
             let (first, last) = (l.read(a.firsts, pair), l.read(a.links, 2 * pair + 1).last);
             if last - first < GROUP {
-                let points = Below {
+                let points = GroupPoints {
                     lane: l,
                     frames: a.frames,
                     faces: a.faces,

@@ -1,4 +1,4 @@
-//! The corridor: one file a stage, in the order in which data flows.
+//! The pipeline: one file a stage, in the order in which data flows.
 //!
 //! | stage | reads | writes |
 //! | --- | --- | --- |

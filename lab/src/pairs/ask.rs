@@ -1,16 +1,16 @@
 //! Features in motion.
 
 use super::lay::{AT_ONCE, check, mean_edge, topology, vertices};
-use super::{Answers, How, Met, Stored};
+use super::{Answers, Options, Outcome, Stored};
 use crate::case::Case;
 use nearmiss::contacts::Status;
 use nearmiss::device::{Buffer, Device};
 use nearmiss::error::Error;
 use nearmiss::pipeline::Layout;
-use nearmiss::pipeline::narrow::{Continuous, Given, Rooms, Step};
+use nearmiss::pipeline::narrow::{Continuous, NarrowContext, Rooms, Step};
 use nearmiss::pipeline::precision::Precision;
 use nearmiss::query::{Motion, Query};
-use nearmiss_kernels::abi::{Frames, Hit, Span, counter};
+use nearmiss_kernels::abi::{Hit, Positions, Span, counter};
 
 /// Asks every case whether its features meet, and when first: by the query's solver, tolerance and budget, with the
 /// kernels of a frame. Without a tolerance, [`Query::TOLERANCE`] of the cases' mean edge. Any number of cases; a million
@@ -19,7 +19,7 @@ use nearmiss_kernels::abi::{Frames, Hit, Span, counter};
 /// # Errors
 /// [`Error::Choice`] for a query that is not of [`Motion::Continuous`], and for coordinates that are not finite, too
 /// large, or not exact in the precision that they are to be stored in; those of the device.
-pub fn ask(device: &Device, cases: &[Case], query: &Query, how: How) -> Result<Answers, Error> {
+pub fn ask(device: &Device, cases: &[Case], query: &Query, how: Options) -> Result<Answers, Error> {
     query.check()?;
     if query.motion != Motion::Continuous {
         return Err(Error::Choice {
@@ -50,7 +50,7 @@ pub fn ask(device: &Device, cases: &[Case], query: &Query, how: How) -> Result<A
 }
 
 /// Asks as many as are asked at once.
-fn some<R: Precision>(device: &Device, cases: &[Case], query: Query, how: How) -> Result<Answers, Error> {
+fn some<R: Precision>(device: &Device, cases: &[Case], query: Query, how: Options) -> Result<Answers, Error> {
     let before = device.bytes().0;
     let (layout, [vf, ee]) = topology(cases);
     let all = [vf.len(), ee.len()];
@@ -58,7 +58,7 @@ fn some<R: Precision>(device: &Device, cases: &[Case], query: Query, how: How) -
     let candidates = if how.filters || query.is_apart() { all } else { [0, 0] };
     let rooms = Rooms { candidates, survivors: all, hits: all, left: all };
     let mut features = Continuous::new(device, &layout, query, rooms)?;
-    let first = if how.filters { Step::Sift } else { Step::Reject };
+    let first = if how.filters { Step::Features } else { Step::Cull };
     let mut counts = vec![0; counter::COUNT as usize];
     for (at, count) in features.give(first, [&vf, &ee])? {
         counts[at as usize] = count;
@@ -88,7 +88,7 @@ fn some<R: Precision>(device: &Device, cases: &[Case], query: Query, how: How) -
 struct Run<'a, R: Precision> {
     device: &'a Device,
     query: Query,
-    vertices: Buffer<nearmiss_kernels::abi::Motion<R>>,
+    vertices: Buffer<nearmiss_kernels::abi::VertexMotion<R>>,
     faces: Buffer<[u32; 3]>,
     layout: Layout,
     counters: Buffer<u64>,
@@ -103,21 +103,21 @@ impl<R: Precision> Run<'_, R> {
     /// Runs the filters, if asked for, and the solver; milliseconds of each.
     fn run(&mut self) -> Result<[f64; 2], Error> {
         self.counters.write(&self.counts)?;
-        let given = Given {
+        let given = NarrowContext {
             device: self.device,
             query: self.query,
-            frames: Frames { still: Span::EMPTY, moving: self.vertices.span() },
+            frames: Positions { still: Span::EMPTY, moving: self.vertices.span() },
             faces: self.faces.span(),
             pairs: Span::EMPTY,
             counters: self.counters.span(),
         };
-        let start = self.device.mark()?;
+        let start = self.device.event()?;
         if self.filters {
-            self.features.run(Step::Reject, &given)?;
+            self.features.run(Step::Cull, &given)?;
         }
-        let filtered = self.device.mark()?;
+        let filtered = self.device.event()?;
         self.features.run(Step::Solve, &given)?;
-        let end = self.device.mark()?;
+        let end = self.device.event()?;
         Ok([start.to(&filtered)?, filtered.to(&end)?])
     }
 
@@ -126,7 +126,7 @@ impl<R: Precision> Run<'_, R> {
         let counters = self.counters.read(counter::COUNT as usize)?;
         let certified = self.query.solver().is_certified();
         let mut verdicts = vec![None; cases];
-        let met = |hit: &Hit| Met {
+        let met = |hit: &Hit| Outcome {
             status: Status::of(certified, &hit.verdict),
             toi: hit.verdict.toi,
             toi_hi: hit.verdict.toi_hi,

@@ -7,7 +7,7 @@ use nearmiss::error::Error;
 use nearmiss::mesh::{MAX_ABS_F32, MAX_ABS_F64};
 use nearmiss::pipeline::Layout;
 use nearmiss::pipeline::precision::Precision;
-use nearmiss_kernels::abi::{Motion, Pair};
+use nearmiss_kernels::abi::{VertexMotion, Pair};
 use nearmiss_kernels::math::Vec3;
 
 /// Cases that are asked at once: half a gigabyte of device memory, and far from the end of 32 bits.
@@ -79,10 +79,10 @@ pub fn topology(cases: &[Case]) -> (Layout, [Vec<Pair>; 2]) {
 }
 
 /// The vertices of the cases, in motion.
-pub fn vertices<R: Precision>(device: &Device, cases: &[Case]) -> Result<Buffer<Motion<R>>, Error> {
+pub fn vertices<R: Precision>(device: &Device, cases: &[Case]) -> Result<Buffer<VertexMotion<R>>, Error> {
     let at = |p: [f64; 3]| Vec3(p.map(R::of)).into();
     let moving = |case: &Case| [0, 1, 2, 3].map(|i| (case.positions_t0[i], case.positions_t1[i]));
-    let all: Vec<Motion<R>> =
-        cases.iter().flat_map(moving).map(|(t0, t1)| Motion { t0: at(t0), t1: at(t1) }).collect();
+    let all: Vec<VertexMotion<R>> =
+        cases.iter().flat_map(moving).map(|(t0, t1)| VertexMotion { t0: at(t0), t1: at(t1) }).collect();
     device.upload(&all)
 }

@@ -30,7 +30,7 @@ pub enum Stored {
 
 /// How to ask, besides the query.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct How {
+pub struct Options {
     /// Whether the filters that come before the solver in a frame are run, too.
     pub filters: bool,
     /// How positions are stored.
@@ -41,7 +41,7 @@ pub struct How {
 
 /// Two features that meet, or may.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
-pub struct Met {
+pub struct Outcome {
     /// How sure that is.
     pub status: Status,
     /// First time of contact, in [0, 1]; by a certified solver not after it.
@@ -58,7 +58,7 @@ pub struct Met {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Answers {
     /// A verdict a case, in the cases' order; `None` for separated.
-    pub verdicts: Vec<Option<Met>>,
+    pub verdicts: Vec<Option<Outcome>>,
     /// Cases that the filters told apart: vertex/face, edge/edge.
     pub rejected: [u64; 2],
     /// Cases that f32 left to f64: vertex/face, edge/edge.

@@ -7,11 +7,11 @@ use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Mesh, Positions};
 use nearmiss::pipeline::Layout;
-use nearmiss::pipeline::narrow::{Given, Narrow, Step};
+use nearmiss::pipeline::narrow::{Narrow, NarrowContext, Step};
 use nearmiss::pipeline::precision::Precision;
 use nearmiss::pipeline::room::List;
 use nearmiss::query::{Motion, Query};
-use nearmiss_kernels::abi::{Frames, Pair, Point, Span, counter};
+use nearmiss_kernels::abi::{self, Pair, Point, Span, counter};
 
 /// The answers to a number of triangle pairs.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -88,17 +88,17 @@ fn some<R: Precision>(device: &Device, mesh: &Mesh, query: Query) -> Result<Tria
     // Until no list was too short.
     let (counters, ms) = loop {
         counters.write(&counts)?;
-        let given = Given {
+        let given = NarrowContext {
             device,
             query,
-            frames: Frames { still: points.span(), moving: Span::EMPTY },
+            frames: abi::Positions { still: points.span(), moving: Span::EMPTY },
             faces: faces.span(),
             pairs: list.span(),
             counters: counters.span(),
         };
-        let start = device.mark()?;
+        let start = device.event()?;
         narrow.run(Step::Decide, &given)?;
-        let ms = start.to(&device.mark()?)?;
+        let ms = start.to(&device.event()?)?;
         let counted = counters.read(counter::COUNT as usize)?;
         let mut grew = false;
         for list in narrow.lists(Step::Decide) {

@@ -2,9 +2,9 @@
 
 use super::figures::{Figure612, Figure613, Figure614, Paper};
 use super::front::FrontRow;
+use super::paper_reference::CARD;
 use super::picture::{Bar, Chart, Curve, Panel, Stack, bars, curves, stacks};
 use super::text::text;
-use super::theirs::CARD;
 use nearmiss::error::Error;
 use nearmiss::words::counted;
 use serde::Serialize;

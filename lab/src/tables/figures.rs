@@ -2,7 +2,7 @@
 
 use super::build::Built;
 use super::measure::Cell;
-use super::theirs;
+use super::paper_reference;
 use nearmiss::query::{Bv, Solver};
 use serde::Serialize;
 
@@ -26,7 +26,7 @@ pub struct Paper {
 impl Paper {
     /// Of a scene on a machine.
     pub fn new(scene: &str, triangles: usize, device: String, profile: &'static str) -> Paper {
-        let theirs = theirs::of(scene);
+        let theirs = paper_reference::of(scene);
         Paper {
             scene: scene.into(),
             model: theirs.map_or("", |row| row.model),
@@ -122,7 +122,7 @@ fn ratio(ours: f64, theirs: Option<f64>) -> Option<f64> {
 /// Figure 6.12 of one scene. A refit is of all volumes, the leaves' too. A construction ends with a tree in boxes; in
 /// another volume, as the thesis has it, it is that and then a refit in the other volume.
 pub fn figure_612(paper: &Paper, frames: usize, built: &[Built]) -> Vec<Figure612> {
-    let theirs = theirs::of(&paper.scene);
+    let theirs = paper_reference::of(&paper.scene);
     let refit = |b: &Built| b.mean.fit + b.mean.refit;
     let plain = built.iter().find(|b| b.bv == Bv::Aabb).map(|b| b.mean.construct + refit(b));
     let mut rows = Vec::new();
@@ -155,7 +155,7 @@ pub fn figure_612(paper: &Paper, frames: usize, built: &[Built]) -> Vec<Figure61
 
 /// Figure 6.13 of one scene. `differing` as [`super::agree`] gives it.
 pub fn figure_613(paper: &Paper, cells: &[Cell], differing: &[usize]) -> Vec<Figure613> {
-    let theirs = theirs::of(&paper.scene);
+    let theirs = paper_reference::of(&paper.scene);
     let row = |(cell, &differing): (&Cell, &usize)| {
         let (ours_ms, theirs_ms) = (cell.mean.total, theirs.and_then(|t| t.frame(cell.way)));
         Figure613 {

@@ -10,9 +10,9 @@ mod figures;
 mod frames;
 mod front;
 mod measure;
+mod paper_reference;
 pub(crate) mod picture;
 mod text;
-mod theirs;
 mod way;
 
 pub use agree::agree;

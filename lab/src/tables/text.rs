@@ -2,7 +2,7 @@
 
 use super::figures::{Figure612, Figure613, Figure614};
 use super::front::FrontRow;
-use super::theirs::CARD;
+use super::paper_reference::CARD;
 use std::fmt::Write;
 
 /// A figure with a caption for people.

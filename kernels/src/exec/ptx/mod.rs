@@ -3,14 +3,14 @@
 //! Shared memory is the launch's dynamic shared memory; the collectives have a few words of their own.
 
 #[cfg(target_arch = "nvptx64")]
-mod card;
-#[cfg(target_arch = "nvptx64")]
 mod coherent;
+#[cfg(target_arch = "nvptx64")]
+mod gpu;
 #[cfg(target_arch = "nvptx64")]
 mod raw;
 
 #[cfg(target_arch = "nvptx64")]
-pub use card::Card;
+pub use gpu::Gpu;
 /// Whether lanes run one after another: then one may leave out what its answer does not need. A card's lanes go side by side:
 /// what one of them needs costs all of them, and a branch around it more.
 pub const ALONE: bool = cfg!(not(target_arch = "nvptx64"));

@@ -26,7 +26,7 @@ impl<S: Grid> Image<S> {
 
     /// The corners' products with a direction, and the most that one errs; `slack` as by [`Image::slack`].
     #[inline(always)]
-    pub fn shadow(&self, d: Vec3<S>, slack: Vec3<S>) -> ([S; 8], S) {
+    pub fn projection(&self, d: Vec3<S>, slack: Vec3<S>) -> ([S; 8], S) {
         let error = d.map(S::abs).dot(slack) * S::INCLUSION_UP + S::INCLUSION_UNDERFLOW;
         (self.f.map(|x| d.dot(x)), error)
     }

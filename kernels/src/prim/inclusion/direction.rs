@@ -1,4 +1,4 @@
-//! Directions along which a box is judged, and what a shadow along one leaves of it.
+//! Directions along which a box is judged, and what a projection along one leaves of it.
 
 use super::cell::Grid;
 use crate::math::Vec3;
@@ -8,7 +8,7 @@ use crate::math::tolerance::{INCLUSION_DEEP, INCLUSION_FLAT};
 pub const DECOUPLING: usize = 3;
 
 /// A box's own directions, from how its image changes with `t`, `u` and `v`. Any is valid; these cut well: on the cross
-/// product of two changes only the third parameter has a shadow.
+/// product of two changes only the third parameter has a projection.
 pub struct Directions<S> {
     c: [Vec3<S>; 3],
     /// The normal, if the image is flat.
@@ -128,32 +128,32 @@ pub fn unit<S: Grid>(d: Vec3<S>) -> Option<Vec3<S>> {
     (most > S::INCLUSION_FAINT).then(|| d * (S::ONE / most))
 }
 
-/// A part of a range as a fraction, of which the larger is kept: no division until all shadows are taken.
+/// A part of a range as a fraction, of which the larger is kept: no division until all projections are taken.
 #[derive(Clone, Copy)]
-struct Share<S> {
+struct CutFraction<S> {
     over: S,
     under: S,
 }
 
-impl<S: Grid> Share<S> {
-    const NONE: Self = Share { over: S::ZERO, under: S::ONE };
+impl<S: Grid> CutFraction<S> {
+    const NONE: Self = CutFraction { over: S::ZERO, under: S::ONE };
 
     /// Takes `over / under` if that is more; `under` must be positive. Any share that was taken is a valid cut, so it does
     /// not matter that products round.
     #[inline(always)]
     fn take(&mut self, over: S, under: S, holds: bool) {
         if holds & (over * self.under > self.over * under) {
-            *self = Share { over, under };
+            *self = CutFraction { over, under };
         }
     }
 }
 
-/// What shadows have left of a box.
+/// What projections have left of a box.
 pub struct Cuts<S> {
     /// The parts of the ranges of `t`, `u`, `v` that hold no contact, at their low ends.
-    low: [Share<S>; 3],
+    low: [CutFraction<S>; 3],
     /// And at their high ends.
-    high: [Share<S>; 3],
+    high: [CutFraction<S>; 3],
     /// Bit `k`: along direction `k` the two faces of parameter `k` lie on opposite sides.
     pub signs: u32,
 }
@@ -162,14 +162,14 @@ impl<S: Grid> Cuts<S> {
     /// Nothing is cut.
     #[inline(always)]
     pub fn none() -> Self {
-        Cuts { low: [Share::NONE; 3], high: [Share::NONE; 3], signs: 0 }
+        Cuts { low: [CutFraction::NONE; 3], high: [CutFraction::NONE; 3], signs: 0 }
     }
 
     /// Whether some range has been cut, at one end, by a part that is worth another look by itself.
     #[inline(always)]
     pub fn deep(&self) -> bool {
         let part = S::of(INCLUSION_DEEP);
-        let deep = |end: &[Share<S>; 3]| (0..3).any(|k| end[k].over > part * end[k].under);
+        let deep = |end: &[CutFraction<S>; 3]| (0..3).any(|k| end[k].over > part * end[k].under);
         deep(&self.low) | deep(&self.high)
     }
 
@@ -182,7 +182,7 @@ impl<S: Grid> Cuts<S> {
     /// Takes the corners' products with direction `i`, each wrong by at most `error`; at a contact the exact product is
     /// within `apart` of zero. False if the box holds no contact.
     #[inline(always)]
-    pub fn shadow(&mut self, s: &[S; 8], error: S, apart: S, i: usize) -> bool {
+    pub fn projection(&mut self, s: &[S; 8], error: S, apart: S, i: usize) -> bool {
         let bound = error + apart;
         // Twice the error keeps faces on strict sides, so that a box that was cut can still be certain of its contact.
         let wide = bound + error;
@@ -215,7 +215,7 @@ impl<S: Grid> Cuts<S> {
     }
 }
 
-/// The least and the largest of a shadow on the low and on the high face of parameter `k`.
+/// The least and the largest of a projection on the low and on the high face of parameter `k`.
 #[inline(always)]
 fn ranges<S: Grid>(s: &[S; 8], k: usize) -> [(S, S); 2] {
     [0, 1 << k].map(|side| {

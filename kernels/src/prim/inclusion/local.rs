@@ -23,11 +23,11 @@ pub struct Local<S, const N: usize> {
     /// The tolerance, in the same units as `w`; at least what can be told from zero.
     pub tolerance: S,
     /// Whether a smaller tolerance was asked for than can be told from zero.
-    pub blunt: bool,
+    pub below_precision: bool,
     /// The separation, rounded up.
     pub separation: S,
     /// Within this time no point moves by more than the tolerance, a multiple of [`Grid::STEP`].
-    pub pause: S,
+    pub time_tolerance: S,
     /// The end of the step, rounded up to the grid.
     pub end: S,
     /// Whether `end` was rounded.
@@ -70,16 +70,16 @@ impl<S: Grid, const N: usize> Local<S, N> {
         let tolerance = asked.max(finest);
         let fastest = speed[0].max(speed[1]).max(speed[2]);
         // What divides to NaN never moves, or has no tolerance: only the time that is charged depends on it.
-        let pause = if fastest > S::ZERO { tolerance / fastest * S::INCLUSION_DOWN } else { S::ONE };
+        let time_tolerance = if fastest > S::ZERO { tolerance / fastest * S::INCLUSION_DOWN } else { S::ONE };
         let (end, beyond) = S::end(p.end);
         Local {
             w,
             reach,
             finite: finite && !p.separation.is_nan(),
             tolerance,
-            blunt: asked < finest,
+            below_precision: asked < finest,
             separation: S::of(p.separation.max(0.0) * scale) * S::INCLUSION_UP,
-            pause: if pause < S::ONE { S::down(pause) } else { S::ONE },
+            time_tolerance: if time_tolerance < S::ONE { S::down(time_tolerance) } else { S::ONE },
             end,
             beyond,
         }

@@ -21,7 +21,7 @@ struct Known<S> {
 }
 
 /// What a look at a box gives.
-enum Look<S> {
+enum CellResult<S> {
     /// No contact in it.
     Nothing,
     /// As small as can be told; where it starts.
@@ -104,13 +104,13 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
     pub fn step(&mut self, p: &Params) -> Option<(Verdict, bool)> {
         self.boxes += 1;
         let next = match self.m.look(&self.cell, &mut self.known) {
-            Look::Nothing => None,
-            Look::Small(start) => {
+            CellResult::Nothing => None,
+            CellResult::Small(start) => {
                 self.accept(start);
                 None
             }
-            Look::Part(part) => Some(part),
-            Look::Halves(near, far) => {
+            CellResult::Part(part) => Some(part),
+            CellResult::Halves(near, far) => {
                 if let Some(place) = self.stack.get_mut(self.depth) {
                     place.write(far);
                     self.depth += 1;
@@ -135,12 +135,12 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
             }
             let Some(cell) = next else {
                 let verdict = self.verdict(p);
-                let settled = verdict.is_settled(self.m.pause.wide()) && !self.m.blunt;
+                let settled = verdict.is_settled(self.m.time_tolerance.wide()) && !self.m.below_precision;
                 return Some((verdict, settled || verdict.is_separated()));
             };
             let start = cell.low[0];
             let bound = self.known.accepted.min(self.known.certain);
-            if bound < S::NEVER && start + self.m.pause >= bound {
+            if bound < S::NEVER && start + self.m.time_tolerance >= bound {
                 if !(start > self.known.certain) {
                     self.known.skipped = self.known.skipped.min(start);
                 }
@@ -180,17 +180,17 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
 }
 
 impl<S: Grid, const N: usize> Local<S, N> {
-    /// Looks at a box: at its image, its shadows along several directions, and what of it they leave. About 1,200
+    /// Looks at a box: at its image, its projections along several directions, and what of it they leave. About 1,200
     /// operations. A function of its own, so that the search's state does not take registers from it on the card.
     #[inline(never)]
-    fn look(&self, cell: &Cell<S>, known: &mut Known<S>) -> Look<S> {
+    fn look(&self, cell: &Cell<S>, known: &mut Known<S>) -> CellResult<S> {
         let image = self.image(cell);
         let Image { f, low, high, error } = &image;
         if (0..3).any(|k| {
             let more = error[k] + self.separation;
             low[k] > more || high[k] < -more
         }) {
-            return Look::Nothing;
+            return CellResult::Nothing;
         }
         // Not kept for later: registers are dear.
         let mut small = (0..3).all(|k| high[k] - low[k] <= self.tolerance)
@@ -209,9 +209,9 @@ impl<S: Grid, const N: usize> Local<S, N> {
                 break;
             }
             let Some(d) = unit(directions.get(i, || sum(f))) else { continue };
-            let (products, error) = image.shadow(d, slack);
-            if !cuts.shadow(&products, error, self.apart(d), i) {
-                return Look::Nothing;
+            let (products, error) = image.projection(d, slack);
+            if !cuts.projection(&products, error, self.apart(d), i) {
+                return CellResult::Nothing;
             }
         }
         let all_of_face = N != 3 || cell.high[1] <= S::ONE - cell.high[2];
@@ -219,14 +219,16 @@ impl<S: Grid, const N: usize> Local<S, N> {
             known.certain = known.certain.min(cell.high[0]);
         }
         let [low, high] = cuts.parts();
-        let Some(part) = cell.without(low, high) else { return Look::Nothing };
-        let Some(part) = (if N == 3 { part.in_face() } else { Some(part) }) else { return Look::Nothing };
+        let Some(part) = cell.without(low, high) else { return CellResult::Nothing };
+        let Some(part) = (if N == 3 { part.in_face() } else { Some(part) }) else {
+            return CellResult::Nothing;
+        };
         if small {
-            return Look::Small(part.low[0]);
+            return CellResult::Small(part.low[0]);
         }
         let shrunk = S::of(INCLUSION_SHRUNK);
         if (0..3).any(|k| part.high[k] - part.low[k] < shrunk * (cell.high[k] - cell.low[k])) {
-            return Look::Part(part);
+            return CellResult::Part(part);
         }
         // The parameter along which the image is longest, of those that are wider than a step.
         let mut along = (3, S::ZERO);
@@ -242,14 +244,14 @@ impl<S: Grid, const N: usize> Local<S, N> {
         consider(2, self.extent(f, 2));
         let along = along.0;
         if along == 3 {
-            return Look::Small(part.low[0]);
+            return CellResult::Small(part.low[0]);
         }
         let [a, b] = part.halves(along);
         // The earlier half; else that on the side of the face nearer to the origin.
         if along > 0 && directions.change(along).dot(sum(f)) < S::ZERO {
-            Look::Halves(b, a)
+            CellResult::Halves(b, a)
         } else {
-            Look::Halves(a, b)
+            CellResult::Halves(a, b)
         }
     }
 

@@ -122,10 +122,10 @@ impl Verdict {
     }
 
     /// Whether more precision would tell nothing that was asked: separated, or a contact whose time is known as well as
-    /// the tolerance demands (`pause` is the time that it takes).
+    /// the tolerance demands (`time_tolerance` is the time that it takes).
     #[inline]
-    pub(super) fn is_settled(&self, pause: f64) -> bool {
-        let known = self.is_contact() && !self.exhausted() && self.toi_hi - self.toi <= 2.0 * pause;
+    pub(super) fn is_settled(&self, time_tolerance: f64) -> bool {
+        let known = self.is_contact() && !self.exhausted() && self.toi_hi - self.toi <= 2.0 * time_tolerance;
         self.is_separated() || known
     }
 }

@@ -21,7 +21,7 @@ pub struct Distance<S> {
     /// Within so much more, and for long, is near.
     pub slack: S,
     /// A time in which nothing moves by more than the tolerance.
-    pub pause: S,
+    pub time_tolerance: S,
 }
 
 impl<S: Grid> Distance<S> {
@@ -32,7 +32,7 @@ impl<S: Grid> Distance<S> {
             over: distance * S::INCLUSION_UP + S::ISOLATE_UNDERFLOW,
             under: distance * S::INCLUSION_DOWN - S::ISOLATE_UNDERFLOW,
             slack,
-            pause: pair.pause(slack),
+            time_tolerance: pair.time_tolerance(slack),
         }
     }
 }
@@ -129,12 +129,12 @@ impl<S: Grid, const N: usize> Advance<S, N> {
             return Ok(Advanced::Apart);
         }
         let (near, step) = (length <= d.under + d.slack, next - t);
-        if near || step < d.pause * S::of(0.25) {
-            let later = (next + d.pause).min(self.end);
+        if near || step < d.time_tolerance * S::of(0.25) {
+            let later = (next + d.time_tolerance).min(self.end);
             if self.pair.at_most(nearest(&self.pair.at(later))) <= d.under {
                 return Ok(Advanced::Within { from: next, to: later });
             }
-            if near && (step < d.pause * S::of(0.02) || self.steps > PATIENCE) {
+            if near && (step < d.time_tolerance * S::of(0.02) || self.steps > PATIENCE) {
                 return Ok(self.look_ahead(next));
             }
         }
@@ -180,7 +180,7 @@ impl<S: Grid, const N: usize> Advance<S, N> {
     /// Near at `from`: whether some later time is certain.
     #[inline(always)]
     fn look_ahead(&self, from: S) -> Advanced<S> {
-        let mut ahead = self.distance.pause + self.distance.pause;
+        let mut ahead = self.distance.time_tolerance + self.distance.time_tolerance;
         for _ in 0..AHEAD {
             let to = from + ahead;
             if to >= self.end || !(to > from) {

@@ -36,7 +36,7 @@ pub enum Found<S> {
 
 /// How a suspect time is looked at.
 #[derive(Clone, Copy, Debug)]
-pub struct Look<S> {
+pub struct CellResult<S> {
     /// How long around it: of a root at most, if signs need no more; of an end without a sign at first. The certificate holds more
     /// easily in less time, the sign change in more.
     pub around: S,
@@ -57,7 +57,7 @@ impl<S: Grid, const N: usize> Pair<S, N> {
     /// decides ([`Pair::around`]). What lies between is shown to be rootless by the signs of its coefficients. Pieces are closed
     /// and share their ends as the same numbers, so together they are the window.
     #[inline(always)]
-    pub fn isolate(&self, (begin, end): (S, S), look: Look<S>) -> Found<S> {
+    pub fn isolate(&self, (begin, end): (S, S), look: CellResult<S>) -> Found<S> {
         let g = self.cubic();
         let part = g.part(begin, end);
         if !self.finite {

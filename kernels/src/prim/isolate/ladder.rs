@@ -13,7 +13,7 @@
 //! asked, so the answer is; [`vf_certified`] and [`ee_certified`] climb for one pair as the kernels do for a list.
 
 use super::advance::{Advance, Advanced, Distance};
-use super::find::{Found, Look};
+use super::find::{CellResult, Found};
 use super::pair::{Edges, Face, Pair};
 use super::separation::{ADVANCES, Double, Rung, Single, at_once, stepped};
 use crate::math::Real;
@@ -60,14 +60,16 @@ pub fn isolated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bo
     if pair.together {
         return Some(Verdict::TOUCHING);
     }
-    let pause = pair.pause(pair.scaled(p.tolerance));
+    let time_tolerance = pair.time_tolerance(pair.scaled(p.tolerance));
     // f32 has a rung behind it that tells more.
     let closer = last && S::WIDE;
     let (again, near) = if closer { (AGAIN, near_enough(pair, p)) } else { (0, S::ZERO) };
-    let look = Look { around: pause * S::of(AROUND[0]), steps: STEPS[0], again, near };
+    let look = CellResult { around: time_tolerance * S::of(AROUND[0]), steps: STEPS[0], again, near };
     match pair.isolate(pair.with_margin(window), look) {
         Found::Apart => Some(Verdict::separated(p.end, 0)),
-        Found::Meets { from, to } if last || (from > S::ZERO && to - from <= pause + pause) => {
+        Found::Meets { from, to }
+            if last || (from > S::ZERO && to - from <= time_tolerance + time_tolerance) =>
+        {
             met(from, to, p)
         }
         Found::Near { from } => Some(Verdict::unresolved(from.wide(), p.end, 0, false)),
@@ -124,8 +126,13 @@ pub fn sliced<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), i: 
     let (begin, end) = pair.with_margin((begin, end));
     let cut = |i: u32| if i == SLICES { end } else { begin + (end - begin) * (i as f64 / SLICES as f64) };
     let (from, to) = (cut(i), cut(i + 1));
-    let pause = pair.pause(pair.scaled(p.tolerance));
-    let look = Look { around: pause * AROUND[1], steps: STEPS[1], again: AGAIN, near: near_enough(pair, p) };
+    let time_tolerance = pair.time_tolerance(pair.scaled(p.tolerance));
+    let look = CellResult {
+        around: time_tolerance * AROUND[1],
+        steps: STEPS[1],
+        again: AGAIN,
+        near: near_enough(pair, p),
+    };
     match pair.isolate((from, to), look) {
         Found::Apart => Slice::Apart,
         Found::Meets { from, to } => met(from, to, p).map_or(Slice::Open(from), Slice::Meets),

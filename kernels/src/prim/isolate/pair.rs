@@ -82,7 +82,7 @@ impl<S: Grid, const N: usize> Pair<S, N> {
 
     /// Within this time no component moves by more than that length; 1 where nothing moves.
     #[inline]
-    pub fn pause(&self, length: S) -> S {
+    pub fn time_tolerance(&self, length: S) -> S {
         if self.speed > length { length / self.speed * S::INCLUSION_DOWN } else { S::ONE }
     }
 

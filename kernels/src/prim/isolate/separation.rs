@@ -62,7 +62,10 @@ impl<const N: usize> Rung<N> for Single<N> {
     type S = f32;
     #[inline(always)]
     fn begin(pair: Pair<f32, N>, p: &Params) -> Self {
-        Single { advance: separating(&pair, p, SINGLE), known: 2.0 * pair.pause(pair.scaled(p.tolerance)) }
+        Single {
+            advance: separating(&pair, p, SINGLE),
+            known: 2.0 * pair.time_tolerance(pair.scaled(p.tolerance)),
+        }
     }
     #[inline(always)]
     fn step(&mut self, p: &Params) -> Option<Option<Verdict>> {

@@ -17,7 +17,7 @@
 //!          places  4 B in, 4 B out; the counts.      emit  28 B in, 28 B out.
 
 use super::treelet;
-use crate::abi::{Inner, LEAF, Link, NONE, ROOT, Seat, TreeArgs};
+use crate::abi::{Inner, LEAF, LeafPlace, Link, NONE, ROOT, TreeArgs};
 use crate::bvh::MAX_LEVELS;
 use crate::exec::{BINS, Block, Lane, Slot, striped};
 use crate::sort;
@@ -173,7 +173,7 @@ fn leaf<L: Lane>(l: &L, a: &TreeArgs, at: u32, leaf: u32) {
     let link = LEAF | (a.first + l.read(a.items, leaf) as u32);
     l.write(a.links, at, Link { link, last: leaf });
     l.write(a.leaf_nodes, leaf, at);
-    if !a.seats.is_empty() {
-        l.write(a.seats, leaf, Seat { node: at, link });
+    if !a.leaf_places.is_empty() {
+        l.write(a.leaf_places, leaf, LeafPlace { node: at, link });
     }
 }

@@ -182,7 +182,7 @@ fn push<T: Pod, L: Lane>(l: &L, (list, counters, at): (Span<T>, Span<u64>, u32),
 
 /// Lists an answer that is to be listed; a lane by itself.
 #[inline(always)]
-pub(super) fn tell<R: Real, L: Lane>(l: &L, a: &RungArgs<R>, of: &Listed, (pair, verdict): (Pair, Verdict)) {
+pub(super) fn emit<R: Real, L: Lane>(l: &L, a: &RungArgs<R>, of: &Listed, (pair, verdict): (Pair, Verdict)) {
     if keep(l, a, verdict) {
         push(l, (of.hits, a.counters, of.hits_at), Hit { a: pair.a, b: pair.b, verdict });
     }

@@ -1,40 +1,40 @@
 //! # Narrow: candidates → contacts
 //! Paper    section 6.2.5, "a variant of the Moeller test"; "the cubic equation for each of the 15 elementary tests".
-//! Steps    discrete: [`discrete`]. Continuous: [`sift`] turns triangle pairs into vertex/face and edge/edge candidates,
-//!          each once; [`reject`] leaves out those that certainly stay apart; the rungs of [`climb`], [`mod@slice`] and
+//! Steps    discrete: [`discrete`]. Continuous: [`features`] turns triangle pairs into vertex/face and edge/edge candidates,
+//!          each once; [`cull`] leaves out those that certainly stay apart; the rungs of [`climb`], [`mod@slice`] and
 //!          [`separate`] find what meets of the others and bound its first time, with proof; or [`solve`] does so by the
-//!          seed's cubic. [`blunt`] counts of what is listed what the precision was too blunt for, where that may be.
+//!          seed's cubic. [`below_precision`] counts of what is listed what the precision was too below_precision for, where that may be.
 
-pub mod blunt;
+pub mod below_precision;
 pub mod climb;
+pub mod cull;
 pub mod discrete;
-pub mod reject;
+pub mod features;
 pub mod separate;
-pub mod sift;
 pub mod slice;
 pub mod solve;
 
-use crate::abi::{Frames, Pair, Span};
+use crate::abi::{Pair, Positions, Span};
 use crate::exec::{Block, Lane, RowMap, Slot};
 use crate::math::Real;
 use crate::prim::cubic::Moving;
 
 /// A vertex in motion.
 #[inline(always)]
-fn moving<R: Real, L: Lane>(l: &L, frames: &Frames<R>, vertex: u32) -> Moving<R> {
+fn moving<R: Real, L: Lane>(l: &L, frames: &Positions<R>, vertex: u32) -> Moving<R> {
     let vertex = l.read(frames.moving, vertex);
     Moving { t0: vertex.t0.at, t1: vertex.t1.at }
 }
 
 /// The corners of a triangle, in motion.
 #[inline(always)]
-fn triangle<R: Real, L: Lane>(l: &L, frames: &Frames<R>, [x, y, z]: [u32; 3]) -> [Moving<R>; 3] {
+fn triangle<R: Real, L: Lane>(l: &L, frames: &Positions<R>, [x, y, z]: [u32; 3]) -> [Moving<R>; 3] {
     [moving(l, frames, x), moving(l, frames, y), moving(l, frames, z)]
 }
 
 /// The ends of an edge, in motion.
 #[inline(always)]
-fn edge<R: Real, L: Lane>(l: &L, frames: &Frames<R>, [x, y]: [u32; 2]) -> [Moving<R>; 2] {
+fn edge<R: Real, L: Lane>(l: &L, frames: &Positions<R>, [x, y]: [u32; 2]) -> [Moving<R>; 2] {
     [moving(l, frames, x), moving(l, frames, y)]
 }
 
@@ -42,7 +42,7 @@ fn edge<R: Real, L: Lane>(l: &L, frames: &Frames<R>, [x, y]: [u32; 2]) -> [Movin
 #[inline(always)]
 fn vertex_face<R: Real, L: Lane>(
     l: &L,
-    (frames, faces): (&Frames<R>, Span<[u32; 3]>),
+    (frames, faces): (&Positions<R>, Span<[u32; 3]>),
     pair: Pair,
 ) -> (Moving<R>, [Moving<R>; 3]) {
     (moving(l, frames, pair.a), triangle(l, frames, l.read(faces, pair.b)))
@@ -52,7 +52,7 @@ fn vertex_face<R: Real, L: Lane>(
 #[inline(always)]
 fn edge_edge<R: Real, L: Lane>(
     l: &L,
-    (frames, edges): (&Frames<R>, Span<[u32; 2]>),
+    (frames, edges): (&Positions<R>, Span<[u32; 2]>),
     pair: Pair,
 ) -> [[Moving<R>; 2]; 2] {
     [edge(l, frames, l.read(edges, pair.a)), edge(l, frames, l.read(edges, pair.b))]

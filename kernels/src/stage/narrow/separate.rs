@@ -13,7 +13,7 @@
 //! Cost     8 B pair, 12 B indices, 128 B positions (gathered); 300 to 600 operations a step, mostly two to fifteen
 //!          steps.
 
-use super::climb::{leave, tell};
+use super::climb::{emit, leave};
 use super::{edge_edge, listed, vertex_face};
 use crate::abi::{Listed, Pair, RungArgs};
 use crate::exec::{Block, Lane, Shared};
@@ -27,7 +27,7 @@ pub const SHARED: u32 = 8;
 /// All pairs of a list, by a rung.
 #[inline(always)]
 pub fn separate<R: Real, V: Rung<3>, E: Rung<4>, B: Block>(b: &mut B, a: &RungArgs<R>) {
-    let share = |b: &B, of: &Listed, first: u32, drawn: u32| Share {
+    let share = |b: &B, of: &Listed, first: u32, drawn: u32| WorkRange {
         count: listed(b, of.pairs, a.counters, of.pairs_at) as u64,
         first: first as u64,
         stride: b.blocks() as u64,
@@ -56,7 +56,7 @@ pub fn separate<R: Real, V: Rung<3>, E: Rung<4>, B: Block>(b: &mut B, a: &RungAr
 }
 
 /// A block's pairs of one kind: that numbered `first`, and every `stride` on.
-struct Share {
+struct WorkRange {
     count: u64,
     first: u64,
     stride: u64,
@@ -70,7 +70,7 @@ fn advance<R: Real, T: Rung<N>, const N: usize, L: Lane>(
     l: &L,
     a: &RungArgs<R>,
     of: &Listed,
-    (share, drawn): (&Share, Shared<u32>),
+    (share, drawn): (&WorkRange, Shared<u32>),
     motion: impl Fn(Pair) -> isolate::Pair<T::S, N>,
 ) {
     let mut under_way: Option<(Pair, T)> = None;
@@ -90,7 +90,7 @@ fn advance<R: Real, T: Rung<N>, const N: usize, L: Lane>(
             && let Some(told) = rung.step(&a.params)
         {
             match told {
-                Some(verdict) => tell(l, a, of, (*pair, verdict)),
+                Some(verdict) => emit(l, a, of, (*pair, verdict)),
                 None => leave(l, a, of, *pair),
             }
             under_way = None;

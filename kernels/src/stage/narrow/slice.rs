@@ -10,7 +10,7 @@
 //! Room     hits: counted past the end, grown, run again.
 //! Cost     about 3,000 operations of f64 a lane; a search 1,200 a box, one lane. Boxes wait in a stack in local memory, 3 KB.
 
-use super::climb::tell;
+use super::climb::emit;
 use super::{edge_edge, listed, vertex_face};
 use crate::abi::{Listed, Pair, RungArgs};
 use crate::exec::{Block, Lane, Shared, Slot};
@@ -100,7 +100,7 @@ fn each<R: Real, B: Block, const N: usize>(
             let pair = motion(l, indices);
             let Some(window) = pair.window() else { return };
             let verdict = decided(&pair, *mine.of(l), window, |known| search(l, indices, known), &a.params);
-            tell(l, a, of, (indices, verdict));
+            emit(l, a, of, (indices, verdict));
         });
         i += b.blocks();
     }

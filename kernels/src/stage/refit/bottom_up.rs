@@ -22,7 +22,7 @@ pub fn bottom_up<V: Volume, B: Block>(b: &mut B, a: &BottomUpArgs<V>) {
             return;
         }
         let mut at = l.read(a.leaf_nodes, leaf);
-        let mut volume = l.take(a.nodes, at).volume;
+        let mut volume = l.load_relaxed(a.nodes, at).volume;
         while at != ROOT {
             if l.fetch_add(a.arrivals, at / 2, 1).is_multiple_of(2) {
                 return;
@@ -30,13 +30,13 @@ pub fn bottom_up<V: Volume, B: Block>(b: &mut B, a: &BottomUpArgs<V>) {
             let parent = l.read(a.pair_parents, at / 2);
             let link = l.read(a.links, parent);
             if is_fitted::<V, _>(l, a.firsts, link, a.axes) {
-                volume = l.take(a.nodes, parent).volume;
+                volume = l.load_relaxed(a.nodes, parent).volume;
             } else {
                 l.fence();
-                let sibling = l.take(a.nodes, at ^ 1).volume;
+                let sibling = l.load_relaxed(a.nodes, at ^ 1).volume;
                 let (left, right) = if at.is_multiple_of(2) { (volume, sibling) } else { (sibling, volume) };
                 volume = left.merge(&right, a.axes);
-                l.give(a.nodes, parent, link.with(volume));
+                l.store_relaxed(a.nodes, parent, link.with(volume));
                 l.fence();
             }
             at = parent;

@@ -1,12 +1,12 @@
 //! # Treelets: positions → all volumes, in one launch
 //! Paper    section 6.2.4: a barrier between levels. Here a level's barrier is a block's, not the launch's.
 //! Launch   a block a treelet, a lane a leaf and a lane a merge; the block that is done last merges the top.
-//! Reads    positions, faces, seats, merges; the last block volumes of others, taken.   Writes   all nodes, each once.
+//! Reads    positions, faces, leaf_places, merges; the last block volumes of others, taken.   Writes   all nodes, each once.
 //! Before   `construct_treelets` has planned the tree; positions are finite.
 //! After    leaves enclose their triangles as after `fit`, every other volume that is not fitted is the merge of its children's.
 //! Room     fixed; cannot run out. Any number of merges in the top: rounds of as many as a block has lanes.
 //! Departs  fit is part of it: the volumes of a treelet stay on chip from the triangle to the treelet's root.
-//! Cost     8 B seat, 12 B face, 48 B positions a frame and leaf; 16 B a merge; two nodes out a leaf: 148 B (AABB). A
+//! Cost     8 B place, 12 B face, 48 B positions a frame and leaf; 16 B a merge; two nodes out a leaf: 148 B (AABB). A
 //!          chain of some 12 rounds on chip, a ticket, and a round trip to L2 a depth of the top (13 on cloth-ball).
 
 use crate::abi::{Link, Merge, Treelet, TreeletsArgs};
@@ -25,9 +25,9 @@ pub const fn shared_bytes<V>() -> u32 {
 
 /// Volumes of a treelet on chip: each at its first leaf. Word by word, so that neighbours lie in different banks.
 #[derive(Clone, Copy)]
-struct Chip(Shared<[u32; 2]>);
+struct SharedVolumes(Shared<[u32; 2]>);
 
-impl Chip {
+impl SharedVolumes {
     fn get<V: Volume, L: Lane>(self, l: &L, slot: u32) -> V {
         let mut volume = V::zeroed();
         let words: &mut [[u32; 2]] = bytemuck::cast_slice_mut(core::slice::from_mut(&mut volume));
@@ -46,7 +46,7 @@ impl Chip {
 
 /// All volumes.
 pub fn treelets<R: Real, V: Volume, B: Block>(b: &mut B, a: &TreeletsArgs<R, V>) {
-    let chip = Chip(b.shared(SLOTS * size_of::<V>() as u32 / 8));
+    let chip = SharedVolumes(b.shared(SLOTS * size_of::<V>() as u32 / 8));
     let places = b.shared::<[u32; 2]>(SLOTS);
     let ranges = b.shared::<[u32; 2]>(SLOTS);
     let ends = b.shared::<u32>(MAX_LEVELS);
@@ -55,11 +55,11 @@ pub fn treelets<R: Real, V: Volume, B: Block>(b: &mut B, a: &TreeletsArgs<R, V>)
     b.phase(|l| {
         let mut i = l.lane();
         while i < leaves {
-            let seat = l.read(a.seats, first + i);
-            let link = Link { link: seat.link, last: first + i };
+            let place = l.read(a.leaf_places, first + i);
+            let link = Link { link: place.link, last: first + i };
             let volume: V = leaf::volume(l, &a.frames, a.faces, (link.triangle(), a.grow));
             chip.put(l, i, volume);
-            l.give(a.nodes, seat.node, link.with(volume));
+            l.store_relaxed(a.nodes, place.node, link.with(volume));
             i += lanes;
         }
         let mut i = l.lane();
@@ -96,7 +96,7 @@ pub fn treelets<R: Real, V: Volume, B: Block>(b: &mut B, a: &TreeletsArgs<R, V>)
                 };
                 let volume = child(from, 0).merge(&child(split, 1), a.axes);
                 chip.put(l, from, volume);
-                l.give(a.nodes, node, merge.link().with(volume));
+                l.store_relaxed(a.nodes, node, merge.link().with(volume));
             }
         });
     }
@@ -138,8 +138,13 @@ fn top<R: Real, V: Volume, B: Block>(b: &mut B, a: &TreeletsArgs<R, V>, starts: 
                 fetch(l, &mut ahead, [l.get(starts, depth - 1), l.get(starts, depth)]);
             }
             while i < end {
-                let (left, right) = (l.take(a.nodes, merge.link), l.take(a.nodes, merge.link + 1));
-                l.give(a.nodes, merge.node, merge.link().with(left.volume.merge(&right.volume, a.axes)));
+                let (left, right) =
+                    (l.load_relaxed(a.nodes, merge.link), l.load_relaxed(a.nodes, merge.link + 1));
+                l.store_relaxed(
+                    a.nodes,
+                    merge.node,
+                    merge.link().with(left.volume.merge(&right.volume, a.axes)),
+                );
                 i += lanes;
                 if i < end {
                     merge = l.read(a.top, i);

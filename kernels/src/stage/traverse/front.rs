@@ -20,7 +20,7 @@ use crate::queue::bvtt;
 
 /// What becomes of a pair of the front.
 #[derive(Clone, Copy)]
-struct Fate {
+struct FrontUpdate {
     /// An end of this frame's descent; `NONE` for none.
     end: Pair,
     /// Whether the pair goes deeper.
@@ -41,7 +41,7 @@ const MASK: u32 = (1 << FIELD) - 1;
 /// One pass over the front.
 pub fn front<V: Volume, B: Block>(b: &mut B, a: &FrontArgs<V>) {
     let lanes = b.lanes();
-    let mut fates = b.slot(Fate { end: NOTHING, deeper: false, candidate: NOTHING, tests: 0 });
+    let mut fates = b.slot(FrontUpdate { end: NOTHING, deeper: false, candidate: NOTHING, tests: 0 });
     let (mut sums, mut tests) = (b.slot(0u32), b.slot(0u32));
     let (mut base, mut pruned) = (b.block() * lanes, 0);
     while base < a.count {
@@ -50,7 +50,7 @@ pub fn front<V: Volume, B: Block>(b: &mut B, a: &FrontArgs<V>) {
             let fate = if i < a.count {
                 fate(l, a, l.read(a.front, i))
             } else {
-                Fate { end: NOTHING, deeper: false, candidate: NOTHING, tests: 0 }
+                FrontUpdate { end: NOTHING, deeper: false, candidate: NOTHING, tests: 0 }
             };
             let ends = (fate.end != NOTHING) as u32;
             let candidates = (fate.candidate != NOTHING) as u32;
@@ -99,10 +99,10 @@ fn put<L: Lane>(l: &L, list: Span<Pair>, at: u64, pair: Pair) {
 
 /// What becomes of a pair.
 #[inline]
-fn fate<V: Volume, L: Lane>(l: &L, a: &FrontArgs<V>, pair: Pair) -> Fate {
+fn fate<V: Volume, L: Lane>(l: &L, a: &FrontArgs<V>, pair: Pair) -> FrontUpdate {
     let own = a.to.flags & SELF != 0;
     let (p, q) = (l.read(a.to.queries, pair.a), l.read(a.to.nodes, pair.b));
-    let mut fate = Fate { end: pair, deeper: false, candidate: NOTHING, tests: 1 };
+    let mut fate = FrontUpdate { end: pair, deeper: false, candidate: NOTHING, tests: 1 };
     if !p.volume.overlaps(&q.volume) {
         if a.flags & PRUNE != 0 {
             (fate.end, fate.tests) = climb(l, a, pair, own);

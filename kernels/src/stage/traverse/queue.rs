@@ -93,7 +93,7 @@ fn leave<V: Volume, B: Block>(
         }
         if l.lane() == 0 {
             match &places {
-                Some(places) => places.tell(l, a.to.counters),
+                Some(places) => places.report(l, a.to.counters),
                 None => {
                     l.fetch_add(a.idle, a.round, 1);
                     l.fetch_add(a.to.counters, counter::IDLE_EXITS, 1);

@@ -50,7 +50,7 @@ const SHARE: u32 = 1;
 
 /// What a block keeps and gives, in units.
 #[derive(Clone, Copy)]
-struct Thrift {
+struct OfferPolicy {
     /// What a step can use: kept.
     keep: u32,
     /// A block with less to spare gives nothing: what it could give is worth less than the step that giving takes.
@@ -67,7 +67,7 @@ pub fn steal<V: Volume, B: Block>(b: &mut B, a: &StealArgs<V>) {
     let mut outside =
         Outside { units: a.units, segment: (begin, a.segment), stored: 0, count: (Span::EMPTY, 0) };
     let keep = if a.flags & EAGER != 0 { 0 } else { b.lanes().min(a.to.local / 2) };
-    let thrift = Thrift { keep, spare: (keep / 4).max(1), least: (keep / 16).max(1) };
+    let policy = OfferPolicy { keep, spare: (keep / 4).max(1), least: (keep / 16).max(1) };
     let (mut draw, mut turn) = (TICKET, block);
     loop {
         if worker.top == 0 {
@@ -84,7 +84,7 @@ pub fn steal<V: Volume, B: Block>(b: &mut B, a: &StealArgs<V>) {
                 draw = TICKET.wrapping_sub(WORK);
                 worker.fill(b, some, |l, i| match ticket {
                     0 => ROOTS,
-                    _ => l.take(a.chunks, (ticket - 1) * CHUNK + i),
+                    _ => l.load_relaxed(a.chunks, (ticket - 1) * CHUNK + i),
                 });
             }
         }
@@ -100,7 +100,7 @@ pub fn steal<V: Volume, B: Block>(b: &mut B, a: &StealArgs<V>) {
         // By turns, so that blocks whose share is below one do not all give at once.
         turn = turn.wrapping_add(29);
         if wanted {
-            offer(b, a, &mut worker, thrift, words);
+            offer(b, a, &mut worker, policy, words);
         }
     }
     worker.finish(b, &a.to);
@@ -122,19 +122,19 @@ fn offer<V: Volume, B: Block>(
     b: &mut B,
     a: &StealArgs<V>,
     worker: &mut Worker<B>,
-    thrift: Thrift,
+    policy: OfferPolicy,
     words: Shared<u32>,
 ) {
     let (lanes, top) = (b.lanes(), worker.top);
-    let spare = top.saturating_sub(thrift.keep).min(top / 2);
-    if spare < thrift.spare {
+    let spare = top.saturating_sub(policy.keep).min(top / 2);
+    if spare < policy.spare {
         return;
     }
     b.phase(|l| {
         if l.lane() == 0 {
             // Who has more than a step's units serves more tickets.
-            let wish = l.get(words, SHARE) * (top / thrift.keep.max(1));
-            let chunks = wish.min(MOST_OFFERS).min(spare / thrift.least);
+            let wish = l.get(words, SHARE) * (top / policy.keep.max(1));
+            let chunks = wish.min(MOST_OFFERS).min(spare / policy.least);
             let units = (spare / chunks).min(CHUNK);
             let before = l.fetch_add(a.control, 0, chunks as u64 * (OFFER + WORK));
             let place = Counts::of(before).offers;
@@ -156,7 +156,7 @@ fn offer<V: Volume, B: Block>(
         for k in 0..chunks {
             let mut i = l.lane();
             while i < units {
-                l.give(a.chunks, (place + k) * CHUNK + i, worker.unit(l, k * units + i));
+                l.store_relaxed(a.chunks, (place + k) * CHUNK + i, worker.unit(l, k * units + i));
                 i += lanes;
             }
         }
@@ -180,7 +180,7 @@ fn offer<V: Volume, B: Block>(
     b.phase(|l| {
         if *gone.of(l) {
             for i in 0..units {
-                let unit = l.take(a.chunks, (place + l.lane()) * CHUNK + i);
+                let unit = l.load_relaxed(a.chunks, (place + l.lane()) * CHUNK + i);
                 worker.put(l, from + *rank.of(l) * units + i, unit);
             }
         }

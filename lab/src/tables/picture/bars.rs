@@ -1,8 +1,8 @@
 //! Bars on a logarithmic scale: ours and theirs, in pairs.
 
 use super::{At, Drawn, FAINT, GRID, INK, LEFT, OURS, RIGHT, Sheet, THEIRS, head_height, sheet};
+use crate::tables::paper_reference::CARD;
 use crate::tables::text::digits;
-use crate::tables::theirs::CARD;
 use nearmiss::error::Error;
 
 /// One pair of bars, in milliseconds.

@@ -1,0 +1,61 @@
+//! The sanitizer's observer on one block.
+
+use crate::block::Watch;
+use crate::sanitizer::{Access, Fault, Place, Sanitizer};
+use crate::shadow::Shadow;
+use crate::turns::TurnScheduler;
+use std::cell::RefCell;
+
+/// Watches one block.
+pub struct BlockObserver<'a> {
+    sanitizer: &'a Sanitizer,
+    launch: u64,
+    /// Where blocks interleave, what says whose turn it is, and this block's slot.
+    turns: Option<(&'a TurnScheduler, usize)>,
+    shared: RefCell<Vec<Shadow>>,
+}
+
+impl<'a> BlockObserver<'a> {
+    /// An observer on a block that begins: its shared memory is new.
+    pub fn new(sanitizer: &'a Sanitizer, turns: Option<(&'a TurnScheduler, usize)>) -> Self {
+        BlockObserver { sanitizer, launch: sanitizer.launches(), turns, shared: RefCell::default() }
+    }
+}
+
+impl Watch for &BlockObserver<'_> {
+    fn lanes(&self, count: u32, phase: u32, body: impl FnMut(u32)) {
+        let turn = self.launch << 20 | phase as u64;
+        self.sanitizer.order().sequence(count, turn).into_iter().for_each(body);
+    }
+    fn device(&self, access: Access, addr: u64, bytes: usize, inside: bool, place: Place) -> bool {
+        if let (Some((turns, slot)), false) = (self.turns, matches!(access, Access::Read | Access::Write)) {
+            turns.may_pass(slot);
+        }
+        self.sanitizer.see(access, addr, bytes, inside, place)
+    }
+    fn shared(&self, access: Access, offset: u32, bytes: usize, inside: bool, place: Place) -> bool {
+        if !inside {
+            self.sanitizer.note(Fault::Outside(place));
+            return false;
+        }
+        let mut shared = self.shared.borrow_mut();
+        let (first, end) = (offset as usize / 4, (offset as usize + bytes) / 4);
+        if shared.len() < end {
+            shared.resize(end, Shadow::default());
+        }
+        for shadow in &mut shared[first..end] {
+            if let Some(fault) = shadow.see(access, self.launch, place) {
+                self.sanitizer.note(fault);
+            }
+        }
+        true
+    }
+    fn changed(&self) {
+        self.sanitizer.changed();
+    }
+    fn barrier(&self) {
+        if let Some((turns, slot)) = self.turns {
+            turns.pass(slot);
+        }
+    }
+}

@@ -1,0 +1,195 @@
+//! The sanitizer: a shadow of every word of memory, so that races, strays and unwritten reads are seen.
+//!
+//! Two accesses to a word, one of them a plain write, are a race when nothing orders them: other blocks of the same
+//! launch, or other lanes of the same block in the same phase. Atomic accesses, gives and takes may meet each other; one
+//! of them and a plain access are a race when one of the two writes. Whether flags and fences order what is given and
+//! taken is not watched: answers that differ from order to order show it.
+//!
+//! Blocks run one after the other, each to its end, in the sanitizer's order; or interleaved (see the `turns`).
+
+use crate::Error;
+use crate::Order;
+use crate::shadow::Shadow;
+use crate::turns::Stop;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// What unwritten memory holds.
+pub const POISON: u8 = 0xcb;
+
+/// So many looks of a launch at device memory, between which no block changed it, are a wait for what nobody does.
+/// Lanes that poll while others work look some thousands of times.
+const LOOKS: u32 = 1 << 20;
+
+/// How a lane touches memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Access {
+    /// A plain read.
+    Read,
+    /// A plain write.
+    Write,
+    /// An atomic read and write that changes memory.
+    Atomic,
+    /// An atomic read and write that may leave memory as it is.
+    Swap,
+    /// An atomic read.
+    Look,
+    /// A write that other blocks may take.
+    Give,
+    /// A read of what other blocks may give.
+    Take,
+}
+
+/// Where in a launch an access happens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// The block.
+    pub block: u32,
+    /// Phases that the block has behind it.
+    pub phase: u32,
+    /// The lane in its block.
+    pub lane: u32,
+}
+
+impl Place {
+    /// Whether nothing orders this access and one by `other` of the same launch.
+    pub(crate) fn meets(self, other: Place) -> bool {
+        self.block != other.block || (self.phase == other.phase && self.lane != other.lane)
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "block {}, phase {}, lane {}", self.block, self.phase, self.lane)
+    }
+}
+
+/// A rule that an access broke.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// Outside its span, or outside all memory.
+    Outside(Place),
+    /// A read of what nothing wrote.
+    Unwritten(Place),
+    /// Two accesses that nothing orders.
+    Race(Place, Place),
+    /// A wait for what nobody does.
+    Waits(Place),
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Fault::Outside(at) => write!(f, "an access outside its memory at {at}"),
+            Fault::Unwritten(at) => write!(f, "a read of what nothing wrote at {at}"),
+            Fault::Race(one, other) => write!(f, "a race between {one} and {other}"),
+            Fault::Waits(at) => write!(f, "a wait for what nobody does at {at}"),
+        }
+    }
+}
+
+/// Watches an emulator's launches. One block moves at a time, whichever thread runs it.
+pub struct Sanitizer {
+    order: Order,
+    interleave: Option<u64>,
+    seen: Mutex<Seen>,
+}
+
+/// What it has seen.
+#[derive(Default)]
+struct Seen {
+    launches: u64,
+    name: &'static str,
+    fault: Option<Fault>,
+    /// Looks since device memory last changed.
+    looks: u32,
+    device: BTreeMap<u64, Vec<Shadow>>,
+}
+
+impl Sanitizer {
+    /// A sanitizer that runs blocks and lanes in that order; with a seed, blocks start in that order and interleave.
+    pub fn new(order: Order, interleave: Option<u64>) -> Self {
+        Sanitizer { order, interleave, seen: Mutex::default() }
+    }
+    /// The order of blocks and lanes.
+    pub fn order(&self) -> Order {
+        self.order
+    }
+    /// The seed by which blocks interleave; none where each runs to its end.
+    pub fn interleave(&self) -> Option<u64> {
+        self.interleave
+    }
+    /// Launches so far.
+    pub fn launches(&self) -> u64 {
+        self.seen().launches
+    }
+    fn seen(&self) -> MutexGuard<'_, Seen> {
+        // A kernel that panics leaves what was seen in order.
+        self.seen.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+    /// A launch begins.
+    pub(crate) fn begin(&self, name: &'static str) {
+        let mut seen = self.seen();
+        seen.launches += 1;
+        seen.looks = 0;
+        seen.name = name;
+    }
+    /// The launch is over.
+    pub(crate) fn verdict(&self) -> Result<(), Error> {
+        let mut seen = self.seen();
+        match seen.fault.take() {
+            None => Ok(()),
+            Some(fault) => Err(Error::Rule { kernel: seen.name, fault }),
+        }
+    }
+    /// Memory that kernels may reach from now on.
+    pub(crate) fn adopt(&self, addr: u64, bytes: usize) {
+        self.seen().device.insert(addr, vec![Shadow::default(); bytes / 4]);
+    }
+    /// Memory that is gone.
+    pub fn invalidate(&self, addr: u64) {
+        self.seen().device.remove(&addr);
+    }
+    /// The host wrote the first `bytes` bytes of the memory at `addr`.
+    pub fn host_wrote(&self, addr: u64, bytes: usize) {
+        if let Some(shadows) = self.seen().device.get_mut(&addr) {
+            shadows[..bytes.div_ceil(4)].iter_mut().for_each(Shadow::host_wrote);
+        }
+    }
+    /// A rule was broken; the first of a launch is kept.
+    pub(crate) fn note(&self, fault: Fault) {
+        self.seen().fault.get_or_insert(fault);
+    }
+    /// Device memory has changed, though the access might only have looked.
+    pub(crate) fn changed(&self) {
+        self.seen().looks = 0;
+    }
+    /// An access to device memory; false where there is none. Stops the launch where it waits for what nobody does.
+    pub(crate) fn see(&self, access: Access, addr: u64, bytes: usize, inside: bool, place: Place) -> bool {
+        let mut seen = self.seen();
+        let Seen { launches, fault, looks, device, .. } = &mut *seen;
+        *looks = match access {
+            Access::Read | Access::Take => *looks,
+            Access::Write | Access::Give | Access::Atomic => 0,
+            Access::Look | Access::Swap => *looks + 1,
+        };
+        if *looks > LOOKS {
+            fault.get_or_insert(Fault::Waits(place));
+            drop(seen);
+            Stop::now();
+        }
+        let shadows = device.range_mut(..=addr).next_back().and_then(|(&start, shadows)| {
+            let first = ((addr - start) / 4) as usize;
+            shadows.get_mut(first..first + bytes.div_ceil(4))
+        });
+        let Some(shadows) = shadows.filter(|_| inside) else {
+            fault.get_or_insert(Fault::Outside(place));
+            return false;
+        };
+        for shadow in shadows {
+            *fault = fault.or(shadow.see(access, *launches, place));
+        }
+        true
+    }
+}

@@ -1,0 +1,168 @@
+//! Blocks that interleave: each runs on a thread of its own, and moves only while it holds the turns. It passes the
+//! turns on at the end of each phase and reservation, and at some atomics, gives and takes; a seed says to whom. Some
+//! blocks are quick and some are slow, up to 256 times: where all went at one pace, a block that is far behind or far
+//! ahead of the others, which is what finds mistakes, would hardly be seen.
+//!
+//! At most [`SEATS`] blocks run at once, as on a card: the next one starts where one ends. So what a launch does is a
+//! matter of its seed alone, and blocks that all wait for one that has not started wait for ever.
+
+use rand::rngs::SmallRng;
+use rand::{Rng, SeedableRng};
+use std::any::Any;
+use std::collections::VecDeque;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+
+/// How many blocks run at once.
+pub const SEATS: usize = 64;
+/// One in so many atomics, gives and takes passes the turns on.
+const PASSES: u32 = 4;
+/// One in so many passes changes how quick a block is.
+const CHANGES: u32 = 64;
+
+/// Ends a block in the middle: what is wrong has been noted, and nobody need hear of a panic.
+pub struct Stop;
+
+impl Stop {
+    /// Leaves the kernel.
+    pub fn now() -> ! {
+        resume_unwind(Box::new(Stop))
+    }
+}
+
+/// Runs a block. Whether it came to its end; it did not where it was stopped or panicked.
+pub fn to_its_end(block: impl FnOnce()) -> Result<(), Box<dyn Any + Send>> {
+    // What a kernel was changing when it stopped is device memory, and the launch has failed.
+    catch_unwind(AssertUnwindSafe(block))
+}
+
+/// Passes on the panic of a kernel; that it was stopped is no panic.
+pub fn pass_on(panic: Box<dyn Any + Send>) {
+    if !panic.is::<Stop>() {
+        resume_unwind(panic);
+    }
+}
+
+/// Who moves.
+pub struct TurnScheduler {
+    state: Mutex<State>,
+    /// A bell for each slot: it is your turn.
+    bells: Vec<Condvar>,
+}
+
+struct State {
+    random: SmallRng,
+    /// Whose turn it is.
+    holder: usize,
+    /// How quick the block of each slot is; 0 where there is none.
+    pace: Vec<u32>,
+    /// Blocks that have not started.
+    waiting: VecDeque<u32>,
+    /// Why the launch stops in the middle.
+    panic: Option<Box<dyn Any + Send>>,
+}
+
+impl State {
+    /// A pace for a block.
+    fn draw_pace(&mut self) -> u32 {
+        4u32.pow(self.random.random_range(0..=4))
+    }
+    /// The next to move, unless nobody is left.
+    fn draw(&mut self) -> Option<usize> {
+        let all: u32 = self.pace.iter().sum();
+        if all == 0 {
+            return None;
+        }
+        let mut at = self.random.random_range(0..all);
+        self.pace.iter().position(|pace| match at.checked_sub(*pace) {
+            None => true,
+            Some(rest) => {
+                at = rest;
+                false
+            }
+        })
+    }
+}
+
+impl TurnScheduler {
+    /// Runs those blocks, which start in that order; `run` is given the block, the turns and the block's slot.
+    pub fn run(blocks: Vec<u32>, seed: u64, run: impl Fn(u32, &TurnScheduler, usize) + Sync) {
+        let slots = blocks.len().min(SEATS);
+        if slots == 0 {
+            return;
+        }
+        let mut state = State {
+            random: SmallRng::seed_from_u64(seed),
+            holder: 0,
+            pace: Vec::new(),
+            waiting: blocks.into(),
+            panic: None,
+        };
+        state.pace = (0..slots).map(|_| state.draw_pace()).collect();
+        state.holder = state.draw().expect("somebody is seated");
+        let turns =
+            TurnScheduler { state: Mutex::new(state), bells: (0..slots).map(|_| Condvar::new()).collect() };
+        std::thread::scope(|scope| {
+            for slot in 0..slots {
+                let (turns, run) = (&turns, &run);
+                scope.spawn(move || turns.sit(slot, run));
+            }
+        });
+        let state = turns.state.into_inner().unwrap_or_else(PoisonError::into_inner);
+        state.panic.into_iter().for_each(pass_on);
+    }
+
+    /// A slot's life: block after block.
+    fn sit(&self, slot: usize, run: &impl Fn(u32, &TurnScheduler, usize)) {
+        drop(self.wait(slot, self.state()));
+        loop {
+            let Some(block) = self.state().waiting.pop_front() else { break };
+            if let Err(panic) = to_its_end(|| run(block, self, slot)) {
+                let mut state = self.state();
+                state.waiting.clear();
+                state.panic.get_or_insert(panic);
+            }
+        }
+        let mut state = self.state();
+        state.pace[slot] = 0;
+        if let Some(next) = state.draw() {
+            state.holder = next;
+            self.bells[next].notify_one();
+        }
+    }
+
+    /// Passes the turns to a block drawn from all that run, and waits until it comes back.
+    pub fn pass(&self, slot: usize) {
+        let state = self.state();
+        self.pass_from(slot, state);
+    }
+    /// Passes it, or not.
+    pub fn may_pass(&self, slot: usize) {
+        let mut state = self.state();
+        if state.random.random_ratio(1, PASSES) {
+            self.pass_from(slot, state);
+        }
+    }
+    fn pass_from(&self, slot: usize, mut state: MutexGuard<'_, State>) {
+        if state.random.random_ratio(1, CHANGES) {
+            state.pace[slot] = state.draw_pace();
+        }
+        state.holder = state.draw().expect("this block is seated");
+        self.bells[state.holder].notify_one();
+        let state = self.wait(slot, state);
+        if state.panic.is_some() {
+            drop(state);
+            Stop::now();
+        }
+    }
+    fn wait<'a>(&self, slot: usize, mut state: MutexGuard<'a, State>) -> MutexGuard<'a, State> {
+        while state.holder != slot {
+            state = self.bells[slot].wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+        state
+    }
+    fn state(&self) -> MutexGuard<'_, State> {
+        // No code of a kernel runs while the lock is held.
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}

@@ -1,0 +1,77 @@
+//! The validation: what a mesh must satisfy before anything else sees it.
+
+use super::{Positions, Problem};
+
+/// Most vertices of one mesh: the ids of 2n - 1 tree nodes still fit an `i32`.
+pub const MAX_VERTICES: usize = 1 << 30;
+/// Most triangles of one mesh: three corners of each still fit a `u32`, and the ids of 2n - 1 tree nodes an `i32`.
+pub const MAX_FACES: usize = 1 << 30;
+/// Largest size of a coordinate that is kept in single precision, 2^60: dot products of differences stay finite,
+/// 3 (2^61)^2 < 2^124. A mesh with a larger one is kept in double precision.
+pub const MAX_ABS_F32: f32 = (1u64 << 60) as f32;
+/// Largest size of a double precision coordinate, 2^480: dot products of differences stay finite, 3 (2^481)^2 < 2^964.
+pub const MAX_ABS_F64: f64 = f64::from_bits((1023 + 480) << 52);
+
+/// The positions as they are kept: as given, or in double precision where single precision cannot be computed with.
+/// Or the first violation: counts, then indices in face order, then coordinates in vertex order.
+pub(super) fn check(positions: Positions, faces: &[[u32; 3]]) -> Result<Positions, Problem> {
+    count("vertices", positions.len(), MAX_VERTICES)?;
+    count("triangles", faces.len(), MAX_FACES)?;
+    let vertices = positions.len();
+    for (face, corners) in faces.iter().enumerate() {
+        for (corner, &index) in corners.iter().enumerate() {
+            if index as usize >= vertices {
+                return Err(Problem::IndexOutOfRange { face, corner, index: index.into(), vertices });
+            }
+        }
+    }
+    let positions = match &positions {
+        Positions::F32(points) if coordinates(points, MAX_ABS_F32, "2^60", faces).is_ok() => {
+            return Ok(positions);
+        }
+        _ => positions.promoted(),
+    };
+    // Every finite float is small as a double.
+    if let Positions::F64(points) = &positions {
+        coordinates(points, MAX_ABS_F64, "2^480", faces)?;
+    }
+    Ok(positions)
+}
+
+/// Refuses `found` of `what` over `limit`.
+pub(super) fn count(what: &'static str, found: usize, limit: usize) -> Result<(), Problem> {
+    if found > limit {
+        return Err(Problem::TooMany { what, count: found as u64, limit: limit as u64 });
+    }
+    Ok(())
+}
+
+fn coordinates<T: Copy + Into<f64>>(
+    points: &[[T; 3]],
+    max: T,
+    limit: &'static str,
+    faces: &[[u32; 3]],
+) -> Result<(), Problem> {
+    let max: f64 = max.into();
+    // NaN compares false, so it is bad as well.
+    let bad = |p: &[T; 3]| !p.iter().all(|&x| x.into().abs() <= max);
+    if !points.iter().any(bad) {
+        return Ok(());
+    }
+    let mut used = vec![false; points.len()];
+    for &index in faces.iter().flatten() {
+        used[index as usize] = true; // in range: checked before
+    }
+    for (vertex, p) in points.iter().enumerate().filter(|&(vertex, p)| used[vertex] && bad(p)) {
+        for (&x, axis) in p.iter().zip(['x', 'y', 'z']) {
+            let value: f64 = x.into();
+            if !value.is_finite() {
+                return Err(Problem::NonFinite { vertex, axis, value });
+            }
+            if value.abs() > max {
+                return Err(Problem::TooLarge { vertex, axis, value, limit });
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,119 @@
+//! Where the solver's precision may be too below_precision for the tolerance: told from where the bodies are, once for each place.
+
+use super::narrow::NarrowContext;
+use super::precision::Precision;
+use super::room::List;
+use crate::error::Error;
+use crate::mesh::{Body, Positions};
+use crate::pipeline::launch;
+use crate::query::{Motion, Query, Solver};
+use nearmiss_kernels::abi::{BelowPrecisionArgs, Hit, Span};
+use nearmiss_kernels::math::tolerance::Tolerance;
+use rayon::prelude::*;
+
+/// What may be too large for the tolerance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BelowPrecision {
+    /// Pairs of features that are listed: the kernels count them.
+    Listed {
+        /// The tolerance that was asked for.
+        tolerance: f64,
+        /// The least part of a pair's extent that the solver can tell.
+        finest: f64,
+    },
+    /// Pairs that are not listed, of an edge that is.
+    Unlisted,
+}
+
+impl BelowPrecision {
+    /// Of bodies where they are; none where no pair can be that large. Cost: a pass over the positions; where an earliest
+    /// query's tolerance is near the precision one over the faces.
+    pub fn of(bodies: &[Body], query: &Query) -> Option<BelowPrecision> {
+        let finest = match query.solver() {
+            Solver::CertifiedF32 => f64::from(f32::INCLUSION_FINEST),
+            // What f32 cannot tell is asked again in f64.
+            Solver::Certified | Solver::CertifiedF64 => f64::INCLUSION_FINEST,
+            _ => return None,
+        };
+        // Positive, or not asked for.
+        let tolerance = query.tolerance.filter(|t| *t > 0.0)?;
+        let extent = extent(bodies.iter().flat_map(Body::ends));
+        if query.motion != Motion::Earliest {
+            return (tolerance < finest * extent).then_some(BelowPrecision::Listed { tolerance, finest });
+        }
+        // The two ends of an edge differ from any one point by half of its length, one or the other.
+        let is_long = |side: f64| tolerance < finest * side / 2.0;
+        let long = |body: &Body| {
+            let ends = body.ends();
+            let sides = |[p, q, r]: [u32; 3]| [[p, q], [q, r], [r, p]].map(|[p, q]| largest(&ends, p, q));
+            body.faces().par_iter().any(|&face| sides(face).into_iter().any(is_long))
+        };
+        (is_long(extent) && bodies.iter().any(long)).then_some(BelowPrecision::Unlisted)
+    }
+}
+
+/// Has the kernels count the hits that are too large for the tolerance, where there may be such.
+///
+/// # Errors
+/// Those of the device.
+pub fn count<R: Precision>(
+    below_precision: Option<BelowPrecision>,
+    (edges, vf, ee): (Span<[u32; 2]>, &List<Hit>, &List<Hit>),
+    given: &NarrowContext<R>,
+) -> Result<(), Error> {
+    let Some(BelowPrecision::Listed { tolerance, finest }) = below_precision else { return Ok(()) };
+    let args = BelowPrecisionArgs {
+        frames: given.frames,
+        faces: given.faces,
+        edges,
+        vf: vf.span(),
+        ee: ee.span(),
+        counters: given.counters,
+        tolerance,
+        finest,
+    };
+    launch::striding::<R::BelowPrecision>(given.device, vf.room() + ee.room(), &args)
+}
+
+fn point(positions: &Positions, v: u32) -> [f64; 3] {
+    // Faces were checked when the mesh was made: every vertex is there.
+    positions.get_f64(v as usize).unwrap_or_default()
+}
+
+/// The largest component of the difference of two vertices, at either end of the step.
+fn largest(ends: &[&Positions; 2], p: u32, q: u32) -> f64 {
+    let apart = |positions: &Positions| {
+        let (p, q) = (point(positions, p), point(positions, q));
+        (0..3).map(|k| (p[k] - q[k]).abs()).fold(0.0, f64::max)
+    };
+    apart(ends[0]).max(apart(ends[1]))
+}
+
+/// The largest difference of coordinates of all: no pair is larger. What no face uses counts too.
+fn extent<'a>(frames: impl Iterator<Item = &'a Positions>) -> f64 {
+    let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    for positions in frames {
+        let own = match positions {
+            Positions::F32(points) => of_points(points),
+            Positions::F64(points) => of_points(points),
+        };
+        bounds = union(bounds, own);
+    }
+    (0..3).map(|k| bounds[1][k] - bounds[0][k]).fold(0.0, f64::max)
+}
+
+/// The lower and the upper corner.
+type Bounds = [[f64; 3]; 2];
+
+/// Comparisons drop what is NaN.
+fn union(a: Bounds, b: Bounds) -> Bounds {
+    [[0, 1, 2].map(|k| a[0][k].min(b[0][k])), [0, 1, 2].map(|k| a[1][k].max(b[1][k]))]
+}
+
+fn of_points<T: Copy + Into<f64> + Sync>(points: &[[T; 3]]) -> Bounds {
+    let none = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    let of = |piece: &[[T; 3]]| {
+        piece.iter().map(|p| p.map(Into::into)).fold(none, |bounds, p| union(bounds, [p, p]))
+    };
+    points.par_chunks(1 << 13).map(of).reduce(|| none, union)
+}

@@ -1,0 +1,370 @@
+//! The pipeline: a frame from positions to contacts, in the order of the stages.
+
+mod found;
+#[cfg(test)]
+mod in_order;
+#[cfg(test)]
+mod near;
+mod repeat;
+
+pub use found::{Found, Hits};
+
+use super::below_precision::BelowPrecision;
+use super::layout::Layout;
+use super::narrow::{Narrow, NarrowContext, Step};
+use super::precision::Precision;
+use super::room::{GrowableOutput, List};
+use super::timing::{Stage, Stages};
+use super::tree::Tree;
+use super::volumes::{Kernels, Volumes, growth};
+use super::walk::{Walk, WalkContext, flags, walk};
+use crate::device::{Buffer, Device};
+use crate::error::Error;
+use crate::mesh::Body;
+use crate::query::{Motion, Query};
+use nearmiss_kernels::abi::{self, Pair, Point, Span, VertexMotion as Ends, counter};
+use nearmiss_kernels::bv::Axes;
+use nearmiss_kernels::math::Vec3;
+use rayon::prelude::*;
+use xxhash_rust::xxh3::xxh3_64;
+
+/// Candidates a triangle for which there is room at first. Cloth at rest has 8, swept over a step 50; a list that
+/// turns out too short grows within the frame.
+const PAIRS_A_TRIANGLE: usize = 16;
+/// The same for a continuous query.
+const SWEPT_PAIRS_A_TRIANGLE: usize = 64;
+/// Room that every list has at least: a scene of a few triangles may have all pairs.
+const LEAST_ROOM: usize = 1 << 12;
+
+/// The memory of a query, and the way through it.
+pub struct TypedPipeline<R: Precision, V: Kernels> {
+    device: Device,
+    query: Query,
+    faces: Buffer<[u32; 3]>,
+    vertices: Vertices<R>,
+    bodies: Vec<(Tree, Volumes<V>)>,
+    counters: Buffer<u64>,
+    pairs: List<Pair>,
+    walk: Box<dyn Walk<V>>,
+    narrow: Narrow,
+    reruns: u64,
+    /// Counters of the last frame.
+    last: Vec<u64>,
+    /// Whether the lists were long enough for a whole frame: then the next one runs without waiting between steps.
+    settled: bool,
+}
+
+/// A pipeline of any precision and any volume.
+pub trait Pipeline: repeat::Again + Send {
+    /// Uploads positions. A body that stands still in a continuous query has the same positions at both ends.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn place(&mut self, bodies: &[Body]) -> Result<(), Error>;
+    /// Builds the trees anew, from the positions at t = 0; the milliseconds it took.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn construct(&mut self) -> Result<f64, Error>;
+    /// One frame: volumes, candidates, contacts. Lists that were too short grow, and the frame runs again from there.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn frame(&mut self) -> Result<(Found<'_>, Stages), Error>;
+    /// Levels of each body's tree.
+    fn depths(&self) -> Vec<usize>;
+    /// How often a list was too short and the frame was run again, so far.
+    fn reruns(&self) -> u64;
+    /// A hash of what each stage left in memory after the last frame, lists as sets: for comparing machines.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn fingerprints(&self) -> Result<Vec<(&'static str, u64)>, Error>;
+    /// Checks every tree and its volumes.
+    ///
+    /// # Errors
+    /// [`Error::Bug`] with the first violation; those of the device.
+    fn check(&self) -> Result<(), Error>;
+}
+
+/// Positions, as the query needs them.
+enum Vertices<R: Precision> {
+    Still(Buffer<Point<R>>),
+    Moving(Buffer<Ends<R>>),
+}
+
+impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
+    /// Takes the memory that the query needs and uploads topology and positions. `layout` has at least one triangle in
+    /// every body.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn new(
+        device: Device,
+        bodies: &[Body],
+        layout: &Layout,
+        (query, axes): (Query, Axes),
+    ) -> Result<Self, Error> {
+        let triangles = layout.faces.len();
+        let continuous = query.motion != Motion::Discrete;
+        let a_triangle = if continuous { SWEPT_PAIRS_A_TRIANGLE } else { PAIRS_A_TRIANGLE };
+        let room = (a_triangle * triangles).max(LEAST_ROOM);
+        let few = (4 * triangles).max(LEAST_ROOM);
+        let vertices = layout.starts[layout.bodies()].vertex as usize;
+        let mut pipeline = TypedPipeline {
+            query,
+            faces: device.upload(&layout.faces)?,
+            vertices: if continuous {
+                Vertices::Moving(device.buffer(vertices)?)
+            } else {
+                Vertices::Still(device.buffer(vertices)?)
+            },
+            bodies: Vec::new(),
+            counters: device.buffer(counter::COUNT as usize)?,
+            pairs: List::new(&device, "candidate triangle pairs", counter::PAIRS, room)?,
+            walk: walk(&device, &query, triangles)?,
+            narrow: Narrow::new::<R>(&device, layout, query, (room, few))?,
+            reruns: 0,
+            last: Vec::new(),
+            settled: false,
+            device,
+        };
+        pipeline.place(bodies)?;
+        for body in 0..layout.bodies() {
+            let refit = query.refit_on(pipeline.device.is_card());
+            let groups = V::group(axes) > 0;
+            let tree = Tree::new(&pipeline.device, layout.triangles(body), refit, groups)?;
+            let volumes = Volumes::new(&pipeline.device, &tree, (axes, growth(query.listed_within())))?;
+            pipeline.bodies.push((tree, volumes));
+        }
+        Ok(pipeline)
+    }
+
+    fn frames(&self) -> abi::Positions<R> {
+        match &self.vertices {
+            Vertices::Still(points) => abi::Positions { still: points.span(), moving: Span::EMPTY },
+            Vertices::Moving(motions) => abi::Positions { still: Span::EMPTY, moving: motions.span() },
+        }
+    }
+
+    /// Positions as they lie on the device: at t = 0 and, when anything moves, at t = 1.
+    fn positions(&self) -> Result<Vec<Vec<Vec3<R>>>, Error> {
+        Ok(match &self.vertices {
+            Vertices::Still(points) => vec![points.read(points.len())?.iter().map(|p| p.at).collect()],
+            Vertices::Moving(motions) => {
+                let motions = motions.read(motions.len())?;
+                vec![motions.iter().map(|m| m.t0.at).collect(), motions.iter().map(|m| m.t1.at).collect()]
+            }
+        })
+    }
+
+    /// Runs a stage on what those before it left.
+    fn run(&mut self, stage: Stage) -> Result<(), Error> {
+        let (device, frames, faces) = (&self.device, self.frames(), self.faces.span());
+        match stage {
+            Stage::Construct => self.construct().map(|_| ()),
+            Stage::Fit => {
+                self.bodies.iter().try_for_each(|(tree, volumes)| volumes.fit(device, tree, frames, faces))
+            }
+            Stage::Refit => {
+                self.bodies.iter().try_for_each(|(tree, volumes)| volumes.refit(device, tree, frames, faces))
+            }
+            Stage::Traverse => self.step(Step::Traverse),
+            Stage::Narrow => self.narrow.steps().iter().try_for_each(|&step| self.step(step)),
+            Stage::Order if self.narrow.orders() => self.step(Step::Order),
+            Stage::Order => Ok(()),
+        }
+    }
+
+    /// Runs a step. Until the lists have settled it waits for the step's demand and, where a list was too short, grows
+    /// it and runs the step again: no step works on a part of its input.
+    fn step(&mut self, step: Step) -> Result<(), Error> {
+        loop {
+            match step {
+                Step::Traverse => self.traverse()?,
+                _ => {
+                    let frames = self.frames();
+                    let given = NarrowContext {
+                        device: &self.device,
+                        query: self.query,
+                        frames,
+                        faces: self.faces.span(),
+                        pairs: self.pairs.span(),
+                        counters: self.counters.span(),
+                    };
+                    self.narrow.run(step, &given)?;
+                }
+            }
+            if self.settled {
+                return Ok(());
+            }
+            let mut counters = self.counters.read(counter::COUNT as usize)?;
+            let mut grown = false;
+            let mut again = Vec::new();
+            let lists = match step {
+                Step::Traverse => {
+                    let mut lists = self.walk.lists();
+                    lists.push(&mut self.pairs);
+                    lists
+                }
+                _ => self.narrow.lists(step),
+            };
+            for list in lists {
+                grown |= list.grow(&self.device, &counters)?;
+                again.push(list.counter());
+            }
+            if !grown {
+                return Ok(());
+            }
+            self.reruns += 1;
+            if step == Step::Traverse {
+                // The first step: everything that was counted so far is its own.
+                self.counters.clear()?;
+            } else {
+                again.iter().for_each(|&at| counters[at as usize] = 0);
+                self.counters.write(&counters)?;
+            }
+        }
+    }
+
+    /// Whether a list of any step had too little room.
+    fn has_overflowed(&mut self, counters: &[u64]) -> bool {
+        let mut steps = self.narrow.steps().iter().chain(&[Step::Order]);
+        self.pairs.has_overflowed(counters)
+            || self.walk.lists().iter().any(|list| list.has_overflowed(counters))
+            || steps.any(|&step| self.narrow.lists(step).iter().any(|list| list.has_overflowed(counters)))
+    }
+
+    fn traverse(&mut self) -> Result<(), Error> {
+        self.walk.launch(&WalkContext {
+            device: &self.device,
+            bodies: &self.bodies,
+            faces: self.faces.span(),
+            pairs: self.pairs.span(),
+            ends: Span::EMPTY,
+            counters: self.counters.span(),
+            flags: flags(&self.query, self.bodies.len()),
+        })
+    }
+}
+
+impl<R: Precision, V: Kernels> Pipeline for TypedPipeline<R, V> {
+    fn place(&mut self, bodies: &[Body]) -> Result<(), Error> {
+        if let Narrow::Continuous(c) = &mut self.narrow {
+            c.below_precision = BelowPrecision::of(bodies, &self.query);
+        }
+        match &mut self.vertices {
+            Vertices::Still(buffer) => {
+                let mut points = Vec::with_capacity(buffer.len());
+                for body in bodies {
+                    points.extend(R::points(body.positions_t0()).map(Point::from));
+                }
+                buffer.write(&points)
+            }
+            Vertices::Moving(buffer) => {
+                let mut ends = Vec::with_capacity(buffer.len());
+                for body in bodies {
+                    let [t0, t1] = body.ends();
+                    let both = R::points(t0).zip(R::points(t1));
+                    ends.extend(both.map(|(t0, t1)| Ends { t0: t0.into(), t1: t1.into() }));
+                }
+                buffer.write(&ends)
+            }
+        }
+    }
+
+    fn construct(&mut self) -> Result<f64, Error> {
+        self.walk.invalidate();
+        let start = self.device.event()?;
+        let (frames, faces) = (self.frames(), self.faces.span());
+        self.bodies.iter_mut().try_for_each(|(tree, _)| tree.construct::<R>(&self.device, frames, faces))?;
+        let end = self.device.event()?;
+        self.bodies.iter_mut().try_for_each(|(tree, _)| tree.learn_levels())?;
+        start.to(&end)
+    }
+
+    fn frame(&mut self) -> Result<(Found<'_>, Stages), Error> {
+        let reruns = self.reruns;
+        let start = self.device.event()?;
+        self.run(Stage::Fit)?;
+        let fitted = self.device.event()?;
+        self.run(Stage::Refit)?;
+        let refitted = self.device.event()?;
+        loop {
+            self.counters.clear()?;
+            let begun = self.device.event()?;
+            self.run(Stage::Traverse)?;
+            let traversed = self.device.event()?;
+            self.run(Stage::Narrow)?;
+            let end = self.device.event()?;
+            self.run(Stage::Order)?;
+            let ordered = self.device.event()?;
+            self.read_ahead()?;
+            let counters = self.counters.read(counter::COUNT as usize)?;
+            if self.has_overflowed(&counters) {
+                // Some list, somewhere: find out step by step.
+                self.settled = false;
+                self.reruns += 1;
+                continue;
+            }
+            self.settled = true;
+            self.walk.finish(&counters)?;
+            let balance = self.walk.balance_ms()?;
+            let stages = Stages {
+                construct: 0.0,
+                fit: start.to(&fitted)?,
+                refit: fitted.to(&refitted)?,
+                traverse: begun.to(&traversed)? - balance,
+                balance,
+                narrow: traversed.to(&end)?,
+                order: if self.narrow.orders() { end.to(&ordered)? } else { 0.0 },
+                total: start.to(&end)?,
+                wall: 0.0,
+            };
+            self.last.clone_from(&counters);
+            return Ok((self.gather(counters, self.reruns - reruns)?, stages));
+        }
+    }
+
+    fn depths(&self) -> Vec<usize> {
+        self.bodies.iter().map(|(tree, _)| tree.depth()).collect()
+    }
+
+    fn reruns(&self) -> u64 {
+        self.reruns
+    }
+
+    fn fingerprints(&self) -> Result<Vec<(&'static str, u64)>, Error> {
+        let mut prints = Vec::new();
+        let (mut links, mut leaves, mut inner) = (Vec::new(), Vec::new(), Vec::new());
+        for (tree, volumes) in &self.bodies {
+            links.extend(tree.download()?);
+            for node in volumes.download()? {
+                if node.is_leaf() { leaves.push(node.volume) } else { inner.push(node.volume) }
+            }
+        }
+        prints.push(("construct", xxh3_64(bytemuck::cast_slice(&links))));
+        prints.push(("fit", xxh3_64(bytemuck::cast_slice(&leaves))));
+        prints.push(("refit", xxh3_64(bytemuck::cast_slice(&inner))));
+        let mut list = |name, list: &List<Pair>| -> Result<(), Error> {
+            let mut pairs = list.read(&self.last)?;
+            pairs.par_sort_unstable();
+            prints.push((name, xxh3_64(bytemuck::cast_slice(&pairs))));
+            Ok(())
+        };
+        list("traverse", &self.pairs)?;
+        // What an earliest query asks of a pair hangs on what it found before.
+        if self.query.motion != Motion::Earliest {
+            self.narrow.between().into_iter().try_for_each(|(name, pairs)| list(name, pairs))?;
+        }
+        Ok(prints)
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        let (faces, frames) = (self.faces.read(self.faces.len())?, self.positions()?);
+        self.bodies.iter().try_for_each(|(tree, volumes)| {
+            tree.check()?;
+            volumes.check(tree, &faces, &frames)
+        })
+    }
+}

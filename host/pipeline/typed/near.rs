@@ -1,0 +1,46 @@
+//! Volumes that were not told of the separation lose pairs within it, and that is noticed: the padding is not for show.
+
+use super::*;
+use crate::device::emulator::{Emulator, Mode};
+use crate::query::{Bv, Refit, Solver};
+use crate::samples::soup;
+use nearmiss_kernels::bv::{Aabb, Linear, Obb};
+
+/// How many pairs of random triangles certainly come within a tenth, with volumes that know of it or do not.
+fn certain<V: Kernels>(axes: Axes, refit: Refit, told: bool) -> usize {
+    let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
+    let bodies = [soup(60, 5, true)];
+    let query = Query {
+        solver: Some(Solver::CertifiedF64),
+        refit: Some(refit),
+        tolerance: Some(1e-3),
+        separation: Some(0.1),
+        ..Query::of(Motion::Continuous)
+    };
+    let layout = Layout::new(&bodies, true);
+    let mut pipeline =
+        TypedPipeline::<f32, V>::new(device, &bodies, &layout, (query, axes)).expect("a pipeline");
+    if !told {
+        pipeline.bodies.iter_mut().for_each(|(_, volumes)| volumes.grow = 0.0);
+    }
+    pipeline.construct().expect("trees");
+    let (found, _) = pipeline.frame().expect("a frame");
+    found.hits.iter().flat_map(Hits::each).flatten().filter(|hit| hit.verdict.is_contact()).count()
+}
+
+#[test]
+fn volumes_without_the_separation_lose_pairs() {
+    let all = certain::<Aabb>(Axes::PCA, Refit::Levels, true);
+    for refit in [Refit::Levels, Refit::Treelets, Refit::BottomUp] {
+        let counts = |told| {
+            [
+                certain::<Aabb>(Axes::PCA, refit, told),
+                certain::<Linear>(Axes::PCA, refit, told),
+                certain::<Obb>(Axes::PCA, refit, told),
+                certain::<Obb>(Axes::CHILD, refit, told),
+            ]
+        };
+        assert_eq!(counts(true), [all; Bv::ALL.len()], "{refit:?}");
+        assert!(counts(false).iter().all(|count| *count < all), "{refit:?}: {:?} of {all}", counts(false));
+    }
+}

@@ -1,0 +1,81 @@
+//! One stage again and again, on what the last frame left: for profilers and for figures of one stage.
+
+use super::{Pipeline, TypedPipeline};
+use crate::error::Error;
+use crate::pipeline::narrow::Step;
+use crate::pipeline::precision::Precision;
+use crate::pipeline::timing::Stage;
+use crate::pipeline::volumes::Kernels;
+use nearmiss_kernels::abi::counter;
+
+/// Stages again, on what the last frame left.
+pub trait Again {
+    /// Milliseconds of each of `times` runs of a stage. What it reads must be there: volumes of the leaves for `Refit`,
+    /// a whole frame for `Traverse`, `Narrow` and `Order`. See [`crate::pipeline::Session::repeat_stage`].
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn repeat(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error>;
+    /// The narrow stage once more, step by step: names and milliseconds. See
+    /// [`crate::pipeline::Session::narrow_steps`].
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn narrow_steps(&mut self) -> Result<Vec<(&'static str, f64)>, Error>;
+}
+
+impl<R: Precision, V: Kernels> Again for TypedPipeline<R, V> {
+    fn repeat(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
+        if stage == Stage::Construct {
+            return (0..times).map(|_| self.construct()).collect();
+        }
+        if stage == Stage::Order && !self.narrow.orders() {
+            return Ok(Vec::new());
+        }
+        let counters = self.counters_before(stage);
+        if stage == Stage::Traverse {
+            // A walk that goes on from the frame's own end may need other lists: they grow outside of the clock.
+            self.settled = false;
+            self.counters.write(&counters)?;
+            self.run(stage)?;
+            self.settled = true;
+        }
+        let mut ms = Vec::new();
+        for _ in 0..times {
+            if matches!(stage, Stage::Traverse | Stage::Narrow | Stage::Order) {
+                self.counters.write(&counters)?;
+            }
+            let start = self.device.event()?;
+            self.run(stage)?;
+            ms.push(start.to(&self.device.event()?)?);
+        }
+        Ok(ms)
+    }
+
+    fn narrow_steps(&mut self) -> Result<Vec<(&'static str, f64)>, Error> {
+        let counters = self.counters_before(Stage::Narrow);
+        self.counters.write(&counters)?;
+        let mut all = Vec::new();
+        for &step in self.narrow.steps() {
+            let start = self.device.event()?;
+            self.step(step)?;
+            all.push((step.name(), start.to(&self.device.event()?)?));
+        }
+        Ok(all)
+    }
+}
+
+impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
+    /// The counters that a stage begins with: those of the last frame, without what the stage itself counted.
+    fn counters_before(&mut self, stage: Stage) -> Vec<u64> {
+        let mut counters = vec![0; counter::COUNT as usize];
+        if matches!(stage, Stage::Narrow | Stage::Order) {
+            counters.clone_from(&self.last);
+            let steps = if stage == Stage::Order { &[] } else { self.narrow.steps() };
+            for &step in steps.iter().chain(&[Step::Order]) {
+                self.narrow.lists(step).iter().for_each(|list| counters[list.counter() as usize] = 0);
+            }
+        }
+        counters
+    }
+}

@@ -1,0 +1,356 @@
+//! A block of the card: each thread runs the kernel for its own lane.
+
+use super::coherent::{compare_and_swap, fence, load_coherent, store_coherent};
+use super::raw::{
+    BROADCAST, address, atomic, barrier_or, element, load_global, load_shared32, load_shared64, load_word,
+    match_any, scratch_address, shuffle_up, store_shared32, store_shared64, store_word, sync_threads,
+    sync_warp, warp_any, warp_sum,
+};
+use crate::abi::Span;
+use crate::exec::{BINS, Block, Lane, Shared, Slot, WARP, Word};
+use bytemuck::Pod;
+use core::arch::asm;
+use core::arch::nvptx::{
+    _block_dim_x as block_dim_x, _block_idx_x as block_idx_x, _grid_dim_x as grid_dim_x,
+    _thread_idx_x as thread_idx_x,
+};
+use core::mem::MaybeUninit;
+use core::sync::atomic::Ordering::Relaxed;
+
+/// A panic stops the launch: the host sees an error, never half an answer.
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo) -> ! {
+    // SAFETY: ends the launch.
+    unsafe { core::arch::nvptx::trap() }
+}
+
+/// The block that this thread belongs to.
+pub struct Gpu {
+    /// Bytes of shared memory given out.
+    taken: u32,
+    lane: Thread,
+}
+
+/// This thread, as a lane.
+#[derive(Clone, Copy)]
+pub struct Thread {
+    lane: u32,
+    global: u32,
+}
+
+/// A value of this thread: a register.
+pub struct Register<T>(T);
+
+impl<T> Slot<T, Thread> for Register<T> {
+    #[inline(always)]
+    fn of(&mut self, _: &Thread) -> &mut T {
+        &mut self.0
+    }
+}
+
+impl Lane for Thread {
+    #[inline(always)]
+    fn lane(&self) -> u32 {
+        self.lane
+    }
+    #[inline(always)]
+    fn global(&self) -> u32 {
+        self.global
+    }
+    #[inline(always)]
+    fn read<T: Pod>(&self, span: Span<T>, i: u32) -> T {
+        // SAFETY: as for `atomic`; nobody writes it in this phase, which the emulator's race watch checks.
+        unsafe { load_global(element(span, i)) }
+    }
+    #[inline(always)]
+    fn write<T: Pod>(&self, span: Span<T>, i: u32, value: T) {
+        // SAFETY: as for `read`; nobody else touches it in this phase.
+        unsafe { element(span, i).write(value) }
+    }
+    #[inline(always)]
+    fn fetch_max(&self, span: Span<u64>, i: u32, value: u64) {
+        atomic(span, i).fetch_max(value, Relaxed);
+    }
+    #[inline(always)]
+    fn fetch_min(&self, span: Span<u64>, i: u32, value: u64) {
+        atomic(span, i).fetch_min(value, Relaxed);
+    }
+    #[inline(always)]
+    fn fetch_add(&self, span: Span<u64>, i: u32, value: u64) -> u64 {
+        atomic(span, i).fetch_add(value, Relaxed)
+    }
+    #[inline(always)]
+    fn fetch_load(&self, span: Span<u64>, i: u32) -> u64 {
+        self.take(span, i)
+    }
+    #[inline(always)]
+    fn exchange(&self, span: Span<u64>, i: u32, value: u64) -> u64 {
+        atomic(span, i).swap(value, Relaxed)
+    }
+    #[inline(always)]
+    fn compare_exchange(&self, span: Span<u64>, i: u32, current: u64, new: u64) -> u64 {
+        // SAFETY: as for `atomic`.
+        unsafe { compare_and_swap(element(span, i), current, new) }
+    }
+    #[inline(always)]
+    fn store_relaxed<T: Pod>(&self, span: Span<T>, i: u32, value: T) {
+        // SAFETY: as for `atomic`.
+        unsafe { store_coherent(element(span, i), value) }
+    }
+    #[inline(always)]
+    fn load_relaxed<T: Pod>(&self, span: Span<T>, i: u32) -> T {
+        // SAFETY: as for `atomic`.
+        unsafe { load_coherent(element(span, i)) }
+    }
+    #[inline(always)]
+    fn fence(&self) {
+        fence();
+    }
+    #[inline(always)]
+    fn any(&self, mine: bool) -> bool {
+        warp_any(mine)
+    }
+    #[inline(always)]
+    fn meet(&self) {
+        sync_warp();
+    }
+    #[inline(always)]
+    fn get<T: Word>(&self, words: Shared<T>, i: u32) -> T {
+        load_word(address(words, i))
+    }
+    #[inline(always)]
+    fn put<T: Word>(&self, words: Shared<T>, i: u32, value: T) {
+        store_word(address(words, i), value);
+    }
+    #[inline(always)]
+    fn shared_add(&self, words: Shared<u32>, i: u32, value: u32) -> u32 {
+        let r: u32;
+        // SAFETY: as for `load_shared32`.
+        unsafe {
+            asm!("atom.shared.add.u32 {r}, [{at}], {v};",
+                r = lateout(reg32) r, at = in(reg32) address(words, i), v = in(reg32) value)
+        };
+        r
+    }
+    #[inline(always)]
+    fn shared_max(&self, words: Shared<u64>, i: u32, value: u64) {
+        // SAFETY: as for `load_shared32`.
+        unsafe {
+            asm!("red.shared.max.u64 [{at}], {v};", at = in(reg32) address(words, i), v = in(reg64) value)
+        };
+    }
+    #[inline(always)]
+    fn shared_min(&self, words: Shared<u64>, i: u32, value: u64) {
+        // SAFETY: as for `load_shared32`.
+        unsafe {
+            asm!("red.shared.min.u64 [{at}], {v};", at = in(reg32) address(words, i), v = in(reg64) value)
+        };
+    }
+    #[inline(always)]
+    fn shared_cas(&self, words: Shared<u32>, i: u32, current: u32, new: u32) -> u32 {
+        let r: u32;
+        // SAFETY: as for `load_shared32`.
+        unsafe {
+            asm!("atom.shared.cas.b32 {r}, [{at}], {c}, {n};", r = lateout(reg32) r,
+                at = in(reg32) address(words, i), c = in(reg32) current, n = in(reg32) new)
+        };
+        r
+    }
+}
+
+impl Gpu {
+    /// This thread's block.
+    ///
+    /// # Safety
+    /// Once a kernel, at its start: shared memory is given out from the beginning.
+    #[inline(always)]
+    pub unsafe fn new() -> Self {
+        // SAFETY: reads special registers.
+        let (lane, global) = unsafe {
+            (thread_idx_x() as u32, block_idx_x() as u32 * block_dim_x() as u32 + thread_idx_x() as u32)
+        };
+        Gpu { taken: 0, lane: Thread { lane, global } }
+    }
+    /// A lane's value for all: lane 0 computes it.
+    #[inline(always)]
+    fn broadcast(&self, value: impl FnOnce() -> u64) -> u64 {
+        sync_warp();
+        if self.lane.lane == 0 {
+            store_shared64(scratch_address(BROADCAST), value());
+        }
+        sync_threads();
+        let value = load_shared64(scratch_address(BROADCAST));
+        sync_threads();
+        value
+    }
+}
+
+impl Block for Gpu {
+    type Lane = Thread;
+    type Slot<T: Copy> = Register<T>;
+
+    #[inline(always)]
+    fn block(&self) -> u32 {
+        // SAFETY: reads a special register.
+        unsafe { block_idx_x() as u32 }
+    }
+    #[inline(always)]
+    fn blocks(&self) -> u32 {
+        // SAFETY: reads a special register.
+        unsafe { grid_dim_x() as u32 }
+    }
+    #[inline(always)]
+    fn lanes(&self) -> u32 {
+        // SAFETY: reads a special register.
+        unsafe { block_dim_x() as u32 }
+    }
+    #[inline(always)]
+    fn shared<T: Word>(&mut self, len: u32) -> Shared<T> {
+        let offset = self.taken.next_multiple_of(8);
+        self.taken = offset + len * size_of::<T>() as u32;
+        Shared::at(offset, len)
+    }
+    #[inline(always)]
+    fn slot<T: Copy>(&self, init: T) -> Register<T> {
+        Register(init)
+    }
+    #[inline(always)]
+    fn words<const N: usize>(&self) -> Register<[MaybeUninit<u32>; N]> {
+        Register([const { MaybeUninit::uninit() }; N])
+    }
+    #[inline(always)]
+    fn phase(&mut self, mut body: impl FnMut(&Thread)) {
+        body(&self.lane);
+        sync_threads();
+    }
+    #[inline(always)]
+    fn load<T: Pod>(&self, span: Span<T>, i: u32) -> T {
+        self.lane.read(span, i)
+    }
+    #[inline(always)]
+    fn peek<T: Word>(&mut self, words: Shared<T>, i: u32) -> T {
+        let value = self.lane.get(words, i);
+        sync_threads();
+        value
+    }
+    #[inline(always)]
+    fn any(&mut self, values: &mut Register<bool>) -> bool {
+        sync_warp();
+        // SAFETY: called by all threads of the block.
+        unsafe { barrier_or(0, values.0) }
+    }
+    #[inline(always)]
+    fn scan(&mut self, values: &mut Register<u32>) -> u32 {
+        let (lane, warp) = (self.lane.lane % WARP, self.lane.lane / WARP);
+        let mut sum = values.0;
+        let mut delta = 1;
+        sync_warp();
+        while delta < WARP {
+            let before = shuffle_up(sum, delta);
+            if lane >= delta {
+                sum += before;
+            }
+            delta *= 2;
+        }
+        if lane == WARP - 1 {
+            store_shared32(scratch_address(4 * warp), sum);
+        }
+        sync_threads();
+        // A lane for each of the warps, 32 at most.
+        let there = lane < self.lanes().div_ceil(WARP);
+        let of_warp = if there { load_shared32(scratch_address(4 * lane)) } else { 0 };
+        sync_warp();
+        let before = warp_sum(if lane < warp { of_warp } else { 0 });
+        let total = warp_sum(of_warp);
+        sync_threads();
+        values.0 = before + sum - values.0;
+        total
+    }
+    #[inline(always)]
+    fn reserve(&mut self, counter: Span<u64>, i: u32, count: u64) -> u64 {
+        if count == 0 {
+            return 0;
+        }
+        self.broadcast(|| self.lane.fetch_add(counter, i, count))
+    }
+    #[inline(always)]
+    fn reserve_both(&mut self, counters: Span<u64>, at: [u32; 2], counts: [u64; 2]) -> [u64; 2] {
+        if counts[0] | counts[1] == 0 {
+            return [0; 2];
+        }
+        let lane = self.lane.lane;
+        sync_warp();
+        // A lane each.
+        if lane < 2 {
+            let (at, count) = if lane == 0 { (at[0], counts[0]) } else { (at[1], counts[1]) };
+            let start = if count > 0 { self.lane.fetch_add(counters, at, count) } else { 0 };
+            store_shared64(scratch_address(BROADCAST + 8 * lane), start);
+        }
+        sync_threads();
+        let starts = [0, 8].map(|other| load_shared64(scratch_address(BROADCAST + other)));
+        sync_threads();
+        starts
+    }
+    #[inline(always)]
+    fn ticket(&mut self, counter: Span<u64>, i: u32) -> u64 {
+        // The barrier at the end of the phase before puts the other lanes' gives before lane 0's fence, which with its
+        // atomic releases them all; atomic and fence acquire, and the broadcast's barrier passes that on to all lanes.
+        self.broadcast(|| {
+            fence();
+            let ticket = self.lane.fetch_add(counter, i, 1);
+            fence();
+            ticket
+        })
+    }
+    #[inline(always)]
+    fn ranks<const K: usize>(
+        &mut self,
+        digits: &mut Register<[u32; K]>,
+        bins: Shared<u32>,
+        scratch: Shared<u32>,
+    ) {
+        let (lane, warp) = (self.lane.lane % WARP, self.lane.lane / WARP);
+        let (lanes, warps) = (self.lanes(), self.lanes() / WARP);
+        let at = |w: u32, bin: u32| address(scratch, w * BINS + bin);
+        let mut bin = lane;
+        while bin < BINS {
+            store_shared32(at(warp, bin), 0);
+            bin += WARP;
+        }
+        sync_warp();
+        // Each warp counts by itself, an item a lane after the other: where its items lie among its own.
+        let mut before = [0; K];
+        for k in 0..K {
+            let digit = digits.0[k];
+            let alike = match_any(digit);
+            let lower = (alike & ((1 << lane) - 1)).count_ones();
+            let counted = digit < BINS;
+            let taken = if counted { load_shared32(at(warp, digit)) } else { 0 };
+            sync_warp();
+            if counted && lower == 0 {
+                store_shared32(at(warp, digit), taken + alike.count_ones());
+            }
+            sync_warp();
+            before[k] = taken + lower;
+        }
+        sync_threads();
+        let mut bin = self.lane.lane;
+        while bin < BINS {
+            let mut next = load_shared32(address(bins, bin));
+            for w in 0..warps {
+                let count = load_shared32(at(w, bin));
+                store_shared32(at(w, bin), next);
+                next += count;
+            }
+            store_shared32(address(bins, bin), next);
+            bin += lanes;
+        }
+        sync_threads();
+        for k in 0..K {
+            if digits.0[k] < BINS {
+                digits.0[k] = load_shared32(at(warp, digits.0[k])) + before[k];
+            }
+        }
+        sync_threads();
+    }
+}

@@ -1,0 +1,171 @@
+//! # Sift: triangle pairs → vertex/face and edge/edge candidates
+//! Paper    section 6.2.5, "each of the 15 elementary vertex/face and edge/edge tests".
+//! Launch   a lane a triangle pair; a grid of any size strides.
+//! Reads    candidates (pairs that share a vertex among them), facets, positions of both frames.
+//! Writes   those vertex/face and edge/edge pairs whose boxes come within the gap, each once.
+//! Before   every pair of triangles that come within the gap is listed, adjacent ones too.
+//! After    every vertex/face and edge/edge pair without a common vertex that comes within the gap is listed.
+//!          Why once: each vertex and each edge is owned by one of its triangles, and a pair of features is tested only
+//!          where owners meet. Why none is lost: a feature lies in its owner, so what comes within the gap of another brings
+//!          the owners as near, and that pair of triangles, adjacent or not, is in the list. Boxes are those of the part of
+//!          the step in which the boxes around the two triangles, moving with them, meet: outside of it no feature of one
+//!          can meet one of the other.
+//! Room     vf, ee: counted past the end, grown, run again.
+//! Departs  the paper tests all 15 for every pair; owners (representative triangles: Curtis, Tamstorf, Manocha, "Fast
+//!          collision detection for deformable models using representative-triangles", 2008) leave about 3, shorter sweeps
+//!          about 1.
+//! Cost     8 B pair, 64 B facets, 192 B positions (gathered); some 500 operations, half of them for the 15 tests, without
+//!          branches; on a CPU in vectors. What is to be listed is numbered in shared memory first, so that all lanes write.
+
+use super::{listed, triangle};
+use crate::abi::{Facet, FeaturesArgs, Pair, Span, counter};
+use crate::exec::{Block, Lane, RowMap, Slot};
+use crate::math::Real;
+use crate::prim::sweep::{Corners, MOST, meeting, more};
+
+/// Bits of the tests that two triangles own: 0 to 2 a vertex of p and q, 3 to 5 a vertex of q and p, 6 + 3 i + j edge i of p
+/// and j of q; none of features that share a vertex.
+#[inline(always)]
+fn owned(p: &Facet, q: &Facet) -> u32 {
+    // Bit j of row i: corner i of p is corner j of q.
+    let row = |i: usize| {
+        let same = |j: usize| ((p.corners[i] == q.corners[j]) as u32) << j;
+        same(0) | same(1) | same(2)
+    };
+    let rows = [row(0), row(1), row(2)];
+    let (of_p, of_q) = (p.owned, q.owned);
+    let mut mask = of_q & 7 & !(rows[0] | rows[1] | rows[2]);
+    mask <<= 3;
+    for i in 0..3 {
+        mask |= if rows[i] == 0 { of_p & 1 << i } else { 0 };
+        // Corners of q on edge i of p; edge j of q joins corners j and j + 1.
+        let on = rows[i] | rows[(i + 1) % 3];
+        let free = of_q >> 3 & !(on | on >> 1 | on << 2) & 7;
+        mask |= if of_p >> (3 + i) & 1 == 1 { free << (6 + 3 * i) } else { 0 };
+    }
+    mask
+}
+
+/// Which tests of two triangles have features whose boxes come within a gap.
+struct Meeting<R> {
+    gap: R,
+}
+
+impl<R: Real> RowMap for Meeting<R> {
+    type Number = R;
+    type Row = [Corners<R>; 2];
+    #[inline(always)]
+    fn at_once(&self, [p, q]: [Corners<R>; 2]) -> u32 {
+        meeting(&p, &q, self.gap)
+    }
+}
+
+/// Numbers of tests of a lane, with one to spare.
+const TESTS: u32 = 16;
+
+/// Bytes of shared memory of a block: a number of each test that is to be listed.
+pub const fn shared_bytes(lanes: u32) -> u32 {
+    4 * MOST * lanes
+}
+
+/// Bits of [`owned`] that are vertices and faces.
+const VERTICES: u32 = 63;
+/// Counts of both kinds in one word: at most 15 a lane, so blocks of up to 1,024 lanes stay within 16 bits.
+const EE: u32 = 1 << 16;
+
+/// Vertex/face and edge/edge candidates of each triangle pair.
+pub fn features<R: Real, B: Block>(b: &mut B, a: &FeaturesArgs<R>) {
+    let count = listed(b, a.pairs, a.counters, counter::PAIRS);
+    let (lanes, map) = (b.lanes(), Meeting { gap: more(a.gap) });
+    let tests = b.shared::<u32>(MOST * lanes);
+    let mut masks = b.slot(0u32);
+    let mut places = b.slot(0u32);
+    let mut base = b.block() * lanes;
+    while base < count {
+        b.map_rows(
+            &map,
+            |l| {
+                let i = base + l.lane();
+                if i >= count {
+                    return None;
+                }
+                let pair = l.read(a.pairs, i);
+                let (p, q) = (l.read(a.facets, pair.a), l.read(a.facets, pair.b));
+                Some((owned(&p, &q), p.corners, q.corners))
+            },
+            |l, (_, p, q)| Some([triangle(l, &a.frames, p), triangle(l, &a.frames, q)]),
+            |l, told| {
+                let mask = told.map_or(0, |((owned, ..), meeting)| owned & meeting);
+                *masks.of(l) = mask;
+                *places.of(l) = (mask & VERTICES).count_ones() + EE * (mask & !VERTICES).count_ones();
+                l.meet();
+            },
+        );
+        let total = b.scan(&mut places);
+        let (vf, ee) = (total % EE, total / EE);
+        let starts = b.reserve_both(a.counters, [counter::VF, counter::EE], [vf.into(), ee.into()]);
+        // Which lane's test each candidate is: written by few lanes that have many, read by all.
+        b.phase(|l| {
+            let (mut mask, before) = (*masks.of(l), *places.of(l));
+            let (mut next_vf, mut next_ee) = (before % EE, vf + before / EE);
+            while mask != 0 {
+                let k = mask.trailing_zeros();
+                mask &= mask - 1;
+                let next = if k < 6 { &mut next_vf } else { &mut next_ee };
+                l.put(tests, *next, l.lane() * TESTS + k);
+                *next += 1;
+            }
+            l.meet();
+        });
+        b.phase(|l| {
+            let mut i = l.lane();
+            while i < vf + ee {
+                let test = l.get(tests, i);
+                let pair = l.read(a.pairs, base + test / TESTS);
+                if i < vf {
+                    put(l, a.vf, starts[0] + i as u64, vertex_and_face(l, a, pair, test % TESTS));
+                } else {
+                    put(l, a.ee, starts[1] + (i - vf) as u64, two_edges(l, a, pair, test % TESTS - 6));
+                }
+                i += lanes;
+            }
+            l.meet();
+        });
+        base += b.blocks() * lanes;
+    }
+}
+
+/// Test 0 to 5: a vertex of the first triangle and the second, or the other way round.
+#[inline(always)]
+fn vertex_and_face<R: Real, L: Lane>(l: &L, a: &FeaturesArgs<R>, pair: Pair, test: u32) -> Pair {
+    let (of, face, k) = if test < 3 { (pair.a, pair.b, test) } else { (pair.b, pair.a, test - 3) };
+    Pair { a: pick(l.read(a.facets, of).corners, k), b: face }
+}
+
+/// Test 6 to 14, less 6: an edge of each.
+#[inline(always)]
+fn two_edges<R: Real, L: Lane>(l: &L, a: &FeaturesArgs<R>, pair: Pair, test: u32) -> Pair {
+    let edge = |of: u32, k: u32| pick(l.read(a.facets, of).edges, k);
+    let (x, y) = (edge(pair.a, test / 3), edge(pair.b, test % 3));
+    Pair { a: x.min(y), b: x.max(y) }
+}
+
+/// One of three, without memory.
+#[inline(always)]
+fn pick([x, y, z]: [u32; 3], k: u32) -> u32 {
+    if k == 0 {
+        x
+    } else if k == 1 {
+        y
+    } else {
+        z
+    }
+}
+
+/// Writes one candidate where there is room.
+#[inline(always)]
+fn put<L: Lane>(l: &L, list: Span<Pair>, place: u64, pair: Pair) {
+    if place < list.len() {
+        l.write(list, place as u32, pair);
+    }
+}

@@ -1,0 +1,190 @@
+//! Questions with known answers, and ways to ask them.
+
+use super::judge::{Judge, Truth};
+use super::row::Row;
+use crate::case::{Case, Features};
+use crate::oracle::first_contact;
+use crate::pairs::built::{Built, built};
+use crate::pairs::{Options, Stored, ask, mean_edge};
+use nearmiss::device::Device;
+use nearmiss::error::Error;
+use nearmiss::query::{Motion, Query, Solver};
+use rayon::prelude::*;
+
+/// Cases whose answers are known.
+pub struct Input {
+    /// What they are.
+    pub name: String,
+    /// How the answers are known.
+    pub reference: &'static str,
+    /// The questions.
+    pub cases: Vec<Case>,
+    /// Their answers.
+    pub truths: Vec<Truth>,
+    /// Their mean edge.
+    pub edge: f64,
+}
+
+/// One way to ask.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Choice {
+    /// The test.
+    pub solver: Solver,
+    /// In mean edges; `None` where the solver takes none.
+    pub tolerance: Option<f64>,
+}
+
+impl Choice {
+    /// Every solver of that motion, with every tolerance where it takes one.
+    pub fn every(motion: Motion, tolerances: &[f64]) -> Vec<Choice> {
+        let of = |solver: Solver| -> Vec<Choice> {
+            match solver.is_certified() {
+                true => tolerances.iter().map(|&t| Choice { solver, tolerance: Some(t) }).collect(),
+                false => vec![Choice { solver, tolerance: None }],
+            }
+        };
+        Solver::ALL.into_iter().filter(|solver| solver.answers(motion)).flat_map(of).collect()
+    }
+
+    /// The query, of bodies or cases with such a mean edge.
+    pub fn query(&self, motion: Motion, edge: f64) -> Query {
+        let tolerance = self.tolerance.map(|edges| edges * edge);
+        Query { solver: Some(self.solver), tolerance, ..Query::of(motion) }
+    }
+}
+
+impl std::fmt::Display for Choice {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str(self.solver.name())?;
+        self.tolerance.map_or(Ok(()), |edges| write!(f, " at {edges:.0e}"))
+    }
+}
+
+impl Input {
+    /// Cases whose first times the oracle finds: exact rational arithmetic, about a millisecond a case. What else is known of
+    /// each, by when it has met if it meets, must not contradict it.
+    ///
+    /// # Errors
+    /// [`Error::Choice`] for a case that is not as it is said to be.
+    pub fn new(name: &str, cases: Vec<Case>, meet: &[Option<f64>]) -> Result<Input, Error> {
+        let truths: Vec<Truth> = cases.par_iter().map(truth).collect();
+        let differs = |(truth, meet): (&Truth, &Option<f64>)| match (truth, meet) {
+            (Truth::Meet { by, .. }, Some(known)) => by > known,
+            (Truth::Apart, None) => false,
+            _ => true,
+        };
+        if let Some(at) = truths.iter().zip(meet).position(differs) {
+            return Err(Error::Choice {
+                what: format!(
+                    "{name}: query {} is said to meet: {:?}; exactly: {:?}",
+                    at + 1,
+                    meet[at],
+                    truths[at]
+                ),
+                advice: "mend the column that says whether queries meet".into(),
+            });
+        }
+        let edge = mean_edge(&cases);
+        Ok(Input { name: name.into(), reference: "exact", cases, truths, edge })
+    }
+
+    /// The built-in generators'.
+    ///
+    /// # Errors
+    /// As for [`Input::new`]: a fault of the generator.
+    pub fn built(name: &str, all: Vec<Built>) -> Result<Input, Error> {
+        let meet: Vec<Option<f64>> = all.iter().map(|b| b.toi).collect();
+        let cases = all.into_iter().map(|b| b.case).collect();
+        Input::new(name, cases, &meet)
+    }
+
+    /// The same questions with every coordinate put through `of`, which must not change the answers.
+    pub fn with(&self, name: String, of: impl Fn(f64) -> f64 + Sync) -> Input {
+        let moved = |points: &[[f64; 3]; 4]| points.map(|p| p.map(&of));
+        let case = |case: &Case| Case {
+            features: case.features,
+            positions_t0: moved(&case.positions_t0),
+            positions_t1: moved(&case.positions_t1),
+        };
+        let cases: Vec<Case> = self.cases.par_iter().map(case).collect();
+        let edge = mean_edge(&cases);
+        Input { name, reference: self.reference, cases, truths: self.truths.clone(), edge }
+    }
+
+    /// Asks in one way; a row.
+    ///
+    /// # Errors
+    /// Those of [`ask`].
+    pub fn row(&self, device: &Device, choice: Choice, stored: Stored, repeats: u32) -> Result<Row, Error> {
+        let query = choice.query(Motion::Continuous, self.edge);
+        let answers = ask(device, &self.cases, &query, Options { filters: true, stored, repeats })?;
+        let mut judge = Judge::new(choice.solver, query.tolerance.unwrap_or(0.0), self.edge);
+        for ((case, truth), met) in self.cases.iter().zip(&self.truths).zip(&answers.verdicts) {
+            judge.note(case, *truth, *met);
+        }
+        let row = Row {
+            input: self.name.clone(),
+            reference: self.reference,
+            tolerance_edges: choice.tolerance,
+            tolerance: query.tolerance,
+            precision: if stored == Stored::F32 { "f32" } else { "f64" },
+            escalated: answers.escalated.iter().sum(),
+            ns: Some(answers.ns()),
+            bytes: answers.bytes,
+            ..Row::default()
+        };
+        Ok(row.judged(choice.solver, &judge.judged()))
+    }
+}
+
+/// What the oracle says.
+pub fn truth(case: &Case) -> Truth {
+    match first_contact(case) {
+        None => Truth::Apart,
+        Some(toi) => {
+            // A time is late if it is after the largest f64 that is not after the first contact, and a certificate is
+            // false if it ends before the smallest that is not before it.
+            let (low, high) = toi.bracket();
+            Truth::Meet { not_before: high, by: low }
+        }
+    }
+}
+
+/// Contacts and near misses of the built-in generator, of small, middling and wide integers: the second are the widest that
+/// f32 holds.
+///
+/// # Errors
+/// As for [`Input::new`].
+pub fn built_in(n: usize, seed: u64) -> Result<Vec<Input>, Error> {
+    use crate::pairs::built::{REACH_F32, REACH_F64};
+    [("built, small", 8), ("built, to 2^24", REACH_F32), ("built, to 2^52", REACH_F64 / 32)]
+        .into_iter()
+        .map(|(name, reach)| Input::built(name, built(seed, n, reach)))
+        .collect()
+}
+
+/// Query files, all vertex/face queries together and all edge/edge queries.
+///
+/// # Errors
+/// Those of reading, and of [`Input::new`].
+pub fn query_files(root: &std::path::Path) -> Result<Vec<Input>, Error> {
+    let all = super::queries::queries(root)?;
+    let mut inputs = Vec::new();
+    for (name, features) in
+        [("queries, vertex/face", Features::VertexFace), ("queries, edge/edge", Features::EdgeEdge)]
+    {
+        let (mut cases, mut meet) = (Vec::new(), Vec::new());
+        for folder in &all {
+            for (case, &meets) in folder.cases.iter().zip(&folder.meets) {
+                if case.features == features {
+                    cases.push(*case);
+                    meet.push(meets.then_some(1.0));
+                }
+            }
+        }
+        if !cases.is_empty() {
+            inputs.push(Input::new(name, cases, &meet)?);
+        }
+    }
+    Ok(inputs)
+}

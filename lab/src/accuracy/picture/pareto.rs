@@ -1,0 +1,165 @@
+//! What to choose: time against what it buys, a mark a choice. Choices that can give wrong answers are hollow, with the
+//! counts of those they gave; of the others those are named that no other beats in both.
+
+use super::Quantity;
+use super::axis::Axis;
+use super::chart::{COLOURS, frame};
+use crate::accuracy::row::Row;
+use crate::tables::picture::{At, Drawn, FAINT, INK, LEFT, Sheet, head_height, sheet};
+use nearmiss::error::Error;
+use nearmiss::query::Solver;
+use plotters::style::RGBColor;
+
+/// Height of a frame, of what a panel has besides, and where frames end.
+const FRAME: i32 = 220;
+const PANEL: i32 = 84;
+const END: i32 = 700;
+
+/// One mark.
+struct Event<'a> {
+    row: &'a Row,
+    x: f64,
+    y: f64,
+}
+
+/// The quantities: less is better.
+const QUANTITIES: [Quantity; 2] = [
+    ("false alarms, per million pairs", |row| row.false_alarms as f64 * 1e6 / row.cases.max(1) as f64),
+    ("99 % of times early by at most, in mean edges", |row| row.early_edges_p99),
+];
+
+/// The picture: of whole scenes milliseconds a frame, of single questions nanoseconds a pair. A panel an input and quantity.
+///
+/// # Errors
+/// [`Error::Bug`] where it cannot be drawn.
+pub fn pareto(device: &str, rows: &[Row]) -> Result<String, Error> {
+    let inputs = rows.chunk_by(|a, b| a.input == b.input).filter(|rows| rows.len() > 2);
+    // A panel of zeros tells nothing.
+    let tells = |(rows, (_, of)): &(&[Row], Quantity)| rows.iter().any(|row| of(row) > 0.0);
+    let panels: Vec<(&[Row], Quantity)> =
+        inputs.flat_map(|rows| QUANTITIES.map(|quantity| (rows, quantity))).filter(tells).collect();
+    sheet(head_height(3) + (FRAME + PANEL) * panels.len() as i32, |sheet| {
+        let hollow = "hollow: can miss and be late, and how many missed + late; named: cannot, and none better in both";
+        let notes = [(format!("nearmiss on {device}"), INK), (hollow.into(), FAINT), (String::new(), INK)];
+        let mut y = sheet.head("What to choose: left is faster, lower is better", &notes)?;
+        legend(sheet, y - 18)?;
+        for (rows, quantity) in panels {
+            panel(sheet, rows, quantity, y)?;
+            y += FRAME + PANEL;
+        }
+        Ok(())
+    })
+}
+
+/// A solver's colour.
+fn colour(solver: Solver) -> RGBColor {
+    let place = Solver::ALL.iter().position(|of| *of == solver).unwrap_or(0);
+    COLOURS[place % COLOURS.len()]
+}
+
+/// The solvers' colours, in a line.
+fn legend(sheet: &Sheet, y: i32) -> Drawn {
+    let mut x = 24;
+    for solver in Solver::ALL {
+        let name = solver.name();
+        sheet.dot((x, y), 5, colour(solver), solver.is_certain())?;
+        sheet.text(&name, (x + 10, y), 12, At::Left, INK)?;
+        x += 34 + 7 * name.len() as i32;
+    }
+    Ok(())
+}
+
+/// Whether answers may be relied on: by proof, and not by these counts alone, which must not speak against it.
+fn is_sure(row: &Row) -> bool {
+    row.solver.is_certain() && !row.is_wrong()
+}
+
+/// Those to rely on that no other such beats in both.
+fn best<'a>(marks: &'a [Event]) -> impl Iterator<Item = &'a Event<'a>> {
+    let right = |mark: &&Event| is_sure(mark.row);
+    let beaten = move |mark: &Event| {
+        let others = marks.iter().filter(right);
+        others.into_iter().any(|o| o.x <= mark.x && o.y <= mark.y && (o.x < mark.x || o.y < mark.y))
+    };
+    marks.iter().filter(right).filter(move |mark| !beaten(mark))
+}
+
+fn panel(sheet: &Sheet, rows: &[Row], (what, of): Quantity, top: i32) -> Drawn {
+    let frames = rows.iter().any(|row| row.ms.is_some());
+    let time = |row: &Row| if frames { row.ms } else { row.ns };
+    // How positions of single questions are stored changes no answer: such a mark would hide another.
+    let drawn = rows.iter().filter(|row| row.bv.is_some() || row.precision == "f64");
+    let marks: Vec<Event> = drawn.filter_map(|row| Some(Event { row, x: time(row)?, y: of(row) })).collect();
+    let (xs, ys): (Vec<f64>, Vec<f64>) = marks.iter().map(|m| (m.x, m.y)).unzip();
+    sheet.bold(&format!("{}: {what}", rows[0].input), (20, top + 12), 14)?;
+    let (first, last) = (top + 30, top + 30 + FRAME);
+    let at = frame(
+        sheet,
+        (&Axis::of(xs.into_iter()), &Axis::of(ys.into_iter())),
+        [(LEFT / 2, first), (END, last)],
+    )?;
+    let unit = if frames { "ms a frame" } else { "ns a pair" };
+    sheet.text(unit, ((LEFT / 2 + END) / 2, last + 28), 12, At::Middle, FAINT)?;
+    for mark in &marks {
+        let (x, y) = at((mark.x, mark.y));
+        let sure = is_sure(mark.row);
+        sheet.dot((x, y), if sure { 5 } else { 6 }, colour(mark.row.solver), sure)?;
+        if !sure {
+            let Row { missed, late, .. } = mark.row;
+            let label = format!("{}: {missed} + {late}", mark.row.choice());
+            sheet.text(&label, (x + 10, y - 8), 11, At::Left, FAINT)?;
+        }
+    }
+    // Names in a column at the side, in the order of time, with a line to the mark.
+    let mut named: Vec<&Event> = best(&marks).collect();
+    named.sort_by(|a, b| b.y.total_cmp(&a.y).then(a.x.total_cmp(&b.x)));
+    let mut next = first;
+    for mark in named {
+        let (x, y) = at((mark.x, mark.y));
+        let beside = y.max(next).min(last);
+        sheet.line(vec![(x + 5, y), (END + 10, beside)], colour(mark.row.solver), 1)?;
+        sheet.text(&mark.row.choice(), (END + 14, beside), 11, At::Left, INK)?;
+        next = beside + 13;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(solver: Solver, ms: f64, early: f64, missed: u64) -> Row {
+        Row {
+            input: "a scene".into(),
+            solver,
+            tolerance_edges: (missed == 0).then_some(early),
+            early_edges_p99: early,
+            precision: "f64",
+            missed,
+            cases: 100,
+            ms: Some(ms),
+            ..Row::default()
+        }
+    }
+
+    #[test]
+    fn what_misses_is_hollow_and_what_is_best_is_named() {
+        let rows = [
+            row(Solver::Certified, 2.0, 1e-4, 0),
+            row(Solver::CertifiedF64, 3.0, 1e-2, 0),
+            row(Solver::CertifiedF32, 1.0, 1e-3, 0),
+            row(Solver::CubicF32, 0.5, 1e-6, 7),
+        ];
+        let svg = pareto("a card", &rows).expect("a picture");
+        for text in
+            ["cubic-f32: 7 + 0", "certified 1e-4", "certified-f32 1e-3", "ms a frame", "a scene: 99 %"]
+        {
+            assert!(svg.contains(text), "{text}: {svg}");
+        }
+        assert!(!svg.contains("false alarms"), "there are none");
+        let marks: Vec<Event> =
+            rows.iter().map(|row| Event { row, x: row.ms.expect("ms"), y: row.early_edges_p99 }).collect();
+        let names: Vec<Solver> = best(&marks).map(|mark| mark.row.solver).collect();
+        assert_eq!(names, [Solver::Certified, Solver::CertifiedF32]);
+    }
+}

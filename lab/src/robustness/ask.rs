@@ -1,0 +1,212 @@
+//! The catalogue's questions asked on a machine, by the kernels of a frame.
+
+use super::question::{Expect, Fault, Question};
+use super::report::Report;
+use crate::case::{Case, Features};
+use crate::pairs::{Options, Outcome, Stored, ask};
+use nearmiss::contacts::Status;
+use nearmiss::device::Device;
+use nearmiss::error::Error;
+use nearmiss::query::{Motion, Query, Solver};
+use nearmiss_kernels::prim::inclusion::Verdict;
+
+/// The solvers that must get all of them right.
+pub(super) const SOLVERS: [Solver; 3] = [Solver::Certified, Solver::CertifiedF32, Solver::CertifiedF64];
+
+/// How they are asked: with the filters of a frame and without, from positions in f64 and, where f32 holds them, in f32.
+const ALL_OPTIONS: [Options; 3] = [
+    Options { filters: false, stored: Stored::F64, repeats: 0 },
+    Options { filters: true, stored: Stored::F64, repeats: 0 },
+    Options { filters: true, stored: Stored::F32, repeats: 0 },
+];
+
+/// The kernels' words for an answer of a step that ends at `end`.
+pub(super) fn verdict(met: Option<Outcome>, end: f64) -> Verdict {
+    match met {
+        None => Verdict::separated(end, 0),
+        Some(m) if m.status == Status::Unresolved => {
+            Verdict::unresolved(m.toi, m.toi_hi, m.boxes, m.exhausted)
+        }
+        Some(m) => Verdict::contact(m.toi, m.toi_hi, m.boxes, m.exhausted),
+    }
+}
+
+/// Whether a query of a whole step answers the question too: what meets before an end meets first without one.
+fn is_public(q: &Question) -> bool {
+    q.end == 1.0 || matches!(q.expect, Expect::Meets(_) | Expect::Sure(_))
+}
+
+/// Answers to questions that may have a tolerance and a separation each; `None` where it cannot be asked so.
+pub(super) fn answers(
+    device: &Device,
+    questions: &[Question],
+    solver: Solver,
+    how: Options,
+) -> Result<Vec<Option<Verdict>>, Error> {
+    let mut all = vec![None; questions.len()];
+    let asked = |q: &Question| is_public(q) && (how.stored == Stored::F64 || q.case.fits_f32());
+    let mut left: Vec<usize> = (0..questions.len()).filter(|i| asked(&questions[*i])).collect();
+    while let Some(first) = left.first() {
+        let Question { tolerance, separation, .. } = questions[*first];
+        let alike = |q: &Question| (q.tolerance, q.separation) == (tolerance, separation);
+        let (now, later): (Vec<_>, Vec<_>) = left.into_iter().partition(|i| alike(&questions[*i]));
+        let cases: Vec<Case> = now.iter().map(|i| questions[*i].case).collect();
+        let query = Query {
+            solver: Some(solver),
+            tolerance: Some(tolerance),
+            separation: Some(separation),
+            ..Query::of(Motion::Continuous)
+        };
+        for (i, met) in now.into_iter().zip(ask(device, &cases, &query, how)?.verdicts) {
+            all[i] = Some(verdict(met, 1.0));
+        }
+        left = later;
+    }
+    Ok(all)
+}
+
+/// Asks each question of every certified solver in every way and judges what is said.
+///
+/// # Errors
+/// Those of the device.
+pub fn ask_questions(device: &Device, questions: &[Question]) -> Result<Report, Error> {
+    let mut report = Report::new("questions");
+    for (solver, how) in SOLVERS.into_iter().flat_map(|solver| ALL_OPTIONS.map(|how| (solver, how))) {
+        let all = answers(device, questions, solver, how)?;
+        for (q, said) in questions.iter().zip(&all) {
+            let Some(said) = said else { continue };
+            report.unresolved += u64::from(!said.is_contact() && !said.is_separated());
+            let fault = q.judge(said, solver == Solver::CertifiedF32);
+            report.note(fault, || {
+                format!("{} {}: {said:?}, not {:?}, by {solver:?}, {how:?}", q.id, q.what, q.expect)
+            });
+        }
+    }
+    Ok(report)
+}
+
+/// A change of a question, and what must be as before.
+struct Turn {
+    name: &'static str,
+    /// `None` where it is not exact for these numbers.
+    change: fn(&Question) -> Option<Question>,
+    /// Whether every bit of the answer must stay; else the judge's verdict must.
+    bits: bool,
+}
+
+const TURNS: [Turn; 12] = [
+    Turn { name: "times 2^40", change: |q| scaled(q, 40), bits: true },
+    Turn { name: "times 2^-40", change: |q| scaled(q, -40), bits: true },
+    Turn { name: "times 2^-700", change: |q| scaled(q, -700), bits: true },
+    Turn { name: "signs of zeros", change: |q| points(q, |x| if x == 0.0 { -0.0 } else { x }), bits: true },
+    Turn { name: "all signs", change: |q| points(q, |x| -x), bits: true },
+    Turn { name: "moved by 2^20", change: |q| points(q, |x| x + 1048576.0), bits: true },
+    Turn { name: "x mirrored", change: |q| axes(q, |[x, y, z]| [-x, y, z]), bits: false },
+    Turn { name: "axes turned", change: |q| axes(q, |[x, y, z]| [y, z, x]), bits: false },
+    Turn { name: "x and y exchanged", change: |q| axes(q, |[x, y, z]| [y, x, z]), bits: false },
+    Turn { name: "corners turned", change: |q| order(q, [0, 2, 3, 1], [1, 0, 2, 3]), bits: false },
+    Turn { name: "corners exchanged", change: |q| order(q, [0, 1, 3, 2], [0, 1, 3, 2]), bits: false },
+    Turn { name: "features exchanged", change: |q| order(q, [0, 3, 2, 1], [2, 3, 0, 1]), bits: false },
+];
+
+/// With every coordinate changed, and back to the bit where the change has an inverse by the sign of zero.
+fn points(q: &Question, f: fn(f64) -> f64) -> Option<Question> {
+    let all = |p: [[f64; 3]; 4]| p.map(|p| p.map(f));
+    let case =
+        Case { positions_t0: all(q.case.positions_t0), positions_t1: all(q.case.positions_t1), ..q.case };
+    // Differences are what counts: a shift must keep them all.
+    let exact = |a: &[[f64; 3]; 4], b: &[[f64; 3]; 4]| {
+        a.as_flattened().iter().zip(b.as_flattened()).all(|(x, y)| {
+            let shift = f(0.0);
+            y - shift == *x || y - shift == -*x
+        })
+    };
+    let kept =
+        exact(&q.case.positions_t0, &case.positions_t0) && exact(&q.case.positions_t1, &case.positions_t1);
+    kept.then_some(Question { case, ..*q })
+}
+
+/// Times a power of two, where neither end of the range is met.
+fn scaled(q: &Question, power: i32) -> Option<Question> {
+    let by = 2f64.powi(power);
+    let all = |p: [[f64; 3]; 4]| p.map(|p| p.map(|x| x * by));
+    let case =
+        Case { positions_t0: all(q.case.positions_t0), positions_t1: all(q.case.positions_t1), ..q.case };
+    let size = |x: f64| x == 0.0 || (2f64.powi(-900)..2f64.powi(479)).contains(&(x * by).abs());
+    let all = q.case.positions_t0.as_flattened().iter().chain(q.case.positions_t1.as_flattened());
+    let kept = all.chain([&q.tolerance, &q.separation]).all(|x| size(*x));
+    let (tolerance, separation) = (q.tolerance * by, q.separation * by);
+    kept.then_some(Question { case, tolerance, separation, ..*q })
+}
+
+fn axes(q: &Question, f: fn([f64; 3]) -> [f64; 3]) -> Option<Question> {
+    let case =
+        Case { positions_t0: q.case.positions_t0.map(f), positions_t1: q.case.positions_t1.map(f), ..q.case };
+    Some(Question { case, ..*q })
+}
+
+/// Points in another order, by the kind of features.
+fn order(q: &Question, face: [usize; 4], edges: [usize; 4]) -> Option<Question> {
+    let order = if q.case.features == Features::VertexFace { face } else { edges };
+    let all = |p: [[f64; 3]; 4]| order.map(|i| p[i]);
+    let case =
+        Case { positions_t0: all(q.case.positions_t0), positions_t1: all(q.case.positions_t1), ..q.case };
+    Some(Question { case, ..*q })
+}
+
+/// Asks each question again in other units, places, axes and orders; and backwards in time, where what meets still does
+/// and what does not still does not.
+///
+/// # Errors
+/// Those of the device.
+pub fn ask_turned_questions(device: &Device, questions: &[Question]) -> Result<Report, Error> {
+    let mut report = Report::new("questions turned");
+    for solver in SOLVERS {
+        let plain = answers(device, questions, solver, Options::default())?;
+        let narrow = solver == Solver::CertifiedF32;
+        for turn in &TURNS {
+            let turned: Vec<Option<Question>> = questions.iter().map(turn.change).collect();
+            let asked: Vec<Question> = turned.iter().flatten().copied().collect();
+            let mut said = answers(device, &asked, solver, Options::default())?.into_iter();
+            for ((q, was), turned) in questions.iter().zip(&plain).zip(&turned) {
+                let (Some(turned), Some(was)) = (turned, was) else {
+                    // Asked in no way before, or not exact now: its answer, if any, is passed over.
+                    if turned.is_some() {
+                        said.next();
+                    }
+                    continue;
+                };
+                let Some(is) = said.next().flatten() else { continue };
+                let fault = match turn.bits {
+                    true => (is != *was).then_some(Fault::Unexpected),
+                    // Another order may leave without a certificate what had one.
+                    false => match turned.expect {
+                        Expect::Sure(t) => {
+                            Question { expect: Expect::Meets(t), ..*turned }.judge(&is, narrow)
+                        }
+                        _ => turned.judge(&is, narrow),
+                    },
+                };
+                report.note(fault, || {
+                    format!("{} {}, {}: {is:?}, not {was:?}, by {solver:?}", q.id, q.what, turn.name)
+                });
+            }
+        }
+        let back = |q: &Question| {
+            let [positions_t0, positions_t1] = [q.case.positions_t1, q.case.positions_t0];
+            Question { case: Case { positions_t0, positions_t1, ..q.case }, ..*q }
+        };
+        // An end within the step is a beginning backwards.
+        let whole: Vec<Question> = questions.iter().filter(|q| q.end == 1.0).copied().collect();
+        let backwards: Vec<Question> = whole.iter().map(back).collect();
+        let said = answers(device, &backwards, solver, Options::default())?;
+        for (q, is) in whole.iter().zip(said).filter_map(|(q, is)| Some((q, is?))) {
+            let fault = match q.expect {
+                Expect::Meets(_) | Expect::Sure(_) => is.is_separated().then_some(Fault::Missed),
+                Expect::Apart | Expect::Near => is.is_contact().then_some(Fault::FalseCertificate),
+            };
+            report.note(fault, || format!("{} {}, backwards: {is:?}, by {solver:?}", q.id, q.what));
+        }
+    }
+    Ok(report)
+}

@@ -1,0 +1,108 @@
+//! Contacts built in integers, as many as one likes, asked on a machine.
+
+use super::ask::{SOLVERS, verdict};
+use super::question::Fault;
+use super::report::Report;
+use crate::case::Case;
+use crate::pairs::built::{Built, REACH_F32, REACH_F64, built};
+use crate::pairs::directed::directed;
+use crate::pairs::{Options, Outcome, Stored, ask};
+use nearmiss::contacts::Status;
+use nearmiss::device::Device;
+use nearmiss::error::Error;
+use nearmiss::query::{Motion, Query};
+
+/// Sizes of the integers: small; all exact in f32; all exact in f64.
+const REACHES: [i64; 3] = [8, REACH_F32, REACH_F64 / 32];
+/// Tolerances, in parts of the reach.
+const TOLERANCES: [f64; 4] = [1e-6, 1e-3, 1e-9, 0.0];
+/// Cases of one feature and family that are made at once: with all families 200 MB of host memory.
+const AT_ONCE: usize = 4_096;
+
+/// What is wrong with the answer to a motion whose answer is known.
+fn judge(motion: &Built, met: Option<Outcome>) -> Option<Fault> {
+    let said = verdict(met, 1.0);
+    match motion.toi {
+        Some(_) if said.is_separated() => Some(Fault::Missed),
+        // They may have met before: late is certain, early is not.
+        Some(t) if said.toi > t => Some(Fault::Late),
+        _ if said.toi > said.toi_hi => Some(Fault::FalseCertificate),
+        None if said.is_contact() => Some(Fault::FalseCertificate),
+        _ => None,
+    }
+}
+
+/// Asks `n` contacts of every family, half vertex/face and half edge/edge, of integers of three sizes, of every certified
+/// solver, and as many near misses; and `n` of each of the directed families. `heard` may change what was said, for
+/// showing that faults are found.
+///
+/// # Errors
+/// Those of the device.
+pub fn ask_built(
+    device: &Device,
+    n: usize,
+    heard: impl Fn(Option<Outcome>) -> Option<Outcome>,
+) -> Result<Report, Error> {
+    let mut report = Report::new("built contacts");
+    // Of each feature and reach.
+    let each = n.div_ceil(2 * REACHES.len());
+    let chunk = each.div_ceil(TOLERANCES.len()).min(AT_ONCE);
+    for (of, reach) in (0u64..).zip(REACHES) {
+        for (at, tolerance) in (0..each).step_by(chunk.max(1)).zip(TOLERANCES.into_iter().cycle()) {
+            let seed = (of << 40) + at as u64 + 60;
+            let motions = built(seed, chunk.min(each - at), reach);
+            let narrow = motions.iter().all(|m| m.case.fits_f32());
+            let stored = if narrow && at % 2 == 1 { Stored::F32 } else { Stored::F64 };
+            let how = Options { filters: at % 3 > 0, stored, repeats: 0 };
+            note(&mut report, device, &motions, ("X60", tolerance * reach as f64), how, &heard)?;
+        }
+    }
+    // Of each precision, with the filters of a frame and without; a tolerance would be large or small for any of them.
+    for (family, id) in ["X61", "X62", "X63", "X64"].into_iter().enumerate() {
+        for (at, (single, filters)) in
+            (0..n.div_ceil(8)).step_by(AT_ONCE).flat_map(|at| ALL_OPTIONS.map(|how| (at, how)))
+        {
+            let seed = ((family as u64) << 48) + at as u64 + 61;
+            let motions = directed(seed, family, single, AT_ONCE.min(n.div_ceil(8) - at));
+            let stored = if single { Stored::F32 } else { Stored::F64 };
+            note(&mut report, device, &motions, (id, 0.0), Options { filters, stored, repeats: 0 }, &heard)?;
+            // And numbers of f32 as f64.
+            if single {
+                let how = Options { filters, ..Options::default() };
+                note(&mut report, device, &motions, (id, 0.0), how, &heard)?;
+            }
+        }
+    }
+    Ok(report)
+}
+
+/// Whether numbers are of f32, and whether filters are run before the solver.
+const ALL_OPTIONS: [(bool, bool); 4] = [(true, true), (true, false), (false, true), (false, false)];
+
+/// Asks every certified solver, by an id of the catalogue and at a tolerance, and judges what is heard.
+fn note(
+    report: &mut Report,
+    device: &Device,
+    motions: &[Built],
+    (id, tolerance): (&str, f64),
+    how: Options,
+    heard: impl Fn(Option<Outcome>) -> Option<Outcome>,
+) -> Result<(), Error> {
+    let cases: Vec<Case> = motions.iter().map(|m| m.case).collect();
+    for solver in SOLVERS {
+        let query =
+            Query { solver: Some(solver), tolerance: Some(tolerance), ..Query::of(Motion::Continuous) };
+        let answers = ask(device, &cases, &query, how)?;
+        for (motion, met) in motions.iter().zip(answers.verdicts) {
+            let met = heard(met);
+            report.unresolved += u64::from(met.is_some_and(|m| m.status == Status::Unresolved));
+            report.note(judge(motion, met), || {
+                format!(
+                    "{id} {}, {solver:?}, {how:?}: {met:?}, not {:?}: {:?}",
+                    motion.name, motion.toi, motion.case
+                )
+            });
+        }
+    }
+    Ok(())
+}

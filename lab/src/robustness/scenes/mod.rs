@@ -1,0 +1,211 @@
+//! Small scenes of the catalogue: bodies given by their numbers, and what must be found, or how they must be refused.
+
+mod moving;
+mod refused;
+mod reported;
+mod still;
+
+pub use refused::{Refused, refused};
+pub use reported::{PATCH, PATCH_FACES, TRIANGLES};
+
+use crate::oracle::{Triangle, triangles_meet, triangles_meet_beyond};
+use nearmiss::contacts::{Contacts, Kind};
+use nearmiss::error::Error;
+use nearmiss::mesh::{Body, Mesh, Positions};
+use nearmiss::query::{Motion, Query};
+
+/// A body's numbers. In f32 where that holds them all, unless `wide`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Numbers {
+    /// Where its vertices are at t = 0.
+    pub t0: Vec<[f64; 3]>,
+    /// Where they are at t = 1; empty where nothing moves.
+    pub t1: Vec<[f64; 3]>,
+    /// Three vertices a triangle.
+    pub faces: Vec<[u32; 3]>,
+    /// In f64, whatever the numbers.
+    pub wide: bool,
+}
+
+impl Numbers {
+    /// Triangles that stand still and share no vertex.
+    pub fn loose(triangles: &[Triangle]) -> Numbers {
+        let faces = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        Numbers { t0: triangles.as_flattened().to_vec(), faces, ..Numbers::default() }
+    }
+
+    /// The same, moved by so much during the step.
+    pub fn by(self, d: [f64; 3]) -> Numbers {
+        let t1 = self.t0.iter().map(|p| [p[0] + d[0], p[1] + d[1], p[2] + d[2]]).collect();
+        Numbers { t1, ..self }
+    }
+
+    /// The body.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where a mesh is refused.
+    pub fn body(&self) -> Result<Body, Error> {
+        let mesh = |points: &[[f64; 3]]| {
+            let narrow: Vec<[f32; 3]> = points.iter().map(|p| p.map(|x| x as f32)).collect();
+            // NaN is a float too.
+            let held = |(p, q): (&[f64; 3], &[f32; 3])| {
+                p.iter().zip(q).all(|(x, y)| *x == f64::from(*y) || x.is_nan())
+            };
+            let fits = !self.wide && points.iter().zip(&narrow).all(held);
+            let positions = if fits { Positions::F32(narrow) } else { Positions::F64(points.to_vec()) };
+            Mesh::new("extreme", positions, self.faces.clone())
+        };
+        let t0 = mesh(&self.t0)?;
+        if self.t1.is_empty() { Ok(Body::still(t0)) } else { Body::moving(t0, mesh(&self.t1)?) }
+    }
+
+    fn triangle(&self, face: usize) -> Triangle {
+        self.faces[face].map(|v| self.t0[v as usize])
+    }
+}
+
+/// What must be found.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Finds {
+    /// These triangle pairs and no others.
+    Pairs(Vec<[u32; 2]>),
+    /// The triangle pairs that the rational oracle finds.
+    Oracle,
+    /// The same, and no pair needs more than the filter of floats.
+    OracleByFilter,
+    /// These feature pairs with their first times, and no others that are certain.
+    Contacts(Vec<(Kind, u32, u32, f64)>),
+    /// At least these feature pairs, none before the time.
+    Includes(Vec<(Kind, u32, u32)>, f64),
+    /// For each of these vertices a vertex/face contact with first time `.1`.
+    EachVertex(Vec<u32>, f64),
+    /// So many feature pairs, all from the start.
+    AtOnce(usize),
+}
+
+/// A scene with its answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// Its name in `docs/robustness.md`.
+    pub id: &'static str,
+    /// What is extreme about it.
+    pub what: String,
+    /// One body or two.
+    pub bodies: Vec<Numbers>,
+    /// Discrete: also triangles that share a vertex.
+    pub adjacent: bool,
+    /// What must be found.
+    pub finds: Finds,
+}
+
+/// All of them.
+pub fn scenes() -> Vec<Scene> {
+    let mut all = still::scenes();
+    all.extend(moving::scenes());
+    all
+}
+
+/// By how much a time may be early, in parts of the step.
+const EARLY: f64 = 1e-3;
+
+impl Scene {
+    fn new(id: &'static str, what: &str, bodies: Vec<Numbers>, finds: Finds) -> Scene {
+        Scene { id, what: what.into(), bodies, adjacent: false, finds }
+    }
+
+    /// The question that is asked.
+    pub fn query(&self) -> Query {
+        let discrete = matches!(self.finds, Finds::Pairs(_) | Finds::Oracle | Finds::OracleByFilter);
+        let motion = if discrete { Motion::Discrete } else { Motion::Continuous };
+        Query { adjacent: self.adjacent, ..Query::of(motion) }
+    }
+
+    /// The bodies.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where a mesh is refused.
+    pub fn bodies(&self) -> Result<Vec<Body>, Error> {
+        self.bodies.iter().map(Numbers::body).collect()
+    }
+
+    /// The triangle pairs of a discrete scene, by the list or the oracle.
+    pub fn pairs(&self) -> Vec<[u32; 2]> {
+        if let Finds::Pairs(pairs) = &self.finds {
+            return pairs.clone();
+        }
+        let (one, other) = (&self.bodies[0], &self.bodies[self.bodies.len() - 1]);
+        let own = self.bodies.len() == 1;
+        let mut pairs = Vec::new();
+        for a in 0..one.faces.len() {
+            for b in if own { a + 1 } else { 0 }..other.faces.len() {
+                let (p, q) = (one.triangle(a), other.triangle(b));
+                let shares = |v: &u32| own && other.faces[b].contains(v);
+                let common: Vec<u32> = one.faces[a].into_iter().filter(|v| shares(v)).collect();
+                let points: Vec<_> = common.iter().map(|v| one.t0[*v as usize]).collect();
+                let meet = match points.len() {
+                    0 => triangles_meet(&p, &q),
+                    _ => self.adjacent && triangles_meet_beyond(&p, &q, &points),
+                };
+                if meet {
+                    pairs.push([a as u32, b as u32]);
+                }
+            }
+        }
+        pairs
+    }
+
+    /// What is missed and what is wrong in an answer; nothing where it is right.
+    pub fn judge(&self, found: &Contacts) -> Option<String> {
+        match &self.finds {
+            Finds::OracleByFilter if found.undecided > 0 => {
+                Some(format!("{} pairs needed exact signs", found.undecided))
+            }
+            Finds::Pairs(_) | Finds::Oracle | Finds::OracleByFilter => differ(found.pairs(), &self.pairs()),
+            Finds::Contacts(truth) => contacts(found, truth),
+            Finds::Includes(truth, first) => includes(found, truth, *first),
+            Finds::EachVertex(vertices, time) => vertices.iter().find_map(|v| {
+                let mut own = found.contacts().iter().filter(|c| c.kind == Kind::Vf && c.a == *v);
+                let hit = own.any(|c| c.toi <= *time && *time <= c.toi_hi && c.toi >= time - EARLY);
+                (!hit).then(|| format!("missed: vertex {v} falls through"))
+            }),
+            Finds::AtOnce(count) => {
+                let late = found.contacts().iter().find(|c| c.toi != 0.0);
+                late.map(|c| format!("late: {c:?}")).or_else(|| {
+                    (found.len() != *count).then(|| format!("{} contacts, not {count}", found.len()))
+                })
+            }
+        }
+    }
+}
+
+/// The first pair that is missed or invented.
+fn differ(found: &[[u32; 2]], truth: &[[u32; 2]]) -> Option<String> {
+    let missed = truth.iter().find(|pair| !found.contains(pair)).map(|pair| format!("missed: {pair:?}"));
+    missed
+        .or_else(|| found.iter().find(|pair| !truth.contains(pair)).map(|pair| format!("invented: {pair:?}")))
+}
+
+/// Each contact within its time, and no certificate more.
+fn contacts(found: &Contacts, truth: &[(Kind, u32, u32, f64)]) -> Option<String> {
+    let of = |kind, a, b| found.contacts().iter().find(move |c| (c.kind, c.a, c.b) == (kind, a, b));
+    let wrong = truth.iter().find_map(|&(kind, a, b, t)| match of(kind, a, b) {
+        None => Some(format!("missed: {kind:?} {a} {b} at {t}")),
+        Some(c) if c.toi > t => Some(format!("late: {c:?}, not {t}")),
+        Some(c) if c.toi_hi < t || c.toi < t - EARLY => Some(format!("at another time: {c:?}, not {t}")),
+        Some(_) => None,
+    });
+    let known = |c: &nearmiss::Contact| truth.iter().any(|k| (k.0, k.1, k.2) == (c.kind, c.a, c.b));
+    wrong.or_else(|| found.contacts().iter().find(|c| !known(c)).map(|c| format!("invented: {c:?}")))
+}
+
+/// At least these, none before.
+fn includes(found: &Contacts, truth: &[(Kind, u32, u32)], first: f64) -> Option<String> {
+    let has = |k: &&(Kind, u32, u32)| found.contacts().iter().any(|c| (c.kind, c.a, c.b) == **k);
+    let missed = truth.iter().find(|k| !has(k)).map(|k| format!("missed: {k:?}"));
+    let earliest = found.earliest_toi();
+    missed.or_else(|| match earliest {
+        Some(t) if t > first => Some(format!("late: {t}, not {first}")),
+        Some(t) if t < first - EARLY => Some(format!("too early: {t}, not {first}")),
+        _ => None,
+    })
+}
