@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Assembles a PTX text as the driver would, without a card: what ptxas refuses, no card runs. And reads the machine code.
+# Assembles a PTX text as the driver would, without a GPU: what ptxas refuses, no GPU runs. And reads the machine code.
 #
 #   .ci/ptxas.sh FILE.ptx [ARCH...]      ARCH: sm_80 sm_90 sm_100 unless told
 #

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Everything that is measured on a card, in one go: agreement with the CPU, the sanitizer, times, the profiler.
+# Everything that is measured on a GPU, in one go: agreement with the CPU, the sanitizer, times, the profiler.
 #
 #   benches/gpu.sh PROGRAM FRAMES OUT [agreement|figures]
 #
@@ -33,7 +33,7 @@ scenes+=("generated draped continuous|--scene draped --continuous")
 scenes+=("generated cloth-ball continuous|--scene cloth-ball --triangles 92000 --continuous")
 
 if [ "$half" != figures ]; then
-    # 1. Card and CPU agree to the bit, stage by stage.
+    # 1. GPU and CPU agree to the bit, stage by stage.
     meshes=()
     [ ! -f "$frames/cloth_ball92.ply" ] || meshes=(--mesh "$frames/cloth_ball92.ply" "$frames/cloth_ball93.ply")
     if "$program" selftest --backend cuda --triangles 4000 "${meshes[@]}" >"$out/selftest.txt" 2>&1; then

@@ -52,7 +52,7 @@ pub enum Error {
         /// Bytes there were.
         given: u64,
     },
-    /// The card's kernels were made from other sources than this program. Build again.
+    /// The GPU's kernels were made from other sources than this program. Build again.
     #[error(
         "the kernels carry the stamp {found}, this program was built from {wanted}; run `cargo build` again"
     )]

@@ -1,6 +1,6 @@
 //! nearmiss: collision detection for deformable triangle meshes.
 //!
-//! [`Session`] is the front door: bodies in, [`Contacts`] out, on the CPU or on an NVIDIA card, to the same bit. [`Query`]
+//! [`Session`] is the front door: bodies in, [`Contacts`] out, on the CPU or on an NVIDIA GPU, to the same bit. [`Query`]
 //! holds every choice; [`Device`] is where it runs; [`Error`] says who must act.
 
 pub mod contacts;

@@ -63,17 +63,17 @@ pub enum Traversal {
 }
 
 impl Traversal {
-    /// Steps of a walk on a card before the rest of it is shared out: about the mean length of a walk on cloth, so
+    /// Steps of a walk on a GPU before the rest of it is shared out: about the mean length of a walk on cloth, so
     /// that half of the walks never spill and none makes its warp wait for long (measured, `benches/NOTES.md`).
-    pub const CARD_BUDGET: u32 = 64;
+    pub const GPU_BUDGET: u32 = 64;
 
-    /// The fastest walk of a machine (measured, `docs/performance.md`). A CPU's threads balance by themselves. A card must
+    /// The fastest walk of a machine (measured, `docs/performance.md`). A CPU's threads balance by themselves. A GPU must
     /// not wait for its longest walk: plain boxes are walked leaf by leaf, with their rest shared out; of volumes whose
     /// tests cost more, fewer tests by pairs of nodes pay for the queues.
-    pub fn default_for(is_card: bool, bv: Bv) -> Traversal {
-        match (is_card, bv) {
+    pub fn default_for(is_gpu: bool, bv: Bv) -> Traversal {
+        match (is_gpu, bv) {
             (false, _) => Traversal::PerLeaf { budget: None },
-            (true, Bv::Aabb) => Traversal::PerLeaf { budget: Some(Traversal::CARD_BUDGET) },
+            (true, Bv::Aabb) => Traversal::PerLeaf { budget: Some(Traversal::GPU_BUDGET) },
             (true, _) => Traversal::Queue(QueueShape::native()),
         }
     }
@@ -93,8 +93,8 @@ named! {
 
 impl Refit {
     /// The fastest way of a machine.
-    pub fn default_for(is_card: bool) -> Refit {
-        if is_card { Refit::Treelets } else { Refit::Levels }
+    pub fn default_for(is_gpu: bool) -> Refit {
+        if is_gpu { Refit::Treelets } else { Refit::Levels }
     }
 }
 
@@ -118,6 +118,7 @@ named! {
     }
 }
 
+#[allow(clippy::derivable_impls, reason = "`named!` makes the enum, and takes no attribute of a variant")]
 impl Default for Solver {
     fn default() -> Self {
         Solver::Exact
@@ -223,14 +224,14 @@ impl Query {
         self.bv.unwrap_or(Bv::default_for(self.motion))
     }
 
-    /// The refit that will be used on a card, or on a CPU.
-    pub fn refit_on(&self, is_card: bool) -> Refit {
-        self.refit.unwrap_or(Refit::default_for(is_card))
+    /// The refit that will be used on a GPU, or on a CPU.
+    pub fn refit_on(&self, is_gpu: bool) -> Refit {
+        self.refit.unwrap_or(Refit::default_for(is_gpu))
     }
 
-    /// The walk that will be used on a card, or on a CPU.
-    pub fn traversal_on(&self, is_card: bool) -> Traversal {
-        self.traversal.unwrap_or(Traversal::default_for(is_card, self.bv()))
+    /// The walk that will be used on a GPU, or on a CPU.
+    pub fn traversal_on(&self, is_gpu: bool) -> Traversal {
+        self.traversal.unwrap_or(Traversal::default_for(is_gpu, self.bv()))
     }
 
     /// Whether the choices go together.

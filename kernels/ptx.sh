@@ -149,7 +149,7 @@ build() {
     version=$(cd / && "$rustc" --version)
     sources=$(stamp)
 
-    # A toolchain that has core for the card uses it; otherwise core is built from source (half a minute, once).
+    # A toolchain that has core for the GPU uses it; otherwise core is built from source (half a minute, once).
     local std=()
     has_core "$home" || std=(-Zbuild-std=core)
 

@@ -13,7 +13,7 @@ use nearmiss_kernels::entry::Entry;
 use nearmiss_kernels::exec::{BINS, Block, Lane, Slot, WARP, striped};
 use support::ORDERS;
 
-/// Numbers of lanes: one, a few, a warp and one more, the kernels' own, the most that a card has.
+/// Numbers of lanes: one, a few, a warp and one more, the kernels' own, the most that a GPU has.
 const LANES: [u32; 7] = [1, 7, 32, 33, 64, 256, 1024];
 /// Numbers of blocks of a launch.
 const BLOCKS: [u32; 4] = [0, 1, 2, 13];

@@ -1,5 +1,5 @@
 //! The packages as a stranger gets them: unpacked outside this repository, built offline with feature `cuda` and nothing set,
-//! into a program that runs without a card and exports nothing of the driver's.
+//! into a program that runs without a GPU and exports nothing of the driver's.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

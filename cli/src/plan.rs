@@ -40,7 +40,7 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
     let _ = writeln!(
         text,
         "refit      {}",
-        match (query.refit, query.refit_on(device.is_card())) {
+        match (query.refit, query.refit_on(device.is_gpu())) {
             (Some(choice), _) => format!("{choice:?}, as asked"),
             (None, choice) => format!("{choice:?}: the fastest on this machine"),
         }
@@ -50,11 +50,11 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
         "traversal  {}",
         match query.traversal {
             Some(choice) => format!("{choice:?}, as asked"),
-            None => match query.traversal_on(device.is_card()) {
+            None => match query.traversal_on(device.is_gpu()) {
                 Traversal::PerLeaf { budget: None } =>
                     "per leaf, to the end: a CPU's threads balance by themselves".into(),
                 Traversal::PerLeaf { .. } =>
-                    "per leaf, long walks spill: a card must not wait for its longest walk".into(),
+                    "per leaf, long walks spill: a GPU must not wait for its longest walk".into(),
                 choice => format!("{choice:?}: fewer tests, where tests cost more"),
             },
         }

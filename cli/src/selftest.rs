@@ -160,7 +160,7 @@ impl Bench {
                 }
                 for (what, other) in choices(query) {
                     let on_machine = during("comparing machines", || print_of(machine, bodies, other))?;
-                    let walk = other.traversal_on(machine.is_card());
+                    let walk = other.traversal_on(machine.is_gpu());
                     let want = if matches!(walk, Traversal::PerLeaf { .. }) { &by_leaf } else { &by_pair };
                     if let Some(stage) = difference(want, &on_machine) {
                         faults.push(format!("{name}, {asked}, {}, {what}: {stage}", bv.name()));
@@ -180,7 +180,7 @@ impl Bench {
         Ok(())
     }
 
-    /// Small scenes on the emulated card, in three orders.
+    /// Small scenes on the emulated GPU, in three orders.
     fn under_the_microscope(&mut self) -> Result<(), Error> {
         let Bench { machine, faults, .. } = self;
         for name in scene::FORMULAS {
@@ -188,7 +188,7 @@ impl Bench {
             let bodies = [scene::scene(name, triangles, 3)?];
             for (asked, query) in questions(&bodies) {
                 // The walk that is fastest on the machine, on both.
-                let query = Query { traversal: Some(query.traversal_on(machine.is_card())), ..query };
+                let query = Query { traversal: Some(query.traversal_on(machine.is_gpu())), ..query };
                 let want = print_of(machine, &bodies, query)?;
                 for order in [Order::Forward, Order::Reverse, Order::Shuffled(3)] {
                     let sanitizer = Device::emulator(Emulator::new(Mode::Sanitizer(order), None)?);
@@ -204,7 +204,7 @@ impl Bench {
 
     /// The catalogue, a line a suite as it ends.
     fn extremes(&mut self, cases: usize) -> Result<(), Error> {
-        let amount = Amount::on(self.machine.is_card(), cases);
+        let amount = Amount::on(self.machine.is_gpu(), cases);
         let mut told = Ok(());
         let tell = |report: &robustness::Report| {
             if told.is_ok() {

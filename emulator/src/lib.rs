@@ -1,4 +1,4 @@
-//! The card, emulated: as an engine (all cores, no checks) or as a sanitizer (any order, every access watched).
+//! The GPU, emulated: as an engine (all cores, no checks) or as a sanitizer (any order, every access watched).
 
 mod block;
 mod coherent;
@@ -51,7 +51,7 @@ pub enum Error {
 /// How the emulator runs.
 #[derive(Clone, Copy, Debug, Default)]
 pub enum Mode {
-    /// Blocks in parallel on all cores, lanes in order, nothing watched. What people without a card use.
+    /// Blocks in parallel on all cores, lanes in order, nothing watched. What people without a GPU use.
     #[default]
     Engine,
     /// One block after the other, each to its end, blocks and lanes in the given order (or interleaved, see

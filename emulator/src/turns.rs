@@ -3,7 +3,7 @@
 //! blocks are quick and some are slow, up to 256 times: where all went at one pace, a block that is far behind or far
 //! ahead of the others, which is what finds mistakes, would hardly be seen.
 //!
-//! At most [`SEATS`] blocks run at once, as on a card: the next one starts where one ends. So what a launch does is a
+//! At most [`SEATS`] blocks run at once, as on a GPU: the next one starts where one ends. So what a launch does is a
 //! matter of its seed alone, and blocks that all wait for one that has not started wait for ever.
 
 use rand::rngs::SmallRng;

@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub(super) enum Memory {
     Host(emulator::Memory),
     #[cfg(feature = "cuda")]
-    Card(cuda::Memory),
+    Gpu(cuda::Memory),
 }
 
 /// Elements of `T` in a device's memory. Freed when dropped.
@@ -41,7 +41,7 @@ impl<T: Pod> Buffer<T> {
         let addr = match &self.memory {
             Memory::Host(m) => m.addr(),
             #[cfg(feature = "cuda")]
-            Memory::Card(m) => m.addr(),
+            Memory::Gpu(m) => m.addr(),
         };
         // SAFETY: so many elements of zeroed memory of this device, aligned for any of them; that they live as long as a kernel
         // uses them, who launches it promises.
@@ -67,7 +67,7 @@ impl<T: Pod> Buffer<T> {
                 Ok(())
             }
             #[cfg(feature = "cuda")]
-            (Memory::Card(m), Machine::Cuda(c)) => c.write(m, bytes),
+            (Memory::Gpu(m), Machine::Cuda(c)) => c.write(m, bytes),
             #[cfg(feature = "cuda")]
             _ => Err(Error::Bug { what: "memory of another machine".into() }),
         }
@@ -80,7 +80,7 @@ impl<T: Pod> Buffer<T> {
     pub fn clear(&mut self) -> Result<(), Error> {
         match (&mut self.memory, &*self.machine) {
             #[cfg(feature = "cuda")]
-            (Memory::Card(m), Machine::Cuda(c)) => c.clear(m),
+            (Memory::Gpu(m), Machine::Cuda(c)) => c.clear(m),
             _ => self.write(&vec![T::zeroed(); self.len]),
         }
     }
@@ -97,7 +97,7 @@ impl<T: Pod> Buffer<T> {
         match (&self.memory, &*self.machine) {
             (Memory::Host(m), _) => Ok(bytemuck::cast_slice(m.as_slice(len * size_of::<T>())).to_vec()),
             #[cfg(feature = "cuda")]
-            (Memory::Card(m), Machine::Cuda(c)) => {
+            (Memory::Gpu(m), Machine::Cuda(c)) => {
                 let mut items = vec![T::zeroed(); len];
                 c.read(m, bytemuck::cast_slice_mut(&mut items))?;
                 Ok(items)

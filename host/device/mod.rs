@@ -1,4 +1,4 @@
-//! Where kernels run: an NVIDIA card, or the CPU.
+//! Where kernels run: an NVIDIA GPU, or the CPU.
 
 mod buffer;
 #[cfg(feature = "cuda")]
@@ -32,13 +32,14 @@ named! {
     pub enum Backend {
         /// The CPU, on all its cores.
         Cpu = "cpu",
-        /// The NVIDIA card.
+        /// The NVIDIA GPU.
         Cuda = "cuda",
-        /// The card where there is one, else the CPU.
+        /// The GPU where there is one, else the CPU.
         Auto = "auto",
     }
 }
 
+#[allow(clippy::derivable_impls, reason = "`named!` makes the enum, and takes no attribute of a variant")]
 impl Default for Backend {
     fn default() -> Self {
         Backend::Auto
@@ -60,17 +61,17 @@ enum Machine {
 }
 
 impl Device {
-    /// The machine that `backend` names: the first card, or `threads` of the CPU, or all.
+    /// The machine that `backend` names: the first GPU, or `threads` of the CPU, or all.
     ///
     /// # Errors
     /// [`Error::Device`] when there is no such machine or its driver refuses, with the driver's text;
-    /// [`Error::Stamp`] when the card's kernels come from other sources.
+    /// [`Error::Stamp`] when the GPU's kernels come from other sources.
     pub fn open(backend: Backend, threads: Option<usize>) -> Result<Device, Error> {
         match backend {
             Backend::Cpu => Ok(Self::emulator(Emulator::new(Mode::Engine, threads)?)),
-            Backend::Cuda => Self::card(0),
+            Backend::Cuda => Self::gpu(0),
             Backend::Auto if cfg!(feature = "cuda") => match Self::open(Backend::Cuda, threads) {
-                // No card is what `auto` is for; a card that refuses our kernels is a fault to hear of.
+                // No GPU is what `auto` is for; a GPU that refuses our kernels is a fault to hear of.
                 Err(Error::Device { .. }) => Self::open(Backend::Cpu, threads),
                 other => other,
             },
@@ -78,18 +79,18 @@ impl Device {
         }
     }
 
-    /// The card with that number, as the driver counts them. It shares the card's primary context with all of the program
+    /// The GPU with that number, as the driver counts them. It shares the GPU's primary context with all of the program
     /// that does, and leaves threads bound to the context that they were bound to.
     ///
     /// # Errors
-    /// As for [`Device::open`]; where there is no such card the text says how many there are.
+    /// As for [`Device::open`]; where there is no such GPU the text says how many there are.
     #[cfg_attr(not(feature = "cuda"), allow(unused_variables, reason = "there is none"))]
-    pub fn card(ordinal: u32) -> Result<Device, Error> {
+    pub fn gpu(ordinal: u32) -> Result<Device, Error> {
         #[cfg(feature = "cuda")]
         return Ok(Self::with(Machine::Cuda(cuda::Cuda::new(ordinal)?)));
         #[cfg(not(feature = "cuda"))]
         Err(Error::Device {
-            what: "opening the card".into(),
+            what: "opening the GPU".into(),
             text: "this program was built without the feature `cuda`".into(),
             advice: "build it with `--features cuda`, or run with `--backend cpu`",
         })
@@ -122,11 +123,11 @@ impl Device {
 
     /// `cpu` or `cuda`.
     pub fn backend(&self) -> &'static str {
-        if self.is_card() { "cuda" } else { "cpu" }
+        if self.is_gpu() { "cuda" } else { "cpu" }
     }
 
-    /// Whether this is a card: thousands of lanes at once, and launches that cost microseconds.
-    pub fn is_card(&self) -> bool {
+    /// Whether this is a GPU: thousands of lanes at once, and launches that cost microseconds.
+    pub fn is_gpu(&self) -> bool {
         !matches!(&*self.machine, Machine::Emulator(_))
     }
 
@@ -187,7 +188,7 @@ impl Device {
             Machine::Emulator(e) => memory::require("host memory", bytes as u64)
                 .and_then(|()| e.memory(bytes).map(Memory::Host).map_err(Error::from)),
             #[cfg(feature = "cuda")]
-            Machine::Cuda(c) => c.memory(bytes).map(Memory::Card),
+            Machine::Cuda(c) => c.memory(bytes).map(Memory::Gpu),
         };
         let memory = memory.inspect_err(|_| self.usage.give(bytes as u64))?;
         self.usage.peak.fetch_max(self.bytes().0, Ordering::Relaxed);
@@ -245,7 +246,7 @@ impl Device {
         match &*self.machine {
             Machine::Emulator(_) => Ok(Event::Host(Instant::now())),
             #[cfg(feature = "cuda")]
-            Machine::Cuda(c) => Ok(Event::Card(c.event()?)),
+            Machine::Cuda(c) => Ok(Event::Gpu(c.event()?)),
         }
     }
 
@@ -264,9 +265,9 @@ impl Device {
 pub enum Event {
     /// On the CPU.
     Host(Instant),
-    /// On the card.
+    /// On the GPU.
     #[cfg(feature = "cuda")]
-    Card(cuda::Event),
+    Gpu(cuda::Event),
 }
 
 impl Event {
@@ -278,7 +279,7 @@ impl Event {
         match (self, later) {
             (Event::Host(a), Event::Host(b)) => Ok(b.duration_since(*a).as_secs_f64() * 1e3),
             #[cfg(feature = "cuda")]
-            (Event::Card(a), Event::Card(b)) => a.to(b),
+            (Event::Gpu(a), Event::Gpu(b)) => a.to(b),
             #[cfg(feature = "cuda")]
             _ => Err(Error::Bug { what: "two marks of different machines".into() }),
         }
@@ -312,10 +313,10 @@ mod tests {
 
     #[test]
     fn a_card_that_is_not_there_is_told() {
-        let Err(error) = Device::card(u32::MAX) else { panic!("there is none of that number") };
+        let Err(error) = Device::gpu(u32::MAX) else { panic!("there is none of that number") };
         assert!(matches!(error, Error::Device { .. }) && error.exit_code() == 4, "{error:?}");
-        if Device::card(0).is_ok() {
-            assert!(error.to_string().starts_with("opening card 4294967295: there "), "{error}");
+        if Device::gpu(0).is_ok() {
+            assert!(error.to_string().starts_with("opening GPU 4294967295: there "), "{error}");
         }
     }
 }

@@ -67,7 +67,7 @@ impl<T: Pod> Buffer<T> {
         let elements = match (&self.memory, &*self.machine) {
             (Memory::Host(m), _) => Elements::Here(bytemuck::cast_slice(m.as_slice(bytes))),
             #[cfg(feature = "cuda")]
-            (Memory::Card(m), Machine::Cuda(c)) => match c.known(m, bytes) {
+            (Memory::Gpu(m), Machine::Cuda(c)) => match c.known(m, bytes) {
                 Some(known) => Elements::Staged(known),
                 None => Elements::Own(self.read(len)?),
             },
@@ -93,7 +93,7 @@ impl Device {
             Machine::Cuda(c) => {
                 // What is of another machine is refused when it is asked for.
                 let card = all.iter().filter_map(|ahead| match ahead.memory {
-                    Memory::Card(memory) => Some((memory, ahead.bytes)),
+                    Memory::Gpu(memory) => Some((memory, ahead.bytes)),
                     Memory::Host(_) => None,
                 });
                 c.read_ahead(&card.collect::<Vec<_>>())

@@ -6,7 +6,7 @@ use super::volumes::{Kernels, Volumes};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::query::Refit;
-use nearmiss_kernels::abi::{VertexMotion, Node, Point, Positions, ROOT, Span};
+use nearmiss_kernels::abi::{Node, Point, Positions, ROOT, Span, VertexMotion};
 use nearmiss_kernels::bv::{Axes, Contain};
 use nearmiss_kernels::math::Vec3;
 

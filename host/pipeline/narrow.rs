@@ -100,7 +100,7 @@ impl Narrow {
                 }
             }
             let order = || Order::new(device, layout, u32::MAX, few / 4).map(Box::new);
-            let ordered = device.is_card().then(order).transpose()?;
+            let ordered = device.is_gpu().then(order).transpose()?;
             return Ok(Narrow::Discrete { contacts, undecided, ordered });
         }
         let rooms = Rooms {

@@ -1,4 +1,4 @@
-//! Order: contacts into canonical order on the device, where the host would be slower: on a card.
+//! Order: contacts into canonical order on the device, where the host would be slower: on a GPU.
 
 use super::layout::Layout;
 use super::room::{GrowableOutput, List};

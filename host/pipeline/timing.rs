@@ -15,7 +15,7 @@ named! {
         Traverse = "traverse",
         /// Contacts.
         Narrow = "narrow",
-        /// Contacts in canonical order, on a card; a CPU has none: the host orders them.
+        /// Contacts in canonical order, on a GPU; a CPU has none: the host orders them.
         Order = "order",
     }
 }
@@ -37,7 +37,7 @@ pub struct Stages {
     pub balance: f64,
     /// Contacts.
     pub narrow: f64,
-    /// Contacts in canonical order, on a card. Zero where the host orders them, and where there is nothing to order.
+    /// Contacts in canonical order, on a GPU. Zero where the host orders them, and where there is nothing to order.
     pub order: f64,
     /// From positions to contacts, runs that were repeated for want of room included, construction and ordering not.
     pub total: f64,

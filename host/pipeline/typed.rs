@@ -131,7 +131,7 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
         };
         pipeline.place(bodies)?;
         for body in 0..layout.bodies() {
-            let refit = query.refit_on(pipeline.device.is_card());
+            let refit = query.refit_on(pipeline.device.is_gpu());
             let groups = V::group(axes) > 0;
             let tree = Tree::new(&pipeline.device, layout.triangles(body), refit, groups)?;
             let volumes = Volumes::new(&pipeline.device, &tree, (axes, growth(query.listed_within())))?;

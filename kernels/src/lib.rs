@@ -1,5 +1,5 @@
 #![no_std]
-//! The kernels of nearmiss: what runs on the card, and on the CPU from the same source.
+//! The kernels of nearmiss: what runs on the GPU, and on the CPU from the same source.
 //!
 //! Nothing here knows a host, a file or an allocator. Shelves hold what is used ([`abi`], [`exec`], [`math`], [`bv`],
 //! [`bvh`], [`queue`], [`sort`], [`prim`]); the pipeline [`stage`] holds what happens, one file a stage, in the order in which

@@ -110,14 +110,14 @@ pub fn loose(triangles: &[[[f32; 3]; 3]]) -> Body {
     still(triangles.as_flattened(), &faces)
 }
 
-/// The card. Tests that are built for one fail where there is none: they would have compared nothing.
+/// The GPU. Tests that are built for one fail where there is none: they would have compared nothing.
 #[cfg(feature = "cuda")]
-fn card() -> Device {
-    Device::open(nearmiss::device::Backend::Cuda, None).expect("a test with feature `cuda` needs a card")
+fn gpu() -> Device {
+    Device::open(nearmiss::device::Backend::Cuda, None).expect("a test with feature `cuda` needs a GPU")
 }
 
 /// Every machine that a test must not be able to tell apart: the engine on all threads and on one, with other blocks
-/// than usual, the sanitizer in each order, and the card.
+/// than usual, the sanitizer in each order, and the GPU.
 pub fn machines() -> Vec<Device> {
     let emulator = |mode, threads| Emulator::new(mode, threads).expect("threads");
     let mut all = vec![emulator(Mode::Engine, None), emulator(Mode::Engine, Some(1))];
@@ -126,6 +126,6 @@ pub fn machines() -> Vec<Device> {
     all.push(emulator(Mode::Sanitizer(ORDERS[2]), None).with_lanes(32));
     let machines = all.into_iter().map(Device::emulator);
     #[cfg(feature = "cuda")]
-    let machines = machines.chain([card()]);
+    let machines = machines.chain([gpu()]);
     machines.collect()
 }

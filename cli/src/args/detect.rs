@@ -38,7 +38,7 @@ impl TraversalArg {
         match self {
             TraversalArg::PerLeaf => Traversal::PerLeaf { budget: None },
             TraversalArg::PerLeafSpill => {
-                Traversal::PerLeaf { budget: Some(budget.unwrap_or(Traversal::CARD_BUDGET)) }
+                Traversal::PerLeaf { budget: Some(budget.unwrap_or(Traversal::GPU_BUDGET)) }
             }
             TraversalArg::Queue => Traversal::Queue(queues(QueueShape::native())),
             TraversalArg::QueueGtx285 => Traversal::Queue(queues(QueueShape::gtx285())),

@@ -49,7 +49,7 @@ impl Given<'_> {
 
 fn machine(args: &MachineArgs, given: Given) -> Result<(), Error> {
     if args.backend == Backend::Cuda {
-        given.none_of(&["threads"], "a card takes no CPU threads", "leave it out, or give --backend cpu")?;
+        given.none_of(&["threads"], "a GPU takes no CPU threads", "leave it out, or give --backend cpu")?;
     }
     Ok(())
 }

@@ -15,7 +15,7 @@ pub struct MachineArgs {
     /// Which machine.
     #[arg(long, value_parser = choice::<Backend>(), default_value_t)]
     pub backend: Backend,
-    /// CPU threads, at most as many as there are processors; nothing to a card [default: all].
+    /// CPU threads, at most as many as there are processors; nothing to a GPU [default: all].
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u16>(1, 65_535))]
     pub threads: Option<u16>,
 }

@@ -49,7 +49,7 @@ pub enum Command {
     Tables(TablesArgs),
     /// What each faster choice costs in misses, lateness and false alarms, measured here: a table, CSV files and pictures.
     Trade(TradeArgs),
-    /// Check this machine: known answers, and the card and the CPU to the bit.
+    /// Check this machine: known answers, and the GPU and the CPU to the bit.
     Selftest(SelftestArgs),
 }
 

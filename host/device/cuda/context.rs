@@ -1,4 +1,4 @@
-//! A card's context, and what it is made for: every call of the driver is made by a thread that is bound to it.
+//! A GPU's context, and what it is made for: every call of the driver is made by a thread that is bound to it.
 
 use super::driver::{Driver, Refusal, answer, driver, refused};
 use super::types::{CUcontext, CUdevice, CUdevice_attribute};
@@ -8,35 +8,34 @@ use std::ops::Deref;
 use std::ptr::null_mut;
 use std::sync::Arc;
 
-/// A card, as the driver numbers it.
+/// A GPU, as the driver numbers it.
 #[derive(Clone, Copy)]
-pub struct Card {
+pub struct Gpu {
     driver: &'static Driver,
     device: CUdevice,
 }
 
-impl Card {
-    /// The card with that number.
-    pub fn new(ordinal: u32) -> Result<Card, Error> {
+impl Gpu {
+    /// The GPU with that number.
+    pub fn new(ordinal: u32) -> Result<Gpu, Error> {
         let driver = driver()?;
         // SAFETY: it may be called at any time.
         answer(unsafe { (driver.cuInit)(0) }).map_err(refused("starting the CUDA driver"))?;
         let (mut count, mut device) = (0, 0);
         // SAFETY: the driver is started, and writes one number.
-        answer(unsafe { (driver.cuDeviceGetCount)(&mut count) }).map_err(refused("looking for a card"))?;
+        answer(unsafe { (driver.cuDeviceGetCount)(&mut count) }).map_err(refused("looking for a GPU"))?;
         let there = c_int::try_from(ordinal).ok().filter(|number| *number < count);
         let number = there.ok_or_else(|| Error::Device {
-            what: format!("opening card {ordinal}"),
+            what: format!("opening GPU {ordinal}"),
             text: match count {
-                1 => "there is one card, number 0".into(),
-                _ => format!("there are {count} cards, numbered from 0"),
+                1 => "there is one GPU, number 0".into(),
+                _ => format!("there are {count} GPUs, numbered from 0"),
             },
-            advice: "ask for a card that is there, or run with `--backend cpu`",
+            advice: "ask for a GPU that is there, or run with `--backend cpu`",
         })?;
         // SAFETY: as above.
-        answer(unsafe { (driver.cuDeviceGet)(&mut device, number) })
-            .map_err(refused("looking for a card"))?;
-        Ok(Card { driver, device })
+        answer(unsafe { (driver.cuDeviceGet)(&mut device, number) }).map_err(refused("looking for a GPU"))?;
+        Ok(Gpu { driver, device })
     }
 
     /// What the driver calls it.
@@ -46,7 +45,7 @@ impl Card {
         let code = unsafe {
             (self.driver.cuDeviceGetName)(bytes.as_mut_ptr().cast(), bytes.len() as c_int, self.device)
         };
-        answer(code).map_err(refused("asking the card's name"))?;
+        answer(code).map_err(refused("asking the GPU's name"))?;
         let name = bytes.split(|byte| *byte == 0).next().unwrap_or_default();
         Ok(String::from_utf8_lossy(name).into_owned())
     }
@@ -56,7 +55,7 @@ impl Card {
         let mut value = 0;
         // SAFETY: the driver writes one number.
         let code = unsafe { (self.driver.cuDeviceGetAttribute)(&mut value, what, self.device) };
-        answer(code).map_err(refused("asking the card what it is"))?;
+        answer(code).map_err(refused("asking the GPU what it is"))?;
         Ok(value)
     }
 
@@ -66,13 +65,13 @@ impl Card {
         // SAFETY: the driver writes one handle, which is released once: when this is dropped.
         answer(unsafe { (self.driver.cuDevicePrimaryCtxRetain)(&mut handle, self.device) })
             .map_err(refused("making a context"))?;
-        Ok(Arc::new(Context { card: self, handle }))
+        Ok(Arc::new(Context { gpu: self, handle }))
     }
 }
 
-/// A card's primary context. Whatever lives in it holds it.
+/// A GPU's primary context. Whatever lives in it holds it.
 pub struct Context {
-    card: Card,
+    gpu: Gpu,
     handle: CUcontext,
 }
 
@@ -87,10 +86,10 @@ impl Context {
     pub fn bind(&self) -> Result<Bound<'_>, Refusal> {
         let mut before = null_mut();
         // SAFETY: the driver is started, and writes one handle.
-        answer(unsafe { (self.card.driver.cuCtxGetCurrent)(&mut before) })?;
+        answer(unsafe { (self.gpu.driver.cuCtxGetCurrent)(&mut before) })?;
         if before != self.handle {
             // SAFETY: the context is held.
-            answer(unsafe { (self.card.driver.cuCtxSetCurrent)(self.handle) })?;
+            answer(unsafe { (self.gpu.driver.cuCtxSetCurrent)(self.handle) })?;
         }
         Ok(Bound { context: self, before })
     }
@@ -99,7 +98,7 @@ impl Context {
 impl Drop for Context {
     fn drop(&mut self) {
         // SAFETY: retained once, and nothing is left that lives in it. A refusal finds nobody to be told.
-        let _ = unsafe { (self.card.driver.cuDevicePrimaryCtxRelease_v2)(self.card.device) };
+        let _ = unsafe { (self.gpu.driver.cuDevicePrimaryCtxRelease_v2)(self.gpu.device) };
     }
 }
 
@@ -112,7 +111,7 @@ pub struct Bound<'a> {
 impl Deref for Bound<'_> {
     type Target = Driver;
     fn deref(&self) -> &Driver {
-        self.context.card.driver
+        self.context.gpu.driver
     }
 }
 

@@ -17,7 +17,7 @@ use std::sync::OnceLock;
 pub struct Refusal(pub u32);
 
 impl Refusal {
-    /// The machine, or the card, has no more memory.
+    /// The machine, or the GPU, has no more memory.
     pub const OUT_OF_MEMORY: Refusal = Refusal(types::CUDA_ERROR_OUT_OF_MEMORY);
 
     /// The driver's name and text of the error, where it has them.

@@ -1,4 +1,4 @@
-//! Memory of the card, and memory of the host that the card reaches.
+//! Memory of the GPU, and memory of the host that the GPU reaches.
 
 use super::context::{Bound, Context};
 use super::driver::{Refusal, answer};
@@ -6,7 +6,7 @@ use super::stream::Stream;
 use std::ptr::{NonNull, null_mut};
 use std::sync::Arc;
 
-/// Memory of the card.
+/// Memory of the GPU.
 pub struct Memory {
     context: Arc<Context>,
     addr: u64,
@@ -15,10 +15,10 @@ pub struct Memory {
 
 impl Memory {
     /// So many bytes, whatever they hold.
-    pub fn new(context: &Arc<Context>, card: &Bound, bytes: usize) -> Result<Memory, Refusal> {
+    pub fn new(context: &Arc<Context>, gpu: &Bound, bytes: usize) -> Result<Memory, Refusal> {
         let mut addr = 0;
         // SAFETY: the driver writes one address, which is freed once.
-        answer(unsafe { (card.cuMemAlloc_v2)(&mut addr, bytes) })?;
+        answer(unsafe { (gpu.cuMemAlloc_v2)(&mut addr, bytes) })?;
         Ok(Memory { context: context.clone(), addr, bytes })
     }
 
@@ -28,9 +28,9 @@ impl Memory {
     }
 
     /// Sets every byte to zero, behind all work before.
-    pub fn clear(&mut self, card: &Bound, stream: &Stream) -> Result<(), Refusal> {
+    pub fn clear(&mut self, gpu: &Bound, stream: &Stream) -> Result<(), Refusal> {
         // SAFETY: so many bytes are there, and freeing them waits for this.
-        answer(unsafe { (card.cuMemsetD8Async)(self.addr, 0, self.bytes, stream.handle()) })
+        answer(unsafe { (gpu.cuMemsetD8Async)(self.addr, 0, self.bytes, stream.handle()) })
     }
 
     /// Copies bytes to `start`, behind all work before.
@@ -39,16 +39,14 @@ impl Memory {
     /// The bytes are not touched before the stream was waited for.
     pub unsafe fn write(
         &mut self,
-        card: &Bound,
+        gpu: &Bound,
         stream: &Stream,
         start: usize,
         bytes: &[u8],
     ) -> Result<(), Refusal> {
         let to = self.inside(start, bytes.len());
         // SAFETY: so many bytes are there; freeing them waits for this; the rest is the caller's promise.
-        answer(unsafe {
-            (card.cuMemcpyHtoDAsync_v2)(to, bytes.as_ptr().cast(), bytes.len(), stream.handle())
-        })
+        answer(unsafe { (gpu.cuMemcpyHtoDAsync_v2)(to, bytes.as_ptr().cast(), bytes.len(), stream.handle()) })
     }
 
     /// Copies bytes from `start`, behind all work before.
@@ -57,7 +55,7 @@ impl Memory {
     /// The bytes are not touched before the stream was waited for.
     pub unsafe fn read(
         &self,
-        card: &Bound,
+        gpu: &Bound,
         stream: &Stream,
         start: usize,
         bytes: &mut [u8],
@@ -65,43 +63,43 @@ impl Memory {
         let from = self.inside(start, bytes.len());
         // SAFETY: as in `write`.
         answer(unsafe {
-            (card.cuMemcpyDtoHAsync_v2)(bytes.as_mut_ptr().cast(), from, bytes.len(), stream.handle())
+            (gpu.cuMemcpyDtoHAsync_v2)(bytes.as_mut_ptr().cast(), from, bytes.len(), stream.handle())
         })
     }
 
     /// Copies the first bytes and waits for that; not for the stream.
-    pub fn read_now(&self, card: &Bound, bytes: &mut [u8]) -> Result<(), Refusal> {
+    pub fn read_now(&self, gpu: &Bound, bytes: &mut [u8]) -> Result<(), Refusal> {
         let from = self.inside(0, bytes.len());
         if bytes.is_empty() {
             return Ok(());
         }
         // SAFETY: so many bytes are there, and as many here; the call waits for the copy.
-        answer(unsafe { (card.cuMemcpyDtoH_v2)(bytes.as_mut_ptr().cast(), from, bytes.len()) })
+        answer(unsafe { (gpu.cuMemcpyDtoH_v2)(bytes.as_mut_ptr().cast(), from, bytes.len()) })
     }
 
     /// The address of a piece of it.
     fn inside(&self, start: usize, bytes: usize) -> u64 {
         let end = start.checked_add(bytes);
-        assert!(end.is_some_and(|end| end <= self.bytes), "a copy beyond the card's memory");
+        assert!(end.is_some_and(|end| end <= self.bytes), "a copy beyond the GPU's memory");
         self.addr + start as u64
     }
 }
 
 impl Drop for Memory {
     fn drop(&mut self) {
-        if let Ok(card) = self.context.bind() {
-            // SAFETY: taken once, freed once; the call waits for all work of the card that may use it. A refusal finds nobody
+        if let Ok(gpu) = self.context.bind() {
+            // SAFETY: taken once, freed once; the call waits for all work of the GPU that may use it. A refusal finds nobody
             // to be told.
-            let _ = unsafe { (card.cuMemFree_v2)(self.addr) };
+            let _ = unsafe { (gpu.cuMemFree_v2)(self.addr) };
         }
     }
 }
 
-/// Free bytes of the card's memory, as far as the driver tells.
-pub fn free(card: &Bound) -> u64 {
+/// Free bytes of the GPU's memory, as far as the driver tells.
+pub fn free(gpu: &Bound) -> u64 {
     let (mut free, mut total) = (0, 0);
     // SAFETY: the driver writes two numbers.
-    answer(unsafe { (card.cuMemGetInfo_v2)(&mut free, &mut total) }).map_or(0, |()| free as u64)
+    answer(unsafe { (gpu.cuMemGetInfo_v2)(&mut free, &mut total) }).map_or(0, |()| free as u64)
 }
 
 /// Page-locked memory of the host: copies from and to it run beside the host.
@@ -118,10 +116,10 @@ unsafe impl Sync for Locked {}
 
 impl Locked {
     /// So many bytes, at least one.
-    pub fn new(context: &Arc<Context>, card: &Bound, len: usize) -> Result<Locked, Refusal> {
+    pub fn new(context: &Arc<Context>, gpu: &Bound, len: usize) -> Result<Locked, Refusal> {
         let mut start = null_mut();
         // SAFETY: the driver writes one address, which is freed once.
-        answer(unsafe { (card.cuMemAllocHost_v2)(&mut start, len) })?;
+        answer(unsafe { (gpu.cuMemAllocHost_v2)(&mut start, len) })?;
         let start = NonNull::new(start.cast()).ok_or(Refusal::OUT_OF_MEMORY)?;
         // SAFETY: so many bytes are there and nobody else knows them.
         unsafe { start.write_bytes(0, len) };
@@ -136,7 +134,7 @@ impl Locked {
     /// A piece.
     pub fn piece(&self, at: usize, bytes: usize) -> &[u8] {
         assert!(at <= self.len && bytes <= self.len - at, "beyond the page-locked memory");
-        // SAFETY: inside the allocation, which is written from the start on. The card writes to no piece that somebody may
+        // SAFETY: inside the allocation, which is written from the start on. The GPU writes to no piece that somebody may
         // look at: who starts a copy promises that (`Memory::read`).
         unsafe { std::slice::from_raw_parts(self.start.as_ptr().add(at), bytes) }
     }
@@ -151,10 +149,10 @@ impl Locked {
 
 impl Drop for Locked {
     fn drop(&mut self) {
-        if let Ok(card) = self.context.bind() {
+        if let Ok(gpu) = self.context.bind() {
             // SAFETY: taken once, freed once, after copies under way were waited for (`Staging::room`, `Cuda::drop`). A
             // refusal finds nobody to be told.
-            let _ = unsafe { (card.cuMemFreeHost)(self.start.as_ptr().cast()) };
+            let _ = unsafe { (gpu.cuMemFreeHost)(self.start.as_ptr().cast()) };
         }
     }
 }

@@ -1,4 +1,4 @@
-//! An NVIDIA card, through its driver. The kernels' PTX is embedded; the driver compiles it for the card it finds.
+//! An NVIDIA GPU, through its driver. The kernels' PTX is embedded; the driver compiles it for the GPU it finds.
 
 mod context;
 mod driver;
@@ -13,7 +13,7 @@ pub use staging::Known;
 
 use super::ptx::Parts;
 use crate::error::Error;
-use context::{Bound, Card, Context};
+use context::{Bound, Context, Gpu};
 use driver::{Refusal, refused};
 use module::{Function, Module};
 use nearmiss_kernels::entry::Entry as Kernel;
@@ -28,19 +28,19 @@ use stream::Stream;
 const PTX: &str = include_str!(concat!(env!("OUT_DIR"), "/nearmiss.ptx"));
 /// The stamp of the sources that this program was built with.
 const STAMP: &str = env!("NEARMISS_STAMP");
-/// The oldest card that the PTX is for: compute capability 8.0.
+/// The oldest GPU that the PTX is for: compute capability 8.0.
 const CAPABILITY: (i32, i32) = (8, 0);
 
 /// What every call begins with.
-const BINDING: &str = "binding a thread to the card";
+const BINDING: &str = "binding a thread to the GPU";
 
-/// A card, its context, one stream, and a module for each kernel that was used.
+/// A GPU, its context, one stream, and a module for each kernel that was used.
 pub struct Cuda {
     name: String,
     processors: u32,
     resident_lanes: u32,
     staging: Mutex<Staging>,
-    /// Counts what may change the card's memory: what was read ahead holds until the next of these.
+    /// Counts what may change the GPU's memory: what was read ahead holds until the next of these.
     epoch: AtomicU64,
     parts: Parts<'static>,
     functions: Mutex<HashMap<&'static str, Function>>,
@@ -48,14 +48,14 @@ pub struct Cuda {
     context: Arc<Context>,
 }
 
-/// A point in the card's stream.
+/// A point in the GPU's stream.
 pub struct Event(stream::Event);
 
 impl Event {
     /// Milliseconds to a later event; waits for it.
     pub fn to(&self, later: &Event) -> Result<f64, Error> {
-        later.0.wait().map_err(refused("waiting for the card"))?;
-        self.0.to(&later.0).map(f64::from).map_err(refused("reading the card's clock"))
+        later.0.wait().map_err(refused("waiting for the GPU"))?;
+        self.0.to(&later.0).map(f64::from).map_err(refused("reading the GPU's clock"))
     }
 }
 
@@ -65,17 +65,17 @@ fn locked<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Cuda {
-    /// The card with that number.
+    /// The GPU with that number.
     pub fn new(ordinal: u32) -> Result<Self, Error> {
-        let card = Card::new(ordinal)?;
-        let name = card.name()?;
+        let gpu = Gpu::new(ordinal)?;
+        let name = gpu.name()?;
         let capability = (
-            card.read(types::CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR)?,
-            card.read(types::CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MINOR)?,
+            gpu.read(types::CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR)?,
+            gpu.read(types::CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MINOR)?,
         );
         if capability < CAPABILITY {
             return Err(Error::Device {
-                what: format!("using the card {name}"),
+                what: format!("using the GPU {name}"),
                 text: format!(
                     "it has compute capability {}.{}, the kernels need 8.0",
                     capability.0, capability.1
@@ -83,9 +83,9 @@ impl Cuda {
                 advice: "run with `--backend cpu`",
             });
         }
-        let processors = card.read(types::CU_DEVICE_ATTRIBUTE_MULTIPROCESSOR_COUNT)? as u32;
-        let lanes = card.read(types::CU_DEVICE_ATTRIBUTE_MAX_THREADS_PER_MULTIPROCESSOR)? as u32;
-        let context = card.context()?;
+        let processors = gpu.read(types::CU_DEVICE_ATTRIBUTE_MULTIPROCESSOR_COUNT)? as u32;
+        let lanes = gpu.read(types::CU_DEVICE_ATTRIBUTE_MAX_THREADS_PER_MULTIPROCESSOR)? as u32;
+        let context = gpu.context()?;
         let stream = Stream::new(&context).map_err(refused("making a stream"))?;
         let parts = Parts::new(PTX);
         let bound = context.bind().map_err(refused(BINDING))?;
@@ -111,30 +111,30 @@ impl Cuda {
         self.context.bind().map_err(refused(BINDING))
     }
 
-    /// What the driver calls the card.
+    /// What the driver calls the GPU.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Blocks of that many lanes that fill the card.
+    /// Blocks of that many lanes that fill the GPU.
     pub fn resident_blocks(&self, lanes: u32) -> u32 {
         self.resident_lanes / lanes
     }
 
-    /// Zeroed memory of the card.
+    /// Zeroed memory of the GPU.
     pub fn memory(&self, bytes: usize) -> Result<Memory, Error> {
-        let card = self.bind()?;
+        let gpu = self.bind()?;
         let mut memory =
-            Memory::new(&self.context, &card, bytes.max(16)).map_err(|refusal| match refusal {
+            Memory::new(&self.context, &gpu, bytes.max(16)).map_err(|refusal| match refusal {
                 Refusal::OUT_OF_MEMORY => Error::Room {
-                    what: "memory of the card".into(),
+                    what: "memory of the GPU".into(),
                     asked: bytes as u64,
-                    given: memory::free(&card),
+                    given: memory::free(&gpu),
                 },
-                other => refused("taking memory of the card")(other),
+                other => refused("taking memory of the GPU")(other),
             })?;
         // What reads it comes behind this in the stream.
-        self.cleared(&card, &mut memory)?;
+        self.cleared(&gpu, &mut memory)?;
         Ok(memory)
     }
 
@@ -143,9 +143,9 @@ impl Cuda {
         self.cleared(&self.bind()?, memory)
     }
 
-    fn cleared(&self, card: &Bound, memory: &mut Memory) -> Result<(), Error> {
+    fn cleared(&self, gpu: &Bound, memory: &mut Memory) -> Result<(), Error> {
         self.changes();
-        memory.clear(card, &self.stream).map_err(refused("clearing memory of the card"))
+        memory.clear(gpu, &self.stream).map_err(refused("clearing memory of the GPU"))
     }
 
     /// What was read ahead holds no longer.
@@ -153,27 +153,27 @@ impl Cuda {
         self.epoch.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// Copies bytes to the card, through page-locked memory; does not wait for the card.
+    /// Copies bytes to the GPU, through page-locked memory; does not wait for the GPU.
     pub fn write(&self, memory: &mut Memory, bytes: &[u8]) -> Result<(), Error> {
         self.changes();
         locked(&self.staging).write(&self.bind()?, &self.stream, memory, bytes)
     }
 
-    /// Copies bytes from the card, through page-locked memory; waits for all work before, unless it was read ahead.
+    /// Copies bytes from the GPU, through page-locked memory; waits for all work before, unless it was read ahead.
     pub fn read(&self, memory: &Memory, bytes: &mut [u8]) -> Result<(), Error> {
         if let Some(known) = self.known(memory, bytes.len()) {
             bytes.copy_from_slice(known.bytes());
             return Ok(());
         }
-        let card = self.bind()?;
+        let gpu = self.bind()?;
         let mut staging = locked(&self.staging);
         if !staging.is_looked_at() {
-            return staging.read(&card, &self.stream, memory, bytes);
+            return staging.read(&gpu, &self.stream, memory, bytes);
         }
         drop(staging);
         // The host still looks at what was read ahead, of which this is not: a copy of its own.
-        self.stream.wait(&card).map_err(refused("waiting for the card"))?;
-        memory.read_now(&card, bytes).map_err(refused("copying from the card"))
+        self.stream.wait(&gpu).map_err(refused("waiting for the GPU"))?;
+        memory.read_now(&gpu, bytes).map_err(refused("copying from the GPU"))
     }
 
     /// Copies the first bytes of several buffers, as many as fit into page-locked memory, with one wait: those that are
@@ -191,18 +191,18 @@ impl Cuda {
     /// Starts a kernel.
     pub fn launch<E: Kernel>(&self, blocks: u32, args: &E::Args) -> Result<(), Error> {
         self.changes();
-        self.with_function::<E, _>(|card, function| {
+        self.with_function::<E, _>(|gpu, function| {
             // SAFETY: the kernel takes one parameter of this type (the stamp says that host and PTX come from the same
-            // sources), and its spans are memory of this card that the caller's buffers keep alive: freeing a buffer
+            // sources), and its spans are memory of this GPU that the caller's buffers keep alive: freeing a buffer
             // waits for the launches before it.
-            unsafe { function.launch(card, &self.stream, (blocks, E::LANES, E::SHARED), *args) }
+            unsafe { function.launch(gpu, &self.stream, (blocks, E::LANES, E::SHARED), *args) }
         })
     }
 
     /// How many blocks of a kernel run at once: its registers and shared memory tell.
     pub fn blocks_at_once<E: Kernel>(&self) -> Result<u32, Error> {
         let each =
-            self.with_function::<E, _>(|card, function| function.blocks_at_once(card, E::LANES, E::SHARED))?;
+            self.with_function::<E, _>(|gpu, function| function.blocks_at_once(gpu, E::LANES, E::SHARED))?;
         Ok(each * self.processors)
     }
 
@@ -211,7 +211,7 @@ impl Cuda {
         &self,
         body: impl FnOnce(&Bound, &Function) -> Result<T, Refusal>,
     ) -> Result<T, Error> {
-        let card = self.bind()?;
+        let gpu = self.bind()?;
         let mut functions = locked(&self.functions);
         let function = match functions.entry(E::NAME) {
             Entry::Occupied(known) => known.into_mut(),
@@ -219,18 +219,18 @@ impl Cuda {
                 let text = self.parts.module(E::NAME);
                 let text =
                     text.ok_or_else(|| Error::Bug { what: format!("no kernel {} in the PTX", E::NAME) })?;
-                let module = Module::new(&self.context, &card, &text).map_err(refused(E::NAME))?;
-                new.insert(module.function(&card, E::NAME).map_err(refused(E::NAME))?)
+                let module = Module::new(&self.context, &gpu, &text).map_err(refused(E::NAME))?;
+                new.insert(module.function(&gpu, E::NAME).map_err(refused(E::NAME))?)
             }
         };
-        body(&card, function).map_err(refused(E::NAME))
+        body(&gpu, function).map_err(refused(E::NAME))
     }
 
     /// A point in the stream.
     pub fn event(&self) -> Result<Event, Error> {
-        let card = self.bind()?;
-        let event = stream::Event::new(&self.context, &card).map_err(refused("making an event"))?;
-        event.record(&card, &self.stream).map_err(refused("recording an event"))?;
+        let gpu = self.bind()?;
+        let event = stream::Event::new(&self.context, &gpu).map_err(refused("making an event"))?;
+        event.record(&gpu, &self.stream).map_err(refused("recording an event"))?;
         Ok(Event(event))
     }
 }
@@ -238,9 +238,9 @@ impl Cuda {
 impl Drop for Cuda {
     /// Copies under way must not outlive the page-locked memory that they read.
     fn drop(&mut self) {
-        // A card that fails here has failed before, and nobody is left to be told.
-        if let Ok(card) = self.context.bind() {
-            let _ = self.stream.wait(&card);
+        // A GPU that fails here has failed before, and nobody is left to be told.
+        if let Ok(gpu) = self.context.bind() {
+            let _ = self.stream.wait(&gpu);
         }
     }
 }

@@ -8,7 +8,7 @@ use std::ffi::{CStr, CString, c_int, c_void};
 use std::ptr::null_mut;
 use std::sync::Arc;
 
-/// PTX that the driver has compiled for the card.
+/// PTX that the driver has compiled for the GPU.
 pub struct Module {
     context: Arc<Context>,
     handle: CUmodule,
@@ -21,7 +21,7 @@ unsafe impl Sync for Module {}
 
 impl Module {
     /// Compiles a text. The driver keeps the lines of the Rust sources, for profilers; the machine code is the same.
-    pub fn new(context: &Arc<Context>, card: &Bound, ptx: &str) -> Result<Module, Refusal> {
+    pub fn new(context: &Arc<Context>, gpu: &Bound, ptx: &str) -> Result<Module, Refusal> {
         let ptx = text(ptx)?;
         let mut options = [types::CU_JIT_GENERATE_LINE_INFO];
         let mut values = [std::ptr::without_provenance_mut::<c_void>(1)];
@@ -29,7 +29,7 @@ impl Module {
         // SAFETY: the text ends with zero; there is a value for the one option, a number in the place of a pointer; the
         // driver writes one handle, which is unloaded once.
         answer(unsafe {
-            (card.cuModuleLoadDataEx)(
+            (gpu.cuModuleLoadDataEx)(
                 &mut handle,
                 ptx.as_ptr().cast(),
                 options.len() as u32,
@@ -41,24 +41,24 @@ impl Module {
     }
 
     /// A kernel of it.
-    pub fn function(self, card: &Bound, name: &str) -> Result<Function, Refusal> {
+    pub fn function(self, gpu: &Bound, name: &str) -> Result<Function, Refusal> {
         let name = text(name)?;
         let mut handle = null_mut();
         // SAFETY: the module lives, the name ends with zero, and the driver writes one handle.
-        answer(unsafe { (card.cuModuleGetFunction)(&mut handle, self.handle, name.as_ptr()) })?;
+        answer(unsafe { (gpu.cuModuleGetFunction)(&mut handle, self.handle, name.as_ptr()) })?;
         Ok(Function { handle, _module: self })
     }
 
-    /// A number in the card's memory.
-    pub fn global(&self, card: &Bound, name: &CStr) -> Result<u64, Refusal> {
+    /// A number in the GPU's memory.
+    pub fn global(&self, gpu: &Bound, name: &CStr) -> Result<u64, Refusal> {
         let (mut addr, mut bytes, mut value) = (0, 0, 0u64);
         // SAFETY: the module lives, the name ends with zero, and the driver writes two numbers.
-        answer(unsafe { (card.cuModuleGetGlobal_v2)(&mut addr, &mut bytes, self.handle, name.as_ptr()) })?;
+        answer(unsafe { (gpu.cuModuleGetGlobal_v2)(&mut addr, &mut bytes, self.handle, name.as_ptr()) })?;
         if bytes != size_of::<u64>() {
             return Err(Refusal(types::CUDA_ERROR_NOT_FOUND));
         }
         // SAFETY: so many bytes are there, and as many here; the call waits for the copy.
-        answer(unsafe { (card.cuMemcpyDtoH_v2)((&raw mut value).cast(), addr, bytes) })?;
+        answer(unsafe { (gpu.cuMemcpyDtoH_v2)((&raw mut value).cast(), addr, bytes) })?;
         Ok(value)
     }
 }
@@ -70,10 +70,10 @@ fn text(text: &str) -> Result<CString, Refusal> {
 
 impl Drop for Module {
     fn drop(&mut self) {
-        if let Ok(card) = self.context.bind() {
-            // SAFETY: loaded once, unloaded once, after the card's work was waited for (`Cuda::drop`) or before there was
+        if let Ok(gpu) = self.context.bind() {
+            // SAFETY: loaded once, unloaded once, after the GPU's work was waited for (`Cuda::drop`) or before there was
             // any. A refusal finds nobody to be told.
-            let _ = unsafe { (card.cuModuleUnload)(self.handle) };
+            let _ = unsafe { (gpu.cuModuleUnload)(self.handle) };
         }
     }
 }
@@ -96,7 +96,7 @@ impl Function {
     /// `parameter` is the kernel's only one, of its type, and what it names is memory that lives until the launch is over.
     pub unsafe fn launch<T: Copy>(
         &self,
-        card: &Bound,
+        gpu: &Bound,
         stream: &Stream,
         (blocks, lanes, shared): (u32, u32, u32),
         mut parameter: T,
@@ -104,7 +104,7 @@ impl Function {
         let mut parameters = [(&raw mut parameter).cast::<c_void>()];
         // SAFETY: module and stream live; the driver copies the parameter before it returns; the rest is the caller's promise.
         answer(unsafe {
-            (card.cuLaunchKernel)(
+            (gpu.cuLaunchKernel)(
                 self.handle,
                 blocks,
                 1,
@@ -121,11 +121,11 @@ impl Function {
     }
 
     /// Blocks of it that a multiprocessor runs at once.
-    pub fn blocks_at_once(&self, card: &Bound, lanes: u32, shared: u32) -> Result<u32, Refusal> {
+    pub fn blocks_at_once(&self, gpu: &Bound, lanes: u32, shared: u32) -> Result<u32, Refusal> {
         let mut blocks = 0;
         // SAFETY: the module lives, and the driver writes one number.
         answer(unsafe {
-            (card.cuOccupancyMaxActiveBlocksPerMultiprocessor)(
+            (gpu.cuOccupancyMaxActiveBlocksPerMultiprocessor)(
                 &mut blocks,
                 self.handle,
                 lanes as c_int,

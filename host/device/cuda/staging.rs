@@ -26,7 +26,7 @@ pub struct Staging {
     epoch: u64,
 }
 
-/// The first bytes of a buffer of the card.
+/// The first bytes of a buffer of the GPU.
 struct Ahead {
     addr: u64,
     at: usize,
@@ -47,14 +47,14 @@ impl Known {
     }
 }
 
-fn locked(context: &Arc<Context>, card: &Bound, bytes: usize) -> Result<Arc<Locked>, Error> {
-    Locked::new(context, card, bytes).map(Arc::new).map_err(refused("locking host memory"))
+fn locked(context: &Arc<Context>, gpu: &Bound, bytes: usize) -> Result<Arc<Locked>, Error> {
+    Locked::new(context, gpu, bytes).map(Arc::new).map_err(refused("locking host memory"))
 }
 
 impl Staging {
     /// Takes the memory.
-    pub fn new(context: &Arc<Context>, card: &Bound) -> Result<Staging, Error> {
-        let memory = locked(context, card, FIRST)?;
+    pub fn new(context: &Arc<Context>, gpu: &Bound) -> Result<Staging, Error> {
+        let memory = locked(context, gpu, FIRST)?;
         Ok(Staging { context: context.clone(), memory, used: 0, ahead: Vec::new(), epoch: 0 })
     }
 
@@ -71,15 +71,15 @@ impl Staging {
 
     /// Where so many bytes are free. Waits for what is under way only where there is no more room, and takes more memory
     /// only where there never was.
-    fn room(&mut self, card: &Bound, stream: &Stream, bytes: usize) -> Result<usize, Error> {
+    fn room(&mut self, gpu: &Bound, stream: &Stream, bytes: usize) -> Result<usize, Error> {
         let wanted = bytes.next_multiple_of(ALIGN);
         let there = self.own()?.len();
         if self.used + wanted > there {
-            stream.wait(card).map_err(refused("waiting for copies"))?;
+            stream.wait(gpu).map_err(refused("waiting for copies"))?;
             self.used = 0;
             self.ahead.clear();
             if wanted > there {
-                self.memory = locked(&self.context, card, wanted.next_power_of_two())?;
+                self.memory = locked(&self.context, gpu, wanted.next_power_of_two())?;
             }
         }
         let at = self.used;
@@ -87,21 +87,21 @@ impl Staging {
         Ok(at)
     }
 
-    /// Copies bytes to the card behind all that was started before; waits for nothing but room.
+    /// Copies bytes to the GPU behind all that was started before; waits for nothing but room.
     pub fn write(
         &mut self,
-        card: &Bound,
+        gpu: &Bound,
         stream: &Stream,
         to: &mut Memory,
         bytes: &[u8],
     ) -> Result<(), Error> {
         for (piece, start) in bytes.chunks(PIECE).zip((0..).step_by(PIECE)) {
-            let at = self.room(card, stream, piece.len())?;
+            let at = self.room(gpu, stream, piece.len())?;
             let from = self.own()?.piece_mut(at, piece.len());
             from.copy_from_slice(piece);
-            // SAFETY: this room is not touched again before the stream was waited for (`room`), nor given back (the card's
+            // SAFETY: this room is not touched again before the stream was waited for (`room`), nor given back (the GPU's
             // drop waits).
-            unsafe { to.write(card, stream, start, from) }.map_err(refused("copying to the card"))?;
+            unsafe { to.write(gpu, stream, start, from) }.map_err(refused("copying to the GPU"))?;
         }
         Ok(())
     }
@@ -109,45 +109,45 @@ impl Staging {
     /// Starts the copy of a piece of a buffer, and says where it will be.
     fn start(
         &mut self,
-        card: &Bound,
+        gpu: &Bound,
         stream: &Stream,
         from: &Memory,
         (start, bytes): (usize, usize),
     ) -> Result<usize, Error> {
-        let at = self.room(card, stream, bytes)?;
+        let at = self.room(gpu, stream, bytes)?;
         let to = self.own()?.piece_mut(at, bytes);
         // SAFETY: nobody reads this room before the stream was waited for, which every caller does; else as in `write`.
-        unsafe { from.read(card, stream, start, to) }.map_err(refused("copying from the card"))?;
+        unsafe { from.read(gpu, stream, start, to) }.map_err(refused("copying from the GPU"))?;
         Ok(at)
     }
 
     /// Waits for all work before: then all room is free, but for what was read ahead.
-    fn wait(&mut self, card: &Bound, stream: &Stream) -> Result<(), Error> {
-        stream.wait(card).map_err(refused("copying from the card"))?;
+    fn wait(&mut self, gpu: &Bound, stream: &Stream) -> Result<(), Error> {
+        stream.wait(gpu).map_err(refused("copying from the GPU"))?;
         self.used = self.ahead.iter().map(|a| (a.at + a.bytes).next_multiple_of(ALIGN)).max().unwrap_or(0);
         Ok(())
     }
 
-    /// Copies bytes from the card, in pieces; waits for all work before.
+    /// Copies bytes from the GPU, in pieces; waits for all work before.
     pub fn read(
         &mut self,
-        card: &Bound,
+        gpu: &Bound,
         stream: &Stream,
         from: &Memory,
         bytes: &mut [u8],
     ) -> Result<(), Error> {
         for (piece, start) in bytes.chunks_mut(PIECE).zip((0..).step_by(PIECE)) {
-            let at = self.start(card, stream, from, (start, piece.len()))?;
-            self.wait(card, stream)?;
+            let at = self.start(gpu, stream, from, (start, piece.len()))?;
+            self.wait(gpu, stream)?;
             piece.copy_from_slice(self.memory.piece(at, piece.len()));
         }
-        if bytes.is_empty() { self.wait(card, stream) } else { Ok(()) }
+        if bytes.is_empty() { self.wait(gpu, stream) } else { Ok(()) }
     }
 
-    /// Copies the first bytes of several buffers from the card with one wait, where they fit; they hold for that epoch.
+    /// Copies the first bytes of several buffers from the GPU with one wait, where they fit; they hold for that epoch.
     pub fn read_ahead(
         &mut self,
-        card: &Bound,
+        gpu: &Bound,
         stream: &Stream,
         epoch: u64,
         all: &[(&Memory, usize)],
@@ -159,16 +159,16 @@ impl Staging {
             return Ok(());
         }
         // Room for all at once, so that none of it makes room for another.
-        let whole = self.room(card, stream, sum)?;
+        let whole = self.room(gpu, stream, sum)?;
         self.used = whole;
         let mut ahead = Vec::with_capacity(all.len());
         for (memory, bytes) in all.iter().filter(|(_, bytes)| *bytes > 0) {
-            let at = self.start(card, stream, memory, (0, *bytes))?;
+            let at = self.start(gpu, stream, memory, (0, *bytes))?;
             ahead.push(Ahead { addr: memory.addr(), at, bytes: *bytes });
         }
         (self.ahead, self.epoch) = (ahead, epoch);
         // What could not be waited for is not there.
-        self.wait(card, stream).inspect_err(|_| self.ahead.clear())
+        self.wait(gpu, stream).inspect_err(|_| self.ahead.clear())
     }
 
     /// The first bytes of the buffer at `addr`, if they were read ahead in this epoch.

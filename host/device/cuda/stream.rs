@@ -1,4 +1,4 @@
-//! The order of the card's work: a stream, and points in it.
+//! The order of the GPU's work: a stream, and points in it.
 
 use super::context::{Bound, Context};
 use super::driver::{Refusal, answer};
@@ -6,7 +6,7 @@ use super::types::{self, CUevent, CUstream};
 use std::ptr::null_mut;
 use std::sync::Arc;
 
-/// Work that the card does in order. It waits for nobody else's.
+/// Work that the GPU does in order. It waits for nobody else's.
 pub struct Stream {
     context: Arc<Context>,
     handle: CUstream,
@@ -20,10 +20,10 @@ unsafe impl Sync for Stream {}
 impl Stream {
     /// A stream of its own: nothing on the default stream holds it up.
     pub fn new(context: &Arc<Context>) -> Result<Stream, Refusal> {
-        let card = context.bind()?;
+        let gpu = context.bind()?;
         let mut handle = null_mut();
         // SAFETY: the driver writes one handle, which is destroyed once.
-        answer(unsafe { (card.cuStreamCreate)(&mut handle, types::CU_STREAM_NON_BLOCKING) })?;
+        answer(unsafe { (gpu.cuStreamCreate)(&mut handle, types::CU_STREAM_NON_BLOCKING) })?;
         Ok(Stream { context: context.clone(), handle })
     }
 
@@ -33,17 +33,17 @@ impl Stream {
     }
 
     /// Waits for all work before.
-    pub fn wait(&self, card: &Bound) -> Result<(), Refusal> {
+    pub fn wait(&self, gpu: &Bound) -> Result<(), Refusal> {
         // SAFETY: the stream lives.
-        answer(unsafe { (card.cuStreamSynchronize)(self.handle) })
+        answer(unsafe { (gpu.cuStreamSynchronize)(self.handle) })
     }
 }
 
 impl Drop for Stream {
     fn drop(&mut self) {
-        if let Ok(card) = self.context.bind() {
+        if let Ok(gpu) = self.context.bind() {
             // SAFETY: made once, destroyed once. A refusal finds nobody to be told.
-            let _ = unsafe { (card.cuStreamDestroy_v2)(self.handle) };
+            let _ = unsafe { (gpu.cuStreamDestroy_v2)(self.handle) };
         }
     }
 }
@@ -61,42 +61,42 @@ unsafe impl Sync for Event {}
 
 impl Event {
     /// An event that is not yet in a stream.
-    pub fn new(context: &Arc<Context>, card: &Bound) -> Result<Event, Refusal> {
+    pub fn new(context: &Arc<Context>, gpu: &Bound) -> Result<Event, Refusal> {
         let mut handle = null_mut();
         // SAFETY: the driver writes one handle, which is destroyed once.
-        answer(unsafe { (card.cuEventCreate)(&mut handle, types::CU_EVENT_DEFAULT) })?;
+        answer(unsafe { (gpu.cuEventCreate)(&mut handle, types::CU_EVENT_DEFAULT) })?;
         Ok(Event { context: context.clone(), handle })
     }
 
     /// Puts it behind all work before.
-    pub fn record(&self, card: &Bound, stream: &Stream) -> Result<(), Refusal> {
+    pub fn record(&self, gpu: &Bound, stream: &Stream) -> Result<(), Refusal> {
         // SAFETY: both live.
-        answer(unsafe { (card.cuEventRecord)(self.handle, stream.handle) })
+        answer(unsafe { (gpu.cuEventRecord)(self.handle, stream.handle) })
     }
 
     /// Waits for it.
     pub fn wait(&self) -> Result<(), Refusal> {
-        let card = self.context.bind()?;
+        let gpu = self.context.bind()?;
         // SAFETY: it lives.
-        answer(unsafe { (card.cuEventSynchronize)(self.handle) })
+        answer(unsafe { (gpu.cuEventSynchronize)(self.handle) })
     }
 
     /// Milliseconds to a later event that was waited for.
     pub fn to(&self, later: &Event) -> Result<f32, Refusal> {
-        let card = self.context.bind()?;
+        let gpu = self.context.bind()?;
         let mut ms = 0.0;
         // SAFETY: both live, and the driver writes one number.
-        answer(unsafe { (card.cuEventElapsedTime)(&mut ms, self.handle, later.handle) })?;
+        answer(unsafe { (gpu.cuEventElapsedTime)(&mut ms, self.handle, later.handle) })?;
         Ok(ms)
     }
 }
 
 impl Drop for Event {
     fn drop(&mut self) {
-        if let Ok(card) = self.context.bind() {
+        if let Ok(gpu) = self.context.bind() {
             // SAFETY: made once, destroyed once; the driver keeps what the stream still needs. A refusal finds nobody to
             // be told.
-            let _ = unsafe { (card.cuEventDestroy_v2)(self.handle) };
+            let _ = unsafe { (gpu.cuEventDestroy_v2)(self.handle) };
         }
     }
 }

@@ -85,7 +85,7 @@ impl Continuous {
             .map(Counter),
             below_precision: None,
             earliest: earliest.then(|| device.buffer(1)).transpose()?,
-            ordered: (device.is_card() && !earliest)
+            ordered: (device.is_gpu() && !earliest)
                 .then(|| Order::new(device, layout, order::turn(layout), hits[0] / 4))
                 .transpose()?,
         })

@@ -1,5 +1,5 @@
 //! A frame whose contacts the device orders answers as one whose contacts the host orders: on any machine, though only a
-//! card does so by itself.
+//! GPU does so by itself.
 
 use super::*;
 use crate::contacts::Contacts;

@@ -103,7 +103,7 @@ pub trait Walk<V>: Send {
 /// # Errors
 /// Those of the device.
 pub fn walk<V: Kernels>(device: &Device, query: &Query, triangles: usize) -> Result<Box<dyn Walk<V>>, Error> {
-    Ok(match query.traversal_on(device.is_card()) {
+    Ok(match query.traversal_on(device.is_gpu()) {
         Traversal::PerLeaf { budget } => Box::new(PerLeaf::new(device, budget, triangles)?),
         Traversal::Queue(shape) => Box::new(Queue::new::<V>(device, shape)?),
         Traversal::Steal(shape) => Box::new(Steal::new::<V>(device, shape)?),

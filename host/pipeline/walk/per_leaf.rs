@@ -45,7 +45,7 @@ impl<V: Kernels> Walk<V> for PerLeaf {
             flags: given.flags,
         };
         let leaves = queries.0.leaves();
-        let blocks = if device.is_card() {
+        let blocks = if device.is_gpu() {
             device.blocks_for::<V::Leaves>(leaves)
         } else {
             device.blocks_striding::<V::Leaves>(leaves)

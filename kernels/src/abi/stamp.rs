@@ -1,4 +1,4 @@
-//! The stamp: which sources a PTX came from. The card's module exports it, the host compares it with its own.
+//! The stamp: which sources a PTX came from. The GPU's module exports it, the host compares it with its own.
 
 /// Sixteen hexadecimal digits of the hash of the kernels' sources, as a number; 0 where the build gave none.
 pub const SOURCES: u64 = match option_env!("NEARMISS_STAMP") {

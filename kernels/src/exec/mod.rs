@@ -2,8 +2,8 @@
 //!
 //! A kernel is a plain function over a [`Block`]. It is a sequence of *phases*: the body of a phase runs once for
 //! each lane, and the end of a phase is the block's barrier, so no lane can skip one. Code between phases is the
-//! same for all lanes (the card runs it in every lane, the emulator once), so it can only know uniform values.
-//! What a lane must remember from one phase to the next sits in a [`Slot`] (a register on the card, an array on
+//! same for all lanes (the GPU runs it in every lane, the emulator once), so it can only know uniform values.
+//! What a lane must remember from one phase to the next sits in a [`Slot`] (a register on the GPU, an array on
 //! the CPU) or in [`Shared`] words.
 //!
 //! A barrier for the whole grid is the same idea one level up: the end of the launch.
@@ -66,12 +66,12 @@ pub trait Lane {
     /// the launch. Atomics by themselves order nothing. Plain accesses of other blocks stay races all the same.
     fn fence(&self);
 
-    /// True if `mine` is; and it may be true if it is not, while another lane's is. On a card the lanes of a warp meet here:
+    /// True if `mine` is; and it may be true if it is not, while another lane's is. On a GPU the lanes of a warp meet here:
     /// those that took different ways go on side by side, and leave a loop together of which this is the condition. All
     /// lanes of a warp must come. Nothing but speed may hang on it: lanes that run one after another know only their own.
     fn any(&self, mine: bool) -> bool;
 
-    /// The end of a phase's body: on a card the lanes of a warp come together here, and the assembler cannot leave it out. For
+    /// The end of a phase's body: on a GPU the lanes of a warp come together here, and the assembler cannot leave it out. For
     /// bodies whose loops lanes leave at different turns: behind these it believes that they are together, although they are
     /// not (`.ci/lanes.py` finds such places). All lanes of a warp must come. Lanes that run one after another need not.
     fn meet(&self) {}
@@ -98,7 +98,7 @@ pub trait Slot<T, L> {
 
 /// A function of a row of numbers, without memory.
 ///
-/// A card's lanes each apply it to their row. A CPU collects rows first and asks for many of them at once, in a loop that its
+/// A GPU's lanes each apply it to their row. A CPU collects rows first and asks for many of them at once, in a loop that its
 /// compiler can turn into vectors: so everything that [`RowMap::at_once`] calls is inlined, arrays are filled by index, and no
 /// branch matters.
 pub trait RowMap {
@@ -129,7 +129,7 @@ pub trait Block {
     fn block(&self) -> u32;
     /// How many blocks the launch has.
     fn blocks(&self) -> u32;
-    /// How many lanes a block has: a multiple of 32 on the card.
+    /// How many lanes a block has: a multiple of 32 on the GPU.
     fn lanes(&self) -> u32;
 
     /// Takes `len` words of the launch's shared memory; uninitialised.
@@ -200,7 +200,7 @@ pub trait Block {
 
 /// How many bins [`Block::ranks`] has: one for each value of a byte.
 pub const BINS: u32 = 256;
-/// Lanes of a warp, on every card.
+/// Lanes of a warp, on every GPU.
 pub const WARP: u32 = 32;
 
 /// The place of a lane's item `k` among the block's, `each` a lane: warps one after the other, and in a warp all first

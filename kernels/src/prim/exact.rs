@@ -7,7 +7,7 @@
 //! Sizes: an axis that spans `b` bits gives differences of `b+1`, minors of `2b+3` and a determinant of `3b+6`
 //! bits. Up to 60 bits (most f32 data) two machine integers of 128 bits hold it all, up to 94 (most f64 data; f32 data with
 //! a coordinate that is nearly zero) five. Beyond, two sizes of stack arrays are compiled (their steps out of line: they are
-//! rare, and a card compiles them at first use), and the run picks the smallest that fits: 286 bits (every finite f32 has
+//! rare, and a GPU compiles them at first use), and the run picks the smallest that fits: 286 bits (every finite f32 has
 //! 277), 2098 bits (every finite f64). Loops run over the limbs in use.
 
 use super::orient::plane_of;

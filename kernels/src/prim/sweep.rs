@@ -1,5 +1,5 @@
 //! The boxes around the ways of the features of two triangles, and which of them come within a gap. Without branches: some lane of
-//! a card would take each, and a CPU makes vectors of it. Some 500 operations.
+//! a GPU would take each, and a CPU makes vectors of it. Some 500 operations.
 
 use super::cubic::Moving;
 use super::isolate::pair::Window;
@@ -43,7 +43,7 @@ pub type Corners<R> = [Moving<R>; 3];
 #[inline(always)]
 fn swept<R: Real>(p: &Corners<R>, q: &Corners<R>, gap: R) -> (bool, [[Swept<R>; 3]; 2]) {
     let mut window = Window::new();
-    // One axis after the other, each by a number that the compiler knows: nothing goes to memory on the card.
+    // One axis after the other, each by a number that the compiler knows: nothing goes to memory on the GPU.
     let grow = Vec3([
         axis(0, &mut window, p, q, gap),
         axis(1, &mut window, p, q, gap),
@@ -107,7 +107,7 @@ pub fn meeting<R: Real>(p: &Corners<R>, q: &Corners<R>, gap: R) -> u32 {
 }
 
 /// The tests whose features have boxes that share a point: bits 0 to 2 a vertex of p and q, 3 to 5 a vertex of q and p,
-/// 6 + 3 i + j edge i of p and j of q. By signs of differences, as half of a card's lanes compare at a time.
+/// 6 + 3 i + j edge i of p and j of q. By signs of differences, as half of a GPU's lanes compare at a time.
 #[inline(always)]
 fn sharing<R: Real>([p, q]: &[[Swept<R>; 3]; 2]) -> u32 {
     let (of_p, of_q) = (p[0].merge(p[1]).merge(p[2]), q[0].merge(q[1]).merge(q[2]));

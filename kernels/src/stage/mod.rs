@@ -8,7 +8,7 @@
 //! | [`traverse`] | the tree (or two) | candidates: triangle pairs |
 //! | [`balance`] | the traversal's queues of work | the same units, as many in each |
 //! | [`narrow`] | candidates, positions | contacts |
-//! | [`order`] | contacts | the same in canonical order, on a card |
+//! | [`order`] | contacts | the same in canonical order, on a GPU |
 //!
 //! No stage calls another; they meet in memory, through [`crate::abi`].
 

@@ -1,5 +1,5 @@
 //! # Order: contacts → canonical order
-//! Paper    nothing; on a card the host would wait longer for its own sort than for the frame.
+//! Paper    nothing; on a GPU the host would wait longer for its own sort than for the frame.
 //! Launch   `keys` (a grid of any size strides), a pass of [`crate::sort`] for each byte of a name, `gather` (strides).
 //! Reads    one or two lists of contacts.   Writes   one list of all, by kind, first and second feature.
 //! Before   the lists are complete. The counts of the keys' bytes are zero. Names and numbers fit 64 bits.

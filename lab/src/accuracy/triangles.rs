@@ -33,7 +33,7 @@ pub fn triangles(device: &Device, n: usize, seed: u64) -> Result<Vec<Row>, Error
         let pairs = on_grid(&mut r, side, n);
         let truth: Vec<bool> = pairs.par_iter().map(|[p, q]| triangles_meet(p, q)).collect();
         for choice in Choice::every(Motion::Discrete, &[]) {
-            // The first time on a card loads the kernels.
+            // The first time on a GPU loads the kernels.
             ask_triangles(device, &pairs[..1.min(n)], &choice.query(Motion::Discrete, 0.0), Stored::F64)?;
             let answers = ask_triangles(device, &pairs, &choice.query(Motion::Discrete, 0.0), Stored::F64)?;
             let row = Row {

@@ -7,7 +7,7 @@ use nearmiss::error::Error;
 use nearmiss::mesh::{MAX_ABS_F32, MAX_ABS_F64};
 use nearmiss::pipeline::Layout;
 use nearmiss::pipeline::precision::Precision;
-use nearmiss_kernels::abi::{VertexMotion, Pair};
+use nearmiss_kernels::abi::{Pair, VertexMotion};
 use nearmiss_kernels::math::Vec3;
 
 /// Cases that are asked at once: half a gigabyte of device memory, and far from the end of 32 bits.

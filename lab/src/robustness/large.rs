@@ -20,7 +20,7 @@ pub struct Crowds {
     pub equal: usize,
     /// Contacts at one time.
     pub ties: usize,
-    /// Whether to ask 92,683 equal triangles for their 4,295,022,903 pairs, which no list of 32 bits holds. For a card: a
+    /// Whether to ask 92,683 equal triangles for their 4,295,022,903 pairs, which no list of 32 bits holds. For a GPU: a
     /// CPU walks minutes.
     pub beyond_32_bits: bool,
 }

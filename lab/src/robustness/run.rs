@@ -20,8 +20,8 @@ pub struct Amount {
 
 impl Amount {
     /// What a machine does in about a minute; of built contacts so many a family.
-    pub fn on(is_card: bool, cases: usize) -> Amount {
-        let (frames, crowds) = if is_card { (10_000, Crowds::FULL) } else { (1_000, Crowds::SMALL) };
+    pub fn on(is_gpu: bool, cases: usize) -> Amount {
+        let (frames, crowds) = if is_gpu { (10_000, Crowds::FULL) } else { (1_000, Crowds::SMALL) };
         Amount { cases, frames, crowds }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::figures::{Figure612, Figure613, Figure614, Paper};
 use super::front::FrontRow;
-use super::paper_reference::CARD;
+use super::paper_reference::PAPER_GPU;
 use super::picture::{Bar, Chart, Curve, Panel, Stack, bars, curves, stacks};
 use super::text::text;
 use nearmiss::error::Error;
@@ -33,7 +33,7 @@ impl Figures {
     /// No figures yet.
     pub fn new(device: String, profile: &'static str) -> Figures {
         let (figure_6_12, figure_6_13, figure_6_14, front) = Default::default();
-        Figures { device, profile, theirs: CARD, figure_6_12, figure_6_13, figure_6_14, front }
+        Figures { device, profile, theirs: PAPER_GPU, figure_6_12, figure_6_13, figure_6_14, front }
     }
 
     /// For people.

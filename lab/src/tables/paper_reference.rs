@@ -1,10 +1,10 @@
-//! The thesis's own figures, milliseconds on its card (figures 6.12 and 6.13).
+//! The thesis's own figures, milliseconds on its GPU (figures 6.12 and 6.13).
 
 use super::way::Way;
 use nearmiss::query::{Bv, Motion};
 
-/// The thesis's card.
-pub const CARD: &str = "GTX 285 (2008)";
+/// The thesis's GPU.
+pub const PAPER_GPU: &str = "GTX 285 (2008)";
 
 /// One scene's row of figures 6.12 and 6.13.
 pub struct Theirs {

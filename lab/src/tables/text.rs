@@ -2,7 +2,7 @@
 
 use super::figures::{Figure612, Figure613, Figure614};
 use super::front::FrontRow;
-use super::paper_reference::CARD;
+use super::paper_reference::PAPER_GPU;
 use std::fmt::Write;
 
 /// A figure with a caption for people.
@@ -22,7 +22,7 @@ pub fn text<T: Printed>(rows: &[T]) -> String {
     }
     let heads = T::HEADS.iter().map(|&head| head.to_owned()).collect();
     let all: Vec<Vec<String>> = std::iter::once(heads).chain(rows.iter().map(T::row)).collect();
-    format!("{}\n{}\n", T::CAPTION.replace("CARD", CARD), aligned(&all))
+    format!("{}\n{}\n", T::CAPTION.replace("PAPER_GPU", PAPER_GPU), aligned(&all))
 }
 
 /// Texts in columns: the first column to the left, the others to the right.
@@ -58,7 +58,7 @@ fn yes(front: bool) -> String {
 }
 
 impl Printed for Figure612 {
-    const CAPTION: &'static str = "Figure 6.12: construction and refit, ms; theirs on a CARD";
+    const CAPTION: &'static str = "Figure 6.12: construction and refit, ms; theirs on a PAPER_GPU";
     const HEADS: &'static [&'static str] =
         &["scene", "triangles", "stage", "volume", "ours", "theirs", "ours/theirs"];
     fn row(&self) -> Vec<String> {
@@ -76,7 +76,7 @@ impl Printed for Figure612 {
 
 impl Printed for Figure613 {
     const CAPTION: &'static str = "Figure 6.13: a frame (refit, traversal, triangle tests), ms, mean over the animation; \
-                                   theirs on a CARD";
+                                   theirs on a PAPER_GPU";
     const HEADS: &'static [&'static str] = &[
         "scene",
         "motion",

@@ -1,4 +1,4 @@
-//! Device memory that blocks of one launch share: relaxed accesses of the whole card, which meet in its L2 cache, and
+//! Device memory that blocks of one launch share: relaxed accesses of the whole GPU, which meet in its L2 cache, and
 //! the fence. Their assembly is neither pure nor silent about memory, so the compiler keeps each where it stands.
 
 use crate::exec::whole_words;
@@ -6,7 +6,7 @@ use bytemuck::Pod;
 use core::arch::asm;
 use core::mem::MaybeUninit;
 
-/// Orders this thread's accesses to memory, for all threads of the card.
+/// Orders this thread's accesses to memory, for all threads of the GPU.
 #[inline(always)]
 pub fn fence() {
     // SAFETY: changes no memory and no register.

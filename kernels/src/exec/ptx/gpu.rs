@@ -1,4 +1,4 @@
-//! A block of the card: each thread runs the kernel for its own lane.
+//! A block of the GPU: each thread runs the kernel for its own lane.
 
 use super::coherent::{compare_and_swap, fence, load_coherent, store_coherent};
 use super::raw::{
@@ -81,7 +81,7 @@ impl Lane for Thread {
     }
     #[inline(always)]
     fn fetch_load(&self, span: Span<u64>, i: u32) -> u64 {
-        self.take(span, i)
+        self.load_relaxed(span, i)
     }
     #[inline(always)]
     fn exchange(&self, span: Span<u64>, i: u32, value: u64) -> u64 {

@@ -1,4 +1,4 @@
-//! What the card has an instruction for, where there is no card.
+//! What the GPU has an instruction for, where there is no GPU.
 
 /// The smaller of two finite numbers; of two zeros the first.
 #[inline(always)]

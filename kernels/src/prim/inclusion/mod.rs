@@ -29,7 +29,7 @@
 //! Only `+ - * /`, the square root and conversions are used, so that every machine gives the same bits. Comparisons are
 //! written so that NaN rejects nothing.
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "comparisons that NaN fails")]
-#![allow(clippy::needless_range_loop, reason = "loops by index unroll: nothing goes to memory on the card")]
+#![allow(clippy::needless_range_loop, reason = "loops by index unroll: nothing goes to memory on the GPU")]
 
 pub mod bound;
 pub mod cell;

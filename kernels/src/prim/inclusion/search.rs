@@ -32,7 +32,7 @@ enum CellResult<S> {
     Halves(Cell<S>, Cell<S>),
 }
 
-/// A search under way: what is asked, what is known, and the box to look at next. One box a step, so that a card's lanes
+/// A search under way: what is asked, what is known, and the box to look at next. One box a step, so that a GPU's lanes
 /// can take up new pairs as they are done with theirs.
 pub struct Search<'a, S, const N: usize> {
     m: Local<S, N>,
@@ -181,7 +181,7 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
 
 impl<S: Grid, const N: usize> Local<S, N> {
     /// Looks at a box: at its image, its projections along several directions, and what of it they leave. About 1,200
-    /// operations. A function of its own, so that the search's state does not take registers from it on the card.
+    /// operations. A function of its own, so that the search's state does not take registers from it on the GPU.
     #[inline(never)]
     fn look(&self, cell: &Cell<S>, known: &mut Known<S>) -> CellResult<S> {
         let image = self.image(cell);

@@ -61,7 +61,7 @@ pub enum Advanced<S> {
     },
 }
 
-/// An advancement under way, one step after the other, so that a card's lanes can take up new pairs as they are done.
+/// An advancement under way, one step after the other, so that a GPU's lanes can take up new pairs as they are done.
 #[derive(Clone, Copy, Debug)]
 pub struct Advance<S, const N: usize> {
     pair: Pair<S, N>,

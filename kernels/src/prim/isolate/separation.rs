@@ -1,6 +1,6 @@
 //! The rungs of a separation: a plane or two in f32; then advancement in f32; then in f64, and nearness.
 //!
-//! A rung is taken step by step, so that a card's lanes can take up new pairs as they are done. What the first planes tell is a
+//! A rung is taken step by step, so that a GPU's lanes can take up new pairs as they are done. What the first planes tell is a
 //! rung of its own: they decide nine of ten pairs, and all in the same time.
 
 use super::advance::{Advance, Advanced, Distance};

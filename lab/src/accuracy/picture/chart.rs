@@ -185,15 +185,15 @@ mod tests {
             x: "a quantity".into(),
             curves: vec![curve("one", 5e3), curve("two", 4e3)],
         };
-        let svg = charts("a title", "a card", &[chart]).expect("a picture");
-        for text in ["a title", "a card", "a &lt;chart&gt;", "one", "two", "1e-9", "a quantity"] {
+        let svg = charts("a title", "a GPU", &[chart]).expect("a picture");
+        for text in ["a title", "a GPU", "a &lt;chart&gt;", "one", "two", "1e-9", "a quantity"] {
             assert!(svg.contains(text), "{text}: {svg}");
         }
         let panel = (
             "a scene".to_owned(),
             vec![("left".to_owned(), 1234.0, Some(0.5)), ("none".to_owned(), 0.0, None)],
         );
-        let svg = bars("a title", "a card", &[panel]).expect("a picture");
+        let svg = bars("a title", "a GPU", &[panel]).expect("a picture");
         for text in ["a scene", "left", "1234, in 0.500 ms", "none"] {
             assert!(svg.contains(text), "{text}: {svg}");
         }

@@ -63,7 +63,7 @@ fn legend(sheet: &Sheet, y: i32) -> Drawn {
     for solver in Solver::ALL {
         let name = solver.name();
         sheet.dot((x, y), 5, colour(solver), solver.is_certain())?;
-        sheet.text(&name, (x + 10, y), 12, At::Left, INK)?;
+        sheet.text(name, (x + 10, y), 12, At::Left, INK)?;
         x += 34 + 7 * name.len() as i32;
     }
     Ok(())
@@ -150,7 +150,7 @@ mod tests {
             row(Solver::CertifiedF32, 1.0, 1e-3, 0),
             row(Solver::CubicF32, 0.5, 1e-6, 7),
         ];
-        let svg = pareto("a card", &rows).expect("a picture");
+        let svg = pareto("a GPU", &rows).expect("a picture");
         for text in
             ["cubic-f32: 7 + 0", "certified 1e-4", "certified-f32 1e-3", "ms a frame", "a scene: 99 %"]
         {

@@ -1,7 +1,7 @@
 //! Bars on a logarithmic scale: ours and theirs, in pairs.
 
 use super::{At, Drawn, FAINT, GRID, INK, LEFT, OURS, RIGHT, Sheet, THEIRS, head_height, sheet};
-use crate::tables::paper_reference::CARD;
+use crate::tables::paper_reference::PAPER_GPU;
 use crate::tables::text::digits;
 use nearmiss::error::Error;
 
@@ -52,7 +52,7 @@ pub fn bars(title: &str, device: &str, panels: &[Panel]) -> Result<String, Error
     let height = |p: &Panel| PANEL + PAIR * p.bars.len() as i32;
     let whole = head_height(2) + panels.iter().map(height).sum::<i32>();
     sheet(whole, |sheet| {
-        let notes = [(format!("nearmiss on {device}"), OURS), (format!("the thesis on a {CARD}"), DARK)];
+        let notes = [(format!("nearmiss on {device}"), OURS), (format!("the thesis on a {PAPER_GPU}"), DARK)];
         let mut y = sheet.head(title, &notes)?;
         for panel in panels {
             self::panel(sheet, panel, y, (from, to))?;
@@ -111,10 +111,10 @@ mod tests {
     #[test]
     fn a_bar_is_labelled() {
         let bar = Bar { label: "discrete AABB".into(), ours: 0.5, theirs: Some(50.0) };
-        let svg = bars("a title", "a card", &[Panel { title: "a <scene>".into(), bars: vec![bar] }])
+        let svg = bars("a title", "a GPU", &[Panel { title: "a <scene>".into(), bars: vec![bar] }])
             .expect("a picture");
         for text in
-            ["a title", "a card", "a &lt;scene&gt;", "discrete AABB", "0.500", "50.0", "0.0100", "ms (log)"]
+            ["a title", "a GPU", "a &lt;scene&gt;", "discrete AABB", "0.500", "50.0", "0.0100", "ms (log)"]
         {
             assert!(svg.contains(text), "{text}: {svg}");
         }

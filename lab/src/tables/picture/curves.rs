@@ -91,9 +91,9 @@ mod tests {
         };
         let chart =
             Chart { title: "cloth".into(), curves: vec![curve("node tests", false), curve("time", true)] };
-        let svg = curves("a title", "a card", (50.0, "the bound"), &[chart]).expect("a picture");
+        let svg = curves("a title", "a GPU", (50.0, "the bound"), &[chart]).expect("a picture");
         for text in
-            ["a title", "a card", "cloth", "node tests", "time", "the bound", "part of the step", "50 %"]
+            ["a title", "a GPU", "cloth", "node tests", "time", "the bound", "part of the step", "50 %"]
         {
             assert!(svg.contains(text), "{text}: {svg}");
         }

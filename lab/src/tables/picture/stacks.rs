@@ -101,8 +101,8 @@ mod tests {
     #[test]
     fn a_share_is_labelled_where_it_fits() {
         let stack = |shares| Stack { panel: "cloth".into(), label: "discrete AABB".into(), shares, ms: 0.5 };
-        let svg = stacks("a title", "a card", &[stack([30.0, 68.0, 0.0, 2.0])]).expect("a picture");
-        for text in ["a title", "a card", "cloth", "discrete AABB", "refit 30", "traverse 68", "0.500"] {
+        let svg = stacks("a title", "a GPU", &[stack([30.0, 68.0, 0.0, 2.0])]).expect("a picture");
+        for text in ["a title", "a GPU", "cloth", "discrete AABB", "refit 30", "traverse 68", "0.500"] {
             assert!(svg.contains(text), "{text}: {svg}");
         }
         assert!(!svg.contains("balance 0") && !svg.contains("triangle tests 2"), "{svg}");
