@@ -44,7 +44,7 @@ pub enum Error {
     #[error(
         "{what}: {asked} bytes were needed and {given} were free; use a smaller scene or a larger machine"
     )]
-    Room {
+    OutOfMemory {
         /// Which memory, for what.
         what: String,
         /// Bytes needed.
@@ -77,7 +77,9 @@ impl From<nearmiss_emulator::Error> for Error {
             E::Threads { threads, text } => {
                 Error::Device { what: format!("starting {threads} threads"), text, advice: "ask for fewer" }
             }
-            E::Memory { bytes } => Error::Room { what: "host memory".into(), asked: bytes as u64, given: 0 },
+            E::Memory { bytes } => {
+                Error::OutOfMemory { what: "host memory".into(), asked: bytes as u64, given: 0 }
+            }
             rule => Error::Bug { what: rule.to_string() },
         }
     }

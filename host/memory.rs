@@ -11,10 +11,10 @@ const LITTLE: u64 = 16 << 20;
 /// a few megabytes, nothing is refused.
 ///
 /// # Errors
-/// [`Error::Room`].
+/// [`Error::OutOfMemory`].
 pub fn require(what: &str, bytes: u64) -> Result<(), Error> {
     match (bytes >= LITTLE).then(free).flatten() {
-        Some(given) if bytes > given => Err(Error::Room { what: what.into(), asked: bytes, given }),
+        Some(given) if bytes > given => Err(Error::OutOfMemory { what: what.into(), asked: bytes, given }),
         _ => Ok(()),
     }
 }

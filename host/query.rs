@@ -24,7 +24,7 @@ pub enum Motion {
 }
 
 named! {
-    /// What the tree is dressed in.
+    /// The bounding volume of each node.
     pub enum Bv {
         /// Axis-aligned boxes; in a continuous query around both ends of the step.
         Aabb = "aabb",
@@ -260,7 +260,7 @@ impl Query {
         if self.adjacent && (self.motion != Motion::Discrete || solver != Solver::Exact) {
             return Err(Error::Choice {
                 what: "adjacent triangles are decided by exact signs only".into(),
-                advice: "use --adjacent with a discrete query and the solver exact".into(),
+                advice: "ask for adjacent triangles in a discrete query with the solver exact".into(),
             });
         }
         Ok(())
@@ -275,20 +275,20 @@ impl Query {
                     "the solver {:?} takes no tolerance, no budget and no separation",
                     self.solver()
                 ),
-                advice: "give --tolerance, --boxes and --separation to a certified solver".into(),
+                advice: "give these to a certified solver".into(),
             });
         }
         let is_length = |x: f64| (0.0..f64::INFINITY).contains(&x);
         if self.separation.is_some_and(|s| !is_length(s)) {
             return Err(Error::Choice {
                 what: "a separation that is no length".into(),
-                advice: "give --separation a length from 0".into(),
+                advice: "give a length from 0".into(),
             });
         }
         if self.tolerance.is_some_and(|t| !is_length(t)) || self.boxes == Some(0) {
             return Err(Error::Choice {
                 what: "a tolerance that is no length, or a budget of no boxes".into(),
-                advice: "give --tolerance a length from 0, and --boxes at least 1".into(),
+                advice: "give a tolerance from 0, and at least 1 box".into(),
             });
         }
         Ok(())

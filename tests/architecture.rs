@@ -1,5 +1,5 @@
-//! The walls of the house. A wall is a function from sources to the lines that break it, so that each can be shown
-//! to stand (the repository breaks none) and to be able to fail (a planted line is named).
+//! Rules of the architecture. A rule is a function from sources to the lines that break it, so that each can be shown
+//! to hold (the repository breaks none) and to be able to fail (a planted line is named).
 
 #[path = "architecture/prose.rs"]
 mod prose;

@@ -232,7 +232,7 @@ fn memory_that_ends_is_an_error() {
 }
 
 fn is_room(error: &Error, device: &Device) {
-    let Error::Room { asked, given, .. } = error else { panic!("{error}") };
+    let Error::OutOfMemory { asked, given, .. } = error else { panic!("{error}") };
     assert!(asked > given && error.exit_code() == 4, "{error}");
     assert!(error.to_string().contains("use a smaller scene"), "{error}");
     assert!(device.bytes().0 <= device.bytes().1);

@@ -258,7 +258,7 @@ fn no_memory_is_an_error() {
         // More than an address space; more than a size can say; more than any machine has.
         for len in [usize::MAX / 16, usize::MAX / 8 + 1, usize::MAX, 1 << 58] {
             match device.buffer::<u64>(len).map(|_| ()) {
-                Err(error @ Error::Room { .. }) => {
+                Err(error @ Error::OutOfMemory { .. }) => {
                     assert_eq!(error.exit_code(), 4);
                     assert!(error.to_string().contains("use a smaller scene"), "{error}");
                 }

@@ -1,8 +1,9 @@
 //! Results as files: CSV and JSON.
 
 use crate::output::Target;
-use nearmiss::contacts::{Answer, Contacts, Kind, Status, Summary};
+use nearmiss::contacts::{Answer, Contact, Contacts, Kind, Status, Summary};
 use nearmiss::error::Error;
+use nearmiss::mesh::Body;
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
@@ -19,10 +20,54 @@ pub struct Told {
     pub notes: Vec<String>,
 }
 
+/// Of each triangle the face of the file that it was cut from, of one body or two.
+pub struct FileFaces(Vec<Vec<u32>>);
+
+impl FileFaces {
+    /// Of these bodies.
+    pub fn of(bodies: &[Body]) -> FileFaces {
+        let all = |body: &Body| (0..body.face_count() as u32).map(|i| body.file_face(i)).collect();
+        FileFaces(bodies.iter().map(all).collect())
+    }
+
+    fn face(&self, body: usize, triangle: u32) -> u32 {
+        self.0[body][triangle as usize]
+    }
+
+    /// The same answer in faces, ascending and each once: pairs of triangles of the same two faces become one, of contacts of a vertex with triangles
+    /// of one face the earliest stays.
+    fn name(&self, answer: &Answer) -> Answer {
+        let last = self.0.len() - 1;
+        match answer {
+            Answer::Pairs(pairs) => {
+                let faces = |&[a, b]: &[u32; 2]| [self.face(0, a), self.face(last, b)];
+                let ordered = |[a, b]: [u32; 2]| if last == 0 { [a.min(b), a.max(b)] } else { [a, b] };
+                let mut pairs: Vec<_> = pairs.iter().map(faces).map(ordered).collect();
+                pairs.sort_unstable();
+                pairs.dedup();
+                Answer::Pairs(pairs)
+            }
+            Answer::Contacts(all) => {
+                let faces = |c: &Contact| match c.kind {
+                    Kind::Vf => Contact { b: self.face(last, c.b), ..*c },
+                    Kind::Fv => Contact { a: self.face(0, c.a), ..*c },
+                    Kind::Ee => *c,
+                };
+                let mut all: Vec<_> = all.iter().map(faces).collect();
+                let key = |c: &Contact| (c.kind, c.a, c.b);
+                all.sort_by(|c, d| key(c).cmp(&key(d)).then(c.toi.total_cmp(&d.toi)));
+                all.dedup_by_key(|c| key(c));
+                Answer::Contacts(all)
+            }
+            Answer::Earliest(toi) => Answer::Earliest(*toi),
+        }
+    }
+}
+
 /// Formats that contacts can be written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// `tri_a,tri_b`, or `kind,a,b,toi,toi_hi,status`.
+    /// `tri_a,tri_b` (`face_a,face_b`), or `kind,a,b,toi,toi_hi,status`.
     Csv,
     /// One object: the summary, and the rows under `contacts`.
     Json,
@@ -45,24 +90,32 @@ impl Format {
     }
 }
 
-/// Writes contacts in canonical order; times read back to the same bits.
+/// Writes contacts in canonical order, in triangles or in the files' own faces; times read back to the same bits.
 ///
 /// # Errors
 /// [`Error::Output`] when the file cannot be written.
-pub fn write(target: Target, format: Format, contacts: &Contacts, told: &Told) -> Result<(), Error> {
+pub fn write(
+    target: Target,
+    format: Format,
+    contacts: &Contacts,
+    (told, faces): (&Told, Option<&FileFaces>),
+) -> Result<(), Error> {
+    let named = faces.map(|faces| faces.name(&contacts.answer));
+    let answer = named.as_ref().unwrap_or(&contacts.answer);
+    let heads = if faces.is_some() { ["face_a", "face_b"] } else { ["tri_a", "tri_b"] };
     target.write(|out| match format {
-        Format::Csv => csv(out, contacts),
-        Format::Json => json(out, contacts, told),
+        Format::Csv => csv(out, answer, heads),
+        Format::Json => json(out, answer, told),
     })
 }
 
 /// Contacts as CSV. A time is printed as the shortest decimal that reads back to the same bits.
-fn csv(out: impl Write, contacts: &Contacts) -> Result<(), String> {
+fn csv(out: impl Write, answer: &Answer, heads: [&str; 2]) -> Result<(), String> {
     let mut csv = csv::Writer::from_writer(out);
-    let wrote = match &contacts.answer {
-        Answer::Pairs(pairs) => csv
-            .write_record(["tri_a", "tri_b"])
-            .and_then(|()| pairs.iter().try_for_each(|pair| csv.serialize(pair))),
+    let wrote = match answer {
+        Answer::Pairs(pairs) => {
+            csv.write_record(heads).and_then(|()| pairs.iter().try_for_each(|pair| csv.serialize(pair)))
+        }
         Answer::Contacts(all) => csv
             .write_record(["kind", "a", "b", "toi", "toi_hi", "status"])
             .and_then(|()| all.iter().try_for_each(|c| csv.write_record(row(c)))),
@@ -74,7 +127,7 @@ fn csv(out: impl Write, contacts: &Contacts) -> Result<(), String> {
     csv.flush().map_err(|e| e.to_string())
 }
 
-fn row(c: &nearmiss::contacts::Contact) -> [String; 6] {
+fn row(c: &Contact) -> [String; 6] {
     let kind = match c.kind {
         Kind::Vf => "vf",
         Kind::Fv => "fv",
@@ -90,7 +143,7 @@ fn row(c: &nearmiss::contacts::Contact) -> [String; 6] {
 }
 
 /// The summary and the contacts as one JSON object.
-fn json(out: impl Write, contacts: &Contacts, summary: &Told) -> Result<(), String> {
+fn json(out: impl Write, answer: &Answer, summary: &Told) -> Result<(), String> {
     #[derive(Serialize)]
     struct Whole<'a> {
         summary: &'a Told,
@@ -100,10 +153,10 @@ fn json(out: impl Write, contacts: &Contacts, summary: &Told) -> Result<(), Stri
     #[serde(untagged)]
     enum Rows<'a> {
         Pairs(&'a [[u32; 2]]),
-        Contacts(&'a [nearmiss::contacts::Contact]),
+        Contacts(&'a [Contact]),
         Earliest(Option<f64>),
     }
-    let rows = match &contacts.answer {
+    let rows = match answer {
         Answer::Pairs(pairs) => Rows::Pairs(pairs),
         Answer::Contacts(all) => Rows::Contacts(all),
         Answer::Earliest(toi) => Rows::Earliest(*toi),

@@ -6,6 +6,8 @@ mod degraded;
 mod earliest;
 #[path = "cli/explain.rs"]
 mod explain;
+#[path = "cli/faces.rs"]
+mod faces;
 #[path = "cli/idle.rs"]
 mod idle;
 #[path = "cli/memory.rs"]
@@ -324,7 +326,7 @@ fn bad_input_is_named() {
 #[test]
 fn a_card_that_this_program_knows_nothing_of_is_an_error() {
     let text = refused(4, &["detect", "--scene", "grid", "--triangles", "16", "--backend", "cuda"]);
-    assert!(text.contains("without the feature `cuda`") && text.contains("--backend cpu"), "{text}");
+    assert!(text.contains("without the feature `cuda`") && text.contains("run on the CPU"), "{text}");
     let auto = summary(&["detect", "--scene", "grid", "--triangles", "16", "--backend", "auto", "--json"]);
     assert_eq!(auto["backend"], "cpu");
 }

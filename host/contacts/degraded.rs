@@ -66,7 +66,7 @@ impl fmt::Display for Degraded {
             }
             Degraded::Boxes { pairs } => {
                 let pairs = counted(*pairs, "pair", "pairs");
-                write!(f, "{pairs} whose boxes ended, with times that may be too early; raise --boxes")
+                write!(f, "{pairs} whose boxes ended, with times that may be too early; raise their number")
             }
             Degraded::ToleranceBelowPrecision { pairs } => {
                 let pairs = pairs.map_or("some pairs".to_owned(), |n| counted(n, "pair", "pairs"));

@@ -92,7 +92,7 @@ impl Device {
         Err(Error::Device {
             what: "opening the GPU".into(),
             text: "this program was built without the feature `cuda`".into(),
-            advice: "build it with `--features cuda`, or run with `--backend cpu`",
+            advice: "build it with that feature, or run on the CPU",
         })
     }
 
@@ -174,15 +174,18 @@ impl Device {
     /// Memory for `len` elements: zeroed (poisoned under the sanitizer).
     ///
     /// # Errors
-    /// [`Error::Room`] when the machine has no more, or may use no more: see [`Device::limited`].
+    /// [`Error::OutOfMemory`] when the machine has no more, or may use no more: see [`Device::limited`].
     pub fn buffer<T: Pod>(&self, len: usize) -> Result<Buffer<T>, Error> {
-        let bytes = len.checked_mul(size_of::<T>()).ok_or(Error::Room {
+        let bytes = len.checked_mul(size_of::<T>()).ok_or(Error::OutOfMemory {
             what: "device memory".into(),
             asked: u64::MAX,
             given: isize::MAX as u64,
         })?;
-        let most =
-            |given| Error::Room { what: "device memory, as limited".into(), asked: bytes as u64, given };
+        let most = |given| Error::OutOfMemory {
+            what: "device memory, as limited".into(),
+            asked: bytes as u64,
+            given,
+        };
         self.usage.take(bytes as u64).map_err(most)?;
         let memory = match &*self.machine {
             Machine::Emulator(e) => memory::require("host memory", bytes as u64)

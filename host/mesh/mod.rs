@@ -1,4 +1,4 @@
-//! Meshes: read, checked once at the door, then trusted.
+//! Meshes: read, validated once, then trusted.
 //!
 //! A [`Mesh`] is one frame, a [`Body`] one mesh at one or two frames, a [`Topology`] the edges of its faces. What
 //! has passed [`Mesh::new`] needs no further check: finite where used, in range, indices valid.

@@ -46,7 +46,7 @@ impl Mesh {
     /// [`Error::Input`], naming the file, the element and the value: a file that cannot be read or is no regular file,
     /// an unknown extension, a malformed file, a mesh that fails [`Mesh::new`], one without triangles, or a flat
     /// polygon that crosses itself ([`Problem::FaceCrosses`], [`Problem::FaceFolds`]), or one of more than 131,072
-    /// corners whose fan is wrong ([`Problem::FaceCorners`]). [`Error::Room`] for a file that is too large for the memory there
+    /// corners whose fan is wrong ([`Problem::FaceCorners`]). [`Error::OutOfMemory`] for a file that is too large for the memory there
     /// is.
     pub fn read(path: &Path) -> Result<Mesh, Error> {
         let (file, format, bytes) = open(path)?;

@@ -1,8 +1,8 @@
 //! Where the solver's precision may be too below_precision for the tolerance: told from where the bodies are, once for each place.
 
+use super::list::List;
 use super::narrow::NarrowContext;
 use super::precision::Precision;
-use super::room::List;
 use crate::error::Error;
 use crate::mesh::{Body, Positions};
 use crate::pipeline::launch;
@@ -72,7 +72,7 @@ pub fn count<R: Precision>(
         tolerance,
         finest,
     };
-    launch::striding::<R::BelowPrecision>(given.device, vf.room() + ee.room(), &args)
+    launch::striding::<R::BelowPrecision>(given.device, vf.capacity() + ee.capacity(), &args)
 }
 
 fn point(positions: &Positions, v: u32) -> [f64; 3] {

@@ -40,7 +40,7 @@ pub struct Enclosed<R: Precision, V: Kernels> {
 
 impl<R: Precision, V: Kernels + Contain> Enclosed<R, V> {
     /// Builds the tree for where the vertices are: of at least one triangle. `t1` is empty where nothing moves; volumes grow
-    /// by `grow`.
+    /// by `margin`.
     ///
     /// # Errors
     /// Those of the device.
@@ -48,7 +48,7 @@ impl<R: Precision, V: Kernels + Contain> Enclosed<R, V> {
         device: &Device,
         triangles: &[[u32; 3]],
         [t0, t1]: [&[Vec3<R>]; 2],
-        (refit, axes, grow): (Refit, Axes, f32),
+        (refit, axes, margin): (Refit, Axes, f32),
     ) -> Result<Self, Error> {
         let tree = Tree::new(device, (0, triangles.len() as u32), refit, V::group(axes) > 0)?;
         let mut enclosed = Enclosed {
@@ -57,7 +57,7 @@ impl<R: Precision, V: Kernels + Contain> Enclosed<R, V> {
             still: device.buffer(t0.len())?,
             moving: device.buffer(t0.len())?,
             at: (Vec::new(), false),
-            volumes: Volumes::new(device, &tree, (axes, grow))?,
+            volumes: Volumes::new(device, &tree, (axes, margin))?,
             tree,
             device: device.clone(),
         };
@@ -159,17 +159,17 @@ mod tests {
         [of(body.positions_t0()), body.positions_t1().map_or(Vec::new(), of)]
     }
 
-    /// Of volumes that were told to grow by `grow`.
+    /// Of volumes that were told to grow by `margin`.
     fn outside<R: Precision, V: Kernels + Contain>(
         body: &Body,
         (size, at): (f64, f64),
         (refit, axes): (Refit, Axes),
-        (grow, near): (f32, f32),
+        (margin, near): (f32, f32),
         fault: impl Fn(&mut [Node<V>]),
     ) -> usize {
         let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
         let [t0, t1] = frames::<R>(body, size, at);
-        let way = (refit, axes, grow);
+        let way = (refit, axes, margin);
         let enclosed = Enclosed::<R, V>::new(&device, body.faces(), [&t0, &t1], way).expect("a tree");
         enclosed.check().expect("sound");
         enclosed.outside(near, fault).expect("nodes")
@@ -189,7 +189,7 @@ mod tests {
             [(Refit::Levels, (1.0, 0.0)), (Refit::Treelets, (1e-3, 1e3)), (Refit::BottomUp, (1e25, 0.0))]
         {
             let near = 0.125 * place.0 as f32;
-            let out = |grow| outside::<R, V>(&body, place, (refit, axes), (grow, near), |_| ());
+            let out = |margin| outside::<R, V>(&body, place, (refit, axes), (margin, near), |_| ());
             assert_eq!(out(near), 0, "{refit:?}, {place:?}: what is near is held as well");
             assert!(out(0.0) > 0, "{refit:?}, {place:?}: forgotten growth is noticed");
             // Far from the origin a hundredth of it is less than what bounds are rounded by.

@@ -22,18 +22,18 @@ pub fn each<E: Entry>(device: &Device, items: usize, args: &E::Args) -> Result<(
     blocks::<E>(device, device.blocks_for::<E>(items), args)
 }
 
-/// Enough to fill the machine, for up to `room` items over which the kernel strides.
+/// Enough to fill the machine, for up to `capacity` items over which the kernel strides.
 ///
 /// # Errors
 /// Those of the device.
-pub fn striding<E: Entry>(device: &Device, room: usize, args: &E::Args) -> Result<(), Error> {
-    blocks::<E>(device, device.blocks_striding::<E>(room), args)
+pub fn striding<E: Entry>(device: &Device, capacity: usize, args: &E::Args) -> Result<(), Error> {
+    blocks::<E>(device, device.blocks_striding::<E>(capacity), args)
 }
 
-/// As many as run at once, for up to `room` items that lanes draw until there are no more.
+/// As many as run at once, for up to `capacity` items that lanes draw until there are no more.
 ///
 /// # Errors
 /// Those of the device.
-pub fn at_once<E: Entry>(device: &Device, room: usize, args: &E::Args) -> Result<(), Error> {
-    blocks::<E>(device, device.blocks_at_once::<E>(room)?, args)
+pub fn at_once<E: Entry>(device: &Device, capacity: usize, args: &E::Args) -> Result<(), Error> {
+    blocks::<E>(device, device.blocks_at_once::<E>(capacity)?, args)
 }

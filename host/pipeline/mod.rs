@@ -1,13 +1,13 @@
-//! From bodies to contacts: the front door of the library.
+//! From bodies to contacts.
 
 pub mod below_precision;
 pub mod enclose;
 mod launch;
 mod layout;
+pub mod list;
 pub mod narrow;
 mod order;
 pub mod precision;
-pub mod room;
 mod sorter;
 mod timing;
 mod tolerance;
@@ -192,7 +192,7 @@ impl Session {
     /// All contacts of this frame, in canonical order.
     ///
     /// # Errors
-    /// Those of the device: [`Error::Room`] when memory ends. There is no partial answer.
+    /// Those of the device: [`Error::OutOfMemory`] when memory ends. There is no partial answer.
     pub fn detect(&mut self) -> Result<Contacts, Error> {
         let start = Instant::now();
         self.begun()?;

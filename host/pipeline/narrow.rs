@@ -3,12 +3,12 @@
 mod continuous;
 mod rungs;
 
-pub use continuous::{Continuous, Rooms};
+pub use continuous::{Capacities, Continuous};
 
 use super::layout::Layout;
+use super::list::{GrowableOutput, List};
 use super::order::Order;
 use super::precision::Precision;
-use super::room::{GrowableOutput, List};
 use crate::device::Device;
 use crate::error::Error;
 use crate::pipeline::launch;
@@ -78,7 +78,7 @@ pub enum Narrow {
 }
 
 impl Narrow {
-    /// Takes the memory that the query of positions of that precision needs: `room` entries for candidates, `few` for what is
+    /// Takes the memory that the query of positions of that precision needs: `capacity` entries for candidates, `few` for what is
     /// left of them.
     ///
     /// # Errors
@@ -87,7 +87,7 @@ impl Narrow {
         device: &Device,
         layout: &Layout,
         query: Query,
-        (room, few): (usize, usize),
+        (capacity, few): (usize, usize),
     ) -> Result<Self, Error> {
         if query.motion == Motion::Discrete {
             let contacts = List::new(device, "contacts", counter::CONTACTS, few)?;
@@ -103,13 +103,13 @@ impl Narrow {
             let ordered = device.is_gpu().then(order).transpose()?;
             return Ok(Narrow::Discrete { contacts, undecided, ordered });
         }
-        let rooms = Rooms {
-            candidates: [room, 2 * room],
+        let capacities = Capacities {
+            candidates: [capacity, 2 * capacity],
             survivors: [few, 2 * few],
             hits: [few, few],
             left: [few / 4, few / 4],
         };
-        Ok(Narrow::Continuous(Box::new(Continuous::new(device, layout, query, rooms)?)))
+        Ok(Narrow::Continuous(Box::new(Continuous::new(device, layout, query, capacities)?)))
     }
 
     /// The steps of the stage, in their order; [`Step::Order`] is a stage of its own.
@@ -190,16 +190,16 @@ fn decide<R: Precision>(
         flags: if given.query.adjacent { KEEP_ADJACENT } else { 0 },
         pad: 0,
     };
-    let (device, room) = (given.device, given.pairs.len() as usize);
+    let (device, capacity) = (given.device, given.pairs.len() as usize);
     let candidates = args(given.pairs, counter::PAIRS, undecided.first());
     let (first, last) = match undecided {
-        [] => return launch::striding::<R::Moller>(device, room, &candidates),
+        [] => return launch::striding::<R::Moller>(device, capacity, &candidates),
         [first, .., last] => (first, Some(last)),
         [first] => (first, None),
     };
-    launch::striding::<R::Filter>(device, room, &candidates)?;
+    launch::striding::<R::Filter>(device, capacity, &candidates)?;
     let left = args(first.span(), first.counter(), last);
-    let Some(last) = last else { return launch::striding::<R::Exact>(device, first.room(), &left) };
-    launch::striding::<R::Wide>(device, first.room(), &left)?;
-    launch::striding::<R::Exact>(device, last.room(), &args(last.span(), last.counter(), None))
+    let Some(last) = last else { return launch::striding::<R::Exact>(device, first.capacity(), &left) };
+    launch::striding::<R::Wide>(device, first.capacity(), &left)?;
+    launch::striding::<R::Exact>(device, last.capacity(), &args(last.span(), last.counter(), None))
 }

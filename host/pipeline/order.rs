@@ -1,7 +1,7 @@
 //! Order: contacts into canonical order on the device, where the host would be slower: on a GPU.
 
 use super::layout::Layout;
-use super::room::{GrowableOutput, List};
+use super::list::{GrowableOutput, List};
 use super::sorter::{counted, sort, words};
 use crate::device::{Buffer, Device, View};
 use crate::error::Error;
@@ -42,15 +42,15 @@ pub struct Order<T> {
 }
 
 impl<T: Ordered> Order<T> {
-    /// Takes the memory for `room` contacts at first.
+    /// Takes the memory for `capacity` contacts at first.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn new(device: &Device, layout: &Layout, turn: u32, room: usize) -> Result<Self, Error> {
+    pub fn new(device: &Device, layout: &Layout, turn: u32, capacity: usize) -> Result<Self, Error> {
         let ends = layout.starts.last().copied().unwrap_or_default();
         let most = ends.vertex.max(ends.triangle).max(ends.edge);
         Ok(Order {
-            list: List::new(device, "contacts in order", counter::ORDERED, room)?,
+            list: List::new(device, "contacts in order", counter::ORDERED, capacity)?,
             items: [device.buffer(0)?, device.buffer(0)?],
             counts: device.buffer(0)?,
             bits: bits(most.into()),
@@ -60,7 +60,7 @@ impl<T: Ordered> Order<T> {
 
     /// Bits of a contact's place in its list.
     fn number_bits(&self) -> u32 {
-        bits(self.list.room() as u64)
+        bits(self.list.capacity() as u64)
     }
 
     /// Whether names and places share a word, a place having 32 bits at most. Else the lists stay as they are, and the host
@@ -93,12 +93,12 @@ impl<T: Ordered> Order<T> {
         if !self.fits() {
             return Ok(());
         }
-        let room = self.list.room();
+        let capacity = self.list.capacity();
         let bytes: Vec<u32> =
             (0..KIND_BITS + 2 * self.bits).step_by(8).map(|at| at + self.number_bits()).collect();
-        let words = bytes.len() * words(device, room as u32);
-        if self.items[0].len() != room || self.counts.len() != words {
-            self.items = [device.buffer(room)?, device.buffer(room)?];
+        let words = bytes.len() * words(device, capacity as u32);
+        if self.items[0].len() != capacity || self.counts.len() != words {
+            self.items = [device.buffer(capacity)?, device.buffer(capacity)?];
             self.counts = device.buffer(words)?;
         }
         self.counts.clear()?;
@@ -108,7 +108,7 @@ impl<T: Ordered> Order<T> {
             second: second.map_or(Span::EMPTY, List::span),
             out: self.list.span(),
             items: items.span(),
-            tiles: counted(device, counts, room as u32, 0),
+            tiles: counted(device, counts, capacity as u32, 0),
             counters,
             first_at: first.counter(),
             second_at: second.map_or(0, List::counter),
@@ -118,10 +118,10 @@ impl<T: Ordered> Order<T> {
             pad: 0,
         };
         let (keys, gather) = (args(&self.items[0]), args(&self.items[bytes.len() % 2]));
-        launch::striding::<T::Keys>(device, room, &keys)?;
+        launch::striding::<T::Keys>(device, capacity, &keys)?;
         let live = counters.part(counter::ORDERED.into(), 1);
-        sort(device, self.items.each_ref(), (room as u32, live), counts, &bytes)?;
-        launch::striding::<T::Gather>(device, room, &gather)
+        sort(device, self.items.each_ref(), (capacity as u32, live), counts, &bytes)?;
+        launch::striding::<T::Gather>(device, capacity, &gather)
     }
 }
 
@@ -172,10 +172,10 @@ mod tests {
     }
 
     /// Orders two lists on a device, with so much room.
-    fn ordered<T: Ordered>(device: &Device, lists: [&[T]; 2], turn: u32, room: usize) -> Outcome<T> {
+    fn ordered<T: Ordered>(device: &Device, lists: [&[T]; 2], turn: u32, capacity: usize) -> Outcome<T> {
         let at = |n| Offsets { vertex: n, triangle: n, edge: n };
         let layout = Layout { starts: vec![at(0), at(OF_A_BODY), at(2 * OF_A_BODY)], ..Layout::default() };
-        let mut order = Order::<T>::new(device, &layout, turn, room).expect("memory");
+        let mut order = Order::<T>::new(device, &layout, turn, capacity).expect("memory");
         let mut counts = vec![0; counter::COUNT as usize];
         let lists = [(counter::VF_HITS, lists[0]), (counter::EE_HITS, lists[1])].map(|(at, entries)| {
             let mut list = List::new(device, "contacts", at, entries.len()).expect("memory");
@@ -192,7 +192,7 @@ mod tests {
             counts = counters.read(counts.len()).expect("read");
         }
         let demand = order.list.demand(&counts);
-        let whole = demand as usize <= room;
+        let whole = demand as usize <= capacity;
         let all = whole.then(|| order.view(&counts, &[&lists[0], &lists[1]]).expect("read")).flatten();
         let all = all.map(|view| view.to_vec());
         (all, demand)
@@ -215,11 +215,11 @@ mod tests {
         for device in machines() {
             for (vf, ee) in [(0, 0), (1, 0), (0, 1), (300, 0), (700, 900), (3, 2_500)] {
                 let (vf, ee) = (hits(5, vf), hits(6, ee));
-                for (turn, room) in [(OF_A_BODY, 4_096), (u32::MAX, vf.len() + ee.len())] {
+                for (turn, capacity) in [(OF_A_BODY, 4_096), (u32::MAX, vf.len() + ee.len())] {
                     let lists = [&vf[..], &ee[..]];
-                    let (found, demand) = ordered(&device, lists, turn, room);
+                    let (found, demand) = ordered(&device, lists, turn, capacity);
                     assert_eq!(demand, (vf.len() + ee.len()) as u64);
-                    assert!(found.expect("room") == wanted(lists, turn), "{}: {lists:?}", device.name());
+                    assert!(found.expect("capacity") == wanted(lists, turn), "{}: {lists:?}", device.name());
                 }
             }
             let pairs: Vec<Pair> = hits(7, 400).iter().map(|hit| Pair { a: hit.a, b: hit.b }).collect();

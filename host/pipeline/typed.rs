@@ -11,9 +11,9 @@ pub use found::{Found, Hits};
 
 use super::below_precision::BelowPrecision;
 use super::layout::Layout;
+use super::list::{GrowableOutput, List};
 use super::narrow::{Narrow, NarrowContext, Step};
 use super::precision::Precision;
-use super::room::{GrowableOutput, List};
 use super::timing::{Stage, Stages};
 use super::tree::Tree;
 use super::volumes::{Kernels, Volumes, growth};
@@ -108,7 +108,7 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
         let triangles = layout.faces.len();
         let continuous = query.motion != Motion::Discrete;
         let a_triangle = if continuous { SWEPT_PAIRS_A_TRIANGLE } else { PAIRS_A_TRIANGLE };
-        let room = (a_triangle * triangles).max(LEAST_ROOM);
+        let capacity = (a_triangle * triangles).max(LEAST_ROOM);
         let few = (4 * triangles).max(LEAST_ROOM);
         let vertices = layout.starts[layout.bodies()].vertex as usize;
         let mut pipeline = TypedPipeline {
@@ -121,9 +121,9 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
             },
             bodies: Vec::new(),
             counters: device.buffer(counter::COUNT as usize)?,
-            pairs: List::new(&device, "candidate triangle pairs", counter::PAIRS, room)?,
+            pairs: List::new(&device, "candidate triangle pairs", counter::PAIRS, capacity)?,
             walk: walk(&device, &query, triangles)?,
-            narrow: Narrow::new::<R>(&device, layout, query, (room, few))?,
+            narrow: Narrow::new::<R>(&device, layout, query, (capacity, few))?,
             reruns: 0,
             last: Vec::new(),
             settled: false,

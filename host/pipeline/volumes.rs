@@ -1,4 +1,4 @@
-//! Fit and refit: the volumes that a tree is dressed in.
+//! Fit and refit: the bounding volume of each node.
 
 use super::precision::Precision;
 use super::tree::{Tree, broken};
@@ -108,16 +108,16 @@ pub struct Volumes<V> {
     pub nodes: Buffer<Node<V>>,
     axes: Axes,
     /// How much they grow: half the separation, rounded up.
-    pub grow: f32,
+    pub margin: f32,
 }
 
 impl<V: Kernels> Volumes<V> {
-    /// Takes the memory for the volumes of a tree, which hold everything within `grow` of the triangles.
+    /// Takes the memory for the volumes of a tree, which hold everything within `margin` of the triangles.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn new(device: &Device, tree: &Tree, (axes, grow): (Axes, f32)) -> Result<Self, Error> {
-        Ok(Volumes { nodes: device.buffer(2 * tree.leaves())?, axes, grow })
+    pub fn new(device: &Device, tree: &Tree, (axes, margin): (Axes, f32)) -> Result<Self, Error> {
+        Ok(Volumes { nodes: device.buffer(2 * tree.leaves())?, axes, margin })
     }
 
     /// Fits the volumes of the leaves, unless treelets do that in [`Volumes::refit`], and of the nodes of few leaves that
@@ -139,7 +139,7 @@ impl<V: Kernels> Volumes<V> {
                 leaf_nodes: tree.leaf_nodes.span(),
                 links: tree.links.span(),
                 nodes: self.nodes.span(),
-                grow: self.grow,
+                margin: self.margin,
                 pad: 0,
             };
             launch::each::<V::Fit<R>>(device, tree.leaves(), &args)?;
@@ -156,7 +156,7 @@ impl<V: Kernels> Volumes<V> {
             firsts: tree.firsts.span(),
             nodes: self.nodes.span(),
             first: tree.first(),
-            grow: self.grow,
+            margin: self.margin,
         };
         V::fit_groups(device, &args)
     }
@@ -210,7 +210,7 @@ impl<V: Kernels> Volumes<V> {
             ticket: plan.ticket.span(),
             nodes: self.nodes.span(),
             axes: self.axes,
-            grow: self.grow,
+            margin: self.margin,
         };
         launch::blocks::<V::Treelets<R>>(device, plan.blocks(), &args)
     }
@@ -279,7 +279,7 @@ impl<V: Kernels> Volumes<V> {
                 [t0, t1] => V::moving(corners(t0), corners(t1)),
                 _ => V::still(corners(&frames[0])),
             };
-            volume.near(self.grow)
+            volume.near(self.margin)
         };
         let fitted = |first: u32, last: u32| {
             if last - first >= V::group(self.axes) {
@@ -290,7 +290,7 @@ impl<V: Kernels> Volumes<V> {
             let vertices = triangles.flat_map(|t| faces[t as usize]);
             let points = vertices.flat_map(|v| frames.iter().map(move |frame| frame[v as usize]));
             let volume = V::of(&points.collect::<Vec<_>>())?;
-            Some(volume.near(self.grow))
+            Some(volume.near(self.margin))
         };
         bvh::check_volumes(&links, &self.download()?, self.axes, leaf, fitted).map_err(broken)
     }

@@ -18,6 +18,7 @@ macro_rules! named {
     ($(#[$meta:meta])* pub enum $choice:ident { $($(#[doc = $about:literal])+ $variant:ident = $name:literal,)+ }) => {
         $(#[$meta])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[non_exhaustive]
         pub enum $choice {
             $($(#[doc = $about])+ $variant,)+
         }

@@ -158,6 +158,6 @@ fn sizes(cores: Option<u32>, local: u32, segment: u32) -> Result<(), Error> {
     }
     Err(Error::Choice {
         what: format!("{} queues of {local} units on chip and {segment} behind", cores.unwrap_or(0)),
-        advice: format!("use 1 to {MOST_CORES} queues (--cores) of 1 to {ROOM} units (--queue)"),
+        advice: format!("use 1 to {MOST_CORES} queues of 1 to {ROOM} units"),
     })
 }

@@ -1,4 +1,4 @@
-//! Walls about how files are written: short, finished, with a card, naming no machine.
+//! Rules about how files are written: short, finished, with a card, naming no machine.
 
 use crate::sources::{NONE, Source, after, all_rust, exists, files, lines, planted, rust, says};
 

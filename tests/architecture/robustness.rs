@@ -1,4 +1,4 @@
-//! The wall around the catalogue of extremes: every id has a row in `docs/robustness.md`, every row its tests, and every test
+//! The rule about the catalogue of extremes: every id has a row in `docs/robustness.md`, every row its tests, and every test
 //! exists, is a test, and asks that id where it runs over the catalogue's data.
 
 use crate::sources::{NONE, Source, files};

@@ -1,4 +1,4 @@
-//! Sources as the walls see them.
+//! Sources as the rules see them.
 
 use std::fs;
 use std::path::Path;
@@ -83,5 +83,5 @@ pub fn says(code: &str, word: &str) -> bool {
     after(code, word).any(str::is_empty)
 }
 
-/// No line breaks the wall.
+/// No line breaks the rule.
 pub const NONE: Vec<String> = Vec::new();

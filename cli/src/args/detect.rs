@@ -118,6 +118,12 @@ pub struct DetectArgs {
     /// Discrete: also triangles that share a vertex, where they meet beyond it.
     #[arg(long)]
     pub adjacent: bool,
+    /// Merge vertices that coincide in all frames of a mesh: seams that are vertices twice then meet themselves no more.
+    #[arg(long)]
+    pub weld: bool,
+    /// With --out: triangles are told as the faces of the file that they were cut from, counted from 0.
+    #[arg(long, requires = "out", conflicts_with_all = ["scene", "earliest"])]
+    pub file_faces: bool,
     /// Where to write the contacts: .csv or .json.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,

@@ -6,26 +6,31 @@ mod text;
 use crate::args::DetectArgs;
 use crate::output::{Target, print, say};
 use crate::progress::during;
-use crate::report::{self, Told};
+use crate::report::{self, FileFaces, Told};
 use nearmiss::contacts::Contacts;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh};
 use nearmiss::pipeline::{Session, Stages};
 use nearmiss::query::{Motion, Query, Traversal};
+use nearmiss::words::counted;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// A body from one file, or from two frames.
 pub fn body(files: &[PathBuf]) -> Result<Body, Error> {
     match files {
-        [t0, t1] => Body::moving(Mesh::read(t0)?, Mesh::read(t1)?),
+        [t0, t1] => {
+            let t0 = Mesh::read(t0)?;
+            let t1 = t0.read_frame(t1)?;
+            Body::moving(t0, t1)
+        }
         [still] => Ok(Body::still(Mesh::read(still)?)),
         // `args` asks for one or two.
         _ => Err(Error::Bug { what: format!("{} files for a mesh", files.len()) }),
     }
 }
 
-/// The bodies that the arguments name, and what is asked of them.
+/// The bodies that the arguments name, welded where that was asked, and what is asked of them.
 pub fn question(args: &DetectArgs) -> Result<(Vec<Body>, Query), Error> {
     if args.scene.is_none() {
         // Before anything is read.
@@ -45,6 +50,14 @@ pub fn question(args: &DetectArgs) -> Result<(Vec<Body>, Query), Error> {
     if !args.with.is_empty() {
         bodies.push(during("reading", || body(&args.with))?);
     }
+    if args.weld {
+        for body in &mut bodies {
+            let (welded, merged) = body.weld();
+            let vertices = counted(merged as u64, "vertex", "vertices");
+            say(&format!("{}: {vertices} merged", body.name()));
+            *body = welded;
+        }
+    }
     let query = args.query(bodies.iter().any(Body::is_moving));
     query.check()?;
     Ok((bodies, query))
@@ -62,6 +75,9 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
         say(&format!("the solver is {}", query.solver().promise()));
     }
     let moves = notes::Moves::of(&bodies);
+    let faces = args.file_faces.then(|| FileFaces::of(&bodies));
+    // A sort of the vertices: only where it may be told.
+    let coincident: usize = if args.weld { 0 } else { bodies.iter().map(Body::coincident).sum() };
     let again = (query.motion == Motion::Earliest).then(|| (device.clone(), bodies.clone()));
     let mut session = during("building", || Session::new(device, bodies, query))?;
     let often = if args.only.is_some() { 1 } else { args.repeat };
@@ -77,10 +93,10 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
         Some((device, bodies)) => during("looking at the start", || notes::at_start(device, bodies))?,
         None => None,
     };
-    let notes = notes::of(query.motion, moves, &contacts, pairs_at_start);
+    let notes = notes::of(query.motion, moves, &contacts, (pairs_at_start, coincident));
     let told = Told { summary, pairs_at_start, notes };
     if let Some((format, target)) = target {
-        report::write(target, format, &contacts, &told)?;
+        report::write(target, format, &contacts, (&told, faces.as_ref()))?;
     }
     if args.json {
         let text = serde_json::to_string(&told).map_err(|e| Error::Bug { what: e.to_string() })?;

@@ -40,13 +40,21 @@ pub fn at_start(device: Device, bodies: Vec<Body>) -> Result<Option<usize>, Erro
     let found = Session::new(device, bodies, Query::of(Motion::Discrete)).and_then(|mut all| all.detect());
     match found {
         Ok(contacts) => Ok(Some(contacts.len())),
-        Err(Error::Room { .. }) => Ok(None),
+        Err(Error::OutOfMemory { .. }) => Ok(None),
         Err(error) => Err(error),
     }
 }
 
-/// The notes, a line each.
-pub fn of(motion: Motion, moves: Moves, contacts: &Contacts, at_start: Option<usize>) -> Vec<String> {
+/// Contacts from which on vertices that coincide are worth a word.
+const MANY: usize = 1_000;
+
+/// The notes, a line each; of the triangle pairs that meet at the start, and the vertices that share their place with another.
+pub fn of(
+    motion: Motion,
+    moves: Moves,
+    contacts: &Contacts,
+    (at_start, coincident): (Option<usize>, usize),
+) -> Vec<String> {
     let mut notes = Vec::new();
     let why = match moves {
         Moves::OneFrame => {
@@ -71,6 +79,12 @@ pub fn of(motion: Motion, moves: Moves, contacts: &Contacts, at_start: Option<us
             );
         }
         _ => {}
+    }
+    if coincident > 0 && contacts.len() >= MANY {
+        let share = counted(coincident as u64, "vertex shares its", "vertices share their");
+        notes.push(format!(
+            "{share} place with another: what meets at a seam is listed too; --weld merges them"
+        ));
     }
     notes
 }

@@ -51,7 +51,7 @@ fn the_program_tells() {
         (&serde_json::json!([]), &serde_json::Value::Null)
     );
     let text = asked(&[&t0, &t1], &["--boxes", "1", "--tolerance", "4e-3"]);
-    assert!(text.contains("  degraded: ") && text.contains("raise --boxes"), "{text}");
+    assert!(text.contains("  degraded: ") && text.contains("raise their number"), "{text}");
     assert!(!run(&["--discrete"]).contains("degraded"));
     // Lists that grow make no answer less.
     let grown = asked(&["--scene", "identical", "--triangles", "400"], &["--json"]);

@@ -31,7 +31,7 @@ impl Gpu {
                 1 => "there is one GPU, number 0".into(),
                 _ => format!("there are {count} GPUs, numbered from 0"),
             },
-            advice: "ask for a GPU that is there, or run with `--backend cpu`",
+            advice: "ask for a GPU that is there, or run on the CPU",
         })?;
         // SAFETY: as above.
         answer(unsafe { (driver.cuDeviceGet)(&mut device, number) }).map_err(refused("looking for a GPU"))?;

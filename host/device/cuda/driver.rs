@@ -48,11 +48,11 @@ pub fn answer(code: u32) -> Result<(), Refusal> {
 /// The driver's refusal as our error.
 pub fn refused(what: &'static str) -> impl Fn(Refusal) -> Error {
     move |refusal| match refusal {
-        Refusal::OUT_OF_MEMORY => Error::Room { what: what.into(), asked: 0, given: 0 },
+        Refusal::OUT_OF_MEMORY => Error::OutOfMemory { what: what.into(), asked: 0, given: 0 },
         _ => Error::Device {
             what: what.into(),
             text: refusal.text(),
-            advice: "look at `nvidia-smi`, or run with `--backend cpu`",
+            advice: "look at `nvidia-smi`, or run on the CPU",
         },
     }
 }
@@ -168,7 +168,7 @@ pub fn driver() -> Result<&'static Driver, Error> {
     found.as_ref().map(|(driver, _)| driver).map_err(|text| Error::Device {
         what: "looking for the CUDA driver".into(),
         text: text.clone(),
-        advice: "install NVIDIA's driver, or run with `--backend cpu`",
+        advice: "install NVIDIA's driver, or run on the CPU",
     })
 }
 
@@ -210,9 +210,9 @@ mod tests {
             let error = refused("narrow_features_f32")(Refusal(code as u32));
             assert!(matches!(error, Error::Device { .. }) && error.exit_code() == 4, "{error:?}");
             let text = error.to_string();
-            assert!(text.starts_with("narrow_features_f32: ") && text.contains("--backend cpu"), "{text}");
+            assert!(text.starts_with("narrow_features_f32: ") && text.contains("on the CPU"), "{text}");
         }
         let memory = refused("loading the kernels")(Refusal::OUT_OF_MEMORY);
-        assert!(matches!(memory, Error::Room { .. }) && memory.exit_code() == 4, "{memory:?}");
+        assert!(matches!(memory, Error::OutOfMemory { .. }) && memory.exit_code() == 4, "{memory:?}");
     }
 }

@@ -80,7 +80,7 @@ impl Cuda {
                     "it has compute capability {}.{}, the kernels need 8.0",
                     capability.0, capability.1
                 ),
-                advice: "run with `--backend cpu`",
+                advice: "run on the CPU",
             });
         }
         let processors = gpu.read(types::CU_DEVICE_ATTRIBUTE_MULTIPROCESSOR_COUNT)? as u32;
@@ -126,7 +126,7 @@ impl Cuda {
         let gpu = self.bind()?;
         let mut memory =
             Memory::new(&self.context, &gpu, bytes.max(16)).map_err(|refusal| match refusal {
-                Refusal::OUT_OF_MEMORY => Error::Room {
+                Refusal::OUT_OF_MEMORY => Error::OutOfMemory {
                     what: "memory of the GPU".into(),
                     asked: bytes as u64,
                     given: memory::free(&gpu),

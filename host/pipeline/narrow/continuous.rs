@@ -7,14 +7,14 @@ use crate::error::Error;
 use crate::pipeline::below_precision::{self, BelowPrecision};
 use crate::pipeline::launch;
 use crate::pipeline::layout::Layout;
+use crate::pipeline::list::{Counter, GrowableOutput, List};
 use crate::pipeline::order::{self, Order};
 use crate::pipeline::precision::Precision;
-use crate::pipeline::room::{Counter, GrowableOutput, List};
 use crate::query::{Motion, Query, Solver};
 use nearmiss_kernels::abi::{CullArgs, Facet, FeaturesArgs, Hit, Pair, SolveArgs, Span, counter};
 
 /// How many entries the lists of a continuous query have room for at first: vertex/face, edge/edge.
-pub struct Rooms {
+pub struct Capacities {
     /// Candidates.
     pub candidates: [usize; 2],
     /// Those that may meet.
@@ -55,15 +55,24 @@ impl Continuous {
     ///
     /// # Errors
     /// Those of the device.
-    pub fn new(device: &Device, layout: &Layout, query: Query, rooms: Rooms) -> Result<Self, Error> {
+    pub fn new(
+        device: &Device,
+        layout: &Layout,
+        query: Query,
+        capacities: Capacities,
+    ) -> Result<Self, Error> {
         let earliest = query.motion == Motion::Earliest;
-        let hits = if earliest { [0, 0] } else { rooms.hits };
-        let lists = |[vf, ee]: [&'static str; 2], [vf_at, ee_at]: [u32; 2], room: [usize; 2]| {
-            Ok::<_, Error>([List::new(device, vf, vf_at, room[0])?, List::new(device, ee, ee_at, room[1])?])
+        let hits = if earliest { [0, 0] } else { capacities.hits };
+        let lists = |[vf, ee]: [&'static str; 2], [vf_at, ee_at]: [u32; 2], capacity: [usize; 2]| {
+            Ok::<_, Error>([
+                List::new(device, vf, vf_at, capacity[0])?,
+                List::new(device, ee, ee_at, capacity[1])?,
+            ])
         };
         let candidates = ["vertex/face candidates", "edge/edge candidates"];
         let may_meet = ["vertex/face pairs that may meet", "edge/edge pairs that may meet"];
-        let survivors = || lists(may_meet, [counter::VF_SURVIVORS, counter::EE_SURVIVORS], rooms.survivors);
+        let survivors =
+            || lists(may_meet, [counter::VF_SURVIVORS, counter::EE_SURVIVORS], capacities.survivors);
         let facet = |((&corners, &edges), &owned)| Facet { corners, owned, edges, pad: 0 };
         let facets: Vec<_> =
             layout.faces.iter().zip(&layout.face_edges).zip(&layout.owners).map(facet).collect();
@@ -71,11 +80,11 @@ impl Continuous {
             query,
             edges: device.upload(&layout.edges)?,
             facets: device.upload(&facets)?,
-            candidates: lists(candidates, [counter::VF, counter::EE], rooms.candidates)?,
+            candidates: lists(candidates, [counter::VF, counter::EE], capacities.candidates)?,
             survivors: (!query.is_apart()).then(survivors).transpose()?,
             vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, hits[0])?,
             ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, hits[1])?,
-            rungs: Rungs::new(device, &query, rooms.left)?,
+            rungs: Rungs::new(device, &query, capacities.left)?,
             counters_of: [
                 counter::UNRESOLVED,
                 counter::ENDED,
@@ -193,7 +202,7 @@ impl Continuous {
             counters: given.counters,
             params: given.query.params(),
         };
-        launch::striding::<R::Cull>(given.device, vf.room() + ee.room(), &args)
+        launch::striding::<R::Cull>(given.device, vf.capacity() + ee.capacity(), &args)
     }
 
     fn order<R: Precision>(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
@@ -231,12 +240,12 @@ impl Continuous {
         let (of_vf, of_ee) = (args(vf, &self.vf_hits), args(ee, &self.ee_hits));
         match solver {
             Solver::CubicF32 => {
-                launch::striding::<R::Vf32>(given.device, vf.room(), &of_vf)?;
-                launch::striding::<R::Ee32>(given.device, ee.room(), &of_ee)
+                launch::striding::<R::Vf32>(given.device, vf.capacity(), &of_vf)?;
+                launch::striding::<R::Ee32>(given.device, ee.capacity(), &of_ee)
             }
             _ => {
-                launch::striding::<R::Vf64>(given.device, vf.room(), &of_vf)?;
-                launch::striding::<R::Ee64>(given.device, ee.room(), &of_ee)
+                launch::striding::<R::Vf64>(given.device, vf.capacity(), &of_vf)?;
+                launch::striding::<R::Ee64>(given.device, ee.capacity(), &of_ee)
             }
         }
     }

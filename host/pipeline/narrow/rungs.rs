@@ -4,8 +4,8 @@ use super::NarrowContext;
 use crate::device::Device;
 use crate::error::Error;
 use crate::pipeline::launch;
+use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::precision::Precision;
-use crate::pipeline::room::{GrowableOutput, List};
 use crate::query::{Query, Solver};
 use nearmiss_kernels::abi::{EVERYTHING, Hit, Listed, Pair, RungArgs, Span, counter};
 use nearmiss_kernels::entry::Entry;
@@ -81,14 +81,15 @@ impl Rungs {
     ///
     /// # Errors
     /// Those of the device.
-    pub fn new(device: &Device, query: &Query, room: [usize; 2]) -> Result<Self, Error> {
+    pub fn new(device: &Device, query: &Query, capacity: [usize; 2]) -> Result<Self, Error> {
         let rungs = if query.solver().is_certified() { rungs(query) } else { &[] };
         let names: Vec<_> = rungs.iter().rev().skip(1).rev().map(|rung| rung.left()).collect();
-        let list =
-            |(_, name, counter): (&str, &'static str, u32), room| List::new(device, name, counter, room);
+        let list = |(_, name, counter): (&str, &'static str, u32), capacity| {
+            List::new(device, name, counter, capacity)
+        };
         let left = names
             .iter()
-            .map(|&at| Ok([list(LEFT[at][0], room[0])?, list(LEFT[at][1], room[1])?]))
+            .map(|&at| Ok([list(LEFT[at][0], capacity[0])?, list(LEFT[at][1], capacity[1])?]))
             .collect::<Result<_, Error>>()?;
         Ok(Rungs { rungs, left, names })
     }
@@ -141,25 +142,30 @@ impl Rungs {
                 flags: if everything { EVERYTHING } else { 0 },
                 pad: 0,
             };
-            let room = pairs[0].room() + pairs[1].room();
-            start::<R>(rung, given.device, room, &args)?;
+            let capacity = pairs[0].capacity() + pairs[1].capacity();
+            start::<R>(rung, given.device, capacity, &args)?;
             pairs = left.unwrap_or(pairs);
         }
         Ok(())
     }
 }
 
-fn start<R: Precision>(rung: Rung, device: &Device, room: usize, args: &RungArgs<R>) -> Result<(), Error> {
+fn start<R: Precision>(
+    rung: Rung,
+    device: &Device,
+    capacity: usize,
+    args: &RungArgs<R>,
+) -> Result<(), Error> {
     match rung {
-        Rung::Isolate32 => launch::striding::<R::Isolate32>(device, room, args),
-        Rung::Isolate64 => launch::striding::<R::Isolate64>(device, room, args),
-        Rung::Settle => launch::striding::<R::Settle>(device, room, args),
+        Rung::Isolate32 => launch::striding::<R::Isolate32>(device, capacity, args),
+        Rung::Isolate64 => launch::striding::<R::Isolate64>(device, capacity, args),
+        Rung::Settle => launch::striding::<R::Settle>(device, capacity, args),
         // A block a pair; there are few.
         Rung::Slice => {
-            launch::at_once::<R::Slice>(device, room.saturating_mul(R::Slice::LANES as usize), args)
+            launch::at_once::<R::Slice>(device, capacity.saturating_mul(R::Slice::LANES as usize), args)
         }
-        Rung::SeparateFirst => launch::striding::<R::SeparateFirst>(device, room, args),
-        Rung::Separate32 => launch::at_once::<R::Separate32>(device, room, args),
-        Rung::Separate64 => launch::at_once::<R::Separate64>(device, room, args),
+        Rung::SeparateFirst => launch::striding::<R::SeparateFirst>(device, capacity, args),
+        Rung::Separate32 => launch::at_once::<R::Separate32>(device, capacity, args),
+        Rung::Separate64 => launch::at_once::<R::Separate64>(device, capacity, args),
     }
 }

@@ -4,10 +4,10 @@ use super::TypedPipeline;
 use crate::device::View;
 use crate::error::Error;
 use crate::pipeline::below_precision::BelowPrecision;
+use crate::pipeline::list::List;
 use crate::pipeline::narrow::Narrow;
 use crate::pipeline::order::{Order, Ordered};
 use crate::pipeline::precision::Precision;
-use crate::pipeline::room::List;
 use crate::pipeline::volumes::Kernels;
 use nearmiss_kernels::abi::{Hit, Pair, counter};
 

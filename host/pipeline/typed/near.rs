@@ -21,7 +21,7 @@ fn certain<V: Kernels>(axes: Axes, refit: Refit, told: bool) -> usize {
     let mut pipeline =
         TypedPipeline::<f32, V>::new(device, &bodies, &layout, (query, axes)).expect("a pipeline");
     if !told {
-        pipeline.bodies.iter_mut().for_each(|(_, volumes)| volumes.grow = 0.0);
+        pipeline.bodies.iter_mut().for_each(|(_, volumes)| volumes.margin = 0.0);
     }
     pipeline.construct().expect("trees");
     let (found, _) = pipeline.frame().expect("a frame");

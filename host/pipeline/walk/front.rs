@@ -5,7 +5,7 @@ use super::{Walk, WalkContext};
 use crate::device::Device;
 use crate::error::Error;
 use crate::pipeline::launch;
-use crate::pipeline::room::{GrowableOutput, List};
+use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::volumes::Kernels;
 use crate::query::FrontShape;
 use nearmiss_kernels::abi::{FRONT, FrontArgs, PRUNE, Pair, counter};
@@ -65,8 +65,8 @@ impl Front {
         })
     }
 
-    fn list(device: &Device, room: usize) -> Result<List<Pair>, Error> {
-        List::new(device, "pairs of the front", counter::ENDS, room)
+    fn list(device: &Device, capacity: usize) -> Result<List<Pair>, Error> {
+        List::new(device, "pairs of the front", counter::ENDS, capacity)
     }
 
     /// Whether this frame prunes: volumes whose tests do not nest cannot.
@@ -142,8 +142,8 @@ impl<V: Kernels> Walk<V> for Front {
         if kept {
             std::mem::swap(&mut self.front, &mut self.ends);
             // What this frame needed the next one will need as well: no frame runs again for that.
-            if self.ends.room() < self.front.room() {
-                self.ends = Self::list(&self.device, self.front.room())?;
+            if self.ends.capacity() < self.front.capacity() {
+                self.ends = Self::list(&self.device, self.front.capacity())?;
             }
         }
         Ok(())

@@ -6,7 +6,7 @@ mod queue;
 mod segments;
 mod steal;
 
-use super::room::GrowableOutput;
+use super::list::GrowableOutput;
 use super::tree::Tree;
 use super::volumes::{Kernels, Volumes};
 use crate::device::Device;

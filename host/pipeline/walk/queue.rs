@@ -5,7 +5,7 @@ use super::{Walk, WalkContext, resident};
 use crate::device::{Buffer, Device, Event};
 use crate::error::Error;
 use crate::pipeline::launch;
-use crate::pipeline::room::GrowableOutput;
+use crate::pipeline::list::GrowableOutput;
 use crate::pipeline::volumes::Kernels;
 use crate::query::{Balance, QueueShape};
 use nearmiss_kernels::abi::{BalanceArgs, LAST, Pair, QueueArgs, START, Span, counter};

@@ -2,7 +2,7 @@
 
 use crate::device::{Buffer, Device};
 use crate::error::Error;
-use crate::pipeline::room::{GrowableOutput, LONGEST};
+use crate::pipeline::list::{GrowableOutput, LONGEST};
 use nearmiss_kernels::abi::{Pair, Span, counter};
 
 /// `N` copies of the queues' memory, cut into segments of one length.
@@ -16,7 +16,7 @@ impl<const N: usize> Segments<N> {
     /// `count` segments of `len` units.
     ///
     /// # Errors
-    /// [`Error::Room`].
+    /// [`Error::OutOfMemory`].
     pub fn new(device: &Device, count: u32, len: u64) -> Result<Self, Error> {
         let units = count as u64 * len;
         if units > LONGEST {
@@ -66,5 +66,5 @@ impl<const N: usize> GrowableOutput for Segments<N> {
 
 fn too_long(units: u64) -> Error {
     let size = size_of::<Pair>() as u64;
-    Error::Room { what: "the traversal's queues".into(), asked: units * size, given: LONGEST * size }
+    Error::OutOfMemory { what: "the traversal's queues".into(), asked: units * size, given: LONGEST * size }
 }

@@ -5,7 +5,7 @@ use super::{Walk, WalkContext, resident};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::launch;
-use crate::pipeline::room::GrowableOutput;
+use crate::pipeline::list::GrowableOutput;
 use crate::pipeline::volumes::Kernels;
 use crate::query::StealShape;
 use nearmiss_kernels::abi::{EAGER, Pair, StealArgs, control, pool};

@@ -156,7 +156,7 @@ arguments! {
         /// Out: the leaves.
         nodes: Span<Node<V>>,
         /// How much the volumes grow: half of the distance within which pairs are listed; 0 for touching alone.
-        grow: f32,
+        margin: f32,
         /// Nothing.
         pad: u32,
     }
@@ -179,7 +179,7 @@ arguments! {
         /// The body's first triangle.
         first: u32,
         /// How much the volumes grow: half of the distance within which pairs are listed; 0 for touching alone.
-        grow: f32,
+        margin: f32,
     }
     /// `refit_levels`: the volumes of levels `from` to `to`, deepest first.
     RefitArgs<V: Pod> {
@@ -223,7 +223,7 @@ arguments! {
         /// Which axes merged oriented boxes take, see [`crate::bv::Axes`].
         axes: Axes,
         /// How much the volumes grow: half of the distance within which pairs are listed; 0 for touching alone.
-        grow: f32,
+        margin: f32,
     }
     /// `refit_bottom_up`: the volumes of the inner nodes, by whoever comes second.
     BottomUpArgs<V: Pod> {

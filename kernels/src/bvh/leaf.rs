@@ -5,14 +5,14 @@ use crate::bv::Volume;
 use crate::exec::Lane;
 use crate::math::Real;
 
-/// Around a triangle, at every t in [0, 1] when there are two frames, and around what is within `grow` of it. Rounded
+/// Around a triangle, at every t in [0, 1] when there are two frames, and around what is within `margin` of it. Rounded
 /// outward.
 #[inline(always)]
 pub fn volume<R: Real, V: Volume, L: Lane>(
     l: &L,
     frames: &Positions<R>,
     faces: Span<[u32; 3]>,
-    (triangle, grow): (u32, f32),
+    (triangle, margin): (u32, f32),
 ) -> V {
     let face = l.read(faces, triangle);
     let volume = if frames.moving.is_empty() {
@@ -21,5 +21,5 @@ pub fn volume<R: Real, V: Volume, L: Lane>(
         let ends = face.map(|v| l.read(frames.moving, v));
         V::moving(ends.map(|v| v.t0.at), ends.map(|v| v.t1.at))
     };
-    volume.near(grow)
+    volume.near(margin)
 }

@@ -4,7 +4,7 @@
 //!          that neighbours have about as many leaves and lie near each other.
 //! Reads    positions at t = 0 (and t = 1), faces, the leaf's node.    Writes   the nodes of the leaves, each once.
 //! Before   the tree is constructed; positions are finite.
-//! After    the volume encloses the triangle, at every t in [0, 1] when there are two frames, and what is within `grow` of
+//! After    the volume encloses the triangle, at every t in [0, 1] when there are two frames, and what is within `margin` of
 //!          it. Rounded outward.
 //! Room     fixed; cannot run out.
 //! Departs  the paper merges all inner nodes; boxes of boxes are twice as loose as boxes of points.
@@ -26,7 +26,7 @@ pub fn fit<R: Real, V: Volume, B: Block>(b: &mut B, a: &FitArgs<R, V>) {
         while (i as u64) < a.leaf_nodes.len() {
             let at = l.read(a.leaf_nodes, i);
             let link = l.read(a.links, at);
-            let volume: V = leaf::volume(l, &a.frames, a.faces, (link.triangle(), a.grow));
+            let volume: V = leaf::volume(l, &a.frames, a.faces, (link.triangle(), a.margin));
             l.write(a.nodes, at, link.with(volume));
             i += stride;
         }
@@ -52,7 +52,7 @@ pub fn groups<R: Real, B: Block>(b: &mut B, a: &GroupsArgs<R, Obb>) {
                 };
                 let link = Link { link: 2 * pair, last };
                 let volume = Obb::of(&points);
-                l.write(a.nodes, l.read(a.pair_parents, pair), link.with(volume.near(a.grow)));
+                l.write(a.nodes, l.read(a.pair_parents, pair), link.with(volume.near(a.margin)));
             }
             pair += stride;
         }

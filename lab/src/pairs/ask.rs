@@ -7,7 +7,7 @@ use nearmiss::contacts::Status;
 use nearmiss::device::{Buffer, Device};
 use nearmiss::error::Error;
 use nearmiss::pipeline::Layout;
-use nearmiss::pipeline::narrow::{Continuous, NarrowContext, Rooms, Step};
+use nearmiss::pipeline::narrow::{Capacities, Continuous, NarrowContext, Step};
 use nearmiss::pipeline::precision::Precision;
 use nearmiss::query::{Motion, Query};
 use nearmiss_kernels::abi::{Hit, Positions, Span, counter};
@@ -56,8 +56,8 @@ fn some<R: Precision>(device: &Device, cases: &[Case], query: Query, how: Option
     let all = [vf.len(), ee.len()];
     // A case is listed once at most, so no list outgrows this.
     let candidates = if how.filters || query.is_apart() { all } else { [0, 0] };
-    let rooms = Rooms { candidates, survivors: all, hits: all, left: all };
-    let mut features = Continuous::new(device, &layout, query, rooms)?;
+    let capacities = Capacities { candidates, survivors: all, hits: all, left: all };
+    let mut features = Continuous::new(device, &layout, query, capacities)?;
     let first = if how.filters { Step::Features } else { Step::Cull };
     let mut counts = vec![0; counter::COUNT as usize];
     for (at, count) in features.give(first, [&vf, &ee])? {

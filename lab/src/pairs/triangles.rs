@@ -7,9 +7,9 @@ use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Mesh, Positions};
 use nearmiss::pipeline::Layout;
+use nearmiss::pipeline::list::List;
 use nearmiss::pipeline::narrow::{Narrow, NarrowContext, Step};
 use nearmiss::pipeline::precision::Precision;
-use nearmiss::pipeline::room::List;
 use nearmiss::query::{Motion, Query};
 use nearmiss_kernels::abi::{self, Pair, Point, Span, counter};
 

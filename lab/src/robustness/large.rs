@@ -124,7 +124,7 @@ fn beyond_32_bits(device: &Device, report: &mut Report) -> Result<(), Error> {
     let mut session = Session::new(device.clone(), vec![scene::identical(N)?], Query::of(Motion::Discrete))?;
     report.asked += 1;
     match session.detect() {
-        Err(Error::Room { asked, .. }) if asked == needed => {}
+        Err(Error::OutOfMemory { asked, .. }) if asked == needed => {}
         Err(error) => report.fail(|| format!("X45: {needed} bytes are needed, but: {error}")),
         Ok(found) => report.fail(|| format!("X45: {} pairs were found", found.len())),
     }

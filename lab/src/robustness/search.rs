@@ -16,7 +16,7 @@ fn found(device: &Device, bodies: Vec<Body>, query: Query) -> Result<Contacts, E
     Ok(found)
 }
 
-/// Asks each scene, dressed in every volume, and judges what is found; of what stands still also whether a continuous
+/// Asks each scene, with every bounding volume, and judges what is found; of what stands still also whether a continuous
 /// query finds a part of it at once.
 ///
 /// # Errors

@@ -67,7 +67,7 @@ fn column(bv: Bv) -> Option<usize> {
     match bv {
         Bv::Aabb => Some(0),
         Bv::Obb => Some(1),
-        Bv::Linear | Bv::ObbChild => None,
+        _ => None,
     }
 }
 

@@ -57,7 +57,7 @@ pub fn treelets<R: Real, V: Volume, B: Block>(b: &mut B, a: &TreeletsArgs<R, V>)
         while i < leaves {
             let place = l.read(a.leaf_places, first + i);
             let link = Link { link: place.link, last: first + i };
-            let volume: V = leaf::volume(l, &a.frames, a.faces, (link.triangle(), a.grow));
+            let volume: V = leaf::volume(l, &a.frames, a.faces, (link.triangle(), a.margin));
             chip.put(l, i, volume);
             l.store_relaxed(a.nodes, place.node, link.with(volume));
             i += lanes;

@@ -16,12 +16,12 @@ pub struct List<T> {
 pub const LONGEST: u64 = u32::MAX as u64;
 
 impl<T: Pod> List<T> {
-    /// A list with room for `room` entries, counted by that counter.
+    /// A list with room for `capacity` entries, counted by that counter.
     ///
     /// # Errors
-    /// [`Error::Room`].
-    pub fn new(device: &Device, name: &'static str, counter: u32, room: usize) -> Result<Self, Error> {
-        Ok(List { name, counter, entries: device.buffer(room.min(LONGEST as usize))? })
+    /// [`Error::OutOfMemory`].
+    pub fn new(device: &Device, name: &'static str, counter: u32, capacity: usize) -> Result<Self, Error> {
+        Ok(List { name, counter, entries: device.buffer(capacity.min(LONGEST as usize))? })
     }
 
     /// What a kernel is given.
@@ -30,7 +30,7 @@ impl<T: Pod> List<T> {
     }
 
     /// How many entries there is room for.
-    pub fn room(&self) -> usize {
+    pub fn capacity(&self) -> usize {
         self.entries.len()
     }
 
@@ -83,7 +83,7 @@ pub trait GrowableOutput {
     /// Makes room for what the kernels asked for, and an eighth more for the next frame; whether it had to.
     ///
     /// # Errors
-    /// [`Error::Room`] when there is no memory, or the list would be longer than an index reaches.
+    /// [`Error::OutOfMemory`] when there is no memory, or the list would be longer than an index reaches.
     fn grow(&mut self, device: &Device, counters: &[u64]) -> Result<bool, Error>;
 }
 
@@ -107,20 +107,20 @@ impl<T: Pod> GrowableOutput for List<T> {
         self.counter
     }
     fn has_overflowed(&self, counters: &[u64]) -> bool {
-        self.demand(counters) > self.room() as u64
+        self.demand(counters) > self.capacity() as u64
     }
     fn grow(&mut self, device: &Device, counters: &[u64]) -> Result<bool, Error> {
         let demand = self.demand(counters);
         if !self.has_overflowed(counters) {
             return Ok(false);
         }
-        let room = |given| Error::Room {
+        let capacity = |given| Error::OutOfMemory {
             what: format!("the list of {}", self.name),
             asked: demand * size_of::<T>() as u64,
             given,
         };
         if demand > LONGEST {
-            return Err(room(LONGEST * size_of::<T>() as u64));
+            return Err(capacity(LONGEST * size_of::<T>() as u64));
         }
         let wanted = (demand + demand / 8).min(LONGEST) as usize;
         // The old entries are not needed: the list is filled again.
@@ -140,13 +140,13 @@ mod tests {
     #[test]
     fn a_list_beyond_32_bits_is_refused_with_its_size() {
         let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
-        let mut list = List::<Pair>::new(&device, "pairs", 0, 16).expect("room");
+        let mut list = List::<Pair>::new(&device, "pairs", 0, 16).expect("capacity");
         let grow = |list: &mut List<Pair>, demand: u64| list.grow(&device, &[demand]);
         assert!(!grow(&mut list, 16).expect("long enough"));
-        assert!(grow(&mut list, 17).expect("longer") && list.room() == 19);
+        assert!(grow(&mut list, 17).expect("longer") && list.capacity() == 19);
         for demand in [LONGEST + 1, 92_683 * 92_682 / 2, u64::MAX / 64] {
             match grow(&mut list, demand) {
-                Err(Error::Room { asked, given, .. }) => {
+                Err(Error::OutOfMemory { asked, given, .. }) => {
                     assert_eq!((asked, given), (demand * 8, LONGEST * 8));
                 }
                 other => panic!("{demand}: {other:?}"),
