@@ -21,7 +21,7 @@ fn options_that_would_do_nothing_are_refused() {
         ("detect", &["--tolerance", "1"], "takes no tolerance"),
         ("detect", &["--boxes", "1"], "takes no tolerance, no budget"),
         ("detect", &["--separation", "1"], "no separation"),
-        ("detect", &["--earliest", "--adjacent"], "--adjacent with a discrete query"),
+        ("detect", &["--earliest", "--adjacent"], "in a discrete query with the solver exact"),
         ("detect", &["--only", "narrow"], "--repeat"),
         ("plan", &["--repeat", "2"], planned),
         ("plan", &["--repeat", "2", "--only", "narrow"], planned),
