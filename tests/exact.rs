@@ -42,6 +42,13 @@ const SETS: [(&[&str], &str, bool); 8] = [
     (&["exact/noisy.ply"], "exact/noisy.pairs.csv.gz", false),
 ];
 
+/// Where they are required, as in CI, tests without data are no success.
+#[test]
+fn there_are_data_where_they_are_required() {
+    let required = std::env::var_os("NEARMISS_REQUIRE_DATA").is_some();
+    assert!(cfg!(public_data) || !required, "no public test data when this was built: set NEARMISS_DATA");
+}
+
 #[test]
 #[cfg_attr(not(public_data), ignore = "no public test data: set NEARMISS_DATA")]
 fn every_pair_set_equals_the_exact_one() {
