@@ -1,7 +1,7 @@
 //! The sanitizer: a shadow of every word of memory, so that races, strays and unwritten reads are seen.
 //!
 //! Two accesses to a word, one of them a plain write, are a race when nothing orders them: other blocks of the same
-//! launch, or other lanes of the same block in the same phase. Atomic accesses, gives and takes may meet each other; one
+//! launch, or other lanes of the same block in the same phase. Atomic accesses, relaxed stores and loads may meet each other; one
 //! of them and a plain access are a race when one of the two writes. Whether flags and fences order what is given and
 //! taken is not watched: answers that differ from order to order show it.
 //!

@@ -1,5 +1,5 @@
 //! Blocks that interleave: each runs on a thread of its own, and moves only while it holds the turns. It passes the
-//! turns on at the end of each phase and reservation, and at some atomics, gives and takes; a seed says to whom. Some
+//! turns on at the end of each phase and reservation, and at some atomics, relaxed stores and loads; a seed says to whom. Some
 //! blocks are quick and some are slow, up to 256 times: where all went at one pace, a block that is far behind or far
 //! ahead of the others, which is what finds mistakes, would hardly be seen.
 //!
@@ -15,7 +15,7 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 /// How many blocks run at once.
 pub const SEATS: usize = 64;
-/// One in so many atomics, gives and takes passes the turns on.
+/// One in so many atomics, relaxed stores and loads passes the turns on.
 const PASSES: u32 = 4;
 /// One in so many passes changes how quick a block is.
 const CHANGES: u32 = 64;

@@ -8,7 +8,7 @@
 //!
 //! A barrier for the whole grid is the same idea one level up: the end of the launch.
 //!
-//! Blocks of one launch talk to each other by [`Lane::give`], [`Lane::take`] and atomics, ordered by [`Lane::fence`]
+//! Blocks of one launch talk to each other by [`Lane::store_relaxed`], [`Lane::load_relaxed`] and atomics, ordered by [`Lane::fence`]
 //! or [`Block::ticket`]. **The law of giving:** what a lane gives before a `fence` and then an atomic on a flag, a lane
 //! that saw the flag's new value by an atomic and then called `fence` may take. A barrier passes this on within a block, at
 //! both ends: what its lanes gave in earlier phases, and what its lanes may take in later ones. **The law of waiting:** a lane may
@@ -30,7 +30,7 @@ use core::mem::MaybeUninit;
 ///
 /// Memory is read and written by value; nobody holds a reference to what another lane can reach. Plain accesses
 /// to one word by two lanes, one of them writing, must lie in different phases (one block) or different launches
-/// (two blocks); atomic accesses, gives and takes may meet each other, but not plain ones of which one writes. The
+/// (two blocks); atomic accesses, relaxed stores and loads may meet each other, but not plain ones of which one writes. The
 /// emulator's sanitizer checks these rules and all bounds.
 pub trait Lane {
     /// The lane's number in its block, from 0.
@@ -55,9 +55,9 @@ pub trait Lane {
     /// Atomically sets device memory to `new` if it holds `current`; the value before. It never fails without cause.
     fn compare_exchange(&self, span: Span<u64>, i: u32, current: u64, new: u64) -> u64;
 
-    /// Sets element `i` of device memory so that other blocks of this launch may [`take`](Lane::take) it, under the law
-    /// of giving (see the [module](self)). Orders nothing by itself. Two gives of an element may meet, and a take may
-    /// meet a give: then pieces of `T`'s alignment, of 8 bytes at most, are whole, and not all need be of one value.
+    /// Sets element `i` of device memory so that other blocks of this launch may [read](Lane::load_relaxed) it, under the law
+    /// of relaxed stores (see the [module](self)). Orders nothing by itself. Two of an element may meet, and a load may
+    /// meet a store: then pieces of `T`'s alignment, of 8 bytes at most, are whole, and not all need be of one value.
     /// `T` is made of [whole words](whole_words), and an element is given and taken as the same `T`.
     fn store_relaxed<T: Pod>(&self, span: Span<T>, i: u32, value: T);
     /// Element `i` of device memory as another block of this launch gave it: read afresh each time.
