@@ -15,9 +15,9 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
     let (bodies, query) = question(args)?;
     let device = args.machine.open()?;
     let before = device.launches();
-    let session = Session::new(device.clone(), bodies.clone(), query)?;
+    let session = Session::new(device.clone(), bodies, query)?;
     let mut text = String::new();
-    for body in &bodies {
+    for body in session.bodies() {
         let _ = writeln!(
             text,
             "{}: {}, {}, positions in {}, {}",
@@ -32,7 +32,7 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
         text,
         "query      {:?}, {}",
         query.motion,
-        if bodies.len() == 1 { "self" } else { "between" }
+        if session.bodies().len() == 1 { "self" } else { "between" }
     );
     let _ = writeln!(text, "machine    {} ({})", device.name(), device.backend());
     let swept = query.motion != Motion::Discrete && query.bv() != Bv::Linear;

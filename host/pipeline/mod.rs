@@ -244,6 +244,11 @@ impl Session {
         self.pipeline.as_mut().map_or(Ok(Vec::new()), |pipeline| pipeline.narrow_steps())
     }
 
+    /// The bodies, where they are now.
+    pub fn bodies(&self) -> &[Body] {
+        &self.bodies
+    }
+
     /// What is asked.
     pub fn query(&self) -> &Query {
         &self.query

@@ -74,12 +74,7 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
     if !query.solver().is_certain() {
         say(&format!("the solver is {}", query.solver().promise()));
     }
-    let moves = notes::Moves::of(&bodies);
-    let faces = args.file_faces.then(|| FileFaces::of(&bodies));
-    // A sort of the vertices: only where it may be told.
-    let coincident: usize = if args.weld { 0 } else { bodies.iter().map(Body::coincident).sum() };
-    let again = (query.motion == Motion::Earliest).then(|| (device.clone(), bodies.clone()));
-    let mut session = during("building", || Session::new(device, bodies, query))?;
+    let mut session = during("building", || Session::new(device.clone(), bodies, query))?;
     let often = if args.only.is_some() { 1 } else { args.repeat };
     let (contacts, runs) = during("detecting", || repeated(&mut session, often))?;
     let mut summary = session.summary(&contacts);
@@ -88,9 +83,14 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
         let times = during("repeating a stage", || session.repeat_stage(stage, args.repeat))?;
         *summary.ms.of_mut(stage) = middle(times);
     }
+    let faces = args.file_faces.then(|| FileFaces::of(session.bodies()));
+    let moves = notes::Moves::of(session.bodies());
+    let coincident = notes::coincident(session.bodies(), &contacts);
+    let again = (query.motion == Motion::Earliest).then(|| session.bodies().to_vec());
+    // What it holds makes room.
     drop(session);
     let pairs_at_start = match again {
-        Some((device, bodies)) => during("looking at the start", || notes::at_start(device, bodies))?,
+        Some(bodies) => during("looking at the start", || notes::at_start(device, bodies))?,
         None => None,
     };
     let notes = notes::of(query.motion, moves, &contacts, (pairs_at_start, coincident));

@@ -48,6 +48,12 @@ pub fn at_start(device: Device, bodies: Vec<Body>) -> Result<Option<usize>, Erro
 /// Contacts from which on vertices that coincide are worth a word.
 const MANY: usize = 1_000;
 
+/// How many vertices share their place with another, where contacts are so many that it is worth a sort of the vertices: of welded
+/// bodies none.
+pub fn coincident(bodies: &[Body], contacts: &Contacts) -> usize {
+    if contacts.len() < MANY { 0 } else { bodies.iter().map(Body::coincident).sum() }
+}
+
 /// The notes, a line each; of the triangle pairs that meet at the start, and the vertices that share their place with another.
 pub fn of(
     motion: Motion,
@@ -80,7 +86,7 @@ pub fn of(
         }
         _ => {}
     }
-    if coincident > 0 && contacts.len() >= MANY {
+    if coincident > 0 {
         let share = counted(coincident as u64, "vertex shares its", "vertices share their");
         notes.push(format!(
             "{share} place with another: what meets at a seam is listed too; --weld merges them"
