@@ -1,5 +1,7 @@
 //! Every way in which an answer can be less than was asked is forced here, and must say so: by its reason, with a count. None of them may lose a contact.
 
+#[path = "support/shrinking.rs"]
+mod shrinking;
 mod support;
 
 use nearmiss::contacts::{Contact, Degraded, Status};
@@ -7,6 +9,7 @@ use nearmiss::mesh::{Body, Mesh};
 use nearmiss::query::{FrontShape, Motion, Solver, Traversal};
 use nearmiss::{Contacts, Device, Error, Query, Session};
 use nearmiss_lab::scene;
+use shrinking::SHRINKING;
 use std::collections::BTreeMap;
 use support::{ask, engine, sanitizer};
 
@@ -15,7 +18,7 @@ fn soup() -> Vec<Body> {
 }
 
 fn shrinking() -> Vec<Body> {
-    vec![support::moving(&support::SHRINKING[0], &support::SHRINKING[1], &[[0, 1, 2], [3, 4, 5]])]
+    vec![support::moving(&SHRINKING[0], &SHRINKING[1], &[[0, 1, 2], [3, 4, 5]])]
 }
 
 fn by(solver: Solver) -> Query {

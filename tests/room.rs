@@ -1,5 +1,7 @@
 //! A list that is too short changes no answer: its counter is the exact demand, the frame runs again within itself.
 
+#[path = "support/shrinking.rs"]
+mod shrinking;
 mod support;
 
 use nearmiss::device::emulator::Order;
@@ -7,6 +9,7 @@ use nearmiss::mesh::Body;
 use nearmiss::query::{Motion, Solver, Traversal};
 use nearmiss::{Contacts, Device, Error, Query, Session};
 use nearmiss_lab::scene;
+use shrinking::SHRINKING;
 use support::{engine, loose, moving, sanitizer};
 
 /// A first answer, the same frame again, and how often it ran again: within the first, in all.
@@ -171,10 +174,10 @@ fn short_lists_of_what_isolation_leaves_alone() {
     }
 }
 
-/// Each of the two triangles of [`support::SHRINKING`] so many times.
+/// Each of the two triangles of [`SHRINKING`] so many times.
 fn shrinking(n: usize) -> Body {
     let frame = |end: usize| {
-        let [one, other] = [0, 3].map(|i| support::SHRINKING[end][i..i + 3].repeat(n));
+        let [one, other] = [0, 3].map(|i| SHRINKING[end][i..i + 3].repeat(n));
         [one, other].concat()
     };
     triangles(&frame(0), &frame(1))

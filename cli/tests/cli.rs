@@ -30,6 +30,8 @@ mod words;
 
 #[path = "../../tests/support/folder.rs"]
 mod folder;
+#[path = "../../tests/support/shrinking.rs"]
+mod shrinking;
 
 use folder::Folder;
 use serde_json::Value;

@@ -1,6 +1,9 @@
 //! `nearmiss tables`: files, columns, pictures, refusals.
 
-use std::path::{Path, PathBuf};
+#[path = "../../tests/support/folder.rs"]
+mod folder;
+
+use folder::Folder;
 use std::process::{Command, Output};
 
 fn run(args: &[&str]) -> Output {
@@ -26,35 +29,12 @@ fn refused(code: i32, args: &[&str]) -> String {
     String::from_utf8(output.stderr).expect("text")
 }
 
-/// A folder of this test's own, removed at its end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Folder {
-        let path =
-            Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("tables-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&path).expect("a folder");
-        Folder(path)
-    }
-    fn name(&self) -> &str {
-        self.0.to_str().expect("text")
-    }
-    fn read(&self, name: &str) -> String {
-        std::fs::read_to_string(self.0.join(name)).expect(name)
-    }
-    /// A CSV file's head and rows.
-    fn csv(&self, name: &str) -> (Vec<String>, Vec<Vec<String>>) {
-        let mut csv = csv::Reader::from_path(self.0.join(name)).expect(name);
-        let texts = |record: &csv::StringRecord| record.iter().map(str::to_owned).collect::<Vec<_>>();
-        let head = texts(csv.headers().expect("a head"));
-        (head, csv.records().map(|row| texts(&row.expect("a row"))).collect())
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
+/// A CSV file's head and rows.
+fn read_csv(folder: &Folder, name: &str) -> (Vec<String>, Vec<Vec<String>>) {
+    let mut csv = csv::Reader::from_path(folder.path(name)).expect(name);
+    let texts = |record: &csv::StringRecord| record.iter().map(str::to_owned).collect::<Vec<_>>();
+    let head = texts(csv.headers().expect("a head"));
+    (head, csv.records().map(|row| texts(&row.expect("a row"))).collect())
 }
 
 const SMALL: [&str; 8] =
@@ -76,7 +56,7 @@ fn numbers(csv: &(Vec<String>, Vec<Vec<String>>), name: &str) -> Vec<f64> {
 
 #[test]
 fn every_figure_is_written() {
-    let folder = Folder::new("all");
+    let folder = Folder::new("tables-all");
     let text = small(&["--out", folder.name()]);
     for part in ["Figure 6.12", "Figure 6.13", "Figure 6.14", "ours on CPU", "GTX 285", "different scenes"] {
         assert!(text.contains(part), "{part}: {text}");
@@ -112,10 +92,10 @@ fn every_figure_is_written() {
         ),
     ];
     for (name, head) in heads {
-        assert_eq!(folder.csv(name).0, head, "{name}");
+        assert_eq!(read_csv(&folder, name).0, head, "{name}");
     }
     for name in ["figure-6.12.csv", "figure-6.13.csv"] {
-        let csv = folder.csv(name);
+        let csv = read_csv(&folder, name);
         let (ours, theirs) = (numbers(&csv, "ours_ms"), numbers(&csv, "theirs_ms"));
         for ((ours, theirs), ratio) in ours.iter().zip(theirs).zip(numbers(&csv, "ratio")) {
             assert!(
@@ -128,9 +108,9 @@ fn every_figure_is_written() {
 
 #[test]
 fn a_row_stands_for_every_way_and_all_agree() {
-    let folder = Folder::new("ways");
+    let folder = Folder::new("tables-ways");
     small(&["--table", "6.13", "6.14", "--out", folder.name()]);
-    let frames = folder.csv("figure-6.13.csv");
+    let frames = read_csv(&folder, "figure-6.13.csv");
     let ways = |csv| {
         let [motion, bv, front] = ["motion", "bv", "front"].map(|name| column(csv, name));
         motion.iter().zip(bv).zip(front).map(|((m, b), f)| format!("{m} {b} {f}")).collect::<Vec<_>>()
@@ -140,7 +120,7 @@ fn a_row_stands_for_every_way_and_all_agree() {
     {
         assert_eq!(found.iter().filter(|way| *way == want).count(), 1, "{want}: {found:?}");
     }
-    assert_eq!(ways(&folder.csv("figure-6.14.csv")), found);
+    assert_eq!(ways(&read_csv(&folder, "figure-6.14.csv")), found);
     // The thesis's figures of that scene, in the text's order.
     let theirs = column(&frames, "theirs_ms");
     let of = |want: &str| theirs[found.iter().position(|way| way == want).expect("a way")];
@@ -154,7 +134,7 @@ fn a_row_stands_for_every_way_and_all_agree() {
     assert!(!hashes.is_empty() && hashes.iter().all(|hash| hash == &hashes[0]), "{hashes:?}");
     assert!(numbers(&frames, "contacts_a_frame").iter().any(|&n| n > 0.0));
     assert!(numbers(&frames, "reruns").iter().all(|&n| n == 0.0));
-    let shares = folder.csv("figure-6.14.csv");
+    let shares = read_csv(&folder, "figure-6.14.csv");
     for row in 0..shares.1.len() {
         let parts =
             ["refit", "traverse", "balance", "triangle_tests"].map(|name| numbers(&shares, name)[row]);
@@ -164,7 +144,7 @@ fn a_row_stands_for_every_way_and_all_agree() {
 
 #[test]
 fn pictures_are_labelled() {
-    let folder = Folder::new("pictures");
+    let folder = Folder::new("tables-pictures");
     small(&["--out", folder.name()]);
     let pictures = [
         (
@@ -185,11 +165,11 @@ fn pictures_are_labelled() {
 
 #[test]
 fn only_what_is_asked_for_is_measured() {
-    let folder = Folder::new("one");
+    let folder = Folder::new("tables-one");
     let text = small(&["--table", "6.12", "--out", folder.name()]);
     assert!(text.contains("Figure 6.12") && !text.contains("Figure 6.13"), "{text}");
     let mut files: Vec<_> =
-        std::fs::read_dir(&folder.0).expect("a folder").map(|f| f.expect("a file").file_name()).collect();
+        std::fs::read_dir(folder.name()).expect("a folder").map(|f| f.expect("a file").file_name()).collect();
     files.sort();
     assert_eq!(files, ["figure-6.12.csv", "figure-6.12.svg"]);
 }
@@ -208,17 +188,17 @@ fn json_holds_all_rows() {
 
 #[test]
 fn files_are_a_scene() {
-    let folder = Folder::new("files");
+    let folder = Folder::new("tables-files");
     let made = Command::new(env!("CARGO_BIN_EXE_nearmiss"))
         .args(["scene", "soup-moving", "--triangles", "200", "--out", folder.name()])
         .output()
         .expect("the program starts");
     assert!(made.status.success());
-    let frame = |t: usize| folder.0.join(format!("soup-moving_t{t}.ply")).to_str().expect("text").to_owned();
+    let frame = |t: usize| folder.path(&format!("soup-moving_t{t}.ply"));
     let files = [frame(0), frame(1), frame(0)];
     let mesh = ["--backend", "cpu", "--table", "6.13", "--mesh", &files[0], &files[1], &files[2]];
     ok(&[&mesh[..], &["--out", folder.name()]].concat());
-    let csv = folder.csv("figure-6.13.csv");
+    let csv = read_csv(&folder, "figure-6.13.csv");
     assert!(column(&csv, "scene").iter().all(|scene| *scene == "soup-moving_t0"));
     assert!(column(&csv, "ratio").iter().all(|ratio| ratio.is_empty()), "the thesis has no such scene");
     // Three frames, two steps.
@@ -228,16 +208,15 @@ fn files_are_a_scene() {
     );
     // The same files, as a scene that the thesis has.
     ok(&[&mesh[..], &["--scene", "cloth-ball", "--out", folder.name()]].concat());
-    assert!(column(&folder.csv("figure-6.13.csv"), "ratio").iter().all(|ratio| !ratio.is_empty()));
+    assert!(column(&read_csv(&folder, "figure-6.13.csv"), "ratio").iter().all(|ratio| !ratio.is_empty()));
     // A volume that the thesis has not has no ratio.
     ok(&[&mesh[..], &["--scene", "cloth-ball", "--bv", "linear", "--out", folder.name()]].concat());
-    let csv = folder.csv("figure-6.13.csv");
+    let csv = read_csv(&folder, "figure-6.13.csv");
     assert!(column(&csv, "bv").iter().all(|bv| *bv == "linear"));
     assert!(column(&csv, "ratio").iter().all(|ratio| ratio.is_empty()));
     // Frames of two meshes are none.
-    let other = folder.0.join("other.ply");
-    std::fs::write(&other, "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n").expect("written");
-    refused(3, &["--backend", "cpu", "--mesh", &files[0], other.to_str().expect("text")]);
+    let other = folder.write("other.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n");
+    refused(3, &["--backend", "cpu", "--mesh", &files[0], &other]);
 }
 
 #[test]
@@ -264,7 +243,7 @@ fn queues_of_either_size_answer_the_same() {
         let text = small(&["--profile", profile, "--out", folder.name()]);
         assert!(text.contains(&format!("work queues {profile}")), "{text}");
         assert!(folder.read("figure-6.13.svg").contains(&format!("work queues {profile}")));
-        assert!(column(&folder.csv("figure-6.12.csv"), "profile").iter().all(|name| *name == profile));
+        assert!(column(&read_csv(&folder, "figure-6.12.csv"), "profile").iter().all(|name| *name == profile));
     }
     assert!(refused(2, &["--profile", "h200"]).contains("gtx285, native"));
 }

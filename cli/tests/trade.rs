@@ -1,7 +1,10 @@
 //! `nearmiss trade`: rows, files and the headline, of small inputs; and that planted truths show.
 
+#[path = "../../tests/support/folder.rs"]
+mod folder;
+
+use folder::Folder;
 use serde_json::Value;
-use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 fn run(args: &[&str]) -> Output {
@@ -12,33 +15,6 @@ fn json(args: &[&str]) -> Value {
     let output = run(&[args, &["--json", "--backend", "cpu"]].concat());
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).expect("JSON")
-}
-
-/// A folder of this test's own, removed at its end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Folder {
-        let path =
-            Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("trade-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&path).expect("a folder");
-        Folder(path)
-    }
-    fn path(&self, name: &str) -> String {
-        self.0.join(name).to_str().expect("text").to_owned()
-    }
-    fn write(&self, name: &str, text: &str) -> String {
-        let path = self.0.join(name);
-        std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
-        std::fs::write(&path, text).expect("written");
-        path.to_str().expect("text").to_owned()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
 }
 
 fn rows<'a>(all: &'a Value, what: &str) -> &'a [Value] {
@@ -53,7 +29,7 @@ fn is_certain(row: &Value) -> bool {
 /// All that is made here: certain choices make no error anywhere, and every file is written.
 #[test]
 fn a_small_trade_has_every_part() {
-    let folder = Folder::new("small");
+    let folder = Folder::new("trade-small");
     let all = json(&["--cases", "2", "--triangles", "300", "--frames", "2", "--out", &folder.path("out")]);
     for row in rows(&all, "choices").iter().chain(rows(&all, "sweeps")) {
         assert!(row["input"].is_string() && row["ns"].as_f64() > Some(0.0), "{row}");
@@ -109,7 +85,7 @@ const QUERY: [&str; 2] = [
 
 #[test]
 fn query_files_are_read_decided_and_judged() {
-    let folder = Folder::new("queries");
+    let folder = Folder::new("trade-queries");
     folder.write("set/vertex-face/a.csv", &QUERY.concat());
     let all = json(&["--queries", &folder.path("set")]);
     let choices = rows(&all, "choices");
@@ -140,7 +116,7 @@ fn query_files_are_read_decided_and_judged() {
 /// A scene from files against a list: one contact too many in the list is a miss of every solver, one too few a false alarm.
 #[test]
 fn a_list_of_contacts_judges_a_mesh() {
-    let folder = Folder::new("mesh");
+    let folder = Folder::new("trade-mesh");
     let scene = ["scene", "soup-moving", "--triangles", "60", "--out", &folder.path("")];
     let made = Command::new(env!("CARGO_BIN_EXE_nearmiss")).args(scene).output().expect("the program starts");
     assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));

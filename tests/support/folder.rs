@@ -12,6 +12,10 @@ impl Folder {
         std::fs::create_dir_all(&path).expect("a folder");
         Folder(path)
     }
+    /// Its own path.
+    pub fn name(&self) -> &str {
+        self.0.to_str().expect("text")
+    }
     /// A file's path, in the folder.
     pub fn path(&self, name: &str) -> String {
         self.0.join(name).to_str().expect("text").to_owned()
@@ -19,10 +23,12 @@ impl Folder {
     pub fn read(&self, name: &str) -> String {
         std::fs::read_to_string(self.path(name)).expect("a file")
     }
-    /// Writes a file; its path.
+    /// Writes a file, in folders that are made where there are none; its path.
     pub fn write(&self, name: &str, text: &str) -> String {
-        std::fs::write(self.path(name), text).expect("written");
-        self.path(name)
+        let path = self.path(name);
+        std::fs::create_dir_all(Path::new(&path).parent().expect("a folder")).expect("a folder");
+        std::fs::write(&path, text).expect("written");
+        path
     }
 }
 

@@ -83,27 +83,6 @@ pub fn moving(t0: &[[f32; 3]], t1: &[[f32; 3]], faces: &[[u32; 3]]) -> Body {
     Body::moving(frame(t0), frame(t1)).expect("two frames of one mesh")
 }
 
-/// Two edges, each of a triangle that reaches far, that meet at a sixteenth of the step as one of them shrinks to a point: no
-/// certificate holds then, and no slice tells. At the start and at the end.
-pub const SHRINKING: [[[f32; 3]; 6]; 2] = [
-    [
-        [0.0, 60.0, -12.0],
-        [-24.0, 36.0, 12.0],
-        [1e5, 0.0, 0.0],
-        [-48.0, 24.0, 60.0],
-        [-84.0, 24.0, -12.0],
-        [-1e5, 0.0, 0.0],
-    ],
-    [
-        [576.0, -708.0, 180.0],
-        [-216.0, -732.0, 12.0],
-        [1e5, 0.0, 0.0],
-        [144.0, -552.0, -708.0],
-        [684.0, -552.0, 372.0],
-        [-1e5, 0.0, 0.0],
-    ],
-];
-
 /// A still body of triangles that share no vertex.
 pub fn loose(triangles: &[[[f32; 3]; 3]]) -> Body {
     let faces: Vec<_> = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
