@@ -10,7 +10,7 @@ use std::path::Path;
 
 /// What is said of an answer.
 #[derive(Serialize)]
-pub struct Told {
+pub struct Report {
     /// Its figures.
     #[serde(flatten)]
     pub summary: Summary,
@@ -98,7 +98,7 @@ pub fn write(
     target: Target,
     format: Format,
     contacts: &Contacts,
-    (told, faces): (&Told, Option<&FileFaces>),
+    (told, faces): (&Report, Option<&FileFaces>),
 ) -> Result<(), Error> {
     let named = faces.map(|faces| faces.name(&contacts.answer));
     let answer = named.as_ref().unwrap_or(&contacts.answer);
@@ -143,10 +143,10 @@ fn row(c: &Contact) -> [String; 6] {
 }
 
 /// The summary and the contacts as one JSON object.
-fn json(out: impl Write, answer: &Answer, summary: &Told) -> Result<(), String> {
+fn json(out: impl Write, answer: &Answer, summary: &Report) -> Result<(), String> {
     #[derive(Serialize)]
     struct Whole<'a> {
-        summary: &'a Told,
+        summary: &'a Report,
         contacts: Rows<'a>,
     }
     #[derive(Serialize)]

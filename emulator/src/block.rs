@@ -194,7 +194,7 @@ impl<W: Watch> Lane for EmulatedLane<W> {
     }
     #[inline(always)]
     fn store_relaxed<T: Pod>(&self, span: Span<T>, i: u32, value: T) {
-        if let Some(p) = device(&self.watch, Access::Give, span, i, self.place) {
+        if let Some(p) = device(&self.watch, Access::StoreRelaxed, span, i, self.place) {
             // SAFETY: as for `atomic`.
             unsafe { coherent::store(p, value) }
         }
@@ -202,7 +202,7 @@ impl<W: Watch> Lane for EmulatedLane<W> {
     #[inline(always)]
     fn load_relaxed<T: Pod>(&self, span: Span<T>, i: u32) -> T {
         // SAFETY: as for `atomic`.
-        device(&self.watch, Access::Take, span, i, self.place)
+        device(&self.watch, Access::LoadRelaxed, span, i, self.place)
             .map_or(T::zeroed(), |p| unsafe { coherent::load(p) })
     }
     #[inline(always)]

@@ -164,8 +164,8 @@ impl Emulator {
             let sequence = sanitizer.order().sequence(blocks, sanitizer.launches());
             if let Some(seed) = sanitizer.interleave() {
                 let seed = seed ^ sanitizer.launches().rotate_left(32);
-                TurnScheduler::run(sequence, seed, |block, turns, slot| {
-                    run(block, &BlockObserver::new(sanitizer, Some((turns, slot))));
+                TurnScheduler::run(sequence, seed, |block, scheduler, slot| {
+                    run(block, &BlockObserver::new(sanitizer, Some((scheduler, slot))));
                 });
             } else {
                 let all = || {

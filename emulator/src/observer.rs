@@ -11,14 +11,14 @@ pub struct BlockObserver<'a> {
     sanitizer: &'a Sanitizer,
     launch: u64,
     /// Where blocks interleave, what says whose turn it is, and this block's slot.
-    turns: Option<(&'a TurnScheduler, usize)>,
+    scheduler: Option<(&'a TurnScheduler, usize)>,
     shared: RefCell<Vec<Shadow>>,
 }
 
 impl<'a> BlockObserver<'a> {
     /// An observer on a block that begins: its shared memory is new.
-    pub fn new(sanitizer: &'a Sanitizer, turns: Option<(&'a TurnScheduler, usize)>) -> Self {
-        BlockObserver { sanitizer, launch: sanitizer.launches(), turns, shared: RefCell::default() }
+    pub fn new(sanitizer: &'a Sanitizer, scheduler: Option<(&'a TurnScheduler, usize)>) -> Self {
+        BlockObserver { sanitizer, launch: sanitizer.launches(), scheduler, shared: RefCell::default() }
     }
 }
 
@@ -28,8 +28,10 @@ impl Watch for &BlockObserver<'_> {
         self.sanitizer.order().sequence(count, turn).into_iter().for_each(body);
     }
     fn device(&self, access: Access, addr: u64, bytes: usize, inside: bool, place: Place) -> bool {
-        if let (Some((turns, slot)), false) = (self.turns, matches!(access, Access::Read | Access::Write)) {
-            turns.may_pass(slot);
+        if let (Some((scheduler, slot)), false) =
+            (self.scheduler, matches!(access, Access::Read | Access::Write))
+        {
+            scheduler.may_pass(slot);
         }
         self.sanitizer.see(access, addr, bytes, inside, place)
     }
@@ -54,8 +56,8 @@ impl Watch for &BlockObserver<'_> {
         self.sanitizer.changed();
     }
     fn barrier(&self) {
-        if let Some((turns, slot)) = self.turns {
-            turns.pass(slot);
+        if let Some((scheduler, slot)) = self.scheduler {
+            scheduler.pass(slot);
         }
     }
 }

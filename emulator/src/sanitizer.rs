@@ -5,7 +5,7 @@
 //! of them and a plain access are a race when one of the two writes. Whether flags and fences order what is given and
 //! taken is not watched: answers that differ from order to order show it.
 //!
-//! Blocks run one after the other, each to its end, in the sanitizer's order; or interleaved (see the `turns`).
+//! Blocks run one after the other, each to its end, in the sanitizer's order; or interleaved (see `turns`).
 
 use crate::Error;
 use crate::Order;
@@ -35,10 +35,10 @@ pub enum Access {
     Swap,
     /// An atomic read.
     Look,
-    /// A write that other blocks may take.
-    Give,
-    /// A read of what other blocks may give.
-    Take,
+    /// A write that other blocks may read.
+    StoreRelaxed,
+    /// A read of what other blocks may write.
+    LoadRelaxed,
 }
 
 /// Where in a launch an access happens.
@@ -170,8 +170,8 @@ impl Sanitizer {
         let mut seen = self.seen();
         let Seen { launches, fault, looks, device, .. } = &mut *seen;
         *looks = match access {
-            Access::Read | Access::Take => *looks,
-            Access::Write | Access::Give | Access::Atomic => 0,
+            Access::Read | Access::LoadRelaxed => *looks,
+            Access::Write | Access::StoreRelaxed | Access::Atomic => 0,
             Access::Look | Access::Swap => *looks + 1,
         };
         if *looks > LOOKS {

@@ -29,10 +29,10 @@ pub struct Shadow {
     /// A second, unordered one is a race at once.
     write: Option<Place>,
     read: Pair,
-    /// Gives, and atomics that write.
-    give: Pair,
-    /// Takes, and atomics that read.
-    take: Pair,
+    /// Relaxed stores, and atomics that write.
+    stores: Pair,
+    /// Relaxed loads, and atomics that read.
+    loads: Pair,
 }
 
 impl Shadow {
@@ -46,23 +46,23 @@ impl Shadow {
         if self.launch != launch {
             *self = Shadow { written: self.written, launch, ..Shadow::default() };
         }
-        if !self.written && !matches!(access, Write | Give) {
+        if !self.written && !matches!(access, Write | StoreRelaxed) {
             return Some(Fault::Unwritten(place));
         }
         let mut rival = self.write.filter(|rival| rival.meets(place));
         match access {
             Read => {
-                rival = rival.or(self.give.rival(place));
+                rival = rival.or(self.stores.rival(place));
                 self.read.note(place);
             }
-            Look | Take => self.take.note(place),
-            Atomic | Swap | Give => {
+            Look | LoadRelaxed => self.loads.note(place),
+            Atomic | Swap | StoreRelaxed => {
                 rival = rival.or(self.read.rival(place));
-                self.give.note(place);
+                self.stores.note(place);
                 self.written = true;
             }
             Write => {
-                let others = [self.give, self.read, self.take];
+                let others = [self.stores, self.read, self.loads];
                 rival = rival.or_else(|| others.iter().find_map(|pair| pair.rival(place)));
                 self.write = Some(place);
                 self.written = true;

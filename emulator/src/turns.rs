@@ -1,9 +1,9 @@
-//! Blocks that interleave: each runs on a thread of its own, and moves only while it holds the turns. It passes the
-//! turns on at the end of each phase and reservation, and at some atomics, relaxed stores and loads; a seed says to whom. Some
+//! Blocks that interleave: each runs on a thread of its own, and moves only while it has the turn. It passes the
+//! turn on at the end of each phase and reservation, and at some atomics, relaxed stores and loads; a seed says to whom. Some
 //! blocks are quick and some are slow, up to 256 times: where all went at one pace, a block that is far behind or far
 //! ahead of the others, which is what finds mistakes, would hardly be seen.
 //!
-//! At most [`SEATS`] blocks run at once, as on a GPU: the next one starts where one ends. So what a launch does is a
+//! At most [`SLOTS`] blocks run at once, as on a GPU: the next one starts where one ends. So what a launch does is a
 //! matter of its seed alone, and blocks that all wait for one that has not started wait for ever.
 
 use rand::rngs::SmallRng;
@@ -14,8 +14,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 /// How many blocks run at once.
-pub const SEATS: usize = 64;
-/// One in so many atomics, relaxed stores and loads passes the turns on.
+pub const SLOTS: usize = 64;
+/// One in so many atomics, relaxed stores and loads passes the turn on.
 const PASSES: u32 = 4;
 /// One in so many passes changes how quick a block is.
 const CHANGES: u32 = 64;
@@ -85,9 +85,9 @@ impl State {
 }
 
 impl TurnScheduler {
-    /// Runs those blocks, which start in that order; `run` is given the block, the turns and the block's slot.
+    /// Runs those blocks, which start in that order; `run` is given the block, the scheduler and the block's slot.
     pub fn run(blocks: Vec<u32>, seed: u64, run: impl Fn(u32, &TurnScheduler, usize) + Sync) {
-        let slots = blocks.len().min(SEATS);
+        let slots = blocks.len().min(SLOTS);
         if slots == 0 {
             return;
         }
@@ -100,20 +100,20 @@ impl TurnScheduler {
         };
         state.pace = (0..slots).map(|_| state.draw_pace()).collect();
         state.holder = state.draw().expect("somebody is seated");
-        let turns =
+        let scheduler =
             TurnScheduler { state: Mutex::new(state), bells: (0..slots).map(|_| Condvar::new()).collect() };
         std::thread::scope(|scope| {
             for slot in 0..slots {
-                let (turns, run) = (&turns, &run);
-                scope.spawn(move || turns.sit(slot, run));
+                let (scheduler, run) = (&scheduler, &run);
+                scope.spawn(move || scheduler.occupy(slot, run));
             }
         });
-        let state = turns.state.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let state = scheduler.state.into_inner().unwrap_or_else(PoisonError::into_inner);
         state.panic.into_iter().for_each(pass_on);
     }
 
     /// A slot's life: block after block.
-    fn sit(&self, slot: usize, run: &impl Fn(u32, &TurnScheduler, usize)) {
+    fn occupy(&self, slot: usize, run: &impl Fn(u32, &TurnScheduler, usize)) {
         drop(self.wait(slot, self.state()));
         loop {
             let Some(block) = self.state().waiting.pop_front() else { break };
@@ -131,7 +131,7 @@ impl TurnScheduler {
         }
     }
 
-    /// Passes the turns to a block drawn from all that run, and waits until it comes back.
+    /// Passes the turn to a block drawn from all that run, and waits until it comes back.
     pub fn pass(&self, slot: usize) {
         let state = self.state();
         self.pass_from(slot, state);

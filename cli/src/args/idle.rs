@@ -14,7 +14,7 @@ use nearmiss_lab::scene::ANIMATIONS;
 /// # Errors
 /// [`Error::Choice`] with the first that would do nothing.
 pub fn check(command: &Command, own: &ArgMatches) -> Result<(), Error> {
-    let given = Given(own);
+    let given = CommandLine(own);
     match command {
         Command::Detect(args) => detect(args, given),
         Command::Plan(args) => plan(args, given),
@@ -28,9 +28,9 @@ pub fn check(command: &Command, own: &ArgMatches) -> Result<(), Error> {
 
 /// What stands on the command line, not by default.
 #[derive(Clone, Copy)]
-struct Given<'a>(&'a ArgMatches);
+struct CommandLine<'a>(&'a ArgMatches);
 
-impl Given<'_> {
+impl CommandLine<'_> {
     fn has(self, option: &str) -> bool {
         self.0.value_source(option) == Some(ValueSource::CommandLine)
     }
@@ -47,14 +47,14 @@ impl Given<'_> {
     }
 }
 
-fn machine(args: &MachineArgs, given: Given) -> Result<(), Error> {
+fn machine(args: &MachineArgs, given: CommandLine) -> Result<(), Error> {
     if args.backend == Backend::Cuda {
         given.none_of(&["threads"], "a GPU takes no CPU threads", "leave it out, or give --backend cpu")?;
     }
     Ok(())
 }
 
-fn detect(args: &DetectArgs, given: Given) -> Result<(), Error> {
+fn detect(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
     machine(&args.machine, given)?;
     if args.traversal != Some(TraversalArg::PerLeafSpill) {
         let why = "only the walk per-leaf-spill gives its rest away";
@@ -68,20 +68,20 @@ fn detect(args: &DetectArgs, given: Given) -> Result<(), Error> {
     of_single(args.scene.as_deref(), given)
 }
 
-fn of_single(scene: Option<&str>, given: Given) -> Result<(), Error> {
+fn of_single(scene: Option<&str>, given: CommandLine) -> Result<(), Error> {
     if scene == Some("single") {
         given.none_of(&["triangles"], "the scene single has one triangle", "leave it out, or choose soup")?;
     }
     Ok(())
 }
 
-fn plan(args: &DetectArgs, given: Given) -> Result<(), Error> {
+fn plan(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
     let why = "a plan runs nothing and writes nothing";
     given.none_of(&["repeat", "only", "out", "json"], why, "leave it out, or ask detect")?;
     detect(args, given)
 }
 
-fn explain(args: &ExplainArgs, given: Given) -> Result<(), Error> {
+fn explain(args: &ExplainArgs, given: CommandLine) -> Result<(), Error> {
     if args.tt.is_some() {
         let why = "triangles that stand still are decided exactly";
         given.none_of(&["tolerance", "boxes"], why, "leave it out, or ask with --vf, --fv or --ee")?;
@@ -89,7 +89,7 @@ fn explain(args: &ExplainArgs, given: Given) -> Result<(), Error> {
     Ok(())
 }
 
-fn scene(args: &SceneArgs, given: Given) -> Result<(), Error> {
+fn scene(args: &SceneArgs, given: CommandLine) -> Result<(), Error> {
     if !ANIMATIONS.contains(&args.name.as_str()) {
         let why = format!("{} is made by formula", args.name);
         let advice = format!("leave it out, or choose one of: {}", ANIMATIONS.join(", "));
@@ -102,7 +102,7 @@ fn scene(args: &SceneArgs, given: Given) -> Result<(), Error> {
     of_single(Some(&args.name), given)
 }
 
-fn tables(args: &TablesArgs, given: Given) -> Result<(), Error> {
+fn tables(args: &TablesArgs, given: CommandLine) -> Result<(), Error> {
     machine(&args.machine, given)?;
     if !args.mesh.is_empty() {
         let why = "the frames come from the files of --mesh";
@@ -116,7 +116,7 @@ fn tables(args: &TablesArgs, given: Given) -> Result<(), Error> {
     Ok(())
 }
 
-fn trade(args: &TradeArgs, given: Given) -> Result<(), Error> {
+fn trade(args: &TradeArgs, given: CommandLine) -> Result<(), Error> {
     machine(&args.machine, given)?;
     if !args.full && (!args.mesh.is_empty() || args.queries.is_some()) {
         let why = "with --mesh or --queries nothing is made here";

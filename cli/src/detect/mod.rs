@@ -6,7 +6,7 @@ mod text;
 use crate::args::DetectArgs;
 use crate::output::{Target, print, say};
 use crate::progress::during;
-use crate::report::{self, FileFaces, Told};
+use crate::report::{self, FileFaces, Report};
 use nearmiss::contacts::Contacts;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh};
@@ -94,7 +94,7 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
         None => None,
     };
     let notes = notes::of(query.motion, moves, &contacts, (pairs_at_start, coincident));
-    let told = Told { summary, pairs_at_start, notes };
+    let told = Report { summary, pairs_at_start, notes };
     if let Some((format, target)) = target {
         report::write(target, format, &contacts, (&told, faces.as_ref()))?;
     }

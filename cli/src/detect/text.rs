@@ -1,13 +1,13 @@
 //! The summary for people.
 
-use crate::report::Told;
+use crate::report::Report;
 use nearmiss::contacts::Contacts;
 use nearmiss::query::Traversal;
 use nearmiss::words::counted;
 use std::fmt::Write;
 
 /// The summary for people.
-pub fn human(told: &Told, contacts: &Contacts) -> String {
+pub fn human(told: &Report, contacts: &Contacts) -> String {
     let mut text = String::new();
     let summary = &told.summary;
     let ms = &summary.ms;

@@ -41,7 +41,7 @@ pub struct Continuous {
     /// What certified solvers climb.
     rungs: Rungs,
     /// Hits that are not certain, those whose budget ended, those of both, and those too large for the tolerance.
-    counters_of: [Counter; 4],
+    counters: [Counter; 4],
     /// Whether pairs may be too large for the tolerance: see [`BelowPrecision`].
     pub below_precision: Option<BelowPrecision>,
     /// The smallest toi, where only that is asked for.
@@ -85,7 +85,7 @@ impl Continuous {
             vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, hits[0])?,
             ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, hits[1])?,
             rungs: Rungs::new(device, &query, capacities.left)?,
-            counters_of: [
+            counters: [
                 counter::UNRESOLVED,
                 counter::ENDED,
                 counter::ENDED_UNRESOLVED,
@@ -119,7 +119,7 @@ impl Continuous {
             }
             Step::Solve => {
                 let mut lists: Vec<&mut dyn GrowableOutput> = vec![&mut self.vf_hits, &mut self.ee_hits];
-                lists.extend(self.counters_of.iter_mut().map(|tally| tally as &mut dyn GrowableOutput));
+                lists.extend(self.counters.iter_mut().map(|counter| counter as &mut dyn GrowableOutput));
                 lists.extend(self.rungs.lists());
                 lists
             }
