@@ -11,7 +11,7 @@ use nearmiss::device::Backend;
 use nearmiss::mesh::Body;
 use nearmiss::pipeline::Stages;
 use nearmiss::query::Motion;
-use nearmiss::{Device, Mesh, Query, Session};
+use nearmiss::{Detector, Device, Mesh, Query};
 use nearmiss_lab::scene;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -35,12 +35,12 @@ fn threads() -> Vec<usize> {
     if all > 1 { vec![1, all] } else { vec![1] }
 }
 
-fn session(body: &Body, threads: usize, motion: Motion) -> Session {
+fn detector(body: &Body, threads: usize, motion: Motion) -> Detector {
     let device = Device::open(Backend::Cpu, Some(threads)).expect("a CPU");
-    let mut session = Session::new(device, vec![body.clone()], Query::of(motion)).expect("a session");
+    let mut detector = Detector::new(device, vec![body.clone()], Query::of(motion)).expect("a detector");
     // Lists grow to the demand once.
-    session.detect().expect("an answer");
-    session
+    detector.detect().expect("an answer");
+    detector
 }
 
 fn construct(c: &mut Criterion) {
@@ -48,9 +48,9 @@ fn construct(c: &mut Criterion) {
     group.sample_size(10).warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(2));
     for (name, body) in &scenes() {
         for threads in threads() {
-            let mut session = session(body, threads, Motion::Discrete);
+            let mut detector = detector(body, threads, Motion::Discrete);
             group.bench_function(BenchmarkId::new(*name, threads), |b| {
-                b.iter(|| session.rebuild().expect("a tree"));
+                b.iter(|| detector.rebuild().expect("a tree"));
             });
         }
     }
@@ -65,9 +65,10 @@ fn frames(c: &mut Criterion) {
         group.measurement_time(Duration::from_secs(3));
         for (name, body) in &scenes() {
             for threads in threads() {
-                let mut session = session(body, threads, motion);
+                let mut detector = detector(body, threads, motion);
                 let mut seen = Vec::new();
-                group.bench_function(BenchmarkId::new(*name, threads), |b| frame(b, &mut session, &mut seen));
+                group
+                    .bench_function(BenchmarkId::new(*name, threads), |b| frame(b, &mut detector, &mut seen));
                 // Nothing was timed where a filter left this one out.
                 if !seen.is_empty() {
                     report.push((*name, motion, threads, seen));
@@ -93,9 +94,9 @@ fn hard_frames(c: &mut Criterion) {
     let mut group = c.benchmark_group("hard");
     group.sample_size(10).warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(2));
     for (name, body) in hard::hard(1) {
-        let (mut session, mut seen) = (session(&body, 1, Motion::Continuous), Vec::new());
-        let candidates = session.detect().expect("an answer").candidates;
-        group.bench_function(name, |b| frame(b, &mut session, &mut seen));
+        let (mut detector, mut seen) = (detector(&body, 1, Motion::Continuous), Vec::new());
+        let candidates = detector.detect().expect("an answer").candidates;
+        group.bench_function(name, |b| frame(b, &mut detector, &mut seen));
         if !seen.is_empty() {
             report.push((name, candidates, median(seen.iter().map(|s: &Stages| s.total).collect())));
         }
@@ -107,9 +108,9 @@ fn hard_frames(c: &mut Criterion) {
     }
 }
 
-fn frame(b: &mut Bencher, session: &mut Session, seen: &mut Vec<Stages>) {
+fn frame(b: &mut Bencher, detector: &mut Detector, seen: &mut Vec<Stages>) {
     b.iter(|| {
-        let contacts = session.detect().expect("an answer");
+        let contacts = detector.detect().expect("an answer");
         seen.push(contacts.stages);
         contacts
     });

@@ -4,23 +4,23 @@ mod support;
 
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::Motion;
-use nearmiss::{Query, Session};
+use nearmiss::{Detector, Query};
 use nearmiss_lab::scene;
 use support::{ORDERS, engine, sanitizer};
 
-/// A triangle far from everything.
+/// A triangle far from everything, that has a tree of its own.
 fn far() -> Body {
     let corners = vec![[1e6f32, 1e6, 1e6], [1e6 + 1.0, 1e6, 1e6], [1e6, 1e6 + 1.0, 1e6]];
-    Body::still(Mesh::new("far", Positions::F32(corners), vec![[0, 1, 2]]).expect("a mesh"))
+    Body::fixed(Mesh::new("far", Positions::F32(corners), vec![[0, 1, 2]]).expect("a mesh"))
 }
 
 /// Depth of the body's tree, after all volumes are set and everything is checked.
 fn depth(device: nearmiss::Device, body: Body) -> usize {
-    let mut session =
-        Session::new(device, vec![body, far()], Query::of(Motion::Discrete)).expect("a session");
-    assert!(session.detect().expect("an answer").is_empty(), "nothing is far away");
-    session.check_trees().expect("a sound tree");
-    session.depths()[0]
+    let mut detector =
+        Detector::new(device, vec![body, far()], Query::of(Motion::Discrete)).expect("a detector");
+    assert!(detector.detect().expect("an answer").is_empty(), "nothing is far away");
+    detector.check_trees().expect("a sound tree");
+    detector.depths()[0]
 }
 
 /// Levels of a tree that splits n leaves in half, and in half again.

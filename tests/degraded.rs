@@ -7,7 +7,7 @@ mod support;
 use nearmiss::contacts::{Contact, Degraded, Status};
 use nearmiss::mesh::{Body, Mesh};
 use nearmiss::query::{FrontShape, Motion, Solver, Traversal};
-use nearmiss::{Contacts, Device, Error, Query, Session};
+use nearmiss::{Contacts, Detector, Device, Error, Query};
 use nearmiss_lab::scene;
 use shrinking::SHRINKING;
 use std::collections::BTreeMap;
@@ -141,13 +141,13 @@ fn lists_that_grew_are_counted_once_and_degrade_nothing() {
             vec![scene::identical(if motion == Motion::Discrete { 150 } else { 60 }).expect("a scene")];
         let solver = if motion == Motion::Discrete { Solver::Exact } else { Solver::CubicF64 };
         let query = Query { motion, ..by(solver) };
-        let mut session = Session::new(engine(), bodies, query).expect("a session");
-        let first = session.detect().expect("an answer");
-        let times = session.reruns();
+        let mut detector = Detector::new(engine(), bodies, query).expect("a detector");
+        let first = detector.detect().expect("an answer");
+        let times = detector.reruns();
         assert!(times > 0, "the scene no longer overflows the first room: make it larger");
-        assert_eq!((first.reruns, session.summary(&first).reruns), (times, times));
+        assert_eq!((first.reruns, detector.summary(&first).reruns), (times, times));
         assert_eq!(first.degraded(), [], "the answer is whole");
-        let second = session.detect().expect("an answer");
+        let second = detector.detect().expect("an answer");
         assert!(second.reruns == 0 && second.degraded().is_empty() && second.answer == first.answer);
     }
 }
@@ -160,12 +160,12 @@ fn a_front_that_is_dropped_is_told() {
     let told = |drop| {
         let walk = Some(Traversal::Front(FrontShape { drop, ..shape }));
         let query = Query { traversal: walk, ..Query::of(Motion::Discrete) };
-        let mut session = Session::new(engine(), vec![bodies[0].clone()], query).expect("a session");
+        let mut detector = Detector::new(engine(), vec![bodies[0].clone()], query).expect("a detector");
         let frames = (0..4).map(|i| {
             let points = bodies[i % 2].positions_t0().clone();
             let mesh = Mesh::new("soup", points, bodies[0].faces().to_vec()).expect("a mesh");
-            session.move_to(0, Body::still(mesh)).expect("the same mesh");
-            session.detect().expect("an answer").degraded().contains(&Degraded::FrontDropped)
+            detector.move_to(0, Body::still(mesh)).expect("the same mesh");
+            detector.detect().expect("an answer").degraded().contains(&Degraded::FrontDropped)
         });
         frames.collect::<Vec<_>>()
     };
@@ -180,14 +180,14 @@ fn each_frame_is_told_by_itself() {
     let query = Query { tolerance: Some(1.3e-6), boxes: Some(2), ..by(Solver::CertifiedF32) };
     let frames = [scene::soup(60, 5, true), scene::soup(60, 6, true), scene::soup(60, 5, true)];
     let mut told = Vec::new();
-    let mut session = Session::new(engine(), soup(), query).expect("a session");
+    let mut detector = Detector::new(engine(), soup(), query).expect("a detector");
     for frame in frames.map(|frame| frame.expect("a scene")) {
-        session.move_to(0, frame.clone()).expect("a frame");
+        detector.move_to(0, frame.clone()).expect("a frame");
         let alone = ask(engine(), vec![frame], query);
         assert!(!alone.degraded().is_empty());
         told.push(alone.degraded().to_vec());
         for _ in 0..2 {
-            assert_eq!(session.detect().expect("an answer").degraded(), alone.degraded());
+            assert_eq!(detector.detect().expect("an answer").degraded(), alone.degraded());
         }
     }
     assert!(told[0] != told[1] && told[0] == told[2], "{told:?}");
@@ -209,22 +209,22 @@ fn memory_that_ends_is_an_error() {
         let (mut answered, mut built, mut refused) = (0, 0, 0);
         for part in 0..=40 {
             let limited = engine().limited(peak * part / 40);
-            let mut session = match Session::new(limited.clone(), bodies.clone(), query) {
-                Ok(session) => session,
+            let mut detector = match Detector::new(limited.clone(), bodies.clone(), query) {
+                Ok(detector) => detector,
                 Err(error) => {
                     is_room(&error, &limited);
                     built += 1;
                     continue;
                 }
             };
-            match session.detect() {
+            match detector.detect() {
                 Ok(contacts) => {
                     assert_eq!(contacts.answer, truth.answer, "{part}");
                     answered += 1;
                 }
                 Err(error) => {
                     is_room(&error, &limited);
-                    is_room(&session.detect().expect_err("no more memory than before"), &limited);
+                    is_room(&detector.detect().expect_err("no more memory than before"), &limited);
                     refused += 1;
                 }
             }

@@ -55,7 +55,7 @@ fn every_pair_set_equals_the_exact_one() {
     for (meshes, pairs, small) in SETS {
         let (bodies, truth) = (bodies(meshes), listed(pairs));
         let found = discrete(engine(), bodies.clone());
-        assert_eq!(difference(found.pairs(), &truth), None, "{meshes:?}");
+        assert_eq!(difference(&found.triangles(), &truth), None, "{meshes:?}");
         for order in ORDERS.into_iter().filter(|_| small) {
             let again = discrete(sanitizer(order), bodies.clone());
             assert_eq!(again.hash(), found.hash(), "{meshes:?}, {order:?}");
@@ -73,7 +73,7 @@ fn every_way_finds_the_exact_pairs() {
         let turn = |i: usize| i % 3 == i / 3 % 3 && (small || i.is_multiple_of(5));
         for (i, way) in ways(Query::of(Motion::Discrete)).enumerate().filter(|(i, _)| turn(*i)) {
             let found = ask(engine(), bodies.clone(), way);
-            assert_eq!(difference(found.pairs(), &truth), None, "{meshes:?}, way {i}: {way:?}");
+            assert_eq!(difference(&found.triangles(), &truth), None, "{meshes:?}, way {i}: {way:?}");
         }
     }
 }
@@ -85,7 +85,7 @@ fn the_large_sets_are_the_same_in_every_order() {
         let (bodies, truth) = (bodies(meshes), listed(pairs));
         for order in ORDERS {
             let found = discrete(sanitizer(order), bodies.clone());
-            assert_eq!(difference(found.pairs(), &truth), None, "{meshes:?}, {order:?}");
+            assert_eq!(difference(&found.triangles(), &truth), None, "{meshes:?}, {order:?}");
         }
     }
 }

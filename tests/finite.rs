@@ -6,7 +6,7 @@ mod support;
 use nearmiss::contacts::{Contact, Status};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Bv, Motion, Solver};
-use nearmiss::{Contacts, Query, Session};
+use nearmiss::{Contacts, Detector, Query};
 use nearmiss_lab::scene;
 use std::collections::BTreeMap;
 use support::{ask, engine, sanitizer, ways};
@@ -41,8 +41,8 @@ fn soup(moving: bool) -> Body {
 /// What is wrong with an answer beside that of ordinary size. Times may have other certificates, as f32 cannot be used at
 /// the ends of its range: but both hold the truth, so they overlap.
 fn fault(truth: &Contacts, found: &Contacts) -> Option<String> {
-    if truth.pairs() != found.pairs() {
-        return Some(format!("{} pairs, not {}", found.pairs().len(), truth.pairs().len()));
+    if truth.triangles() != found.triangles() {
+        return Some(format!("{} pairs, not {}", found.triangles().len(), truth.triangles().len()));
     }
     let rows = |all: &Contacts| -> BTreeMap<_, Contact> {
         all.contacts().iter().map(|c| ((c.kind, c.a, c.b), *c)).collect()
@@ -124,18 +124,19 @@ fn a_separation_of_any_size() {
     assert!(Bv::ALL.into_iter().all(|bv| few(bv).len() == pairs) && pairs == 15 * (9 + 6), "{pairs}");
 }
 
-/// A session goes over to doubles when the first frame or body needs them, whichever it is.
+/// A detector goes over to doubles when the first frame or body needs them, whichever it is.
 #[test]
 fn a_session_goes_over_to_doubles() {
     for motion in [Motion::Discrete, Motion::Continuous] {
         let body = soup(motion == Motion::Continuous);
         let truth = ask(engine(), vec![body.clone()], Query::of(motion));
-        let mut session = Session::new(engine(), vec![body.clone()], Query::of(motion)).expect("a session");
+        let mut detector =
+            Detector::new(engine(), vec![body.clone()], Query::of(motion)).expect("a detector");
         for power in [0, 40, 62, 126, 0, 100] {
-            session.move_to(0, times(&body, power)).expect("a frame of the mesh");
-            let found = session.detect().expect("an answer");
+            detector.move_to(0, times(&body, power)).expect("a frame of the mesh");
+            let found = detector.detect().expect("an answer");
             assert_eq!(fault(&truth, &found), None, "{motion:?}, 2^{power}");
-            session.check_trees().expect("sound trees");
+            detector.check_trees().expect("sound trees");
         }
         let pair = vec![body.clone(), times(&body, 100)];
         let swapped = vec![times(&body, 100), body.clone()];
@@ -149,15 +150,15 @@ fn a_session_goes_over_to_doubles() {
 fn going_over_without_memory_is_an_error() {
     let body = soup(false);
     let device = engine();
-    let mut session =
-        Session::new(device.clone(), vec![body.clone()], Query::of(Motion::Discrete)).expect("a session");
-    session.detect().expect("an answer");
+    let mut detector =
+        Detector::new(device.clone(), vec![body.clone()], Query::of(Motion::Discrete)).expect("a detector");
+    detector.detect().expect("an answer");
     // From now on there is half of what floats took; doubles take more.
     let _ = device.clone().limited(device.bytes().0 / 2);
     for _ in 0..2 {
-        let moved = session.move_to(0, times(&body, 100)).and_then(|()| session.detect().map(drop));
+        let moved = detector.move_to(0, times(&body, 100)).and_then(|()| detector.detect().map(drop));
         assert_eq!(moved.expect_err("doubles take more").exit_code(), 4);
-        assert_eq!(session.detect().expect_err("still not enough").exit_code(), 4);
+        assert_eq!(detector.detect().expect_err("still not enough").exit_code(), 4);
     }
 }
 

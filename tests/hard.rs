@@ -9,7 +9,7 @@ use nearmiss::contacts::Status;
 use nearmiss::device::Backend;
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Motion, Solver};
-use nearmiss::{Contacts, Device, Query, Session};
+use nearmiss::{Contacts, Detector, Device, Query};
 use std::time::Instant;
 use support::{ask, data, engine};
 
@@ -26,10 +26,10 @@ fn total([vf, ee]: [u64; 2]) -> u64 {
 fn asked(name: &str, bodies: Vec<nearmiss::Body>, solver: Solver) -> Contacts {
     let device = Device::open(Backend::Cpu, Some(1)).expect("a CPU");
     let query = Query { solver: Some(solver), ..Query::of(Motion::Continuous) };
-    let mut session = Session::new(device, bodies, query).expect("a session");
-    session.detect().expect("an answer");
+    let mut detector = Detector::new(device, bodies, query).expect("a detector");
+    detector.detect().expect("an answer");
     let start = Instant::now();
-    let all = session.detect().expect("an answer");
+    let all = detector.detect().expect("an answer");
     let us = start.elapsed().as_secs_f64() * 1e6;
     let sure = all.contacts().iter().filter(|c| c.status == Status::Certified).count();
     println!(

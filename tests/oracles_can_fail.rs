@@ -5,11 +5,14 @@ mod support;
 #[macro_use]
 #[path = "support/kernels.rs"]
 mod kernels;
+#[path = "oracles_can_fail/filters.rs"]
+mod filters;
 #[path = "oracles_can_fail/tree.rs"]
 mod tree;
 
-use nearmiss::contacts::{Answer, Contacts};
+use nearmiss::contacts::{Answer, Contacts, TrianglePair};
 use nearmiss::query::Motion;
+use nearmiss::scene::{BodyId, Scene};
 use nearmiss::{Device, Error, Query};
 use nearmiss_kernels::abi::Span;
 use nearmiss_kernels::entry::Entry;
@@ -234,13 +237,19 @@ fn the_hash_notices_every_fault_of_a_list_of_pairs() {
     let contacts = ask(engine(), vec![scene::grid(2).expect("a scene")], Query::of(Motion::Discrete));
     assert_eq!(contacts.len() as u64, scene::grid_pairs(2));
     assert_eq!(contacts.clone().hash(), contacts.hash());
-    type Fault = fn(&mut Vec<[u32; 2]>);
-    let faults: [(&str, Fault); 5] = [
-        ("an index", |pairs| pairs[3][1] ^= 1),
+    type Fault = fn(&mut Vec<TrianglePair>);
+    fn second() -> BodyId {
+        let mut scene = Scene::new();
+        [0; 2].map(|_| scene.add(support::still(&[[0.0; 3]], &[])))[1]
+    }
+    let faults: [(&str, Fault); 7] = [
+        ("an index", |pairs| pairs[3].triangles[1] ^= 1),
+        ("a body", |pairs| pairs[3].bodies[1] = second()),
+        ("all bodies", |pairs| pairs.iter_mut().for_each(|pair| pair.bodies = [second(); 2])),
         ("dropped", |pairs| pairs.truncate(13)),
         ("twice", |pairs| pairs.insert(1, pairs[1])),
         ("out of order", |pairs| pairs.swap(0, 1)),
-        ("exchanged", |pairs| pairs[0].reverse()),
+        ("exchanged", |pairs| pairs[0].triangles.reverse()),
     ];
     for (what, fault) in faults {
         hashes_differ(&contacts, what, |answer| match answer {

@@ -12,19 +12,19 @@ mod words;
 
 use nearmiss::mesh::Body;
 use nearmiss::query::{Bv, Motion, QueueShape, StealShape, Traversal};
-use nearmiss::{Contacts, Device, Query, Session};
+use nearmiss::{Contacts, Detector, Device, Query};
 use nearmiss_lab::scene;
 use support::{ORDERS, engine, loose, sanitizer};
 
 /// The candidates as a set, and the answer.
 type Print = (u64, u64, u64);
 
-/// What a session finds, in two frames: lists settle in the first.
+/// What a detector finds, in two frames: lists settle in the first.
 fn found(device: Device, bodies: &[Body], query: Query) -> (Print, Contacts) {
-    let mut session = Session::new(device, bodies.to_vec(), query).expect("a session");
+    let mut detector = Detector::new(device, bodies.to_vec(), query).expect("a detector");
     let mut ask = || {
-        let contacts = session.detect().expect("an answer");
-        let prints = session.fingerprints().expect("prints");
+        let contacts = detector.detect().expect("an answer");
+        let prints = detector.fingerprints().expect("prints");
         let candidates = prints.iter().find(|(stage, _)| *stage == "traverse").expect("the stage").1;
         ((candidates, contacts.triangle_pairs, contacts.hash()), contacts)
     };

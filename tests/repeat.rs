@@ -1,10 +1,10 @@
-//! One stage again and again: the session answers afterwards as if nothing had happened.
+//! One stage again and again: the detector answers afterwards as if nothing had happened.
 
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::Body;
 use nearmiss::pipeline::Stage;
 use nearmiss::query::{Motion, Refit};
-use nearmiss::{Device, Query, Session};
+use nearmiss::{Detector, Device, Query};
 use nearmiss_lab::scene;
 
 const STAGES: [Stage; 5] = [Stage::Construct, Stage::Fit, Stage::Refit, Stage::Traverse, Stage::Narrow];
@@ -30,24 +30,25 @@ fn a_repeated_stage_leaves_the_answer_as_it_is() {
     for device in [engine(), sanitizer()] {
         for query in Query::every() {
             for stage in STAGES {
-                let mut plain = Session::new(device.clone(), vec![body.clone()], query).expect("a session");
-                let mut session = Session::new(device.clone(), vec![body.clone()], query).expect("a session");
-                let mut same = |session: &mut Session, what: &str| {
+                let mut plain = Detector::new(device.clone(), vec![body.clone()], query).expect("a detector");
+                let mut detector =
+                    Detector::new(device.clone(), vec![body.clone()], query).expect("a detector");
+                let mut same = |detector: &mut Detector, what: &str| {
                     let (one, other) =
-                        (plain.detect().expect("an answer"), session.detect().expect("an answer"));
+                        (plain.detect().expect("an answer"), detector.detect().expect("an answer"));
                     assert_eq!(one.hash(), other.hash(), "{query:?} {stage:?} {what}");
                     assert_eq!(one.candidates, other.candidates, "{query:?} {stage:?} {what}");
-                    let prints = session.fingerprints().expect("prints");
+                    let prints = detector.fingerprints().expect("prints");
                     assert_eq!(plain.fingerprints().expect("prints"), prints, "{query:?} {stage:?} {what}");
                     prints
                 };
                 // Before any frame, between frames, and on the next frame with the old tree.
-                assert_eq!(session.repeat_stage(stage, 2).expect("runs").len(), 2);
-                let before = same(&mut session, "first");
-                let ms = session.repeat_stage(stage, 3).expect("runs");
+                assert_eq!(detector.repeat_stage(stage, 2).expect("runs").len(), 2);
+                let before = same(&mut detector, "first");
+                let ms = detector.repeat_stage(stage, 3).expect("runs");
                 assert!(ms.len() == 3 && ms.iter().all(|&ms| ms >= 0.0), "{ms:?}");
-                assert_eq!(session.fingerprints().expect("prints"), before, "{query:?} {stage:?}: in place");
-                same(&mut session, "between");
+                assert_eq!(detector.fingerprints().expect("prints"), before, "{query:?} {stage:?}: in place");
+                same(&mut detector, "between");
             }
         }
     }
@@ -58,19 +59,19 @@ fn a_stage_is_repeated_where_the_body_is_now() {
     let body = scene::scene("cloth-ball", 500, 3).expect("a scene");
     for stage in [Stage::Fit, Stage::Refit, Stage::Traverse, Stage::Narrow] {
         let query = Query::of(Motion::Continuous);
-        let mut plain = Session::new(engine(), vec![body.clone()], query).expect("a session");
+        let mut plain = Detector::new(engine(), vec![body.clone()], query).expect("a detector");
         plain.move_to(0, later(&body)).expect("moved");
         let want = plain.detect().expect("an answer").hash();
         let prints = plain.fingerprints().expect("prints");
 
-        let mut session = Session::new(engine(), vec![body.clone()], query).expect("a session");
-        session.detect().expect("an answer");
-        session.move_to(0, later(&body)).expect("moved");
-        session.repeat_stage(stage, 2).expect("runs");
+        let mut detector = Detector::new(engine(), vec![body.clone()], query).expect("a detector");
+        detector.detect().expect("an answer");
+        detector.move_to(0, later(&body)).expect("moved");
+        detector.repeat_stage(stage, 2).expect("runs");
         if matches!(stage, Stage::Traverse | Stage::Narrow) {
-            assert_eq!(session.fingerprints().expect("prints"), prints, "{stage:?}");
+            assert_eq!(detector.fingerprints().expect("prints"), prints, "{stage:?}");
         }
-        assert_eq!(session.detect().expect("an answer").hash(), want, "{stage:?}");
+        assert_eq!(detector.detect().expect("an answer").hash(), want, "{stage:?}");
     }
 }
 
@@ -81,14 +82,14 @@ fn every_way_to_refit_can_be_repeated() {
     for device in [engine(), sanitizer()] {
         for refit in [Refit::Levels, Refit::Treelets, Refit::BottomUp] {
             let query = Query { refit: Some(refit), ..Query::of(Motion::Discrete) };
-            let mut session = Session::new(device.clone(), vec![body.clone()], query).expect("a session");
-            session.move_to(0, later(&body)).expect("moved");
-            assert_eq!(session.repeat_stage(Stage::Refit, 3).expect("runs").len(), 3);
-            session.check_trees().expect("volumes around all");
-            hashes.push(session.detect().expect("an answer").hash());
-            let prints = session.fingerprints().expect("prints");
-            session.repeat_stage(Stage::Refit, 3).expect("runs");
-            assert_eq!(session.fingerprints().expect("prints"), prints, "{refit:?}");
+            let mut detector = Detector::new(device.clone(), vec![body.clone()], query).expect("a detector");
+            detector.move_to(0, later(&body)).expect("moved");
+            assert_eq!(detector.repeat_stage(Stage::Refit, 3).expect("runs").len(), 3);
+            detector.check_trees().expect("volumes around all");
+            hashes.push(detector.detect().expect("an answer").hash());
+            let prints = detector.fingerprints().expect("prints");
+            detector.repeat_stage(Stage::Refit, 3).expect("runs");
+            assert_eq!(detector.fingerprints().expect("prints"), prints, "{refit:?}");
         }
     }
     assert!(hashes.iter().all(|hash| *hash == hashes[0]), "{hashes:?}");
@@ -98,17 +99,18 @@ fn every_way_to_refit_can_be_repeated() {
 #[test]
 fn a_cpu_has_no_stage_that_orders() {
     let body = scene::scene("cloth-ball", 500, 3).expect("a scene");
-    let mut session = Session::new(engine(), vec![body], Query::of(Motion::Continuous)).expect("a session");
-    assert_eq!(session.repeat_stage(Stage::Order, 4).expect("no runs"), Vec::<f64>::new());
-    assert_eq!(session.detect().expect("an answer").stages.order, 0.0);
+    let mut detector =
+        Detector::new(engine(), vec![body], Query::of(Motion::Continuous)).expect("a detector");
+    assert_eq!(detector.repeat_stage(Stage::Order, 4).expect("no runs"), Vec::<f64>::new());
+    assert_eq!(detector.detect().expect("an answer").stages.order, 0.0);
 }
 
 #[test]
 fn nothing_has_no_stages() {
     let empty = nearmiss::Mesh::new("empty", nearmiss::mesh::Positions::F32(Vec::new()), Vec::new());
     let bodies = vec![Body::still(empty.expect("a mesh"))];
-    let mut session = Session::new(engine(), bodies, Query::of(Motion::Discrete)).expect("a session");
+    let mut detector = Detector::new(engine(), bodies, Query::of(Motion::Discrete)).expect("a detector");
     for stage in STAGES {
-        assert_eq!(session.repeat_stage(stage, 4).expect("no runs"), Vec::<f64>::new());
+        assert_eq!(detector.repeat_stage(stage, 4).expect("no runs"), Vec::<f64>::new());
     }
 }

@@ -7,21 +7,21 @@ mod support;
 use nearmiss::device::emulator::Order;
 use nearmiss::mesh::Body;
 use nearmiss::query::{Motion, Solver, Traversal};
-use nearmiss::{Contacts, Device, Error, Query, Session};
+use nearmiss::{Contacts, Detector, Device, Error, Query};
 use nearmiss_lab::scene;
 use shrinking::SHRINKING;
 use support::{engine, loose, moving, sanitizer};
 
 /// A first answer, the same frame again, and how often it ran again: within the first, in all.
 fn twice(device: Device, bodies: Vec<Body>, query: Query) -> (Contacts, [u64; 2]) {
-    let mut session = Session::new(device, bodies, query).expect("a session");
-    let first = session.detect().expect("an answer");
-    let reruns = session.reruns();
-    let second = session.detect().expect("an answer");
+    let mut detector = Detector::new(device, bodies, query).expect("a detector");
+    let first = detector.detect().expect("an answer");
+    let reruns = detector.reruns();
+    let second = detector.detect().expect("an answer");
     assert_eq!(first.answer, second.answer, "a frame after the lists have grown");
     let figures = |c: &Contacts| (c.triangle_pairs, c.candidates, c.candidates_vf_ee, c.undecided, c.steps);
     assert_eq!(figures(&first), figures(&second), "counters are the demand, whatever the room");
-    (first, [reruns, session.reruns()])
+    (first, [reruns, detector.reruns()])
 }
 
 /// `n` equal triangles, each with its own vertices, sliding within their plane.
@@ -52,7 +52,7 @@ fn many_more_pairs_than_room() {
         assert_eq!(reruns[1], reruns[0], "lists stay long enough");
         assert_eq!((contacts.triangle_pairs, contacts.candidates), (79_800, 79_800));
         if solver == Solver::Exact {
-            assert_eq!(contacts.pairs(), all_pairs(400));
+            assert_eq!(contacts.triangles(), all_pairs(400));
         }
     }
 }
@@ -71,7 +71,7 @@ fn more_undecided_pairs_than_room() {
     let triangles: Vec<_> =
         (0..N).map(|_| [corner(0.5, 0.0), corner(-0.25, 0.5), corner(-0.25, -0.5)]).collect();
     let (contacts, reruns) = twice(engine(), vec![loose(&triangles)], Query::of(Motion::Discrete));
-    assert_eq!(contacts.pairs(), all_pairs(N));
+    assert_eq!(contacts.triangles(), all_pairs(N));
     assert!(
         contacts.undecided > 4_096,
         "{} undecided: no longer more than the first room",
@@ -85,7 +85,7 @@ fn many_more_pairs_than_room_between_two_bodies() {
     let body = || scene::identical(120).expect("a scene");
     let (contacts, reruns) = twice(engine(), vec![body(), body()], Query::of(Motion::Discrete));
     assert!(reruns[0] > 0, "the scene no longer overflows the first room: make it larger");
-    assert!(contacts.pairs().iter().copied().eq((0..120).flat_map(|a| (0..120).map(move |b| [a, b]))));
+    assert!(contacts.triangles().into_iter().eq((0..120).flat_map(|a| (0..120).map(move |b| [a, b]))));
 }
 
 /// `n` triangles that all meet, and `more` lonely pairs: n (n - 1) / 2 + more pairs in all.
@@ -201,7 +201,7 @@ fn the_microscope_sees_no_fault_in_a_frame_that_runs_again() {
         // 100 triangles: 4,950 pairs.
         let bodies = || vec![scene::identical(100).expect("a scene")];
         let (contacts, reruns) = twice(sanitizer(order), bodies(), Query::of(Motion::Discrete));
-        assert!(reruns[0] > 0 && contacts.pairs() == all_pairs(100), "{order:?}");
+        assert!(reruns[0] > 0 && contacts.triangles() == all_pairs(100), "{order:?}");
     }
     // 30 triangles: 2,610 + 3,915 elementary pairs, all of them contacts; between bodies twice as many and more.
     let (one, two) = (sliding(40), scene::identical(40).expect("a scene"));
@@ -224,9 +224,9 @@ fn units_that_find_no_room_are_walked_anyway() {
             ..Query::of(Motion::Discrete)
         };
         for device in [engine(), sanitizer(Order::Shuffled(9))] {
-            let mut session = Session::new(device, bodies(), spilling).expect("a session");
-            let contacts = session.detect().expect("an answer");
-            assert_eq!(contacts.pairs(), all_pairs(150), "budget {budget}");
+            let mut detector = Detector::new(device, bodies(), spilling).expect("a detector");
+            let contacts = detector.detect().expect("an answer");
+            assert_eq!(contacts.triangles(), all_pairs(150), "budget {budget}");
             assert!(contacts.spilled > 0, "budget {budget}");
         }
     }
@@ -244,15 +244,15 @@ fn lists_grow_when_a_body_moves_into_a_crowd() {
     let crowd: Vec<_> =
         apart.iter().enumerate().map(|(i, p)| [p[0] - 3.0 * (i / 3) as f32, p[1], p[2]]).collect();
     let frame = |points: &[[f32; 3]]| support::still(points, &faces);
-    let mut session =
-        Session::new(engine(), vec![frame(&apart)], Query::of(Motion::Discrete)).expect("a session");
-    assert_eq!((session.detect().expect("an answer").len(), session.reruns()), (0, 0));
-    session.move_to(0, frame(&crowd)).expect("the same mesh");
-    assert_eq!(session.detect().expect("an answer").pairs(), all_pairs(130));
-    let reruns = session.reruns();
+    let mut detector =
+        Detector::new(engine(), vec![frame(&apart)], Query::of(Motion::Discrete)).expect("a detector");
+    assert_eq!((detector.detect().expect("an answer").len(), detector.reruns()), (0, 0));
+    detector.move_to(0, frame(&crowd)).expect("the same mesh");
+    assert_eq!(detector.detect().expect("an answer").pairs(), all_pairs(130));
+    let reruns = detector.reruns();
     assert!(reruns > 0);
-    session.move_to(0, frame(&apart)).expect("the same mesh");
-    assert_eq!((session.detect().expect("an answer").len(), session.reruns()), (0, reruns));
+    detector.move_to(0, frame(&apart)).expect("the same mesh");
+    assert_eq!((detector.detect().expect("an answer").len(), detector.reruns()), (0, reruns));
 }
 
 #[test]

@@ -8,7 +8,7 @@ mod support;
 use nearmiss::contacts::Kind;
 use nearmiss::mesh::{Body, Positions};
 use nearmiss::query::{Motion, Solver};
-use nearmiss::{Query, Session};
+use nearmiss::{Detector, Query};
 use nearmiss_kernels::prim::inclusion::{Params, Verdict};
 use nearmiss_lab::scene;
 use std::collections::BTreeMap;
@@ -118,10 +118,10 @@ fn every_way_and_every_machine_finds_the_same() {
             assert_eq!(ask(engine(), bodies.clone(), way).answer, truth.answer, "{way:?}");
         }
         let print = |device| {
-            let mut session = Session::new(device, bodies.clone(), query).expect("a session");
-            let all = session.detect().expect("an answer");
-            session.check_trees().expect("sound trees");
-            (all.hash(), session.fingerprints().expect("prints"))
+            let mut detector = Detector::new(device, bodies.clone(), query).expect("a detector");
+            let all = detector.detect().expect("an answer");
+            detector.check_trees().expect("sound trees");
+            (all.hash(), detector.fingerprints().expect("prints"))
         };
         let on_engine = print(engine());
         for device in machines() {
@@ -136,17 +136,17 @@ fn every_way_and_every_machine_finds_the_same() {
 fn none_is_touching() {
     let prints = |separation| {
         let query = Query { separation, ..asking(Motion::Continuous, Solver::Certified, 0.0) };
-        let mut session = Session::new(engine(), vec![soup(60)], query).expect("a session");
-        let hash = session.detect().expect("an answer").hash();
-        (hash, session.fingerprints().expect("prints"))
+        let mut detector = Detector::new(engine(), vec![soup(60)], query).expect("a detector");
+        let hash = detector.detect().expect("an answer").hash();
+        (hash, detector.fingerprints().expect("prints"))
     };
     assert_eq!(prints(None), prints(Some(0.0)));
     assert_eq!(prints(None), prints(Some(-0.0)));
     assert_ne!(prints(None), prints(Some(0.1)));
     let query = asking(Motion::Continuous, Solver::Certified, 0.1);
-    let mut session = Session::new(engine(), vec![soup(60)], query).expect("a session");
-    session.move_to(0, scene::soup(60, 5, true).expect("a scene")).expect("the same mesh");
-    let moved = session.detect().expect("an answer");
+    let mut detector = Detector::new(engine(), vec![soup(60)], query).expect("a detector");
+    detector.move_to(0, scene::soup(60, 5, true).expect("a scene")).expect("the same mesh");
+    let moved = detector.detect().expect("an answer");
     assert_eq!(moved.answer, ask(engine(), vec![soup(60)], query).answer);
 }
 

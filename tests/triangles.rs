@@ -31,7 +31,8 @@ fn a_corner_that_falls_through_a_square_meets_one_triangle_of_it_first() {
     let body = Body::moving(mesh(falling(1.0), &faces), mesh(falling(-1.0), &faces)).expect("frames");
     let found = ask(engine(), vec![body.clone()], Query::of(Motion::Continuous));
     let pairs = triangle_contacts(found.contacts(), &[body]);
-    let known: Vec<_> = pairs.iter().map(|p| (p.a, p.b, at_half(p.toi))).collect();
+    let known: Vec<_> =
+        pairs.iter().map(|p| (p.pair.triangles[0], p.pair.triangles[1], at_half(p.toi))).collect();
     assert_eq!(known, [(0, 2, true)]);
 }
 
@@ -44,7 +45,10 @@ fn between_two_bodies_indices_are_their_own() {
     for (bodies, pair) in [(vec![square.clone(), corner.clone()], (0, 0)), (vec![corner, square], (0, 0))] {
         let found = ask(engine(), bodies.clone(), Query::of(Motion::Continuous));
         let pairs = triangle_contacts(found.contacts(), &bodies);
-        assert_eq!(pairs.iter().map(|p| ((p.a, p.b), at_half(p.toi))).collect::<Vec<_>>(), [(pair, true)]);
+        assert_eq!(
+            pairs.iter().map(|p| (<(u32, u32)>::from(p.pair.triangles), at_half(p.toi))).collect::<Vec<_>>(),
+            [(pair, true)]
+        );
     }
 }
 
@@ -53,7 +57,7 @@ fn every_contact_has_its_pairs_and_every_pair_its_first_contact() {
     let body = scene::scene("draped", 3000, 1).expect("a scene");
     let found = ask(engine(), vec![body.clone()], Query::of(Motion::Continuous));
     let pairs = triangle_contacts(found.contacts(), std::slice::from_ref(&body));
-    assert!(pairs.len() > 100 && pairs.is_sorted_by_key(|p| (p.a, p.b)));
+    assert!(pairs.len() > 100 && pairs.is_sorted_by_key(|p| p.pair.triangles));
     let first = pairs.iter().map(|p| p.toi).min_by(f64::total_cmp);
     assert!(first >= found.earliest_toi(), "{first:?} {:?}", found.earliest_toi());
     // A pair's time is that of a contact, and none is earlier than the first.

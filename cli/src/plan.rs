@@ -3,8 +3,8 @@
 use crate::args::DetectArgs;
 use crate::detect::question;
 use crate::output::print;
+use nearmiss::Detector;
 use nearmiss::error::Error;
-use nearmiss::pipeline::Session;
 use nearmiss::query::{Bv, Motion, Query, Traversal};
 use nearmiss::words::counted;
 use std::fmt::Write;
@@ -15,9 +15,9 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
     let (bodies, query) = question(args)?;
     let device = args.machine.open()?;
     let before = device.launches();
-    let session = Session::new(device.clone(), bodies, query)?;
+    let detector = Detector::new(device.clone(), bodies, query)?;
     let mut text = String::new();
-    for body in session.bodies() {
+    for body in detector.scene().bodies() {
         let _ = writeln!(
             text,
             "{}: {}, {}, positions in {}, {}",
@@ -32,7 +32,7 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
         text,
         "query      {:?}, {}",
         query.motion,
-        if session.bodies().len() == 1 { "self" } else { "between" }
+        if detector.scene().bodies().len() == 1 { "self" } else { "between" }
     );
     let _ = writeln!(text, "machine    {} ({})", device.name(), device.backend());
     let swept = query.motion != Motion::Discrete && query.bv() != Bv::Linear;
@@ -60,7 +60,7 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
         }
     );
     let _ = writeln!(text, "solver     {}", query.solver().promise());
-    if let Some(tolerance) = session.tolerance() {
+    if let Some(tolerance) = detector.tolerance() {
         let why = if query.tolerance.is_some() { "as asked" } else { "about 1e-4 of the mean edge" };
         let boxes = query.boxes.unwrap_or(Query::BOXES);
         let _ = writeln!(
@@ -78,7 +78,7 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
     let _ = writeln!(
         text,
         "tree       {}, built with {}",
-        session
+        detector
             .depths()
             .iter()
             .map(|&n| counted(n as u64, "level", "levels"))

@@ -1,9 +1,10 @@
 //! Results as files: CSV and JSON.
 
 use crate::output::Target;
-use nearmiss::contacts::{Answer, Contact, Contacts, Kind, Status, Summary};
+use nearmiss::contacts::{Answer, Contact, Contacts, Kind, Status, Summary, TrianglePair};
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
+use nearmiss::scene::BodyId;
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
@@ -30,31 +31,33 @@ impl FileFaces {
         FileFaces(bodies.iter().map(all).collect())
     }
 
-    fn face(&self, body: usize, triangle: u32) -> u32 {
-        self.0[body][triangle as usize]
+    fn face(&self, body: BodyId, triangle: u32) -> u32 {
+        self.0[body.index()][triangle as usize]
     }
 
     /// The same answer in faces, ascending and each once: pairs of triangles of the same two faces become one, of contacts of a vertex with triangles
     /// of one face the earliest stays.
     fn name(&self, answer: &Answer) -> Answer {
-        let last = self.0.len() - 1;
         match answer {
             Answer::Pairs(pairs) => {
-                let faces = |&[a, b]: &[u32; 2]| [self.face(0, a), self.face(last, b)];
-                let ordered = |[a, b]: [u32; 2]| if last == 0 { [a.min(b), a.max(b)] } else { [a, b] };
-                let mut pairs: Vec<_> = pairs.iter().map(faces).map(ordered).collect();
+                let faces = |pair: &TrianglePair| {
+                    let [a, b] = [0, 1].map(|k| self.face(pair.bodies[k], pair.triangles[k]));
+                    let within = pair.bodies[0] == pair.bodies[1];
+                    TrianglePair { triangles: if within { [a.min(b), a.max(b)] } else { [a, b] }, ..*pair }
+                };
+                let mut pairs: Vec<_> = pairs.iter().map(faces).collect();
                 pairs.sort_unstable();
                 pairs.dedup();
                 Answer::Pairs(pairs)
             }
             Answer::Contacts(all) => {
                 let faces = |c: &Contact| match c.kind {
-                    Kind::Vf => Contact { b: self.face(last, c.b), ..*c },
-                    Kind::Fv => Contact { a: self.face(0, c.a), ..*c },
+                    Kind::Vf => Contact { b: self.face(c.bodies[1], c.b), ..*c },
+                    Kind::Fv => Contact { a: self.face(c.bodies[0], c.a), ..*c },
                     Kind::Ee => *c,
                 };
                 let mut all: Vec<_> = all.iter().map(faces).collect();
-                let key = |c: &Contact| (c.kind, c.a, c.b);
+                let key = |c: &Contact| (c.kind, c.bodies, c.a, c.b);
                 all.sort_by(|c, d| key(c).cmp(&key(d)).then(c.toi.total_cmp(&d.toi)));
                 all.dedup_by_key(|c| key(c));
                 Answer::Contacts(all)
@@ -113,9 +116,9 @@ pub fn write(
 fn csv(out: impl Write, answer: &Answer, heads: [&str; 2]) -> Result<(), String> {
     let mut csv = csv::Writer::from_writer(out);
     let wrote = match answer {
-        Answer::Pairs(pairs) => {
-            csv.write_record(heads).and_then(|()| pairs.iter().try_for_each(|pair| csv.serialize(pair)))
-        }
+        Answer::Pairs(pairs) => csv
+            .write_record(heads)
+            .and_then(|()| pairs.iter().try_for_each(|pair| csv.serialize(pair.triangles))),
         Answer::Contacts(all) => csv
             .write_record(["kind", "a", "b", "toi", "toi_hi", "status"])
             .and_then(|()| all.iter().try_for_each(|c| csv.write_record(row(c)))),
@@ -152,12 +155,12 @@ fn json(out: impl Write, answer: &Answer, summary: &Report) -> Result<(), String
     #[derive(Serialize)]
     #[serde(untagged)]
     enum Rows<'a> {
-        Pairs(&'a [[u32; 2]]),
+        Pairs(Vec<[u32; 2]>),
         Contacts(&'a [Contact]),
         Earliest(Option<f64>),
     }
     let rows = match answer {
-        Answer::Pairs(pairs) => Rows::Pairs(pairs),
+        Answer::Pairs(pairs) => Rows::Pairs(pairs.iter().map(|pair| pair.triangles).collect()),
         Answer::Contacts(all) => Rows::Contacts(all),
         Answer::Earliest(toi) => Rows::Earliest(*toi),
     };

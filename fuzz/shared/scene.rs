@@ -5,7 +5,7 @@ use nearmiss::contacts::{Answer, Contact, Kind, Status};
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::{Body, Mesh, Positions, Topology};
 use nearmiss::query::{Bv, FrontShape, Motion, QueueShape, Refit, Solver, StealShape, Traversal};
-use nearmiss::{Contacts, Device, Error, Query, Session};
+use nearmiss::{Contacts, Detector, Device, Error, Query};
 use nearmiss_lab::oracle::{Toi, first_contact, triangles_meet};
 use nearmiss_lab::{Case, Features};
 use std::collections::BTreeMap;
@@ -81,7 +81,7 @@ pub fn ask(bytes: &[u8], lie: impl Fn(&mut Answer)) -> Result<(), String> {
 }
 
 fn detect(bodies: &[Body], query: Query) -> Result<Contacts, Error> {
-    ENGINE.with(|engine| Session::new(engine.clone(), bodies.to_vec(), query)?.detect())
+    ENGINE.with(|engine| Detector::new(engine.clone(), bodies.to_vec(), query)?.detect())
 }
 
 fn typed(error: &Error) -> Result<(), String> {

@@ -1,15 +1,19 @@
 //! Results: contacts in canonical order, and their hash.
 
 mod degraded;
+mod hash;
 mod summary;
 mod triangles;
+mod work;
 
 pub use degraded::Degraded;
 pub use summary::Summary;
 pub use triangles::{TriangleContact, triangle_contacts};
+pub use work::{Front, Queues};
 
-use crate::pipeline::{Found, Hits, Layout, Stages};
+use crate::pipeline::{Found, Hits, Layout, Offsets, Stages};
 use crate::query::{Motion, Query};
+use crate::scene::BodyId;
 use nearmiss_kernels::abi::{Pair, ROUNDS, counter};
 use nearmiss_kernels::prim::inclusion::Verdict;
 use rayon::prelude::*;
@@ -18,9 +22,9 @@ use rayon::prelude::*;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 pub enum Kind {
-    /// `a` is a vertex (of the first body), `b` a face (of the second, or of the same).
+    /// `a` is a vertex, `b` a face of the same body or of one with a larger number.
     Vf,
-    /// Between two bodies: `a` is a face of the first, `b` a vertex of the second.
+    /// `a` is a face, `b` a vertex of a body with a larger number.
     Fv,
     /// Two edges, numbered by (larger vertex, smaller vertex), ascending.
     Ee,
@@ -56,6 +60,8 @@ impl Status {
 pub struct Contact {
     /// Which features.
     pub kind: Kind,
+    /// The bodies of both, the smaller number first.
+    pub bodies: [BodyId; 2],
     /// The first feature's index in its body.
     pub a: u32,
     /// The second feature's index in its body.
@@ -68,13 +74,35 @@ pub struct Contact {
     pub status: Status,
 }
 
+/// Two triangles that share a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct TrianglePair {
+    /// Their bodies, the smaller number first.
+    pub bodies: [BodyId; 2],
+    /// Their indices in those; of one body the smaller first.
+    pub triangles: [u32; 2],
+}
+
+/// By indices alone.
+impl PartialEq<[u32; 2]> for TrianglePair {
+    fn eq(&self, triangles: &[u32; 2]) -> bool {
+        self.triangles == *triangles
+    }
+}
+
+impl PartialEq<TrianglePair> for [u32; 2] {
+    fn eq(&self, pair: &TrianglePair) -> bool {
+        pair == self
+    }
+}
+
 /// The answer to a query.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Answer {
-    /// Triangle pairs that share a point: (a, b) with a < b in one body, or a of the first body and b of the second.
-    /// Ascending.
-    Pairs(Vec<[u32; 2]>),
-    /// Feature pairs that meet, ascending by kind, a, b.
+    /// Triangle pairs that share a point, ascending by the first triangle and its body, then by the second.
+    Pairs(Vec<TrianglePair>),
+    /// Feature pairs that meet, ascending by kind, then by the first feature and its body, then by the second.
     Contacts(Vec<Contact>),
     /// The smallest time of contact.
     Earliest(Option<f64>),
@@ -122,58 +150,6 @@ pub struct Contacts {
     degraded: Vec<Degraded>,
 }
 
-/// The front of a frame. All zero where there was none.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct Front {
-    /// Pairs of nodes at which this frame's descent ended.
-    pub pairs: u64,
-    /// Overlap tests of the last frame's pairs and, where it was pruned, of their ancestors. Those of the pairs below them
-    /// are counted as those of any traversal: two a step.
-    pub tests: u64,
-    /// Pairs that gave way to an ancestor.
-    pub pruned: u64,
-}
-
-impl Front {
-    fn new(counters: &[u64]) -> Front {
-        let of = |at: u32| counters[at as usize];
-        Front { pairs: of(counter::ENDS), tests: of(counter::FRONT_TESTS), pruned: of(counter::PRUNED) }
-    }
-}
-
-/// What the work queues of a traversal did. All zero where it had none.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-pub struct Queues {
-    /// Rounds with work: launches.
-    pub rounds: u64,
-    /// How often a queue ran dry.
-    pub idle_exits: u64,
-    /// Units that a queue on chip had no room for.
-    pub spills: u64,
-    /// Units that a balance moved.
-    pub moves: u64,
-    /// Units that a block took from those that others offered.
-    pub stolen: u64,
-    /// Most units that waited in a segment, or in the list of all.
-    pub longest: u64,
-}
-
-impl Queues {
-    fn new(counters: &[u64]) -> Queues {
-        let of = |at: u32| counters[at as usize];
-        Queues {
-            rounds: of(counter::QUEUE_ROUNDS),
-            idle_exits: of(counter::IDLE_EXITS),
-            spills: of(counter::QUEUE_SPILLS),
-            moves: of(counter::MOVES),
-            stolen: of(counter::STOLEN),
-            longest: of(counter::QUEUED),
-        }
-    }
-}
-
 impl Contacts {
     /// No contacts, of bodies without triangles.
     pub fn none(query: Query) -> Contacts {
@@ -212,36 +188,51 @@ impl Contacts {
         query: Query,
         (stages, degraded): (Stages, Vec<Degraded>),
     ) -> Contacts {
-        let second = if layout.bodies() == 2 { layout.starts[1] } else { Default::default() };
+        let [triangle, vertex, edge] =
+            [|at: &Offsets| at.triangle, |at: &Offsets| at.vertex, |at: &Offsets| at.edge];
         let answer = match query.motion {
             Motion::Earliest => Answer::Earliest(found.earliest),
             Motion::Discrete => {
                 let listed: &[Pair] = found.pairs.as_deref().unwrap_or_default();
-                let mut pairs: Vec<_> = listed.par_iter().map(|p| [p.a, p.b - second.triangle]).collect();
+                let pair = |p: &Pair| {
+                    let ((a, p), (b, q)) = (layout.locate(p.a, triangle), layout.locate(p.b, triangle));
+                    TrianglePair { bodies: [a, b], triangles: [p, q] }
+                };
+                let mut pairs: Vec<_> = listed.par_iter().map(pair).collect();
                 if !found.ordered {
-                    pairs.par_sort_unstable();
+                    pairs.par_sort_unstable_by_key(TrianglePair::key);
                 }
                 Answer::Pairs(pairs)
             }
             Motion::Continuous => {
                 let certified = query.solver().is_certified();
-                let contact = |kind, a, b, verdict: &Verdict| {
+                let contact = |kind, (of_a, a), (of_b, b), verdict: &Verdict| {
                     let status = Status::of(certified, verdict);
-                    Contact { kind, a, b, toi: verdict.toi, toi_hi: verdict.toi_hi, status }
+                    Contact {
+                        kind,
+                        bodies: [of_a, of_b],
+                        a,
+                        b,
+                        toi: verdict.toi,
+                        toi_hi: verdict.toi_hi,
+                        status,
+                    }
                 };
                 let [of_vf, of_ee] = found.hits.as_ref().map_or([&[][..]; 2], Hits::each);
                 let vf = of_vf.par_iter().map(|hit| {
-                    if layout.bodies() == 2 && hit.a >= second.vertex {
-                        contact(Kind::Fv, hit.b, hit.a - second.vertex, &hit.verdict)
+                    let (point, face) = (layout.locate(hit.a, vertex), layout.locate(hit.b, triangle));
+                    if face.0 < point.0 {
+                        contact(Kind::Fv, face, point, &hit.verdict)
                     } else {
-                        contact(Kind::Vf, hit.a, hit.b - second.triangle, &hit.verdict)
+                        contact(Kind::Vf, point, face, &hit.verdict)
                     }
                 });
-                let ee =
-                    of_ee.par_iter().map(|hit| contact(Kind::Ee, hit.a, hit.b - second.edge, &hit.verdict));
+                let ee = of_ee.par_iter().map(|hit| {
+                    contact(Kind::Ee, layout.locate(hit.a, edge), layout.locate(hit.b, edge), &hit.verdict)
+                });
                 let mut contacts: Vec<_> = vf.chain(ee).collect();
                 if !found.ordered {
-                    contacts.par_sort_unstable_by_key(|c| (c.kind, c.a, c.b));
+                    contacts.par_sort_unstable_by_key(Contact::key);
                 }
                 Answer::Contacts(contacts)
             }
@@ -296,8 +287,13 @@ impl Contacts {
     }
 
     /// Triangle pairs, if that was asked.
-    pub fn pairs(&self) -> &[[u32; 2]] {
+    pub fn pairs(&self) -> &[TrianglePair] {
         if let Answer::Pairs(pairs) = &self.answer { pairs } else { &[] }
+    }
+
+    /// The triangle pairs without their bodies: for a scene of one body, or of two of which neither is tested against itself.
+    pub fn triangles(&self) -> Vec<[u32; 2]> {
+        self.pairs().iter().map(|pair| pair.triangles).collect()
     }
 
     /// Feature pairs, if that was asked.
@@ -313,22 +309,18 @@ impl Contacts {
             Answer::Earliest(toi) => *toi,
         }
     }
+}
 
-    /// xxh3 over the canonical answer: the same for equal answers on every machine. Each contact adds its kind, its
-    /// indices and the bits of its times, little-endian.
-    pub fn hash(&self) -> u64 {
-        let mut hash = xxhash_rust::xxh3::Xxh3::new();
-        match &self.answer {
-            Answer::Pairs(pairs) => pairs.iter().flatten().for_each(|i| hash.update(&i.to_le_bytes())),
-            Answer::Contacts(contacts) => contacts.iter().for_each(|c| {
-                hash.update(&[c.kind as u8, c.status as u8]);
-                hash.update(&c.a.to_le_bytes());
-                hash.update(&c.b.to_le_bytes());
-                hash.update(&c.toi.to_le_bytes());
-                hash.update(&c.toi_hi.to_le_bytes());
-            }),
-            Answer::Earliest(toi) => toi.iter().for_each(|toi| hash.update(&toi.to_le_bytes())),
-        }
-        hash.digest()
+impl TrianglePair {
+    /// What pairs are ordered by.
+    fn key(&self) -> [(BodyId, u32); 2] {
+        [0, 1].map(|k| (self.bodies[k], self.triangles[k]))
+    }
+}
+
+impl Contact {
+    /// What contacts are ordered by.
+    fn key(&self) -> (Kind, [(BodyId, u32); 2]) {
+        (self.kind, [(self.bodies[0], self.a), (self.bodies[1], self.b)])
     }
 }

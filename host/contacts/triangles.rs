@@ -1,16 +1,14 @@
 //! From features to triangles: which triangle pairs meet in a step, and when first.
 
-use super::{Contact, Kind};
+use super::{Contact, Kind, TrianglePair};
 use crate::mesh::{Body, Topology};
 use std::collections::HashMap;
 
 /// Two triangles without a common vertex whose features meet during the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleContact {
-    /// A triangle (of the first body); in one body the smaller index.
-    pub a: u32,
-    /// Another triangle (of the second body).
-    pub b: u32,
+    /// The triangles, and their bodies; of one body the smaller index first.
+    pub pair: TrianglePair,
     /// First time at which a feature of one meets a feature of the other, in [0, 1].
     pub toi: f64,
 }
@@ -48,15 +46,16 @@ impl<'a> Incidence<'a> {
     }
 }
 
-/// Triangle pairs of `contacts`, ascending; of `bodies` as they were given to the session (one or two). Pairs that share
+/// Triangle pairs of `contacts`, ascending; of `bodies` as they are in the scene, by their numbers. Pairs that share
 /// a vertex are left out, as in a discrete query. Cost: the product of both features' triangles for each contact.
 pub fn triangle_contacts(contacts: &[Contact], bodies: &[Body]) -> Vec<TriangleContact> {
-    let Some(first) = bodies.first().map(Incidence::new) else { return Vec::new() };
-    let other = bodies.get(1).map(Incidence::new);
-    let second = other.as_ref().unwrap_or(&first);
-    let mut earliest: HashMap<[u32; 2], f64> = HashMap::new();
+    let incidences: Vec<Incidence> = bodies.iter().map(Incidence::new).collect();
+    let mut earliest: HashMap<TrianglePair, f64> = HashMap::new();
     for contact in contacts {
         let (a, b) = (contact.a as usize, contact.b as usize);
+        let [first, second] = contact.bodies.map(|body| incidences.get(body.index()));
+        let (Some(first), Some(second)) = (first, second) else { continue };
+        let within = contact.bodies[0] == contact.bodies[1];
         let whole = |face: u32| vec![face];
         let (of_a, of_b) = match contact.kind {
             Kind::Vf => (first.of_vertex[a].clone(), whole(contact.b)),
@@ -65,18 +64,18 @@ pub fn triangle_contacts(contacts: &[Contact], bodies: &[Body]) -> Vec<TriangleC
         };
         for &p in &of_a {
             for &q in &of_b {
-                let within = other.is_none();
                 let (p_face, q_face) = (first.faces[p as usize], second.faces[q as usize]);
                 if within && p_face.iter().any(|v| q_face.contains(v)) {
                     continue;
                 }
-                let pair = if within { [p.min(q), p.max(q)] } else { [p, q] };
+                let triangles = if within { [p.min(q), p.max(q)] } else { [p, q] };
+                let pair = TrianglePair { bodies: contact.bodies, triangles };
                 let toi = earliest.entry(pair).or_insert(contact.toi);
                 *toi = toi.min(contact.toi);
             }
         }
     }
-    let mut all: Vec<_> = earliest.into_iter().map(|([a, b], toi)| TriangleContact { a, b, toi }).collect();
-    all.sort_unstable_by_key(|pair| (pair.a, pair.b));
+    let mut all: Vec<_> = earliest.into_iter().map(|(pair, toi)| TriangleContact { pair, toi }).collect();
+    all.sort_unstable_by_key(|contact| contact.pair.key());
     all
 }

@@ -300,7 +300,7 @@ mod tests {
         send::<Buffer<u64>>();
         send::<View<u64>>();
         send::<Event>();
-        send::<crate::pipeline::Session>();
+        send::<crate::Detector>();
         let device = Device::open(Backend::Cpu, Some(1)).expect("a thread");
         let mut buffer = device.upload(&[1u32, 2, 3]).expect("memory");
         let there = std::thread::spawn(move || {

@@ -5,6 +5,7 @@
 
 mod cut;
 mod obj;
+mod placed;
 mod ply_header;
 mod ply_problem;
 mod ply_read;
@@ -21,6 +22,7 @@ mod validate;
 mod weld;
 
 pub use obj::ObjProblem;
+pub(crate) use placed::{Bounds, NOTHING, union};
 pub use ply_problem::PlyProblem;
 pub use positions::Positions;
 pub use problem::Problem;

@@ -56,7 +56,7 @@ impl Mesh {
     /// Reads another frame of this mesh: a file with the same faces, cut as here, wherever their corners have moved.
     ///
     /// Frames that are read one by one may be cut differently, if a polygon's first corner no longer sees it whole.
-    /// [`Body::moving`](super::Body::moving) takes such frames; a session that goes from body to body does not.
+    /// [`Body::moving`](super::Body::moving) takes such frames; a detector that goes from body to body does not.
     ///
     /// # Errors
     /// As [`Mesh::read`], but for polygons that cross themselves; and those of [`Body::moving`](super::Body::moving).

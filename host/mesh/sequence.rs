@@ -1,26 +1,88 @@
-//! A body: one mesh at one frame, or at the two ends of a step.
+//! A body: one mesh at one frame, or at the two ends of a step, and what it does in a scene.
 
+use super::placed::radius;
 use super::polygons::Polygons;
 use super::weld::{self, Vertices};
 use super::{Mesh, Positions, Problem};
 use crate::Error;
+use crate::scene::{BodyKind, Meets, Pose};
 
 /// Faces with the positions of one frame (still), or of the two ends of a step (moving). Vertices move in straight
 /// lines from `positions_t0` to `positions_t1`, both of the same length and precision.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
-    name: String,
-    faces: Vec<[u32; 3]>,
+    pub(super) name: String,
+    pub(super) faces: Vec<[u32; 3]>,
     polygons: Polygons,
-    positions_t0: Positions,
-    positions_t1: Option<Positions>,
+    pub(super) positions_t0: Positions,
+    pub(super) positions_t1: Option<Positions>,
+    pub(super) kind: BodyKind,
+    pub(super) meets: Meets,
+    /// Of a rigid body: at both ends of the step.
+    pub(super) poses: [Pose; 2],
+    /// Of a rigid body: no vertex of a face is farther from where it turns.
+    pub(super) radius: f64,
 }
 
 impl Body {
     /// A body at one frame.
     pub fn still(mesh: Mesh) -> Body {
         let Mesh { name, positions, faces, polygons } = mesh;
-        Body { name, faces, polygons, positions_t0: positions, positions_t1: None }
+        Body {
+            name,
+            faces,
+            polygons,
+            positions_t0: positions,
+            positions_t1: None,
+            kind: BodyKind::Deformable,
+            meets: Meets::default(),
+            poses: [Pose::default(); 2],
+            radius: 0.0,
+        }
+    }
+
+    /// A body that never moves.
+    pub fn fixed(mesh: Mesh) -> Body {
+        Body { kind: BodyKind::Static, ..Body::still(mesh) }
+    }
+
+    /// A body that moves as one; without a pose it is where its mesh is.
+    pub fn rigid(mesh: Mesh) -> Body {
+        let points = mesh.faces.iter().flatten().filter_map(|&v| mesh.positions.get_f64(v as usize));
+        let radius = radius(points);
+        Body { kind: BodyKind::Rigid, radius, ..Body::still(mesh) }
+    }
+
+    /// No vertices, no triangles: what a body leaves that was taken out of a scene.
+    pub(crate) fn none() -> Body {
+        let nothing = Positions::F32(Vec::new());
+        let mesh = Mesh {
+            name: "nothing".into(),
+            positions: nothing,
+            faces: Vec::new(),
+            polygons: Polygons::default(),
+        };
+        Body::still(mesh)
+    }
+
+    /// The body, meeting those.
+    pub fn with(self, meets: Meets) -> Body {
+        Body { meets, ..self }
+    }
+
+    /// What the body does from frame to frame.
+    pub fn kind(&self) -> BodyKind {
+        self.kind
+    }
+
+    /// Which bodies it may meet.
+    pub fn meets(&self) -> &Meets {
+        &self.meets
+    }
+
+    /// The poses of a rigid body at both ends of the step.
+    pub fn poses(&self) -> [Pose; 2] {
+        self.poses
     }
 
     /// A body at two frames, of the triangles of the first: polygons that are the same in both files are cut as there,
@@ -39,7 +101,8 @@ impl Body {
             (a, b) => (a.promoted(), b.promoted()),
         };
         let Mesh { name, faces, polygons, .. } = t0;
-        Ok(Body { name, faces, polygons, positions_t0, positions_t1: Some(positions_t1) })
+        let still = Body::still(Mesh { name, positions: positions_t0, faces, polygons });
+        Ok(Body { positions_t1: Some(positions_t1), ..still })
     }
 
     /// The name of the mesh, or of its first frame.

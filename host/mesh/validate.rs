@@ -25,17 +25,20 @@ pub(super) fn check(positions: Positions, faces: &[[u32; 3]]) -> Result<Position
             }
         }
     }
-    let positions = match &positions {
-        Positions::F32(points) if coordinates(points, MAX_ABS_F32, "2^60", faces).is_ok() => {
-            return Ok(positions);
-        }
-        _ => positions.promoted(),
-    };
-    // Every finite float is small as a double.
-    if let Positions::F64(points) = &positions {
-        coordinates(points, MAX_ABS_F64, "2^480", faces)?;
+    Ok(if is_single(&positions, faces)? { positions } else { positions.promoted() })
+}
+
+/// Whether positions can be computed with in single precision. Those given in it that cannot are doubles.
+///
+/// # Errors
+/// The first coordinate, in vertex order, of a vertex that a face uses, that no precision can be computed with.
+pub(super) fn is_single(positions: &Positions, faces: &[[u32; 3]]) -> Result<bool, Problem> {
+    match positions {
+        Positions::F32(points) if coordinates(points, MAX_ABS_F32, "2^60", faces).is_ok() => Ok(true),
+        // Every finite float is small as a double.
+        Positions::F32(points) => coordinates(points, f32::MAX, "2^480", faces).map(|()| false),
+        Positions::F64(points) => coordinates(points, MAX_ABS_F64, "2^480", faces).map(|()| false),
     }
-    Ok(positions)
 }
 
 /// Refuses `found` of `what` over `limit`.

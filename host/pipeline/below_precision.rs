@@ -4,7 +4,7 @@ use super::list::List;
 use super::narrow::NarrowContext;
 use super::precision::Precision;
 use crate::error::Error;
-use crate::mesh::{Body, Positions};
+use crate::mesh::{Body, Bounds, NOTHING, Positions, union};
 use crate::pipeline::launch;
 use crate::query::{Motion, Query, Solver};
 use nearmiss_kernels::abi::{BelowPrecisionArgs, Hit, Span};
@@ -37,7 +37,7 @@ impl BelowPrecision {
         };
         // Positive, or not asked for.
         let tolerance = query.tolerance.filter(|t| *t > 0.0)?;
-        let extent = extent(bodies.iter().flat_map(Body::ends));
+        let extent = extent(bodies);
         if query.motion != Motion::Earliest {
             return (tolerance < finest * extent).then_some(BelowPrecision::Listed { tolerance, finest });
         }
@@ -89,31 +89,27 @@ fn largest(ends: &[&Positions; 2], p: u32, q: u32) -> f64 {
     apart(ends[0]).max(apart(ends[1]))
 }
 
-/// The largest difference of coordinates of all: no pair is larger. What no face uses counts too.
-fn extent<'a>(frames: impl Iterator<Item = &'a Positions>) -> f64 {
-    let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-    for positions in frames {
-        let own = match positions {
-            Positions::F32(points) => of_points(points),
-            Positions::F64(points) => of_points(points),
-        };
-        bounds = union(bounds, own);
-    }
+/// The largest difference of coordinates of all: no pair is larger. What no face uses counts too; of rigid bodies at least
+/// as much.
+fn extent(bodies: &[Body]) -> f64 {
+    let of = |body: &Body| {
+        body.posed_box().unwrap_or_else(|| {
+            body.ends().into_iter().fold(NOTHING, |bounds, positions| {
+                let own = match positions {
+                    Positions::F32(points) => of_points(points),
+                    Positions::F64(points) => of_points(points),
+                };
+                union(bounds, own)
+            })
+        })
+    };
+    let bounds = bodies.iter().map(of).fold(NOTHING, union);
     (0..3).map(|k| bounds[1][k] - bounds[0][k]).fold(0.0, f64::max)
 }
 
-/// The lower and the upper corner.
-type Bounds = [[f64; 3]; 2];
-
-/// Comparisons drop what is NaN.
-fn union(a: Bounds, b: Bounds) -> Bounds {
-    [[0, 1, 2].map(|k| a[0][k].min(b[0][k])), [0, 1, 2].map(|k| a[1][k].max(b[1][k]))]
-}
-
 fn of_points<T: Copy + Into<f64> + Sync>(points: &[[T; 3]]) -> Bounds {
-    let none = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
     let of = |piece: &[[T; 3]]| {
-        piece.iter().map(|p| p.map(Into::into)).fold(none, |bounds, p| union(bounds, [p, p]))
+        piece.iter().map(|p| p.map(Into::into)).fold(NOTHING, |bounds, p| union(bounds, [p, p]))
     };
-    points.par_chunks(1 << 13).map(of).reduce(|| none, union)
+    points.par_chunks(1 << 13).map(of).reduce(|| NOTHING, union)
 }

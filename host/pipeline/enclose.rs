@@ -1,7 +1,8 @@
 //! Does every node of a tree hold everything below it, frame after frame? Asked exactly, of each volume, on any machine.
 
+use super::layout::Layout;
 use super::precision::Precision;
-use super::tree::Tree;
+use super::tree::{Tree, TreeSpec};
 use super::volumes::{Kernels, Volumes};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
@@ -50,7 +51,8 @@ impl<R: Precision, V: Kernels + Contain> Enclosed<R, V> {
         [t0, t1]: [&[Vec3<R>]; 2],
         (refit, axes, margin): (Refit, Axes, f32),
     ) -> Result<Self, Error> {
-        let tree = Tree::new(device, (0, triangles.len() as u32), refit, V::group(axes) > 0)?;
+        let layout = Layout::single(triangles.len() as u32);
+        let tree = Tree::new(device, &TreeSpec::alone(&layout, refit, V::group(axes) > 0))?;
         let mut enclosed = Enclosed {
             triangles: triangles.to_vec(),
             faces: device.upload(triangles)?,
@@ -63,7 +65,7 @@ impl<R: Precision, V: Kernels + Contain> Enclosed<R, V> {
         };
         enclosed.place(t0, t1)?;
         let (frames, faces) = (enclosed.frames(), enclosed.faces.span());
-        enclosed.tree.construct::<R>(device, frames, faces)?;
+        enclosed.tree.construct::<R>(device, frames, (faces, Span::EMPTY))?;
         enclosed.tree.learn_levels()?;
         enclosed.move_to(t0, t1)?;
         Ok(enclosed)

@@ -1,6 +1,8 @@
 //! Where each body lies in the memory that all bodies share.
 
 use crate::mesh::{Body, Topology};
+use crate::scene::{BodyId, BodyKind, Meets};
+use nearmiss_kernels::abi::{BodyRecord, EVERY};
 
 /// The indices of one body: its own plus these.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -26,6 +28,10 @@ pub struct Layout {
     pub face_edges: Vec<[u32; 3]>,
     /// What each triangle stands for. Empty for discrete queries.
     pub owners: Vec<u32>,
+    /// What kernels know of each body.
+    pub records: Vec<BodyRecord>,
+    /// The bodies with triangles that may move, and those that are static.
+    pub trees: [Vec<usize>; 2],
 }
 
 impl Layout {
@@ -33,7 +39,23 @@ impl Layout {
     pub fn new(bodies: &[Body], with_edges: bool) -> Layout {
         let mut all = Layout { starts: vec![Offsets::default()], ..Layout::default() };
         let mut at = Offsets::default();
-        for body in bodies {
+        let mut environments: Vec<u32> = bodies.iter().filter_map(|body| body.meets().environment).collect();
+        environments.sort_unstable();
+        environments.dedup();
+        let rank = |environment: u32| environments.partition_point(|&other| other < environment) as u32;
+        for (i, body) in bodies.iter().enumerate() {
+            let Meets { environment, group, mask, self_contact } = *body.meets();
+            all.records.push(BodyRecord {
+                triangle: at.triangle,
+                vertex: at.vertex,
+                environment: environment.map_or(EVERY, rank),
+                self_contact: self_contact.into(),
+                group,
+                mask,
+            });
+            if body.face_count() > 0 {
+                all.trees[usize::from(body.kind() == BodyKind::Static)].push(i);
+            }
             all.faces.extend(body.faces().iter().map(|face| face.map(|v| v + at.vertex)));
             if with_edges {
                 let own = Topology::new(body.faces(), body.vertex_count());
@@ -51,9 +73,44 @@ impl Layout {
         all
     }
 
+    /// Of one body alone of so many triangles, to build a tree over them.
+    pub fn single(triangles: u32) -> Layout {
+        Layout {
+            starts: vec![Offsets::default(), Offsets { triangle: triangles, ..Offsets::default() }],
+            records: vec![BodyRecord { self_contact: 1, ..BodyRecord::default() }],
+            trees: [vec![0], Vec::new()],
+            ..Layout::default()
+        }
+    }
+
     /// How many bodies there are.
     pub fn bodies(&self) -> usize {
         self.starts.len() - 1
+    }
+
+    /// Whether anything may meet: something moves, and there is something else or it is tested against itself.
+    pub fn may_meet(&self) -> bool {
+        let [moving, fixed] = &self.trees;
+        let alone = moving.len() == 1 && fixed.is_empty();
+        !moving.is_empty() && (!alone || self.records[moving[0]].self_contact != 0)
+    }
+
+    /// Whether which pairs are asked hangs on their bodies: not where there is one alone.
+    pub fn has_filters(&self) -> bool {
+        self.trees.iter().map(Vec::len).sum::<usize>() > 1
+    }
+
+    /// Whether it hangs on groups, too.
+    pub fn has_groups(&self) -> bool {
+        let all = |record: &BodyRecord| record.group == u32::MAX && record.mask == u32::MAX;
+        !self.records.iter().all(all)
+    }
+
+    /// The body that has an index of all, and the index there; `of` tells which kind of index.
+    pub fn locate(&self, index: u32, of: impl Fn(&Offsets) -> u32) -> (BodyId, u32) {
+        // Of bodies without such a feature, which begin where the next one does, the last is it.
+        let body = self.starts.partition_point(|start| of(start) <= index) - 1;
+        (BodyId(body as u32), index - of(&self.starts[body]))
     }
 
     /// The triangles of a body: first, and how many.

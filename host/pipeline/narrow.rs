@@ -11,9 +11,11 @@ use super::order::Order;
 use super::precision::Precision;
 use crate::device::Device;
 use crate::error::Error;
+use crate::mesh::Body;
+use crate::pipeline::below_precision::BelowPrecision;
 use crate::pipeline::launch;
 use crate::query::{Motion, Query, Solver};
-use nearmiss_kernels::abi::{DiscreteArgs, KEEP_ADJACENT, Pair, Positions, Span, counter};
+use nearmiss_kernels::abi::{BodyRecord, DiscreteArgs, KEEP_ADJACENT, Pair, Positions, Span, counter};
 
 /// A step of a frame that fills lists; each reads what the one before filled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,6 +60,8 @@ pub struct NarrowContext<'a, R: Precision> {
     pub faces: Span<[u32; 3]>,
     /// Candidate triangle pairs.
     pub pairs: Span<Pair>,
+    /// What the kernels know of the bodies; empty where there is one alone.
+    pub bodies: Span<BodyRecord>,
     /// The frame's counters.
     pub counters: Span<u64>,
 }
@@ -99,7 +103,7 @@ impl Narrow {
                     undecided.push(List::new(device, "pairs undecided in f64", at, few / 4)?);
                 }
             }
-            let order = || Order::new(device, layout, u32::MAX, few / 4).map(Box::new);
+            let order = || Order::new(device, layout, few / 4).map(Box::new);
             let ordered = device.is_gpu().then(order).transpose()?;
             return Ok(Narrow::Discrete { contacts, undecided, ordered });
         }
@@ -110,6 +114,13 @@ impl Narrow {
             left: [few / 4, few / 4],
         };
         Ok(Narrow::Continuous(Box::new(Continuous::new(device, layout, query, capacities)?)))
+    }
+
+    /// The bodies are there now: how large they are may matter.
+    pub fn place(&mut self, bodies: &[Body], query: &Query) {
+        if let Narrow::Continuous(c) = self {
+            c.below_precision = BelowPrecision::of(bodies, query);
+        }
     }
 
     /// The steps of the stage, in their order; [`Step::Order`] is a stage of its own.
@@ -162,7 +173,7 @@ impl Narrow {
                 decide(contacts, undecided, given)
             }
             (Narrow::Discrete { contacts, ordered: Some(order), .. }, Step::Order) => {
-                order.run(given.device, contacts, None, given.counters)
+                order.run(given.device, contacts, None, (Span::EMPTY, given.counters))
             }
             (Narrow::Continuous(c), Step::Features | Step::Cull | Step::Solve | Step::Order) => {
                 c.run(step, given)

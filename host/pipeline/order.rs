@@ -7,7 +7,7 @@ use crate::device::{Buffer, Device, View};
 use crate::error::Error;
 use crate::pipeline::launch;
 use bytemuck::Pod;
-use nearmiss_kernels::abi::{Named, OrderArgs, Span, counter};
+use nearmiss_kernels::abi::{BodyRecord, Named, OrderArgs, Span, counter};
 use nearmiss_kernels::entry::{self, Entry};
 use nearmiss_kernels::stage::order::KIND_BITS;
 
@@ -37,8 +37,6 @@ pub struct Order<T> {
     counts: Buffer<u64>,
     /// Bits of a feature's number.
     bits: u32,
-    /// The first vertex of the second body, where it may be a first feature.
-    turn: u32,
 }
 
 impl<T: Ordered> Order<T> {
@@ -46,7 +44,7 @@ impl<T: Ordered> Order<T> {
     ///
     /// # Errors
     /// Those of the device.
-    pub fn new(device: &Device, layout: &Layout, turn: u32, capacity: usize) -> Result<Self, Error> {
+    pub fn new(device: &Device, layout: &Layout, capacity: usize) -> Result<Self, Error> {
         let ends = layout.starts.last().copied().unwrap_or_default();
         let most = ends.vertex.max(ends.triangle).max(ends.edge);
         Ok(Order {
@@ -54,7 +52,6 @@ impl<T: Ordered> Order<T> {
             items: [device.buffer(0)?, device.buffer(0)?],
             counts: device.buffer(0)?,
             bits: bits(most.into()),
-            turn,
         })
     }
 
@@ -78,7 +75,8 @@ impl<T: Ordered> Order<T> {
         (self.list.demand(counters) == all).then(|| self.list.view(counters)).transpose()
     }
 
-    /// Orders one list or two; what does not fit is counted and left.
+    /// Orders one list or two; what does not fit is counted and left. `bodies` tells of vertices and faces which is of the earlier
+    /// body; empty where that does not matter.
     ///
     /// # Errors
     /// Those of the device.
@@ -87,7 +85,7 @@ impl<T: Ordered> Order<T> {
         device: &Device,
         first: &List<T>,
         second: Option<&List<T>>,
-        counters: Span<u64>,
+        (bodies, counters): (Span<BodyRecord>, Span<u64>),
     ) -> Result<(), Error> {
         // Without an answer nothing is counted as ordered.
         if !self.fits() {
@@ -109,13 +107,12 @@ impl<T: Ordered> Order<T> {
             out: self.list.span(),
             items: items.span(),
             tiles: counted(device, counts, capacity as u32, 0),
+            bodies,
             counters,
             first_at: first.counter(),
             second_at: second.map_or(0, List::counter),
-            turn: self.turn,
             bits: self.bits,
             number_bits: self.number_bits(),
-            pad: 0,
         };
         let (keys, gather) = (args(&self.items[0]), args(&self.items[bytes.len() % 2]));
         launch::striding::<T::Keys>(device, capacity, &keys)?;
@@ -128,11 +125,6 @@ impl<T: Ordered> Order<T> {
 /// Bits of numbers below `end`; one at least.
 fn bits(end: u64) -> u32 {
     end.max(2).next_power_of_two().trailing_zeros()
-}
-
-/// The first vertex of the second body; beyond all where there is none.
-pub fn turn(layout: &Layout) -> u32 {
-    if layout.bodies() == 2 { layout.starts[1].vertex } else { u32::MAX }
 }
 
 #[cfg(test)]
@@ -175,7 +167,10 @@ mod tests {
     fn ordered<T: Ordered>(device: &Device, lists: [&[T]; 2], turn: u32, capacity: usize) -> Outcome<T> {
         let at = |n| Offsets { vertex: n, triangle: n, edge: n };
         let layout = Layout { starts: vec![at(0), at(OF_A_BODY), at(2 * OF_A_BODY)], ..Layout::default() };
-        let mut order = Order::<T>::new(device, &layout, turn, capacity).expect("memory");
+        let mut order = Order::<T>::new(device, &layout, capacity).expect("memory");
+        let body = |n| BodyRecord { triangle: n, vertex: n, ..BodyRecord::default() };
+        let bodies: &[BodyRecord] = &[body(0), body(turn)];
+        let bodies = device.upload(if turn == u32::MAX { &[] } else { bodies }).expect("memory");
         let mut counts = vec![0; counter::COUNT as usize];
         let lists = [(counter::VF_HITS, lists[0]), (counter::EE_HITS, lists[1])].map(|(at, entries)| {
             let mut list = List::new(device, "contacts", at, entries.len()).expect("memory");
@@ -188,7 +183,8 @@ mod tests {
             let mut again = counters.read(counts.len()).expect("read");
             again[counter::ORDERED as usize] = 0;
             let counters = device.upload(&again).expect("memory");
-            order.run(device, &lists[0], Some(&lists[1]), counters.span()).expect("no rule is broken");
+            let given = (bodies.span(), counters.span());
+            order.run(device, &lists[0], Some(&lists[1]), given).expect("no rule is broken");
             counts = counters.read(counts.len()).expect("read");
         }
         let demand = order.list.demand(&counts);
@@ -201,7 +197,8 @@ mod tests {
     /// What they should become: by the first body's features, by the second's, then edges.
     fn wanted<T: Ordered>(lists: [&[T]; 2], turn: u32) -> Vec<T> {
         let key = |list: usize, [a, b]: [u32; 2]| match list {
-            0 if a >= turn => (1, b, a),
+            // A vertex of the second body and a face of the first.
+            0 if a >= turn && b < turn => (1, b, a),
             _ => (2 * list, a, b),
         };
         let mut all: Vec<(usize, T)> =
@@ -252,13 +249,13 @@ mod tests {
         let device = machines().remove(0);
         let end = Offsets { vertex: 1 << 31, triangle: 5, edge: 9 };
         let layout = Layout { starts: vec![Offsets::default(), end], ..Layout::default() };
-        let mut order = Order::<Pair>::new(&device, &layout, u32::MAX, 16).expect("memory");
+        let mut order = Order::<Pair>::new(&device, &layout, 16).expect("memory");
         let mut list = List::new(&device, "contacts", counter::CONTACTS, 1).expect("memory");
         let mut counts = vec![0; counter::COUNT as usize];
         counts[counter::CONTACTS as usize] = list.put(&[Pair { a: 1, b: 2 }]).expect("written").1;
         let counters = device.upload(&counts).expect("memory");
         let launches = device.launches();
-        order.run(&device, &list, None, counters.span()).expect("nothing to do");
+        order.run(&device, &list, None, (Span::EMPTY, counters.span())).expect("nothing to do");
         assert_eq!(device.launches(), launches);
         assert!(order.view(&counts, &[&list]).expect("read").is_none());
     }

@@ -2,8 +2,8 @@
 
 use crate::mesh::Positions;
 use nearmiss_kernels::abi::{
-    BelowPrecisionArgs, CullArgs, DiscreteArgs, FeaturesArgs, FitArgs, GroupsArgs, MortonArgs, RungArgs,
-    SolveArgs, TreeletsArgs,
+    BelowPrecisionArgs, CullArgs, DiscreteArgs, FeaturesArgs, FitArgs, GroupsArgs, MortonArgs, PlaceArgs,
+    RungArgs, SolveArgs, TreeletsArgs,
 };
 use nearmiss_kernels::bv::{Aabb, Linear, Obb};
 use nearmiss_kernels::entry::{self, Entry};
@@ -11,6 +11,8 @@ use nearmiss_kernels::math::{Real, Vec3};
 
 /// A precision of positions, with its kernels.
 pub trait Precision: Real {
+    /// Vertices of bodies that were moved.
+    type Place: Entry<Args = PlaceArgs<Self>>;
     /// Box of the triangle centres.
     type Bounds: Entry<Args = MortonArgs<Self>>;
     /// Codes of the triangle centres.
@@ -73,6 +75,7 @@ pub trait Precision: Real {
 }
 
 impl Precision for f32 {
+    type Place = entry::place_f32;
     type Bounds = entry::construct_bounds_f32;
     type Morton = entry::construct_morton_f32;
     type FitAabb = entry::fit_aabb_f32;
@@ -112,6 +115,7 @@ impl Precision for f32 {
 }
 
 impl Precision for f64 {
+    type Place = entry::place_f64;
     type Bounds = entry::construct_bounds_f64;
     type Morton = entry::construct_morton_f64;
     type FitAabb = entry::fit_aabb_f64;

@@ -25,6 +25,9 @@ named! {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Stages {
+    /// Vertices of the bodies that were moved, with what was uploaded for them; 0 where none were, and where the frame was asked
+    /// again.
+    pub place: f64,
     /// Positions to level-ordered tree, all bodies.
     pub construct: f64,
     /// Volumes of the leaves; 0 by treelets, whose one launch makes all volumes.
@@ -39,9 +42,10 @@ pub struct Stages {
     pub narrow: f64,
     /// Contacts in canonical order, on a GPU. Zero where the host orders them, and where there is nothing to order.
     pub order: f64,
-    /// From positions to contacts, runs that were repeated for want of room included, construction and ordering not.
+    /// From positions to contacts, runs that were repeated for want of room included; placing, construction and ordering not.
     pub total: f64,
-    /// What the caller of [`Session::detect`](crate::Session::detect) waits for: `total`, ordering, launching, and reading the
+    /// What the caller of [`Detector::frame`](crate::Detector::frame) or [`Detector::detect`](crate::Detector::detect) waits
+    /// for: placing where bodies were moved, `total`, ordering, launching, and reading the
     /// contacts, on the host's clock.
     pub wall: f64,
 }
@@ -50,6 +54,7 @@ impl Stages {
     /// Each stage put through `of`, which is given the stage's getter: for means and medians over many frames.
     pub fn each(of: impl Fn(fn(&Stages) -> f64) -> f64) -> Stages {
         Stages {
+            place: of(|s| s.place),
             construct: of(|s| s.construct),
             fit: of(|s| s.fit),
             refit: of(|s| s.refit),

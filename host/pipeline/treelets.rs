@@ -19,15 +19,15 @@ pub enum RefitPlan {
 }
 
 impl RefitPlan {
-    /// Takes the memory for a tree of `count` leaves (at least one).
+    /// Takes the memory for a tree of `count` leaves (at least one), whose pairs of siblings have numbers below `pairs`.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn new(device: &Device, refit: Refit, count: u32) -> Result<RefitPlan, Error> {
+    pub fn new(device: &Device, refit: Refit, count: u32, pairs: usize) -> Result<RefitPlan, Error> {
         Ok(match refit {
             Refit::Levels => RefitPlan::Levels,
             Refit::Treelets => RefitPlan::Treelets(Box::new(Plan::new(device, count)?)),
-            Refit::BottomUp => RefitPlan::BottomUp(device.buffer(count as usize)?),
+            Refit::BottomUp => RefitPlan::BottomUp(device.buffer(pairs)?),
         })
     }
 
@@ -119,7 +119,7 @@ impl Plan {
             top: self.top.span(),
             top_starts: self.top_starts.span(),
             leaves: tree.leaves,
-            pad: 0,
+            root: tree.root,
         };
         launch::blocks::<entry::construct_treelets>(device, self.blocks(), &args)
     }
@@ -136,7 +136,8 @@ mod tests {
     use super::*;
     use crate::device::Device;
     use crate::device::emulator::{Emulator, Mode};
-    use crate::pipeline::tree::Tree;
+    use crate::pipeline::Layout;
+    use crate::pipeline::tree::{Tree, TreeSpec};
     use crate::pipeline::volumes::{Kernels, Volumes};
     use crate::samples::soup;
     use nearmiss_kernels::abi::{Point, Positions};
@@ -156,8 +157,9 @@ mod tests {
         let mut points = device.upload(&padded(&at(1.0)))?;
         let faces = device.upload(body.faces())?;
         let frames = Positions { still: points.span(), moving: Span::EMPTY };
-        let mut tree = Tree::new(&device, (0, 2_000), refit, V::group(Axes::PCA) > 0)?;
-        tree.construct::<f32>(&device, frames, faces.span())?;
+        let layout = Layout::single(2_000);
+        let mut tree = Tree::new(&device, &TreeSpec::alone(&layout, refit, V::group(Axes::PCA) > 0))?;
+        tree.construct::<f32>(&device, frames, (faces.span(), Span::EMPTY))?;
         tree.learn_levels()?;
         let volumes = Volumes::<V>::new(&device, &tree, (Axes::PCA, 0.0))?;
         let refit = |tree: &Tree| {

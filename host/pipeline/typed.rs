@@ -9,23 +9,23 @@ mod repeat;
 
 pub use found::{Found, Hits};
 
-use super::below_precision::BelowPrecision;
+use super::forest::Forest;
 use super::layout::Layout;
 use super::list::{GrowableOutput, List};
 use super::narrow::{Narrow, NarrowContext, Step};
+use super::placing::{Moved, Placing};
 use super::precision::Precision;
 use super::timing::{Stage, Stages};
-use super::tree::Tree;
-use super::volumes::{Kernels, Volumes, growth};
+use super::volumes::{Kernels, growth};
 use super::walk::{Walk, WalkContext, flags, walk};
-use crate::device::{Buffer, Device};
+use crate::device::{Buffer, Device, Event};
 use crate::error::Error;
 use crate::mesh::Body;
 use crate::query::{Motion, Query};
-use nearmiss_kernels::abi::{self, Pair, Point, Span, VertexMotion as Ends, counter};
+use nearmiss_kernels::abi::{self, Pair, Span, counter};
 use nearmiss_kernels::bv::Axes;
-use nearmiss_kernels::math::Vec3;
 use rayon::prelude::*;
+use std::sync::Arc;
 use xxhash_rust::xxh3::xxh3_64;
 
 /// Candidates a triangle for which there is room at first. Cloth at rest has 8, swept over a step 50; a list that
@@ -40,14 +40,17 @@ const LEAST_ROOM: usize = 1 << 12;
 pub struct TypedPipeline<R: Precision, V: Kernels> {
     device: Device,
     query: Query,
+    layout: Arc<Layout>,
     faces: Buffer<[u32; 3]>,
-    vertices: Vertices<R>,
-    bodies: Vec<(Tree, Volumes<V>)>,
+    vertices: Placing<R>,
+    forest: Forest<V>,
     counters: Buffer<u64>,
     pairs: List<Pair>,
     walk: Box<dyn Walk<V>>,
     narrow: Narrow,
     reruns: u64,
+    /// Around the placing of what was moved since the last frame.
+    placing: Option<[Event; 2]>,
     /// Counters of the last frame.
     last: Vec<u64>,
     /// Whether the lists were long enough for a whole frame: then the next one runs without waiting between steps.
@@ -56,12 +59,12 @@ pub struct TypedPipeline<R: Precision, V: Kernels> {
 
 /// A pipeline of any precision and any volume.
 pub trait Pipeline: repeat::Again + Send {
-    /// Uploads positions. A body that stands still in a continuous query has the same positions at both ends.
+    /// Moves bodies to where they are now, those that are named, in ascending order.
     ///
     /// # Errors
     /// Those of the device.
-    fn place(&mut self, bodies: &[Body]) -> Result<(), Error>;
-    /// Builds the trees anew, from the positions at t = 0; the milliseconds it took.
+    fn place(&mut self, bodies: &[Body], moved: &[Moved]) -> Result<(), Error>;
+    /// Builds the tree over what moves anew, from the positions at t = 0; the milliseconds it took.
     ///
     /// # Errors
     /// Those of the device.
@@ -71,7 +74,7 @@ pub trait Pipeline: repeat::Again + Send {
     /// # Errors
     /// Those of the device.
     fn frame(&mut self) -> Result<(Found<'_>, Stages), Error>;
-    /// Levels of each body's tree.
+    /// Levels of each tree.
     fn depths(&self) -> Vec<usize>;
     /// How often a list was too short and the frame was run again, so far.
     fn reruns(&self) -> u64;
@@ -87,75 +90,46 @@ pub trait Pipeline: repeat::Again + Send {
     fn check(&self) -> Result<(), Error>;
 }
 
-/// Positions, as the query needs them.
-enum Vertices<R: Precision> {
-    Still(Buffer<Point<R>>),
-    Moving(Buffer<Ends<R>>),
-}
-
 impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
-    /// Takes the memory that the query needs and uploads topology and positions. `layout` has at least one triangle in
-    /// every body.
+    /// Takes the memory that the query needs and uploads topology and positions. Something in `layout` may meet.
     ///
     /// # Errors
     /// Those of the device.
     pub fn new(
         device: Device,
         bodies: &[Body],
-        layout: &Layout,
+        layout: Arc<Layout>,
         (query, axes): (Query, Axes),
     ) -> Result<Self, Error> {
-        let triangles = layout.faces.len();
+        // Every candidate has a triangle that moves.
+        let triangles = layout.trees[0].iter().map(|&body| layout.triangles(body).1 as usize).sum();
         let continuous = query.motion != Motion::Discrete;
         let a_triangle = if continuous { SWEPT_PAIRS_A_TRIANGLE } else { PAIRS_A_TRIANGLE };
-        let capacity = (a_triangle * triangles).max(LEAST_ROOM);
-        let few = (4 * triangles).max(LEAST_ROOM);
-        let vertices = layout.starts[layout.bodies()].vertex as usize;
+        let capacity = LEAST_ROOM.max(a_triangle * triangles);
+        let few = LEAST_ROOM.max(4 * triangles);
+        let refit = query.refit_on(device.is_gpu());
         let mut pipeline = TypedPipeline {
             query,
             faces: device.upload(&layout.faces)?,
-            vertices: if continuous {
-                Vertices::Moving(device.buffer(vertices)?)
-            } else {
-                Vertices::Still(device.buffer(vertices)?)
-            },
-            bodies: Vec::new(),
+            vertices: Placing::new(&device, &layout, bodies, continuous)?,
+            forest: Forest::new(&device, &layout, refit, (axes, growth(query.listed_within())))?,
             counters: device.buffer(counter::COUNT as usize)?,
             pairs: List::new(&device, "candidate triangle pairs", counter::PAIRS, capacity)?,
             walk: walk(&device, &query, triangles)?,
-            narrow: Narrow::new::<R>(&device, layout, query, (capacity, few))?,
+            narrow: Narrow::new::<R>(&device, &layout, query, (capacity, few))?,
             reruns: 0,
+            placing: None,
             last: Vec::new(),
             settled: false,
+            layout,
             device,
         };
-        pipeline.place(bodies)?;
-        for body in 0..layout.bodies() {
-            let refit = query.refit_on(pipeline.device.is_gpu());
-            let groups = V::group(axes) > 0;
-            let tree = Tree::new(&pipeline.device, layout.triangles(body), refit, groups)?;
-            let volumes = Volumes::new(&pipeline.device, &tree, (axes, growth(query.listed_within())))?;
-            pipeline.bodies.push((tree, volumes));
-        }
+        pipeline.narrow.place(bodies, &query);
         Ok(pipeline)
     }
 
     fn frames(&self) -> abi::Positions<R> {
-        match &self.vertices {
-            Vertices::Still(points) => abi::Positions { still: points.span(), moving: Span::EMPTY },
-            Vertices::Moving(motions) => abi::Positions { still: Span::EMPTY, moving: motions.span() },
-        }
-    }
-
-    /// Positions as they lie on the device: at t = 0 and, when anything moves, at t = 1.
-    fn positions(&self) -> Result<Vec<Vec<Vec3<R>>>, Error> {
-        Ok(match &self.vertices {
-            Vertices::Still(points) => vec![points.read(points.len())?.iter().map(|p| p.at).collect()],
-            Vertices::Moving(motions) => {
-                let motions = motions.read(motions.len())?;
-                vec![motions.iter().map(|m| m.t0.at).collect(), motions.iter().map(|m| m.t1.at).collect()]
-            }
-        })
+        self.vertices.frames()
     }
 
     /// Runs a stage on what those before it left.
@@ -163,12 +137,8 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
         let (device, frames, faces) = (&self.device, self.frames(), self.faces.span());
         match stage {
             Stage::Construct => self.construct().map(|_| ()),
-            Stage::Fit => {
-                self.bodies.iter().try_for_each(|(tree, volumes)| volumes.fit(device, tree, frames, faces))
-            }
-            Stage::Refit => {
-                self.bodies.iter().try_for_each(|(tree, volumes)| volumes.refit(device, tree, frames, faces))
-            }
+            Stage::Fit => self.forest.volumes.fit(device, &self.forest.tree, frames, faces),
+            Stage::Refit => self.forest.volumes.refit(device, &self.forest.tree, frames, faces),
             Stage::Traverse => self.step(Step::Traverse),
             Stage::Narrow => self.narrow.steps().iter().try_for_each(|&step| self.step(step)),
             Stage::Order if self.narrow.orders() => self.step(Step::Order),
@@ -190,6 +160,7 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
                         frames,
                         faces: self.faces.span(),
                         pairs: self.pairs.span(),
+                        bodies: self.forest.records.span(),
                         counters: self.counters.span(),
                     };
                     self.narrow.run(step, &given)?;
@@ -238,48 +209,32 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
     fn traverse(&mut self) -> Result<(), Error> {
         self.walk.launch(&WalkContext {
             device: &self.device,
-            bodies: &self.bodies,
+            forest: &self.forest,
             faces: self.faces.span(),
             pairs: self.pairs.span(),
             ends: Span::EMPTY,
             counters: self.counters.span(),
-            flags: flags(&self.query, self.bodies.len()),
+            flags: flags(&self.query) | self.forest.flags(),
         })
     }
 }
 
 impl<R: Precision, V: Kernels> Pipeline for TypedPipeline<R, V> {
-    fn place(&mut self, bodies: &[Body]) -> Result<(), Error> {
-        if let Narrow::Continuous(c) = &mut self.narrow {
-            c.below_precision = BelowPrecision::of(bodies, &self.query);
-        }
-        match &mut self.vertices {
-            Vertices::Still(buffer) => {
-                let mut points = Vec::with_capacity(buffer.len());
-                for body in bodies {
-                    points.extend(R::points(body.positions_t0()).map(Point::from));
-                }
-                buffer.write(&points)
-            }
-            Vertices::Moving(buffer) => {
-                let mut ends = Vec::with_capacity(buffer.len());
-                for body in bodies {
-                    let [t0, t1] = body.ends();
-                    let both = R::points(t0).zip(R::points(t1));
-                    ends.extend(both.map(|(t0, t1)| Ends { t0: t0.into(), t1: t1.into() }));
-                }
-                buffer.write(&ends)
-            }
-        }
+    fn place(&mut self, bodies: &[Body], moved: &[Moved]) -> Result<(), Error> {
+        self.narrow.place(bodies, &self.query);
+        let start = self.device.event()?;
+        self.vertices.put(&self.device, &self.layout, bodies, moved)?;
+        self.placing = Some([start, self.device.event()?]);
+        Ok(())
     }
 
     fn construct(&mut self) -> Result<f64, Error> {
         self.walk.invalidate();
         let start = self.device.event()?;
-        let (frames, faces) = (self.frames(), self.faces.span());
-        self.bodies.iter_mut().try_for_each(|(tree, _)| tree.construct::<R>(&self.device, frames, faces))?;
+        let given = (self.frames(), self.faces.span());
+        self.forest.construct(&self.device, &self.layout, given)?;
         let end = self.device.event()?;
-        self.bodies.iter_mut().try_for_each(|(tree, _)| tree.learn_levels())?;
+        self.forest.tree.learn_levels()?;
         start.to(&end)
     }
 
@@ -310,7 +265,9 @@ impl<R: Precision, V: Kernels> Pipeline for TypedPipeline<R, V> {
             self.settled = true;
             self.walk.finish(&counters)?;
             let balance = self.walk.balance_ms()?;
+            let placing = self.placing.take();
             let stages = Stages {
+                place: placing.map_or(Ok(0.0), |[start, end]| start.to(&end))?,
                 construct: 0.0,
                 fit: start.to(&fitted)?,
                 refit: fitted.to(&refitted)?,
@@ -327,7 +284,7 @@ impl<R: Precision, V: Kernels> Pipeline for TypedPipeline<R, V> {
     }
 
     fn depths(&self) -> Vec<usize> {
-        self.bodies.iter().map(|(tree, _)| tree.depth()).collect()
+        self.forest.depths()
     }
 
     fn reruns(&self) -> u64 {
@@ -336,12 +293,10 @@ impl<R: Precision, V: Kernels> Pipeline for TypedPipeline<R, V> {
 
     fn fingerprints(&self) -> Result<Vec<(&'static str, u64)>, Error> {
         let mut prints = Vec::new();
-        let (mut links, mut leaves, mut inner) = (Vec::new(), Vec::new(), Vec::new());
-        for (tree, volumes) in &self.bodies {
-            links.extend(tree.download()?);
-            for node in volumes.download()? {
-                if node.is_leaf() { leaves.push(node.volume) } else { inner.push(node.volume) }
-            }
+        let (mut leaves, mut inner) = (Vec::new(), Vec::new());
+        let links = self.forest.tree.download()?;
+        for node in self.forest.volumes.download()? {
+            if node.is_leaf() { leaves.push(node.volume) } else { inner.push(node.volume) }
         }
         prints.push(("construct", xxh3_64(bytemuck::cast_slice(&links))));
         prints.push(("fit", xxh3_64(bytemuck::cast_slice(&leaves))));
@@ -361,10 +316,7 @@ impl<R: Precision, V: Kernels> Pipeline for TypedPipeline<R, V> {
     }
 
     fn check(&self) -> Result<(), Error> {
-        let (faces, frames) = (self.faces.read(self.faces.len())?, self.positions()?);
-        self.bodies.iter().try_for_each(|(tree, volumes)| {
-            tree.check()?;
-            volumes.check(tree, &faces, &frames)
-        })
+        let faces = self.faces.read(self.faces.len())?;
+        self.forest.check(&self.layout, &faces, &self.vertices.positions()?)
     }
 }

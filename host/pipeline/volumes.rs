@@ -7,8 +7,8 @@ use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::launch;
 use nearmiss_kernels::abi::{
-    BottomUpArgs, FitArgs, FrontArgs, GroupsArgs, Node, Positions, QueueArgs, RefitArgs, Span, StealArgs,
-    TraverseArgs, TreeletsArgs,
+    BottomUpArgs, FitArgs, FrontArgs, GraftArgs, GroupsArgs, Link, Node, Positions, QueueArgs, RefitArgs,
+    Span, StealArgs, TraverseArgs, TreeletsArgs,
 };
 use nearmiss_kernels::bv::{Aabb, Axes, Linear, Obb, Volume};
 use nearmiss_kernels::bvh;
@@ -17,6 +17,8 @@ use nearmiss_kernels::math::{Vec3, round};
 
 /// A bounding volume, with its kernels.
 pub trait Kernels: Volume {
+    /// A tree that does not change, into the memory of another.
+    type Graft: Entry<Args = GraftArgs<Self>>;
     /// Volumes of the leaves.
     type Fit<R: Precision>: Entry<Args = FitArgs<R, Self>>;
     /// All other volumes, a launch a level.
@@ -51,6 +53,7 @@ pub trait Kernels: Volume {
 }
 
 impl Kernels for Aabb {
+    type Graft = entry::construct_graft_aabb;
     type Fit<R: Precision> = R::FitAabb;
     type Levels = entry::refit_levels_aabb;
     type Treelets<R: Precision> = R::TreeletsAabb;
@@ -63,6 +66,7 @@ impl Kernels for Aabb {
 }
 
 impl Kernels for Linear {
+    type Graft = entry::construct_graft_linear;
     type Fit<R: Precision> = R::FitLinear;
     type Levels = entry::refit_levels_linear;
     type Treelets<R: Precision> = R::TreeletsLinear;
@@ -75,6 +79,7 @@ impl Kernels for Linear {
 }
 
 impl Kernels for Obb {
+    type Graft = entry::construct_graft_obb;
     type Fit<R: Precision> = R::FitObb;
     type Levels = entry::refit_levels_obb;
     type Treelets<R: Precision> = R::TreeletsObb;
@@ -86,8 +91,8 @@ impl Kernels for Obb {
     type Steal = entry::traverse_steal_obb;
 
     fn fit_groups<R: Precision>(device: &Device, args: &GroupsArgs<R, Self>) -> Result<(), Error> {
-        // One pair of siblings for each inner node; the first place is not used.
-        let inner = args.pair_parents.len() as usize - 1;
+        // One pair of siblings for each inner node, behind the root.
+        let inner = args.firsts.len() as usize - args.root.div_ceil(2) as usize;
         launch::each::<R::GroupsObb>(device, inner, args)
     }
     fn of<R: Precision>(points: &[Vec3<R>]) -> Option<Self> {
@@ -112,12 +117,18 @@ pub struct Volumes<V> {
 }
 
 impl<V: Kernels> Volumes<V> {
+    /// Which axes merged boxes take.
+    pub fn axes(&self) -> Axes {
+        self.axes
+    }
+
     /// Takes the memory for the volumes of a tree, which hold everything within `margin` of the triangles.
     ///
     /// # Errors
     /// Those of the device.
     pub fn new(device: &Device, tree: &Tree, (axes, margin): (Axes, f32)) -> Result<Self, Error> {
-        Ok(Volumes { nodes: device.buffer(2 * tree.leaves())?, axes, margin })
+        let leaves = tree.leaves() + tree.room().others() as usize;
+        Ok(Volumes { nodes: device.buffer(2 * leaves)?, axes, margin })
     }
 
     /// Fits the volumes of the leaves, unless treelets do that in [`Volumes::refit`], and of the nodes of few leaves that
@@ -155,7 +166,7 @@ impl<V: Kernels> Volumes<V> {
             pair_parents: tree.pair_parents.span(),
             firsts: tree.firsts.span(),
             nodes: self.nodes.span(),
-            first: tree.first(),
+            root: tree.root(),
             margin: self.margin,
         };
         V::fit_groups(device, &args)
@@ -184,7 +195,7 @@ impl<V: Kernels> Volumes<V> {
                     arrivals: arrivals.span(),
                     nodes: self.nodes.span(),
                     axes: self.axes,
-                    pad: 0,
+                    root: tree.root(),
                 };
                 launch::each::<V::BottomUp>(device, tree.leaves(), &args)
             }
@@ -254,7 +265,7 @@ impl<V: Kernels> Volumes<V> {
     /// Those of the device.
     pub fn download(&self) -> Result<Vec<Node<V>>, Error> {
         let mut nodes = self.nodes.read(self.nodes.len())?;
-        // Node 0 is not used and nothing writes it.
+        // Node 0 is not used and nothing writes it; nor, where nothing is grafted, what lies behind the tree.
         nodes[0] = bytemuck::Zeroable::zeroed();
         Ok(nodes)
     }
@@ -271,8 +282,22 @@ impl<V: Kernels> Volumes<V> {
         faces: &[[u32; 3]],
         frames: &[Vec<Vec3<R>>],
     ) -> Result<(), Error> {
-        let links = tree.download()?;
         let leaves = tree.leaf_nodes.read(tree.leaves())?;
+        let nodes = &self.download()?[..tree.root() as usize - 1 + 2 * tree.leaves()];
+        self.check_nodes((&tree.download()?, nodes, &leaves), tree.root(), faces, frames)
+    }
+
+    /// Checks nodes, the last leaf's the last of them, against the links and the leaves' nodes of their tree.
+    ///
+    /// # Errors
+    /// [`Error::Bug`] with the first violation.
+    pub fn check_nodes<R: Precision>(
+        &self,
+        (links, nodes, leaves): (&[Link], &[Node<V>], &[u32]),
+        root: u32,
+        faces: &[[u32; 3]],
+        frames: &[Vec<Vec3<R>>],
+    ) -> Result<(), Error> {
         let leaf = |triangle: u32| {
             let corners = |frame: &Vec<Vec3<R>>| faces[triangle as usize].map(|v| frame[v as usize]);
             let volume = match frames {
@@ -292,6 +317,6 @@ impl<V: Kernels> Volumes<V> {
             let volume = V::of(&points.collect::<Vec<_>>())?;
             Some(volume.near(self.margin))
         };
-        bvh::check_volumes(&links, &self.download()?, self.axes, leaf, fitted).map_err(broken)
+        bvh::check_volumes(links, nodes, (root, self.axes), leaf, fitted).map_err(broken)
     }
 }

@@ -7,11 +7,11 @@ use crate::prim::isolate::ladder::SLICES;
 use crate::prim::isolate::separation::{Double, Single};
 use crate::queue::worker;
 use crate::sort;
-use crate::stage::construct::{morton, tree, treelet};
+use crate::stage::construct::{graft, morton, tree, treelet};
 use crate::stage::narrow::{below_precision, climb, cull, discrete, features, separate, slice, solve};
 use crate::stage::refit::{bottom_up, levels, treelets};
 use crate::stage::traverse::{front, queue, steal};
-use crate::stage::{balance, fit, order, traverse};
+use crate::stage::{balance, fit, order, place, traverse};
 
 /// A kernel as the host knows it.
 pub trait Entry: 'static {
@@ -99,6 +99,8 @@ const RUNG: u32 = 128;
 const BALANCE: u32 = 512;
 
 kernels! {
+    place_f32: place::place::<f32, B>, [PlaceArgs<f32>], WIDE, 0;
+    place_f64: place::place::<f64, B>, [PlaceArgs<f64>], WIDE, 0;
     construct_bounds_f32: morton::bounds::<f32, B>, [MortonArgs<f32>], WIDE, morton::shared_bytes(WIDE);
     construct_bounds_f64: morton::bounds::<f64, B>, [MortonArgs<f64>], WIDE, morton::shared_bytes(WIDE);
     construct_morton_f32: morton::morton::<f32, B>, [MortonArgs<f32>], WIDE, 0;
@@ -107,6 +109,9 @@ kernels! {
     construct_depth: tree::depth, [TreeArgs], WIDE, 0;
     construct_places: tree::places, [TreeArgs], WIDE, sort::shared_bytes(WIDE);
     construct_emit: tree::emit, [TreeArgs], WIDE, 0;
+    construct_graft_aabb: graft::graft::<Aabb, B>, [GraftArgs<Aabb>], WIDE, 0;
+    construct_graft_linear: graft::graft::<Linear, B>, [GraftArgs<Linear>], WIDE, 0;
+    construct_graft_obb: graft::graft::<Obb, B>, [GraftArgs<Obb>], WIDE, 0;
     construct_treelets: treelet::plan, [PlanArgs], WIDE, treelet::SHARED;
     fit_aabb_f32: fit::fit::<f32, Aabb, B>, [FitArgs<f32, Aabb>], WIDE, 0;
     fit_aabb_f64: fit::fit::<f64, Aabb, B>, [FitArgs<f64, Aabb>], WIDE, 0;

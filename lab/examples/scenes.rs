@@ -8,7 +8,7 @@
 use nearmiss::device::Backend;
 use nearmiss::mesh::{Body, Mesh, Topology};
 use nearmiss::query::Motion;
-use nearmiss::{Device, Error, Query, Session};
+use nearmiss::{Detector, Device, Error, Query};
 use nearmiss_lab::scene;
 use std::path::Path;
 use std::time::Instant;
@@ -28,7 +28,7 @@ fn motion(body: &Body) -> [f64; 3] {
 fn row(name: &str, device: &Device, body: Body, seconds: f64) -> Result<(), Error> {
     let triangles = body.face_count() as f64;
     let [edge, mean, most] = motion(&body);
-    let ask = |motion| Session::new(device.clone(), vec![body.clone()], Query::of(motion))?.detect();
+    let ask = |motion| Detector::new(device.clone(), vec![body.clone()], Query::of(motion))?.detect();
     let (still, moving) = (ask(Motion::Discrete)?, ask(Motion::Continuous)?);
     let a_triangle = |count: f64| count / triangles;
     println!(

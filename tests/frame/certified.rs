@@ -7,7 +7,7 @@ use super::support::{ask, engine, machines};
 use nearmiss::contacts::{Contact, Kind, Status};
 use nearmiss::mesh::Body;
 use nearmiss::query::{Motion, Solver};
-use nearmiss::{Contacts, Query, Session};
+use nearmiss::{Contacts, Detector, Query};
 use nearmiss_kernels::prim::cubic::{ee_toi, vf_toi};
 use nearmiss_kernels::prim::inclusion::{Params, Verdict};
 use nearmiss_lab::scene;
@@ -91,10 +91,10 @@ fn every_machine_escalates_the_same() {
     let body = crowded(4, 40, 24);
     let p = Params { budget: 2, ..Params::new(1e-3) };
     let print = |device, motion| {
-        let mut session = Session::new(device, vec![body.clone()], asking(motion, Solver::Certified, &p))
-            .expect("a session");
-        let all = session.detect().expect("an answer");
-        let prints = session.fingerprints().expect("prints");
+        let mut detector = Detector::new(device, vec![body.clone()], asking(motion, Solver::Certified, &p))
+            .expect("a detector");
+        let all = detector.detect().expect("an answer");
+        let prints = detector.fingerprints().expect("prints");
         // Of the earliest, which pairs are asked hangs on what was found before them.
         let counts = (motion == Motion::Continuous).then_some((all.unresolved, all.escalated_vf_ee));
         (all.hash(), counts, prints)

@@ -43,7 +43,15 @@ fn brute<S: Real>(bodies: &[Body]) -> Vec<Contact> {
     let mut all = Vec::new();
     let mut found = |kind, a: usize, b: usize, toi: Option<f64>| {
         let (a, b) = (a as u32, b as u32);
-        all.extend(toi.map(|toi| Contact { kind, a, b, toi, toi_hi: toi, status: Status::Contact }));
+        all.extend(toi.map(|toi| Contact {
+            kind,
+            bodies: Default::default(),
+            a,
+            b,
+            toi,
+            toi_hi: toi,
+            status: Status::Contact,
+        }));
     };
     for &v in &one.used {
         for (f, face) in other.faces.iter().enumerate() {

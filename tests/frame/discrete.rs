@@ -9,7 +9,7 @@ use nearmiss_lab::scene::{self, Rng};
 use std::collections::BTreeSet;
 
 fn pairs(device: Device, bodies: Vec<Body>) -> Vec<[u32; 2]> {
-    ask(device, bodies, Query::of(Motion::Discrete)).pairs().to_vec()
+    ask(device, bodies, Query::of(Motion::Discrete)).triangles()
 }
 
 fn triangles(body: &Body) -> Vec<Triangle> {
@@ -131,7 +131,7 @@ fn a_crowd_of_degenerate_triangles_equals_the_oracle() {
             let truth = oracle_of_one(&body, adjacent);
             let query = Query { adjacent, ..Query::of(Motion::Discrete) };
             let contacts = ask(engine(), vec![body.clone()], query);
-            assert_eq!(difference(contacts.pairs(), &truth), None, "seed {seed}, adjacent: {adjacent}");
+            assert_eq!(difference(&contacts.triangles(), &truth), None, "seed {seed}, adjacent: {adjacent}");
             assert_eq!(contacts.len(), truth.len());
             assert!(truth.len() > 100 && flat > 0, "seed {seed}: {} pairs, {flat} without area", truth.len());
         }
@@ -143,7 +143,7 @@ fn a_segment_from_a_shared_vertex_into_a_face_is_found() {
     let points = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, 0.0]];
     let body = still(&points, &[[0, 0, 3], [0, 1, 2]]);
     let query = Query { adjacent: true, ..Query::of(Motion::Discrete) };
-    assert_eq!(ask(engine(), vec![body], query).pairs(), [[0, 1]]);
+    assert_eq!(ask(engine(), vec![body], query).triangles(), [[0, 1]]);
 }
 
 fn area_is_zero(t: &Triangle) -> bool {

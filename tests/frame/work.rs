@@ -3,19 +3,19 @@
 use super::support::{ORDERS, engine, sanitizer, still};
 use nearmiss::mesh::Body;
 use nearmiss::query::{Motion, Solver, Traversal};
-use nearmiss::{Device, Query, Session};
+use nearmiss::{Detector, Device, Query};
 use nearmiss_lab::scene;
 
 /// Launches of construction and of each frame, and bytes held after the first frame.
 fn work(device: &Device, bodies: Vec<Body>, query: Query) -> (u64, u64, u64) {
     let start = device.launches();
-    let mut session = Session::new(device.clone(), bodies, query).expect("a session");
+    let mut detector = Detector::new(device.clone(), bodies, query).expect("a detector");
     let built = device.launches();
-    session.detect().expect("an answer");
+    detector.detect().expect("an answer");
     let asked = device.launches();
-    session.detect().expect("an answer");
+    detector.detect().expect("an answer");
     assert_eq!(device.launches() - asked, asked - built, "each frame is the same work");
-    assert_eq!(session.reruns(), 0, "a scene that fits");
+    assert_eq!(detector.reruns(), 0, "a scene that fits");
     (built - start, asked - built, device.bytes().0)
 }
 
@@ -70,7 +70,7 @@ fn each_query_launches_what_it_needs() {
     let below_precision =
         |motion| frame(Query { solver: Some(Solver::CertifiedF32), tolerance: Some(1e-9), ..of(motion) }).1;
     assert_eq!([Motion::Continuous, Motion::Earliest].map(below_precision), [8, 7]);
-    // Construction does not depend on the question, and nothing is kept when the session ends.
+    // Construction does not depend on the question, and nothing is kept when the detector ends.
     assert!([moller.0, continuous.0, earliest.0].iter().all(|n| *n == exact.0), "{}", exact.0);
     assert_eq!(device.bytes().0, 0);
 }
@@ -79,8 +79,8 @@ fn each_query_launches_what_it_needs() {
 fn each_query_holds_what_it_needs() {
     let bytes = |query: Query| {
         let device = engine();
-        let mut session = Session::new(device.clone(), vec![soup()], query).expect("a session");
-        session.detect().expect("an answer");
+        let mut detector = Detector::new(device.clone(), vec![soup()], query).expect("a detector");
+        detector.detect().expect("an answer");
         device.bytes().0
     };
     let of = Query::of;
@@ -118,14 +118,14 @@ fn a_discrete_query_does_not_see_the_end_of_the_step() {
 fn nothing_is_left_behind() {
     for motion in [Motion::Discrete, Motion::Continuous, Motion::Earliest] {
         let device = sanitizer(ORDERS[2]);
-        let mut session =
-            Session::new(device.clone(), vec![soup(), soup()], Query::of(motion)).expect("a session");
-        session.detect().expect("an answer");
+        let mut detector =
+            Detector::new(device.clone(), vec![soup(), soup()], Query::of(motion)).expect("a detector");
+        detector.detect().expect("an answer");
         let held = device.bytes();
         assert!(held.0 > 0 && held.1 >= held.0);
-        session.detect().expect("an answer");
+        detector.detect().expect("an answer");
         assert_eq!(device.bytes(), held, "a second frame takes no more");
-        drop(session);
+        drop(detector);
         assert_eq!(device.bytes().0, 0);
     }
 }

@@ -3,14 +3,14 @@
 use super::support::{machines, sanitizer};
 use super::*;
 use nearmiss::query::Bv;
-use nearmiss::{Device, Session};
+use nearmiss::{Detector, Device};
 
 /// The answer's hash, and what every stage left behind.
 fn prints(device: Device, bodies: &[Body], query: Query) -> Vec<(&'static str, u64)> {
-    let mut session = Session::new(device, bodies.to_vec(), query).expect("a session");
-    let contacts = session.detect().expect("an answer");
-    session.check_trees().expect("sound trees");
-    let mut prints = session.fingerprints().expect("prints");
+    let mut detector = Detector::new(device, bodies.to_vec(), query).expect("a detector");
+    let contacts = detector.detect().expect("an answer");
+    detector.check_trees().expect("sound trees");
+    let mut prints = detector.fingerprints().expect("prints");
     prints.push(("contacts", contacts.hash()));
     prints.push(("candidates", contacts.candidates));
     prints
@@ -62,11 +62,11 @@ fn every_way_finds_the_same_contacts() {
     for (at, bodies) in scenes.iter().enumerate() {
         for motion in [Motion::Discrete, Motion::Continuous, Motion::Earliest] {
             let answer = |device, query| {
-                let mut session = Session::new(device, bodies.clone(), query).expect("a session");
-                let first = session.detect().expect("an answer");
-                session.check_trees().expect("sound trees");
+                let mut detector = Detector::new(device, bodies.clone(), query).expect("a detector");
+                let first = detector.detect().expect("an answer");
+                detector.check_trees().expect("sound trees");
                 // The second frame begins from what the first one left.
-                assert_eq!(session.detect().expect("an answer").answer, first.answer, "{query:?}");
+                assert_eq!(detector.detect().expect("an answer").answer, first.answer, "{query:?}");
                 first.answer
             };
             let truth = answer(engine(), Query::of(motion));
@@ -97,19 +97,19 @@ fn later(body: &Body, by: f64) -> Body {
 fn a_refitted_tree_finds_what_a_new_one_does() {
     for motion in [Motion::Discrete, Motion::Continuous, Motion::Earliest] {
         for bodies in [moving_scenes()[..1].to_vec(), moving_scenes()[1..].to_vec()] {
-            // The default tolerance hangs on where a session begins: named, the bits are the same.
+            // The default tolerance hangs on where a detector begins: named, the bits are the same.
             let tolerance = (motion != Motion::Discrete).then_some(1e-5);
             let query = Query { tolerance, bv: Some(Bv::Aabb), ..Query::of(motion) };
-            let mut session = Session::new(engine(), bodies.clone(), query).expect("a session");
-            session.detect().expect("an answer");
+            let mut detector = Detector::new(engine(), bodies.clone(), query).expect("a detector");
+            detector.detect().expect("an answer");
             // A step on, three steps on, far off, and back where it began.
             for by in [1.0, 3.0, 40.0, -2.0, 0.0] {
                 let moved: Vec<Body> = bodies.iter().map(|body| later(body, by)).collect();
                 for (i, body) in moved.iter().enumerate() {
-                    session.move_to(i, body.clone()).expect("a frame of the same mesh");
+                    detector.move_to(i, body.clone()).expect("a frame of the same mesh");
                 }
-                let refitted = session.detect().expect("an answer");
-                session.check_trees().expect("sound trees");
+                let refitted = detector.detect().expect("an answer");
+                detector.check_trees().expect("sound trees");
                 let fresh = ask(engine(), moved.clone(), Query { tolerance, ..Query::of(motion) });
                 assert_eq!(refitted.answer, fresh.answer, "{motion:?}, {by}");
                 assert_eq!(
@@ -118,8 +118,8 @@ fn a_refitted_tree_finds_what_a_new_one_does() {
                     "boxes of leaves are the same in both trees"
                 );
                 if by == 3.0 {
-                    session.rebuild().expect("new trees");
-                    assert_eq!(session.detect().expect("an answer").answer, fresh.answer, "rebuilt");
+                    detector.rebuild().expect("new trees");
+                    assert_eq!(detector.detect().expect("an answer").answer, fresh.answer, "rebuilt");
                 }
             }
         }
@@ -130,10 +130,10 @@ fn a_refitted_tree_finds_what_a_new_one_does() {
 fn the_same_session_asked_again_says_the_same() {
     for query in Query::every() {
         let body = scene::draped(800).expect("a scene");
-        let mut session = Session::new(engine(), vec![body], query).expect("a session");
-        let first = session.detect().expect("an answer");
+        let mut detector = Detector::new(engine(), vec![body], query).expect("a detector");
+        let first = detector.detect().expect("an answer");
         for _ in 0..3 {
-            assert_eq!(session.detect().expect("an answer").answer, first.answer, "{query:?}");
+            assert_eq!(detector.detect().expect("an answer").answer, first.answer, "{query:?}");
         }
     }
 }
@@ -141,13 +141,13 @@ fn the_same_session_asked_again_says_the_same() {
 #[test]
 fn what_is_no_frame_of_the_mesh_is_refused() {
     let body = scene::soup(20, 4, true).expect("a scene");
-    let mut session =
-        Session::new(engine(), vec![body.clone()], Query::of(Motion::Continuous)).expect("a session");
-    let before = session.detect().expect("an answer");
+    let mut detector =
+        Detector::new(engine(), vec![body.clone()], Query::of(Motion::Continuous)).expect("a detector");
+    let before = detector.detect().expect("an answer");
     let other_faces = changed(&body, body.faces().iter().rev().copied().collect(), |points| points);
     let fewer = scene::soup(19, 4, true).expect("a scene");
     for (at, frame) in [(0, other_faces), (0, fewer), (1, body)] {
-        assert_eq!(session.move_to(at, frame).expect_err("refused").exit_code(), 2);
+        assert_eq!(detector.move_to(at, frame).expect_err("refused").exit_code(), 2);
     }
-    assert_eq!(session.detect().expect("an answer").answer, before.answer, "nothing has moved");
+    assert_eq!(detector.detect().expect("an answer").answer, before.answer, "nothing has moved");
 }

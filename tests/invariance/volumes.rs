@@ -29,9 +29,9 @@ fn every_volume_leaves_the_contacts_as_they_are() {
             if motion == Motion::Discrete {
                 assert_eq!(dressed(&mirrored, motion, bv).answer, truth.answer, "{name}, {volume}, mirrored");
                 let turn = |[a, b]: &[u32; 2]| [last - b, last - a];
-                let mut pairs: Vec<[u32; 2]> = other.pairs().iter().map(turn).collect();
+                let mut pairs: Vec<[u32; 2]> = other.triangles().iter().map(turn).collect();
                 pairs.sort_unstable();
-                assert_eq!(pairs, truth.pairs(), "{name}, {volume}, backwards");
+                assert_eq!(pairs, truth.triangles(), "{name}, {volume}, backwards");
             } else {
                 let known = named(&body, truth.contacts(), |v| v);
                 let again = dressed(&mirrored, motion, bv);

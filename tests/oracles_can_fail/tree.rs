@@ -12,8 +12,8 @@ use nearmiss_kernels::bvh::{self, Violation, check, check_volumes};
 /// level 2      4   5   6   7        6 is inner, the others are leaves 0, 1, 4
 /// level 3             8 9           leaves 2, 3
 /// ```
-struct Tree {
-    links: Vec<Link>,
+pub struct Tree {
+    pub links: Vec<Link>,
     pair_parents: Vec<u32>,
     levels: Vec<u32>,
     leaf_nodes: Vec<u32>,
@@ -37,7 +37,7 @@ fn merge(nodes: &mut [Node<Aabb>]) {
 }
 
 impl Tree {
-    fn sound() -> Tree {
+    pub fn sound() -> Tree {
         let leaf = |last: u32, triangle: u32| Link { link: LEAF | (FIRST + triangle), last };
         let inner = |link, last| Link { link, last };
         let links = vec![
@@ -75,10 +75,11 @@ impl Tree {
             pair_parents: &self.pair_parents,
             levels: &self.levels,
             leaf_nodes: &self.leaf_nodes,
-            first: FIRST,
+            root: 1,
+            place: &|triangle| triangle.checked_sub(FIRST).map(|place| place as usize),
         };
         check(&tree, &mut vec![false; self.leaf_nodes.len()])?;
-        check_volumes(&self.links, &self.nodes, Axes::PCA, box_of, |_, _| None)
+        check_volumes(&self.links, &self.nodes, (1, Axes::PCA), box_of, |_, _| None)
     }
 
     /// What the checker says of a tree with a fault planted in it.
@@ -196,7 +197,7 @@ fn t7_a_fit_that_is_none() {
             volume.hi[1] += f32::from(u8::from(fault == Some(node)));
             Some(volume)
         };
-        check_volumes(&tree.links, &tree.nodes, Axes::PCA, box_of, fit)
+        check_volumes(&tree.links, &tree.nodes, (1, Axes::PCA), box_of, fit)
     };
     assert_eq!(fitted(None), Ok(()));
     for node in [2, 6] {

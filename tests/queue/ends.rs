@@ -2,7 +2,7 @@
 
 use super::*;
 use nearmiss_kernels::abi::{
-    FRONT, LEAF, Link, Node, Pair, PairArgs, QueueArgs, ROOT, SELF, START, Span, StealArgs,
+    FRONT, FilterArgs, LEAF, Link, Node, Pair, PairArgs, QueueArgs, ROOT, START, Span, StealArgs,
 };
 use nearmiss_kernels::abi::{counter, pool};
 use nearmiss_kernels::bv::{Aabb, Axes, Volume};
@@ -52,9 +52,9 @@ struct Left {
 }
 
 /// Launches `rounds` rounds of three queues over one list, or a launch of three blocks that steal.
-fn run(device: &Device, trees: [&[Node<Aabb>]; 2], own: bool, rounds: Option<u32>) -> Left {
+fn run(device: &Device, nodes: &[Node<Aabb>], rounds: Option<u32>) -> Left {
     let room = 1 << 14;
-    let [queries, nodes] = trees.map(|nodes| device.upload(nodes).expect("memory"));
+    let nodes = device.upload(nodes).expect("memory");
     let (pairs, ends) =
         (device.buffer::<Pair>(room).expect("memory"), device.buffer::<Pair>(room).expect("memory"));
     let words = |n: u32| {
@@ -64,13 +64,13 @@ fn run(device: &Device, trees: [&[Node<Aabb>]; 2], own: bool, rounds: Option<u32
     };
     let counters = words(counter::COUNT);
     let to = PairArgs {
-        queries: queries.span(),
         nodes: nodes.span(),
+        filters: FilterArgs { nodes: Span::EMPTY, bodies: Span::EMPTY },
         faces: Span::EMPTY,
         pairs: pairs.span(),
         ends: ends.span(),
         counters: counters.span(),
-        flags: FRONT | nearmiss_kernels::abi::KEEP_ADJACENT | if own { SELF } else { 0 },
+        flags: FRONT | nearmiss_kernels::abi::KEEP_ADJACENT,
         local: 9,
     };
     let lists = [0, 1].map(|_| device.buffer::<Pair>(room).expect("memory"));
@@ -131,38 +131,36 @@ fn run(device: &Device, trees: [&[Node<Aabb>]; 2], own: bool, rounds: Option<u32
 }
 
 /// Checks that each pair of leaves has exactly one of the cut's pairs above it, and that ends are what they should be.
-fn cut(left: &Left, trees: [&(Vec<Node<Aabb>>, Vec<u32>); 2], own: bool) -> Result<(), String> {
+fn cut(left: &Left, (nodes, above): &(Vec<Node<Aabb>>, Vec<u32>)) -> Result<(), String> {
     let cut: HashSet<(u32, u32)> = left.ends.iter().chain(&left.units).map(|pair| (pair.a, pair.b)).collect();
     if cut.len() != left.ends.len() + left.units.len() {
         return Err("a pair twice".into());
     }
-    let [(a, above_a), (b, above_b)] = trees;
-    let overlap = |pair: &Pair| a[pair.a as usize].volume.overlaps(&b[pair.b as usize].volume);
-    let leaves = |nodes: &[Node<Aabb>]| {
-        (1..nodes.len() as u32).filter(|&i| nodes[i as usize].is_leaf()).collect::<Vec<_>>()
-    };
+    let node = |at: u32| &nodes[at as usize];
+    let overlap = |pair: &Pair| node(pair.a).volume.overlaps(&node(pair.b).volume);
+    let leaves: Vec<u32> = (1..nodes.len() as u32).filter(|&i| node(i).is_leaf()).collect();
     let mut meeting = HashSet::new();
-    for &p in &leaves(a) {
-        for &q in &leaves(b) {
-            // In one tree a pair is descended to in the order of the leaves.
-            if own && a[p as usize].last >= b[q as usize].last {
+    for &p in &leaves {
+        for &q in &leaves {
+            // A pair is descended to in the order of the leaves.
+            if node(p).last >= node(q).last {
                 continue;
             }
             let mut pair = Pair { a: p, b: q };
             let mut met = cut.contains(&(p, q)) as u32;
             while pair != (Pair { a: ROOT, b: ROOT }) {
-                pair = bvtt::parent(pair, above_a[pair.a as usize], above_b[pair.b as usize], own);
+                pair = bvtt::parent(pair, above[pair.a as usize], above[pair.b as usize]);
                 met += cut.contains(&(pair.a, pair.b)) as u32;
             }
             if met != 1 {
                 return Err(format!("the leaves {p} and {q} have {met} pairs above them"));
             }
             if overlap(&Pair { a: p, b: q }) {
-                meeting.insert((a[p as usize].triangle(), b[q as usize].triangle()));
+                meeting.insert((node(p).triangle(), node(q).triangle()));
             }
         }
     }
-    let is_leaf = |pair: &Pair| a[pair.a as usize].is_leaf() && b[pair.b as usize].is_leaf();
+    let is_leaf = |pair: &Pair| node(pair.a).is_leaf() && node(pair.b).is_leaf();
     if let Some(pair) = left.ends.iter().find(|pair| overlap(pair) && !is_leaf(pair)) {
         return Err(format!("{pair:?} is no end"));
     }
@@ -178,21 +176,13 @@ fn cut(left: &Left, trees: [&(Vec<Node<Aabb>>, Vec<u32>); 2], own: bool) -> Resu
 
 #[test]
 fn ends_are_a_complete_cut() {
-    for (leaves, others, length) in
-        [(1, 1, 1.0), (2, 1, 1.0), (1, 23, 5.0), (30, 23, 2.5), (40, 9, 0.5), (25, 26, 30.0)]
-    {
-        let (one, other) = (tree(leaves, length), tree(others, 2.0 * length));
+    for (leaves, length) in [(1, 1.0), (2, 1.0), (23, 5.0), (30, 2.5), (40, 0.5), (25, 30.0)] {
+        let one = tree(leaves, length);
         for device in [engine()].into_iter().chain(ORDERS.map(sanitizer)) {
             for rounds in [Some(1), Some(2), Some(4), Some(400), None] {
-                for (second, own) in [(&one, true), (&other, false)] {
-                    let left = run(&device, [&one.0, &second.0], own, rounds);
-                    assert_eq!(
-                        cut(&left, [&one, second], own),
-                        Ok(()),
-                        "{leaves}, {others}, {rounds:?}, {own}"
-                    );
-                    assert!(left.units.is_empty() || rounds.is_some_and(|rounds| rounds < 400));
-                }
+                let left = run(&device, &one.0, rounds);
+                assert_eq!(cut(&left, &one), Ok(()), "{leaves}, {rounds:?}");
+                assert!(left.units.is_empty() || rounds.is_some_and(|rounds| rounds < 400));
             }
         }
     }
@@ -201,17 +191,15 @@ fn ends_are_a_complete_cut() {
 #[test]
 fn a_cut_with_a_hole_is_noticed() {
     let one = tree(30, 2.5);
-    let whole = run(&engine(), [&one.0, &one.0], true, None);
-    let trees = [&one, &one];
-    assert_eq!(cut(&whole, trees, true), Ok(()));
-    let with = |ends: Vec<Pair>, pairs: &[Pair]| {
-        cut(&Left { ends, pairs: pairs.to_vec(), units: Vec::new() }, trees, true)
-    };
+    let whole = run(&engine(), &one.0, None);
+    assert_eq!(cut(&whole, &one), Ok(()));
+    let with =
+        |ends: Vec<Pair>, pairs: &[Pair]| cut(&Left { ends, pairs: pairs.to_vec(), units: Vec::new() }, &one);
     assert!(with(whole.ends[1..].to_vec(), &whole.pairs).is_err_and(|e| e.contains("0 pairs above")));
     let twice = [&whole.ends[..], &whole.ends[..1]].concat();
     assert!(with(twice, &whole.pairs).is_err_and(|e| e.contains("twice")));
     let end = whole.ends.iter().find(|end| end.a != end.b).expect("an end");
-    let above = bvtt::parent(*end, one.1[end.a as usize], one.1[end.b as usize], true);
+    let above = bvtt::parent(*end, one.1[end.a as usize], one.1[end.b as usize]);
     let also = [&whole.ends[..], &[above]].concat();
     assert!(with(also, &whole.pairs).is_err_and(|e| e.contains("2 pairs above")));
     assert!(with(whole.ends.clone(), &whole.pairs[1..]).is_err_and(|e| e.contains("candidates")));

@@ -80,11 +80,11 @@ fn segments_that_are_too_short_grow() {
                 let query = by(traversal, Motion::Discrete);
                 assert_eq!(found(device, &bodies, query).0, truth, "{traversal:?}");
             }
-            let mut session =
-                Session::new(sanitizer(ORDERS[0]), bodies.clone(), by(traversal, Motion::Discrete))
-                    .expect("a session");
-            session.detect().expect("an answer");
-            session.reruns()
+            let mut detector =
+                Detector::new(sanitizer(ORDERS[0]), bodies.clone(), by(traversal, Motion::Discrete))
+                    .expect("a detector");
+            detector.detect().expect("an answer");
+            detector.reruns()
         };
         for (local, segment) in [(1, 1), (3, 2), (40, 5)] {
             for shape in profiles() {
@@ -182,14 +182,14 @@ fn a_frame_launches_the_rounds_of_the_one_before() {
     let launches = |traversal| {
         let device = engine();
         let query = by(traversal, Motion::Discrete);
-        let mut session = Session::new(device.clone(), crowds()[0].clone(), query).expect("a session");
-        let frame = |session: &mut Session| {
+        let mut detector = Detector::new(device.clone(), crowds()[0].clone(), query).expect("a detector");
+        let frame = |detector: &mut Detector| {
             let before = device.launches();
-            let rounds = session.detect().expect("an answer").queues.rounds;
+            let rounds = detector.detect().expect("an answer").queues.rounds;
             (device.launches() - before, rounds)
         };
-        frame(&mut session);
-        frame(&mut session)
+        frame(&mut detector);
+        frame(&mut detector)
     };
     let [copy, view] = profiles().map(|shape| QueueShape { cores: Some(3), idle: (1, 1), ..shape });
     let whole = launches(Traversal::PerLeaf { budget: None }).0 - 1;
@@ -226,20 +226,20 @@ fn fewer_rounds_planned_than_needed_are_noticed() {
     };
     for (device, watched) in [(engine(), false), (sanitizer(ORDERS[1]), true)] {
         let query = by(Traversal::Queue(shape), Motion::Discrete);
-        let mut session =
-            Session::new(device, vec![support::still(&apart, &faces)], query).expect("a session");
-        let few = session.detect().expect("an answer").queues.rounds;
-        assert_eq!(session.detect().expect("an answer").len(), 0);
-        assert!(!watched || session.reruns() == 0);
-        session.move_to(0, support::still(&crowd, &faces)).expect("the same mesh");
-        let many = session.detect().expect("an answer");
+        let mut detector =
+            Detector::new(device, vec![support::still(&apart, &faces)], query).expect("a detector");
+        let few = detector.detect().expect("an answer").queues.rounds;
+        assert_eq!(detector.detect().expect("an answer").len(), 0);
+        assert!(!watched || detector.reruns() == 0);
+        detector.move_to(0, support::still(&crowd, &faces)).expect("the same mesh");
+        let many = detector.detect().expect("an answer");
         assert_eq!(many.len(), 100 * 99 / 2);
-        let reruns = session.reruns();
-        assert_eq!(session.detect().expect("an answer").hash(), many.hash());
+        let reruns = detector.reruns();
+        assert_eq!(detector.detect().expect("an answer").hash(), many.hash());
         // Under the sanitizer the same frame takes the same rounds; elsewhere blocks run dry sooner or later.
         if watched {
             assert!(many.queues.rounds > few + 2 && reruns > 0, "{few}, {:?}", many.queues);
-            assert_eq!(session.reruns(), reruns, "now the plan is long enough");
+            assert_eq!(detector.reruns(), reruns, "now the plan is long enough");
         }
     }
 }
@@ -257,7 +257,7 @@ fn sizes_that_cannot_be_are_refused() {
         QueueShape { idle: (3, 2), ..ok },
     ] {
         let query = by(Traversal::Queue(shape), Motion::Discrete);
-        let error = Session::new(engine(), vec![single()], query).map(|_| ()).expect_err("refused");
+        let error = Detector::new(engine(), vec![single()], query).map(|_| ()).expect_err("refused");
         assert_eq!(error.exit_code(), 2, "{shape:?}: {error}");
     }
     let most = StealShape::MOST_POOL;

@@ -9,7 +9,8 @@ pub use data::data;
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Bv, FrontShape, QueueShape, Refit, StealShape, Traversal};
-use nearmiss::{Device, Query, Session};
+use nearmiss::scene::Scene;
+use nearmiss::{Detector, Device, Query};
 use std::io::Read;
 
 /// A mesh of the public test data.
@@ -64,9 +65,14 @@ pub fn ways(query: Query) -> impl Iterator<Item = Query> {
 
 /// One answer on one device.
 pub fn ask(device: Device, bodies: Vec<Body>, query: Query) -> nearmiss::Contacts {
-    let mut session = Session::new(device, bodies, query).expect("a session");
-    let contacts = session.detect().expect("an answer");
-    session.check_trees().expect("sound trees");
+    ask_scene(device, bodies, query)
+}
+
+/// The same, of any scene.
+pub fn ask_scene(device: Device, scene: impl Into<Scene>, query: Query) -> nearmiss::Contacts {
+    let mut detector = Detector::new(device, scene, query).expect("a detector");
+    let contacts = detector.detect().expect("an answer");
+    detector.check_trees().expect("sound trees");
     contacts
 }
 

@@ -7,10 +7,11 @@ use crate::args::DetectArgs;
 use crate::output::{Target, print, say};
 use crate::progress::during;
 use crate::report::{self, FileFaces, Report};
+use nearmiss::Detector;
 use nearmiss::contacts::Contacts;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh};
-use nearmiss::pipeline::{Session, Stages};
+use nearmiss::pipeline::Stages;
 use nearmiss::query::{Motion, Query, Traversal};
 use nearmiss::words::counted;
 use std::path::PathBuf;
@@ -74,21 +75,21 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
     if !query.solver().is_certain() {
         say(&format!("the solver is {}", query.solver().promise()));
     }
-    let mut session = during("building", || Session::new(device.clone(), bodies, query))?;
+    let mut detector = during("building", || Detector::new(device.clone(), bodies, query))?;
     let often = if args.only.is_some() { 1 } else { args.repeat };
-    let (contacts, runs) = during("detecting", || repeated(&mut session, often))?;
-    let mut summary = session.summary(&contacts);
+    let (contacts, runs) = during("detecting", || repeated(&mut detector, often))?;
+    let mut summary = detector.summary(&contacts);
     summary.ms = median(&runs);
     if let Some(stage) = args.only {
-        let times = during("repeating a stage", || session.repeat_stage(stage, args.repeat))?;
+        let times = during("repeating a stage", || detector.repeat_stage(stage, args.repeat))?;
         *summary.ms.of_mut(stage) = middle(times);
     }
-    let faces = args.file_faces.then(|| FileFaces::of(session.bodies()));
-    let moves = notes::Moves::of(session.bodies());
-    let coincident = notes::coincident(session.bodies(), &contacts);
-    let again = (query.motion == Motion::Earliest).then(|| session.bodies().to_vec());
+    let faces = args.file_faces.then(|| FileFaces::of(detector.scene().bodies()));
+    let moves = notes::Moves::of(detector.scene().bodies());
+    let coincident = notes::coincident(detector.scene().bodies(), &contacts);
+    let again = (query.motion == Motion::Earliest).then(|| detector.scene().bodies().to_vec());
     // What it holds makes room.
-    drop(session);
+    drop(detector);
     let pairs_at_start = match again {
         Some(bodies) => during("looking at the start", || notes::at_start(device, bodies))?,
         None => None,
@@ -108,18 +109,18 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
 }
 
 /// The answer, and the times of each run; of several runs the first only warms up.
-fn repeated(session: &mut Session, repeat: u32) -> Result<(Contacts, Vec<Stages>), Error> {
-    let keeps_front = matches!(session.query().traversal, Some(Traversal::Front(_)));
-    let mut contacts = session.detect()?;
+fn repeated(detector: &mut Detector, repeat: u32) -> Result<(Contacts, Vec<Stages>), Error> {
+    let keeps_front = matches!(detector.query().traversal, Some(Traversal::Front(_)));
+    let mut contacts = detector.detect()?;
     let mut runs = vec![contacts.stages];
     if repeat > 1 {
         runs.clear();
         for _ in 0..repeat {
             // A tree built anew would forget the front.
             if !keeps_front {
-                session.rebuild()?;
+                detector.rebuild()?;
             }
-            contacts = session.detect()?;
+            contacts = detector.detect()?;
             runs.push(contacts.stages);
         }
     }

@@ -1,10 +1,10 @@
 //! What a user should know about an answer that is right and says little.
 
+use nearmiss::Detector;
 use nearmiss::contacts::{Answer, Contacts};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
-use nearmiss::pipeline::Session;
 use nearmiss::query::{Motion, Query};
 use nearmiss::words::counted;
 
@@ -37,7 +37,7 @@ impl Moves {
 /// # Errors
 /// Those of the device, but for memory.
 pub fn at_start(device: Device, bodies: Vec<Body>) -> Result<Option<usize>, Error> {
-    let found = Session::new(device, bodies, Query::of(Motion::Discrete)).and_then(|mut all| all.detect());
+    let found = Detector::new(device, bodies, Query::of(Motion::Discrete)).and_then(|mut all| all.detect());
     match found {
         Ok(contacts) => Ok(Some(contacts.len())),
         Err(Error::OutOfMemory { .. }) => Ok(None),

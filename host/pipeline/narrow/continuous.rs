@@ -8,7 +8,7 @@ use crate::pipeline::below_precision::{self, BelowPrecision};
 use crate::pipeline::launch;
 use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{Counter, GrowableOutput, List};
-use crate::pipeline::order::{self, Order};
+use crate::pipeline::order::Order;
 use crate::pipeline::precision::Precision;
 use crate::query::{Motion, Query, Solver};
 use nearmiss_kernels::abi::{CullArgs, Facet, FeaturesArgs, Hit, Pair, SolveArgs, Span, counter};
@@ -95,7 +95,7 @@ impl Continuous {
             below_precision: None,
             earliest: earliest.then(|| device.buffer(1)).transpose()?,
             ordered: (device.is_gpu() && !earliest)
-                .then(|| Order::new(device, layout, order::turn(layout), hits[0] / 4))
+                .then(|| Order::new(device, layout, hits[0] / 4))
                 .transpose()?,
         })
     }
@@ -208,7 +208,10 @@ impl Continuous {
     fn order<R: Precision>(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
         match &mut self.ordered {
             None => Ok(()),
-            Some(order) => order.run(given.device, &self.vf_hits, Some(&self.ee_hits), given.counters),
+            Some(order) => {
+                let given_to = (given.bodies, given.counters);
+                order.run(given.device, &self.vf_hits, Some(&self.ee_hits), given_to)
+            }
         }
     }
 

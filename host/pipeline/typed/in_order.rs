@@ -4,7 +4,7 @@
 use super::*;
 use crate::contacts::Contacts;
 use crate::device::emulator::{Emulator, Mode};
-use crate::pipeline::order::{Order, turn};
+use crate::pipeline::order::Order;
 use crate::samples;
 use nearmiss_kernels::bv::Aabb;
 
@@ -17,18 +17,18 @@ fn answers(
 ) -> Vec<Contacts> {
     let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
     let query = Query { tolerance: Some(1e-3), ..Query::of(motion) };
-    let layout = Layout::new(bodies, motion != Motion::Discrete);
+    let layout = Arc::new(Layout::new(bodies, motion != Motion::Discrete));
     let given = (query, Axes::PCA);
     let mut pipeline =
-        TypedPipeline::<f32, Aabb>::new(device.clone(), bodies, &layout, given).expect("memory");
+        TypedPipeline::<f32, Aabb>::new(device.clone(), bodies, layout.clone(), given).expect("memory");
     if device_orders {
         // With less room than there are contacts: the list grows.
         match &mut pipeline.narrow {
             Narrow::Discrete { ordered, .. } => {
-                *ordered = Some(Box::new(Order::new(&device, &layout, u32::MAX, 10).expect("memory")));
+                *ordered = Some(Box::new(Order::new(&device, &layout, 10).expect("memory")));
             }
             Narrow::Continuous(c) => {
-                c.ordered = Some(Order::new(&device, &layout, turn(&layout), 10).expect("memory"));
+                c.ordered = Some(Order::new(&device, &layout, 10).expect("memory"));
             }
         }
     }

@@ -4,12 +4,14 @@ use super::*;
 use crate::device::emulator::{Emulator, Mode};
 use crate::query::{Bv, Refit, Solver};
 use crate::samples::soup;
+use crate::scene::Scene;
 use nearmiss_kernels::bv::{Aabb, Linear, Obb};
 
 /// How many pairs of random triangles certainly come within a tenth, with volumes that know of it or do not.
 fn certain<V: Kernels>(axes: Axes, refit: Refit, told: bool) -> usize {
     let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
-    let bodies = [soup(60, 5, true)];
+    let scene = Scene::from(soup(60, 5, true));
+    let bodies = scene.bodies();
     let query = Query {
         solver: Some(Solver::CertifiedF64),
         refit: Some(refit),
@@ -17,11 +19,11 @@ fn certain<V: Kernels>(axes: Axes, refit: Refit, told: bool) -> usize {
         separation: Some(0.1),
         ..Query::of(Motion::Continuous)
     };
-    let layout = Layout::new(&bodies, true);
+    let layout = Arc::new(Layout::new(bodies, true));
     let mut pipeline =
-        TypedPipeline::<f32, V>::new(device, &bodies, &layout, (query, axes)).expect("a pipeline");
+        TypedPipeline::<f32, V>::new(device, bodies, layout, (query, axes)).expect("a pipeline");
     if !told {
-        pipeline.bodies.iter_mut().for_each(|(_, volumes)| volumes.margin = 0.0);
+        pipeline.forest.volumes.margin = 0.0;
     }
     pipeline.construct().expect("trees");
     let (found, _) = pipeline.frame().expect("a frame");

@@ -11,13 +11,13 @@ use nearmiss_kernels::abi::counter;
 /// Stages again, on what the last frame left.
 pub trait Again {
     /// Milliseconds of each of `times` runs of a stage. What it reads must be there: volumes of the leaves for `Refit`,
-    /// a whole frame for `Traverse`, `Narrow` and `Order`. See [`crate::pipeline::Session::repeat_stage`].
+    /// a whole frame for `Traverse`, `Narrow` and `Order`. See [`crate::pipeline::Detector::repeat_stage`].
     ///
     /// # Errors
     /// Those of the device.
     fn repeat(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error>;
     /// The narrow stage once more, step by step: names and milliseconds. See
-    /// [`crate::pipeline::Session::narrow_steps`].
+    /// [`crate::pipeline::Detector::narrow_steps`].
     ///
     /// # Errors
     /// Those of the device.

@@ -83,7 +83,6 @@ impl<V: Kernels> Walk<V> for Front {
         let flags = given.flags | FRONT;
         let given = WalkContext { ends: self.ends.span(), flags, ..*given };
         let State::Kept { count, .. } = self.state else { return self.queue.launch(&given) };
-        let (queries, target) = (&given.bodies[0], &given.bodies[given.bodies.len() - 1]);
         let blocks = given.device.blocks_striding::<V::Front>(count as usize);
         let (front, flags) = (self.front.span(), if self.prunes::<V>() { PRUNE } else { 0 });
         self.queue.launch_from(&given, &|units, unit_count| {
@@ -92,8 +91,7 @@ impl<V: Kernels> Walk<V> for Front {
                 front,
                 units,
                 unit_count,
-                query_parents: queries.0.pair_parents.span(),
-                node_parents: target.0.pair_parents.span(),
+                pair_parents: given.forest.tree.pair_parents.span(),
                 count,
                 flags,
             };

@@ -1,4 +1,4 @@
-//! Traverse: the ways from a tree (or two) to candidates. Each is a strategy with its own memory; all give one set.
+//! Traverse: the ways from the trees to candidates. Each is a strategy with its own memory; all give one set.
 
 mod front;
 mod per_leaf;
@@ -6,25 +6,25 @@ mod queue;
 mod segments;
 mod steal;
 
+use super::forest::Forest;
 use super::list::GrowableOutput;
-use super::tree::Tree;
-use super::volumes::{Kernels, Volumes};
+use super::volumes::Kernels;
 use crate::device::Device;
 use crate::error::Error;
 use crate::query::{Query, Traversal};
 use front::Front;
-use nearmiss_kernels::abi::{KEEP_ADJACENT, Pair, PairArgs, SELF, Span};
+use nearmiss_kernels::abi::{KEEP_ADJACENT, Pair, PairArgs, Span};
 use nearmiss_kernels::entry::Entry;
 use per_leaf::PerLeaf;
 use queue::Queue;
 use steal::Steal;
 
-/// What a walk is given: the machine, one body or two, and where candidates go.
+/// What a walk is given: the machine, the trees, and where candidates go.
 pub struct WalkContext<'a, V> {
     /// The machine.
     pub device: &'a Device,
-    /// A tree and its volumes, one a body.
-    pub bodies: &'a [(Tree, Volumes<V>)],
+    /// The trees and their volumes.
+    pub forest: &'a Forest<V>,
     /// Vertex indices of every triangle.
     pub faces: Span<[u32; 3]>,
     /// Out: candidate triangle pairs.
@@ -33,17 +33,16 @@ pub struct WalkContext<'a, V> {
     pub ends: Span<Pair>,
     /// Counters, see [`nearmiss_kernels::abi::counter`].
     pub counters: Span<u64>,
-    /// [`SELF`], [`KEEP_ADJACENT`], [`FRONT`](nearmiss_kernels::abi::FRONT).
+    /// [`KEEP_ADJACENT`], [`GRAFTED`](nearmiss_kernels::abi::GRAFTED), [`FRONT`](nearmiss_kernels::abi::FRONT).
     pub flags: u32,
 }
 
 impl<V: Kernels> WalkContext<'_, V> {
     /// What a walk by pairs of nodes is told, with queues of `local` units on chip.
     fn pair_args(&self, local: u32) -> PairArgs<V> {
-        let (queries, target) = (&self.bodies[0], &self.bodies[self.bodies.len() - 1]);
         PairArgs {
-            queries: queries.1.nodes.span(),
-            nodes: target.1.nodes.span(),
+            nodes: self.forest.volumes.nodes.span(),
+            filters: self.forest.filters(),
             faces: self.faces,
             pairs: self.pairs,
             ends: self.ends,
@@ -111,10 +110,9 @@ pub fn walk<V: Kernels>(device: &Device, query: &Query, triangles: usize) -> Res
     })
 }
 
-/// What a walk is told by flags.
-pub fn flags(query: &Query, bodies: usize) -> u32 {
-    let own = if bodies == 1 { SELF } else { 0 };
+/// What a walk is told by flags of a query.
+pub fn flags(query: &Query) -> u32 {
     // A continuous query needs adjacent pairs too: their features without a common vertex may meet.
     let adjacent = query.adjacent || query.motion != crate::query::Motion::Discrete;
-    own | if adjacent { KEEP_ADJACENT } else { 0 }
+    if adjacent { KEEP_ADJACENT } else { 0 }
 }

@@ -28,12 +28,11 @@ impl PerLeaf {
 
 impl<V: Kernels> Walk<V> for PerLeaf {
     fn launch(&mut self, given: &WalkContext<V>) -> Result<(), Error> {
-        let (queries, target) = (&given.bodies[0], &given.bodies[given.bodies.len() - 1]);
-        let device = given.device;
+        let (forest, device) = (given.forest, given.device);
         let mut args = TraverseArgs {
-            queries: queries.1.nodes.span(),
-            query_leaves: queries.0.leaf_nodes.span(),
-            nodes: target.1.nodes.span(),
+            nodes: forest.volumes.nodes.span(),
+            leaf_nodes: forest.tree.leaf_nodes.span(),
+            filters: forest.filters(),
             faces: given.faces,
             units: Span::EMPTY,
             spilled: self.units.as_ref().map_or(Span::EMPTY, |units| units[0].span()),
@@ -44,7 +43,7 @@ impl<V: Kernels> Walk<V> for PerLeaf {
             budget: self.budget.unwrap_or(u32::MAX),
             flags: given.flags,
         };
-        let leaves = queries.0.leaves();
+        let leaves = forest.tree.leaves();
         let blocks = if device.is_gpu() {
             device.blocks_for::<V::Leaves>(leaves)
         } else {

@@ -1,6 +1,9 @@
 //! One argument block for each kernel: what it is launched with, by value.
 
-use super::{Inner, LeafPlace, Link, Merge, Node, Pair, Point, Span, Treelet, Unit, VertexMotion};
+use super::{
+    BodyRecord, FilterArgs, Inner, LeafPlace, Link, Merge, Node, NodeFilter, Pair, Point, Span, TreeBody,
+    Treelet, Unit, VertexMotion,
+};
 use crate::bv::Axes;
 use crate::math::Real;
 use bytemuck::{Pod, Zeroable};
@@ -40,16 +43,18 @@ arguments! {
         frames: Positions<R>,
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
-        /// The body's first triangle.
-        first: u32,
-        /// How many triangles the body has.
-        count: u32,
-        /// Six ordered keys: upper x, y, z, and lower x, y, z (complemented, so that all are maxima).
+        /// The tree's bodies.
+        bodies: Span<TreeBody>,
+        /// Six ordered keys a body: upper x, y, z, and lower x, y, z (complemented, so that all are maxima).
         bounds: Span<u64>,
         /// Out: Morton code of each triangle's centre, above the triangle.
         items: Span<u64>,
         /// Out: counts of the codes' lowest bytes.
         tiles: Tiles,
+        /// How many triangles the bodies have.
+        count: u32,
+        /// Nothing.
+        pad: u32,
     }
     /// How often each digit comes in each tile of a list, see [`crate::sort`].
     Tiles {
@@ -102,6 +107,10 @@ arguments! {
         leaf_nodes: Span<u32>,
         /// Out: the first leaf below each pair of siblings; empty where nobody asks.
         firsts: Span<u32>,
+        /// Out: whose triangles lie below each node; empty where all are of one body.
+        filters: Span<NodeFilter>,
+        /// All bodies of the scene; empty where there are no filters.
+        bodies: Span<BodyRecord>,
         /// Out: the leaves' places; empty where nobody asks for treelets, as the next two are.
         leaf_places: Span<LeafPlace>,
         /// Out, zeroed before. For each chunk of leaves: how many leaves there are from the first on that begins a subtree of
@@ -111,8 +120,8 @@ arguments! {
         tops: Span<u64>,
         /// How many leaves.
         leaves: u32,
-        /// Added to a triangle's index in its body.
-        first: u32,
+        /// The root's index; its children follow it.
+        root: u32,
     }
     /// `construct_treelets`: what a refit by treelets needs to know of a tree.
     PlanArgs {
@@ -140,8 +149,8 @@ arguments! {
         top_starts: Span<u32>,
         /// How many leaves.
         leaves: u32,
-        /// Nothing.
-        pad: u32,
+        /// The root's index.
+        root: u32,
     }
     /// `fit`: the volumes of the leaves.
     FitArgs<R: Real, V: Pod> {
@@ -166,7 +175,7 @@ arguments! {
         frames: Positions<R>,
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
-        /// Triangles in leaf order, counted from the body's first: the lower halves.
+        /// Triangles in leaf order: the lower halves.
         triangles: Span<u64>,
         /// The tree.
         links: Span<Link>,
@@ -176,8 +185,8 @@ arguments! {
         firsts: Span<u32>,
         /// Out: the nodes.
         nodes: Span<Node<V>>,
-        /// The body's first triangle.
-        first: u32,
+        /// The root's index.
+        root: u32,
         /// How much the volumes grow: half of the distance within which pairs are listed; 0 for touching alone.
         margin: f32,
     }
@@ -241,17 +250,17 @@ arguments! {
         nodes: Span<Node<V>>,
         /// Which axes merged oriented boxes take, see [`crate::bv::Axes`].
         axes: Axes,
-        /// Nothing.
-        pad: u32,
+        /// The root's index.
+        root: u32,
     }
     /// `traverse_leaves`, `traverse_units`: leaf against tree.
     TraverseArgs<V: Pod> {
-        /// The queries' tree.
-        queries: Span<Node<V>>,
-        /// Each query leaf's node.
-        query_leaves: Span<u32>,
-        /// The tree that is walked.
+        /// The tree.
         nodes: Span<Node<V>>,
+        /// The node of each leaf that walks.
+        leaf_nodes: Span<u32>,
+        /// Which pairs are asked.
+        filters: FilterArgs,
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
         /// Units to walk (`traverse_units`).
@@ -268,15 +277,15 @@ arguments! {
         spilled_at: u32,
         /// Steps of a walk before it spills the rest of its stack.
         budget: u32,
-        /// Bits: [`SELF`], [`KEEP_ADJACENT`].
+        /// Bits: [`KEEP_ADJACENT`], [`GRAFTED`].
         flags: u32,
     }
 }
 
-/// [`TraverseArgs::flags`]: one mesh against itself; each pair is found once, by its earlier leaf.
-pub const SELF: u32 = 1;
 /// [`TraverseArgs::flags`]: pairs that share a vertex are emitted too.
-pub const KEEP_ADJACENT: u32 = 2;
+pub const KEEP_ADJACENT: u32 = 1;
+/// [`TraverseArgs::flags`]: below the root lie a tree that does not change, whose pairs nobody asks for, and one that does.
+pub const GRAFTED: u32 = 2;
 
 /// The counters of a frame. Each is the exact demand for its list, also where the list was too short.
 pub mod counter {

@@ -8,6 +8,7 @@ mod narrow;
 mod order;
 mod queues;
 mod record;
+mod scene;
 mod span;
 pub mod stamp;
 
@@ -16,4 +17,5 @@ pub use narrow::*;
 pub use order::*;
 pub use queues::*;
 pub use record::*;
+pub use scene::*;
 pub use span::Span;

@@ -1,6 +1,6 @@
 //! Contacts into canonical order: what they are ordered by, and the argument block.
 
-use super::{Hit, Pair, Span, Tiles};
+use super::{BodyRecord, Hit, Pair, Span, Tiles};
 use bytemuck::{Pod, Zeroable};
 
 /// What contacts are ordered by.
@@ -32,19 +32,17 @@ arguments! {
         items: Span<u64>,
         /// Counts of the keys' lowest bytes.
         tiles: Tiles,
+        /// The bodies; empty where no contact has a first feature of a later body than its second's.
+        bodies: Span<BodyRecord>,
         /// Counters, see [`counter`](super::counter).
         counters: Span<u64>,
         /// Which counter tells how many contacts the first list has.
         first_at: u32,
         /// The same of the second.
         second_at: u32,
-        /// First features of the first list from here on are of the second body.
-        turn: u32,
         /// Bits of a feature.
         bits: u32,
         /// Bits of a number.
         number_bits: u32,
-        /// Zero.
-        pad: u32,
     }
 }

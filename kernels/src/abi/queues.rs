@@ -1,15 +1,15 @@
 //! Argument blocks of the traversals by pairs of nodes, and of their balance.
 
-use super::{Node, Pair, Span};
+use super::{FilterArgs, Node, Pair, Span};
 use bytemuck::{Pod, Zeroable};
 
 arguments! {
     /// What every traversal by pairs of nodes is given.
     PairArgs<V: Pod> {
-        /// The first tree.
-        queries: Span<Node<V>>,
-        /// The second tree; of one mesh against itself the same.
+        /// The tree.
         nodes: Span<Node<V>>,
+        /// Which pairs are asked.
+        filters: FilterArgs,
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
         /// Out: candidate triangle pairs.
@@ -18,14 +18,14 @@ arguments! {
         ends: Span<Pair>,
         /// Counters, see [`counter`](super::counter).
         counters: Span<u64>,
-        /// Bits: [`SELF`](super::SELF), [`KEEP_ADJACENT`](super::KEEP_ADJACENT), [`FRONT`].
+        /// Bits: [`KEEP_ADJACENT`](super::KEEP_ADJACENT), [`GRAFTED`](super::GRAFTED), [`FRONT`].
         flags: u32,
         /// Units that a block's own queue may hold, at least 1.
         local: u32,
     }
     /// `traverse_queue`: a round of work queues, one a block.
     QueueArgs<V: Pod> {
-        /// The trees, and where candidates go.
+        /// The tree, and where candidates go.
         to: PairArgs<V>,
         /// Units of this round.
         units: Span<Pair>,
@@ -56,7 +56,7 @@ arguments! {
     }
     /// `traverse_front`: a pass over the last frame's front.
     FrontArgs<V: Pod> {
-        /// The trees, and where candidates and ends go.
+        /// The tree, and where candidates and ends go.
         to: PairArgs<V>,
         /// Where the last descent ended.
         front: Span<Pair>,
@@ -64,10 +64,8 @@ arguments! {
         units: Span<Pair>,
         /// How many they are.
         unit_count: Span<u64>,
-        /// The parent of each pair of siblings of the first tree.
-        query_parents: Span<u32>,
-        /// The same of the second tree.
-        node_parents: Span<u32>,
+        /// The parent of each pair of siblings.
+        pair_parents: Span<u32>,
         /// Pairs of the front.
         count: u32,
         /// Bits: [`PRUNE`].
@@ -94,7 +92,7 @@ arguments! {
     }
     /// `traverse_steal`: work queues that help each other out within one launch.
     StealArgs<V: Pod> {
-        /// The trees, and where candidates go.
+        /// The tree, and where candidates go.
         to: PairArgs<V>,
         /// A segment for each block: units that its own queue had no room for.
         units: Span<Pair>,

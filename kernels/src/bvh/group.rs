@@ -21,10 +21,8 @@ pub struct GroupPoints<'a, R: Real, L> {
     pub frames: Positions<R>,
     /// Vertex indices of every triangle.
     pub faces: Span<[u32; 3]>,
-    /// Triangles in leaf order, counted from `base`: the lower halves.
+    /// Triangles in leaf order: the lower halves.
     pub triangles: Span<u64>,
-    /// The body's first triangle.
-    pub base: u32,
     /// The first leaf and the last.
     pub leaves: [u32; 2],
 }
@@ -32,7 +30,7 @@ pub struct GroupPoints<'a, R: Real, L> {
 impl<R: Real, L: Lane> GroupPoints<'_, R, L> {
     #[inline(always)]
     fn face(&self, leaf: u32) -> [u32; 3] {
-        self.lane.read(self.faces, self.base + self.lane.read(self.triangles, leaf) as u32)
+        self.lane.read(self.faces, self.lane.read(self.triangles, leaf) as u32)
     }
 }
 

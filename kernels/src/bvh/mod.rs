@@ -1,9 +1,10 @@
 //! The level-ordered tree: what holds of it, and a checker that names what does not.
 
+pub mod filter;
 pub mod group;
 pub mod leaf;
 
-use crate::abi::{LEAF, Link, Node, ROOT};
+use crate::abi::{LEAF, Link, Node, NodeFilter};
 use crate::bv::{Axes, Volume};
 
 /// Bits of a triangle's Morton code: four passes of the radix sort.
@@ -53,6 +54,11 @@ pub enum Violation {
         /// The parent.
         node: u32,
     },
+    /// T8: a node does not tell whose triangles lie below it.
+    Filter {
+        /// The node.
+        node: u32,
+    },
     /// T7: a node's volume is not the one fitted to the points below it, a leaf's to its triangle, or its links are not the tree's.
     Fit {
         /// The node.
@@ -61,7 +67,7 @@ pub enum Violation {
 }
 
 /// A tree on the host, to be checked.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub struct Tree<'a> {
     /// The nodes; the first is not used.
     pub links: &'a [Link],
@@ -71,25 +77,28 @@ pub struct Tree<'a> {
     pub levels: &'a [u32],
     /// Each leaf's node.
     pub leaf_nodes: &'a [u32],
-    /// The body's first triangle.
-    pub first: u32,
+    /// The root's index: nodes before it are not used.
+    pub root: u32,
+    /// Triangles by their place among those of the tree's bodies; `None` for no triangle of theirs.
+    pub place: &'a dyn Fn(u32) -> Option<usize>,
 }
 
-/// Checks T1 to T5 (see [`crate::stage::construct::tree`]). `seen` is one false flag for each triangle of the body.
+/// Checks T1 to T5 (see [`crate::stage::construct::tree`]). `seen` is one false flag for each triangle of the bodies.
 /// Cost: linear.
 ///
 /// # Errors
 /// The first violation.
 pub fn check(tree: &Tree, seen: &mut [bool]) -> Result<(), Violation> {
-    let Tree { links, pair_parents, levels, leaf_nodes, first } = *tree;
+    let Tree { links, pair_parents, levels, leaf_nodes, root, place } = *tree;
     let leaves = leaf_nodes.len();
     let count = levels.first().map_or(0, |&n| n as usize);
     let starts = levels.get(1..count + 2).ok_or(Violation::Levels)?;
     let ends = (starts.first(), starts.last());
-    if count == 0 || ends != (Some(&ROOT), Some(&(2 * leaves as u32))) || !starts.is_sorted() {
+    let end = root + 2 * leaves as u32 - 1;
+    if count == 0 || ends != (Some(&root), Some(&end)) || !starts.is_sorted() {
         return Err(Violation::Levels);
     }
-    if links.len() < 2 * leaves {
+    if links.len() < end as usize {
         return Err(Violation::Levels);
     }
     for level in 0..count {
@@ -97,11 +106,11 @@ pub fn check(tree: &Tree, seen: &mut [bool]) -> Result<(), Violation> {
         for at in starts[level]..starts[level + 1] {
             let node = links[at as usize];
             if node.is_leaf() {
-                let triangle = node.triangle().wrapping_sub(first) as usize;
                 let known = leaf_nodes.get(node.last as usize) == Some(&at);
-                if !known || seen.get(triangle) != Some(&false) {
+                let fresh = place(node.triangle()).filter(|&at| seen.get(at) == Some(&false));
+                let Some(triangle) = fresh.filter(|_| known) else {
                     return Err(Violation::Leaf { leaf: node.last });
-                }
+                };
                 seen[triangle] = true;
                 continue;
             }
@@ -132,7 +141,30 @@ pub fn check(tree: &Tree, seen: &mut [bool]) -> Result<(), Violation> {
     }
 }
 
-/// Checks T6 and T7 on a sound tree. `nodes` has as many elements as `links`; `leaf` tells the volume of a leaf from its
+/// Checks T8 on a sound tree: `filters` has as many elements as `links`; `leaf` tells whose a triangle is. Cost: linear.
+///
+/// # Errors
+/// The first violation, from the last node to the root.
+pub fn check_filters(
+    links: &[Link],
+    filters: &[NodeFilter],
+    root: u32,
+    leaf: impl Fn(u32) -> NodeFilter,
+) -> Result<(), Violation> {
+    for (at, link) in links.iter().enumerate().skip(root as usize).rev() {
+        let wanted = if link.is_leaf() {
+            leaf(link.triangle())
+        } else {
+            filters[link.link as usize].above(filters[link.link as usize + 1])
+        };
+        if filters[at] != wanted {
+            return Err(Violation::Filter { node: at as u32 });
+        }
+    }
+    Ok(())
+}
+
+/// Checks T6 and T7 on a sound tree, from its root on. `nodes` has as many elements as `links`; `leaf` tells the volume of a leaf from its
 /// triangle, `fitted` that of an inner node from its first and last leaf, if it is not a merge. Cost: a merge or a fit and a
 /// walk down a node.
 ///
@@ -141,11 +173,11 @@ pub fn check(tree: &Tree, seen: &mut [bool]) -> Result<(), Violation> {
 pub fn check_volumes<V: Volume>(
     links: &[Link],
     nodes: &[Node<V>],
-    axes: Axes,
+    (root, axes): (u32, Axes),
     leaf: impl Fn(u32) -> V,
     fitted: impl Fn(u32, u32) -> Option<V>,
 ) -> Result<(), Violation> {
-    for (at, (link, node)) in links.iter().zip(nodes).enumerate().skip(ROOT as usize) {
+    for (at, (link, node)) in links.iter().zip(nodes).enumerate().skip(root as usize) {
         let (at, mut first) = (at as u32, *link);
         while !first.is_leaf() {
             first = links[first.link as usize];

@@ -1,8 +1,8 @@
-//! The bounding volume test tree: the pairs of nodes that a traversal of two trees (or of one with itself) may come to,
+//! The bounding volume test tree: the pairs of nodes that a traversal of a tree with itself may come to,
 //! and who is whose parent there.
 //!
 //! A pair (a, b) descends into the children of one of its nodes: the one with the smaller index, which is the one nearer
-//! the root since nodes lie in level order; `a` of equals; the other where that one is a leaf. In one tree a node paired
+//! the root since nodes lie in level order; the other where that one is a leaf. A node paired
 //! with itself descends into three pairs: left with left, left with right, right with right.
 //!
 //! So every pair has one parent, and it can be told from the pair: on a path the nodes that were descended ascend, for
@@ -16,12 +16,12 @@ pub fn descends_in_a(pair: Pair, a_is_leaf: bool, b_is_leaf: bool) -> bool {
     !a_is_leaf & (b_is_leaf | (pair.a <= pair.b))
 }
 
-/// The parent of a pair, from the parents of its nodes ([`crate::abi::NONE`] for a root's); `own` for one tree with
-/// itself. Not to be asked of a pair of roots.
+/// The parent of a pair, from the parents of its nodes ([`crate::abi::NONE`] for the root's). Not to be asked of the root
+/// with itself.
 #[inline]
-pub fn parent(pair: Pair, parent_a: u32, parent_b: u32, own: bool) -> Pair {
+pub fn parent(pair: Pair, parent_a: u32, parent_b: u32) -> Pair {
     use crate::abi::NONE;
-    let together = own & (parent_a == parent_b);
+    let together = parent_a == parent_b;
     let in_a = parent_b == NONE || (parent_a != NONE && parent_a > parent_b);
     match (together, in_a) {
         (true, _) => Pair { a: parent_a, b: parent_b },

@@ -37,9 +37,9 @@ pub fn fit<R: Real, V: Volume, B: Block>(b: &mut B, a: &FitArgs<R, V>) {
 pub fn groups<R: Real, B: Block>(b: &mut B, a: &GroupsArgs<R, Obb>) {
     let stride = b.blocks() * b.lanes();
     b.phase(|l| {
-        // Pairs of siblings are numbered from 1, in the order of their parents.
-        let mut pair = 1 + l.global();
-        while (pair as u64) < a.pair_parents.len() {
+        // Pairs of siblings follow the root, in the order of their parents; as many as the first leaves below them.
+        let mut pair = a.root.div_ceil(2) + l.global();
+        while (pair as u64) < a.firsts.len() {
             let (first, last) = (l.read(a.firsts, pair), l.read(a.links, 2 * pair + 1).last);
             if last - first < GROUP {
                 let points = GroupPoints {
@@ -47,7 +47,6 @@ pub fn groups<R: Real, B: Block>(b: &mut B, a: &GroupsArgs<R, Obb>) {
                     frames: a.frames,
                     faces: a.faces,
                     triangles: a.triangles,
-                    base: a.first,
                     leaves: [first, last],
                 };
                 let link = Link { link: 2 * pair, last };

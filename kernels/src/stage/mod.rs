@@ -2,10 +2,11 @@
 //!
 //! | stage | reads | writes |
 //! | --- | --- | --- |
+//! | [`place`] | poses, uploaded positions | positions of the bodies that were moved |
 //! | [`construct`] | positions at t = 0, faces | the level-ordered tree, without volumes |
 //! | [`fit`] | positions at t = 0 and t = 1, faces | volumes of the leaves |
 //! | [`refit`] | volumes of the leaves | all volumes, a barrier between levels |
-//! | [`traverse`] | the tree (or two) | candidates: triangle pairs |
+//! | [`traverse`] | the tree | candidates: triangle pairs |
 //! | [`balance`] | the traversal's queues of work | the same units, as many in each |
 //! | [`narrow`] | candidates, positions | contacts |
 //! | [`order`] | contacts | the same in canonical order, on a GPU |
@@ -17,5 +18,6 @@ pub mod construct;
 pub mod fit;
 pub mod narrow;
 pub mod order;
+pub mod place;
 pub mod refit;
 pub mod traverse;

@@ -3,12 +3,13 @@
 //! Launch   `keys` (a grid of any size strides), a pass of [`crate::sort`] for each byte of a name, `gather` (strides).
 //! Reads    one or two lists of contacts.   Writes   one list of all, by kind, first and second feature.
 //! Before   the lists are complete. The counts of the keys' bytes are zero. Names and numbers fit 64 bits.
-//! After    The first list's contacts whose first feature is of the first body; those whose is not, by their second
-//!          feature; the second list's. No two have one name, so there is one order.
+//! After    The first list's contacts whose vertex is of the earlier body, or of the same; those whose face is, by that; the
+//!          second list's. No two have one name, so there is one order.
 //! Room     the list and the items: counted past the end, grown, run again; the host gives both the same room.
 //! Cost     a contact in (twice, once gathered) and out, 8 B an item and pass in and out; launches.
 
 use crate::abi::{Named, OrderArgs, Span, counter};
+use crate::bvh::filter::holder;
 use crate::exec::{BINS, Block, Lane};
 use crate::sort;
 use bytemuck::Pod;
@@ -29,6 +30,13 @@ fn contact<T: Pod, L: Lane>(l: &L, a: &OrderArgs<T>, first: u32, i: u32) -> T {
     if i < first { l.read(a.first, i) } else { l.read(a.second, i - first) }
 }
 
+/// Whether a vertex is of a later body than a face.
+fn turned<T: Pod, L: Lane>(l: &L, a: &OrderArgs<T>, [vertex, face]: [u32; 2]) -> bool {
+    !a.bodies.is_empty()
+        && holder(a.bodies.len(), face, |k| l.read(a.bodies, k).triangle)
+            < holder(a.bodies.len(), vertex, |k| l.read(a.bodies, k).vertex)
+}
+
 /// A key of each contact: its kind and its name, above its number.
 pub fn keys<T: Pod + Named, B: Block>(b: &mut B, a: &OrderArgs<T>) {
     let (first, all) = counts(b, a);
@@ -41,9 +49,9 @@ pub fn keys<T: Pod + Named, B: Block>(b: &mut B, a: &OrderArgs<T>) {
         }
         while i < count {
             let [x, y] = contact(l, a, first, i).name();
-            let (kind, x, y) = match (i < first, x < a.turn) {
-                (true, true) => (0u64, x, y),
-                (true, false) => (1, y, x),
+            let (kind, x, y) = match (i < first, i < first && turned(l, a, [x, y])) {
+                (true, false) => (0u64, x, y),
+                (true, true) => (1, y, x),
                 (false, _) => (2, x, y),
             };
             let name = (kind << a.bits | x as u64) << a.bits | y as u64;

@@ -1,13 +1,13 @@
-//! # Traverse: the tree (or two) → candidates
+//! # Traverse: the tree → candidates
 //! Paper    section 6.2, pairs of nodes from work queues; per-leaf walks after Karras, "Thinking parallel", 2012.
-//! Launch   `leaves`: a lane a leaf of the queries' tree, in leaf order, so neighbours walk alike. Then `units`, [`crate::abi::ROUNDS`]
+//! Launch   `leaves`: a lane a leaf (of what changes), in leaf order, so neighbours walk alike. Then `units`, [`crate::abi::ROUNDS`]
 //!          times: a lane a work unit that a longer walk left over. A grid of any size strides.
-//! Reads    nodes, two siblings at once (64 B); faces, to leave out pairs that share a vertex.
-//! Writes   candidate pairs (self: by index; between: queries first), each once, in no order.
+//! Reads    nodes, two siblings at once (64 B), and in scenes of bodies their filters (16 B); faces, to leave out pairs that share a vertex.
+//! Writes   candidate pairs, the smaller index first, each once, in no order.
 //! Before   all volumes are fitted and refitted.
-//! After    every pair of leaves whose volumes overlap is written, but for those that share a vertex index unless
-//!          [`KEEP_ADJACENT`] asks for them. In one mesh a pair is found by its earlier leaf: subtrees that end before it
-//!          are skipped.
+//! After    every pair of leaves whose volumes overlap and whose bodies are asked about is written, but for those that share
+//!          a vertex index unless [`KEEP_ADJACENT`] asks for them. A pair is found by its earlier leaf: subtrees that end
+//!          before it are skipped. With [`GRAFTED`] leaves of what does not change come last and do not walk.
 //! Room     `pairs` may be too short: the counter goes on, the host grows it and runs again. `spilled` may be too
 //!          short: then a walk goes on by itself and nothing is lost.
 //! Departs  the paper's queues hold pairs of inner nodes and are balanced between launches; here a walk that has used up
@@ -19,7 +19,7 @@ pub mod front;
 pub mod queue;
 pub mod steal;
 
-use crate::abi::{KEEP_ADJACENT, NONE, Pair, ROOT, SELF, TraverseArgs, Unit, counter};
+use crate::abi::{GRAFTED, KEEP_ADJACENT, NONE, NodeFilter, Pair, ROOT, TraverseArgs, Unit, counter};
 use crate::bv::Volume;
 use crate::exec::{Block, Lane, Slot};
 use crate::prim::adjacent::share_a_vertex;
@@ -42,6 +42,8 @@ struct Walk<V> {
     triangle: u32,
     /// The leaf's node.
     query: u32,
+    /// Its body.
+    filter: NodeFilter,
     /// Leaves before this one are not wanted.
     from: u32,
     /// Steps taken by all walks of this lane.
@@ -64,13 +66,11 @@ impl<V> Walk<V> {
 /// One walk a leaf.
 pub fn leaves<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>) {
     let root = b.load(a.nodes, ROOT);
-    run(b, a, a.query_leaves.len() as u32, |l, i, walk| {
-        start(l, a, walk, l.read(a.query_leaves, i));
-        let wanted = root.last >= walk.from && walk.volume.overlaps(&root.volume);
-        match (wanted, root.is_leaf()) {
-            (false, _) => {}
-            (true, false) => walk.next = root.link,
-            (true, true) => walk.held[0] = root.triangle(),
+    run(b, a, a.leaf_nodes.len() as u32, |l, i, walk| {
+        start(l, a, walk, l.read(a.leaf_nodes, i));
+        // Of the last leaf nothing comes later; the root of a grafted tree and another's has no volume.
+        if a.flags & GRAFTED != 0 || (root.last >= walk.from && walk.volume.overlaps(&root.volume)) {
+            walk.next = root.link;
         }
     });
 }
@@ -90,12 +90,13 @@ pub fn units<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>) {
 /// Begins the walk of the leaf at node `query`.
 #[inline]
 fn start<V: Volume, L: Lane>(l: &L, a: &TraverseArgs<V>, walk: &mut Walk<V>, query: u32) {
-    let leaf = l.read(a.queries, query);
+    let leaf = l.read(a.nodes, query);
     *walk = Walk {
         volume: leaf.volume,
         triangle: leaf.triangle(),
         query,
-        from: if a.flags & SELF != 0 { leaf.last + 1 } else { 0 },
+        filter: a.filters.of(l, query),
+        from: leaf.last + 1,
         budget: a.budget,
         ..*walk
     };
@@ -116,6 +117,7 @@ fn run<V: Volume, B: Block>(
         volume: V::zeroed(),
         triangle: 0,
         query: NONE,
+        filter: NodeFilter { who: 0, last: 0 },
         from: 0,
         steps: 0,
         budget: 0,
@@ -168,19 +170,24 @@ fn advance<V: Volume, L: Lane>(
     stack: &mut Stack,
     found: Buffer,
 ) {
-    emit(l, a, walk, found);
+    emit(l, walk, found);
     // One loop, one way out, and every lane does the same things in it: lanes of a warp stay together.
     while walk.next != NONE && walk.budget > 0 && walk.held == [NONE; 2] {
         walk.budget -= 1;
         walk.steps += 1;
         let (left, right) = (l.read(a.nodes, walk.next), l.read(a.nodes, walk.next + 1));
-        let into_left = (left.last >= walk.from) & walk.volume.overlaps(&left.volume);
-        let into_right = (right.last >= walk.from) & walk.volume.overlaps(&right.volume);
+        let mut into_left = (left.last >= walk.from) & walk.volume.overlaps(&left.volume);
+        let mut into_right = (right.last >= walk.from) & walk.volume.overlaps(&right.volume);
+        if !a.filters.nodes.is_empty() {
+            let [left, right] = [walk.next, walk.next + 1].map(|node| a.filters.of(l, node));
+            into_left &= a.filters.allows(l, walk.filter, left);
+            into_right &= a.filters.allows(l, walk.filter, right);
+        }
         walk.held = [
             if into_left & left.is_leaf() { left.triangle() } else { NONE },
             if into_right & right.is_leaf() { right.triangle() } else { NONE },
         ];
-        emit(l, a, walk, found);
+        emit(l, walk, found);
         let inner_left = into_left & !left.is_leaf();
         let inner_right = into_right & !right.is_leaf();
         if inner_left & inner_right {
@@ -196,7 +203,7 @@ fn advance<V: Volume, L: Lane>(
 
 /// Puts the hits that a walk holds into the buffer; those without room it keeps.
 #[inline]
-fn emit<V: Volume, L: Lane>(l: &L, a: &TraverseArgs<V>, walk: &mut Walk<V>, found: Buffer) {
+fn emit<V: Volume, L: Lane>(l: &L, walk: &mut Walk<V>, found: Buffer) {
     let count = (walk.held[0] != NONE) as u32 + (walk.held[1] != NONE) as u32;
     if count == 0 {
         return;
@@ -205,8 +212,7 @@ fn emit<V: Volume, L: Lane>(l: &L, a: &TraverseArgs<V>, walk: &mut Walk<V>, foun
     for held in &mut walk.held {
         if *held != NONE {
             let (mine, other) = (walk.triangle, *held);
-            let ordered = a.flags & SELF == 0 || mine < other;
-            let pair = if ordered { Pair { a: mine, b: other } } else { Pair { a: other, b: mine } };
+            let pair = Pair { a: mine.min(other), b: mine.max(other) };
             if found.put(l, place, pair) {
                 *held = NONE;
             }

@@ -1,10 +1,10 @@
 //! The funnel: how many pairs each step of a frame leaves to the next, and what it takes.
 
 use crate::tables::{Printed, digits};
+use nearmiss::Detector;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
-use nearmiss::pipeline::Session;
 use nearmiss::query::{Motion, Query};
 use serde::Serialize;
 
@@ -30,10 +30,10 @@ pub struct FunnelRow {
 /// # Errors
 /// Those of the device.
 pub fn funnel(device: &Device, name: &str, body: &Body) -> Result<Vec<FunnelRow>, Error> {
-    let mut session = Session::new(device.clone(), vec![body.clone()], Query::of(Motion::Continuous))?;
-    session.detect()?;
-    let contacts = session.detect()?;
-    let steps = session.narrow_steps()?;
+    let mut detector = Detector::new(device.clone(), vec![body.clone()], Query::of(Motion::Continuous))?;
+    detector.detect()?;
+    let contacts = detector.detect()?;
+    let steps = detector.narrow_steps()?;
     let ms = |name: &str| steps.iter().find(|step| step.0 == name).map(|step| step.1);
     let row = |step, pairs, ms| FunnelRow {
         input: name.into(),

@@ -2,9 +2,9 @@
 //! of a tree built anew for each frame.
 
 use crate::tables::{Frames, Printed, digits};
+use nearmiss::Detector;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
-use nearmiss::pipeline::Session;
 use nearmiss::query::{Bv, Motion, Query};
 use serde::Serialize;
 
@@ -45,8 +45,8 @@ pub struct RefitRow {
 pub fn refit(device: &Device, name: &str, frames: &Frames, bv: Bv) -> Result<Vec<RefitRow>, Error> {
     let bodies = frames.bodies(Motion::Continuous)?;
     let query = Query { bv: Some(bv), ..Query::of(Motion::Continuous) };
-    let mut old = Session::new(device.clone(), vec![bodies[0].clone()], query)?;
-    let mut fresh = Session::new(device.clone(), vec![bodies[0].clone()], query)?;
+    let mut old = Detector::new(device.clone(), vec![bodies[0].clone()], query)?;
+    let mut fresh = Detector::new(device.clone(), vec![bodies[0].clone()], query)?;
     let (mut rows, mut since, mut lost) = (Vec::new(), 0, 0.0);
     for body in bodies {
         old.move_to(0, body.clone())?;

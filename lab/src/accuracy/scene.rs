@@ -6,11 +6,12 @@ use super::row::Row;
 use super::truth::{Key, List};
 use crate::case::{Case, Features};
 use crate::pairs::{Options, Outcome, ask};
+use nearmiss::Detector;
 use nearmiss::contacts::{Contact, Contacts, Kind, Status};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Positions, Topology};
-use nearmiss::pipeline::{Session, mean_side};
+use nearmiss::pipeline::mean_side;
 use nearmiss::query::{Bv, Motion, Query, Solver};
 use rayon::prelude::*;
 
@@ -59,7 +60,7 @@ impl Scene {
             scene.pairs = match list {
                 Some(List::Triangles(pairs)) => pairs,
                 Some(List::Contacts(_)) => return Err(other_kind("one frame", "tri_a,tri_b")),
-                None => scene.asked(device, Query::of(Motion::Discrete))?.pairs().to_vec(),
+                None => scene.asked(device, Query::of(Motion::Discrete))?.triangles(),
             };
             return Ok(scene);
         }
@@ -93,7 +94,7 @@ impl Scene {
     }
 
     fn asked(&self, device: &Device, query: Query) -> Result<Contacts, Error> {
-        Session::new(device.clone(), vec![self.body.clone()], query)?.detect()
+        Detector::new(device.clone(), vec![self.body.clone()], query)?.detect()
     }
 
     /// Asks the scene in one way, `repeats` times after one to warm up; a row.
@@ -104,17 +105,17 @@ impl Scene {
         let motion = if self.body.is_moving() { Motion::Continuous } else { Motion::Discrete };
         let query = Query { bv, ..choice.query(motion, self.edge) };
         let held = device.bytes().0;
-        let mut session = Session::new(device.clone(), vec![self.body.clone()], query)?;
-        let mut contacts = session.detect()?;
+        let mut detector = Detector::new(device.clone(), vec![self.body.clone()], query)?;
+        let mut contacts = detector.detect()?;
         let mut times = Vec::new();
         for _ in 0..repeats.max(1) {
-            contacts = session.detect()?;
+            contacts = detector.detect()?;
             times.push((contacts.stages.total, contacts.stages.narrow));
         }
         times.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (total, narrow) = times[times.len() / 2];
         let judged = match motion {
-            Motion::Discrete => self.judge_pairs(contacts.pairs()),
+            Motion::Discrete => self.judge_pairs(&contacts.triangles()),
             _ => {
                 let found = contacts.contacts();
                 let exhausted = self.exhausted(device, &query, found)?;
@@ -242,6 +243,7 @@ mod tests {
             panic!("vertex 0 meets every face");
         };
         invented.push(Contact {
+            bodies: Default::default(),
             kind: Kind::Vf,
             a: 0,
             b: free,

@@ -109,6 +109,7 @@ impl<R: Precision> Run<'_, R> {
             frames: Positions { still: Span::EMPTY, moving: self.vertices.span() },
             faces: self.faces.span(),
             pairs: Span::EMPTY,
+            bodies: Span::EMPTY,
             counters: self.counters.span(),
         };
         let start = self.device.event()?;

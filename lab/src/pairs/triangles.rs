@@ -94,6 +94,7 @@ fn some<R: Precision>(device: &Device, mesh: &Mesh, query: Query) -> Result<Tria
             frames: abi::Positions { still: points.span(), moving: Span::EMPTY },
             faces: faces.span(),
             pairs: list.span(),
+            bodies: Span::EMPTY,
             counters: counters.span(),
         };
         let start = device.event()?;

@@ -2,11 +2,11 @@
 
 use super::report::Report;
 use crate::scene;
+use nearmiss::Detector;
 use nearmiss::contacts::Status;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::pipeline::Session;
 use nearmiss::query::{Motion, Query};
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::tri_tri::meets_exactly;
@@ -63,7 +63,7 @@ fn against_one(device: &Device, n: usize, report: &mut Report) -> Result<(), Err
         .map(|(i, _)| [0, i])
         .collect();
     let one = Body::still(Mesh::new("one", Positions::F32(one.to_vec()), vec![[0, 1, 2]])?);
-    let found = Session::new(device.clone(), vec![one, soup], Query::of(Motion::Discrete))?.detect()?;
+    let found = Detector::new(device.clone(), vec![one, soup], Query::of(Motion::Discrete))?.detect()?;
     report.asked += 1;
     report.missed += truth.len().saturating_sub(found.len()) as u64;
     if found.pairs() != truth || truth.is_empty() {
@@ -74,16 +74,17 @@ fn against_one(device: &Device, n: usize, report: &mut Report) -> Result<(), Err
 
 /// All pairs of equal triangles, in a tree that is not deep.
 fn equal(device: &Device, n: usize, report: &mut Report) -> Result<(), Error> {
-    let mut session = Session::new(device.clone(), vec![scene::identical(n)?], Query::of(Motion::Discrete))?;
-    let found = session.detect()?;
-    session.check_trees()?;
+    let mut detector =
+        Detector::new(device.clone(), vec![scene::identical(n)?], Query::of(Motion::Discrete))?;
+    let found = detector.detect()?;
+    detector.check_trees()?;
     report.asked += 1;
     let all = n * (n - 1) / 2;
     let levels = n.next_power_of_two().trailing_zeros() as usize + 1;
     report.missed += (all - found.len().min(all)) as u64;
-    if found.len() != all || session.depths() != [levels] {
+    if found.len() != all || detector.depths() != [levels] {
         report.fail(|| {
-            format!("X43 {n} equal: {} pairs, not {all}; depth {:?}", found.len(), session.depths())
+            format!("X43 {n} equal: {} pairs, not {all}; depth {:?}", found.len(), detector.depths())
         });
     }
     Ok(())
@@ -103,9 +104,9 @@ fn ties(device: &Device, n: usize, report: &mut Report) -> Result<(), Error> {
     let fallen: Vec<[f32; 3]> = tips.iter().map(|p| [p[0], p[1], p[2] - 2.0]).collect();
     let bodies = vec![Body::still(mesh(&floor)?), Body::moving(mesh(&tips)?, mesh(&fallen)?)?];
     let asked = |motion| Query { tolerance: Some(1e-5), ..Query::of(motion) };
-    let mut session = Session::new(device.clone(), bodies.clone(), asked(Motion::Continuous))?;
-    let (found, again) = (session.detect()?, session.detect()?);
-    let earliest = Session::new(device.clone(), bodies, asked(Motion::Earliest))?.detect()?.earliest_toi();
+    let mut detector = Detector::new(device.clone(), bodies.clone(), asked(Motion::Continuous))?;
+    let (found, again) = (detector.detect()?, detector.detect()?);
+    let earliest = Detector::new(device.clone(), bodies, asked(Motion::Earliest))?.detect()?.earliest_toi();
     report.asked += 2;
     let first = found.contacts().first().map(|c| c.toi);
     let alike = |c: &nearmiss::Contact| Some(c.toi) == first && c.status == Status::Certified && c.toi <= 0.5;
@@ -121,9 +122,10 @@ fn ties(device: &Device, n: usize, report: &mut Report) -> Result<(), Error> {
 fn beyond_32_bits(device: &Device, report: &mut Report) -> Result<(), Error> {
     const N: usize = 92_683;
     let needed = (N * (N - 1) / 2 * size_of::<nearmiss_kernels::abi::Pair>()) as u64;
-    let mut session = Session::new(device.clone(), vec![scene::identical(N)?], Query::of(Motion::Discrete))?;
+    let mut detector =
+        Detector::new(device.clone(), vec![scene::identical(N)?], Query::of(Motion::Discrete))?;
     report.asked += 1;
-    match session.detect() {
+    match detector.detect() {
         Err(Error::OutOfMemory { asked, .. }) if asked == needed => {}
         Err(error) => report.fail(|| format!("X45: {needed} bytes are needed, but: {error}")),
         Ok(found) => report.fail(|| format!("X45: {} pairs were found", found.len())),

@@ -1,11 +1,11 @@
 //! A tree that is refitted ten thousand times: does it still hold its mesh, and find what a new one finds?
 
 use super::report::Report;
+use nearmiss::Detector;
 use nearmiss::contacts::Contacts;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::pipeline::Session;
 use nearmiss::pipeline::enclose::Enclosed;
 use nearmiss::pipeline::volumes::Kernels;
 use nearmiss::query::{Bv, Motion, Query, Refit};
@@ -78,7 +78,7 @@ fn holds<V: Kernels + Contain>(
 }
 
 /// Refits a small mesh in motion so often, in each volume, and judges in exact arithmetic whether every node holds every
-/// corner below it; and asks a session that goes the same way, whose contacts must now and then be those of a new one.
+/// corner below it; and asks a detector that goes the same way, whose contacts must now and then be those of a new one.
 ///
 /// # Errors
 /// Those of the device.
@@ -91,15 +91,15 @@ pub fn ask_refits(device: &Device, frames: u32) -> Result<Report, Error> {
     holds::<Obb>(device, frames, (WAYS[3], Axes::CHILD), all, "obb-child")?;
     for (bv, refit) in Bv::ALL.into_iter().zip(WAYS) {
         for motion in [Motion::Discrete, Motion::Continuous] {
-            // The default tolerance hangs on where a session begins.
+            // The default tolerance hangs on where a detector begins.
             let tolerance = (motion == Motion::Continuous).then_some(1e-5);
             let query = Query { bv: Some(bv), refit: Some(refit), tolerance, ..Query::of(motion) };
-            let mut session = Session::new(device.clone(), vec![body(0)?], query)?;
+            let mut detector = Detector::new(device.clone(), vec![body(0)?], query)?;
             for k in (APART..=frames).step_by(APART as usize) {
                 // The frames in between are refitted by `holds`; here the tree jumps.
-                session.move_to(0, body(k)?)?;
-                let found: Contacts = session.detect()?;
-                let fresh = Session::new(device.clone(), vec![body(k)?], query)?.detect()?;
+                detector.move_to(0, body(k)?)?;
+                let found: Contacts = detector.detect()?;
+                let fresh = Detector::new(device.clone(), vec![body(k)?], query)?.detect()?;
                 report.asked += 1;
                 report.unresolved += found.unresolved;
                 if found.answer != fresh.answer {
@@ -127,8 +127,8 @@ mod tests {
     fn the_ribbon_asks_something() {
         let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
         for motion in [Motion::Discrete, Motion::Continuous] {
-            let found = Session::new(device.clone(), vec![body(500).expect("a body")], Query::of(motion));
-            let found = found.expect("a session").detect().expect("an answer");
+            let found = Detector::new(device.clone(), vec![body(500).expect("a body")], Query::of(motion));
+            let found = found.expect("a detector").detect().expect("an answer");
             assert!(found.len() > 3, "{motion:?}: {}", found.len());
         }
         let at = |k| ribbon(k).into_iter().map(Vec3).collect::<Vec<_>>();

@@ -2,17 +2,17 @@
 
 use super::report::Report;
 use super::scenes::{Numbers, Refused, Scene};
+use nearmiss::Detector;
 use nearmiss::contacts::{Contacts, Status, triangle_contacts};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
-use nearmiss::pipeline::Session;
 use nearmiss::query::{Bv, Motion, Query};
 
 fn found(device: &Device, bodies: Vec<Body>, query: Query) -> Result<Contacts, Error> {
-    let mut session = Session::new(device.clone(), bodies, query)?;
-    let found = session.detect()?;
-    session.check_trees()?;
+    let mut detector = Detector::new(device.clone(), bodies, query)?;
+    let found = detector.detect()?;
+    detector.check_trees()?;
     Ok(found)
 }
 
@@ -61,8 +61,11 @@ fn at_once(bodies: &[Body], found: &Contacts, pairs: Option<&[[u32; 2]]>) -> Opt
     let sure: Vec<_> = found.contacts().iter().filter(|c| c.status == Status::Certified).copied().collect();
     let triangles = triangle_contacts(&sure, bodies);
     let pairs = pairs?;
-    let more = triangles.iter().find(|t| !pairs.contains(&[t.a, t.b]));
-    more.map(|t| format!("features of {} and {} certainly meet, the triangles do not", t.a, t.b))
+    let more = triangles.iter().find(|t| !pairs.contains(&t.pair.triangles));
+    more.map(|t| {
+        let [a, b] = t.pair.triangles;
+        format!("features of {a} and {b} certainly meet, the triangles do not")
+    })
 }
 
 /// Asks each still scene again with its triangles, their corners, the axes and the bodies in other orders, each
@@ -105,7 +108,7 @@ pub fn ask_turned_scenes(device: &Device, scenes: &[Scene]) -> Result<Report, Er
                 let (a, b) = (counts[0] - 1 - a, counts[counts.len() - 1] - 1 - b);
                 if second { [a, b] } else { [a.min(b), a.max(b)] }
             };
-            let mut pairs: Vec<[u32; 2]> = all.pairs().iter().map(|p| back(*p)).collect();
+            let mut pairs: Vec<[u32; 2]> = all.triangles().into_iter().map(back).collect();
             pairs.sort_unstable();
             report.asked += 1;
             if pairs != truth {

@@ -3,9 +3,10 @@
 use super::frames::Frames;
 use super::measure::mean;
 use super::way::Way;
+use nearmiss::Detector;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
-use nearmiss::pipeline::{Session, Stage, Stages};
+use nearmiss::pipeline::{Stage, Stages};
 use nearmiss::query::{Bv, Motion, Traversal};
 
 /// Milliseconds of the stages that make and dress a tree, means over all frames.
@@ -25,18 +26,18 @@ pub struct Built {
 pub fn build(device: &Device, frames: &Frames, bv: Bv, walk: Option<Traversal>) -> Result<Built, Error> {
     let bodies = frames.bodies(Motion::Discrete)?;
     let query = Way { motion: Motion::Discrete, bv, front: false }.query(walk);
-    let mut session = Session::new(device.clone(), vec![bodies[0].clone()], query)?;
+    let mut detector = Detector::new(device.clone(), vec![bodies[0].clone()], query)?;
     let mut all = vec![Stages::default(); bodies.len()];
     let last = |ms: Vec<f64>| ms.last().copied().unwrap_or(0.0);
     // First all that reads the first frame's tree, then what replaces it.
     for (body, stages) in bodies.iter().zip(&mut all) {
-        session.move_to(0, body.clone())?;
-        stages.fit = last(session.repeat_stage(Stage::Fit, 2)?);
-        stages.refit = last(session.repeat_stage(Stage::Refit, 2)?);
+        detector.move_to(0, body.clone())?;
+        stages.fit = last(detector.repeat_stage(Stage::Fit, 2)?);
+        stages.refit = last(detector.repeat_stage(Stage::Refit, 2)?);
     }
     for (body, stages) in bodies.iter().zip(&mut all) {
-        session.move_to(0, body.clone())?;
-        stages.construct = last(session.repeat_stage(Stage::Construct, 2)?);
+        detector.move_to(0, body.clone())?;
+        stages.construct = last(detector.repeat_stage(Stage::Construct, 2)?);
     }
     Ok(Built { bv, mean: mean(&all) })
 }

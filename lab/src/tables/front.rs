@@ -3,10 +3,10 @@
 use super::figures::Paper;
 use super::frames::Frames;
 use super::way::Way;
+use nearmiss::Detector;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::pipeline::Session;
 use nearmiss::query::{Motion, Query, QueueShape, Traversal};
 use serde::Serialize;
 
@@ -111,14 +111,14 @@ fn between(t0: &Mesh, t1: &Mesh, part: f64) -> Result<Mesh, Error> {
 
 fn one(paper: &Paper, device: &Device, way: Way, query: Query, bodies: [Body; 2]) -> Result<FrontRow, Error> {
     let [first, second] = bodies;
-    let mut session = Session::new(device.clone(), vec![first.clone()], query)?;
+    let mut detector = Detector::new(device.clone(), vec![first.clone()], query)?;
     let (mut traverse_ms, mut frame_ms, mut tests, mut hash) = (0.0, 0.0, 0, 0);
     for run in 0..=RUNS {
-        session.move_to(0, first.clone())?;
-        session.rebuild()?;
-        session.detect()?;
-        session.move_to(0, second.clone())?;
-        let contacts = session.detect()?;
+        detector.move_to(0, first.clone())?;
+        detector.rebuild()?;
+        detector.detect()?;
+        detector.move_to(0, second.clone())?;
+        let contacts = detector.detect()?;
         if run > 0 {
             traverse_ms += (contacts.stages.traverse + contacts.stages.balance) / RUNS as f64;
             frame_ms += contacts.stages.total / RUNS as f64;

@@ -2,11 +2,12 @@
 
 use super::frames::Frames;
 use super::way::Way;
+use nearmiss::Detector;
 use nearmiss::contacts::Contacts;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
-use nearmiss::pipeline::{Session, Stages};
+use nearmiss::pipeline::Stages;
 use nearmiss::query::{Query, Solver};
 
 /// What an animation asked in one way gave.
@@ -60,9 +61,9 @@ pub fn measure(
 ) -> Result<Cell, Error> {
     let bodies = frames.bodies(way.motion)?;
     let held = device.bytes().0;
-    let mut session = Session::new(device.clone(), vec![bodies[0].clone()], query)?;
-    pass(&mut session, &bodies, rebuild, |_| ())?;
-    let before = session.reruns();
+    let mut detector = Detector::new(device.clone(), vec![bodies[0].clone()], query)?;
+    pass(&mut detector, &bodies, rebuild, |_| ())?;
+    let before = detector.reruns();
     let mut all = Vec::new();
     let mut cell = Cell {
         way,
@@ -75,7 +76,7 @@ pub fn measure(
         reruns: 0,
         bytes: 0,
     };
-    pass(&mut session, &bodies, rebuild, |contacts| {
+    pass(&mut detector, &bodies, rebuild, |contacts| {
         all.push(contacts.stages);
         cell.contacts += contacts.len() as u64;
         cell.node_tests += contacts.overlap_tests();
@@ -83,24 +84,24 @@ pub fn measure(
         cell.hashes.push(contacts.hash());
     })?;
     cell.mean = mean(&all);
-    cell.reruns = session.reruns() - before;
+    cell.reruns = detector.reruns() - before;
     cell.bytes = device.bytes().0 - held;
     Ok(cell)
 }
 
 /// Asks every frame once, from the first on, with the first one's tree.
 fn pass(
-    session: &mut Session,
+    detector: &mut Detector,
     bodies: &[Body],
     rebuild: Option<usize>,
     mut each: impl FnMut(&Contacts),
 ) -> Result<(), Error> {
     for (at, body) in bodies.iter().enumerate() {
-        session.move_to(0, body.clone())?;
+        detector.move_to(0, body.clone())?;
         if at == 0 || rebuild.is_some_and(|every| at % every == 0) {
-            session.rebuild()?;
+            detector.rebuild()?;
         }
-        each(&session.detect()?);
+        each(&detector.detect()?);
     }
     Ok(())
 }

@@ -3,10 +3,12 @@
 //!          least one block each.
 //! Reads    sorted codes and triangles.    Writes   links, leaf ranges, parents and leaf nodes; level offsets.
 //! Before   codes ascend. The counts of depths, and what `treelet` counts, are zero. No launch for no triangle.
-//! After    T1 node 1 is the root; siblings are neighbours and begin at an even index.
+//! After    T1 the root comes first (node 1, or [`crate::abi::MOVING_ROOT`]); siblings are neighbours and begin at an even index.
 //!          T2 levels lie one behind the other, and within one nodes ascend by leaf.
 //!          T3 the leaves below a node are one range, and a node's `last` is its end.
 //!          T4 every leaf has one node, every triangle one leaf.  [`crate::bvh::check`] says which one is broken.
+//!          In a scene of bodies each node knows whose triangles lie below it: bodies, and with them environments, are
+//!          ranges of leaves, so the first leaf and the last tell.
 //! Room     2n nodes, n - 1 inner nodes; at most [`MAX_LEVELS`] levels.
 //! Departs  Karras finds from a node's number an end of its range, then the other end, then the split. Here a node's number
 //!          is its split: n - 1 gaps between n leaves, each split once. Its range is all around the gap that shares as many
@@ -17,8 +19,9 @@
 //!          places  4 B in, 4 B out; the counts.      emit  28 B in, 28 B out.
 
 use super::treelet;
-use crate::abi::{Inner, LEAF, LeafPlace, Link, NONE, ROOT, TreeArgs};
+use crate::abi::{Inner, LEAF, LeafPlace, Link, NONE, NodeFilter, TreeArgs};
 use crate::bvh::MAX_LEVELS;
+use crate::bvh::filter::holder;
 use crate::exec::{BINS, Block, Lane, Slot, striped};
 use crate::sort;
 use crate::sort::EACH;
@@ -98,10 +101,10 @@ pub fn places<B: Block>(b: &mut B, a: &TreeArgs) {
         sort::each_bin(b, |l, depth| {
             let many = |depth: u32| depth < BINS && l.get(bins.totals, depth) > 0;
             if depth < MAX_LEVELS {
-                l.write(a.levels, depth + 2, children(l.get(bins.next, depth)));
+                l.write(a.levels, depth + 2, children(a, l.get(bins.next, depth)));
             }
             if depth == 0 {
-                l.write(a.levels, 1, ROOT);
+                l.write(a.levels, 1, a.root);
             }
             // The deepest inner nodes, and a level of leaves below them; or one leaf.
             if many(depth) && !many(depth + 1) || depth == 0 && gaps == 0 {
@@ -137,22 +140,25 @@ pub fn emit<B: Block>(b: &mut B, a: &TreeArgs) {
     b.phase(|l| {
         let gap = l.global();
         if gap == 0 && a.leaves == 1 {
-            leaf(l, a, ROOT, 0);
+            leaf(l, a, a.root, 0);
         }
         if gap + 1 >= a.leaves {
             return;
         }
         let (Inner { first, last }, parent) = (l.read(a.inner, gap), l.read(a.parents, gap));
-        let link = children(l.read(a.places, gap));
+        let link = children(a, l.read(a.places, gap));
         // A left child lies before the gap that its parent splits.
         let at = match parent {
-            NONE => ROOT,
-            _ => children(l.read(a.places, parent)) + (parent < gap) as u32,
+            NONE => a.root,
+            _ => children(a, l.read(a.places, parent)) + (parent < gap) as u32,
         };
         l.write(a.links, at, Link { link, last });
         l.write(a.pair_parents, link / 2, at);
         if !a.firsts.is_empty() {
             l.write(a.firsts, link / 2, first);
+        }
+        if !a.filters.is_empty() {
+            l.write(a.filters, at, filter(l, a, first).above(filter(l, a, last)));
         }
         if first == gap {
             leaf(l, a, link, gap);
@@ -164,15 +170,25 @@ pub fn emit<B: Block>(b: &mut B, a: &TreeArgs) {
 }
 
 /// The first child of the inner node at a place of the level order.
-fn children(place: u32) -> u32 {
-    ROOT + 1 + 2 * place
+fn children(a: &TreeArgs, place: u32) -> u32 {
+    a.root + 1 + 2 * place
+}
+
+/// Whose triangle a leaf has.
+fn filter<L: Lane>(l: &L, a: &TreeArgs, leaf: u32) -> NodeFilter {
+    let triangle = l.read(a.items, leaf) as u32;
+    let body = holder(a.bodies.len(), triangle, |k| l.read(a.bodies, k).triangle);
+    NodeFilter::leaf(body, &l.read(a.bodies, body))
 }
 
 /// Writes a leaf's node, and tells the leaf.
 fn leaf<L: Lane>(l: &L, a: &TreeArgs, at: u32, leaf: u32) {
-    let link = LEAF | (a.first + l.read(a.items, leaf) as u32);
+    let link = LEAF | l.read(a.items, leaf) as u32;
     l.write(a.links, at, Link { link, last: leaf });
     l.write(a.leaf_nodes, leaf, at);
+    if !a.filters.is_empty() {
+        l.write(a.filters, at, filter(l, a, leaf));
+    }
     if !a.leaf_places.is_empty() {
         l.write(a.leaf_places, leaf, LeafPlace { node: at, link });
     }

@@ -46,8 +46,8 @@ pub fn begin<L: Lane>(l: &L, a: &TreeArgs, leaf: u32) {
 
 /// The node that splits a gap, and its link.
 fn node<L: Lane>(l: &L, a: &PlanArgs, gap: u32) -> [u32; 2] {
-    // The children of the inner node at place p of the level order are pair p + 1.
-    let pair = l.read(a.places, gap) + 1;
+    // Pairs of children follow the root, in the order of their parents.
+    let pair = l.read(a.places, gap) + a.root.div_ceil(2);
     [l.read(a.pair_parents, pair), 2 * pair]
 }
 

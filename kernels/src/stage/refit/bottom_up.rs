@@ -9,7 +9,7 @@
 //! Cost     two nodes in, one out, a link, a parent and two atomics a node: 128 B (AABB). Two fences and an atomic, about
 //!          a microsecond, a level of a lane's climb, one after the other.
 
-use crate::abi::{BottomUpArgs, ROOT};
+use crate::abi::BottomUpArgs;
 use crate::bv::Volume;
 use crate::bvh::group::is_fitted;
 use crate::exec::{Block, Lane};
@@ -23,7 +23,7 @@ pub fn bottom_up<V: Volume, B: Block>(b: &mut B, a: &BottomUpArgs<V>) {
         }
         let mut at = l.read(a.leaf_nodes, leaf);
         let mut volume = l.load_relaxed(a.nodes, at).volume;
-        while at != ROOT {
+        while at != a.root {
             if l.fetch_add(a.arrivals, at / 2, 1).is_multiple_of(2) {
                 return;
             }

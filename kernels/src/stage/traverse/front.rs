@@ -3,8 +3,8 @@
 //! Launch   a lane a pair of the front; a grid of any size strides. Rounds of `traverse_queue` follow, from its units.
 //! Reads    the front; two nodes a pair (AABB: 64 B), with [`PRUNE`] their parents' for a pair that is apart; faces.
 //! Writes   pairs that stay ends; candidates, as `traverse_leaves`; units: pairs that meet now and are not both leaves.
-//! Before   all volumes are refitted; the front is a complete cut of the tests of these two trees ([`crate::queue::bvtt`]):
-//!          every pair of leaves has exactly one ancestor in it, or is in it.
+//! Before   all volumes are refitted; the front is a complete cut of the tests of the tree with itself ([`crate::queue::bvtt`]):
+//!          every pair of leaves that is asked about has exactly one ancestor in it, or is in it.
 //! After    ends listed here and by the rounds that follow are a complete cut again.
 //! Room     `ends`, `units` and `pairs` are counted past their ends; the host grows them and runs again.
 //! Departs  a pair and its siblings give way to their parent without talking to each other: each finds its topmost
@@ -12,7 +12,7 @@
 //!          nest: a pair below one that is apart is apart. The host prunes nothing else.
 //! Cost     8 B and two nodes in, 8 B out a pair: 80 B (AABB), gathered; one overlap test, two with [`PRUNE`].
 
-use crate::abi::{FrontArgs, KEEP_ADJACENT, NONE, PRUNE, Pair, ROOT, SELF, Span, counter};
+use crate::abi::{FrontArgs, KEEP_ADJACENT, NONE, PRUNE, Pair, ROOT, Span, counter};
 use crate::bv::Volume;
 use crate::exec::{Block, Lane, Slot};
 use crate::prim::adjacent::share_a_vertex;
@@ -100,18 +100,17 @@ fn put<L: Lane>(l: &L, list: Span<Pair>, at: u64, pair: Pair) {
 /// What becomes of a pair.
 #[inline]
 fn fate<V: Volume, L: Lane>(l: &L, a: &FrontArgs<V>, pair: Pair) -> FrontUpdate {
-    let own = a.to.flags & SELF != 0;
-    let (p, q) = (l.read(a.to.queries, pair.a), l.read(a.to.nodes, pair.b));
+    let (p, q) = (l.read(a.to.nodes, pair.a), l.read(a.to.nodes, pair.b));
     let mut fate = FrontUpdate { end: pair, deeper: false, candidate: NOTHING, tests: 1 };
-    if !p.volume.overlaps(&q.volume) {
+    if !overlaps(l, a, pair, (&p.volume, &q.volume)) {
         if a.flags & PRUNE != 0 {
-            (fate.end, fate.tests) = climb(l, a, pair, own);
+            (fate.end, fate.tests) = climb(l, a, pair);
         }
     } else if p.is_leaf() & q.is_leaf() {
         let (x, y) = (p.triangle(), q.triangle());
         let keep = a.to.flags & KEEP_ADJACENT != 0;
         if keep || !share_a_vertex(l.read(a.to.faces, x), l.read(a.to.faces, y)) {
-            fate.candidate = if own & (y < x) { Pair { a: y, b: x } } else { Pair { a: x, b: y } };
+            fate.candidate = Pair { a: x.min(y), b: x.max(y) };
         }
     } else {
         (fate.end, fate.deeper) = (NOTHING, true);
@@ -119,24 +118,33 @@ fn fate<V: Volume, L: Lane>(l: &L, a: &FrontArgs<V>, pair: Pair) -> FrontUpdate 
     fate
 }
 
+/// Whether something below two nodes, of these volumes, may meet.
+#[inline(always)]
+fn overlaps<V: Volume, L: Lane>(l: &L, a: &FrontArgs<V>, pair: Pair, (p, q): (&V, &V)) -> bool {
+    let filters = &a.to.filters;
+    let asked = filters.nodes.is_empty() || filters.allows(l, filters.of(l, pair.a), filters.of(l, pair.b));
+    asked && p.overlaps(q)
+}
+
 /// The topmost ancestor of a pair that is apart, up to which all are, if this pair comes first below it; else nothing. And
 /// how many tests were made, that of the pair included.
 #[inline]
-fn climb<V: Volume, L: Lane>(l: &L, a: &FrontArgs<V>, pair: Pair, own: bool) -> (Pair, u32) {
+fn climb<V: Volume, L: Lane>(l: &L, a: &FrontArgs<V>, pair: Pair) -> (Pair, u32) {
     let (mut top, mut first, mut tests) = (pair, true, 1);
     loop {
-        let up = |parents: Span<u32>, node: u32| if node == ROOT { NONE } else { l.read(parents, node / 2) };
-        let (in_a, in_b) = (up(a.query_parents, top.a), up(a.node_parents, top.b));
+        let up = |node: u32| if node == ROOT { NONE } else { l.read(a.pair_parents, node / 2) };
+        let (in_a, in_b) = (up(top.a), up(top.b));
         if in_a == NONE && in_b == NONE {
             break;
         }
-        let parent = bvtt::parent(top, in_a, in_b, own);
+        let parent = bvtt::parent(top, in_a, in_b);
         // A node with itself is never apart.
-        if own & (parent.a == parent.b) {
+        if parent.a == parent.b {
             break;
         }
         tests += 1;
-        if l.read(a.to.queries, parent.a).volume.overlaps(&l.read(a.to.nodes, parent.b).volume) {
+        let (p, q) = (l.read(a.to.nodes, parent.a), l.read(a.to.nodes, parent.b));
+        if overlaps(l, a, parent, (&p.volume, &q.volume)) {
             break;
         }
         // Siblings begin at an even index.

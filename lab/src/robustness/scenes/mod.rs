@@ -160,7 +160,9 @@ impl Scene {
             Finds::OracleByFilter if found.undecided > 0 => {
                 Some(format!("{} pairs needed exact signs", found.undecided))
             }
-            Finds::Pairs(_) | Finds::Oracle | Finds::OracleByFilter => differ(found.pairs(), &self.pairs()),
+            Finds::Pairs(_) | Finds::Oracle | Finds::OracleByFilter => {
+                differ(&found.triangles(), &self.pairs())
+            }
             Finds::Contacts(truth) => contacts(found, truth),
             Finds::Includes(truth, first) => includes(found, truth, *first),
             Finds::EachVertex(vertices, time) => vertices.iter().find_map(|v| {

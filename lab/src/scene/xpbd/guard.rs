@@ -8,11 +8,11 @@
 //! one, whatever the continuous solver may have missed.
 
 use super::V;
+use nearmiss::Detector;
 use nearmiss::contacts::{Contact, Kind};
 use nearmiss::device::{Backend, Device};
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions, Topology};
-use nearmiss::pipeline::Session;
 use nearmiss::query::{Motion, Query, Solver};
 use nearmiss_kernels::math::Vec3;
 
@@ -34,8 +34,8 @@ pub(super) enum Outcome {
 
 pub(super) struct Guard {
     name: String,
-    continuous: Session,
-    discrete: Session,
+    continuous: Detector,
+    discrete: Detector,
     faces: Vec<[u32; 3]>,
     edges: Vec<[u32; 2]>,
     gap: f64,
@@ -69,8 +69,8 @@ impl Guard {
         let moving = Body::moving(still.clone(), still.clone())?;
         let mut guard = Guard {
             name: name.into(),
-            continuous: Session::new(device.clone(), vec![moving], passing())?,
-            discrete: Session::new(device, vec![Body::still(still)], meeting())?,
+            continuous: Detector::new(device.clone(), vec![moving], passing())?,
+            discrete: Detector::new(device, vec![Body::still(still)], meeting())?,
             faces: faces.to_vec(),
             edges,
             gap,

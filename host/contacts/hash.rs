@@ -1,0 +1,43 @@
+//! The hash of an answer.
+
+use super::{Answer, Contacts};
+use crate::scene::BodyId;
+
+impl Contacts {
+    /// xxh3 over the canonical answer: the same for equal answers on every machine. Each contact adds its kind, its
+    /// indices and the bits of its times, little-endian; in front of these its bodies, unless all contacts are of the first body alone, or of the first two.
+    pub fn hash(&self) -> u64 {
+        let mut hash = xxhash_rust::xxh3::Xxh3::new();
+        match &self.answer {
+            Answer::Pairs(pairs) => {
+                let told = need_bodies(pairs.iter().map(|pair| pair.bodies));
+                for pair in pairs {
+                    let bodies = pair.bodies.iter().map(|body| body.0).filter(|_| told);
+                    bodies.chain(pair.triangles).for_each(|i| hash.update(&i.to_le_bytes()));
+                }
+            }
+            Answer::Contacts(contacts) => {
+                let told = need_bodies(contacts.iter().map(|contact| contact.bodies));
+                for c in contacts {
+                    if told {
+                        c.bodies.iter().for_each(|body| hash.update(&body.0.to_le_bytes()));
+                    }
+                    hash.update(&[c.kind as u8, c.status as u8]);
+                    hash.update(&c.a.to_le_bytes());
+                    hash.update(&c.b.to_le_bytes());
+                    hash.update(&c.toi.to_le_bytes());
+                    hash.update(&c.toi_hi.to_le_bytes());
+                }
+            }
+            Answer::Earliest(toi) => toi.iter().for_each(|toi| hash.update(&toi.to_le_bytes())),
+        }
+        hash.digest()
+    }
+}
+
+/// Whether contacts do not all lie in the first body, nor all between the first and the second.
+fn need_bodies(mut bodies: impl Iterator<Item = [BodyId; 2]>) -> bool {
+    let first = bodies.next().unwrap_or_default();
+    let plain = [0, 1].map(|second| [BodyId(0), BodyId(second)]);
+    !plain.contains(&first) || bodies.any(|other| other != first)
+}

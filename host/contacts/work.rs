@@ -1,0 +1,55 @@
+//! What a traversal did: figures, not answers.
+
+use nearmiss_kernels::abi::counter;
+
+/// The front of a frame. All zero where there was none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Front {
+    /// Pairs of nodes at which this frame's descent ended.
+    pub pairs: u64,
+    /// Overlap tests of the last frame's pairs and, where it was pruned, of their ancestors. Those of the pairs below them
+    /// are counted as those of any traversal: two a step.
+    pub tests: u64,
+    /// Pairs that gave way to an ancestor.
+    pub pruned: u64,
+}
+
+impl Front {
+    pub(super) fn new(counters: &[u64]) -> Front {
+        let of = |at: u32| counters[at as usize];
+        Front { pairs: of(counter::ENDS), tests: of(counter::FRONT_TESTS), pruned: of(counter::PRUNED) }
+    }
+}
+
+/// What the work queues of a traversal did. All zero where it had none.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Queues {
+    /// Rounds with work: launches.
+    pub rounds: u64,
+    /// How often a queue ran dry.
+    pub idle_exits: u64,
+    /// Units that a queue on chip had no room for.
+    pub spills: u64,
+    /// Units that a balance moved.
+    pub moves: u64,
+    /// Units that a block took from those that others offered.
+    pub stolen: u64,
+    /// Most units that waited in a segment, or in the list of all.
+    pub longest: u64,
+}
+
+impl Queues {
+    pub(super) fn new(counters: &[u64]) -> Queues {
+        let of = |at: u32| counters[at as usize];
+        Queues {
+            rounds: of(counter::QUEUE_ROUNDS),
+            idle_exits: of(counter::IDLE_EXITS),
+            spills: of(counter::QUEUE_SPILLS),
+            moves: of(counter::MOVES),
+            stolen: of(counter::STOLEN),
+            longest: of(counter::QUEUED),
+        }
+    }
+}

@@ -1,0 +1,267 @@
+//! The front door: a scene on a device, asked frame after frame.
+
+mod edits;
+mod moves;
+
+use crate::contacts::{Contacts, Degraded, Summary};
+use crate::device::Device;
+use crate::error::Error;
+use crate::memory;
+use crate::mesh::{Body, MAX_FACES, MAX_VERTICES};
+use crate::pipeline::{self, Layout, Pipeline, Stage, Stages};
+use crate::query::{Motion, Query};
+use crate::scene::Scene;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// A scene on a device, ready to be asked frame after frame.
+///
+/// A frame is one submission, whatever the number of bodies: [`Detector::frame`] says where bodies are now, and answers. What
+/// is static was built and fitted once, a rigid body costs its poses, and what no body does costs nothing.
+///
+/// ```
+/// use nearmiss::{Body, Detector, Device, Mesh, Query, device::Backend, mesh::Positions, query::Motion, scene::Input};
+///
+/// // A triangle that rests, and one whose corner falls through it.
+/// let faces = vec![[0, 1, 2], [3, 4, 5]];
+/// let at = |z| Positions::F32(vec![
+///     [0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, z], [1.0, 9.0, 9.0], [9.0, 1.0, 9.0],
+/// ]);
+/// let body = Body::still(Mesh::new("two triangles", at(1.0), faces)?);
+/// let device = Device::open(Backend::Auto, None)?;
+/// // One body alone is tested against itself.
+/// let mut detector = Detector::new(device, body, Query::of(Motion::Continuous))?;
+/// let triangles = detector.scene().ids().next().expect("a body");
+/// let contacts = detector.frame(&[(triangles, Input::Step([&at(1.0), &at(-1.0)]))])?;
+/// println!("{} contacts, first at {:?}", contacts.len(), contacts.earliest_toi());
+/// # Ok::<(), nearmiss::Error>(())
+/// ```
+pub struct Detector {
+    device: Device,
+    scene: Scene,
+    layout: Arc<Layout>,
+    query: Query,
+    /// The tolerance of a certified solver.
+    tolerance: Option<f64>,
+    construct_ms: f64,
+    /// Whether the device holds the answer for where the bodies are now.
+    answered: bool,
+    /// Whether the pipeline holds positions in f64: where any body has them so, so that nothing is rounded.
+    f64s: bool,
+    /// None where nothing can meet, or where memory ended: then the next frame asks for it again.
+    pipeline: Option<Box<dyn Pipeline>>,
+}
+
+/// Fewest bytes of the host's memory that a triangle takes in a detector: its topology, and on a CPU its tree and first lists.
+const OF_A_TRIANGLE: u64 = 300;
+
+impl Detector {
+    /// Uploads a scene and builds its trees: of a single body, tested against itself, or of a list of bodies, too. Cost: linear
+    /// in triangles; memory grows with what is found.
+    ///
+    /// # Errors
+    /// [`Error::Choice`] for a scene without bodies and for choices that do not go together; those of the device.
+    pub fn new(device: Device, scene: impl Into<Scene>, query: Query) -> Result<Detector, Error> {
+        query.check()?;
+        let scene = scene.into();
+        if scene.ids().next().is_none() {
+            return Err(Error::Choice {
+                what: "a scene without bodies".into(),
+                advice: "give one body to test against itself, or more to test against each other".into(),
+            });
+        }
+        let tolerance = query
+            .solver()
+            .is_certified()
+            .then(|| query.tolerance.unwrap_or_else(|| pipeline::of_edges(scene.bodies())));
+        let mut detector = Detector {
+            device,
+            scene,
+            layout: Arc::default(),
+            query,
+            tolerance,
+            construct_ms: 0.0,
+            answered: false,
+            f64s: false,
+            pipeline: None,
+        };
+        detector.lay_out()?;
+        detector.begun()?;
+        Ok(detector)
+    }
+
+    /// Gives every body its place in the memory that all share.
+    fn lay_out(&mut self) -> Result<(), Error> {
+        let bodies = self.scene.bodies();
+        let triangles: usize = bodies.iter().map(Body::face_count).sum();
+        fits(triangles, bodies.iter().map(Body::vertex_count).sum())?;
+        memory::require("trees and lists", triangles as u64 * OF_A_TRIANGLE)?;
+        self.layout = Arc::new(Layout::new(bodies, self.query.motion != Motion::Discrete));
+        Ok(())
+    }
+
+    /// The pipeline; where there is none yet, with memory for the bodies where they are and trees built. None where nothing can
+    /// meet: that costs no memory and no launch.
+    fn begun(&mut self) -> Result<Option<&mut Box<dyn Pipeline>>, Error> {
+        if self.pipeline.is_none() && self.layout.may_meet() {
+            let bodies = self.scene.bodies();
+            self.f64s = bodies.iter().any(Body::needs_f64);
+            let query = Query { tolerance: self.tolerance, ..self.query };
+            let mut pipeline =
+                pipeline::pipeline(self.device.clone(), bodies, self.layout.clone(), query, self.f64s)?;
+            self.construct_ms = pipeline.construct()?;
+            self.pipeline = Some(pipeline);
+        }
+        Ok(self.pipeline.as_mut())
+    }
+
+    /// Builds the tree over what moves anew: pays when bodies have moved far from where it was built.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn rebuild(&mut self) -> Result<(), Error> {
+        let Some(pipeline) = self.begun()? else { return Ok(()) };
+        self.construct_ms = pipeline.construct()?;
+        self.answered = false;
+        Ok(())
+    }
+
+    /// All contacts with the bodies where they are, in canonical order.
+    ///
+    /// # Errors
+    /// Those of the device: [`Error::OutOfMemory`] when memory ends. There is no partial answer.
+    pub fn detect(&mut self) -> Result<Contacts, Error> {
+        self.answer(Instant::now())
+    }
+
+    /// The same, of a frame that began then.
+    fn answer(&mut self, start: Instant) -> Result<Contacts, Error> {
+        self.begun()?;
+        let Some(pipeline) = &mut self.pipeline else { return Ok(Contacts::none(self.query)) };
+        self.answered = false;
+        let (found, stages) = pipeline.frame()?;
+        self.answered = true;
+        let degraded = Degraded::of(&found);
+        memory::require("the contacts", found.bytes())?;
+        let mut contacts = Contacts::new(found, &self.layout, self.query, (stages, degraded));
+        let wall = start.elapsed().as_secs_f64() * 1e3;
+        contacts.stages = Stages { construct: self.construct_ms, wall, ..stages };
+        Ok(contacts)
+    }
+
+    /// Runs one stage of this frame `times` times, on the device alone, and gives each run's milliseconds: for profilers,
+    /// and for figures of one stage. What the stage needs runs before, once, where it has not yet: the leaves' volumes for
+    /// [`Stage::Refit`], a whole frame for [`Stage::Traverse`], [`Stage::Narrow`] and
+    /// [`Stage::Order`]. The next [`Detector::detect`] answers as it would have. Where nothing can meet there are no stages, and a CPU orders nothing: no runs.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn repeat_stage(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
+        if !self.answered && matches!(stage, Stage::Traverse | Stage::Narrow | Stage::Order) {
+            self.detect()?;
+        }
+        let answered = self.answered;
+        let Some(pipeline) = self.begun()? else { return Ok(Vec::new()) };
+        if !answered && stage == Stage::Refit {
+            pipeline.repeat(Stage::Fit, 1)?;
+        }
+        let ms = pipeline.repeat(stage, times)?;
+        if stage == Stage::Construct {
+            self.answered = false;
+            self.construct_ms = ms.last().copied().unwrap_or(self.construct_ms);
+        }
+        Ok(ms)
+    }
+
+    /// Runs the narrow stage of this frame once more, step by step: each step's name and milliseconds on the device's own
+    /// clock. A frame must have been asked; where nothing can meet there are no steps.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn narrow_steps(&mut self) -> Result<Vec<(&'static str, f64)>, Error> {
+        if !self.answered {
+            self.detect()?;
+        }
+        self.pipeline.as_mut().map_or(Ok(Vec::new()), |pipeline| pipeline.narrow_steps())
+    }
+
+    /// The bodies, where they are now.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// What is asked.
+    pub fn query(&self) -> &Query {
+        &self.query
+    }
+
+    /// The tolerance of a certified solver, a length: as asked, or by default [`Query::TOLERANCE`] of the mean edge of the
+    /// bodies at the start, rounded down to a power of two. It stays when bodies move, come and go.
+    pub fn tolerance(&self) -> Option<f64> {
+        self.tolerance
+    }
+
+    /// What the command line prints of a result.
+    pub fn summary(&self, contacts: &Contacts) -> Summary {
+        Summary {
+            tolerance: self.tolerance,
+            ..Summary::new(self.scene.bodies(), self.query, &self.device, contacts)
+        }
+    }
+
+    /// How many levels the tree over what moves has, and that over what is static, where there is one.
+    pub fn depths(&self) -> Vec<usize> {
+        self.pipeline.as_ref().map_or(Vec::new(), |pipeline| pipeline.depths())
+    }
+
+    /// How often a list was too short and a frame was run again within itself, since the bodies were last replaced.
+    pub fn reruns(&self) -> u64 {
+        self.pipeline.as_ref().map_or(0, |pipeline| pipeline.reruns())
+    }
+
+    /// What each stage left in the device's memory after the last [`Detector::detect`], as hashes by stage: trees to
+    /// the bit, lists as sets. Two machines that agree on these agree on every kernel. For tests and `selftest`.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn fingerprints(&self) -> Result<Vec<(&'static str, u64)>, Error> {
+        self.pipeline.as_ref().map_or(Ok(Vec::new()), |pipeline| pipeline.fingerprints())
+    }
+
+    /// Checks every tree as it lies on the device; volumes too, which [`Detector::detect`] sets.
+    ///
+    /// # Errors
+    /// [`Error::Bug`] with the first violation; those of the device.
+    pub fn check_trees(&self) -> Result<(), Error> {
+        self.pipeline.as_ref().map_or(Ok(()), |pipeline| pipeline.check())
+    }
+}
+
+/// Whether indices of 32 bits reach all triangles, vertices and edges (at most three a triangle) of all bodies together.
+fn fits(triangles: usize, vertices: usize) -> Result<(), Error> {
+    let what = match (triangles > MAX_FACES, vertices > MAX_VERTICES) {
+        (true, _) => format!("bodies of {triangles} triangles in all"),
+        (_, true) => format!("bodies of {vertices} vertices in all"),
+        _ => return Ok(()),
+    };
+    let advice =
+        format!("give at most {MAX_FACES} triangles and {MAX_VERTICES} vertices; split the larger body");
+    Err(Error::Choice { what, advice })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_than_indices_reach_is_refused() {
+        assert!(fits(MAX_FACES, MAX_VERTICES).is_ok());
+        for (triangles, vertices) in [(MAX_FACES + 1, 3), (1, MAX_VERTICES + 1)] {
+            let error = fits(triangles, vertices).expect_err("too many").to_string();
+            assert!(
+                error.contains(&triangles.max(vertices).to_string()) && error.contains("at most"),
+                "{error}"
+            );
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! Bodies move from frame to frame.
+
+use super::Detector;
+use super::edits::nobody;
+use crate::contacts::Contacts;
+use crate::error::Error;
+use crate::mesh::Body;
+use crate::pipeline::Moved;
+use crate::scene::{BodyId, Input};
+use std::time::Instant;
+
+impl Detector {
+    /// Moves bodies to where the inputs say, and answers. A body that is not named rests where it was, or where its step
+    /// ended. One submission: an upload of what is named, one launch that places it, and the stages of a frame.
+    ///
+    /// # Errors
+    /// [`Error::Choice`] for a body that is not in the scene, or named twice, or given what its kind does not take;
+    /// [`Error::Input`] for positions that no mesh may have: then nothing has moved. Those of the device.
+    pub fn frame(&mut self, inputs: &[(BodyId, Input)]) -> Result<Contacts, Error> {
+        let start = Instant::now();
+        let named = self.put(inputs)?;
+        let mut moved = Vec::with_capacity(inputs.len());
+        for (body, (own, named)) in self.scene.bodies_mut().iter_mut().zip(named).enumerate() {
+            if named || own.rest() {
+                moved.push(Moved { body, rests: !named });
+            }
+        }
+        self.moved(&moved)?;
+        self.answer(start)
+    }
+
+    /// Moves bodies to where the inputs say; others stay as they are, in the step that they are in. The trees are kept and refitted
+    /// at the next [`Detector::detect`].
+    ///
+    /// # Errors
+    /// As for [`Detector::frame`].
+    pub fn place(&mut self, inputs: &[(BodyId, Input)]) -> Result<(), Error> {
+        let named = self.put(inputs)?;
+        let moved = named.iter().enumerate().filter(|(_, named)| **named);
+        self.moved(&moved.map(|(body, _)| Moved { body, rests: false }).collect::<Vec<_>>())
+    }
+
+    /// Moves bodies on the host, all or none; of each body of the scene, whether it was named.
+    fn put(&mut self, inputs: &[(BodyId, Input)]) -> Result<Vec<bool>, Error> {
+        let mut named = vec![false; self.scene.bodies().len()];
+        for (id, input) in inputs {
+            let Some(body) = self.scene.get(*id) else { return Err(nobody(*id)) };
+            if std::mem::replace(&mut named[id.index()], true) {
+                return Err(Error::Choice {
+                    what: format!("two inputs for body {id}, {}", body.name()),
+                    advice: "give one a frame".into(),
+                });
+            }
+            body.check(input)?;
+        }
+        for (id, input) in inputs {
+            let body = self.scene.get_mut(*id).ok_or_else(|| nobody(*id))?;
+            body.put(input);
+        }
+        Ok(named)
+    }
+
+    /// Moves bodies on the device. At the first frame in double precision a pipeline in single precision goes over to it, with
+    /// trees built anew; it does not go back.
+    fn moved(&mut self, moved: &[Moved]) -> Result<(), Error> {
+        if moved.is_empty() {
+            return Ok(());
+        }
+        self.answered = false;
+        let widens = !self.f64s && moved.iter().any(|moved| self.scene.bodies()[moved.body].needs_f64());
+        // What was held makes room first. Where placing fails there is nothing left to ask of the old positions.
+        match self.pipeline.take().filter(|_| !widens) {
+            Some(mut pipeline) => {
+                pipeline.place(self.scene.bodies(), moved)?;
+                self.pipeline = Some(pipeline);
+                Ok(())
+            }
+            None => self.begun().map(drop),
+        }
+    }
+
+    /// Moves a body to where another of the same mesh is: as [`Detector::place`], but from a body, which is kept.
+    ///
+    /// # Errors
+    /// [`Error::Choice`] when the body has other faces than the one it replaces; those of the device.
+    pub fn move_to(&mut self, body: usize, frame: Body) -> Result<(), Error> {
+        let old = self.scene.bodies().get(body);
+        let same = |old: &Body| old.faces() == frame.faces() && old.vertex_count() == frame.vertex_count();
+        let Some(meets) = old.filter(|old| same(old) && old.kind() == frame.kind()).map(|old| *old.meets())
+        else {
+            return Err(Error::Choice {
+                what: format!("{} does not replace body {body} of this scene", frame.name()),
+                advice: "give frames of the same mesh, or replace the body".into(),
+            });
+        };
+        self.scene.bodies_mut()[body] = frame.with(meets);
+        self.moved(&[Moved { body, rests: false }])
+    }
+}

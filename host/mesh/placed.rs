@@ -1,0 +1,142 @@
+//! Where a body is put from frame to frame.
+
+use super::validate::{MAX_ABS_F32, MAX_ABS_F64};
+use super::{Body, Positions, Problem, validate};
+use crate::Error;
+use crate::scene::{BodyKind, Input, Pose};
+
+/// The lower and the upper corner of a box.
+pub type Bounds = [[f64; 3]; 2];
+
+impl Body {
+    /// Whether the body can be where a frame says. Cost: a pass over the positions of a deformable body.
+    pub(crate) fn check(&self, input: &Input) -> Result<(), Error> {
+        match (self.kind, input) {
+            (BodyKind::Deformable, Input::At(t0)) => self.check_vertices(&[t0]),
+            (BodyKind::Deformable, Input::Step(ends)) => self.check_vertices(ends),
+            (BodyKind::Rigid, Input::Pose(pose)) => self.check_pose(pose),
+            (BodyKind::Rigid, Input::Poses([t0, t1])) => {
+                self.check_pose(t0).and_then(|()| self.check_pose(t1))
+            }
+            (kind, input) => {
+                let (given, advice) = match (kind, input) {
+                    (BodyKind::Static, _) => ("a frame", "make it rigid or deformable, or replace it"),
+                    (_, Input::At(_) | Input::Step(_)) => ("positions", "give a rigid body poses"),
+                    _ => ("a pose", "give a deformable body positions"),
+                };
+                let what = format!("{given} for {}, which is {}", self.name, kind.name());
+                Err(Error::Choice { what, advice: advice.into() })
+            }
+        }
+    }
+
+    fn check_vertices(&self, ends: &[&Positions]) -> Result<(), Error> {
+        let wrong = |problem| Error::Input { file: self.name.clone(), problem };
+        for positions in ends {
+            let (ours, theirs) = (self.vertex_count(), positions.len());
+            if ours != theirs {
+                let first = self.name.clone();
+                return Err(wrong(Problem::FrameVertices { first, t0: ours, t1: theirs }));
+            }
+            validate::is_single(positions, &self.faces).map_err(wrong)?;
+        }
+        Ok(())
+    }
+
+    fn check_pose(&self, pose: &Pose) -> Result<(), Error> {
+        pose.check(&self.name)?;
+        let size = size(&self.around(pose));
+        if size > MAX_ABS_F64 {
+            return Err(Error::Choice {
+                what: format!("a pose that takes {} to coordinates of {size:e}", self.name),
+                advice: "coordinates may be at most 2^480 in size".into(),
+            });
+        }
+        Ok(())
+    }
+
+    /// Puts the body where a frame says, which [`Body::check`] has let pass. Cost: a copy of the positions.
+    pub(crate) fn put(&mut self, input: &Input) {
+        match input {
+            Input::At(t0) => self.put_vertices(t0, None),
+            Input::Step([t0, t1]) => self.put_vertices(t0, Some(t1)),
+            Input::Pose(pose) => self.poses = [*pose; 2],
+            Input::Poses(poses) => self.poses = *poses,
+        }
+    }
+
+    fn put_vertices(&mut self, t0: &Positions, t1: Option<&Positions>) {
+        let single = |positions| matches!(validate::is_single(positions, &self.faces), Ok(true));
+        let singles = std::iter::once(t0).chain(t1).all(single);
+        let take =
+            |positions: &Positions| if singles { positions.clone() } else { positions.clone().promoted() };
+        (self.positions_t0, self.positions_t1) = (take(t0), t1.map(take));
+    }
+
+    /// A body that moved in the last step rests where that ended; whether it had moved.
+    pub(crate) fn rest(&mut self) -> bool {
+        match self.kind {
+            BodyKind::Static => false,
+            BodyKind::Rigid => {
+                let [start, end] = self.poses;
+                self.poses = [end; 2];
+                start != end
+            }
+            BodyKind::Deformable => match self.positions_t1.take() {
+                Some(end) => {
+                    self.positions_t0 = end;
+                    true
+                }
+                None => false,
+            },
+        }
+    }
+
+    /// Whether its coordinates need f64.
+    pub(crate) fn needs_f64(&self) -> bool {
+        self.positions_t0.is_f64()
+            || self.posed_box().is_some_and(|bounds| size(&bounds) > f64::from(MAX_ABS_F32))
+    }
+
+    /// A box that holds a rigid body at both ends of the step; none of others.
+    pub(crate) fn posed_box(&self) -> Option<Bounds> {
+        let rigid = self.kind == BodyKind::Rigid && !self.faces.is_empty();
+        rigid.then(|| union(self.around(&self.poses[0]), self.around(&self.poses[1])))
+    }
+
+    /// A box that holds a rigid body in a pose: around the ball in which it turns.
+    fn around(&self, pose: &Pose) -> Bounds {
+        [-self.radius, self.radius].map(|radius| pose.translation.map(|t| t + radius))
+    }
+}
+
+impl BodyKind {
+    /// Its name.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            BodyKind::Static => "static",
+            BodyKind::Rigid => "rigid",
+            BodyKind::Deformable => "deformable",
+        }
+    }
+}
+
+/// Around both. Comparisons drop what is NaN.
+pub fn union(a: Bounds, b: Bounds) -> Bounds {
+    [[0, 1, 2].map(|k| a[0][k].min(b[0][k])), [0, 1, 2].map(|k| a[1][k].max(b[1][k]))]
+}
+
+/// Around nothing.
+pub const NOTHING: Bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+
+/// How far the farthest of points is from where a body turns, rounded up: with what the rounding of a pose and of the placed
+/// points may add.
+pub fn radius(points: impl Iterator<Item = [f64; 3]>) -> f64 {
+    // The largest coordinate times the root of 3: squares of large ones may not be numbers.
+    2.0 * points.flatten().fold(0.0_f64, |most, x| most.max(x.abs()))
+}
+
+/// The largest coordinate's size.
+fn size(bounds: &Bounds) -> f64 {
+    bounds.iter().flatten().fold(0.0, |most, x| most.max(x.abs()))
+}

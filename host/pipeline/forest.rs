@@ -1,0 +1,200 @@
+//! The trees of a scene: one over what moves, refitted every frame, and beside it, built and fitted once, one over what
+//! is static.
+//!
+//! Both lie in one memory below one root, so that one walk finds all pairs: of what moves with itself, and with what is
+//! static. See `nearmiss_kernels::stage::construct::graft`.
+
+use super::layout::Layout;
+use super::precision::Precision;
+use super::tree::{Room, Tree, TreeSpec, broken, place};
+use super::volumes::{Kernels, Volumes};
+use crate::device::{Buffer, Device};
+use crate::error::Error;
+use crate::pipeline::launch;
+use crate::query::Refit;
+use nearmiss_kernels::abi::{
+    BodyRecord, FilterArgs, GRAFTED, GraftArgs, Link, Node, NodeFilter, Positions, ROOT, Span, TreeBody,
+    grafted,
+};
+use nearmiss_kernels::bv::Axes;
+use nearmiss_kernels::bvh;
+use nearmiss_kernels::math::Vec3;
+
+/// The trees of a scene.
+pub struct Forest<V> {
+    /// The tree over what moves.
+    pub tree: Tree,
+    /// Its volumes, and those of what is static.
+    pub volumes: Volumes<V>,
+    /// What the kernels know of the bodies; empty where there is one alone.
+    pub records: Buffer<BodyRecord>,
+    has_groups: bool,
+    fixed: Option<Fixed>,
+}
+
+/// A static tree, as it was built.
+struct Fixed {
+    bodies: Vec<usize>,
+    layout: (Vec<TreeBody>, u32),
+    /// Where each level begins; empty before it is built.
+    starts: Vec<u32>,
+    refit: Refit,
+}
+
+impl<V: Kernels> Forest<V> {
+    /// Takes the memory of the trees over the bodies of a layout, of which some move.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn new(
+        device: &Device,
+        layout: &Layout,
+        refit: Refit,
+        (axes, margin): (Axes, f32),
+    ) -> Result<Forest<V>, Error> {
+        let [moving, fixed] = &layout.trees;
+        let leaves: u32 = fixed.iter().map(|&body| layout.triangles(body).1).sum();
+        let room = if leaves > 0 { Room::Beside(leaves) } else { Room::Alone };
+        let groups = V::group(axes) > 0;
+        let tree = Tree::new(device, &TreeSpec { layout, bodies: moving, room, refit, groups })?;
+        let volumes = Volumes::new(device, &tree, (axes, margin))?;
+        let records: &[BodyRecord] = if layout.has_filters() { &layout.records } else { &[] };
+        let fixed = (leaves > 0).then(|| Fixed {
+            bodies: fixed.clone(),
+            layout: (Vec::new(), leaves),
+            starts: Vec::new(),
+            refit,
+        });
+        let records = device.upload(records)?;
+        Ok(Forest { tree, volumes, records, has_groups: layout.has_groups(), fixed })
+    }
+
+    /// Builds the tree over what moves, and once, the first time, that over what is static.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn construct<R: Precision>(
+        &mut self,
+        device: &Device,
+        layout: &Layout,
+        (frames, faces): (Positions<R>, Span<[u32; 3]>),
+    ) -> Result<(), Error> {
+        self.tree.construct::<R>(device, frames, (faces, self.records.span()))?;
+        match &mut self.fixed {
+            Some(fixed) if fixed.starts.is_empty() => {
+                let groups = V::group(self.volumes.axes()) > 0;
+                let Fixed { bodies, refit, .. } = &*fixed;
+                let plan = TreeSpec { layout, bodies, room: Room::Alone, refit: *refit, groups };
+                let mut tree = Tree::new(device, &plan)?;
+                tree.construct::<R>(device, frames, (faces, self.records.span()))?;
+                tree.learn_levels()?;
+                let volumes = Volumes::<V>::new(device, &tree, (self.volumes.axes(), self.volumes.margin))?;
+                volumes.fit(device, &tree, frames, faces)?;
+                volumes.refit(device, &tree, frames, faces)?;
+                let args = GraftArgs {
+                    from: volumes.nodes.span(),
+                    from_filters: tree.filters.span(),
+                    nodes: self.volumes.nodes.span(),
+                    pair_parents: self.tree.pair_parents.span(),
+                    filters: self.tree.filters.span(),
+                    leaves: self.tree.leaves() as u32,
+                    pad: 0,
+                };
+                launch::each::<V::Graft>(device, volumes.nodes.len() - 1, &args)?;
+                fixed.starts = tree.starts().to_vec();
+                fixed.layout = (tree.bodies().to_vec(), tree.leaves() as u32);
+                Ok(())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Which pairs a walk asks.
+    pub fn filters(&self) -> FilterArgs {
+        let bodies = if self.has_groups { self.records.span() } else { Span::EMPTY };
+        FilterArgs { nodes: self.tree.filters.span(), bodies }
+    }
+
+    /// What a walk must know of the trees.
+    pub fn flags(&self) -> u32 {
+        if self.fixed.is_some() { GRAFTED } else { 0 }
+    }
+
+    /// Levels of the tree over what moves and, where there is one, of that over what is static.
+    pub fn depths(&self) -> Vec<usize> {
+        let fixed = self.fixed.as_ref().map(|fixed| fixed.starts.len().saturating_sub(1));
+        std::iter::once(self.tree.depth()).chain(fixed).collect()
+    }
+
+    /// Checks both trees and their volumes.
+    ///
+    /// # Errors
+    /// [`Error::Bug`] with the first violation; those of the device.
+    pub fn check<R: Precision>(
+        &self,
+        layout: &Layout,
+        faces: &[[u32; 3]],
+        frames: &[Vec<Vec3<R>>],
+    ) -> Result<(), Error> {
+        self.tree.check()?;
+        let filters = self.tree.filters.read(self.tree.filters.len())?;
+        let whose = |triangle: u32| {
+            let body = layout.locate(triangle, |at| at.triangle).0;
+            NodeFilter::leaf(body.index() as u32, &layout.records[body.index()])
+        };
+        let check_filters = |links: &[Link], filters: &[NodeFilter], root: u32| {
+            if filters.is_empty() {
+                return Ok(());
+            }
+            bvh::check_filters(links, filters, root, whose).map_err(broken)
+        };
+        check_filters(&self.tree.download()?, &filters, self.tree.root())?;
+        self.volumes.check(&self.tree, faces, frames)?;
+        let Some(fixed) = &self.fixed else { return Ok(()) };
+        let (nodes, pair_parents) = self.ungrafted(fixed)?;
+        let links: Vec<Link> = nodes.iter().map(|node| Link { link: node.link, last: node.last }).collect();
+        let (bodies, count) = &fixed.layout;
+        let mut leaf_nodes = vec![0; *count as usize];
+        for (node, link) in links.iter().enumerate().skip(ROOT as usize).filter(|(_, link)| link.is_leaf()) {
+            if let Some(at) = leaf_nodes.get_mut(link.last as usize) {
+                *at = node as u32;
+            }
+        }
+        let levels: Vec<u32> =
+            std::iter::once(fixed.starts.len() as u32 - 1).chain(fixed.starts.iter().copied()).collect();
+        let tree = bvh::Tree {
+            links: &links,
+            pair_parents: &pair_parents,
+            levels: &levels,
+            leaf_nodes: &leaf_nodes,
+            root: ROOT,
+            place: &|triangle| place(bodies, *count, triangle),
+        };
+        bvh::check(&tree, &mut vec![false; *count as usize]).map_err(broken)?;
+        let own = self.tree.leaves() as u32;
+        let filters: Vec<NodeFilter> =
+            (0..2 * count).map(|node| filters[grafted(node, own) as usize]).collect();
+        check_filters(&links, &filters, ROOT)?;
+        self.volumes.check_nodes((&links, &nodes, &leaf_nodes), ROOT, faces, frames)
+    }
+
+    /// The nodes of the static tree as they were before they were grafted, and the parents of their pairs.
+    fn ungrafted(&self, fixed: &Fixed) -> Result<(Vec<Node<V>>, Vec<u32>), Error> {
+        let (own, count) = (self.tree.leaves() as u32, fixed.layout.1);
+        let nodes = self.volumes.download()?;
+        let parents = self.tree.pair_parents.read(self.tree.pair_parents.len())?;
+        // A node of the other numbering; a wrong one becomes one that no check lets pass.
+        let back = |at: u32| if at == grafted(ROOT, own) { ROOT } else { at.wrapping_sub(2 * own) };
+        let mut all = vec![bytemuck::Zeroable::zeroed(); 2 * count as usize];
+        for node in ROOT..2 * count {
+            let mut link = nodes[grafted(node, own) as usize];
+            link.last = link.last.wrapping_sub(own);
+            if !link.is_leaf() {
+                link.link = back(link.link);
+            }
+            all[node as usize] = link;
+        }
+        let pair = |k: u32| back(parents[(grafted(2 * k, own) / 2) as usize]);
+        Ok((all, std::iter::once(0).chain((1..count).map(pair)).collect()))
+    }
+}

@@ -1,0 +1,218 @@
+//! Place: the vertices of all bodies on the device, where frames put them.
+
+use super::layout::Layout;
+use super::precision::Precision;
+use crate::device::{Buffer, Device};
+use crate::error::Error;
+use crate::mesh::Body;
+use crate::pipeline::launch;
+use crate::scene::{BodyKind, Pose};
+use bytemuck::Pod;
+use nearmiss_kernels::abi::{
+    PlaceArgs, Placement, Point, PoseRecord, Positions, RESTING, Span, UPLOADED, VertexMotion as Ends,
+};
+use nearmiss_kernels::math::Vec3;
+
+/// A body that a frame moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Moved {
+    /// Which body.
+    pub body: usize,
+    /// Whether it rests at the end of the last step, instead of being where it now is.
+    pub rests: bool,
+}
+
+/// Positions, as the query needs them.
+enum Vertices<R: Precision> {
+    Still(Buffer<Point<R>>),
+    Moving(Buffer<Ends<R>>),
+}
+
+impl<R: Precision> Vertices<R> {
+    fn new(device: &Device, moving: bool, len: usize) -> Result<Self, Error> {
+        Ok(if moving { Vertices::Moving(device.buffer(len)?) } else { Vertices::Still(device.buffer(len)?) })
+    }
+
+    fn span(&self) -> Positions<R> {
+        match self {
+            Vertices::Still(points) => Positions { still: points.span(), moving: Span::EMPTY },
+            Vertices::Moving(motions) => Positions { still: Span::EMPTY, moving: motions.span() },
+        }
+    }
+
+    fn len(&self) -> usize {
+        match self {
+            Vertices::Still(points) => points.len(),
+            Vertices::Moving(motions) => motions.len(),
+        }
+    }
+
+    /// Sets the first vertices: those of the bodies, one behind the other. A body that stands still has the same positions at
+    /// both ends.
+    fn write<'a>(&mut self, bodies: impl Iterator<Item = &'a Body>) -> Result<(), Error> {
+        match self {
+            Vertices::Still(buffer) => {
+                let mut points = Vec::with_capacity(buffer.len());
+                for body in bodies {
+                    points.extend(R::points(body.positions_t0()).map(Point::from));
+                }
+                buffer.write(&points)
+            }
+            Vertices::Moving(buffer) => {
+                let mut ends = Vec::with_capacity(buffer.len());
+                for body in bodies {
+                    let [t0, t1] = body.ends();
+                    let both = R::points(t0).zip(R::points(t1));
+                    ends.extend(both.map(|(t0, t1)| Ends { t0: t0.into(), t1: t1.into() }));
+                }
+                buffer.write(&ends)
+            }
+        }
+    }
+}
+
+/// The vertices of a scene, and what moving them needs.
+pub struct Placing<R: Precision> {
+    vertices: Vertices<R>,
+    /// Vertices of rigid bodies without a pose, and where each body's begin.
+    rest: Buffer<Point<R>>,
+    rest_starts: Vec<u32>,
+    /// Of the last frame: vertices that came from the host, where not all did; who was moved, and how.
+    uploaded: Vertices<R>,
+    placements: Buffer<Placement>,
+    poses: Buffer<PoseRecord>,
+    /// What `placements` holds.
+    placed: Vec<Placement>,
+}
+
+impl<R: Precision> Placing<R> {
+    /// Takes the memory for bodies, in motion or still, and puts them where they are.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn new(device: &Device, layout: &Layout, bodies: &[Body], moving: bool) -> Result<Self, Error> {
+        let is_rigid = |body: &&Body| body.kind() == BodyKind::Rigid;
+        let rest: Vec<Point<R>> = bodies
+            .iter()
+            .filter(is_rigid)
+            .flat_map(|body| R::points(body.positions_t0()).map(Point::from))
+            .collect();
+        let mut at = 0;
+        let rest_starts = bodies.iter().map(|body| {
+            let start = at;
+            at += if is_rigid(&body) { body.vertex_count() as u32 } else { 0 };
+            start
+        });
+        let mut placing = Placing {
+            vertices: Vertices::new(device, moving, layout.starts[layout.bodies()].vertex as usize)?,
+            rest_starts: rest_starts.collect(),
+            rest: device.upload(&rest)?,
+            uploaded: Vertices::new(device, moving, 0)?,
+            placements: device.buffer(0)?,
+            poses: device.buffer(0)?,
+            placed: Vec::new(),
+        };
+        placing.vertices.write(bodies.iter())?;
+        let rigid: Vec<Moved> = (0..bodies.len())
+            .filter(|&i| is_rigid(&&bodies[i]))
+            .map(|body| Moved { body, rests: false })
+            .collect();
+        placing.put(device, layout, bodies, &rigid)?;
+        Ok(placing)
+    }
+
+    /// Where all vertices are.
+    pub fn frames(&self) -> Positions<R> {
+        self.vertices.span()
+    }
+
+    /// Positions as they lie on the device: at t = 0 and, when anything moves, at t = 1.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn positions(&self) -> Result<Vec<Vec<Vec3<R>>>, Error> {
+        Ok(match &self.vertices {
+            Vertices::Still(points) => vec![points.read(points.len())?.iter().map(|p| p.at).collect()],
+            Vertices::Moving(motions) => {
+                let motions = motions.read(motions.len())?;
+                vec![motions.iter().map(|m| m.t0.at).collect(), motions.iter().map(|m| m.t1.at).collect()]
+            }
+        })
+    }
+
+    /// Moves bodies, named in ascending order. One launch, and an upload of positions, of poses and, where others were moved
+    /// than in the frame before, of whom; of deformable bodies alone, when all are moved, an upload and no launch.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn put(
+        &mut self,
+        device: &Device,
+        layout: &Layout,
+        bodies: &[Body],
+        moved: &[Moved],
+    ) -> Result<(), Error> {
+        let all = moved.len() == bodies.len();
+        if all && moved.iter().all(|m| !m.rests && bodies[m.body].kind() != BodyKind::Rigid) {
+            return self.vertices.write(bodies.iter());
+        }
+        let moving = matches!(self.vertices, Vertices::Moving(_));
+        let (mut placed, mut poses, mut uploads) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut before, mut uploaded) = (0, 0);
+        for &Moved { body: i, rests } in moved {
+            let (body, vertex) = (&bodies[i], layout.starts[i].vertex);
+            let count = body.vertex_count() as u32;
+            // What rests is where it is already, if nothing has two ends.
+            if count == 0 || rests && !moving {
+                continue;
+            }
+            let (source, which) = match (rests, body.kind()) {
+                (true, _) => (0, RESTING),
+                (false, BodyKind::Rigid) => {
+                    let pose = poses.len() as u32 / if moving { 2 } else { 1 };
+                    poses.extend(body.poses().iter().take(if moving { 2 } else { 1 }).map(Pose::record));
+                    (self.rest_starts[i], pose)
+                }
+                (false, _) => {
+                    uploads.push(i);
+                    uploaded += count;
+                    (uploaded - count, UPLOADED)
+                }
+            };
+            placed.push(Placement { vertex, before, source, poses: which });
+            before += count;
+        }
+        if placed.is_empty() {
+            return Ok(());
+        }
+        if uploaded as usize > self.uploaded.len() {
+            self.uploaded = Vertices::new(device, moving, uploaded as usize)?;
+        }
+        if uploaded > 0 {
+            self.uploaded.write(uploads.iter().map(|&i| &bodies[i]))?;
+        }
+        write(device, &mut self.poses, &poses)?;
+        if placed != self.placed {
+            write(device, &mut self.placements, &placed)?;
+            self.placed = placed;
+        }
+        let args = PlaceArgs {
+            placements: self.placements.span().part(0, self.placed.len() as u64),
+            uploaded: self.uploaded.span(),
+            rest: self.rest.span(),
+            poses: self.poses.span(),
+            vertices: self.vertices.span(),
+            count: before,
+            pad: 0,
+        };
+        launch::striding::<R::Place>(device, before as usize, &args)
+    }
+}
+
+/// Sets the first elements of a buffer, which grows where it must.
+fn write<T: Pod>(device: &Device, buffer: &mut Buffer<T>, items: &[T]) -> Result<(), Error> {
+    if items.len() > buffer.len() {
+        *buffer = device.buffer(items.len())?;
+    }
+    if items.is_empty() { Ok(()) } else { buffer.write(items) }
+}

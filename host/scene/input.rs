@@ -1,0 +1,18 @@
+//! What a frame tells of a body.
+
+use super::Pose;
+use crate::mesh::Positions;
+
+/// Where a body is at a frame, or at the two ends of a step. Borrowed: nothing of a body's topology is copied or looked at.
+#[derive(Clone, Copy, Debug)]
+pub enum Input<'a> {
+    /// A deformable body stands at these positions.
+    At(&'a Positions),
+    /// A deformable body moves from the first positions to the second, each vertex in a straight line.
+    Step([&'a Positions; 2]),
+    /// A rigid body stands in this pose.
+    Pose(Pose),
+    /// A rigid body moves from the first pose to the second, **each vertex in a straight line**: between the poses it is not
+    /// rigid. Give steps in which it turns little.
+    Poses([Pose; 2]),
+}

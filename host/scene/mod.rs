@@ -1,0 +1,205 @@
+//! Scenes: which bodies there are, what each does, and which of them may meet.
+//!
+//! A [`Scene`] is made on the host, once; a [`Detector`](crate::Detector) takes it to a device and asks it frame after frame.
+
+mod input;
+mod pose;
+
+pub use input::Input;
+pub use pose::Pose;
+
+use crate::mesh::Body;
+use std::fmt;
+
+/// A body of a scene: it stays with the body until that is removed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(transparent))]
+pub struct BodyId(pub(crate) u32);
+
+impl BodyId {
+    /// The number of the body: those of a new scene are counted from 0, in the order in which they were added.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+impl fmt::Display for BodyId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
+
+/// What a body does from frame to frame. A scene pays for what its bodies do, and for nothing else.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
+#[non_exhaustive]
+pub enum BodyKind {
+    /// It stands where it was made: its tree is built and fitted once, and it is never tested against what is static too.
+    Static,
+    /// It moves as one: 7 numbers a frame and end of a step, applied on the device.
+    Rigid,
+    /// Each vertex moves by itself.
+    #[default]
+    Deformable,
+}
+
+/// Which bodies a body may meet: see [`Body::with`](crate::mesh::Body::with).
+///
+/// Two bodies are tested against each other if they are of one environment, or one of them is of every, and if each is in a
+/// group that the other meets. A body is tested against itself where it says so.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Meets {
+    /// The environment; `None` for a body that is in every one. Bodies of different environments never meet.
+    pub environment: Option<u32>,
+    /// Bits of the groups that the body is in.
+    pub group: u32,
+    /// Bits of the groups that it meets.
+    pub mask: u32,
+    /// Whether it is tested against itself.
+    pub self_contact: bool,
+}
+
+impl Meets {
+    /// All other bodies, and itself.
+    pub fn and_itself() -> Meets {
+        Meets { self_contact: true, ..Meets::default() }
+    }
+
+    /// All other bodies of that environment.
+    pub fn in_environment(environment: u32) -> Meets {
+        Meets { environment: Some(environment), ..Meets::default() }
+    }
+}
+
+impl Default for Meets {
+    /// All other bodies, in environment 0; not itself.
+    fn default() -> Meets {
+        Meets { environment: Some(0), group: u32::MAX, mask: u32::MAX, self_contact: false }
+    }
+}
+
+/// Bodies, by their numbers.
+///
+/// ```
+/// use nearmiss::scene::{Meets, Scene};
+/// use nearmiss::{Body, Mesh, mesh::Positions};
+///
+/// let triangle = |z: f32| {
+///     let corners = vec![[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]];
+///     Mesh::new("a triangle", Positions::F32(corners), vec![[0, 1, 2]])
+/// };
+/// let mut scene = Scene::new();
+/// let cloth = scene.add(Body::still(triangle(1.0)?).with(Meets::and_itself()));
+/// let ball = scene.add(Body::rigid(triangle(0.5)?));
+/// let ground = scene.add(Body::fixed(triangle(0.0)?));
+/// assert_eq!([cloth, ball, ground].map(|body| body.index()), [0, 1, 2]);
+/// # Ok::<(), nearmiss::Error>(())
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    bodies: Vec<Body>,
+    /// Of each number, whether its body was removed.
+    removed: Vec<bool>,
+    /// Those numbers.
+    free: Vec<u32>,
+}
+
+impl Scene {
+    /// No bodies.
+    pub fn new() -> Scene {
+        Scene::default()
+    }
+
+    /// Adds a body: under the number of one that was removed, where there is one.
+    pub fn add(&mut self, body: Body) -> BodyId {
+        match self.free.pop() {
+            Some(id) => {
+                self.bodies[id as usize] = body;
+                self.removed[id as usize] = false;
+                BodyId(id)
+            }
+            None => {
+                self.bodies.push(body);
+                self.removed.push(false);
+                BodyId(self.bodies.len() as u32 - 1)
+            }
+        }
+    }
+
+    /// Takes a body out; `None` where there is none of that number.
+    pub fn remove(&mut self, id: BodyId) -> Option<Body> {
+        self.get(id)?;
+        self.free.push(id.0);
+        self.removed[id.index()] = true;
+        Some(std::mem::replace(&mut self.bodies[id.index()], Body::none()))
+    }
+
+    /// The body of a number; `None` where it was removed or never was.
+    pub fn get(&self, id: BodyId) -> Option<&Body> {
+        self.bodies.get(id.index()).filter(|_| !self.removed[id.index()])
+    }
+
+    /// The same, to be changed.
+    pub(crate) fn get_mut(&mut self, id: BodyId) -> Option<&mut Body> {
+        self.bodies.get_mut(id.index()).filter(|_| !self.removed[id.index()])
+    }
+
+    /// Every body by its number; those that were removed are bodies without vertices.
+    pub fn bodies(&self) -> &[Body] {
+        &self.bodies
+    }
+
+    pub(crate) fn bodies_mut(&mut self) -> &mut [Body] {
+        &mut self.bodies
+    }
+
+    /// The numbers of all bodies, ascending.
+    pub fn ids(&self) -> impl Iterator<Item = BodyId> + '_ {
+        (0..self.bodies.len() as u32).map(BodyId).filter(|id| !self.removed[id.index()])
+    }
+}
+
+impl From<Vec<Body>> for Scene {
+    /// One body is tested against itself; more against each other, and against themselves where they say so.
+    fn from(mut bodies: Vec<Body>) -> Scene {
+        if let [only] = &mut bodies[..] {
+            let meets = Meets { self_contact: true, ..*only.meets() };
+            *only = std::mem::replace(only, Body::none()).with(meets);
+        }
+        Scene { removed: vec![false; bodies.len()], bodies, free: Vec::new() }
+    }
+}
+
+impl From<Body> for Scene {
+    /// A body, tested against itself.
+    fn from(body: Body) -> Scene {
+        Scene::from(vec![body])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::soup;
+
+    #[test]
+    fn numbers_stay_with_their_bodies() {
+        let mut scene = Scene::new();
+        let [a, b, c] = [1, 2, 3].map(|seed| scene.add(soup(3, seed, false)));
+        assert_eq!(scene.ids().collect::<Vec<_>>(), [a, b, c]);
+        assert!(scene.remove(b).is_some() && scene.remove(b).is_none() && scene.get(b).is_none());
+        assert_eq!(scene.ids().collect::<Vec<_>>(), [a, c]);
+        assert_eq!((scene.bodies().len(), scene.bodies()[1].vertex_count()), (3, 0));
+        assert_eq!(scene.add(soup(4, 4, false)), b);
+        assert_eq!(scene.get(b).map(Body::face_count), Some(4));
+        assert!(scene.get(BodyId(9)).is_none() && scene.remove(BodyId(9)).is_none());
+    }
+
+    #[test]
+    fn one_body_is_tested_against_itself_and_two_are_not() {
+        let own = |scene: Scene| scene.bodies().iter().map(|b| b.meets().self_contact).collect::<Vec<_>>();
+        assert_eq!(own(Scene::from(soup(3, 1, false))), [true]);
+        assert_eq!(own(Scene::from(vec![soup(3, 1, false), soup(3, 2, false)])), [false, false]);
+        assert!(own(Scene::from(Vec::new())).is_empty());
+    }
+}

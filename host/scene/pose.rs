@@ -1,0 +1,106 @@
+//! Where a rigid body is: a rotation and a translation.
+
+use crate::error::Error;
+use nalgebra::Isometry3;
+use nearmiss_kernels::abi::PoseRecord;
+
+/// A rigid motion of the points of a body: turned first, then moved.
+///
+/// ```
+/// use nearmiss::scene::Pose;
+///
+/// // A quarter turn about z, and 2 up.
+/// let half = 0.5_f64.sqrt();
+/// let pose = Pose { rotation: [0.0, 0.0, half, half], translation: [0.0, 0.0, 2.0] };
+/// # let _ = pose;
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// A unit quaternion: x, y, z, w.
+    pub rotation: [f64; 4],
+    /// What is added, in the unit of the positions.
+    pub translation: [f64; 3],
+}
+
+impl Default for Pose {
+    /// Where the points are.
+    fn default() -> Pose {
+        Pose { rotation: [0.0, 0.0, 0.0, 1.0], translation: [0.0; 3] }
+    }
+}
+
+impl From<Isometry3<f64>> for Pose {
+    fn from(motion: Isometry3<f64>) -> Pose {
+        Pose { rotation: motion.rotation.coords.into(), translation: motion.translation.vector.into() }
+    }
+}
+
+/// How far a rotation's length may be from 1: a thousand roundings of f32, in which simulators keep theirs. What is
+/// nearer is divided by its length.
+const UNIT: f64 = 1000.0 * f32::EPSILON as f64;
+
+impl Pose {
+    /// Only moved.
+    pub fn at(translation: [f64; 3]) -> Pose {
+        Pose { translation, ..Pose::default() }
+    }
+
+    /// Whether it is one.
+    ///
+    /// # Errors
+    /// [`Error::Choice`], naming `body`, for a rotation that is no unit quaternion and for what is not finite.
+    pub(crate) fn check(&self, body: &str) -> Result<(), Error> {
+        // NaN is in no range.
+        let unit = ((1.0 - UNIT)..=(1.0 + UNIT)).contains(&self.length());
+        if unit && self.translation.iter().all(|t| t.is_finite()) {
+            return Ok(());
+        }
+        Err(Error::Choice {
+            what: format!("the pose {:?} + {:?} of {body}", self.rotation, self.translation),
+            advice: "give a unit quaternion (x, y, z, w) and a finite translation".into(),
+        })
+    }
+
+    fn length(&self) -> f64 {
+        self.rotation.iter().map(|q| q * q).sum::<f64>().sqrt()
+    }
+
+    /// As a kernel reads it.
+    pub(crate) fn record(&self) -> PoseRecord {
+        let length = self.length();
+        PoseRecord { rotation: self.rotation.map(|q| q / length), translation: self.translation, pad: 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Quaternion, Translation3, UnitQuaternion};
+
+    #[test]
+    fn a_pose_is_a_quaternion_of_length_1() {
+        let pose = Pose { rotation: [0.0, 0.0, 0.6, 0.80001], translation: [1.0, 2.0, 3.0] };
+        assert!(pose.check("a body").is_ok());
+        let [x, y, z, w] = pose.record().rotation;
+        assert!((x * x + y * y + z * z + w * w - 1.0).abs() < 1e-15);
+        // No rotation is no change, to the bit.
+        assert_eq!(Pose::default().record().rotation, [0.0, 0.0, 0.0, 1.0]);
+        let rotation = UnitQuaternion::new_unchecked(Quaternion::new(1.0, 0.0, 0.0, 0.0));
+        let motion = Isometry3 { rotation, translation: Translation3::new(1.0, 2.0, 3.0) };
+        assert_eq!(Pose::from(motion), Pose::at([1.0, 2.0, 3.0]));
+    }
+
+    #[test]
+    fn what_is_no_pose_is_named() {
+        let bad = [
+            Pose { rotation: [0.0; 4], ..Pose::default() },
+            Pose { rotation: [0.0, 0.0, 0.0, 1.1], ..Pose::default() },
+            Pose { rotation: [f64::NAN, 0.0, 0.0, 1.0], ..Pose::default() },
+            Pose::at([0.0, f64::INFINITY, 0.0]),
+        ];
+        for pose in bad {
+            let error = pose.check("the crate").expect_err("refused").to_string();
+            assert!(error.contains("the crate") && error.contains("unit quaternion"), "{error}");
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! Scenes of many bodies: what the kernels know of each, and where its vertices come from.
+
+use super::{Link, Node, Point, Positions, Span};
+use crate::math::Real;
+use bytemuck::{Pod, Zeroable};
+
+/// A body of a scene, in the order in which triangles and vertices are numbered.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C, align(8))]
+pub struct BodyRecord {
+    /// Its first triangle.
+    pub triangle: u32,
+    /// Its first vertex.
+    pub vertex: u32,
+    /// Its environment, by its rank among those that there are; or [`EVERY`].
+    pub environment: u32,
+    /// 1 where it is tested against itself.
+    pub self_contact: u32,
+    /// Bits of the groups that it is in.
+    pub group: u32,
+    /// Bits of the groups that it meets.
+    pub mask: u32,
+}
+const _: () = assert!(size_of::<BodyRecord>() == 24);
+
+/// [`BodyRecord::environment`]: meets bodies of every environment. Greater than any other.
+pub const EVERY: u32 = NodeFilter::NUMBER;
+
+/// A body as a tree is built over it: see [`crate::stage::construct::morton`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C, align(16))]
+pub struct TreeBody {
+    /// Its first triangle.
+    pub triangle: u32,
+    /// Triangles of the tree's bodies before it.
+    pub before: u32,
+    /// The upper bits of its triangles' codes, in their place.
+    pub prefix: u32,
+    /// How many bits those are.
+    pub prefix_bits: u32,
+}
+const _: () = assert!(size_of::<TreeBody>() == 16);
+
+/// Whose triangles lie below a node. Of one body: the body, with [`SELF_CONTACT`] where it is tested against itself, and its
+/// environment. Of more: [`MIXED`], with the first of their environments, and the last.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C, align(8))]
+pub struct NodeFilter {
+    /// See above.
+    pub who: u32,
+    /// The last environment.
+    pub last: u32,
+}
+const _: () = assert!(size_of::<NodeFilter>() == 8);
+
+impl NodeFilter {
+    /// The bits of [`NodeFilter::who`] that are a number.
+    pub const NUMBER: u32 = MIXED - 1;
+}
+
+/// [`NodeFilter::who`]: the body is tested against itself.
+pub const SELF_CONTACT: u32 = 1 << 31;
+/// [`NodeFilter::who`]: more than one body.
+pub const MIXED: u32 = 1 << 30;
+
+/// A body whose vertices are placed: see [`crate::stage::place`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C, align(16))]
+pub struct Placement {
+    /// Its first vertex.
+    pub vertex: u32,
+    /// Vertices of the placed bodies before it.
+    pub before: u32,
+    /// Where its source begins: in the points at rest, or in what was uploaded.
+    pub source: u32,
+    /// Which pair of poses moves it; [`UPLOADED`] or [`RESTING`] for none.
+    pub poses: u32,
+}
+const _: () = assert!(size_of::<Placement>() == 16);
+
+/// [`Placement::poses`]: the vertices were uploaded as they are.
+pub const UPLOADED: u32 = u32::MAX;
+/// [`Placement::poses`]: the body rests where it was at the end of the last step.
+pub const RESTING: u32 = u32::MAX - 1;
+
+/// A rigid motion: points are turned, then moved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C, align(16))]
+pub struct PoseRecord {
+    /// A quaternion of length 1: x, y, z, w.
+    pub rotation: [f64; 4],
+    /// What is added.
+    pub translation: [f64; 3],
+    /// Zero.
+    pub pad: f64,
+}
+const _: () = assert!(size_of::<PoseRecord>() == 64);
+
+arguments! {
+    /// Which pairs of nodes are asked at all; both empty where a scene has one body, tested against itself.
+    FilterArgs {
+        /// Whose triangles lie below each node.
+        nodes: Span<NodeFilter>,
+        /// The bodies; empty where all are in all groups and meet all.
+        bodies: Span<BodyRecord>,
+    }
+    /// `place`: where vertices are, of the bodies that were moved.
+    PlaceArgs<R: Real> {
+        /// The bodies, in the order of their vertices.
+        placements: Span<Placement>,
+        /// Vertices as they were uploaded.
+        uploaded: Positions<R>,
+        /// Vertices of rigid bodies, as they are without a pose.
+        rest: Span<Point<R>>,
+        /// Poses at both ends of the step, or at the only frame: two a body, or one.
+        poses: Span<PoseRecord>,
+        /// Out: all vertices.
+        vertices: Positions<R>,
+        /// How many vertices are placed.
+        count: u32,
+        /// Nothing.
+        pad: u32,
+    }
+    /// `graft`: a tree that does not change, into the memory of one that does.
+    GraftArgs<V: Pod> {
+        /// Its nodes; the root is node 1.
+        from: Span<Node<V>>,
+        /// Whose triangles lie below them.
+        from_filters: Span<NodeFilter>,
+        /// Out: the nodes of both trees below one root.
+        nodes: Span<Node<V>>,
+        /// Out: the parents of both; empty where nobody asks.
+        pair_parents: Span<u32>,
+        /// Out: the filters of both.
+        filters: Span<NodeFilter>,
+        /// Leaves of the tree that changes.
+        leaves: u32,
+        /// Nothing.
+        pad: u32,
+    }
+}
+
+/// The root of a tree that shares its memory with a grafted one: a right child of the root of both.
+pub const GRAFTED_ROOT: u32 = 2;
+/// See [`GRAFTED_ROOT`].
+pub const MOVING_ROOT: u32 = 3;
+
+/// Where a node of a grafted tree lies, behind those of a tree of `leaves` leaves; a leaf's link stays as it is.
+pub const fn grafted(node: u32, leaves: u32) -> u32 {
+    if node == super::ROOT { GRAFTED_ROOT } else { 2 * leaves + node }
+}
+
+/// A grafted node's link.
+pub const fn grafted_link(link: Link, leaves: u32) -> Link {
+    let to = if link.link & super::LEAF != 0 { link.link } else { grafted(link.link, leaves) };
+    Link { link: to, last: link.last + leaves }
+}

@@ -1,0 +1,141 @@
+//! A scene's answer is that of its bodies two by two.
+
+use super::*;
+use support::{ORDERS, sanitizer, ways};
+
+/// Whether a pair is asked, as the documentation says it.
+fn asked(scene: &Scene, i: usize, j: usize) -> bool {
+    let [a, b] = [i, j].map(|i| &scene.bodies()[i]);
+    let [p, q] = [a, b].map(|body| body.meets());
+    if a.kind() == BodyKind::Static && b.kind() == BodyKind::Static {
+        return false;
+    }
+    if i == j {
+        return p.self_contact;
+    }
+    let together = p.environment == q.environment || p.environment.is_none() || q.environment.is_none();
+    together && p.group & q.mask != 0 && q.group & p.mask != 0
+}
+
+/// What the bodies of a scene have in common, asked two by two.
+fn two_by_two(scene: &Scene, query: Query) -> (Vec<TrianglePair>, Vec<Contact>) {
+    let (mut pairs, mut contacts) = (Vec::new(), Vec::new());
+    let ids: Vec<BodyId> = scene.ids().collect();
+    for &i in &ids {
+        for &j in ids.iter().filter(|&&j| j >= i && asked(scene, i.index(), j.index())) {
+            let bodies: Vec<Body> = [i, j].map(|id| alone(&scene.bodies()[id.index()])).to_vec();
+            let bodies = if i == j { bodies[..1].to_vec() } else { bodies };
+            let found = support::ask(engine(), bodies, query);
+            pairs.extend(found.pairs().iter().map(|pair| TrianglePair { bodies: [i, j], ..*pair }));
+            contacts.extend(found.contacts().iter().map(|contact| Contact { bodies: [i, j], ..*contact }));
+        }
+    }
+    pairs.sort_unstable_by_key(|pair| (pair.bodies[0], pair.triangles[0], pair.bodies[1], pair.triangles[1]));
+    contacts.sort_unstable_by_key(|c| (c.kind, c.bodies[0], c.a, c.bodies[1], c.b));
+    (pairs, contacts)
+}
+
+/// What a scene's answer has too much or too little.
+fn differ(found: &Contacts, (pairs, contacts): &(Vec<TrianglePair>, Vec<Contact>)) -> Option<String> {
+    let pair = |i: usize| (found.pairs().get(i), pairs.get(i));
+    let contact = |i: usize| (found.contacts().get(i), contacts.get(i));
+    (0..found.pairs().len().max(pairs.len()))
+        .find(|&i| pair(i).0 != pair(i).1)
+        .map(|i| format!("pair {i}: {:?}", pair(i)))
+        .or_else(|| {
+            (0..found.contacts().len().max(contacts.len()))
+                .find(|&i| contact(i).0 != contact(i).1)
+                .map(|i| format!("contact {i}: {:?}", contact(i)))
+        })
+}
+
+/// Seven bodies of every kind, of environments and groups, and one that was removed.
+pub fn mixed(seed: u64) -> Scene {
+    let mut rng = SmallRng::seed_from_u64(seed);
+    let mut scene = Scene::new();
+    let mut gone = None;
+    for i in 0..8u64 {
+        let n = rng.random_range(1..40);
+        let (mesh, ends) = soup(n, seed * 100 + i);
+        let body = match rng.random_range(0..4) {
+            0 => Body::fixed(mesh),
+            1 => Body::rigid(mesh),
+            _ => {
+                let end = Mesh::new("end", ends[1].clone(), mesh.faces().to_vec()).expect("a mesh");
+                Body::moving(mesh, end).expect("two frames")
+            }
+        };
+        let meets = Meets {
+            environment: [Some(0), Some(0), Some(1), None][rng.random_range(0..4)],
+            group: if seed.is_multiple_of(2) { u32::MAX } else { rng.random_range(0..4) },
+            mask: if seed.is_multiple_of(2) { u32::MAX } else { rng.random_range(0..4) },
+            self_contact: rng.random_bool(0.5),
+        };
+        let id = scene.add(body.with(meets));
+        gone = gone.or((i == 3).then_some(id));
+    }
+    scene.remove(gone.expect("the fourth")).expect("a body");
+    scene
+}
+
+/// The tolerance hangs on the bodies' edges: fixed, so that two bodies are asked as seven are.
+fn query(motion: Motion) -> Query {
+    Query { tolerance: (motion != Motion::Discrete).then_some(1e-4), ..Query::of(motion) }
+}
+
+#[test]
+fn a_scene_answers_as_its_bodies_two_by_two() {
+    let mut found = [0; 2];
+    for seed in 0..40 {
+        let scene = mixed(seed);
+        for (k, motion) in [Motion::Discrete, Motion::Continuous].into_iter().enumerate() {
+            let truth = two_by_two(&scene, query(motion));
+            let mut detector = Detector::new(engine(), scene.clone(), query(motion)).expect("a detector");
+            let contacts = detector.detect().expect("an answer");
+            detector.check_trees().expect("sound trees");
+            assert_eq!(differ(&contacts, &truth), None, "seed {seed}, {motion:?}");
+            found[k] += contacts.len();
+        }
+        let earliest = support::ask_scene(engine(), scene.clone(), query(Motion::Earliest)).earliest_toi();
+        let continuous = support::ask_scene(engine(), scene, query(Motion::Continuous)).earliest_toi();
+        assert_eq!(earliest, continuous, "seed {seed}");
+    }
+    assert!(found.iter().all(|&found| found > 1_000), "{found:?}");
+}
+
+#[test]
+fn every_way_through_a_scene_gives_one_answer() {
+    for seed in [3, 4] {
+        let scene = mixed(seed);
+        for motion in [Motion::Discrete, Motion::Continuous] {
+            let truth = two_by_two(&scene, query(motion));
+            for way in ways(query(motion)) {
+                let found = support::ask_scene(engine(), scene.clone(), way);
+                assert_eq!(differ(&found, &truth), None, "seed {seed}, {way:?}");
+            }
+            for order in ORDERS {
+                let found = support::ask_scene(sanitizer(order), scene.clone(), query(motion));
+                assert_eq!(differ(&found, &truth), None, "seed {seed}, {order:?}");
+            }
+        }
+    }
+}
+
+/// The judge of the tests above names what is missing, and what is of other bodies.
+#[test]
+fn the_judge_notices_a_pair_too_few_and_another_body() {
+    for motion in [Motion::Discrete, Motion::Continuous] {
+        let scene = mixed(4);
+        let (mut pairs, mut contacts) = two_by_two(&scene, query(motion));
+        let found = support::ask_scene(engine(), scene, query(motion));
+        let whole = (pairs.clone(), contacts.clone());
+        assert!(found.len() > 20 && differ(&found, &whole).is_none());
+        pairs.pop();
+        contacts.pop();
+        assert!(differ(&found, &(pairs, contacts)).is_some_and(|what| what.contains("None")));
+        let (mut pairs, mut contacts) = whole;
+        pairs.iter_mut().for_each(|pair| pair.bodies.swap(0, 1));
+        contacts.iter_mut().for_each(|contact| contact.bodies.swap(0, 1));
+        assert!(differ(&found, &(pairs, contacts)).is_some_and(|what| what.contains("bodies")));
+    }
+}
