@@ -7,21 +7,26 @@ use super::args::SelftestArgs;
 use super::detect::body;
 use super::output::print;
 use super::progress::during;
+use nearmiss::Detector;
+use nearmiss::contacts::Contacts;
 use nearmiss::device::Device;
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
-use nearmiss::pipeline::{Session, of_edges};
+use nearmiss::pipeline::of_edges;
 use nearmiss::query::{Bv, FrontShape, Motion, Query, QueueShape, Refit, Solver, StealShape, Traversal};
 use nearmiss::words::counted;
 use nearmiss_lab::robustness::{self, Amount};
-use nearmiss_lab::scene;
+use nearmiss_lab::scene::{self, Bodies};
 use std::process::ExitCode;
 
 /// Triangles of the scenes that the sanitizer, which is some hundred times slower, looks at.
 const SMALL: usize = 300;
 /// Equal triangles: all pairs of their features touch from the start, which only exact signs can tell.
 const EQUAL: usize = 40;
+
+/// Steps of a scene of many bodies.
+const STEPS: u32 = 3;
 
 /// One answer, and what every stage left behind.
 struct Print {
@@ -37,10 +42,26 @@ impl Print {
 }
 
 fn print_of(device: &Device, bodies: &[Body], query: Query) -> Result<Print, Error> {
-    let mut session = Session::new(device.clone(), bodies.to_vec(), query)?;
-    let contacts = session.detect()?;
-    session.check_trees()?;
-    let mut stages = session.fingerprints()?;
+    let mut detector = Detector::new(device.clone(), bodies.to_vec(), query)?;
+    let contacts = detector.detect()?;
+    print_after(&detector, &contacts)
+}
+
+/// The same of a scene of many bodies, after some steps.
+fn print_of_steps(device: &Device, scene: &Bodies, query: Query) -> Result<Print, Error> {
+    let mut detector = Detector::new(device.clone(), scene.scene.clone(), query)?;
+    let mut last = None;
+    for step in 0..STEPS {
+        let moves = scene.step(step);
+        let inputs: Vec<_> = moves.iter().map(|(id, to)| (*id, to.input())).collect();
+        last = Some(detector.frame(&inputs)?);
+    }
+    print_after(&detector, &last.unwrap_or_else(|| Contacts::none(query)))
+}
+
+fn print_after(detector: &Detector, contacts: &Contacts) -> Result<Print, Error> {
+    detector.check_trees()?;
+    let mut stages = detector.fingerprints()?;
     stages.push(("contacts", contacts.hash()));
     Ok(Print { contacts: contacts.len(), stages })
 }
@@ -136,6 +157,43 @@ impl Bench {
         self.compare("draped with soup", &[draped?, soup?])?;
         if !args.mesh.is_empty() {
             self.compare(&args.mesh[0].display().to_string(), &[body(&args.mesh)?])?;
+        }
+        let balls = (args.triangles / 200).max(4);
+        self.compare_bodies("a pile of bodies", &Bodies::pile(balls, 40, 20)?)?;
+        self.compare_bodies("worlds", &Bodies::worlds(balls as u32 / 4, 4)?)
+    }
+
+    /// A scene of many bodies, step after step.
+    fn compare_bodies(&mut self, name: &str, scene: &Bodies) -> Result<(), Error> {
+        let Bench { machine, engine, faults } = self;
+        for motion in [Motion::Discrete, Motion::Continuous, Motion::Earliest] {
+            for bv in Bv::ALL {
+                let query = Query { bv: Some(bv), ..Query::of(motion) };
+                let on_engine = |walk| {
+                    let query = Query { traversal: Some(walk), ..query };
+                    during("comparing machines", || print_of_steps(engine, scene, query))
+                };
+                let by_leaf = on_engine(Traversal::PerLeaf { budget: None })?;
+                let by_pair = on_engine(Traversal::Queue(QueueShape::native()))?;
+                for (what, other) in choices(query) {
+                    let there = during("comparing machines", || print_of_steps(machine, scene, other))?;
+                    let walk = other.traversal_on(machine.is_gpu());
+                    let want = if matches!(walk, Traversal::PerLeaf { .. }) { &by_leaf } else { &by_pair };
+                    // Where a front goes on from the step before, what it asks hangs on that: the answer does not.
+                    let differs = match other.traversal {
+                        Some(Traversal::Front(_)) => difference(&want.answer(), &there.answer()),
+                        _ => difference(want, &there),
+                    };
+                    if let Some(stage) = differs {
+                        faults.push(format!("{name}, {motion:?}, {}, {what}: {stage}", bv.name()));
+                    }
+                }
+                if bv == Bv::Aabb {
+                    let hash = by_leaf.stages.last().map_or(0, |stage| stage.1);
+                    let contacts = counted(by_leaf.contacts as u64, "contact", "contacts");
+                    line(format!("{hash:016x} {contacts:>18}  {name}, {motion:?}"))?;
+                }
+            }
         }
         Ok(())
     }

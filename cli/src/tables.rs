@@ -6,6 +6,7 @@ use crate::output;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::query::{Bv, Motion, Solver};
+use nearmiss_lab::scene::Bodies;
 use nearmiss_lab::tables::{self, Figures, Frames, Paper, Way};
 use std::process::ExitCode;
 
@@ -16,7 +17,12 @@ pub fn tables(args: &TablesArgs) -> Result<ExitCode, Error> {
     let continuous = Solver::default_for(Motion::Continuous);
     output::say(&format!("the solver of continuous columns is {}", continuous.promise()));
     let mut figures = Figures::new(device.name(), profile(args));
-    for (name, triangles) in scenes(args)? {
+    if args.table.contains(&Table::Bodies) {
+        bodies(args, &device, &mut figures)?;
+    }
+    // Asked for alone, that is all.
+    let all = args.table.is_empty() || args.table.iter().any(|table| *table != Table::Bodies);
+    for (name, triangles) in if all { scenes(args)? } else { Vec::new() } {
         let frames = during(format!("making {name}"), || match args.mesh.is_empty() {
             true => tables::frames(&name, triangles, args.seed, args.frames as usize),
             false => tables::read(&name, &args.mesh),
@@ -24,6 +30,18 @@ pub fn tables(args: &TablesArgs) -> Result<ExitCode, Error> {
         scene(args, &device, &frames, &mut figures)?;
     }
     super::report(&args.report, &figures, Figures::text, Figures::write)
+}
+
+/// Measures scenes of many bodies.
+fn bodies(args: &TablesArgs, device: &Device, figures: &mut Figures) -> Result<(), Error> {
+    let scenes = [("pile", Bodies::pile(500, 120, 100)?), ("worlds", Bodies::worlds(1_000, 8)?)];
+    for (name, scene) in &scenes {
+        for motion in [Motion::Discrete, Motion::Continuous] {
+            let row = || tables::bodies(device, name, scene, motion, args.frames);
+            figures.bodies.push(during(format!("{name}, {motion:?}"), row)?);
+        }
+    }
+    Ok(())
 }
 
 /// Names and triangles.

@@ -20,6 +20,8 @@ pub enum Table {
     Shares,
     /// What a front saves, by the part of a step that things move.
     Front,
+    /// Scenes of many bodies: a pile of 500 balls under a cloth, and 1,000 small worlds.
+    Bodies,
 }
 
 /// Sizes of work queues.

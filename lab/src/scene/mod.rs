@@ -1,6 +1,7 @@
 //! Scenes made by this program: for the README, the self-test, tests and benches.
 //!
-//! Those of [`FORMULAS`] have one or two frames; those of [`ANIMATIONS`] go on for ever, an [`Animation`] each.
+//! Those of [`FORMULAS`] have one or two frames; those of [`ANIMATIONS`] go on for ever, an [`Animation`] each; [`Bodies`] are
+//! scenes of many bodies.
 //!
 //! A scene is the same, bit by bit, on every machine and in every version of every crate: random numbers come from
 //! our own [`Rng`], and coordinates only from `+ - * /`, `sqrt`, `floor` and comparisons in double precision, which
@@ -8,6 +9,7 @@
 
 mod animation;
 mod balls;
+mod bodies;
 mod cloth_ball;
 mod draped;
 mod flamenco;
@@ -24,6 +26,7 @@ mod xpbd;
 
 pub use animation::{ANIMATIONS, Animation, Options, animation, animation_with};
 pub use balls::balls;
+pub use bodies::{Bodies, Move};
 pub use draped::draped;
 pub use known::{grid, grid_pairs, identical, line, single};
 pub use rng::Rng;

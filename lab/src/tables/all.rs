@@ -1,5 +1,6 @@
 //! All figures together: text, CSV files and pictures.
 
+use super::bodies::BodiesRow;
 use super::figures::{Figure612, Figure613, Figure614, Paper};
 use super::front::FrontRow;
 use super::paper_reference::PAPER_GPU;
@@ -27,19 +28,26 @@ pub struct Figures {
     pub figure_6_14: Vec<Figure614>,
     /// What a front saves.
     pub front: Vec<FrontRow>,
+    /// Scenes of many bodies.
+    pub bodies: Vec<BodiesRow>,
 }
 
 impl Figures {
     /// No figures yet.
     pub fn new(device: String, profile: &'static str) -> Figures {
-        let (figure_6_12, figure_6_13, figure_6_14, front) = Default::default();
-        Figures { device, profile, theirs: PAPER_GPU, figure_6_12, figure_6_13, figure_6_14, front }
+        let (figure_6_12, figure_6_13, figure_6_14, front, bodies) = Default::default();
+        Figures { device, profile, theirs: PAPER_GPU, figure_6_12, figure_6_13, figure_6_14, front, bodies }
     }
 
     /// For people.
     pub fn text(&self) -> String {
-        let figures =
-            [text(&self.figure_6_12), text(&self.figure_6_13), text(&self.figure_6_14), text(&self.front)];
+        let figures = [
+            text(&self.figure_6_12),
+            text(&self.figure_6_13),
+            text(&self.figure_6_14),
+            text(&self.front),
+            text(&self.bodies),
+        ];
         let mut all = format!("ours on {}\n\n", self.machine());
         for figure in figures.iter().filter(|figure| !figure.is_empty()) {
             all += figure;
@@ -139,6 +147,11 @@ impl Figures {
             let title = "A front: its cost, of that of the same frame without it";
             let bound = (50.0, "the thesis's bound on node tests, a half");
             both("front", csv(&self.front), curves(title, &self.machine(), bound, &charts(&self.front)))?;
+        }
+        if !self.bodies.is_empty() {
+            let file = folder.join("bodies.csv");
+            put(&file, &csv(&self.bodies).map_err(|e| failed(&file, &e))?)?;
+            names.push("bodies.csv".into());
         }
         Ok(names)
     }
