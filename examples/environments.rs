@@ -1,0 +1,25 @@
+//! A thousand small worlds that never meet, all in one place, in one submission.
+
+mod shapes;
+
+use nearmiss::scene::{Input, Meets, Pose, Scene};
+use nearmiss::{Body, Detector, Device, Error, Query, device::Backend, query::Motion};
+
+fn main() -> Result<(), Error> {
+    let mut scene = Scene::new();
+    let mut arms = Vec::new();
+    for world in 0..1_000 {
+        let meets = Meets::in_environment(world);
+        arms.push(scene.add(Body::rigid(shapes::sheet(16, |x, y| [x, y, 0.1 * x])?).with(meets)));
+        scene.add(Body::fixed(shapes::sheet(16, |x, y| [2.0 * x, 2.0 * y, 0.0])?).with(meets));
+    }
+    let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene, Query::of(Motion::Discrete))?;
+    for frame in 0..5 {
+        let lift = |world: usize| 0.0001 * (world * (frame + 1)) as f64 - 0.05;
+        let poses = |world| Input::Pose(Pose::at([0.01, 0.02, lift(world)]));
+        let inputs: Vec<_> = arms.iter().enumerate().map(|(world, &arm)| (arm, poses(world))).collect();
+        let found = detector.frame(&inputs)?;
+        println!("frame {frame}: {} pairs in all worlds, {:.2} ms", found.len(), found.stages.wall);
+    }
+    Ok(())
+}
