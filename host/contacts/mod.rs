@@ -1,10 +1,12 @@
 //! Results: contacts in canonical order, and their hash.
 
 mod degraded;
+mod near;
 mod summary;
 mod triangles;
 
 pub use degraded::Degraded;
+pub use near::{Closest, NearPair};
 pub use summary::Summary;
 pub use triangles::{TriangleContact, triangle_contacts};
 
@@ -78,6 +80,8 @@ pub enum Answer {
     Contacts(Vec<Contact>),
     /// The smallest time of contact.
     Earliest(Option<f64>),
+    /// Feature pairs within the distance, ascending by kind, a, b.
+    Near(Vec<NearPair>),
 }
 
 /// An answer with the figures of its making.
@@ -102,7 +106,8 @@ pub struct Contacts {
     pub open_vf_ee: [u64; 2],
     /// Of these, those that were cut into slices: vertex/face, edge/edge.
     pub sliced_vf_ee: [u64; 2],
-    /// How many contacts are [`Status::Unresolved`]; of an earliest query, how many of the pairs that were asked: which of those
+    /// How many contacts are [`Status::Unresolved`]; of a near query, how many of the listed pairs rounding cannot tell from such
+    /// that are farther apart; of an earliest query, how many of the pairs that were asked: which of those
     /// that cannot be earlier are asked anyway is a matter of order, so this and the counts by rung may differ from run to run.
     pub unresolved: u64,
     /// Pairs that the filter in the precision of the positions left undecided.
@@ -181,6 +186,7 @@ impl Contacts {
             Motion::Discrete => Answer::Pairs(Vec::new()),
             Motion::Continuous => Answer::Contacts(Vec::new()),
             Motion::Earliest => Answer::Earliest(None),
+            Motion::Near => Answer::Near(Vec::new()),
         };
         Contacts {
             answer,
@@ -215,6 +221,7 @@ impl Contacts {
         let second = if layout.bodies() == 2 { layout.starts[1] } else { Default::default() };
         let answer = match query.motion {
             Motion::Earliest => Answer::Earliest(found.earliest),
+            Motion::Near => Answer::Near(near::pairs(&found, layout)),
             Motion::Discrete => {
                 let listed: &[Pair] = found.pairs.as_deref().unwrap_or_default();
                 let mut pairs: Vec<_> = listed.par_iter().map(|p| [p.a, p.b - second.triangle]).collect();
@@ -277,6 +284,7 @@ impl Contacts {
             Answer::Pairs(pairs) => pairs.len(),
             Answer::Contacts(contacts) => contacts.len(),
             Answer::Earliest(toi) => toi.iter().len(),
+            Answer::Near(near) => near.len(),
         }
     }
 
@@ -305,17 +313,22 @@ impl Contacts {
         if let Answer::Contacts(contacts) = &self.answer { contacts } else { &[] }
     }
 
+    /// Feature pairs within a distance, if that was asked.
+    pub fn near(&self) -> &[NearPair] {
+        if let Answer::Near(near) = &self.answer { near } else { &[] }
+    }
+
     /// The smallest time of contact of a continuous or earliest query.
     pub fn earliest_toi(&self) -> Option<f64> {
         match &self.answer {
-            Answer::Pairs(_) => None,
+            Answer::Pairs(_) | Answer::Near(_) => None,
             Answer::Contacts(contacts) => contacts.iter().map(|c| c.toi).min_by(f64::total_cmp),
             Answer::Earliest(toi) => *toi,
         }
     }
 
     /// xxh3 over the canonical answer: the same for equal answers on every machine. Each contact adds its kind, its
-    /// indices and the bits of its times, little-endian.
+    /// indices and the bits of its times (a near pair of its squared distance and weights), little-endian.
     pub fn hash(&self) -> u64 {
         let mut hash = xxhash_rust::xxh3::Xxh3::new();
         match &self.answer {
@@ -328,6 +341,7 @@ impl Contacts {
                 hash.update(&c.toi_hi.to_le_bytes());
             }),
             Answer::Earliest(toi) => toi.iter().for_each(|toi| hash.update(&toi.to_le_bytes())),
+            Answer::Near(near) => near.iter().for_each(|pair| hash.update(&pair.bytes())),
         }
         hash.digest()
     }

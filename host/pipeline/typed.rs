@@ -106,18 +106,18 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
         (query, axes): (Query, Axes),
     ) -> Result<Self, Error> {
         let triangles = layout.faces.len();
-        let continuous = query.motion != Motion::Discrete;
-        let a_triangle = if continuous { SWEPT_PAIRS_A_TRIANGLE } else { PAIRS_A_TRIANGLE };
+        let still = query.motion.is_at_rest();
+        let a_triangle = if still { PAIRS_A_TRIANGLE } else { SWEPT_PAIRS_A_TRIANGLE };
         let capacity = (a_triangle * triangles).max(LEAST_ROOM);
         let few = (4 * triangles).max(LEAST_ROOM);
         let vertices = layout.starts[layout.bodies()].vertex as usize;
         let mut pipeline = TypedPipeline {
             query,
             faces: device.upload(&layout.faces)?,
-            vertices: if continuous {
-                Vertices::Moving(device.buffer(vertices)?)
-            } else {
+            vertices: if still {
                 Vertices::Still(device.buffer(vertices)?)
+            } else {
+                Vertices::Moving(device.buffer(vertices)?)
             },
             bodies: Vec::new(),
             counters: device.buffer(counter::COUNT as usize)?,
