@@ -1,5 +1,7 @@
 //! Every tolerance and rounding constant of the kernels: name, unit, reason. None lives anywhere else.
 
+use core::ops::RangeInclusive;
+
 /// Unit roundoff of f32: half the distance from 1 to the next f32. Relative.
 pub const U32: f32 = f32::EPSILON / 2.0;
 /// Unit roundoff of f64: half the distance from 1 to the next f64. Relative.
@@ -195,6 +197,11 @@ pub const DISTANCE_UP: f64 = 1.0 + 8.0 * U64;
 /// Differences whose largest component is below this are scaled by [`DISTANCE_SCALE`]: `2^-400`, so that the square of
 /// `DISTANCE_ERROR` of it, 2^-892, is a normal number. Length.
 pub const DISTANCE_SMALL: f64 = f64::from_bits((1023 - 400) << 52);
+/// Of pairs whose largest difference is in this range, f32 tells some apart: `2^-40`, so that
+/// `192u` of it, 2^-56, and sixteen `u` of it, 2^-60, have squares that are normal numbers; and `2^60`, so that squares are finite.
+/// Length.
+pub const DISTANCE_FILTERED: RangeInclusive<f32> =
+    f32::from_bits((127 - 40) << 23)..=f32::from_bits((127 + 60) << 23);
 /// What they are scaled by: `2^900`. The largest become 2^500, whose squares are finite, the smallest subnormal 2^-174. Ratio.
 pub const DISTANCE_SCALE: f64 = f64::from_bits((1023 + 900) << 52);
 

@@ -29,9 +29,18 @@
 //!
 //! Doubles reach as far as squares of differences do: positions of f32 give differences from 2^-149 to 2^129, those of f64 up to 2^481.
 //! Smaller ones than `DISTANCE_SMALL` are scaled, exactly.
+//!
+//! [`Filter`] is the same in f32, without branches: it lets go what is certainly farther by that bound with the `u` of f32 (a difference of
+//! doubles rounds once more, `3u l`, for which there is room). Of a reach outside of `DISTANCE_FILTERED`, where squares of f32
+//! could end, it lets nothing go.
 
-use crate::math::tolerance::{DISTANCE_CERTAIN, DISTANCE_ERROR, DISTANCE_SCALE, DISTANCE_SMALL, DISTANCE_UP};
-use crate::math::{Real, Vec3};
+use crate::exec::RowMap;
+use crate::math::tolerance::{
+    DISTANCE_CERTAIN, DISTANCE_ERROR, DISTANCE_FILTERED, DISTANCE_SCALE, DISTANCE_SMALL, DISTANCE_UP, U32,
+    U64,
+};
+use crate::math::{Real, Vec3, round};
+use core::marker::PhantomData;
 
 /// Two features that may be within a length.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,25 +61,62 @@ pub fn corner_weights([s, t]: [f64; 2]) -> [f64; 3] {
     [(1.0 - t) - s, s, t]
 }
 
+/// The differences that a pair is made of, each rounded once, or twice where S is narrower than R: `r`, `p`, `q`.
+#[inline(always)]
+fn differences<R: Real, S: Real, const TRIANGLE: bool>([a, b, c, d]: [Vec3<R>; 4]) -> [Vec3<S>; 3] {
+    let minus = |x: Vec3<R>, y: Vec3<R>| {
+        if S::WIDE { (x.wide() - y.wide()).map(|x| S::of(x)) } else { (x - y).map(|x| S::of(x.wide())) }
+    };
+    if TRIANGLE { [minus(b, a), minus(c, b), minus(d, b)] } else { [minus(a, c), minus(b, a), minus(c, d)] }
+}
+
 /// A vertex and a face: where they are nearest, unless they are certainly farther apart than `distance`.
 #[inline(always)]
 pub fn vertex_face<R: Real>(v: Vec3<R>, [a, b, c]: [Vec3<R>; 3], distance: f64) -> Option<Near> {
-    let [v, a, b, c] = [v.wide(), a.wide(), b.wide(), c.wide()];
-    within::<true>([a - v, b - a, c - a], distance)
+    within::<true>(differences::<R, f64, true>([v, a, b, c]), distance)
 }
 
 /// Two edges: where they are nearest, unless they are certainly farther apart than `distance`.
 #[inline(always)]
 pub fn edge_edge<R: Real>([a, b]: [Vec3<R>; 2], [c, d]: [Vec3<R>; 2], distance: f64) -> Option<Near> {
-    let [a, b, c, d] = [a.wide(), b.wide(), c.wide(), d.wide()];
-    within::<false>([a - c, b - a, c - d], distance)
+    within::<false>(differences::<R, f64, false>([a, b, c, d]), distance)
 }
+
+/// Whether two features may be within a distance: a vertex and the corners of a face, or the ends of one edge and those of another.
+pub struct Filter<R, const TRIANGLE: bool> {
+    distance: f32,
+    positions: PhantomData<R>,
+}
+
+impl<R, const TRIANGLE: bool> Filter<R, TRIANGLE> {
+    /// For that distance, a length above 0.
+    pub fn new(distance: f64) -> Self {
+        Filter { distance: round::up(distance), positions: PhantomData }
+    }
+}
+
+impl<R: Real, const TRIANGLE: bool> RowMap for Filter<R, TRIANGLE> {
+    type Number = R;
+    type Row = [Vec3<R>; 4];
+    #[inline(always)]
+    fn at_once(&self, row: [Vec3<R>; 4]) -> u32 {
+        let of = differences::<R, f32, TRIANGLE>(row);
+        let reach = reach(&of);
+        let most = (self.distance + ERRORS * U32 * reach) * (1.0 + 8.0 * U32);
+        let apart = nearest::<f32, TRIANGLE>(of).squared > most * most;
+        // An infinite one is in no range.
+        !(apart & DISTANCE_FILTERED.contains(&reach)) as u32
+    }
+}
+
+/// [`DISTANCE_ERROR`], in unit roundoffs of any precision.
+const ERRORS: f32 = (DISTANCE_ERROR / U64) as f32;
 
 /// The largest component of the differences that a pair is made of.
 #[inline(always)]
-fn reach(of: &[Vec3<f64>; 3]) -> f64 {
-    let largest = |v: Vec3<f64>| v[0].abs().max(v[1].abs()).max(v[2].abs());
-    largest(of[0]).max(largest(of[1])).max(largest(of[2]))
+fn reach<S: Real>(of: &[Vec3<S>; 3]) -> S {
+    let largest = |v: Vec3<S>| v[0].abs().greater(v[1].abs()).greater(v[2].abs());
+    largest(of[0]).greater(largest(of[1])).greater(largest(of[2]))
 }
 
 /// The nearest point, unless it is certainly beyond the distance.
@@ -79,7 +125,7 @@ fn within<const TRIANGLE: bool>(of: [Vec3<f64>; 3], distance: f64) -> Option<Nea
     let reach = reach(&of);
     let (up, down) = if reach < DISTANCE_SMALL { (DISTANCE_SCALE, 1.0 / DISTANCE_SCALE) } else { (1.0, 1.0) };
     let (reach, distance) = (reach * up, distance * up);
-    let found = nearest::<TRIANGLE>(of.map(|v| v * up));
+    let found = nearest::<f64, TRIANGLE>(of.map(|v| v * up));
     let most = (distance + DISTANCE_ERROR * reach) * DISTANCE_UP;
     if found.squared > most * most {
         return None;
@@ -95,53 +141,55 @@ fn within<const TRIANGLE: bool>(of: [Vec3<f64>; 3], distance: f64) -> Option<Nea
 
 /// A point of the domain, and its squared distance.
 #[derive(Clone, Copy)]
-struct Candidate {
-    squared: f64,
-    at: [f64; 2],
+struct Candidate<S> {
+    squared: S,
+    at: [S; 2],
 }
 
-impl Candidate {
+impl<S: Real> Candidate<S> {
     #[inline(always)]
-    fn new([r, p, q]: &[Vec3<f64>; 3], at: [f64; 2]) -> Self {
+    fn new([r, p, q]: &[Vec3<S>; 3], at: [S; 2]) -> Self {
         let x = *r + *p * at[0] + *q * at[1];
         Candidate { squared: x.dot(x), at }
     }
     /// The shorter; of two alike the first.
     #[inline(always)]
-    fn or(self, other: Candidate) -> Candidate {
+    fn or(self, other: Self) -> Self {
         if other.squared < self.squared { other } else { self }
     }
 }
 
 /// Into [0, `most`]; what is no number becomes 0.
 #[inline(always)]
-fn clamped(x: f64, most: f64) -> f64 {
-    let x = if x > 0.0 { x } else { 0.0 };
+fn clamped<S: Real>(x: S, most: S) -> S {
+    let x = if x > S::ZERO { x } else { S::ZERO };
     if x < most { x } else { most }
 }
 
 /// The shortest of the sides' and the inside's.
 #[inline(always)]
-fn nearest<const TRIANGLE: bool>(of: [Vec3<f64>; 3]) -> Candidate {
+fn nearest<S: Real, const TRIANGLE: bool>(of: [Vec3<S>; 3]) -> Candidate<S> {
     let [r, p, q] = of;
+    let (zero, one) = (S::ZERO, S::ONE);
     let (pp, qq, pq, rp, rq) = (p.dot(p), q.dot(q), p.dot(q), r.dot(p), r.dot(q));
-    let (over_pp, over_qq) = (1.0 / pp, 1.0 / qq);
-    let at = |s: f64, t: f64| Candidate::new(&of, [s, t]);
-    let mut best = at(clamped(-rp * over_pp, 1.0), 0.0).or(at(0.0, clamped(-rq * over_qq, 1.0)));
+    let (over_pp, over_qq) = (one / pp, one / qq);
+    let at = |s: S, t: S| Candidate::new(&of, [s, t]);
+    let mut best = at(clamped(-rp * over_pp, one), zero).or(at(zero, clamped(-rq * over_qq, one)));
     let mut flat = false;
     if TRIANGLE {
         let (x, e) = (r + p, q - p);
         let ee = e.dot(e);
-        let t = clamped(-x.dot(e) / ee, 1.0);
-        best = best.or(at(1.0 - t, t));
+        let t = clamped(-x.dot(e) / ee, one);
+        best = best.or(at(one - t, t));
         // Corners 1 and 2 in one place: there is no inside, whatever roundings make of it.
-        flat = ee == 0.0;
+        flat = ee == zero;
     } else {
-        best = best.or(at(clamped(-(rp + pq) * over_pp, 1.0), 1.0));
-        best = best.or(at(1.0, clamped(-(rq + pq) * over_qq, 1.0)));
+        best = best.or(at(clamped(-(rp + pq) * over_pp, one), one));
+        best = best.or(at(one, clamped(-(rq + pq) * over_qq, one)));
     }
     let (m, n) = (pq * over_pp, rp * over_pp);
     let (y, z) = (q - p * m, r - p * n);
-    let t = if flat { 0.0 } else { clamped(-y.dot(z) / y.dot(y), 1.0) };
-    best.or(at(clamped(-(n + t * m), if TRIANGLE { 1.0 - t } else { 1.0 }), t))
+    let t = clamped(-y.dot(z) / y.dot(y), one);
+    let t = if flat { zero } else { t };
+    best.or(at(clamped(-(n + t * m), if TRIANGLE { one - t } else { one }), t))
 }

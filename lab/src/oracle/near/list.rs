@@ -77,7 +77,7 @@ pub fn all_within(shapes: &[Shape], distance: f64) -> BTreeMap<Row, Squared> {
     };
     let corners = |of: &Shape, face: usize| of.faces[face].map(|v| of.at(v));
     for v in one.used() {
-        for (f, face) in other.faces.iter().enumerate().filter(|(_, face)| !(own && face.contains(&v))) {
+        for (f, _) in other.faces.iter().enumerate().filter(|(_, face)| !(own && face.contains(&v))) {
             let [x, y, z] = corners(other, f);
             ask(("vf", v, f as u32), Features::VertexFace, [one.at(v), x, y, z]);
         }
