@@ -48,7 +48,7 @@ fn scenes() -> Vec<(Vec<Body>, f64)> {
         (vec![turned(&scene::draped(100).expect("a scene"))], 0.25),
         (vec![degenerate(1)], 0.25),
         (vec![degenerate(2), degenerate(3)], 0.125),
-        (vec![soup(30, 6), turned(&soup(40, 9))], 0.04),
+        (vec![soup(30, 6), turned(&soup(40, 9))], 0.125),
     ]
 }
 
