@@ -8,6 +8,8 @@ mod hunt;
 mod judge;
 #[path = "near/known.rs"]
 mod known;
+#[path = "near/oracle.rs"]
+mod oracle;
 #[path = "near/planted.rs"]
 mod planted;
 #[path = "near/refused.rs"]
