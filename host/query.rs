@@ -21,6 +21,29 @@ pub enum Motion {
     Continuous,
     /// When does the first of them meet?
     Earliest,
+    /// Which vertex/face and edge/edge pairs are within a distance of each other at t = 0, and where are they nearest?
+    Near,
+}
+
+impl Motion {
+    /// Whether it asks about t = 0 alone: then the end of a step is not looked at.
+    pub fn is_at_rest(self) -> bool {
+        matches!(self, Motion::Discrete | Motion::Near)
+    }
+    /// The solvers that answer it, the default first.
+    fn solvers(self) -> &'static [Solver] {
+        match self {
+            Motion::Discrete => &[Solver::Exact, Solver::Moller],
+            Motion::Near => &[Solver::Bounded],
+            Motion::Continuous | Motion::Earliest => &[
+                Solver::Certified,
+                Solver::CertifiedF32,
+                Solver::CertifiedF64,
+                Solver::CubicF64,
+                Solver::CubicF32,
+            ],
+        }
+    }
 }
 
 named! {
@@ -41,7 +64,7 @@ impl Bv {
     /// The fastest volume that the real scenes have (measured, `docs/performance.md`): what stands still needs no more
     /// than a box; of what moves, boxes that move with it let a third to a tenth of the pairs through.
     pub fn default_for(motion: Motion) -> Bv {
-        if motion == Motion::Discrete { Bv::Aabb } else { Bv::Linear }
+        if motion.is_at_rest() { Bv::Aabb } else { Bv::Linear }
     }
 }
 
@@ -115,6 +138,8 @@ named! {
         CubicF64 = "cubic-f64",
         /// Continuous: the seed's cubic in f32. Can miss, can be late.
         CubicF32 = "cubic-f32",
+        /// Near: distances in f64, each within a proven bound. Never misses.
+        Bounded = "bounded",
     }
 }
 
@@ -128,15 +153,15 @@ impl Default for Solver {
 impl Solver {
     /// The solver of a motion when none is named.
     pub fn default_for(motion: Motion) -> Solver {
-        if motion == Motion::Discrete { Solver::Exact } else { Solver::Certified }
+        motion.solvers()[0]
     }
     /// Whether the solver answers that kind of question.
     pub fn answers(self, motion: Motion) -> bool {
-        matches!(self, Solver::Exact | Solver::Moller) == (motion == Motion::Discrete)
+        motion.solvers().contains(&self)
     }
     /// Whether its answers are proven: no contact is missed or late.
     pub fn is_certain(self) -> bool {
-        self == Solver::Exact || self.is_certified()
+        matches!(self, Solver::Exact | Solver::Bounded) || self.is_certified()
     }
     /// Whether it is one of those that take a tolerance and a budget.
     pub fn is_certified(self) -> bool {
@@ -156,6 +181,9 @@ impl Solver {
                 "certified-f32: no contact is missed, none is late; what f32 cannot tell is listed as unresolved"
             }
             Solver::CertifiedF64 => "certified-f64: as certified, in f64 throughout",
+            Solver::Bounded => {
+                "bounded: no pair within the distance is missed; what rounding cannot tell from it is listed"
+            }
             Solver::CubicF32 => {
                 "cubic-f32: a float solver that can miss contacts and report them late; docs/accuracy.md has figures"
             }
@@ -191,22 +219,34 @@ pub struct Query {
     /// Certified: features that come this near are in contact, a length; times are then of coming so near. `None`, or 0,
     /// for touching.
     pub separation: Option<f64>,
+    /// Near, which needs one: how far apart two features may be to be listed, a length above 0.
+    pub distance: Option<f64>,
 }
 
 impl Query {
     /// The tolerance when none is named, in mean edges; rounded down to a power of two, so that it does not hang on the
     /// order in which edges are summed. Smaller costs more; larger takes more near misses for contacts.
     pub const TOLERANCE: f64 = 1e-4;
+    /// The distance that [`Query::every`] asks a near query with.
+    pub const DISTANCE: f64 = 1.0 / 64.0;
     /// The budget when none is named: ten times what the hardest pairs of public scenes take.
     pub const BOXES: u32 = Params::BUDGET;
 
     /// Every question with every solver that answers it, all other choices at their defaults: what tests and `selftest`
     /// run over.
     pub fn every() -> impl Iterator<Item = Query> {
-        [Motion::Discrete, Motion::Continuous, Motion::Earliest].into_iter().flat_map(|motion| {
-            let solvers = Solver::ALL.into_iter().filter(move |solver| solver.answers(motion));
-            solvers.map(move |solver| Query { solver: Some(solver), ..Query::of(motion) })
-        })
+        [Motion::Discrete, Motion::Continuous, Motion::Earliest, Motion::Near].into_iter().flat_map(
+            |motion| {
+                let solvers = Solver::ALL.into_iter().filter(move |solver| solver.answers(motion));
+                let distance = (motion == Motion::Near).then_some(Query::DISTANCE);
+                solvers.map(move |solver| Query { solver: Some(solver), distance, ..Query::of(motion) })
+            },
+        )
+    }
+
+    /// Which features are within a distance of each other now, with every other choice at its default.
+    pub fn near(distance: f64) -> Query {
+        Query { distance: Some(distance), ..Query::of(Motion::Near) }
     }
 
     /// The query that asks this, with every other choice at its default.
@@ -241,16 +281,14 @@ impl Query {
     pub fn check(&self) -> Result<(), Error> {
         let solver = self.solver();
         if !solver.answers(self.motion) {
-            let known = match self.motion {
-                Motion::Discrete => "exact, moller",
-                _ => "certified, certified-f32, certified-f64, cubic-f64, cubic-f32",
-            };
+            let known: Vec<_> = self.motion.solvers().iter().map(|solver| solver.name()).collect();
             return Err(Error::Choice {
                 what: format!("the solver {solver:?} does not answer a {:?} query", self.motion),
-                advice: format!("choose one of: {known}"),
+                advice: format!("choose one of: {}", known.join(", ")),
             });
         }
         self.check_limits()?;
+        self.check_distance()?;
         match self.traversal {
             Some(Traversal::Queue(shape)) => shape.check()?,
             Some(Traversal::Steal(shape)) => shape.check()?,
@@ -294,6 +332,20 @@ impl Query {
         Ok(())
     }
 
+    /// Whether a near query has its distance, and no other has one.
+    fn check_distance(&self) -> Result<(), Error> {
+        let (what, advice) = match (self.motion, self.distance) {
+            (Motion::Near, Some(d)) if d > 0.0 && d < f64::INFINITY => return Ok(()),
+            (Motion::Near, None) => ("a near query without a distance".into(), "give one, a length above 0"),
+            (Motion::Near, Some(d)) => (format!("a distance of {d}"), "give a length above 0"),
+            (_, None) => return Ok(()),
+            (motion, Some(_)) => {
+                (format!("a {motion:?} query takes no distance"), "give one to a near query, or leave it out")
+            }
+        };
+        Err(Error::Choice { what, advice: advice.into() })
+    }
+
     /// Whether a separation above 0 is asked for.
     #[doc(hidden)]
     pub fn is_apart(&self) -> bool {
@@ -301,16 +353,20 @@ impl Query {
     }
 
     /// How near two features must come for a pair of them to be a candidate, a length: 0 for touching; with a separation
-    /// that, and the tolerance, within which a pair may be listed as unresolved.
+    /// that, and the tolerance, within which a pair may be listed as unresolved; of a near query its distance.
     #[doc(hidden)]
     pub fn gap(&self) -> f64 {
-        if self.is_apart() { self.listed_within() } else { 0.0 }
+        if self.is_apart() || self.motion == Motion::Near { self.listed_within() } else { 0.0 }
     }
 
     /// Within what distance of each other a certified solver may list two features: the separation and the tolerance. The
-    /// volumes bring it all of these, whatever their shape; of a solver that is not certified 0.
+    /// volumes bring it all of these, whatever their shape; of a near query its distance, of another solver that is not
+    /// certified 0.
     #[doc(hidden)]
     pub fn listed_within(&self) -> f64 {
+        if let (Motion::Near, Some(distance)) = (self.motion, self.distance) {
+            return distance;
+        }
         let p = self.params();
         // Above 0 also where nothing was asked for: what precision cannot tell has its own part of the growth.
         if self.solver().is_certified() { (p.separation + p.tolerance).max(f64::MIN_POSITIVE) } else { 0.0 }

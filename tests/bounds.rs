@@ -23,5 +23,7 @@ mod list;
 mod merged;
 #[path = "bounds/moving.rs"]
 mod moving;
+#[path = "bounds/near.rs"]
+mod near;
 #[path = "bounds/orient.rs"]
 mod orient;

@@ -8,7 +8,7 @@ mod edits;
 mod pairwise;
 mod support;
 
-use nearmiss::contacts::{Contact, Contacts, TrianglePair};
+use nearmiss::contacts::{Contact, Contacts, NearPair, TrianglePair};
 use nearmiss::mesh::Positions;
 use nearmiss::query::Motion;
 use nearmiss::scene::{BodyId, BodyKind, Input, Meets, Pose, Scene};

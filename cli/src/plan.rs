@@ -5,7 +5,7 @@ use crate::detect::question;
 use crate::output::print;
 use nearmiss::Detector;
 use nearmiss::error::Error;
-use nearmiss::query::{Bv, Motion, Query, Traversal};
+use nearmiss::query::{Bv, Query, Traversal};
 use nearmiss::words::counted;
 use std::fmt::Write;
 use std::process::ExitCode;
@@ -35,7 +35,7 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
         if detector.scene().bodies().len() == 1 { "self" } else { "between" }
     );
     let _ = writeln!(text, "machine    {} ({})", device.name(), device.backend());
-    let swept = query.motion != Motion::Discrete && query.bv() != Bv::Linear;
+    let swept = !query.motion.is_at_rest() && query.bv() != Bv::Linear;
     let _ = writeln!(text, "volume     {}{}", query.bv().name(), if swept { ", swept" } else { "" });
     let _ = writeln!(
         text,
@@ -74,6 +74,9 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
             "separation {}",
             separation.map_or("none: what touches is in contact".into(), |s| format!("{s:e}, as asked"))
         );
+    }
+    if let Some(distance) = query.distance {
+        let _ = writeln!(text, "distance   {distance:e}, as asked");
     }
     let _ = writeln!(
         text,

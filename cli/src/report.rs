@@ -1,7 +1,7 @@
 //! Results as files: CSV and JSON.
 
 use crate::output::Target;
-use nearmiss::contacts::{Answer, Contact, Contacts, Kind, Status, Summary, TrianglePair};
+use nearmiss::contacts::{Answer, Contact, Contacts, Kind, NearPair, Status, Summary, TrianglePair};
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
 use nearmiss::scene::BodyId;
@@ -63,6 +63,8 @@ impl FileFaces {
                 Answer::Contacts(all)
             }
             Answer::Earliest(toi) => Answer::Earliest(*toi),
+            // Weights are those of a triangle's corners: `args` asks for no other names.
+            Answer::Near(near) => Answer::Near(near.clone()),
         }
     }
 }
@@ -70,7 +72,8 @@ impl FileFaces {
 /// Formats that contacts can be written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// `tri_a,tri_b` (`face_a,face_b`), or `kind,a,b,toi,toi_hi,status`.
+    /// `tri_a,tri_b` (`face_a,face_b`), or `kind,a,b,toi,toi_hi,status`, or
+    /// `kind,a,b,squared_distance,w0,w1,w2,closest`.
     Csv,
     /// One object: the summary, and the rows under `contacts`.
     Json,
@@ -112,7 +115,7 @@ pub fn write(
     })
 }
 
-/// Contacts as CSV. A time is printed as the shortest decimal that reads back to the same bits.
+/// Contacts as CSV. A number is printed as the shortest decimal that reads back to the same bits.
 fn csv(out: impl Write, answer: &Answer, heads: [&str; 2]) -> Result<(), String> {
     let mut csv = csv::Writer::from_writer(out);
     let wrote = match answer {
@@ -125,24 +128,36 @@ fn csv(out: impl Write, answer: &Answer, heads: [&str; 2]) -> Result<(), String>
         Answer::Earliest(toi) => csv
             .write_record(["earliest_toi"])
             .and_then(|()| toi.iter().try_for_each(|toi| csv.write_record([toi.to_string()]))),
+        Answer::Near(near) => csv
+            .write_record(["kind", "a", "b", "squared_distance", "w0", "w1", "w2", "closest"])
+            .and_then(|()| near.iter().try_for_each(|pair| csv.write_record(near_row(pair)))),
     };
     wrote.map_err(|e| e.to_string())?;
     csv.flush().map_err(|e| e.to_string())
 }
 
+fn kind(kind: Kind) -> String {
+    match kind {
+        Kind::Vf => "vf".into(),
+        Kind::Fv => "fv".into(),
+        Kind::Ee => "ee".into(),
+    }
+}
+
+fn near_row(pair: &NearPair) -> [String; 8] {
+    let [a, b] = [pair.a, pair.b].map(|i| i.to_string());
+    let [x, y, z] = pair.weights.map(|weight| weight.to_string());
+    [kind(pair.kind), a, b, pair.squared_distance.to_string(), x, y, z, pair.closest.name().into()]
+}
+
 fn row(c: &Contact) -> [String; 6] {
-    let kind = match c.kind {
-        Kind::Vf => "vf",
-        Kind::Fv => "fv",
-        Kind::Ee => "ee",
-    };
     let status = match c.status {
         Status::Contact => "contact",
         Status::Certified => "certified",
         Status::Unresolved => "unresolved",
     };
     let [a, b] = [c.a, c.b].map(|i| i.to_string());
-    [kind.into(), a, b, c.toi.to_string(), c.toi_hi.to_string(), status.into()]
+    [kind(c.kind), a, b, c.toi.to_string(), c.toi_hi.to_string(), status.into()]
 }
 
 /// The summary and the contacts as one JSON object.
@@ -158,11 +173,13 @@ fn json(out: impl Write, answer: &Answer, summary: &Report) -> Result<(), String
         Pairs(Vec<[u32; 2]>),
         Contacts(&'a [Contact]),
         Earliest(Option<f64>),
+        Near(&'a [NearPair]),
     }
     let rows = match answer {
         Answer::Pairs(pairs) => Rows::Pairs(pairs.iter().map(|pair| pair.triangles).collect()),
         Answer::Contacts(all) => Rows::Contacts(all),
         Answer::Earliest(toi) => Rows::Earliest(*toi),
+        Answer::Near(near) => Rows::Near(near),
     };
     serde_json::to_writer(out, &Whole { summary, contacts: rows }).map_err(|e| e.to_string())
 }

@@ -85,9 +85,12 @@ fn choices(query: Query) -> Vec<(&'static str, Query)> {
 
 /// Every question with every solver, and what comes within a separation: about a hundredth of the mean edge.
 fn questions(bodies: &[Body]) -> impl Iterator<Item = (String, Query)> {
-    let separation = Some(0.01 / Query::TOLERANCE * of_edges(bodies));
-    let near = Query { separation, ..Query::of(Motion::Continuous) };
-    Query::every().chain([near]).map(|query| {
+    let hundredth = 0.01 / Query::TOLERANCE * of_edges(bodies);
+    let apart = Query { separation: Some(hundredth), ..Query::of(Motion::Continuous) };
+    Query::every().chain([apart]).map(move |query| {
+        // About a tenth of the mean edge, which a scene of points has not.
+        let distance = query.distance.map(|some| if hundredth > 0.0 { 10.0 * hundredth } else { some });
+        let query = Query { distance, ..query };
         let how = if query.separation.is_some() { ", a separation" } else { "" };
         (format!("{:?} by {:?}{how}", query.motion, query.solver()), query)
     })

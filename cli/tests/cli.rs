@@ -12,6 +12,8 @@ mod faces;
 mod idle;
 #[path = "cli/memory.rs"]
 mod memory;
+#[path = "cli/near.rs"]
+mod near;
 #[path = "cli/numbers.rs"]
 mod numbers;
 #[path = "cli/output.rs"]

@@ -94,6 +94,7 @@ pub fn forget(answer: &mut Answer) {
         Answer::Pairs(pairs) => pairs.truncate(pairs.len().saturating_sub(1)),
         Answer::Contacts(all) => all.truncate(all.len().saturating_sub(1)),
         Answer::Earliest(toi) => *toi = None,
+        Answer::Near(near) => near.truncate(near.len().saturating_sub(1)),
     }
 }
 
@@ -114,6 +115,8 @@ pub fn judge(bodies: &[Body], query: &Query, answer: &Answer) -> Result<(), Stri
                 None => Ok(()),
             }
         }
+        // tests/near.rs asks the oracle of distances.
+        Answer::Near(_) => Ok(()),
         Answer::Earliest(found) => {
             let all = every_pair(bodies);
             let first = all.values().flatten().min();

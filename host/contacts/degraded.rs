@@ -29,6 +29,11 @@ pub enum Degraded {
         /// How many; `None` where pairs are not listed.
         pairs: Option<u64>,
     },
+    /// Listed pairs of a near query that rounding cannot tell from such that are farther apart than the distance.
+    DistanceBelowPrecision {
+        /// How many.
+        pairs: u64,
+    },
     /// The front did not pay: dropped, or not yet taken up again. The answer is whole.
     FrontDropped,
 }
@@ -47,7 +52,10 @@ impl Degraded {
         let unsure = count(counter::UNRESOLVED) - count(counter::ENDED_UNRESOLVED);
         let (ended, below_precision) = (count(counter::ENDED), count(counter::BELOW_PRECISION));
         let mut put = |count: u64, reason: Degraded| all.extend((count > 0).then_some(reason));
-        put(unsure, Degraded::Unresolved { pairs: unsure });
+        match found.near {
+            Some(_) => put(unsure, Degraded::DistanceBelowPrecision { pairs: unsure }),
+            None => put(unsure, Degraded::Unresolved { pairs: unsure }),
+        }
         put(ended, Degraded::Boxes { pairs: ended });
         put(below_precision, Degraded::ToleranceBelowPrecision { pairs: Some(below_precision) });
         let unlisted = found.below_precision == Some(BelowPrecision::Unlisted);
@@ -71,6 +79,10 @@ impl fmt::Display for Degraded {
             Degraded::ToleranceBelowPrecision { pairs } => {
                 let pairs = pairs.map_or("some pairs".to_owned(), |n| counted(n, "pair", "pairs"));
                 write!(f, "{pairs} too large for the tolerance in the solver's precision")
+            }
+            Degraded::DistanceBelowPrecision { pairs } => {
+                let pairs = counted(*pairs, "pair", "pairs");
+                write!(f, "{pairs} listed, within the distance or by a rounding of doubles beyond it")
             }
             Degraded::FrontDropped => write!(f, "the front did not pay and was dropped; the answer is whole"),
         }

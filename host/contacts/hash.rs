@@ -5,7 +5,7 @@ use crate::scene::BodyId;
 
 impl Contacts {
     /// xxh3 over the canonical answer: the same for equal answers on every machine. Each contact adds its kind, its
-    /// indices and the bits of its times, little-endian; in front of these its bodies, unless all contacts are of the first body alone, or of the first two.
+    /// indices and the bits of its times (a near pair of its squared distance and weights), little-endian; in front of these its bodies, unless all contacts are of the first body alone, or of the first two.
     pub fn hash(&self) -> u64 {
         let mut hash = xxhash_rust::xxh3::Xxh3::new();
         match &self.answer {
@@ -27,6 +27,15 @@ impl Contacts {
                     hash.update(&c.b.to_le_bytes());
                     hash.update(&c.toi.to_le_bytes());
                     hash.update(&c.toi_hi.to_le_bytes());
+                }
+            }
+            Answer::Near(near) => {
+                let told = need_bodies(near.iter().map(|pair| pair.bodies));
+                for pair in near {
+                    if told {
+                        pair.bodies.iter().for_each(|body| hash.update(&body.0.to_le_bytes()));
+                    }
+                    hash.update(&pair.bytes());
                 }
             }
             Answer::Earliest(toi) => toi.iter().for_each(|toi| hash.update(&toi.to_le_bytes())),

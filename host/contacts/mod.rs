@@ -2,16 +2,18 @@
 
 mod degraded;
 mod hash;
+mod near;
 mod summary;
 mod triangles;
 mod work;
 
 pub use degraded::Degraded;
+pub use near::{Closest, NearPair};
 pub use summary::Summary;
 pub use triangles::{TriangleContact, triangle_contacts};
 pub use work::{Front, Queues};
 
-use crate::pipeline::{Found, Hits, Layout, Offsets, Stages};
+use crate::pipeline::{Found, Hits, Layout, Stages};
 use crate::query::{Motion, Query};
 use crate::scene::BodyId;
 use nearmiss_kernels::abi::{Pair, ROUNDS, counter};
@@ -106,6 +108,8 @@ pub enum Answer {
     Contacts(Vec<Contact>),
     /// The smallest time of contact.
     Earliest(Option<f64>),
+    /// Feature pairs within the distance, ascending by kind, a, b.
+    Near(Vec<NearPair>),
 }
 
 /// An answer with the figures of its making.
@@ -130,7 +134,8 @@ pub struct Contacts {
     pub open_vf_ee: [u64; 2],
     /// Of these, those that were cut into slices: vertex/face, edge/edge.
     pub sliced_vf_ee: [u64; 2],
-    /// How many contacts are [`Status::Unresolved`]; of an earliest query, how many of the pairs that were asked: which of those
+    /// How many contacts are [`Status::Unresolved`]; of a near query, how many of the listed pairs rounding cannot tell from such
+    /// that are farther apart; of an earliest query, how many of the pairs that were asked: which of those
     /// that cannot be earlier are asked anyway is a matter of order, so this and the counts by rung may differ from run to run.
     pub unresolved: u64,
     /// Pairs that the filter in the precision of the positions left undecided.
@@ -157,6 +162,7 @@ impl Contacts {
             Motion::Discrete => Answer::Pairs(Vec::new()),
             Motion::Continuous => Answer::Contacts(Vec::new()),
             Motion::Earliest => Answer::Earliest(None),
+            Motion::Near => Answer::Near(Vec::new()),
         };
         Contacts {
             answer,
@@ -188,14 +194,13 @@ impl Contacts {
         query: Query,
         (stages, degraded): (Stages, Vec<Degraded>),
     ) -> Contacts {
-        let [triangle, vertex, edge] =
-            [|at: &Offsets| at.triangle, |at: &Offsets| at.vertex, |at: &Offsets| at.edge];
         let answer = match query.motion {
             Motion::Earliest => Answer::Earliest(found.earliest),
+            Motion::Near => Answer::Near(near::pairs(&found, layout)),
             Motion::Discrete => {
                 let listed: &[Pair] = found.pairs.as_deref().unwrap_or_default();
                 let pair = |p: &Pair| {
-                    let ((a, p), (b, q)) = (layout.locate(p.a, triangle), layout.locate(p.b, triangle));
+                    let [(a, p), (b, q)] = [p.a, p.b].map(|t| layout.locate(t, |at| at.triangle));
                     TrianglePair { bodies: [a, b], triangles: [p, q] }
                 };
                 let mut pairs: Vec<_> = listed.par_iter().map(pair).collect();
@@ -206,30 +211,14 @@ impl Contacts {
             }
             Motion::Continuous => {
                 let certified = query.solver().is_certified();
-                let contact = |kind, (of_a, a), (of_b, b), verdict: &Verdict| {
+                let contact = |(kind, bodies, [a, b]): Features, verdict: &Verdict| {
                     let status = Status::of(certified, verdict);
-                    Contact {
-                        kind,
-                        bodies: [of_a, of_b],
-                        a,
-                        b,
-                        toi: verdict.toi,
-                        toi_hi: verdict.toi_hi,
-                        status,
-                    }
+                    Contact { kind, bodies, a, b, toi: verdict.toi, toi_hi: verdict.toi_hi, status }
                 };
                 let [of_vf, of_ee] = found.hits.as_ref().map_or([&[][..]; 2], Hits::each);
-                let vf = of_vf.par_iter().map(|hit| {
-                    let (point, face) = (layout.locate(hit.a, vertex), layout.locate(hit.b, triangle));
-                    if face.0 < point.0 {
-                        contact(Kind::Fv, face, point, &hit.verdict)
-                    } else {
-                        contact(Kind::Vf, point, face, &hit.verdict)
-                    }
-                });
-                let ee = of_ee.par_iter().map(|hit| {
-                    contact(Kind::Ee, layout.locate(hit.a, edge), layout.locate(hit.b, edge), &hit.verdict)
-                });
+                let vf =
+                    of_vf.par_iter().map(|hit| contact(vertex_face(layout, [hit.a, hit.b]), &hit.verdict));
+                let ee = of_ee.par_iter().map(|hit| contact(edge_edge(layout, [hit.a, hit.b]), &hit.verdict));
                 let mut contacts: Vec<_> = vf.chain(ee).collect();
                 if !found.ordered {
                     contacts.par_sort_unstable_by_key(Contact::key);
@@ -268,6 +257,7 @@ impl Contacts {
             Answer::Pairs(pairs) => pairs.len(),
             Answer::Contacts(contacts) => contacts.len(),
             Answer::Earliest(toi) => toi.iter().len(),
+            Answer::Near(near) => near.len(),
         }
     }
 
@@ -301,14 +291,39 @@ impl Contacts {
         if let Answer::Contacts(contacts) = &self.answer { contacts } else { &[] }
     }
 
+    /// Feature pairs within a distance, if that was asked.
+    pub fn near(&self) -> &[NearPair] {
+        if let Answer::Near(near) = &self.answer { near } else { &[] }
+    }
+
     /// The smallest time of contact of a continuous or earliest query.
     pub fn earliest_toi(&self) -> Option<f64> {
         match &self.answer {
-            Answer::Pairs(_) => None,
+            Answer::Pairs(_) | Answer::Near(_) => None,
             Answer::Contacts(contacts) => contacts.iter().map(|c| c.toi).min_by(f64::total_cmp),
             Answer::Earliest(toi) => *toi,
         }
     }
+}
+
+/// Two features: their kind, their bodies and their indices there.
+type Features = (Kind, [BodyId; 2], [u32; 2]);
+
+/// A vertex and a face, by their numbers of all: the one of the smaller body first.
+fn vertex_face(layout: &Layout, [vertex, face]: [u32; 2]) -> Features {
+    let (of_vertex, vertex) = layout.locate(vertex, |at| at.vertex);
+    let (of_face, face) = layout.locate(face, |at| at.triangle);
+    if of_face < of_vertex {
+        (Kind::Fv, [of_face, of_vertex], [face, vertex])
+    } else {
+        (Kind::Vf, [of_vertex, of_face], [vertex, face])
+    }
+}
+
+/// Two edges, by their numbers of all.
+fn edge_edge(layout: &Layout, edges: [u32; 2]) -> Features {
+    let [(of_a, a), (of_b, b)] = edges.map(|edge| layout.locate(edge, |at| at.edge));
+    (Kind::Ee, [of_a, of_b], [a, b])
 }
 
 impl TrianglePair {

@@ -45,6 +45,8 @@ pub struct Summary {
     pub tolerance: Option<f64>,
     /// The separation of a certified solver, a length; 0 for touching.
     pub separation: Option<f64>,
+    /// The distance of a near query, a length.
+    pub distance: Option<f64>,
     /// The smallest time of contact.
     pub earliest_toi: Option<f64>,
     /// Hash of the canonical answer, sixteen hexadecimal digits.
@@ -82,6 +84,7 @@ impl Summary {
             degraded: contacts.degraded.clone(),
             tolerance: None,
             separation: query.solver().is_certified().then_some(query.params().separation),
+            distance: query.distance,
             earliest_toi: contacts.earliest_toi(),
             hash: format!("{:016x}", contacts.hash()),
             reruns: contacts.reruns,

@@ -1,9 +1,12 @@
 //! Narrow: the lists and the launches of the last stage, step by step.
 
 mod continuous;
+mod features;
+mod near;
 mod rungs;
 
 pub use continuous::{Capacities, Continuous};
+pub use near::Near;
 
 use super::layout::Layout;
 use super::list::{GrowableOutput, List};
@@ -30,6 +33,8 @@ pub enum Step {
     Cull,
     /// Contacts in motion.
     Solve,
+    /// Features at rest within a distance.
+    Near,
     /// Contacts in canonical order.
     Order,
 }
@@ -43,6 +48,7 @@ impl Step {
             Step::Features => "features",
             Step::Cull => "cull",
             Step::Solve => "solve",
+            Step::Near => "near",
             Step::Order => "order",
         }
     }
@@ -79,6 +85,8 @@ pub enum Narrow {
     },
     /// Features in motion.
     Continuous(Box<Continuous>),
+    /// Features at rest.
+    Near(Box<Near>),
 }
 
 impl Narrow {
@@ -107,6 +115,9 @@ impl Narrow {
             let ordered = device.is_gpu().then(order).transpose()?;
             return Ok(Narrow::Discrete { contacts, undecided, ordered });
         }
+        if query.motion == Motion::Near {
+            return Ok(Narrow::Near(Box::new(Near::new(device, layout, (capacity, few))?)));
+        }
         let capacities = Capacities {
             candidates: [capacity, 2 * capacity],
             survivors: [few, 2 * few],
@@ -128,6 +139,7 @@ impl Narrow {
         match self {
             Narrow::Discrete { .. } => &[Step::Decide],
             Narrow::Continuous(c) => c.steps(),
+            Narrow::Near(_) => &[Step::Features, Step::Near],
         }
     }
 
@@ -136,6 +148,7 @@ impl Narrow {
         match self {
             Narrow::Discrete { ordered, .. } => ordered.is_some(),
             Narrow::Continuous(c) => c.ordered.is_some(),
+            Narrow::Near(near) => near.ordered.is_some(),
         }
     }
 
@@ -148,6 +161,7 @@ impl Narrow {
             }
             (Narrow::Discrete { ordered: Some(order), .. }, Step::Order) => vec![&mut order.list],
             (Narrow::Continuous(c), step) => c.lists(step),
+            (Narrow::Near(near), step) => near.lists(step),
             _ => Vec::new(),
         }
     }
@@ -160,6 +174,7 @@ impl Narrow {
                 names.into_iter().zip(undecided).collect()
             }
             Narrow::Continuous(c) => c.between(),
+            Narrow::Near(near) => near.between(),
         }
     }
 
@@ -178,6 +193,7 @@ impl Narrow {
             (Narrow::Continuous(c), Step::Features | Step::Cull | Step::Solve | Step::Order) => {
                 c.run(step, given)
             }
+            (Narrow::Near(near), Step::Features | Step::Near | Step::Order) => near.run(step, given),
             _ => Err(Error::Bug { what: format!("the step {step:?} in another kind of query") }),
         }
     }

@@ -29,6 +29,11 @@ impl Ordered for nearmiss_kernels::abi::Hit {
     type Gather = entry::order_gather_hit;
 }
 
+impl Ordered for nearmiss_kernels::abi::NearHit {
+    type Keys = entry::order_keys_near;
+    type Gather = entry::order_gather_near;
+}
+
 /// The ordered list, and what ordering needs.
 pub struct Order<T> {
     /// All contacts, in order.

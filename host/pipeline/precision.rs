@@ -2,8 +2,8 @@
 
 use crate::mesh::Positions;
 use nearmiss_kernels::abi::{
-    BelowPrecisionArgs, CullArgs, DiscreteArgs, FeaturesArgs, FitArgs, GroupsArgs, MortonArgs, PlaceArgs,
-    RungArgs, SolveArgs, TreeletsArgs,
+    BelowPrecisionArgs, CullArgs, DiscreteArgs, FeaturesArgs, FitArgs, GroupsArgs, MortonArgs, NearArgs,
+    PlaceArgs, RungArgs, SolveArgs, TreeletsArgs,
 };
 use nearmiss_kernels::bv::{Aabb, Linear, Obb};
 use nearmiss_kernels::entry::{self, Entry};
@@ -43,6 +43,10 @@ pub trait Precision: Real {
     type Exact: Entry<Args = DiscreteArgs<Self>>;
     /// Triangle pairs to pairs of features whose boxes meet.
     type Features: Entry<Args = FeaturesArgs<Self>>;
+    /// The same of triangles at rest.
+    type FeaturesAtRest: Entry<Args = FeaturesArgs<Self>>;
+    /// Pairs of features at rest within a distance.
+    type Near: Entry<Args = NearArgs<Self>>;
     /// Those that may meet.
     type Cull: Entry<Args = CullArgs<Self>>;
     /// Vertex/face by the cubic in f32.
@@ -91,6 +95,8 @@ impl Precision for f32 {
     const WIDENS: bool = true;
     type Exact = entry::narrow_exact_f32;
     type Features = entry::narrow_features_f32;
+    type FeaturesAtRest = entry::narrow_features_at_rest_f32;
+    type Near = entry::narrow_near_f32;
     type Cull = entry::narrow_cull_f32;
     type Vf32 = entry::narrow_vf_f32_f32;
     type Vf64 = entry::narrow_vf_f32_f64;
@@ -131,6 +137,8 @@ impl Precision for f64 {
     const WIDENS: bool = false;
     type Exact = entry::narrow_exact_f64;
     type Features = entry::narrow_features_f64;
+    type FeaturesAtRest = entry::narrow_features_at_rest_f64;
+    type Near = entry::narrow_near_f64;
     type Cull = entry::narrow_cull_f64;
     type Vf32 = entry::narrow_vf_f64_f32;
     type Vf64 = entry::narrow_vf_f64_f64;

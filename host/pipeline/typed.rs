@@ -103,15 +103,15 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
     ) -> Result<Self, Error> {
         // Every candidate has a triangle that moves.
         let triangles = layout.trees[0].iter().map(|&body| layout.triangles(body).1 as usize).sum();
-        let continuous = query.motion != Motion::Discrete;
-        let a_triangle = if continuous { SWEPT_PAIRS_A_TRIANGLE } else { PAIRS_A_TRIANGLE };
+        let still = query.motion.is_at_rest();
+        let a_triangle = if still { PAIRS_A_TRIANGLE } else { SWEPT_PAIRS_A_TRIANGLE };
         let capacity = LEAST_ROOM.max(a_triangle * triangles);
         let few = LEAST_ROOM.max(4 * triangles);
         let refit = query.refit_on(device.is_gpu());
         let mut pipeline = TypedPipeline {
             query,
             faces: device.upload(&layout.faces)?,
-            vertices: Placing::new(&device, &layout, bodies, continuous)?,
+            vertices: Placing::new(&device, &layout, bodies, !still)?,
             forest: Forest::new(&device, &layout, refit, (axes, growth(query.listed_within())))?,
             counters: device.buffer(counter::COUNT as usize)?,
             pairs: List::new(&device, "candidate triangle pairs", counter::PAIRS, capacity)?,

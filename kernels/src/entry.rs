@@ -8,7 +8,8 @@ use crate::prim::isolate::separation::{Double, Single};
 use crate::queue::worker;
 use crate::sort;
 use crate::stage::construct::{graft, morton, tree, treelet};
-use crate::stage::narrow::{below_precision, climb, cull, discrete, features, separate, slice, solve};
+use crate::stage::narrow::features::{Moves, Rests};
+use crate::stage::narrow::{below_precision, climb, cull, discrete, features, near, separate, slice, solve};
 use crate::stage::refit::{bottom_up, levels, treelets};
 use crate::stage::traverse::{front, queue, steal};
 use crate::stage::{balance, fit, order, place, traverse};
@@ -93,7 +94,7 @@ const WIDE: u32 = 256;
 /// Lanes of kernels with long or uneven work: small blocks, so that few lanes wait for a long one (measured:
 /// `benches/NOTES.md`).
 const NARROW: u32 = 64;
-/// Lanes of rejection and of the rungs of a separation: work is uneven, and two lists are appended to.
+/// Lanes of rejection, of the rungs of a separation and of distances: work is uneven, and two lists are appended to.
 const RUNG: u32 = 128;
 /// Lanes of the one block that evens the queues, as in the paper.
 const BALANCE: u32 = 512;
@@ -156,8 +157,10 @@ kernels! {
     narrow_wide_f32: discrete::wide, [DiscreteArgs<f32>], NARROW, 0;
     narrow_exact_f32: discrete::exact::<f32, B>, [DiscreteArgs<f32>], NARROW, 0;
     narrow_exact_f64: discrete::exact::<f64, B>, [DiscreteArgs<f64>], NARROW, 0;
-    narrow_features_f32: features::features::<f32, B>, [FeaturesArgs<f32>], NARROW, features::shared_bytes(NARROW);
-    narrow_features_f64: features::features::<f64, B>, [FeaturesArgs<f64>], NARROW, features::shared_bytes(NARROW);
+    narrow_features_f32: features::features::<f32, Moves, B>, [FeaturesArgs<f32>], NARROW, features::shared_bytes(NARROW);
+    narrow_features_f64: features::features::<f64, Moves, B>, [FeaturesArgs<f64>], NARROW, features::shared_bytes(NARROW);
+    narrow_features_at_rest_f32: features::features::<f32, Rests, B>, [FeaturesArgs<f32>], NARROW, features::shared_bytes(NARROW);
+    narrow_features_at_rest_f64: features::features::<f64, Rests, B>, [FeaturesArgs<f64>], NARROW, features::shared_bytes(NARROW);
     narrow_cull_f32: cull::cull::<f32, B>, [CullArgs<f32>], RUNG, 0;
     narrow_cull_f64: cull::cull::<f64, B>, [CullArgs<f64>], RUNG, 0;
     narrow_vf_f32_f32: solve::vf::<f32, f32, B>, [SolveArgs<f32>], WIDE, 0;
@@ -184,9 +187,13 @@ kernels! {
     narrow_separate_f32_f64: separate::separate::<f32, Double<3>, Double<4>, B>, [RungArgs<f32>], RUNG, separate::SHARED;
     narrow_separate_f64_f32: separate::separate::<f64, Single<3>, Single<4>, B>, [RungArgs<f64>], RUNG, separate::SHARED;
     narrow_separate_f64_f64: separate::separate::<f64, Double<3>, Double<4>, B>, [RungArgs<f64>], RUNG, separate::SHARED;
+    narrow_near_f32: near::near::<f32, B>, [NearArgs<f32>], RUNG, near::shared_bytes(RUNG);
+    narrow_near_f64: near::near::<f64, B>, [NearArgs<f64>], RUNG, near::shared_bytes(RUNG);
     order_keys_pair: order::keys::<Pair, B>, [OrderArgs<Pair>], WIDE, 0;
     order_keys_hit: order::keys::<Hit, B>, [OrderArgs<Hit>], WIDE, 0;
+    order_keys_near: order::keys::<NearHit, B>, [OrderArgs<NearHit>], WIDE, 0;
     sort_pass: sort::pass, [SortArgs], WIDE, sort::shared_bytes(WIDE);
     order_gather_pair: order::gather::<Pair, B>, [OrderArgs<Pair>], WIDE, 0;
     order_gather_hit: order::gather::<Hit, B>, [OrderArgs<Hit>], WIDE, 0;
+    order_gather_near: order::gather::<NearHit, B>, [OrderArgs<NearHit>], WIDE, 0;
 }

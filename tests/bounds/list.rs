@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// What no proof of an answer rests on, or what is no allowance.
-const OTHERS: [(&str, &str); 18] = [
+const OTHERS: [(&str, &str); 23] = [
     ("U32", "the unit"),
     ("U64", "the unit"),
     ("CUBIC_VALUE", "a guess: the cubic's roots guarantee nothing"),
@@ -16,6 +16,11 @@ const OTHERS: [(&str, &str); 18] = [
     ("ADVANCE_FINEST", "a limit of what may be asked"),
     ("NEAR_FINEST", "a limit of what may be asked"),
     ("NEAR_GROWTH", "what is listed, not what is certain"),
+    ("DISTANCE_ERROR", "rounded up for nothing: `the_error_of_a_distance` measures it to a sixtieth"),
+    ("DISTANCE_LISTED", "the sum of DISTANCE_ERROR and DISTANCE_CERTAIN, and more"),
+    ("DISTANCE_SMALL", "a range"),
+    ("DISTANCE_SCALE", "a power of two, exact"),
+    ("DISTANCE_FILTERED", "a range"),
     ("INCLUSION_SHRUNK", "a cost"),
     ("INCLUSION_FLAT", "a cost"),
     ("INCLUSION_DEEP", "a cost"),

@@ -34,8 +34,8 @@ fn bodies_without_triangles_cost_nothing() {
             vec![none.clone(), soup()],
             vec![soup(), unused.clone()],
         ] {
-            for motion in [Motion::Discrete, Motion::Continuous, Motion::Earliest] {
-                assert_eq!(work(&device, bodies.clone(), Query::of(motion)), (0, 0, 0), "{motion:?}");
+            for query in Query::every() {
+                assert_eq!(work(&device, bodies.clone(), query), (0, 0, 0), "{query:?}");
             }
         }
         assert_eq!((device.launches(), device.bytes()), (0, (0, 0)));
@@ -51,6 +51,9 @@ fn each_query_launches_what_it_needs() {
     let moller = frame(Query { solver: Some(Solver::Moller), ..of(Motion::Discrete) });
     let continuous = frame(of(Motion::Continuous));
     let earliest = frame(of(Motion::Earliest));
+    // Features and their distances, both kinds in one launch.
+    let near = frame(Query::near(Query::DISTANCE));
+    assert_eq!(near, (exact.0, 5, near.2));
     let by = |solver, motion| frame(Query { solver: Some(solver), ..of(motion) }).1;
     // Fit, refit (one launch for a small tree), the walk; then one float test, or filters in f32 and f64 and exact signs, or sift
     // and what rejects by signs; then the rungs of certified solvers, both kinds in one launch: isolation,
@@ -88,6 +91,8 @@ fn each_query_holds_what_it_needs() {
     let moller = bytes(Query { solver: Some(Solver::Moller), ..of(Motion::Discrete) });
     let [continuous, earliest] = [Motion::Continuous, Motion::Earliest].map(|motion| bytes(of(motion)));
     assert!(moller < exact, "no list of undecided pairs: {moller} {exact}");
+    let near = bytes(Query::near(Query::DISTANCE));
+    assert!(exact < near && near < continuous, "edges and owners, but no second frame: {near}");
     assert!(exact < earliest, "no edges, owners and second frame: {exact} {earliest}");
     assert!(earliest < continuous, "no list of contacts: {earliest} {continuous}");
     let spilling = Query { traversal: Some(Traversal::PerLeaf { budget: Some(8) }), ..of(Motion::Discrete) };
@@ -116,10 +121,13 @@ fn a_discrete_query_does_not_see_the_end_of_the_step() {
 
 #[test]
 fn nothing_is_left_behind() {
-    for motion in [Motion::Discrete, Motion::Continuous, Motion::Earliest] {
+    for query in [Motion::Discrete, Motion::Continuous, Motion::Earliest]
+        .map(Query::of)
+        .into_iter()
+        .chain([Query::near(Query::DISTANCE)])
+    {
         let device = sanitizer(ORDERS[2]);
-        let mut detector =
-            Detector::new(device.clone(), vec![soup(), soup()], Query::of(motion)).expect("a detector");
+        let mut detector = Detector::new(device.clone(), vec![soup(), soup()], query).expect("a detector");
         detector.detect().expect("an answer");
         let held = device.bytes();
         assert!(held.0 > 0 && held.1 >= held.0);

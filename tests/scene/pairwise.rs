@@ -17,9 +17,12 @@ fn asked(scene: &Scene, i: usize, j: usize) -> bool {
     together && p.group & q.mask != 0 && q.group & p.mask != 0
 }
 
+/// Triangle pairs, contacts and near pairs, of which a query has one kind.
+type Truth = (Vec<TrianglePair>, Vec<Contact>, Vec<NearPair>);
+
 /// What the bodies of a scene have in common, asked two by two.
-fn two_by_two(scene: &Scene, query: Query) -> (Vec<TrianglePair>, Vec<Contact>) {
-    let (mut pairs, mut contacts) = (Vec::new(), Vec::new());
+fn two_by_two(scene: &Scene, query: Query) -> Truth {
+    let (mut pairs, mut contacts, mut near) = (Vec::new(), Vec::new(), Vec::new());
     let ids: Vec<BodyId> = scene.ids().collect();
     for &i in &ids {
         for &j in ids.iter().filter(|&&j| j >= i && asked(scene, i.index(), j.index())) {
@@ -28,25 +31,25 @@ fn two_by_two(scene: &Scene, query: Query) -> (Vec<TrianglePair>, Vec<Contact>) 
             let found = support::ask(engine(), bodies, query);
             pairs.extend(found.pairs().iter().map(|pair| TrianglePair { bodies: [i, j], ..*pair }));
             contacts.extend(found.contacts().iter().map(|contact| Contact { bodies: [i, j], ..*contact }));
+            near.extend(found.near().iter().map(|pair| NearPair { bodies: [i, j], ..*pair }));
         }
     }
     pairs.sort_unstable_by_key(|pair| (pair.bodies[0], pair.triangles[0], pair.bodies[1], pair.triangles[1]));
     contacts.sort_unstable_by_key(|c| (c.kind, c.bodies[0], c.a, c.bodies[1], c.b));
-    (pairs, contacts)
+    near.sort_unstable_by_key(|c| (c.kind, c.bodies[0], c.a, c.bodies[1], c.b));
+    (pairs, contacts, near)
 }
 
 /// What a scene's answer has too much or too little.
-fn differ(found: &Contacts, (pairs, contacts): &(Vec<TrianglePair>, Vec<Contact>)) -> Option<String> {
-    let pair = |i: usize| (found.pairs().get(i), pairs.get(i));
-    let contact = |i: usize| (found.contacts().get(i), contacts.get(i));
-    (0..found.pairs().len().max(pairs.len()))
-        .find(|&i| pair(i).0 != pair(i).1)
-        .map(|i| format!("pair {i}: {:?}", pair(i)))
-        .or_else(|| {
-            (0..found.contacts().len().max(contacts.len()))
-                .find(|&i| contact(i).0 != contact(i).1)
-                .map(|i| format!("contact {i}: {:?}", contact(i)))
-        })
+fn differ(found: &Contacts, (pairs, contacts, near): &Truth) -> Option<String> {
+    fn first<T: PartialEq + std::fmt::Debug>(found: &[T], truth: &[T]) -> Option<String> {
+        let both = |i: usize| (found.get(i), truth.get(i));
+        let all = 0..found.len().max(truth.len());
+        all.map(both).find(|(found, truth)| found != truth).map(|both| format!("{both:?}"))
+    }
+    first(found.pairs(), pairs)
+        .or_else(|| first(found.contacts(), contacts))
+        .or_else(|| first(found.near(), near))
 }
 
 /// Seven bodies of every kind, of environments and groups, and one that was removed.
@@ -80,15 +83,21 @@ pub fn mixed(seed: u64) -> Scene {
 
 /// The tolerance hangs on the bodies' edges: fixed, so that two bodies are asked as seven are.
 fn query(motion: Motion) -> Query {
+    if motion == Motion::Near {
+        return Query::near(0.03);
+    }
     Query { tolerance: (motion != Motion::Discrete).then_some(1e-4), ..Query::of(motion) }
 }
 
+/// What has a list for an answer.
+const LISTS: [Motion; 3] = [Motion::Discrete, Motion::Continuous, Motion::Near];
+
 #[test]
 fn a_scene_answers_as_its_bodies_two_by_two() {
-    let mut found = [0; 2];
+    let mut found = [0; 3];
     for seed in 0..40 {
         let scene = mixed(seed);
-        for (k, motion) in [Motion::Discrete, Motion::Continuous].into_iter().enumerate() {
+        for (k, motion) in LISTS.into_iter().enumerate() {
             let truth = two_by_two(&scene, query(motion));
             let mut detector = Detector::new(engine(), scene.clone(), query(motion)).expect("a detector");
             let contacts = detector.detect().expect("an answer");
@@ -107,7 +116,7 @@ fn a_scene_answers_as_its_bodies_two_by_two() {
 fn every_way_through_a_scene_gives_one_answer() {
     for seed in [3, 4] {
         let scene = mixed(seed);
-        for motion in [Motion::Discrete, Motion::Continuous] {
+        for motion in LISTS {
             let truth = two_by_two(&scene, query(motion));
             for way in ways(query(motion)) {
                 let found = support::ask_scene(engine(), scene.clone(), way);
@@ -124,18 +133,20 @@ fn every_way_through_a_scene_gives_one_answer() {
 /// The judge of the tests above names what is missing, and what is of other bodies.
 #[test]
 fn the_judge_notices_a_pair_too_few_and_another_body() {
-    for motion in [Motion::Discrete, Motion::Continuous] {
+    for motion in LISTS {
         let scene = mixed(4);
-        let (mut pairs, mut contacts) = two_by_two(&scene, query(motion));
+        let (mut pairs, mut contacts, mut near) = two_by_two(&scene, query(motion));
         let found = support::ask_scene(engine(), scene, query(motion));
-        let whole = (pairs.clone(), contacts.clone());
+        let whole = (pairs.clone(), contacts.clone(), near.clone());
         assert!(found.len() > 20 && differ(&found, &whole).is_none());
         pairs.pop();
         contacts.pop();
-        assert!(differ(&found, &(pairs, contacts)).is_some_and(|what| what.contains("None")));
-        let (mut pairs, mut contacts) = whole;
+        near.pop();
+        assert!(differ(&found, &(pairs, contacts, near)).is_some_and(|what| what.contains("None")));
+        let (mut pairs, mut contacts, mut near) = whole;
         pairs.iter_mut().for_each(|pair| pair.bodies.swap(0, 1));
         contacts.iter_mut().for_each(|contact| contact.bodies.swap(0, 1));
-        assert!(differ(&found, &(pairs, contacts)).is_some_and(|what| what.contains("bodies")));
+        near.iter_mut().for_each(|pair| pair.bodies.swap(0, 1));
+        assert!(differ(&found, &(pairs, contacts, near)).is_some_and(|what| what.contains("bodies")));
     }
 }

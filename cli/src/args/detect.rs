@@ -82,6 +82,10 @@ pub struct DetectArgs {
     /// Only the smallest time of contact: the step that a simulator may take.
     #[arg(long)]
     pub earliest: bool,
+    /// Vertex/face and edge/edge pairs that are within this distance of each other at t = 0, a length: with their distance, and
+    /// where they are nearest.
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, conflicts_with_all = ["discrete", "continuous", "earliest"])]
+    pub near: Option<f64>,
     /// Bounding volume [default: the fastest].
     #[arg(long, value_parser = choice::<Bv>())]
     pub bv: Option<Bv>,
@@ -100,7 +104,7 @@ pub struct DetectArgs {
     /// Units that a work queue holds on chip (queue, queue-gtx285, steal, front) [default: 1024, or the paper's 600].
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u32>(1, 1024))]
     pub queue: Option<u32>,
-    /// The test of a pair [default: exact for discrete, certified for continuous].
+    /// The test of a pair [default: exact for discrete, certified for continuous, bounded for near].
     #[arg(long, value_parser = choice::<Solver>())]
     pub solver: Option<Solver>,
     /// Certified: how near to contact may count as one, a length; 0 for all that the precision gives [default: 1e-4 of the
@@ -142,6 +146,7 @@ impl DetectArgs {
     /// The query for bodies that move, or do not.
     pub fn query(&self, moving: bool) -> Query {
         let motion = match (self.discrete, self.continuous, self.earliest) {
+            _ if self.near.is_some() => Motion::Near,
             (_, _, true) => Motion::Earliest,
             (_, true, _) => Motion::Continuous,
             (true, _, _) => Motion::Discrete,
@@ -158,6 +163,7 @@ impl DetectArgs {
             tolerance: self.tolerance,
             boxes: self.boxes,
             separation: self.separation,
+            distance: self.near,
         }
     }
 }

@@ -65,6 +65,16 @@ fn detect(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
         let advice = "add --traversal queue, queue-gtx285, steal or front, or leave it out";
         given.none_of(&["cores", "queue"], why, advice)?;
     }
+    if args.near.is_some() {
+        let why = "of what stands still there is one answer within the distance, and it has no time";
+        let advice = "leave it out, or ask with --continuous or --earliest";
+        given.none_of(&["tolerance", "boxes", "separation"], why, advice)?;
+        let why =
+            "pairs of features without a common vertex are listed, those of adjacent triangles among them";
+        given.none_of(&["adjacent"], why, "leave it out, or ask with --discrete")?;
+        let why = "where two features are nearest is told by the weights of a triangle's corners";
+        given.none_of(&["file_faces"], why, "leave it out")?;
+    }
     of_single(args.scene.as_deref(), given)
 }
 

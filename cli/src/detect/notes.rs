@@ -69,7 +69,7 @@ pub fn of(
         Moves::SameFrames => Some("both frames are the same"),
         Moves::Yes => None,
     };
-    if let Some(why) = why.filter(|_| motion != Motion::Discrete) {
+    if let Some(why) = why.filter(|_| !motion.is_at_rest()) {
         notes.push(format!("nothing moves: {why}"));
     }
     match at_start {

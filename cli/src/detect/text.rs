@@ -41,6 +41,9 @@ pub fn human(told: &Report, contacts: &Contacts) -> String {
             }
         );
     }
+    if let Some(distance) = summary.distance {
+        let _ = writeln!(text, "  within {distance:e}; {} of them unresolved", summary.unresolved);
+    }
     for note in &told.notes {
         let _ = writeln!(text, "  {note}");
     }

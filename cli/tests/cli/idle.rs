@@ -9,7 +9,8 @@ fn options_that_would_do_nothing_are_refused() {
     let queues = "the walk has no queues; add --traversal queue";
     let planned = "a plan runs nothing";
     let files = "nothing is made here; add --full";
-    let table: [(&str, &[&str], &str); 36] = [
+    let still = "of what stands still there is one answer within the distance";
+    let table: [(&str, &[&str], &str); 43] = [
         ("detect", &["--budget", "8"], walk),
         ("detect", &["--budget", "8", "--traversal", "per-leaf"], walk),
         ("detect", &["--budget", "8", "--traversal", "steal"], walk),
@@ -21,6 +22,13 @@ fn options_that_would_do_nothing_are_refused() {
         ("detect", &["--tolerance", "1"], "takes no tolerance"),
         ("detect", &["--boxes", "1"], "takes no tolerance, no budget"),
         ("detect", &["--separation", "1"], "no separation"),
+        ("detect", &["--near", "1", "--tolerance", "1"], still),
+        ("detect", &["--near", "1", "--boxes", "1"], still),
+        ("detect", &["--near", "1", "--separation", "1"], still),
+        ("detect", &["--near", "1", "--adjacent"], "those of adjacent triangles among them"),
+        ("detect", &["--near", "1", "--discrete"], "cannot be used with"),
+        ("detect", &["--near", "1", "--solver", "exact"], "choose one of: bounded"),
+        ("plan", &["--near", "1", "--tolerance", "1"], still),
         ("detect", &["--earliest", "--adjacent"], "in a discrete query with the solver exact"),
         ("detect", &["--only", "narrow"], "--repeat"),
         ("plan", &["--repeat", "2"], planned),

@@ -5,9 +5,11 @@ use super::{err, refused, run, summary};
 #[test]
 fn numbers_below_zero_reach_the_checks() {
     let scene = ["detect", "--scene", "soup-moving", "--triangles", "20"];
-    for (option, said) in
-        [("--tolerance", "a tolerance that is no length"), ("--separation", "a separation that is no length")]
-    {
+    for (option, said) in [
+        ("--tolerance", "a tolerance that is no length"),
+        ("--separation", "a separation that is no length"),
+        ("--near", "a distance of -"),
+    ] {
         for number in ["-3e-5", "-1", "-0.5", "-1e300", "-inf", "-.5"] {
             let joined = format!("{option}={number}");
             for args in [&[option, number][..], &[&joined]] {

@@ -1,5 +1,6 @@
 //! Features in motion: their lists, and the launches from triangle pairs to contacts.
 
+use super::features::Features;
 use super::rungs::Rungs;
 use super::{NarrowContext, Step};
 use crate::device::{Buffer, Device};
@@ -11,7 +12,7 @@ use crate::pipeline::list::{Counter, GrowableOutput, List};
 use crate::pipeline::order::Order;
 use crate::pipeline::precision::Precision;
 use crate::query::{Motion, Query, Solver};
-use nearmiss_kernels::abi::{CullArgs, Facet, FeaturesArgs, Hit, Pair, SolveArgs, Span, counter};
+use nearmiss_kernels::abi::{CullArgs, Hit, Pair, SolveArgs, Span, counter};
 
 /// How many entries the lists of a continuous query have room for at first: vertex/face, edge/edge.
 pub struct Capacities {
@@ -28,10 +29,8 @@ pub struct Capacities {
 /// The lists and the topology of a continuous query.
 pub struct Continuous {
     query: Query,
-    pub(super) edges: Buffer<[u32; 2]>,
-    facets: Buffer<Facet>,
-    /// Vertex/face and edge/edge pairs whose boxes come within the separation.
-    candidates: [List<Pair>; 2],
+    /// Topology, and the pairs whose boxes come within the separation.
+    features: Features,
     /// Those that may meet; there is no such step with a separation.
     survivors: Option<[List<Pair>; 2]>,
     /// Vertex/face contacts.
@@ -69,18 +68,12 @@ impl Continuous {
                 List::new(device, ee, ee_at, capacity[1])?,
             ])
         };
-        let candidates = ["vertex/face candidates", "edge/edge candidates"];
         let may_meet = ["vertex/face pairs that may meet", "edge/edge pairs that may meet"];
         let survivors =
             || lists(may_meet, [counter::VF_SURVIVORS, counter::EE_SURVIVORS], capacities.survivors);
-        let facet = |((&corners, &edges), &owned)| Facet { corners, owned, edges, pad: 0 };
-        let facets: Vec<_> =
-            layout.faces.iter().zip(&layout.face_edges).zip(&layout.owners).map(facet).collect();
         Ok(Continuous {
             query,
-            edges: device.upload(&layout.edges)?,
-            facets: device.upload(&facets)?,
-            candidates: lists(candidates, [counter::VF, counter::EE], capacities.candidates)?,
+            features: Features::new(device, layout, capacities.candidates)?,
             survivors: (!query.is_apart()).then(survivors).transpose()?,
             vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, hits[0])?,
             ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, hits[1])?,
@@ -111,9 +104,7 @@ impl Continuous {
     /// The lists that a step fills.
     pub fn lists(&mut self, step: Step) -> Vec<&mut dyn GrowableOutput> {
         match step {
-            Step::Features => {
-                self.candidates.iter_mut().map(|list| list as &mut dyn GrowableOutput).collect()
-            }
+            Step::Features => self.features.lists(),
             Step::Cull => {
                 self.survivors.iter_mut().flatten().map(|list| list as &mut dyn GrowableOutput).collect()
             }
@@ -126,14 +117,13 @@ impl Continuous {
             Step::Order => {
                 self.ordered.iter_mut().map(|order| &mut order.list as &mut dyn GrowableOutput).collect()
             }
-            Step::Traverse | Step::Decide => Vec::new(),
+            Step::Traverse | Step::Decide | Step::Near => Vec::new(),
         }
     }
 
     /// The lists between candidates and contacts, with names: for comparing machines.
     pub fn between(&self) -> Vec<(&'static str, &List<Pair>)> {
-        let [vf, ee] = &self.candidates;
-        let mut lists = vec![("narrow: vf", vf), ("narrow: ee", ee)];
+        let mut lists = self.features.between();
         if let Some([vf, ee]) = &self.survivors {
             lists.extend([("narrow: vf that may meet", vf), ("narrow: ee that may meet", ee)]);
         }
@@ -143,7 +133,7 @@ impl Continuous {
 
     /// What the solver is asked.
     fn asked(&self) -> [&List<Pair>; 2] {
-        self.survivors.as_ref().unwrap_or(&self.candidates).each_ref()
+        self.survivors.as_ref().unwrap_or(&self.features.candidates).each_ref()
     }
 
     /// Puts pairs where a step would leave them, vertex/face and edge/edge: [`Step::Features`] candidates, [`Step::Cull`]
@@ -157,7 +147,7 @@ impl Continuous {
     pub fn give(&mut self, step: Step, [vf, ee]: [&[Pair]; 2]) -> Result<[(u32, u64); 2], Error> {
         let [vf_list, ee_list] = match (step, &mut self.survivors) {
             (Step::Cull, Some(lists)) => lists.each_mut(),
-            _ => self.candidates.each_mut(),
+            _ => self.features.candidates.each_mut(),
         };
         Ok([vf_list.put(vf)?, ee_list.put(ee)?])
     }
@@ -168,33 +158,21 @@ impl Continuous {
     /// Those of the device.
     pub fn run<R: Precision>(&mut self, step: Step, given: &NarrowContext<R>) -> Result<(), Error> {
         match step {
-            Step::Features => self.features(given),
+            Step::Features => self.features.run::<R, R::Features>(given),
             Step::Cull => self.cull(given),
             Step::Order => self.order(given),
             _ => self.solve(given),
         }
     }
 
-    fn features<R: Precision>(&self, given: &NarrowContext<R>) -> Result<(), Error> {
-        let [vf, ee] = &self.candidates;
-        let args = FeaturesArgs {
-            frames: given.frames,
-            facets: self.facets.span(),
-            pairs: given.pairs,
-            vf: vf.span(),
-            ee: ee.span(),
-            counters: given.counters,
-            gap: given.query.gap(),
-        };
-        launch::striding::<R::Features>(given.device, given.pairs.len() as usize, &args)
-    }
-
     fn cull<R: Precision>(&self, given: &NarrowContext<R>) -> Result<(), Error> {
-        let ([vf, ee], Some([may_vf, may_ee])) = (&self.candidates, &self.survivors) else { return Ok(()) };
+        let ([vf, ee], Some([may_vf, may_ee])) = (&self.features.candidates, &self.survivors) else {
+            return Ok(());
+        };
         let args = CullArgs {
             frames: given.frames,
             faces: given.faces,
-            edges: self.edges.span(),
+            edges: self.features.edges.span(),
             vf: vf.span(),
             ee: ee.span(),
             may_vf: may_vf.span(),
@@ -224,17 +202,17 @@ impl Continuous {
         if solver.is_certified() {
             let hits = [&self.vf_hits, &self.ee_hits];
             let earliest = self.earliest.as_ref().map_or(Span::EMPTY, Buffer::span);
-            self.rungs.climb(given, self.edges.span(), ([vf, ee], hits, earliest))?;
+            self.rungs.climb(given, self.features.edges.span(), ([vf, ee], hits, earliest))?;
             return below_precision::count(
                 self.below_precision,
-                (self.edges.span(), &self.vf_hits, &self.ee_hits),
+                (self.features.edges.span(), &self.vf_hits, &self.ee_hits),
                 given,
             );
         }
         let args = |survivors: &List<Pair>, hits: &List<Hit>| SolveArgs {
             frames: given.frames,
             faces: given.faces,
-            edges: self.edges.span(),
+            edges: self.features.edges.span(),
             survivors: survivors.span(),
             hits: hits.span(),
             earliest: self.earliest.as_ref().map_or(Span::EMPTY, Buffer::span),

@@ -1,7 +1,7 @@
 //! The end of a frame: what the kernels found comes to the host.
 
 use super::TypedPipeline;
-use crate::device::View;
+use crate::device::{Ahead, View};
 use crate::error::Error;
 use crate::pipeline::below_precision::BelowPrecision;
 use crate::pipeline::list::List;
@@ -9,7 +9,8 @@ use crate::pipeline::narrow::Narrow;
 use crate::pipeline::order::{Order, Ordered};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::volumes::Kernels;
-use nearmiss_kernels::abi::{Hit, Pair, counter};
+use bytemuck::Pod;
+use nearmiss_kernels::abi::{Hit, NearHit, Pair, counter};
 
 /// What the kernels found, still in the numbering of the memory that all bodies share, and where it is possible in that
 /// memory.
@@ -18,6 +19,8 @@ pub struct Found<'a> {
     pub pairs: Option<View<'a, Pair>>,
     /// Contacts in motion.
     pub hits: Option<Hits<'a>>,
+    /// Features at rest within the distance.
+    pub near: Option<Hits<'a, NearHit>>,
     /// Whether pairs or hits are in canonical order already.
     pub ordered: bool,
     /// The smallest toi, if that was asked for and there is one.
@@ -36,22 +39,50 @@ impl Found<'_> {
     /// Bytes of the answer.
     pub fn bytes(&self) -> u64 {
         let pairs = self.pairs.as_ref().map_or(0, |pairs| size_of_val(&**pairs));
-        let hits = self.hits.as_ref().map_or(0, |hits| hits.each().iter().map(|list| list.len()).sum());
-        (pairs + hits * size_of::<crate::Contact>()) as u64
+        let hits = self.hits.as_ref().map_or(0, Hits::count) * size_of::<crate::Contact>();
+        let near = self.near.as_ref().map_or(0, Hits::count) * size_of::<crate::contacts::NearPair>();
+        (pairs + hits + near) as u64
     }
 }
 
-/// Contacts in motion, vertex/face and edge/edge.
-pub enum Hits<'a> {
+/// Pairs of features, vertex/face and edge/edge: contacts in motion, or such within a distance.
+pub enum Hits<'a, T: Pod = Hit> {
     /// A list of each.
-    Lists([View<'a, Hit>; 2]),
+    Lists([View<'a, T>; 2]),
     /// One list, those of vertices first, and how many they are.
-    One(View<'a, Hit>, usize),
+    One(View<'a, T>, usize),
 }
 
-impl Hits<'_> {
+impl<'a, T: Ordered> Hits<'a, T> {
+    /// Those of two lists, in order if the device has put them so; and whether it has.
+    fn of(
+        lists: [&'a List<T>; 2],
+        order: Option<&'a Order<T>>,
+        counters: &[u64],
+    ) -> Result<(Self, bool), Error> {
+        Ok(match in_order(order, counters, &lists)? {
+            Some(all) => (Hits::One(all, lists[0].demand(counters) as usize), true),
+            None => (Hits::Lists([lists[0].view(counters)?, lists[1].view(counters)?]), false),
+        })
+    }
+
+    /// What is to be read ahead of them, by the counters of the last frame.
+    fn ahead(lists: [&'a List<T>; 2], order: Option<&'a Order<T>>, last: &[u64]) -> Vec<Ahead<'a>> {
+        match order {
+            Some(order) => vec![order.list.ahead(last)],
+            None => lists.map(|list| list.ahead(last)).into(),
+        }
+    }
+}
+
+impl<T: Pod> Hits<'_, T> {
+    /// How many they are.
+    fn count(&self) -> usize {
+        self.each().iter().map(|list| list.len()).sum()
+    }
+
     /// Both.
-    pub fn each(&self) -> [&[Hit]; 2] {
+    pub fn each(&self) -> [&[T]; 2] {
         match self {
             Hits::Lists([vf, ee]) => [vf, ee],
             Hits::One(all, vf) => {
@@ -78,11 +109,11 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
         match &self.narrow {
             Narrow::Discrete { ordered: Some(order), .. } => all.push(order.list.ahead(&self.last)),
             Narrow::Discrete { contacts, .. } => all.push(contacts.ahead(&self.last)),
+            Narrow::Near(near) => {
+                all.extend(Hits::ahead([&near.vf_hits, &near.ee_hits], near.ordered.as_ref(), &self.last));
+            }
             Narrow::Continuous(c) => {
-                match &c.ordered {
-                    Some(order) => all.push(order.list.ahead(&self.last)),
-                    None => all.extend([c.vf_hits.ahead(&self.last), c.ee_hits.ahead(&self.last)]),
-                }
+                all.extend(Hits::ahead([&c.vf_hits, &c.ee_hits], c.ordered.as_ref(), &self.last));
                 all.extend(c.earliest.as_ref().map(|earliest| earliest.ahead(1)));
             }
         }
@@ -93,6 +124,7 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
         let mut found = Found {
             pairs: None,
             hits: None,
+            near: None,
             ordered: false,
             earliest: None,
             counters,
@@ -106,14 +138,16 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
                 found.ordered = ordered.is_some();
                 found.pairs = Some(ordered.map_or_else(|| contacts.view(&found.counters), Ok)?);
             }
+            Narrow::Near(near) => {
+                let lists = [&near.vf_hits, &near.ee_hits];
+                let (hits, ordered) = Hits::of(lists, near.ordered.as_ref(), &found.counters)?;
+                (found.near, found.ordered) = (Some(hits), ordered);
+            }
             Narrow::Continuous(c) => {
                 found.below_precision = c.below_precision;
-                let ordered = in_order(c.ordered.as_ref(), &found.counters, &[&c.vf_hits, &c.ee_hits])?;
-                found.ordered = ordered.is_some();
-                found.hits = Some(match ordered {
-                    Some(all) => Hits::One(all, c.vf_hits.demand(&found.counters) as usize),
-                    None => Hits::Lists([c.vf_hits.view(&found.counters)?, c.ee_hits.view(&found.counters)?]),
-                });
+                let lists = [&c.vf_hits, &c.ee_hits];
+                let (hits, ordered) = Hits::of(lists, c.ordered.as_ref(), &found.counters)?;
+                (found.hits, found.ordered) = (Some(hits), ordered);
                 if let Some(earliest) = &c.earliest {
                     let bits = earliest.read(1)?[0];
                     found.earliest = (bits != u64::MAX).then(|| f64::from_bits(bits));

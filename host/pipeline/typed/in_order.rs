@@ -16,7 +16,10 @@ fn answers(
     told: impl Fn(bool) -> bool,
 ) -> Vec<Contacts> {
     let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
-    let query = Query { tolerance: Some(1e-3), ..Query::of(motion) };
+    let query = match motion {
+        Motion::Near => Query::near(0.02),
+        _ => Query { tolerance: Some(1e-3), ..Query::of(motion) },
+    };
     let layout = Arc::new(Layout::new(bodies, motion != Motion::Discrete));
     let given = (query, Axes::PCA);
     let mut pipeline =
@@ -29,6 +32,9 @@ fn answers(
             }
             Narrow::Continuous(c) => {
                 c.ordered = Some(Order::new(&device, &layout, 10).expect("memory"));
+            }
+            Narrow::Near(near) => {
+                near.ordered = Some(Order::new(&device, &layout, 10).expect("memory"));
             }
         }
     }
@@ -45,7 +51,7 @@ fn answers(
 #[test]
 fn the_device_orders_as_the_host_does() {
     let soup = |seed, moving| samples::soup(300, seed, moving);
-    for (motion, moving) in [(Motion::Discrete, false), (Motion::Continuous, true)] {
+    for (motion, moving) in [(Motion::Discrete, false), (Motion::Continuous, true), (Motion::Near, false)] {
         for bodies in [vec![soup(5, moving)], vec![soup(6, moving), soup(7, moving)]] {
             let [host, device] = [false, true].map(|device| answers(&bodies, motion, device, |told| told));
             assert!(host[0].len() > 20, "{motion:?}: {}", host[0].len());

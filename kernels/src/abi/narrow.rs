@@ -1,6 +1,6 @@
 //! Argument blocks of the last stage: from triangle pairs to contacts.
 
-use super::{Facet, Hit, Pair, Point, Positions, Span};
+use super::{Facet, Hit, NearHit, Pair, Point, Positions, Span};
 use crate::math::Real;
 use crate::prim::inclusion::Params;
 use bytemuck::Zeroable;
@@ -83,6 +83,27 @@ arguments! {
         earliest: Span<u64>,
         /// Counters, see [`counter`](super::counter).
         counters: Span<u64>,
+    }
+    /// `narrow_near`: the features at rest that are within a distance.
+    NearArgs<R: Real> {
+        /// Positions.
+        positions: Span<Point<R>>,
+        /// Vertex indices of every triangle.
+        faces: Span<[u32; 3]>,
+        /// End points of every edge.
+        edges: Span<[u32; 2]>,
+        /// Vertex/face candidates.
+        vf: Span<Pair>,
+        /// Edge/edge candidates.
+        ee: Span<Pair>,
+        /// Out: vertices and faces within the distance.
+        vf_hits: Span<NearHit>,
+        /// Out: edges within the distance.
+        ee_hits: Span<NearHit>,
+        /// Counters, see [`counter`](super::counter).
+        counters: Span<u64>,
+        /// The distance, a length.
+        distance: f64,
     }
     /// `narrow_blunt`: hits so large that the solver's precision cannot tell as little as the tolerance.
     BelowPrecisionArgs<R: Real> {

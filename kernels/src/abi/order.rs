@@ -1,6 +1,6 @@
 //! Contacts into canonical order: what they are ordered by, and the argument block.
 
-use super::{BodyRecord, Hit, Pair, Span, Tiles};
+use super::{BodyRecord, Hit, NearHit, Pair, Span, Tiles};
 use bytemuck::{Pod, Zeroable};
 
 /// What contacts are ordered by.
@@ -14,6 +14,11 @@ impl Named for Pair {
     }
 }
 impl Named for Hit {
+    fn name(&self) -> [u32; 2] {
+        [self.a, self.b]
+    }
+}
+impl Named for NearHit {
     fn name(&self) -> [u32; 2] {
         [self.a, self.b]
     }

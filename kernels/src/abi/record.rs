@@ -118,6 +118,21 @@ pub struct Hit {
 }
 const _: () = assert!(size_of::<Hit>() == 32);
 
+/// Two features at rest within a distance, as the narrow stage leaves them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct NearHit {
+    /// The vertex, or the first edge.
+    pub a: u32,
+    /// The face, or the second edge.
+    pub b: u32,
+    /// Their squared distance.
+    pub squared: f64,
+    /// Where they are nearest, see [`crate::prim::near::Near::at`].
+    pub at: [f64; 2],
+}
+const _: () = assert!(size_of::<NearHit>() == 32);
+
 /// An inner node of the radix tree, before it has a place in the level order: its range of leaves. It is known by the gap
 /// that it splits: its left child ends with the leaf of the gap's number, and its right child begins behind that.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]

@@ -1,5 +1,7 @@
 //! Every tolerance and rounding constant of the kernels: name, unit, reason. None lives anywhere else.
 
+use core::ops::RangeInclusive;
+
 /// Unit roundoff of f32: half the distance from 1 to the next f32. Relative.
 pub const U32: f32 = f32::EPSILON / 2.0;
 /// Unit roundoff of f64: half the distance from 1 to the next f64. Relative.
@@ -180,6 +182,28 @@ pub const NEAR_FINEST: f64 = 256.0 * U64;
 /// By how much volumes grow for it, relative to the largest coordinate of what they hold: a pair's extent is at most the sum
 /// of both coordinates, so each side's part is [`NEAR_FINEST`]; twice that, for the roundings of f32. `2^-44`. Ratio.
 pub const NEAR_GROWTH: f32 = f32::from_bits((127 - 44) << 23);
+
+/// By how much a computed distance of two features at rest may be above the true one, relative to the largest component of
+/// the differences that it is made of: `192u` of f64. Derived in `prim::near`: `88.5u sqrt 3`, and those of the bound itself.
+/// Volumes that grow by [`NEAR_GROWTH`] bring whatever is listed for it: such a component is at most twice the larger of both
+/// coordinates. Ratio.
+pub const DISTANCE_ERROR: f64 = 192.0 * U64;
+/// By how much it may be below the true one: `32u`, for `15.5u sqrt 3`. Ratio.
+pub const DISTANCE_CERTAIN: f64 = 32.0 * U64;
+/// No pair is listed that is farther apart than was asked by more than this: `256u`, the sum of both and of their roundings. Ratio.
+pub const DISTANCE_LISTED: f64 = 256.0 * U64;
+/// A sum and a product of positive terms are below their computed value times this, and so is its square: `1 + 8u`. Ratio.
+pub const DISTANCE_UP: f64 = 1.0 + 8.0 * U64;
+/// Differences whose largest component is below this are scaled by [`DISTANCE_SCALE`]: `2^-400`, so that the square of
+/// `DISTANCE_ERROR` of it, 2^-892, is a normal number. Length.
+pub const DISTANCE_SMALL: f64 = f64::from_bits((1023 - 400) << 52);
+/// Of pairs whose largest difference is in this range, f32 tells some apart: `2^-40`, so that
+/// `192u` of it, 2^-56, and sixteen `u` of it, 2^-60, have squares that are normal numbers; and `2^60`, so that squares are finite.
+/// Length.
+pub const DISTANCE_FILTERED: RangeInclusive<f32> =
+    f32::from_bits((127 - 40) << 23)..=f32::from_bits((127 + 60) << 23);
+/// What they are scaled by: `2^900`. The largest become 2^500, whose squares are finite, the smallest subnormal 2^-174. Ratio.
+pub const DISTANCE_SCALE: f64 = f64::from_bits((1023 + 900) << 52);
 
 /// A cell that loses less than this part of every range is split, not clipped again. Ratio; costs, proves nothing.
 pub const INCLUSION_SHRUNK: f64 = 0.6;

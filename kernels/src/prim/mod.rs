@@ -4,7 +4,7 @@
 //! (floats with a proven error bound: right or silent) and of [`exact`] (integers: always right).
 //! Continuous: [`cubic`] (the coplanarity cubic; can miss, and says how), and certified, never missing, never late:
 //! [`isolate`] (in closed form) and behind it [`inclusion`] (by boxes). [`stencil`] names the fifteen vertex/face and
-//! edge/edge tests of two triangles; [`sweep`] tells which of them have boxes that meet.
+//! edge/edge tests of two triangles; [`sweep`] tells which of them have boxes that meet. At rest: [`near`], how far from each other.
 
 pub mod adjacent;
 pub mod cubic;
@@ -13,6 +13,7 @@ mod flat;
 pub mod inclusion;
 pub mod isolate;
 pub mod moller;
+pub mod near;
 pub mod orient;
 mod poly;
 pub mod signs;

@@ -1,4 +1,4 @@
-//! The boxes around the ways of the features of two triangles, and which of them come within a gap. Without branches: some lane of
+//! The boxes around the features of two triangles, or around their ways, and which of them come within a gap. Without branches: some lane of
 //! a GPU would take each, and a CPU makes vectors of it. Some 500 operations.
 
 use super::cubic::Moving;
@@ -27,8 +27,20 @@ impl<R: Real> Swept<R> {
     #[inline(always)]
     fn apart(&self, o: &Self) -> u32 {
         let (x, y) = (o.hi - self.lo, self.hi - o.lo);
-        x[0].sign() | y[0].sign() | x[1].sign() | y[1].sign() | x[2].sign() | y[2].sign()
+        signs(x, y)
     }
+    /// In bit 31, whether two boxes are farther apart on an axis than a gap above 0.
+    #[inline(always)]
+    fn apart_by(&self, o: &Self, gap: R) -> u32 {
+        let gap = Vec3([gap; 3]);
+        signs(gap - (self.lo - o.hi), gap - (o.lo - self.hi))
+    }
+}
+
+/// In bit 31, whether any component is below 0.
+#[inline(always)]
+fn signs<R: Real>(x: Vec3<R>, y: Vec3<R>) -> u32 {
+    x[0].sign() | y[0].sign() | x[1].sign() | y[1].sign() | x[2].sign() | y[2].sign()
 }
 
 /// The corners of a triangle.
@@ -103,23 +115,36 @@ pub fn more<R: Real>(gap: f64) -> R {
 #[inline(always)]
 pub fn meeting<R: Real>(p: &Corners<R>, q: &Corners<R>, gap: R) -> u32 {
     let (meet, boxes) = swept(p, q, gap);
-    if meet { sharing(&boxes) } else { 0 }
+    if meet { sharing(&boxes, Swept::apart) } else { 0 }
+}
+
+/// The same of two triangles at rest, by their corners; the gap is above 0, and [`more`] of it. Boxes are not grown, so that what is
+/// far from the origin has no more candidates than what is near it: a difference rounds to no more than the gap if it is none.
+#[inline(always)]
+pub fn meeting_at_rest<R: Real>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3], gap: R) -> u32 {
+    sharing(&[points(p), points(q)], |x, y| x.apart_by(y, gap))
+}
+
+/// Boxes around corners at rest.
+#[inline(always)]
+fn points<R: Real>(&[x, y, z]: &[Vec3<R>; 3]) -> [Swept<R>; 3] {
+    [Swept { lo: x, hi: x }, Swept { lo: y, hi: y }, Swept { lo: z, hi: z }]
 }
 
 /// The tests whose features have boxes that share a point: bits 0 to 2 a vertex of p and q, 3 to 5 a vertex of q and p,
 /// 6 + 3 i + j edge i of p and j of q. By signs of differences, as half of a GPU's lanes compare at a time.
 #[inline(always)]
-fn sharing<R: Real>([p, q]: &[[Swept<R>; 3]; 2]) -> u32 {
+fn sharing<R: Real>([p, q]: &[[Swept<R>; 3]; 2], apart_of: impl Fn(&Swept<R>, &Swept<R>) -> u32) -> u32 {
     let (of_p, of_q) = (p[0].merge(p[1]).merge(p[2]), q[0].merge(q[1]).merge(q[2]));
     let mut apart = 0;
     for k in 0..3 {
-        apart |= (p[k].apart(&of_q) >> 31) << k;
-        apart |= (q[k].apart(&of_p) >> 31) << (3 + k);
+        apart |= (apart_of(&p[k], &of_q) >> 31) << k;
+        apart |= (apart_of(&q[k], &of_p) >> 31) << (3 + k);
     }
     let (of_p, of_q) = (edges(p), edges(q));
     for (i, p) in of_p.iter().enumerate() {
         for (j, q) in of_q.iter().enumerate() {
-            apart |= (p.apart(q) >> 31) << (6 + 3 * i + j);
+            apart |= (apart_of(p, q) >> 31) << (6 + 3 * i + j);
         }
     }
     !apart & ALL

@@ -2,9 +2,11 @@
 //!
 //! Two triangles ([`triangles_meet`]): the method shares nothing with theirs either, no determinant and no sign of one,
 //! but linear programming over the rationals. Slow (about a millisecond a question) and uniform: no input is a special
-//! case. Two features that move ([`first_contact`]): by the roots of polynomials, as algebraic numbers.
+//! case. Two features that move ([`first_contact`]): by the roots of polynomials, as algebraic numbers. Two that rest ([`near`]): by fractions
+//! of integers.
 
 mod motion;
+pub mod near;
 pub mod simplex;
 
 pub use motion::{Toi, first_contact, first_contact_until, meet_at};

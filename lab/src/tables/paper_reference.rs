@@ -87,7 +87,7 @@ impl Theirs {
         let motion = match way.motion {
             Motion::Discrete => 0,
             Motion::Continuous => 1,
-            Motion::Earliest => return None,
+            Motion::Earliest | Motion::Near => return None,
         };
         column(way.bv).map(|at| self.frame[usize::from(way.front)][2 * motion + at])
     }

@@ -43,6 +43,7 @@ impl Way {
             Motion::Discrete => "discrete",
             Motion::Continuous => "continuous",
             Motion::Earliest => "earliest",
+            Motion::Near => "near",
         }
     }
 }

@@ -1,7 +1,8 @@
-//! # Sift: triangle pairs → vertex/face and edge/edge candidates
+//! # Features: triangle pairs → vertex/face and edge/edge candidates
 //! Paper    section 6.2.5, "each of the 15 elementary vertex/face and edge/edge tests".
 //! Launch   a lane a triangle pair; a grid of any size strides.
-//! Reads    candidates (pairs that share a vertex among them), facets, positions of both frames.
+//!          [`Moves`] over a step, [`Rests`] where nothing moves, each a kernel of its own.
+//! Reads    candidates (pairs that share a vertex among them), facets, positions of both frames, or of the one.
 //! Writes   those vertex/face and edge/edge pairs whose boxes come within the gap, each once.
 //! Before   every pair of triangles that come within the gap is listed, adjacent ones too.
 //! After    every vertex/face and edge/edge pair without a common vertex that comes within the gap is listed.
@@ -14,14 +15,17 @@
 //! Departs  the paper tests all 15 for every pair; owners (representative triangles: Curtis, Tamstorf, Manocha, "Fast
 //!          collision detection for deformable models using representative-triangles", 2008) leave about 3, shorter sweeps
 //!          about 1.
-//! Cost     8 B pair, 64 B facets, 192 B positions (gathered); some 500 operations, half of them for the 15 tests, without
-//!          branches; on a CPU in vectors. What is to be listed is numbered in shared memory first, so that all lanes write.
+//! Cost     8 B pair, 64 B facets, 192 B positions (gathered; at rest 96 B); some 500 operations, half of them for the 15 tests
+//!          (at rest those alone, 300), without branches; on a CPU in vectors. What is to be listed is numbered in shared memory first, so that all lanes write.
 
-use super::{listed, triangle};
-use crate::abi::{Facet, FeaturesArgs, Pair, Span, counter};
+use super::{listed, moving};
+use crate::abi::{Facet, FeaturesArgs, Pair, Positions, Span, counter};
 use crate::exec::{Block, Lane, RowMap, Slot};
-use crate::math::Real;
-use crate::prim::sweep::{Corners, MOST, meeting, more};
+use crate::math::{Real, Vec3};
+use crate::prim::cubic::Moving;
+use crate::prim::sweep::{MOST, meeting, meeting_at_rest, more};
+use bytemuck::Pod;
+use core::marker::PhantomData;
 
 /// Bits of the tests that two triangles own: 0 to 2 a vertex of p and q, 3 to 5 a vertex of q and p, 6 + 3 i + j edge i of p
 /// and j of q; none of features that share a vertex.
@@ -46,17 +50,58 @@ fn owned(p: &Facet, q: &Facet) -> u32 {
     mask
 }
 
-/// Which tests of two triangles have features whose boxes come within a gap.
-struct Meeting<R> {
-    gap: R,
+/// Whether triangles move, and what the test of their boxes reads of a vertex.
+pub trait Course<R: Real> {
+    /// What it reads.
+    type Corner: Pod;
+    /// Reads it.
+    fn corner<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32) -> Self::Corner;
+    /// Which tests of two triangles have features whose boxes come within a gap.
+    fn meeting(p: &[Self::Corner; 3], q: &[Self::Corner; 3], gap: R) -> u32;
 }
 
-impl<R: Real> RowMap for Meeting<R> {
-    type Number = R;
-    type Row = [Corners<R>; 2];
+/// Vertices move over a step.
+pub struct Moves;
+
+impl<R: Real> Course<R> for Moves {
+    type Corner = Moving<R>;
     #[inline(always)]
-    fn at_once(&self, [p, q]: [Corners<R>; 2]) -> u32 {
-        meeting(&p, &q, self.gap)
+    fn corner<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32) -> Moving<R> {
+        moving(l, frames, vertex)
+    }
+    #[inline(always)]
+    fn meeting(p: &[Moving<R>; 3], q: &[Moving<R>; 3], gap: R) -> u32 {
+        meeting(p, q, gap)
+    }
+}
+
+/// Nothing moves; the gap is above 0.
+pub struct Rests;
+
+impl<R: Real> Course<R> for Rests {
+    type Corner = Vec3<R>;
+    #[inline(always)]
+    fn corner<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32) -> Vec3<R> {
+        l.read(frames.still, vertex).at
+    }
+    #[inline(always)]
+    fn meeting(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3], gap: R) -> u32 {
+        meeting_at_rest(p, q, gap)
+    }
+}
+
+/// Which tests of two triangles have features whose boxes come within a gap.
+struct Meeting<R, C> {
+    gap: R,
+    course: PhantomData<C>,
+}
+
+impl<R: Real, C: Course<R>> RowMap for Meeting<R, C> {
+    type Number = R;
+    type Row = [[C::Corner; 3]; 2];
+    #[inline(always)]
+    fn at_once(&self, [p, q]: Self::Row) -> u32 {
+        C::meeting(&p, &q, self.gap)
     }
 }
 
@@ -74,9 +119,9 @@ const VERTICES: u32 = 63;
 const EE: u32 = 1 << 16;
 
 /// Vertex/face and edge/edge candidates of each triangle pair.
-pub fn features<R: Real, B: Block>(b: &mut B, a: &FeaturesArgs<R>) {
+pub fn features<R: Real, C: Course<R>, B: Block>(b: &mut B, a: &FeaturesArgs<R>) {
     let count = listed(b, a.pairs, a.counters, counter::PAIRS);
-    let (lanes, map) = (b.lanes(), Meeting { gap: more(a.gap) });
+    let (lanes, map) = (b.lanes(), Meeting::<R, C> { gap: more(a.gap), course: PhantomData });
     let tests = b.shared::<u32>(MOST * lanes);
     let mut masks = b.slot(0u32);
     let mut places = b.slot(0u32);
@@ -93,7 +138,11 @@ pub fn features<R: Real, B: Block>(b: &mut B, a: &FeaturesArgs<R>) {
                 let (p, q) = (l.read(a.facets, pair.a), l.read(a.facets, pair.b));
                 Some((owned(&p, &q), p.corners, q.corners))
             },
-            |l, (_, p, q)| Some([triangle(l, &a.frames, p), triangle(l, &a.frames, q)]),
+            |l, (_, p, q)| {
+                let at = |vertex| C::corner(l, &a.frames, vertex);
+                let corners = |[x, y, z]: [u32; 3]| [at(x), at(y), at(z)];
+                Some([corners(p), corners(q)])
+            },
             |l, told| {
                 let mask = told.map_or(0, |((owned, ..), meeting)| owned & meeting);
                 *masks.of(l) = mask;

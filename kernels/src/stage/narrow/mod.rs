@@ -3,20 +3,21 @@
 //! Steps    discrete: [`discrete`]. Continuous: [`features`] turns triangle pairs into vertex/face and edge/edge candidates,
 //!          each once; [`cull`] leaves out those that certainly stay apart; the rungs of [`climb`], [`mod@slice`] and
 //!          [`separate`] find what meets of the others and bound its first time, with proof; or [`solve`] does so by the
-//!          seed's cubic. [`below_precision`] counts of what is listed what the precision was too below_precision for, where that may be.
+//!          seed's cubic. Near: [`features`] too, and [`near`] measures what they leave. [`below_precision`] counts of what is listed what the precision was too below_precision for, where that may be.
 
 pub mod below_precision;
 pub mod climb;
 pub mod cull;
 pub mod discrete;
 pub mod features;
+pub mod near;
 pub mod separate;
 pub mod slice;
 pub mod solve;
 
-use crate::abi::{Pair, Positions, Span};
+use crate::abi::{Pair, Point, Positions, Span};
 use crate::exec::{Block, Lane, RowMap, Slot};
-use crate::math::Real;
+use crate::math::{Real, Vec3};
 use crate::prim::cubic::Moving;
 
 /// A vertex in motion.
@@ -56,6 +57,30 @@ fn edge_edge<R: Real, L: Lane>(
     pair: Pair,
 ) -> [[Moving<R>; 2]; 2] {
     [edge(l, frames, l.read(edges, pair.a)), edge(l, frames, l.read(edges, pair.b))]
+}
+
+/// A vertex and the corners of a face, at rest.
+#[inline(always)]
+fn vertex_face_at<R: Real, L: Lane>(
+    l: &L,
+    (positions, faces): (Span<Point<R>>, Span<[u32; 3]>),
+    pair: Pair,
+) -> (Vec3<R>, [Vec3<R>; 3]) {
+    let at = |vertex| l.read(positions, vertex).at;
+    let [x, y, z] = l.read(faces, pair.b);
+    (at(pair.a), [at(x), at(y), at(z)])
+}
+
+/// The ends of two edges, at rest.
+#[inline(always)]
+fn edge_edge_at<R: Real, L: Lane>(
+    l: &L,
+    (positions, edges): (Span<Point<R>>, Span<[u32; 2]>),
+    pair: Pair,
+) -> [[Vec3<R>; 2]; 2] {
+    let at = |vertex| l.read(positions, vertex).at;
+    let edge = |[x, y]: [u32; 2]| [at(x), at(y)];
+    [edge(l.read(edges, pair.a)), edge(l.read(edges, pair.b))]
 }
 
 /// Runs `body` for each stretch of `count` items that a block takes, an item a lane, in a grid of any size: with the number of

@@ -7,7 +7,7 @@ use super::chart::{COLOURS, frame};
 use crate::accuracy::row::Row;
 use crate::tables::picture::{At, Drawn, FAINT, INK, LEFT, Sheet, head_height, sheet};
 use nearmiss::error::Error;
-use nearmiss::query::Solver;
+use nearmiss::query::{Motion, Solver};
 use plotters::style::RGBColor;
 
 /// Height of a frame, of what a panel has besides, and where frames end.
@@ -60,7 +60,8 @@ fn colour(solver: Solver) -> RGBColor {
 /// The solvers' colours, in a line.
 fn legend(sheet: &Sheet, y: i32) -> Drawn {
     let mut x = 24;
-    for solver in Solver::ALL {
+    // Of those that a trade asks.
+    for solver in Solver::ALL.into_iter().filter(|solver| !solver.answers(Motion::Near)) {
         let name = solver.name();
         sheet.dot((x, y), 5, colour(solver), solver.is_certain())?;
         sheet.text(name, (x + 10, y), 12, At::Left, INK)?;

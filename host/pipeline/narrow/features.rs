@@ -1,0 +1,72 @@
+//! From triangle pairs to vertex/face and edge/edge candidates: topology, lists, the launch.
+
+use super::NarrowContext;
+use crate::device::{Buffer, Device};
+use crate::error::Error;
+use crate::pipeline::launch;
+use crate::pipeline::layout::Layout;
+use crate::pipeline::list::{GrowableOutput, List};
+use crate::pipeline::precision::Precision;
+use nearmiss_kernels::abi::{Facet, FeaturesArgs, Pair, counter};
+use nearmiss_kernels::entry::Entry;
+
+/// What a query of features knows of triangles, and its candidates.
+pub struct Features {
+    /// End points of every edge.
+    pub edges: Buffer<[u32; 2]>,
+    facets: Buffer<Facet>,
+    /// Vertex/face and edge/edge pairs whose boxes come within the gap.
+    pub candidates: [List<Pair>; 2],
+}
+
+impl Features {
+    /// Takes the memory, with room for so many candidates of each kind.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn new(device: &Device, layout: &Layout, [vf, ee]: [usize; 2]) -> Result<Self, Error> {
+        let facet = |((&corners, &edges), &owned)| Facet { corners, owned, edges, pad: 0 };
+        let facets: Vec<_> =
+            layout.faces.iter().zip(&layout.face_edges).zip(&layout.owners).map(facet).collect();
+        Ok(Features {
+            edges: device.upload(&layout.edges)?,
+            facets: device.upload(&facets)?,
+            candidates: [
+                List::new(device, "vertex/face candidates", counter::VF, vf)?,
+                List::new(device, "edge/edge candidates", counter::EE, ee)?,
+            ],
+        })
+    }
+
+    /// The lists that the step fills.
+    pub fn lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
+        self.candidates.iter_mut().map(|list| list as &mut dyn GrowableOutput).collect()
+    }
+
+    /// The lists, with names: for comparing machines.
+    pub fn between(&self) -> Vec<(&'static str, &List<Pair>)> {
+        let [vf, ee] = &self.candidates;
+        vec![("narrow: vf", vf), ("narrow: ee", ee)]
+    }
+
+    /// Launches the step, by the kernel for what moves or for what does not.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn run<R: Precision, E: Entry<Args = FeaturesArgs<R>>>(
+        &self,
+        given: &NarrowContext<R>,
+    ) -> Result<(), Error> {
+        let [vf, ee] = &self.candidates;
+        let args = FeaturesArgs {
+            frames: given.frames,
+            facets: self.facets.span(),
+            pairs: given.pairs,
+            vf: vf.span(),
+            ee: ee.span(),
+            counters: given.counters,
+            gap: given.query.gap(),
+        };
+        launch::striding::<E>(given.device, given.pairs.len() as usize, &args)
+    }
+}
