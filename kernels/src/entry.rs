@@ -187,8 +187,8 @@ kernels! {
     narrow_separate_f32_f64: separate::separate::<f32, Double<3>, Double<4>, B>, [RungArgs<f32>], RUNG, separate::SHARED;
     narrow_separate_f64_f32: separate::separate::<f64, Single<3>, Single<4>, B>, [RungArgs<f64>], RUNG, separate::SHARED;
     narrow_separate_f64_f64: separate::separate::<f64, Double<3>, Double<4>, B>, [RungArgs<f64>], RUNG, separate::SHARED;
-    narrow_near_f32: near::near::<f32, B>, [NearArgs<f32>], RUNG, near::shared_bytes(RUNG);
-    narrow_near_f64: near::near::<f64, B>, [NearArgs<f64>], RUNG, near::shared_bytes(RUNG);
+    narrow_near_f32: near::near::<f32, B>, [NearArgs<f32>], RUNG, 0;
+    narrow_near_f64: near::near::<f64, B>, [NearArgs<f64>], RUNG, 0;
     order_keys_pair: order::keys::<Pair, B>, [OrderArgs<Pair>], WIDE, 0;
     order_keys_hit: order::keys::<Hit, B>, [OrderArgs<Hit>], WIDE, 0;
     order_keys_near: order::keys::<NearHit, B>, [OrderArgs<NearHit>], WIDE, 0;

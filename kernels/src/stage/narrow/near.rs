@@ -1,7 +1,8 @@
 //! # Near: vertex/face and edge/edge candidates → those within a distance, at rest
 //! Paper    the distance of two triangles is the seed's other query; it answers with one number, this with every pair of features.
 //! Launch   a lane a candidate, both kinds in one launch; a grid of any size strides. In f32 first, on a CPU in vectors; what that does
-//!          not let go is numbered in shared memory, so that the lanes that measure it in f64 are neighbours.
+//!          not let go is measured in f64 by the same lane: numbering it first, so that lanes are neighbours that measure, takes
+//!          a third longer on an H200 (`benches/NOTES.md`).
 //! Reads    candidates, faces or edges, positions (four vertices).
 //! Writes   the pairs that are not certainly farther apart, with squared distance and where they are nearest; how many of them are
 //!          not certainly within it.
@@ -15,22 +16,15 @@
 
 use super::{Entries, edge_edge_at, listed, stride, vertex_face_at};
 use crate::abi::{NearArgs, NearHit, Pair, Span, counter};
-use crate::exec::{Block, Lane, RowMap, Shared, Slot};
+use crate::exec::{Block, Lane, RowMap};
 use crate::math::{Real, Vec3};
 use crate::prim::near::{Filter, Near, edge_edge, vertex_face};
 
-/// Bytes of shared memory of a block: the lanes whose candidates are measured.
-pub const fn shared_bytes(lanes: u32) -> u32 {
-    4 * lanes
-}
-
 /// Both kinds.
 pub fn near<R: Real, B: Block>(b: &mut B, a: &NearArgs<R>) {
-    let lanes = b.lanes();
-    let kept = b.shared::<u32>(lanes);
     each(
         b,
-        (a, a.vf, counter::VF, kept),
+        (a, a.vf, counter::VF),
         (a.vf_hits, counter::VF_HITS),
         &Filter::<R, true>::new(a.distance),
         |l, pair| {
@@ -41,7 +35,7 @@ pub fn near<R: Real, B: Block>(b: &mut B, a: &NearArgs<R>) {
     );
     each(
         b,
-        (a, a.ee, counter::EE, kept),
+        (a, a.ee, counter::EE),
         (a.ee_hits, counter::EE_HITS),
         &Filter::<R, false>::new(a.distance),
         |l, pair| {
@@ -56,15 +50,13 @@ pub fn near<R: Real, B: Block>(b: &mut B, a: &NearArgs<R>) {
 #[inline(always)]
 fn each<R: Real, B: Block, M: RowMap<Row = [Vec3<R>; 4]>>(
     b: &mut B,
-    (a, pairs, pairs_at, kept): (&NearArgs<R>, Span<Pair>, u32, Shared<u32>),
+    (a, pairs, pairs_at): (&NearArgs<R>, Span<Pair>, u32),
     (hits, hits_at): (Span<NearHit>, u32),
     filter: &M,
     gather: impl Fn(&B::Lane, Pair) -> [Vec3<R>; 4],
     measure: impl Fn([Vec3<R>; 4]) -> Option<Near>,
 ) {
     let count = listed(b, pairs, a.counters, pairs_at);
-    let mut places = b.slot(0u32);
-    let mut keeps = b.slot(false);
     let mut entries = Entries::new(b);
     stride(b, count, |b, base| {
         b.map_rows(
@@ -75,32 +67,17 @@ fn each<R: Real, B: Block, M: RowMap<Row = [Vec3<R>; 4]>>(
             },
             |l, pair| Some(gather(l, pair)),
             |l, told| {
-                let keep = told.is_some_and(|(_, keep)| keep != 0);
-                *keeps.of(l) = keep;
-                *places.of(l) = keep as u32;
-                l.meet();
-            },
-        );
-        let total = b.scan(&mut places);
-        b.phase(|l| {
-            if *keeps.of(l) {
-                l.put(kept, *places.of(l), l.lane());
-            }
-            l.meet();
-        });
-        b.phase(|l| {
-            let mut hit = None;
-            if l.lane() < total {
-                let pair = l.read(pairs, base + l.get(kept, l.lane()));
-                if let Some(near) = measure(gather(l, pair)) {
+                let kept = told.filter(|(_, keep)| *keep != 0).map(|(pair, _)| pair);
+                let hit = kept.and_then(|pair| {
+                    let near = measure(gather(l, pair))?;
                     if !near.certain {
                         l.fetch_add(a.counters, counter::UNRESOLVED, 1);
                     }
-                    hit = Some(NearHit { a: pair.a, b: pair.b, squared: near.squared, at: near.at });
-                }
-            }
-            entries.set(l, hit);
-        });
+                    Some(NearHit { a: pair.a, b: pair.b, squared: near.squared, at: near.at })
+                });
+                entries.set(l, hit);
+            },
+        );
         entries.append(b, (hits, a.counters, hits_at));
     });
 }
