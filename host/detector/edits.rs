@@ -1,9 +1,9 @@
 //! Bodies come, go and change between frames.
 
-use super::Detector;
+use super::{Detector, fits};
 use crate::error::Error;
 use crate::mesh::Body;
-use crate::scene::{BodyId, Scene};
+use crate::scene::BodyId;
 
 impl Detector {
     /// Puts another body, of any mesh, in the place of one: under its number, from the next frame on. Cost: as of
@@ -12,10 +12,11 @@ impl Detector {
     /// # Errors
     /// [`Error::Choice`] for a body that is not in the scene, and for more triangles than indices reach: then nothing has changed.
     pub fn replace(&mut self, id: BodyId, body: Body) -> Result<(), Error> {
-        self.change(|scene| {
-            *scene.get_mut(id).ok_or_else(|| nobody(id))? = body;
-            Ok(())
-        })
+        let old = self.scene.get(id).ok_or_else(|| nobody(id))?;
+        self.fits(Some(old), &body)?;
+        *self.scene.get_mut(id).ok_or_else(|| nobody(id))? = body;
+        self.changed();
+        Ok(())
     }
 
     /// Adds a body to the scene, from the next frame on. Cost: as of [`Detector::new`], at the next frame.
@@ -23,7 +24,9 @@ impl Detector {
     /// # Errors
     /// [`Error::Choice`] for more triangles than indices reach: then nothing has changed.
     pub fn add(&mut self, body: Body) -> Result<BodyId, Error> {
-        self.change(|scene| Ok(scene.add(body)))
+        self.fits(None, &body)?;
+        self.changed();
+        Ok(self.scene.add(body))
     }
 
     /// Takes a body out of the scene, from the next frame on; other bodies keep their numbers. Cost: as of
@@ -32,21 +35,23 @@ impl Detector {
     /// # Errors
     /// [`Error::Choice`] for a body that is not in the scene.
     pub fn remove(&mut self, id: BodyId) -> Result<Body, Error> {
-        self.change(|scene| scene.remove(id).ok_or_else(|| nobody(id)))
+        let body = self.scene.remove(id).ok_or_else(|| nobody(id))?;
+        self.changed();
+        Ok(body)
     }
 
-    /// Changes the scene, if the result has room.
-    fn change<T>(&mut self, change: impl FnOnce(&mut Scene) -> Result<T, Error>) -> Result<T, Error> {
-        let mut scene = self.scene.clone();
-        let told = change(&mut scene)?;
-        let old = std::mem::replace(&mut self.scene, scene);
-        if let Err(error) = self.lay_out() {
-            self.scene = old;
-            return Err(error);
-        }
-        self.pipeline = None;
-        self.answered = false;
-        Ok(told)
+    /// Whether there is room for a body, in the place of another.
+    fn fits(&self, old: Option<&Body>, new: &Body) -> Result<(), Error> {
+        let all = |of: fn(&Body) -> usize| {
+            let others: usize = self.scene.bodies().iter().map(of).sum();
+            others - old.map_or(0, of) + of(new)
+        };
+        fits(all(Body::face_count), all(Body::vertex_count))
+    }
+
+    /// The next frame begins anew.
+    fn changed(&mut self) {
+        (self.pipeline, self.layout, self.answered) = (None, None, false);
     }
 }
 

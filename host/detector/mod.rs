@@ -39,7 +39,8 @@ use std::time::Instant;
 pub struct Detector {
     device: Device,
     scene: Scene,
-    layout: Arc<Layout>,
+    /// None where bodies came, went or changed since the last frame.
+    layout: Option<Arc<Layout>>,
     query: Query,
     /// The tolerance of a certified solver.
     tolerance: Option<f64>,
@@ -77,7 +78,7 @@ impl Detector {
         let mut detector = Detector {
             device,
             scene,
-            layout: Arc::default(),
+            layout: None,
             query,
             tolerance,
             construct_ms: 0.0,
@@ -85,30 +86,33 @@ impl Detector {
             f64s: false,
             pipeline: None,
         };
-        detector.lay_out()?;
         detector.begun()?;
         Ok(detector)
     }
 
-    /// Gives every body its place in the memory that all share.
-    fn lay_out(&mut self) -> Result<(), Error> {
+    /// Where every body lies in the memory that all share.
+    fn layout(&mut self) -> Result<Arc<Layout>, Error> {
+        if let Some(layout) = &self.layout {
+            return Ok(layout.clone());
+        }
         let bodies = self.scene.bodies();
         let triangles: usize = bodies.iter().map(Body::face_count).sum();
         fits(triangles, bodies.iter().map(Body::vertex_count).sum())?;
         memory::require("trees and lists", triangles as u64 * OF_A_TRIANGLE)?;
-        self.layout = Arc::new(Layout::new(bodies, self.query.motion != Motion::Discrete));
-        Ok(())
+        let layout = Arc::new(Layout::new(bodies, self.query.motion != Motion::Discrete));
+        self.layout = Some(layout.clone());
+        Ok(layout)
     }
 
     /// The pipeline; where there is none yet, with memory for the bodies where they are and trees built. None where nothing can
     /// meet: that costs no memory and no launch.
     fn begun(&mut self) -> Result<Option<&mut Box<dyn Pipeline>>, Error> {
-        if self.pipeline.is_none() && self.layout.may_meet() {
+        let layout = self.layout()?;
+        if self.pipeline.is_none() && layout.may_meet() {
             let bodies = self.scene.bodies();
             self.f64s = bodies.iter().any(Body::needs_f64);
             let query = Query { tolerance: self.tolerance, ..self.query };
-            let mut pipeline =
-                pipeline::pipeline(self.device.clone(), bodies, self.layout.clone(), query, self.f64s)?;
+            let mut pipeline = pipeline::pipeline(self.device.clone(), bodies, layout, query, self.f64s)?;
             self.construct_ms = pipeline.construct()?;
             self.pipeline = Some(pipeline);
         }
@@ -137,13 +141,14 @@ impl Detector {
     /// The same, of a frame that began then.
     fn answer(&mut self, start: Instant) -> Result<Contacts, Error> {
         self.begun()?;
+        let layout = self.layout()?;
         let Some(pipeline) = &mut self.pipeline else { return Ok(Contacts::none(self.query)) };
         self.answered = false;
         let (found, stages) = pipeline.frame()?;
         self.answered = true;
         let degraded = Degraded::of(&found);
         memory::require("the contacts", found.bytes())?;
-        let mut contacts = Contacts::new(found, &self.layout, self.query, (stages, degraded));
+        let mut contacts = Contacts::new(found, &layout, self.query, (stages, degraded));
         let wall = start.elapsed().as_secs_f64() * 1e3;
         contacts.stages = Stages { construct: self.construct_ms, wall, ..stages };
         Ok(contacts)
