@@ -2,6 +2,40 @@
 //!
 //! [`Detector`] is the front door: a [`Scene`] of bodies in, [`Contacts`] out, on the CPU or on an NVIDIA GPU, to the same bit.
 //! [`Query`] holds every choice; [`Device`] is where it runs; [`Error`] says who must act.
+//!
+//! A cloth, tested against itself, that sinks onto something that stands still; what its vertices, edges and faces meet in a
+//! step, and when:
+//!
+//! ```
+//! use nearmiss::scene::{Input, Meets, Scene};
+//! use nearmiss::{Body, Detector, Device, Mesh, Query, device::Backend, mesh::Positions, query::Motion};
+//!
+//! let triangle = |z: f32| Positions::F32(vec![[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]]);
+//! let mesh = |name, z| Mesh::new(name, triangle(z), vec![[0, 1, 2]]);
+//! let mut scene = Scene::new();
+//! let cloth = scene.add(Body::still(mesh("cloth", 0.5)?).with(Meets::and_itself()));
+//! let table = scene.add(Body::fixed(mesh("table", 0.0)?));
+//! let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene, Query::of(Motion::Continuous))?;
+//! for step in 0..4 {
+//!     let [t0, t1] = [step, step + 1].map(|k| triangle(0.5 - 0.2 * k as f32));
+//!     let found = detector.frame(&[(cloth, Input::Step([&t0, &t1]))])?;
+//!     for contact in found.contacts() {
+//!         assert_eq!(contact.bodies, [cloth, table]);
+//!         println!("step {step}: {:?} {} and {} at {:.3}", contact.kind, contact.a, contact.b, contact.toi);
+//!     }
+//! }
+//! # Ok::<(), nearmiss::Error>(())
+//! ```
+//!
+//! | to ask | give |
+//! | --- | --- |
+//! | which triangles touch now | [`Query::of`]`(`[`Motion::Discrete`](query::Motion::Discrete)`)` |
+//! | what meets in a step, and when first | [`Motion::Continuous`](query::Motion::Continuous) |
+//! | how far a step may go | [`Motion::Earliest`](query::Motion::Earliest) |
+//! | which features are within a distance, how far and where | [`Query::near`] |
+//!
+//! The folder `examples` of the repository has a program of some twenty lines for each of: a cloth, a cloth with an obstacle, a rigid
+//! pile, 1,000 environments, near pairs, a step limited by `earliest`.
 
 pub mod contacts;
 mod detector;

@@ -1,8 +1,8 @@
 //! What a near query costs beside a discrete one: frames and steps, in milliseconds.
 //!
 //! ```sh
-//! cargo run --release --example near -- mesh.ply             # within half of the mean edge
-//! cargo run --release --example near -- mesh.ply 0.1         # within a tenth of it
+//! cargo run --release --example near_cost -- mesh.ply             # within half of the mean edge
+//! cargo run --release --example near_cost -- mesh.ply 0.1         # within a tenth of it
 //! ```
 
 use nearmiss::device::Backend;
