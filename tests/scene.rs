@@ -4,6 +4,8 @@
 mod cost;
 #[path = "scene/edits.rs"]
 mod edits;
+#[path = "scene/extremes.rs"]
+mod extremes;
 #[path = "scene/pairwise.rs"]
 mod pairwise;
 mod support;
