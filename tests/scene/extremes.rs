@@ -13,8 +13,11 @@ fn world(bodies: &[Body], environment: u32) -> impl Iterator<Item = Body> {
     })
 }
 
+/// Triangle pairs; contacts, with their bodies beside them.
+type Found = (Vec<[u32; 2]>, Vec<(Contact, [usize; 2])>);
+
 /// The contacts of one world, in the numbers of its own bodies: from `first` on.
-fn of_world(found: &Contacts, first: usize, count: usize) -> (Vec<[u32; 2]>, Vec<(Contact, [usize; 2])>) {
+fn of_world(found: &Contacts, first: usize, count: usize) -> Found {
     let inside =
         |bodies: [BodyId; 2]| bodies.iter().all(|body| (first..first + count).contains(&body.index()));
     let pairs = found.pairs().iter().filter(|pair| inside(pair.bodies)).map(|pair| pair.triangles);
