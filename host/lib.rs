@@ -34,8 +34,11 @@
 //! | how far a step may go | [`Motion::Earliest`](query::Motion::Earliest) |
 //! | which features are within a distance, how far and where | [`Query::near`] |
 //!
+//! A simulator whose data lie on the GPU lends its stream ([`Device::borrow`]) and its arrays
+//! ([`Input::OnDevice`](scene::Input::OnDevice)), and submits frames that neither allocate nor wait ([`Detector::submit`]).
+//!
 //! The folder `examples` of the repository has a program of some twenty lines for each of: a cloth, a cloth with an obstacle, a rigid
-//! pile, 1,000 environments, near pairs, a step limited by `earliest`.
+//! pile, 1,000 environments, near pairs, a step limited by `earliest`, and frames of what lies on the device.
 
 pub mod contacts;
 mod detector;

@@ -3,12 +3,14 @@
 mod degraded;
 mod hash;
 mod near;
+pub mod on_device;
 mod summary;
 mod triangles;
 mod work;
 
 pub use degraded::Degraded;
 pub use near::{Closest, NearPair};
+pub use on_device::{DeviceAnswer, DeviceList, Entries};
 pub use summary::Summary;
 pub use triangles::{TriangleContact, triangle_contacts};
 pub use work::{Front, Queues};
@@ -152,7 +154,7 @@ pub struct Contacts {
     pub queues: Queues,
     /// What the front saved or cost.
     pub front: Front,
-    degraded: Vec<Degraded>,
+    pub(crate) degraded: Vec<Degraded>,
 }
 
 impl Contacts {

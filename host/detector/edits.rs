@@ -14,6 +14,7 @@ impl Detector {
     pub fn replace(&mut self, id: BodyId, body: Body) -> Result<(), Error> {
         let old = self.scene.get(id).ok_or_else(|| nobody(id))?;
         self.fits(Some(old), &body)?;
+        self.fetch()?;
         *self.scene.get_mut(id).ok_or_else(|| nobody(id))? = body;
         self.changed();
         Ok(())
@@ -25,6 +26,7 @@ impl Detector {
     /// [`Error::Choice`] for more triangles than indices reach: then nothing has changed.
     pub fn add(&mut self, body: Body) -> Result<BodyId, Error> {
         self.fits(None, &body)?;
+        self.fetch()?;
         self.changed();
         Ok(self.scene.add(body))
     }
@@ -35,6 +37,8 @@ impl Detector {
     /// # Errors
     /// [`Error::Choice`] for a body that is not in the scene.
     pub fn remove(&mut self, id: BodyId) -> Result<Body, Error> {
+        self.scene.get(id).ok_or_else(|| nobody(id))?;
+        self.fetch()?;
         let body = self.scene.remove(id).ok_or_else(|| nobody(id))?;
         self.changed();
         Ok(body)

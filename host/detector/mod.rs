@@ -1,14 +1,16 @@
 //! The front door: a scene on a device, asked frame after frame.
 
+mod away;
 mod edits;
 mod moves;
+mod submit;
 
 use crate::contacts::{Contacts, Degraded, Summary};
 use crate::device::Device;
 use crate::error::Error;
 use crate::memory;
 use crate::mesh::{Body, MAX_FACES, MAX_VERTICES};
-use crate::pipeline::{self, Layout, Pipeline, Stage, Stages};
+use crate::pipeline::{self, Found, Layout, Pipeline, Stage, Stages};
 use crate::query::{Motion, Query};
 use crate::scene::Scene;
 use std::sync::Arc;
@@ -47,6 +49,8 @@ pub struct Detector {
     construct_ms: f64,
     /// Whether the device holds the answer for where the bodies are now.
     answered: bool,
+    /// The largest coordinate that was seen in memory of the caller so far.
+    largest: f64,
     /// Whether the pipeline holds positions in f64: where any body has them so, so that nothing is rounded.
     f64s: bool,
     /// None where nothing can meet, or where memory ended: then the next frame asks for it again.
@@ -83,6 +87,7 @@ impl Detector {
             tolerance,
             construct_ms: 0.0,
             answered: false,
+            largest: 0.0,
             f64s: false,
             pipeline: None,
         };
@@ -109,14 +114,20 @@ impl Detector {
     fn begun(&mut self) -> Result<Option<&mut Box<dyn Pipeline>>, Error> {
         let layout = self.layout()?;
         if self.pipeline.is_none() && layout.may_meet() {
+            self.all_known()?;
             let bodies = self.scene.bodies();
             self.f64s = bodies.iter().any(Body::needs_f64);
-            let query = Query { tolerance: self.tolerance, ..self.query };
+            let query = self.asked();
             let mut pipeline = pipeline::pipeline(self.device.clone(), bodies, layout, query, self.f64s)?;
             self.construct_ms = pipeline.construct()?;
             self.pipeline = Some(pipeline);
         }
         Ok(self.pipeline.as_mut())
+    }
+
+    /// The query, with its tolerance.
+    fn asked(&self) -> Query {
+        Query { tolerance: self.tolerance, ..self.query }
     }
 
     /// Builds the tree over what moves anew: pays when bodies have moved far from where it was built.
@@ -145,13 +156,9 @@ impl Detector {
         let Some(pipeline) = &mut self.pipeline else { return Ok(Contacts::none(self.query)) };
         self.answered = false;
         let (found, stages) = pipeline.frame()?;
-        self.answered = true;
-        let degraded = Degraded::of(&found);
-        memory::require("the contacts", found.bytes())?;
-        let mut contacts = Contacts::new(found, &layout, self.query, (stages, degraded));
-        let wall = start.elapsed().as_secs_f64() * 1e3;
-        contacts.stages = Stages { construct: self.construct_ms, wall, ..stages };
-        Ok(contacts)
+        let seen = found.seen;
+        let contacts = contacts(found, stages, (&layout, self.query))?;
+        self.complete(contacts, seen, start)
     }
 
     /// Runs one stage of this frame `times` times, on the device alone, and gives each run's milliseconds: for profilers,
@@ -240,6 +247,13 @@ impl Detector {
     pub fn check_trees(&self) -> Result<(), Error> {
         self.pipeline.as_ref().map_or(Ok(()), |pipeline| pipeline.check())
     }
+}
+
+/// What was found, in the numbering of the bodies.
+fn contacts(found: Found, stages: Stages, (layout, query): (&Layout, Query)) -> Result<Contacts, Error> {
+    let degraded = Degraded::of(&found);
+    memory::require("the contacts", found.bytes())?;
+    Ok(Contacts::new(found, layout, query, (stages, degraded)))
 }
 
 /// Whether indices of 32 bits reach all triangles, vertices and edges (at most three a triangle) of all bodies together.

@@ -68,15 +68,18 @@ impl Detector {
         }
         self.answered = false;
         let widens = !self.f64s && moved.iter().any(|moved| self.scene.bodies()[moved.body].needs_f64());
+        if widens {
+            self.fetch()?;
+        }
         // What was held makes room first. Where placing fails there is nothing left to ask of the old positions.
-        match self.pipeline.take().filter(|_| !widens) {
+        let placed = match self.pipeline.take().filter(|_| !widens) {
             Some(mut pipeline) => {
-                pipeline.place(self.scene.bodies(), moved)?;
-                self.pipeline = Some(pipeline);
-                Ok(())
+                pipeline.place(self.scene.bodies(), moved).map(|()| self.pipeline = Some(pipeline))
             }
             None => self.begun().map(drop),
-        }
+        };
+        self.scene.bodies_mut().iter_mut().for_each(Body::placed);
+        placed
     }
 
     /// Moves a body to where another of the same mesh is: as [`Detector::place`], but from a body, which is kept.

@@ -9,6 +9,7 @@ use bytemuck::Pod;
 use nearmiss_kernels::abi::Span;
 use std::marker::PhantomData;
 use std::sync::Arc;
+use std::sync::atomic::AtomicU64;
 
 /// Memory of a machine.
 pub(super) enum Memory {
@@ -57,6 +58,7 @@ impl<T: Pod> Buffer<T> {
     /// When there are more items than elements: a fault of the caller.
     pub fn write(&mut self, items: &[T]) -> Result<(), Error> {
         assert!(items.len() <= self.len, "more items than the buffer has elements");
+        self.usage.count(&AtomicU64::new(0), "memory was written by the host")?;
         let bytes: &[u8] = bytemuck::cast_slice(items);
         match (&mut self.memory, &*self.machine) {
             (Memory::Host(m), Machine::Emulator(e)) => {
@@ -78,10 +80,27 @@ impl<T: Pod> Buffer<T> {
     /// # Errors
     /// [`Error::Device`] with the driver's text.
     pub fn clear(&mut self) -> Result<(), Error> {
+        self.fill(0)
+    }
+
+    /// Sets every byte, behind all that was started before.
+    ///
+    /// # Errors
+    /// [`Error::Device`] with the driver's text.
+    pub fn fill(&mut self, byte: u8) -> Result<(), Error> {
         match (&mut self.memory, &*self.machine) {
+            (Memory::Host(m), Machine::Emulator(e)) => {
+                let bytes = self.len * size_of::<T>();
+                m.as_mut_slice(bytes).fill(byte);
+                if let Some(sanitizer) = e.sanitizer() {
+                    sanitizer.host_wrote(m.addr(), bytes);
+                }
+                Ok(())
+            }
             #[cfg(feature = "cuda")]
-            (Memory::Gpu(m), Machine::Cuda(c)) => c.clear(m),
-            _ => self.write(&vec![T::zeroed(); self.len]),
+            (Memory::Gpu(m), Machine::Cuda(c)) => c.fill(m, byte),
+            #[cfg(feature = "cuda")]
+            _ => Err(Error::Bug { what: "memory of another machine".into() }),
         }
     }
 
@@ -94,6 +113,7 @@ impl<T: Pod> Buffer<T> {
     /// When the buffer has fewer elements: a fault of the caller.
     pub fn read(&self, len: usize) -> Result<Vec<T>, Error> {
         assert!(len <= self.len, "more items than the buffer has elements");
+        self.usage.count(&self.usage.waits, "memory was read by the host")?;
         match (&self.memory, &*self.machine) {
             (Memory::Host(m), _) => Ok(bytemuck::cast_slice(m.as_slice(len * size_of::<T>())).to_vec()),
             #[cfg(feature = "cuda")]

@@ -21,9 +21,10 @@ use buffer::Memory;
 use bytemuck::Pod;
 use emulator::{Emulator, Mode};
 use nearmiss_kernels::entry::Entry;
+use std::ffi::c_void;
 use std::marker::PhantomData;
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 use usage::Usage;
 
@@ -94,6 +95,24 @@ impl Device {
             text: "this program was built without the feature `cuda`".into(),
             advice: "build it with that feature, or run on the CPU",
         })
+    }
+
+    /// A GPU by a context and a stream of the caller: all work goes to that stream, behind what is there, and no other context is
+    /// made. A null context is the one that the thread is bound to; a null stream is the default one, which cannot be captured.
+    ///
+    /// # Errors
+    /// As for [`Device::gpu`].
+    ///
+    /// # Safety
+    /// Both are handles of CUDA's driver (`CUcontext`, `CUstream`; of its runtime a `cudaStream_t` and a null context), the
+    /// stream is of that context, and both outlive the device, its clones and all that was made of them.
+    #[cfg_attr(not(feature = "cuda"), allow(unused_variables, reason = "there is none"))]
+    pub unsafe fn borrow(context: *mut c_void, stream: *mut c_void) -> Result<Device, Error> {
+        #[cfg(feature = "cuda")]
+        // SAFETY: the caller's promise.
+        return Ok(Self::with(Machine::Cuda(unsafe { cuda::Cuda::borrow(context.cast(), stream.cast()) }?)));
+        #[cfg(not(feature = "cuda"))]
+        Self::gpu(0)
     }
 
     /// An emulator, for example one under the sanitizer.
@@ -176,6 +195,7 @@ impl Device {
     /// # Errors
     /// [`Error::OutOfMemory`] when the machine has no more, or may use no more: see [`Device::limited`].
     pub fn buffer<T: Pod>(&self, len: usize) -> Result<Buffer<T>, Error> {
+        self.usage.count(&self.usage.allocations, "memory was taken")?;
         let bytes = len.checked_mul(size_of::<T>()).ok_or(Error::OutOfMemory {
             what: "device memory".into(),
             asked: u64::MAX,
@@ -233,11 +253,13 @@ impl Device {
             });
         }
         self.usage.launches.fetch_add(1, Ordering::Relaxed);
+        #[cfg(feature = "cuda")]
+        let sealed = self.usage.sealed.load(Ordering::Relaxed) > 0;
         match &*self.machine {
             // SAFETY: the caller's promise.
             Machine::Emulator(e) => unsafe { e.launch::<E>(blocks, args) }.map_err(Error::from),
             #[cfg(feature = "cuda")]
-            Machine::Cuda(c) => c.launch::<E>(blocks, args),
+            Machine::Cuda(c) => c.launch::<E>(blocks, args, sealed),
         }
     }
 
@@ -246,6 +268,7 @@ impl Device {
     /// # Errors
     /// [`Error::Device`] with the driver's text.
     pub fn event(&self) -> Result<Event, Error> {
+        self.usage.count(&AtomicU64::new(0), "a mark was made")?;
         match &*self.machine {
             Machine::Emulator(_) => Ok(Event::Host(Instant::now())),
             #[cfg(feature = "cuda")]
@@ -258,9 +281,45 @@ impl Device {
         self.usage.launches.load(Ordering::Relaxed)
     }
 
+    /// How often memory was taken so far.
+    pub fn allocations(&self) -> u64 {
+        self.usage.allocations.load(Ordering::Relaxed)
+    }
+
+    /// How often the host waited for the device so far.
+    pub fn waits(&self) -> u64 {
+        self.usage.waits.load(Ordering::Relaxed)
+    }
+
+    /// As long as the answer lives, taking memory, reading, writing and marks in time are refused: what is done only launches and
+    /// clears, so that a stream which is being captured takes it.
+    pub(crate) fn launches_only(&self) -> LaunchesOnly {
+        self.usage.sealed.fetch_add(1, Ordering::Relaxed);
+        LaunchesOnly { usage: self.usage.clone() }
+    }
+
+    /// Somebody else may have changed the device's memory: a graph that was launched again.
+    pub(crate) fn changed(&self) {
+        #[cfg(feature = "cuda")]
+        if let Machine::Cuda(c) = &*self.machine {
+            c.changes();
+        }
+    }
+
     /// Bytes of device memory held now, and the most held at once.
     pub fn bytes(&self) -> (u64, u64) {
         (self.usage.bytes.load(Ordering::Relaxed), self.usage.peak.load(Ordering::Relaxed))
+    }
+}
+
+/// See [`Device::launches_only`].
+pub(crate) struct LaunchesOnly {
+    usage: Arc<Usage>,
+}
+
+impl Drop for LaunchesOnly {
+    fn drop(&mut self) {
+        self.usage.sealed.fetch_sub(1, Ordering::Relaxed);
     }
 }
 

@@ -1,5 +1,6 @@
 //! What a device counts, whichever thread asks it.
 
+use crate::error::Error;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// What a device has been asked for. Each number stands for itself, so none orders the others.
@@ -10,6 +11,12 @@ pub struct Usage {
     pub bytes: AtomicU64,
     /// The most held at once.
     pub peak: AtomicU64,
+    /// Buffers taken so far.
+    pub allocations: AtomicU64,
+    /// How often the host asked for what the device had done, and so waited for it.
+    pub waits: AtomicU64,
+    /// How many hold the device to launches alone: see [`Device::launches_only`](super::Device::launches_only).
+    pub sealed: AtomicU64,
     /// Views of memory that the host holds now.
     pub views: AtomicU64,
     /// Most bytes that may be held; as many as there can be for what the machine has.
@@ -19,8 +26,20 @@ pub struct Usage {
 impl Usage {
     /// Nothing yet.
     pub fn new() -> Usage {
-        let [launches, bytes, peak, views] = [const { AtomicU64::new(0) }; 4];
-        Usage { launches, bytes, peak, views, most: AtomicU64::new(u64::MAX) }
+        let [launches, bytes, peak, allocations, waits, sealed, views] = [const { AtomicU64::new(0) }; 7];
+        Usage { launches, bytes, peak, allocations, waits, sealed, views, most: AtomicU64::new(u64::MAX) }
+    }
+
+    /// Counts one more, of what is no launch.
+    ///
+    /// # Errors
+    /// [`Error::Bug`], saying `what`, where only launches are allowed.
+    pub fn count(&self, counter: &AtomicU64, what: &str) -> Result<(), Error> {
+        if self.sealed.load(Ordering::Relaxed) > 0 {
+            return Err(Error::Bug { what: format!("{what} in a frame that only launches") });
+        }
+        counter.fetch_add(1, Ordering::Relaxed);
+        Ok(())
     }
 
     /// So many bytes more are held; or, where they are too many, how many may be.

@@ -27,6 +27,7 @@ pub use ply_problem::PlyProblem;
 pub use positions::Positions;
 pub use problem::Problem;
 pub use read::Format;
+pub(crate) use sequence::Away;
 pub use sequence::Body;
 pub use topology::{NO_EDGE, Topology};
 pub use topology_check::{Violation, check};

@@ -1,9 +1,9 @@
 //! Where a body is put from frame to frame.
 
 use super::validate::{MAX_ABS_F32, MAX_ABS_F64};
-use super::{Body, Positions, Problem, validate};
+use super::{Away, Body, Positions, Problem, validate};
 use crate::Error;
-use crate::scene::{BodyKind, Input, Pose};
+use crate::scene::{BodyKind, DeviceInput, Input, Pose};
 
 /// The lower and the upper corner of a box.
 pub type Bounds = [[f64; 3]; 2];
@@ -18,10 +18,21 @@ impl Body {
             (BodyKind::Rigid, Input::Poses([t0, t1])) => {
                 self.check_pose(t0).and_then(|()| self.check_pose(t1))
             }
+            (BodyKind::Deformable, Input::OnDevice(DeviceInput::At(t0))) => self.check_rows(&[t0.len()]),
+            (BodyKind::Deformable, Input::OnDevice(DeviceInput::Step(ends))) => {
+                self.check_rows(&ends.map(|rows| rows.len()))
+            }
+            // Of a pose one row of each is read, which its maker has promised.
+            (BodyKind::Rigid, Input::OnDevice(DeviceInput::Pose(_) | DeviceInput::Poses(_))) => Ok(()),
             (kind, input) => {
                 let (given, advice) = match (kind, input) {
                     (BodyKind::Static, _) => ("a frame", "make it rigid or deformable, or replace it"),
-                    (_, Input::At(_) | Input::Step(_)) => ("positions", "give a rigid body poses"),
+                    (
+                        _,
+                        Input::At(_)
+                        | Input::Step(_)
+                        | Input::OnDevice(DeviceInput::At(_) | DeviceInput::Step(_)),
+                    ) => ("positions", "give a rigid body poses"),
                     _ => ("a pose", "give a deformable body positions"),
                 };
                 let what = format!("{given} for {}, which is {}", self.name, kind.name());
@@ -31,19 +42,32 @@ impl Body {
     }
 
     fn check_vertices(&self, ends: &[&Positions]) -> Result<(), Error> {
-        let wrong = |problem| Error::Input { file: self.name.clone(), problem };
         for positions in ends {
-            let (ours, theirs) = (self.vertex_count(), positions.len());
-            if ours != theirs {
-                let first = self.name.clone();
-                return Err(wrong(Problem::FrameVertices { first, t0: ours, t1: theirs }));
-            }
-            validate::is_single(positions, &self.faces).map_err(wrong)?;
+            self.check_rows(&[positions.len()])?;
+            self.is_single(positions)?;
         }
         Ok(())
     }
 
-    fn check_pose(&self, pose: &Pose) -> Result<(), Error> {
+    /// Whether these are as many as there are vertices.
+    fn check_rows(&self, ends: &[usize]) -> Result<(), Error> {
+        let ours = self.vertex_count();
+        match ends.iter().find(|&&theirs| theirs != ours) {
+            None => Ok(()),
+            Some(&t1) => {
+                let problem = Problem::FrameVertices { first: self.name.clone(), t0: ours, t1 };
+                Err(Error::Input { file: self.name.clone(), problem })
+            }
+        }
+    }
+
+    /// Whether positions can be computed with in single precision, or at all.
+    pub(crate) fn is_single(&self, positions: &Positions) -> Result<bool, Error> {
+        let wrong = |problem| Error::Input { file: self.name.clone(), problem };
+        validate::is_single(positions, &self.faces).map_err(wrong)
+    }
+
+    pub(crate) fn check_pose(&self, pose: &Pose) -> Result<(), Error> {
         pose.check(&self.name)?;
         let size = size(&self.around(pose));
         if size > MAX_ABS_F64 {
@@ -57,7 +81,9 @@ impl Body {
 
     /// Puts the body where a frame says, which [`Body::check`] has let pass. Cost: a copy of the positions.
     pub(crate) fn put(&mut self, input: &Input) {
+        self.away = None;
         match input {
+            Input::OnDevice(input) => (self.away, self.positions_t1) = (Some(Away::Lent(*input)), None),
             Input::At(t0) => self.put_vertices(t0, None),
             Input::Step([t0, t1]) => self.put_vertices(t0, Some(t1)),
             Input::Pose(pose) => self.poses = [*pose; 2],
@@ -73,8 +99,39 @@ impl Body {
         (self.positions_t0, self.positions_t1) = (take(t0), t1.map(take));
     }
 
+    /// What places the body from the caller's memory, if that is where it is.
+    pub(crate) fn lent(&self) -> Option<&DeviceInput> {
+        if let Some(Away::Lent(input)) = &self.away { Some(input) } else { None }
+    }
+
+    /// The caller's memory was read.
+    pub(crate) fn placed(&mut self) {
+        if let Some(Away::Lent(input)) = self.away {
+            self.away = Some(Away::Placed { moving: input.is_moving() });
+        }
+    }
+
+    /// Brings the body back from the device: where it was found there, at both ends or at the only one. One that rests is at
+    /// the later end, whether or not that has been told to the device.
+    pub(crate) fn bring(&mut self, ends: &[Positions], poses: &[Pose]) {
+        let moving = self.is_moving();
+        self.away = None;
+        match (self.kind, ends, poses) {
+            (BodyKind::Rigid, _, [start, end]) if moving => self.poses = [*start, *end],
+            (BodyKind::Rigid, _, [.., end]) => self.poses = [*end; 2],
+            (_, [t0, t1], _) if moving => self.put_vertices(t0, Some(t1)),
+            (_, [.., end], _) => self.put_vertices(end, None),
+            (_, [], _) => {}
+        }
+    }
+
     /// A body that moved in the last step rests where that ended; whether it had moved.
     pub(crate) fn rest(&mut self) -> bool {
+        if self.is_away() {
+            let moved = self.is_moving();
+            self.away = Some(Away::Placed { moving: false });
+            return moved;
+        }
         match self.kind {
             BodyKind::Static => false,
             BodyKind::Rigid => {
@@ -95,12 +152,13 @@ impl Body {
     /// Whether its coordinates need f64.
     pub(crate) fn needs_f64(&self) -> bool {
         self.positions_t0.is_f64()
+            || self.lent().is_some_and(DeviceInput::has_f64)
             || self.posed_box().is_some_and(|bounds| size(&bounds) > f64::from(MAX_ABS_F32))
     }
 
-    /// A box that holds a rigid body at both ends of the step; none of others.
+    /// A box that holds a rigid body at both ends of the step, where the host knows it; none of others.
     pub(crate) fn posed_box(&self) -> Option<Bounds> {
-        let rigid = self.kind == BodyKind::Rigid && !self.faces.is_empty();
+        let rigid = self.kind == BodyKind::Rigid && !self.faces.is_empty() && !self.is_away();
         rigid.then(|| union(self.around(&self.poses[0]), self.around(&self.poses[1])))
     }
 

@@ -5,7 +5,7 @@ use super::polygons::Polygons;
 use super::weld::{self, Vertices};
 use super::{Mesh, Positions, Problem};
 use crate::Error;
-use crate::scene::{BodyKind, Meets, Pose};
+use crate::scene::{BodyKind, DeviceInput, Meets, Pose};
 
 /// Faces with the positions of one frame (still), or of the two ends of a step (moving). Vertices move in straight
 /// lines from `positions_t0` to `positions_t1`, both of the same length and precision.
@@ -22,6 +22,20 @@ pub struct Body {
     pub(super) poses: [Pose; 2],
     /// Of a rigid body: no vertex of a face is farther from where it turns.
     pub(super) radius: f64,
+    /// Where it is, if the host does not know: then positions and poses are old.
+    pub(super) away: Option<Away>,
+}
+
+/// Where a body is that the host has lost sight of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Away {
+    /// Where the caller's memory says; while it is being placed.
+    Lent(DeviceInput),
+    /// In the memory of the detector that has placed it, at two ends or at one.
+    Placed {
+        /// Whether those are two.
+        moving: bool,
+    },
 }
 
 impl Body {
@@ -38,6 +52,7 @@ impl Body {
             meets: Meets::default(),
             poses: [Pose::default(); 2],
             radius: 0.0,
+            away: None,
         }
     }
 
@@ -80,7 +95,7 @@ impl Body {
         &self.meets
     }
 
-    /// The poses of a rigid body at both ends of the step.
+    /// The poses of a rigid body at both ends of the step; old ones where it [is away](Body::is_away).
     pub fn poses(&self) -> [Pose; 2] {
         self.poses
     }
@@ -115,7 +130,13 @@ impl Body {
         &self.faces
     }
 
-    /// Positions at the start of the step, or of the only frame.
+    /// Whether only the device knows where the body is: it was put there by [`Input::OnDevice`](crate::scene::Input::OnDevice), and
+    /// positions and poses here are those from before. [`Detector::fetch`](crate::Detector::fetch) brings them.
+    pub fn is_away(&self) -> bool {
+        self.away.is_some()
+    }
+
+    /// Positions at the start of the step, or of the only frame; old ones where the body [is away](Body::is_away).
     pub fn positions_t0(&self) -> &Positions {
         &self.positions_t0
     }
@@ -166,7 +187,7 @@ impl Body {
 
     /// Whether there are two frames.
     pub fn is_moving(&self) -> bool {
-        self.positions_t1.is_some()
+        self.positions_t1.is_some() || matches!(self.away, Some(Away::Placed { moving: true }))
     }
 
     /// The frames as meshes, to be written or handed on: one, or two. Copies.

@@ -29,17 +29,15 @@ impl BelowPrecision {
     /// Of bodies where they are; none where no pair can be that large. Cost: a pass over the positions; where an earliest
     /// query's tolerance is near the precision one over the faces.
     pub fn of(bodies: &[Body], query: &Query) -> Option<BelowPrecision> {
-        let finest = match query.solver() {
-            Solver::CertifiedF32 => f64::from(f32::INCLUSION_FINEST),
-            // What f32 cannot tell is asked again in f64.
-            Solver::Certified | Solver::CertifiedF64 => f64::INCLUSION_FINEST,
-            _ => return None,
-        };
+        let finest = finest(query)?;
         // Positive, or not asked for.
         let tolerance = query.tolerance.filter(|t| *t > 0.0)?;
         let extent = extent(bodies);
         if query.motion != Motion::Earliest {
-            return (tolerance < finest * extent).then_some(BelowPrecision::Listed { tolerance, finest });
+            // How large it is where only the device knows, the kernels tell.
+            let away = bodies.iter().any(Body::is_away);
+            return (away || tolerance < finest * extent)
+                .then_some(BelowPrecision::Listed { tolerance, finest });
         }
         // The two ends of an edge differ from any one point by half of its length, one or the other.
         let is_long = |side: f64| tolerance < finest * side / 2.0;
@@ -49,6 +47,22 @@ impl BelowPrecision {
             body.faces().par_iter().any(|&face| sides(face).into_iter().any(is_long))
         };
         (is_long(extent) && bodies.iter().any(long)).then_some(BelowPrecision::Unlisted)
+    }
+
+    /// Whether pairs that are not listed may be so large, where no coordinate is larger than that.
+    pub fn may_be(query: &Query, largest: f64) -> bool {
+        let (finest, tolerance) = (finest(query), query.tolerance.unwrap_or(0.0));
+        query.motion == Motion::Earliest && finest.is_some_and(|finest| tolerance < finest * largest)
+    }
+}
+
+/// The least part of a pair's extent that the solver can tell, of those that prove.
+fn finest(query: &Query) -> Option<f64> {
+    match query.solver() {
+        Solver::CertifiedF32 => Some(f32::INCLUSION_FINEST.into()),
+        // What f32 cannot tell is asked again in f64.
+        Solver::Certified | Solver::CertifiedF64 => Some(f64::INCLUSION_FINEST),
+        _ => None,
     }
 }
 

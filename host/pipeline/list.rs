@@ -78,8 +78,12 @@ impl<T: Pod> List<T> {
 pub trait GrowableOutput {
     /// Which counter counts the entries.
     fn counter(&self) -> u32;
-    /// Whether the kernels asked for more entries than there is room for.
-    fn has_overflowed(&self, counters: &[u64]) -> bool;
+    /// How many entries there is room for.
+    fn room(&self) -> u64;
+    /// Whether the kernels asked for more.
+    fn has_overflowed(&self, counters: &[u64]) -> bool {
+        counters[self.counter() as usize] > self.room()
+    }
     /// Makes room for what the kernels asked for, and an eighth more for the next frame; whether it had to.
     ///
     /// # Errors
@@ -94,8 +98,8 @@ impl GrowableOutput for Counter {
     fn counter(&self) -> u32 {
         self.0
     }
-    fn has_overflowed(&self, _: &[u64]) -> bool {
-        false
+    fn room(&self) -> u64 {
+        u64::MAX
     }
     fn grow(&mut self, _: &Device, _: &[u64]) -> Result<bool, Error> {
         Ok(false)
@@ -106,8 +110,8 @@ impl<T: Pod> GrowableOutput for List<T> {
     fn counter(&self) -> u32 {
         self.counter
     }
-    fn has_overflowed(&self, counters: &[u64]) -> bool {
-        self.demand(counters) > self.capacity() as u64
+    fn room(&self) -> u64 {
+        self.capacity() as u64
     }
     fn grow(&mut self, device: &Device, counters: &[u64]) -> Result<bool, Error> {
         let demand = self.demand(counters);

@@ -21,10 +21,10 @@ pub mod volumes;
 mod walk;
 
 pub use layout::{Layout, Offsets};
-pub use placing::Moved;
+pub use placing::{Moved, Seen, Whereabouts};
 pub use timing::{Stage, Stages};
 pub use tolerance::{mean_side, of_edges};
-pub use typed::{Found, Hits, Pipeline};
+pub use typed::{Found, Hits, Pipeline, Submits};
 
 use crate::device::Device;
 use crate::error::Error;

@@ -10,8 +10,9 @@ pub use near::Near;
 
 use super::layout::Layout;
 use super::list::{GrowableOutput, List};
-use super::order::Order;
+use super::order::{Order, Ordered};
 use super::precision::Precision;
+use crate::contacts::Entries;
 use crate::device::Device;
 use crate::error::Error;
 use crate::mesh::Body;
@@ -89,6 +90,40 @@ pub enum Narrow {
     Near(Box<Near>),
 }
 
+/// Where a frame's answer lies in the device's memory.
+pub struct AnswerLists {
+    /// What the entries are.
+    pub entries: Entries,
+    /// One list in order, or one of each kind: where it begins, and its room.
+    pub lists: Vec<(u64, usize)>,
+    /// Whether it is the one in order.
+    pub is_ordered: bool,
+    /// Which counters count each kind.
+    pub counters: Vec<u32>,
+    /// Where the earliest time is, of such a query.
+    pub earliest: Option<u64>,
+    /// End points of every edge.
+    pub edges: Span<[u32; 2]>,
+}
+
+impl AnswerLists {
+    fn of<T: Ordered>(entries: Entries, lists: &[&List<T>], order: Option<&Order<T>>) -> AnswerLists {
+        let place = |list: &List<T>| (list.span().addr(), list.capacity());
+        let order = order.filter(|order| order.fits());
+        AnswerLists {
+            entries,
+            is_ordered: order.is_some(),
+            lists: order.map_or_else(
+                || lists.iter().map(|list| place(list)).collect(),
+                |order| vec![place(&order.list)],
+            ),
+            counters: lists.iter().map(|list| list.counter()).collect(),
+            earliest: None,
+            edges: Span::EMPTY,
+        }
+    }
+}
+
 impl Narrow {
     /// Takes the memory that the query of positions of that precision needs: `capacity` entries for candidates, `few` for what is
     /// left of them.
@@ -149,6 +184,25 @@ impl Narrow {
             Narrow::Discrete { ordered, .. } => ordered.is_some(),
             Narrow::Continuous(c) => c.ordered.is_some(),
             Narrow::Near(near) => near.ordered.is_some(),
+        }
+    }
+
+    /// Where a frame's answer lies.
+    pub fn answer(&self) -> AnswerLists {
+        match self {
+            Narrow::Discrete { contacts, ordered, .. } => {
+                AnswerLists::of(Entries::TrianglePairs, &[contacts], ordered.as_deref())
+            }
+            Narrow::Continuous(c) => {
+                let lists = AnswerLists::of(Entries::Contacts, &[&c.vf_hits, &c.ee_hits], c.ordered.as_ref());
+                let earliest = c.earliest.as_ref().map(|earliest| earliest.span().addr());
+                AnswerLists { earliest, edges: c.edges(), ..lists }
+            }
+            Narrow::Near(near) => {
+                let lists = [&near.vf_hits, &near.ee_hits];
+                let lists = AnswerLists::of(Entries::NearPairs, &lists, near.ordered.as_ref());
+                AnswerLists { edges: near.edges(), ..lists }
+            }
         }
     }
 

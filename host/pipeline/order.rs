@@ -67,7 +67,7 @@ impl<T: Ordered> Order<T> {
 
     /// Whether names and places share a word, a place having 32 bits at most. Else the lists stay as they are, and the host
     /// orders them.
-    fn fits(&self) -> bool {
+    pub fn fits(&self) -> bool {
         KIND_BITS + 2 * self.bits + self.number_bits() <= 64
     }
 

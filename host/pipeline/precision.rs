@@ -10,7 +10,7 @@ use nearmiss_kernels::entry::{self, Entry};
 use nearmiss_kernels::math::{Real, Vec3};
 
 /// A precision of positions, with its kernels.
-pub trait Precision: Real {
+pub trait Precision: Real + Send {
     /// Vertices of bodies that were moved.
     type Place: Entry<Args = PlaceArgs<Self>>;
     /// Box of the triangle centres.
@@ -76,6 +76,9 @@ pub trait Precision: Real {
 
     /// Positions in this precision, exactly: f32 is only asked for where all bodies are f32.
     fn points(positions: &Positions) -> impl Iterator<Item = Vec3<Self>>;
+
+    /// Points of this precision as positions.
+    fn positions(points: Vec<Vec3<Self>>) -> Positions;
 }
 
 impl Precision for f32 {
@@ -118,6 +121,10 @@ impl Precision for f32 {
         };
         singles.iter().map(|&p| Vec3(p)).chain(doubles.iter().map(|p| Vec3(p.map(|x| x as f32))))
     }
+
+    fn positions(points: Vec<Vec3<f32>>) -> Positions {
+        Positions::F32(points.into_iter().map(|p| p.0).collect())
+    }
 }
 
 impl Precision for f64 {
@@ -159,5 +166,9 @@ impl Precision for f64 {
             Positions::F64(points) => (&[], points),
         };
         singles.iter().map(|p| Vec3(p.map(f64::from))).chain(doubles.iter().map(|&p| Vec3(p)))
+    }
+
+    fn positions(points: Vec<Vec3<f64>>) -> Positions {
+        Positions::F64(points.into_iter().map(|p| p.0).collect())
     }
 }

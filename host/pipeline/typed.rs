@@ -6,14 +6,18 @@ mod in_order;
 #[cfg(test)]
 mod near;
 mod repeat;
+mod submit;
+#[cfg(test)]
+mod submitted;
 
 pub use found::{Found, Hits};
+pub use submit::Submits;
 
 use super::forest::Forest;
 use super::layout::Layout;
 use super::list::{GrowableOutput, List};
 use super::narrow::{Narrow, NarrowContext, Step};
-use super::placing::{Moved, Placing};
+use super::placing::{Moved, Placing, Whereabouts};
 use super::precision::Precision;
 use super::timing::{Stage, Stages};
 use super::volumes::{Kernels, growth};
@@ -55,15 +59,22 @@ pub struct TypedPipeline<R: Precision, V: Kernels> {
     last: Vec<u64>,
     /// Whether the lists were long enough for a whole frame: then the next one runs without waiting between steps.
     settled: bool,
+    /// What a frame needs that is submitted and not waited for.
+    submission: Option<submit::Submission>,
 }
 
 /// A pipeline of any precision and any volume.
-pub trait Pipeline: repeat::Again + Send {
+pub trait Pipeline: repeat::Again + submit::Submits + Send {
     /// Moves bodies to where they are now, those that are named, in ascending order.
     ///
     /// # Errors
     /// Those of the device.
     fn place(&mut self, bodies: &[Body], moved: &[Moved]) -> Result<(), Error>;
+    /// Where all bodies are, as the device knows it.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn whereabouts(&self) -> Result<Whereabouts, Error>;
     /// Builds the tree over what moves anew, from the positions at t = 0; the milliseconds it took.
     ///
     /// # Errors
@@ -121,6 +132,7 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
             placing: None,
             last: Vec::new(),
             settled: false,
+            submission: None,
             layout,
             device,
         };
@@ -221,6 +233,7 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
 
 impl<R: Precision, V: Kernels> Pipeline for TypedPipeline<R, V> {
     fn place(&mut self, bodies: &[Body], moved: &[Moved]) -> Result<(), Error> {
+        self.submission = None;
         self.narrow.place(bodies, &self.query);
         let start = self.device.event()?;
         self.vertices.put(&self.device, &self.layout, bodies, moved)?;
@@ -228,7 +241,12 @@ impl<R: Precision, V: Kernels> Pipeline for TypedPipeline<R, V> {
         Ok(())
     }
 
+    fn whereabouts(&self) -> Result<Whereabouts, Error> {
+        self.vertices.whereabouts()
+    }
+
     fn construct(&mut self) -> Result<f64, Error> {
+        self.submission = None;
         self.walk.invalidate();
         let start = self.device.event()?;
         let given = (self.frames(), self.faces.span());
@@ -239,6 +257,7 @@ impl<R: Precision, V: Kernels> Pipeline for TypedPipeline<R, V> {
     }
 
     fn frame(&mut self) -> Result<(Found<'_>, Stages), Error> {
+        self.submission = None;
         let reruns = self.reruns;
         let start = self.device.event()?;
         self.run(Stage::Fit)?;

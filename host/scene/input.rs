@@ -1,6 +1,6 @@
 //! What a frame tells of a body.
 
-use super::Pose;
+use super::{DeviceInput, Pose};
 use crate::mesh::Positions;
 
 /// Where a body is at a frame, or at the two ends of a step. Borrowed: nothing of a body's topology is copied or looked at.
@@ -15,4 +15,6 @@ pub enum Input<'a> {
     /// A rigid body moves from the first pose to the second, **each vertex in a straight line**: between the poses it is not
     /// rigid. Give steps in which it turns little.
     Poses([Pose; 2]),
+    /// What lies in the device's memory already.
+    OnDevice(DeviceInput),
 }

@@ -3,9 +3,11 @@
 //! A [`Scene`] is made on the host, once; a [`Detector`](crate::Detector) takes it to a device and asks it frame after frame.
 
 mod input;
+mod lent;
 mod pose;
 
 pub use input::Input;
+pub use lent::{DeviceInput, DevicePose, DeviceRows, Number};
 pub use pose::Pose;
 
 use crate::mesh::Body;

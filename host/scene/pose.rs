@@ -3,6 +3,7 @@
 use crate::error::Error;
 use nalgebra::Isometry3;
 use nearmiss_kernels::abi::PoseRecord;
+use nearmiss_kernels::math::tolerance::POSE_UNIT;
 
 /// A rigid motion of the points of a body: turned first, then moved.
 ///
@@ -35,10 +36,6 @@ impl From<Isometry3<f64>> for Pose {
     }
 }
 
-/// How far a rotation's length may be from 1: a thousand roundings of f32, in which simulators keep theirs. What is
-/// nearer is divided by its length.
-const UNIT: f64 = 1000.0 * f32::EPSILON as f64;
-
 impl Pose {
     /// Only moved.
     pub fn at(translation: [f64; 3]) -> Pose {
@@ -50,8 +47,8 @@ impl Pose {
     /// # Errors
     /// [`Error::Choice`], naming `body`, for a rotation that is no unit quaternion and for what is not finite.
     pub(crate) fn check(&self, body: &str) -> Result<(), Error> {
-        // NaN is in no range.
-        let unit = ((1.0 - UNIT)..=(1.0 + UNIT)).contains(&self.length());
+        // NaN is not.
+        let unit = (self.length() - 1.0).abs() <= POSE_UNIT;
         if unit && self.translation.iter().all(|t| t.is_finite()) {
             return Ok(());
         }
@@ -62,7 +59,8 @@ impl Pose {
     }
 
     fn length(&self) -> f64 {
-        self.rotation.iter().map(|q| q * q).sum::<f64>().sqrt()
+        let [x, y, z, w] = self.rotation;
+        (x * x + y * y + z * z + w * w).sqrt()
     }
 
     /// As a kernel reads it.

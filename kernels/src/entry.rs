@@ -12,7 +12,7 @@ use crate::stage::narrow::features::{Moves, Rests};
 use crate::stage::narrow::{below_precision, climb, cull, discrete, features, near, separate, slice, solve};
 use crate::stage::refit::{bottom_up, levels, treelets};
 use crate::stage::traverse::{front, queue, steal};
-use crate::stage::{balance, fit, order, place, traverse};
+use crate::stage::{balance, fit, order, place, status, traverse};
 
 /// A kernel as the host knows it.
 pub trait Entry: 'static {
@@ -100,8 +100,8 @@ const RUNG: u32 = 128;
 const BALANCE: u32 = 512;
 
 kernels! {
-    place_f32: place::place::<f32, B>, [PlaceArgs<f32>], WIDE, 0;
-    place_f64: place::place::<f64, B>, [PlaceArgs<f64>], WIDE, 0;
+    place_f32: place::place::<f32, B>, [PlaceArgs<f32>], WIDE, place::SHARED;
+    place_f64: place::place::<f64, B>, [PlaceArgs<f64>], WIDE, place::SHARED;
     construct_bounds_f32: morton::bounds::<f32, B>, [MortonArgs<f32>], WIDE, morton::shared_bytes(WIDE);
     construct_bounds_f64: morton::bounds::<f64, B>, [MortonArgs<f64>], WIDE, morton::shared_bytes(WIDE);
     construct_morton_f32: morton::morton::<f32, B>, [MortonArgs<f32>], WIDE, 0;
@@ -196,4 +196,5 @@ kernels! {
     order_gather_pair: order::gather::<Pair, B>, [OrderArgs<Pair>], WIDE, 0;
     order_gather_hit: order::gather::<Hit, B>, [OrderArgs<Hit>], WIDE, 0;
     order_gather_near: order::gather::<NearHit, B>, [OrderArgs<NearHit>], WIDE, 0;
+    frame_status: status::status, [StatusArgs], NARROW, 0;
 }

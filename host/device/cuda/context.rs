@@ -65,14 +65,49 @@ impl Gpu {
         // SAFETY: the driver writes one handle, which is released once: when this is dropped.
         answer(unsafe { (self.driver.cuDevicePrimaryCtxRetain)(&mut handle, self.device) })
             .map_err(refused("making a context"))?;
-        Ok(Arc::new(Context { gpu: self, handle }))
+        Ok(Arc::new(Context { gpu: self, handle, is_borrowed: false }))
+    }
+
+    /// The GPU of a context of the caller, or of the one that this thread is bound to, and that context.
+    ///
+    /// # Safety
+    /// The context is one of the driver's, or null, and outlives what is returned.
+    pub unsafe fn of(context: CUcontext) -> Result<(Gpu, Arc<Context>), Error> {
+        let driver = driver()?;
+        // SAFETY: it may be called at any time.
+        answer(unsafe { (driver.cuInit)(0) }).map_err(refused("starting the CUDA driver"))?;
+        let mut handle = context;
+        if handle.is_null() {
+            // SAFETY: the driver is started, and writes one handle.
+            answer(unsafe { (driver.cuCtxGetCurrent)(&mut handle) })
+                .map_err(refused("asking for a context"))?;
+        }
+        if handle.is_null() {
+            return Err(Error::Device {
+                what: "borrowing a context".into(),
+                text: "none was given, and this thread is bound to none".into(),
+                advice: "give one, or bind the thread",
+            });
+        }
+        let unknown = Gpu { driver, device: 0 };
+        let mut context = Context { gpu: unknown, handle, is_borrowed: true };
+        let bound = context.bind().map_err(refused("binding a thread to a borrowed context"))?;
+        let mut device = 0;
+        // SAFETY: the thread is bound to the context, and the driver writes one number.
+        answer(unsafe { (bound.cuCtxGetDevice)(&mut device) })
+            .map_err(refused("asking whose a context is"))?;
+        drop(bound);
+        context.gpu.device = device;
+        Ok((context.gpu, Arc::new(context)))
     }
 }
 
-/// A GPU's primary context. Whatever lives in it holds it.
+/// A GPU's context: its primary one, or the caller's. Whatever lives in it holds it.
 pub struct Context {
     gpu: Gpu,
     handle: CUcontext,
+    /// Whether it is the caller's, who will destroy it.
+    is_borrowed: bool,
 }
 
 // SAFETY: the handle is the driver's, whose functions any thread may call, several at once too.
@@ -97,6 +132,9 @@ impl Context {
 
 impl Drop for Context {
     fn drop(&mut self) {
+        if self.is_borrowed {
+            return;
+        }
         // SAFETY: retained once, and nothing is left that lives in it. A refusal finds nobody to be told.
         let _ = unsafe { (self.gpu.driver.cuDevicePrimaryCtxRelease_v2)(self.gpu.device) };
     }

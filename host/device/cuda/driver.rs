@@ -103,6 +103,7 @@ functions! {
         cuDevicePrimaryCtxRelease_v2(CUdevice);
         cuCtxGetCurrent(*mut CUcontext);
         cuCtxSetCurrent(CUcontext);
+        cuCtxGetDevice(*mut CUdevice);
         cuStreamCreate(*mut CUstream, c_uint);
         cuStreamSynchronize(CUstream);
         cuStreamDestroy_v2(CUstream);

@@ -27,10 +27,10 @@ impl Memory {
         self.addr
     }
 
-    /// Sets every byte to zero, behind all work before.
-    pub fn clear(&mut self, gpu: &Bound, stream: &Stream) -> Result<(), Refusal> {
+    /// Sets every byte, behind all work before.
+    pub fn fill(&mut self, gpu: &Bound, stream: &Stream, byte: u8) -> Result<(), Refusal> {
         // SAFETY: so many bytes are there, and freeing them waits for this.
-        answer(unsafe { (gpu.cuMemsetD8Async)(self.addr, 0, self.bytes, stream.handle()) })
+        answer(unsafe { (gpu.cuMemsetD8Async)(self.addr, byte, self.bytes, stream.handle()) })
     }
 
     /// Copies bytes to `start`, behind all work before.

@@ -23,6 +23,7 @@ use std::collections::hash_map::Entry;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use stream::Stream;
+use types::{CUcontext, CUstream};
 
 /// The kernels, as build.rs found or made them.
 const PTX: &str = include_str!(concat!(env!("OUT_DIR"), "/nearmiss.ptx"));
@@ -68,6 +69,24 @@ impl Cuda {
     /// The GPU with that number.
     pub fn new(ordinal: u32) -> Result<Self, Error> {
         let gpu = Gpu::new(ordinal)?;
+        let context = gpu.context()?;
+        let stream = Stream::new(&context).map_err(refused("making a stream"))?;
+        Self::with(gpu, context, stream)
+    }
+
+    /// A GPU by a context and a stream of the caller.
+    ///
+    /// # Safety
+    /// See [`super::Device::borrow`].
+    pub unsafe fn borrow(context: CUcontext, stream: CUstream) -> Result<Self, Error> {
+        // SAFETY: the caller's promise.
+        let (gpu, context) = unsafe { Gpu::of(context) }?;
+        // SAFETY: as above.
+        let stream = unsafe { Stream::borrow(&context, stream) };
+        Self::with(gpu, context, stream)
+    }
+
+    fn with(gpu: Gpu, context: Arc<Context>, stream: Stream) -> Result<Self, Error> {
         let name = gpu.name()?;
         let capability = (
             gpu.read(types::CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR)?,
@@ -85,8 +104,6 @@ impl Cuda {
         }
         let processors = gpu.read(types::CU_DEVICE_ATTRIBUTE_MULTIPROCESSOR_COUNT)? as u32;
         let lanes = gpu.read(types::CU_DEVICE_ATTRIBUTE_MAX_THREADS_PER_MULTIPROCESSOR)? as u32;
-        let context = gpu.context()?;
-        let stream = Stream::new(&context).map_err(refused("making a stream"))?;
         let parts = Parts::new(PTX);
         let bound = context.bind().map_err(refused(BINDING))?;
         let common = Module::new(&context, &bound, parts.common()).map_err(refused("loading the kernels"))?;
@@ -134,22 +151,22 @@ impl Cuda {
                 other => refused("taking memory of the GPU")(other),
             })?;
         // What reads it comes behind this in the stream.
-        self.cleared(&gpu, &mut memory)?;
+        self.filled(&gpu, &mut memory, 0)?;
         Ok(memory)
     }
 
-    /// Sets every byte to zero.
-    pub fn clear(&self, memory: &mut Memory) -> Result<(), Error> {
-        self.cleared(&self.bind()?, memory)
+    /// Sets every byte.
+    pub fn fill(&self, memory: &mut Memory, byte: u8) -> Result<(), Error> {
+        self.filled(&self.bind()?, memory, byte)
     }
 
-    fn cleared(&self, gpu: &Bound, memory: &mut Memory) -> Result<(), Error> {
+    fn filled(&self, gpu: &Bound, memory: &mut Memory, byte: u8) -> Result<(), Error> {
         self.changes();
-        memory.clear(gpu, &self.stream).map_err(refused("clearing memory of the GPU"))
+        memory.fill(gpu, &self.stream, byte).map_err(refused("setting memory of the GPU"))
     }
 
     /// What was read ahead holds no longer.
-    fn changes(&self) {
+    pub fn changes(&self) {
         self.epoch.fetch_add(1, Ordering::Relaxed);
     }
 
@@ -188,9 +205,12 @@ impl Cuda {
         locked(&self.staging).known(self.epoch.load(Ordering::Relaxed), memory.addr(), bytes)
     }
 
-    /// Starts a kernel.
-    pub fn launch<E: Kernel>(&self, blocks: u32, args: &E::Args) -> Result<(), Error> {
+    /// Starts a kernel; where only launches are allowed, one whose module was loaded before.
+    pub fn launch<E: Kernel>(&self, blocks: u32, args: &E::Args, sealed: bool) -> Result<(), Error> {
         self.changes();
+        if sealed && !locked(&self.functions).contains_key(E::NAME) {
+            return Err(Error::Bug { what: format!("{} was loaded in a frame that only launches", E::NAME) });
+        }
         self.with_function::<E, _>(|gpu, function| {
             // SAFETY: the kernel takes one parameter of this type (the stamp says that host and PTX come from the same
             // sources), and its spans are memory of this GPU that the caller's buffers keep alive: freeing a buffer

@@ -10,6 +10,8 @@ use std::sync::Arc;
 pub struct Stream {
     context: Arc<Context>,
     handle: CUstream,
+    /// Whether it is the caller's, who will destroy it.
+    is_borrowed: bool,
 }
 
 // SAFETY: the handle is the driver's, whose functions any thread may call, several at once too.
@@ -24,7 +26,15 @@ impl Stream {
         let mut handle = null_mut();
         // SAFETY: the driver writes one handle, which is destroyed once.
         answer(unsafe { (gpu.cuStreamCreate)(&mut handle, types::CU_STREAM_NON_BLOCKING) })?;
-        Ok(Stream { context: context.clone(), handle })
+        Ok(Stream { context: context.clone(), handle, is_borrowed: false })
+    }
+
+    /// The caller's.
+    ///
+    /// # Safety
+    /// It is a stream of the context, or null, and outlives this.
+    pub unsafe fn borrow(context: &Arc<Context>, handle: CUstream) -> Stream {
+        Stream { context: context.clone(), handle, is_borrowed: true }
     }
 
     /// Its handle.
@@ -41,6 +51,9 @@ impl Stream {
 
 impl Drop for Stream {
     fn drop(&mut self) {
+        if self.is_borrowed {
+            return;
+        }
         if let Ok(gpu) = self.context.bind() {
             // SAFETY: made once, destroyed once. A refusal finds nobody to be told.
             let _ = unsafe { (gpu.cuStreamDestroy_v2)(self.handle) };

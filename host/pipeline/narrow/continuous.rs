@@ -93,6 +93,11 @@ impl Continuous {
         })
     }
 
+    /// End points of every edge.
+    pub fn edges(&self) -> Span<[u32; 2]> {
+        self.features.edges.span()
+    }
+
     /// The steps, in their order. With a separation there is nothing that signs could reject.
     pub fn steps(&self) -> &'static [Step] {
         match self.survivors {
@@ -195,7 +200,8 @@ impl Continuous {
 
     fn solve<R: Precision>(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
         if let Some(earliest) = &mut self.earliest {
-            earliest.write(&[u64::MAX])?;
+            // The greatest number.
+            earliest.fill(u8::MAX)?;
         }
         let [vf, ee] = self.asked();
         let solver = self.query.solver();

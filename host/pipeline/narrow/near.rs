@@ -9,7 +9,7 @@ use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{Counter, GrowableOutput, List};
 use crate::pipeline::order::Order;
 use crate::pipeline::precision::Precision;
-use nearmiss_kernels::abi::{NearArgs, NearHit, Pair, counter};
+use nearmiss_kernels::abi::{NearArgs, NearHit, Pair, Span, counter};
 
 /// The lists and the topology of a near query.
 pub struct Near {
@@ -39,6 +39,11 @@ impl Near {
             unresolved: Counter(counter::UNRESOLVED),
             ordered: device.is_gpu().then(order).transpose()?,
         })
+    }
+
+    /// End points of every edge.
+    pub fn edges(&self) -> Span<[u32; 2]> {
+        self.features.edges.span()
     }
 
     /// The lists that a step fills.

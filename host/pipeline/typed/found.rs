@@ -7,6 +7,7 @@ use crate::pipeline::below_precision::BelowPrecision;
 use crate::pipeline::list::List;
 use crate::pipeline::narrow::Narrow;
 use crate::pipeline::order::{Order, Ordered};
+use crate::pipeline::placing::Seen;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::volumes::Kernels;
 use bytemuck::Pod;
@@ -33,6 +34,8 @@ pub struct Found<'a> {
     pub front_dropped: bool,
     /// Whether pairs may be too large for the tolerance in the solver's precision: those that are listed, as counted.
     pub below_precision: Option<BelowPrecision>,
+    /// What was seen of positions in memory of the caller; `None` where there are none.
+    pub seen: Option<Seen>,
 }
 
 impl Found<'_> {
@@ -106,6 +109,7 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
     /// Brings over with one wait what the end of a frame reads: counters, and as many contacts as the last frame had.
     pub(super) fn read_ahead(&self) -> Result<(), Error> {
         let mut all = vec![self.counters.ahead(counter::COUNT as usize)];
+        all.extend(self.vertices.ahead());
         match &self.narrow {
             Narrow::Discrete { ordered: Some(order), .. } => all.push(order.list.ahead(&self.last)),
             Narrow::Discrete { contacts, .. } => all.push(contacts.ahead(&self.last)),
@@ -131,6 +135,7 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
             reruns,
             front_dropped: self.walk.front_dropped(),
             below_precision: None,
+            seen: self.vertices.seen()?,
         };
         match &self.narrow {
             Narrow::Discrete { contacts, ordered, .. } => {

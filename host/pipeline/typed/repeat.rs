@@ -26,6 +26,7 @@ pub trait Again {
 
 impl<R: Precision, V: Kernels> Again for TypedPipeline<R, V> {
     fn repeat(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
+        self.submission = None;
         if stage == Stage::Construct {
             return (0..times).map(|_| self.construct()).collect();
         }

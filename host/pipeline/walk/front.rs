@@ -147,6 +147,10 @@ impl<V: Kernels> Walk<V> for Front {
         Ok(())
     }
 
+    fn without_host(&self) -> Result<(), &'static str> {
+        Walk::<V>::without_host(&self.queue)
+    }
+
     fn front_dropped(&self) -> bool {
         self.dropped
     }

@@ -80,6 +80,14 @@ pub trait Walk<V>: Send {
         Ok(())
     }
 
+    /// Whether the next launch does without the host: else why not.
+    ///
+    /// # Errors
+    /// What it needs the host for.
+    fn without_host(&self) -> Result<(), &'static str> {
+        Ok(())
+    }
+
     /// Whether the last frame, once finished, had no front though one was asked for, or dropped it.
     fn front_dropped(&self) -> bool {
         false

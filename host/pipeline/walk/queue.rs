@@ -55,8 +55,8 @@ impl GrowableOutput for Plan {
     fn counter(&self) -> u32 {
         counter::UNFINISHED
     }
-    fn has_overflowed(&self, counters: &[u64]) -> bool {
-        counters[counter::UNFINISHED as usize] > 0
+    fn room(&self) -> u64 {
+        0
     }
     fn grow(&mut self, _: &Device, counters: &[u64]) -> Result<bool, Error> {
         let short = self.has_overflowed(counters);
@@ -232,6 +232,15 @@ impl<V: Kernels> Walk<V> for Queue {
         let rounds = rounds.max(self.plan.of_last().unwrap_or(0).saturating_sub(1) as u64);
         *self.plan.of_last() = (rounds <= MOST_ROUNDS as u64).then_some(rounds as u32);
         Ok(())
+    }
+
+    /// Copies need the host between rounds; so do views before a frame has told how many rounds there are.
+    fn without_host(&self) -> Result<(), &'static str> {
+        match (self.shape.balance, self.plan.rounds[usize::from(self.plan.seeded)]) {
+            (Balance::Copy, _) => Err("queues evened by copies ask the host between rounds"),
+            (Balance::View, None) => Err("the queues' rounds are too many to be planned"),
+            (Balance::View, Some(_)) => Ok(()),
+        }
     }
 
     fn balance_ms(&self) -> Result<f64, Error> {

@@ -42,8 +42,8 @@ impl<const N: usize> GrowableOutput for Segments<N> {
     fn counter(&self) -> u32 {
         counter::QUEUED
     }
-    fn has_overflowed(&self, counters: &[u64]) -> bool {
-        counters[counter::QUEUED as usize] > self.len as u64
+    fn room(&self) -> u64 {
+        self.len.into()
     }
     /// The demand is that of a run that lost units, a lower bound: twice the length at least.
     fn grow(&mut self, device: &Device, counters: &[u64]) -> Result<bool, Error> {

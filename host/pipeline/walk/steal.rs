@@ -71,4 +71,9 @@ impl<V: Kernels> Walk<V> for Steal {
     fn lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
         vec![&mut self.units]
     }
+
+    /// A launch that is recorded once and run twice would take for its own what the first run left in the pool.
+    fn without_host(&self) -> Result<(), &'static str> {
+        Err("queues that help each other out number their launches on the host")
+    }
 }

@@ -11,6 +11,7 @@ mod record;
 mod scene;
 mod span;
 pub mod stamp;
+mod status;
 
 pub use args::*;
 pub use narrow::*;
@@ -19,3 +20,4 @@ pub use queues::*;
 pub use record::*;
 pub use scene::*;
 pub use span::Span;
+pub use status::*;

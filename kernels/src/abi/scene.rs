@@ -65,23 +65,61 @@ pub const MIXED: u32 = 1 << 30;
 
 /// A body whose vertices are placed: see [`crate::stage::place`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
-#[repr(C, align(16))]
+#[repr(C, align(8))]
 pub struct Placement {
     /// Its first vertex.
     pub vertex: u32,
     /// Vertices of the placed bodies before it.
     pub before: u32,
-    /// Where its source begins: in the points at rest, or in what was uploaded.
+    /// Where its vertices come from: [`UPLOADED`] and those behind it.
+    pub from: u32,
+    /// Its first vertex there: among those that were uploaded, or among the points at rest.
     pub source: u32,
-    /// Which pair of poses moves it; [`UPLOADED`] or [`RESTING`] for none.
-    pub poses: u32,
+    /// Its first pose.
+    pub pose: u32,
+    /// Its first place in the caller's memory.
+    pub lent: u32,
 }
-const _: () = assert!(size_of::<Placement>() == 16);
+const _: () = assert!(size_of::<Placement>() == 24);
 
-/// [`Placement::poses`]: the vertices were uploaded as they are.
-pub const UPLOADED: u32 = u32::MAX;
-/// [`Placement::poses`]: the body rests where it was at the end of the last step.
-pub const RESTING: u32 = u32::MAX - 1;
+/// [`Placement::from`]: the vertices were uploaded as they are.
+pub const UPLOADED: u32 = 0;
+/// [`Placement::from`]: the body rests where it was at the end of the last step.
+pub const RESTING: u32 = 1;
+/// [`Placement::from`]: poses move points at rest.
+pub const POSED: u32 = 2;
+/// [`Placement::from`]: the vertices lie in memory of the caller.
+pub const LENT: u32 = 3;
+/// [`Placement::from`]: poses that lie in memory of the caller move points at rest: of each a place of its translation, then one of
+/// its rotation.
+pub const LENT_POSES: u32 = 4;
+
+/// Rows of numbers in memory of the caller. Whoever launches a kernel that reads it promises that they are there.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C, align(8))]
+pub struct Lent {
+    /// Where the first number lies: aligned for its kind.
+    pub address: u64,
+    /// How many numbers lie from there to the end of the last row.
+    pub numbers: u32,
+    /// From the first number of a row to that of the next one, in numbers.
+    pub stride: u32,
+    /// 1 for numbers in f64, 0 for such in f32.
+    pub is_f64: u32,
+    /// Zero.
+    pub pad: u32,
+}
+const _: () = assert!(size_of::<Lent>() == 24);
+
+/// Words of [`PlaceArgs::seen`].
+pub mod seen {
+    /// Of the first vertex of the caller's memory that has no coordinates to compute with: its number's complement; else 0.
+    pub const INVALID: u32 = 0;
+    /// The largest size of a coordinate of the caller's memory: the bits of an f64.
+    pub const LARGEST: u32 = 1;
+    /// How many words there are.
+    pub const COUNT: u32 = 2;
+}
 
 /// A rigid motion: points are turned, then moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -114,8 +152,16 @@ arguments! {
         rest: Span<Point<R>>,
         /// Poses at both ends of the step, or at the only frame: two a body, or one.
         poses: Span<PoseRecord>,
+        /// Out: those that lie in memory of the caller, as they were found there.
+        found: Span<PoseRecord>,
+        /// Places in memory of the caller, at both ends of the step, or at the only frame.
+        lent: Span<Lent>,
         /// Out: all vertices.
         vertices: Positions<R>,
+        /// Out: what was seen of the caller's numbers, see [`seen`]; zero before.
+        seen: Span<u64>,
+        /// The largest size of a coordinate that can be computed with.
+        most: f64,
         /// How many vertices are placed.
         count: u32,
         /// Nothing.

@@ -255,3 +255,6 @@ pub const COVARIANCE_ZERO: f32 = f32::from_bits((127 - 40) << 23);
 /// A cell that loses more than this part of a range to the directions that decouple its parameters is looked at again before
 /// the others are tried. Ratio; costs, proves nothing.
 pub const INCLUSION_DEEP: f64 = 0.5;
+/// How far the length of a rotation's quaternion may be from 1: a thousand roundings of f32, in which simulators keep theirs. What is
+/// nearer is divided by its length. Ratio.
+pub const POSE_UNIT: f64 = 1000.0 * f32::EPSILON as f64;

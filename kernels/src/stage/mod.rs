@@ -2,7 +2,7 @@
 //!
 //! | stage | reads | writes |
 //! | --- | --- | --- |
-//! | [`place`] | poses, uploaded positions | positions of the bodies that were moved |
+//! | [`place`] | poses, uploaded positions, memory of the caller | positions of the bodies that were moved |
 //! | [`construct`] | positions at t = 0, faces | the level-ordered tree, without volumes |
 //! | [`fit`] | positions at t = 0 and t = 1, faces | volumes of the leaves |
 //! | [`refit`] | volumes of the leaves | all volumes, a barrier between levels |
@@ -10,6 +10,7 @@
 //! | [`balance`] | the traversal's queues of work | the same units, as many in each |
 //! | [`narrow`] | candidates, positions | contacts |
 //! | [`order`] | contacts | the same in canonical order, on a GPU |
+//! | [`status`] | counts, and the lists' room | whether the answer is whole, for who does not ask the host |
 //!
 //! No stage calls another; they meet in memory, through [`crate::abi`].
 
@@ -20,4 +21,5 @@ pub mod narrow;
 pub mod order;
 pub mod place;
 pub mod refit;
+pub mod status;
 pub mod traverse;

@@ -1,17 +1,23 @@
 //! Place: the vertices of all bodies on the device, where frames put them.
 
+mod lent;
+
+pub use lent::{Seen, Whereabouts};
+
 use super::layout::Layout;
 use super::precision::Precision;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
-use crate::mesh::Body;
+use crate::mesh::{self, Body};
 use crate::pipeline::launch;
 use crate::scene::{BodyKind, Pose};
 use bytemuck::Pod;
+use lent::LentMemory;
 use nearmiss_kernels::abi::{
-    PlaceArgs, Placement, Point, PoseRecord, Positions, RESTING, Span, UPLOADED, VertexMotion as Ends,
+    LENT, LENT_POSES, POSED, PlaceArgs, Placement, Point, PoseRecord, Positions, RESTING, Span, UPLOADED,
+    VertexMotion as Ends,
 };
-use nearmiss_kernels::math::Vec3;
+use nearmiss_kernels::math::{Real, Vec3};
 
 /// A body that a frame moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,6 +77,16 @@ impl<R: Precision> Vertices<R> {
     }
 }
 
+/// What the last frame placed.
+enum Last<R: Real> {
+    /// Nothing.
+    Nothing,
+    /// What lies on the device: it can be placed again.
+    Device(PlaceArgs<R>),
+    /// What came from the host.
+    Host,
+}
+
 /// The vertices of a scene, and what moving them needs.
 pub struct Placing<R: Precision> {
     vertices: Vertices<R>,
@@ -83,6 +99,9 @@ pub struct Placing<R: Precision> {
     poses: Buffer<PoseRecord>,
     /// What `placements` holds.
     placed: Vec<Placement>,
+    /// Of bodies in memory of the caller; empty before there are any.
+    lent: LentMemory,
+    last: Last<R>,
 }
 
 impl<R: Precision> Placing<R> {
@@ -111,13 +130,15 @@ impl<R: Precision> Placing<R> {
             placements: device.buffer(0)?,
             poses: device.buffer(0)?,
             placed: Vec::new(),
+            lent: LentMemory::new(device)?,
+            last: Last::Host,
         };
         placing.vertices.write(bodies.iter())?;
-        let rigid: Vec<Moved> = (0..bodies.len())
-            .filter(|&i| is_rigid(&&bodies[i]))
+        let moved: Vec<Moved> = (0..bodies.len())
+            .filter(|&i| is_rigid(&&bodies[i]) || bodies[i].lent().is_some())
             .map(|body| Moved { body, rests: false })
             .collect();
-        placing.put(device, layout, bodies, &rigid)?;
+        placing.put(device, layout, bodies, &moved)?;
         Ok(placing)
     }
 
@@ -153,11 +174,17 @@ impl<R: Precision> Placing<R> {
         moved: &[Moved],
     ) -> Result<(), Error> {
         let all = moved.len() == bodies.len();
-        if all && moved.iter().all(|m| !m.rests && bodies[m.body].kind() != BodyKind::Rigid) {
+        (self.last, self.lent.any) = (Last::Nothing, false);
+        let comes = |m: &Moved| {
+            !m.rests && bodies[m.body].kind() != BodyKind::Rigid && bodies[m.body].lent().is_none()
+        };
+        if all && moved.iter().all(comes) {
+            self.last = Last::Host;
             return self.vertices.write(bodies.iter());
         }
         let moving = matches!(self.vertices, Vertices::Moving(_));
-        let (mut placed, mut poses, mut uploads) = (Vec::new(), Vec::new(), Vec::new());
+        let ends = if moving { 2 } else { 1 };
+        let (mut placed, mut poses, mut uploads, mut lent) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let (mut before, mut uploaded) = (0, 0);
         for &Moved { body: i, rests } in moved {
             let (body, vertex) = (&bodies[i], layout.starts[i].vertex);
@@ -166,20 +193,26 @@ impl<R: Precision> Placing<R> {
             if count == 0 || rests && !moving {
                 continue;
             }
-            let (source, which) = match (rests, body.kind()) {
-                (true, _) => (0, RESTING),
-                (false, BodyKind::Rigid) => {
-                    let pose = poses.len() as u32 / if moving { 2 } else { 1 };
-                    poses.extend(body.poses().iter().take(if moving { 2 } else { 1 }).map(Pose::record));
-                    (self.rest_starts[i], pose)
+            let placement = Placement { vertex, before, source: self.rest_starts[i], ..Placement::default() };
+            placed.push(match (rests, body.lent(), body.kind()) {
+                (true, _, _) => Placement { from: RESTING, ..placement },
+                (false, Some(input), kind) => {
+                    let first = lent.len() as u32;
+                    lent.extend(input.records(ends));
+                    let from = if kind == BodyKind::Rigid { LENT_POSES } else { LENT };
+                    Placement { from, lent: first, pose: (i * ends) as u32, ..placement }
                 }
-                (false, _) => {
+                (false, None, BodyKind::Rigid) => {
+                    let pose = poses.len() as u32;
+                    poses.extend(body.poses().iter().take(ends).map(Pose::record));
+                    Placement { from: POSED, pose, ..placement }
+                }
+                (false, None, BodyKind::Deformable | BodyKind::Static) => {
                     uploads.push(i);
                     uploaded += count;
-                    (uploaded - count, UPLOADED)
+                    Placement { from: UPLOADED, source: uploaded - count, ..placement }
                 }
-            };
-            placed.push(Placement { vertex, before, source, poses: which });
+            });
             before += count;
         }
         if placed.is_empty() {
@@ -196,15 +229,21 @@ impl<R: Precision> Placing<R> {
             write(device, &mut self.placements, &placed)?;
             self.placed = placed;
         }
+        self.lent.hold(device, lent, bodies.len() * ends)?;
         let args = PlaceArgs {
             placements: self.placements.span().part(0, self.placed.len() as u64),
             uploaded: self.uploaded.span(),
             rest: self.rest.span(),
             poses: self.poses.span(),
+            found: self.lent.found.span(),
+            lent: self.lent.places.span(),
             vertices: self.vertices.span(),
+            seen: self.lent.seen.span(),
+            most: if R::WIDE { mesh::MAX_ABS_F64 } else { mesh::MAX_ABS_F32.into() },
             count: before,
             pad: 0,
         };
+        self.last = if uploaded == 0 && poses.is_empty() { Last::Device(args) } else { Last::Host };
         launch::striding::<R::Place>(device, before as usize, &args)
     }
 }

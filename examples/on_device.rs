@@ -1,0 +1,36 @@
+//! A simulator whose vertices lie on the device: frames that are submitted, and neither copied nor waited for.
+
+mod shapes;
+
+use nearmiss::mesh::Positions;
+use nearmiss::scene::{DeviceInput, DeviceRows, Meets, Number, Scene};
+use nearmiss::{Body, Detector, Device, Error, Query, device::Backend};
+
+fn main() -> Result<(), Error> {
+    let above = |z: f32| move |x: f32, y: f32| [x - 0.5, y - 0.5, z + 0.1 * x * y];
+    let at = |frame: u32| match shapes::points(60, above(0.365 - 0.003 * frame as f32)) {
+        Positions::F32(points) => points,
+        Positions::F64(_) => Vec::new(),
+    };
+    let mut scene = Scene::new();
+    let cloth = scene.add(Body::still(shapes::sheet(60, above(0.365))?).with(Meets::and_itself()));
+    scene.add(Body::fixed(shapes::cube(0.7)?));
+    // With your own context and stream: `unsafe { Device::borrow(context, stream) }`.
+    let device = Device::open(Backend::Auto, None)?;
+    let mut vertices = device.upload(&at(0))?;
+    // SAFETY: the buffer outlives the detector, and is written between frames alone.
+    let rows = unsafe { DeviceRows::new(vertices.span().addr(), vertices.len(), 12, Number::F32) }?;
+    let mut detector = Detector::new(device, scene, Query::near(0.01))?;
+    detector.prepare(&[(cloth, DeviceInput::At(rows))])?;
+    for frame in 0..5 {
+        vertices.write(&at(frame))?; // your kernels
+        detector.submit()?; // or record it, once, and launch the graph
+        let answer = detector.on_device().map(|answer| answer.lists[0].address); // for your kernels behind it
+        let found = detector.collect()?; // where the host wants it, too
+        println!("frame {frame}: {} pairs, at {:#x}", found.len(), answer.unwrap_or(0));
+        if !detector.is_prepared() {
+            detector.prepare(&[(cloth, DeviceInput::At(rows))])?; // a list has grown
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,131 @@
+//! Bodies of which only the device knows where they are.
+
+use super::Detector;
+use crate::contacts::{Contacts, Degraded};
+use crate::error::Error;
+use crate::mesh::{Body, Positions};
+use crate::pipeline::below_precision::BelowPrecision;
+use crate::pipeline::{Seen, Stages, Whereabouts};
+use crate::scene::{BodyKind, Pose};
+use std::time::Instant;
+
+impl Detector {
+    /// Brings the bodies to the host of which only the device knows where they are ([`Body::is_away`]), so that
+    /// [`Detector::scene`] has them. Cost: a copy of all vertices, and a wait.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn fetch(&mut self) -> Result<(), Error> {
+        if !self.scene.bodies().iter().any(Body::is_away) {
+            return Ok(());
+        }
+        self.all_known()?;
+        let Some(pipeline) = &self.pipeline else { return Ok(()) };
+        let places = Places::new(pipeline.whereabouts()?, self.scene.bodies());
+        for (i, body) in self.scene.bodies_mut().iter_mut().enumerate() {
+            // Who is lent has another place now.
+            if body.is_away() && body.lent().is_none() {
+                let (ends, poses) = places.of(i, body);
+                body.bring(&ends, poses);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether every body is where the host or a pipeline knows it to be.
+    pub(super) fn all_known(&self) -> Result<(), Error> {
+        let lost = |body: &&Body| body.is_away() && body.lent().is_none();
+        match self.scene.bodies().iter().find(lost) {
+            Some(body) if self.pipeline.is_none() => Err(Error::Choice {
+                what: format!("only the device knew where {} was, and that memory is gone", body.name()),
+                advice: "say again where it is".into(),
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Looks at numbers of the caller that placing could not compute with. Where doubles can, all goes over to doubles: true.
+    ///
+    /// # Errors
+    /// [`Error::Input`] and [`Error::Choice`] for what no precision can compute with, naming the body and the vertex; those of the
+    /// device.
+    fn look(&mut self) -> Result<bool, Error> {
+        let Some(pipeline) = &self.pipeline else { return Ok(false) };
+        let places = Places::new(pipeline.whereabouts()?, self.scene.bodies());
+        let mut are_single = true;
+        for (i, body) in self.scene.bodies().iter().enumerate().filter(|(_, body)| body.is_away()) {
+            let (ends, poses) = places.of(i, body);
+            if body.kind() == BodyKind::Rigid {
+                poses.iter().try_for_each(|pose| body.check_pose(pose))?;
+            }
+            for positions in &ends {
+                are_single &= body.is_single(positions)?;
+            }
+        }
+        if self.f64s || are_single {
+            // Only vertices that no face uses.
+            return Ok(false);
+        }
+        self.fetch()?;
+        self.f64s = true;
+        self.pipeline = None;
+        Ok(true)
+    }
+
+    /// The end of a frame: the answer, unless what was seen of the caller's memory says otherwise.
+    pub(super) fn complete(
+        &mut self,
+        mut contacts: Contacts,
+        seen: Option<Seen>,
+        start: Instant,
+    ) -> Result<Contacts, Error> {
+        if seen.is_some_and(|seen| seen.invalid) && self.look()? {
+            return self.answer(start);
+        }
+        self.answered = true;
+        self.largest = seen.map_or(self.largest, |seen| seen.largest.max(self.largest));
+        let is_away = self.scene.bodies().iter().any(Body::is_away);
+        // No two coordinates are farther apart.
+        if is_away && BelowPrecision::may_be(&self.asked(), 2.0 * self.largest) {
+            self.fetch()?;
+            let unlisted = Degraded::ToleranceBelowPrecision { pairs: None };
+            let is_below =
+                BelowPrecision::of(self.scene.bodies(), &self.asked()) == Some(BelowPrecision::Unlisted);
+            if is_below && !contacts.degraded.contains(&unlisted) {
+                contacts.degraded.push(unlisted);
+            }
+        }
+        let wall = start.elapsed().as_secs_f64() * 1e3;
+        contacts.stages = Stages { construct: self.construct_ms, wall, ..contacts.stages };
+        Ok(contacts)
+    }
+}
+
+/// Where all bodies are, by body.
+struct Places {
+    all: Whereabouts,
+    starts: Vec<usize>,
+}
+
+impl Places {
+    fn new(all: Whereabouts, bodies: &[Body]) -> Places {
+        let mut at = 0;
+        let starts = bodies.iter().map(|body| {
+            at += body.vertex_count();
+            at - body.vertex_count()
+        });
+        Places { starts: starts.collect(), all }
+    }
+
+    /// A body's vertices at both ends or at the only one, and the poses that it was found in.
+    fn of(&self, i: usize, body: &Body) -> (Vec<Positions>, &[Pose]) {
+        let range = self.starts[i]..self.starts[i] + body.vertex_count();
+        let part = |positions: &Positions| match positions {
+            Positions::F32(points) => Positions::F32(points[range.clone()].to_vec()),
+            Positions::F64(points) => Positions::F64(points[range.clone()].to_vec()),
+        };
+        let ends = self.all.ends.len();
+        let poses = self.all.poses.get(i * ends..(i + 1) * ends).unwrap_or_default();
+        (self.all.ends.iter().map(part).collect(), poses)
+    }
+}

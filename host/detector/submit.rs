@@ -1,0 +1,81 @@
+//! Frames that are submitted and not waited for.
+
+use super::{Detector, contacts};
+use crate::contacts::{Contacts, DeviceAnswer};
+use crate::error::Error;
+use crate::scene::{BodyId, DeviceInput, Input};
+use std::time::Instant;
+
+impl Detector {
+    /// Prepares frames that the host does not wait for: says where bodies will be found, asks for the frame that is there now, loads
+    /// every kernel and takes all memory. Then [`Detector::submit`] takes no memory and waits for nothing. Bodies that are not named
+    /// rest. Any other call that changes the detector ends it.
+    ///
+    /// # Errors
+    /// As for [`Detector::frame`]; [`Error::Choice`] for a traversal that cannot do without the host.
+    pub fn prepare(&mut self, inputs: &[(BodyId, DeviceInput)]) -> Result<Contacts, Error> {
+        let inputs: Vec<(BodyId, Input)> =
+            inputs.iter().map(|&(id, input)| (id, Input::OnDevice(input))).collect();
+        self.frame(&inputs)?;
+        if let (true, Some(pipeline)) = (inputs.is_empty(), &mut self.pipeline) {
+            pipeline.place(self.scene.bodies(), &[])?;
+        }
+        // Again, with lists and plans that this frame has settled.
+        let contacts = self.detect()?;
+        if let Some(pipeline) = &mut self.pipeline {
+            pipeline.prepare()?;
+        }
+        Ok(contacts)
+    }
+
+    /// Whether [`Detector::submit`] may be called, and what was recorded of it run again: [`Detector::prepare`] was called, and
+    /// nothing since then that changes the detector.
+    pub fn is_prepared(&self) -> bool {
+        let pipeline = self.pipeline.as_ref();
+        pipeline.map_or_else(|| !self.may_meet(), |pipeline| pipeline.is_prepared())
+    }
+
+    /// Submits a frame to the device's stream, with bodies where their memory says when its turn comes: launches alone. So it may be
+    /// called while that stream is captured, and the graph launched as often as wanted, as long as the detector
+    /// [is prepared](Detector::is_prepared). [`Detector::on_device`] says where the answer will lie, [`Detector::collect`] waits
+    /// for it.
+    ///
+    /// Times of its stages are not taken. On a CPU it is done when this returns.
+    ///
+    /// # Errors
+    /// [`Error::Choice`] when it is not prepared; those of the device.
+    pub fn submit(&mut self) -> Result<(), Error> {
+        self.answered = false;
+        self.pipeline.as_mut().map_or(Ok(()), |pipeline| pipeline.submit())
+    }
+
+    /// Where the answer of what is submitted lies, for kernels of the caller behind it; `None` where it is not prepared, or nothing can
+    /// meet.
+    pub fn on_device(&self) -> Option<DeviceAnswer> {
+        self.pipeline.as_ref().and_then(|pipeline| pipeline.answer())
+    }
+
+    /// Waits for what was submitted last, or recorded and launched again, and brings the answer. Where a list had too little room it
+    /// grows and the frame, with bodies where they were placed, is asked again: the answer is whole, and the detector is no longer
+    /// [prepared](Detector::is_prepared).
+    ///
+    /// # Errors
+    /// [`Error::Input`] and [`Error::Choice`] for positions and poses of the caller that cannot be computed with; those of the device.
+    pub fn collect(&mut self) -> Result<Contacts, Error> {
+        let start = Instant::now();
+        let layout = self.layout()?;
+        let Some(pipeline) = &mut self.pipeline else { return Ok(Contacts::none(self.query)) };
+        let whole = pipeline.collect()?.map(|(found, stages)| {
+            let seen = found.seen;
+            contacts(found, stages, (&layout, self.query)).map(|contacts| (contacts, seen))
+        });
+        match whole.transpose()? {
+            Some((contacts, seen)) => self.complete(contacts, seen, start),
+            None => self.answer(start),
+        }
+    }
+
+    fn may_meet(&self) -> bool {
+        self.layout.as_ref().is_none_or(|layout| layout.may_meet())
+    }
+}

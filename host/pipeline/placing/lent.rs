@@ -1,0 +1,133 @@
+//! Bodies whose vertices or poses lie in memory of the caller.
+
+use super::{Last, Placing, write};
+use crate::device::{Ahead, Buffer, Device};
+use crate::error::Error;
+use crate::mesh;
+use crate::pipeline::launch;
+use crate::pipeline::precision::Precision;
+use crate::scene::Pose;
+use nearmiss_kernels::abi::{Lent, PoseRecord, Span, seen};
+
+/// What placing from memory of the caller needs.
+pub struct LentMemory {
+    /// Where the numbers lie.
+    pub places: Buffer<Lent>,
+    /// What `places` holds.
+    held: Vec<Lent>,
+    /// Poses as they were found: of each body, at both ends or at the only one.
+    pub found: Buffer<PoseRecord>,
+    /// See [`seen`].
+    pub seen: Buffer<u64>,
+    /// Whether the last frame placed any.
+    pub any: bool,
+}
+
+/// What placing saw of the caller's numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen {
+    /// Whether some of them cannot be computed with.
+    pub invalid: bool,
+    /// The largest size of the others.
+    pub largest: f64,
+}
+
+/// Where all bodies are, as the device knows it.
+pub struct Whereabouts {
+    /// All vertices, at both ends or at the only one.
+    pub ends: Vec<mesh::Positions>,
+    /// Poses that were found in memory of the caller, at as many ends, of each body; others are none.
+    pub poses: Vec<Pose>,
+}
+
+impl LentMemory {
+    /// None yet.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn new(device: &Device) -> Result<LentMemory, Error> {
+        Ok(LentMemory {
+            places: device.buffer(0)?,
+            held: Vec::new(),
+            found: device.buffer(0)?,
+            seen: device.buffer(0)?,
+            any: false,
+        })
+    }
+
+    /// Puts places of the caller's memory where a launch finds them, and takes what it writes: room for so many poses.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn hold(&mut self, device: &Device, places: Vec<Lent>, poses: usize) -> Result<(), Error> {
+        self.any = !places.is_empty();
+        if !self.any {
+            return Ok(());
+        }
+        if self.seen.is_empty() {
+            self.seen = device.buffer(seen::COUNT as usize)?;
+            self.found = device.buffer(poses)?;
+        }
+        self.seen.clear()?;
+        if places != self.held {
+            write(device, &mut self.places, &places)?;
+            self.held = places;
+        }
+        Ok(())
+    }
+}
+
+impl<R: Precision> Placing<R> {
+    /// Places once more what the last frame placed, from where it lay: a launch, and no word of the host.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn again(&mut self, device: &Device) -> Result<(), Error> {
+        let Last::Device(args) = &self.last else { return Ok(()) };
+        if self.lent.any {
+            self.lent.seen.clear()?;
+        }
+        launch::striding::<R::Place>(device, args.count as usize, args)
+    }
+
+    /// Whether the last frame placed nothing, or only what lies on the device.
+    pub fn is_repeatable(&self) -> bool {
+        !matches!(self.last, Last::Host)
+    }
+
+    /// What is to be read ahead of what [`Placing::seen`] reads.
+    pub fn ahead(&self) -> Option<Ahead<'_>> {
+        self.lent.any.then(|| self.lent.seen.ahead(seen::COUNT as usize))
+    }
+
+    /// Where a kernel finds what was seen of the caller's numbers.
+    pub fn seen_span(&self) -> Span<u64> {
+        self.lent.seen.span()
+    }
+
+    /// What the last frame saw of the caller's numbers; `None` where it read none.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn seen(&self) -> Result<Option<Seen>, Error> {
+        if !self.lent.any {
+            return Ok(None);
+        }
+        let words = self.lent.seen.read(seen::COUNT as usize)?;
+        let word = |at: u32| words[at as usize];
+        Ok(Some(Seen { invalid: word(seen::INVALID) > 0, largest: f64::from_bits(word(seen::LARGEST)) }))
+    }
+
+    /// Where all bodies are.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn whereabouts(&self) -> Result<Whereabouts, Error> {
+        let poses = self.lent.found.read(self.lent.found.len())?;
+        let pose = |found: &PoseRecord| Pose { rotation: found.rotation, translation: found.translation };
+        Ok(Whereabouts {
+            ends: self.positions()?.into_iter().map(R::positions).collect(),
+            poses: poses.iter().map(pose).collect(),
+        })
+    }
+}

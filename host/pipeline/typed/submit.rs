@@ -1,0 +1,151 @@
+//! A frame that is submitted and not waited for: launches alone, that a stream which is being captured takes, and an answer that
+//! stays on the device.
+
+use super::TypedPipeline;
+use crate::contacts::{DeviceAnswer, DeviceList};
+use crate::device::Buffer;
+use crate::error::Error;
+use crate::pipeline::launch;
+use crate::pipeline::list::GrowableOutput;
+use crate::pipeline::narrow::Step;
+use crate::pipeline::precision::Precision;
+use crate::pipeline::timing::{Stage, Stages};
+use crate::pipeline::typed::Found;
+use crate::pipeline::volumes::Kernels;
+use nearmiss_kernels::abi::{FrameStatus, NO_LIST, Room, StatusArgs, counter, seen};
+use nearmiss_kernels::entry::frame_status;
+
+/// What such a frame needs beside what every frame has.
+pub struct Submission {
+    /// Every list that a frame fills.
+    pub rooms: Buffer<Room>,
+    /// What it came to.
+    pub status: Buffer<FrameStatus>,
+    /// Where nothing of the caller's memory is placed.
+    unseen: Buffer<u64>,
+}
+
+/// A pipeline that can be submitted to.
+pub trait Submits {
+    /// Takes what a submission needs, once a frame has run whole: from then on the lists do not grow until one is asked for with
+    /// [`Pipeline::frame`](super::Pipeline::frame).
+    ///
+    /// # Errors
+    /// [`Error::Choice`] where the walk cannot do without the host, and where the host's positions were placed last; those of the
+    /// device.
+    fn prepare(&mut self) -> Result<(), Error>;
+    /// Whether it is prepared.
+    fn is_prepared(&self) -> bool;
+    /// Submits a frame: where bodies are is read again from where it lay.
+    ///
+    /// # Errors
+    /// [`Error::Choice`] when it is not prepared; those of the device.
+    fn submit(&mut self) -> Result<(), Error>;
+    /// What the last submission found; `None` where a list had too little room. Waits.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn collect(&mut self) -> Result<Option<(Found<'_>, Stages)>, Error>;
+    /// Where it is.
+    fn answer(&self) -> Option<DeviceAnswer>;
+}
+
+impl<R: Precision, V: Kernels> Submits for TypedPipeline<R, V> {
+    fn prepare(&mut self) -> Result<(), Error> {
+        let refused = |what: &str, advice: &str| {
+            Err(Error::Choice { what: what.to_owned(), advice: advice.to_owned() })
+        };
+        if let Err(why) = self.walk.without_host() {
+            return refused(why, "ask for another traversal, or for frames that wait");
+        }
+        if !self.vertices.is_repeatable() {
+            return refused(
+                "a submission that reads positions of the host",
+                "give every body that moves by what lies on the device",
+            );
+        }
+        let room =
+            |list: &&mut dyn GrowableOutput| Room { entries: list.room(), counter: list.counter(), pad: 0 };
+        let mut rooms: Vec<Room> = self.walk.lists().iter().map(room).collect();
+        rooms.push(room(&(&mut self.pairs as &mut dyn GrowableOutput)));
+        for step in self.narrow.steps().iter().chain(&[Step::Order]) {
+            rooms.extend(self.narrow.lists(*step).iter().map(room));
+        }
+        let mut unseen = self.device.buffer(seen::COUNT as usize)?;
+        unseen.clear()?;
+        let (rooms, status) = (self.device.upload(&rooms)?, self.device.buffer(1)?);
+        self.submission = Some(Submission { rooms, status, unseen });
+        // Once as it will be: the driver loads a kernel when it is first launched.
+        self.enqueue()
+    }
+
+    fn is_prepared(&self) -> bool {
+        self.submission.is_some()
+    }
+
+    fn submit(&mut self) -> Result<(), Error> {
+        let _only = self.device.launches_only();
+        self.enqueue()
+    }
+
+    fn collect(&mut self) -> Result<Option<(Found<'_>, Stages)>, Error> {
+        // The caller may have launched a recorded submission again.
+        self.device.changed();
+        self.read_ahead()?;
+        let counters = self.counters.read(counter::COUNT as usize)?;
+        if self.has_overflowed(&counters) {
+            self.settled = false;
+            return Ok(None);
+        }
+        self.last.clone_from(&counters);
+        self.gather(counters, 0).map(|found| Some((found, Stages::default())))
+    }
+
+    fn answer(&self) -> Option<DeviceAnswer> {
+        let submission = self.submission.as_ref()?;
+        let lists = self.narrow.answer();
+        let list = |&(address, room): &(u64, usize)| DeviceList { address, room };
+        let starts = self.layout.starts.iter().map(|at| [at.vertex, at.triangle, at.edge]);
+        Some(DeviceAnswer {
+            entries: lists.entries,
+            lists: lists.lists.iter().map(list).collect(),
+            is_ordered: lists.is_ordered,
+            status: submission.status.span().addr(),
+            earliest: lists.earliest,
+            edges: DeviceList { address: lists.edges.addr(), room: lists.edges.len() as usize },
+            starts: starts.collect(),
+        })
+    }
+}
+
+impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
+    /// Launches a frame, behind the placing of what it places, and what tells how it went.
+    fn enqueue(&mut self) -> Result<(), Error> {
+        let Some(submission) = &self.submission else {
+            return Err(Error::Choice {
+                what: "a submission that is not prepared".into(),
+                advice: "call `prepare` first, and again after every other call that changes the detector"
+                    .into(),
+            });
+        };
+        let seen = self.vertices.seen_span();
+        let seen = if seen.is_empty() { submission.unseen.span() } else { seen };
+        let (rooms, status) = (submission.rooms.span(), submission.status.span());
+        self.vertices.again(&self.device)?;
+        self.counters.clear()?;
+        [Stage::Fit, Stage::Refit, Stage::Traverse, Stage::Narrow, Stage::Order]
+            .into_iter()
+            .try_for_each(|stage| self.run(stage))?;
+        let counters = self.narrow.answer().counters;
+        let at = |k: usize| counters.get(k).copied().unwrap_or(NO_LIST);
+        let args = StatusArgs {
+            counters: self.counters.span(),
+            rooms,
+            seen,
+            status,
+            first_at: at(0),
+            second_at: at(1),
+        };
+        launch::blocks::<frame_status>(&self.device, 1, &args)
+    }
+}

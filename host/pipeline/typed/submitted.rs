@@ -1,0 +1,72 @@
+//! What a submission tells of itself on the device, and the tests of that seen failing.
+
+use super::*;
+use crate::device::emulator::{Emulator, Mode};
+use crate::samples;
+use nearmiss_kernels::abi::Room;
+use nearmiss_kernels::bv::Aabb;
+
+/// A prepared pipeline over a soup, whose list of pairs has too little room for a frame.
+fn prepared(device: &Device) -> TypedPipeline<f32, Aabb> {
+    let bodies = [samples::soup(300, 5, false)];
+    let layout = Arc::new(Layout::new(&bodies, false));
+    let query = Query::of(Motion::Discrete);
+    let mut pipeline =
+        TypedPipeline::<f32, Aabb>::new(device.clone(), &bodies, layout, (query, Axes::PCA)).expect("memory");
+    pipeline.construct().expect("a tree");
+    pipeline.place(&bodies, &[]).expect("nothing to place");
+    pipeline.frame().expect("a frame");
+    pipeline.pairs = List::new(device, "candidate triangle pairs", counter::PAIRS, 3).expect("memory");
+    pipeline.prepare().expect("prepared");
+    pipeline
+}
+
+fn engine() -> Device {
+    Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"))
+}
+
+/// How many lists a submission says were too short, and whether the host, asked the same, says so.
+fn told(pipeline: &mut TypedPipeline<f32, Aabb>) -> (u64, bool) {
+    pipeline.submit().expect("submitted");
+    let status = pipeline.submission.as_ref().expect("prepared").status.read(1).expect("read");
+    (status[0].short, pipeline.collect().expect("counters").is_none())
+}
+
+#[test]
+fn a_list_without_room_is_told_on_the_device() {
+    assert_eq!(told(&mut prepared(&engine())), (1, true));
+}
+
+/// With a list's room told wrong, the device and the host disagree.
+#[test]
+fn a_room_that_is_not_there_is_noticed() {
+    let mut pipeline = prepared(&engine());
+    let rooms = &mut pipeline.submission.as_mut().expect("prepared").rooms;
+    let mut wrong = rooms.read(rooms.len()).expect("read");
+    let pairs = wrong.iter_mut().find(|room| room.counter == counter::PAIRS).expect("a list of pairs");
+    *pairs = Room { entries: u64::MAX, ..*pairs };
+    rooms.write(&wrong).expect("written");
+    assert_eq!(told(&mut pipeline), (0, true));
+}
+
+/// Whoever takes memory, reads, writes or marks the time in a submission is refused, and named.
+#[test]
+fn a_submission_that_does_more_than_launch_is_noticed() {
+    let device = engine();
+    let mut buffer = device.upload(&[1u32, 2]).expect("memory");
+    let only = device.launches_only();
+    let refused = [
+        device.buffer::<u32>(1).map(drop),
+        buffer.write(&[3]),
+        buffer.read(1).map(drop),
+        buffer.view(1).map(drop),
+        device.event().map(drop),
+        device.read_ahead(&[buffer.ahead(1)]),
+    ];
+    for error in refused.map(|result| result.expect_err("refused").to_string()) {
+        assert!(error.contains("in a frame that only launches"), "{error}");
+    }
+    buffer.clear().expect("a launch of its own kind");
+    drop(only);
+    assert_eq!(buffer.read(2).expect("read"), [0, 0]);
+}

@@ -1,0 +1,180 @@
+//! Positions and poses that lie in the device's memory already.
+
+use crate::error::Error;
+use nearmiss_kernels::abi::Lent;
+
+/// The kind of numbers that lie in a memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Number {
+    /// Single precision.
+    F32,
+    /// Double precision.
+    F64,
+}
+
+impl Number {
+    /// Bytes of one.
+    pub const fn bytes(self) -> usize {
+        match self {
+            Number::F32 => 4,
+            Number::F64 => 8,
+        }
+    }
+}
+
+/// Rows of numbers in the memory of a device, which somebody else owns: positions, three numbers a row, or one row of a pose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DeviceRows {
+    address: u64,
+    rows: usize,
+    stride: usize,
+    number: Number,
+}
+
+impl DeviceRows {
+    /// So many rows, the first one at `address`, each `stride` bytes behind the one before. On a CPU the address is the host's.
+    ///
+    /// # Errors
+    /// [`Error::Choice`] for an address or a stride that is no multiple of the number's size, and for rows that end beyond 2^32
+    /// numbers.
+    ///
+    /// # Safety
+    /// At `address` and behind each stride lie three numbers of that kind (four of a rotation), in memory that the detector's device
+    /// can read. They stay there, and nobody writes them while work of the detector may read them: from a
+    /// call that is given the rows until that call's work is done, and of a prepared frame in every submission until another
+    /// input or the end of the detector.
+    pub unsafe fn new(address: u64, rows: usize, stride: usize, number: Number) -> Result<DeviceRows, Error> {
+        let size = number.bytes();
+        let refused = |what: String, advice: &str| Err(Error::Choice { what, advice: advice.to_owned() });
+        if !address.is_multiple_of(size as u64) || !stride.is_multiple_of(size) {
+            let what = format!("rows of {size} byte numbers at {address:#x}, {stride} bytes apart");
+            return refused(what, "give an address and a stride that are multiples of the number's size");
+        }
+        let last = rows.saturating_sub(1).checked_mul(stride / size).and_then(|at| at.checked_add(4));
+        if last.is_none_or(|end| end > u32::MAX as usize) {
+            let what = format!("{rows} rows, {stride} bytes apart");
+            return refused(what, "rows may span 2^32 numbers: pack them closer");
+        }
+        Ok(DeviceRows { address, rows, stride, number })
+    }
+
+    /// How many rows.
+    pub fn len(&self) -> usize {
+        self.rows
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.rows == 0
+    }
+
+    /// The kind of its numbers.
+    pub fn number(&self) -> Number {
+        self.number
+    }
+
+    /// As a kernel reads it, with rows of that many numbers.
+    pub(crate) fn record(&self, width: u32) -> Lent {
+        // Checked when it was made.
+        let stride = (self.stride / self.number.bytes()) as u32;
+        Lent {
+            address: self.address,
+            numbers: self.rows.saturating_sub(1) as u32 * stride + width,
+            stride,
+            is_f64: u32::from(self.number == Number::F64),
+            pad: 0,
+        }
+    }
+}
+
+/// A pose in the memory of a device: see [`Pose`](super::Pose).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DevicePose {
+    /// One row: what is added.
+    pub translation: DeviceRows,
+    /// One row: a unit quaternion x, y, z, w.
+    pub rotation: DeviceRows,
+}
+
+/// What a frame tells of a body by what lies in the device's memory. Nothing of it passes through the host; it is read on
+/// the device's stream, behind all work that was put there before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DeviceInput {
+    /// A deformable body stands at these positions.
+    At(DeviceRows),
+    /// A deformable body moves from the first positions to the second, each vertex in a straight line.
+    Step([DeviceRows; 2]),
+    /// A rigid body stands in this pose.
+    Pose(DevicePose),
+    /// A rigid body moves from the first pose to the second, each vertex in a straight line.
+    Poses([DevicePose; 2]),
+}
+
+impl DeviceInput {
+    /// Whether it has two ends.
+    pub(crate) fn is_moving(&self) -> bool {
+        matches!(self, DeviceInput::Step(_) | DeviceInput::Poses(_))
+    }
+
+    /// Whether any of its positions are doubles.
+    pub(crate) fn has_f64(&self) -> bool {
+        match self {
+            DeviceInput::At(rows) => rows.number == Number::F64,
+            DeviceInput::Step(ends) => ends.iter().any(|rows| rows.number == Number::F64),
+            DeviceInput::Pose(_) | DeviceInput::Poses(_) => false,
+        }
+    }
+
+    /// As a kernel reads it, at both ends or at the only one: of positions a record an end, of poses two.
+    pub(crate) fn records(&self, ends: usize) -> Vec<Lent> {
+        let pose = |pose: &DevicePose| [pose.translation.record(3), pose.rotation.record(4)];
+        match self {
+            DeviceInput::At(rows) => vec![rows.record(3); ends],
+            DeviceInput::Step(both) => both[..ends].iter().map(|rows| rows.record(3)).collect(),
+            DeviceInput::Pose(one) => [pose(one)].repeat(ends).concat(),
+            DeviceInput::Poses(both) => both[..ends].iter().flat_map(pose).collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows(address: u64, rows: usize, stride: usize, number: Number) -> Result<DeviceRows, Error> {
+        // SAFETY: nobody reads them.
+        unsafe { DeviceRows::new(address, rows, stride, number) }
+    }
+
+    #[test]
+    fn rows_that_no_kernel_can_read_are_refused() {
+        assert!(rows(64, 10, 12, Number::F32).is_ok_and(|rows| rows.len() == 10 && !rows.is_empty()));
+        for wrong in [
+            rows(62, 10, 12, Number::F32),
+            rows(64, 10, 10, Number::F32),
+            rows(68, 10, 24, Number::F64),
+            rows(64, 10, 28, Number::F64),
+            rows(64, 1 << 30, 16, Number::F32),
+            rows(64, usize::MAX, 16, Number::F32),
+        ] {
+            let error = wrong.expect_err("refused");
+            assert!(matches!(error, Error::Choice { .. }), "{error}");
+        }
+    }
+
+    #[test]
+    fn records_say_where_and_how_far() {
+        let at = rows(64, 5, 32, Number::F64).expect("rows");
+        let record = Lent { address: 64, numbers: 19, stride: 4, is_f64: 1, pad: 0 };
+        assert_eq!(DeviceInput::At(at).records(2), [record, record]);
+        assert!(DeviceInput::At(at).has_f64() && !DeviceInput::At(at).is_moving());
+        let none = rows(64, 0, 32, Number::F32).expect("no rows");
+        assert_eq!(none.record(3).numbers, 3);
+        let [translation, rotation] = [1024, 2048].map(|at| rows(at, 1, 0, Number::F32).expect("a row"));
+        let pose = DeviceInput::Poses([DevicePose { translation, rotation }; 2]);
+        assert_eq!(
+            pose.records(2).iter().map(|r| (r.address, r.numbers)).collect::<Vec<_>>(),
+            [(1024, 3), (2048, 4), (1024, 3), (2048, 4)]
+        );
+    }
+}

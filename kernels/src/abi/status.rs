@@ -1,0 +1,54 @@
+//! What a frame came to, for a caller that looks at it on the device.
+
+use super::Span;
+use bytemuck::{Pod, Zeroable};
+
+/// What a submitted frame came to, as it lies in the device's memory.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C, align(8))]
+pub struct FrameStatus {
+    /// Entries of the answer's first list; of an earliest query 0.
+    pub first: u64,
+    /// Entries of its second list, where there is one. Where one list has both kinds in order, how many of the second kind follow.
+    pub second: u64,
+    /// How many lists had too little room. Unless this is 0 the answer is not whole: no part of it may be used.
+    pub short: u64,
+    /// Of the first vertex, or first vertex of a pose, in memory of the caller that cannot be computed with: `!vertex` of 32
+    /// bits. Unless this is 0 there is no answer.
+    pub invalid: u64,
+}
+const _: () = assert!(size_of::<FrameStatus>() == 32);
+
+/// A list's room.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C, align(8))]
+pub struct Room {
+    /// How many entries it has room for.
+    pub entries: u64,
+    /// Which counter counts what was asked of it.
+    pub counter: u32,
+    /// Zero.
+    pub pad: u32,
+}
+const _: () = assert!(size_of::<Room>() == 16);
+
+arguments! {
+    /// `frame_status`: whether a frame's answer is whole.
+    StatusArgs {
+        /// The frame's counters.
+        counters: Span<u64>,
+        /// Every list that a frame fills.
+        rooms: Span<Room>,
+        /// What was seen of the caller's numbers, see [`super::seen`].
+        seen: Span<u64>,
+        /// Out: one.
+        status: Span<FrameStatus>,
+        /// Which counters count the answer; [`NO_LIST`] for none.
+        first_at: u32,
+        /// See above.
+        second_at: u32,
+    }
+}
+
+/// No counter.
+pub const NO_LIST: u32 = u32::MAX;
