@@ -113,7 +113,10 @@ fn across_stages(sources: &[Source]) -> Vec<String> {
 
 #[test]
 fn stages_never_import_each_other() {
-    assert_eq!(stages(), ["balance", "construct", "fit", "narrow", "order", "place", "refit", "traverse"]);
+    assert_eq!(
+        stages(),
+        ["balance", "construct", "fit", "narrow", "order", "place", "refit", "status", "traverse"]
+    );
     assert_eq!(across_stages(&rust(&["kernels/src/stage"])), NONE);
 }
 

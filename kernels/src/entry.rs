@@ -196,5 +196,5 @@ kernels! {
     order_gather_pair: order::gather::<Pair, B>, [OrderArgs<Pair>], WIDE, 0;
     order_gather_hit: order::gather::<Hit, B>, [OrderArgs<Hit>], WIDE, 0;
     order_gather_near: order::gather::<NearHit, B>, [OrderArgs<NearHit>], WIDE, 0;
-    frame_status: status::status, [StatusArgs], NARROW, 0;
+    status_frame: status::status, [StatusArgs], NARROW, 0;
 }

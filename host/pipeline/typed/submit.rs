@@ -13,7 +13,7 @@ use crate::pipeline::timing::{Stage, Stages};
 use crate::pipeline::typed::Found;
 use crate::pipeline::volumes::Kernels;
 use nearmiss_kernels::abi::{FrameStatus, NO_LIST, Room, StatusArgs, counter, seen};
-use nearmiss_kernels::entry::frame_status;
+use nearmiss_kernels::entry::status_frame;
 
 /// What such a frame needs beside what every frame has.
 pub struct Submission {
@@ -146,6 +146,6 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
             first_at: at(0),
             second_at: at(1),
         };
-        launch::blocks::<frame_status>(&self.device, 1, &args)
+        launch::blocks::<status_frame>(&self.device, 1, &args)
     }
 }

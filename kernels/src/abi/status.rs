@@ -33,7 +33,7 @@ pub struct Room {
 const _: () = assert!(size_of::<Room>() == 16);
 
 arguments! {
-    /// `frame_status`: whether a frame's answer is whole.
+    /// `status_frame`: whether a frame's answer is whole.
     StatusArgs {
         /// The frame's counters.
         counters: Span<u64>,
