@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::memory;
 use crate::mesh::{Body, MAX_FACES, MAX_VERTICES};
 use crate::pipeline::{self, Layout, Pipeline, Stage, Stages};
-use crate::query::{Motion, Query};
+use crate::query::Query;
 use crate::scene::Scene;
 use std::sync::Arc;
 use std::time::Instant;
@@ -20,7 +20,7 @@ use std::time::Instant;
 /// is static was built and fitted once, a rigid body costs its poses, and what no body does costs nothing.
 ///
 /// ```
-/// use nearmiss::{Body, Detector, Device, Mesh, Query, device::Backend, mesh::Positions, query::Motion, scene::Input};
+/// use nearmiss::{Body, Detector, Device, Mesh, Query, device::Backend, mesh::Positions, scene::Input};
 ///
 /// // A triangle that rests, and one whose corner falls through it.
 /// let faces = vec![[0, 1, 2], [3, 4, 5]];
@@ -30,7 +30,7 @@ use std::time::Instant;
 /// let body = Body::still(Mesh::new("two triangles", at(1.0), faces)?);
 /// let device = Device::open(Backend::Auto, None)?;
 /// // One body alone is tested against itself.
-/// let mut detector = Detector::new(device, body, Query::of(Motion::Continuous))?;
+/// let mut detector = Detector::new(device, body, Query::continuous())?;
 /// let triangles = detector.scene().ids().next().expect("a body");
 /// let contacts = detector.frame(&[(triangles, Input::Step([&at(1.0), &at(-1.0)]))])?;
 /// println!("{} contacts, first at {:?}", contacts.len(), contacts.earliest_toi());
@@ -61,8 +61,9 @@ impl Detector {
     /// in triangles; memory grows with what is found.
     ///
     /// # Errors
-    /// [`Error::Choice`] for a scene without bodies and for choices that do not go together; those of the device.
-    pub fn new(device: Device, scene: impl Into<Scene>, query: Query) -> Result<Detector, Error> {
+    /// [`Error::Choice`] for a scene without bodies and for numbers that mean nothing; those of the device.
+    pub fn new(device: Device, scene: impl Into<Scene>, query: impl Into<Query>) -> Result<Detector, Error> {
+        let query = query.into();
         query.check()?;
         let scene = scene.into();
         if scene.ids().next().is_none() {
@@ -71,10 +72,8 @@ impl Detector {
                 advice: "give one body to test against itself, or more to test against each other".into(),
             });
         }
-        let tolerance = query
-            .solver()
-            .is_certified()
-            .then(|| query.tolerance.unwrap_or_else(|| pipeline::of_edges(scene.bodies())));
+        let or_default = |asked: Option<f64>| asked.unwrap_or_else(|| pipeline::of_edges(scene.bodies()));
+        let tolerance = query.certified().map(|certified| or_default(certified.tolerance));
         let mut detector = Detector {
             device,
             scene,
@@ -99,7 +98,7 @@ impl Detector {
         let triangles: usize = bodies.iter().map(Body::face_count).sum();
         fits(triangles, bodies.iter().map(Body::vertex_count).sum())?;
         memory::require("trees and lists", triangles as u64 * OF_A_TRIANGLE)?;
-        let layout = Arc::new(Layout::new(bodies, self.query.motion != Motion::Discrete));
+        let layout = Arc::new(Layout::new(bodies, self.query.kind().is_of_features()));
         self.layout = Some(layout.clone());
         Ok(layout)
     }
@@ -111,7 +110,10 @@ impl Detector {
         if self.pipeline.is_none() && layout.may_meet() {
             let bodies = self.scene.bodies();
             self.f64s = bodies.iter().any(Body::needs_f64);
-            let query = Query { tolerance: self.tolerance, ..self.query };
+            let mut query = self.query;
+            if let Some(certified) = query.certified_mut() {
+                certified.tolerance = self.tolerance;
+            }
             let mut pipeline = pipeline::pipeline(self.device.clone(), bodies, layout, query, self.f64s)?;
             self.construct_ms = pipeline.construct()?;
             self.pipeline = Some(pipeline);
@@ -148,7 +150,7 @@ impl Detector {
         self.answered = true;
         let degraded = Degraded::of(&found);
         memory::require("the contacts", found.bytes())?;
-        let mut contacts = Contacts::new(found, &layout, self.query, (stages, degraded));
+        let mut contacts = Contacts::new(found, &layout, (stages, degraded));
         let wall = start.elapsed().as_secs_f64() * 1e3;
         contacts.stages = Stages { construct: self.construct_ms, wall, ..stages };
         Ok(contacts)
@@ -200,7 +202,7 @@ impl Detector {
         &self.query
     }
 
-    /// The tolerance of a certified solver, a length: as asked, or by default [`Query::TOLERANCE`] of the mean edge of the
+    /// The tolerance of a certified solver, a length: as asked, or by default [`Certified::TOLERANCE`](crate::query::Certified::TOLERANCE) of the mean edge of the
     /// bodies at the start, rounded down to a power of two. It stays when bodies move, come and go.
     pub fn tolerance(&self) -> Option<f64> {
         self.tolerance

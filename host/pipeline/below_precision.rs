@@ -6,7 +6,7 @@ use super::precision::Precision;
 use crate::error::Error;
 use crate::mesh::{Body, Bounds, NOTHING, Positions, union};
 use crate::pipeline::launch;
-use crate::query::{Motion, Query, Solver};
+use crate::query::{Certified, CertifiedPrecision};
 use nearmiss_kernels::abi::{BelowPrecisionArgs, Hit, Span};
 use nearmiss_kernels::math::tolerance::Tolerance;
 use rayon::prelude::*;
@@ -28,17 +28,16 @@ pub enum BelowPrecision {
 impl BelowPrecision {
     /// Of bodies where they are; none where no pair can be that large. Cost: a pass over the positions; where an earliest
     /// query's tolerance is near the precision one over the faces.
-    pub fn of(bodies: &[Body], query: &Query) -> Option<BelowPrecision> {
-        let finest = match query.solver() {
-            Solver::CertifiedF32 => f64::from(f32::INCLUSION_FINEST),
+    pub fn of(bodies: &[Body], certified: &Certified, is_earliest: bool) -> Option<BelowPrecision> {
+        let finest = match certified.precision {
+            CertifiedPrecision::F32 => f64::from(f32::INCLUSION_FINEST),
             // What f32 cannot tell is asked again in f64.
-            Solver::Certified | Solver::CertifiedF64 => f64::INCLUSION_FINEST,
-            _ => return None,
+            CertifiedPrecision::Mixed | CertifiedPrecision::F64 => f64::INCLUSION_FINEST,
         };
         // Positive, or not asked for.
-        let tolerance = query.tolerance.filter(|t| *t > 0.0)?;
+        let tolerance = certified.tolerance.filter(|t| *t > 0.0)?;
         let extent = extent(bodies);
-        if query.motion != Motion::Earliest {
+        if !is_earliest {
             return (tolerance < finest * extent).then_some(BelowPrecision::Listed { tolerance, finest });
         }
         // The two ends of an edge differ from any one point by half of its length, one or the other.

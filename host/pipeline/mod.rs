@@ -24,7 +24,7 @@ pub use layout::{Layout, Offsets};
 pub use placing::Moved;
 pub use timing::{Stage, Stages};
 pub use tolerance::{mean_side, of_edges};
-pub use typed::{Found, Hits, Pipeline};
+pub use typed::{Found, Hits, Listed, Pipeline};
 
 use crate::device::Device;
 use crate::error::Error;

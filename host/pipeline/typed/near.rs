@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::device::emulator::{Emulator, Mode};
-use crate::query::{Bv, Refit, Solver};
+use crate::query::{Bv, Certified, CertifiedPrecision, Continuous, Refit};
 use crate::samples::soup;
 use crate::scene::Scene;
 use nearmiss_kernels::bv::{Aabb, Linear, Obb};
@@ -12,13 +12,9 @@ fn certain<V: Kernels>(axes: Axes, refit: Refit, told: bool) -> usize {
     let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
     let scene = Scene::from(soup(60, 5, true));
     let bodies = scene.bodies();
-    let query = Query {
-        solver: Some(Solver::CertifiedF64),
-        refit: Some(refit),
-        tolerance: Some(1e-3),
-        separation: Some(0.1),
-        ..Query::of(Motion::Continuous)
-    };
+    let certified =
+        Certified { tolerance: Some(1e-3), separation: 0.1, ..Certified::by(CertifiedPrecision::F64) };
+    let query = Query::from(Continuous::by(certified)).with_refit(refit);
     let layout = Arc::new(Layout::new(bodies, true));
     let mut pipeline =
         TypedPipeline::<f32, V>::new(device, bodies, layout, (query, axes)).expect("a pipeline");
@@ -27,7 +23,8 @@ fn certain<V: Kernels>(axes: Axes, refit: Refit, told: bool) -> usize {
     }
     pipeline.construct().expect("trees");
     let (found, _) = pipeline.frame().expect("a frame");
-    found.hits.iter().flat_map(Hits::each).flatten().filter(|hit| hit.verdict.is_contact()).count()
+    let Listed::Hits { hits, .. } = found.listed else { panic!("a continuous query lists contacts") };
+    hits.each().into_iter().flatten().filter(|hit| hit.verdict.is_contact()).count()
 }
 
 #[test]

@@ -112,7 +112,5 @@ pub fn walk<V: Kernels>(device: &Device, query: &Query, triangles: usize) -> Res
 
 /// What a walk is told by flags of a query.
 pub fn flags(query: &Query) -> u32 {
-    // A continuous query needs adjacent pairs too: their features without a common vertex may meet.
-    let adjacent = query.adjacent || query.motion != crate::query::Motion::Discrete;
-    if adjacent { KEEP_ADJACENT } else { 0 }
+    if query.keeps_adjacent() { KEEP_ADJACENT } else { 0 }
 }

@@ -8,7 +8,7 @@ use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::pipeline::enclose::Enclosed;
 use nearmiss::pipeline::volumes::Kernels;
-use nearmiss::query::{Bv, Motion, Query, Refit};
+use nearmiss::query::{Bv, Certified, Continuous, Query, Refit};
 use nearmiss_kernels::bv::{Aabb, Axes, Contain, Linear, Obb};
 use nearmiss_kernels::math::Vec3;
 
@@ -90,10 +90,10 @@ pub fn ask_refits(device: &Device, frames: u32) -> Result<Report, Error> {
     holds::<Obb>(device, frames, (WAYS[2], Axes::PCA), all, "obb")?;
     holds::<Obb>(device, frames, (WAYS[3], Axes::CHILD), all, "obb-child")?;
     for (bv, refit) in Bv::ALL.into_iter().zip(WAYS) {
-        for motion in [Motion::Discrete, Motion::Continuous] {
-            // The default tolerance hangs on where a detector begins.
-            let tolerance = (motion == Motion::Continuous).then_some(1e-5);
-            let query = Query { bv: Some(bv), refit: Some(refit), tolerance, ..Query::of(motion) };
+        // The default tolerance hangs on where a detector begins.
+        let continuous = Continuous::by(Certified { tolerance: Some(1e-5), ..Certified::default() });
+        for query in [Query::discrete(), continuous.into()] {
+            let query = query.with_bv(bv).with_refit(refit);
             let mut detector = Detector::new(device.clone(), vec![body(0)?], query)?;
             for k in (APART..=frames).step_by(APART as usize) {
                 // The frames in between are refitted by `holds`; here the tree jumps.
@@ -106,8 +106,9 @@ pub fn ask_refits(device: &Device, frames: u32) -> Result<Report, Error> {
                     report.fail(|| {
                         let (was, is) = (found.len(), fresh.len());
                         format!(
-                            "X57 {}, {motion:?}, frame {k}: {was} contacts, {is} by a new tree",
-                            bv.name()
+                            "X57 {}, {}, frame {k}: {was} contacts, {is} by a new tree",
+                            bv.name(),
+                            query.kind()
                         )
                     });
                 }
@@ -126,10 +127,10 @@ mod tests {
     #[test]
     fn the_ribbon_asks_something() {
         let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
-        for motion in [Motion::Discrete, Motion::Continuous] {
-            let found = Detector::new(device.clone(), vec![body(500).expect("a body")], Query::of(motion));
+        for query in [Query::discrete(), Query::continuous()] {
+            let found = Detector::new(device.clone(), vec![body(500).expect("a body")], query);
             let found = found.expect("a detector").detect().expect("an answer");
-            assert!(found.len() > 3, "{motion:?}: {}", found.len());
+            assert!(found.len() > 3, "{query:?}: {}", found.len());
         }
         let at = |k| ribbon(k).into_iter().map(Vec3).collect::<Vec<_>>();
         let way = (Refit::Levels, Axes::PCA, 0.0);
