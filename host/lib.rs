@@ -37,6 +37,9 @@
 //! The folder `examples` of the repository has a program of some twenty lines for each of: a cloth, a cloth with an obstacle, a rigid
 //! pile, 1,000 environments, near pairs, a step limited by `earliest`.
 
+// A new variant shows every place that must know of it.
+#![warn(clippy::wildcard_enum_match_arm)]
+
 pub mod contacts;
 mod detector;
 pub mod device;

@@ -35,7 +35,7 @@ impl RefitPlan {
     pub fn zeroed(&self) -> usize {
         match self {
             RefitPlan::Treelets(plan) => plan.treelets.len() + TOPS,
-            _ => 0,
+            RefitPlan::Levels | RefitPlan::BottomUp(_) => 0,
         }
     }
 
@@ -46,7 +46,7 @@ impl RefitPlan {
                 let begins = plan.treelets.len() as u64;
                 [zeroed.part(0, begins), zeroed.part(begins, TOPS as u64)]
             }
-            _ => [Span::EMPTY; 2],
+            RefitPlan::Levels | RefitPlan::BottomUp(_) => [Span::EMPTY; 2],
         }
     }
 
@@ -54,7 +54,7 @@ impl RefitPlan {
     pub fn leaf_places(&self) -> Span<LeafPlace> {
         match self {
             RefitPlan::Treelets(plan) => plan.leaf_places.span(),
-            _ => Span::EMPTY,
+            RefitPlan::Levels | RefitPlan::BottomUp(_) => Span::EMPTY,
         }
     }
 
@@ -177,7 +177,7 @@ mod tests {
     fn plan(tree: &mut Tree) -> &mut Plan {
         match &mut tree.way {
             RefitPlan::Treelets(plan) => plan,
-            _ => panic!("no plan was asked for"),
+            RefitPlan::Levels | RefitPlan::BottomUp(_) => panic!("no plan was asked for"),
         }
     }
 
@@ -251,7 +251,7 @@ mod tests {
                 counts.iter_mut().for_each(|n| *n += 1);
                 arrivals.write(&counts).expect("written");
             }
-            _ => panic!("no counters were asked for"),
+            RefitPlan::Levels | RefitPlan::Treelets(_) => panic!("no counters were asked for"),
         });
         assert!(error.expect_err("noticed").to_string().contains("Merge"));
     }
