@@ -138,10 +138,11 @@ mod tests {
     use crate::device::emulator::{Emulator, Mode};
     use crate::pipeline::Layout;
     use crate::pipeline::tree::{Tree, TreeSpec};
-    use crate::pipeline::volumes::{Kernels, Volumes};
+    use crate::pipeline::volumes::Volumes;
     use crate::samples::soup;
     use nearmiss_kernels::abi::{Point, Positions};
     use nearmiss_kernels::bv::{Aabb, Axes, Obb};
+    use nearmiss_kernels::entry::Kernels;
     use nearmiss_kernels::math::Vec3;
 
     /// A tree that was refitted once, then moved and refitted again after `fault` was planted; on one thread, so that

@@ -1,5 +1,6 @@
 //! What is asked: one value, the same for the library, the command line, the benches and the tests.
 
+mod bv;
 mod certified;
 mod continuous;
 mod discrete;
@@ -10,6 +11,7 @@ mod queues;
 mod solver;
 mod tree;
 
+pub use bv::{Bv, WithVolume};
 pub use certified::{Certified, CertifiedPrecision};
 pub use continuous::{Continuous, ContinuousSolver, Earliest, Precision};
 pub use discrete::{Discrete, TriangleTest};
@@ -18,7 +20,7 @@ pub(crate) use named::named;
 pub use near::Near;
 pub use queues::{Balance, FrontShape, QueueShape, StealShape};
 pub use solver::Solver;
-pub use tree::{Bv, Refit, Traversal, Tree};
+pub use tree::{Refit, Traversal, Tree};
 
 use crate::error::Error;
 use kind::{Question, kinds};
@@ -143,8 +145,7 @@ impl Query {
 
     /// Within what distance of each other two features may be listed: of a certified solver the separation and the tolerance,
     /// of a near query its distance, of others 0. The volumes bring it all of these, whatever their shape.
-    #[doc(hidden)]
-    pub fn listed_within(&self) -> f64 {
+    pub(crate) fn listed_within(&self) -> f64 {
         self.question().listed_within()
     }
 }

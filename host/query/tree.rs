@@ -1,6 +1,6 @@
 //! How a query searches the trees. Nothing here changes an answer.
 
-use super::{FrontShape, QueryKind, QueueShape, StealShape, named};
+use super::{Bv, FrontShape, QueueShape, StealShape, named};
 use crate::error::Error;
 
 /// How the trees are searched: what every kind of query has, and what never changes an answer.
@@ -23,28 +23,6 @@ impl Tree {
             Some(Traversal::Front(shape)) => shape.queue.check(),
             Some(Traversal::PerLeaf { .. }) | None => Ok(()),
         }
-    }
-}
-
-named! {
-    /// The bounding volume of each node.
-    pub enum Bv {
-        /// Axis-aligned boxes; in a continuous query around both ends of the step.
-        Aabb = "aabb",
-        /// Boxes that move: axis-aligned at both ends of the step, in between on straight lines.
-        Linear = "linear",
-        /// Oriented boxes along the principal axes of what they hold; the seed's.
-        Obb = "obb",
-        /// Oriented boxes that keep the axes of a child: the older rule.
-        ObbChild = "obb-child",
-    }
-}
-
-impl Bv {
-    /// The fastest volume that the real scenes have (measured, `docs/performance.md`): what stands still needs no more
-    /// than a box; of what moves, boxes that move with it let a third to a tenth of the pairs through.
-    pub fn default_for(kind: QueryKind) -> Bv {
-        if kind.is_at_rest() { Bv::Aabb } else { Bv::Linear }
     }
 }
 
@@ -74,10 +52,12 @@ impl Traversal {
     /// not wait for its longest walk: plain boxes are walked leaf by leaf, with their rest shared out; of volumes whose
     /// tests cost more, fewer tests by pairs of nodes pay for the queues.
     pub fn default_for(is_gpu: bool, bv: Bv) -> Traversal {
-        match (is_gpu, bv) {
-            (false, _) => Traversal::PerLeaf { budget: None },
-            (true, Bv::Aabb) => Traversal::PerLeaf { budget: Some(Traversal::GPU_BUDGET) },
-            (true, _) => Traversal::Queue(QueueShape::native()),
+        if !is_gpu {
+            Traversal::PerLeaf { budget: None }
+        } else if bv == Bv::Aabb {
+            Traversal::PerLeaf { budget: Some(Traversal::GPU_BUDGET) }
+        } else {
+            Traversal::Queue(QueueShape::native())
         }
     }
 }

@@ -6,9 +6,9 @@ use crate::error::Error;
 use crate::pipeline::list::List;
 use crate::pipeline::order::{Order, Ordered};
 use crate::pipeline::precision::Precision;
-use crate::pipeline::volumes::Kernels;
 use bytemuck::Pod;
 use nearmiss_kernels::abi::{Hit, NearHit, Pair, counter};
+use nearmiss_kernels::entry::Kernels;
 
 /// What the kernels found, still in the numbering of the memory that all bodies share, and where it is possible in that
 /// memory.

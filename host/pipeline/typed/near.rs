@@ -2,12 +2,24 @@
 
 use super::*;
 use crate::device::emulator::{Emulator, Mode};
-use crate::query::{Bv, Certified, CertifiedPrecision, Continuous, Refit};
+use crate::query::{Bv, Certified, CertifiedPrecision, Continuous, Refit, WithVolume};
 use crate::samples::soup;
 use crate::scene::Scene;
-use nearmiss_kernels::bv::{Aabb, Linear, Obb};
 
 /// How many pairs of random triangles certainly come within a tenth, with volumes that know of it or do not.
+struct Certain {
+    refit: Refit,
+    told: bool,
+}
+
+impl WithVolume for Certain {
+    type Out = usize;
+
+    fn with<V: Kernels>(self, axes: Axes) -> usize {
+        certain::<V>(axes, self.refit, self.told)
+    }
+}
+
 fn certain<V: Kernels>(axes: Axes, refit: Refit, told: bool) -> usize {
     let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
     let scene = Scene::from(soup(60, 5, true));
@@ -29,16 +41,9 @@ fn certain<V: Kernels>(axes: Axes, refit: Refit, told: bool) -> usize {
 
 #[test]
 fn volumes_without_the_separation_lose_pairs() {
-    let all = certain::<Aabb>(Axes::PCA, Refit::Levels, true);
+    let all = Bv::Aabb.with(Certain { refit: Refit::Levels, told: true });
     for refit in [Refit::Levels, Refit::Treelets, Refit::BottomUp] {
-        let counts = |told| {
-            [
-                certain::<Aabb>(Axes::PCA, refit, told),
-                certain::<Linear>(Axes::PCA, refit, told),
-                certain::<Obb>(Axes::PCA, refit, told),
-                certain::<Obb>(Axes::CHILD, refit, told),
-            ]
-        };
+        let counts = |told| Bv::ALL.map(|bv| bv.with(Certain { refit, told }));
         assert_eq!(counts(true), [all; Bv::ALL.len()], "{refit:?}");
         assert!(counts(false).iter().all(|count| *count < all), "{refit:?}: {:?} of {all}", counts(false));
     }

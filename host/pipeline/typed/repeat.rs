@@ -4,8 +4,8 @@ use super::{Pipeline, Step, TypedPipeline};
 use crate::error::Error;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::timing::Stage;
-use crate::pipeline::volumes::Kernels;
 use nearmiss_kernels::abi::counter;
+use nearmiss_kernels::entry::Kernels;
 
 /// Stages again, on what the last frame left.
 pub trait Again {

@@ -8,13 +8,12 @@ mod steal;
 
 use super::forest::Forest;
 use super::list::GrowableOutput;
-use super::volumes::Kernels;
 use crate::device::Device;
 use crate::error::Error;
 use crate::query::{Query, Traversal};
 use front::Front;
 use nearmiss_kernels::abi::{KEEP_ADJACENT, Pair, PairArgs, Span};
-use nearmiss_kernels::entry::Entry;
+use nearmiss_kernels::entry::{Entry, Kernels};
 use per_leaf::PerLeaf;
 use queue::Queue;
 use steal::Steal;
