@@ -10,7 +10,6 @@ use criterion::{Bencher, BenchmarkId, Criterion, criterion_group, criterion_main
 use nearmiss::device::Backend;
 use nearmiss::mesh::Body;
 use nearmiss::pipeline::Stages;
-use nearmiss::query::Motion;
 use nearmiss::{Detector, Device, Mesh, Query};
 use nearmiss_lab::scene;
 use std::path::PathBuf;
@@ -35,9 +34,9 @@ fn threads() -> Vec<usize> {
     if all > 1 { vec![1, all] } else { vec![1] }
 }
 
-fn detector(body: &Body, threads: usize, motion: Motion) -> Detector {
+fn detector(body: &Body, threads: usize, query: Query) -> Detector {
     let device = Device::open(Backend::Cpu, Some(threads)).expect("a CPU");
-    let mut detector = Detector::new(device, vec![body.clone()], Query::of(motion)).expect("a detector");
+    let mut detector = Detector::new(device, vec![body.clone()], query).expect("a detector");
     // Lists grow to the demand once.
     detector.detect().expect("an answer");
     detector
@@ -48,7 +47,7 @@ fn construct(c: &mut Criterion) {
     group.sample_size(10).warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(2));
     for (name, body) in &scenes() {
         for threads in threads() {
-            let mut detector = detector(body, threads, Motion::Discrete);
+            let mut detector = detector(body, threads, Query::discrete());
             group.bench_function(BenchmarkId::new(*name, threads), |b| {
                 b.iter(|| detector.rebuild().expect("a tree"));
             });
@@ -59,19 +58,19 @@ fn construct(c: &mut Criterion) {
 
 fn frames(c: &mut Criterion) {
     let mut report = Vec::new();
-    for (motion, group) in [(Motion::Discrete, "frame discrete"), (Motion::Continuous, "frame continuous")] {
+    for (query, group) in [(Query::discrete(), "frame discrete"), (Query::continuous(), "frame continuous")] {
         let mut group = c.benchmark_group(group);
         group.sample_size(10).warm_up_time(Duration::from_millis(300));
         group.measurement_time(Duration::from_secs(3));
         for (name, body) in &scenes() {
             for threads in threads() {
-                let mut detector = detector(body, threads, motion);
+                let mut detector = detector(body, threads, query);
                 let mut seen = Vec::new();
                 group
                     .bench_function(BenchmarkId::new(*name, threads), |b| frame(b, &mut detector, &mut seen));
                 // Nothing was timed where a filter left this one out.
                 if !seen.is_empty() {
-                    report.push((*name, motion, threads, seen));
+                    report.push((*name, query.kind(), threads, seen));
                 }
             }
         }
@@ -79,12 +78,12 @@ fn frames(c: &mut Criterion) {
     }
     println!("medians in ms, of the stages by their own clocks");
     println!("scene,query,threads,runs,fit,refit,traverse,narrow,frame");
-    for (name, motion, threads, seen) in &report {
+    for (name, kind, threads, seen) in &report {
         let stages: [fn(&Stages) -> f64; 5] =
             [|s| s.fit, |s| s.refit, |s| s.traverse, |s| s.narrow, |s| s.total];
         let medians =
             stages.map(|stage| median(seen.iter().map(stage).collect())).map(|ms| format!("{ms:.3}"));
-        println!("{name},{motion:?},{threads},{},{}", seen.len(), medians.join(","));
+        println!("{name},{kind:?},{threads},{},{}", seen.len(), medians.join(","));
     }
 }
 
@@ -94,7 +93,7 @@ fn hard_frames(c: &mut Criterion) {
     let mut group = c.benchmark_group("hard");
     group.sample_size(10).warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(2));
     for (name, body) in hard::hard(1) {
-        let (mut detector, mut seen) = (detector(&body, 1, Motion::Continuous), Vec::new());
+        let (mut detector, mut seen) = (detector(&body, 1, Query::continuous()), Vec::new());
         let candidates = detector.detect().expect("an answer").candidates;
         group.bench_function(name, |b| frame(b, &mut detector, &mut seen));
         if !seen.is_empty() {

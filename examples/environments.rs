@@ -3,7 +3,7 @@
 mod shapes;
 
 use nearmiss::scene::{Input, Meets, Pose, Scene};
-use nearmiss::{Body, Detector, Device, Error, Query, device::Backend, query::Motion};
+use nearmiss::{Body, Detector, Device, Error, Query, device::Backend};
 
 fn main() -> Result<(), Error> {
     let mut scene = Scene::new();
@@ -13,7 +13,7 @@ fn main() -> Result<(), Error> {
         arms.push(scene.add(Body::rigid(shapes::sheet(16, |x, y| [x, y, 0.1 * x])?).with(meets)));
         scene.add(Body::fixed(shapes::sheet(16, |x, y| [2.0 * x, 2.0 * y, 0.0])?).with(meets));
     }
-    let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene, Query::of(Motion::Discrete))?;
+    let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene, Query::discrete())?;
     for frame in 0..5 {
         let lift = |world: usize| 0.0001 * (world * (frame + 1)) as f64 - 0.05;
         let poses = |world| Input::Pose(Pose::at([0.01, 0.02, lift(world)]));

@@ -3,14 +3,14 @@
 mod shapes;
 
 use nearmiss::scene::{BodyId, Input, Pose, Scene};
-use nearmiss::{Body, Detector, Device, Error, Query, device::Backend, query::Motion};
+use nearmiss::{Body, Detector, Device, Error, Query, device::Backend};
 
 fn main() -> Result<(), Error> {
     let mut scene = Scene::new();
     let cubes: Vec<BodyId> =
         (0..500).map(|_| Ok(scene.add(Body::rigid(shapes::cube(1.0)?)))).collect::<Result<_, Error>>()?;
     let ground = scene.add(Body::fixed(shapes::sheet(50, |x, y| [20.0 * x, 20.0 * y, 0.0])?));
-    let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene, Query::of(Motion::Discrete))?;
+    let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene, Query::discrete())?;
     for frame in 0..5 {
         let sunk = 0.05 * f64::from(frame);
         let at = |i: usize| [i % 10, i / 10 % 10, i / 100].map(|k| 1.1 * k as f64 + 0.6 - sunk);

@@ -71,6 +71,7 @@ pub enum Error {
 }
 
 impl From<nearmiss_emulator::Error> for Error {
+    #[allow(clippy::wildcard_enum_match_arm, reason = "the emulator's errors may grow; each rule is one")]
     fn from(error: nearmiss_emulator::Error) -> Self {
         use nearmiss_emulator::Error as E;
         match error {
@@ -91,7 +92,11 @@ impl Error {
         match self {
             Error::Choice { .. } => 2,
             Error::Input { .. } => 3,
-            _ => 4,
+            Error::Output { .. }
+            | Error::Device { .. }
+            | Error::OutOfMemory { .. }
+            | Error::Stamp { .. }
+            | Error::Bug { .. } => 4,
         }
     }
 }

@@ -8,14 +8,14 @@
 //!
 //! ```
 //! use nearmiss::scene::{Input, Meets, Scene};
-//! use nearmiss::{Body, Detector, Device, Mesh, Query, device::Backend, mesh::Positions, query::Motion};
+//! use nearmiss::{Body, Detector, Device, Mesh, Query, device::Backend, mesh::Positions};
 //!
 //! let triangle = |z: f32| Positions::F32(vec![[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]]);
 //! let mesh = |name, z| Mesh::new(name, triangle(z), vec![[0, 1, 2]]);
 //! let mut scene = Scene::new();
 //! let cloth = scene.add(Body::still(mesh("cloth", 0.5)?).with(Meets::and_itself()));
 //! let table = scene.add(Body::fixed(mesh("table", 0.0)?));
-//! let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene, Query::of(Motion::Continuous))?;
+//! let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene, Query::continuous())?;
 //! for step in 0..4 {
 //!     let [t0, t1] = [step, step + 1].map(|k| triangle(0.5 - 0.2 * k as f32));
 //!     let found = detector.frame(&[(cloth, Input::Step([&t0, &t1]))])?;
@@ -29,9 +29,9 @@
 //!
 //! | to ask | give |
 //! | --- | --- |
-//! | which triangles touch now | [`Query::of`]`(`[`Motion::Discrete`](query::Motion::Discrete)`)` |
-//! | what meets in a step, and when first | [`Motion::Continuous`](query::Motion::Continuous) |
-//! | how far a step may go | [`Motion::Earliest`](query::Motion::Earliest) |
+//! | which triangles touch now | [`Query::discrete`] |
+//! | what meets in a step, and when first | [`Query::continuous`] |
+//! | how far a step may go | [`Query::earliest`] |
 //! | which features are within a distance, how far and where | [`Query::near`] |
 //!
 //! A simulator whose data lie on the GPU lends its stream ([`Device::borrow`]) and its arrays
@@ -39,6 +39,9 @@
 //!
 //! The folder `examples` of the repository has a program of some twenty lines for each of: a cloth, a cloth with an obstacle, a rigid
 //! pile, 1,000 environments, near pairs, a step limited by `earliest`, and frames of what lies on the device.
+
+// A new variant shows every place that must know of it.
+#![warn(clippy::wildcard_enum_match_arm)]
 
 pub mod contacts;
 mod detector;

@@ -3,7 +3,7 @@
 mod support;
 
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::Motion;
+use nearmiss::query::{Discrete, TriangleTest};
 use nearmiss::{Error, Query};
 use nearmiss_lab::scene::{self, ANIMATIONS, Animation, Options, animation, animation_with};
 use support::{ask, engine};
@@ -128,7 +128,7 @@ fn meeting(name: &str, contact: bool, frames: u64) -> Vec<usize> {
     for _ in 0..frames {
         animation.advance(1).expect("a frame");
         let body = Body::still(animation.mesh().expect("a mesh"));
-        let query = Query { adjacent: true, ..Query::of(Motion::Discrete) };
+        let query = Query::from(Discrete::by(TriangleTest::Exact { adjacent: true }));
         found.push(ask(engine(), vec![body], query).len());
     }
     found

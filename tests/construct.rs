@@ -3,7 +3,6 @@
 mod support;
 
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::Motion;
 use nearmiss::{Detector, Query};
 use nearmiss_lab::scene;
 use support::{ORDERS, engine, sanitizer};
@@ -16,8 +15,7 @@ fn far() -> Body {
 
 /// Depth of the body's tree, after all volumes are set and everything is checked.
 fn depth(device: nearmiss::Device, body: Body) -> usize {
-    let mut detector =
-        Detector::new(device, vec![body, far()], Query::of(Motion::Discrete)).expect("a detector");
+    let mut detector = Detector::new(device, vec![body, far()], Query::discrete()).expect("a detector");
     assert!(detector.detect().expect("an answer").is_empty(), "nothing is far away");
     detector.check_trees().expect("a sound tree");
     detector.depths()[0]

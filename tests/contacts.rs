@@ -4,19 +4,15 @@ mod support;
 mod truth;
 
 use nearmiss::Contacts;
-use nearmiss::Query;
 use nearmiss::contacts::{Kind, Status};
 use nearmiss::mesh::{Body, Topology};
-use nearmiss::query::{Bv, Motion, Solver};
+use nearmiss::query::{Bv, QueryKind, Solver};
+use support::asked::by;
 use support::{ask, engine};
 use truth::frames::{BALLS, CLOTH, Row, Scene, difference, found, later};
 
-fn asking(motion: Motion, solver: Solver) -> Query {
-    Query { solver: Some(solver), ..Query::of(motion) }
-}
-
-fn asked(body: &Body, motion: Motion, solver: Solver) -> Contacts {
-    ask(engine(), vec![body.clone()], asking(motion, solver))
+fn asked(body: &Body, motion: QueryKind, solver: Solver) -> Contacts {
+    ask(engine(), vec![body.clone()], by(motion, solver))
 }
 
 /// Most errors of the f32 cubic; origin: measured with this test (it is deterministic), no room above.
@@ -31,7 +27,7 @@ struct Bounds {
 /// A certified solver misses nothing, and what it calls certain is listed; of what it leaves unresolved at most four in a
 /// million candidates are no contacts. No time is late, and what is certain has happened by the end of its interval.
 fn certified(scene: &Scene, body: &Body, truth: &[Row], solver: Solver, cubic: &Contacts) -> Contacts {
-    let answer = asked(body, Motion::Continuous, solver);
+    let answer = asked(body, QueryKind::Continuous, solver);
     let errors = difference(&found(&answer), truth);
     let sure: Vec<Row> = rows(&answer, |status| status == Status::Certified);
     let unresolved = rows(&answer, |status| status == Status::Unresolved).len();
@@ -67,7 +63,7 @@ fn rows(answer: &Contacts, status: impl Fn(Status) -> bool) -> Vec<Row> {
 
 /// The earliest by a certified solver is the least of all, not late, and early by little.
 fn certified_earliest(scene: &Scene, body: &Body, all: &Contacts) {
-    let answer = asked(body, Motion::Earliest, Solver::Certified);
+    let answer = asked(body, QueryKind::Earliest, Solver::Certified);
     assert_eq!((answer.earliest_toi(), answer.unresolved), (all.earliest_toi(), all.unresolved));
     let toi = answer.earliest_toi().expect("a contact");
     println!("{}: earliest {toi:e}, certified; exactly {:e}", scene.name, scene.earliest);
@@ -77,12 +73,14 @@ fn certified_earliest(scene: &Scene, body: &Body, all: &Contacts) {
 /// With a budget of two boxes nothing is lost; and nothing changes, as these frames need no search by boxes.
 fn starved(scene: &Scene, body: &Body, truth: &[Row]) {
     for solver in [Solver::Certified, Solver::CertifiedF32, Solver::CertifiedF64] {
-        let query = Query { boxes: Some(2), ..asking(Motion::Continuous, solver) };
+        let query = support::asked::certified(by(QueryKind::Continuous, solver), |certified| {
+            certified.budget = Some(2)
+        });
         let answer = ask(engine(), vec![body.clone()], query);
         assert_eq!(difference(&found(&answer), truth).missed, [], "{}, {solver:?}", scene.name);
         assert_eq!(
             answer.hash(),
-            asked(body, Motion::Continuous, solver).hash(),
+            asked(body, QueryKind::Continuous, solver).hash(),
             "{}, {solver:?}",
             scene.name
         );
@@ -91,12 +89,9 @@ fn starved(scene: &Scene, body: &Body, truth: &[Row]) {
 
 /// The f64 cubic finds what is listed and no more, among the candidates that there are.
 fn double(scene: &Scene, body: &Body, truth: &[Row]) -> Contacts {
-    let answer = asked(body, Motion::Continuous, Solver::CubicF64);
-    let boxes = ask(
-        engine(),
-        vec![body.clone()],
-        Query { bv: Some(Bv::Aabb), ..asking(Motion::Continuous, Solver::CubicF64) },
-    );
+    let answer = asked(body, QueryKind::Continuous, Solver::CubicF64);
+    let boxes =
+        ask(engine(), vec![body.clone()], by(QueryKind::Continuous, Solver::CubicF64).with_bv(Bv::Aabb));
     // The same whatever volumes brought the triangles, and fewer than boxes swept over the whole step overlap in.
     assert_eq!(boxes.candidates_vf_ee, scene.near, "candidates of {}", scene.name);
     assert_eq!(answer.candidates_vf_ee, scene.near, "candidates of {}", scene.name);
@@ -113,7 +108,7 @@ fn double(scene: &Scene, body: &Body, truth: &[Row]) -> Contacts {
 
 /// The f32 cubic's errors stay within what was measured.
 fn single(scene: &Scene, body: &Body, truth: &[Row], double: &Contacts, most: &Bounds) {
-    let answer = asked(body, Motion::Continuous, Solver::CubicF32);
+    let answer = asked(body, QueryKind::Continuous, Solver::CubicF32);
     assert_eq!(answer.candidates_vf_ee, double.candidates_vf_ee, "candidates do not depend on the solver");
     let errors = difference(&found(&answer), truth);
     let (missed, invented) = (errors.missed.len(), errors.invented.len());
@@ -129,7 +124,7 @@ fn single(scene: &Scene, body: &Body, truth: &[Row], double: &Contacts, most: &B
 
 /// The earliest contact is the first of all of them.
 fn earliest(scene: &Scene, body: &Body, all: &Contacts) {
-    let earliest = asked(body, Motion::Earliest, Solver::CubicF64).earliest_toi();
+    let earliest = asked(body, QueryKind::Earliest, Solver::CubicF64).earliest_toi();
     assert_eq!(earliest, all.earliest_toi(), "one answer, asked in two ways");
     let toi = earliest.expect("a contact");
     println!("{}: earliest {toi:e}, exactly {:e}", scene.name, scene.earliest);
@@ -198,7 +193,7 @@ fn edges_are_numbered_as_in_the_lists() {
 #[test]
 fn the_comparison_can_fail() {
     let body = nearmiss_lab::scene::scene("draped", 2000, 1).expect("a scene");
-    let rows = found(&asked(&body, Motion::Continuous, Solver::CubicF64));
+    let rows = found(&asked(&body, QueryKind::Continuous, Solver::CubicF64));
     assert!(rows.len() > 10);
     let same = difference(&rows, &rows);
     assert!(same.missed.is_empty() && same.invented.is_empty());

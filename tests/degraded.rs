@@ -6,11 +6,12 @@ mod support;
 
 use nearmiss::contacts::{Contact, Degraded, Status};
 use nearmiss::mesh::{Body, Mesh};
-use nearmiss::query::{FrontShape, Motion, Solver, Traversal};
+use nearmiss::query::{FrontShape, QueryKind, Solver, Traversal};
 use nearmiss::{Contacts, Detector, Device, Error, Query};
 use nearmiss_lab::scene;
 use shrinking::SHRINKING;
 use std::collections::BTreeMap;
+use support::asked::{certified, with_tolerance};
 use support::{ask, engine, sanitizer};
 
 fn soup() -> Vec<Body> {
@@ -22,7 +23,7 @@ fn shrinking() -> Vec<Body> {
 }
 
 fn by(solver: Solver) -> Query {
-    Query { solver: Some(solver), ..Query::of(Motion::Continuous) }
+    support::asked::by(QueryKind::Continuous, solver)
 }
 
 /// All contacts of the one are in the other, as early or earlier.
@@ -51,7 +52,7 @@ fn an_answer_that_is_all_that_was_asked_says_nothing() {
 
 #[test]
 fn a_budget_that_ends_is_told() {
-    let by = |solver| Query { tolerance: Some(4e-3), ..by(solver) };
+    let by = |solver| with_tolerance(by(solver), 4e-3);
     let truth = ask(engine(), shrinking(), by(Solver::Certified));
     let met =
         |all: &Contacts| all.contacts().iter().filter(|c| c.toi <= 0.0625 && c.toi_hi >= 0.0625).count();
@@ -60,7 +61,7 @@ fn a_budget_that_ends_is_told() {
     for solver in [Solver::Certified, Solver::CertifiedF64] {
         for boxes in [1, 2] {
             for device in [engine(), sanitizer(support::ORDERS[2])] {
-                let all = ask(device, shrinking(), Query { boxes: Some(boxes), ..by(solver) });
+                let all = ask(device, shrinking(), certified(by(solver), |all| all.budget = Some(boxes)));
                 none_is_lost(&truth, &all);
                 assert!(met(&all) > 0, "{:?}", all.contacts());
                 let ended = all.degraded().iter().find_map(|reason| match reason {
@@ -78,7 +79,8 @@ fn a_budget_that_ends_is_told() {
             }
         }
         // Not told apart, but told.
-        let first = Query { motion: Motion::Earliest, boxes: Some(1), ..by(solver) };
+        let first = with_tolerance(support::asked::by(QueryKind::Earliest, solver), 4e-3);
+        let first = certified(first, |all| all.budget = Some(1));
         let first = ask(engine(), shrinking(), first);
         assert!(first.degraded().contains(&Degraded::Unresolved { pairs: first.unresolved }));
         assert!(first.unresolved > 0 && first.earliest_toi() <= truth.earliest_toi());
@@ -105,7 +107,7 @@ fn what_touches_without_passing_is_told() {
 #[test]
 fn a_tolerance_below_the_precision_is_told() {
     let told_by = |device, solver, motion, tolerance| {
-        let query = Query { tolerance: Some(tolerance), motion, ..by(solver) };
+        let query = with_tolerance(support::asked::by(motion, solver), tolerance);
         let all = ask(device, soup(), query);
         let told = all.degraded().iter().find_map(|reason| match reason {
             Degraded::ToleranceBelowPrecision { pairs } => Some(*pairs),
@@ -117,30 +119,29 @@ fn a_tolerance_below_the_precision_is_told() {
     for (solver, tolerance) in
         [(Solver::CertifiedF32, 1e-9), (Solver::Certified, 1e-18), (Solver::CertifiedF64, 1e-18)]
     {
-        let (pairs, listed) = told(solver, Motion::Continuous, tolerance);
+        let (pairs, listed) = told(solver, QueryKind::Continuous, tolerance);
         assert_eq!(pairs, Some(Some(listed)), "{solver:?}: no pair here is small enough");
-        assert_eq!(told(solver, Motion::Earliest, tolerance).0, Some(None), "{solver:?}");
+        assert_eq!(told(solver, QueryKind::Earliest, tolerance).0, Some(None), "{solver:?}");
         // All that the precision gives is what was asked; or what it can tell.
         for enough in [0.0, 1e-4] {
-            assert_eq!(told(solver, Motion::Continuous, enough).0, None, "{solver:?}");
-            assert_eq!(told(solver, Motion::Earliest, enough).0, None, "{solver:?}");
+            assert_eq!(told(solver, QueryKind::Continuous, enough).0, None, "{solver:?}");
+            assert_eq!(told(solver, QueryKind::Earliest, enough).0, None, "{solver:?}");
         }
     }
     // A tolerance that large pairs cannot have and small ones can.
-    let (some, listed) = told(Solver::CertifiedF32, Motion::Continuous, 1.3e-6);
+    let (some, listed) = told(Solver::CertifiedF32, QueryKind::Continuous, 1.3e-6);
     assert!(some.flatten().is_some_and(|some| 0 < some && some < listed), "{some:?} of {listed}");
     for device in support::machines() {
-        assert_eq!(told_by(device, Solver::CertifiedF32, Motion::Continuous, 1.3e-6), (some, listed));
+        assert_eq!(told_by(device, Solver::CertifiedF32, QueryKind::Continuous, 1.3e-6), (some, listed));
     }
 }
 
 #[test]
 fn lists_that_grew_are_counted_once_and_degrade_nothing() {
-    for motion in [Motion::Discrete, Motion::Continuous] {
+    for motion in [QueryKind::Discrete, QueryKind::Continuous] {
         let bodies =
-            vec![scene::identical(if motion == Motion::Discrete { 150 } else { 60 }).expect("a scene")];
-        let solver = if motion == Motion::Discrete { Solver::Exact } else { Solver::CubicF64 };
-        let query = Query { motion, ..by(solver) };
+            vec![scene::identical(if motion == QueryKind::Discrete { 150 } else { 60 }).expect("a scene")];
+        let query = if motion == QueryKind::Discrete { Query::discrete() } else { by(Solver::CubicF64) };
         let mut detector = Detector::new(engine(), bodies, query).expect("a detector");
         let first = detector.detect().expect("an answer");
         let times = detector.reruns();
@@ -158,8 +159,7 @@ fn a_front_that_is_dropped_is_told() {
     let bodies = [scene::soup(400, 7, false), scene::soup(400, 8, false)].map(|body| body.expect("a scene"));
     let shape = FrontShape { drop: true, prune_every: 0, ..FrontShape::native() };
     let told = |drop| {
-        let walk = Some(Traversal::Front(FrontShape { drop, ..shape }));
-        let query = Query { traversal: walk, ..Query::of(Motion::Discrete) };
+        let query = Query::discrete().with_traversal(Traversal::Front(FrontShape { drop, ..shape }));
         let mut detector = Detector::new(engine(), vec![bodies[0].clone()], query).expect("a detector");
         let frames = (0..4).map(|i| {
             let points = bodies[i % 2].positions_t0().clone();
@@ -177,7 +177,7 @@ fn a_front_that_is_dropped_is_told() {
 /// What was counted for one frame is not told of the next, nor is what the bodies were before they moved.
 #[test]
 fn each_frame_is_told_by_itself() {
-    let query = Query { tolerance: Some(1.3e-6), boxes: Some(2), ..by(Solver::CertifiedF32) };
+    let query = certified(with_tolerance(by(Solver::CertifiedF32), 1.3e-6), |all| all.budget = Some(2));
     let frames = [scene::soup(60, 5, true), scene::soup(60, 6, true), scene::soup(60, 5, true)];
     let mut told = Vec::new();
     let mut detector = Detector::new(engine(), soup(), query).expect("a detector");
@@ -198,10 +198,10 @@ fn each_frame_is_told_by_itself() {
 #[test]
 fn memory_that_ends_is_an_error() {
     let bodies = || vec![scene::identical(150).expect("a scene")];
-    let ways = [Query::of(Motion::Discrete), by(Solver::CubicF32), by(Solver::Certified)];
+    let ways = [Query::discrete(), by(Solver::CubicF32), by(Solver::Certified)];
     for (query, bodies) in ways
         .into_iter()
-        .map(|query| (query, if query.motion == Motion::Discrete { bodies() } else { soup() }))
+        .map(|query| (query, if query.kind() == QueryKind::Discrete { bodies() } else { soup() }))
     {
         let device = engine();
         let truth = ask(device.clone(), bodies.clone(), query);
@@ -230,7 +230,10 @@ fn memory_that_ends_is_an_error() {
             }
         }
         assert!(answered > 0 && built > 0, "{answered} {refused} {built}");
-        assert!(refused > 0 || query.motion != Motion::Discrete, "lists that grow were refused: {refused}");
+        assert!(
+            refused > 0 || query.kind() != QueryKind::Discrete,
+            "lists that grow were refused: {refused}"
+        );
     }
 }
 

@@ -3,7 +3,6 @@
 mod support;
 
 use nearmiss::mesh::Body;
-use nearmiss::query::Motion;
 use nearmiss::{Contacts, Query};
 use support::{ORDERS, ask, engine, mesh, rows, sanitizer, ways};
 
@@ -26,7 +25,7 @@ fn difference(found: &[[u32; 2]], truth: &[[u32; 2]]) -> Option<String> {
 }
 
 fn discrete(device: nearmiss::Device, bodies: Vec<Body>) -> Contacts {
-    ask(device, bodies, Query::of(Motion::Discrete))
+    ask(device, bodies, Query::discrete())
 }
 
 /// Meshes (one against itself, two against each other), the list of their pairs, and whether the sanitizer, which
@@ -71,7 +70,7 @@ fn every_way_finds_the_exact_pairs() {
         let (bodies, truth) = (bodies(meshes), listed(pairs));
         // Every volume with every walk; the refits take turns. Of the large sets a few.
         let turn = |i: usize| i % 3 == i / 3 % 3 && (small || i.is_multiple_of(5));
-        for (i, way) in ways(Query::of(Motion::Discrete)).enumerate().filter(|(i, _)| turn(*i)) {
+        for (i, way) in ways(Query::discrete()).enumerate().filter(|(i, _)| turn(*i)) {
             let found = ask(engine(), bodies.clone(), way);
             assert_eq!(difference(&found.triangles(), &truth), None, "{meshes:?}, way {i}: {way:?}");
         }

@@ -5,10 +5,11 @@ mod support;
 
 use nearmiss::contacts::{Contact, Status};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Bv, Motion, Solver};
+use nearmiss::query::{Bv, QueryKind, Solver};
 use nearmiss::{Contacts, Detector, Query};
 use nearmiss_lab::scene;
 use std::collections::BTreeMap;
+use support::asked::{by, certified, of};
 use support::{ask, engine, sanitizer, ways};
 
 /// The coordinates of a soup reach to about 1; the powers of two to beyond 2^60, half way, and just below the end of f32.
@@ -63,19 +64,19 @@ fn fault(truth: &Contacts, found: &Contacts) -> Option<String> {
 
 #[test]
 fn every_choice_answers_floats_of_any_size() {
-    for motion in [Motion::Discrete, Motion::Continuous] {
-        let body = soup(motion == Motion::Continuous);
-        let truth = ask(engine(), vec![body.clone()], Query::of(motion));
+    for motion in [QueryKind::Discrete, QueryKind::Continuous] {
+        let body = soup(motion == QueryKind::Continuous);
+        let truth = ask(engine(), vec![body.clone()], of(motion));
         assert!(truth.len() > 3, "{} contacts", truth.len());
         for power in POWERS {
             let large = times(&body, power);
             assert_eq!(large.positions_t0().is_f64(), power > 60);
-            for query in ways(Query::of(motion)) {
+            for query in ways(of(motion)) {
                 let found = ask(engine(), vec![large.clone()], query);
                 assert_eq!(fault(&truth, &found), None, "2^{power}, {query:?}");
             }
             for bv in Bv::ALL {
-                let query = Query { bv: Some(bv), ..Query::of(motion) };
+                let query = of(motion).with_bv(bv);
                 let seen = ask(sanitizer(support::ORDERS[2]), vec![large.clone()], query);
                 assert_eq!(
                     seen.answer,
@@ -95,8 +96,8 @@ fn in_doubles_the_times_are_the_same_bits() {
         |p: &Positions| Mesh::new("f64", Positions::F64(p.to_f64()), body.faces().to_vec()).expect("a mesh");
     let [t0, t1] = body.ends().map(mesh);
     let doubles = Body::moving(t0, t1).expect("two frames");
-    for motion in [Motion::Continuous, Motion::Earliest] {
-        let query = Query { solver: Some(Solver::CertifiedF64), ..Query::of(motion) };
+    for motion in [QueryKind::Continuous, QueryKind::Earliest] {
+        let query = by(motion, Solver::CertifiedF64);
         let truth = ask(engine(), vec![doubles.clone()], query);
         for power in POWERS {
             assert_eq!(ask(engine(), vec![times(&body, power)], query).answer, truth.answer, "2^{power}");
@@ -107,19 +108,19 @@ fn in_doubles_the_times_are_the_same_bits() {
 #[test]
 fn a_separation_of_any_size() {
     let body = soup(true);
-    let near = |power: i32| Query { separation: Some(2f64.powi(power - 6)), ..Query::of(Motion::Continuous) };
+    let apart = |separation| certified(Query::continuous(), |certified| certified.separation = separation);
+    let near = |power: i32| apart(2f64.powi(power - 6));
     let truth = ask(engine(), vec![body.clone()], near(0));
     for power in POWERS {
         for bv in Bv::ALL {
-            let query = Query { bv: Some(bv), ..near(power) };
+            let query = near(power).with_bv(bv);
             let found = ask(engine(), vec![times(&body, power)], query);
             assert_eq!(fault(&truth, &found), None, "2^{power}, {query:?}");
         }
     }
     // All within a separation that no float holds.
-    let all = Query { separation: Some(1e60), ..Query::of(Motion::Continuous) };
-    let few =
-        |bv| ask(engine(), vec![scene::soup(6, 5, true).expect("a scene")], Query { bv: Some(bv), ..all });
+    let all = apart(1e60);
+    let few = |bv| ask(engine(), vec![scene::soup(6, 5, true).expect("a scene")], all.with_bv(bv));
     let pairs = few(Bv::Aabb).len();
     assert!(Bv::ALL.into_iter().all(|bv| few(bv).len() == pairs) && pairs == 15 * (9 + 6), "{pairs}");
 }
@@ -127,11 +128,10 @@ fn a_separation_of_any_size() {
 /// A detector goes over to doubles when the first frame or body needs them, whichever it is.
 #[test]
 fn a_session_goes_over_to_doubles() {
-    for motion in [Motion::Discrete, Motion::Continuous] {
-        let body = soup(motion == Motion::Continuous);
-        let truth = ask(engine(), vec![body.clone()], Query::of(motion));
-        let mut detector =
-            Detector::new(engine(), vec![body.clone()], Query::of(motion)).expect("a detector");
+    for motion in [QueryKind::Discrete, QueryKind::Continuous] {
+        let body = soup(motion == QueryKind::Continuous);
+        let truth = ask(engine(), vec![body.clone()], of(motion));
+        let mut detector = Detector::new(engine(), vec![body.clone()], of(motion)).expect("a detector");
         for power in [0, 40, 62, 126, 0, 100] {
             detector.move_to(0, times(&body, power)).expect("a frame of the mesh");
             let found = detector.detect().expect("an answer");
@@ -140,7 +140,7 @@ fn a_session_goes_over_to_doubles() {
         }
         let pair = vec![body.clone(), times(&body, 100)];
         let swapped = vec![times(&body, 100), body.clone()];
-        let [one, other] = [pair, swapped].map(|bodies| ask(engine(), bodies, Query::of(motion)).len());
+        let [one, other] = [pair, swapped].map(|bodies| ask(engine(), bodies, of(motion)).len());
         assert_eq!(one, other);
     }
 }
@@ -151,7 +151,7 @@ fn going_over_without_memory_is_an_error() {
     let body = soup(false);
     let device = engine();
     let mut detector =
-        Detector::new(device.clone(), vec![body.clone()], Query::of(Motion::Discrete)).expect("a detector");
+        Detector::new(device.clone(), vec![body.clone()], Query::discrete()).expect("a detector");
     detector.detect().expect("an answer");
     // From now on there is half of what floats took; doubles take more.
     let _ = device.clone().limited(device.bytes().0 / 2);
@@ -165,9 +165,9 @@ fn going_over_without_memory_is_an_error() {
 #[test]
 fn the_comparison_can_fail() {
     let body = soup(true);
-    let truth = ask(engine(), vec![body.clone()], Query::of(Motion::Continuous));
-    let other = ask(engine(), vec![soup(false)], Query::of(Motion::Discrete));
+    let truth = ask(engine(), vec![body.clone()], Query::continuous());
+    let other = ask(engine(), vec![soup(false)], Query::discrete());
     assert!(fault(&truth, &other).is_some());
-    let nearer = Query { separation: Some(0.125), ..Query::of(Motion::Continuous) };
+    let nearer = certified(Query::continuous(), |certified| certified.separation = 0.125);
     assert!(fault(&truth, &ask(engine(), vec![body], nearer)).is_some());
 }

@@ -9,7 +9,7 @@ use nearmiss::contacts::Answer;
 use nearmiss::contacts::on_device::{FrameStatus, Hit, NearHit, Pair};
 use nearmiss::device::Backend;
 use nearmiss::mesh::Positions;
-use nearmiss::query::Motion;
+use nearmiss::query::{Certified, Continuous, Earliest, QueryKind};
 use nearmiss::scene::{BodyId, DeviceInput, DeviceRows, Input, Meets, Number, Scene};
 use nearmiss::{Contacts, Detector, Device, Query};
 use nearmiss_lab::scene;
@@ -34,11 +34,13 @@ fn crowd(triangles: usize, frames: usize) -> (Scene, BodyId, Vec<f32>, Vec<f32>)
     (scene, id, start, velocity)
 }
 
-fn query(motion: Motion) -> Query {
-    match motion {
-        Motion::Near => Query::near(0.01),
-        Motion::Discrete => Query::of(motion),
-        Motion::Continuous | Motion::Earliest => Query { tolerance: Some(1e-4), ..Query::of(motion) },
+fn query(kind: QueryKind) -> Query {
+    let certified = Certified { tolerance: Some(1e-4), ..Certified::default() };
+    match kind {
+        QueryKind::Near => Query::near(0.01),
+        QueryKind::Continuous => Continuous::by(certified).into(),
+        QueryKind::Earliest => Earliest::by(certified).into(),
+        _ => Query::discrete(),
     }
 }
 
@@ -68,19 +70,19 @@ fn read(simulator: &Simulator, detector: &Detector) -> Option<Vec<[u64; 3]>> {
     }
     assert!(answer.is_ordered);
     let edges = |k: usize| u64::from(k as u64 >= status.first);
-    Some(match detector.query().motion {
-        Motion::Discrete => {
+    Some(match detector.query().kind() {
+        QueryKind::Discrete => {
             let pairs: Vec<Pair> = simulator.read(list.address, count);
             pairs.iter().map(|pair| [0, name(pair.a, pair.b), 0]).collect()
         }
-        Motion::Near => {
+        QueryKind::Near => {
             let hits: Vec<NearHit> = simulator.read(list.address, count);
             hits.iter()
                 .enumerate()
                 .map(|(k, hit)| [edges(k), name(hit.a, hit.b), hit.squared.to_bits()])
                 .collect()
         }
-        Motion::Continuous | Motion::Earliest => {
+        QueryKind::Continuous | QueryKind::Earliest => {
             let hits: Vec<Hit> = simulator.read(list.address, count);
             hits.iter()
                 .enumerate()
@@ -108,14 +110,14 @@ fn told(contacts: &Contacts) -> Vec<[u64; 3]> {
 
 /// Frames of a simulator that records its own kernel and the detector's frame once and launches them ever again; each is compared
 /// with the CPU's answer for the same vertices. How often the lists were outgrown, and how many contacts were compared.
-fn drive(motion: Motion, triangles: usize, frames: usize) -> (usize, usize) {
+fn drive(kind: QueryKind, triangles: usize, frames: usize) -> (usize, usize) {
     let (scene, id, mut t0, velocity) = crowd(triangles, frames);
     let simulator = Simulator::new(&t0, &velocity);
     let cpu = Device::open(Backend::Cpu, None).expect("threads");
-    let mut judge = Detector::new(cpu, scene.clone(), query(motion)).expect("a detector");
+    let mut judge = Detector::new(cpu, scene.clone(), query(kind)).expect("a detector");
     // SAFETY: context and stream are the simulator's, which outlives the detector.
     let device = unsafe { Device::borrow(simulator.context(), simulator.stream()) }.expect("a GPU");
-    let mut detector = Detector::new(device.clone(), scene, query(motion)).expect("a detector");
+    let mut detector = Detector::new(device.clone(), scene, query(kind)).expect("a detector");
     let ends = simulator.positions().map(|address| rows(address, t0.len() / 3));
     let mut t1 = t0.clone();
     let (mut short, mut compared) = (0, 0);
@@ -143,7 +145,7 @@ fn drive(motion: Motion, triangles: usize, frames: usize) -> (usize, usize) {
         });
         let input = [(id, Input::Step([&positions(&t0), &positions(&t1)]))];
         let wanted = told(&judge.frame(&input).expect("an answer"));
-        assert!(found == wanted, "{motion:?}, frame {frame}: {} and {}", found.len(), wanted.len());
+        assert!(found == wanted, "{kind:?}, frame {frame}: {} and {}", found.len(), wanted.len());
         compared += wanted.len();
     }
     (short, compared)
@@ -151,16 +153,16 @@ fn drive(motion: Motion, triangles: usize, frames: usize) -> (usize, usize) {
 
 #[test]
 fn a_thousand_replays_lose_nothing() {
-    for (motion, triangles, frames) in [
-        (Motion::Continuous, 400, 1_000),
-        (Motion::Discrete, 1_000, 1_000),
-        (Motion::Near, 400, 300),
-        (Motion::Earliest, 400, 300),
+    for (kind, triangles, frames) in [
+        (QueryKind::Continuous, 400, 1_000),
+        (QueryKind::Discrete, 1_000, 1_000),
+        (QueryKind::Near, 400, 300),
+        (QueryKind::Earliest, 400, 300),
     ] {
-        let (short, compared) = drive(motion, triangles, frames);
-        println!("{motion:?}: {frames} frames, outgrown {short} times, {compared} contacts compared");
-        assert!(short >= 2 || motion == Motion::Earliest, "{motion:?}: {short}");
-        assert!(compared > frames, "{motion:?}: {compared}");
+        let (short, compared) = drive(kind, triangles, frames);
+        println!("{kind:?}: {frames} frames, outgrown {short} times, {compared} contacts compared");
+        assert!(short >= 2 || kind == QueryKind::Earliest, "{kind:?}: {short}");
+        assert!(compared > frames, "{kind:?}: {compared}");
     }
 }
 
@@ -175,14 +177,14 @@ fn what_a_replay_costs() {
     });
     let velocity: Vec<f32> = vec![0.0; t0.len()];
     println!("draped, 92,230 triangles: milliseconds of the caller");
-    for motion in [Motion::Discrete, Motion::Continuous, Motion::Earliest] {
+    for kind in [QueryKind::Discrete, QueryKind::Continuous, QueryKind::Earliest] {
         let simulator = Simulator::new(&t0, &velocity);
         simulator.write(&t0, &t1);
         // SAFETY: as above.
         let device = unsafe { Device::borrow(simulator.context(), simulator.stream()) }.expect("a GPU");
         let mut scene = Scene::new();
         let id = scene.add(body.clone().with(Meets::and_itself()));
-        let mut detector = Detector::new(device, scene, Query::of(motion)).expect("a detector");
+        let mut detector = Detector::new(device, scene, query(kind)).expect("a detector");
         let ends = simulator.positions().map(|address| rows(address, t0.len() / 3));
         let timed = |run: &mut dyn FnMut()| {
             (0..3).for_each(|_| run());
@@ -209,7 +211,7 @@ fn what_a_replay_costs() {
         let replayed = timed(&mut || simulator.launch(&graph));
         assert!(detector.is_prepared());
         println!(
-            "{motion:?}: from the host {by_host:.3}, from the device {by_device:.3}, submitted and waited for {submitted:.3}, \
+            "{kind:?}: from the host {by_host:.3}, from the device {by_device:.3}, submitted and waited for {submitted:.3}, \
              submitted {enqueued:.3}, a graph and waited for {replayed:.3}"
         );
     }

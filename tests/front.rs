@@ -4,7 +4,7 @@ mod support;
 
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Bv, FrontShape, Motion, QueueShape, Traversal};
+use nearmiss::query::{Bv, FrontShape, QueryKind, QueueShape, Traversal, Tree};
 use nearmiss::{Detector, Device, Query};
 use nearmiss_lab::scene;
 
@@ -27,8 +27,8 @@ fn frames(count: usize) -> Vec<Body> {
         .collect()
 }
 
-fn query(motion: Motion, bv: Bv, traversal: Option<Traversal>) -> Query {
-    Query { bv: Some(bv), traversal, ..Query::of(motion) }
+fn query(motion: QueryKind, bv: Bv, traversal: Option<Traversal>) -> Query {
+    support::asked::of(motion).with_tree(Tree { bv: Some(bv), traversal, ..Tree::default() })
 }
 
 /// Answers and candidates of every frame.
@@ -62,7 +62,7 @@ fn every_frame_has_the_answer_that_it_has_without() {
     let (frames, device) =
         (frames(9), Device::emulator(Emulator::new(Mode::Engine, None).expect("an engine")));
     let other = scene::soup(200, 9, true).expect("a scene");
-    for motion in [Motion::Discrete, Motion::Continuous] {
+    for motion in [QueryKind::Discrete, QueryKind::Continuous] {
         for with in [None, Some(&other)] {
             for bv in Bv::ALL {
                 let want = answers(&device, query(motion, bv, None), &frames, with);
@@ -87,11 +87,11 @@ fn every_frame_has_the_answer_that_it_has_without() {
 fn under_the_microscope_in_every_order() {
     let frames = frames(4);
     let engine = Device::emulator(Emulator::new(Mode::Engine, None).expect("an engine"));
-    let want = answers(&engine, query(Motion::Discrete, Bv::Aabb, None), &frames, None);
+    let want = answers(&engine, query(QueryKind::Discrete, Bv::Aabb, None), &frames, None);
     for order in [Order::Forward, Order::Reverse, Order::Shuffled(4)] {
         let device = Device::emulator(Emulator::new(Mode::Sanitizer(order), None).expect("a sanitizer"));
         for shape in shapes() {
-            let asked = query(Motion::Discrete, Bv::Aabb, Some(Traversal::Front(shape)));
+            let asked = query(QueryKind::Discrete, Bv::Aabb, Some(Traversal::Front(shape)));
             assert_eq!(answers(&device, asked, &frames, None), want, "{order:?}, {shape:?}");
         }
     }
@@ -103,7 +103,7 @@ fn where_nothing_moves_about_half_of_the_tests_are_saved() {
     let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("an engine"));
     let body = scene::draped(4_000).expect("a scene");
     let shape = FrontShape { prune_every: 0, ..FrontShape::native() };
-    let asked = query(Motion::Discrete, Bv::Aabb, Some(Traversal::Front(shape)));
+    let asked = query(QueryKind::Discrete, Bv::Aabb, Some(Traversal::Front(shape)));
     let mut detector = Detector::new(device, vec![body], asked).expect("a detector");
     let first = detector.detect().expect("an answer");
     let second = detector.detect().expect("an answer");
@@ -121,7 +121,7 @@ fn a_front_that_grew_is_pruned_back() {
     let frames = frames(9);
     let lengths = |prune_every: u32| -> Vec<u64> {
         let shape = FrontShape { prune_every, drop: false, ..FrontShape::native() };
-        let asked = query(Motion::Discrete, Bv::Aabb, Some(Traversal::Front(shape)));
+        let asked = query(QueryKind::Discrete, Bv::Aabb, Some(Traversal::Front(shape)));
         let mut detector = Detector::new(device.clone(), vec![frames[0].clone()], asked).expect("a detector");
         frames
             .iter()
@@ -142,14 +142,14 @@ fn a_front_that_grew_is_pruned_back() {
 fn a_rebuild_forgets_the_front() {
     let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("an engine"));
     let frames = frames(5);
-    let asked = query(Motion::Discrete, Bv::Aabb, Some(Traversal::Front(FrontShape::native())));
+    let asked = query(QueryKind::Discrete, Bv::Aabb, Some(Traversal::Front(FrontShape::native())));
     let mut detector = Detector::new(device.clone(), vec![frames[0].clone()], asked).expect("a detector");
     for frame in &frames {
         detector.move_to(0, frame.clone()).expect("the same mesh");
         detector.rebuild().expect("a tree");
         let contacts = detector.detect().expect("an answer");
         assert_eq!(contacts.front.tests, 0, "nothing was kept");
-        let plain = query(Motion::Discrete, Bv::Aabb, None);
+        let plain = query(QueryKind::Discrete, Bv::Aabb, None);
         assert_eq!(answers(&device, plain, std::slice::from_ref(frame), None)[0].0, contacts.hash());
     }
 }

@@ -8,9 +8,10 @@ mod support;
 use nearmiss::contacts::Status;
 use nearmiss::device::Backend;
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Motion, Solver};
+use nearmiss::query::{QueryKind, Solver};
 use nearmiss::{Contacts, Detector, Device, Query};
 use std::time::Instant;
+use support::asked::{by, of};
 use support::{ask, data, engine};
 
 /// A test asks a fourth of the triangles.
@@ -25,7 +26,7 @@ fn total([vf, ee]: [u64; 2]) -> u64 {
 /// What the rungs had to do, and microseconds a candidate on one thread.
 fn asked(name: &str, bodies: Vec<nearmiss::Body>, solver: Solver) -> Contacts {
     let device = Device::open(Backend::Cpu, Some(1)).expect("a CPU");
-    let query = Query { solver: Some(solver), ..Query::of(Motion::Continuous) };
+    let query = by(QueryKind::Continuous, solver);
     let mut detector = Detector::new(device, bodies, query).expect("a detector");
     detector.detect().expect("an answer");
     let start = Instant::now();
@@ -77,8 +78,8 @@ fn fan(n: usize) -> Body {
 #[test]
 fn a_fan_round_one_vertex_costs_a_look_a_pair() {
     const TRIANGLES: u64 = 400;
-    for motion in [Motion::Discrete, Motion::Continuous] {
-        let all = ask(engine(), vec![fan(TRIANGLES as usize)], Query::of(motion));
+    for motion in [QueryKind::Discrete, QueryKind::Continuous] {
+        let all = ask(engine(), vec![fan(TRIANGLES as usize)], of(motion));
         let pairs = TRIANGLES * (TRIANGLES - 1) / 2;
         println!(
             "{motion:?}: {} node tests, {} triangle pairs, {} candidates",
@@ -121,7 +122,7 @@ fn what_was_slow_is_not() {
             asked(name, vec![body.clone()], solver);
         }
         // The same pairs by every machine's count of rungs.
-        let [one, two] = [0; 2].map(|_| ask(engine(), vec![body.clone()], Query::of(Motion::Continuous)));
+        let [one, two] = [0; 2].map(|_| ask(engine(), vec![body.clone()], Query::continuous()));
         assert_eq!((one.hash(), one.sliced_vf_ee), (two.hash(), two.sliced_vf_ee), "{name}");
         let sliced = total(one.sliced_vf_ee);
         // 23 slivers that meet at a grazing angle all along: a fifth, and 4 us a candidate.

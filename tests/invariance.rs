@@ -13,21 +13,22 @@ mod volumes;
 
 use nearmiss::contacts::{Contact, Kind, Status};
 use nearmiss::mesh::{Body, Mesh, Positions, Topology};
-use nearmiss::query::{Bv, Motion};
+use nearmiss::query::{Bv, QueryKind};
 use nearmiss::{Contacts, Query};
 use nearmiss_lab::scene::{self, Rng};
 use std::collections::BTreeMap;
+use support::asked::of;
 use support::{ask, engine};
 
 /// The answer of the engine.
-fn found(bodies: &[Body], motion: Motion) -> Contacts {
-    ask(engine(), bodies.to_vec(), Query::of(motion))
+fn found(bodies: &[Body], motion: QueryKind) -> Contacts {
+    ask(engine(), bodies.to_vec(), of(motion))
 }
 
 /// Pairs of features that may meet, by kind, and triangle pairs of a discrete query, between plain boxes: those are known
 /// by the features and by the leaves alone. Which pairs of features are candidates is also a matter of who owns them, and so of order.
-fn boxed(bodies: &[Body], motion: Motion) -> ([u64; 2], u64) {
-    counted(&ask(engine(), bodies.to_vec(), Query { bv: Some(Bv::Aabb), ..Query::of(motion) }))
+fn boxed(bodies: &[Body], motion: QueryKind) -> ([u64; 2], u64) {
+    counted(&ask(engine(), bodies.to_vec(), of(motion).with_bv(Bv::Aabb)))
 }
 
 fn counted(contacts: &Contacts) -> ([u64; 2], u64) {
@@ -126,7 +127,7 @@ fn assert_close(one: &BTreeMap<Named, Times>, other: &BTreeMap<Named, Times>, wh
 #[test]
 fn the_comparison_can_fail() {
     let body = scene::soup(60, 5, true).expect("a scene");
-    let contacts = found(std::slice::from_ref(&body), Motion::Continuous);
+    let contacts = found(std::slice::from_ref(&body), QueryKind::Continuous);
     let truth = named(&body, contacts.contacts(), |v| v);
     let less = contacts.contacts()[1..].to_vec();
     assert_ne!(named(&body, &less, |v| v), truth);

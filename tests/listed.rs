@@ -6,7 +6,7 @@ mod support;
 
 use nearmiss::contacts::{Kind, Status};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Bv, Motion, Solver};
+use nearmiss::query::{Bv, Certified, Continuous, Solver};
 use nearmiss::{Contacts, Query};
 use nearmiss_kernels::prim::cubic::Moving;
 use nearmiss_kernels::prim::inclusion::{Params, Verdict};
@@ -14,6 +14,7 @@ use nearmiss_lab::Features;
 use nearmiss_lab::pairs::built::built;
 use nearmiss_lab::scene::Rng;
 use std::collections::BTreeMap;
+use support::asked::certified;
 use support::brute::{Row, Seen, fault, verdict};
 use support::{ask, data, engine, moving, ways};
 
@@ -124,7 +125,7 @@ fn scenes() -> Vec<(String, Vec<Body>)> {
 }
 
 fn asking(tolerance: f64, boxes: Option<u32>) -> Query {
-    Query { tolerance: Some(tolerance), boxes, ..Query::of(Motion::Continuous) }
+    Continuous::by(Certified { tolerance: Some(tolerance), budget: boxes, ..Certified::default() }).into()
 }
 
 /// All pairs whose swept boxes meet and that the solver does not say to be apart.
@@ -226,7 +227,8 @@ fn what_once_differed_is_alike() {
         let bodies = vec![Body::moving(mesh("a0.ply"), mesh("a1.ply")).expect("two frames"), other];
         for tolerance in [None, Some(1e-1), Some(1e-3), Some(1e-6), Some(1e-9), Some(0.0)] {
             for boxes in [None, Some(1)] {
-                let query = Query { tolerance, boxes, ..Query::of(Motion::Continuous) };
+                let query =
+                    Continuous::by(Certified { tolerance, budget: boxes, ..Certified::default() }).into();
                 let said = differs(&bodies, query);
                 assert_eq!(said.err(), None, "{}, {tolerance:?}, {boxes:?}", folder.display());
             }
@@ -239,7 +241,7 @@ fn what_once_differed_is_alike() {
 fn what_is_near_a_separation_is_listed_by_every_way_or_by_none() {
     for (name, bodies) in scenes().into_iter().step_by(3) {
         for (tolerance, separation) in [(1e-2, 0.02), (1e-3, 1e-3), (0.0, 1.0 / 1024.0)] {
-            let query = Query { separation: Some(separation), ..asking(tolerance, None) };
+            let query = certified(asking(tolerance, None), |all| all.separation = separation);
             let said = differs(&bodies, query);
             assert_eq!(said.err(), None, "{name}, {tolerance:e}, {separation}");
         }
@@ -257,6 +259,6 @@ fn the_comparison_can_fail() {
     let mut less = answer.contacts().to_vec();
     less.remove(at);
     assert!(fault(&less, &near, &[]).is_some_and(|fault| fault.contains("is missed")));
-    let finer = ask(engine(), bodies, Query { bv: Some(Bv::Obb), ..asking(1e-3, None) });
+    let finer = ask(engine(), bodies, asking(1e-3, None).with_bv(Bv::Obb));
     assert_ne!(finer.hash(), answer.hash());
 }

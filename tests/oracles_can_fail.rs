@@ -11,7 +11,6 @@ mod filters;
 mod tree;
 
 use nearmiss::contacts::{Answer, Contacts, TrianglePair};
-use nearmiss::query::Motion;
 use nearmiss::scene::{BodyId, Scene};
 use nearmiss::{Device, Error, Query};
 use nearmiss_kernels::abi::Span;
@@ -234,7 +233,7 @@ fn hashes_differ(contacts: &Contacts, what: &str, fault: impl Fn(&mut Answer)) {
 
 #[test]
 fn the_hash_notices_every_fault_of_a_list_of_pairs() {
-    let contacts = ask(engine(), vec![scene::grid(2).expect("a scene")], Query::of(Motion::Discrete));
+    let contacts = ask(engine(), vec![scene::grid(2).expect("a scene")], Query::discrete());
     assert_eq!(contacts.len() as u64, scene::grid_pairs(2));
     assert_eq!(contacts.clone().hash(), contacts.hash());
     type Fault = fn(&mut Vec<TrianglePair>);
@@ -263,7 +262,7 @@ fn the_hash_notices_every_fault_of_a_list_of_pairs() {
 fn the_hash_notices_every_fault_of_a_list_of_contacts() {
     use nearmiss::contacts::{Contact, Kind};
     let scene = scene::soup(60, 5, true).expect("a scene");
-    let contacts = ask(engine(), vec![scene], Query::of(Motion::Continuous));
+    let contacts = ask(engine(), vec![scene], Query::continuous());
     assert!(contacts.len() > 10, "{}", contacts.len());
     type Fault = fn(&mut Vec<Contact>);
     let faults: [(&str, Fault); 8] = [

@@ -3,7 +3,7 @@
 mod support;
 
 use nearmiss::contacts::Status;
-use nearmiss::query::{Motion, Solver};
+use nearmiss::query::{Discrete, QueryKind, Solver, TriangleTest};
 use nearmiss::{Error, Query};
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};
@@ -14,10 +14,11 @@ use nearmiss_lab::pairs::{Answers, Options, Stored, ask, ask_triangles, mean_edg
 use nearmiss_lab::{Case, Features};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
+use support::asked::{by, with_tolerance};
 use support::machines;
 
 fn continuous() -> Query {
-    Query { tolerance: Some(1e-6), ..Query::of(Motion::Continuous) }
+    with_tolerance(Query::continuous(), 1e-6)
 }
 
 /// Features among each other, every third an edge pair; exact in f32.
@@ -43,9 +44,9 @@ fn every_case_has_the_solvers_own_answer() {
     for device in machines() {
         for filters in [false, true] {
             let how = Options { filters, ..Options::default() };
-            let query = Query { solver: Some(Solver::CertifiedF64), ..continuous() };
+            let query = with_tolerance(by(QueryKind::Continuous, Solver::CertifiedF64), 1e-6);
             let certified = ask(&device, &cases, &query, how).expect("answers");
-            let query = Query { solver: Some(Solver::CubicF64), tolerance: None, ..continuous() };
+            let query = by(QueryKind::Continuous, Solver::CubicF64);
             let cubic = ask(&device, &cases, &query, how).expect("answers");
             let params = Params::new(1e-6);
             let mut met = 0;
@@ -89,8 +90,7 @@ fn machines_and_storage_agree() {
     for device in machines() {
         for stored in [Stored::F64, Stored::F32] {
             let how = Options { filters: true, stored, repeats: 1 };
-            let one =
-                ask(&device, &cases, &Query { tolerance: Some(0.0), ..continuous() }, how).expect("answers");
+            let one = ask(&device, &cases, &with_tolerance(continuous(), 0.0), how).expect("answers");
             assert!(one.escalated.iter().all(|&n| n > 0), "{:?}", one.escalated);
             let first = first.get_or_insert(one.clone());
             assert_eq!(
@@ -126,7 +126,7 @@ fn what_cannot_be_asked_is_refused() {
         error.to_string()
     };
     let mut case = cases(1);
-    assert!(refused(&case, Query::of(Motion::Discrete), Stored::F64).contains("continuous"));
+    assert!(refused(&case, Query::discrete(), Stored::F64).contains("continuous"));
     case[0].positions_t1[3][2] = 0.1;
     assert!(refused(&case, continuous(), Stored::F32).contains("exact in f32"));
     for x in [f64::NAN, f64::INFINITY, 1e300] {
@@ -149,7 +149,7 @@ fn triangles_meet_as_the_oracle_says() {
             let exact = ask_triangles(&device, &pairs, &Query::default(), stored).expect("answers");
             assert_eq!(exact.meet, truth);
             assert!(exact.undecided > 0);
-            let moller = Query { solver: Some(Solver::Moller), ..Query::default() };
+            let moller = Discrete::by(TriangleTest::Moller).into();
             let float = ask_triangles(&device, &pairs, &moller, stored).expect("answers");
             assert_eq!(float.meet.len(), truth.len());
         }

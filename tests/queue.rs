@@ -11,7 +11,7 @@ mod sizes;
 mod words;
 
 use nearmiss::mesh::Body;
-use nearmiss::query::{Bv, Motion, QueueShape, StealShape, Traversal};
+use nearmiss::query::{Bv, QueryKind, QueueShape, StealShape, Traversal};
 use nearmiss::{Contacts, Detector, Device, Query};
 use nearmiss_lab::scene;
 use support::{ORDERS, engine, loose, sanitizer};
@@ -34,12 +34,12 @@ fn found(device: Device, bodies: &[Body], query: Query) -> (Print, Contacts) {
 }
 
 /// The query with that traversal.
-fn by(traversal: Traversal, motion: Motion) -> Query {
-    Query { traversal: Some(traversal), ..Query::of(motion) }
+fn by(traversal: Traversal, motion: QueryKind) -> Query {
+    support::asked::of(motion).with_traversal(traversal)
 }
 
 /// What a walk a leaf finds.
-fn truth(bodies: &[Body], motion: Motion) -> Print {
+fn truth(bodies: &[Body], motion: QueryKind) -> Print {
     found(engine(), bodies, by(Traversal::PerLeaf { budget: None }, motion)).0
 }
 
@@ -95,7 +95,7 @@ fn scenes() -> Vec<(&'static str, Vec<Body>)> {
 #[test]
 fn every_traversal_finds_the_same() {
     for (name, bodies) in scenes() {
-        for motion in [Motion::Discrete, Motion::Continuous] {
+        for motion in [QueryKind::Discrete, QueryKind::Continuous] {
             let truth = truth(&bodies, motion);
             for traversal in kinds() {
                 let found = found(engine(), &bodies, by(traversal, motion)).0;
@@ -108,9 +108,9 @@ fn every_traversal_finds_the_same() {
 #[test]
 fn in_any_volume() {
     for (name, bodies) in scenes() {
-        for bv in [Bv::Linear, Bv::Obb].map(Some) {
+        for bv in [Bv::Linear, Bv::Obb] {
             let ask =
-                |traversal| found(engine(), &bodies, Query { bv, ..by(traversal, Motion::Continuous) }).0.2;
+                |traversal| found(engine(), &bodies, by(traversal, QueryKind::Continuous).with_bv(bv)).0.2;
             let truth = ask(Traversal::PerLeaf { budget: None });
             for traversal in kinds() {
                 assert_eq!(ask(traversal), truth, "{name}, {bv:?}, {traversal:?}");
@@ -122,10 +122,10 @@ fn in_any_volume() {
 #[test]
 fn in_any_order_of_blocks() {
     for (name, bodies) in scenes() {
-        let truth = truth(&bodies, Motion::Discrete);
+        let truth = truth(&bodies, QueryKind::Discrete);
         for traversal in kinds() {
             for order in ORDERS {
-                let found = found(sanitizer(order), &bodies, by(traversal, Motion::Discrete)).0;
+                let found = found(sanitizer(order), &bodies, by(traversal, QueryKind::Discrete)).0;
                 assert_eq!(found, truth, "{name}, {traversal:?}, {order:?}");
             }
         }
@@ -138,7 +138,7 @@ fn a_candidate_less_or_more_is_noticed() {
     let (with, without) = (scene::identical(12).expect("a scene"), scene::identical(11).expect("a scene"));
     for traversal in kinds() {
         let print =
-            |body: &Body| found(engine(), std::slice::from_ref(body), by(traversal, Motion::Discrete)).0;
+            |body: &Body| found(engine(), std::slice::from_ref(body), by(traversal, QueryKind::Discrete)).0;
         let (one, other) = (print(&with), print(&without));
         assert!(one.0 != other.0 && one.1 != other.1 && one.2 != other.2, "{one:?} {other:?}");
     }

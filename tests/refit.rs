@@ -4,7 +4,7 @@ mod support;
 
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Bv, Motion, Refit};
+use nearmiss::query::{Bv, Refit};
 use nearmiss::{Detector, Device, Query};
 use nearmiss_lab::scene;
 use support::{ORDERS, engine, machines};
@@ -45,7 +45,7 @@ type Prints = Vec<(&'static str, u64)>;
 
 /// What construction, fit and refit left after each frame: as built, moved three times, built anew, and moved again.
 fn prints(device: Device, body: &Body, refit: Refit, bv: Bv) -> Vec<Prints> {
-    let query = Query { refit: Some(refit), bv: Some(bv), ..Query::of(Motion::Discrete) };
+    let query = Query::discrete().with_refit(refit).with_bv(bv);
     let mut detector = Detector::new(device, vec![body.clone(), far()], query).expect("a detector");
     let mut all = Vec::new();
     for turn in 0..5 {
@@ -125,7 +125,7 @@ fn machines_cannot_be_told_apart() {
 fn a_stale_volume_is_noticed() {
     let body = scene::soup(600, 2, false).expect("a scene");
     let of = |turn| {
-        let query = Query { refit: Some(Refit::Treelets), ..Query::of(Motion::Discrete) };
+        let query = Query::discrete().with_refit(Refit::Treelets);
         let mut detector = Detector::new(engine(), vec![body.clone(), far()], query).expect("a detector");
         detector.move_to(0, frame(&body, turn)).expect("a frame");
         detector.detect().expect("an answer");
@@ -153,7 +153,7 @@ fn a_stale_volume_is_noticed() {
 fn a_frame_costs_as_few_launches_as_promised() {
     let launches = |body: Body, refit| {
         let device = engine();
-        let query = Query { refit: Some(refit), ..Query::of(Motion::Discrete) };
+        let query = Query::discrete().with_refit(refit);
         let mut detector = Detector::new(device.clone(), vec![body, far()], query).expect("a detector");
         detector.detect().expect("an answer");
         let built = device.launches();

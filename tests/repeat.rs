@@ -3,7 +3,7 @@
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::Body;
 use nearmiss::pipeline::Stage;
-use nearmiss::query::{Motion, Refit};
+use nearmiss::query::Refit;
 use nearmiss::{Detector, Device, Query};
 use nearmiss_lab::scene;
 
@@ -58,7 +58,7 @@ fn a_repeated_stage_leaves_the_answer_as_it_is() {
 fn a_stage_is_repeated_where_the_body_is_now() {
     let body = scene::scene("cloth-ball", 500, 3).expect("a scene");
     for stage in [Stage::Fit, Stage::Refit, Stage::Traverse, Stage::Narrow] {
-        let query = Query::of(Motion::Continuous);
+        let query = Query::continuous();
         let mut plain = Detector::new(engine(), vec![body.clone()], query).expect("a detector");
         plain.move_to(0, later(&body)).expect("moved");
         let want = plain.detect().expect("an answer").hash();
@@ -81,7 +81,7 @@ fn every_way_to_refit_can_be_repeated() {
     let mut hashes = Vec::new();
     for device in [engine(), sanitizer()] {
         for refit in [Refit::Levels, Refit::Treelets, Refit::BottomUp] {
-            let query = Query { refit: Some(refit), ..Query::of(Motion::Discrete) };
+            let query = Query::discrete().with_refit(refit);
             let mut detector = Detector::new(device.clone(), vec![body.clone()], query).expect("a detector");
             detector.move_to(0, later(&body)).expect("moved");
             assert_eq!(detector.repeat_stage(Stage::Refit, 3).expect("runs").len(), 3);
@@ -99,8 +99,7 @@ fn every_way_to_refit_can_be_repeated() {
 #[test]
 fn a_cpu_has_no_stage_that_orders() {
     let body = scene::scene("cloth-ball", 500, 3).expect("a scene");
-    let mut detector =
-        Detector::new(engine(), vec![body], Query::of(Motion::Continuous)).expect("a detector");
+    let mut detector = Detector::new(engine(), vec![body], Query::continuous()).expect("a detector");
     assert_eq!(detector.repeat_stage(Stage::Order, 4).expect("no runs"), Vec::<f64>::new());
     assert_eq!(detector.detect().expect("an answer").stages.order, 0.0);
 }
@@ -109,7 +108,7 @@ fn a_cpu_has_no_stage_that_orders() {
 fn nothing_has_no_stages() {
     let empty = nearmiss::Mesh::new("empty", nearmiss::mesh::Positions::F32(Vec::new()), Vec::new());
     let bodies = vec![Body::still(empty.expect("a mesh"))];
-    let mut detector = Detector::new(engine(), bodies, Query::of(Motion::Discrete)).expect("a detector");
+    let mut detector = Detector::new(engine(), bodies, Query::discrete()).expect("a detector");
     for stage in STAGES {
         assert_eq!(detector.repeat_stage(stage, 4).expect("no runs"), Vec::<f64>::new());
     }

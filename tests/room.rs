@@ -6,10 +6,11 @@ mod support;
 
 use nearmiss::device::emulator::Order;
 use nearmiss::mesh::Body;
-use nearmiss::query::{Motion, Solver, Traversal};
+use nearmiss::query::{Discrete, QueryKind, Traversal, TriangleTest};
 use nearmiss::{Contacts, Detector, Device, Error, Query};
 use nearmiss_lab::scene;
 use shrinking::SHRINKING;
+use support::asked::{of, with_tolerance};
 use support::{engine, loose, moving, sanitizer};
 
 /// A first answer, the same frame again, and how often it ran again: within the first, in all.
@@ -45,13 +46,13 @@ fn all_pairs(n: u32) -> Vec<[u32; 2]> {
 #[test]
 fn many_more_pairs_than_room() {
     // 400 equal triangles: 79,800 pairs, and room for 6,400 at first (16 a triangle).
-    for solver in [Solver::Exact, Solver::Moller] {
-        let query = Query { solver: Some(solver), ..Query::of(Motion::Discrete) };
+    for test in TriangleTest::ALL {
+        let query = Discrete::by(test).into();
         let (contacts, reruns) = twice(engine(), vec![scene::identical(400).expect("a scene")], query);
-        assert!(reruns[0] > 0, "{solver:?}: the scene no longer overflows the first room: make it larger");
+        assert!(reruns[0] > 0, "{test:?}: the scene no longer overflows the first room: make it larger");
         assert_eq!(reruns[1], reruns[0], "lists stay long enough");
         assert_eq!((contacts.triangle_pairs, contacts.candidates), (79_800, 79_800));
-        if solver == Solver::Exact {
+        if test != TriangleTest::Moller {
             assert_eq!(contacts.triangles(), all_pairs(400));
         }
     }
@@ -70,7 +71,7 @@ fn more_undecided_pairs_than_room() {
     };
     let triangles: Vec<_> =
         (0..N).map(|_| [corner(0.5, 0.0), corner(-0.25, 0.5), corner(-0.25, -0.5)]).collect();
-    let (contacts, reruns) = twice(engine(), vec![loose(&triangles)], Query::of(Motion::Discrete));
+    let (contacts, reruns) = twice(engine(), vec![loose(&triangles)], Query::discrete());
     assert_eq!(contacts.triangles(), all_pairs(N));
     assert!(
         contacts.undecided > 4_096,
@@ -83,7 +84,7 @@ fn more_undecided_pairs_than_room() {
 #[test]
 fn many_more_pairs_than_room_between_two_bodies() {
     let body = || scene::identical(120).expect("a scene");
-    let (contacts, reruns) = twice(engine(), vec![body(), body()], Query::of(Motion::Discrete));
+    let (contacts, reruns) = twice(engine(), vec![body(), body()], Query::discrete());
     assert!(reruns[0] > 0, "the scene no longer overflows the first room: make it larger");
     assert!(contacts.triangles().into_iter().eq((0..120).flat_map(|a| (0..120).map(move |b| [a, b]))));
 }
@@ -101,8 +102,7 @@ fn one_pair_more_than_room() {
     // Every list has room for at least 4,096 (LEAST_ROOM in the pipeline); 91 triangles that all meet are 4,095 pairs.
     for device in [engine, || sanitizer(Order::Shuffled(4))] {
         let counts = [0, 1, 2, 3].map(|more| {
-            let (contacts, reruns) =
-                twice(device(), vec![clique_and_couples(91, more)], Query::of(Motion::Discrete));
+            let (contacts, reruns) = twice(device(), vec![clique_and_couples(91, more)], Query::discrete());
             assert_eq!((contacts.len(), contacts.triangle_pairs), (4_095 + more, 4_095 + more as u64));
             reruns[0]
         });
@@ -116,14 +116,14 @@ fn many_more_elementary_pairs_than_room() {
     // Each of 3n vertices meets n - 1 faces; each of the 9 edge pairs of each pair of triangles meets or not.
     const N: u64 = 70;
     for body in [scene::identical(N as usize).expect("a scene"), sliding(N as usize)] {
-        let (contacts, reruns) = twice(engine(), vec![body.clone()], Query::of(Motion::Continuous));
+        let (contacts, reruns) = twice(engine(), vec![body.clone()], Query::continuous());
         assert!(reruns[0] > 0, "the scene no longer overflows the first room: make it larger");
         assert_eq!(contacts.candidates_vf_ee[0], 3 * N * (N - 1));
         assert_eq!(contacts.candidates_vf_ee[1], 9 * N * (N - 1) / 2);
         assert_eq!(contacts.len() as u64, 3 * N * (N - 1) + 9 * N * (N - 1) / 2);
         assert!(contacts.contacts().iter().all(|c| c.toi == 0.0), "they touch from the start");
 
-        let (earliest, again) = twice(engine(), vec![body], Query::of(Motion::Earliest));
+        let (earliest, again) = twice(engine(), vec![body], Query::earliest());
         assert_eq!(earliest.earliest_toi(), Some(0.0));
         assert!(again[0] > 0, "the candidates overflow here as well");
     }
@@ -158,16 +158,16 @@ fn short_lists_of_what_isolation_leaves_alone() {
     // Fewer than the 4,096 that other lists have room for. None of them can be isolated, in f32 or in f64; all touch at the
     // start, which is certain.
     let body = lying(400, 18);
-    for motion in [Motion::Continuous, Motion::Earliest] {
+    for motion in [QueryKind::Continuous, QueryKind::Earliest] {
         for device in [engine(), sanitizer(Order::Shuffled(5))] {
-            let (contacts, reruns) = twice(device, vec![body.clone()], Query::of(motion));
+            let (contacts, reruns) = twice(device, vec![body.clone()], of(motion));
             for left in [contacts.escalated_vf_ee, contacts.open_vf_ee] {
                 assert!(left.iter().all(|n| *n > RUNG), "{left:?}");
             }
             assert!(contacts.candidates_vf_ee.iter().all(|n| *n <= 4_096), "{:?}", contacts.candidates_vf_ee);
             assert!(reruns[0] > 0 && contacts.sliced_vf_ee == [0, 0], "{reruns:?}");
             assert_eq!((contacts.earliest_toi(), contacts.unresolved), (Some(0.0), 0));
-            if motion == Motion::Continuous {
+            if motion == QueryKind::Continuous {
                 assert_eq!(contacts.len(), 3 * 400 + 4 * 18 * 18);
             }
         }
@@ -187,7 +187,7 @@ fn shrinking(n: usize) -> Body {
 fn a_short_list_of_what_is_cut_into_slices() {
     // 36 edges that shrink to a point on 36 others: 1,296 pairs that no sign tells apart.
     let body = shrinking(36);
-    let query = Query { tolerance: Some(4e-3), ..Query::of(Motion::Continuous) };
+    let query = with_tolerance(Query::continuous(), 4e-3);
     for device in [engine(), sanitizer(Order::Shuffled(6))] {
         let (contacts, reruns) = twice(device, vec![body.clone()], query);
         assert!(contacts.sliced_vf_ee[1] > RUNG, "{:?}", contacts.sliced_vf_ee);
@@ -200,12 +200,12 @@ fn the_microscope_sees_no_fault_in_a_frame_that_runs_again() {
     for order in support::ORDERS {
         // 100 triangles: 4,950 pairs.
         let bodies = || vec![scene::identical(100).expect("a scene")];
-        let (contacts, reruns) = twice(sanitizer(order), bodies(), Query::of(Motion::Discrete));
+        let (contacts, reruns) = twice(sanitizer(order), bodies(), Query::discrete());
         assert!(reruns[0] > 0 && contacts.triangles() == all_pairs(100), "{order:?}");
     }
     // 30 triangles: 2,610 + 3,915 elementary pairs, all of them contacts; between bodies twice as many and more.
     let (one, two) = (sliding(40), scene::identical(40).expect("a scene"));
-    let ask = |device| twice(device, vec![one.clone(), two.clone()], Query::of(Motion::Continuous));
+    let ask = |device| twice(device, vec![one.clone(), two.clone()], Query::continuous());
     let (on_engine, reruns) = ask(engine());
     assert!(reruns[0] > 0, "the scene no longer overflows the first room: make it larger");
     assert_eq!(on_engine.len(), (3 + 3 + 9) * 40 * 40);
@@ -219,10 +219,7 @@ fn units_that_find_no_room_are_walked_anyway() {
     // triangle.
     let bodies = || vec![scene::identical(150).expect("a scene")];
     for budget in [1, 2, 7] {
-        let spilling = Query {
-            traversal: Some(Traversal::PerLeaf { budget: Some(budget) }),
-            ..Query::of(Motion::Discrete)
-        };
+        let spilling = Query::discrete().with_traversal(Traversal::PerLeaf { budget: Some(budget) });
         for device in [engine(), sanitizer(Order::Shuffled(9))] {
             let mut detector = Detector::new(device, bodies(), spilling).expect("a detector");
             let contacts = detector.detect().expect("an answer");
@@ -244,8 +241,7 @@ fn lists_grow_when_a_body_moves_into_a_crowd() {
     let crowd: Vec<_> =
         apart.iter().enumerate().map(|(i, p)| [p[0] - 3.0 * (i / 3) as f32, p[1], p[2]]).collect();
     let frame = |points: &[[f32; 3]]| support::still(points, &faces);
-    let mut detector =
-        Detector::new(engine(), vec![frame(&apart)], Query::of(Motion::Discrete)).expect("a detector");
+    let mut detector = Detector::new(engine(), vec![frame(&apart)], Query::discrete()).expect("a detector");
     assert_eq!((detector.detect().expect("an answer").len(), detector.reruns()), (0, 0));
     detector.move_to(0, frame(&crowd)).expect("the same mesh");
     assert_eq!(detector.detect().expect("an answer").pairs(), all_pairs(130));

@@ -12,7 +12,7 @@ mod support;
 
 use nearmiss::contacts::{Contact, Contacts, NearPair, TrianglePair};
 use nearmiss::mesh::Positions;
-use nearmiss::query::Motion;
+use nearmiss::query::QueryKind;
 use nearmiss::scene::{BodyId, BodyKind, Input, Meets, Pose, Scene};
 use nearmiss::{Body, Detector, Mesh, Query};
 use nearmiss_lab::scene;

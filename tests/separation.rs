@@ -7,20 +7,22 @@ mod support;
 
 use nearmiss::contacts::Kind;
 use nearmiss::mesh::{Body, Positions};
-use nearmiss::query::{Motion, Solver};
+use nearmiss::query::{QueryKind, Solver};
 use nearmiss::{Detector, Query};
 use nearmiss_kernels::prim::inclusion::{Params, Verdict};
 use nearmiss_lab::scene;
 use std::collections::BTreeMap;
+use support::asked::{by, certified};
 use support::brute::{Row, SOLVERS, Seen, fault, verdict};
 use support::{ask, engine, machines, ways};
 
 /// Of every question here, a length.
 const TOLERANCE: f64 = 1e-3;
 
-fn asking(motion: Motion, solver: Solver, separation: f64) -> Query {
-    let (solver, tolerance, separation) = (Some(solver), Some(TOLERANCE), Some(separation));
-    Query { solver, tolerance, separation, ..Query::of(motion) }
+fn asking(motion: QueryKind, solver: Solver, separation: f64) -> Query {
+    certified(by(motion, solver), |certified| {
+        (certified.tolerance, certified.separation) = (Some(TOLERANCE), separation);
+    })
 }
 
 /// All pairs without a common vertex that the solver does not say to be apart: of one body, or of two.
@@ -93,10 +95,10 @@ fn nothing_within_a_separation_is_lost() {
             let mut hits = [0; 3];
             for (k, solver) in SOLVERS.into_iter().enumerate() {
                 let near = brute(&bodies, solver, separation);
-                let all = ask(engine(), bodies.clone(), asking(Motion::Continuous, solver, separation));
+                let all = ask(engine(), bodies.clone(), asking(QueryKind::Continuous, solver, separation));
                 let what = format!("{}, {solver:?}, {separation}", bodies[0].name());
                 assert_eq!(fault(all.contacts(), &near, &[]), None, "{what}");
-                let first = ask(engine(), bodies.clone(), asking(Motion::Earliest, solver, separation));
+                let first = ask(engine(), bodies.clone(), asking(QueryKind::Earliest, solver, separation));
                 let least = [&first, &all].map(|a| (a.earliest_toi().map(f64::to_bits), a.unresolved));
                 assert_eq!(least[0], least[1], "{what}");
                 hits[k] = near.values().filter(|v| v.is_contact()).count();
@@ -110,7 +112,7 @@ fn nothing_within_a_separation_is_lost() {
 #[test]
 fn every_way_and_every_machine_finds_the_same() {
     for bodies in scenes() {
-        let query = asking(Motion::Continuous, Solver::Certified, 0.03);
+        let query = asking(QueryKind::Continuous, Solver::Certified, 0.03);
         let near = brute(&bodies, Solver::Certified, 0.03);
         let truth = ask(engine(), bodies.clone(), query);
         assert_eq!(fault(truth.contacts(), &near, &[]), None);
@@ -135,15 +137,14 @@ fn every_way_and_every_machine_finds_the_same() {
 #[test]
 fn none_is_touching() {
     let prints = |separation| {
-        let query = Query { separation, ..asking(Motion::Continuous, Solver::Certified, 0.0) };
+        let query = asking(QueryKind::Continuous, Solver::Certified, separation);
         let mut detector = Detector::new(engine(), vec![soup(60)], query).expect("a detector");
         let hash = detector.detect().expect("an answer").hash();
         (hash, detector.fingerprints().expect("prints"))
     };
-    assert_eq!(prints(None), prints(Some(0.0)));
-    assert_eq!(prints(None), prints(Some(-0.0)));
-    assert_ne!(prints(None), prints(Some(0.1)));
-    let query = asking(Motion::Continuous, Solver::Certified, 0.1);
+    assert_eq!(prints(0.0), prints(-0.0));
+    assert_ne!(prints(0.0), prints(0.1));
+    let query = asking(QueryKind::Continuous, Solver::Certified, 0.1);
     let mut detector = Detector::new(engine(), vec![soup(60)], query).expect("a detector");
     detector.move_to(0, scene::soup(60, 5, true).expect("a scene")).expect("the same mesh");
     let moved = detector.detect().expect("an answer");
@@ -154,7 +155,7 @@ fn none_is_touching() {
 fn the_comparison_can_fail() {
     let near = brute(&[soup(50)], Solver::Certified, 0.03);
     let fault_of = |separation| {
-        let all = ask(engine(), vec![soup(50)], asking(Motion::Continuous, Solver::Certified, separation));
+        let all = ask(engine(), vec![soup(50)], asking(QueryKind::Continuous, Solver::Certified, separation));
         fault(all.contacts(), &near, &[])
     };
     assert_eq!(fault_of(0.03), None);
@@ -164,22 +165,14 @@ fn the_comparison_can_fail() {
 
 #[test]
 fn what_is_no_separation_is_refused() {
-    let with = |separation, query: Query| Query { separation: Some(separation), ..query };
-    let certified = asking(Motion::Continuous, Solver::Certified, 0.0);
+    let with = |separation| asking(QueryKind::Continuous, Solver::Certified, separation);
     for bad in [-1.0, -f64::MIN_POSITIVE, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        let error = with(bad, certified).check().expect_err("no length");
+        let error = with(bad).check().expect_err("no length");
         assert!(error.exit_code() == 2 && error.to_string().contains("a length from 0"), "{error}");
     }
     for good in [0.0, 5e-324, 1e-300, 1e300, f64::MAX] {
-        assert!(with(good, certified).check().is_ok());
-        let all = ask(engine(), vec![soup(20)], with(good, certified));
+        assert!(with(good).check().is_ok());
+        let all = ask(engine(), vec![soup(20)], with(good));
         assert!(good < 1.0 || all.len() > 1000, "everything is within {good}: {}", all.len());
-    }
-    for solver in Solver::ALL.into_iter().filter(|solver| !solver.is_certified()) {
-        let queries = [Query::of(Motion::Discrete), Query::of(Motion::Earliest), Query::near(1.0)];
-        let asked = queries.into_iter().find(|query| solver.answers(query.motion)).expect("a question");
-        let query = Query { solver: Some(solver), ..asked };
-        assert!(query.check().is_ok());
-        assert_eq!(with(0.5, query).check().expect_err("no separation").exit_code(), 2, "{solver:?}");
     }
 }

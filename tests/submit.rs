@@ -9,7 +9,7 @@ mod support;
 use nearmiss::contacts::on_device::FrameStatus;
 use nearmiss::device::Buffer;
 use nearmiss::mesh::Positions;
-use nearmiss::query::{Motion, QueueShape, Refit, StealShape, Traversal};
+use nearmiss::query::{Certified, Continuous, Earliest, QueryKind, QueueShape, Refit, StealShape, Traversal};
 use nearmiss::scene::{BodyId, DeviceInput, DevicePose, DeviceRows, Input, Meets, Number, Pose, Scene};
 use nearmiss::{Body, Detector, Device, Error, Mesh, Query};
 use nearmiss_lab::scene;
@@ -57,15 +57,18 @@ fn status(detector: &Detector) -> FrameStatus {
     unsafe { *(answer.status as *const FrameStatus) }
 }
 
-fn query(motion: Motion) -> Query {
-    match motion {
-        Motion::Near => Query::near(0.02),
-        Motion::Discrete => Query::of(motion),
-        Motion::Continuous | Motion::Earliest => Query { tolerance: Some(1e-4), ..Query::of(motion) },
+fn query(kind: QueryKind) -> Query {
+    let certified = Certified { tolerance: Some(1e-4), ..Certified::default() };
+    match kind {
+        QueryKind::Near => Query::near(0.02),
+        QueryKind::Continuous => Continuous::by(certified).into(),
+        QueryKind::Earliest => Earliest::by(certified).into(),
+        _ => Query::discrete(),
     }
 }
 
-const MOTIONS: [Motion; 4] = [Motion::Discrete, Motion::Continuous, Motion::Earliest, Motion::Near];
+const KINDS: [QueryKind; 4] =
+    [QueryKind::Discrete, QueryKind::Continuous, QueryKind::Earliest, QueryKind::Near];
 
 /// A cloth-like soup that is tested against itself, and one that stands still.
 fn pair(n: usize) -> (Scene, BodyId, [Vec<[f32; 3]>; 2]) {
@@ -105,7 +108,7 @@ fn agrees(device: &Device, query: Query, frames: usize) -> usize {
             let status = status(&detector);
             found = detector.collect().expect("an answer");
             assert_eq!(status.invalid, 0);
-            if status.short == 0 && query.motion != Motion::Earliest {
+            if status.short == 0 && query.kind() != QueryKind::Earliest {
                 assert_eq!(status.first + status.second, found.len() as u64, "{query:?}");
             }
             assert_eq!(status.short == 0, detector.is_prepared(), "{query:?}");
@@ -120,10 +123,10 @@ fn agrees(device: &Device, query: Query, frames: usize) -> usize {
 
 #[test]
 fn a_submitted_frame_is_the_frame() {
-    for motion in MOTIONS {
+    for kind in KINDS {
         for walk in walks() {
             for refit in [Refit::Levels, Refit::Treelets, Refit::BottomUp] {
-                let query = Query { traversal: Some(walk), refit: Some(refit), ..query(motion) };
+                let query = query(kind).with_traversal(walk).with_refit(refit);
                 if needs_the_host(walk) {
                     continue;
                 }
@@ -132,8 +135,8 @@ fn a_submitted_frame_is_the_frame() {
         }
     }
     for order in ORDERS {
-        for motion in MOTIONS {
-            assert!(agrees(&sanitizer(order), query(motion), 2) > 0, "{motion:?}");
+        for kind in KINDS {
+            assert!(agrees(&sanitizer(order), query(kind), 2) > 0, "{kind:?}");
         }
     }
 }
@@ -155,7 +158,7 @@ fn a_walk_that_needs_the_host_is_refused() {
     let (scene, id, [t0, _]) = pair(60);
     for walk in [Traversal::Queue(QueueShape::gtx285()), Traversal::Steal(StealShape::native())] {
         assert!(needs_the_host(walk));
-        let query = Query { traversal: Some(walk), ..query(Motion::Discrete) };
+        let query = query(QueryKind::Discrete).with_traversal(walk);
         let device = engine();
         let memory = Points::new(&device, &t0);
         let mut detector = Detector::new(device, scene.clone(), query).expect("a detector");
@@ -168,7 +171,7 @@ fn a_walk_that_needs_the_host_is_refused() {
 /// Lists that were long enough once are too short now: the caller sees it, nothing is lost, and the next frame has room.
 #[test]
 fn what_outgrows_its_room_is_seen_and_answered() {
-    for motion in MOTIONS {
+    for kind in KINDS {
         let device = engine();
         let (scene, id, [t0, t1]) = pair(600);
         // Every triangle keeps its size, and goes to where its first corner is, so many times as far.
@@ -180,8 +183,8 @@ fn what_outgrows_its_room_is_seen_and_answered() {
             points.chunks(3).flat_map(of).collect()
         };
         let mut memory = [&t0, &t1].map(|points| Points::new(&device, &spread(points, 4.0)));
-        let mut by_host = Detector::new(engine(), scene.clone(), query(motion)).expect("a detector");
-        let mut detector = Detector::new(device.clone(), scene, query(motion)).expect("a detector");
+        let mut by_host = Detector::new(engine(), scene.clone(), query(kind)).expect("a detector");
+        let mut detector = Detector::new(device.clone(), scene, query(kind)).expect("a detector");
         let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
         detector.prepare(&[(id, input)]).expect("an answer");
         let mut short = 0;
@@ -192,7 +195,7 @@ fn what_outgrows_its_room_is_seen_and_answered() {
             detector.submit().expect("submitted");
             let was_short = status(&detector).short > 0;
             let found = detector.collect().expect("an answer");
-            assert_eq!(was_short, !detector.is_prepared(), "{motion:?}, {by}");
+            assert_eq!(was_short, !detector.is_prepared(), "{kind:?}, {by}");
             if was_short {
                 short += 1;
                 let error = detector.submit().expect_err("not prepared").to_string();
@@ -201,9 +204,9 @@ fn what_outgrows_its_room_is_seen_and_answered() {
             }
             let [t0, t1] = ends.map(Positions::F32);
             let wanted = by_host.frame(&[(id, Input::Step([&t0, &t1]))]).expect("an answer");
-            assert_eq!(found.answer, wanted.answer, "{motion:?}, {by}");
+            assert_eq!(found.answer, wanted.answer, "{kind:?}, {by}");
         }
-        assert!(short >= 2, "{motion:?}: {short}");
+        assert!(short >= 2, "{kind:?}: {short}");
     }
 }
 
@@ -211,14 +214,14 @@ fn what_outgrows_its_room_is_seen_and_answered() {
 #[test]
 fn another_frame_is_noticed() {
     let (scene, id, [t0, t1]) = pair(120);
-    for motion in MOTIONS {
+    for kind in KINDS {
         let device = engine();
-        let mut detector = Detector::new(device.clone(), scene.clone(), query(motion)).expect("a detector");
+        let mut detector = Detector::new(device.clone(), scene.clone(), query(kind)).expect("a detector");
         let memory = [&t0, &t1].map(|points| Points::new(&device, points));
         let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
         let first = detector.prepare(&[(id, input)]).expect("an answer");
         let other = DeviceInput::Step([memory[1].rows(), memory[0].rows()]);
-        assert_ne!(first.answer, detector.prepare(&[(id, other)]).expect("an answer").answer, "{motion:?}");
+        assert_ne!(first.answer, detector.prepare(&[(id, other)]).expect("an answer").answer, "{kind:?}");
     }
 }
 
@@ -228,7 +231,7 @@ fn any_other_call_ends_a_preparation() {
     let device = engine();
     let memory = Points::new(&device, &t0);
     let input = [(id, DeviceInput::At(memory.rows()))];
-    let mut detector = Detector::new(device, scene, query(Motion::Discrete)).expect("a detector");
+    let mut detector = Detector::new(device, scene, query(QueryKind::Discrete)).expect("a detector");
     let calls: [fn(&mut Detector, BodyId); 5] = [
         |d, _| drop(d.detect().expect("an answer")),
         |d, _| drop(d.frame(&[]).expect("an answer")),

@@ -5,7 +5,6 @@ mod support;
 use nearmiss::Query;
 use nearmiss::contacts::triangle_contacts;
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::Motion;
 use nearmiss_lab::scene;
 use support::{ask, engine};
 
@@ -29,7 +28,7 @@ fn mesh(points: Vec<[f32; 3]>, faces: &[[u32; 3]]) -> Mesh {
 fn a_corner_that_falls_through_a_square_meets_one_triangle_of_it_first() {
     let faces = [[0, 1, 2], [0, 2, 3], [4, 5, 6]];
     let body = Body::moving(mesh(falling(1.0), &faces), mesh(falling(-1.0), &faces)).expect("frames");
-    let found = ask(engine(), vec![body.clone()], Query::of(Motion::Continuous));
+    let found = ask(engine(), vec![body.clone()], Query::continuous());
     let pairs = triangle_contacts(found.contacts(), &[body]);
     let known: Vec<_> =
         pairs.iter().map(|p| (p.pair.triangles[0], p.pair.triangles[1], at_half(p.toi))).collect();
@@ -43,7 +42,7 @@ fn between_two_bodies_indices_are_their_own() {
     let corner =
         Body::moving(mesh(corner(1.0), &[[0, 1, 2]]), mesh(corner(-1.0), &[[0, 1, 2]])).expect("frames");
     for (bodies, pair) in [(vec![square.clone(), corner.clone()], (0, 0)), (vec![corner, square], (0, 0))] {
-        let found = ask(engine(), bodies.clone(), Query::of(Motion::Continuous));
+        let found = ask(engine(), bodies.clone(), Query::continuous());
         let pairs = triangle_contacts(found.contacts(), &bodies);
         assert_eq!(
             pairs.iter().map(|p| (<(u32, u32)>::from(p.pair.triangles), at_half(p.toi))).collect::<Vec<_>>(),
@@ -55,7 +54,7 @@ fn between_two_bodies_indices_are_their_own() {
 #[test]
 fn every_contact_has_its_pairs_and_every_pair_its_first_contact() {
     let body = scene::scene("draped", 3000, 1).expect("a scene");
-    let found = ask(engine(), vec![body.clone()], Query::of(Motion::Continuous));
+    let found = ask(engine(), vec![body.clone()], Query::continuous());
     let pairs = triangle_contacts(found.contacts(), std::slice::from_ref(&body));
     assert!(pairs.len() > 100 && pairs.is_sorted_by_key(|p| p.pair.triangles));
     let first = pairs.iter().map(|p| p.toi).min_by(f64::total_cmp);

@@ -5,7 +5,7 @@ use crate::detect::question;
 use crate::output::print;
 use nearmiss::Detector;
 use nearmiss::error::Error;
-use nearmiss::query::{Bv, Query, Traversal};
+use nearmiss::query::{Bv, Certified, Query, Traversal};
 use nearmiss::words::counted;
 use std::fmt::Write;
 use std::process::ExitCode;
@@ -31,16 +31,16 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
     let _ = writeln!(
         text,
         "query      {:?}, {}",
-        query.motion,
+        query.kind(),
         if detector.scene().bodies().len() == 1 { "self" } else { "between" }
     );
     let _ = writeln!(text, "machine    {} ({})", device.name(), device.backend());
-    let swept = !query.motion.is_at_rest() && query.bv() != Bv::Linear;
+    let swept = !query.kind().is_at_rest() && query.bv() != Bv::Linear;
     let _ = writeln!(text, "volume     {}{}", query.bv().name(), if swept { ", swept" } else { "" });
     let _ = writeln!(
         text,
         "refit      {}",
-        match (query.refit, query.refit_on(device.is_gpu())) {
+        match (query.tree().refit, query.refit_on(device.is_gpu())) {
             (Some(choice), _) => format!("{choice:?}, as asked"),
             (None, choice) => format!("{choice:?}: the fastest on this machine"),
         }
@@ -48,7 +48,7 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
     let _ = writeln!(
         text,
         "traversal  {}",
-        match query.traversal {
+        match query.tree().traversal {
             Some(choice) => format!("{choice:?}, as asked"),
             None => match query.traversal_on(device.is_gpu()) {
                 Traversal::PerLeaf { budget: None } =>
@@ -60,23 +60,23 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
         }
     );
     let _ = writeln!(text, "solver     {}", query.solver().promise());
-    if let Some(tolerance) = detector.tolerance() {
-        let why = if query.tolerance.is_some() { "as asked" } else { "about 1e-4 of the mean edge" };
-        let boxes = query.boxes.unwrap_or(Query::BOXES);
+    if let (Some(tolerance), Some(certified)) = (detector.tolerance(), query.certified()) {
+        let why = if certified.tolerance.is_some() { "as asked" } else { "about 1e-4 of the mean edge" };
+        let boxes = certified.budget.unwrap_or(Certified::BUDGET);
         let _ = writeln!(
             text,
             "tolerance  {tolerance:e}, {why}; at most {} a pair",
             counted(boxes.into(), "box", "boxes")
         );
-        let separation = query.separation.filter(|s| *s > 0.0);
+        let separation = (certified.separation > 0.0).then_some(certified.separation);
         let _ = writeln!(
             text,
             "separation {}",
             separation.map_or("none: what touches is in contact".into(), |s| format!("{s:e}, as asked"))
         );
     }
-    if let Some(distance) = query.distance {
-        let _ = writeln!(text, "distance   {distance:e}, as asked");
+    if let Query::Near(near) = query {
+        let _ = writeln!(text, "distance   {:e}, as asked", near.distance);
     }
     let _ = writeln!(
         text,

@@ -14,7 +14,9 @@ use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
 use nearmiss::pipeline::of_edges;
-use nearmiss::query::{Bv, FrontShape, Motion, Query, QueueShape, Refit, Solver, StealShape, Traversal};
+use nearmiss::query::{
+    Bv, Certified, Continuous, FrontShape, Near, Query, QueueShape, Refit, Solver, StealShape, Traversal,
+};
 use nearmiss::words::counted;
 use nearmiss_lab::robustness::{self, Amount};
 use nearmiss_lab::scene::{self, Bodies};
@@ -69,8 +71,8 @@ fn print_after(detector: &Detector, contacts: &Contacts) -> Result<Print, Error>
 /// The same question, asked in every way that must leave the same behind at every stage.
 fn choices(query: Query) -> Vec<(&'static str, Query)> {
     let spill = Traversal::PerLeaf { budget: Some(8) };
-    let refit = |refit| Query { refit: Some(refit), traversal: Some(spill), ..query };
-    let walk = |walk| Query { traversal: Some(walk), ..query };
+    let refit = |refit| query.with_refit(refit).with_traversal(spill);
+    let walk = |walk| query.with_traversal(walk);
     vec![
         ("by default", query),
         ("spilling, by levels", refit(Refit::Levels)),
@@ -85,14 +87,17 @@ fn choices(query: Query) -> Vec<(&'static str, Query)> {
 
 /// Every question with every solver, and what comes within a separation: about a hundredth of the mean edge.
 fn questions(bodies: &[Body]) -> impl Iterator<Item = (String, Query)> {
-    let hundredth = 0.01 / Query::TOLERANCE * of_edges(bodies);
-    let apart = Query { separation: Some(hundredth), ..Query::of(Motion::Continuous) };
-    Query::every().chain([apart]).map(move |query| {
+    let hundredth = 0.01 / Certified::TOLERANCE * of_edges(bodies);
+    let apart = Continuous::by(Certified { separation: hundredth, ..Certified::default() });
+    let every = Query::every().map(|query| (query, false));
+    every.chain([(apart.into(), true)]).map(move |(query, is_apart)| {
         // About a tenth of the mean edge, which a scene of points has not.
-        let distance = query.distance.map(|some| if hundredth > 0.0 { 10.0 * hundredth } else { some });
-        let query = Query { distance, ..query };
-        let how = if query.separation.is_some() { ", a separation" } else { "" };
-        (format!("{:?} by {:?}{how}", query.motion, query.solver()), query)
+        let query = match query {
+            Query::Near(near) if hundredth > 0.0 => Near { distance: 10.0 * hundredth, ..near }.into(),
+            other => other,
+        };
+        let how = if is_apart { ", a separation" } else { "" };
+        (format!("{:?} by {:?}{how}", query.kind(), query.solver()), query)
     })
 }
 
@@ -140,7 +145,7 @@ fn line(text: String) -> Result<(), Error> {
 impl Bench {
     fn known_answer(&mut self) -> Result<(), Error> {
         let known = scene::grid(8)?;
-        let pairs = print_of(&self.machine, &[known], Query::of(Motion::Discrete))?.contacts as u64;
+        let pairs = print_of(&self.machine, &[known], Query::discrete())?.contacts as u64;
         line(format!("known answer   grid: {pairs} pairs, {} expected", scene::grid_pairs(8)))?;
         if pairs != scene::grid_pairs(8) {
             self.faults.push("the grid's known answer".to_owned());
@@ -169,11 +174,12 @@ impl Bench {
     /// A scene of many bodies, step after step.
     fn compare_bodies(&mut self, name: &str, scene: &Bodies) -> Result<(), Error> {
         let Bench { machine, engine, faults } = self;
-        for motion in [Motion::Discrete, Motion::Continuous, Motion::Earliest] {
+        for query in [Query::discrete(), Query::continuous(), Query::earliest()] {
+            let kind = query.kind();
             for bv in Bv::ALL {
-                let query = Query { bv: Some(bv), ..Query::of(motion) };
+                let query = query.with_bv(bv);
                 let on_engine = |walk| {
-                    let query = Query { traversal: Some(walk), ..query };
+                    let query = query.with_traversal(walk);
                     during("comparing machines", || print_of_steps(engine, scene, query))
                 };
                 let by_leaf = on_engine(Traversal::PerLeaf { budget: None })?;
@@ -183,18 +189,18 @@ impl Bench {
                     let walk = other.traversal_on(machine.is_gpu());
                     let want = if matches!(walk, Traversal::PerLeaf { .. }) { &by_leaf } else { &by_pair };
                     // Where a front goes on from the step before, what it asks hangs on that: the answer does not.
-                    let differs = match other.traversal {
+                    let differs = match other.tree().traversal {
                         Some(Traversal::Front(_)) => difference(&want.answer(), &there.answer()),
                         _ => difference(want, &there),
                     };
                     if let Some(stage) = differs {
-                        faults.push(format!("{name}, {motion:?}, {}, {what}: {stage}", bv.name()));
+                        faults.push(format!("{name}, {kind:?}, {}, {what}: {stage}", bv.name()));
                     }
                 }
                 if bv == Bv::Aabb {
                     let hash = by_leaf.stages.last().map_or(0, |stage| stage.1);
                     let contacts = counted(by_leaf.contacts as u64, "contact", "contacts");
-                    line(format!("{hash:016x} {contacts:>18}  {name}, {motion:?}"))?;
+                    line(format!("{hash:016x} {contacts:>18}  {name}, {kind:?}"))?;
                 }
             }
         }
@@ -207,11 +213,11 @@ impl Bench {
         for (asked, query) in questions(bodies) {
             let mut hashes = Vec::new();
             for bv in Bv::ALL {
-                let query = Query { bv: Some(bv), ..query };
+                let query = query.with_bv(bv);
                 // Overlap tests with a slack do not nest: whether a pair is a candidate may depend, by a hair, on which
                 // pairs of nodes were asked before it. Each kind of walk is compared with its own; contacts with all.
                 let on_engine = |walk| {
-                    let query = Query { traversal: Some(walk), ..query };
+                    let query = query.with_traversal(walk);
                     during("comparing machines", || print_of(engine, bodies, query))
                 };
                 let by_leaf = on_engine(Traversal::PerLeaf { budget: None })?;
@@ -249,7 +255,7 @@ impl Bench {
             let bodies = [scene::scene(name, triangles, 3)?];
             for (asked, query) in questions(&bodies) {
                 // The walk that is fastest on the machine, on both.
-                let query = Query { traversal: Some(query.traversal_on(machine.is_gpu())), ..query };
+                let query = query.with_traversal(query.traversal_on(machine.is_gpu()));
                 let want = print_of(machine, &bodies, query)?;
                 for order in [Order::Forward, Order::Reverse, Order::Shuffled(3)] {
                     let sanitizer = Device::emulator(Emulator::new(Mode::Sanitizer(order), None)?);

@@ -5,7 +5,7 @@ use super::progress::during;
 use crate::output;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
-use nearmiss::query::{Bv, Motion, Solver};
+use nearmiss::query::{Bv, Query};
 use nearmiss_lab::scene::Bodies;
 use nearmiss_lab::tables::{self, Figures, Frames, Paper, Way};
 use std::process::ExitCode;
@@ -14,7 +14,7 @@ use std::process::ExitCode;
 pub fn tables(args: &TablesArgs) -> Result<ExitCode, Error> {
     args.report.out.as_deref().map_or(Ok(()), output::folder)?;
     let device = args.machine.open()?;
-    let continuous = Solver::default_for(Motion::Continuous);
+    let continuous = Query::continuous().solver();
     output::say(&format!("the solver of continuous columns is {}", continuous.promise()));
     let mut figures = Figures::new(device.name(), profile(args));
     if args.table.contains(&Table::Bodies) {
@@ -36,9 +36,9 @@ pub fn tables(args: &TablesArgs) -> Result<ExitCode, Error> {
 fn bodies(args: &TablesArgs, device: &Device, figures: &mut Figures) -> Result<(), Error> {
     let scenes = [("pile", Bodies::pile(500, 120, 100)?), ("worlds", Bodies::worlds(1_000, 8)?)];
     for (name, scene) in &scenes {
-        for motion in [Motion::Discrete, Motion::Continuous] {
-            let row = || tables::bodies(device, name, scene, motion, args.frames);
-            figures.bodies.push(during(format!("{name}, {motion:?}"), row)?);
+        for query in [Query::discrete(), Query::continuous()] {
+            let row = || tables::bodies(device, name, scene, query, args.frames);
+            figures.bodies.push(during(format!("{name}, {:?}", query.kind()), row)?);
         }
     }
     Ok(())

@@ -8,7 +8,7 @@ use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::memory;
 use nearmiss::mesh::Body;
-use nearmiss::query::{Bv, Motion, Query, Solver};
+use nearmiss::query::{Bv, Certified, Query, QueryKind};
 use nearmiss_lab::accuracy::{
     Choice, Extent, Input, Scene, Trade, built_in, degeneracies, funnel, list, offsets, query_files, refit,
     scales, triangles,
@@ -83,14 +83,14 @@ fn asked(
     all: &mut Trade,
 ) -> Result<(), Error> {
     let tolerances: Vec<f64> = TOLERANCES.iter().chain(more).copied().collect();
-    for choice in Choice::every(Motion::Continuous, &tolerances) {
+    for choice in Choice::every(QueryKind::Continuous, &tolerances) {
         let row = during(format!("{}: {choice}", input.name), || {
             input.row(device, choice, Stored::F64, args.repeat)
         })?;
         all.choices.push(row);
     }
     if input.cases.iter().all(Case::fits_f32) {
-        for choice in Choice::every(Motion::Continuous, &[Query::TOLERANCE]) {
+        for choice in Choice::every(QueryKind::Continuous, &[Certified::TOLERANCE]) {
             all.choices.push(input.row(device, choice, Stored::F32, args.repeat)?);
         }
     }
@@ -107,12 +107,12 @@ fn generated(args: &TradeArgs, device: &Device, all: &mut Trade) -> Result<(), E
         };
         let count = args.frames as usize;
         let frames = during(format!("making {name}"), || tables::frames(name, triangles, args.seed, count))?;
-        let step = frames.bodies(Motion::Continuous)?.swap_remove(0);
+        let step = frames.bodies(true)?.swap_remove(0);
         let mesh = frames.meshes[0].clone();
         let still = known(device, &format!("{name}, still"), Body::still(mesh), None)?;
         scene(args, device, &still, all)?;
         scene(args, device, &known(device, name, step, None)?, all)?;
-        for bv in [Bv::Aabb, Bv::default_for(Motion::Continuous)] {
+        for bv in [Bv::Aabb, Query::continuous().bv()] {
             let name = format!("{name}, {} triangles", frames.triangles());
             let rows =
                 during(format!("{name}: refitting {}", bv.name()), || refit(device, &name, &frames, bv))?;
@@ -140,20 +140,21 @@ fn known(
 
 /// Every solver at every tolerance with the default volume, the default solver with every volume; and the funnel.
 fn scene(args: &TradeArgs, device: &Device, scene: &Scene, all: &mut Trade) -> Result<(), Error> {
-    let motion = if scene.body.is_moving() { Motion::Continuous } else { Motion::Discrete };
+    let asked = if scene.body.is_moving() { Query::continuous() } else { Query::discrete() };
+    let kind = asked.kind();
     let few = [1e-1, 1e-2, 1e-4, 1e-6, 1e-9];
     let tolerances: &[f64] = if args.full { &TOLERANCES } else { &few };
-    for choice in Choice::every(motion, tolerances) {
+    for choice in Choice::every(kind, tolerances) {
         let row = || scene.row(device, choice, None, args.repeat);
         all.choices.push(during(format!("{}: {choice}", scene.name), row)?);
     }
-    let tolerance = (motion == Motion::Continuous).then_some(Query::TOLERANCE);
-    let choice = Choice { solver: Solver::default_for(motion), tolerance };
-    for bv in Bv::ALL.into_iter().filter(|bv| *bv != Bv::default_for(motion)) {
+    let tolerance = asked.certified().map(|_| Certified::TOLERANCE);
+    let choice = Choice { asked, tolerance };
+    for bv in Bv::ALL.into_iter().filter(|bv| *bv != asked.bv()) {
         let row = || scene.row(device, choice, Some(bv), args.repeat);
         all.choices.push(during(format!("{}: {}", scene.name, bv.name()), row)?);
     }
-    if motion == Motion::Continuous {
+    if kind == QueryKind::Continuous {
         let rows =
             during(format!("{}: the funnel", scene.name), || funnel(device, &scene.name, &scene.body))?;
         all.funnel.extend(rows);

@@ -4,7 +4,7 @@ use super::bytes::Bytes;
 use nearmiss::contacts::{Answer, Contact, Kind, Status};
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::{Body, Mesh, Positions, Topology};
-use nearmiss::query::{Bv, FrontShape, Motion, QueueShape, Refit, Solver, StealShape, Traversal};
+use nearmiss::query::{Bv, FrontShape, QueryKind, QueueShape, Refit, StealShape, Traversal, Tree};
 use nearmiss::{Contacts, Detector, Device, Error, Query};
 use nearmiss_lab::oracle::{Toi, first_contact, triangles_meet};
 use nearmiss_lab::{Case, Features};
@@ -17,8 +17,8 @@ use std::collections::BTreeMap;
 pub fn decode(bytes: &[u8]) -> Result<(Vec<Body>, Query), Error> {
     let mut b = Bytes::new(bytes);
     let (choice, shape) = (b.byte(), b.byte());
-    let motion = [Motion::Continuous, Motion::Discrete, Motion::Earliest][usize::from(choice) % 3];
-    let solvers: Vec<Solver> = Solver::ALL.into_iter().filter(|solver| solver.answers(motion)).collect();
+    let kind = [QueryKind::Continuous, QueryKind::Discrete, QueryKind::Earliest][usize::from(choice) % 3];
+    let queries: Vec<Query> = Query::every().filter(|query| query.kind() == kind).collect();
     let queue = QueueShape { cores: Some(5), local: 3, segment: 2, take: 1, ..QueueShape::native() };
     let walks = [
         Traversal::PerLeaf { budget: None },
@@ -27,13 +27,11 @@ pub fn decode(bytes: &[u8]) -> Result<(Vec<Body>, Query), Error> {
         Traversal::Steal(StealShape { cores: Some(3), ..StealShape::native() }),
         Traversal::Front(FrontShape { queue, ..FrontShape::native() }),
     ];
-    let query = Query {
-        solver: Some(solvers[usize::from(choice / 3) % solvers.len()]),
+    let query = queries[usize::from(choice / 3) % queries.len()].with_tree(Tree {
         bv: Some(Bv::ALL[usize::from(shape) % 4]),
         traversal: Some(walks[usize::from(shape >> 2 & 15) % walks.len()]),
         refit: Some([Refit::Levels, Refit::Treelets, Refit::BottomUp][usize::from(shape >> 6) % 3]),
-        ..Query::of(motion)
-    };
+    });
     let count = 1 + b.below(8) % 2;
     let bodies = (0..count).map(|_| body(&mut b)).collect::<Result<_, _>>()?;
     Ok((bodies, query))

@@ -1,7 +1,6 @@
 //! What an answer, or its making, owes to a limit: said aloud, each by its reason.
 
-use crate::pipeline::Found;
-use crate::pipeline::below_precision::BelowPrecision;
+use crate::pipeline::{Found, Listed};
 use crate::words::counted;
 use nearmiss_kernels::abi::counter;
 use std::fmt;
@@ -17,7 +16,7 @@ pub enum Degraded {
         /// How many.
         pairs: u64,
     },
-    /// Pairs whose budget of boxes ended ([`Query::boxes`](crate::Query::boxes)): listed, but their times may be far too
+    /// Pairs whose budget of boxes ended ([`Certified::budget`](crate::query::Certified::budget)): listed, but their times may be far too
     /// early. Not counted by an earliest query.
     Boxes {
         /// How many.
@@ -52,13 +51,15 @@ impl Degraded {
         let unsure = count(counter::UNRESOLVED) - count(counter::ENDED_UNRESOLVED);
         let (ended, below_precision) = (count(counter::ENDED), count(counter::BELOW_PRECISION));
         let mut put = |count: u64, reason: Degraded| all.extend((count > 0).then_some(reason));
-        match found.near {
-            Some(_) => put(unsure, Degraded::DistanceBelowPrecision { pairs: unsure }),
-            None => put(unsure, Degraded::Unresolved { pairs: unsure }),
+        match found.listed {
+            Listed::Near(_) => put(unsure, Degraded::DistanceBelowPrecision { pairs: unsure }),
+            Listed::Pairs(_) | Listed::Hits { .. } | Listed::Earliest { .. } => {
+                put(unsure, Degraded::Unresolved { pairs: unsure });
+            }
         }
         put(ended, Degraded::Boxes { pairs: ended });
         put(below_precision, Degraded::ToleranceBelowPrecision { pairs: Some(below_precision) });
-        let unlisted = found.below_precision == Some(BelowPrecision::Unlisted);
+        let unlisted = matches!(found.listed, Listed::Earliest { below_precision: true, .. });
         put(unlisted as u64, Degraded::ToleranceBelowPrecision { pairs: None });
         put(found.front_dropped as u64, Degraded::FrontDropped);
         all

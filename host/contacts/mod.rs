@@ -15,8 +15,8 @@ pub use summary::Summary;
 pub use triangles::{TriangleContact, triangle_contacts};
 pub use work::{Front, Queues};
 
-use crate::pipeline::{Found, Hits, Layout, Stages};
-use crate::query::{Motion, Query};
+use crate::pipeline::{Found, Layout, Listed, Stages};
+use crate::query::Query;
 use crate::scene::BodyId;
 use nearmiss_kernels::abi::{Pair, ROUNDS, counter};
 use nearmiss_kernels::prim::inclusion::Verdict;
@@ -160,11 +160,11 @@ pub struct Contacts {
 impl Contacts {
     /// No contacts, of bodies without triangles.
     pub fn none(query: Query) -> Contacts {
-        let answer = match query.motion {
-            Motion::Discrete => Answer::Pairs(Vec::new()),
-            Motion::Continuous => Answer::Contacts(Vec::new()),
-            Motion::Earliest => Answer::Earliest(None),
-            Motion::Near => Answer::Near(Vec::new()),
+        let answer = match query {
+            Query::Discrete(_) => Answer::Pairs(Vec::new()),
+            Query::Continuous(_) => Answer::Contacts(Vec::new()),
+            Query::Earliest(_) => Answer::Earliest(None),
+            Query::Near(_) => Answer::Near(Vec::new()),
         };
         Contacts {
             answer,
@@ -190,17 +190,11 @@ impl Contacts {
 
     /// Puts what the kernels found into canonical order and into the numbering of the bodies.
     #[doc(hidden)]
-    pub fn new(
-        found: Found,
-        layout: &Layout,
-        query: Query,
-        (stages, degraded): (Stages, Vec<Degraded>),
-    ) -> Contacts {
-        let answer = match query.motion {
-            Motion::Earliest => Answer::Earliest(found.earliest),
-            Motion::Near => Answer::Near(near::pairs(&found, layout)),
-            Motion::Discrete => {
-                let listed: &[Pair] = found.pairs.as_deref().unwrap_or_default();
+    pub fn new(found: Found, layout: &Layout, (stages, degraded): (Stages, Vec<Degraded>)) -> Contacts {
+        let answer = match &found.listed {
+            Listed::Earliest { toi, .. } => Answer::Earliest(*toi),
+            Listed::Near(hits) => Answer::Near(near::pairs(hits, found.ordered, layout)),
+            Listed::Pairs(listed) => {
                 let pair = |p: &Pair| {
                     let [(a, p), (b, q)] = [p.a, p.b].map(|t| layout.locate(t, |at| at.triangle));
                     TrianglePair { bodies: [a, b], triangles: [p, q] }
@@ -211,13 +205,12 @@ impl Contacts {
                 }
                 Answer::Pairs(pairs)
             }
-            Motion::Continuous => {
-                let certified = query.solver().is_certified();
+            Listed::Hits { hits, certified } => {
                 let contact = |(kind, bodies, [a, b]): Features, verdict: &Verdict| {
-                    let status = Status::of(certified, verdict);
+                    let status = Status::of(*certified, verdict);
                     Contact { kind, bodies, a, b, toi: verdict.toi, toi_hi: verdict.toi_hi, status }
                 };
-                let [of_vf, of_ee] = found.hits.as_ref().map_or([&[][..]; 2], Hits::each);
+                let [of_vf, of_ee] = hits.each();
                 let vf =
                     of_vf.par_iter().map(|hit| contact(vertex_face(layout, [hit.a, hit.b]), &hit.verdict));
                 let ee = of_ee.par_iter().map(|hit| contact(edge_edge(layout, [hit.a, hit.b]), &hit.verdict));
@@ -230,7 +223,7 @@ impl Contacts {
         };
         let count = |at: u32| found.counters[at as usize];
         let vf_ee = [count(counter::VF), count(counter::EE)];
-        let discrete = query.motion == Motion::Discrete;
+        let discrete = matches!(found.listed, Listed::Pairs(_));
         Contacts {
             answer,
             stages,

@@ -1,7 +1,7 @@
 //! Pairs of features within a distance.
 
 use super::{Features, Kind, edge_edge, vertex_face};
-use crate::pipeline::{Found, Hits, Layout};
+use crate::pipeline::{Hits, Layout};
 use crate::scene::BodyId;
 use nearmiss_kernels::abi::NearHit;
 use nearmiss_kernels::prim::near::corner_weights;
@@ -91,12 +91,12 @@ impl NearPair {
 }
 
 /// What the kernels found, in canonical order and in the numbering of the bodies.
-pub fn pairs(found: &Found, layout: &Layout) -> Vec<NearPair> {
-    let [of_vf, of_ee] = found.near.as_ref().map_or([&[][..]; 2], Hits::each);
+pub fn pairs(hits: &Hits<NearHit>, ordered: bool, layout: &Layout) -> Vec<NearPair> {
+    let [of_vf, of_ee] = hits.each();
     let vf = of_vf.par_iter().map(|hit| NearPair::new(vertex_face(layout, [hit.a, hit.b]), hit));
     let ee = of_ee.par_iter().map(|hit| NearPair::new(edge_edge(layout, [hit.a, hit.b]), hit));
     let mut pairs: Vec<_> = vf.chain(ee).collect();
-    if !found.ordered {
+    if !ordered {
         pairs.par_sort_unstable_by_key(|pair| (pair.kind, pair.bodies[0], pair.a, pair.bodies[1], pair.b));
     }
     pairs

@@ -4,7 +4,7 @@ use super::{Contacts, Degraded, Front, Queues};
 use crate::device::Device;
 use crate::mesh::Body;
 use crate::pipeline::Stages;
-use crate::query::{Motion, Query, Refit, Solver, Traversal};
+use crate::query::{Query, QueryKind, Refit, Solver, Traversal};
 
 /// What the command line prints of a result, as JSON or for people.
 #[derive(Clone, Debug)]
@@ -17,7 +17,7 @@ pub struct Summary {
     /// Frames: 1 still, 2 moving.
     pub frames: usize,
     /// What was asked.
-    pub query: Motion,
+    pub query: QueryKind,
     /// The bounding volume.
     pub bv: &'static str,
     /// The refit.
@@ -70,7 +70,7 @@ impl Summary {
             triangles: bodies.iter().map(Body::face_count).sum(),
             vertices: bodies.iter().map(Body::vertex_count).sum(),
             frames: if bodies.iter().any(Body::is_moving) { 2 } else { 1 },
-            query: query.motion,
+            query: query.kind(),
             bv: query.bv().name(),
             refit: query.refit_on(device.is_gpu()),
             traversal: query.traversal_on(device.is_gpu()),
@@ -83,8 +83,8 @@ impl Summary {
             unresolved: contacts.unresolved,
             degraded: contacts.degraded.clone(),
             tolerance: None,
-            separation: query.solver().is_certified().then_some(query.params().separation),
-            distance: query.distance,
+            separation: query.certified().map(|certified| certified.params().separation),
+            distance: if let Query::Near(near) = query { Some(near.distance) } else { None },
             earliest_toi: contacts.earliest_toi(),
             hash: format!("{:016x}", contacts.hash()),
             reruns: contacts.reruns,

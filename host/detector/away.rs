@@ -6,6 +6,7 @@ use crate::error::Error;
 use crate::mesh::{Body, Positions};
 use crate::pipeline::below_precision::BelowPrecision;
 use crate::pipeline::{Seen, Stages, Whereabouts};
+use crate::query::Query;
 use crate::scene::{BodyKind, Pose};
 use std::time::Instant;
 
@@ -84,20 +85,31 @@ impl Detector {
         }
         self.answered = true;
         self.largest = seen.map_or(self.largest, |seen| seen.largest.max(self.largest));
-        let is_away = self.scene.bodies().iter().any(Body::is_away);
-        // No two coordinates are farther apart.
-        if is_away && BelowPrecision::may_be(&self.asked(), 2.0 * self.largest) {
-            self.fetch()?;
-            let unlisted = Degraded::ToleranceBelowPrecision { pairs: None };
-            let is_below =
-                BelowPrecision::of(self.scene.bodies(), &self.asked()) == Some(BelowPrecision::Unlisted);
-            if is_below && !contacts.degraded.contains(&unlisted) {
-                contacts.degraded.push(unlisted);
-            }
-        }
+        self.tell_below_precision(&mut contacts)?;
         let wall = start.elapsed().as_secs_f64() * 1e3;
         contacts.stages = Stages { construct: self.construct_ms, wall, ..contacts.stages };
         Ok(contacts)
+    }
+}
+
+impl Detector {
+    /// An earliest query lists no pairs, so whether they are too large for the tolerance hangs on where bodies are: of those that are
+    /// away on the largest of their coordinates and, where that leaves it open, on themselves.
+    fn tell_below_precision(&mut self, contacts: &mut Contacts) -> Result<(), Error> {
+        let (Query::Earliest(_), Some(certified)) = (self.query, self.asked().certified().copied()) else {
+            return Ok(());
+        };
+        let is_away = self.scene.bodies().iter().any(Body::is_away);
+        if !is_away || !BelowPrecision::may_be(&certified, 2.0 * self.largest) {
+            return Ok(());
+        }
+        self.fetch()?;
+        let unlisted = Degraded::ToleranceBelowPrecision { pairs: None };
+        let below = BelowPrecision::of(self.scene.bodies(), &certified, true);
+        if below == Some(BelowPrecision::Unlisted) && !contacts.degraded.contains(&unlisted) {
+            contacts.degraded.push(unlisted);
+        }
+        Ok(())
     }
 }
 

@@ -11,7 +11,7 @@ use crate::error::Error;
 use crate::memory;
 use crate::mesh::{Body, MAX_FACES, MAX_VERTICES};
 use crate::pipeline::{self, Found, Layout, Pipeline, Stage, Stages};
-use crate::query::{Motion, Query};
+use crate::query::Query;
 use crate::scene::Scene;
 use std::sync::Arc;
 use std::time::Instant;
@@ -22,7 +22,7 @@ use std::time::Instant;
 /// is static was built and fitted once, a rigid body costs its poses, and what no body does costs nothing.
 ///
 /// ```
-/// use nearmiss::{Body, Detector, Device, Mesh, Query, device::Backend, mesh::Positions, query::Motion, scene::Input};
+/// use nearmiss::{Body, Detector, Device, Mesh, Query, device::Backend, mesh::Positions, scene::Input};
 ///
 /// // A triangle that rests, and one whose corner falls through it.
 /// let faces = vec![[0, 1, 2], [3, 4, 5]];
@@ -32,7 +32,7 @@ use std::time::Instant;
 /// let body = Body::still(Mesh::new("two triangles", at(1.0), faces)?);
 /// let device = Device::open(Backend::Auto, None)?;
 /// // One body alone is tested against itself.
-/// let mut detector = Detector::new(device, body, Query::of(Motion::Continuous))?;
+/// let mut detector = Detector::new(device, body, Query::continuous())?;
 /// let triangles = detector.scene().ids().next().expect("a body");
 /// let contacts = detector.frame(&[(triangles, Input::Step([&at(1.0), &at(-1.0)]))])?;
 /// println!("{} contacts, first at {:?}", contacts.len(), contacts.earliest_toi());
@@ -65,8 +65,9 @@ impl Detector {
     /// in triangles; memory grows with what is found.
     ///
     /// # Errors
-    /// [`Error::Choice`] for a scene without bodies and for choices that do not go together; those of the device.
-    pub fn new(device: Device, scene: impl Into<Scene>, query: Query) -> Result<Detector, Error> {
+    /// [`Error::Choice`] for a scene without bodies and for numbers that mean nothing; those of the device.
+    pub fn new(device: Device, scene: impl Into<Scene>, query: impl Into<Query>) -> Result<Detector, Error> {
+        let query = query.into();
         query.check()?;
         let scene = scene.into();
         if scene.ids().next().is_none() {
@@ -75,10 +76,8 @@ impl Detector {
                 advice: "give one body to test against itself, or more to test against each other".into(),
             });
         }
-        let tolerance = query
-            .solver()
-            .is_certified()
-            .then(|| query.tolerance.unwrap_or_else(|| pipeline::of_edges(scene.bodies())));
+        let or_default = |asked: Option<f64>| asked.unwrap_or_else(|| pipeline::of_edges(scene.bodies()));
+        let tolerance = query.certified().map(|certified| or_default(certified.tolerance));
         let mut detector = Detector {
             device,
             scene,
@@ -104,7 +103,7 @@ impl Detector {
         let triangles: usize = bodies.iter().map(Body::face_count).sum();
         fits(triangles, bodies.iter().map(Body::vertex_count).sum())?;
         memory::require("trees and lists", triangles as u64 * OF_A_TRIANGLE)?;
-        let layout = Arc::new(Layout::new(bodies, self.query.motion != Motion::Discrete));
+        let layout = Arc::new(Layout::new(bodies, self.query.kind().is_of_features()));
         self.layout = Some(layout.clone());
         Ok(layout)
     }
@@ -127,7 +126,11 @@ impl Detector {
 
     /// The query, with its tolerance.
     fn asked(&self) -> Query {
-        Query { tolerance: self.tolerance, ..self.query }
+        let mut query = self.query;
+        if let Some(certified) = query.certified_mut() {
+            certified.tolerance = self.tolerance;
+        }
+        query
     }
 
     /// Builds the tree over what moves anew: pays when bodies have moved far from where it was built.
@@ -157,7 +160,7 @@ impl Detector {
         self.answered = false;
         let (found, stages) = pipeline.frame()?;
         let seen = found.seen;
-        let contacts = contacts(found, stages, (&layout, self.query))?;
+        let contacts = contacts(found, stages, &layout)?;
         self.complete(contacts, seen, start)
     }
 
@@ -207,7 +210,7 @@ impl Detector {
         &self.query
     }
 
-    /// The tolerance of a certified solver, a length: as asked, or by default [`Query::TOLERANCE`] of the mean edge of the
+    /// The tolerance of a certified solver, a length: as asked, or by default [`Certified::TOLERANCE`](crate::query::Certified::TOLERANCE) of the mean edge of the
     /// bodies at the start, rounded down to a power of two. It stays when bodies move, come and go.
     pub fn tolerance(&self) -> Option<f64> {
         self.tolerance
@@ -250,10 +253,10 @@ impl Detector {
 }
 
 /// What was found, in the numbering of the bodies.
-fn contacts(found: Found, stages: Stages, (layout, query): (&Layout, Query)) -> Result<Contacts, Error> {
+fn contacts(found: Found, stages: Stages, layout: &Layout) -> Result<Contacts, Error> {
     let degraded = Degraded::of(&found);
     memory::require("the contacts", found.bytes())?;
-    Ok(Contacts::new(found, layout, query, (stages, degraded)))
+    Ok(Contacts::new(found, layout, (stages, degraded)))
 }
 
 /// Whether indices of 32 bits reach all triangles, vertices and edges (at most three a triangle) of all bodies together.

@@ -67,7 +67,7 @@ impl Detector {
         let Some(pipeline) = &mut self.pipeline else { return Ok(Contacts::none(self.query)) };
         let whole = pipeline.collect()?.map(|(found, stages)| {
             let seen = found.seen;
-            contacts(found, stages, (&layout, self.query)).map(|contacts| (contacts, seen))
+            contacts(found, stages, &layout).map(|contacts| (contacts, seen))
         });
         match whole.transpose()? {
             Some((contacts, seen)) => self.complete(contacts, seen, start),

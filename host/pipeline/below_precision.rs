@@ -6,7 +6,7 @@ use super::precision::Precision;
 use crate::error::Error;
 use crate::mesh::{Body, Bounds, NOTHING, Positions, union};
 use crate::pipeline::launch;
-use crate::query::{Motion, Query, Solver};
+use crate::query::{Certified, CertifiedPrecision};
 use nearmiss_kernels::abi::{BelowPrecisionArgs, Hit, Span};
 use nearmiss_kernels::math::tolerance::Tolerance;
 use rayon::prelude::*;
@@ -28,12 +28,12 @@ pub enum BelowPrecision {
 impl BelowPrecision {
     /// Of bodies where they are; none where no pair can be that large. Cost: a pass over the positions; where an earliest
     /// query's tolerance is near the precision one over the faces.
-    pub fn of(bodies: &[Body], query: &Query) -> Option<BelowPrecision> {
-        let finest = finest(query)?;
+    pub fn of(bodies: &[Body], certified: &Certified, is_earliest: bool) -> Option<BelowPrecision> {
+        let finest = finest(certified);
         // Positive, or not asked for.
-        let tolerance = query.tolerance.filter(|t| *t > 0.0)?;
+        let tolerance = certified.tolerance.filter(|t| *t > 0.0)?;
         let extent = extent(bodies);
-        if query.motion != Motion::Earliest {
+        if !is_earliest {
             // How large it is where only the device knows, the kernels tell.
             let away = bodies.iter().any(Body::is_away);
             return (away || tolerance < finest * extent)
@@ -49,20 +49,18 @@ impl BelowPrecision {
         (is_long(extent) && bodies.iter().any(long)).then_some(BelowPrecision::Unlisted)
     }
 
-    /// Whether pairs that are not listed may be so large, where no coordinate is larger than that.
-    pub fn may_be(query: &Query, largest: f64) -> bool {
-        let (finest, tolerance) = (finest(query), query.tolerance.unwrap_or(0.0));
-        query.motion == Motion::Earliest && finest.is_some_and(|finest| tolerance < finest * largest)
+    /// Whether pairs may be so large, where no two coordinates differ by more than that.
+    pub fn may_be(certified: &Certified, extent: f64) -> bool {
+        certified.tolerance.unwrap_or(0.0) < finest(certified) * extent
     }
 }
 
-/// The least part of a pair's extent that the solver can tell, of those that prove.
-fn finest(query: &Query) -> Option<f64> {
-    match query.solver() {
-        Solver::CertifiedF32 => Some(f32::INCLUSION_FINEST.into()),
+/// The least part of a pair's extent that the solver can tell.
+fn finest(certified: &Certified) -> f64 {
+    match certified.precision {
+        CertifiedPrecision::F32 => f32::INCLUSION_FINEST.into(),
         // What f32 cannot tell is asked again in f64.
-        Solver::Certified | Solver::CertifiedF64 => Some(f64::INCLUSION_FINEST),
-        _ => None,
+        CertifiedPrecision::Mixed | CertifiedPrecision::F64 => f64::INCLUSION_FINEST,
     }
 }
 

@@ -3,12 +3,13 @@
 use super::layout::Layout;
 use super::precision::Precision;
 use super::tree::{Tree, TreeSpec};
-use super::volumes::{Kernels, Volumes};
+use super::volumes::Volumes;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::query::Refit;
 use nearmiss_kernels::abi::{Node, Point, Positions, ROOT, Span, VertexMotion};
-use nearmiss_kernels::bv::{Axes, Contain};
+use nearmiss_kernels::bv::Axes;
+use nearmiss_kernels::entry::Kernels;
 use nearmiss_kernels::math::Vec3;
 
 /// Ways to go from a point, of a length just below 1: so that a coordinate of f64 may round on its way.
@@ -39,7 +40,7 @@ pub struct Enclosed<R: Precision, V: Kernels> {
     volumes: Volumes<V>,
 }
 
-impl<R: Precision, V: Kernels + Contain> Enclosed<R, V> {
+impl<R: Precision, V: Kernels> Enclosed<R, V> {
     /// Builds the tree for where the vertices are: of at least one triangle. `t1` is empty where nothing moves; volumes grow
     /// by `margin`.
     ///
@@ -149,8 +150,8 @@ mod tests {
     use super::*;
     use crate::device::emulator::{Emulator, Mode};
     use crate::mesh::Body;
+    use crate::query::{Bv, WithVolume};
     use crate::samples::{sheet, soup};
-    use nearmiss_kernels::bv::{Aabb, Linear, Obb};
 
     /// A body's positions, one frame or two, turned and put elsewhere so that f64 is not f32.
     fn frames<R: Precision>(body: &Body, size: f64, at: f64) -> [Vec<Vec3<R>>; 2] {
@@ -162,7 +163,7 @@ mod tests {
     }
 
     /// Of volumes that were told to grow by `margin`.
-    fn outside<R: Precision, V: Kernels + Contain>(
+    fn outside<R: Precision, V: Kernels>(
         body: &Body,
         (size, at): (f64, f64),
         (refit, axes): (Refit, Axes),
@@ -177,7 +178,19 @@ mod tests {
         enclosed.outside(near, fault).expect("nodes")
     }
 
-    fn all<R: Precision, V: Kernels + Contain>(axes: Axes) {
+    /// Every check of a volume.
+    struct All;
+
+    impl WithVolume for All {
+        type Out = ();
+
+        fn with<V: Kernels>(self, axes: Axes) {
+            all::<f32, V>(axes);
+            all::<f64, V>(axes);
+        }
+    }
+
+    fn all<R: Precision, V: Kernels>(axes: Axes) {
         let bodies = [soup(1, 3, false), soup(700, 4, false), soup(700, 4, true), sheet(20)];
         for (i, body) in bodies.iter().enumerate() {
             for place in [(1.0, 0.0), (1e-3, 1e3), (1e25, 0.0)] {
@@ -210,13 +223,6 @@ mod tests {
 
     #[test]
     fn every_node_holds_what_is_below_it() {
-        all::<f32, Aabb>(Axes::PCA);
-        all::<f64, Aabb>(Axes::PCA);
-        all::<f32, Linear>(Axes::PCA);
-        all::<f64, Linear>(Axes::PCA);
-        for axes in [Axes::PCA, Axes::CHILD] {
-            all::<f32, Obb>(axes);
-            all::<f64, Obb>(axes);
-        }
+        Bv::ALL.into_iter().for_each(|bv| bv.with(All));
     }
 }

@@ -7,7 +7,7 @@
 use super::layout::Layout;
 use super::precision::Precision;
 use super::tree::{Room, Tree, TreeSpec, broken, place};
-use super::volumes::{Kernels, Volumes};
+use super::volumes::Volumes;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::launch;
@@ -18,6 +18,7 @@ use nearmiss_kernels::abi::{
 };
 use nearmiss_kernels::bv::Axes;
 use nearmiss_kernels::bvh;
+use nearmiss_kernels::entry::{self, Kernels};
 use nearmiss_kernels::math::Vec3;
 
 /// The trees of a scene.
@@ -100,7 +101,7 @@ impl<V: Kernels> Forest<V> {
                     leaves: self.tree.leaves() as u32,
                     pad: 0,
                 };
-                launch::each::<V::Graft>(device, volumes.nodes.len() - 1, &args)?;
+                launch::each::<entry::construct_graft<V>>(device, volumes.nodes.len() - 1, &args)?;
                 fixed.starts = tree.starts().to_vec();
                 fixed.layout = (tree.bodies().to_vec(), tree.leaves() as u32);
                 Ok(())

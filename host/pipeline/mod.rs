@@ -24,16 +24,16 @@ pub use layout::{Layout, Offsets};
 pub use placing::{Moved, Seen, Whereabouts};
 pub use timing::{Stage, Stages};
 pub use tolerance::{mean_side, of_edges};
-pub use typed::{Found, Hits, Pipeline, Submits};
+pub use typed::{Found, Hits, Listed, Pipeline, Submits};
 
 use crate::device::Device;
 use crate::error::Error;
 use crate::mesh::Body;
-use crate::query::{Bv, Query};
-use nearmiss_kernels::bv::{Aabb, Axes, Linear, Obb};
+use crate::query::{Query, WithVolume};
+use nearmiss_kernels::bv::Axes;
+use nearmiss_kernels::entry::Kernels;
 use std::sync::Arc;
 use typed::TypedPipeline;
-use volumes::Kernels;
 
 /// The pipeline of a query; `f64s` tells whether any position needs f64.
 ///
@@ -46,25 +46,28 @@ pub fn pipeline(
     query: Query,
     f64s: bool,
 ) -> Result<Box<dyn Pipeline>, Error> {
-    match query.bv() {
-        Bv::Aabb => typed::<Aabb>(device, bodies, layout, (query, Axes::PCA), f64s),
-        Bv::Linear => typed::<Linear>(device, bodies, layout, (query, Axes::PCA), f64s),
-        Bv::Obb => typed::<Obb>(device, bodies, layout, (query, Axes::PCA), f64s),
-        Bv::ObbChild => typed::<Obb>(device, bodies, layout, (query, Axes::CHILD), f64s),
-    }
+    let bv = query.bv();
+    bv.with(New { device, bodies, layout, query, f64s })
 }
 
-/// The pipeline of a volume.
-fn typed<V: Kernels>(
+/// What a pipeline is made of.
+struct New<'a> {
     device: Device,
-    bodies: &[Body],
+    bodies: &'a [Body],
     layout: Arc<Layout>,
-    (query, axes): (Query, Axes),
+    query: Query,
     f64s: bool,
-) -> Result<Box<dyn Pipeline>, Error> {
-    Ok(if f64s {
-        Box::new(TypedPipeline::<f64, V>::new(device, bodies, layout, (query, axes))?)
-    } else {
-        Box::new(TypedPipeline::<f32, V>::new(device, bodies, layout, (query, axes))?)
-    })
+}
+
+impl WithVolume for New<'_> {
+    type Out = Result<Box<dyn Pipeline>, Error>;
+
+    fn with<V: Kernels>(self, axes: Axes) -> Self::Out {
+        let New { device, bodies, layout, query, f64s } = self;
+        Ok(if f64s {
+            Box::new(TypedPipeline::<f64, V>::new(device, bodies, layout, (query, axes))?)
+        } else {
+            Box::new(TypedPipeline::<f32, V>::new(device, bodies, layout, (query, axes))?)
+        })
+    }
 }

@@ -2,10 +2,9 @@
 
 use crate::mesh::Positions;
 use nearmiss_kernels::abi::{
-    BelowPrecisionArgs, CullArgs, DiscreteArgs, FeaturesArgs, FitArgs, GroupsArgs, MortonArgs, NearArgs,
-    PlaceArgs, RungArgs, SolveArgs, TreeletsArgs,
+    BelowPrecisionArgs, CullArgs, DiscreteArgs, FeaturesArgs, MortonArgs, NearArgs, PlaceArgs, RungArgs,
+    SolveArgs,
 };
-use nearmiss_kernels::bv::{Aabb, Linear, Obb};
 use nearmiss_kernels::entry::{self, Entry};
 use nearmiss_kernels::math::{Real, Vec3};
 
@@ -17,20 +16,6 @@ pub trait Precision: Real + Send {
     type Bounds: Entry<Args = MortonArgs<Self>>;
     /// Codes of the triangle centres.
     type Morton: Entry<Args = MortonArgs<Self>>;
-    /// Leaves, in axis-aligned boxes.
-    type FitAabb: Entry<Args = FitArgs<Self, Aabb>>;
-    /// Leaves, in boxes that move.
-    type FitLinear: Entry<Args = FitArgs<Self, Linear>>;
-    /// Leaves, in oriented boxes.
-    type FitObb: Entry<Args = FitArgs<Self, Obb>>;
-    /// Inner nodes of few leaves, in oriented boxes.
-    type GroupsObb: Entry<Args = GroupsArgs<Self, Obb>>;
-    /// All boxes, by treelets.
-    type TreeletsAabb: Entry<Args = TreeletsArgs<Self, Aabb>>;
-    /// All boxes that move, by treelets.
-    type TreeletsLinear: Entry<Args = TreeletsArgs<Self, Linear>>;
-    /// All oriented boxes, by treelets.
-    type TreeletsObb: Entry<Args = TreeletsArgs<Self, Obb>>;
     /// The seed's discrete test.
     type Moller: Entry<Args = DiscreteArgs<Self>>;
     /// The discrete filter.
@@ -85,13 +70,6 @@ impl Precision for f32 {
     type Place = entry::place_f32;
     type Bounds = entry::construct_bounds_f32;
     type Morton = entry::construct_morton_f32;
-    type FitAabb = entry::fit_aabb_f32;
-    type FitLinear = entry::fit_linear_f32;
-    type FitObb = entry::fit_obb_f32;
-    type GroupsObb = entry::fit_groups_obb_f32;
-    type TreeletsAabb = entry::refit_treelets_aabb_f32;
-    type TreeletsLinear = entry::refit_treelets_linear_f32;
-    type TreeletsObb = entry::refit_treelets_obb_f32;
     type Moller = entry::narrow_moller_f32;
     type Filter = entry::narrow_filter_f32;
     type Wide = entry::narrow_wide_f32;
@@ -131,13 +109,6 @@ impl Precision for f64 {
     type Place = entry::place_f64;
     type Bounds = entry::construct_bounds_f64;
     type Morton = entry::construct_morton_f64;
-    type FitAabb = entry::fit_aabb_f64;
-    type FitLinear = entry::fit_linear_f64;
-    type FitObb = entry::fit_obb_f64;
-    type GroupsObb = entry::fit_groups_obb_f64;
-    type TreeletsAabb = entry::refit_treelets_aabb_f64;
-    type TreeletsLinear = entry::refit_treelets_linear_f64;
-    type TreeletsObb = entry::refit_treelets_obb_f64;
     type Moller = entry::narrow_moller_f64;
     type Filter = entry::narrow_filter_f64;
     type Wide = entry::narrow_filter_f64;

@@ -1,12 +1,12 @@
 //! How near may count as contact, when nobody says.
 
 use crate::mesh::Body;
-use crate::query::Query;
+use crate::query::Certified;
 
-/// [`Query::TOLERANCE`] of the mean side of the triangles at t = 0, rounded down to a power of two; 0 where there is no
+/// [`Certified::TOLERANCE`] of the mean side of the triangles at t = 0, rounded down to a power of two; 0 where there is no
 /// side of a length. Cost: a root a side, on the host.
 pub fn of_edges(bodies: &[Body]) -> f64 {
-    power_below(Query::TOLERANCE * mean_side(bodies))
+    power_below(Certified::TOLERANCE * mean_side(bodies))
 }
 
 /// Mean side of the triangles at t = 0, each triangle's own three; 0 where there are none.

@@ -35,7 +35,7 @@ impl RefitPlan {
     pub fn zeroed(&self) -> usize {
         match self {
             RefitPlan::Treelets(plan) => plan.treelets.len() + TOPS,
-            _ => 0,
+            RefitPlan::Levels | RefitPlan::BottomUp(_) => 0,
         }
     }
 
@@ -46,7 +46,7 @@ impl RefitPlan {
                 let begins = plan.treelets.len() as u64;
                 [zeroed.part(0, begins), zeroed.part(begins, TOPS as u64)]
             }
-            _ => [Span::EMPTY; 2],
+            RefitPlan::Levels | RefitPlan::BottomUp(_) => [Span::EMPTY; 2],
         }
     }
 
@@ -54,7 +54,7 @@ impl RefitPlan {
     pub fn leaf_places(&self) -> Span<LeafPlace> {
         match self {
             RefitPlan::Treelets(plan) => plan.leaf_places.span(),
-            _ => Span::EMPTY,
+            RefitPlan::Levels | RefitPlan::BottomUp(_) => Span::EMPTY,
         }
     }
 
@@ -138,10 +138,11 @@ mod tests {
     use crate::device::emulator::{Emulator, Mode};
     use crate::pipeline::Layout;
     use crate::pipeline::tree::{Tree, TreeSpec};
-    use crate::pipeline::volumes::{Kernels, Volumes};
+    use crate::pipeline::volumes::Volumes;
     use crate::samples::soup;
     use nearmiss_kernels::abi::{Point, Positions};
     use nearmiss_kernels::bv::{Aabb, Axes, Obb};
+    use nearmiss_kernels::entry::Kernels;
     use nearmiss_kernels::math::Vec3;
 
     /// A tree that was refitted once, then moved and refitted again after `fault` was planted; on one thread, so that
@@ -177,7 +178,7 @@ mod tests {
     fn plan(tree: &mut Tree) -> &mut Plan {
         match &mut tree.way {
             RefitPlan::Treelets(plan) => plan,
-            _ => panic!("no plan was asked for"),
+            RefitPlan::Levels | RefitPlan::BottomUp(_) => panic!("no plan was asked for"),
         }
     }
 
@@ -251,7 +252,7 @@ mod tests {
                 counts.iter_mut().for_each(|n| *n += 1);
                 arrivals.write(&counts).expect("written");
             }
-            _ => panic!("no counters were asked for"),
+            RefitPlan::Levels | RefitPlan::Treelets(_) => panic!("no counters were asked for"),
         });
         assert!(error.expect_err("noticed").to_string().contains("Merge"));
     }

@@ -10,24 +10,25 @@ mod submit;
 #[cfg(test)]
 mod submitted;
 
-pub use found::{Found, Hits};
+pub use found::{Found, Hits, Listed, in_order};
 pub use submit::Submits;
 
 use super::forest::Forest;
 use super::layout::Layout;
 use super::list::{GrowableOutput, List};
-use super::narrow::{Narrow, NarrowContext, Step};
+use super::narrow::{Narrow, NarrowContext, narrow};
 use super::placing::{Moved, Placing, Whereabouts};
 use super::precision::Precision;
 use super::timing::{Stage, Stages};
-use super::volumes::{Kernels, growth};
+use super::volumes::growth;
 use super::walk::{Walk, WalkContext, flags, walk};
 use crate::device::{Buffer, Device, Event};
 use crate::error::Error;
 use crate::mesh::Body;
-use crate::query::{Motion, Query};
+use crate::query::Query;
 use nearmiss_kernels::abi::{self, Pair, Span, counter};
 use nearmiss_kernels::bv::Axes;
+use nearmiss_kernels::entry::Kernels;
 use rayon::prelude::*;
 use std::sync::Arc;
 use xxhash_rust::xxh3::xxh3_64;
@@ -40,6 +41,17 @@ const SWEPT_PAIRS_A_TRIANGLE: usize = 64;
 /// Room that every list has at least: a scene of a few triangles may have all pairs.
 const LEAST_ROOM: usize = 1 << 12;
 
+/// A step of a frame that fills lists; each reads what the one before filled.
+#[derive(Clone, Copy)]
+enum Step {
+    /// Candidate triangle pairs.
+    Traverse,
+    /// A step of the narrow phase, by its place.
+    Narrow(usize),
+    /// Contacts in canonical order, where the device does that.
+    Order,
+}
+
 /// The memory of a query, and the way through it.
 pub struct TypedPipeline<R: Precision, V: Kernels> {
     device: Device,
@@ -51,7 +63,7 @@ pub struct TypedPipeline<R: Precision, V: Kernels> {
     counters: Buffer<u64>,
     pairs: List<Pair>,
     walk: Box<dyn Walk<V>>,
-    narrow: Narrow,
+    narrow: Box<dyn Narrow<R>>,
     reruns: u64,
     /// Around the placing of what was moved since the last frame.
     placing: Option<[Event; 2]>,
@@ -114,7 +126,7 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
     ) -> Result<Self, Error> {
         // Every candidate has a triangle that moves.
         let triangles = layout.trees[0].iter().map(|&body| layout.triangles(body).1 as usize).sum();
-        let still = query.motion.is_at_rest();
+        let still = query.kind().is_at_rest();
         let a_triangle = if still { PAIRS_A_TRIANGLE } else { SWEPT_PAIRS_A_TRIANGLE };
         let capacity = LEAST_ROOM.max(a_triangle * triangles);
         let few = LEAST_ROOM.max(4 * triangles);
@@ -127,7 +139,7 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
             counters: device.buffer(counter::COUNT as usize)?,
             pairs: List::new(&device, "candidate triangle pairs", counter::PAIRS, capacity)?,
             walk: walk(&device, &query, triangles)?,
-            narrow: Narrow::new::<R>(&device, &layout, query, (capacity, few))?,
+            narrow: narrow(&device, &layout, &query, (capacity, few))?,
             reruns: 0,
             placing: None,
             last: Vec::new(),
@@ -136,12 +148,17 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
             layout,
             device,
         };
-        pipeline.narrow.place(bodies, &query);
+        pipeline.narrow.place(bodies);
         Ok(pipeline)
     }
 
     fn frames(&self) -> abi::Positions<R> {
         self.vertices.frames()
+    }
+
+    /// The places of the narrow phase's steps.
+    fn narrow_steps_at(&self) -> std::ops::Range<usize> {
+        0..self.narrow.steps().len()
     }
 
     /// Runs a stage on what those before it left.
@@ -152,8 +169,8 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
             Stage::Fit => self.forest.volumes.fit(device, &self.forest.tree, frames, faces),
             Stage::Refit => self.forest.volumes.refit(device, &self.forest.tree, frames, faces),
             Stage::Traverse => self.step(Step::Traverse),
-            Stage::Narrow => self.narrow.steps().iter().try_for_each(|&step| self.step(step)),
-            Stage::Order if self.narrow.orders() => self.step(Step::Order),
+            Stage::Narrow => self.narrow_steps_at().try_for_each(|at| self.step(Step::Narrow(at))),
+            Stage::Order if self.narrow.ordered().is_some() => self.step(Step::Order),
             Stage::Order => Ok(()),
         }
     }
@@ -164,18 +181,20 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
         loop {
             match step {
                 Step::Traverse => self.traverse()?,
-                _ => {
-                    let frames = self.frames();
+                Step::Narrow(_) | Step::Order => {
                     let given = NarrowContext {
                         device: &self.device,
-                        query: self.query,
-                        frames,
+                        frames: self.vertices.frames(),
                         faces: self.faces.span(),
                         pairs: self.pairs.span(),
                         bodies: self.forest.records.span(),
                         counters: self.counters.span(),
                     };
-                    self.narrow.run(step, &given)?;
+                    if let Step::Narrow(at) = step {
+                        self.narrow.run(at, &given)
+                    } else {
+                        self.narrow.order(&given)
+                    }?;
                 }
             }
             if self.settled {
@@ -190,7 +209,8 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
                     lists.push(&mut self.pairs);
                     lists
                 }
-                _ => self.narrow.lists(step),
+                Step::Narrow(at) => self.narrow.lists(at),
+                Step::Order => self.narrow.ordered().into_iter().collect(),
             };
             for list in lists {
                 grown |= list.grow(&self.device, &counters)?;
@@ -200,7 +220,7 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
                 return Ok(());
             }
             self.reruns += 1;
-            if step == Step::Traverse {
+            if let Step::Traverse = step {
                 // The first step: everything that was counted so far is its own.
                 self.counters.clear()?;
             } else {
@@ -212,10 +232,11 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
 
     /// Whether a list of any step had too little room.
     fn has_overflowed(&mut self, counters: &[u64]) -> bool {
-        let mut steps = self.narrow.steps().iter().chain(&[Step::Order]);
+        let mut steps = self.narrow_steps_at();
         self.pairs.has_overflowed(counters)
             || self.walk.lists().iter().any(|list| list.has_overflowed(counters))
-            || steps.any(|&step| self.narrow.lists(step).iter().any(|list| list.has_overflowed(counters)))
+            || steps.any(|at| self.narrow.lists(at).iter().any(|list| list.has_overflowed(counters)))
+            || self.narrow.ordered().is_some_and(|list| list.has_overflowed(counters))
     }
 
     fn traverse(&mut self) -> Result<(), Error> {
@@ -234,7 +255,7 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
 impl<R: Precision, V: Kernels> Pipeline for TypedPipeline<R, V> {
     fn place(&mut self, bodies: &[Body], moved: &[Moved]) -> Result<(), Error> {
         self.submission = None;
-        self.narrow.place(bodies, &self.query);
+        self.narrow.place(bodies);
         let start = self.device.event()?;
         self.vertices.put(&self.device, &self.layout, bodies, moved)?;
         self.placing = Some([start, self.device.event()?]);
@@ -293,7 +314,7 @@ impl<R: Precision, V: Kernels> Pipeline for TypedPipeline<R, V> {
                 traverse: begun.to(&traversed)? - balance,
                 balance,
                 narrow: traversed.to(&end)?,
-                order: if self.narrow.orders() { end.to(&ordered)? } else { 0.0 },
+                order: if self.narrow.ordered().is_some() { end.to(&ordered)? } else { 0.0 },
                 total: start.to(&end)?,
                 wall: 0.0,
             };
@@ -327,10 +348,7 @@ impl<R: Precision, V: Kernels> Pipeline for TypedPipeline<R, V> {
             Ok(())
         };
         list("traverse", &self.pairs)?;
-        // What an earliest query asks of a pair hangs on what it found before.
-        if self.query.motion != Motion::Earliest {
-            self.narrow.between().into_iter().try_for_each(|(name, pairs)| list(name, pairs))?;
-        }
+        self.narrow.between().into_iter().try_for_each(|(name, pairs)| list(name, pairs))?;
         Ok(prints)
     }
 

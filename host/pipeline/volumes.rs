@@ -7,98 +7,12 @@ use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::launch;
 use nearmiss_kernels::abi::{
-    BottomUpArgs, FitArgs, FrontArgs, GraftArgs, GroupsArgs, Link, Node, Positions, QueueArgs, RefitArgs,
-    Span, StealArgs, TraverseArgs, TreeletsArgs,
+    BottomUpArgs, FitArgs, GroupsArgs, Link, Node, Positions, RefitArgs, Span, TreeletsArgs,
 };
-use nearmiss_kernels::bv::{Aabb, Axes, Linear, Obb, Volume};
+use nearmiss_kernels::bv::Axes;
 use nearmiss_kernels::bvh;
-use nearmiss_kernels::entry::{self, Entry};
+use nearmiss_kernels::entry::{self, Entry, Kernels};
 use nearmiss_kernels::math::{Vec3, round};
-
-/// A bounding volume, with its kernels.
-pub trait Kernels: Volume {
-    /// A tree that does not change, into the memory of another.
-    type Graft: Entry<Args = GraftArgs<Self>>;
-    /// Volumes of the leaves.
-    type Fit<R: Precision>: Entry<Args = FitArgs<R, Self>>;
-    /// All other volumes, a launch a level.
-    type Levels: Entry<Args = RefitArgs<Self>>;
-    /// All volumes, a block a treelet.
-    type Treelets<R: Precision>: Entry<Args = TreeletsArgs<R, Self>>;
-    /// All other volumes, by whoever comes second to a pair.
-    type BottomUp: Entry<Args = BottomUpArgs<Self>>;
-    /// A walk a leaf.
-    type Leaves: Entry<Args = TraverseArgs<Self>>;
-    /// A walk a unit that was left over.
-    type Units: Entry<Args = TraverseArgs<Self>>;
-    /// A pass over the last frame's front.
-    type Front: Entry<Args = FrontArgs<Self>>;
-    /// A round of work queues.
-    type Queue: Entry<Args = QueueArgs<Self>>;
-    /// Work queues that help each other out.
-    type Steal: Entry<Args = StealArgs<Self>>;
-
-    /// Fits the inner nodes that are not merged, for volumes that have such (see [`Volume::group`]).
-    ///
-    /// # Errors
-    /// Those of the device.
-    fn fit_groups<R: Precision>(_: &Device, _: &GroupsArgs<R, Self>) -> Result<(), Error> {
-        Ok(())
-    }
-
-    /// The volume of such a node, from the points below it; none for volumes that have no such nodes.
-    fn of<R: Precision>(_: &[Vec3<R>]) -> Option<Self> {
-        None
-    }
-}
-
-impl Kernels for Aabb {
-    type Graft = entry::construct_graft_aabb;
-    type Fit<R: Precision> = R::FitAabb;
-    type Levels = entry::refit_levels_aabb;
-    type Treelets<R: Precision> = R::TreeletsAabb;
-    type BottomUp = entry::refit_bottom_up_aabb;
-    type Leaves = entry::traverse_leaves_aabb;
-    type Units = entry::traverse_units_aabb;
-    type Front = entry::traverse_front_aabb;
-    type Queue = entry::traverse_queue_aabb;
-    type Steal = entry::traverse_steal_aabb;
-}
-
-impl Kernels for Linear {
-    type Graft = entry::construct_graft_linear;
-    type Fit<R: Precision> = R::FitLinear;
-    type Levels = entry::refit_levels_linear;
-    type Treelets<R: Precision> = R::TreeletsLinear;
-    type BottomUp = entry::refit_bottom_up_linear;
-    type Leaves = entry::traverse_leaves_linear;
-    type Units = entry::traverse_units_linear;
-    type Front = entry::traverse_front_linear;
-    type Queue = entry::traverse_queue_linear;
-    type Steal = entry::traverse_steal_linear;
-}
-
-impl Kernels for Obb {
-    type Graft = entry::construct_graft_obb;
-    type Fit<R: Precision> = R::FitObb;
-    type Levels = entry::refit_levels_obb;
-    type Treelets<R: Precision> = R::TreeletsObb;
-    type BottomUp = entry::refit_bottom_up_obb;
-    type Leaves = entry::traverse_leaves_obb;
-    type Units = entry::traverse_units_obb;
-    type Front = entry::traverse_front_obb;
-    type Queue = entry::traverse_queue_obb;
-    type Steal = entry::traverse_steal_obb;
-
-    fn fit_groups<R: Precision>(device: &Device, args: &GroupsArgs<R, Self>) -> Result<(), Error> {
-        // One pair of siblings for each inner node, behind the root.
-        let inner = args.firsts.len() as usize - args.root.div_ceil(2) as usize;
-        launch::each::<R::GroupsObb>(device, inner, args)
-    }
-    fn of<R: Precision>(points: &[Vec3<R>]) -> Option<Self> {
-        Some(Obb::of(points))
-    }
-}
 
 /// How much each of two volumes grows so that what is listed makes them meet: half of the distance within which it comes,
 /// rounded up.
@@ -153,7 +67,7 @@ impl<V: Kernels> Volumes<V> {
                 margin: self.margin,
                 pad: 0,
             };
-            launch::each::<V::Fit<R>>(device, tree.leaves(), &args)?;
+            launch::each::<entry::fit<R, V>>(device, tree.leaves(), &args)?;
         }
         if V::group(self.axes) == 0 {
             return Ok(());
@@ -169,7 +83,9 @@ impl<V: Kernels> Volumes<V> {
             root: tree.root(),
             margin: self.margin,
         };
-        V::fit_groups(device, &args)
+        // One pair of siblings for each inner node, behind the root.
+        let inner = tree.firsts.len() - tree.root().div_ceil(2) as usize;
+        launch::each::<entry::fit_groups<R, V>>(device, inner, &args)
     }
 
     /// Refits all other volumes, the way that the tree was made for; the positions are those of [`Volumes::fit`].
@@ -197,7 +113,7 @@ impl<V: Kernels> Volumes<V> {
                     axes: self.axes,
                     root: tree.root(),
                 };
-                launch::each::<V::BottomUp>(device, tree.leaves(), &args)
+                launch::each::<entry::refit_bottom_up<V>>(device, tree.leaves(), &args)
             }
         }
     }
@@ -223,13 +139,13 @@ impl<V: Kernels> Volumes<V> {
             axes: self.axes,
             margin: self.margin,
         };
-        launch::blocks::<V::Treelets<R>>(device, plan.blocks(), &args)
+        launch::blocks::<entry::refit_treelets<R, V>>(device, plan.blocks(), &args)
     }
 
     /// A launch a level; runs of narrow levels share one: levels of up to four nodes a lane,
     /// a few hundred nanoseconds each in one block, where a launch costs microseconds.
     fn levels(&self, device: &Device, tree: &Tree) -> Result<(), Error> {
-        let one_block = 4 * V::Levels::LANES;
+        let one_block = 4 * entry::refit_levels::<V>::LANES;
         let starts = tree.starts();
         let width = |level: usize| starts[level + 1] - starts[level];
         // The deepest level holds only leaves.
@@ -242,7 +158,8 @@ impl<V: Kernels> Volumes<V> {
                 }
             }
             let narrow = width(to - 1) <= one_block;
-            let blocks = if narrow { 1 } else { device.blocks_for::<V::Levels>(width(from) as usize) };
+            let blocks =
+                if narrow { 1 } else { device.blocks_for::<entry::refit_levels<V>>(width(from) as usize) };
             let args = RefitArgs {
                 links: tree.links.span(),
                 nodes: self.nodes.span(),
@@ -253,7 +170,7 @@ impl<V: Kernels> Volumes<V> {
                 axes: self.axes,
                 pad: 0,
             };
-            launch::blocks::<V::Levels>(device, blocks, &args)?;
+            launch::blocks::<entry::refit_levels<V>>(device, blocks, &args)?;
             to = from;
         }
         Ok(())
@@ -314,7 +231,7 @@ impl<V: Kernels> Volumes<V> {
                 leaves[first as usize..=last as usize].iter().map(|&at| links[at as usize].triangle());
             let vertices = triangles.flat_map(|t| faces[t as usize]);
             let points = vertices.flat_map(|v| frames.iter().map(move |frame| frame[v as usize]));
-            let volume = V::of(&points.collect::<Vec<_>>())?;
+            let volume = V::of_points(&*points.collect::<Vec<_>>());
             Some(volume.near(self.margin))
         };
         bvh::check_volumes(links, nodes, (root, self.axes), leaf, fitted).map_err(broken)

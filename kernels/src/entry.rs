@@ -1,8 +1,12 @@
-//! The kernel table: one line an entry. The PTX entries and the host's list come from the same line.
+//! The kernel table: one line an entry, or one for an entry of every volume. The PTX entries and the host's list come from the
+//! same line.
+
+mod name;
 
 use crate::abi::*;
-use crate::bv::{Aabb, Linear, Obb};
+use crate::bv::{self, Contain};
 use crate::exec::Block;
+use crate::math::Real;
 use crate::prim::isolate::ladder::SLICES;
 use crate::prim::isolate::separation::{Double, Single};
 use crate::queue::worker;
@@ -12,7 +16,9 @@ use crate::stage::narrow::features::{Moves, Rests};
 use crate::stage::narrow::{below_precision, climb, cull, discrete, features, near, separate, slice, solve};
 use crate::stage::refit::{bottom_up, levels, treelets};
 use crate::stage::traverse::{front, queue, steal};
-use crate::stage::{balance, fit, order, place, status, traverse};
+use crate::stage::{balance, fit as fitting, order, place, status, traverse};
+use core::marker::PhantomData;
+use name::{Name, precision};
 
 /// A kernel as the host knows it.
 pub trait Entry: 'static {
@@ -36,7 +42,60 @@ pub trait Visit {
     fn kernel<E: Entry>(&mut self);
 }
 
-/// From lines of `name: path [arguments] lanes, shared;` makes the types, the PTX entries and the list of names.
+/// A volume that has kernels: [`crate::volumes`] lists them.
+pub trait Kernels: Contain {
+    /// Its part of their names.
+    const NAME: &'static str;
+}
+
+/// A line of the table: name, and bytes of the arguments.
+type Line = (&'static str, usize);
+
+const fn line<E: Entry>() -> Line {
+    (E::NAME, size_of::<E::Args>())
+}
+
+/// The entries of the PTX: of a type that is the kernel, and its name.
+#[cfg(target_arch = "nvptx64")]
+macro_rules! entries {
+    ($($kernel:ty, $name:expr;)*) => { $(
+        const _: () = {
+            // SAFETY: called by the driver, once a thread, with arguments of the size in TABLE.
+            #[unsafe(export_name = $name)]
+            unsafe extern "ptx-kernel" fn entry(args: <$kernel as Entry>::Args) {
+                // SAFETY: the one block of this kernel, made at its start.
+                let mut block = unsafe { crate::exec::ptx::Gpu::new() };
+                <$kernel as Entry>::run(&mut block, &args);
+            }
+        };
+    )* };
+}
+#[cfg(not(target_arch = "nvptx64"))]
+macro_rules! entries {
+    ($($kernel:ty, $name:expr;)*) => {};
+}
+
+/// Which sources this PTX came from; the host refuses another.
+#[cfg(target_arch = "nvptx64")]
+#[unsafe(no_mangle)]
+pub static NEARMISS_STAMP: u64 = stamp::SOURCES;
+
+/// What a kernel is, of the parts of its line.
+macro_rules! is_entry {
+    ($path:expr, [$args:ty], $lanes:expr, $shared:expr) => {
+        type Args = $args;
+        const LANES: u32 = $lanes;
+        const SHARED: u32 = $shared;
+        const PLACE: Option<usize> = name::place(Self::NAME);
+        #[inline(always)]
+        fn run<B: Block>(block: &mut B, args: &$args) {
+            const { <$args>::FITS };
+            ($path)(block, args)
+        }
+    };
+}
+
+/// From lines of `name: path, [arguments], lanes, shared;` makes the types and their PTX entries.
 macro_rules! kernels {
     ($($name:ident: $path:expr, [$args:ty], $lanes:expr, $shared:expr;)*) => {
         $(
@@ -46,47 +105,151 @@ macro_rules! kernels {
             pub struct $name;
             impl Entry for $name {
                 const NAME: &'static str = stringify!($name);
-                type Args = $args;
-                const LANES: u32 = $lanes;
-                const SHARED: u32 = $shared;
-                const PLACE: Option<usize> = Some(Place::$name as usize);
-                #[inline(always)]
-                fn run<B: Block>(block: &mut B, args: &$args) {
-                    const { <$args>::FITS };
-                    ($path)(block, args)
-                }
+                is_entry!($path, [$args], $lanes, $shared);
             }
         )*
-        #[allow(non_camel_case_types, reason = "the kernels' names")]
-        enum Place { $($name),* }
+        entries! { $($name, stringify!($name);)* }
+
+        const LINES: [Line; [$(stringify!($name)),*].len()] = [$(line::<$name>()),*];
+
+        fn visit_lines(visitor: &mut impl Visit) {
+            $(visitor.kernel::<$name>();)*
+        }
+    };
+}
+
+/// The same of the kernels of volumes: `both` precisions of positions have one, `each` has one (`R`), and `groups` are those of
+/// each precision that only some volumes have. [`crate::volumes`] says which volumes there are.
+macro_rules! kernels_of_volumes {
+    (
+        both { $($name:ident: $path:expr, [$args:ty], $lanes:expr, $shared:expr;)* }
+        each { $($each:ident: $each_path:expr, [$each_args:ty], $each_lanes:expr, $each_shared:expr;)* }
+        groups { $($group:ident: $group_path:expr, [$group_args:ty], $group_lanes:expr, $group_shared:expr;)* }
+    ) => {
+        $(
+            #[doc = concat!("`", stringify!($name), "` of a volume")]
+            #[allow(non_camel_case_types, reason = "the type is the entry's name")]
+            #[derive(Clone, Copy, Debug)]
+            pub struct $name<V>(PhantomData<V>);
+            impl<V: Kernels> $name<V> {
+                const TEXT: &'static Name = &Name::of(&[stringify!($name), "_", V::NAME]);
+            }
+            impl<V: Kernels> Entry for $name<V> {
+                const NAME: &'static str = Self::TEXT.text();
+                is_entry!($path, [$args], $lanes, $shared);
+            }
+        )*
+        kernels_of_precisions! {
+            $($each: $each_path, [$each_args], $each_lanes, $each_shared;)*
+            $($group: $group_path, [$group_args], $group_lanes, $group_shared;)*
+        }
+
+        const fn lines_of<V: Kernels>() -> [Line; OF_A_VOLUME] {
+            [$(line::<$name<V>>(),)* $(line::<$each<f32, V>>(), line::<$each<f64, V>>(),)*]
+        }
+        const OF_A_VOLUME: usize = [$(stringify!($name)),*].len() + 2 * [$(stringify!($each)),*].len();
+
+        const fn lines_of_groups<V: Kernels>() -> [Line; OF_GROUPS] {
+            [$(line::<$group<f32, V>>(), line::<$group<f64, V>>(),)*]
+        }
+        const OF_GROUPS: usize = 2 * [$(stringify!($group)),*].len();
+
+        fn visit_volume<V: Kernels>(visitor: &mut impl Visit) {
+            $(visitor.kernel::<$name<V>>();)*
+            $(
+                visitor.kernel::<$each<f32, V>>();
+                visitor.kernel::<$each<f64, V>>();
+            )*
+        }
+        fn visit_groups<V: Kernels>(visitor: &mut impl Visit) {
+            $(
+                visitor.kernel::<$group<f32, V>>();
+                visitor.kernel::<$group<f64, V>>();
+            )*
+        }
+
+        macro_rules! entries_of {
+            ($Volume:ty, $volume:literal) => {
+                entries! {
+                    $($name<$Volume>, concat!(stringify!($name), "_", $volume);)*
+                    $($each<f32, $Volume>, concat!(stringify!($each), "_", $volume, "_f32");)*
+                    $($each<f64, $Volume>, concat!(stringify!($each), "_", $volume, "_f64");)*
+                }
+            };
+            (groups $Volume:ty, $volume:literal) => {
+                entries! {
+                    $($group<f32, $Volume>, concat!(stringify!($group), "_", $volume, "_f32");)*
+                    $($group<f64, $Volume>, concat!(stringify!($group), "_", $volume, "_f64");)*
+                }
+            };
+        }
+    };
+}
+
+/// Types of kernels of a volume and a precision of positions.
+macro_rules! kernels_of_precisions {
+    ($($name:ident: $path:expr, [$args:ty], $lanes:expr, $shared:expr;)*) => { $(
+        #[doc = concat!("`", stringify!($name), "` of a volume and a precision of positions")]
+        #[allow(non_camel_case_types, reason = "the type is the entry's name")]
+        #[derive(Clone, Copy, Debug)]
+        pub struct $name<R, V>(PhantomData<(R, V)>);
+        impl<R: Real, V: Kernels> $name<R, V> {
+            const TEXT: &'static Name = &Name::of(&[stringify!($name), "_", V::NAME, precision::<R>()]);
+        }
+        impl<R: Real, V: Kernels> Entry for $name<R, V> {
+            const NAME: &'static str = Self::TEXT.text();
+            is_entry!($path, [$args], $lanes, $shared);
+        }
+    )* };
+}
+
+/// From the list of volumes makes their names and PTX entries, and the table of all kernels.
+macro_rules! table {
+    ($($Volume:ident = $volume:literal [$($groups:ident)?] { $($choices:tt)* })*) => {
+        $(
+            impl Kernels for bv::$Volume {
+                const NAME: &'static str = $volume;
+            }
+            entries_of!(bv::$Volume, $volume);
+            $(entries_of!($groups bv::$Volume, $volume);)?
+        )*
+
+        /// Every kernel's name and the size of its arguments in bytes.
+        pub const TABLE: &[(&str, usize)] = &{
+            let mut all = [("", 0); LINES.len() $(+ OF_A_VOLUME $(+ for_groups!($groups OF_GROUPS))?)*];
+            let mut end = put(&mut all, 0, &LINES);
+            $(
+                end = put(&mut all, end, &lines_of::<bv::$Volume>());
+                $(for_groups!($groups end = put(&mut all, end, &lines_of_groups::<bv::$Volume>()));)?
+            )*
+            assert!(end == all.len());
+            all
+        };
 
         /// Visits every kernel, in the order of [`TABLE`].
         pub fn visit(visitor: &mut impl Visit) {
-            $(visitor.kernel::<$name>();)*
-        }
-
-        /// Every kernel's name and the size of its arguments in bytes.
-        pub const TABLE: &[(&str, usize)] = &[$((stringify!($name), size_of::<$args>())),*];
-
-        /// The entries of the PTX.
-        #[cfg(target_arch = "nvptx64")]
-        mod gpu {
-            use super::*;
-            use crate::exec::ptx::Gpu;
+            visit_lines(visitor);
             $(
-                // SAFETY: called by the driver, once a thread, with arguments of the size in TABLE.
-                #[unsafe(no_mangle)]
-                unsafe extern "ptx-kernel" fn $name(args: $args) {
-                    // SAFETY: the one block of this kernel, made at its start.
-                    let mut block = unsafe { Gpu::new() };
-                    <super::$name as Entry>::run(&mut block, &args);
-                }
+                visit_volume::<bv::$Volume>(visitor);
+                $(for_groups!($groups visit_groups::<bv::$Volume>(visitor));)?
             )*
-            /// Which sources this PTX came from; the host refuses another.
-            #[unsafe(no_mangle)]
-            pub static NEARMISS_STAMP: u64 = stamp::SOURCES;
         }
     };
+}
+
+/// What stands behind, where a volume has groups.
+macro_rules! for_groups {
+    (groups $($what:tt)*) => { $($what)* };
+}
+
+/// Puts lines into the table; where they end.
+const fn put(all: &mut [Line], at: usize, lines: &[Line]) -> usize {
+    let mut i = 0;
+    while i < lines.len() {
+        all[at + i] = lines[i];
+        i += 1;
+    }
+    at + lines.len()
 }
 
 /// Lanes of kernels whose work is the same for every lane.
@@ -110,45 +273,7 @@ kernels! {
     construct_depth: tree::depth, [TreeArgs], WIDE, 0;
     construct_places: tree::places, [TreeArgs], WIDE, sort::shared_bytes(WIDE);
     construct_emit: tree::emit, [TreeArgs], WIDE, 0;
-    construct_graft_aabb: graft::graft::<Aabb, B>, [GraftArgs<Aabb>], WIDE, 0;
-    construct_graft_linear: graft::graft::<Linear, B>, [GraftArgs<Linear>], WIDE, 0;
-    construct_graft_obb: graft::graft::<Obb, B>, [GraftArgs<Obb>], WIDE, 0;
     construct_treelets: treelet::plan, [PlanArgs], WIDE, treelet::SHARED;
-    fit_aabb_f32: fit::fit::<f32, Aabb, B>, [FitArgs<f32, Aabb>], WIDE, 0;
-    fit_aabb_f64: fit::fit::<f64, Aabb, B>, [FitArgs<f64, Aabb>], WIDE, 0;
-    fit_linear_f32: fit::fit::<f32, Linear, B>, [FitArgs<f32, Linear>], WIDE, 0;
-    fit_linear_f64: fit::fit::<f64, Linear, B>, [FitArgs<f64, Linear>], WIDE, 0;
-    fit_obb_f32: fit::fit::<f32, Obb, B>, [FitArgs<f32, Obb>], WIDE, 0;
-    fit_obb_f64: fit::fit::<f64, Obb, B>, [FitArgs<f64, Obb>], WIDE, 0;
-    fit_groups_obb_f32: fit::groups::<f32, B>, [GroupsArgs<f32, Obb>], NARROW, 0;
-    fit_groups_obb_f64: fit::groups::<f64, B>, [GroupsArgs<f64, Obb>], NARROW, 0;
-    refit_levels_aabb: levels::levels::<Aabb, B>, [RefitArgs<Aabb>], WIDE, 0;
-    refit_levels_linear: levels::levels::<Linear, B>, [RefitArgs<Linear>], WIDE, 0;
-    refit_levels_obb: levels::levels::<Obb, B>, [RefitArgs<Obb>], WIDE, 0;
-    refit_treelets_aabb_f32: treelets::treelets::<f32, Aabb, B>, [TreeletsArgs<f32, Aabb>], WIDE, treelets::shared_bytes::<Aabb>();
-    refit_treelets_aabb_f64: treelets::treelets::<f64, Aabb, B>, [TreeletsArgs<f64, Aabb>], WIDE, treelets::shared_bytes::<Aabb>();
-    refit_treelets_linear_f32: treelets::treelets::<f32, Linear, B>, [TreeletsArgs<f32, Linear>], WIDE, treelets::shared_bytes::<Linear>();
-    refit_treelets_linear_f64: treelets::treelets::<f64, Linear, B>, [TreeletsArgs<f64, Linear>], WIDE, treelets::shared_bytes::<Linear>();
-    refit_treelets_obb_f32: treelets::treelets::<f32, Obb, B>, [TreeletsArgs<f32, Obb>], WIDE, treelets::shared_bytes::<Obb>();
-    refit_treelets_obb_f64: treelets::treelets::<f64, Obb, B>, [TreeletsArgs<f64, Obb>], WIDE, treelets::shared_bytes::<Obb>();
-    refit_bottom_up_aabb: bottom_up::bottom_up::<Aabb, B>, [BottomUpArgs<Aabb>], WIDE, 0;
-    refit_bottom_up_linear: bottom_up::bottom_up::<Linear, B>, [BottomUpArgs<Linear>], WIDE, 0;
-    refit_bottom_up_obb: bottom_up::bottom_up::<Obb, B>, [BottomUpArgs<Obb>], WIDE, 0;
-    traverse_leaves_aabb: traverse::leaves::<Aabb, B>, [TraverseArgs<Aabb>], NARROW, traverse::shared_bytes(NARROW);
-    traverse_units_aabb: traverse::units::<Aabb, B>, [TraverseArgs<Aabb>], NARROW, traverse::shared_bytes(NARROW);
-    traverse_leaves_linear: traverse::leaves::<Linear, B>, [TraverseArgs<Linear>], NARROW, traverse::shared_bytes(NARROW);
-    traverse_units_linear: traverse::units::<Linear, B>, [TraverseArgs<Linear>], NARROW, traverse::shared_bytes(NARROW);
-    traverse_leaves_obb: traverse::leaves::<Obb, B>, [TraverseArgs<Obb>], NARROW, traverse::shared_bytes(NARROW);
-    traverse_units_obb: traverse::units::<Obb, B>, [TraverseArgs<Obb>], NARROW, traverse::shared_bytes(NARROW);
-    traverse_front_aabb: front::front::<Aabb, B>, [FrontArgs<Aabb>], WIDE, 0;
-    traverse_front_linear: front::front::<Linear, B>, [FrontArgs<Linear>], WIDE, 0;
-    traverse_front_obb: front::front::<Obb, B>, [FrontArgs<Obb>], WIDE, 0;
-    traverse_queue_aabb: queue::queue::<Aabb, B>, [QueueArgs<Aabb>], NARROW, worker::shared_bytes(NARROW);
-    traverse_steal_aabb: steal::steal::<Aabb, B>, [StealArgs<Aabb>], NARROW, worker::shared_bytes(NARROW);
-    traverse_queue_linear: queue::queue::<Linear, B>, [QueueArgs<Linear>], NARROW, worker::shared_bytes(NARROW);
-    traverse_steal_linear: steal::steal::<Linear, B>, [StealArgs<Linear>], NARROW, worker::shared_bytes(NARROW);
-    traverse_queue_obb: queue::queue::<Obb, B>, [QueueArgs<Obb>], NARROW, worker::shared_bytes(NARROW);
-    traverse_steal_obb: steal::steal::<Obb, B>, [StealArgs<Obb>], NARROW, worker::shared_bytes(NARROW);
     balance_copy: balance::copy, [BalanceArgs], BALANCE, 0;
     narrow_moller_f32: discrete::moller::<f32, B>, [DiscreteArgs<f32>], WIDE, 0;
     narrow_moller_f64: discrete::moller::<f64, B>, [DiscreteArgs<f64>], WIDE, 0;
@@ -198,3 +323,25 @@ kernels! {
     order_gather_near: order::gather::<NearHit, B>, [OrderArgs<NearHit>], WIDE, 0;
     status_frame: status::status, [StatusArgs], NARROW, 0;
 }
+
+kernels_of_volumes! {
+    both {
+        construct_graft: graft::graft::<V, B>, [GraftArgs<V>], WIDE, 0;
+        refit_levels: levels::levels::<V, B>, [RefitArgs<V>], WIDE, 0;
+        refit_bottom_up: bottom_up::bottom_up::<V, B>, [BottomUpArgs<V>], WIDE, 0;
+        traverse_leaves: traverse::leaves::<V, B>, [TraverseArgs<V>], NARROW, traverse::shared_bytes(NARROW);
+        traverse_units: traverse::units::<V, B>, [TraverseArgs<V>], NARROW, traverse::shared_bytes(NARROW);
+        traverse_front: front::front::<V, B>, [FrontArgs<V>], WIDE, 0;
+        traverse_queue: queue::queue::<V, B>, [QueueArgs<V>], NARROW, worker::shared_bytes(NARROW);
+        traverse_steal: steal::steal::<V, B>, [StealArgs<V>], NARROW, worker::shared_bytes(NARROW);
+    }
+    each {
+        fit: fitting::fit::<R, V, B>, [FitArgs<R, V>], WIDE, 0;
+        refit_treelets: treelets::treelets::<R, V, B>, [TreeletsArgs<R, V>], WIDE, treelets::shared_bytes::<V>();
+    }
+    groups {
+        fit_groups: fitting::groups::<R, V, B>, [GroupsArgs<R, V>], NARROW, 0;
+    }
+}
+
+crate::volumes!(table);

@@ -8,7 +8,6 @@
 use nearmiss::device::Backend;
 use nearmiss::mesh::{Body, Mesh};
 use nearmiss::pipeline::{Stages, mean_side};
-use nearmiss::query::Motion;
 use nearmiss::{Detector, Device, Error, Query};
 use std::path::Path;
 
@@ -32,7 +31,7 @@ fn ask(device: &Device, body: &Body, query: Query) -> Result<(), Error> {
     let of = |stage: fn(&Stages) -> f64| middle(frames.iter().map(stage).collect());
     println!(
         "{:?}: {} triangle pairs, {:?} candidates, {} listed, {} unresolved",
-        query.motion,
+        query.kind(),
         contacts.triangle_pairs,
         contacts.candidates_vf_ee,
         contacts.len(),
@@ -62,6 +61,6 @@ fn main() -> Result<(), Error> {
     let device = Device::open(Backend::Auto, None)?;
     let edge = mean_side(std::slice::from_ref(&body));
     println!("{}: mean edge {edge}, asked within {edges} of it", device.name());
-    ask(&device, &body, Query::of(Motion::Discrete))?;
+    ask(&device, &body, Query::discrete())?;
     ask(&device, &body, Query::near(edges * edge))
 }

@@ -7,7 +7,6 @@
 
 use nearmiss::device::Backend;
 use nearmiss::mesh::{Body, Mesh, Topology};
-use nearmiss::query::Motion;
 use nearmiss::{Detector, Device, Error, Query};
 use nearmiss_lab::scene;
 use std::path::Path;
@@ -28,8 +27,8 @@ fn motion(body: &Body) -> [f64; 3] {
 fn row(name: &str, device: &Device, body: Body, seconds: f64) -> Result<(), Error> {
     let triangles = body.face_count() as f64;
     let [edge, mean, most] = motion(&body);
-    let ask = |motion| Detector::new(device.clone(), vec![body.clone()], Query::of(motion))?.detect();
-    let (still, moving) = (ask(Motion::Discrete)?, ask(Motion::Continuous)?);
+    let ask = |query: Query| Detector::new(device.clone(), vec![body.clone()], query)?.detect();
+    let (still, moving) = (ask(Query::discrete())?, ask(Query::continuous())?);
     let a_triangle = |count: f64| count / triangles;
     println!(
         "| {name} | {triangles} | {:.2} / {:.1} | {:.2} | {:.3} | {:.1} | {:.1} | {:.1} | {:.3} | {seconds:.2} |",

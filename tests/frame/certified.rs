@@ -2,11 +2,12 @@
 //! tolerance and the budget, and no bit is other.
 
 use super::continuous::{boxes_meet, crowded, crumpled, promoted};
+use super::support::asked::{by, certified};
 use super::support::brute::{Row, SOLVERS, Seen, fault, verdict};
 use super::support::{ask, engine, machines};
 use nearmiss::contacts::{Contact, Kind, Status};
 use nearmiss::mesh::Body;
-use nearmiss::query::{Motion, Solver};
+use nearmiss::query::{QueryKind, Solver};
 use nearmiss::{Contacts, Detector, Query};
 use nearmiss_kernels::prim::cubic::{ee_toi, vf_toi};
 use nearmiss_kernels::prim::inclusion::{Params, Verdict};
@@ -51,8 +52,10 @@ fn brute(body: &Body, solver: Solver, p: &Params) -> (BTreeMap<Row, Verdict>, Ve
     (near, cubic)
 }
 
-fn asking(motion: Motion, solver: Solver, p: &Params) -> Query {
-    Query { solver: Some(solver), tolerance: Some(p.tolerance), boxes: Some(p.budget), ..Query::of(motion) }
+fn asking(motion: QueryKind, solver: Solver, p: &Params) -> Query {
+    certified(by(motion, solver), |certified| {
+        (certified.tolerance, certified.budget) = (Some(p.tolerance), Some(p.budget));
+    })
 }
 
 fn unresolved(answer: &Contacts) -> usize {
@@ -69,7 +72,7 @@ fn nothing_is_lost_at_any_tolerance_and_budget() {
             for (tolerance, budget) in [(1e-4, 4096), (0.0, 200), (0.1, 4096), (1e-4, 1)] {
                 let p = Params { budget, ..Params::new(tolerance) };
                 let (near, meet) = brute(&body, solver, &p);
-                let all = ask(engine(), vec![body.clone()], asking(Motion::Continuous, solver, &p));
+                let all = ask(engine(), vec![body.clone()], asking(QueryKind::Continuous, solver, &p));
                 let what = format!("{}, {solver:?}, {p:?}", body.name());
                 assert_eq!(fault(all.contacts(), &near, &meet), None, "{what}");
                 assert_eq!(unresolved(&all) as u64, all.unresolved, "{what}");
@@ -77,7 +80,7 @@ fn nothing_is_lost_at_any_tolerance_and_budget() {
                     ample = all.unresolved;
                 }
                 assert!(budget > 1 || all.unresolved >= ample, "{what}: a budget of one box is not more");
-                let first = ask(engine(), vec![body.clone()], asking(Motion::Earliest, solver, &p));
+                let first = ask(engine(), vec![body.clone()], asking(QueryKind::Earliest, solver, &p));
                 // Pairs that could not be earlier than one that is known are not asked, so not counted either.
                 let least = [&first, &all].map(|a| a.earliest_toi().map(f64::to_bits));
                 assert_eq!(least[0], least[1], "{what}");
@@ -96,10 +99,10 @@ fn every_machine_escalates_the_same() {
         let all = detector.detect().expect("an answer");
         let prints = detector.fingerprints().expect("prints");
         // Of the earliest, which pairs are asked hangs on what was found before them.
-        let counts = (motion == Motion::Continuous).then_some((all.unresolved, all.escalated_vf_ee));
+        let counts = (motion == QueryKind::Continuous).then_some((all.unresolved, all.escalated_vf_ee));
         (all.hash(), counts, prints)
     };
-    for motion in [Motion::Continuous, Motion::Earliest] {
+    for motion in [QueryKind::Continuous, QueryKind::Earliest] {
         let truth = print(engine(), motion);
         assert!(truth.1.is_none_or(|(open, left)| open > 0 && left.iter().all(|n| *n > 0)), "{truth:?}");
         for device in machines() {
@@ -113,7 +116,7 @@ fn every_machine_escalates_the_same() {
 fn the_comparison_can_fail() {
     let (body, p) = (promoted(crowded(4, 40, 24)), Params::new(1e-4));
     let (near, meet) = brute(&body, Solver::Certified, &p);
-    let all = ask(engine(), vec![body], asking(Motion::Continuous, Solver::Certified, &p));
+    let all = ask(engine(), vec![body], asking(QueryKind::Continuous, Solver::Certified, &p));
     let with = |fault_in: fn(&mut Vec<Contact>)| {
         let mut found = all.contacts().to_vec();
         fault_in(&mut found);

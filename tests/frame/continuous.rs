@@ -1,12 +1,13 @@
 //! Elementary pairs in motion, against all of them asked one by one with the same cubic: what the volumes, the walk
 //! and the sift leave out must be what the solver would not have found.
 
+use super::support::asked::by;
 use super::support::brute::Seen;
 use super::support::{ask, engine, machines, moving, still};
+use nearmiss::Contacts;
 use nearmiss::contacts::{Contact, Kind, Status};
 use nearmiss::mesh::Body;
-use nearmiss::query::{Motion, Solver};
-use nearmiss::{Contacts, Query};
+use nearmiss::query::{QueryKind, Solver};
 use nearmiss_kernels::math::Real;
 use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};
 use nearmiss_lab::scene::{self, Rng};
@@ -87,19 +88,15 @@ fn difference(found: &[Contact], truth: &[Contact]) -> Option<String> {
     }
 }
 
-fn query(motion: Motion, solver: Solver) -> Query {
-    Query { solver: Some(solver), ..Query::of(motion) }
-}
-
 /// Asks every machine; the truth in f64.
 fn everywhere(what: &str, bodies: &[Body]) -> Contacts {
     let truth = brute::<f64>(bodies);
     let mut first = None;
     for device in machines() {
         let name = device.name();
-        let found = ask(device.clone(), bodies.to_vec(), query(Motion::Continuous, Solver::CubicF64));
+        let found = ask(device.clone(), bodies.to_vec(), by(QueryKind::Continuous, Solver::CubicF64));
         assert_eq!(difference(found.contacts(), &truth), None, "{what}, {name}");
-        let earliest = ask(device, bodies.to_vec(), query(Motion::Earliest, Solver::CubicF64));
+        let earliest = ask(device, bodies.to_vec(), by(QueryKind::Earliest, Solver::CubicF64));
         let least = truth.iter().map(|c| c.toi).min_by(f64::total_cmp);
         assert_eq!(earliest.earliest_toi().map(f64::to_bits), least.map(f64::to_bits), "{what}, {name}");
         assert_eq!(found.earliest_toi(), least);
@@ -221,7 +218,7 @@ pub fn promoted(body: Body) -> Body {
 fn the_solver_in_floats_gets_the_same_pairs() {
     for body in [crumpled(4, 12, 1, 0.0), scene::soup(80, 5, true).expect("a scene"), crowded(4, 40, 24)] {
         let bodies = vec![promoted(body)];
-        let found = ask(engine(), bodies.clone(), query(Motion::Continuous, Solver::CubicF32));
+        let found = ask(engine(), bodies.clone(), by(QueryKind::Continuous, Solver::CubicF32));
         assert_eq!(difference(found.contacts(), &brute::<f32>(&bodies)), None);
         assert!(!found.is_empty());
     }

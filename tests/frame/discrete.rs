@@ -2,14 +2,14 @@
 
 use super::support::{ask, engine, loose, machines, still};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Motion, Solver};
+use nearmiss::query::{Discrete, TriangleTest};
 use nearmiss::{Device, Query};
 use nearmiss_lab::oracle::{Triangle, triangles_meet, triangles_meet_beyond};
 use nearmiss_lab::scene::{self, Rng};
 use std::collections::BTreeSet;
 
 fn pairs(device: Device, bodies: Vec<Body>) -> Vec<[u32; 2]> {
-    ask(device, bodies, Query::of(Motion::Discrete)).triangles()
+    ask(device, bodies, Query::discrete()).triangles()
 }
 
 fn triangles(body: &Body) -> Vec<Triangle> {
@@ -129,7 +129,7 @@ fn a_crowd_of_degenerate_triangles_equals_the_oracle() {
         let flat = triangles(&body).iter().filter(|t| area_is_zero(t)).count();
         for adjacent in [false, true] {
             let truth = oracle_of_one(&body, adjacent);
-            let query = Query { adjacent, ..Query::of(Motion::Discrete) };
+            let query = Query::from(Discrete::by(TriangleTest::Exact { adjacent }));
             let contacts = ask(engine(), vec![body.clone()], query);
             assert_eq!(difference(&contacts.triangles(), &truth), None, "seed {seed}, adjacent: {adjacent}");
             assert_eq!(contacts.len(), truth.len());
@@ -142,7 +142,7 @@ fn a_crowd_of_degenerate_triangles_equals_the_oracle() {
 fn a_segment_from_a_shared_vertex_into_a_face_is_found() {
     let points = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, 0.0]];
     let body = still(&points, &[[0, 0, 3], [0, 1, 2]]);
-    let query = Query { adjacent: true, ..Query::of(Motion::Discrete) };
+    let query = Query::from(Discrete::by(TriangleTest::Exact { adjacent: true }));
     assert_eq!(ask(engine(), vec![body], query).triangles(), [[0, 1]]);
 }
 
@@ -280,7 +280,7 @@ fn doubles_are_not_rounded() {
     let faces = (0..40).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let body = Body::still(Mesh::new("stack", Positions::F64(points), faces).expect("a mesh"));
     for device in machines() {
-        let contacts = ask(device, vec![body.clone()], Query::of(Motion::Discrete));
+        let contacts = ask(device, vec![body.clone()], Query::discrete());
         assert_eq!((contacts.len(), contacts.triangle_pairs), (0, 40 * 39 / 2));
     }
 }
@@ -288,7 +288,7 @@ fn doubles_are_not_rounded() {
 /// The float test is asked for scenes where it cannot err: the pipeline is the same for both.
 #[test]
 fn the_float_test_finds_the_known_pairs_too() {
-    let query = Query { solver: Some(Solver::Moller), ..Query::of(Motion::Discrete) };
+    let query = Query::from(Discrete::by(TriangleTest::Moller));
     for device in machines() {
         let contacts = ask(device, vec![scene::grid(4).expect("a scene")], query);
         assert_eq!((contacts.len() as u64, contacts.undecided), (scene::grid_pairs(4), 0));

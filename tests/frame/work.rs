@@ -1,8 +1,9 @@
 //! What is not asked for is not done: launches and bytes are counted.
 
+use super::support::asked::{by, of, with_tolerance};
 use super::support::{ORDERS, engine, sanitizer, still};
 use nearmiss::mesh::Body;
-use nearmiss::query::{Motion, Solver, Traversal};
+use nearmiss::query::{Discrete, Near, QueryKind, Solver, Traversal, TriangleTest};
 use nearmiss::{Detector, Device, Query};
 use nearmiss_lab::scene;
 
@@ -46,22 +47,20 @@ fn bodies_without_triangles_cost_nothing() {
 fn each_query_launches_what_it_needs() {
     let device = engine();
     let frame = |query: Query| work(&device, vec![soup()], query);
-    let of = Query::of;
-    let exact = frame(of(Motion::Discrete));
-    let moller = frame(Query { solver: Some(Solver::Moller), ..of(Motion::Discrete) });
-    let continuous = frame(of(Motion::Continuous));
-    let earliest = frame(of(Motion::Earliest));
+    let exact = frame(of(QueryKind::Discrete));
+    let moller = frame(Discrete::by(TriangleTest::Moller).into());
+    let continuous = frame(of(QueryKind::Continuous));
+    let earliest = frame(of(QueryKind::Earliest));
     // Features and their distances, both kinds in one launch.
-    let near = frame(Query::near(Query::DISTANCE));
+    let near = frame(Query::near(Near::DISTANCE));
     assert_eq!(near, (exact.0, 5, near.2));
-    let by = |solver, motion| frame(Query { solver: Some(solver), ..of(motion) }).1;
     // Fit, refit (one launch for a small tree), the walk; then one float test, or filters in f32 and f64 and exact signs, or sift
     // and what rejects by signs; then the rungs of certified solvers, both kinds in one launch: isolation,
     // by default in f32 and again in f64, what touches or is flat, and slices unless f32 is alone; or other solvers, of each
     // kind a launch.
     assert_eq!([moller.1, exact.1, continuous.1, earliest.1], [4, 6, 9, 9]);
-    for solver in Solver::ALL.into_iter().filter(|solver| solver.answers(Motion::Continuous)) {
-        let launches = [Motion::Continuous, Motion::Earliest].map(|motion| by(solver, motion));
+    for solver in Solver::ALL.into_iter().filter(|solver| solver.answers(QueryKind::Continuous)) {
+        let launches = [QueryKind::Continuous, QueryKind::Earliest].map(|motion| frame(by(motion, solver)).1);
         let rungs = match solver {
             Solver::Certified => 4,
             Solver::CertifiedF64 => 3,
@@ -70,9 +69,8 @@ fn each_query_launches_what_it_needs() {
         assert_eq!(launches, [5 + rungs; 2], "{solver:?}");
     }
     // Listed pairs are measured only where some may be too large for the tolerance.
-    let below_precision =
-        |motion| frame(Query { solver: Some(Solver::CertifiedF32), tolerance: Some(1e-9), ..of(motion) }).1;
-    assert_eq!([Motion::Continuous, Motion::Earliest].map(below_precision), [8, 7]);
+    let below_precision = |motion| frame(with_tolerance(by(motion, Solver::CertifiedF32), 1e-9)).1;
+    assert_eq!([QueryKind::Continuous, QueryKind::Earliest].map(below_precision), [8, 7]);
     // Construction does not depend on the question, and nothing is kept when the detector ends.
     assert!([moller.0, continuous.0, earliest.0].iter().all(|n| *n == exact.0), "{}", exact.0);
     assert_eq!(device.bytes().0, 0);
@@ -86,17 +84,16 @@ fn each_query_holds_what_it_needs() {
         detector.detect().expect("an answer");
         device.bytes().0
     };
-    let of = Query::of;
-    let exact = bytes(of(Motion::Discrete));
-    let moller = bytes(Query { solver: Some(Solver::Moller), ..of(Motion::Discrete) });
-    let [continuous, earliest] = [Motion::Continuous, Motion::Earliest].map(|motion| bytes(of(motion)));
+    let exact = bytes(of(QueryKind::Discrete));
+    let moller = bytes(Discrete::by(TriangleTest::Moller).into());
+    let [continuous, earliest] = [QueryKind::Continuous, QueryKind::Earliest].map(|motion| bytes(of(motion)));
     assert!(moller < exact, "no list of undecided pairs: {moller} {exact}");
-    let near = bytes(Query::near(Query::DISTANCE));
+    let near = bytes(Query::near(Near::DISTANCE));
     assert!(exact < near && near < continuous, "edges and owners, but no second frame: {near}");
     assert!(exact < earliest, "no edges, owners and second frame: {exact} {earliest}");
     assert!(earliest < continuous, "no list of contacts: {earliest} {continuous}");
-    let spilling = Query { traversal: Some(Traversal::PerLeaf { budget: Some(8) }), ..of(Motion::Discrete) };
-    let whole = Query { traversal: Some(Traversal::PerLeaf { budget: None }), ..of(Motion::Discrete) };
+    let spilling = of(QueryKind::Discrete).with_traversal(Traversal::PerLeaf { budget: Some(8) });
+    let whole = of(QueryKind::Discrete).with_traversal(Traversal::PerLeaf { budget: None });
     assert!(bytes(whole) < bytes(spilling), "no list of units");
 }
 
@@ -104,8 +101,8 @@ fn each_query_holds_what_it_needs() {
 fn a_walk_that_never_spills_has_no_second_round() {
     let device = engine();
     let frame = |budget| {
-        let traversal = Some(Traversal::PerLeaf { budget });
-        work(&device, vec![soup()], Query { traversal, ..Query::of(Motion::Discrete) }).1
+        let query = Query::discrete().with_traversal(Traversal::PerLeaf { budget });
+        work(&device, vec![soup()], query).1
     };
     // As many rounds as nearmiss_kernels::abi::ROUNDS may spill.
     assert_eq!(frame(Some(1)), frame(None) + u64::from(nearmiss_kernels::abi::ROUNDS));
@@ -113,7 +110,7 @@ fn a_walk_that_never_spills_has_no_second_round() {
 
 #[test]
 fn a_discrete_query_does_not_see_the_end_of_the_step() {
-    let ask = |body| super::support::ask(engine(), vec![body], Query::of(Motion::Discrete));
+    let ask = |body| super::support::ask(engine(), vec![body], Query::discrete());
     let first = Body::still(soup().frames().remove(0));
     assert_eq!(ask(soup()).answer, ask(first).answer);
     assert!(!ask(soup()).is_empty());
@@ -121,10 +118,10 @@ fn a_discrete_query_does_not_see_the_end_of_the_step() {
 
 #[test]
 fn nothing_is_left_behind() {
-    for query in [Motion::Discrete, Motion::Continuous, Motion::Earliest]
-        .map(Query::of)
+    for query in [QueryKind::Discrete, QueryKind::Continuous, QueryKind::Earliest]
+        .map(of)
         .into_iter()
-        .chain([Query::near(Query::DISTANCE)])
+        .chain([Query::near(Near::DISTANCE)])
     {
         let device = sanitizer(ORDERS[2]);
         let mut detector = Detector::new(device.clone(), vec![soup(), soup()], query).expect("a detector");

@@ -1,8 +1,9 @@
 //! The machine, its order, the size of its blocks, the walk, and whether a tree is new.
 
+use super::support::asked::{of, with_tolerance};
 use super::support::{machines, sanitizer};
 use super::*;
-use nearmiss::query::Bv;
+use nearmiss::query::{Bv, QueryKind};
 use nearmiss::{Detector, Device};
 
 /// The answer's hash, and what every stage left behind.
@@ -37,11 +38,11 @@ fn every_machine_gives_the_same_bits_at_every_stage() {
 fn every_walk_finds_the_same() {
     let bodies = [scene::soup(200, 4, true).expect("a scene"), scene::draped(300).expect("a scene")];
     for bodies in [&bodies[..1], &bodies[1..], &bodies[..]] {
-        for motion in [Motion::Discrete, Motion::Continuous] {
-            let truth = prints(engine(), bodies, Query { bv: Some(Bv::Aabb), ..Query::of(motion) });
+        for motion in [QueryKind::Discrete, QueryKind::Continuous] {
+            let truth = prints(engine(), bodies, of(motion).with_bv(Bv::Aabb));
             for traversal in super::support::walks() {
                 // Only tests of plain boxes nest to the bit: then candidates are the same as well.
-                let query = Query { traversal: Some(traversal), bv: Some(Bv::Aabb), ..Query::of(motion) };
+                let query = of(motion).with_traversal(traversal).with_bv(Bv::Aabb);
                 assert_eq!(prints(engine(), bodies, query), truth, "{traversal:?}");
                 let order = support::ORDERS[2];
                 assert_eq!(prints(sanitizer(order), bodies, query), truth, "{traversal:?}, {order:?}");
@@ -60,7 +61,7 @@ fn every_way_finds_the_same_contacts() {
         vec![scene::draped(200).expect("a scene"), scene::soup(80, 6, true).expect("a scene")],
     ];
     for (at, bodies) in scenes.iter().enumerate() {
-        for motion in [Motion::Discrete, Motion::Continuous, Motion::Earliest] {
+        for motion in [QueryKind::Discrete, QueryKind::Continuous, QueryKind::Earliest] {
             let answer = |device, query| {
                 let mut detector = Detector::new(device, bodies.clone(), query).expect("a detector");
                 let first = detector.detect().expect("an answer");
@@ -69,8 +70,8 @@ fn every_way_finds_the_same_contacts() {
                 assert_eq!(detector.detect().expect("an answer").answer, first.answer, "{query:?}");
                 first.answer
             };
-            let truth = answer(engine(), Query::of(motion));
-            for (i, way) in super::support::ways(Query::of(motion)).enumerate() {
+            let truth = answer(engine(), of(motion));
+            for (i, way) in super::support::ways(of(motion)).enumerate() {
                 assert_eq!(answer(engine(), way), truth, "{way:?}");
                 if (i + at) % 7 == 0 {
                     let order = support::ORDERS[i % 3];
@@ -95,11 +96,11 @@ fn later(body: &Body, by: f64) -> Body {
 
 #[test]
 fn a_refitted_tree_finds_what_a_new_one_does() {
-    for motion in [Motion::Discrete, Motion::Continuous, Motion::Earliest] {
+    for motion in [QueryKind::Discrete, QueryKind::Continuous, QueryKind::Earliest] {
         for bodies in [moving_scenes()[..1].to_vec(), moving_scenes()[1..].to_vec()] {
             // The default tolerance hangs on where a detector begins: named, the bits are the same.
-            let tolerance = (motion != Motion::Discrete).then_some(1e-5);
-            let query = Query { tolerance, bv: Some(Bv::Aabb), ..Query::of(motion) };
+            let named = with_tolerance(of(motion), 1e-5);
+            let query = named.with_bv(Bv::Aabb);
             let mut detector = Detector::new(engine(), bodies.clone(), query).expect("a detector");
             detector.detect().expect("an answer");
             // A step on, three steps on, far off, and back where it began.
@@ -110,7 +111,7 @@ fn a_refitted_tree_finds_what_a_new_one_does() {
                 }
                 let refitted = detector.detect().expect("an answer");
                 detector.check_trees().expect("sound trees");
-                let fresh = ask(engine(), moved.clone(), Query { tolerance, ..Query::of(motion) });
+                let fresh = ask(engine(), moved.clone(), named);
                 assert_eq!(refitted.answer, fresh.answer, "{motion:?}, {by}");
                 assert_eq!(
                     counted(&refitted),
@@ -141,8 +142,7 @@ fn the_same_session_asked_again_says_the_same() {
 #[test]
 fn what_is_no_frame_of_the_mesh_is_refused() {
     let body = scene::soup(20, 4, true).expect("a scene");
-    let mut detector =
-        Detector::new(engine(), vec![body.clone()], Query::of(Motion::Continuous)).expect("a detector");
+    let mut detector = Detector::new(engine(), vec![body.clone()], Query::continuous()).expect("a detector");
     let before = detector.detect().expect("an answer");
     let other_faces = changed(&body, body.faces().iter().rev().copied().collect(), |points| points);
     let fewer = scene::soup(19, 4, true).expect("a scene");

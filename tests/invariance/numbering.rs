@@ -19,22 +19,22 @@ fn renumbered(contacts: &Contacts, of: &[u32]) -> Vec<[u32; 2]> {
 #[test]
 fn triangles_in_another_order() {
     for body in still_scenes() {
-        let truth = found(std::slice::from_ref(&body), Motion::Discrete);
+        let truth = found(std::slice::from_ref(&body), QueryKind::Discrete);
         assert!(!truth.is_empty(), "{}", body.name());
         for seed in 0..3 {
             let of = permutation(body.face_count(), seed);
             let other =
                 changed(&body, of.iter().map(|i| body.faces()[*i as usize]).collect(), |points| points);
-            let again = found(&[other], Motion::Discrete);
+            let again = found(&[other], QueryKind::Discrete);
             assert_eq!(renumbered(&again, &of), truth.triangles(), "{}, {seed}", body.name());
         }
     }
     for body in moving_scenes() {
-        let contacts = found(std::slice::from_ref(&body), Motion::Continuous);
+        let contacts = found(std::slice::from_ref(&body), QueryKind::Continuous);
         assert!(!contacts.is_empty(), "{}", body.name());
         let of = permutation(body.face_count(), 9);
         let other = changed(&body, of.iter().map(|i| body.faces()[*i as usize]).collect(), |points| points);
-        let again = found(std::slice::from_ref(&other), Motion::Continuous);
+        let again = found(std::slice::from_ref(&other), QueryKind::Continuous);
         // Faces keep their corners and edges their numbers: even the bits of the times are the same.
         assert_eq!(
             named(&other, again.contacts(), |v| v),
@@ -42,7 +42,7 @@ fn triangles_in_another_order() {
             "{}",
             body.name()
         );
-        let of = |body: &Body| boxed(std::slice::from_ref(body), Motion::Continuous);
+        let of = |body: &Body| boxed(std::slice::from_ref(body), QueryKind::Continuous);
         assert_eq!(of(&other), of(&body));
     }
 }
@@ -51,14 +51,14 @@ fn triangles_in_another_order() {
 fn corners_in_another_order() {
     const CORNERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
     for body in still_scenes() {
-        let truth = found(std::slice::from_ref(&body), Motion::Discrete);
+        let truth = found(std::slice::from_ref(&body), QueryKind::Discrete);
         // Each triangle in its own order, and six times round.
         for turn in 0..6 {
             let corners = |(i, face): (usize, &[u32; 3])| CORNERS[(i + turn) % 6].map(|k| face[k]);
             let other =
                 changed(&body, body.faces().iter().enumerate().map(corners).collect(), |points| points);
             assert_eq!(
-                found(&[other], Motion::Discrete).pairs(),
+                found(&[other], QueryKind::Discrete).pairs(),
                 truth.triangles(),
                 "{}, {turn}",
                 body.name()
@@ -66,11 +66,11 @@ fn corners_in_another_order() {
         }
     }
     for body in moving_scenes() {
-        let contacts = found(std::slice::from_ref(&body), Motion::Continuous);
+        let contacts = found(std::slice::from_ref(&body), QueryKind::Continuous);
         for corners in CORNERS {
             let faces = body.faces().iter().map(|face| corners.map(|k| face[k])).collect();
             let other = changed(&body, faces, |points| points);
-            let again = found(std::slice::from_ref(&other), Motion::Continuous);
+            let again = found(std::slice::from_ref(&other), QueryKind::Continuous);
             // The parameters of a face begin at another corner: times may differ in the last bits.
             let (one, two) =
                 (named(&other, again.contacts(), |v| v), named(&body, contacts.contacts(), |v| v));
@@ -90,14 +90,14 @@ fn vertices_in_another_order() {
     };
     for body in still_scenes() {
         let other = shuffled(&body, &permutation(body.vertex_count(), 4));
-        let truth = found(std::slice::from_ref(&body), Motion::Discrete);
-        assert_eq!(found(&[other], Motion::Discrete).pairs(), truth.triangles(), "{}", body.name());
+        let truth = found(std::slice::from_ref(&body), QueryKind::Discrete);
+        assert_eq!(found(&[other], QueryKind::Discrete).pairs(), truth.triangles(), "{}", body.name());
     }
     for body in moving_scenes() {
-        let contacts = found(std::slice::from_ref(&body), Motion::Continuous);
+        let contacts = found(std::slice::from_ref(&body), QueryKind::Continuous);
         let of = permutation(body.vertex_count(), 5);
         let other = shuffled(&body, &of);
-        let again = found(std::slice::from_ref(&other), Motion::Continuous);
+        let again = found(std::slice::from_ref(&other), QueryKind::Continuous);
         let one = named(&other, again.contacts(), |v| of[v as usize]);
         assert_close(&one, &named(&body, contacts.contacts(), |v| v), body.name());
     }
@@ -107,8 +107,8 @@ fn vertices_in_another_order() {
 fn bodies_exchanged() {
     let scenes = still_scenes();
     for (one, two) in [(&scenes[0], &scenes[1]), (&scenes[1], &scenes[2]), (&scenes[2], &scenes[0])] {
-        let there = found(&[one.clone(), two.clone()], Motion::Discrete);
-        let back = found(&[two.clone(), one.clone()], Motion::Discrete);
+        let there = found(&[one.clone(), two.clone()], QueryKind::Discrete);
+        let back = found(&[two.clone(), one.clone()], QueryKind::Discrete);
         let mut turned: Vec<_> = back.triangles().iter().map(|[a, b]| [*b, *a]).collect();
         turned.sort_unstable();
         assert_eq!(turned, there.triangles());
@@ -117,8 +117,8 @@ fn bodies_exchanged() {
     let mut scenes = moving_scenes();
     scenes.push(scene::soup(200, 6, true).expect("a scene"));
     for (one, two) in [(&scenes[0], &scenes[3]), (&scenes[1], &scenes[2])] {
-        let there = found(&[one.clone(), two.clone()], Motion::Continuous);
-        let back = found(&[two.clone(), one.clone()], Motion::Continuous);
+        let there = found(&[one.clone(), two.clone()], QueryKind::Continuous);
+        let back = found(&[two.clone(), one.clone()], QueryKind::Continuous);
         // A vertex/face pair is the same query to the solver: same bits. Of two edges the first one changes.
         let of = |contacts: &Contacts, kind| -> BTreeMap<[u32; 2], Times> {
             let all = contacts.contacts().iter().filter(|c| c.kind == kind);

@@ -7,14 +7,14 @@ fn other_units() {
     for power in [-20, -7, -1, 1, 13, 20] {
         let scaled = |body: &Body| mapped(body, |p| p.map(|x| x * 2f64.powi(power)));
         for body in still_scenes() {
-            let truth = found(std::slice::from_ref(&body), Motion::Discrete);
-            let again = found(&[scaled(&body)], Motion::Discrete);
+            let truth = found(std::slice::from_ref(&body), QueryKind::Discrete);
+            let again = found(&[scaled(&body)], QueryKind::Discrete);
             assert_eq!(again.hash(), truth.hash(), "{}, 2^{power}", body.name());
             assert_eq!(again.triangle_pairs, truth.triangle_pairs);
         }
         for body in moving_scenes() {
-            let truth = found(std::slice::from_ref(&body), Motion::Continuous);
-            let again = found(&[scaled(&body)], Motion::Continuous);
+            let truth = found(std::slice::from_ref(&body), QueryKind::Continuous);
+            let again = found(&[scaled(&body)], QueryKind::Continuous);
             // Times have no unit: not a bit changes.
             assert_eq!(again.answer, truth.answer, "{}, 2^{power}", body.name());
         }
@@ -27,13 +27,13 @@ fn another_origin() {
     for shift in [[1.0, 0.0, 0.0], [-3.25, 1024.0, 0.5], [4096.0, -4096.0, 65_536.0]] {
         let shifted = |body: &Body| mapped(body, |p| [p[0] + shift[0], p[1] + shift[1], p[2] + shift[2]]);
         let body = scene::grid(3).expect("a scene");
-        let truth = found(std::slice::from_ref(&body), Motion::Discrete);
-        assert_eq!(found(&[shifted(&body)], Motion::Discrete).hash(), truth.hash(), "{shift:?}");
+        let truth = found(std::slice::from_ref(&body), QueryKind::Discrete);
+        assert_eq!(found(&[shifted(&body)], QueryKind::Discrete).hash(), truth.hash(), "{shift:?}");
         let body = falling_grid();
-        let truth = found(std::slice::from_ref(&body), Motion::Continuous);
+        let truth = found(std::slice::from_ref(&body), QueryKind::Continuous);
         assert!(truth.len() > 10);
         // The solver sees only differences.
-        assert_eq!(found(&[shifted(&body)], Motion::Continuous).answer, truth.answer, "{shift:?}");
+        assert_eq!(found(&[shifted(&body)], QueryKind::Continuous).answer, truth.answer, "{shift:?}");
     }
 }
 
@@ -65,18 +65,18 @@ fn other_axes() {
     ];
     for (i, turn) in TURNS.into_iter().enumerate() {
         for body in still_scenes() {
-            let truth = found(std::slice::from_ref(&body), Motion::Discrete);
-            let again = found(&[mapped(&body, turn)], Motion::Discrete);
+            let truth = found(std::slice::from_ref(&body), QueryKind::Discrete);
+            let again = found(&[mapped(&body, turn)], QueryKind::Discrete);
             assert_eq!(again.hash(), truth.hash(), "{}, turn {i}", body.name());
         }
         for body in moving_scenes() {
-            let truth = found(std::slice::from_ref(&body), Motion::Continuous);
+            let truth = found(std::slice::from_ref(&body), QueryKind::Continuous);
             let other = mapped(&body, turn);
-            let again = found(std::slice::from_ref(&other), Motion::Continuous);
+            let again = found(std::slice::from_ref(&other), QueryKind::Continuous);
             // Sums of products come in another order: times may differ in the last bits, contacts may not.
             let (one, two) = (named(&other, again.contacts(), |v| v), named(&body, truth.contacts(), |v| v));
             assert_close(&one, &two, body.name());
-            let of = |body: &Body| boxed(std::slice::from_ref(body), Motion::Continuous);
+            let of = |body: &Body| boxed(std::slice::from_ref(body), QueryKind::Continuous);
             assert_eq!(of(&other), of(&body), "boxes know no axes");
         }
     }
@@ -95,8 +95,8 @@ fn the_same_numbers_in_doubles() {
         }
     };
     for body in still_scenes() {
-        let truth = found(std::slice::from_ref(&body), Motion::Discrete);
-        let again = found(&[promoted(&body)], Motion::Discrete);
+        let truth = found(std::slice::from_ref(&body), QueryKind::Discrete);
+        let again = found(&[promoted(&body)], QueryKind::Discrete);
         assert_eq!(
             (again.hash(), again.triangle_pairs),
             (truth.hash(), truth.triangle_pairs),
@@ -105,13 +105,13 @@ fn the_same_numbers_in_doubles() {
         );
     }
     for body in moving_scenes() {
-        let truth = found(std::slice::from_ref(&body), Motion::Continuous);
-        let again = found(&[promoted(&body)], Motion::Continuous);
+        let truth = found(std::slice::from_ref(&body), QueryKind::Continuous);
+        let again = found(&[promoted(&body)], QueryKind::Continuous);
         // Differences of floats of like size are exact, in floats and in doubles: so the same bits.
         assert_eq!(again.answer, truth.answer, "{}", body.name());
         // One body in each precision: both are taken in doubles.
         let still = scene::soup(100, 8, false).expect("a scene");
-        let mixed = found(&[promoted(&body), still.clone()], Motion::Continuous);
-        assert_eq!(mixed.answer, found(&[body.clone(), still], Motion::Continuous).answer);
+        let mixed = found(&[promoted(&body), still.clone()], QueryKind::Continuous);
+        assert_eq!(mixed.answer, found(&[body.clone(), still], QueryKind::Continuous).answer);
     }
 }

@@ -1,10 +1,11 @@
 //! In every volume: other orders, other units, mirrors, another origin, the end of the step for its beginning.
 
+use super::support::asked::of;
 use super::*;
 
 /// The answer in that volume.
-fn dressed(body: &Body, motion: Motion, bv: Bv) -> Contacts {
-    ask(engine(), vec![body.clone()], Query { bv: Some(bv), ..Query::of(motion) })
+fn dressed(body: &Body, motion: QueryKind, bv: Bv) -> Contacts {
+    ask(engine(), vec![body.clone()], of(motion).with_bv(bv))
 }
 
 /// Each change of a body leaves the same contacts, those of the default volume, in every volume.
@@ -13,7 +14,7 @@ fn every_volume_leaves_the_contacts_as_they_are() {
     let mut bodies = moving_scenes();
     bodies.extend(still_scenes());
     for body in bodies {
-        let motion = if body.is_moving() { Motion::Continuous } else { Motion::Discrete };
+        let motion = if body.is_moving() { QueryKind::Continuous } else { QueryKind::Discrete };
         let truth = found(std::slice::from_ref(&body), motion);
         let scaled = mapped(&body, |p| p.map(|x| x * 8192.0));
         let through = mapped(&body, |p| p.map(|x| -x));
@@ -26,7 +27,7 @@ fn every_volume_leaves_the_contacts_as_they_are() {
                 assert_eq!(dressed(other, motion, bv).answer, truth.answer, "{name}, {volume}, {what}");
             }
             let (other, last) = (dressed(&backwards, motion, bv), body.face_count() as u32 - 1);
-            if motion == Motion::Discrete {
+            if motion == QueryKind::Discrete {
                 assert_eq!(dressed(&mirrored, motion, bv).answer, truth.answer, "{name}, {volume}, mirrored");
                 let turn = |[a, b]: &[u32; 2]| [last - b, last - a];
                 let mut pairs: Vec<[u32; 2]> = other.triangles().iter().map(turn).collect();
@@ -55,7 +56,7 @@ fn backwards_in_time_the_same_features_meet() {
         };
         for bv in Bv::ALL {
             let (there, here) =
-                (dressed(&body, Motion::Continuous, bv), dressed(&back, Motion::Continuous, bv));
+                (dressed(&body, QueryKind::Continuous, bv), dressed(&back, QueryKind::Continuous, bv));
             let all = |contacts: &Contacts| named(&body, contacts.contacts(), |v| v);
             for (one, other) in [(&there, &here), (&here, &there)] {
                 let listed = all(other);

@@ -4,7 +4,7 @@ use crate::judge::Truth;
 use crate::support::{ORDERS, ask, engine, loose, machines, mesh, sanitizer, still, ways};
 use nearmiss::contacts::{Answer, Kind, NearPair, Status};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Bv, Motion, Solver};
+use nearmiss::query::{Bv, Certified, CertifiedPrecision, Continuous};
 use nearmiss::{Detector, Query};
 use nearmiss_lab::scene;
 use rand::rngs::SmallRng;
@@ -113,11 +113,7 @@ fn what_rounding_cannot_tell_is_the_same_for_every_volume() {
     assert!(all.unresolved > 60, "{} of {}", all.unresolved, all.len());
     assert!(Truth::of(std::slice::from_ref(&body), 0.25).fault(all.near()).is_ok_and(|beyond| beyond > 20));
     for bv in Bv::ALL {
-        assert_eq!(
-            ask(engine(), vec![body.clone()], Query { bv: Some(bv), ..query }).answer,
-            all.answer,
-            "{bv:?}"
-        );
+        assert_eq!(ask(engine(), vec![body.clone()], query.with_bv(bv)).answer, all.answer, "{bv:?}");
     }
 }
 
@@ -180,16 +176,14 @@ fn the_order_of_bodies_only_renames() {
 fn a_step_without_motion_comes_to_the_same() {
     for (bodies, distance) in scenes() {
         let tolerance = 1e-6;
-        let asked = |solver| Query {
-            solver: Some(solver),
-            tolerance: Some(tolerance),
-            separation: Some(distance),
-            ..Query::of(Motion::Continuous)
+        let asked = |precision| -> Query {
+            let certified = Certified::by(precision);
+            Continuous::by(Certified { tolerance: Some(tolerance), separation: distance, ..certified }).into()
         };
         let rows = |near: &[NearPair]| near.iter().map(|p| (p.kind, p.a, p.b)).collect::<BTreeSet<_>>();
         let near = ask(engine(), bodies.clone(), Query::near(distance));
         let farther = ask(engine(), bodies.clone(), Query::near(distance + 2.0 * tolerance));
-        for solver in [Solver::Certified, Solver::CertifiedF64] {
+        for solver in [CertifiedPrecision::Mixed, CertifiedPrecision::F64] {
             let step = ask(engine(), bodies.clone(), asked(solver));
             let all: BTreeSet<_> = step.contacts().iter().map(|c| (c.kind, c.a, c.b)).collect();
             let certain = step.contacts().iter().filter(|c| c.status == Status::Certified);
@@ -267,9 +261,8 @@ fn real_cloth_agrees_with_the_step_without_motion() {
     let body = Body::still(mesh("cloth-ball/cloth_ball92.ply"));
     let distance = 0.01;
     let near = ask(engine(), vec![body.clone()], Query::near(distance));
-    let separation =
-        Query { separation: Some(distance), tolerance: Some(1e-7), ..Query::of(Motion::Continuous) };
-    let step = ask(engine(), vec![body], separation);
+    let separation = Certified { separation: distance, tolerance: Some(1e-7), ..Certified::default() };
+    let step = ask(engine(), vec![body], Continuous::by(separation).into());
     let rows: BTreeSet<_> = near.near().iter().map(|p| (p.kind, p.a, p.b)).collect();
     let all: BTreeSet<_> = step.contacts().iter().map(|c| (c.kind, c.a, c.b)).collect();
     println!("{} near, {} by the step", rows.len(), all.len());

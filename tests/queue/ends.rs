@@ -6,7 +6,7 @@ use nearmiss_kernels::abi::{
 };
 use nearmiss_kernels::abi::{counter, pool};
 use nearmiss_kernels::bv::{Aabb, Axes, Volume};
-use nearmiss_kernels::entry::{traverse_queue_aabb, traverse_steal_aabb};
+use nearmiss_kernels::entry::{traverse_queue, traverse_steal};
 use nearmiss_kernels::queue::bvtt;
 use std::collections::HashSet;
 
@@ -95,7 +95,7 @@ fn run(device: &Device, nodes: &[Node<Aabb>], rounds: Option<u32>) -> Left {
                     pad: 0,
                 };
                 // SAFETY: buffers of this device that are read below; the tree is sound.
-                unsafe { device.launch::<traverse_queue_aabb>(3, &args) }.expect("a round");
+                unsafe { device.launch::<traverse_queue<Aabb>>(3, &args) }.expect("a round");
             }
             let left = counts.read(rounds as usize + 1).expect("counts")[rounds as usize];
             lists[rounds as usize % 2].read(left as usize).expect("units")
@@ -119,7 +119,7 @@ fn run(device: &Device, nodes: &[Node<Aabb>], rounds: Option<u32>) -> Left {
                 pad: 0,
             };
             // SAFETY: as above.
-            unsafe { device.launch::<traverse_steal_aabb>(3, &args) }.expect("a launch");
+            unsafe { device.launch::<traverse_steal<Aabb>>(3, &args) }.expect("a launch");
             Vec::new()
         }
     };

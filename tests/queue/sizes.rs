@@ -11,11 +11,11 @@ fn crowds() -> [Vec<Body>; 2] {
 
 /// The traversal on the engine and under a sanitizer finds what a walk a leaf does; its figures there.
 fn same(bodies: &[Body], traversal: Traversal) -> Contacts {
-    let truth = truth(bodies, Motion::Discrete);
-    let (print, contacts) = found(engine(), bodies, by(traversal, Motion::Discrete));
+    let truth = truth(bodies, QueryKind::Discrete);
+    let (print, contacts) = found(engine(), bodies, by(traversal, QueryKind::Discrete));
     assert_eq!(print, truth, "{traversal:?}");
     let order = ORDERS[contacts.steps as usize % ORDERS.len()];
-    let (print, seen) = found(sanitizer(order), bodies, by(traversal, Motion::Discrete));
+    let (print, seen) = found(sanitizer(order), bodies, by(traversal, QueryKind::Discrete));
     assert_eq!(print, truth, "{traversal:?}, {order:?}");
     assert_eq!(contacts.steps, seen.steps, "the work is the same in any order");
     seen
@@ -75,13 +75,13 @@ fn any_room_on_chip() {
 fn segments_that_are_too_short_grow() {
     for bodies in crowds() {
         let reruns = |traversal| {
-            let truth = truth(&bodies, Motion::Discrete);
+            let truth = truth(&bodies, QueryKind::Discrete);
             for device in [engine(), sanitizer(ORDERS[2])] {
-                let query = by(traversal, Motion::Discrete);
+                let query = by(traversal, QueryKind::Discrete);
                 assert_eq!(found(device, &bodies, query).0, truth, "{traversal:?}");
             }
             let mut detector =
-                Detector::new(sanitizer(ORDERS[0]), bodies.clone(), by(traversal, Motion::Discrete))
+                Detector::new(sanitizer(ORDERS[0]), bodies.clone(), by(traversal, QueryKind::Discrete))
                     .expect("a detector");
             detector.detect().expect("an answer");
             detector.reruns()
@@ -116,7 +116,7 @@ fn any_share_of_idle_queues() {
                 let [never, at_once] = [(1, 1), (0, 1)].map(|idle| {
                     let shape = QueueShape { idle, patience, cores: Some(6), ..shape };
                     same(&bodies, Traversal::Queue(shape));
-                    found(sanitizer(ORDERS[1]), &bodies, by(Traversal::Queue(shape), Motion::Discrete))
+                    found(sanitizer(ORDERS[1]), &bodies, by(Traversal::Queue(shape), QueryKind::Discrete))
                         .1
                         .queues
                 });
@@ -130,7 +130,7 @@ fn any_share_of_idle_queues() {
 fn blocks_that_interleave_lose_nothing() {
     let mut stolen = 0;
     for bodies in crowds() {
-        let truth = truth(&bodies, Motion::Discrete);
+        let truth = truth(&bodies, QueryKind::Discrete);
         for seed in 1..9 {
             let pool = Some([2_000, 5][seed as usize % 2]);
             // With little patience tickets are given up while chunks are on their way.
@@ -147,7 +147,7 @@ fn blocks_that_interleave_lose_nothing() {
                 let device =
                     Emulator::new(Mode::Sanitizer(ORDERS[2]), None).expect("threads").with_interleave(seed);
                 let (print, contacts) =
-                    found(Device::emulator(device), &bodies, by(traversal, Motion::Discrete));
+                    found(Device::emulator(device), &bodies, by(traversal, QueryKind::Discrete));
                 assert_eq!(print, truth, "{traversal:?}, {seed}");
                 stolen +=
                     if traversal == Traversal::Steal(steal(false)) { contacts.queues.stolen } else { 0 };
@@ -181,7 +181,7 @@ fn what_is_offered_is_taken_and_a_full_pool_loses_nothing() {
 fn a_frame_launches_the_rounds_of_the_one_before() {
     let launches = |traversal| {
         let device = engine();
-        let query = by(traversal, Motion::Discrete);
+        let query = by(traversal, QueryKind::Discrete);
         let mut detector = Detector::new(device.clone(), crowds()[0].clone(), query).expect("a detector");
         let frame = |detector: &mut Detector| {
             let before = device.launches();
@@ -225,7 +225,7 @@ fn fewer_rounds_planned_than_needed_are_noticed() {
         ..QueueShape::native()
     };
     for (device, watched) in [(engine(), false), (sanitizer(ORDERS[1]), true)] {
-        let query = by(Traversal::Queue(shape), Motion::Discrete);
+        let query = by(Traversal::Queue(shape), QueryKind::Discrete);
         let mut detector =
             Detector::new(device, vec![support::still(&apart, &faces)], query).expect("a detector");
         let few = detector.detect().expect("an answer").queues.rounds;
@@ -256,13 +256,13 @@ fn sizes_that_cannot_be_are_refused() {
         QueueShape { idle: (1, 0), ..ok },
         QueueShape { idle: (3, 2), ..ok },
     ] {
-        let query = by(Traversal::Queue(shape), Motion::Discrete);
+        let query = by(Traversal::Queue(shape), QueryKind::Discrete);
         let error = Detector::new(engine(), vec![single()], query).map(|_| ()).expect_err("refused");
         assert_eq!(error.exit_code(), 2, "{shape:?}: {error}");
     }
     let most = StealShape::MOST_POOL;
     for (local, pool, fits) in [(0, None, false), (1, Some(most + 1), false), (1, Some(most), true)] {
         let shape = StealShape { local, pool, ..StealShape::native() };
-        assert_eq!(by(Traversal::Steal(shape), Motion::Discrete).check().is_ok(), fits, "{shape:?}");
+        assert_eq!(by(Traversal::Steal(shape), QueryKind::Discrete).check().is_ok(), fits, "{shape:?}");
     }
 }

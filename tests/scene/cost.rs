@@ -21,16 +21,14 @@ fn pile(n: usize, kind: fn(Mesh) -> Body, environments: bool) -> Scene {
 }
 
 /// As a GPU would go: launches then are a matter of the query.
-fn query(motion: Motion) -> Query {
-    Query {
-        refit: Some(Refit::Treelets),
-        traversal: Some(Traversal::PerLeaf { budget: Some(64) }),
-        ..Query::of(motion)
-    }
+fn query(motion: QueryKind) -> Query {
+    support::asked::of(motion)
+        .with_refit(Refit::Treelets)
+        .with_traversal(Traversal::PerLeaf { budget: Some(64) })
 }
 
 /// Launches of a frame in which every body that can is moved, bytes held, and what was found.
-fn cost(scene: Scene, motion: Motion) -> (u64, u64, usize) {
+fn cost(scene: Scene, motion: QueryKind) -> (u64, u64, usize) {
     let device = engine();
     let mut detector = Detector::new(device.clone(), scene, query(motion)).expect("a detector");
     let ids: Vec<BodyId> = detector.scene().ids().collect();
@@ -55,11 +53,11 @@ fn cost(scene: Scene, motion: Motion) -> (u64, u64, usize) {
 
 #[test]
 fn launches_do_not_grow_with_bodies() {
-    for motion in [Motion::Discrete, Motion::Continuous, Motion::Earliest] {
+    for motion in [QueryKind::Discrete, QueryKind::Continuous, QueryKind::Earliest] {
         for kind in [Body::rigid, Body::still] {
             let [few, many] = [5, 300].map(|n| cost(pile(n, kind, false), motion));
             assert_eq!(few.0, many.0, "{motion:?}");
-            assert!(motion == Motion::Earliest || many.2 > 50 * few.2, "{few:?} {many:?}");
+            assert!(motion == QueryKind::Earliest || many.2 > 50 * few.2, "{few:?} {many:?}");
         }
         let [few, many] = [5, 300].map(|n| cost(pile(n, Body::rigid, true), motion));
         // Of environments that never meet nothing is found, though all crates stand in one another's way.
@@ -73,8 +71,8 @@ fn launches_do_not_grow_with_bodies() {
 fn a_scene_pays_for_what_it_has() {
     let launches = |scene: Scene, motion| cost(scene, motion).0;
     let fixed = pile(40, Body::fixed, false);
-    assert_eq!(launches(fixed.clone(), Motion::Discrete), 0, "static alone");
-    assert_eq!(launches(fixed.clone(), Motion::Continuous), 0, "static alone");
+    assert_eq!(launches(fixed.clone(), QueryKind::Discrete), 0, "static alone");
+    assert_eq!(launches(fixed.clone(), QueryKind::Continuous), 0, "static alone");
     let with = |kind: fn(Mesh) -> Body, n: usize| {
         let mut scene = fixed.clone();
         for body in pile(n, kind, false).bodies() {
@@ -82,7 +80,7 @@ fn a_scene_pays_for_what_it_has() {
         }
         scene
     };
-    for motion in [Motion::Discrete, Motion::Continuous] {
+    for motion in [QueryKind::Discrete, QueryKind::Continuous] {
         // Place is the one launch more that bodies of several kinds take; what is static takes none.
         let one = launches(Scene::from(pile(1, Body::still, false).bodies().to_vec()), motion);
         assert_eq!(launches(pile(2, Body::still, false), motion), one, "two deformable bodies");
@@ -96,8 +94,7 @@ fn a_scene_pays_for_what_it_has() {
 fn static_bodies_cost_no_work_in_a_frame() {
     let device = engine();
     let steps = |scene: Scene| {
-        let mut detector =
-            Detector::new(device.clone(), scene, Query::of(Motion::Discrete)).expect("a detector");
+        let mut detector = Detector::new(device.clone(), scene, Query::discrete()).expect("a detector");
         let found = detector.detect().expect("an answer");
         let builds = device.launches();
         detector.rebuild().expect("a tree");
@@ -126,7 +123,7 @@ fn environments_in_one_place_cost_what_they_cost_alone() {
                 scene.add(body.clone().with(meets));
             }
         }
-        support::ask_scene(engine(), scene, Query::of(Motion::Discrete))
+        support::ask_scene(engine(), scene, Query::discrete())
     };
     let (one, many) = (worlds(1), worlds(200));
     assert_eq!(many.len(), 200 * one.len());

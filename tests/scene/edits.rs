@@ -4,7 +4,7 @@ use super::pairwise::mixed;
 use super::*;
 
 fn query() -> Query {
-    Query { tolerance: Some(1e-4), ..Query::of(Motion::Continuous) }
+    support::asked::with_tolerance(Query::continuous(), 1e-4)
 }
 
 /// The answer of a detector is that of a scene made as its own is now.

@@ -36,7 +36,7 @@ fn extremes_are_answered_alike_in_two_worlds() {
         let (bodies, query) = (extreme.bodies().expect("bodies"), extreme.query());
         let mut alone = Detector::new(engine(), bodies.clone(), query).expect("a detector");
         let truth = alone.detect().expect("an answer");
-        let query = Query { tolerance: alone.tolerance(), ..query };
+        let query = support::asked::with_tolerance(query, alone.tolerance().unwrap_or_default());
         let mut scene = Scene::new();
         world(&bodies, 7).chain(world(&bodies, 3)).for_each(|body| _ = scene.add(body));
         let corner = |x: f32, y: f32| [-3e18 + x * 1e16, 1e15 * y, 2e18];
@@ -51,7 +51,7 @@ fn extremes_are_answered_alike_in_two_worlds() {
             assert_eq!(of_world(&found, first, bodies.len()), wanted, "{}: {}", extreme.id, extreme.what);
         }
         assert_eq!(found.earliest_toi(), truth.earliest_toi(), "{}: {}", extreme.id, extreme.what);
-        if query.motion != Motion::Earliest {
+        if query.kind() != QueryKind::Earliest {
             assert_eq!(found.len(), 2 * truth.len(), "{}: {}, between worlds", extreme.id, extreme.what);
         }
         asked += 1;

@@ -82,15 +82,15 @@ pub fn mixed(seed: u64) -> Scene {
 }
 
 /// The tolerance hangs on the bodies' edges: fixed, so that two bodies are asked as seven are.
-fn query(motion: Motion) -> Query {
-    if motion == Motion::Near {
+fn query(motion: QueryKind) -> Query {
+    if motion == QueryKind::Near {
         return Query::near(0.03);
     }
-    Query { tolerance: (motion != Motion::Discrete).then_some(1e-4), ..Query::of(motion) }
+    support::asked::with_tolerance(support::asked::of(motion), 1e-4)
 }
 
 /// What has a list for an answer.
-const LISTS: [Motion; 3] = [Motion::Discrete, Motion::Continuous, Motion::Near];
+const LISTS: [QueryKind; 3] = [QueryKind::Discrete, QueryKind::Continuous, QueryKind::Near];
 
 #[test]
 fn a_scene_answers_as_its_bodies_two_by_two() {
@@ -105,8 +105,8 @@ fn a_scene_answers_as_its_bodies_two_by_two() {
             assert_eq!(differ(&contacts, &truth), None, "seed {seed}, {motion:?}");
             found[k] += contacts.len();
         }
-        let earliest = support::ask_scene(engine(), scene.clone(), query(Motion::Earliest)).earliest_toi();
-        let continuous = support::ask_scene(engine(), scene, query(Motion::Continuous)).earliest_toi();
+        let earliest = support::ask_scene(engine(), scene.clone(), query(QueryKind::Earliest)).earliest_toi();
+        let continuous = support::ask_scene(engine(), scene, query(QueryKind::Continuous)).earliest_toi();
         assert_eq!(earliest, continuous, "seed {seed}");
     }
     assert!(found.iter().all(|&found| found > 1_000), "{found:?}");

@@ -2,10 +2,11 @@
 //! every kind, at the start, at the end and in passing. One frame asks hundreds of them.
 
 use super::asking;
+use super::support::asked::with_tolerance;
 use super::support::{ask, engine};
 use nearmiss::contacts::{Contact, Kind, Status};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Bv, Motion, Solver};
+use nearmiss::query::{Bv, QueryKind, Solver};
 use nearmiss::{Contacts, Query};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
@@ -131,7 +132,7 @@ fn every(r: &mut SmallRng) -> Vec<Pair> {
 }
 
 fn query(solver: Solver, bv: Bv, separation: f64, scale: f64) -> Query {
-    Query { bv: Some(bv), tolerance: Some(1e-9 * scale), ..asking(Motion::Continuous, solver, separation) }
+    with_tolerance(asking(QueryKind::Continuous, solver, separation), 1e-9 * scale).with_bv(bv)
 }
 
 /// At the separation itself, and just above: found, and not late. (X38.)

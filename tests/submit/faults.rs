@@ -5,18 +5,18 @@ use super::*;
 #[test]
 fn a_vertex_that_is_no_point_is_named() {
     let (scene, id, [t0, t1]) = pair(60);
-    for motion in MOTIONS {
+    for kind in KINDS {
         for (value, what) in [(f32::NAN, "NaN"), (f32::INFINITY, "inf")] {
             let device = engine();
             let mut memory = [&t0, &t1].map(|points| Points::new(&device, points));
             let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
-            let mut detector = Detector::new(device, scene.clone(), query(motion)).expect("a detector");
+            let mut detector = Detector::new(device, scene.clone(), query(kind)).expect("a detector");
             let good = detector.prepare(&[(id, input)]).expect("an answer");
             let mut bad = t0.clone();
             bad[17][1] = value;
             memory[0].write(&bad);
             detector.submit().expect("submitted");
-            assert_eq!(status(&detector).invalid, u64::from(!17u32), "{motion:?}");
+            assert_eq!(status(&detector).invalid, u64::from(!17u32), "{kind:?}");
             let error = detector.collect().expect_err("no answer");
             let text = error.to_string();
             assert!(matches!(error, Error::Input { .. }) && text.contains("vertex 17 has y"), "{text}");
@@ -26,7 +26,7 @@ fn a_vertex_that_is_no_point_is_named() {
             // Mended, all is as before.
             memory[0].write(&t0);
             let found = detector.frame(&[(id, Input::OnDevice(input))]).expect("an answer");
-            assert_eq!(found.answer, good.answer, "{motion:?}");
+            assert_eq!(found.answer, good.answer, "{kind:?}");
         }
     }
 }
@@ -37,8 +37,9 @@ fn a_vertex_that_no_face_uses_is_not_looked_at() {
     let (mesh, [mut points, _]) = soup(50, 3);
     points.push([f32::NAN; 3]);
     let body = |positions| Body::still(Mesh::new("soup", positions, mesh.faces().to_vec()).expect("a mesh"));
-    let mut detector = Detector::new(engine(), body(Positions::F32(points.clone())), query(Motion::Discrete))
-        .expect("a detector");
+    let mut detector =
+        Detector::new(engine(), body(Positions::F32(points.clone())), query(QueryKind::Discrete))
+            .expect("a detector");
     let id = detector.scene().ids().next().expect("a body");
     let wanted = detector.detect().expect("an answer");
     let memory = Points::new(&engine(), &points);
@@ -50,19 +51,19 @@ fn a_vertex_that_no_face_uses_is_not_looked_at() {
 fn coordinates_too_large_for_singles_become_doubles() {
     let (scene, id, ends) = pair(60);
     let large = ends.map(|points| points.iter().map(|p| p.map(|x| x * 1e25)).collect::<Vec<_>>());
-    for motion in MOTIONS {
+    for kind in KINDS {
         let device = engine();
         let memory = large.each_ref().map(|points| Points::new(&device, points));
-        let mut detector = Detector::new(device, scene.clone(), query(motion)).expect("a detector");
+        let mut detector = Detector::new(device, scene.clone(), query(kind)).expect("a detector");
         let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
         let found = detector.frame(&[(id, Input::OnDevice(input))]).expect("an answer");
         let [t0, t1] = large.clone().map(Positions::F32);
-        let mut by_host = Detector::new(engine(), scene.clone(), query(motion)).expect("a detector");
+        let mut by_host = Detector::new(engine(), scene.clone(), query(kind)).expect("a detector");
         let wanted = by_host.frame(&[(id, Input::Step([&t0, &t1]))]).expect("an answer");
-        assert_eq!(found.answer, wanted.answer, "{motion:?}");
-        assert_eq!(found.degraded(), wanted.degraded(), "{motion:?}");
+        assert_eq!(found.answer, wanted.answer, "{kind:?}");
+        assert_eq!(found.degraded(), wanted.degraded(), "{kind:?}");
         // Prepared, in doubles by then.
-        assert_eq!(detector.prepare(&[(id, input)]).expect("an answer").answer, wanted.answer, "{motion:?}");
+        assert_eq!(detector.prepare(&[(id, input)]).expect("an answer").answer, wanted.answer, "{kind:?}");
     }
 }
 
@@ -73,15 +74,19 @@ fn what_is_below_precision_is_told_of_what_is_away() {
     let device = engine();
     let memory = ends.each_ref().map(|points| Points::new(&device, points));
     let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
-    for motion in [Motion::Continuous, Motion::Earliest] {
+    for kind in [QueryKind::Continuous, QueryKind::Earliest] {
         for tolerance in [1e-4, 1e-16] {
-            let query = Query { tolerance: Some(tolerance), ..Query::of(motion) };
+            let certified = Certified { tolerance: Some(tolerance), ..Certified::default() };
+            let query: Query = match kind {
+                QueryKind::Earliest => Earliest::by(certified).into(),
+                _ => Continuous::by(certified).into(),
+            };
             let mut by_host = Detector::new(engine(), scene.clone(), query).expect("a detector");
             let [t0, t1] = ends.clone().map(Positions::F32);
             let wanted = by_host.frame(&[(id, Input::Step([&t0, &t1]))]).expect("an answer");
             let mut detector = Detector::new(device.clone(), scene.clone(), query).expect("a detector");
             let found = detector.frame(&[(id, Input::OnDevice(input))]).expect("an answer");
-            assert_eq!(found.degraded(), wanted.degraded(), "{motion:?}, {tolerance}");
+            assert_eq!(found.degraded(), wanted.degraded(), "{kind:?}, {tolerance}");
             assert_eq!(found.degraded().is_empty(), tolerance > 1e-10, "{:?}", found.degraded());
         }
     }
@@ -107,18 +112,18 @@ fn a_pose_that_is_none_is_named() {
         [0.0, f32::NAN, 0.0, 0.0, 0.0, 0.0, 1.0],
         [0.0, 0.0, 0.0, 0.0, f32::INFINITY, 0.0, 1.0],
     ];
-    for motion in MOTIONS {
-        let mut detector = Detector::new(device.clone(), scene.clone(), query(motion)).expect("a detector");
+    for kind in KINDS {
+        let mut detector = Detector::new(device.clone(), scene.clone(), query(kind)).expect("a detector");
         for numbers in wrong {
             let (_buffer, input) = held(numbers);
             let error = detector.frame(&[(rigid, Input::OnDevice(input))]).expect_err("no pose");
-            assert!(error.to_string().contains("the pose"), "{motion:?}: {error}");
+            assert!(error.to_string().contains("the pose"), "{kind:?}: {error}");
         }
         let (_buffer, input) = held([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
         let found = detector.frame(&[(rigid, Input::OnDevice(input))]).expect("an answer");
-        let mut by_host = Detector::new(engine(), scene.clone(), query(motion)).expect("a detector");
+        let mut by_host = Detector::new(engine(), scene.clone(), query(kind)).expect("a detector");
         let wanted = by_host.frame(&[(rigid, Input::Pose(Pose::default()))]).expect("an answer");
-        assert_eq!(found.answer, wanted.answer, "{motion:?}");
+        assert_eq!(found.answer, wanted.answer, "{kind:?}");
     }
 }
 
@@ -128,7 +133,7 @@ fn inputs_that_do_not_fit_their_body_are_refused() {
     let device = engine();
     let memory = Points::new(&device, &t0[1..]);
     let rows = memory.rows();
-    let mut detector = Detector::new(device, scene, query(Motion::Discrete)).expect("a detector");
+    let mut detector = Detector::new(device, scene, query(QueryKind::Discrete)).expect("a detector");
     let mut refused =
         |input| detector.frame(&[(id, Input::OnDevice(input))]).expect_err("refused").to_string();
     assert!(refused(DeviceInput::At(rows)).contains("179 vertices"));
@@ -143,12 +148,12 @@ fn a_body_that_is_away_is_not_taken_along() {
     let (scene, id, [t0, _]) = pair(60);
     let device = engine();
     let memory = Points::new(&device, &t0);
-    let mut detector = Detector::new(device, scene, query(Motion::Discrete)).expect("a detector");
+    let mut detector = Detector::new(device, scene, query(QueryKind::Discrete)).expect("a detector");
     detector.frame(&[(id, Input::OnDevice(DeviceInput::At(memory.rows())))]).expect("an answer");
     let away = detector.scene().clone();
-    let Err(error) = Detector::new(engine(), away, query(Motion::Discrete)) else { panic!("it is away") };
+    let Err(error) = Detector::new(engine(), away, query(QueryKind::Discrete)) else { panic!("it is away") };
     assert!(error.to_string().contains("say again where it is"), "{error}");
     detector.fetch().expect("positions");
-    let there = support::ask_scene(engine(), detector.scene().clone(), query(Motion::Discrete));
+    let there = support::ask_scene(engine(), detector.scene().clone(), query(QueryKind::Discrete));
     assert_eq!(there.answer, detector.detect().expect("an answer").answer);
 }

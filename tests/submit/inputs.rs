@@ -19,11 +19,11 @@ fn spaced<T: bytemuck::Pod + From<f32>>(device: &Device, rows: &[Vec<T>], stride
 
 #[test]
 fn rows_of_any_stride_and_precision_are_read() {
-    for motion in [Motion::Discrete, Motion::Continuous] {
+    for kind in [QueryKind::Discrete, QueryKind::Continuous] {
         for stride in [3, 4, 7] {
             let (scene, id, [t0, t1]) = pair(80);
             let device = engine();
-            let mut by_host = Detector::new(engine(), scene.clone(), query(motion)).expect("a detector");
+            let mut by_host = Detector::new(engine(), scene.clone(), query(kind)).expect("a detector");
             let [at, to] = [&t0, &t1].map(|points| Positions::F32(points.clone()));
             let single = by_host.frame(&[(id, Input::Step([&at, &to]))]).expect("an answer");
             let rows = |points: &[[f32; 3]]| points.iter().map(|p| p.to_vec()).collect::<Vec<_>>();
@@ -32,7 +32,7 @@ fn rows_of_any_stride_and_precision_are_read() {
             let ends = held.each_ref().map(|(_, at)| unsafe {
                 DeviceRows::new(*at, t0.len(), 4 * stride, Number::F32).expect("rows")
             });
-            let mut detector = Detector::new(device.clone(), scene, query(motion)).expect("a detector");
+            let mut detector = Detector::new(device.clone(), scene, query(kind)).expect("a detector");
             let found = detector.frame(&[(id, Input::OnDevice(DeviceInput::Step(ends)))]).expect("an answer");
             assert_eq!(found.answer, single.answer);
             // Doubles that singles do not have: the whole pipeline goes over.
@@ -49,7 +49,7 @@ fn rows_of_any_stride_and_precision_are_read() {
                 .map(|points| Positions::F64(wide(points).iter().map(|p| [p[0], p[1], p[2]]).collect()));
             let double = by_host.frame(&[(id, Input::Step([&at, &to]))]).expect("an answer");
             assert_eq!(found.answer, double.answer);
-            assert!(motion == Motion::Discrete || double.answer != single.answer);
+            assert!(kind == QueryKind::Discrete || double.answer != single.answer);
         }
     }
 }
@@ -80,17 +80,17 @@ fn poses_on_the_device_are_poses() {
     let mut scene = Scene::new();
     let rigid = scene.add(Body::rigid(mesh));
     let cloth = scene.add(Body::still(soup(80, 6).0));
-    for motion in MOTIONS {
+    for kind in KINDS {
         let device = engine();
-        let mut by_host = Detector::new(engine(), scene.clone(), query(motion)).expect("a detector");
-        let mut detector = Detector::new(device.clone(), scene.clone(), query(motion)).expect("a detector");
+        let mut by_host = Detector::new(engine(), scene.clone(), query(kind)).expect("a detector");
+        let mut detector = Detector::new(device.clone(), scene.clone(), query(kind)).expect("a detector");
         for frame in 0..4 {
             let ends = [pose(frame as f64), pose(frame as f64 + 1.0)];
             let wanted = by_host.frame(&[(rigid, Input::Poses(ends))]).expect("an answer");
             let held = ends.map(|pose| pose_rows(&device, &pose, |x| x, Number::F64));
             let input = DeviceInput::Poses(held.each_ref().map(|(_, rows)| *rows));
             let found = detector.frame(&[(rigid, Input::OnDevice(input))]).expect("an answer");
-            assert_eq!(found.answer, wanted.answer, "{motion:?}, frame {frame}");
+            assert_eq!(found.answer, wanted.answer, "{kind:?}, frame {frame}");
             assert!(detector.scene().bodies()[0].is_away());
             if frame == 2 {
                 detector.fetch().expect("positions");
@@ -102,7 +102,7 @@ fn poses_on_the_device_are_poses() {
             let input = [(cloth, Input::Step([&there[0], &there[1]]))];
             let [wanted, found] =
                 [&mut by_host, &mut detector].map(|detector| detector.frame(&input).expect("an answer"));
-            assert_eq!(found.answer, wanted.answer, "{motion:?}, frame {frame}, at rest");
+            assert_eq!(found.answer, wanted.answer, "{kind:?}, frame {frame}, at rest");
         }
         // In single precision the pose is another one, and both know it.
         let [single, _] = [pose(1.7), pose(0.0)];
@@ -113,7 +113,7 @@ fn poses_on_the_device_are_poses() {
             translation: single.translation.map(|x| f64::from(x as f32)),
         };
         let wanted = by_host.frame(&[(rigid, Input::Pose(single))]).expect("an answer");
-        assert_eq!(found.answer, wanted.answer, "{motion:?}");
+        assert_eq!(found.answer, wanted.answer, "{kind:?}");
     }
 }
 
@@ -124,7 +124,7 @@ fn bodies_that_are_away_come_back_for_changes() {
     let device = engine();
     let memory = [&t0, &t1].map(|points| Points::new(&device, points));
     let step = Input::OnDevice(DeviceInput::Step([memory[0].rows(), memory[1].rows()]));
-    let mut detector = Detector::new(device, scene, query(Motion::Continuous)).expect("a detector");
+    let mut detector = Detector::new(device, scene, query(QueryKind::Continuous)).expect("a detector");
     detector.frame(&[(id, step)]).expect("an answer");
     assert!(detector.scene().bodies()[0].is_away() && detector.scene().bodies()[0].is_moving());
     let added = detector.add(Body::still(soup(40, 9).0)).expect("room");

@@ -1,6 +1,7 @@
 //! What several test binaries share.
 #![allow(dead_code, reason = "each binary uses a part")]
 
+pub mod asked;
 pub mod brute;
 mod data;
 
@@ -8,7 +9,7 @@ pub use data::data;
 
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Bv, FrontShape, QueueShape, Refit, StealShape, Traversal};
+use nearmiss::query::{Bv, FrontShape, QueueShape, Refit, StealShape, Traversal, Tree};
 use nearmiss::scene::Scene;
 use nearmiss::{Detector, Device, Query};
 use std::io::Read;
@@ -58,7 +59,9 @@ pub fn ways(query: Query) -> impl Iterator<Item = Query> {
     let refits = [Refit::Levels, Refit::Treelets, Refit::BottomUp];
     Bv::ALL.into_iter().flat_map(move |bv| {
         walks().into_iter().flat_map(move |walk| {
-            refits.map(|refit| Query { bv: Some(bv), traversal: Some(walk), refit: Some(refit), ..query })
+            refits.map(|refit| {
+                query.with_tree(Tree { bv: Some(bv), traversal: Some(walk), refit: Some(refit) })
+            })
         })
     })
 }

@@ -4,7 +4,7 @@ use super::number::{some, whole};
 use super::{MachineArgs, choice};
 use clap::{Args, ValueEnum};
 use nearmiss::Stage;
-use nearmiss::query::{Bv, FrontShape, Motion, Query, QueueShape, Refit, Solver, StealShape, Traversal};
+use nearmiss::query::{Bv, FrontShape, QueueShape, Refit, Solver, StealShape, Traversal};
 use std::path::PathBuf;
 
 /// Walks that exist.
@@ -30,7 +30,7 @@ impl TraversalArg {
         !matches!(self, TraversalArg::PerLeaf | TraversalArg::PerLeafSpill)
     }
 
-    fn choice(self, DetectArgs { budget, cores, queue, .. }: &DetectArgs) -> Traversal {
+    pub(super) fn choice(self, DetectArgs { budget, cores, queue, .. }: &DetectArgs) -> Traversal {
         let queues = |shape: QueueShape| {
             let (cores, local) = (cores.or(shape.cores), queue.unwrap_or(shape.local));
             QueueShape { cores, local, ..shape }
@@ -140,30 +140,4 @@ pub struct DetectArgs {
     /// With --repeat: run the frame once, then only this stage so often, and report its median. For profilers.
     #[arg(long, value_parser = choice::<Stage>(), requires = "repeat", value_name = "STAGE")]
     pub only: Option<Stage>,
-}
-
-impl DetectArgs {
-    /// The query for bodies that move, or do not.
-    pub fn query(&self, moving: bool) -> Query {
-        let motion = match (self.discrete, self.continuous, self.earliest) {
-            _ if self.near.is_some() => Motion::Near,
-            (_, _, true) => Motion::Earliest,
-            (_, true, _) => Motion::Continuous,
-            (true, _, _) => Motion::Discrete,
-            _ if moving => Motion::Continuous,
-            _ => Motion::Discrete,
-        };
-        Query {
-            motion,
-            solver: self.solver,
-            bv: self.bv,
-            refit: self.refit,
-            traversal: self.traversal.map(|walk| walk.choice(self)),
-            adjacent: self.adjacent,
-            tolerance: self.tolerance,
-            boxes: self.boxes,
-            separation: self.separation,
-            distance: self.near,
-        }
-    }
 }

@@ -5,6 +5,7 @@ mod files;
 mod idle;
 mod machine;
 mod number;
+mod query;
 mod scene;
 mod selftest;
 mod tables;

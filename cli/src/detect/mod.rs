@@ -12,7 +12,7 @@ use nearmiss::contacts::Contacts;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh};
 use nearmiss::pipeline::Stages;
-use nearmiss::query::{Motion, Query, Traversal};
+use nearmiss::query::{Query, QueryKind, Traversal};
 use nearmiss::words::counted;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -35,7 +35,7 @@ pub fn body(files: &[PathBuf]) -> Result<Body, Error> {
 pub fn question(args: &DetectArgs) -> Result<(Vec<Body>, Query), Error> {
     if args.scene.is_none() {
         // Before anything is read.
-        args.query([&args.meshes, &args.with].iter().any(|files| files.len() == 2)).check()?;
+        args.query([&args.meshes, &args.with].iter().any(|files| files.len() == 2))?;
     }
     let mut bodies = Vec::new();
     match &args.scene {
@@ -59,8 +59,7 @@ pub fn question(args: &DetectArgs) -> Result<(Vec<Body>, Query), Error> {
             *body = welded;
         }
     }
-    let query = args.query(bodies.iter().any(Body::is_moving));
-    query.check()?;
+    let query = args.query(bodies.iter().any(Body::is_moving))?;
     Ok((bodies, query))
 }
 
@@ -87,14 +86,14 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
     let faces = args.file_faces.then(|| FileFaces::of(detector.scene().bodies()));
     let moves = notes::Moves::of(detector.scene().bodies());
     let coincident = notes::coincident(detector.scene().bodies(), &contacts);
-    let again = (query.motion == Motion::Earliest).then(|| detector.scene().bodies().to_vec());
+    let again = (query.kind() == QueryKind::Earliest).then(|| detector.scene().bodies().to_vec());
     // What it holds makes room.
     drop(detector);
     let pairs_at_start = match again {
         Some(bodies) => during("looking at the start", || notes::at_start(device, bodies))?,
         None => None,
     };
-    let notes = notes::of(query.motion, moves, &contacts, (pairs_at_start, coincident));
+    let notes = notes::of(query.kind(), moves, &contacts, (pairs_at_start, coincident));
     let told = Report { summary, pairs_at_start, notes };
     if let Some((format, target)) = target {
         report::write(target, format, &contacts, (&told, faces.as_ref()))?;
@@ -110,7 +109,7 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
 
 /// The answer, and the times of each run; of several runs the first only warms up.
 fn repeated(detector: &mut Detector, repeat: u32) -> Result<(Contacts, Vec<Stages>), Error> {
-    let keeps_front = matches!(detector.query().traversal, Some(Traversal::Front(_)));
+    let keeps_front = matches!(detector.query().tree().traversal, Some(Traversal::Front(_)));
     let mut contacts = detector.detect()?;
     let mut runs = vec![contacts.stages];
     if repeat > 1 {

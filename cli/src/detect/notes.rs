@@ -5,7 +5,7 @@ use nearmiss::contacts::{Answer, Contacts};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
-use nearmiss::query::{Motion, Query};
+use nearmiss::query::{Query, QueryKind};
 use nearmiss::words::counted;
 
 /// Whether anything moves within the step.
@@ -37,7 +37,7 @@ impl Moves {
 /// # Errors
 /// Those of the device, but for memory.
 pub fn at_start(device: Device, bodies: Vec<Body>) -> Result<Option<usize>, Error> {
-    let found = Detector::new(device, bodies, Query::of(Motion::Discrete)).and_then(|mut all| all.detect());
+    let found = Detector::new(device, bodies, Query::discrete()).and_then(|mut all| all.detect());
     match found {
         Ok(contacts) => Ok(Some(contacts.len())),
         Err(Error::OutOfMemory { .. }) => Ok(None),
@@ -56,7 +56,7 @@ pub fn coincident(bodies: &[Body], contacts: &Contacts) -> usize {
 
 /// The notes, a line each; of the triangle pairs that meet at the start, and the vertices that share their place with another.
 pub fn of(
-    motion: Motion,
+    motion: QueryKind,
     moves: Moves,
     contacts: &Contacts,
     (at_start, coincident): (Option<usize>, usize),

@@ -5,7 +5,7 @@ use crate::detect::body;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Positions, Problem, Topology};
 use nearmiss::pipeline::of_edges;
-use nearmiss::query::Query;
+use nearmiss::query::Certified;
 use nearmiss_kernels::prim::adjacent::Shared;
 use nearmiss_kernels::prim::inclusion::Params;
 use nearmiss_lab::case::{Case, Features, file};
@@ -95,7 +95,7 @@ pub fn of(args: &ExplainArgs) -> Result<Subject, Error> {
 
 fn params(args: &ExplainArgs, default: f64) -> Params {
     let tolerance = args.tolerance.unwrap_or(default);
-    Params { budget: args.boxes.unwrap_or(Query::BOXES), ..Params::new(tolerance) }
+    Params { budget: args.boxes.unwrap_or(Certified::BUDGET), ..Params::new(tolerance) }
 }
 
 fn from_file(args: &ExplainArgs, path: &Path, row: usize) -> Result<Subject, Error> {

@@ -5,7 +5,7 @@
 
 use nearmiss::device::Device;
 use nearmiss::error::Error;
-use nearmiss::query::{Motion, Query, Solver};
+use nearmiss::query::{Query, QueryKind};
 use nearmiss_lab::accuracy::triangles::{SIDES, on_grid};
 use nearmiss_lab::pairs::built::built;
 use nearmiss_lab::pairs::{Answers, Options, Stored, TriangleAnswers, ask, ask_triangles};
@@ -58,13 +58,13 @@ fn fault_in_motion(found: &Answers, truth: &Answers) -> Option<String> {
 /// Those of the devices.
 pub fn compare(machine: &Device, engine: &Device) -> Result<Report, Error> {
     let mut faults = Vec::new();
-    let solvers = |motion| Solver::ALL.into_iter().filter(move |solver| solver.answers(motion));
-    let by = |motion, solver| Query { solver: Some(solver), ..Query::of(motion) };
+    let every = |kind| Query::every().filter(move |query| query.kind() == kind);
+    let stored = |query: Query| [(query, Stored::F32), (query, Stored::F64)];
     let mut r = SmallRng::seed_from_u64(1);
     for side in SIDES {
         let pairs = on_grid(&mut r, side, PAIRS);
-        for (solver, stored) in solvers(Motion::Discrete).flat_map(|s| [(s, Stored::F32), (s, Stored::F64)]) {
-            let query = by(Motion::Discrete, solver);
+        for (query, stored) in every(QueryKind::Discrete).flat_map(stored) {
+            let solver = query.solver();
             let truth = ask_triangles(engine, &pairs, &query, stored)?;
             for _ in 0..TIMES {
                 let found = ask_triangles(machine, &pairs, &query, stored)?;
@@ -74,11 +74,11 @@ pub fn compare(machine: &Device, engine: &Device) -> Result<Report, Error> {
         }
     }
     let cases: Vec<_> = built(1, BUILT.0, BUILT.1).into_iter().map(|built| built.case).collect();
-    for (solver, stored) in solvers(Motion::Continuous).flat_map(|s| [(s, Stored::F32), (s, Stored::F64)]) {
+    for (query, stored) in every(QueryKind::Continuous).flat_map(stored) {
+        let solver = query.solver();
         let how = Options { filters: true, stored, ..Options::default() };
         let cases: Vec<_> =
             cases.iter().copied().filter(|case| stored == Stored::F64 || case.fits_f32()).collect();
-        let query = by(Motion::Continuous, solver);
         let truth = ask(engine, &cases, &query, how)?;
         for _ in 0..TIMES {
             let found = ask(machine, &cases, &query, how)?;

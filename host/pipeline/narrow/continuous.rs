@@ -1,17 +1,20 @@
-//! Features in motion: their lists, and the launches from triangle pairs to contacts.
+//! Features in motion: their lists, and the launches from triangle pairs to contacts, or to the first of them.
 
 use super::features::Features;
 use super::rungs::Rungs;
-use super::{NarrowContext, Step};
-use crate::device::{Buffer, Device};
+use super::{AnswerLists, Narrow, NarrowContext, growable};
+use crate::contacts::Entries;
+use crate::device::{Ahead, Buffer, Device};
 use crate::error::Error;
+use crate::mesh::Body;
 use crate::pipeline::below_precision::{self, BelowPrecision};
 use crate::pipeline::launch;
 use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{Counter, GrowableOutput, List};
 use crate::pipeline::order::Order;
 use crate::pipeline::precision::Precision;
-use crate::query::{Motion, Query, Solver};
+use crate::pipeline::typed::{Hits, Listed};
+use crate::query::{self, Certified, ContinuousSolver};
 use nearmiss_kernels::abi::{CullArgs, Hit, Pair, SolveArgs, Span, counter};
 
 /// How many entries the lists of a continuous query have room for at first: vertex/face, edge/edge.
@@ -26,9 +29,31 @@ pub struct Capacities {
     pub left: [usize; 2],
 }
 
-/// The lists and the topology of a continuous query.
-pub struct Continuous {
-    query: Query,
+impl Capacities {
+    fn usual((capacity, few): (usize, usize)) -> Capacities {
+        Capacities {
+            candidates: [capacity, 2 * capacity],
+            survivors: [few, 2 * few],
+            hits: [few, few],
+            left: [few / 4, few / 4],
+        }
+    }
+}
+
+/// A step of the phase.
+#[derive(Clone, Copy)]
+enum Step {
+    /// Vertex/face and edge/edge candidates.
+    Features,
+    /// Those that may meet.
+    Cull,
+    /// Contacts.
+    Solve,
+}
+
+/// The lists and the topology of a continuous query, or of an earliest one.
+pub struct ContinuousNarrow {
+    solver: ContinuousSolver,
     /// Topology, and the pairs whose boxes come within the separation.
     features: Features,
     /// Those that may meet; there is no such step with a separation.
@@ -42,26 +67,52 @@ pub struct Continuous {
     /// Hits that are not certain, those whose budget ended, those of both, and those too large for the tolerance.
     counters: [Counter; 4],
     /// Whether pairs may be too large for the tolerance: see [`BelowPrecision`].
-    pub below_precision: Option<BelowPrecision>,
+    below_precision: Option<BelowPrecision>,
     /// The smallest toi, where only that is asked for.
-    pub earliest: Option<Buffer<u64>>,
+    earliest: Option<Buffer<u64>>,
     /// All contacts in order, where the device orders them.
-    pub ordered: Option<Order<Hit>>,
+    ordered: Option<Order<Hit>>,
 }
 
-impl Continuous {
-    /// Takes the memory.
+impl ContinuousNarrow {
+    /// For all contacts.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn all(
+        device: &Device,
+        layout: &Layout,
+        solver: ContinuousSolver,
+        room: (usize, usize),
+    ) -> Result<Self, Error> {
+        ContinuousNarrow::new(device, layout, solver, Capacities::usual(room))
+    }
+
+    /// For the smallest time alone.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn first(
+        device: &Device,
+        layout: &Layout,
+        solver: ContinuousSolver,
+        room: (usize, usize),
+    ) -> Result<Self, Error> {
+        let capacities = Capacities { hits: [0, 0], ..Capacities::usual(room) };
+        let narrow = ContinuousNarrow::new(device, layout, solver, capacities)?;
+        Ok(ContinuousNarrow { earliest: Some(device.buffer(1)?), ..narrow })
+    }
+
+    /// Takes the memory, with room for so many.
     ///
     /// # Errors
     /// Those of the device.
     pub fn new(
         device: &Device,
         layout: &Layout,
-        query: Query,
+        solver: ContinuousSolver,
         capacities: Capacities,
     ) -> Result<Self, Error> {
-        let earliest = query.motion == Motion::Earliest;
-        let hits = if earliest { [0, 0] } else { capacities.hits };
         let lists = |[vf, ee]: [&'static str; 2], [vf_at, ee_at]: [u32; 2], capacity: [usize; 2]| {
             Ok::<_, Error>([
                 List::new(device, vf, vf_at, capacity[0])?,
@@ -71,13 +122,14 @@ impl Continuous {
         let may_meet = ["vertex/face pairs that may meet", "edge/edge pairs that may meet"];
         let survivors =
             || lists(may_meet, [counter::VF_SURVIVORS, counter::EE_SURVIVORS], capacities.survivors);
-        Ok(Continuous {
-            query,
+        let is_apart = solver.certified().is_some_and(Certified::is_apart);
+        Ok(ContinuousNarrow {
+            solver,
             features: Features::new(device, layout, capacities.candidates)?,
-            survivors: (!query.is_apart()).then(survivors).transpose()?,
-            vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, hits[0])?,
-            ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, hits[1])?,
-            rungs: Rungs::new(device, &query, capacities.left)?,
+            survivors: (!is_apart).then(survivors).transpose()?,
+            vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, capacities.hits[0])?,
+            ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, capacities.hits[1])?,
+            rungs: Rungs::new(device, solver.certified(), capacities.left)?,
             counters: [
                 counter::UNRESOLVED,
                 counter::ENDED,
@@ -86,54 +138,17 @@ impl Continuous {
             ]
             .map(Counter),
             below_precision: None,
-            earliest: earliest.then(|| device.buffer(1)).transpose()?,
-            ordered: (device.is_gpu() && !earliest)
-                .then(|| Order::new(device, layout, hits[0] / 4))
-                .transpose()?,
+            earliest: None,
+            ordered: None,
         })
     }
 
-    /// End points of every edge.
-    pub fn edges(&self) -> Span<[u32; 2]> {
-        self.features.edges.span()
-    }
-
     /// The steps, in their order. With a separation there is nothing that signs could reject.
-    pub fn steps(&self) -> &'static [Step] {
+    fn all_steps(&self) -> &'static [Step] {
         match self.survivors {
             Some(_) => &[Step::Features, Step::Cull, Step::Solve],
             None => &[Step::Features, Step::Solve],
         }
-    }
-
-    /// The lists that a step fills.
-    pub fn lists(&mut self, step: Step) -> Vec<&mut dyn GrowableOutput> {
-        match step {
-            Step::Features => self.features.lists(),
-            Step::Cull => {
-                self.survivors.iter_mut().flatten().map(|list| list as &mut dyn GrowableOutput).collect()
-            }
-            Step::Solve => {
-                let mut lists: Vec<&mut dyn GrowableOutput> = vec![&mut self.vf_hits, &mut self.ee_hits];
-                lists.extend(self.counters.iter_mut().map(|counter| counter as &mut dyn GrowableOutput));
-                lists.extend(self.rungs.lists());
-                lists
-            }
-            Step::Order => {
-                self.ordered.iter_mut().map(|order| &mut order.list as &mut dyn GrowableOutput).collect()
-            }
-            Step::Traverse | Step::Decide | Step::Near => Vec::new(),
-        }
-    }
-
-    /// The lists between candidates and contacts, with names: for comparing machines.
-    pub fn between(&self) -> Vec<(&'static str, &List<Pair>)> {
-        let mut lists = self.features.between();
-        if let Some([vf, ee]) = &self.survivors {
-            lists.extend([("narrow: vf that may meet", vf), ("narrow: ee that may meet", ee)]);
-        }
-        lists.extend(self.rungs.between());
-        lists
     }
 
     /// What the solver is asked.
@@ -141,36 +156,36 @@ impl Continuous {
         self.survivors.as_ref().unwrap_or(&self.features.candidates).each_ref()
     }
 
-    /// Puts pairs where a step would leave them, vertex/face and edge/edge: [`Step::Features`] candidates, [`Step::Cull`]
-    /// those that may meet, or candidates where there is no such step. The counters that say how many they are.
+    /// Puts pairs, vertex/face and edge/edge, among those that [`ContinuousNarrow::cull`] is asked; the counters that say how
+    /// many they are.
     ///
     /// # Errors
     /// Those of the device.
     ///
     /// # Panics
     /// When there are more than the lists have room for: a fault of the caller.
-    pub fn give(&mut self, step: Step, [vf, ee]: [&[Pair]; 2]) -> Result<[(u32, u64); 2], Error> {
-        let [vf_list, ee_list] = match (step, &mut self.survivors) {
-            (Step::Cull, Some(lists)) => lists.each_mut(),
-            _ => self.features.candidates.each_mut(),
-        };
+    pub fn put_candidates(&mut self, [vf, ee]: [&[Pair]; 2]) -> Result<[(u32, u64); 2], Error> {
+        let [vf_list, ee_list] = &mut self.features.candidates;
         Ok([vf_list.put(vf)?, ee_list.put(ee)?])
     }
 
-    /// Launches a step.
+    /// The same among those that [`ContinuousNarrow::solve`] is asked.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn run<R: Precision>(&mut self, step: Step, given: &NarrowContext<R>) -> Result<(), Error> {
-        match step {
-            Step::Features => self.features.run::<R, R::Features>(given),
-            Step::Cull => self.cull(given),
-            Step::Order => self.order(given),
-            _ => self.solve(given),
-        }
+    ///
+    /// # Panics
+    /// When there are more than the lists have room for: a fault of the caller.
+    pub fn put_survivors(&mut self, [vf, ee]: [&[Pair]; 2]) -> Result<[(u32, u64); 2], Error> {
+        let [vf_list, ee_list] = self.survivors.as_mut().unwrap_or(&mut self.features.candidates);
+        Ok([vf_list.put(vf)?, ee_list.put(ee)?])
     }
 
-    fn cull<R: Precision>(&self, given: &NarrowContext<R>) -> Result<(), Error> {
+    /// Launches the step that leaves pairs that may meet; with a separation none.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn cull<R: Precision>(&self, given: &NarrowContext<R>) -> Result<(), Error> {
         let ([vf, ee], Some([may_vf, may_ee])) = (&self.features.candidates, &self.survivors) else {
             return Ok(());
         };
@@ -183,57 +198,146 @@ impl Continuous {
             may_vf: may_vf.span(),
             may_ee: may_ee.span(),
             counters: given.counters,
-            params: given.query.params(),
+            params: self.solver.certified().copied().unwrap_or_default().params(),
         };
         launch::striding::<R::Cull>(given.device, vf.capacity() + ee.capacity(), &args)
     }
 
-    fn order<R: Precision>(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
-        match &mut self.ordered {
-            None => Ok(()),
-            Some(order) => {
-                let given_to = (given.bodies, given.counters);
-                order.run(given.device, &self.vf_hits, Some(&self.ee_hits), given_to)
-            }
-        }
-    }
-
-    fn solve<R: Precision>(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
+    /// Launches the solver.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn solve<R: Precision>(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
         if let Some(earliest) = &mut self.earliest {
             // The greatest number.
             earliest.fill(u8::MAX)?;
         }
         let [vf, ee] = self.asked();
-        let solver = self.query.solver();
-        if solver.is_certified() {
-            let hits = [&self.vf_hits, &self.ee_hits];
-            let earliest = self.earliest.as_ref().map_or(Span::EMPTY, Buffer::span);
-            self.rungs.climb(given, self.features.edges.span(), ([vf, ee], hits, earliest))?;
-            return below_precision::count(
-                self.below_precision,
-                (self.features.edges.span(), &self.vf_hits, &self.ee_hits),
-                given,
-            );
-        }
+        let edges = self.features.edges.span();
+        let earliest = self.earliest.as_ref().map_or(Span::EMPTY, Buffer::span);
+        let precision = match self.solver {
+            ContinuousSolver::Certified(_) => {
+                let hits = [&self.vf_hits, &self.ee_hits];
+                self.rungs.climb(given, edges, ([vf, ee], hits, earliest))?;
+                let listed = (edges, &self.vf_hits, &self.ee_hits);
+                return below_precision::count(self.below_precision, listed, given);
+            }
+            ContinuousSolver::Cubic(precision) => precision,
+        };
         let args = |survivors: &List<Pair>, hits: &List<Hit>| SolveArgs {
             frames: given.frames,
             faces: given.faces,
-            edges: self.features.edges.span(),
+            edges,
             survivors: survivors.span(),
             hits: hits.span(),
-            earliest: self.earliest.as_ref().map_or(Span::EMPTY, Buffer::span),
+            earliest,
             counters: given.counters,
         };
         let (of_vf, of_ee) = (args(vf, &self.vf_hits), args(ee, &self.ee_hits));
-        match solver {
-            Solver::CubicF32 => {
+        match precision {
+            query::Precision::F32 => {
                 launch::striding::<R::Vf32>(given.device, vf.capacity(), &of_vf)?;
                 launch::striding::<R::Ee32>(given.device, ee.capacity(), &of_ee)
             }
-            _ => {
+            query::Precision::F64 => {
                 launch::striding::<R::Vf64>(given.device, vf.capacity(), &of_vf)?;
                 launch::striding::<R::Ee64>(given.device, ee.capacity(), &of_ee)
             }
+        }
+    }
+}
+
+impl<R: Precision> Narrow<R> for ContinuousNarrow {
+    fn steps(&self) -> Vec<&'static str> {
+        let name = |step: &Step| match step {
+            Step::Features => "features",
+            Step::Cull => "cull",
+            Step::Solve => "solve",
+        };
+        self.all_steps().iter().map(name).collect()
+    }
+
+    fn run(&mut self, step: usize, given: &NarrowContext<R>) -> Result<(), Error> {
+        match self.all_steps()[step] {
+            Step::Features => {
+                let gap = self.solver.certified().filter(|certified| certified.is_apart());
+                self.features.run::<R, R::Features>(given, gap.map_or(0.0, Certified::listed_within))
+            }
+            Step::Cull => self.cull(given),
+            Step::Solve => self.solve(given),
+        }
+    }
+
+    fn lists(&mut self, step: usize) -> Vec<&mut dyn GrowableOutput> {
+        match self.all_steps()[step] {
+            Step::Features => growable(&mut self.features.candidates).collect(),
+            Step::Cull => growable(self.survivors.iter_mut().flatten()).collect(),
+            Step::Solve => growable([&mut self.vf_hits, &mut self.ee_hits])
+                .chain(growable(&mut self.counters))
+                .chain(self.rungs.lists())
+                .collect(),
+        }
+    }
+
+    fn between(&self) -> Vec<(&'static str, &List<Pair>)> {
+        if self.earliest.is_some() {
+            // What is asked of a pair hangs on what was found before.
+            return Vec::new();
+        }
+        let mut lists = self.features.between();
+        if let Some([vf, ee]) = &self.survivors {
+            lists.extend([("narrow: vf that may meet", vf), ("narrow: ee that may meet", ee)]);
+        }
+        lists.extend(self.rungs.between());
+        lists
+    }
+
+    fn place(&mut self, bodies: &[Body]) {
+        let of = |certified| BelowPrecision::of(bodies, certified, self.earliest.is_some());
+        self.below_precision = self.solver.certified().and_then(of);
+    }
+
+    fn order_on(&mut self, device: &Device, layout: &Layout, room: usize) -> Result<(), Error> {
+        if self.earliest.is_none() {
+            self.ordered = Some(Order::new(device, layout, room)?);
+        }
+        Ok(())
+    }
+
+    fn ordered(&mut self) -> Option<&mut dyn GrowableOutput> {
+        self.ordered.as_mut().map(|order| &mut order.list as &mut dyn GrowableOutput)
+    }
+
+    fn order(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
+        let Some(order) = &mut self.ordered else { return Ok(()) };
+        order.run(given.device, &self.vf_hits, Some(&self.ee_hits), (given.bodies, given.counters))
+    }
+
+    fn ahead(&self, last: &[u64]) -> Vec<Ahead<'_>> {
+        let mut all = Hits::ahead([&self.vf_hits, &self.ee_hits], self.ordered.as_ref(), last);
+        all.extend(self.earliest.as_ref().map(|earliest| earliest.ahead(1)));
+        all
+    }
+
+    fn gather(&self, counters: &[u64]) -> Result<(Listed<'_>, bool), Error> {
+        if let Some(earliest) = &self.earliest {
+            let bits = earliest.read(1)?[0];
+            let toi = (bits != u64::MAX).then(|| f64::from_bits(bits));
+            let below_precision = self.below_precision == Some(BelowPrecision::Unlisted);
+            return Ok((Listed::Earliest { toi, below_precision }, false));
+        }
+        let lists = [&self.vf_hits, &self.ee_hits];
+        let (hits, ordered) = Hits::of(lists, self.ordered.as_ref(), counters)?;
+        let certified = self.solver.certified().is_some();
+        Ok((Listed::Hits { hits, certified }, ordered))
+    }
+
+    fn answer(&self) -> AnswerLists {
+        let lists = [&self.vf_hits, &self.ee_hits];
+        AnswerLists {
+            earliest: self.earliest.as_ref().map(|earliest| earliest.span().addr()),
+            edges: self.features.edges.span(),
+            ..AnswerLists::of(Entries::Contacts, &lists, self.ordered.as_ref())
         }
     }
 }

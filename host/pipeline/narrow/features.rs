@@ -5,7 +5,7 @@ use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::launch;
 use crate::pipeline::layout::Layout;
-use crate::pipeline::list::{GrowableOutput, List};
+use crate::pipeline::list::List;
 use crate::pipeline::precision::Precision;
 use nearmiss_kernels::abi::{Facet, FeaturesArgs, Pair, counter};
 use nearmiss_kernels::entry::Entry;
@@ -38,24 +38,20 @@ impl Features {
         })
     }
 
-    /// The lists that the step fills.
-    pub fn lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
-        self.candidates.iter_mut().map(|list| list as &mut dyn GrowableOutput).collect()
-    }
-
     /// The lists, with names: for comparing machines.
     pub fn between(&self) -> Vec<(&'static str, &List<Pair>)> {
         let [vf, ee] = &self.candidates;
         vec![("narrow: vf", vf), ("narrow: ee", ee)]
     }
 
-    /// Launches the step, by the kernel for what moves or for what does not.
+    /// Launches the step, for what comes within the gap, by the kernel for what moves or for what does not.
     ///
     /// # Errors
     /// Those of the device.
     pub fn run<R: Precision, E: Entry<Args = FeaturesArgs<R>>>(
         &self,
         given: &NarrowContext<R>,
+        gap: f64,
     ) -> Result<(), Error> {
         let [vf, ee] = &self.candidates;
         let args = FeaturesArgs {
@@ -65,7 +61,7 @@ impl Features {
             vf: vf.span(),
             ee: ee.span(),
             counters: given.counters,
-            gap: given.query.gap(),
+            gap,
         };
         launch::striding::<E>(given.device, given.pairs.len() as usize, &args)
     }

@@ -1,82 +1,66 @@
 //! Features at rest: their lists, and the launches from triangle pairs to those within a distance.
 
 use super::features::Features;
-use super::{NarrowContext, Step};
-use crate::device::Device;
+use super::{AnswerLists, Narrow, NarrowContext, growable};
+use crate::contacts::Entries;
+use crate::device::{Ahead, Device};
 use crate::error::Error;
 use crate::pipeline::launch;
 use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{Counter, GrowableOutput, List};
 use crate::pipeline::order::Order;
 use crate::pipeline::precision::Precision;
-use nearmiss_kernels::abi::{NearArgs, NearHit, Pair, Span, counter};
+use crate::pipeline::typed::{Hits, Listed};
+use nearmiss_kernels::abi::{NearArgs, NearHit, Pair, counter};
+
+/// A step of the phase.
+#[derive(Clone, Copy)]
+enum Step {
+    /// Vertex/face and edge/edge candidates.
+    Features,
+    /// Those within the distance.
+    Near,
+}
+
+impl Step {
+    /// All, in their order.
+    const ALL: [Step; 2] = [Step::Features, Step::Near];
+}
 
 /// The lists and the topology of a near query.
-pub struct Near {
+pub struct NearNarrow {
+    distance: f64,
     /// Topology, and the pairs whose boxes come within the distance.
     features: Features,
     /// Vertices and faces within the distance.
-    pub vf_hits: List<NearHit>,
+    vf_hits: List<NearHit>,
     /// Edges within the distance.
-    pub ee_hits: List<NearHit>,
+    ee_hits: List<NearHit>,
     /// Hits that are not certainly within it.
     unresolved: Counter,
     /// All hits in order, where the device orders them.
-    pub ordered: Option<Order<NearHit>>,
+    ordered: Option<Order<NearHit>>,
 }
 
-impl Near {
+impl NearNarrow {
     /// Takes the memory: `capacity` entries for candidates, twice as many for edges, `few` for hits.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn new(device: &Device, layout: &Layout, (capacity, few): (usize, usize)) -> Result<Self, Error> {
-        let order = || Order::new(device, layout, few);
-        Ok(Near {
+    pub fn new(
+        device: &Device,
+        layout: &Layout,
+        distance: f64,
+        (capacity, few): (usize, usize),
+    ) -> Result<Self, Error> {
+        Ok(NearNarrow {
+            distance,
             features: Features::new(device, layout, [capacity, 2 * capacity])?,
             vf_hits: List::new(device, "vertex/face pairs within the distance", counter::VF_HITS, few)?,
             ee_hits: List::new(device, "edge/edge pairs within the distance", counter::EE_HITS, 2 * few)?,
             unresolved: Counter(counter::UNRESOLVED),
-            ordered: device.is_gpu().then(order).transpose()?,
+            ordered: None,
         })
-    }
-
-    /// End points of every edge.
-    pub fn edges(&self) -> Span<[u32; 2]> {
-        self.features.edges.span()
-    }
-
-    /// The lists that a step fills.
-    pub fn lists(&mut self, step: Step) -> Vec<&mut dyn GrowableOutput> {
-        match step {
-            Step::Features => self.features.lists(),
-            Step::Near => vec![&mut self.vf_hits, &mut self.ee_hits, &mut self.unresolved],
-            Step::Order => {
-                self.ordered.iter_mut().map(|order| &mut order.list as &mut dyn GrowableOutput).collect()
-            }
-            Step::Traverse | Step::Decide | Step::Cull | Step::Solve => Vec::new(),
-        }
-    }
-
-    /// The lists between candidates and hits, with names: for comparing machines.
-    pub fn between(&self) -> Vec<(&'static str, &List<Pair>)> {
-        self.features.between()
-    }
-
-    /// Launches a step.
-    ///
-    /// # Errors
-    /// Those of the device.
-    pub fn run<R: Precision>(&mut self, step: Step, given: &NarrowContext<R>) -> Result<(), Error> {
-        match (step, &mut self.ordered) {
-            (Step::Features, _) => self.features.run::<R, R::FeaturesAtRest>(given),
-            (Step::Order, Some(order)) => {
-                let given_to = (given.bodies, given.counters);
-                order.run(given.device, &self.vf_hits, Some(&self.ee_hits), given_to)
-            }
-            (Step::Order, None) => Ok(()),
-            _ => self.measure(given),
-        }
     }
 
     fn measure<R: Precision>(&self, given: &NarrowContext<R>) -> Result<(), Error> {
@@ -90,8 +74,65 @@ impl Near {
             vf_hits: self.vf_hits.span(),
             ee_hits: self.ee_hits.span(),
             counters: given.counters,
-            distance: given.query.listed_within(),
+            distance: self.distance,
         };
         launch::striding::<R::Near>(given.device, vf.capacity() + ee.capacity(), &args)
+    }
+}
+
+impl<R: Precision> Narrow<R> for NearNarrow {
+    fn steps(&self) -> Vec<&'static str> {
+        let name = |step| match step {
+            Step::Features => "features",
+            Step::Near => "near",
+        };
+        Step::ALL.map(name).into()
+    }
+
+    fn run(&mut self, step: usize, given: &NarrowContext<R>) -> Result<(), Error> {
+        match Step::ALL[step] {
+            Step::Features => self.features.run::<R, R::FeaturesAtRest>(given, self.distance),
+            Step::Near => self.measure(given),
+        }
+    }
+
+    fn lists(&mut self, step: usize) -> Vec<&mut dyn GrowableOutput> {
+        match Step::ALL[step] {
+            Step::Features => growable(&mut self.features.candidates).collect(),
+            Step::Near => vec![&mut self.vf_hits, &mut self.ee_hits, &mut self.unresolved],
+        }
+    }
+
+    fn between(&self) -> Vec<(&'static str, &List<Pair>)> {
+        self.features.between()
+    }
+
+    fn order_on(&mut self, device: &Device, layout: &Layout, room: usize) -> Result<(), Error> {
+        self.ordered = Some(Order::new(device, layout, room)?);
+        Ok(())
+    }
+
+    fn ordered(&mut self) -> Option<&mut dyn GrowableOutput> {
+        self.ordered.as_mut().map(|order| &mut order.list as &mut dyn GrowableOutput)
+    }
+
+    fn order(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
+        let Some(order) = &mut self.ordered else { return Ok(()) };
+        order.run(given.device, &self.vf_hits, Some(&self.ee_hits), (given.bodies, given.counters))
+    }
+
+    fn ahead(&self, last: &[u64]) -> Vec<Ahead<'_>> {
+        Hits::ahead([&self.vf_hits, &self.ee_hits], self.ordered.as_ref(), last)
+    }
+
+    fn gather(&self, counters: &[u64]) -> Result<(Listed<'_>, bool), Error> {
+        let (hits, ordered) = Hits::of([&self.vf_hits, &self.ee_hits], self.ordered.as_ref(), counters)?;
+        Ok((Listed::Near(hits), ordered))
+    }
+
+    fn answer(&self) -> AnswerLists {
+        let edges = self.features.edges.span();
+        let lists = [&self.vf_hits, &self.ee_hits];
+        AnswerLists { edges, ..AnswerLists::of(Entries::NearPairs, &lists, self.ordered.as_ref()) }
     }
 }

@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::pipeline::launch;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::precision::Precision;
-use crate::query::{Query, Solver};
+use crate::query::{Certified, CertifiedPrecision};
 use nearmiss_kernels::abi::{EVERYTHING, Hit, Listed, Pair, RungArgs, Span, counter};
 use nearmiss_kernels::entry::Entry;
 
@@ -29,14 +29,16 @@ enum Rung {
     Separate64,
 }
 
-/// The rungs of a query.
-fn rungs(query: &Query) -> &'static [Rung] {
-    match (query.solver(), query.is_apart()) {
-        (Solver::CertifiedF64, true) => &[Rung::Separate64],
-        (_, true) => &[Rung::SeparateFirst, Rung::Separate32, Rung::Separate64],
-        (Solver::CertifiedF32, false) => &[Rung::Isolate32, Rung::Settle],
-        (Solver::CertifiedF64, false) => &[Rung::Isolate64, Rung::Settle, Rung::Slice],
-        _ => &[Rung::Isolate32, Rung::Isolate64, Rung::Settle, Rung::Slice],
+/// The rungs of a solver.
+fn rungs(certified: &Certified) -> &'static [Rung] {
+    match (certified.precision, certified.is_apart()) {
+        (CertifiedPrecision::F64, true) => &[Rung::Separate64],
+        (CertifiedPrecision::Mixed | CertifiedPrecision::F32, true) => {
+            &[Rung::SeparateFirst, Rung::Separate32, Rung::Separate64]
+        }
+        (CertifiedPrecision::F32, false) => &[Rung::Isolate32, Rung::Settle],
+        (CertifiedPrecision::F64, false) => &[Rung::Isolate64, Rung::Settle, Rung::Slice],
+        (CertifiedPrecision::Mixed, false) => &[Rung::Isolate32, Rung::Isolate64, Rung::Settle, Rung::Slice],
     }
 }
 
@@ -67,8 +69,9 @@ impl Rung {
     }
 }
 
-/// The rungs of a certified query, and what lies between them; of another query nothing.
+/// The rungs of a certified solver, and what lies between them; of another solver nothing.
 pub struct Rungs {
+    certified: Certified,
     rungs: &'static [Rung],
     /// What each rung but the last leaves: vertex/face, edge/edge.
     left: Vec<[List<Pair>; 2]>,
@@ -81,8 +84,8 @@ impl Rungs {
     ///
     /// # Errors
     /// Those of the device.
-    pub fn new(device: &Device, query: &Query, capacity: [usize; 2]) -> Result<Self, Error> {
-        let rungs = if query.solver().is_certified() { rungs(query) } else { &[] };
+    pub fn new(device: &Device, certified: Option<&Certified>, capacity: [usize; 2]) -> Result<Self, Error> {
+        let rungs = certified.map_or(&[][..], rungs);
         let names: Vec<_> = rungs.iter().rev().skip(1).rev().map(|rung| rung.left()).collect();
         let list = |(_, name, counter): (&str, &'static str, u32), capacity| {
             List::new(device, name, counter, capacity)
@@ -91,7 +94,7 @@ impl Rungs {
             .iter()
             .map(|&at| Ok([list(LEFT[at][0], capacity[0])?, list(LEFT[at][1], capacity[1])?]))
             .collect::<Result<_, Error>>()?;
-        Ok(Rungs { rungs, left, names })
+        Ok(Rungs { certified: certified.copied().unwrap_or_default(), rungs, left, names })
     }
 
     /// The lists that the rungs fill.
@@ -129,7 +132,8 @@ impl Rungs {
         let mut pairs = asked;
         for (at, &rung) in self.rungs.iter().enumerate() {
             let left = self.left.get(at).map(|lists| lists.each_ref());
-            let everything = given.query.solver() == Solver::CertifiedF32 || rung == Rung::Isolate64;
+            let narrow = self.certified.precision == CertifiedPrecision::F32;
+            let everything = narrow || rung == Rung::Isolate64;
             let args = RungArgs {
                 frames: given.frames,
                 faces: given.faces,
@@ -138,7 +142,7 @@ impl Rungs {
                 ee: listed(pairs[1], hits[1], left.map(|[_, ee]| ee)),
                 earliest,
                 counters: given.counters,
-                params: given.query.params(),
+                params: self.certified.params(),
                 flags: if everything { EVERYTHING } else { 0 },
                 pad: 0,
             };

@@ -3,37 +3,49 @@
 use super::TypedPipeline;
 use crate::device::{Ahead, View};
 use crate::error::Error;
-use crate::pipeline::below_precision::BelowPrecision;
 use crate::pipeline::list::List;
-use crate::pipeline::narrow::Narrow;
 use crate::pipeline::order::{Order, Ordered};
 use crate::pipeline::placing::Seen;
 use crate::pipeline::precision::Precision;
-use crate::pipeline::volumes::Kernels;
 use bytemuck::Pod;
 use nearmiss_kernels::abi::{Hit, NearHit, Pair, counter};
+use nearmiss_kernels::entry::Kernels;
 
 /// What the kernels found, still in the numbering of the memory that all bodies share, and where it is possible in that
 /// memory.
-pub struct Found<'a> {
+pub enum Listed<'a> {
     /// Triangle pairs, discrete.
-    pub pairs: Option<View<'a, Pair>>,
+    Pairs(View<'a, Pair>),
     /// Contacts in motion.
-    pub hits: Option<Hits<'a>>,
+    Hits {
+        /// The contacts.
+        hits: Hits<'a>,
+        /// Whether a certified solver found them.
+        certified: bool,
+    },
+    /// The first contact in motion.
+    Earliest {
+        /// The smallest toi, if there is one.
+        toi: Option<f64>,
+        /// Whether pairs may be too large for the tolerance in the solver's precision.
+        below_precision: bool,
+    },
     /// Features at rest within the distance.
-    pub near: Option<Hits<'a, NearHit>>,
-    /// Whether pairs or hits are in canonical order already.
+    Near(Hits<'a, NearHit>),
+}
+
+/// What a frame came to.
+pub struct Found<'a> {
+    /// What the kernels found.
+    pub listed: Listed<'a>,
+    /// Whether it is in canonical order already.
     pub ordered: bool,
-    /// The smallest toi, if that was asked for and there is one.
-    pub earliest: Option<f64>,
     /// The frame's counters, see [`counter`].
     pub counters: Vec<u64>,
     /// How often a list was too short and part of the frame ran again.
     pub reruns: u64,
     /// Whether the walk's front did not pay.
     pub front_dropped: bool,
-    /// Whether pairs may be too large for the tolerance in the solver's precision: those that are listed, as counted.
-    pub below_precision: Option<BelowPrecision>,
     /// What was seen of positions in memory of the caller; `None` where there are none.
     pub seen: Option<Seen>,
 }
@@ -41,10 +53,13 @@ pub struct Found<'a> {
 impl Found<'_> {
     /// Bytes of the answer.
     pub fn bytes(&self) -> u64 {
-        let pairs = self.pairs.as_ref().map_or(0, |pairs| size_of_val(&**pairs));
-        let hits = self.hits.as_ref().map_or(0, Hits::count) * size_of::<crate::Contact>();
-        let near = self.near.as_ref().map_or(0, Hits::count) * size_of::<crate::contacts::NearPair>();
-        (pairs + hits + near) as u64
+        let bytes = match &self.listed {
+            Listed::Pairs(pairs) => size_of_val(&**pairs),
+            Listed::Hits { hits, .. } => hits.count() * size_of::<crate::Contact>(),
+            Listed::Earliest { .. } => 0,
+            Listed::Near(hits) => hits.count() * size_of::<crate::contacts::NearPair>(),
+        };
+        bytes as u64
     }
 }
 
@@ -58,7 +73,10 @@ pub enum Hits<'a, T: Pod = Hit> {
 
 impl<'a, T: Ordered> Hits<'a, T> {
     /// Those of two lists, in order if the device has put them so; and whether it has.
-    fn of(
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn of(
         lists: [&'a List<T>; 2],
         order: Option<&'a Order<T>>,
         counters: &[u64],
@@ -70,7 +88,7 @@ impl<'a, T: Ordered> Hits<'a, T> {
     }
 
     /// What is to be read ahead of them, by the counters of the last frame.
-    fn ahead(lists: [&'a List<T>; 2], order: Option<&'a Order<T>>, last: &[u64]) -> Vec<Ahead<'a>> {
+    pub fn ahead(lists: [&'a List<T>; 2], order: Option<&'a Order<T>>, last: &[u64]) -> Vec<Ahead<'a>> {
         match order {
             Some(order) => vec![order.list.ahead(last)],
             None => lists.map(|list| list.ahead(last)).into(),
@@ -97,7 +115,10 @@ impl<T: Pod> Hits<'_, T> {
 }
 
 /// The contacts of the lists in canonical order, if the device has put them so.
-fn in_order<'a, T: Ordered>(
+///
+/// # Errors
+/// Those of the device.
+pub fn in_order<'a, T: Ordered>(
     order: Option<&'a Order<T>>,
     counters: &[u64],
     lists: &[&List<T>],
@@ -110,55 +131,13 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
     pub(super) fn read_ahead(&self) -> Result<(), Error> {
         let mut all = vec![self.counters.ahead(counter::COUNT as usize)];
         all.extend(self.vertices.ahead());
-        match &self.narrow {
-            Narrow::Discrete { ordered: Some(order), .. } => all.push(order.list.ahead(&self.last)),
-            Narrow::Discrete { contacts, .. } => all.push(contacts.ahead(&self.last)),
-            Narrow::Near(near) => {
-                all.extend(Hits::ahead([&near.vf_hits, &near.ee_hits], near.ordered.as_ref(), &self.last));
-            }
-            Narrow::Continuous(c) => {
-                all.extend(Hits::ahead([&c.vf_hits, &c.ee_hits], c.ordered.as_ref(), &self.last));
-                all.extend(c.earliest.as_ref().map(|earliest| earliest.ahead(1)));
-            }
-        }
+        all.extend(self.narrow.ahead(&self.last));
         self.device.read_ahead(&all)
     }
 
     pub(super) fn gather(&self, counters: Vec<u64>, reruns: u64) -> Result<Found<'_>, Error> {
-        let mut found = Found {
-            pairs: None,
-            hits: None,
-            near: None,
-            ordered: false,
-            earliest: None,
-            counters,
-            reruns,
-            front_dropped: self.walk.front_dropped(),
-            below_precision: None,
-            seen: self.vertices.seen()?,
-        };
-        match &self.narrow {
-            Narrow::Discrete { contacts, ordered, .. } => {
-                let ordered = in_order(ordered.as_deref(), &found.counters, &[contacts])?;
-                found.ordered = ordered.is_some();
-                found.pairs = Some(ordered.map_or_else(|| contacts.view(&found.counters), Ok)?);
-            }
-            Narrow::Near(near) => {
-                let lists = [&near.vf_hits, &near.ee_hits];
-                let (hits, ordered) = Hits::of(lists, near.ordered.as_ref(), &found.counters)?;
-                (found.near, found.ordered) = (Some(hits), ordered);
-            }
-            Narrow::Continuous(c) => {
-                found.below_precision = c.below_precision;
-                let lists = [&c.vf_hits, &c.ee_hits];
-                let (hits, ordered) = Hits::of(lists, c.ordered.as_ref(), &found.counters)?;
-                (found.hits, found.ordered) = (Some(hits), ordered);
-                if let Some(earliest) = &c.earliest {
-                    let bits = earliest.read(1)?[0];
-                    found.earliest = (bits != u64::MAX).then(|| f64::from_bits(bits));
-                }
-            }
-        }
-        Ok(found)
+        let (listed, ordered) = self.narrow.gather(&counters)?;
+        let (front_dropped, seen) = (self.walk.front_dropped(), self.vertices.seen()?);
+        Ok(Found { listed, ordered, counters, reruns, front_dropped, seen })
     }
 }

@@ -4,46 +4,27 @@
 use super::*;
 use crate::contacts::Contacts;
 use crate::device::emulator::{Emulator, Mode};
-use crate::pipeline::order::Order;
+use crate::query::{Certified, Continuous};
 use crate::samples;
 use nearmiss_kernels::bv::Aabb;
 
 /// The answers of two frames, in the order in which the device or the host puts them; `told` is what the host believes.
-fn answers(
-    bodies: &[Body],
-    motion: Motion,
-    device_orders: bool,
-    told: impl Fn(bool) -> bool,
-) -> Vec<Contacts> {
+fn answers(bodies: &[Body], query: Query, device_orders: bool, told: impl Fn(bool) -> bool) -> Vec<Contacts> {
     let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
-    let query = match motion {
-        Motion::Near => Query::near(0.02),
-        _ => Query { tolerance: Some(1e-3), ..Query::of(motion) },
-    };
-    let layout = Arc::new(Layout::new(bodies, motion != Motion::Discrete));
+    let layout = Arc::new(Layout::new(bodies, query.kind().is_of_features()));
     let given = (query, Axes::PCA);
     let mut pipeline =
         TypedPipeline::<f32, Aabb>::new(device.clone(), bodies, layout.clone(), given).expect("memory");
     if device_orders {
         // With less room than there are contacts: the list grows.
-        match &mut pipeline.narrow {
-            Narrow::Discrete { ordered, .. } => {
-                *ordered = Some(Box::new(Order::new(&device, &layout, 10).expect("memory")));
-            }
-            Narrow::Continuous(c) => {
-                c.ordered = Some(Order::new(&device, &layout, 10).expect("memory"));
-            }
-            Narrow::Near(near) => {
-                near.ordered = Some(Order::new(&device, &layout, 10).expect("memory"));
-            }
-        }
+        pipeline.narrow.order_on(&device, &layout, 10).expect("memory");
     }
     pipeline.construct().expect("trees");
     let mut frame = || {
         let (mut found, stages) = pipeline.frame().expect("a frame");
         assert_eq!(found.ordered, device_orders);
         found.ordered = told(found.ordered);
-        Contacts::new(found, &layout, query, (stages, Vec::new()))
+        Contacts::new(found, &layout, (stages, Vec::new()))
     };
     vec![frame(), frame()]
 }
@@ -51,16 +32,18 @@ fn answers(
 #[test]
 fn the_device_orders_as_the_host_does() {
     let soup = |seed, moving| samples::soup(300, seed, moving);
-    for (motion, moving) in [(Motion::Discrete, false), (Motion::Continuous, true), (Motion::Near, false)] {
+    let certified = Certified { tolerance: Some(1e-3), ..Certified::default() };
+    let continuous = Continuous::by(certified).into();
+    for (query, moving) in [(Query::discrete(), false), (continuous, true), (Query::near(0.02), false)] {
         for bodies in [vec![soup(5, moving)], vec![soup(6, moving), soup(7, moving)]] {
-            let [host, device] = [false, true].map(|device| answers(&bodies, motion, device, |told| told));
-            assert!(host[0].len() > 20, "{motion:?}: {}", host[0].len());
+            let [host, device] = [false, true].map(|device| answers(&bodies, query, device, |told| told));
+            assert!(host[0].len() > 20, "{query:?}: {}", host[0].len());
             for (host, device) in host.iter().zip(&device) {
-                assert_eq!(host.answer, device.answer, "{motion:?} of {} bodies", bodies.len());
+                assert_eq!(host.answer, device.answer, "{query:?} of {} bodies", bodies.len());
             }
             // The host, told that somebody has ordered them, leaves them as the kernels did.
-            let lazy = answers(&bodies, motion, false, |_| true);
-            assert!(lazy.iter().zip(&host).any(|(lazy, host)| lazy.answer != host.answer), "{motion:?}");
+            let lazy = answers(&bodies, query, false, |_| true);
+            assert!(lazy.iter().zip(&host).any(|(lazy, host)| lazy.answer != host.answer), "{query:?}");
         }
     }
 }

@@ -2,23 +2,31 @@
 
 use super::*;
 use crate::device::emulator::{Emulator, Mode};
-use crate::query::{Bv, Refit, Solver};
+use crate::query::{Bv, Certified, CertifiedPrecision, Continuous, Refit, WithVolume};
 use crate::samples::soup;
 use crate::scene::Scene;
-use nearmiss_kernels::bv::{Aabb, Linear, Obb};
 
 /// How many pairs of random triangles certainly come within a tenth, with volumes that know of it or do not.
+struct Certain {
+    refit: Refit,
+    told: bool,
+}
+
+impl WithVolume for Certain {
+    type Out = usize;
+
+    fn with<V: Kernels>(self, axes: Axes) -> usize {
+        certain::<V>(axes, self.refit, self.told)
+    }
+}
+
 fn certain<V: Kernels>(axes: Axes, refit: Refit, told: bool) -> usize {
     let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
     let scene = Scene::from(soup(60, 5, true));
     let bodies = scene.bodies();
-    let query = Query {
-        solver: Some(Solver::CertifiedF64),
-        refit: Some(refit),
-        tolerance: Some(1e-3),
-        separation: Some(0.1),
-        ..Query::of(Motion::Continuous)
-    };
+    let certified =
+        Certified { tolerance: Some(1e-3), separation: 0.1, ..Certified::by(CertifiedPrecision::F64) };
+    let query = Query::from(Continuous::by(certified)).with_refit(refit);
     let layout = Arc::new(Layout::new(bodies, true));
     let mut pipeline =
         TypedPipeline::<f32, V>::new(device, bodies, layout, (query, axes)).expect("a pipeline");
@@ -27,21 +35,15 @@ fn certain<V: Kernels>(axes: Axes, refit: Refit, told: bool) -> usize {
     }
     pipeline.construct().expect("trees");
     let (found, _) = pipeline.frame().expect("a frame");
-    found.hits.iter().flat_map(Hits::each).flatten().filter(|hit| hit.verdict.is_contact()).count()
+    let Listed::Hits { hits, .. } = found.listed else { panic!("a continuous query lists contacts") };
+    hits.each().into_iter().flatten().filter(|hit| hit.verdict.is_contact()).count()
 }
 
 #[test]
 fn volumes_without_the_separation_lose_pairs() {
-    let all = certain::<Aabb>(Axes::PCA, Refit::Levels, true);
+    let all = Bv::Aabb.with(Certain { refit: Refit::Levels, told: true });
     for refit in [Refit::Levels, Refit::Treelets, Refit::BottomUp] {
-        let counts = |told| {
-            [
-                certain::<Aabb>(Axes::PCA, refit, told),
-                certain::<Linear>(Axes::PCA, refit, told),
-                certain::<Obb>(Axes::PCA, refit, told),
-                certain::<Obb>(Axes::CHILD, refit, told),
-            ]
-        };
+        let counts = |told| Bv::ALL.map(|bv| bv.with(Certain { refit, told }));
         assert_eq!(counts(true), [all; Bv::ALL.len()], "{refit:?}");
         assert!(counts(false).iter().all(|count| *count < all), "{refit:?}: {:?} of {all}", counts(false));
     }

@@ -1,12 +1,11 @@
 //! One stage again and again, on what the last frame left: for profilers and for figures of one stage.
 
-use super::{Pipeline, TypedPipeline};
+use super::{Pipeline, Step, TypedPipeline};
 use crate::error::Error;
-use crate::pipeline::narrow::Step;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::timing::Stage;
-use crate::pipeline::volumes::Kernels;
 use nearmiss_kernels::abi::counter;
+use nearmiss_kernels::entry::Kernels;
 
 /// Stages again, on what the last frame left.
 pub trait Again {
@@ -30,7 +29,7 @@ impl<R: Precision, V: Kernels> Again for TypedPipeline<R, V> {
         if stage == Stage::Construct {
             return (0..times).map(|_| self.construct()).collect();
         }
-        if stage == Stage::Order && !self.narrow.orders() {
+        if stage == Stage::Order && self.narrow.ordered().is_none() {
             return Ok(Vec::new());
         }
         let counters = self.counters_before(stage);
@@ -57,10 +56,10 @@ impl<R: Precision, V: Kernels> Again for TypedPipeline<R, V> {
         let counters = self.counters_before(Stage::Narrow);
         self.counters.write(&counters)?;
         let mut all = Vec::new();
-        for &step in self.narrow.steps() {
+        for (at, name) in self.narrow.steps().into_iter().enumerate() {
             let start = self.device.event()?;
-            self.step(step)?;
-            all.push((step.name(), start.to(&self.device.event()?)?));
+            self.step(Step::Narrow(at))?;
+            all.push((name, start.to(&self.device.event()?)?));
         }
         Ok(all)
     }
@@ -72,9 +71,12 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
         let mut counters = vec![0; counter::COUNT as usize];
         if matches!(stage, Stage::Narrow | Stage::Order) {
             counters.clone_from(&self.last);
-            let steps = if stage == Stage::Order { &[] } else { self.narrow.steps() };
-            for &step in steps.iter().chain(&[Step::Order]) {
-                self.narrow.lists(step).iter().for_each(|list| counters[list.counter() as usize] = 0);
+            let steps = if stage == Stage::Order { 0..0 } else { self.narrow_steps_at() };
+            for at in steps {
+                self.narrow.lists(at).iter().for_each(|list| counters[list.counter() as usize] = 0);
+            }
+            if let Some(list) = self.narrow.ordered() {
+                counters[list.counter() as usize] = 0;
             }
         }
         counters

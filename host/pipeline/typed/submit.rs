@@ -7,13 +7,11 @@ use crate::device::Buffer;
 use crate::error::Error;
 use crate::pipeline::launch;
 use crate::pipeline::list::GrowableOutput;
-use crate::pipeline::narrow::Step;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::timing::{Stage, Stages};
 use crate::pipeline::typed::Found;
-use crate::pipeline::volumes::Kernels;
 use nearmiss_kernels::abi::{FrameStatus, NO_LIST, Room, StatusArgs, counter, seen};
-use nearmiss_kernels::entry::status_frame;
+use nearmiss_kernels::entry::{Kernels, status_frame};
 
 /// What such a frame needs beside what every frame has.
 pub struct Submission {
@@ -68,9 +66,10 @@ impl<R: Precision, V: Kernels> Submits for TypedPipeline<R, V> {
             |list: &&mut dyn GrowableOutput| Room { entries: list.room(), counter: list.counter(), pad: 0 };
         let mut rooms: Vec<Room> = self.walk.lists().iter().map(room).collect();
         rooms.push(room(&(&mut self.pairs as &mut dyn GrowableOutput)));
-        for step in self.narrow.steps().iter().chain(&[Step::Order]) {
-            rooms.extend(self.narrow.lists(*step).iter().map(room));
+        for step in self.narrow_steps_at() {
+            rooms.extend(self.narrow.lists(step).iter().map(room));
         }
+        rooms.extend(self.narrow.ordered().iter().map(room));
         let mut unseen = self.device.buffer(seen::COUNT as usize)?;
         unseen.clear()?;
         let (rooms, status) = (self.device.upload(&rooms)?, self.device.buffer(1)?);

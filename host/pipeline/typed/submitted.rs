@@ -10,7 +10,7 @@ use nearmiss_kernels::bv::Aabb;
 fn prepared(device: &Device) -> TypedPipeline<f32, Aabb> {
     let bodies = [samples::soup(300, 5, false)];
     let layout = Arc::new(Layout::new(&bodies, false));
-    let query = Query::of(Motion::Discrete);
+    let query = Query::discrete();
     let mut pipeline =
         TypedPipeline::<f32, Aabb>::new(device.clone(), &bodies, layout, (query, Axes::PCA)).expect("memory");
     pipeline.construct().expect("a tree");

@@ -6,9 +6,9 @@ use crate::device::Device;
 use crate::error::Error;
 use crate::pipeline::launch;
 use crate::pipeline::list::{GrowableOutput, List};
-use crate::pipeline::volumes::Kernels;
 use crate::query::FrontShape;
 use nearmiss_kernels::abi::{FRONT, FrontArgs, PRUNE, Pair, counter};
+use nearmiss_kernels::entry::{self, Kernels};
 
 /// Pairs of the front a triangle for which there is room at first: cloth at rest has 30, swept over a step 100.
 const PAIRS_A_TRIANGLE: usize = 48;
@@ -83,7 +83,7 @@ impl<V: Kernels> Walk<V> for Front {
         let flags = given.flags | FRONT;
         let given = WalkContext { ends: self.ends.span(), flags, ..*given };
         let State::Kept { count, .. } = self.state else { return self.queue.launch(&given) };
-        let blocks = given.device.blocks_striding::<V::Front>(count as usize);
+        let blocks = given.device.blocks_striding::<entry::traverse_front<V>>(count as usize);
         let (front, flags) = (self.front.span(), if self.prunes::<V>() { PRUNE } else { 0 });
         self.queue.launch_from(&given, &|units, unit_count| {
             let args = FrontArgs {
@@ -95,7 +95,7 @@ impl<V: Kernels> Walk<V> for Front {
                 count,
                 flags,
             };
-            launch::blocks::<V::Front>(given.device, blocks, &args)
+            launch::blocks::<entry::traverse_front<V>>(given.device, blocks, &args)
         })
     }
 

@@ -8,13 +8,12 @@ mod steal;
 
 use super::forest::Forest;
 use super::list::GrowableOutput;
-use super::volumes::Kernels;
 use crate::device::Device;
 use crate::error::Error;
 use crate::query::{Query, Traversal};
 use front::Front;
 use nearmiss_kernels::abi::{KEEP_ADJACENT, Pair, PairArgs, Span};
-use nearmiss_kernels::entry::Entry;
+use nearmiss_kernels::entry::{Entry, Kernels};
 use per_leaf::PerLeaf;
 use queue::Queue;
 use steal::Steal;
@@ -120,7 +119,5 @@ pub fn walk<V: Kernels>(device: &Device, query: &Query, triangles: usize) -> Res
 
 /// What a walk is told by flags of a query.
 pub fn flags(query: &Query) -> u32 {
-    // A continuous query needs adjacent pairs too: their features without a common vertex may meet.
-    let adjacent = query.adjacent || query.motion != crate::query::Motion::Discrete;
-    if adjacent { KEEP_ADJACENT } else { 0 }
+    if query.keeps_adjacent() { KEEP_ADJACENT } else { 0 }
 }

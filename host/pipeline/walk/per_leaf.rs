@@ -4,8 +4,8 @@ use super::{Walk, WalkContext};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::launch;
-use crate::pipeline::volumes::Kernels;
 use nearmiss_kernels::abi::{ROUNDS, Span, TraverseArgs, Unit, counter};
+use nearmiss_kernels::entry::{self, Kernels};
 
 /// See [`crate::query::Traversal::PerLeaf`].
 pub struct PerLeaf {
@@ -45,13 +45,13 @@ impl<V: Kernels> Walk<V> for PerLeaf {
         };
         let leaves = forest.tree.leaves();
         let blocks = if device.is_gpu() {
-            device.blocks_for::<V::Leaves>(leaves)
+            device.blocks_for::<entry::traverse_leaves<V>>(leaves)
         } else {
-            device.blocks_striding::<V::Leaves>(leaves)
+            device.blocks_striding::<entry::traverse_leaves<V>>(leaves)
         };
-        launch::blocks::<V::Leaves>(device, blocks, &args)?;
+        launch::blocks::<entry::traverse_leaves<V>>(device, blocks, &args)?;
         let Some(units) = &self.units else { return Ok(()) };
-        let blocks = device.blocks_striding::<V::Units>(units[0].len());
+        let blocks = device.blocks_striding::<entry::traverse_units<V>>(units[0].len());
         for round in 0..ROUNDS {
             args.units = args.spilled;
             args.units_at = args.spilled_at;
@@ -61,7 +61,7 @@ impl<V: Kernels> Walk<V> for PerLeaf {
                 args.budget = u32::MAX;
                 args.spilled_at = 0;
             }
-            launch::blocks::<V::Units>(device, blocks, &args)?;
+            launch::blocks::<entry::traverse_units<V>>(device, blocks, &args)?;
         }
         Ok(())
     }

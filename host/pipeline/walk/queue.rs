@@ -6,10 +6,9 @@ use crate::device::{Buffer, Device, Event};
 use crate::error::Error;
 use crate::pipeline::launch;
 use crate::pipeline::list::GrowableOutput;
-use crate::pipeline::volumes::Kernels;
 use crate::query::{Balance, QueueShape};
 use nearmiss_kernels::abi::{BalanceArgs, LAST, Pair, QueueArgs, START, Span, counter};
-use nearmiss_kernels::entry::balance_copy;
+use nearmiss_kernels::entry::{self, Kernels};
 
 /// Rounds that are launched before the host looks whether anything is left, as long as it does not know. Even: the two
 /// copies of the list swap places each round.
@@ -73,7 +72,7 @@ impl Queue {
     /// # Errors
     /// Those of the device.
     pub fn new<V: Kernels>(device: &Device, shape: QueueShape) -> Result<Self, Error> {
-        let cores = shape.cores.unwrap_or_else(|| resident::<V::Queue>(device));
+        let cores = shape.cores.unwrap_or_else(|| resident::<entry::traverse_queue<V>>(device));
         let (segments, counts, rounds) = match shape.balance {
             Balance::Copy => ((cores, shape.segment as u64), [cores, cores], 1),
             Balance::View => ((1, cores as u64 * shape.segment as u64), [MOST_ROUNDS + 1, 0], MOST_ROUNDS),
@@ -99,7 +98,7 @@ impl Queue {
         (round, flags): (u32, u32),
     ) -> Result<(), Error> {
         let QueueShape { local, take, idle, patience, balance, .. } = self.shape;
-        let lanes = given.device.lanes::<V::Queue>();
+        let lanes = given.device.lanes::<entry::traverse_queue<V>>();
         let start = flags & START != 0;
         let copy = balance == Balance::Copy;
         // One list for all: the first block alone, until there is something to share.
@@ -125,7 +124,7 @@ impl Queue {
             flags,
             pad: 0,
         };
-        launch::blocks::<V::Queue>(given.device, if alone { 1 } else { self.cores }, &args)
+        launch::blocks::<entry::traverse_queue<V>>(given.device, if alone { 1 } else { self.cores }, &args)
     }
 
     /// Rounds with a balance between them, until the host sees that nothing is left.
@@ -145,7 +144,7 @@ impl Queue {
             let nearly_full = most + self.shape.local as u64 > self.units.len() as u64;
             if nearly_full || counts.iter().any(|&count| count < self.shape.take as u64) {
                 let before = given.device.event()?;
-                launch::blocks::<balance_copy>(
+                launch::blocks::<entry::balance_copy>(
                     given.device,
                     1,
                     &BalanceArgs {

@@ -6,9 +6,9 @@ use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::launch;
 use crate::pipeline::list::GrowableOutput;
-use crate::pipeline::volumes::Kernels;
 use crate::query::StealShape;
 use nearmiss_kernels::abi::{EAGER, Pair, StealArgs, control, pool};
+use nearmiss_kernels::entry::{self, Kernels};
 
 /// Places of the pool a queue, where the query does not say: queues run dry some times each, whatever the size of the
 /// trees, since what they are given are large subtrees. 16 KB a queue.
@@ -32,7 +32,7 @@ impl Steal {
     /// # Errors
     /// Those of the device.
     pub fn new<V: Kernels>(device: &Device, shape: StealShape) -> Result<Self, Error> {
-        let cores = shape.cores.unwrap_or_else(|| resident::<V::Steal>(device));
+        let cores = shape.cores.unwrap_or_else(|| resident::<entry::traverse_steal<V>>(device));
         let places = shape.pool.unwrap_or((PLACES * cores).min(control::MOST_PLACES)) as usize;
         let mut words = device.buffer(places)?;
         // Once: later launches have other numbers.
@@ -65,7 +65,7 @@ impl<V: Kernels> Walk<V> for Steal {
             flags: if self.shape.eager { EAGER } else { 0 },
             pad: 0,
         };
-        launch::blocks::<V::Steal>(given.device, self.cores, &args)
+        launch::blocks::<entry::traverse_steal<V>>(given.device, self.cores, &args)
     }
 
     fn lists(&mut self) -> Vec<&mut dyn GrowableOutput> {

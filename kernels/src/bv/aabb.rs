@@ -1,6 +1,7 @@
 //! The axis-aligned box: six numbers, six comparisons. Union and overlap are exact; only fitting rounds, outward.
 
-use super::{Axes, FillsNode, Volume, fills_node};
+use super::contain::between;
+use super::{Axes, Contain, FillsNode, Volume, fills_node};
 use crate::math::{Real, Vec3, round};
 use bytemuck::{Pod, Zeroable};
 
@@ -84,5 +85,11 @@ impl Volume for Aabb {
     #[inline]
     fn overlaps(&self, other: &Self) -> bool {
         Aabb::overlaps(self, other)
+    }
+}
+
+impl Contain for Aabb {
+    fn holds(&self, t0: Vec3<f64>, t1: Vec3<f64>) -> bool {
+        between(self.lo, t0, self.hi) && between(self.lo, t1, self.hi)
     }
 }

@@ -1,6 +1,6 @@
 //! Is a point in a volume? Exactly: the judge of the builders, which shares no arithmetic with them. For hosts.
 
-use super::{Aabb, Linear, Obb, Volume};
+use super::Volume;
 use crate::math::Vec3;
 
 /// Volumes that can be asked exactly what they hold.
@@ -10,28 +10,8 @@ pub trait Contain: Volume {
     fn holds(&self, t0: Vec3<f64>, t1: Vec3<f64>) -> bool;
 }
 
-impl Contain for Aabb {
-    fn holds(&self, t0: Vec3<f64>, t1: Vec3<f64>) -> bool {
-        between(self.lo, t0, self.hi) && between(self.lo, t1, self.hi)
-    }
-}
-
-impl Contain for Linear {
-    /// Both ends are enough: the box and the vertex mix alike.
-    fn holds(&self, t0: Vec3<f64>, t1: Vec3<f64>) -> bool {
-        between(self.lo0, t0, self.hi0) && between(self.lo1, t1, self.hi1)
-    }
-}
-
-impl Contain for Obb {
-    /// Both ends are enough: the box is convex.
-    fn holds(&self, t0: Vec3<f64>, t1: Vec3<f64>) -> bool {
-        let axes = self.axes();
-        [t0, t1].iter().all(|&p| (0..3).all(|i| within(axes[i], p, self.c, self.h[i])))
-    }
-}
-
-fn between(lo: [f32; 3], p: Vec3<f64>, hi: [f32; 3]) -> bool {
+/// Whether a box holds it.
+pub fn between(lo: [f32; 3], p: Vec3<f64>, hi: [f32; 3]) -> bool {
     (0..3).all(|k| lo[k] as f64 <= p[k] && p[k] <= hi[k] as f64)
 }
 
@@ -40,7 +20,7 @@ fn between(lo: [f32; 3], p: Vec3<f64>, hi: [f32; 3]) -> bool {
 const LIFT: f64 = f64::from_bits((400 + 1023) << 52);
 
 /// Whether `|a . (p - c)| <= h`.
-fn within(a: Vec3<f32>, p: Vec3<f64>, c: [f32; 3], h: f32) -> bool {
+pub fn within(a: Vec3<f32>, p: Vec3<f64>, c: [f32; 3], h: f32) -> bool {
     if h == f32::INFINITY {
         return true;
     }

@@ -4,7 +4,8 @@
 //! box to the second is in it at every t, since both sides of each inequality are the same mixture. So fitting rounds
 //! outward twice, and union is exact, as for [`Aabb`].
 
-use super::{Aabb, Axes, FillsNode, Volume, fills_node};
+use super::contain::between;
+use super::{Aabb, Axes, Contain, FillsNode, Volume, fills_node};
 use crate::exec::ALONE;
 use crate::math::tolerance::{MOVING_LIMIT, MOVING_TIME};
 use crate::math::{Real, Vec3};
@@ -132,5 +133,12 @@ impl Linear {
             to = if after & (q < to) { q } else { to };
         }
         (apart, from, to)
+    }
+}
+
+impl Contain for Linear {
+    /// Both ends are enough: the box and the vertex mix alike.
+    fn holds(&self, t0: Vec3<f64>, t1: Vec3<f64>) -> bool {
+        between(self.lo0, t0, self.hi0) && between(self.lo1, t1, self.hi1)
     }
 }

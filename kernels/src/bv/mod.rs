@@ -23,6 +23,27 @@ use crate::math::tolerance::NEAR_GROWTH;
 use crate::math::{Real, Vec3};
 use bytemuck::{Pod, Zeroable};
 
+/// The volumes, an entry each: the type, its part of the names of its kernels, whether inner nodes of few leaves are fitted
+/// (`groups`, see [`Volume::group`]); then the choices that people name, each with its name, its rule of axes, and what it is. The
+/// kernels, the host's choice and the command line are made of this list.
+#[macro_export]
+macro_rules! volumes {
+    ($then:ident) => {
+        $then! {
+            Aabb = "aabb" [] {
+                Aabb = "aabb", PCA, "Axis-aligned boxes; in a continuous query around both ends of the step.";
+            }
+            Linear = "linear" [] {
+                Linear = "linear", PCA, "Boxes that move: axis-aligned at both ends of the step, in between on straight lines.";
+            }
+            Obb = "obb" [groups] {
+                Obb = "obb", PCA, "Oriented boxes along the principal axes of what they hold; the seed's.";
+                ObbChild = "obb-child", CHILD, "Oriented boxes that keep the axes of a child: the older rule.";
+            }
+        }
+    };
+}
+
 /// What fits into a node of the tree without padding.
 ///
 /// # Safety
@@ -49,6 +70,13 @@ pub trait Volume: FillsNode + Sync + Send + core::fmt::Debug + PartialEq {
     #[inline(always)]
     fn group(_: Axes) -> u32 {
         0
+    }
+    /// Around points, which is what inner nodes that are not merged are fitted to (see [`Volume::group`]).
+    #[inline(always)]
+    fn of_points<R: Real>(points: &(impl Points<R> + ?Sized)) -> Self {
+        let mut all = Self::still([points.first(); 3]);
+        points.each(|p| all = all.merge(&Self::still([p; 3]), Axes::PCA));
+        all
     }
     /// Around all points within `by`, a length above 0, of a point that it is around. Rounded outward.
     fn grown(&self, by: f32) -> Self;

@@ -23,7 +23,8 @@
 //! `BOX_APART` is 256u, and what is lost when it is multiplied, added and compared with a difference is below 4u.
 
 use super::axes::{self, Frame, three};
-use super::{Axes, FillsNode, GROUP, Points, Volume, fills_node};
+use super::contain::within;
+use super::{Axes, Contain, FillsNode, GROUP, Points, Volume, fills_node};
 use crate::math::tolerance::{
     BOX_APART, BOX_APART_UNDERFLOW, BOX_CHILD, BOX_LENGTH, BOX_LIMIT, BOX_POINT, BOX_UNDERFLOW, BOX_UP,
 };
@@ -244,6 +245,11 @@ impl Volume for Obb {
         if axes == Axes::CHILD { 0 } else { GROUP }
     }
 
+    #[inline(always)]
+    fn of_points<R: Real>(points: &(impl Points<R> + ?Sized)) -> Obb {
+        Obb::of(points)
+    }
+
     /// Faces first, all six at once: they separate nearly all boxes that are apart. The slack is for all axes alike;
     /// see the module's text. Every comparison with NaN is false, which the box of everything relies on.
     #[inline]
@@ -284,4 +290,12 @@ fn scaled(v: [Vec3<f32>; 3]) -> [Vec3<f32>; 3] {
     let most = v.iter().fold(Vec3([0.0; 3]), |most, x| most.max(x.map(Real::abs)));
     let most = Real::max(Real::max(most[0], most[1]), most[2]);
     v.map(|x| x.map(|x| x / most))
+}
+
+impl Contain for Obb {
+    /// Both ends are enough: the box is convex.
+    fn holds(&self, t0: Vec3<f64>, t1: Vec3<f64>) -> bool {
+        let axes = self.axes();
+        [t0, t1].iter().all(|&p| (0..3).all(|i| within(axes[i], p, self.c, self.h[i])))
+    }
 }

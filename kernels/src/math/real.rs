@@ -21,6 +21,8 @@ pub struct Parts {
 /// A binary floating-point number: f32 or f64. Arithmetic is IEEE, round to nearest, never contracted.
 pub trait Real:
     Pod
+    + Send
+    + Sync
     + Tolerance
     + Debug
     + PartialOrd

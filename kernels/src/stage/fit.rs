@@ -12,7 +12,7 @@
 //!          `groups`: the same twice over for each of the leaves below (on average five nodes have a leaf).
 
 use crate::abi::{FitArgs, GroupsArgs, Link};
-use crate::bv::{GROUP, Obb, Volume};
+use crate::bv::{GROUP, Volume};
 use crate::bvh::group::GroupPoints;
 use crate::bvh::leaf;
 use crate::exec::{Block, Lane};
@@ -33,8 +33,8 @@ pub fn fit<R: Real, V: Volume, B: Block>(b: &mut B, a: &FitArgs<R, V>) {
     });
 }
 
-/// Oriented boxes of the inner nodes of up to [`GROUP`] leaves. Each is on its own: no order between them.
-pub fn groups<R: Real, B: Block>(b: &mut B, a: &GroupsArgs<R, Obb>) {
+/// Volumes of the inner nodes of up to [`GROUP`] leaves, fitted to the points below. Each is on its own: no order between them.
+pub fn groups<R: Real, V: Volume, B: Block>(b: &mut B, a: &GroupsArgs<R, V>) {
     let stride = b.blocks() * b.lanes();
     b.phase(|l| {
         // Pairs of siblings follow the root, in the order of their parents; as many as the first leaves below them.
@@ -50,7 +50,7 @@ pub fn groups<R: Real, B: Block>(b: &mut B, a: &GroupsArgs<R, Obb>) {
                     leaves: [first, last],
                 };
                 let link = Link { link: 2 * pair, last };
-                let volume = Obb::of(&points);
+                let volume = V::of_points(&points);
                 l.write(a.nodes, l.read(a.pair_parents, pair), link.with(volume.near(a.margin)));
             }
             pair += stride;

@@ -5,7 +5,7 @@ use nearmiss::Detector;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
-use nearmiss::query::{Motion, Query};
+use nearmiss::query::Query;
 use serde::Serialize;
 
 /// A step.
@@ -30,7 +30,7 @@ pub struct FunnelRow {
 /// # Errors
 /// Those of the device.
 pub fn funnel(device: &Device, name: &str, body: &Body) -> Result<Vec<FunnelRow>, Error> {
-    let mut detector = Detector::new(device.clone(), vec![body.clone()], Query::of(Motion::Continuous))?;
+    let mut detector = Detector::new(device.clone(), vec![body.clone()], Query::continuous())?;
     detector.detect()?;
     let contacts = detector.detect()?;
     let steps = detector.narrow_steps()?;

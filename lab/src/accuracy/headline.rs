@@ -2,13 +2,13 @@
 
 use super::row::Row;
 use crate::tables::digits;
-use nearmiss::query::{Bv, Motion, Query, Solver};
+use nearmiss::query::{Bv, Certified, QueryKind, Solver};
 
 /// Whether a row is of what is used when nothing is chosen, and asks the question that was meant.
 fn is_default(row: &Row) -> bool {
-    let motion = if row.tolerance_edges.is_some() { Motion::Continuous } else { Motion::Discrete };
+    let motion = if row.tolerance_edges.is_some() { QueryKind::Continuous } else { QueryKind::Discrete };
     row.solver == Solver::default_for(motion)
-        && row.tolerance_edges.is_none_or(|edges| edges == Query::TOLERANCE)
+        && row.tolerance_edges.is_none_or(|edges| edges == Certified::TOLERANCE)
         && row.bv.is_none_or(|bv| bv == Bv::default_for(motion).name())
         && row.precision != "f32 cast"
 }
@@ -25,11 +25,11 @@ pub fn headline(rows: &[Row]) -> String {
             ", {} ppm unresolved, {} ms at tolerance = {:.0e} edge lengths ({}, {}",
             digits(row.unresolved as f64 * 1e6 / row.cases.max(1) as f64),
             row.ms.map_or_else(String::new, digits),
-            Query::TOLERANCE,
+            Certified::TOLERANCE,
             row.solver.name(),
             row.input,
         ),
-        None => " (".to_owned() + Solver::default_for(Motion::Continuous).name(),
+        None => " (".to_owned() + Solver::default_for(QueryKind::Continuous).name(),
     };
     format!("{} missed, {} late{frame}; {asked})", sum(|r| r.missed), sum(|r| r.late))
 }
@@ -51,7 +51,7 @@ mod tests {
 
     #[test]
     fn it_is_counted_not_claimed() {
-        let default = row(Solver::Certified, Some(Query::TOLERANCE));
+        let default = row(Solver::Certified, Some(Certified::TOLERANCE));
         let frame = Row { ms: Some(12.5), bv: Some("linear"), unresolved: 4, ..default.clone() };
         let planted = Row { missed: 3, late: 2, ..default.clone() };
         let cast = Row { missed: 9, precision: "f32 cast", ..default.clone() };

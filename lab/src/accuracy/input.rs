@@ -8,7 +8,7 @@ use crate::pairs::built::{Built, built};
 use crate::pairs::{Options, Stored, ask, mean_edge};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
-use nearmiss::query::{Motion, Query, Solver};
+use nearmiss::query::{Query, QueryKind};
 use rayon::prelude::*;
 
 /// Cases whose answers are known.
@@ -28,34 +28,37 @@ pub struct Input {
 /// One way to ask.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
-    /// The test.
-    pub solver: Solver,
+    /// The question, with the test; its tolerance is given by each input.
+    pub asked: Query,
     /// In mean edges; `None` where the solver takes none.
     pub tolerance: Option<f64>,
 }
 
 impl Choice {
-    /// Every solver of that motion, with every tolerance where it takes one.
-    pub fn every(motion: Motion, tolerances: &[f64]) -> Vec<Choice> {
-        let of = |solver: Solver| -> Vec<Choice> {
-            match solver.is_certified() {
-                true => tolerances.iter().map(|&t| Choice { solver, tolerance: Some(t) }).collect(),
-                false => vec![Choice { solver, tolerance: None }],
+    /// Every solver of that kind of query, with every tolerance where it takes one.
+    pub fn every(kind: QueryKind, tolerances: &[f64]) -> Vec<Choice> {
+        let of = |asked: Query| -> Vec<Choice> {
+            match asked.certified() {
+                Some(_) => tolerances.iter().map(|&t| Choice { asked, tolerance: Some(t) }).collect(),
+                None => vec![Choice { asked, tolerance: None }],
             }
         };
-        Solver::ALL.into_iter().filter(|solver| solver.answers(motion)).flat_map(of).collect()
+        Query::every().filter(|query| query.kind() == kind).flat_map(of).collect()
     }
 
     /// The query, of bodies or cases with such a mean edge.
-    pub fn query(&self, motion: Motion, edge: f64) -> Query {
-        let tolerance = self.tolerance.map(|edges| edges * edge);
-        Query { solver: Some(self.solver), tolerance, ..Query::of(motion) }
+    pub fn query(&self, edge: f64) -> Query {
+        let mut query = self.asked;
+        if let Some(certified) = query.certified_mut() {
+            certified.tolerance = self.tolerance.map(|edges| edges * edge);
+        }
+        query
     }
 }
 
 impl std::fmt::Display for Choice {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        f.write_str(self.solver.name())?;
+        f.write_str(self.asked.solver().name())?;
         self.tolerance.map_or(Ok(()), |edges| write!(f, " at {edges:.0e}"))
     }
 }
@@ -116,9 +119,10 @@ impl Input {
     /// # Errors
     /// Those of [`ask`].
     pub fn row(&self, device: &Device, choice: Choice, stored: Stored, repeats: u32) -> Result<Row, Error> {
-        let query = choice.query(Motion::Continuous, self.edge);
+        let query = choice.query(self.edge);
         let answers = ask(device, &self.cases, &query, Options { filters: true, stored, repeats })?;
-        let mut judge = Judge::new(choice.solver, query.tolerance.unwrap_or(0.0), self.edge);
+        let tolerance = query.certified().and_then(|certified| certified.tolerance);
+        let mut judge = Judge::new(query.solver(), tolerance.unwrap_or(0.0), self.edge);
         for ((case, truth), met) in self.cases.iter().zip(&self.truths).zip(&answers.verdicts) {
             judge.note(case, *truth, *met);
         }
@@ -126,14 +130,14 @@ impl Input {
             input: self.name.clone(),
             reference: self.reference,
             tolerance_edges: choice.tolerance,
-            tolerance: query.tolerance,
+            tolerance,
             precision: if stored == Stored::F32 { "f32" } else { "f64" },
             escalated: answers.escalated.iter().sum(),
             ns: Some(answers.ns()),
             bytes: answers.bytes,
             ..Row::default()
         };
-        Ok(row.judged(choice.solver, &judge.judged()))
+        Ok(row.judged(query.solver(), &judge.judged()))
     }
 }
 

@@ -5,7 +5,7 @@ use crate::tables::{Frames, Printed, digits};
 use nearmiss::Detector;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
-use nearmiss::query::{Bv, Motion, Query};
+use nearmiss::query::{Bv, Query};
 use serde::Serialize;
 
 /// A frame of an animation.
@@ -43,8 +43,8 @@ pub struct RefitRow {
 /// # Errors
 /// Those of the device.
 pub fn refit(device: &Device, name: &str, frames: &Frames, bv: Bv) -> Result<Vec<RefitRow>, Error> {
-    let bodies = frames.bodies(Motion::Continuous)?;
-    let query = Query { bv: Some(bv), ..Query::of(Motion::Continuous) };
+    let bodies = frames.bodies(true)?;
+    let query = Query::continuous().with_bv(bv);
     let mut old = Detector::new(device.clone(), vec![bodies[0].clone()], query)?;
     let mut fresh = Detector::new(device.clone(), vec![bodies[0].clone()], query)?;
     let (mut rows, mut since, mut lost) = (Vec::new(), 0, 0.0);

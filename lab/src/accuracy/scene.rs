@@ -12,7 +12,7 @@ use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Positions, Topology};
 use nearmiss::pipeline::mean_side;
-use nearmiss::query::{Bv, Motion, Query, Solver};
+use nearmiss::query::{Bv, Certified, CertifiedPrecision, Continuous, Query, QueryKind, Solver, Tree};
 use rayon::prelude::*;
 
 /// A body whose contacts are known.
@@ -60,13 +60,13 @@ impl Scene {
             scene.pairs = match list {
                 Some(List::Triangles(pairs)) => pairs,
                 Some(List::Contacts(_)) => return Err(other_kind("one frame", "tri_a,tri_b")),
-                None => scene.asked(device, Query::of(Motion::Discrete))?.triangles(),
+                None => scene.asked(device, Query::discrete())?.triangles(),
             };
             return Ok(scene);
         }
         scene.edges = Topology::new(scene.body.faces(), scene.body.vertex_count()).edges;
-        let finest = Choice { solver: Solver::CertifiedF64, tolerance: Some(FINEST) };
-        let found = scene.asked(device, finest.query(Motion::Continuous, edge))?;
+        let finest = Certified { tolerance: Some(FINEST * edge), ..Certified::by(CertifiedPrecision::F64) };
+        let found = scene.asked(device, Continuous::by(finest).into())?;
         let bounds = |c: &Contact| Truth::Meet { not_before: c.toi, by: c.toi_hi };
         let of = |c: &Contact| (c.kind, c.a, c.b);
         scene.truths = match list {
@@ -102,8 +102,9 @@ impl Scene {
     /// # Errors
     /// Those of the device.
     pub fn row(&self, device: &Device, choice: Choice, bv: Option<Bv>, repeats: u32) -> Result<Row, Error> {
-        let motion = if self.body.is_moving() { Motion::Continuous } else { Motion::Discrete };
-        let query = Query { bv, ..choice.query(motion, self.edge) };
+        let query = choice.query(self.edge);
+        let query = query.with_tree(Tree { bv, ..query.tree() });
+        let tolerance = query.certified().and_then(|certified| certified.tolerance);
         let held = device.bytes().0;
         let mut detector = Detector::new(device.clone(), vec![self.body.clone()], query)?;
         let mut contacts = detector.detect()?;
@@ -114,19 +115,18 @@ impl Scene {
         }
         times.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (total, narrow) = times[times.len() / 2];
-        let judged = match motion {
-            Motion::Discrete => self.judge_pairs(&contacts.triangles()),
-            _ => {
-                let found = contacts.contacts();
-                let exhausted = self.exhausted(device, &query, found)?;
-                self.judge(choice.solver, query.tolerance.unwrap_or(0.0), found, &exhausted)
-            }
+        let judged = if query.kind() == QueryKind::Discrete {
+            self.judge_pairs(&contacts.triangles())
+        } else {
+            let found = contacts.contacts();
+            let exhausted = self.exhausted(device, &query, found)?;
+            self.judge(query.solver(), tolerance.unwrap_or(0.0), found, &exhausted)
         };
         let row = Row {
             input: self.name.clone(),
             reference: self.reference,
             tolerance_edges: choice.tolerance,
-            tolerance: query.tolerance,
+            tolerance,
             precision: if self.body.positions_t0().is_f64() { "f64" } else { "f32" },
             bv: Some(query.bv().name()),
             escalated: contacts.escalated_vf_ee.iter().sum(),
@@ -135,7 +135,7 @@ impl Scene {
             bytes: device.bytes().0 - held,
             ..Row::default()
         };
-        Ok(Row { cases: contacts.candidates, ..row.judged(choice.solver, &judged) })
+        Ok(Row { cases: contacts.candidates, ..row.judged(query.solver(), &judged) })
     }
 
     /// The features of a pair.
@@ -222,8 +222,8 @@ mod tests {
         let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
         let body = soup(120, 4, true).expect("a scene");
         let scene = Scene::new(&device, "soup", body, None).expect("known");
-        let choice = Choice { solver: Solver::Certified, tolerance: Some(1e-6) };
-        let found = scene.asked(&device, choice.query(Motion::Continuous, scene.edge)).expect("an answer");
+        let choice = Choice { asked: Query::continuous(), tolerance: Some(1e-6) };
+        let found = scene.asked(&device, choice.query(scene.edge)).expect("an answer");
         let tolerance = 1e-6 * scene.edge;
         let of = |found: &[Contact]| scene.judge(Solver::Certified, tolerance, found, &[]).counts;
         let right = of(found.contacts());

@@ -7,7 +7,7 @@ use crate::pairs::built::built;
 use crate::pairs::degenerate::{Degeneracy, MOST, degenerate};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
-use nearmiss::query::{Motion, Query};
+use nearmiss::query::{Certified, QueryKind};
 
 /// How much to ask.
 #[derive(Clone, Copy, Debug)]
@@ -22,7 +22,7 @@ pub struct Extent {
 
 /// Every continuous solver at the default tolerance.
 fn choices() -> Vec<Choice> {
-    Choice::every(Motion::Continuous, &[Query::TOLERANCE])
+    Choice::every(QueryKind::Continuous, &[Certified::TOLERANCE])
 }
 
 /// The built contacts of small integers at so many edges from the origin: in f64, which holds them exactly; and cast to

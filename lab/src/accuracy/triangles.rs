@@ -7,7 +7,7 @@ use crate::oracle::{Triangle, triangles_meet};
 use crate::pairs::{Stored, ask_triangles};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
-use nearmiss::query::Motion;
+use nearmiss::query::QueryKind;
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 use rayon::prelude::*;
@@ -32,10 +32,10 @@ pub fn triangles(device: &Device, n: usize, seed: u64) -> Result<Vec<Row>, Error
     for side in SIDES {
         let pairs = on_grid(&mut r, side, n);
         let truth: Vec<bool> = pairs.par_iter().map(|[p, q]| triangles_meet(p, q)).collect();
-        for choice in Choice::every(Motion::Discrete, &[]) {
+        for choice in Choice::every(QueryKind::Discrete, &[]) {
             // The first time on a GPU loads the kernels.
-            ask_triangles(device, &pairs[..1.min(n)], &choice.query(Motion::Discrete, 0.0), Stored::F64)?;
-            let answers = ask_triangles(device, &pairs, &choice.query(Motion::Discrete, 0.0), Stored::F64)?;
+            ask_triangles(device, &pairs[..1.min(n)], &choice.asked, Stored::F64)?;
+            let answers = ask_triangles(device, &pairs, &choice.asked, Stored::F64)?;
             let row = Row {
                 input: format!("triangles on a grid of {side} a side"),
                 reference: "exact",
@@ -45,7 +45,7 @@ pub fn triangles(device: &Device, n: usize, seed: u64) -> Result<Vec<Row>, Error
                 ..Row::default()
             };
             let judged = Judged { counts: count(&answers.meet, &truth), ..Judged::default() };
-            rows.push(row.judged(choice.solver, &judged));
+            rows.push(row.judged(choice.asked.solver(), &judged));
         }
     }
     Ok(rows)

@@ -7,35 +7,35 @@ use nearmiss::contacts::Status;
 use nearmiss::device::{Buffer, Device};
 use nearmiss::error::Error;
 use nearmiss::pipeline::Layout;
-use nearmiss::pipeline::narrow::{Capacities, Continuous, NarrowContext, Step};
+use nearmiss::pipeline::narrow::{Capacities, ContinuousNarrow, NarrowContext};
 use nearmiss::pipeline::precision::Precision;
-use nearmiss::query::{Motion, Query};
+use nearmiss::query::{Certified, Continuous, ContinuousSolver, Query};
 use nearmiss_kernels::abi::{Hit, Positions, Span, counter};
 
 /// Asks every case whether its features meet, and when first: by the query's solver, tolerance and budget, with the
-/// kernels of a frame. Without a tolerance, [`Query::TOLERANCE`] of the cases' mean edge. Any number of cases; a million
+/// kernels of a frame. Without a tolerance, [`Certified::TOLERANCE`] of the cases' mean edge. Any number of cases; a million
 /// at a time, so that half a gigabyte of device memory is enough.
 ///
 /// # Errors
-/// [`Error::Choice`] for a query that is not of [`Motion::Continuous`], and for coordinates that are not finite, too
+/// [`Error::Choice`] for a query that is not of [`Query::Continuous`], and for coordinates that are not finite, too
 /// large, or not exact in the precision that they are to be stored in; those of the device.
 pub fn ask(device: &Device, cases: &[Case], query: &Query, how: Options) -> Result<Answers, Error> {
     query.check()?;
-    if query.motion != Motion::Continuous {
+    let Query::Continuous(Continuous { mut solver, .. }) = *query else {
         return Err(Error::Choice {
-            what: format!("a {:?} query of single features", query.motion),
+            what: format!("a {:?} query of single features", query.kind()),
             advice: "ask continuous queries; of triangles that stand still, ask_triangles".into(),
         });
-    }
+    };
     check(cases, how.stored)?;
-    let default = || Query::TOLERANCE * mean_edge(cases);
-    let tolerance = query.solver().is_certified().then(|| query.tolerance.unwrap_or_else(default));
-    let query = Query { tolerance, ..*query };
+    if let ContinuousSolver::Certified(certified) = &mut solver {
+        certified.tolerance.get_or_insert_with(|| Certified::TOLERANCE * mean_edge(cases));
+    }
     let mut all = Answers::default();
     for cases in cases.chunks(AT_ONCE) {
         let some = match how.stored {
-            Stored::F64 => some::<f64>(device, cases, query, how)?,
-            Stored::F32 => some::<f32>(device, cases, query, how)?,
+            Stored::F64 => some::<f64>(device, cases, solver, how)?,
+            Stored::F32 => some::<f32>(device, cases, solver, how)?,
         };
         all.verdicts.extend(some.verdicts);
         for kind in 0..2 {
@@ -50,22 +50,29 @@ pub fn ask(device: &Device, cases: &[Case], query: &Query, how: Options) -> Resu
 }
 
 /// Asks as many as are asked at once.
-fn some<R: Precision>(device: &Device, cases: &[Case], query: Query, how: Options) -> Result<Answers, Error> {
+fn some<R: Precision>(
+    device: &Device,
+    cases: &[Case],
+    solver: ContinuousSolver,
+    how: Options,
+) -> Result<Answers, Error> {
     let before = device.bytes().0;
     let (layout, [vf, ee]) = topology(cases);
     let all = [vf.len(), ee.len()];
     // A case is listed once at most, so no list outgrows this.
-    let candidates = if how.filters || query.is_apart() { all } else { [0, 0] };
+    let candidates =
+        if how.filters || solver.certified().is_some_and(Certified::is_apart) { all } else { [0, 0] };
     let capacities = Capacities { candidates, survivors: all, hits: all, left: all };
-    let mut features = Continuous::new(device, &layout, query, capacities)?;
-    let first = if how.filters { Step::Features } else { Step::Cull };
+    let mut features = ContinuousNarrow::new(device, &layout, solver, capacities)?;
     let mut counts = vec![0; counter::COUNT as usize];
-    for (at, count) in features.give(first, [&vf, &ee])? {
+    let given = [&vf[..], &ee];
+    let put = if how.filters { features.put_candidates(given)? } else { features.put_survivors(given)? };
+    for (at, count) in put {
         counts[at as usize] = count;
     }
     let mut run = Run::<R> {
         device,
-        query,
+        solver,
         vertices: vertices(device, cases)?,
         faces: device.upload(&layout.faces)?,
         layout,
@@ -87,7 +94,7 @@ fn some<R: Precision>(device: &Device, cases: &[Case], query: Query, how: Option
 /// The memory of a run.
 struct Run<'a, R: Precision> {
     device: &'a Device,
-    query: Query,
+    solver: ContinuousSolver,
     vertices: Buffer<nearmiss_kernels::abi::VertexMotion<R>>,
     faces: Buffer<[u32; 3]>,
     layout: Layout,
@@ -96,7 +103,7 @@ struct Run<'a, R: Precision> {
     counts: Vec<u64>,
     /// Whether the filters are asked first.
     filters: bool,
-    features: Continuous,
+    features: ContinuousNarrow,
 }
 
 impl<R: Precision> Run<'_, R> {
@@ -105,7 +112,6 @@ impl<R: Precision> Run<'_, R> {
         self.counters.write(&self.counts)?;
         let given = NarrowContext {
             device: self.device,
-            query: self.query,
             frames: Positions { still: Span::EMPTY, moving: self.vertices.span() },
             faces: self.faces.span(),
             pairs: Span::EMPTY,
@@ -114,10 +120,10 @@ impl<R: Precision> Run<'_, R> {
         };
         let start = self.device.event()?;
         if self.filters {
-            self.features.run(Step::Cull, &given)?;
+            self.features.cull(&given)?;
         }
         let filtered = self.device.event()?;
-        self.features.run(Step::Solve, &given)?;
+        self.features.solve(&given)?;
         let end = self.device.event()?;
         Ok([start.to(&filtered)?, filtered.to(&end)?])
     }
@@ -125,7 +131,7 @@ impl<R: Precision> Run<'_, R> {
     /// The verdicts, where the cases are, and the counts.
     fn answers(&self, cases: usize) -> Result<Answers, Error> {
         let counters = self.counters.read(counter::COUNT as usize)?;
-        let certified = self.query.solver().is_certified();
+        let certified = self.solver.certified().is_some();
         let mut verdicts = vec![None; cases];
         let met = |hit: &Hit| Outcome {
             status: Status::of(certified, &hit.verdict),

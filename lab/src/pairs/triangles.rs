@@ -6,11 +6,10 @@ use crate::oracle::Triangle;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Mesh, Positions};
-use nearmiss::pipeline::Layout;
 use nearmiss::pipeline::list::List;
-use nearmiss::pipeline::narrow::{Narrow, NarrowContext, Step};
+use nearmiss::pipeline::narrow::{DiscreteNarrow, NarrowContext};
 use nearmiss::pipeline::precision::Precision;
-use nearmiss::query::{Motion, Query};
+use nearmiss::query::{Discrete, Query, TriangleTest};
 use nearmiss_kernels::abi::{self, Pair, Point, Span, counter};
 
 /// The answers to a number of triangle pairs.
@@ -29,7 +28,7 @@ pub struct TriangleAnswers {
 /// Asks of every pair of triangles whether they share a point: by the query's solver, with the kernels of a frame.
 ///
 /// # Errors
-/// [`Error::Choice`] for a query that is not of [`Motion::Discrete`], and for coordinates that are not exact in f32 where
+/// [`Error::Choice`] for a query that is not of [`Query::Discrete`], and for coordinates that are not exact in f32 where
 /// they are to be stored so; [`Error::Input`] for such as no mesh may have; those of the device.
 pub fn ask_triangles(
     device: &Device,
@@ -38,12 +37,12 @@ pub fn ask_triangles(
     stored: Stored,
 ) -> Result<TriangleAnswers, Error> {
     query.check()?;
-    if query.motion != Motion::Discrete {
+    let Query::Discrete(Discrete { test, .. }) = *query else {
         return Err(Error::Choice {
-            what: format!("a {:?} query of triangles that stand still", query.motion),
+            what: format!("a {:?} query of triangles that stand still", query.kind()),
             advice: "ask a discrete query, or features in motion".into(),
         });
-    }
+    };
     let mut all = TriangleAnswers::default();
     for pairs in pairs.chunks(AT_ONCE) {
         let points: Vec<[f64; 3]> = pairs.iter().flatten().flatten().copied().collect();
@@ -62,8 +61,8 @@ pub fn ask_triangles(
         let faces = (0..2 * pairs.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
         let mesh = Mesh::new("triangle pairs", positions, faces)?;
         let some = match stored {
-            Stored::F64 => some::<f64>(device, &mesh, *query)?,
-            Stored::F32 => some::<f32>(device, &mesh, *query)?,
+            Stored::F64 => some::<f64>(device, &mesh, test)?,
+            Stored::F32 => some::<f32>(device, &mesh, test)?,
         };
         all.meet.extend(some.meet);
         all.listed += some.listed;
@@ -74,7 +73,7 @@ pub fn ask_triangles(
 }
 
 /// Asks as many as are asked at once: triangles 2 i and 2 i + 1 are pair i.
-fn some<R: Precision>(device: &Device, mesh: &Mesh, query: Query) -> Result<TriangleAnswers, Error> {
+fn some<R: Precision>(device: &Device, mesh: &Mesh, test: TriangleTest) -> Result<TriangleAnswers, Error> {
     let count = mesh.faces().len() / 2;
     let points: Vec<Point<R>> = R::points(mesh.positions()).map(Point::from).collect();
     let (points, faces) = (device.upload(&points)?, device.upload(mesh.faces())?);
@@ -83,14 +82,13 @@ fn some<R: Precision>(device: &Device, mesh: &Mesh, query: Query) -> Result<Tria
     let mut counts = vec![0; counter::COUNT as usize];
     let (at, number) = list.put(&pairs)?;
     counts[at as usize] = number;
-    let mut narrow = Narrow::new::<R>(device, &Layout::default(), query, (count, count))?;
+    let mut narrow = DiscreteNarrow::new::<R>(device, test, count)?;
     let mut counters = device.buffer(counter::COUNT as usize)?;
     // Until no list was too short.
     let (counters, ms) = loop {
         counters.write(&counts)?;
         let given = NarrowContext {
             device,
-            query,
             frames: abi::Positions { still: points.span(), moving: Span::EMPTY },
             faces: faces.span(),
             pairs: list.span(),
@@ -98,22 +96,19 @@ fn some<R: Precision>(device: &Device, mesh: &Mesh, query: Query) -> Result<Tria
             counters: counters.span(),
         };
         let start = device.event()?;
-        narrow.run(Step::Decide, &given)?;
+        narrow.decide(&given)?;
         let ms = start.to(&device.event()?)?;
         let counted = counters.read(counter::COUNT as usize)?;
         let mut grew = false;
-        for list in narrow.lists(Step::Decide) {
+        for list in narrow.all_lists() {
             grew |= list.grow(device, &counted)?;
         }
         if !grew {
             break (counted, ms);
         }
     };
-    let Narrow::Discrete { contacts, .. } = &narrow else {
-        return Err(Error::Bug { what: "triangles that stand still asked as features".into() });
-    };
     let mut meet = vec![false; count];
-    contacts.read(&counters)?.iter().for_each(|pair| meet[pair.a as usize / 2] = true);
+    narrow.contacts.read(&counters)?.iter().for_each(|pair| meet[pair.a as usize / 2] = true);
     let [listed, undecided] = [counter::CONTACTS, counter::UNDECIDED].map(|at| counters[at as usize]);
     Ok(TriangleAnswers { meet, listed, undecided, ms })
 }

@@ -7,11 +7,11 @@ use crate::pairs::{Options, Outcome, Stored, ask};
 use nearmiss::contacts::Status;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
-use nearmiss::query::{Motion, Query, Solver};
+use nearmiss::query::{Certified, CertifiedPrecision, Continuous};
 use nearmiss_kernels::prim::inclusion::Verdict;
 
 /// The solvers that must get all of them right.
-pub(super) const SOLVERS: [Solver; 3] = [Solver::Certified, Solver::CertifiedF32, Solver::CertifiedF64];
+pub(super) const SOLVERS: [CertifiedPrecision; 3] = CertifiedPrecision::ALL;
 
 /// How they are asked: with the filters of a frame and without, from positions in f64 and, where f32 holds them, in f32.
 const ALL_OPTIONS: [Options; 3] = [
@@ -40,7 +40,7 @@ fn is_public(q: &Question) -> bool {
 pub(super) fn answers(
     device: &Device,
     questions: &[Question],
-    solver: Solver,
+    solver: CertifiedPrecision,
     how: Options,
 ) -> Result<Vec<Option<Verdict>>, Error> {
     let mut all = vec![None; questions.len()];
@@ -51,12 +51,8 @@ pub(super) fn answers(
         let alike = |q: &Question| (q.tolerance, q.separation) == (tolerance, separation);
         let (now, later): (Vec<_>, Vec<_>) = left.into_iter().partition(|i| alike(&questions[*i]));
         let cases: Vec<Case> = now.iter().map(|i| questions[*i].case).collect();
-        let query = Query {
-            solver: Some(solver),
-            tolerance: Some(tolerance),
-            separation: Some(separation),
-            ..Query::of(Motion::Continuous)
-        };
+        let certified = Certified { tolerance: Some(tolerance), separation, ..Certified::by(solver) };
+        let query = Continuous::by(certified).into();
         for (i, met) in now.into_iter().zip(ask(device, &cases, &query, how)?.verdicts) {
             all[i] = Some(verdict(met, 1.0));
         }
@@ -76,7 +72,7 @@ pub fn ask_questions(device: &Device, questions: &[Question]) -> Result<Report, 
         for (q, said) in questions.iter().zip(&all) {
             let Some(said) = said else { continue };
             report.unresolved += u64::from(!said.is_contact() && !said.is_separated());
-            let fault = q.judge(said, solver == Solver::CertifiedF32);
+            let fault = q.judge(said, solver == CertifiedPrecision::F32);
             report.note(fault, || {
                 format!("{} {}: {said:?}, not {:?}, by {solver:?}, {how:?}", q.id, q.what, q.expect)
             });
@@ -163,7 +159,7 @@ pub fn ask_turned_questions(device: &Device, questions: &[Question]) -> Result<R
     let mut report = Report::new("questions turned");
     for solver in SOLVERS {
         let plain = answers(device, questions, solver, Options::default())?;
-        let narrow = solver == Solver::CertifiedF32;
+        let narrow = solver == CertifiedPrecision::F32;
         for turn in &TURNS {
             let turned: Vec<Option<Question>> = questions.iter().map(turn.change).collect();
             let asked: Vec<Question> = turned.iter().flatten().copied().collect();

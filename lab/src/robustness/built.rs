@@ -10,7 +10,7 @@ use crate::pairs::{Options, Outcome, Stored, ask};
 use nearmiss::contacts::Status;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
-use nearmiss::query::{Motion, Query};
+use nearmiss::query::{Certified, Continuous};
 
 /// Sizes of the integers: small; all exact in f32; all exact in f64.
 const REACHES: [i64; 3] = [8, REACH_F32, REACH_F64 / 32];
@@ -90,8 +90,8 @@ fn note(
 ) -> Result<(), Error> {
     let cases: Vec<Case> = motions.iter().map(|m| m.case).collect();
     for solver in SOLVERS {
-        let query =
-            Query { solver: Some(solver), tolerance: Some(tolerance), ..Query::of(Motion::Continuous) };
+        let certified = Certified { tolerance: Some(tolerance), ..Certified::by(solver) };
+        let query = Continuous::by(certified).into();
         let answers = ask(device, &cases, &query, how)?;
         for (motion, met) in motions.iter().zip(answers.verdicts) {
             let met = heard(met);

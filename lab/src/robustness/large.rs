@@ -7,7 +7,7 @@ use nearmiss::contacts::Status;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Motion, Query};
+use nearmiss::query::{Certified, Continuous, Earliest, Query};
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::tri_tri::meets_exactly;
 
@@ -63,7 +63,7 @@ fn against_one(device: &Device, n: usize, report: &mut Report) -> Result<(), Err
         .map(|(i, _)| [0, i])
         .collect();
     let one = Body::still(Mesh::new("one", Positions::F32(one.to_vec()), vec![[0, 1, 2]])?);
-    let found = Detector::new(device.clone(), vec![one, soup], Query::of(Motion::Discrete))?.detect()?;
+    let found = Detector::new(device.clone(), vec![one, soup], Query::discrete())?.detect()?;
     report.asked += 1;
     report.missed += truth.len().saturating_sub(found.len()) as u64;
     if found.pairs() != truth || truth.is_empty() {
@@ -74,8 +74,7 @@ fn against_one(device: &Device, n: usize, report: &mut Report) -> Result<(), Err
 
 /// All pairs of equal triangles, in a tree that is not deep.
 fn equal(device: &Device, n: usize, report: &mut Report) -> Result<(), Error> {
-    let mut detector =
-        Detector::new(device.clone(), vec![scene::identical(n)?], Query::of(Motion::Discrete))?;
+    let mut detector = Detector::new(device.clone(), vec![scene::identical(n)?], Query::discrete())?;
     let found = detector.detect()?;
     detector.check_trees()?;
     report.asked += 1;
@@ -103,10 +102,10 @@ fn ties(device: &Device, n: usize, report: &mut Report) -> Result<(), Error> {
     let mesh = |points: &[[f32; 3]]| Mesh::new("ties", Positions::F32(points.to_vec()), faces.clone());
     let fallen: Vec<[f32; 3]> = tips.iter().map(|p| [p[0], p[1], p[2] - 2.0]).collect();
     let bodies = vec![Body::still(mesh(&floor)?), Body::moving(mesh(&tips)?, mesh(&fallen)?)?];
-    let asked = |motion| Query { tolerance: Some(1e-5), ..Query::of(motion) };
-    let mut detector = Detector::new(device.clone(), bodies.clone(), asked(Motion::Continuous))?;
+    let certified = Certified { tolerance: Some(1e-5), ..Certified::default() };
+    let mut detector = Detector::new(device.clone(), bodies.clone(), Continuous::by(certified))?;
     let (found, again) = (detector.detect()?, detector.detect()?);
-    let earliest = Detector::new(device.clone(), bodies, asked(Motion::Earliest))?.detect()?.earliest_toi();
+    let earliest = Detector::new(device.clone(), bodies, Earliest::by(certified))?.detect()?.earliest_toi();
     report.asked += 2;
     let first = found.contacts().first().map(|c| c.toi);
     let alike = |c: &nearmiss::Contact| Some(c.toi) == first && c.status == Status::Certified && c.toi <= 0.5;
@@ -122,8 +121,7 @@ fn ties(device: &Device, n: usize, report: &mut Report) -> Result<(), Error> {
 fn beyond_32_bits(device: &Device, report: &mut Report) -> Result<(), Error> {
     const N: usize = 92_683;
     let needed = (N * (N - 1) / 2 * size_of::<nearmiss_kernels::abi::Pair>()) as u64;
-    let mut detector =
-        Detector::new(device.clone(), vec![scene::identical(N)?], Query::of(Motion::Discrete))?;
+    let mut detector = Detector::new(device.clone(), vec![scene::identical(N)?], Query::discrete())?;
     report.asked += 1;
     match detector.detect() {
         Err(Error::OutOfMemory { asked, .. }) if asked == needed => {}

@@ -7,9 +7,9 @@ use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::pipeline::enclose::Enclosed;
-use nearmiss::pipeline::volumes::Kernels;
-use nearmiss::query::{Bv, Motion, Query, Refit};
-use nearmiss_kernels::bv::{Aabb, Axes, Contain, Linear, Obb};
+use nearmiss::query::{Bv, Certified, Continuous, Query, Refit, WithVolume};
+use nearmiss_kernels::bv::Axes;
+use nearmiss_kernels::entry::Kernels;
 use nearmiss_kernels::math::Vec3;
 
 /// Triangles of the mesh: few, for each corner is judged in exact arithmetic in each node above it in each frame.
@@ -51,16 +51,32 @@ fn body(k: u32) -> Result<Body, Error> {
 }
 
 /// Counts corners outside of nodes over all frames.
-fn holds<V: Kernels + Contain>(
+struct Holds<'a> {
+    device: &'a Device,
+    frames: u32,
+    refit: Refit,
+    report: &'a mut Report,
+    name: &'a str,
+}
+
+impl WithVolume for Holds<'_> {
+    type Out = Result<(), Error>;
+
+    fn with<V: Kernels>(self, axes: Axes) -> Self::Out {
+        let way = (self.refit, axes, 0.0);
+        holds::<V>(self.device, self.frames, way, (self.report, self.name))
+    }
+}
+
+fn holds<V: Kernels>(
     device: &Device,
     frames: u32,
-    (refit, axes): (Refit, Axes),
-    report: &mut Report,
-    name: &str,
+    way: (Refit, Axes, f32),
+    (report, name): (&mut Report, &str),
 ) -> Result<(), Error> {
     let at = |k| ribbon(k).into_iter().map(Vec3).collect::<Vec<_>>();
     let (mut t0, mut t1) = (at(0), at(1));
-    let mut tree = Enclosed::<f32, V>::new(device, &faces(), [&t0, &t1], (refit, axes, 0.0))?;
+    let mut tree = Enclosed::<f32, V>::new(device, &faces(), [&t0, &t1], way)?;
     for k in 1..=frames {
         t0 = t1;
         t1 = at(k + 1);
@@ -85,15 +101,14 @@ fn holds<V: Kernels + Contain>(
 pub fn ask_refits(device: &Device, frames: u32) -> Result<Report, Error> {
     let mut report = Report::new("refits");
     let all = &mut report;
-    holds::<Aabb>(device, frames, (WAYS[0], Axes::PCA), all, "aabb")?;
-    holds::<Linear>(device, frames, (WAYS[1], Axes::PCA), all, "linear")?;
-    holds::<Obb>(device, frames, (WAYS[2], Axes::PCA), all, "obb")?;
-    holds::<Obb>(device, frames, (WAYS[3], Axes::CHILD), all, "obb-child")?;
-    for (bv, refit) in Bv::ALL.into_iter().zip(WAYS) {
-        for motion in [Motion::Discrete, Motion::Continuous] {
-            // The default tolerance hangs on where a detector begins.
-            let tolerance = (motion == Motion::Continuous).then_some(1e-5);
-            let query = Query { bv: Some(bv), refit: Some(refit), tolerance, ..Query::of(motion) };
+    for (bv, refit) in Bv::ALL.into_iter().zip(WAYS.into_iter().cycle()) {
+        bv.with(Holds { device, frames, refit, report: all, name: bv.name() })?;
+    }
+    for (bv, refit) in Bv::ALL.into_iter().zip(WAYS.into_iter().cycle()) {
+        // The default tolerance hangs on where a detector begins.
+        let continuous = Continuous::by(Certified { tolerance: Some(1e-5), ..Certified::default() });
+        for query in [Query::discrete(), continuous.into()] {
+            let query = query.with_bv(bv).with_refit(refit);
             let mut detector = Detector::new(device.clone(), vec![body(0)?], query)?;
             for k in (APART..=frames).step_by(APART as usize) {
                 // The frames in between are refitted by `holds`; here the tree jumps.
@@ -106,8 +121,9 @@ pub fn ask_refits(device: &Device, frames: u32) -> Result<Report, Error> {
                     report.fail(|| {
                         let (was, is) = (found.len(), fresh.len());
                         format!(
-                            "X57 {}, {motion:?}, frame {k}: {was} contacts, {is} by a new tree",
-                            bv.name()
+                            "X57 {}, {}, frame {k}: {was} contacts, {is} by a new tree",
+                            bv.name(),
+                            query.kind()
                         )
                     });
                 }
@@ -121,15 +137,16 @@ pub fn ask_refits(device: &Device, frames: u32) -> Result<Report, Error> {
 mod tests {
     use super::*;
     use nearmiss::device::emulator::{Emulator, Mode};
+    use nearmiss_kernels::bv::Obb;
 
     /// The ribbon meets itself, and a tree of one frame does not hold another.
     #[test]
     fn the_ribbon_asks_something() {
         let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
-        for motion in [Motion::Discrete, Motion::Continuous] {
-            let found = Detector::new(device.clone(), vec![body(500).expect("a body")], Query::of(motion));
+        for query in [Query::discrete(), Query::continuous()] {
+            let found = Detector::new(device.clone(), vec![body(500).expect("a body")], query);
             let found = found.expect("a detector").detect().expect("an answer");
-            assert!(found.len() > 3, "{motion:?}: {}", found.len());
+            assert!(found.len() > 3, "{query:?}: {}", found.len());
         }
         let at = |k| ribbon(k).into_iter().map(Vec3).collect::<Vec<_>>();
         let way = (Refit::Levels, Axes::PCA, 0.0);

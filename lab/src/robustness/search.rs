@@ -7,7 +7,7 @@ use nearmiss::contacts::{Contacts, Status, triangle_contacts};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
-use nearmiss::query::{Bv, Motion, Query};
+use nearmiss::query::{Bv, Query, QueryKind};
 
 fn found(device: &Device, bodies: Vec<Body>, query: Query) -> Result<Contacts, Error> {
     let mut detector = Detector::new(device.clone(), bodies, query)?;
@@ -32,7 +32,7 @@ pub fn ask_scenes(device: &Device, scenes: &[Scene]) -> Result<Report, Error> {
             }
         };
         for bv in Bv::ALL {
-            let found = found(device, bodies.clone(), Query { bv: Some(bv), ..scene.query() })?;
+            let found = found(device, bodies.clone(), scene.query().with_bv(bv))?;
             report.asked += 1;
             report.unresolved += found.unresolved;
             if let Some(wrong) = scene.judge(&found) {
@@ -41,8 +41,8 @@ pub fn ask_scenes(device: &Device, scenes: &[Scene]) -> Result<Report, Error> {
                 report.fail(|| format!("{} {}, {}: {wrong}", scene.id, scene.what, bv.name()));
             }
         }
-        if scene.query().motion == Motion::Discrete {
-            let found = found(device, bodies.clone(), Query::of(Motion::Continuous))?;
+        if scene.query().kind() == QueryKind::Discrete {
+            let found = found(device, bodies.clone(), Query::continuous())?;
             report.asked += 1;
             let pairs = if scene.adjacent { None } else { Some(scene.pairs()) };
             if let Some(wrong) = at_once(&bodies, &found, pairs.as_deref()) {
@@ -76,7 +76,7 @@ fn at_once(bodies: &[Body], found: &Contacts, pairs: Option<&[[u32; 2]]>) -> Opt
 pub fn ask_turned_scenes(device: &Device, scenes: &[Scene]) -> Result<Report, Error> {
     const CORNERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
     let mut report = Report::new("scenes turned");
-    for scene in scenes.iter().filter(|s| s.query().motion == Motion::Discrete) {
+    for scene in scenes.iter().filter(|s| s.query().kind() == QueryKind::Discrete) {
         let truth = scene.pairs();
         // Six orders for one body; for two, all thirty-six of the one and the other.
         let second = scene.bodies.len() == 2;
@@ -102,7 +102,7 @@ pub fn ask_turned_scenes(device: &Device, scenes: &[Scene]) -> Result<Report, Er
             }
             let bodies = bodies.iter().map(Numbers::body).collect::<Result<_, _>>()?;
             let bv = Bv::ALL[(turn + turn / 6) % 4];
-            let all = found(device, bodies, Query { bv: Some(bv), ..scene.query() })?;
+            let all = found(device, bodies, scene.query().with_bv(bv))?;
             let back = |[a, b]: [u32; 2]| {
                 let [a, b] = if exchanged { [b, a] } else { [a, b] };
                 let (a, b) = (counts[0] - 1 - a, counts[counts.len() - 1] - 1 - b);
@@ -137,8 +137,8 @@ pub fn ask_refused(device: &Device, all: &[Refused]) -> Result<Report, Error> {
         report.asked += 1;
         match row.body.body() {
             Ok(body) if row.words.is_empty() => {
-                for motion in [Motion::Discrete, Motion::Continuous] {
-                    let pairs = found(device, vec![body.clone()], Query::of(motion))?;
+                for query in [Query::discrete(), Query::continuous()] {
+                    let pairs = found(device, vec![body.clone()], query)?;
                     if !pairs.is_empty() {
                         report.fail(|| {
                             format!("{} {}: {} contacts of one triangle", row.id, row.what, pairs.len())

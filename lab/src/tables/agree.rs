@@ -14,7 +14,7 @@ pub fn agree(scene: &str, cells: &[Cell]) -> Result<Vec<usize>, Error> {
     let mut differing = Vec::new();
     for cell in cells {
         // The cell itself is among them.
-        let first = cells.iter().find(|other| other.way.motion == cell.way.motion).unwrap_or(cell);
+        let first = cells.iter().find(|other| other.way.moves == cell.way.moves).unwrap_or(cell);
         let differs = |at: &usize| first.hashes.get(*at) != cell.hashes.get(*at);
         let frames: Vec<usize> = (0..first.hashes.len().max(cell.hashes.len())).filter(differs).collect();
         if let (Solver::Exact, Some(frame)) = (cell.solver, frames.first()) {
@@ -35,12 +35,12 @@ mod tests {
     use super::super::way::Way;
     use super::*;
     use nearmiss::pipeline::Stages;
-    use nearmiss::query::{Bv, Motion};
+    use nearmiss::query::Bv;
 
-    fn cell(motion: Motion, front: bool, hashes: &[u64]) -> Cell {
+    fn cell(moves: bool, front: bool, hashes: &[u64]) -> Cell {
         Cell {
-            way: Way { motion, bv: Bv::Aabb, front },
-            solver: Solver::default_for(motion),
+            way: Way { moves, bv: Bv::Aabb, front },
+            solver: if moves { Solver::Certified } else { Solver::Exact },
             mean: Stages::default(),
             contacts: 0,
             node_tests: 0,
@@ -53,13 +53,13 @@ mod tests {
 
     #[test]
     fn equal_answers_agree() {
-        let cells = [cell(Motion::Discrete, false, &[1, 2]), cell(Motion::Continuous, false, &[3])];
+        let cells = [cell(false, false, &[1, 2]), cell(true, false, &[3])];
         assert_eq!(agree("s", &cells).expect("agreement"), [0, 0]);
     }
 
     #[test]
     fn a_wrong_exact_answer_is_named() {
-        let cells = [cell(Motion::Discrete, false, &[1, 2, 3]), cell(Motion::Discrete, true, &[1, 9, 3])];
+        let cells = [cell(false, false, &[1, 2, 3]), cell(false, true, &[1, 9, 3])];
         let error = agree("flamenco", &cells).expect_err("a planted fault").to_string();
         for part in ["flamenco", "discrete AABB, front", "frame 1", "than discrete AABB,"] {
             assert!(error.contains(part), "{part}: {error}");
@@ -68,13 +68,13 @@ mod tests {
 
     #[test]
     fn a_missing_frame_is_named() {
-        let cells = [cell(Motion::Discrete, false, &[1, 2]), cell(Motion::Discrete, true, &[1])];
+        let cells = [cell(false, false, &[1, 2]), cell(false, true, &[1])];
         assert!(agree("s", &cells).expect_err("a planted fault").to_string().contains("frame 1"));
     }
 
     #[test]
     fn floats_that_differ_are_counted() {
-        let cells = [cell(Motion::Continuous, false, &[1, 2, 3]), cell(Motion::Continuous, true, &[1, 8, 9])];
+        let cells = [cell(true, false, &[1, 2, 3]), cell(true, true, &[1, 8, 9])];
         assert_eq!(agree("s", &cells).expect("a count"), [0, 2]);
     }
 }

@@ -5,7 +5,7 @@ use crate::scene::{Bodies, Move};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::pipeline::Stages;
-use nearmiss::query::{Motion, Query};
+use nearmiss::query::{Query, QueryKind};
 use nearmiss::scene::{BodyId, BodyKind, Input, Scene};
 use nearmiss::{Body, Detector};
 use serde::Serialize;
@@ -18,7 +18,7 @@ pub struct BodiesRow {
     /// The machine.
     pub device: String,
     /// What was asked.
-    pub motion: Motion,
+    pub motion: QueryKind,
     /// Bodies, and the triangles of them all.
     pub bodies: usize,
     /// Triangles.
@@ -54,10 +54,9 @@ pub fn bodies(
     device: &Device,
     name: &str,
     all: &Bodies,
-    motion: Motion,
+    query: Query,
     frames: u32,
 ) -> Result<BodiesRow, Error> {
-    let query = Query::of(motion);
     let mut detector = Detector::new(device.clone(), all.scene.clone(), query)?;
     let steps: Vec<Vec<(BodyId, Move)>> = (0..frames).map(|step| all.step(step)).collect();
     let mut launches = 0;
@@ -84,7 +83,7 @@ pub fn bodies(
     Ok(BodiesRow {
         scene: name.into(),
         device: device.name(),
-        motion,
+        motion: query.kind(),
         bodies: all.scene.ids().count(),
         triangles: triangles(|_| true),
         moving: triangles(|body| body.kind() != BodyKind::Static),

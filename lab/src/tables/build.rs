@@ -7,7 +7,7 @@ use nearmiss::Detector;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::pipeline::{Stage, Stages};
-use nearmiss::query::{Bv, Motion, Traversal};
+use nearmiss::query::{Bv, Traversal};
 
 /// Milliseconds of the stages that make and dress a tree, means over all frames.
 #[derive(Clone, Copy, Debug)]
@@ -24,8 +24,8 @@ pub struct Built {
 /// # Errors
 /// Those of the device.
 pub fn build(device: &Device, frames: &Frames, bv: Bv, walk: Option<Traversal>) -> Result<Built, Error> {
-    let bodies = frames.bodies(Motion::Discrete)?;
-    let query = Way { motion: Motion::Discrete, bv, front: false }.query(walk);
+    let bodies = frames.bodies(false)?;
+    let query = Way { moves: false, bv, front: false }.query(walk);
     let mut detector = Detector::new(device.clone(), vec![bodies[0].clone()], query)?;
     let mut all = vec![Stages::default(); bodies.len()];
     let last = |ms: Vec<f64>| ms.last().copied().unwrap_or(0.0);

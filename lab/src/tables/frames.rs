@@ -4,7 +4,6 @@ use crate::scene;
 use nearmiss::error::Error;
 use nearmiss::memory;
 use nearmiss::mesh::{Body, Mesh};
-use nearmiss::query::Motion;
 use nearmiss::words::counted;
 use std::path::PathBuf;
 
@@ -21,12 +20,12 @@ pub struct Frames {
 }
 
 impl Frames {
-    /// What a motion asks in turn: every frame, or every pair of consecutive ones.
+    /// What is asked in turn: every frame, or, of what moves, every pair of consecutive ones.
     ///
     /// # Errors
     /// [`Error::Input`] where two frames are not of one mesh.
-    pub fn bodies(&self, motion: Motion) -> Result<Vec<Body>, Error> {
-        if motion == Motion::Discrete {
+    pub fn bodies(&self, moves: bool) -> Result<Vec<Body>, Error> {
+        if !moves {
             return Ok(self.meshes.iter().cloned().map(Body::still).collect());
         }
         self.meshes.windows(2).map(|pair| Body::moving(pair[0].clone(), pair[1].clone())).collect()
@@ -46,7 +45,7 @@ impl Frames {
             });
         }
         // Every pair is checked, so that no measurement ends halfway.
-        frames.bodies(Motion::Continuous)?;
+        frames.bodies(true)?;
         Ok(frames)
     }
 }

@@ -7,7 +7,7 @@ use nearmiss::Detector;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Motion, Query, QueueShape, Traversal};
+use nearmiss::query::{Query, QueueShape, Traversal};
 use serde::Serialize;
 
 /// Parts of the step.
@@ -57,10 +57,10 @@ pub fn front(
         let mut query = way.query(walk);
         if walk.is_none() && !way.front {
             // The same kernels, from the roots: what differs is the front alone.
-            query.traversal = Some(Traversal::Queue(QueueShape::native()));
+            query = query.with_traversal(Traversal::Queue(QueueShape::native()));
         }
         for part in PARTS {
-            let (first, second) = step(frames, way.motion, part)?;
+            let (first, second) = step(frames, way.moves, part)?;
             let mut row = one(paper, device, way, query, [first, second])?;
             row.part = part;
             let alike =
@@ -86,14 +86,14 @@ fn ratio(a: f64, b: f64) -> f64 {
 }
 
 /// What is asked before, and after the part of the step.
-fn step(frames: &Frames, motion: Motion, part: f64) -> Result<(Body, Body), Error> {
+fn step(frames: &Frames, moves: bool, part: f64) -> Result<(Body, Body), Error> {
     // Frames are at least two.
     let (t0, t1) = (&frames.meshes[0], &frames.meshes[1]);
     let moved = between(t0, t1, part)?;
-    Ok(if motion == Motion::Discrete {
-        (Body::still(t0.clone()), Body::still(moved))
-    } else {
+    Ok(if moves {
         (Body::moving(t0.clone(), t0.clone())?, Body::moving(t0.clone(), moved)?)
+    } else {
+        (Body::still(t0.clone()), Body::still(moved))
     })
 }
 

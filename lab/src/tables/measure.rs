@@ -59,7 +59,7 @@ pub fn measure(
     query: Query,
     rebuild: Option<usize>,
 ) -> Result<Cell, Error> {
-    let bodies = frames.bodies(way.motion)?;
+    let bodies = frames.bodies(way.moves)?;
     let held = device.bytes().0;
     let mut detector = Detector::new(device.clone(), vec![bodies[0].clone()], query)?;
     pass(&mut detector, &bodies, rebuild, |_| ())?;

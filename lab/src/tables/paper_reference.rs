@@ -1,7 +1,7 @@
 //! The thesis's own figures, milliseconds on its GPU (figures 6.12 and 6.13).
 
 use super::way::Way;
-use nearmiss::query::{Bv, Motion};
+use nearmiss::query::Bv;
 
 /// The thesis's GPU.
 pub const PAPER_GPU: &str = "GTX 285 (2008)";
@@ -84,11 +84,6 @@ impl Theirs {
 
     /// Milliseconds of a frame.
     pub fn frame(&self, way: Way) -> Option<f64> {
-        let motion = match way.motion {
-            Motion::Discrete => 0,
-            Motion::Continuous => 1,
-            Motion::Earliest | Motion::Near => return None,
-        };
-        column(way.bv).map(|at| self.frame[usize::from(way.front)][2 * motion + at])
+        column(way.bv).map(|at| self.frame[usize::from(way.front)][2 * usize::from(way.moves) + at])
     }
 }

@@ -1,12 +1,14 @@
 //! A column of figure 6.13: how a frame is asked.
 
-use nearmiss::query::{Bv, FrontShape, Motion, Query, Refit, Solver, Traversal};
+use nearmiss::query::{
+    Bv, Continuous, ContinuousSolver, FrontShape, Precision, Query, Refit, Traversal, Tree,
+};
 
 /// One way of asking a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Way {
-    /// Discrete or continuous.
-    pub motion: Motion,
+    /// Whether what moves is asked about, continuous; else discrete.
+    pub moves: bool,
     /// The volume.
     pub bv: Bv,
     /// Whether the walk goes on from the last frame's front.
@@ -21,8 +23,8 @@ impl Way {
     pub fn every(volumes: &[Bv]) -> Vec<Way> {
         let mut ways = Vec::new();
         for front in Way::FRONTS {
-            for motion in [Motion::Discrete, Motion::Continuous] {
-                ways.extend(volumes.iter().map(|&bv| Way { motion, bv, front }));
+            for moves in [false, true] {
+                ways.extend(volumes.iter().map(|&bv| Way { moves, bv, front }));
             }
         }
         ways
@@ -33,18 +35,17 @@ impl Way {
     pub fn query(self, walk: Option<Traversal>) -> Query {
         let refit = walk.map(|_| Refit::Levels);
         let traversal = if self.front { Some(Traversal::Front(FrontShape::native())) } else { walk };
-        let solver = (self.motion == Motion::Continuous).then_some(Solver::CubicF64);
-        Query { bv: Some(self.bv), solver, traversal, refit, ..Query::of(self.motion) }
+        let tree = Tree { bv: Some(self.bv), refit, traversal };
+        if self.moves {
+            Continuous { solver: ContinuousSolver::Cubic(Precision::F64), tree }.into()
+        } else {
+            Query::discrete().with_tree(tree)
+        }
     }
 
     /// `discrete`, `continuous`.
     pub fn asked(self) -> &'static str {
-        match self.motion {
-            Motion::Discrete => "discrete",
-            Motion::Continuous => "continuous",
-            Motion::Earliest => "earliest",
-            Motion::Near => "near",
-        }
+        if self.moves { "continuous" } else { "discrete" }
     }
 }
 

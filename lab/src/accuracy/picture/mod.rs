@@ -49,7 +49,7 @@ pub fn tolerance(device: &str, rows: &[Row]) -> Result<String, Error> {
 
 /// Whether nothing but solver and tolerance was chosen.
 fn is_plain(row: &Row) -> bool {
-    let default = nearmiss::query::Bv::default_for(nearmiss::query::Motion::Continuous).name();
+    let default = nearmiss::query::Bv::default_for(nearmiss::query::QueryKind::Continuous).name();
     row.bv.is_none_or(|bv| bv == default) && (row.bv.is_some() || row.precision == "f64")
 }
 

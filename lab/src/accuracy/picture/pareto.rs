@@ -7,7 +7,7 @@ use super::chart::{COLOURS, frame};
 use crate::accuracy::row::Row;
 use crate::tables::picture::{At, Drawn, FAINT, INK, LEFT, Sheet, head_height, sheet};
 use nearmiss::error::Error;
-use nearmiss::query::{Motion, Solver};
+use nearmiss::query::{QueryKind, Solver};
 use plotters::style::RGBColor;
 
 /// Height of a frame, of what a panel has besides, and where frames end.
@@ -61,7 +61,7 @@ fn colour(solver: Solver) -> RGBColor {
 fn legend(sheet: &Sheet, y: i32) -> Drawn {
     let mut x = 24;
     // Of those that a trade asks.
-    for solver in Solver::ALL.into_iter().filter(|solver| !solver.answers(Motion::Near)) {
+    for solver in Solver::ALL.into_iter().filter(|solver| !solver.answers(QueryKind::Near)) {
         let name = solver.name();
         sheet.dot((x, y), 5, colour(solver), solver.is_certain())?;
         sheet.text(name, (x + 10, y), 12, At::Left, INK)?;

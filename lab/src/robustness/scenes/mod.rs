@@ -12,7 +12,7 @@ use crate::oracle::{Triangle, triangles_meet, triangles_meet_beyond};
 use nearmiss::contacts::{Contacts, Kind};
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Motion, Query};
+use nearmiss::query::{Discrete, Query, TriangleTest};
 
 /// A body's numbers. In f32 where that holds them all, unless `wide`.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -116,8 +116,8 @@ impl Scene {
     /// The question that is asked.
     pub fn query(&self) -> Query {
         let discrete = matches!(self.finds, Finds::Pairs(_) | Finds::Oracle | Finds::OracleByFilter);
-        let motion = if discrete { Motion::Discrete } else { Motion::Continuous };
-        Query { adjacent: self.adjacent, ..Query::of(motion) }
+        let adjacent = self.adjacent;
+        if discrete { Discrete::by(TriangleTest::Exact { adjacent }).into() } else { Query::continuous() }
     }
 
     /// The bodies.

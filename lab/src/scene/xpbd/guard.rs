@@ -13,7 +13,7 @@ use nearmiss::contacts::{Contact, Kind};
 use nearmiss::device::{Backend, Device};
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions, Topology};
-use nearmiss::query::{Motion, Query, Solver};
+use nearmiss::query::{Continuous, ContinuousSolver, Discrete, Precision, Query, TriangleTest};
 use nearmiss_kernels::math::Vec3;
 
 /// Rounds that push what meets apart.
@@ -43,12 +43,12 @@ pub(super) struct Guard {
 
 /// The cubic: it lists no near misses, which would be pushed apart without need. What it misses, [`meeting`] finds.
 fn passing() -> Query {
-    Query { solver: Some(Solver::CubicF64), ..Query::of(Motion::Continuous) }
+    Continuous::by(ContinuousSolver::Cubic(Precision::F64)).into()
 }
 
 /// Every meeting counts, that of triangles with a common vertex too.
 fn meeting() -> Query {
-    Query { adjacent: true, ..Query::of(Motion::Discrete) }
+    Query::from(Discrete::by(TriangleTest::Exact { adjacent: true }))
 }
 
 impl Guard {

@@ -1,0 +1,83 @@
+//! From options to a query: options that a kind of question, or its solver, does not have are refused.
+
+use super::DetectArgs;
+use nearmiss::error::Error;
+use nearmiss::query::{
+    Certified, Continuous, ContinuousSolver, Discrete, Earliest, Near, Query, QueryKind, Solver, Tree,
+    TriangleTest,
+};
+
+impl DetectArgs {
+    /// The query for bodies that move, or do not.
+    ///
+    /// # Errors
+    /// [`Error::Choice`] for options that do not go together, and for numbers that mean nothing.
+    pub fn query(&self, moving: bool) -> Result<Query, Error> {
+        let (kind, near) = self.kind(moving);
+        let solver = self.solver.unwrap_or(Solver::default_for(kind));
+        if !solver.answers(kind) {
+            let known: Vec<_> = kind.solvers().iter().map(|solver| solver.name()).collect();
+            return Err(Error::Choice {
+                what: format!("the solver {solver:?} does not answer a {kind:?} query"),
+                advice: format!("choose one of: {}", known.join(", ")),
+            });
+        }
+        let limits = self.tolerance.is_some() || self.boxes.is_some() || self.separation.is_some();
+        if limits && !solver.is_certified() {
+            return Err(Error::Choice {
+                what: format!("the solver {solver:?} takes no tolerance, no budget and no separation"),
+                advice: "give these to a certified solver".into(),
+            });
+        }
+        let traversal = self.traversal.map(|walk| walk.choice(self));
+        let tree = Tree { bv: self.bv, refit: self.refit, traversal };
+        let query: Query = match (near, ContinuousSolver::named(solver)) {
+            (Some(distance), _) => Near { distance, tree }.into(),
+            (None, Some(solver)) => {
+                let solver = self.limited(solver);
+                if kind == QueryKind::Earliest {
+                    Earliest { solver, tree }.into()
+                } else {
+                    Continuous { solver, tree }.into()
+                }
+            }
+            (None, None) if solver == Solver::Moller => Discrete { test: TriangleTest::Moller, tree }.into(),
+            (None, None) => Discrete { test: TriangleTest::Exact { adjacent: self.adjacent }, tree }.into(),
+        };
+        query.check()?;
+        if self.adjacent && solver != Solver::Exact {
+            return Err(Error::Choice {
+                what: "adjacent triangles are decided by exact signs only".into(),
+                advice: "ask for adjacent triangles in a discrete query with the solver exact".into(),
+            });
+        }
+        Ok(query)
+    }
+
+    /// The kind of query, and the distance of a near one.
+    fn kind(&self, moving: bool) -> (QueryKind, Option<f64>) {
+        let kind = match (self.discrete, self.continuous, self.earliest) {
+            _ if self.near.is_some() => QueryKind::Near,
+            (_, _, true) => QueryKind::Earliest,
+            (_, true, _) => QueryKind::Continuous,
+            (true, _, _) => QueryKind::Discrete,
+            _ if moving => QueryKind::Continuous,
+            _ => QueryKind::Discrete,
+        };
+        (kind, self.near)
+    }
+
+    /// The solver, with the limits that were given.
+    fn limited(&self, solver: ContinuousSolver) -> ContinuousSolver {
+        match solver {
+            ContinuousSolver::Certified(Certified { precision, .. }) => Certified {
+                precision,
+                tolerance: self.tolerance,
+                budget: self.boxes,
+                separation: self.separation.unwrap_or(0.0),
+            }
+            .into(),
+            other => other,
+        }
+    }
+}

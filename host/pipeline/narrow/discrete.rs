@@ -1,0 +1,131 @@
+//! Triangles at rest: their lists, and the launches from triangle pairs to those that meet.
+
+use super::{AnswerLists, Narrow, NarrowContext, growable};
+use crate::contacts::Entries;
+use crate::device::{Ahead, Device};
+use crate::error::Error;
+use crate::pipeline::launch;
+use crate::pipeline::layout::Layout;
+use crate::pipeline::list::{GrowableOutput, List};
+use crate::pipeline::order::Order;
+use crate::pipeline::precision::Precision;
+use crate::pipeline::typed::{Listed, in_order};
+use crate::query::TriangleTest;
+use nearmiss_kernels::abi::{DiscreteArgs, KEEP_ADJACENT, Pair, Span, counter};
+
+/// The lists of a discrete query.
+pub struct DiscreteNarrow {
+    test: TriangleTest,
+    /// Pairs that meet.
+    pub contacts: List<Pair>,
+    /// Pairs that each filter left to the next, the last one to exact signs; of the exact test alone.
+    undecided: Vec<List<Pair>>,
+    /// The contacts in order, where the device orders them.
+    ordered: Option<Order<Pair>>,
+}
+
+impl DiscreteNarrow {
+    /// Takes the memory for positions of that precision, with room for `few` contacts.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn new<R: Precision>(device: &Device, test: TriangleTest, few: usize) -> Result<Self, Error> {
+        let mut undecided = Vec::new();
+        match test {
+            TriangleTest::Exact { .. } => {
+                undecided.push(List::new(device, "undecided pairs", counter::UNDECIDED, few)?);
+                if R::WIDENS {
+                    let at = counter::UNDECIDED_WIDE;
+                    undecided.push(List::new(device, "pairs undecided in f64", at, few / 4)?);
+                }
+            }
+            TriangleTest::Moller => {}
+        }
+        let contacts = List::new(device, "contacts", counter::CONTACTS, few)?;
+        Ok(DiscreteNarrow { test, contacts, undecided, ordered: None })
+    }
+
+    /// The lists that the one step fills.
+    pub fn all_lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
+        let contacts = std::iter::once(&mut self.contacts as &mut dyn GrowableOutput);
+        contacts.chain(growable(&mut self.undecided)).collect()
+    }
+
+    /// Launches the one step: by floats, or by floats with a bound, in f32 and in f64, and exact signs for what they leave.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn decide<R: Precision>(&self, given: &NarrowContext<R>) -> Result<(), Error> {
+        let args = |pairs: Span<Pair>, pairs_at: u32, undecided: Option<&List<Pair>>| DiscreteArgs {
+            positions: given.frames.still,
+            faces: given.faces,
+            pairs,
+            contacts: self.contacts.span(),
+            undecided: undecided.map_or(Span::EMPTY, List::span),
+            counters: given.counters,
+            pairs_at,
+            undecided_at: undecided.map_or(0, List::counter),
+            flags: if self.test.has_adjacent() { KEEP_ADJACENT } else { 0 },
+            pad: 0,
+        };
+        let (device, capacity) = (given.device, given.pairs.len() as usize);
+        let candidates = args(given.pairs, counter::PAIRS, self.undecided.first());
+        let (first, last) = match &*self.undecided {
+            [] => return launch::striding::<R::Moller>(device, capacity, &candidates),
+            [first, .., last] => (first, Some(last)),
+            [first] => (first, None),
+        };
+        launch::striding::<R::Filter>(device, capacity, &candidates)?;
+        let left = args(first.span(), first.counter(), last);
+        let Some(last) = last else { return launch::striding::<R::Exact>(device, first.capacity(), &left) };
+        launch::striding::<R::Wide>(device, first.capacity(), &left)?;
+        launch::striding::<R::Exact>(device, last.capacity(), &args(last.span(), last.counter(), None))
+    }
+}
+
+impl<R: Precision> Narrow<R> for DiscreteNarrow {
+    fn steps(&self) -> Vec<&'static str> {
+        vec!["decide"]
+    }
+
+    fn run(&mut self, _step: usize, given: &NarrowContext<R>) -> Result<(), Error> {
+        self.decide(given)
+    }
+
+    fn lists(&mut self, _step: usize) -> Vec<&mut dyn GrowableOutput> {
+        self.all_lists()
+    }
+
+    fn between(&self) -> Vec<(&'static str, &List<Pair>)> {
+        ["narrow: undecided", "narrow: undecided in f64"].into_iter().zip(&self.undecided).collect()
+    }
+
+    fn order_on(&mut self, device: &Device, layout: &Layout, room: usize) -> Result<(), Error> {
+        self.ordered = Some(Order::new(device, layout, room)?);
+        Ok(())
+    }
+
+    fn ordered(&mut self) -> Option<&mut dyn GrowableOutput> {
+        self.ordered.as_mut().map(|order| &mut order.list as &mut dyn GrowableOutput)
+    }
+
+    fn order(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
+        let Some(order) = &mut self.ordered else { return Ok(()) };
+        order.run(given.device, &self.contacts, None, (Span::EMPTY, given.counters))
+    }
+
+    fn ahead(&self, last: &[u64]) -> Vec<Ahead<'_>> {
+        vec![self.ordered.as_ref().map_or(&self.contacts, |order| &order.list).ahead(last)]
+    }
+
+    fn gather(&self, counters: &[u64]) -> Result<(Listed<'_>, bool), Error> {
+        let ordered = in_order(self.ordered.as_ref(), counters, &[&self.contacts])?;
+        let is_ordered = ordered.is_some();
+        let pairs = ordered.map_or_else(|| self.contacts.view(counters), Ok)?;
+        Ok((Listed::Pairs(pairs), is_ordered))
+    }
+
+    fn answer(&self) -> AnswerLists {
+        AnswerLists::of(Entries::TrianglePairs, &[&self.contacts], self.ordered.as_ref())
+    }
+}

@@ -1,0 +1,118 @@
+//! Narrow: from candidates to contacts. Each kind of query has a file here; the pipeline knows of none.
+
+mod answer;
+mod continuous;
+mod discrete;
+mod features;
+mod near;
+mod rungs;
+
+pub use answer::AnswerLists;
+pub use continuous::{Capacities, ContinuousNarrow};
+pub use discrete::DiscreteNarrow;
+
+use super::layout::Layout;
+use super::list::{GrowableOutput, List};
+use super::precision::Precision;
+use super::typed::Listed;
+use crate::device::{Ahead, Device};
+use crate::error::Error;
+use crate::mesh::Body;
+use crate::query::Query;
+use near::NearNarrow;
+use nearmiss_kernels::abi::{BodyRecord, Pair, Positions, Span};
+
+/// What every step of the stage is given.
+pub struct NarrowContext<'a, R: Precision> {
+    /// The machine.
+    pub device: &'a Device,
+    /// Positions.
+    pub frames: Positions<R>,
+    /// Vertex indices of every triangle.
+    pub faces: Span<[u32; 3]>,
+    /// Candidate triangle pairs.
+    pub pairs: Span<Pair>,
+    /// What the kernels know of the bodies; empty where there is one alone.
+    pub bodies: Span<BodyRecord>,
+    /// The frame's counters.
+    pub counters: Span<u64>,
+}
+
+/// The narrow phase of a kind of query: its steps, the lists that they fill, and what it hands over.
+pub trait Narrow<R: Precision>: Send {
+    /// The names of the steps, in their order; each reads what the one before filled.
+    fn steps(&self) -> Vec<&'static str>;
+
+    /// Launches the step of that place.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn run(&mut self, step: usize, given: &NarrowContext<R>) -> Result<(), Error>;
+
+    /// The lists that the step of that place fills.
+    fn lists(&mut self, step: usize) -> Vec<&mut dyn GrowableOutput>;
+
+    /// The lists between candidates and contacts, with names: for comparing machines. None of those that hang on the order in
+    /// which lanes came.
+    fn between(&self) -> Vec<(&'static str, &List<Pair>)>;
+
+    /// The bodies are there now: how large they are may matter.
+    fn place(&mut self, _bodies: &[Body]) {}
+
+    /// Has the device put into order what it finds, with room for so many at first.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn order_on(&mut self, device: &Device, layout: &Layout, room: usize) -> Result<(), Error>;
+
+    /// What the device has put into order; none where the host does that.
+    fn ordered(&mut self) -> Option<&mut dyn GrowableOutput>;
+
+    /// Launches the ordering, where the device does that.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn order(&mut self, given: &NarrowContext<R>) -> Result<(), Error>;
+
+    /// What [`Narrow::gather`] will look at, by the counters of the last frame.
+    fn ahead(&self, last: &[u64]) -> Vec<Ahead<'_>>;
+
+    /// What was found, by the frame's counters, and whether it is in canonical order.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn gather(&self, counters: &[u64]) -> Result<(Listed<'_>, bool), Error>;
+
+    /// Where that lies.
+    fn answer(&self) -> AnswerLists;
+}
+
+/// The narrow phase that a query asks for: `capacity` entries for candidates, `few` for what is left of them.
+///
+/// # Errors
+/// Those of the device.
+pub fn narrow<R: Precision>(
+    device: &Device,
+    layout: &Layout,
+    query: &Query,
+    (capacity, few): (usize, usize),
+) -> Result<Box<dyn Narrow<R>>, Error> {
+    let room = (capacity, few);
+    let mut narrow: Box<dyn Narrow<R>> = match query {
+        Query::Discrete(query) => Box::new(DiscreteNarrow::new::<R>(device, query.test, few)?),
+        Query::Continuous(query) => Box::new(ContinuousNarrow::all(device, layout, query.solver, room)?),
+        Query::Earliest(query) => Box::new(ContinuousNarrow::first(device, layout, query.solver, room)?),
+        Query::Near(query) => Box::new(NearNarrow::new(device, layout, query.distance, room)?),
+    };
+    if device.is_gpu() {
+        narrow.order_on(device, layout, few / 4)?;
+    }
+    Ok(narrow)
+}
+
+/// Lists as what grows.
+fn growable<'a, T: GrowableOutput + 'a>(
+    lists: impl IntoIterator<Item = &'a mut T>,
+) -> impl Iterator<Item = &'a mut dyn GrowableOutput> {
+    lists.into_iter().map(|list| list as &mut dyn GrowableOutput)
+}

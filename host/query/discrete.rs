@@ -1,0 +1,90 @@
+//! Triangles at t = 0.
+
+use super::{Question, Solver, Tree};
+
+/// Which triangle pairs share a point at t = 0?
+///
+/// ```
+/// use nearmiss::query::{Discrete, Query, TriangleTest};
+///
+/// // Triangles that share a vertex too, where they meet beyond it.
+/// let query: Query = Discrete::by(TriangleTest::Exact { adjacent: true }).into();
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Discrete {
+    /// The test of a pair.
+    pub test: TriangleTest,
+    /// How it is searched.
+    pub tree: Tree,
+}
+
+/// The test of a pair of triangles that stand still.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum TriangleTest {
+    /// Exact signs by filter, then integers. Never wrong.
+    Exact {
+        /// Also triangles that share a vertex, where they meet beyond it.
+        adjacent: bool,
+    },
+    /// The seed's float test. Can miss, can err.
+    Moller,
+}
+
+impl Default for TriangleTest {
+    fn default() -> Self {
+        TriangleTest::Exact { adjacent: false }
+    }
+}
+
+impl TriangleTest {
+    /// Every test, the default first.
+    pub const ALL: [TriangleTest; 2] = [TriangleTest::Exact { adjacent: false }, TriangleTest::Moller];
+
+    /// Its name.
+    pub const fn name(&self) -> Solver {
+        match self {
+            TriangleTest::Exact { .. } => Solver::Exact,
+            TriangleTest::Moller => Solver::Moller,
+        }
+    }
+
+    /// Whether it answers for triangles that share a vertex.
+    pub(crate) const fn has_adjacent(&self) -> bool {
+        match self {
+            TriangleTest::Exact { adjacent } => *adjacent,
+            TriangleTest::Moller => false,
+        }
+    }
+}
+
+impl Discrete {
+    /// By that test, all other choices at their defaults.
+    pub fn by(test: TriangleTest) -> Discrete {
+        Discrete { test, ..Discrete::default() }
+    }
+}
+
+impl Question for Discrete {
+    fn is_at_rest() -> bool {
+        true
+    }
+    fn is_of_features() -> bool {
+        false
+    }
+    fn every() -> Vec<Discrete> {
+        TriangleTest::ALL.map(Discrete::by).into()
+    }
+    fn tree(&self) -> &Tree {
+        &self.tree
+    }
+    fn tree_mut(&mut self) -> &mut Tree {
+        &mut self.tree
+    }
+    fn solver(&self) -> Solver {
+        self.test.name()
+    }
+    fn keeps_adjacent(&self) -> bool {
+        self.test.has_adjacent()
+    }
+}

@@ -1,0 +1,131 @@
+//! The kinds of queries: a line each.
+
+use super::{Certified, Solver, Tree};
+use crate::error::Error;
+
+/// What a kind of query says of itself.
+pub(crate) trait Question {
+    /// Whether it asks about t = 0 alone: then the end of a step is not looked at.
+    fn is_at_rest() -> bool
+    where
+        Self: Sized;
+    /// Whether it asks for pairs of vertices, edges and faces, not of triangles.
+    fn is_of_features() -> bool
+    where
+        Self: Sized,
+    {
+        true
+    }
+    /// With every solver that answers it, all other choices at their defaults; the default first.
+    fn every() -> Vec<Self>
+    where
+        Self: Sized;
+    /// How it is searched.
+    fn tree(&self) -> &Tree;
+    /// The same, to change it.
+    fn tree_mut(&mut self) -> &mut Tree;
+    /// The name of its test.
+    fn solver(&self) -> Solver;
+    /// The choices of its certified solver.
+    fn certified(&self) -> Option<&Certified> {
+        None
+    }
+    /// The same, to change them.
+    fn certified_mut(&mut self) -> Option<&mut Certified> {
+        None
+    }
+    /// Whether triangles that share a vertex are candidates: their features without a common vertex may meet.
+    fn keeps_adjacent(&self) -> bool {
+        true
+    }
+    /// Within what distance of each other two features may be listed. The volumes bring all of these together.
+    fn listed_within(&self) -> f64 {
+        0.0
+    }
+    /// Whether its numbers mean something.
+    fn check(&self) -> Result<(), Error> {
+        Ok(())
+    }
+}
+
+/// From lines of `Kind = "name"` makes the query, the names of its kinds, and the way to each kind's own type.
+macro_rules! kinds {
+    ($($(#[doc = $about:literal])+ $kind:ident = $name:literal,)+) => {
+        /// What is asked of a scene: a kind of question with the choices it has, the same for the library, the command line, the
+        /// benches and the tests.
+        ///
+        /// ```
+        /// use nearmiss::query::{Bv, Continuous, Precision, ContinuousSolver, Query};
+        ///
+        /// // All contacts of a step, certified.
+        /// let query = Query::continuous();
+        /// // By another solver, and searched with oriented boxes.
+        /// let query = Query::from(Continuous::by(ContinuousSolver::Cubic(Precision::F64))).with_bv(Bv::Obb);
+        /// ```
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        #[non_exhaustive]
+        pub enum Query {
+            $($(#[doc = $about])+ $kind($kind),)+
+        }
+
+        named! {
+            /// The name of a kind of query: what reports tell.
+            pub enum QueryKind {
+                $($(#[doc = $about])+ $kind = $name,)+
+            }
+        }
+
+        $(impl From<$kind> for Query {
+            fn from(query: $kind) -> Query {
+                Query::$kind(query)
+            }
+        })+
+
+        impl QueryKind {
+            /// Whether it asks about t = 0 alone: then the end of a step is not looked at.
+            pub fn is_at_rest(self) -> bool {
+                match self {
+                    $(QueryKind::$kind => <$kind as Question>::is_at_rest(),)+
+                }
+            }
+
+            /// Whether it asks for pairs of vertices, edges and faces, not of triangles.
+            pub(crate) fn is_of_features(self) -> bool {
+                match self {
+                    $(QueryKind::$kind => <$kind as Question>::is_of_features(),)+
+                }
+            }
+        }
+
+        impl Query {
+            /// The name of its kind.
+            pub const fn kind(&self) -> QueryKind {
+                match self {
+                    $(Query::$kind(_) => QueryKind::$kind,)+
+                }
+            }
+
+            /// Every question with every solver that answers it, all other choices at their defaults: what tests and
+            /// `selftest` run over.
+            pub fn every() -> impl Iterator<Item = Query> {
+                let all: [Vec<Query>; [$($name),+].len()] =
+                    [$(<$kind as Question>::every().into_iter().map(Query::from).collect()),+];
+                all.into_iter().flatten()
+            }
+
+            fn question(&self) -> &dyn Question {
+                match self {
+                    $(Query::$kind(query) => query,)+
+                }
+            }
+
+            fn question_mut(&mut self) -> &mut dyn Question {
+                match self {
+                    $(Query::$kind(query) => query,)+
+                }
+            }
+        }
+    };
+}
+
+pub(super) use kinds;

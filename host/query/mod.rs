@@ -1,0 +1,151 @@
+//! What is asked: one value, the same for the library, the command line, the benches and the tests.
+
+mod bv;
+mod certified;
+mod continuous;
+mod discrete;
+mod kind;
+mod named;
+mod near;
+mod queues;
+mod solver;
+mod tree;
+
+pub use bv::{Bv, WithVolume};
+pub use certified::{Certified, CertifiedPrecision};
+pub use continuous::{Continuous, ContinuousSolver, Earliest, Precision};
+pub use discrete::{Discrete, TriangleTest};
+pub use named::Named;
+pub(crate) use named::named;
+pub use near::Near;
+pub use queues::{Balance, FrontShape, QueueShape, StealShape};
+pub use solver::Solver;
+pub use tree::{Refit, Traversal, Tree};
+
+use crate::error::Error;
+use kind::{Question, kinds};
+
+kinds! {
+    /// Which triangle pairs share a point at t = 0?
+    Discrete = "discrete",
+    /// Which vertex/face and edge/edge pairs meet at some t in [0, 1], and when first?
+    Continuous = "continuous",
+    /// When does the first of them meet?
+    Earliest = "earliest",
+    /// Which vertex/face and edge/edge pairs are within a distance of each other at t = 0, and where are they nearest?
+    Near = "near",
+}
+
+impl QueryKind {
+    /// The solvers that answer it, the default first.
+    pub fn solvers(self) -> Vec<Solver> {
+        Query::every().filter(|query| query.kind() == self).map(|query| query.solver()).collect()
+    }
+}
+
+impl Default for Query {
+    fn default() -> Self {
+        Query::discrete()
+    }
+}
+
+/// The questions, each with all choices at their defaults.
+impl Query {
+    /// Which triangle pairs share a point now, by exact signs.
+    pub fn discrete() -> Query {
+        Discrete::default().into()
+    }
+
+    /// Which pairs of features meet within the step, and when first, certified.
+    pub fn continuous() -> Query {
+        Continuous::default().into()
+    }
+
+    /// When the first of them meets, certified: how far a step may go.
+    pub fn earliest() -> Query {
+        Earliest::default().into()
+    }
+
+    /// Which features are within a distance of each other now.
+    pub fn near(distance: f64) -> Query {
+        Near::within(distance).into()
+    }
+}
+
+impl Query {
+    /// How it is searched.
+    pub fn tree(&self) -> Tree {
+        *self.question().tree()
+    }
+
+    /// The same, searched in that way.
+    pub fn with_tree(mut self, tree: Tree) -> Query {
+        *self.question_mut().tree_mut() = tree;
+        self
+    }
+
+    /// The same, with that volume.
+    pub fn with_bv(self, bv: Bv) -> Query {
+        self.with_tree(Tree { bv: Some(bv), ..self.tree() })
+    }
+
+    /// The same, with that refit.
+    pub fn with_refit(self, refit: Refit) -> Query {
+        self.with_tree(Tree { refit: Some(refit), ..self.tree() })
+    }
+
+    /// The same, with that walk.
+    pub fn with_traversal(self, traversal: Traversal) -> Query {
+        self.with_tree(Tree { traversal: Some(traversal), ..self.tree() })
+    }
+
+    /// The name of the test of a pair.
+    pub fn solver(&self) -> Solver {
+        self.question().solver()
+    }
+
+    /// The choices of its certified solver, where it has one.
+    pub fn certified(&self) -> Option<&Certified> {
+        self.question().certified()
+    }
+
+    /// The same, to change them.
+    pub fn certified_mut(&mut self) -> Option<&mut Certified> {
+        self.question_mut().certified_mut()
+    }
+
+    /// The volume that will be used.
+    pub fn bv(&self) -> Bv {
+        self.tree().bv.unwrap_or(Bv::default_for(self.kind()))
+    }
+
+    /// The refit that will be used on a GPU, or on a CPU.
+    pub fn refit_on(&self, is_gpu: bool) -> Refit {
+        self.tree().refit.unwrap_or(Refit::default_for(is_gpu))
+    }
+
+    /// The walk that will be used on a GPU, or on a CPU.
+    pub fn traversal_on(&self, is_gpu: bool) -> Traversal {
+        self.tree().traversal.unwrap_or(Traversal::default_for(is_gpu, self.bv()))
+    }
+
+    /// Whether its numbers mean something: lengths are lengths, queues have possible sizes.
+    ///
+    /// # Errors
+    /// [`Error::Choice`] with what would.
+    pub fn check(&self) -> Result<(), Error> {
+        self.question().check()?;
+        self.tree().check()
+    }
+
+    /// Whether triangles that share a vertex are candidates.
+    pub(crate) fn keeps_adjacent(&self) -> bool {
+        self.question().keeps_adjacent()
+    }
+
+    /// Within what distance of each other two features may be listed: of a certified solver the separation and the tolerance,
+    /// of a near query its distance, of others 0. The volumes bring it all of these, whatever their shape.
+    pub(crate) fn listed_within(&self) -> f64 {
+        self.question().listed_within()
+    }
+}

@@ -1,0 +1,58 @@
+//! Features at t = 0 within a distance.
+
+use super::{Question, Solver, Tree};
+use crate::error::Error;
+
+/// Which vertex/face and edge/edge pairs are within a distance of each other at t = 0, and where are they nearest?
+///
+/// ```
+/// let query = nearmiss::Query::near(0.01);
+/// assert!(query.check().is_ok() && nearmiss::Query::near(0.0).check().is_err());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Near {
+    /// How far apart two features may be to be listed, a length above 0.
+    pub distance: f64,
+    /// How it is searched.
+    pub tree: Tree,
+}
+
+impl Near {
+    /// The distance that [`Query::every`](super::Query::every) asks with.
+    pub const DISTANCE: f64 = 1.0 / 64.0;
+
+    /// Within that distance, all other choices at their defaults.
+    pub fn within(distance: f64) -> Near {
+        Near { distance, tree: Tree::default() }
+    }
+}
+
+impl Question for Near {
+    fn is_at_rest() -> bool {
+        true
+    }
+    fn every() -> Vec<Near> {
+        vec![Near::within(Near::DISTANCE)]
+    }
+    fn tree(&self) -> &Tree {
+        &self.tree
+    }
+    fn tree_mut(&mut self) -> &mut Tree {
+        &mut self.tree
+    }
+    fn solver(&self) -> Solver {
+        Solver::Bounded
+    }
+    fn listed_within(&self) -> f64 {
+        self.distance
+    }
+    fn check(&self) -> Result<(), Error> {
+        if self.distance > 0.0 && self.distance < f64::INFINITY {
+            return Ok(());
+        }
+        Err(Error::Choice {
+            what: format!("a distance of {}", self.distance),
+            advice: "give a length above 0".into(),
+        })
+    }
+}

@@ -1,0 +1,38 @@
+//! Queries by the names of kinds and solvers, for tests that go through many.
+
+use nearmiss::Query;
+use nearmiss::query::{Certified, Continuous, ContinuousSolver, Earliest, QueryKind, Solver};
+
+/// The query of that kind with all choices at their defaults; a near one has none for its distance.
+pub fn of(kind: QueryKind) -> Query {
+    match kind {
+        QueryKind::Discrete => Query::discrete(),
+        QueryKind::Continuous => Query::continuous(),
+        QueryKind::Earliest => Query::earliest(),
+        other => panic!("a {other} query has no defaults"),
+    }
+}
+
+/// The query of that kind by that solver of features in motion.
+pub fn by(kind: QueryKind, solver: Solver) -> Query {
+    let solver = ContinuousSolver::named(solver).expect("a solver of features in motion");
+    match kind {
+        QueryKind::Continuous => Continuous::by(solver).into(),
+        QueryKind::Earliest => Earliest::by(solver).into(),
+        other => panic!("a {other} query is not of features in motion"),
+    }
+}
+
+/// The query with other choices of its certified solver.
+pub fn certified(mut query: Query, change: impl FnOnce(&mut Certified)) -> Query {
+    change(query.certified_mut().expect("a certified solver"));
+    query
+}
+
+/// The query with that tolerance, where its solver takes one.
+pub fn with_tolerance(mut query: Query, tolerance: f64) -> Query {
+    if let Some(certified) = query.certified_mut() {
+        certified.tolerance = Some(tolerance);
+    }
+    query
+}
