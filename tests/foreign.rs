@@ -82,7 +82,7 @@ fn read(simulator: &Simulator, detector: &Detector) -> Option<Vec<[u64; 3]>> {
                 .map(|(k, hit)| [edges(k), name(hit.a, hit.b), hit.squared.to_bits()])
                 .collect()
         }
-        QueryKind::Continuous | QueryKind::Earliest => {
+        _ => {
             let hits: Vec<Hit> = simulator.read(list.address, count);
             hits.iter()
                 .enumerate()
