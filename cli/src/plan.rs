@@ -1,7 +1,7 @@
 //! `plan`.
 
 use crate::args::DetectArgs;
-use crate::detect::question;
+use crate::detect::{Question, question};
 use crate::output::print;
 use nearmiss::Detector;
 use nearmiss::error::Error;
@@ -12,10 +12,10 @@ use std::process::ExitCode;
 
 /// Says what `detect` would do.
 pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
-    let (bodies, query) = question(args)?;
+    let Question { scene, query, .. } = question(args)?;
     let device = args.machine.open()?;
     let before = device.launches();
-    let detector = Detector::new(device.clone(), bodies, query)?;
+    let detector = Detector::new(device.clone(), scene, query)?;
     let mut text = String::new();
     for body in detector.scene().bodies() {
         let _ = writeln!(

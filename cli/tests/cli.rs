@@ -22,9 +22,12 @@ mod output;
 mod repeat;
 #[path = "cli/scene.rs"]
 mod scene;
+#[path = "cli/scene_file.rs"]
+mod scene_file;
 #[path = "cli/selftest.rs"]
 mod selftest;
-
+#[path = "cli/sequence.rs"]
+mod sequence;
 #[path = "cli/with.rs"]
 mod with;
 #[path = "cli/words.rs"]

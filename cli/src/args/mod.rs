@@ -37,7 +37,7 @@ pub struct Cli {
 
 #[derive(Subcommand)]
 pub enum Command {
-    /// Find what touches: in one mesh, or (--with) between two.
+    /// Find what touches: in one mesh, (--with) between two, or in a scene of many; in one frame, or step after step.
     Detect(Box<DetectArgs>),
     /// Say what detect would run with the same arguments, on which machine and memory, and why.
     Plan(Box<DetectArgs>),
@@ -91,8 +91,14 @@ pub fn parse() -> Result<Result<Command, ExitCode>, Error> {
 /// Gives each mesh its files.
 fn sort_out(command: &mut Command, own: &ArgMatches) -> Result<(), Error> {
     match command {
-        Command::Detect(args) | Command::Plan(args) => files::part(own, &mut args.meshes, &mut args.with),
-        Command::Explain(args) => files::part(own, &mut args.meshes, &mut args.with),
+        Command::Detect(args) | Command::Plan(args) => {
+            files::part(own, &mut args.meshes, &mut args.with);
+            files::as_many(&args.meshes, &args.with)
+        }
+        Command::Explain(args) => {
+            files::part(own, &mut args.meshes, &mut args.with);
+            files::at_most_two(&args.meshes, &args.with)
+        }
         _ => Ok(()),
     }
 }
