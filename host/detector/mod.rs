@@ -2,9 +2,10 @@
 
 mod edits;
 mod moves;
+pub mod plan;
 
 use crate::contacts::{Contacts, Degraded, Summary};
-use crate::device::Device;
+use crate::device::{Device, Work};
 use crate::error::Error;
 use crate::memory;
 use crate::mesh::{Body, MAX_FACES, MAX_VERTICES};
@@ -51,6 +52,11 @@ pub struct Detector {
     f64s: bool,
     /// None where nothing can meet, or where memory ended: then the next frame asks for it again.
     pipeline: Option<Box<dyn Pipeline>>,
+    /// Frames answered since the pipeline began.
+    asked: u64,
+    /// What the last building of the trees did, and the last frame.
+    build: Work,
+    work: Work,
 }
 
 /// Fewest bytes of the host's memory that a triangle takes in a detector: its topology, and on a CPU its tree and first lists.
@@ -76,7 +82,7 @@ impl Detector {
             .is_certified()
             .then(|| query.tolerance.unwrap_or_else(|| pipeline::of_edges(scene.bodies())));
         let mut detector = Detector {
-            device,
+            device: device.for_one(),
             scene,
             layout: None,
             query,
@@ -85,6 +91,9 @@ impl Detector {
             answered: false,
             f64s: false,
             pipeline: None,
+            asked: 0,
+            build: Work::default(),
+            work: Work::default(),
         };
         detector.begun()?;
         Ok(detector)
@@ -113,7 +122,9 @@ impl Detector {
             self.f64s = bodies.iter().any(Body::needs_f64);
             let query = Query { tolerance: self.tolerance, ..self.query };
             let mut pipeline = pipeline::pipeline(self.device.clone(), bodies, layout, query, self.f64s)?;
+            self.device.work();
             self.construct_ms = pipeline.construct()?;
+            (self.asked, self.build) = (0, self.device.work());
             self.pipeline = Some(pipeline);
         }
         Ok(self.pipeline.as_mut())
@@ -124,9 +135,11 @@ impl Detector {
     /// # Errors
     /// Those of the device.
     pub fn rebuild(&mut self) -> Result<(), Error> {
+        self.device.work();
         let Some(pipeline) = self.begun()? else { return Ok(()) };
         self.construct_ms = pipeline.construct()?;
         self.answered = false;
+        self.build = self.device.work();
         Ok(())
     }
 
@@ -135,6 +148,7 @@ impl Detector {
     /// # Errors
     /// Those of the device: [`Error::OutOfMemory`] when memory ends. There is no partial answer.
     pub fn detect(&mut self) -> Result<Contacts, Error> {
+        self.device.work();
         self.answer(Instant::now())
     }
 
@@ -151,6 +165,7 @@ impl Detector {
         let mut contacts = Contacts::new(found, &layout, self.query, (stages, degraded));
         let wall = start.elapsed().as_secs_f64() * 1e3;
         contacts.stages = Stages { construct: self.construct_ms, wall, ..stages };
+        (self.asked, self.work) = (self.asked + 1, self.device.work());
         Ok(contacts)
     }
 

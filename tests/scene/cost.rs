@@ -4,7 +4,7 @@ use super::*;
 use nearmiss::query::{Refit, Traversal};
 
 /// A crate of twelve triangles; the pile is `n` of them in a row, each a little into the next.
-fn pile(n: usize, kind: fn(Mesh) -> Body, environments: bool) -> Scene {
+pub fn pile(n: usize, kind: fn(Mesh) -> Body, environments: bool) -> Scene {
     let mut scene = Scene::new();
     for i in 0..n {
         let corner = |k: usize| {
@@ -21,7 +21,7 @@ fn pile(n: usize, kind: fn(Mesh) -> Body, environments: bool) -> Scene {
 }
 
 /// As a GPU would go: launches then are a matter of the query.
-fn query(motion: Motion) -> Query {
+pub fn query(motion: Motion) -> Query {
     Query {
         refit: Some(Refit::Treelets),
         traversal: Some(Traversal::PerLeaf { budget: Some(64) }),

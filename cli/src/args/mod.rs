@@ -39,7 +39,7 @@ pub struct Cli {
 pub enum Command {
     /// Find what touches: in one mesh, (--with) between two, or in a scene of many; in one frame, or step after step.
     Detect(Box<DetectArgs>),
-    /// Say what detect would run with the same arguments, on which machine and memory, and why.
+    /// Ask a frame and say what detect runs, holds and moves for each with the same arguments, what there is not, and why.
     Plan(Box<DetectArgs>),
     /// Say what every solver answers about one pair, and what the exact answer is.
     Explain(Box<ExplainArgs>),

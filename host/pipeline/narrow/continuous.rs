@@ -6,11 +6,11 @@ use super::{NarrowContext, Step};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::below_precision::{self, BelowPrecision};
-use crate::pipeline::launch;
 use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{Counter, GrowableOutput, List};
 use crate::pipeline::order::Order;
 use crate::pipeline::precision::Precision;
+use crate::pipeline::{launch, purpose};
 use crate::query::{Motion, Query, Solver};
 use nearmiss_kernels::abi::{CullArgs, Hit, Pair, SolveArgs, Span, counter};
 
@@ -86,7 +86,7 @@ impl Continuous {
             ]
             .map(Counter),
             below_precision: None,
-            earliest: earliest.then(|| device.buffer(1)).transpose()?,
+            earliest: earliest.then(|| device.of(purpose::EARLIEST).buffer(1)).transpose()?,
             ordered: (device.is_gpu() && !earliest)
                 .then(|| Order::new(device, layout, hits[0] / 4))
                 .transpose()?,

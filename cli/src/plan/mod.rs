@@ -1,21 +1,45 @@
 //! `plan`.
 
+mod table;
+
 use crate::args::DetectArgs;
 use crate::detect::{Question, question};
 use crate::output::print;
+use crate::progress::during;
 use nearmiss::Detector;
+use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::query::{Bv, Query, Traversal};
 use nearmiss::words::counted;
 use std::fmt::Write;
 use std::process::ExitCode;
 
-/// Says what `detect` would do.
+/// Asks a frame and says what `detect` would do for each: what runs, what is held and moved, and what there is not.
 pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
-    let Question { scene, query, .. } = question(args)?;
+    let Question { scene, query, sequence } = question(args)?;
     let device = args.machine.open()?;
-    let before = device.launches();
-    let detector = Detector::new(device.clone(), scene, query)?;
+    let mut detector = during("building", || Detector::new(device.clone(), scene, query))?;
+    let plan = during("asking a frame", || {
+        // Where bodies move from frame to frame, what moves them is a part of it.
+        for _ in 0..sequence.as_ref().filter(|all| all.frames > 1).map_or(0, |_| 2) {
+            let inputs =
+                sequence.as_ref().map(|all| all.inputs(detector.scene(), 0, query.motion.is_at_rest()));
+            detector.frame(&inputs.unwrap_or_default())?;
+        }
+        detector.plan()
+    })?;
+    let text = if args.json {
+        table::json(&detector, &device, &plan)?
+    } else {
+        choices(&detector, &device) + &table::text(&plan)
+    };
+    print(&text)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// What was chosen, and why.
+fn choices(detector: &Detector, device: &Device) -> String {
+    let query = detector.query();
     let mut text = String::new();
     for body in detector.scene().bodies() {
         let _ = writeln!(
@@ -78,22 +102,8 @@ pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
     if let Some(distance) = query.distance {
         let _ = writeln!(text, "distance   {distance:e}, as asked");
     }
-    let _ = writeln!(
-        text,
-        "tree       {}, built with {}",
-        detector
-            .depths()
-            .iter()
-            .map(|&n| counted(n as u64, "level", "levels"))
-            .collect::<Vec<_>>()
-            .join(" and "),
-        counted(device.launches() - before, "launch", "launches")
-    );
-    let _ = writeln!(
-        text,
-        "memory     {:.1} MB to begin with; lists grow to the demand",
-        device.bytes().0 as f64 / 1e6
-    );
-    print(&text)?;
-    Ok(ExitCode::SUCCESS)
+    let levels = detector.depths().iter().map(|&n| counted(n as u64, "level", "levels")).collect::<Vec<_>>();
+    let _ =
+        writeln!(text, "tree       {}", if levels.is_empty() { "none".into() } else { levels.join(" and ") });
+    text
 }
