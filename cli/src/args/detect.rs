@@ -146,6 +146,15 @@ pub struct DetectArgs {
     pub only: Option<Stage>,
 }
 
+#[derive(Args)]
+pub struct PlanArgs {
+    #[command(flatten)]
+    pub detect: DetectArgs,
+    /// Ask no frame: what was chosen, and times by what moves alone.
+    #[arg(long)]
+    pub no_run: bool,
+}
+
 impl DetectArgs {
     /// The query for bodies that move, or do not.
     pub fn query(&self, moving: bool) -> Query {

@@ -17,7 +17,7 @@ pub fn check(command: &Command, own: &ArgMatches) -> Result<(), Error> {
     let given = CommandLine(own);
     match command {
         Command::Detect(args) => detect(args, given),
-        Command::Plan(args) => plan(args, given),
+        Command::Plan(args) => plan(&args.detect, given),
         Command::Explain(args) => explain(args, given),
         Command::Scene(args) => scene(args, given),
         Command::Tables(args) => tables(args, given),

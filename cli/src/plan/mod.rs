@@ -1,47 +1,127 @@
 //! `plan`.
 
+mod calibrate;
+mod model;
 mod table;
+mod times;
 
-use crate::args::DetectArgs;
+use crate::args::PlanArgs;
+use crate::detect::notes::has_memory;
 use crate::detect::{Question, question};
 use crate::output::print;
 use crate::progress::during;
+use crate::sequence::Sequence;
+use model::Sample;
 use nearmiss::Detector;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
+use nearmiss::mesh::Body;
+use nearmiss::pipeline::mean_side;
+use nearmiss::plan::Plan;
 use nearmiss::query::{Bv, Query, Traversal};
+use nearmiss::scene::{BodyKind, Scene};
 use nearmiss::words::counted;
 use std::fmt::Write;
 use std::process::ExitCode;
 
-/// Asks a frame and says what `detect` would do for each: what runs, what is held and moved, and what there is not.
-pub fn plan(args: &DetectArgs) -> Result<ExitCode, Error> {
-    let Question { scene, query, sequence } = question(args)?;
-    let device = args.machine.open()?;
+/// Asks a frame and says what `detect` would do for each: what runs, is held and moved, how long it should take by what this machine
+/// does, and what there is not.
+pub fn plan(args: &PlanArgs) -> Result<ExitCode, Error> {
+    let Question { scene, query, sequence } = question(&args.detect)?;
+    let device = args.detect.machine.open()?;
     let mut detector = during("building", || Detector::new(device.clone(), scene, query))?;
-    let plan = during("asking a frame", || {
-        // Where bodies move from frame to frame, what moves them is a part of it.
-        for _ in 0..sequence.as_ref().filter(|all| all.frames > 1).map_or(0, |_| 2) {
-            let inputs =
-                sequence.as_ref().map(|all| all.inputs(detector.scene(), 0, query.motion.is_at_rest()));
-            detector.frame(&inputs.unwrap_or_default())?;
-        }
-        detector.plan()
+    let work = Work::of(detector.scene());
+    let measured = during("measuring this machine", || {
+        let side = mean_side(detector.scene().bodies());
+        has_memory(calibrate::model(&device, &query, side))
     })?;
-    let text = if args.json {
-        table::json(&detector, &device, &plan)?
+    let model = measured.filter(|_| !detector.depths().is_empty());
+    let frame = if args.no_run {
+        None
     } else {
-        choices(&detector, &device) + &table::text(&plan)
+        Some(during("asking a frame", || asked(&mut detector, sequence.as_ref(), &query))?)
+    };
+    let (plan, sample) = frame.unzip();
+    let uploads = sequence.is_some_and(|all| all.frames > 1);
+    let moving = [work.triangles, if uploads { work.vertices } else { 0.0 }];
+    let rows = model.as_ref().map(|model| times::rows(model, moving, sample.as_ref()));
+    let times = model.as_ref().zip(rows.as_ref());
+    let text = if args.detect.json {
+        table::json(&detector, &device, (plan.as_ref(), times))?
+    } else {
+        let mut text = choices(&detector, &device);
+        text.extend(plan.as_ref().map(table::text));
+        text.extend(times.map(|(model, rows)| times::text(model, rows)));
+        text
     };
     print(&text)?;
     Ok(ExitCode::SUCCESS)
 }
 
+/// What moves.
+struct Work {
+    triangles: f64,
+    vertices: f64,
+}
+
+impl Work {
+    fn of(scene: &Scene) -> Work {
+        let moving = || scene.bodies().iter().filter(|body| body.kind() != BodyKind::Static);
+        let triangles: usize = moving().map(Body::face_count).sum();
+        let vertices: usize = moving().map(Body::vertex_count).sum();
+        Work { triangles: triangles as f64, vertices: vertices as f64 }
+    }
+}
+
+/// Frames of which the medians are what was measured.
+pub const MEASURED: usize = 3;
+
+/// The plan of a frame, and one that is measured: each stage's launches, work and time.
+fn asked(
+    detector: &mut Detector,
+    sequence: Option<&Sequence>,
+    query: &Query,
+) -> Result<(Plan, [Sample; 7]), Error> {
+    // Where bodies move from frame to frame, what moves them is a part of it.
+    let moving = sequence.filter(|all| all.frames > 1);
+    let inputs =
+        |scene: &Scene| moving.map_or(Vec::new(), |all| all.inputs(scene, 0, query.motion.is_at_rest()));
+    for _ in 0..if moving.is_some() { 2 } else { 0 } {
+        let inputs = inputs(detector.scene());
+        detector.frame(&inputs)?;
+    }
+    let plan = detector.plan()?;
+    if !keeps_front(query) {
+        detector.rebuild()?;
+    }
+    let mut samples = Vec::new();
+    for _ in 0..MEASURED {
+        // A detector without inputs keeps the step that its bodies are in.
+        let found = if moving.is_some() {
+            let inputs = inputs(detector.scene());
+            detector.frame(&inputs)?
+        } else {
+            detector.detect()?
+        };
+        samples.push(calibrate::taken(&plan, &found));
+    }
+    Ok((plan, calibrate::medians(&samples)))
+}
+
+/// Whether a tree built anew would lose what the walk keeps.
+fn keeps_front(query: &Query) -> bool {
+    matches!(query.traversal, Some(Traversal::Front(_)))
+}
+
+/// Bodies that are told one by one.
+const MOST_TOLD: usize = 8;
+
 /// What was chosen, and why.
 fn choices(detector: &Detector, device: &Device) -> String {
     let query = detector.query();
     let mut text = String::new();
-    for body in detector.scene().bodies() {
+    let bodies = detector.scene().bodies();
+    for body in bodies.iter().take(MOST_TOLD) {
         let _ = writeln!(
             text,
             "{}: {}, {}, positions in {}, {}",
@@ -51,6 +131,9 @@ fn choices(detector: &Detector, device: &Device) -> String {
             if body.positions_t0().is_f64() { "f64" } else { "f32" },
             if body.is_moving() { "two frames" } else { "one frame" }
         );
+    }
+    if let Some(more) = bodies.len().checked_sub(MOST_TOLD).filter(|more| *more > 0) {
+        let _ = writeln!(text, "and {more} bodies more");
     }
     let _ = writeln!(
         text,

@@ -1,5 +1,7 @@
 //! A plan as tables, and as JSON.
 
+use super::model::Model;
+use super::times::Row;
 use nearmiss::Detector;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
@@ -57,7 +59,11 @@ fn stage_rows(text: &mut String, stage: &PlannedStage) {
 ///
 /// # Errors
 /// None that is known.
-pub fn json(detector: &Detector, device: &Device, plan: &Plan) -> Result<String, Error> {
+pub fn json(
+    detector: &Detector,
+    device: &Device,
+    (plan, times): (Option<&Plan>, Option<(&Model, &Vec<Row>)>),
+) -> Result<String, Error> {
     #[derive(Serialize)]
     struct All<'a> {
         device: String,
@@ -67,12 +73,14 @@ pub fn json(detector: &Detector, device: &Device, plan: &Plan) -> Result<String,
         solver: nearmiss::query::Solver,
         tolerance: Option<f64>,
         depths: Vec<usize>,
-        launches: u64,
-        bytes: u64,
-        bytes_to_device: u64,
-        bytes_to_host: u64,
+        launches: Option<u64>,
+        bytes: Option<u64>,
+        bytes_to_device: Option<u64>,
+        bytes_to_host: Option<u64>,
         #[serde(flatten)]
-        plan: &'a Plan,
+        plan: Option<&'a Plan>,
+        times: Option<&'a Vec<Row>>,
+        model: Option<&'a Model>,
     }
     let query = detector.query();
     let all = All {
@@ -83,11 +91,13 @@ pub fn json(detector: &Detector, device: &Device, plan: &Plan) -> Result<String,
         solver: query.solver(),
         tolerance: detector.tolerance(),
         depths: detector.depths(),
-        launches: plan.launches(),
-        bytes: plan.bytes(),
-        bytes_to_device: plan.bytes_to_device(),
-        bytes_to_host: plan.bytes_to_host(),
+        launches: plan.map(Plan::launches),
+        bytes: plan.map(Plan::bytes),
+        bytes_to_device: plan.map(Plan::bytes_to_device),
+        bytes_to_host: plan.map(Plan::bytes_to_host),
         plan,
+        times: times.map(|(_, rows)| rows),
+        model: times.map(|(model, _)| model),
     };
     serde_json::to_string(&all).map(|text| text + "\n").map_err(|e| Error::Bug { what: e.to_string() })
 }

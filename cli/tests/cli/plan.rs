@@ -60,3 +60,57 @@ fn what_cannot_meet_has_no_plan() {
         assert!(text.contains(part), "{part} is not in {text}");
     }
 }
+
+const STAGES: [&str; 8] = ["place", "construct", "fit", "refit", "traverse", "narrow", "order", "a frame"];
+
+#[test]
+fn times_are_predicted_and_measured() {
+    for question in [&["--discrete"][..], &["--continuous"], &["--earliest"], &["--near", "0.01"]] {
+        let scene = ["plan", "--scene", "soup-moving", "--triangles", "3000", "--backend", "cpu"];
+        let plan = summary(&[&scene[..], question, &["--json"]].concat());
+        let rows = plan["times"].as_array().expect("times");
+        assert!(rows.iter().map(|row| row["stage"].as_str()).eq(STAGES.map(Some)), "{question:?}");
+        for row in rows {
+            let [before, after, measured] = ["before_ms", "after_ms", "measured_ms"]
+                .map(|key| row[key].as_f64().unwrap_or_else(|| panic!("{key} of {row}")));
+            assert!([before, after, measured].iter().all(|ms| (0.0..60_000.0).contains(ms)), "{row}");
+            // Nothing is placed, and on a CPU nothing ordered; all else takes time.
+            let idle = ["place", "order"].contains(&row["stage"].as_str().expect("a name"));
+            assert_eq!((after > 0.0, measured > 0.0), (!idle, !idle), "{row}");
+            match row["ratio"].as_f64() {
+                Some(ratio) => assert!((ratio * after - measured).abs() < 1e-9 * measured, "{row}"),
+                None => assert!(idle, "{row}"),
+            }
+        }
+        // Both runs stand in the model, so that whoever doubts a prediction can make it again.
+        let costs = &plan["model"]["costs"];
+        let frame = &plan["model"]["samples"];
+        for (at, stage) in STAGES[..7].iter().enumerate() {
+            let number = |value: &Value| value.as_f64().expect("a number");
+            for run in [0, 1] {
+                let sample = &frame[at][run];
+                let made = number(&costs[at]["launch_ms"]) * number(&sample["launches"])
+                    + number(&costs[at]["item_ms"]) * number(&sample["items"]);
+                // Through both points, but where that would make a cost negative.
+                let positive = number(&costs[at]["launch_ms"]) > 0.0 && number(&costs[at]["item_ms"]) > 0.0;
+                let off = (made - number(&sample["ms"])).abs();
+                assert!(!positive || off < 1e-6 * (1.0 + made), "{stage}, {sample}: {made}");
+            }
+        }
+    }
+}
+
+#[test]
+fn without_a_frame_there_is_what_is_known_before() {
+    let scene = ["plan", "--scene", "soup-moving", "--triangles", "300", "--backend", "cpu", "--no-run"];
+    let plan = summary(&[&scene[..], &["--json"]].concat());
+    assert!(plan.get("frame").is_none() && plan["launches"].is_null(), "{plan}");
+    for row in plan["times"].as_array().expect("times") {
+        assert!(row["before_ms"].is_f64() && row["measured_ms"].is_null() && row["ratio"].is_null(), "{row}");
+    }
+    let text = ok(&scene);
+    assert!(text.contains("solver     certified") && text.contains("before     after  measured"), "{text}");
+    assert!(!text.contains("a frame: ") && !text.contains("memory: "), "{text}");
+    let refused = super::refused(2, &["detect", "--scene", "soup", "--no-run"]);
+    assert!(refused.contains("--no-run"), "{refused}");
+}

@@ -45,6 +45,8 @@ pub struct Bodies {
     pub deformable: [usize; 2],
     /// Vertices of all.
     pub vertices: usize,
+    /// Those of bodies that may move.
+    pub moving_vertices: usize,
 }
 
 /// A stage, and its launches.
@@ -107,6 +109,7 @@ impl Plan {
             };
             own[0] += 1;
             own[1] += body.face_count();
+            of.moving_vertices += if body.kind() == BodyKind::Static { 0 } else { body.vertex_count() };
         }
         let mut transfers: BTreeMap<&'static str, [Count; 2]> = BTreeMap::new();
         for (way, all) in [&frame.writes, &frame.reads].into_iter().enumerate() {
