@@ -60,7 +60,7 @@ pub mod scene;
 pub mod words;
 
 pub use contacts::{Answer, Contact, Contacts};
-pub use detector::Detector;
+pub use detector::{Detector, plan};
 pub use device::Device;
 pub use error::Error;
 pub use mesh::{Body, Mesh};

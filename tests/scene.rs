@@ -6,8 +6,12 @@ mod cost;
 mod edits;
 #[path = "scene/extremes.rs"]
 mod extremes;
+#[path = "scene/matrix.rs"]
+mod matrix;
 #[path = "scene/pairwise.rs"]
 mod pairwise;
+#[path = "scene/plan.rs"]
+mod plan;
 mod support;
 
 use nearmiss::contacts::{Contact, Contacts, NearPair, TrianglePair};

@@ -8,8 +8,10 @@ mod output;
 mod plan;
 mod progress;
 mod report;
+mod rows;
 mod scene;
 mod selftest;
+mod sequence;
 mod tables;
 mod trade;
 

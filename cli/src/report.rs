@@ -1,7 +1,8 @@
 //! Results as files: CSV and JSON.
 
 use crate::output::Target;
-use nearmiss::contacts::{Answer, Contact, Contacts, Kind, NearPair, Status, Summary, TrianglePair};
+use crate::rows::{Columns, Rows};
+use nearmiss::contacts::{Answer, Contact, Contacts, Kind, Summary, TrianglePair};
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
 use nearmiss::scene::BodyId;
@@ -12,6 +13,9 @@ use std::path::Path;
 /// What is said of an answer.
 #[derive(Serialize)]
 pub struct Report {
+    /// Of a sequence, which of its questions this is, counted from 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub step: Option<usize>,
     /// Its figures.
     #[serde(flatten)]
     pub summary: Summary,
@@ -37,7 +41,7 @@ impl FileFaces {
 
     /// The same answer in faces, ascending and each once: pairs of triangles of the same two faces become one, of contacts of a vertex with triangles
     /// of one face the earliest stays.
-    fn name(&self, answer: &Answer) -> Answer {
+    pub fn name(&self, answer: &Answer) -> Answer {
         match answer {
             Answer::Pairs(pairs) => {
                 let faces = |pair: &TrianglePair| {
@@ -73,7 +77,7 @@ impl FileFaces {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// `tri_a,tri_b` (`face_a,face_b`), or `kind,a,b,toi,toi_hi,status`, or
-    /// `kind,a,b,squared_distance,w0,w1,w2,closest`.
+    /// `kind,a,b,squared_distance,w0,w1,w2,closest`; before these the step and the bodies, where there are several.
     Csv,
     /// One object: the summary, and the rows under `contacts`.
     Json,
@@ -104,82 +108,29 @@ pub fn write(
     target: Target,
     format: Format,
     contacts: &Contacts,
-    (told, faces): (&Report, Option<&FileFaces>),
+    told: &Report,
+    (faces, names): (Option<&FileFaces>, Option<&[String]>),
 ) -> Result<(), Error> {
     let named = faces.map(|faces| faces.name(&contacts.answer));
     let answer = named.as_ref().unwrap_or(&contacts.answer);
-    let heads = if faces.is_some() { ["face_a", "face_b"] } else { ["tri_a", "tri_b"] };
+    let columns = Columns { step: None, names, faces: faces.is_some() };
     target.write(|out| match format {
-        Format::Csv => csv(out, answer, heads),
-        Format::Json => json(out, answer, told),
+        Format::Csv => {
+            let mut csv = csv::Writer::from_writer(out);
+            columns.head(&mut csv, answer)?;
+            columns.rows(&mut csv, answer)?;
+            csv.flush().map_err(|e| e.to_string())
+        }
+        Format::Json => json(out, told, Rows { answer, names }),
     })
 }
 
-/// Contacts as CSV. A number is printed as the shortest decimal that reads back to the same bits.
-fn csv(out: impl Write, answer: &Answer, heads: [&str; 2]) -> Result<(), String> {
-    let mut csv = csv::Writer::from_writer(out);
-    let wrote = match answer {
-        Answer::Pairs(pairs) => csv
-            .write_record(heads)
-            .and_then(|()| pairs.iter().try_for_each(|pair| csv.serialize(pair.triangles))),
-        Answer::Contacts(all) => csv
-            .write_record(["kind", "a", "b", "toi", "toi_hi", "status"])
-            .and_then(|()| all.iter().try_for_each(|c| csv.write_record(row(c)))),
-        Answer::Earliest(toi) => csv
-            .write_record(["earliest_toi"])
-            .and_then(|()| toi.iter().try_for_each(|toi| csv.write_record([toi.to_string()]))),
-        Answer::Near(near) => csv
-            .write_record(["kind", "a", "b", "squared_distance", "w0", "w1", "w2", "closest"])
-            .and_then(|()| near.iter().try_for_each(|pair| csv.write_record(near_row(pair)))),
-    };
-    wrote.map_err(|e| e.to_string())?;
-    csv.flush().map_err(|e| e.to_string())
-}
-
-fn kind(kind: Kind) -> String {
-    match kind {
-        Kind::Vf => "vf".into(),
-        Kind::Fv => "fv".into(),
-        Kind::Ee => "ee".into(),
-    }
-}
-
-fn near_row(pair: &NearPair) -> [String; 8] {
-    let [a, b] = [pair.a, pair.b].map(|i| i.to_string());
-    let [x, y, z] = pair.weights.map(|weight| weight.to_string());
-    [kind(pair.kind), a, b, pair.squared_distance.to_string(), x, y, z, pair.closest.name().into()]
-}
-
-fn row(c: &Contact) -> [String; 6] {
-    let status = match c.status {
-        Status::Contact => "contact",
-        Status::Certified => "certified",
-        Status::Unresolved => "unresolved",
-    };
-    let [a, b] = [c.a, c.b].map(|i| i.to_string());
-    [kind(c.kind), a, b, c.toi.to_string(), c.toi_hi.to_string(), status.into()]
-}
-
 /// The summary and the contacts as one JSON object.
-fn json(out: impl Write, answer: &Answer, summary: &Report) -> Result<(), String> {
+fn json(out: impl Write, summary: &Report, contacts: Rows) -> Result<(), String> {
     #[derive(Serialize)]
     struct Whole<'a> {
         summary: &'a Report,
         contacts: Rows<'a>,
     }
-    #[derive(Serialize)]
-    #[serde(untagged)]
-    enum Rows<'a> {
-        Pairs(Vec<[u32; 2]>),
-        Contacts(&'a [Contact]),
-        Earliest(Option<f64>),
-        Near(&'a [NearPair]),
-    }
-    let rows = match answer {
-        Answer::Pairs(pairs) => Rows::Pairs(pairs.iter().map(|pair| pair.triangles).collect()),
-        Answer::Contacts(all) => Rows::Contacts(all),
-        Answer::Earliest(toi) => Rows::Earliest(*toi),
-        Answer::Near(near) => Rows::Near(near),
-    };
-    serde_json::to_writer(out, &Whole { summary, contacts: rows }).map_err(|e| e.to_string())
+    serde_json::to_writer(out, &Whole { summary, contacts }).map_err(|e| e.to_string())
 }

@@ -18,13 +18,18 @@ mod near;
 mod numbers;
 #[path = "cli/output.rs"]
 mod output;
+#[path = "cli/plan.rs"]
+mod plan;
 #[path = "cli/repeat.rs"]
 mod repeat;
 #[path = "cli/scene.rs"]
 mod scene;
+#[path = "cli/scene_file.rs"]
+mod scene_file;
 #[path = "cli/selftest.rs"]
 mod selftest;
-
+#[path = "cli/sequence.rs"]
+mod sequence;
 #[path = "cli/with.rs"]
 mod with;
 #[path = "cli/words.rs"]
@@ -347,7 +352,7 @@ fn a_plan_is_what_would_run() {
         "linear",
         "certified: no contact is missed",
         "tolerance  7.62939453125e-6, about 1e-4 of the mean edge; at most 4096 boxes a pair",
-        "MB to begin with",
+        "a frame: ",
     ] {
         assert!(usual.contains(part), "{part} is not in {usual}");
     }

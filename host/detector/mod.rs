@@ -3,10 +3,11 @@
 mod away;
 mod edits;
 mod moves;
+pub mod plan;
 mod submit;
 
 use crate::contacts::{Contacts, Degraded, Summary};
-use crate::device::Device;
+use crate::device::{Device, Work};
 use crate::error::Error;
 use crate::memory;
 use crate::mesh::{Body, MAX_FACES, MAX_VERTICES};
@@ -55,6 +56,11 @@ pub struct Detector {
     f64s: bool,
     /// None where nothing can meet, or where memory ended: then the next frame asks for it again.
     pipeline: Option<Box<dyn Pipeline>>,
+    /// Frames answered since the pipeline began.
+    asked: u64,
+    /// What the last building of the trees did, and the last frame.
+    build: Work,
+    work: Work,
 }
 
 /// Fewest bytes of the host's memory that a triangle takes in a detector: its topology, and on a CPU its tree and first lists.
@@ -79,7 +85,7 @@ impl Detector {
         let or_default = |asked: Option<f64>| asked.unwrap_or_else(|| pipeline::of_edges(scene.bodies()));
         let tolerance = query.certified().map(|certified| or_default(certified.tolerance));
         let mut detector = Detector {
-            device,
+            device: device.for_one(),
             scene,
             layout: None,
             query,
@@ -89,6 +95,9 @@ impl Detector {
             largest: 0.0,
             f64s: false,
             pipeline: None,
+            asked: 0,
+            build: Work::default(),
+            work: Work::default(),
         };
         detector.begun()?;
         Ok(detector)
@@ -118,7 +127,9 @@ impl Detector {
             self.f64s = bodies.iter().any(Body::needs_f64);
             let query = self.asked();
             let mut pipeline = pipeline::pipeline(self.device.clone(), bodies, layout, query, self.f64s)?;
+            self.device.work();
             self.construct_ms = pipeline.construct()?;
+            (self.asked, self.build) = (0, self.device.work());
             self.pipeline = Some(pipeline);
         }
         Ok(self.pipeline.as_mut())
@@ -138,9 +149,11 @@ impl Detector {
     /// # Errors
     /// Those of the device.
     pub fn rebuild(&mut self) -> Result<(), Error> {
+        self.device.work();
         let Some(pipeline) = self.begun()? else { return Ok(()) };
         self.construct_ms = pipeline.construct()?;
         self.answered = false;
+        self.build = self.device.work();
         Ok(())
     }
 
@@ -149,6 +162,7 @@ impl Detector {
     /// # Errors
     /// Those of the device: [`Error::OutOfMemory`] when memory ends. There is no partial answer.
     pub fn detect(&mut self) -> Result<Contacts, Error> {
+        self.device.work();
         self.answer(Instant::now())
     }
 
@@ -161,6 +175,7 @@ impl Detector {
         let (found, stages) = pipeline.frame()?;
         let seen = found.seen;
         let contacts = contacts(found, stages, &layout)?;
+        (self.asked, self.work) = (self.asked + 1, self.device.work());
         self.complete(contacts, seen, start)
     }
 

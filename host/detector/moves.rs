@@ -18,6 +18,7 @@ impl Detector {
     /// [`Error::Input`] for positions that no mesh may have: then nothing has moved. Those of the device.
     pub fn frame(&mut self, inputs: &[(BodyId, Input)]) -> Result<Contacts, Error> {
         let start = Instant::now();
+        self.device.work();
         let named = self.put(inputs)?;
         let mut moved = Vec::with_capacity(inputs.len());
         for (body, (own, named)) in self.scene.bodies_mut().iter_mut().zip(named).enumerate() {

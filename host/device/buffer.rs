@@ -2,6 +2,7 @@
 
 #[cfg(feature = "cuda")]
 use super::cuda;
+use super::ledger::Ledger;
 use super::usage::Usage;
 use super::{Machine, emulator};
 use crate::error::Error;
@@ -24,6 +25,8 @@ pub struct Buffer<T> {
     pub(super) len: usize,
     pub(super) machine: Arc<Machine>,
     pub(super) usage: Arc<Usage>,
+    pub(super) ledger: Arc<Ledger>,
+    pub(super) purpose: &'static str,
     // None is held as such: whether `T` may be sent does not matter.
     pub(super) element: PhantomData<fn() -> T>,
 }
@@ -59,6 +62,7 @@ impl<T: Pod> Buffer<T> {
     pub fn write(&mut self, items: &[T]) -> Result<(), Error> {
         assert!(items.len() <= self.len, "more items than the buffer has elements");
         self.usage.count(&AtomicU64::new(0), "memory was written by the host")?;
+        self.ledger.wrote(self.purpose, size_of_val(items) as u64);
         let bytes: &[u8] = bytemuck::cast_slice(items);
         match (&mut self.memory, &*self.machine) {
             (Memory::Host(m), Machine::Emulator(e)) => {
@@ -88,6 +92,7 @@ impl<T: Pod> Buffer<T> {
     /// # Errors
     /// [`Error::Device`] with the driver's text.
     pub fn fill(&mut self, byte: u8) -> Result<(), Error> {
+        self.ledger.cleared(self.purpose, (self.len * size_of::<T>()) as u64);
         match (&mut self.memory, &*self.machine) {
             (Memory::Host(m), Machine::Emulator(e)) => {
                 let bytes = self.len * size_of::<T>();
@@ -114,6 +119,10 @@ impl<T: Pod> Buffer<T> {
     pub fn read(&self, len: usize) -> Result<Vec<T>, Error> {
         assert!(len <= self.len, "more items than the buffer has elements");
         self.usage.count(&self.usage.waits, "memory was read by the host")?;
+        let bytes = len * size_of::<T>();
+        if !self.is_known(bytes) {
+            self.ledger.read(self.purpose, bytes as u64);
+        }
         match (&self.memory, &*self.machine) {
             (Memory::Host(m), _) => Ok(bytemuck::cast_slice(m.as_slice(len * size_of::<T>())).to_vec()),
             #[cfg(feature = "cuda")]
@@ -128,10 +137,23 @@ impl<T: Pod> Buffer<T> {
     }
 }
 
+impl<T> Buffer<T> {
+    /// Whether so many bytes were read ahead, so that reading them moves nothing.
+    #[cfg_attr(not(feature = "cuda"), allow(unused_variables, reason = "the host reaches all memory"))]
+    pub(super) fn is_known(&self, bytes: usize) -> bool {
+        match (&self.memory, &*self.machine) {
+            #[cfg(feature = "cuda")]
+            (Memory::Gpu(m), Machine::Cuda(c)) => c.known(m, bytes).is_some(),
+            _ => false,
+        }
+    }
+}
+
 impl<T> Drop for Buffer<T> {
     fn drop(&mut self) {
         let bytes = (self.len * size_of::<T>()) as u64;
         self.usage.give(bytes);
+        self.ledger.gives(self.purpose, bytes);
         if let (Memory::Host(m), Machine::Emulator(e)) = (&self.memory, &*self.machine)
             && let Some(sanitizer) = e.sanitizer()
         {

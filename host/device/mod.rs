@@ -3,12 +3,15 @@
 mod buffer;
 #[cfg(feature = "cuda")]
 mod cuda;
+mod ledger;
 #[cfg(any(feature = "cuda", test))]
 mod ptx;
 mod usage;
 mod view;
 
 pub use buffer::Buffer;
+pub use ledger::Count;
+pub(crate) use ledger::Work;
 #[doc(hidden)]
 pub use nearmiss_emulator as emulator;
 pub use view::{Ahead, View};
@@ -20,6 +23,7 @@ use crate::words::counted;
 use buffer::Memory;
 use bytemuck::Pod;
 use emulator::{Emulator, Mode};
+use ledger::Ledger;
 use nearmiss_kernels::entry::Entry;
 use std::ffi::c_void;
 use std::marker::PhantomData;
@@ -53,6 +57,9 @@ impl Default for Backend {
 pub struct Device {
     machine: Arc<Machine>,
     usage: Arc<Usage>,
+    ledger: Arc<Ledger>,
+    /// What the memory is for that is taken next.
+    purpose: &'static str,
 }
 
 enum Machine {
@@ -127,7 +134,28 @@ impl Device {
     }
 
     fn with(machine: Machine) -> Device {
-        Device { machine: Arc::new(machine), usage: Arc::new(Usage::new()) }
+        let (usage, ledger) = (Arc::new(Usage::new()), Arc::new(Ledger::default()));
+        Device { machine: Arc::new(machine), usage, ledger, purpose: "of no purpose" }
+    }
+
+    /// The same machine, for one user of it: what that takes, launches and moves is counted by itself too.
+    pub(crate) fn for_one(&self) -> Device {
+        Device { ledger: Arc::new(Ledger::default()), ..self.clone() }
+    }
+
+    /// The same machine: memory that is taken from it is for that.
+    pub(crate) fn of(&self, purpose: &'static str) -> Device {
+        Device { purpose, ..self.clone() }
+    }
+
+    /// What this user launched and moved since this was last asked.
+    pub(crate) fn work(&self) -> Work {
+        self.ledger.work()
+    }
+
+    /// What this user holds, by purpose.
+    pub(crate) fn held(&self) -> std::collections::BTreeMap<&'static str, Count> {
+        self.ledger.held()
     }
 
     /// What the machine calls itself.
@@ -215,11 +243,14 @@ impl Device {
         };
         let memory = memory.inspect_err(|_| self.usage.give(bytes as u64))?;
         self.usage.peak.fetch_max(self.bytes().0, Ordering::Relaxed);
+        self.ledger.takes(self.purpose, bytes as u64);
         Ok(Buffer {
             memory,
             len,
             machine: self.machine.clone(),
             usage: self.usage.clone(),
+            ledger: self.ledger.clone(),
+            purpose: self.purpose,
             element: PhantomData,
         })
     }
@@ -255,6 +286,7 @@ impl Device {
         self.usage.launches.fetch_add(1, Ordering::Relaxed);
         #[cfg(feature = "cuda")]
         let sealed = self.usage.sealed.load(Ordering::Relaxed) > 0;
+        self.ledger.launched(E::NAME);
         match &*self.machine {
             // SAFETY: the caller's promise.
             Machine::Emulator(e) => unsafe { e.launch::<E>(blocks, args) }.map_err(Error::from),

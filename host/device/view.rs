@@ -46,12 +46,13 @@ impl<T> Drop for View<'_, T> {
 pub struct Ahead<'a> {
     memory: &'a Memory,
     bytes: usize,
+    purpose: &'static str,
 }
 
 impl<T: Pod> Buffer<T> {
     /// The first `len` elements, or as many as there are, for [`Device::read_ahead`].
     pub fn ahead(&self, len: usize) -> Ahead<'_> {
-        Ahead { memory: &self.memory, bytes: len.min(self.len) * size_of::<T>() }
+        Ahead { memory: &self.memory, bytes: len.min(self.len) * size_of::<T>(), purpose: self.purpose }
     }
 
     /// The first `len` elements, to look at; waits for all that was started before, unless they were read ahead.
@@ -66,7 +67,10 @@ impl<T: Pod> Buffer<T> {
         self.usage.count(&self.usage.waits, "memory was looked at by the host")?;
         let bytes = len * size_of::<T>();
         let elements = match (&self.memory, &*self.machine) {
-            (Memory::Host(m), _) => Elements::Here(bytemuck::cast_slice(m.as_slice(bytes))),
+            (Memory::Host(m), _) => {
+                self.ledger.read(self.purpose, bytes as u64);
+                Elements::Here(bytemuck::cast_slice(m.as_slice(bytes)))
+            }
             #[cfg(feature = "cuda")]
             (Memory::Gpu(m), Machine::Cuda(c)) => match c.known(m, bytes) {
                 Some(known) => Elements::Staged(known),
@@ -93,6 +97,7 @@ impl Device {
             Machine::Emulator(_) => Ok(()),
             #[cfg(feature = "cuda")]
             Machine::Cuda(c) => {
+                all.iter().for_each(|ahead| self.ledger.read(ahead.purpose, ahead.bytes as u64));
                 // What is of another machine is refused when it is asked for.
                 let card = all.iter().filter_map(|ahead| match ahead.memory {
                     Memory::Gpu(memory) => Some((memory, ahead.bytes)),

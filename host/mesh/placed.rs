@@ -9,8 +9,33 @@ use crate::scene::{BodyKind, DeviceInput, Input, Pose};
 pub type Bounds = [[f64; 3]; 2];
 
 impl Body {
+    /// The body, where a frame says: for scenes that begin there.
+    ///
+    /// ```
+    /// use nearmiss::scene::{Input, Pose};
+    /// use nearmiss::{Body, Mesh, mesh::Positions};
+    ///
+    /// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// let mesh = Mesh::new("a triangle", Positions::F32(corners), vec![[0, 1, 2]])?;
+    /// let body = Body::rigid(mesh).at(&Input::Pose(Pose::at([0.0, 0.0, 2.0])))?;
+    /// assert_eq!(body.poses()[0].translation, [0.0, 0.0, 2.0]);
+    /// # Ok::<(), nearmiss::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Body::check`].
+    pub fn at(mut self, input: &Input) -> Result<Body, Error> {
+        self.check(input)?;
+        self.put(input);
+        Ok(self)
+    }
+
     /// Whether the body can be where a frame says. Cost: a pass over the positions of a deformable body.
-    pub(crate) fn check(&self, input: &Input) -> Result<(), Error> {
+    ///
+    /// # Errors
+    /// [`Error::Choice`] for what its kind does not take and for a pose that is none; [`Error::Input`] for positions that no
+    /// mesh may have.
+    pub fn check(&self, input: &Input) -> Result<(), Error> {
         match (self.kind, input) {
             (BodyKind::Deformable, Input::At(t0)) => self.check_vertices(&[t0]),
             (BodyKind::Deformable, Input::Step(ends)) => self.check_vertices(ends),

@@ -173,6 +173,14 @@ pub enum Problem {
         /// Why.
         why: &'static str,
     },
+    /// A file of a scene that cannot be used.
+    #[error("{what}; {advice}")]
+    Scene {
+        /// The body, the key and the value.
+        what: String,
+        /// What to do.
+        advice: String,
+    },
     /// No such generated scene.
     #[error("is no scene; known are: {known}")]
     UnknownScene {

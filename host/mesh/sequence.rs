@@ -168,7 +168,13 @@ impl Body {
 
     /// The body with vertices merged that coincide in all of its frames, and how many were merged; as [`Mesh::weld`].
     pub fn weld(&self) -> (Body, usize) {
-        let vertices = self.vertices();
+        self.weld_through(&[])
+    }
+
+    /// The same of a body that goes on: merged are vertices that coincide in those frames too.
+    pub fn weld_through(&self, frames: &[Positions]) -> (Body, usize) {
+        let own = std::iter::once(&self.positions_t0).chain(&self.positions_t1);
+        let vertices = Vertices::of(&own.chain(frames).collect::<Vec<_>>(), &self.faces);
         let mut welded = self.clone();
         weld::rename(&vertices, &mut welded.faces, &mut welded.polygons);
         (welded, vertices.merged)

@@ -10,7 +10,7 @@ use super::tree::{Room, Tree, TreeSpec, broken, place};
 use super::volumes::Volumes;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
-use crate::pipeline::launch;
+use crate::pipeline::{launch, purpose};
 use crate::query::Refit;
 use nearmiss_kernels::abi::{
     BodyRecord, FilterArgs, GRAFTED, GraftArgs, Link, Node, NodeFilter, Positions, ROOT, Span, TreeBody,
@@ -58,7 +58,7 @@ impl<V: Kernels> Forest<V> {
         let room = if leaves > 0 { Room::Beside(leaves) } else { Room::Alone };
         let groups = V::group(axes) > 0;
         let tree = Tree::new(device, &TreeSpec { layout, bodies: moving, room, refit, groups })?;
-        let volumes = Volumes::new(device, &tree, (axes, margin))?;
+        let volumes = Volumes::new(&device.of(purpose::VOLUMES), &tree, (axes, margin))?;
         let records: &[BodyRecord] = if layout.has_filters() { &layout.records } else { &[] };
         let fixed = (leaves > 0).then(|| Fixed {
             bodies: fixed.clone(),
@@ -66,7 +66,7 @@ impl<V: Kernels> Forest<V> {
             starts: Vec::new(),
             refit,
         });
-        let records = device.upload(records)?;
+        let records = device.of(purpose::RECORDS).upload(records)?;
         Ok(Forest { tree, volumes, records, has_groups: layout.has_groups(), fixed })
     }
 

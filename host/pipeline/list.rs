@@ -21,7 +21,7 @@ impl<T: Pod> List<T> {
     /// # Errors
     /// [`Error::OutOfMemory`].
     pub fn new(device: &Device, name: &'static str, counter: u32, capacity: usize) -> Result<Self, Error> {
-        Ok(List { name, counter, entries: device.buffer(capacity.min(LONGEST as usize))? })
+        Ok(List { name, counter, entries: device.of(name).buffer(capacity.min(LONGEST as usize))? })
     }
 
     /// What a kernel is given.
@@ -128,6 +128,7 @@ impl<T: Pod> GrowableOutput for List<T> {
         }
         let wanted = (demand + demand / 8).min(LONGEST) as usize;
         // The old entries are not needed: the list is filled again.
+        let device = device.of(self.name);
         self.entries = device.buffer(0)?;
         self.entries = device.buffer(wanted)?;
         Ok(true)

@@ -11,6 +11,7 @@ mod order;
 mod placing;
 pub mod precision;
 mod prefix;
+pub(crate) mod purpose;
 mod sorter;
 mod timing;
 mod tolerance;

@@ -5,7 +5,7 @@ use super::list::{GrowableOutput, List};
 use super::sorter::{counted, sort, words};
 use crate::device::{Buffer, Device, View};
 use crate::error::Error;
-use crate::pipeline::launch;
+use crate::pipeline::{launch, purpose};
 use bytemuck::Pod;
 use nearmiss_kernels::abi::{BodyRecord, Named, OrderArgs, Span, counter};
 use nearmiss_kernels::entry::{self, Entry};
@@ -101,8 +101,9 @@ impl<T: Ordered> Order<T> {
             (0..KIND_BITS + 2 * self.bits).step_by(8).map(|at| at + self.number_bits()).collect();
         let words = bytes.len() * words(device, capacity as u32);
         if self.items[0].len() != capacity || self.counts.len() != words {
-            self.items = [device.buffer(capacity)?, device.buffer(capacity)?];
-            self.counts = device.buffer(words)?;
+            let keys = device.of(purpose::ORDER);
+            self.items = [keys.buffer(capacity)?, keys.buffer(capacity)?];
+            self.counts = keys.buffer(words)?;
         }
         self.counts.clear()?;
         let counts = self.counts.span();

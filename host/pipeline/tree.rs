@@ -7,7 +7,7 @@ use super::sorter::{counted, sort, words};
 use super::treelets::RefitPlan;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
-use crate::pipeline::launch;
+use crate::pipeline::{launch, purpose};
 use crate::query::Refit;
 use nearmiss_kernels::abi::{
     BodyRecord, Inner, Link, MOVING_ROOT, MortonArgs, NodeFilter, Positions, ROOT, Span, TreeArgs, TreeBody,
@@ -129,8 +129,8 @@ impl Tree {
         // Pairs of siblings begin behind the root; what is not used before it is counted too.
         let pairs = n + room.root() as usize / 2;
         let all = n + room.others() as usize;
-        let way = RefitPlan::new(device, refit, count, pairs)?;
-        let boxes = BOUNDS * table.len();
+        let way = RefitPlan::new(&device.of(purpose::REFIT), refit, count, pairs)?;
+        let (boxes, scratch) = (BOUNDS * table.len(), device.of(purpose::SCRATCH));
         let zeroed = boxes + (BYTES.len() + 1) * words(device, count) + way.zeroed();
         Ok(Tree {
             links: device.buffer(room.root() as usize - 1 + 2 * n)?,
@@ -138,7 +138,7 @@ impl Tree {
             leaf_nodes: device.buffer(n)?,
             firsts: device.buffer(if groups { pairs } else { 0 })?,
             levels: device.buffer(MAX_LEVELS as usize + 2)?,
-            filters: device.buffer(if layout.has_filters() { 2 * all } else { 0 })?,
+            filters: device.of(purpose::FILTERS).buffer(if layout.has_filters() { 2 * all } else { 0 })?,
             way,
             starts: Vec::new(),
             records: bodies.iter().map(|&body| layout.records[body]).collect(),
@@ -147,12 +147,12 @@ impl Tree {
             count,
             room,
             scratch: Scratch {
-                zeroed: device.buffer(zeroed)?,
-                items: [device.buffer(n)?, device.buffer(n)?],
-                inner: device.buffer(inner)?,
-                parents: device.buffer(inner)?,
-                depths: device.buffer(inner)?,
-                places: device.buffer(inner)?,
+                zeroed: scratch.buffer(zeroed)?,
+                items: [scratch.buffer(n)?, scratch.buffer(n)?],
+                inner: scratch.buffer(inner)?,
+                parents: scratch.buffer(inner)?,
+                depths: scratch.buffer(inner)?,
+                places: scratch.buffer(inner)?,
             },
         })
     }

@@ -19,6 +19,7 @@ use super::list::{GrowableOutput, List};
 use super::narrow::{Narrow, NarrowContext, narrow};
 use super::placing::{Moved, Placing, Whereabouts};
 use super::precision::Precision;
+use super::purpose;
 use super::timing::{Stage, Stages};
 use super::volumes::growth;
 use super::walk::{Walk, WalkContext, flags, walk};
@@ -133,12 +134,17 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
         let refit = query.refit_on(device.is_gpu());
         let mut pipeline = TypedPipeline {
             query,
-            faces: device.upload(&layout.faces)?,
-            vertices: Placing::new(&device, &layout, bodies, !still)?,
-            forest: Forest::new(&device, &layout, refit, (axes, growth(query.listed_within())))?,
-            counters: device.buffer(counter::COUNT as usize)?,
+            faces: device.of(purpose::FACES).upload(&layout.faces)?,
+            vertices: Placing::new(&device.of(purpose::VERTICES), &layout, bodies, !still)?,
+            forest: Forest::new(
+                &device.of(purpose::TREE),
+                &layout,
+                refit,
+                (axes, growth(query.listed_within())),
+            )?,
+            counters: device.of(purpose::COUNTERS).buffer(counter::COUNT as usize)?,
             pairs: List::new(&device, "candidate triangle pairs", counter::PAIRS, capacity)?,
-            walk: walk(&device, &query, triangles)?,
+            walk: walk(&device.of(purpose::WALK), &query, triangles)?,
             narrow: narrow(&device, &layout, &query, (capacity, few))?,
             reruns: 0,
             placing: None,
@@ -213,7 +219,7 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
                 Step::Order => self.narrow.ordered().into_iter().collect(),
             };
             for list in lists {
-                grown |= list.grow(&self.device, &counters)?;
+                grown |= list.grow(&self.device.of(purpose::WALK), &counters)?;
                 again.push(list.counter());
             }
             if !grown {

@@ -1,10 +1,10 @@
 //! What a scene costs: what moves, in launches that no number of bodies changes, and memory for what is there alone.
 
 use super::*;
-use nearmiss::query::{Refit, Traversal};
+use nearmiss::query::{Near, Refit, Traversal};
 
 /// A crate of twelve triangles; the pile is `n` of them in a row, each a little into the next.
-fn pile(n: usize, kind: fn(Mesh) -> Body, environments: bool) -> Scene {
+pub fn pile(n: usize, kind: fn(Mesh) -> Body, environments: bool) -> Scene {
     let mut scene = Scene::new();
     for i in 0..n {
         let corner = |k: usize| {
@@ -21,10 +21,12 @@ fn pile(n: usize, kind: fn(Mesh) -> Body, environments: bool) -> Scene {
 }
 
 /// As a GPU would go: launches then are a matter of the query.
-fn query(motion: QueryKind) -> Query {
-    support::asked::of(motion)
-        .with_refit(Refit::Treelets)
-        .with_traversal(Traversal::PerLeaf { budget: Some(64) })
+pub fn query(motion: QueryKind) -> Query {
+    let query = match motion {
+        QueryKind::Near => Query::near(Near::DISTANCE),
+        other => support::asked::of(other),
+    };
+    query.with_refit(Refit::Treelets).with_traversal(Traversal::PerLeaf { budget: Some(64) })
 }
 
 /// Launches of a frame in which every body that can is moved, bytes held, and what was found.

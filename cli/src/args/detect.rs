@@ -56,7 +56,8 @@ impl TraversalArg {
 
 #[derive(Args)]
 pub struct DetectArgs {
-    /// The mesh (.ply, .obj); with a second file, its positions at the end of the step.
+    /// The mesh (.ply, .obj); with a second file, its positions at the end of the step; with more, frame after frame. Or a scene
+    /// of bodies (.toml).
     #[arg(required_unless_present = "scene", num_args = 1.., value_name = "MESH")]
     pub meshes: Vec<PathBuf>,
     /// A generated scene instead of files.
@@ -137,7 +138,19 @@ pub struct DetectArgs {
     /// Ask the same frame this often (after one run to warm up) and report each stage's median.
     #[arg(long, default_value_t = 1, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u32>(1, 100_000))]
     pub repeat: u32,
+    /// Of several steps: build the tree anew every so many, where the mesh comes far [default: never, it is refitted].
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = some::<u32>())]
+    pub rebuild_every: Option<u32>,
     /// With --repeat: run the frame once, then only this stage so often, and report its median. For profilers.
     #[arg(long, value_parser = choice::<Stage>(), requires = "repeat", value_name = "STAGE")]
     pub only: Option<Stage>,
+}
+
+#[derive(Args)]
+pub struct PlanArgs {
+    #[command(flatten)]
+    pub detect: DetectArgs,
+    /// Ask no frame: what was chosen, and times by what moves alone.
+    #[arg(long)]
+    pub no_run: bool,
 }

@@ -7,10 +7,7 @@ use std::path::PathBuf;
 
 /// Parts the files. `--with` takes one file and may be given twice; files right behind it are its own as well where the mesh
 /// stands before it, and the mesh's where it does not.
-///
-/// # Errors
-/// [`Error::Choice`] for more than two of either.
-pub fn part(matches: &ArgMatches, meshes: &mut Vec<PathBuf>, with: &mut Vec<PathBuf>) -> Result<(), Error> {
+pub fn part(matches: &ArgMatches, meshes: &mut Vec<PathBuf>, with: &mut Vec<PathBuf>) {
     let places = |id| matches.indices_of(id).into_iter().flatten().collect::<Vec<_>>();
     let (of_mesh, mut of_with) = (places("meshes"), places("with"));
     let before = of_mesh.first() < of_with.first();
@@ -23,13 +20,32 @@ pub fn part(matches: &ArgMatches, meshes: &mut Vec<PathBuf>, with: &mut Vec<Path
             meshes.push(file);
         }
     }
-    for (of, files) in [("the mesh", meshes.len()), ("--with", with.len())] {
-        if files > 2 {
-            return Err(Error::Choice {
-                what: format!("{} for {of}", counted(files as u64, "file", "files")),
-                advice: "give one, or two for both ends of a step".into(),
-            });
-        }
+}
+
+/// A step has two ends.
+///
+/// # Errors
+/// [`Error::Choice`] for more than two of either.
+pub fn at_most_two(meshes: &[PathBuf], with: &[PathBuf]) -> Result<(), Error> {
+    match [("the mesh", meshes.len()), ("--with", with.len())].into_iter().find(|(_, files)| *files > 2) {
+        None => Ok(()),
+        Some((of, files)) => Err(Error::Choice {
+            what: format!("{} for {of}", counted(files as u64, "file", "files")),
+            advice: "give one, or two for both ends of a step".into(),
+        }),
     }
-    Ok(())
+}
+
+/// A mesh rests, or has as many frames as the other.
+///
+/// # Errors
+/// [`Error::Choice`] for different numbers of frames.
+pub fn as_many(meshes: &[PathBuf], with: &[PathBuf]) -> Result<(), Error> {
+    match (meshes.len(), with.len()) {
+        (a, b) if a < 2 || b < 2 || a == b => Ok(()),
+        (a, b) => Err(Error::Choice {
+            what: format!("{} for the mesh and {b} for --with", counted(a as u64, "file", "files")),
+            advice: "give each one, which rests, or as many as the other".into(),
+        }),
+    }
 }

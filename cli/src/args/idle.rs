@@ -17,7 +17,7 @@ pub fn check(command: &Command, own: &ArgMatches) -> Result<(), Error> {
     let given = CommandLine(own);
     match command {
         Command::Detect(args) => detect(args, given),
-        Command::Plan(args) => plan(args, given),
+        Command::Plan(args) => plan(&args.detect, given),
         Command::Explain(args) => explain(args, given),
         Command::Scene(args) => scene(args, given),
         Command::Tables(args) => tables(args, given),
@@ -86,8 +86,8 @@ fn of_single(scene: Option<&str>, given: CommandLine) -> Result<(), Error> {
 }
 
 fn plan(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
-    let why = "a plan runs nothing and writes nothing";
-    given.none_of(&["repeat", "only", "out", "json"], why, "leave it out, or ask detect")?;
+    let why = "a plan asks a frame for its costs alone";
+    given.none_of(&["repeat", "only", "out", "rebuild_every"], why, "leave it out, or ask detect")?;
     detect(args, given)
 }
 

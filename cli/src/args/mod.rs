@@ -11,7 +11,7 @@ mod selftest;
 mod tables;
 mod trade;
 
-pub use detect::DetectArgs;
+pub use detect::{DetectArgs, PlanArgs};
 pub use machine::{MachineArgs, ReportArgs};
 pub use number::whole;
 pub use scene::SceneArgs;
@@ -38,10 +38,10 @@ pub struct Cli {
 
 #[derive(Subcommand)]
 pub enum Command {
-    /// Find what touches: in one mesh, or (--with) between two.
+    /// Find what touches: in one mesh, (--with) between two, or in a scene of many; in one frame, or step after step.
     Detect(Box<DetectArgs>),
-    /// Say what detect would run with the same arguments, on which machine and memory, and why.
-    Plan(Box<DetectArgs>),
+    /// Ask a frame and say what detect runs, holds and moves for each with the same arguments, what there is not, and why.
+    Plan(Box<PlanArgs>),
     /// Say what every solver answers about one pair, and what the exact answer is.
     Explain(Box<ExplainArgs>),
     /// Write a benchmark scene as PLY frames.
@@ -89,11 +89,21 @@ pub fn parse() -> Result<Result<Command, ExitCode>, Error> {
     }
 }
 
+/// Gives both meshes of a question their files.
+fn several(own: &ArgMatches, args: &mut DetectArgs) -> Result<(), Error> {
+    files::part(own, &mut args.meshes, &mut args.with);
+    files::as_many(&args.meshes, &args.with)
+}
+
 /// Gives each mesh its files.
 fn sort_out(command: &mut Command, own: &ArgMatches) -> Result<(), Error> {
     match command {
-        Command::Detect(args) | Command::Plan(args) => files::part(own, &mut args.meshes, &mut args.with),
-        Command::Explain(args) => files::part(own, &mut args.meshes, &mut args.with),
+        Command::Detect(args) => several(own, args),
+        Command::Plan(args) => several(own, &mut args.detect),
+        Command::Explain(args) => {
+            files::part(own, &mut args.meshes, &mut args.with);
+            files::at_most_two(&args.meshes, &args.with)
+        }
         _ => Ok(()),
     }
 }

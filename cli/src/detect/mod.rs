@@ -1,18 +1,20 @@
 //! `detect`.
 
-mod notes;
+pub mod notes;
 mod text;
 
 use crate::args::DetectArgs;
 use crate::output::{Target, print, say};
 use crate::progress::during;
 use crate::report::{self, FileFaces, Report};
+use crate::sequence::{Sequence, is_scene, steps};
 use nearmiss::Detector;
 use nearmiss::contacts::Contacts;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh};
 use nearmiss::pipeline::Stages;
 use nearmiss::query::{Query, QueryKind, Traversal};
+use nearmiss::scene::Scene;
 use nearmiss::words::counted;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -31,12 +33,40 @@ pub fn body(files: &[PathBuf]) -> Result<Body, Error> {
     }
 }
 
-/// The bodies that the arguments name, welded where that was asked, and what is asked of them.
-pub fn question(args: &DetectArgs) -> Result<(Vec<Body>, Query), Error> {
-    if args.scene.is_none() {
+/// What the arguments ask.
+pub struct Question {
+    /// The bodies, as the first question has them.
+    pub scene: Scene,
+    /// What is asked of them.
+    pub query: Query,
+    /// All frames, of a scene's file and of more than two frames.
+    pub sequence: Option<Sequence>,
+}
+
+/// What the arguments ask: bodies are welded where that was asked.
+pub fn question(args: &DetectArgs) -> Result<Question, Error> {
+    let files = [&args.meshes, &args.with];
+    if args.scene.is_none() && !files.iter().any(|files| files.iter().any(|file| is_scene(file))) {
         // Before anything is read.
-        args.query([&args.meshes, &args.with].iter().any(|files| files.len() == 2))?;
+        let frames = files.map(Vec::len).into_iter().max().unwrap_or(1);
+        let query = args.query(frames > 1)?;
+        let steps = if frames < 3 { 1 } else { Sequence::steps_of(frames, query.kind().is_at_rest()) };
+        steps::check(args, steps)?;
     }
+    if args.scene.is_none()
+        && let Some(all) = during("reading", || Sequence::of(args))?
+    {
+        let query = args.query(all.frames > 1)?;
+        steps::check(args, all.steps(query.kind().is_at_rest()))?;
+        return Ok(Question { scene: all.scene(query.kind().is_at_rest())?, query, sequence: Some(all) });
+    }
+    let bodies = bodies(args)?;
+    let query = args.query(bodies.iter().any(Body::is_moving))?;
+    Ok(Question { scene: bodies.into(), query, sequence: None })
+}
+
+/// One mesh or two, at one frame or two.
+fn bodies(args: &DetectArgs) -> Result<Vec<Body>, Error> {
     let mut bodies = Vec::new();
     match &args.scene {
         Some(name) => bodies.push(during("making the scene", || {
@@ -59,8 +89,14 @@ pub fn question(args: &DetectArgs) -> Result<(Vec<Body>, Query), Error> {
             *body = welded;
         }
     }
-    let query = args.query(bodies.iter().any(Body::is_moving))?;
-    Ok((bodies, query))
+    Ok(bodies)
+}
+
+/// Says so where the answer is not certain.
+pub fn promise(query: &Query) {
+    if !query.solver().is_certain() {
+        say(&format!("the solver is {}", query.solver().promise()));
+    }
 }
 
 /// Finds contacts, writes and prints what was asked for.
@@ -69,12 +105,13 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
         Some(out) => Some((report::Format::of(out)?, Target::open(out)?)),
         None => None,
     };
-    let (bodies, query) = question(args)?;
-    let device = args.machine.open()?;
-    if !query.solver().is_certain() {
-        say(&format!("the solver is {}", query.solver().promise()));
+    let Question { scene, query, sequence } = question(args)?;
+    if let Some(all) = sequence.as_ref().filter(|all| all.steps(query.kind().is_at_rest()) > 1) {
+        return steps::detect(args, all, (scene, query), target);
     }
-    let mut detector = during("building", || Detector::new(device.clone(), bodies, query))?;
+    let device = args.machine.open()?;
+    promise(&query);
+    let mut detector = during("building", || Detector::new(device.clone(), scene, query))?;
     let often = if args.only.is_some() { 1 } else { args.repeat };
     let (contacts, runs) = during("detecting", || repeated(&mut detector, often))?;
     let mut summary = detector.summary(&contacts);
@@ -84,19 +121,26 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
         *summary.ms.of_mut(stage) = middle(times);
     }
     let faces = args.file_faces.then(|| FileFaces::of(detector.scene().bodies()));
-    let moves = notes::Moves::of(detector.scene().bodies());
+    let moves = match &sequence {
+        None => notes::Moves::of(detector.scene().bodies()),
+        Some(all) => notes::Moves::of_scene(all),
+    };
+    if let Some(all) = &sequence {
+        summary.frames = all.frames;
+    }
     let coincident = notes::coincident(detector.scene().bodies(), &contacts);
-    let again = (query.kind() == QueryKind::Earliest).then(|| detector.scene().bodies().to_vec());
+    let again = (query.kind() == QueryKind::Earliest).then(|| detector.scene().clone());
     // What it holds makes room.
     drop(detector);
     let pairs_at_start = match again {
-        Some(bodies) => during("looking at the start", || notes::at_start(device, bodies))?,
+        Some(scene) => during("looking at the start", || notes::at_start(device, scene))?,
         None => None,
     };
     let notes = notes::of(query.kind(), moves, &contacts, (pairs_at_start, coincident));
-    let told = Report { summary, pairs_at_start, notes };
+    let told = Report { step: None, summary, pairs_at_start, notes };
     if let Some((format, target)) = target {
-        report::write(target, format, &contacts, (&told, faces.as_ref()))?;
+        let names = sequence.as_ref().and_then(|all| all.names.as_deref());
+        report::write(target, format, &contacts, &told, (faces.as_ref(), names))?;
     }
     if args.json {
         let text = serde_json::to_string(&told).map_err(|e| Error::Bug { what: e.to_string() })?;

@@ -1,11 +1,13 @@
 //! What a user should know about an answer that is right and says little.
 
+use crate::sequence::Sequence;
 use nearmiss::Detector;
 use nearmiss::contacts::{Answer, Contacts};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
 use nearmiss::query::{Query, QueryKind};
+use nearmiss::scene::Scene;
 use nearmiss::words::counted;
 
 /// Whether anything moves within the step.
@@ -15,6 +17,8 @@ pub enum Moves {
     Yes,
     /// There is one frame of everything.
     OneFrame,
+    /// There is one frame of every body of a scene.
+    OneFrameOfScene,
     /// The frames are the same.
     SameFrames,
 }
@@ -29,6 +33,15 @@ impl Moves {
             (false, false) => Moves::OneFrame,
         }
     }
+
+    /// Whether the bodies of a scene move in its first step.
+    pub fn of_scene(all: &Sequence) -> Moves {
+        match (all.frames, all.moves(0)) {
+            (1, _) => Moves::OneFrameOfScene,
+            (_, true) => Moves::Yes,
+            (_, false) => Moves::SameFrames,
+        }
+    }
 }
 
 /// How many pairs of triangles meet at the start of the step already. A time of contact is silent about an edge that is
@@ -36,10 +49,18 @@ impl Moves {
 ///
 /// # Errors
 /// Those of the device, but for memory.
-pub fn at_start(device: Device, bodies: Vec<Body>) -> Result<Option<usize>, Error> {
-    let found = Detector::new(device, bodies, Query::discrete()).and_then(|mut all| all.detect());
-    match found {
-        Ok(contacts) => Ok(Some(contacts.len())),
+pub fn at_start(device: Device, scene: Scene) -> Result<Option<usize>, Error> {
+    let found = Detector::new(device, scene, Query::discrete()).and_then(|mut all| all.detect());
+    Ok(has_memory(found)?.map(|contacts| contacts.len()))
+}
+
+/// What was asked beside the answer; `None` where there is no memory for it.
+///
+/// # Errors
+/// All others.
+pub fn has_memory<T>(done: Result<T, Error>) -> Result<Option<T>, Error> {
+    match done {
+        Ok(done) => Ok(Some(done)),
         Err(Error::OutOfMemory { .. }) => Ok(None),
         Err(error) => Err(error),
     }
@@ -65,6 +86,9 @@ pub fn of(
     let why = match moves {
         Moves::OneFrame => {
             Some("there is one frame; give a second file with the positions at the end of the step")
+        }
+        Moves::OneFrameOfScene => {
+            Some("there is one frame of every body; give one that moves more `meshes` or `poses`")
         }
         Moves::SameFrames => Some("both frames are the same"),
         Moves::Yes => None,

@@ -39,12 +39,13 @@ fn the_other_mesh_may_stand_before_or_behind() {
 }
 
 #[test]
-fn three_files_are_too_many() {
+fn three_files_are_too_many_for_a_pair() {
     for (args, said) in [
-        (&["detect", "a", "--with", "b", "c", "d"][..], "3 files for --with"),
-        (&["detect", "--with", "b", "--with", "c", "--with", "d", "a"], "3 files for --with"),
-        (&["detect", "a", "b", "c"], "3 files for the mesh"),
-        (&["detect", "--with", "b", "a", "c", "d"], "3 files for the mesh"),
+        (&["explain", "a", "--with", "b", "c", "d", "--vf", "0", "0"][..], "3 files for --with"),
+        (
+            &["explain", "--with", "b", "--with", "c", "--with", "d", "a", "--vf", "0", "0"],
+            "3 files for --with",
+        ),
         (&["explain", "a", "b", "c", "--vf", "0", "0"], "3 files for the mesh"),
     ] {
         let text = refused(2, args);

@@ -8,12 +8,12 @@ use crate::device::{Ahead, Buffer, Device};
 use crate::error::Error;
 use crate::mesh::Body;
 use crate::pipeline::below_precision::{self, BelowPrecision};
-use crate::pipeline::launch;
 use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{Counter, GrowableOutput, List};
 use crate::pipeline::order::Order;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Hits, Listed};
+use crate::pipeline::{launch, purpose};
 use crate::query::{self, Certified, ContinuousSolver};
 use nearmiss_kernels::abi::{CullArgs, Hit, Pair, SolveArgs, Span, counter};
 
@@ -100,7 +100,7 @@ impl ContinuousNarrow {
     ) -> Result<Self, Error> {
         let capacities = Capacities { hits: [0, 0], ..Capacities::usual(room) };
         let narrow = ContinuousNarrow::new(device, layout, solver, capacities)?;
-        Ok(ContinuousNarrow { earliest: Some(device.buffer(1)?), ..narrow })
+        Ok(ContinuousNarrow { earliest: Some(device.of(purpose::EARLIEST).buffer(1)?), ..narrow })
     }
 
     /// Takes the memory, with room for so many.

@@ -3,10 +3,10 @@
 use super::NarrowContext;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
-use crate::pipeline::launch;
 use crate::pipeline::layout::Layout;
 use crate::pipeline::list::List;
 use crate::pipeline::precision::Precision;
+use crate::pipeline::{launch, purpose};
 use nearmiss_kernels::abi::{Facet, FeaturesArgs, Pair, counter};
 use nearmiss_kernels::entry::Entry;
 
@@ -29,8 +29,8 @@ impl Features {
         let facets: Vec<_> =
             layout.faces.iter().zip(&layout.face_edges).zip(&layout.owners).map(facet).collect();
         Ok(Features {
-            edges: device.upload(&layout.edges)?,
-            facets: device.upload(&facets)?,
+            edges: device.of(purpose::EDGES).upload(&layout.edges)?,
+            facets: device.of(purpose::FACETS).upload(&facets)?,
             candidates: [
                 List::new(device, "vertex/face candidates", counter::VF, vf)?,
                 List::new(device, "edge/edge candidates", counter::EE, ee)?,

@@ -9,7 +9,7 @@ use super::precision::Precision;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::mesh::{self, Body};
-use crate::pipeline::launch;
+use crate::pipeline::{launch, purpose};
 use crate::scene::{BodyKind, Pose};
 use bytemuck::Pod;
 use lent::LentMemory;
@@ -125,12 +125,12 @@ impl<R: Precision> Placing<R> {
         let mut placing = Placing {
             vertices: Vertices::new(device, moving, layout.starts[layout.bodies()].vertex as usize)?,
             rest_starts: rest_starts.collect(),
-            rest: device.upload(&rest)?,
+            rest: device.of(purpose::REST).upload(&rest)?,
             uploaded: Vertices::new(device, moving, 0)?,
             placements: device.buffer(0)?,
             poses: device.buffer(0)?,
             placed: Vec::new(),
-            lent: LentMemory::new(device)?,
+            lent: LentMemory::new(&device.of(purpose::LENT))?,
             last: Last::Host,
         };
         placing.vertices.write(bodies.iter())?;
@@ -219,17 +219,17 @@ impl<R: Precision> Placing<R> {
             return Ok(());
         }
         if uploaded as usize > self.uploaded.len() {
-            self.uploaded = Vertices::new(device, moving, uploaded as usize)?;
+            self.uploaded = Vertices::new(&device.of(purpose::UPLOADED), moving, uploaded as usize)?;
         }
         if uploaded > 0 {
             self.uploaded.write(uploads.iter().map(|&i| &bodies[i]))?;
         }
-        write(device, &mut self.poses, &poses)?;
+        write(&device.of(purpose::POSES), &mut self.poses, &poses)?;
         if placed != self.placed {
-            write(device, &mut self.placements, &placed)?;
+            write(&device.of(purpose::PLACEMENTS), &mut self.placements, &placed)?;
             self.placed = placed;
         }
-        self.lent.hold(device, lent, bodies.len() * ends)?;
+        self.lent.hold(&device.of(purpose::LENT), lent, bodies.len() * ends)?;
         let args = PlaceArgs {
             placements: self.placements.span().part(0, self.placed.len() as u64),
             uploaded: self.uploaded.span(),

@@ -5,11 +5,11 @@ use super::TypedPipeline;
 use crate::contacts::{DeviceAnswer, DeviceList};
 use crate::device::Buffer;
 use crate::error::Error;
-use crate::pipeline::launch;
 use crate::pipeline::list::GrowableOutput;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::timing::{Stage, Stages};
 use crate::pipeline::typed::Found;
+use crate::pipeline::{launch, purpose};
 use nearmiss_kernels::abi::{FrameStatus, NO_LIST, Room, StatusArgs, counter, seen};
 use nearmiss_kernels::entry::{Kernels, status_frame};
 
@@ -70,9 +70,10 @@ impl<R: Precision, V: Kernels> Submits for TypedPipeline<R, V> {
             rooms.extend(self.narrow.lists(step).iter().map(room));
         }
         rooms.extend(self.narrow.ordered().iter().map(room));
-        let mut unseen = self.device.buffer(seen::COUNT as usize)?;
+        let device = self.device.of(purpose::STATUS);
+        let mut unseen = device.buffer(seen::COUNT as usize)?;
         unseen.clear()?;
-        let (rooms, status) = (self.device.upload(&rooms)?, self.device.buffer(1)?);
+        let (rooms, status) = (device.upload(&rooms)?, device.buffer(1)?);
         self.submission = Some(Submission { rooms, status, unseen });
         // Once as it will be: the driver loads a kernel when it is first launched.
         self.enqueue()

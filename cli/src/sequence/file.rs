@@ -1,0 +1,203 @@
+//! Files of scenes: TOML, a table a body.
+
+use nearmiss::error::Error;
+use nearmiss::memory;
+use nearmiss::mesh::Problem;
+use nearmiss::scene::{BodyKind, Meets, Pose};
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+use toml::{Spanned, Table, Value};
+
+/// What a file says of a body.
+pub struct Described {
+    /// Its own, or its first mesh's.
+    pub name: String,
+    /// A mesh a frame, or one.
+    pub meshes: Vec<PathBuf>,
+    /// What it does.
+    pub kind: BodyKind,
+    /// A pose a frame, or one, or none.
+    pub poses: Vec<Pose>,
+    /// What it meets.
+    pub meets: Meets,
+    /// How messages call it: its name, and the line at which it begins.
+    pub called: String,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Whole {
+    #[serde(default)]
+    body: Vec<Spanned<Table>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BodyTable {
+    name: Option<String>,
+    mesh: Option<PathBuf>,
+    meshes: Option<Vec<PathBuf>>,
+    #[serde(default)]
+    kind: Kind,
+    poses: Option<Vec<PoseTable>>,
+    environment: Option<Value>,
+    group: Option<u32>,
+    mask: Option<u32>,
+    self_contact: Option<bool>,
+}
+
+#[derive(Clone, Copy, Default, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Kind {
+    Static,
+    Rigid,
+    #[default]
+    Deformable,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PoseTable {
+    #[serde(default = "no_rotation")]
+    rotation: [f64; 4],
+    #[serde(default)]
+    translation: [f64; 3],
+}
+
+fn no_rotation() -> [f64; 4] {
+    Pose::default().rotation
+}
+
+/// Most bytes of memory that a byte of a file takes: arrays of short numbers take most.
+const MULTIPLE: u64 = 64;
+
+/// What does not belong in a scene, as an error that names its file.
+pub fn wrong(file: &Path, what: impl Into<String>, advice: impl Into<String>) -> Error {
+    let problem = Problem::Scene { what: what.into(), advice: advice.into() };
+    Error::Input { file: file.display().to_string(), problem }
+}
+
+/// Reads a file of a scene; meshes are named, and not looked at.
+///
+/// # Errors
+/// [`Error::Input`], naming the file, the body, the key and the value.
+pub fn read(path: &Path) -> Result<Vec<Described>, Error> {
+    let text = text(path)?;
+    let line = |at: usize| 1 + text.as_bytes()[..at.min(text.len())].iter().filter(|b| **b == b'\n').count();
+    let whole: Whole = toml::from_str(&text).map_err(|e| {
+        let place = e.span().map_or(String::new(), |span| format!("line {}: ", line(span.start)));
+        wrong(path, format!("{place}{}", e.message()), "a scene is tables [[body]] of TOML")
+    })?;
+    if whole.body.is_empty() {
+        return Err(wrong(path, "has no bodies", "give each a table that begins with [[body]]"));
+    }
+    let count = whole.body.len();
+    let mut all: Vec<Described> = Vec::with_capacity(count);
+    for table in whole.body {
+        let body = described(path, line(table.span().start), table.into_inner(), count)?;
+        if let Some(other) = all.iter().find(|other| other.name == body.name) {
+            let what = format!("{} has the name of {}", body.called, other.called);
+            return Err(wrong(path, what, "give each a `name` of its own"));
+        }
+        all.push(body);
+    }
+    Ok(all)
+}
+
+fn text(path: &Path) -> Result<String, Error> {
+    let unreadable = |reason: String| {
+        let file = path.display().to_string();
+        Error::Input { file, problem: Problem::Unreadable { reason } }
+    };
+    let kind = std::fs::metadata(path).map_err(|e| unreadable(e.to_string()))?;
+    if !kind.is_file() {
+        // A pipe or a device may never end.
+        return Err(unreadable("it is not a regular file".into()));
+    }
+    let reading = format!("reading {}", path.display());
+    memory::require(&reading, kind.len().saturating_mul(MULTIPLE))?;
+    std::fs::read_to_string(path).map_err(|e| unreadable(e.to_string()))
+}
+
+fn described(path: &Path, line: usize, table: Table, bodies: usize) -> Result<Described, Error> {
+    let named = table.get("name").and_then(Value::as_str).map(str::to_owned);
+    let called = match &named {
+        Some(name) => format!("body {name:?} (line {line})"),
+        None => format!("the body of line {line}"),
+    };
+    let bad = |what: &str, advice: &str| wrong(path, format!("{called}: {what}"), advice);
+    let table: BodyTable = table.try_into().map_err(|e: toml::de::Error| {
+        // Where in the table it is follows on a line of its own.
+        bad(e.to_string().trim().replace('\n', ", ").as_str(), "README.md has the keys and what they take")
+    })?;
+    let meshes = match (table.mesh, table.meshes) {
+        (Some(mesh), None) => vec![mesh],
+        (None, Some(meshes)) if !meshes.is_empty() => meshes,
+        (None, Some(_)) => return Err(bad("`meshes` is empty", "name a file a frame, or one with `mesh`")),
+        (Some(_), Some(_)) => return Err(bad("both `mesh` and `meshes`", "give one of them")),
+        (None, None) => {
+            return Err(bad("no `mesh`", "name a file with `mesh`, or a file a frame with `meshes`"));
+        }
+    };
+    let kind = match table.kind {
+        Kind::Static => BodyKind::Static,
+        Kind::Rigid => BodyKind::Rigid,
+        Kind::Deformable => BodyKind::Deformable,
+    };
+    if meshes.len() > 1 && kind != BodyKind::Deformable {
+        let what = format!("{} `meshes` of a body that is {}", meshes.len(), name_of(kind));
+        return Err(bad(&what, "give it one with `mesh`, or make it deformable"));
+    }
+    let poses = match table.poses {
+        None => Vec::new(),
+        Some(_) if kind != BodyKind::Rigid => {
+            let what = format!("`poses` of a body that is {}", name_of(kind));
+            return Err(bad(&what, "leave them out, or make it rigid"));
+        }
+        Some(poses) if poses.is_empty() => {
+            return Err(bad("`poses` is empty", "give one a frame, or one, or leave it out"));
+        }
+        Some(poses) => {
+            let of = |pose: PoseTable| Pose { rotation: pose.rotation, translation: pose.translation };
+            poses.into_iter().map(of).collect()
+        }
+    };
+    let environment = match &table.environment {
+        None => Some(0),
+        Some(Value::String(all)) if all == "all" => None,
+        Some(Value::Integer(number)) if u32::try_from(*number).is_ok() => Some(*number as u32),
+        Some(other) => {
+            let what = format!("`environment` is {}", shown(other));
+            return Err(bad(&what, "give a number from 0 to 4294967295, or \"all\""));
+        }
+    };
+    let (group, mask) = (table.group.unwrap_or(u32::MAX), table.mask.unwrap_or(u32::MAX));
+    // A body alone is tested against itself, as a mesh of the command line is.
+    let self_contact = table.self_contact.unwrap_or(bodies == 1);
+    let stem = || crate::stem(&meshes[0]);
+    let name = table.name.unwrap_or_else(stem);
+    let called = format!("body {name:?} (line {line})");
+    let meets = Meets { environment, group, mask, self_contact };
+    Ok(Described { name, meshes, kind, poses, meets, called })
+}
+
+/// As a file names it.
+fn name_of(kind: BodyKind) -> &'static str {
+    match kind {
+        BodyKind::Static => "static",
+        BodyKind::Rigid => "rigid",
+        _ => "deformable",
+    }
+}
+
+/// A value of TOML, no more than a line's worth.
+fn shown(value: &Value) -> String {
+    let text = match value {
+        Value::String(text) => format!("{text:?}"),
+        Value::Integer(number) => number.to_string(),
+        Value::Float(number) => number.to_string(),
+        Value::Boolean(yes) => yes.to_string(),
+        other => format!("of type {}", other.type_str()),
+    };
+    text.chars().take(60).collect()
+}

@@ -1,0 +1,242 @@
+//! Several frames of several bodies: from a file of a scene, or from the frames of a mesh.
+
+mod file;
+pub mod steps;
+
+use crate::args::DetectArgs;
+use crate::output::say;
+use file::{Described, wrong};
+use nearmiss::error::Error;
+use nearmiss::memory;
+use nearmiss::mesh::{Body, Mesh, Positions};
+use nearmiss::scene::{BodyId, BodyKind, Input, Pose, Scene};
+use nearmiss::words::counted;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+/// Where a body is, frame by frame; of one entry it rests.
+enum Track {
+    /// A deformable body, or a static one.
+    Positions(Vec<Positions>),
+    /// A rigid body.
+    Poses(Vec<Pose>),
+}
+
+impl Track {
+    fn frames(&self) -> usize {
+        match self {
+            Track::Positions(all) => all.len(),
+            Track::Poses(all) => all.len(),
+        }
+    }
+
+    /// At a frame, or in the step from it to the next; of what rests there is nothing to say.
+    fn input(&self, at: usize, at_rest: bool) -> Option<Input<'_>> {
+        match self {
+            _ if self.frames() < 2 => None,
+            Track::Positions(all) if at_rest => Some(Input::At(&all[at])),
+            Track::Positions(all) => Some(Input::Step([&all[at], &all[at + 1]])),
+            Track::Poses(all) if at_rest => Some(Input::Pose(all[at])),
+            Track::Poses(all) => Some(Input::Poses([all[at], all[at + 1]])),
+        }
+    }
+}
+
+/// Bodies and their frames.
+pub struct Sequence {
+    /// Each as it is at the first frame.
+    bodies: Vec<Body>,
+    tracks: Vec<Track>,
+    /// How many frames there are: at least one.
+    pub frames: usize,
+    /// Of a file of a scene the bodies' names, by which rows tell them.
+    pub names: Option<Vec<String>>,
+}
+
+/// Whether a file is one of a scene.
+pub fn is_scene(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
+}
+
+impl Sequence {
+    /// What the arguments name, where that is a file of a scene or more than two frames of a mesh.
+    ///
+    /// # Errors
+    /// [`Error::Choice`] for files that do not go together; those of reading.
+    pub fn of(args: &DetectArgs) -> Result<Option<Sequence>, Error> {
+        let own = [&args.meshes, &args.with];
+        let scenes = own.iter().flat_map(|files| files.iter()).filter(|path| is_scene(path)).count();
+        let mut all = match &own {
+            [files, with] if scenes > 0 => match (&files[..], &with[..]) {
+                ([file], []) => Sequence::read(file)?,
+                _ => {
+                    return Err(Error::Choice {
+                        what: "a scene (.toml) beside other files".into(),
+                        advice: "give it alone: it names all meshes".into(),
+                    });
+                }
+            },
+            _ if own.iter().all(|files| files.len() < 3) => return Ok(None),
+            _ => {
+                let told = own.iter().filter(|files| !files.is_empty()).map(|files| of_mesh(files));
+                Sequence::new(told.collect::<Result<_, _>>()?, None)
+            }
+        };
+        if args.weld {
+            all.weld();
+        }
+        Ok(Some(all))
+    }
+
+    fn new(told: Vec<(Body, Track)>, names: Option<Vec<String>>) -> Sequence {
+        let frames = told.iter().map(|(_, track)| track.frames()).max().unwrap_or(1);
+        let (bodies, tracks) = told.into_iter().unzip();
+        Sequence { bodies, tracks, frames, names }
+    }
+
+    /// Reads a scene and all of its meshes.
+    fn read(path: &Path) -> Result<Sequence, Error> {
+        let described = file::read(path)?;
+        let counts = |body: &Described| body.meshes.len().max(body.poses.len());
+        let longest =
+            described.iter().max_by_key(|body| counts(body)).map(|body| (counts(body), &body.called));
+        for body in &described {
+            if let Some((most, other)) = longest.filter(|(most, _)| ![1, *most].contains(&counts(body))) {
+                let what = format!("{} has {} frames, and {other} has {most}", body.called, counts(body));
+                return Err(wrong(path, what, "give one, which rests, or as many as the others"));
+            }
+        }
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let mut read = HashMap::new();
+        let mut told = Vec::with_capacity(described.len());
+        for body in &described {
+            told.push(of_table(path, folder, body, &mut read)?);
+        }
+        Ok(Sequence::new(told, Some(described.into_iter().map(|body| body.name).collect())))
+    }
+
+    /// How many questions there are: of what stands still one a frame, else one a step.
+    pub fn steps(&self, at_rest: bool) -> usize {
+        Sequence::steps_of(self.frames, at_rest)
+    }
+
+    /// The same of so many frames.
+    pub fn steps_of(frames: usize, at_rest: bool) -> usize {
+        if at_rest { frames } else { frames.saturating_sub(1).max(1) }
+    }
+
+    /// The scene as the first question has it.
+    ///
+    /// # Errors
+    /// None: every frame has been looked at.
+    pub fn scene(&self, at_rest: bool) -> Result<Scene, Error> {
+        let mut bodies = Vec::with_capacity(self.bodies.len());
+        for (body, track) in self.bodies.iter().zip(&self.tracks) {
+            let body = body.clone();
+            bodies.push(match track.input(0, at_rest) {
+                Some(input) => body.at(&input)?,
+                None => body,
+            });
+        }
+        if self.names.is_none() {
+            return Ok(Scene::from(bodies));
+        }
+        let mut scene = Scene::new();
+        bodies.into_iter().for_each(|body| _ = scene.add(body));
+        Ok(scene)
+    }
+
+    /// Where bodies go for a question.
+    pub fn inputs<'a>(&'a self, scene: &Scene, step: usize, at_rest: bool) -> Vec<(BodyId, Input<'a>)> {
+        let inputs = self.tracks.iter().map(|track| track.input(step, at_rest));
+        scene.ids().zip(inputs).filter_map(|(id, input)| input.map(|input| (id, input))).collect()
+    }
+
+    /// Whether anything moves in a step.
+    pub fn moves(&self, step: usize) -> bool {
+        self.frames > 1
+            && self.tracks.iter().any(|track| match track {
+                _ if track.frames() < 2 => false,
+                Track::Positions(all) => all[step] != all[step + 1],
+                Track::Poses(all) => all[step] != all[step + 1],
+            })
+    }
+
+    fn weld(&mut self) {
+        for (body, track) in self.bodies.iter_mut().zip(&self.tracks) {
+            let frames: &[Positions] = if let Track::Positions(all) = track { all } else { &[] };
+            let (welded, merged) = body.weld_through(frames);
+            let vertices = counted(merged as u64, "vertex", "vertices");
+            say(&format!("{}: {vertices} merged", body.name()));
+            *body = welded;
+        }
+    }
+}
+
+/// A mesh and its positions frame after frame: all in double precision if any is.
+fn of_mesh(files: &[PathBuf]) -> Result<(Body, Track), Error> {
+    let Some((first, others)) = files.split_first() else {
+        return Err(Error::Bug { what: "a mesh without files".into() });
+    };
+    let mesh = Mesh::read(first)?;
+    let track = track(&mesh, others)?;
+    Ok((Body::still(mesh), track))
+}
+
+fn track(mesh: &Mesh, others: &[PathBuf]) -> Result<Track, Error> {
+    let mut frames = vec![mesh.positions().clone()];
+    for file in others {
+        frames.push(mesh.read_frame(file)?.positions().clone());
+    }
+    if frames.iter().any(Positions::is_f64) {
+        frames = frames.iter().map(|frame| Positions::F64(frame.to_f64())).collect();
+    }
+    Ok(Track::Positions(frames))
+}
+
+/// Fewest bytes that a copy of a mesh takes for each of its triangles.
+const OF_A_TRIANGLE: u64 = 20;
+
+/// A body of a scene; files that several bodies name are read once.
+fn of_table(
+    path: &Path,
+    folder: &Path,
+    table: &Described,
+    read: &mut HashMap<PathBuf, Mesh>,
+) -> Result<(Body, Track), Error> {
+    let files: Vec<PathBuf> = table.meshes.iter().map(|mesh| folder.join(mesh)).collect();
+    if !read.contains_key(&files[0]) {
+        read.insert(files[0].clone(), Mesh::read(&files[0])?);
+    }
+    let mesh = read[&files[0]].clone();
+    memory::require("the scene's bodies", mesh.face_count() as u64 * OF_A_TRIANGLE)?;
+    let track = match table.kind {
+        BodyKind::Rigid if table.poses.is_empty() => Track::Poses(vec![Pose::default()]),
+        BodyKind::Rigid => Track::Poses(table.poses.clone()),
+        _ => track(&mesh, &files[1..])?,
+    };
+    let body = match table.kind {
+        BodyKind::Static => Body::fixed(mesh),
+        BodyKind::Rigid => Body::rigid(mesh),
+        _ => Body::still(mesh),
+    };
+    let mut body = body.with(table.meets);
+    if let Track::Poses(poses) = &track {
+        for (at, pose) in poses.iter().enumerate() {
+            body.check(&Input::Pose(*pose)).map_err(|e| {
+                let what = format!("{}: `poses`, the one of frame {at}: {}", table.called, choice(&e).0);
+                wrong(path, what, choice(&e).1)
+            })?;
+        }
+        body = body.at(&Input::Pose(poses[0]))?;
+    }
+    Ok((body, track))
+}
+
+/// What was asked for, and what to do instead.
+fn choice(error: &Error) -> (String, String) {
+    match error {
+        Error::Choice { what, advice } => (what.clone(), advice.clone()),
+        other => (other.to_string(), "mend it".into()),
+    }
+}

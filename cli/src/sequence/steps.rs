@@ -1,0 +1,293 @@
+//! `detect` of several steps or frames, one after the other, by one detector.
+
+use super::Sequence;
+use crate::args::DetectArgs;
+use crate::detect::{notes, promise};
+use crate::output::{Target, print};
+use crate::progress::during;
+use crate::report::{FileFaces, Format, Report};
+use crate::rows::{Columns, Rows};
+use nearmiss::Detector;
+use nearmiss::contacts::Contacts;
+use nearmiss::device::Device;
+use nearmiss::error::Error;
+use nearmiss::query::{Query, QueryKind};
+use nearmiss::scene::Scene;
+use nearmiss::words::counted;
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::io::Write;
+use std::process::ExitCode;
+
+/// Why a sequence ended before its end.
+enum Stop {
+    /// The file of contacts could not be written.
+    File(String),
+    /// Anything else.
+    Other(Error),
+}
+
+impl From<Error> for Stop {
+    fn from(error: Error) -> Stop {
+        Stop::Other(error)
+    }
+}
+
+/// Where rows go.
+enum Out<'a> {
+    Nowhere,
+    Csv(Box<csv::Writer<&'a mut dyn Write>>),
+    Json(&'a mut dyn Write),
+}
+
+/// Refuses what one question takes, and several do not.
+///
+/// # Errors
+/// [`Error::Choice`].
+pub fn check(args: &DetectArgs, steps: usize) -> Result<(), Error> {
+    let refused = |option: &str, why: &str| {
+        let what = format!("{option} would do nothing: {why}");
+        Err(Error::Choice { what, advice: "leave it out, or ask one step or frame".into() })
+    };
+    match (steps > 1, args.rebuild_every) {
+        (true, _) if args.only.is_some() => refused("--only", "each of several steps runs once"),
+        (true, _) if args.repeat > 1 => refused("--repeat", "each of several steps runs once"),
+        (false, Some(_)) => Err(Error::Choice {
+            what: "--rebuild-every would do nothing: there is one step, and its tree is new".into(),
+            advice: "leave it out, or give more frames".into(),
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// Asks step after step; writes and prints what was asked for.
+///
+/// # Errors
+/// Those of the device, and of output.
+pub fn detect(
+    args: &DetectArgs,
+    all: &Sequence,
+    (scene, query): (Scene, Query),
+    target: Option<(Format, Target)>,
+) -> Result<ExitCode, Error> {
+    let device = args.machine.open()?;
+    promise(&query);
+    let steps = Steps::new(args, all, device, (scene, query))?;
+    let Some((format, target)) = target else {
+        return match steps.run(Out::Nowhere) {
+            Err(Stop::Other(error)) => Err(error),
+            Err(Stop::File(text)) => Err(Error::Bug { what: text }),
+            Ok(()) => Ok(ExitCode::SUCCESS),
+        };
+    };
+    let mut failed = None;
+    let written = target.write(|out| {
+        let out = match format {
+            Format::Csv => Out::Csv(Box::new(csv::Writer::from_writer(out as &mut dyn Write))),
+            Format::Json => Out::Json(out),
+        };
+        steps.run(out).map_err(|stop| match stop {
+            Stop::File(text) => text,
+            Stop::Other(error) => failed.insert(error).to_string(),
+        })
+    });
+    match failed {
+        Some(error) => Err(error),
+        None => written.map(|()| ExitCode::SUCCESS),
+    }
+}
+
+struct Steps<'a> {
+    args: &'a DetectArgs,
+    all: &'a Sequence,
+    query: Query,
+    detector: Detector,
+    /// Of an earliest query: what meets where steps begin; none where there is no memory for it.
+    starts: Option<Detector>,
+    faces: Option<FileFaces>,
+}
+
+impl Steps<'_> {
+    fn new<'a>(
+        args: &'a DetectArgs,
+        all: &'a Sequence,
+        device: Device,
+        (scene, query): (Scene, Query),
+    ) -> Result<Steps<'a>, Error> {
+        let faces = args.file_faces.then(|| FileFaces::of(scene.bodies()));
+        let starts = (query.kind() == QueryKind::Earliest).then(|| scene.clone());
+        let detector = during("building", || Detector::new(device.clone(), scene, query))?;
+        let start = |scene| notes::has_memory(Detector::new(device, scene, Query::discrete()));
+        let starts = starts.map_or(Ok(None), start)?;
+        Ok(Steps { args, all, query, detector, starts, faces })
+    }
+
+    fn run(mut self, mut out: Out) -> Result<(), Stop> {
+        let (at_rest, mut told, mut total) = (self.query.kind().is_at_rest(), Vec::new(), Total::default());
+        if let Out::Json(out) = &mut out {
+            out.write_all(b"{\"steps\":[").map_err(|e| Stop::File(e.to_string()))?;
+        }
+        for step in 0..self.all.steps(at_rest) {
+            let found = during(format!("step {step}"), || self.ask(step, at_rest))?;
+            let report = self.report(step, &found)?;
+            self.put(&mut out, &found, &report).map_err(Stop::File)?;
+            total.add(step, &found);
+            if self.args.json {
+                told.push(report);
+            } else {
+                let head = if step == 0 { self.head(&report) } else { String::new() };
+                print(&(head + &line(&report, at_rest)))?;
+            }
+        }
+        match &mut out {
+            Out::Nowhere => Ok(()),
+            Out::Csv(csv) => csv.flush().map_err(|e| e.to_string()),
+            Out::Json(out) => out.write_all(b"]}").map_err(|e| e.to_string()),
+        }
+        .map_err(Stop::File)?;
+        if self.args.json {
+            #[derive(Serialize)]
+            struct All {
+                steps: Vec<Report>,
+            }
+            let text = serde_json::to_string(&All { steps: told });
+            let text = text.map_err(|e| Error::Bug { what: e.to_string() })?;
+            print(&(text + "\n"))?;
+        } else {
+            print(&total.text(at_rest))?;
+        }
+        Ok(())
+    }
+
+    /// A detector begins where the first step does.
+    fn ask(&mut self, step: usize, at_rest: bool) -> Result<Contacts, Error> {
+        let anew = self.args.rebuild_every.is_some_and(|every| (step as u64).is_multiple_of(every.into()));
+        let inputs = self.all.inputs(self.detector.scene(), step, at_rest);
+        match step {
+            0 => self.detector.detect(),
+            _ if anew => {
+                self.detector.place(&inputs)?;
+                self.detector.rebuild()?;
+                self.detector.detect()
+            }
+            _ => self.detector.frame(&inputs),
+        }
+    }
+
+    /// The summary, and what else there is to say.
+    fn report(&mut self, step: usize, found: &Contacts) -> Result<Report, Error> {
+        let at_rest = self.query.kind().is_at_rest();
+        let mut summary = self.detector.summary(found);
+        summary.frames = if at_rest { 1 } else { 2 };
+        let (mut pairs_at_start, mut keep) = (None, self.starts.take());
+        if let Some(starts) = &mut keep {
+            let inputs = self.all.inputs(starts.scene(), step, true);
+            let met = if step == 0 { starts.detect() } else { starts.frame(&inputs) };
+            pairs_at_start = notes::has_memory(met)?.map(|met| met.len());
+        }
+        self.starts = keep.filter(|_| pairs_at_start.is_some());
+        let moves =
+            if at_rest || self.all.moves(step) { notes::Moves::Yes } else { notes::Moves::SameFrames };
+        // Of a mesh one word about its seams is enough.
+        let coincident = if step == 0 { notes::coincident(self.detector.scene().bodies(), found) } else { 0 };
+        let notes = notes::of(self.query.kind(), moves, found, (pairs_at_start, coincident));
+        Ok(Report { step: Some(step), summary, pairs_at_start, notes })
+    }
+
+    fn put(&self, out: &mut Out, found: &Contacts, report: &Report) -> Result<(), String> {
+        if matches!(out, Out::Nowhere) {
+            return Ok(());
+        }
+        let named = self.faces.as_ref().map(|faces| faces.name(&found.answer));
+        let (answer, names) = (named.as_ref().unwrap_or(&found.answer), self.all.names.as_deref());
+        match out {
+            Out::Nowhere => Ok(()),
+            Out::Csv(csv) => {
+                let columns = Columns { step: report.step, names, faces: named.is_some() };
+                if report.step == Some(0) {
+                    columns.head(csv, answer)?;
+                }
+                columns.rows(csv, answer)
+            }
+            Out::Json(out) => {
+                #[derive(Serialize)]
+                struct Step<'a> {
+                    step: Option<usize>,
+                    summary: &'a Report,
+                    contacts: Rows<'a>,
+                }
+                if report.step != Some(0) {
+                    out.write_all(b",").map_err(|e| e.to_string())?;
+                }
+                let step = Step { step: report.step, summary: report, contacts: Rows { answer, names } };
+                serde_json::to_writer(out, &step).map_err(|e| e.to_string())
+            }
+        }
+    }
+
+    /// What all steps have in common.
+    fn head(&self, report: &Report) -> String {
+        let summary = &report.summary;
+        format!(
+            "{}, {}, {}, {}; {:?} by {:?} on {}\n",
+            counted(self.detector.scene().ids().count() as u64, "body", "bodies"),
+            counted(summary.triangles as u64, "triangle", "triangles"),
+            counted(summary.vertices as u64, "vertex", "vertices"),
+            counted(self.all.frames as u64, "frame", "frames"),
+            summary.query,
+            summary.solver,
+            summary.device
+        )
+    }
+}
+
+/// A step on a line, and what a user should know of it below.
+fn line(report: &Report, at_rest: bool) -> String {
+    let summary = &report.summary;
+    let mut text = format!(
+        "{} {}: {}{}; ms {:.3}, waited for {:.3}; hash {}\n",
+        if at_rest { "frame" } else { "step" },
+        report.step.unwrap_or(0),
+        counted(summary.contacts as u64, "contact", "contacts"),
+        summary.earliest_toi.map_or(String::new(), |toi| format!(", the first at t = {toi}")),
+        summary.ms.total,
+        summary.ms.wall,
+        summary.hash
+    );
+    // Writing to a String cannot fail.
+    report.notes.iter().for_each(|note| _ = writeln!(text, "  {note}"));
+    summary.degraded.iter().for_each(|reason| _ = writeln!(text, "  degraded: {reason}"));
+    text
+}
+
+/// Of all steps.
+#[derive(Default)]
+struct Total {
+    steps: u64,
+    contacts: u64,
+    ms: [f64; 2],
+    first: Option<(usize, f64)>,
+}
+
+impl Total {
+    fn add(&mut self, step: usize, found: &Contacts) {
+        self.steps += 1;
+        self.contacts += found.len() as u64;
+        self.ms[0] += found.stages.total;
+        self.ms[1] += found.stages.wall;
+        self.first = self.first.or(found.earliest_toi().map(|toi| (step, toi)));
+    }
+
+    fn text(&self, at_rest: bool) -> String {
+        let [name, names] = if at_rest { ["frame", "frames"] } else { ["step", "steps"] };
+        format!(
+            "{} in {}{}; ms {:.3}, waited for {:.3}\n",
+            counted(self.contacts, "contact", "contacts"),
+            counted(self.steps, name, names),
+            self.first
+                .map_or(String::new(), |(step, toi)| format!(", the first in step {step} at t = {toi}")),
+            self.ms[0],
+            self.ms[1]
+        )
+    }
+}

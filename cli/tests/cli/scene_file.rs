@@ -1,0 +1,256 @@
+//! `detect scene.toml`: bodies of every kind, what a file may say, and what is wrong with it.
+
+use super::{Folder, ok, refused, summary};
+use serde_json::Value;
+
+/// A triangle in the plane z = 0, and one that goes through a plane a unit above its tip.
+fn meshes(folder: &Folder) {
+    folder.write("parts/flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    for (name, z) in [("tip", 0), ("tip_up", 1), ("tip_down", -1)] {
+        let text = format!("v 0.25 0.25 {z}\nv 0.25 0.5 {}\nv 5 5 {}\nf 1 2 3\n", z + 4, z + 4);
+        folder.write(&format!("parts/{name}.obj"), &text);
+    }
+}
+
+const FLAT: &str = "[[body]]\nname = \"flat\"\nmesh = \"parts/flat.obj\"\n";
+
+/// The flat body and another, which the text describes.
+fn beside(folder: &Folder, text: &str) -> String {
+    folder.write("scene.toml", &format!("{FLAT}\n[[body]]\nname = \"tip\"\n{text}\n"))
+}
+
+#[test]
+fn a_rigid_body_moves_as_its_vertices_would() {
+    let folder = Folder::new("scene-file");
+    meshes(&folder);
+    let ask =
+        |text: &str, more: &[&str]| summary(&[&["detect", &beside(&folder, text), "--json"], more].concat());
+    let poses = "mesh = \"parts/tip.obj\"\nkind = \"rigid\"\n\
+        poses = [{ translation = [0, 0, 1] }, { translation = [0.0, 0.0, -1.0], rotation = [0, 0, 0, 1] }]";
+    let vertices = "meshes = [\"parts/tip_up.obj\", \"parts/tip_down.obj\"]";
+    for more in [&[][..], &["--earliest"], &["--separation", "0.125"]] {
+        let [a, b] = [ask(poses, more), ask(vertices, more)];
+        assert_eq!(a["hash"], b["hash"], "{more:?}");
+        assert!(a["earliest_toi"].as_f64().is_some_and(|toi| toi <= 0.5), "{a}");
+        assert_eq!((a["frames"].as_u64(), a["notes"].as_array().map(Vec::len)), (Some(2), Some(0)), "{a}");
+    }
+    // What is given to files of meshes is given to those of scenes.
+    let files = ["parts/flat.obj", "parts/tip_up.obj", "parts/tip_down.obj"].map(|name| folder.path(name));
+    let [flat, up, down] = files.each_ref().map(String::as_str);
+    let two = summary(&["detect", flat, "--with", up, down, "--json"]);
+    assert_eq!(ask(vertices, &[])["hash"], two["hash"]);
+    // Frames at rest are asked one by one.
+    for text in [poses, vertices] {
+        let found = ask(text, &["--discrete"]);
+        let contacts: Vec<_> =
+            found["steps"].as_array().expect("steps").iter().map(|step| step["contacts"].as_u64()).collect();
+        assert_eq!(contacts, [Some(0), Some(1)]);
+    }
+    // A pose alone is where the body rests.
+    let rests = "mesh = \"parts/tip.obj\"\nkind = \"rigid\"\nposes = [{ translation = [0, 0, -1] }]";
+    assert_eq!(ask(rests, &[])["contacts"], 1);
+    assert_eq!(ask("mesh = \"parts/tip_up.obj\"\nkind = \"rigid\"", &[])["contacts"], 0);
+    let still = ask(rests, &["--continuous"]);
+    let note = still["notes"].as_array().and_then(|notes| notes[0].as_str()).expect("a note");
+    assert!(note.contains("nothing moves: there is one frame of every body"), "{note}");
+}
+
+#[test]
+fn who_meets_whom_is_told() {
+    let folder = Folder::new("scene-meets");
+    meshes(&folder);
+    let contacts = |text: &str| {
+        let path = beside(&folder, &format!("mesh = \"parts/tip_down.obj\"\n{text}"));
+        summary(&["detect", &path, "--json"])["contacts"].as_u64()
+    };
+    for (text, expected) in [
+        ("", 1),
+        ("environment = 0", 1),
+        ("environment = 1", 0),
+        ("environment = \"all\"", 1),
+        ("group = 2\nmask = 0xff", 1),
+        ("mask = 0", 0),
+        ("group = 0", 0),
+        ("kind = \"static\"", 1),
+        ("self_contact = true", 1),
+    ] {
+        assert_eq!(contacts(text), Some(expected), "{text}");
+    }
+    // One body alone is tested against itself, unless it says that it is not.
+    let crossed = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.2 0.2 -1\nv 0.2 0.3 1\nv 5 5 1\nf 1 2 3\nf 4 5 6\n";
+    folder.write("parts/crossed.obj", crossed);
+    for (text, expected) in [("", 1), ("self_contact = true", 1), ("self_contact = false", 0)] {
+        let path = folder.write("one.toml", &format!("[[body]]\nmesh = \"parts/crossed.obj\"\n{text}\n"));
+        assert_eq!(summary(&["detect", &path, "--json"])["contacts"], expected, "{text}");
+    }
+}
+
+#[test]
+fn rows_name_bodies() {
+    let folder = Folder::new("scene-rows");
+    meshes(&folder);
+    let text = format!(
+        "{FLAT}kind = \"static\"\n[[body]]\nname = \"a, \\\"quoted\\\"\"\nmesh = \"parts/tip.obj\"\nkind = \"rigid\"\n\
+         poses = [{{ translation = [0, 0, 1] }}, {{ translation = [0, 0, -1] }}, {{ translation = [0, 0, -2] }}]\n\
+         [[body]]\nmesh = \"parts/tip_down.obj\"\n"
+    );
+    let scene = folder.write("scene.toml", &text);
+    let [csv, json] = ["a.csv", "a.json"].map(|name| folder.path(name));
+    ok(&["detect", &scene, "--discrete", "--out", &csv]);
+    let rows = folder.read("a.csv");
+    let pair = "\"a, \"\"quoted\"\"\"";
+    let expected = format!(
+        "step,body_a,body_b,tri_a,tri_b\n0,flat,tip_down,0,0\n1,flat,{pair},0,0\n1,flat,tip_down,0,0\n\
+         1,{pair},tip_down,0,0\n2,flat,{pair},0,0\n2,flat,tip_down,0,0\n"
+    );
+    assert_eq!(rows, expected);
+    for question in [&["--discrete"][..], &["--continuous"], &["--near", "0.5"], &["--earliest"]] {
+        let told = |path: &str| ok(&[&["detect", scene.as_str(), "--out", path], question].concat());
+        told(&csv);
+        told(&json);
+        let whole: Value = serde_json::from_str(&folder.read("a.json")).expect("JSON");
+        let mut table = csv::Reader::from_path(&csv).expect("rows");
+        let heads = table.headers().expect("a head").clone();
+        let column = |name: &str| heads.iter().position(|head| head == name);
+        let rows: Vec<csv::StringRecord> = table.records().map(|row| row.expect("a row")).collect();
+        let mut at = 0;
+        for (number, step) in whole["steps"].as_array().expect("steps").iter().enumerate() {
+            let Some(all) = step["contacts"].as_array() else {
+                let toi = rows[at][1].parse::<f64>().ok();
+                assert_eq!((toi, rows[at][0].to_owned()), (step["contacts"].as_f64(), number.to_string()));
+                at += 1;
+                continue;
+            };
+            for row in all {
+                assert_eq!(rows[at][0], number.to_string());
+                for name in ["body_a", "body_b", "kind", "status", "closest"] {
+                    assert_eq!(column(name).map(|column| &rows[at][column]), row[name].as_str(), "{row}");
+                }
+                for (name, of) in [("a", &row["a"]), ("b", &row["b"]), ("tri_b", &row["triangles"][1])] {
+                    let cell = column(name).map(|column| rows[at][column].parse().expect("a number"));
+                    assert_eq!(cell, of.as_u64(), "{row}");
+                }
+                at += 1;
+            }
+        }
+        assert_eq!(at, rows.len(), "{question:?}");
+        assert!(at > 1, "{question:?}");
+    }
+    assert!(ok(&["plan", &scene]).contains("Continuous, between"));
+    // Of one frame there is no column of steps, and a summary as of meshes.
+    ok(&["detect", &beside(&folder, "mesh = \"parts/tip_down.obj\""), "--out", &csv, "--repeat", "2"]);
+    assert_eq!(folder.read("a.csv"), "body_a,body_b,tri_a,tri_b\nflat,tip,0,0\n");
+    ok(&["detect", &beside(&folder, "mesh = \"parts/tip_down.obj\""), "--out", &csv, "--file-faces"]);
+    assert_eq!(folder.read("a.csv"), "body_a,body_b,face_a,face_b\nflat,tip,0,0\n");
+}
+
+#[test]
+fn what_is_wrong_with_a_file_is_named() {
+    let folder = Folder::new("scene-wrong");
+    meshes(&folder);
+    let tip = "mesh = \"parts/tip.obj\"\n";
+    let poses = |text: &str| format!("{tip}kind = \"rigid\"\nposes = {text}");
+    let body = "body \"tip\" (line 5)";
+    let table: Vec<(String, Vec<&str>)> = vec![
+        (format!("{tip}colour = 3"), vec![body, "unknown field `colour`", "`self_contact`", "README.md"]),
+        (format!("{tip}kind = \"soft\""), vec![body, "unknown variant `soft`", "`rigid`", "in `kind`"]),
+        (format!("{tip}group = -1"), vec![body, "-1", "in `group`"]),
+        (format!("{tip}mask = 4294967296"), vec![body, "4294967296", "in `mask`"]),
+        (format!("{tip}self_contact = 1"), vec![body, "integer `1`", "boolean", "in `self_contact`"]),
+        (format!("{tip}environment = \"none\""), vec![body, "`environment` is \"none\"", "\"all\""]),
+        (format!("{tip}environment = -3"), vec![body, "`environment` is -3", "0 to 4294967295"]),
+        (format!("{tip}environment = [1]"), vec![body, "`environment` is of type array"]),
+        (format!("{tip}meshes = [\"parts/tip.obj\"]"), vec![body, "both `mesh` and `meshes`"]),
+        ("kind = \"rigid\"".into(), vec![body, "no `mesh`", "name a file"]),
+        ("meshes = []".into(), vec![body, "`meshes` is empty"]),
+        ("mesh = 3".into(), vec![body, "integer `3`", "in `mesh`"]),
+        (
+            "meshes = [\"parts/tip.obj\", \"parts/tip.obj\"]\nkind = \"static\"".into(),
+            vec![body, "2 `meshes` of a body that is static", "make it deformable"],
+        ),
+        (format!("{tip}poses = [{{}}]"), vec![body, "`poses` of a body that is deformable", "make it rigid"]),
+        (poses("[]"), vec![body, "`poses` is empty"]),
+        (poses("[{ turn = 1 }]"), vec![body, "unknown field `turn`", "in `poses`"]),
+        (poses("[{ translation = [1, 2] }]"), vec![body, "length 2", "`poses.translation`"]),
+        (poses("[{}, { rotation = [0, 0, 0, 2] }]"), vec![body, "frame 1", "2.0]", "unit quaternion"]),
+        (poses("[{ translation = [0, nan, 0] }]"), vec![body, "frame 0", "NaN", "finite translation"]),
+        (poses("[{ translation = [1e200, 0, 0] }]"), vec![body, "frame 0", "1e200", "2^480"]),
+        (format!("{tip}name = 3"), vec!["line 8", "duplicate key"]),
+        ("mesh = ".into(), vec!["line 7", "[[body]]"]),
+        ("mesh = \"parts/none.obj\"".into(), vec!["none.obj: cannot be read"]),
+        ("mesh = \"parts/tip.stl\"".into(), vec!["tip.stl: has the extension \"stl\""]),
+        (
+            format!("{}\n[[body]]\nmesh = \"parts/tip.obj\"", poses("[{}, {}, {}]")),
+            vec!["body \"tip\" (line 10) has the name of body \"tip\" (line 5)", "`name` of its own"],
+        ),
+        (
+            format!(
+                "{}\n[[body]]\nname = \"c\"\nkind = \"rigid\"\n{tip}poses = [{{}}, {{}}]",
+                poses("[{}, {}, {}]")
+            ),
+            vec![
+                "body \"c\" (line 10) has 2 frames, and body \"tip\" (line 5) has 3",
+                "as many as the others",
+            ],
+        ),
+    ];
+    for (text, said) in table {
+        let path = beside(&folder, &text);
+        for command in ["detect", "plan"] {
+            let message = refused(3, &[command, &path]);
+            assert_eq!(message.lines().count(), 1, "{message}");
+            assert!(
+                said[0].ends_with("read") || said[0].contains(".stl") || message.contains("scene.toml: "),
+                "{message}"
+            );
+            for word in &said {
+                assert!(message.contains(word), "{text}: {word} is not in {message}");
+            }
+        }
+    }
+    for (text, said) in [
+        ("", "has no bodies; give each a table"),
+        ("[[bodies]]\n", "line 1: unknown field `bodies`, expected `body`"),
+        ("body = 3\n", "line 1: invalid type: integer `3`"),
+        ("[[body]\n", "line 1"),
+        ("[[body]]\nkind = \"static\"\n", "the body of line 1: no `mesh`"),
+    ] {
+        let message = refused(3, &["detect", &folder.write("bad.toml", text)]);
+        assert!(message.contains("bad.toml: ") && message.contains(said), "{text}: {message}");
+    }
+    std::fs::write(folder.path("binary.toml"), [0xff, 0xfe, 0]).expect("written");
+    assert!(refused(3, &["detect", &folder.path("binary.toml")]).contains("binary.toml: cannot be read"));
+    assert!(refused(3, &["detect", &folder.path("missing.toml")]).contains("missing.toml: cannot be read"));
+    std::fs::create_dir(folder.path("folder.toml")).expect("a folder");
+    assert!(refused(3, &["detect", &folder.path("folder.toml")]).contains("not a regular file"));
+    let deep = format!("body = {}", "[".repeat(100_000));
+    assert!(refused(3, &["detect", &folder.write("deep.toml", &deep)]).contains("deep.toml: "));
+}
+
+#[test]
+fn a_scene_stands_alone() {
+    let folder = Folder::new("scene-alone");
+    meshes(&folder);
+    let (scene, flat) = (beside(&folder, "mesh = \"parts/tip.obj\""), folder.path("parts/flat.obj"));
+    let [scene, flat] = [&scene, &flat].map(String::as_str);
+    for args in [&[scene, flat][..], &[flat, scene], &[scene, scene], &[scene, "--with", flat]] {
+        let text = refused(2, &[&["detect"], args].concat());
+        assert!(text.contains("a scene (.toml) beside other files; give it alone"), "{args:?}: {text}");
+    }
+    assert!(refused(2, &["detect", scene, "--rebuild-every", "2"]).contains("there is one step"));
+    assert!(refused(3, &["explain", scene, "--vf", "0", "0"]).contains("\"toml\", which no reader knows"));
+    let moving = beside(&folder, "meshes = [\"parts/tip.obj\", \"parts/tip.obj\", \"parts/tip.obj\"]");
+    assert!(refused(2, &["detect", &moving, "--repeat", "2"]).contains("each of several steps runs once"));
+}
+
+#[test]
+fn the_scene_of_the_front_page_is_one() {
+    let folder = Folder::new("scene-readme");
+    let page = include_str!("../../../README.md");
+    let text = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a scene");
+    for name in ["cloth_0", "cloth_1", "cloth_2", "ball", "ground"] {
+        folder.write(&format!("{name}.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    }
+    let all = ok(&["detect", &folder.write("scene.toml", &text.replace(".ply", ".obj"))]);
+    assert!(all.starts_with("3 bodies, 3 triangles, 9 vertices, 3 frames; Continuous"), "{all}");
+}

@@ -1,0 +1,212 @@
+//! What a frame of a detector launches, holds and moves, and what there is not: told by what the device counted.
+
+mod left_out;
+mod words;
+
+use super::Detector;
+use crate::device::{Count, Work};
+use crate::error::Error;
+use crate::mesh::Body;
+use crate::scene::BodyKind;
+pub use left_out::LeftOut;
+use nearmiss_kernels::entry::TABLE;
+use std::collections::BTreeMap;
+
+/// What a detector does for a frame: [`Detector::plan`].
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Plan {
+    /// What is counted by body.
+    pub bodies: Bodies,
+    /// What the last building of the trees launched: once, until bodies come or go or [`Detector::rebuild`].
+    pub build: Vec<PlannedStage>,
+    /// What the frame launched, stage by stage.
+    pub frame: Vec<PlannedStage>,
+    /// Memory of the device that is held, by what it is for.
+    pub buffers: Vec<Buffer>,
+    /// What the frame copied to the device and brought back.
+    pub transfers: Vec<Transfer>,
+    /// Memory that the frame set to zero.
+    pub clears: Count,
+    /// What there is not, and why.
+    pub left_out: Vec<LeftOut>,
+}
+
+/// How many bodies there are of each kind, and their triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Bodies {
+    /// Static ones, and their triangles.
+    pub fixed: [usize; 2],
+    /// Rigid ones, and their triangles.
+    pub rigid: [usize; 2],
+    /// Deformable ones, and their triangles.
+    pub deformable: [usize; 2],
+    /// Vertices of all.
+    pub vertices: usize,
+    /// Those of bodies that may move.
+    pub moving_vertices: usize,
+}
+
+/// A stage, and its launches.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct PlannedStage {
+    /// Its name: `place`, `construct`, `fit`, `refit`, `traverse`, `balance`, `narrow`, `order`.
+    pub stage: &'static str,
+    /// What it is for.
+    pub what: &'static str,
+    /// Launches of all of its kernels.
+    pub launches: u64,
+    /// The kernels.
+    pub kernels: Vec<PlannedKernel>,
+}
+
+/// A kernel, and its launches.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct PlannedKernel {
+    /// Its name: that of the PTX entry and of a profiler's row.
+    pub kernel: &'static str,
+    /// What it does.
+    pub what: &'static str,
+    /// How often it is launched.
+    pub launches: u64,
+}
+
+/// Memory of the device.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Buffer {
+    /// What it is for.
+    pub what: &'static str,
+    /// How many pieces, and the bytes of all.
+    #[cfg_attr(feature = "serde", serde(flatten))]
+    pub held: Count,
+}
+
+/// What goes between the host and memory of the device in a frame.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct Transfer {
+    /// What the memory is for.
+    pub what: &'static str,
+    /// Copies from the host.
+    pub to_device: Count,
+    /// Copies to the host; on a CPU also what the host looks at where it lies.
+    pub to_host: Count,
+}
+
+impl Plan {
+    fn new(bodies: &[Body], (build, frame): (&Work, &Work), held: BTreeMap<&'static str, Count>) -> Plan {
+        let mut of = Bodies { vertices: bodies.iter().map(Body::vertex_count).sum(), ..Bodies::default() };
+        for body in bodies.iter().filter(|body| body.face_count() > 0) {
+            let own = match body.kind() {
+                BodyKind::Static => &mut of.fixed,
+                BodyKind::Rigid => &mut of.rigid,
+                BodyKind::Deformable => &mut of.deformable,
+            };
+            own[0] += 1;
+            own[1] += body.face_count();
+            of.moving_vertices += if body.kind() == BodyKind::Static { 0 } else { body.vertex_count() };
+        }
+        let mut transfers: BTreeMap<&'static str, [Count; 2]> = BTreeMap::new();
+        for (way, all) in [&frame.writes, &frame.reads].into_iter().enumerate() {
+            all.iter().for_each(|(what, count)| transfers.entry(what).or_default()[way] = *count);
+        }
+        let clears = frame.clears.values().fold(Count::default(), |all, own| Count {
+            count: all.count + own.count,
+            bytes: all.bytes + own.bytes,
+        });
+        let transfer = |(what, [to_device, to_host]): (_, [Count; 2])| Transfer { what, to_device, to_host };
+        Plan {
+            bodies: of,
+            build: stages(build, true),
+            frame: stages(frame, false),
+            buffers: held.into_iter().map(|(what, held)| Buffer { what, held }).collect(),
+            transfers: transfers.into_iter().map(transfer).collect(),
+            clears,
+            left_out: Vec::new(),
+        }
+    }
+
+    /// Launches of the frame.
+    pub fn launches(&self) -> u64 {
+        self.frame.iter().map(|stage| stage.launches).sum()
+    }
+
+    /// Bytes of the device that are held.
+    pub fn bytes(&self) -> u64 {
+        self.buffers.iter().map(|buffer| buffer.held.bytes).sum()
+    }
+
+    /// Bytes that the frame copied to the device.
+    pub fn bytes_to_device(&self) -> u64 {
+        self.transfers.iter().map(|transfer| transfer.to_device.bytes).sum()
+    }
+
+    /// Bytes that the frame brought to the host.
+    pub fn bytes_to_host(&self) -> u64 {
+        self.transfers.iter().map(|transfer| transfer.to_host.bytes).sum()
+    }
+
+    /// The stage of that name in the frame, where it has launches.
+    pub fn stage(&self, name: &str) -> Option<&PlannedStage> {
+        self.frame.iter().find(|stage| stage.stage == name)
+    }
+
+    /// The memory for that, where there is any.
+    pub fn buffer(&self, what: &str) -> Option<&Buffer> {
+        self.buffers.iter().find(|buffer| buffer.what == what)
+    }
+}
+
+/// Launches by stage.
+fn stages(work: &Work, building: bool) -> Vec<PlannedStage> {
+    let mut all: BTreeMap<usize, PlannedStage> = BTreeMap::new();
+    let mut launched: Vec<_> = work.launches.iter().collect();
+    // As data flows.
+    launched.sort_by_key(|(kernel, _)| TABLE.iter().position(|(name, _)| name == *kernel));
+    for (&kernel, &launches) in launched {
+        let (stage, what) = words::of(kernel, building);
+        let (name, purpose) = words::STAGES[stage];
+        let empty = || PlannedStage { stage: name, what: purpose, launches: 0, kernels: Vec::new() };
+        let own = all.entry(stage).or_insert_with(empty);
+        own.launches += launches;
+        own.kernels.push(PlannedKernel { kernel, what, launches });
+    }
+    all.into_values().collect()
+}
+
+impl Detector {
+    /// What a frame launches, holds and moves: what the device counted in the last one. Where fewer than two frames have been asked since
+    /// bodies came or went, they are asked now, with the bodies where they are: the first one finds out how long lists are, and waits
+    /// step by step. What [`Detector::frame`] uploads and places is in the plan if that was the last.
+    ///
+    /// ```
+    /// use nearmiss::{Body, Detector, Device, Mesh, Query, device::Backend, mesh::Positions, query::Motion};
+    ///
+    /// let corners = vec![[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, -1.0], [1.0, 2.0, 1.0], [9.0, 1.0, 9.0]];
+    /// let mesh = Mesh::new("two triangles", Positions::F32(corners), vec![[0, 1, 2], [3, 4, 5]])?;
+    /// let device = Device::open(Backend::Cpu, None)?;
+    /// let mut detector = Detector::new(device.clone(), Body::still(mesh), Query::of(Motion::Discrete))?;
+    /// let plan = detector.plan()?;
+    /// assert_eq!(plan.bytes(), device.bytes().0);
+    /// assert!(plan.stage("traverse").is_some() && plan.stage("place").is_none());
+    /// # Ok::<(), nearmiss::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Those of [`Detector::detect`].
+    pub fn plan(&mut self) -> Result<Plan, Error> {
+        self.begun()?;
+        while self.pipeline.is_some() && self.asked < 2 {
+            self.detect()?;
+        }
+        let layout = self.layout()?;
+        let mut plan = Plan::new(self.scene.bodies(), (&self.build, &self.work), self.device.held());
+        plan.left_out = left_out::of(&plan, &layout, &self.query, self.device.is_gpu());
+        Ok(plan)
+    }
+}

@@ -1,0 +1,90 @@
+//! What each kernel is for.
+
+/// The stages of a frame, in their order, and what each is for.
+pub const STAGES: [(&str, &str); 8] = [
+    ("place", "vertices where the frame puts them"),
+    ("construct", "the level-ordered tree"),
+    ("fit", "volumes of the leaves"),
+    ("refit", "volumes of all other nodes"),
+    ("traverse", "candidate triangle pairs"),
+    ("balance", "work queues made even"),
+    ("narrow", "contacts of the candidates"),
+    ("order", "contacts in canonical order"),
+];
+
+/// Kernels by how their names begin, the longer beginnings first, and what each does.
+const KERNELS: [(&str, &str); 39] = [
+    ("place", "poses applied, uploads put in place, the rest at rest"),
+    ("construct_bounds", "the box of each body's centres"),
+    ("construct_morton", "a code a triangle, behind its body's prefix"),
+    ("construct_treelets", "which leaves are refitted together"),
+    ("construct_tree", "the radix tree"),
+    ("construct_depth", "each node's depth"),
+    ("construct_places", "each node's place in its level"),
+    ("construct_emit", "nodes in level order"),
+    ("construct_graft", "the static tree behind the other, once"),
+    ("sort_pass", "a pass of the radix sort"),
+    ("fit_groups", "nodes of few leaves, from their points"),
+    ("fit", "a volume a leaf"),
+    ("refit_levels", "the volumes of a level"),
+    ("refit_treelets", "leaves and all other volumes in one launch"),
+    ("refit_bottom_up", "all volumes: of two siblings the second goes on"),
+    ("traverse_leaves", "a walk a leaf"),
+    ("traverse_units", "what long walks gave away"),
+    ("traverse_queue", "pairs of nodes from work queues"),
+    ("traverse_steal", "pairs of nodes from queues that help each other"),
+    ("traverse_front", "from where the last frame's descent ended"),
+    ("balance_copy", "as many units in each queue"),
+    ("narrow_moller", "the float test of two triangles"),
+    ("narrow_filter", "signs in the positions' precision"),
+    ("narrow_wide", "signs in f64 of what that left"),
+    ("narrow_exact", "exact signs of what is left"),
+    ("narrow_features_at_rest", "vertex/face and edge/edge pairs by their boxes"),
+    ("narrow_features", "vertex/face and edge/edge pairs by their boxes in motion"),
+    ("narrow_cull", "pairs that signs reject"),
+    ("narrow_vf", "vertex/face pairs, by the cubic"),
+    ("narrow_ee", "edge/edge pairs, by the cubic"),
+    ("narrow_below_precision", "contacts too large for the tolerance, counted"),
+    ("narrow_isolate", "roots isolated, each with a certificate"),
+    ("narrow_settle", "exact touching at the start"),
+    ("narrow_slice", "the step in slices, and the search by boxes"),
+    ("narrow_separate_first", "fixed supporting planes"),
+    ("narrow_separate", "supporting planes"),
+    ("narrow_near", "distances measured"),
+    ("order_keys", "a key a contact"),
+    ("order_gather", "contacts where their keys are"),
+];
+
+/// Which of the stages a kernel belongs to, and what it does; `building` tells what the radix sort sorts.
+pub fn of(kernel: &str, building: bool) -> (usize, &'static str) {
+    let what = KERNELS.iter().find(|(start, _)| kernel.starts_with(start)).map_or("", |(_, what)| what);
+    let own = kernel.split('_').next().unwrap_or_default();
+    let stage = match (own, building) {
+        ("sort", true) => "construct",
+        ("sort", false) => "order",
+        _ => own,
+    };
+    (STAGES.iter().position(|(name, _)| *name == stage).unwrap_or(STAGES.len() - 1), what)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nearmiss_kernels::entry::TABLE;
+
+    #[test]
+    fn every_kernel_has_its_stage_and_its_words() {
+        for (kernel, _) in TABLE {
+            let (stage, what) = of(kernel, true);
+            let own = kernel.split('_').next().expect("a name");
+            assert_eq!(STAGES[stage].0, if own == "sort" { "construct" } else { own }, "{kernel}");
+            assert!(!what.is_empty(), "{kernel}");
+        }
+        assert_eq!((STAGES[of("sort_pass", false).0].0, of("a_new_one", false).1), ("order", ""));
+        // The longer beginning comes first, so that none hides another.
+        for (at, (start, _)) in KERNELS.iter().enumerate() {
+            let hidden = KERNELS[..at].iter().find(|(before, _)| start.starts_with(before));
+            assert_eq!(hidden, None, "{start}");
+        }
+    }
+}
