@@ -10,7 +10,6 @@ use bytemuck::Pod;
 use nearmiss_kernels::abi::Span;
 use std::marker::PhantomData;
 use std::sync::Arc;
-use std::sync::atomic::AtomicU64;
 
 /// Memory of a machine.
 pub(super) enum Memory {
@@ -61,7 +60,7 @@ impl<T: Pod> Buffer<T> {
     /// When there are more items than elements: a fault of the caller.
     pub fn write(&mut self, items: &[T]) -> Result<(), Error> {
         assert!(items.len() <= self.len, "more items than the buffer has elements");
-        self.usage.count(&AtomicU64::new(0), "memory was written by the host")?;
+        self.usage.allows("memory was written by the host")?;
         self.ledger.wrote(self.purpose, size_of_val(items) as u64);
         let bytes: &[u8] = bytemuck::cast_slice(items);
         match (&mut self.memory, &*self.machine) {
@@ -118,7 +117,7 @@ impl<T: Pod> Buffer<T> {
     /// When the buffer has fewer elements: a fault of the caller.
     pub fn read(&self, len: usize) -> Result<Vec<T>, Error> {
         assert!(len <= self.len, "more items than the buffer has elements");
-        self.usage.count(&self.usage.waits, "memory was read by the host")?;
+        self.usage.waits("memory was read by the host")?;
         let bytes = len * size_of::<T>();
         if !self.is_known(bytes) {
             self.ledger.read(self.purpose, bytes as u64);

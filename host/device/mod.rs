@@ -4,6 +4,7 @@ mod buffer;
 #[cfg(feature = "cuda")]
 mod cuda;
 mod ledger;
+mod marks;
 #[cfg(any(feature = "cuda", test))]
 mod ptx;
 mod usage;
@@ -12,6 +13,7 @@ mod view;
 pub use buffer::Buffer;
 pub use ledger::Count;
 pub(crate) use ledger::Work;
+pub use marks::Event;
 #[doc(hidden)]
 pub use nearmiss_emulator as emulator;
 pub use view::{Ahead, View};
@@ -28,8 +30,7 @@ use nearmiss_kernels::entry::Entry;
 use std::ffi::c_void;
 use std::marker::PhantomData;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
+use std::sync::atomic::Ordering;
 use usage::Usage;
 
 named! {
@@ -223,7 +224,8 @@ impl Device {
     /// # Errors
     /// [`Error::OutOfMemory`] when the machine has no more, or may use no more: see [`Device::limited`].
     pub fn buffer<T: Pod>(&self, len: usize) -> Result<Buffer<T>, Error> {
-        self.usage.count(&self.usage.allocations, "memory was taken")?;
+        self.usage.allows("memory was taken")?;
+        self.usage.allocations.fetch_add(1, Ordering::Relaxed);
         let bytes = len.checked_mul(size_of::<T>()).ok_or(Error::OutOfMemory {
             what: "device memory".into(),
             asked: u64::MAX,
@@ -292,90 +294,6 @@ impl Device {
             Machine::Emulator(e) => unsafe { e.launch::<E>(blocks, args) }.map_err(Error::from),
             #[cfg(feature = "cuda")]
             Machine::Cuda(c) => c.launch::<E>(blocks, args, sealed),
-        }
-    }
-
-    /// A point in the stream of work, to measure from or to.
-    ///
-    /// # Errors
-    /// [`Error::Device`] with the driver's text.
-    pub fn event(&self) -> Result<Event, Error> {
-        self.usage.count(&AtomicU64::new(0), "a mark was made")?;
-        match &*self.machine {
-            Machine::Emulator(_) => Ok(Event::Host(Instant::now())),
-            #[cfg(feature = "cuda")]
-            Machine::Cuda(c) => Ok(Event::Gpu(c.event()?)),
-        }
-    }
-
-    /// How many kernels were launched so far.
-    pub fn launches(&self) -> u64 {
-        self.usage.launches.load(Ordering::Relaxed)
-    }
-
-    /// How often memory was taken so far.
-    pub fn allocations(&self) -> u64 {
-        self.usage.allocations.load(Ordering::Relaxed)
-    }
-
-    /// How often the host waited for the device so far.
-    pub fn waits(&self) -> u64 {
-        self.usage.waits.load(Ordering::Relaxed)
-    }
-
-    /// As long as the answer lives, taking memory, reading, writing and marks in time are refused: what is done only launches and
-    /// clears, so that a stream which is being captured takes it.
-    pub(crate) fn launches_only(&self) -> LaunchesOnly {
-        self.usage.sealed.fetch_add(1, Ordering::Relaxed);
-        LaunchesOnly { usage: self.usage.clone() }
-    }
-
-    /// Somebody else may have changed the device's memory: a graph that was launched again.
-    pub(crate) fn changed(&self) {
-        #[cfg(feature = "cuda")]
-        if let Machine::Cuda(c) = &*self.machine {
-            c.changes();
-        }
-    }
-
-    /// Bytes of device memory held now, and the most held at once.
-    pub fn bytes(&self) -> (u64, u64) {
-        (self.usage.bytes.load(Ordering::Relaxed), self.usage.peak.load(Ordering::Relaxed))
-    }
-}
-
-/// See [`Device::launches_only`].
-pub(crate) struct LaunchesOnly {
-    usage: Arc<Usage>,
-}
-
-impl Drop for LaunchesOnly {
-    fn drop(&mut self) {
-        self.usage.sealed.fetch_sub(1, Ordering::Relaxed);
-    }
-}
-
-/// A point in the stream of work.
-pub enum Event {
-    /// On the CPU.
-    Host(Instant),
-    /// On the GPU.
-    #[cfg(feature = "cuda")]
-    Gpu(cuda::Event),
-}
-
-impl Event {
-    /// Milliseconds from this mark to a later one; waits for it.
-    ///
-    /// # Errors
-    /// [`Error::Device`] with the driver's text.
-    pub fn to(&self, later: &Event) -> Result<f64, Error> {
-        match (self, later) {
-            (Event::Host(a), Event::Host(b)) => Ok(b.duration_since(*a).as_secs_f64() * 1e3),
-            #[cfg(feature = "cuda")]
-            (Event::Gpu(a), Event::Gpu(b)) => a.to(b),
-            #[cfg(feature = "cuda")]
-            _ => Err(Error::Bug { what: "two marks of different machines".into() }),
         }
     }
 }

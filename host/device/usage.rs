@@ -30,16 +30,21 @@ impl Usage {
         Usage { launches, bytes, peak, allocations, waits, sealed, views, most: AtomicU64::new(u64::MAX) }
     }
 
-    /// Counts one more, of what is no launch.
+    /// Whether more than launches is allowed now.
     ///
     /// # Errors
-    /// [`Error::Bug`], saying `what`, where only launches are allowed.
-    pub fn count(&self, counter: &AtomicU64, what: &str) -> Result<(), Error> {
+    /// [`Error::Bug`], saying `what` was done, where it is not.
+    pub fn allows(&self, what: &str) -> Result<(), Error> {
         if self.sealed.load(Ordering::Relaxed) > 0 {
             return Err(Error::Bug { what: format!("{what} in a frame that only launches") });
         }
-        counter.fetch_add(1, Ordering::Relaxed);
         Ok(())
+    }
+
+    /// The same of what makes the host wait, which is counted.
+    pub fn waits(&self, what: &str) -> Result<(), Error> {
+        self.waits.fetch_add(1, Ordering::Relaxed);
+        self.allows(what)
     }
 
     /// So many bytes more are held; or, where they are too many, how many may be.

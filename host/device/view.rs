@@ -64,7 +64,7 @@ impl<T: Pod> Buffer<T> {
     /// When the buffer has fewer elements: a fault of the caller.
     pub fn view(&self, len: usize) -> Result<View<'_, T>, Error> {
         assert!(len <= self.len, "more items than the buffer has elements");
-        self.usage.count(&self.usage.waits, "memory was looked at by the host")?;
+        self.usage.waits("memory was looked at by the host")?;
         let bytes = len * size_of::<T>();
         let elements = match (&self.memory, &*self.machine) {
             (Memory::Host(m), _) => {
@@ -92,7 +92,7 @@ impl Device {
     /// [`Error::Device`] with the driver's text, also of a kernel that failed before.
     #[cfg_attr(not(feature = "cuda"), allow(unused_variables, reason = "the host reaches all memory"))]
     pub fn read_ahead(&self, all: &[Ahead]) -> Result<(), Error> {
-        self.usage.count(&self.usage.waits, "memory was read by the host")?;
+        self.usage.waits("memory was read by the host")?;
         match &*self.machine {
             Machine::Emulator(_) => Ok(()),
             #[cfg(feature = "cuda")]

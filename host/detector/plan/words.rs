@@ -1,7 +1,7 @@
 //! What each kernel is for.
 
 /// The stages of a frame, in their order, and what each is for.
-pub const STAGES: [(&str, &str); 8] = [
+pub const STAGES: [(&str, &str); 9] = [
     ("place", "vertices where the frame puts them"),
     ("construct", "the level-ordered tree"),
     ("fit", "volumes of the leaves"),
@@ -10,10 +10,14 @@ pub const STAGES: [(&str, &str); 8] = [
     ("balance", "work queues made even"),
     ("narrow", "contacts of the candidates"),
     ("order", "contacts in canonical order"),
+    ("status", "whether a submitted frame is whole"),
 ];
 
+/// Where what no stage names is told.
+const ORDER: usize = 7;
+
 /// Kernels by how their names begin, the longer beginnings first, and what each does.
-const KERNELS: [(&str, &str); 39] = [
+const KERNELS: [(&str, &str); 40] = [
     ("place", "poses applied, uploads put in place, the rest at rest"),
     ("construct_bounds", "the box of each body's centres"),
     ("construct_morton", "a code a triangle, behind its body's prefix"),
@@ -53,6 +57,7 @@ const KERNELS: [(&str, &str); 39] = [
     ("narrow_near", "distances measured"),
     ("order_keys", "a key a contact"),
     ("order_gather", "contacts where their keys are"),
+    ("status_frame", "counts beside the room of each list"),
 ];
 
 /// Which of the stages a kernel belongs to, and what it does; `building` tells what the radix sort sorts.
@@ -64,7 +69,7 @@ pub fn of(kernel: &str, building: bool) -> (usize, &'static str) {
         ("sort", false) => "order",
         _ => own,
     };
-    (STAGES.iter().position(|(name, _)| *name == stage).unwrap_or(STAGES.len() - 1), what)
+    (STAGES.iter().position(|(name, _)| *name == stage).unwrap_or(ORDER), what)
 }
 
 #[cfg(test)]

@@ -1,0 +1,96 @@
+//! Points in the stream of work, and what a device counts.
+
+#[cfg(feature = "cuda")]
+use super::cuda;
+use super::usage::Usage;
+use super::{Device, Machine};
+use crate::error::Error;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+impl Device {
+    /// A point in the stream of work, to measure from or to.
+    ///
+    /// # Errors
+    /// [`Error::Device`] with the driver's text.
+    pub fn event(&self) -> Result<Event, Error> {
+        self.usage.allows("a mark was made")?;
+        match &*self.machine {
+            Machine::Emulator(_) => Ok(Event::Host(Instant::now())),
+            #[cfg(feature = "cuda")]
+            Machine::Cuda(c) => Ok(Event::Gpu(c.event()?)),
+        }
+    }
+
+    /// How many kernels were launched so far.
+    pub fn launches(&self) -> u64 {
+        self.usage.launches.load(Ordering::Relaxed)
+    }
+
+    /// How often memory was taken so far.
+    pub fn allocations(&self) -> u64 {
+        self.usage.allocations.load(Ordering::Relaxed)
+    }
+
+    /// How often the host waited for the device so far.
+    pub fn waits(&self) -> u64 {
+        self.usage.waits.load(Ordering::Relaxed)
+    }
+
+    /// As long as the answer lives, taking memory, reading, writing and marks in time are refused: what is done only launches and
+    /// clears, so that a stream which is being captured takes it.
+    pub(crate) fn launches_only(&self) -> LaunchesOnly {
+        self.usage.sealed.fetch_add(1, Ordering::Relaxed);
+        LaunchesOnly { usage: self.usage.clone() }
+    }
+
+    /// Somebody else may have changed the device's memory: a graph that was launched again.
+    pub(crate) fn changed(&self) {
+        #[cfg(feature = "cuda")]
+        if let Machine::Cuda(c) = &*self.machine {
+            c.changes();
+        }
+    }
+
+    /// Bytes of device memory held now, and the most held at once.
+    pub fn bytes(&self) -> (u64, u64) {
+        (self.usage.bytes.load(Ordering::Relaxed), self.usage.peak.load(Ordering::Relaxed))
+    }
+}
+
+/// See [`Device::launches_only`].
+pub(crate) struct LaunchesOnly {
+    usage: Arc<Usage>,
+}
+
+impl Drop for LaunchesOnly {
+    fn drop(&mut self) {
+        self.usage.sealed.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+/// A point in the stream of work.
+pub enum Event {
+    /// On the CPU.
+    Host(Instant),
+    /// On the GPU.
+    #[cfg(feature = "cuda")]
+    Gpu(cuda::Event),
+}
+
+impl Event {
+    /// Milliseconds from this mark to a later one; waits for it.
+    ///
+    /// # Errors
+    /// [`Error::Device`] with the driver's text.
+    pub fn to(&self, later: &Event) -> Result<f64, Error> {
+        match (self, later) {
+            (Event::Host(a), Event::Host(b)) => Ok(b.duration_since(*a).as_secs_f64() * 1e3),
+            #[cfg(feature = "cuda")]
+            (Event::Gpu(a), Event::Gpu(b)) => a.to(b),
+            #[cfg(feature = "cuda")]
+            _ => Err(Error::Bug { what: "two marks of different machines".into() }),
+        }
+    }
+}
