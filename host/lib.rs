@@ -34,6 +34,8 @@
 //! | how far a step may go | [`Query::earliest`] |
 //! | which features are within a distance, how far and where | [`Query::near`] |
 //!
+//! [`Detector::geometry`] tells where contacts are: vertices, weights, points, normals.
+//!
 //! A simulator whose data lie on the GPU lends its stream ([`Device::borrow`]) and its arrays
 //! ([`Input::OnDevice`](scene::Input::OnDevice)), and submits frames that neither allocate nor wait ([`Detector::submit`]).
 //!

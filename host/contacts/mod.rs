@@ -1,6 +1,7 @@
 //! Results: contacts in canonical order, and their hash.
 
 mod degraded;
+pub(crate) mod geometry;
 mod hash;
 mod near;
 pub mod on_device;
@@ -9,6 +10,7 @@ mod triangles;
 mod work;
 
 pub use degraded::Degraded;
+pub use geometry::ContactGeometry;
 pub use near::{Closest, NearPair};
 pub use on_device::{DeviceAnswer, DeviceList, Entries};
 pub use summary::Summary;

@@ -2,6 +2,7 @@
 
 mod away;
 mod edits;
+mod geometry;
 mod moves;
 pub mod plan;
 mod submit;

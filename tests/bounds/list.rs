@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// What no proof of an answer rests on, or what is no allowance.
-const OTHERS: [(&str, &str); 23] = [
+const OTHERS: [(&str, &str); 24] = [
     ("U32", "the unit"),
     ("U64", "the unit"),
     ("CUBIC_VALUE", "a guess: the cubic's roots guarantee nothing"),
@@ -27,6 +27,7 @@ const OTHERS: [(&str, &str); 23] = [
     ("MOVING_LIMIT", "a range"),
     ("BOX_LIMIT", "a range"),
     ("COVARIANCE_ZERO", "a cost: any axes are valid"),
+    ("POSE_UNIT", "a range of what is taken for a pose"),
 ];
 
 fn read(path: &Path) -> String {

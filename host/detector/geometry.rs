@@ -1,0 +1,76 @@
+//! Where contacts are.
+
+use super::Detector;
+use crate::contacts::geometry::{Corners, Named};
+use crate::contacts::{Answer, ContactGeometry, Contacts, Kind};
+use crate::error::Error;
+use crate::pipeline::Layout;
+use rayon::prelude::*;
+
+impl Detector {
+    /// Vertices, weights, points and normal of every contact, or of every pair within a distance, in their order; of triangle pairs and
+    /// of an earliest time there are none. The bodies must be where they were when `found` was. Cost: a copy of all vertices from the
+    /// device, and a wait; 300 operations a contact.
+    ///
+    /// # Errors
+    /// [`Error::Choice`] for contacts of other bodies than there are now; those of the device.
+    pub fn geometry(&mut self, found: &Contacts) -> Result<Vec<ContactGeometry>, Error> {
+        let named: Vec<Named> = match &found.answer {
+            Answer::Contacts(contacts) => contacts.iter().map(Named::from).collect(),
+            Answer::Near(pairs) => pairs.iter().map(Named::from).collect(),
+            Answer::Pairs(_) | Answer::Earliest(_) => Vec::new(),
+        };
+        let layout = self.layout()?;
+        let Some(pipeline) = self.pipeline.as_ref().filter(|_| !named.is_empty()) else {
+            return if named.is_empty() { Ok(Vec::new()) } else { Err(of_others()) };
+        };
+        let ends = pipeline.whereabouts()?.ends;
+        let at = |vertex: u32| {
+            let at =
+                |end: usize| ends.get(end.min(ends.len() - 1)).and_then(|end| end.get_f64(vertex as usize));
+            Some([at(0)?, at(1)?])
+        };
+        let one = |named: &Named| {
+            let (starts, vertices) = corners(&layout, named)?;
+            let mut corners: Corners = [[[0.0; 3]; 2]; 4];
+            for (corner, vertex) in corners.iter_mut().zip(vertices) {
+                *corner = at(vertex)?;
+            }
+            let mut own = vertices;
+            own.iter_mut().zip(starts).for_each(|(vertex, start)| *vertex -= start);
+            Some(ContactGeometry::of(named, own, &corners))
+        };
+        named.par_iter().map(|named| one(named).ok_or_else(of_others)).collect()
+    }
+}
+
+/// The four vertices of a contact, by their numbers of all, and the first vertex of the body of each; `None` where there are no such features.
+fn corners(layout: &Layout, named: &Named) -> Option<([u32; 4], [u32; 4])> {
+    let [a, b] = named.bodies.map(|body| layout.starts.get(body.index()).copied());
+    let (a, b) = (a?, b?);
+    let [p, q] = named.features;
+    let face = |at: u32, index: u32| layout.faces.get(at.checked_add(index)? as usize).copied();
+    let edge = |at: u32, index: u32| layout.edges.get(at.checked_add(index)? as usize).copied();
+    Some(match named.kind {
+        Kind::Vf => {
+            let [x, y, z] = face(b.triangle, q)?;
+            ([a.vertex, b.vertex, b.vertex, b.vertex], [a.vertex.checked_add(p)?, x, y, z])
+        }
+        Kind::Fv => {
+            let [x, y, z] = face(a.triangle, p)?;
+            ([a.vertex, a.vertex, a.vertex, b.vertex], [x, y, z, b.vertex.checked_add(q)?])
+        }
+        Kind::Ee => {
+            let ([w, x], [y, z]) = (edge(a.edge, p)?, edge(b.edge, q)?);
+            ([a.vertex, a.vertex, b.vertex, b.vertex], [w, x, y, z])
+        }
+    })
+}
+
+/// The contacts are not of these bodies.
+fn of_others() -> Error {
+    Error::Choice {
+        what: "contacts of other bodies than the scene has now".into(),
+        advice: "ask for their geometry before bodies come, go or change".into(),
+    }
+}
