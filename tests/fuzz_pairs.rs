@@ -12,7 +12,7 @@ use nearmiss::contacts::Answer;
 use nearmiss_kernels::prim::inclusion::Verdict;
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
-use shared::{bytes, continuous, discrete, scene};
+use shared::{bytes, continuous, discrete, near, scene};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -22,10 +22,11 @@ type Question = (&'static str, usize, fn(&[u8]) -> Result<(), String>);
 /// Without another: `cargo test` asks the same every time, the fuzzers ask anew.
 const SEED: u64 = 1;
 
-const QUESTIONS: [Question; 3] = [
+const QUESTIONS: [Question; 4] = [
     ("discrete_pair", 60, |bytes| discrete::ask(bytes, |meets| meets)),
     ("continuous_pair", 80, |bytes| continuous::ask(bytes, |verdict| verdict)),
     ("scene", 120, |bytes| scene::ask(bytes, |_| ())),
+    ("near", 120, |bytes| near::ask(bytes, |_| ())),
 ];
 
 fn number(variable: &str) -> Option<u64> {
@@ -102,6 +103,11 @@ fn random_scenes() {
     random(2);
 }
 
+#[test]
+fn random_distances() {
+    random(3);
+}
+
 /// Inputs that once failed, and a few that reach far into the code and never did (`widest`).
 #[test]
 fn finds_stay_mended() {
@@ -121,7 +127,7 @@ fn finds_stay_mended() {
 /// Each judge is shown to condemn: an answer is changed before it is judged, and soon that is named.
 #[test]
 fn planted_faults_are_named() {
-    let plants: [(Question, &str); 8] = [
+    let plants: [(Question, &str); 9] = [
         (("a turned answer", 60, |b| discrete::ask(b, |meets| !meets)), "says true, the oracle false"),
         (("always apart", 60, |b| discrete::ask(b, |_| false)), "says false, the oracle true"),
         (("always separated", 80, |b| continuous::ask(b, |_| Verdict::separated(1.0, 0))), "missed"),
@@ -135,6 +141,7 @@ fn planted_faults_are_named() {
             "times that are none",
         ),
         (("one left out", 120, |b| scene::ask(b, scene::forget)), "truly"),
+        (("one left out", 120, |b| near::ask(b, scene::forget)), "is missed"),
         (("all certified", 120, |b| scene::ask(b, all_certified)), "false certificate"),
     ];
     for ((plant, length, ask), named) in plants {

@@ -6,6 +6,8 @@
 pub mod bytes;
 pub mod continuous;
 pub mod discrete;
+pub mod lent;
+pub mod near;
 pub mod scene;
 
 /// Whether a fault is to be planted: a run that finds nothing then is a run that could not.

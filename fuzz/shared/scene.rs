@@ -1,6 +1,7 @@
 //! A handful of triangles, whole: every solver, volume, walk and refit against every pair asked of the oracle.
 
 use super::bytes::Bytes;
+use super::lent;
 use nearmiss::contacts::{Answer, Contact, Kind, Status};
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::{Body, Mesh, Positions, Topology};
@@ -74,15 +75,31 @@ pub fn ask(bytes: &[u8], lie: impl Fn(&mut Answer)) -> Result<(), String> {
         Ok(contacts) => contacts,
         Err(error) => return typed(&error),
     };
+    match ENGINE.with(|engine| lent::detect(engine, &bodies, query)) {
+        Ok(other) if other.answer == contacts.answer => {}
+        Ok(other) => {
+            let (lent, host) = (other.answer, contacts.answer);
+            return Err(format!("lent: {lent:?}, from the host {host:?}; {query:?}, {bodies:?}"));
+        }
+        Err(error) => return Err(format!("lent: {error}; {query:?}, {bodies:?}")),
+    }
     lie(&mut contacts.answer);
     judge(&bodies, &query, &contacts.answer).map_err(|what| format!("{what}; {query:?}, {bodies:?}"))
 }
 
-fn detect(bodies: &[Body], query: Query) -> Result<Contacts, Error> {
+/// One answer.
+///
+/// # Errors
+/// Those of the library.
+pub fn detect(bodies: &[Body], query: Query) -> Result<Contacts, Error> {
     ENGINE.with(|engine| Detector::new(engine.clone(), bodies.to_vec(), query)?.detect())
 }
 
-fn typed(error: &Error) -> Result<(), String> {
+/// A typed error is an answer, a fault of ours is none.
+///
+/// # Errors
+/// What it says.
+pub fn typed(error: &Error) -> Result<(), String> {
     if matches!(error, Error::Bug { .. }) { Err(error.to_string()) } else { Ok(()) }
 }
 
@@ -113,7 +130,7 @@ pub fn judge(bodies: &[Body], query: &Query, answer: &Answer) -> Result<(), Stri
                 None => Ok(()),
             }
         }
-        // tests/near.rs asks the oracle of distances.
+        // The target `near` asks the oracle of distances.
         Answer::Near(_) => Ok(()),
         Answer::Earliest(found) => {
             let all = every_pair(bodies);

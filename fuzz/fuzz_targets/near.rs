@@ -1,0 +1,19 @@
+//! A handful of triangles at rest: what is within a distance against the oracle's answer for every pair.
+#![no_main]
+
+#[path = "../shared/mod.rs"]
+#[allow(dead_code, reason = "each target uses a part")]
+mod shared;
+
+use libfuzzer_sys::fuzz_target;
+use shared::{near, planted, scene};
+
+fuzz_target!(|bytes: &[u8]| {
+    if let Err(what) = near::ask(bytes, |answer| {
+        if planted() {
+            scene::forget(answer)
+        }
+    }) {
+        panic!("{what}");
+    }
+});

@@ -1,0 +1,64 @@
+//! The same scene from memory that the host does not look at: submitted where the walk can be, else asked as a frame.
+
+use nearmiss::device::Buffer;
+use nearmiss::mesh::{Body, Positions};
+use nearmiss::scene::{BodyId, DeviceInput, DeviceRows, Input, Number};
+use nearmiss::{Contacts, Detector, Device, Error, Query};
+
+/// Positions in a device's memory.
+enum Held {
+    F32(Buffer<[f32; 3]>),
+    F64(Buffer<[f64; 3]>),
+}
+
+impl Held {
+    fn new(device: &Device, positions: &Positions) -> Result<Held, Error> {
+        Ok(match positions {
+            Positions::F32(points) => Held::F32(device.upload(points)?),
+            Positions::F64(points) => Held::F64(device.upload(points)?),
+        })
+    }
+
+    fn rows(&self) -> Result<DeviceRows, Error> {
+        // SAFETY: the buffers outlive the detector below, and nobody writes them.
+        unsafe {
+            match self {
+                Held::F32(buffer) => DeviceRows::new(buffer.span().addr(), buffer.len(), 12, Number::F32),
+                Held::F64(buffer) => DeviceRows::new(buffer.span().addr(), buffer.len(), 24, Number::F64),
+            }
+        }
+    }
+}
+
+/// The answer.
+///
+/// # Errors
+/// Those of the library.
+pub fn detect(device: &Device, bodies: &[Body], query: Query) -> Result<Contacts, Error> {
+    let held: Vec<[Held; 2]> = bodies
+        .iter()
+        .map(|body| {
+            let [t0, t1] = body.ends();
+            Ok([Held::new(device, t0)?, Held::new(device, t1)?])
+        })
+        .collect::<Result<_, Error>>()?;
+    let mut detector = Detector::new(device.clone(), bodies.to_vec(), query)?;
+    let ids: Vec<BodyId> = detector.scene().ids().collect();
+    let inputs: Vec<(BodyId, DeviceInput)> = ids
+        .into_iter()
+        .zip(&held)
+        .map(|(id, [t0, t1])| Ok((id, DeviceInput::Step([t0.rows()?, t1.rows()?]))))
+        .collect::<Result<_, Error>>()?;
+    match detector.prepare(&inputs) {
+        Ok(_) => {
+            detector.submit()?;
+            detector.collect()
+        }
+        // A walk that needs the host.
+        Err(Error::Choice { .. }) => {
+            let inputs: Vec<_> = inputs.iter().map(|(id, input)| (*id, Input::OnDevice(*input))).collect();
+            detector.frame(&inputs)
+        }
+        Err(error) => Err(error),
+    }
+}
