@@ -185,12 +185,12 @@ impl Detector {
     /// step by step. What [`Detector::frame`] uploads and places is in the plan if that was the last.
     ///
     /// ```
-    /// use nearmiss::{Body, Detector, Device, Mesh, Query, device::Backend, mesh::Positions, query::Motion};
+    /// use nearmiss::{Body, Detector, Device, Mesh, Query, device::Backend, mesh::Positions};
     ///
     /// let corners = vec![[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, -1.0], [1.0, 2.0, 1.0], [9.0, 1.0, 9.0]];
     /// let mesh = Mesh::new("two triangles", Positions::F32(corners), vec![[0, 1, 2], [3, 4, 5]])?;
     /// let device = Device::open(Backend::Cpu, None)?;
-    /// let mut detector = Detector::new(device.clone(), Body::still(mesh), Query::of(Motion::Discrete))?;
+    /// let mut detector = Detector::new(device.clone(), Body::still(mesh), Query::discrete())?;
     /// let plan = detector.plan()?;
     /// assert_eq!(plan.bytes(), device.bytes().0);
     /// assert!(plan.stage("traverse").is_some() && plan.stage("place").is_none());
