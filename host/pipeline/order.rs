@@ -44,6 +44,28 @@ pub struct Order<T> {
     bits: u32,
 }
 
+/// The ordering of a kind of contacts, whatever kind that is; none before it has begun.
+pub trait Ordering {
+    /// Has the device order contacts, with room for so many at first.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn begin(&mut self, device: &Device, layout: &Layout, capacity: usize) -> Result<(), Error>;
+    /// The ordered list.
+    fn list(&mut self) -> Option<&mut dyn GrowableOutput>;
+}
+
+impl<T: Ordered> Ordering for Option<Order<T>> {
+    fn begin(&mut self, device: &Device, layout: &Layout, capacity: usize) -> Result<(), Error> {
+        *self = Some(Order::new(device, layout, capacity)?);
+        Ok(())
+    }
+
+    fn list(&mut self) -> Option<&mut dyn GrowableOutput> {
+        self.as_mut().map(|order| &mut order.list as &mut dyn GrowableOutput)
+    }
+}
+
 impl<T: Ordered> Order<T> {
     /// Takes the memory for `capacity` contacts at first.
     ///

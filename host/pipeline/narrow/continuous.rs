@@ -10,7 +10,7 @@ use crate::mesh::Body;
 use crate::pipeline::below_precision::{self, BelowPrecision};
 use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{Counter, GrowableOutput, List};
-use crate::pipeline::order::Order;
+use crate::pipeline::order::{Order, Ordering};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Hits, Listed};
 use crate::pipeline::{launch, purpose};
@@ -297,15 +297,8 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
         self.below_precision = self.solver.certified().and_then(of);
     }
 
-    fn order_on(&mut self, device: &Device, layout: &Layout, room: usize) -> Result<(), Error> {
-        if self.earliest.is_none() {
-            self.ordered = Some(Order::new(device, layout, room)?);
-        }
-        Ok(())
-    }
-
-    fn ordered(&mut self) -> Option<&mut dyn GrowableOutput> {
-        self.ordered.as_mut().map(|order| &mut order.list as &mut dyn GrowableOutput)
+    fn ordering(&mut self) -> Option<&mut dyn Ordering> {
+        self.earliest.is_none().then_some(&mut self.ordered as &mut dyn Ordering)
     }
 
     fn order(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {

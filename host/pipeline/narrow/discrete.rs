@@ -5,9 +5,8 @@ use crate::contacts::Entries;
 use crate::device::{Ahead, Device};
 use crate::error::Error;
 use crate::pipeline::launch;
-use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{GrowableOutput, List};
-use crate::pipeline::order::Order;
+use crate::pipeline::order::{Order, Ordering};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Listed, in_order};
 use crate::query::TriangleTest;
@@ -100,13 +99,8 @@ impl<R: Precision> Narrow<R> for DiscreteNarrow {
         ["narrow: undecided", "narrow: undecided in f64"].into_iter().zip(&self.undecided).collect()
     }
 
-    fn order_on(&mut self, device: &Device, layout: &Layout, room: usize) -> Result<(), Error> {
-        self.ordered = Some(Order::new(device, layout, room)?);
-        Ok(())
-    }
-
-    fn ordered(&mut self) -> Option<&mut dyn GrowableOutput> {
-        self.ordered.as_mut().map(|order| &mut order.list as &mut dyn GrowableOutput)
+    fn ordering(&mut self) -> Option<&mut dyn Ordering> {
+        Some(&mut self.ordered)
     }
 
     fn order(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {

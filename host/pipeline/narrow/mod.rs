@@ -13,6 +13,7 @@ pub use discrete::DiscreteNarrow;
 
 use super::layout::Layout;
 use super::list::{GrowableOutput, List};
+use super::order::Ordering;
 use super::precision::Precision;
 use super::typed::Listed;
 use crate::device::{Ahead, Device};
@@ -59,14 +60,21 @@ pub trait Narrow<R: Precision>: Send {
     /// The bodies are there now: how large they are may matter.
     fn place(&mut self, _bodies: &[Body]) {}
 
+    /// How the device orders what is found; none where there is nothing to order.
+    fn ordering(&mut self) -> Option<&mut dyn Ordering>;
+
     /// Has the device put into order what it finds, with room for so many at first.
     ///
     /// # Errors
     /// Those of the device.
-    fn order_on(&mut self, device: &Device, layout: &Layout, room: usize) -> Result<(), Error>;
+    fn order_on(&mut self, device: &Device, layout: &Layout, room: usize) -> Result<(), Error> {
+        self.ordering().map_or(Ok(()), |ordering| ordering.begin(device, layout, room))
+    }
 
     /// What the device has put into order; none where the host does that.
-    fn ordered(&mut self) -> Option<&mut dyn GrowableOutput>;
+    fn ordered(&mut self) -> Option<&mut dyn GrowableOutput> {
+        self.ordering().and_then(Ordering::list)
+    }
 
     /// Launches the ordering, where the device does that.
     ///

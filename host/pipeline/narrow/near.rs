@@ -8,7 +8,7 @@ use crate::error::Error;
 use crate::pipeline::launch;
 use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{Counter, GrowableOutput, List};
-use crate::pipeline::order::Order;
+use crate::pipeline::order::{Order, Ordering};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Hits, Listed};
 use nearmiss_kernels::abi::{NearArgs, NearHit, Pair, counter};
@@ -107,13 +107,8 @@ impl<R: Precision> Narrow<R> for NearNarrow {
         self.features.between()
     }
 
-    fn order_on(&mut self, device: &Device, layout: &Layout, room: usize) -> Result<(), Error> {
-        self.ordered = Some(Order::new(device, layout, room)?);
-        Ok(())
-    }
-
-    fn ordered(&mut self) -> Option<&mut dyn GrowableOutput> {
-        self.ordered.as_mut().map(|order| &mut order.list as &mut dyn GrowableOutput)
+    fn ordering(&mut self) -> Option<&mut dyn Ordering> {
+        Some(&mut self.ordered)
     }
 
     fn order(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
