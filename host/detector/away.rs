@@ -5,9 +5,10 @@ use crate::contacts::{Contacts, Degraded};
 use crate::error::Error;
 use crate::mesh::{Body, Positions};
 use crate::pipeline::below_precision::BelowPrecision;
-use crate::pipeline::{Seen, Stages, Whereabouts};
+use crate::pipeline::{Layout, Seen, Stages, Whereabouts};
 use crate::query::Query;
 use crate::scene::{BodyKind, Pose};
+use std::sync::Arc;
 use std::time::Instant;
 
 impl Detector {
@@ -21,16 +22,28 @@ impl Detector {
             return Ok(());
         }
         self.all_known()?;
-        let Some(pipeline) = &self.pipeline else { return Ok(()) };
-        let places = Places::new(pipeline.whereabouts()?, self.scene.bodies());
+        if let Some(places) = self.places()? {
+            self.bring(&places);
+        }
+        Ok(())
+    }
+
+    /// Where the device has placed all bodies; `None` where nothing can meet, and nothing was placed.
+    fn places(&mut self) -> Result<Option<Places>, Error> {
+        let layout = self.layout()?;
+        let Some(pipeline) = &self.pipeline else { return Ok(None) };
+        Ok(Some(Places { all: pipeline.whereabouts()?, layout }))
+    }
+
+    /// Brings bodies back from there.
+    fn bring(&mut self, places: &Places) {
         for (i, body) in self.scene.bodies_mut().iter_mut().enumerate() {
             // Who is lent has another place now.
             if body.is_away() && body.lent().is_none() {
-                let (ends, poses) = places.of(i, body);
+                let (ends, poses) = places.of(i);
                 body.bring(&ends, poses);
             }
         }
-        Ok(())
     }
 
     /// Whether every body is where the host or a pipeline knows it to be.
@@ -51,11 +64,10 @@ impl Detector {
     /// [`Error::Input`] and [`Error::Choice`] for what no precision can compute with, naming the body and the vertex; those of the
     /// device.
     fn look(&mut self) -> Result<bool, Error> {
-        let Some(pipeline) = &self.pipeline else { return Ok(false) };
-        let places = Places::new(pipeline.whereabouts()?, self.scene.bodies());
+        let Some(places) = self.places()? else { return Ok(false) };
         let mut are_single = true;
         for (i, body) in self.scene.bodies().iter().enumerate().filter(|(_, body)| body.is_away()) {
-            let (ends, poses) = places.of(i, body);
+            let (ends, poses) = places.of(i);
             if body.kind() == BodyKind::Rigid {
                 poses.iter().try_for_each(|pose| body.check_pose(pose))?;
             }
@@ -67,8 +79,7 @@ impl Detector {
             // Only vertices that no face uses.
             return Ok(false);
         }
-        self.fetch()?;
-        self.f64s = true;
+        self.bring(&places);
         self.pipeline = None;
         Ok(true)
     }
@@ -90,13 +101,13 @@ impl Detector {
         contacts.stages = Stages { construct: self.construct_ms, wall, ..contacts.stages };
         Ok(contacts)
     }
-}
 
-impl Detector {
     /// An earliest query lists no pairs, so whether they are too large for the tolerance hangs on where bodies are: of those that are
     /// away on the largest of their coordinates and, where that leaves it open, on themselves.
     fn tell_below_precision(&mut self, contacts: &mut Contacts) -> Result<(), Error> {
-        let (Query::Earliest(_), Some(certified)) = (self.query, self.asked().certified().copied()) else {
+        let (Query::Earliest(_), Some(certified)) =
+            (self.query, self.query_with_tolerance().certified().copied())
+        else {
             return Ok(());
         };
         let is_away = self.scene.bodies().iter().any(Body::is_away);
@@ -116,22 +127,13 @@ impl Detector {
 /// Where all bodies are, by body.
 struct Places {
     all: Whereabouts,
-    starts: Vec<usize>,
+    layout: Arc<Layout>,
 }
 
 impl Places {
-    fn new(all: Whereabouts, bodies: &[Body]) -> Places {
-        let mut at = 0;
-        let starts = bodies.iter().map(|body| {
-            at += body.vertex_count();
-            at - body.vertex_count()
-        });
-        Places { starts: starts.collect(), all }
-    }
-
     /// A body's vertices at both ends or at the only one, and the poses that it was found in.
-    fn of(&self, i: usize, body: &Body) -> (Vec<Positions>, &[Pose]) {
-        let range = self.starts[i]..self.starts[i] + body.vertex_count();
+    fn of(&self, i: usize) -> (Vec<Positions>, &[Pose]) {
+        let range = self.layout.starts[i].vertex as usize..self.layout.starts[i + 1].vertex as usize;
         let part = |positions: &Positions| match positions {
             Positions::F32(points) => Positions::F32(points[range.clone()].to_vec()),
             Positions::F64(points) => Positions::F64(points[range.clone()].to_vec()),

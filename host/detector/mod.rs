@@ -126,7 +126,7 @@ impl Detector {
             self.all_known()?;
             let bodies = self.scene.bodies();
             self.f64s = bodies.iter().any(Body::needs_f64);
-            let query = self.asked();
+            let query = self.query_with_tolerance();
             let mut pipeline = pipeline::pipeline(self.device.clone(), bodies, layout, query, self.f64s)?;
             self.device.work();
             self.construct_ms = pipeline.construct()?;
@@ -137,7 +137,7 @@ impl Detector {
     }
 
     /// The query, with its tolerance.
-    fn asked(&self) -> Query {
+    fn query_with_tolerance(&self) -> Query {
         let mut query = self.query;
         if let Some(certified) = query.certified_mut() {
             certified.tolerance = self.tolerance;
