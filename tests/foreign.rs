@@ -4,12 +4,13 @@
 
 #[path = "foreign/simulator.rs"]
 mod simulator;
+mod support;
 
 use nearmiss::contacts::Answer;
 use nearmiss::contacts::on_device::{FrameStatus, Hit, NearHit, Pair};
 use nearmiss::device::Backend;
 use nearmiss::mesh::Positions;
-use nearmiss::query::{Certified, Continuous, Earliest, QueryKind};
+use nearmiss::query::QueryKind;
 use nearmiss::scene::{BodyId, DeviceInput, DeviceRows, Input, Meets, Number, Scene};
 use nearmiss::{Contacts, Detector, Device, Query};
 use nearmiss_lab::scene;
@@ -35,13 +36,7 @@ fn crowd(triangles: usize, frames: usize) -> (Scene, BodyId, Vec<f32>, Vec<f32>)
 }
 
 fn query(kind: QueryKind) -> Query {
-    let certified = Certified { tolerance: Some(1e-4), ..Certified::default() };
-    match kind {
-        QueryKind::Near => Query::near(0.01),
-        QueryKind::Continuous => Continuous::by(certified).into(),
-        QueryKind::Earliest => Earliest::by(certified).into(),
-        _ => Query::discrete(),
-    }
+    support::asked::at(kind, 1e-4, 0.01)
 }
 
 fn positions(numbers: &[f32]) -> Positions {

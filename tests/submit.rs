@@ -9,7 +9,7 @@ mod support;
 use nearmiss::contacts::on_device::FrameStatus;
 use nearmiss::device::Buffer;
 use nearmiss::mesh::Positions;
-use nearmiss::query::{Certified, Continuous, Earliest, QueryKind, QueueShape, Refit, StealShape, Traversal};
+use nearmiss::query::{QueryKind, QueueShape, Refit, StealShape, Traversal};
 use nearmiss::scene::{BodyId, DeviceInput, DevicePose, DeviceRows, Input, Meets, Number, Pose, Scene};
 use nearmiss::{Body, Detector, Device, Error, Mesh, Query};
 use nearmiss_lab::scene;
@@ -58,13 +58,7 @@ fn status(detector: &Detector) -> FrameStatus {
 }
 
 fn query(kind: QueryKind) -> Query {
-    let certified = Certified { tolerance: Some(1e-4), ..Certified::default() };
-    match kind {
-        QueryKind::Near => Query::near(0.02),
-        QueryKind::Continuous => Continuous::by(certified).into(),
-        QueryKind::Earliest => Earliest::by(certified).into(),
-        _ => Query::discrete(),
-    }
+    support::asked::at(kind, 1e-4, 0.02)
 }
 
 const KINDS: [QueryKind; 4] =

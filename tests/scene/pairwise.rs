@@ -83,10 +83,7 @@ pub fn mixed(seed: u64) -> Scene {
 
 /// The tolerance hangs on the bodies' edges: fixed, so that two bodies are asked as seven are.
 fn query(motion: QueryKind) -> Query {
-    if motion == QueryKind::Near {
-        return Query::near(0.03);
-    }
-    support::asked::with_tolerance(support::asked::of(motion), 1e-4)
+    support::asked::at(motion, 1e-4, 0.03)
 }
 
 /// What has a list for an answer.

@@ -76,11 +76,7 @@ fn what_is_below_precision_is_told_of_what_is_away() {
     let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
     for kind in [QueryKind::Continuous, QueryKind::Earliest] {
         for tolerance in [1e-4, 1e-16] {
-            let certified = Certified { tolerance: Some(tolerance), ..Certified::default() };
-            let query: Query = match kind {
-                QueryKind::Earliest => Earliest::by(certified).into(),
-                _ => Continuous::by(certified).into(),
-            };
+            let query = support::asked::at(kind, tolerance, 0.02);
             let mut by_host = Detector::new(engine(), scene.clone(), query).expect("a detector");
             let [t0, t1] = ends.clone().map(Positions::F32);
             let wanted = by_host.frame(&[(id, Input::Step([&t0, &t1]))]).expect("an answer");

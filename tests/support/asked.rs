@@ -13,6 +13,14 @@ pub fn of(kind: QueryKind) -> Query {
     }
 }
 
+/// The query of that kind, with that tolerance if its solver takes one, and of a near one that distance.
+pub fn at(kind: QueryKind, tolerance: f64, distance: f64) -> Query {
+    match kind {
+        QueryKind::Near => Query::near(distance),
+        other => with_tolerance(of(other), tolerance),
+    }
+}
+
 /// The query of that kind by that solver of features in motion.
 pub fn by(kind: QueryKind, solver: Solver) -> Query {
     let solver = ContinuousSolver::named(solver).expect("a solver of features in motion");
