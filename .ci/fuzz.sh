@@ -28,7 +28,7 @@ programs=$(cd "$target_dir/$host/release" && pwd)
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 failed=0
-for target in discrete_pair continuous_pair scene near; do
+for target in discrete_pair continuous_pair scene near distance; do
     if NEARMISS_PLANT_A_FAULT=1 timeout 60 "$programs/$target" -max_total_time=30 -artifact_prefix=/dev/null >"$log" 2>&1 ||
         ! grep -aq 'panicked at' "$log"; then
         echo "fuzz: $target does not notice a planted fault"
@@ -60,6 +60,7 @@ discrete_pair 60
 continuous_pair 80
 scene 120
 near 120
+distance 120
 readers 2000
 TARGETS
 exit $failed

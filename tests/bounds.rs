@@ -5,6 +5,8 @@
 //! Each constant of `tolerance.rs` that a proof rests on has a test of its name; [`list`] holds the others and why.
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "NaN must fail")]
 
+#[path = "bounds/apart.rs"]
+mod apart;
 #[path = "bounds/boxes.rs"]
 mod boxes;
 #[path = "bounds/cubic.rs"]

@@ -6,19 +6,19 @@
 mod simulator;
 mod support;
 
-use nearmiss::contacts::Answer;
-use nearmiss::contacts::on_device::{FrameStatus, Hit, NearHit, Pair};
+use nearmiss::contacts::on_device::{FrameStatus, Hit, NearHit, NearestHit, Pair};
+use nearmiss::contacts::{Answer, NearestTriangles};
 use nearmiss::device::Backend;
 use nearmiss::mesh::Positions;
 use nearmiss::query::QueryKind;
 use nearmiss::scene::{BodyId, DeviceInput, DeviceRows, Input, Meets, Number, Scene};
-use nearmiss::{Contacts, Detector, Device, Query};
+use nearmiss::{Body, Contacts, Detector, Device, Query};
 use nearmiss_lab::scene;
 use simulator::{Graph, Simulator};
 use std::time::Instant;
 
-/// Triangles that keep their size and come together: a scene of one body, where its vertices are, and how they move a frame.
-fn crowd(triangles: usize, frames: usize) -> (Scene, BodyId, Vec<f32>, Vec<f32>) {
+/// Triangles that keep their size and come together: a scene of one body and, of a distance, one that stands; where its vertices are, and how they move a frame.
+fn crowd(kind: QueryKind, triangles: usize, frames: usize) -> (Scene, BodyId, Vec<f32>, Vec<f32>) {
     let body = scene::soup(triangles, 1, false).expect("a scene");
     let Positions::F32(points) = body.positions_t0() else { panic!("in single precision") };
     let (mut start, mut velocity) = (Vec::new(), Vec::new());
@@ -32,6 +32,11 @@ fn crowd(triangles: usize, frames: usize) -> (Scene, BodyId, Vec<f32>, Vec<f32>)
     }
     let mut scene = Scene::new();
     let id = scene.add(body.with(Meets::and_itself()));
+    if kind == QueryKind::Distance {
+        // It is that of two bodies.
+        let other = scene::soup(50, 2, false).expect("a scene");
+        scene.add(Body::fixed(other.frames()[0].clone()));
+    }
     (scene, id, start, velocity)
 }
 
@@ -70,6 +75,10 @@ fn read(simulator: &Simulator, detector: &Detector) -> Option<Vec<[u64; 3]>> {
             let pairs: Vec<Pair> = simulator.read(list.address, count);
             pairs.iter().map(|pair| [0, name(pair.a, pair.b), 0]).collect()
         }
+        QueryKind::Distance => {
+            let hits: Vec<NearestHit> = simulator.read(list.address, count);
+            hits.iter().map(|hit| [0, name(hit.a, hit.b), hit.distance.to_bits()]).collect()
+        }
         QueryKind::Near => {
             let hits: Vec<NearHit> = simulator.read(list.address, count);
             hits.iter()
@@ -87,8 +96,8 @@ fn read(simulator: &Simulator, detector: &Detector) -> Option<Vec<[u64; 3]>> {
     })
 }
 
-/// The same of an answer on the host.
-fn told(contacts: &Contacts) -> Vec<[u64; 3]> {
+/// The same of an answer on the host; of a body of so many triangles and, of a distance, one behind it.
+fn told(contacts: &Contacts, triangles: usize) -> Vec<[u64; 3]> {
     let name = |a: u32, b: u32| u64::from(a) << 32 | u64::from(b);
     let is_edges = |kind| u64::from(kind == nearmiss::contacts::Kind::Ee);
     match &contacts.answer {
@@ -96,6 +105,11 @@ fn told(contacts: &Contacts) -> Vec<[u64; 3]> {
         Answer::Earliest(toi) => toi.iter().map(|toi| [toi.to_bits(), 0, 0]).collect(),
         Answer::Contacts(all) => {
             all.iter().map(|c| [is_edges(c.kind), name(c.a, c.b), c.toi.to_bits()]).collect()
+        }
+        Answer::Distance(nearest) => {
+            let second = |n: &NearestTriangles| n.triangles[1] + triangles as u32;
+            let told = |n: &NearestTriangles| [0, name(n.triangles[0], second(n)), n.distance.to_bits()];
+            nearest.iter().map(told).collect()
         }
         Answer::Near(all) => {
             all.iter().map(|n| [is_edges(n.kind), name(n.a, n.b), n.squared_distance.to_bits()]).collect()
@@ -106,7 +120,7 @@ fn told(contacts: &Contacts) -> Vec<[u64; 3]> {
 /// Frames of a simulator that records its own kernel and the detector's frame once and launches them ever again; each is compared
 /// with the CPU's answer for the same vertices. How often the lists were outgrown, and how many contacts were compared.
 fn drive(kind: QueryKind, triangles: usize, frames: usize) -> (usize, usize) {
-    let (scene, id, mut t0, velocity) = crowd(triangles, frames);
+    let (scene, id, mut t0, velocity) = crowd(kind, triangles, frames);
     let simulator = Simulator::new(&t0, &velocity);
     let cpu = Device::open(Backend::Cpu, None).expect("threads");
     let mut judge = Detector::new(cpu, scene.clone(), query(kind)).expect("a detector");
@@ -136,10 +150,10 @@ fn drive(kind: QueryKind, triangles: usize, frames: usize) -> (usize, usize) {
             graph = None;
             let contacts = detector.collect().expect("an answer");
             assert!(!detector.is_prepared());
-            told(&contacts)
+            told(&contacts, triangles)
         });
         let input = [(id, Input::Step([&positions(&t0), &positions(&t1)]))];
-        let wanted = told(&judge.frame(&input).expect("an answer"));
+        let wanted = told(&judge.frame(&input).expect("an answer"), triangles);
         assert!(found == wanted, "{kind:?}, frame {frame}: {} and {}", found.len(), wanted.len());
         compared += wanted.len();
     }
@@ -153,11 +167,13 @@ fn a_thousand_replays_lose_nothing() {
         (QueryKind::Discrete, 1_000, 1_000),
         (QueryKind::Near, 400, 300),
         (QueryKind::Earliest, 400, 300),
+        (QueryKind::Distance, 2_000, 300),
     ] {
         let (short, compared) = drive(kind, triangles, frames);
         println!("{kind:?}: {frames} frames, outgrown {short} times, {compared} contacts compared");
-        assert!(short >= 2 || kind == QueryKind::Earliest, "{kind:?}: {short}");
-        // Of an earliest query one time a frame, once there is any.
+        let lists = !matches!(kind, QueryKind::Earliest | QueryKind::Distance);
+        assert!(short >= 2 || !lists, "{kind:?}: {short}");
+        // Of an earliest query one time a frame, once there is any, of a distance one pair.
         assert!(compared > frames / 4, "{kind:?}: {compared}");
     }
 }

@@ -12,7 +12,7 @@ use nearmiss::contacts::Answer;
 use nearmiss_kernels::prim::inclusion::Verdict;
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
-use shared::{bytes, continuous, discrete, near, scene};
+use shared::{bytes, continuous, discrete, distance, near, scene};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -22,11 +22,12 @@ type Question = (&'static str, usize, fn(&[u8]) -> Result<(), String>);
 /// Without another: `cargo test` asks the same every time, the fuzzers ask anew.
 const SEED: u64 = 1;
 
-const QUESTIONS: [Question; 4] = [
+const QUESTIONS: [Question; 5] = [
     ("discrete_pair", 60, |bytes| discrete::ask(bytes, |meets| meets)),
     ("continuous_pair", 80, |bytes| continuous::ask(bytes, |verdict| verdict)),
     ("scene", 120, |bytes| scene::ask(bytes, |_| ())),
     ("near", 120, |bytes| near::ask(bytes, |_| ())),
+    ("distance", 120, |bytes| distance::ask(bytes, |_| ())),
 ];
 
 fn number(variable: &str) -> Option<u64> {
@@ -108,6 +109,11 @@ fn random_distances() {
     random(3);
 }
 
+#[test]
+fn random_nearest_triangles() {
+    random(4);
+}
+
 /// Inputs that once failed, and a few that reach far into the code and never did (`widest`).
 #[test]
 fn finds_stay_mended() {
@@ -127,7 +133,7 @@ fn finds_stay_mended() {
 /// Each judge is shown to condemn: an answer is changed before it is judged, and soon that is named.
 #[test]
 fn planted_faults_are_named() {
-    let plants: [(Question, &str); 9] = [
+    let plants: [(Question, &str); 11] = [
         (("a turned answer", 60, |b| discrete::ask(b, |meets| !meets)), "says true, the oracle false"),
         (("always apart", 60, |b| discrete::ask(b, |_| false)), "says false, the oracle true"),
         (("always separated", 80, |b| continuous::ask(b, |_| Verdict::separated(1.0, 0))), "missed"),
@@ -142,6 +148,8 @@ fn planted_faults_are_named() {
         ),
         (("one left out", 120, |b| scene::ask(b, scene::forget)), "truly"),
         (("one left out", 120, |b| near::ask(b, scene::forget)), "is missed"),
+        (("none told", 120, |b| distance::ask(b, scene::forget)), "where the least is"),
+        (("a little nearer", 120, |b| distance::ask(b, a_little_nearer)), "a distance"),
         (("all certified", 120, |b| scene::ask(b, all_certified)), "false certificate"),
     ];
     for ((plant, length, ask), named) in plants {
@@ -150,6 +158,13 @@ fn planted_faults_are_named() {
             (0..5000).find(|_| ask(&random_bytes(&mut r, length)).is_err_and(|fault| fault.contains(named)));
         println!("{plant}: {named:?} after {asked:?}");
         assert!(asked.is_some(), "{plant}: not noticed");
+    }
+}
+
+/// A lie: a distance that is off in its tenth digit.
+fn a_little_nearer(answer: &mut Answer) {
+    if let Answer::Distance(Some(nearest)) = answer {
+        nearest.distance *= 1.0 - 1e-10;
     }
 }
 

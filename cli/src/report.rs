@@ -69,6 +69,7 @@ impl FileFaces {
             Answer::Earliest(toi) => Answer::Earliest(*toi),
             // Weights are those of a triangle's corners: `args` asks for no other names.
             Answer::Near(near) => Answer::Near(near.clone()),
+            Answer::Distance(nearest) => Answer::Distance(*nearest),
         }
     }
 }
@@ -77,7 +78,7 @@ impl FileFaces {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// `tri_a,tri_b` (`face_a,face_b`), or `kind,a,b,toi,toi_hi,status`, or
-    /// `kind,a,b,squared_distance,w0,w1,w2,closest`; before these the step and the bodies, where there are several.
+    /// `kind,a,b,squared_distance,w0,w1,w2,closest`, or `tri_a,tri_b,distance,x_a,y_a,z_a,x_b,y_b,z_b`; before these the step and the bodies, where there are several.
     Csv,
     /// One object: the summary, and the rows under `contacts`.
     Json,

@@ -1,6 +1,6 @@
 //! Contacts as rows of CSV and of JSON.
 
-use nearmiss::contacts::{Answer, Contact, Kind, NearPair, Status, TrianglePair};
+use nearmiss::contacts::{Answer, Contact, Kind, NearPair, NearestTriangles, Status, TrianglePair};
 use nearmiss::scene::BodyId;
 use serde::{Serialize, Serializer};
 use std::io::Write;
@@ -24,6 +24,7 @@ impl Columns<'_> {
             Answer::Pairs(_) => (&triangles, true),
             Answer::Contacts(_) => (&["kind", "a", "b", "toi", "toi_hi", "status"], true),
             Answer::Earliest(_) => (&["earliest_toi"], false),
+            Answer::Distance(_) => (&NEAREST, true),
             Answer::Near(_) => (&["kind", "a", "b", "squared_distance", "w0", "w1", "w2", "closest"], true),
         };
         let step = self.step.map(|_| "step");
@@ -43,6 +44,9 @@ impl Columns<'_> {
             Answer::Earliest(None) if self.step.is_some() => self.row(csv, None, &[String::new()]),
             Answer::Earliest(toi) => toi.iter().try_for_each(|toi| self.row(csv, None, &[toi.to_string()])),
             Answer::Near(pairs) => pairs.iter().try_for_each(|p| self.row(csv, Some(p.bodies), &near(p))),
+            Answer::Distance(found) => {
+                found.iter().try_for_each(|n| self.row(csv, Some(n.bodies), &nearest(n)))
+            }
         };
         wrote.map_err(|e| e.to_string())
     }
@@ -75,6 +79,15 @@ fn near(pair: &NearPair) -> [String; 8] {
     let [a, b] = [pair.a, pair.b].map(|i| i.to_string());
     let [x, y, z] = pair.weights.map(|weight| weight.to_string());
     [kind(pair.kind), a, b, pair.squared_distance.to_string(), x, y, z, pair.closest.name().into()]
+}
+
+/// The columns of the nearest triangles.
+const NEAREST: [&str; 9] = ["tri_a", "tri_b", "distance", "x_a", "y_a", "z_a", "x_b", "y_b", "z_b"];
+
+fn nearest(n: &NearestTriangles) -> [String; 9] {
+    let [a, b] = n.triangles.map(|i| i.to_string());
+    let [[x, y, z], [u, v, w]] = n.points.map(|point| point.map(|x| x.to_string()));
+    [a, b, n.distance.to_string(), x, y, z, u, v, w]
 }
 
 fn contact(c: &Contact) -> [String; 6] {
@@ -129,6 +142,14 @@ struct Nearness {
     closest: nearmiss::contacts::Closest,
 }
 
+#[derive(Serialize)]
+struct Nearest {
+    triangles: [u32; 2],
+    distance: f64,
+    weights: [[f64; 3]; 2],
+    points: [[f64; 3]; 2],
+}
+
 impl Serialize for Rows<'_> {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         let Some(names) = self.names else {
@@ -137,6 +158,7 @@ impl Serialize for Rows<'_> {
                 Answer::Contacts(all) => all.serialize(to),
                 Answer::Earliest(toi) => toi.serialize(to),
                 Answer::Near(near) => near.serialize(to),
+                Answer::Distance(nearest) => to.collect_seq(nearest),
             };
         };
         let [of_a, of_b] = [0, 1].map(|k| move |bodies: [BodyId; 2]| names[bodies[k].index()].as_str());
@@ -154,6 +176,11 @@ impl Serialize for Rows<'_> {
                 Named { body_a: of_a(bodies), body_b: of_b(bodies), row }
             })),
             Answer::Earliest(toi) => toi.serialize(to),
+            Answer::Distance(found) => to.collect_seq(found.iter().map(|nearest| {
+                let &NearestTriangles { bodies, triangles, distance, weights, points } = nearest;
+                let row = Nearest { triangles, distance, weights, points };
+                Named { body_a: of_a(bodies), body_b: of_b(bodies), row }
+            })),
             Answer::Near(near) => to.collect_seq(near.iter().map(|pair| {
                 let &NearPair { kind, bodies, a, b, squared_distance, weights, closest } = pair;
                 let row = Nearness { kind, a, b, squared_distance, weights, closest };

@@ -73,6 +73,15 @@ fn choices(query: Query) -> Vec<(&'static str, Query)> {
     let spill = Traversal::PerLeaf { budget: Some(8) };
     let refit = |refit| query.with_refit(refit).with_traversal(spill);
     let walk = |walk| query.with_traversal(walk);
+    if !query.kind().takes_traversals() {
+        let refit = |refit| query.with_refit(refit);
+        return vec![
+            ("by default", query),
+            ("by levels", refit(Refit::Levels)),
+            ("by treelets", refit(Refit::Treelets)),
+            ("bottom-up", refit(Refit::BottomUp)),
+        ];
+    }
     vec![
         ("by default", query),
         ("spilling, by levels", refit(Refit::Levels)),
@@ -83,6 +92,11 @@ fn choices(query: Query) -> Vec<(&'static str, Query)> {
         ("stealing", walk(Traversal::Steal(StealShape::native()))),
         ("a front", walk(Traversal::Front(FrontShape::native()))),
     ]
+}
+
+/// The query by that walk, where it takes one.
+fn walked(query: Query, walk: Traversal) -> Query {
+    if query.kind().takes_traversals() { query.with_traversal(walk) } else { query }
 }
 
 /// Every question with every solver, and what comes within a separation: about a hundredth of the mean edge.
@@ -174,12 +188,12 @@ impl Bench {
     /// A scene of many bodies, step after step.
     fn compare_bodies(&mut self, name: &str, scene: &Bodies) -> Result<(), Error> {
         let Bench { machine, engine, faults } = self;
-        for query in [Query::discrete(), Query::continuous(), Query::earliest()] {
+        for query in [Query::discrete(), Query::continuous(), Query::earliest(), Query::distance()] {
             let kind = query.kind();
             for bv in Bv::ALL {
                 let query = query.with_bv(bv);
                 let on_engine = |walk| {
-                    let query = query.with_traversal(walk);
+                    let query = walked(query, walk);
                     during("comparing machines", || print_of_steps(engine, scene, query))
                 };
                 let by_leaf = on_engine(Traversal::PerLeaf { budget: None })?;
@@ -187,7 +201,11 @@ impl Bench {
                 for (what, other) in choices(query) {
                     let there = during("comparing machines", || print_of_steps(machine, scene, other))?;
                     let walk = other.traversal_on(machine.is_gpu());
-                    let want = if matches!(walk, Traversal::PerLeaf { .. }) { &by_leaf } else { &by_pair };
+                    let want = if matches!(walk, Traversal::PerLeaf { .. } | Traversal::NearestFirst) {
+                        &by_leaf
+                    } else {
+                        &by_pair
+                    };
                     // Where a front goes on from the step before, what it asks hangs on that: the answer does not.
                     let differs = match other.tree().traversal {
                         Some(Traversal::Front(_)) => difference(&want.answer(), &there.answer()),
@@ -217,7 +235,7 @@ impl Bench {
                 // Overlap tests with a slack do not nest: whether a pair is a candidate may depend, by a hair, on which
                 // pairs of nodes were asked before it. Each kind of walk is compared with its own; contacts with all.
                 let on_engine = |walk| {
-                    let query = query.with_traversal(walk);
+                    let query = walked(query, walk);
                     during("comparing machines", || print_of(engine, bodies, query))
                 };
                 let by_leaf = on_engine(Traversal::PerLeaf { budget: None })?;
@@ -228,7 +246,11 @@ impl Bench {
                 for (what, other) in choices(query) {
                     let on_machine = during("comparing machines", || print_of(machine, bodies, other))?;
                     let walk = other.traversal_on(machine.is_gpu());
-                    let want = if matches!(walk, Traversal::PerLeaf { .. }) { &by_leaf } else { &by_pair };
+                    let want = if matches!(walk, Traversal::PerLeaf { .. } | Traversal::NearestFirst) {
+                        &by_leaf
+                    } else {
+                        &by_pair
+                    };
                     if let Some(stage) = difference(want, &on_machine) {
                         faults.push(format!("{name}, {asked}, {}, {what}: {stage}", bv.name()));
                     }

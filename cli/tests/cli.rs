@@ -2,6 +2,8 @@
 
 #[path = "cli/degraded.rs"]
 mod degraded;
+#[path = "cli/distance.rs"]
+mod distance;
 #[path = "cli/earliest.rs"]
 mod earliest;
 #[path = "cli/explain.rs"]

@@ -6,6 +6,7 @@
 pub mod bytes;
 pub mod continuous;
 pub mod discrete;
+pub mod distance;
 pub mod lent;
 pub mod near;
 pub mod scene;

@@ -8,17 +8,14 @@ use super::scene::{decode, detect, typed};
 use judge::Truth;
 use nearmiss::Query;
 use nearmiss::contacts::Answer;
+use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh};
 
 /// The bodies of a scene's bytes at the start of their step, a distance that the first byte chooses among powers of two, and the answer
 /// as `lie` passes it on, judged.
 pub fn ask(bytes: &[u8], lie: impl Fn(&mut Answer)) -> Result<(), String> {
     let Ok((bodies, query)) = decode(bytes) else { return Ok(()) };
-    let still = |body: &Body| {
-        let mesh = Mesh::new("fuzz", body.positions_t0().clone(), body.faces().to_vec());
-        mesh.map(Body::still)
-    };
-    let bodies: Vec<Body> = match bodies.iter().map(still).collect() {
+    let bodies = match at_start(&bodies) {
         Ok(bodies) => bodies,
         Err(error) => return typed(&error),
     };
@@ -33,4 +30,16 @@ pub fn ask(bytes: &[u8], lie: impl Fn(&mut Answer)) -> Result<(), String> {
     lie(&mut found.answer);
     let fault = Truth::of(&bodies, near.distance).fault(found.near()).err();
     fault.map_or(Ok(()), |what| Err(format!("{what}; {query:?}, {bodies:?}")))
+}
+
+/// The bodies where they are at the start of their step.
+///
+/// # Errors
+/// Those of the door.
+pub fn at_start(bodies: &[Body]) -> Result<Vec<Body>, Error> {
+    let still = |body: &Body| {
+        let mesh = Mesh::new("fuzz", body.positions_t0().clone(), body.faces().to_vec());
+        mesh.map(Body::still)
+    };
+    bodies.iter().map(still).collect()
 }

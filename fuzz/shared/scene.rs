@@ -110,6 +110,7 @@ pub fn forget(answer: &mut Answer) {
         Answer::Contacts(all) => all.truncate(all.len().saturating_sub(1)),
         Answer::Earliest(toi) => *toi = None,
         Answer::Near(near) => near.truncate(near.len().saturating_sub(1)),
+        Answer::Distance(nearest) => *nearest = None,
     }
 }
 
@@ -131,7 +132,7 @@ pub fn judge(bodies: &[Body], query: &Query, answer: &Answer) -> Result<(), Stri
             }
         }
         // The target `near` asks the oracle of distances.
-        Answer::Near(_) => Ok(()),
+        Answer::Near(_) | Answer::Distance(_) => Ok(()),
         Answer::Earliest(found) => {
             let all = every_pair(bodies);
             let first = all.values().flatten().min();

@@ -53,7 +53,7 @@ impl Degraded {
         let mut put = |count: u64, reason: Degraded| all.extend((count > 0).then_some(reason));
         match found.listed {
             Listed::Near(_) => put(unsure, Degraded::DistanceBelowPrecision { pairs: unsure }),
-            Listed::Pairs(_) | Listed::Hits { .. } | Listed::Earliest { .. } => {
+            Listed::Pairs(_) | Listed::Hits { .. } | Listed::Earliest { .. } | Listed::Nearest(_) => {
                 put(unsure, Degraded::Unresolved { pairs: unsure });
             }
         }

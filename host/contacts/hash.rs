@@ -5,7 +5,7 @@ use crate::scene::BodyId;
 
 impl Contacts {
     /// xxh3 over the canonical answer: the same for equal answers on every machine. Each contact adds its kind, its
-    /// indices and the bits of its times (a near pair of its squared distance and weights), little-endian; in front of these its bodies, unless all contacts are of the first body alone, or of the first two.
+    /// indices and the bits of its times (a near pair of its squared distance and weights, the nearest triangles of their distance, weights and points), little-endian; in front of these its bodies, unless all contacts are of the first body alone, or of the first two.
     pub fn hash(&self) -> u64 {
         let mut hash = xxhash_rust::xxh3::Xxh3::new();
         match &self.answer {
@@ -38,6 +38,7 @@ impl Contacts {
                     hash.update(&pair.bytes());
                 }
             }
+            Answer::Distance(nearest) => nearest.iter().for_each(|nearest| hash.update(&nearest.bytes())),
             Answer::Earliest(toi) => toi.iter().for_each(|toi| hash.update(&toi.to_le_bytes())),
         }
         hash.digest()

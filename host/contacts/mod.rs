@@ -4,6 +4,7 @@ mod degraded;
 pub(crate) mod geometry;
 mod hash;
 mod near;
+mod nearest;
 pub mod on_device;
 mod summary;
 mod triangles;
@@ -12,6 +13,7 @@ mod work;
 pub use degraded::Degraded;
 pub use geometry::ContactGeometry;
 pub use near::{Closest, NearPair};
+pub use nearest::NearestTriangles;
 pub use on_device::{DeviceAnswer, DeviceList, Entries};
 pub use summary::Summary;
 pub use triangles::{TriangleContact, triangle_contacts};
@@ -114,6 +116,8 @@ pub enum Answer {
     Earliest(Option<f64>),
     /// Feature pairs within the distance, ascending by kind, a, b.
     Near(Vec<NearPair>),
+    /// The nearest triangles of different bodies; none where no two may meet.
+    Distance(Option<NearestTriangles>),
 }
 
 /// An answer with the figures of its making.
@@ -167,6 +171,7 @@ impl Contacts {
             Query::Continuous(_) => Answer::Contacts(Vec::new()),
             Query::Earliest(_) => Answer::Earliest(None),
             Query::Near(_) => Answer::Near(Vec::new()),
+            Query::Distance(_) => Answer::Distance(None),
         };
         Contacts {
             answer,
@@ -196,6 +201,9 @@ impl Contacts {
         let answer = match &found.listed {
             Listed::Earliest { toi, .. } => Answer::Earliest(*toi),
             Listed::Near(hits) => Answer::Near(near::pairs(hits, found.ordered, layout)),
+            Listed::Nearest(nearest) => {
+                Answer::Distance(nearest.first().map(|hit| NearestTriangles::new(hit, layout)))
+            }
             Listed::Pairs(listed) => {
                 let pair = |p: &Pair| {
                     let [(a, p), (b, q)] = [p.a, p.b].map(|t| layout.locate(t, |at| at.triangle));
@@ -225,12 +233,12 @@ impl Contacts {
         };
         let count = |at: u32| found.counters[at as usize];
         let vf_ee = [count(counter::VF), count(counter::EE)];
-        let discrete = matches!(found.listed, Listed::Pairs(_));
+        let of_triangles = matches!(found.listed, Listed::Pairs(_) | Listed::Nearest(_));
         Contacts {
             answer,
             stages,
             triangle_pairs: count(counter::PAIRS),
-            candidates: if discrete { count(counter::PAIRS) } else { vf_ee[0] + vf_ee[1] },
+            candidates: if of_triangles { count(counter::PAIRS) } else { vf_ee[0] + vf_ee[1] },
             candidates_vf_ee: vf_ee,
             survivors_vf_ee: [count(counter::VF_SURVIVORS), count(counter::EE_SURVIVORS)],
             escalated_vf_ee: [count(counter::VF_ESCALATED), count(counter::EE_ESCALATED)],
@@ -248,13 +256,14 @@ impl Contacts {
         }
     }
 
-    /// How many contacts there are; of an earliest query, 1 or 0.
+    /// How many contacts there are; of an earliest query, and of a distance, 1 or 0.
     pub fn len(&self) -> usize {
         match &self.answer {
             Answer::Pairs(pairs) => pairs.len(),
             Answer::Contacts(contacts) => contacts.len(),
             Answer::Earliest(toi) => toi.iter().len(),
             Answer::Near(near) => near.len(),
+            Answer::Distance(nearest) => nearest.iter().len(),
         }
     }
 
@@ -293,10 +302,20 @@ impl Contacts {
         if let Answer::Near(near) = &self.answer { near } else { &[] }
     }
 
+    /// The nearest triangles of different bodies, if that was asked and any two may meet.
+    pub fn nearest(&self) -> Option<&NearestTriangles> {
+        if let Answer::Distance(nearest) = &self.answer { nearest.as_ref() } else { None }
+    }
+
+    /// How far apart those are: 0 if and only if they share a point.
+    pub fn distance(&self) -> Option<f64> {
+        self.nearest().map(|nearest| nearest.distance)
+    }
+
     /// The smallest time of contact of a continuous or earliest query.
     pub fn earliest_toi(&self) -> Option<f64> {
         match &self.answer {
-            Answer::Pairs(_) | Answer::Near(_) => None,
+            Answer::Pairs(_) | Answer::Near(_) | Answer::Distance(_) => None,
             Answer::Contacts(contacts) => contacts.iter().map(|c| c.toi).min_by(f64::total_cmp),
             Answer::Earliest(toi) => *toi,
         }

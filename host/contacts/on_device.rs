@@ -1,8 +1,8 @@
 //! Where the answer of a submitted frame lies.
 
-pub use nearmiss_kernels::abi::{FrameStatus, Hit, NearHit, Pair};
+pub use nearmiss_kernels::abi::{FrameStatus, Hit, NearHit, NearestHit, Pair};
 
-/// What the entries of a list on the device are, each 8 or 32 bytes: little-endian, without padding. Vertices, triangles and edges
+/// What the entries of a list on the device are, each 8, 32 or 96 bytes: little-endian, without padding. Vertices, triangles and edges
 /// are numbered through all bodies: see [`DeviceAnswer::starts`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -13,6 +13,8 @@ pub enum Entries {
     Contacts,
     /// [`NearHit`]: a vertex and a face, or two edges, their squared distance and where they are nearest.
     NearPairs,
+    /// [`NearestHit`]: two triangles, how far apart they are, and where.
+    Nearest,
 }
 
 /// A list in the device's memory.

@@ -1,6 +1,6 @@
 //! What is printed of a result.
 
-use super::{Contacts, Degraded, Front, Queues};
+use super::{Contacts, Degraded, Front, NearestTriangles, Queues};
 use crate::device::Device;
 use crate::mesh::Body;
 use crate::pipeline::Stages;
@@ -47,6 +47,8 @@ pub struct Summary {
     pub separation: Option<f64>,
     /// The distance of a near query, a length.
     pub distance: Option<f64>,
+    /// Of a distance query the nearest triangles, how far apart they are, and where.
+    pub nearest: Option<NearestTriangles>,
     /// The smallest time of contact.
     pub earliest_toi: Option<f64>,
     /// Hash of the canonical answer, sixteen hexadecimal digits.
@@ -85,6 +87,7 @@ impl Summary {
             tolerance: None,
             separation: query.certified().map(|certified| certified.params().separation),
             distance: if let Query::Near(near) = query { Some(near.distance) } else { None },
+            nearest: contacts.nearest().copied(),
             earliest_toi: contacts.earliest_toi(),
             hash: format!("{:016x}", contacts.hash()),
             reruns: contacts.reruns,

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 impl Detector {
     /// Vertices, weights, points and normal of every contact, or of every pair within a distance, in their order; of triangle pairs and
-    /// of an earliest time there are none. The bodies must be where they were when `found` was. Cost: a copy of all vertices from the
+    /// of an earliest time there are none, and the nearest triangles tell theirs. The bodies must be where they were when `found` was. Cost: a copy of all vertices from the
     /// device, and a wait; 300 operations a contact.
     ///
     /// # Errors
@@ -18,7 +18,7 @@ impl Detector {
         let named: Vec<Named> = match &found.answer {
             Answer::Contacts(contacts) => contacts.iter().map(Named::from).collect(),
             Answer::Near(pairs) => pairs.iter().map(Named::from).collect(),
-            Answer::Pairs(_) | Answer::Earliest(_) => Vec::new(),
+            Answer::Pairs(_) | Answer::Earliest(_) | Answer::Distance(_) => Vec::new(),
         };
         let layout = self.layout()?;
         let Some(pipeline) = self.pipeline.as_ref().filter(|_| !named.is_empty()) else {

@@ -113,7 +113,7 @@ impl Detector {
         let triangles: usize = bodies.iter().map(Body::face_count).sum();
         fits(triangles, bodies.iter().map(Body::vertex_count).sum())?;
         memory::require("trees and lists", triangles as u64 * OF_A_TRIANGLE)?;
-        let layout = Arc::new(Layout::new(bodies, self.query.kind().is_of_features()));
+        let layout = Arc::new(Layout::new(bodies, self.query.kind()));
         self.layout = Some(layout.clone());
         Ok(layout)
     }

@@ -1,6 +1,7 @@
 //! Where each body lies in the memory that all bodies share.
 
 use crate::mesh::{Body, Topology};
+use crate::query::QueryKind;
 use crate::scene::{BodyId, BodyKind, Meets};
 use nearmiss_kernels::abi::{BodyRecord, EVERY};
 
@@ -35,8 +36,8 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// Lays bodies one behind the other; edges only where a query needs them.
-    pub fn new(bodies: &[Body], with_edges: bool) -> Layout {
+    /// Lays bodies one behind the other for a query of that kind; edges only where it needs them.
+    pub fn new(bodies: &[Body], kind: QueryKind) -> Layout {
         let mut all = Layout { starts: vec![Offsets::default()], ..Layout::default() };
         let mut at = Offsets::default();
         let mut environments: Vec<u32> = bodies.iter().filter_map(|body| body.meets().environment).collect();
@@ -49,7 +50,7 @@ impl Layout {
                 triangle: at.triangle,
                 vertex: at.vertex,
                 environment: environment.map_or(EVERY, rank),
-                self_contact: self_contact.into(),
+                self_contact: (self_contact && kind.is_within_bodies()).into(),
                 group,
                 mask,
             });
@@ -57,7 +58,7 @@ impl Layout {
                 all.trees[usize::from(body.kind() == BodyKind::Static)].push(i);
             }
             all.faces.extend(body.faces().iter().map(|face| face.map(|v| v + at.vertex)));
-            if with_edges {
+            if kind.is_of_features() {
                 let own = Topology::new(body.faces(), body.vertex_count());
                 all.edges.extend(own.edges.iter().map(|edge| edge.map(|v| v + at.vertex)));
                 // An edge that does not exist is owned by nobody, so its number is never used.

@@ -2,8 +2,8 @@
 
 use crate::mesh::Positions;
 use nearmiss_kernels::abi::{
-    BelowPrecisionArgs, CullArgs, DiscreteArgs, FeaturesArgs, MortonArgs, NearArgs, PlaceArgs, RungArgs,
-    SolveArgs,
+    BelowPrecisionArgs, CullArgs, DiscreteArgs, FeaturesArgs, LeastArgs, MortonArgs, NearArgs, PlaceArgs,
+    RungArgs, SolveArgs,
 };
 use nearmiss_kernels::entry::{self, Entry};
 use nearmiss_kernels::math::{Real, Vec3};
@@ -32,6 +32,12 @@ pub trait Precision: Real + Send {
     type FeaturesAtRest: Entry<Args = FeaturesArgs<Self>>;
     /// Pairs of features at rest within a distance.
     type Near: Entry<Args = NearArgs<Self>>;
+    /// The least distance of triangles.
+    type Least: Entry<Args = LeastArgs<Self>>;
+    /// The first pair of it.
+    type Witness: Entry<Args = LeastArgs<Self>>;
+    /// Where that is nearest.
+    type Nearest: Entry<Args = LeastArgs<Self>>;
     /// Those that may meet.
     type Cull: Entry<Args = CullArgs<Self>>;
     /// Vertex/face by the cubic in f32.
@@ -78,6 +84,9 @@ impl Precision for f32 {
     type Features = entry::narrow_features_f32;
     type FeaturesAtRest = entry::narrow_features_at_rest_f32;
     type Near = entry::narrow_near_f32;
+    type Least = entry::narrow_least_f32;
+    type Witness = entry::narrow_witness_f32;
+    type Nearest = entry::narrow_nearest_f32;
     type Cull = entry::narrow_cull_f32;
     type Vf32 = entry::narrow_vf_f32_f32;
     type Vf64 = entry::narrow_vf_f32_f64;
@@ -117,6 +126,9 @@ impl Precision for f64 {
     type Features = entry::narrow_features_f64;
     type FeaturesAtRest = entry::narrow_features_at_rest_f64;
     type Near = entry::narrow_near_f64;
+    type Least = entry::narrow_least_f64;
+    type Witness = entry::narrow_witness_f64;
+    type Nearest = entry::narrow_nearest_f64;
     type Cull = entry::narrow_cull_f64;
     type Vf32 = entry::narrow_vf_f64_f32;
     type Vf64 = entry::narrow_vf_f64_f64;

@@ -63,7 +63,7 @@ pub struct TypedPipeline<R: Precision, V: Kernels> {
     forest: Forest<V>,
     counters: Buffer<u64>,
     pairs: List<Pair>,
-    walk: Box<dyn Walk<V>>,
+    walk: Box<dyn Walk<R, V>>,
     narrow: Box<dyn Narrow<R>>,
     reruns: u64,
     /// Around the placing of what was moved since the last frame.
@@ -249,6 +249,7 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
         self.walk.launch(&WalkContext {
             device: &self.device,
             forest: &self.forest,
+            frames: self.vertices.frames(),
             faces: self.faces.span(),
             pairs: self.pairs.span(),
             ends: Span::EMPTY,

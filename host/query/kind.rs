@@ -16,6 +16,20 @@ pub(crate) trait Question {
     {
         true
     }
+    /// Whether it asks about pairs within one body, where that is tested against itself.
+    fn is_within_bodies() -> bool
+    where
+        Self: Sized,
+    {
+        true
+    }
+    /// Whether it may be searched by more than one walk.
+    fn takes_traversals() -> bool
+    where
+        Self: Sized,
+    {
+        true
+    }
     /// With every solver that answers it, all other choices at their defaults; the default first.
     fn every() -> Vec<Self>
     where
@@ -86,6 +100,21 @@ macro_rules! kinds {
             pub fn is_at_rest(self) -> bool {
                 match self {
                     $(QueryKind::$kind => <$kind as Question>::is_at_rest(),)+
+                }
+            }
+
+            /// Whether it may be searched by more than one walk: else [`Traversal::NearestFirst`](super::Traversal::NearestFirst)
+            /// is the only one.
+            pub fn takes_traversals(self) -> bool {
+                match self {
+                    $(QueryKind::$kind => <$kind as Question>::takes_traversals(),)+
+                }
+            }
+
+            /// Whether it asks about pairs within one body, where that is tested against itself.
+            pub fn is_within_bodies(self) -> bool {
+                match self {
+                    $(QueryKind::$kind => <$kind as Question>::is_within_bodies(),)+
                 }
             }
 

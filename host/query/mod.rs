@@ -4,6 +4,7 @@ mod bv;
 mod certified;
 mod continuous;
 mod discrete;
+mod distance;
 mod kind;
 mod named;
 mod near;
@@ -15,6 +16,7 @@ pub use bv::{Bv, WithVolume};
 pub use certified::{Certified, CertifiedPrecision};
 pub use continuous::{Continuous, ContinuousSolver, Earliest, Precision};
 pub use discrete::{Discrete, TriangleTest};
+pub use distance::Distance;
 pub use named::Named;
 pub(crate) use named::named;
 pub use near::Near;
@@ -34,6 +36,8 @@ kinds! {
     Earliest = "earliest",
     /// Which vertex/face and edge/edge pairs are within a distance of each other at t = 0, and where are they nearest?
     Near = "near",
+    /// How far apart are the two bodies that are nearest at t = 0, and where?
+    Distance = "distance",
 }
 
 impl QueryKind {
@@ -69,6 +73,11 @@ impl Query {
     /// Which features are within a distance of each other now.
     pub fn near(distance: f64) -> Query {
         Near::within(distance).into()
+    }
+
+    /// How far apart the nearest two bodies are now.
+    pub fn distance() -> Query {
+        Distance::default().into()
     }
 }
 
@@ -126,7 +135,11 @@ impl Query {
 
     /// The walk that will be used on a GPU, or on a CPU.
     pub fn traversal_on(&self, is_gpu: bool) -> Traversal {
-        self.tree().traversal.unwrap_or(Traversal::default_for(is_gpu, self.bv()))
+        match self.tree().traversal {
+            Some(traversal) => traversal,
+            None if self.kind().takes_traversals() => Traversal::default_for(is_gpu, self.bv()),
+            None => Traversal::NearestFirst,
+        }
     }
 
     /// Whether its numbers mean something: lengths are lengths, queues have possible sizes.
@@ -135,6 +148,12 @@ impl Query {
     /// [`Error::Choice`] with what would.
     pub fn check(&self) -> Result<(), Error> {
         self.question().check()?;
+        if self.kind().takes_traversals() && self.tree().traversal == Some(Traversal::NearestFirst) {
+            return Err(Error::Choice {
+                what: format!("a {} query by the traversal nearest first", self.kind()),
+                advice: "keep that for distances, which have no other; choose another or none".into(),
+            });
+        }
         self.tree().check()
     }
 

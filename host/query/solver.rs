@@ -19,7 +19,7 @@ named! {
         CubicF64 = "cubic-f64",
         /// Continuous: the seed's cubic in f32. Can miss, can be late.
         CubicF32 = "cubic-f32",
-        /// Near: distances in f64, each within a proven bound. Never misses.
+        /// Near, distance: distances in f64, each within a proven bound. Never misses; 0 is decided by exact signs.
         Bounded = "bounded",
     }
 }
@@ -63,7 +63,8 @@ impl Solver {
             }
             Solver::CertifiedF64 => "certified-f64: as certified, in f64 throughout",
             Solver::Bounded => {
-                "bounded: no pair within the distance is missed; what rounding cannot tell from it is listed"
+                "bounded: no pair within the distance, or nearer than the one that is told, is missed; distances err by \
+                 less than a proven bound"
             }
             Solver::CubicF32 => {
                 "cubic-f32: a float solver that can miss contacts and report them late; docs/accuracy.md has figures"

@@ -21,7 +21,7 @@ impl Tree {
             Some(Traversal::Queue(shape)) => shape.check(),
             Some(Traversal::Steal(shape)) => shape.check(),
             Some(Traversal::Front(shape)) => shape.queue.check(),
-            Some(Traversal::PerLeaf { .. }) | None => Ok(()),
+            Some(Traversal::PerLeaf { .. } | Traversal::NearestFirst) | None => Ok(()),
         }
     }
 }
@@ -41,6 +41,9 @@ pub enum Traversal {
     Steal(StealShape),
     /// From where the last frame's descent ended: temporal coherence.
     Front(FrontShape),
+    /// A few leaves seek their nearest, the nearer of two siblings first; then a walk a leaf into what is not farther. Of distances, which have
+    /// no other.
+    NearestFirst,
 }
 
 impl Traversal {

@@ -13,9 +13,11 @@ use crate::queue::worker;
 use crate::sort;
 use crate::stage::construct::{graft, morton, tree, treelet};
 use crate::stage::narrow::features::{Moves, Rests};
-use crate::stage::narrow::{below_precision, climb, cull, discrete, features, near, separate, slice, solve};
+use crate::stage::narrow::{
+    below_precision, climb, cull, discrete, features, near, nearest, separate, slice, solve,
+};
 use crate::stage::refit::{bottom_up, levels, treelets};
-use crate::stage::traverse::{front, queue, steal};
+use crate::stage::traverse::{front, nearest as nearest_first, queue, steal};
 use crate::stage::{balance, fit as fitting, order, place, status, traverse};
 use core::marker::PhantomData;
 use name::{Name, precision};
@@ -314,6 +316,12 @@ kernels! {
     narrow_separate_f64_f64: separate::separate::<f64, Double<3>, Double<4>, B>, [RungArgs<f64>], RUNG, separate::SHARED;
     narrow_near_f32: near::near::<f32, B>, [NearArgs<f32>], RUNG, 0;
     narrow_near_f64: near::near::<f64, B>, [NearArgs<f64>], RUNG, 0;
+    narrow_least_f32: nearest::least::<f32, B>, [LeastArgs<f32>], RUNG, 0;
+    narrow_least_f64: nearest::least::<f64, B>, [LeastArgs<f64>], RUNG, 0;
+    narrow_witness_f32: nearest::witness::<f32, B>, [LeastArgs<f32>], RUNG, 0;
+    narrow_witness_f64: nearest::witness::<f64, B>, [LeastArgs<f64>], RUNG, 0;
+    narrow_nearest_f32: nearest::nearest::<f32, B>, [LeastArgs<f32>], NARROW, 0;
+    narrow_nearest_f64: nearest::nearest::<f64, B>, [LeastArgs<f64>], NARROW, 0;
     order_keys_pair: order::keys::<Pair, B>, [OrderArgs<Pair>], WIDE, 0;
     order_keys_hit: order::keys::<Hit, B>, [OrderArgs<Hit>], WIDE, 0;
     order_keys_near: order::keys::<NearHit, B>, [OrderArgs<NearHit>], WIDE, 0;
@@ -331,11 +339,13 @@ kernels_of_volumes! {
         refit_bottom_up: bottom_up::bottom_up::<V, B>, [BottomUpArgs<V>], WIDE, 0;
         traverse_leaves: traverse::leaves::<V, B>, [TraverseArgs<V>], NARROW, traverse::shared_bytes(NARROW);
         traverse_units: traverse::units::<V, B>, [TraverseArgs<V>], NARROW, traverse::shared_bytes(NARROW);
+        traverse_within: nearest_first::within::<V, B>, [TraverseArgs<V>], NARROW, traverse::shared_bytes(NARROW);
         traverse_front: front::front::<V, B>, [FrontArgs<V>], WIDE, 0;
         traverse_queue: queue::queue::<V, B>, [QueueArgs<V>], NARROW, worker::shared_bytes(NARROW);
         traverse_steal: steal::steal::<V, B>, [StealArgs<V>], NARROW, worker::shared_bytes(NARROW);
     }
     each {
+        traverse_sample: nearest_first::sample::<R, V, B>, [NearestArgs<R, V>], NARROW, 0;
         fit: fitting::fit::<R, V, B>, [FitArgs<R, V>], WIDE, 0;
         refit_treelets: treelets::treelets::<R, V, B>, [TreeletsArgs<R, V>], WIDE, treelets::shared_bytes::<V>();
     }

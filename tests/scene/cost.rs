@@ -1,7 +1,7 @@
 //! What a scene costs: what moves, in launches that no number of bodies changes, and memory for what is there alone.
 
 use super::*;
-use nearmiss::query::{Near, Refit, Traversal};
+use nearmiss::query::{Near, Refit, Traversal, Tree};
 
 /// A crate of twelve triangles; the pile is `n` of them in a row, each a little into the next.
 pub fn pile(n: usize, kind: fn(Mesh) -> Body, environments: bool) -> Scene {
@@ -26,7 +26,9 @@ pub fn query(motion: QueryKind) -> Query {
         QueryKind::Near => Query::near(Near::DISTANCE),
         other => support::asked::of(other),
     };
-    query.with_refit(Refit::Treelets).with_traversal(Traversal::PerLeaf { budget: Some(64) })
+    let spilling = Traversal::PerLeaf { budget: Some(64) };
+    let traversal = motion.takes_traversals().then_some(spilling);
+    query.with_tree(Tree { refit: Some(Refit::Treelets), traversal, bv: None })
 }
 
 /// Launches of a frame in which every body that can is moved, bytes held, and what was found.

@@ -73,21 +73,30 @@ fn scenes() -> [(&'static str, Scene, [u64; 3]); 6] {
     ]
 }
 
+/// Whether a query of that kind asks anything of so many bodies: a distance is that of two.
+fn asks(motion: QueryKind, bodies: usize) -> bool {
+    bodies > 1 || motion != QueryKind::Distance
+}
+
 /// Launches of placing, fit, refit, traverse, balance, narrow, order. On a CPU the host orders.
 #[test]
 fn launches_of_a_frame() {
-    // Narrow: filter, f64 and exact signs; features, cull and four rungs; the same; features and distances.
-    let narrow = [
-        (QueryKind::Discrete, 3),
-        (QueryKind::Continuous, 6),
-        (QueryKind::Earliest, 6),
-        (QueryKind::Near, 2),
+    // A walk, and the rounds of what it spilled; two rounds of samples, and a walk.
+    let walk = 1 + nearmiss_kernels::abi::ROUNDS as u64;
+    // Narrow: filter, f64 and exact signs; features, cull and four rungs; the same; features and distances; signs as of a discrete query,
+    // the least distance, its first pair, and where that is nearest.
+    let stages = [
+        (QueryKind::Discrete, walk, 3),
+        (QueryKind::Continuous, walk, 6),
+        (QueryKind::Earliest, walk, 6),
+        (QueryKind::Near, walk, 2),
+        (QueryKind::Distance, 3, 6),
     ];
     for (name, scene, moving) in scenes() {
-        for (motion, narrow) in narrow {
+        for (motion, walk, narrow) in stages {
             let plan = plan(&scene, motion);
             let placed = match name {
-                "static only" => {
+                "static only" | "one deformable" if name == "static only" || !asks(motion, 1) => {
                     assert_eq!((launches(&plan), plan.bytes()), ([0; 7], 0), "{name}, {motion:?}");
                     continue;
                 }
@@ -95,8 +104,8 @@ fn launches_of_a_frame() {
                 "one deformable" | "two deformable" => 0,
                 _ => 1,
             };
-            // Treelets fit leaves too; a walk, and the rounds of what it spilled.
-            let expected = [placed, 0, 1, 1 + nearmiss_kernels::abi::ROUNDS as u64, 0, narrow, 0];
+            // Treelets fit leaves too.
+            let expected = [placed, 0, 1, walk, 0, narrow, 0];
             assert_eq!(launches(&plan), expected, "{name}, {motion:?}, {moving:?}");
         }
     }
@@ -110,7 +119,7 @@ fn bytes_of_a_scene() {
         let (vertices, triangles) = (count(Body::vertex_count), count(Body::face_count));
         let bodies = scene.bodies().len() as u64;
         let rigid: u64 = scene.bodies().iter().filter(|b| b.kind() == BodyKind::Rigid).count() as u64;
-        for motion in [QueryKind::Discrete, QueryKind::Continuous, QueryKind::Earliest, QueryKind::Near] {
+        for motion in QueryKind::ALL.into_iter().filter(|&motion| asks(motion, bodies as usize)) {
             let plan = plan(&scene, motion);
             let told = |what: &str, expected: u64| {
                 assert_eq!(bytes(&plan, what), expected, "{name}, {motion:?}, {what}");
@@ -135,8 +144,9 @@ fn bytes_of_a_scene() {
                 "vertices of deformable bodies, uploaded",
                 if rigid > 0 { 0 } else { placed * ends * 16 * 8 },
             );
-            // Edges of a crate: its 12, and a diagonal a side. None of a discrete query.
-            let features = u64::from(motion != QueryKind::Discrete);
+            // Edges of a crate: its 12, and a diagonal a side. None of queries about triangles.
+            let of_triangles = matches!(motion, QueryKind::Discrete | QueryKind::Distance);
+            let features = u64::from(!of_triangles);
             told("end points of each edge", features * 8 * 18 * bodies);
             told("the earliest time of contact", if motion == QueryKind::Earliest { 8 } else { 0 });
             for list in ["vertex/face contacts", "edge/edge contacts"] {
@@ -147,16 +157,13 @@ fn bytes_of_a_scene() {
                 );
             }
             for list in ["undecided pairs", "contacts"] {
-                assert_eq!(
-                    bytes(&plan, list) > 0,
-                    motion == QueryKind::Discrete,
-                    "{name}, {motion:?}, {list}"
-                );
+                assert_eq!(bytes(&plan, list) > 0, of_triangles, "{name}, {motion:?}, {list}");
             }
             for list in ["vertex/face pairs that may meet", "edge/edge pairs for f64"] {
                 let asked = matches!(motion, QueryKind::Continuous | QueryKind::Earliest);
                 assert_eq!(bytes(&plan, list) > 0, asked, "{name}, {motion:?}, {list}");
             }
+            told("the nearest pair", if motion == QueryKind::Distance { 96 } else { 0 });
             let near = bytes(&plan, "vertex/face pairs within the distance") > 0;
             assert_eq!(near, motion == QueryKind::Near, "{name}, {motion:?}");
             // On a CPU nothing is ordered on the device, and no walk of one launch has queues.
@@ -177,10 +184,11 @@ fn what_is_left_out_is_told() {
         plan(scene, motion).left_out.iter().map(|left| left.what).collect()
     };
     let always = ["construction", "launch for the leaves", "balancing", "ordering on the device"];
-    for motion in [QueryKind::Discrete, QueryKind::Continuous, QueryKind::Earliest, QueryKind::Near] {
+    for motion in QueryKind::ALL {
         let mut of_query = always.to_vec();
         of_query.extend(motion.is_at_rest().then_some("positions at the end of the step"));
-        of_query.extend((motion == QueryKind::Discrete).then_some("edges"));
+        of_query.extend(matches!(motion, QueryKind::Discrete | QueryKind::Distance).then_some("edges"));
+        of_query.extend((motion == QueryKind::Distance).then_some("pairs within a body"));
         of_query.extend((motion == QueryKind::Earliest).then_some("lists of contacts"));
         for (scene, own) in [
             (&rigid, &["static tree", "groups in the walk"][..]),
@@ -189,6 +197,10 @@ fn what_is_left_out_is_told() {
             (&pair, &["poses", "groups in the walk"]),
             (&worlds, &["static tree", "groups in the walk"]),
         ] {
+            if !asks(motion, scene.bodies().len()) {
+                assert_eq!(left(scene, motion), ["everything"]);
+                continue;
+            }
             let mut expected = [&of_query[..], own].concat();
             let mut told = left(scene, motion);
             expected.sort_unstable();

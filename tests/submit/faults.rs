@@ -5,7 +5,7 @@ use super::*;
 #[test]
 fn a_vertex_that_is_no_point_is_named() {
     let (scene, id, [t0, t1]) = pair(60);
-    for kind in KINDS {
+    for kind in QueryKind::ALL {
         for (value, what) in [(f32::NAN, "NaN"), (f32::INFINITY, "inf")] {
             let device = engine();
             let mut memory = [&t0, &t1].map(|points| Points::new(&device, points));
@@ -51,7 +51,7 @@ fn a_vertex_that_no_face_uses_is_not_looked_at() {
 fn coordinates_too_large_for_singles_become_doubles() {
     let (scene, id, ends) = pair(60);
     let large = ends.map(|points| points.iter().map(|p| p.map(|x| x * 1e25)).collect::<Vec<_>>());
-    for kind in KINDS {
+    for kind in QueryKind::ALL {
         let device = engine();
         let memory = large.each_ref().map(|points| Points::new(&device, points));
         let mut detector = Detector::new(device, scene.clone(), query(kind)).expect("a detector");
@@ -108,7 +108,7 @@ fn a_pose_that_is_none_is_named() {
         [0.0, f32::NAN, 0.0, 0.0, 0.0, 0.0, 1.0],
         [0.0, 0.0, 0.0, 0.0, f32::INFINITY, 0.0, 1.0],
     ];
-    for kind in KINDS {
+    for kind in QueryKind::ALL {
         let mut detector = Detector::new(device.clone(), scene.clone(), query(kind)).expect("a detector");
         for numbers in wrong {
             let (_buffer, input) = held(numbers);

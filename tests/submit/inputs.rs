@@ -80,7 +80,7 @@ fn poses_on_the_device_are_poses() {
     let mut scene = Scene::new();
     let rigid = scene.add(Body::rigid(mesh));
     let cloth = scene.add(Body::still(soup(80, 6).0));
-    for kind in KINDS {
+    for kind in QueryKind::ALL {
         let device = engine();
         let mut by_host = Detector::new(engine(), scene.clone(), query(kind)).expect("a detector");
         let mut detector = Detector::new(device.clone(), scene.clone(), query(kind)).expect("a detector");

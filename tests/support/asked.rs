@@ -9,6 +9,7 @@ pub fn of(kind: QueryKind) -> Query {
         QueryKind::Discrete => Query::discrete(),
         QueryKind::Continuous => Query::continuous(),
         QueryKind::Earliest => Query::earliest(),
+        QueryKind::Distance => Query::distance(),
         other => panic!("a {other} query has no defaults"),
     }
 }

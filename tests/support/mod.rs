@@ -9,7 +9,7 @@ pub use data::data;
 
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Bv, FrontShape, QueueShape, Refit, StealShape, Traversal, Tree};
+use nearmiss::query::{Bv, FrontShape, QueryKind, QueueShape, Refit, StealShape, Traversal, Tree};
 use nearmiss::scene::Scene;
 use nearmiss::{Detector, Device, Query};
 use std::io::Read;
@@ -54,14 +54,18 @@ pub fn walks() -> Vec<Traversal> {
     ]
 }
 
+/// Every walk of queries of that kind; `None` where there is one alone.
+pub fn walks_of(kind: QueryKind) -> Vec<Option<Traversal>> {
+    if kind.takes_traversals() { walks().into_iter().map(Some).collect() } else { vec![None] }
+}
+
 /// That question with every volume, every walk and every refit.
 pub fn ways(query: Query) -> impl Iterator<Item = Query> {
     let refits = [Refit::Levels, Refit::Treelets, Refit::BottomUp];
+    let walks = move || walks_of(query.kind());
     Bv::ALL.into_iter().flat_map(move |bv| {
-        walks().into_iter().flat_map(move |walk| {
-            refits.map(|refit| {
-                query.with_tree(Tree { bv: Some(bv), traversal: Some(walk), refit: Some(refit) })
-            })
+        walks().into_iter().flat_map(move |traversal| {
+            refits.map(|refit| query.with_tree(Tree { bv: Some(bv), traversal, refit: Some(refit) }))
         })
     })
 }

@@ -87,6 +87,10 @@ pub struct DetectArgs {
     /// where they are nearest.
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true, conflicts_with_all = ["discrete", "continuous", "earliest"])]
     pub near: Option<f64>,
+    /// How far apart the two bodies are that are nearest at t = 0, with their triangles and points: 0 only if they share a point. Of
+    /// two meshes or more.
+    #[arg(long, conflicts_with_all = ["discrete", "continuous", "earliest", "near"])]
+    pub distance: bool,
     /// Bounding volume [default: the fastest].
     #[arg(long, value_parser = choice::<Bv>())]
     pub bv: Option<Bv>,
@@ -105,7 +109,7 @@ pub struct DetectArgs {
     /// Units that a work queue holds on chip (queue, queue-gtx285, steal, front) [default: 1024, or the paper's 600].
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u32>(1, 1024))]
     pub queue: Option<u32>,
-    /// The test of a pair [default: exact for discrete, certified for continuous, bounded for near].
+    /// The test of a pair [default: exact for discrete, certified for continuous, bounded for near and distance].
     #[arg(long, value_parser = choice::<Solver>())]
     pub solver: Option<Solver>,
     /// Certified: how near to contact may count as one, a length; 0 for all that the precision gives [default: 1e-4 of the

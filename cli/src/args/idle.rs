@@ -65,6 +65,17 @@ fn detect(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
         let advice = "add --traversal queue, queue-gtx285, steal or front, or leave it out";
         given.none_of(&["cores", "queue"], why, advice)?;
     }
+    if args.distance {
+        let why = "of what stands still there is one distance, and it has no time";
+        let advice = "leave it out, or ask with --continuous or --earliest";
+        given.none_of(&["tolerance", "boxes", "separation"], why, advice)?;
+        let why = "triangles of one body are not asked about each other";
+        given.none_of(&["adjacent"], why, "leave it out, or ask with --discrete")?;
+        let why = "a distance has a walk of its own";
+        given.none_of(&["traversal"], why, "leave it out")?;
+        let why = "where two triangles are nearest is told by the weights of their corners";
+        given.none_of(&["file_faces"], why, "leave it out")?;
+    }
     if args.near.is_some() {
         let why = "of what stands still there is one answer within the distance, and it has no time";
         let advice = "leave it out, or ask with --continuous or --earliest";

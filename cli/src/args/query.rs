@@ -3,8 +3,8 @@
 use super::DetectArgs;
 use nearmiss::error::Error;
 use nearmiss::query::{
-    Certified, Continuous, ContinuousSolver, Discrete, Earliest, Near, Query, QueryKind, Solver, Tree,
-    TriangleTest,
+    Certified, Continuous, ContinuousSolver, Discrete, Distance, Earliest, Near, Query, QueryKind, Solver,
+    Tree, TriangleTest,
 };
 
 impl DetectArgs {
@@ -32,6 +32,7 @@ impl DetectArgs {
         let traversal = self.traversal.map(|walk| walk.choice(self));
         let tree = Tree { bv: self.bv, refit: self.refit, traversal };
         let query: Query = match (near, ContinuousSolver::named(solver)) {
+            _ if self.distance => Distance { tree }.into(),
             (Some(distance), _) => Near { distance, tree }.into(),
             (None, Some(solver)) => {
                 let solver = self.limited(solver);
@@ -58,6 +59,7 @@ impl DetectArgs {
     fn kind(&self, moving: bool) -> (QueryKind, Option<f64>) {
         let kind = match (self.discrete, self.continuous, self.earliest) {
             _ if self.near.is_some() => QueryKind::Near,
+            _ if self.distance => QueryKind::Distance,
             (_, _, true) => QueryKind::Earliest,
             (_, true, _) => QueryKind::Continuous,
             (true, _, _) => QueryKind::Discrete,

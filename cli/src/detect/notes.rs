@@ -96,6 +96,12 @@ pub fn of(
     if let Some(why) = why.filter(|_| !motion.is_at_rest()) {
         notes.push(format!("nothing moves: {why}"));
     }
+    if contacts.answer == Answer::Distance(None) {
+        notes.push(
+            "no two bodies may meet: give a second mesh by --with, or bodies that meet in a scene file"
+                .into(),
+        );
+    }
     match at_start {
         Some(pairs @ 1..) => {
             let meet = counted(pairs as u64, "triangle pair meets", "triangle pairs meet");

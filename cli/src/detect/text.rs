@@ -2,7 +2,7 @@
 
 use crate::report::Report;
 use nearmiss::contacts::Contacts;
-use nearmiss::query::Traversal;
+use nearmiss::query::{QueryKind, Traversal};
 use nearmiss::words::counted;
 use std::fmt::Write;
 
@@ -26,7 +26,11 @@ pub fn human(told: &Report, contacts: &Contacts) -> String {
         "  {}, {}, {}{}",
         counted(summary.triangle_pairs, "triangle pair", "triangle pairs"),
         counted(summary.candidates, "candidate", "candidates"),
-        counted(summary.contacts as u64, "contact", "contacts"),
+        if summary.query == QueryKind::Distance {
+            counted(summary.contacts as u64, "nearest pair", "nearest pairs")
+        } else {
+            counted(summary.contacts as u64, "contact", "contacts")
+        },
         summary.earliest_toi.map_or(String::new(), |toi| format!(", the first at t = {toi}"))
     );
     if let Some(tolerance) = summary.tolerance {
@@ -43,6 +47,15 @@ pub fn human(told: &Report, contacts: &Contacts) -> String {
     }
     if let Some(distance) = summary.distance {
         let _ = writeln!(text, "  within {distance:e}; {} of them unresolved", summary.unresolved);
+    }
+    if let Some(nearest) = &summary.nearest {
+        let [[a, b], [p, q]] = [nearest.bodies.map(|body| body.index() as u32), nearest.triangles];
+        let _ = writeln!(
+            text,
+            "  distance {}: triangle {p} of body {a}, triangle {q} of body {b}",
+            nearest.distance
+        );
+        let _ = writeln!(text, "  from {:?} to {:?}", nearest.points[0], nearest.points[1]);
     }
     for note in &told.notes {
         let _ = writeln!(text, "  {note}");
@@ -68,7 +81,7 @@ pub fn human(told: &Report, contacts: &Contacts) -> String {
         if ms.order > 0.0 { format!(", ordering {:.3}", ms.order) } else { String::new() },
         ms.wall
     );
-    if !matches!(summary.traversal, Traversal::PerLeaf { .. }) {
+    if !matches!(summary.traversal, Traversal::PerLeaf { .. } | Traversal::NearestFirst) {
         let q = &summary.queues;
         let _ = writeln!(
             text,

@@ -162,6 +162,8 @@ fn choices(detector: &Detector, device: &Device) -> String {
                     "per leaf, to the end: a CPU's threads balance by themselves".into(),
                 Traversal::PerLeaf { .. } =>
                     "per leaf, long walks spill: a GPU must not wait for its longest walk".into(),
+                Traversal::NearestFirst =>
+                    "nearest first: samples bound the distance, then a walk a leaf".into(),
                 choice => format!("{choice:?}: fewer tests, where tests cost more"),
             },
         }

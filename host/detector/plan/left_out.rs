@@ -47,6 +47,8 @@ pub fn of(plan: &Plan, layout: &Layout, query: &Query, is_gpu: bool) -> Vec<Left
     put(groups, "groups in the walk", "every body is in all groups, and meets all");
     put(query.kind().is_at_rest(), "positions at the end of the step", "only t = 0 is looked at");
     put(buffer(purpose::EDGES), "edges", "triangles are asked about as a whole");
+    let between = !query.kind().is_within_bodies();
+    put(between, "pairs within a body", "a distance is that of two bodies");
     let earliest = query.kind() == QueryKind::Earliest;
     put(earliest, "lists of contacts", "only the smallest time is asked for");
     put(stage("fit"), "launch for the leaves", "treelets fit them where they merge them");

@@ -17,7 +17,7 @@ pub const STAGES: [(&str, &str); 9] = [
 const ORDER: usize = 7;
 
 /// Kernels by how their names begin, the longer beginnings first, and what each does.
-const KERNELS: [(&str, &str); 40] = [
+const KERNELS: [(&str, &str); 45] = [
     ("place", "poses applied, uploads put in place, the rest at rest"),
     ("construct_bounds", "the box of each body's centres"),
     ("construct_morton", "a code a triangle, behind its body's prefix"),
@@ -35,6 +35,8 @@ const KERNELS: [(&str, &str); 40] = [
     ("refit_bottom_up", "all volumes: of two siblings the second goes on"),
     ("traverse_leaves", "a walk a leaf"),
     ("traverse_units", "what long walks gave away"),
+    ("traverse_sample", "a few leaves seek their nearest, for a bound"),
+    ("traverse_within", "a walk a leaf into what is not farther"),
     ("traverse_queue", "pairs of nodes from work queues"),
     ("traverse_steal", "pairs of nodes from queues that help each other"),
     ("traverse_front", "from where the last frame's descent ended"),
@@ -54,6 +56,9 @@ const KERNELS: [(&str, &str); 40] = [
     ("narrow_slice", "the step in slices, and the search by boxes"),
     ("narrow_separate_first", "fixed supporting planes"),
     ("narrow_separate", "supporting planes"),
+    ("narrow_least", "the least distance of triangles"),
+    ("narrow_witness", "the first pair that has it"),
+    ("narrow_nearest", "where that is nearest"),
     ("narrow_near", "distances measured"),
     ("order_keys", "a key a contact"),
     ("order_gather", "contacts where their keys are"),

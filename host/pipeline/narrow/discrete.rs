@@ -50,6 +50,11 @@ impl DiscreteNarrow {
         contacts.chain(growable(&mut self.undecided)).collect()
     }
 
+    /// What each filter left to the next, with names.
+    pub fn undecided(&self) -> Vec<(&'static str, &List<Pair>)> {
+        ["narrow: undecided", "narrow: undecided in f64"].into_iter().zip(&self.undecided).collect()
+    }
+
     /// Launches the one step: by floats, or by floats with a bound, in f32 and in f64, and exact signs for what they leave.
     ///
     /// # Errors
@@ -96,7 +101,7 @@ impl<R: Precision> Narrow<R> for DiscreteNarrow {
     }
 
     fn between(&self) -> Vec<(&'static str, &List<Pair>)> {
-        ["narrow: undecided", "narrow: undecided in f64"].into_iter().zip(&self.undecided).collect()
+        self.undecided()
     }
 
     fn ordering(&mut self) -> Option<&mut dyn Ordering> {

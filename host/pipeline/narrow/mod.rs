@@ -3,6 +3,7 @@
 mod answer;
 mod continuous;
 mod discrete;
+mod distance;
 mod features;
 mod near;
 mod rungs;
@@ -20,6 +21,7 @@ use crate::device::{Ahead, Device};
 use crate::error::Error;
 use crate::mesh::Body;
 use crate::query::Query;
+use distance::DistanceNarrow;
 use near::NearNarrow;
 use nearmiss_kernels::abi::{BodyRecord, Pair, Positions, Span};
 
@@ -111,6 +113,7 @@ pub fn narrow<R: Precision>(
         Query::Continuous(query) => Box::new(ContinuousNarrow::all(device, layout, query.solver, room)?),
         Query::Earliest(query) => Box::new(ContinuousNarrow::first(device, layout, query.solver, room)?),
         Query::Near(query) => Box::new(NearNarrow::new(device, layout, query.distance, room)?),
+        Query::Distance(_) => Box::new(DistanceNarrow::new::<R>(device, few)?),
     };
     if device.is_gpu() {
         narrow.order_on(device, layout, few / 4)?;

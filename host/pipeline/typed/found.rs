@@ -8,7 +8,7 @@ use crate::pipeline::order::{Order, Ordered};
 use crate::pipeline::placing::Seen;
 use crate::pipeline::precision::Precision;
 use bytemuck::Pod;
-use nearmiss_kernels::abi::{Hit, NearHit, Pair, counter};
+use nearmiss_kernels::abi::{Hit, NearHit, NearestHit, Pair, counter};
 use nearmiss_kernels::entry::Kernels;
 
 /// What the kernels found, still in the numbering of the memory that all bodies share, and where it is possible in that
@@ -32,6 +32,8 @@ pub enum Listed<'a> {
     },
     /// Features at rest within the distance.
     Near(Hits<'a, NearHit>),
+    /// The nearest triangles: one pair, or none where nothing is asked about.
+    Nearest(View<'a, NearestHit>),
 }
 
 /// What a frame came to.
@@ -56,7 +58,7 @@ impl Found<'_> {
         let bytes = match &self.listed {
             Listed::Pairs(pairs) => size_of_val(&**pairs),
             Listed::Hits { hits, .. } => hits.count() * size_of::<crate::Contact>(),
-            Listed::Earliest { .. } => 0,
+            Listed::Earliest { .. } | Listed::Nearest(_) => 0,
             Listed::Near(hits) => hits.count() * size_of::<crate::contacts::NearPair>(),
         };
         bytes as u64

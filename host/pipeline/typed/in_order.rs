@@ -11,7 +11,7 @@ use nearmiss_kernels::bv::Aabb;
 /// The answers of two frames, in the order in which the device or the host puts them; `told` is what the host believes.
 fn answers(bodies: &[Body], query: Query, device_orders: bool, told: impl Fn(bool) -> bool) -> Vec<Contacts> {
     let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
-    let layout = Arc::new(Layout::new(bodies, query.kind().is_of_features()));
+    let layout = Arc::new(Layout::new(bodies, query.kind()));
     let given = (query, Axes::PCA);
     let mut pipeline =
         TypedPipeline::<f32, Aabb>::new(device.clone(), bodies, layout.clone(), given).expect("memory");

@@ -6,6 +6,7 @@ use crate::device::Device;
 use crate::error::Error;
 use crate::pipeline::launch;
 use crate::pipeline::list::{GrowableOutput, List};
+use crate::pipeline::precision::Precision;
 use crate::query::FrontShape;
 use nearmiss_kernels::abi::{FRONT, FrontArgs, PRUNE, Pair, counter};
 use nearmiss_kernels::entry::{self, Kernels};
@@ -75,8 +76,8 @@ impl Front {
     }
 }
 
-impl<V: Kernels> Walk<V> for Front {
-    fn launch(&mut self, given: &WalkContext<V>) -> Result<(), Error> {
+impl<R: Precision, V: Kernels> Walk<R, V> for Front {
+    fn launch(&mut self, given: &WalkContext<R, V>) -> Result<(), Error> {
         if let State::Resting(_) = self.state {
             return self.queue.launch(given);
         }
@@ -100,13 +101,13 @@ impl<V: Kernels> Walk<V> for Front {
     }
 
     fn lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
-        let mut lists = Walk::<V>::lists(&mut self.queue);
+        let mut lists = Walk::<R, V>::lists(&mut self.queue);
         lists.push(&mut self.ends);
         lists
     }
 
     fn finish(&mut self, counters: &[u64]) -> Result<(), Error> {
-        Walk::<V>::finish(&mut self.queue, counters)?;
+        Walk::<R, V>::finish(&mut self.queue, counters)?;
         let of = |at: u32| counters[at as usize];
         // A unit is a pair of siblings tested against a node.
         let tests = of(counter::FRONT_TESTS) + 2 * of(counter::STEPS);
@@ -148,7 +149,7 @@ impl<V: Kernels> Walk<V> for Front {
     }
 
     fn without_host(&self) -> Result<(), &'static str> {
-        Walk::<V>::without_host(&self.queue)
+        Walk::<R, V>::without_host(&self.queue)
     }
 
     fn front_dropped(&self) -> bool {

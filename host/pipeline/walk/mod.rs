@@ -1,6 +1,7 @@
 //! Traverse: the ways from the trees to candidates. Each is a strategy with its own memory; all give one set.
 
 mod front;
+mod nearest;
 mod per_leaf;
 mod queue;
 mod segments;
@@ -8,22 +9,26 @@ mod steal;
 
 use super::forest::Forest;
 use super::list::GrowableOutput;
+use super::precision::Precision;
 use crate::device::Device;
 use crate::error::Error;
 use crate::query::{Query, Traversal};
 use front::Front;
-use nearmiss_kernels::abi::{KEEP_ADJACENT, Pair, PairArgs, Span};
+use nearest::NearestFirst;
+use nearmiss_kernels::abi::{KEEP_ADJACENT, Pair, PairArgs, Positions, Span};
 use nearmiss_kernels::entry::{Entry, Kernels};
 use per_leaf::PerLeaf;
 use queue::Queue;
 use steal::Steal;
 
 /// What a walk is given: the machine, the trees, and where candidates go.
-pub struct WalkContext<'a, V> {
+pub struct WalkContext<'a, R: Precision, V> {
     /// The machine.
     pub device: &'a Device,
     /// The trees and their volumes.
     pub forest: &'a Forest<V>,
+    /// Positions.
+    pub frames: Positions<R>,
     /// Vertex indices of every triangle.
     pub faces: Span<[u32; 3]>,
     /// Out: candidate triangle pairs.
@@ -36,7 +41,7 @@ pub struct WalkContext<'a, V> {
     pub flags: u32,
 }
 
-impl<V: Kernels> WalkContext<'_, V> {
+impl<R: Precision, V: Kernels> WalkContext<'_, R, V> {
     /// What a walk by pairs of nodes is told, with queues of `local` units on chip.
     fn pair_args(&self, local: u32) -> PairArgs<V> {
         PairArgs {
@@ -59,12 +64,12 @@ fn resident<E: Entry>(device: &Device) -> u32 {
 }
 
 /// A way through the trees.
-pub trait Walk<V>: Send {
+pub trait Walk<R: Precision, V>: Send {
     /// Launches it. All counters are zero before.
     ///
     /// # Errors
     /// Those of the device.
-    fn launch(&mut self, given: &WalkContext<V>) -> Result<(), Error>;
+    fn launch(&mut self, given: &WalkContext<R, V>) -> Result<(), Error>;
 
     /// Its own lists, which may turn out too short: then they grow and it is launched again.
     fn lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
@@ -108,12 +113,17 @@ pub trait Walk<V>: Send {
 ///
 /// # Errors
 /// Those of the device.
-pub fn walk<V: Kernels>(device: &Device, query: &Query, triangles: usize) -> Result<Box<dyn Walk<V>>, Error> {
+pub fn walk<R: Precision, V: Kernels>(
+    device: &Device,
+    query: &Query,
+    triangles: usize,
+) -> Result<Box<dyn Walk<R, V>>, Error> {
     Ok(match query.traversal_on(device.is_gpu()) {
         Traversal::PerLeaf { budget } => Box::new(PerLeaf::new(device, budget, triangles)?),
         Traversal::Queue(shape) => Box::new(Queue::new::<V>(device, shape)?),
         Traversal::Steal(shape) => Box::new(Steal::new::<V>(device, shape)?),
         Traversal::Front(shape) => Box::new(Front::new::<V>(device, shape, triangles)?),
+        Traversal::NearestFirst => Box::new(NearestFirst),
     })
 }
 

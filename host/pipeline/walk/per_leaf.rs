@@ -4,6 +4,7 @@ use super::{Walk, WalkContext};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::launch;
+use crate::pipeline::precision::Precision;
 use nearmiss_kernels::abi::{ROUNDS, Span, TraverseArgs, Unit, counter};
 use nearmiss_kernels::entry::{self, Kernels};
 
@@ -26,8 +27,8 @@ impl PerLeaf {
     }
 }
 
-impl<V: Kernels> Walk<V> for PerLeaf {
-    fn launch(&mut self, given: &WalkContext<V>) -> Result<(), Error> {
+impl<R: Precision, V: Kernels> Walk<R, V> for PerLeaf {
+    fn launch(&mut self, given: &WalkContext<R, V>) -> Result<(), Error> {
         let (forest, device) = (given.forest, given.device);
         let mut args = TraverseArgs {
             nodes: forest.volumes.nodes.span(),

@@ -6,6 +6,7 @@ use crate::device::{Buffer, Device, Event};
 use crate::error::Error;
 use crate::pipeline::launch;
 use crate::pipeline::list::GrowableOutput;
+use crate::pipeline::precision::Precision;
 use crate::query::{Balance, QueueShape};
 use nearmiss_kernels::abi::{BalanceArgs, LAST, Pair, QueueArgs, START, Span, counter};
 use nearmiss_kernels::entry::{self, Kernels};
@@ -91,9 +92,9 @@ impl Queue {
     }
 
     /// Launches a round that reads copy `from`.
-    fn round<V: Kernels>(
+    fn round<R: Precision, V: Kernels>(
         &self,
-        given: &WalkContext<V>,
+        given: &WalkContext<R, V>,
         from: usize,
         (round, flags): (u32, u32),
     ) -> Result<(), Error> {
@@ -128,7 +129,7 @@ impl Queue {
     }
 
     /// Rounds with a balance between them, until the host sees that nothing is left.
-    fn by_copy<V: Kernels>(&mut self, given: &WalkContext<V>) -> Result<(), Error> {
+    fn by_copy<R: Precision, V: Kernels>(&mut self, given: &WalkContext<R, V>) -> Result<(), Error> {
         let (mut from, mut flags) = (0, START);
         loop {
             self.idle.clear()?;
@@ -167,7 +168,11 @@ impl Queue {
 
     /// Rounds that share one list: as many as are planned, or until the host sees that nothing is left. They begin with
     /// the roots, or with the units that `seed` writes to the list and counts.
-    fn by_view<V: Kernels>(&mut self, given: &WalkContext<V>, seed: Option<Seed>) -> Result<(), Error> {
+    fn by_view<R: Precision, V: Kernels>(
+        &mut self,
+        given: &WalkContext<R, V>,
+        seed: Option<Seed>,
+    ) -> Result<(), Error> {
         let first = if seed.is_some() { 0 } else { START };
         let begin = |queue: &mut Self| -> Result<(), Error> {
             queue.counts[0].clear()?;
@@ -204,7 +209,11 @@ impl Queue {
     ///
     /// # Errors
     /// Those of the device.
-    pub fn launch_from<V: Kernels>(&mut self, given: &WalkContext<V>, seed: Seed) -> Result<(), Error> {
+    pub fn launch_from<R: Precision, V: Kernels>(
+        &mut self,
+        given: &WalkContext<R, V>,
+        seed: Seed,
+    ) -> Result<(), Error> {
         self.by_view(given, Some(seed))
     }
 }
@@ -212,8 +221,8 @@ impl Queue {
 /// Writes units to a list and counts them.
 pub type Seed<'a> = &'a dyn Fn(Span<Pair>, Span<u64>) -> Result<(), Error>;
 
-impl<V: Kernels> Walk<V> for Queue {
-    fn launch(&mut self, given: &WalkContext<V>) -> Result<(), Error> {
+impl<R: Precision, V: Kernels> Walk<R, V> for Queue {
+    fn launch(&mut self, given: &WalkContext<R, V>) -> Result<(), Error> {
         self.balances.clear();
         match self.shape.balance {
             Balance::Copy => self.by_copy(given),

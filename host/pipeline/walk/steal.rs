@@ -6,6 +6,7 @@ use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::launch;
 use crate::pipeline::list::GrowableOutput;
+use crate::pipeline::precision::Precision;
 use crate::query::StealShape;
 use nearmiss_kernels::abi::{EAGER, Pair, StealArgs, control, pool};
 use nearmiss_kernels::entry::{self, Kernels};
@@ -49,8 +50,8 @@ impl Steal {
     }
 }
 
-impl<V: Kernels> Walk<V> for Steal {
-    fn launch(&mut self, given: &WalkContext<V>) -> Result<(), Error> {
+impl<R: Precision, V: Kernels> Walk<R, V> for Steal {
+    fn launch(&mut self, given: &WalkContext<R, V>) -> Result<(), Error> {
         self.control.clear()?;
         self.launches += 1;
         let args = StealArgs {

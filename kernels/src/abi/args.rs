@@ -280,6 +280,33 @@ arguments! {
         /// Bits: [`KEEP_ADJACENT`], [`GRAFTED`].
         flags: u32,
     }
+    /// `traverse_sample`: a bound of the least distance of two triangles.
+    NearestArgs<R: Real, V: Pod> {
+        /// Positions.
+        positions: Span<Point<R>>,
+        /// Vertex indices of every triangle.
+        faces: Span<[u32; 3]>,
+        /// The tree.
+        nodes: Span<Node<V>>,
+        /// The node of each leaf that may be a sample.
+        leaf_nodes: Span<u32>,
+        /// Which pairs are asked.
+        filters: FilterArgs,
+        /// Counters, see [`counter`].
+        counters: Span<u64>,
+        /// How many of the leaves are samples.
+        samples: u32,
+        /// How many pairs of triangles a sample measures at most.
+        measures: u32,
+        /// How many pairs of siblings it looks at.
+        steps: u32,
+        /// Bits: [`GRAFTED`].
+        flags: u32,
+        /// Which counter holds the least distance that is known before; [`NONE`](super::NONE) for none.
+        from: u32,
+        /// Which counter takes it.
+        to: u32,
+    }
 }
 
 /// [`TraverseArgs::flags`]: pairs that share a vertex are emitted too.
@@ -355,8 +382,18 @@ pub mod counter {
     pub const UNDECIDED_WIDE: u32 = ENDS + 20;
     /// Contacts that were put into order.
     pub const ORDERED: u32 = ENDS + 21;
+    /// The least distance of the first samples, see [`crate::stage::traverse::nearest::word`].
+    pub const SAMPLED: u32 = ENDS + 22;
+    /// That of all samples.
+    pub const SAMPLED_AGAIN: u32 = ENDS + 23;
+    /// That of all candidates.
+    pub const NEAREST: u32 = ENDS + 24;
+    /// The complement of the first pair of that distance: its smaller triangle above the other.
+    pub const WITNESS: u32 = ENDS + 25;
+    /// 1 where there is such a pair.
+    pub const NEAREST_PAIRS: u32 = ENDS + 26;
     /// How many counters there are.
-    pub const COUNT: u32 = ENDS + 22;
+    pub const COUNT: u32 = ENDS + 27;
 }
 /// Rounds of the traversal that may spill; one more, without a budget, ends it.
 pub const ROUNDS: u32 = 4;

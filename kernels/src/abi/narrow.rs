@@ -1,6 +1,6 @@
 //! Argument blocks of the last stage: from triangle pairs to contacts.
 
-use super::{Facet, Hit, NearHit, Pair, Point, Positions, Span};
+use super::{Facet, Hit, NearHit, NearestHit, Pair, Point, Positions, Span};
 use crate::math::Real;
 use crate::prim::inclusion::Params;
 use bytemuck::Zeroable;
@@ -81,6 +81,21 @@ arguments! {
         hits: Span<Hit>,
         /// Out: the smallest toi so far, as bits; or empty.
         earliest: Span<u64>,
+        /// Counters, see [`counter`](super::counter).
+        counters: Span<u64>,
+    }
+    /// `narrow_least`, `narrow_witness`, `narrow_nearest`: of the candidates the nearest pair.
+    LeastArgs<R: Real> {
+        /// Positions.
+        positions: Span<Point<R>>,
+        /// Vertex indices of every triangle.
+        faces: Span<[u32; 3]>,
+        /// Candidate triangle pairs.
+        pairs: Span<Pair>,
+        /// Those of them that share a point.
+        meeting: Span<Pair>,
+        /// Out: one.
+        nearest: Span<NearestHit>,
         /// Counters, see [`counter`](super::counter).
         counters: Span<u64>,
     }

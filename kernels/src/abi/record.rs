@@ -133,6 +133,23 @@ pub struct NearHit {
 }
 const _: () = assert!(size_of::<NearHit>() == 32);
 
+/// The two nearest triangles of different bodies, as the narrow stage leaves them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct NearestHit {
+    /// The triangle of the smaller index.
+    pub a: u32,
+    /// The other.
+    pub b: u32,
+    /// How far they are apart: 0 only if they share a point.
+    pub distance: f64,
+    /// Where they are nearest: of each the weights of corners 1 and 2.
+    pub at: [[f64; 2]; 2],
+    /// Those points.
+    pub points: [[f64; 3]; 2],
+}
+const _: () = assert!(size_of::<NearestHit>() == 96);
+
 /// An inner node of the radix tree, before it has a place in the level order: its range of leaves. It is known by the gap
 /// that it splits: its left child ends with the leaf of the gap's number, and its right child begins behind that.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]

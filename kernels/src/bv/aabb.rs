@@ -2,8 +2,10 @@
 
 use super::contain::between;
 use super::{Axes, Contain, FillsNode, Volume, fills_node};
+use crate::math::tolerance::{APART_DOWN, U32};
 use crate::math::{Real, Vec3, round};
 use bytemuck::{Pod, Zeroable};
+use core::ops::RangeInclusive;
 
 /// A closed box, `lo <= p <= hi` on every axis. A box of no thickness is a box.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -86,7 +88,20 @@ impl Volume for Aabb {
     fn overlaps(&self, other: &Self) -> bool {
         Aabb::overlaps(self, other)
     }
+    /// The root of the sum of the squared gaps. Each gap is rounded once, and the five operations behind it once each; where squares have
+    /// not all their digits, the largest gap is told.
+    #[inline]
+    fn apart(&self, o: &Self) -> f32 {
+        let gap = |k: usize| (self.lo[k] - o.hi[k]).greater(o.lo[k] - self.hi[k]).greater(0.0);
+        let [x, y, z] = [gap(0), gap(1), gap(2)];
+        let squares = x * x + y * y + z * z;
+        let gap = if SQUARES.contains(&squares) { Real::sqrt(squares) } else { x.greater(y).greater(z) };
+        gap * APART_DOWN
+    }
 }
+
+/// Sums of squares that have all their digits.
+const SQUARES: RangeInclusive<f32> = f32::MIN_POSITIVE / U32..=f32::MAX;
 
 impl Contain for Aabb {
     fn holds(&self, t0: Vec3<f64>, t1: Vec3<f64>) -> bool {

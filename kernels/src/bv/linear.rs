@@ -104,6 +104,12 @@ impl Volume for Linear {
         let (apart, from, to) = self.window(o);
         !(apart | (from > to + MOVING_TIME))
     }
+
+    #[inline]
+    fn apart(&self, o: &Self) -> f32 {
+        let start = |b: &Self| Aabb { lo: b.lo0, hi: b.hi0 };
+        start(self).apart(&start(o))
+    }
 }
 
 impl Linear {

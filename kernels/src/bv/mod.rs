@@ -90,6 +90,8 @@ pub trait Volume: FillsNode + Sync + Send + core::fmt::Debug + PartialEq {
     }
     /// False only if they certainly share no point (for a moving volume: at no t in [0, 1]).
     fn overlaps(&self, other: &Self) -> bool;
+    /// Never more than the distance of two points that they are around, at t = 0; 0 where they overlap.
+    fn apart(&self, other: &Self) -> f32;
 }
 
 /// Which axes a merged oriented box takes.

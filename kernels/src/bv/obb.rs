@@ -26,7 +26,8 @@ use super::axes::{self, Frame, three};
 use super::contain::within;
 use super::{Axes, Contain, FillsNode, GROUP, Points, Volume, fills_node};
 use crate::math::tolerance::{
-    BOX_APART, BOX_APART_UNDERFLOW, BOX_CHILD, BOX_LENGTH, BOX_LIMIT, BOX_POINT, BOX_UNDERFLOW, BOX_UP,
+    APART_DOWN, BOX_APART, BOX_APART_UNDERFLOW, BOX_CHILD, BOX_LENGTH, BOX_LIMIT, BOX_POINT, BOX_UNDERFLOW,
+    BOX_UP,
 };
 use crate::math::{Real, Vec3};
 use bytemuck::{Pod, Zeroable};
@@ -281,6 +282,27 @@ impl Volume for Obb {
             }
         }
         !apart
+    }
+
+    /// The largest gap along the six face normals, less the slack, which is as for [`Obb::overlaps`] but for `4.2u |T|` of a difference of
+    /// centres that no sum of extents bounds: as `|T|` is at most the distance and `1.01 S`, that is `4.2u` of the distance beside
+    /// what the slack has room for. An axis is longer than 1 by less than `8u`. Every comparison with NaN is false, which the box of everything relies on.
+    #[inline]
+    fn apart(&self, o: &Self) -> f32 {
+        let (a, b) = (self.axes(), o.axes());
+        let (g, h) = (Vec3(self.h), Vec3(o.h));
+        let t = Vec3(o.c) - Vec3(self.c);
+        let slack = self.slack + o.slack;
+        let mut gap = 0.0;
+        for i in 0..3 {
+            let row = Vec3([a[i].dot(b[0]), a[i].dot(b[1]), a[i].dot(b[2])]).map(Real::abs);
+            let column = Vec3([a[0].dot(b[i]), a[1].dot(b[i]), a[2].dot(b[i])]).map(Real::abs);
+            let mine = a[i].dot(t).abs() - (g[i] + h.dot(row)) - slack;
+            let other = b[i].dot(t).abs() - (h[i] + g.dot(column)) - slack;
+            gap = if mine > gap { mine } else { gap };
+            gap = if other > gap { other } else { gap };
+        }
+        gap * APART_DOWN
     }
 }
 

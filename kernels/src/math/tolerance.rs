@@ -194,6 +194,9 @@ pub const DISTANCE_CERTAIN: f64 = 32.0 * U64;
 pub const DISTANCE_LISTED: f64 = 256.0 * U64;
 /// A sum and a product of positive terms are below their computed value times this, and so is its square: `1 + 8u`. Ratio.
 pub const DISTANCE_UP: f64 = 1.0 + 8.0 * U64;
+/// What a gap of two volumes is multiplied with, so that it is not above the true one: `1 - 32u` of f32, for at most `4u` of boxes
+/// and `13u` of oriented ones: `8u` by which an axis may be longer than 1, and `4.2u` of a difference of centres. Ratio.
+pub const APART_DOWN: f32 = 1.0 - 32.0 * U32;
 /// Differences whose largest component is below this are scaled by [`DISTANCE_SCALE`]: `2^-400`, so that the square of
 /// `DISTANCE_ERROR` of it, 2^-892, is a normal number. Length.
 pub const DISTANCE_SMALL: f64 = f64::from_bits((1023 - 400) << 52);

@@ -122,10 +122,8 @@ fn reach<S: Real>(of: &[Vec3<S>; 3]) -> S {
 /// The nearest point, unless it is certainly beyond the distance.
 #[inline(always)]
 fn within<const TRIANGLE: bool>(of: [Vec3<f64>; 3], distance: f64) -> Option<Near> {
-    let reach = reach(&of);
-    let (up, down) = if reach < DISTANCE_SMALL { (DISTANCE_SCALE, 1.0 / DISTANCE_SCALE) } else { (1.0, 1.0) };
-    let (reach, distance) = (reach * up, distance * up);
-    let found = nearest::<f64, TRIANGLE>(of.map(|v| v * up));
+    let Scaled { reach, found, up, down } = Scaled::of::<TRIANGLE>(of);
+    let distance = distance * up;
     let most = (distance + DISTANCE_ERROR * reach) * DISTANCE_UP;
     if found.squared > most * most {
         return None;
@@ -137,6 +135,34 @@ fn within<const TRIANGLE: bool>(of: [Vec3<f64>; 3], distance: f64) -> Option<Nea
         at: found.at,
         certain: least > 0.0 && found.squared <= least * least,
     })
+}
+
+/// How far apart two features are, and where they are nearest as [`Near::at`] tells it: a vertex and the corners of a face, or
+/// the ends of one edge and those of another. The distance is within `DISTANCE_ERROR` of the reach, and of a subnormal number.
+#[inline(always)]
+pub fn distance<R: Real, const TRIANGLE: bool>(corners: [Vec3<R>; 4]) -> (f64, [f64; 2]) {
+    let Scaled { found, down, .. } = Scaled::of::<TRIANGLE>(differences::<R, f64, TRIANGLE>(corners));
+    (Real::sqrt(found.squared) * down, found.at)
+}
+
+/// The nearest point, of differences that are multiplied by `up` so that their squares are numbers.
+struct Scaled {
+    /// The largest component of the multiplied differences.
+    reach: f64,
+    found: Candidate<f64>,
+    up: f64,
+    /// One over `up`.
+    down: f64,
+}
+
+impl Scaled {
+    #[inline(always)]
+    fn of<const TRIANGLE: bool>(of: [Vec3<f64>; 3]) -> Scaled {
+        let reach = reach(&of);
+        let (up, down) =
+            if reach < DISTANCE_SMALL { (DISTANCE_SCALE, 1.0 / DISTANCE_SCALE) } else { (1.0, 1.0) };
+        Scaled { reach: reach * up, found: nearest::<f64, TRIANGLE>(of.map(|v| v * up)), up, down }
+    }
 }
 
 /// A point of the domain, and its squared distance.

@@ -49,6 +49,11 @@ impl<'a> Stack<'a> {
         unsafe { self.words.get_unchecked_mut(*self.len as usize).write(item) };
         *self.len += 1;
     }
+    /// Drops all entries.
+    #[inline]
+    pub fn clear(&mut self) {
+        *self.len = 0;
+    }
     /// Takes the entry that was added last.
     #[inline]
     pub fn pop(&mut self) -> Option<u32> {

@@ -16,6 +16,7 @@
 //!          run converged, with one atomic operation a block.
 
 pub mod front;
+pub mod nearest;
 pub mod queue;
 pub mod steal;
 
@@ -63,13 +64,36 @@ impl<V> Walk<V> {
     }
 }
 
+/// Which volumes a walk goes into.
+trait Wanted: Copy {
+    /// Whether what a volume is around is wanted by what the walk's own is around.
+    fn wants<V: Volume>(self, own: &V, other: &V) -> bool;
+}
+
+/// Those that overlap.
+#[derive(Clone, Copy)]
+struct Overlapping;
+
+impl Wanted for Overlapping {
+    #[inline(always)]
+    fn wants<V: Volume>(self, own: &V, other: &V) -> bool {
+        own.overlaps(other)
+    }
+}
+
 /// One walk a leaf.
 pub fn leaves<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>) {
+    of_leaves(b, a, Overlapping);
+}
+
+/// One walk a leaf, into volumes that are wanted.
+#[inline(always)]
+fn of_leaves<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>, wanted: impl Wanted) {
     let root = b.load(a.nodes, ROOT);
-    run(b, a, a.leaf_nodes.len() as u32, |l, i, walk| {
+    run(b, a, a.leaf_nodes.len() as u32, wanted, |l, i, walk| {
         start(l, a, walk, l.read(a.leaf_nodes, i));
         // Of the last leaf nothing comes later; the root of a grafted tree and another's has no volume.
-        if a.flags & GRAFTED != 0 || (root.last >= walk.from && walk.volume.overlaps(&root.volume)) {
+        if a.flags & GRAFTED != 0 || (root.last >= walk.from && wanted.wants(&walk.volume, &root.volume)) {
             walk.next = root.link;
         }
     });
@@ -78,7 +102,7 @@ pub fn leaves<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>) {
 /// One walk a unit that the round before left over.
 pub fn units<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>) {
     let count = b.load(a.counters, a.units_at).min(a.units.len()) as u32;
-    run(b, a, count, |l, i, walk| {
+    run(b, a, count, Overlapping, |l, i, walk| {
         let Unit { query, pair } = l.read(a.units, i);
         if query != NONE {
             start(l, a, walk, query);
@@ -108,6 +132,7 @@ fn run<V: Volume, B: Block>(
     b: &mut B,
     a: &TraverseArgs<V>,
     total: u32,
+    wanted: impl Wanted,
     begin: impl Fn(&B::Lane, u32, &mut Walk<V>),
 ) {
     let lanes = b.lanes();
@@ -142,7 +167,7 @@ fn run<V: Volume, B: Block>(
                 let walk = walks.of(l);
                 // SAFETY: the lane's own words and length, which nothing else changes; `advance` pushes one sibling a level.
                 let mut stack = unsafe { Stack::new(words.of(l), lens.of(l)) };
-                advance(l, a, walk, &mut stack, found);
+                advance(l, (a, wanted), walk, &mut stack, found);
                 if walk.next != NONE && walk.budget == 0 {
                     spill(l, a, walk, &mut stack);
                 }
@@ -165,7 +190,7 @@ fn run<V: Volume, B: Block>(
 #[inline]
 fn advance<V: Volume, L: Lane>(
     l: &L,
-    a: &TraverseArgs<V>,
+    (a, wanted): (&TraverseArgs<V>, impl Wanted),
     walk: &mut Walk<V>,
     stack: &mut Stack,
     found: Buffer,
@@ -176,8 +201,8 @@ fn advance<V: Volume, L: Lane>(
         walk.budget -= 1;
         walk.steps += 1;
         let (left, right) = (l.read(a.nodes, walk.next), l.read(a.nodes, walk.next + 1));
-        let mut into_left = (left.last >= walk.from) & walk.volume.overlaps(&left.volume);
-        let mut into_right = (right.last >= walk.from) & walk.volume.overlaps(&right.volume);
+        let mut into_left = (left.last >= walk.from) & wanted.wants(&walk.volume, &left.volume);
+        let mut into_right = (right.last >= walk.from) & wanted.wants(&walk.volume, &right.volume);
         if !a.filters.nodes.is_empty() {
             let [left, right] = [walk.next, walk.next + 1].map(|node| a.filters.of(l, node));
             into_left &= a.filters.allows(l, walk.filter, left);

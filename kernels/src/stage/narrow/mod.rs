@@ -3,7 +3,8 @@
 //! Steps    discrete: [`discrete`]. Continuous: [`features`] turns triangle pairs into vertex/face and edge/edge candidates,
 //!          each once; [`cull`] leaves out those that certainly stay apart; the rungs of [`climb`], [`mod@slice`] and
 //!          [`separate`] find what meets of the others and bound its first time, with proof; or [`solve`] does so by the
-//!          seed's cubic. Near: [`features`] too, and [`near`] measures what they leave. [`below_precision`] counts of what is listed what the precision was too below_precision for, where that may be.
+//!          seed's cubic. Near: [`features`] too, and [`near`] measures what they leave. Distance: [`discrete`], then
+//!          [`mod@nearest`]. [`below_precision`] counts what is listed and too large for the tolerance, where there may be such.
 
 pub mod below_precision;
 pub mod climb;
@@ -11,6 +12,7 @@ pub mod cull;
 pub mod discrete;
 pub mod features;
 pub mod near;
+pub mod nearest;
 pub mod separate;
 pub mod slice;
 pub mod solve;

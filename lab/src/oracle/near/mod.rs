@@ -1,12 +1,15 @@
-//! How far two features at rest are from each other, exactly; and all pairs of features within a distance, by asking each.
+//! How far two features at rest are from each other, exactly; all pairs of features within a distance, and the
+//! least distance of two sets of triangles, by asking each.
 //!
 //! The method shares nothing with the kernels': coordinates become integers by one power of two, and the square of the distance is
 //! the least of a few fractions of integers. Of two flat bodies that are apart, and of such that meet, the least is where the perpendicular
 //! from one to the other ends inside, or on a side: each is asked in turn. Degenerate features have no inside, and their sides tell.
 
 mod list;
+mod triangles;
 
 pub use list::{Row, Shape, all_within};
+pub use triangles::{least_squared, triangles_squared};
 
 use crate::case::Features;
 use crate::oracle::exact;

@@ -1,0 +1,49 @@
+//! The nearest triangles of different bodies.
+
+use crate::pipeline::Layout;
+use crate::scene::BodyId;
+use nearmiss_kernels::abi::NearestHit;
+use nearmiss_kernels::prim::near::corner_weights;
+
+/// The two triangles of different bodies that are nearest, and where. Of several pairs at the least distance, as it is computed, the
+/// first by its triangles and their bodies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct NearestTriangles {
+    /// Their bodies, the smaller number first.
+    pub bodies: [BodyId; 2],
+    /// Their indices in those.
+    pub triangles: [u32; 2],
+    /// How far apart they are: 0 if and only if they share a point, which exact signs decide. Else it is off by 192 half ulps of their
+    /// extent at most, and no two triangles that were asked about are nearer by more than that.
+    pub distance: f64,
+    /// Where they are nearest: of each the weights of its corners, in the order in which the face names them. Where they share a point
+    /// that is one of those, up to roundings.
+    pub weights: [[f64; 3]; 2],
+    /// Those points.
+    pub points: [[f64; 3]; 2],
+}
+
+impl NearestTriangles {
+    /// Of a list's entry, in the numbering of the bodies.
+    pub(super) fn new(hit: &NearestHit, layout: &Layout) -> NearestTriangles {
+        let [(a, p), (b, q)] = [hit.a, hit.b].map(|triangle| layout.locate(triangle, |at| at.triangle));
+        let NearestHit { distance, at, points, .. } = *hit;
+        NearestTriangles {
+            bodies: [a, b],
+            triangles: [p, q],
+            distance,
+            weights: at.map(corner_weights),
+            points,
+        }
+    }
+
+    /// What a hash is told.
+    pub(super) fn bytes(&self) -> Vec<u8> {
+        let indices = self.bodies.iter().map(|body| body.0).chain(self.triangles);
+        let numbers = std::iter::once(&self.distance)
+            .chain(self.weights.as_flattened())
+            .chain(self.points.as_flattened());
+        indices.flat_map(u32::to_le_bytes).chain(numbers.flat_map(|x| x.to_le_bytes())).collect()
+    }
+}

@@ -1,0 +1,124 @@
+//! The nearest triangles: which candidates share a point, and of the others the nearest.
+
+use super::{AnswerLists, DiscreteNarrow, Narrow, NarrowContext};
+use crate::contacts::Entries;
+use crate::device::{Ahead, Device};
+use crate::error::Error;
+use crate::pipeline::launch;
+use crate::pipeline::list::{GrowableOutput, List};
+use crate::pipeline::order::Ordering;
+use crate::pipeline::precision::Precision;
+use crate::pipeline::typed::Listed;
+use crate::query::TriangleTest;
+use nearmiss_kernels::abi::{LeastArgs, NearestHit, Pair, Span, counter};
+
+/// A step of the phase.
+#[derive(Clone, Copy)]
+enum Step {
+    /// Which candidates share a point.
+    Decide,
+    /// The least distance.
+    Least,
+    /// The pair that has it.
+    Nearest,
+}
+
+impl Step {
+    /// All, in their order.
+    const ALL: [Step; 3] = [Step::Decide, Step::Least, Step::Nearest];
+}
+
+/// The lists of a distance query.
+pub struct DistanceNarrow {
+    /// Candidates that share a point.
+    meeting: DiscreteNarrow,
+    /// The nearest pair, if there is one.
+    nearest: List<NearestHit>,
+}
+
+impl DistanceNarrow {
+    /// Takes the memory for positions of that precision, with room for `few` candidates that share a point.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn new<R: Precision>(device: &Device, few: usize) -> Result<Self, Error> {
+        Ok(DistanceNarrow {
+            meeting: DiscreteNarrow::new::<R>(device, TriangleTest::default(), few)?,
+            nearest: List::new(device, "the nearest pair", counter::NEAREST_PAIRS, 1)?,
+        })
+    }
+
+    fn args<R: Precision>(&self, given: &NarrowContext<R>) -> LeastArgs<R> {
+        LeastArgs {
+            positions: given.frames.still,
+            faces: given.faces,
+            pairs: given.pairs,
+            meeting: self.meeting.contacts.span(),
+            nearest: self.nearest.span(),
+            counters: given.counters,
+        }
+    }
+}
+
+impl<R: Precision> Narrow<R> for DistanceNarrow {
+    fn steps(&self) -> Vec<&'static str> {
+        let name = |step| match step {
+            Step::Decide => "decide",
+            Step::Least => "least",
+            Step::Nearest => "nearest",
+        };
+        Step::ALL.map(name).into()
+    }
+
+    fn run(&mut self, step: usize, given: &NarrowContext<R>) -> Result<(), Error> {
+        let (device, args) = (given.device, self.args(given));
+        let capacity = given.pairs.len() as usize;
+        match Step::ALL[step] {
+            Step::Decide => self.meeting.decide(given),
+            Step::Least => launch::striding::<R::Least>(device, capacity, &args),
+            Step::Nearest => {
+                launch::striding::<R::Witness>(device, capacity, &args)?;
+                launch::blocks::<R::Nearest>(device, 1, &args)
+            }
+        }
+    }
+
+    fn lists(&mut self, step: usize) -> Vec<&mut dyn GrowableOutput> {
+        match Step::ALL[step] {
+            Step::Decide => self.meeting.all_lists(),
+            Step::Least => Vec::new(),
+            Step::Nearest => vec![&mut self.nearest],
+        }
+    }
+
+    fn between(&self) -> Vec<(&'static str, &List<Pair>)> {
+        self.meeting.undecided()
+    }
+
+    fn ordering(&mut self) -> Option<&mut dyn Ordering> {
+        None
+    }
+
+    fn order(&mut self, _: &NarrowContext<R>) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn ahead(&self, last: &[u64]) -> Vec<Ahead<'_>> {
+        vec![self.nearest.ahead(last)]
+    }
+
+    fn gather(&self, counters: &[u64]) -> Result<(Listed<'_>, bool), Error> {
+        Ok((Listed::Nearest(self.nearest.view(counters)?), true))
+    }
+
+    fn answer(&self) -> AnswerLists {
+        AnswerLists {
+            entries: Entries::Nearest,
+            lists: vec![(self.nearest.span().addr(), 1)],
+            is_ordered: true,
+            counters: vec![self.nearest.counter()],
+            earliest: None,
+            edges: Span::EMPTY,
+        }
+    }
+}

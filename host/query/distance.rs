@@ -1,0 +1,61 @@
+//! The least distance between bodies at t = 0.
+
+use super::{Question, Solver, Traversal, Tree};
+use crate::error::Error;
+
+/// How far apart are the two bodies that are nearest at t = 0, and where? Of all pairs of triangles of different bodies that may
+/// meet; what is tested against itself is not asked about itself. 0 only where some share a point, which exact signs decide.
+///
+/// ```
+/// use nearmiss::{Body, Detector, Device, Mesh, Query, device::Backend, mesh::Positions};
+///
+/// let triangle = |z: f32| {
+///     let corners = vec![[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]];
+///     Mesh::new("a triangle", Positions::F32(corners), vec![[0, 1, 2]]).map(Body::still)
+/// };
+/// let bodies = vec![triangle(0.0)?, triangle(0.25)?];
+/// let found = Detector::new(Device::open(Backend::Cpu, None)?, bodies, Query::distance())?.detect()?;
+/// assert_eq!(found.distance(), Some(0.25));
+/// # Ok::<(), nearmiss::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Distance {
+    /// How it is searched: it has a walk of its own, [`Traversal::NearestFirst`], and no other.
+    pub tree: Tree,
+}
+
+impl Question for Distance {
+    fn is_at_rest() -> bool {
+        true
+    }
+    fn is_of_features() -> bool {
+        false
+    }
+    fn is_within_bodies() -> bool {
+        false
+    }
+    fn takes_traversals() -> bool {
+        false
+    }
+    fn every() -> Vec<Distance> {
+        vec![Distance::default()]
+    }
+    fn tree(&self) -> &Tree {
+        &self.tree
+    }
+    fn tree_mut(&mut self) -> &mut Tree {
+        &mut self.tree
+    }
+    fn solver(&self) -> Solver {
+        Solver::Bounded
+    }
+    fn check(&self) -> Result<(), Error> {
+        match self.tree.traversal {
+            None | Some(Traversal::NearestFirst) => Ok(()),
+            Some(other) => Err(Error::Choice {
+                what: format!("a distance by the traversal {other:?}"),
+                advice: "leave the traversal to the query: it has one of its own, nearest first".into(),
+            }),
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! How far apart two triangles are, and where they are nearest. In doubles.
+//!
+//! Triangles that share no point are nearest at a vertex of one and the other, or at an edge of each: fifteen pairs of features,
+//! measured as [`near`](super::near) measures them, and the first of the shortest is taken. So the computed distance has the bounds
+//! that hold there: at most the true one and `DISTANCE_ERROR` of the reach, at least the true one less `DISTANCE_CERTAIN`
+//! of it, where the reach is at most the largest difference of two coordinates of the six corners.
+//!
+//! Whether triangles share a point is not told by this, but by [`tri_tri`](super::tri_tri), exactly; where they do, [`crossing`] finds
+//! a point of both.
+
+use super::near::distance;
+use crate::math::tolerance::{DISTANCE_CERTAIN, DISTANCE_UP, U64};
+use crate::math::{Real, Vec3, round};
+use core::ops::RangeInclusive;
+
+/// The corners of a triangle.
+pub type Corners<R> = [Vec3<R>; 3];
+
+/// Where two triangles are nearest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    /// How far apart those points are, as computed; never below 0.
+    pub distance: f64,
+    /// Of each triangle the weights of corners 1 and 2.
+    pub at: [[f64; 2]; 2],
+}
+
+/// The weights of a corner.
+#[inline(always)]
+fn corner(k: u32) -> [f64; 2] {
+    [(k == 1) as u32 as f64, (k == 2) as u32 as f64]
+}
+
+/// The weights of the point at `t` of the edge from corner `k` to the next.
+#[inline(always)]
+fn along(k: u32, t: f64) -> [f64; 2] {
+    match k {
+        0 => [t, 0.0],
+        1 => [1.0 - t, t],
+        _ => [0.0, 1.0 - t],
+    }
+}
+
+/// The corners, those behind the first one step forward.
+#[inline(always)]
+fn turned<R: Real>([a, b, c]: Corners<R>) -> Corners<R> {
+    [b, c, a]
+}
+
+impl Nearest {
+    /// Farther than everything.
+    const NONE: Nearest = Nearest { distance: f64::INFINITY, at: [[0.0; 2]; 2] };
+
+    /// The nearer; of two alike the first.
+    #[inline(always)]
+    fn or(self, distance: f64, at: impl FnOnce() -> [[f64; 2]; 2]) -> Nearest {
+        if distance < self.distance { Nearest { distance, at: at() } } else { self }
+    }
+
+    /// Of two triangles by their features.
+    #[inline]
+    pub fn of<R: Real>(p: &Corners<R>, q: &Corners<R>) -> Nearest {
+        let mut best = Nearest::NONE;
+        let mut edges = *p;
+        let mut k = 0;
+        while k < 3 {
+            let (far, at) = distance::<R, true>([edges[0], q[0], q[1], q[2]]);
+            best = best.or(far, || [corner(k), at]);
+            let mut others = *q;
+            let mut m = 0;
+            while m < 3 {
+                let (far, [s, t]) = distance::<R, false>([edges[0], edges[1], others[0], others[1]]);
+                best = best.or(far, || [along(k, s), along(m, t)]);
+                others = turned(others);
+                m += 1;
+            }
+            edges = turned(edges);
+            k += 1;
+        }
+        let mut vertices = *q;
+        let mut m = 0;
+        while m < 3 {
+            let (far, at) = distance::<R, true>([vertices[0], p[0], p[1], p[2]]);
+            best = best.or(far, || [at, corner(m)]);
+            vertices = turned(vertices);
+            m += 1;
+        }
+        best
+    }
+
+    /// Of two triangles that share a point: by their features, and where an edge of one goes through the other. The points of both
+    /// differ by roundings; the distance, which is theirs, says by how much.
+    #[inline]
+    pub fn meeting<R: Real>(p: &Corners<R>, q: &Corners<R>) -> Nearest {
+        let mut best = Nearest::of(p, q);
+        let [a, b] = [p, q].map(|triangle| triangle.map(|x| x.map(|x| x.wide())));
+        let (mut edges, mut others) = (a, b);
+        let mut k = 0;
+        while k < 3 {
+            if let Some((far, t, at)) = crossing([edges[0], edges[1]], &b) {
+                best = best.or(far, || [along(k, t), at]);
+            }
+            if let Some((far, t, at)) = crossing([others[0], others[1]], &a) {
+                best = best.or(far, || [at, along(k, t)]);
+            }
+            edges = turned(edges);
+            others = turned(others);
+            k += 1;
+        }
+        best
+    }
+}
+
+/// Where an edge goes through the plane of a face: how far along it, and the face's point nearest to there with its distance. `None`
+/// where it does not, or where products are no numbers.
+#[inline]
+fn crossing([a, b]: [Vec3<f64>; 2], face: &Corners<f64>) -> Option<(f64, f64, [f64; 2])> {
+    let [x, y, z] = *face;
+    let n = (y - x).cross(z - x);
+    let (before, behind) = (n.dot(a - x), n.dot(b - x));
+    let sides = before - behind;
+    if !((before >= 0.0) != (behind >= 0.0) && sides.abs() > 0.0 && sides.abs() < f64::INFINITY) {
+        return None;
+    }
+    let t = before / sides;
+    let (far, at) = distance::<f64, true>([a + (b - a) * t, x, y, z]);
+    Some((far, t, at))
+}
+
+/// Whether two triangles are certainly farther apart, as [`Nearest::of`] would compute it, than `best`: by the boxes of their corners. The
+/// gap of these is computed with relative errors below those for which the square of `DISTANCE_UP` allows.
+#[inline]
+pub fn farther<R: Real>(p: &Corners<R>, q: &Corners<R>, best: f64) -> bool {
+    let lowest = |c: &Corners<R>| c[0].lesser(c[1]).lesser(c[2]).map(|x| x.wide());
+    let highest = |c: &Corners<R>| c[0].greater(c[1]).greater(c[2]).map(|x| x.wide());
+    let ([a, b], [c, d]) = ([lowest(p), lowest(q)], [highest(p), highest(q)]);
+    let gaps = (b - c).greater(a - d).greater(Vec3([0.0; 3]));
+    let extents = c.greater(d) - a.lesser(b);
+    let largest = |v: Vec3<f64>| v[0].greater(v[1]).greater(v[2]);
+    let squares = gaps.dot(gaps);
+    // Where squares are too small or too large to tell, the largest gap is enough.
+    let gap = if (SQUARES).contains(&squares) { Real::sqrt(squares) } else { largest(gaps) };
+    gap > (best + DISTANCE_CERTAIN * largest(extents)) * (DISTANCE_UP * DISTANCE_UP)
+}
+
+/// Sums of squares that have all their digits.
+const SQUARES: RangeInclusive<f64> = f64::MIN_POSITIVE / U64..=f64::MAX;
+
+/// A length of f32 that no nearest pair's volumes are farther apart than, if a pair at `best` is known, and no coordinate is
+/// larger than `largest`.
+#[inline]
+pub fn bound(best: f64, largest: f32) -> f32 {
+    round::up((best + DISTANCE_CERTAIN * (2.0 * largest.wide())) * DISTANCE_UP)
+}
