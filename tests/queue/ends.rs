@@ -2,7 +2,8 @@
 
 use super::*;
 use nearmiss_kernels::abi::{
-    FRONT, FilterArgs, LEAF, Link, Node, Pair, PairArgs, QueueArgs, ROOT, START, Span, StealArgs,
+    FilterArgs, LEAF, Link, Node, Pair, PairArgs, QueueArgs, QueueFlags, ROOT, Span, StealArgs, StealFlags,
+    TraverseFlags,
 };
 use nearmiss_kernels::abi::{counter, pool};
 use nearmiss_kernels::bv::{Aabb, Axes, Volume};
@@ -70,7 +71,7 @@ fn run(device: &Device, nodes: &[Node<Aabb>], rounds: Option<u32>) -> Left {
         pairs: pairs.span(),
         ends: ends.span(),
         counters: counters.span(),
-        flags: FRONT | nearmiss_kernels::abi::KEEP_ADJACENT,
+        flags: TraverseFlags::FRONT | TraverseFlags::KEEP_ADJACENT,
         local: 9,
     };
     let lists = [0, 1].map(|_| device.buffer::<Pair>(room).expect("memory"));
@@ -91,7 +92,7 @@ fn run(device: &Device, nodes: &[Node<Aabb>], rounds: Option<u32>) -> Left {
                     idle_limit: 0,
                     patience: 0,
                     full: u32::MAX,
-                    flags: if round == 0 { START } else { 0 },
+                    flags: QueueFlags::START.when(round == 0),
                     pad: 0,
                 };
                 // SAFETY: buffers of this device that are read below; the tree is sound.
@@ -115,7 +116,7 @@ fn run(device: &Device, nodes: &[Node<Aabb>], rounds: Option<u32>) -> Left {
                 launch: 7 << pool::LAUNCH,
                 segment: room as u32 / 3,
                 tries: 5,
-                flags: nearmiss_kernels::abi::EAGER,
+                flags: StealFlags::EAGER,
                 pad: 0,
             };
             // SAFETY: as above.

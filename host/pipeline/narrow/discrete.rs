@@ -10,7 +10,7 @@ use crate::pipeline::order::{Order, Ordering};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Listed, in_order};
 use crate::query::TriangleTest;
-use nearmiss_kernels::abi::{DiscreteArgs, KEEP_ADJACENT, Pair, Span, counter};
+use nearmiss_kernels::abi::{DiscreteArgs, DiscreteFlags, Pair, Span, counter};
 
 /// The lists of a discrete query.
 pub struct DiscreteNarrow {
@@ -64,7 +64,7 @@ impl DiscreteNarrow {
             counters: given.counters,
             pairs_at,
             undecided_at: undecided.map_or(0, List::counter),
-            flags: if self.test.has_adjacent() { KEEP_ADJACENT } else { 0 },
+            flags: DiscreteFlags::KEEP_ADJACENT.when(self.test.has_adjacent()),
             pad: 0,
         };
         let (device, capacity) = (given.device, given.pairs.len() as usize);

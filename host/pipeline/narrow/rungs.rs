@@ -7,7 +7,7 @@ use crate::pipeline::launch;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::precision::Precision;
 use crate::query::{Certified, CertifiedPrecision};
-use nearmiss_kernels::abi::{EVERYTHING, Hit, Listed, Pair, RungArgs, Span, counter};
+use nearmiss_kernels::abi::{Hit, Listed, Pair, RungArgs, RungFlags, Span, counter};
 use nearmiss_kernels::entry::Entry;
 
 /// A rung: one launch over the pairs that the one before left.
@@ -143,7 +143,7 @@ impl Rungs {
                 earliest,
                 counters: given.counters,
                 params: self.certified.params(),
-                flags: if everything { EVERYTHING } else { 0 },
+                flags: RungFlags::EVERYTHING.when(everything),
                 pad: 0,
             };
             let capacity = pairs[0].capacity() + pairs[1].capacity();

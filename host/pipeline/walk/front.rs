@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::pipeline::launch;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::query::FrontShape;
-use nearmiss_kernels::abi::{FRONT, FrontArgs, PRUNE, Pair, counter};
+use nearmiss_kernels::abi::{FrontArgs, FrontFlags, Pair, TraverseFlags, counter};
 use nearmiss_kernels::entry::{self, Kernels};
 
 /// Pairs of the front a triangle for which there is room at first: cloth at rest has 30, swept over a step 100.
@@ -80,11 +80,11 @@ impl<V: Kernels> Walk<V> for Front {
         if let State::Resting(_) = self.state {
             return self.queue.launch(given);
         }
-        let flags = given.flags | FRONT;
+        let flags = given.flags | TraverseFlags::FRONT;
         let given = WalkContext { ends: self.ends.span(), flags, ..*given };
         let State::Kept { count, .. } = self.state else { return self.queue.launch(&given) };
         let blocks = given.device.blocks_striding::<entry::traverse_front<V>>(count as usize);
-        let (front, flags) = (self.front.span(), if self.prunes::<V>() { PRUNE } else { 0 });
+        let (front, flags) = (self.front.span(), FrontFlags::PRUNE.when(self.prunes::<V>()));
         self.queue.launch_from(&given, &|units, unit_count| {
             let args = FrontArgs {
                 to: given.pair_args(1),

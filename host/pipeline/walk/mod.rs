@@ -12,7 +12,7 @@ use crate::device::Device;
 use crate::error::Error;
 use crate::query::{Query, Traversal};
 use front::Front;
-use nearmiss_kernels::abi::{KEEP_ADJACENT, Pair, PairArgs, Span};
+use nearmiss_kernels::abi::{Pair, PairArgs, Span, TraverseFlags};
 use nearmiss_kernels::entry::{Entry, Kernels};
 use per_leaf::PerLeaf;
 use queue::Queue;
@@ -28,12 +28,12 @@ pub struct WalkContext<'a, V> {
     pub faces: Span<[u32; 3]>,
     /// Out: candidate triangle pairs.
     pub pairs: Span<Pair>,
-    /// Out, with [`FRONT`](nearmiss_kernels::abi::FRONT): pairs of nodes where the descent ended.
+    /// Out, with [`TraverseFlags::FRONT`]: pairs of nodes where the descent ended.
     pub ends: Span<Pair>,
     /// Counters, see [`nearmiss_kernels::abi::counter`].
     pub counters: Span<u64>,
-    /// [`KEEP_ADJACENT`], [`GRAFTED`](nearmiss_kernels::abi::GRAFTED), [`FRONT`](nearmiss_kernels::abi::FRONT).
-    pub flags: u32,
+    /// What every walk is told.
+    pub flags: TraverseFlags,
 }
 
 impl<V: Kernels> WalkContext<'_, V> {
@@ -118,6 +118,6 @@ pub fn walk<V: Kernels>(device: &Device, query: &Query, triangles: usize) -> Res
 }
 
 /// What a walk is told by flags of a query.
-pub fn flags(query: &Query) -> u32 {
-    if query.keeps_adjacent() { KEEP_ADJACENT } else { 0 }
+pub fn flags(query: &Query) -> TraverseFlags {
+    TraverseFlags::KEEP_ADJACENT.when(query.keeps_adjacent())
 }

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::pipeline::launch;
 use crate::pipeline::list::GrowableOutput;
 use crate::query::{Balance, QueueShape};
-use nearmiss_kernels::abi::{BalanceArgs, LAST, Pair, QueueArgs, START, Span, counter};
+use nearmiss_kernels::abi::{BalanceArgs, Pair, QueueArgs, QueueFlags, Span, counter};
 use nearmiss_kernels::entry::{self, Kernels};
 
 /// Rounds that are launched before the host looks whether anything is left, as long as it does not know. Even: the two
@@ -95,11 +95,11 @@ impl Queue {
         &self,
         given: &WalkContext<V>,
         from: usize,
-        (round, flags): (u32, u32),
+        (round, flags): (u32, QueueFlags),
     ) -> Result<(), Error> {
         let QueueShape { local, take, idle, patience, balance, .. } = self.shape;
         let lanes = given.device.lanes::<entry::traverse_queue<V>>();
-        let start = flags & START != 0;
+        let start = flags.has(QueueFlags::START);
         let copy = balance == Balance::Copy;
         // One list for all: the first block alone, until there is something to share.
         let alone = start && !copy;
@@ -129,11 +129,11 @@ impl Queue {
 
     /// Rounds with a balance between them, until the host sees that nothing is left.
     fn by_copy<V: Kernels>(&mut self, given: &WalkContext<V>) -> Result<(), Error> {
-        let (mut from, mut flags) = (0, START);
+        let (mut from, mut flags) = (0, QueueFlags::START);
         loop {
             self.idle.clear()?;
             self.round(given, from, (0, flags))?;
-            flags = 0;
+            flags = QueueFlags::NONE;
             let to = 1 - from;
             let counts = self.counts[to].read(self.cores as usize)?;
             let most = counts.iter().max().copied().unwrap_or(0);
@@ -168,7 +168,7 @@ impl Queue {
     /// Rounds that share one list: as many as are planned, or until the host sees that nothing is left. They begin with
     /// the roots, or with the units that `seed` writes to the list and counts.
     fn by_view<V: Kernels>(&mut self, given: &WalkContext<V>, seed: Option<Seed>) -> Result<(), Error> {
-        let first = if seed.is_some() { 0 } else { START };
+        let first = QueueFlags::START.when(seed.is_none());
         let begin = |queue: &mut Self| -> Result<(), Error> {
             queue.counts[0].clear()?;
             queue.idle.clear()
@@ -180,8 +180,8 @@ impl Queue {
         self.plan.seeded = seed.is_some();
         if let Some(rounds) = *self.plan.of_last() {
             return (0..rounds).try_for_each(|round| {
-                let start = if round == 0 { first } else { 0 };
-                let last = if round + 1 == rounds { LAST } else { 0 };
+                let start = first.when(round == 0);
+                let last = QueueFlags::LAST.when(round + 1 == rounds);
                 self.round(given, round as usize, (round, start | last))
             });
         }
@@ -189,7 +189,7 @@ impl Queue {
         loop {
             for round in 0..BATCH {
                 self.round(given, round as usize, (round, flags))?;
-                flags = 0;
+                flags = QueueFlags::NONE;
             }
             let left = self.counts[0].read(BATCH as usize + 1)?[BATCH as usize];
             if left == 0 {

@@ -1,8 +1,8 @@
 //! One argument block for each kernel: what it is launched with, by value.
 
 use super::{
-    BodyRecord, FilterArgs, Inner, LeafPlace, Link, Merge, Node, NodeFilter, Pair, Point, Span, TreeBody,
-    Treelet, Unit, VertexMotion,
+    BodyRecord, FilterArgs, Inner, LeafPlace, Link, Merge, Node, NodeFilter, Pair, Point, Span,
+    TraverseFlags, TreeBody, Treelet, Unit, VertexMotion,
 };
 use crate::bv::Axes;
 use crate::math::Real;
@@ -277,15 +277,10 @@ arguments! {
         spilled_at: u32,
         /// Steps of a walk before it spills the rest of its stack.
         budget: u32,
-        /// Bits: [`KEEP_ADJACENT`], [`GRAFTED`].
-        flags: u32,
+        /// All but [`TraverseFlags::FRONT`].
+        flags: TraverseFlags,
     }
 }
-
-/// [`TraverseArgs::flags`]: pairs that share a vertex are emitted too.
-pub const KEEP_ADJACENT: u32 = 1;
-/// [`TraverseArgs::flags`]: below the root lie a tree that does not change, whose pairs nobody asks for, and one that does.
-pub const GRAFTED: u32 = 2;
 
 /// The counters of a frame. Each is the exact demand for its list, also where the list was too short.
 pub mod counter {

@@ -4,6 +4,7 @@
 
 #[macro_use]
 mod args;
+mod flags;
 mod narrow;
 mod order;
 mod queues;
@@ -14,6 +15,7 @@ pub mod stamp;
 mod status;
 
 pub use args::*;
+pub use flags::*;
 pub use narrow::*;
 pub use order::*;
 pub use queues::*;

@@ -1,6 +1,6 @@
 //! Argument blocks of the last stage: from triangle pairs to contacts.
 
-use super::{Facet, Hit, NearHit, Pair, Point, Positions, Span};
+use super::{DiscreteFlags, Facet, Hit, NearHit, Pair, Point, Positions, RungFlags, Span};
 use crate::math::Real;
 use crate::prim::inclusion::Params;
 use bytemuck::Zeroable;
@@ -41,8 +41,8 @@ arguments! {
         pairs_at: u32,
         /// Which counter the undecided pairs add to.
         undecided_at: u32,
-        /// Bits: [`KEEP_ADJACENT`](super::KEEP_ADJACENT).
-        flags: u32,
+        /// What is asked of them.
+        flags: DiscreteFlags,
         /// Zero.
         pad: u32,
     }
@@ -160,13 +160,9 @@ arguments! {
         counters: Span<u64>,
         /// What is asked.
         params: Params,
-        /// Bits: [`EVERYTHING`].
-        flags: u32,
+        /// What it is told.
+        flags: RungFlags,
         /// Zero.
         pad: u32,
     }
 }
-
-/// [`RungArgs::flags`]: of `narrow_isolate`, a contact is one however well its time is known; of `narrow_settle`, nothing is
-/// left to a next rung.
-pub const EVERYTHING: u32 = 1;

@@ -3,7 +3,7 @@
 //! Sizes and places come from sums over the block, never from atomics: a block's work is the same each time.
 
 use super::pair::{ChildPairs, ROOTS, below};
-use crate::abi::{FRONT, KEEP_ADJACENT, Pair, PairArgs, Span, counter};
+use crate::abi::{Pair, PairArgs, Span, TraverseFlags, counter};
 use crate::bv::Volume;
 use crate::exec::{Block, Lane, Shared, Slot};
 use crate::prim::adjacent::share_a_vertex;
@@ -213,7 +213,7 @@ impl<B: Block> Worker<B> {
         self.fill += candidates;
         self.units += taken as u64;
         self.spills += spilled as u64;
-        if to.flags & FRONT != 0 {
+        if to.flags.has(TraverseFlags::FRONT) {
             self.list_ends(b, to);
         }
         if self.fill + 2 * lanes > found.len {
@@ -248,7 +248,8 @@ impl<B: Block> Worker<B> {
             let (mut i, mut bit, mut mask) = (l.lane(), 1, 0);
             while i < fill {
                 let [p, q] = l.get(found, i);
-                if to.flags & KEEP_ADJACENT != 0 || !share_a_vertex(l.read(to.faces, p), l.read(to.faces, q))
+                if to.flags.has(TraverseFlags::KEEP_ADJACENT)
+                    || !share_a_vertex(l.read(to.faces, p), l.read(to.faces, q))
                 {
                     mask |= bit;
                 }

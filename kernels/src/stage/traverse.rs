@@ -6,8 +6,8 @@
 //! Writes   candidate pairs, the smaller index first, each once, in no order.
 //! Before   all volumes are fitted and refitted.
 //! After    every pair of leaves whose volumes overlap and whose bodies are asked about is written, but for those that share
-//!          a vertex index unless [`KEEP_ADJACENT`] asks for them. A pair is found by its earlier leaf: subtrees that end
-//!          before it are skipped. With [`GRAFTED`] leaves of what does not change come last and do not walk.
+//!          a vertex index unless [`TraverseFlags::KEEP_ADJACENT`] asks for them. A pair is found by its earlier leaf: subtrees that end
+//!          before it are skipped. With [`TraverseFlags::GRAFTED`] leaves of what does not change come last and do not walk.
 //! Room     `pairs` may be too short: the counter goes on, the host grows it and runs again. `spilled` may be too
 //!          short: then a walk goes on by itself and nothing is lost.
 //! Departs  the paper's queues hold pairs of inner nodes and are balanced between launches; here a walk that has used up
@@ -19,7 +19,7 @@ pub mod front;
 pub mod queue;
 pub mod steal;
 
-use crate::abi::{GRAFTED, KEEP_ADJACENT, NONE, NodeFilter, Pair, ROOT, TraverseArgs, Unit, counter};
+use crate::abi::{NONE, NodeFilter, Pair, ROOT, TraverseArgs, TraverseFlags, Unit, counter};
 use crate::bv::Volume;
 use crate::exec::{Block, Lane, Slot};
 use crate::prim::adjacent::share_a_vertex;
@@ -69,7 +69,9 @@ pub fn leaves<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>) {
     run(b, a, a.leaf_nodes.len() as u32, |l, i, walk| {
         start(l, a, walk, l.read(a.leaf_nodes, i));
         // Of the last leaf nothing comes later; the root of a grafted tree and another's has no volume.
-        if a.flags & GRAFTED != 0 || (root.last >= walk.from && walk.volume.overlaps(&root.volume)) {
+        if a.flags.has(TraverseFlags::GRAFTED)
+            || (root.last >= walk.from && walk.volume.overlaps(&root.volume))
+        {
             walk.next = root.link;
         }
     });
@@ -250,7 +252,7 @@ fn flush<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>, found: Buffer, kep
         let mut i = l.lane();
         while i < count {
             let pair = found.get(l, i);
-            if a.flags & KEEP_ADJACENT != 0
+            if a.flags.has(TraverseFlags::KEEP_ADJACENT)
                 || !share_a_vertex(l.read(a.faces, pair.a), l.read(a.faces, pair.b))
             {
                 let place = kept.take(l, 1);

@@ -17,7 +17,7 @@
 //!          400 operations.
 
 use super::{edge_edge, listed, vertex_face};
-use crate::abi::{EVERYTHING, Hit, Listed, Pair, RungArgs, Span, counter};
+use crate::abi::{Hit, Listed, Pair, RungArgs, RungFlags, Span, counter};
 use crate::exec::{Block, Lane, Slot};
 use crate::math::Real;
 use crate::prim::inclusion::{Grid, Verdict};
@@ -28,7 +28,7 @@ use bytemuck::Pod;
 
 /// Isolation of roots, positions in R, computed in S.
 pub fn isolate<R: Real, S: Grid, B: Block>(b: &mut B, a: &RungArgs<R>) {
-    let last = a.flags & EVERYTHING != 0;
+    let last = a.flags.has(RungFlags::EVERYTHING);
     rung(
         b,
         a,
@@ -45,9 +45,9 @@ pub fn isolate<R: Real, S: Grid, B: Block>(b: &mut B, a: &RungArgs<R>) {
     );
 }
 
-/// Touching at the start, and what is flat; with [`EVERYTHING`] all that is left.
+/// Touching at the start, and what is flat; with [`RungFlags::EVERYTHING`] all that is left.
 pub fn settle<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
-    let all = a.flags & EVERYTHING != 0;
+    let all = a.flags.has(RungFlags::EVERYTHING);
     rung(
         b,
         a,

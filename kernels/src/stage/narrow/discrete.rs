@@ -12,7 +12,7 @@
 //!          takes `wide` some 30 operations in f64, `exact` thousands on integers.
 
 use super::{Entries, append_each, listed, stride};
-use crate::abi::{DiscreteArgs, KEEP_ADJACENT, Pair, counter};
+use crate::abi::{DiscreteArgs, DiscreteFlags, Pair, counter};
 use crate::exec::{Block, Lane, OPEN, RowMap, Slot};
 use crate::math::{Real, Vec3};
 use crate::prim::adjacent::{Shared, meets_beyond_shared};
@@ -104,7 +104,8 @@ pub fn filter<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
                 Some((pair, l.read(a.faces, pair.a), l.read(a.faces, pair.b)))
             },
             |l, (_, p, q)| {
-                let beyond = a.flags & KEEP_ADJACENT != 0 && Shared::by_index(p, q) != Shared::Nothing;
+                let beyond =
+                    a.flags.has(DiscreteFlags::KEEP_ADJACENT) && Shared::by_index(p, q) != Shared::Nothing;
                 if beyond { None } else { Some([corners(l, a, p), corners(l, a, q)]) }
             },
             |l, told| match told {
