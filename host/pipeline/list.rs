@@ -3,7 +3,7 @@
 use crate::device::{Ahead, Buffer, Device, View};
 use crate::error::Error;
 use bytemuck::Pod;
-use nearmiss_kernels::abi::Span;
+use nearmiss_kernels::abi::{Output, Span};
 
 /// A list in device memory, whose entries a counter counts.
 pub struct List<T> {
@@ -24,8 +24,13 @@ impl<T: Pod> List<T> {
         Ok(List { name, counter, entries: device.of(name).buffer(capacity.min(LONGEST as usize))? })
     }
 
-    /// What a kernel is given.
-    pub fn span(&self) -> Span<T> {
+    /// What a kernel is given, that counts with these counters.
+    pub fn output(&self, counters: Span<u64>) -> Output<T> {
+        Output::new(self.entries.span(), counters.part(self.counter.into(), 1))
+    }
+
+    /// The memory alone, where something else knows how many entries are there.
+    pub fn entries(&self) -> Span<T> {
         self.entries.span()
     }
 

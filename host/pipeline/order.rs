@@ -7,7 +7,7 @@ use crate::device::{Buffer, Device, View};
 use crate::error::Error;
 use crate::pipeline::{launch, purpose};
 use bytemuck::Pod;
-use nearmiss_kernels::abi::{BodyRecord, Named, OrderArgs, Span, counter};
+use nearmiss_kernels::abi::{BodyRecord, Named, OrderArgs, Output, Span, counter};
 use nearmiss_kernels::entry::{self, Entry};
 use nearmiss_kernels::stage::order::KIND_BITS;
 
@@ -129,23 +129,21 @@ impl<T: Ordered> Order<T> {
         }
         self.counts.clear()?;
         let counts = self.counts.span();
+        let out = self.list.output(counters);
         let args = |items: &Buffer<u64>| OrderArgs {
-            first: first.span(),
-            second: second.map_or(Span::EMPTY, List::span),
-            out: self.list.span(),
+            first: first.output(counters),
+            second: second.map_or(Output::EMPTY, |list| list.output(counters)),
+            out,
             items: items.span(),
             tiles: counted(device, counts, capacity as u32, 0),
             bodies,
-            counters,
-            first_at: first.counter(),
-            second_at: second.map_or(0, List::counter),
             bits: self.bits,
             number_bits: self.number_bits(),
         };
         let (keys, gather) = (args(&self.items[0]), args(&self.items[bytes.len() % 2]));
         launch::striding::<T::Keys>(device, capacity, &keys)?;
-        let live = counters.part(counter::ORDERED.into(), 1);
-        sort(device, self.items.each_ref(), (capacity as u32, live), counts, &bytes)?;
+        let live = (capacity as u32, out.count());
+        sort(device, self.items.each_ref(), live, counts, &bytes)?;
         launch::striding::<T::Gather>(device, capacity, &gather)
     }
 }

@@ -27,7 +27,7 @@ use crate::device::{Buffer, Device, Event};
 use crate::error::Error;
 use crate::mesh::Body;
 use crate::query::Query;
-use nearmiss_kernels::abi::{self, Pair, Span, counter};
+use nearmiss_kernels::abi::{self, Output, Pair, counter};
 use nearmiss_kernels::bv::Axes;
 use nearmiss_kernels::entry::Kernels;
 use rayon::prelude::*;
@@ -192,7 +192,7 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
                         device: &self.device,
                         frames: self.vertices.frames(),
                         faces: self.faces.span(),
-                        pairs: self.pairs.span(),
+                        pairs: self.pairs.output(self.counters.span()),
                         bodies: self.forest.records.span(),
                         counters: self.counters.span(),
                     };
@@ -250,8 +250,8 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
             device: &self.device,
             forest: &self.forest,
             faces: self.faces.span(),
-            pairs: self.pairs.span(),
-            ends: Span::EMPTY,
+            pairs: self.pairs.output(self.counters.span()),
+            ends: Output::EMPTY,
             counters: self.counters.span(),
             flags: flags(&self.query) | self.forest.flags(),
         })

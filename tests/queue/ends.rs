@@ -2,8 +2,8 @@
 
 use super::*;
 use nearmiss_kernels::abi::{
-    FilterArgs, LEAF, Link, Node, Pair, PairArgs, QueueArgs, QueueFlags, ROOT, Span, StealArgs, StealFlags,
-    TraverseFlags,
+    FilterArgs, LEAF, Link, Node, Output, Pair, PairArgs, QueueArgs, QueueFlags, ROOT, Span, StealArgs,
+    StealFlags, TraverseFlags,
 };
 use nearmiss_kernels::abi::{counter, pool};
 use nearmiss_kernels::bv::{Aabb, Axes, Volume};
@@ -68,8 +68,8 @@ fn run(device: &Device, nodes: &[Node<Aabb>], rounds: Option<u32>) -> Left {
         nodes: nodes.span(),
         filters: FilterArgs { nodes: Span::EMPTY, bodies: Span::EMPTY },
         faces: Span::EMPTY,
-        pairs: pairs.span(),
-        ends: ends.span(),
+        pairs: Output::new(pairs.span(), counters.span().part(counter::PAIRS.into(), 1)),
+        ends: Output::new(ends.span(), counters.span().part(counter::ENDS.into(), 1)),
         counters: counters.span(),
         flags: TraverseFlags::FRONT | TraverseFlags::KEEP_ADJACENT,
         local: 9,

@@ -24,7 +24,7 @@ pub struct AnswerLists {
 impl AnswerLists {
     /// Of lists of each kind, or of the one that they were ordered into.
     pub fn of<T: Ordered>(entries: Entries, lists: &[&List<T>], order: Option<&Order<T>>) -> AnswerLists {
-        let place = |list: &List<T>| (list.span().addr(), list.capacity());
+        let place = |list: &List<T>| (list.entries().addr(), list.capacity());
         let order = order.filter(|order| order.fits());
         AnswerLists {
             entries,

@@ -193,11 +193,10 @@ impl ContinuousNarrow {
             frames: given.frames,
             faces: given.faces,
             edges: self.features.edges.span(),
-            vf: vf.span(),
-            ee: ee.span(),
-            may_vf: may_vf.span(),
-            may_ee: may_ee.span(),
-            counters: given.counters,
+            vf: vf.output(given.counters),
+            ee: ee.output(given.counters),
+            may_vf: may_vf.output(given.counters),
+            may_ee: may_ee.output(given.counters),
             params: self.solver.certified().copied().unwrap_or_default().params(),
         };
         launch::striding::<R::Cull>(given.device, vf.capacity() + ee.capacity(), &args)
@@ -228,8 +227,8 @@ impl ContinuousNarrow {
             frames: given.frames,
             faces: given.faces,
             edges,
-            survivors: survivors.span(),
-            hits: hits.span(),
+            survivors: survivors.output(given.counters),
+            hits: hits.output(given.counters),
             earliest,
             counters: given.counters,
         };

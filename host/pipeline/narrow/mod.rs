@@ -21,7 +21,7 @@ use crate::error::Error;
 use crate::mesh::Body;
 use crate::query::Query;
 use near::NearNarrow;
-use nearmiss_kernels::abi::{BodyRecord, Pair, Positions, Span};
+use nearmiss_kernels::abi::{BodyRecord, Output, Pair, Positions, Span};
 
 /// What every step of the stage is given.
 pub struct NarrowContext<'a, R: Precision> {
@@ -32,7 +32,7 @@ pub struct NarrowContext<'a, R: Precision> {
     /// Vertex indices of every triangle.
     pub faces: Span<[u32; 3]>,
     /// Candidate triangle pairs.
-    pub pairs: Span<Pair>,
+    pub pairs: Output<Pair>,
     /// What the kernels know of the bodies; empty where there is one alone.
     pub bodies: Span<BodyRecord>,
     /// The frame's counters.

@@ -7,7 +7,7 @@ use crate::pipeline::launch;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::precision::Precision;
 use crate::query::{Certified, CertifiedPrecision};
-use nearmiss_kernels::abi::{Hit, Listed, Pair, RungArgs, RungFlags, Span, counter};
+use nearmiss_kernels::abi::{Hit, Listed, Output, Pair, RungArgs, RungFlags, Span, counter};
 use nearmiss_kernels::entry::Entry;
 
 /// A rung: one launch over the pairs that the one before left.
@@ -121,13 +121,9 @@ impl Rungs {
         (asked, hits, earliest): ([&List<Pair>; 2], [&List<Hit>; 2], Span<u64>),
     ) -> Result<(), Error> {
         let listed = |pairs: &List<Pair>, hits: &List<Hit>, left: Option<&List<Pair>>| Listed {
-            pairs: pairs.span(),
-            hits: hits.span(),
-            left: left.map_or(Span::EMPTY, List::span),
-            pairs_at: pairs.counter(),
-            hits_at: hits.counter(),
-            left_at: left.map_or(0, List::counter),
-            pad: 0,
+            pairs: pairs.output(given.counters),
+            hits: hits.output(given.counters),
+            left: left.map_or(Output::EMPTY, |list| list.output(given.counters)),
         };
         let mut pairs = asked;
         for (at, &rung) in self.rungs.iter().enumerate() {

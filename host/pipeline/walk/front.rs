@@ -81,16 +81,15 @@ impl<V: Kernels> Walk<V> for Front {
             return self.queue.launch(given);
         }
         let flags = given.flags | TraverseFlags::FRONT;
-        let given = WalkContext { ends: self.ends.span(), flags, ..*given };
+        let given = WalkContext { ends: self.ends.output(given.counters), flags, ..*given };
         let State::Kept { count, .. } = self.state else { return self.queue.launch(&given) };
         let blocks = given.device.blocks_striding::<entry::traverse_front<V>>(count as usize);
-        let (front, flags) = (self.front.span(), FrontFlags::PRUNE.when(self.prunes::<V>()));
-        self.queue.launch_from(&given, &|units, unit_count| {
+        let (front, flags) = (self.front.entries(), FrontFlags::PRUNE.when(self.prunes::<V>()));
+        self.queue.launch_from(&given, &|units| {
             let args = FrontArgs {
                 to: given.pair_args(1),
                 front,
                 units,
-                unit_count,
                 pair_parents: given.forest.tree.pair_parents.span(),
                 count,
                 flags,

@@ -12,7 +12,7 @@ use crate::device::Device;
 use crate::error::Error;
 use crate::query::{Query, Traversal};
 use front::Front;
-use nearmiss_kernels::abi::{Pair, PairArgs, Span, TraverseFlags};
+use nearmiss_kernels::abi::{Output, Pair, PairArgs, Span, TraverseFlags};
 use nearmiss_kernels::entry::{Entry, Kernels};
 use per_leaf::PerLeaf;
 use queue::Queue;
@@ -27,9 +27,9 @@ pub struct WalkContext<'a, V> {
     /// Vertex indices of every triangle.
     pub faces: Span<[u32; 3]>,
     /// Out: candidate triangle pairs.
-    pub pairs: Span<Pair>,
+    pub pairs: Output<Pair>,
     /// Out, with [`TraverseFlags::FRONT`]: pairs of nodes where the descent ended.
-    pub ends: Span<Pair>,
+    pub ends: Output<Pair>,
     /// Counters, see [`nearmiss_kernels::abi::counter`].
     pub counters: Span<u64>,
     /// What every walk is told.

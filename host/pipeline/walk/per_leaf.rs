@@ -4,7 +4,7 @@ use super::{Walk, WalkContext};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::launch;
-use nearmiss_kernels::abi::{ROUNDS, Span, TraverseArgs, Unit, counter};
+use nearmiss_kernels::abi::{Output, ROUNDS, TraverseArgs, Unit, counter};
 use nearmiss_kernels::entry::{self, Kernels};
 
 /// See [`crate::query::Traversal::PerLeaf`].
@@ -29,17 +29,20 @@ impl PerLeaf {
 impl<V: Kernels> Walk<V> for PerLeaf {
     fn launch(&mut self, given: &WalkContext<V>) -> Result<(), Error> {
         let (forest, device) = (given.forest, given.device);
+        // What a round leaves, and what counts that.
+        let spilled = |units: &[Buffer<Unit>; 2], round: u32| {
+            let count = given.counters.part((counter::SPILLED + round).into(), 1);
+            Output::new(units[round as usize % 2].span(), count)
+        };
         let mut args = TraverseArgs {
             nodes: forest.volumes.nodes.span(),
             leaf_nodes: forest.tree.leaf_nodes.span(),
             filters: forest.filters(),
             faces: given.faces,
-            units: Span::EMPTY,
-            spilled: self.units.as_ref().map_or(Span::EMPTY, |units| units[0].span()),
+            units: Output::EMPTY,
+            spilled: self.units.as_ref().map_or(Output::EMPTY, |units| spilled(units, 0)),
             pairs: given.pairs,
             counters: given.counters,
-            units_at: 0,
-            spilled_at: counter::SPILLED,
             budget: self.budget.unwrap_or(u32::MAX),
             flags: given.flags,
         };
@@ -54,12 +57,11 @@ impl<V: Kernels> Walk<V> for PerLeaf {
         let blocks = device.blocks_striding::<entry::traverse_units<V>>(units[0].len());
         for round in 0..ROUNDS {
             args.units = args.spilled;
-            args.units_at = args.spilled_at;
-            args.spilled = units[(round as usize + 1) % 2].span();
-            args.spilled_at += 1;
             if round + 1 == ROUNDS {
-                args.budget = u32::MAX;
-                args.spilled_at = 0;
+                // No walk is that long: nothing is left.
+                (args.budget, args.spilled) = (u32::MAX, Output::EMPTY);
+            } else {
+                args.spilled = spilled(units, round + 1);
             }
             launch::blocks::<entry::traverse_units<V>>(device, blocks, &args)?;
         }

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::pipeline::launch;
 use crate::pipeline::list::GrowableOutput;
 use crate::query::{Balance, QueueShape};
-use nearmiss_kernels::abi::{BalanceArgs, Pair, QueueArgs, QueueFlags, Span, counter};
+use nearmiss_kernels::abi::{BalanceArgs, Output, Pair, QueueArgs, QueueFlags, counter};
 use nearmiss_kernels::entry::{self, Kernels};
 
 /// Rounds that are launched before the host looks whether anything is left, as long as it does not know. Even: the two
@@ -175,7 +175,7 @@ impl Queue {
         };
         begin(self)?;
         if let Some(seed) = seed {
-            seed(self.units.span(0), self.counts[0].span())?;
+            seed(Output::new(self.units.span(0), self.counts[0].span().part(0, 1)))?;
         }
         self.plan.seeded = seed.is_some();
         if let Some(rounds) = *self.plan.of_last() {
@@ -209,8 +209,8 @@ impl Queue {
     }
 }
 
-/// Writes units to a list and counts them.
-pub type Seed<'a> = &'a dyn Fn(Span<Pair>, Span<u64>) -> Result<(), Error>;
+/// Appends units to a list.
+pub type Seed<'a> = &'a dyn Fn(Output<Pair>) -> Result<(), Error>;
 
 impl<V: Kernels> Walk<V> for Queue {
     fn launch(&mut self, given: &WalkContext<V>) -> Result<(), Error> {

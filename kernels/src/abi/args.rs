@@ -1,7 +1,7 @@
 //! One argument block for each kernel: what it is launched with, by value.
 
 use super::{
-    BodyRecord, FilterArgs, Inner, LeafPlace, Link, Merge, Node, NodeFilter, Pair, Point, Span,
+    BodyRecord, FilterArgs, Inner, LeafPlace, Link, Merge, Node, NodeFilter, Output, Pair, Point, Span,
     TraverseFlags, TreeBody, Treelet, Unit, VertexMotion,
 };
 use crate::bv::Axes;
@@ -264,17 +264,13 @@ arguments! {
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
         /// Units to walk (`traverse_units`).
-        units: Span<Unit>,
+        units: Output<Unit>,
         /// Out: units left when a walk's budget was used up.
-        spilled: Span<Unit>,
+        spilled: Output<Unit>,
         /// Out: candidate triangle pairs.
-        pairs: Span<Pair>,
+        pairs: Output<Pair>,
         /// Counters, see [`counter`].
         counters: Span<u64>,
-        /// Which counter tells how many units there are.
-        units_at: u32,
-        /// Which counter the spilled units add to.
-        spilled_at: u32,
         /// Steps of a walk before it spills the rest of its stack.
         budget: u32,
         /// All but [`TraverseFlags::FRONT`].

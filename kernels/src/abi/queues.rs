@@ -1,6 +1,6 @@
 //! Argument blocks of the traversals by pairs of nodes, and of their balance.
 
-use super::{FilterArgs, FrontFlags, Node, Pair, QueueFlags, Span, StealFlags, TraverseFlags};
+use super::{FilterArgs, FrontFlags, Node, Output, Pair, QueueFlags, Span, StealFlags, TraverseFlags};
 use bytemuck::{Pod, Zeroable};
 
 arguments! {
@@ -13,9 +13,9 @@ arguments! {
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
         /// Out: candidate triangle pairs.
-        pairs: Span<Pair>,
+        pairs: Output<Pair>,
         /// Out, with [`TraverseFlags::FRONT`]: the pairs of nodes where the descent ended.
-        ends: Span<Pair>,
+        ends: Output<Pair>,
         /// Counters, see [`counter`](super::counter).
         counters: Span<u64>,
         /// What it is told.
@@ -61,9 +61,7 @@ arguments! {
         /// Where the last descent ended.
         front: Span<Pair>,
         /// Out: pairs that go deeper.
-        units: Span<Pair>,
-        /// How many they are.
-        unit_count: Span<u64>,
+        units: Output<Pair>,
         /// The parent of each pair of siblings.
         pair_parents: Span<u32>,
         /// Pairs of the front.

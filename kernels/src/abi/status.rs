@@ -43,12 +43,9 @@ arguments! {
         seen: Span<u64>,
         /// Out: one.
         status: Span<FrameStatus>,
-        /// Which counters count the answer; [`NO_LIST`] for none.
-        first_at: u32,
-        /// See above.
-        second_at: u32,
+        /// Counts the answer's first list: one word, or none where there is no list.
+        first: Span<u64>,
+        /// Counts its second list.
+        second: Span<u64>,
     }
 }
-
-/// No counter.
-pub const NO_LIST: u32 = u32::MAX;

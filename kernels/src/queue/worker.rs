@@ -226,14 +226,12 @@ impl<B: Block> Worker<B> {
     fn list_ends<V: Volume>(&mut self, b: &mut B, to: &PairArgs<V>) {
         let Worker { below: slots, sums, .. } = self;
         b.phase(|l| *sums.of(l) = slots.of(l).ends.count_ones());
-        let base = b.append(sums, to.counters, counter::ENDS);
+        let base = to.ends.append(b, sums);
         b.phase(|l| {
             let (below, mut at) = (slots.of(l), base + *sums.of(l) as u64);
             for k in 0..2 {
                 if below.ends >> k & 1 != 0 {
-                    if at < to.ends.len() {
-                        l.write(to.ends, at as u32, below.nodes[k]);
-                    }
+                    to.ends.put(l, at, below.nodes[k]);
                     at += 1;
                 }
             }
@@ -259,15 +257,13 @@ impl<B: Block> Worker<B> {
             *kept.of(l) = mask;
             *sums.of(l) = mask.count_ones();
         });
-        let base = b.append(sums, to.counters, counter::PAIRS);
+        let base = to.pairs.append(b, sums);
         b.phase(|l| {
             let (mut i, mut mask, mut at) = (l.lane(), *kept.of(l), base + *sums.of(l) as u64);
             while mask != 0 {
                 if mask & 1 != 0 {
                     let [a, b] = l.get(found, i);
-                    if at < to.pairs.len() {
-                        l.write(to.pairs, at as u32, Pair { a, b });
-                    }
+                    to.pairs.put(l, at, Pair { a, b });
                     at += 1;
                 }
                 mask >>= 1;

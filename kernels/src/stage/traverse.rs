@@ -79,9 +79,9 @@ pub fn leaves<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>) {
 
 /// One walk a unit that the round before left over.
 pub fn units<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>) {
-    let count = b.load(a.counters, a.units_at).min(a.units.len()) as u32;
+    let count = a.units.listed(b);
     run(b, a, count, |l, i, walk| {
-        let Unit { query, pair } = l.read(a.units, i);
+        let Unit { query, pair } = a.units.get(l, i);
         if query != NONE {
             start(l, a, walk, query);
             walk.next = pair;
@@ -226,19 +226,19 @@ fn emit<V: Volume, L: Lane>(l: &L, walk: &mut Walk<V>, found: Buffer) {
 /// Gives the rest of a walk away; where the list has no room for all of it, the walk goes on without a budget.
 fn spill<V: Volume, L: Lane>(l: &L, a: &TraverseArgs<V>, walk: &mut Walk<V>, stack: &mut Stack) {
     let count = stack.len() as u64 + 1;
-    let at = l.fetch_add(a.counters, a.spilled_at, count);
-    if at + count <= a.spilled.len() {
+    let at = l.fetch_add(a.spilled.count(), 0, count);
+    if at + count <= a.spilled.room() {
         let mut i = at as u32;
         while walk.next != NONE {
-            l.write(a.spilled, i, Unit { query: walk.query, pair: walk.next });
+            l.write(a.spilled.items(), i, Unit { query: walk.query, pair: walk.next });
             walk.next = stack.pop().unwrap_or(NONE);
             i += 1;
         }
     } else {
         walk.budget = u32::MAX;
         let mut i = at;
-        while i < a.spilled.len().min(at + count) {
-            l.write(a.spilled, i as u32, Unit { query: NONE, pair: NONE });
+        while i < a.spilled.room().min(at + count) {
+            l.write(a.spilled.items(), i as u32, Unit { query: NONE, pair: NONE });
             i += 1;
         }
     }
@@ -262,13 +262,11 @@ fn flush<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>, found: Buffer, kep
         }
     });
     let count = b.peek(kept.fill, 0);
-    let base = b.reserve(a.counters, counter::PAIRS, count as u64);
+    let base = a.pairs.reserve(b, count as u64);
     b.phase(|l| {
         let mut i = l.lane();
         while i < count {
-            if base + (i as u64) < a.pairs.len() {
-                l.write(a.pairs, (base + i as u64) as u32, kept.get(l, i));
-            }
+            a.pairs.put(l, base + i as u64, kept.get(l, i));
             i += lanes;
         }
         clear(l, found, kept);

@@ -10,7 +10,7 @@ use nearmiss::pipeline::Layout;
 use nearmiss::pipeline::narrow::{Capacities, ContinuousNarrow, NarrowContext};
 use nearmiss::pipeline::precision::Precision;
 use nearmiss::query::{Certified, Continuous, ContinuousSolver, Query};
-use nearmiss_kernels::abi::{Hit, Positions, Span, counter};
+use nearmiss_kernels::abi::{Hit, Output, Positions, Span, counter};
 
 /// Asks every case whether its features meet, and when first: by the query's solver, tolerance and budget, with the
 /// kernels of a frame. Without a tolerance, [`Certified::TOLERANCE`] of the cases' mean edge. Any number of cases; a million
@@ -114,7 +114,7 @@ impl<R: Precision> Run<'_, R> {
             device: self.device,
             frames: Positions { still: Span::EMPTY, moving: self.vertices.span() },
             faces: self.faces.span(),
-            pairs: Span::EMPTY,
+            pairs: Output::EMPTY,
             bodies: Span::EMPTY,
             counters: self.counters.span(),
         };

@@ -91,7 +91,7 @@ fn some<R: Precision>(device: &Device, mesh: &Mesh, test: TriangleTest) -> Resul
             device,
             frames: abi::Positions { still: points.span(), moving: Span::EMPTY },
             faces: faces.span(),
-            pairs: list.span(),
+            pairs: list.output(counters.span()),
             bodies: Span::EMPTY,
             counters: counters.span(),
         };

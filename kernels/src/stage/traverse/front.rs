@@ -12,7 +12,7 @@
 //!          nest: a pair below one that is apart is apart. The host prunes nothing else.
 //! Cost     8 B and two nodes in, 8 B out a pair: 80 B (AABB), gathered; one overlap test, two with [`FrontFlags::PRUNE`].
 
-use crate::abi::{FrontArgs, FrontFlags, NONE, Pair, ROOT, Span, TraverseFlags, counter};
+use crate::abi::{FrontArgs, FrontFlags, NONE, Pair, ROOT, TraverseFlags, counter};
 use crate::bv::Volume;
 use crate::exec::{Block, Lane, Slot};
 use crate::prim::adjacent::share_a_vertex;
@@ -61,21 +61,21 @@ pub fn front<V: Volume, B: Block>(b: &mut B, a: &FrontArgs<V>) {
         let sum = b.scan(&mut sums);
         let (ends, units, candidates) = (sum & MASK, sum >> FIELD & MASK, sum >> (2 * FIELD));
         let to = &a.to;
-        let at_end = b.reserve(to.counters, counter::ENDS, ends as u64);
-        let at_unit = b.reserve(a.unit_count, 0, units as u64);
-        let at_pair = b.reserve(to.counters, counter::PAIRS, candidates as u64);
+        let at_end = to.ends.reserve(b, ends as u64);
+        let at_unit = a.units.reserve(b, units as u64);
+        let at_pair = to.pairs.reserve(b, candidates as u64);
         b.phase(|l| {
             let (fate, before) = (*fates.of(l), *sums.of(l));
             let i = base + l.lane();
             let (end, unit, pair) = (before & MASK, before >> FIELD & MASK, before >> (2 * FIELD));
             if fate.end != NOTHING {
-                put(l, to.ends, at_end + end as u64, fate.end);
+                to.ends.put(l, at_end + end as u64, fate.end);
             }
             if fate.deeper {
-                put(l, a.units, at_unit + unit as u64, l.read(a.front, i));
+                a.units.put(l, at_unit + unit as u64, l.read(a.front, i));
             }
             if fate.candidate != NOTHING {
-                put(l, to.pairs, at_pair + pair as u64, fate.candidate);
+                to.pairs.put(l, at_pair + pair as u64, fate.candidate);
             }
             if l.lane() == 0 && units > 0 {
                 l.fetch_max(to.counters, counter::QUEUED, at_unit + units as u64);
@@ -87,14 +87,6 @@ pub fn front<V: Volume, B: Block>(b: &mut B, a: &FrontArgs<V>) {
     let tests = b.scan(&mut tests);
     b.reserve(a.to.counters, counter::FRONT_TESTS, tests as u64);
     b.reserve(a.to.counters, counter::PRUNED, pruned as u64);
-}
-
-/// Writes an entry of a list, where there is room for it.
-#[inline]
-fn put<L: Lane>(l: &L, list: Span<Pair>, at: u64, pair: Pair) {
-    if at < list.len() {
-        l.write(list, at as u32, pair);
-    }
 }
 
 /// What becomes of a pair.
