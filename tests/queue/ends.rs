@@ -1,9 +1,10 @@
 //! The ends of the descent: with the flag for a front, a complete cut, whatever the queues.
 
 use super::*;
+use nearmiss::pipeline::counts::FrameCounters;
 use nearmiss_kernels::abi::{
-    FilterArgs, LEAF, Link, Node, Output, Pair, PairArgs, QueueArgs, QueueFlags, ROOT, Span, StealArgs,
-    StealFlags, TraverseFlags,
+    FilterArgs, LEAF, Link, Node, Pair, PairArgs, QueueArgs, QueueFlags, ROOT, Span, StealArgs, StealFlags,
+    TraverseFlags,
 };
 use nearmiss_kernels::abi::{counter, pool};
 use nearmiss_kernels::bv::{Aabb, Axes, Volume};
@@ -63,14 +64,16 @@ fn run(device: &Device, nodes: &[Node<Aabb>], rounds: Option<u32>) -> Left {
         words.clear().expect("zero");
         words
     };
-    let counters = words(counter::COUNT);
+    let mut counts = FrameCounters::new(device).expect("memory");
+    counts.clear().expect("zero");
+    let counters = counts.counters();
     let to = PairArgs {
         nodes: nodes.span(),
         filters: FilterArgs { nodes: Span::EMPTY, bodies: Span::EMPTY },
         faces: Span::EMPTY,
-        pairs: Output::new(pairs.span(), counters.span().part(counter::PAIRS.into(), 1)),
-        ends: Output::new(ends.span(), counters.span().part(counter::ENDS.into(), 1)),
-        counters: counters.span(),
+        pairs: counters.output(pairs.span(), counter::PAIRS),
+        ends: counters.output(ends.span(), counter::ENDS),
+        counters,
         flags: TraverseFlags::FRONT | TraverseFlags::KEEP_ADJACENT,
         local: 9,
     };
@@ -124,10 +127,9 @@ fn run(device: &Device, nodes: &[Node<Aabb>], rounds: Option<u32>) -> Left {
             Vec::new()
         }
     };
-    let count = counters.read(counter::COUNT as usize).expect("counters");
-    let read = |list: &nearmiss::device::Buffer<Pair>, at: u32| {
-        list.read(count[at as usize] as usize).expect("entries")
-    };
+    let count = counts.read().expect("counters");
+    let read =
+        |list: &nearmiss::device::Buffer<Pair>, which| list.read(count[which] as usize).expect("entries");
     Left { ends: read(&ends, counter::ENDS), pairs: read(&pairs, counter::PAIRS), units }
 }
 

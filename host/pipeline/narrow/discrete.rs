@@ -4,6 +4,7 @@ use super::{AnswerLists, Narrow, NarrowContext, growable};
 use crate::contacts::Entries;
 use crate::device::{Ahead, Device};
 use crate::error::Error;
+use crate::pipeline::counts::Counts;
 use crate::pipeline::launch;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::order::{Order, Ordering};
@@ -105,11 +106,11 @@ impl<R: Precision> Narrow<R> for DiscreteNarrow {
         order.run(given.device, &self.contacts, None, (Span::EMPTY, given.counters))
     }
 
-    fn ahead(&self, last: &[u64]) -> Vec<Ahead<'_>> {
+    fn ahead(&self, last: &Counts) -> Vec<Ahead<'_>> {
         vec![self.ordered.as_ref().map_or(&self.contacts, |order| &order.list).ahead(last)]
     }
 
-    fn gather(&self, counters: &[u64]) -> Result<(Listed<'_>, bool), Error> {
+    fn gather(&self, counters: &Counts) -> Result<(Listed<'_>, bool), Error> {
         let ordered = in_order(self.ordered.as_ref(), counters, &[&self.contacts])?;
         let is_ordered = ordered.is_some();
         let pairs = ordered.map_or_else(|| self.contacts.view(counters), Ok)?;

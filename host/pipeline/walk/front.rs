@@ -4,6 +4,7 @@ use super::queue::Queue;
 use super::{Walk, WalkContext};
 use crate::device::Device;
 use crate::error::Error;
+use crate::pipeline::counts::Counts;
 use crate::pipeline::launch;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::query::FrontShape;
@@ -104,13 +105,12 @@ impl<V: Kernels> Walk<V> for Front {
         lists
     }
 
-    fn finish(&mut self, counters: &[u64]) -> Result<(), Error> {
+    fn finish(&mut self, counters: &Counts) -> Result<(), Error> {
         Walk::<V>::finish(&mut self.queue, counters)?;
-        let of = |at: u32| counters[at as usize];
         // A unit is a pair of siblings tested against a node.
-        let tests = of(counter::FRONT_TESTS) + 2 * of(counter::STEPS);
+        let tests = counters[counter::FRONT_TESTS] + 2 * counters[counter::STEPS];
         // Lists are no longer than an index reaches.
-        let count = of(counter::ENDS) as u32;
+        let count = counters[counter::ENDS] as u32;
         let pruned = self.prunes::<V>();
         let rested = matches!(self.state, State::Resting(_));
         let had = matches!(self.state, State::Kept { .. });

@@ -6,13 +6,14 @@ mod queue;
 mod segments;
 mod steal;
 
+use super::counts::Counts;
 use super::forest::Forest;
 use super::list::GrowableOutput;
 use crate::device::Device;
 use crate::error::Error;
 use crate::query::{Query, Traversal};
 use front::Front;
-use nearmiss_kernels::abi::{Output, Pair, PairArgs, Span, TraverseFlags};
+use nearmiss_kernels::abi::{Counters, Output, Pair, PairArgs, Span, TraverseFlags};
 use nearmiss_kernels::entry::{Entry, Kernels};
 use per_leaf::PerLeaf;
 use queue::Queue;
@@ -30,8 +31,8 @@ pub struct WalkContext<'a, V> {
     pub pairs: Output<Pair>,
     /// Out, with [`TraverseFlags::FRONT`]: pairs of nodes where the descent ended.
     pub ends: Output<Pair>,
-    /// Counters, see [`nearmiss_kernels::abi::counter`].
-    pub counters: Span<u64>,
+    /// The frame's counters.
+    pub counters: Counters,
     /// What every walk is told.
     pub flags: TraverseFlags,
 }
@@ -75,7 +76,7 @@ pub trait Walk<V>: Send {
     ///
     /// # Errors
     /// Those of the device.
-    fn finish(&mut self, _counters: &[u64]) -> Result<(), Error> {
+    fn finish(&mut self, _counters: &Counts) -> Result<(), Error> {
         Ok(())
     }
 

@@ -3,6 +3,7 @@
 use super::{Walk, WalkContext};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
+use crate::pipeline::counts::Counts;
 use crate::pipeline::launch;
 use nearmiss_kernels::abi::{Output, ROUNDS, TraverseArgs, Unit, counter};
 use nearmiss_kernels::entry::{self, Kernels};
@@ -31,8 +32,8 @@ impl<V: Kernels> Walk<V> for PerLeaf {
         let (forest, device) = (given.forest, given.device);
         // What a round leaves, and what counts that.
         let spilled = |units: &[Buffer<Unit>; 2], round: u32| {
-            let count = given.counters.part((counter::SPILLED + round).into(), 1);
-            Output::new(units[round as usize % 2].span(), count)
+            let round = round as usize;
+            given.counters.output(units[round % 2].span(), counter::SPILLED[round])
         };
         let mut args = TraverseArgs {
             nodes: forest.volumes.nodes.span(),
@@ -69,10 +70,9 @@ impl<V: Kernels> Walk<V> for PerLeaf {
     }
 
     /// Units without room were walked on by their lanes, which is right and slow: the next frame has room for them.
-    fn finish(&mut self, counters: &[u64]) -> Result<(), Error> {
+    fn finish(&mut self, counters: &Counts) -> Result<(), Error> {
         let Some(units) = &mut self.units else { return Ok(()) };
-        let spilled = &counters[counter::SPILLED as usize..][..ROUNDS as usize];
-        let most = spilled.iter().copied().max().unwrap_or(0) as usize;
+        let most = counter::SPILLED.iter().map(|&round| counters[round]).max().unwrap_or(0) as usize;
         if most > units[0].len() {
             for list in units {
                 *list = self.device.buffer(most + most / 8)?;

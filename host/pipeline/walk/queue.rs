@@ -4,10 +4,11 @@ use super::segments::Segments;
 use super::{Walk, WalkContext, resident};
 use crate::device::{Buffer, Device, Event};
 use crate::error::Error;
+use crate::pipeline::counts::Counts;
 use crate::pipeline::launch;
 use crate::pipeline::list::GrowableOutput;
 use crate::query::{Balance, QueueShape};
-use nearmiss_kernels::abi::{BalanceArgs, Output, Pair, QueueArgs, QueueFlags, counter};
+use nearmiss_kernels::abi::{BalanceArgs, Counter, Output, Pair, QueueArgs, QueueFlags, counter};
 use nearmiss_kernels::entry::{self, Kernels};
 
 /// Rounds that are launched before the host looks whether anything is left, as long as it does not know. Even: the two
@@ -51,13 +52,13 @@ impl Plan {
 }
 
 impl GrowableOutput for Plan {
-    fn counter(&self) -> u32 {
+    fn counter(&self) -> Counter {
         counter::UNFINISHED
     }
     fn room(&self) -> u64 {
         0
     }
-    fn grow(&mut self, _: &Device, counters: &[u64]) -> Result<bool, Error> {
+    fn grow(&mut self, _: &Device, counters: &Counts) -> Result<bool, Error> {
         let short = self.has_overflowed(counters);
         if short {
             *self.of_last() = None;
@@ -225,9 +226,9 @@ impl<V: Kernels> Walk<V> for Queue {
         vec![&mut self.units, &mut self.plan]
     }
 
-    fn finish(&mut self, counters: &[u64]) -> Result<(), Error> {
+    fn finish(&mut self, counters: &Counts) -> Result<(), Error> {
         // A machine's rounds vary from run to run: a plan shrinks by one a frame at most.
-        let rounds = counters[counter::QUEUE_ROUNDS as usize] + MORE_ROUNDS as u64;
+        let rounds = counters[counter::QUEUE_ROUNDS] + MORE_ROUNDS as u64;
         let rounds = rounds.max(self.plan.of_last().unwrap_or(0).saturating_sub(1) as u64);
         *self.plan.of_last() = (rounds <= MOST_ROUNDS as u64).then_some(rounds as u32);
         Ok(())

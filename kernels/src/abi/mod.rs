@@ -4,6 +4,7 @@
 
 #[macro_use]
 mod args;
+pub mod counter;
 mod flags;
 mod narrow;
 mod order;
@@ -16,6 +17,7 @@ pub mod stamp;
 mod status;
 
 pub use args::*;
+pub use counter::{Counter, Counters, ROUNDS};
 pub use flags::*;
 pub use narrow::*;
 pub use order::*;

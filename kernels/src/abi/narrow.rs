@@ -1,6 +1,6 @@
 //! Argument blocks of the last stage: from triangle pairs to contacts.
 
-use super::{DiscreteFlags, Facet, Hit, NearHit, Output, Pair, Point, Positions, RungFlags, Span};
+use super::{Counters, DiscreteFlags, Facet, Hit, NearHit, Output, Pair, Point, Positions, RungFlags, Span};
 use crate::math::Real;
 use crate::prim::inclusion::Params;
 use bytemuck::Zeroable;
@@ -71,8 +71,8 @@ arguments! {
         hits: Output<Hit>,
         /// Out: the smallest toi so far, as bits; or empty.
         earliest: Span<u64>,
-        /// Counters, see [`counter`](super::counter).
-        counters: Span<u64>,
+        /// Counters.
+        counters: Counters,
     }
     /// `narrow_near`: the features at rest that are within a distance.
     NearArgs<R: Real> {
@@ -90,8 +90,8 @@ arguments! {
         vf_hits: Output<NearHit>,
         /// Out: edges within the distance.
         ee_hits: Output<NearHit>,
-        /// Counters, see [`counter`](super::counter).
-        counters: Span<u64>,
+        /// Counters.
+        counters: Counters,
         /// The distance, a length.
         distance: f64,
     }
@@ -107,8 +107,8 @@ arguments! {
         vf: Output<Hit>,
         /// Edge/edge hits.
         ee: Output<Hit>,
-        /// Counters, see [`counter`](super::counter).
-        counters: Span<u64>,
+        /// Counters.
+        counters: Counters,
         /// The tolerance that was asked for, a length.
         tolerance: f64,
         /// The least part of a pair's extent that the solver can tell.
@@ -138,8 +138,8 @@ arguments! {
         ee: Listed,
         /// Out: the smallest toi so far, as bits; or empty.
         earliest: Span<u64>,
-        /// Counters, see [`counter`](super::counter).
-        counters: Span<u64>,
+        /// Counters.
+        counters: Counters,
         /// What is asked.
         params: Params,
         /// What it is told.

@@ -1,6 +1,8 @@
 //! Argument blocks of the traversals by pairs of nodes, and of their balance.
 
-use super::{FilterArgs, FrontFlags, Node, Output, Pair, QueueFlags, Span, StealFlags, TraverseFlags};
+use super::{
+    Counters, FilterArgs, FrontFlags, Node, Output, Pair, QueueFlags, Span, StealFlags, TraverseFlags,
+};
 use bytemuck::{Pod, Zeroable};
 
 arguments! {
@@ -16,8 +18,8 @@ arguments! {
         pairs: Output<Pair>,
         /// Out, with [`TraverseFlags::FRONT`]: the pairs of nodes where the descent ended.
         ends: Output<Pair>,
-        /// Counters, see [`counter`](super::counter).
-        counters: Span<u64>,
+        /// Counters.
+        counters: Counters,
         /// What it is told.
         flags: TraverseFlags,
         /// Units that a block's own queue may hold, at least 1.
@@ -81,8 +83,8 @@ arguments! {
         even: Span<Pair>,
         /// Out: how many each segment holds.
         even_counts: Span<u64>,
-        /// Counters, see [`counter`](super::counter).
-        counters: Span<u64>,
+        /// Counters.
+        counters: Counters,
         /// How many segments.
         cores: u32,
         /// Units of a segment.

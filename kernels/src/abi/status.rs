@@ -1,6 +1,6 @@
 //! What a frame came to, for a caller that looks at it on the device.
 
-use super::Span;
+use super::{Counter, Counters, Span};
 use bytemuck::{Pod, Zeroable};
 
 /// What a submitted frame came to, as it lies in the device's memory.
@@ -20,13 +20,13 @@ pub struct FrameStatus {
 const _: () = assert!(size_of::<FrameStatus>() == 32);
 
 /// A list's room.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C, align(8))]
 pub struct Room {
     /// How many entries it has room for.
     pub entries: u64,
     /// Which counter counts what was asked of it.
-    pub counter: u32,
+    pub counter: Counter,
     /// Zero.
     pub pad: u32,
 }
@@ -36,7 +36,7 @@ arguments! {
     /// `status_frame`: whether a frame's answer is whole.
     StatusArgs {
         /// The frame's counters.
-        counters: Span<u64>,
+        counters: Counters,
         /// Every list that a frame fills.
         rooms: Span<Room>,
         /// What was seen of the caller's numbers, see [`super::seen`].

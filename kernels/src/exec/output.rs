@@ -1,7 +1,7 @@
-//! What kernels do with lists: append to them, and read those that an earlier launch filled.
+//! What kernels do with lists, append to them and read those that an earlier launch filled, and with counters.
 
 use super::{Block, Lane};
-use crate::abi::Output;
+use crate::abi::{Counter, Counters, Output};
 use bytemuck::Pod;
 
 impl<T: Pod> Output<T> {
@@ -36,5 +36,28 @@ impl<T: Pod> Output<T> {
     #[inline(always)]
     pub fn push<L: Lane>(&self, l: &L, entry: T) {
         self.put(l, l.fetch_add(self.count(), 0, 1), entry);
+    }
+}
+
+impl Counters {
+    /// What one stands at.
+    #[inline(always)]
+    pub fn get<L: Lane>(&self, l: &L, which: Counter) -> u64 {
+        l.read(self.words(), which.place())
+    }
+    /// Adds to one, by an atomic of this lane.
+    #[inline(always)]
+    pub fn add<L: Lane>(&self, l: &L, which: Counter, count: u64) {
+        l.fetch_add(self.words(), which.place(), count);
+    }
+    /// Adds to one, once for the whole block; nothing where `count` is 0.
+    #[inline(always)]
+    pub fn add_once<B: Block>(&self, b: &mut B, which: Counter, count: u64) {
+        b.reserve(self.words(), which.place(), count);
+    }
+    /// Raises one to `least`, where it is below, by an atomic of this lane.
+    #[inline(always)]
+    pub fn raise<L: Lane>(&self, l: &L, which: Counter, least: u64) {
+        l.fetch_max(self.words(), which.place(), least);
     }
 }

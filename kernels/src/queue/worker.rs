@@ -3,7 +3,7 @@
 //! Sizes and places come from sums over the block, never from atomics: a block's work is the same each time.
 
 use super::pair::{ChildPairs, ROOTS, below};
-use crate::abi::{Pair, PairArgs, Span, TraverseFlags, counter};
+use crate::abi::{Counters, Pair, PairArgs, Span, TraverseFlags, counter};
 use crate::bv::Volume;
 use crate::exec::{Block, Lane, Shared, Slot};
 use crate::prim::adjacent::share_a_vertex;
@@ -77,8 +77,8 @@ impl Places {
     }
     /// Tells the host how many units there are. For one lane.
     #[inline]
-    pub fn report<L: Lane>(&self, l: &L, counters: Span<u64>) {
-        l.fetch_max(counters, counter::QUEUED, self.demand);
+    pub fn report<L: Lane>(&self, l: &L, counters: Counters) {
+        counters.raise(l, counter::QUEUED, self.demand);
     }
 }
 
@@ -281,10 +281,10 @@ impl<B: Block> Worker<B> {
         let (units, spills) = (self.units, self.spills);
         b.phase(|l| {
             if l.lane() == 0 && units > 0 {
-                l.fetch_add(to.counters, counter::STEPS, units);
+                to.counters.add(l, counter::STEPS, units);
             }
             if l.lane() == 0 && spills > 0 {
-                l.fetch_add(to.counters, counter::QUEUE_SPILLS, spills);
+                to.counters.add(l, counter::QUEUE_SPILLS, spills);
             }
         });
     }

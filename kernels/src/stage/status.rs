@@ -20,7 +20,7 @@ pub fn status<B: Block>(b: &mut B, a: &StatusArgs) {
         let mut own = 0;
         for i in (l.lane()..rooms.len() as u32).step_by(lanes as usize) {
             let room = l.read(rooms, i);
-            own += u32::from(l.read(counters, room.counter) > room.entries);
+            own += u32::from(counters.get(l, room.counter) > room.entries);
         }
         *short.of(l) = own;
     });

@@ -160,7 +160,7 @@ fn run<V: Volume, B: Block>(
     let mut steps = b.slot(0u32);
     b.phase(|l| *steps.of(l) = walks.of(l).steps);
     let sum = b.scan(&mut steps);
-    b.reserve(a.counters, counter::STEPS, sum as u64);
+    a.counters.add_once(b, counter::STEPS, sum as u64);
 }
 
 /// Walks on until nothing is left, the budget is used up or the buffer is full.

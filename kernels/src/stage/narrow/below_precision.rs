@@ -40,7 +40,7 @@ pub fn below_precision<R: Real, B: Block>(b: &mut B, a: &BelowPrecisionArgs<R>) 
         *counts.of(l) = count;
     });
     let sum = b.scan(&mut counts);
-    b.reserve(a.counters, counter::BELOW_PRECISION, sum as u64);
+    a.counters.add_once(b, counter::BELOW_PRECISION, sum as u64);
 }
 
 /// The largest difference of coordinates of a vertex of the one and one of the other, at either end of the step.

@@ -179,12 +179,12 @@ fn keep<R: Real, L: Lane>(l: &L, a: &RungArgs<R>, verdict: Verdict) -> bool {
         return false;
     }
     if !verdict.is_contact() {
-        l.fetch_add(a.counters, counter::UNRESOLVED, 1);
+        a.counters.add(l, counter::UNRESOLVED, 1);
     }
     if a.earliest.is_empty() {
         if verdict.exhausted() {
-            l.fetch_add(a.counters, counter::ENDED, 1);
-            l.fetch_add(a.counters, counter::ENDED_UNRESOLVED, !verdict.is_contact() as u64);
+            a.counters.add(l, counter::ENDED, 1);
+            a.counters.add(l, counter::ENDED_UNRESOLVED, !verdict.is_contact() as u64);
         }
         return true;
     }

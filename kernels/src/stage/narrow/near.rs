@@ -68,7 +68,7 @@ fn each<R: Real, B: Block, M: RowMap<Row = [Vec3<R>; 4]>>(
                 let hit = kept.and_then(|pair| {
                     let near = measure(gather(l, pair))?;
                     if !near.certain {
-                        l.fetch_add(a.counters, counter::UNRESOLVED, 1);
+                        a.counters.add(l, counter::UNRESOLVED, 1);
                     }
                     Some(NearHit { a: pair.a, b: pair.b, squared: near.squared, at: near.at })
                 });

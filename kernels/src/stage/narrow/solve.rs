@@ -42,7 +42,7 @@ fn solve<R: Real, B: Block>(b: &mut B, a: &SolveArgs<R>, ask: impl Fn(&B::Lane, 
         let pair = a.survivors.get(l, i);
         let verdict = ask(l, pair)?;
         if !verdict.is_contact() {
-            l.fetch_add(a.counters, counter::UNRESOLVED, 1);
+            a.counters.add(l, counter::UNRESOLVED, 1);
         }
         if a.earliest.is_empty() {
             return Some(Hit { a: pair.a, b: pair.b, verdict });

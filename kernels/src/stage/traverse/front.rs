@@ -78,15 +78,15 @@ pub fn front<V: Volume, B: Block>(b: &mut B, a: &FrontArgs<V>) {
                 to.pairs.put(l, at_pair + pair as u64, fate.candidate);
             }
             if l.lane() == 0 && units > 0 {
-                l.fetch_max(to.counters, counter::QUEUED, at_unit + units as u64);
+                to.counters.raise(l, counter::QUEUED, at_unit + units as u64);
             }
         });
         pruned += lanes.min(a.count - base) - ends - units;
         base += b.blocks() * lanes;
     }
     let tests = b.scan(&mut tests);
-    b.reserve(a.to.counters, counter::FRONT_TESTS, tests as u64);
-    b.reserve(a.to.counters, counter::PRUNED, pruned as u64);
+    a.to.counters.add_once(b, counter::FRONT_TESTS, tests as u64);
+    a.to.counters.add_once(b, counter::PRUNED, pruned as u64);
 }
 
 /// What becomes of a pair.

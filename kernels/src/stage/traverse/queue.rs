@@ -96,17 +96,17 @@ fn leave<V: Volume, B: Block>(
                 Some(places) => places.report(l, a.to.counters),
                 None => {
                     l.fetch_add(a.idle, a.round, 1);
-                    l.fetch_add(a.to.counters, counter::IDLE_EXITS, 1);
+                    a.to.counters.add(l, counter::IDLE_EXITS, 1);
                 }
             }
             if block == 0 {
-                l.fetch_add(a.to.counters, counter::QUEUE_ROUNDS, 1);
+                a.to.counters.add(l, counter::QUEUE_ROUNDS, 1);
             }
             if a.segment > 0 {
                 l.write(a.left_counts, block, stored);
             }
             if a.flags.has(QueueFlags::LAST) && stored > 0 {
-                l.fetch_add(a.to.counters, counter::UNFINISHED, stored);
+                a.to.counters.add(l, counter::UNFINISHED, stored);
             }
         }
     });

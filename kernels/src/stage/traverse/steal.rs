@@ -218,7 +218,7 @@ fn search<V: Volume, L: Lane>(l: &L, a: &StealArgs<V>, mut draw: u64) -> (u32, u
         draw = TICKET;
         let some = wait(l, a, ticket - 1, &mut tries);
         if some > 0 {
-            l.fetch_add(a.to.counters, counter::STOLEN, some as u64);
+            a.to.counters.add(l, counter::STOLEN, some as u64);
             // The barrier at the end of this phase passes on to all lanes what this fence lets this one take.
             l.fence();
             return (ticket, some);
