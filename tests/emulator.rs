@@ -126,6 +126,8 @@ kernels! { [Args], 64, 4096;
     }
 }
 
+#[path = "emulator/outputs.rs"]
+mod outputs;
 #[path = "emulator/together.rs"]
 mod together;
 

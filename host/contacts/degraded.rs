@@ -47,7 +47,7 @@ impl Degraded {
     #[doc(hidden)]
     pub fn of(found: &Found) -> Vec<Degraded> {
         let mut all = Vec::new();
-        let count = |at: u32| found.counters[at as usize];
+        let count = |which| found.counters[which];
         let unsure = count(counter::UNRESOLVED) - count(counter::ENDED_UNRESOLVED);
         let (ended, below_precision) = (count(counter::ENDED), count(counter::BELOW_PRECISION));
         let mut put = |count: u64, reason: Degraded| all.extend((count > 0).then_some(reason));

@@ -22,7 +22,7 @@ pub use work::{Front, Queues};
 use crate::pipeline::{Found, Layout, Listed, Stages};
 use crate::query::Query;
 use crate::scene::BodyId;
-use nearmiss_kernels::abi::{Pair, ROUNDS, counter};
+use nearmiss_kernels::abi::{Pair, counter};
 use nearmiss_kernels::prim::inclusion::Verdict;
 use rayon::prelude::*;
 
@@ -231,7 +231,7 @@ impl Contacts {
                 Answer::Contacts(contacts)
             }
         };
-        let count = |at: u32| found.counters[at as usize];
+        let count = |which| found.counters[which];
         let vf_ee = [count(counter::VF), count(counter::EE)];
         let of_triangles = matches!(found.listed, Listed::Pairs(_) | Listed::Nearest(_));
         Contacts {
@@ -248,7 +248,7 @@ impl Contacts {
             undecided: count(counter::UNDECIDED),
             undecided_wide: count(counter::UNDECIDED_WIDE),
             steps: count(counter::STEPS),
-            spilled: found.counters[counter::SPILLED as usize..][..ROUNDS as usize].iter().sum(),
+            spilled: counter::SPILLED.map(count).iter().sum(),
             reruns: found.reruns,
             queues: Queues::new(&found.counters),
             front: Front::new(&found.counters),

@@ -1,5 +1,6 @@
 //! What a traversal did: figures, not answers.
 
+use crate::pipeline::counts::Counts;
 use nearmiss_kernels::abi::counter;
 
 /// The front of a frame. All zero where there was none.
@@ -16,8 +17,8 @@ pub struct Front {
 }
 
 impl Front {
-    pub(super) fn new(counters: &[u64]) -> Front {
-        let of = |at: u32| counters[at as usize];
+    pub(super) fn new(counters: &Counts) -> Front {
+        let of = |which| counters[which];
         Front { pairs: of(counter::ENDS), tests: of(counter::FRONT_TESTS), pruned: of(counter::PRUNED) }
     }
 }
@@ -41,8 +42,8 @@ pub struct Queues {
 }
 
 impl Queues {
-    pub(super) fn new(counters: &[u64]) -> Queues {
-        let of = |at: u32| counters[at as usize];
+    pub(super) fn new(counters: &Counts) -> Queues {
+        let of = |which| counters[which];
         Queues {
             rounds: of(counter::QUEUE_ROUNDS),
             idle_exits: of(counter::IDLE_EXITS),

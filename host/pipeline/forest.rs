@@ -13,8 +13,8 @@ use crate::error::Error;
 use crate::pipeline::{launch, purpose};
 use crate::query::Refit;
 use nearmiss_kernels::abi::{
-    BodyRecord, FilterArgs, GRAFTED, GraftArgs, Link, Node, NodeFilter, Positions, ROOT, Span, TreeBody,
-    grafted,
+    BodyRecord, FilterArgs, GraftArgs, Link, Node, NodeFilter, Positions, ROOT, Span, TraverseFlags,
+    TreeBody, grafted,
 };
 use nearmiss_kernels::bv::Axes;
 use nearmiss_kernels::bvh;
@@ -117,8 +117,8 @@ impl<V: Kernels> Forest<V> {
     }
 
     /// What a walk must know of the trees.
-    pub fn flags(&self) -> u32 {
-        if self.fixed.is_some() { GRAFTED } else { 0 }
+    pub fn flags(&self) -> TraverseFlags {
+        TraverseFlags::GRAFTED.when(self.fixed.is_some())
     }
 
     /// Levels of the tree over what moves and, where there is one, of that over what is static.

@@ -1,14 +1,15 @@
 //! Lists that grow: counted past the end, enlarged to the exact demand, filled again within the frame.
 
+use super::counts::Counts;
 use crate::device::{Ahead, Buffer, Device, View};
 use crate::error::Error;
 use bytemuck::Pod;
-use nearmiss_kernels::abi::Span;
+use nearmiss_kernels::abi::{Counter, Counters, Output, Span};
 
 /// A list in device memory, whose entries a counter counts.
 pub struct List<T> {
     name: &'static str,
-    counter: u32,
+    counter: Counter,
     entries: Buffer<T>,
 }
 
@@ -20,12 +21,22 @@ impl<T: Pod> List<T> {
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
-    pub fn new(device: &Device, name: &'static str, counter: u32, capacity: usize) -> Result<Self, Error> {
+    pub fn new(
+        device: &Device,
+        name: &'static str,
+        counter: Counter,
+        capacity: usize,
+    ) -> Result<Self, Error> {
         Ok(List { name, counter, entries: device.of(name).buffer(capacity.min(LONGEST as usize))? })
     }
 
-    /// What a kernel is given.
-    pub fn span(&self) -> Span<T> {
+    /// What a kernel is given, that counts with these counters.
+    pub fn output(&self, counters: Counters) -> Output<T> {
+        counters.output(self.entries.span(), self.counter)
+    }
+
+    /// The memory alone, where something else knows how many entries are there.
+    pub fn entries(&self) -> Span<T> {
         self.entries.span()
     }
 
@@ -35,25 +46,25 @@ impl<T: Pod> List<T> {
     }
 
     /// How many entries the kernels asked for.
-    pub fn demand(&self, counters: &[u64]) -> u64 {
-        counters[self.counter as usize]
+    pub fn demand(&self, counters: &Counts) -> u64 {
+        counters[self.counter]
     }
 
-    /// Sets the first entries; the counter, and how many they are.
+    /// Sets the first entries, and in `counts` how many they are.
     ///
     /// # Errors
     /// Those of the device.
     ///
     /// # Panics
     /// When there are more than there is room for: a fault of the caller.
-    pub fn put(&mut self, entries: &[T]) -> Result<(u32, u64), Error> {
-        self.entries.write(entries)?;
-        Ok((self.counter, entries.len() as u64))
+    pub fn put(&mut self, entries: &[T], counts: &mut Counts) -> Result<(), Error> {
+        counts[self.counter] = entries.len() as u64;
+        self.entries.write(entries)
     }
 
     /// The first entries, as many as the kernels asked for in a frame with these counters and an eighth more, to be read ahead.
-    pub fn ahead(&self, counters: &[u64]) -> Ahead<'_> {
-        let demand = counters.get(self.counter as usize).copied().unwrap_or(0);
+    pub fn ahead(&self, counters: &Counts) -> Ahead<'_> {
+        let demand = self.demand(counters);
         self.entries.ahead((demand + demand / 8) as usize)
     }
 
@@ -61,7 +72,7 @@ impl<T: Pod> List<T> {
     ///
     /// # Errors
     /// Those of the device.
-    pub fn view(&self, counters: &[u64]) -> Result<View<'_, T>, Error> {
+    pub fn view(&self, counters: &Counts) -> Result<View<'_, T>, Error> {
         self.entries.view(self.demand(counters) as usize)
     }
 
@@ -69,7 +80,7 @@ impl<T: Pod> List<T> {
     ///
     /// # Errors
     /// Those of the device.
-    pub fn read(&self, counters: &[u64]) -> Result<Vec<T>, Error> {
+    pub fn read(&self, counters: &Counts) -> Result<Vec<T>, Error> {
         self.entries.read(self.demand(counters) as usize)
     }
 }
@@ -77,43 +88,41 @@ impl<T: Pod> List<T> {
 /// A list whose entries do not matter, only their number. Counted anew when the step that fills it runs again.
 pub trait GrowableOutput {
     /// Which counter counts the entries.
-    fn counter(&self) -> u32;
+    fn counter(&self) -> Counter;
     /// How many entries there is room for.
     fn room(&self) -> u64;
     /// Whether the kernels asked for more.
-    fn has_overflowed(&self, counters: &[u64]) -> bool {
-        counters[self.counter() as usize] > self.room()
+    fn has_overflowed(&self, counters: &Counts) -> bool {
+        counters[self.counter()] > self.room()
     }
     /// Makes room for what the kernels asked for, and an eighth more for the next frame; whether it had to.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`] when there is no memory, or the list would be longer than an index reaches.
-    fn grow(&mut self, device: &Device, counters: &[u64]) -> Result<bool, Error>;
+    fn grow(&mut self, device: &Device, counters: &Counts) -> Result<bool, Error>;
 }
 
 /// A number that the kernels count and that has no list.
-pub struct Counter(pub u32);
-
 impl GrowableOutput for Counter {
-    fn counter(&self) -> u32 {
-        self.0
+    fn counter(&self) -> Counter {
+        *self
     }
     fn room(&self) -> u64 {
         u64::MAX
     }
-    fn grow(&mut self, _: &Device, _: &[u64]) -> Result<bool, Error> {
+    fn grow(&mut self, _: &Device, _: &Counts) -> Result<bool, Error> {
         Ok(false)
     }
 }
 
 impl<T: Pod> GrowableOutput for List<T> {
-    fn counter(&self) -> u32 {
+    fn counter(&self) -> Counter {
         self.counter
     }
     fn room(&self) -> u64 {
         self.capacity() as u64
     }
-    fn grow(&mut self, device: &Device, counters: &[u64]) -> Result<bool, Error> {
+    fn grow(&mut self, device: &Device, counters: &Counts) -> Result<bool, Error> {
         let demand = self.demand(counters);
         if !self.has_overflowed(counters) {
             return Ok(false);
@@ -139,14 +148,18 @@ impl<T: Pod> GrowableOutput for List<T> {
 mod tests {
     use super::*;
     use crate::device::emulator::{Emulator, Mode};
-    use nearmiss_kernels::abi::Pair;
+    use nearmiss_kernels::abi::{Pair, counter};
 
     /// 92,683 equal triangles have 4,295,022,903 pairs: 55,607 more than 2^32.
     #[test]
     fn a_list_beyond_32_bits_is_refused_with_its_size() {
         let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
-        let mut list = List::<Pair>::new(&device, "pairs", 0, 16).expect("capacity");
-        let grow = |list: &mut List<Pair>, demand: u64| list.grow(&device, &[demand]);
+        let mut list = List::<Pair>::new(&device, "pairs", counter::PAIRS, 16).expect("capacity");
+        let grow = |list: &mut List<Pair>, demand: u64| {
+            let mut counts = Counts::default();
+            counts[counter::PAIRS] = demand;
+            list.grow(&device, &counts)
+        };
         assert!(!grow(&mut list, 16).expect("long enough"));
         assert!(grow(&mut list, 17).expect("longer") && list.capacity() == 19);
         for demand in [LONGEST + 1, 92_683 * 92_682 / 2, u64::MAX / 64] {

@@ -1,6 +1,7 @@
 //! From bodies to contacts: the way of a frame.
 
 pub mod below_precision;
+pub mod counts;
 pub mod enclose;
 mod forest;
 mod launch;

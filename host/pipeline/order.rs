@@ -1,5 +1,6 @@
 //! Order: contacts into canonical order on the device, where the host would be slower: on a GPU.
 
+use super::counts::Counts;
 use super::layout::Layout;
 use super::list::{GrowableOutput, List};
 use super::sorter::{counted, sort, words};
@@ -7,7 +8,7 @@ use crate::device::{Buffer, Device, View};
 use crate::error::Error;
 use crate::pipeline::{launch, purpose};
 use bytemuck::Pod;
-use nearmiss_kernels::abi::{BodyRecord, Named, OrderArgs, Span, counter};
+use nearmiss_kernels::abi::{BodyRecord, Counters, Named, OrderArgs, Output, Span, counter};
 use nearmiss_kernels::entry::{self, Entry};
 use nearmiss_kernels::stage::order::KIND_BITS;
 
@@ -97,7 +98,7 @@ impl<T: Ordered> Order<T> {
     ///
     /// # Errors
     /// Those of the device.
-    pub fn view(&self, counters: &[u64], lists: &[&List<T>]) -> Result<Option<View<'_, T>>, Error> {
+    pub fn view(&self, counters: &Counts, lists: &[&List<T>]) -> Result<Option<View<'_, T>>, Error> {
         let all: u64 = lists.iter().map(|list| list.demand(counters)).sum();
         (self.list.demand(counters) == all).then(|| self.list.view(counters)).transpose()
     }
@@ -112,7 +113,7 @@ impl<T: Ordered> Order<T> {
         device: &Device,
         first: &List<T>,
         second: Option<&List<T>>,
-        (bodies, counters): (Span<BodyRecord>, Span<u64>),
+        (bodies, counters): (Span<BodyRecord>, Counters),
     ) -> Result<(), Error> {
         // Without an answer nothing is counted as ordered.
         if !self.fits() {
@@ -129,23 +130,21 @@ impl<T: Ordered> Order<T> {
         }
         self.counts.clear()?;
         let counts = self.counts.span();
+        let out = self.list.output(counters);
         let args = |items: &Buffer<u64>| OrderArgs {
-            first: first.span(),
-            second: second.map_or(Span::EMPTY, List::span),
-            out: self.list.span(),
+            first: first.output(counters),
+            second: second.map_or(Output::EMPTY, |list| list.output(counters)),
+            out,
             items: items.span(),
             tiles: counted(device, counts, capacity as u32, 0),
             bodies,
-            counters,
-            first_at: first.counter(),
-            second_at: second.map_or(0, List::counter),
             bits: self.bits,
             number_bits: self.number_bits(),
         };
         let (keys, gather) = (args(&self.items[0]), args(&self.items[bytes.len() % 2]));
         launch::striding::<T::Keys>(device, capacity, &keys)?;
-        let live = counters.part(counter::ORDERED.into(), 1);
-        sort(device, self.items.each_ref(), (capacity as u32, live), counts, &bytes)?;
+        let live = (capacity as u32, out.count());
+        sort(device, self.items.each_ref(), live, counts, &bytes)?;
         launch::striding::<T::Gather>(device, capacity, &gather)
     }
 }
@@ -160,6 +159,7 @@ mod tests {
     use super::*;
     use crate::device::emulator::{Emulator, Mode, Order as Blocks};
     use crate::pipeline::Offsets;
+    use crate::pipeline::counts::FrameCounters;
     use crate::samples::words;
     use nearmiss_kernels::abi::{Hit, Pair};
     use nearmiss_kernels::prim::inclusion::Verdict;
@@ -199,21 +199,20 @@ mod tests {
         let body = |n| BodyRecord { triangle: n, vertex: n, ..BodyRecord::default() };
         let bodies: &[BodyRecord] = &[body(0), body(turn)];
         let bodies = device.upload(if turn == u32::MAX { &[] } else { bodies }).expect("memory");
-        let mut counts = vec![0; counter::COUNT as usize];
+        let mut counts = Counts::default();
         let lists = [(counter::VF_HITS, lists[0]), (counter::EE_HITS, lists[1])].map(|(at, entries)| {
             let mut list = List::new(device, "contacts", at, entries.len()).expect("memory");
-            counts[at as usize] = list.put(entries).expect("written").1;
+            list.put(entries, &mut counts).expect("written");
             list
         });
-        let counters = device.upload(&counts).expect("memory");
+        let mut counters = FrameCounters::new(device).expect("memory");
         // Twice: what a frame left must not reach the next one.
         for _ in 0..2 {
-            let mut again = counters.read(counts.len()).expect("read");
-            again[counter::ORDERED as usize] = 0;
-            let counters = device.upload(&again).expect("memory");
-            let given = (bodies.span(), counters.span());
+            counts[counter::ORDERED] = 0;
+            counters.write(&counts).expect("written");
+            let given = (bodies.span(), counters.counters());
             order.run(device, &lists[0], Some(&lists[1]), given).expect("no rule is broken");
-            counts = counters.read(counts.len()).expect("read");
+            counts = counters.read().expect("read");
         }
         let demand = order.list.demand(&counts);
         let whole = demand as usize <= capacity;
@@ -279,11 +278,11 @@ mod tests {
         let layout = Layout { starts: vec![Offsets::default(), end], ..Layout::default() };
         let mut order = Order::<Pair>::new(&device, &layout, 16).expect("memory");
         let mut list = List::new(&device, "contacts", counter::CONTACTS, 1).expect("memory");
-        let mut counts = vec![0; counter::COUNT as usize];
-        counts[counter::CONTACTS as usize] = list.put(&[Pair { a: 1, b: 2 }]).expect("written").1;
-        let counters = device.upload(&counts).expect("memory");
+        let mut counts = Counts::default();
+        list.put(&[Pair { a: 1, b: 2 }], &mut counts).expect("written");
+        let counters = FrameCounters::new(&device).expect("memory");
         let launches = device.launches();
-        order.run(&device, &list, None, (Span::EMPTY, counters.span())).expect("nothing to do");
+        order.run(&device, &list, None, (Span::EMPTY, counters.counters())).expect("nothing to do");
         assert_eq!(device.launches(), launches);
         assert!(order.view(&counts, &[&list]).expect("read").is_none());
     }

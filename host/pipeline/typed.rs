@@ -13,6 +13,7 @@ mod submitted;
 pub use found::{Found, Hits, Listed, in_order};
 pub use submit::Submits;
 
+use super::counts::{Counts, FrameCounters};
 use super::forest::Forest;
 use super::layout::Layout;
 use super::list::{GrowableOutput, List};
@@ -27,7 +28,7 @@ use crate::device::{Buffer, Device, Event};
 use crate::error::Error;
 use crate::mesh::Body;
 use crate::query::Query;
-use nearmiss_kernels::abi::{self, Pair, Span, counter};
+use nearmiss_kernels::abi::{self, Output, Pair, counter};
 use nearmiss_kernels::bv::Axes;
 use nearmiss_kernels::entry::Kernels;
 use rayon::prelude::*;
@@ -61,7 +62,7 @@ pub struct TypedPipeline<R: Precision, V: Kernels> {
     faces: Buffer<[u32; 3]>,
     vertices: Placing<R>,
     forest: Forest<V>,
-    counters: Buffer<u64>,
+    counters: FrameCounters,
     pairs: List<Pair>,
     walk: Box<dyn Walk<R, V>>,
     narrow: Box<dyn Narrow<R>>,
@@ -69,7 +70,7 @@ pub struct TypedPipeline<R: Precision, V: Kernels> {
     /// Around the placing of what was moved since the last frame.
     placing: Option<[Event; 2]>,
     /// Counters of the last frame.
-    last: Vec<u64>,
+    last: Counts,
     /// Whether the lists were long enough for a whole frame: then the next one runs without waiting between steps.
     settled: bool,
     /// What a frame needs that is submitted and not waited for.
@@ -142,13 +143,13 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
                 refit,
                 (axes, growth(query.listed_within())),
             )?,
-            counters: device.of(purpose::COUNTERS).buffer(counter::COUNT as usize)?,
+            counters: FrameCounters::new(&device)?,
             pairs: List::new(&device, "candidate triangle pairs", counter::PAIRS, capacity)?,
             walk: walk(&device.of(purpose::WALK), &query, triangles)?,
             narrow: narrow(&device, &layout, &query, (capacity, few))?,
             reruns: 0,
             placing: None,
-            last: Vec::new(),
+            last: Counts::default(),
             settled: false,
             submission: None,
             layout,
@@ -192,9 +193,9 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
                         device: &self.device,
                         frames: self.vertices.frames(),
                         faces: self.faces.span(),
-                        pairs: self.pairs.span(),
+                        pairs: self.pairs.output(self.counters.counters()),
                         bodies: self.forest.records.span(),
-                        counters: self.counters.span(),
+                        counters: self.counters.counters(),
                     };
                     if let Step::Narrow(at) = step {
                         self.narrow.run(at, &given)
@@ -206,7 +207,7 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
             if self.settled {
                 return Ok(());
             }
-            let mut counters = self.counters.read(counter::COUNT as usize)?;
+            let mut counters = self.counters.read()?;
             let mut grown = false;
             let mut again = Vec::new();
             let lists = match step {
@@ -230,14 +231,14 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
                 // The first step: everything that was counted so far is its own.
                 self.counters.clear()?;
             } else {
-                again.iter().for_each(|&at| counters[at as usize] = 0);
+                again.iter().for_each(|&at| counters[at] = 0);
                 self.counters.write(&counters)?;
             }
         }
     }
 
     /// Whether a list of any step had too little room.
-    fn has_overflowed(&mut self, counters: &[u64]) -> bool {
+    fn has_overflowed(&mut self, counters: &Counts) -> bool {
         let mut steps = self.narrow_steps_at();
         self.pairs.has_overflowed(counters)
             || self.walk.lists().iter().any(|list| list.has_overflowed(counters))
@@ -251,9 +252,9 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
             forest: &self.forest,
             frames: self.vertices.frames(),
             faces: self.faces.span(),
-            pairs: self.pairs.span(),
-            ends: Span::EMPTY,
-            counters: self.counters.span(),
+            pairs: self.pairs.output(self.counters.counters()),
+            ends: Output::EMPTY,
+            counters: self.counters.counters(),
             flags: flags(&self.query) | self.forest.flags(),
         })
     }
@@ -302,7 +303,7 @@ impl<R: Precision, V: Kernels> Pipeline for TypedPipeline<R, V> {
             self.run(Stage::Order)?;
             let ordered = self.device.event()?;
             self.read_ahead()?;
-            let counters = self.counters.read(counter::COUNT as usize)?;
+            let counters = self.counters.read()?;
             if self.has_overflowed(&counters) {
                 // Some list, somewhere: find out step by step.
                 self.settled = false;

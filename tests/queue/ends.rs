@@ -1,8 +1,10 @@
 //! The ends of the descent: with the flag for a front, a complete cut, whatever the queues.
 
 use super::*;
+use nearmiss::pipeline::counts::FrameCounters;
 use nearmiss_kernels::abi::{
-    FRONT, FilterArgs, LEAF, Link, Node, Pair, PairArgs, QueueArgs, ROOT, START, Span, StealArgs,
+    FilterArgs, LEAF, Link, Node, Pair, PairArgs, QueueArgs, QueueFlags, ROOT, Span, StealArgs, StealFlags,
+    TraverseFlags,
 };
 use nearmiss_kernels::abi::{counter, pool};
 use nearmiss_kernels::bv::{Aabb, Axes, Volume};
@@ -62,15 +64,17 @@ fn run(device: &Device, nodes: &[Node<Aabb>], rounds: Option<u32>) -> Left {
         words.clear().expect("zero");
         words
     };
-    let counters = words(counter::COUNT);
+    let mut counts = FrameCounters::new(device).expect("memory");
+    counts.clear().expect("zero");
+    let counters = counts.counters();
     let to = PairArgs {
         nodes: nodes.span(),
         filters: FilterArgs { nodes: Span::EMPTY, bodies: Span::EMPTY },
         faces: Span::EMPTY,
-        pairs: pairs.span(),
-        ends: ends.span(),
-        counters: counters.span(),
-        flags: FRONT | nearmiss_kernels::abi::KEEP_ADJACENT,
+        pairs: counters.output(pairs.span(), counter::PAIRS),
+        ends: counters.output(ends.span(), counter::ENDS),
+        counters,
+        flags: TraverseFlags::FRONT | TraverseFlags::KEEP_ADJACENT,
         local: 9,
     };
     let lists = [0, 1].map(|_| device.buffer::<Pair>(room).expect("memory"));
@@ -91,7 +95,7 @@ fn run(device: &Device, nodes: &[Node<Aabb>], rounds: Option<u32>) -> Left {
                     idle_limit: 0,
                     patience: 0,
                     full: u32::MAX,
-                    flags: if round == 0 { START } else { 0 },
+                    flags: QueueFlags::START.when(round == 0),
                     pad: 0,
                 };
                 // SAFETY: buffers of this device that are read below; the tree is sound.
@@ -115,7 +119,7 @@ fn run(device: &Device, nodes: &[Node<Aabb>], rounds: Option<u32>) -> Left {
                 launch: 7 << pool::LAUNCH,
                 segment: room as u32 / 3,
                 tries: 5,
-                flags: nearmiss_kernels::abi::EAGER,
+                flags: StealFlags::EAGER,
                 pad: 0,
             };
             // SAFETY: as above.
@@ -123,10 +127,9 @@ fn run(device: &Device, nodes: &[Node<Aabb>], rounds: Option<u32>) -> Left {
             Vec::new()
         }
     };
-    let count = counters.read(counter::COUNT as usize).expect("counters");
-    let read = |list: &nearmiss::device::Buffer<Pair>, at: u32| {
-        list.read(count[at as usize] as usize).expect("entries")
-    };
+    let count = counts.read().expect("counters");
+    let read =
+        |list: &nearmiss::device::Buffer<Pair>, which| list.read(count[which] as usize).expect("entries");
     Left { ends: read(&ends, counter::ENDS), pairs: read(&pairs, counter::PAIRS), units }
 }
 

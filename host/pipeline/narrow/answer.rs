@@ -3,7 +3,7 @@
 use crate::contacts::Entries;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::order::{Order, Ordered};
-use nearmiss_kernels::abi::Span;
+use nearmiss_kernels::abi::{Counter, Span};
 
 /// Where a frame's answer lies in the device's memory.
 pub struct AnswerLists {
@@ -14,7 +14,7 @@ pub struct AnswerLists {
     /// Whether it is the one in order.
     pub is_ordered: bool,
     /// Which counters count each kind.
-    pub counters: Vec<u32>,
+    pub counters: Vec<Counter>,
     /// Where the earliest time is, of such a query.
     pub earliest: Option<u64>,
     /// End points of every edge.
@@ -24,7 +24,7 @@ pub struct AnswerLists {
 impl AnswerLists {
     /// Of lists of each kind, or of the one that they were ordered into.
     pub fn of<T: Ordered>(entries: Entries, lists: &[&List<T>], order: Option<&Order<T>>) -> AnswerLists {
-        let place = |list: &List<T>| (list.span().addr(), list.capacity());
+        let place = |list: &List<T>| (list.entries().addr(), list.capacity());
         let order = order.filter(|order| order.fits());
         AnswerLists {
             entries,

@@ -8,14 +8,15 @@ use crate::device::{Ahead, Buffer, Device};
 use crate::error::Error;
 use crate::mesh::Body;
 use crate::pipeline::below_precision::{self, BelowPrecision};
+use crate::pipeline::counts::Counts;
 use crate::pipeline::layout::Layout;
-use crate::pipeline::list::{Counter, GrowableOutput, List};
+use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::order::{Order, Ordering};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Hits, Listed};
 use crate::pipeline::{launch, purpose};
 use crate::query::{self, Certified, ContinuousSolver};
-use nearmiss_kernels::abi::{CullArgs, Hit, Pair, SolveArgs, Span, counter};
+use nearmiss_kernels::abi::{Counter, CullArgs, Hit, Pair, SolveArgs, Span, counter};
 
 /// How many entries the lists of a continuous query have room for at first: vertex/face, edge/edge.
 pub struct Capacities {
@@ -113,7 +114,7 @@ impl ContinuousNarrow {
         solver: ContinuousSolver,
         capacities: Capacities,
     ) -> Result<Self, Error> {
-        let lists = |[vf, ee]: [&'static str; 2], [vf_at, ee_at]: [u32; 2], capacity: [usize; 2]| {
+        let lists = |[vf, ee]: [&'static str; 2], [vf_at, ee_at]: [Counter; 2], capacity: [usize; 2]| {
             Ok::<_, Error>([
                 List::new(device, vf, vf_at, capacity[0])?,
                 List::new(device, ee, ee_at, capacity[1])?,
@@ -135,8 +136,7 @@ impl ContinuousNarrow {
                 counter::ENDED,
                 counter::ENDED_UNRESOLVED,
                 counter::BELOW_PRECISION,
-            ]
-            .map(Counter),
+            ],
             below_precision: None,
             earliest: None,
             ordered: None,
@@ -156,7 +156,7 @@ impl ContinuousNarrow {
         self.survivors.as_ref().unwrap_or(&self.features.candidates).each_ref()
     }
 
-    /// Puts pairs, vertex/face and edge/edge, among those that [`ContinuousNarrow::cull`] is asked; the counters that say how
+    /// Puts pairs, vertex/face and edge/edge, among those that [`ContinuousNarrow::cull`] is asked, and in `counts` how
     /// many they are.
     ///
     /// # Errors
@@ -164,9 +164,10 @@ impl ContinuousNarrow {
     ///
     /// # Panics
     /// When there are more than the lists have room for: a fault of the caller.
-    pub fn put_candidates(&mut self, [vf, ee]: [&[Pair]; 2]) -> Result<[(u32, u64); 2], Error> {
+    pub fn put_candidates(&mut self, [vf, ee]: [&[Pair]; 2], counts: &mut Counts) -> Result<(), Error> {
         let [vf_list, ee_list] = &mut self.features.candidates;
-        Ok([vf_list.put(vf)?, ee_list.put(ee)?])
+        vf_list.put(vf, counts)?;
+        ee_list.put(ee, counts)
     }
 
     /// The same among those that [`ContinuousNarrow::solve`] is asked.
@@ -176,9 +177,10 @@ impl ContinuousNarrow {
     ///
     /// # Panics
     /// When there are more than the lists have room for: a fault of the caller.
-    pub fn put_survivors(&mut self, [vf, ee]: [&[Pair]; 2]) -> Result<[(u32, u64); 2], Error> {
+    pub fn put_survivors(&mut self, [vf, ee]: [&[Pair]; 2], counts: &mut Counts) -> Result<(), Error> {
         let [vf_list, ee_list] = self.survivors.as_mut().unwrap_or(&mut self.features.candidates);
-        Ok([vf_list.put(vf)?, ee_list.put(ee)?])
+        vf_list.put(vf, counts)?;
+        ee_list.put(ee, counts)
     }
 
     /// Launches the step that leaves pairs that may meet; with a separation none.
@@ -193,11 +195,10 @@ impl ContinuousNarrow {
             frames: given.frames,
             faces: given.faces,
             edges: self.features.edges.span(),
-            vf: vf.span(),
-            ee: ee.span(),
-            may_vf: may_vf.span(),
-            may_ee: may_ee.span(),
-            counters: given.counters,
+            vf: vf.output(given.counters),
+            ee: ee.output(given.counters),
+            may_vf: may_vf.output(given.counters),
+            may_ee: may_ee.output(given.counters),
             params: self.solver.certified().copied().unwrap_or_default().params(),
         };
         launch::striding::<R::Cull>(given.device, vf.capacity() + ee.capacity(), &args)
@@ -228,8 +229,8 @@ impl ContinuousNarrow {
             frames: given.frames,
             faces: given.faces,
             edges,
-            survivors: survivors.span(),
-            hits: hits.span(),
+            survivors: survivors.output(given.counters),
+            hits: hits.output(given.counters),
             earliest,
             counters: given.counters,
         };
@@ -306,13 +307,13 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
         order.run(given.device, &self.vf_hits, Some(&self.ee_hits), (given.bodies, given.counters))
     }
 
-    fn ahead(&self, last: &[u64]) -> Vec<Ahead<'_>> {
+    fn ahead(&self, last: &Counts) -> Vec<Ahead<'_>> {
         let mut all = Hits::ahead([&self.vf_hits, &self.ee_hits], self.ordered.as_ref(), last);
         all.extend(self.earliest.as_ref().map(|earliest| earliest.ahead(1)));
         all
     }
 
-    fn gather(&self, counters: &[u64]) -> Result<(Listed<'_>, bool), Error> {
+    fn gather(&self, counters: &Counts) -> Result<(Listed<'_>, bool), Error> {
         if let Some(earliest) = &self.earliest {
             let bits = earliest.read(1)?[0];
             let toi = (bits != u64::MAX).then(|| f64::from_bits(bits));

@@ -4,13 +4,14 @@ use super::{AnswerLists, Narrow, NarrowContext, growable};
 use crate::contacts::Entries;
 use crate::device::{Ahead, Device};
 use crate::error::Error;
+use crate::pipeline::counts::Counts;
 use crate::pipeline::launch;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::order::{Order, Ordering};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Listed, in_order};
 use crate::query::TriangleTest;
-use nearmiss_kernels::abi::{DiscreteArgs, KEEP_ADJACENT, Pair, Span, counter};
+use nearmiss_kernels::abi::{DiscreteArgs, DiscreteFlags, Output, Pair, Span, counter};
 
 /// The lists of a discrete query.
 pub struct DiscreteNarrow {
@@ -60,30 +61,27 @@ impl DiscreteNarrow {
     /// # Errors
     /// Those of the device.
     pub fn decide<R: Precision>(&self, given: &NarrowContext<R>) -> Result<(), Error> {
-        let args = |pairs: Span<Pair>, pairs_at: u32, undecided: Option<&List<Pair>>| DiscreteArgs {
+        let args = |pairs: Output<Pair>, undecided: Option<&List<Pair>>| DiscreteArgs {
             positions: given.frames.still,
             faces: given.faces,
             pairs,
-            contacts: self.contacts.span(),
-            undecided: undecided.map_or(Span::EMPTY, List::span),
-            counters: given.counters,
-            pairs_at,
-            undecided_at: undecided.map_or(0, List::counter),
-            flags: if self.test.has_adjacent() { KEEP_ADJACENT } else { 0 },
+            contacts: self.contacts.output(given.counters),
+            undecided: undecided.map_or(Output::EMPTY, |list| list.output(given.counters)),
+            flags: DiscreteFlags::KEEP_ADJACENT.when(self.test.has_adjacent()),
             pad: 0,
         };
-        let (device, capacity) = (given.device, given.pairs.len() as usize);
-        let candidates = args(given.pairs, counter::PAIRS, self.undecided.first());
+        let (device, capacity) = (given.device, given.pairs.room() as usize);
+        let candidates = args(given.pairs, self.undecided.first());
         let (first, last) = match &*self.undecided {
             [] => return launch::striding::<R::Moller>(device, capacity, &candidates),
             [first, .., last] => (first, Some(last)),
             [first] => (first, None),
         };
         launch::striding::<R::Filter>(device, capacity, &candidates)?;
-        let left = args(first.span(), first.counter(), last);
+        let left = args(first.output(given.counters), last);
         let Some(last) = last else { return launch::striding::<R::Exact>(device, first.capacity(), &left) };
         launch::striding::<R::Wide>(device, first.capacity(), &left)?;
-        launch::striding::<R::Exact>(device, last.capacity(), &args(last.span(), last.counter(), None))
+        launch::striding::<R::Exact>(device, last.capacity(), &args(last.output(given.counters), None))
     }
 }
 
@@ -113,11 +111,11 @@ impl<R: Precision> Narrow<R> for DiscreteNarrow {
         order.run(given.device, &self.contacts, None, (Span::EMPTY, given.counters))
     }
 
-    fn ahead(&self, last: &[u64]) -> Vec<Ahead<'_>> {
+    fn ahead(&self, last: &Counts) -> Vec<Ahead<'_>> {
         vec![self.ordered.as_ref().map_or(&self.contacts, |order| &order.list).ahead(last)]
     }
 
-    fn gather(&self, counters: &[u64]) -> Result<(Listed<'_>, bool), Error> {
+    fn gather(&self, counters: &Counts) -> Result<(Listed<'_>, bool), Error> {
         let ordered = in_order(self.ordered.as_ref(), counters, &[&self.contacts])?;
         let is_ordered = ordered.is_some();
         let pairs = ordered.map_or_else(|| self.contacts.view(counters), Ok)?;

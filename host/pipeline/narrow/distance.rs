@@ -4,6 +4,7 @@ use super::{AnswerLists, DiscreteNarrow, Narrow, NarrowContext};
 use crate::contacts::Entries;
 use crate::device::{Ahead, Device};
 use crate::error::Error;
+use crate::pipeline::counts::Counts;
 use crate::pipeline::launch;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::order::Ordering;
@@ -53,8 +54,8 @@ impl DistanceNarrow {
             positions: given.frames.still,
             faces: given.faces,
             pairs: given.pairs,
-            meeting: self.meeting.contacts.span(),
-            nearest: self.nearest.span(),
+            meeting: self.meeting.contacts.output(given.counters),
+            nearest: self.nearest.output(given.counters),
             counters: given.counters,
         }
     }
@@ -72,7 +73,7 @@ impl<R: Precision> Narrow<R> for DistanceNarrow {
 
     fn run(&mut self, step: usize, given: &NarrowContext<R>) -> Result<(), Error> {
         let (device, args) = (given.device, self.args(given));
-        let capacity = given.pairs.len() as usize;
+        let capacity = given.pairs.room() as usize;
         match Step::ALL[step] {
             Step::Decide => self.meeting.decide(given),
             Step::Least => launch::striding::<R::Least>(device, capacity, &args),
@@ -103,18 +104,18 @@ impl<R: Precision> Narrow<R> for DistanceNarrow {
         Ok(())
     }
 
-    fn ahead(&self, last: &[u64]) -> Vec<Ahead<'_>> {
+    fn ahead(&self, last: &Counts) -> Vec<Ahead<'_>> {
         vec![self.nearest.ahead(last)]
     }
 
-    fn gather(&self, counters: &[u64]) -> Result<(Listed<'_>, bool), Error> {
+    fn gather(&self, counters: &Counts) -> Result<(Listed<'_>, bool), Error> {
         Ok((Listed::Nearest(self.nearest.view(counters)?), true))
     }
 
     fn answer(&self) -> AnswerLists {
         AnswerLists {
             entries: Entries::Nearest,
-            lists: vec![(self.nearest.span().addr(), 1)],
+            lists: vec![(self.nearest.entries().addr(), 1)],
             is_ordered: true,
             counters: vec![self.nearest.counter()],
             earliest: None,

@@ -58,11 +58,10 @@ impl Features {
             frames: given.frames,
             facets: self.facets.span(),
             pairs: given.pairs,
-            vf: vf.span(),
-            ee: ee.span(),
-            counters: given.counters,
+            vf: vf.output(given.counters),
+            ee: ee.output(given.counters),
             gap,
         };
-        launch::striding::<E>(given.device, given.pairs.len() as usize, &args)
+        launch::striding::<E>(given.device, given.pairs.room() as usize, &args)
     }
 }

@@ -12,6 +12,7 @@ pub use answer::AnswerLists;
 pub use continuous::{Capacities, ContinuousNarrow};
 pub use discrete::DiscreteNarrow;
 
+use super::counts::Counts;
 use super::layout::Layout;
 use super::list::{GrowableOutput, List};
 use super::order::Ordering;
@@ -23,7 +24,7 @@ use crate::mesh::Body;
 use crate::query::Query;
 use distance::DistanceNarrow;
 use near::NearNarrow;
-use nearmiss_kernels::abi::{BodyRecord, Pair, Positions, Span};
+use nearmiss_kernels::abi::{BodyRecord, Counters, Output, Pair, Positions, Span};
 
 /// What every step of the stage is given.
 pub struct NarrowContext<'a, R: Precision> {
@@ -34,11 +35,11 @@ pub struct NarrowContext<'a, R: Precision> {
     /// Vertex indices of every triangle.
     pub faces: Span<[u32; 3]>,
     /// Candidate triangle pairs.
-    pub pairs: Span<Pair>,
+    pub pairs: Output<Pair>,
     /// What the kernels know of the bodies; empty where there is one alone.
     pub bodies: Span<BodyRecord>,
     /// The frame's counters.
-    pub counters: Span<u64>,
+    pub counters: Counters,
 }
 
 /// The narrow phase of a kind of query: its steps, the lists that they fill, and what it hands over.
@@ -85,13 +86,13 @@ pub trait Narrow<R: Precision>: Send {
     fn order(&mut self, given: &NarrowContext<R>) -> Result<(), Error>;
 
     /// What [`Narrow::gather`] will look at, by the counters of the last frame.
-    fn ahead(&self, last: &[u64]) -> Vec<Ahead<'_>>;
+    fn ahead(&self, last: &Counts) -> Vec<Ahead<'_>>;
 
     /// What was found, by the frame's counters, and whether it is in canonical order.
     ///
     /// # Errors
     /// Those of the device.
-    fn gather(&self, counters: &[u64]) -> Result<(Listed<'_>, bool), Error>;
+    fn gather(&self, counters: &Counts) -> Result<(Listed<'_>, bool), Error>;
 
     /// Where that lies.
     fn answer(&self) -> AnswerLists;

@@ -5,13 +5,14 @@ use super::{AnswerLists, Narrow, NarrowContext, growable};
 use crate::contacts::Entries;
 use crate::device::{Ahead, Device};
 use crate::error::Error;
+use crate::pipeline::counts::Counts;
 use crate::pipeline::launch;
 use crate::pipeline::layout::Layout;
-use crate::pipeline::list::{Counter, GrowableOutput, List};
+use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::order::{Order, Ordering};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Hits, Listed};
-use nearmiss_kernels::abi::{NearArgs, NearHit, Pair, counter};
+use nearmiss_kernels::abi::{Counter, NearArgs, NearHit, Pair, counter};
 
 /// A step of the phase.
 #[derive(Clone, Copy)]
@@ -58,7 +59,7 @@ impl NearNarrow {
             features: Features::new(device, layout, [capacity, 2 * capacity])?,
             vf_hits: List::new(device, "vertex/face pairs within the distance", counter::VF_HITS, few)?,
             ee_hits: List::new(device, "edge/edge pairs within the distance", counter::EE_HITS, 2 * few)?,
-            unresolved: Counter(counter::UNRESOLVED),
+            unresolved: counter::UNRESOLVED,
             ordered: None,
         })
     }
@@ -69,10 +70,10 @@ impl NearNarrow {
             positions: given.frames.still,
             faces: given.faces,
             edges: self.features.edges.span(),
-            vf: vf.span(),
-            ee: ee.span(),
-            vf_hits: self.vf_hits.span(),
-            ee_hits: self.ee_hits.span(),
+            vf: vf.output(given.counters),
+            ee: ee.output(given.counters),
+            vf_hits: self.vf_hits.output(given.counters),
+            ee_hits: self.ee_hits.output(given.counters),
             counters: given.counters,
             distance: self.distance,
         };
@@ -116,11 +117,11 @@ impl<R: Precision> Narrow<R> for NearNarrow {
         order.run(given.device, &self.vf_hits, Some(&self.ee_hits), (given.bodies, given.counters))
     }
 
-    fn ahead(&self, last: &[u64]) -> Vec<Ahead<'_>> {
+    fn ahead(&self, last: &Counts) -> Vec<Ahead<'_>> {
         Hits::ahead([&self.vf_hits, &self.ee_hits], self.ordered.as_ref(), last)
     }
 
-    fn gather(&self, counters: &[u64]) -> Result<(Listed<'_>, bool), Error> {
+    fn gather(&self, counters: &Counts) -> Result<(Listed<'_>, bool), Error> {
         let (hits, ordered) = Hits::of([&self.vf_hits, &self.ee_hits], self.ordered.as_ref(), counters)?;
         Ok((Listed::Near(hits), ordered))
     }

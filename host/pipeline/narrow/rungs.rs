@@ -7,7 +7,7 @@ use crate::pipeline::launch;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::precision::Precision;
 use crate::query::{Certified, CertifiedPrecision};
-use nearmiss_kernels::abi::{EVERYTHING, Hit, Listed, Pair, RungArgs, Span, counter};
+use nearmiss_kernels::abi::{Counter, Hit, Listed, Output, Pair, RungArgs, RungFlags, Span, counter};
 use nearmiss_kernels::entry::Entry;
 
 /// A rung: one launch over the pairs that the one before left.
@@ -43,7 +43,7 @@ fn rungs(certified: &Certified) -> &'static [Rung] {
 }
 
 /// What a rung leaves: a name for machines to be compared by, and for a list that is too long; the counters.
-const LEFT: [[(&str, &str, u32); 2]; 3] = [
+const LEFT: [[(&str, &str, Counter); 2]; 3] = [
     [
         ("narrow: vf for f64", "vertex/face pairs for f64", counter::VF_ESCALATED),
         ("narrow: ee for f64", "edge/edge pairs for f64", counter::EE_ESCALATED),
@@ -87,7 +87,7 @@ impl Rungs {
     pub fn new(device: &Device, certified: Option<&Certified>, capacity: [usize; 2]) -> Result<Self, Error> {
         let rungs = certified.map_or(&[][..], rungs);
         let names: Vec<_> = rungs.iter().rev().skip(1).rev().map(|rung| rung.left()).collect();
-        let list = |(_, name, counter): (&str, &'static str, u32), capacity| {
+        let list = |(_, name, counter): (&str, &'static str, Counter), capacity| {
             List::new(device, name, counter, capacity)
         };
         let left = names
@@ -121,13 +121,9 @@ impl Rungs {
         (asked, hits, earliest): ([&List<Pair>; 2], [&List<Hit>; 2], Span<u64>),
     ) -> Result<(), Error> {
         let listed = |pairs: &List<Pair>, hits: &List<Hit>, left: Option<&List<Pair>>| Listed {
-            pairs: pairs.span(),
-            hits: hits.span(),
-            left: left.map_or(Span::EMPTY, List::span),
-            pairs_at: pairs.counter(),
-            hits_at: hits.counter(),
-            left_at: left.map_or(0, List::counter),
-            pad: 0,
+            pairs: pairs.output(given.counters),
+            hits: hits.output(given.counters),
+            left: left.map_or(Output::EMPTY, |list| list.output(given.counters)),
         };
         let mut pairs = asked;
         for (at, &rung) in self.rungs.iter().enumerate() {
@@ -143,7 +139,7 @@ impl Rungs {
                 earliest,
                 counters: given.counters,
                 params: self.certified.params(),
-                flags: if everything { EVERYTHING } else { 0 },
+                flags: RungFlags::EVERYTHING.when(everything),
                 pad: 0,
             };
             let capacity = pairs[0].capacity() + pairs[1].capacity();

@@ -3,12 +3,13 @@
 use super::TypedPipeline;
 use crate::device::{Ahead, View};
 use crate::error::Error;
+use crate::pipeline::counts::Counts;
 use crate::pipeline::list::List;
 use crate::pipeline::order::{Order, Ordered};
 use crate::pipeline::placing::Seen;
 use crate::pipeline::precision::Precision;
 use bytemuck::Pod;
-use nearmiss_kernels::abi::{Hit, NearHit, NearestHit, Pair, counter};
+use nearmiss_kernels::abi::{Hit, NearHit, NearestHit, Pair};
 use nearmiss_kernels::entry::Kernels;
 
 /// What the kernels found, still in the numbering of the memory that all bodies share, and where it is possible in that
@@ -42,8 +43,8 @@ pub struct Found<'a> {
     pub listed: Listed<'a>,
     /// Whether it is in canonical order already.
     pub ordered: bool,
-    /// The frame's counters, see [`counter`].
-    pub counters: Vec<u64>,
+    /// What was counted.
+    pub counters: Counts,
     /// How often a list was too short and part of the frame ran again.
     pub reruns: u64,
     /// Whether the walk's front did not pay.
@@ -81,7 +82,7 @@ impl<'a, T: Ordered> Hits<'a, T> {
     pub fn of(
         lists: [&'a List<T>; 2],
         order: Option<&'a Order<T>>,
-        counters: &[u64],
+        counters: &Counts,
     ) -> Result<(Self, bool), Error> {
         Ok(match in_order(order, counters, &lists)? {
             Some(all) => (Hits::One(all, lists[0].demand(counters) as usize), true),
@@ -90,7 +91,7 @@ impl<'a, T: Ordered> Hits<'a, T> {
     }
 
     /// What is to be read ahead of them, by the counters of the last frame.
-    pub fn ahead(lists: [&'a List<T>; 2], order: Option<&'a Order<T>>, last: &[u64]) -> Vec<Ahead<'a>> {
+    pub fn ahead(lists: [&'a List<T>; 2], order: Option<&'a Order<T>>, last: &Counts) -> Vec<Ahead<'a>> {
         match order {
             Some(order) => vec![order.list.ahead(last)],
             None => lists.map(|list| list.ahead(last)).into(),
@@ -122,7 +123,7 @@ impl<T: Pod> Hits<'_, T> {
 /// Those of the device.
 pub fn in_order<'a, T: Ordered>(
     order: Option<&'a Order<T>>,
-    counters: &[u64],
+    counters: &Counts,
     lists: &[&List<T>],
 ) -> Result<Option<View<'a, T>>, Error> {
     order.map_or(Ok(None), |order| order.view(counters, lists))
@@ -131,13 +132,13 @@ pub fn in_order<'a, T: Ordered>(
 impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
     /// Brings over with one wait what the end of a frame reads: counters, and as many contacts as the last frame had.
     pub(super) fn read_ahead(&self) -> Result<(), Error> {
-        let mut all = vec![self.counters.ahead(counter::COUNT as usize)];
+        let mut all = vec![self.counters.ahead()];
         all.extend(self.vertices.ahead());
         all.extend(self.narrow.ahead(&self.last));
         self.device.read_ahead(&all)
     }
 
-    pub(super) fn gather(&self, counters: Vec<u64>, reruns: u64) -> Result<Found<'_>, Error> {
+    pub(super) fn gather(&self, counters: Counts, reruns: u64) -> Result<Found<'_>, Error> {
         let (listed, ordered) = self.narrow.gather(&counters)?;
         let (front_dropped, seen) = (self.walk.front_dropped(), self.vertices.seen()?);
         Ok(Found { listed, ordered, counters, reruns, front_dropped, seen })

@@ -2,9 +2,9 @@
 
 use super::{Pipeline, Step, TypedPipeline};
 use crate::error::Error;
+use crate::pipeline::counts::Counts;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::timing::Stage;
-use nearmiss_kernels::abi::counter;
 use nearmiss_kernels::entry::Kernels;
 
 /// Stages again, on what the last frame left.
@@ -67,16 +67,16 @@ impl<R: Precision, V: Kernels> Again for TypedPipeline<R, V> {
 
 impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
     /// The counters that a stage begins with: those of the last frame, without what the stage itself counted.
-    fn counters_before(&mut self, stage: Stage) -> Vec<u64> {
-        let mut counters = vec![0; counter::COUNT as usize];
+    fn counters_before(&mut self, stage: Stage) -> Counts {
+        let mut counters = Counts::default();
         if matches!(stage, Stage::Narrow | Stage::Order) {
             counters.clone_from(&self.last);
             let steps = if stage == Stage::Order { 0..0 } else { self.narrow_steps_at() };
             for at in steps {
-                self.narrow.lists(at).iter().for_each(|list| counters[list.counter() as usize] = 0);
+                self.narrow.lists(at).iter().for_each(|list| counters[list.counter()] = 0);
             }
             if let Some(list) = self.narrow.ordered() {
-                counters[list.counter() as usize] = 0;
+                counters[list.counter()] = 0;
             }
         }
         counters

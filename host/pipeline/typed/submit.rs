@@ -10,7 +10,7 @@ use crate::pipeline::precision::Precision;
 use crate::pipeline::timing::{Stage, Stages};
 use crate::pipeline::typed::Found;
 use crate::pipeline::{launch, purpose};
-use nearmiss_kernels::abi::{FrameStatus, NO_LIST, Room, StatusArgs, counter, seen};
+use nearmiss_kernels::abi::{FrameStatus, Room, Span, StatusArgs, seen};
 use nearmiss_kernels::entry::{Kernels, status_frame};
 
 /// What such a frame needs beside what every frame has.
@@ -92,7 +92,7 @@ impl<R: Precision, V: Kernels> Submits for TypedPipeline<R, V> {
         // The caller may have launched a recorded submission again.
         self.device.changed();
         self.read_ahead()?;
-        let counters = self.counters.read(counter::COUNT as usize)?;
+        let counters = self.counters.read()?;
         if self.has_overflowed(&counters) {
             self.settled = false;
             return Ok(None);
@@ -137,15 +137,9 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
             .into_iter()
             .try_for_each(|stage| self.run(stage))?;
         let counters = self.narrow.answer().counters;
-        let at = |k: usize| counters.get(k).copied().unwrap_or(NO_LIST);
-        let args = StatusArgs {
-            counters: self.counters.span(),
-            rooms,
-            seen,
-            status,
-            first_at: at(0),
-            second_at: at(1),
-        };
+        let all = self.counters.counters();
+        let count = |k: usize| counters.get(k).map_or(Span::EMPTY, |&which| all.word(which));
+        let args = StatusArgs { counters: all, rooms, seen, status, first: count(0), second: count(1) };
         launch::blocks::<status_frame>(&self.device, 1, &args)
     }
 }

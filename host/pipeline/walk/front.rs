@@ -4,11 +4,12 @@ use super::queue::Queue;
 use super::{Walk, WalkContext};
 use crate::device::Device;
 use crate::error::Error;
+use crate::pipeline::counts::Counts;
 use crate::pipeline::launch;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::precision::Precision;
 use crate::query::FrontShape;
-use nearmiss_kernels::abi::{FRONT, FrontArgs, PRUNE, Pair, counter};
+use nearmiss_kernels::abi::{FrontArgs, FrontFlags, Pair, TraverseFlags, counter};
 use nearmiss_kernels::entry::{self, Kernels};
 
 /// Pairs of the front a triangle for which there is room at first: cloth at rest has 30, swept over a step 100.
@@ -81,17 +82,16 @@ impl<R: Precision, V: Kernels> Walk<R, V> for Front {
         if let State::Resting(_) = self.state {
             return self.queue.launch(given);
         }
-        let flags = given.flags | FRONT;
-        let given = WalkContext { ends: self.ends.span(), flags, ..*given };
+        let flags = given.flags | TraverseFlags::FRONT;
+        let given = WalkContext { ends: self.ends.output(given.counters), flags, ..*given };
         let State::Kept { count, .. } = self.state else { return self.queue.launch(&given) };
         let blocks = given.device.blocks_striding::<entry::traverse_front<V>>(count as usize);
-        let (front, flags) = (self.front.span(), if self.prunes::<V>() { PRUNE } else { 0 });
-        self.queue.launch_from(&given, &|units, unit_count| {
+        let (front, flags) = (self.front.entries(), FrontFlags::PRUNE.when(self.prunes::<V>()));
+        self.queue.launch_from(&given, &|units| {
             let args = FrontArgs {
                 to: given.pair_args(1),
                 front,
                 units,
-                unit_count,
                 pair_parents: given.forest.tree.pair_parents.span(),
                 count,
                 flags,
@@ -106,13 +106,12 @@ impl<R: Precision, V: Kernels> Walk<R, V> for Front {
         lists
     }
 
-    fn finish(&mut self, counters: &[u64]) -> Result<(), Error> {
+    fn finish(&mut self, counters: &Counts) -> Result<(), Error> {
         Walk::<R, V>::finish(&mut self.queue, counters)?;
-        let of = |at: u32| counters[at as usize];
         // A unit is a pair of siblings tested against a node.
-        let tests = of(counter::FRONT_TESTS) + 2 * of(counter::STEPS);
+        let tests = counters[counter::FRONT_TESTS] + 2 * counters[counter::STEPS];
         // Lists are no longer than an index reaches.
-        let count = of(counter::ENDS) as u32;
+        let count = counters[counter::ENDS] as u32;
         let pruned = self.prunes::<V>();
         let rested = matches!(self.state, State::Resting(_));
         let had = matches!(self.state, State::Kept { .. });

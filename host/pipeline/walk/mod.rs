@@ -7,6 +7,7 @@ mod queue;
 mod segments;
 mod steal;
 
+use super::counts::Counts;
 use super::forest::Forest;
 use super::list::GrowableOutput;
 use super::precision::Precision;
@@ -15,7 +16,7 @@ use crate::error::Error;
 use crate::query::{Query, Traversal};
 use front::Front;
 use nearest::NearestFirst;
-use nearmiss_kernels::abi::{KEEP_ADJACENT, Pair, PairArgs, Positions, Span};
+use nearmiss_kernels::abi::{Counters, Output, Pair, PairArgs, Positions, Span, TraverseFlags};
 use nearmiss_kernels::entry::{Entry, Kernels};
 use per_leaf::PerLeaf;
 use queue::Queue;
@@ -32,13 +33,13 @@ pub struct WalkContext<'a, R: Precision, V> {
     /// Vertex indices of every triangle.
     pub faces: Span<[u32; 3]>,
     /// Out: candidate triangle pairs.
-    pub pairs: Span<Pair>,
-    /// Out, with [`FRONT`](nearmiss_kernels::abi::FRONT): pairs of nodes where the descent ended.
-    pub ends: Span<Pair>,
-    /// Counters, see [`nearmiss_kernels::abi::counter`].
-    pub counters: Span<u64>,
-    /// [`KEEP_ADJACENT`], [`GRAFTED`](nearmiss_kernels::abi::GRAFTED), [`FRONT`](nearmiss_kernels::abi::FRONT).
-    pub flags: u32,
+    pub pairs: Output<Pair>,
+    /// Out, with [`TraverseFlags::FRONT`]: pairs of nodes where the descent ended.
+    pub ends: Output<Pair>,
+    /// The frame's counters.
+    pub counters: Counters,
+    /// What every walk is told.
+    pub flags: TraverseFlags,
 }
 
 impl<R: Precision, V: Kernels> WalkContext<'_, R, V> {
@@ -80,7 +81,7 @@ pub trait Walk<R: Precision, V>: Send {
     ///
     /// # Errors
     /// Those of the device.
-    fn finish(&mut self, _counters: &[u64]) -> Result<(), Error> {
+    fn finish(&mut self, _counters: &Counts) -> Result<(), Error> {
         Ok(())
     }
 
@@ -128,6 +129,6 @@ pub fn walk<R: Precision, V: Kernels>(
 }
 
 /// What a walk is told by flags of a query.
-pub fn flags(query: &Query) -> u32 {
-    if query.keeps_adjacent() { KEEP_ADJACENT } else { 0 }
+pub fn flags(query: &Query) -> TraverseFlags {
+    TraverseFlags::KEEP_ADJACENT.when(query.keeps_adjacent())
 }

@@ -4,12 +4,12 @@ use super::{Walk, WalkContext};
 use crate::error::Error;
 use crate::pipeline::launch;
 use crate::pipeline::precision::Precision;
-use nearmiss_kernels::abi::{NONE, NearestArgs, Span, TraverseArgs, counter};
+use nearmiss_kernels::abi::{Counter, NearestArgs, Output, TraverseArgs, counter};
 use nearmiss_kernels::entry::{self, Kernels};
 
 /// Samples of each round, pairs that each measures at most, and which counter takes the bound: some that go down to one leaf, then
 /// many, of which most end at the root. More find bounds that are hardly better (`benches/NOTES.md`).
-const ROUNDS: [(u32, u32, u32); 2] = [(256, 1, counter::SAMPLED), (4096, 2, counter::SAMPLED_AGAIN)];
+const ROUNDS: [(u32, u32, Counter); 2] = [(256, 1, counter::SAMPLED), (4096, 2, counter::SAMPLED_AGAIN)];
 /// Pairs of siblings that a sample looks at: several ways down any tree, so that none is long. What ends is a bound that is less good.
 const STEPS: u32 = 128;
 
@@ -21,7 +21,7 @@ impl<R: Precision, V: Kernels> Walk<R, V> for NearestFirst {
         let (forest, device) = (given.forest, given.device);
         let leaves = forest.tree.leaves();
         let (nodes, leaf_nodes) = (forest.volumes.nodes.span(), forest.tree.leaf_nodes.span());
-        let mut from = NONE;
+        let mut from = counter::UNKNOWN;
         for (most, measures, to) in ROUNDS {
             let samples = most.min(leaves as u32);
             let args = NearestArgs {
@@ -46,12 +46,10 @@ impl<R: Precision, V: Kernels> Walk<R, V> for NearestFirst {
             leaf_nodes,
             filters: forest.filters(),
             faces: given.faces,
-            units: Span::EMPTY,
-            spilled: Span::EMPTY,
+            units: Output::EMPTY,
+            spilled: Output::EMPTY,
             pairs: given.pairs,
             counters: given.counters,
-            units_at: 0,
-            spilled_at: 0,
             budget: u32::MAX,
             flags: given.flags,
         };

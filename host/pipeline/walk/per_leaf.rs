@@ -3,9 +3,10 @@
 use super::{Walk, WalkContext};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
+use crate::pipeline::counts::Counts;
 use crate::pipeline::launch;
 use crate::pipeline::precision::Precision;
-use nearmiss_kernels::abi::{ROUNDS, Span, TraverseArgs, Unit, counter};
+use nearmiss_kernels::abi::{Output, ROUNDS, TraverseArgs, Unit, counter};
 use nearmiss_kernels::entry::{self, Kernels};
 
 /// See [`crate::query::Traversal::PerLeaf`].
@@ -30,17 +31,20 @@ impl PerLeaf {
 impl<R: Precision, V: Kernels> Walk<R, V> for PerLeaf {
     fn launch(&mut self, given: &WalkContext<R, V>) -> Result<(), Error> {
         let (forest, device) = (given.forest, given.device);
+        // What a round leaves, and what counts that.
+        let spilled = |units: &[Buffer<Unit>; 2], round: u32| {
+            let round = round as usize;
+            given.counters.output(units[round % 2].span(), counter::SPILLED[round])
+        };
         let mut args = TraverseArgs {
             nodes: forest.volumes.nodes.span(),
             leaf_nodes: forest.tree.leaf_nodes.span(),
             filters: forest.filters(),
             faces: given.faces,
-            units: Span::EMPTY,
-            spilled: self.units.as_ref().map_or(Span::EMPTY, |units| units[0].span()),
+            units: Output::EMPTY,
+            spilled: self.units.as_ref().map_or(Output::EMPTY, |units| spilled(units, 0)),
             pairs: given.pairs,
             counters: given.counters,
-            units_at: 0,
-            spilled_at: counter::SPILLED,
             budget: self.budget.unwrap_or(u32::MAX),
             flags: given.flags,
         };
@@ -55,12 +59,11 @@ impl<R: Precision, V: Kernels> Walk<R, V> for PerLeaf {
         let blocks = device.blocks_striding::<entry::traverse_units<V>>(units[0].len());
         for round in 0..ROUNDS {
             args.units = args.spilled;
-            args.units_at = args.spilled_at;
-            args.spilled = units[(round as usize + 1) % 2].span();
-            args.spilled_at += 1;
             if round + 1 == ROUNDS {
-                args.budget = u32::MAX;
-                args.spilled_at = 0;
+                // No walk is that long: nothing is left.
+                (args.budget, args.spilled) = (u32::MAX, Output::EMPTY);
+            } else {
+                args.spilled = spilled(units, round + 1);
             }
             launch::blocks::<entry::traverse_units<V>>(device, blocks, &args)?;
         }
@@ -68,10 +71,9 @@ impl<R: Precision, V: Kernels> Walk<R, V> for PerLeaf {
     }
 
     /// Units without room were walked on by their lanes, which is right and slow: the next frame has room for them.
-    fn finish(&mut self, counters: &[u64]) -> Result<(), Error> {
+    fn finish(&mut self, counters: &Counts) -> Result<(), Error> {
         let Some(units) = &mut self.units else { return Ok(()) };
-        let spilled = &counters[counter::SPILLED as usize..][..ROUNDS as usize];
-        let most = spilled.iter().copied().max().unwrap_or(0) as usize;
+        let most = counter::SPILLED.iter().map(|&round| counters[round]).max().unwrap_or(0) as usize;
         if most > units[0].len() {
             for list in units {
                 *list = self.device.buffer(most + most / 8)?;

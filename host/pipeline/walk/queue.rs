@@ -4,11 +4,12 @@ use super::segments::Segments;
 use super::{Walk, WalkContext, resident};
 use crate::device::{Buffer, Device, Event};
 use crate::error::Error;
+use crate::pipeline::counts::Counts;
 use crate::pipeline::launch;
 use crate::pipeline::list::GrowableOutput;
 use crate::pipeline::precision::Precision;
 use crate::query::{Balance, QueueShape};
-use nearmiss_kernels::abi::{BalanceArgs, LAST, Pair, QueueArgs, START, Span, counter};
+use nearmiss_kernels::abi::{BalanceArgs, Counter, Output, Pair, QueueArgs, QueueFlags, counter};
 use nearmiss_kernels::entry::{self, Kernels};
 
 /// Rounds that are launched before the host looks whether anything is left, as long as it does not know. Even: the two
@@ -52,13 +53,13 @@ impl Plan {
 }
 
 impl GrowableOutput for Plan {
-    fn counter(&self) -> u32 {
+    fn counter(&self) -> Counter {
         counter::UNFINISHED
     }
     fn room(&self) -> u64 {
         0
     }
-    fn grow(&mut self, _: &Device, counters: &[u64]) -> Result<bool, Error> {
+    fn grow(&mut self, _: &Device, counters: &Counts) -> Result<bool, Error> {
         let short = self.has_overflowed(counters);
         if short {
             *self.of_last() = None;
@@ -96,11 +97,11 @@ impl Queue {
         &self,
         given: &WalkContext<R, V>,
         from: usize,
-        (round, flags): (u32, u32),
+        (round, flags): (u32, QueueFlags),
     ) -> Result<(), Error> {
         let QueueShape { local, take, idle, patience, balance, .. } = self.shape;
         let lanes = given.device.lanes::<entry::traverse_queue<V>>();
-        let start = flags & START != 0;
+        let start = flags.has(QueueFlags::START);
         let copy = balance == Balance::Copy;
         // One list for all: the first block alone, until there is something to share.
         let alone = start && !copy;
@@ -130,11 +131,11 @@ impl Queue {
 
     /// Rounds with a balance between them, until the host sees that nothing is left.
     fn by_copy<R: Precision, V: Kernels>(&mut self, given: &WalkContext<R, V>) -> Result<(), Error> {
-        let (mut from, mut flags) = (0, START);
+        let (mut from, mut flags) = (0, QueueFlags::START);
         loop {
             self.idle.clear()?;
             self.round(given, from, (0, flags))?;
-            flags = 0;
+            flags = QueueFlags::NONE;
             let to = 1 - from;
             let counts = self.counts[to].read(self.cores as usize)?;
             let most = counts.iter().max().copied().unwrap_or(0);
@@ -173,20 +174,20 @@ impl Queue {
         given: &WalkContext<R, V>,
         seed: Option<Seed>,
     ) -> Result<(), Error> {
-        let first = if seed.is_some() { 0 } else { START };
+        let first = QueueFlags::START.when(seed.is_none());
         let begin = |queue: &mut Self| -> Result<(), Error> {
             queue.counts[0].clear()?;
             queue.idle.clear()
         };
         begin(self)?;
         if let Some(seed) = seed {
-            seed(self.units.span(0), self.counts[0].span())?;
+            seed(Output::new(self.units.span(0), self.counts[0].span().part(0, 1)))?;
         }
         self.plan.seeded = seed.is_some();
         if let Some(rounds) = *self.plan.of_last() {
             return (0..rounds).try_for_each(|round| {
-                let start = if round == 0 { first } else { 0 };
-                let last = if round + 1 == rounds { LAST } else { 0 };
+                let start = first.when(round == 0);
+                let last = QueueFlags::LAST.when(round + 1 == rounds);
                 self.round(given, round as usize, (round, start | last))
             });
         }
@@ -194,7 +195,7 @@ impl Queue {
         loop {
             for round in 0..BATCH {
                 self.round(given, round as usize, (round, flags))?;
-                flags = 0;
+                flags = QueueFlags::NONE;
             }
             let left = self.counts[0].read(BATCH as usize + 1)?[BATCH as usize];
             if left == 0 {
@@ -218,8 +219,8 @@ impl Queue {
     }
 }
 
-/// Writes units to a list and counts them.
-pub type Seed<'a> = &'a dyn Fn(Span<Pair>, Span<u64>) -> Result<(), Error>;
+/// Appends units to a list.
+pub type Seed<'a> = &'a dyn Fn(Output<Pair>) -> Result<(), Error>;
 
 impl<R: Precision, V: Kernels> Walk<R, V> for Queue {
     fn launch(&mut self, given: &WalkContext<R, V>) -> Result<(), Error> {
@@ -234,9 +235,9 @@ impl<R: Precision, V: Kernels> Walk<R, V> for Queue {
         vec![&mut self.units, &mut self.plan]
     }
 
-    fn finish(&mut self, counters: &[u64]) -> Result<(), Error> {
+    fn finish(&mut self, counters: &Counts) -> Result<(), Error> {
         // A machine's rounds vary from run to run: a plan shrinks by one a frame at most.
-        let rounds = counters[counter::QUEUE_ROUNDS as usize] + MORE_ROUNDS as u64;
+        let rounds = counters[counter::QUEUE_ROUNDS] + MORE_ROUNDS as u64;
         let rounds = rounds.max(self.plan.of_last().unwrap_or(0).saturating_sub(1) as u64);
         *self.plan.of_last() = (rounds <= MOST_ROUNDS as u64).then_some(rounds as u32);
         Ok(())

@@ -2,8 +2,9 @@
 
 use crate::device::{Buffer, Device};
 use crate::error::Error;
+use crate::pipeline::counts::Counts;
 use crate::pipeline::list::{GrowableOutput, LONGEST};
-use nearmiss_kernels::abi::{Pair, Span, counter};
+use nearmiss_kernels::abi::{Counter, Pair, Span, counter};
 
 /// `N` copies of the queues' memory, cut into segments of one length.
 pub struct Segments<const N: usize> {
@@ -39,18 +40,18 @@ impl<const N: usize> Segments<N> {
 }
 
 impl<const N: usize> GrowableOutput for Segments<N> {
-    fn counter(&self) -> u32 {
+    fn counter(&self) -> Counter {
         counter::QUEUED
     }
     fn room(&self) -> u64 {
         self.len.into()
     }
     /// The demand is that of a run that lost units, a lower bound: twice the length at least.
-    fn grow(&mut self, device: &Device, counters: &[u64]) -> Result<bool, Error> {
+    fn grow(&mut self, device: &Device, counters: &Counts) -> Result<bool, Error> {
         if !self.has_overflowed(counters) {
             return Ok(false);
         }
-        let demand = counters[counter::QUEUED as usize];
+        let demand = counters[counter::QUEUED];
         if self.count as u64 * demand > LONGEST {
             return Err(too_long(self.count as u64 * demand));
         }

@@ -8,7 +8,7 @@ use crate::pipeline::launch;
 use crate::pipeline::list::GrowableOutput;
 use crate::pipeline::precision::Precision;
 use crate::query::StealShape;
-use nearmiss_kernels::abi::{EAGER, Pair, StealArgs, control, pool};
+use nearmiss_kernels::abi::{Pair, StealArgs, StealFlags, control, pool};
 use nearmiss_kernels::entry::{self, Kernels};
 
 /// Places of the pool a queue, where the query does not say: queues run dry some times each, whatever the size of the
@@ -63,7 +63,7 @@ impl<R: Precision, V: Kernels> Walk<R, V> for Steal {
             launch: self.launches << pool::LAUNCH,
             segment: self.units.len(),
             tries: self.shape.tries,
-            flags: if self.shape.eager { EAGER } else { 0 },
+            flags: StealFlags::EAGER.when(self.shape.eager),
             pad: 0,
         };
         launch::blocks::<entry::traverse_steal<V>>(given.device, self.cores, &args)

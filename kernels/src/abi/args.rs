@@ -1,8 +1,8 @@
 //! One argument block for each kernel: what it is launched with, by value.
 
 use super::{
-    BodyRecord, FilterArgs, Inner, LeafPlace, Link, Merge, Node, NodeFilter, Pair, Point, Span, TreeBody,
-    Treelet, Unit, VertexMotion,
+    BodyRecord, Counter, Counters, FilterArgs, Inner, LeafPlace, Link, Merge, Node, NodeFilter, Output, Pair,
+    Point, Span, TraverseFlags, TreeBody, Treelet, Unit, VertexMotion,
 };
 use crate::bv::Axes;
 use crate::math::Real;
@@ -264,21 +264,17 @@ arguments! {
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
         /// Units to walk (`traverse_units`).
-        units: Span<Unit>,
+        units: Output<Unit>,
         /// Out: units left when a walk's budget was used up.
-        spilled: Span<Unit>,
+        spilled: Output<Unit>,
         /// Out: candidate triangle pairs.
-        pairs: Span<Pair>,
-        /// Counters, see [`counter`].
-        counters: Span<u64>,
-        /// Which counter tells how many units there are.
-        units_at: u32,
-        /// Which counter the spilled units add to.
-        spilled_at: u32,
+        pairs: Output<Pair>,
+        /// Counters.
+        counters: Counters,
         /// Steps of a walk before it spills the rest of its stack.
         budget: u32,
-        /// Bits: [`KEEP_ADJACENT`], [`GRAFTED`].
-        flags: u32,
+        /// All but [`TraverseFlags::FRONT`].
+        flags: TraverseFlags,
     }
     /// `traverse_sample`: a bound of the least distance of two triangles.
     NearestArgs<R: Real, V: Pod> {
@@ -292,108 +288,19 @@ arguments! {
         leaf_nodes: Span<u32>,
         /// Which pairs are asked.
         filters: FilterArgs,
-        /// Counters, see [`counter`].
-        counters: Span<u64>,
+        /// Counters.
+        counters: Counters,
         /// How many of the leaves are samples.
         samples: u32,
         /// How many pairs of triangles a sample measures at most.
         measures: u32,
         /// How many pairs of siblings it looks at.
         steps: u32,
-        /// Bits: [`GRAFTED`].
-        flags: u32,
-        /// Which counter holds the least distance that is known before; [`NONE`](super::NONE) for none.
-        from: u32,
+        /// [`TraverseFlags::GRAFTED`].
+        flags: TraverseFlags,
+        /// Which counter holds the least distance that is known before: 0 for none.
+        from: Counter,
         /// Which counter takes it.
-        to: u32,
+        to: Counter,
     }
 }
-
-/// [`TraverseArgs::flags`]: pairs that share a vertex are emitted too.
-pub const KEEP_ADJACENT: u32 = 1;
-/// [`TraverseArgs::flags`]: below the root lie a tree that does not change, whose pairs nobody asks for, and one that does.
-pub const GRAFTED: u32 = 2;
-
-/// The counters of a frame. Each is the exact demand for its list, also where the list was too short.
-pub mod counter {
-    /// Candidate triangle pairs.
-    pub const PAIRS: u32 = 0;
-    /// Vertex/face candidates.
-    pub const VF: u32 = 1;
-    /// Edge/edge candidates.
-    pub const EE: u32 = 2;
-    /// Pairs that the discrete filter could not decide.
-    pub const UNDECIDED: u32 = 3;
-    /// Triangle pairs in contact.
-    pub const CONTACTS: u32 = 4;
-    /// Vertex/face contacts.
-    pub const VF_HITS: u32 = 5;
-    /// Edge/edge contacts.
-    pub const EE_HITS: u32 = 6;
-    /// Node pairs tested by the traversal.
-    pub const STEPS: u32 = 7;
-    /// Vertex/face candidates that may meet.
-    pub const VF_SURVIVORS: u32 = 8;
-    /// Edge/edge candidates that may meet.
-    pub const EE_SURVIVORS: u32 = 9;
-    /// Units spilled by round r of the traversal: this and the following [`super::ROUNDS`].
-    pub const SPILLED: u32 = 10;
-    /// Pairs of nodes where the descent ended.
-    pub const ENDS: u32 = SPILLED + super::ROUNDS;
-    /// Most units that waited in the longest list of a queue, or past its end.
-    pub const QUEUED: u32 = ENDS + 1;
-    /// Units that were left when the last round was over.
-    pub const UNFINISHED: u32 = ENDS + 2;
-    /// Rounds of the queues that had work.
-    pub const QUEUE_ROUNDS: u32 = ENDS + 3;
-    /// How often a queue ran dry.
-    pub const IDLE_EXITS: u32 = ENDS + 4;
-    /// Units that a queue on chip had no room for.
-    pub const QUEUE_SPILLS: u32 = ENDS + 5;
-    /// Units that a balance moved.
-    pub const MOVES: u32 = ENDS + 6;
-    /// Units that a block took from the pool.
-    pub const STOLEN: u32 = ENDS + 7;
-    /// Overlap tests made for pairs of the front.
-    pub const FRONT_TESTS: u32 = ENDS + 8;
-    /// Pairs of the front that gave way to an ancestor.
-    pub const PRUNED: u32 = ENDS + 9;
-    /// Vertex/face pairs that f32 leaves to f64.
-    pub const VF_ESCALATED: u32 = ENDS + 10;
-    /// Edge/edge pairs that f32 leaves to f64.
-    pub const EE_ESCALATED: u32 = ENDS + 11;
-    /// Hits that are neither certain contacts nor certainly none.
-    pub const UNRESOLVED: u32 = ENDS + 12;
-    /// Vertex/face pairs that isolation leaves.
-    pub const VF_OPEN: u32 = ENDS + 13;
-    /// Edge/edge pairs that isolation leaves.
-    pub const EE_OPEN: u32 = ENDS + 14;
-    /// Vertex/face pairs that are cut into slices.
-    pub const VF_HARD: u32 = ENDS + 15;
-    /// Edge/edge pairs that are cut into slices.
-    pub const EE_HARD: u32 = ENDS + 16;
-    /// Hits whose budget of boxes ended.
-    pub const ENDED: u32 = ENDS + 17;
-    /// Those of them that are neither certain contacts nor certainly none.
-    pub const ENDED_UNRESOLVED: u32 = ENDS + 18;
-    /// Hits too large for the tolerance.
-    pub const BELOW_PRECISION: u32 = ENDS + 19;
-    /// Pairs that the discrete filter could not decide in f64 either.
-    pub const UNDECIDED_WIDE: u32 = ENDS + 20;
-    /// Contacts that were put into order.
-    pub const ORDERED: u32 = ENDS + 21;
-    /// The least distance of the first samples, see [`crate::stage::traverse::nearest::word`].
-    pub const SAMPLED: u32 = ENDS + 22;
-    /// That of all samples.
-    pub const SAMPLED_AGAIN: u32 = ENDS + 23;
-    /// That of all candidates.
-    pub const NEAREST: u32 = ENDS + 24;
-    /// The complement of the first pair of that distance: its smaller triangle above the other.
-    pub const WITNESS: u32 = ENDS + 25;
-    /// 1 where there is such a pair.
-    pub const NEAREST_PAIRS: u32 = ENDS + 26;
-    /// How many counters there are.
-    pub const COUNT: u32 = ENDS + 27;
-}
-/// Rounds of the traversal that may spill; one more, without a budget, ends it.
-pub const ROUNDS: u32 = 4;

@@ -4,8 +4,11 @@
 
 #[macro_use]
 mod args;
+pub mod counter;
+mod flags;
 mod narrow;
 mod order;
+mod output;
 mod queues;
 mod record;
 mod scene;
@@ -14,8 +17,11 @@ pub mod stamp;
 mod status;
 
 pub use args::*;
+pub use counter::{Counter, Counters, ROUNDS};
+pub use flags::*;
 pub use narrow::*;
 pub use order::*;
+pub use output::Output;
 pub use queues::*;
 pub use record::*;
 pub use scene::*;

@@ -1,6 +1,8 @@
 //! Argument blocks of the last stage: from triangle pairs to contacts.
 
-use super::{Facet, Hit, NearHit, NearestHit, Pair, Point, Positions, Span};
+use super::{
+    Counters, DiscreteFlags, Facet, Hit, NearHit, NearestHit, Output, Pair, Point, Positions, RungFlags, Span,
+};
 use crate::math::Real;
 use crate::prim::inclusion::Params;
 use bytemuck::Zeroable;
@@ -13,13 +15,11 @@ arguments! {
         /// Every triangle's vertices and edges, and what it owns of them.
         facets: Span<Facet>,
         /// Candidate triangle pairs.
-        pairs: Span<Pair>,
+        pairs: Output<Pair>,
         /// Out: vertex, face.
-        vf: Span<Pair>,
+        vf: Output<Pair>,
         /// Out: edge, edge.
-        ee: Span<Pair>,
-        /// Counters, see [`counter`](super::counter).
-        counters: Span<u64>,
+        ee: Output<Pair>,
         /// Features whose boxes come within it are listed, a length; 0 for touching.
         gap: f64,
     }
@@ -30,19 +30,13 @@ arguments! {
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
         /// Pairs to test.
-        pairs: Span<Pair>,
+        pairs: Output<Pair>,
         /// Out: pairs that meet.
-        contacts: Span<Pair>,
+        contacts: Output<Pair>,
         /// Out: pairs that a filter leaves to what comes next; empty for the last one.
-        undecided: Span<Pair>,
-        /// Counters, see [`counter`](super::counter).
-        counters: Span<u64>,
-        /// Which counter tells how many pairs there are.
-        pairs_at: u32,
-        /// Which counter the undecided pairs add to.
-        undecided_at: u32,
-        /// Bits: [`KEEP_ADJACENT`](super::KEEP_ADJACENT).
-        flags: u32,
+        undecided: Output<Pair>,
+        /// What is asked of them.
+        flags: DiscreteFlags,
         /// Zero.
         pad: u32,
     }
@@ -55,15 +49,13 @@ arguments! {
         /// End points of every edge.
         edges: Span<[u32; 2]>,
         /// Vertex/face candidates.
-        vf: Span<Pair>,
+        vf: Output<Pair>,
         /// Edge/edge candidates.
-        ee: Span<Pair>,
+        ee: Output<Pair>,
         /// Out: vertex/face pairs that may meet.
-        may_vf: Span<Pair>,
+        may_vf: Output<Pair>,
         /// Out: edge/edge pairs that may meet.
-        may_ee: Span<Pair>,
-        /// Counters, see [`counter`](super::counter).
-        counters: Span<u64>,
+        may_ee: Output<Pair>,
         /// What is asked.
         params: Params,
     }
@@ -76,13 +68,13 @@ arguments! {
         /// End points of every edge (`narrow_ee`).
         edges: Span<[u32; 2]>,
         /// Candidates that may meet.
-        survivors: Span<Pair>,
+        survivors: Output<Pair>,
         /// Out: contacts; empty when only the earliest is asked for.
-        hits: Span<Hit>,
+        hits: Output<Hit>,
         /// Out: the smallest toi so far, as bits; or empty.
         earliest: Span<u64>,
-        /// Counters, see [`counter`](super::counter).
-        counters: Span<u64>,
+        /// Counters.
+        counters: Counters,
     }
     /// `narrow_least`, `narrow_witness`, `narrow_nearest`: of the candidates the nearest pair.
     LeastArgs<R: Real> {
@@ -91,13 +83,13 @@ arguments! {
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
         /// Candidate triangle pairs.
-        pairs: Span<Pair>,
+        pairs: Output<Pair>,
         /// Those of them that share a point.
-        meeting: Span<Pair>,
+        meeting: Output<Pair>,
         /// Out: one.
-        nearest: Span<NearestHit>,
-        /// Counters, see [`counter`](super::counter).
-        counters: Span<u64>,
+        nearest: Output<NearestHit>,
+        /// Counters.
+        counters: Counters,
     }
     /// `narrow_near`: the features at rest that are within a distance.
     NearArgs<R: Real> {
@@ -108,15 +100,15 @@ arguments! {
         /// End points of every edge.
         edges: Span<[u32; 2]>,
         /// Vertex/face candidates.
-        vf: Span<Pair>,
+        vf: Output<Pair>,
         /// Edge/edge candidates.
-        ee: Span<Pair>,
+        ee: Output<Pair>,
         /// Out: vertices and faces within the distance.
-        vf_hits: Span<NearHit>,
+        vf_hits: Output<NearHit>,
         /// Out: edges within the distance.
-        ee_hits: Span<NearHit>,
-        /// Counters, see [`counter`](super::counter).
-        counters: Span<u64>,
+        ee_hits: Output<NearHit>,
+        /// Counters.
+        counters: Counters,
         /// The distance, a length.
         distance: f64,
     }
@@ -129,11 +121,11 @@ arguments! {
         /// End points of every edge.
         edges: Span<[u32; 2]>,
         /// Vertex/face hits.
-        vf: Span<Hit>,
+        vf: Output<Hit>,
         /// Edge/edge hits.
-        ee: Span<Hit>,
-        /// Counters, see [`counter`](super::counter).
-        counters: Span<u64>,
+        ee: Output<Hit>,
+        /// Counters.
+        counters: Counters,
         /// The tolerance that was asked for, a length.
         tolerance: f64,
         /// The least part of a pair's extent that the solver can tell.
@@ -142,19 +134,11 @@ arguments! {
     /// Pairs of one kind for a rung, and where they go.
     Listed {
         /// Pairs.
-        pairs: Span<Pair>,
+        pairs: Output<Pair>,
         /// Out: contacts and unresolved pairs; empty when only the earliest is asked for.
-        hits: Span<Hit>,
+        hits: Output<Hit>,
         /// Out: pairs for the next rung; empty where there is none.
-        left: Span<Pair>,
-        /// Which counter tells how many pairs there are.
-        pairs_at: u32,
-        /// Which counter the hits add to.
-        hits_at: u32,
-        /// Which counter the pairs for the next rung add to.
-        left_at: u32,
-        /// Zero.
-        pad: u32,
+        left: Output<Pair>,
     }
     /// `narrow_isolate`, `narrow_settle`, `narrow_slice`, `narrow_separate`: what meets, and bounds of the first time, with
     /// proof.
@@ -171,17 +155,13 @@ arguments! {
         ee: Listed,
         /// Out: the smallest toi so far, as bits; or empty.
         earliest: Span<u64>,
-        /// Counters, see [`counter`](super::counter).
-        counters: Span<u64>,
+        /// Counters.
+        counters: Counters,
         /// What is asked.
         params: Params,
-        /// Bits: [`EVERYTHING`].
-        flags: u32,
+        /// What it is told.
+        flags: RungFlags,
         /// Zero.
         pad: u32,
     }
 }
-
-/// [`RungArgs::flags`]: of `narrow_isolate`, a contact is one however well its time is known; of `narrow_settle`, nothing is
-/// left to a next rung.
-pub const EVERYTHING: u32 = 1;

@@ -1,6 +1,6 @@
 //! Contacts into canonical order: what they are ordered by, and the argument block.
 
-use super::{BodyRecord, Hit, NearHit, Pair, Span, Tiles};
+use super::{BodyRecord, Hit, NearHit, Output, Pair, Span, Tiles};
 use bytemuck::{Pod, Zeroable};
 
 /// What contacts are ordered by.
@@ -28,23 +28,17 @@ arguments! {
     /// `order_keys`, `order_gather`: contacts into canonical order.
     OrderArgs<T: Pod> {
         /// Contacts: triangle pairs, or vertices and faces.
-        first: Span<T>,
+        first: Output<T>,
         /// Contacts of edges; or none.
-        second: Span<T>,
+        second: Output<T>,
         /// Out: all, in order.
-        out: Span<T>,
+        out: Output<T>,
         /// Their keys, each above the contact's number.
         items: Span<u64>,
         /// Counts of the keys' lowest bytes.
         tiles: Tiles,
         /// The bodies; empty where no contact has a first feature of a later body than its second's.
         bodies: Span<BodyRecord>,
-        /// Counters, see [`counter`](super::counter).
-        counters: Span<u64>,
-        /// Which counter tells how many contacts the first list has.
-        first_at: u32,
-        /// The same of the second.
-        second_at: u32,
         /// Bits of a feature.
         bits: u32,
         /// Bits of a number.

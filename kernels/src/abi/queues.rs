@@ -1,6 +1,8 @@
 //! Argument blocks of the traversals by pairs of nodes, and of their balance.
 
-use super::{FilterArgs, Node, Pair, Span};
+use super::{
+    Counters, FilterArgs, FrontFlags, Node, Output, Pair, QueueFlags, Span, StealFlags, TraverseFlags,
+};
 use bytemuck::{Pod, Zeroable};
 
 arguments! {
@@ -13,13 +15,13 @@ arguments! {
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
         /// Out: candidate triangle pairs.
-        pairs: Span<Pair>,
-        /// Out, with [`FRONT`]: the pairs of nodes where the descent ended.
-        ends: Span<Pair>,
-        /// Counters, see [`counter`](super::counter).
-        counters: Span<u64>,
-        /// Bits: [`KEEP_ADJACENT`](super::KEEP_ADJACENT), [`GRAFTED`](super::GRAFTED), [`FRONT`].
-        flags: u32,
+        pairs: Output<Pair>,
+        /// Out, with [`TraverseFlags::FRONT`]: the pairs of nodes where the descent ended.
+        ends: Output<Pair>,
+        /// Counters.
+        counters: Counters,
+        /// What it is told.
+        flags: TraverseFlags,
         /// Units that a block's own queue may hold, at least 1.
         local: u32,
     }
@@ -49,8 +51,8 @@ arguments! {
         patience: u32,
         /// A block leaves when its own queue holds more.
         full: u32,
-        /// Bits: [`START`], [`LAST`].
-        flags: u32,
+        /// What it is told.
+        flags: QueueFlags,
         /// Nothing.
         pad: u32,
     }
@@ -61,15 +63,13 @@ arguments! {
         /// Where the last descent ended.
         front: Span<Pair>,
         /// Out: pairs that go deeper.
-        units: Span<Pair>,
-        /// How many they are.
-        unit_count: Span<u64>,
+        units: Output<Pair>,
         /// The parent of each pair of siblings.
         pair_parents: Span<u32>,
         /// Pairs of the front.
         count: u32,
-        /// Bits: [`PRUNE`].
-        flags: u32,
+        /// What it is told.
+        flags: FrontFlags,
     }
     /// `balance_copy`: evens the blocks' segments.
     BalanceArgs {
@@ -83,8 +83,8 @@ arguments! {
         even: Span<Pair>,
         /// Out: how many each segment holds.
         even_counts: Span<u64>,
-        /// Counters, see [`counter`](super::counter).
-        counters: Span<u64>,
+        /// Counters.
+        counters: Counters,
         /// How many segments.
         cores: u32,
         /// Units of a segment.
@@ -108,23 +108,12 @@ arguments! {
         segment: u32,
         /// How often a block without work looks for some before it leaves.
         tries: u32,
-        /// Bits: [`EAGER`].
-        flags: u32,
+        /// What it is told.
+        flags: StealFlags,
         /// Nothing.
         pad: u32,
     }
 }
-
-/// [`PairArgs::flags`]: the pairs where the descent ends are listed too.
-pub const FRONT: u32 = 4;
-/// [`QueueArgs::flags`]: the first block begins with the pair of roots; no units are read.
-pub const START: u32 = 1;
-/// [`QueueArgs::flags`]: what is left then is counted as unfinished.
-pub const LAST: u32 = 2;
-/// [`FrontArgs::flags`]: pairs give way to an ancestor that is apart.
-pub const PRUNE: u32 = 1;
-/// [`StealArgs::flags`]: units are offered whether or not a block looks for some.
-pub const EAGER: u32 = 1;
 
 /// The word by which blocks of `traverse_steal` find each other: three counts in one, so that one atomic changes them
 /// together and one look sees them at one moment. Zero stands for a pair of roots that is on its way to who draws the

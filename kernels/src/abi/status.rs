@@ -1,6 +1,6 @@
 //! What a frame came to, for a caller that looks at it on the device.
 
-use super::Span;
+use super::{Counter, Counters, Span};
 use bytemuck::{Pod, Zeroable};
 
 /// What a submitted frame came to, as it lies in the device's memory.
@@ -20,13 +20,13 @@ pub struct FrameStatus {
 const _: () = assert!(size_of::<FrameStatus>() == 32);
 
 /// A list's room.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C, align(8))]
 pub struct Room {
     /// How many entries it has room for.
     pub entries: u64,
     /// Which counter counts what was asked of it.
-    pub counter: u32,
+    pub counter: Counter,
     /// Zero.
     pub pad: u32,
 }
@@ -36,19 +36,16 @@ arguments! {
     /// `status_frame`: whether a frame's answer is whole.
     StatusArgs {
         /// The frame's counters.
-        counters: Span<u64>,
+        counters: Counters,
         /// Every list that a frame fills.
         rooms: Span<Room>,
         /// What was seen of the caller's numbers, see [`super::seen`].
         seen: Span<u64>,
         /// Out: one.
         status: Span<FrameStatus>,
-        /// Which counters count the answer; [`NO_LIST`] for none.
-        first_at: u32,
-        /// See above.
-        second_at: u32,
+        /// Counts the answer's first list: one word, or none where there is no list.
+        first: Span<u64>,
+        /// Counts its second list.
+        second: Span<u64>,
     }
 }
-
-/// No counter.
-pub const NO_LIST: u32 = u32::MAX;

@@ -17,6 +17,7 @@
 //! Nobody waits for the end of a phase, nor for a block that may not have started: blocks may run one after the other.
 
 mod memory;
+mod output;
 pub mod ptx;
 
 pub use memory::{Shared, Word, whole_words};
@@ -172,9 +173,9 @@ pub trait Block {
     /// It orders nothing between blocks, even where each lane has called [`Lane::fence`] in the phase before: a fence
     /// speaks for the atomics of its own lane, and here only lane 0 has one. [`Block::ticket`] does order.
     fn reserve(&mut self, counter: Span<u64>, i: u32, count: u64) -> u64;
-    /// [`Block::reserve`] of two counters, in the time of one.
-    fn reserve_both(&mut self, counters: Span<u64>, [i, j]: [u32; 2], [count, other]: [u64; 2]) -> [u64; 2] {
-        [self.reserve(counters, i, count), self.reserve(counters, j, other)]
+    /// [`Block::reserve`] of two counters, each the first of its span, in the time of one.
+    fn reserve_both(&mut self, [one, two]: [Span<u64>; 2], [count, other]: [u64; 2]) -> [u64; 2] {
+        [self.reserve(one, 0, count), self.reserve(two, 0, other)]
     }
     /// Adds one to a counter once for the whole block, and orders it: what all lanes of all blocks that drew smaller
     /// tickets gave before they drew, the lanes of this block may take. The block that draws the last ticket knows

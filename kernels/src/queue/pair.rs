@@ -1,6 +1,6 @@
 //! A unit of work: a pair of nodes that meet, and the pairs below it.
 
-use crate::abi::{GRAFTED, Node, Pair, PairArgs, ROOT};
+use crate::abi::{Node, Pair, PairArgs, ROOT, TraverseFlags};
 use crate::bv::Volume;
 use crate::exec::Lane;
 use crate::queue::bvtt;
@@ -86,7 +86,7 @@ pub fn below<V: Volume, L: Lane>(l: &L, to: &PairArgs<V>, unit: Pair) -> ChildPa
         let (x, y) = (link, link + 1);
         below.nodes = [Pair { a: x, b: y }, Pair { a: x, b: x }, Pair { a: y, b: y }];
         below.note(0, into_left, (&left, &other));
-        let still = (to.flags & GRAFTED != 0) & (unit.a == ROOT);
+        let still = to.flags.has(TraverseFlags::GRAFTED) & (unit.a == ROOT);
         below.units |= if left.is_leaf() | still | !allowed[2] { 0 } else { 2 };
         below.units |= if right.is_leaf() | !allowed[3] { 0 } else { 4 };
     } else {

@@ -3,7 +3,7 @@
 //! Sizes and places come from sums over the block, never from atomics: a block's work is the same each time.
 
 use super::pair::{ChildPairs, ROOTS, below};
-use crate::abi::{FRONT, KEEP_ADJACENT, Pair, PairArgs, Span, counter};
+use crate::abi::{Counters, Pair, PairArgs, Span, TraverseFlags, counter};
 use crate::bv::Volume;
 use crate::exec::{Block, Lane, Shared, Slot};
 use crate::prim::adjacent::share_a_vertex;
@@ -77,8 +77,8 @@ impl Places {
     }
     /// Tells the host how many units there are. For one lane.
     #[inline]
-    pub fn report<L: Lane>(&self, l: &L, counters: Span<u64>) {
-        l.fetch_max(counters, counter::QUEUED, self.demand);
+    pub fn report<L: Lane>(&self, l: &L, counters: Counters) {
+        counters.raise(l, counter::QUEUED, self.demand);
     }
 }
 
@@ -213,7 +213,7 @@ impl<B: Block> Worker<B> {
         self.fill += candidates;
         self.units += taken as u64;
         self.spills += spilled as u64;
-        if to.flags & FRONT != 0 {
+        if to.flags.has(TraverseFlags::FRONT) {
             self.list_ends(b, to);
         }
         if self.fill + 2 * lanes > found.len {
@@ -226,14 +226,12 @@ impl<B: Block> Worker<B> {
     fn list_ends<V: Volume>(&mut self, b: &mut B, to: &PairArgs<V>) {
         let Worker { below: slots, sums, .. } = self;
         b.phase(|l| *sums.of(l) = slots.of(l).ends.count_ones());
-        let base = b.append(sums, to.counters, counter::ENDS);
+        let base = to.ends.append(b, sums);
         b.phase(|l| {
             let (below, mut at) = (slots.of(l), base + *sums.of(l) as u64);
             for k in 0..2 {
                 if below.ends >> k & 1 != 0 {
-                    if at < to.ends.len() {
-                        l.write(to.ends, at as u32, below.nodes[k]);
-                    }
+                    to.ends.put(l, at, below.nodes[k]);
                     at += 1;
                 }
             }
@@ -248,7 +246,8 @@ impl<B: Block> Worker<B> {
             let (mut i, mut bit, mut mask) = (l.lane(), 1, 0);
             while i < fill {
                 let [p, q] = l.get(found, i);
-                if to.flags & KEEP_ADJACENT != 0 || !share_a_vertex(l.read(to.faces, p), l.read(to.faces, q))
+                if to.flags.has(TraverseFlags::KEEP_ADJACENT)
+                    || !share_a_vertex(l.read(to.faces, p), l.read(to.faces, q))
                 {
                     mask |= bit;
                 }
@@ -258,15 +257,13 @@ impl<B: Block> Worker<B> {
             *kept.of(l) = mask;
             *sums.of(l) = mask.count_ones();
         });
-        let base = b.append(sums, to.counters, counter::PAIRS);
+        let base = to.pairs.append(b, sums);
         b.phase(|l| {
             let (mut i, mut mask, mut at) = (l.lane(), *kept.of(l), base + *sums.of(l) as u64);
             while mask != 0 {
                 if mask & 1 != 0 {
                     let [a, b] = l.get(found, i);
-                    if at < to.pairs.len() {
-                        l.write(to.pairs, at as u32, Pair { a, b });
-                    }
+                    to.pairs.put(l, at, Pair { a, b });
                     at += 1;
                 }
                 mask >>= 1;
@@ -284,10 +281,10 @@ impl<B: Block> Worker<B> {
         let (units, spills) = (self.units, self.spills);
         b.phase(|l| {
             if l.lane() == 0 && units > 0 {
-                l.fetch_add(to.counters, counter::STEPS, units);
+                to.counters.add(l, counter::STEPS, units);
             }
             if l.lane() == 0 && spills > 0 {
-                l.fetch_add(to.counters, counter::QUEUE_SPILLS, spills);
+                to.counters.add(l, counter::QUEUE_SPILLS, spills);
             }
         });
     }

@@ -53,7 +53,7 @@ pub fn copy<B: Block>(b: &mut B, a: &BalanceArgs) {
             i += lanes as u64;
         }
         if l.lane() == 0 {
-            l.fetch_add(a.counters, counter::MOVES, total);
+            a.counters.add(l, counter::MOVES, total);
         }
     });
 }

@@ -8,7 +8,7 @@
 //! Room     the list and the items: counted past the end, grown, run again; the host gives both the same room.
 //! Cost     a contact in (twice, once gathered) and out, 8 B an item and pass in and out; launches.
 
-use crate::abi::{Named, OrderArgs, Span, counter};
+use crate::abi::{Named, OrderArgs, Output};
 use crate::bvh::filter::holder;
 use crate::exec::{BINS, Block, Lane};
 use crate::sort;
@@ -19,15 +19,14 @@ pub const KIND_BITS: u32 = 2;
 
 /// How many contacts the first list has, and both.
 fn counts<T: Pod, B: Block>(b: &B, a: &OrderArgs<T>) -> (u32, u64) {
-    let of =
-        |list: Span<T>, at: u32| if list.is_empty() { 0 } else { b.load(a.counters, at).min(list.len()) };
-    let first = of(a.first, a.first_at);
-    (first as u32, first + of(a.second, a.second_at))
+    let of = |list: &Output<T>| if list.room() == 0 { 0 } else { list.listed(b) };
+    let first = of(&a.first);
+    (first, first as u64 + of(&a.second) as u64)
 }
 
 /// A contact by its number.
 fn contact<T: Pod, L: Lane>(l: &L, a: &OrderArgs<T>, first: u32, i: u32) -> T {
-    if i < first { l.read(a.first, i) } else { l.read(a.second, i - first) }
+    if i < first { a.first.get(l, i) } else { a.second.get(l, i - first) }
 }
 
 /// Whether a vertex is of a later body than a face.
@@ -45,7 +44,7 @@ pub fn keys<T: Pod + Named, B: Block>(b: &mut B, a: &OrderArgs<T>) {
     b.phase(|l| {
         let mut i = l.global();
         if i == 0 {
-            l.fetch_add(a.counters, counter::ORDERED, all);
+            l.fetch_add(a.out.count(), 0, all);
         }
         while i < count {
             let [x, y] = contact(l, a, first, i).name();
@@ -71,7 +70,7 @@ pub fn gather<T: Pod + Named, B: Block>(b: &mut B, a: &OrderArgs<T>) {
         let mut i = l.global();
         while i < count {
             let from = l.read(a.items, i) as u32 & u32::MAX >> (32 - a.number_bits);
-            l.write(a.out, i, contact(l, a, first, from));
+            l.write(a.out.items(), i, contact(l, a, first, from));
             i = i.saturating_add(stride);
         }
     });

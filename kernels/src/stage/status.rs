@@ -8,7 +8,7 @@
 //! Room     fixed; cannot run out.
 //! Cost     some 20 loads; 2 microseconds.
 
-use crate::abi::{FrameStatus, NO_LIST, StatusArgs, seen};
+use crate::abi::{FrameStatus, Span, StatusArgs, seen};
 use crate::exec::{Block, Lane, Slot};
 
 /// The record.
@@ -20,17 +20,17 @@ pub fn status<B: Block>(b: &mut B, a: &StatusArgs) {
         let mut own = 0;
         for i in (l.lane()..rooms.len() as u32).step_by(lanes as usize) {
             let room = l.read(rooms, i);
-            own += u32::from(l.read(counters, room.counter) > room.entries);
+            own += u32::from(counters.get(l, room.counter) > room.entries);
         }
         *short.of(l) = own;
     });
     let short = b.scan(&mut short);
     b.phase(|l| {
         if l.lane() == 0 {
-            let count = |at: u32| if at == NO_LIST { 0 } else { l.read(counters, at) };
+            let count = |at: Span<u64>| if at.is_empty() { 0 } else { l.read(at, 0) };
             let status = FrameStatus {
-                first: count(a.first_at),
-                second: count(a.second_at),
+                first: count(a.first),
+                second: count(a.second),
                 short: short.into(),
                 invalid: l.read(a.seen, seen::INVALID),
             };

@@ -6,8 +6,8 @@
 //! Writes   candidate pairs, the smaller index first, each once, in no order.
 //! Before   all volumes are fitted and refitted.
 //! After    every pair of leaves whose volumes overlap and whose bodies are asked about is written, but for those that share
-//!          a vertex index unless [`KEEP_ADJACENT`] asks for them. A pair is found by its earlier leaf: subtrees that end
-//!          before it are skipped. With [`GRAFTED`] leaves of what does not change come last and do not walk.
+//!          a vertex index unless [`TraverseFlags::KEEP_ADJACENT`] asks for them. A pair is found by its earlier leaf: subtrees that end
+//!          before it are skipped. With [`TraverseFlags::GRAFTED`] leaves of what does not change come last and do not walk.
 //! Room     `pairs` may be too short: the counter goes on, the host grows it and runs again. `spilled` may be too
 //!          short: then a walk goes on by itself and nothing is lost.
 //! Departs  the paper's queues hold pairs of inner nodes and are balanced between launches; here a walk that has used up
@@ -20,7 +20,7 @@ pub mod nearest;
 pub mod queue;
 pub mod steal;
 
-use crate::abi::{GRAFTED, KEEP_ADJACENT, NONE, NodeFilter, Pair, ROOT, TraverseArgs, Unit, counter};
+use crate::abi::{NONE, NodeFilter, Pair, ROOT, TraverseArgs, TraverseFlags, Unit, counter};
 use crate::bv::Volume;
 use crate::exec::{Block, Lane, Slot};
 use crate::prim::adjacent::share_a_vertex;
@@ -93,7 +93,9 @@ fn of_leaves<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>, wanted: impl W
     run(b, a, a.leaf_nodes.len() as u32, wanted, |l, i, walk| {
         start(l, a, walk, l.read(a.leaf_nodes, i));
         // Of the last leaf nothing comes later; the root of a grafted tree and another's has no volume.
-        if a.flags & GRAFTED != 0 || (root.last >= walk.from && wanted.wants(&walk.volume, &root.volume)) {
+        if a.flags.has(TraverseFlags::GRAFTED)
+            || (root.last >= walk.from && wanted.wants(&walk.volume, &root.volume))
+        {
             walk.next = root.link;
         }
     });
@@ -101,9 +103,9 @@ fn of_leaves<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>, wanted: impl W
 
 /// One walk a unit that the round before left over.
 pub fn units<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>) {
-    let count = b.load(a.counters, a.units_at).min(a.units.len()) as u32;
+    let count = a.units.listed(b);
     run(b, a, count, Overlapping, |l, i, walk| {
-        let Unit { query, pair } = l.read(a.units, i);
+        let Unit { query, pair } = a.units.get(l, i);
         if query != NONE {
             start(l, a, walk, query);
             walk.next = pair;
@@ -183,7 +185,7 @@ fn run<V: Volume, B: Block>(
     let mut steps = b.slot(0u32);
     b.phase(|l| *steps.of(l) = walks.of(l).steps);
     let sum = b.scan(&mut steps);
-    b.reserve(a.counters, counter::STEPS, sum as u64);
+    a.counters.add_once(b, counter::STEPS, sum as u64);
 }
 
 /// Walks on until nothing is left, the budget is used up or the buffer is full.
@@ -249,19 +251,19 @@ fn emit<V: Volume, L: Lane>(l: &L, walk: &mut Walk<V>, found: Buffer) {
 /// Gives the rest of a walk away; where the list has no room for all of it, the walk goes on without a budget.
 fn spill<V: Volume, L: Lane>(l: &L, a: &TraverseArgs<V>, walk: &mut Walk<V>, stack: &mut Stack) {
     let count = stack.len() as u64 + 1;
-    let at = l.fetch_add(a.counters, a.spilled_at, count);
-    if at + count <= a.spilled.len() {
+    let at = l.fetch_add(a.spilled.count(), 0, count);
+    if at + count <= a.spilled.room() {
         let mut i = at as u32;
         while walk.next != NONE {
-            l.write(a.spilled, i, Unit { query: walk.query, pair: walk.next });
+            l.write(a.spilled.items(), i, Unit { query: walk.query, pair: walk.next });
             walk.next = stack.pop().unwrap_or(NONE);
             i += 1;
         }
     } else {
         walk.budget = u32::MAX;
         let mut i = at;
-        while i < a.spilled.len().min(at + count) {
-            l.write(a.spilled, i as u32, Unit { query: NONE, pair: NONE });
+        while i < a.spilled.room().min(at + count) {
+            l.write(a.spilled.items(), i as u32, Unit { query: NONE, pair: NONE });
             i += 1;
         }
     }
@@ -275,7 +277,7 @@ fn flush<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>, found: Buffer, kep
         let mut i = l.lane();
         while i < count {
             let pair = found.get(l, i);
-            if a.flags & KEEP_ADJACENT != 0
+            if a.flags.has(TraverseFlags::KEEP_ADJACENT)
                 || !share_a_vertex(l.read(a.faces, pair.a), l.read(a.faces, pair.b))
             {
                 let place = kept.take(l, 1);
@@ -285,13 +287,11 @@ fn flush<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>, found: Buffer, kep
         }
     });
     let count = b.peek(kept.fill, 0);
-    let base = b.reserve(a.counters, counter::PAIRS, count as u64);
+    let base = a.pairs.reserve(b, count as u64);
     b.phase(|l| {
         let mut i = l.lane();
         while i < count {
-            if base + (i as u64) < a.pairs.len() {
-                l.write(a.pairs, (base + i as u64) as u32, kept.get(l, i));
-            }
+            a.pairs.put(l, base + i as u64, kept.get(l, i));
             i += lanes;
         }
         clear(l, found, kept);

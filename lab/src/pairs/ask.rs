@@ -7,10 +7,11 @@ use nearmiss::contacts::Status;
 use nearmiss::device::{Buffer, Device};
 use nearmiss::error::Error;
 use nearmiss::pipeline::Layout;
+use nearmiss::pipeline::counts::{Counts, FrameCounters};
 use nearmiss::pipeline::narrow::{Capacities, ContinuousNarrow, NarrowContext};
 use nearmiss::pipeline::precision::Precision;
 use nearmiss::query::{Certified, Continuous, ContinuousSolver, Query};
-use nearmiss_kernels::abi::{Hit, Positions, Span, counter};
+use nearmiss_kernels::abi::{Hit, Output, Positions, Span, counter};
 
 /// Asks every case whether its features meet, and when first: by the query's solver, tolerance and budget, with the
 /// kernels of a frame. Without a tolerance, [`Certified::TOLERANCE`] of the cases' mean edge. Any number of cases; a million
@@ -64,11 +65,12 @@ fn some<R: Precision>(
         if how.filters || solver.certified().is_some_and(Certified::is_apart) { all } else { [0, 0] };
     let capacities = Capacities { candidates, survivors: all, hits: all, left: all };
     let mut features = ContinuousNarrow::new(device, &layout, solver, capacities)?;
-    let mut counts = vec![0; counter::COUNT as usize];
+    let mut counts = Counts::default();
     let given = [&vf[..], &ee];
-    let put = if how.filters { features.put_candidates(given)? } else { features.put_survivors(given)? };
-    for (at, count) in put {
-        counts[at as usize] = count;
+    if how.filters {
+        features.put_candidates(given, &mut counts)?;
+    } else {
+        features.put_survivors(given, &mut counts)?;
     }
     let mut run = Run::<R> {
         device,
@@ -76,7 +78,7 @@ fn some<R: Precision>(
         vertices: vertices(device, cases)?,
         faces: device.upload(&layout.faces)?,
         layout,
-        counters: device.buffer(counter::COUNT as usize)?,
+        counters: FrameCounters::new(device)?,
         counts,
         filters: how.filters,
         features,
@@ -98,9 +100,9 @@ struct Run<'a, R: Precision> {
     vertices: Buffer<nearmiss_kernels::abi::VertexMotion<R>>,
     faces: Buffer<[u32; 3]>,
     layout: Layout,
-    counters: Buffer<u64>,
+    counters: FrameCounters,
     /// What the counters are before a run.
-    counts: Vec<u64>,
+    counts: Counts,
     /// Whether the filters are asked first.
     filters: bool,
     features: ContinuousNarrow,
@@ -114,9 +116,9 @@ impl<R: Precision> Run<'_, R> {
             device: self.device,
             frames: Positions { still: Span::EMPTY, moving: self.vertices.span() },
             faces: self.faces.span(),
-            pairs: Span::EMPTY,
+            pairs: Output::EMPTY,
             bodies: Span::EMPTY,
-            counters: self.counters.span(),
+            counters: self.counters.counters(),
         };
         let start = self.device.event()?;
         if self.filters {
@@ -130,7 +132,7 @@ impl<R: Precision> Run<'_, R> {
 
     /// The verdicts, where the cases are, and the counts.
     fn answers(&self, cases: usize) -> Result<Answers, Error> {
-        let counters = self.counters.read(counter::COUNT as usize)?;
+        let counters = self.counters.read()?;
         let certified = self.solver.certified().is_some();
         let mut verdicts = vec![None; cases];
         let met = |hit: &Hit| Outcome {
@@ -147,7 +149,7 @@ impl<R: Precision> Run<'_, R> {
             let [vertex, _] = self.layout.edges[hit.a as usize];
             verdicts[vertex as usize / 4] = Some(met(&hit));
         }
-        let of = |at: u32| counters[at as usize];
+        let of = |which| counters[which];
         let asked = [of(counter::VF), of(counter::EE)];
         let left = [of(counter::VF_SURVIVORS), of(counter::EE_SURVIVORS)];
         Ok(Answers {

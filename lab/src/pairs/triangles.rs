@@ -6,6 +6,7 @@ use crate::oracle::Triangle;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Mesh, Positions};
+use nearmiss::pipeline::counts::{Counts, FrameCounters};
 use nearmiss::pipeline::list::List;
 use nearmiss::pipeline::narrow::{DiscreteNarrow, NarrowContext};
 use nearmiss::pipeline::precision::Precision;
@@ -79,11 +80,10 @@ fn some<R: Precision>(device: &Device, mesh: &Mesh, test: TriangleTest) -> Resul
     let (points, faces) = (device.upload(&points)?, device.upload(mesh.faces())?);
     let pairs: Vec<Pair> = (0..count as u32).map(|i| Pair { a: 2 * i, b: 2 * i + 1 }).collect();
     let mut list = List::new(device, "triangle pairs", counter::PAIRS, count)?;
-    let mut counts = vec![0; counter::COUNT as usize];
-    let (at, number) = list.put(&pairs)?;
-    counts[at as usize] = number;
+    let mut counts = Counts::default();
+    list.put(&pairs, &mut counts)?;
     let mut narrow = DiscreteNarrow::new::<R>(device, test, count)?;
-    let mut counters = device.buffer(counter::COUNT as usize)?;
+    let mut counters = FrameCounters::new(device)?;
     // Until no list was too short.
     let (counters, ms) = loop {
         counters.write(&counts)?;
@@ -91,14 +91,14 @@ fn some<R: Precision>(device: &Device, mesh: &Mesh, test: TriangleTest) -> Resul
             device,
             frames: abi::Positions { still: points.span(), moving: Span::EMPTY },
             faces: faces.span(),
-            pairs: list.span(),
+            pairs: list.output(counters.counters()),
             bodies: Span::EMPTY,
-            counters: counters.span(),
+            counters: counters.counters(),
         };
         let start = device.event()?;
         narrow.decide(&given)?;
         let ms = start.to(&device.event()?)?;
-        let counted = counters.read(counter::COUNT as usize)?;
+        let counted = counters.read()?;
         let mut grew = false;
         for list in narrow.all_lists() {
             grew |= list.grow(device, &counted)?;
@@ -109,6 +109,6 @@ fn some<R: Precision>(device: &Device, mesh: &Mesh, test: TriangleTest) -> Resul
     };
     let mut meet = vec![false; count];
     narrow.contacts.read(&counters)?.iter().for_each(|pair| meet[pair.a as usize / 2] = true);
-    let [listed, undecided] = [counter::CONTACTS, counter::UNDECIDED].map(|at| counters[at as usize]);
+    let [listed, undecided] = [counter::CONTACTS, counter::UNDECIDED].map(|which| counters[which]);
     Ok(TriangleAnswers { meet, listed, undecided, ms })
 }

@@ -274,7 +274,7 @@ impl Block for Gpu {
         self.broadcast(|| self.lane.fetch_add(counter, i, count))
     }
     #[inline(always)]
-    fn reserve_both(&mut self, counters: Span<u64>, at: [u32; 2], counts: [u64; 2]) -> [u64; 2] {
+    fn reserve_both(&mut self, counters: [Span<u64>; 2], counts: [u64; 2]) -> [u64; 2] {
         if counts[0] | counts[1] == 0 {
             return [0; 2];
         }
@@ -282,8 +282,9 @@ impl Block for Gpu {
         sync_warp();
         // A lane each.
         if lane < 2 {
-            let (at, count) = if lane == 0 { (at[0], counts[0]) } else { (at[1], counts[1]) };
-            let start = if count > 0 { self.lane.fetch_add(counters, at, count) } else { 0 };
+            let (counter, count) =
+                if lane == 0 { (counters[0], counts[0]) } else { (counters[1], counts[1]) };
+            let start = if count > 0 { self.lane.fetch_add(counter, 0, count) } else { 0 };
             store_shared64(scratch_address(BROADCAST + 8 * lane), start);
         }
         sync_threads();

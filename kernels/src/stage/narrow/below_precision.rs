@@ -10,15 +10,14 @@
 //! Cost     8 of 32 B a hit, 12 B indices, 128 B positions (gathered); 50 operations.
 
 use super::{edge_edge, vertex_face};
-use crate::abi::{BelowPrecisionArgs, Hit, Pair, Span, counter};
+use crate::abi::{BelowPrecisionArgs, Pair, counter};
 use crate::exec::{Block, Lane, Slot};
 use crate::math::Real;
 use crate::prim::cubic::Moving;
 
 /// Counts them.
 pub fn below_precision<R: Real, B: Block>(b: &mut B, a: &BelowPrecisionArgs<R>) {
-    let there = |b: &B, list: Span<Hit>, at: u32| b.load(a.counters, at).min(list.len());
-    let (vf, ee) = (there(b, a.vf, counter::VF_HITS), there(b, a.ee, counter::EE_HITS));
+    let (vf, ee) = (a.vf.listed(b) as u64, a.ee.listed(b) as u64);
     let stride = (b.blocks() * b.lanes()) as u64;
     let mut counts = b.slot(0u32);
     b.phase(|l| {
@@ -27,11 +26,11 @@ pub fn below_precision<R: Real, B: Block>(b: &mut B, a: &BelowPrecisionArgs<R>) 
         let mut i = l.global() as u64;
         while i < vf + ee {
             let large = if i < vf {
-                let hit = l.read(a.vf, i as u32);
+                let hit = a.vf.get(l, i as u32);
                 let (v, f) = vertex_face(l, (&a.frames, a.faces), Pair { a: hit.a, b: hit.b });
                 is_large(&[v], &f)
             } else {
-                let hit = l.read(a.ee, (i - vf) as u32);
+                let hit = a.ee.get(l, (i - vf) as u32);
                 let [x, y] = edge_edge(l, (&a.frames, a.edges), Pair { a: hit.a, b: hit.b });
                 is_large(&x, &y)
             };
@@ -41,7 +40,7 @@ pub fn below_precision<R: Real, B: Block>(b: &mut B, a: &BelowPrecisionArgs<R>) 
         *counts.of(l) = count;
     });
     let sum = b.scan(&mut counts);
-    b.reserve(a.counters, counter::BELOW_PRECISION, sum as u64);
+    a.counters.add_once(b, counter::BELOW_PRECISION, sum as u64);
 }
 
 /// The largest difference of coordinates of a vertex of the one and one of the other, at either end of the step.

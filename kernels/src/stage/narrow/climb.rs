@@ -16,19 +16,18 @@
 //!          f64 as many; settling some 30 exact signs for what touches at the start; the first planes of a separation
 //!          400 operations.
 
-use super::{edge_edge, listed, vertex_face};
-use crate::abi::{EVERYTHING, Hit, Listed, Pair, RungArgs, Span, counter};
+use super::{edge_edge, vertex_face};
+use crate::abi::{Hit, Listed, Pair, RungArgs, RungFlags, counter};
 use crate::exec::{Block, Lane, Slot};
 use crate::math::Real;
 use crate::prim::inclusion::{Grid, Verdict};
 use crate::prim::isolate::ladder::{ee_touch, isolated, settled, vf_touch};
 use crate::prim::isolate::separation::at_once;
 use crate::prim::isolate::{self, Edges, Face};
-use bytemuck::Pod;
 
 /// Isolation of roots, positions in R, computed in S.
 pub fn isolate<R: Real, S: Grid, B: Block>(b: &mut B, a: &RungArgs<R>) {
-    let last = a.flags & EVERYTHING != 0;
+    let last = a.flags.has(RungFlags::EVERYTHING);
     rung(
         b,
         a,
@@ -45,9 +44,9 @@ pub fn isolate<R: Real, S: Grid, B: Block>(b: &mut B, a: &RungArgs<R>) {
     );
 }
 
-/// Touching at the start, and what is flat; with [`EVERYTHING`] all that is left.
+/// Touching at the start, and what is flat; with [`RungFlags::EVERYTHING`] all that is left.
 pub fn settle<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
-    let all = a.flags & EVERYTHING != 0;
+    let all = a.flags.has(RungFlags::EVERYTHING);
     rung(
         b,
         a,
@@ -123,7 +122,7 @@ fn each<R: Real, B: Block>(
     ask: impl Fn(&B::Lane, Pair) -> Option<Verdict>,
 ) {
     let (lanes, stride) = (b.lanes(), b.blocks() * b.lanes());
-    let count = listed(b, of.pairs, a.counters, of.pairs_at);
+    let count = of.pairs.listed(b);
     let mut hits = b.slot(Hit::default());
     let mut wishes = b.slot(0u32);
     let mut places = b.slot(0u32);
@@ -133,7 +132,7 @@ fn each<R: Real, B: Block>(
             let i = base + l.lane();
             let mut wish = 0;
             if i < count {
-                let pair = l.read(of.pairs, i);
+                let pair = of.pairs.get(l, i);
                 let told = ask(l, pair);
                 *hits.of(l) = Hit { a: pair.a, b: pair.b, verdict: told.unwrap_or_default() };
                 wish = match told {
@@ -148,16 +147,16 @@ fn each<R: Real, B: Block>(
         });
         let total = b.scan(&mut places);
         let wanted = [(total & (LEFT - 1)) as u64, (total / LEFT) as u64];
-        let [start, start_left] = b.reserve_both(a.counters, [of.hits_at, of.left_at], wanted);
+        let [start, start_left] = b.reserve_both([of.hits.count(), of.left.count()], wanted);
         b.phase(|l| {
             let (wish, before, hit) = (*wishes.of(l), *places.of(l), *hits.of(l));
             let place = start + (before & (LEFT - 1)) as u64;
-            if wish == LISTED && place < of.hits.len() {
-                l.write(of.hits, place as u32, hit);
+            if wish == LISTED {
+                of.hits.put(l, place, hit);
             }
             let place = start_left + (before / LEFT) as u64;
-            if wish == LEFT && place < of.left.len() {
-                l.write(of.left, place as u32, Pair { a: hit.a, b: hit.b });
+            if wish == LEFT {
+                of.left.put(l, place, Pair { a: hit.a, b: hit.b });
             }
             l.meet();
         });
@@ -165,26 +164,11 @@ fn each<R: Real, B: Block>(
     }
 }
 
-/// Leaves a pair to the next rung; a lane by itself.
-#[inline(always)]
-pub(super) fn leave<R: Real, L: Lane>(l: &L, a: &RungArgs<R>, of: &Listed, pair: Pair) {
-    push(l, (of.left, a.counters, of.left_at), pair);
-}
-
-/// Appends to a list where there is room, and counts.
-#[inline(always)]
-fn push<T: Pod, L: Lane>(l: &L, (list, counters, at): (Span<T>, Span<u64>, u32), entry: T) {
-    let place = l.fetch_add(counters, at, 1);
-    if place < list.len() {
-        l.write(list, place as u32, entry);
-    }
-}
-
 /// Lists an answer that is to be listed; a lane by itself.
 #[inline(always)]
 pub(super) fn emit<R: Real, L: Lane>(l: &L, a: &RungArgs<R>, of: &Listed, (pair, verdict): (Pair, Verdict)) {
     if keep(l, a, verdict) {
-        push(l, (of.hits, a.counters, of.hits_at), Hit { a: pair.a, b: pair.b, verdict });
+        of.hits.push(l, Hit { a: pair.a, b: pair.b, verdict });
     }
 }
 
@@ -195,12 +179,12 @@ fn keep<R: Real, L: Lane>(l: &L, a: &RungArgs<R>, verdict: Verdict) -> bool {
         return false;
     }
     if !verdict.is_contact() {
-        l.fetch_add(a.counters, counter::UNRESOLVED, 1);
+        a.counters.add(l, counter::UNRESOLVED, 1);
     }
     if a.earliest.is_empty() {
         if verdict.exhausted() {
-            l.fetch_add(a.counters, counter::ENDED, 1);
-            l.fetch_add(a.counters, counter::ENDED_UNRESOLVED, !verdict.is_contact() as u64);
+            a.counters.add(l, counter::ENDED, 1);
+            a.counters.add(l, counter::ENDED_UNRESOLVED, !verdict.is_contact() as u64);
         }
         return true;
     }

@@ -11,8 +11,8 @@
 //! Cost     8 B candidate, 12 B indices, 128 B positions (gathered); about 100 operations for half of the candidates of real
 //!          cloth, 300 for the others; on a CPU 300 for all, in vectors. A tenth survives.
 
-use super::{append_mapped, edge, listed, moving};
-use crate::abi::{CullArgs, counter};
+use super::{append_mapped, edge, moving};
+use crate::abi::CullArgs;
 use crate::exec::{Block, Lane, RowMap};
 use crate::math::Real;
 use crate::prim::cubic::Moving;
@@ -23,15 +23,15 @@ use core::marker::PhantomData;
 
 /// Both kinds.
 pub fn cull<R: Real, B: Block>(b: &mut B, a: &CullArgs<R>) {
-    let count = listed(b, a.vf, a.counters, counter::VF);
+    let count = a.vf.listed(b);
     let may = VertexFace(a.params, PhantomData);
     append_mapped(
         b,
         count,
-        (a.may_vf, a.counters, counter::VF_SURVIVORS),
+        a.may_vf,
         &may,
         |l, i| {
-            let pair = l.read(a.vf, i);
+            let pair = a.vf.get(l, i);
             (pair, l.read(a.faces, pair.b))
         },
         |l, (pair, [x, y, z])| {
@@ -39,15 +39,15 @@ pub fn cull<R: Real, B: Block>(b: &mut B, a: &CullArgs<R>) {
             [at(pair.a), at(x), at(y), at(z)]
         },
     );
-    let count = listed(b, a.ee, a.counters, counter::EE);
+    let count = a.ee.listed(b);
     let may = EdgeEdge(a.params, PhantomData);
     append_mapped(
         b,
         count,
-        (a.may_ee, a.counters, counter::EE_SURVIVORS),
+        a.may_ee,
         &may,
         |l, i| {
-            let pair = l.read(a.ee, i);
+            let pair = a.ee.get(l, i);
             (pair, [l.read(a.edges, pair.a), l.read(a.edges, pair.b)])
         },
         |l, (_, [x, y])| [edge(l, &a.frames, x), edge(l, &a.frames, y)],

@@ -11,8 +11,8 @@
 //! Cost     8 B pair, 24 B faces, 96 B positions (gathered); about 100 operations for a pair that a plane separates. A sign
 //!          takes `wide` some 30 operations in f64, `exact` thousands on integers.
 
-use super::{Entries, append_each, listed, stride};
-use crate::abi::{DiscreteArgs, KEEP_ADJACENT, Pair, counter};
+use super::{Entries, append_each, stride};
+use crate::abi::{DiscreteArgs, DiscreteFlags, Pair};
 use crate::exec::{Block, Lane, OPEN, RowMap, Slot};
 use crate::math::{Real, Vec3};
 use crate::prim::adjacent::{Shared, meets_beyond_shared};
@@ -28,9 +28,9 @@ fn corners<R: Real, L: Lane>(l: &L, a: &DiscreteArgs<R>, face: [u32; 3]) -> [Vec
 
 /// The seed's test, in f32.
 pub fn moller<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
-    let count = listed(b, a.pairs, a.counters, a.pairs_at);
-    append_each(b, count, (a.contacts, a.counters, counter::CONTACTS), |l, i| {
-        let pair = l.read(a.pairs, i);
+    let count = a.pairs.listed(b);
+    append_each(b, count, a.contacts, |l, i| {
+        let pair = a.pairs.get(l, i);
         let triangle = |t: u32| corners(l, a, l.read(a.faces, t));
         moller::moller(&triangle(pair.a), &triangle(pair.b)).then_some(pair)
     });
@@ -56,14 +56,12 @@ impl<B: Block> Verdicts<B> {
 
     /// Those that meet go to the contacts, those without an answer to the undecided.
     fn sort_out<R: Real>(&mut self, b: &mut B, a: &DiscreteArgs<R>) {
-        for (verdict, list, at) in
-            [(Some(true), a.contacts, counter::CONTACTS), (None, a.undecided, a.undecided_at)]
-        {
+        for (verdict, list) in [(Some(true), a.contacts), (None, a.undecided)] {
             b.phase(|l| {
                 let mine = *self.verdicts.of(l) == verdict;
                 self.entries.set(l, mine.then_some(*self.pairs.of(l)));
             });
-            self.entries.append(b, (list, a.counters, at));
+            self.entries.append(b, list);
         }
     }
 }
@@ -90,7 +88,7 @@ impl<R: Real> RowMap for Signed<R> {
 
 /// Signs with an error bound, in the precision of the positions: contacts, and pairs that it cannot decide.
 pub fn filter<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
-    let count = listed(b, a.pairs, a.counters, a.pairs_at);
+    let count = a.pairs.listed(b);
     let mut verdicts = Verdicts::new(b);
     stride(b, count, |b, base| {
         b.map_rows(
@@ -100,11 +98,12 @@ pub fn filter<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
                 if i >= count {
                     return None;
                 }
-                let pair = l.read(a.pairs, i);
+                let pair = a.pairs.get(l, i);
                 Some((pair, l.read(a.faces, pair.a), l.read(a.faces, pair.b)))
             },
             |l, (_, p, q)| {
-                let beyond = a.flags & KEEP_ADJACENT != 0 && Shared::by_index(p, q) != Shared::Nothing;
+                let beyond =
+                    a.flags.has(DiscreteFlags::KEEP_ADJACENT) && Shared::by_index(p, q) != Shared::Nothing;
                 if beyond { None } else { Some([corners(l, a, p), corners(l, a, q)]) }
             },
             |l, told| match told {
@@ -118,7 +117,7 @@ pub fn filter<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
 
 /// The same in f64, for what f32 left undecided.
 pub fn wide<B: Block>(b: &mut B, a: &DiscreteArgs<f32>) {
-    let count = listed(b, a.pairs, a.counters, a.pairs_at);
+    let count = a.pairs.listed(b);
     let mut verdicts = Verdicts::new(b);
     stride(b, count, |b, base| {
         b.phase(|l| {
@@ -126,7 +125,7 @@ pub fn wide<B: Block>(b: &mut B, a: &DiscreteArgs<f32>) {
             if i >= count {
                 return verdicts.set(l, Pair::default(), Some(false));
             }
-            let pair = l.read(a.pairs, i);
+            let pair = a.pairs.get(l, i);
             let (p, q) = (l.read(a.faces, pair.a), l.read(a.faces, pair.b));
             let (x, y) = (corners(l, a, p), corners(l, a, q));
             let verdict = match Shared::by_index(p, q) {
@@ -147,9 +146,9 @@ fn beyond(p: [Vec3<f32>; 3], q: [Vec3<f32>; 3], shared: Shared) -> Option<bool> 
 
 /// Exact signs, for what the filters left undecided.
 pub fn exact<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
-    let count = listed(b, a.pairs, a.counters, a.pairs_at);
-    append_each(b, count, (a.contacts, a.counters, counter::CONTACTS), |l, i| {
-        let pair = l.read(a.pairs, i);
+    let count = a.pairs.listed(b);
+    append_each(b, count, a.contacts, |l, i| {
+        let pair = a.pairs.get(l, i);
         let (p, q) = (l.read(a.faces, pair.a), l.read(a.faces, pair.b));
         let shared = Shared::by_index(p, q);
         let verdict = meets_beyond_shared::<R, Certain>(&corners(l, a, p), &corners(l, a, q), shared);

@@ -18,8 +18,8 @@
 //! Cost     8 B pair, 64 B facets, 192 B positions (gathered; at rest 96 B); some 500 operations, half of them for the 15 tests
 //!          (at rest those alone, 300), without branches; on a CPU in vectors. What is to be listed is numbered in shared memory first, so that all lanes write.
 
-use super::{listed, moving};
-use crate::abi::{Facet, FeaturesArgs, Pair, Positions, Span, counter};
+use super::moving;
+use crate::abi::{Facet, FeaturesArgs, Pair, Positions};
 use crate::exec::{Block, Lane, RowMap, Slot};
 use crate::math::{Real, Vec3};
 use crate::prim::cubic::Moving;
@@ -120,7 +120,7 @@ const EE: u32 = 1 << 16;
 
 /// Vertex/face and edge/edge candidates of each triangle pair.
 pub fn features<R: Real, C: Course<R>, B: Block>(b: &mut B, a: &FeaturesArgs<R>) {
-    let count = listed(b, a.pairs, a.counters, counter::PAIRS);
+    let count = a.pairs.listed(b);
     let (lanes, map) = (b.lanes(), Meeting::<R, C> { gap: more(a.gap), course: PhantomData });
     let tests = b.shared::<u32>(MOST * lanes);
     let mut masks = b.slot(0u32);
@@ -134,7 +134,7 @@ pub fn features<R: Real, C: Course<R>, B: Block>(b: &mut B, a: &FeaturesArgs<R>)
                 if i >= count {
                     return None;
                 }
-                let pair = l.read(a.pairs, i);
+                let pair = a.pairs.get(l, i);
                 let (p, q) = (l.read(a.facets, pair.a), l.read(a.facets, pair.b));
                 Some((owned(&p, &q), p.corners, q.corners))
             },
@@ -152,7 +152,7 @@ pub fn features<R: Real, C: Course<R>, B: Block>(b: &mut B, a: &FeaturesArgs<R>)
         );
         let total = b.scan(&mut places);
         let (vf, ee) = (total % EE, total / EE);
-        let starts = b.reserve_both(a.counters, [counter::VF, counter::EE], [vf.into(), ee.into()]);
+        let starts = b.reserve_both([a.vf.count(), a.ee.count()], [vf.into(), ee.into()]);
         // Which lane's test each candidate is: written by few lanes that have many, read by all.
         b.phase(|l| {
             let (mut mask, before) = (*masks.of(l), *places.of(l));
@@ -170,11 +170,11 @@ pub fn features<R: Real, C: Course<R>, B: Block>(b: &mut B, a: &FeaturesArgs<R>)
             let mut i = l.lane();
             while i < vf + ee {
                 let test = l.get(tests, i);
-                let pair = l.read(a.pairs, base + test / TESTS);
+                let pair = a.pairs.get(l, base + test / TESTS);
                 if i < vf {
-                    put(l, a.vf, starts[0] + i as u64, vertex_and_face(l, a, pair, test % TESTS));
+                    a.vf.put(l, starts[0] + i as u64, vertex_and_face(l, a, pair, test % TESTS));
                 } else {
-                    put(l, a.ee, starts[1] + (i - vf) as u64, two_edges(l, a, pair, test % TESTS - 6));
+                    a.ee.put(l, starts[1] + (i - vf) as u64, two_edges(l, a, pair, test % TESTS - 6));
                 }
                 i += lanes;
             }
@@ -208,13 +208,5 @@ fn pick([x, y, z]: [u32; 3], k: u32) -> u32 {
         y
     } else {
         z
-    }
-}
-
-/// Writes one candidate where there is room.
-#[inline(always)]
-fn put<L: Lane>(l: &L, list: Span<Pair>, place: u64, pair: Pair) {
-    if place < list.len() {
-        l.write(list, place as u32, pair);
     }
 }

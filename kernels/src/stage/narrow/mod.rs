@@ -17,7 +17,7 @@ pub mod separate;
 pub mod slice;
 pub mod solve;
 
-use crate::abi::{Pair, Point, Positions, Span};
+use crate::abi::{Output, Pair, Point, Positions, Span};
 use crate::exec::{Block, Lane, RowMap, Slot};
 use crate::math::{Real, Vec3};
 use crate::prim::cubic::Moving;
@@ -98,11 +98,11 @@ fn stride<B: Block>(b: &mut B, count: u32, mut body: impl FnMut(&mut B, u32)) {
 }
 
 /// Runs `body` for each of `count` items, a lane each, in a grid of any size; an item may `Some` an entry to append to
-/// `list`. The counter goes past the end of the list, so its final value is the exact demand.
+/// `to`. The counter goes past the end of the list, so its final value is the exact demand.
 fn append_each<B: Block, T: bytemuck::Pod>(
     b: &mut B,
     count: u32,
-    to: (Span<T>, Span<u64>, u32),
+    to: Output<T>,
     mut body: impl FnMut(&B::Lane, u32) -> Option<T>,
 ) {
     let mut entries = Entries::new(b);
@@ -119,7 +119,7 @@ fn append_each<B: Block, T: bytemuck::Pod>(
 fn append_mapped<B: Block, M: RowMap, T: bytemuck::Pod, I: Copy>(
     b: &mut B,
     count: u32,
-    to: (Span<T>, Span<u64>, u32),
+    to: Output<T>,
     map: &M,
     mut find: impl FnMut(&B::Lane, u32) -> (T, I),
     mut gather: impl FnMut(&B::Lane, (T, I)) -> M::Row,
@@ -159,20 +159,13 @@ impl<B: Block, T: bytemuck::Pod> Entries<B, T> {
     }
 
     /// Appends what there is, as far as there is room.
-    fn append(&mut self, b: &mut B, (list, counters, at): (Span<T>, Span<u64>, u32)) {
-        let start = b.append(&mut self.places, counters, at);
+    fn append(&mut self, b: &mut B, to: Output<T>) {
+        let start = to.append(b, &mut self.places);
         b.phase(|l| {
             let place = start + *self.places.of(l) as u64;
-            if let Some(entry) = *self.entries.of(l)
-                && place < list.len()
-            {
-                l.write(list, place as u32, entry);
+            if let Some(entry) = *self.entries.of(l) {
+                to.put(l, place, entry);
             }
         });
     }
-}
-
-/// How many entries of a list are there: its counter, or its room where that ran out.
-fn listed<B: Block>(b: &B, list: Span<Pair>, counters: Span<u64>, at: u32) -> u32 {
-    b.load(counters, at).min(list.len()) as u32
 }

@@ -14,8 +14,8 @@
 //! Cost     8 B candidate, 12 B indices, 64 B positions (f64: 128 B; gathered), both again for what is measured, 32 B a hit; about
 //!          220 operations of f32, and as many of f64 for what is measured, five of them divisions.
 
-use super::{Entries, edge_edge_at, listed, stride, vertex_face_at};
-use crate::abi::{NearArgs, NearHit, Pair, Span, counter};
+use super::{Entries, edge_edge_at, stride, vertex_face_at};
+use crate::abi::{NearArgs, NearHit, Output, Pair, counter};
 use crate::exec::{Block, Lane, RowMap};
 use crate::math::{Real, Vec3};
 use crate::prim::near::{Filter, Near, edge_edge, vertex_face};
@@ -24,8 +24,7 @@ use crate::prim::near::{Filter, Near, edge_edge, vertex_face};
 pub fn near<R: Real, B: Block>(b: &mut B, a: &NearArgs<R>) {
     each(
         b,
-        (a, a.vf, counter::VF),
-        (a.vf_hits, counter::VF_HITS),
+        (a, a.vf, a.vf_hits),
         &Filter::<R, true>::new(a.distance),
         |l, pair| {
             let (v, [x, y, z]) = vertex_face_at(l, (a.positions, a.faces), pair);
@@ -35,8 +34,7 @@ pub fn near<R: Real, B: Block>(b: &mut B, a: &NearArgs<R>) {
     );
     each(
         b,
-        (a, a.ee, counter::EE),
-        (a.ee_hits, counter::EE_HITS),
+        (a, a.ee, a.ee_hits),
         &Filter::<R, false>::new(a.distance),
         |l, pair| {
             let [[x, y], [z, w]] = edge_edge_at(l, (a.positions, a.edges), pair);
@@ -50,20 +48,19 @@ pub fn near<R: Real, B: Block>(b: &mut B, a: &NearArgs<R>) {
 #[inline(always)]
 fn each<R: Real, B: Block, M: RowMap<Row = [Vec3<R>; 4]>>(
     b: &mut B,
-    (a, pairs, pairs_at): (&NearArgs<R>, Span<Pair>, u32),
-    (hits, hits_at): (Span<NearHit>, u32),
+    (a, pairs, hits): (&NearArgs<R>, Output<Pair>, Output<NearHit>),
     filter: &M,
     gather: impl Fn(&B::Lane, Pair) -> [Vec3<R>; 4],
     measure: impl Fn([Vec3<R>; 4]) -> Option<Near>,
 ) {
-    let count = listed(b, pairs, a.counters, pairs_at);
+    let count = pairs.listed(b);
     let mut entries = Entries::new(b);
     stride(b, count, |b, base| {
         b.map_rows(
             filter,
             |l| {
                 let i = base + l.lane();
-                (i < count).then(|| l.read(pairs, i))
+                (i < count).then(|| pairs.get(l, i))
             },
             |l, pair| Some(gather(l, pair)),
             |l, told| {
@@ -71,13 +68,13 @@ fn each<R: Real, B: Block, M: RowMap<Row = [Vec3<R>; 4]>>(
                 let hit = kept.and_then(|pair| {
                     let near = measure(gather(l, pair))?;
                     if !near.certain {
-                        l.fetch_add(a.counters, counter::UNRESOLVED, 1);
+                        a.counters.add(l, counter::UNRESOLVED, 1);
                     }
                     Some(NearHit { a: pair.a, b: pair.b, squared: near.squared, at: near.at })
                 });
                 entries.set(l, hit);
             },
         );
-        entries.append(b, (hits, a.counters, hits_at));
+        entries.append(b, hits);
     });
 }

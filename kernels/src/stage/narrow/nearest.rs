@@ -13,12 +13,12 @@
 //!          not farther apart than what is known, the second time only if it comes before what was found. Nothing of this
 //!          where some share a point.
 
-use super::{listed, stride};
-use crate::abi::{LeastArgs, NearestHit, Pair, counter};
+use super::stride;
+use crate::abi::{Counter, LeastArgs, NearestHit, Pair, counter};
 use crate::exec::{Block, Lane};
 use crate::math::{Real, Vec3};
 use crate::prim::nearest::{Nearest, farther};
-use crate::stage::traverse::nearest::{length, word};
+use crate::stage::traverse::nearest::{known, word};
 
 /// The least of all positive numbers: how far apart triangles are that share no point, although no digit tells.
 const BARELY: f64 = f64::from_bits(1);
@@ -37,26 +37,26 @@ fn apart<R: Real>([p, q]: &[[Vec3<R>; 3]; 2], best: f64) -> Option<f64> {
 
 /// Raises a counter to a value; mostly it is there already.
 #[inline(always)]
-fn raise<R: Real, L: Lane>(l: &L, a: &LeastArgs<R>, at: u32, value: u64) {
-    if l.fetch_load(a.counters, at) < value {
-        l.fetch_max(a.counters, at, value);
+fn raise<R: Real, L: Lane>(l: &L, a: &LeastArgs<R>, which: Counter, value: u64) {
+    if l.fetch_load(a.counters.word(which), 0) < value {
+        a.counters.raise(l, which, value);
     }
 }
 
 /// How many candidates are to be measured: none where some share a point.
 fn measured<R: Real, B: Block>(b: &B, a: &LeastArgs<R>) -> u32 {
-    if b.load(a.counters, counter::CONTACTS) > 0 { 0 } else { listed(b, a.pairs, a.counters, counter::PAIRS) }
+    if b.load(a.meeting.count(), 0) > 0 { 0 } else { a.pairs.listed(b) }
 }
 
 /// The least distance.
 pub fn least<R: Real, B: Block>(b: &mut B, a: &LeastArgs<R>) {
     let count = measured(b, a);
-    let sampled = length(b.load(a.counters, counter::SAMPLED_AGAIN)).greater(BARELY);
+    let sampled = known(b, a.counters, counter::SAMPLED_AGAIN).greater(BARELY);
     stride(b, count, |b, base| {
         b.phase(|l| {
             let i = base + l.lane();
             if i < count
-                && let Some(distance) = apart(&corners(l, a, l.read(a.pairs, i)), sampled)
+                && let Some(distance) = apart(&corners(l, a, a.pairs.get(l, i)), sampled)
                 && distance <= sampled
             {
                 raise(l, a, counter::NEAREST, word(distance));
@@ -69,25 +69,25 @@ pub fn least<R: Real, B: Block>(b: &mut B, a: &LeastArgs<R>) {
 /// The first pair of that distance, or the first that shares a point.
 pub fn witness<R: Real, B: Block>(b: &mut B, a: &LeastArgs<R>) {
     let key = |pair: Pair| !((pair.a as u64) << 32 | pair.b as u64);
-    let meeting = listed(b, a.meeting, a.counters, counter::CONTACTS);
+    let meeting = a.meeting.listed(b);
     stride(b, meeting, |b, base| {
         b.phase(|l| {
             let i = base + l.lane();
             if i < meeting {
-                raise(l, a, counter::WITNESS, key(l.read(a.meeting, i)));
+                raise(l, a, counter::WITNESS, key(a.meeting.get(l, i)));
             }
             l.meet();
         });
     });
     let count = measured(b, a);
-    let best = length(b.load(a.counters, counter::NEAREST));
+    let best = known(b, a.counters, counter::NEAREST);
     stride(b, count, |b, base| {
         b.phase(|l| {
             let i = base + l.lane();
             if i < count {
-                let pair = l.read(a.pairs, i);
+                let pair = a.pairs.get(l, i);
                 // Behind one that was found already it need not be measured.
-                let is_earlier = l.fetch_load(a.counters, counter::WITNESS) < key(pair);
+                let is_earlier = l.fetch_load(a.counters.word(counter::WITNESS), 0) < key(pair);
                 if is_earlier && apart(&corners(l, a, pair), best) == Some(best) {
                     raise(l, a, counter::WITNESS, key(pair));
                 }
@@ -99,8 +99,9 @@ pub fn witness<R: Real, B: Block>(b: &mut B, a: &LeastArgs<R>) {
 
 /// That pair with where it is nearest.
 pub fn nearest<R: Real, B: Block>(b: &mut B, a: &LeastArgs<R>) {
-    let (witness, distance) = (b.load(a.counters, counter::WITNESS), b.load(a.counters, counter::NEAREST));
-    let meets = b.load(a.counters, counter::CONTACTS) > 0;
+    let witness = b.load(a.counters.word(counter::WITNESS), 0);
+    let meets = b.load(a.meeting.count(), 0) > 0;
+    let distance = if meets { 0.0 } else { known(b, a.counters, counter::NEAREST) };
     b.phase(|l| {
         if l.lane() == 0 && witness != 0 {
             let pair = Pair { a: (!witness >> 32) as u32, b: !witness as u32 };
@@ -115,9 +116,7 @@ pub fn nearest<R: Real, B: Block>(b: &mut B, a: &LeastArgs<R>) {
                 points[k] = (x + (y - x) * s + (z - x) * t).0;
                 k += 1;
             }
-            let distance = if meets { 0.0 } else { length(distance) };
-            l.write(a.nearest, 0, NearestHit { a: pair.a, b: pair.b, distance, at: found.at, points });
-            l.fetch_add(a.counters, counter::NEAREST_PAIRS, 1);
+            a.nearest.push(l, NearestHit { a: pair.a, b: pair.b, distance, at: found.at, points });
         }
         l.meet();
     });

@@ -13,8 +13,8 @@
 //! Cost     8 B pair, 12 B indices, 128 B positions (gathered); 300 to 600 operations a step, mostly two to fifteen
 //!          steps.
 
-use super::climb::{emit, leave};
-use super::{edge_edge, listed, vertex_face};
+use super::climb::emit;
+use super::{edge_edge, vertex_face};
 use crate::abi::{Listed, Pair, RungArgs};
 use crate::exec::{Block, Lane, Shared};
 use crate::math::Real;
@@ -28,7 +28,7 @@ pub const SHARED: u32 = 8;
 #[inline(always)]
 pub fn separate<R: Real, V: Rung<3>, E: Rung<4>, B: Block>(b: &mut B, a: &RungArgs<R>) {
     let share = |b: &B, of: &Listed, first: u32, drawn: u32| WorkRange {
-        count: listed(b, of.pairs, a.counters, of.pairs_at) as u64,
+        count: of.pairs.listed(b) as u64,
         first: first as u64,
         stride: b.blocks() as u64,
         drawn,
@@ -80,7 +80,7 @@ fn advance<R: Real, T: Rung<N>, const N: usize, L: Lane>(
             let i = share.first + share.stride * l.shared_add(drawn, share.drawn, 1) as u64;
             more = i < share.count;
             if more {
-                let pair = l.read(of.pairs, i as u32);
+                let pair = of.pairs.get(l, i as u32);
                 under_way = Some((pair, T::begin(motion(pair), &a.params)));
             }
         }
@@ -91,7 +91,7 @@ fn advance<R: Real, T: Rung<N>, const N: usize, L: Lane>(
         {
             match told {
                 Some(verdict) => emit(l, a, of, (*pair, verdict)),
-                None => leave(l, a, of, *pair),
+                None => of.left.push(l, *pair),
             }
             under_way = None;
         }

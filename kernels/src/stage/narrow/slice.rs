@@ -11,7 +11,7 @@
 //! Cost     about 3,000 operations of f64 a lane; a search 1,200 a box, one lane. Boxes wait in a stack in local memory, 3 KB.
 
 use super::climb::emit;
-use super::{edge_edge, listed, vertex_face};
+use super::{edge_edge, vertex_face};
 use crate::abi::{Listed, Pair, RungArgs};
 use crate::exec::{Block, Lane, Shared, Slot};
 use crate::math::Real;
@@ -60,7 +60,7 @@ fn each<R: Real, B: Block, const N: usize>(
     motion: impl Fn(&B::Lane, Pair) -> isolate::Pair<f64, N>,
     search: impl Fn(&B::Lane, Pair, Verdict) -> Verdict,
 ) {
-    let count = listed(b, of.pairs, a.counters, of.pairs_at);
+    let count = of.pairs.listed(b);
     let lanes = b.lanes();
     let mut mine = b.slot(Slice::Apart);
     let mut i = b.block();
@@ -72,7 +72,7 @@ fn each<R: Real, B: Block, const N: usize>(
         });
         b.phase(|l| {
             *mine.of(l) = Slice::Apart;
-            let pair = motion(l, l.read(of.pairs, i));
+            let pair = motion(l, of.pairs.get(l, i));
             let Some(window) = pair.window() else { return };
             let mut slice = l.lane();
             while slice < SLICES {
@@ -96,7 +96,7 @@ fn each<R: Real, B: Block, const N: usize>(
             if l.lane() != first {
                 return;
             }
-            let indices = l.read(of.pairs, i);
+            let indices = of.pairs.get(l, i);
             let pair = motion(l, indices);
             let Some(window) = pair.window() else { return };
             let verdict = decided(&pair, *mine.of(l), window, |known| search(l, indices, known), &a.params);

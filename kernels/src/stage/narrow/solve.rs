@@ -8,7 +8,7 @@
 //! Room     hits: counted past the end, grown, run again.
 //! Cost     8 B candidate, 12 B indices, 128 B positions (gathered); 400 to 1,500 operations.
 
-use super::{append_each, edge_edge, listed, vertex_face};
+use super::{append_each, edge_edge, vertex_face};
 use crate::abi::{Hit, Pair, SolveArgs, counter};
 use crate::exec::{Block, Lane};
 use crate::math::Real;
@@ -17,7 +17,7 @@ use crate::prim::inclusion::Verdict;
 
 /// Vertex/face, positions in R, the cubic in S.
 pub fn vf<R: Real, S: Real, B: Block>(b: &mut B, a: &SolveArgs<R>) {
-    solve(b, a, counter::VF_SURVIVORS, counter::VF_HITS, |l, pair| {
+    solve(b, a, |l, pair| {
         let (v, f) = vertex_face(l, (&a.frames, a.faces), pair);
         vf_toi::<R, S>(v, f).map(contact)
     });
@@ -25,7 +25,7 @@ pub fn vf<R: Real, S: Real, B: Block>(b: &mut B, a: &SolveArgs<R>) {
 
 /// Edge/edge, positions in R, the cubic in S.
 pub fn ee<R: Real, S: Real, B: Block>(b: &mut B, a: &SolveArgs<R>) {
-    solve(b, a, counter::EE_SURVIVORS, counter::EE_HITS, |l, pair| {
+    solve(b, a, |l, pair| {
         let [x, y] = edge_edge(l, (&a.frames, a.edges), pair);
         ee_toi::<R, S>(x, y).map(contact)
     });
@@ -36,19 +36,13 @@ fn contact<S: Real>(toi: S) -> Verdict {
 }
 
 /// Solves each candidate; keeps every contact, or only the smallest time; counts what is left unresolved.
-fn solve<R: Real, B: Block>(
-    b: &mut B,
-    a: &SolveArgs<R>,
-    from: u32,
-    to: u32,
-    ask: impl Fn(&B::Lane, Pair) -> Option<Verdict>,
-) {
-    let count = listed(b, a.survivors, a.counters, from);
-    append_each(b, count, (a.hits, a.counters, to), |l, i| {
-        let pair = l.read(a.survivors, i);
+fn solve<R: Real, B: Block>(b: &mut B, a: &SolveArgs<R>, ask: impl Fn(&B::Lane, Pair) -> Option<Verdict>) {
+    let count = a.survivors.listed(b);
+    append_each(b, count, a.hits, |l, i| {
+        let pair = a.survivors.get(l, i);
         let verdict = ask(l, pair)?;
         if !verdict.is_contact() {
-            l.fetch_add(a.counters, counter::UNRESOLVED, 1);
+            a.counters.add(l, counter::UNRESOLVED, 1);
         }
         if a.earliest.is_empty() {
             return Some(Hit { a: pair.a, b: pair.b, verdict });

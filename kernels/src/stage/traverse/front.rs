@@ -1,7 +1,7 @@
 //! # Traverse from a front: where the last descent ended → candidates, ends, and units that go deeper
 //! Paper    section 6.2.6, the front of the bounding volume test tree, kept from frame to frame.
 //! Launch   a lane a pair of the front; a grid of any size strides. Rounds of `traverse_queue` follow, from its units.
-//! Reads    the front; two nodes a pair (AABB: 64 B), with [`PRUNE`] their parents' for a pair that is apart; faces.
+//! Reads    the front; two nodes a pair (AABB: 64 B), with [`FrontFlags::PRUNE`] their parents' for a pair that is apart; faces.
 //! Writes   pairs that stay ends; candidates, as `traverse_leaves`; units: pairs that meet now and are not both leaves.
 //! Before   all volumes are refitted; the front is a complete cut of the tests of the tree with itself ([`crate::queue::bvtt`]):
 //!          every pair of leaves that is asked about has exactly one ancestor in it, or is in it.
@@ -10,9 +10,9 @@
 //! Departs  a pair and its siblings give way to their parent without talking to each other: each finds its topmost
 //!          ancestor that is apart, and the one that comes first below it writes it. That is sound only where volumes
 //!          nest: a pair below one that is apart is apart. The host prunes nothing else.
-//! Cost     8 B and two nodes in, 8 B out a pair: 80 B (AABB), gathered; one overlap test, two with [`PRUNE`].
+//! Cost     8 B and two nodes in, 8 B out a pair: 80 B (AABB), gathered; one overlap test, two with [`FrontFlags::PRUNE`].
 
-use crate::abi::{FrontArgs, KEEP_ADJACENT, NONE, PRUNE, Pair, ROOT, Span, counter};
+use crate::abi::{FrontArgs, FrontFlags, NONE, Pair, ROOT, TraverseFlags, counter};
 use crate::bv::Volume;
 use crate::exec::{Block, Lane, Slot};
 use crate::prim::adjacent::share_a_vertex;
@@ -61,40 +61,32 @@ pub fn front<V: Volume, B: Block>(b: &mut B, a: &FrontArgs<V>) {
         let sum = b.scan(&mut sums);
         let (ends, units, candidates) = (sum & MASK, sum >> FIELD & MASK, sum >> (2 * FIELD));
         let to = &a.to;
-        let at_end = b.reserve(to.counters, counter::ENDS, ends as u64);
-        let at_unit = b.reserve(a.unit_count, 0, units as u64);
-        let at_pair = b.reserve(to.counters, counter::PAIRS, candidates as u64);
+        let at_end = to.ends.reserve(b, ends as u64);
+        let at_unit = a.units.reserve(b, units as u64);
+        let at_pair = to.pairs.reserve(b, candidates as u64);
         b.phase(|l| {
             let (fate, before) = (*fates.of(l), *sums.of(l));
             let i = base + l.lane();
             let (end, unit, pair) = (before & MASK, before >> FIELD & MASK, before >> (2 * FIELD));
             if fate.end != NOTHING {
-                put(l, to.ends, at_end + end as u64, fate.end);
+                to.ends.put(l, at_end + end as u64, fate.end);
             }
             if fate.deeper {
-                put(l, a.units, at_unit + unit as u64, l.read(a.front, i));
+                a.units.put(l, at_unit + unit as u64, l.read(a.front, i));
             }
             if fate.candidate != NOTHING {
-                put(l, to.pairs, at_pair + pair as u64, fate.candidate);
+                to.pairs.put(l, at_pair + pair as u64, fate.candidate);
             }
             if l.lane() == 0 && units > 0 {
-                l.fetch_max(to.counters, counter::QUEUED, at_unit + units as u64);
+                to.counters.raise(l, counter::QUEUED, at_unit + units as u64);
             }
         });
         pruned += lanes.min(a.count - base) - ends - units;
         base += b.blocks() * lanes;
     }
     let tests = b.scan(&mut tests);
-    b.reserve(a.to.counters, counter::FRONT_TESTS, tests as u64);
-    b.reserve(a.to.counters, counter::PRUNED, pruned as u64);
-}
-
-/// Writes an entry of a list, where there is room for it.
-#[inline]
-fn put<L: Lane>(l: &L, list: Span<Pair>, at: u64, pair: Pair) {
-    if at < list.len() {
-        l.write(list, at as u32, pair);
-    }
+    a.to.counters.add_once(b, counter::FRONT_TESTS, tests as u64);
+    a.to.counters.add_once(b, counter::PRUNED, pruned as u64);
 }
 
 /// What becomes of a pair.
@@ -103,12 +95,12 @@ fn fate<V: Volume, L: Lane>(l: &L, a: &FrontArgs<V>, pair: Pair) -> FrontUpdate 
     let (p, q) = (l.read(a.to.nodes, pair.a), l.read(a.to.nodes, pair.b));
     let mut fate = FrontUpdate { end: pair, deeper: false, candidate: NOTHING, tests: 1 };
     if !overlaps(l, a, pair, (&p.volume, &q.volume)) {
-        if a.flags & PRUNE != 0 {
+        if a.flags.has(FrontFlags::PRUNE) {
             (fate.end, fate.tests) = climb(l, a, pair);
         }
     } else if p.is_leaf() & q.is_leaf() {
         let (x, y) = (p.triangle(), q.triangle());
-        let keep = a.to.flags & KEEP_ADJACENT != 0;
+        let keep = a.to.flags.has(TraverseFlags::KEEP_ADJACENT);
         if keep || !share_a_vertex(l.read(a.to.faces, x), l.read(a.to.faces, y)) {
             fate.candidate = Pair { a: x.min(y), b: x.max(y) };
         }

@@ -14,7 +14,9 @@
 //!          more than a step. `within`: as `traverse_leaves` of boxes that are apart.
 
 use super::{Wanted, of_leaves};
-use crate::abi::{GRAFTED, NONE, NearestArgs, Node, ROOT, Span, TraverseArgs, counter};
+use crate::abi::{
+    Counter, Counters, NONE, NearestArgs, Node, ROOT, Span, TraverseArgs, TraverseFlags, counter,
+};
 use crate::bv::Volume;
 use crate::exec::{Block, Lane, Slot};
 use crate::math::{Real, Vec3};
@@ -25,6 +27,12 @@ use crate::queue::Stack;
 #[inline]
 pub fn length(word: u64) -> f64 {
     if word == 0 { f64::INFINITY } else { f64::from_bits(!word) }
+}
+
+/// The length that a counter holds. Nothing in this launch may change it.
+#[inline(always)]
+pub fn known<B: Block>(b: &B, counters: Counters, which: Counter) -> f64 {
+    length(b.load(counters.word(which), 0))
 }
 
 /// The word of a length: the larger, the shorter that is.
@@ -45,9 +53,9 @@ impl Wanted for Within {
 }
 
 /// At least the largest coordinate of everything. The root of a grafted tree and another's has no volume, but its children have.
-fn largest<V: Volume, B: Block>(b: &B, nodes: Span<Node<V>>, flags: u32) -> f32 {
+fn largest<V: Volume, B: Block>(b: &B, nodes: Span<Node<V>>, flags: TraverseFlags) -> f32 {
     let root = b.load(nodes, ROOT);
-    if flags & GRAFTED == 0 {
+    if !flags.has(TraverseFlags::GRAFTED) {
         return root.volume.reach();
     }
     let of = |node: u32| b.load(nodes, node).volume.reach();
@@ -56,7 +64,7 @@ fn largest<V: Volume, B: Block>(b: &B, nodes: Span<Node<V>>, flags: u32) -> f32 
 
 /// Candidates: one walk a leaf.
 pub fn within<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>) {
-    let best = length(b.load(a.counters, counter::SAMPLED_AGAIN));
+    let best = known(b, a.counters, counter::SAMPLED_AGAIN);
     let bound = bound(best, largest(b, a.nodes, a.flags));
     of_leaves(b, a, Within(bound));
 }
@@ -69,7 +77,7 @@ fn corners<R: Real, V: Volume, L: Lane>(l: &L, a: &NearestArgs<R, V>, triangle: 
 
 /// One round of samples: each looks for its nearest triangle, unless that is certainly farther than what is known.
 pub fn sample<R: Real, V: Volume, B: Block>(b: &mut B, a: &NearestArgs<R, V>) {
-    let before = if a.from == NONE { f64::INFINITY } else { length(b.load(a.counters, a.from)) };
+    let before = known(b, a.counters, a.from);
     let largest = largest(b, a.nodes, a.flags);
     let root = b.load(a.nodes, ROOT);
     // A leaf alone has nothing beside it.
@@ -90,7 +98,7 @@ pub fn sample<R: Real, V: Volume, B: Block>(b: &mut B, a: &NearestArgs<R, V>) {
                 let best = seek(l, a, (leaf, root), (before, largest), (stack, steps.of(l)));
                 // What was known before one of them tells for all.
                 if best < before || i == 0 {
-                    l.fetch_max(a.counters, a.to, word(best));
+                    a.counters.raise(l, a.to, word(best));
                 }
             }
             l.meet();
@@ -98,7 +106,7 @@ pub fn sample<R: Real, V: Volume, B: Block>(b: &mut B, a: &NearestArgs<R, V>) {
         base += stride;
     }
     let sum = b.scan(&mut steps);
-    b.reserve(a.counters, counter::STEPS, sum as u64);
+    a.counters.add_once(b, counter::STEPS, sum as u64);
 }
 
 /// How far the triangle at a leaf's node is from those that it comes to, as many as it may measure, if that is less than `best`; else `best`.

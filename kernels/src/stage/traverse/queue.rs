@@ -12,9 +12,9 @@
 //!          one list, the units of a share spread over all of it, and nothing is copied.
 //! Cost     a unit: two dependent reads, two overlap tests, four barriers of a block of two warps.
 //!
-//! [`FRONT`]: crate::abi::FRONT
+//! [`FRONT`]: crate::abi::TraverseFlags::FRONT
 
-use crate::abi::{LAST, Pair, QueueArgs, START, counter};
+use crate::abi::{Pair, QueueArgs, QueueFlags, counter};
 use crate::bv::Volume;
 use crate::exec::{Block, Lane};
 use crate::queue::worker::{Outside, Worker};
@@ -22,7 +22,7 @@ use crate::queue::worker::{Outside, Worker};
 /// A round.
 pub fn queue<V: Volume, B: Block>(b: &mut B, a: &QueueArgs<V>) {
     let (block, blocks) = (b.block(), b.blocks());
-    let start = a.flags & START != 0;
+    let start = a.flags.has(QueueFlags::START);
     // This block's share: unit i of it lies at first + i * stride.
     let (first, stride, share) = if start {
         (0, 1, 0)
@@ -96,17 +96,17 @@ fn leave<V: Volume, B: Block>(
                 Some(places) => places.report(l, a.to.counters),
                 None => {
                     l.fetch_add(a.idle, a.round, 1);
-                    l.fetch_add(a.to.counters, counter::IDLE_EXITS, 1);
+                    a.to.counters.add(l, counter::IDLE_EXITS, 1);
                 }
             }
             if block == 0 {
-                l.fetch_add(a.to.counters, counter::QUEUE_ROUNDS, 1);
+                a.to.counters.add(l, counter::QUEUE_ROUNDS, 1);
             }
             if a.segment > 0 {
                 l.write(a.left_counts, block, stored);
             }
-            if a.flags & LAST != 0 && stored > 0 {
-                l.fetch_add(a.to.counters, counter::UNFINISHED, stored);
+            if a.flags.has(QueueFlags::LAST) && stored > 0 {
+                a.to.counters.add(l, counter::UNFINISHED, stored);
             }
         }
     });

@@ -32,7 +32,7 @@
 
 use crate::abi::control::{Counts, MOST_OFFERS, OFFER, TICKET, WORK};
 use crate::abi::pool::{CHUNK, GONE, STATE};
-use crate::abi::{EAGER, Span, StealArgs, counter};
+use crate::abi::{Span, StealArgs, StealFlags, counter};
 use crate::bv::Volume;
 use crate::exec::{Block, Lane, Shared, Slot};
 use crate::queue::pair::ROOTS;
@@ -66,7 +66,7 @@ pub fn steal<V: Volume, B: Block>(b: &mut B, a: &StealArgs<V>) {
     let begin = block * a.segment;
     let mut outside =
         Outside { units: a.units, segment: (begin, a.segment), stored: 0, count: (Span::EMPTY, 0) };
-    let keep = if a.flags & EAGER != 0 { 0 } else { b.lanes().min(a.to.local / 2) };
+    let keep = if a.flags.has(StealFlags::EAGER) { 0 } else { b.lanes().min(a.to.local / 2) };
     let policy = OfferPolicy { keep, spare: (keep / 4).max(1), least: (keep / 16).max(1) };
     let (mut draw, mut turn) = (TICKET, block);
     loop {
@@ -109,7 +109,7 @@ pub fn steal<V: Volume, B: Block>(b: &mut B, a: &StealArgs<V>) {
 /// A block's share of the tickets that wait: those by those at work, rounded up in some turns and down in others.
 fn share<V: Volume>(a: &StealArgs<V>, seen: Counts, turn: u32) -> u32 {
     let waiting = seen.waiting();
-    let eager = (a.flags & EAGER != 0) as u32;
+    let eager = a.flags.has(StealFlags::EAGER) as u32;
     if waiting + eager == 0 || seen.offers as u64 >= a.pool.len() {
         return 0;
     }
@@ -218,7 +218,7 @@ fn search<V: Volume, L: Lane>(l: &L, a: &StealArgs<V>, mut draw: u64) -> (u32, u
         draw = TICKET;
         let some = wait(l, a, ticket - 1, &mut tries);
         if some > 0 {
-            l.fetch_add(a.to.counters, counter::STOLEN, some as u64);
+            a.to.counters.add(l, counter::STOLEN, some as u64);
             // The barrier at the end of this phase passes on to all lanes what this fence lets this one take.
             l.fence();
             return (ticket, some);

@@ -1,0 +1,90 @@
+//! The counters of a frame, and what they came to.
+
+use super::purpose;
+use crate::device::{Ahead, Buffer, Device};
+use crate::error::Error;
+use nearmiss_kernels::abi::{Counter, Counters, counter};
+use std::ops::{Index, IndexMut};
+
+/// What each counter of a frame came to, by its name.
+///
+/// ```
+/// use nearmiss::pipeline::counts::Counts;
+/// use nearmiss_kernels::abi::counter;
+/// assert_eq!(Counts::default()[counter::PAIRS], 0);
+/// ```
+/// No number names one:
+/// ```compile_fail,E0277
+/// let pairs = nearmiss::pipeline::counts::Counts::default()[0];
+/// ```
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Counts([u64; counter::COUNT]);
+
+impl Default for Counts {
+    /// Nothing was counted.
+    fn default() -> Self {
+        Counts([0; counter::COUNT])
+    }
+}
+
+impl Index<Counter> for Counts {
+    type Output = u64;
+    fn index(&self, which: Counter) -> &u64 {
+        &self.0[which.place() as usize]
+    }
+}
+
+impl IndexMut<Counter> for Counts {
+    fn index_mut(&mut self, which: Counter) -> &mut u64 {
+        &mut self.0[which.place() as usize]
+    }
+}
+
+/// The counters of a frame, in a device's memory.
+pub struct FrameCounters(Buffer<u64>);
+
+impl FrameCounters {
+    /// Takes the memory; what is in it is unknown.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub fn new(device: &Device) -> Result<Self, Error> {
+        device.of(purpose::COUNTERS).buffer(counter::COUNT).map(FrameCounters)
+    }
+
+    /// What a kernel is given.
+    pub fn counters(&self) -> Counters {
+        Counters::new(self.0.span())
+    }
+
+    /// Sets all to zero.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn clear(&mut self) -> Result<(), Error> {
+        self.0.clear()
+    }
+
+    /// Sets all.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn write(&mut self, counts: &Counts) -> Result<(), Error> {
+        self.0.write(&counts.0)
+    }
+
+    /// What they came to; waits for what was launched.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn read(&self) -> Result<Counts, Error> {
+        let mut counts = Counts::default();
+        counts.0.copy_from_slice(&self.0.read(counter::COUNT)?);
+        Ok(counts)
+    }
+
+    /// All of them, to be read ahead.
+    pub fn ahead(&self) -> Ahead<'_> {
+        self.0.ahead(counter::COUNT)
+    }
+}

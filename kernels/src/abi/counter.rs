@@ -1,0 +1,167 @@
+//! The counters of a frame: what each counts, and the memory that they are in.
+
+use super::{Output, Span};
+use bytemuck::{Pod, Zeroable};
+
+/// Which counter. Those that there are have names here, in this module; no number is one.
+///
+/// ```compile_fail,E0423
+/// let which = nearmiss_kernels::abi::Counter(3);
+/// ```
+/// ```compile_fail,E0308
+/// let which: nearmiss_kernels::abi::Counter = 3;
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(transparent)]
+pub struct Counter(u32);
+
+impl Counter {
+    /// Its place among all.
+    #[inline(always)]
+    pub const fn place(self) -> u32 {
+        self.0
+    }
+}
+
+/// Rounds of the traversal that may spill; one more, without a budget, ends it.
+pub const ROUNDS: u32 = 4;
+
+/// Gives each counter the next place: no two have one.
+macro_rules! counters {
+    ($at:expr;) => {
+        /// How many counters there are.
+        pub const COUNT: usize = $at as usize;
+    };
+    ($at:expr; $(#[$doc:meta])* $name:ident, $($rest:tt)*) => {
+        $(#[$doc])*
+        pub const $name: Counter = Counter($at);
+        counters!($at + 1; $($rest)*);
+    };
+    ($at:expr; $(#[$doc:meta])* $name:ident: [$count:expr], $($rest:tt)*) => {
+        $(#[$doc])*
+        pub const $name: [Counter; $count as usize] = {
+            let mut all = [Counter($at); $count as usize];
+            let mut i = 1;
+            while i < all.len() {
+                all[i].0 += i as u32;
+                i += 1;
+            }
+            all
+        };
+        counters!($at + $count; $($rest)*);
+    };
+}
+
+// Those of lists are the exact demand, also where the list was too short.
+counters! { 0;
+    /// Candidate triangle pairs.
+    PAIRS,
+    /// Vertex/face candidates.
+    VF,
+    /// Edge/edge candidates.
+    EE,
+    /// Pairs that the discrete filter could not decide.
+    UNDECIDED,
+    /// Triangle pairs in contact.
+    CONTACTS,
+    /// Vertex/face contacts.
+    VF_HITS,
+    /// Edge/edge contacts.
+    EE_HITS,
+    /// Node pairs tested by the traversal.
+    STEPS,
+    /// Vertex/face candidates that may meet.
+    VF_SURVIVORS,
+    /// Edge/edge candidates that may meet.
+    EE_SURVIVORS,
+    /// Units spilled by each round of the traversal that may.
+    SPILLED: [ROUNDS],
+    /// Pairs of nodes where the descent ended.
+    ENDS,
+    /// Most units that waited in the longest list of a queue, or past its end.
+    QUEUED,
+    /// Units that were left when the last round was over.
+    UNFINISHED,
+    /// Rounds of the queues that had work.
+    QUEUE_ROUNDS,
+    /// How often a queue ran dry.
+    IDLE_EXITS,
+    /// Units that a queue on chip had no room for.
+    QUEUE_SPILLS,
+    /// Units that a balance moved.
+    MOVES,
+    /// Units that a block took from the pool.
+    STOLEN,
+    /// Overlap tests made for pairs of the front.
+    FRONT_TESTS,
+    /// Pairs of the front that gave way to an ancestor.
+    PRUNED,
+    /// Vertex/face pairs that f32 leaves to f64.
+    VF_ESCALATED,
+    /// Edge/edge pairs that f32 leaves to f64.
+    EE_ESCALATED,
+    /// Hits that are neither certain contacts nor certainly none.
+    UNRESOLVED,
+    /// Vertex/face pairs that isolation leaves.
+    VF_OPEN,
+    /// Edge/edge pairs that isolation leaves.
+    EE_OPEN,
+    /// Vertex/face pairs that are cut into slices.
+    VF_HARD,
+    /// Edge/edge pairs that are cut into slices.
+    EE_HARD,
+    /// Hits whose budget of boxes ended.
+    ENDED,
+    /// Those of them that are neither certain contacts nor certainly none.
+    ENDED_UNRESOLVED,
+    /// Hits too large for the tolerance.
+    BELOW_PRECISION,
+    /// Pairs that the discrete filter could not decide in f64 either.
+    UNDECIDED_WIDE,
+    /// Contacts that were put into order.
+    ORDERED,
+    /// The least distance before any is known: 0, see [`crate::stage::traverse::nearest::word`].
+    UNKNOWN,
+    /// The least distance of the first samples.
+    SAMPLED,
+    /// That of all samples.
+    SAMPLED_AGAIN,
+    /// That of all candidates.
+    NEAREST,
+    /// The complement of the first pair of that distance: its smaller triangle above the other.
+    WITNESS,
+    /// 1 where there is such a pair.
+    NEAREST_PAIRS,
+}
+
+/// The counters of a frame, in device memory.
+#[derive(Clone, Copy, Debug)]
+#[repr(transparent)]
+pub struct Counters(Span<u64>);
+
+// SAFETY: a span, which may be zeros.
+unsafe impl Zeroable for Counters {}
+
+impl Counters {
+    /// Those in that memory.
+    ///
+    /// # Panics
+    /// When it has not one word for each: a fault of the caller.
+    pub const fn new(words: Span<u64>) -> Self {
+        assert!(words.len() == COUNT as u64, "a word for each counter");
+        Counters(words)
+    }
+    /// All words, in the order of [`Counter::place`].
+    #[inline(always)]
+    pub const fn words(&self) -> Span<u64> {
+        self.0
+    }
+    /// The word of one.
+    pub const fn word(&self, which: Counter) -> Span<u64> {
+        self.0.part(which.0 as u64, 1)
+    }
+    /// A list in that memory, counted by one of them.
+    pub const fn output<T>(&self, items: Span<T>, by: Counter) -> Output<T> {
+        Output::new(items, self.word(by))
+    }
+}
