@@ -27,7 +27,7 @@ fn certain<V: Kernels>(axes: Axes, refit: Refit, told: bool) -> usize {
     let certified =
         Certified { tolerance: Some(1e-3), separation: 0.1, ..Certified::by(CertifiedPrecision::F64) };
     let query = Query::from(Continuous::by(certified)).with_refit(refit);
-    let layout = Arc::new(Layout::new(bodies, QueryKind::Near));
+    let layout = Arc::new(Layout::new(bodies, query.kind()));
     let mut pipeline =
         TypedPipeline::<f32, V>::new(device, bodies, layout, (query, axes)).expect("a pipeline");
     if !told {

@@ -9,7 +9,7 @@ use nearmiss_kernels::bv::Aabb;
 /// A prepared pipeline over a soup, whose list of pairs has too little room for a frame.
 fn prepared(device: &Device) -> TypedPipeline<f32, Aabb> {
     let bodies = [samples::soup(300, 5, false)];
-    let layout = Arc::new(Layout::new(&bodies, QueryKind::Discrete));
+    let layout = Arc::new(Layout::new(&bodies, Query::discrete().kind()));
     let query = Query::discrete();
     let mut pipeline =
         TypedPipeline::<f32, Aabb>::new(device.clone(), &bodies, layout, (query, Axes::PCA)).expect("memory");

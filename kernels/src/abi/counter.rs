@@ -120,7 +120,7 @@ counters! { 0;
     UNDECIDED_WIDE,
     /// Contacts that were put into order.
     ORDERED,
-    /// The least distance before any is known: 0, see [`crate::stage::traverse::nearest::word`].
+    /// The least distance before any is known: always 0, see [`Counters::shortest`].
     UNKNOWN,
     /// The least distance of the first samples.
     SAMPLED,

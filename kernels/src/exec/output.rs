@@ -55,6 +55,30 @@ impl Counters {
     pub fn add_once<B: Block>(&self, b: &mut B, which: Counter, count: u64) {
         b.reserve(self.words(), which.place(), count);
     }
+    /// What one stands at while lanes change it.
+    #[inline(always)]
+    pub fn look<L: Lane>(&self, l: &L, which: Counter) -> u64 {
+        l.fetch_load(self.words(), which.place())
+    }
+    /// As [`Counters::raise`], where it mostly is not below: a look is cheaper than many atomics of one word.
+    #[inline(always)]
+    pub fn raise_seldom<L: Lane>(&self, l: &L, which: Counter, least: u64) {
+        if self.look(l, which) < least {
+            self.raise(l, which, least);
+        }
+    }
+    /// The shortest length that one was told, infinite where there is none: it holds the complement of its bits, so that zero is none and
+    /// the largest is the shortest. Nothing in this launch may tell one.
+    #[inline(always)]
+    pub fn shortest<B: Block>(&self, b: &B, which: Counter) -> f64 {
+        let word = b.load(self.words(), which.place());
+        if word == 0 { f64::INFINITY } else { f64::from_bits(!word) }
+    }
+    /// Tells one a length, which is not below 0.
+    #[inline(always)]
+    pub fn shorten<L: Lane>(&self, l: &L, which: Counter, length: f64) {
+        self.raise_seldom(l, which, !length.to_bits());
+    }
     /// Raises one to `least`, where it is below, by an atomic of this lane.
     #[inline(always)]
     pub fn raise<L: Lane>(&self, l: &L, which: Counter, least: u64) {

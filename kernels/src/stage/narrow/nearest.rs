@@ -14,11 +14,10 @@
 //!          where some share a point.
 
 use super::stride;
-use crate::abi::{Counter, LeastArgs, NearestHit, Pair, counter};
+use crate::abi::{LeastArgs, NearestHit, Pair, counter};
 use crate::exec::{Block, Lane};
 use crate::math::{Real, Vec3};
 use crate::prim::nearest::{Nearest, farther};
-use crate::stage::traverse::nearest::{known, word};
 
 /// The least of all positive numbers: how far apart triangles are that share no point, although no digit tells.
 const BARELY: f64 = f64::from_bits(1);
@@ -35,14 +34,6 @@ fn apart<R: Real>([p, q]: &[[Vec3<R>; 3]; 2], best: f64) -> Option<f64> {
     (!farther(p, q, best)).then(|| Nearest::of(p, q).distance.greater(BARELY))
 }
 
-/// Raises a counter to a value; mostly it is there already.
-#[inline(always)]
-fn raise<R: Real, L: Lane>(l: &L, a: &LeastArgs<R>, which: Counter, value: u64) {
-    if l.fetch_load(a.counters.word(which), 0) < value {
-        a.counters.raise(l, which, value);
-    }
-}
-
 /// How many candidates are to be measured: none where some share a point.
 fn measured<R: Real, B: Block>(b: &B, a: &LeastArgs<R>) -> u32 {
     if b.load(a.meeting.count(), 0) > 0 { 0 } else { a.pairs.listed(b) }
@@ -51,7 +42,7 @@ fn measured<R: Real, B: Block>(b: &B, a: &LeastArgs<R>) -> u32 {
 /// The least distance.
 pub fn least<R: Real, B: Block>(b: &mut B, a: &LeastArgs<R>) {
     let count = measured(b, a);
-    let sampled = known(b, a.counters, counter::SAMPLED_AGAIN).greater(BARELY);
+    let sampled = a.counters.shortest(b, counter::SAMPLED_AGAIN).greater(BARELY);
     stride(b, count, |b, base| {
         b.phase(|l| {
             let i = base + l.lane();
@@ -59,7 +50,7 @@ pub fn least<R: Real, B: Block>(b: &mut B, a: &LeastArgs<R>) {
                 && let Some(distance) = apart(&corners(l, a, a.pairs.get(l, i)), sampled)
                 && distance <= sampled
             {
-                raise(l, a, counter::NEAREST, word(distance));
+                a.counters.shorten(l, counter::NEAREST, distance);
             }
             l.meet();
         });
@@ -74,22 +65,22 @@ pub fn witness<R: Real, B: Block>(b: &mut B, a: &LeastArgs<R>) {
         b.phase(|l| {
             let i = base + l.lane();
             if i < meeting {
-                raise(l, a, counter::WITNESS, key(a.meeting.get(l, i)));
+                a.counters.raise_seldom(l, counter::WITNESS, key(a.meeting.get(l, i)));
             }
             l.meet();
         });
     });
     let count = measured(b, a);
-    let best = known(b, a.counters, counter::NEAREST);
+    let best = a.counters.shortest(b, counter::NEAREST);
     stride(b, count, |b, base| {
         b.phase(|l| {
             let i = base + l.lane();
             if i < count {
                 let pair = a.pairs.get(l, i);
                 // Behind one that was found already it need not be measured.
-                let is_earlier = l.fetch_load(a.counters.word(counter::WITNESS), 0) < key(pair);
+                let is_earlier = a.counters.look(l, counter::WITNESS) < key(pair);
                 if is_earlier && apart(&corners(l, a, pair), best) == Some(best) {
-                    raise(l, a, counter::WITNESS, key(pair));
+                    a.counters.raise(l, counter::WITNESS, key(pair));
                 }
             }
             l.meet();
@@ -101,7 +92,7 @@ pub fn witness<R: Real, B: Block>(b: &mut B, a: &LeastArgs<R>) {
 pub fn nearest<R: Real, B: Block>(b: &mut B, a: &LeastArgs<R>) {
     let witness = b.load(a.counters.word(counter::WITNESS), 0);
     let meets = b.load(a.meeting.count(), 0) > 0;
-    let distance = if meets { 0.0 } else { known(b, a.counters, counter::NEAREST) };
+    let distance = if meets { 0.0 } else { a.counters.shortest(b, counter::NEAREST) };
     b.phase(|l| {
         if l.lane() == 0 && witness != 0 {
             let pair = Pair { a: (!witness >> 32) as u32, b: !witness as u32 };

@@ -14,32 +14,12 @@
 //!          more than a step. `within`: as `traverse_leaves` of boxes that are apart.
 
 use super::{Wanted, of_leaves};
-use crate::abi::{
-    Counter, Counters, NONE, NearestArgs, Node, ROOT, Span, TraverseArgs, TraverseFlags, counter,
-};
+use crate::abi::{NONE, NearestArgs, Node, ROOT, Span, TraverseArgs, TraverseFlags, counter};
 use crate::bv::Volume;
 use crate::exec::{Block, Lane, Slot};
 use crate::math::{Real, Vec3};
 use crate::prim::nearest::{Nearest, bound};
 use crate::queue::Stack;
-
-/// The length whose bits' complement a word holds; infinite where it is zero.
-#[inline]
-pub fn length(word: u64) -> f64 {
-    if word == 0 { f64::INFINITY } else { f64::from_bits(!word) }
-}
-
-/// The length that a counter holds. Nothing in this launch may change it.
-#[inline(always)]
-pub fn known<B: Block>(b: &B, counters: Counters, which: Counter) -> f64 {
-    length(b.load(counters.word(which), 0))
-}
-
-/// The word of a length: the larger, the shorter that is.
-#[inline]
-pub fn word(length: f64) -> u64 {
-    !length.to_bits()
-}
 
 /// Those not farther apart than a length.
 #[derive(Clone, Copy)]
@@ -64,7 +44,7 @@ fn largest<V: Volume, B: Block>(b: &B, nodes: Span<Node<V>>, flags: TraverseFlag
 
 /// Candidates: one walk a leaf.
 pub fn within<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>) {
-    let best = known(b, a.counters, counter::SAMPLED_AGAIN);
+    let best = a.counters.shortest(b, counter::SAMPLED_AGAIN);
     let bound = bound(best, largest(b, a.nodes, a.flags));
     of_leaves(b, a, Within(bound));
 }
@@ -77,7 +57,7 @@ fn corners<R: Real, V: Volume, L: Lane>(l: &L, a: &NearestArgs<R, V>, triangle: 
 
 /// One round of samples: each looks for its nearest triangle, unless that is certainly farther than what is known.
 pub fn sample<R: Real, V: Volume, B: Block>(b: &mut B, a: &NearestArgs<R, V>) {
-    let before = known(b, a.counters, a.from);
+    let before = a.counters.shortest(b, a.from);
     let largest = largest(b, a.nodes, a.flags);
     let root = b.load(a.nodes, ROOT);
     // A leaf alone has nothing beside it.
@@ -98,7 +78,7 @@ pub fn sample<R: Real, V: Volume, B: Block>(b: &mut B, a: &NearestArgs<R, V>) {
                 let best = seek(l, a, (leaf, root), (before, largest), (stack, steps.of(l)));
                 // What was known before one of them tells for all.
                 if best < before || i == 0 {
-                    a.counters.raise(l, a.to, word(best));
+                    a.counters.shorten(l, a.to, best);
                 }
             }
             l.meet();
