@@ -8,7 +8,7 @@ use crate::progress::during;
 use crate::report::{FileFaces, Format, Report};
 use crate::rows::{Columns, Rows};
 use nearmiss::Detector;
-use nearmiss::contacts::Contacts;
+use nearmiss::contacts::{Contacts, Summary};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::query::{Query, QueryKind};
@@ -248,7 +248,7 @@ fn line(report: &Report, at_rest: bool) -> String {
         "{} {}: {}{}; ms {:.3}, waited for {:.3}; hash {}\n",
         if at_rest { "frame" } else { "step" },
         report.step.unwrap_or(0),
-        counted(summary.contacts as u64, "contact", "contacts"),
+        found(summary),
         summary.earliest_toi.map_or(String::new(), |toi| format!(", the first at t = {toi}")),
         summary.ms.total,
         summary.ms.wall,
@@ -260,6 +260,15 @@ fn line(report: &Report, at_rest: bool) -> String {
     text
 }
 
+/// What a step found.
+fn found(summary: &Summary) -> String {
+    match (&summary.nearest, summary.query) {
+        (Some(nearest), _) => format!("distance {}", nearest.distance),
+        (None, QueryKind::Distance) => "no distance".into(),
+        _ => counted(summary.contacts as u64, "contact", "contacts"),
+    }
+}
+
 /// Of all steps.
 #[derive(Default)]
 struct Total {
@@ -267,6 +276,8 @@ struct Total {
     contacts: u64,
     ms: [f64; 2],
     first: Option<(usize, f64)>,
+    /// The least distance, and its frame.
+    nearest: Option<(f64, usize)>,
 }
 
 impl Total {
@@ -276,18 +287,26 @@ impl Total {
         self.ms[0] += found.stages.total;
         self.ms[1] += found.stages.wall;
         self.first = self.first.or(found.earliest_toi().map(|toi| (step, toi)));
+        let nearer = |least: f64| self.nearest.is_none_or(|(other, _)| least < other);
+        if let Some(least) = found.distance().filter(|&least| nearer(least)) {
+            self.nearest = Some((least, step));
+        }
     }
 
     fn text(&self, at_rest: bool) -> String {
         let [name, names] = if at_rest { ["frame", "frames"] } else { ["step", "steps"] };
-        format!(
-            "{} in {}{}; ms {:.3}, waited for {:.3}\n",
-            counted(self.contacts, "contact", "contacts"),
-            counted(self.steps, name, names),
-            self.first
-                .map_or(String::new(), |(step, toi)| format!(", the first in step {step} at t = {toi}")),
-            self.ms[0],
-            self.ms[1]
-        )
+        let first = |(step, toi)| format!(", the first in step {step} at t = {toi}");
+        let found = match self.nearest {
+            Some((least, step)) => {
+                format!("{least} apart where they are nearest, in {name} {step} of {}", self.steps)
+            }
+            None => format!(
+                "{} in {}{}",
+                counted(self.contacts, "contact", "contacts"),
+                counted(self.steps, name, names),
+                self.first.map_or(String::new(), first)
+            ),
+        };
+        format!("{found}; ms {:.3}, waited for {:.3}\n", self.ms[0], self.ms[1])
     }
 }

@@ -41,6 +41,27 @@ fn the_nearest_triangles_are_told() {
     );
 }
 
+/// A ball of three vertices comes down on a triangle, frame after frame.
+#[test]
+fn a_scene_of_frames_tells_each_distance() {
+    let folder = Folder::new("distance-frames");
+    folder.write("low.obj", LOW);
+    folder.write("high.obj", HIGH);
+    let pose = |z: f64| format!("{{ translation = [0.0, 0.0, {z:?}] }}");
+    let scene = format!(
+        "[[body]]\nkind = \"static\"\nmeshes = [\"low.obj\"]\n\
+         [[body]]\nkind = \"rigid\"\nmeshes = [\"high.obj\"]\nposes = [{}, {}, {}]\n",
+        pose(1.0),
+        pose(0.0),
+        pose(0.5)
+    );
+    let text = ok(&["detect", &folder.write("scene.toml", &scene), "--backend", "cpu", "--distance"]);
+    for line in ["frame 0: distance 1.25;", "frame 1: distance 0.25;", "frame 2: distance 0.75;"] {
+        assert!(text.contains(line), "{text}");
+    }
+    assert!(text.contains("0.25 apart where they are nearest, in frame 1 of 3;"), "{text}");
+}
+
 #[test]
 fn one_mesh_has_no_distance_and_says_why() {
     let folder = Folder::new("no-distance");
