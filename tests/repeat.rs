@@ -29,10 +29,12 @@ fn a_repeated_stage_leaves_the_answer_as_it_is() {
     let body = scene::scene("soup-moving", 300, 3).expect("a scene");
     for device in [engine(), sanitizer()] {
         for query in Query::every() {
+            // A distance is that of two bodies.
+            let count = if query.kind().is_within_bodies() { 1 } else { 2 };
+            let bodies = vec![body.clone(); count];
             for stage in STAGES {
-                let mut plain = Detector::new(device.clone(), vec![body.clone()], query).expect("a detector");
-                let mut detector =
-                    Detector::new(device.clone(), vec![body.clone()], query).expect("a detector");
+                let mut plain = Detector::new(device.clone(), bodies.clone(), query).expect("a detector");
+                let mut detector = Detector::new(device.clone(), bodies.clone(), query).expect("a detector");
                 let mut same = |detector: &mut Detector, what: &str| {
                     let (one, other) =
                         (plain.detect().expect("an answer"), detector.detect().expect("an answer"));
