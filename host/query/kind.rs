@@ -103,7 +103,7 @@ macro_rules! kinds {
                 }
             }
 
-            /// Whether it may be searched by more than one walk: else [`Traversal::NearestFirst`](super::Traversal::NearestFirst)
+            /// Whether it may be searched by more than one walk: else [`Traversal::NearestFirst`](crate::query::Traversal::NearestFirst)
             /// is the only one.
             pub fn takes_traversals(self) -> bool {
                 match self {

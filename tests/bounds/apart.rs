@@ -35,7 +35,7 @@ fn measure<V: Volume>(name: &str) -> (f64, u32) {
     let (mut most, mut told) = (f64::MIN, 0);
     for i in 0..2_100 {
         let [p, q] = pair(&mut r, i % 7);
-        let of = |t: &Triangle| V::still(t.map(|p| Vec3(p.map(|x| f32::of(x)))));
+        let of = |t: &Triangle| V::still(t.map(|p| Vec3(p.map(f32::of))));
         let (mut a, mut b) = (of(&p), of(&q));
         if i % 3 == 0 {
             // Around more than them.

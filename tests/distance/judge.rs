@@ -79,14 +79,13 @@ impl Truth {
         if found.bodies[0] >= found.bodies[1] {
             return fault("the order of bodies".into());
         }
-        for k in 0..2 {
-            let weights = found.weights[k];
+        for ((weights, point), corners) in found.weights.iter().zip(&found.points).zip(&own) {
             let summed = (weights.iter().sum::<f64>() - 1.0).abs() <= 4.0 * U64;
             if !weights.iter().all(|w| (0.0..=1.0).contains(w)) || !summed {
                 return fault(format!("weights {weights:?}"));
             }
-            let at = |c: usize| (0..3).map(|i| weights[i] * own[k][i][c]).sum::<f64>();
-            if !(0..3).all(|c| (at(c) - found.points[k][c]).abs() <= error + 8.0 * U64 * at(c).abs()) {
+            let at = |c: usize| weights.iter().zip(corners).map(|(w, corner)| w * corner[c]).sum::<f64>();
+            if !(0..3).all(|c| (at(c) - point[c]).abs() <= error + 8.0 * U64 * at(c).abs()) {
                 return fault("points beside their weights".into());
             }
         }

@@ -5,8 +5,8 @@
 //! that hold there: at most the true one and `DISTANCE_ERROR` of the reach, at least the true one less `DISTANCE_CERTAIN`
 //! of it, where the reach is at most the largest difference of two coordinates of the six corners.
 //!
-//! Whether triangles share a point is not told by this, but by [`tri_tri`](super::tri_tri), exactly; where they do, [`crossing`] finds
-//! a point of both.
+//! Whether triangles share a point is not told by this, but by [`tri_tri`](super::tri_tri), exactly; where they do, [`Nearest::meeting`]
+//! finds a point of both.
 
 use super::near::distance;
 use crate::math::tolerance::{DISTANCE_CERTAIN, DISTANCE_UP, U64};

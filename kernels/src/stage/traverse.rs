@@ -92,10 +92,8 @@ fn of_leaves<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>, wanted: impl W
     let root = b.load(a.nodes, ROOT);
     run(b, a, a.leaf_nodes.len() as u32, wanted, |l, i, walk| {
         start(l, a, walk, l.read(a.leaf_nodes, i));
-        // Of the last leaf nothing comes later; the root of a grafted tree and another's has no volume.
-        if a.flags.has(TraverseFlags::GRAFTED)
-            || (root.last >= walk.from && wanted.wants(&walk.volume, &root.volume))
-        {
+        // Of the last leaf nothing comes later. All that there is lies in the root, which needs no test.
+        if a.flags.has(TraverseFlags::GRAFTED) || root.last >= walk.from {
             walk.next = root.link;
         }
     });
