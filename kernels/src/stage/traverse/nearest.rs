@@ -14,7 +14,9 @@
 //!          more than a step. `within`: as `traverse_leaves` of boxes that are apart.
 
 use super::{Wanted, of_leaves};
-use crate::abi::{NONE, NearestArgs, Node, ROOT, Span, TraverseArgs, TraverseFlags, counter};
+use crate::abi::{
+    GRAFTED_ROOT, MOVING_ROOT, NONE, NearestArgs, Node, ROOT, Span, TraverseArgs, TraverseFlags, counter,
+};
 use crate::bv::Volume;
 use crate::exec::{Block, Lane, Slot};
 use crate::math::{Real, Vec3};
@@ -34,18 +36,16 @@ impl Wanted for Within {
 
 /// At least the largest coordinate of everything. The root of a grafted tree and another's has no volume, but its children have.
 fn largest<V: Volume, B: Block>(b: &B, nodes: Span<Node<V>>, flags: TraverseFlags) -> f32 {
-    let root = b.load(nodes, ROOT);
-    if !flags.has(TraverseFlags::GRAFTED) {
-        return root.volume.reach();
-    }
     let of = |node: u32| b.load(nodes, node).volume.reach();
-    of(root.link).greater(of(root.link + 1))
+    if flags.has(TraverseFlags::GRAFTED) { of(GRAFTED_ROOT).greater(of(MOVING_ROOT)) } else { of(ROOT) }
 }
 
 /// Candidates: one walk a leaf.
 pub fn within<V: Volume, B: Block>(b: &mut B, a: &TraverseArgs<V>) {
     let best = a.counters.shortest(b, counter::SAMPLED_AGAIN);
     let bound = bound(best, largest(b, a.nodes, a.flags));
+    // All lanes come to the same bound; that they are together again behind its branches is not left to the assembler.
+    b.phase(|l| l.meet());
     of_leaves(b, a, Within(bound));
 }
 
