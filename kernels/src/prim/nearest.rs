@@ -3,7 +3,8 @@
 //! Triangles that share no point are nearest at a vertex of one and the other, or at an edge of each: fifteen pairs of features,
 //! measured as [`near`](super::near) measures them, and the first of the shortest is taken. So the computed distance has the bounds
 //! that hold there: at most the true one and `DISTANCE_ERROR` of the reach, at least the true one less `DISTANCE_CERTAIN`
-//! of it, where the reach is at most the largest difference of two coordinates of the six corners.
+//! of it, where the reach is at most the largest difference of two coordinates of the six corners. It is never below the [`gap`] of
+//! their boxes, which is the true one where planes along an axis part them: so what is not nearer by its boxes need not be measured.
 //!
 //! Whether triangles share a point is not told by this, but by [`tri_tri`](super::tri_tri), exactly; where they do, [`Nearest::meeting`]
 //! finds a point of both.
@@ -85,6 +86,7 @@ impl Nearest {
             vertices = turned(vertices);
             m += 1;
         }
+        best.distance = best.distance.greater(gap(p, q));
         best
     }
 
@@ -127,20 +129,18 @@ fn crossing([a, b]: [Vec3<f64>; 2], face: &Corners<f64>) -> Option<(f64, f64, [f
     Some((far, t, at))
 }
 
-/// Whether two triangles are certainly farther apart, as [`Nearest::of`] would compute it, than `best`: by the boxes of their corners. The
-/// gap of these is computed with relative errors below those for which the square of `DISTANCE_UP` allows.
+/// How far apart the boxes of the corners are: 0 where they overlap, the difference where one axis alone parts them. Not above the true
+/// distance of the triangles by more than `6u` of that, for a difference, squares, their sum and its root.
 #[inline]
-pub fn farther<R: Real>(p: &Corners<R>, q: &Corners<R>, best: f64) -> bool {
+pub fn gap<R: Real>(p: &Corners<R>, q: &Corners<R>) -> f64 {
     let lowest = |c: &Corners<R>| c[0].lesser(c[1]).lesser(c[2]).map(|x| x.wide());
     let highest = |c: &Corners<R>| c[0].greater(c[1]).greater(c[2]).map(|x| x.wide());
-    let ([a, b], [c, d]) = ([lowest(p), lowest(q)], [highest(p), highest(q)]);
-    let gaps = (b - c).greater(a - d).greater(Vec3([0.0; 3]));
-    let extents = c.greater(d) - a.lesser(b);
-    let largest = |v: Vec3<f64>| v[0].greater(v[1]).greater(v[2]);
+    let gaps = (lowest(q) - highest(p)).greater(lowest(p) - highest(q)).greater(Vec3([0.0; 3]));
+    let largest = gaps[0].greater(gaps[1]).greater(gaps[2]);
     let squares = gaps.dot(gaps);
-    // Where squares are too small or too large to tell, the largest gap is enough.
-    let gap = if (SQUARES).contains(&squares) { Real::sqrt(squares) } else { largest(gaps) };
-    gap > (best + DISTANCE_CERTAIN * largest(extents)) * (DISTANCE_UP * DISTANCE_UP)
+    // Where squares are too small or too large to tell, or there is but one, the largest gap is enough.
+    let is_one = squares == largest * largest;
+    if SQUARES.contains(&squares) && !is_one { Real::sqrt(squares) } else { largest }
 }
 
 /// Sums of squares that have all their digits.

@@ -10,28 +10,28 @@
 //!          smallest indices: 0 if and only if some share a point, and then the first of these. Nothing where no pair is asked about.
 //! Room     fixed; cannot run out.
 //! Cost     8 B pair, 24 B faces, 96 B positions (f64: 192 B; gathered), twice; 30 operations, and 4,000 of f64 for a pair whose boxes are
-//!          not farther apart than what is known, the second time only if it comes before what was found. Nothing of this
-//!          where some share a point.
+//!          nearer than what the samples found, and in the second launch for one that is as near and comes before what was found. Nothing
+//!          of this where some share a point.
 
 use super::stride;
 use crate::abi::{LeastArgs, NearestHit, Pair, counter};
 use crate::exec::{Block, Lane};
-use crate::math::{Real, Vec3};
-use crate::prim::nearest::{Nearest, farther};
+use crate::math::Real;
+use crate::prim::nearest::{Corners, Nearest, gap};
 
 /// The least of all positive numbers: how far apart triangles are that share no point, although no digit tells.
 const BARELY: f64 = f64::from_bits(1);
 
 /// The corners of both triangles.
 #[inline(always)]
-fn corners<R: Real, L: Lane>(l: &L, a: &LeastArgs<R>, pair: Pair) -> [[Vec3<R>; 3]; 2] {
+fn corners<R: Real, L: Lane>(l: &L, a: &LeastArgs<R>, pair: Pair) -> [Corners<R>; 2] {
     [pair.a, pair.b].map(|triangle| l.read(a.faces, triangle).map(|vertex| l.read(a.positions, vertex).at))
 }
 
-/// How far apart the triangles are, of which none share a point, unless that is certainly farther than `best`.
+/// How far apart triangles are of which none share a point.
 #[inline(always)]
-fn apart<R: Real>([p, q]: &[[Vec3<R>; 3]; 2], best: f64) -> Option<f64> {
-    (!farther(p, q, best)).then(|| Nearest::of(p, q).distance.greater(BARELY))
+fn apart<R: Real>([p, q]: &[Corners<R>; 2]) -> f64 {
+    Nearest::of(p, q).distance.greater(BARELY)
 }
 
 /// How many candidates are to be measured: none where some share a point.
@@ -42,15 +42,22 @@ fn measured<R: Real, B: Block>(b: &B, a: &LeastArgs<R>) -> u32 {
 /// The least distance.
 pub fn least<R: Real, B: Block>(b: &mut B, a: &LeastArgs<R>) {
     let count = measured(b, a);
+    // That of some candidate: what is not nearer need not be known.
     let sampled = a.counters.shortest(b, counter::SAMPLED_AGAIN).greater(BARELY);
     stride(b, count, |b, base| {
         b.phase(|l| {
             let i = base + l.lane();
-            if i < count
-                && let Some(distance) = apart(&corners(l, a, a.pairs.get(l, i)), sampled)
-                && distance <= sampled
-            {
-                a.counters.shorten(l, counter::NEAREST, distance);
+            if i == 0 {
+                a.counters.shorten(l, counter::NEAREST, sampled);
+            }
+            if i < count {
+                let [p, q] = corners(l, a, a.pairs.get(l, i));
+                if gap(&p, &q) < sampled {
+                    let distance = apart(&[p, q]);
+                    if distance < sampled {
+                        a.counters.shorten(l, counter::NEAREST, distance);
+                    }
+                }
             }
             l.meet();
         });
@@ -78,9 +85,11 @@ pub fn witness<R: Real, B: Block>(b: &mut B, a: &LeastArgs<R>) {
             if i < count {
                 let pair = a.pairs.get(l, i);
                 // Behind one that was found already it need not be measured.
-                let is_earlier = a.counters.look(l, counter::WITNESS) < key(pair);
-                if is_earlier && apart(&corners(l, a, pair), best) == Some(best) {
-                    a.counters.raise(l, counter::WITNESS, key(pair));
+                if a.counters.look(l, counter::WITNESS) < key(pair) {
+                    let [p, q] = corners(l, a, pair);
+                    if gap(&p, &q) <= best && apart(&[p, q]) == best {
+                        a.counters.raise(l, counter::WITNESS, key(pair));
+                    }
                 }
             }
             l.meet();
