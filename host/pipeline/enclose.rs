@@ -1,9 +1,8 @@
 //! Does every node of a tree hold everything below it, frame after frame? Asked exactly, of each volume, on any machine.
 
+use super::broad::trees::{Tree, TreeSpec, Volumes};
 use super::layout::Layout;
 use super::precision::Precision;
-use super::tree::{Tree, TreeSpec};
-use super::volumes::Volumes;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::query::Refit;

@@ -107,6 +107,11 @@ impl Layout {
         !self.records.iter().all(all)
     }
 
+    /// How many triangles may move. Every candidate has one of them.
+    pub fn moving_triangles(&self) -> usize {
+        self.trees[0].iter().map(|&body| self.triangles(body).1 as usize).sum()
+    }
+
     /// The body that has an index of all, and the index there; `of` tells which kind of index.
     pub fn locate(&self, index: u32, of: impl Fn(&Offsets) -> u32) -> (BodyId, u32) {
         // Of bodies without such a feature, which begin where the next one does, the last is it.

@@ -13,8 +13,8 @@ mod submitted;
 pub use found::{Found, Hits, Listed, in_order};
 pub use submit::Submits;
 
+use super::broad::{BroadContext, BroadPhase, Candidates, broad_phase, growth};
 use super::counts::{Counts, FrameCounters};
-use super::forest::Forest;
 use super::layout::Layout;
 use super::list::{GrowableOutput, List};
 use super::narrow::{Narrow, NarrowContext, narrow};
@@ -22,15 +22,11 @@ use super::placing::{Moved, Placing, Whereabouts};
 use super::precision::Precision;
 use super::purpose;
 use super::timing::{Stage, Stages};
-use super::volumes::growth;
-use super::walk::{Walk, WalkContext, flags, walk};
 use crate::device::{Buffer, Device, Event};
 use crate::error::Error;
 use crate::mesh::Body;
 use crate::query::Query;
-use nearmiss_kernels::abi::{self, Output, Pair, counter};
-use nearmiss_kernels::bv::Axes;
-use nearmiss_kernels::entry::Kernels;
+use nearmiss_kernels::abi::{BodyRecord, Pair, TraverseFlags, counter};
 use rayon::prelude::*;
 use std::sync::Arc;
 use xxhash_rust::xxh3::xxh3_64;
@@ -55,16 +51,17 @@ enum Step {
 }
 
 /// The memory of a query, and the way through it.
-pub struct TypedPipeline<R: Precision, V: Kernels> {
+pub struct TypedPipeline<R: Precision> {
     device: Device,
     query: Query,
     layout: Arc<Layout>,
     faces: Buffer<[u32; 3]>,
     vertices: Placing<R>,
-    forest: Forest<V>,
+    /// What the kernels know of the bodies; empty where there is one alone.
+    records: Buffer<BodyRecord>,
+    broad: Box<dyn BroadPhase<R>>,
     counters: FrameCounters,
     pairs: List<Pair>,
-    walk: Box<dyn Walk<R, V>>,
     narrow: Box<dyn Narrow<R>>,
     reruns: u64,
     /// Around the placing of what was moved since the last frame.
@@ -115,37 +112,26 @@ pub trait Pipeline: repeat::Again + submit::Submits + Send {
     fn check(&self) -> Result<(), Error>;
 }
 
-impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
+impl<R: Precision> TypedPipeline<R> {
     /// Takes the memory that the query needs and uploads topology and positions. Something in `layout` may meet.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn new(
-        device: Device,
-        bodies: &[Body],
-        layout: Arc<Layout>,
-        (query, axes): (Query, Axes),
-    ) -> Result<Self, Error> {
-        // Every candidate has a triangle that moves.
-        let triangles = layout.trees[0].iter().map(|&body| layout.triangles(body).1 as usize).sum();
+    pub fn new(device: Device, bodies: &[Body], layout: Arc<Layout>, query: Query) -> Result<Self, Error> {
+        let triangles = layout.moving_triangles();
         let still = query.kind().is_at_rest();
         let a_triangle = if still { PAIRS_A_TRIANGLE } else { SWEPT_PAIRS_A_TRIANGLE };
         let capacity = LEAST_ROOM.max(a_triangle * triangles);
         let few = LEAST_ROOM.max(4 * triangles);
-        let refit = query.refit_on(device.is_gpu());
+        let records: &[BodyRecord] = if layout.has_filters() { &layout.records } else { &[] };
         let mut pipeline = TypedPipeline {
             query,
             faces: device.of(purpose::FACES).upload(&layout.faces)?,
             vertices: Placing::new(&device.of(purpose::VERTICES), &layout, bodies, !still)?,
-            forest: Forest::new(
-                &device.of(purpose::TREE),
-                &layout,
-                refit,
-                (axes, growth(query.listed_within())),
-            )?,
+            records: device.of(purpose::RECORDS).upload(records)?,
+            broad: broad_phase(&device, &layout, &query, growth(query.listed_within()))?,
             counters: FrameCounters::new(&device)?,
             pairs: List::new(&device, "candidate triangle pairs", counter::PAIRS, capacity)?,
-            walk: walk(&device.of(purpose::WALK), &query, triangles)?,
             narrow: narrow(&device, &layout, &query, (capacity, few))?,
             reruns: 0,
             placing: None,
@@ -159,10 +145,6 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
         Ok(pipeline)
     }
 
-    fn frames(&self) -> abi::Positions<R> {
-        self.vertices.frames()
-    }
-
     /// The places of the narrow phase's steps.
     fn narrow_steps_at(&self) -> std::ops::Range<usize> {
         0..self.narrow.steps().len()
@@ -170,11 +152,10 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
 
     /// Runs a stage on what those before it left.
     fn run(&mut self, stage: Stage) -> Result<(), Error> {
-        let (device, frames, faces) = (&self.device, self.frames(), self.faces.span());
         match stage {
             Stage::Construct => self.construct().map(|_| ()),
-            Stage::Fit => self.forest.volumes.fit(device, &self.forest.tree, frames, faces),
-            Stage::Refit => self.forest.volumes.refit(device, &self.forest.tree, frames, faces),
+            Stage::Fit => self.broadly(|broad, given, _| broad.fit(given)),
+            Stage::Refit => self.broadly(|broad, given, _| broad.refit(given)),
             Stage::Traverse => self.step(Step::Traverse),
             Stage::Narrow => self.narrow_steps_at().try_for_each(|at| self.step(Step::Narrow(at))),
             Stage::Order if self.narrow.ordered().is_some() => self.step(Step::Order),
@@ -194,7 +175,7 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
                         frames: self.vertices.frames(),
                         faces: self.faces.span(),
                         pairs: self.pairs.output(self.counters.counters()),
-                        bodies: self.forest.records.span(),
+                        bodies: self.records.span(),
                         counters: self.counters.counters(),
                     };
                     if let Step::Narrow(at) = step {
@@ -212,7 +193,7 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
             let mut again = Vec::new();
             let lists = match step {
                 Step::Traverse => {
-                    let mut lists = self.walk.lists();
+                    let mut lists = self.broad.lists();
                     lists.push(&mut self.pairs);
                     lists
                 }
@@ -241,26 +222,37 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
     fn has_overflowed(&mut self, counters: &Counts) -> bool {
         let mut steps = self.narrow_steps_at();
         self.pairs.has_overflowed(counters)
-            || self.walk.lists().iter().any(|list| list.has_overflowed(counters))
+            || self.broad.lists().iter().any(|list| list.has_overflowed(counters))
             || steps.any(|at| self.narrow.lists(at).iter().any(|list| list.has_overflowed(counters)))
             || self.narrow.ordered().is_some_and(|list| list.has_overflowed(counters))
     }
 
-    fn traverse(&mut self) -> Result<(), Error> {
-        self.walk.launch(&WalkContext {
+    /// What the broad phase does with what it is given.
+    fn broadly<T>(
+        &mut self,
+        what: impl FnOnce(&mut dyn BroadPhase<R>, &BroadContext<R>, &Layout) -> Result<T, Error>,
+    ) -> Result<T, Error> {
+        let given = BroadContext {
             device: &self.device,
-            forest: &self.forest,
             frames: self.vertices.frames(),
             faces: self.faces.span(),
-            pairs: self.pairs.output(self.counters.counters()),
-            ends: Output::EMPTY,
-            counters: self.counters.counters(),
-            flags: flags(&self.query) | self.forest.flags(),
-        })
+            records: self.records.span(),
+        };
+        what(&mut *self.broad, &given, &self.layout)
+    }
+
+    fn traverse(&mut self) -> Result<(), Error> {
+        let counters = self.counters.counters();
+        let candidates = Candidates {
+            pairs: self.pairs.output(counters),
+            counters,
+            flags: TraverseFlags::KEEP_ADJACENT.when(self.query.keeps_adjacent()),
+        };
+        self.broadly(|broad, given, _| broad.traverse(given, &candidates))
     }
 }
 
-impl<R: Precision, V: Kernels> Pipeline for TypedPipeline<R, V> {
+impl<R: Precision> Pipeline for TypedPipeline<R> {
     fn place(&mut self, bodies: &[Body], moved: &[Moved]) -> Result<(), Error> {
         self.submission = None;
         self.narrow.place(bodies);
@@ -276,12 +268,10 @@ impl<R: Precision, V: Kernels> Pipeline for TypedPipeline<R, V> {
 
     fn construct(&mut self) -> Result<f64, Error> {
         self.submission = None;
-        self.walk.invalidate();
         let start = self.device.event()?;
-        let given = (self.frames(), self.faces.span());
-        self.forest.construct(&self.device, &self.layout, given)?;
+        self.broadly(|broad, given, layout| broad.construct(given, layout))?;
         let end = self.device.event()?;
-        self.forest.tree.learn_levels()?;
+        self.broad.learn()?;
         start.to(&end)
     }
 
@@ -311,8 +301,8 @@ impl<R: Precision, V: Kernels> Pipeline for TypedPipeline<R, V> {
                 continue;
             }
             self.settled = true;
-            self.walk.finish(&counters)?;
-            let balance = self.walk.balance_ms()?;
+            self.broad.finish(&counters)?;
+            let balance = self.broad.balance_ms()?;
             let placing = self.placing.take();
             let stages = Stages {
                 place: placing.map_or(Ok(0.0), |[start, end]| start.to(&end))?,
@@ -332,7 +322,7 @@ impl<R: Precision, V: Kernels> Pipeline for TypedPipeline<R, V> {
     }
 
     fn depths(&self) -> Vec<usize> {
-        self.forest.depths()
+        self.broad.depths()
     }
 
     fn reruns(&self) -> u64 {
@@ -340,15 +330,7 @@ impl<R: Precision, V: Kernels> Pipeline for TypedPipeline<R, V> {
     }
 
     fn fingerprints(&self) -> Result<Vec<(&'static str, u64)>, Error> {
-        let mut prints = Vec::new();
-        let (mut leaves, mut inner) = (Vec::new(), Vec::new());
-        let links = self.forest.tree.download()?;
-        for node in self.forest.volumes.download()? {
-            if node.is_leaf() { leaves.push(node.volume) } else { inner.push(node.volume) }
-        }
-        prints.push(("construct", xxh3_64(bytemuck::cast_slice(&links))));
-        prints.push(("fit", xxh3_64(bytemuck::cast_slice(&leaves))));
-        prints.push(("refit", xxh3_64(bytemuck::cast_slice(&inner))));
+        let mut prints = self.broad.fingerprints()?;
         let mut list = |name, list: &List<Pair>| -> Result<(), Error> {
             let mut pairs = list.read(&self.last)?;
             pairs.par_sort_unstable();
@@ -362,6 +344,6 @@ impl<R: Precision, V: Kernels> Pipeline for TypedPipeline<R, V> {
 
     fn check(&self) -> Result<(), Error> {
         let faces = self.faces.read(self.faces.len())?;
-        self.forest.check(&self.layout, &faces, &self.vertices.positions()?)
+        self.broad.check(&self.layout, &faces, &self.vertices.positions()?)
     }
 }

@@ -10,7 +10,6 @@ use crate::pipeline::placing::Seen;
 use crate::pipeline::precision::Precision;
 use bytemuck::Pod;
 use nearmiss_kernels::abi::{Hit, NearHit, NearestHit, Pair};
-use nearmiss_kernels::entry::Kernels;
 
 /// What the kernels found, still in the numbering of the memory that all bodies share, and where it is possible in that
 /// memory.
@@ -129,7 +128,7 @@ pub fn in_order<'a, T: Ordered>(
     order.map_or(Ok(None), |order| order.view(counters, lists))
 }
 
-impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
+impl<R: Precision> TypedPipeline<R> {
     /// Brings over with one wait what the end of a frame reads: counters, and as many contacts as the last frame had.
     pub(super) fn read_ahead(&self) -> Result<(), Error> {
         let mut all = vec![self.counters.ahead()];
@@ -140,7 +139,7 @@ impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
 
     pub(super) fn gather(&self, counters: Counts, reruns: u64) -> Result<Found<'_>, Error> {
         let (listed, ordered) = self.narrow.gather(&counters)?;
-        let (front_dropped, seen) = (self.walk.front_dropped(), self.vertices.seen()?);
+        let (front_dropped, seen) = (self.broad.front_dropped(), self.vertices.seen()?);
         Ok(Found { listed, ordered, counters, reruns, front_dropped, seen })
     }
 }

@@ -6,15 +6,13 @@ use crate::contacts::Contacts;
 use crate::device::emulator::{Emulator, Mode};
 use crate::query::{Certified, Continuous};
 use crate::samples;
-use nearmiss_kernels::bv::Aabb;
 
 /// The answers of two frames, in the order in which the device or the host puts them; `told` is what the host believes.
 fn answers(bodies: &[Body], query: Query, device_orders: bool, told: impl Fn(bool) -> bool) -> Vec<Contacts> {
     let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
     let layout = Arc::new(Layout::new(bodies, query.kind()));
-    let given = (query, Axes::PCA);
     let mut pipeline =
-        TypedPipeline::<f32, Aabb>::new(device.clone(), bodies, layout.clone(), given).expect("memory");
+        TypedPipeline::<f32>::new(device.clone(), bodies, layout.clone(), query).expect("memory");
     if device_orders {
         // With less room than there are contacts: the list grows.
         pipeline.narrow.order_on(&device, &layout, 10).expect("memory");

@@ -2,36 +2,20 @@
 
 use super::*;
 use crate::device::emulator::{Emulator, Mode};
-use crate::query::{Bv, Certified, CertifiedPrecision, Continuous, Refit, WithVolume};
+use crate::query::{Bv, Certified, CertifiedPrecision, Continuous, Refit};
 use crate::samples::soup;
 use crate::scene::Scene;
 
 /// How many pairs of random triangles certainly come within a tenth, with volumes that know of it or do not.
-struct Certain {
-    refit: Refit,
-    told: bool,
-}
-
-impl WithVolume for Certain {
-    type Out = usize;
-
-    fn with<V: Kernels>(self, axes: Axes) -> usize {
-        certain::<V>(axes, self.refit, self.told)
-    }
-}
-
-fn certain<V: Kernels>(axes: Axes, refit: Refit, told: bool) -> usize {
+fn certain(query: Query, told: bool) -> usize {
     let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
     let scene = Scene::from(soup(60, 5, true));
     let bodies = scene.bodies();
-    let certified =
-        Certified { tolerance: Some(1e-3), separation: 0.1, ..Certified::by(CertifiedPrecision::F64) };
-    let query = Query::from(Continuous::by(certified)).with_refit(refit);
     let layout = Arc::new(Layout::new(bodies, query.kind()));
     let mut pipeline =
-        TypedPipeline::<f32, V>::new(device, bodies, layout, (query, axes)).expect("a pipeline");
+        TypedPipeline::<f32>::new(device.clone(), bodies, layout.clone(), query).expect("a pipeline");
     if !told {
-        pipeline.forest.volumes.margin = 0.0;
+        pipeline.broad = broad_phase(&device, &layout, &query, 0.0).expect("a broad phase");
     }
     pipeline.construct().expect("trees");
     let (found, _) = pipeline.frame().expect("a frame");
@@ -41,9 +25,12 @@ fn certain<V: Kernels>(axes: Axes, refit: Refit, told: bool) -> usize {
 
 #[test]
 fn volumes_without_the_separation_lose_pairs() {
-    let all = Bv::Aabb.with(Certain { refit: Refit::Levels, told: true });
+    let certified =
+        Certified { tolerance: Some(1e-3), separation: 0.1, ..Certified::by(CertifiedPrecision::F64) };
+    let query = Query::from(Continuous::by(certified));
+    let all = certain(query.with_refit(Refit::Levels), true);
     for refit in [Refit::Levels, Refit::Treelets, Refit::BottomUp] {
-        let counts = |told| Bv::ALL.map(|bv| bv.with(Certain { refit, told }));
+        let counts = |told| Bv::ALL.map(|bv| certain(query.with_bv(bv).with_refit(refit), told));
         assert_eq!(counts(true), [all; Bv::ALL.len()], "{refit:?}");
         assert!(counts(false).iter().all(|count| *count < all), "{refit:?}: {:?} of {all}", counts(false));
     }

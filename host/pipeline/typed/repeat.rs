@@ -5,7 +5,6 @@ use crate::error::Error;
 use crate::pipeline::counts::Counts;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::timing::Stage;
-use nearmiss_kernels::entry::Kernels;
 
 /// Stages again, on what the last frame left.
 pub trait Again {
@@ -23,7 +22,7 @@ pub trait Again {
     fn narrow_steps(&mut self) -> Result<Vec<(&'static str, f64)>, Error>;
 }
 
-impl<R: Precision, V: Kernels> Again for TypedPipeline<R, V> {
+impl<R: Precision> Again for TypedPipeline<R> {
     fn repeat(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
         self.submission = None;
         if stage == Stage::Construct {
@@ -65,7 +64,7 @@ impl<R: Precision, V: Kernels> Again for TypedPipeline<R, V> {
     }
 }
 
-impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
+impl<R: Precision> TypedPipeline<R> {
     /// The counters that a stage begins with: those of the last frame, without what the stage itself counted.
     fn counters_before(&mut self, stage: Stage) -> Counts {
         let mut counters = Counts::default();

@@ -11,7 +11,7 @@ use crate::pipeline::timing::{Stage, Stages};
 use crate::pipeline::typed::Found;
 use crate::pipeline::{launch, purpose};
 use nearmiss_kernels::abi::{FrameStatus, Room, Span, StatusArgs, seen};
-use nearmiss_kernels::entry::{Kernels, status_frame};
+use nearmiss_kernels::entry::status_frame;
 
 /// What such a frame needs beside what every frame has.
 pub struct Submission {
@@ -48,12 +48,12 @@ pub trait Submits {
     fn answer(&self) -> Option<DeviceAnswer>;
 }
 
-impl<R: Precision, V: Kernels> Submits for TypedPipeline<R, V> {
+impl<R: Precision> Submits for TypedPipeline<R> {
     fn prepare(&mut self) -> Result<(), Error> {
         let refused = |what: &str, advice: &str| {
             Err(Error::Choice { what: what.to_owned(), advice: advice.to_owned() })
         };
-        if let Err(why) = self.walk.without_host() {
+        if let Err(why) = self.broad.without_host() {
             return refused(why, "ask for another traversal, or for frames that wait");
         }
         if !self.vertices.is_repeatable() {
@@ -64,7 +64,7 @@ impl<R: Precision, V: Kernels> Submits for TypedPipeline<R, V> {
         }
         let room =
             |list: &&mut dyn GrowableOutput| Room { entries: list.room(), counter: list.counter(), pad: 0 };
-        let mut rooms: Vec<Room> = self.walk.lists().iter().map(room).collect();
+        let mut rooms: Vec<Room> = self.broad.lists().iter().map(room).collect();
         rooms.push(room(&(&mut self.pairs as &mut dyn GrowableOutput)));
         for step in self.narrow_steps_at() {
             rooms.extend(self.narrow.lists(step).iter().map(room));
@@ -118,7 +118,7 @@ impl<R: Precision, V: Kernels> Submits for TypedPipeline<R, V> {
     }
 }
 
-impl<R: Precision, V: Kernels> TypedPipeline<R, V> {
+impl<R: Precision> TypedPipeline<R> {
     /// Launches a frame, behind the placing of what it places, and what tells how it went.
     fn enqueue(&mut self) -> Result<(), Error> {
         let Some(submission) = &self.submission else {

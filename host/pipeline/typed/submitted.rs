@@ -4,15 +4,13 @@ use super::*;
 use crate::device::emulator::{Emulator, Mode};
 use crate::samples;
 use nearmiss_kernels::abi::Room;
-use nearmiss_kernels::bv::Aabb;
 
 /// A prepared pipeline over a soup, whose list of pairs has too little room for a frame.
-fn prepared(device: &Device) -> TypedPipeline<f32, Aabb> {
+fn prepared(device: &Device) -> TypedPipeline<f32> {
     let bodies = [samples::soup(300, 5, false)];
     let layout = Arc::new(Layout::new(&bodies, Query::discrete().kind()));
     let query = Query::discrete();
-    let mut pipeline =
-        TypedPipeline::<f32, Aabb>::new(device.clone(), &bodies, layout, (query, Axes::PCA)).expect("memory");
+    let mut pipeline = TypedPipeline::<f32>::new(device.clone(), &bodies, layout, query).expect("memory");
     pipeline.construct().expect("a tree");
     pipeline.place(&bodies, &[]).expect("nothing to place");
     pipeline.frame().expect("a frame");
@@ -26,7 +24,7 @@ fn engine() -> Device {
 }
 
 /// How many lists a submission says were too short, and whether the host, asked the same, says so.
-fn told(pipeline: &mut TypedPipeline<f32, Aabb>) -> (u64, bool) {
+fn told(pipeline: &mut TypedPipeline<f32>) -> (u64, bool) {
     pipeline.submit().expect("submitted");
     let status = pipeline.submission.as_ref().expect("prepared").status.read(1).expect("read");
     (status[0].short, pipeline.collect().expect("counters").is_none())

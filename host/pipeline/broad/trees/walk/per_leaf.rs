@@ -39,7 +39,7 @@ impl<R: Precision, V: Kernels> Walk<R, V> for PerLeaf {
         let mut args = TraverseArgs {
             nodes: forest.volumes.nodes.span(),
             leaf_nodes: forest.tree.leaf_nodes.span(),
-            filters: forest.filters(),
+            filters: given.filters(),
             faces: given.faces,
             units: Output::EMPTY,
             spilled: self.units.as_ref().map_or(Output::EMPTY, |units| spilled(units, 0)),

@@ -4,17 +4,18 @@
 //! Both lie in one memory below one root, so that one walk finds all pairs: of what moves with itself, and with what is
 //! static. See `nearmiss_kernels::stage::construct::graft`.
 
-use super::layout::Layout;
-use super::precision::Precision;
-use super::tree::{Room, Tree, TreeSpec, broken, place};
+use super::tree::{Room, Tree, TreeSpec, broken};
 use super::volumes::Volumes;
-use crate::device::{Buffer, Device};
+use crate::device::Device;
 use crate::error::Error;
+use crate::pipeline::broad::BroadContext;
+use crate::pipeline::broad::sorted::place;
+use crate::pipeline::layout::Layout;
+use crate::pipeline::precision::Precision;
 use crate::pipeline::{launch, purpose};
 use crate::query::Refit;
 use nearmiss_kernels::abi::{
-    BodyRecord, FilterArgs, GraftArgs, Link, Node, NodeFilter, Positions, ROOT, Span, TraverseFlags,
-    TreeBody, grafted,
+    BodyRecord, FilterArgs, GraftArgs, Link, Node, NodeFilter, ROOT, Span, TraverseFlags, TreeBody, grafted,
 };
 use nearmiss_kernels::bv::Axes;
 use nearmiss_kernels::bvh;
@@ -27,8 +28,6 @@ pub struct Forest<V> {
     pub tree: Tree,
     /// Its volumes, and those of what is static.
     pub volumes: Volumes<V>,
-    /// What the kernels know of the bodies; empty where there is one alone.
-    pub records: Buffer<BodyRecord>,
     has_groups: bool,
     fixed: Option<Fixed>,
 }
@@ -59,35 +58,29 @@ impl<V: Kernels> Forest<V> {
         let groups = V::group(axes) > 0;
         let tree = Tree::new(device, &TreeSpec { layout, bodies: moving, room, refit, groups })?;
         let volumes = Volumes::new(&device.of(purpose::VOLUMES), &tree, (axes, margin))?;
-        let records: &[BodyRecord] = if layout.has_filters() { &layout.records } else { &[] };
         let fixed = (leaves > 0).then(|| Fixed {
             bodies: fixed.clone(),
             layout: (Vec::new(), leaves),
             starts: Vec::new(),
             refit,
         });
-        let records = device.of(purpose::RECORDS).upload(records)?;
-        Ok(Forest { tree, volumes, records, has_groups: layout.has_groups(), fixed })
+        Ok(Forest { tree, volumes, has_groups: layout.has_groups(), fixed })
     }
 
     /// Builds the tree over what moves, and once, the first time, that over what is static.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn construct<R: Precision>(
-        &mut self,
-        device: &Device,
-        layout: &Layout,
-        (frames, faces): (Positions<R>, Span<[u32; 3]>),
-    ) -> Result<(), Error> {
-        self.tree.construct::<R>(device, frames, (faces, self.records.span()))?;
+    pub fn construct<R: Precision>(&mut self, given: &BroadContext<R>, layout: &Layout) -> Result<(), Error> {
+        let BroadContext { device, frames, faces, records } = *given;
+        self.tree.construct::<R>(device, frames, (faces, records))?;
         match &mut self.fixed {
             Some(fixed) if fixed.starts.is_empty() => {
                 let groups = V::group(self.volumes.axes()) > 0;
                 let Fixed { bodies, refit, .. } = &*fixed;
                 let plan = TreeSpec { layout, bodies, room: Room::Alone, refit: *refit, groups };
                 let mut tree = Tree::new(device, &plan)?;
-                tree.construct::<R>(device, frames, (faces, self.records.span()))?;
+                tree.construct::<R>(device, frames, (faces, records))?;
                 tree.learn_levels()?;
                 let volumes = Volumes::<V>::new(device, &tree, (self.volumes.axes(), self.volumes.margin))?;
                 volumes.fit(device, &tree, frames, faces)?;
@@ -110,9 +103,9 @@ impl<V: Kernels> Forest<V> {
         }
     }
 
-    /// Which pairs a walk asks.
-    pub fn filters(&self) -> FilterArgs {
-        let bodies = if self.has_groups { self.records.span() } else { Span::EMPTY };
+    /// Which pairs a walk asks, of bodies with these records.
+    pub fn filters(&self, records: Span<BodyRecord>) -> FilterArgs {
+        let bodies = if self.has_groups { records } else { Span::EMPTY };
         FilterArgs { nodes: self.tree.filters.span(), bodies }
     }
 

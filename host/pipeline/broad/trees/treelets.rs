@@ -137,8 +137,7 @@ mod tests {
     use crate::device::Device;
     use crate::device::emulator::{Emulator, Mode};
     use crate::pipeline::Layout;
-    use crate::pipeline::tree::{Tree, TreeSpec};
-    use crate::pipeline::volumes::Volumes;
+    use crate::pipeline::broad::trees::{Tree, TreeSpec, Volumes};
     use crate::samples::soup;
     use nearmiss_kernels::abi::{Point, Positions};
     use nearmiss_kernels::bv::{Aabb, Axes, Obb};

@@ -1,25 +1,18 @@
 //! Fit and refit: the bounding volume of each node.
 
-use super::precision::Precision;
 use super::tree::{Tree, broken};
 use super::treelets::{Plan, RefitPlan};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::launch;
+use crate::pipeline::precision::Precision;
 use nearmiss_kernels::abi::{
     BottomUpArgs, FitArgs, GroupsArgs, Link, Node, Positions, RefitArgs, Span, TreeletsArgs,
 };
 use nearmiss_kernels::bv::Axes;
 use nearmiss_kernels::bvh;
 use nearmiss_kernels::entry::{self, Entry, Kernels};
-use nearmiss_kernels::math::{Vec3, round};
-
-/// How much each of two volumes grows so that what is listed makes them meet: half of the distance within which it comes,
-/// rounded up.
-pub fn growth(distance: f64) -> f32 {
-    let half = round::up(0.5 * distance);
-    if 2.0 * f64::from(half) < distance { half.next_up() } else { half }
-}
+use nearmiss_kernels::math::Vec3;
 
 /// The volumes of a tree, kept on the device.
 pub struct Volumes<V> {

@@ -29,7 +29,7 @@ impl<R: Precision, V: Kernels> Walk<R, V> for NearestFirst {
                 faces: given.faces,
                 nodes,
                 leaf_nodes,
-                filters: forest.filters(),
+                filters: given.filters(),
                 counters: given.counters,
                 samples,
                 measures,
@@ -44,7 +44,7 @@ impl<R: Precision, V: Kernels> Walk<R, V> for NearestFirst {
         let args = TraverseArgs {
             nodes,
             leaf_nodes,
-            filters: forest.filters(),
+            filters: given.filters(),
             faces: given.faces,
             units: Output::EMPTY,
             spilled: Output::EMPTY,

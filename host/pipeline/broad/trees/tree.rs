@@ -1,27 +1,19 @@
 //! Construct: the tree over some bodies, kept on the device.
 
-use super::layout::Layout;
-use super::precision::Precision;
-use super::prefix::{self, Weight};
-use super::sorter::{counted, sort, words};
 use super::treelets::RefitPlan;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
+use crate::pipeline::broad::sorted::{Sorted, place};
+use crate::pipeline::layout::Layout;
+use crate::pipeline::precision::Precision;
+use crate::pipeline::sorter::{counted, words};
 use crate::pipeline::{launch, purpose};
 use crate::query::Refit;
 use nearmiss_kernels::abi::{
-    BodyRecord, Inner, Link, MOVING_ROOT, MortonArgs, NodeFilter, Positions, ROOT, Span, TreeArgs, TreeBody,
+    BodyRecord, Inner, Link, MOVING_ROOT, NodeFilter, Positions, ROOT, Span, TreeArgs, TreeBody,
 };
-use nearmiss_kernels::bvh::{self, CODE_BITS, MAX_LEVELS};
+use nearmiss_kernels::bvh::{self, MAX_LEVELS};
 use nearmiss_kernels::entry;
-use nearmiss_kernels::math::ordered;
-use nearmiss_kernels::stage::construct::morton;
-
-/// The bytes of a Morton code, which lies above its triangle. As many as there are: the sort ends where it began.
-const BYTES: [u32; 4] = [32, 40, 48, 56];
-const _: () = assert!(8 * BYTES.len() as u32 == CODE_BITS && BYTES.len().is_multiple_of(2));
-/// Keys of the box of a body's centres.
-const BOUNDS: usize = morton::BOUNDS as usize;
 
 /// A level-ordered tree without volumes, and what building it again needs.
 pub struct Tree {
@@ -41,21 +33,15 @@ pub struct Tree {
     pub way: RefitPlan,
     /// The same, as the host needs it to launch.
     starts: Vec<u32>,
-    /// The bodies, in the order of their triangles, and what the kernels know of them all.
-    bodies: Vec<TreeBody>,
-    records: Vec<BodyRecord>,
-    table: Buffer<TreeBody>,
+    /// Its triangles. What it keeps zero beside is for the counts of the depths, and for what the treelets count.
+    sorted: Sorted,
     count: u32,
     room: Room,
     scratch: Scratch,
 }
 
-/// Memory of the construction, about 36 bytes a triangle; kept, so that building again takes none.
+/// Memory of the construction beside the sorting, 16 bytes a triangle; kept, so that building again takes none.
 struct Scratch {
-    /// What must be zero when a construction begins: the boxes of the bodies' centres; counts of each byte of the codes, and of the
-    /// depths; what the treelets count.
-    zeroed: Buffer<u64>,
-    items: [Buffer<u64>; 2],
     inner: Buffer<Inner>,
     parents: Buffer<u32>,
     depths: Buffer<u32>,
@@ -118,20 +104,14 @@ impl Tree {
     /// Those of the device.
     pub fn new(device: &Device, plan: &TreeSpec) -> Result<Tree, Error> {
         let TreeSpec { layout, bodies, room, refit, groups } = *plan;
-        let mut count = 0;
-        let table = bodies.iter().map(|&body| {
-            let (triangle, triangles) = layout.triangles(body);
-            count += triangles;
-            TreeBody { triangle, before: count - triangles, ..TreeBody::default() }
-        });
-        let table: Vec<TreeBody> = table.collect();
+        let count = bodies.iter().map(|&body| layout.triangles(body).1).sum::<u32>();
         let (n, inner) = (count as usize, count as usize - 1);
         // Pairs of siblings begin behind the root; what is not used before it is counted too.
         let pairs = n + room.root() as usize / 2;
         let all = n + room.others() as usize;
         let way = RefitPlan::new(&device.of(purpose::REFIT), refit, count, pairs)?;
-        let (boxes, scratch) = (BOUNDS * table.len(), device.of(purpose::SCRATCH));
-        let zeroed = boxes + (BYTES.len() + 1) * words(device, count) + way.zeroed();
+        let scratch = device.of(purpose::SCRATCH);
+        let zeroed = words(device, count) + way.zeroed();
         Ok(Tree {
             links: device.buffer(room.root() as usize - 1 + 2 * n)?,
             pair_parents: device.buffer(all.max(pairs))?,
@@ -141,14 +121,10 @@ impl Tree {
             filters: device.of(purpose::FILTERS).buffer(if layout.has_filters() { 2 * all } else { 0 })?,
             way,
             starts: Vec::new(),
-            records: bodies.iter().map(|&body| layout.records[body]).collect(),
-            table: device.upload(&table)?,
-            bodies: table,
+            sorted: Sorted::new(device, layout, bodies, zeroed)?,
             count,
             room,
             scratch: Scratch {
-                zeroed: scratch.buffer(zeroed)?,
-                items: [scratch.buffer(n)?, scratch.buffer(n)?],
                 inner: scratch.buffer(inner)?,
                 parents: scratch.buffer(inner)?,
                 depths: scratch.buffer(inner)?,
@@ -170,39 +146,16 @@ impl Tree {
         frames: Positions<R>,
         (faces, records): (Span<[u32; 3]>, Span<BodyRecord>),
     ) -> Result<(), Error> {
-        let (n, inner) = (self.count as usize, self.count as usize - 1);
-        let s = &mut self.scratch;
-        s.zeroed.clear()?;
-        let zeroed = s.zeroed.span();
-        let boxes = BOUNDS * self.bodies.len();
-        let (at, lists) = (boxes as u64, ((BYTES.len() + 1) * words(device, self.count)) as u64);
-        let counts = zeroed.part(at, lists);
-        let [begins, tops] = self.way.parts(zeroed.part(at + lists, zeroed.len() - at - lists));
-        let morton = MortonArgs {
-            frames,
-            faces,
-            bodies: self.table.span(),
-            bounds: zeroed.part(0, at),
-            items: s.items[0].span(),
-            tiles: counted(device, counts, self.count, 0),
-            count: self.count,
-            pad: 0,
-        };
-        let lanes = n.div_ceil(morton::TOGETHER as usize);
-        launch::striding::<R::Bounds>(device, lanes, &morton)?;
-        if self.bodies.len() > 1 {
-            let weights = weights(&s.zeroed.read(boxes)?, &self.bodies, self.count);
-            prefix::prefixes(&mut self.bodies, &weights, &self.records);
-            self.table.write(&self.bodies)?;
-        }
-        launch::striding::<R::Morton>(device, n, &morton)?;
-        sort(device, s.items.each_ref(), (self.count, Span::EMPTY), counts, &BYTES)?;
+        self.sorted.construct::<R>(device, frames, faces)?;
+        let depths = words(device, self.count) as u64;
+        let (s, zeroed) = (&self.scratch, self.sorted.zeroed());
+        let [begins, tops] = self.way.parts(zeroed.part(depths, zeroed.len() - depths));
         let args = TreeArgs {
-            items: s.items[0].span(),
+            items: self.sorted.triangles(),
             inner: s.inner.span(),
             parents: s.parents.span(),
             depths: s.depths.span(),
-            tiles: counted(device, counts, self.count, BYTES.len()),
+            tiles: counted(device, zeroed, self.count, 0),
             places: s.places.span(),
             levels: self.levels.span(),
             links: self.links.span(),
@@ -217,7 +170,7 @@ impl Tree {
             leaves: self.count,
             root: self.root(),
         };
-        let gaps = inner.max(1);
+        let gaps = (self.count as usize - 1).max(1);
         launch::each::<entry::construct_tree>(device, gaps, &args)?;
         launch::each::<entry::construct_depth>(device, gaps, &args)?;
         launch::blocks::<entry::construct_places>(device, args.tiles.count, &args)?;
@@ -269,7 +222,7 @@ impl Tree {
 
     /// Triangles in leaf order: the lower halves.
     pub fn triangles(&self) -> Span<u64> {
-        self.scratch.items[0].span()
+        self.sorted.triangles()
     }
 
     /// The root's index.
@@ -293,35 +246,15 @@ impl Tree {
             levels: &self.levels.read(self.starts.len() + 1)?,
             leaf_nodes: &self.leaf_nodes.read(self.leaf_nodes.len())?,
             root: self.root(),
-            place: &|triangle| place(&self.bodies, self.count, triangle),
+            place: &|triangle| place(self.bodies(), self.count, triangle),
         };
         bvh::check(&tree, &mut vec![false; self.leaves()]).map_err(broken)
     }
 
     /// The tree's bodies.
     pub fn bodies(&self) -> &[TreeBody] {
-        &self.bodies
+        self.sorted.bodies()
     }
-}
-
-/// The place of a triangle among those of a tree's bodies, `count` in all; `None` for that of another body.
-pub fn place(bodies: &[TreeBody], count: u32, triangle: u32) -> Option<usize> {
-    let at = bodies.partition_point(|body| body.triangle <= triangle).checked_sub(1)?;
-    let end = bodies.get(at + 1).map_or(count, |next| next.before);
-    let place = triangle - bodies[at].triangle + bodies[at].before;
-    (place < end).then_some(place as usize)
-}
-
-/// The bodies' boxes, of their keys, and how many triangles each has.
-fn weights(keys: &[u64], bodies: &[TreeBody], count: u32) -> Vec<Weight> {
-    let ends = bodies.iter().skip(1).map(|next| next.before).chain([count]);
-    let boxes = keys.chunks_exact(BOUNDS).map(|keys| {
-        let upper = [0, 1, 2].map(|k| ordered::number(keys[k]));
-        [[0, 1, 2].map(|k| ordered::number(!keys[k + 3])), upper]
-    });
-    let weight =
-        |((body, end), bounds): ((&TreeBody, u32), _)| Weight { bounds, triangles: end - body.before };
-    bodies.iter().zip(ends).zip(boxes).map(weight).collect()
 }
 
 /// A broken tree, as an error.

@@ -7,16 +7,18 @@ mod queue;
 mod segments;
 mod steal;
 
-use super::counts::Counts;
 use super::forest::Forest;
-use super::list::GrowableOutput;
-use super::precision::Precision;
 use crate::device::Device;
 use crate::error::Error;
+use crate::pipeline::counts::Counts;
+use crate::pipeline::list::GrowableOutput;
+use crate::pipeline::precision::Precision;
 use crate::query::{Query, Traversal};
 use front::Front;
 use nearest::NearestFirst;
-use nearmiss_kernels::abi::{Counters, Output, Pair, PairArgs, Positions, Span, TraverseFlags};
+use nearmiss_kernels::abi::{
+    BodyRecord, Counters, FilterArgs, Output, Pair, PairArgs, Positions, Span, TraverseFlags,
+};
 use nearmiss_kernels::entry::{Entry, Kernels};
 use per_leaf::PerLeaf;
 use queue::Queue;
@@ -32,6 +34,8 @@ pub struct WalkContext<'a, R: Precision, V> {
     pub frames: Positions<R>,
     /// Vertex indices of every triangle.
     pub faces: Span<[u32; 3]>,
+    /// What the kernels know of the bodies.
+    pub records: Span<BodyRecord>,
     /// Out: candidate triangle pairs.
     pub pairs: Output<Pair>,
     /// Out, with [`TraverseFlags::FRONT`]: pairs of nodes where the descent ended.
@@ -43,11 +47,16 @@ pub struct WalkContext<'a, R: Precision, V> {
 }
 
 impl<R: Precision, V: Kernels> WalkContext<'_, R, V> {
+    /// Which pairs are asked at all.
+    fn filters(&self) -> FilterArgs {
+        self.forest.filters(self.records)
+    }
+
     /// What a walk by pairs of nodes is told, with queues of `local` units on chip.
     fn pair_args(&self, local: u32) -> PairArgs<V> {
         PairArgs {
             nodes: self.forest.volumes.nodes.span(),
-            filters: self.forest.filters(),
+            filters: self.filters(),
             faces: self.faces,
             pairs: self.pairs,
             ends: self.ends,
@@ -126,9 +135,4 @@ pub fn walk<R: Precision, V: Kernels>(
         Traversal::Front(shape) => Box::new(Front::new::<V>(device, shape, triangles)?),
         Traversal::NearestFirst => Box::new(NearestFirst),
     })
-}
-
-/// What a walk is told by flags of a query.
-pub fn flags(query: &Query) -> TraverseFlags {
-    TraverseFlags::KEEP_ADJACENT.when(query.keeps_adjacent())
 }

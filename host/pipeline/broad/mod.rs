@@ -1,0 +1,154 @@
+//! Broad phase: from where vertices are to candidate pairs of triangles. Each is a strategy with its own memory; after the narrow phase
+//! all give one answer.
+
+mod prefix;
+mod sorted;
+pub mod trees;
+
+use super::counts::Counts;
+use super::layout::Layout;
+use super::list::GrowableOutput;
+use super::precision::Precision;
+use crate::device::Device;
+use crate::error::Error;
+use crate::query::{Query, WithVolume};
+use nearmiss_kernels::abi::{BodyRecord, Counters, Output, Pair, Positions, Span, TraverseFlags};
+use nearmiss_kernels::bv::Axes;
+use nearmiss_kernels::entry::Kernels;
+use nearmiss_kernels::math::{Vec3, round};
+use trees::Trees;
+
+/// What a broad phase is given: the machine, and where what lies there.
+#[derive(Clone, Copy)]
+pub struct BroadContext<'a, R: Precision> {
+    /// The machine.
+    pub device: &'a Device,
+    /// Positions.
+    pub frames: Positions<R>,
+    /// Vertex indices of every triangle.
+    pub faces: Span<[u32; 3]>,
+    /// What the kernels know of the bodies; empty where there is one alone.
+    pub records: Span<BodyRecord>,
+}
+
+/// Where candidates go.
+#[derive(Clone, Copy)]
+pub struct Candidates {
+    /// Out: candidate triangle pairs.
+    pub pairs: Output<Pair>,
+    /// The frame's counters, all zero before.
+    pub counters: Counters,
+    /// What is asked of them all.
+    pub flags: TraverseFlags,
+}
+
+/// A broad phase of a scene, of what moves with itself and with what is static.
+pub trait BroadPhase<R: Precision>: Send {
+    /// Makes it anew, from the positions at t = 0; of what is static once, the first time. Volumes are not fitted yet.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn construct(&mut self, given: &BroadContext<R>, layout: &Layout) -> Result<(), Error>;
+
+    /// Reads what the host must know of what was just made; waits for it.
+    ///
+    /// # Errors
+    /// [`Error::Bug`] for what cannot be; those of the device.
+    fn learn(&mut self) -> Result<(), Error>;
+
+    /// Fits the volumes of the triangles.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn fit(&mut self, given: &BroadContext<R>) -> Result<(), Error>;
+
+    /// Refits all other volumes.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn refit(&mut self, given: &BroadContext<R>) -> Result<(), Error>;
+
+    /// Lists the pairs of triangles whose volumes overlap.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn traverse(&mut self, given: &BroadContext<R>, candidates: &Candidates) -> Result<(), Error>;
+
+    /// Its own lists, which may turn out too short: then they grow and [`BroadPhase::traverse`] runs again.
+    fn lists(&mut self) -> Vec<&mut dyn GrowableOutput>;
+
+    /// The frame is answered: what was learnt may be kept for the next one.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn finish(&mut self, counters: &Counts) -> Result<(), Error>;
+
+    /// Whether the next frame does without the host: else why not.
+    ///
+    /// # Errors
+    /// What it needs the host for.
+    fn without_host(&self) -> Result<(), &'static str>;
+
+    /// Whether the last frame, once finished, had no front though one was asked for, or dropped it.
+    fn front_dropped(&self) -> bool;
+
+    /// Milliseconds that the last traversal spent on balancing; waits for it.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn balance_ms(&self) -> Result<f64, Error>;
+
+    /// Levels of what moves and, where there is something, of what is static.
+    fn depths(&self) -> Vec<usize>;
+
+    /// A hash of what each stage left in memory after the last frame.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn fingerprints(&self) -> Result<Vec<(&'static str, u64)>, Error>;
+
+    /// Checks how it is made, and every volume against the positions, at t = 0 and, when anything moves, at t = 1.
+    ///
+    /// # Errors
+    /// [`Error::Bug`] with the first violation; those of the device.
+    fn check(&self, layout: &Layout, faces: &[[u32; 3]], frames: &[Vec<Vec3<R>>]) -> Result<(), Error>;
+}
+
+/// The broad phase that a query asks for, over the bodies of a layout, of which some move; its volumes hold everything within
+/// `margin` of the triangles.
+///
+/// # Errors
+/// Those of the device.
+pub fn broad_phase<R: Precision>(
+    device: &Device,
+    layout: &Layout,
+    query: &Query,
+    margin: f32,
+) -> Result<Box<dyn BroadPhase<R>>, Error> {
+    query.bv().with(New { device, layout, query, margin, precision: std::marker::PhantomData })
+}
+
+/// What a broad phase is made of.
+struct New<'a, R> {
+    device: &'a Device,
+    layout: &'a Layout,
+    query: &'a Query,
+    margin: f32,
+    precision: std::marker::PhantomData<R>,
+}
+
+impl<R: Precision> WithVolume for New<'_, R> {
+    type Out = Result<Box<dyn BroadPhase<R>>, Error>;
+
+    fn with<V: Kernels>(self, axes: Axes) -> Self::Out {
+        let New { device, layout, query, margin, .. } = self;
+        Ok(Box::new(Trees::<R, V>::new(device, layout, query, (axes, margin))?))
+    }
+}
+
+/// How much each of two volumes grows so that what is listed makes them meet: half of the distance within which it comes,
+/// rounded up.
+pub fn growth(distance: f64) -> f32 {
+    let half = round::up(0.5 * distance);
+    if 2.0 * f64::from(half) < distance { half.next_up() } else { half }
+}

@@ -1,0 +1,133 @@
+//! Triangles in the order of a curve through space, body by body: what trees and tiles are made of.
+
+use super::prefix::{self, Weight};
+use crate::device::{Buffer, Device};
+use crate::error::Error;
+use crate::pipeline::layout::Layout;
+use crate::pipeline::precision::Precision;
+use crate::pipeline::sorter::{counted, sort, words};
+use crate::pipeline::{launch, purpose};
+use nearmiss_kernels::abi::{BodyRecord, MortonArgs, Positions, Span, TreeBody};
+use nearmiss_kernels::bvh::CODE_BITS;
+use nearmiss_kernels::math::ordered;
+use nearmiss_kernels::stage::construct::morton;
+
+/// The bytes of a code, which lies above its triangle. As many as there are: the sort ends where it began.
+const BYTES: [u32; 4] = [32, 40, 48, 56];
+const _: () = assert!(8 * BYTES.len() as u32 == CODE_BITS && BYTES.len().is_multiple_of(2));
+/// Keys of the box of a body's centres.
+const BOUNDS: usize = morton::BOUNDS as usize;
+
+/// The triangles of some bodies, and the memory to order them anew: 16 bytes a triangle.
+pub struct Sorted {
+    /// The bodies, in the order of their triangles, and what the kernels know of each.
+    bodies: Vec<TreeBody>,
+    records: Vec<BodyRecord>,
+    table: Buffer<TreeBody>,
+    count: u32,
+    /// What must be zero when it begins: the boxes of the bodies' centres; counts of each byte of the codes; what was asked for beside.
+    begins_zero: Buffer<u64>,
+    beside: u64,
+    items: [Buffer<u64>; 2],
+}
+
+impl Sorted {
+    /// Takes the memory for the triangles of these bodies, ascending, each with triangles, at least one, and `beside` words that are
+    /// zero whenever they were put in order.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn new(device: &Device, layout: &Layout, bodies: &[usize], beside: usize) -> Result<Self, Error> {
+        let mut count = 0;
+        let table = bodies.iter().map(|&body| {
+            let (triangle, triangles) = layout.triangles(body);
+            count += triangles;
+            TreeBody { triangle, before: count - triangles, ..TreeBody::default() }
+        });
+        let table: Vec<TreeBody> = table.collect();
+        let scratch = device.of(purpose::SCRATCH);
+        let zero = BOUNDS * table.len() + BYTES.len() * words(device, count) + beside;
+        let items = || scratch.buffer(count as usize);
+        Ok(Sorted {
+            records: bodies.iter().map(|&body| layout.records[body]).collect(),
+            table: device.upload(&table)?,
+            bodies: table,
+            count,
+            begins_zero: scratch.buffer(zero)?,
+            beside: beside as u64,
+            items: [items()?, items()?],
+        })
+    }
+
+    /// Puts them in order by where they are at t = 0, all on the device but for an order of the bodies, where there are more than
+    /// one: that waits for their boxes. Cost: seven launches, four of them a radix sort.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn construct<R: Precision>(
+        &mut self,
+        device: &Device,
+        frames: Positions<R>,
+        faces: Span<[u32; 3]>,
+    ) -> Result<(), Error> {
+        self.begins_zero.clear()?;
+        let zeroed = self.begins_zero.span();
+        let boxes = BOUNDS * self.bodies.len();
+        let counts = zeroed.part(boxes as u64, (BYTES.len() * words(device, self.count)) as u64);
+        let morton = MortonArgs {
+            frames,
+            faces,
+            bodies: self.table.span(),
+            bounds: zeroed.part(0, boxes as u64),
+            items: self.items[0].span(),
+            tiles: counted(device, counts, self.count, 0),
+            count: self.count,
+            pad: 0,
+        };
+        let lanes = (self.count as usize).div_ceil(morton::TOGETHER as usize);
+        launch::striding::<R::Bounds>(device, lanes, &morton)?;
+        if self.bodies.len() > 1 {
+            let weights = weights(&self.begins_zero.read(boxes)?, &self.bodies, self.count);
+            prefix::prefixes(&mut self.bodies, &weights, &self.records);
+            self.table.write(&self.bodies)?;
+        }
+        launch::striding::<R::Morton>(device, self.count as usize, &morton)?;
+        sort(device, self.items.each_ref(), (self.count, Span::EMPTY), counts, &BYTES)
+    }
+
+    /// The triangles in order: the lower halves.
+    pub fn triangles(&self) -> Span<u64> {
+        self.items[0].span()
+    }
+
+    /// The words that were asked for beside.
+    pub fn zeroed(&self) -> Span<u64> {
+        let all = self.begins_zero.span();
+        all.part(all.len() - self.beside, self.beside)
+    }
+
+    /// The bodies, in the order of their triangles.
+    pub fn bodies(&self) -> &[TreeBody] {
+        &self.bodies
+    }
+}
+
+/// The place of a triangle among those of a tree's bodies, `count` in all; `None` for that of another body.
+pub fn place(bodies: &[TreeBody], count: u32, triangle: u32) -> Option<usize> {
+    let at = bodies.partition_point(|body| body.triangle <= triangle).checked_sub(1)?;
+    let end = bodies.get(at + 1).map_or(count, |next| next.before);
+    let place = triangle - bodies[at].triangle + bodies[at].before;
+    (place < end).then_some(place as usize)
+}
+
+/// The bodies' boxes, of their keys, and how many triangles each has.
+fn weights(keys: &[u64], bodies: &[TreeBody], count: u32) -> Vec<Weight> {
+    let ends = bodies.iter().skip(1).map(|next| next.before).chain([count]);
+    let boxes = keys.chunks_exact(BOUNDS).map(|keys| {
+        let upper = [0, 1, 2].map(|k| ordered::number(keys[k]));
+        [[0, 1, 2].map(|k| ordered::number(!keys[k + 3])), upper]
+    });
+    let weight =
+        |((body, end), bounds): ((&TreeBody, u32), _)| Weight { bounds, triangles: end - body.before };
+    bodies.iter().zip(ends).zip(boxes).map(weight).collect()
+}
