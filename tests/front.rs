@@ -4,7 +4,7 @@ mod support;
 
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Bv, FrontShape, QueryKind, QueueShape, Traversal, Tree};
+use nearmiss::query::{Bv, FrontShape, QueryKind, QueueShape, Search, Traversal};
 use nearmiss::{Detector, Device, Query};
 use nearmiss_lab::scene;
 
@@ -28,7 +28,7 @@ fn frames(count: usize) -> Vec<Body> {
 }
 
 fn query(motion: QueryKind, bv: Bv, traversal: Option<Traversal>) -> Query {
-    support::asked::of(motion).with_tree(Tree { bv: Some(bv), traversal, ..Tree::default() })
+    support::asked::of(motion).with_search(Search { bv: Some(bv), traversal, ..Search::default() })
 }
 
 /// Answers and candidates of every frame.

@@ -9,7 +9,7 @@ mod support;
 use nearmiss::contacts::on_device::FrameStatus;
 use nearmiss::device::Buffer;
 use nearmiss::mesh::Positions;
-use nearmiss::query::{QueryKind, QueueShape, Refit, StealShape, Traversal, Tree};
+use nearmiss::query::{QueryKind, QueueShape, Refit, Search, StealShape, Traversal};
 use nearmiss::scene::{BodyId, DeviceInput, DevicePose, DeviceRows, Input, Meets, Number, Pose, Scene};
 use nearmiss::{Body, Detector, Device, Error, Mesh, Query};
 use nearmiss_lab::scene;
@@ -117,7 +117,7 @@ fn a_submitted_frame_is_the_frame() {
     for kind in QueryKind::ALL {
         for traversal in walks_of(kind).into_iter().filter(|walk| !walk.is_some_and(needs_the_host)) {
             for refit in [Refit::Levels, Refit::Treelets, Refit::BottomUp].map(Some) {
-                let query = query(kind).with_tree(Tree { traversal, refit, bv: None });
+                let query = query(kind).with_search(Search { traversal, refit, ..Search::default() });
                 assert!(agrees(&engine(), query, 3) > 0, "{query:?}");
             }
         }

@@ -207,7 +207,7 @@ impl Bench {
                         &by_pair
                     };
                     // Where a front goes on from the step before, what it asks hangs on that: the answer does not.
-                    let differs = match other.tree().traversal {
+                    let differs = match other.search().traversal {
                         Some(Traversal::Front(_)) => difference(&want.answer(), &there.answer()),
                         _ => difference(want, &there),
                     };

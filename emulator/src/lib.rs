@@ -86,7 +86,7 @@ impl Emulator {
         Ok(Emulator { pool, sanitizer, lanes: None })
     }
 
-    /// The same emulator with blocks of another size: answers must not depend on it.
+    /// The same emulator with blocks of another size, but for kernels that have an exact one: answers must not depend on it.
     pub fn with_lanes(self, lanes: u32) -> Self {
         Emulator { lanes: Some(lanes), ..self }
     }
@@ -110,7 +110,7 @@ impl Emulator {
 
     /// Lanes of a block of a kernel.
     pub fn lanes<E: Entry>(&self) -> u32 {
-        self.lanes.unwrap_or(E::LANES)
+        self.lanes.filter(|_| !E::EXACT).unwrap_or(E::LANES)
     }
 
     /// The sanitizer, if this is one.

@@ -9,7 +9,7 @@ use super::scene::{decode, detect, typed};
 use judge::Truth;
 use nearmiss::Query;
 use nearmiss::contacts::Answer;
-use nearmiss::query::Tree;
+use nearmiss::query::Search;
 
 /// The bodies of a scene's bytes at the start of their step, and the answer as `lie` passes it on, judged; of one body it has to be none.
 pub fn ask(bytes: &[u8], lie: impl Fn(&mut Answer)) -> Result<(), String> {
@@ -18,7 +18,7 @@ pub fn ask(bytes: &[u8], lie: impl Fn(&mut Answer)) -> Result<(), String> {
         Ok(bodies) => bodies,
         Err(error) => return typed(&error),
     };
-    let query = Query::distance().with_tree(Tree { traversal: None, ..query.tree() });
+    let query = Query::distance().with_search(Search { broad: None, traversal: None, ..query.search() });
     let mut found = match detect(&bodies, query) {
         Ok(found) => found,
         Err(error) => return typed(&error),

@@ -21,7 +21,7 @@ pub fn ask(bytes: &[u8], lie: impl Fn(&mut Answer)) -> Result<(), String> {
     };
     // Around the sizes of coordinates: 2^-12 to 2^3.
     let power = i32::from(bytes.first().copied().unwrap_or(0) >> 4) - 12;
-    let query = Query::near(2.0_f64.powi(power)).with_tree(query.tree());
+    let query = Query::near(2.0_f64.powi(power)).with_search(query.search());
     let Query::Near(near) = query else { return Ok(()) };
     let mut found = match detect(&bodies, query) {
         Ok(found) => found,

@@ -5,7 +5,7 @@ use super::lent;
 use nearmiss::contacts::{Answer, Contact, Kind, Status};
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::{Body, Mesh, Positions, Topology};
-use nearmiss::query::{Bv, FrontShape, QueryKind, QueueShape, Refit, StealShape, Traversal, Tree};
+use nearmiss::query::{Broad, Bv, FrontShape, QueryKind, QueueShape, Refit, Search, StealShape, Traversal};
 use nearmiss::{Contacts, Detector, Device, Error, Query};
 use nearmiss_lab::oracle::{Toi, first_contact, triangles_meet};
 use nearmiss_lab::{Case, Features};
@@ -28,10 +28,14 @@ pub fn decode(bytes: &[u8]) -> Result<(Vec<Body>, Query), Error> {
         Traversal::Steal(StealShape { cores: Some(3), ..StealShape::native() }),
         Traversal::Front(FrontShape { queue, ..FrontShape::native() }),
     ];
-    let query = queries[usize::from(choice / 3) % queries.len()].with_tree(Tree {
+    // Beyond the walks: tiles, which have one way.
+    let traversal = walks.get(usize::from(shape >> 2 & 15) % (walks.len() + 1)).copied();
+    let refit = [Refit::Levels, Refit::Treelets, Refit::BottomUp][usize::from(shape >> 6) % 3];
+    let query = queries[usize::from(choice / 3) % queries.len()].with_search(Search {
+        broad: Some(if traversal.is_some() { Broad::Tree } else { Broad::Tiles }),
         bv: Some(Bv::ALL[usize::from(shape) % 4]),
-        traversal: Some(walks[usize::from(shape >> 2 & 15) % walks.len()]),
-        refit: Some([Refit::Levels, Refit::Treelets, Refit::BottomUp][usize::from(shape >> 6) % 3]),
+        traversal,
+        refit: traversal.map(|_| refit),
     });
     let count = 1 + b.below(8) % 2;
     let bodies = (0..count).map(|_| body(&mut b)).collect::<Result<_, _>>()?;

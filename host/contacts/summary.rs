@@ -4,7 +4,7 @@ use super::{Contacts, Degraded, Front, NearestTriangles, Queues};
 use crate::device::Device;
 use crate::mesh::Body;
 use crate::pipeline::Stages;
-use crate::query::{Query, QueryKind, Refit, Solver, Traversal};
+use crate::query::{Broad, Query, QueryKind, Refit, Solver, Traversal};
 
 /// What the command line prints of a result, as JSON or for people.
 #[derive(Clone, Debug)]
@@ -20,10 +20,12 @@ pub struct Summary {
     pub query: QueryKind,
     /// The bounding volume.
     pub bv: &'static str,
-    /// The refit.
-    pub refit: Refit,
-    /// The walk.
-    pub traversal: Traversal,
+    /// What found candidates.
+    pub broad: Broad,
+    /// The refit, of trees.
+    pub refit: Option<Refit>,
+    /// The walk, of trees.
+    pub traversal: Option<Traversal>,
     /// The test.
     pub solver: Solver,
     /// `cpu` or `cuda`.
@@ -68,14 +70,17 @@ pub struct Summary {
 impl Summary {
     #[doc(hidden)]
     pub fn new(bodies: &[Body], query: Query, device: &Device, contacts: &Contacts) -> Summary {
+        let broad = query.broad_on(device.is_gpu());
+        let by_trees = broad == Broad::Tree;
         Summary {
             triangles: bodies.iter().map(Body::face_count).sum(),
             vertices: bodies.iter().map(Body::vertex_count).sum(),
             frames: if bodies.iter().any(Body::is_moving) { 2 } else { 1 },
             query: query.kind(),
             bv: query.bv().name(),
-            refit: query.refit_on(device.is_gpu()),
-            traversal: query.traversal_on(device.is_gpu()),
+            broad,
+            refit: by_trees.then(|| query.refit_on(device.is_gpu())),
+            traversal: by_trees.then(|| query.traversal_on(device.is_gpu())),
             solver: query.solver(),
             backend: device.backend(),
             device: device.name(),

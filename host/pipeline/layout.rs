@@ -3,7 +3,7 @@
 use crate::mesh::{Body, Topology};
 use crate::query::QueryKind;
 use crate::scene::{BodyId, BodyKind, Meets};
-use nearmiss_kernels::abi::{BodyRecord, EVERY};
+use nearmiss_kernels::abi::{BodyRecord, EVERY, NodeFilter};
 
 /// The indices of one body: its own plus these.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -105,6 +105,15 @@ impl Layout {
     pub fn has_groups(&self) -> bool {
         let all = |record: &BodyRecord| record.group == u32::MAX && record.mask == u32::MAX;
         !self.records.iter().all(all)
+    }
+
+    /// Whose each triangle is, as kernels ask.
+    pub fn whose(&self) -> impl Iterator<Item = NodeFilter> {
+        let of = |body: usize| {
+            let filter = NodeFilter::leaf(body as u32, &self.records[body]);
+            std::iter::repeat_n(filter, self.triangles(body).1 as usize)
+        };
+        (0..self.bodies()).flat_map(of)
     }
 
     /// How many triangles may move. Every candidate has one of them.

@@ -22,6 +22,8 @@ pub const REFIT: &str = "the way of the refit: treelets or arrivals";
 pub const FILTERS: &str = "whose triangles lie below each node";
 /// Volumes of all nodes.
 pub const VOLUMES: &str = "volumes of all nodes";
+/// Volumes of triangles, of tiles and above.
+pub const TILES: &str = "volumes of triangles, of tiles and above";
 /// What kernels know of bodies.
 pub const RECORDS: &str = "environment, groups and ranges of each body";
 /// Counters of a frame.

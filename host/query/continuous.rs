@@ -1,6 +1,6 @@
 //! Features in motion: all contacts of a step, or the first.
 
-use super::{Certified, CertifiedPrecision, Question, Solver, Tree};
+use super::{Certified, CertifiedPrecision, Question, Search, Solver};
 use crate::error::Error;
 
 /// Which vertex/face and edge/edge pairs meet at some t in [0, 1], and when first?
@@ -15,8 +15,8 @@ use crate::error::Error;
 pub struct Continuous {
     /// The test of a pair.
     pub solver: ContinuousSolver,
-    /// How it is searched.
-    pub tree: Tree,
+    /// How candidates are found.
+    pub search: Search,
 }
 
 /// When does the first of them meet?
@@ -31,8 +31,8 @@ pub struct Continuous {
 pub struct Earliest {
     /// The test of a pair.
     pub solver: ContinuousSolver,
-    /// How it is searched.
-    pub tree: Tree,
+    /// How candidates are found.
+    pub search: Search,
 }
 
 /// The test of a pair of features in motion.
@@ -112,7 +112,7 @@ macro_rules! in_motion {
         impl $kind {
             /// By that solver, all other choices at their defaults.
             pub fn by(solver: impl Into<ContinuousSolver>) -> $kind {
-                $kind { solver: solver.into(), tree: Tree::default() }
+                $kind { solver: solver.into(), search: Search::default() }
             }
         }
 
@@ -123,11 +123,11 @@ macro_rules! in_motion {
             fn every() -> Vec<$kind> {
                 ContinuousSolver::ALL.map($kind::by).into()
             }
-            fn tree(&self) -> &Tree {
-                &self.tree
+            fn search(&self) -> &Search {
+                &self.search
             }
-            fn tree_mut(&mut self) -> &mut Tree {
-                &mut self.tree
+            fn search_mut(&mut self) -> &mut Search {
+                &mut self.search
             }
             fn solver(&self) -> Solver {
                 self.solver.name()

@@ -1,6 +1,6 @@
 //! Triangles at t = 0.
 
-use super::{Question, Solver, Tree};
+use super::{Question, Search, Solver};
 
 /// Which triangle pairs share a point at t = 0?
 ///
@@ -14,8 +14,8 @@ use super::{Question, Solver, Tree};
 pub struct Discrete {
     /// The test of a pair.
     pub test: TriangleTest,
-    /// How it is searched.
-    pub tree: Tree,
+    /// How candidates are found.
+    pub search: Search,
 }
 
 /// The test of a pair of triangles that stand still.
@@ -75,11 +75,11 @@ impl Question for Discrete {
     fn every() -> Vec<Discrete> {
         TriangleTest::ALL.map(Discrete::by).into()
     }
-    fn tree(&self) -> &Tree {
-        &self.tree
+    fn search(&self) -> &Search {
+        &self.search
     }
-    fn tree_mut(&mut self) -> &mut Tree {
-        &mut self.tree
+    fn search_mut(&mut self) -> &mut Search {
+        &mut self.search
     }
     fn solver(&self) -> Solver {
         self.test.name()

@@ -1,6 +1,6 @@
 //! The least distance between bodies at t = 0.
 
-use super::{Question, Solver, Traversal, Tree};
+use super::{Question, Search, Solver, Traversal};
 use crate::error::Error;
 
 /// How far apart are the two bodies that are nearest at t = 0, and where? Of all pairs of triangles of different bodies that may
@@ -21,7 +21,7 @@ use crate::error::Error;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Distance {
     /// How it is searched: it has a walk of its own, [`Traversal::NearestFirst`], and no other.
-    pub tree: Tree,
+    pub search: Search,
 }
 
 impl Question for Distance {
@@ -40,17 +40,17 @@ impl Question for Distance {
     fn every() -> Vec<Distance> {
         vec![Distance::default()]
     }
-    fn tree(&self) -> &Tree {
-        &self.tree
+    fn search(&self) -> &Search {
+        &self.search
     }
-    fn tree_mut(&mut self) -> &mut Tree {
-        &mut self.tree
+    fn search_mut(&mut self) -> &mut Search {
+        &mut self.search
     }
     fn solver(&self) -> Solver {
         Solver::Bounded
     }
     fn check(&self) -> Result<(), Error> {
-        match self.tree.traversal {
+        match self.search.traversal {
             None | Some(Traversal::NearestFirst) => Ok(()),
             Some(other) => Err(Error::Choice {
                 what: format!("a distance by the traversal {other:?}"),

@@ -1,6 +1,6 @@
 //! The kinds of queries: a line each.
 
-use super::{Certified, Solver, Tree};
+use super::{Certified, Search, Solver};
 use crate::error::Error;
 
 /// What a kind of query says of itself.
@@ -34,10 +34,10 @@ pub(crate) trait Question {
     fn every() -> Vec<Self>
     where
         Self: Sized;
-    /// How it is searched.
-    fn tree(&self) -> &Tree;
+    /// How candidates are found.
+    fn search(&self) -> &Search;
     /// The same, to change it.
-    fn tree_mut(&mut self) -> &mut Tree;
+    fn search_mut(&mut self) -> &mut Search;
     /// The name of its test.
     fn solver(&self) -> Solver;
     /// The choices of its certified solver.

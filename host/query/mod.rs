@@ -9,8 +9,8 @@ mod kind;
 mod named;
 mod near;
 mod queues;
+mod search;
 mod solver;
-mod tree;
 
 pub use bv::{Bv, WithVolume};
 pub use certified::{Certified, CertifiedPrecision};
@@ -21,8 +21,8 @@ pub use named::Named;
 pub(crate) use named::named;
 pub use near::Near;
 pub use queues::{Balance, FrontShape, QueueShape, StealShape};
+pub use search::{Broad, Refit, Search, Traversal};
 pub use solver::Solver;
-pub use tree::{Refit, Traversal, Tree};
 
 use crate::error::Error;
 use kind::{Question, kinds};
@@ -82,30 +82,35 @@ impl Query {
 }
 
 impl Query {
-    /// How it is searched.
-    pub fn tree(&self) -> Tree {
-        *self.question().tree()
+    /// How candidates are found.
+    pub fn search(&self) -> Search {
+        *self.question().search()
     }
 
-    /// The same, searched in that way.
-    pub fn with_tree(mut self, tree: Tree) -> Query {
-        *self.question_mut().tree_mut() = tree;
+    /// The same, with candidates found in that way.
+    pub fn with_search(mut self, search: Search) -> Query {
+        *self.question_mut().search_mut() = search;
         self
+    }
+
+    /// The same, with that broad phase.
+    pub fn with_broad(self, broad: Broad) -> Query {
+        self.with_search(Search { broad: Some(broad), ..self.search() })
     }
 
     /// The same, with that volume.
     pub fn with_bv(self, bv: Bv) -> Query {
-        self.with_tree(Tree { bv: Some(bv), ..self.tree() })
+        self.with_search(Search { bv: Some(bv), ..self.search() })
     }
 
     /// The same, with that refit.
     pub fn with_refit(self, refit: Refit) -> Query {
-        self.with_tree(Tree { refit: Some(refit), ..self.tree() })
+        self.with_search(Search { refit: Some(refit), ..self.search() })
     }
 
     /// The same, with that walk.
     pub fn with_traversal(self, traversal: Traversal) -> Query {
-        self.with_tree(Tree { traversal: Some(traversal), ..self.tree() })
+        self.with_search(Search { traversal: Some(traversal), ..self.search() })
     }
 
     /// The name of the test of a pair.
@@ -125,17 +130,22 @@ impl Query {
 
     /// The volume that will be used.
     pub fn bv(&self) -> Bv {
-        self.tree().bv.unwrap_or(Bv::default_for(self.kind()))
+        self.search().bv.unwrap_or(Bv::default_for(self.kind()))
     }
 
-    /// The refit that will be used on a GPU, or on a CPU.
+    /// The broad phase that will be used on a GPU, or on a CPU.
+    pub fn broad_on(&self, is_gpu: bool) -> Broad {
+        if self.kind().takes_traversals() { self.search().broad_on(is_gpu, self.bv()) } else { Broad::Tree }
+    }
+
+    /// The refit of trees that will be used on a GPU, or on a CPU.
     pub fn refit_on(&self, is_gpu: bool) -> Refit {
-        self.tree().refit.unwrap_or(Refit::default_for(is_gpu))
+        self.search().refit.unwrap_or(Refit::default_for(is_gpu))
     }
 
-    /// The walk that will be used on a GPU, or on a CPU.
+    /// The walk of trees that will be used on a GPU, or on a CPU.
     pub fn traversal_on(&self, is_gpu: bool) -> Traversal {
-        match self.tree().traversal {
+        match self.search().traversal {
             Some(traversal) => traversal,
             None if self.kind().takes_traversals() => Traversal::default_for(is_gpu, self.bv()),
             None => Traversal::NearestFirst,
@@ -148,13 +158,19 @@ impl Query {
     /// [`Error::Choice`] with what would.
     pub fn check(&self) -> Result<(), Error> {
         self.question().check()?;
-        if self.kind().takes_traversals() && self.tree().traversal == Some(Traversal::NearestFirst) {
+        if self.kind().takes_traversals() && self.search().traversal == Some(Traversal::NearestFirst) {
             return Err(Error::Choice {
                 what: format!("a {} query by the traversal nearest first", self.kind()),
                 advice: "keep that for distances, which have no other; choose another or none".into(),
             });
         }
-        self.tree().check()
+        if !self.kind().takes_traversals() && self.search().broad == Some(Broad::Tiles) {
+            return Err(Error::Choice {
+                what: format!("a {} query by tiles", self.kind()),
+                advice: "choose trees, or nothing: the nearest is sought down a tree".into(),
+            });
+        }
+        self.search().check()
     }
 
     /// Whether triangles that share a vertex are candidates.

@@ -1,6 +1,6 @@
 //! Features at t = 0 within a distance.
 
-use super::{Question, Solver, Tree};
+use super::{Question, Search, Solver};
 use crate::error::Error;
 
 /// Which vertex/face and edge/edge pairs are within a distance of each other at t = 0, and where are they nearest?
@@ -13,8 +13,8 @@ use crate::error::Error;
 pub struct Near {
     /// How far apart two features may be to be listed, a length above 0.
     pub distance: f64,
-    /// How it is searched.
-    pub tree: Tree,
+    /// How candidates are found.
+    pub search: Search,
 }
 
 impl Near {
@@ -23,7 +23,7 @@ impl Near {
 
     /// Within that distance, all other choices at their defaults.
     pub fn within(distance: f64) -> Near {
-        Near { distance, tree: Tree::default() }
+        Near { distance, search: Search::default() }
     }
 }
 
@@ -34,11 +34,11 @@ impl Question for Near {
     fn every() -> Vec<Near> {
         vec![Near::within(Near::DISTANCE)]
     }
-    fn tree(&self) -> &Tree {
-        &self.tree
+    fn search(&self) -> &Search {
+        &self.search
     }
-    fn tree_mut(&mut self) -> &mut Tree {
-        &mut self.tree
+    fn search_mut(&mut self) -> &mut Search {
+        &mut self.search
     }
     fn solver(&self) -> Solver {
         Solver::Bounded

@@ -18,7 +18,7 @@ use crate::stage::narrow::{
 };
 use crate::stage::refit::{bottom_up, levels, treelets};
 use crate::stage::traverse::{front, nearest as nearest_first, queue, steal};
-use crate::stage::{balance, fit as fitting, order, place, status, traverse};
+use crate::stage::{balance, fit as fitting, order, place, status, tile, traverse};
 use core::marker::PhantomData;
 use name::{Name, precision};
 
@@ -30,6 +30,8 @@ pub trait Entry: 'static {
     type Args: Copy + Send + Sync + 'static;
     /// Lanes of a block.
     const LANES: u32;
+    /// Whether it works with no other number of lanes.
+    const EXACT: bool = false;
     /// Bytes of shared memory of a block.
     const SHARED: u32;
     /// Its place in [`TABLE`]; none of kernels that are not in it, as tests have.
@@ -84,9 +86,10 @@ pub static NEARMISS_STAMP: u64 = stamp::SOURCES;
 
 /// What a kernel is, of the parts of its line.
 macro_rules! is_entry {
-    ($path:expr, [$args:ty], $lanes:expr, $shared:expr) => {
+    ($path:expr, [$args:ty], $lanes:expr, $shared:expr $(, exact = $exact:literal)?) => {
         type Args = $args;
         const LANES: u32 = $lanes;
+        $(const EXACT: bool = $exact;)?
         const SHARED: u32 = $shared;
         const PLACE: Option<usize> = name::place(Self::NAME);
         #[inline(always)]
@@ -124,8 +127,8 @@ macro_rules! kernels {
 /// each precision that only some volumes have. [`crate::volumes`] says which volumes there are.
 macro_rules! kernels_of_volumes {
     (
-        both { $($name:ident: $path:expr, [$args:ty], $lanes:expr, $shared:expr;)* }
-        each { $($each:ident: $each_path:expr, [$each_args:ty], $each_lanes:expr, $each_shared:expr;)* }
+        both { $($name:ident: $path:expr, [$args:ty], $lanes:expr, $shared:expr $(, exact = $exact:literal)?;)* }
+        each { $($each:ident: $each_path:expr, [$each_args:ty], $each_lanes:expr, $each_shared:expr $(, exact = $each_exact:literal)?;)* }
         groups { $($group:ident: $group_path:expr, [$group_args:ty], $group_lanes:expr, $group_shared:expr;)* }
     ) => {
         $(
@@ -138,11 +141,11 @@ macro_rules! kernels_of_volumes {
             }
             impl<V: Kernels> Entry for $name<V> {
                 const NAME: &'static str = Self::TEXT.text();
-                is_entry!($path, [$args], $lanes, $shared);
+                is_entry!($path, [$args], $lanes, $shared $(, exact = $exact)?);
             }
         )*
         kernels_of_precisions! {
-            $($each: $each_path, [$each_args], $each_lanes, $each_shared;)*
+            $($each: $each_path, [$each_args], $each_lanes, $each_shared $(, exact = $each_exact)?;)*
             $($group: $group_path, [$group_args], $group_lanes, $group_shared;)*
         }
 
@@ -190,7 +193,7 @@ macro_rules! kernels_of_volumes {
 
 /// Types of kernels of a volume and a precision of positions.
 macro_rules! kernels_of_precisions {
-    ($($name:ident: $path:expr, [$args:ty], $lanes:expr, $shared:expr;)*) => { $(
+    ($($name:ident: $path:expr, [$args:ty], $lanes:expr, $shared:expr $(, exact = $exact:literal)?;)*) => { $(
         #[doc = concat!("`", stringify!($name), "` of a volume and a precision of positions")]
         #[allow(non_camel_case_types, reason = "the type is the entry's name")]
         #[derive(Clone, Copy, Debug)]
@@ -200,7 +203,7 @@ macro_rules! kernels_of_precisions {
         }
         impl<R: Real, V: Kernels> Entry for $name<R, V> {
             const NAME: &'static str = Self::TEXT.text();
-            is_entry!($path, [$args], $lanes, $shared);
+            is_entry!($path, [$args], $lanes, $shared $(, exact = $exact)?);
         }
     )* };
 }
@@ -275,6 +278,7 @@ kernels! {
     construct_depth: tree::depth, [TreeArgs], WIDE, 0;
     construct_places: tree::places, [TreeArgs], WIDE, sort::shared_bytes(WIDE);
     construct_emit: tree::emit, [TreeArgs], WIDE, 0;
+    construct_tile_filters: tile::filters::filters, [TileFiltersArgs], WIDE, 0;
     construct_treelets: treelet::plan, [PlanArgs], WIDE, treelet::SHARED;
     balance_copy: balance::copy, [BalanceArgs], BALANCE, 0;
     narrow_moller_f32: discrete::moller::<f32, B>, [DiscreteArgs<f32>], WIDE, 0;
@@ -343,10 +347,14 @@ kernels_of_volumes! {
         traverse_front: front::front::<V, B>, [FrontArgs<V>], WIDE, 0;
         traverse_queue: queue::queue::<V, B>, [QueueArgs<V>], NARROW, worker::shared_bytes(NARROW);
         traverse_steal: steal::steal::<V, B>, [StealArgs<V>], NARROW, worker::shared_bytes(NARROW);
+        traverse_tiles: tile::pairs::pairs::<V, B>, [TilePairsArgs<V>], tile::pairs::LANES, tile::pairs::SHARED, exact = true;
+        traverse_triangles: tile::triangles::triangles::<V, B>, [TileTrianglesArgs<V>], tile::triangles::LANES, tile::triangles::shared_bytes::<V>(), exact = true;
+        refit_tiles: tile::fit::above::<V, B>, [RefitTilesArgs<V>], tile::fit::LANES, tile::fit::shared_bytes::<V>(), exact = true;
     }
     each {
         traverse_sample: nearest_first::sample::<R, V, B>, [NearestArgs<R, V>], NARROW, 0;
         fit: fitting::fit::<R, V, B>, [FitArgs<R, V>], WIDE, 0;
+        fit_tiles: tile::fit::tiles::<R, V, B>, [FitTilesArgs<R, V>], tile::fit::LANES, tile::fit::shared_bytes::<V>(), exact = true;
         refit_treelets: treelets::treelets::<R, V, B>, [TreeletsArgs<R, V>], WIDE, treelets::shared_bytes::<V>();
     }
     groups {

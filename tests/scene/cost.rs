@@ -1,7 +1,7 @@
 //! What a scene costs: what moves, in launches that no number of bodies changes, and memory for what is there alone.
 
 use super::*;
-use nearmiss::query::{Near, Refit, Traversal, Tree};
+use nearmiss::query::{Near, Refit, Search, Traversal};
 
 /// A crate of twelve triangles; the pile is `n` of them in a row, each a little into the next.
 pub fn pile(n: usize, kind: fn(Mesh) -> Body, environments: bool) -> Scene {
@@ -28,7 +28,7 @@ pub fn query(motion: QueryKind) -> Query {
     };
     let spilling = Traversal::PerLeaf { budget: Some(64) };
     let traversal = motion.takes_traversals().then_some(spilling);
-    query.with_tree(Tree { refit: Some(Refit::Treelets), traversal, bv: None })
+    query.with_search(Search { refit: Some(Refit::Treelets), traversal, ..Search::default() })
 }
 
 /// Launches of a frame in which every body that can is moved, bytes held, and what was found.

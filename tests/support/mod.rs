@@ -9,7 +9,7 @@ pub use data::data;
 
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Bv, FrontShape, QueryKind, QueueShape, Refit, StealShape, Traversal, Tree};
+use nearmiss::query::{Broad, Bv, FrontShape, QueryKind, QueueShape, Refit, Search, StealShape, Traversal};
 use nearmiss::scene::Scene;
 use nearmiss::{Detector, Device, Query};
 use std::io::Read;
@@ -59,15 +59,18 @@ pub fn walks_of(kind: QueryKind) -> Vec<Option<Traversal>> {
     if kind.takes_traversals() { walks().into_iter().map(Some).collect() } else { vec![None] }
 }
 
-/// That question with every volume, every walk and every refit.
+/// That question with every volume, every walk and every refit of trees, and by tiles.
 pub fn ways(query: Query) -> impl Iterator<Item = Query> {
     let refits = [Refit::Levels, Refit::Treelets, Refit::BottomUp];
     let walks = move || walks_of(query.kind());
-    Bv::ALL.into_iter().flat_map(move |bv| {
+    let of_trees = move |bv| {
         walks().into_iter().flat_map(move |traversal| {
-            refits.map(|refit| query.with_tree(Tree { bv: Some(bv), traversal, refit: Some(refit) }))
+            let search = Search { broad: Some(Broad::Tree), bv: Some(bv), traversal, refit: None };
+            refits.map(|refit| query.with_search(Search { refit: Some(refit), ..search }))
         })
-    })
+    };
+    let tiles = move |bv| query.kind().takes_traversals().then(|| query.with_bv(bv).with_broad(Broad::Tiles));
+    Bv::ALL.into_iter().flat_map(move |bv| of_trees(bv).chain(tiles(bv)))
 }
 
 /// One answer on one device.

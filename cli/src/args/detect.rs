@@ -4,7 +4,7 @@ use super::number::{some, whole};
 use super::{MachineArgs, choice};
 use clap::{Args, ValueEnum};
 use nearmiss::Stage;
-use nearmiss::query::{Bv, FrontShape, QueueShape, Refit, Solver, StealShape, Traversal};
+use nearmiss::query::{Broad, Bv, FrontShape, QueueShape, Refit, Solver, StealShape, Traversal};
 use std::path::PathBuf;
 
 /// Walks that exist.
@@ -91,6 +91,9 @@ pub struct DetectArgs {
     /// two meshes or more.
     #[arg(long, conflicts_with_all = ["discrete", "continuous", "earliest", "near"])]
     pub distance: bool,
+    /// What finds candidates [default: the machine's fastest; trees where a refit or a traversal is chosen].
+    #[arg(long, value_parser = choice::<Broad>())]
+    pub broad: Option<Broad>,
     /// Bounding volume [default: the fastest].
     #[arg(long, value_parser = choice::<Bv>())]
     pub bv: Option<Bv>,

@@ -3,8 +3,8 @@
 use super::DetectArgs;
 use nearmiss::error::Error;
 use nearmiss::query::{
-    Certified, Continuous, ContinuousSolver, Discrete, Distance, Earliest, Near, Query, QueryKind, Solver,
-    Tree, TriangleTest,
+    Certified, Continuous, ContinuousSolver, Discrete, Distance, Earliest, Near, Query, QueryKind, Search,
+    Solver, TriangleTest,
 };
 
 impl DetectArgs {
@@ -30,20 +30,22 @@ impl DetectArgs {
             });
         }
         let traversal = self.traversal.map(|walk| walk.choice(self));
-        let tree = Tree { bv: self.bv, refit: self.refit, traversal };
+        let search = Search { broad: self.broad, bv: self.bv, refit: self.refit, traversal };
         let query: Query = match (near, ContinuousSolver::named(solver)) {
-            _ if self.distance => Distance { tree }.into(),
-            (Some(distance), _) => Near { distance, tree }.into(),
+            _ if self.distance => Distance { search }.into(),
+            (Some(distance), _) => Near { distance, search }.into(),
             (None, Some(solver)) => {
                 let solver = self.limited(solver);
                 if kind == QueryKind::Earliest {
-                    Earliest { solver, tree }.into()
+                    Earliest { solver, search }.into()
                 } else {
-                    Continuous { solver, tree }.into()
+                    Continuous { solver, search }.into()
                 }
             }
-            (None, None) if solver == Solver::Moller => Discrete { test: TriangleTest::Moller, tree }.into(),
-            (None, None) => Discrete { test: TriangleTest::Exact { adjacent: self.adjacent }, tree }.into(),
+            (None, None) if solver == Solver::Moller => {
+                Discrete { test: TriangleTest::Moller, search }.into()
+            }
+            (None, None) => Discrete { test: TriangleTest::Exact { adjacent: self.adjacent }, search }.into(),
         };
         query.check()?;
         if self.adjacent && solver != Solver::Exact {

@@ -153,7 +153,7 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
 
 /// The answer, and the times of each run; of several runs the first only warms up.
 fn repeated(detector: &mut Detector, repeat: u32) -> Result<(Contacts, Vec<Stages>), Error> {
-    let keeps_front = matches!(detector.query().tree().traversal, Some(Traversal::Front(_)));
+    let keeps_front = matches!(detector.query().search().traversal, Some(Traversal::Front(_)));
     let mut contacts = detector.detect()?;
     let mut runs = vec![contacts.stages];
     if repeat > 1 {

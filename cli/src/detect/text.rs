@@ -81,7 +81,8 @@ pub fn human(told: &Report, contacts: &Contacts) -> String {
         if ms.order > 0.0 { format!(", ordering {:.3}", ms.order) } else { String::new() },
         ms.wall
     );
-    if !matches!(summary.traversal, Traversal::PerLeaf { .. } | Traversal::NearestFirst) {
+    let has_queues = |walk: &Traversal| !matches!(walk, Traversal::PerLeaf { .. } | Traversal::NearestFirst);
+    if summary.traversal.as_ref().is_some_and(has_queues) {
         let q = &summary.queues;
         let _ = writeln!(
             text,
@@ -94,7 +95,7 @@ pub fn human(told: &Report, contacts: &Contacts) -> String {
             q.longest
         );
     }
-    if let Traversal::Front(_) = summary.traversal {
+    if let Some(Traversal::Front(_)) = summary.traversal {
         let f = &summary.front;
         let _ = writeln!(
             text,

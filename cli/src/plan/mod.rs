@@ -18,7 +18,7 @@ use nearmiss::error::Error;
 use nearmiss::mesh::Body;
 use nearmiss::pipeline::mean_side;
 use nearmiss::plan::Plan;
-use nearmiss::query::{Bv, Certified, Query, Traversal};
+use nearmiss::query::{Broad, Bv, Certified, Query, Traversal};
 use nearmiss::scene::{BodyKind, Scene};
 use nearmiss::words::counted;
 use std::fmt::Write;
@@ -110,7 +110,7 @@ fn asked(
 
 /// Whether a tree built anew would lose what the walk keeps.
 fn keeps_front(query: &Query) -> bool {
-    matches!(query.tree().traversal, Some(Traversal::Front(_)))
+    matches!(query.search().traversal, Some(Traversal::Front(_)))
 }
 
 /// Bodies that are told one by one.
@@ -144,30 +144,13 @@ fn choices(detector: &Detector, device: &Device) -> String {
     let _ = writeln!(text, "machine    {} ({})", device.name(), device.backend());
     let swept = !query.kind().is_at_rest() && query.bv() != Bv::Linear;
     let _ = writeln!(text, "volume     {}{}", query.bv().name(), if swept { ", swept" } else { "" });
-    let _ = writeln!(
-        text,
-        "refit      {}",
-        match (query.tree().refit, query.refit_on(device.is_gpu())) {
-            (Some(choice), _) => format!("{choice:?}, as asked"),
-            (None, choice) => format!("{choice:?}: the fastest on this machine"),
-        }
-    );
-    let _ = writeln!(
-        text,
-        "traversal  {}",
-        match query.tree().traversal {
-            Some(choice) => format!("{choice:?}, as asked"),
-            None => match query.traversal_on(device.is_gpu()) {
-                Traversal::PerLeaf { budget: None } =>
-                    "per leaf, to the end: a CPU's threads balance by themselves".into(),
-                Traversal::PerLeaf { .. } =>
-                    "per leaf, long walks spill: a GPU must not wait for its longest walk".into(),
-                Traversal::NearestFirst =>
-                    "nearest first: samples bound the distance, then a walk a leaf".into(),
-                choice => format!("{choice:?}: fewer tests, where tests cost more"),
-            },
-        }
-    );
+    let broad = query.broad_on(device.is_gpu());
+    let why = if query.search().broad.is_some() { "as asked" } else { "the fastest on this machine" };
+    if broad == Broad::Tiles {
+        let _ = writeln!(text, "broad      tiles: 32 neighbours against 32, no tree; {why}");
+    } else {
+        text += &of_trees(query, device);
+    }
     let _ = writeln!(text, "solver     {}", query.solver().promise());
     if let (Some(tolerance), Some(certified)) = (detector.tolerance(), query.certified()) {
         let why = if certified.tolerance.is_some() { "as asked" } else { "about 1e-4 of the mean edge" };
@@ -190,5 +173,35 @@ fn choices(detector: &Detector, device: &Device) -> String {
     let levels = detector.depths().iter().map(|&n| counted(n as u64, "level", "levels")).collect::<Vec<_>>();
     let _ =
         writeln!(text, "tree       {}", if levels.is_empty() { "none".into() } else { levels.join(" and ") });
+    text
+}
+
+/// How trees are refitted and walked.
+fn of_trees(query: &Query, device: &Device) -> String {
+    let mut text = String::new();
+    let _ = writeln!(
+        text,
+        "refit      {}",
+        match (query.search().refit, query.refit_on(device.is_gpu())) {
+            (Some(choice), _) => format!("{choice:?}, as asked"),
+            (None, choice) => format!("{choice:?}: the fastest on this machine"),
+        }
+    );
+    let _ = writeln!(
+        text,
+        "traversal  {}",
+        match query.search().traversal {
+            Some(choice) => format!("{choice:?}, as asked"),
+            None => match query.traversal_on(device.is_gpu()) {
+                Traversal::PerLeaf { budget: None } =>
+                    "per leaf, to the end: a CPU's threads balance by themselves".into(),
+                Traversal::PerLeaf { .. } =>
+                    "per leaf, long walks spill: a GPU must not wait for its longest walk".into(),
+                Traversal::NearestFirst =>
+                    "nearest first: samples bound the distance, then a walk a leaf".into(),
+                choice => format!("{choice:?}: fewer tests, where tests cost more"),
+            },
+        }
+    );
     text
 }

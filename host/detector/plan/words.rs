@@ -17,10 +17,11 @@ pub const STAGES: [(&str, &str); 9] = [
 const ORDER: usize = 7;
 
 /// Kernels by how their names begin, the longer beginnings first, and what each does.
-const KERNELS: [(&str, &str); 45] = [
+const KERNELS: [(&str, &str); 50] = [
     ("place", "poses applied, uploads put in place, the rest at rest"),
     ("construct_bounds", "the box of each body's centres"),
-    ("construct_morton", "a code a triangle, behind its body's prefix"),
+    ("construct_morton", "a code a triangle along a curve, behind its body's prefix"),
+    ("construct_tile_filters", "whose triangles lie below each tile and above"),
     ("construct_treelets", "which leaves are refitted together"),
     ("construct_tree", "the radix tree"),
     ("construct_depth", "each node's depth"),
@@ -28,10 +29,12 @@ const KERNELS: [(&str, &str); 45] = [
     ("construct_emit", "nodes in level order"),
     ("construct_graft", "the static tree behind the other, once"),
     ("sort_pass", "a pass of the radix sort"),
+    ("fit_tiles", "a volume a triangle, a tile, and 16 tiles"),
     ("fit_groups", "nodes of few leaves, from their points"),
     ("fit", "a volume a leaf"),
     ("refit_levels", "the volumes of a level"),
     ("refit_treelets", "leaves and all other volumes in one launch"),
+    ("refit_tiles", "a volume 16 nodes, for each further level"),
     ("refit_bottom_up", "all volumes: of two siblings the second goes on"),
     ("traverse_leaves", "a walk a leaf"),
     ("traverse_units", "what long walks gave away"),
@@ -40,6 +43,8 @@ const KERNELS: [(&str, &str); 45] = [
     ("traverse_queue", "pairs of nodes from work queues"),
     ("traverse_steal", "pairs of nodes from queues that help each other"),
     ("traverse_front", "from where the last frame's descent ended"),
+    ("traverse_tiles", "pairs of tiles"),
+    ("traverse_triangles", "triangles of pairs of tiles, all against all"),
     ("balance_copy", "as many units in each queue"),
     ("narrow_moller", "the float test of two triangles"),
     ("narrow_filter", "signs in the positions' precision"),

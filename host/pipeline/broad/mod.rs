@@ -3,6 +3,7 @@
 
 mod prefix;
 mod sorted;
+mod tiles;
 pub mod trees;
 
 use super::counts::Counts;
@@ -11,11 +12,13 @@ use super::list::GrowableOutput;
 use super::precision::Precision;
 use crate::device::Device;
 use crate::error::Error;
-use crate::query::{Query, WithVolume};
+use crate::query::{Broad, Query, WithVolume};
 use nearmiss_kernels::abi::{BodyRecord, Counters, Output, Pair, Positions, Span, TraverseFlags};
 use nearmiss_kernels::bv::Axes;
+use nearmiss_kernels::bvh::Violation;
 use nearmiss_kernels::entry::Kernels;
 use nearmiss_kernels::math::{Vec3, round};
+use tiles::Tiles;
 use trees::Trees;
 
 /// What a broad phase is given: the machine, and where what lies there.
@@ -81,22 +84,30 @@ pub trait BroadPhase<R: Precision>: Send {
     ///
     /// # Errors
     /// Those of the device.
-    fn finish(&mut self, counters: &Counts) -> Result<(), Error>;
+    fn finish(&mut self, _counters: &Counts) -> Result<(), Error> {
+        Ok(())
+    }
 
     /// Whether the next frame does without the host: else why not.
     ///
     /// # Errors
     /// What it needs the host for.
-    fn without_host(&self) -> Result<(), &'static str>;
+    fn without_host(&self) -> Result<(), &'static str> {
+        Ok(())
+    }
 
     /// Whether the last frame, once finished, had no front though one was asked for, or dropped it.
-    fn front_dropped(&self) -> bool;
+    fn front_dropped(&self) -> bool {
+        false
+    }
 
     /// Milliseconds that the last traversal spent on balancing; waits for it.
     ///
     /// # Errors
     /// Those of the device.
-    fn balance_ms(&self) -> Result<f64, Error>;
+    fn balance_ms(&self) -> Result<f64, Error> {
+        Ok(0.0)
+    }
 
     /// Levels of what moves and, where there is something, of what is static.
     fn depths(&self) -> Vec<usize>;
@@ -142,7 +153,10 @@ impl<R: Precision> WithVolume for New<'_, R> {
 
     fn with<V: Kernels>(self, axes: Axes) -> Self::Out {
         let New { device, layout, query, margin, .. } = self;
-        Ok(Box::new(Trees::<R, V>::new(device, layout, query, (axes, margin))?))
+        Ok(match query.broad_on(device.is_gpu()) {
+            Broad::Tree => Box::new(Trees::<R, V>::new(device, layout, query, (axes, margin))?),
+            Broad::Tiles => Box::new(Tiles::<V>::new(device, layout, (axes, margin))?),
+        })
     }
 }
 
@@ -151,4 +165,18 @@ impl<R: Precision> WithVolume for New<'_, R> {
 pub fn growth(distance: f64) -> f32 {
     let half = round::up(0.5 * distance);
     if 2.0 * f64::from(half) < distance { half.next_up() } else { half }
+}
+
+/// The volume around a triangle at t = 0 and, when there are two frames, at t = 1.
+fn leaf_volume<R: Precision, V: Kernels>(face: [u32; 3], frames: &[Vec<Vec3<R>>]) -> V {
+    let corners = |frame: &Vec<Vec3<R>>| face.map(|v| frame[v as usize]);
+    match frames {
+        [t0, t1] => V::moving(corners(t0), corners(t1)),
+        _ => V::still(corners(&frames[0])),
+    }
+}
+
+/// What a checker found, as an error.
+fn broken(violation: Violation) -> Error {
+    Error::Bug { what: format!("the broad phase is broken: {violation:?}") }
 }

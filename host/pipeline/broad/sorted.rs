@@ -7,7 +7,7 @@ use crate::pipeline::layout::Layout;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::sorter::{counted, sort, words};
 use crate::pipeline::{launch, purpose};
-use nearmiss_kernels::abi::{BodyRecord, MortonArgs, Positions, Span, TreeBody};
+use nearmiss_kernels::abi::{BodyRecord, MortonArgs, MortonFlags, Positions, Span, TreeBody};
 use nearmiss_kernels::bvh::CODE_BITS;
 use nearmiss_kernels::math::ordered;
 use nearmiss_kernels::stage::construct::morton;
@@ -60,7 +60,7 @@ impl Sorted {
     }
 
     /// Puts them in order by where they are at t = 0, all on the device but for an order of the bodies, where there are more than
-    /// one: that waits for their boxes. Cost: seven launches, four of them a radix sort.
+    /// one: that waits for their boxes. `flags` say along which curve. Cost: seven launches, four of them a radix sort.
     ///
     /// # Errors
     /// Those of the device.
@@ -69,6 +69,7 @@ impl Sorted {
         device: &Device,
         frames: Positions<R>,
         faces: Span<[u32; 3]>,
+        flags: MortonFlags,
     ) -> Result<(), Error> {
         self.begins_zero.clear()?;
         let zeroed = self.begins_zero.span();
@@ -82,7 +83,7 @@ impl Sorted {
             items: self.items[0].span(),
             tiles: counted(device, counts, self.count, 0),
             count: self.count,
-            pad: 0,
+            flags,
         };
         let lanes = (self.count as usize).div_ceil(morton::TOGETHER as usize);
         launch::striding::<R::Bounds>(device, lanes, &morton)?;
@@ -98,6 +99,14 @@ impl Sorted {
     /// The triangles in order: the lower halves.
     pub fn triangles(&self) -> Span<u64> {
         self.items[0].span()
+    }
+
+    /// The same, with their codes above.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn download(&self) -> Result<Vec<u64>, Error> {
+        self.items[0].read(self.count as usize)
     }
 
     /// The words that were asked for beside.

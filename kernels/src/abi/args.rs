@@ -1,8 +1,8 @@
 //! One argument block for each kernel: what it is launched with, by value.
 
 use super::{
-    BodyRecord, Counter, Counters, FilterArgs, Inner, LeafPlace, Link, Merge, Node, NodeFilter, Output, Pair,
-    Point, Span, TraverseFlags, TreeBody, Treelet, Unit, VertexMotion,
+    BodyRecord, Counter, Counters, FilterArgs, Inner, LeafPlace, Link, Merge, MortonFlags, Node, NodeFilter,
+    Output, Pair, Point, Span, TraverseFlags, TreeBody, Treelet, Unit, VertexMotion,
 };
 use crate::bv::Axes;
 use crate::math::Real;
@@ -47,14 +47,14 @@ arguments! {
         bodies: Span<TreeBody>,
         /// Six ordered keys a body: upper x, y, z, and lower x, y, z (complemented, so that all are maxima).
         bounds: Span<u64>,
-        /// Out: Morton code of each triangle's centre, above the triangle.
+        /// Out: code of each triangle's centre, above the triangle.
         items: Span<u64>,
         /// Out: counts of the codes' lowest bytes.
         tiles: Tiles,
         /// How many triangles the bodies have.
         count: u32,
-        /// Nothing.
-        pad: u32,
+        /// Along which curve.
+        flags: MortonFlags,
     }
     /// How often each digit comes in each tile of a list, see [`crate::sort`].
     Tiles {

@@ -74,6 +74,8 @@ counters! { 0;
     VF_SURVIVORS,
     /// Edge/edge candidates that may meet.
     EE_SURVIVORS,
+    /// Pairs of tiles that overlap.
+    TILE_PAIRS,
     /// Units spilled by each round of the traversal that may.
     SPILLED: [ROUNDS],
     /// Pairs of nodes where the descent ended.

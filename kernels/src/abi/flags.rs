@@ -41,6 +41,11 @@ macro_rules! flags {
 }
 
 flags! {
+    /// Of [`MortonArgs`](super::MortonArgs).
+    MortonFlags {
+        /// Along Hilbert's curve, not Morton's: neighbours along it are neighbours in space.
+        HILBERT,
+    }
     /// What every traversal is told: [`TraverseArgs`](super::TraverseArgs), [`PairArgs`](super::PairArgs).
     ///
     /// ```

@@ -15,6 +15,7 @@ mod scene;
 mod span;
 pub mod stamp;
 mod status;
+mod tile;
 
 pub use args::*;
 pub use counter::{Counter, Counters, ROUNDS};
@@ -27,3 +28,4 @@ pub use record::*;
 pub use scene::*;
 pub use span::Span;
 pub use status::*;
+pub use tile::*;

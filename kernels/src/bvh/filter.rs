@@ -25,7 +25,7 @@ impl FilterArgs {
         }
         let mixed = (p.who | q.who) & MIXED != 0;
         if !mixed & (p.who == q.who) {
-            return p.who & SELF_CONTACT != 0;
+            return p.meets_itself();
         }
         let shared = (p.first() <= q.last) & (q.first() <= p.last);
         let together = shared | (p.last == EVERY) | (q.last == EVERY);
@@ -42,6 +42,12 @@ impl NodeFilter {
     #[inline(always)]
     fn first(self) -> u32 {
         if self.who & MIXED != 0 { self.who & NodeFilter::NUMBER } else { self.last }
+    }
+
+    /// Whether it is one body's that is tested against itself.
+    #[inline(always)]
+    pub fn meets_itself(self) -> bool {
+        self.who & SELF_CONTACT != 0
     }
 
     /// Of a leaf of a body.

@@ -3,6 +3,8 @@
 pub mod filter;
 pub mod group;
 pub mod leaf;
+pub mod on_chip;
+pub mod tiles;
 
 use crate::abi::{LEAF, Link, Node, NodeFilter};
 use crate::bv::{Axes, Volume};

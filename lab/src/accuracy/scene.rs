@@ -12,7 +12,7 @@ use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Positions, Topology};
 use nearmiss::pipeline::mean_side;
-use nearmiss::query::{Bv, Certified, CertifiedPrecision, Continuous, Query, QueryKind, Solver, Tree};
+use nearmiss::query::{Bv, Certified, CertifiedPrecision, Continuous, Query, QueryKind, Search, Solver};
 use rayon::prelude::*;
 
 /// A body whose contacts are known.
@@ -103,7 +103,7 @@ impl Scene {
     /// Those of the device.
     pub fn row(&self, device: &Device, choice: Choice, bv: Option<Bv>, repeats: u32) -> Result<Row, Error> {
         let query = choice.query(self.edge);
-        let query = query.with_tree(Tree { bv, ..query.tree() });
+        let query = query.with_search(Search { bv, ..query.search() });
         let tolerance = query.certified().and_then(|certified| certified.tolerance);
         let held = device.bytes().0;
         let mut detector = Detector::new(device.clone(), vec![self.body.clone()], query)?;

@@ -1,7 +1,7 @@
 //! A column of figure 6.13: how a frame is asked.
 
 use nearmiss::query::{
-    Bv, Continuous, ContinuousSolver, FrontShape, Precision, Query, Refit, Traversal, Tree,
+    Broad, Bv, Continuous, ContinuousSolver, FrontShape, Precision, Query, Refit, Search, Traversal,
 };
 
 /// One way of asking a frame.
@@ -35,11 +35,11 @@ impl Way {
     pub fn query(self, walk: Option<Traversal>) -> Query {
         let refit = walk.map(|_| Refit::Levels);
         let traversal = if self.front { Some(Traversal::Front(FrontShape::native())) } else { walk };
-        let tree = Tree { bv: Some(self.bv), refit, traversal };
+        let search = Search { broad: Some(Broad::Tree), bv: Some(self.bv), refit, traversal };
         if self.moves {
-            Continuous { solver: ContinuousSolver::Cubic(Precision::F64), tree }.into()
+            Continuous { solver: ContinuousSolver::Cubic(Precision::F64), search }.into()
         } else {
-            Query::discrete().with_tree(tree)
+            Query::discrete().with_search(search)
         }
     }
 

@@ -4,12 +4,12 @@
 //! Both lie in one memory below one root, so that one walk finds all pairs: of what moves with itself, and with what is
 //! static. See `nearmiss_kernels::stage::construct::graft`.
 
-use super::tree::{Room, Tree, TreeSpec, broken};
+use super::tree::{Room, Tree, TreeSpec};
 use super::volumes::Volumes;
 use crate::device::Device;
 use crate::error::Error;
-use crate::pipeline::broad::BroadContext;
 use crate::pipeline::broad::sorted::place;
+use crate::pipeline::broad::{BroadContext, broken};
 use crate::pipeline::layout::Layout;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::{launch, purpose};

@@ -3,6 +3,7 @@
 use super::treelets::RefitPlan;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
+use crate::pipeline::broad::broken;
 use crate::pipeline::broad::sorted::{Sorted, place};
 use crate::pipeline::layout::Layout;
 use crate::pipeline::precision::Precision;
@@ -10,7 +11,7 @@ use crate::pipeline::sorter::{counted, words};
 use crate::pipeline::{launch, purpose};
 use crate::query::Refit;
 use nearmiss_kernels::abi::{
-    BodyRecord, Inner, Link, MOVING_ROOT, NodeFilter, Positions, ROOT, Span, TreeArgs, TreeBody,
+    BodyRecord, Inner, Link, MOVING_ROOT, MortonFlags, NodeFilter, Positions, ROOT, Span, TreeArgs, TreeBody,
 };
 use nearmiss_kernels::bvh::{self, MAX_LEVELS};
 use nearmiss_kernels::entry;
@@ -146,7 +147,7 @@ impl Tree {
         frames: Positions<R>,
         (faces, records): (Span<[u32; 3]>, Span<BodyRecord>),
     ) -> Result<(), Error> {
-        self.sorted.construct::<R>(device, frames, faces)?;
+        self.sorted.construct::<R>(device, frames, faces, MortonFlags::NONE)?;
         let depths = words(device, self.count) as u64;
         let (s, zeroed) = (&self.scratch, self.sorted.zeroed());
         let [begins, tops] = self.way.parts(zeroed.part(depths, zeroed.len() - depths));
@@ -255,9 +256,4 @@ impl Tree {
     pub fn bodies(&self) -> &[TreeBody] {
         self.sorted.bodies()
     }
-}
-
-/// A broken tree, as an error.
-pub fn broken(violation: bvh::Violation) -> Error {
-    Error::Bug { what: format!("a tree is broken: {violation:?}") }
 }

@@ -1,9 +1,10 @@
 //! Fit and refit: the bounding volume of each node.
 
-use super::tree::{Tree, broken};
+use super::tree::Tree;
 use super::treelets::{Plan, RefitPlan};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
+use crate::pipeline::broad::{broken, leaf_volume};
 use crate::pipeline::launch;
 use crate::pipeline::precision::Precision;
 use nearmiss_kernels::abi::{
@@ -208,14 +209,7 @@ impl<V: Kernels> Volumes<V> {
         faces: &[[u32; 3]],
         frames: &[Vec<Vec3<R>>],
     ) -> Result<(), Error> {
-        let leaf = |triangle: u32| {
-            let corners = |frame: &Vec<Vec3<R>>| faces[triangle as usize].map(|v| frame[v as usize]);
-            let volume = match frames {
-                [t0, t1] => V::moving(corners(t0), corners(t1)),
-                _ => V::still(corners(&frames[0])),
-            };
-            volume.near(self.margin)
-        };
+        let leaf = |triangle: u32| leaf_volume::<R, V>(faces[triangle as usize], frames).near(self.margin);
         let fitted = |first: u32, last: u32| {
             if last - first >= V::group(self.axes) {
                 return None;

@@ -11,6 +11,7 @@
 
 use crate::abi::{Link, Merge, Treelet, TreeletsArgs};
 use crate::bv::Volume;
+use crate::bvh::on_chip::OnChip;
 use crate::bvh::{MAX_LEVELS, TREELET, leaf};
 use crate::exec::{Block, Lane, Shared, Slot};
 use crate::math::Real;
@@ -20,33 +21,13 @@ const SLOTS: u32 = 2 * TREELET;
 
 /// Shared memory of a block: volumes, merges, where rounds end.
 pub const fn shared_bytes<V>() -> u32 {
-    SLOTS * (size_of::<V>() + size_of::<Merge>()) as u32 + 4 * MAX_LEVELS
-}
-
-/// Volumes of a treelet on chip: each at its first leaf. Word by word, so that neighbours lie in different banks.
-#[derive(Clone, Copy)]
-struct SharedVolumes(Shared<[u32; 2]>);
-
-impl SharedVolumes {
-    fn get<V: Volume, L: Lane>(self, l: &L, slot: u32) -> V {
-        let mut volume = V::zeroed();
-        let words: &mut [[u32; 2]] = bytemuck::cast_slice_mut(core::slice::from_mut(&mut volume));
-        for (i, word) in words.iter_mut().enumerate() {
-            *word = l.get(self.0, i as u32 * SLOTS + slot);
-        }
-        volume
-    }
-    fn put<V: Volume, L: Lane>(self, l: &L, slot: u32, volume: V) {
-        let words: &[[u32; 2]] = bytemuck::cast_slice(core::slice::from_ref(&volume));
-        for (i, word) in words.iter().enumerate() {
-            l.put(self.0, i as u32 * SLOTS + slot, *word);
-        }
-    }
+    OnChip::bytes::<V>(SLOTS) + SLOTS * size_of::<Merge>() as u32 + 4 * MAX_LEVELS
 }
 
 /// All volumes.
 pub fn treelets<R: Real, V: Volume, B: Block>(b: &mut B, a: &TreeletsArgs<R, V>) {
-    let chip = SharedVolumes(b.shared(SLOTS * size_of::<V>() as u32 / 8));
+    // Each volume at its first leaf.
+    let chip = OnChip::new::<V, B>(b, SLOTS);
     let places = b.shared::<[u32; 2]>(SLOTS);
     let ranges = b.shared::<[u32; 2]>(SLOTS);
     let ends = b.shared::<u32>(MAX_LEVELS);

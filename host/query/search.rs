@@ -1,22 +1,41 @@
-//! How a query searches the trees. Nothing here changes an answer.
+//! How a query finds candidates. Nothing here changes an answer.
 
 use super::{Bv, FrontShape, QueueShape, StealShape, named};
 use crate::error::Error;
 
-/// How the trees are searched: what every kind of query has, and what never changes an answer.
+/// How candidates are found: what every kind of query has, and what never changes an answer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tree {
+pub struct Search {
+    /// The broad phase; `None` for what is fastest on the machine.
+    pub broad: Option<Broad>,
     /// The volume; `None` for what is fastest.
     pub bv: Option<Bv>,
-    /// The refit; `None` for what is fastest on the machine.
+    /// The refit of trees; `None` for what is fastest on the machine.
     pub refit: Option<Refit>,
-    /// The walk; `None` for what is fastest on the machine.
+    /// The walk of trees; `None` for what is fastest on the machine.
     pub traversal: Option<Traversal>,
 }
 
-impl Tree {
-    /// Whether queues have possible sizes.
+impl Search {
+    /// Whether trees were asked for, by a choice that is theirs.
+    fn is_of_trees(&self) -> bool {
+        self.refit.is_some() || self.traversal.is_some()
+    }
+
+    /// The broad phase of a machine where none was asked for, among those that a query may have.
+    pub(super) fn broad_on(&self, is_gpu: bool, bv: Bv) -> Broad {
+        let fastest = if self.is_of_trees() { Broad::Tree } else { Broad::default_for(is_gpu, bv) };
+        self.broad.unwrap_or(fastest)
+    }
+
+    /// Whether queues have possible sizes, and tiles no choices of trees.
     pub(super) fn check(&self) -> Result<(), Error> {
+        if self.broad == Some(Broad::Tiles) && self.is_of_trees() {
+            return Err(Error::Choice {
+                what: "tiles with a refit or a traversal of trees".into(),
+                advice: "choose trees, or leave out the refit and the traversal: tiles have one way".into(),
+            });
+        }
         match self.traversal {
             Some(Traversal::Queue(shape)) => shape.check(),
             Some(Traversal::Steal(shape)) => shape.check(),
@@ -62,6 +81,24 @@ impl Traversal {
         } else {
             Traversal::Queue(QueueShape::native())
         }
+    }
+}
+
+named! {
+    /// What candidates are found by.
+    pub enum Broad {
+        /// A tree of volumes, level by level: the seed's.
+        Tree = "tree",
+        /// Runs of 32 neighbours along a curve, all against all where the runs' volumes overlap.
+        Tiles = "tiles",
+    }
+}
+
+impl Broad {
+    /// The fastest of a machine (measured, `docs/performance.md`): tiles, but for boxes with axes of their own, whose merges are
+    /// loose above so many.
+    pub fn default_for(_is_gpu: bool, bv: Bv) -> Broad {
+        if matches!(bv, Bv::Aabb | Bv::Linear) { Broad::Tiles } else { Broad::Tree }
     }
 }
 

@@ -1,0 +1,93 @@
+//! Tiles that are wrong in one place, and that the checker names it.
+
+use super::*;
+use crate::device::emulator::{Emulator, Mode};
+use crate::mesh::Body;
+use crate::query::QueryKind;
+use crate::samples::soup;
+use crate::scene::Meets;
+use nearmiss_kernels::abi::{LEAF, Point, Positions};
+use nearmiss_kernels::bv::Aabb;
+
+/// What the checker says of tiles over three bodies, one of them static, after `fault`.
+fn checked(fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), Error> {
+    let device = Device::emulator(Emulator::new(Mode::Engine, None)?);
+    let bodies: Vec<Body> = vec![
+        soup(700, 5, false),
+        soup(1_000, 6, false).with(Meets { self_contact: false, ..Meets::default() }),
+        Body::fixed(soup(900, 7, false).frames().swap_remove(0)),
+    ];
+    let layout = Layout::new(&bodies, QueryKind::Discrete);
+    let positions = |body: &Body| body.positions_t0().to_f64();
+    let at: Vec<Vec3<f32>> = bodies.iter().flat_map(positions).map(|p| Vec3(p.map(|x| x as f32))).collect();
+    let points = device.upload(&at.iter().map(|&p| p.into()).collect::<Vec<Point<f32>>>())?;
+    let (faces, records) = (device.upload(&layout.faces)?, device.upload(&layout.records)?);
+    let given = BroadContext {
+        device: &device,
+        frames: Positions { still: points.span(), moving: Span::EMPTY },
+        faces: faces.span(),
+        records: records.span(),
+    };
+    let mut tiles = Tiles::<Aabb>::new(&device, &layout, (Axes::PCA, 0.01))?;
+    tiles.construct(&given, &layout)?;
+    BroadPhase::fit(&mut tiles, &given)?;
+    BroadPhase::refit(&mut tiles, &given)?;
+    fault(&mut tiles);
+    BroadPhase::<f32>::check(&tiles, &layout, &layout.faces, &[at])
+}
+
+/// Changes one element.
+fn change<T: bytemuck::Pod>(buffer: &mut Buffer<T>, at: usize, change: impl Fn(&mut T)) {
+    let mut all = buffer.read(buffer.len()).expect("read");
+    change(&mut all[at]);
+    buffer.write(&all).expect("written");
+}
+
+/// The first leaf of the static body: behind three and a half groups of 16 tiles.
+const STATIC_LEAF: usize = 4 * 512;
+/// The node above the second 16 tiles: behind all tiles.
+const ABOVE: usize = 6 * 16 + 1;
+
+#[test]
+fn sound_tiles_pass() {
+    checked(|_| ()).expect("sound tiles");
+}
+
+#[test]
+fn every_fault_is_named() {
+    let faults: [(&str, fn(&mut Tiles<Aabb>)); 12] = [
+        ("Fit { node: 40 }", |tiles| change(&mut tiles.leaves, 40, |node| node.link = LEAF | 3)),
+        ("Leaf { leaf: 41 }", |tiles| change(&mut tiles.leaves, 41, |node| node.last = 3)),
+        ("Leaf { leaf: 42 }", |tiles| change(&mut tiles.leaves, 42, |node| node.link &= !LEAF)),
+        // A triangle of the static body among those that move, and one behind the last that is there.
+        ("Leaf { leaf: 43 }", |tiles| change(&mut tiles.leaves, 43, |node| node.link = LEAF | 1_700)),
+        ("Leaf { leaf: 1700 }", |tiles| change(&mut tiles.leaves, 1_700, |node| node.link = LEAF | 3)),
+        ("Leaf { leaf: 2050 }", |tiles| {
+            let twice = tiles.leaves.read(STATIC_LEAF + 2).expect("read")[STATIC_LEAF];
+            change(&mut tiles.leaves, STATIC_LEAF + 2, |node| node.link = twice.link);
+        }),
+        ("Fit { node: 77 }", |tiles| {
+            let other = tiles.leaves.read(1).expect("read")[0].volume;
+            change(&mut tiles.leaves, 77, |node| node.volume = other);
+        }),
+        ("Merge { node: 9 }", |tiles| {
+            let other = tiles.nodes.read(1).expect("read")[0].volume;
+            change(&mut tiles.nodes, 9, |node| node.volume = other);
+        }),
+        ("Merge { node: 10 }", |tiles| change(&mut tiles.nodes, 10, |node| node.last = 11)),
+        ("Merge { node: 97 }", |tiles| change(&mut tiles.nodes, ABOVE, |node| node.link = 0)),
+        ("Filter { node: 3 }", |tiles| change(&mut tiles.filters, 3, |filter| filter.who ^= 1)),
+        ("Filter { node: 97 }", |tiles| change(&mut tiles.filters, ABOVE, |filter| filter.last += 1)),
+    ];
+    for (name, fault) in faults {
+        let error = checked(fault).expect_err(name).to_string();
+        assert!(error.contains(name), "{name}: {error}");
+    }
+}
+
+/// With memory for other tiles than these.
+#[test]
+fn another_number_of_triangles_is_named() {
+    let error = checked(|tiles| tiles.triangles[FIXED] = 3_000).expect_err("too few places");
+    assert!(error.to_string().contains("Levels"), "{error}");
+}

@@ -1,0 +1,268 @@
+//! Tiles: 32 triangles that are neighbours along a curve, and nodes above them without links; see `nearmiss_kernels::stage::tile`.
+
+#[cfg(test)]
+mod faults;
+
+use super::sorted::{Sorted, place};
+use super::{BroadContext, BroadPhase, Candidates};
+use crate::device::{Buffer, Device};
+use crate::error::Error;
+use crate::pipeline::layout::Layout;
+use crate::pipeline::list::{GrowableOutput, List};
+use crate::pipeline::precision::Precision;
+use crate::pipeline::{launch, purpose};
+use nearmiss_kernels::abi::{
+    BodyRecord, FilterArgs, FitTilesArgs, MortonFlags, NONE, Node, NodeFilter, Pair, RefitTilesArgs, Span,
+    TileFiltersArgs, TilePairsArgs, TileTrianglesArgs, TreeBody, counter,
+};
+use nearmiss_kernels::bv::Axes;
+use nearmiss_kernels::bvh::tiles::{self, Levels, TILE};
+use nearmiss_kernels::entry::{self, Kernels};
+use nearmiss_kernels::math::Vec3;
+use xxhash_rust::xxh3::xxh3_64;
+
+/// Pairs of tiles a tile for which there is room at first. Cloth at rest has 12; a list that turns out too short grows within the frame.
+const PAIRS_A_TILE: usize = 32;
+/// The parts of the memory: what moves, and what is static.
+const MOVING: usize = 0;
+const FIXED: usize = 1;
+
+/// See above.
+pub struct Tiles<V> {
+    levels: Levels,
+    /// Triangles of what moves, and of what is static.
+    triangles: [u32; 2],
+    /// The order of what moves.
+    sorted: Sorted,
+    /// The bodies of what is static, once it is fitted.
+    fixed: Vec<TreeBody>,
+    leaves: Buffer<Node<V>>,
+    nodes: Buffer<Node<V>>,
+    /// Whose triangles lie below each node; empty where that does not matter.
+    filters: Buffer<NodeFilter>,
+    /// Whose each triangle is; the same.
+    whose: Buffer<NodeFilter>,
+    has_groups: bool,
+    tile_pairs: List<Pair>,
+    axes: Axes,
+    margin: f32,
+}
+
+impl<V: Kernels> Tiles<V> {
+    /// Takes the memory of tiles over the bodies of a layout, of which some move; they hold everything within `margin` of the triangles.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn new(device: &Device, layout: &Layout, (axes, margin): (Axes, f32)) -> Result<Self, Error> {
+        let triangles =
+            layout.trees.each_ref().map(|bodies| bodies.iter().map(|&body| layout.triangles(body).1).sum());
+        let levels = Levels::of(triangles);
+        let count = levels.first(levels.count) as usize;
+        let volumes = device.of(purpose::TILES);
+        let mut leaves = volumes.buffer(levels.leaves() as usize)?;
+        // What lies between the parts is never written, and nobody asks for it but who compares all memory.
+        leaves.clear()?;
+        let nothing = Node { volume: V::zeroed(), link: NONE, last: 0 };
+        let whose: Vec<NodeFilter> = if layout.has_filters() { layout.whose().collect() } else { Vec::new() };
+        let filters = device.of(purpose::FILTERS);
+        let mut of_nodes = filters.buffer(if whose.is_empty() { 0 } else { count })?;
+        of_nodes.clear()?;
+        let room = PAIRS_A_TILE * triangles[MOVING].div_ceil(TILE) as usize;
+        Ok(Tiles {
+            sorted: Sorted::new(device, layout, &layout.trees[MOVING], 0)?,
+            fixed: Vec::new(),
+            leaves,
+            nodes: volumes.upload(&vec![nothing; count])?,
+            filters: of_nodes,
+            whose: filters.upload(&whose)?,
+            has_groups: layout.has_groups(),
+            tile_pairs: List::new(device, "pairs of tiles", counter::TILE_PAIRS, room)?,
+            levels,
+            triangles,
+            axes,
+            margin,
+        })
+    }
+
+    /// Whose triangles lie below each node of a part, once they are in order.
+    fn filter(&self, device: &Device, part: usize, triangles: Span<u64>) -> Result<(), Error> {
+        if self.filters.len() == 0 {
+            return Ok(());
+        }
+        for level in 0..self.levels.count {
+            let own = self.levels.part(level, part, self.triangles[part]);
+            let below = level.checked_sub(1).map(|level| self.levels.part(level, part, self.triangles[part]));
+            let args = TileFiltersArgs {
+                triangles,
+                whose: self.whose.span(),
+                filters: self.filters.span(),
+                first: own.first,
+                count: own.count,
+                below: below.map_or(NONE, |below| below.first),
+                below_count: below.map_or(0, |below| below.count),
+            };
+            launch::each::<entry::construct_tile_filters>(device, own.count as usize, &args)?;
+        }
+        Ok(())
+    }
+
+    /// Volumes of the triangles of a part, of its tiles, and of the nodes above these.
+    fn fit<R: Precision>(
+        &self,
+        given: &BroadContext<R>,
+        part: usize,
+        triangles: Span<u64>,
+    ) -> Result<(), Error> {
+        let above = self.levels.part(1, part, self.triangles[part]);
+        let args = FitTilesArgs {
+            frames: given.frames,
+            faces: given.faces,
+            triangles,
+            leaves: self.leaves.span(),
+            nodes: self.nodes.span(),
+            tile: self.levels.part(0, part, self.triangles[part]).first,
+            above: above.first,
+            axes: self.axes,
+            margin: self.margin,
+        };
+        launch::blocks::<entry::fit_tiles<R, V>>(given.device, above.count, &args)
+    }
+
+    /// Volumes of the nodes of a part from the third level on.
+    fn refit(&self, device: &Device, part: usize) -> Result<(), Error> {
+        for level in 2..self.levels.count {
+            let of = |level| self.levels.part(level, part, self.triangles[part]);
+            let (own, below) = (of(level), of(level - 1));
+            let args = RefitTilesArgs {
+                nodes: self.nodes.span(),
+                first: own.first,
+                count: own.count,
+                below: below.first,
+                below_count: below.count,
+                tile: of(0).first,
+                tiles: tiles::below(level),
+                axes: self.axes,
+                pad: 0,
+            };
+            launch::each::<entry::refit_tiles<V>>(device, own.count as usize * tiles::FAN as usize, &args)?;
+        }
+        Ok(())
+    }
+
+    /// Which pairs are asked.
+    fn filters(&self, records: Span<BodyRecord>) -> FilterArgs {
+        let bodies = if self.has_groups { records } else { Span::EMPTY };
+        FilterArgs { nodes: self.filters.span(), bodies }
+    }
+}
+
+impl<R: Precision, V: Kernels> BroadPhase<R> for Tiles<V> {
+    fn construct(&mut self, given: &BroadContext<R>, layout: &Layout) -> Result<(), Error> {
+        let BroadContext { device, frames, faces, .. } = *given;
+        self.sorted.construct(device, frames, faces, MortonFlags::HILBERT)?;
+        self.filter(device, MOVING, self.sorted.triangles())?;
+        if self.fixed.is_empty() && self.triangles[FIXED] > 0 {
+            let mut sorted = Sorted::new(device, layout, &layout.trees[FIXED], 0)?;
+            sorted.construct(device, frames, faces, MortonFlags::HILBERT)?;
+            self.filter(device, FIXED, sorted.triangles())?;
+            Tiles::fit(self, given, FIXED, sorted.triangles())?;
+            Tiles::refit(self, device, FIXED)?;
+            self.fixed = sorted.bodies().to_vec();
+        }
+        Ok(())
+    }
+
+    fn learn(&mut self) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn fit(&mut self, given: &BroadContext<R>) -> Result<(), Error> {
+        Tiles::fit(self, given, MOVING, self.sorted.triangles())
+    }
+
+    fn refit(&mut self, given: &BroadContext<R>) -> Result<(), Error> {
+        Tiles::refit(self, given.device, MOVING)
+    }
+
+    fn traverse(&mut self, given: &BroadContext<R>, candidates: &Candidates) -> Result<(), Error> {
+        let Candidates { pairs, counters, flags } = *candidates;
+        let (device, filters) = (given.device, self.filters(given.records));
+        let count = self.levels.part(0, MOVING, self.triangles[MOVING]).count;
+        let tile_pairs = self.tile_pairs.output(counters);
+        let args = TilePairsArgs {
+            nodes: self.nodes.span(),
+            filters,
+            tile_pairs,
+            counters,
+            top: self.levels.first(self.levels.count - 1),
+            tops: self.levels.tops.iter().sum(),
+            shift: self.levels.shift(),
+            count,
+        };
+        // A GPU has a block for each; a CPU's few go from one to the next.
+        let blocks = if device.is_gpu() {
+            count
+        } else {
+            device.blocks_striding::<entry::traverse_tiles<V>>((count * TILE) as usize)
+        };
+        launch::blocks::<entry::traverse_tiles<V>>(device, blocks, &args)?;
+        let args = TileTrianglesArgs {
+            leaves: self.leaves.span(),
+            nodes: self.nodes.span(),
+            faces: given.faces,
+            filters,
+            whose: self.whose.span(),
+            tile_pairs,
+            pairs,
+            counters,
+            count,
+            flags,
+        };
+        launch::at_once::<entry::traverse_triangles<V>>(device, u32::MAX as usize, &args)
+    }
+
+    fn lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
+        vec![&mut self.tile_pairs]
+    }
+
+    fn depths(&self) -> Vec<usize> {
+        // The triangles are a level, too.
+        let parts = self.triangles.iter().filter(|&&triangles| triangles > 0);
+        parts.map(|_| self.levels.count as usize + 1).collect()
+    }
+
+    fn fingerprints(&self) -> Result<Vec<(&'static str, u64)>, Error> {
+        let order = self.sorted.download()?;
+        let leaves = self.leaves.read(self.leaves.len())?;
+        let nodes = self.nodes.read(self.nodes.len())?;
+        Ok(vec![
+            ("construct", xxh3_64(bytemuck::cast_slice(&order))),
+            ("fit", xxh3_64(bytemuck::cast_slice(&leaves))),
+            ("refit", xxh3_64(bytemuck::cast_slice(&nodes))),
+        ])
+    }
+
+    fn check(&self, layout: &Layout, faces: &[[u32; 3]], frames: &[Vec<Vec3<R>>]) -> Result<(), Error> {
+        let filters = self.filters.read(self.filters.len())?;
+        let whose: Vec<NodeFilter> = layout.whose().collect();
+        let tiles = tiles::Tiles {
+            levels: self.levels,
+            triangles: self.triangles,
+            leaves: &self.leaves.read(self.leaves.len())?,
+            nodes: &self.nodes.read(self.nodes.len())?,
+            filters: &filters,
+            axes: self.axes,
+        };
+        let bodies = [self.sorted.bodies(), &self.fixed];
+        let place = |triangle| {
+            let of = |part: usize| place(bodies[part], self.triangles[part], triangle).map(|at| (part, at));
+            of(MOVING).or_else(|| of(FIXED))
+        };
+        let leaf =
+            |triangle: u32| super::leaf_volume::<R, V>(faces[triangle as usize], frames).near(self.margin);
+        let mut seen = self.triangles.map(|count| vec![false; count as usize]);
+        let [moving, fixed] = &mut seen;
+        tiles::check(&tiles, place, leaf, |triangle| whose[triangle as usize], [moving, fixed])
+            .map_err(super::broken)
+    }
+}

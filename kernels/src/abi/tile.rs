@@ -1,0 +1,110 @@
+//! Tiles: what their kernels are launched with.
+
+use super::{Counters, FilterArgs, Node, NodeFilter, Output, Pair, Positions, Span, TraverseFlags};
+use crate::bv::Axes;
+use crate::math::Real;
+use bytemuck::{Pod, Zeroable};
+
+arguments! {
+    /// `construct_tile_filters`: whose triangles lie below each node.
+    TileFiltersArgs {
+        /// Triangles in order: the lower halves.
+        triangles: Span<u64>,
+        /// Whose each triangle is.
+        whose: Span<NodeFilter>,
+        /// Out, and of nodes above tiles in: of every node.
+        filters: Span<NodeFilter>,
+        /// The first node that is written.
+        first: u32,
+        /// How many are.
+        count: u32,
+        /// The first node below them; of tiles [`NONE`](super::NONE).
+        below: u32,
+        /// How many nodes are below them.
+        below_count: u32,
+    }
+    /// `fit_tiles`: volumes of triangles, of tiles and of the nodes above them.
+    FitTilesArgs<R: Real, V: Pod> {
+        /// Positions.
+        frames: Positions<R>,
+        /// Vertex indices of every triangle.
+        faces: Span<[u32; 3]>,
+        /// Triangles in order: the lower halves.
+        triangles: Span<u64>,
+        /// Out: the triangles' volumes, in order; [`NONE`](super::NONE) behind the last one.
+        leaves: Span<Node<V>>,
+        /// Out: tiles, and nodes above them.
+        nodes: Span<Node<V>>,
+        /// The first tile.
+        tile: u32,
+        /// The first node above tiles.
+        above: u32,
+        /// Which axes merged boxes take.
+        axes: Axes,
+        /// How much volumes grow.
+        margin: f32,
+    }
+    /// `refit_tiles`: nodes above other nodes.
+    RefitTilesArgs<V: Pod> {
+        /// In and out.
+        nodes: Span<Node<V>>,
+        /// The first node that is written.
+        first: u32,
+        /// How many are.
+        count: u32,
+        /// The first node below them.
+        below: u32,
+        /// How many nodes are below them.
+        below_count: u32,
+        /// The first tile below the first of them.
+        tile: u32,
+        /// Tiles below each.
+        tiles: u32,
+        /// Which axes merged boxes take.
+        axes: Axes,
+        /// Nothing.
+        pad: u32,
+    }
+    /// `traverse_tiles`: pairs of tiles that overlap.
+    TilePairsArgs<V: Pod> {
+        /// The nodes: tiles, then those above them, a level behind the other.
+        nodes: Span<Node<V>>,
+        /// Whose triangles lie below each.
+        filters: FilterArgs,
+        /// Out: pairs of tiles, the earlier first.
+        tile_pairs: Output<Pair>,
+        /// Counters.
+        counters: Counters,
+        /// The first node of the top level.
+        top: u32,
+        /// How many it has.
+        tops: u32,
+        /// The number of a tile's node in the top level is the tile's, so many bits lower.
+        shift: u32,
+        /// Tiles that seek others: those of what moves, which come first.
+        count: u32,
+    }
+    /// `traverse_triangles`: pairs of triangles that overlap, of pairs of tiles.
+    TileTrianglesArgs<V: Pod> {
+        /// The triangles' volumes.
+        leaves: Span<Node<V>>,
+        /// The tiles.
+        nodes: Span<Node<V>>,
+        /// Vertex indices of every triangle.
+        faces: Span<[u32; 3]>,
+        /// Whose triangles lie below each node.
+        filters: FilterArgs,
+        /// Whose each triangle is; empty where that does not matter.
+        whose: Span<NodeFilter>,
+        /// Pairs of tiles.
+        tile_pairs: Output<Pair>,
+        /// Out: candidate triangle pairs.
+        pairs: Output<Pair>,
+        /// Counters.
+        counters: Counters,
+        /// Tiles of what moves, each with itself.
+        count: u32,
+        /// All but [`TraverseFlags::GRAFTED`] and [`TraverseFlags::FRONT`].
+        flags: TraverseFlags,
+    }
+}

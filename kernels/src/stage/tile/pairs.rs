@@ -1,0 +1,105 @@
+//! # Pairs of tiles: nodes → tiles that overlap
+//! Launch   a block of a warp a tile of what moves.
+//! Reads    nodes, 32 of the top level or twice 16 below others at once.     Writes   pairs of tiles, the earlier first.
+//! Before   all nodes are fitted.
+//! After    each pair of tiles whose volumes overlap, of which one moves and whose triangles may meet, but for a tile with itself. Nodes
+//!          whose tiles are all at or before the own one are passed over.
+//! Room     `tile_pairs` may be too short: counters go on, the host grows it and runs again. On chip it cannot run out: two nodes are
+//!          taken from the top of the stack, those below the lower one put back first; so of each level at most 32 wait.
+//! Cost     a test a node of the top level behind the own one, 16 a node that overlaps.
+
+use crate::abi::{LEAF, NONE, NodeFilter, Pair, TilePairsArgs, counter};
+use crate::bv::Volume;
+use crate::bvh::tiles::{FAN, MOST_LEVELS, TILE};
+use crate::exec::{Block, Lane, Shared, Slot};
+
+/// Lanes of a block: two nodes' children.
+pub const LANES: u32 = 2 * FAN;
+const _: () = assert!(LANES == TILE);
+/// Nodes that wait.
+const STACK: u32 = LANES * MOST_LEVELS;
+/// Tiles that are found before they are written.
+const FOUND: u32 = 256;
+/// Shared memory of a block.
+pub const SHARED: u32 = 4 * (STACK + FOUND);
+
+/// Pairs of tiles that overlap.
+pub fn pairs<V: Volume, B: Block>(b: &mut B, a: &TilePairsArgs<V>) {
+    let stack = b.shared::<u32>(STACK);
+    let found = b.shared::<u32>(FOUND);
+    let mut hit = b.slot((NONE, NONE));
+    let mut hits = b.slot(0u32);
+    let mut tests = 0u64;
+    let mut tile = b.block();
+    while tile < a.count {
+        let own = b.load(a.nodes, tile).volume;
+        let filters = a.filters.nodes;
+        let whose = if filters.is_empty() { NodeFilter::default() } else { b.load(filters, tile) };
+        let (mut waiting, mut fill) = (0, 0);
+        let mut top = tile >> a.shift;
+        while top < a.tops || waiting > 0 {
+            let taken = waiting.min(2);
+            b.phase(|l| {
+                let place = if taken == 0 {
+                    if top + l.lane() < a.tops { a.top + top + l.lane() } else { NONE }
+                } else if l.lane() / FAN < taken {
+                    l.get(stack, waiting - taken + l.lane() / FAN) + l.lane() % FAN
+                } else {
+                    NONE
+                };
+                *hit.of(l) = (NONE, NONE);
+                *hits.of(l) = 0;
+                if place != NONE {
+                    let node = l.read(a.nodes, place);
+                    let meets = node.link != NONE
+                        && node.last > tile
+                        && own.overlaps(&node.volume)
+                        && (filters.is_empty() || a.filters.allows(l, whose, l.read(filters, place)));
+                    if meets {
+                        *hit.of(l) = (node.link, node.last);
+                        // Tiles are counted in the upper half.
+                        *hits.of(l) = if node.link & LEAF == 0 { 1 } else { 1 << 16 };
+                    }
+                }
+                l.meet();
+            });
+            tests += LANES as u64;
+            let count = b.scan(&mut hits);
+            waiting -= taken;
+            b.phase(|l| {
+                let ((link, last), before) = (*hit.of(l), *hits.of(l));
+                if link != NONE && link & LEAF == 0 {
+                    l.put(stack, waiting + (before & 0xffff), link);
+                } else if link != NONE {
+                    l.put(found, fill + (before >> 16), last);
+                }
+                l.meet();
+            });
+            if taken == 0 {
+                top += LANES;
+            }
+            waiting += count & 0xffff;
+            fill += count >> 16;
+            if fill > FOUND - LANES {
+                write(b, a, (found, fill), tile);
+                fill = 0;
+            }
+        }
+        write(b, a, (found, fill), tile);
+        tile += b.blocks();
+    }
+    a.counters.add_once(b, counter::STEPS, tests);
+}
+
+/// Appends the pairs of a tile with those that it has found.
+fn write<V: Volume, B: Block>(b: &mut B, a: &TilePairsArgs<V>, (found, fill): (Shared<u32>, u32), tile: u32) {
+    let base = a.tile_pairs.reserve(b, fill as u64);
+    b.phase(|l| {
+        let mut i = l.lane();
+        while i < fill {
+            a.tile_pairs.put(l, base + i as u64, Pair { a: tile, b: l.get(found, i) });
+            i += LANES;
+        }
+        l.meet();
+    });
+}
