@@ -4,7 +4,7 @@ mod support;
 
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Bv, Refit};
+use nearmiss::query::{Broad, Bv, Refit};
 use nearmiss::{Detector, Device, Query};
 use nearmiss_lab::scene;
 use support::{ORDERS, engine, machines};
@@ -139,7 +139,8 @@ fn a_stale_volume_is_noticed() {
     assert_eq!(stages(&of(1), &of(2)), ["fit", "refit"]);
     // One triangle whose volume is another frame's.
     let mut detector =
-        Detector::new(engine(), vec![body.clone(), far()], Query::default()).expect("a detector");
+        Detector::new(engine(), vec![body.clone(), far()], Query::default().with_broad(Broad::Tree))
+            .expect("a detector");
     let mut points = frame(&body, 1).positions_t0().to_f64();
     points[300..303].copy_from_slice(&frame(&body, 2).positions_t0().to_f64()[300..303]);
     let points = points.into_iter().map(|p| p.map(|x| x as f32)).collect();

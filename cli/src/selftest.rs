@@ -15,7 +15,8 @@ use nearmiss::error::Error;
 use nearmiss::mesh::Body;
 use nearmiss::pipeline::of_edges;
 use nearmiss::query::{
-    Bv, Certified, Continuous, FrontShape, Near, Query, QueueShape, Refit, Solver, StealShape, Traversal,
+    Broad, Bv, Certified, Continuous, FrontShape, Near, Query, QueueShape, Refit, Solver, StealShape,
+    Traversal,
 };
 use nearmiss::words::counted;
 use nearmiss_lab::robustness::{self, Amount};
@@ -84,6 +85,8 @@ fn choices(query: Query) -> Vec<(&'static str, Query)> {
     }
     vec![
         ("by default", query),
+        ("tiles", query.with_broad(Broad::Tiles)),
+        ("trees", query.with_broad(Broad::Tree)),
         ("spilling, by levels", refit(Refit::Levels)),
         ("spilling, by treelets", refit(Refit::Treelets)),
         ("spilling, bottom-up", refit(Refit::BottomUp)),
@@ -94,9 +97,44 @@ fn choices(query: Query) -> Vec<(&'static str, Query)> {
     ]
 }
 
-/// The query by that walk, where it takes one.
-fn walked(query: Query, walk: Traversal) -> Query {
-    if query.kind().takes_traversals() { query.with_traversal(walk) } else { query }
+/// What the engine leaves behind, by everything that may leave something else. Overlap tests with a slack do not nest: whether a pair is
+/// a candidate may depend, by a hair, on which pairs of nodes were asked before it. Each is compared with its own; contacts with all.
+struct Truths {
+    by_leaf: Print,
+    by_pair: Print,
+    by_tiles: Print,
+}
+
+impl Truths {
+    /// What `ask` finds by each, of a query that has a choice; else once.
+    fn of(query: Query, ask: impl Fn(Query) -> Result<Print, Error>) -> Result<Truths, Error> {
+        let choice = query.kind().takes_traversals();
+        let by = |other: Query| ask(if choice { other } else { query });
+        Ok(Truths {
+            by_leaf: by(query.with_traversal(Traversal::PerLeaf { budget: None }))?,
+            by_pair: by(query.with_traversal(Traversal::Queue(QueueShape::native())))?,
+            by_tiles: by(query.with_broad(Broad::Tiles))?,
+        })
+    }
+
+    /// What a query should leave behind on a machine.
+    fn want(&self, query: Query, machine: &Device) -> &Print {
+        let by_leaf = |walk| matches!(walk, Traversal::PerLeaf { .. } | Traversal::NearestFirst);
+        if query.broad_on(machine.is_gpu()) == Broad::Tiles {
+            &self.by_tiles
+        } else if by_leaf(query.traversal_on(machine.is_gpu())) {
+            &self.by_leaf
+        } else {
+            &self.by_pair
+        }
+    }
+
+    /// The first of them that has another answer than the first, and the stage.
+    fn disagree(&self) -> Option<(&'static str, &'static str)> {
+        [("queues", &self.by_pair), ("tiles", &self.by_tiles)].into_iter().find_map(|(name, other)| {
+            difference(&self.by_leaf.answer(), &other.answer()).map(|stage| (name, stage))
+        })
+    }
 }
 
 /// Every question with every solver, and what comes within a separation: about a hundredth of the mean edge.
@@ -192,20 +230,14 @@ impl Bench {
             let kind = query.kind();
             for bv in Bv::ALL {
                 let query = query.with_bv(bv);
-                let on_engine = |walk| {
-                    let query = walked(query, walk);
-                    during("comparing machines", || print_of_steps(engine, scene, query))
-                };
-                let by_leaf = on_engine(Traversal::PerLeaf { budget: None })?;
-                let by_pair = on_engine(Traversal::Queue(QueueShape::native()))?;
+                let on_engine = |query| during("comparing machines", || print_of_steps(engine, scene, query));
+                let truths = Truths::of(query, on_engine)?;
+                if let Some((other, stage)) = truths.disagree() {
+                    faults.push(format!("{name}, {kind:?}, {}, {other}: {stage}", bv.name()));
+                }
                 for (what, other) in choices(query) {
                     let there = during("comparing machines", || print_of_steps(machine, scene, other))?;
-                    let walk = other.traversal_on(machine.is_gpu());
-                    let want = if matches!(walk, Traversal::PerLeaf { .. } | Traversal::NearestFirst) {
-                        &by_leaf
-                    } else {
-                        &by_pair
-                    };
+                    let want = truths.want(other, machine);
                     // Where a front goes on from the step before, what it asks hangs on that: the answer does not.
                     let differs = match other.search().traversal {
                         Some(Traversal::Front(_)) => difference(&want.answer(), &there.answer()),
@@ -216,8 +248,8 @@ impl Bench {
                     }
                 }
                 if bv == Bv::Aabb {
-                    let hash = by_leaf.stages.last().map_or(0, |stage| stage.1);
-                    let contacts = counted(by_leaf.contacts as u64, "contact", "contacts");
+                    let hash = truths.by_leaf.stages.last().map_or(0, |stage| stage.1);
+                    let contacts = counted(truths.by_leaf.contacts as u64, "contact", "contacts");
                     line(format!("{hash:016x} {contacts:>18}  {name}, {kind:?}"))?;
                 }
             }
@@ -232,31 +264,21 @@ impl Bench {
             let mut hashes = Vec::new();
             for bv in Bv::ALL {
                 let query = query.with_bv(bv);
-                // Overlap tests with a slack do not nest: whether a pair is a candidate may depend, by a hair, on which
-                // pairs of nodes were asked before it. Each kind of walk is compared with its own; contacts with all.
-                let on_engine = |walk| {
-                    let query = walked(query, walk);
-                    during("comparing machines", || print_of(engine, bodies, query))
-                };
-                let by_leaf = on_engine(Traversal::PerLeaf { budget: None })?;
-                let by_pair = on_engine(Traversal::Queue(QueueShape::native()))?;
-                if let Some(stage) = difference(&by_leaf.answer(), &by_pair.answer()) {
-                    faults.push(format!("{name}, {asked}, {}, two walks: {stage}", bv.name()));
+                let on_engine = |query| during("comparing machines", || print_of(engine, bodies, query));
+                let truths = Truths::of(query, on_engine)?;
+                if let Some((other, stage)) = truths.disagree() {
+                    faults.push(format!("{name}, {asked}, {}, {other}: {stage}", bv.name()));
                 }
                 for (what, other) in choices(query) {
                     let on_machine = during("comparing machines", || print_of(machine, bodies, other))?;
-                    let walk = other.traversal_on(machine.is_gpu());
-                    let want = if matches!(walk, Traversal::PerLeaf { .. } | Traversal::NearestFirst) {
-                        &by_leaf
-                    } else {
-                        &by_pair
-                    };
+                    let want = truths.want(other, machine);
                     if let Some(stage) = difference(want, &on_machine) {
                         faults.push(format!("{name}, {asked}, {}, {what}: {stage}", bv.name()));
                     }
                 }
                 // All prints of a query have the same stages, and contacts are always last.
-                hashes.push((by_leaf.stages.last().map_or(0, |stage| stage.1), by_leaf.contacts));
+                let found = &truths.by_leaf;
+                hashes.push((found.stages.last().map_or(0, |stage| stage.1), found.contacts));
             }
             let (hash, contacts) = hashes[0];
             // A float solver may be wrong about a pair that one volume lets through and another does not.
@@ -276,8 +298,8 @@ impl Bench {
             let triangles = if name == "identical" { EQUAL } else { SMALL };
             let bodies = [scene::scene(name, triangles, 3)?];
             for (asked, query) in questions(&bodies) {
-                // The walk that is fastest on the machine, on both.
-                let query = query.with_traversal(query.traversal_on(machine.is_gpu()));
+                // What is fastest on the machine, on both.
+                let query = query.with_broad(query.broad_on(machine.is_gpu()));
                 let want = print_of(machine, &bodies, query)?;
                 for order in [Order::Forward, Order::Reverse, Order::Shuffled(3)] {
                     let sanitizer = Device::emulator(Emulator::new(Mode::Sanitizer(order), None)?);

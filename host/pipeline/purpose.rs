@@ -14,8 +14,8 @@ pub const POSES: &str = "poses of rigid bodies";
 pub const PLACEMENTS: &str = "which bodies are placed, and how";
 /// Links, parents, leaves and levels.
 pub const TREE: &str = "the tree over what moves: links, parents, leaves, levels";
-/// What building it again needs.
-pub const SCRATCH: &str = "room to build the tree anew";
+/// What building anew needs.
+pub const SCRATCH: &str = "room to build anew";
 /// What the refit needs beside the tree.
 pub const REFIT: &str = "the way of the refit: treelets or arrivals";
 /// Whose triangles lie below each node.

@@ -11,14 +11,14 @@ use crate::prim::isolate::ladder::SLICES;
 use crate::prim::isolate::separation::{Double, Single};
 use crate::queue::worker;
 use crate::sort;
-use crate::stage::construct::{graft, morton, tree, treelet};
+use crate::stage::construct::{graft, morton, tile_filters, tree, treelet};
 use crate::stage::narrow::features::{Moves, Rests};
 use crate::stage::narrow::{
     below_precision, climb, cull, discrete, features, near, nearest, separate, slice, solve,
 };
-use crate::stage::refit::{bottom_up, levels, treelets};
+use crate::stage::refit::{bottom_up, levels, tiles as refit_of_tiles, treelets};
 use crate::stage::traverse::{front, nearest as nearest_first, queue, steal};
-use crate::stage::{balance, fit as fitting, order, place, status, tile, traverse};
+use crate::stage::{balance, fit as fitting, order, place, status, traverse};
 use core::marker::PhantomData;
 use name::{Name, precision};
 
@@ -67,8 +67,8 @@ macro_rules! entries {
             // SAFETY: called by the driver, once a thread, with arguments of the size in TABLE.
             #[unsafe(export_name = $name)]
             unsafe extern "ptx-kernel" fn entry(args: <$kernel as Entry>::Args) {
-                // SAFETY: the one block of this kernel, made at its start.
-                let mut block = unsafe { crate::exec::ptx::Gpu::new() };
+                // SAFETY: the one block of this kernel, made at its start; the host launches it with as many lanes.
+                let mut block = unsafe { crate::exec::ptx::Gpu::<{ <$kernel as Entry>::LANES }>::new() };
                 <$kernel as Entry>::run(&mut block, &args);
             }
         };
@@ -278,13 +278,13 @@ kernels! {
     construct_depth: tree::depth, [TreeArgs], WIDE, 0;
     construct_places: tree::places, [TreeArgs], WIDE, sort::shared_bytes(WIDE);
     construct_emit: tree::emit, [TreeArgs], WIDE, 0;
-    construct_tile_filters: tile::filters::filters, [TileFiltersArgs], WIDE, 0;
+    construct_tile_filters: tile_filters::filters, [TileFiltersArgs], WIDE, 0;
     construct_treelets: treelet::plan, [PlanArgs], WIDE, treelet::SHARED;
     balance_copy: balance::copy, [BalanceArgs], BALANCE, 0;
     narrow_moller_f32: discrete::moller::<f32, B>, [DiscreteArgs<f32>], WIDE, 0;
     narrow_moller_f64: discrete::moller::<f64, B>, [DiscreteArgs<f64>], WIDE, 0;
-    narrow_filter_f32: discrete::filter::<f32, B>, [DiscreteArgs<f32>], WIDE, 0;
-    narrow_filter_f64: discrete::filter::<f64, B>, [DiscreteArgs<f64>], WIDE, 0;
+    narrow_filter_f32: discrete::filter::<f32, B>, [DiscreteArgs<f32>], WIDE, discrete::shared_bytes(WIDE);
+    narrow_filter_f64: discrete::filter::<f64, B>, [DiscreteArgs<f64>], WIDE, discrete::shared_bytes(WIDE);
     narrow_wide_f32: discrete::wide, [DiscreteArgs<f32>], NARROW, 0;
     narrow_exact_f32: discrete::exact::<f32, B>, [DiscreteArgs<f32>], NARROW, 0;
     narrow_exact_f64: discrete::exact::<f64, B>, [DiscreteArgs<f64>], NARROW, 0;
@@ -347,14 +347,14 @@ kernels_of_volumes! {
         traverse_front: front::front::<V, B>, [FrontArgs<V>], WIDE, 0;
         traverse_queue: queue::queue::<V, B>, [QueueArgs<V>], NARROW, worker::shared_bytes(NARROW);
         traverse_steal: steal::steal::<V, B>, [StealArgs<V>], NARROW, worker::shared_bytes(NARROW);
-        traverse_tiles: tile::pairs::pairs::<V, B>, [TilePairsArgs<V>], tile::pairs::LANES, tile::pairs::SHARED, exact = true;
-        traverse_triangles: tile::triangles::triangles::<V, B>, [TileTrianglesArgs<V>], tile::triangles::LANES, tile::triangles::shared_bytes::<V>(), exact = true;
-        refit_tiles: tile::fit::above::<V, B>, [RefitTilesArgs<V>], tile::fit::LANES, tile::fit::shared_bytes::<V>(), exact = true;
+        traverse_tiles: traverse::tiles::pairs::<V, B>, [TilePairsArgs<V>], traverse::tiles::LANES, traverse::tiles::SHARED, exact = true;
+        traverse_triangles: traverse::tile_triangles::triangles::<V, B>, [TileTrianglesArgs<V>], traverse::tile_triangles::LANES, traverse::tile_triangles::shared_bytes::<V>(), exact = true;
+        refit_tiles: refit_of_tiles::tiles::<V, B>, [RefitTilesArgs<V>], refit_of_tiles::LANES, refit_of_tiles::shared_bytes::<V>(), exact = true;
     }
     each {
         traverse_sample: nearest_first::sample::<R, V, B>, [NearestArgs<R, V>], NARROW, 0;
         fit: fitting::fit::<R, V, B>, [FitArgs<R, V>], WIDE, 0;
-        fit_tiles: tile::fit::tiles::<R, V, B>, [FitTilesArgs<R, V>], tile::fit::LANES, tile::fit::shared_bytes::<V>(), exact = true;
+        fit_tiles: fitting::tiles::tiles::<R, V, B>, [FitTilesArgs<R, V>], fitting::tiles::LANES, fitting::tiles::shared_bytes::<V>(), exact = true;
         refit_treelets: treelets::treelets::<R, V, B>, [TreeletsArgs<R, V>], WIDE, treelets::shared_bytes::<V>();
     }
     groups {

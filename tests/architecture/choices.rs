@@ -5,16 +5,20 @@ use super::sources::{NONE, Source, lines, planted, rust, says};
 /// The volumes, and what the names of their kernels end with.
 const VOLUMES: [(&str, &str); 3] = [("Aabb", "_aabb"), ("Linear", "_linear"), ("Obb", "_obb")];
 
+/// Sources without files of tests.
+fn without_tests(mut sources: Vec<Source>) -> Vec<Source> {
+    const TESTS: [&str; 4] =
+        ["typed/in_order.rs", "typed/near.rs", "typed/submitted.rs", "broad/tiles/faults.rs"];
+    sources.retain(|(name, _)| name.strip_prefix("host/pipeline/").is_none_or(|file| !TESTS.contains(&file)));
+    sources
+}
+
 /// What serves volumes, whatever they are: without their own files, and without tests.
 fn serves_volumes() -> Vec<Source> {
-    const TESTS: [&str; 3] = ["in_order.rs", "near.rs", "submitted.rs"];
     let kernels = ["abi", "bv/mod.rs", "bvh", "entry", "entry.rs", "queue", "stage"];
     let rooms = kernels.map(|room| format!("kernels/src/{room}"));
     let rooms: Vec<&str> = rooms.iter().map(String::as_str).chain(["emulator", "host"]).collect();
-    let mut sources = rust(&rooms);
-    sources.retain(|(name, _)| {
-        name.strip_prefix("host/pipeline/typed/").is_none_or(|file| !TESTS.contains(&file))
-    });
+    let mut sources = without_tests(rust(&rooms));
     for (_, text) in &mut sources {
         text.truncate(text.find("#[cfg(test)]\nmod tests").unwrap_or(text.len()));
     }
@@ -75,7 +79,7 @@ fn tells_kinds_apart(sources: &[Source]) -> Vec<String> {
 
 #[test]
 fn a_narrow_phase_is_a_file_and_a_line() {
-    let found = tells_kinds_apart(&rust(&["host/pipeline"]));
+    let found = tells_kinds_apart(&without_tests(rust(&["host/pipeline"])));
     assert_eq!(found.len(), 4, "a line a kind: {found:?}");
     assert!(found.iter().all(|line| line.starts_with("host/pipeline/narrow/mod.rs:")), "{found:?}");
 }

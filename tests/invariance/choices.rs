@@ -3,7 +3,7 @@
 use super::support::asked::{of, with_tolerance};
 use super::support::{machines, sanitizer};
 use super::*;
-use nearmiss::query::{Bv, QueryKind};
+use nearmiss::query::{Broad, Bv, QueryKind};
 use nearmiss::{Detector, Device};
 
 /// The answer's hash, and what every stage left behind.
@@ -39,7 +39,7 @@ fn every_walk_finds_the_same() {
     let bodies = [scene::soup(200, 4, true).expect("a scene"), scene::draped(300).expect("a scene")];
     for bodies in [&bodies[..1], &bodies[1..], &bodies[..]] {
         for motion in [QueryKind::Discrete, QueryKind::Continuous] {
-            let truth = prints(engine(), bodies, of(motion).with_bv(Bv::Aabb));
+            let truth = prints(engine(), bodies, of(motion).with_bv(Bv::Aabb).with_broad(Broad::Tree));
             for traversal in super::support::walks() {
                 // Only tests of plain boxes nest to the bit: then candidates are the same as well.
                 let query = of(motion).with_traversal(traversal).with_bv(Bv::Aabb);

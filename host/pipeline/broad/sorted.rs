@@ -50,7 +50,7 @@ impl Sorted {
         let items = || scratch.buffer(count as usize);
         Ok(Sorted {
             records: bodies.iter().map(|&body| layout.records[body]).collect(),
-            table: device.upload(&table)?,
+            table: scratch.upload(&table)?,
             bodies: table,
             count,
             begins_zero: scratch.buffer(zero)?,

@@ -105,6 +105,18 @@ impl Volume for Linear {
         !(apart | (from > to + MOVING_TIME))
     }
 
+    const IN_PARTS: bool = true;
+    /// Whether they are not apart on one axis at both ends of the step, on the same side: six pairs of differences, and no division.
+    #[inline]
+    fn may_overlap(&self, o: &Self) -> bool {
+        let mut apart = false;
+        for k in 0..3 {
+            apart |= (o.hi0[k] < self.lo0[k]) & (o.hi1[k] < self.lo1[k]);
+            apart |= (self.hi0[k] < o.lo0[k]) & (self.hi1[k] < o.lo1[k]);
+        }
+        !apart
+    }
+
     #[inline]
     fn apart(&self, o: &Self) -> f32 {
         let start = |b: &Self| Aabb { lo: b.lo0, hi: b.hi0 };

@@ -90,6 +90,14 @@ pub trait Volume: FillsNode + Sync + Send + core::fmt::Debug + PartialEq {
     }
     /// False only if they certainly share no point (for a moving volume: at no t in [0, 1]).
     fn overlaps(&self, other: &Self) -> bool;
+    /// Whether [`Volume::may_overlap`] is less than [`Volume::overlaps`].
+    const IN_PARTS: bool = false;
+    /// The part of [`Volume::overlaps`] that costs little: false only if that is. Where many are tested against many by lanes side by
+    /// side, the other part costs all of them what one of them needs.
+    #[inline(always)]
+    fn may_overlap(&self, other: &Self) -> bool {
+        self.overlaps(other)
+    }
     /// Never more than the distance of two points that they are around, at t = 0; 0 where they overlap.
     fn apart(&self, other: &Self) -> f32;
 }

@@ -1,7 +1,7 @@
 //! Volumes in a block's shared memory.
 
-use crate::bv::Volume;
-use crate::exec::{Block, Lane, Shared};
+use crate::bv::{Axes, Volume};
+use crate::exec::{Block, Lane, Shared, Slot};
 
 /// Places for volumes, word by word, so that neighbours lie in different banks.
 #[derive(Clone, Copy)]
@@ -39,6 +39,29 @@ impl OnChip {
         let words: &[[u32; 2]] = bytemuck::cast_slice(core::slice::from_ref(&volume));
         for (i, word) in words.iter().enumerate() {
             l.put(self.words, i as u32 * self.count + place, *word);
+        }
+    }
+
+    /// Merges runs of volumes, each lane's in its own place and in `volumes`: of every `each` that are `apart` lanes from each other the
+    /// first one's becomes the merge of all, those half of them further on first.
+    pub fn merge<V: Volume, B: Block>(
+        self,
+        b: &mut B,
+        volumes: &mut B::Slot<V>,
+        (each, apart): (u32, u32),
+        axes: Axes,
+    ) {
+        let mut width = each / 2;
+        while width > 0 {
+            b.phase(|l| {
+                if l.lane() % (each * apart) < width * apart && l.lane().is_multiple_of(apart) {
+                    let merged = volumes.of(l).merge(&self.get(l, l.lane() + width * apart), axes);
+                    *volumes.of(l) = merged;
+                    self.put(l, l.lane(), merged);
+                }
+                l.meet();
+            });
+            width /= 2;
         }
     }
 }

@@ -168,6 +168,10 @@ pub trait Block {
     fn any(&mut self, values: &mut Self::Slot<bool>) -> bool;
     /// Replaces each lane's value by the sum of those of the lanes before it; returns the sum of all.
     fn scan(&mut self, values: &mut Self::Slot<u32>) -> u32;
+    /// [`Block::scan`] of zeros and ones. Cost: two instructions in a block of one warp.
+    fn number(&mut self, wishes: &mut Self::Slot<u32>) -> u32 {
+        self.scan(wishes)
+    }
     /// Adds `count` to a counter once for the whole block; the value before. No atomic, and 0, where `count` is 0.
     ///
     /// It orders nothing between blocks, even where each lane has called [`Lane::fence`] in the phase before: a fence

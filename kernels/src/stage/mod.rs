@@ -7,7 +7,6 @@
 //! | [`fit`] | positions at t = 0 and t = 1, faces | volumes of the leaves |
 //! | [`refit`] | volumes of the leaves | all volumes, a barrier between levels |
 //! | [`traverse`] | the tree | candidates: triangle pairs |
-//! | [`tile`] | the order of triangles, positions, faces | volumes and candidates, without a tree |
 //! | [`balance`] | the traversal's queues of work | the same units, as many in each |
 //! | [`narrow`] | candidates, positions | contacts |
 //! | [`order`] | contacts | the same in canonical order, on a GPU |
@@ -23,5 +22,4 @@ pub mod order;
 pub mod place;
 pub mod refit;
 pub mod status;
-pub mod tile;
 pub mod traverse;

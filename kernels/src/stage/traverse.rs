@@ -19,6 +19,8 @@ pub mod front;
 pub mod nearest;
 pub mod queue;
 pub mod steal;
+pub mod tile_triangles;
+pub mod tiles;
 
 use crate::abi::{NONE, NodeFilter, Pair, ROOT, TraverseArgs, TraverseFlags, Unit, counter};
 use crate::bv::Volume;

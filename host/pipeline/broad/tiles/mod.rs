@@ -1,4 +1,4 @@
-//! Tiles: 32 triangles that are neighbours along a curve, and nodes above them without links; see `nearmiss_kernels::stage::tile`.
+//! Tiles: 32 triangles that are neighbours along a curve, and nodes above them without links; see `nearmiss_kernels::bvh::tiles`.
 
 #[cfg(test)]
 mod faults;

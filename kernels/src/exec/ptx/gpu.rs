@@ -2,17 +2,16 @@
 
 use super::coherent::{compare_and_swap, fence, load_coherent, store_coherent};
 use super::raw::{
-    BROADCAST, address, atomic, barrier_or, element, load_global, load_shared32, load_shared64, load_word,
-    match_any, scratch_address, shuffle_up, store_shared32, store_shared64, store_word, sync_threads,
-    sync_warp, warp_any, warp_sum,
+    BROADCAST, address, atomic, ballot, barrier_or, element, load_global, load_shared32, load_shared64,
+    load_word, match_any, scratch_address, shuffle, shuffle_up, store_shared32, store_shared64, store_word,
+    sync_threads, sync_warp, warp_any, warp_sum,
 };
 use crate::abi::Span;
 use crate::exec::{BINS, Block, Lane, Shared, Slot, WARP, Word};
 use bytemuck::Pod;
 use core::arch::asm;
 use core::arch::nvptx::{
-    _block_dim_x as block_dim_x, _block_idx_x as block_idx_x, _grid_dim_x as grid_dim_x,
-    _thread_idx_x as thread_idx_x,
+    _block_idx_x as block_idx_x, _grid_dim_x as grid_dim_x, _thread_idx_x as thread_idx_x,
 };
 use core::mem::MaybeUninit;
 use core::sync::atomic::Ordering::Relaxed;
@@ -24,8 +23,9 @@ fn panic(_: &core::panic::PanicInfo) -> ! {
     unsafe { core::arch::nvptx::trap() }
 }
 
-/// The block that this thread belongs to.
-pub struct Gpu {
+/// The block of `LANES` threads that this thread belongs to. A block of one warp has no barriers but the warp's, and its collectives
+/// pass values from register to register.
+pub struct Gpu<const LANES: u32> {
     /// Bytes of shared memory given out.
     taken: u32,
     lane: Thread,
@@ -158,23 +158,33 @@ impl Lane for Thread {
     }
 }
 
-impl Gpu {
+impl<const LANES: u32> Gpu<LANES> {
+    const ONE_WARP: bool = LANES == WARP;
+
     /// This thread's block.
     ///
     /// # Safety
-    /// Once a kernel, at its start: shared memory is given out from the beginning.
+    /// Once a kernel, at its start: shared memory is given out from the beginning. The kernel was launched with blocks of `LANES`.
     #[inline(always)]
     pub unsafe fn new() -> Self {
         // SAFETY: reads special registers.
-        let (lane, global) = unsafe {
-            (thread_idx_x() as u32, block_idx_x() as u32 * block_dim_x() as u32 + thread_idx_x() as u32)
-        };
-        Gpu { taken: 0, lane: Thread { lane, global } }
+        let (lane, block) = unsafe { (thread_idx_x() as u32, block_idx_x() as u32) };
+        Gpu { taken: 0, lane: Thread { lane, global: block * LANES + lane } }
+    }
+    /// What lanes did to shared memory before it, all of them see behind it.
+    #[inline(always)]
+    fn barrier(&self) {
+        if Self::ONE_WARP { sync_warp() } else { sync_threads() }
     }
     /// A lane's value for all: lane 0 computes it.
     #[inline(always)]
     fn broadcast(&self, value: impl FnOnce() -> u64) -> u64 {
         sync_warp();
+        if Self::ONE_WARP {
+            let value = if self.lane.lane == 0 { value() } else { 0 };
+            sync_warp();
+            return u64::from(shuffle(value as u32, 0)) | u64::from(shuffle((value >> 32) as u32, 0)) << 32;
+        }
         if self.lane.lane == 0 {
             store_shared64(scratch_address(BROADCAST), value());
         }
@@ -185,7 +195,7 @@ impl Gpu {
     }
 }
 
-impl Block for Gpu {
+impl<const LANES: u32> Block for Gpu<LANES> {
     type Lane = Thread;
     type Slot<T: Copy> = Register<T>;
 
@@ -201,8 +211,7 @@ impl Block for Gpu {
     }
     #[inline(always)]
     fn lanes(&self) -> u32 {
-        // SAFETY: reads a special register.
-        unsafe { block_dim_x() as u32 }
+        LANES
     }
     #[inline(always)]
     fn shared<T: Word>(&mut self, len: u32) -> Shared<T> {
@@ -221,7 +230,7 @@ impl Block for Gpu {
     #[inline(always)]
     fn phase(&mut self, mut body: impl FnMut(&Thread)) {
         body(&self.lane);
-        sync_threads();
+        self.barrier();
     }
     #[inline(always)]
     fn load<T: Pod>(&self, span: Span<T>, i: u32) -> T {
@@ -230,7 +239,7 @@ impl Block for Gpu {
     #[inline(always)]
     fn peek<T: Word>(&mut self, words: Shared<T>, i: u32) -> T {
         let value = self.lane.get(words, i);
-        sync_threads();
+        self.barrier();
         value
     }
     #[inline(always)]
@@ -252,6 +261,10 @@ impl Block for Gpu {
             }
             delta *= 2;
         }
+        if Self::ONE_WARP {
+            values.0 = sum - values.0;
+            return shuffle(sum, WARP - 1);
+        }
         if lane == WARP - 1 {
             store_shared32(scratch_address(4 * warp), sum);
         }
@@ -265,6 +278,16 @@ impl Block for Gpu {
         sync_threads();
         values.0 = before + sum - values.0;
         total
+    }
+    #[inline(always)]
+    fn number(&mut self, wishes: &mut Register<u32>) -> u32 {
+        if !Self::ONE_WARP {
+            return self.scan(wishes);
+        }
+        sync_warp();
+        let all = ballot(wishes.0 != 0);
+        wishes.0 = (all & ((1 << self.lane.lane) - 1)).count_ones();
+        all.count_ones()
     }
     #[inline(always)]
     fn reserve(&mut self, counter: Span<u64>, i: u32, count: u64) -> u64 {

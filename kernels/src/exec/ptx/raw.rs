@@ -18,6 +18,10 @@ unsafe extern "C" {
     pub fn barrier_or(barrier: u32, value: bool) -> bool;
     #[link_name = "llvm.nvvm.shfl.sync.up.i32"]
     pub fn shfl_up(mask: u32, value: u32, delta: u32, clamp: u32) -> u32;
+    #[link_name = "llvm.nvvm.shfl.sync.idx.i32"]
+    pub fn shfl_idx(mask: u32, value: u32, lane: u32, clamp: u32) -> u32;
+    #[link_name = "llvm.nvvm.vote.ballot.sync"]
+    pub fn vote_ballot(mask: u32, vote: bool) -> u32;
     #[link_name = "llvm.nvvm.vote.any.sync"]
     pub fn vote_any(mask: u32, vote: bool) -> bool;
     #[link_name = "llvm.nvvm.match.any.sync.i32"]
@@ -153,6 +157,18 @@ pub fn address<T: Word>(words: Shared<T>, i: u32) -> u32 {
 pub fn shuffle_up(v: u32, delta: u32) -> u32 {
     // SAFETY: called by all threads of the warp.
     unsafe { shfl_up(ALL, v, delta, 0) }
+}
+/// The value of a lane of the warp. A [`sync_warp`] goes before.
+#[inline(always)]
+pub fn shuffle(v: u32, lane: u32) -> u32 {
+    // SAFETY: called by all threads of the warp.
+    unsafe { shfl_idx(ALL, v, lane, 31) }
+}
+/// Which lanes of the warp vote for it. A [`sync_warp`] goes before.
+#[inline(always)]
+pub fn ballot(vote: bool) -> u32 {
+    // SAFETY: called by all threads of the warp.
+    unsafe { vote_ballot(ALL, vote) }
 }
 /// The sum of the values of a warp. A [`sync_warp`] goes before.
 #[inline(always)]

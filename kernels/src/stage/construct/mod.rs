@@ -12,5 +12,6 @@
 
 pub mod graft;
 pub mod morton;
+pub mod tile_filters;
 pub mod tree;
 pub mod treelet;

@@ -194,11 +194,8 @@ impl Grid {
         if is_hilbert {
             cells = along_hilbert(cells);
         }
-        let mut code = 0;
-        for k in 0..3 {
-            code |= spread(cells[k]) << (2 - k);
-        }
-        code >> (3 * AXIS_BITS - CODE_BITS)
+        let [x, y, z] = cells.map(spread);
+        (x << 2 | y << 1 | z) >> (3 * AXIS_BITS - CODE_BITS)
     }
 }
 
@@ -247,9 +244,8 @@ mod tests {
         let mut cells = [[0; 3]; 512];
         for i in 0..512u32 {
             let cell = [i & 7, i >> 3 & 7, i >> 6];
-            let turned = places(cell);
-            let code = (0..3).fold(0, |code, k| code | spread(turned[k]) << (2 - k));
-            cells[code as usize] = cell;
+            let [x, y, z] = places(cell).map(spread);
+            cells[(x << 2 | y << 1 | z) as usize] = cell;
         }
         cells
     }

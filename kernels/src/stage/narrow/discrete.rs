@@ -66,33 +66,38 @@ impl<B: Block> Verdicts<B> {
     }
 }
 
-/// Signs with an error bound, in the precision of the positions.
-struct Signed<R>(PhantomData<R>);
+/// Whether one of two triangles' planes parts them; what it does not is [`OPEN`].
+struct Parted<R>(PhantomData<R>);
 
-/// What [`Signed`] makes of two triangles; undecided is [`OPEN`].
+/// What [`Parted`] makes of two triangles that are apart.
 const APART: u32 = 0;
-const MEET: u32 = 1;
 
-impl<R: Real> RowMap for Signed<R> {
+impl<R: Real> RowMap for Parted<R> {
     type Number = R;
     type Row = [[Vec3<R>; 3]; 2];
     #[inline(always)]
     fn at_once(&self, [p, q]: [[Vec3<R>; 3]; 2]) -> u32 {
         if parted(&p, &q) { APART } else { OPEN }
     }
-    #[inline(always)]
-    fn apply(&self, [p, q]: [[Vec3<R>; 3]; 2]) -> u32 {
-        meets::<R, Filter>(&p, &q).map_or(OPEN, |meet| if meet { MEET } else { APART })
-    }
 }
 
-/// Signs with an error bound, in the precision of the positions: contacts, and pairs that it cannot decide.
+/// Shared memory of `filter`: pairs that wait.
+pub const fn shared_bytes(lanes: u32) -> u32 {
+    2 * lanes * size_of::<Pair>() as u32
+}
+
+/// Signs with an error bound, in the precision of the positions: contacts, and pairs that it cannot decide. Most pairs are parted by a
+/// plane, which takes no branch; the others wait until there is one a lane.
 pub fn filter<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
-    let count = a.pairs.listed(b);
+    let (count, lanes) = (a.pairs.listed(b), b.lanes());
+    let waiting = b.shared::<[u32; 2]>(2 * lanes);
     let mut verdicts = Verdicts::new(b);
+    let mut open = b.slot(None);
+    let mut places = b.slot(0u32);
+    let mut fill = 0;
     stride(b, count, |b, base| {
         b.map_rows(
-            &Signed(PhantomData),
+            &Parted(PhantomData),
             |l| {
                 let i = base + l.lane();
                 if i >= count {
@@ -101,18 +106,55 @@ pub fn filter<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
                 let pair = a.pairs.get(l, i);
                 Some((pair, l.read(a.faces, pair.a), l.read(a.faces, pair.b)))
             },
-            |l, (_, p, q)| {
-                let beyond =
-                    a.flags.has(DiscreteFlags::KEEP_ADJACENT) && Shared::by_index(p, q) != Shared::Nothing;
-                if beyond { None } else { Some([corners(l, a, p), corners(l, a, q)]) }
-            },
-            |l, told| match told {
-                Some(((pair, ..), what)) => verdicts.set(l, pair, (what != OPEN).then_some(what == MEET)),
-                None => verdicts.set(l, Pair::default(), Some(false)),
+            |l, (_, p, q)| (!beyond_shared(a, p, q)).then(|| [corners(l, a, p), corners(l, a, q)]),
+            |l, told| {
+                let left = told.and_then(|((pair, ..), what)| (what != APART).then_some(pair));
+                *open.of(l) = left;
+                *places.of(l) = left.is_some() as u32;
+                l.meet();
             },
         );
-        verdicts.sort_out(b, a);
+        let found = b.scan(&mut places);
+        b.phase(|l| {
+            if let Some(pair) = *open.of(l) {
+                l.put(waiting, fill + *places.of(l), [pair.a, pair.b]);
+            }
+            l.meet();
+        });
+        fill += found;
+        if fill >= lanes {
+            fill -= lanes;
+            decide(b, a, &mut verdicts, |l| Some(l.get(waiting, fill + l.lane())));
+        }
     });
+    decide(b, a, &mut verdicts, |l| (l.lane() < fill).then(|| l.get(waiting, l.lane())));
+}
+
+/// Whether a pair is asked about what is beyond the corners that it shares, which the filter leaves to others.
+#[inline(always)]
+fn beyond_shared<R: Real>(a: &DiscreteArgs<R>, p: [u32; 3], q: [u32; 3]) -> bool {
+    a.flags.has(DiscreteFlags::KEEP_ADJACENT) && Shared::by_index(p, q) != Shared::Nothing
+}
+
+/// All signs of the pairs that lanes have.
+#[inline(always)]
+fn decide<R: Real, B: Block>(
+    b: &mut B,
+    a: &DiscreteArgs<R>,
+    verdicts: &mut Verdicts<B>,
+    which: impl Fn(&B::Lane) -> Option<[u32; 2]>,
+) {
+    b.phase(|l| {
+        let Some([p, q]) = which(l) else { return verdicts.set(l, Pair::default(), Some(false)) };
+        let faces = [l.read(a.faces, p), l.read(a.faces, q)];
+        let verdict = if beyond_shared(a, faces[0], faces[1]) {
+            None
+        } else {
+            meets::<R, Filter>(&corners(l, a, faces[0]), &corners(l, a, faces[1]))
+        };
+        verdicts.set(l, Pair { a: p, b: q }, verdict);
+    });
+    verdicts.sort_out(b, a);
 }
 
 /// The same in f64, for what f32 left undecided.

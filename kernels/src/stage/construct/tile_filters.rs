@@ -1,4 +1,5 @@
 //! # Filters of tiles: the order of triangles → whose lie below each node
+//! Paper    nothing of the seed's.
 //! Launch   a lane a node; for tiles, then for each level above. Once for each construction.
 //! Reads    the order, whose each triangle is; of levels above the 16 filters below.     Writes   a filter a node.
 //! Before   the level below is written.

@@ -1,4 +1,5 @@
 //! # Pairs of tiles: nodes → tiles that overlap
+//! Paper    nothing of the seed's.
 //! Launch   a block of a warp a tile of what moves.
 //! Reads    nodes, 32 of the top level or twice 16 below others at once.     Writes   pairs of tiles, the earlier first.
 //! Before   all nodes are fitted.
@@ -28,7 +29,8 @@ pub fn pairs<V: Volume, B: Block>(b: &mut B, a: &TilePairsArgs<V>) {
     let stack = b.shared::<u32>(STACK);
     let found = b.shared::<u32>(FOUND);
     let mut hit = b.slot((NONE, NONE));
-    let mut hits = b.slot(0u32);
+    let mut nodes = b.slot(0u32);
+    let mut tiles = b.slot(0u32);
     let mut tests = 0u64;
     let mut tile = b.block();
     while tile < a.count {
@@ -48,38 +50,36 @@ pub fn pairs<V: Volume, B: Block>(b: &mut B, a: &TilePairsArgs<V>) {
                     NONE
                 };
                 *hit.of(l) = (NONE, NONE);
-                *hits.of(l) = 0;
+                (*nodes.of(l), *tiles.of(l)) = (0, 0);
                 if place != NONE {
                     let node = l.read(a.nodes, place);
                     let meets = node.link != NONE
                         && node.last > tile
-                        && own.overlaps(&node.volume)
+                        && own.may_overlap(&node.volume)
                         && (filters.is_empty() || a.filters.allows(l, whose, l.read(filters, place)));
                     if meets {
                         *hit.of(l) = (node.link, node.last);
-                        // Tiles are counted in the upper half.
-                        *hits.of(l) = if node.link & LEAF == 0 { 1 } else { 1 << 16 };
+                        let is_tile = node.link & LEAF != 0;
+                        (*nodes.of(l), *tiles.of(l)) = (!is_tile as u32, is_tile as u32);
                     }
                 }
-                l.meet();
             });
             tests += LANES as u64;
-            let count = b.scan(&mut hits);
+            let [met, hits] = [b.number(&mut nodes), b.number(&mut tiles)];
             waiting -= taken;
             b.phase(|l| {
-                let ((link, last), before) = (*hit.of(l), *hits.of(l));
+                let (link, last) = *hit.of(l);
                 if link != NONE && link & LEAF == 0 {
-                    l.put(stack, waiting + (before & 0xffff), link);
+                    l.put(stack, waiting + *nodes.of(l), link);
                 } else if link != NONE {
-                    l.put(found, fill + (before >> 16), last);
+                    l.put(found, fill + *tiles.of(l), last);
                 }
-                l.meet();
             });
             if taken == 0 {
                 top += LANES;
             }
-            waiting += count & 0xffff;
-            fill += count >> 16;
+            waiting += met;
+            fill += hits;
             if fill > FOUND - LANES {
                 write(b, a, (found, fill), tile);
                 fill = 0;
@@ -100,6 +100,5 @@ fn write<V: Volume, B: Block>(b: &mut B, a: &TilePairsArgs<V>, (found, fill): (S
             a.tile_pairs.put(l, base + i as u64, Pair { a: tile, b: l.get(found, i) });
             i += LANES;
         }
-        l.meet();
     });
 }

@@ -1,10 +1,12 @@
 //! # Triangles of tiles: pairs of tiles → candidates
+//! Paper    nothing of the seed's.
 //! Launch   blocks of a warp, as many as run at once, stride over the tiles of what moves, each with itself, and the pairs of tiles.
 //! Reads    32 leaves in a row of each tile; whose the triangles of a candidate are, and their faces.
 //! Writes   candidate pairs, the smaller index first, each once, in no order.
 //! Before   leaves and tiles are fitted, pairs of tiles are listed.
-//! After    every pair of triangles that may meet and whose volumes overlap, but for those that share a vertex index unless
-//!          [`TraverseFlags::KEEP_ADJACENT`] asks for them: what walks of a tree write, where tests of volumes nest.
+//! After    every pair of triangles that may meet and whose volumes overlap, but
+//!          for those that share a vertex index unless
+//!          [`TraverseFlags::KEEP_ADJACENT`] asks for them. Of boxes that stand still: what walks of a tree write.
 //! Room     `pairs` may be too short: counters go on, the host grows it and runs again.
 //! Cost     64 tests against the other tile, then each of the one that overlaps that against each of the other. An atomic a warp and
 //!          512 candidates.
@@ -18,13 +20,13 @@ use crate::prim::adjacent::share_a_vertex;
 
 /// Lanes of a block.
 pub const LANES: u32 = TILE;
-/// Candidates that are found before they are written.
+/// Candidates that are found before they are written: triangles or, of volumes that are asked in parts, places of leaves.
 const FOUND: u32 = 512;
 /// Set in the first triangle of one that is found: whether the two may meet is still to be asked.
 const ASK: u32 = 1 << 31;
 
 /// Shared memory of a block.
-pub const fn shared_bytes<V>() -> u32 {
+pub const fn shared_bytes<V: Volume>() -> u32 {
     OnChip::bytes::<V>(LANES) + 4 * LANES + 8 * FOUND
 }
 
@@ -37,8 +39,12 @@ struct Two {
 }
 
 impl Two {
-    /// Unit `i` of the work; `None` for a tile whose triangles may not meet each other.
-    fn of<V: Volume, B: Block>(b: &B, a: &TileTrianglesArgs<V>, i: u64) -> Option<Two> {
+    /// Unit `i` of the work; `None` for a tile whose triangles may not meet each other, and behind the last one.
+    #[inline(always)]
+    fn of<V: Volume, B: Block>(b: &B, a: &TileTrianglesArgs<V>, (i, total): (u64, u64)) -> Option<Two> {
+        if i >= total {
+            return None;
+        }
         let same = i < a.count as u64;
         let tiles = if same {
             Pair { a: i as u32, b: i as u32 }
@@ -68,22 +74,30 @@ pub fn triangles<V: Volume, B: Block>(b: &mut B, a: &TileTrianglesArgs<V>) {
     let (mut fill, mut tests) = (0, 0u64);
     let total = a.count as u64 + a.tile_pairs.listed(b) as u64;
     let mut unit = b.block() as u64;
+    let mut next = Two::of(b, a, (unit, total));
     while unit < total {
-        let two = Two::of(b, a, unit);
+        let two = next;
         unit += b.blocks() as u64;
+        // On its way while this one is looked at.
+        next = Two::of(b, a, (unit, total));
         let Some(Two { tiles, ask }) = two else { continue };
         let same = tiles.a == tiles.b;
-        let (first, second) = (b.load(a.nodes, tiles.a).volume, b.load(a.nodes, tiles.b).volume);
+        let [first, second] = [tiles.a, tiles.b].map(|tile| b.load(a.nodes, tile).volume);
         b.phase(|l| {
-            let leaf = |tile: u32| l.read(a.leaves, tile * TILE + l.lane());
-            let (p, q) = (leaf(tiles.a), leaf(tiles.b));
-            let is_row = p.link != NONE && (same || p.volume.overlaps(&second));
-            let is_column = q.link != NONE && (same || q.volume.overlaps(&first));
-            *row.of(l) = (p.volume, if is_row { p.link & !LEAF | ask } else { NONE });
-            *column.of(l) = (q.volume, if is_column { q.link & !LEAF } else { NONE });
+            let leaf = |tile: u32| {
+                let place = tile * TILE + l.lane();
+                let leaf = l.read(a.leaves, place);
+                let name = if V::IN_PARTS { place } else { leaf.link & !LEAF };
+                (leaf.volume, if leaf.link == NONE { NONE } else { name })
+            };
+            let ((p, own), (q, other)) = (leaf(tiles.a), leaf(tiles.b));
+            let is_row = own != NONE && (same || p.may_overlap(&second));
+            let is_column = other != NONE && (same || q.may_overlap(&first));
+            *row.of(l) = (p, if is_row { own | ask } else { NONE });
+            *column.of(l) = (q, if is_column { other } else { NONE });
             *counts.of(l) = is_row as u32;
         });
-        let height = b.scan(&mut counts);
+        let height = b.number(&mut counts);
         b.phase(|l| {
             let (volume, triangle) = *row.of(l);
             if triangle != NONE {
@@ -91,7 +105,6 @@ pub fn triangles<V: Volume, B: Block>(b: &mut B, a: &TileTrianglesArgs<V>) {
                 rows.put(l, at, volume);
                 l.put(ids, at, triangle);
             }
-            l.meet();
         });
         b.phase(|l| {
             let (volume, triangle) = *column.of(l);
@@ -101,13 +114,12 @@ pub fn triangles<V: Volume, B: Block>(b: &mut B, a: &TileTrianglesArgs<V>) {
                 let height = if same { l.lane() } else { height };
                 let mut k = 0;
                 while k < height {
-                    mask |= (volume.overlaps(&rows.get(l, k)) as u32) << k;
+                    mask |= (volume.may_overlap(&rows.get(l, k)) as u32) << k;
                     k += 1;
                 }
             }
             *masks.of(l) = mask;
             *counts.of(l) = mask.count_ones();
-            l.meet();
         });
         tests += (2 * LANES + LANES * height) as u64;
         let count = b.scan(&mut counts);
@@ -124,7 +136,6 @@ pub fn triangles<V: Volume, B: Block>(b: &mut B, a: &TileTrianglesArgs<V>) {
                     }
                     at += 1;
                 }
-                l.meet();
             });
             done += now;
             fill += now;
@@ -145,9 +156,18 @@ fn write<V: Volume, B: Block>(b: &mut B, a: &TileTrianglesArgs<V>, (found, fill)
     b.phase(|l| {
         let (mut mask, mut k) = (0u32, 0);
         while k * LANES + l.lane() < fill {
-            let [p, q] = l.get(found, k * LANES + l.lane());
-            let (ask, p) = (p & ASK != 0, p & !ASK);
-            let keeps = (!ask || a.filters.allows(l, l.read(a.whose, p), l.read(a.whose, q)))
+            let at = k * LANES + l.lane();
+            let [p, mut q] = l.get(found, at);
+            let (ask, mut p) = (p & ASK != 0, p & !ASK);
+            let mut keeps = true;
+            if V::IN_PARTS {
+                let [first, second] = [p, q].map(|place| l.read(a.leaves, place));
+                keeps = first.volume.overlaps(&second.volume);
+                (p, q) = (first.triangle(), second.triangle());
+                l.put(found, at, [p, q]);
+            }
+            keeps = keeps
+                && (!ask || a.filters.allows(l, l.read(a.whose, p), l.read(a.whose, q)))
                 && (a.flags.has(TraverseFlags::KEEP_ADJACENT)
                     || !share_a_vertex(l.read(a.faces, p), l.read(a.faces, q)));
             mask |= (keeps as u32) << k;
@@ -155,7 +175,6 @@ fn write<V: Volume, B: Block>(b: &mut B, a: &TileTrianglesArgs<V>, (found, fill)
         }
         *masks.of(l) = mask;
         *counts.of(l) = mask.count_ones();
-        l.meet();
     });
     let base = a.pairs.append(b, &mut counts);
     b.phase(|l| {
@@ -168,6 +187,5 @@ fn write<V: Volume, B: Block>(b: &mut B, a: &TileTrianglesArgs<V>, (found, fill)
             a.pairs.put(l, at, Pair { a: p.min(q), b: p.max(q) });
             at += 1;
         }
-        l.meet();
     });
 }
