@@ -1,6 +1,7 @@
-//! The program: `detect`, `plan`, `explain`, `scene`, `tables`, `trade`, `selftest`.
+//! The program: `detect`, `plan`, `explain`, `scene`, `tables`, `trade`, `bench`, `selftest`.
 
 mod args;
+mod bench;
 mod detect;
 mod explain;
 mod memory;
@@ -45,6 +46,7 @@ fn run(command: Command) -> Result<ExitCode, Error> {
         Command::Scene(args) => scene::scene(&args),
         Command::Tables(args) => tables::tables(&args),
         Command::Trade(args) => trade::trade(&args),
+        Command::Bench(args) => bench::bench(&args),
         Command::Selftest(args) => selftest::selftest(&args),
     }
 }

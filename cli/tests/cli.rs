@@ -1,5 +1,7 @@
 //! The program: exit codes, messages, the JSON summary, files. Scripts rely on these.
 
+#[path = "cli/bench.rs"]
+mod bench;
 #[path = "cli/degraded.rs"]
 mod degraded;
 #[path = "cli/distance.rs"]
@@ -382,7 +384,7 @@ fn a_plan_is_what_would_run() {
 fn the_program_says_what_it_is() {
     assert_eq!(ok(&["--version"]).trim(), format!("nearmiss {}", env!("CARGO_PKG_VERSION")));
     let help = ok(&["--help"]);
-    for command in ["detect", "plan", "explain", "scene", "selftest"] {
+    for command in ["detect", "plan", "explain", "scene", "bench", "selftest"] {
         assert!(help.contains(command), "{help}");
     }
     assert_eq!(run(&[]).status.code(), Some(2));

@@ -22,6 +22,7 @@ pub fn check(command: &Command, own: &ArgMatches) -> Result<(), Error> {
         Command::Scene(args) => scene(args, given),
         Command::Tables(args) => tables(args, given),
         Command::Trade(args) => trade(args, given),
+        Command::Bench(args) => machine(&args.machine, given),
         Command::Selftest(_) => Ok(()),
     }
 }

@@ -28,6 +28,12 @@ impl MachineArgs {
     pub fn open(&self) -> Result<Device, Error> {
         Device::open(self.backend, self.threads.map(|asked| at_most_all(asked.into())))
     }
+
+    /// How many threads a CPU gets: as many as were asked for and there are processors.
+    pub fn count(&self) -> usize {
+        let all = || std::thread::available_parallelism().map_or(1, usize::from);
+        self.threads.map_or_else(all, |asked| at_most_all(asked.into()))
+    }
 }
 
 /// No more threads than processors: more only wait for each other. Says so.

@@ -1,5 +1,6 @@
 //! What the command line takes: a file a command.
 
+mod bench;
 mod detect;
 mod files;
 mod idle;
@@ -11,6 +12,7 @@ mod selftest;
 mod tables;
 mod trade;
 
+pub use bench::BenchArgs;
 pub use detect::{DetectArgs, PlanArgs};
 pub use machine::{MachineArgs, ReportArgs};
 pub use number::whole;
@@ -50,6 +52,8 @@ pub enum Command {
     Tables(TablesArgs),
     /// What each faster choice costs in misses, lateness and false alarms, measured here: a table, CSV files and pictures.
     Trade(TradeArgs),
+    /// How long frames take, stage by stage, of a fixed list of cases.
+    Bench(BenchArgs),
     /// Check this machine: known answers, and the GPU and the CPU to the bit.
     Selftest(SelftestArgs),
 }
@@ -103,6 +107,10 @@ fn sort_out(command: &mut Command, own: &ArgMatches) -> Result<(), Error> {
         Command::Explain(args) => {
             files::part(own, &mut args.meshes, &mut args.with);
             files::at_most_two(&args.meshes, &args.with)
+        }
+        Command::Bench(args) => {
+            args.part(own);
+            Ok(())
         }
         _ => Ok(()),
     }

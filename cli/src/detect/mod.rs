@@ -176,7 +176,7 @@ fn median(runs: &[Stages]) -> Stages {
 }
 
 /// The median; of an even number the upper of the two in the middle, of none 0.
-fn middle(mut times: Vec<f64>) -> f64 {
+pub fn middle(mut times: Vec<f64>) -> f64 {
     times.sort_by(f64::total_cmp);
     times.get(times.len() / 2).copied().unwrap_or(0.0)
 }

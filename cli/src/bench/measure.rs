@@ -1,0 +1,159 @@
+//! One question of one case: asked frame after frame.
+
+use super::cases::inputs;
+use super::question::Question;
+use crate::detect::middle;
+use nearmiss::Detector;
+use nearmiss::device::Device;
+use nearmiss::error::Error;
+use nearmiss::mesh::Body;
+use nearmiss::pipeline::Stages;
+use nearmiss::scene::Scene;
+use serde::Serialize;
+
+/// Frames before those that count: lists grow to the demand.
+pub const WARM_UP: u32 = 2;
+
+/// Milliseconds of a frame.
+type Getter = fn(&Stages) -> f64;
+
+/// The parts of a frame by their names; `total` is a frame on the device's clock, `wall` the caller's wait, each as
+/// [`Stages`] says.
+pub const STAGES: [(&str, Getter); 10] = [
+    ("place", |s| s.place),
+    ("construct", |s| s.construct),
+    ("fit", |s| s.fit),
+    ("refit", |s| s.refit),
+    ("traverse", |s| s.traverse),
+    ("balance", |s| s.balance),
+    ("narrow", |s| s.narrow),
+    ("order", |s| s.order),
+    ("total", |s| s.total),
+    ("wall", |s| s.wall),
+];
+
+/// A stage's milliseconds over all frames, to the nanosecond.
+#[derive(Clone, Debug, Serialize)]
+pub struct Times {
+    /// Its name.
+    pub stage: &'static str,
+    /// In the middle; of an even number of frames the upper of two.
+    pub median_ms: f64,
+    /// The least.
+    pub low_ms: f64,
+    /// The most.
+    pub high_ms: f64,
+}
+
+/// What a question of a case came to.
+#[derive(Clone, Debug, Serialize)]
+pub struct Measured {
+    /// The case.
+    pub case: String,
+    /// Triangles of all its bodies.
+    pub triangles: usize,
+    /// Its bodies.
+    pub bodies: usize,
+    /// What was asked.
+    pub question: &'static str,
+    /// Pairs that the narrow test was asked.
+    pub candidates: u64,
+    /// What was found.
+    pub contacts: usize,
+    /// Hash of the answer, sixteen hexadecimal digits: that of every frame.
+    pub hash: String,
+    /// Most device memory held at once.
+    pub bytes: u64,
+    /// Frames that counted and ran a part again for want of room: their times are too long.
+    pub reruns: u64,
+    /// In the order of [`STAGES`].
+    pub stages: Vec<Times>,
+}
+
+/// How messages call a question of a case.
+fn called(case: &str, question: &str) -> String {
+    format!("{case}, {question}")
+}
+
+/// Asks the step that the scene is in so often. Every frame is told where all bodies are, and builds its tree anew before.
+///
+/// # Errors
+/// Those of the device; [`Error::Bug`] where two frames differ.
+pub fn measure(
+    device: &Device,
+    (case, scene): (&str, &Scene),
+    question: Question,
+    frames: u32,
+) -> Result<Measured, Error> {
+    let query = question.query(scene.bodies());
+    let mut detector = Detector::new(device.clone(), scene.clone(), query)?;
+    let inputs = inputs(scene);
+    for _ in 0..WARM_UP {
+        detector.rebuild()?;
+        detector.frame(&inputs)?;
+    }
+    let (mut all, mut hashes, mut last, before) = (Vec::new(), Vec::new(), [0; 2], detector.reruns());
+    for _ in 0..frames {
+        detector.rebuild()?;
+        let found = detector.frame(&inputs)?;
+        all.push(found.stages);
+        hashes.push(found.hash());
+        last = [found.candidates, found.len() as u64];
+    }
+    let hash = one(&hashes, &called(case, question.name()))?;
+    Ok(Measured {
+        case: case.into(),
+        triangles: scene.bodies().iter().map(Body::face_count).sum(),
+        bodies: scene.ids().count(),
+        question: question.name(),
+        candidates: last[0],
+        contacts: last[1] as usize,
+        hash: format!("{hash:016x}"),
+        bytes: device.bytes().1,
+        reruns: detector.reruns() - before,
+        stages: STAGES.iter().map(|(stage, of)| times(stage, all.iter().map(of).collect())).collect(),
+    })
+}
+
+/// The hash that all frames have.
+fn one(hashes: &[u64], called: &str) -> Result<u64, Error> {
+    let first = hashes.first().copied().unwrap_or(0);
+    match hashes.iter().position(|hash| *hash != first) {
+        None => Ok(first),
+        Some(at) => Err(Error::Bug {
+            what: format!(
+                "{called}: of the same step frame {at} has the answer {:016x}, frame 0 {first:016x}",
+                hashes[at]
+            ),
+        }),
+    }
+}
+
+fn times(stage: &'static str, ms: Vec<f64>) -> Times {
+    let to_the_ns = |ms: f64| (ms * 1e6).round() / 1e6;
+    let low = ms.iter().copied().reduce(f64::min).unwrap_or(0.0);
+    let high = ms.iter().copied().reduce(f64::max).unwrap_or(0.0);
+    let [median_ms, low_ms, high_ms] = [middle(ms), low, high].map(to_the_ns);
+    Times { stage, median_ms, low_ms, high_ms }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_a_median_and_its_spread() {
+        let of = times("fit", vec![5.0, 1.0, 2.0000000004, 9.0, 1.5]);
+        assert_eq!((of.low_ms, of.median_ms, of.high_ms), (1.0, 2.0, 9.0));
+        assert_eq!(times("fit", Vec::new()).median_ms, 0.0);
+    }
+
+    #[test]
+    fn a_frame_that_differs_is_named() {
+        assert_eq!(one(&[7, 7, 7], "soup, near").expect("one"), 7);
+        let error = one(&[7, 7, 8], "soup, near").expect_err("a planted fault").to_string();
+        for part in ["soup, near", "frame 2", "0000000000000008", "0000000000000007"] {
+            assert!(error.contains(part), "{part}: {error}");
+        }
+    }
+}
