@@ -22,6 +22,9 @@ pub struct BenchArgs {
     /// Frames that count, of each question, after two to warm up.
     #[arg(long, default_value_t = 11, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u32>(1, 100_000))]
     pub repeat: u32,
+    /// A bench.csv from before: its times are printed beside the new ones, and an answer that is another than in it is an error.
+    #[arg(long, value_name = "FILE")]
+    pub against: Option<PathBuf>,
     /// Print what the cases are, and do nothing else.
     #[arg(long, exclusive = true)]
     pub list: bool,
@@ -38,6 +41,13 @@ fn cases() -> String {
 }
 
 impl BenchArgs {
+    /// Whether that question of that case is chosen, whether or not there is such a one.
+    pub fn has(&self, case: &str, question: &str) -> bool {
+        let named = |of: &Question| of.name() == question;
+        (self.case.is_empty() || self.case.iter().any(|of| of == case))
+            && (self.question.is_empty() || self.question.iter().any(named))
+    }
+
     /// Gives each `--mesh` its files.
     pub fn part(&mut self, own: &ArgMatches) {
         let each = own.get_occurrences::<PathBuf>("mesh").into_iter().flatten();

@@ -52,7 +52,7 @@ pub enum Command {
     Tables(TablesArgs),
     /// What each faster choice costs in misses, lateness and false alarms, measured here: a table, CSV files and pictures.
     Trade(TradeArgs),
-    /// How long frames take, stage by stage, of a fixed list of cases.
+    /// How long frames take, stage by stage, of a fixed list of cases; and beside an earlier run.
     Bench(BenchArgs),
     /// Check this machine: known answers, and the GPU and the CPU to the bit.
     Selftest(SelftestArgs),

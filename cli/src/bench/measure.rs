@@ -28,9 +28,13 @@ pub const STAGES: [(&str, Getter); 10] = [
     ("balance", |s| s.balance),
     ("narrow", |s| s.narrow),
     ("order", |s| s.order),
-    ("total", |s| s.total),
-    ("wall", |s| s.wall),
+    (TOTAL, |s| s.total),
+    (WALL, |s| s.wall),
 ];
+/// The frame.
+pub const TOTAL: &str = "total";
+/// The wait.
+pub const WALL: &str = "wall";
 
 /// A stage's milliseconds over all frames, to the nanosecond.
 #[derive(Clone, Debug, Serialize)]
@@ -43,6 +47,10 @@ pub struct Times {
     pub low_ms: f64,
     /// The most.
     pub high_ms: f64,
+    /// The median of the earlier file, where there is one.
+    pub earlier_ms: Option<f64>,
+    /// The median over that; none over nothing.
+    pub ratio: Option<f64>,
 }
 
 /// What a question of a case came to.
@@ -62,6 +70,8 @@ pub struct Measured {
     pub contacts: usize,
     /// Hash of the answer, sixteen hexadecimal digits: that of every frame.
     pub hash: String,
+    /// The earlier file's.
+    pub earlier_hash: Option<String>,
     /// Most device memory held at once.
     pub bytes: u64,
     /// Frames that counted and ran a part again for want of room: their times are too long.
@@ -70,8 +80,15 @@ pub struct Measured {
     pub stages: Vec<Times>,
 }
 
+impl Measured {
+    /// How messages call it.
+    pub fn called(&self) -> String {
+        called(&self.case, self.question)
+    }
+}
+
 /// How messages call a question of a case.
-fn called(case: &str, question: &str) -> String {
+pub fn called(case: &str, question: &str) -> String {
     format!("{case}, {question}")
 }
 
@@ -109,6 +126,7 @@ pub fn measure(
         candidates: last[0],
         contacts: last[1] as usize,
         hash: format!("{hash:016x}"),
+        earlier_hash: None,
         bytes: device.bytes().1,
         reruns: detector.reruns() - before,
         stages: STAGES.iter().map(|(stage, of)| times(stage, all.iter().map(of).collect())).collect(),
@@ -134,7 +152,7 @@ fn times(stage: &'static str, ms: Vec<f64>) -> Times {
     let low = ms.iter().copied().reduce(f64::min).unwrap_or(0.0);
     let high = ms.iter().copied().reduce(f64::max).unwrap_or(0.0);
     let [median_ms, low_ms, high_ms] = [middle(ms), low, high].map(to_the_ns);
-    Times { stage, median_ms, low_ms, high_ms }
+    Times { stage, median_ms, low_ms, high_ms, earlier_ms: None, ratio: None }
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
-//! `bench`: a fixed list of cases, timed stage by stage.
+//! `bench`: a fixed list of cases, timed stage by stage, beside an earlier file of the same.
 
 mod cases;
+mod compare;
 mod file;
 mod machine;
 mod measure;
@@ -13,6 +14,8 @@ pub use question::Question;
 use crate::args::BenchArgs;
 use crate::output;
 use crate::progress::during;
+use compare::{Against, compare};
+use file::Earlier;
 use machine::Machine;
 use measure::{Measured, measure};
 use nearmiss::device::Device;
@@ -34,12 +37,15 @@ pub struct Figures {
     pub frames: u32,
     /// A question of a case each, those of a case together.
     pub cases: Vec<Measured>,
+    /// What an earlier file says.
+    pub against: Option<Against>,
 }
 
 /// Measures what was asked for, prints it, and writes it where `--out` says.
 ///
 /// # Errors
-/// [`Error::Choice`] for a case that there is not, and for cases that cannot be asked that; those of the device.
+/// [`Error::Choice`] for what cannot be compared, [`Error::Input`] for an earlier file that cannot be used, both before anything is
+/// measured; [`Error::Device`] for the first answer that is another than in that file; those of the device.
 pub fn bench(args: &BenchArgs) -> Result<ExitCode, Error> {
     if args.list {
         let line = |of: &cases::Generated| format!("{:<12}{}\n", of.name, of.about);
@@ -47,13 +53,18 @@ pub fn bench(args: &BenchArgs) -> Result<ExitCode, Error> {
         return Ok(ExitCode::SUCCESS);
     }
     let chosen = cases::chosen(args)?;
+    let earlier = args.against.as_deref().map(file::read).transpose()?;
     args.report.out.as_deref().map_or(Ok(()), output::folder)?;
     let threads = args.machine.count();
     // Held to the end: a device a question, so that each has a peak of its own, starts faster then.
     let device = Device::open(args.machine.backend, Some(threads))?;
     let machine = Machine::of(&device, threads);
+    if let Some(earlier) = &earlier {
+        comparable(args, &chosen, earlier)?;
+        keeps(args)?;
+    }
     let (version, frames) = (env!("CARGO_PKG_VERSION"), args.repeat);
-    let mut all = Figures { machine, version, frames, cases: Vec::new() };
+    let mut all = Figures { machine, version, frames, cases: Vec::new(), against: None };
     for case in &chosen {
         let scene = during(format!("making {}", case.name), || case.make())?;
         for question in cases::questions(args).filter(|question| question.is_for(scene.bodies())) {
@@ -68,7 +79,10 @@ pub fn bench(args: &BenchArgs) -> Result<ExitCode, Error> {
             advice: "of what stands still there is no step, and of one body no distance: choose another question or case".into(),
         });
     }
-    super::report(&args.report, &all, text::text, write)
+    let is_chosen = |case: &str, question: &str| args.has(case, question);
+    let faults = earlier.map_or(Vec::new(), |earlier| compare(&mut all, &earlier, is_chosen));
+    let done = super::report(&args.report, &all, text::text, write)?;
+    faults.into_iter().next().map_or(Ok(done), Err)
 }
 
 /// Writes the figures into a folder; the file's name.
@@ -76,4 +90,29 @@ fn write(all: &Figures, folder: &Path) -> Result<Vec<String>, Error> {
     let path = folder.join(file::NAME);
     put(&path, &file::csv(all).map_err(|e| failed(&path, &e))?)?;
     Ok(vec![file::NAME.into()])
+}
+
+/// Refuses an earlier file that has nothing of what will be measured: such a check would always hold.
+fn comparable(args: &BenchArgs, chosen: &[cases::Chosen], earlier: &Earlier) -> Result<(), Error> {
+    let has = |name: &str| cases::questions(args).any(|of| earlier.of(name, of.name()).is_some());
+    if chosen.iter().any(|case| has(&case.name)) {
+        return Ok(());
+    }
+    Err(Error::Choice {
+        what: format!("--against would do nothing: {} has none of what is asked", earlier.file),
+        advice: "give a file of the same cases and questions, or leave it out".into(),
+    })
+}
+
+/// Refuses to write over the earlier file: what it says would be lost with the fault that it shows.
+fn keeps(args: &BenchArgs) -> Result<(), Error> {
+    let (Some(out), Some(earlier)) = (&args.report.out, &args.against) else { return Ok(()) };
+    let [to, from] = [&out.join(file::NAME), earlier].map(|path| path.canonicalize().ok());
+    if to.is_none() || to != from {
+        return Ok(());
+    }
+    Err(Error::Choice {
+        what: format!("--out would write over {}, which --against reads", earlier.display()),
+        advice: "give another folder, and replace the file when its successor is as it should be".into(),
+    })
 }

@@ -104,7 +104,11 @@ pub fn read(path: &Path) -> Result<Vec<Described>, Error> {
     Ok(all)
 }
 
-fn text(path: &Path) -> Result<String, Error> {
+/// A regular file's text.
+///
+/// # Errors
+/// [`Error::Input`] with the system's text; [`Error::OutOfMemory`].
+pub fn text(path: &Path) -> Result<String, Error> {
     let unreadable = |reason: String| {
         let file = path.display().to_string();
         Error::Input { file, problem: Problem::Unreadable { reason } }

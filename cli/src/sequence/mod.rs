@@ -3,6 +3,8 @@
 mod file;
 pub mod steps;
 
+pub use file::text as read_text;
+
 use crate::args::DetectArgs;
 use crate::output::say;
 use file::{Described, wrong};

@@ -1,6 +1,6 @@
-//! `bench`: cases and files.
+//! `bench`: cases, files and ratios; and that planted faults show.
 
-use super::{Folder, ok, refused};
+use super::{Folder, err, ok, out, refused, run};
 use serde_json::Value;
 
 const HEAD: &str = "machine,threads,version,case,triangles,bodies,question,stage,frames,\
@@ -8,6 +8,9 @@ const HEAD: &str = "machine,threads,version,case,triangles,bodies,question,stage
 const STAGES: [&str; 10] =
     ["place", "construct", "fit", "refit", "traverse", "balance", "narrow", "order", "total", "wall"];
 const QUESTIONS: [&str; 5] = ["discrete", "continuous", "separation", "earliest", "near"];
+
+/// Columns and their values.
+type Cells<'a> = &'a [(&'a str, &'a str)];
 
 /// A case of some triangles, and a first file of its figures.
 struct Tiny {
@@ -37,6 +40,33 @@ impl Tiny {
         let text = self.folder.read("first/bench.csv");
         text.lines().map(|line| line.split(',').map(str::to_owned).collect()).collect()
     }
+
+    /// The first file's path, with other cells in the rows that have such ones.
+    fn planted(&self, of: Cells, to: Cells) -> String {
+        let mut rows = self.rows();
+        let at = |column: &str| HEAD.split(',').position(|head| head == column).expect("a column");
+        let mut planted = 0;
+        for row in &mut rows[1..] {
+            if of.iter().all(|(column, value)| row[at(column)] == *value) {
+                to.iter().for_each(|(column, value)| row[at(column)] = (*value).to_owned());
+                planted += 1;
+            }
+        }
+        assert!(planted > 0, "{of:?}");
+        let text: String = rows.iter().map(|row| row.join(",") + "\n").collect();
+        self.folder.write("planted.csv", &text)
+    }
+
+    /// What is printed, and what is said, where a comparison ends with status 4.
+    fn fault(&self, more: &[&str]) -> [String; 2] {
+        let output = run(&self.args(more));
+        assert_eq!(output.status.code(), Some(4), "{more:?}: {}", err(&output));
+        [out(&output), err(&output)]
+    }
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value}"))
 }
 
 #[test]
@@ -69,6 +99,130 @@ fn a_case_is_timed_stage_by_stage() {
 }
 
 #[test]
+fn the_same_again_has_ratios_and_no_fault() {
+    let tiny = Tiny::new("bench-again");
+    let args = tiny.args(&["--against", &tiny.first]);
+    let json = ok(&[&args[..], &["--json"]].concat());
+    let all: Value = serde_json::from_str(&json).expect("JSON");
+    let cases = all["cases"].as_array().expect("rows");
+    assert_eq!(cases.len(), QUESTIONS.len());
+    for case in cases {
+        assert_eq!(case["hash"], case["earlier_hash"], "{case}");
+        for times in case["stages"].as_array().expect("rows") {
+            let [now, earlier] = ["median_ms", "earlier_ms"].map(|key| number(&times[key]));
+            match times["ratio"].as_f64() {
+                Some(ratio) => assert!((ratio * earlier - now).abs() <= 1e-9 * now, "{times}"),
+                None => assert_eq!(earlier, 0.0, "{times}"),
+            }
+        }
+    }
+    let against = &all["against"];
+    assert_eq!((&against["is_other_machine"], &against["machine"]), (&false.into(), &all["machine"]));
+    for empty in ["faults", "only_now", "only_earlier"] {
+        assert_eq!(against[empty], serde_json::json!([]), "{empty}");
+    }
+    let text = ok(&args);
+    assert!(text.contains("  now/earlier ") && text.contains("every answer that is in both"), "{text}");
+}
+
+#[test]
+fn another_answer_is_a_fault() {
+    let tiny = Tiny::new("bench-answer");
+    let now = &tiny.rows()[1][15];
+    let planted = tiny.planted(&[("question", "discrete")], &[("hash", "0123456789abcdef")]);
+    let [printed, said] = tiny.fault(&["--against", &planted]);
+    let fault = format!("soup-moving_t0, discrete: the answer has the hash {now}, and in ");
+    assert!(said.contains(&fault) && said.contains("planted.csv 0123456789abcdef; "), "{said}");
+    assert!(printed.contains(&format!("FAULT {fault}")) && printed.contains("wall"), "{printed}");
+    let [printed, _] = tiny.fault(&["--against", &planted, "--json"]);
+    let all: Value = serde_json::from_str(&printed).expect("JSON");
+    assert_eq!(all["against"]["faults"].as_array().map(Vec::len), Some(1), "{printed}");
+    // All else is as it was.
+    ok(&tiny.args(&["--against", &planted, "--question", "near"]));
+}
+
+#[test]
+fn what_only_one_has_is_told() {
+    let tiny = Tiny::new("bench-only");
+    let planted = tiny.planted(&[("question", "near")], &[("question", "far")]);
+    let against = tiny.args(&["--against", &planted]);
+    let text = ok(&against);
+    assert!(text.contains("planted.csv: soup-moving_t0, near\n") && text.contains("not in "), "{text}");
+    assert!(text.contains("planted.csv: soup-moving_t0, far\n") && text.contains("only in "), "{text}");
+    // What is not chosen is not missed.
+    let text = ok(&[&against[..], &["--question", "discrete"]].concat());
+    assert!(!text.contains("only in ") && !text.contains("not in "), "{text}");
+    // A file that has nothing of what is asked would pass whatever it says.
+    let near = [&against[..], &["--question", "near"]].concat();
+    assert!(refused(2, &near).contains("--against would do nothing"));
+    tiny.planted(&[("question", "near")], &[("case", "gone")]);
+    assert!(!ok(&against).contains("gone"));
+    tiny.planted(&[], &[("case", "gone")]);
+    assert!(refused(2, &against).contains("--against would do nothing"));
+}
+
+#[test]
+fn another_machine_is_said() {
+    let tiny = Tiny::new("bench-machine");
+    for cells in [("machine", "An Abacus"), ("threads", "3"), ("threads", "")] {
+        let planted = tiny.planted(&[], &[cells]);
+        let text = ok(&tiny.args(&["--against", &planted]));
+        assert!(text.contains("another machine") && text.contains("now/earlier"), "{text}");
+    }
+}
+
+#[test]
+fn a_file_that_is_not_one_is_named_with_its_line() {
+    let tiny = Tiny::new("bench-malformed");
+    let first: Cells = &[("question", "discrete"), ("stage", "construct")];
+    let malformed = |cells: Cells, part: &str| {
+        let planted = tiny.planted(first, cells);
+        let said = refused(3, &tiny.args(&["--against", &planted]));
+        assert!(said.contains("planted.csv: line 3: ") && said.contains(part), "{cells:?}: {said}");
+        assert!(said.contains("; mend it, or measure anew"), "{said}");
+    };
+    malformed(&[("median_ms", "fast")], "median_ms is \"fast\", and must be a number from 0");
+    malformed(&[("triangles", "-1")], "triangles is \"-1\"");
+    malformed(&[("threads", "two")], "threads is \"two\"");
+    malformed(&[("bytes", "")], "bytes is \"\"");
+    malformed(&[("median_ms", "NaN")], "median_ms is NaN");
+    malformed(&[("high_ms", "inf")], "high_ms is inf");
+    malformed(&[("low_ms", "-1")], "low_ms is -1");
+    malformed(&[("median_ms", "5"), ("low_ms", "6"), ("high_ms", "7")], "from low_ms, 6, to high_ms, 7");
+    malformed(&[("hash", "12")], "hash is \"12\"");
+    malformed(&[("hash", "0123456789abcdeg")], "sixteen hexadecimal digits");
+    malformed(&[("hash", "0123456789abcdef")], "hash of soup-moving_t0, discrete is 0123456789abcdef");
+    malformed(&[("machine", "An Abacus")], "An Abacus");
+    malformed(&[("version", "0.0.0")], "version 0.0.0");
+    malformed(&[("stage", "place")], "the stage place of soup-moving_t0, discrete");
+
+    let text = tiny.folder.read("first/bench.csv");
+    let whole = |text: &str, part: &str| {
+        let file = tiny.folder.write("whole.csv", text);
+        let said = refused(3, &tiny.args(&["--against", &file]));
+        assert!(said.contains("whole.csv: ") && said.contains(part), "{part}: {said}");
+    };
+    for column in HEAD.split(',') {
+        let renamed: Vec<&str> =
+            HEAD.split(',').map(|head| if head == column { "other" } else { head }).collect();
+        whole(&text.replacen(HEAD, &renamed.join(","), 1), &format!("line 1: has no column {column}; give"));
+    }
+    whole("", "has no column machine");
+    whole(&format!("{HEAD}\n"), "has no rows");
+    whole(&text.replacen(",place,", ",", 1), "line: 2");
+    for stage in ["total", "wall"] {
+        let other = text.replacen(&format!("near,{stage},"), "near,other,", 1);
+        whole(&other, &format!("has no row of soup-moving_t0, near for the stage {stage}"));
+    }
+    let missing = tiny.folder.path("no.csv");
+    assert!(refused(3, &tiny.args(&["--against", &missing])).contains("no.csv: cannot be read: "));
+    // A column and a stage more are passed over.
+    let more: String = text.lines().map(|line| format!("{line},more\n")).collect();
+    let more = tiny.folder.write("more.csv", &more.replace(",balance,", ",unbalance,"));
+    ok(&tiny.args(&["--against", &more]));
+}
+
+#[test]
 fn arguments_that_ask_nothing_are_refused() {
     let tiny = Tiny::new("bench-arguments");
     let [t0, t1] = &tiny.mesh;
@@ -84,6 +238,12 @@ fn arguments_that_ask_nothing_are_refused() {
     let cuda = ["bench", "--threads", "1", "--backend", "cuda"];
     assert!(refused(2, &cuda).contains("a GPU takes no CPU threads"));
     assert!(refused(2, &["bench", "--list", "--json"]).contains("--list"));
+    // The earlier file stays.
+    let before = tiny.folder.read("first/bench.csv");
+    let args = tiny.args(&["--against", &tiny.first, "--out"]);
+    let said = refused(2, &[&args[..], &[&tiny.folder.path("first")]].concat());
+    assert!(said.contains("--out would write over ") && said.contains("first/bench.csv"), "{said}");
+    assert_eq!(tiny.folder.read("first/bench.csv"), before);
     assert!(refused(3, &["bench", "--case", "no", "--mesh", "no.ply"]).contains("no.ply"));
     assert!(refused(4, &tiny.args(&["--out", &tiny.first])).contains("cannot be written"));
 }

@@ -1,0 +1,68 @@
+//! Figures beside earlier ones.
+
+use super::Figures;
+use super::file::{Earlier, EarlierCase};
+use super::machine::Machine;
+use super::measure::{Measured, called};
+use nearmiss::error::Error;
+use serde::Serialize;
+
+/// What an earlier file was, and what is not as it says.
+#[derive(Debug, Serialize)]
+pub struct Against {
+    /// The file.
+    pub file: String,
+    /// Its machine.
+    #[serde(flatten)]
+    pub machine: Machine,
+    /// Its version of nearmiss.
+    pub version: String,
+    /// Whether its machine is another: then a ratio compares machines, too.
+    pub is_other_machine: bool,
+    /// Questions of cases that the file has not.
+    pub only_now: Vec<String>,
+    /// Questions of cases that it alone has, of those that were chosen.
+    pub only_earlier: Vec<String>,
+    /// Answers that are others than in the file.
+    pub faults: Vec<String>,
+}
+
+/// Puts the earlier times beside the figures; the faults. What the file has of all that is not `chosen`, by case
+/// and question, is not missed.
+pub fn compare(all: &mut Figures, earlier: &Earlier, chosen: impl Fn(&str, &str) -> bool) -> Vec<Error> {
+    let (mut other, mut only_now) = (Vec::new(), Vec::new());
+    for now in &mut all.cases {
+        let Some(then) = earlier.of(&now.case, now.question) else {
+            only_now.push(now.called());
+            continue;
+        };
+        now.earlier_hash = Some(then.hash.clone());
+        for times in &mut now.stages {
+            times.earlier_ms = then.ms.get(times.stage).copied();
+            times.ratio = times.earlier_ms.filter(|ms| *ms > 0.0).map(|ms| times.median_ms / ms);
+        }
+        other.extend(other_answer(now, (&then.hash, &earlier.file)));
+    }
+    let is_here =
+        |of: &EarlierCase| all.cases.iter().any(|now| now.case == of.case && now.question == of.question);
+    let gone = earlier.cases.iter().filter(|of| chosen(&of.case, &of.question) && !is_here(of));
+    let only_earlier = gone.map(|of| called(&of.case, &of.question)).collect();
+    all.against = Some(Against {
+        file: earlier.file.clone(),
+        machine: earlier.machine.clone(),
+        version: earlier.version.clone(),
+        is_other_machine: all.machine != earlier.machine,
+        only_now,
+        only_earlier,
+        faults: other.iter().map(Error::to_string).collect(),
+    });
+    other
+}
+
+fn other_answer(now: &Measured, (hash, file): (&str, &str)) -> Option<Error> {
+    (now.hash != hash).then(|| Error::Device {
+        what: now.called(),
+        text: format!("the answer has the hash {}, and in {file} {hash}", now.hash),
+        advice: "find the change that made it; if it is meant, or the mesh is another, measure anew",
+    })
+}
