@@ -1,6 +1,6 @@
 //! What `bench` takes.
 
-use super::number::whole;
+use super::number::{above_zero, whole};
 use super::{MachineArgs, ReportArgs};
 use crate::bench::{GENERATED, Question};
 use clap::{ArgMatches, Args};
@@ -25,6 +25,10 @@ pub struct BenchArgs {
     /// A bench.csv from before: its times are printed beside the new ones, and an answer that is another than in it is an error.
     #[arg(long, value_name = "FILE")]
     pub against: Option<PathBuf>,
+    /// It is an error, too, where a frame or the wait for it takes more than this many times the earlier median. For a file of
+    /// the same machine.
+    #[arg(long, value_name = "RATIO", requires = "against", allow_hyphen_values = true, value_parser = above_zero())]
+    pub limit: Option<f64>,
     /// Print what the cases are, and do nothing else.
     #[arg(long, exclusive = true)]
     pub list: bool,

@@ -16,6 +16,14 @@ where
     })
 }
 
+/// A finite number above 0.
+pub fn above_zero() -> impl TypedValueParser<Value = f64> {
+    StringValueParser::new().try_map(|text: String| {
+        let number = text.parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite());
+        number.ok_or("give a number above 0")
+    })
+}
+
 /// A number of things, at least one.
 pub fn some<T>() -> impl TypedValueParser<Value = T>
 where

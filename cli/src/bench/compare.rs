@@ -3,7 +3,7 @@
 use super::Figures;
 use super::file::{Earlier, EarlierCase};
 use super::machine::Machine;
-use super::measure::{Measured, called};
+use super::measure::{Measured, TOTAL, WALL, called};
 use nearmiss::error::Error;
 use serde::Serialize;
 
@@ -23,14 +23,33 @@ pub struct Against {
     pub only_now: Vec<String>,
     /// Questions of cases that it alone has, of those that were chosen.
     pub only_earlier: Vec<String>,
-    /// Answers that are others than in the file.
+    /// Answers that are others than in the file, and what takes longer than the limit allows.
     pub faults: Vec<String>,
 }
 
-/// Puts the earlier times beside the figures; the faults. What the file has of all that is not `chosen`, by case
-/// and question, is not missed.
-pub fn compare(all: &mut Figures, earlier: &Earlier, chosen: impl Fn(&str, &str) -> bool) -> Vec<Error> {
-    let (mut other, mut only_now) = (Vec::new(), Vec::new());
+/// Whether the figures of another machine may have a limit: they may not.
+///
+/// # Errors
+/// [`Error::Choice`] naming both machines.
+pub fn may_limit(now: &Machine, earlier: &Earlier) -> Result<(), Error> {
+    if *now == earlier.machine {
+        return Ok(());
+    }
+    Err(Error::Choice {
+        what: format!("--limit with {}, which is of {}: this is {now}", earlier.file, earlier.machine),
+        advice: "leave it out, or give --against a file of this machine with as many threads".into(),
+    })
+}
+
+/// Puts the earlier times beside the figures; the faults, answers first. What the file has of all that is not `chosen`, by case
+/// and question, is not missed. A frame, or the wait for it, is too slow where it takes more than `limit` times the earlier.
+pub fn compare(
+    all: &mut Figures,
+    earlier: &Earlier,
+    chosen: impl Fn(&str, &str) -> bool,
+    limit: Option<f64>,
+) -> Vec<Error> {
+    let (mut other, mut slow, mut only_now) = (Vec::new(), Vec::new(), Vec::new());
     for now in &mut all.cases {
         let Some(then) = earlier.of(&now.case, now.question) else {
             only_now.push(now.called());
@@ -42,11 +61,13 @@ pub fn compare(all: &mut Figures, earlier: &Earlier, chosen: impl Fn(&str, &str)
             times.ratio = times.earlier_ms.filter(|ms| *ms > 0.0).map(|ms| times.median_ms / ms);
         }
         other.extend(other_answer(now, (&then.hash, &earlier.file)));
+        slow.extend(limit.and_then(|limit| too_slow(now, limit, &earlier.file)));
     }
     let is_here =
         |of: &EarlierCase| all.cases.iter().any(|now| now.case == of.case && now.question == of.question);
     let gone = earlier.cases.iter().filter(|of| chosen(&of.case, &of.question) && !is_here(of));
     let only_earlier = gone.map(|of| called(&of.case, &of.question)).collect();
+    other.extend(slow);
     all.against = Some(Against {
         file: earlier.file.clone(),
         machine: earlier.machine.clone(),
@@ -64,5 +85,24 @@ fn other_answer(now: &Measured, (hash, file): (&str, &str)) -> Option<Error> {
         what: now.called(),
         text: format!("the answer has the hash {}, and in {file} {hash}", now.hash),
         advice: "find the change that made it; if it is meant, or the mesh is another, measure anew",
+    })
+}
+
+fn too_slow(now: &Measured, limit: f64, file: &str) -> Option<Error> {
+    let is_slow = |ms: f64, earlier: f64| ms > limit * earlier;
+    let of = |name| now.stages.iter().find(|times| times.stage == name);
+    let times = [TOTAL, WALL]
+        .into_iter()
+        .filter_map(of)
+        .find(|times| times.earlier_ms.is_some_and(|earlier| is_slow(times.median_ms, earlier)))?;
+    Some(Error::Device {
+        what: now.called(),
+        text: format!(
+            "{} takes {} ms, and in {file} {} ms: more than {limit} times as long",
+            times.stage,
+            times.median_ms,
+            times.earlier_ms.unwrap_or(0.0)
+        ),
+        advice: "ask again when nothing else runs; then look for the change by its stages",
     })
 }

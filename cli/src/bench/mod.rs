@@ -14,7 +14,7 @@ pub use question::Question;
 use crate::args::BenchArgs;
 use crate::output;
 use crate::progress::during;
-use compare::{Against, compare};
+use compare::{Against, compare, may_limit};
 use file::Earlier;
 use machine::Machine;
 use measure::{Measured, measure};
@@ -45,7 +45,8 @@ pub struct Figures {
 ///
 /// # Errors
 /// [`Error::Choice`] for what cannot be compared, [`Error::Input`] for an earlier file that cannot be used, both before anything is
-/// measured; [`Error::Device`] for the first answer that is another than in that file; those of the device.
+/// measured; [`Error::Device`] for the first answer that is another than in that file, or frame that takes too long; those of
+/// the device.
 pub fn bench(args: &BenchArgs) -> Result<ExitCode, Error> {
     if args.list {
         let line = |of: &cases::Generated| format!("{:<12}{}\n", of.name, of.about);
@@ -61,6 +62,7 @@ pub fn bench(args: &BenchArgs) -> Result<ExitCode, Error> {
     let machine = Machine::of(&device, threads);
     if let Some(earlier) = &earlier {
         comparable(args, &chosen, earlier)?;
+        args.limit.map_or(Ok(()), |_| may_limit(&machine, earlier))?;
         keeps(args)?;
     }
     let (version, frames) = (env!("CARGO_PKG_VERSION"), args.repeat);
@@ -80,7 +82,7 @@ pub fn bench(args: &BenchArgs) -> Result<ExitCode, Error> {
         });
     }
     let is_chosen = |case: &str, question: &str| args.has(case, question);
-    let faults = earlier.map_or(Vec::new(), |earlier| compare(&mut all, &earlier, is_chosen));
+    let faults = earlier.map_or(Vec::new(), |earlier| compare(&mut all, &earlier, is_chosen, args.limit));
     let done = super::report(&args.report, &all, text::text, write)?;
     faults.into_iter().next().map_or(Ok(done), Err)
 }

@@ -101,7 +101,7 @@ fn a_case_is_timed_stage_by_stage() {
 #[test]
 fn the_same_again_has_ratios_and_no_fault() {
     let tiny = Tiny::new("bench-again");
-    let args = tiny.args(&["--against", &tiny.first]);
+    let args = tiny.args(&["--against", &tiny.first, "--limit", "1e9"]);
     let json = ok(&[&args[..], &["--json"]].concat());
     let all: Value = serde_json::from_str(&json).expect("JSON");
     let cases = all["cases"].as_array().expect("rows");
@@ -142,6 +142,29 @@ fn another_answer_is_a_fault() {
 }
 
 #[test]
+fn a_frame_that_takes_too_long_is_a_fault() {
+    let tiny = Tiny::new("bench-limit");
+    for stage in ["total", "wall"] {
+        for short in ["0.000001", "0"] {
+            let cells = [("median_ms", short), ("low_ms", "0")];
+            let planted = tiny.planted(&[("question", "earliest"), ("stage", stage)], &cells);
+            let [printed, said] = tiny.fault(&["--against", &planted, "--limit", "100"]);
+            assert!(said.contains(&format!("soup-moving_t0, earliest: {stage} takes ")), "{said}");
+            assert!(
+                said.contains(&format!("planted.csv {short} ms: more than 100 times as long; ")),
+                "{said}"
+            );
+            assert!(printed.matches("FAULT ").count() == 1, "{printed}");
+            // Told, and no fault without a limit.
+            assert!(ok(&tiny.args(&["--against", &planted])).contains("now/earlier"));
+        }
+    }
+    // Of a stage alone there is no limit.
+    let planted = tiny.planted(&[("stage", "fit")], &[("median_ms", "0.000001"), ("low_ms", "0")]);
+    ok(&tiny.args(&["--against", &planted, "--limit", "100"]));
+}
+
+#[test]
 fn what_only_one_has_is_told() {
     let tiny = Tiny::new("bench-only");
     let planted = tiny.planted(&[("question", "near")], &[("question", "far")]);
@@ -162,12 +185,15 @@ fn what_only_one_has_is_told() {
 }
 
 #[test]
-fn another_machine_is_said() {
+fn another_machine_is_said_and_has_no_limit() {
     let tiny = Tiny::new("bench-machine");
     for cells in [("machine", "An Abacus"), ("threads", "3"), ("threads", "")] {
         let planted = tiny.planted(&[], &[cells]);
         let text = ok(&tiny.args(&["--against", &planted]));
         assert!(text.contains("another machine") && text.contains("now/earlier"), "{text}");
+        let said = refused(2, &tiny.args(&["--against", &planted, "--limit", "2"]));
+        assert!(said.contains("--limit with ") && said.contains("; leave it out, or give"), "{said}");
+        assert!(said.contains(if cells.1.is_empty() { "planted.csv" } else { cells.1 }), "{said}");
     }
 }
 
@@ -235,6 +261,11 @@ fn arguments_that_ask_nothing_are_refused() {
     assert!(refused(2, &["bench", "--mesh", t0, t1, t1]).contains("error: "));
     assert!(refused(2, &["bench", "--question", "why"]).contains("separation"));
     assert!(refused(2, &tiny.args(&["--question", "distance"])).contains("no case can be asked that"));
+    assert!(refused(2, &["bench", "--limit", "2"]).contains("--against"));
+    for limit in ["0", "-1", "NaN", "inf", "twice"] {
+        let said = refused(2, &tiny.args(&["--against", &tiny.first, "--limit", limit]));
+        assert!(said.contains("give a number above 0"), "{limit}: {said}");
+    }
     let cuda = ["bench", "--threads", "1", "--backend", "cuda"];
     assert!(refused(2, &cuda).contains("a GPU takes no CPU threads"));
     assert!(refused(2, &["bench", "--list", "--json"]).contains("--list"));
