@@ -22,7 +22,7 @@ use output::{print, say};
 use std::path::Path;
 use std::process::ExitCode;
 
-/// 0 done (contacts or not), 2 bad arguments, 3 bad input, 4 device, memory or output.
+/// 0 done (contacts or not), 2 bad arguments, 3 bad input, 4 device, memory or output, and a check that fails.
 fn main() -> ExitCode {
     let done = match args::parse() {
         Ok(Ok(command)) => run(command),
