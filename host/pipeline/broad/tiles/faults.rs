@@ -9,6 +9,9 @@ use crate::scene::Meets;
 use nearmiss_kernels::abi::{LEAF, Point, Positions};
 use nearmiss_kernels::bv::Aabb;
 
+/// Something that is done to sound tiles.
+type Fault = fn(&mut Tiles<Aabb>);
+
 /// What the checker says of tiles over three bodies, one of them static, after `fault`.
 fn checked(fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), Error> {
     let device = Device::emulator(Emulator::new(Mode::Engine, None)?);
@@ -55,7 +58,7 @@ fn sound_tiles_pass() {
 
 #[test]
 fn every_fault_is_named() {
-    let faults: [(&str, fn(&mut Tiles<Aabb>)); 12] = [
+    let faults: [(&str, Fault); 12] = [
         ("Fit { node: 40 }", |tiles| change(&mut tiles.leaves, 40, |node| node.link = LEAF | 3)),
         ("Leaf { leaf: 41 }", |tiles| change(&mut tiles.leaves, 41, |node| node.last = 3)),
         ("Leaf { leaf: 42 }", |tiles| change(&mut tiles.leaves, 42, |node| node.link &= !LEAF)),

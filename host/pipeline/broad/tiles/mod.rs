@@ -86,7 +86,7 @@ impl<V: Kernels> Tiles<V> {
 
     /// Whose triangles lie below each node of a part, once they are in order.
     fn filter(&self, device: &Device, part: usize, triangles: Span<u64>) -> Result<(), Error> {
-        if self.filters.len() == 0 {
+        if self.filters.is_empty() {
             return Ok(());
         }
         for level in 0..self.levels.count {
