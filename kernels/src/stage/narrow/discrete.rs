@@ -145,14 +145,18 @@ fn decide<R: Real, B: Block>(
     which: impl Fn(&B::Lane) -> Option<[u32; 2]>,
 ) {
     b.phase(|l| {
-        let Some([p, q]) = which(l) else { return verdicts.set(l, Pair::default(), Some(false)) };
-        let faces = [l.read(a.faces, p), l.read(a.faces, q)];
-        let verdict = if beyond_shared(a, faces[0], faces[1]) {
-            None
-        } else {
-            meets::<R, Filter>(&corners(l, a, faces[0]), &corners(l, a, faces[1]))
-        };
-        verdicts.set(l, Pair { a: p, b: q }, verdict);
+        let told = which(l).map(|[p, q]| {
+            let faces = [l.read(a.faces, p), l.read(a.faces, q)];
+            let verdict = if beyond_shared(a, faces[0], faces[1]) {
+                None
+            } else {
+                meets::<R, Filter>(&corners(l, a, faces[0]), &corners(l, a, faces[1]))
+            };
+            (Pair { a: p, b: q }, verdict)
+        });
+        let (pair, verdict) = told.unwrap_or((Pair::default(), Some(false)));
+        verdicts.set(l, pair, verdict);
+        l.meet();
     });
     verdicts.sort_out(b, a);
 }
