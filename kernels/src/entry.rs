@@ -286,8 +286,8 @@ kernels! {
     narrow_filter_f32: discrete::filter::<f32, B>, [DiscreteArgs<f32>], WIDE, discrete::shared_bytes(WIDE);
     narrow_filter_f64: discrete::filter::<f64, B>, [DiscreteArgs<f64>], WIDE, discrete::shared_bytes(WIDE);
     narrow_wide_f32: discrete::wide, [DiscreteArgs<f32>], NARROW, 0;
-    narrow_exact_f32: discrete::exact::<f32, B>, [DiscreteArgs<f32>], NARROW, 0;
-    narrow_exact_f64: discrete::exact::<f64, B>, [DiscreteArgs<f64>], NARROW, 0;
+    narrow_exact_f32: discrete::exact::<f32, B>, [DiscreteArgs<f32>], NARROW, discrete::EXACT_SHARED;
+    narrow_exact_f64: discrete::exact::<f64, B>, [DiscreteArgs<f64>], NARROW, discrete::EXACT_SHARED;
     narrow_features_f32: features::features::<f32, Moves, B>, [FeaturesArgs<f32>], NARROW, features::shared_bytes(NARROW);
     narrow_features_f64: features::features::<f64, Moves, B>, [FeaturesArgs<f64>], NARROW, features::shared_bytes(NARROW);
     narrow_features_at_rest_f32: features::features::<f32, Rests, B>, [FeaturesArgs<f32>], NARROW, features::shared_bytes(NARROW);

@@ -3,7 +3,9 @@
 use crate::{ORDERS, anywhere, corners, on_grid, random, seen};
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::moller::moller;
-use nearmiss_kernels::prim::tri_tri::{Certain, Exact, Filter, Signs, Wide, meets, meets_exactly};
+use nearmiss_kernels::prim::tri_tri::{
+    Certain, Exact, Filter, SIGNS, Signs, Wide, decided, meets, meets_exactly, sign,
+};
 use nearmiss_lab::oracle::{Triangle, triangles_meet};
 use rand::Rng;
 
@@ -32,9 +34,35 @@ fn in_order<R: Real>(p: &Triangle, q: &Triangle, order: usize, truth: bool) {
         assert_eq!(meets::<R, Exact>(&a, &b), Some(truth), "{}", what());
         assert_eq!(meets::<R, Certain>(&a, &b), Some(truth), "{}", what());
         assert_eq!(meets_exactly(&a, &b), truth, "{}", what());
+        let signs = all_signs(&a, &b);
+        let in_a_plane = signs[..6] == [0; 6];
+        assert_eq!(decided(&signs), (!in_a_plane).then_some(truth), "{}", what());
         assert!(meets::<R, Filter>(&a, &b).is_none_or(|x| x == truth), "{}", what());
         assert!(meets::<R, Wide>(&a, &b).is_none_or(|x| x == truth), "{}", what());
     }
+}
+
+/// The exact signs of two triangles, each by itself.
+fn all_signs<R: Real>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> [i32; SIGNS as usize] {
+    std::array::from_fn(|which| sign::<R, Exact>(p, q, which as u32).expect("the exact sign"))
+}
+
+/// Each of the signs matters: with any one of them turned, some pair is told the other answer.
+#[test]
+fn a_sign_that_is_turned_is_noticed() {
+    let mut r = random(6);
+    let mut noticed = [0; SIGNS as usize];
+    for _ in 0..400 {
+        let (p, q) = (corners::<f32>(&on_grid(&mut r, 4)), corners::<f32>(&on_grid(&mut r, 4)));
+        let signs = all_signs(&p, &q);
+        for (which, noticed) in noticed.iter_mut().enumerate() {
+            let mut turned = signs;
+            turned[which] = -turned[which];
+            *noticed += (decided(&turned) != decided(&signs)) as u32;
+        }
+    }
+    println!("of 400 pairs, told another answer by sign: {noticed:?}");
+    assert!(noticed.iter().all(|&n| n > 4), "{noticed:?}");
 }
 
 #[test]

@@ -39,6 +39,46 @@ pub fn parted<R: Real>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> bool {
     Plane::through(p[0], p[1], p[2]).beside(q) | Plane::through(q[0], q[1], q[2]).beside(p)
 }
 
+/// The signs that decide two triangles, unless they lie in one plane: of `q`'s corners about `p`'s plane, of `p`'s about `q`'s, and of each
+/// edge of `p` about each of `q`. They do not depend on each other: lanes can work them out side by side.
+pub const SIGNS: u32 = 15;
+
+/// Sign number `which` of those of [`SIGNS`].
+#[inline]
+pub fn sign<R: Real, S: Signs<R>>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3], which: u32) -> Option<i32> {
+    let at = |t: &[Vec3<R>; 3], i: u32| t[i as usize % 3];
+    let (i, k) = (which / 3, which % 3);
+    let [a, b, c, d] = match i {
+        0 => [p[0], p[1], p[2], at(q, k)],
+        1 => [q[0], q[1], q[2], at(p, k)],
+        _ => [at(p, i - 2), at(p, i - 1), at(q, k), at(q, k + 1)],
+    };
+    S::orient3d(a, b, c, d)
+}
+
+/// What [`meets`] says of triangles with these signs, in the order of [`sign`]; `None` where it asks whether they meet in a plane.
+pub fn decided(signs: &[i32; SIGNS as usize]) -> Option<bool> {
+    let of = |i: usize| [signs[3 * i], signs[3 * i + 1], signs[3 * i + 2]];
+    let (q_of_p, p_of_q) = (of(0), of(1));
+    let one_side = |s: [i32; 3]| s[0] != 0 && s[0] == s[1] && s[1] == s[2];
+    if one_side(q_of_p) || one_side(p_of_q) {
+        return Some(false);
+    }
+    let (p_proper, q_proper) = (q_of_p != [0; 3], p_of_q != [0; 3]);
+    if !p_proper && !q_proper {
+        return None;
+    }
+    // An edge about another is the other about it: two exchanges of corners.
+    let stabs = |edge: [i32; 3]| !(edge.contains(&-1) && edge.contains(&1));
+    let leaves = |side: [i32; 3], i: usize| {
+        let (from, to) = (side[i], side[(i + 1) % 3]);
+        from * to <= 0 && (from, to) != (0, 0)
+    };
+    let of_p = |i: usize| leaves(p_of_q, i) && stabs(of(2 + i));
+    let of_q = |k: usize| leaves(q_of_p, k) && stabs([signs[6 + k], signs[9 + k], signs[12 + k]]);
+    Some((q_proper && (0..3).any(of_p)) || (p_proper && (0..3).any(of_q)))
+}
+
 /// The exact answer at the least cost on one core: filter, wider filter, integers, sign by sign.
 #[inline]
 pub fn meets_exactly<R: Real>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> bool {

@@ -17,7 +17,7 @@ use crate::exec::{Block, Lane, OPEN, RowMap, Slot};
 use crate::math::{Real, Vec3};
 use crate::prim::adjacent::{Shared, meets_beyond_shared};
 use crate::prim::moller;
-use crate::prim::tri_tri::{Certain, Filter, Wide, meets, parted};
+use crate::prim::tri_tri::{self, Certain, Filter, SIGNS, Wide, meets, parted};
 use core::marker::PhantomData;
 
 /// The corners of a triangle.
@@ -190,15 +190,66 @@ fn beyond(p: [Vec3<f32>; 3], q: [Vec3<f32>; 3], shared: Shared) -> Option<bool> 
     meets_beyond_shared::<f32, Wide>(&p, &q, shared)
 }
 
-/// Exact signs, for what the filters left undecided.
+/// Pairs that a block of `exact` looks at together.
+const TOGETHER: u32 = 4;
+/// Lanes of a pair: as many as signs, and one that waits.
+pub const LANES_A_PAIR: u32 = SIGNS.next_power_of_two();
+/// Shared memory of `exact`: signs.
+pub const EXACT_SHARED: u32 = 4 * TOGETHER * LANES_A_PAIR;
+
+/// Exact signs, for what the filters left undecided: each some thousand operations, one after the other.
 pub fn exact<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
     let count = a.pairs.listed(b);
-    append_each(b, count, a.contacts, |l, i| {
-        let pair = a.pairs.get(l, i);
-        let (p, q) = (l.read(a.faces, pair.a), l.read(a.faces, pair.b));
-        let shared = Shared::by_index(p, q);
-        let verdict = meets_beyond_shared::<R, Certain>(&corners(l, a, p), &corners(l, a, q), shared);
-        // `Certain` always answers; were it not to, the pair stays.
-        (verdict != Some(false)).then_some(pair)
+    if a.flags.has(DiscreteFlags::KEEP_ADJACENT) || count > b.blocks() * TOGETHER {
+        append_each(b, count, a.contacts, |l, i| {
+            let (pair, [p, q], shared) = given(l, a, i);
+            // `Certain` always answers; were it not to, the pair stays.
+            (meets_beyond_shared::<R, Certain>(&p, &q, shared) != Some(false)).then_some(pair)
+        });
+    } else {
+        exact_of_few(b, a, count);
+    }
+}
+
+/// The same of so few pairs that a lane works out one sign. One lane of each pair decides; it asks for more where the triangles lie in
+/// one plane.
+fn exact_of_few<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>, count: u32) {
+    let lanes = b.lanes();
+    let signs = b.shared::<u32>(TOGETHER * LANES_A_PAIR);
+    let base = (b.block() * TOGETHER).min(count);
+    let some = TOGETHER.min(count - base);
+    b.phase(|l| {
+        let mut i = l.lane();
+        while i < some * LANES_A_PAIR {
+            let which = i % LANES_A_PAIR;
+            if which < SIGNS {
+                let (_, [p, q], _) = given(l, a, base + i / LANES_A_PAIR);
+                let sign = tri_tri::sign::<R, Certain>(&p, &q, which).unwrap_or(0);
+                l.put(signs, i, (sign + 1) as u32);
+            }
+            i += lanes;
+        }
+        l.meet();
     });
+    b.phase(|l| {
+        let mut i = l.lane();
+        while i < some {
+            let (pair, [p, q], _) = given(l, a, base + i);
+            let sign = |k: usize| l.get(signs, i * LANES_A_PAIR + k as u32) as i32 - 1;
+            let verdict = tri_tri::decided(&core::array::from_fn(sign));
+            if verdict.or_else(|| meets::<R, Certain>(&p, &q)) != Some(false) {
+                a.contacts.push(l, pair);
+            }
+            i += lanes;
+        }
+        l.meet();
+    });
+}
+
+/// A pair, its corners, and what they share.
+#[inline(always)]
+fn given<R: Real, L: Lane>(l: &L, a: &DiscreteArgs<R>, i: u32) -> (Pair, [[Vec3<R>; 3]; 2], Shared) {
+    let pair = a.pairs.get(l, i);
+    let (p, q) = (l.read(a.faces, pair.a), l.read(a.faces, pair.b));
+    (pair, [corners(l, a, p), corners(l, a, q)], Shared::by_index(p, q))
 }
