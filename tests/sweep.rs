@@ -53,9 +53,9 @@ fn lost<R: Real>(seed: u64) -> usize {
         // A vertex over the face, and the first edges cross, wherever the step is.
         let (p, q) = (level(a, false), level(b, true));
         let vertex = [moving([0.5, 0.5], a), moving([9.0, 9.0], a), moving([9.0, 8.0], a)];
-        assert_ne!(meeting(&vertex, &q, R::ZERO) & 1, 0, "vertex and face at {heights:?}");
-        assert_ne!(meeting(&q, &vertex, R::ZERO) & 8, 0, "face and vertex at {heights:?}");
-        assert_ne!(meeting(&p, &q, R::ZERO) & 1 << 6, 0, "edges at {heights:?}");
+        assert_ne!(meeting(&vertex, &q, R::ZERO, R::ONE) & 1, 0, "vertex and face at {heights:?}");
+        assert_ne!(meeting(&q, &vertex, R::ZERO, R::ONE) & 8, 0, "face and vertex at {heights:?}");
+        assert_ne!(meeting(&p, &q, R::ZERO, R::ONE) & 1 << 6, 0, "edges at {heights:?}");
         lost += !ungrown(heights) as usize;
     }
     lost
@@ -76,7 +76,11 @@ fn features_within_the_gap_are_asked_and_beyond_are_not() {
         for (above, asked) in [(0.5, true), (1.0, true), (1.1, false)] {
             let z = [f64::of(above * gap); 2];
             let p = level(z, false);
-            assert_eq!(meeting(&p, &q, more::<f64>(gap)) & 1 << 6 != 0, asked, "{above} of a gap of {gap}");
+            assert_eq!(
+                meeting(&p, &q, more::<f64>(gap), 1.0) & 1 << 6 != 0,
+                asked,
+                "{above} of a gap of {gap}"
+            );
         }
     }
 }
@@ -86,12 +90,12 @@ fn what_is_apart_is_not_asked() {
     // The boxes of the triangles meet in the second half of the step; of the edges only the first two do.
     let p = level([4.0, -4.0], false);
     let q = level([0.0, 0.0], true);
-    assert_ne!(meeting(&p, &q, 0.0), 0);
+    assert_ne!(meeting(&p, &q, 0.0, 1.0), 0);
     let far = q.map(|c| Moving { t0: c.t0 + Vec3([0.0, 20.0, 0.0]), t1: c.t1 + Vec3([0.0, 20.0, 0.0]) });
-    assert_eq!(meeting(&p, &far, 0.0), 0);
+    assert_eq!(meeting(&p, &far, 0.0, 1.0), 0);
     let [x, y, z] = p;
     let lifted = [x, y, moving([-4.0, 8.0], [9.0, 9.0])];
-    let bits = meeting(&lifted, &q, 0.0);
+    let bits = meeting(&lifted, &q, 0.0, 1.0);
     assert_ne!(bits & 1 << 6, 0, "the first edges meet at a half");
-    assert_ne!(meeting(&[x, y, z], &q, 0.0) & 0b111, 0);
+    assert_ne!(meeting(&[x, y, z], &q, 0.0, 1.0) & 0b111, 0);
 }

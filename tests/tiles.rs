@@ -2,7 +2,7 @@
 
 mod support;
 
-use nearmiss::mesh::Body;
+use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Broad, Bv, Distance, Query, QueryKind, Refit, Search, Traversal};
 use nearmiss::scene::Scene;
 use nearmiss::{Contacts, Detector, Device};
@@ -157,4 +157,71 @@ fn tiles_are_chosen_unless_something_of_trees_is() {
     let nearest = Distance { search: Search { broad: Some(Broad::Tiles), ..Search::default() } };
     let error = Query::from(nearest).check().expect_err("a distance goes down a tree").to_string();
     assert!(error.contains("the nearest is sought down a tree"), "{error}");
+}
+
+/// Two sheets of 129 by 129 cells, each in a plane at the start; the upper one falls from 1 to `down`, and tilts by `tilt`.
+fn sheets(down: f32, tilt: f32) -> Body {
+    const CELLS: u32 = 129;
+    const ROW: u32 = CELLS + 1;
+    let cell = |i: u32| i / CELLS * ROW + i % CELLS;
+    let lower =
+        (0..CELLS * CELLS).map(cell).flat_map(|i| [[i, i + 1, i + ROW], [i + 1, i + ROW + 1, i + ROW]]);
+    let faces: Vec<_> = lower.clone().chain(lower.map(|face| face.map(|v| v + ROW * ROW))).collect();
+    let [t0, t1] = [(1.0, 0.0), (down, tilt)].map(|(height, tilt)| {
+        let point = |i: u32, aside: f32, height: f32| {
+            let [x, y] = [i % ROW, i / ROW].map(|i| i as f32 / CELLS as f32);
+            [x + aside, y + 0.7 * aside, height + if height == 0.0 { 0.0 } else { tilt * x }]
+        };
+        let lower = (0..ROW * ROW).map(|i| point(i, 0.0, 0.0));
+        let upper = (0..ROW * ROW).map(|i| point(i, 0.002, height));
+        Mesh::new("sheets", Positions::F32(lower.chain(upper).collect()), faces.clone()).expect("a mesh")
+    });
+    Body::moving(t0, t1).expect("a step")
+}
+
+/// Where there are many tiles some are asked first, and what they find leaves out what meets later: the answer is the first of all
+/// contacts, to the bit, and that of trees, which have no sample.
+#[test]
+fn a_sample_leaves_out_what_is_later_and_nothing_else() {
+    let soup = scene::soup(66_000, 5, true).expect("a soup");
+    let bodies = [
+        ("cloth", scene::draped(70_000).expect("cloth")),
+        ("a soup", soup),
+        ("flat", sheets(-0.7, 0.0)),
+        ("tilted", sheets(-0.7, 0.2)),
+    ];
+    for (name, body) in bodies {
+        let all = support::ask(engine(), vec![body.clone()], Query::continuous());
+        let scene = Scene::from(body);
+        let [tree, tiles] = both(&engine(), &scene, Query::earliest());
+        println!(
+            "{name}: {:?}, {} pairs of {}",
+            tiles.earliest_toi(),
+            tiles.triangle_pairs,
+            tree.triangle_pairs
+        );
+        assert!(all.earliest_toi().is_some(), "{name}");
+        assert_eq!(tiles.earliest_toi(), all.earliest_toi(), "{name}");
+        assert_eq!(tree.answer, tiles.answer, "{name}");
+        // All that is flat meets at once.
+        let fewer = tiles.triangle_pairs < tree.triangle_pairs;
+        assert!(fewer || name == "flat" && tiles.triangle_pairs == tree.triangle_pairs, "{name}");
+    }
+}
+
+/// What never meets has no first time, and nothing is left out.
+#[test]
+fn a_sample_without_contacts_bounds_nothing() {
+    let scene = Scene::from(sheets(0.3, 0.2));
+    let [tree, tiles] = both(&engine(), &scene, Query::earliest());
+    assert_eq!((tree.earliest_toi(), tiles.earliest_toi()), (None, None));
+    assert_eq!(tree.triangle_pairs, tiles.triangle_pairs);
+}
+
+#[test]
+#[ignore = "half a minute"]
+fn a_sample_leaves_no_lane_behind() {
+    let body = sheets(0.3, 0.2);
+    let truth = support::ask(engine(), vec![body.clone()], Query::earliest());
+    assert_eq!(support::ask(sanitizer(ORDERS[0]), vec![body], Query::earliest()).answer, truth.answer);
 }

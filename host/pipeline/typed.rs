@@ -13,7 +13,7 @@ mod submitted;
 pub use found::{Found, Hits, Listed, in_order};
 pub use submit::Submits;
 
-use super::broad::{BroadContext, BroadPhase, Candidates, broad_phase, growth};
+use super::broad::{BroadContext, BroadPhase, Candidates, Which, broad_phase, growth};
 use super::counts::{Counts, FrameCounters};
 use super::layout::Layout;
 use super::list::{GrowableOutput, List};
@@ -42,6 +42,8 @@ const LEAST_ROOM: usize = 1 << 12;
 /// A step of a frame that fills lists; each reads what the one before filled.
 #[derive(Clone, Copy)]
 enum Step {
+    /// Candidate triangle pairs of a sample.
+    Sample,
     /// Candidate triangle pairs.
     Traverse,
     /// A step of the narrow phase, by its place.
@@ -156,11 +158,31 @@ impl<R: Precision> TypedPipeline<R> {
             Stage::Construct => self.construct().map(|_| ()),
             Stage::Fit => self.broadly(|broad, given, _| broad.fit(given)),
             Stage::Refit => self.broadly(|broad, given, _| broad.refit(given)),
-            Stage::Traverse => self.step(Step::Traverse),
+            Stage::Traverse => {
+                self.sample()?;
+                self.step(Step::Traverse)
+            }
             Stage::Narrow => self.narrow_steps_at().try_for_each(|at| self.step(Step::Narrow(at))),
             Stage::Order if self.narrow.ordered().is_some() => self.step(Step::Order),
             Stage::Order => Ok(()),
         }
+    }
+
+    /// Whether a sample's answer bounds the whole.
+    fn samples(&self) -> bool {
+        self.narrow.bound().is_some() && self.broad.can_sample()
+    }
+
+    /// Asks a sample, where its answer bounds the whole. Nothing of it is counted: too little room would make the bound worse, and not wrong.
+    fn sample(&mut self) -> Result<(), Error> {
+        if !self.samples() {
+            return Ok(());
+        }
+        self.narrow.sample(true);
+        let done = self.step(Step::Sample).and_then(|()| self.run(Stage::Narrow));
+        self.narrow.sample(false);
+        done?;
+        self.counters.clear()
     }
 
     /// Runs a step. Until the lists have settled it waits for the step's demand and, where a list was too short, grows
@@ -168,7 +190,11 @@ impl<R: Precision> TypedPipeline<R> {
     fn step(&mut self, step: Step) -> Result<(), Error> {
         loop {
             match step {
-                Step::Traverse => self.traverse()?,
+                Step::Sample => self.traverse(Which::Sample)?,
+                Step::Traverse => {
+                    let bound = self.narrow.bound().filter(|_| self.broad.can_sample());
+                    self.traverse(bound.map_or(Which::All, Which::Before))?;
+                }
                 Step::Narrow(_) | Step::Order => {
                     let given = NarrowContext {
                         device: &self.device,
@@ -192,7 +218,7 @@ impl<R: Precision> TypedPipeline<R> {
             let mut grown = false;
             let mut again = Vec::new();
             let lists = match step {
-                Step::Traverse => {
+                Step::Sample | Step::Traverse => {
                     let mut lists = self.broad.lists();
                     lists.push(&mut self.pairs);
                     lists
@@ -208,7 +234,7 @@ impl<R: Precision> TypedPipeline<R> {
                 return Ok(());
             }
             self.reruns += 1;
-            if let Step::Traverse = step {
+            if let Step::Sample | Step::Traverse = step {
                 // The first step: everything that was counted so far is its own.
                 self.counters.clear()?;
             } else {
@@ -241,12 +267,13 @@ impl<R: Precision> TypedPipeline<R> {
         what(&mut *self.broad, &given, &self.layout)
     }
 
-    fn traverse(&mut self) -> Result<(), Error> {
+    fn traverse(&mut self, which: Which) -> Result<(), Error> {
         let counters = self.counters.counters();
         let candidates = Candidates {
             pairs: self.pairs.output(counters),
             counters,
             flags: TraverseFlags::KEEP_ADJACENT.when(self.query.keeps_adjacent()),
+            which,
         };
         self.broadly(|broad, given, _| broad.traverse(given, &candidates))
     }

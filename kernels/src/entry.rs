@@ -347,8 +347,10 @@ kernels_of_volumes! {
         traverse_front: front::front::<V, B>, [FrontArgs<V>], WIDE, 0;
         traverse_queue: queue::queue::<V, B>, [QueueArgs<V>], NARROW, worker::shared_bytes(NARROW);
         traverse_steal: steal::steal::<V, B>, [StealArgs<V>], NARROW, worker::shared_bytes(NARROW);
-        traverse_tiles: traverse::tiles::pairs::<V, B>, [TilePairsArgs<V>], traverse::tiles::LANES, traverse::tiles::SHARED, exact = true;
-        traverse_triangles: traverse::tile_triangles::triangles::<V, B>, [TileTrianglesArgs<V>], traverse::tile_triangles::LANES, traverse::tile_triangles::shared_bytes::<V>(), exact = true;
+        traverse_tiles: traverse::tiles::pairs::<false, V, B>, [TilePairsArgs<V>], traverse::tiles::LANES, traverse::tiles::SHARED, exact = true;
+        traverse_tiles_before: traverse::tiles::pairs::<true, V, B>, [TilePairsArgs<V>], traverse::tiles::LANES, traverse::tiles::SHARED, exact = true;
+        traverse_triangles: traverse::tile_triangles::triangles::<false, V, B>, [TileTrianglesArgs<V>], traverse::tile_triangles::LANES, traverse::tile_triangles::shared_bytes::<V>(), exact = true;
+        traverse_triangles_before: traverse::tile_triangles::triangles::<true, V, B>, [TileTrianglesArgs<V>], traverse::tile_triangles::LANES, traverse::tile_triangles::shared_bytes::<V>(), exact = true;
         refit_tiles: refit_of_tiles::tiles::<V, B>, [RefitTilesArgs<V>], refit_of_tiles::LANES, refit_of_tiles::shared_bytes::<V>(), exact = true;
     }
     each {

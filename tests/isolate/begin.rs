@@ -1,9 +1,12 @@
 //! When an answer begins: who asks for the earliest time alone leaves out pairs by when they begin, so no answer may begin sooner.
 
+use nearmiss_kernels::bv::{Linear, Volume};
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::cubic::Moving;
 use nearmiss_kernels::prim::inclusion::Params;
 use nearmiss_kernels::prim::isolate::{Edges, Face, Pair, Rungs, ee_certified, vf_certified};
+use nearmiss_kernels::prim::sweep::meeting;
+use nearmiss_kernels::stage::horizon::Horizon;
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 
@@ -52,4 +55,50 @@ fn no_answer_begins_before_its_window_with_the_margin() {
     println!("{met} answers, {in_the_margin} of them begin in the margin");
     // So a pair may not be left out by its window alone.
     assert!(met > 1000 && in_the_margin > 100, "{met} {in_the_margin}");
+}
+
+/// With its own time known a pair stays: its triangles, and what is around them, meet before the horizon. Were the horizon at that time
+/// itself, some would be left out.
+#[test]
+fn a_pair_is_never_behind_the_horizon_of_its_own_time() {
+    let mut r = SmallRng::seed_from_u64(24);
+    let p = Params::new(1e-4);
+    let (mut met, mut lost) = (0, [0; 2]);
+    for i in 0..6000 {
+        let flat = i % 4 > 0;
+        let height = r.random_range(0.0..1.0f32);
+        let below = [0; 3].map(|_| point(&mut r, (0.0, 0.0), flat));
+        let way = -r.random_range(0.5..2.0f32);
+        let above = [0; 3].map(|_| point(&mut r, (height, way), flat));
+        let [a, b, _] = below;
+        let told = [
+            (vf_certified(above[0], below, Rungs::All, &p), 1 << 0),
+            (ee_certified([a, b], [above[0], above[1]], Rungs::All, &p), 1 << 6),
+        ];
+        let volume = |c: [Moving<f32>; 3]| Linear::moving(c.map(|c| c.t0), c.map(|c| c.t1));
+        for (verdict, test) in told {
+            if verdict.is_separated() {
+                continue;
+            }
+            met += 1;
+            let horizon = Horizon::behind(verdict.toi);
+            let meet = |time: f32| meeting(&above, &below, 0.0, time) & test != 0;
+            assert!(meet(horizon.time()), "{verdict:?}: {above:?} {below:?}");
+            let [x, y] = [volume(above), volume(below)].map(|volume| horizon.cut::<true, _>(volume));
+            assert!(x.overlaps(&y), "{verdict:?}: {above:?} {below:?}");
+            let exactly = (verdict.toi as f32).max(f32::MIN_POSITIVE);
+            lost[0] += !meet(exactly) as u32;
+            lost[1] += !volume(above).until(exactly).overlaps(&volume(below).until(exactly)) as u32;
+        }
+    }
+    println!("{met} answers; behind a horizon without a margin: {lost:?}");
+    assert!(met > 1000 && lost.iter().all(|&lost| lost > 100), "{met} {lost:?}");
+}
+
+#[test]
+fn nothing_known_is_no_horizon() {
+    for known in [f64::NAN, f64::from_bits(u64::MAX), 1.0, 0.9999, f64::INFINITY] {
+        assert_eq!(Horizon::behind(known).time(), 1.0, "{known}");
+    }
+    assert!(Horizon::behind(0.0).time() > 0.0 && Horizon::behind(0.0).time() < 1e-3);
 }

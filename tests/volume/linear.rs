@@ -139,3 +139,52 @@ fn what_stands_still_does_not_move() {
     let (still, moving) = (Linear::still::<f64>(corners), Linear::moving(corners, corners));
     assert_eq!((still, still.lo0, still.hi0), (moving, still.lo1, still.hi1));
 }
+
+/// Until a time: around everything that it was around until then, and not much larger.
+#[test]
+fn a_box_until_a_time_is_around_what_was_in_it() {
+    let mut rng = Rng::new(25);
+    let mut planted = 0;
+    for _ in 0..20_000 {
+        let size = [1e-30, 1e-20, 1.0, 1e12, 1e37][(rng.bits() % 5) as usize];
+        let [t0, t1] = [(); 2].map(|()| {
+            [(); 3].map(|()| {
+                let d = rng.point(1.0);
+                Vec3([0, 1, 2].map(|k| (d[k] * size) as f32))
+            })
+        });
+        let until = rng.unit().clamp(1e-4, 0.9999) as f32;
+        let (all, part) = (Linear::moving(t0, t1), Linear::moving(t0, t1).until(until));
+        assert_eq!((all.lo0, all.hi0), (part.lo0, part.hi0));
+        for k in 0..3 {
+            // The exact mixture, but for 3 of 2^53.
+            let at = |from: f32, to: f32| {
+                f64::from(from) * (1.0 - f64::from(until)) + f64::from(to) * f64::from(until)
+            };
+            let [lo, hi] = [at(all.lo0[k], all.lo1[k]), at(all.hi0[k], all.hi1[k])];
+            let room = 1e-6 * size + 1e-37;
+            assert!(
+                f64::from(part.lo1[k]) < lo && f64::from(part.lo1[k]) > lo - room,
+                "{all:?} {until} {part:?}"
+            );
+            assert!(
+                f64::from(part.hi1[k]) > hi && f64::from(part.hi1[k]) < hi + room,
+                "{all:?} {until} {part:?}"
+            );
+            // Who does not round outward cuts something off.
+            planted += (((all.hi0[k] * (1.0 - until) + all.hi1[k] * until) as f64) < hi) as u32;
+        }
+    }
+    assert!(planted > 1000, "{planted}");
+}
+
+/// A bound without an end stays so.
+#[test]
+fn an_infinite_box_until_a_time_is_infinite() {
+    let far = [Vec3([f32::MAX, -f32::MAX, 0.0]); 3];
+    let near = [Vec3([0.0; 3]); 3];
+    for box_ in [Linear::moving(far, near), Linear::moving(near, far), Linear::moving(far, far)] {
+        let part = box_.until(0.5);
+        assert!(part.hi1[0] == f32::INFINITY && part.lo1[1] == f32::NEG_INFINITY, "{box_:?} {part:?}");
+    }
+}

@@ -17,7 +17,7 @@ pub const STAGES: [(&str, &str); 9] = [
 const ORDER: usize = 7;
 
 /// Kernels by how their names begin, the longer beginnings first, and what each does.
-const KERNELS: [(&str, &str); 50] = [
+const KERNELS: [(&str, &str); 52] = [
     ("place", "poses applied, uploads put in place, the rest at rest"),
     ("construct_bounds", "the box of each body's centres"),
     ("construct_morton", "a code a triangle along a curve, behind its body's prefix"),
@@ -43,6 +43,8 @@ const KERNELS: [(&str, &str); 50] = [
     ("traverse_queue", "pairs of nodes from work queues"),
     ("traverse_steal", "pairs of nodes from queues that help each other"),
     ("traverse_front", "from where the last frame's descent ended"),
+    ("traverse_tiles_before", "pairs of tiles that meet in time"),
+    ("traverse_triangles_before", "their triangles, all against all, that meet in time"),
     ("traverse_tiles", "pairs of tiles"),
     ("traverse_triangles", "triangles of pairs of tiles, all against all"),
     ("balance_copy", "as many units in each queue"),

@@ -43,6 +43,19 @@ pub struct Candidates {
     pub counters: Counters,
     /// What is asked of them all.
     pub flags: TraverseFlags,
+    /// Which are asked for.
+    pub which: Which,
+}
+
+/// Which candidates are asked for.
+#[derive(Clone, Copy, Debug)]
+pub enum Which {
+    /// All.
+    All,
+    /// Those of a sample, the same whenever the same is asked.
+    Sample,
+    /// At least those that meet before a time, which lies there as bits: those of no number for none.
+    Before(Span<u64>),
 }
 
 /// A broad phase of a scene, of what moves with itself and with what is static.
@@ -79,6 +92,11 @@ pub trait BroadPhase<R: Precision>: Send {
 
     /// Its own lists, which may turn out too short: then they grow and [`BroadPhase::traverse`] runs again.
     fn lists(&mut self) -> Vec<&mut dyn GrowableOutput>;
+
+    /// Whether it can list a sample, and leave out what only meets later.
+    fn can_sample(&self) -> bool {
+        false
+    }
 
     /// The frame is answered: what was learnt may be kept for the next one.
     ///

@@ -71,6 +71,10 @@ pub struct ContinuousNarrow {
     below_precision: Option<BelowPrecision>,
     /// The smallest toi, where only that is asked for.
     earliest: Option<Buffer<u64>>,
+    /// The smallest of a sample, where that bounds the other.
+    bound: Option<Buffer<u64>>,
+    /// Whether a sample is looked at.
+    samples: bool,
     /// All contacts in order, where the device orders them.
     ordered: Option<Order<Hit>>,
 }
@@ -101,7 +105,13 @@ impl ContinuousNarrow {
     ) -> Result<Self, Error> {
         let capacities = Capacities { hits: [0, 0], ..Capacities::usual(room) };
         let narrow = ContinuousNarrow::new(device, layout, solver, capacities)?;
-        Ok(ContinuousNarrow { earliest: Some(device.of(purpose::EARLIEST).buffer(1)?), ..narrow })
+        let memory = device.of(purpose::EARLIEST);
+        let mut narrow = ContinuousNarrow { earliest: Some(memory.buffer(1)?), ..narrow };
+        // Only isolation has a time before which no answer can be. Until there is a sample nothing is known.
+        if solver.certified().is_some_and(|certified| !certified.is_apart()) {
+            narrow.bound = Some(memory.upload(&[u64::MAX])?);
+        }
+        Ok(narrow)
     }
 
     /// Takes the memory, with room for so many.
@@ -139,6 +149,8 @@ impl ContinuousNarrow {
             ],
             below_precision: None,
             earliest: None,
+            bound: None,
+            samples: false,
             ordered: None,
         })
     }
@@ -209,17 +221,18 @@ impl ContinuousNarrow {
     /// # Errors
     /// Those of the device.
     pub fn solve<R: Precision>(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
-        if let Some(earliest) = &mut self.earliest {
+        let first = if self.samples { &mut self.bound } else { &mut self.earliest };
+        let earliest = first.as_ref().map_or(Span::EMPTY, Buffer::span);
+        if let Some(earliest) = first {
             // The greatest number.
             earliest.fill(u8::MAX)?;
         }
         let [vf, ee] = self.asked();
         let edges = self.features.edges.span();
-        let earliest = self.earliest.as_ref().map_or(Span::EMPTY, Buffer::span);
         let precision = match self.solver {
             ContinuousSolver::Certified(_) => {
                 let hits = [&self.vf_hits, &self.ee_hits];
-                self.rungs.climb(given, edges, ([vf, ee], hits, earliest))?;
+                self.rungs.climb(given, (edges, self.samples), ([vf, ee], hits, earliest))?;
                 let listed = (edges, &self.vf_hits, &self.ee_hits);
                 return below_precision::count(self.below_precision, listed, given);
             }
@@ -262,11 +275,20 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
         match self.all_steps()[step] {
             Step::Features => {
                 let gap = self.solver.certified().filter(|certified| certified.is_apart());
-                self.features.run::<R, R::Features>(given, gap.map_or(0.0, Certified::listed_within))
+                let known = self.bound.as_ref().filter(|_| !self.samples).map_or(Span::EMPTY, Buffer::span);
+                self.features.run::<R, R::Features>(given, (gap.map_or(0.0, Certified::listed_within), known))
             }
             Step::Cull => self.cull(given),
             Step::Solve => self.solve(given),
         }
+    }
+
+    fn bound(&self) -> Option<Span<u64>> {
+        self.bound.as_ref().map(Buffer::span)
+    }
+
+    fn sample(&mut self, begins: bool) {
+        self.samples = begins;
     }
 
     fn lists(&mut self, step: usize) -> Vec<&mut dyn GrowableOutput> {

@@ -7,7 +7,7 @@ use crate::pipeline::layout::Layout;
 use crate::pipeline::list::List;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::{launch, purpose};
-use nearmiss_kernels::abi::{Facet, FeaturesArgs, Pair, counter};
+use nearmiss_kernels::abi::{Facet, FeaturesArgs, Pair, Span, counter};
 use nearmiss_kernels::entry::Entry;
 
 /// What a query of features knows of triangles, and its candidates.
@@ -44,14 +44,15 @@ impl Features {
         vec![("narrow: vf", vf), ("narrow: ee", ee)]
     }
 
-    /// Launches the step, for what comes within the gap, by the kernel for what moves or for what does not.
+    /// Launches the step, for what comes within the gap, by the kernel for what moves or for what does not; and, where there is a time
+    /// that is `known`, for what does so before that.
     ///
     /// # Errors
     /// Those of the device.
     pub fn run<R: Precision, E: Entry<Args = FeaturesArgs<R>>>(
         &self,
         given: &NarrowContext<R>,
-        gap: f64,
+        (gap, known): (f64, Span<u64>),
     ) -> Result<(), Error> {
         let [vf, ee] = &self.candidates;
         let args = FeaturesArgs {
@@ -61,6 +62,7 @@ impl Features {
             vf: vf.output(given.counters),
             ee: ee.output(given.counters),
             gap,
+            known,
         };
         launch::striding::<E>(given.device, given.pairs.room() as usize, &args)
     }

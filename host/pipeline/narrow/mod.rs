@@ -53,6 +53,14 @@ pub trait Narrow<R: Precision>: Send {
     /// Those of the device.
     fn run(&mut self, step: usize, given: &NarrowContext<R>) -> Result<(), Error>;
 
+    /// Where a bound of the earliest time lies: what a sample found. None where no sample helps.
+    fn bound(&self) -> Option<Span<u64>> {
+        None
+    }
+
+    /// From here on steps look at a sample, for the bound; or no longer.
+    fn sample(&mut self, _begins: bool) {}
+
     /// The lists that the step of that place fills.
     fn lists(&mut self, step: usize) -> Vec<&mut dyn GrowableOutput>;
 

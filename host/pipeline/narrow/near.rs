@@ -12,7 +12,7 @@ use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::order::{Order, Ordering};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Hits, Listed};
-use nearmiss_kernels::abi::{Counter, NearArgs, NearHit, Pair, counter};
+use nearmiss_kernels::abi::{Counter, NearArgs, NearHit, Pair, Span, counter};
 
 /// A step of the phase.
 #[derive(Clone, Copy)]
@@ -92,7 +92,7 @@ impl<R: Precision> Narrow<R> for NearNarrow {
 
     fn run(&mut self, step: usize, given: &NarrowContext<R>) -> Result<(), Error> {
         match Step::ALL[step] {
-            Step::Features => self.features.run::<R, R::FeaturesAtRest>(given, self.distance),
+            Step::Features => self.features.run::<R, R::FeaturesAtRest>(given, (self.distance, Span::EMPTY)),
             Step::Near => self.measure(given),
         }
     }

@@ -110,14 +110,15 @@ impl Rungs {
             .flat_map(|(&at, [vf, ee])| [(LEFT[at][0].0, vf), (LEFT[at][1].0, ee)])
     }
 
-    /// Launches all rungs, the first over `asked`.
+    /// Launches the rungs, the first over `asked`: all, or those that find most of what there is of a sample. The others would cost
+    /// launches for little.
     ///
     /// # Errors
     /// Those of the device.
     pub fn climb<R: Precision>(
         &self,
         given: &NarrowContext<R>,
-        edges: Span<[u32; 2]>,
+        (edges, sample): (Span<[u32; 2]>, bool),
         (asked, hits, earliest): ([&List<Pair>; 2], [&List<Hit>; 2], Span<u64>),
     ) -> Result<(), Error> {
         let listed = |pairs: &List<Pair>, hits: &List<Hit>, left: Option<&List<Pair>>| Listed {
@@ -127,6 +128,9 @@ impl Rungs {
         };
         let mut pairs = asked;
         for (at, &rung) in self.rungs.iter().enumerate() {
+            if sample && !matches!(rung, Rung::Isolate32 | Rung::Isolate64) {
+                break;
+            }
             let left = self.left.get(at).map(|lists| lists.each_ref());
             let narrow = self.certified.precision == CertifiedPrecision::F32;
             let everything = narrow || rung == Rung::Isolate64;

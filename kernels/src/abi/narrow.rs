@@ -22,6 +22,8 @@ arguments! {
         ee: Output<Pair>,
         /// Features whose boxes come within it are listed, a length; 0 for touching.
         gap: f64,
+        /// The bits of a time: who only meets later does not matter. Empty where all do.
+        known: Span<u64>,
     }
     /// `narrow_moller`, `narrow_filter`, `narrow_wide`, `narrow_exact`: triangle pairs that meet.
     DiscreteArgs<R: Real> {

@@ -83,6 +83,12 @@ arguments! {
         shift: u32,
         /// Tiles that seek others: those of what moves, which come first.
         count: u32,
+        /// Of these one of so many does; 1 for all.
+        every: u32,
+        /// Zero.
+        pad: u32,
+        /// The bits of a time: who only meets later does not matter. Empty where all do.
+        known: Span<u64>,
     }
     /// `traverse_triangles`: pairs of triangles that overlap, of pairs of tiles.
     TileTrianglesArgs<V: Pod> {
@@ -106,5 +112,11 @@ arguments! {
         count: u32,
         /// All but [`TraverseFlags::GRAFTED`] and [`TraverseFlags::FRONT`].
         flags: TraverseFlags,
+        /// Of these tiles one of so many; 1 for all.
+        every: u32,
+        /// Zero.
+        pad: u32,
+        /// The bits of a time: who only meets later does not matter. Empty where all do.
+        known: Span<u64>,
     }
 }

@@ -7,7 +7,7 @@
 use super::contain::between;
 use super::{Aabb, Axes, Contain, FillsNode, Volume, fills_node};
 use crate::exec::ALONE;
-use crate::math::tolerance::{MOVING_LIMIT, MOVING_TIME};
+use crate::math::tolerance::{MOVING_LIMIT, MOVING_MIXTURE, MOVING_TIME};
 use crate::math::{Real, Vec3};
 use bytemuck::{Pod, Zeroable};
 
@@ -99,7 +99,7 @@ impl Volume for Linear {
     /// Bounds are finite and small enough that no sum of differences overflows, or infinite outward: then a
     /// difference is infinite upward only. If it is d1, q is 0: no bound. If it is d0, q is NaN, as it is where both
     /// are zero; every comparison with NaN is false, so it clips nothing.
-    #[inline]
+    #[inline(always)]
     fn overlaps(&self, o: &Self) -> bool {
         let (apart, from, to) = self.window(o);
         !(apart | (from > to + MOVING_TIME))
@@ -117,6 +117,23 @@ impl Volume for Linear {
         !apart
     }
 
+    /// The box at that time, rounded outward, becomes the end.
+    #[inline]
+    fn until(&self, time: f32) -> Self {
+        let before = 1.0 - time;
+        let at = |start: f32, end: f32, out: f32| {
+            let slack = Real::max(start.abs(), end.abs()) * MOVING_MIXTURE + f32::MIN_POSITIVE;
+            start * before + end * time + out * slack
+        };
+        let mut end = Aabb { lo: self.lo1, hi: self.hi1 };
+        for k in 0..3 {
+            end.lo[k] = at(self.lo0[k], self.lo1[k], -1.0);
+            end.hi[k] = at(self.hi0[k], self.hi1[k], 1.0);
+        }
+        let end = bounded(end);
+        Linear { lo1: end.lo, hi1: end.hi, ..*self }
+    }
+
     #[inline]
     fn apart(&self, o: &Self) -> f32 {
         let start = |b: &Self| Aabb { lo: b.lo0, hi: b.hi0 };
@@ -127,7 +144,7 @@ impl Volume for Linear {
 impl Linear {
     /// Whether the boxes are apart on one axis throughout; else from when and until when they overlap on all, as computed:
     /// both ends together are wrong by less than `MOVING_TIME`.
-    #[inline]
+    #[inline(always)]
     pub fn window(&self, o: &Self) -> (bool, f32, f32) {
         let (mut apart, mut partly, mut from, mut to) = (false, false, 0.0f32, 1.0f32);
         let mut d = [[0.0f32; 2]; 6];

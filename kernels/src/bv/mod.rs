@@ -98,6 +98,12 @@ pub trait Volume: FillsNode + Sync + Send + core::fmt::Debug + PartialEq {
     fn may_overlap(&self, other: &Self) -> bool {
         self.overlaps(other)
     }
+    /// Around the same from t = 0 until a time between 0 and 1, which becomes the end of the step; or around all. Two volumes are tested
+    /// against each other as both are until the same time.
+    #[inline(always)]
+    fn until(&self, _time: f32) -> Self {
+        *self
+    }
     /// Never more than the distance of two points that they are around, at t = 0; 0 where they overlap.
     fn apart(&self, other: &Self) -> f32;
 }

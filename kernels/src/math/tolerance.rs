@@ -220,6 +220,15 @@ pub const MOVING_LIMIT: f32 = f32::from_bits((125 + 127) << 23);
 /// end is a quotient in [0, 1] of two roundings on either side, `5u`; `16u` in all. Fraction of the step.
 pub const MOVING_TIME: f32 = 16.0 * U32;
 
+/// What a mixture of two bounds of a moving box errs by: the complement, two products and a sum, `3.1u`, and the rounding of what is
+/// added for it; `8u`. Ratio of the larger bound.
+pub const MOVING_MIXTURE: f32 = 8.0 * U32;
+/// How much later than the earliest time that is known a pair may begin, and still have one that is computed to be earlier. A pair's
+/// time is not before its window less its margin, `ISOLATE_MARGIN` of f32, 2^-12. Windows of the volumes and of the triangles around
+/// the pair begin no later than its own but for what these are computed within: `MOVING_TIME` and `ISOLATE_WINDOW`, 2^-20 each; 2^-13
+/// is above all of these together. Fraction of the step.
+pub const HORIZON_MARGIN: f64 = 1.0 / 4096.0 + 1.0 / 8192.0;
+
 /// How far `a_i . a_j` may be from 1 (i = j) or 0 in an oriented box, as computed: `12u`. The computation errs by less
 /// than `4u`, so the true value is within `16u`, on which the next three rest. Ratio.
 pub const BOX_AXES: f32 = 12.0 * U32;

@@ -47,13 +47,13 @@ fn signs<R: Real>(x: Vec3<R>, y: Vec3<R>) -> u32 {
 pub type Corners<R> = [Moving<R>; 3];
 
 /// A box around the way of each corner of two triangles, over the part of the step in which the boxes around the triangles
-/// come within the gap; those of the first grown by the gap and by all roundings. And whether there is such a part.
+/// come within the gap, until the horizon; those of the first grown by the gap and by all roundings. And whether there is such a part.
 ///
 /// A corner at a time of it errs by `3.1u` of the larger of its ends (the complement, two products, a sum), and growing by
 /// `u` more: `INCLUSION_INPUT` of the largest coordinate for each of both triangles. A product that underflows is within
 /// `INCLUSION_UNDERFLOW`.
 #[inline(always)]
-fn swept<R: Real>(p: &Corners<R>, q: &Corners<R>, gap: R) -> (bool, [[Swept<R>; 3]; 2]) {
+fn swept<R: Real>(p: &Corners<R>, q: &Corners<R>, gap: R, horizon: R) -> (bool, [[Swept<R>; 3]; 2]) {
     let mut window = Window::new();
     // One axis after the other, each by a number that the compiler knows: nothing goes to memory on the GPU.
     let grow = Vec3([
@@ -61,7 +61,7 @@ fn swept<R: Real>(p: &Corners<R>, q: &Corners<R>, gap: R) -> (bool, [[Swept<R>; 
         axis(1, &mut window, p, q, gap),
         axis(2, &mut window, p, q, gap),
     ]);
-    let part = window.within(R::ONE);
+    let part = window.within(horizon);
     let part_or_all = part.unwrap_or((R::ZERO, R::ONE));
     (part.is_some(), [ways(p, part_or_all, grow), ways(q, part_or_all, Vec3([R::ZERO; 3]))])
 }
@@ -111,10 +111,11 @@ pub fn more<R: Real>(gap: f64) -> R {
     if gap > 0.0 { R::of(gap) * R::INCLUSION_UP + R::INCLUSION_UNDERFLOW } else { R::ZERO }
 }
 
-/// The tests of two triangles whose features have boxes that come within a gap, given as [`more`] of it.
+/// The tests of two triangles whose features have boxes that come within a gap, given as [`more`] of it, not later than the horizon: a
+/// time in (0, 1].
 #[inline(always)]
-pub fn meeting<R: Real>(p: &Corners<R>, q: &Corners<R>, gap: R) -> u32 {
-    let (meet, boxes) = swept(p, q, gap);
+pub fn meeting<R: Real>(p: &Corners<R>, q: &Corners<R>, gap: R, horizon: R) -> u32 {
+    let (meet, boxes) = swept(p, q, gap, horizon);
     if meet { sharing(&boxes, Swept::apart) } else { 0 }
 }
 

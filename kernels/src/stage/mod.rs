@@ -12,11 +12,13 @@
 //! | [`order`] | contacts | the same in canonical order, on a GPU |
 //! | [`status`] | counts, and the lists' room | whether the answer is whole, for who does not ask the host |
 //!
-//! No stage calls another; they meet in memory, through [`crate::abi`].
+//! No stage calls another; they meet in memory, through [`crate::abi`]. What [`traverse`] and [`narrow`] both leave out of a query for the
+//! earliest time is told by [`horizon`].
 
 pub mod balance;
 pub mod construct;
 pub mod fit;
+pub mod horizon;
 pub mod narrow;
 pub mod order;
 pub mod place;

@@ -11,6 +11,7 @@
 //!          the owners as near, and that pair of triangles, adjacent or not, is in the list. Boxes are those of the part of
 //!          the step in which the boxes around the two triangles, moving with them, meet: outside of it no feature of one
 //!          can meet one of the other.
+//!          Where an earliest time is sought, none that only comes as near behind the horizon.
 //! Room     vf, ee: counted past the end, grown, run again.
 //! Departs  the paper tests all 15 for every pair; owners (representative triangles: Curtis, Tamstorf, Manocha, "Fast
 //!          collision detection for deformable models using representative-triangles", 2008) leave about 3, shorter sweeps
@@ -24,6 +25,7 @@ use crate::exec::{Block, Lane, RowMap, Slot};
 use crate::math::{Real, Vec3};
 use crate::prim::cubic::Moving;
 use crate::prim::sweep::{MOST, meeting, meeting_at_rest, more};
+use crate::stage::horizon::Horizon;
 use bytemuck::Pod;
 use core::marker::PhantomData;
 
@@ -56,8 +58,8 @@ pub trait Course<R: Real> {
     type Corner: Pod;
     /// Reads it.
     fn corner<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32) -> Self::Corner;
-    /// Which tests of two triangles have features whose boxes come within a gap.
-    fn meeting(p: &[Self::Corner; 3], q: &[Self::Corner; 3], gap: R) -> u32;
+    /// Which tests of two triangles have features whose boxes come within a gap, and not later than the horizon.
+    fn meeting(p: &[Self::Corner; 3], q: &[Self::Corner; 3], gap: R, horizon: R) -> u32;
 }
 
 /// Vertices move over a step.
@@ -70,8 +72,8 @@ impl<R: Real> Course<R> for Moves {
         moving(l, frames, vertex)
     }
     #[inline(always)]
-    fn meeting(p: &[Moving<R>; 3], q: &[Moving<R>; 3], gap: R) -> u32 {
-        meeting(p, q, gap)
+    fn meeting(p: &[Moving<R>; 3], q: &[Moving<R>; 3], gap: R, horizon: R) -> u32 {
+        meeting(p, q, gap, horizon)
     }
 }
 
@@ -85,14 +87,15 @@ impl<R: Real> Course<R> for Rests {
         l.read(frames.still, vertex).at
     }
     #[inline(always)]
-    fn meeting(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3], gap: R) -> u32 {
+    fn meeting(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3], gap: R, _: R) -> u32 {
         meeting_at_rest(p, q, gap)
     }
 }
 
-/// Which tests of two triangles have features whose boxes come within a gap.
+/// Which tests of two triangles have features whose boxes come within a gap, and not later than the horizon.
 struct Meeting<R, C> {
     gap: R,
+    horizon: R,
     course: PhantomData<C>,
 }
 
@@ -101,7 +104,7 @@ impl<R: Real, C: Course<R>> RowMap for Meeting<R, C> {
     type Row = [[C::Corner; 3]; 2];
     #[inline(always)]
     fn at_once(&self, [p, q]: Self::Row) -> u32 {
-        C::meeting(&p, &q, self.gap)
+        C::meeting(&p, &q, self.gap, self.horizon)
     }
 }
 
@@ -121,7 +124,8 @@ const EE: u32 = 1 << 16;
 /// Vertex/face and edge/edge candidates of each triangle pair.
 pub fn features<R: Real, C: Course<R>, B: Block>(b: &mut B, a: &FeaturesArgs<R>) {
     let count = a.pairs.listed(b);
-    let (lanes, map) = (b.lanes(), Meeting::<R, C> { gap: more(a.gap), course: PhantomData });
+    let horizon = R::of(Horizon::of(b, a.known).time().into());
+    let (lanes, map) = (b.lanes(), Meeting::<R, C> { gap: more(a.gap), horizon, course: PhantomData });
     let tests = b.shared::<u32>(MOST * lanes);
     let mut masks = b.slot(0u32);
     let mut places = b.slot(0u32);

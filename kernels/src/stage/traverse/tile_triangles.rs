@@ -6,7 +6,8 @@
 //! Before   leaves and tiles are fitted, pairs of tiles are listed.
 //! After    every pair of triangles that may meet and whose volumes overlap, but
 //!          for those that share a vertex index unless
-//!          [`TraverseFlags::KEEP_ADJACENT`] asks for them. Of boxes that stand still: what walks of a tree write.
+//!          [`TraverseFlags::KEEP_ADJACENT`] asks for them: what walks of a tree write. But of a sample those of its tiles, and
+//!          where an earliest time is sought, none that only meets behind the horizon.
 //! Room     `pairs` may be too short: counters go on, the host grows it and runs again.
 //! Cost     64 tests against the other tile, then each of the one that overlaps that against each of the other. An atomic a warp and
 //!          512 candidates.
@@ -17,6 +18,7 @@ use crate::bvh::on_chip::OnChip;
 use crate::bvh::tiles::TILE;
 use crate::exec::{Block, Lane, Shared, Slot};
 use crate::prim::adjacent::share_a_vertex;
+use crate::stage::horizon::Horizon;
 
 /// Lanes of a block.
 pub const LANES: u32 = TILE;
@@ -45,11 +47,13 @@ impl Two {
         if i >= total {
             return None;
         }
-        let same = i < a.count as u64;
+        let alone = a.alone();
+        let same = i < alone;
         let tiles = if same {
-            Pair { a: i as u32, b: i as u32 }
+            let tile = i as u32 * a.every;
+            Pair { a: tile, b: tile }
         } else {
-            b.load(a.tile_pairs.items(), (i - a.count as u64) as u32)
+            b.load(a.tile_pairs.items(), (i - alone) as u32)
         };
         let filters = a.filters.nodes;
         if filters.is_empty() {
@@ -62,8 +66,15 @@ impl Two {
     }
 }
 
-/// Pairs of triangles that overlap.
-pub fn triangles<V: Volume, B: Block>(b: &mut B, a: &TileTrianglesArgs<V>) {
+impl<V: Volume> TileTrianglesArgs<V> {
+    /// How many tiles are looked at with themselves.
+    fn alone(&self) -> u64 {
+        self.count.div_ceil(self.every) as u64
+    }
+}
+
+/// Pairs of triangles that overlap, before the horizon.
+pub fn triangles<const HORIZON: bool, V: Volume, B: Block>(b: &mut B, a: &TileTrianglesArgs<V>) {
     let rows = OnChip::new::<V, B>(b, LANES);
     let ids = b.shared::<u32>(LANES);
     let found = b.shared::<[u32; 2]>(FOUND);
@@ -72,7 +83,8 @@ pub fn triangles<V: Volume, B: Block>(b: &mut B, a: &TileTrianglesArgs<V>) {
     let mut masks = b.slot(0u32);
     let mut counts = b.slot(0u32);
     let (mut fill, mut tests) = (0, 0u64);
-    let total = a.count as u64 + a.tile_pairs.listed(b) as u64;
+    let horizon = Horizon::of(b, a.known);
+    let total = a.alone() + a.tile_pairs.listed(b) as u64;
     let mut unit = b.block() as u64;
     let mut next = Two::of(b, a, (unit, total));
     while unit < total {
@@ -82,13 +94,14 @@ pub fn triangles<V: Volume, B: Block>(b: &mut B, a: &TileTrianglesArgs<V>) {
         next = Two::of(b, a, (unit, total));
         let Some(Two { tiles, ask }) = two else { continue };
         let same = tiles.a == tiles.b;
-        let [first, second] = [tiles.a, tiles.b].map(|tile| b.load(a.nodes, tile).volume);
+        let [first, second] =
+            [tiles.a, tiles.b].map(|tile| horizon.cut::<HORIZON, V>(b.load(a.nodes, tile).volume));
         b.phase(|l| {
             let leaf = |tile: u32| {
                 let place = tile * TILE + l.lane();
                 let leaf = l.read(a.leaves, place);
                 let name = if V::IN_PARTS { place } else { leaf.link & !LEAF };
-                (leaf.volume, if leaf.link == NONE { NONE } else { name })
+                (horizon.cut::<HORIZON, V>(leaf.volume), if leaf.link == NONE { NONE } else { name })
             };
             let ((p, own), (q, other)) = (leaf(tiles.a), leaf(tiles.b));
             let is_row = own != NONE && (same || p.may_overlap(&second));
@@ -140,17 +153,22 @@ pub fn triangles<V: Volume, B: Block>(b: &mut B, a: &TileTrianglesArgs<V>) {
             done += now;
             fill += now;
             if fill == FOUND {
-                write(b, a, (found, fill));
+                write::<HORIZON, V, B>(b, a, horizon, (found, fill));
                 fill = 0;
             }
         }
     }
-    write(b, a, (found, fill));
+    write::<HORIZON, V, B>(b, a, horizon, (found, fill));
     a.counters.add_once(b, counter::STEPS, tests);
 }
 
 /// Appends candidates: of those that were found the ones that may meet, and without those that share a vertex.
-fn write<V: Volume, B: Block>(b: &mut B, a: &TileTrianglesArgs<V>, (found, fill): (Shared<[u32; 2]>, u32)) {
+fn write<const HORIZON: bool, V: Volume, B: Block>(
+    b: &mut B,
+    a: &TileTrianglesArgs<V>,
+    horizon: Horizon,
+    (found, fill): (Shared<[u32; 2]>, u32),
+) {
     let mut masks = b.slot(0u32);
     let mut counts = b.slot(0u32);
     b.phase(|l| {
@@ -162,7 +180,9 @@ fn write<V: Volume, B: Block>(b: &mut B, a: &TileTrianglesArgs<V>, (found, fill)
             let mut keeps = true;
             if V::IN_PARTS {
                 let [first, second] = [p, q].map(|place| l.read(a.leaves, place));
-                keeps = first.volume.overlaps(&second.volume);
+                keeps = horizon
+                    .cut::<HORIZON, V>(first.volume)
+                    .overlaps(&horizon.cut::<HORIZON, V>(second.volume));
                 (p, q) = (first.triangle(), second.triangle());
                 l.put(found, at, [p, q]);
             }

@@ -4,7 +4,8 @@
 //! Reads    nodes, 32 of the top level or twice 16 below others at once.     Writes   pairs of tiles, the earlier first.
 //! Before   all nodes are fitted.
 //! After    each pair of tiles whose volumes overlap, of which one moves and whose triangles may meet, but for a tile with itself. Nodes
-//!          whose tiles are all at or before the own one are passed over.
+//!          whose tiles are all at or before the own one are passed over. Of a sample: of every so many tiles the first. Where an
+//!          earliest time is sought, none that only meets behind the horizon.
 //! Room     `tile_pairs` may be too short: counters go on, the host grows it and runs again. On chip it cannot run out: two nodes are
 //!          taken from the top of the stack, those below the lower one put back first; so of each level at most 32 wait.
 //! Cost     a test a node of the top level behind the own one, 16 a node that overlaps.
@@ -13,6 +14,7 @@ use crate::abi::{LEAF, NONE, NodeFilter, Pair, TilePairsArgs, counter};
 use crate::bv::Volume;
 use crate::bvh::tiles::{FAN, MOST_LEVELS, TILE};
 use crate::exec::{Block, Lane, Shared, Slot};
+use crate::stage::horizon::Horizon;
 
 /// Lanes of a block: two nodes' children.
 pub const LANES: u32 = 2 * FAN;
@@ -24,17 +26,18 @@ const FOUND: u32 = 256;
 /// Shared memory of a block.
 pub const SHARED: u32 = 4 * (STACK + FOUND);
 
-/// Pairs of tiles that overlap.
-pub fn pairs<V: Volume, B: Block>(b: &mut B, a: &TilePairsArgs<V>) {
+/// Pairs of tiles that overlap, before the horizon.
+pub fn pairs<const HORIZON: bool, V: Volume, B: Block>(b: &mut B, a: &TilePairsArgs<V>) {
     let stack = b.shared::<u32>(STACK);
     let found = b.shared::<u32>(FOUND);
     let mut hit = b.slot((NONE, NONE));
     let mut nodes = b.slot(0u32);
     let mut tiles = b.slot(0u32);
     let mut tests = 0u64;
-    let mut tile = b.block();
+    let horizon = Horizon::of(b, a.known);
+    let mut tile = b.block() * a.every;
     while tile < a.count {
-        let own = b.load(a.nodes, tile).volume;
+        let own = horizon.cut::<HORIZON, V>(b.load(a.nodes, tile).volume);
         let filters = a.filters.nodes;
         let whose = if filters.is_empty() { NodeFilter::default() } else { b.load(filters, tile) };
         let (mut waiting, mut fill) = (0, 0);
@@ -55,7 +58,7 @@ pub fn pairs<V: Volume, B: Block>(b: &mut B, a: &TilePairsArgs<V>) {
                     let node = l.read(a.nodes, place);
                     let meets = node.link != NONE
                         && node.last > tile
-                        && own.may_overlap(&node.volume)
+                        && own.may_overlap(&horizon.cut::<HORIZON, V>(node.volume))
                         && (filters.is_empty() || a.filters.allows(l, whose, l.read(filters, place)));
                     if meets {
                         *hit.of(l) = (node.link, node.last);
@@ -86,7 +89,7 @@ pub fn pairs<V: Volume, B: Block>(b: &mut B, a: &TilePairsArgs<V>) {
             }
         }
         write(b, a, (found, fill), tile);
-        tile += b.blocks();
+        tile += b.blocks() * a.every;
     }
     a.counters.add_once(b, counter::STEPS, tests);
 }

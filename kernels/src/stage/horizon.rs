@@ -1,0 +1,35 @@
+//! Of a query for the earliest time alone: until when a pair matters.
+
+use crate::abi::Span;
+use crate::bv::Volume;
+use crate::exec::Block;
+use crate::math::round;
+use crate::math::tolerance::HORIZON_MARGIN;
+
+/// The end of the step, or a time before it: what begins behind that is later than one that is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Horizon(f32);
+
+impl Horizon {
+    /// By the bits of a time that is known, of an earlier launch: those of no number where none is, or no memory.
+    #[inline(always)]
+    pub fn of<B: Block>(b: &B, known: Span<u64>) -> Horizon {
+        Horizon::behind(if known.is_empty() { f64::NAN } else { f64::from_bits(b.load(known, 0)) })
+    }
+    /// Behind a time.
+    #[inline(always)]
+    pub fn behind(known: f64) -> Horizon {
+        let time = round::up(known + HORIZON_MARGIN);
+        Horizon(if time < 1.0 { time } else { 1.0 })
+    }
+    /// A time in (0, 1].
+    #[inline(always)]
+    pub fn time(self) -> f32 {
+        self.0
+    }
+    /// A volume until then, where there is a horizon at all.
+    #[inline(always)]
+    pub fn cut<const THERE: bool, V: Volume>(self, volume: V) -> V {
+        if THERE && self.0 < 1.0 { volume.until(self.0) } else { volume }
+    }
+}
