@@ -62,6 +62,8 @@ pub struct Emulated<W> {
     /// Shared memory, and how many bytes of it are given out.
     words: Vec<u64>,
     taken: u32,
+    /// Memory of rows.
+    rows: Vec<u64>,
     watch: W,
 }
 
@@ -87,7 +89,7 @@ impl<T, W> Slot<T, EmulatedLane<W>> for PerLane<T> {
 impl<W: Watch> Emulated<W> {
     /// Block `block` of a launch.
     pub fn new(block: u32, blocks: u32, lanes: u32, watch: W) -> Self {
-        Emulated { block, blocks, lanes, phase: 0, words: Vec::new(), taken: 0, watch }
+        Emulated { block, blocks, lanes, phase: 0, words: Vec::new(), taken: 0, rows: Vec::new(), watch }
     }
     fn lane(&mut self, lane: u32) -> EmulatedLane<W> {
         EmulatedLane {
@@ -108,6 +110,19 @@ fn device<T, W: Watch>(watch: &W, access: Access, span: Span<T>, i: u32, place: 
     watch
         .device(access, addr, size_of::<T>(), inside, place)
         .then(|| with_exposed_provenance_mut::<T>(addr as usize))
+}
+
+/// Has the processor fetch the line of an address, if it can; no address is wrong.
+#[inline(always)]
+fn prefetch(addr: u64) {
+    #[cfg(target_arch = "x86_64")]
+    // SAFETY: a hint; the processor passes over addresses that it may not read.
+    unsafe {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        _mm_prefetch::<_MM_HINT_T0>(with_exposed_provenance_mut::<i8>(addr as usize));
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = addr;
 }
 
 impl<W: Watch> EmulatedLane<W> {
@@ -144,6 +159,10 @@ impl<W: Watch> Lane for EmulatedLane<W> {
             Some(p) => unsafe { p.read() },
             None => T::zeroed(),
         }
+    }
+    #[inline(always)]
+    fn expect<T: Pod>(&self, span: Span<T>, i: u32) {
+        prefetch(span.addr().wrapping_add(i as u64 * size_of::<T>() as u64));
     }
     #[inline(always)]
     fn write<T: Pod>(&self, span: Span<T>, i: u32, value: T) {
@@ -308,7 +327,8 @@ impl<W: Watch> Block for Emulated<W> {
         let (watch, lanes) = (self.watch, self.lanes);
         let mut found = vec![None; lanes as usize];
         watch.lanes(lanes, self.phase, |lane| found[lane as usize] = find(&self.lane(lane)));
-        let mut rows = Rows::<M>::new(lanes as usize);
+        let mut memory = std::mem::take(&mut self.rows);
+        let mut rows = Rows::<M>::new(lanes as usize, &mut memory);
         let mut gathered = vec![false; lanes as usize];
         watch.lanes(lanes, self.phase, |lane| {
             if let Some(which) = found[lane as usize]
@@ -328,6 +348,7 @@ impl<W: Watch> Block for Emulated<W> {
             };
             scatter(&self.lane(lane), found[i].map(|which| (which, result)));
         });
+        self.rows = memory;
         self.phase += 1;
         watch.barrier();
     }

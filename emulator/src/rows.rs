@@ -7,17 +7,22 @@ use nearmiss_kernels::exec::RowMap;
 const WIDTH: usize = 16;
 
 /// Rows by columns, [`WIDTH`] at a time: number `k` of row `i` is `columns[i / WIDTH * NUMBERS + k][i % WIDTH]`.
-pub struct Rows<M: RowMap> {
-    columns: Vec<[M::Number; WIDTH]>,
+pub struct Rows<'a, M: RowMap> {
+    columns: &'a mut [[M::Number; WIDTH]],
 }
 
-impl<M: RowMap> Rows<M> {
+impl<'a, M: RowMap> Rows<'a, M> {
     /// Numbers of a row.
     const NUMBERS: usize = size_of::<M::Row>() / size_of::<M::Number>();
 
-    /// Rows of zeros.
-    pub fn new(len: usize) -> Self {
-        Rows { columns: vec![[M::Number::zeroed(); WIDTH]; len.div_ceil(WIDTH) * Self::NUMBERS] }
+    /// So many rows, of any numbers, in memory that is there from earlier ones.
+    pub fn new(len: usize, memory: &'a mut Vec<u64>) -> Self {
+        let columns = len.div_ceil(WIDTH) * Self::NUMBERS;
+        let words = columns * size_of::<[M::Number; WIDTH]>() / size_of::<u64>();
+        if memory.len() < words {
+            memory.resize(words, 0);
+        }
+        Rows { columns: bytemuck::cast_slice_mut(&mut memory[..words]) }
     }
 
     /// Sets a row.
@@ -38,7 +43,7 @@ impl<M: RowMap> Rows<M> {
     /// What becomes of each row in vectors, or that it is open.
     pub fn at_once(&self, map: &M) -> Vec<u32> {
         let mut results = vec![[0; WIDTH]; self.columns.len() / Self::NUMBERS];
-        at_once(map, &self.columns, &mut results);
+        at_once(map, self.columns, &mut results);
         results.into_flattened()
     }
 }
@@ -113,11 +118,12 @@ mod tests {
     #[test]
     fn vectors_give_what_each_row_gives_by_itself() {
         let rows = rows();
-        let mut columns = Rows::<Mixed>::new(rows.len());
+        let mut memory = Vec::new();
+        let mut columns = Rows::<Mixed>::new(rows.len(), &mut memory);
         rows.iter().enumerate().for_each(|(i, row)| columns.set(i, row));
         let together = columns.at_once(&Mixed);
         let mut plain = vec![[0; WIDTH]; columns.columns.len() / Rows::<Mixed>::NUMBERS];
-        each(&Mixed, &columns.columns, &mut plain);
+        each(&Mixed, columns.columns, &mut plain);
         for (i, row) in rows.iter().enumerate() {
             assert_eq!(columns.get(i).map(|x| x.map(f32::to_bits)), row.map(|x| x.map(f32::to_bits)));
             let alone = told(Mixed.apply(*row));

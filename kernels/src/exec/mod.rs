@@ -41,6 +41,10 @@ pub trait Lane {
 
     /// Element `i` of device memory.
     fn read<T: Pod>(&self, span: Span<T>, i: u32) -> T;
+    /// Element `i` of device memory will be read soon. Where lanes run one after another their memory can be on its way before
+    /// they come to it; nothing to a GPU.
+    #[inline(always)]
+    fn expect<T: Pod>(&self, _span: Span<T>, _i: u32) {}
     /// Sets element `i` of device memory.
     fn write<T: Pod>(&self, span: Span<T>, i: u32, value: T);
     /// Atomic maximum on device memory.

@@ -11,7 +11,7 @@
 //! Cost     8 B candidate, 12 B indices, 128 B positions (gathered); about 100 operations for half of the candidates of real
 //!          cloth, 300 for the others; on a CPU 300 for all, in vectors. A tenth survives.
 
-use super::{append_mapped, edge, moving};
+use super::{append_mapped, edge, expect, moving};
 use crate::abi::CullArgs;
 use crate::exec::{Block, Lane, RowMap};
 use crate::math::Real;
@@ -23,6 +23,7 @@ use core::marker::PhantomData;
 
 /// Both kinds.
 pub fn cull<R: Real, B: Block>(b: &mut B, a: &CullArgs<R>) {
+    let later = b.blocks() * b.lanes();
     let count = a.vf.listed(b);
     let may = VertexFace(a.params, PhantomData);
     append_mapped(
@@ -31,8 +32,13 @@ pub fn cull<R: Real, B: Block>(b: &mut B, a: &CullArgs<R>) {
         a.may_vf,
         &may,
         |l, i| {
-            let pair = a.vf.get(l, i);
-            (pair, l.read(a.faces, pair.b))
+            let (pair, later) = (a.vf.get(l, i), (i + later, count));
+            let face = l.read(a.faces, pair.b);
+            [pair.a, face[0], face[1], face[2]]
+                .into_iter()
+                .for_each(|vertex| l.expect(a.frames.moving, vertex));
+            expect(l, &a.vf, later, |pair| l.expect(a.faces, pair.b));
+            (pair, face)
         },
         |l, (pair, [x, y, z])| {
             let at = |vertex| moving(l, &a.frames, vertex);
@@ -47,8 +53,14 @@ pub fn cull<R: Real, B: Block>(b: &mut B, a: &CullArgs<R>) {
         a.may_ee,
         &may,
         |l, i| {
-            let pair = a.ee.get(l, i);
-            (pair, [l.read(a.edges, pair.a), l.read(a.edges, pair.b)])
+            let (pair, later) = (a.ee.get(l, i), (i + later, count));
+            let edges = [l.read(a.edges, pair.a), l.read(a.edges, pair.b)];
+            edges.into_iter().flatten().for_each(|vertex| l.expect(a.frames.moving, vertex));
+            expect(l, &a.ee, later, |pair| {
+                l.expect(a.edges, pair.a);
+                l.expect(a.edges, pair.b);
+            });
+            (pair, edges)
         },
         |l, (_, [x, y])| [edge(l, &a.frames, x), edge(l, &a.frames, y)],
     );

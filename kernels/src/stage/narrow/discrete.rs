@@ -11,7 +11,7 @@
 //! Cost     8 B pair, 24 B faces, 96 B positions (gathered); about 100 operations for a pair that a plane separates. A sign
 //!          takes `wide` some 30 operations in f64, `exact` thousands on integers.
 
-use super::{Entries, append_each, stride};
+use super::{Entries, append_each, expect, stride};
 use crate::abi::{DiscreteArgs, DiscreteFlags, Pair};
 use crate::exec::{Block, Lane, OPEN, RowMap, Slot};
 use crate::math::{Real, Vec3};
@@ -90,6 +90,7 @@ pub const fn shared_bytes(lanes: u32) -> u32 {
 /// plane, which takes no branch; the others wait until there is one a lane.
 pub fn filter<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
     let (count, lanes) = (a.pairs.listed(b), b.lanes());
+    let later = b.blocks() * lanes;
     let waiting = b.shared::<[u32; 2]>(2 * lanes);
     let mut verdicts = Verdicts::new(b);
     let mut open = b.slot(None);
@@ -104,7 +105,13 @@ pub fn filter<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
                     return None;
                 }
                 let pair = a.pairs.get(l, i);
-                Some((pair, l.read(a.faces, pair.a), l.read(a.faces, pair.b)))
+                let faces = [l.read(a.faces, pair.a), l.read(a.faces, pair.b)];
+                faces.into_iter().flatten().for_each(|vertex| l.expect(a.positions, vertex));
+                expect(l, &a.pairs, (i + later, count), |pair| {
+                    l.expect(a.faces, pair.a);
+                    l.expect(a.faces, pair.b);
+                });
+                Some((pair, faces[0], faces[1]))
             },
             |l, (_, p, q)| (!beyond_shared(a, p, q)).then(|| [corners(l, a, p), corners(l, a, q)]),
             |l, told| {

@@ -19,7 +19,7 @@
 //! Cost     8 B pair, 64 B facets, 192 B positions (gathered; at rest 96 B); some 500 operations, half of them for the 15 tests
 //!          (at rest those alone, 300), without branches; on a CPU in vectors. What is to be listed is numbered in shared memory first, so that all lanes write.
 
-use super::moving;
+use super::{expect, moving};
 use crate::abi::{Facet, FeaturesArgs, Pair, Positions};
 use crate::exec::{Block, Lane, RowMap, Slot};
 use crate::math::{Real, Vec3};
@@ -56,6 +56,8 @@ fn owned(p: &Facet, q: &Facet) -> u32 {
 pub trait Course<R: Real> {
     /// What it reads.
     type Corner: Pod;
+    /// It will be read soon.
+    fn expect<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32);
     /// Reads it.
     fn corner<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32) -> Self::Corner;
     /// Which tests of two triangles have features whose boxes come within a gap, and not later than the horizon.
@@ -67,6 +69,10 @@ pub struct Moves;
 
 impl<R: Real> Course<R> for Moves {
     type Corner = Moving<R>;
+    #[inline(always)]
+    fn expect<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32) {
+        l.expect(frames.moving, vertex);
+    }
     #[inline(always)]
     fn corner<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32) -> Moving<R> {
         moving(l, frames, vertex)
@@ -82,6 +88,10 @@ pub struct Rests;
 
 impl<R: Real> Course<R> for Rests {
     type Corner = Vec3<R>;
+    #[inline(always)]
+    fn expect<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32) {
+        l.expect(frames.still, vertex);
+    }
     #[inline(always)]
     fn corner<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32) -> Vec3<R> {
         l.read(frames.still, vertex).at
@@ -130,6 +140,7 @@ pub fn features<R: Real, C: Course<R>, B: Block>(b: &mut B, a: &FeaturesArgs<R>)
     let mut masks = b.slot(0u32);
     let mut places = b.slot(0u32);
     let mut base = b.block() * lanes;
+    let stride = b.blocks() * lanes;
     while base < count {
         b.map_rows(
             &map,
@@ -140,6 +151,14 @@ pub fn features<R: Real, C: Course<R>, B: Block>(b: &mut B, a: &FeaturesArgs<R>)
                 }
                 let pair = a.pairs.get(l, i);
                 let (p, q) = (l.read(a.facets, pair.a), l.read(a.facets, pair.b));
+                [p, q]
+                    .iter()
+                    .flat_map(|facet| facet.corners)
+                    .for_each(|vertex| C::expect(l, &a.frames, vertex));
+                expect(l, &a.pairs, (i + stride, count), |pair| {
+                    l.expect(a.facets, pair.a);
+                    l.expect(a.facets, pair.b);
+                });
                 Some((owned(&p, &q), p.corners, q.corners))
             },
             |l, (_, p, q)| {
@@ -184,7 +203,7 @@ pub fn features<R: Real, C: Course<R>, B: Block>(b: &mut B, a: &FeaturesArgs<R>)
             }
             l.meet();
         });
-        base += b.blocks() * lanes;
+        base += stride;
     }
 }
 

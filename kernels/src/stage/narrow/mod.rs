@@ -18,7 +18,7 @@ pub mod slice;
 pub mod solve;
 
 use crate::abi::{Output, Pair, Point, Positions, Span};
-use crate::exec::{Block, Lane, RowMap, Slot};
+use crate::exec::{ALONE, Block, Lane, RowMap, Slot};
 use crate::math::{Real, Vec3};
 use crate::prim::cubic::Moving;
 
@@ -83,6 +83,14 @@ fn edge_edge_at<R: Real, L: Lane>(
     let at = |vertex| l.read(positions, vertex).at;
     let edge = |[x, y]: [u32; 2]| [at(x), at(y)];
     [edge(l.read(edges, pair.a)), edge(l.read(edges, pair.b))]
+}
+
+/// Where lanes run one after another: what the pair begins with that is `later` in the list will be read soon.
+#[inline(always)]
+fn expect<L: Lane>(l: &L, pairs: &Output<Pair>, (later, count): (u32, u32), what: impl Fn(Pair)) {
+    if ALONE && later < count {
+        what(pairs.get(l, later));
+    }
 }
 
 /// Runs `body` for each stretch of `count` items that a block takes, an item a lane, in a grid of any size: with the number of
