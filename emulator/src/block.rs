@@ -1,6 +1,7 @@
 //! A block on the CPU: its phases are loops over its lanes.
 
 use crate::coherent;
+use crate::prefetch::prefetch;
 use crate::rows::Rows;
 use crate::sanitizer::{Access, Place};
 use bytemuck::Pod;
@@ -110,19 +111,6 @@ fn device<T, W: Watch>(watch: &W, access: Access, span: Span<T>, i: u32, place: 
     watch
         .device(access, addr, size_of::<T>(), inside, place)
         .then(|| with_exposed_provenance_mut::<T>(addr as usize))
-}
-
-/// Has the processor fetch the line of an address, if it can; no address is wrong.
-#[inline(always)]
-fn prefetch(addr: u64) {
-    #[cfg(target_arch = "x86_64")]
-    // SAFETY: a hint; the processor passes over addresses that it may not read.
-    unsafe {
-        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        _mm_prefetch::<_MM_HINT_T0>(with_exposed_provenance_mut::<i8>(addr as usize));
-    }
-    #[cfg(not(target_arch = "x86_64"))]
-    let _ = addr;
 }
 
 impl<W: Watch> EmulatedLane<W> {

@@ -5,6 +5,7 @@ mod coherent;
 mod compiled;
 mod observer;
 mod order;
+mod prefetch;
 mod rows;
 mod sanitizer;
 mod shadow;

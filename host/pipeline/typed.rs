@@ -144,6 +144,9 @@ impl<R: Precision> TypedPipeline<R> {
             device,
         };
         pipeline.narrow.place(bodies);
+        if pipeline.broad.can_sample() {
+            pipeline.narrow.take_samples(&pipeline.device)?;
+        }
         Ok(pipeline)
     }
 
@@ -168,14 +171,9 @@ impl<R: Precision> TypedPipeline<R> {
         }
     }
 
-    /// Whether a sample's answer bounds the whole.
-    fn samples(&self) -> bool {
-        self.narrow.bound().is_some() && self.broad.can_sample()
-    }
-
     /// Asks a sample, where its answer bounds the whole. Nothing of it is counted: too little room would make the bound worse, and not wrong.
     fn sample(&mut self) -> Result<(), Error> {
-        if !self.samples() {
+        if self.narrow.bound().is_none() {
             return Ok(());
         }
         self.narrow.sample(true);
@@ -191,10 +189,7 @@ impl<R: Precision> TypedPipeline<R> {
         loop {
             match step {
                 Step::Sample => self.traverse(Which::Sample)?,
-                Step::Traverse => {
-                    let bound = self.narrow.bound().filter(|_| self.broad.can_sample());
-                    self.traverse(bound.map_or(Which::All, Which::Before))?;
-                }
+                Step::Traverse => self.traverse(self.narrow.bound().map_or(Which::All, Which::Before))?,
                 Step::Narrow(_) | Step::Order => {
                     let given = NarrowContext {
                         device: &self.device,

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// What no proof of an answer rests on, or what is no allowance.
-const OTHERS: [(&str, &str); 24] = [
+const OTHERS: [(&str, &str); 25] = [
     ("U32", "the unit"),
     ("U64", "the unit"),
     ("CUBIC_VALUE", "a guess: the cubic's roots guarantee nothing"),
@@ -13,6 +13,7 @@ const OTHERS: [(&str, &str); 24] = [
     ("INCLUSION_FINEST", "a limit of what may be asked"),
     ("INCLUSION_FAINT", "a range"),
     ("ISOLATE_MARGIN", "a cost"),
+    ("HORIZON_MARGIN", "the sum of ISOLATE_MARGIN and two windows, and more: tests/isolate/begin.rs"),
     ("ADVANCE_FINEST", "a limit of what may be asked"),
     ("NEAR_FINEST", "a limit of what may be asked"),
     ("NEAR_GROWTH", "what is listed, not what is certain"),

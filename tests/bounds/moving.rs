@@ -2,7 +2,8 @@
 
 use crate::exact::Exact;
 use crate::hunt::{Hunt, held, plain};
-use nearmiss_kernels::bv::Linear;
+use nearmiss_kernels::bv::{Linear, Volume};
+use nearmiss_kernels::math::tolerance::{MOVING_MIXTURE, MOVING_TIME};
 
 const FAR: f32 = 1e6;
 
@@ -46,7 +47,26 @@ fn moving_time() {
         }
         let late = f64::from(from) - crossing(p, q);
         let early = crossing(r, s) - f64::from(to);
-        (late + early) / f64::from(nearmiss_kernels::math::tolerance::MOVING_TIME)
+        (late + early) / f64::from(MOVING_TIME)
     };
     held("MOVING_TIME", "f32", &Hunt { starts: 24, ..Hunt::new(41) }.most::<f32>(|r| plain(r, 8), ratio));
+}
+
+/// Measured: how much of the slack a bound at a time uses up.
+#[test]
+fn moving_mixture() {
+    let ratio = |x: &[f64]| {
+        let [start, end, time] = [0, 1, 2].map(|i| x[i] as f32);
+        let time = time.abs();
+        if !(time > 0.0 && time < 1.0) {
+            return f64::NAN;
+        }
+        let moving = Linear { lo0: [-FAR; 3], hi0: [start; 3], lo1: [-FAR; 3], hi1: [end; 3], pad: [0; 2] };
+        let [from, to, at] = [start, end, time].map(|x| Exact::of(f64::from(x)));
+        let exact = from * (Exact::of(1.0) - at.clone()) + to * at;
+        let slack = start.abs().max(end.abs()) * MOVING_MIXTURE;
+        let left = Exact::of(f64::from(moving.until(time).hi1[0])) - exact;
+        1.0 - left.over(&Exact::of(f64::from(slack)))
+    };
+    held("MOVING_MIXTURE", "f32", &Hunt { starts: 24, ..Hunt::new(43) }.most::<f32>(|r| plain(r, 3), ratio));
 }

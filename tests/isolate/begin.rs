@@ -1,12 +1,12 @@
 //! When an answer begins: who asks for the earliest time alone leaves out pairs by when they begin, so no answer may begin sooner.
 
 use nearmiss_kernels::bv::{Linear, Volume};
+use nearmiss_kernels::bvh::horizon::Horizon;
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::cubic::Moving;
 use nearmiss_kernels::prim::inclusion::Params;
 use nearmiss_kernels::prim::isolate::{Edges, Face, Pair, Rungs, ee_certified, vf_certified};
 use nearmiss_kernels::prim::sweep::meeting;
-use nearmiss_kernels::stage::horizon::Horizon;
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 

@@ -105,13 +105,7 @@ impl ContinuousNarrow {
     ) -> Result<Self, Error> {
         let capacities = Capacities { hits: [0, 0], ..Capacities::usual(room) };
         let narrow = ContinuousNarrow::new(device, layout, solver, capacities)?;
-        let memory = device.of(purpose::EARLIEST);
-        let mut narrow = ContinuousNarrow { earliest: Some(memory.buffer(1)?), ..narrow };
-        // Only isolation has a time before which no answer can be. Until there is a sample nothing is known.
-        if solver.certified().is_some_and(|certified| !certified.is_apart()) {
-            narrow.bound = Some(memory.upload(&[u64::MAX])?);
-        }
-        Ok(narrow)
+        Ok(ContinuousNarrow { earliest: Some(device.of(purpose::EARLIEST).buffer(1)?), ..narrow })
     }
 
     /// Takes the memory, with room for so many.
@@ -281,6 +275,15 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
             Step::Cull => self.cull(given),
             Step::Solve => self.solve(given),
         }
+    }
+
+    fn take_samples(&mut self, device: &Device) -> Result<(), Error> {
+        // Only isolation has a time before which no answer can be.
+        let isolates = self.solver.certified().is_some_and(|certified| !certified.is_apart());
+        if self.earliest.is_some() && isolates {
+            self.bound = Some(device.of(purpose::EARLIEST).buffer(1)?);
+        }
+        Ok(())
     }
 
     fn bound(&self) -> Option<Span<u64>> {

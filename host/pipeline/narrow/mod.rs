@@ -53,7 +53,15 @@ pub trait Narrow<R: Precision>: Send {
     /// Those of the device.
     fn run(&mut self, step: usize, given: &NarrowContext<R>) -> Result<(), Error>;
 
-    /// Where a bound of the earliest time lies: what a sample found. None where no sample helps.
+    /// There can be samples: takes what they need, where they help.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn take_samples(&mut self, _device: &Device) -> Result<(), Error> {
+        Ok(())
+    }
+
+    /// Where the bound of the earliest time lies that a sample finds. None where there is none.
     fn bound(&self) -> Option<Span<u64>> {
         None
     }

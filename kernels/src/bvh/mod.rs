@@ -2,6 +2,7 @@
 
 pub mod filter;
 pub mod group;
+pub mod horizon;
 pub mod leaf;
 pub mod on_chip;
 pub mod tiles;

@@ -13,12 +13,11 @@
 //! | [`status`] | counts, and the lists' room | whether the answer is whole, for who does not ask the host |
 //!
 //! No stage calls another; they meet in memory, through [`crate::abi`]. What [`traverse`] and [`narrow`] both leave out of a query for the
-//! earliest time is told by [`horizon`].
+//! earliest time is told by [`crate::bvh::horizon`].
 
 pub mod balance;
 pub mod construct;
 pub mod fit;
-pub mod horizon;
 pub mod narrow;
 pub mod order;
 pub mod place;

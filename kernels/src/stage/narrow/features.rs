@@ -21,11 +21,11 @@
 
 use super::{expect, moving};
 use crate::abi::{Facet, FeaturesArgs, Pair, Positions};
+use crate::bvh::horizon::Horizon;
 use crate::exec::{Block, Lane, RowMap, Slot};
 use crate::math::{Real, Vec3};
 use crate::prim::cubic::Moving;
 use crate::prim::sweep::{MOST, meeting, meeting_at_rest, more};
-use crate::stage::horizon::Horizon;
 use bytemuck::Pod;
 use core::marker::PhantomData;
 

@@ -14,11 +14,11 @@
 
 use crate::abi::{LEAF, MIXED, NONE, Pair, TileTrianglesArgs, TraverseFlags, counter};
 use crate::bv::Volume;
+use crate::bvh::horizon::Horizon;
 use crate::bvh::on_chip::OnChip;
 use crate::bvh::tiles::TILE;
 use crate::exec::{Block, Lane, Shared, Slot};
 use crate::prim::adjacent::share_a_vertex;
-use crate::stage::horizon::Horizon;
 
 /// Lanes of a block.
 pub const LANES: u32 = TILE;

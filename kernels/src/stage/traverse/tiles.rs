@@ -12,9 +12,9 @@
 
 use crate::abi::{LEAF, NONE, NodeFilter, Pair, TilePairsArgs, counter};
 use crate::bv::Volume;
+use crate::bvh::horizon::Horizon;
 use crate::bvh::tiles::{FAN, MOST_LEVELS, TILE};
 use crate::exec::{Block, Lane, Shared, Slot};
-use crate::stage::horizon::Horizon;
 
 /// Lanes of a block: two nodes' children.
 pub const LANES: u32 = 2 * FAN;
