@@ -18,7 +18,7 @@ const LANES: [u32; 7] = [1, 7, 32, 33, 64, 256, 1024];
 /// Numbers of blocks of a launch.
 const BLOCKS: [u32; 4] = [0, 1, 2, 13];
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, bytemuck::NoUninit)]
 #[repr(C)]
 struct Args {
     /// A number of each lane of the launch.

@@ -22,7 +22,7 @@ use support::{ORDERS, ask, engine, sanitizer};
 // The sanitizer.
 
 /// Memory that the kernels of this test touch.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, bytemuck::NoUninit)]
 #[repr(C)]
 struct Words {
     words: Span<u32>,

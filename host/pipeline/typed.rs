@@ -46,8 +46,8 @@ enum Step {
     Sample,
     /// Candidate triangle pairs.
     Traverse,
-    /// A step of the narrow phase, by its place.
-    Narrow(usize),
+    /// A step of the narrow phase, by its place; and whether it looks at a sample.
+    Narrow(usize, bool),
     /// Contacts in canonical order, where the device does that.
     Order,
 }
@@ -165,7 +165,7 @@ impl<R: Precision> TypedPipeline<R> {
                 self.sample()?;
                 self.step(Step::Traverse)
             }
-            Stage::Narrow => self.narrow_steps_at().try_for_each(|at| self.step(Step::Narrow(at))),
+            Stage::Narrow => self.narrow(false),
             Stage::Order if self.narrow.ordered().is_some() => self.step(Step::Order),
             Stage::Order => Ok(()),
         }
@@ -176,11 +176,14 @@ impl<R: Precision> TypedPipeline<R> {
         if self.narrow.bound().is_none() {
             return Ok(());
         }
-        self.narrow.sample(true);
-        let done = self.step(Step::Sample).and_then(|()| self.run(Stage::Narrow));
-        self.narrow.sample(false);
-        done?;
+        self.step(Step::Sample)?;
+        self.narrow(true)?;
         self.counters.clear()
+    }
+
+    /// All steps of the narrow phase, of a sample or of all.
+    fn narrow(&mut self, is_sample: bool) -> Result<(), Error> {
+        self.narrow_steps_at().try_for_each(|at| self.step(Step::Narrow(at, is_sample)))
     }
 
     /// Runs a step. Until the lists have settled it waits for the step's demand and, where a list was too short, grows
@@ -190,7 +193,7 @@ impl<R: Precision> TypedPipeline<R> {
             match step {
                 Step::Sample => self.traverse(Which::Sample)?,
                 Step::Traverse => self.traverse(self.narrow.bound().map_or(Which::All, Which::Before))?,
-                Step::Narrow(_) | Step::Order => {
+                Step::Narrow(..) | Step::Order => {
                     let given = NarrowContext {
                         device: &self.device,
                         frames: self.vertices.frames(),
@@ -198,8 +201,9 @@ impl<R: Precision> TypedPipeline<R> {
                         pairs: self.pairs.output(self.counters.counters()),
                         bodies: self.records.span(),
                         counters: self.counters.counters(),
+                        is_sample: matches!(step, Step::Narrow(_, true)),
                     };
-                    if let Step::Narrow(at) = step {
+                    if let Step::Narrow(at, _) = step {
                         self.narrow.run(at, &given)
                     } else {
                         self.narrow.order(&given)
@@ -218,7 +222,7 @@ impl<R: Precision> TypedPipeline<R> {
                     lists.push(&mut self.pairs);
                     lists
                 }
-                Step::Narrow(at) => self.narrow.lists(at),
+                Step::Narrow(at, _) => self.narrow.lists(at),
                 Step::Order => self.narrow.ordered().into_iter().collect(),
             };
             for list in lists {

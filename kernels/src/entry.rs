@@ -19,6 +19,7 @@ use crate::stage::narrow::{
 use crate::stage::refit::{bottom_up, levels, tiles as refit_of_tiles, treelets};
 use crate::stage::traverse::{front, nearest as nearest_first, queue, steal};
 use crate::stage::{balance, fit as fitting, order, place, status, traverse};
+use bytemuck::NoUninit;
 use core::marker::PhantomData;
 use name::{Name, precision};
 
@@ -27,7 +28,7 @@ pub trait Entry: 'static {
     /// The name of the PTX entry, of the profiler's row and of this type: stage and step.
     const NAME: &'static str;
     /// What it is launched with.
-    type Args: Copy + Send + Sync + 'static;
+    type Args: NoUninit + Send + Sync;
     /// Lanes of a block.
     const LANES: u32;
     /// Whether it works with no other number of lanes.

@@ -7,7 +7,7 @@ use nearmiss_kernels::abi::{Counter, Counters, Output, counter};
 /// Entries that the lists have room for.
 const FEW: usize = 100;
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, bytemuck::NoUninit)]
 #[repr(C)]
 struct Lists {
     one: Output<u32>,

@@ -25,28 +25,32 @@ fn point(r: &mut SmallRng, (height, way): (f32, f32), flat: bool) -> Moving<f32>
     Moving { t0, t1 }
 }
 
+/// Two triangles, of which the second falls on the first; three of four pairs are flat, each in a plane.
+fn falling(seed: u64) -> impl Iterator<Item = [[Moving<f32>; 3]; 2]> {
+    let mut r = SmallRng::seed_from_u64(seed);
+    (0..6000).map(move |i| {
+        let (height, way) = (r.random_range(0.0..1.0f32), -r.random_range(0.5..2.0f32));
+        [(0.0, 0.0), (height, way)].map(|to| [0; 3].map(|_| point(&mut r, to, i % 4 > 0)))
+    })
+}
+
 #[test]
 fn no_answer_begins_before_its_window_with_the_margin() {
-    let mut r = SmallRng::seed_from_u64(23);
     let p = Params::new(1e-4);
     let (mut met, mut in_the_margin) = (0, 0);
-    for i in 0..6000 {
-        let flat = i % 4 > 0;
-        let height = r.random_range(0.0..1.0f32);
-        let a = [0; 3].map(|_| point(&mut r, (0.0, 0.0), flat));
-        let way = -r.random_range(0.5..2.0f32);
-        let b = [0; 2].map(|_| point(&mut r, (height, way), flat));
+    for [a, [v, w, _]] in falling(23) {
+        let (edge, other) = ([a[0], a[1]], [v, w]);
         for rungs in [Rungs::All, Rungs::Single, Rungs::Double] {
             let told = [
-                (vf_certified(b[0], a, rungs, &p), begins(&Face::new(b[0], a, &p))),
-                (ee_certified([a[0], a[1]], b, rungs, &p), begins(&Edges::new([a[0], a[1]], b, &p))),
+                (vf_certified(v, a, rungs, &p), begins(&Face::new(v, a, &p))),
+                (ee_certified(edge, other, rungs, &p), begins(&Edges::new(edge, other, &p))),
             ];
             for (verdict, begin) in told {
                 if verdict.is_separated() {
                     continue;
                 }
                 let [with_margin, without] = begin.expect("what meets has a window").map(f64::from);
-                assert!(verdict.toi >= with_margin, "{verdict:?} before {with_margin}: {a:?} {b:?}");
+                assert!(verdict.toi >= with_margin, "{verdict:?} before {with_margin}: {a:?} {other:?}");
                 met += 1;
                 in_the_margin += (verdict.toi < without) as u32;
             }
@@ -61,15 +65,9 @@ fn no_answer_begins_before_its_window_with_the_margin() {
 /// itself, some would be left out.
 #[test]
 fn a_pair_is_never_behind_the_horizon_of_its_own_time() {
-    let mut r = SmallRng::seed_from_u64(24);
     let p = Params::new(1e-4);
     let (mut met, mut lost) = (0, [0; 2]);
-    for i in 0..6000 {
-        let flat = i % 4 > 0;
-        let height = r.random_range(0.0..1.0f32);
-        let below = [0; 3].map(|_| point(&mut r, (0.0, 0.0), flat));
-        let way = -r.random_range(0.5..2.0f32);
-        let above = [0; 3].map(|_| point(&mut r, (height, way), flat));
+    for [below, above] in falling(24) {
         let [a, b, _] = below;
         let told = [
             (vf_certified(above[0], below, Rungs::All, &p), 1 << 0),

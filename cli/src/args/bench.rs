@@ -45,11 +45,14 @@ fn cases() -> String {
 }
 
 impl BenchArgs {
-    /// Whether that question of that case is chosen, whether or not there is such a one.
-    pub fn has(&self, case: &str, question: &str) -> bool {
-        let named = |of: &Question| of.name() == question;
-        (self.case.is_empty() || self.case.iter().any(|of| of == case))
-            && (self.question.is_empty() || self.question.iter().any(named))
+    /// Whether a case of that name is chosen, whether or not there is such a one.
+    pub fn has_case(&self, name: &str) -> bool {
+        self.case.is_empty() || self.case.iter().any(|case| case == name)
+    }
+
+    /// The same of a question.
+    pub fn has_question(&self, name: &str) -> bool {
+        self.question.is_empty() || self.question.iter().any(|question| question.name() == name)
     }
 
     /// Gives each `--mesh` its files.

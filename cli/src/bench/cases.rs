@@ -148,7 +148,7 @@ pub fn chosen(args: &BenchArgs) -> Result<Vec<Chosen>, Error> {
             advice: format!("choose among: {}", names.join(", ")),
         });
     }
-    all.retain(|case| args.case.is_empty() || args.case.contains(&case.name));
+    all.retain(|case| args.has_case(&case.name));
     Ok(all)
 }
 
@@ -156,7 +156,7 @@ pub fn chosen(args: &BenchArgs) -> Result<Vec<Chosen>, Error> {
 pub fn questions(args: &BenchArgs) -> impl Iterator<Item = Question> {
     use clap::ValueEnum;
     let all = Question::value_variants().iter().copied();
-    all.filter(|question| args.question.is_empty() || args.question.contains(question))
+    all.filter(|question| args.has_question(question.name()))
 }
 
 /// Where everything that can move is in the step that the scene is in, as a simulator tells it frame after frame.

@@ -81,7 +81,7 @@ pub fn bench(args: &BenchArgs) -> Result<ExitCode, Error> {
             advice: "of what stands still there is no step, and of one body no distance: choose another question or case".into(),
         });
     }
-    let is_chosen = |case: &str, question: &str| args.has(case, question);
+    let is_chosen = |case: &str, question: &str| args.has_case(case) && args.has_question(question);
     let faults = earlier.map_or(Vec::new(), |earlier| compare(&mut all, &earlier, is_chosen, args.limit));
     let done = super::report(&args.report, &all, text::text, write)?;
     faults.into_iter().next().map_or(Ok(done), Err)

@@ -73,8 +73,6 @@ pub struct ContinuousNarrow {
     earliest: Option<Buffer<u64>>,
     /// The smallest of a sample, where that bounds the other.
     bound: Option<Buffer<u64>>,
-    /// Whether a sample is looked at.
-    samples: bool,
     /// All contacts in order, where the device orders them.
     ordered: Option<Order<Hit>>,
 }
@@ -144,7 +142,6 @@ impl ContinuousNarrow {
             below_precision: None,
             earliest: None,
             bound: None,
-            samples: false,
             ordered: None,
         })
     }
@@ -215,7 +212,7 @@ impl ContinuousNarrow {
     /// # Errors
     /// Those of the device.
     pub fn solve<R: Precision>(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
-        let first = if self.samples { &mut self.bound } else { &mut self.earliest };
+        let first = if given.is_sample { &mut self.bound } else { &mut self.earliest };
         let earliest = first.as_ref().map_or(Span::EMPTY, Buffer::span);
         if let Some(earliest) = first {
             // The greatest number.
@@ -226,7 +223,7 @@ impl ContinuousNarrow {
         let precision = match self.solver {
             ContinuousSolver::Certified(_) => {
                 let hits = [&self.vf_hits, &self.ee_hits];
-                self.rungs.climb(given, (edges, self.samples), ([vf, ee], hits, earliest))?;
+                self.rungs.climb(given, (edges, given.is_sample), ([vf, ee], hits, earliest))?;
                 let listed = (edges, &self.vf_hits, &self.ee_hits);
                 return below_precision::count(self.below_precision, listed, given);
             }
@@ -269,7 +266,8 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
         match self.all_steps()[step] {
             Step::Features => {
                 let gap = self.solver.certified().filter(|certified| certified.is_apart());
-                let known = self.bound.as_ref().filter(|_| !self.samples).map_or(Span::EMPTY, Buffer::span);
+                let known =
+                    self.bound.as_ref().filter(|_| !given.is_sample).map_or(Span::EMPTY, Buffer::span);
                 self.features.run::<R, R::Features>(given, (gap.map_or(0.0, Certified::listed_within), known))
             }
             Step::Cull => self.cull(given),
@@ -288,10 +286,6 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
 
     fn bound(&self) -> Option<Span<u64>> {
         self.bound.as_ref().map(Buffer::span)
-    }
-
-    fn sample(&mut self, begins: bool) {
-        self.samples = begins;
     }
 
     fn lists(&mut self, step: usize) -> Vec<&mut dyn GrowableOutput> {

@@ -40,6 +40,8 @@ pub struct NarrowContext<'a, R: Precision> {
     pub bodies: Span<BodyRecord>,
     /// The frame's counters.
     pub counters: Counters,
+    /// Whether candidates are those of a sample, which is asked for a bound.
+    pub is_sample: bool,
 }
 
 /// The narrow phase of a kind of query: its steps, the lists that they fill, and what it hands over.
@@ -65,9 +67,6 @@ pub trait Narrow<R: Precision>: Send {
     fn bound(&self) -> Option<Span<u64>> {
         None
     }
-
-    /// From here on steps look at a sample, for the bound; or no longer.
-    fn sample(&mut self, _begins: bool) {}
 
     /// The lists that the step of that place fills.
     fn lists(&mut self, step: usize) -> Vec<&mut dyn GrowableOutput>;

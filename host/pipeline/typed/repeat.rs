@@ -57,7 +57,7 @@ impl<R: Precision> Again for TypedPipeline<R> {
         let mut all = Vec::new();
         for (at, name) in self.narrow.steps().into_iter().enumerate() {
             let start = self.device.event()?;
-            self.step(Step::Narrow(at))?;
+            self.step(Step::Narrow(at, false))?;
             all.push((name, start.to(&self.device.event()?)?));
         }
         Ok(all)

@@ -19,10 +19,12 @@ macro_rules! arguments {
         pub struct $name $(<$($g: $bound),*>)? { $($(#[$fdoc])* pub $field: $ty,)* }
         // SAFETY: every field is Zeroable, which `FITS` asks.
         unsafe impl $(<$($g: $bound),*>)? Zeroable for $name $(<$($g),*>)? {}
+        // SAFETY: no field has padding, nor is there any between them, both of which `FITS` asks.
+        unsafe impl $(<$($g: $bound),*>)? bytemuck::NoUninit for $name $(<$($g),*>)? {}
         impl $(<$($g: $bound),*>)? $name $(<$($g),*>)? {
             /// Evaluated for every block that is launched: no padding, and every field may be zero.
             pub const FITS: () = {
-                const fn bytes<T: Zeroable>() -> usize { size_of::<T>() }
+                const fn bytes<T: Zeroable + bytemuck::NoUninit>() -> usize { size_of::<T>() }
                 assert!(0 $(+ bytes::<$ty>())* == size_of::<Self>());
             };
         }

@@ -1,7 +1,7 @@
 //! The counters of a frame: what each counts, and the memory that they are in.
 
 use super::{Output, Span};
-use bytemuck::{Pod, Zeroable};
+use bytemuck::{NoUninit, Pod, Zeroable};
 
 /// Which counter. Those that there are have names here, in this module; no number is one.
 ///
@@ -143,6 +143,8 @@ pub struct Counters(Span<u64>);
 
 // SAFETY: a span, which may be zeros.
 unsafe impl Zeroable for Counters {}
+// SAFETY: a span, which has no padding.
+unsafe impl NoUninit for Counters {}
 
 impl Counters {
     /// Those in that memory.

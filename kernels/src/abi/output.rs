@@ -1,7 +1,7 @@
 //! A list of device memory together with what counts it.
 
 use super::Span;
-use bytemuck::Zeroable;
+use bytemuck::{NoUninit, Zeroable};
 
 /// A list that a kernel appends to and the next one reads: its memory, and where its exact demand is counted.
 ///
@@ -24,6 +24,8 @@ impl<T> Copy for Output<T> {}
 
 // SAFETY: a span, which may be zeros, and a u64; all zeros are no list.
 unsafe impl<T> Zeroable for Output<T> {}
+// SAFETY: a span, which has no padding, and a u64 aligned as it is.
+unsafe impl<T: 'static> NoUninit for Output<T> {}
 
 impl<T> Output<T> {
     /// No list: nothing can be appended, and there is nothing to read, not even a length.

@@ -1,6 +1,6 @@
 //! A stretch of device memory.
 
-use bytemuck::Zeroable;
+use bytemuck::{NoUninit, Zeroable};
 use core::marker::PhantomData;
 
 /// `len` elements of `T` at a device address. On the CPU the address is the host's.
@@ -23,6 +23,8 @@ impl<T> Copy for Span<T> {}
 
 // SAFETY: two u64 and a zero-sized marker; all zeros are the empty span.
 unsafe impl<T> Zeroable for Span<T> {}
+// SAFETY: two u64 and a zero-sized marker leave no padding.
+unsafe impl<T: 'static> NoUninit for Span<T> {}
 
 impl<T> Span<T> {
     /// No elements.

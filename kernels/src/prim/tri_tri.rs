@@ -60,8 +60,7 @@ pub fn sign<R: Real, S: Signs<R>>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3], which: u32
 pub fn decided(signs: &[i32; SIGNS as usize]) -> Option<bool> {
     let of = |i: usize| [signs[3 * i], signs[3 * i + 1], signs[3 * i + 2]];
     let (q_of_p, p_of_q) = (of(0), of(1));
-    let one_side = |s: [i32; 3]| s[0] != 0 && s[0] == s[1] && s[1] == s[2];
-    if one_side(q_of_p) || one_side(p_of_q) {
+    if one_side(&q_of_p.map(Some)) || one_side(&p_of_q.map(Some)) {
         return Some(false);
     }
     let (p_proper, q_proper) = (q_of_p != [0; 3], p_of_q != [0; 3]);
@@ -70,10 +69,6 @@ pub fn decided(signs: &[i32; SIGNS as usize]) -> Option<bool> {
     }
     // An edge about another is the other about it: two exchanges of corners.
     let stabs = |edge: [i32; 3]| !(edge.contains(&-1) && edge.contains(&1));
-    let leaves = |side: [i32; 3], i: usize| {
-        let (from, to) = (side[i], side[(i + 1) % 3]);
-        from * to <= 0 && (from, to) != (0, 0)
-    };
     let of_p = |i: usize| leaves(p_of_q, i) && stabs(of(2 + i));
     let of_q = |k: usize| leaves(q_of_p, k) && stabs([signs[6 + k], signs[9 + k], signs[12 + k]]);
     Some((q_proper && (0..3).any(of_p)) || (p_proper && (0..3).any(of_q)))
@@ -129,17 +124,23 @@ fn meets_on<R: Real, S: Signs<R>>(
     if unsure { None } else { Some(false) }
 }
 
+/// Whether edge `i` of a triangle meets a plane without lying in it, by its corners' sides of that.
+#[inline(always)]
+fn leaves(side: [i32; 3], i: usize) -> bool {
+    let (from, to) = (side[i], side[(i + 1) % 3]);
+    from * to <= 0 && (from, to) != (0, 0)
+}
+
 /// Whether an edge of `p` that leaves the plane of `q` meets `q`, which has area; `side` is of `p`'s corners.
 /// By value and out of line, as few pairs come here: the common path keeps its corners in registers.
 #[inline(never)]
 fn edges_pierce<R: Real, S: Signs<R>>(p: [Vec3<R>; 3], side: [i32; 3], q: [Vec3<R>; 3]) -> Option<bool> {
     let mut unsure = false;
     for i in 0..3 {
-        let j = (i + 1) % 3;
-        if side[i] * side[j] > 0 || (side[i] == 0 && side[j] == 0) {
+        if !leaves(side, i) {
             continue;
         }
-        match line_stabs::<R, S>(p[i], p[j], &q) {
+        match line_stabs::<R, S>(p[i], p[(i + 1) % 3], &q) {
             Some(false) => {}
             Some(true) => return Some(true),
             None => unsure = true,

@@ -119,6 +119,7 @@ impl<R: Precision> Run<'_, R> {
             pairs: Output::EMPTY,
             bodies: Span::EMPTY,
             counters: self.counters.counters(),
+            is_sample: false,
         };
         let start = self.device.event()?;
         if self.filters {

@@ -94,6 +94,7 @@ fn some<R: Precision>(device: &Device, mesh: &Mesh, test: TriangleTest) -> Resul
             pairs: list.output(counters.counters()),
             bodies: Span::EMPTY,
             counters: counters.counters(),
+            is_sample: false,
         };
         let start = device.event()?;
         narrow.decide(&given)?;

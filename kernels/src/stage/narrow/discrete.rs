@@ -200,7 +200,7 @@ fn beyond(p: [Vec3<f32>; 3], q: [Vec3<f32>; 3], shared: Shared) -> Option<bool> 
 /// Pairs that a block of `exact` looks at together.
 const TOGETHER: u32 = 4;
 /// Lanes of a pair: as many as signs, and one that waits.
-pub const LANES_A_PAIR: u32 = SIGNS.next_power_of_two();
+const LANES_A_PAIR: u32 = SIGNS.next_power_of_two();
 /// Shared memory of `exact`: signs.
 pub const EXACT_SHARED: u32 = 4 * TOGETHER * LANES_A_PAIR;
 
