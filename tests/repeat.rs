@@ -115,3 +115,33 @@ fn nothing_has_no_stages() {
         assert_eq!(detector.repeat_stage(stage, 4).expect("no runs"), Vec::<f64>::new());
     }
 }
+
+/// Frames that launch what the last one did are launched at once, wherever the body moved meanwhile; a list that grows is another
+/// frame, and so is the one behind it. All answers are those of a detector that was never asked before.
+#[test]
+fn what_a_frame_launches_again_is_launched_at_once() {
+    let body = scene::scene("cloth-ball", 500, 3).expect("a scene");
+    let around = [body.clone(), later(&body)];
+    for query in Query::every() {
+        let count = if query.kind().is_within_bodies() { 1 } else { 2 };
+        let device = engine();
+        let mut detector =
+            Detector::new(device.clone(), vec![body.clone(); count], query).expect("a detector");
+        for frame in 0..6 {
+            let now = &around[frame % 2];
+            detector.move_to(0, now.clone()).expect("moved");
+            let (found, reruns) = (detector.detect().expect("an answer"), detector.reruns());
+            let mut bodies = vec![body.clone(); count];
+            bodies[0] = now.clone();
+            let mut fresh = Detector::new(engine(), bodies, query).expect("a detector");
+            assert_eq!(found.hash(), fresh.detect().expect("an answer").hash(), "{query:?}, frame {frame}");
+            if frame == 3 {
+                // Both places were seen: no list grows any more.
+                assert!(device.replays() > 0, "{query:?}");
+            }
+            if frame > 3 {
+                assert_eq!((device.replays() >= 2, reruns), (true, detector.reruns()), "{query:?}");
+            }
+        }
+    }
+}

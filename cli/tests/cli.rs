@@ -120,7 +120,7 @@ fn the_summary_has_its_keys() {
         let hash = summary["hash"].as_str().expect("a hash");
         assert!(hash.len() == 16 && u64::from_str_radix(hash, 16).is_ok(), "{hash}");
         let ms = summary["ms"].as_object().expect("times by stage");
-        for stage in ["construct", "fit", "refit", "traverse", "narrow", "total", "wall"] {
+        for stage in ["construct", "fit", "refit", "traverse", "narrow", "total", "launch", "wall"] {
             assert!(ms[stage].as_f64().is_some_and(|ms| ms >= 0.0), "{stage}: {}", ms[stage]);
         }
         let toi = summary["earliest_toi"].as_f64();

@@ -3,6 +3,7 @@
 #[cfg(feature = "cuda")]
 use super::cuda;
 use super::ledger::Ledger;
+use super::replay::Act;
 use super::usage::Usage;
 use super::{Machine, emulator};
 use crate::error::Error;
@@ -91,10 +92,14 @@ impl<T: Pod> Buffer<T> {
     /// # Errors
     /// [`Error::Device`] with the driver's text.
     pub fn fill(&mut self, byte: u8) -> Result<(), Error> {
-        self.ledger.cleared(self.purpose, (self.len * size_of::<T>()) as u64);
+        let bytes = self.len * size_of::<T>();
+        self.ledger.cleared(self.purpose, bytes as u64);
+        let fill = Act::Fill { addr: self.span().addr(), bytes, byte };
+        if self.usage.lists(|list| list.push(fill)) && self.machine.is_gpu() {
+            return Ok(());
+        }
         match (&mut self.memory, &*self.machine) {
             (Memory::Host(m), Machine::Emulator(e)) => {
-                let bytes = self.len * size_of::<T>();
                 m.as_mut_slice(bytes).fill(byte);
                 if let Some(sanitizer) = e.sanitizer() {
                     sanitizer.host_wrote(m.addr(), bytes);

@@ -23,6 +23,11 @@ impl Device {
         }
     }
 
+    /// How often work was what it was the last time and, on a GPU, launched as one graph, so far.
+    pub fn replays(&self) -> u64 {
+        self.usage.replays.load(Ordering::Relaxed)
+    }
+
     /// How many kernels were launched so far.
     pub fn launches(&self) -> u64 {
         self.usage.launches.load(Ordering::Relaxed)
@@ -80,6 +85,27 @@ pub enum Event {
 }
 
 impl Event {
+    /// Moves the mark behind all work so far.
+    pub(super) fn again(&mut self, device: &Device) -> Result<(), Error> {
+        match (self, &*device.machine) {
+            (Event::Host(at), _) => *at = Instant::now(),
+            #[cfg(feature = "cuda")]
+            (Event::Gpu(event), Machine::Cuda(c)) => c.mark(event)?,
+            #[cfg(feature = "cuda")]
+            _ => return Err(Error::Bug { what: "a mark of another machine".into() }),
+        }
+        Ok(())
+    }
+
+    /// On the GPU.
+    #[cfg(feature = "cuda")]
+    pub(super) fn gpu(&self) -> Option<&cuda::Event> {
+        match self {
+            Event::Gpu(event) => Some(event),
+            Event::Host(_) => None,
+        }
+    }
+
     /// Milliseconds from this mark to a later one; waits for it.
     ///
     /// # Errors

@@ -7,6 +7,7 @@ mod ledger;
 mod marks;
 #[cfg(any(feature = "cuda", test))]
 mod ptx;
+mod replay;
 mod usage;
 mod view;
 
@@ -16,6 +17,7 @@ pub(crate) use ledger::Work;
 pub use marks::Event;
 #[doc(hidden)]
 pub use nearmiss_emulator as emulator;
+pub(crate) use replay::{Marks, Replay};
 pub use view::{Ahead, View};
 
 use crate::error::Error;
@@ -67,6 +69,12 @@ enum Machine {
     Emulator(Emulator),
     #[cfg(feature = "cuda")]
     Cuda(cuda::Cuda),
+}
+
+impl Machine {
+    fn is_gpu(&self) -> bool {
+        !matches!(self, Machine::Emulator(_))
+    }
 }
 
 impl Device {
@@ -176,7 +184,7 @@ impl Device {
 
     /// Whether this is a GPU: thousands of lanes at once, and launches that cost microseconds.
     pub fn is_gpu(&self) -> bool {
-        !matches!(&*self.machine, Machine::Emulator(_))
+        self.machine.is_gpu()
     }
 
     /// Lanes of a block of a kernel on this machine.
@@ -286,14 +294,16 @@ impl Device {
             });
         }
         self.usage.launches.fetch_add(1, Ordering::Relaxed);
-        #[cfg(feature = "cuda")]
-        let sealed = self.usage.sealed.load(Ordering::Relaxed) > 0;
         self.ledger.launched(E::NAME);
+        #[cfg_attr(not(feature = "cuda"), allow(unused_variables, reason = "a CPU does it at once"))]
+        let is_listed = self.usage.lists(|list| list.launch::<E>(blocks, args));
         match &*self.machine {
-            // SAFETY: the caller's promise.
+            // SAFETY: the caller's promise. What is listed is done all the same: nothing is gained by doing it later.
             Machine::Emulator(e) => unsafe { e.launch::<E>(blocks, args) }.map_err(Error::from),
             #[cfg(feature = "cuda")]
-            Machine::Cuda(c) => c.launch::<E>(blocks, args, sealed),
+            Machine::Cuda(c) if is_listed => c.load::<E>(),
+            #[cfg(feature = "cuda")]
+            Machine::Cuda(c) => c.launch::<E>(blocks, args, self.usage.sealed.load(Ordering::Relaxed) > 0),
         }
     }
 }

@@ -44,6 +44,8 @@ pub struct Stages {
     pub order: f64,
     /// From positions to contacts, runs that were repeated for want of room included; placing, construction and ordering not.
     pub total: f64,
+    /// The host's own time until a GPU had the frame to do, the placing of what was moved not included. Zero where the host does it.
+    pub launch: f64,
     /// What the caller of [`Detector::frame`](crate::Detector::frame) or [`Detector::detect`](crate::Detector::detect) waits
     /// for: placing where bodies were moved, `total`, ordering, launching, and reading the
     /// contacts, on the host's clock.
@@ -63,6 +65,7 @@ impl Stages {
             narrow: of(|s| s.narrow),
             order: of(|s| s.order),
             total: of(|s| s.total),
+            launch: of(|s| s.launch),
             wall: of(|s| s.wall),
         }
     }

@@ -1,6 +1,7 @@
 //! The pipeline: a frame from positions to contacts, in the order of the stages.
 
 mod found;
+mod frame;
 #[cfg(test)]
 mod in_order;
 #[cfg(test)]
@@ -22,7 +23,7 @@ use super::placing::{Moved, Placing, Whereabouts};
 use super::precision::Precision;
 use super::purpose;
 use super::timing::{Stage, Stages};
-use crate::device::{Buffer, Device, Event};
+use crate::device::{Buffer, Device, Event, Replay};
 use crate::error::Error;
 use crate::mesh::Body;
 use crate::query::Query;
@@ -72,6 +73,10 @@ pub struct TypedPipeline<R: Precision> {
     last: Counts,
     /// Whether the lists were long enough for a whole frame: then the next one runs without waiting between steps.
     settled: bool,
+    /// What a settled frame launches, and the marks of every frame.
+    replay: Replay,
+    /// What the host took to launch this frame.
+    launch_ms: f64,
     /// What a frame needs that is submitted and not waited for.
     submission: Option<submit::Submission>,
 }
@@ -139,6 +144,8 @@ impl<R: Precision> TypedPipeline<R> {
             placing: None,
             last: Counts::default(),
             settled: false,
+            replay: frame::replay(&device)?,
+            launch_ms: 0.0,
             submission: None,
             layout,
             device,
@@ -304,20 +311,11 @@ impl<R: Precision> Pipeline for TypedPipeline<R> {
     fn frame(&mut self) -> Result<(Found<'_>, Stages), Error> {
         self.submission = None;
         let reruns = self.reruns;
-        let start = self.device.event()?;
-        self.run(Stage::Fit)?;
-        let fitted = self.device.event()?;
-        self.run(Stage::Refit)?;
-        let refitted = self.device.event()?;
+        self.launch_ms = 0.0;
+        let mut fits = true;
         loop {
-            self.counters.clear()?;
-            let begun = self.device.event()?;
-            self.run(Stage::Traverse)?;
-            let traversed = self.device.event()?;
-            self.run(Stage::Narrow)?;
-            let end = self.device.event()?;
-            self.run(Stage::Order)?;
-            let ordered = self.device.event()?;
+            self.launch(fits)?;
+            fits = false;
             self.read_ahead()?;
             let counters = self.counters.read()?;
             if self.has_overflowed(&counters) {
@@ -328,20 +326,7 @@ impl<R: Precision> Pipeline for TypedPipeline<R> {
             }
             self.settled = true;
             self.broad.finish(&counters)?;
-            let balance = self.broad.balance_ms()?;
-            let placing = self.placing.take();
-            let stages = Stages {
-                place: placing.map_or(Ok(0.0), |[start, end]| start.to(&end))?,
-                construct: 0.0,
-                fit: start.to(&fitted)?,
-                refit: fitted.to(&refitted)?,
-                traverse: begun.to(&traversed)? - balance,
-                balance,
-                narrow: traversed.to(&end)?,
-                order: if self.narrow.ordered().is_some() { end.to(&ordered)? } else { 0.0 },
-                total: start.to(&end)?,
-                wall: 0.0,
-            };
+            let stages = self.marked()?;
             self.last.clone_from(&counters);
             return Ok((self.gather(counters, self.reruns - reruns)?, stages));
         }

@@ -35,6 +35,8 @@ pub trait Entry: 'static {
     const EXACT: bool = false;
     /// Bytes of shared memory of a block.
     const SHARED: u32;
+    /// Most registers of a lane: fewer than the compiler would take, so that more warps are resident. None is as many as it wants.
+    const REGISTERS: Option<u32> = None;
     /// Its place in [`TABLE`]; none of kernels that are not in it, as tests have.
     const PLACE: Option<usize> = None;
     /// The kernel itself.
@@ -87,11 +89,12 @@ pub static NEARMISS_STAMP: u64 = stamp::SOURCES;
 
 /// What a kernel is, of the parts of its line.
 macro_rules! is_entry {
-    ($path:expr, [$args:ty], $lanes:expr, $shared:expr $(, exact = $exact:literal)?) => {
+    ($path:expr, [$args:ty], $lanes:expr, $shared:expr $(, exact = $exact:literal)? $(, registers = $registers:literal)?) => {
         type Args = $args;
         const LANES: u32 = $lanes;
         $(const EXACT: bool = $exact;)?
         const SHARED: u32 = $shared;
+        $(const REGISTERS: Option<u32> = Some($registers);)?
         const PLACE: Option<usize> = name::place(Self::NAME);
         #[inline(always)]
         fn run<B: Block>(block: &mut B, args: &$args) {
@@ -103,7 +106,7 @@ macro_rules! is_entry {
 
 /// From lines of `name: path, [arguments], lanes, shared;` makes the types and their PTX entries.
 macro_rules! kernels {
-    ($($name:ident: $path:expr, [$args:ty], $lanes:expr, $shared:expr;)*) => {
+    ($($name:ident: $path:expr, [$args:ty], $lanes:expr, $shared:expr $(, registers = $registers:literal)?;)*) => {
         $(
             #[doc = concat!("`", stringify!($name), "`")]
             #[allow(non_camel_case_types, reason = "the type is the entry's name")]
@@ -111,7 +114,7 @@ macro_rules! kernels {
             pub struct $name;
             impl Entry for $name {
                 const NAME: &'static str = stringify!($name);
-                is_entry!($path, [$args], $lanes, $shared);
+                is_entry!($path, [$args], $lanes, $shared $(, registers = $registers)?);
             }
         )*
         entries! { $($name, stringify!($name);)* }
@@ -284,12 +287,12 @@ kernels! {
     balance_copy: balance::copy, [BalanceArgs], BALANCE, 0;
     narrow_moller_f32: discrete::moller::<f32, B>, [DiscreteArgs<f32>], WIDE, 0;
     narrow_moller_f64: discrete::moller::<f64, B>, [DiscreteArgs<f64>], WIDE, 0;
-    narrow_filter_f32: discrete::filter::<f32, B>, [DiscreteArgs<f32>], WIDE, discrete::shared_bytes(WIDE);
+    narrow_filter_f32: discrete::filter::<f32, B>, [DiscreteArgs<f32>], WIDE, discrete::shared_bytes(WIDE), registers = 64;
     narrow_filter_f64: discrete::filter::<f64, B>, [DiscreteArgs<f64>], WIDE, discrete::shared_bytes(WIDE);
     narrow_wide_f32: discrete::wide, [DiscreteArgs<f32>], NARROW, 0;
     narrow_exact_f32: discrete::exact::<f32, B>, [DiscreteArgs<f32>], NARROW, discrete::EXACT_SHARED;
     narrow_exact_f64: discrete::exact::<f64, B>, [DiscreteArgs<f64>], NARROW, discrete::EXACT_SHARED;
-    narrow_features_f32: features::features::<f32, Moves, B>, [FeaturesArgs<f32>], NARROW, features::shared_bytes(NARROW);
+    narrow_features_f32: features::features::<f32, Moves, B>, [FeaturesArgs<f32>], NARROW, features::shared_bytes(NARROW), registers = 80;
     narrow_features_f64: features::features::<f64, Moves, B>, [FeaturesArgs<f64>], NARROW, features::shared_bytes(NARROW);
     narrow_features_at_rest_f32: features::features::<f32, Rests, B>, [FeaturesArgs<f32>], NARROW, features::shared_bytes(NARROW);
     narrow_features_at_rest_f64: features::features::<f64, Rests, B>, [FeaturesArgs<f64>], NARROW, features::shared_bytes(NARROW);
@@ -305,7 +308,7 @@ kernels! {
     narrow_ee_f64_f64: solve::ee::<f64, f64, B>, [SolveArgs<f64>], WIDE, 0;
     narrow_below_precision_f32: below_precision::below_precision::<f32, B>, [BelowPrecisionArgs<f32>], WIDE, 0;
     narrow_below_precision_f64: below_precision::below_precision::<f64, B>, [BelowPrecisionArgs<f64>], WIDE, 0;
-    narrow_isolate_f32_f32: climb::isolate::<f32, f32, B>, [RungArgs<f32>], NARROW, 0;
+    narrow_isolate_f32_f32: climb::isolate::<f32, f32, B>, [RungArgs<f32>], NARROW, 0, registers = 112;
     narrow_isolate_f32_f64: climb::isolate::<f32, f64, B>, [RungArgs<f32>], NARROW, 0;
     narrow_isolate_f64_f32: climb::isolate::<f64, f32, B>, [RungArgs<f64>], NARROW, 0;
     narrow_isolate_f64_f64: climb::isolate::<f64, f64, B>, [RungArgs<f64>], NARROW, 0;
@@ -313,13 +316,13 @@ kernels! {
     narrow_settle_f64: climb::settle::<f64, B>, [RungArgs<f64>], NARROW, 0;
     narrow_slice_f32: slice::slice::<f32, B>, [RungArgs<f32>], SLICES, slice::SHARED;
     narrow_slice_f64: slice::slice::<f64, B>, [RungArgs<f64>], SLICES, slice::SHARED;
-    narrow_separate_first_f32: climb::separate_at_once::<f32, B>, [RungArgs<f32>], RUNG, 0;
+    narrow_separate_first_f32: climb::separate_at_once::<f32, B>, [RungArgs<f32>], RUNG, 0, registers = 64;
     narrow_separate_first_f64: climb::separate_at_once::<f64, B>, [RungArgs<f64>], RUNG, 0;
-    narrow_separate_f32_f32: separate::separate::<f32, Single<3>, Single<4>, B>, [RungArgs<f32>], RUNG, separate::SHARED;
+    narrow_separate_f32_f32: separate::separate::<f32, Single<3>, Single<4>, B>, [RungArgs<f32>], RUNG, separate::SHARED, registers = 128;
     narrow_separate_f32_f64: separate::separate::<f32, Double<3>, Double<4>, B>, [RungArgs<f32>], RUNG, separate::SHARED;
     narrow_separate_f64_f32: separate::separate::<f64, Single<3>, Single<4>, B>, [RungArgs<f64>], RUNG, separate::SHARED;
     narrow_separate_f64_f64: separate::separate::<f64, Double<3>, Double<4>, B>, [RungArgs<f64>], RUNG, separate::SHARED;
-    narrow_near_f32: near::near::<f32, B>, [NearArgs<f32>], RUNG, 0;
+    narrow_near_f32: near::near::<f32, B>, [NearArgs<f32>], RUNG, 0, registers = 64;
     narrow_near_f64: near::near::<f64, B>, [NearArgs<f64>], RUNG, 0;
     narrow_least_f32: nearest::least::<f32, B>, [LeastArgs<f32>], RUNG, 0;
     narrow_least_f64: nearest::least::<f64, B>, [LeastArgs<f64>], RUNG, 0;

@@ -19,7 +19,7 @@ type Getter = fn(&Stages) -> f64;
 
 /// The parts of a frame by their names; `total` is a frame on the device's clock, `wall` the caller's wait, each as
 /// [`Stages`] says.
-pub const STAGES: [(&str, Getter); 10] = [
+pub const STAGES: [(&str, Getter); 11] = [
     ("place", |s| s.place),
     ("construct", |s| s.construct),
     ("fit", |s| s.fit),
@@ -29,6 +29,7 @@ pub const STAGES: [(&str, Getter); 10] = [
     ("narrow", |s| s.narrow),
     ("order", |s| s.order),
     (TOTAL, |s| s.total),
+    ("launch", |s| s.launch),
     (WALL, |s| s.wall),
 ];
 /// The frame.

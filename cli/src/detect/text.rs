@@ -70,7 +70,7 @@ pub fn human(told: &Report, contacts: &Contacts) -> String {
     }
     let _ = writeln!(
         text,
-        "  ms: construct {:.3}, fit {:.3}, refit {:.3}, traverse {:.3}{}, narrow {:.3}; a frame {:.3}{}, waited for {:.3}",
+        "  ms: construct {:.3}, fit {:.3}, refit {:.3}, traverse {:.3}{}, narrow {:.3}; a frame {:.3}{}{}, waited for {:.3}",
         ms.construct,
         ms.fit,
         ms.refit,
@@ -79,6 +79,7 @@ pub fn human(told: &Report, contacts: &Contacts) -> String {
         ms.narrow,
         ms.total,
         if ms.order > 0.0 { format!(", ordering {:.3}", ms.order) } else { String::new() },
+        if ms.launch > 0.0 { format!(", launching {:.3}", ms.launch) } else { String::new() },
         ms.wall
     );
     let has_queues = |walk: &Traversal| !matches!(walk, Traversal::PerLeaf { .. } | Traversal::NearestFirst);

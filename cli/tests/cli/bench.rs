@@ -5,8 +5,19 @@ use serde_json::Value;
 
 const HEAD: &str = "machine,threads,version,case,triangles,bodies,question,stage,frames,\
                     median_ms,low_ms,high_ms,candidates,contacts,bytes,hash";
-const STAGES: [&str; 10] =
-    ["place", "construct", "fit", "refit", "traverse", "balance", "narrow", "order", "total", "wall"];
+const STAGES: [&str; 11] = [
+    "place",
+    "construct",
+    "fit",
+    "refit",
+    "traverse",
+    "balance",
+    "narrow",
+    "order",
+    "total",
+    "launch",
+    "wall",
+];
 const QUESTIONS: [&str; 5] = ["discrete", "continuous", "separation", "earliest", "near"];
 
 /// Columns and their values.

@@ -4,12 +4,12 @@
 //! newer driver may have codes that no list of ours has.
 
 use super::types::{
-    self, CUcontext, CUdevice, CUdevice_attribute, CUdeviceptr, CUevent, CUfunction, CUjit_option, CUmodule,
-    CUstream,
+    self, CUcontext, CUdevice, CUdevice_attribute, CUdeviceptr, CUevent, CUfunction, CUgraph, CUgraphExec,
+    CUjit_option, CUmodule, CUstream, CUstreamCaptureMode, CUstreamCaptureStatus,
 };
 use crate::error::Error;
 use libloading::Library;
-use std::ffi::{CStr, c_char, c_int, c_uchar, c_uint, c_void};
+use std::ffi::{CStr, c_char, c_int, c_uchar, c_uint, c_ulonglong, c_void};
 use std::sync::OnceLock;
 
 /// The driver's refusal, by its code.
@@ -107,8 +107,15 @@ functions! {
         cuStreamCreate(*mut CUstream, c_uint);
         cuStreamSynchronize(CUstream);
         cuStreamDestroy_v2(CUstream);
+        cuStreamBeginCapture_v2(CUstream, CUstreamCaptureMode);
+        cuStreamEndCapture(CUstream, *mut CUgraph);
+        cuStreamIsCapturing(CUstream, *mut CUstreamCaptureStatus);
+        cuGraphInstantiateWithFlags(*mut CUgraphExec, CUgraph, c_ulonglong);
+        cuGraphLaunch(CUgraphExec, CUstream);
+        cuGraphExecDestroy(CUgraphExec);
+        cuGraphDestroy(CUgraph);
         cuEventCreate(*mut CUevent, c_uint);
-        cuEventRecord(CUevent, CUstream);
+        cuEventRecordWithFlags(CUevent, CUstream, c_uint);
         cuEventSynchronize(CUevent);
         cuEventElapsedTime(*mut f32, CUevent, CUevent);
         cuEventDestroy_v2(CUevent);

@@ -30,7 +30,7 @@ impl Memory {
     /// Sets every byte, behind all work before.
     pub fn fill(&mut self, gpu: &Bound, stream: &Stream, byte: u8) -> Result<(), Refusal> {
         // SAFETY: so many bytes are there, and freeing them waits for this.
-        answer(unsafe { (gpu.cuMemsetD8Async)(self.addr, byte, self.bytes, stream.handle()) })
+        unsafe { fill(gpu, stream, self.addr, self.bytes, byte) }
     }
 
     /// Copies bytes to `start`, behind all work before.
@@ -93,6 +93,15 @@ impl Drop for Memory {
             let _ = unsafe { (gpu.cuMemFree_v2)(self.addr) };
         }
     }
+}
+
+/// Sets every byte of a piece of the GPU's memory, behind all work before.
+///
+/// # Safety
+/// So many bytes are there, until this is over.
+pub unsafe fn fill(gpu: &Bound, stream: &Stream, addr: u64, bytes: usize, byte: u8) -> Result<(), Refusal> {
+    // SAFETY: the caller's promise.
+    answer(unsafe { (gpu.cuMemsetD8Async)(addr, byte, bytes, stream.handle()) })
 }
 
 /// Free bytes of the GPU's memory, as far as the driver tells.

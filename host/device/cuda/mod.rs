@@ -2,16 +2,19 @@
 
 mod context;
 mod driver;
+mod graph;
 mod memory;
 mod module;
 mod staging;
 mod stream;
 mod types;
 
+pub use graph::Graph;
 pub use memory::Memory;
 pub use staging::Known;
 
 use super::ptx::Parts;
+use super::replay::{Act, Listing};
 use crate::error::Error;
 use context::{Bound, Context, Gpu};
 use driver::{Refusal, refused};
@@ -106,7 +109,8 @@ impl Cuda {
         let lanes = gpu.read(types::CU_DEVICE_ATTRIBUTE_MAX_THREADS_PER_MULTIPROCESSOR)? as u32;
         let parts = Parts::new(PTX);
         let bound = context.bind().map_err(refused(BINDING))?;
-        let common = Module::new(&context, &bound, parts.common()).map_err(refused("loading the kernels"))?;
+        let common =
+            Module::new(&context, &bound, parts.common(), None).map_err(refused("loading the kernels"))?;
         is_ours(common.global(&bound, c"NEARMISS_STAMP").map_err(refused("reading the kernels' stamp"))?)?;
         let staging = Staging::new(&context, &bound)?;
         drop(bound);
@@ -215,7 +219,71 @@ impl Cuda {
             // SAFETY: the kernel takes one parameter of this type (the stamp says that host and PTX come from the same
             // sources), and its spans are memory of this GPU that the caller's buffers keep alive: freeing a buffer
             // waits for the launches before it.
-            unsafe { function.launch(gpu, &self.stream, (blocks, E::LANES, E::SHARED), *args) }
+            unsafe {
+                function.launch(gpu, &self.stream, (blocks, E::LANES, E::SHARED), std::slice::from_ref(args))
+            }
+        })
+    }
+
+    /// Loads a kernel, if it was not.
+    pub fn load<E: Kernel>(&self) -> Result<(), Error> {
+        self.with_function::<E, _>(|_, _| Ok(()))
+    }
+
+    /// Whether work of ours can be made a graph.
+    pub fn can_record(&self) -> Result<bool, Error> {
+        self.stream.can_capture(&self.bind()?).map_err(refused("asking a stream"))
+    }
+
+    /// Does what is listed.
+    ///
+    /// # Safety
+    /// The listed launches are of kernels of ours, which are loaded, with their arguments, and what those name is memory that lives
+    /// until they are over.
+    pub unsafe fn perform(&self, list: &Listing, marks: &[&Event]) -> Result<(), Error> {
+        self.changes();
+        let gpu = self.bind()?;
+        let pass = |which: usize| marks[which].0.record(&gpu, &self.stream);
+        // SAFETY: the caller's promise.
+        unsafe { self.put(&gpu, list, pass) }.map_err(refused("launching a frame"))
+    }
+
+    /// Makes a graph of what is listed.
+    ///
+    /// # Safety
+    /// As of [`Cuda::perform`], whenever the graph is launched; and the marks are kept as long as it.
+    pub unsafe fn record(&self, list: &Listing, marks: &[&Event]) -> Result<Graph, Error> {
+        let gpu = self.bind()?;
+        let pass = |which: usize| marks[which].0.record_in_graph(&gpu, &self.stream);
+        // SAFETY: the caller's promise.
+        let graph = unsafe { Graph::new(&self.context, &gpu, &self.stream, || self.put(&gpu, list, pass)) };
+        graph.map_err(refused("making a graph of a frame"))
+    }
+
+    /// Launches a graph.
+    pub fn replay(&self, graph: &Graph) -> Result<(), Error> {
+        self.changes();
+        graph.launch(&self.bind()?, &self.stream).map_err(refused("launching a frame"))
+    }
+
+    /// Puts what is listed in the stream.
+    unsafe fn put(
+        &self,
+        gpu: &Bound,
+        list: &Listing,
+        mut pass: impl FnMut(usize) -> Result<(), Refusal>,
+    ) -> Result<(), Refusal> {
+        let functions = locked(&self.functions);
+        list.acts().try_for_each(|(act, args)| match act {
+            Act::Launch { kernel, grid, .. } => {
+                let function = functions.get(kernel).ok_or(Refusal(types::CUDA_ERROR_NOT_FOUND))?;
+                // SAFETY: the caller's promise.
+                unsafe { function.launch(gpu, &self.stream, grid, args) }
+            }
+            Act::Fill { bytes: 0, .. } => Ok(()),
+            // SAFETY: the caller's promise.
+            Act::Fill { addr, bytes, byte } => unsafe { memory::fill(gpu, &self.stream, addr, bytes, byte) },
+            Act::Mark(which) => pass(which),
         })
     }
 
@@ -239,11 +307,17 @@ impl Cuda {
                 let text = self.parts.module(E::NAME);
                 let text =
                     text.ok_or_else(|| Error::Bug { what: format!("no kernel {} in the PTX", E::NAME) })?;
-                let module = Module::new(&self.context, &gpu, &text).map_err(refused(E::NAME))?;
+                let module =
+                    Module::new(&self.context, &gpu, &text, E::REGISTERS).map_err(refused(E::NAME))?;
                 new.insert(module.function(&gpu, E::NAME).map_err(refused(E::NAME))?)
             }
         };
         body(&gpu, function).map_err(refused(E::NAME))
+    }
+
+    /// Moves a point behind all work so far.
+    pub fn mark(&self, event: &Event) -> Result<(), Error> {
+        event.0.record(&self.bind()?, &self.stream).map_err(refused("recording an event"))
     }
 
     /// A point in the stream.

@@ -20,13 +20,23 @@ unsafe impl Send for Module {}
 unsafe impl Sync for Module {}
 
 impl Module {
-    /// Compiles a text. The driver keeps the lines of the Rust sources, for profilers; the machine code is the same.
-    pub fn new(context: &Arc<Context>, gpu: &Bound, ptx: &str) -> Result<Module, Refusal> {
+    /// Compiles a text, with that many registers of a lane at most. The driver keeps the lines of the Rust sources, for profilers;
+    /// the machine code is the same.
+    pub fn new(
+        context: &Arc<Context>,
+        gpu: &Bound,
+        ptx: &str,
+        registers: Option<u32>,
+    ) -> Result<Module, Refusal> {
         let ptx = text(ptx)?;
-        let mut options = [types::CU_JIT_GENERATE_LINE_INFO];
-        let mut values = [std::ptr::without_provenance_mut::<c_void>(1)];
+        let mut options = vec![types::CU_JIT_GENERATE_LINE_INFO];
+        let mut values = vec![std::ptr::without_provenance_mut::<c_void>(1)];
+        if let Some(registers) = registers {
+            options.push(types::CU_JIT_MAX_REGISTERS);
+            values.push(std::ptr::without_provenance_mut(registers as usize));
+        }
         let mut handle = null_mut();
-        // SAFETY: the text ends with zero; there is a value for the one option, a number in the place of a pointer; the
+        // SAFETY: the text ends with zero; there is a value for each option, a number in the place of a pointer; the
         // driver writes one handle, which is unloaded once.
         answer(unsafe {
             (gpu.cuModuleLoadDataEx)(
@@ -93,16 +103,17 @@ impl Function {
     /// Starts it.
     ///
     /// # Safety
-    /// `parameter` is the kernel's only one, of its type, and what it names is memory that lives until the launch is over.
-    pub unsafe fn launch<T: Copy>(
+    /// `parameter` begins with the kernel's only one, of its type, and what that names is memory that lives until the launch is
+    /// over.
+    pub unsafe fn launch<T>(
         &self,
         gpu: &Bound,
         stream: &Stream,
         (blocks, lanes, shared): (u32, u32, u32),
-        mut parameter: T,
+        parameter: &[T],
     ) -> Result<(), Refusal> {
-        let mut parameters = [(&raw mut parameter).cast::<c_void>()];
-        // SAFETY: module and stream live; the driver copies the parameter before it returns; the rest is the caller's promise.
+        let mut parameters = [parameter.as_ptr().cast_mut().cast::<c_void>()];
+        // SAFETY: module and stream live; the driver copies the parameter, and writes nothing there, before it returns; the rest is the caller's promise.
         answer(unsafe {
             (gpu.cuLaunchKernel)(
                 self.handle,

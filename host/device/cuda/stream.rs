@@ -42,6 +42,17 @@ impl Stream {
         self.handle
     }
 
+    /// Whether work of ours can be captured here: it is not the default stream, and nobody captures it.
+    pub fn can_capture(&self, gpu: &Bound) -> Result<bool, Refusal> {
+        if self.handle.is_null() {
+            return Ok(false);
+        }
+        let mut status = types::CU_STREAM_CAPTURE_STATUS_NONE;
+        // SAFETY: the stream lives, and the driver writes one number.
+        answer(unsafe { (gpu.cuStreamIsCapturing)(self.handle, &mut status) })?;
+        Ok(status == types::CU_STREAM_CAPTURE_STATUS_NONE)
+    }
+
     /// Waits for all work before.
     pub fn wait(&self, gpu: &Bound) -> Result<(), Refusal> {
         // SAFETY: the stream lives.
@@ -83,8 +94,17 @@ impl Event {
 
     /// Puts it behind all work before.
     pub fn record(&self, gpu: &Bound, stream: &Stream) -> Result<(), Refusal> {
+        self.record_as(gpu, stream, types::CU_EVENT_RECORD_DEFAULT)
+    }
+
+    /// The same in a stream that is captured: it is passed whenever the graph is.
+    pub fn record_in_graph(&self, gpu: &Bound, stream: &Stream) -> Result<(), Refusal> {
+        self.record_as(gpu, stream, types::CU_EVENT_RECORD_EXTERNAL)
+    }
+
+    fn record_as(&self, gpu: &Bound, stream: &Stream, flags: u32) -> Result<(), Refusal> {
         // SAFETY: both live.
-        answer(unsafe { (gpu.cuEventRecord)(self.handle, stream.handle) })
+        answer(unsafe { (gpu.cuEventRecordWithFlags)(self.handle, stream.handle, flags) })
     }
 
     /// Waits for it.

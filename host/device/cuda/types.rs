@@ -1,4 +1,4 @@
-//! The driver's types and constants, as far as we call it (CUDA Driver API reference, 11.8; none has changed since 8.0).
+//! The driver's types and constants, as far as we call it (CUDA Driver API reference, 11.8; none has changed since 11.4).
 
 #![allow(non_camel_case_types, reason = "the driver's names")]
 
@@ -12,7 +12,11 @@ pub type CUevent = *mut c_void;
 pub type CUfunction = *mut c_void;
 pub type CUjit_option = u32;
 pub type CUmodule = *mut c_void;
+pub type CUgraph = *mut c_void;
+pub type CUgraphExec = *mut c_void;
 pub type CUstream = *mut c_void;
+pub type CUstreamCaptureMode = u32;
+pub type CUstreamCaptureStatus = u32;
 
 pub const CUDA_ERROR_INVALID_VALUE: u32 = 1;
 pub const CUDA_ERROR_OUT_OF_MEMORY: u32 = 2;
@@ -24,7 +28,12 @@ pub const CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MAJOR: CUdevice_attribute = 75;
 pub const CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MINOR: CUdevice_attribute = 76;
 
 pub const CU_EVENT_DEFAULT: u32 = 0;
+pub const CU_EVENT_RECORD_DEFAULT: u32 = 0;
+pub const CU_EVENT_RECORD_EXTERNAL: u32 = 1;
+pub const CU_STREAM_CAPTURE_MODE_THREAD_LOCAL: CUstreamCaptureMode = 1;
+pub const CU_STREAM_CAPTURE_STATUS_NONE: CUstreamCaptureStatus = 0;
 pub const CU_STREAM_NON_BLOCKING: u32 = 1;
+pub const CU_JIT_MAX_REGISTERS: CUjit_option = 0;
 pub const CU_JIT_GENERATE_LINE_INFO: CUjit_option = 13;
 
 /// Ours are those of the driver's header, as cudarc has them from it.
@@ -44,7 +53,11 @@ mod tests {
             size_of::<CUfunction>(),
             size_of::<CUjit_option>(),
             size_of::<CUmodule>(),
+            size_of::<CUgraph>(),
+            size_of::<CUgraphExec>(),
             size_of::<CUstream>(),
+            size_of::<CUstreamCaptureMode>(),
+            size_of::<CUstreamCaptureStatus>(),
         ];
         let theirs = [
             size_of::<sys::CUcontext>(),
@@ -55,7 +68,11 @@ mod tests {
             size_of::<sys::CUfunction>(),
             size_of::<sys::CUjit_option>(),
             size_of::<sys::CUmodule>(),
+            size_of::<sys::CUgraph>(),
+            size_of::<sys::CUgraphExec>(),
             size_of::<sys::CUstream>(),
+            size_of::<sys::CUstreamCaptureMode>(),
+            size_of::<sys::CUstreamCaptureStatus>(),
         ];
         assert_eq!(ours, theirs);
         use sys::CUdevice_attribute as Attribute;
@@ -80,7 +97,15 @@ mod tests {
                 Attribute::CU_DEVICE_ATTRIBUTE_COMPUTE_CAPABILITY_MINOR as u32,
             ),
             (CU_EVENT_DEFAULT, sys::CUevent_flags::CU_EVENT_DEFAULT as u32),
+            (CU_EVENT_RECORD_DEFAULT, sys::CUevent_record_flags::CU_EVENT_RECORD_DEFAULT as u32),
+            (CU_EVENT_RECORD_EXTERNAL, sys::CUevent_record_flags::CU_EVENT_RECORD_EXTERNAL as u32),
+            (
+                CU_STREAM_CAPTURE_MODE_THREAD_LOCAL,
+                sys::CUstreamCaptureMode::CU_STREAM_CAPTURE_MODE_THREAD_LOCAL as u32,
+            ),
+            (CU_STREAM_CAPTURE_STATUS_NONE, sys::CUstreamCaptureStatus::CU_STREAM_CAPTURE_STATUS_NONE as u32),
             (CU_STREAM_NON_BLOCKING, sys::CUstream_flags::CU_STREAM_NON_BLOCKING as u32),
+            (CU_JIT_MAX_REGISTERS, sys::CUjit_option::CU_JIT_MAX_REGISTERS as u32),
             (CU_JIT_GENERATE_LINE_INFO, sys::CUjit_option::CU_JIT_GENERATE_LINE_INFO as u32),
         ];
         assert!(pairs.iter().all(|(ours, theirs)| ours == theirs), "{pairs:?}");

@@ -3,7 +3,7 @@
 
 use super::TypedPipeline;
 use crate::contacts::{DeviceAnswer, DeviceList};
-use crate::device::Buffer;
+use crate::device::{Buffer, Replay};
 use crate::error::Error;
 use crate::pipeline::list::GrowableOutput;
 use crate::pipeline::precision::Precision;
@@ -19,6 +19,8 @@ pub struct Submission {
     pub rooms: Buffer<Room>,
     /// What it came to.
     pub status: Buffer<FrameStatus>,
+    /// What it launches.
+    replay: Replay,
     /// Where nothing of the caller's memory is placed.
     unseen: Buffer<u64>,
 }
@@ -74,9 +76,9 @@ impl<R: Precision> Submits for TypedPipeline<R> {
         let mut unseen = device.buffer(seen::COUNT as usize)?;
         unseen.clear()?;
         let (rooms, status) = (device.upload(&rooms)?, device.buffer(1)?);
-        self.submission = Some(Submission { rooms, status, unseen });
+        self.submission = Some(Submission { rooms, status, replay: Replay::default(), unseen });
         // Once as it will be: the driver loads a kernel when it is first launched.
-        self.enqueue()
+        self.submit()
     }
 
     fn is_prepared(&self) -> bool {
@@ -84,8 +86,16 @@ impl<R: Precision> Submits for TypedPipeline<R> {
     }
 
     fn submit(&mut self) -> Result<(), Error> {
-        let _only = self.device.launches_only();
-        self.enqueue()
+        let submission = self.submission.as_mut().map(|submission| std::mem::take(&mut submission.replay));
+        let mut replay = submission.ok_or_else(|| Error::Choice {
+            what: "a submission that is not prepared".into(),
+            advice: "call `prepare` first, and again after every other call that changes the detector".into(),
+        })?;
+        let device = self.device.clone();
+        // SAFETY: it launches and clears; what memory it holds it keeps.
+        let done = unsafe { replay.run(&device, |_| self.enqueue()) };
+        self.submission.iter_mut().for_each(|submission| submission.replay = std::mem::take(&mut replay));
+        done
     }
 
     fn collect(&mut self) -> Result<Option<(Found<'_>, Stages)>, Error> {
@@ -121,13 +131,7 @@ impl<R: Precision> Submits for TypedPipeline<R> {
 impl<R: Precision> TypedPipeline<R> {
     /// Launches a frame, behind the placing of what it places, and what tells how it went.
     fn enqueue(&mut self) -> Result<(), Error> {
-        let Some(submission) = &self.submission else {
-            return Err(Error::Choice {
-                what: "a submission that is not prepared".into(),
-                advice: "call `prepare` first, and again after every other call that changes the detector"
-                    .into(),
-            });
-        };
+        let Some(submission) = &self.submission else { return Ok(()) };
         let seen = self.vertices.seen_span();
         let seen = if seen.is_empty() { submission.unseen.span() } else { seen };
         let (rooms, status) = (submission.rooms.span(), submission.status.span());

@@ -148,7 +148,7 @@ impl<R: Precision, V: Kernels> Walk<R, V> for Front {
     }
 
     fn without_host(&self) -> Result<(), &'static str> {
-        Walk::<R, V>::without_host(&self.queue)
+        self.queue.is_planned(matches!(self.state, State::Kept { .. }))
     }
 
     fn front_dropped(&self) -> bool {

@@ -129,6 +129,19 @@ impl Queue {
         launch::blocks::<entry::traverse_queue<V>>(given.device, if alone { 1 } else { self.cores }, &args)
     }
 
+    /// Whether rounds from the roots, or from a seed, do without the host. Copies need it between rounds; so do views before a frame
+    /// has told how many rounds there are.
+    ///
+    /// # Errors
+    /// Why not.
+    pub fn is_planned(&self, seeded: bool) -> Result<(), &'static str> {
+        match (self.shape.balance, self.plan.rounds[usize::from(seeded)]) {
+            (Balance::Copy, _) => Err("queues evened by copies ask the host between rounds"),
+            (Balance::View, None) => Err("the queues' rounds are too many to be planned"),
+            (Balance::View, Some(_)) => Ok(()),
+        }
+    }
+
     /// Rounds with a balance between them, until the host sees that nothing is left.
     fn by_copy<R: Precision, V: Kernels>(&mut self, given: &WalkContext<R, V>) -> Result<(), Error> {
         let (mut from, mut flags) = (0, QueueFlags::START);
@@ -243,13 +256,8 @@ impl<R: Precision, V: Kernels> Walk<R, V> for Queue {
         Ok(())
     }
 
-    /// Copies need the host between rounds; so do views before a frame has told how many rounds there are.
     fn without_host(&self) -> Result<(), &'static str> {
-        match (self.shape.balance, self.plan.rounds[usize::from(self.plan.seeded)]) {
-            (Balance::Copy, _) => Err("queues evened by copies ask the host between rounds"),
-            (Balance::View, None) => Err("the queues' rounds are too many to be planned"),
-            (Balance::View, Some(_)) => Ok(()),
-        }
+        self.is_planned(false)
     }
 
     fn balance_ms(&self) -> Result<f64, Error> {

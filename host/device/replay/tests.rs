@@ -1,0 +1,116 @@
+//! What is done at once, what is refused, and the marks.
+
+use super::*;
+use crate::device::Buffer;
+use crate::device::emulator::{Emulator, Mode};
+use nearmiss_kernels::abi::{Counters, FrameStatus, Room, Span, StatusArgs, counter, seen};
+use nearmiss_kernels::entry::status_frame;
+
+fn engine() -> Device {
+    Device::emulator(Emulator::new(Mode::Engine, Some(1)).expect("a thread"))
+}
+
+/// Memory that a small launch writes.
+struct Memory {
+    counters: Buffer<u64>,
+    rooms: Buffer<Room>,
+    seen: Buffer<u64>,
+    status: [Buffer<FrameStatus>; 2],
+}
+
+impl Memory {
+    fn of(device: &Device) -> Memory {
+        let words = |count| device.buffer(count).expect("memory");
+        let status = [(); 2].map(|()| device.buffer(1).expect("memory"));
+        Memory {
+            counters: words(counter::COUNT),
+            rooms: device.buffer(0).expect("none"),
+            seen: words(seen::COUNT as usize),
+            status,
+        }
+    }
+
+    fn launch(&self, device: &Device, which: usize) -> Result<(), Error> {
+        let args = StatusArgs {
+            counters: Counters::new(self.counters.span()),
+            rooms: self.rooms.span(),
+            seen: self.seen.span(),
+            status: self.status[which].span(),
+            first: Span::EMPTY,
+            second: Span::EMPTY,
+        };
+        // SAFETY: buffers of this device that outlive the launch; no list, and room for everything that is seen.
+        unsafe { device.launch::<status_frame>(1, &args) }
+    }
+}
+
+type Frame = fn(&Device, &mut Memory, &mut Marks, u32) -> Result<(), Error>;
+
+/// Frames one after the other; how many of them were replays.
+fn replays(frame: Frame) -> u64 {
+    let device = engine();
+    let (mut memory, mut replay) = (Memory::of(&device), Replay::new(&device, 2).expect("marks"));
+    for round in 0..4 {
+        let work = |marks: &mut Marks| frame(&device, &mut memory, marks, round);
+        // SAFETY: the memory outlives all of it.
+        unsafe { replay.run(&device, work) }.expect("a frame");
+    }
+    device.replays()
+}
+
+#[test]
+fn what_is_the_same_is_done_at_once_and_nothing_else() {
+    let same = replays(|device, memory, marks, _| {
+        memory.counters.clear()?;
+        marks.pass(0)?;
+        memory.launch(device, 0)?;
+        marks.pass(1)
+    });
+    assert_eq!(same, 3);
+    let faults: [Frame; 5] = [
+        // Other arguments.
+        |device, memory, _, round| memory.launch(device, round as usize % 2),
+        // More launches.
+        |device, memory, _, round| (0..round).try_for_each(|_| memory.launch(device, 0)),
+        // Another byte.
+        |_, memory, _, round| memory.counters.fill(round as u8),
+        // Another buffer.
+        |_, memory, _, round| memory.status[round as usize % 2].clear(),
+        // Another mark.
+        |_, _, marks, round| marks.pass(round as usize % 2),
+    ];
+    // What is done at first is never a replay; an empty frame is what is done before any.
+    assert_eq!(faults.map(replays), [0, 1, 0, 0, 0]);
+}
+
+#[test]
+fn what_does_more_than_launch_is_refused_and_the_next_frame_is_none_the_worse() {
+    let device = engine();
+    let (memory, mut replay) = (Memory::of(&device), Replay::default());
+    for _ in 0..2 {
+        // SAFETY: nothing is launched.
+        let error =
+            unsafe { replay.run(&device, |_| device.buffer::<u32>(1).map(drop)) }.expect_err("memory");
+        assert!(error.to_string().contains("in a frame that only launches"), "{error}");
+        // SAFETY: the memory outlives it.
+        unsafe { replay.run(&device, |_| memory.launch(&device, 0)) }.expect("a frame");
+    }
+    assert_eq!(device.replays(), 1);
+    device.buffer::<u32>(1).expect("nothing is listed any more");
+}
+
+#[test]
+fn marks_tell_the_time_between_them() {
+    let device = engine();
+    let mut replay = Replay::new(&device, 2).expect("marks");
+    let pass = |marks: &mut Marks| {
+        marks.pass(0)?;
+        std::thread::sleep(std::time::Duration::from_millis(2));
+        marks.pass(1)
+    };
+    for _ in 0..2 {
+        // SAFETY: nothing is launched.
+        unsafe { replay.run(&device, pass) }.expect("marks");
+        assert!(replay.ms(0, 1).expect("a time") >= 2.0);
+    }
+}
