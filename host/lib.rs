@@ -34,7 +34,7 @@
 //! | how far a step may go | [`Query::earliest`] |
 //! | which features are within a distance, how far and where | [`Query::near`] |
 //!
-//! [`Detector::geometry`] tells where contacts are: vertices, weights, points, normals.
+//! [`MultiDetector`] divides a scene among several devices. [`Detector::geometry`] tells where contacts are: vertices, weights, points, normals.
 //!
 //! A simulator whose data lie on the GPU lends its stream ([`Device::borrow`]) and its arrays
 //! ([`Input::OnDevice`](scene::Input::OnDevice)), and submits frames that neither allocate nor wait ([`Detector::submit`]).
@@ -58,6 +58,7 @@ pub mod query;
 #[cfg(test)]
 mod samples;
 pub mod scene;
+mod several;
 #[doc(hidden)]
 pub mod words;
 
@@ -69,6 +70,7 @@ pub use mesh::{Body, Mesh};
 pub use pipeline::{Stage, Stages};
 pub use query::Query;
 pub use scene::Scene;
+pub use several::{DeviceShare, MultiDetector};
 
 /// The front page's program is a test.
 #[cfg(doctest)]

@@ -20,8 +20,12 @@ pub fn tables(args: &TablesArgs) -> Result<ExitCode, Error> {
     if args.table.contains(&Table::Bodies) {
         bodies(args, &device, &mut figures)?;
     }
+    if args.table.contains(&Table::Scale) {
+        scale(args, &device, &mut figures)?;
+    }
     // Asked for alone, that is all.
-    let all = args.table.is_empty() || args.table.iter().any(|table| *table != Table::Bodies);
+    let of_animations = |table: &Table| !matches!(table, Table::Bodies | Table::Scale);
+    let all = args.table.is_empty() || args.table.iter().any(of_animations);
     for (name, triangles) in if all { scenes(args)? } else { Vec::new() } {
         let frames = during(format!("making {name}"), || match args.mesh.is_empty() {
             true => tables::frames(&name, triangles, args.seed, args.frames as usize),
@@ -42,6 +46,23 @@ fn bodies(args: &TablesArgs, device: &Device, figures: &mut Figures) -> Result<(
         }
     }
     Ok(())
+}
+
+/// The smallest and, unless told, the largest of the sizes: on a GPU, on a CPU.
+const SMALLEST: usize = 10_000;
+const LARGEST: [usize; 2] = [1_000_000, 100_000];
+
+/// Measures sizes, each about three times the one before.
+fn scale(args: &TablesArgs, device: &Device, figures: &mut Figures) -> Result<(), Error> {
+    let largest = args.triangles.unwrap_or(LARGEST[usize::from(!device.is_gpu())]);
+    let usual = (0..).map(|k| SMALLEST * 10usize.pow(k / 2) * if k % 2 == 1 { 3 } else { 1 });
+    let mut sizes: Vec<usize> = usual.take_while(|&size| size < largest).collect();
+    sizes.push(largest);
+    let gpus: Vec<Device> = (0..args.devices as u32).map_while(|k| Device::gpu(k).ok()).collect();
+    let in_turn = !device.is_gpu() || gpus.len() < args.devices;
+    let devices = if in_turn { vec![device.clone(); args.devices] } else { gpus };
+    let rows = &mut figures.scale;
+    during("sizes", || tables::scale(&devices, in_turn, &sizes, args.frames, |row| rows.push(row)))
 }
 
 /// Names and triangles.

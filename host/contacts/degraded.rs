@@ -43,6 +43,26 @@ impl Degraded {
         !matches!(self, Degraded::FrontDropped)
     }
 
+    /// The same reason of two parts of a frame; `None` of two reasons.
+    pub(super) fn and(&self, other: Degraded) -> Option<Degraded> {
+        Some(match (*self, other) {
+            (Degraded::Unresolved { pairs: a }, Degraded::Unresolved { pairs: b }) => {
+                Degraded::Unresolved { pairs: a + b }
+            }
+            (Degraded::Boxes { pairs: a }, Degraded::Boxes { pairs: b }) => Degraded::Boxes { pairs: a + b },
+            (
+                Degraded::ToleranceBelowPrecision { pairs: a },
+                Degraded::ToleranceBelowPrecision { pairs: b },
+            ) => Degraded::ToleranceBelowPrecision { pairs: a.zip(b).map(|(a, b)| a + b) },
+            (
+                Degraded::DistanceBelowPrecision { pairs: a },
+                Degraded::DistanceBelowPrecision { pairs: b },
+            ) => Degraded::DistanceBelowPrecision { pairs: a + b },
+            (Degraded::FrontDropped, Degraded::FrontDropped) => Degraded::FrontDropped,
+            _ => return None,
+        })
+    }
+
     /// All that holds of a frame, as the kernels counted.
     #[doc(hidden)]
     pub fn of(found: &Found) -> Vec<Degraded> {

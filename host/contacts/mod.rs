@@ -3,6 +3,7 @@
 mod degraded;
 pub(crate) mod geometry;
 mod hash;
+mod merge;
 mod near;
 mod nearest;
 pub mod on_device;

@@ -75,6 +75,11 @@ impl NearPair {
         NearPair { kind, bodies, a, b, squared_distance: hit.squared, weights, closest }
     }
 
+    /// What pairs are ordered by.
+    pub(super) fn key(&self) -> (Kind, [(BodyId, u32); 2]) {
+        (self.kind, [(self.bodies[0], self.a), (self.bodies[1], self.b)])
+    }
+
     /// What a hash is told.
     pub(super) fn bytes(&self) -> [u8; 42] {
         let mut bytes = [0; 42];
@@ -97,7 +102,7 @@ pub fn pairs(hits: &Hits<NearHit>, ordered: bool, layout: &Layout) -> Vec<NearPa
     let ee = of_ee.par_iter().map(|hit| NearPair::new(edge_edge(layout, [hit.a, hit.b]), hit));
     let mut pairs: Vec<_> = vf.chain(ee).collect();
     if !ordered {
-        pairs.par_sort_unstable_by_key(|pair| (pair.kind, pair.bodies[0], pair.a, pair.bodies[1], pair.b));
+        pairs.par_sort_unstable_by_key(NearPair::key);
     }
     pairs
 }

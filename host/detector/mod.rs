@@ -5,6 +5,7 @@ mod edits;
 mod geometry;
 mod moves;
 pub mod plan;
+mod share;
 mod submit;
 
 use crate::contacts::{Contacts, Degraded, Summary};
@@ -12,7 +13,7 @@ use crate::device::{Device, Work};
 use crate::error::Error;
 use crate::memory;
 use crate::mesh::{Body, MAX_FACES, MAX_VERTICES};
-use crate::pipeline::{self, Found, Layout, Pipeline, Stage, Stages};
+use crate::pipeline::{self, Found, Layout, Pipeline, Share, Stage, Stages};
 use crate::query::Query;
 use crate::scene::Scene;
 use std::sync::Arc;
@@ -57,6 +58,8 @@ pub struct Detector {
     f64s: bool,
     /// None where nothing can meet, or where memory ended: then the next frame asks for it again.
     pipeline: Option<Box<dyn Pipeline>>,
+    /// Its part of the work.
+    share: Share,
     /// Frames answered since the pipeline began.
     asked: u64,
     /// What the last building of the trees did, and the last frame.
@@ -74,9 +77,20 @@ impl Detector {
     /// # Errors
     /// [`Error::Choice`] for a scene without bodies and for numbers that mean nothing; those of the device.
     pub fn new(device: Device, scene: impl Into<Scene>, query: impl Into<Query>) -> Result<Detector, Error> {
-        let query = query.into();
+        Detector::with_share(device, scene.into(), query.into(), Share::WHOLE)
+    }
+
+    /// The same, for a share of the work.
+    ///
+    /// # Errors
+    /// As there; [`Error::Choice`] where work cannot be divided.
+    pub(crate) fn with_share(
+        device: Device,
+        scene: Scene,
+        query: Query,
+        share: Share,
+    ) -> Result<Detector, Error> {
         query.check()?;
-        let scene = scene.into();
         if scene.ids().next().is_none() {
             return Err(Error::Choice {
                 what: "a scene without bodies".into(),
@@ -96,6 +110,7 @@ impl Detector {
             largest: 0.0,
             f64s: false,
             pipeline: None,
+            share,
             asked: 0,
             build: Work::default(),
             work: Work::default(),
@@ -127,7 +142,8 @@ impl Detector {
             let bodies = self.scene.bodies();
             self.f64s = bodies.iter().any(Body::needs_f64);
             let query = self.query_with_tolerance();
-            let mut pipeline = pipeline::pipeline(self.device.clone(), bodies, layout, query, self.f64s)?;
+            let mut pipeline =
+                pipeline::pipeline(self.device.clone(), bodies, layout, query, (self.f64s, self.share))?;
             self.device.work();
             self.construct_ms = pipeline.construct()?;
             (self.asked, self.build) = (0, self.device.work());

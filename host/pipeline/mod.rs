@@ -17,6 +17,7 @@ mod timing;
 mod tolerance;
 mod typed;
 
+pub use broad::Share;
 pub use layout::{Layout, Offsets};
 pub use placing::{Moved, Seen, Whereabouts};
 pub use timing::{Stage, Stages};
@@ -30,7 +31,7 @@ use crate::query::Query;
 use std::sync::Arc;
 use typed::TypedPipeline;
 
-/// The pipeline of a query; `f64s` tells whether any position needs f64.
+/// The pipeline of a query, or of a share of its work; `f64s` tells whether any position needs f64.
 ///
 /// # Errors
 /// Those of the device.
@@ -39,11 +40,11 @@ pub fn pipeline(
     bodies: &[Body],
     layout: Arc<Layout>,
     query: Query,
-    f64s: bool,
+    (f64s, share): (bool, Share),
 ) -> Result<Box<dyn Pipeline>, Error> {
     Ok(if f64s {
-        Box::new(TypedPipeline::<f64>::new(device, bodies, layout, query)?)
+        Box::new(TypedPipeline::<f64>::new(device, bodies, layout, (query, share))?)
     } else {
-        Box::new(TypedPipeline::<f32>::new(device, bodies, layout, query)?)
+        Box::new(TypedPipeline::<f32>::new(device, bodies, layout, (query, share))?)
     })
 }

@@ -24,6 +24,8 @@ pub const FILTERS: &str = "whose triangles lie below each node";
 pub const VOLUMES: &str = "volumes of all nodes";
 /// Volumes of triangles, of tiles and above.
 pub const TILES: &str = "volumes of triangles, of tiles and above";
+/// What each tile cost.
+pub const SHARES: &str = "what each tile cost, to divide work among devices";
 /// What kernels know of bodies.
 pub const RECORDS: &str = "environment, groups and ranges of each body";
 /// Counters of a frame.

@@ -14,7 +14,7 @@ mod submitted;
 pub use found::{Found, Hits, Listed, in_order};
 pub use submit::Submits;
 
-use super::broad::{BroadContext, BroadPhase, Candidates, Which, broad_phase, growth};
+use super::broad::{BroadContext, BroadPhase, Candidates, Share, Which, broad_phase, growth};
 use super::counts::{Counts, FrameCounters};
 use super::layout::Layout;
 use super::list::{GrowableOutput, List};
@@ -75,6 +75,8 @@ pub struct TypedPipeline<R: Precision> {
     settled: bool,
     /// What a settled frame launches, and the marks of every frame.
     replay: Replay,
+    /// Its part of the work.
+    share: Share,
     /// What the host took to launch this frame.
     launch_ms: f64,
     /// What a frame needs that is submitted and not waited for.
@@ -103,6 +105,16 @@ pub trait Pipeline: repeat::Again + submit::Submits + Send {
     /// # Errors
     /// Those of the device.
     fn frame(&mut self) -> Result<(Found<'_>, Stages), Error>;
+    /// From here on it finds what is its share.
+    ///
+    /// # Errors
+    /// [`Error::Choice`] where work cannot be divided; those of the device.
+    fn take(&mut self, share: Share) -> Result<(), Error>;
+    /// What each tile of its share cost in the last frame, of all tiles; nothing where there is one share.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn work(&self) -> Result<Vec<u64>, Error>;
     /// Levels of each tree.
     fn depths(&self) -> Vec<usize>;
     /// How often a list was too short and the frame was run again, so far.
@@ -120,12 +132,17 @@ pub trait Pipeline: repeat::Again + submit::Submits + Send {
 }
 
 impl<R: Precision> TypedPipeline<R> {
-    /// Takes the memory that the query needs and uploads topology and positions. Something in `layout` may meet.
+    /// Takes the memory that a share of the query's work needs and uploads topology and positions. Something in `layout` may meet.
     ///
     /// # Errors
-    /// Those of the device.
-    pub fn new(device: Device, bodies: &[Body], layout: Arc<Layout>, query: Query) -> Result<Self, Error> {
-        let triangles = layout.moving_triangles();
+    /// [`Error::Choice`] where work cannot be divided; those of the device.
+    pub fn new(
+        device: Device,
+        bodies: &[Body],
+        layout: Arc<Layout>,
+        (query, share): (Query, Share),
+    ) -> Result<Self, Error> {
+        let triangles = share.of(layout.moving_triangles() as u32).len();
         let still = query.kind().is_at_rest();
         let a_triangle = if still { PAIRS_A_TRIANGLE } else { SWEPT_PAIRS_A_TRIANGLE };
         let capacity = LEAST_ROOM.max(a_triangle * triangles);
@@ -145,11 +162,13 @@ impl<R: Precision> TypedPipeline<R> {
             last: Counts::default(),
             settled: false,
             replay: frame::replay(&device)?,
+            share: Share::WHOLE,
             launch_ms: 0.0,
             submission: None,
             layout,
             device,
         };
+        pipeline.take(share)?;
         pipeline.narrow.place(bodies);
         if pipeline.broad.can_sample() {
             pipeline.narrow.take_samples(&pipeline.device)?;
@@ -280,6 +299,7 @@ impl<R: Precision> TypedPipeline<R> {
             counters,
             flags: TraverseFlags::KEEP_ADJACENT.when(self.query.keeps_adjacent()),
             which,
+            share: self.share,
         };
         self.broadly(|broad, given, _| broad.traverse(given, &candidates))
     }
@@ -330,6 +350,19 @@ impl<R: Precision> Pipeline for TypedPipeline<R> {
             self.last.clone_from(&counters);
             return Ok((self.gather(counters, self.reruns - reruns)?, stages));
         }
+    }
+
+    fn take(&mut self, share: Share) -> Result<(), Error> {
+        self.submission = None;
+        if share != Share::WHOLE {
+            self.broad.divide(&self.device)?;
+        }
+        self.share = share;
+        Ok(())
+    }
+
+    fn work(&self) -> Result<Vec<u64>, Error> {
+        self.broad.work()
     }
 
     fn depths(&self) -> Vec<usize> {

@@ -18,7 +18,7 @@ pub struct Search {
 
 impl Search {
     /// Whether trees were asked for, by a choice that is theirs.
-    fn is_of_trees(&self) -> bool {
+    pub(crate) fn is_of_trees(&self) -> bool {
         self.refit.is_some() || self.traversal.is_some()
     }
 

@@ -22,6 +22,8 @@ pub enum Table {
     Front,
     /// Scenes of many bodies: a pile of 500 balls under a cloth, and 1,000 small worlds.
     Bodies,
+    /// Draped cloths of 10,000 to --triangles triangles, on one device and divided among --devices.
+    Scale,
 }
 
 /// Sizes of work queues.
@@ -79,6 +81,10 @@ pub struct TablesArgs {
     /// or with this one's [default: the fastest walk and refit, without queues].
     #[arg(long, value_enum)]
     pub profile: Option<Profile>,
+    /// Of the figure `scale`: among how many devices a frame is divided. GPUs 0 to N-1 where there are so many; else the one machine
+    /// is asked share after share, each timed as if it were alone.
+    #[arg(long, default_value_t = 2, value_name = "N", allow_negative_numbers = true, value_parser = whole::<usize>(1, 64))]
+    pub devices: usize,
     /// Build the tree anew at every N-th frame; that time is not part of a frame's [default: only at the first].
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = some::<u32>())]
     pub rebuild_every: Option<u32>,

@@ -34,6 +34,29 @@ pub struct BroadContext<'a, R: Precision> {
     pub records: Span<BodyRecord>,
 }
 
+/// A part of the tiles of what moves, in parts of 2^32 of their number: whose first tile it is, finds a pair. Shares that touch leave
+/// nothing out and have nothing twice, whatever that number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Share {
+    /// Where it begins.
+    pub from: u64,
+    /// Where it ends.
+    pub to: u64,
+}
+
+impl Share {
+    /// The unit.
+    pub const ALL: u64 = 1 << 32;
+    /// All tiles.
+    pub const WHOLE: Share = Share { from: 0, to: Share::ALL };
+
+    /// The tiles of so many that are its.
+    pub fn of(&self, tiles: u32) -> std::ops::Range<u32> {
+        let [from, to] = [self.from, self.to].map(|part| (u64::from(tiles) * part / Share::ALL) as u32);
+        from..to
+    }
+}
+
 /// Where candidates go.
 #[derive(Clone, Copy)]
 pub struct Candidates {
@@ -45,6 +68,8 @@ pub struct Candidates {
     pub flags: TraverseFlags,
     /// Which are asked for.
     pub which: Which,
+    /// Whose: of what part of the tiles.
+    pub share: Share,
 }
 
 /// Which candidates are asked for.
@@ -96,6 +121,25 @@ pub trait BroadPhase<R: Precision>: Send {
     /// Whether it can list a sample, and leave out what only meets later.
     fn can_sample(&self) -> bool {
         false
+    }
+
+    /// Prepares for a share that is not the whole.
+    ///
+    /// # Errors
+    /// [`Error::Choice`] where work cannot be divided; those of the device.
+    fn divide(&mut self, _device: &Device) -> Result<(), Error> {
+        Err(Error::Choice {
+            what: "a tree that several devices go down".into(),
+            advice: "find candidates by tiles, or ask one device".into(),
+        })
+    }
+
+    /// What each tile of its last share cost, where it was divided.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn work(&self) -> Result<Vec<u64>, Error> {
+        Ok(Vec::new())
     }
 
     /// The frame is answered: what was learnt may be kept for the next one.

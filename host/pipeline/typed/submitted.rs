@@ -10,7 +10,9 @@ fn prepared(device: &Device) -> TypedPipeline<f32> {
     let bodies = [samples::soup(300, 5, false)];
     let layout = Arc::new(Layout::new(&bodies, Query::discrete().kind()));
     let query = Query::discrete();
-    let mut pipeline = TypedPipeline::<f32>::new(device.clone(), &bodies, layout, query).expect("memory");
+    let mut pipeline =
+        TypedPipeline::<f32>::new(device.clone(), &bodies, layout, (query, crate::pipeline::Share::WHOLE))
+            .expect("memory");
     pipeline.construct().expect("a tree");
     pipeline.place(&bodies, &[]).expect("nothing to place");
     pipeline.frame().expect("a frame");

@@ -81,12 +81,12 @@ arguments! {
         tops: u32,
         /// The number of a tile's node in the top level is the tile's, so many bits lower.
         shift: u32,
-        /// Tiles that seek others: those of what moves, which come first.
-        count: u32,
+        /// Tiles that seek others begin here and end there; at most those of what moves, which come first.
+        from: u32,
+        /// See above.
+        to: u32,
         /// Of these one of so many does; 1 for all.
         every: u32,
-        /// Zero.
-        pad: u32,
         /// The bits of a time: who only meets later does not matter. Empty where all do.
         known: Span<u64>,
     }
@@ -108,15 +108,18 @@ arguments! {
         pairs: Output<Pair>,
         /// Counters.
         counters: Counters,
-        /// Tiles of what moves, each with itself.
-        count: u32,
+        /// Tiles that are looked at with themselves begin here and end there: those that sought.
+        from: u32,
+        /// See above.
+        to: u32,
         /// All but [`TraverseFlags::GRAFTED`] and [`TraverseFlags::FRONT`].
         flags: TraverseFlags,
         /// Of these tiles one of so many; 1 for all.
         every: u32,
-        /// Zero.
-        pad: u32,
         /// The bits of a time: who only meets later does not matter. Empty where all do.
         known: Span<u64>,
+        /// Out: what each tile that sought cost, in tests; see [`CANDIDATE`](crate::stage::traverse::tile_triangles::CANDIDATE).
+        /// Empty where nobody asks.
+        work: Span<u64>,
     }
 }

@@ -5,6 +5,7 @@ use super::figures::{Figure612, Figure613, Figure614, Paper};
 use super::front::FrontRow;
 use super::paper_reference::PAPER_GPU;
 use super::picture::{Bar, Chart, Curve, Panel, Stack, bars, curves, stacks};
+use super::scale::ScaleRow;
 use super::text::text;
 use nearmiss::error::Error;
 use nearmiss::words::counted;
@@ -30,13 +31,26 @@ pub struct Figures {
     pub front: Vec<FrontRow>,
     /// Scenes of many bodies.
     pub bodies: Vec<BodiesRow>,
+    /// Sizes, on one device and several.
+    pub scale: Vec<ScaleRow>,
 }
 
 impl Figures {
     /// No figures yet.
     pub fn new(device: String, profile: &'static str) -> Figures {
-        let (figure_6_12, figure_6_13, figure_6_14, front, bodies) = Default::default();
-        Figures { device, profile, theirs: PAPER_GPU, figure_6_12, figure_6_13, figure_6_14, front, bodies }
+        let (figure_6_12, figure_6_13, figure_6_14) = Default::default();
+        let (front, bodies, scale) = Default::default();
+        Figures {
+            device,
+            profile,
+            theirs: PAPER_GPU,
+            figure_6_12,
+            figure_6_13,
+            figure_6_14,
+            front,
+            bodies,
+            scale,
+        }
     }
 
     /// For people.
@@ -47,6 +61,7 @@ impl Figures {
             text(&self.figure_6_14),
             text(&self.front),
             text(&self.bodies),
+            text(&self.scale),
         ];
         let mut all = format!("ours on {}\n\n", self.machine());
         for figure in figures.iter().filter(|figure| !figure.is_empty()) {
@@ -152,6 +167,11 @@ impl Figures {
             let file = folder.join("bodies.csv");
             put(&file, &csv(&self.bodies).map_err(|e| failed(&file, &e))?)?;
             names.push("bodies.csv".into());
+        }
+        if !self.scale.is_empty() {
+            let file = folder.join("scale.csv");
+            put(&file, &csv(&self.scale).map_err(|e| failed(&file, &e))?)?;
+            names.push("scale.csv".into());
         }
         Ok(names)
     }

@@ -13,6 +13,7 @@ mod front;
 mod measure;
 mod paper_reference;
 pub(crate) mod picture;
+mod scale;
 mod text;
 mod way;
 
@@ -25,5 +26,6 @@ pub use figures::{Paper, figure_612, figure_613, figure_614};
 pub use frames::{Frames, SCENES, frames, read};
 pub use front::front;
 pub use measure::measure;
+pub use scale::{ScaleRow, scale};
 pub use text::{Printed, digits, text};
 pub use way::Way;

@@ -48,6 +48,8 @@ pub struct Tiles<V> {
     whose: Buffer<NodeFilter>,
     has_groups: bool,
     tile_pairs: List<Pair>,
+    /// What each tile cost; where work is divided.
+    work: Option<Buffer<u64>>,
     axes: Axes,
     margin: f32,
 }
@@ -81,6 +83,7 @@ impl<V: Kernels> Tiles<V> {
             whose: filters.upload(&whose)?,
             has_groups: layout.has_groups(),
             tile_pairs: List::new(device, "pairs of tiles", counter::TILE_PAIRS, room)?,
+            work: None,
             levels,
             triangles,
             axes,
@@ -176,7 +179,7 @@ where
     Triangles: Entry<Args = TileTrianglesArgs<V>>,
 {
     // A GPU has a block for each tile that seeks; a CPU's few go from one to the next.
-    let seeking = pairs.count.div_ceil(pairs.every);
+    let seeking = (pairs.to - pairs.from).div_ceil(pairs.every);
     let few = || device.blocks_striding::<Pairs>((seeking * TILE) as usize);
     let blocks = if device.is_gpu() { seeking } else { few() };
     launch::blocks::<Pairs>(device, blocks, pairs)?;
@@ -212,14 +215,17 @@ impl<R: Precision, V: Kernels> BroadPhase<R> for Tiles<V> {
     }
 
     fn traverse(&mut self, given: &BroadContext<R>, candidates: &Candidates) -> Result<(), Error> {
-        let Candidates { pairs, counters, flags, which } = *candidates;
+        let Candidates { pairs, counters, flags, which, share } = *candidates;
         let (every, known) = match which {
             Which::All => (1, Span::EMPTY),
             Which::Sample => (SAMPLE, Span::EMPTY),
             Which::Before(time) => (1, time),
         };
         let (device, filters) = (given.device, self.filters(given.records));
-        let count = self.tiles();
+        let own = share.of(self.tiles());
+        if let Some(work) = &mut self.work {
+            work.clear()?;
+        }
         let tile_pairs = self.tile_pairs.output(counters);
         let args = TilePairsArgs {
             nodes: self.nodes.span(),
@@ -229,9 +235,9 @@ impl<R: Precision, V: Kernels> BroadPhase<R> for Tiles<V> {
             top: self.levels.first(self.levels.count - 1),
             tops: self.levels.tops.iter().sum(),
             shift: self.levels.shift(),
-            count,
+            from: own.start,
+            to: own.end,
             every,
-            pad: 0,
             known,
         };
         let of_tiles = TileTrianglesArgs {
@@ -243,11 +249,12 @@ impl<R: Precision, V: Kernels> BroadPhase<R> for Tiles<V> {
             tile_pairs,
             pairs,
             counters,
-            count,
+            from: own.start,
+            to: own.end,
             flags,
             every,
-            pad: 0,
             known,
+            work: self.work.as_ref().map_or(Span::EMPTY, Buffer::span),
         };
         if known.is_empty() {
             walk::<V, entry::traverse_tiles<V>, entry::traverse_triangles<V>>(device, (&args, &of_tiles))
@@ -265,6 +272,18 @@ impl<R: Precision, V: Kernels> BroadPhase<R> for Tiles<V> {
 
     fn can_sample(&self) -> bool {
         self.tiles() >= SAMPLED
+    }
+
+    fn divide(&mut self, device: &Device) -> Result<(), Error> {
+        if self.work.is_none() {
+            let tiles = self.tiles() as usize;
+            self.work = Some(device.of(purpose::SHARES).buffer(tiles)?);
+        }
+        Ok(())
+    }
+
+    fn work(&self) -> Result<Vec<u64>, Error> {
+        self.work.as_ref().map_or(Ok(Vec::new()), |work| work.read(work.len()))
     }
 
     fn depths(&self) -> Vec<usize> {

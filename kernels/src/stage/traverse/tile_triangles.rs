@@ -24,6 +24,9 @@ use crate::prim::adjacent::share_a_vertex;
 pub const LANES: u32 = TILE;
 /// Candidates that are found before they are written: triangles or, of volumes that are asked in parts, places of leaves.
 const FOUND: u32 = 512;
+/// What a pair of triangles costs that the narrow phase is asked, in tests of two volumes: as measured on an H200, cloth and 10 million
+/// triangles in motion. It divides work among devices, and is in no answer.
+pub const CANDIDATE: u64 = 40;
 /// Set in the first triangle of one that is found: whether the two may meet is still to be asked.
 const ASK: u32 = 1 << 31;
 
@@ -50,7 +53,7 @@ impl Two {
         let alone = a.alone();
         let same = i < alone;
         let tiles = if same {
-            let tile = i as u32 * a.every;
+            let tile = a.from + i as u32 * a.every;
             Pair { a: tile, b: tile }
         } else {
             b.load(a.tile_pairs.items(), (i - alone) as u32)
@@ -69,7 +72,7 @@ impl Two {
 impl<V: Volume> TileTrianglesArgs<V> {
     /// How many tiles are looked at with themselves.
     fn alone(&self) -> u64 {
-        self.count.div_ceil(self.every) as u64
+        (self.to - self.from).div_ceil(self.every) as u64
     }
 }
 
@@ -134,8 +137,12 @@ pub fn triangles<const HORIZON: bool, V: Volume, B: Block>(b: &mut B, a: &TileTr
             *masks.of(l) = mask;
             *counts.of(l) = mask.count_ones();
         });
-        tests += (2 * LANES + LANES * height) as u64;
+        let asked = (2 * LANES + LANES * height) as u64;
+        tests += asked;
         let count = b.scan(&mut counts);
+        if !a.work.is_empty() {
+            b.reserve(a.work, tiles.a, asked + CANDIDATE * count as u64);
+        }
         let mut done = 0;
         while done < count {
             let now = (FOUND - fill).min(count - done);

@@ -1,9 +1,9 @@
 //! # Pairs of tiles: nodes → tiles that overlap
 //! Paper    nothing of the seed's.
-//! Launch   a block of a warp a tile of what moves.
+//! Launch   a block of a warp a tile of what moves, or of a share of it.
 //! Reads    nodes, 32 of the top level or twice 16 below others at once.     Writes   pairs of tiles, the earlier first.
 //! Before   all nodes are fitted.
-//! After    each pair of tiles whose volumes overlap, of which one moves and whose triangles may meet, but for a tile with itself. Nodes
+//! After    each pair of tiles whose volumes overlap, of which the first is one that seeks and whose triangles may meet, but for a tile with itself. Nodes
 //!          whose tiles are all at or before the own one are passed over. Of a sample: of every so many tiles the first. Where an
 //!          earliest time is sought, none that only meets behind the horizon.
 //! Room     `tile_pairs` may be too short: counters go on, the host grows it and runs again. On chip it cannot run out: two nodes are
@@ -35,8 +35,8 @@ pub fn pairs<const HORIZON: bool, V: Volume, B: Block>(b: &mut B, a: &TilePairsA
     let mut tiles = b.slot(0u32);
     let mut tests = 0u64;
     let horizon = Horizon::of(b, a.known);
-    let mut tile = b.block() * a.every;
-    while tile < a.count {
+    let mut tile = a.from + b.block() * a.every;
+    while tile < a.to {
         let own = horizon.cut::<HORIZON, V>(b.load(a.nodes, tile).volume);
         let filters = a.filters.nodes;
         let whose = if filters.is_empty() { NodeFilter::default() } else { b.load(filters, tile) };

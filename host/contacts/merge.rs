@@ -1,0 +1,82 @@
+//! Answers of several devices to parts of one question, as one.
+
+use super::{Answer, Contact, Contacts, Degraded, TrianglePair, near};
+use crate::pipeline::Stages;
+use rayon::prelude::*;
+
+impl Contacts {
+    /// The answer to the whole, of those to its shares, of which there is at least one: lists together in canonical order, counts
+    /// added, and of each stage the longest.
+    pub(crate) fn merged(shares: Vec<Contacts>) -> Option<Contacts> {
+        let ordered = shares.len() < 2;
+        let mut all = shares.into_iter();
+        let mut whole = all.next()?;
+        for share in all {
+            whole.add(share);
+        }
+        if !ordered {
+            // Each share is in order: a sort that merges.
+            match &mut whole.answer {
+                Answer::Pairs(pairs) => pairs.par_sort_by_key(TrianglePair::key),
+                Answer::Contacts(contacts) => contacts.par_sort_by_key(Contact::key),
+                Answer::Near(pairs) => pairs.par_sort_by_key(near::NearPair::key),
+                Answer::Earliest(_) | Answer::Distance(_) => {}
+            }
+        }
+        Some(whole)
+    }
+
+    /// What another share found, behind this one.
+    fn add(&mut self, share: Contacts) {
+        match (&mut self.answer, share.answer) {
+            (Answer::Pairs(own), Answer::Pairs(other)) => own.extend(other),
+            (Answer::Contacts(own), Answer::Contacts(other)) => own.extend(other),
+            (Answer::Near(own), Answer::Near(other)) => own.extend(other),
+            (Answer::Earliest(own), Answer::Earliest(other)) => {
+                *own = own.iter().chain(&other).copied().min_by(f64::total_cmp);
+            }
+            (Answer::Distance(own), Answer::Distance(other)) => {
+                let nearer =
+                    |a: &super::NearestTriangles, b: &super::NearestTriangles| a.distance <= b.distance;
+                *own = match (*own, other) {
+                    (Some(a), Some(b)) => Some(if nearer(&a, &b) { a } else { b }),
+                    (a, b) => a.or(b),
+                };
+            }
+            // One question has answers of one kind.
+            (
+                Answer::Pairs(_)
+                | Answer::Contacts(_)
+                | Answer::Near(_)
+                | Answer::Earliest(_)
+                | Answer::Distance(_),
+                _,
+            ) => {}
+        }
+        let (own, other) = (self.stages, share.stages);
+        self.stages = Stages::each(|of| of(&own).max(of(&other)));
+        let pairs =
+            |own: &mut [u64; 2], other: [u64; 2]| own.iter_mut().zip(other).for_each(|(own, n)| *own += n);
+        pairs(&mut self.candidates_vf_ee, share.candidates_vf_ee);
+        pairs(&mut self.survivors_vf_ee, share.survivors_vf_ee);
+        pairs(&mut self.escalated_vf_ee, share.escalated_vf_ee);
+        pairs(&mut self.open_vf_ee, share.open_vf_ee);
+        pairs(&mut self.sliced_vf_ee, share.sliced_vf_ee);
+        self.triangle_pairs += share.triangle_pairs;
+        self.candidates += share.candidates;
+        self.unresolved += share.unresolved;
+        self.undecided += share.undecided;
+        self.undecided_wide += share.undecided_wide;
+        self.steps += share.steps;
+        self.spilled += share.spilled;
+        self.reruns += share.reruns;
+        share.degraded.into_iter().for_each(|reason| self.degrade(reason));
+    }
+
+    fn degrade(&mut self, reason: Degraded) {
+        match self.degraded.iter_mut().find_map(|own| own.and(reason).map(|both| (own, both))) {
+            Some((own, both)) => *own = both,
+            None => self.degraded.push(reason),
+        }
+    }
+}

@@ -1,0 +1,316 @@
+//! One scene on several devices: every one has all positions, and finds what is its share of the tiles.
+
+use crate::contacts::{ContactGeometry, Contacts};
+use crate::detector::Detector;
+use crate::device::Device;
+use crate::error::Error;
+use crate::mesh::Body;
+use crate::pipeline::Share;
+use crate::query::{Broad, Query};
+use crate::scene::{BodyId, Input, Scene};
+use std::time::Instant;
+
+/// A frame is uneven where the slowest share takes more than this many times the mean: then the next one is cut anew, by what each tile
+/// cost. Above what equal frames differ by, some hundredths.
+const UNEVEN: f64 = 1.05;
+/// What a tile costs at least, of the mean: so that none is nothing.
+const LEAST: f64 = 0.01;
+
+/// One scene on several devices of one host: each is told all positions, finds the pairs of its share of the tiles and asks them all
+/// that one device asks; the answers are put together in canonical order. The answer is that of a [`Detector`], to the bit and with
+/// the same hash, however the work is divided.
+///
+/// The first frame is divided by the number of tiles; the following by what each tile cost in the last one, where that was uneven.
+///
+/// ```
+/// use nearmiss::device::{Backend, Device};
+/// use nearmiss::{Body, Mesh, MultiDetector, Query, mesh::Positions};
+///
+/// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.2, 0.2, -1.0], [0.3, 0.2, 1.0], [0.2, 0.3, 1.0]];
+/// let mesh = Mesh::new("two triangles", Positions::F32(corners), vec![[0, 1, 2], [3, 4, 5]])?;
+/// let devices = vec![Device::open(Backend::Cpu, Some(1))?, Device::open(Backend::Cpu, Some(1))?];
+/// let mut detector = MultiDetector::new(devices, Body::still(mesh), Query::discrete())?;
+/// assert_eq!(detector.detect()?.triangles(), [[0, 1]]);
+/// # Ok::<(), nearmiss::Error>(())
+/// ```
+pub struct MultiDetector {
+    parts: Vec<Detector>,
+    shares: Vec<Share>,
+    /// Milliseconds of the last frame, on each device's own clock.
+    ms: Vec<f64>,
+    in_turn: bool,
+}
+
+/// What a device did of a frame.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+pub struct DeviceShare {
+    /// What the machine calls itself.
+    pub device: String,
+    /// Its part of the tiles, 0 to 1, in the last frame.
+    pub tiles: f64,
+    /// Milliseconds of that frame, on its own clock; 0 before there was one.
+    pub ms: f64,
+}
+
+impl MultiDetector {
+    /// Takes the scene to every device; several find candidates by tiles, whatever volume is chosen. Cost: on each that of a [`Detector`]; lists are as long as the shares.
+    ///
+    /// # Errors
+    /// [`Error::Choice`] for no devices, for a distance and for candidates by trees, which cannot be divided; those of a [`Detector`].
+    pub fn new(
+        devices: Vec<Device>,
+        scene: impl Into<Scene>,
+        query: impl Into<Query>,
+    ) -> Result<MultiDetector, Error> {
+        let (scene, query) = (scene.into(), query.into());
+        let refused = |what: &str, advice: &str| Error::Choice { what: what.into(), advice: advice.into() };
+        let count = devices.len();
+        if count == 0 {
+            return Err(refused("a scene on no device", "name at least one"));
+        }
+        if count > 1 && !query.kind().takes_traversals() {
+            return Err(refused("a distance on several devices", "ask one device: its walk is not divided"));
+        }
+        let search = query.search();
+        let by_tiles = count > 1 && search.broad.is_none() && !search.is_of_trees();
+        let query = if by_tiles { query.with_broad(Broad::Tiles) } else { query };
+        let part = |k: usize| k as u64 * Share::ALL / count as u64;
+        let shares: Vec<Share> = (0..count).map(|k| Share { from: part(k), to: part(k + 1) }).collect();
+        let part = |(device, &share)| Detector::with_share(device, scene.clone(), query, share);
+        let parts = devices.into_iter().zip(&shares).map(part).collect::<Result<Vec<_>, _>>()?;
+        Ok(MultiDetector { parts, shares, ms: vec![0.0; count], in_turn: false })
+    }
+
+    /// Asks the devices one after another: where they are one machine in truth, and each is to be timed as if it were alone.
+    pub fn in_turn(self) -> MultiDetector {
+        MultiDetector { in_turn: true, ..self }
+    }
+
+    /// As [`Detector::frame`].
+    ///
+    /// # Errors
+    /// As there; [`Error::Choice`] for positions in the memory of one device.
+    pub fn frame(&mut self, inputs: &[(BodyId, Input)]) -> Result<Contacts, Error> {
+        if let Some((id, _)) = inputs.iter().find(|(_, input)| matches!(input, Input::OnDevice(_))) {
+            return Err(Error::Choice {
+                what: format!("positions of body {id} in the memory of one device, for several"),
+                advice: "give positions of the host".into(),
+            });
+        }
+        self.ask(|detector| detector.frame(inputs))
+    }
+
+    /// As [`Detector::detect`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn detect(&mut self) -> Result<Contacts, Error> {
+        self.ask(Detector::detect)
+    }
+
+    /// As [`Detector::rebuild`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn rebuild(&mut self) -> Result<(), Error> {
+        self.each(Detector::rebuild).map(drop)
+    }
+
+    /// As [`Detector::add`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn add(&mut self, body: &Body) -> Result<BodyId, Error> {
+        // All scenes number their bodies in the same way.
+        Ok(self.each(|detector| detector.add(body.clone()))?[0])
+    }
+
+    /// As [`Detector::remove`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn remove(&mut self, id: BodyId) -> Result<Body, Error> {
+        let mut bodies = self.each(|detector| detector.remove(id))?;
+        Ok(bodies.swap_remove(0))
+    }
+
+    /// As [`Detector::replace`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn replace(&mut self, id: BodyId, body: &Body) -> Result<(), Error> {
+        self.each(|detector| detector.replace(id, body.clone())).map(drop)
+    }
+
+    /// As [`Detector::geometry`].
+    ///
+    /// # Errors
+    /// As there.
+    pub fn geometry(&mut self, found: &Contacts) -> Result<Vec<ContactGeometry>, Error> {
+        self.parts[0].geometry(found)
+    }
+
+    /// As [`Detector::scene`].
+    pub fn scene(&self) -> &Scene {
+        self.parts[0].scene()
+    }
+
+    /// As [`Detector::tolerance`].
+    pub fn tolerance(&self) -> Option<f64> {
+        self.parts[0].tolerance()
+    }
+
+    /// What each device did of the last frame.
+    pub fn shares(&self) -> Vec<DeviceShare> {
+        let one = |((part, share), &ms): ((&Detector, &Share), &f64)| DeviceShare {
+            device: part.machine(),
+            tiles: (share.to - share.from) as f64 / Share::ALL as f64,
+            ms,
+        };
+        self.parts.iter().zip(&self.shares).zip(&self.ms).map(one).collect()
+    }
+
+    /// One frame, and how its work is divided next.
+    fn ask(
+        &mut self,
+        question: impl Fn(&mut Detector) -> Result<Contacts, Error> + Sync,
+    ) -> Result<Contacts, Error> {
+        let start = Instant::now();
+        self.divide()?;
+        let answers = self.each(question)?;
+        self.ms = answers.iter().map(|answer| answer.stages.total).collect();
+        let none = || Error::Bug { what: "a scene on no device".into() };
+        let mut whole = Contacts::merged(answers).ok_or_else(none)?;
+        whole.stages.wall = start.elapsed().as_secs_f64() * 1e3;
+        Ok(whole)
+    }
+
+    /// Does the same on every device, at the same time unless in turn.
+    fn each<T: Send>(
+        &mut self,
+        what: impl Fn(&mut Detector) -> Result<T, Error> + Sync,
+    ) -> Result<Vec<T>, Error> {
+        if self.in_turn || self.parts.len() == 1 {
+            return self.parts.iter_mut().map(what).collect();
+        }
+        let lost = |_| Err(Error::Bug { what: "a device's thread has panicked".into() });
+        std::thread::scope(|scope| {
+            let what = &what;
+            let threads: Vec<_> = self.parts.iter_mut().map(|part| scope.spawn(move || what(part))).collect();
+            let done: Vec<_> = threads.into_iter().map(|thread| thread.join().unwrap_or_else(lost)).collect();
+            done.into_iter().collect()
+        })
+    }
+
+    /// Divides the work anew, where the last frame was uneven.
+    fn divide(&mut self) -> Result<(), Error> {
+        let (sum, most) = (self.ms.iter().sum::<f64>(), self.ms.iter().copied().fold(0.0, f64::max));
+        if most * self.ms.len() as f64 <= UNEVEN * sum {
+            return Ok(());
+        }
+        let mut costs: Vec<f64> = Vec::new();
+        for (part, ms) in self.parts.iter().zip(&self.ms) {
+            let work = part.tile_work()?;
+            let all: u64 = work.iter().sum();
+            costs.resize(costs.len().max(work.len()), 0.0);
+            let a_unit = ms / all.max(1) as f64;
+            costs.iter_mut().zip(&work).for_each(|(cost, &work)| *cost += work as f64 * a_unit);
+        }
+        let cuts = cuts(&costs, self.parts.len());
+        for ((part, share), ends) in self.parts.iter_mut().zip(&mut self.shares).zip(cuts.windows(2)) {
+            *share = Share { from: ends[0], to: ends[1] };
+            part.take(*share)?;
+        }
+        Ok(())
+    }
+}
+
+/// Where tiles of those costs are cut into so many parts of about the same: one more than parts, ascending, from none to all.
+fn cuts(costs: &[f64], parts: usize) -> Vec<u64> {
+    let tiles = costs.len() as u64;
+    let sum: f64 = costs.iter().sum();
+    let least = LEAST * sum / tiles.max(1) as f64;
+    let total = sum + least * tiles as f64;
+    let (mut cuts, mut tile, mut before) = (vec![0], 0u64, 0.0);
+    for part in 1..parts {
+        let wanted = total * part as f64 / parts as f64;
+        while tile < tiles && before + 0.5 * (costs[tile as usize] + least) < wanted {
+            before += costs[tile as usize] + least;
+            tile += 1;
+        }
+        // The least part that begins with that tile.
+        cuts.push((tile * Share::ALL).div_ceil(tiles.max(1)).min(Share::ALL));
+    }
+    cuts.push(Share::ALL);
+    cuts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tiles(cuts: &[u64], count: u32) -> Vec<std::ops::Range<u32>> {
+        cuts.windows(2).map(|ends| Share { from: ends[0], to: ends[1] }.of(count)).collect()
+    }
+
+    #[test]
+    fn work_is_cut_where_it_is_even() {
+        assert_eq!(tiles(&cuts(&[1.0; 12], 3), 12), [0..4, 4..8, 8..12]);
+        assert_eq!(tiles(&cuts(&[9.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0], 2), 10), [0..1, 1..10]);
+        // More devices than tiles, tiles that cost nothing, and none.
+        assert_eq!(tiles(&cuts(&[1.0], 3), 1).iter().map(|share| share.len()).sum::<usize>(), 1);
+        assert_eq!(tiles(&cuts(&[0.0; 4], 2), 4), [0..0, 0..4]);
+        assert_eq!(tiles(&cuts(&[], 2), 0), [0..0, 0..0]);
+    }
+
+    #[test]
+    fn shares_leave_no_tile_out_and_have_none_twice() {
+        for count in [1u32, 2, 31, 1000, 312_500, u32::MAX / 32] {
+            for parts in [1, 2, 3, 7, 64] {
+                let part = |k: u64| k * Share::ALL / parts;
+                let mut end = 0;
+                for k in 0..parts {
+                    let own = Share { from: part(k), to: part(k + 1) }.of(count);
+                    assert_eq!(own.start, end, "{count} tiles, {parts} parts");
+                    end = own.end;
+                }
+                assert_eq!(end, count);
+            }
+        }
+    }
+
+    #[test]
+    fn a_cut_begins_with_the_tile_that_it_names() {
+        let costs: Vec<f64> = (0..313_007).map(|tile| f64::from(tile % 7)).collect();
+        for parts in [2, 3, 8] {
+            let own = tiles(&cuts(&costs, parts), costs.len() as u32);
+            assert_eq!(own.iter().map(|share| share.len()).sum::<usize>(), costs.len());
+            let sums = own.iter().map(|own| costs[own.start as usize..own.end as usize].iter().sum::<f64>());
+            let whole: f64 = costs.iter().sum();
+            assert!(sums.into_iter().all(|sum| (sum * parts as f64 / whole - 1.0).abs() < 0.001));
+        }
+    }
+
+    /// A share that ends too early loses pairs, one that begins too early finds some twice, and both are noticed.
+    #[test]
+    fn a_hole_and_an_overlap_are_noticed() {
+        use crate::device::emulator::{Emulator, Mode};
+        let device = || Device::emulator(Emulator::new(Mode::Engine, Some(1)).expect("a thread"));
+        let body = crate::samples::soup(400, 5, false);
+        let found = |shares: Option<[[u64; 2]; 2]>| {
+            let devices = vec![device(), device()];
+            let mut several =
+                MultiDetector::new(devices, body.clone(), Query::discrete()).expect("detectors");
+            for (part, [from, to]) in several.parts.iter_mut().zip(shares.into_iter().flatten()) {
+                part.take(Share { from, to }).expect("a share");
+            }
+            several.detect().expect("an answer").len()
+        };
+        let (all, half) = (Share::ALL, Share::ALL / 2);
+        let whole = found(None);
+        assert_eq!(found(Some([[0, half], [half, all]])), whole);
+        assert!(found(Some([[0, half / 2], [half, all]])) < whole);
+        assert!(found(Some([[0, half], [half / 2, all]])) > whole);
+    }
+}

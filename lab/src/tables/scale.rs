@@ -1,0 +1,175 @@
+//! What a frame costs by the number of triangles, on one device and divided among several.
+
+use super::text::{Printed, digits};
+use crate::scene;
+use nearmiss::device::Device;
+use nearmiss::error::Error;
+use nearmiss::pipeline::Stages;
+use nearmiss::query::{Query, QueryKind};
+use nearmiss::{Contacts, MultiDetector};
+use serde::Serialize;
+
+/// A size, asked in one way.
+#[derive(Clone, Debug, Serialize)]
+pub struct ScaleRow {
+    /// The scene.
+    pub scene: String,
+    /// Triangles.
+    pub triangles: usize,
+    /// What was asked.
+    pub motion: QueryKind,
+    /// Among how many devices the work was divided.
+    pub devices: usize,
+    /// Whether they are one machine, asked one after another as if each were alone.
+    pub in_turn: bool,
+    /// Median milliseconds of the slowest device: volumes.
+    pub fit_ms: f64,
+    /// Candidates.
+    pub traverse_ms: f64,
+    /// Contacts.
+    pub narrow_ms: f64,
+    /// The frame.
+    pub frame_ms: f64,
+    /// Milliseconds of one device over those: at most as many as there are devices. None of one.
+    pub speedup: Option<f64>,
+    /// How the frame grows with triangles: an exponent, from the size before. None of the first.
+    pub exponent: Option<f64>,
+    /// Bytes that all devices hold.
+    pub bytes: u64,
+    /// Bytes of positions that each is told, both ends of a step.
+    pub positions: u64,
+    /// Bytes of the answer that go to the host.
+    pub answer: u64,
+    /// Pairs that the narrow test was asked.
+    pub candidates: u64,
+    /// What was found.
+    pub contacts: usize,
+    /// Hash of the answer: that of one device.
+    pub hash: String,
+}
+
+/// Frames before those that count: lists grow, work is divided by what was measured.
+const WARM_UP: u32 = 4;
+
+/// Asks a draped cloth of each of those sizes at rest and in motion, on the first device and on all of them. `in_turn` says that they
+/// are one machine.
+///
+/// # Errors
+/// Those of the device; [`Error::Bug`] where several devices find another answer than one.
+pub fn scale(
+    devices: &[Device],
+    in_turn: bool,
+    sizes: &[usize],
+    frames: u32,
+    mut row: impl FnMut(ScaleRow),
+) -> Result<(), Error> {
+    let mut before: Vec<(QueryKind, usize, usize, f64)> = Vec::new();
+    for &size in sizes {
+        let body = scene::draped(size)?;
+        for query in [Query::discrete(), Query::continuous()] {
+            let mut of_one: Option<ScaleRow> = None;
+            let counts = if devices.len() > 1 { vec![1, devices.len()] } else { vec![1] };
+            for count in counts {
+                let held =
+                    || devices[..if in_turn { 1 } else { count }].iter().map(|device| device.bytes().0);
+                let others: u64 = held().sum();
+                let detector = MultiDetector::new(devices[..count].to_vec(), body.clone(), query)?;
+                let mut detector = if in_turn { detector.in_turn() } else { detector };
+                for _ in 0..WARM_UP {
+                    detector.detect()?;
+                }
+                let found: Vec<Contacts> =
+                    (0..frames).map(|_| detector.detect()).collect::<Result<_, _>>()?;
+                let Some(last) = found.last() else { return Ok(()) };
+                let of = |stage: fn(&Stages) -> f64| {
+                    let mut ms: Vec<f64> = found.iter().map(|found| stage(&found.stages)).collect();
+                    ms.sort_by(f64::total_cmp);
+                    ms[ms.len() / 2]
+                };
+                let frame_ms = of(|s| s.total);
+                let (motion, triangles) = (query.kind(), body.face_count());
+                let hash = format!("{:016x}", last.hash());
+                if let Some(one) =
+                    of_one.as_ref().filter(|one| one.hash != hash || one.candidates != last.candidates)
+                {
+                    return Err(Error::Bug {
+                        what: format!(
+                            "{triangles} triangles, {motion:?}: {count} devices found {hash} of {} candidates, one {} of {}",
+                            last.candidates, one.hash, one.candidates
+                        ),
+                    });
+                }
+                let smaller = before.iter().rfind(|(kind, devices, ..)| (*kind, *devices) == (motion, count));
+                let exponent = smaller
+                    .map(|&(_, _, size, ms)| (frame_ms / ms).ln() / (triangles as f64 / size as f64).ln());
+                let each = if motion.is_at_rest() { 16 } else { 32 };
+                let own = ScaleRow {
+                    scene: "draped".into(),
+                    triangles,
+                    motion,
+                    devices: count,
+                    in_turn: in_turn && count > 1,
+                    fit_ms: of(|s| s.fit + s.refit),
+                    traverse_ms: of(|s| s.traverse),
+                    narrow_ms: of(|s| s.narrow),
+                    frame_ms,
+                    speedup: of_one.as_ref().map(|one| one.frame_ms / frame_ms),
+                    exponent,
+                    bytes: held().sum::<u64>() - others,
+                    positions: each * body.vertex_count() as u64,
+                    answer: (last.len() * if motion.is_at_rest() { 8 } else { 32 }) as u64,
+                    candidates: last.candidates,
+                    contacts: last.len(),
+                    hash,
+                };
+                before.push((motion, count, triangles, frame_ms));
+                of_one.get_or_insert_with(|| own.clone());
+                row(own);
+            }
+        }
+    }
+    Ok(())
+}
+
+impl Printed for ScaleRow {
+    const CAPTION: &'static str = "A frame by the number of triangles, and divided among devices: the slowest of them; bytes of them all";
+    const HEADS: &'static [&'static str] = &[
+        "scene",
+        "motion",
+        "triangles",
+        "devices",
+        "fit ms",
+        "traverse ms",
+        "narrow ms",
+        "frame ms",
+        "times",
+        "exponent",
+        "MB",
+        "MB in",
+        "MB out",
+        "candidates",
+        "contacts",
+        "hash",
+    ];
+    fn row(&self) -> Vec<String> {
+        let maybe = |x: Option<f64>| x.map_or("-".into(), digits);
+        vec![
+            self.scene.clone(),
+            format!("{:?}", self.motion).to_lowercase(),
+            self.triangles.to_string(),
+            format!("{}{}", self.devices, if self.in_turn { " in turn" } else { "" }),
+            digits(self.fit_ms),
+            digits(self.traverse_ms),
+            digits(self.narrow_ms),
+            digits(self.frame_ms),
+            maybe(self.speedup),
+            maybe(self.exponent),
+            digits(self.bytes as f64 / 1e6),
+            digits(self.positions as f64 / 1e6),
+            digits(self.answer as f64 / 1e6),
+            self.candidates.to_string(),
+            self.contacts.to_string(),
+            self.hash.clone(),
+        ]
+    }
+}
