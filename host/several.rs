@@ -54,7 +54,8 @@ pub struct DeviceShare {
 }
 
 impl MultiDetector {
-    /// Takes the scene to every device; several find candidates by tiles, whatever volume is chosen. Cost: on each that of a [`Detector`]; lists are as long as the shares.
+    /// Takes the scene to every device; several find candidates by tiles, whatever volume is chosen, and clones of one device are asked
+    /// [in turn](MultiDetector::in_turn). Cost: on each that of a [`Detector`]; lists are as long as the shares.
     ///
     /// # Errors
     /// [`Error::Choice`] for no devices, for a distance and for candidates by trees, which cannot be divided; those of a [`Detector`].
@@ -72,6 +73,9 @@ impl MultiDetector {
         if count > 1 && !query.kind().takes_traversals() {
             return Err(refused("a distance on several devices", "ask one device: its walk is not divided"));
         }
+        // One thread at a time uses a machine.
+        let in_turn =
+            devices.iter().enumerate().any(|(k, one)| devices[..k].iter().any(|other| one.is(other)));
         let search = query.search();
         let by_tiles = count > 1 && search.broad.is_none() && !search.is_of_trees();
         let query = if by_tiles { query.with_broad(Broad::Tiles) } else { query };
@@ -79,7 +83,7 @@ impl MultiDetector {
         let shares: Vec<Share> = (0..count).map(|k| Share { from: part(k), to: part(k + 1) }).collect();
         let part = |(device, &share)| Detector::with_share(device, scene.clone(), query, share);
         let parts = devices.into_iter().zip(&shares).map(part).collect::<Result<Vec<_>, _>>()?;
-        Ok(MultiDetector { parts, shares, ms: vec![0.0; count], in_turn: false })
+        Ok(MultiDetector { parts, shares, ms: vec![0.0; count], in_turn })
     }
 
     /// Asks the devices one after another: where they are one machine in truth, and each is to be timed as if it were alone.

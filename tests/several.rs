@@ -62,6 +62,7 @@ fn bodies_that_move_are_divided_anew_and_found_alike() {
     for query in queries() {
         let mut one = Detector::new(engine(), scene.scene.clone(), query).expect("a detector");
         let machines = vec![engine(), sanitizer(ORDERS[2]), engine()];
+        let clones = vec![machines[0].clone(); 2];
         let mut several = MultiDetector::new(machines, scene.scene.clone(), query).expect("detectors");
         let mut tiles = Vec::new();
         for step in 0..4 {
@@ -83,6 +84,15 @@ fn bodies_that_move_are_divided_anew_and_found_alike() {
         let geometry = |want: Vec<nearmiss::contacts::ContactGeometry>| format!("{want:?}");
         let (want, found) = (one.detect().expect("again"), several.in_turn().detect().expect("again"));
         is_the_same(&want, &found, "in turn");
+        let mut clones = MultiDetector::new(clones, scene.scene.clone(), query).expect("detectors");
+        for step in 0..4 {
+            let moves = scene.step(step);
+            let inputs: Vec<_> = moves.iter().map(|(id, to)| (*id, to.input())).collect();
+            let found = clones.frame(&inputs).expect("an answer");
+            if step == 3 {
+                is_the_same(&want, &found, "clones of one device");
+            }
+        }
         assert_eq!(
             geometry(one.geometry(&want).expect("points")),
             geometry(one.geometry(&found).expect("points"))

@@ -2,6 +2,7 @@
 
 #[cfg(feature = "cuda")]
 use super::cuda;
+use super::held;
 use super::ledger::Ledger;
 use super::replay::Act;
 use super::usage::Usage;
@@ -95,7 +96,7 @@ impl<T: Pod> Buffer<T> {
         let bytes = self.len * size_of::<T>();
         self.ledger.cleared(self.purpose, bytes as u64);
         let fill = Act::Fill { addr: self.span().addr(), bytes, byte };
-        if self.usage.lists(|list| list.push(fill)) && self.machine.is_gpu() {
+        if held::list(&self.usage, |list| list.push(fill)) && self.machine.is_gpu() {
             return Ok(());
         }
         match (&mut self.memory, &*self.machine) {

@@ -2,10 +2,9 @@
 
 #[cfg(feature = "cuda")]
 use super::cuda;
-use super::usage::Usage;
+use super::held::LaunchesOnly;
 use super::{Device, Machine};
 use crate::error::Error;
-use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
@@ -43,11 +42,10 @@ impl Device {
         self.usage.waits.load(Ordering::Relaxed)
     }
 
-    /// As long as the answer lives, taking memory, reading, writing and marks in time are refused: what is done only launches and
-    /// clears, so that a stream which is being captured takes it.
+    /// As long as the answer lives, taking memory, reading, writing and marks in time are refused to this thread: what is done only
+    /// launches and clears, so that a stream which is being captured takes it.
     pub(crate) fn launches_only(&self) -> LaunchesOnly {
-        self.usage.sealed.fetch_add(1, Ordering::Relaxed);
-        LaunchesOnly { usage: self.usage.clone() }
+        LaunchesOnly::new(&self.usage, None)
     }
 
     /// Somebody else may have changed the device's memory: a graph that was launched again.
@@ -61,17 +59,6 @@ impl Device {
     /// Bytes of device memory held now, and the most held at once.
     pub fn bytes(&self) -> (u64, u64) {
         (self.usage.bytes.load(Ordering::Relaxed), self.usage.peak.load(Ordering::Relaxed))
-    }
-}
-
-/// See [`Device::launches_only`].
-pub(crate) struct LaunchesOnly {
-    usage: Arc<Usage>,
-}
-
-impl Drop for LaunchesOnly {
-    fn drop(&mut self) {
-        self.usage.sealed.fetch_sub(1, Ordering::Relaxed);
     }
 }
 

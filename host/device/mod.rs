@@ -3,6 +3,7 @@
 mod buffer;
 #[cfg(feature = "cuda")]
 mod cuda;
+mod held;
 mod ledger;
 mod marks;
 #[cfg(any(feature = "cuda", test))]
@@ -182,6 +183,11 @@ impl Device {
         if self.is_gpu() { "cuda" } else { "cpu" }
     }
 
+    /// Whether both are clones of one, which one thread uses at a time.
+    pub(crate) fn is(&self, other: &Device) -> bool {
+        Arc::ptr_eq(&self.machine, &other.machine)
+    }
+
     /// Whether this is a GPU: thousands of lanes at once, and launches that cost microseconds.
     pub fn is_gpu(&self) -> bool {
         self.machine.is_gpu()
@@ -296,14 +302,14 @@ impl Device {
         self.usage.launches.fetch_add(1, Ordering::Relaxed);
         self.ledger.launched(E::NAME);
         #[cfg_attr(not(feature = "cuda"), allow(unused_variables, reason = "a CPU does it at once"))]
-        let is_listed = self.usage.lists(|list| list.launch::<E>(blocks, args));
+        let is_listed = held::list(&self.usage, |list| list.launch::<E>(blocks, args));
         match &*self.machine {
             // SAFETY: the caller's promise. What is listed is done all the same: nothing is gained by doing it later.
             Machine::Emulator(e) => unsafe { e.launch::<E>(blocks, args) }.map_err(Error::from),
             #[cfg(feature = "cuda")]
             Machine::Cuda(c) if is_listed => c.load::<E>(),
             #[cfg(feature = "cuda")]
-            Machine::Cuda(c) => c.launch::<E>(blocks, args, self.usage.sealed.load(Ordering::Relaxed) > 0),
+            Machine::Cuda(c) => c.launch::<E>(blocks, args, held::is_held(&self.usage)),
         }
     }
 }

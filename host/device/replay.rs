@@ -3,6 +3,7 @@
 
 #[cfg(feature = "cuda")]
 use super::cuda;
+use super::held::{self, LaunchesOnly};
 use super::{Device, Event, Machine};
 use crate::error::Error;
 use nearmiss_kernels::entry::Entry;
@@ -85,7 +86,7 @@ impl Marks<'_> {
     /// # Errors
     /// [`Error::Device`] with the driver's text.
     pub fn pass(&mut self, which: usize) -> Result<(), Error> {
-        if self.device.usage.lists(|list| list.push(Act::Mark(which))) && self.device.is_gpu() {
+        if held::list(&self.device.usage, |list| list.push(Act::Mark(which))) && self.device.is_gpu() {
             return Ok(());
         }
         self.events[which].again(self.device)
@@ -146,16 +147,15 @@ impl Replay {
         device: &Device,
         work: impl FnOnce(&mut Marks) -> Result<(), Error>,
     ) -> Result<(), Error> {
-        let only = device.launches_only();
         if !device.can_list()? {
+            let _only = device.launches_only();
             return self.straight(device, work);
         }
         let mut list = std::mem::take(&mut self.spare);
         list.clear();
-        device.opens(list);
+        let only = LaunchesOnly::new(&device.usage, Some(list));
         let done = self.straight(device, work);
-        let list = device.closes();
-        drop(only);
+        let list = only.listed();
         done?;
         self.perform(device, &list)?;
         self.spare = std::mem::replace(&mut self.last, list);
@@ -190,16 +190,6 @@ impl Replay {
 }
 
 impl Device {
-    /// From here on work is listed.
-    fn opens(&self, list: Listing) {
-        *self.usage.listing() = Some(list);
-    }
-
-    /// What was listed; from here on work is done as it comes.
-    fn closes(&self) -> Listing {
-        self.usage.listing().take().unwrap_or_default()
-    }
-
     /// Whether work may be listed: not for the default stream, nor for one that its owner captures, which wants the work itself.
     fn can_list(&self) -> Result<bool, Error> {
         match &*self.machine {

@@ -1,9 +1,8 @@
-//! What a device counts and is held to, whichever thread asks it.
+//! What a device counts, whichever thread asks it.
 
-use super::replay::Listing;
+use super::held::is_held;
 use crate::error::Error;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// What a device has been asked for. Each number stands for itself, so none orders the others.
 pub struct Usage {
@@ -19,41 +18,25 @@ pub struct Usage {
     pub waits: AtomicU64,
     /// How often work was what it was the last time, and done at once.
     pub replays: AtomicU64,
-    /// How many hold the device to launches alone: see [`Device::launches_only`](super::Device::launches_only).
-    pub sealed: AtomicU64,
     /// Views of memory that the host holds now.
     pub views: AtomicU64,
     /// Most bytes that may be held; as many as there can be for what the machine has.
     pub most: AtomicU64,
-    /// Where work is listed, while it is.
-    listing: Mutex<Option<Listing>>,
 }
 
 impl Usage {
     /// Nothing yet.
     pub fn new() -> Usage {
-        let [launches, bytes, peak, allocations, waits, replays, sealed, views] =
-            [const { AtomicU64::new(0) }; 8];
-        let (most, listing) = (AtomicU64::new(u64::MAX), Mutex::default());
-        Usage { launches, bytes, peak, allocations, waits, replays, sealed, views, most, listing }
+        let [launches, bytes, peak, allocations, waits, replays, views] = [const { AtomicU64::new(0) }; 7];
+        Usage { launches, bytes, peak, allocations, waits, replays, views, most: AtomicU64::new(u64::MAX) }
     }
 
-    /// Lists work; `false` where it is not listed now.
-    pub fn lists(&self, put: impl FnOnce(&mut Listing)) -> bool {
-        self.listing().as_mut().map(put).is_some()
-    }
-
-    /// Where work is listed, while it is. A list is whole between two calls, also after a panic.
-    pub fn listing(&self) -> MutexGuard<'_, Option<Listing>> {
-        self.listing.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Whether more than launches is allowed now.
+    /// Whether more than launches is allowed now, to this thread.
     ///
     /// # Errors
     /// [`Error::Bug`], saying `what` was done, where it is not.
     pub fn allows(&self, what: &str) -> Result<(), Error> {
-        if self.sealed.load(Ordering::Relaxed) > 0 {
+        if is_held(self) {
             return Err(Error::Bug { what: format!("{what} in a frame that only launches") });
         }
         Ok(())

@@ -19,7 +19,7 @@ unsafe impl Send for Graph {}
 unsafe impl Sync for Graph {}
 
 impl Graph {
-    /// What `work` puts in the stream, which is neither the default one nor captured.
+    /// What `work` puts in a stream of its own, where nobody else puts anything meanwhile.
     ///
     /// # Safety
     /// `work` only puts launches, fills and marks in the stream, whose memory and events live whenever the graph is launched.

@@ -49,6 +49,8 @@ pub struct Cuda {
     parts: Parts<'static>,
     functions: Mutex<HashMap<&'static str, Function>>,
     stream: Stream,
+    /// Where graphs are recorded, one at a time: what others put in the stream meanwhile is not theirs.
+    recorder: Mutex<Stream>,
     context: Arc<Context>,
 }
 
@@ -113,6 +115,7 @@ impl Cuda {
             Module::new(&context, &bound, parts.common(), None).map_err(refused("loading the kernels"))?;
         is_ours(common.global(&bound, c"NEARMISS_STAMP").map_err(refused("reading the kernels' stamp"))?)?;
         let staging = Staging::new(&context, &bound)?;
+        let recorder = Stream::new(&context).map_err(refused("making a stream"))?;
         drop(bound);
         Ok(Cuda {
             name,
@@ -123,6 +126,7 @@ impl Cuda {
             parts,
             functions: Mutex::default(),
             stream,
+            recorder: Mutex::new(recorder),
             context,
         })
     }
@@ -245,7 +249,7 @@ impl Cuda {
         let gpu = self.bind()?;
         let pass = |which: usize| marks[which].0.record(&gpu, &self.stream);
         // SAFETY: the caller's promise.
-        unsafe { self.put(&gpu, list, pass) }.map_err(refused("launching a frame"))
+        unsafe { self.put((&gpu, &self.stream), list, pass) }.map_err(refused("launching a frame"))
     }
 
     /// Makes a graph of what is listed.
@@ -254,9 +258,11 @@ impl Cuda {
     /// As of [`Cuda::perform`], whenever the graph is launched; and the marks are kept as long as it.
     pub unsafe fn record(&self, list: &Listing, marks: &[&Event]) -> Result<Graph, Error> {
         let gpu = self.bind()?;
-        let pass = |which: usize| marks[which].0.record_in_graph(&gpu, &self.stream);
-        // SAFETY: the caller's promise.
-        let graph = unsafe { Graph::new(&self.context, &gpu, &self.stream, || self.put(&gpu, list, pass)) };
+        let stream = locked(&self.recorder);
+        let pass = |which: usize| marks[which].0.record_in_graph(&gpu, &stream);
+        // SAFETY: the caller's promise; the stream is locked.
+        let graph =
+            unsafe { Graph::new(&self.context, &gpu, &stream, || self.put((&gpu, &stream), list, pass)) };
         graph.map_err(refused("making a graph of a frame"))
     }
 
@@ -266,10 +272,13 @@ impl Cuda {
         graph.launch(&self.bind()?, &self.stream).map_err(refused("launching a frame"))
     }
 
-    /// Puts what is listed in the stream.
+    /// Puts what is listed in a stream.
+    ///
+    /// # Safety
+    /// As of [`Cuda::perform`].
     unsafe fn put(
         &self,
-        gpu: &Bound,
+        (gpu, stream): (&Bound, &Stream),
         list: &Listing,
         mut pass: impl FnMut(usize) -> Result<(), Refusal>,
     ) -> Result<(), Refusal> {
@@ -278,11 +287,11 @@ impl Cuda {
             Act::Launch { kernel, grid, .. } => {
                 let function = functions.get(kernel).ok_or(Refusal(types::CUDA_ERROR_NOT_FOUND))?;
                 // SAFETY: the caller's promise.
-                unsafe { function.launch(gpu, &self.stream, grid, args) }
+                unsafe { function.launch(gpu, stream, grid, args) }
             }
             Act::Fill { bytes: 0, .. } => Ok(()),
             // SAFETY: the caller's promise.
-            Act::Fill { addr, bytes, byte } => unsafe { memory::fill(gpu, &self.stream, addr, bytes, byte) },
+            Act::Fill { addr, bytes, byte } => unsafe { memory::fill(gpu, stream, addr, bytes, byte) },
             Act::Mark(which) => pass(which),
         })
     }

@@ -114,3 +114,27 @@ fn marks_tell_the_time_between_them() {
         assert!(replay.ms(0, 1).expect("a time") >= 2.0);
     }
 }
+
+/// What other threads do on the device meanwhile is neither refused nor listed, and another device of this thread is not held.
+#[test]
+fn a_thread_is_held_alone_and_on_one_device() {
+    let (device, other) = (engine(), engine());
+    let (memory, mut replay) = (Memory::of(&device), Replay::default());
+    for round in 0..3 {
+        let work = |_: &mut Marks| {
+            memory.launch(&device, 0)?;
+            std::thread::scope(|scope| {
+                let there = || {
+                    let own = Memory::of(&device);
+                    // Something else each time.
+                    (0..round).try_for_each(|_| own.launch(&device, 1))
+                };
+                scope.spawn(there).join().expect("no panic")
+            })?;
+            other.buffer::<u32>(1 + round).map(drop)
+        };
+        // SAFETY: what this thread launches on the memory outlives it.
+        unsafe { replay.run(&device, work) }.expect("a frame");
+    }
+    assert_eq!(device.replays(), 2);
+}
