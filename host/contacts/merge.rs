@@ -1,4 +1,4 @@
-//! Answers of several devices to parts of one question, as one.
+//! Answers to parts of one question, by several devices or one after another, as one.
 
 use super::{Answer, Contact, Contacts, Degraded, TrianglePair, near};
 use crate::pipeline::Stages;
@@ -6,12 +6,14 @@ use rayon::prelude::*;
 
 impl Contacts {
     /// The answer to the whole, of those to its shares, of which there is at least one: lists together in canonical order, counts
-    /// added, and of each stage the longest.
-    pub(crate) fn merged(shares: Vec<Contacts>) -> Option<Contacts> {
+    /// added, and of each stage what `of` makes of two: the longer of those at the same time, the sum of those one after another.
+    pub(crate) fn merged(shares: Vec<Contacts>, of: impl Fn(f64, f64) -> f64) -> Option<Contacts> {
         let ordered = shares.len() < 2;
         let mut all = shares.into_iter();
         let mut whole = all.next()?;
         for share in all {
+            let (own, other) = (whole.stages, share.stages);
+            whole.stages = Stages::each(|stage| of(stage(&own), stage(&other)));
             whole.add(share);
         }
         if !ordered {
@@ -53,8 +55,6 @@ impl Contacts {
                 _,
             ) => {}
         }
-        let (own, other) = (self.stages, share.stages);
-        self.stages = Stages::each(|of| of(&own).max(of(&other)));
         let pairs =
             |own: &mut [u64; 2], other: [u64; 2]| own.iter_mut().zip(other).for_each(|(own, n)| *own += n);
         pairs(&mut self.candidates_vf_ee, share.candidates_vf_ee);
@@ -70,6 +70,7 @@ impl Contacts {
         self.steps += share.steps;
         self.spilled += share.spilled;
         self.reruns += share.reruns;
+        self.slices = self.slices.max(share.slices);
         share.degraded.into_iter().for_each(|reason| self.degrade(reason));
     }
 

@@ -157,6 +157,8 @@ pub struct Contacts {
     pub spilled: u64,
     /// How often a list was too short and grew, and a part of the frame ran again: it took longer, and the answer is whole.
     pub reruns: u64,
+    /// In how many slices the frame was asked: 1, but where the lists of a whole one would outgrow the memory.
+    pub slices: u32,
     /// What the work queues did.
     pub queues: Queues,
     /// What the front saved or cost.
@@ -190,6 +192,7 @@ impl Contacts {
             steps: 0,
             spilled: 0,
             reruns: 0,
+            slices: 1,
             queues: Queues::default(),
             front: Front::default(),
             degraded: Vec::new(),
@@ -251,6 +254,7 @@ impl Contacts {
             steps: count(counter::STEPS),
             spilled: counter::SPILLED.map(count).iter().sum(),
             reruns: found.reruns,
+            slices: 1,
             queues: Queues::new(&found.counters),
             front: Front::new(&found.counters),
             degraded,

@@ -57,6 +57,8 @@ pub struct Summary {
     pub hash: String,
     /// How often a list was too short and grew, and a part of the frame ran again; the answer is whole.
     pub reruns: u64,
+    /// In how many slices the frame was asked, for want of memory; 1 is the whole at once.
+    pub slices: u32,
     /// What the traversal's work queues did.
     pub queues: Queues,
     /// What the traversal's front saved or cost.
@@ -96,6 +98,7 @@ impl Summary {
             earliest_toi: contacts.earliest_toi(),
             hash: format!("{:016x}", contacts.hash()),
             reruns: contacts.reruns,
+            slices: contacts.slices,
             queues: contacts.queues,
             front: contacts.front,
             ms: contacts.stages,

@@ -55,7 +55,7 @@ impl Detector {
 
     /// The next frame begins anew.
     fn changed(&mut self) {
-        (self.pipeline, self.layout, self.answered) = (None, None, false);
+        (self.pipeline, self.layout, self.answered, self.slices) = (None, None, false, 1);
     }
 }
 

@@ -6,6 +6,7 @@ mod geometry;
 mod moves;
 pub mod plan;
 mod share;
+mod slices;
 mod submit;
 
 use crate::contacts::{Contacts, Degraded, Summary};
@@ -58,8 +59,10 @@ pub struct Detector {
     f64s: bool,
     /// None where nothing can meet, or where memory ended: then the next frame asks for it again.
     pipeline: Option<Box<dyn Pipeline>>,
-    /// Its part of the work.
+    /// Its part of the work, in how many slices it is asked, and what each tile cost where there are several.
     share: Share,
+    slices: u32,
+    work_of_tiles: Vec<u64>,
     /// Frames answered since the pipeline began.
     asked: u64,
     /// What the last building of the trees did, and the last frame.
@@ -111,6 +114,8 @@ impl Detector {
             f64s: false,
             pipeline: None,
             share,
+            slices: 1,
+            work_of_tiles: Vec::new(),
             asked: 0,
             build: Work::default(),
             work: Work::default(),
@@ -133,23 +138,28 @@ impl Detector {
         Ok(layout)
     }
 
-    /// The pipeline; where there is none yet, with memory for the bodies where they are and trees built. None where nothing can
-    /// meet: that costs no memory and no launch.
-    fn begun(&mut self) -> Result<Option<&mut Box<dyn Pipeline>>, Error> {
+    /// Makes the pipeline, where there is none yet, with memory for the bodies where they are and trees built. None is made where
+    /// nothing can meet: that costs no memory and no launch.
+    fn one_pipeline(&mut self) -> Result<(), Error> {
         let layout = self.layout()?;
         if self.pipeline.is_none() && layout.may_meet() {
             self.all_known()?;
             let bodies = self.scene.bodies();
             self.f64s = bodies.iter().any(Body::needs_f64);
             let query = self.query_with_tolerance();
-            let mut pipeline =
-                pipeline::pipeline(self.device.clone(), bodies, layout, query, (self.f64s, self.share))?;
+            let mut pipeline = pipeline::pipeline(
+                self.device.clone(),
+                bodies,
+                layout,
+                query,
+                (self.f64s, self.first_slice()),
+            )?;
             self.device.work();
             self.construct_ms = pipeline.construct()?;
             (self.asked, self.build) = (0, self.device.work());
             self.pipeline = Some(pipeline);
         }
-        Ok(self.pipeline.as_mut())
+        Ok(())
     }
 
     /// The query, with its tolerance.
@@ -174,10 +184,12 @@ impl Detector {
         Ok(())
     }
 
-    /// All contacts with the bodies where they are, in canonical order.
+    /// All contacts with the bodies where they are, in canonical order. Where the lists of a frame outgrow the memory, or an index,
+    /// candidates by tiles are found slice by slice, a share of the tiles after the other, and the answer is the same:
+    /// [`Contacts::slices`] says how many they were.
     ///
     /// # Errors
-    /// Those of the device: [`Error::OutOfMemory`] when memory ends. There is no partial answer.
+    /// Those of the device: [`Error::OutOfMemory`] when memory ends all the same. There is no partial answer.
     pub fn detect(&mut self) -> Result<Contacts, Error> {
         self.device.work();
         self.answer(Instant::now())
@@ -185,13 +197,9 @@ impl Detector {
 
     /// The same, of a frame that began then.
     fn answer(&mut self, start: Instant) -> Result<Contacts, Error> {
-        self.begun()?;
-        let layout = self.layout()?;
-        let Some(pipeline) = &mut self.pipeline else { return Ok(Contacts::none(self.query)) };
         self.answered = false;
-        let (found, stages) = pipeline.frame()?;
-        let seen = found.seen;
-        let contacts = contacts(found, stages, &layout)?;
+        let layout = self.layout()?;
+        let Some((contacts, seen)) = self.ask(&layout)? else { return Ok(Contacts::none(self.query)) };
         (self.asked, self.work) = (self.asked + 1, self.device.work());
         self.complete(contacts, seen, start)
     }

@@ -11,7 +11,8 @@ impl Detector {
     /// [`Error::Choice`] where work cannot be divided; those of the device.
     pub(crate) fn take(&mut self, share: Share) -> Result<(), Error> {
         (self.share, self.answered) = (share, false);
-        self.pipeline.as_mut().map_or(Ok(()), |pipeline| pipeline.take(share))
+        let slice = self.first_slice();
+        self.pipeline.as_mut().map_or(Ok(()), |pipeline| pipeline.take(slice))
     }
 
     /// What each tile of its share cost in the last frame, of all tiles; nothing where nothing can meet.
@@ -19,7 +20,10 @@ impl Detector {
     /// # Errors
     /// Those of the device.
     pub(crate) fn tile_work(&self) -> Result<Vec<u64>, Error> {
-        self.pipeline.as_ref().map_or(Ok(Vec::new()), |pipeline| pipeline.work())
+        match &self.pipeline {
+            Some(pipeline) if self.slices == 1 => pipeline.work(),
+            _ => Ok(self.work_of_tiles.clone()),
+        }
     }
 
     /// What its machine calls itself.

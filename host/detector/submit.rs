@@ -22,6 +22,12 @@ impl Detector {
         }
         // Again, with lists and plans that this frame has settled.
         let contacts = self.detect()?;
+        if self.slices > 1 {
+            return Err(Error::Choice {
+                what: format!("a submission in {} slices", self.slices),
+                advice: "the lists of a whole frame have no room: give the device more memory, or ask frame by frame".into(),
+            });
+        }
         if let Some(pipeline) = &mut self.pipeline {
             pipeline.prepare()?;
         }

@@ -154,3 +154,39 @@ fn bodies_that_are_away_come_back_for_changes() {
     let fresh = support::ask_scene(engine(), detector.scene().clone(), *detector.query());
     assert_eq!(found.answer, fresh.answer);
 }
+
+#[test]
+fn memory_of_the_caller_is_read_in_every_slice() {
+    let (scene, id, ends) = pair(2_000);
+    let query = query(QueryKind::Continuous);
+    let whole = engine();
+    let mut by_host = Detector::new(whole.clone(), scene.clone(), query).expect("a detector");
+    let mut asked = |frame| {
+        let [t0, t1] = ends.each_ref().map(|points| Positions::F32(moved(points, frame)));
+        by_host.frame(&[(id, Input::Step([&t0, &t1]))]).expect("an answer")
+    };
+    let wanted = [0, 1, 2].map(&mut asked);
+    let mut sliced = 0;
+    for part in (10..40).rev() {
+        let device = engine().limited(whole.bytes().1 * part / 40);
+        let Ok(mut detector) = Detector::new(device.clone(), scene.clone(), query) else { continue };
+        // The caller's own memory is not of the detector's device.
+        let mut memory = ends.each_ref().map(|points| Points::new(&engine(), points));
+        let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
+        for (frame, wanted) in wanted.iter().enumerate() {
+            memory[0].write(&moved(&ends[0], frame));
+            memory[1].write(&moved(&ends[1], frame));
+            let Ok(found) = detector.frame(&[(id, Input::OnDevice(input))]) else { break };
+            assert_eq!((found.hash(), &found.answer), (wanted.hash(), &wanted.answer), "{part}, {frame}");
+            sliced += u32::from(found.slices > 1);
+            if found.slices > 1 {
+                let error = detector.prepare(&[(id, input)]).expect_err("a submission is one frame");
+                assert!(error.exit_code() == 2 && error.to_string().contains("slices"), "{error}");
+            }
+        }
+        if sliced > 3 {
+            break;
+        }
+    }
+    assert!(sliced > 3, "{sliced}");
+}

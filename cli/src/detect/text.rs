@@ -63,6 +63,10 @@ pub fn human(told: &Report, contacts: &Contacts) -> String {
     for reason in &summary.degraded {
         let _ = writeln!(text, "  degraded: {reason}");
     }
+    if summary.slices > 1 {
+        let _ =
+            writeln!(text, "  asked in {} slices, for want of memory: the answer is whole", summary.slices);
+    }
     if summary.reruns > 0 {
         let often = counted(summary.reruns, "time", "times");
         let _ =

@@ -50,6 +50,12 @@ impl Share {
     /// All tiles.
     pub const WHOLE: Share = Share { from: 0, to: Share::ALL };
 
+    /// Slice `k` of so many.
+    pub fn slice(&self, k: u32, slices: u32) -> Share {
+        let at = |k: u32| self.from + (self.to - self.from) * u64::from(k) / u64::from(slices);
+        Share { from: at(k), to: at(k + 1) }
+    }
+
     /// The tiles of so many that are its.
     pub fn of(&self, tiles: u32) -> std::ops::Range<u32> {
         let [from, to] = [self.from, self.to].map(|part| (u64::from(tiles) * part / Share::ALL) as u32);
