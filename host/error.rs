@@ -40,6 +40,16 @@ pub enum Error {
         /// What to do.
         advice: &'static str,
     },
+    /// A measurement is worse than the earlier one that it was compared with. Find the change, or measure anew.
+    #[error("{what}: {text}; {advice}")]
+    Regression {
+        /// What was measured.
+        what: String,
+        /// Now, and in which file before.
+        text: String,
+        /// What to do.
+        advice: &'static str,
+    },
     /// Memory ran out. Nothing was lost in silence: there is no answer.
     #[error(
         "{what}: {asked} bytes were needed and {given} were free; use a smaller scene or a larger machine"
@@ -94,6 +104,7 @@ impl Error {
             Error::Input { .. } => 3,
             Error::Output { .. }
             | Error::Device { .. }
+            | Error::Regression { .. }
             | Error::OutOfMemory { .. }
             | Error::Stamp { .. }
             | Error::Bug { .. } => 4,

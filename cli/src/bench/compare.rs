@@ -81,7 +81,7 @@ pub fn compare(
 }
 
 fn other_answer(now: &Measured, (hash, file): (&str, &str)) -> Option<Error> {
-    (now.hash != hash).then(|| Error::Device {
+    (now.hash != hash).then(|| Error::Regression {
         what: now.called(),
         text: format!("the answer has the hash {}, and in {file} {hash}", now.hash),
         advice: "find the change that made it; if it is meant, or the mesh is another, measure anew",
@@ -95,7 +95,7 @@ fn too_slow(now: &Measured, limit: f64, file: &str) -> Option<Error> {
         .into_iter()
         .filter_map(of)
         .find(|times| times.earlier_ms.is_some_and(|earlier| is_slow(times.median_ms, earlier)))?;
-    Some(Error::Device {
+    Some(Error::Regression {
         what: now.called(),
         text: format!(
             "{} takes {} ms, and in {file} {} ms: more than {limit} times as long",

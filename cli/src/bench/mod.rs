@@ -45,7 +45,7 @@ pub struct Figures {
 ///
 /// # Errors
 /// [`Error::Choice`] for what cannot be compared, [`Error::Input`] for an earlier file that cannot be used, both before anything is
-/// measured; [`Error::Device`] for the first answer that is another than in that file, or frame that takes too long; those of
+/// measured; [`Error::Regression`] for the first answer that is another than in that file, or frame that takes too long; those of
 /// the device.
 pub fn bench(args: &BenchArgs) -> Result<ExitCode, Error> {
     if args.list {
