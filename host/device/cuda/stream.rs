@@ -42,9 +42,14 @@ impl Stream {
         self.handle
     }
 
+    /// Whether it is the default stream, which nobody can capture.
+    pub fn is_default(&self) -> bool {
+        self.handle.is_null()
+    }
+
     /// Whether work of ours can be captured here: it is not the default stream, and nobody captures it.
     pub fn can_capture(&self, gpu: &Bound) -> Result<bool, Refusal> {
-        if self.handle.is_null() {
+        if self.is_default() {
             return Ok(false);
         }
         let mut status = types::CU_STREAM_CAPTURE_STATUS_NONE;
