@@ -1,12 +1,12 @@
 //! One scene on several devices: every one has all positions, and finds what is its share of the tiles.
 
 use crate::contacts::{ContactGeometry, Contacts};
-use crate::detector::Detector;
+use crate::detector::{Detector, Wear};
 use crate::device::Device;
 use crate::error::Error;
 use crate::mesh::Body;
 use crate::pipeline::Share;
-use crate::query::{Broad, Query};
+use crate::query::{Broad, Query, Rebuild};
 use crate::scene::{BodyId, Input, Scene};
 use std::time::Instant;
 
@@ -39,6 +39,11 @@ pub struct MultiDetector {
     /// Milliseconds of the last frame, on each device's own clock.
     ms: Vec<f64>,
     in_turn: bool,
+    /// How often each device had made its tiles when last all were made from the same positions: so that tiles are the same.
+    builds: Vec<u64>,
+    wear: Wear,
+    /// Whether all are made anew by themselves.
+    wears: bool,
 }
 
 /// What a device did of a frame.
@@ -79,11 +84,16 @@ impl MultiDetector {
         let search = query.search();
         let by_tiles = count > 1 && search.broad.is_none() && !search.is_of_trees();
         let query = if by_tiles { query.with_broad(Broad::Tiles) } else { query };
+        // All devices together, or none.
+        let wears = query.search().rebuild == Some(Rebuild::Worn);
+        let query = query.with_rebuild(Rebuild::Asked);
         let part = |k: usize| k as u64 * Share::ALL / count as u64;
         let shares: Vec<Share> = (0..count).map(|k| Share { from: part(k), to: part(k + 1) }).collect();
         let part = |(device, &share)| Detector::with_share(device, scene.clone(), query, share);
         let parts = devices.into_iter().zip(&shares).map(part).collect::<Result<Vec<_>, _>>()?;
-        Ok(MultiDetector { parts, shares, ms: vec![0.0; count], in_turn })
+        let builds = parts.iter().map(Detector::builds).collect();
+        let (ms, wear) = (vec![0.0; count], Wear::default());
+        Ok(MultiDetector { parts, shares, ms, in_turn, builds, wear, wears })
     }
 
     /// Asks the devices one after another: where they are one machine in truth, and each is to be timed as if it were alone.
@@ -118,7 +128,23 @@ impl MultiDetector {
     /// # Errors
     /// As there.
     pub fn rebuild(&mut self) -> Result<(), Error> {
-        self.each(Detector::rebuild).map(drop)
+        self.each(Detector::rebuild)?;
+        self.agree();
+        Ok(())
+    }
+
+    /// As [`Detector::builds`], of the device that made its tiles most often.
+    pub fn builds(&self) -> u64 {
+        self.builds_now().into_iter().max().unwrap_or_default()
+    }
+
+    /// Tiles were made on all devices from the same positions.
+    fn agree(&mut self) {
+        (self.builds, self.wear) = (self.builds_now(), Wear::default());
+    }
+
+    fn builds_now(&self) -> Vec<u64> {
+        self.parts.iter().map(Detector::builds).collect()
     }
 
     /// As [`Detector::add`].
@@ -127,7 +153,9 @@ impl MultiDetector {
     /// As there.
     pub fn add(&mut self, body: &Body) -> Result<BodyId, Error> {
         // All scenes number their bodies in the same way.
-        Ok(self.each(|detector| detector.add(body.clone()))?[0])
+        let ids = self.each(|detector| detector.add(body.clone()))?;
+        self.begin()?;
+        Ok(ids[0])
     }
 
     /// As [`Detector::remove`].
@@ -136,6 +164,7 @@ impl MultiDetector {
     /// As there.
     pub fn remove(&mut self, id: BodyId) -> Result<Body, Error> {
         let mut bodies = self.each(|detector| detector.remove(id))?;
+        self.begin()?;
         Ok(bodies.swap_remove(0))
     }
 
@@ -144,7 +173,15 @@ impl MultiDetector {
     /// # Errors
     /// As there.
     pub fn replace(&mut self, id: BodyId, body: &Body) -> Result<(), Error> {
-        self.each(|detector| detector.replace(id, body.clone())).map(drop)
+        self.each(|detector| detector.replace(id, body.clone()))?;
+        self.begin()
+    }
+
+    /// After a change of bodies: the same tiles on all devices.
+    fn begin(&mut self) -> Result<(), Error> {
+        self.each(Detector::begin)?;
+        self.agree();
+        Ok(())
     }
 
     /// As [`Detector::geometry`].
@@ -175,17 +212,35 @@ impl MultiDetector {
         self.parts.iter().zip(&self.shares).zip(&self.ms).map(one).collect()
     }
 
+    /// How many tiles of 32 triangles each share has met in the last frame that are not its: what would have to be sent to it if it did not
+    /// have all positions. Reads all pairs of tiles back, for measurements. Of a share in slices the last one alone is counted.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn met_beyond(&mut self) -> Result<Vec<u64>, Error> {
+        self.each(|detector| detector.met_beyond())
+    }
+
     /// One frame, and how its work is divided next.
     fn ask(
         &mut self,
         question: impl Fn(&mut Detector) -> Result<Contacts, Error> + Sync,
     ) -> Result<Contacts, Error> {
         let start = Instant::now();
+        if self.wears && self.wear.is_worn(self.parts[0].moving_triangles()) {
+            self.rebuild()?;
+        }
         self.divide()?;
-        let answers = self.each(question)?;
+        let mut answers = self.each(question)?;
+        // A device that ran out of memory has made its tiles anew, and a share is of the same tiles on all.
+        while self.parts.len() > 1 && self.builds_now() != self.builds {
+            self.rebuild()?;
+            answers = self.each(Detector::detect)?;
+        }
         self.ms = answers.iter().map(|answer| answer.stages.total).collect();
         let none = || Error::Bug { what: "a scene on no device".into() };
         let mut whole = Contacts::merged(answers, f64::max).ok_or_else(none)?;
+        self.wear.tell(whole.steps);
         whole.stages.wall = start.elapsed().as_secs_f64() * 1e3;
         Ok(whole)
     }

@@ -19,7 +19,7 @@ fn depth(device: nearmiss::Device, body: Body) -> usize {
     let mut detector = Detector::new(device, vec![body, far()], Query::discrete().with_broad(Broad::Tree))
         .expect("a detector");
     assert!(detector.detect().expect("an answer").is_empty(), "nothing is far away");
-    detector.check_trees().expect("a sound tree");
+    detector.check_volumes().expect("a sound tree");
     detector.depths()[0]
 }
 

@@ -136,7 +136,7 @@ fn a_session_goes_over_to_doubles() {
             detector.move_to(0, times(&body, power)).expect("a frame of the mesh");
             let found = detector.detect().expect("an answer");
             assert_eq!(fault(&truth, &found), None, "{motion:?}, 2^{power}");
-            detector.check_trees().expect("sound trees");
+            detector.check_volumes().expect("sound trees");
         }
         let pair = vec![body.clone(), times(&body, 100)];
         let swapped = vec![times(&body, 100), body.clone()];

@@ -56,7 +56,7 @@ fn prints(device: Device, body: &Body, refit: Refit, bv: Bv) -> Vec<Prints> {
             detector.rebuild().expect("another tree");
         }
         detector.detect().expect("an answer");
-        detector.check_trees().expect("sound trees");
+        detector.check_volumes().expect("sound trees");
         let mut prints = detector.fingerprints().expect("prints");
         prints.retain(|(stage, _)| ["construct", "fit", "refit"].contains(stage));
         assert_eq!(prints.len(), 3);

@@ -87,7 +87,7 @@ fn every_way_to_refit_can_be_repeated() {
             let mut detector = Detector::new(device.clone(), vec![body.clone()], query).expect("a detector");
             detector.move_to(0, later(&body)).expect("moved");
             assert_eq!(detector.repeat_stage(Stage::Refit, 3).expect("runs").len(), 3);
-            detector.check_trees().expect("volumes around all");
+            detector.check_volumes().expect("volumes around all");
             hashes.push(detector.detect().expect("an answer").hash());
             let prints = detector.fingerprints().expect("prints");
             detector.repeat_stage(Stage::Refit, 3).expect("runs");

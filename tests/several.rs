@@ -156,3 +156,21 @@ fn what_cannot_be_divided_is_refused() {
     assert!(several.frame(&[(id, Input::At(&short))]).is_err());
     assert_eq!(several.detect().expect("an answer").hash(), before);
 }
+
+/// Tiles beyond a share: none of the whole, none of the last share, and of the others those at the cut.
+#[test]
+fn tiles_at_the_cut_are_counted() {
+    let cells = 64;
+    let body = scene::grid(cells).expect("a grid");
+    let beyond = |count: usize| {
+        let mut several =
+            MultiDetector::new(devices(count), body.clone(), Query::discrete()).expect("detectors");
+        several.detect().expect("an answer");
+        several.met_beyond().expect("read")
+    };
+    assert_eq!(beyond(1), [0]);
+    let [two, four] = [2, 4].map(beyond);
+    assert!(two[0] > 0 && two[1] == 0 && four[3] == 0, "{two:?} {four:?}");
+    let tiles = body.face_count() as u64 / 32;
+    assert!(four.iter().sum::<u64>() < tiles / 2 && two[0] < tiles / 4, "{two:?} {four:?} of {tiles}");
+}

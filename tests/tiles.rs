@@ -96,7 +96,7 @@ fn many_bodies_have_the_same_contacts_step_by_step() {
                         detector.rebuild().expect("built anew");
                     }
                     let contacts = detector.frame(&inputs).expect("a frame");
-                    detector.check_trees().expect("sound volumes");
+                    detector.check_volumes().expect("sound volumes");
                     contacts
                 });
                 assert_eq!(tree.answer, tiles.answer, "{query:?}, step {step}");

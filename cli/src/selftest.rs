@@ -72,7 +72,7 @@ fn print_of_steps(device: &Device, scene: &Bodies, query: Query) -> Result<Print
 }
 
 fn print_after(detector: &Detector, contacts: &Contacts) -> Result<Print, Error> {
-    detector.check_trees()?;
+    detector.check_volumes()?;
     let mut stages = detector.fingerprints()?;
     stages.push(("contacts", contacts.hash()));
     Ok(Print { contacts: contacts.len(), stages })

@@ -5,7 +5,9 @@ use super::lent;
 use nearmiss::contacts::{Answer, Contact, Kind, Status};
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::{Body, Mesh, Positions, Topology};
-use nearmiss::query::{Broad, Bv, FrontShape, QueryKind, QueueShape, Refit, Search, StealShape, Traversal};
+use nearmiss::query::{
+    Broad, Bv, FrontShape, Order, QueryKind, QueueShape, Refit, Search, StealShape, Traversal,
+};
 use nearmiss::{Contacts, Detector, Device, Error, Query};
 use nearmiss_lab::oracle::{Toi, first_contact, triangles_meet};
 use nearmiss_lab::{Case, Features};
@@ -36,6 +38,8 @@ pub fn decode(bytes: &[u8]) -> Result<(Vec<Body>, Query), Error> {
         bv: Some(Bv::ALL[usize::from(shape) % 4]),
         traversal,
         refit: traversal.map(|_| refit),
+        order: traversal.is_none().then(|| Order::ALL[usize::from(shape >> 6) % 3]),
+        ..Search::default()
     });
     let count = 1 + b.below(8) % 2;
     let bodies = (0..count).map(|_| body(&mut b)).collect::<Result<_, _>>()?;

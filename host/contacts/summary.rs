@@ -59,6 +59,8 @@ pub struct Summary {
     pub reruns: u64,
     /// In how many slices the frame was asked, for want of memory; 1 is the whole at once.
     pub slices: u32,
+    /// How often tiles or trees have been made, see [`Detector::builds`](crate::Detector::builds).
+    pub builds: u64,
     /// What the traversal's work queues did.
     pub queues: Queues,
     /// What the traversal's front saved or cost.
@@ -99,6 +101,7 @@ impl Summary {
             hash: format!("{:016x}", contacts.hash()),
             reruns: contacts.reruns,
             slices: contacts.slices,
+            builds: 1,
             queues: contacts.queues,
             front: contacts.front,
             ms: contacts.stages,

@@ -95,6 +95,7 @@ impl Detector {
             return self.answer(start);
         }
         self.answered = true;
+        self.wear.tell(contacts.steps);
         self.largest = seen.map_or(self.largest, |seen| seen.largest.max(self.largest));
         self.tell_below_precision(&mut contacts)?;
         let wall = start.elapsed().as_secs_f64() * 1e3;

@@ -8,6 +8,7 @@ pub mod plan;
 mod share;
 mod slices;
 mod submit;
+mod wear;
 
 use crate::contacts::{Contacts, Degraded, Summary};
 use crate::device::{Device, Work};
@@ -15,10 +16,11 @@ use crate::error::Error;
 use crate::memory;
 use crate::mesh::{Body, MAX_FACES, MAX_VERTICES};
 use crate::pipeline::{self, Found, Layout, Pipeline, Share, Stage, Stages};
-use crate::query::Query;
+use crate::query::{Query, Rebuild};
 use crate::scene::Scene;
 use std::sync::Arc;
 use std::time::Instant;
+pub(crate) use wear::Wear;
 
 /// A scene on a device, ready to be asked frame after frame.
 ///
@@ -63,6 +65,9 @@ pub struct Detector {
     share: Share,
     slices: u32,
     work_of_tiles: Vec<u64>,
+    /// What frames cost since tiles or trees were made, and how often these were.
+    wear: Wear,
+    builds: u64,
     /// Frames answered since the pipeline began.
     asked: u64,
     /// What the last building of the trees did, and the last frame.
@@ -116,6 +121,8 @@ impl Detector {
             share,
             slices: 1,
             work_of_tiles: Vec::new(),
+            wear: Wear::default(),
+            builds: 0,
             asked: 0,
             build: Work::default(),
             work: Work::default(),
@@ -158,8 +165,20 @@ impl Detector {
             self.construct_ms = pipeline.construct()?;
             (self.asked, self.build) = (0, self.device.work());
             self.pipeline = Some(pipeline);
+            self.built();
         }
         Ok(())
+    }
+
+    /// Tiles or trees are new.
+    fn built(&mut self) {
+        (self.wear, self.builds) = (Wear::default(), self.builds + 1);
+    }
+
+    /// How often tiles or trees were made: when the detector began, when asked, by itself where the query allows it, and whenever memory was
+    /// taken anew.
+    pub fn builds(&self) -> u64 {
+        self.builds
     }
 
     /// The query, with its tolerance.
@@ -171,17 +190,29 @@ impl Detector {
         query
     }
 
-    /// Builds the tree over what moves anew: pays when bodies have moved far from where it was built.
+    /// Makes tiles, or the tree, over what moves anew: pays when bodies have moved far from where they were made. By itself where
+    /// [`Rebuild::Worn`] allows it.
     ///
     /// # Errors
     /// Those of the device.
     pub fn rebuild(&mut self) -> Result<(), Error> {
         self.device.work();
+        self.renew()?;
+        self.build = self.device.work();
+        Ok(())
+    }
+
+    fn renew(&mut self) -> Result<(), Error> {
         let Some(pipeline) = self.begun()? else { return Ok(()) };
         self.construct_ms = pipeline.construct()?;
         self.answered = false;
-        self.build = self.device.work();
+        self.built();
         Ok(())
+    }
+
+    /// Whether the next frame builds anew by itself.
+    fn is_worn(&self, layout: &Layout) -> bool {
+        self.query.search().rebuild == Some(Rebuild::Worn) && self.wear.is_worn(layout.moving_triangles())
     }
 
     /// All contacts with the bodies where they are, in canonical order. Where the lists of a frame outgrow the memory, or an index,
@@ -199,6 +230,9 @@ impl Detector {
     fn answer(&mut self, start: Instant) -> Result<Contacts, Error> {
         self.answered = false;
         let layout = self.layout()?;
+        if self.is_worn(&layout) {
+            self.renew()?;
+        }
         let Some((contacts, seen)) = self.ask(&layout)? else { return Ok(Contacts::none(self.query)) };
         (self.asked, self.work) = (self.asked + 1, self.device.work());
         self.complete(contacts, seen, start)
@@ -224,6 +258,7 @@ impl Detector {
         if stage == Stage::Construct {
             self.answered = false;
             self.construct_ms = ms.last().copied().unwrap_or(self.construct_ms);
+            self.built();
         }
         Ok(ms)
     }
@@ -260,6 +295,7 @@ impl Detector {
     pub fn summary(&self, contacts: &Contacts) -> Summary {
         Summary {
             tolerance: self.tolerance,
+            builds: self.builds,
             ..Summary::new(self.scene.bodies(), self.query, &self.device, contacts)
         }
     }
@@ -287,7 +323,7 @@ impl Detector {
     ///
     /// # Errors
     /// [`Error::Bug`] with the first violation; those of the device.
-    pub fn check_trees(&self) -> Result<(), Error> {
+    pub fn check_volumes(&self) -> Result<(), Error> {
         self.pipeline.as_ref().map_or(Ok(()), |pipeline| pipeline.check())
     }
 }

@@ -26,6 +26,27 @@ impl Detector {
         }
     }
 
+    /// How many tiles beyond its share it met in the last frame, asked at once.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub(crate) fn met_beyond(&self) -> Result<u64, Error> {
+        self.pipeline.as_ref().map_or(Ok(0), |pipeline| pipeline.met_beyond())
+    }
+
+    /// Makes tiles where there are none.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub(crate) fn begin(&mut self) -> Result<(), Error> {
+        self.begun().map(drop)
+    }
+
+    /// Triangles of what moves.
+    pub(crate) fn moving_triangles(&self) -> usize {
+        self.layout.as_ref().map_or(0, |layout| layout.moving_triangles())
+    }
+
     /// What its machine calls itself.
     pub(crate) fn machine(&self) -> String {
         self.device.name()

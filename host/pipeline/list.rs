@@ -81,7 +81,15 @@ impl<T: Pod> List<T> {
     /// # Errors
     /// Those of the device.
     pub fn read(&self, counters: &Counts) -> Result<Vec<T>, Error> {
-        self.entries.read(self.demand(counters) as usize)
+        self.first(self.demand(counters))
+    }
+
+    /// The first so many entries.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn first(&self, count: u64) -> Result<Vec<T>, Error> {
+        self.entries.read(count as usize)
     }
 }
 

@@ -2,8 +2,8 @@
 
 use crate::mesh::Positions;
 use nearmiss_kernels::abi::{
-    BelowPrecisionArgs, CullArgs, DiscreteArgs, FeaturesArgs, LeastArgs, MortonArgs, NearArgs, PlaceArgs,
-    RungArgs, SolveArgs,
+    BelowPrecisionArgs, CullArgs, CutArgs, DiscreteArgs, FeaturesArgs, LeastArgs, MortonArgs, NearArgs,
+    PlaceArgs, RungArgs, SolveArgs,
 };
 use nearmiss_kernels::entry::{self, Entry};
 use nearmiss_kernels::math::{Real, Vec3};
@@ -16,6 +16,12 @@ pub trait Precision: Real + Send {
     type Bounds: Entry<Args = MortonArgs<Self>>;
     /// Codes of the triangle centres.
     type Morton: Entry<Args = MortonArgs<Self>>;
+    /// Boxes of stretches of triangles.
+    type HalvesBounds: Entry<Args = CutArgs<Self>>;
+    /// Codes of triangles in stretches.
+    type Halves: Entry<Args = CutArgs<Self>>;
+    /// Runs in halves of halves.
+    type Runs: Entry<Args = CutArgs<Self>>;
     /// The seed's discrete test.
     type Moller: Entry<Args = DiscreteArgs<Self>>;
     /// The discrete filter.
@@ -76,6 +82,9 @@ impl Precision for f32 {
     type Place = entry::place_f32;
     type Bounds = entry::construct_bounds_f32;
     type Morton = entry::construct_morton_f32;
+    type HalvesBounds = entry::construct_halves_bounds_f32;
+    type Halves = entry::construct_halves_f32;
+    type Runs = entry::construct_runs_f32;
     type Moller = entry::narrow_moller_f32;
     type Filter = entry::narrow_filter_f32;
     type Wide = entry::narrow_wide_f32;
@@ -118,6 +127,9 @@ impl Precision for f64 {
     type Place = entry::place_f64;
     type Bounds = entry::construct_bounds_f64;
     type Morton = entry::construct_morton_f64;
+    type HalvesBounds = entry::construct_halves_bounds_f64;
+    type Halves = entry::construct_halves_f64;
+    type Runs = entry::construct_runs_f64;
     type Moller = entry::narrow_moller_f64;
     type Filter = entry::narrow_filter_f64;
     type Wide = entry::narrow_filter_f64;

@@ -115,6 +115,8 @@ pub trait Pipeline: repeat::Again + submit::Submits + Send {
     /// # Errors
     /// Those of the device.
     fn work(&self) -> Result<Vec<u64>, Error>;
+    /// How many tiles beyond its share it met in the last frame, or the device's error.
+    fn met_beyond(&self) -> Result<u64, Error>;
     /// Levels of each tree.
     fn depths(&self) -> Vec<usize>;
     /// How often a list was too short and the frame was run again, so far.
@@ -363,6 +365,10 @@ impl<R: Precision> Pipeline for TypedPipeline<R> {
 
     fn work(&self) -> Result<Vec<u64>, Error> {
         self.broad.work()
+    }
+
+    fn met_beyond(&self) -> Result<u64, Error> {
+        self.broad.met_beyond()
     }
 
     fn depths(&self) -> Vec<usize> {

@@ -21,7 +21,7 @@ pub use named::Named;
 pub(crate) use named::named;
 pub use near::Near;
 pub use queues::{Balance, FrontShape, QueueShape, StealShape};
-pub use search::{Broad, Refit, Search, Traversal};
+pub use search::{Broad, Order, Rebuild, Refit, Search, Traversal};
 pub use solver::Solver;
 
 use crate::error::Error;
@@ -98,6 +98,16 @@ impl Query {
         self.with_search(Search { broad: Some(broad), ..self.search() })
     }
 
+    /// The same, with triangles in tiles in that order.
+    pub fn with_order(self, order: Order) -> Query {
+        self.with_search(Search { order: Some(order), ..self.search() })
+    }
+
+    /// The same, with tiles or trees made anew then.
+    pub fn with_rebuild(self, rebuild: Rebuild) -> Query {
+        self.with_search(Search { rebuild: Some(rebuild), ..self.search() })
+    }
+
     /// The same, with that volume.
     pub fn with_bv(self, bv: Bv) -> Query {
         self.with_search(Search { bv: Some(bv), ..self.search() })
@@ -164,7 +174,8 @@ impl Query {
                 advice: "keep that for distances, which have no other; choose another or none".into(),
             });
         }
-        if !self.kind().takes_traversals() && self.search().broad == Some(Broad::Tiles) {
+        let by_tiles = self.search().broad == Some(Broad::Tiles) || self.search().order.is_some();
+        if !self.kind().takes_traversals() && by_tiles {
             return Err(Error::Choice {
                 what: format!("a {} query by tiles", self.kind()),
                 advice: "choose trees, or nothing: the nearest is sought down a tree".into(),

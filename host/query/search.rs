@@ -14,6 +14,10 @@ pub struct Search {
     pub refit: Option<Refit>,
     /// The walk of trees; `None` for what is fastest on the machine.
     pub traversal: Option<Traversal>,
+    /// The order of triangles in tiles; `None` for what is fastest.
+    pub order: Option<Order>,
+    /// When tiles or trees are made anew; `None` for when asked.
+    pub rebuild: Option<Rebuild>,
 }
 
 impl Search {
@@ -24,7 +28,13 @@ impl Search {
 
     /// The broad phase of a machine where none was asked for, among those that a query may have.
     pub(super) fn broad_on(&self, is_gpu: bool, bv: Bv) -> Broad {
-        let fastest = if self.is_of_trees() { Broad::Tree } else { Broad::default_for(is_gpu, bv) };
+        let fastest = if self.is_of_trees() {
+            Broad::Tree
+        } else if self.order.is_some() {
+            Broad::Tiles
+        } else {
+            Broad::default_for(is_gpu, bv)
+        };
         self.broad.unwrap_or(fastest)
     }
 
@@ -34,6 +44,12 @@ impl Search {
             return Err(Error::Choice {
                 what: "tiles with a refit or a traversal of trees".into(),
                 advice: "choose trees, or leave out the refit and the traversal: tiles have one way".into(),
+            });
+        }
+        if self.order.is_some() && (self.broad == Some(Broad::Tree) || self.is_of_trees()) {
+            return Err(Error::Choice {
+                what: "an order of tiles for trees".into(),
+                advice: "choose tiles, or leave out the order: trees are built along Morton's curve".into(),
             });
         }
         match self.traversal {
@@ -99,6 +115,34 @@ impl Broad {
     /// loose above so many.
     pub fn default_for(_is_gpu: bool, bv: Bv) -> Broad {
         if matches!(bv, Bv::Aabb | Bv::Linear) { Broad::Tiles } else { Broad::Tree }
+    }
+}
+
+named! {
+    /// In which order triangles make tiles. Finer cuts cost more to build, and fewer tiles meet.
+    pub enum Order {
+        /// Along Hilbert's curve, body by body.
+        Hilbert = "hilbert",
+        /// The same, and each run of 16 tiles in halves of halves, cut across the longest axis.
+        Runs = "runs",
+        /// In halves of halves from all triangles down to tiles.
+        Median = "median",
+    }
+}
+
+impl Order {
+    /// The order where none was asked for (measured, `docs/performance.md`).
+    pub const DEFAULT: Order = Order::Runs;
+}
+
+named! {
+    /// When tiles or trees are made anew from where the bodies are. Nothing of it changes an answer.
+    pub enum Rebuild {
+        /// When [`Detector::rebuild`](crate::Detector::rebuild) asks for it.
+        Asked = "asked",
+        /// By itself, too: before the frame at which tests of volumes beyond those of the first frame after building have cost as much as
+        /// building, by count. A submission builds nothing.
+        Worn = "worn",
     }
 }
 

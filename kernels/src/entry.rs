@@ -11,7 +11,7 @@ use crate::prim::isolate::ladder::SLICES;
 use crate::prim::isolate::separation::{Double, Single};
 use crate::queue::worker;
 use crate::sort;
-use crate::stage::construct::{graft, morton, tile_filters, tree, treelet};
+use crate::stage::construct::{centres, cuts, graft, morton, tile_filters, tree, treelet};
 use crate::stage::narrow::features::{Moves, Rests};
 use crate::stage::narrow::{
     below_precision, climb, cull, discrete, features, near, nearest, separate, slice, solve,
@@ -274,10 +274,16 @@ const BALANCE: u32 = 512;
 kernels! {
     place_f32: place::place::<f32, B>, [PlaceArgs<f32>], WIDE, place::SHARED;
     place_f64: place::place::<f64, B>, [PlaceArgs<f64>], WIDE, place::SHARED;
-    construct_bounds_f32: morton::bounds::<f32, B>, [MortonArgs<f32>], WIDE, morton::shared_bytes(WIDE);
-    construct_bounds_f64: morton::bounds::<f64, B>, [MortonArgs<f64>], WIDE, morton::shared_bytes(WIDE);
+    construct_bounds_f32: morton::bounds::<f32, B>, [MortonArgs<f32>], WIDE, centres::shared_bytes(WIDE);
+    construct_bounds_f64: morton::bounds::<f64, B>, [MortonArgs<f64>], WIDE, centres::shared_bytes(WIDE);
     construct_morton_f32: morton::morton::<f32, B>, [MortonArgs<f32>], WIDE, 0;
     construct_morton_f64: morton::morton::<f64, B>, [MortonArgs<f64>], WIDE, 0;
+    construct_halves_bounds_f32: cuts::halves_bounds::<f32, B>, [CutArgs<f32>], WIDE, centres::shared_bytes(WIDE);
+    construct_halves_bounds_f64: cuts::halves_bounds::<f64, B>, [CutArgs<f64>], WIDE, centres::shared_bytes(WIDE);
+    construct_halves_f32: cuts::halves::<f32, B>, [CutArgs<f32>], WIDE, 0;
+    construct_halves_f64: cuts::halves::<f64, B>, [CutArgs<f64>], WIDE, 0;
+    construct_runs_f32: cuts::runs::<f32, B>, [CutArgs<f32>], cuts::LANES, cuts::shared_bytes(cuts::LANES);
+    construct_runs_f64: cuts::runs::<f64, B>, [CutArgs<f64>], cuts::LANES, cuts::shared_bytes(cuts::LANES);
     construct_tree: tree::tree, [TreeArgs], WIDE, 0;
     construct_depth: tree::depth, [TreeArgs], WIDE, 0;
     construct_places: tree::places, [TreeArgs], WIDE, sort::shared_bytes(WIDE);

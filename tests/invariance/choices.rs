@@ -10,7 +10,7 @@ use nearmiss::{Detector, Device};
 fn prints(device: Device, bodies: &[Body], query: Query) -> Vec<(&'static str, u64)> {
     let mut detector = Detector::new(device, bodies.to_vec(), query).expect("a detector");
     let contacts = detector.detect().expect("an answer");
-    detector.check_trees().expect("sound trees");
+    detector.check_volumes().expect("sound trees");
     let mut prints = detector.fingerprints().expect("prints");
     prints.push(("contacts", contacts.hash()));
     prints.push(("candidates", contacts.candidates));
@@ -65,7 +65,7 @@ fn every_way_finds_the_same_contacts() {
             let answer = |device, query| {
                 let mut detector = Detector::new(device, bodies.clone(), query).expect("a detector");
                 let first = detector.detect().expect("an answer");
-                detector.check_trees().expect("sound trees");
+                detector.check_volumes().expect("sound trees");
                 // The second frame begins from what the first one left.
                 assert_eq!(detector.detect().expect("an answer").answer, first.answer, "{query:?}");
                 first.answer
@@ -110,7 +110,7 @@ fn a_refitted_tree_finds_what_a_new_one_does() {
                     detector.move_to(i, body.clone()).expect("a frame of the same mesh");
                 }
                 let refitted = detector.detect().expect("an answer");
-                detector.check_trees().expect("sound trees");
+                detector.check_volumes().expect("sound trees");
                 let fresh = ask(engine(), moved.clone(), named);
                 assert_eq!(refitted.answer, fresh.answer, "{motion:?}, {by}");
                 assert_eq!(

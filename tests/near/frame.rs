@@ -78,7 +78,7 @@ fn every_way_and_every_machine_finds_the_same() {
         let print = |device| {
             let mut detector = Detector::new(device, bodies.clone(), query).expect("a detector");
             let all = detector.detect().expect("an answer");
-            detector.check_trees().expect("sound trees");
+            detector.check_volumes().expect("sound trees");
             (all.hash(), detector.fingerprints().expect("prints"))
         };
         let on_engine = print(engine());

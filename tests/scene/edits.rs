@@ -40,7 +40,7 @@ fn frames_move_what_they_name_and_others_rest() {
                 .collect();
             let found = detector.frame(&inputs).expect("an answer");
             same_as_new(&detector, &found, &format!("seed {seed}, frame {frame}"));
-            detector.check_trees().expect("sound trees");
+            detector.check_volumes().expect("sound trees");
             for id in scene.ids().filter(|id| moved.iter().all(|(moved, ..)| moved != id)) {
                 let [before, after] =
                     [&scene, detector.scene()].map(|scene| alone(&scene.bodies()[id.index()]));

@@ -45,7 +45,7 @@ fn extremes_are_answered_alike_in_two_worlds() {
         scene.add(Body::fixed(far).with(Meets { environment: None, ..Meets::default() }));
         let mut detector = Detector::new(engine(), scene, query).expect("a detector");
         let found = detector.detect().expect("an answer");
-        detector.check_trees().expect("sound trees");
+        detector.check_volumes().expect("sound trees");
         let wanted = of_world(&truth, 0, bodies.len());
         for first in [0, bodies.len()] {
             assert_eq!(of_world(&found, first, bodies.len()), wanted, "{}: {}", extreme.id, extreme.what);

@@ -65,7 +65,7 @@ pub fn ways(query: Query) -> impl Iterator<Item = Query> {
     let walks = move || walks_of(query.kind());
     let of_trees = move |bv| {
         walks().into_iter().flat_map(move |traversal| {
-            let search = Search { broad: Some(Broad::Tree), bv: Some(bv), traversal, refit: None };
+            let search = Search { broad: Some(Broad::Tree), bv: Some(bv), traversal, ..Search::default() };
             refits.map(|refit| query.with_search(Search { refit: Some(refit), ..search }))
         })
     };
@@ -82,7 +82,7 @@ pub fn ask(device: Device, bodies: Vec<Body>, query: Query) -> nearmiss::Contact
 pub fn ask_scene(device: Device, scene: impl Into<Scene>, query: Query) -> nearmiss::Contacts {
     let mut detector = Detector::new(device, scene, query).expect("a detector");
     let contacts = detector.detect().expect("an answer");
-    detector.check_trees().expect("sound trees");
+    detector.check_volumes().expect("sound trees");
     contacts
 }
 

@@ -4,7 +4,9 @@ use super::number::{some, whole};
 use super::{MachineArgs, choice};
 use clap::{Args, ValueEnum};
 use nearmiss::Stage;
-use nearmiss::query::{Broad, Bv, FrontShape, QueueShape, Refit, Solver, StealShape, Traversal};
+use nearmiss::query::{
+    Broad, Bv, FrontShape, Order, QueueShape, Rebuild, Refit, Solver, StealShape, Traversal,
+};
 use std::path::PathBuf;
 
 /// Walks that exist.
@@ -94,6 +96,9 @@ pub struct DetectArgs {
     /// What finds candidates [default: the machine's fastest; trees where a refit or a traversal is chosen].
     #[arg(long, value_parser = choice::<Broad>())]
     pub broad: Option<Broad>,
+    /// In which order triangles make tiles [default: runs]. Finer cuts cost more to build, and fewer tiles meet.
+    #[arg(long, value_parser = choice::<Order>())]
+    pub order: Option<Order>,
     /// Bounding volume [default: the fastest].
     #[arg(long, value_parser = choice::<Bv>())]
     pub bv: Option<Bv>,
@@ -145,6 +150,9 @@ pub struct DetectArgs {
     /// Ask the same frame this often (after one run to warm up) and report each stage's median.
     #[arg(long, default_value_t = 1, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u32>(1, 100_000))]
     pub repeat: u32,
+    /// When tiles or trees are made anew [default: asked].
+    #[arg(long, value_parser = choice::<Rebuild>(), conflicts_with = "rebuild_every")]
+    pub rebuild: Option<Rebuild>,
     /// Of several steps: build the tree anew every so many, where the mesh comes far [default: never, it is refitted].
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = some::<u32>())]
     pub rebuild_every: Option<u32>,

@@ -99,7 +99,11 @@ fn of_single(scene: Option<&str>, given: CommandLine) -> Result<(), Error> {
 
 fn plan(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
     let why = "a plan asks a frame for its costs alone";
-    given.none_of(&["repeat", "only", "out", "rebuild_every"], why, "leave it out, or ask detect")?;
+    given.none_of(
+        &["repeat", "only", "out", "rebuild", "rebuild_every"],
+        why,
+        "leave it out, or ask detect",
+    )?;
     detect(args, given)
 }
 

@@ -30,7 +30,14 @@ impl DetectArgs {
             });
         }
         let traversal = self.traversal.map(|walk| walk.choice(self));
-        let search = Search { broad: self.broad, bv: self.bv, refit: self.refit, traversal };
+        let search = Search {
+            broad: self.broad,
+            bv: self.bv,
+            refit: self.refit,
+            traversal,
+            order: self.order,
+            rebuild: self.rebuild,
+        };
         let query: Query = match (near, ContinuousSolver::named(solver)) {
             _ if self.distance => Distance { search }.into(),
             (Some(distance), _) => Near { distance, search }.into(),

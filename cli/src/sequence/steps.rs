@@ -52,10 +52,13 @@ pub fn check(args: &DetectArgs, steps: usize) -> Result<(), Error> {
     match (steps > 1, args.rebuild_every) {
         (true, _) if args.only.is_some() => refused("--only", "each of several steps runs once"),
         (true, _) if args.repeat > 1 => refused("--repeat", "each of several steps runs once"),
-        (false, Some(_)) => Err(Error::Choice {
-            what: "--rebuild-every would do nothing: there is one step, and its tree is new".into(),
-            advice: "leave it out, or give more frames".into(),
-        }),
+        (false, every) if every.is_some() || args.rebuild.is_some() => {
+            let option = if every.is_some() { "--rebuild-every" } else { "--rebuild" };
+            Err(Error::Choice {
+                what: format!("{option} would do nothing: there is one step, and its tree is new"),
+                advice: "leave it out, or give more frames".into(),
+            })
+        }
         _ => Ok(()),
     }
 }

@@ -10,7 +10,7 @@ fn options_that_would_do_nothing_are_refused() {
     let planned = "a plan asks a frame for its costs alone";
     let files = "nothing is made here; add --full";
     let still = "of what stands still there is one answer within the distance";
-    let table: [(&str, &[&str], &str); 43] = [
+    let table: [(&str, &[&str], &str); 44] = [
         ("detect", &["--budget", "8"], walk),
         ("detect", &["--budget", "8", "--traversal", "per-leaf"], walk),
         ("detect", &["--budget", "8", "--traversal", "steal"], walk),
@@ -35,6 +35,7 @@ fn options_that_would_do_nothing_are_refused() {
         ("plan", &["--repeat", "2", "--only", "narrow"], planned),
         ("plan", &["--out", "a.csv"], planned),
         ("plan", &["--rebuild-every", "2"], planned),
+        ("plan", &["--rebuild", "worn"], planned),
         ("plan", &["--budget", "8"], walk),
         ("explain", &["a.ply", "--tt", "0", "1", "--tolerance", "1"], "decided exactly"),
         ("explain", &["a.ply", "--tt", "0", "1", "--boxes", "1"], "decided exactly"),

@@ -17,9 +17,12 @@ pub const STAGES: [(&str, &str); 9] = [
 const ORDER: usize = 7;
 
 /// Kernels by how their names begin, the longer beginnings first, and what each does.
-const KERNELS: [(&str, &str); 52] = [
+const KERNELS: [(&str, &str); 55] = [
     ("place", "poses applied, uploads put in place, the rest at rest"),
     ("construct_bounds", "the box of each body's centres"),
+    ("construct_halves_bounds", "the box of each stretch of triangles"),
+    ("construct_halves", "where a triangle lies along the longest axis of its stretch"),
+    ("construct_runs", "runs of 16 tiles in halves of halves, on chip"),
     ("construct_morton", "a code a triangle along a curve, behind its body's prefix"),
     ("construct_tile_filters", "whose triangles lie below each tile and above"),
     ("construct_treelets", "which leaves are refitted together"),

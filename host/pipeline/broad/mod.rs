@@ -12,7 +12,7 @@ use super::list::GrowableOutput;
 use super::precision::Precision;
 use crate::device::Device;
 use crate::error::Error;
-use crate::query::{Broad, Query, WithVolume};
+use crate::query::{Broad, Order, Query, WithVolume};
 use nearmiss_kernels::abi::{BodyRecord, Counters, Output, Pair, Positions, Span, TraverseFlags};
 use nearmiss_kernels::bv::Axes;
 use nearmiss_kernels::bvh::Violation;
@@ -148,6 +148,14 @@ pub trait BroadPhase<R: Precision>: Send {
         Ok(Vec::new())
     }
 
+    /// How many tiles beyond its last share those of the share have met.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn met_beyond(&self) -> Result<u64, Error> {
+        Ok(0)
+    }
+
     /// The frame is answered: what was learnt may be kept for the next one.
     ///
     /// # Errors
@@ -223,7 +231,10 @@ impl<R: Precision> WithVolume for New<'_, R> {
         let New { device, layout, query, margin, .. } = self;
         Ok(match query.broad_on(device.is_gpu()) {
             Broad::Tree => Box::new(Trees::<R, V>::new(device, layout, query, (axes, margin))?),
-            Broad::Tiles => Box::new(Tiles::<V>::new(device, layout, (axes, margin))?),
+            Broad::Tiles => {
+                let order = query.search().order.unwrap_or(Order::DEFAULT);
+                Box::new(Tiles::<V>::new(device, layout, (order, axes, margin))?)
+            }
         })
     }
 }

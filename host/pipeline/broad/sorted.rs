@@ -7,16 +7,16 @@ use crate::pipeline::layout::Layout;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::sorter::{counted, sort, words};
 use crate::pipeline::{launch, purpose};
-use nearmiss_kernels::abi::{BodyRecord, MortonArgs, MortonFlags, Positions, Span, TreeBody};
+use crate::query::Order;
+use nearmiss_kernels::abi::{BodyRecord, CutArgs, MortonArgs, MortonFlags, Positions, Span, TreeBody};
 use nearmiss_kernels::bvh::CODE_BITS;
 use nearmiss_kernels::math::ordered;
-use nearmiss_kernels::stage::construct::morton;
+use nearmiss_kernels::stage::construct::centres::{KEYS, OF_A_BODY};
+use nearmiss_kernels::stage::construct::{cuts, morton};
 
 /// The bytes of a code, which lies above its triangle. As many as there are: the sort ends where it began.
 const BYTES: [u32; 4] = [32, 40, 48, 56];
 const _: () = assert!(8 * BYTES.len() as u32 == CODE_BITS && BYTES.len().is_multiple_of(2));
-/// Keys of the box of a body's centres.
-const BOUNDS: usize = morton::BOUNDS as usize;
 
 /// The triangles of some bodies, and the memory to order them anew: 16 bytes a triangle.
 pub struct Sorted {
@@ -25,19 +25,28 @@ pub struct Sorted {
     records: Vec<BodyRecord>,
     table: Buffer<TreeBody>,
     count: u32,
-    /// What must be zero when it begins: the boxes of the bodies' centres; counts of each byte of the codes; what was asked for beside.
+    /// `None` along Morton's curve, for trees.
+    order: Option<Order>,
+    /// What must be zero when it begins: what is learnt of each body; counts of each byte of the codes; what was asked for beside.
     begins_zero: Buffer<u64>,
     beside: u64,
+    /// What must be zero when a level is cut: the boxes of its stretches; counts as above. None where no level of all is cut.
+    cuts: Option<Buffer<u64>>,
     items: [Buffer<u64>; 2],
 }
 
 impl Sorted {
     /// Takes the memory for the triangles of these bodies, ascending, each with triangles, at least one, and `beside` words that are
-    /// zero whenever they were put in order.
+    /// zero whenever they were put in order, for tiles, or else for a tree.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn new(device: &Device, layout: &Layout, bodies: &[usize], beside: usize) -> Result<Self, Error> {
+    pub fn new(
+        device: &Device,
+        layout: &Layout,
+        bodies: &[usize],
+        (order, beside): (Option<Order>, usize),
+    ) -> Result<Self, Error> {
         let mut count = 0;
         let table = bodies.iter().map(|&body| {
             let (triangle, triangles) = layout.triangles(body);
@@ -46,21 +55,27 @@ impl Sorted {
         });
         let table: Vec<TreeBody> = table.collect();
         let scratch = device.of(purpose::SCRATCH);
-        let zero = BOUNDS * table.len() + BYTES.len() * words(device, count) + beside;
+        let counts = BYTES.len() * words(device, count);
+        let zero = OF_A_BODY as usize * table.len() + counts + beside;
+        let stretches = count.div_ceil(2 * cuts::RUN) as usize;
+        let is_cut = order == Some(Order::Median) && count > cuts::RUN;
         let items = || scratch.buffer(count as usize);
         Ok(Sorted {
             records: bodies.iter().map(|&body| layout.records[body]).collect(),
             table: scratch.upload(&table)?,
             bodies: table,
             count,
+            order,
             begins_zero: scratch.buffer(zero)?,
             beside: beside as u64,
+            cuts: is_cut.then(|| scratch.buffer(KEYS as usize * stretches + counts)).transpose()?,
             items: [items()?, items()?],
         })
     }
 
     /// Puts them in order by where they are at t = 0, all on the device but for an order of the bodies, where there are more than
-    /// one: that waits for their boxes. `flags` say along which curve. Cost: seven launches, four of them a radix sort.
+    /// one: that waits for their boxes. Cost: seven launches, four of them a radix sort; one more where runs are cut, and seven a level
+    /// above them.
     ///
     /// # Errors
     /// Those of the device.
@@ -69,44 +84,89 @@ impl Sorted {
         device: &Device,
         frames: Positions<R>,
         faces: Span<[u32; 3]>,
-        flags: MortonFlags,
     ) -> Result<(), Error> {
         self.begins_zero.clear()?;
         let zeroed = self.begins_zero.span();
-        let boxes = BOUNDS * self.bodies.len();
-        let counts = zeroed.part(boxes as u64, (BYTES.len() * words(device, self.count)) as u64);
+        let extents = OF_A_BODY as usize * self.bodies.len();
+        let counts = zeroed.part(extents as u64, (BYTES.len() * words(device, self.count)) as u64);
+        let of_tiles = MortonFlags::HILBERT | MortonFlags::APART;
         let morton = MortonArgs {
             frames,
             faces,
             bodies: self.table.span(),
-            bounds: zeroed.part(0, boxes as u64),
+            extents: zeroed.part(0, extents as u64),
             items: self.items[0].span(),
             tiles: counted(device, counts, self.count, 0),
             count: self.count,
-            flags,
+            flags: of_tiles.when(self.order.is_some()),
         };
         let lanes = (self.count as usize).div_ceil(morton::TOGETHER as usize);
         launch::striding::<R::Bounds>(device, lanes, &morton)?;
         if self.bodies.len() > 1 {
-            let weights = weights(&self.begins_zero.read(boxes)?, &self.bodies, self.count);
+            let weights = weights(&self.begins_zero.read(extents)?, &self.bodies, self.count);
             prefix::prefixes(&mut self.bodies, &weights, &self.records);
             self.table.write(&self.bodies)?;
         }
         launch::striding::<R::Morton>(device, self.count as usize, &morton)?;
-        sort(device, self.items.each_ref(), (self.count, Span::EMPTY), counts, &BYTES)
+        sort(device, self.items.each_ref(), (self.count, Span::EMPTY), counts, &BYTES)?;
+        self.cut(device, &morton)
+    }
+
+    /// Cuts what the curve has put in order.
+    fn cut<R: Precision>(&mut self, device: &Device, morton: &MortonArgs<R>) -> Result<(), Error> {
+        if !self.is_in_runs() {
+            return Ok(());
+        }
+        let mut args = CutArgs {
+            frames: morton.frames,
+            faces: morton.faces,
+            bodies: morton.bodies,
+            extents: morton.extents,
+            stretches: Span::EMPTY,
+            items: self.items[0].span(),
+            out: self.items[1].span(),
+            tiles: morton.tiles,
+            count: self.count,
+            level: 0,
+        };
+        let runs = self.count.div_ceil(cuts::RUN);
+        if let Some(zeroed) = &mut self.cuts {
+            for level in (1..=runs.next_power_of_two().ilog2()).rev() {
+                zeroed.clear()?;
+                let span = zeroed.span();
+                let boxes = u64::from(KEYS * runs.div_ceil(1 << level));
+                let counts = span.part(boxes, (BYTES.len() * words(device, self.count)) as u64);
+                args.stretches = span.part(0, boxes);
+                args.tiles = counted(device, counts, self.count, 0);
+                args.level = level;
+                launch::striding::<R::HalvesBounds>(device, self.count as usize, &args)?;
+                launch::striding::<R::Halves>(device, self.count as usize, &args)?;
+                sort(device, self.items.each_ref(), (self.count, Span::EMPTY), counts, &BYTES)?;
+            }
+        }
+        launch::blocks::<R::Runs>(device, runs, &args)
+    }
+
+    /// Whether runs are cut, which leaves the triangles in the second list.
+    fn is_in_runs(&self) -> bool {
+        matches!(self.order, Some(Order::Runs | Order::Median))
+    }
+
+    fn in_order(&self) -> &Buffer<u64> {
+        &self.items[usize::from(self.is_in_runs())]
     }
 
     /// The triangles in order: the lower halves.
     pub fn triangles(&self) -> Span<u64> {
-        self.items[0].span()
+        self.in_order().span()
     }
 
-    /// The same, with their codes above.
+    /// The same, with what they were sorted by last above.
     ///
     /// # Errors
     /// Those of the device.
     pub fn download(&self) -> Result<Vec<u64>, Error> {
-        self.items[0].read(self.count as usize)
+        self.in_order().read(self.count as usize)
     }
 
     /// The words that were asked for beside.
@@ -132,7 +192,7 @@ pub fn place(bodies: &[TreeBody], count: u32, triangle: u32) -> Option<usize> {
 /// The bodies' boxes, of their keys, and how many triangles each has.
 fn weights(keys: &[u64], bodies: &[TreeBody], count: u32) -> Vec<Weight> {
     let ends = bodies.iter().skip(1).map(|next| next.before).chain([count]);
-    let boxes = keys.chunks_exact(BOUNDS).map(|keys| {
+    let boxes = keys.chunks_exact(OF_A_BODY as usize).map(|keys| {
         let upper = [0, 1, 2].map(|k| ordered::number(keys[k]));
         [[0, 1, 2].map(|k| ordered::number(!keys[k + 3])), upper]
     });

@@ -47,8 +47,8 @@ arguments! {
         faces: Span<[u32; 3]>,
         /// The tree's bodies.
         bodies: Span<TreeBody>,
-        /// Six ordered keys a body: upper x, y, z, and lower x, y, z (complemented, so that all are maxima).
-        bounds: Span<u64>,
+        /// What is known of each body's triangles, [`OF_A_BODY`](crate::stage::construct::centres::OF_A_BODY) words.
+        extents: Span<u64>,
         /// Out: code of each triangle's centre, above the triangle.
         items: Span<u64>,
         /// Out: counts of the codes' lowest bytes.
@@ -57,6 +57,29 @@ arguments! {
         count: u32,
         /// Along which curve.
         flags: MortonFlags,
+    }
+    /// `construct_halves_bounds`, `construct_halves`, `construct_runs`: stretches of triangles in order.
+    CutArgs<R: Real> {
+        /// Positions.
+        frames: Positions<R>,
+        /// Vertex indices of every triangle.
+        faces: Span<[u32; 3]>,
+        /// The tree's bodies.
+        bodies: Span<TreeBody>,
+        /// What is known of each body's triangles.
+        extents: Span<u64>,
+        /// Six ordered keys a stretch: the box of its triangles' centres.
+        stretches: Span<u64>,
+        /// In order: something above its triangle. Of `construct_halves` also out: a code above its triangle.
+        items: Span<u64>,
+        /// Out of `construct_runs`: the same in their new order.
+        out: Span<u64>,
+        /// Out: counts of the codes' lowest bytes.
+        tiles: Tiles,
+        /// How many triangles the bodies have.
+        count: u32,
+        /// A stretch is 2^level runs.
+        level: u32,
     }
     /// How often each digit comes in each tile of a list, see [`crate::sort`].
     Tiles {

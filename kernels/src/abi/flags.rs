@@ -45,6 +45,8 @@ flags! {
     MortonFlags {
         /// Along Hilbert's curve, not Morton's: neighbours along it are neighbours in space.
         HILBERT,
+        /// Outsized triangles behind all others of their body.
+        APART,
     }
     /// What every traversal is told: [`TraverseArgs`](super::TraverseArgs), [`PairArgs`](super::PairArgs).
     ///

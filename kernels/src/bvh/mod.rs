@@ -62,6 +62,13 @@ pub enum Violation {
         /// The node.
         node: u32,
     },
+    /// T9: a volume does not hold a triangle at every time, exactly.
+    Outside {
+        /// The triangle's leaf.
+        leaf: u32,
+        /// Whose volume: 0 its own, 1 its tile's, and so on upward.
+        level: u32,
+    },
     /// T7: a node's volume is not the one fitted to the points below it, a leaf's to its triangle, or its links are not the tree's.
     Fit {
         /// The node.

@@ -80,7 +80,7 @@ fn equal(device: &Device, n: usize, report: &mut Report) -> Result<(), Error> {
         let query = Query::discrete().with_broad(broad);
         let mut detector = Detector::new(device.clone(), vec![scene::identical(n)?], query)?;
         let found = detector.detect()?;
-        detector.check_trees()?;
+        detector.check_volumes()?;
         report.asked += 1;
         report.missed += (all - found.len().min(all)) as u64;
         let depths = detector.depths();
@@ -119,16 +119,60 @@ fn ties(device: &Device, n: usize, report: &mut Report) -> Result<(), Error> {
     Ok(())
 }
 
-/// More pairs than a list of 32 bits can hold: an error that says how much room was needed, to the byte.
+/// More pairs than a list of 32 bits can hold: of trees an error that says how much room was needed, to the byte; of tiles the answer,
+/// in slices, where most of the pairs do not meet and the answer has room.
 fn beyond_32_bits(device: &Device, report: &mut Report) -> Result<(), Error> {
     const N: usize = 92_683;
     let needed = (N * (N - 1) / 2 * size_of::<nearmiss_kernels::abi::Pair>()) as u64;
-    let mut detector = Detector::new(device.clone(), vec![scene::identical(N)?], Query::discrete())?;
+    let by_trees = Query::discrete().with_broad(Broad::Tree);
+    let mut detector = Detector::new(device.clone(), vec![scene::identical(N)?], by_trees)?;
     report.asked += 1;
     match detector.detect() {
         Err(Error::OutOfMemory { asked, .. }) if asked == needed => {}
         Err(error) => report.fail(|| format!("X45: {needed} bytes are needed, but: {error}")),
         Ok(found) => report.fail(|| format!("X45: {} pairs were found", found.len())),
     }
+    drop(detector);
+    let by_tiles = Query::discrete().with_broad(Broad::Tiles);
+    let found = Detector::new(device.clone(), vec![slanted(N)?], by_tiles)?.detect()?;
+    report.asked += 1;
+    report.missed += N.saturating_sub(found.len()) as u64;
+    let candidates = (N * (N + 1) / 2) as u64;
+    if found.len() != N || found.slices < 2 || found.triangle_pairs != candidates {
+        report.fail(|| {
+            let (pairs, slices) = (found.triangle_pairs, found.slices);
+            format!(
+                "X46: {} contacts of {pairs} pairs in {slices} slices, not {N} of {candidates}",
+                found.len()
+            )
+        });
+    }
     Ok(())
+}
+
+/// `n` equal slanted triangles, each 2^-17 above the last: their boxes all overlap, and they share no point; and one that stands
+/// through all of them.
+fn slanted(n: usize) -> Result<Body, Error> {
+    let above = |i: usize| i as f32 / 131_072.0;
+    let corners = |i: usize| [[0.0, 0.0, above(i)], [1.0, 0.0, 1.0 + above(i)], [0.0, 1.0, 1.0 + above(i)]];
+    let through = [[0.25, 0.25, -1.0], [0.25, 0.25, 3.0], [0.25, 0.75, -1.0]];
+    let points: Vec<[f32; 3]> = (0..n).flat_map(corners).chain(through).collect();
+    let faces = (0..=n as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    Ok(Body::still(Mesh::new("slanted", Positions::F32(points), faces)?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nearmiss::device::Backend;
+
+    #[test]
+    fn slanted_triangles_have_boxes_that_overlap_and_meet_one_alone() {
+        let device = Device::open(Backend::Cpu, None).expect("threads");
+        let body = slanted(300).expect("a mesh");
+        let found = Detector::new(device, vec![body], Query::discrete()).expect("a detector");
+        let found = { found }.detect().expect("an answer");
+        assert_eq!((found.len(), found.triangle_pairs), (300, 300 * 301 / 2));
+        assert!(found.pairs().iter().all(|pair| pair.triangles[1] == 300));
+    }
 }

@@ -12,7 +12,7 @@ use nearmiss::query::{Bv, Query, QueryKind};
 fn found(device: &Device, bodies: Vec<Body>, query: Query) -> Result<Contacts, Error> {
     let mut detector = Detector::new(device.clone(), bodies, query)?;
     let found = detector.detect()?;
-    detector.check_trees()?;
+    detector.check_volumes()?;
     Ok(found)
 }
 

@@ -40,6 +40,8 @@ pub struct ScaleRow {
     pub positions: u64,
     /// Bytes of the answer that go to the host.
     pub answer: u64,
+    /// Tiles of 32 triangles that devices met beyond their own, all devices together: what hosts that have no others would be sent.
+    pub met_beyond: u64,
     /// Pairs that the narrow test was asked.
     pub candidates: u64,
     /// What was found.
@@ -118,6 +120,7 @@ pub fn scale(
                     bytes: held().sum::<u64>() - others,
                     positions: each * body.vertex_count() as u64,
                     answer: (last.len() * if motion.is_at_rest() { 8 } else { 32 }) as u64,
+                    met_beyond: detector.met_beyond()?.iter().sum(),
                     candidates: last.candidates,
                     contacts: last.len(),
                     hash,
@@ -147,6 +150,7 @@ impl Printed for ScaleRow {
         "MB",
         "MB in",
         "MB out",
+        "tiles met beyond",
         "candidates",
         "contacts",
         "hash",
@@ -167,6 +171,7 @@ impl Printed for ScaleRow {
             digits(self.bytes as f64 / 1e6),
             digits(self.positions as f64 / 1e6),
             digits(self.answer as f64 / 1e6),
+            self.met_beyond.to_string(),
             self.candidates.to_string(),
             self.contacts.to_string(),
             self.hash.clone(),

@@ -35,7 +35,8 @@ impl Way {
     pub fn query(self, walk: Option<Traversal>) -> Query {
         let refit = walk.map(|_| Refit::Levels);
         let traversal = if self.front { Some(Traversal::Front(FrontShape::native())) } else { walk };
-        let search = Search { broad: Some(Broad::Tree), bv: Some(self.bv), refit, traversal };
+        let search =
+            Search { broad: Some(Broad::Tree), bv: Some(self.bv), refit, traversal, ..Search::default() };
         if self.moves {
             Continuous { solver: ContinuousSolver::Cubic(Precision::F64), search }.into()
         } else {

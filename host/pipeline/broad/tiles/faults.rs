@@ -7,7 +7,7 @@ use crate::query::QueryKind;
 use crate::samples::soup;
 use crate::scene::Meets;
 use nearmiss_kernels::abi::{LEAF, Point, Positions};
-use nearmiss_kernels::bv::Aabb;
+use nearmiss_kernels::bv::{Aabb, Volume};
 
 /// Something that is done to sound tiles.
 type Fault = fn(&mut Tiles<Aabb>);
@@ -31,7 +31,7 @@ fn checked(fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), Error> {
         faces: faces.span(),
         records: records.span(),
     };
-    let mut tiles = Tiles::<Aabb>::new(&device, &layout, (Axes::PCA, 0.01))?;
+    let mut tiles = Tiles::<Aabb>::new(&device, &layout, (Order::DEFAULT, Axes::PCA, 0.01))?;
     tiles.construct(&given, &layout)?;
     BroadPhase::fit(&mut tiles, &given)?;
     BroadPhase::refit(&mut tiles, &given)?;
@@ -54,6 +54,39 @@ const ABOVE: usize = 6 * 16 + 1;
 #[test]
 fn sound_tiles_pass() {
     checked(|_| ()).expect("sound tiles");
+}
+
+/// Volumes of other positions than those that they are asked to hold.
+#[test]
+fn a_triangle_outside_is_named() {
+    let held = |by: f64| {
+        let volume =
+            |lo: f32, hi: f32| -> Aabb { Volume::still([Vec3([lo; 3]), Vec3([hi; 3]), Vec3([lo, hi, lo])]) };
+        let (levels, count) = (Levels::of([40, 0]), 40);
+        let leaf = |last: u32| Node {
+            volume: volume(0.0, 1.0),
+            link: if last < count { LEAF | last } else { NONE },
+            last,
+        };
+        let leaves: Vec<_> = (0..levels.leaves()).map(leaf).collect();
+        let mut nodes = vec![leaf(0); levels.first(levels.count) as usize];
+        // The second tile is too small for its triangles.
+        nodes[1].volume = volume(0.0, 0.5);
+        let tiles = tiles::Tiles {
+            levels,
+            triangles: [count, 0],
+            leaves: &leaves,
+            nodes: &nodes,
+            filters: &[],
+            axes: Axes::PCA,
+        };
+        let at = |triangle: u32| if triangle < 32 { by } else { 0.5 };
+        tiles::check_held(&tiles, |triangle| [[Vec3([0.0; 3]), Vec3([at(triangle); 3])]; 3])
+    };
+    use nearmiss_kernels::bvh::Violation::Outside;
+    assert_eq!(held(1.0), Ok(()));
+    // The way to the end counts, and the least step beyond it.
+    assert_eq!(held(1.0f64.next_up()), Err(Outside { leaf: 0, level: 0 }));
 }
 
 #[test]

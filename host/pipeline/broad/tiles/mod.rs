@@ -7,18 +7,21 @@ use super::sorted::{Sorted, place};
 use super::{BroadContext, BroadPhase, Candidates, Which};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
+use crate::pipeline::counts::Counts;
 use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::{launch, purpose};
+use crate::query::Order;
 use nearmiss_kernels::abi::{
-    BodyRecord, FilterArgs, FitTilesArgs, MortonFlags, NONE, Node, NodeFilter, Pair, RefitTilesArgs, Span,
+    BodyRecord, FilterArgs, FitTilesArgs, NONE, Node, NodeFilter, Pair, RefitTilesArgs, Span,
     TileFiltersArgs, TilePairsArgs, TileTrianglesArgs, TreeBody, counter,
 };
 use nearmiss_kernels::bv::Axes;
 use nearmiss_kernels::bvh::tiles::{self, Levels, TILE};
 use nearmiss_kernels::entry::{self, Entry, Kernels};
 use nearmiss_kernels::math::Vec3;
+use std::collections::BTreeSet;
 use xxhash_rust::xxh3::xxh3_64;
 
 /// Pairs of tiles a tile for which there is room at first. Cloth at rest has 12; a list that turns out too short grows within the frame.
@@ -50,6 +53,9 @@ pub struct Tiles<V> {
     tile_pairs: List<Pair>,
     /// What each tile cost; where work is divided.
     work: Option<Buffer<u64>>,
+    /// Behind the last tile of the last share, and how many pairs of tiles it listed.
+    listed: (u32, u64),
+    order: Order,
     axes: Axes,
     margin: f32,
 }
@@ -59,7 +65,11 @@ impl<V: Kernels> Tiles<V> {
     ///
     /// # Errors
     /// Those of the device.
-    pub fn new(device: &Device, layout: &Layout, (axes, margin): (Axes, f32)) -> Result<Self, Error> {
+    pub fn new(
+        device: &Device,
+        layout: &Layout,
+        (order, axes, margin): (Order, Axes, f32),
+    ) -> Result<Self, Error> {
         let triangles =
             layout.trees.each_ref().map(|bodies| bodies.iter().map(|&body| layout.triangles(body).1).sum());
         let levels = Levels::of(triangles);
@@ -75,7 +85,9 @@ impl<V: Kernels> Tiles<V> {
         of_nodes.clear()?;
         let room = PAIRS_A_TILE * triangles[MOVING].div_ceil(TILE) as usize;
         Ok(Tiles {
-            sorted: Sorted::new(device, layout, &layout.trees[MOVING], 0)?,
+            sorted: Sorted::new(device, layout, &layout.trees[MOVING], (Some(order), 0))?,
+            listed: (0, 0),
+            order,
             fixed: Vec::new(),
             leaves,
             nodes: volumes.upload(&vec![nothing; count])?,
@@ -189,11 +201,11 @@ where
 impl<R: Precision, V: Kernels> BroadPhase<R> for Tiles<V> {
     fn construct(&mut self, given: &BroadContext<R>, layout: &Layout) -> Result<(), Error> {
         let BroadContext { device, frames, faces, .. } = *given;
-        self.sorted.construct(device, frames, faces, MortonFlags::HILBERT)?;
+        self.sorted.construct(device, frames, faces)?;
         self.filter(device, MOVING, self.sorted.triangles())?;
         if self.fixed.is_empty() && self.triangles[FIXED] > 0 {
-            let mut sorted = Sorted::new(device, layout, &layout.trees[FIXED], 0)?;
-            sorted.construct(device, frames, faces, MortonFlags::HILBERT)?;
+            let mut sorted = Sorted::new(device, layout, &layout.trees[FIXED], (Some(self.order), 0))?;
+            sorted.construct(device, frames, faces)?;
             self.filter(device, FIXED, sorted.triangles())?;
             Tiles::fit(self, given, FIXED, sorted.triangles())?;
             Tiles::refit(self, device, FIXED)?;
@@ -226,6 +238,7 @@ impl<R: Precision, V: Kernels> BroadPhase<R> for Tiles<V> {
         if let Some(work) = &mut self.work {
             work.clear()?;
         }
+        self.listed = (own.end, 0);
         let tile_pairs = self.tile_pairs.output(counters);
         let args = TilePairsArgs {
             nodes: self.nodes.span(),
@@ -286,6 +299,21 @@ impl<R: Precision, V: Kernels> BroadPhase<R> for Tiles<V> {
         self.work.as_ref().map_or(Ok(Vec::new()), |work| work.read(work.len()))
     }
 
+    fn met_beyond(&self) -> Result<u64, Error> {
+        let (end, count) = self.listed;
+        // The first tile of a pair is the earlier one, and of the share; static tiles, behind the others, are everybody's.
+        let beyond = end..self.tiles();
+        let pairs = self.tile_pairs.first(count)?;
+        let met: BTreeSet<u32> =
+            pairs.iter().map(|pair| pair.b).filter(|tile| beyond.contains(tile)).collect();
+        Ok(met.len() as u64)
+    }
+
+    fn finish(&mut self, counters: &Counts) -> Result<(), Error> {
+        self.listed.1 = self.tile_pairs.demand(counters);
+        Ok(())
+    }
+
     fn depths(&self) -> Vec<usize> {
         // The triangles are a level, too.
         let parts = self.triangles.iter().filter(|&&triangles| triangles > 0);
@@ -324,6 +352,10 @@ impl<R: Precision, V: Kernels> BroadPhase<R> for Tiles<V> {
         let mut seen = self.triangles.map(|count| vec![false; count as usize]);
         let [moving, fixed] = &mut seen;
         tiles::check(&tiles, place, leaf, |triangle| whose[triangle as usize], [moving, fixed])
+            .and_then(|()| {
+                let ends = |v: u32| [&frames[0], &frames[frames.len() - 1]].map(|at| at[v as usize].wide());
+                tiles::check_held(&tiles, |triangle| faces[triangle as usize].map(ends))
+            })
             .map_err(super::broken)
     }
 }

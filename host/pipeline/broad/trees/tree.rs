@@ -11,7 +11,7 @@ use crate::pipeline::sorter::{counted, words};
 use crate::pipeline::{launch, purpose};
 use crate::query::Refit;
 use nearmiss_kernels::abi::{
-    BodyRecord, Inner, Link, MOVING_ROOT, MortonFlags, NodeFilter, Positions, ROOT, Span, TreeArgs, TreeBody,
+    BodyRecord, Inner, Link, MOVING_ROOT, NodeFilter, Positions, ROOT, Span, TreeArgs, TreeBody,
 };
 use nearmiss_kernels::bvh::{self, MAX_LEVELS};
 use nearmiss_kernels::entry;
@@ -122,7 +122,7 @@ impl Tree {
             filters: device.of(purpose::FILTERS).buffer(if layout.has_filters() { 2 * all } else { 0 })?,
             way,
             starts: Vec::new(),
-            sorted: Sorted::new(device, layout, bodies, zeroed)?,
+            sorted: Sorted::new(device, layout, bodies, (None, zeroed))?,
             count,
             room,
             scratch: Scratch {
@@ -147,7 +147,7 @@ impl Tree {
         frames: Positions<R>,
         (faces, records): (Span<[u32; 3]>, Span<BodyRecord>),
     ) -> Result<(), Error> {
-        self.sorted.construct::<R>(device, frames, faces, MortonFlags::NONE)?;
+        self.sorted.construct::<R>(device, frames, faces)?;
         let depths = words(device, self.count) as u64;
         let (s, zeroed) = (&self.scratch, self.sorted.zeroed());
         let [begins, tops] = self.way.parts(zeroed.part(depths, zeroed.len() - depths));

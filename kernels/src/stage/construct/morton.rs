@@ -1,158 +1,96 @@
 //! # Morton: positions → codes
 //! Launch   `bounds`, then `morton`; a grid of any size strides over the triangles.
-//! Reads    positions at t = 0, faces, the tree's bodies.      Writes   the box of each body's triangle centres; a code with
+//! Reads    positions at t = 0, faces, the tree's bodies.      Writes   the box of each body's triangle centres, their mean size; a code with
 //!          its triangle each.
-//! Before   `bounds` and the counts hold zeros. For `morton` the bodies have prefixes, none of which begins another; of one body
+//! Before   the extents and the counts hold zeros. For `morton` the bodies have prefixes, none of which begins another; of one body
 //!          it is empty.
 //! After    code = the body's prefix, then as many bits as there is room for of 33, 11 an axis, interleaved, x highest, in the
 //!          body's own box; the codes' lowest bytes are counted. So a body's triangles are one range of the sorted codes, and
 //!          the bits of the prefixes are the tree over the bodies. Tiles take the same bits along Hilbert's curve: neighbours along it
 //!          are neighbours in space; trees are better cut at planes.
+//!          For tiles the first bit behind the prefix tells outsized triangles ([`super::centres`]) from all others.
 //! Room     fixed; cannot run out.
 //! Silent   the thesis does not say which box is cut. Ours is the cube over the largest extent, so that cells are cubes;
 //!          an axis without extent gives code 0. Codes steer quality only; no answer depends on them.
 //! Cost     24 B + 12 B in a triangle (twice), 8 B and an atomic out. `bounds`: two loads in a row for four triangles a lane,
-//!          6 atomics a block on one line: few blocks. Of many bodies 6 atomics a block that lies in one body, else a triangle.
+//!          8 atomics a block on one line: few blocks. Of many bodies 8 atomics a block that lies in one body, else a triangle.
 
+use super::centres::{self, Extent, Grid, OF_A_BODY, OUTSIZED};
 use crate::abi::{MortonArgs, MortonFlags};
 use crate::bvh::CODE_BITS;
 use crate::bvh::filter::holder;
-use crate::exec::{BINS, Block, Lane, Shared};
-use crate::math::{Real, Vec3, ordered};
+use crate::exec::{BINS, Block, Lane};
+use crate::math::{Real, Vec3};
 use crate::sort;
 
 /// Bits of an axis: the code leaves out the last of z.
 const AXIS_BITS: u32 = CODE_BITS.div_ceil(3);
-/// Cells of an axis.
-const CELLS: f64 = (1u32 << AXIS_BITS) as f64;
-/// Keys of a box.
-pub const BOUNDS: u32 = 6;
 
 /// Triangles whose centres a lane of `bounds` fetches together.
 pub const TOGETHER: u32 = 4;
-/// Shared memory of `bounds`: six keys a lane.
-pub const fn shared_bytes(lanes: u32) -> u32 {
-    BOUNDS * 8 * lanes
-}
 
-/// The centre of a triangle, in f64: any point near it would do, but all machines must choose the same.
-fn centre<R: Real, L: Lane>(l: &L, a: &MortonArgs<R>, triangle: u32) -> Vec3<f64> {
-    let start = |v: u32| {
-        let moving = a.frames.moving;
-        if moving.is_empty() { l.read(a.frames.still, v).at } else { l.read(moving, v).t0.at }
-    };
-    let [p, q, r] = l.read(a.faces, triangle).map(start);
-    (p.wide() + q.wide() + r.wide()) * (1.0 / 3.0)
-}
-
-/// Widens a box's keys by a point.
-#[inline(always)]
-fn widen(keys: &mut [u64; 6], c: Vec3<f64>) {
-    for k in 0..3 {
-        let key = ordered::key(c[k]);
-        keys[k] = keys[k].max(key);
-        keys[k + 3] = keys[k + 3].max(!key);
-    }
-}
-
-/// The boxes of the bodies' triangle centres, as ordered keys.
+/// The boxes of the bodies' triangle centres, as ordered keys, and how large their triangles are.
 pub fn bounds<R: Real, B: Block>(b: &mut B, a: &MortonArgs<R>) {
+    let (mesh, apart) = ((&a.frames, a.faces), a.flags.has(MortonFlags::APART));
     if a.bodies.len() > 1 {
-        return bounds_of_each(b, a);
+        let which = |b: &B, i: u32| holder(a.bodies.len(), i, |k| b.load(a.bodies, k).before);
+        return centres::of_each(b, (a.extents, OF_A_BODY, a.count), which, |l, extent, (i, is_new)| {
+            let (body, triangle) = triangle(l, a, i);
+            extent.add(l, mesh, (triangle, is_new && apart));
+            body
+        });
     }
-    let lanes = b.lanes();
-    let best = b.shared::<u64>(BOUNDS * lanes);
+    let (best, lanes) = (centres::gathered(b), b.lanes());
     let stride = b.blocks() * lanes;
     let base = b.load(a.bodies, 0).triangle;
     b.phase(|l| {
-        let mut mine = [0u64; 6];
+        let mut mine = Extent::NONE;
         let mut triangle = l.global();
         while triangle < a.count {
             // Beyond the end the last one, again: it changes no maximum. One by one, so that they stay in registers.
-            let at = |k: u32| centre(l, a, base + triangle.saturating_add(k * stride).min(a.count - 1));
-            let [p, q, r, s] = [at(0), at(1), at(2), at(3)];
-            widen(&mut mine, p);
-            widen(&mut mine, q);
-            widen(&mut mine, r);
-            widen(&mut mine, s);
+            let mut add = |k: u32| {
+                let i = triangle.saturating_add(k * stride);
+                mine.add(l, mesh, (base + i.min(a.count - 1), i < a.count && apart));
+            };
+            add(0);
+            add(1);
+            add(2);
+            add(3);
             triangle = triangle.saturating_add(TOGETHER * stride);
         }
-        (0..BOUNDS).for_each(|k| l.put(best, k * lanes + l.lane(), mine[k as usize]));
+        mine.put(l, lanes, best);
     });
-    reduce(b, a, best, 0);
+    centres::tell_together(b, best, (a.extents, 0));
 }
 
-/// The same of many bodies: what a block looks at together is of one body as a rule.
-fn bounds_of_each<R: Real, B: Block>(b: &mut B, a: &MortonArgs<R>) {
-    let lanes = b.lanes();
-    let best = b.shared::<u64>(BOUNDS * lanes);
-    let mut first = b.block() * lanes;
-    while first < a.count {
-        let last = (a.count - 1).min(first + lanes - 1);
-        let [from, to] = [first, last].map(|i| holder(a.bodies.len(), i, |k| b.load(a.bodies, k).before));
-        b.phase(|l| {
-            // Beyond the end the last one, again.
-            let (body, triangle) = triangle(l, a, (first + l.lane()).min(last));
-            let mut mine = [0u64; 6];
-            widen(&mut mine, centre(l, a, triangle));
-            for k in 0..BOUNDS {
-                if from == to {
-                    l.put(best, k * lanes + l.lane(), mine[k as usize]);
-                } else {
-                    l.fetch_max(a.bounds, BOUNDS * body + k, mine[k as usize]);
-                }
-            }
-        });
-        if from == to {
-            reduce(b, a, best, from);
-        }
-        first = first.saturating_add(b.blocks() * lanes);
-    }
-}
-
-/// The largest of the lanes' keys becomes the body's.
-fn reduce<R: Real, B: Block>(b: &mut B, a: &MortonArgs<R>, best: Shared<u64>, body: u32) {
-    let lanes = b.lanes();
-    let mut width = lanes;
-    while width > 1 {
-        let half = width.div_ceil(2);
-        b.phase(|l| {
-            let other = l.lane() + half;
-            if other < width {
-                for k in 0..BOUNDS {
-                    let at = k * lanes + l.lane();
-                    l.put(best, at, l.get(best, at).max(l.get(best, at + half)));
-                }
-            }
-        });
-        width = half;
-    }
-    b.phase(|l| {
-        (l.lane()..BOUNDS)
-            .step_by(lanes as usize)
-            .for_each(|k| l.fetch_max(a.bounds, BOUNDS * body + k, l.get(best, k * lanes)));
-    });
-}
 /// The code of each triangle's centre.
 pub fn morton<R: Real, B: Block>(b: &mut B, a: &MortonArgs<R>) {
+    let (mesh, apart) = ((&a.frames, a.faces), a.flags.has(MortonFlags::APART));
     // Of one body the box is the same for all.
     let only = (a.bodies.len() == 1).then(|| {
-        let keys = [0, 1, 2, 3, 4, 5].map(|k| b.load(a.bounds, k));
-        (b.load(a.bodies, 0), Grid::new(keys))
+        let word = |k| b.load(a.extents, k);
+        (b.load(a.bodies, 0), Grid::new(centres::keys(0, word), AXIS_BITS), centres::outsized_from(0, word))
     });
     let stride = b.blocks() * b.lanes();
     b.phase(|l| {
         let mut i = l.global();
         while i < a.count {
-            let (body, grid) = only.unwrap_or_else(|| {
-                let (at, _) = triangle(l, a, i);
-                let keys = [0, 1, 2, 3, 4, 5].map(|k| l.read(a.bounds, BOUNDS * at + k));
-                (l.read(a.bodies, at), Grid::new(keys))
+            let (at, triangle) = triangle(l, a, i);
+            let (body, grid, outsized_from) = only.unwrap_or_else(|| {
+                let (word, first) = (|k| l.read(a.extents, k), OF_A_BODY * at);
+                let grid = Grid::new(centres::keys(first, word), AXIS_BITS);
+                (l.read(a.bodies, at), grid, centres::outsized_from(first, word))
             });
-            let triangle = body.triangle + (i - body.before);
-            let code = grid.code(centre(l, a, triangle), a.flags.has(MortonFlags::HILBERT))
-                >> body.prefix_bits
-                | body.prefix as u64;
+            let mut code = code(&grid, centres::centre(l, mesh, triangle), a.flags.has(MortonFlags::HILBERT));
+            if apart && body.prefix_bits < CODE_BITS {
+                code >>= 1;
+                if centres::is_outsized(l, mesh, (triangle, outsized_from)) {
+                    // Behind all others of its body.
+                    code |= 1 << (CODE_BITS - 1);
+                    l.fetch_add(a.extents, OF_A_BODY * at + OUTSIZED, 1);
+                }
+            }
+            let code = code >> body.prefix_bits | body.prefix as u64;
             l.write(a.items, i, code << 32 | triangle as u64);
             sort::tally(l, &a.tiles, i, code as u32 & (BINS - 1));
             i = i.saturating_add(stride);
@@ -168,35 +106,15 @@ fn triangle<R: Real, L: Lane>(l: &L, a: &MortonArgs<R>, i: u32) -> (u32, u32) {
     (at, body.triangle + (i - body.before))
 }
 
-/// The cells of a body's box.
-#[derive(Clone, Copy)]
-struct Grid {
-    lo: [f64; 3],
-    scale: f64,
-}
-
-impl Grid {
-    /// Of the box with these keys.
-    #[inline(always)]
-    fn new(keys: [u64; 6]) -> Grid {
-        let upper = |k: usize| ordered::number(keys[k]);
-        let lo = [0, 1, 2].map(|k| ordered::number(!keys[k + 3]));
-        let extent = (upper(0) - lo[0]).max(upper(1) - lo[1]).max(upper(2) - lo[2]);
-        Grid { lo, scale: if extent > 0.0 { CELLS / extent } else { 0.0 } }
+/// The code of a point.
+#[inline(always)]
+fn code(grid: &Grid, c: Vec3<f64>, is_hilbert: bool) -> u64 {
+    let mut cells = [0, 1, 2].map(|k| grid.cell(c, k));
+    if is_hilbert {
+        cells = along_hilbert(cells);
     }
-
-    /// The code of a point.
-    #[inline(always)]
-    fn code(&self, c: Vec3<f64>, is_hilbert: bool) -> u64 {
-        // `as` saturates and sends NaN (an overflowing scale times zero) to 0.
-        let cell = |k: usize| (((c[k] - self.lo[k]) * self.scale) as u32).min(CELLS as u32 - 1);
-        let mut cells = [cell(0), cell(1), cell(2)];
-        if is_hilbert {
-            cells = along_hilbert(cells);
-        }
-        let [x, y, z] = cells.map(spread);
-        (x << 2 | y << 1 | z) >> (3 * AXIS_BITS - CODE_BITS)
-    }
+    let [x, y, z] = cells.map(spread);
+    (x << 2 | y << 1 | z) >> (3 * AXIS_BITS - CODE_BITS)
 }
 
 /// A cell's coordinates changed so that interleaved, the first one's bits highest, they count cells along Hilbert's curve.

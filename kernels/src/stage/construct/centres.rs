@@ -1,0 +1,224 @@
+//! Centres of triangles: what they are put in order by, the boxes around them, and which triangles are outsized.
+
+use crate::abi::{Positions, Span};
+use crate::exec::{Block, Lane, Shared};
+use crate::math::{Real, Vec3, ordered};
+
+/// Keys of a box: upper x, y, z, and lower x, y, z (complemented), so that all are maxima.
+pub const KEYS: u32 = 6;
+/// Where a body's triangles are: a box, the sum of the exponents of their sizes, how many have one, and how many are outsized.
+pub const OF_A_BODY: u32 = KEYS + 3;
+/// The sum of the exponents.
+const EXPONENTS: u32 = KEYS;
+/// How many have an extent.
+const SIZED: u32 = KEYS + 1;
+/// How many are outsized.
+pub const OUTSIZED: u32 = KEYS + 2;
+/// A triangle is outsized whose size has an exponent so much above the mean one: which is 8 to 32 times the geometric mean of the sizes.
+/// A tile that has one has its box; so they have tiles of their own.
+const ABOVE: u64 = 5;
+
+/// The corners of a triangle at t = 0.
+fn corners<R: Real, L: Lane>(
+    l: &L,
+    (frames, faces): (&Positions<R>, Span<[u32; 3]>),
+    triangle: u32,
+) -> [Vec3<f64>; 3] {
+    let start = |v: u32| {
+        let moving = frames.moving;
+        if moving.is_empty() { l.read(frames.still, v).at } else { l.read(moving, v).t0.at }
+    };
+    l.read(faces, triangle).map(|v| start(v).wide())
+}
+
+/// The centre of a triangle, in f64: any point near it would do, but all machines must choose the same.
+#[inline(always)]
+pub fn centre<R: Real, L: Lane>(l: &L, mesh: (&Positions<R>, Span<[u32; 3]>), triangle: u32) -> Vec3<f64> {
+    middle(corners(l, mesh, triangle))
+}
+
+#[inline(always)]
+fn middle([p, q, r]: [Vec3<f64>; 3]) -> Vec3<f64> {
+    (p + q + r) * (1.0 / 3.0)
+}
+
+/// The exponent of the longest side of the box around a triangle, as IEEE 754 has it; 0 where there is no extent to speak of.
+#[inline(always)]
+fn exponent([p, q, r]: [Vec3<f64>; 3]) -> u64 {
+    let sides = p.greater(q).greater(r) - p.lesser(q).lesser(r);
+    sides[0].greater(sides[1]).greater(sides[2]).to_bits() >> 52
+}
+
+/// Words that blocks gather of an extent.
+const GATHERED: u32 = SIZED + 1;
+
+/// What is known of some triangles: the first words of [`OF_A_BODY`].
+#[derive(Clone, Copy)]
+pub struct Extent([u64; GATHERED as usize]);
+
+impl Extent {
+    /// Of none.
+    pub const NONE: Extent = Extent([0; GATHERED as usize]);
+
+    /// With a triangle: its centre, and its size where that `counts`.
+    #[inline(always)]
+    pub fn add<R: Real, L: Lane>(
+        &mut self,
+        l: &L,
+        mesh: (&Positions<R>, Span<[u32; 3]>),
+        (triangle, counts): (u32, bool),
+    ) {
+        let corners = corners(l, mesh, triangle);
+        let c = middle(corners);
+        for k in 0..3 {
+            let key = ordered::key(c[k]);
+            self.0[k] = self.0[k].max(key);
+            self.0[k + 3] = self.0[k + 3].max(!key);
+        }
+        let exponent = if counts { exponent(corners) } else { 0 };
+        self.0[EXPONENTS as usize] += exponent;
+        self.0[SIZED as usize] += (exponent > 0) as u64;
+    }
+
+    /// One word, told to all.
+    #[inline(always)]
+    fn tell_word<L: Lane>(l: &L, (extents, at): (Span<u64>, u32), (k, word): (u32, u64)) {
+        if k < KEYS {
+            l.fetch_max(extents, at + k, word);
+        } else if word > 0 {
+            l.fetch_add(extents, at + k, word);
+        }
+    }
+
+    /// A lane's, told to all.
+    #[inline(always)]
+    pub fn tell<L: Lane>(&self, l: &L, to: (Span<u64>, u32)) {
+        (0..GATHERED).for_each(|k| Self::tell_word(l, to, (k, self.0[k as usize])));
+    }
+
+    /// A lane's, for [`tell_together`].
+    #[inline(always)]
+    pub fn put<L: Lane>(&self, l: &L, lanes: u32, best: Shared<u64>) {
+        (0..GATHERED).for_each(|k| l.put(best, k * lanes + l.lane(), self.0[k as usize]));
+    }
+}
+
+/// Shared memory of a block that gathers.
+pub const fn shared_bytes(lanes: u32) -> u32 {
+    GATHERED * 8 * lanes
+}
+
+/// For what the lanes of a block have put there.
+pub fn gathered<B: Block>(b: &mut B) -> Shared<u64> {
+    b.shared(GATHERED * b.lanes())
+}
+
+/// What all lanes have put, told to all as one: it lies at a place of `extents`.
+pub fn tell_together<B: Block>(b: &mut B, best: Shared<u64>, to: (Span<u64>, u32)) {
+    let lanes = b.lanes();
+    let mut width = lanes;
+    while width > 1 {
+        let half = width.div_ceil(2);
+        b.phase(|l| {
+            let other = l.lane() + half;
+            if other < width {
+                for k in 0..GATHERED {
+                    let at = k * lanes + l.lane();
+                    let (one, two) = (l.get(best, at), l.get(best, at + half));
+                    l.put(best, at, if k < KEYS { one.max(two) } else { one + two });
+                }
+            }
+        });
+        width = half;
+    }
+    b.phase(|l| {
+        let words = (l.lane()..GATHERED).step_by(lanes as usize);
+        words.for_each(|k| Extent::tell_word(l, to, (k, l.get(best, k * lanes))));
+    });
+}
+
+/// The extents of things that each have a stretch of `count` items: what a block looks at together is of one as a rule. `which` thing an
+/// item is of; `add` adds it, and its size if it is there for the first time, and says of which thing it is. Each has so many `words`.
+pub fn of_each<B: Block>(
+    b: &mut B,
+    (extents, words, count): (Span<u64>, u32, u32),
+    which: impl Fn(&B, u32) -> u32,
+    add: impl Fn(&B::Lane, &mut Extent, (u32, bool)) -> u32,
+) {
+    let (best, lanes) = (gathered(b), b.lanes());
+    let mut first = b.block() * lanes;
+    while first < count {
+        let last = (count - 1).min(first + lanes - 1);
+        let [from, to] = [first, last].map(|i| which(b, i));
+        b.phase(|l| {
+            let i = first + l.lane();
+            let mut extent = Extent::NONE;
+            // Beyond the end the last one, again: it changes no maximum.
+            let of = add(l, &mut extent, (i.min(last), i <= last));
+            if from == to {
+                extent.put(l, lanes, best);
+            } else {
+                extent.tell(l, (extents, words * of));
+            }
+        });
+        if from == to {
+            tell_together(b, best, (extents, words * from));
+        }
+        first = first.saturating_add(b.blocks() * lanes);
+    }
+}
+
+/// The cells of the cube around a box, so many an axis.
+#[derive(Clone, Copy)]
+pub struct Grid {
+    lo: [f64; 3],
+    scale: f64,
+    most: u32,
+}
+
+impl Grid {
+    /// Of the box with these keys.
+    #[inline(always)]
+    pub fn new(keys: [u64; KEYS as usize], bits: u32) -> Grid {
+        let (lo, sides) = sides(keys);
+        let extent = sides[0].max(sides[1]).max(sides[2]);
+        let cells = (1u64 << bits) as f64;
+        Grid { lo, scale: if extent > 0.0 { cells / extent } else { 0.0 }, most: ((1u64 << bits) - 1) as u32 }
+    }
+
+    /// The cell of a point along an axis.
+    #[inline(always)]
+    pub fn cell(&self, c: Vec3<f64>, k: usize) -> u32 {
+        // `as` saturates and sends NaN (an overflowing scale times zero) to 0.
+        (((c[k] - self.lo[k]) * self.scale) as u32).min(self.most)
+    }
+}
+
+/// The lower corner and the sides of the box with these keys.
+#[inline(always)]
+pub fn sides(keys: [u64; KEYS as usize]) -> ([f64; 3], [f64; 3]) {
+    let lo = [0, 1, 2].map(|k| ordered::number(!keys[k + 3]));
+    (lo, [0, 1, 2].map(|k| ordered::number(keys[k]) - lo[k]))
+}
+
+/// The keys of a box at a place of `extents`, by what reads a word.
+#[inline(always)]
+pub fn keys(at: u32, read: impl Fn(u32) -> u64) -> [u64; KEYS as usize] {
+    [0, 1, 2, 3, 4, 5].map(|k| read(at + k))
+}
+
+/// From which exponent on a body's triangles are outsized, by what reads a word of its extent.
+#[inline(always)]
+pub fn outsized_from(at: u32, read: impl Fn(u32) -> u64) -> u64 {
+    read(at + EXPONENTS) / read(at + SIZED).max(1) + ABOVE
+}
+
+/// Whether a triangle is.
+#[inline(always)]
+pub fn is_outsized<R: Real, L: Lane>(
+    l: &L,
+    mesh: (&Positions<R>, Span<[u32; 3]>),
+    (triangle, from): (u32, u64),
+) -> bool {
+    exponent(corners(l, mesh, triangle)) >= from
+}
