@@ -5,13 +5,14 @@ mod name;
 
 use crate::abi::*;
 use crate::bv::{self, Contain};
+use crate::bvh::centres;
 use crate::exec::Block;
 use crate::math::Real;
 use crate::prim::isolate::ladder::SLICES;
 use crate::prim::isolate::separation::{Double, Single};
 use crate::queue::worker;
 use crate::sort;
-use crate::stage::construct::{centres, cuts, graft, morton, tile_filters, tree, treelet};
+use crate::stage::construct::{cuts, graft, morton, tile_filters, tree, treelet};
 use crate::stage::narrow::features::{Moves, Rests};
 use crate::stage::narrow::{
     below_precision, climb, cull, discrete, features, near, nearest, separate, slice, solve,

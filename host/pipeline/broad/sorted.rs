@@ -10,8 +10,8 @@ use crate::pipeline::{launch, purpose};
 use crate::query::Order;
 use nearmiss_kernels::abi::{BodyRecord, CutArgs, MortonArgs, MortonFlags, Positions, Span, TreeBody};
 use nearmiss_kernels::bvh::CODE_BITS;
+use nearmiss_kernels::bvh::centres::{KEYS, OF_A_BODY};
 use nearmiss_kernels::math::ordered;
-use nearmiss_kernels::stage::construct::centres::{KEYS, OF_A_BODY};
 use nearmiss_kernels::stage::construct::{cuts, morton};
 
 /// The bytes of a code, which lies above its triangle. As many as there are: the sort ends where it began.

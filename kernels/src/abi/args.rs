@@ -47,7 +47,7 @@ arguments! {
         faces: Span<[u32; 3]>,
         /// The tree's bodies.
         bodies: Span<TreeBody>,
-        /// What is known of each body's triangles, [`OF_A_BODY`](crate::stage::construct::centres::OF_A_BODY) words.
+        /// What is known of each body's triangles, [`OF_A_BODY`](crate::bvh::centres::OF_A_BODY) words.
         extents: Span<u64>,
         /// Out: code of each triangle's centre, above the triangle.
         items: Span<u64>,

@@ -1,5 +1,6 @@
 //! The level-ordered tree: what holds of it, and a checker that names what does not.
 
+pub mod centres;
 pub mod filter;
 pub mod group;
 pub mod horizon;

@@ -11,8 +11,8 @@
 //! Cost     a level of all: 24 B gathered a triangle, twice, and a sort. `runs`: the same once, then all on chip: of each of 4 levels
 //!          some 20 phases and two passes of a radix sort of 512 items.
 
-use super::centres::{self, Grid, KEYS, OF_A_BODY, OUTSIZED};
 use crate::abi::CutArgs;
+use crate::bvh::centres::{self, Grid, KEYS, OF_A_BODY, OUTSIZED};
 use crate::bvh::filter::holder;
 use crate::bvh::tiles::{FAN, TILE};
 use crate::exec::{BINS, Block, Lane, Shared, Slot, WARP, striped};

@@ -11,7 +11,6 @@
 //! Silent   the thesis does not say what equal codes do. Ties are split by the index in sorted order, as Karras
 //!          does, so a million equal triangles make a tree of 21 levels.
 
-pub mod centres;
 pub mod cuts;
 pub mod graft;
 pub mod morton;

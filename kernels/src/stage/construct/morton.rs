@@ -8,16 +8,16 @@
 //!          body's own box; the codes' lowest bytes are counted. So a body's triangles are one range of the sorted codes, and
 //!          the bits of the prefixes are the tree over the bodies. Tiles take the same bits along Hilbert's curve: neighbours along it
 //!          are neighbours in space; trees are better cut at planes.
-//!          For tiles the first bit behind the prefix tells outsized triangles ([`super::centres`]) from all others.
+//!          For tiles the first bit behind the prefix tells outsized triangles ([`crate::bvh::centres`]) from all others.
 //! Room     fixed; cannot run out.
 //! Silent   the thesis does not say which box is cut. Ours is the cube over the largest extent, so that cells are cubes;
 //!          an axis without extent gives code 0. Codes steer quality only; no answer depends on them.
 //! Cost     24 B + 12 B in a triangle (twice), 8 B and an atomic out. `bounds`: two loads in a row for four triangles a lane,
 //!          8 atomics a block on one line: few blocks. Of many bodies 8 atomics a block that lies in one body, else a triangle.
 
-use super::centres::{self, Extent, Grid, OF_A_BODY, OUTSIZED};
 use crate::abi::{MortonArgs, MortonFlags};
 use crate::bvh::CODE_BITS;
+use crate::bvh::centres::{self, Extent, Grid, OF_A_BODY, OUTSIZED};
 use crate::bvh::filter::holder;
 use crate::exec::{BINS, Block, Lane};
 use crate::math::{Real, Vec3};
