@@ -123,9 +123,9 @@ named! {
     pub enum Order {
         /// Along Hilbert's curve, body by body.
         Hilbert = "hilbert",
-        /// The same, and each run of 16 tiles in halves of halves, cut across the longest axis.
+        /// Along Hilbert's curve, and each run of 16 tiles in halves of halves, cut across the longest axis.
         Runs = "runs",
-        /// In halves of halves from all triangles down to tiles.
+        /// In halves of halves from all triangles of a body down to tiles.
         Median = "median",
     }
 }

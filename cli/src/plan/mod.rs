@@ -18,7 +18,7 @@ use nearmiss::error::Error;
 use nearmiss::mesh::Body;
 use nearmiss::pipeline::mean_side;
 use nearmiss::plan::Plan;
-use nearmiss::query::{Broad, Bv, Certified, Query, Traversal};
+use nearmiss::query::{Broad, Bv, Certified, Named, Order, Query, Traversal};
 use nearmiss::scene::{BodyKind, Scene};
 use nearmiss::words::counted;
 use std::fmt::Write;
@@ -148,6 +148,10 @@ fn choices(detector: &Detector, device: &Device) -> String {
     let why = if query.search().broad.is_some() { "as asked" } else { "the fastest on this machine" };
     if broad == Broad::Tiles {
         let _ = writeln!(text, "broad      tiles: 32 neighbours against 32, no tree; {why}");
+        let asked = query.search().order;
+        let why = if asked.is_some() { "as asked" } else { "by default" };
+        let order = asked.unwrap_or(Order::DEFAULT);
+        let _ = writeln!(text, "order      {order}: {}; {why}", in_a_sentence(order.about()));
     } else {
         text += &of_trees(query, device);
     }
@@ -174,6 +178,12 @@ fn choices(detector: &Detector, device: &Device) -> String {
     let _ =
         writeln!(text, "tree       {}", if levels.is_empty() { "none".into() } else { levels.join(" and ") });
     text
+}
+
+/// A description within a sentence: without its capital and its full stop.
+fn in_a_sentence(about: &str) -> String {
+    let mut letters = about.trim_end_matches('.').chars();
+    letters.next().map(char::to_lowercase).into_iter().flatten().chain(letters).collect()
 }
 
 /// How trees are refitted and walked.

@@ -61,6 +61,23 @@ fn what_cannot_meet_has_no_plan() {
     }
 }
 
+#[test]
+fn the_order_of_tiles_is_told() {
+    let told = |more: &[&str]| {
+        let scene =
+            ["plan", "--scene", "soup", "--triangles", "40", "--discrete", "--no-run", "--backend", "cpu"];
+        let text = ok(&[&scene[..], more].concat());
+        text.lines().find(|line| line.starts_with("order ")).map(str::to_owned)
+    };
+    let of = |name: &str, why: &str, line: Option<String>| {
+        let line = line.expect("a line");
+        assert!(line.starts_with(&format!("order      {name}: ")) && line.ends_with(why), "{line}");
+    };
+    of("runs", "; by default", told(&[]));
+    of("median", "; as asked", told(&["--order", "median"]));
+    assert_eq!(told(&["--broad", "tree"]), None);
+}
+
 const STAGES: [&str; 8] = ["place", "construct", "fit", "refit", "traverse", "narrow", "order", "a frame"];
 
 #[test]
