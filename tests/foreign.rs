@@ -162,6 +162,7 @@ fn drive(kind: QueryKind, triangles: usize, frames: usize) -> (usize, usize) {
 
 #[test]
 fn a_thousand_replays_lose_nothing() {
+    let _alone = simulator::alone();
     for (kind, triangles, frames) in [
         (QueryKind::Continuous, 400, 1_000),
         (QueryKind::Discrete, 1_000, 1_000),
@@ -182,6 +183,7 @@ fn a_thousand_replays_lose_nothing() {
 #[test]
 fn what_a_replay_costs() {
     const TIMES: u32 = 100;
+    let _alone = simulator::alone();
     let body = scene::scene("draped", 92_230, 1).expect("a scene");
     let [t0, t1] = body.ends().map(|positions| match positions {
         Positions::F32(points) => points.as_flattened().to_vec(),

@@ -4,6 +4,14 @@ use bytemuck::Pod;
 use cudarc::driver::sys::{self, CUresult};
 use std::ffi::{CString, c_void};
 use std::ptr::null_mut;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// While it is held no other test of this program drives a simulator: nothing else may wait for the device while one records, and
+/// what two at once take is nobody's time.
+pub fn alone() -> MutexGuard<'static, ()> {
+    static ALONE: Mutex<()> = Mutex::new(());
+    ALONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// Its kernel: where a vertex was at the end of the last step it is at the start of this one, and it moves on.
 const STEP: &str = "

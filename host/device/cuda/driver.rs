@@ -20,6 +20,12 @@ impl Refusal {
     /// The machine, or the GPU, has no more memory.
     pub const OUT_OF_MEMORY: Refusal = Refusal(types::CUDA_ERROR_OUT_OF_MEMORY);
 
+    /// Whether it is that a graph is being recorded: in this thread, or in another by CUDA's global mode.
+    fn is_of_recording(self) -> bool {
+        (types::CUDA_ERROR_STREAM_CAPTURE_UNSUPPORTED..=types::CUDA_ERROR_STREAM_CAPTURE_WRONG_THREAD)
+            .contains(&self.0)
+    }
+
     /// The driver's name and text of the error, where it has them.
     pub fn text(self) -> String {
         let words = |driver: &Driver| {
@@ -52,7 +58,11 @@ pub fn refused(what: &'static str) -> impl Fn(Refusal) -> Error {
         _ => Error::Device {
             what: what.into(),
             text: refusal.text(),
-            advice: "look at `nvidia-smi`, or run on the CPU",
+            advice: if refusal.is_of_recording() {
+                "a graph is being recorded: `submit` into it, and ask for frames when it is, or record in CUDA's thread-local mode"
+            } else {
+                "look at `nvidia-smi`, or run on the CPU"
+            },
         },
     }
 }
@@ -219,6 +229,15 @@ mod tests {
             assert!(matches!(error, Error::Device { .. }) && error.exit_code() == 4, "{error:?}");
             let text = error.to_string();
             assert!(text.starts_with("narrow_features_f32: ") && text.contains("on the CPU"), "{text}");
+        }
+        for code in [
+            CUDA_ERROR_STREAM_CAPTURE_UNSUPPORTED,
+            CUDA_ERROR_STREAM_CAPTURE_INVALIDATED,
+            CUDA_ERROR_STREAM_CAPTURE_IMPLICIT,
+            CUDA_ERROR_STREAM_CAPTURE_WRONG_THREAD,
+        ] {
+            let text = refused("copying from the GPU")(Refusal(code as u32)).to_string();
+            assert!(text.contains("thread-local mode"), "{text}");
         }
         let memory = refused("loading the kernels")(Refusal::OUT_OF_MEMORY);
         assert!(matches!(memory, Error::OutOfMemory { .. }) && memory.exit_code() == 4, "{memory:?}");

@@ -21,6 +21,8 @@ pub type CUstreamCaptureStatus = u32;
 pub const CUDA_ERROR_INVALID_VALUE: u32 = 1;
 pub const CUDA_ERROR_OUT_OF_MEMORY: u32 = 2;
 pub const CUDA_ERROR_NOT_FOUND: u32 = 500;
+pub const CUDA_ERROR_STREAM_CAPTURE_UNSUPPORTED: u32 = 900;
+pub const CUDA_ERROR_STREAM_CAPTURE_WRONG_THREAD: u32 = 908;
 
 pub const CU_DEVICE_ATTRIBUTE_MULTIPROCESSOR_COUNT: CUdevice_attribute = 16;
 pub const CU_DEVICE_ATTRIBUTE_MAX_THREADS_PER_MULTIPROCESSOR: CUdevice_attribute = 39;
@@ -80,6 +82,14 @@ mod tests {
             (CUDA_ERROR_INVALID_VALUE, sys::CUresult::CUDA_ERROR_INVALID_VALUE as u32),
             (CUDA_ERROR_OUT_OF_MEMORY, sys::CUresult::CUDA_ERROR_OUT_OF_MEMORY as u32),
             (CUDA_ERROR_NOT_FOUND, sys::CUresult::CUDA_ERROR_NOT_FOUND as u32),
+            (
+                CUDA_ERROR_STREAM_CAPTURE_UNSUPPORTED,
+                sys::CUresult::CUDA_ERROR_STREAM_CAPTURE_UNSUPPORTED as u32,
+            ),
+            (
+                CUDA_ERROR_STREAM_CAPTURE_WRONG_THREAD,
+                sys::CUresult::CUDA_ERROR_STREAM_CAPTURE_WRONG_THREAD as u32,
+            ),
             (
                 CU_DEVICE_ATTRIBUTE_MULTIPROCESSOR_COUNT,
                 Attribute::CU_DEVICE_ATTRIBUTE_MULTIPROCESSOR_COUNT as u32,
