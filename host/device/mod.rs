@@ -193,6 +193,24 @@ impl Device {
         self.machine.is_gpu()
     }
 
+    /// The GPU's number, as the driver counts them; none of a CPU.
+    pub fn ordinal(&self) -> Option<u32> {
+        match &*self.machine {
+            Machine::Emulator(_) => None,
+            #[cfg(feature = "cuda")]
+            Machine::Cuda(c) => Some(c.ordinal()),
+        }
+    }
+
+    /// The handle of the stream that all of the GPU's work goes to (`CUstream`; 0 is the default one); none of a CPU.
+    pub fn stream(&self) -> Option<u64> {
+        match &*self.machine {
+            Machine::Emulator(_) => None,
+            #[cfg(feature = "cuda")]
+            Machine::Cuda(c) => Some(c.stream()),
+        }
+    }
+
     /// Lanes of a block of a kernel on this machine.
     pub fn lanes<E: Entry>(&self) -> u32 {
         match &*self.machine {

@@ -146,6 +146,12 @@ impl Scene {
         self.bodies.get_mut(id.index()).filter(|_| !self.removed[id.index()])
     }
 
+    /// The body with that number; `None` where it was removed or never was.
+    pub fn id(&self, index: usize) -> Option<BodyId> {
+        let id = BodyId(u32::try_from(index).ok()?);
+        self.get(id).map(|_| id)
+    }
+
     /// Every body by its number; those that were removed are bodies without vertices.
     pub fn bodies(&self) -> &[Body] {
         &self.bodies
@@ -195,6 +201,7 @@ mod tests {
         assert_eq!(scene.add(soup(4, 4, false)), b);
         assert_eq!(scene.get(b).map(Body::face_count), Some(4));
         assert!(scene.get(BodyId(9)).is_none() && scene.remove(BodyId(9)).is_none());
+        assert_eq!([0, 9, usize::MAX].map(|index| scene.id(index)), [Some(a), None, None]);
     }
 
     #[test]

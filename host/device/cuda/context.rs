@@ -116,6 +116,11 @@ unsafe impl Send for Context {}
 unsafe impl Sync for Context {}
 
 impl Context {
+    /// The GPU's number.
+    pub fn ordinal(&self) -> u32 {
+        self.gpu.device as u32
+    }
+
     /// Binds the calling thread to the context, as long as the answer lives. A thread that was bound to another is bound
     /// to that again then; one that was bound to none stays, so that the next call is cheaper.
     pub fn bind(&self) -> Result<Bound<'_>, Refusal> {

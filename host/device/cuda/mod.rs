@@ -141,6 +141,16 @@ impl Cuda {
         &self.name
     }
 
+    /// The GPU's number.
+    pub fn ordinal(&self) -> u32 {
+        self.context.ordinal()
+    }
+
+    /// The handle of its stream.
+    pub fn stream(&self) -> u64 {
+        self.stream.handle() as u64
+    }
+
     /// Blocks of that many lanes that fill the GPU.
     pub fn resident_blocks(&self, lanes: u32) -> u32 {
         self.resident_lanes / lanes
