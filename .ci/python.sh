@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# The Python module as a stranger gets it: a wheel, installed into an empty environment, asked what its README says.
+#
+# Rationale
+# - The profile is cargo's `dev`, which is optimised: what is tested is what is built anyway.
+# - The environment is new each time; nothing of this machine's Python is seen.
+# - Tests that need a GPU say that they were skipped. They run where there is one: see docs/toolchain.md.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+python3 -m venv "$folder/builder"
+"$folder/builder/bin/pip" -q install 'maturin>=1.8,<2'
+"$folder/builder/bin/maturin" build --locked --profile dev --manifest-path python/Cargo.toml --out "$folder/wheels"
+python3 -m venv "$folder/user"
+"$folder/user/bin/pip" -q install "$folder"/wheels/nearmiss-*.whl
+readelf -d "$folder"/user/lib/python3*/site-packages/nearmiss/_native*.so | grep -E 'libcuda|libpython' \
+    && { echo "the module is linked against what a stranger may lack"; exit 1; }
+for page in README.md python/README.md; do
+    "$folder/user/bin/python" .ci/python_blocks.py "$page"
+done
+"$folder/user/bin/pip" -q install 'pytest>=8' mypy
+"$folder/user/bin/python" -m mypy --no-error-summary python/tests/typed.py
+cargo build --locked -p nearmiss-cli
+NEARMISS_PROGRAM=$target/debug/nearmiss "$folder/user/bin/python" -m pytest -q -rs python

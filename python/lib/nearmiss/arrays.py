@@ -1,0 +1,30 @@
+"""Arrays of other libraries, told apart by what they can do. None of these libraries is imported here."""
+
+from ._native import Device
+
+_ON_GPU = (2, 13)
+
+
+def is_on_gpu(array) -> bool:
+    """Whether it lies in the memory of an NVIDIA GPU."""
+    place = getattr(array, "__dlpack_device__", None)
+    if place is not None:
+        return place()[0] in _ON_GPU
+    return hasattr(array, "__cuda_array_interface__")
+
+
+def on_host(array):
+    """The same array where numpy can read it: copied from a GPU, else itself."""
+    if not is_on_gpu(array):
+        return array
+    for copy in (lambda: array.detach().cpu().numpy(), lambda: array.get(), lambda: array.numpy()):
+        try:
+            return copy()
+        except AttributeError:
+            continue
+    raise TypeError(f"an array of type {type(array).__name__} on a GPU: give a copy in the host's memory")
+
+
+def device_of(array):
+    """Where to ask about an array: the GPU that it lies on, on that GPU's default stream; else any machine."""
+    return Device(stream=0) if is_on_gpu(array) else Device()

@@ -1,0 +1,61 @@
+"""One question about one mesh, in one line. A detector that is kept answers frame after frame, and faster."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._native import Body, Contacts, Continuous, Detector, Device, Discrete, Earliest, Near
+from .arrays import device_of, on_host
+
+__all__ = ["contacts", "near", "self_intersections", "time_of_impact"]
+
+
+def self_intersections(vertices, faces, *, adjacent: bool = False, device: Device | None = None) -> NDArray[np.uint32]:
+    """Which triangles of a mesh share a point with another one, by exact signs: none is missed, none is invented.
+
+    vertices: (n, 3) numbers; float32 and float64 are taken as they are, never rounded. A GPU's array too.
+    faces:    (m, 3) integers, the vertices of each triangle.
+    adjacent: whether triangles that share a vertex are asked, too: do they share more than that vertex or edge?
+    Returns (k, 2) uint32: pairs of triangles, the smaller index first, ascending.
+
+    Triangles that merely touch where the mesh is not welded (two vertices in one place) share that point.
+    """
+    return _ask(vertices, faces, Discrete(adjacent=adjacent), device).indices
+
+
+def near(vertices, faces, distance: float, *, device: Device | None = None) -> Contacts:
+    """Which vertices and faces, and which edges, of a mesh are within a distance of each other, and where they are nearest.
+
+    vertices, faces: as for self_intersections. distance: a length above 0, in the unit of the vertices.
+    Returns Contacts: kind, indices, squared_distances, weights, closest; a row a pair. None is missed; features of a common
+    vertex are no pair.
+    """
+    return _ask(vertices, faces, Near(distance), device)
+
+
+def contacts(
+    t0, t1, faces, *, separation: float = 0.0, tolerance: float | None = None, device: Device | None = None
+) -> Contacts:
+    """Which features of a mesh meet while its vertices move from t0 to t1 in straight lines, and when: certified.
+
+    t0, t1:     (n, 3) numbers each, as vertices of self_intersections.
+    separation: what comes nearer than this is in contact, in the unit of the vertices; 0 for touching.
+    tolerance:  how well a time is told: as a length moved. Default: 1e-4 of the mean edge.
+    Returns Contacts: kind, indices, toi and toi_hi (bounds of the first time, in [0, 1]), status. None is missed, none is late.
+    """
+    return _ask((t0, t1), faces, Continuous(separation=separation, tolerance=tolerance), device)
+
+
+def time_of_impact(
+    t0, t1, faces, *, separation: float = 0.0, tolerance: float | None = None, device: Device | None = None
+) -> float | None:
+    """How far a step may go: the first time in [0, 1] at which any two features meet, never late; None if none do.
+
+    Arguments as for contacts.
+    """
+    return _ask((t0, t1), faces, Earliest(separation=separation, tolerance=tolerance), device).earliest
+
+
+def _ask(where, faces, query, device):
+    first = where[0] if isinstance(where, tuple) else where
+    detector = Detector(Body(on_host(first), on_host(faces)), query, device or device_of(first))
+    return detector.frame({0: where}) if isinstance(where, tuple) else detector.detect()

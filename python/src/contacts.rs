@@ -1,0 +1,235 @@
+//! Answers, as numpy's arrays: a row a contact, in canonical order.
+
+use crate::errors::choice;
+use nearmiss::contacts::{Closest, Kind, Status};
+use nearmiss::scene::BodyId;
+use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
+use pyo3::prelude::*;
+
+use crate::host::rows;
+
+/// An answer: a row a contact, in canonical order, the same on every machine. Each column is a new array.
+///
+/// What a column's query is: see there. Asked of another it raises ChoiceError.
+#[pyclass(module = "nearmiss", frozen)]
+pub struct Contacts {
+    pub contacts: nearmiss::Contacts,
+}
+
+impl Contacts {
+    /// Of each row that has one.
+    fn of_rows<T>(
+        &self,
+        what: &str,
+        contact: Option<fn(&nearmiss::Contact) -> T>,
+        near: Option<fn(&nearmiss::contacts::NearPair) -> T>,
+        nearest: Option<fn(&nearmiss::contacts::NearestTriangles) -> T>,
+    ) -> PyResult<Vec<T>> {
+        use nearmiss::Answer;
+        Ok(match (&self.contacts.answer, contact, near, nearest) {
+            (Answer::Contacts(all), Some(of), _, _) => all.iter().map(of).collect(),
+            (Answer::Near(all), _, Some(of), _) => all.iter().map(of).collect(),
+            (Answer::Distance(one), _, _, Some(of)) => one.iter().map(of).collect(),
+            _ => return Err(self.has_no(what)),
+        })
+    }
+
+    fn has_no(&self, what: &str) -> PyErr {
+        choice(format!("{what} of an answer that is {}", self.about()), "ask a query that tells it")
+    }
+
+    fn about(&self) -> &'static str {
+        use nearmiss::Answer;
+        match &self.contacts.answer {
+            Answer::Pairs(_) => "triangle pairs",
+            Answer::Contacts(_) => "contacts in time",
+            Answer::Earliest(_) => "one time",
+            Answer::Near(_) => "near pairs",
+            Answer::Distance(_) => "the nearest triangles",
+        }
+    }
+}
+
+fn kind_number(kind: Kind) -> u8 {
+    match kind {
+        Kind::Vf => 0,
+        Kind::Fv => 1,
+        Kind::Ee => 2,
+    }
+}
+
+fn status_number(status: Status) -> u8 {
+    match status {
+        Status::Contact => 0,
+        Status::Certified => 1,
+        Status::Unresolved => 2,
+    }
+}
+
+fn closest_number(closest: Closest) -> u8 {
+    match closest {
+        Closest::VertexFace => 0,
+        Closest::VertexEdge => 1,
+        Closest::VertexVertex => 2,
+        Closest::EdgeEdge => 3,
+    }
+}
+
+fn numbers(bodies: [BodyId; 2]) -> [u32; 2] {
+    bodies.map(|body| body.index() as u32)
+}
+
+#[pymethods]
+impl Contacts {
+    fn __len__(&self) -> usize {
+        self.contacts.len()
+    }
+
+    /// (k,) uint8, see Kind: which features meet. Of Continuous and Near.
+    #[getter]
+    fn kind<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u8>>> {
+        let kinds =
+            self.of_rows("kinds", Some(|c| kind_number(c.kind)), Some(|c| kind_number(c.kind)), None)?;
+        Ok(PyArray1::from_vec(py, kinds))
+    }
+
+    /// (k, 2) uint32: the bodies of both, the smaller number first.
+    #[getter]
+    fn bodies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        let bodies = match &self.contacts.answer {
+            nearmiss::Answer::Pairs(pairs) => pairs.iter().map(|pair| numbers(pair.bodies)).collect(),
+            _ => self.of_rows(
+                "bodies",
+                Some(|c| numbers(c.bodies)),
+                Some(|c| numbers(c.bodies)),
+                Some(|c| numbers(c.bodies)),
+            )?,
+        };
+        Ok(rows(py, &bodies))
+    }
+
+    /// (k, 2) uint32: triangles, of Discrete and Distance; of Continuous and Near what `kind` says: a vertex and a face, or two edges,
+    /// each by its number in its body. Edges are numbered by (larger vertex, smaller vertex), ascending; Geometry.vertices has their
+    /// vertices.
+    #[getter]
+    fn indices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+        let indices = match &self.contacts.answer {
+            nearmiss::Answer::Pairs(pairs) => pairs.iter().map(|pair| pair.triangles).collect(),
+            _ => {
+                self.of_rows("indices", Some(|c| [c.a, c.b]), Some(|c| [c.a, c.b]), Some(|c| c.triangles))?
+            }
+        };
+        Ok(rows(py, &indices))
+    }
+
+    /// (k,) float64 in [0, 1]: the first time of contact; by a certified solver never late. Of Continuous.
+    #[getter]
+    fn toi<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(PyArray1::from_vec(py, self.of_rows("times", Some(|c| c.toi), None, None)?))
+    }
+
+    /// (k,) float64 in [toi, 1]: the time by which they have met. Of Continuous.
+    #[getter]
+    fn toi_hi<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(PyArray1::from_vec(py, self.of_rows("times", Some(|c| c.toi_hi), None, None)?))
+    }
+
+    /// (k,) uint8, see Status: how sure that is. Of Continuous.
+    #[getter]
+    fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u8>>> {
+        Ok(PyArray1::from_vec(py, self.of_rows("a status", Some(|c| status_number(c.status)), None, None)?))
+    }
+
+    /// (k,) float64: how far apart they are, in the unit of the vertices. Of Near and Distance.
+    #[getter]
+    fn distances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let distances =
+            self.of_rows("distances", None, Some(|c| c.squared_distance.sqrt()), Some(|c| c.distance))?;
+        Ok(PyArray1::from_vec(py, distances))
+    }
+
+    /// (k,) float64: the squares of their distances. Of Near.
+    #[getter]
+    fn squared_distances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let squares = self.of_rows("squared distances", None, Some(|c| c.squared_distance), None)?;
+        Ok(PyArray1::from_vec(py, squares))
+    }
+
+    /// (k,) uint8, see Closest: what is nearest of the two. Of Near.
+    #[getter]
+    fn closest<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u8>>> {
+        let closest = self.of_rows("what is closest", None, Some(|c| closest_number(c.closest)), None)?;
+        Ok(PyArray1::from_vec(py, closest))
+    }
+
+    /// Where they are nearest. Of Near (k, 3) float64: of a vertex and a face the weights of the face's corners; of two edges how far along
+    /// each, from the end of the larger vertex (0) to the other (1), and 0. Of Distance (k, 2, 3): of both triangles the weights of
+    /// their corners.
+    #[getter]
+    fn weights<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        if self.contacts.nearest().is_some() {
+            return self.threes(py, "weights", |nearest| nearest.weights).map(Bound::into_any);
+        }
+        Ok(rows(py, &self.of_rows("weights", None, Some(|c| c.weights), None)?).into_any())
+    }
+
+    /// (k, 2, 3) float64: the nearest points of both. Of Distance; of other queries see Detector.geometry.
+    #[getter]
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        self.threes(py, "points", |nearest| nearest.points)
+    }
+
+    /// The first time of contact, in [0, 1], never late; None where nothing meets. Of Continuous and Earliest.
+    #[getter]
+    fn earliest(&self) -> PyResult<Option<f64>> {
+        match &self.contacts.answer {
+            nearmiss::Answer::Contacts(_) | nearmiss::Answer::Earliest(_) => Ok(self.contacts.earliest_toi()),
+            _ => Err(self.has_no("the earliest time")),
+        }
+    }
+
+    /// How far apart the nearest bodies are; None where no two may meet. Of Distance.
+    #[getter]
+    fn distance(&self) -> PyResult<Option<f64>> {
+        match &self.contacts.answer {
+            nearmiss::Answer::Distance(_) => Ok(self.contacts.distance()),
+            _ => Err(self.has_no("the distance")),
+        }
+    }
+
+    /// How many pairs the narrow test was asked.
+    #[getter]
+    fn candidates(&self) -> u64 {
+        self.contacts.candidates
+    }
+
+    /// How many are listed that are neither proven nor refuted.
+    #[getter]
+    fn unresolved(&self) -> u64 {
+        self.contacts.unresolved
+    }
+
+    /// A hash of the answer, the same on every machine: 16 hexadecimal digits.
+    #[getter]
+    fn hash(&self) -> String {
+        format!("{:016x}", self.contacts.hash())
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<nearmiss.Contacts: {} of {}>", self.contacts.len(), self.about())
+    }
+}
+
+impl Contacts {
+    /// Two times three numbers a row.
+    fn threes<'py>(
+        &self,
+        py: Python<'py>,
+        what: &str,
+        of: fn(&nearmiss::contacts::NearestTriangles) -> [[f64; 3]; 2],
+    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let all = self.of_rows(what, None, None, Some(of))?;
+        let flat = PyArray1::from_slice(py, all.as_flattened().as_flattened());
+        flat.reshape([all.len(), 2, 3])
+    }
+}

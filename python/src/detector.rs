@@ -1,0 +1,277 @@
+//! A scene on a device, asked frame after frame.
+
+use crate::answer::DeviceAnswer;
+use crate::contacts::Contacts;
+use crate::device::Device;
+use crate::errors::{choice, raised};
+use crate::frame::{Frame, body_of};
+use crate::geometry::Geometry;
+use crate::lent::Held;
+use crate::query::Query;
+use crate::scene::{Body, Scene};
+use nearmiss::Error;
+use nearmiss::scene::BodyId;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde::Serialize;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// A scene on a device, asked frame after frame.
+///
+/// scene:  a Scene, or one Body, which is tested against itself.
+/// query:  Discrete, Continuous, Earliest, Near or Distance.
+/// device: default: Device(), a GPU where there is one.
+///
+/// Other threads of Python run while a frame is computed; arrays that were given must not be written meanwhile.
+#[pyclass(module = "nearmiss", frozen)]
+pub struct Detector {
+    one: Mutex<Asked>,
+    device: Py<Device>,
+    /// Counts what may move the answer that lies on the device.
+    asked: AtomicU64,
+}
+
+/// What one thread at a time asks.
+struct Asked {
+    detector: nearmiss::Detector,
+    /// What holds the arrays that submissions read. Dropped behind the detector, which reads them no longer then.
+    held: Vec<Held>,
+}
+
+impl Asked {
+    /// What nobody reads any longer.
+    fn unread(&mut self) -> Vec<Held> {
+        if self.detector.is_prepared() { Vec::new() } else { std::mem::take(&mut self.held) }
+    }
+}
+
+impl Detector {
+    /// Asks the detector, while the interpreter runs on: where its answer lay on the device it need not be any longer.
+    fn ask<T: Send>(
+        &self,
+        py: Python<'_>,
+        ask: impl FnOnce(&mut nearmiss::Detector) -> Result<T, Error> + Send,
+    ) -> PyResult<T> {
+        self.asked.fetch_add(1, Ordering::Relaxed);
+        self.go_on(py, ask)
+    }
+
+    /// The same, of what leaves the answer where it is.
+    fn go_on<T: Send>(
+        &self,
+        py: Python<'_>,
+        ask: impl FnOnce(&mut nearmiss::Detector) -> Result<T, Error> + Send,
+    ) -> PyResult<T> {
+        let (told, unread) = py.detach(|| {
+            let mut one = self.locked();
+            (ask(&mut one.detector), one.unread())
+        });
+        drop(unread);
+        told.map_err(raised)
+    }
+
+    /// Looks at the detector.
+    fn look<T: Send>(&self, py: Python<'_>, look: impl FnOnce(&nearmiss::Detector) -> T + Send) -> T {
+        py.detach(|| look(&self.locked().detector))
+    }
+
+    /// Never while the interpreter is held: whoever has the lock may wait for that.
+    fn locked(&self) -> MutexGuard<'_, Asked> {
+        self.one.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn frame_of(&self, py: Python<'_>, inputs: Option<&Bound<'_, PyDict>>) -> PyResult<Frame> {
+        let device = &self.device.get().device;
+        // Only numbers of bodies are looked up.
+        let ids = self.look(py, |detector| detector.scene().ids().collect::<Vec<_>>());
+        let body = |index| {
+            let at = ids.binary_search_by_key(&index, |id: &BodyId| id.index());
+            at.ok().map(|at| ids[at])
+        };
+        Frame::of(inputs, body, device)
+    }
+
+    /// Asks what is answered by contacts.
+    fn told(
+        &self,
+        py: Python<'_>,
+        ask: impl FnOnce(&mut nearmiss::Detector) -> Result<nearmiss::Contacts, Error> + Send,
+    ) -> PyResult<Contacts> {
+        Ok(Contacts { contacts: self.ask(py, ask)? })
+    }
+
+    /// Does something with the answer that lay on the device when so many questions had been asked, if it still does.
+    pub fn with_answer<T: Send>(
+        &self,
+        py: Python<'_>,
+        asked: u64,
+        with: impl FnOnce() -> T + Send,
+    ) -> PyResult<T> {
+        let there = |detector: &nearmiss::Detector| {
+            (detector.is_prepared() && self.asked.load(Ordering::Relaxed) == asked).then(with)
+        };
+        self.look(py, there).ok_or_else(|| {
+            choice(
+                "an answer on the device whose detector was asked anew, or has grown",
+                "ask `on_device` after `prepare`, and again when `is_prepared` is no longer true",
+            )
+        })
+    }
+
+    fn body(&self, py: Python<'_>, number: &Bound<'_, PyAny>) -> PyResult<BodyId> {
+        let index: usize = number.extract()?;
+        let found = self.look(py, |detector| detector.scene().id(index));
+        body_of(number, |_| found)
+    }
+}
+
+/// As Python's own values.
+fn python<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
+    let text = serde_json::to_string(value)
+        .map_err(|error| raised(Error::Bug { what: format!("figures that are no JSON: {error}") }))?;
+    py.import("json")?.call_method1("loads", (text,))
+}
+
+#[pymethods]
+impl Detector {
+    #[new]
+    #[pyo3(signature = (scene, query, device = None))]
+    fn new(
+        py: Python<'_>,
+        scene: &Bound<'_, PyAny>,
+        query: &Query,
+        device: Option<Py<Device>>,
+    ) -> PyResult<Detector> {
+        let device = match device {
+            Some(device) => device,
+            None => py.get_type::<Device>().call0()?.cast_into::<Device>()?.unbind(),
+        };
+        // One body alone is tested against itself, as in the library.
+        let bodies = match scene.cast::<Body>() {
+            Ok(body) => nearmiss::Scene::from(body.get().body.clone()),
+            Err(_) => scene.cast::<Scene>()?.borrow().scene.clone(),
+        };
+        let (on, query) = (device.get().device.clone(), query.query);
+        let detector = py.detach(|| nearmiss::Detector::new(on, bodies, query)).map_err(raised)?;
+        let one = Mutex::new(Asked { detector, held: Vec::new() });
+        Ok(Detector { one, device, asked: AtomicU64::new(0) })
+    }
+
+    /// Moves bodies, and answers.
+    ///
+    /// inputs: a dictionary from a body's number to where it is: of a deformable body (n, 3) numbers, or two such arrays for the
+    ///         ends of a step; of a rigid body a Pose, or two. A body that is not named rests.
+    ///         Arrays of the detector's GPU, and on a CPU numpy's arrays of packed rows, are read where they lie.
+    #[pyo3(signature = (inputs = None))]
+    fn frame(&self, py: Python<'_>, inputs: Option<&Bound<'_, PyDict>>) -> PyResult<Contacts> {
+        let frame = self.frame_of(py, inputs)?;
+        let given = frame.inputs();
+        self.told(py, |detector| detector.frame(&given))
+    }
+
+    /// Answers for where the bodies are.
+    fn detect(&self, py: Python<'_>) -> PyResult<Contacts> {
+        self.told(py, nearmiss::Detector::detect)
+    }
+
+    /// Where contacts or near pairs are: the bodies must be where they were when these were found.
+    fn geometry(&self, py: Python<'_>, contacts: &Contacts) -> PyResult<Geometry> {
+        self.go_on(py, |detector| detector.geometry(&contacts.contacts)).map(Geometry)
+    }
+
+    /// All figures of an answer, as the command line prints them: counts, milliseconds by stage, what it came to less than was asked.
+    fn summary<'py>(&self, py: Python<'py>, contacts: &Contacts) -> PyResult<Bound<'py, PyAny>> {
+        python(py, &self.look(py, |detector| detector.summary(&contacts.contacts)))
+    }
+
+    /// What a frame launches, holds and moves, by kernel and purpose: counted, as a dictionary.
+    fn plan<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        python(py, &self.ask(py, nearmiss::Detector::plan)?)
+    }
+
+    /// Prepares frames that nobody waits for: `submit` then takes no memory and moves nothing through the host.
+    ///
+    /// inputs: as for `frame`, of arrays that stay where they are: of the GPU, or on a CPU numpy's. Write into them between submissions; they
+    ///         are held until the next `prepare` or `frame`.
+    fn prepare(&self, py: Python<'_>, inputs: &Bound<'_, PyDict>) -> PyResult<Contacts> {
+        let frame = self.frame_of(py, Some(inputs))?;
+        let given = frame.on_device()?;
+        self.asked.fetch_add(1, Ordering::Relaxed);
+        let held = frame.held;
+        let (told, unread) = py.detach(|| {
+            let mut one = self.locked();
+            let told = one.detector.prepare(&given);
+            // A refusal may leave it as it was prepared before.
+            let as_before = told.is_err() && one.detector.is_prepared();
+            (told, if as_before { held } else { std::mem::replace(&mut one.held, held) })
+        });
+        drop(unread);
+        told.map(|contacts| Contacts { contacts }).map_err(raised)
+    }
+
+    /// Whether `submit` may be called, and a graph that recorded it be launched again.
+    #[getter]
+    fn is_prepared(&self, py: Python<'_>) -> bool {
+        self.look(py, nearmiss::Detector::is_prepared)
+    }
+
+    /// Puts a frame into the device's stream and returns: may be captured in a graph (torch.cuda.graph, cupy).
+    fn submit(&self, py: Python<'_>) -> PyResult<()> {
+        self.go_on(py, nearmiss::Detector::submit)
+    }
+
+    /// Where the answer of a submission will lie; None where it is not prepared.
+    fn on_device(detector: Bound<'_, Self>) -> Option<DeviceAnswer> {
+        let own = detector.get();
+        let asked = own.asked.load(Ordering::Relaxed);
+        let answer = own.look(detector.py(), nearmiss::Detector::on_device)?;
+        let device = own.device.get().device.clone();
+        Some(DeviceAnswer { answer, device, detector: detector.unbind(), asked })
+    }
+
+    /// Waits for what was submitted last, and brings the answer to the host. Where a list was too short the frame is asked again, and
+    /// the answer is whole; then the detector is no longer prepared.
+    fn collect(&self, py: Python<'_>) -> PyResult<Contacts> {
+        self.go_on(py, nearmiss::Detector::collect).map(|contacts| Contacts { contacts })
+    }
+
+    /// Makes tiles or trees anew: pays when bodies have moved far from where they were made.
+    fn rebuild(&self, py: Python<'_>) -> PyResult<()> {
+        self.ask(py, nearmiss::Detector::rebuild)
+    }
+
+    /// Adds a body: its number.
+    fn add(&self, py: Python<'_>, body: &Body) -> PyResult<usize> {
+        self.ask(py, |detector| detector.add(body.body.clone())).map(BodyId::index)
+    }
+
+    /// Takes the body of that number out.
+    fn remove(&self, py: Python<'_>, body: &Bound<'_, PyAny>) -> PyResult<()> {
+        let id = self.body(py, body)?;
+        self.ask(py, |detector| detector.remove(id).map(drop))
+    }
+
+    /// Puts another body in the place of that number.
+    fn replace(&self, py: Python<'_>, body: &Bound<'_, PyAny>, by: &Body) -> PyResult<()> {
+        let id = self.body(py, body)?;
+        self.ask(py, |detector| detector.replace(id, by.body.clone()))
+    }
+
+    /// The tolerance of a certified solver, a length.
+    #[getter]
+    fn tolerance(&self, py: Python<'_>) -> Option<f64> {
+        self.look(py, nearmiss::Detector::tolerance)
+    }
+
+    /// Where it is asked.
+    #[getter]
+    fn device(&self, py: Python<'_>) -> Py<Device> {
+        self.device.clone_ref(py)
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> String {
+        let (query, bodies) = self.look(py, |d| (d.query().kind(), d.scene().ids().count()));
+        format!("<nearmiss.Detector: {query}, {bodies} bodies, {}>", self.device.get().device.name())
+    }
+}

@@ -1,0 +1,110 @@
+//! Where frames are computed.
+
+use crate::errors::{choice, raised};
+use nearmiss::device::Backend;
+use nearmiss::query::Named;
+use pyo3::prelude::*;
+use std::ffi::c_void;
+use std::ptr::null_mut;
+
+/// A CPU, or an NVIDIA GPU.
+///
+/// backend: "auto" (a GPU where there is one, else the CPU), "cpu" or "cuda".
+/// threads: of a CPU; default: all.
+/// gpu:     a GPU by its number. It has a stream of its own.
+/// stream:  a stream of the caller, on the GPU that this thread is bound to: a torch or cupy stream, what has
+///          __cuda_stream__, or a handle (0: the default stream). All work goes there, behind what is there. The stream must
+///          outlive the device.
+///
+/// Raises DeviceError where there is no such machine. One thread at a time uses a device; for work side by side open two.
+#[pyclass(module = "nearmiss", frozen)]
+pub struct Device {
+    pub device: nearmiss::Device,
+    /// The object that owns a borrowed stream.
+    _stream: Option<Py<PyAny>>,
+}
+
+#[pymethods]
+impl Device {
+    #[new]
+    #[pyo3(signature = (backend = "auto", *, threads = None, gpu = None, stream = None))]
+    fn new(
+        py: Python<'_>,
+        backend: &str,
+        threads: Option<usize>,
+        gpu: Option<u32>,
+        stream: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<Device> {
+        let backend = Backend::of(backend).ok_or_else(|| {
+            choice(format!("a device called {backend}"), "choose one of \"auto\", \"cpu\" and \"cuda\"")
+        })?;
+        let on_gpu = gpu.is_some() || stream.is_some();
+        if (on_gpu && (backend == Backend::Cpu || threads.is_some())) || (gpu.is_some() && stream.is_some()) {
+            return Err(choice(
+                "a GPU or a stream together with what goes without",
+                "give threads for a CPU, gpu or stream for a GPU; a stream is of the GPU that the thread is bound to",
+            ));
+        }
+        let handle = stream.as_ref().map(handle_of).transpose()?;
+        let opened = py.detach(|| match (gpu, handle) {
+            (Some(gpu), _) => nearmiss::Device::gpu(gpu),
+            // SAFETY: `nearmiss.Device` tells its caller what a stream must be; the object that was given is held.
+            (None, Some(handle)) => unsafe { nearmiss::Device::borrow(null_mut(), handle as *mut c_void) },
+            (None, None) => nearmiss::Device::open(backend, threads),
+        });
+        Ok(Device { device: opened.map_err(raised)?, _stream: stream.map(Bound::unbind) })
+    }
+
+    /// What the machine calls itself.
+    #[getter]
+    fn name(&self) -> String {
+        self.device.name()
+    }
+
+    /// "cpu" or "cuda".
+    #[getter]
+    fn backend(&self) -> &'static str {
+        self.device.backend()
+    }
+
+    /// The GPU's number; None of a CPU.
+    #[getter]
+    fn gpu(&self) -> Option<u32> {
+        self.device.ordinal()
+    }
+
+    /// The handle of the stream that all work goes to, 0 for the default one; None of a CPU.
+    #[getter]
+    fn stream(&self) -> Option<u64> {
+        self.device.stream()
+    }
+
+    /// Bytes of the device's memory that are held now, and the most that were.
+    #[getter]
+    fn bytes(&self) -> (u64, u64) {
+        self.device.bytes()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<nearmiss.Device {}>", self.device.name())
+    }
+}
+
+/// The driver's handle of a stream: a number, or an object of torch, cupy, or by `__cuda_stream__`.
+fn handle_of(stream: &Bound<'_, PyAny>) -> PyResult<u64> {
+    if let Ok(handle) = stream.extract::<u64>() {
+        return Ok(handle);
+    }
+    if let Ok(told) = stream.call_method0("__cuda_stream__") {
+        return told.extract::<(u64, u64)>().map(|(_, handle)| handle);
+    }
+    for name in ["cuda_stream", "ptr"] {
+        if let Ok(handle) = stream.getattr(name) {
+            return handle.extract();
+        }
+    }
+    Err(choice(
+        format!("a stream of type {}", stream.get_type().name()?),
+        "give its handle as a number, or an object of torch or cupy, or one with __cuda_stream__",
+    ))
+}

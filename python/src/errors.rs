@@ -1,0 +1,36 @@
+//! The library's errors as exceptions: one class a variant, each with the library's sentence.
+
+use nearmiss::Error;
+use pyo3::PyErr;
+
+/// The classes of `lib/nearmiss/errors.py`.
+mod classes {
+    use pyo3::import_exception;
+
+    import_exception!(nearmiss.errors, NearmissError);
+    import_exception!(nearmiss.errors, InputError);
+    import_exception!(nearmiss.errors, ChoiceError);
+    import_exception!(nearmiss.errors, DeviceError);
+    import_exception!(nearmiss.errors, OutOfMemory);
+    import_exception!(nearmiss.errors, Bug);
+}
+
+use classes::{Bug, ChoiceError, DeviceError, InputError, NearmissError, OutOfMemory};
+
+/// What Python raises.
+pub fn raised(error: Error) -> PyErr {
+    let text = error.to_string();
+    match error {
+        Error::Input { .. } => InputError::new_err(text),
+        Error::Choice { .. } => ChoiceError::new_err(text),
+        Error::Device { .. } | Error::Stamp { .. } => DeviceError::new_err(text),
+        Error::OutOfMemory { .. } => OutOfMemory::new_err(text),
+        Error::Bug { .. } => Bug::new_err(text),
+        _ => NearmissError::new_err(text),
+    }
+}
+
+/// What was asked does not exist or does not fit.
+pub fn choice(what: impl Into<String>, advice: impl Into<String>) -> PyErr {
+    raised(Error::Choice { what: what.into(), advice: advice.into() })
+}

@@ -1,0 +1,49 @@
+//! The Python module `nearmiss._native`; `lib/nearmiss/__init__.py` makes its names those of `nearmiss`, `lib/nearmiss/_native.pyi` tells
+//! their types.
+//!
+//! A class is a file, and wraps the library's type of that name. Arrays of the host are numpy's; arrays of a GPU come and go
+//! by DLPack or `__cuda_array_interface__`, and nothing here links to what made them. The interpreter runs on while a frame is computed.
+
+mod answer;
+mod contacts;
+mod detector;
+mod device;
+mod dlpack;
+mod errors;
+mod frame;
+mod geometry;
+mod host;
+mod lent;
+mod pose;
+mod query;
+mod scene;
+
+/// The compiled half of `nearmiss`.
+#[pyo3::pymodule]
+mod _native {
+    use pyo3::prelude::*;
+
+    #[pymodule_export]
+    use super::answer::{DeviceAnswer, DeviceArray};
+    #[pymodule_export]
+    use super::contacts::Contacts;
+    #[pymodule_export]
+    use super::detector::Detector;
+    #[pymodule_export]
+    use super::device::Device;
+    #[pymodule_export]
+    use super::geometry::Geometry;
+    #[pymodule_export]
+    use super::host::read_mesh;
+    #[pymodule_export]
+    use super::pose::Pose;
+    #[pymodule_export]
+    use super::query::{Continuous, Discrete, Distance, Earliest, Near, Query};
+    #[pymodule_export]
+    use super::scene::{Body, Scene};
+
+    #[pymodule_init]
+    fn version(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

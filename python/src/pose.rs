@@ -1,0 +1,100 @@
+//! Where a rigid body is.
+
+use crate::errors::choice;
+use crate::host::row;
+use crate::lent::{Held, is_on_gpu, on_gpu};
+use nearmiss::Device;
+use nearmiss::scene::{self, DevicePose};
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+
+/// Where a rigid body is: turned first, then moved.
+///
+/// rotation:    a unit quaternion x, y, z, w; default: none.
+/// translation: x, y, z, in the unit of the vertices; default: none.
+///
+/// Both may lie on a GPU, 4 and 3 float32 or float64 numbers.
+#[pyclass(module = "nearmiss", frozen)]
+pub struct Pose {
+    rotation: Py<PyAny>,
+    translation: Py<PyAny>,
+    /// None of what lies on a GPU.
+    known: Option<scene::Pose>,
+}
+
+#[pymethods]
+impl Pose {
+    #[new]
+    #[pyo3(signature = (rotation = None, translation = None))]
+    fn new(
+        py: Python<'_>,
+        rotation: Option<Bound<'_, PyAny>>,
+        translation: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<Pose> {
+        let or = |given: Option<Bound<'_, PyAny>>, numbers: &[f64]| match given {
+            Some(given) => Ok(given.unbind()),
+            None => PyTuple::new(py, numbers).map(|tuple| tuple.into_any().unbind()),
+        };
+        let on_gpu = [&rotation, &translation].map(|given| given.as_ref().is_some_and(is_on_gpu));
+        if on_gpu[0] != on_gpu[1] {
+            return Err(choice(
+                "a pose half of which is on a GPU",
+                "give both on the GPU, or both on the host",
+            ));
+        }
+        let here = scene::Pose::default();
+        let known = if on_gpu[0] {
+            None
+        } else {
+            let turned = rotation.as_ref().map(|rotation| row(rotation, "a rotation")).transpose()?;
+            let moved =
+                translation.as_ref().map(|translation| row(translation, "a translation")).transpose()?;
+            Some(scene::Pose {
+                rotation: turned.unwrap_or(here.rotation),
+                translation: moved.unwrap_or(here.translation),
+            })
+        };
+        Ok(Pose {
+            rotation: or(rotation, &here.rotation)?,
+            translation: or(translation, &here.translation)?,
+            known,
+        })
+    }
+
+    /// As it was given.
+    #[getter]
+    fn rotation(&self, py: Python<'_>) -> Py<PyAny> {
+        self.rotation.clone_ref(py)
+    }
+
+    /// As it was given.
+    #[getter]
+    fn translation(&self, py: Python<'_>) -> Py<PyAny> {
+        self.translation.clone_ref(py)
+    }
+
+    fn __repr__(&self) -> String {
+        match &self.known {
+            Some(pose) => format!("Pose(rotation={:?}, translation={:?})", pose.rotation, pose.translation),
+            None => "<nearmiss.Pose on a GPU>".into(),
+        }
+    }
+}
+
+/// A pose as a frame takes it.
+pub enum GivenPose {
+    Known(scene::Pose),
+    Lent(DevicePose, [Held; 2]),
+}
+
+impl Pose {
+    pub fn given(&self, py: Python<'_>, device: &Device) -> PyResult<GivenPose> {
+        if let Some(pose) = self.known {
+            return Ok(GivenPose::Known(pose));
+        }
+        let translation = on_gpu(self.translation.bind(py), device, (3, "a translation"))?;
+        let rotation = on_gpu(self.rotation.bind(py), device, (4, "a rotation"))?;
+        let pose = DevicePose { translation: translation.rows, rotation: rotation.rows };
+        Ok(GivenPose::Lent(pose, [translation.held, rotation.held]))
+    }
+}

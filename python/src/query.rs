@@ -1,0 +1,200 @@
+//! What is asked. How candidates are found never changes an answer.
+
+use crate::errors::{choice, raised};
+use nearmiss::query::{
+    self, Broad, Bv, Certified, ContinuousSolver, Named, Order, Rebuild, Search, Solver, TriangleTest,
+};
+use pyo3::prelude::*;
+
+/// A question, with all its choices: one of Discrete, Continuous, Earliest, Near and Distance.
+#[pyclass(module = "nearmiss", frozen, subclass)]
+pub struct Query {
+    pub query: nearmiss::Query,
+}
+
+#[pymethods]
+impl Query {
+    fn __repr__(&self) -> String {
+        format!("<nearmiss query {} by {}>", self.query.kind(), self.query.solver())
+    }
+}
+
+/// The choices of how candidates are found, by their names.
+type Names<'a> = [Option<&'a str>; 4];
+
+impl Query {
+    fn checked(query: impl Into<nearmiss::Query>, names: Names<'_>) -> PyResult<PyClassInitializer<Query>> {
+        let [broad, order, bv, rebuild] = names;
+        let search = Search {
+            broad: named::<Broad>("a broad phase", broad)?,
+            order: named::<Order>("an order", order)?,
+            bv: named::<Bv>("a volume", bv)?,
+            rebuild: named::<Rebuild>("a rebuilding", rebuild)?,
+            ..Search::default()
+        };
+        let query = query.into().with_search(search);
+        query.check().map_err(raised)?;
+        Ok(PyClassInitializer::from(Query { query }))
+    }
+}
+
+/// The choice of that name.
+fn named<T: Named>(what: &str, name: Option<&str>) -> PyResult<Option<T>> {
+    let Some(name) = name else { return Ok(None) };
+    let there =
+        || T::ALL.iter().map(|choice| format!("\"{}\"", choice.name())).collect::<Vec<_>>().join(", ");
+    T::of(name)
+        .map(Some)
+        .ok_or_else(|| choice(format!("{what} called {name}"), format!("choose one of {}", there())))
+}
+
+/// Which triangles share a point now, by exact signs. The answer has bodies and indices.
+///
+/// adjacent: whether triangles that share a vertex are asked, too: do they share more than that?
+/// solver:   "exact", or "moller": a float test that can miss and invent.
+/// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer.
+#[pyclass(module = "nearmiss", frozen, extends = Query)]
+pub struct Discrete;
+
+#[pymethods]
+impl Discrete {
+    #[new]
+    #[pyo3(signature = (*, adjacent = false, solver = "exact", broad = None, order = None, bv = None, rebuild = None))]
+    fn new(
+        adjacent: bool,
+        solver: &str,
+        broad: Option<&str>,
+        order: Option<&str>,
+        bv: Option<&str>,
+        rebuild: Option<&str>,
+    ) -> PyResult<PyClassInitializer<Discrete>> {
+        let test = match solver {
+            "exact" => TriangleTest::Exact { adjacent },
+            "moller" if !adjacent => TriangleTest::Moller,
+            "moller" => return Err(choice("adjacent triangles by moller", "choose exact for them")),
+            other => {
+                return Err(choice(
+                    format!("a discrete query by {other}"),
+                    "choose one of \"exact\" and \"moller\"",
+                ));
+            }
+        };
+        let query = Query::checked(query::Discrete::by(test), [broad, order, bv, rebuild])?;
+        Ok(query.add_subclass(Discrete))
+    }
+}
+
+/// The test of features in motion, and its choices.
+fn in_motion(
+    solver: &str,
+    (tolerance, separation, budget): (Option<f64>, f64, Option<u32>),
+) -> PyResult<ContinuousSolver> {
+    let by = Solver::of(solver).and_then(ContinuousSolver::named);
+    match by {
+        Some(ContinuousSolver::Certified(certified)) => {
+            Ok(Certified { tolerance, separation, budget, ..certified }.into())
+        }
+        Some(other) if tolerance.is_none() && separation == 0.0 && budget.is_none() => Ok(other),
+        Some(_) => Err(choice(
+            format!("a tolerance, separation or budget for {solver}"),
+            "give them to a certified solver",
+        )),
+        None => {
+            let names = ContinuousSolver::ALL.map(|solver| format!("\"{}\"", solver.name()));
+            Err(choice(
+                format!("a query in motion by {solver}"),
+                format!("choose one of {}", names.join(", ")),
+            ))
+        }
+    }
+}
+
+macro_rules! in_motion {
+    ($(#[$doc:meta])* $kind:ident) => {
+        $(#[$doc])*
+        #[pyclass(module = "nearmiss", frozen, extends = Query)]
+        pub struct $kind;
+
+        #[pymethods]
+        impl $kind {
+            #[new]
+            #[pyo3(signature = (
+                *, tolerance = None, separation = 0.0, budget = None, solver = "certified", broad = None,
+                order = None, bv = None, rebuild = None,
+            ))]
+            #[allow(clippy::too_many_arguments, reason = "they are named")]
+            fn new(
+                tolerance: Option<f64>,
+                separation: f64,
+                budget: Option<u32>,
+                solver: &str,
+                broad: Option<&str>,
+                order: Option<&str>,
+                bv: Option<&str>,
+                rebuild: Option<&str>,
+            ) -> PyResult<PyClassInitializer<$kind>> {
+                let solver = in_motion(solver, (tolerance, separation, budget))?;
+                let query = Query::checked(query::$kind::by(solver), [broad, order, bv, rebuild])?;
+                Ok(query.add_subclass($kind))
+            }
+        }
+    };
+}
+
+in_motion! {
+    /// What meets while vertices move in straight lines, and when first: kind, indices, toi, toi_hi, status.
+    ///
+    /// tolerance:  how well a time is told, as a length moved; default: 1e-4 of the mean edge.
+    /// separation: what comes nearer than this is in contact, in the unit of the vertices; 0 for touching.
+    /// budget:     how many boxes a pair may cost before it is listed as unresolved.
+    /// solver:     "certified" (none is missed, none late), "certified-f32", "certified-f64", or "cubic-f64" and "cubic-f32", which
+    ///             can miss.
+    /// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer.
+    Continuous
+}
+in_motion! {
+    /// When the first of all meets: how far a step may go. The answer's `earliest`, in [0, 1], is never late; None: nothing meets.
+    ///
+    /// tolerance:  how well a time is told, as a length moved; default: 1e-4 of the mean edge.
+    /// separation: what comes nearer than this is in contact, in the unit of the vertices; 0 for touching.
+    /// budget:     how many boxes a pair may cost before it is listed as unresolved.
+    /// solver:     "certified" (none is missed, none late), "certified-f32", "certified-f64", or "cubic-f64" and "cubic-f32", which
+    ///             can miss.
+    /// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer.
+    Earliest
+}
+
+/// Which vertices and faces, and which edges, are within a distance of each other now, and where they are nearest.
+///
+/// distance: a length above 0, in the unit of the vertices. None within it is missed.
+/// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer.
+#[pyclass(module = "nearmiss", frozen, extends = Query)]
+pub struct Near;
+
+#[pymethods]
+impl Near {
+    #[new]
+    #[pyo3(signature = (distance, *, broad = None, order = None, bv = None, rebuild = None))]
+    fn new(
+        distance: f64,
+        broad: Option<&str>,
+        order: Option<&str>,
+        bv: Option<&str>,
+        rebuild: Option<&str>,
+    ) -> PyResult<PyClassInitializer<Near>> {
+        let query = Query::checked(query::Near::within(distance), [broad, order, bv, rebuild])?;
+        Ok(query.add_subclass(Near))
+    }
+}
+
+/// How far apart the nearest two bodies are now, and where: 0 if and only if they share a point.
+#[pyclass(module = "nearmiss", frozen, extends = Query)]
+pub struct Distance;
+
+#[pymethods]
+impl Distance {
+    #[new]
+    fn new() -> PyResult<PyClassInitializer<Distance>> {
+        Ok(Query::checked(query::Distance::default(), [None; 4])?.add_subclass(Distance))
+    }
+}

@@ -1,0 +1,135 @@
+//! Which bodies there are, and what each does.
+
+use crate::errors::{choice, raised};
+use crate::frame::body_of;
+use crate::host::{faces, positions};
+use nearmiss::Mesh;
+use nearmiss::scene::Meets;
+use pyo3::prelude::*;
+
+/// A mesh, what it does from frame to frame, and which others it may meet.
+///
+/// vertices:     (n, 3) numbers; float32 and float64 are kept as they are, others become float64. Copied.
+/// faces:        (m, 3) integers, the vertices of each triangle, from 0. Copied.
+/// kind:         "deformable" (each vertex moves by itself), "rigid" (a Pose a frame) or "static" (never moves; cheapest).
+/// self_contact: whether it is tested against itself.
+/// environment:  bodies of different environments never meet; None: in every one.
+/// group, mask:  two bodies meet if each is in a group (a bit) that the other's mask has.
+/// name:         what messages call it.
+///
+/// Raises InputError for vertices that are not finite and for indices that are not there.
+#[pyclass(module = "nearmiss", frozen)]
+pub struct Body {
+    pub body: nearmiss::Body,
+}
+
+#[pymethods]
+impl Body {
+    #[new]
+    #[pyo3(signature = (
+        vertices, faces, *, kind = "deformable", self_contact = false, environment = Some(0),
+        group = u32::MAX, mask = u32::MAX, name = "a mesh",
+    ))]
+    #[allow(clippy::too_many_arguments, reason = "they are named")]
+    fn new(
+        py: Python<'_>,
+        vertices: &Bound<'_, PyAny>,
+        faces: &Bound<'_, PyAny>,
+        kind: &str,
+        self_contact: bool,
+        environment: Option<u32>,
+        group: u32,
+        mask: u32,
+        name: &str,
+    ) -> PyResult<Body> {
+        let make = match kind {
+            "deformable" => nearmiss::Body::still,
+            "rigid" => nearmiss::Body::rigid,
+            "static" => nearmiss::Body::fixed,
+            other => {
+                return Err(choice(
+                    format!("a body of kind {other}"),
+                    "choose one of \"deformable\", \"rigid\" and \"static\"",
+                ));
+            }
+        };
+        let points = positions(vertices, &format!("vertices of {name}"))?;
+        let triangles = self::faces(faces, name)?;
+        let meets = Meets { environment, group, mask, self_contact };
+        let made = py.detach(|| Mesh::new(name, points, triangles).map(|mesh| make(mesh).with(meets)));
+        Ok(Body { body: made.map_err(raised)? })
+    }
+
+    /// What messages call it.
+    #[getter]
+    fn name(&self) -> &str {
+        self.body.name()
+    }
+
+    /// How many vertices.
+    #[getter]
+    fn vertex_count(&self) -> usize {
+        self.body.vertex_count()
+    }
+
+    /// How many triangles.
+    #[getter]
+    fn face_count(&self) -> usize {
+        self.body.face_count()
+    }
+
+    fn __repr__(&self) -> String {
+        let Body { body } = self;
+        format!(
+            "<nearmiss.Body {}: {} vertices, {} faces>",
+            body.name(),
+            body.vertex_count(),
+            body.face_count()
+        )
+    }
+}
+
+/// Bodies, numbered from 0 in the order in which they are added.
+#[pyclass(module = "nearmiss")]
+pub struct Scene {
+    pub scene: nearmiss::Scene,
+}
+
+#[pymethods]
+impl Scene {
+    #[new]
+    #[pyo3(signature = (*bodies))]
+    fn new(bodies: Vec<PyRef<'_, Body>>) -> Scene {
+        let mut scene = nearmiss::Scene::new();
+        for body in bodies {
+            scene.add(body.body.clone());
+        }
+        Scene { scene }
+    }
+
+    /// Adds a body: its number.
+    fn add(&mut self, body: &Body) -> usize {
+        self.scene.add(body.body.clone()).index()
+    }
+
+    /// Takes the body of that number out; the next one that is added may have its number.
+    fn remove(&mut self, body: &Bound<'_, PyAny>) -> PyResult<()> {
+        let id = body_of(body, |index| self.scene.id(index))?;
+        self.scene.remove(id);
+        Ok(())
+    }
+
+    /// The numbers of all bodies, ascending.
+    #[getter]
+    fn bodies(&self) -> Vec<usize> {
+        self.scene.ids().map(|id| id.index()).collect()
+    }
+
+    fn __len__(&self) -> usize {
+        self.scene.ids().count()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<nearmiss.Scene of {} bodies>", self.__len__())
+    }
+}

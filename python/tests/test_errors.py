@@ -1,0 +1,93 @@
+"""Refusals: what they are called, and what their sentence names."""
+
+import numpy as np
+import pytest
+from shapes import sheet, two_triangles
+
+import nearmiss as nm
+
+V, F = two_triangles()
+CPU = nm.Device("cpu", threads=1)
+
+
+def detector(query=None):
+    return nm.Detector(nm.Body(V, F, name="the two"), query or nm.Continuous(), CPU)
+
+
+NAN = np.full((6, 3), np.nan, np.float32)
+
+REFUSED = [
+    (lambda: nm.Near(0), nm.ChoiceError, "a distance of 0"),
+    (lambda: nm.Near(np.nan), nm.ChoiceError, "a distance of NaN"),
+    (lambda: nm.Continuous(separation=-1), nm.ChoiceError, "separation"),
+    (lambda: nm.Continuous(solver="exact"), nm.ChoiceError, '"certified"'),
+    (lambda: nm.Earliest(solver="cubic-f64", separation=1), nm.ChoiceError, "cubic-f64"),
+    (lambda: nm.Discrete(solver="certified"), nm.ChoiceError, '"moller"'),
+    (lambda: nm.Discrete(solver="moller", adjacent=True), nm.ChoiceError, "adjacent"),
+    (lambda: nm.Discrete(broad="octree"), nm.ChoiceError, '"tree", "tiles"'),
+    (lambda: nm.Discrete(broad="tree", order="median"), nm.ChoiceError, "order of tiles for trees"),
+    (lambda: nm.Device("gpu"), nm.ChoiceError, '"cuda"'),
+    (lambda: nm.Device("cpu", gpu=0), nm.ChoiceError, "threads for a CPU"),
+    (lambda: nm.Device(gpu=0, stream=1), nm.ChoiceError, "a stream is of the GPU"),
+    (lambda: nm.Device(stream="mine"), nm.ChoiceError, "a stream of type str"),
+    (lambda: nm.Body(V, F, kind="soft"), nm.ChoiceError, '"rigid"'),
+    (lambda: nm.Body(V[:, :2], F, name="flat"), nm.ChoiceError, "vertices of flat of shape [6, 2]"),
+    (lambda: nm.Body(V.astype(complex), F), nm.ChoiceError, "complex128"),
+    (lambda: nm.Body(V, F.astype(float)), nm.ChoiceError, "three vertex indices"),
+    (lambda: nm.Body(V, [[0, 1, -1]]), nm.ChoiceError, "face 0 of a mesh names vertex -1"),
+    (lambda: nm.Body(V, [[0, 1, 6]]), nm.InputError, "corner 2 names vertex 6"),
+    (lambda: nm.Body(NAN, F, name="nothing"), nm.InputError, "nothing: vertex 0 has x = NaN"),
+    (lambda: nm.Detector(nm.Scene(), nm.Discrete(), CPU), nm.ChoiceError, "without bodies"),
+    (lambda: detector().frame({1: V}), nm.ChoiceError, "body 1, which is not in the scene"),
+    (lambda: detector().frame({0: V[:3]}), nm.NearmissError, "3"),
+    (lambda: detector().frame({0: (V, NAN)}), nm.InputError, "NaN"),
+    (lambda: detector().frame({0: (V, [[np.inf] * 3] * 6)}), nm.InputError, "inf"),
+    (lambda: detector().frame({0: nm.Pose()}), nm.ChoiceError, "the two"),
+    (lambda: detector().frame({0: (V, nm.Pose())}), nm.ChoiceError, "of type object"),
+    (lambda: nm.Pose(rotation=(1, 2, 3)), nm.ChoiceError, "a rotation of 3 numbers"),
+    (lambda: detector().detect().distances, nm.ChoiceError, "contacts in time"),
+    (lambda: detector(nm.Discrete()).detect().toi, nm.ChoiceError, "triangle pairs"),
+    (lambda: detector(nm.Earliest()).detect().indices, nm.ChoiceError, "one time"),
+    (lambda: detector(nm.Near(1)).detect().earliest, nm.ChoiceError, "near pairs"),
+    (lambda: detector().submit(), nm.ChoiceError, "prepare"),
+    (lambda: detector().prepare({0: V.tolist()}), nm.ChoiceError, "arrays that stay"),
+    (lambda: nm.read_mesh("no such file.ply"), nm.InputError, "no such file.ply"),
+]
+
+
+@pytest.mark.parametrize("wrong", REFUSED, ids=lambda wrong: wrong[2] or None)
+def test_what_is_wrong_is_named(wrong):
+    call, kind, text = wrong
+    with pytest.raises(kind) as told:
+        call()
+    assert text in str(told.value)
+
+
+def test_classes_say_who_must_act():
+    assert issubclass(nm.InputError, ValueError) and issubclass(nm.OutOfMemory, MemoryError)
+    assert all(issubclass(kind, nm.NearmissError) for kind in [nm.ChoiceError, nm.DeviceError, nm.Bug])
+
+
+def test_nothing_moves_where_a_frame_is_refused():
+    asked = detector(nm.Discrete())
+    before = asked.detect().hash
+    with pytest.raises(nm.InputError):
+        asked.frame({0: NAN})
+    assert detector(nm.Discrete()).detect().hash == before
+
+
+def test_geometry_of_other_bodies_is_refused():
+    vertices, faces = sheet(10, lambda x, y: np.sin(30 * x) * 0.05)
+    found = nm.near(vertices, faces, 0.3)
+    assert len(found) > 0
+    with pytest.raises(nm.ChoiceError):
+        detector(nm.Near(0.3)).geometry(found)
+
+
+def test_no_gpu_says_so():
+    try:
+        device = nm.Device("cuda")
+    except nm.DeviceError as error:
+        assert "CPU" in str(error)
+    else:
+        assert device.backend == "cuda" and device.gpu == 0

@@ -1,0 +1,217 @@
+"""On a GPU: arrays of torch and cupy, answers of the CPU. Skipped, visibly, where there is no GPU or no such library."""
+
+import gc
+
+import numpy as np
+import pytest
+from shapes import sheet, soup
+
+import nearmiss as nm
+
+torch = pytest.importorskip("torch")
+pytestmark = pytest.mark.skipif(not torch.cuda.is_available(), reason="no GPU")
+
+
+def draped(n=60):
+    """A sheet that folds into itself: vertices at two times and faces."""
+    vertices, faces = sheet(n, lambda x, y: 0.1 * np.sin(25 * x) * np.cos(9 * y))
+    folded = vertices.copy()
+    folded[:, 0] = np.abs(folded[:, 0] - 0.5)
+    return vertices, folded, faces
+
+
+@pytest.fixture
+def stream():
+    torch.zeros(1, device="cuda")
+    stream = torch.cuda.Stream()
+    with torch.cuda.stream(stream):
+        yield stream
+    stream.synchronize()
+
+
+def test_one_liners_take_tensors():
+    t0, t1, faces = draped()
+    on_gpu = [torch.from_numpy(array).cuda() for array in (t0, t1, faces)]
+    cpu = nm.Device("cpu")
+    assert nm.near(on_gpu[1], on_gpu[2], 0.01).hash == nm.near(t1, faces, 0.01, device=cpu).hash
+    found = nm.contacts(*on_gpu)
+    assert found.hash == nm.contacts(t0, t1, faces, device=cpu).hash and len(found) > 100
+    assert np.array_equal(nm.self_intersections(*on_gpu[1:]), nm.self_intersections(t1, faces, device=cpu))
+
+
+
+
+def test_a_thousand_frames_without_a_copy_of_positions(stream):
+    t0, t1, faces = draped(40)
+    body = nm.Body(t0, faces)
+    detector = nm.Detector(body, nm.Continuous(), nm.Device(stream=stream))
+    judge = nm.Detector(body, nm.Continuous(), nm.Device("cpu"))
+    here, there = (torch.from_numpy(t0).cuda() for _ in range(2))
+    far = torch.from_numpy(t1).cuda()
+    generator = torch.Generator(device="cuda").manual_seed(1)
+
+    def step():
+        """A simulator: no host in it."""
+        here.copy_(there)
+        part = torch.rand(1, device="cuda", generator=generator) * 0.3
+        there.lerp_(far, part).add_(torch.randn(there.shape, device="cuda", generator=generator) * 2e-3)
+
+    step()
+    detector.prepare({0: (here, there)})
+    counted, contacts, compared = 0, torch.zeros((), dtype=torch.int64, device="cuda"), 0
+    status = None
+    for frame in range(1000):
+        step()
+        if not detector.is_prepared:
+            detector.prepare({0: (here, there)})
+            status = None
+        detector.submit()
+        if status is None:
+            status = torch.from_dlpack(detector.on_device().status)
+        # Counted on the device, by a kernel behind the submission.
+        contacts += status[:2].sum()
+        if frame % 25 == 0:
+            ends = [end.cpu().numpy() for end in (here, there)]
+            short = int(status[2])
+            found, wanted = detector.collect(), judge.frame({0: tuple(ends)})
+            assert found.hash == wanted.hash and len(found) == len(wanted)
+            assert short or int(status[:2].sum()) == len(found)
+            compared += len(found)
+        counted += 1
+        if frame % 100 == 99:
+            far = far.flip(0).contiguous()
+    assert counted == 1000 and compared > 1000 and int(contacts) > compared
+
+
+def test_frames_move_no_positions_through_the_host(stream):
+    t0, t1, faces = draped(100)
+    detector = nm.Detector(nm.Body(t0, faces), nm.Continuous(), nm.Device(stream=stream))
+    ends = tuple(torch.from_numpy(end).cuda() for end in (t0, t1))
+    wanted = detector.frame({0: (t0, t1)}).hash
+    told = lambda: detector.plan()["transfers"]
+    for _ in range(3):
+        assert detector.frame({0: (t0, t1)}).hash == wanted
+    from_host = told()
+    for _ in range(3):
+        assert detector.frame({0: ends}).hash == wanted
+    from_device = told()
+    total = lambda rows: sum(row["to_device"]["bytes"] for row in rows)
+    print(f"bytes to the device a frame: {total(from_host)} from the host, {total(from_device)} of tensors")
+    assert total(from_host) >= t0.nbytes + t1.nbytes and total(from_device) < 1000
+
+
+def test_a_graph_of_torch(stream):
+    t0, t1, faces = draped(40)
+    body = nm.Body(t0, faces)
+    detector = nm.Detector(body, nm.Continuous(), nm.Device(stream=stream))
+    judge = nm.Detector(body, nm.Continuous(), nm.Device("cpu"))
+    here, there, far = (torch.from_numpy(end).cuda() for end in (t0, t0, t1))
+    detector.prepare({0: (here, far)})
+    detector.prepare({0: (here, there)})
+
+    def step():
+        here.copy_(there)
+        there.lerp_(far, 0.1)
+
+    step()
+    graph = None
+    for frame in range(40):
+        if not detector.is_prepared:
+            detector.prepare({0: (here, there)})
+            graph = None
+        if graph is None:
+            stream.synchronize()
+            graph = torch.cuda.CUDAGraph()
+            with torch.cuda.graph(graph, stream=stream):
+                step()
+                detector.submit()
+        graph.replay()
+        wanted = judge.frame({0: (here.cpu().numpy(), there.cpu().numpy())})
+        assert detector.collect().hash == wanted.hash
+    assert len(wanted) > 0 or frame
+
+
+def test_any_layout_and_precision(stream):
+    t0, t1, faces = draped(30)
+    wanted = nm.near(t1, faces, 0.01, device=nm.Device("cpu"))
+    detector = nm.Detector(nm.Body(t0, faces), nm.Near(0.01), nm.Device(stream=stream))
+    wide = torch.zeros((len(t1), 5), device="cuda")
+    wide[:, 1:4] = torch.from_numpy(t1).cuda()
+    for tensor in [torch.from_numpy(t1).cuda(), wide[:, 1:4], torch.from_numpy(t1).cuda().double()]:
+        assert detector.frame({0: tensor}).hash == wanted.hash
+    for wrong in [wide[:, 1:3], wide[:, 1:4].half(), torch.from_numpy(t1).cuda().T.contiguous().T]:
+        with pytest.raises(nm.ChoiceError):
+            detector.frame({0: wrong})
+    with pytest.raises(nm.InputError, match="vertex 7"):
+        wide[7, 1] = float("nan")
+        detector.frame({0: wide[:, 1:4]})
+    with pytest.raises(nm.ChoiceError, match="on the CPU"):
+        nm.Detector(nm.Body(t0, faces), nm.Near(0.01), nm.Device("cpu")).frame({0: wide[:, 1:4]})
+
+
+class ByInterface:
+    """An array that has the second door alone."""
+
+    def __init__(self, tensor, **changed):
+        self.tensor = tensor
+        self.__cuda_array_interface__ = {**tensor.__cuda_array_interface__, **changed}
+
+
+def test_the_second_door(stream):
+    t0, t1, faces = draped(30)
+    detector = nm.Detector(nm.Body(t0, faces), nm.Near(0.01), nm.Device(stream=stream))
+    tensor = torch.from_numpy(t1).cuda()
+    wanted = detector.frame({0: t1}).hash
+    assert detector.frame({0: ByInterface(tensor)}).hash == wanted
+    assert detector.frame({0: ByInterface(tensor, stream=stream.cuda_stream)}).hash == wanted
+    with pytest.raises(nm.ChoiceError, match="of stream 1"):
+        detector.frame({0: ByInterface(tensor, stream=1)})
+
+
+def test_what_is_taken_back(stream):
+    t0, _, faces = draped(30)
+    detector = nm.Detector(nm.Body(t0, faces), nm.Near(0.03), nm.Device(stream=stream))
+    here = torch.from_numpy(t0).cuda()
+    detector.prepare({0: here})
+    detector.submit()
+    answer = detector.on_device()
+    columns = {name: torch.from_dlpack(array) for name, array in answer.lists[0].items()}
+    other = torch.cuda.Stream()
+    with torch.cuda.stream(other):
+        count = int(torch.from_dlpack(answer.status)[:2].sum())
+    found = detector.collect()
+    assert count == len(found) > 0 and columns["indices"].shape[1] == 2
+    if answer.is_ordered:
+        assert np.array_equal(columns["indices"][:count].cpu().numpy(), found.indices)
+        assert np.array_equal(columns["squared_distances"][:count].cpu().numpy(), found.squared_distances)
+    # The detector lives as long as what shows its memory.
+    kept = weak = columns["indices"]
+    del detector, answer
+    gc.collect()
+    assert np.array_equal(kept[:count].cpu().numpy(), found.indices) and weak is kept
+
+
+def test_poses_of_tensors(stream):
+    vertices, faces = soup(80, 4, 0.5)
+    scene = nm.Scene(nm.Body(vertices, faces, kind="static"), nm.Body(vertices, faces, kind="rigid"))
+    turn, move = [0.0, 0.0, np.sin(0.1), np.cos(0.1)], [0.1, 0.2, 0.3]
+    wanted = nm.Detector(scene, nm.Discrete(), nm.Device("cpu")).frame({1: nm.Pose(turn, move)})
+    detector = nm.Detector(scene, nm.Discrete(), nm.Device(stream=stream))
+    pose = nm.Pose(*(torch.tensor(x, dtype=torch.float64, device="cuda") for x in (turn, move)))
+    assert detector.frame({1: pose}).hash == wanted.hash and len(wanted) > 5
+
+
+def test_arrays_of_cupy(stream):
+    cupy = pytest.importorskip("cupy")
+    t0, t1, faces = draped(30)
+    wanted = nm.contacts(t0, t1, faces, device=nm.Device("cpu"))
+    with cupy.cuda.ExternalStream(stream.cuda_stream) as own:
+        detector = nm.Detector(nm.Body(t0, faces), nm.Continuous(), nm.Device(stream=own))
+        ends = tuple(cupy.asarray(end) for end in (t0, t1))
+        assert detector.frame({0: ends}).hash == wanted.hash
+        detector.prepare({0: ends})
+        detector.submit()
+        answer = detector.on_device()
+        by_dlpack, by_interface = cupy.from_dlpack(answer.status), cupy.asarray(answer.status)
+        assert by_dlpack.tolist() == by_interface.tolist() and sum(by_dlpack.tolist()[:2]) == len(wanted)
+        detector.collect()

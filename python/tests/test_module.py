@@ -1,0 +1,105 @@
+"""The module itself: its stubs, its documentation, its threads, and the program beside it."""
+
+import ast
+import inspect
+import json
+import os
+import subprocess
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from shapes import sheet
+
+import nearmiss as nm
+from nearmiss import _native
+
+STUBS = ast.parse((Path(_native.__file__).parent / "_native.pyi").read_text())
+
+
+def stubs():
+    """Of every class its names and what they take; None of a property."""
+    for node in STUBS.body:
+        if isinstance(node, ast.ClassDef):
+            members = {}
+            for member in node.body:
+                if isinstance(member, ast.FunctionDef):
+                    of = member.args
+                    taken = None if member.decorator_list else [a.arg for a in of.posonlyargs + of.args + of.kwonlyargs][1:]
+                    members[member.name] = taken
+            yield node.name, members
+
+
+def test_stubs_tell_what_there_is():
+    told = dict(stubs())
+    classes = {name: kind for name, kind in vars(_native).items() if inspect.isclass(kind)}
+    assert set(told) == set(classes)
+    for name, kind in classes.items():
+        public = {n for n in vars(kind) if not n.startswith("_")}
+        assert {n for n in told[name] if not n.startswith("_")} == public, name
+        for member, taken in told[name].items():
+            if taken is None or member.startswith("__"):
+                continue
+            signature = [p for p in inspect.signature(getattr(kind, member)).parameters if p != "self"]
+            assert signature == taken, (name, member)
+
+
+def test_everything_has_its_documentation():
+    for name in nm.__all__:
+        thing = getattr(nm, name)
+        if name == "__version__":
+            continue
+        assert thing.__doc__, name
+        if thing.__module__ == "nearmiss":
+            for member, value in vars(thing).items():
+                if not member.startswith("_") and not isinstance(value, int):
+                    assert value.__doc__, f"{name}.{member}"
+
+
+def test_other_threads_run_while_a_frame_is_computed():
+    vertices, faces = sheet(150, lambda x, y: 0.02 * np.sin(60 * x))
+    detector = nm.Detector(nm.Body(vertices, faces), nm.Near(0.02), nm.Device("cpu", threads=1))
+    ticks, done = [], threading.Event()
+
+    def tick():
+        while not done.is_set():
+            ticks.append(time.perf_counter())
+            time.sleep(0.001)
+
+    other = threading.Thread(target=tick)
+    other.start()
+    begin = time.perf_counter()
+    for _ in range(5):
+        detector.detect()
+    end = time.perf_counter()
+    done.set()
+    other.join()
+    during = [t for t in ticks if begin < t < end]
+    assert len(during) > 10 * (end - begin)
+    assert max(np.diff(during)) < 0.5 * (end - begin)
+
+
+def test_threads_take_turns_at_one_detector():
+    vertices, faces = sheet(40, lambda x, y: 0.02 * np.sin(60 * x))
+    detector = nm.Detector(nm.Body(vertices, faces), nm.Near(0.03))
+    wanted, told = detector.detect().hash, []
+    threads = [threading.Thread(target=lambda: told.append(detector.frame({0: vertices}).hash)) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert told == [wanted] * 8
+
+
+@pytest.mark.skipif("NEARMISS_PROGRAM" not in os.environ, reason="NEARMISS_PROGRAM names the command line program")
+def test_the_program_gives_the_same_answer(tmp_path):
+    program, name = os.environ["NEARMISS_PROGRAM"], "draped"
+    frames = [tmp_path / f"{name}_{end}.ply" for end in ("t0", "t1")]
+    run = lambda *args: subprocess.run([program, *map(str, args)], check=True, capture_output=True, text=True).stdout
+    run("scene", name, "--triangles", 2000, "--out", tmp_path)
+    told = json.loads(run("detect", *sorted(tmp_path.glob("*.ply")), "--json"))
+    (t0, faces), (t1, _) = (nm.read_mesh(path) for path in sorted(tmp_path.glob("*.ply")))
+    found = nm.contacts(t0, t1, faces)
+    assert (found.hash, len(found)) == (told["hash"], told["contacts"]) and len(found) > 0, frames
