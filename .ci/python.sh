@@ -22,7 +22,10 @@ readelf -d "$folder"/user/lib/python3*/site-packages/nearmiss/_native*.so | grep
 for page in README.md python/README.md; do
     "$folder/user/bin/python" .ci/python_blocks.py "$page"
 done
-"$folder/user/bin/pip" -q install 'pytest>=8' mypy
+"$folder/user/bin/pip" -q install 'pytest>=8' mypy ipctk coal
+for library in ipctk coal; do
+    "$folder/user/bin/python" "python/examples/from_$library.py"
+done
 "$folder/user/bin/python" -m mypy --no-error-summary python/tests/typed.py
 cargo build --locked -p nearmiss-cli
 NEARMISS_PROGRAM=$target/debug/nearmiss "$folder/user/bin/python" -m pytest -q -rs python

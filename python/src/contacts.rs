@@ -1,19 +1,26 @@
 //! Answers, as numpy's arrays: a row a contact, in canonical order.
 
+use crate::columns::Columns;
 use crate::errors::choice;
+use crate::host::rows;
 use nearmiss::contacts::{Closest, Kind, Status};
 use nearmiss::scene::BodyId;
-use numpy::{PyArray1, PyArray2, PyArray3, PyArrayMethods};
+use numpy::{PyArray1, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 
-use crate::host::rows;
-
-/// An answer: a row a contact, in canonical order, the same on every machine. Each column is a new array.
+/// An answer: a row a contact, in canonical order, the same on every machine. A column is made when it is first asked for, and kept.
 ///
 /// What a column's query is: see there. Asked of another it raises ChoiceError.
 #[pyclass(module = "nearmiss", frozen)]
 pub struct Contacts {
     pub contacts: nearmiss::Contacts,
+    columns: Columns,
+}
+
+impl From<nearmiss::Contacts> for Contacts {
+    fn from(contacts: nearmiss::Contacts) -> Contacts {
+        Contacts { contacts, columns: Columns::default() }
+    }
 }
 
 impl Contacts {
@@ -87,79 +94,103 @@ impl Contacts {
 
     /// (k,) uint8, see Kind: which features meet. Of Continuous and Near.
     #[getter]
-    fn kind<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u8>>> {
-        let kinds =
-            self.of_rows("kinds", Some(|c| kind_number(c.kind)), Some(|c| kind_number(c.kind)), None)?;
-        Ok(PyArray1::from_vec(py, kinds))
+    fn kind<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, "kind", || {
+            let kinds =
+                self.of_rows("kinds", Some(|c| kind_number(c.kind)), Some(|c| kind_number(c.kind)), None)?;
+            Ok(PyArray1::from_vec(py, kinds))
+        })
     }
 
     /// (k, 2) uint32: the bodies of both, the smaller number first.
     #[getter]
-    fn bodies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
-        let bodies = match &self.contacts.answer {
-            nearmiss::Answer::Pairs(pairs) => pairs.iter().map(|pair| numbers(pair.bodies)).collect(),
-            _ => self.of_rows(
-                "bodies",
-                Some(|c| numbers(c.bodies)),
-                Some(|c| numbers(c.bodies)),
-                Some(|c| numbers(c.bodies)),
-            )?,
-        };
-        Ok(rows(py, &bodies))
+    fn bodies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, "bodies", || {
+            let bodies = match &self.contacts.answer {
+                nearmiss::Answer::Pairs(pairs) => pairs.iter().map(|pair| numbers(pair.bodies)).collect(),
+                _ => self.of_rows(
+                    "bodies",
+                    Some(|c| numbers(c.bodies)),
+                    Some(|c| numbers(c.bodies)),
+                    Some(|c| numbers(c.bodies)),
+                )?,
+            };
+            Ok(rows(py, &bodies))
+        })
     }
 
     /// (k, 2) uint32: triangles, of Discrete and Distance; of Continuous and Near what `kind` says: a vertex and a face, or two edges,
     /// each by its number in its body. Edges are numbered by (larger vertex, smaller vertex), ascending; Geometry.vertices has their
     /// vertices.
     #[getter]
-    fn indices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
-        let indices = match &self.contacts.answer {
-            nearmiss::Answer::Pairs(pairs) => pairs.iter().map(|pair| pair.triangles).collect(),
-            _ => {
-                self.of_rows("indices", Some(|c| [c.a, c.b]), Some(|c| [c.a, c.b]), Some(|c| c.triangles))?
-            }
-        };
-        Ok(rows(py, &indices))
+    fn indices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, "indices", || {
+            let indices = match &self.contacts.answer {
+                nearmiss::Answer::Pairs(pairs) => pairs.iter().map(|pair| pair.triangles).collect(),
+                _ => self.of_rows(
+                    "indices",
+                    Some(|c| [c.a, c.b]),
+                    Some(|c| [c.a, c.b]),
+                    Some(|c| c.triangles),
+                )?,
+            };
+            Ok(rows(py, &indices))
+        })
     }
 
     /// (k,) float64 in [0, 1]: the first time of contact; by a certified solver never late. Of Continuous.
     #[getter]
-    fn toi<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(PyArray1::from_vec(py, self.of_rows("times", Some(|c| c.toi), None, None)?))
+    fn toi<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, "toi", || {
+            Ok(PyArray1::from_vec(py, self.of_rows("times", Some(|c| c.toi), None, None)?))
+        })
     }
 
     /// (k,) float64 in [toi, 1]: the time by which they have met. Of Continuous.
     #[getter]
-    fn toi_hi<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(PyArray1::from_vec(py, self.of_rows("times", Some(|c| c.toi_hi), None, None)?))
+    fn toi_hi<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, "toi_hi", || {
+            Ok(PyArray1::from_vec(py, self.of_rows("times", Some(|c| c.toi_hi), None, None)?))
+        })
     }
 
     /// (k,) uint8, see Status: how sure that is. Of Continuous.
     #[getter]
-    fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u8>>> {
-        Ok(PyArray1::from_vec(py, self.of_rows("a status", Some(|c| status_number(c.status)), None, None)?))
+    fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, "status", || {
+            Ok(PyArray1::from_vec(
+                py,
+                self.of_rows("a status", Some(|c| status_number(c.status)), None, None)?,
+            ))
+        })
     }
 
     /// (k,) float64: how far apart they are, in the unit of the vertices. Of Near and Distance.
     #[getter]
-    fn distances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let distances =
-            self.of_rows("distances", None, Some(|c| c.squared_distance.sqrt()), Some(|c| c.distance))?;
-        Ok(PyArray1::from_vec(py, distances))
+    fn distances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, "distances", || {
+            let distances =
+                self.of_rows("distances", None, Some(|c| c.squared_distance.sqrt()), Some(|c| c.distance))?;
+            Ok(PyArray1::from_vec(py, distances))
+        })
     }
 
     /// (k,) float64: the squares of their distances. Of Near.
     #[getter]
-    fn squared_distances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let squares = self.of_rows("squared distances", None, Some(|c| c.squared_distance), None)?;
-        Ok(PyArray1::from_vec(py, squares))
+    fn squared_distances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, "squared_distances", || {
+            let squares = self.of_rows("squared distances", None, Some(|c| c.squared_distance), None)?;
+            Ok(PyArray1::from_vec(py, squares))
+        })
     }
 
     /// (k,) uint8, see Closest: what is nearest of the two. Of Near.
     #[getter]
-    fn closest<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u8>>> {
-        let closest = self.of_rows("what is closest", None, Some(|c| closest_number(c.closest)), None)?;
-        Ok(PyArray1::from_vec(py, closest))
+    fn closest<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, "closest", || {
+            let closest = self.of_rows("what is closest", None, Some(|c| closest_number(c.closest)), None)?;
+            Ok(PyArray1::from_vec(py, closest))
+        })
     }
 
     /// Where they are nearest. Of Near (k, 3) float64: of a vertex and a face the weights of the face's corners; of two edges how far along
@@ -167,16 +198,18 @@ impl Contacts {
     /// their corners.
     #[getter]
     fn weights<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        if self.contacts.nearest().is_some() {
-            return self.threes(py, "weights", |nearest| nearest.weights).map(Bound::into_any);
-        }
-        Ok(rows(py, &self.of_rows("weights", None, Some(|c| c.weights), None)?).into_any())
+        self.columns.get(py, "weights", || {
+            if self.contacts.nearest().is_some() {
+                return self.threes(py, "weights", |nearest| nearest.weights).map(Bound::into_any);
+            }
+            Ok(rows(py, &self.of_rows("weights", None, Some(|c| c.weights), None)?).into_any())
+        })
     }
 
     /// (k, 2, 3) float64: the nearest points of both. Of Distance; of other queries see Detector.geometry.
     #[getter]
-    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        self.threes(py, "points", |nearest| nearest.points)
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, "points", || self.threes(py, "points", |nearest| nearest.points))
     }
 
     /// The first time of contact, in [0, 1], never late; None where nothing meets. Of Continuous and Earliest.

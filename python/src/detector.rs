@@ -98,7 +98,7 @@ impl Detector {
         py: Python<'_>,
         ask: impl FnOnce(&mut nearmiss::Detector) -> Result<nearmiss::Contacts, Error> + Send,
     ) -> PyResult<Contacts> {
-        Ok(Contacts { contacts: self.ask(py, ask)? })
+        Ok(self.ask(py, ask)?.into())
     }
 
     /// Does something with the answer that lay on the device when so many questions had been asked, if it still does.
@@ -177,7 +177,7 @@ impl Detector {
 
     /// Where contacts or near pairs are: the bodies must be where they were when these were found.
     fn geometry(&self, py: Python<'_>, contacts: &Contacts) -> PyResult<Geometry> {
-        self.go_on(py, |detector| detector.geometry(&contacts.contacts)).map(Geometry)
+        self.go_on(py, |detector| detector.geometry(&contacts.contacts)).map(Geometry::from)
     }
 
     /// All figures of an answer, as the command line prints them: counts, milliseconds by stage, what it came to less than was asked.
@@ -207,7 +207,7 @@ impl Detector {
             (told, if as_before { held } else { std::mem::replace(&mut one.held, held) })
         });
         drop(unread);
-        told.map(|contacts| Contacts { contacts }).map_err(raised)
+        told.map(Contacts::from).map_err(raised)
     }
 
     /// Whether `submit` may be called, and a graph that recorded it be launched again.
@@ -233,7 +233,7 @@ impl Detector {
     /// Waits for what was submitted last, and brings the answer to the host. Where a list was too short the frame is asked again, and
     /// the answer is whole; then the detector is no longer prepared.
     fn collect(&self, py: Python<'_>) -> PyResult<Contacts> {
-        self.go_on(py, nearmiss::Detector::collect).map(|contacts| Contacts { contacts })
+        self.go_on(py, nearmiss::Detector::collect).map(Contacts::from)
     }
 
     /// Makes tiles or trees anew: pays when bodies have moved far from where they were made.

@@ -75,6 +75,15 @@ def test_columns_have_their_shapes():
         assert shapes == [(k,), (k, 4), (k, 4), (k, 2, 3), (k,), (k, 3)] and len(at) == k
 
 
+def test_a_column_is_made_once():
+    t0, faces = soup(120, 5, 0.6)
+    detector = nm.Detector(nm.Body(t0, faces), nm.Near(0.05), CPU)
+    found = detector.detect()
+    at = detector.geometry(found)
+    assert found.indices is found.indices and found.weights is found.weights and at.points is at.points
+    assert found.indices is not detector.detect().indices
+
+
 def test_a_submission_reads_what_lies_there_when_its_turn_comes():
     t0, faces = sheet(30, lambda x, y: 0.1 * np.sin(9 * x) * np.cos(8 * y))
     t1 = t0.copy()
