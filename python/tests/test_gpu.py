@@ -1,6 +1,7 @@
 """On a GPU: arrays of torch and cupy, answers of the CPU. Skipped, visibly, where there is no GPU or no such library."""
 
 import gc
+import threading
 
 import numpy as np
 import pytest
@@ -215,3 +216,35 @@ def test_arrays_of_cupy(stream):
         by_dlpack, by_interface = cupy.from_dlpack(answer.status), cupy.asarray(answer.status)
         assert by_dlpack.tolist() == by_interface.tolist() and sum(by_dlpack.tolist()[:2]) == len(wanted)
         detector.collect()
+
+
+def test_frames_beside_a_graph_that_another_thread_records(stream):
+    """torch records in CUDA's global mode: whatever waits or takes memory in another thread is refused, but for who says otherwise."""
+    t0, t1, faces = draped(30)
+    wanted = nm.contacts(t0, t1, faces, device=nm.Device("cpu")).hash
+    recording, asked = threading.Event(), threading.Event()
+    told = []
+
+    def ask():
+        recording.wait()
+        try:
+            # Opened, made and asked while the other records.
+            detector = nm.Detector(nm.Body(t0, faces), nm.Continuous(), nm.Device(gpu=0))
+            told.extend(detector.frame({0: (t0, t1)}).hash for _ in range(3))
+        finally:
+            asked.set()
+
+    other = threading.Thread(target=ask)
+    other.start()
+    x = torch.zeros(1000, device="cuda")
+    stream.synchronize()
+    graph = torch.cuda.CUDAGraph()
+    with torch.cuda.graph(graph, stream=stream):
+        x += 1
+        recording.set()
+        asked.wait()
+        x += 1
+    other.join()
+    graph.replay()
+    stream.synchronize()
+    assert told == [wanted] * 3 and float(x.sum()) == 2000

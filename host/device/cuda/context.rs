@@ -1,7 +1,7 @@
 //! A GPU's context, and what it is made for: every call of the driver is made by a thread that is bound to it.
 
 use super::driver::{Driver, Refusal, answer, driver, refused};
-use super::types::{CUcontext, CUdevice, CUdevice_attribute};
+use super::types::{self, CUcontext, CUdevice, CUdevice_attribute, CUstreamCaptureMode};
 use crate::error::Error;
 use std::ffi::c_int;
 use std::ops::Deref;
@@ -122,7 +122,8 @@ impl Context {
     }
 
     /// Binds the calling thread to the context, as long as the answer lives. A thread that was bound to another is bound
-    /// to that again then; one that was bound to none stays, so that the next call is cheaper.
+    /// to that again then; one that was bound to none stays, so that the next call is cheaper. Meanwhile graphs that other threads
+    /// record are none of the thread's business, whatever mode these chose: what we do cannot touch them.
     pub fn bind(&self) -> Result<Bound<'_>, Refusal> {
         let mut before = null_mut();
         // SAFETY: the driver is started, and writes one handle.
@@ -131,7 +132,10 @@ impl Context {
             // SAFETY: the context is held.
             answer(unsafe { (self.gpu.driver.cuCtxSetCurrent)(self.handle) })?;
         }
-        Ok(Bound { context: self, before })
+        let mut mode = types::CU_STREAM_CAPTURE_MODE_THREAD_LOCAL;
+        // SAFETY: the driver reads and writes one number.
+        answer(unsafe { (self.gpu.driver.cuThreadExchangeStreamCaptureMode)(&mut mode) })?;
+        Ok(Bound { context: self, before, mode })
     }
 }
 
@@ -149,6 +153,8 @@ impl Drop for Context {
 pub struct Bound<'a> {
     context: &'a Context,
     before: CUcontext,
+    /// How the thread minded graphs of others before.
+    mode: CUstreamCaptureMode,
 }
 
 impl Deref for Bound<'_> {
@@ -160,6 +166,8 @@ impl Deref for Bound<'_> {
 
 impl Drop for Bound<'_> {
     fn drop(&mut self) {
+        // SAFETY: the driver reads and writes one number, which it gave. It has no reason to refuse.
+        let _ = unsafe { (self.cuThreadExchangeStreamCaptureMode)(&mut self.mode) };
         if !self.before.is_null() && self.before != self.context.handle {
             // SAFETY: the thread was bound to it before; if it is gone the driver refuses, and nobody is left to be told.
             let _ = unsafe { (self.cuCtxSetCurrent)(self.before) };

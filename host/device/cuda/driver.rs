@@ -120,6 +120,7 @@ functions! {
         cuStreamBeginCapture_v2(CUstream, CUstreamCaptureMode);
         cuStreamEndCapture(CUstream, *mut CUgraph);
         cuStreamIsCapturing(CUstream, *mut CUstreamCaptureStatus);
+        cuThreadExchangeStreamCaptureMode(*mut CUstreamCaptureMode);
         cuGraphInstantiateWithFlags(*mut CUgraphExec, CUgraph, c_ulonglong);
         cuGraphLaunch(CUgraphExec, CUstream);
         cuGraphExecDestroy(CUgraphExec);
