@@ -18,7 +18,9 @@ use block::{Emulated, Unchecked};
 use nearmiss_kernels::entry::Entry;
 use observer::BlockObserver;
 use rayon::prelude::*;
+use std::error::Error as _;
 use std::ptr::NonNull;
+use std::sync::OnceLock;
 use turns::TurnScheduler;
 
 /// What an emulator cannot do, or found.
@@ -60,6 +62,22 @@ pub enum Mode {
     Sanitizer(Order),
 }
 
+/// Starts the threads that all of a program shares, where they do not run yet: else the first to need them would panic where they
+/// cannot be started.
+///
+/// # Errors
+/// [`Error::Threads`]; the same each time, as they are started once.
+pub fn start_threads() -> Result<(), Error> {
+    static STARTED: OnceLock<Result<(), String>> = OnceLock::new();
+    let started = STARTED.get_or_init(|| match rayon::ThreadPoolBuilder::new().build_global() {
+        // Without a source it is that they run already.
+        Err(error) if error.source().is_some() => Err(error.to_string()),
+        _ => Ok(()),
+    });
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    started.clone().map_err(|text| Error::Threads { threads, text })
+}
+
 /// A CPU that runs the kernels.
 pub struct Emulator {
     pool: Option<rayon::ThreadPool>,
@@ -74,7 +92,10 @@ impl Emulator {
     /// [`Error::Threads`] when the threads cannot be started.
     pub fn new(mode: Mode, threads: Option<usize>) -> Result<Self, Error> {
         let pool = match threads {
-            None => None,
+            None => {
+                start_threads()?;
+                None
+            }
             Some(threads) => {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
                 Some(pool.map_err(|e| Error::Threads { threads, text: e.to_string() })?)

@@ -11,6 +11,7 @@ mod submit;
 mod wear;
 
 use crate::contacts::{Contacts, Degraded, Summary};
+use crate::device::emulator::start_threads;
 use crate::device::{Device, Work};
 use crate::error::Error;
 use crate::memory;
@@ -99,6 +100,7 @@ impl Detector {
         share: Share,
     ) -> Result<Detector, Error> {
         query.check()?;
+        start_threads()?;
         if scene.ids().next().is_none() {
             return Err(Error::Choice {
                 what: "a scene without bodies".into(),

@@ -63,3 +63,29 @@ fn memory_that_ends_anywhere_is_no_abort() {
     ask("identical", "8000");
     assert!(seen.contains(&Some(0)) && seen.contains(&Some(4)), "{seen:?}");
 }
+
+/// Threads need memory, too: where they cannot be started that is said.
+#[test]
+fn threads_that_cannot_be_started_are_no_panic() {
+    let mut seen = std::collections::BTreeSet::new();
+    let mut kilobytes = 14_000;
+    // More cores want more stacks: up to where it works.
+    while !seen.contains("done") {
+        assert!(kilobytes < 16_000_000, "{seen:?}");
+        let asked = ["detect", "--scene", "draped", "--triangles", "200", "--backend", "cpu"];
+        let (code, text) = within(kilobytes, &asked);
+        // Below some size the system does not load the program.
+        let loads = !matches!(code, None | Some(127)) && !text.contains("shared libraries");
+        assert!(!loads || code == Some(0) || code == Some(4), "{kilobytes} kB: {code:?} {text}");
+        if loads {
+            let of_threads = text.contains("starting ");
+            seen.insert(if of_threads {
+                "threads"
+            } else {
+                code.map_or("", |code| if code == 0 { "done" } else { "memory" })
+            });
+        }
+        kilobytes += kilobytes / 16;
+    }
+    assert!(seen.contains("threads"), "{seen:?}");
+}
