@@ -9,6 +9,7 @@ import sys
 
 import coal
 import numpy as np
+from sheets import grid
 from side_by_side import Table
 
 import nearmiss
@@ -16,11 +17,8 @@ import nearmiss
 
 def bowl(n):
     """A curved sheet."""
-    x, y = (axis.ravel() / n for axis in np.meshgrid(np.arange(n + 1), np.arange(n + 1), indexing="ij"))
-    vertices = np.stack([x - 0.5, y - 0.5, (x - 0.5) ** 2 + (y - 0.5) ** 2], axis=1)
-    i, j = (axis.ravel() for axis in np.meshgrid(np.arange(n), np.arange(n), indexing="ij"))
-    a, b, c, d = i * (n + 1) + j, (i + 1) * (n + 1) + j, i * (n + 1) + j + 1, (i + 1) * (n + 1) + j + 1
-    return vertices, np.concatenate([np.stack([a, b, c], axis=1), np.stack([b, d, c], axis=1)])
+    x, y, faces = grid(n)
+    return np.stack([x - 0.5, y - 0.5, (x - 0.5) ** 2 + (y - 0.5) ** 2], axis=1), faces
 
 
 vertices, faces = bowl(int(sys.argv[1]) if len(sys.argv) > 1 else 40)

@@ -9,11 +9,15 @@ import sys
 
 import ipctk
 import numpy as np
-from side_by_side import Table, fold
+from sheets import fold
+from side_by_side import Table
 
 import nearmiss
 
-vertices, there, faces = fold(int(sys.argv[1]) if len(sys.argv) > 1 else 60)
+cells = int(sys.argv[1]) if len(sys.argv) > 1 else 60
+# Column by column, as ipctk takes them.
+vertices, there, faces = map(np.asfortranarray, fold(cells, 0.6 * cells))
+faces = faces.astype(np.int32)
 table = Table("ipctk", "nearmiss")
 
 # How far may a step go?

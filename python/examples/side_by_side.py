@@ -4,8 +4,6 @@ import statistics
 import sys
 import time
 
-import numpy as np
-
 
 class Table:
     """Values and times of two libraries, and whether they agree."""
@@ -38,16 +36,3 @@ class Table:
     def end(self):
         """Exits with 1 where they did not agree."""
         sys.exit(1 if self.failed else 0)
-
-
-def fold(n):
-    """A sheet folded in two whose halves pass through each other along a strip: vertices at two times, and faces."""
-    x, y = (axis.ravel() / n for axis in np.meshgrid(np.arange(n + 1), np.arange(n + 1), indexing="ij"))
-    half = np.clip(0.6 * n * (x - 0.5), -1, 1)
-    wave = 0.1 * np.sin(25 * np.abs(x - 0.5)) * np.cos(9 * y)
-    ends = [wave + half * gap for gap in (np.full(y.shape, 0.003), np.clip(0.1 * y - 0.005, -0.003, 0.003))]
-    t0, t1 = (np.stack([np.abs(x - 0.5), y, z], axis=1) for z in ends)
-    i, j = (axis.ravel() for axis in np.meshgrid(np.arange(n), np.arange(n), indexing="ij"))
-    a, b, c, d = i * (n + 1) + j, (i + 1) * (n + 1) + j, i * (n + 1) + j + 1, (i + 1) * (n + 1) + j + 1
-    faces = np.concatenate([np.stack([a, b, c], axis=1), np.stack([b, d, c], axis=1)])
-    return np.asfortranarray(t0), np.asfortranarray(t1), np.asfortranarray(faces.astype(np.int32))

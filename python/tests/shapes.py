@@ -1,6 +1,7 @@
 """Meshes of the tests."""
 
 import numpy as np
+from sheets import grid
 
 
 def two_triangles():
@@ -9,14 +10,10 @@ def two_triangles():
     return np.array(vertices, np.float32), np.array([[0, 1, 2], [3, 4, 5]])
 
 
-def sheet(n, height=lambda x, y: 0 * x, at=(0.0, 0.0, 0.0)):
+def sheet(n, height=lambda x, y: 0 * x):
     """A square of n by n cells: (((n + 1)^2, 3) float32, (2 n^2, 3))."""
-    x, y = (axis.ravel() / n for axis in np.meshgrid(np.arange(n + 1), np.arange(n + 1), indexing="ij"))
-    vertices = np.stack([x, y, height(x, y)], axis=1) + np.array(at)
-    i, j = (axis.ravel() for axis in np.meshgrid(np.arange(n), np.arange(n), indexing="ij"))
-    a, b, c, d = i * (n + 1) + j, (i + 1) * (n + 1) + j, i * (n + 1) + j + 1, (i + 1) * (n + 1) + j + 1
-    faces = np.concatenate([np.stack([a, b, c], axis=1), np.stack([b, d, c], axis=1)])
-    return vertices.astype(np.float32), faces
+    x, y, faces = grid(n)
+    return np.stack([x, y, height(x, y)], axis=1).astype(np.float32), faces
 
 
 def soup(count, seed, size=0.2):

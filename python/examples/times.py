@@ -1,6 +1,6 @@
 """What a caller in Python waits for, milliseconds, the median of many frames: a sheet that folds into itself.
 
-    python benches/times.py [cells a side, default 214: 91,592 triangles]
+    python times.py [cells a side, default 214: 91,592 triangles]
 """
 
 import sys
@@ -8,20 +8,9 @@ import time
 from statistics import median
 
 import numpy as np
+from sheets import fold
 
 import nearmiss as nm
-
-
-def fold(n):
-    """A sheet folded in two whose halves pass through each other along a strip: vertices at two times, and faces."""
-    x, y = (axis.ravel() / n for axis in np.meshgrid(np.arange(n + 1), np.arange(n + 1), indexing="ij"))
-    half = np.clip(40 * (x - 0.5), -1, 1)
-    wave = 0.1 * np.sin(25 * np.abs(x - 0.5)) * np.cos(9 * y)
-    ends = [wave + half * gap for gap in (np.full(y.shape, 0.003), np.clip(0.1 * y - 0.005, -0.003, 0.003))]
-    t0, t1 = (np.stack([np.abs(x - 0.5), y, z], axis=1).astype(np.float32) for z in ends)
-    i, j = (axis.ravel() for axis in np.meshgrid(np.arange(n), np.arange(n), indexing="ij"))
-    a, b, c, d = i * (n + 1) + j, (i + 1) * (n + 1) + j, i * (n + 1) + j + 1, (i + 1) * (n + 1) + j + 1
-    return t0, t1, np.concatenate([np.stack([a, b, c], axis=1), np.stack([b, d, c], axis=1)])
 
 
 def wait(call, times):
@@ -35,7 +24,8 @@ def wait(call, times):
 
 
 def main():
-    t0, t1, faces = fold(int(sys.argv[1]) if len(sys.argv) > 1 else 214)
+    *ends, faces = fold(int(sys.argv[1]) if len(sys.argv) > 1 else 214, 40)
+    t0, t1 = (end.astype(np.float32) for end in ends)
     device = nm.Device()
     on_gpu = device.backend == "cuda"
     times = 100 if on_gpu else 5
