@@ -4,13 +4,14 @@ use crate::answer::DeviceAnswer;
 use crate::contacts::Contacts;
 use crate::device::Device;
 use crate::errors::{choice, raised};
-use crate::frame::{Frame, body_of};
+use crate::frame::{Frame, known};
 use crate::geometry::Geometry;
 use crate::lent::Held;
 use crate::query::Query;
 use crate::scene::{Body, Scene};
 use nearmiss::Error;
 use nearmiss::scene::BodyId;
+use nearmiss::words::counted;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::Serialize;
@@ -82,14 +83,22 @@ impl Detector {
     }
 
     fn frame_of(&self, py: Python<'_>, inputs: Option<&Bound<'_, PyDict>>) -> PyResult<Frame> {
-        let device = &self.device.get().device;
-        // Only numbers of bodies are looked up.
-        let ids = self.look(py, |detector| detector.scene().ids().collect::<Vec<_>>());
-        let body = |index| {
-            let at = ids.binary_search_by_key(&index, |id: &BodyId| id.index());
-            at.ok().map(|at| ids[at])
-        };
-        Frame::of(inputs, body, device)
+        let (numbers, places): (Vec<_>, Vec<_>) = inputs.into_iter().flat_map(|all| all.iter()).unzip();
+        let numbers = numbers.iter().map(|number| number.extract()).collect::<PyResult<Vec<usize>>>()?;
+        let bodies = self.bodies(py, &numbers)?;
+        Frame::of(bodies.into_iter().zip(places).collect(), &self.device.get().device)
+    }
+
+    /// The bodies with these numbers.
+    fn bodies(&self, py: Python<'_>, numbers: &[usize]) -> PyResult<Vec<BodyId>> {
+        let found = self.look(py, |detector| {
+            numbers.iter().map(|&number| detector.scene().id(number)).collect::<Vec<_>>()
+        });
+        numbers.iter().zip(found).map(|(&number, found)| known(number, found)).collect()
+    }
+
+    fn body(&self, py: Python<'_>, number: usize) -> PyResult<BodyId> {
+        known(number, self.look(py, |detector| detector.scene().id(number)))
     }
 
     /// Asks what is answered by contacts.
@@ -117,12 +126,6 @@ impl Detector {
                 "ask `on_device` after `prepare`, and again when `is_prepared` is no longer true",
             )
         })
-    }
-
-    fn body(&self, py: Python<'_>, number: &Bound<'_, PyAny>) -> PyResult<BodyId> {
-        let index: usize = number.extract()?;
-        let found = self.look(py, |detector| detector.scene().id(index));
-        body_of(number, |_| found)
     }
 }
 
@@ -247,13 +250,13 @@ impl Detector {
     }
 
     /// Takes the body of that number out.
-    fn remove(&self, py: Python<'_>, body: &Bound<'_, PyAny>) -> PyResult<()> {
+    fn remove(&self, py: Python<'_>, body: usize) -> PyResult<()> {
         let id = self.body(py, body)?;
         self.ask(py, |detector| detector.remove(id).map(drop))
     }
 
     /// Puts another body in the place of that number.
-    fn replace(&self, py: Python<'_>, body: &Bound<'_, PyAny>, by: &Body) -> PyResult<()> {
+    fn replace(&self, py: Python<'_>, body: usize, by: &Body) -> PyResult<()> {
         let id = self.body(py, body)?;
         self.ask(py, |detector| detector.replace(id, by.body.clone()))
     }
@@ -272,6 +275,7 @@ impl Detector {
 
     fn __repr__(&self, py: Python<'_>) -> String {
         let (query, bodies) = self.look(py, |d| (d.query().kind(), d.scene().ids().count()));
-        format!("<nearmiss.Detector: {query}, {bodies} bodies, {}>", self.device.get().device.name())
+        let bodies = counted(bodies as u64, "body", "bodies");
+        format!("<nearmiss.Detector: {query}, {bodies}, {}>", self.device.get().device.name())
     }
 }

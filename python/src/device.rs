@@ -1,8 +1,7 @@
 //! Where frames are computed.
 
-use crate::errors::{choice, raised};
+use crate::errors::{choice, named, raised};
 use nearmiss::device::Backend;
-use nearmiss::query::Named;
 use pyo3::prelude::*;
 use std::ffi::c_void;
 use std::ptr::null_mut;
@@ -35,9 +34,7 @@ impl Device {
         gpu: Option<u32>,
         stream: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Device> {
-        let backend = Backend::of(backend).ok_or_else(|| {
-            choice(format!("a device called {backend}"), "choose one of \"auto\", \"cpu\" and \"cuda\"")
-        })?;
+        let backend = named::<Backend>("a device", backend)?;
         let on_gpu = gpu.is_some() || stream.is_some();
         if (on_gpu && (backend == Backend::Cpu || threads.is_some())) || (gpu.is_some() && stream.is_some()) {
             return Err(choice(

@@ -1,7 +1,8 @@
 //! The library's errors as exceptions: one class a variant, each with the library's sentence.
 
 use nearmiss::Error;
-use pyo3::PyErr;
+use nearmiss::query::Named;
+use pyo3::{PyErr, PyResult};
 
 /// The classes of `lib/nearmiss/errors.py`.
 mod classes {
@@ -33,4 +34,16 @@ pub fn raised(error: Error) -> PyErr {
 /// What was asked does not exist or does not fit.
 pub fn choice(what: impl Into<String>, advice: impl Into<String>) -> PyErr {
     raised(Error::Choice { what: what.into(), advice: advice.into() })
+}
+
+/// The choice of that name.
+pub fn named<T: Named>(what: &str, name: &str) -> PyResult<T> {
+    T::of(name)
+        .ok_or_else(|| choice(format!("{what} called {name}"), one_of(T::ALL.iter().map(|of| of.name()))))
+}
+
+/// Which names there are.
+pub fn one_of<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    let quoted: Vec<String> = names.into_iter().map(|name| format!("\"{name}\"")).collect();
+    format!("choose one of {}", quoted.join(", "))
 }

@@ -8,7 +8,7 @@ use nearmiss::Device;
 use nearmiss::mesh::Positions;
 use nearmiss::scene::{BodyId, DeviceInput, Input};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::PyTuple;
 
 /// Where bodies are, as Python told it.
 #[derive(Default)]
@@ -31,15 +31,10 @@ enum End {
 }
 
 impl Frame {
-    /// Of a dictionary from bodies to where they are.
-    pub fn of(
-        inputs: Option<&Bound<'_, PyDict>>,
-        body: impl Fn(usize) -> Option<BodyId>,
-        device: &Device,
-    ) -> PyResult<Frame> {
+    /// Of bodies and where Python says that they are.
+    pub fn of(inputs: Vec<(BodyId, Bound<'_, PyAny>)>, device: &Device) -> PyResult<Frame> {
         let mut frame = Frame::default();
-        for (number, input) in inputs.into_iter().flat_map(|inputs| inputs.iter()) {
-            let id = body_of(&number, &body)?;
+        for (id, input) in inputs {
             let given = frame.given(&input, device, &format!("positions of body {id}"))?;
             frame.bodies.push((id, given));
         }
@@ -133,10 +128,9 @@ fn halves(what: &str) -> PyErr {
     choice(format!("{what}: one end on the GPU, one on the host"), "give both ends in one memory")
 }
 
-/// The body with that number.
-pub fn body_of(number: &Bound<'_, PyAny>, body: impl Fn(usize) -> Option<BodyId>) -> PyResult<BodyId> {
-    let index: usize = number.extract()?;
-    body(index).ok_or_else(|| {
+/// The body that was found by its number.
+pub fn known(index: usize, found: Option<BodyId>) -> PyResult<BodyId> {
+    found.ok_or_else(|| {
         choice(format!("body {index}, which is not in the scene"), "give a number that `add` returned")
     })
 }

@@ -23,7 +23,8 @@ pub struct LentRows {
     pub held: Held,
 }
 
-/// Whether the array lies in a GPU's memory.
+/// Whether an array lies in the memory of an NVIDIA GPU.
+#[pyfunction]
 pub fn is_on_gpu(object: &Bound<'_, PyAny>) -> bool {
     if object.cast::<PyUntypedArray>().is_ok() {
         return false;

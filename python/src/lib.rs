@@ -37,6 +37,8 @@ mod _native {
     #[pymodule_export]
     use super::host::read_mesh;
     #[pymodule_export]
+    use super::lent::is_on_gpu;
+    #[pymodule_export]
     use super::pose::Pose;
     #[pymodule_export]
     use super::query::{Continuous, Discrete, Distance, Earliest, Near, Query};

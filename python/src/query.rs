@@ -1,6 +1,6 @@
 //! What is asked. How candidates are found never changes an answer.
 
-use crate::errors::{choice, raised};
+use crate::errors::{choice, named, one_of, raised};
 use nearmiss::query::{
     self, Broad, Bv, Certified, ContinuousSolver, Named, Order, Rebuild, Search, Solver, TriangleTest,
 };
@@ -26,26 +26,16 @@ impl Query {
     fn checked(query: impl Into<nearmiss::Query>, names: Names<'_>) -> PyResult<PyClassInitializer<Query>> {
         let [broad, order, bv, rebuild] = names;
         let search = Search {
-            broad: named::<Broad>("a broad phase", broad)?,
-            order: named::<Order>("an order", order)?,
-            bv: named::<Bv>("a volume", bv)?,
-            rebuild: named::<Rebuild>("a rebuilding", rebuild)?,
+            broad: broad.map(|name| named::<Broad>("a broad phase", name)).transpose()?,
+            order: order.map(|name| named::<Order>("an order", name)).transpose()?,
+            bv: bv.map(|name| named::<Bv>("a volume", name)).transpose()?,
+            rebuild: rebuild.map(|name| named::<Rebuild>("a rebuilding", name)).transpose()?,
             ..Search::default()
         };
         let query = query.into().with_search(search);
         query.check().map_err(raised)?;
         Ok(PyClassInitializer::from(Query { query }))
     }
-}
-
-/// The choice of that name.
-fn named<T: Named>(what: &str, name: Option<&str>) -> PyResult<Option<T>> {
-    let Some(name) = name else { return Ok(None) };
-    let there =
-        || T::ALL.iter().map(|choice| format!("\"{}\"", choice.name())).collect::<Vec<_>>().join(", ");
-    T::of(name)
-        .map(Some)
-        .ok_or_else(|| choice(format!("{what} called {name}"), format!("choose one of {}", there())))
 }
 
 /// Which triangles share a point now, by exact signs. The answer has bodies and indices.
@@ -75,7 +65,7 @@ impl Discrete {
             other => {
                 return Err(choice(
                     format!("a discrete query by {other}"),
-                    "choose one of \"exact\" and \"moller\"",
+                    one_of(TriangleTest::ALL.map(|test| test.name().name())),
                 ));
             }
         };
@@ -99,19 +89,23 @@ fn in_motion(
             format!("a tolerance, separation or budget for {solver}"),
             "give them to a certified solver",
         )),
-        None => {
-            let names = ContinuousSolver::ALL.map(|solver| format!("\"{}\"", solver.name()));
-            Err(choice(
-                format!("a query in motion by {solver}"),
-                format!("choose one of {}", names.join(", ")),
-            ))
-        }
+        None => Err(choice(
+            format!("a query in motion by {solver}"),
+            one_of(ContinuousSolver::ALL.map(|solver| solver.name().name())),
+        )),
     }
 }
 
 macro_rules! in_motion {
     ($(#[$doc:meta])* $kind:ident) => {
         $(#[$doc])*
+        ///
+        /// tolerance:  how well a time is told, as a length moved; default: 1e-4 of the mean edge.
+        /// separation: what comes nearer than this is in contact, in the unit of the vertices; 0 for touching.
+        /// budget:     how many boxes a pair may cost before it is listed as unresolved.
+        /// solver:     "certified" (none is missed, none late), "certified-f32", "certified-f64", or "cubic-f64" and "cubic-f32", which
+        ///             can miss.
+        /// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer.
         #[pyclass(module = "nearmiss", frozen, extends = Query)]
         pub struct $kind;
 
@@ -143,24 +137,10 @@ macro_rules! in_motion {
 
 in_motion! {
     /// What meets while vertices move in straight lines, and when first: kind, indices, toi, toi_hi, status.
-    ///
-    /// tolerance:  how well a time is told, as a length moved; default: 1e-4 of the mean edge.
-    /// separation: what comes nearer than this is in contact, in the unit of the vertices; 0 for touching.
-    /// budget:     how many boxes a pair may cost before it is listed as unresolved.
-    /// solver:     "certified" (none is missed, none late), "certified-f32", "certified-f64", or "cubic-f64" and "cubic-f32", which
-    ///             can miss.
-    /// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer.
     Continuous
 }
 in_motion! {
     /// When the first of all meets: how far a step may go. The answer's `earliest`, in [0, 1], is never late; None: nothing meets.
-    ///
-    /// tolerance:  how well a time is told, as a length moved; default: 1e-4 of the mean edge.
-    /// separation: what comes nearer than this is in contact, in the unit of the vertices; 0 for touching.
-    /// budget:     how many boxes a pair may cost before it is listed as unresolved.
-    /// solver:     "certified" (none is missed, none late), "certified-f32", "certified-f64", or "cubic-f64" and "cubic-f32", which
-    ///             can miss.
-    /// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer.
     Earliest
 }
 

@@ -1,10 +1,11 @@
 //! Which bodies there are, and what each does.
 
-use crate::errors::{choice, raised};
-use crate::frame::body_of;
+use crate::errors::{choice, one_of, raised};
+use crate::frame::known;
 use crate::host::{faces, positions};
 use nearmiss::Mesh;
 use nearmiss::scene::Meets;
+use nearmiss::words::counted;
 use pyo3::prelude::*;
 
 /// A mesh, what it does from frame to frame, and which others it may meet.
@@ -49,7 +50,7 @@ impl Body {
             other => {
                 return Err(choice(
                     format!("a body of kind {other}"),
-                    "choose one of \"deformable\", \"rigid\" and \"static\"",
+                    one_of(["deformable", "rigid", "static"]),
                 ));
             }
         };
@@ -113,8 +114,8 @@ impl Scene {
     }
 
     /// Takes the body of that number out; the next one that is added may have its number.
-    fn remove(&mut self, body: &Bound<'_, PyAny>) -> PyResult<()> {
-        let id = body_of(body, |index| self.scene.id(index))?;
+    fn remove(&mut self, body: usize) -> PyResult<()> {
+        let id = known(body, self.scene.id(body))?;
         self.scene.remove(id);
         Ok(())
     }
@@ -130,6 +131,6 @@ impl Scene {
     }
 
     fn __repr__(&self) -> String {
-        format!("<nearmiss.Scene of {} bodies>", self.__len__())
+        format!("<nearmiss.Scene of {}>", counted(self.__len__() as u64, "body", "bodies"))
     }
 }

@@ -10,6 +10,7 @@ Array = Any
 """What numpy can read, or an array of a GPU with DLPack or __cuda_array_interface__."""
 Input = Union[Array, Tuple[Array, Array], "Pose", Tuple["Pose", "Pose"]]
 
+def is_on_gpu(object: Any) -> bool: ...
 def read_mesh(path: Union[str, PathLike[str]]) -> tuple[NDArray[Any], NDArray[np.uint32]]: ...
 
 class Device:

@@ -1,16 +1,6 @@
 """Arrays of other libraries, told apart by what they can do. None of these libraries is imported here."""
 
-from ._native import Device
-
-_ON_GPU = (2, 13)
-
-
-def is_on_gpu(array) -> bool:
-    """Whether it lies in the memory of an NVIDIA GPU."""
-    place = getattr(array, "__dlpack_device__", None)
-    if place is not None:
-        return place()[0] in _ON_GPU
-    return hasattr(array, "__cuda_array_interface__")
+from ._native import Device, is_on_gpu
 
 
 def on_host(array):
