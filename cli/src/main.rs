@@ -1,4 +1,4 @@
-//! The program: `detect`, `plan`, `explain`, `scene`, `tables`, `trade`, `bench`, `selftest`.
+//! The program: `detect`, `plan`, `explain`, `scene`, `tables`, `trade`, `bench`, `selftest`, `completions`, `man`.
 
 mod args;
 mod bench;
@@ -6,6 +6,7 @@ mod detect;
 mod explain;
 mod memory;
 mod output;
+mod paint;
 mod plan;
 mod progress;
 mod report;
@@ -13,8 +14,10 @@ mod rows;
 mod scene;
 mod selftest;
 mod sequence;
+mod shell;
 mod tables;
 mod trade;
+mod vtp;
 
 use args::{Command, ReportArgs};
 use nearmiss::error::Error;
@@ -48,12 +51,14 @@ fn run(command: Command) -> Result<ExitCode, Error> {
         Command::Trade(args) => trade::trade(&args),
         Command::Bench(args) => bench::bench(&args),
         Command::Selftest(args) => selftest::selftest(&args),
+        Command::Completions(args) => shell::completions(&args),
+        Command::Man(args) => shell::man(&args),
     }
 }
 
-/// A mesh's name: its file's, without folder and extension.
+/// A mesh's name: its file's, without folder and extension, and without `.gz`.
 fn stem(file: &Path) -> String {
-    file.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy().into_owned())
+    output::unpacked(file).file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy().into_owned())
 }
 
 /// Writes measured figures where `--out` says, and prints them as text or JSON.

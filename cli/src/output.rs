@@ -1,5 +1,7 @@
 //! What the program says and writes. Nothing is lost in silence: output that cannot be written is an error.
 
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use nearmiss::error::Error;
 use std::fs::{self, File, OpenOptions};
 use std::io::{BufWriter, ErrorKind, Write};
@@ -28,6 +30,8 @@ fn failed(path: &Path, text: &impl ToString) -> Error {
 /// A file that will be written when the work is done; whether it can be is known before.
 pub struct Target {
     path: PathBuf,
+    /// Whether it is packed by gzip: its name ends in `.gz`.
+    packed: bool,
     way: Way,
 }
 
@@ -45,20 +49,41 @@ impl Target {
     /// [`Error::Output`].
     pub fn open(path: &Path) -> Result<Target, Error> {
         let way = way(path).map_err(|e| failed(path, &e))?;
-        Ok(Target { path: path.to_owned(), way })
+        Ok(Target { path: path.to_owned(), packed: is_packed(path), way })
     }
 
     /// Writes the file.
     ///
     /// # Errors
     /// [`Error::Output`]; then a file that was there before is as it was, unless its folder takes no new ones.
-    pub fn write(self, put: impl FnOnce(&mut BufWriter<File>) -> Result<(), String>) -> Result<(), Error> {
+    pub fn write(self, put: impl FnOnce(&mut dyn Write) -> Result<(), String>) -> Result<(), Error> {
+        let put = |out: &mut BufWriter<File>| if self.packed { pack(out, put) } else { put(out) };
         let written = match self.way {
             Way::Open(file) => into(file, put),
             Way::Beside(real) => beside(&real, put),
         };
         written.map_err(|text| failed(&self.path, &text))
     }
+}
+
+/// Whether a file's name says that it is packed by gzip.
+fn is_packed(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gz"))
+}
+
+/// A file's name without `.gz`.
+pub fn unpacked(path: &Path) -> PathBuf {
+    if is_packed(path) { path.with_extension("") } else { path.to_owned() }
+}
+
+fn pack(
+    out: &mut BufWriter<File>,
+    put: impl FnOnce(&mut dyn Write) -> Result<(), String>,
+) -> Result<(), String> {
+    let mut packed = BufWriter::new(GzEncoder::new(out, Compression::default()));
+    put(&mut packed)?;
+    let packed = packed.into_inner().map_err(|e| e.to_string())?;
+    packed.finish().map(|_| ()).map_err(|e| e.to_string())
 }
 
 fn way(path: &Path) -> std::io::Result<Way> {

@@ -1,8 +1,9 @@
-//! Results as files: CSV and JSON.
+//! Results as files: CSV, JSON and VTP.
 
-use crate::output::Target;
+use crate::output::{Target, unpacked};
 use crate::rows::{Columns, Rows};
-use nearmiss::contacts::{Answer, Contact, Contacts, Kind, Summary, TrianglePair};
+use crate::vtp::Vtp;
+use nearmiss::contacts::{Answer, Contact, ContactGeometry, Contacts, Kind, Summary, TrianglePair};
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
 use nearmiss::scene::BodyId;
@@ -82,6 +83,8 @@ pub enum Format {
     Csv,
     /// One object: the summary, and the rows under `contacts`.
     Json,
+    /// Points, lines and what is known of them: see [`Vtp`].
+    Vtp,
 }
 
 impl Format {
@@ -90,12 +93,15 @@ impl Format {
     /// # Errors
     /// [`Error::Choice`] with the known ones.
     pub fn of(path: &Path) -> Result<Format, Error> {
-        match path.extension().and_then(|e| e.to_str()) {
+        match unpacked(path).extension().and_then(|e| e.to_str()) {
             Some("csv") => Ok(Format::Csv),
             Some("json") => Ok(Format::Json),
+            Some("vtp") => Ok(Format::Vtp),
             _ => Err(Error::Choice {
                 what: format!("{}: contacts cannot be written in that format", path.display()),
-                advice: "give --out a name that ends in one of: .csv, .json".into(),
+                advice:
+                    "give --out a name that ends in one of: .csv, .json, .vtp, each also with .gz behind it"
+                        .into(),
             }),
         }
     }
@@ -111,10 +117,11 @@ pub fn write(
     contacts: &Contacts,
     told: &Report,
     (faces, names): (Option<&FileFaces>, Option<&[String]>),
+    geometry: Option<&[ContactGeometry]>,
 ) -> Result<(), Error> {
     let named = faces.map(|faces| faces.name(&contacts.answer));
     let answer = named.as_ref().unwrap_or(&contacts.answer);
-    let columns = Columns { step: None, names, faces: faces.is_some() };
+    let columns = Columns { step: None, names, faces: faces.is_some(), geometry };
     target.write(|out| match format {
         Format::Csv => {
             let mut csv = csv::Writer::from_writer(out);
@@ -122,7 +129,12 @@ pub fn write(
             columns.rows(&mut csv, answer)?;
             csv.flush().map_err(|e| e.to_string())
         }
-        Format::Json => json(out, told, Rows { answer, names }),
+        Format::Json => json(out, told, Rows { answer, names, geometry }),
+        Format::Vtp => {
+            let mut vtp = Vtp::default();
+            vtp.add(None, answer, geometry.unwrap_or_default());
+            vtp.write(out).map_err(|e| e.to_string())
+        }
     })
 }
 

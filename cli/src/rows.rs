@@ -1,6 +1,8 @@
 //! Contacts as rows of CSV and of JSON.
 
-use nearmiss::contacts::{Answer, Contact, Kind, NearPair, NearestTriangles, Status, TrianglePair};
+use nearmiss::contacts::{
+    Answer, Contact, ContactGeometry, Kind, NearPair, NearestTriangles, Status, TrianglePair,
+};
 use nearmiss::scene::BodyId;
 use serde::{Serialize, Serializer};
 use std::io::Write;
@@ -14,6 +16,8 @@ pub struct Columns<'a> {
     pub names: Option<&'a [String]>,
     /// Whether triangles are told as faces of the file.
     pub faces: bool,
+    /// Where each contact is, in columns behind the others.
+    pub geometry: Option<&'a [ContactGeometry]>,
 }
 
 impl Columns<'_> {
@@ -28,8 +32,11 @@ impl Columns<'_> {
             Answer::Near(_) => (&["kind", "a", "b", "squared_distance", "w0", "w1", "w2", "closest"], true),
         };
         let step = self.step.map(|_| "step");
-        let bodies = self.names.filter(|_| bodies).map(|_| ["body_a", "body_b"]);
+        let bodies = Some(())
+            .filter(|()| bodies && (self.names.is_some() || self.geometry.is_some()))
+            .map(|()| ["body_a", "body_b"]);
         let all = step.into_iter().chain(bodies.into_iter().flatten()).chain(own.iter().copied());
+        let all = all.chain(self.geometry.into_iter().flat_map(|_| GEOMETRY));
         csv.write_record(all).map_err(|e| e.to_string())
     }
 
@@ -39,16 +46,28 @@ impl Columns<'_> {
             Answer::Pairs(pairs) => pairs.iter().try_for_each(|pair| {
                 self.row(csv, Some(pair.bodies), &pair.triangles.map(|triangle| triangle.to_string()))
             }),
-            Answer::Contacts(all) => all.iter().try_for_each(|c| self.row(csv, Some(c.bodies), &contact(c))),
+            Answer::Contacts(all) => all
+                .iter()
+                .enumerate()
+                .try_for_each(|(at, c)| self.row(csv, Some(c.bodies), &self.with(at, &contact(c)))),
             // Of a sequence a step without a contact has its row too, and in it no time.
             Answer::Earliest(None) if self.step.is_some() => self.row(csv, None, &[String::new()]),
             Answer::Earliest(toi) => toi.iter().try_for_each(|toi| self.row(csv, None, &[toi.to_string()])),
-            Answer::Near(pairs) => pairs.iter().try_for_each(|p| self.row(csv, Some(p.bodies), &near(p))),
+            Answer::Near(pairs) => pairs
+                .iter()
+                .enumerate()
+                .try_for_each(|(at, p)| self.row(csv, Some(p.bodies), &self.with(at, &near(p)))),
             Answer::Distance(found) => {
                 found.iter().try_for_each(|n| self.row(csv, Some(n.bodies), &nearest(n)))
             }
         };
         wrote.map_err(|e| e.to_string())
+    }
+
+    /// A row, and behind it where the contact is.
+    fn with(&self, at: usize, own: &[String]) -> Vec<String> {
+        let place = self.geometry.and_then(|all| all.get(at)).map(place);
+        own.iter().cloned().chain(place.into_iter().flatten()).collect()
     }
 
     fn row(
@@ -62,9 +81,40 @@ impl Columns<'_> {
         }
         if let (Some(names), Some(bodies)) = (self.names, bodies) {
             bodies.iter().try_for_each(|body| csv.write_field(&names[body.index()]))?;
+        } else if let (Some(_), Some(bodies)) = (self.geometry, bodies) {
+            bodies.iter().try_for_each(|body| csv.write_field(body.index().to_string()))?;
         }
         csv.write_record(own)
     }
+}
+
+/// The columns of where a contact is. The first `vertices_of_a` of the vertices are those of the first feature, the others the second's.
+const GEOMETRY: [&str; 19] = [
+    "vertices_of_a",
+    "vertex_0",
+    "vertex_1",
+    "vertex_2",
+    "vertex_3",
+    "weight_0",
+    "weight_1",
+    "weight_2",
+    "weight_3",
+    "x_a",
+    "y_a",
+    "z_a",
+    "x_b",
+    "y_b",
+    "z_b",
+    "distance",
+    "normal_x",
+    "normal_y",
+    "normal_z",
+];
+
+fn place(g: &ContactGeometry) -> impl Iterator<Item = String> + use<> {
+    let numbers = g.weights.into_iter().chain(g.points.into_iter().flatten());
+    let numbers = numbers.chain([g.distance]).chain(g.normal).map(|x| x.to_string());
+    [g.first.to_string()].into_iter().chain(g.vertices.map(|vertex| vertex.to_string())).chain(numbers)
 }
 
 fn kind(kind: Kind) -> String {
@@ -106,6 +156,18 @@ pub struct Rows<'a> {
     pub answer: &'a Answer,
     /// Of a scene, the bodies' names.
     pub names: Option<&'a [String]>,
+    /// Where each contact is: `geometry` of its row.
+    pub geometry: Option<&'a [ContactGeometry]>,
+}
+
+/// A row, and where its contact is.
+#[derive(Serialize)]
+struct Placed<'a, T> {
+    body_a: String,
+    body_b: String,
+    #[serde(flatten)]
+    row: T,
+    geometry: &'a ContactGeometry,
 }
 
 /// A row whose bodies are told by their names.
@@ -152,6 +214,9 @@ struct Nearest {
 
 impl Serialize for Rows<'_> {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        if let Some(geometry) = self.geometry {
+            return self.placed(geometry, to);
+        }
         let Some(names) = self.names else {
             return match self.answer {
                 Answer::Pairs(pairs) => to.collect_seq(pairs.iter().map(|pair| pair.triangles)),
@@ -186,6 +251,31 @@ impl Serialize for Rows<'_> {
                 let row = Nearness { kind, a, b, squared_distance, weights, closest };
                 Named { body_a: of_a(bodies), body_b: of_b(bodies), row }
             })),
+        }
+    }
+}
+
+impl Rows<'_> {
+    /// Rows with where each contact is; of a scene its bodies by their names, else by their numbers.
+    fn placed<S: Serializer>(&self, geometry: &[ContactGeometry], to: S) -> Result<S::Ok, S::Error> {
+        let name =
+            |body: BodyId| self.names.map_or_else(|| body.index().to_string(), |n| n[body.index()].clone());
+        fn row<T: Serialize>(
+            row: T,
+            geometry: &ContactGeometry,
+            [body_a, body_b]: [String; 2],
+        ) -> Placed<'_, T> {
+            Placed { body_a, body_b, row, geometry }
+        }
+        match self.answer {
+            Answer::Contacts(all) => {
+                to.collect_seq(all.iter().zip(geometry).map(|(c, g)| row(c, g, g.bodies.map(name))))
+            }
+            Answer::Near(all) => {
+                to.collect_seq(all.iter().zip(geometry).map(|(p, g)| row(p, g, g.bodies.map(name))))
+            }
+            // `args` refuses the geometry of these.
+            Answer::Pairs(_) | Answer::Earliest(_) | Answer::Distance(_) => to.collect_seq([(); 0]),
         }
     }
 }

@@ -18,6 +18,8 @@ mod read;
 mod sequence;
 mod topology;
 mod topology_check;
+#[cfg(feature = "gz")]
+mod unpack;
 mod validate;
 mod weld;
 

@@ -29,16 +29,34 @@ impl Mesh {
     /// # Errors
     /// Those of `out`.
     pub fn encode_ply(&self, out: &mut impl Write) -> std::io::Result<()> {
+        self.encode(out, |_| None)
+    }
+
+    /// The same with a colour a triangle: `red`, `green` and `blue` of the element `face`, as viewers of PLY know them.
+    ///
+    /// # Errors
+    /// [`std::io::ErrorKind::InvalidInput`] unless there are as many colours as triangles; those of `out`.
+    pub fn encode_ply_coloured(&self, out: &mut impl Write, colours: &[[u8; 3]]) -> std::io::Result<()> {
+        if colours.len() != self.face_count() {
+            let text =
+                format!("{} colours for {} triangles: give one each", colours.len(), self.face_count());
+            return Err(std::io::Error::new(std::io::ErrorKind::InvalidInput, text));
+        }
+        self.encode(out, |face| Some(colours[face]))
+    }
+
+    /// Writes the header, the points and the faces, each with its colour if it has one: all have, or none.
+    fn encode(&self, out: &mut impl Write, colour: impl Fn(usize) -> Option<[u8; 3]>) -> std::io::Result<()> {
         let kind = if self.positions.is_f64() { "double" } else { "float" };
         write!(out, "ply\nformat binary_little_endian 1.0\nelement vertex {}\n", self.vertex_count())?;
         for axis in ['x', 'y', 'z'] {
             writeln!(out, "property {kind} {axis}")?;
         }
-        write!(
-            out,
-            "element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
-            self.face_count()
-        )?;
+        write!(out, "element face {}\nproperty list uchar uint vertex_indices\n", self.face_count())?;
+        if self.face_count() > 0 && colour(0).is_some() {
+            ["red", "green", "blue"].iter().try_for_each(|name| writeln!(out, "property uchar {name}"))?;
+        }
+        out.write_all(b"end_header\n")?;
         match &self.positions {
             Positions::F32(points) => {
                 points.iter().flatten().try_for_each(|x| out.write_all(&x.to_le_bytes()))?
@@ -47,9 +65,10 @@ impl Mesh {
                 points.iter().flatten().try_for_each(|x| out.write_all(&x.to_le_bytes()))?
             }
         }
-        for face in &self.faces {
+        for (at, face) in self.faces.iter().enumerate() {
             out.write_all(&[3])?;
             face.iter().try_for_each(|index| out.write_all(&index.to_le_bytes()))?;
+            colour(at).map_or(Ok(()), |colour| out.write_all(&colour))?;
         }
         Ok(())
     }

@@ -14,6 +14,12 @@ pub enum Problem {
         /// The operating system's words.
         reason: String,
     },
+    /// The file was packed by gzip and is damaged: read with feature `gz`.
+    #[error("its gz data cannot be unpacked: {reason}; copy the file again, or pack it again")]
+    Packed {
+        /// The unpacker's words.
+        reason: String,
+    },
     /// The extension names no reader.
     #[error("has the extension {found:?}, which no reader knows; give a .ply or an .obj file")]
     UnknownExtension {

@@ -16,11 +16,13 @@ pub enum Format {
 }
 
 impl Format {
-    /// The format that the extension names, whatever its case.
+    /// The format that the extension names, whatever its case; with feature `gz` of `.ply.gz` that of `.ply`.
     ///
     /// # Errors
     /// [`Problem::UnknownExtension`].
     pub fn of(path: &Path) -> Result<Format, Problem> {
+        let inner = is_packed(path).then(|| path.with_extension(""));
+        let path = inner.as_deref().unwrap_or(path);
         let found = path.extension().unwrap_or_default().to_string_lossy();
         match found.to_ascii_lowercase().as_str() {
             "ply" => Ok(Format::Ply),
@@ -31,7 +33,7 @@ impl Format {
 }
 
 impl Mesh {
-    /// Reads a `.ply` or `.obj` file. A polygon of n corners becomes n - 2 triangles, in file order;
+    /// Reads a `.ply` or `.obj` file; with feature `gz` also `.ply.gz` and `.obj.gz`. A polygon of n corners becomes n - 2 triangles, in file order;
     /// [`Mesh::file_face`] tells of which face a triangle is.
     ///
     /// A polygon is cut as it is seen along the axis on which its normal is longest, with exact signs: into the fan
@@ -114,7 +116,14 @@ fn open(path: &Path) -> Result<(String, Format, Vec<u8>), Error> {
     let size = size(path).map_err(input)?;
     memory::require(&format!("reading {file}"), size.saturating_mul(MULTIPLE))?;
     let bytes = std::fs::read(path).map_err(|e| input(unreadable(e)))?;
+    #[cfg(feature = "gz")]
+    let bytes = if is_packed(path) { super::unpack::unpack(&file, &bytes, MULTIPLE)? } else { bytes };
     Ok((file, format, bytes))
+}
+
+/// Whether a file is packed by gzip, and can be read.
+fn is_packed(path: &Path) -> bool {
+    cfg!(feature = "gz") && path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gz"))
 }
 
 /// Most bytes of memory that a byte of a file takes, the file itself with it: texts of short numbers take most.

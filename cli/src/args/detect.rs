@@ -141,9 +141,19 @@ pub struct DetectArgs {
     /// With --out: triangles are told as the faces of the file that they were cut from, counted from 0.
     #[arg(long, requires = "out", conflicts_with_all = ["scene", "earliest"])]
     pub file_faces: bool,
-    /// Where to write the contacts: .csv or .json.
+    /// Where to write the contacts: .csv, .json, or .vtp for ParaView; each also with .gz behind it. A .vtp has two points a contact, where
+    /// both features are nearest, and of each contact `kind` (0 vf, 1 ee, 2 fv, 3 two triangles), `status` (0 contact, 1 certified,
+    /// 2 unresolved), `row` (of a .csv, from 0), `bodies`, `a`, `b`, `toi`, `toi_hi` and `distance`.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
+    /// With --out, .csv or .json: also the vertices of both features, their weights, nearest points, distance and normal, behind the
+    /// other columns. Of vertex/face and edge/edge pairs.
+    #[arg(long, requires = "out", conflicts_with_all = ["file_faces", "earliest", "discrete", "distance"])]
+    pub geometry: bool,
+    /// Where to write all bodies as one mesh (.ply, .ply.gz), as they are at t = 0: triangles that meet, or have a vertex or an edge that
+    /// does, are red, those of unresolved contacts alone orange, all others grey.
+    #[arg(long, value_name = "FILE", conflicts_with = "earliest")]
+    pub out_mesh: Option<PathBuf>,
     /// Print the summary as one JSON object.
     #[arg(long)]
     pub json: bool,

@@ -23,7 +23,7 @@ pub fn check(command: &Command, own: &ArgMatches) -> Result<(), Error> {
         Command::Tables(args) => tables(args, given),
         Command::Trade(args) => trade(args, given),
         Command::Bench(args) => machine(&args.machine, given),
-        Command::Selftest(_) => Ok(()),
+        Command::Selftest(_) | Command::Completions(_) | Command::Man(_) => Ok(()),
     }
 }
 
@@ -100,7 +100,7 @@ fn of_single(scene: Option<&str>, given: CommandLine) -> Result<(), Error> {
 fn plan(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
     let why = "a plan asks a frame for its costs alone";
     given.none_of(
-        &["repeat", "only", "out", "rebuild", "rebuild_every"],
+        &["repeat", "only", "out", "geometry", "out_mesh", "rebuild", "rebuild_every"],
         why,
         "leave it out, or ask detect",
     )?;

@@ -23,6 +23,7 @@ pub use trade::TradeArgs;
 
 use crate::explain::ExplainArgs;
 use crate::output::stdout_failed;
+use crate::shell::{CompletionsArgs, ManArgs};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use nearmiss::error::Error;
@@ -56,6 +57,10 @@ pub enum Command {
     Bench(BenchArgs),
     /// Check this machine: known answers, and the GPU and the CPU to the bit.
     Selftest(SelftestArgs),
+    /// Print what a shell completes commands and options by.
+    Completions(CompletionsArgs),
+    /// Print a page of the manual, as troff: of the program, or of a command.
+    Man(ManArgs),
 }
 
 /// Takes the name of one of the library's choices, and tells all of them in the help.

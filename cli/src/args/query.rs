@@ -1,6 +1,7 @@
 //! From options to a query: options that a kind of question, or its solver, does not have are refused.
 
 use super::DetectArgs;
+use crate::report::Format;
 use nearmiss::error::Error;
 use nearmiss::query::{
     Certified, Continuous, ContinuousSolver, Discrete, Distance, Earliest, Near, Query, QueryKind, Search,
@@ -55,6 +56,7 @@ impl DetectArgs {
             (None, None) => Discrete { test: TriangleTest::Exact { adjacent: self.adjacent }, search }.into(),
         };
         query.check()?;
+        self.places(kind)?;
         if self.adjacent && solver != Solver::Exact {
             return Err(Error::Choice {
                 what: "adjacent triangles are decided by exact signs only".into(),
@@ -62,6 +64,27 @@ impl DetectArgs {
             });
         }
         Ok(query)
+    }
+
+    /// Refuses files of places of what has none.
+    fn places(&self, kind: QueryKind) -> Result<(), Error> {
+        let vtp = self.out.as_ref().is_some_and(|out| Format::of(out).is_ok_and(|of| of == Format::Vtp));
+        let refused =
+            |what: &str, advice: &str| Err(Error::Choice { what: what.into(), advice: advice.into() });
+        match kind {
+            QueryKind::Discrete | QueryKind::Earliest if vtp || self.geometry => refused(
+                "a discrete query tells triangles, and an earliest one a time: neither has points",
+                "ask with --continuous or --near, or colour the mesh by --out-mesh",
+            ),
+            _ if vtp && self.geometry => {
+                refused("--geometry would do nothing: a .vtp has it always", "leave it out")
+            }
+            _ if vtp && self.file_faces => refused(
+                "--file-faces would do nothing: a .vtp tells triangles",
+                "leave it out, or write .csv",
+            ),
+            _ => Ok(()),
+        }
     }
 
     /// The kind of query, and the distance of a near one.

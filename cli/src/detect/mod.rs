@@ -5,12 +5,14 @@ mod text;
 
 use crate::args::DetectArgs;
 use crate::output::{Target, print, say};
+use crate::paint;
 use crate::progress::during;
-use crate::report::{self, FileFaces, Report};
+use crate::report::{self, FileFaces, Format, Report};
 use crate::sequence::{Sequence, is_scene, steps};
 use nearmiss::Detector;
-use nearmiss::contacts::Contacts;
+use nearmiss::contacts::{ContactGeometry, Contacts};
 use nearmiss::error::Error;
+use nearmiss::memory;
 use nearmiss::mesh::{Body, Mesh};
 use nearmiss::pipeline::Stages;
 use nearmiss::query::{Query, QueryKind, Traversal};
@@ -102,7 +104,14 @@ pub fn promise(query: &Query) {
 /// Finds contacts, writes and prints what was asked for.
 pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
     let target = match &args.out {
-        Some(out) => Some((report::Format::of(out)?, Target::open(out)?)),
+        Some(out) => Some((Format::of(out)?, Target::open(out)?)),
+        None => None,
+    };
+    let painted = match &args.out_mesh {
+        Some(out) => {
+            paint::check(out)?;
+            Some(Target::open(out)?)
+        }
         None => None,
     };
     let Question { scene, query, sequence } = question(args)?;
@@ -129,6 +138,12 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
         summary.frames = all.frames;
     }
     let coincident = notes::coincident(detector.scene().bodies(), &contacts);
+    let geometry = geometry(args, &mut detector, &contacts)?;
+    if let Some(target) = painted {
+        let (mesh, colours) =
+            paint::paint(detector.scene().bodies(), &contacts, geometry.as_deref().unwrap_or_default())?;
+        target.write(|mut out| mesh.encode_ply_coloured(&mut out, &colours).map_err(|e| e.to_string()))?;
+    }
     let again = (query.kind() == QueryKind::Earliest).then(|| detector.scene().clone());
     // What it holds makes room.
     drop(detector);
@@ -140,7 +155,8 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
     let told = Report { step: None, summary, pairs_at_start, notes };
     if let Some((format, target)) = target {
         let names = sequence.as_ref().and_then(|all| all.names.as_deref());
-        report::write(target, format, &contacts, &told, (faces.as_ref(), names))?;
+        let geometry = geometry.as_deref().filter(|_| args.geometry || format == Format::Vtp);
+        report::write(target, format, &contacts, &told, (faces.as_ref(), names), geometry)?;
     }
     if args.json {
         let text = serde_json::to_string(&told).map_err(|e| Error::Bug { what: e.to_string() })?;
@@ -149,6 +165,25 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
         print(&text::human(&told, &contacts))?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Where contacts are, if a file wants it.
+///
+/// # Errors
+/// [`Error::OutOfMemory`]; those of the device.
+pub fn geometry(
+    args: &DetectArgs,
+    detector: &mut Detector,
+    found: &Contacts,
+) -> Result<Option<Vec<ContactGeometry>>, Error> {
+    let vtp = args.out.as_ref().is_some_and(|out| Format::of(out).is_ok_and(|of| of == Format::Vtp));
+    if !(args.geometry || vtp || args.out_mesh.is_some()) {
+        return Ok(None);
+    }
+    // A file of places has each twice on the way.
+    let bytes = found.len() as u64 * 2 * size_of::<ContactGeometry>() as u64;
+    memory::require("where contacts are", bytes)?;
+    detector.geometry(found).map(Some)
 }
 
 /// The answer, and the times of each run; of several runs the first only warms up.

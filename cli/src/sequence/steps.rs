@@ -2,13 +2,14 @@
 
 use super::Sequence;
 use crate::args::DetectArgs;
-use crate::detect::{notes, promise};
+use crate::detect::{geometry, notes, promise};
 use crate::output::{Target, print};
 use crate::progress::during;
 use crate::report::{FileFaces, Format, Report};
 use crate::rows::{Columns, Rows};
+use crate::vtp::Vtp;
 use nearmiss::Detector;
-use nearmiss::contacts::{Contacts, Summary};
+use nearmiss::contacts::{ContactGeometry, Contacts, Summary};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::query::{Query, QueryKind};
@@ -38,6 +39,8 @@ enum Out<'a> {
     Nowhere,
     Csv(Box<csv::Writer<&'a mut dyn Write>>),
     Json(&'a mut dyn Write),
+    /// Kept until the last step: its cells stand in another order.
+    Vtp(Box<Vtp>, &'a mut dyn Write),
 }
 
 /// Refuses what one question takes, and several do not.
@@ -51,6 +54,10 @@ pub fn check(args: &DetectArgs, steps: usize) -> Result<(), Error> {
     };
     match (steps > 1, args.rebuild_every) {
         (true, _) if args.only.is_some() => refused("--only", "each of several steps runs once"),
+        (true, _) if args.out_mesh.is_some() => Err(Error::Choice {
+            what: "--out-mesh of several steps: a file holds one mesh".into(),
+            advice: "ask one step or frame, or write contacts by --out".into(),
+        }),
         (true, _) if args.repeat > 1 => refused("--repeat", "each of several steps runs once"),
         (false, every) if every.is_some() || args.rebuild.is_some() => {
             let option = if every.is_some() { "--rebuild-every" } else { "--rebuild" };
@@ -88,6 +95,7 @@ pub fn detect(
         let out = match format {
             Format::Csv => Out::Csv(Box::new(csv::Writer::from_writer(out as &mut dyn Write))),
             Format::Json => Out::Json(out),
+            Format::Vtp => Out::Vtp(Box::default(), out),
         };
         steps.run(out).map_err(|stop| match stop {
             Stop::File(text) => text,
@@ -133,7 +141,8 @@ impl Steps<'_> {
         for step in 0..self.all.steps(at_rest) {
             let found = during(format!("step {step}"), || self.ask(step, at_rest))?;
             let report = self.report(step, &found)?;
-            self.put(&mut out, &found, &report).map_err(Stop::File)?;
+            let geometry = geometry(self.args, &mut self.detector, &found)?;
+            self.put(&mut out, &found, &report, geometry.as_deref()).map_err(Stop::File)?;
             total.add(step, &found);
             if self.args.json {
                 told.push(report);
@@ -146,6 +155,7 @@ impl Steps<'_> {
             Out::Nowhere => Ok(()),
             Out::Csv(csv) => csv.flush().map_err(|e| e.to_string()),
             Out::Json(out) => out.write_all(b"]}").map_err(|e| e.to_string()),
+            Out::Vtp(vtp, out) => vtp.write(*out).map_err(|e| e.to_string()),
         }
         .map_err(Stop::File)?;
         if self.args.json {
@@ -197,7 +207,13 @@ impl Steps<'_> {
         Ok(Report { step: Some(step), summary, pairs_at_start, notes })
     }
 
-    fn put(&self, out: &mut Out, found: &Contacts, report: &Report) -> Result<(), String> {
+    fn put(
+        &self,
+        out: &mut Out,
+        found: &Contacts,
+        report: &Report,
+        geometry: Option<&[ContactGeometry]>,
+    ) -> Result<(), String> {
         if matches!(out, Out::Nowhere) {
             return Ok(());
         }
@@ -206,11 +222,15 @@ impl Steps<'_> {
         match out {
             Out::Nowhere => Ok(()),
             Out::Csv(csv) => {
-                let columns = Columns { step: report.step, names, faces: named.is_some() };
+                let columns = Columns { step: report.step, names, faces: named.is_some(), geometry };
                 if report.step == Some(0) {
                     columns.head(csv, answer)?;
                 }
                 columns.rows(csv, answer)
+            }
+            Out::Vtp(vtp, _) => {
+                vtp.add(report.step, answer, geometry.unwrap_or_default());
+                Ok(())
             }
             Out::Json(out) => {
                 #[derive(Serialize)]
@@ -222,7 +242,8 @@ impl Steps<'_> {
                 if report.step != Some(0) {
                     out.write_all(b",").map_err(|e| e.to_string())?;
                 }
-                let step = Step { step: report.step, summary: report, contacts: Rows { answer, names } };
+                let step =
+                    Step { step: report.step, summary: report, contacts: Rows { answer, names, geometry } };
                 serde_json::to_writer(out, &step).map_err(|e| e.to_string())
             }
         }

@@ -1,0 +1,112 @@
+//! The mesh with what meets coloured.
+
+use nearmiss::contacts::{Answer, ContactGeometry, Contacts, Status};
+use nearmiss::error::Error;
+use nearmiss::mesh::{Body, Mesh, Positions};
+use std::collections::HashMap;
+use std::path::Path;
+
+/// What meets nothing.
+const GREY: [u8; 3] = [190, 190, 190];
+/// What may meet: nothing else is known of it than contacts left unresolved.
+const ORANGE: [u8; 3] = [240, 160, 30];
+/// What meets, or is near.
+const RED: [u8; 3] = [210, 30, 30];
+
+/// Refuses a file whose name is not that of a PLY.
+///
+/// # Errors
+/// [`Error::Choice`].
+pub fn check(path: &Path) -> Result<(), Error> {
+    match crate::output::unpacked(path).extension().and_then(|e| e.to_str()) {
+        Some("ply") => Ok(()),
+        _ => Err(Error::Choice {
+            what: format!("{}: the coloured mesh cannot be written in that format", path.display()),
+            advice: "give --out-mesh a name that ends in .ply or .ply.gz".into(),
+        }),
+    }
+}
+
+/// All bodies as one mesh, where they are at t = 0, and the colour of each triangle: those of the answer, and those that have a vertex or an
+/// edge of it.
+///
+/// # Errors
+/// [`Error::Input`] for more vertices or triangles than a mesh may have.
+pub fn paint(
+    bodies: &[Body],
+    found: &Contacts,
+    geometry: &[ContactGeometry],
+) -> Result<(Mesh, Vec<[u8; 3]>), Error> {
+    let (mut starts, mut points, mut faces) = (Vec::new(), Vec::new(), Vec::new());
+    for body in bodies {
+        let first = points.len() as u32;
+        starts.push((first, faces.len()));
+        points.extend(body.positions_t0().to_f64());
+        faces.extend(body.faces().iter().map(|face| face.map(|vertex| vertex + first)));
+    }
+    let mut met = Met::default();
+    let mut triangles = vec![GREY; faces.len()];
+    let mut pair = |bodies: [usize; 2], pair: [u32; 2]| {
+        bodies.iter().zip(pair).for_each(|(&body, at)| triangles[starts[body].1 + at as usize] = RED);
+    };
+    match &found.answer {
+        Answer::Pairs(all) => all.iter().for_each(|p| pair(p.bodies.map(|body| body.index()), p.triangles)),
+        Answer::Distance(all) => {
+            all.iter().for_each(|n| pair(n.bodies.map(|body| body.index()), n.triangles));
+        }
+        Answer::Contacts(all) => {
+            for (contact, geometry) in all.iter().zip(geometry) {
+                met.add(geometry, contact.status == Status::Unresolved, &starts);
+            }
+        }
+        Answer::Near(_) => geometry.iter().for_each(|geometry| met.add(geometry, false, &starts)),
+        Answer::Earliest(_) => {}
+    }
+    for (colour, face) in triangles.iter_mut().zip(&faces) {
+        *colour = met.colour(*face).unwrap_or(*colour);
+    }
+    let single = bodies.iter().all(|body| !body.positions_t0().is_f64());
+    let positions = if single {
+        // They were of single precision: exact.
+        Positions::F32(points.iter().map(|point| point.map(|x| x as f32)).collect())
+    } else {
+        Positions::F64(points)
+    };
+    Ok((Mesh::new("the coloured mesh", positions, faces)?, triangles))
+}
+
+/// Features that meet, by their vertices; whether each is in unresolved contacts alone.
+#[derive(Default)]
+struct Met {
+    vertices: HashMap<u32, bool>,
+    edges: HashMap<[u32; 2], bool>,
+    faces: HashMap<[u32; 3], bool>,
+}
+
+impl Met {
+    fn add(&mut self, of: &ContactGeometry, unresolved: bool, starts: &[(u32, usize)]) {
+        let [a, b] = of.bodies.map(|body| starts[body.index()].0);
+        let (first, second) = of.vertices.split_at(of.first);
+        for (vertices, start) in [(first, a), (second, b)] {
+            let mut own: Vec<u32> = vertices.iter().map(|vertex| vertex + start).collect();
+            own.sort_unstable();
+            let known = match own[..] {
+                [v] => self.vertices.entry(v).or_insert(true),
+                [v, w] => self.edges.entry([v, w]).or_insert(true),
+                [v, w, x] => self.faces.entry([v, w, x]).or_insert(true),
+                _ => continue,
+            };
+            *known &= unresolved;
+        }
+    }
+
+    fn colour(&self, mut face: [u32; 3]) -> Option<[u8; 3]> {
+        face.sort_unstable();
+        let [v, w, x] = face;
+        let corners = face.iter().filter_map(|vertex| self.vertices.get(vertex));
+        let edges = [[v, w], [w, x], [v, x]];
+        let sides = edges.iter().filter_map(|edge| self.edges.get(edge));
+        let all = corners.chain(sides).chain(self.faces.get(&face));
+        all.map(|unresolved| if *unresolved { ORANGE } else { RED }).min()
+    }
+}
