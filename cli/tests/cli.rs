@@ -22,6 +22,8 @@ mod near;
 mod numbers;
 #[path = "cli/output.rs"]
 mod output;
+#[path = "cli/places.rs"]
+mod places;
 #[path = "cli/plan.rs"]
 mod plan;
 #[path = "cli/repeat.rs"]

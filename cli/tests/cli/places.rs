@@ -1,0 +1,136 @@
+//! Where contacts are: `--geometry`, `.vtp`, `--out-mesh`, `.gz`; and what shells and manuals know.
+
+use super::{Folder, ok, refused};
+use flate2::{Compression, read::GzDecoder, write::GzEncoder};
+use std::io::{Read, Write};
+
+/// A rod over a triangle, and a point beside it.
+const MESH: &str = "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 1\nv 2 1 1\nf 1 2 3\nf 4 5 5\n";
+
+fn packed(text: &[u8]) -> Vec<u8> {
+    let mut gz = GzEncoder::new(Vec::new(), Compression::default());
+    gz.write_all(text).expect("memory takes all");
+    gz.finish().expect("memory takes all")
+}
+
+/// The numbers of an array of a `.vtp`.
+fn array(vtp: &str, name: &str) -> Vec<f64> {
+    let start = vtp.find(&format!("Name=\"{name}\"")).unwrap_or_else(|| panic!("{name} in {vtp}"));
+    let text = vtp[start..].split('>').nth(1).expect("values").trim_end_matches("</DataArray");
+    text.split_whitespace().map(|x| x.parse().expect("a number")).collect()
+}
+
+#[test]
+fn places_stand_behind_the_other_columns() {
+    let folder = Folder::new("places");
+    let mesh = folder.write("mesh.obj", MESH);
+    let asked = ["detect", &mesh, "--backend", "cpu", "--near", "1", "--out"];
+    ok(&[&asked[..], &[&folder.path("a.csv"), "--geometry"]].concat());
+    let csv = folder.read("a.csv");
+    let mut lines = csv.lines();
+    let head = lines.next().expect("a head");
+    assert!(
+        head.starts_with("body_a,body_b,kind,a,b,squared_distance,w0,w1,w2,closest,vertices_of_a,vertex_0")
+    );
+    let first = "0,0,vf,3,0,1,0.5,0.25,0.25,vertex-face,1,3,0,1,2,1,0.5,0.25,0.25,1,1,1,1,1,0,1,0,0,1";
+    assert_eq!(lines.next(), Some(first));
+    ok(&[&asked[..], &[&folder.path("a.json"), "--geometry"]].concat());
+    let told: serde_json::Value = serde_json::from_str(&folder.read("a.json")).expect("JSON");
+    let row = &told["contacts"][0];
+    assert_eq!(
+        (&row["kind"], &row["geometry"]["points"][0]),
+        (&"vf".into(), &serde_json::json!([1.0, 1.0, 1.0]))
+    );
+    assert_eq!(row["geometry"]["normal"], serde_json::json!([0.0, 0.0, 1.0]));
+    ok(&[&asked[..], &[&folder.path("a.vtp")]].concat());
+    let vtp = folder.read("a.vtp");
+    assert!(vtp.contains("NumberOfPoints=\"4\" NumberOfVerts=\"0\" NumberOfLines=\"2\""), "{vtp}");
+    assert_eq!(array(&vtp, "points")[..6], [1.0, 1.0, 1.0, 1.0, 1.0, 0.0]);
+    assert_eq!((array(&vtp, "a"), array(&vtp, "distance")), (vec![3.0, 4.0], vec![1.0, 1.0]));
+}
+
+#[test]
+fn what_touches_is_a_vertex_and_steps_are_told_apart() {
+    let folder = Folder::new("touches");
+    let at =
+        |z: f64| MESH.replace("1 1 1\n", &format!("1 1 {z}\n")).replace("2 1 1\n", &format!("2 1 {z}\n"));
+    let files = [1.0, -1.0, 1.0].map(|z| folder.write(&format!("{z}{}.obj", folder.name().len()), &at(z)));
+    let vtp = folder.path("a.vtp");
+    ok(&["detect", &files[0], &files[1], &files[2], "--backend", "cpu", "--out", &vtp]);
+    let text = folder.read("a.vtp");
+    let (rows, steps) = (array(&text, "row"), array(&text, "step"));
+    assert_eq!(rows.len(), steps.len());
+    assert!(steps.contains(&0.0) && steps.contains(&1.0), "{text}");
+    assert_eq!(array(&text, "toi").len(), rows.len());
+    let touching = folder.write("touching.obj", &at(0.0));
+    ok(&["detect", &touching, "--backend", "cpu", "--near", "0.5", "--out", &vtp]);
+    assert!(folder.read("a.vtp").contains("NumberOfVerts=\"2\" NumberOfLines=\"0\""));
+}
+
+#[test]
+fn files_of_places_are_refused_where_there_are_none() {
+    let grid = ["detect", "--scene", "grid", "--triangles", "16"];
+    for more in [&["--out", "a.vtp"][..], &["--out", "a.csv", "--geometry"]] {
+        assert!(refused(2, &[&grid[..], more].concat()).contains("ask with --continuous or --near"));
+    }
+    let near = [&grid[..], &["--near", "1", "--out", "a.vtp", "--geometry"]].concat();
+    assert!(refused(2, &near).contains("would do nothing"));
+    assert!(refused(2, &[&grid[..], &["--out-mesh", "a.obj"]].concat()).contains(".ply or .ply.gz"));
+}
+
+#[test]
+fn what_meets_is_red() {
+    let folder = Folder::new("red");
+    let mesh = folder.write("mesh.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 -1\nv 1 1 1\nv 2 1 1\nv 9 9 9\nv 8 9 9\nv 9 8 9\nf 1 2 3\nf 4 5 6\nf 7 8 9\n");
+    let ply = folder.path("out.ply");
+    for more in [&["--discrete"][..], &["--near", "0.5"]] {
+        ok(&[&["detect", &mesh, "--backend", "cpu", "--out-mesh", &ply], more].concat());
+        let bytes = std::fs::read(&ply).expect("written");
+        let head = b"property uchar blue\nend_header\n";
+        let at = bytes.windows(head.len()).position(|part| part == head).expect("colours") + head.len();
+        let faces = &bytes[at + 9 * 12..];
+        let colours: Vec<&[u8]> = faces.chunks(16).map(|face| &face[13..]).collect();
+        assert_eq!(colours, [[210, 30, 30], [210, 30, 30], [190, 190, 190]], "{more:?}");
+        // It is a mesh as any other.
+        assert!(ok(&["detect", &ply, "--backend", "cpu"]).contains(" 1 contact\n"));
+    }
+}
+
+#[test]
+fn packed_files_are_read_and_written() {
+    let folder = Folder::new("packed");
+    let mesh = folder.write("mesh.obj", MESH);
+    let gz = folder.path("mesh.obj.gz");
+    std::fs::write(&gz, packed(MESH.as_bytes())).expect("written");
+    let near = |mesh: &str, out: &str| ok(&["detect", mesh, "--backend", "cpu", "--near", "1", "--out", out]);
+    near(&mesh, &folder.path("a.csv"));
+    near(&gz, &folder.path("b.csv.gz"));
+    let mut text = String::new();
+    let bytes = std::fs::read(folder.path("b.csv.gz")).expect("written");
+    GzDecoder::new(&bytes[..]).read_to_string(&mut text).expect("packed");
+    assert_eq!(text, folder.read("a.csv"));
+    let painted = folder.path("painted.ply.gz");
+    ok(&["detect", &gz, "--backend", "cpu", "--out-mesh", &painted]);
+    assert!(ok(&["detect", &painted, "--backend", "cpu"]).starts_with("2 triangles"));
+    // Damaged, cut short, and of no known format.
+    let good = packed(MESH.as_bytes());
+    for bad in [&good[..good.len() / 2], b"no gz", &[&good[..], b"more"].concat()] {
+        std::fs::write(&gz, bad).expect("written");
+        let text = refused(3, &["detect", &gz]);
+        assert!(text.contains("mesh.obj.gz: its gz data cannot be unpacked: "), "{text}");
+    }
+    assert!(refused(3, &["detect", &folder.write("a.txt.gz", "")]).contains("\"txt\""));
+}
+
+#[test]
+fn shells_and_manuals_know_the_commands() {
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let text = ok(&["completions", shell]);
+        assert!(["detect", "selftest", "out-mesh"].iter().all(|word| text.contains(word)), "{shell}");
+    }
+    refused(2, &["completions", "csh"]);
+    let page = ok(&["man"]);
+    assert!(page.contains(".TH nearmiss 1") && page.contains("detect"), "{page}");
+    assert!(ok(&["man", "detect"]).contains("out\\-mesh"));
+    assert!(refused(2, &["man", "nothing"]).contains("choose one of: detect"));
+}
