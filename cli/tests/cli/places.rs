@@ -83,7 +83,7 @@ fn what_meets_is_red() {
     let folder = Folder::new("red");
     let mesh = folder.write("mesh.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 -1\nv 1 1 1\nv 2 1 1\nv 9 9 9\nv 8 9 9\nv 9 8 9\nf 1 2 3\nf 4 5 6\nf 7 8 9\n");
     let ply = folder.path("out.ply");
-    for more in [&["--discrete"][..], &["--near", "0.5"]] {
+    for more in [&["--discrete"][..], &["--near", "1"]] {
         ok(&[&["detect", &mesh, "--backend", "cpu", "--out-mesh", &ply], more].concat());
         let bytes = std::fs::read(&ply).expect("written");
         let head = b"property uchar blue\nend_header\n";
