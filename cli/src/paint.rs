@@ -3,6 +3,7 @@
 use nearmiss::contacts::{Answer, ContactGeometry, Contacts, Status};
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions};
+use nearmiss::scene::BodyKind;
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -41,7 +42,10 @@ pub fn paint(
     for body in bodies {
         let first = points.len() as u32;
         starts.push((first, faces.len()));
-        points.extend(body.positions_t0().to_f64());
+        let own = body.positions_t0().to_f64();
+        let [pose, _] = body.poses();
+        let is_rigid = body.kind() == BodyKind::Rigid;
+        points.extend(own.into_iter().map(|point| if is_rigid { pose.apply(point) } else { point }));
         faces.extend(body.faces().iter().map(|face| face.map(|vertex| vertex + first)));
     }
     let mut met = Met::default();
@@ -65,7 +69,8 @@ pub fn paint(
     for (colour, face) in triangles.iter_mut().zip(&faces) {
         *colour = met.colour(*face).unwrap_or(*colour);
     }
-    let single = bodies.iter().all(|body| !body.positions_t0().is_f64());
+    let is_single = |body: &Body| body.kind() != BodyKind::Rigid && !body.positions_t0().is_f64();
+    let single = bodies.iter().all(is_single);
     let positions = if single {
         // They were of single precision: exact.
         Positions::F32(points.iter().map(|point| point.map(|x| x as f32)).collect())
@@ -107,6 +112,7 @@ impl Met {
         let edges = [[v, w], [w, x], [v, x]];
         let sides = edges.iter().filter_map(|edge| self.edges.get(edge));
         let all = corners.chain(sides).chain(self.faces.get(&face));
-        all.map(|unresolved| if *unresolved { ORANGE } else { RED }).min()
+        let unresolved = all.copied().reduce(|one, other| one & other)?;
+        Some(if unresolved { ORANGE } else { RED })
     }
 }

@@ -32,8 +32,8 @@ pub struct Vtp {
 fn number(kind: Kind) -> u8 {
     match kind {
         Kind::Vf => 0,
-        Kind::Ee => 1,
-        Kind::Fv => 2,
+        Kind::Fv => 1,
+        Kind::Ee => 2,
     }
 }
 

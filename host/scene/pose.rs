@@ -1,7 +1,7 @@
 //! Where a rigid body is: a rotation and a translation.
 
 use crate::error::Error;
-use nalgebra::Isometry3;
+use nalgebra::{Isometry3, Vector3};
 use nearmiss_kernels::abi::PoseRecord;
 use nearmiss_kernels::math::tolerance::POSE_UNIT;
 
@@ -40,6 +40,14 @@ impl Pose {
     /// Only moved.
     pub fn at(translation: [f64; 3]) -> Pose {
         Pose { translation, ..Pose::default() }
+    }
+
+    /// Where a point of the body goes, up to roundings.
+    pub fn apply(&self, point: [f64; 3]) -> [f64; 3] {
+        let PoseRecord { rotation: [x, y, z, w], translation, .. } = self.record();
+        let (axis, point) = (Vector3::new(x, y, z), Vector3::from(point));
+        let across = axis.cross(&point) * 2.0;
+        (point + across * w + axis.cross(&across) + Vector3::from(translation)).into()
     }
 
     /// Whether it is one.
@@ -86,6 +94,11 @@ mod tests {
         let rotation = UnitQuaternion::new_unchecked(Quaternion::new(1.0, 0.0, 0.0, 0.0));
         let motion = Isometry3 { rotation, translation: Translation3::new(1.0, 2.0, 3.0) };
         assert_eq!(Pose::from(motion), Pose::at([1.0, 2.0, 3.0]));
+        // A quarter turn about z, and 2 up: x goes to y.
+        let half = 0.5_f64.sqrt();
+        let quarter = Pose { rotation: [0.0, 0.0, half, half], translation: [0.0, 0.0, 2.0] };
+        let there = quarter.apply([1.0, 0.0, 0.0]);
+        assert!(there.iter().zip([0.0, 1.0, 2.0]).all(|(x, y)| (x - y).abs() < 1e-15), "{there:?}");
     }
 
     #[test]

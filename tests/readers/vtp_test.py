@@ -10,7 +10,7 @@ import unittest
 
 import pyvista
 
-KINDS = ["vf", "ee", "fv"]
+KINDS = ["vf", "fv", "ee"]
 STATUS = ["contact", "certified", "unresolved"]
 
 

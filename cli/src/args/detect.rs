@@ -142,7 +142,7 @@ pub struct DetectArgs {
     #[arg(long, requires = "out", conflicts_with_all = ["scene", "earliest"])]
     pub file_faces: bool,
     /// Where to write the contacts: .csv, .json, or .vtp for ParaView; each also with .gz behind it. A .vtp has two points a contact, where
-    /// both features are nearest, and of each contact `kind` (0 vf, 1 ee, 2 fv, 3 two triangles), `status` (0 contact, 1 certified,
+    /// both features are nearest, and of each contact `kind` (0 vf, 1 fv, 2 ee, 3 two triangles), `status` (0 contact, 1 certified,
     /// 2 unresolved), `row` (of a .csv, from 0), `bodies`, `a`, `b`, `toi`, `toi_hi` and `distance`.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,

@@ -97,6 +97,26 @@ fn what_meets_is_red() {
 }
 
 #[test]
+fn a_rigid_body_is_coloured_where_it_is() {
+    let folder = Folder::new("rigid-red");
+    folder.write("tri.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n");
+    let scene = "[[body]]\nname = \"a\"\nkind = \"static\"\nmesh = \"tri.obj\"\n\
+         [[body]]\nname = \"b\"\nkind = \"rigid\"\nmesh = \"tri.obj\"\nposes = [{ translation = [0.5, 0.5, 3] }]\n";
+    let (scene, ply, vtp) =
+        (folder.write("scene.toml", scene), folder.path("out.ply"), folder.path("out.vtp"));
+    ok(&["detect", &scene, "--backend", "cpu", "--distance", "--out-mesh", &ply, "--out", &vtp]);
+    let bytes = std::fs::read(&ply).expect("written");
+    let head = b"end_header\n";
+    let at = bytes.windows(head.len()).position(|part| part == head).expect("a head") + head.len();
+    let number = |at: usize| f64::from_le_bytes(bytes[at..at + 8].try_into().expect("eight bytes"));
+    let heights: Vec<f64> = (0..6).map(|vertex| number(at + 24 * vertex + 16)).collect();
+    assert_eq!(heights, [0.0, 0.0, 0.0, 3.0, 3.0, 3.0]);
+    let text = folder.read("out.vtp");
+    assert_eq!((array(&text, "distance"), array(&text, "kind")), (vec![3.0], vec![3.0]));
+    assert_eq!(array(&text, "normal")[..3], [0.0, 0.0, -1.0]);
+}
+
+#[test]
 fn packed_files_are_read_and_written() {
     let folder = Folder::new("packed");
     let mesh = folder.write("mesh.obj", MESH);
