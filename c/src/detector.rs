@@ -1,0 +1,172 @@
+//! A scene on a device, ready to be asked; and bodies that come, go and change.
+
+use crate::body::NearmissBody;
+use crate::device::NearmissDevice;
+use crate::error::{NearmissCode, NearmissError, call, free, given, make};
+use crate::input::body;
+use crate::query::NearmissQuery;
+use crate::scene::NearmissScene;
+use nearmiss::scene::BodyId;
+use nearmiss::{Detector, Device, Error};
+use std::mem::MaybeUninit;
+
+/// A scene on a device, asked frame after frame.
+pub struct NearmissDetector {
+    pub(crate) detector: Detector,
+    pub(crate) device: Device,
+    pub(crate) ids: Vec<BodyId>,
+    /// What `nearmiss_detector_on_device` showed last.
+    pub(crate) starts: Vec<[u32; 3]>,
+    /// Whether a call has begun and not ended.
+    broken: bool,
+}
+
+impl NearmissDetector {
+    /// Works with a detector. What a panic leaves is not worked with again.
+    pub(crate) fn work(
+        detector: Option<&mut NearmissDetector>,
+        error: Option<&mut MaybeUninit<NearmissError>>,
+        work: impl FnOnce(&mut NearmissDetector) -> Result<(), Error>,
+    ) -> NearmissCode {
+        call(error, || {
+            let detector = given(detector, "the detector")?;
+            if detector.broken {
+                return Err(Error::Bug {
+                    what: "an earlier call with this detector ended in a fault".into(),
+                });
+            }
+            detector.broken = true;
+            let done = work(detector);
+            detector.broken = false;
+            done
+        })
+    }
+}
+
+/// Takes a copy of a scene to a device and builds its trees. Cost: linear in triangles; memory grows with what is found.
+///
+/// Fails with `NEARMISS_CHOICE` for a scene without bodies and for choices that do not go together; with `NEARMISS_OUT_OF_MEMORY` and
+/// `NEARMISS_DEVICE`.
+///
+/// # Safety
+/// The names of the query are texts or NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nearmiss_detector_new(
+    device: Option<&NearmissDevice>,
+    scene: Option<&NearmissScene>,
+    query: Option<&NearmissQuery>,
+    detector: Option<&mut MaybeUninit<*mut NearmissDetector>>,
+    error: Option<&mut MaybeUninit<NearmissError>>,
+) -> NearmissCode {
+    make(detector, "the detector", error, || {
+        let device = given(device, "the device")?.device.clone();
+        let NearmissScene { scene, ids } = given(scene, "the scene")?;
+        // SAFETY: the caller's promise.
+        let query = unsafe { given(query, "the query")?.query() }?;
+        let detector = Detector::new(device.clone(), scene.clone(), query)?;
+        Ok(NearmissDetector { detector, device, ids: ids.clone(), starts: Vec::new(), broken: false })
+    })
+}
+
+/// The tolerance of a certified solver, a length: as asked, or the default for this scene; -1 of other solvers.
+#[unsafe(no_mangle)]
+pub extern "C" fn nearmiss_detector_tolerance(
+    detector: Option<&mut NearmissDetector>,
+    tolerance: Option<&mut MaybeUninit<f64>>,
+    error: Option<&mut MaybeUninit<NearmissError>>,
+) -> NearmissCode {
+    NearmissDetector::work(detector, error, |own| {
+        given(tolerance, "the tolerance")?.write(own.detector.tolerance().unwrap_or(-1.0));
+        Ok(())
+    })
+}
+
+/// Makes tiles or trees over what moves anew: pays when bodies have moved far from where these were made.
+#[unsafe(no_mangle)]
+pub extern "C" fn nearmiss_detector_rebuild(
+    detector: Option<&mut NearmissDetector>,
+    error: Option<&mut MaybeUninit<NearmissError>>,
+) -> NearmissCode {
+    NearmissDetector::work(detector, error, |own| own.detector.rebuild())
+}
+
+/// Adds a body, from the next frame on, and tells its number: that of one that was removed, where there is one. `id` may be NULL. Cost: as of
+/// making the detector, at the next frame.
+///
+/// # Safety
+/// What the body points to is there.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nearmiss_detector_add(
+    detector: Option<&mut NearmissDetector>,
+    body: Option<&NearmissBody>,
+    id: Option<&mut MaybeUninit<u32>>,
+    error: Option<&mut MaybeUninit<NearmissError>>,
+) -> NearmissCode {
+    NearmissDetector::work(detector, error, |own| {
+        // SAFETY: the caller's promise.
+        let body = unsafe { given(body, "the body")?.body() }?;
+        let added = own.detector.add(body)?;
+        if added.index() == own.ids.len() {
+            own.ids.push(added);
+        }
+        if let Some(id) = id {
+            id.write(added.index() as u32);
+        }
+        Ok(())
+    })
+}
+
+/// Puts another body, of any mesh, in the place of one, from the next frame on. Cost: as of making the detector, at the next frame.
+///
+/// # Safety
+/// What the body points to is there.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn nearmiss_detector_replace(
+    detector: Option<&mut NearmissDetector>,
+    id: u32,
+    new: Option<&NearmissBody>,
+    error: Option<&mut MaybeUninit<NearmissError>>,
+) -> NearmissCode {
+    NearmissDetector::work(detector, error, |own| {
+        // SAFETY: the caller's promise.
+        let new = unsafe { given(new, "the body")?.body() }?;
+        own.detector.replace(body(&own.ids, id)?, new)
+    })
+}
+
+/// Takes a body out, from the next frame on; others keep their numbers. Cost: as of making the detector, at the next frame.
+#[unsafe(no_mangle)]
+pub extern "C" fn nearmiss_detector_remove(
+    detector: Option<&mut NearmissDetector>,
+    id: u32,
+    error: Option<&mut MaybeUninit<NearmissError>>,
+) -> NearmissCode {
+    NearmissDetector::work(detector, error, |own| own.detector.remove(body(&own.ids, id)?).map(drop))
+}
+
+/// Frees the detector; waits for what it has submitted. Its answers stay.
+#[unsafe(no_mangle)]
+pub extern "C" fn nearmiss_detector_free(detector: Option<Box<NearmissDetector>>) {
+    free(detector);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nearmiss::{Body, Mesh, Query, device::Backend, mesh::Positions};
+
+    #[test]
+    fn a_detector_that_met_a_fault_is_not_worked_with_again() {
+        let corners = Positions::F32(vec![[0.0; 3]; 3]);
+        let body = Body::still(Mesh::new("a point", corners, vec![[0, 1, 2]]).expect("a mesh"));
+        let device = Device::open(Backend::Cpu, Some(1)).expect("a thread");
+        let detector = Detector::new(device.clone(), body, Query::discrete()).expect("a detector");
+        let mut own =
+            NearmissDetector { detector, device, ids: Vec::new(), starts: Vec::new(), broken: false };
+        assert_eq!(nearmiss_detector_rebuild(Some(&mut own), None), NearmissCode::NEARMISS_OK);
+        let code = NearmissDetector::work(Some(&mut own), None, |_| panic!("a fault"));
+        assert_eq!(code, NearmissCode::NEARMISS_BUG);
+        assert_eq!(nearmiss_detector_rebuild(Some(&mut own), None), NearmissCode::NEARMISS_BUG);
+        nearmiss_detector_free(Some(Box::new(own)));
+    }
+}

@@ -1,0 +1,197 @@
+//! Codes, texts, and the border that no panic crosses.
+
+use nearmiss::Error;
+use std::any::Any;
+use std::ffi::c_char;
+use std::mem::MaybeUninit;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// How a call ended: a code for each kind of error, grouped by who must act.
+#[allow(non_camel_case_types, reason = "as C sees them")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum NearmissCode {
+    /// Done.
+    NEARMISS_OK = 0,
+    /// Choices, arguments or pointers that do not exist or do not go together. Choose again.
+    NEARMISS_CHOICE = 1,
+    /// A mesh or positions that cannot be used. Mend the input.
+    NEARMISS_INPUT = 2,
+    /// A result could not be written.
+    NEARMISS_OUTPUT = 3,
+    /// The machine refused. See what its driver says.
+    NEARMISS_DEVICE = 4,
+    /// A measurement is worse than an earlier one.
+    NEARMISS_REGRESSION = 5,
+    /// Memory ran out. There is no answer, and nothing was lost in silence.
+    NEARMISS_OUT_OF_MEMORY = 6,
+    /// The GPU's kernels were made from other sources than the library. Build again.
+    NEARMISS_STAMP = 7,
+    /// A fault of nearmiss itself. Tell us.
+    NEARMISS_BUG = 8,
+}
+
+/// Bytes of the text of an error.
+pub const NEARMISS_TEXT: usize = 1016;
+
+/// What a call has to say, in memory of the caller. It need not be initialised; a call that succeeds clears it.
+#[repr(C)]
+pub struct NearmissError {
+    /// What the call returned.
+    pub code: NearmissCode,
+    /// Bytes of the whole text without its end, those that had no room included.
+    pub length: u32,
+    /// One sentence that says what to do, in UTF-8, with a zero at its end; cut where it has no room.
+    pub text: [c_char; NEARMISS_TEXT],
+}
+
+impl NearmissError {
+    fn new(code: NearmissCode, sentence: &str) -> NearmissError {
+        let mut error = NearmissError { code, length: sentence.len() as u32, text: [0; NEARMISS_TEXT] };
+        let cut = &sentence[..sentence.floor_char_boundary(NEARMISS_TEXT - 1)];
+        for (to, from) in error.text.iter_mut().zip(cut.bytes()) {
+            *to = from as c_char;
+        }
+        error
+    }
+}
+
+/// The exit status that the command line has for a code: 0 done, 2 bad arguments, 3 bad input, 4 all else.
+#[unsafe(no_mangle)]
+pub extern "C" fn nearmiss_exit_code(code: u32) -> u32 {
+    match code {
+        0 => 0,
+        1 => 2,
+        2 => 3,
+        _ => 4,
+    }
+}
+
+fn code(error: &Error) -> NearmissCode {
+    match error {
+        Error::Choice { .. } => NearmissCode::NEARMISS_CHOICE,
+        Error::Input { .. } => NearmissCode::NEARMISS_INPUT,
+        Error::Output { .. } => NearmissCode::NEARMISS_OUTPUT,
+        Error::Device { .. } => NearmissCode::NEARMISS_DEVICE,
+        Error::Regression { .. } => NearmissCode::NEARMISS_REGRESSION,
+        Error::OutOfMemory { .. } => NearmissCode::NEARMISS_OUT_OF_MEMORY,
+        Error::Stamp { .. } => NearmissCode::NEARMISS_STAMP,
+        // A new kind of error needs a code of its own: until then it is our fault.
+        _ => NearmissCode::NEARMISS_BUG,
+    }
+}
+
+/// Arguments that the library cannot be given.
+pub(crate) fn refused(what: impl Into<String>, advice: impl Into<String>) -> Error {
+    Error::Choice { what: what.into(), advice: advice.into() }
+}
+
+/// What a pointer of the caller points to.
+pub(crate) fn given<T>(pointer: Option<T>, what: &str) -> Result<T, Error> {
+    pointer.ok_or_else(|| refused(format!("NULL for {what}"), "give a pointer to one"))
+}
+
+/// What C calls: all errors and panics become codes here.
+pub(crate) fn call(
+    error: Option<&mut MaybeUninit<NearmissError>>,
+    work: impl FnOnce() -> Result<(), Error>,
+) -> NearmissCode {
+    // What a panic leaves behind is not used again: see `NearmissDetector::work`. Other handles change by one assignment.
+    let done = catch_unwind(AssertUnwindSafe(work))
+        .unwrap_or_else(|panic| Err(Error::Bug { what: sentence(&*panic) }));
+    let (code, text) = match &done {
+        Ok(()) => (NearmissCode::NEARMISS_OK, String::new()),
+        Err(error) => (code(error), error.to_string()),
+    };
+    if let Some(to) = error {
+        to.write(NearmissError::new(code, &text));
+    }
+    code
+}
+
+/// The same of what makes a handle: NULL where it fails.
+pub(crate) fn make<T>(
+    to: Option<&mut MaybeUninit<*mut T>>,
+    what: &str,
+    error: Option<&mut MaybeUninit<NearmissError>>,
+    work: impl FnOnce() -> Result<T, Error>,
+) -> NearmissCode {
+    call(error, || {
+        let to = given(to, what)?;
+        to.write(std::ptr::null_mut());
+        to.write(Box::into_raw(Box::new(work()?)));
+        Ok(())
+    })
+}
+
+/// Frees a handle. What its end has to say nobody hears.
+pub(crate) fn free<T>(handle: Option<Box<T>>) {
+    let _ = catch_unwind(AssertUnwindSafe(|| drop(handle)));
+}
+
+fn sentence(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().copied();
+    let text = text.or_else(|| panic.downcast_ref::<String>().map(String::as_str));
+    format!("a panic: {}", text.unwrap_or("without words"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn told(work: impl FnOnce() -> Result<(), Error>) -> (NearmissError, String) {
+        let mut error = MaybeUninit::uninit();
+        let code = call(Some(&mut error), work);
+        // SAFETY: a call writes it.
+        let error = unsafe { error.assume_init() };
+        assert_eq!(error.code, code);
+        let bytes: Vec<u8> = error.text.iter().take_while(|c| **c != 0).map(|c| *c as u8).collect();
+        (error, String::from_utf8(bytes).expect("UTF-8"))
+    }
+
+    #[test]
+    fn a_panic_is_a_code() {
+        let (error, text) = told(|| panic!("index {}", 7));
+        assert_eq!(error.code, NearmissCode::NEARMISS_BUG);
+        assert!(text.starts_with("a fault of nearmiss itself: a panic: index 7; please report"), "{text}");
+        assert_eq!(call(None, || std::panic::panic_any(3)), NearmissCode::NEARMISS_BUG);
+    }
+
+    #[test]
+    fn a_long_text_is_cut_between_characters() {
+        let (error, text) = told(|| Err(refused("ü".repeat(600), "cut")));
+        assert_eq!((error.length, text.len(), text), (1205, 1014, "ü".repeat(507)));
+        let (error, text) = told(|| Ok(()));
+        assert_eq!((error.code, error.length, text.as_str()), (NearmissCode::NEARMISS_OK, 0, ""));
+    }
+
+    #[test]
+    fn every_kind_has_its_code() {
+        let s = String::new;
+        let (file, text, what) = (s(), s(), s());
+        let device = Error::Device { what: s(), text: s(), advice: "" };
+        let all = [
+            (1, refused("", "")),
+            (3, Error::Output { file, text }),
+            (4, device),
+            (5, Error::Regression { what: s(), text: s(), advice: "" }),
+            (6, Error::OutOfMemory { what: s(), asked: 1, given: 0 }),
+            (7, Error::Stamp { found: s(), wanted: s() }),
+            (8, Error::Bug { what }),
+        ];
+        for (number, error) in all {
+            assert_eq!(code(&error) as u32, number, "{error}");
+            assert_eq!(nearmiss_exit_code(number), u32::from(error.exit_code()));
+        }
+    }
+
+    #[test]
+    fn a_handle_that_is_not_made_is_null() {
+        let mut handle = MaybeUninit::<*mut u8>::uninit();
+        let code = make(Some(&mut handle), "a handle", None, || Err(refused("no", "none")));
+        // SAFETY: written before the work.
+        assert!(code == NearmissCode::NEARMISS_CHOICE && unsafe { handle.assume_init() }.is_null());
+        assert_eq!(make::<u8>(None, "a handle", None, || Ok(1)), NearmissCode::NEARMISS_CHOICE);
+        free::<u8>(None);
+    }
+}
