@@ -18,10 +18,10 @@ impl NearmissDetector {
         ask: impl FnOnce(&mut NearmissDetector) -> Result<Contacts, Error>,
     ) -> NearmissCode {
         // Also where there is no detector.
-        let answer = answer.map(|answer| {
+        let mut answer = answer;
+        if let Some(answer) = &mut answer {
             answer.write(std::ptr::null_mut());
-            answer
-        });
+        }
         NearmissDetector::work(detector, error, |own| {
             let answer = given(answer, "the answer")?;
             let found = ask(own)?;

@@ -109,7 +109,7 @@ fn name_a_machine(sources: &[Source]) -> Vec<String> {
 fn no_text_names_a_machine() {
     let own = ["Cargo.toml", "build.rs", "README.md", "CHANGELOG.md", "CONTRIBUTING.md", "rustfmt.toml"];
     let folders = [
-        ".ci", ".cargo", ".github", "benches", "cli", "docs", "emulator", "examples", "fuzz", "host",
+        ".ci", ".cargo", ".github", "benches", "c", "cli", "docs", "emulator", "examples", "fuzz", "host",
         "python", "kernels", "lab", "tests",
     ];
     let ours =

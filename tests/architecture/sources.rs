@@ -40,7 +40,7 @@ pub fn rust(of: &[&str]) -> Vec<Source> {
 /// All Rust that we wrote.
 pub fn all_rust() -> Vec<Source> {
     rust(
-        &["kernels", "emulator", "host", "lab", "cli", "python", "tests", "benches", "build.rs", "fuzz"]
+        &["kernels", "emulator", "host", "lab", "cli", "c", "python", "tests", "benches", "build.rs", "fuzz"]
             .map(|of| if exists(of) { of } else { "build.rs" }),
     )
 }

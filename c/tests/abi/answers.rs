@@ -1,0 +1,146 @@
+//! Every query, asked through the interface and of the library itself.
+
+use super::*;
+use nearmiss::contacts::Kind;
+use nearmiss::device::Backend;
+use nearmiss::scene::{Input, Meets, Pose, Scene};
+use nearmiss::{Contacts, Detector, Device, Mesh, Query};
+use nearmiss_lab::scene::soup;
+
+/// The library's own: a soup that moves, tested against itself, and a rigid one that turns.
+fn library(query: Query, of: &Body, other: &Body, poses: [Pose; 2]) -> (Detector, Contacts) {
+    let still = |body: &Body| {
+        Mesh::new("a body", body.positions_t0().clone(), body.faces().to_vec()).expect("a mesh")
+    };
+    let mut scene = Scene::new();
+    let first = scene.add(Body::still(still(of)).with(Meets::and_itself()));
+    let second = scene.add(Body::rigid(still(other)).with(Meets::and_itself()));
+    let device = Device::open(Backend::Cpu, Some(2)).expect("threads");
+    let mut detector = Detector::new(device, scene, query).expect("a detector");
+    let [t0, t1] = of.ends();
+    let found = detector.frame(&[(first, Input::Step([t0, t1])), (second, Input::Poses(poses))]);
+    (detector, found.expect("an answer"))
+}
+
+#[test]
+fn answers_are_the_librarys() {
+    let (of, other) = (soup(300, 1, true).expect("a soup"), soup(200, 2, false).expect("a soup"));
+    let poses = [Pose::default(), Pose { rotation: [0.0, 0.0, 0.6, 0.8], translation: [0.1, 0.0, 0.05] }];
+    let queries =
+        [Query::discrete(), Query::continuous(), Query::earliest(), Query::near(0.01), Query::distance()];
+    for (number, query) in queries.into_iter().enumerate() {
+        let (mut by_library, found) = library(query, &of, &other, poses);
+        let mut asked = nearmiss_query(number as u32);
+        asked.distance = if number == 3 { 0.01 } else { 0.0 };
+        let bodies = [described(&of), NearmissBody { kind: 1, ..described(&other) }];
+        let mut detector = detector(&bodies, asked).expect("a detector");
+        let [t0, t1] = of.ends().map(rows);
+        let [from, to] = poses.map(|Pose { rotation, translation }| NearmissPose { rotation, translation });
+        let inputs = [nearmiss_step(0, t0, t1), nearmiss_poses(1, from, to)];
+        let mut answer = frame(&mut detector, &inputs).expect("an answer");
+        let summary = got(|to, error| nearmiss_answer_summary(Some(&answer), to, error)).expect("figures");
+        assert_eq!((summary.hash, summary.contacts), (found.hash(), found.len() as u64));
+        assert_eq!((summary.candidates, summary.unresolved), (found.candidates, found.unresolved));
+        assert!(found.len() > 0 && summary.bytes > 0 && summary.slices == 1 && summary.ms.total > 0.0);
+        for index in 0..summary.degraded as usize {
+            got(|to, error| nearmiss_answer_degraded(Some(&answer), index, to, error)).expect("a sentence");
+        }
+        let pairs = list(|to, n, error| nearmiss_answer_triangle_pairs(Some(&answer), to, n, error));
+        let contacts = list(|to, n, error| nearmiss_answer_contacts(Some(&answer), to, n, error));
+        let near = list(|to, n, error| nearmiss_answer_near_pairs(Some(&answer), to, n, error));
+        let has = [pairs.is_ok(), contacts.is_ok(), near.is_ok()];
+        assert_eq!(has, [number == 0, number == 1, number == 3]);
+        for (c, own) in pairs.iter().flat_map(|all| all.iter()).zip(found.pairs()) {
+            assert_eq!(
+                (c.bodies.map(|b| b as usize), c.triangles),
+                (own.bodies.map(|b| b.index()), own.triangles)
+            );
+        }
+        for (c, own) in contacts.iter().flat_map(|all| all.iter()).zip(found.contacts()) {
+            assert_eq!((c.a, c.b, c.toi, c.toi_hi), (own.a, own.b, own.toi, own.toi_hi));
+            assert_eq!((c.kind as u32, c.status as u32), (own.kind as u32, own.status as u32));
+            assert_eq!(c.bodies.map(|b| b as usize), own.bodies.map(|b| b.index()));
+        }
+        for (c, own) in near.iter().flat_map(|all| all.iter()).zip(found.near()) {
+            assert_eq!(
+                (c.a, c.b, c.squared_distance, c.weights),
+                (own.a, own.b, own.squared_distance, own.weights)
+            );
+            assert_eq!((c.kind as u32, c.closest as u32), (own.kind as u32, own.closest as u32));
+        }
+        let mut toi = MaybeUninit::new(-1.0);
+        let earliest =
+            got(|is_any, error| nearmiss_answer_earliest(Some(&answer), is_any, Some(&mut toi), error));
+        assert_eq!(earliest.is_ok(), matches!(number, 1 | 2));
+        if let Ok(is_any) = earliest {
+            // SAFETY: a number from the beginning.
+            assert_eq!(is_any.then_some(unsafe { toi.assume_init() }), found.earliest_toi());
+        }
+        let mut nearest = MaybeUninit::uninit();
+        if number == 4 {
+            let any =
+                got(|any, error| nearmiss_answer_nearest(Some(&answer), any, Some(&mut nearest), error));
+            assert_eq!(any, Ok(true));
+            // SAFETY: there is one, and it was written.
+            let (c, own) = (unsafe { nearest.assume_init() }, found.nearest().expect("two"));
+            assert_eq!(
+                (c.triangles, c.distance, c.weights, c.points),
+                (own.triangles, own.distance, own.weights, own.points)
+            );
+        }
+        let shown = list(|to, n, error| {
+            nearmiss_detector_geometry(Some(&mut detector), Some(&mut answer), to, n, error)
+        });
+        assert_eq!(shown.is_ok(), matches!(number, 1 | 3));
+        for (c, own) in
+            shown.iter().flat_map(|all| all.iter()).zip(by_library.geometry(&found).expect("geometry"))
+        {
+            assert_eq!((c.vertices, c.weights, c.points), (own.vertices, own.weights, own.points));
+            assert_eq!((c.first as usize, c.distance, c.normal), (own.first, own.distance, own.normal));
+        }
+        nearmiss_answer_free(Some(answer));
+        nearmiss_detector_free(Some(detector));
+    }
+    assert_eq!([Kind::Vf as u32, Kind::Fv as u32, Kind::Ee as u32], [0, 1, 2]);
+}
+
+/// Doubles with gaps between them are the same points.
+#[test]
+fn strides_and_doubles_are_read() {
+    let of = soup(100, 3, false).expect("a soup");
+    let points = of.positions_t0().to_f64();
+    let spaced: Vec<f64> = points.iter().flat_map(|p| [p[0], p[1], p[2], f64::NAN, f64::NAN]).collect();
+    let wide = NearmissRows { stride: 40, ..nearmiss_doubles(spaced.as_ptr(), points.len()) };
+    let hash = |positions| {
+        let body = NearmissBody { positions, ..described(&of) };
+        let mut detector = detector(&[body], nearmiss_query(0)).expect("a detector");
+        let answer = own(got(|to, error| nearmiss_detector_detect(Some(&mut detector), to, error)));
+        got(|to, error| nearmiss_answer_summary(Some(&answer), to, error)).expect("figures").hash
+    };
+    assert_eq!(hash(wide), hash(rows(of.positions_t0())));
+}
+
+/// Bodies come, change and go, under their numbers.
+#[test]
+fn bodies_come_and_go() {
+    let (of, other) = (soup(60, 4, false).expect("a soup"), soup(60, 5, false).expect("a soup"));
+    let mut detector = detector(&[described(&of)], nearmiss_query(0)).expect("a detector");
+    let body = described(&other);
+    // SAFETY: the soup lives to the end of the test; so below.
+    let add = |own: &mut NearmissDetector| {
+        got(|id, e| unsafe { nearmiss_detector_add(Some(own), Some(&body), id, e) })
+    };
+    assert_eq!(add(&mut detector), Ok(1));
+    assert_eq!(told(|error| nearmiss_detector_remove(Some(&mut detector), 0, error)), Ok(()));
+    let (code, text) =
+        told(|error| nearmiss_detector_remove(Some(&mut detector), 0, error)).expect_err("gone");
+    assert!(
+        code == NearmissCode::NEARMISS_CHOICE && text.starts_with("there is no body 0 in the scene"),
+        "{text}"
+    );
+    assert_eq!(add(&mut detector), Ok(0));
+    let replace = |own, id| told(|e| unsafe { nearmiss_detector_replace(Some(own), id, Some(&body), e) });
+    assert_eq!(replace(&mut *detector, 1), Ok(()));
+    assert!(replace(&mut *detector, 2).is_err());
+    assert!(frame(&mut detector, &[]).is_ok());
+}

@@ -1,0 +1,167 @@
+//! What cannot be is refused.
+
+use super::*;
+use NearmissCode::{NEARMISS_CHOICE, NEARMISS_DEVICE, NEARMISS_INPUT};
+use nearmiss_lab::scene::soup;
+use std::ptr::null;
+
+#[track_caller]
+fn refused<T>(outcome: Told<T>, code: NearmissCode, says: &str) {
+    let Err((was, text)) = outcome else { panic!("not refused: {says}") };
+    assert!(was == code && text.contains(says), "{was:?}: {text}");
+}
+
+fn added(body: NearmissBody) -> Told<u32> {
+    let mut scene = scene(&[]);
+    // SAFETY: tests keep what bodies point to.
+    got(|id, error| unsafe { nearmiss_scene_add(Some(&mut scene), Some(&body), id, error) })
+}
+
+#[test]
+fn null_is_refused_everywhere() {
+    assert_eq!(nearmiss_device_open(0, 1, None, None), NEARMISS_CHOICE);
+    assert_eq!(nearmiss_scene_new(None, None), NEARMISS_CHOICE);
+    refused(
+        told(|e| nearmiss_device_name(None, None, e)),
+        NEARMISS_CHOICE,
+        "NULL for the device; give a pointer",
+    );
+    // SAFETY: NULL is refused before anything is read; so below.
+    refused(
+        told(|e| unsafe { nearmiss_scene_add(None, None, None, e) }),
+        NEARMISS_CHOICE,
+        "NULL for the scene",
+    );
+    let made = got(|to, e| unsafe { nearmiss_detector_new(None, None, None, to, e) });
+    refused(made, NEARMISS_CHOICE, "NULL for the device");
+    let made = got(|to, e| unsafe { nearmiss_detector_frame(None, null(), 0, to, e) });
+    refused(made, NEARMISS_CHOICE, "NULL for the detector");
+    refused(got(|to, e| nearmiss_detector_collect(None, to, e)), NEARMISS_CHOICE, "NULL for the detector");
+    refused(told(|e| nearmiss_answer_contacts(None, None, None, e)), NEARMISS_CHOICE, "NULL for the answer");
+    let soup = soup(10, 1, false).expect("a soup");
+    let mut own = detector(&[described(&soup)], nearmiss_query(0)).expect("a detector");
+    assert_eq!(nearmiss_detector_detect(Some(&mut own), None, None), NEARMISS_CHOICE);
+    // SAFETY: as above.
+    let one = told(|e| unsafe { nearmiss_detector_place(Some(&mut own), null(), 1, e) });
+    refused(one, NEARMISS_CHOICE, "NULL for 1 inputs");
+    nearmiss_device_free(None);
+    nearmiss_scene_free(None);
+    nearmiss_detector_free(None);
+    nearmiss_answer_free(None);
+}
+
+#[test]
+fn what_is_no_machine_is_refused() {
+    refused(got(|to, e| nearmiss_device_open(9, 0, to, e)), NEARMISS_CHOICE, "the backend 9");
+    refused(got(|to, e| nearmiss_device_gpu(u32::MAX, to, e)), NEARMISS_DEVICE, "opening");
+}
+
+#[test]
+fn what_is_no_body_is_refused() {
+    let soup = soup(10, 1, false).expect("a soup");
+    let good = described(&soup);
+    assert!(added(good).is_ok());
+    let positions = |change: fn(&mut NearmissRows)| {
+        let mut rows = good.positions;
+        change(&mut rows);
+        added(NearmissBody { positions: rows, ..good })
+    };
+    refused(
+        positions(|rows| rows.stride = 8),
+        NEARMISS_CHOICE,
+        "positions of a body 8 bytes apart; give a multiple of 4",
+    );
+    refused(positions(|rows| rows.stride = 14), NEARMISS_CHOICE, "14 bytes apart");
+    refused(positions(|rows| rows.number = 7), NEARMISS_CHOICE, "numbers of kind 7");
+    refused(positions(|rows| rows.data = null()), NEARMISS_CHOICE, "NULL for positions of a body");
+    refused(
+        positions(|rows| rows.data = rows.data.wrapping_byte_add(1)),
+        NEARMISS_CHOICE,
+        "between two numbers",
+    );
+    refused(positions(|rows| rows.count = usize::MAX / 4), NEARMISS_CHOICE, "rows for positions");
+    refused(positions(|rows| rows.count = 2), NEARMISS_INPUT, "a body: ");
+    refused(added(NearmissBody { triangles: null(), ..good }), NEARMISS_CHOICE, "NULL for 30 indices");
+    refused(
+        added(NearmissBody { triangle_count: usize::MAX, ..good }),
+        NEARMISS_CHOICE,
+        "a count that cannot be",
+    );
+    refused(added(NearmissBody { kind: 3, ..good }), NEARMISS_CHOICE, "a body of kind 3");
+    refused(added(NearmissBody { self_contact: 2, ..good }), NEARMISS_CHOICE, "2 for self_contact");
+    let wrong = [[0u32, 1, 99]];
+    let triangles = wrong.as_ptr().cast();
+    refused(added(NearmissBody { triangles, triangle_count: 1, ..good }), NEARMISS_INPUT, "99");
+    let points = [[0.0f32, f32::NAN, 0.0], [1.0; 3], [0.0; 3]];
+    let triangles = [[0u32, 1, 2]];
+    let body = NearmissBody {
+        name: c"torn".as_ptr(),
+        positions: nearmiss_floats(points.as_ptr().cast(), 3),
+        triangles: triangles.as_ptr().cast(),
+        triangle_count: 1,
+        ..good
+    };
+    refused(added(body), NEARMISS_INPUT, "torn: ");
+}
+
+#[test]
+fn what_is_no_query_is_refused() {
+    let soup = soup(10, 1, false).expect("a soup");
+    let asked = |kind, change: fn(&mut NearmissQuery)| {
+        let mut query = nearmiss_query(kind);
+        change(&mut query);
+        detector(&[described(&soup)], query).map(drop)
+    };
+    assert_eq!(asked(1, |query| query.solver = c"cubic-f64".as_ptr()), Ok(()));
+    assert_eq!(asked(1, |query| (query.tolerance, query.separation) = (1e-6, 1e-3)), Ok(()));
+    assert_eq!(asked(0, |query| query.bv = c"obb".as_ptr()), Ok(()));
+    refused(asked(5, |_| ()), NEARMISS_CHOICE, "a query of kind 5");
+    refused(asked(3, |_| ()), NEARMISS_CHOICE, "a distance of 0");
+    refused(asked(0, |query| query.distance = 1.0), NEARMISS_CHOICE, "distance of a discrete query");
+    refused(asked(0, |query| query.tolerance = 0.1), NEARMISS_CHOICE, "tolerance of a discrete query");
+    refused(asked(1, |query| query.tolerance = -2.0), NEARMISS_CHOICE, "a tolerance that is no length");
+    refused(asked(1, |query| query.separation = f64::NAN), NEARMISS_CHOICE, "a separation that is no length");
+    refused(asked(1, |query| query.adjacent = 1), NEARMISS_CHOICE, "adjacent of a continuous query");
+    refused(asked(1, |query| query.solver = c"exact".as_ptr()), NEARMISS_CHOICE, "choose one of: certified");
+    refused(
+        asked(1, |query| query.solver = c"none".as_ptr()),
+        NEARMISS_CHOICE,
+        "the solver none; choose one of: exact",
+    );
+    refused(asked(0, |query| query.broad = c"none".as_ptr()), NEARMISS_CHOICE, "the broad phase none");
+    refused(detector(&[], nearmiss_query(0)).map(drop), NEARMISS_CHOICE, "a scene without bodies");
+}
+
+#[test]
+fn what_is_no_frame_is_refused() {
+    let soup = soup(10, 1, false).expect("a soup");
+    let mut own = detector(&[described(&soup)], nearmiss_query(0)).expect("a detector");
+    let at = nearmiss_at(0, rows(soup.positions_t0()));
+    let mut asked = |inputs: &[NearmissInput]| frame(&mut own, inputs).map(drop);
+    assert_eq!(asked(&[at]), Ok(()));
+    refused(asked(&[NearmissInput { body: 1, ..at }]), NEARMISS_CHOICE, "there is no body 1 in the scene");
+    refused(asked(&[at, at]), NEARMISS_CHOICE, "two inputs for body 0");
+    refused(asked(&[NearmissInput { kind: 4, ..at }]), NEARMISS_CHOICE, "an input of kind 4");
+    let pose = NearmissPose { rotation: [0.0, 0.0, 0.0, 1.0], translation: [0.0; 3] };
+    assert!(asked(&[nearmiss_pose(0, pose)]).is_err());
+    let torn = vec![[f64::NAN; 3]; soup.vertex_count()];
+    refused(
+        asked(&[nearmiss_at(0, nearmiss_doubles(torn.as_ptr().cast(), torn.len()))]),
+        NEARMISS_INPUT,
+        "a body: ",
+    );
+    assert!(asked(&[nearmiss_at(0, nearmiss_doubles(torn.as_ptr().cast(), 3))]).is_err());
+    assert_eq!(asked(&[at]), Ok(()));
+    // SAFETY: what the input names lives to the end of the test.
+    let on_host = got(|to, e| unsafe { nearmiss_detector_prepare(Some(&mut own), &at, 1, to, e) });
+    refused(on_host, NEARMISS_CHOICE, "memory of the host for body 0");
+    refused(got(|to, e| nearmiss_detector_on_device(Some(&mut own), to, e)), NEARMISS_CHOICE, "not prepared");
+    let answer = frame(&mut own, &[]).expect("an answer");
+    let wrong = list(|to, n, e| nearmiss_answer_contacts(Some(&answer), to, n, e)).map(|_| ());
+    refused(wrong, NEARMISS_CHOICE, "contacts; this is the answer to a discrete query");
+    refused(
+        got(|to, e| nearmiss_answer_degraded(Some(&answer), 7, to, e)),
+        NEARMISS_CHOICE,
+        "sentence 7 of 0",
+    );
+}
