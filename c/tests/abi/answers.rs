@@ -139,7 +139,10 @@ fn bodies_come_and_go() {
         "{text}"
     );
     assert_eq!(add(&mut detector), Ok(0));
-    let replace = |own, id| told(|e| unsafe { nearmiss_detector_replace(Some(own), id, Some(&body), e) });
+    // SAFETY: as above.
+    let replace = |own: &mut NearmissDetector, id| {
+        told(|e| unsafe { nearmiss_detector_replace(Some(own), id, Some(&body), e) })
+    };
     assert_eq!(replace(&mut *detector, 1), Ok(()));
     assert!(replace(&mut *detector, 2).is_err());
     assert!(frame(&mut detector, &[]).is_ok());
