@@ -41,7 +41,7 @@ fn answers_are_the_librarys() {
         let summary = got(|to, error| nearmiss_answer_summary(Some(&answer), to, error)).expect("figures");
         assert_eq!((summary.hash, summary.contacts), (found.hash(), found.len() as u64));
         assert_eq!((summary.candidates, summary.unresolved), (found.candidates, found.unresolved));
-        assert!(found.len() > 0 && summary.bytes > 0 && summary.slices == 1 && summary.ms.total > 0.0);
+        assert!(!found.is_empty() && summary.bytes > 0 && summary.slices == 1 && summary.ms.total > 0.0);
         for index in 0..summary.degraded as usize {
             got(|to, error| nearmiss_answer_degraded(Some(&answer), index, to, error)).expect("a sentence");
         }
@@ -126,8 +126,8 @@ fn bodies_come_and_go() {
     let (of, other) = (soup(60, 4, false).expect("a soup"), soup(60, 5, false).expect("a soup"));
     let mut detector = detector(&[described(&of)], nearmiss_query(0)).expect("a detector");
     let body = described(&other);
-    // SAFETY: the soup lives to the end of the test; so below.
     let add = |own: &mut NearmissDetector| {
+        // SAFETY: the soup lives to the end of the test; so below.
         got(|id, e| unsafe { nearmiss_detector_add(Some(own), Some(&body), id, e) })
     };
     assert_eq!(add(&mut detector), Ok(1));
@@ -139,11 +139,11 @@ fn bodies_come_and_go() {
         "{text}"
     );
     assert_eq!(add(&mut detector), Ok(0));
-    // SAFETY: as above.
     let replace = |own: &mut NearmissDetector, id| {
+        // SAFETY: as above.
         told(|e| unsafe { nearmiss_detector_replace(Some(own), id, Some(&body), e) })
     };
-    assert_eq!(replace(&mut *detector, 1), Ok(()));
-    assert!(replace(&mut *detector, 2).is_err());
+    assert_eq!(replace(&mut detector, 1), Ok(()));
+    assert!(replace(&mut detector, 2).is_err());
     assert!(frame(&mut detector, &[]).is_ok());
 }

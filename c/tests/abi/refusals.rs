@@ -32,8 +32,10 @@ fn null_is_refused_everywhere() {
         NEARMISS_CHOICE,
         "NULL for the scene",
     );
+    // SAFETY: NULL is refused before anything is read.
     let made = got(|to, e| unsafe { nearmiss_detector_new(None, None, None, to, e) });
     refused(made, NEARMISS_CHOICE, "NULL for the device");
+    // SAFETY: NULL is refused before anything is read.
     let made = got(|to, e| unsafe { nearmiss_detector_frame(None, null(), 0, to, e) });
     refused(made, NEARMISS_CHOICE, "NULL for the detector");
     refused(got(|to, e| nearmiss_detector_collect(None, to, e)), NEARMISS_CHOICE, "NULL for the detector");

@@ -28,8 +28,8 @@ fn a_submitted_frame_answers_as_one_that_is_waited_for() {
     );
     assert!(place.status != 0 && place.lists[0].address != 0 && !place.has_earliest);
     // A little only, so that no list grows.
-    // SAFETY: as above; the detector reads by the same pointer.
     for (at, to) in t1.iter().enumerate() {
+        // SAFETY: as above; the detector reads by the same pointer.
         unsafe { input.positions[0].data.cast_mut().cast::<[f64; 3]>().add(at).write(*to) };
     }
     assert_eq!(told(|e| nearmiss_detector_submit(Some(&mut own_detector), e)), Ok(()));
