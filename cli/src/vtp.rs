@@ -4,7 +4,7 @@
 //! are apart a line joins them, where they are one a vertex is there: VTK lists all vertices before all lines, and `row` says which row of
 //! a CSV each is.
 
-use nearmiss::contacts::{Answer, ContactGeometry, Kind, NearestTriangles, Status};
+use nearmiss::contacts::{Answer, ContactGeometry, Kind, NearestTriangles};
 use std::fmt::Display;
 use std::io::{self, Write};
 
@@ -28,22 +28,8 @@ pub struct Vtp {
     steps: bool,
 }
 
-/// The number of a kind; two triangles, of a distance, are 3.
-fn number(kind: Kind) -> u8 {
-    match kind {
-        Kind::Vf => 0,
-        Kind::Fv => 1,
-        Kind::Ee => 2,
-    }
-}
-
-fn of_status(status: Status) -> u8 {
-    match status {
-        Status::Contact => 0,
-        Status::Certified => 1,
-        Status::Unresolved => 2,
-    }
-}
+/// The number of two triangles, of a distance: behind those of [`Kind`].
+const TRIANGLES: u8 = Kind::Ee as u8 + 1;
 
 impl Vtp {
     /// Takes the contacts of an answer; `step` of a sequence.
@@ -52,7 +38,7 @@ impl Vtp {
         let step = step.unwrap_or(0);
         let entry = |kind, features, time, g: &ContactGeometry| Entry {
             step,
-            kind: number(kind),
+            kind: kind as u8,
             bodies: g.bodies.map(|body| body.index()),
             features,
             time,
@@ -61,11 +47,11 @@ impl Vtp {
             normal: g.normal,
         };
         match answer {
-            Answer::Contacts(all) => {
-                self.entries.extend(all.iter().zip(geometry).map(|(c, g)| {
-                    entry(c.kind, [c.a, c.b], Some(([c.toi, c.toi_hi], of_status(c.status))), g)
-                }))
-            }
+            Answer::Contacts(all) => self.entries.extend(
+                all.iter()
+                    .zip(geometry)
+                    .map(|(c, g)| entry(c.kind, [c.a, c.b], Some(([c.toi, c.toi_hi], c.status as u8)), g)),
+            ),
             Answer::Near(all) => {
                 self.entries
                     .extend(all.iter().zip(geometry).map(|(p, g)| entry(p.kind, [p.a, p.b], None, g)));
@@ -141,7 +127,7 @@ fn of_triangles(step: usize, nearest: &NearestTriangles) -> Entry {
     let length = scaled.iter().map(|x| x * x).sum::<f64>().sqrt();
     Entry {
         step,
-        kind: 3,
+        kind: TRIANGLES,
         bodies: nearest.bodies.map(|body| body.index()),
         features: nearest.triangles,
         time: None,

@@ -27,28 +27,30 @@ use nearmiss_kernels::abi::{Pair, counter};
 use nearmiss_kernels::prim::inclusion::Verdict;
 use rayon::prelude::*;
 
-/// Which features meet.
+/// Which features meet. Its number (`as u8`) stands for it in the hash, in files and in other languages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
+#[repr(u8)]
 pub enum Kind {
     /// `a` is a vertex, `b` a face of the same body or of one with a larger number.
-    Vf,
+    Vf = 0,
     /// `a` is a face, `b` a vertex of a body with a larger number.
-    Fv,
+    Fv = 1,
     /// Two edges, numbered by (larger vertex, smaller vertex), ascending.
-    Ee,
+    Ee = 2,
 }
 
-/// How sure an answer is.
+/// How sure an answer is. Its number (`as u8`) stands for it in the hash, in files and in other languages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
+#[repr(u8)]
 pub enum Status {
     /// A solver that can be wrong says so.
-    Contact,
+    Contact = 0,
     /// They meet, proven, first in `[toi, toi_hi]`.
-    Certified,
+    Certified = 1,
     /// They come nearer than the tolerance, or the budget ended; if they meet, not before `toi`. Proven as well.
-    Unresolved,
+    Unresolved = 2,
 }
 
 impl Status {

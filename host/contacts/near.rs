@@ -7,18 +7,19 @@ use nearmiss_kernels::abi::NearHit;
 use nearmiss_kernels::prim::near::corner_weights;
 use rayon::prelude::*;
 
-/// What is nearest of two features.
+/// What is nearest of two features. Its number (`as u8`) stands for it in other languages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
+#[repr(u8)]
 pub enum Closest {
     /// A vertex and the inside of a face.
-    VertexFace,
+    VertexFace = 0,
     /// A vertex and the inside of an edge.
-    VertexEdge,
+    VertexEdge = 1,
     /// Two vertices.
-    VertexVertex,
+    VertexVertex = 2,
     /// The insides of two edges.
-    EdgeEdge,
+    EdgeEdge = 3,
 }
 
 impl Closest {

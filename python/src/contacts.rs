@@ -3,7 +3,6 @@
 use crate::columns::Columns;
 use crate::errors::choice;
 use crate::host::rows;
-use nearmiss::contacts::{Closest, Kind, Status};
 use nearmiss::scene::BodyId;
 use numpy::{PyArray1, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
@@ -57,31 +56,6 @@ impl Contacts {
     }
 }
 
-fn kind_number(kind: Kind) -> u8 {
-    match kind {
-        Kind::Vf => 0,
-        Kind::Fv => 1,
-        Kind::Ee => 2,
-    }
-}
-
-fn status_number(status: Status) -> u8 {
-    match status {
-        Status::Contact => 0,
-        Status::Certified => 1,
-        Status::Unresolved => 2,
-    }
-}
-
-fn closest_number(closest: Closest) -> u8 {
-    match closest {
-        Closest::VertexFace => 0,
-        Closest::VertexEdge => 1,
-        Closest::VertexVertex => 2,
-        Closest::EdgeEdge => 3,
-    }
-}
-
 fn numbers(bodies: [BodyId; 2]) -> [u32; 2] {
     bodies.map(|body| body.index() as u32)
 }
@@ -96,8 +70,7 @@ impl Contacts {
     #[getter]
     fn kind<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, "kind", || {
-            let kinds =
-                self.of_rows("kinds", Some(|c| kind_number(c.kind)), Some(|c| kind_number(c.kind)), None)?;
+            let kinds = self.of_rows("kinds", Some(|c| c.kind as u8), Some(|c| c.kind as u8), None)?;
             Ok(PyArray1::from_vec(py, kinds))
         })
     }
@@ -158,10 +131,7 @@ impl Contacts {
     #[getter]
     fn status<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, "status", || {
-            Ok(PyArray1::from_vec(
-                py,
-                self.of_rows("a status", Some(|c| status_number(c.status)), None, None)?,
-            ))
+            Ok(PyArray1::from_vec(py, self.of_rows("a status", Some(|c| c.status as u8), None, None)?))
         })
     }
 
@@ -188,7 +158,7 @@ impl Contacts {
     #[getter]
     fn closest<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, "closest", || {
-            let closest = self.of_rows("what is closest", None, Some(|c| closest_number(c.closest)), None)?;
+            let closest = self.of_rows("what is closest", None, Some(|c| c.closest as u8), None)?;
             Ok(PyArray1::from_vec(py, closest))
         })
     }
