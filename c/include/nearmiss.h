@@ -24,7 +24,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-// The version of this header. A program that compares it with `nearmiss_abi()` knows that library and header are one.
+
+// The version of this header, which changes whenever a struct or a function does. A program that compares it with `nearmiss_abi()` knows
+// that library and header are one.
 #define NEARMISS_ABI 1
 
 // Bytes of the text of an error.
@@ -603,7 +605,7 @@ typedef struct {
 extern "C" {
 #endif // __cplusplus
 
-// The version of the header that this library was built with: `NEARMISS_ABI`. It changes whenever a struct or a function does.
+// The version of the header that this library was built with.
 uint32_t nearmiss_abi(void);
 
 // The version of nearmiss, such as "0.1.0". It lives as long as the program.
@@ -807,6 +809,13 @@ NearmissInput nearmiss_poses(uint32_t body, NearmissPose from, NearmissPose to);
 NearmissCode nearmiss_detector_on_device(NearmissDetector *detector,
                                          NearmissDeviceAnswer *answer,
                                          NearmissError *error);
+
+// The plan of the last frame that was waited for, as a text of JSON: launches (`build`, `frame`), memory by what it is for (`buffers`), bytes that
+// went to the device and came back (`transfers`), and what the scene does not need (`left_out`). All are the device's own counts. The text
+// lives until this is asked of the detector again. A detector that was asked fewer than two frames asks what is missing.
+NearmissCode nearmiss_detector_plan(NearmissDetector *detector,
+                                    const char **json,
+                                    NearmissError *error);
 
 // A query of that kind with all choices at their defaults; of what is near the distance is still to be said.
 NearmissQuery nearmiss_query(uint32_t kind);

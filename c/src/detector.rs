@@ -8,6 +8,7 @@ use crate::query::NearmissQuery;
 use crate::scene::NearmissScene;
 use nearmiss::scene::BodyId;
 use nearmiss::{Detector, Device, Error};
+use std::ffi::CString;
 use std::mem::MaybeUninit;
 
 /// A scene on a device, asked frame after frame.
@@ -17,6 +18,8 @@ pub struct NearmissDetector {
     pub(crate) ids: Vec<BodyId>,
     /// What `nearmiss_detector_on_device` showed last.
     pub(crate) starts: Vec<[u32; 3]>,
+    /// What `nearmiss_detector_plan` showed last.
+    pub(crate) plan: CString,
     /// Whether a call has begun and not ended.
     broken: bool,
 }
@@ -64,7 +67,14 @@ pub unsafe extern "C" fn nearmiss_detector_new(
         // SAFETY: the caller's promise.
         let query = unsafe { given(query, "the query")?.query() }?;
         let detector = Detector::new(device.clone(), scene.clone(), query)?;
-        Ok(NearmissDetector { detector, device, ids: ids.clone(), starts: Vec::new(), broken: false })
+        Ok(NearmissDetector {
+            detector,
+            device,
+            ids: ids.clone(),
+            starts: Vec::new(),
+            plan: CString::default(),
+            broken: false,
+        })
     })
 }
 
@@ -161,8 +171,14 @@ mod tests {
         let body = Body::still(Mesh::new("a point", corners, vec![[0, 1, 2]]).expect("a mesh"));
         let device = Device::open(Backend::Cpu, Some(1)).expect("a thread");
         let detector = Detector::new(device.clone(), body, Query::discrete()).expect("a detector");
-        let mut own =
-            NearmissDetector { detector, device, ids: Vec::new(), starts: Vec::new(), broken: false };
+        let mut own = NearmissDetector {
+            detector,
+            device,
+            ids: Vec::new(),
+            starts: Vec::new(),
+            plan: CString::default(),
+            broken: false,
+        };
         assert_eq!(nearmiss_detector_rebuild(Some(&mut own), None), NearmissCode::NEARMISS_OK);
         let code = NearmissDetector::work(Some(&mut own), None, |_| panic!("a fault"));
         assert_eq!(code, NearmissCode::NEARMISS_BUG);

@@ -11,6 +11,7 @@ mod error;
 mod frame;
 mod input;
 mod on_device;
+mod plan;
 mod query;
 mod records;
 mod rows;
@@ -25,6 +26,7 @@ pub use error::{NEARMISS_TEXT, NearmissCode, NearmissError, nearmiss_exit_code};
 pub use frame::*;
 pub use input::*;
 pub use on_device::*;
+pub use plan::*;
 pub use query::*;
 pub use records::*;
 pub use rows::{NearmissNumber, NearmissRows, nearmiss_doubles, nearmiss_floats};
@@ -33,10 +35,14 @@ pub use submit::*;
 
 use std::ffi::c_char;
 
-/// The version of the header that this library was built with: `NEARMISS_ABI`. It changes whenever a struct or a function does.
+/// The version of this header, which changes whenever a struct or a function does. A program that compares it with `nearmiss_abi()` knows
+/// that library and header are one.
+pub const NEARMISS_ABI: u32 = 1;
+
+/// The version of the header that this library was built with.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_abi() -> u32 {
-    1
+    NEARMISS_ABI
 }
 
 /// The version of nearmiss, such as "0.1.0". It lives as long as the program.

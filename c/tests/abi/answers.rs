@@ -147,3 +147,16 @@ fn bodies_come_and_go() {
     assert!(replace(&mut detector, 2).is_err());
     assert!(frame(&mut detector, &[]).is_ok());
 }
+
+/// The plan is the library's, as a text.
+#[test]
+fn plans_are_told_as_json() {
+    let of = soup(60, 4, false).expect("a soup");
+    let mut detector = detector(&[described(&of)], nearmiss_query(0)).expect("a detector");
+    let text = got(|to, error| nearmiss_detector_plan(Some(&mut detector), to, error)).expect("a plan");
+    // SAFETY: it lives until it is asked again, and ends with a zero.
+    let text = unsafe { std::ffi::CStr::from_ptr(text) }.to_str().expect("UTF-8");
+    let plan: serde_json::Value = serde_json::from_str(text).expect("JSON");
+    assert_eq!(plan["bodies"]["deformable"], serde_json::json!([1, 60]));
+    assert!(["build", "frame", "buffers", "transfers"].iter().all(|what| plan[what].is_array()), "{text}");
+}

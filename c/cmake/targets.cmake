@@ -1,0 +1,14 @@
+# nearmiss::nearmiss and nearmiss::static, of the libraries in nearmiss_libraries and the header in nearmiss_include.
+find_package(Threads REQUIRED)
+if(NOT TARGET nearmiss::nearmiss)
+    add_library(nearmiss::nearmiss SHARED IMPORTED GLOBAL)
+    set_target_properties(nearmiss::nearmiss PROPERTIES
+        IMPORTED_LOCATION "${nearmiss_libraries}/libnearmiss_c.so"
+        IMPORTED_NO_SONAME ON
+        INTERFACE_INCLUDE_DIRECTORIES "${nearmiss_include}")
+    add_library(nearmiss::static STATIC IMPORTED GLOBAL)
+    set_target_properties(nearmiss::static PROPERTIES
+        IMPORTED_LOCATION "${nearmiss_libraries}/libnearmiss_c.a"
+        INTERFACE_LINK_LIBRARIES "Threads::Threads;${CMAKE_DL_LIBS};m"
+        INTERFACE_INCLUDE_DIRECTORIES "${nearmiss_include}")
+endif()
