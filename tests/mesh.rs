@@ -132,6 +132,22 @@ fn what_is_written_reads_back_equal() {
 }
 
 #[test]
+fn colours_are_one_a_triangle() {
+    let mesh = mesh(Positions::F32(corners()), &TETRAHEDRON).unwrap();
+    for wrong in [0, 3, 5] {
+        let error = mesh.encode_ply_coloured(&mut Vec::new(), &vec![[1, 2, 3]; wrong]).unwrap_err();
+        assert_eq!(error.to_string(), format!("{wrong} colours for 4 triangles: give one each"));
+    }
+    let mut bytes = Vec::new();
+    mesh.encode_ply_coloured(&mut bytes, &[[1, 2, 3], [4, 5, 6], [7, 8, 9], [10, 11, 12]]).unwrap();
+    assert_eq!(bytes[bytes.len() - 3..], [10, 11, 12]);
+    let folder = Folder::new("colours");
+    let path = PathBuf::from(folder.path("coloured.ply"));
+    std::fs::write(&path, bytes).unwrap();
+    assert_eq!(Mesh::read(&path).unwrap().faces(), mesh.faces());
+}
+
+#[test]
 fn edges_are_numbered_by_larger_then_smaller_vertex() {
     let topology = Topology::new(&TETRAHEDRON, 4);
     assert_eq!(topology.edges, [[1, 0], [2, 0], [2, 1], [3, 0], [3, 1], [3, 2]]);

@@ -96,6 +96,46 @@ fn what_meets_is_red() {
     }
 }
 
+/// A point that meets a triangle's border alone stays unresolved.
+#[test]
+fn what_may_meet_is_orange() {
+    let folder = Folder::new("orange");
+    let at = |z: f64| format!("v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 0 {z}\nf 1 2 3\nf 4 4 4\n");
+    let files = [folder.write("t0.obj", &at(1.0)), folder.write("t1.obj", &at(-1.0))];
+    let (ply, csv) = (folder.path("out.ply"), folder.path("out.csv"));
+    let asked = ["detect", &files[0], &files[1], "--backend", "cpu"];
+    ok(&[&asked[..], &["--out-mesh", &ply, "--out", &csv]].concat());
+    assert!(folder.read("out.csv").lines().skip(1).all(|row| row.ends_with(",unresolved")));
+    let bytes = std::fs::read(&ply).expect("written");
+    assert_eq!(bytes[bytes.len() - 3..], [240, 160, 30]);
+}
+
+#[test]
+fn places_of_a_sequence_have_their_steps_and_names() {
+    let folder = Folder::new("places-of-steps");
+    folder.write("tri.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n");
+    let scene = "[[body]]\nname = \"ground\"\nkind = \"static\"\nmesh = \"tri.obj\"\n\
+         [[body]]\nname = \"flake\"\nkind = \"rigid\"\nmesh = \"tri.obj\"\n\
+         poses = [{ translation = [0.5, 0.5, 3] }, { translation = [0.5, 0.5, -1] }, { translation = [0.5, 0.5, 1] }]\n";
+    let (scene, csv, json) = (folder.write("scene.toml", scene), folder.path("a.csv"), folder.path("a.json"));
+    for out in [&csv, &json] {
+        ok(&["detect", &scene, "--backend", "cpu", "--geometry", "--out", out]);
+    }
+    let text = folder.read("a.csv");
+    let rows: Vec<Vec<&str>> = text.lines().map(|row| row.split(',').collect()).collect();
+    assert_eq!(rows[0][..4], ["step", "body_a", "body_b", "kind"]);
+    assert!(rows.len() > 2 && rows.iter().all(|row| row.len() == rows[0].len()), "{text}");
+    let steps: Vec<&str> = rows[1..].iter().map(|row| row[0]).collect();
+    assert!(steps.contains(&"0") && steps.contains(&"1"), "{steps:?}");
+    assert!(rows[1..].iter().all(|row| row[1..3] == ["ground", "flake"]), "{text}");
+    let told: serde_json::Value = serde_json::from_str(&folder.read("a.json")).expect("JSON");
+    let normal = &told["steps"][1]["contacts"][0]["geometry"]["normal"];
+    assert_eq!(normal.as_array().map(Vec::len), Some(3), "{told}");
+    // A file holds one mesh.
+    let several = refused(2, &["detect", &scene, "--out-mesh", &folder.path("a.ply")]);
+    assert!(several.contains("--out-mesh of several steps: a file holds one mesh"), "{several}");
+}
+
 #[test]
 fn a_rigid_body_is_coloured_where_it_is() {
     let folder = Folder::new("rigid-red");
