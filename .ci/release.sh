@@ -1,0 +1,127 @@
+#!/usr/bin/env bash
+# Makes all that a release is, and uploads nothing: `.ci/release.sh OUT`. It ends with the commands that would.
+#
+#   OUT/crates      the three packages of the library, as crates.io takes them
+#   OUT/wheels      Python's, for Linux on x86-64 and aarch64, glibc 2.17 and later, each with its bill of materials inside
+#   OUT/archives    the program with its manual pages and completions, and the C interface, for both machines
+#   OUT/*.json      the bill of materials of each package (CycloneDX), OUT/SHA256SUMS of everything
+#
+# Rationale
+# - A release is of a clean tree whose changelog has a heading with the version. `--rehearse` asks for neither.
+# - Zig's linker stands for old glibcs and for the other machine; it and maturin come from PyPI by name. The GPU's kernels are committed.
+# - What can run here is run before it is packed: the wheel in an empty environment with the README's lines, the C examples, the program.
+#   What is built for another machine is not, and is said so.
+# - The public interface is compared with that of the newest tag `v*` by cargo-semver-checks; where there is no tag there is nothing to compare.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+rehearse=false
+[ "${1:-}" != --rehearse ] || { rehearse=true; shift; }
+[ $# = 1 ] || { echo "usage: .ci/release.sh [--rehearse] OUT" >&2; exit 2; }
+mkdir -p "$1"
+out=$(realpath "$1")
+[ -z "$(ls -A "$out")" ] || { echo "release: $out is not empty" >&2; exit 2; }
+version=$(sed -n 's/^version = "\(.*\)"$/\1/p' Cargo.toml | head -1)
+echo "release: nearmiss $version"
+if ! $rehearse; then
+    [ -z "$(git status --porcelain)" ] || { echo "release: the tree has changes: commit them, or --rehearse" >&2; exit 1; }
+    grep -q "^## $version\b" CHANGELOG.md || { echo "release: CHANGELOG.md has no heading ## $version" >&2; exit 1; }
+fi
+tools=$out/.tools
+work=$out/.work
+trap 'rm -rf "$tools" "$work"' EXIT
+mkdir -p "$out/crates" "$out/wheels" "$out/archives" "$work"
+python3 -m venv "$tools"
+"$tools/bin/pip" -q install 'maturin>=1.16,<2' ziglang cargo-zigbuild twine
+export PATH=$tools/bin:$PATH
+arm=aarch64-unknown-linux-gnu
+intel=x86_64-unknown-linux-gnu
+targets=($intel)
+if rustup target add $arm 2>/dev/null || [ -d "$(rustc --print sysroot)/lib/rustlib/$arm" ]; then
+    targets+=($arm)
+else
+    echo "release: the library of Rust for $arm is not here: no files for it are made"
+fi
+[ "$(uname -m)" = x86_64 ] || { echo "release: made on x86-64, where the other half can be run" >&2; exit 1; }
+
+echo "=== licences, and the public interface"
+cargo test --locked -q --test licences
+last=$(git tag --list 'v*' --sort=-version:refname | head -1)
+if [ -n "$last" ]; then
+    command -v cargo-semver-checks >/dev/null || cargo install -q --locked --root "$tools" cargo-semver-checks
+    cargo semver-checks --baseline-rev "$last" -p nearmiss -p nearmiss-kernels -p nearmiss-emulator
+else
+    echo "no tag v*: nothing to compare with"
+fi
+
+echo "=== crates"
+packages=(-p nearmiss-kernels -p nearmiss-emulator -p nearmiss)
+dirty=()
+! $rehearse || dirty=(--allow-dirty)
+cargo package --locked --no-verify "${dirty[@]}" "${packages[@]}" --target-dir "$work/package"
+cp "$work"/package/package/*.crate "$out/crates/"
+cargo test --locked -q --test package -- --include-ignored
+
+echo "=== wheels"
+for target in "${targets[@]}"; do
+    maturin build --locked --release --zig --target "$target" --compatibility manylinux2014 --manifest-path python/Cargo.toml --out "$out/wheels"
+done
+twine check --strict "$out"/wheels/*.whl
+python3 -m venv "$work/user"
+"$work/user/bin/pip" -q install "$out"/wheels/nearmiss-*x86_64.whl
+for page in README.md python/README.md; do
+    "$work/user/bin/python" .ci/python_blocks.py "$page"
+done
+for wheel in "$out"/wheels/*.whl; do
+    python3 -m zipfile -l "$wheel" | grep -q 'sboms/.*cyclonedx.json' || { echo "release: $wheel has no bill of materials" >&2; exit 1; }
+done
+
+echo "=== program and C interface"
+for target in "${targets[@]}"; do
+    machine=${target%%-*}
+    cargo zigbuild --locked --release --features cuda -p nearmiss-cli -p nearmiss-c --target "$target.2.17"
+    built=$(realpath "${CARGO_TARGET_DIR:-target}")/$target/release
+    program=$work/nearmiss-$version-$machine-linux
+    mkdir -p "$program/man" "$program/completions"
+    cp "$built/nearmiss" README.md LICENSE* CHANGELOG.md "$program/"
+    if [ $target = $intel ]; then
+        nearmiss=$built/nearmiss
+        "$nearmiss" detect --scene draped --triangles 2000 >/dev/null
+    fi
+    "$nearmiss" man >"$program/man/nearmiss.1"
+    for command in $("$nearmiss" --help | awk '/^Commands:/ { inside = 1; next } inside && /^$/ { exit } inside && /^  [a-z]/ && $1 != "help" { print $1 }'); do
+        "$nearmiss" man "$command" >"$program/man/nearmiss-$command.1"
+    done
+    for shell in bash zsh fish; do "$nearmiss" completions $shell >"$program/completions/nearmiss.$shell"; done
+    cmake -S c -B "$work/c-$machine" -DNEARMISS_LIBRARY_DIR="$built" -DCMAKE_INSTALL_LIBDIR=lib >/dev/null
+    if [ $target = $intel ]; then
+        cmake --build "$work/c-$machine" >/dev/null
+        ctest --test-dir "$work/c-$machine" --output-on-failure
+    else
+        echo "not run: the program, the wheel and the C interface for $machine"
+    fi
+    cmake --install "$work/c-$machine" --prefix "$work/nearmiss-c-$version-$machine-linux" >/dev/null
+    cp LICENSE* "$work/nearmiss-c-$version-$machine-linux/"
+    for name in nearmiss nearmiss-c; do
+        tar -C "$work" --owner=0 --group=0 --sort=name -czf "$out/archives/$name-$version-$machine-linux.tar.gz" "$name-$version-$machine-linux"
+    done
+done
+
+echo "=== bills of materials"
+command -v cargo-cyclonedx >/dev/null || cargo install -q --locked --root "$tools" cargo-cyclonedx
+cargo cyclonedx --format json --all-features --override-filename sbom
+for folder in "" kernels emulator lab cli c python; do
+    bill=${folder:+$folder/}sbom.json
+    [ ! -f "$bill" ] || mv "$bill" "$out/nearmiss${folder:+-$folder}.cyclonedx.json"
+done
+
+(cd "$out" && find crates wheels archives ./*.json -type f | sort | xargs sha256sum >SHA256SUMS)
+cat "$out/SHA256SUMS"
+cat <<END
+
+Nothing was uploaded. To do so, in this order:
+  git tag -s v$version && git push origin v$version
+  cargo publish -p nearmiss-kernels && cargo publish -p nearmiss-emulator && cargo publish -p nearmiss
+  twine upload $out/wheels/*.whl
+  and attach $out/archives, $out/*.json and $out/SHA256SUMS to the release of v$version.
+END
