@@ -31,7 +31,7 @@ pub struct PictureArgs {
     #[command(flatten)]
     pub detect: DetectArgs,
     /// Width and height in pixels, each from 16 to 8192.
-    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1200x900", value_parser = size())]
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1200x900", allow_hyphen_values = true, value_parser = size())]
     pub size: [usize; 2],
     /// From where one looks: a direction from the middle of the bodies, of any length.
     #[arg(long, value_name = "X,Y,Z", default_value = "4,-7,3.5", allow_hyphen_values = true, value_parser = direction())]

@@ -80,8 +80,12 @@ pub fn normals(points: &[[f64; 3]], faces: &[[u32; 3]]) -> Vec<[[f64; 3]; 3]> {
     }
     let corner = |own: [f64; 3], vertex: u32| {
         let all = &around[starts[vertex as usize] as usize..starts[vertex as usize + 1] as usize];
-        let mut sum = own;
-        for &other in all.iter().filter(|_| all.len() <= MOST) {
+        if all.len() > MOST {
+            return unit(own);
+        }
+        // A triangle is a neighbour of its own.
+        let mut sum = [0.0; 3];
+        for &other in all {
             let normal = flat[other as usize];
             if dot(unit(own), unit(normal)) > SMOOTH {
                 sum = [0, 1, 2].map(|k| sum[k] + normal[k]);
