@@ -110,18 +110,7 @@ fn plan(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
 
 fn picture(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
     let why = "a picture shows one frame and what meets in it";
-    let idle = [
-        "repeat",
-        "only",
-        "earliest",
-        "json",
-        "geometry",
-        "out_mesh",
-        "file_faces",
-        "rebuild",
-        "rebuild_every",
-    ];
-    given.none_of(&idle, why, "leave it out, or ask detect")?;
+    given.none_of(&super::picture::IDLE, why, "leave it out, or ask detect")?;
     detect(args, given)
 }
 

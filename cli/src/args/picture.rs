@@ -19,14 +19,7 @@ pub enum Around {
 const SIDES: [usize; 2] = [16, 8192];
 
 #[derive(Args)]
-#[command(
-    mut_arg("out", png),
-    mut_arg("geometry", hidden),
-    mut_arg("out_mesh", hidden),
-    mut_arg("json", hidden)
-)]
-#[command(mut_arg("earliest", hidden), mut_arg("file_faces", hidden), mut_arg("repeat", hidden))]
-#[command(mut_arg("only", hidden), mut_arg("rebuild", hidden), mut_arg("rebuild_every", hidden))]
+#[command(mut_args(of_picture))]
 pub struct PictureArgs {
     #[command(flatten)]
     pub detect: DetectArgs,
@@ -44,17 +37,20 @@ pub struct PictureArgs {
     pub around: Around,
 }
 
-/// `--out` of a picture.
-fn png(out: Arg) -> Arg {
+/// Options of `detect` that a picture refuses.
+pub const IDLE: [&str; 9] =
+    ["repeat", "only", "earliest", "json", "geometry", "out_mesh", "file_faces", "rebuild", "rebuild_every"];
+
+/// An option of `detect`, as a picture has it.
+fn of_picture(option: Arg) -> Arg {
     let about = "Where to write the picture (.png): all bodies as they are at t = 0. Triangles that meet, or have a vertex or an edge that \
                  does, are red, those of unresolved contacts alone orange; all others have a colour a body, of a body alone a colour a \
                  connected part.";
-    out.required(true).help(about)
-}
-
-/// An option of `detect` that is refused here (`idle`).
-fn hidden(option: Arg) -> Arg {
-    option.hide(true)
+    match option.get_id().as_str() {
+        "out" => option.required(true).help(about),
+        idle if IDLE.contains(&idle) => option.hide(true),
+        _ => option,
+    }
 }
 
 /// Refuses a file whose name is not that of a PNG.

@@ -57,6 +57,8 @@ impl Picture<'_> {
             }
         }
         let larger = (size[0].min(size[1]) as f64 / 900.0).max(0.5);
+        // A few may be large: they hide little.
+        let larger = if self.marks.len() < 10 { 1.8 * larger } else { larger };
         for mark in self.marks {
             let ends = mark.map(|point| camera.place(point));
             canvas.line(ends, LINE * larger, INK);

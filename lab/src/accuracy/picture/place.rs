@@ -67,8 +67,23 @@ const AROUND: [[i32; 2]; 14] = [
     [-34, 94],
 ];
 
-/// Places inside `frame` for names of marks, in their order; none where there is none. `marks` are all marks' areas.
+/// Places inside `frame` for names of marks, in their order; none where there is none. `marks` are all marks' areas. Names may take places
+/// from each other, so they are tried from the first, from the last and from the left.
 pub fn places(names: &[([i32; 2], String)], marks: &[Area], frame: &Area) -> Vec<Option<Place>> {
+    let mut orders: [Vec<usize>; 3] = std::array::from_fn(|_| (0..names.len()).collect());
+    orders[1].reverse();
+    orders[2].sort_by_key(|at| names[*at].0);
+    let tried = orders.map(|order| {
+        let sorted: Vec<([i32; 2], String)> = order.iter().map(|at| names[*at].clone()).collect();
+        let mut found = vec![None; names.len()];
+        order.iter().zip(one_by_one(&sorted, marks, frame)).for_each(|(at, place)| found[*at] = place);
+        found
+    });
+    let left_out = |all: &Vec<Option<Place>>| all.iter().filter(|place| place.is_none()).count();
+    tried.into_iter().min_by_key(left_out).unwrap_or_default()
+}
+
+fn one_by_one(names: &[([i32; 2], String)], marks: &[Area], frame: &Area) -> Vec<Option<Place>> {
     let mut all: Vec<Option<Place>> = Vec::new();
     for (mark, name) in names {
         let wide = width(name, SIZE);
@@ -146,6 +161,17 @@ mod tests {
         assert!(faults(&bad, &marks).contains(&(2, "a name")));
         bad[2].area = Area::around(names[0].0, 9);
         assert!(faults(&bad, &marks).contains(&(2, "a mark")));
+    }
+
+    #[test]
+    fn names_give_way_to_others() {
+        // The first would stand over the second, which can go nowhere else.
+        let frame = Area { low: [0, 0], high: [260, 60] };
+        let names =
+            [([60, 50], "cubic-f64: 0 + 0".to_owned()), ([20, 50], "certified-f64 1e-4 linear".to_owned())];
+        let marks: Vec<Area> = names.iter().map(|(at, _)| Area::around(*at, 5)).collect();
+        let found: Vec<Place> = places(&names, &marks, &frame).into_iter().flatten().collect();
+        assert_eq!((found.len(), faults(&found, &marks)), (2, vec![]));
     }
 
     #[test]
