@@ -45,7 +45,7 @@ pub fn plain(second: bool) -> Style {
 mod tests {
     use super::*;
 
-    /// Pairs of series with nearly the same colour, or with the same mark and line where colours are not seen.
+    /// Pairs of series with nearly the same colour.
     fn alike(series: &[(&'static str, Style)]) -> Vec<[&'static str; 2]> {
         let mut found = Vec::new();
         for (at, (name, one)) in series.iter().enumerate() {
