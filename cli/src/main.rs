@@ -1,4 +1,4 @@
-//! The program: `detect`, `plan`, `explain`, `scene`, `tables`, `trade`, `bench`, `selftest`, `completions`, `man`.
+//! The program: `detect`, `picture`, `plan`, `explain`, `scene`, `tables`, `trade`, `bench`, `selftest`, `completions`, `man`.
 
 mod args;
 mod bench;
@@ -7,6 +7,7 @@ mod explain;
 mod memory;
 mod output;
 mod paint;
+mod picture;
 mod plan;
 mod progress;
 mod report;
@@ -44,6 +45,7 @@ fn main() -> ExitCode {
 fn run(command: Command) -> Result<ExitCode, Error> {
     match command {
         Command::Detect(args) => detect::detect(&args),
+        Command::Picture(args) => picture::picture(&args),
         Command::Plan(args) => plan::plan(&args),
         Command::Explain(args) => explain::explain(&args),
         Command::Scene(args) => scene::scene(&args),

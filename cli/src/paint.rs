@@ -8,11 +8,11 @@ use std::collections::HashMap;
 use std::path::Path;
 
 /// What meets nothing.
-const GREY: [u8; 3] = [190, 190, 190];
+pub const GREY: [u8; 3] = [190, 190, 190];
 /// What may meet: nothing else is known of it than contacts left unresolved.
-const ORANGE: [u8; 3] = [240, 160, 30];
+pub const ORANGE: [u8; 3] = [240, 160, 30];
 /// What meets, or is near.
-const RED: [u8; 3] = [210, 30, 30];
+pub const RED: [u8; 3] = [210, 30, 30];
 
 /// Refuses a file whose name is not that of a PLY.
 ///

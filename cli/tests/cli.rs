@@ -22,6 +22,8 @@ mod near;
 mod numbers;
 #[path = "cli/output.rs"]
 mod output;
+#[path = "cli/picture.rs"]
+mod picture;
 #[path = "cli/places.rs"]
 mod places;
 #[path = "cli/plan.rs"]

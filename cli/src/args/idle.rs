@@ -18,6 +18,7 @@ pub fn check(command: &Command, own: &ArgMatches) -> Result<(), Error> {
     match command {
         Command::Detect(args) => detect(args, given),
         Command::Plan(args) => plan(&args.detect, given),
+        Command::Picture(args) => picture(&args.detect, given),
         Command::Explain(args) => explain(args, given),
         Command::Scene(args) => scene(args, given),
         Command::Tables(args) => tables(args, given),
@@ -104,6 +105,12 @@ fn plan(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
         why,
         "leave it out, or ask detect",
     )?;
+    detect(args, given)
+}
+
+fn picture(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
+    let why = "a picture shows one frame and what meets in it";
+    given.none_of(&super::picture::IDLE, why, "leave it out, or ask detect")?;
     detect(args, given)
 }
 

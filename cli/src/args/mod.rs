@@ -6,6 +6,7 @@ mod files;
 mod idle;
 mod machine;
 mod number;
+pub mod picture;
 mod query;
 mod scene;
 mod selftest;
@@ -16,6 +17,7 @@ pub use bench::BenchArgs;
 pub use detect::{DetectArgs, PlanArgs};
 pub use machine::{MachineArgs, ReportArgs};
 pub use number::whole;
+pub use picture::PictureArgs;
 pub use scene::SceneArgs;
 pub use selftest::SelftestArgs;
 pub use tables::{Profile, Table, TablesArgs};
@@ -43,6 +45,8 @@ pub struct Cli {
 pub enum Command {
     /// Find what touches: in one mesh, (--with) between two, or in a scene of many; in one frame, or step after step.
     Detect(Box<DetectArgs>),
+    /// Ask a frame and draw it: what meets is red.
+    Picture(Box<PictureArgs>),
     /// Ask a frame and say what detect runs, holds and moves for each with the same arguments, what there is not, and why.
     Plan(Box<PlanArgs>),
     /// Say what every solver answers about one pair, and what the exact answer is.
@@ -109,6 +113,7 @@ fn sort_out(command: &mut Command, own: &ArgMatches) -> Result<(), Error> {
     match command {
         Command::Detect(args) => several(own, args),
         Command::Plan(args) => several(own, &mut args.detect),
+        Command::Picture(args) => several(own, &mut args.detect),
         Command::Explain(args) => {
             files::part(own, &mut args.meshes, &mut args.with);
             files::at_most_two(&args.meshes, &args.with)

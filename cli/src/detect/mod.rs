@@ -180,10 +180,18 @@ pub fn geometry(
     if !(args.geometry || vtp || args.out_mesh.is_some()) {
         return Ok(None);
     }
+    places(detector, found).map(Some)
+}
+
+/// Where contacts are.
+///
+/// # Errors
+/// [`Error::OutOfMemory`]; those of the device.
+pub fn places(detector: &mut Detector, found: &Contacts) -> Result<Vec<ContactGeometry>, Error> {
     // A file of places has each twice on the way.
     let bytes = found.len() as u64 * 2 * size_of::<ContactGeometry>() as u64;
     memory::require("where contacts are", bytes)?;
-    detector.geometry(found).map(Some)
+    detector.geometry(found)
 }
 
 /// The answer, and the times of each run; of several runs the first only warms up.

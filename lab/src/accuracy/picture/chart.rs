@@ -1,15 +1,18 @@
-//! Curves, each labelled at its end; and bars.
+//! Curves, each named at its end; and bars.
 
 use super::axis::Axis;
+use super::style::Style;
 use crate::tables::digits;
+use crate::tables::picture::labels::{self, End};
 use crate::tables::picture::{At, Drawn, FAINT, GRID, INK, LEFT, OURS, RIGHT, Sheet, head_height, sheet};
 use nearmiss::error::Error;
-use plotters::style::RGBColor;
 
 /// A curve.
 pub struct Curve {
     /// What it is of.
     pub label: String,
+    /// How it looks.
+    pub style: Style,
     /// Where it runs.
     pub points: Vec<(f64, f64)>,
 }
@@ -26,26 +29,21 @@ pub struct Chart {
 
 /// Height of a frame, and of what a chart has besides.
 const FRAME: i32 = 150;
-const CHART: i32 = 72;
-/// Where frames end; labels stand to the right.
+const CHART: i32 = 76;
+/// Where frames end; names stand to the right.
 const END: i32 = 640;
-/// Colours of Okabe and Ito, which people tell apart who see colours differently.
-pub const COLOURS: [RGBColor; 8] = [
-    RGBColor(0, 114, 178),
-    RGBColor(86, 180, 233),
-    RGBColor(0, 158, 115),
-    RGBColor(213, 94, 0),
-    RGBColor(230, 159, 0),
-    RGBColor(204, 121, 167),
-    RGBColor(90, 90, 90),
-    RGBColor(0, 0, 0),
-];
 
 /// The picture.
 ///
 /// # Errors
 /// [`Error::Bug`] where it cannot be drawn.
 pub fn charts(title: &str, device: &str, all: &[Chart]) -> Result<String, Error> {
+    // One place on an axis is no curve.
+    let is_curve = |chart: &&Chart| {
+        let mut places = chart.curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.0));
+        places.next().is_some_and(|first| places.any(|other| other != first))
+    };
+    let all: Vec<&Chart> = all.iter().filter(is_curve).collect();
     sheet(head_height(1) + (FRAME + CHART) * all.len() as i32, |sheet| {
         let mut y = sheet.head(title, &[(format!("nearmiss on {device}"), INK)])?;
         for chart in all {
@@ -73,12 +71,12 @@ pub fn frame(
     for (tick, label) in x.ticks() {
         let (px, _) = at((tick, 0.0));
         sheet.line(vec![(px, top), (px, bottom)], GRID, 1)?;
-        sheet.text(&label, (px, bottom + 11), 11, At::Middle, FAINT)?;
+        sheet.text(&label, (px, bottom + 15), 11, At::Middle, FAINT)?;
     }
     for (tick, label) in y.ticks() {
         let (_, py) = at((0.0, tick));
         sheet.line(vec![(left, py), (right, py)], GRID, 1)?;
-        sheet.text(&label, (left - 8, py), 11, At::Right, FAINT)?;
+        sheet.text(&label, (left - 11, py), 11, At::Right, FAINT)?;
     }
     Ok(at)
 }
@@ -89,48 +87,36 @@ fn chart(sheet: &Sheet, chart: &Chart, top: i32) -> Drawn {
         Axis::of(points().map(|p| p.0).collect::<Vec<_>>().into_iter()),
         Axis::of(points().map(|p| p.1).collect::<Vec<_>>().into_iter()),
     );
-    sheet.bold(&chart.title, (20, top + 12), 14)?;
+    sheet.bold(&y.named(&chart.title), (20, top + 12), 14)?;
     let (first, last) = (top + 28, top + 28 + FRAME);
     let at = frame(sheet, (&x, &y), [(LEFT / 2, first), (END, last)])?;
-    sheet.text(&chart.x, ((LEFT / 2 + END) / 2, last + 27), 12, At::Middle, FAINT)?;
+    sheet.text(&x.named(&chart.x), ((LEFT / 2 + END) / 2, last + 31), 12, At::Middle, FAINT)?;
     let mut ends = Vec::new();
-    for (curve, colour) in chart.curves.iter().zip(COLOURS.iter().cycle()) {
+    for (place, curve) in chart.curves.iter().enumerate() {
         let mut sorted = curve.points.clone();
         sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
         let line: Vec<(i32, i32)> = sorted.into_iter().map(&at).collect();
         let Some(&end) = line.last() else { continue };
-        for &point in &line {
-            sheet.dot(point, 3, *colour, true)?;
+        let Style { colour, mark, dashed } = curve.style;
+        // Those that come later lie inside those before, where they run together.
+        let over = chart.curves.len() - 1 - place;
+        let width = 2 + (3 * over / 2).min(8);
+        let marks = line.clone();
+        if dashed {
+            sheet.dashes(line, colour, width as u32)?;
+        } else {
+            sheet.line(line, colour, width as u32)?;
         }
-        sheet.line(line, *colour, 2)?;
-        ends.push((end.1, &curve.label, *colour));
+        for point in marks {
+            sheet.mark(mark, point, 3 + over.min(3) as i32, colour, !dashed)?;
+        }
+        ends.push(End { at: end, colour, label: &curve.label });
     }
-    let all_same = chart.curves.len() > 2 && chart.curves.iter().all(|c| c.points == chart.curves[0].points);
-    if all_same {
+    if ends.len() > 2 && chart.curves.iter().all(|c| c.points == chart.curves[0].points) {
         ends.truncate(1);
+        ends.iter_mut().for_each(|end| end.label = "all of them");
     }
-    ends.sort_by_key(|end| end.0);
-    let places = apart(ends.iter().map(|end| end.0).collect(), last + 8);
-    for ((_, label, colour), y) in ends.into_iter().zip(places) {
-        sheet.line(vec![(END + 6, y), (END + 20, y)], colour, 3)?;
-        let label = if all_same { "all of them" } else { label };
-        sheet.text(label, (END + 26, y), 12, At::Left, INK)?;
-    }
-    Ok(())
-}
-
-/// Heights, ascending, moved apart so that a line of text fits between any two, none below `bottom`.
-fn apart(mut heights: Vec<i32>, bottom: i32) -> Vec<i32> {
-    const LINE: i32 = 13;
-    for i in 1..heights.len() {
-        heights[i] = heights[i].max(heights[i - 1] + LINE);
-    }
-    let mut most = bottom;
-    for height in heights.iter_mut().rev() {
-        *height = (*height).min(most);
-        most = *height - LINE;
-    }
-    heights
+    labels::draw(sheet, ends, END + 34, last + 8)
 }
 
 /// Bars on a logarithmic scale, each with its number and, where it has some, milliseconds: a panel an input.
@@ -146,8 +132,9 @@ pub fn bars(
     const ROW: i32 = 24;
     const PANEL: i32 = 44;
     let rows: usize = panels.iter().map(|panel| panel.1.len()).sum();
-    sheet(head_height(1) + PANEL * panels.len() as i32 + ROW * rows as i32, |sheet| {
-        let mut y = sheet.head(title, &[(format!("nearmiss on {device}"), INK)])?;
+    sheet(head_height(2) + PANEL * panels.len() as i32 + ROW * rows as i32, |sheet| {
+        let notes = [(format!("nearmiss on {device}"), INK), ("bars on a log scale".into(), FAINT)];
+        let mut y = sheet.head(title, &notes)?;
         for (title, bars) in panels {
             sheet.bold(title, (20, y + 12), 14)?;
             y += 30;
@@ -170,32 +157,36 @@ pub fn bars(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn labels_stand_apart() {
-        assert_eq!(apart(vec![10, 10, 50], 100), [10, 23, 50]);
-        assert_eq!(apart(vec![95, 100, 100], 100), [74, 87, 100]);
-    }
+    use crate::accuracy::picture::style;
+    use crate::tables::picture::check::faults;
 
     #[test]
     fn curves_and_bars_are_labelled() {
-        let curve = |label: &str, y| Curve { label: label.into(), points: vec![(1e-9, 0.0), (1e-1, y)] };
+        let curve = |label: &str, y| {
+            let style = style::plain(label == "two");
+            Curve { label: label.into(), style, points: vec![(1e-9, 0.0), (1e-1, y)] }
+        };
+        let point = Curve { points: vec![(1.0, 1.0)], ..curve("a point", 0.0) };
+        let still = Chart { title: "no curve".into(), x: String::new(), curves: vec![point] };
         let chart = Chart {
             title: "a <chart>".into(),
             x: "a quantity".into(),
-            curves: vec![curve("one", 5e3), curve("two", 4e3)],
+            curves: vec![curve("one", 5e3), curve("two", 5e3), curve("three", 40.0)],
         };
-        let svg = charts("a title", "a GPU", &[chart]).expect("a picture");
-        for text in ["a title", "a GPU", "a &lt;chart&gt;", "one", "two", "1e-9", "a quantity"] {
+        let svg = charts("a title", "a GPU", &[chart, still]).expect("a picture");
+        for text in ["a title", "a GPU", "a &lt;chart&gt;", "one", "two", "1e-9", "a quantity, log scale"] {
             assert!(svg.contains(text), "{text}: {svg}");
         }
+        assert!(!svg.contains("no curve"), "{svg}");
+        assert_eq!(faults(&svg), Vec::<String>::new());
         let panel = (
             "a scene".to_owned(),
             vec![("left".to_owned(), 1234.0, Some(0.5)), ("none".to_owned(), 0.0, None)],
         );
         let svg = bars("a title", "a GPU", &[panel]).expect("a picture");
-        for text in ["a scene", "left", "1234, in 0.500 ms", "none"] {
+        for text in ["a scene", "left", "1234, in 0.500 ms", "none", "log scale"] {
             assert!(svg.contains(text), "{text}: {svg}");
         }
+        assert_eq!(faults(&svg), Vec::<String>::new());
     }
 }

@@ -3,6 +3,8 @@
 mod axis;
 mod chart;
 mod pareto;
+mod place;
+mod style;
 
 use super::funnel::FunnelRow;
 use super::refit::RefitRow;
@@ -31,16 +33,11 @@ pub fn tolerance(device: &str, rows: &[Row]) -> Result<String, Error> {
     let mut all = Vec::new();
     for rows in with.chunk_by(|a, b| a.input == b.input) {
         for (what, of) in quantities {
-            let curves = curves(
-                rows,
-                |row| row.solver.name().to_owned(),
-                |row| row.tolerance_edges.unwrap_or(0.0),
-                of,
-            );
+            let curves = curves(rows, |row| row.tolerance_edges.unwrap_or(0.0), of);
             // A chart of zeros tells nothing.
             if curves.iter().flat_map(|curve| &curve.points).any(|point| point.1 > 0.0) {
                 let title = format!("{}: {what}", rows[0].input);
-                all.push(Chart { title, x: "tolerance, mean edges".into(), curves });
+                all.push(Chart { title, x: "tolerance / mean edge".into(), curves });
             }
         }
     }
@@ -63,19 +60,18 @@ pub fn sweeps(device: &str, rows: &[Row]) -> Result<String, Error> {
     sorted.sort_by_key(|row| rows.iter().position(|other| other.input == row.input));
     let mut all = Vec::new();
     for rows in sorted.chunk_by(|a, b| a.input == b.input) {
-        let label = |row: &Row| {
-            let cast = if row.precision == "f32 cast" { ", cast to f32" } else { "" };
-            format!("{}{cast}", row.solver.name())
-        };
         let wrong = |row: &Row| (row.missed + row.late) as f64 / row.contacts.max(1) as f64;
         let at = |row: &Row| row.at.unwrap_or(0.0);
         let x = rows[0].input.clone();
-        let title = format!("{x}: part of the contacts that is missed or late");
-        all.push(Chart { title, x: x.clone(), curves: curves(rows, label, at, wrong) });
+        let (cast, given): (Vec<&Row>, Vec<&Row>) = rows.iter().partition(|row| row.precision == "f32 cast");
+        for (rows, how) in [(given, ""), (cast, ", positions cast to f32")] {
+            let title = format!("{x}{how}: part of the contacts that is missed or late");
+            all.push(Chart { title, x: x.clone(), curves: curves(&rows, at, wrong) });
+        }
         if x.contains("10^") {
             let certified: Vec<&Row> = rows.iter().filter(|row| row.boxes_max > 0.0).copied().collect();
             let title = format!("{x}: boxes of 99 % of the listed pairs");
-            all.push(Chart { title, x, curves: curves(&certified, label, at, |row| row.boxes_p99) });
+            all.push(Chart { title, x, curves: curves(&certified, at, |row| row.boxes_p99) });
         }
     }
     charts("Far away, large and small, degenerate", device, &all)
@@ -103,6 +99,7 @@ pub fn refit(device: &str, rows: &[RefitRow]) -> Result<String, Error> {
     for of in rows.chunk_by(|a, b| (&a.input, a.bv) == (&b.input, b.bv)) {
         let quantity = |label: &str, of_row: fn(&RefitRow) -> f64| Curve {
             label: label.into(),
+            style: style::plain(label == "triangle pairs"),
             points: of.iter().enumerate().map(|(at, row)| (at as f64, of_row(row))).collect(),
         };
         let curves = vec![
@@ -115,20 +112,63 @@ pub fn refit(device: &str, rows: &[RefitRow]) -> Result<String, Error> {
     charts("Refitting: what it costs in quality", device, &all)
 }
 
-/// A curve a label.
-fn curves(
-    rows: &[&Row],
-    label: impl Fn(&Row) -> String,
-    x: impl Fn(&Row) -> f64,
-    y: impl Fn(&Row) -> f64,
-) -> Vec<Curve> {
+/// A curve a solver.
+fn curves(rows: &[&Row], x: impl Fn(&Row) -> f64, y: impl Fn(&Row) -> f64) -> Vec<Curve> {
     let mut all: Vec<Curve> = Vec::new();
     for row in rows {
-        let (label, point) = (label(row), (x(row), y(row)));
+        let (label, point) = (row.solver.name(), (x(row), y(row)));
         match all.iter_mut().find(|curve| curve.label == label) {
             Some(curve) => curve.points.push(point),
-            None => all.push(Curve { label, points: vec![point] }),
+            None => {
+                all.push(Curve { label: label.into(), style: style::of(row.solver), points: vec![point] });
+            }
         }
     }
     all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tables::picture::check::faults;
+    use nearmiss::query::{QueryKind, Solver};
+
+    #[test]
+    fn a_solver_has_one_colour_in_every_picture() {
+        let solvers = QueryKind::Continuous.solvers();
+        let mut rows = Vec::new();
+        for (place, &solver) in solvers.iter().enumerate() {
+            for step in 0..4 {
+                rows.push(Row {
+                    input: "offset".into(),
+                    solver,
+                    precision: "f64",
+                    tolerance_edges: Some(10f64.powi(-step)),
+                    at: Some(f64::from(step)),
+                    early_edges_p99: 10f64.powi(-step - place as i32),
+                    ns: Some(100.0 * (place as f64 + 1.0)),
+                    cases: 10,
+                    missed: u64::from(!solver.is_certain()),
+                    ..Row::default()
+                });
+            }
+        }
+        let pictures = [tolerance("a GPU", &rows), sweeps("a GPU", &rows), pareto("a GPU", &rows)];
+        for svg in pictures.map(|svg| svg.expect("a picture")) {
+            assert_eq!(faults(&svg), Vec::<String>::new());
+            for &solver in &solvers {
+                let colour = style::of(solver).colour;
+                let hex = format!("#{:02X}{:02X}{:02X}", colour.0, colour.1, colour.2);
+                assert!(
+                    svg.contains(solver.name()) && svg.contains(&hex),
+                    "{} in {hex}: {svg}",
+                    solver.name()
+                );
+            }
+        }
+        // No curve of one solver has another's colour.
+        let one: Vec<&Row> = rows.iter().filter(|row| row.solver == Solver::CubicF32).collect();
+        let drawn = curves(&one, |_| 0.0, |_| 0.0);
+        assert!(drawn.len() == 1 && drawn[0].style == style::of(Solver::CubicF32));
+    }
 }

@@ -3,17 +3,19 @@
 
 use super::Quantity;
 use super::axis::Axis;
-use super::chart::{COLOURS, frame};
+use super::chart::frame;
+use super::place::{Area, SIZE, places};
+use super::style;
 use crate::accuracy::row::Row;
 use crate::tables::picture::{At, Drawn, FAINT, INK, LEFT, Sheet, head_height, sheet};
 use nearmiss::error::Error;
-use nearmiss::query::{QueryKind, Solver};
-use plotters::style::RGBColor;
+use nearmiss::query::Solver;
+use plotters::style::WHITE;
 
 /// Height of a frame, of what a panel has besides, and where frames end.
 const FRAME: i32 = 220;
-const PANEL: i32 = 84;
-const END: i32 = 700;
+const PANEL: i32 = 88;
+const END: i32 = 870;
 
 /// One mark.
 struct Event<'a> {
@@ -39,10 +41,10 @@ pub fn pareto(device: &str, rows: &[Row]) -> Result<String, Error> {
     let panels: Vec<(&[Row], Quantity)> =
         inputs.flat_map(|rows| QUANTITIES.map(|quantity| (rows, quantity))).filter(tells).collect();
     sheet(head_height(3) + (FRAME + PANEL) * panels.len() as i32, |sheet| {
-        let hollow = "hollow: can miss and be late, and how many missed + late; named: cannot, and none better in both";
+        let hollow = "hollow: can miss and be late, and how many missed + late; named besides: cannot, and none better in both";
         let notes = [(format!("nearmiss on {device}"), INK), (hollow.into(), FAINT), (String::new(), INK)];
         let mut y = sheet.head("What to choose: left is faster, lower is better", &notes)?;
-        legend(sheet, y - 18)?;
+        legend(sheet, rows, y - 18)?;
         for (rows, quantity) in panels {
             panel(sheet, rows, quantity, y)?;
             y += FRAME + PANEL;
@@ -51,19 +53,18 @@ pub fn pareto(device: &str, rows: &[Row]) -> Result<String, Error> {
     })
 }
 
-/// A solver's colour.
-fn colour(solver: Solver) -> RGBColor {
-    let place = Solver::ALL.iter().position(|of| *of == solver).unwrap_or(0);
-    COLOURS[place % COLOURS.len()]
+/// Rows that are drawn: how positions of single questions are stored changes no answer, and such a mark would hide another.
+fn asked(rows: &[Row]) -> impl Iterator<Item = &Row> {
+    rows.iter().filter(|row| row.bv.is_some() || row.precision == "f64")
 }
 
 /// The solvers' colours, in a line.
-fn legend(sheet: &Sheet, y: i32) -> Drawn {
+fn legend(sheet: &Sheet, rows: &[Row], y: i32) -> Drawn {
     let mut x = 24;
-    // Of those that a trade asks.
-    for solver in Solver::ALL.into_iter().filter(|solver| !solver.answers(QueryKind::Near)) {
+    for solver in Solver::ALL.into_iter().filter(|of| asked(rows).any(|row| row.solver == *of)) {
         let name = solver.name();
-        sheet.dot((x, y), 5, colour(solver), solver.is_certain())?;
+        let style = style::of(solver);
+        sheet.mark(style.mark, (x, y), 5, style.colour, !style.dashed)?;
         sheet.text(name, (x + 10, y), 12, At::Left, INK)?;
         x += 34 + 7 * name.len() as i32;
     }
@@ -88,39 +89,47 @@ fn best<'a>(marks: &'a [Event]) -> impl Iterator<Item = &'a Event<'a>> {
 fn panel(sheet: &Sheet, rows: &[Row], (what, of): Quantity, top: i32) -> Drawn {
     let frames = rows.iter().any(|row| row.ms.is_some());
     let time = |row: &Row| if frames { row.ms } else { row.ns };
-    // How positions of single questions are stored changes no answer: such a mark would hide another.
-    let drawn = rows.iter().filter(|row| row.bv.is_some() || row.precision == "f64");
-    let marks: Vec<Event> = drawn.filter_map(|row| Some(Event { row, x: time(row)?, y: of(row) })).collect();
+    let marks: Vec<Event> =
+        asked(rows).filter_map(|row| Some(Event { row, x: time(row)?, y: of(row) })).collect();
     let (xs, ys): (Vec<f64>, Vec<f64>) = marks.iter().map(|m| (m.x, m.y)).unzip();
-    sheet.bold(&format!("{}: {what}", rows[0].input), (20, top + 12), 14)?;
+    let (xs, ys) = (Axis::of(xs.into_iter()), Axis::of(ys.into_iter()));
+    sheet.bold(&ys.named(&format!("{}: {what}", rows[0].input)), (20, top + 12), 14)?;
     let (first, last) = (top + 30, top + 30 + FRAME);
-    let at = frame(
-        sheet,
-        (&Axis::of(xs.into_iter()), &Axis::of(ys.into_iter())),
-        [(LEFT / 2, first), (END, last)],
-    )?;
-    let unit = if frames { "ms a frame" } else { "ns a pair" };
-    sheet.text(unit, ((LEFT / 2 + END) / 2, last + 28), 12, At::Middle, FAINT)?;
-    for mark in &marks {
-        let (x, y) = at((mark.x, mark.y));
-        let sure = is_sure(mark.row);
-        sheet.dot((x, y), if sure { 5 } else { 6 }, colour(mark.row.solver), sure)?;
-        if !sure {
-            let Row { missed, late, .. } = mark.row;
-            let label = format!("{}: {missed} + {late}", mark.row.choice());
-            sheet.text(&label, (x + 10, y - 8), 11, At::Left, FAINT)?;
+    let at = frame(sheet, (&xs, &ys), [(LEFT / 2, first), (END, last)])?;
+    let unit = xs.named(if frames { "ms a frame" } else { "ns a pair" });
+    sheet.text(&unit, ((LEFT / 2 + END) / 2, last + 32), 12, At::Middle, FAINT)?;
+    let place = |mark: &Event| <[i32; 2]>::from(at((mark.x, mark.y)));
+    let unsure = marks.iter().filter(|mark| !is_sure(mark.row)).map(|mark| {
+        let Row { missed, late, .. } = mark.row;
+        (mark, format!("{}: {missed} + {late}", mark.row.choice()))
+    });
+    let mut best: Vec<&Event> = best(&marks).collect();
+    best.sort_by(|a, b| b.y.total_cmp(&a.y).then(a.x.total_cmp(&b.x)));
+    let named: Vec<(&Event, String)> =
+        unsure.chain(best.into_iter().map(|mark| (mark, mark.row.choice()))).collect();
+    let areas: Vec<Area> = marks.iter().map(|mark| Area::around(place(mark), 7)).collect();
+    let names: Vec<([i32; 2], String)> =
+        named.iter().map(|(mark, name)| (place(mark), name.clone())).collect();
+    let inside = Area { low: [LEFT / 2 + 2, first + 1], high: [END + 25, last - 1] };
+    let found = places(&names, &areas, &inside);
+    for ((mark, name), found) in named.iter().zip(found) {
+        // Where nothing is free the name is left out: the rows are in the file beside.
+        let Some(found) = found else { continue };
+        let colour = style::of(mark.row.solver).colour;
+        let [[left, top], [right, bottom]] = [found.area.low, found.area.high];
+        sheet.rectangle([(left, top), (right, bottom)], WHITE)?;
+        if let Some(line) = found.line {
+            sheet.line(line.map(Into::into).to_vec(), colour, 1)?;
         }
+        let ink = if is_sure(mark.row) { INK } else { FAINT };
+        let y = (top + bottom) / 2;
+        // Towards its mark.
+        let (x, at) = if right < place(mark)[0] { (right - 1, At::Right) } else { (left + 1, At::Left) };
+        sheet.text(name, (x, y), SIZE, at, ink)?;
     }
-    // Names in a column at the side, in the order of time, with a line to the mark.
-    let mut named: Vec<&Event> = best(&marks).collect();
-    named.sort_by(|a, b| b.y.total_cmp(&a.y).then(a.x.total_cmp(&b.x)));
-    let mut next = first;
-    for mark in named {
-        let (x, y) = at((mark.x, mark.y));
-        let beside = y.max(next).min(last);
-        sheet.line(vec![(x + 5, y), (END + 10, beside)], colour(mark.row.solver), 1)?;
-        sheet.text(&mark.row.choice(), (END + 14, beside), 11, At::Left, INK)?;
-        next = beside + 13;
+    for mark in &marks {
+        let (sure, style) = (is_sure(mark.row), style::of(mark.row.solver));
+        sheet.mark(style.mark, place(mark).into(), if sure { 4 } else { 5 }, style.colour, sure)?;
     }
     Ok(())
 }
@@ -158,6 +167,7 @@ mod tests {
             assert!(svg.contains(text), "{text}: {svg}");
         }
         assert!(!svg.contains("false alarms"), "there are none");
+        assert_eq!(crate::tables::picture::check::faults(&svg), Vec::<String>::new());
         let marks: Vec<Event> =
             rows.iter().map(|row| Event { row, x: row.ms.expect("ms"), y: row.early_edges_p99 }).collect();
         let names: Vec<Solver> = best(&marks).map(|mark| mark.row.solver).collect();

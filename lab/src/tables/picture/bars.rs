@@ -118,5 +118,6 @@ mod tests {
         {
             assert!(svg.contains(text), "{text}: {svg}");
         }
+        assert_eq!(crate::tables::picture::check::faults(&svg), Vec::<String>::new());
     }
 }

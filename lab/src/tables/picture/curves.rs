@@ -1,6 +1,7 @@
 //! Curves over the part of a step: what a front saves.
 
-use super::{At, Drawn, FAINT, GRID, INK, LEFT, OURS, RIGHT, Sheet, THEIRS, head_height, sheet};
+use super::labels::{self, End};
+use super::{At, Drawn, FAINT, GRID, INK, Mark, OURS, Sheet, THEIRS, head_height, sheet};
 use nearmiss::error::Error;
 
 /// One curve.
@@ -24,6 +25,9 @@ pub struct Chart {
 /// Height of a chart's frame, and of what it has besides.
 const FRAME: i32 = 170;
 const CHART: i32 = 75;
+/// Where frames begin and end; names stand to the right.
+const LEFT: i32 = 80;
+const RIGHT: i32 = 660;
 
 /// The picture: percent of what the same frame costs without a front, and `bound` as a line.
 ///
@@ -53,7 +57,7 @@ fn chart(sheet: &Sheet, chart: &Chart, top: i32, (bound, bound_label): (f64, &st
     let x = |part: f64| LEFT + (part * f64::from(RIGHT - LEFT)).round() as i32;
     let y = |percent: f64| last - (percent / most * f64::from(FRAME)).round() as i32;
     sheet.bold(&chart.title, (20, top + 12), 14)?;
-    for part in [0.0, 0.25, 0.5, 0.75, 1.0] {
+    for part in [0.0, 0.2, 0.4, 0.6, 0.8, 1.0] {
         sheet.line(vec![(x(part), first), (x(part), last)], GRID, 1)?;
         sheet.text(&format!("{part}"), (x(part), last + 12), 12, At::Middle, FAINT)?;
     }
@@ -65,28 +69,32 @@ fn chart(sheet: &Sheet, chart: &Chart, top: i32, (bound, bound_label): (f64, &st
         sheet.text(&format!("{percent} %"), (LEFT - 8, y(percent)), 12, At::Right, FAINT)?;
         percent += step;
     }
-    sheet.line(vec![(LEFT, y(bound)), (RIGHT, y(bound))], FAINT, 2)?;
-    sheet.text(bound_label, (RIGHT - 6, y(bound) - 9), 12, At::Right, FAINT)?;
+    sheet.line(vec![(LEFT, y(bound)), (RIGHT, y(bound))], FAINT, 1)?;
+    let mut ends = vec![End { at: (RIGHT, y(bound)), colour: FAINT, label: bound_label }];
     for curve in &chart.curves {
-        let colour = if curve.is_time { THEIRS } else { OURS };
-        sheet.line(curve.points.iter().map(|&(part, percent)| (x(part), y(percent))).collect(), colour, 3)?;
-        if let Some(&(part, percent)) = curve.points.last() {
-            let nudge = if curve.is_time { 9 } else { -9 };
-            sheet.text(&curve.label, (x(part) + 8, y(percent) + nudge), 12, At::Left, INK)?;
+        let line: Vec<(i32, i32)> =
+            curve.points.iter().map(|&(part, percent)| (x(part), y(percent))).collect();
+        let Some(&end) = line.last() else { continue };
+        let (colour, mark) = if curve.is_time { (THEIRS, Mark::Square) } else { (OURS, Mark::Disc) };
+        sheet.line(line.clone(), colour, 2)?;
+        for point in line {
+            sheet.mark(mark, point, 2, colour, true)?;
         }
+        ends.push(End { at: end, colour, label: &curve.label });
     }
-    Ok(())
+    labels::draw(sheet, ends, RIGHT + 34, last + 8)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tables::picture::check::faults;
 
     #[test]
     fn a_curve_is_labelled_at_its_end() {
         let curve = |label: &str, is_time| Curve {
             label: label.into(),
-            points: vec![(0.0, 52.0), (1.0, 90.0)],
+            points: vec![(0.0, 52.0), (1.0, 51.0)],
             is_time,
         };
         let chart =
@@ -97,5 +105,6 @@ mod tests {
         {
             assert!(svg.contains(text), "{text}: {svg}");
         }
+        assert_eq!(faults(&svg), Vec::<String>::new());
     }
 }

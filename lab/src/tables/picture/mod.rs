@@ -2,11 +2,15 @@
 //! who see colours differently; every bar and line is labelled where it stands.
 
 mod bars;
+#[cfg(test)]
+pub mod check;
 mod curves;
+pub mod labels;
 mod stacks;
 
 pub use bars::{Bar, Panel, bars};
 pub use curves::{Chart, Curve, curves};
+pub use labels::width;
 pub use stacks::{Stack, stacks};
 
 use nearmiss::error::Error;
@@ -32,6 +36,35 @@ pub enum At {
     Left,
     Middle,
     Right,
+}
+
+/// The shape of a mark.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mark {
+    /// A disc.
+    Disc,
+    /// A square.
+    Square,
+    /// A square on its corner.
+    Diamond,
+    /// A triangle, upwards.
+    Up,
+    /// A triangle, downwards.
+    Down,
+}
+
+impl Mark {
+    /// The corners of a mark about as large as a disc of that radius; none of a disc.
+    fn corners(self, (x, y): (i32, i32), radius: i32) -> Vec<(i32, i32)> {
+        let (r, high) = (radius, radius + 1);
+        match self {
+            Mark::Disc => Vec::new(),
+            Mark::Square => vec![(x - r, y - r), (x + r, y - r), (x + r, y + r), (x - r, y + r)],
+            Mark::Diamond => vec![(x - high, y), (x, y - high), (x + high, y), (x, y + high)],
+            Mark::Up => vec![(x - high, y + r), (x, y - high), (x + high, y + r)],
+            Mark::Down => vec![(x - high, y - r), (x, y + high), (x + high, y - r)],
+        }
+    }
 }
 
 /// A sheet to draw on, in pixels from the upper left.
@@ -76,10 +109,30 @@ impl Sheet<'_> {
         self.0.draw(&Rectangle::new(corners, colour.filled())).map_err(|e| e.to_string())
     }
 
-    /// A disc, or a ring.
-    pub fn dot(&self, at: (i32, i32), radius: i32, colour: RGBColor, filled: bool) -> Drawn {
-        let style = if filled { colour.filled() } else { colour.stroke_width(2) };
-        self.0.draw(&Circle::new(at, radius, style)).map_err(|e| e.to_string())
+    /// A mark, filled or hollow.
+    pub fn mark(&self, mark: Mark, at: (i32, i32), radius: i32, colour: RGBColor, filled: bool) -> Drawn {
+        let style = if filled { colour.filled() } else { WHITE.filled() };
+        let mut corners = mark.corners(at, radius);
+        let inside = if corners.is_empty() {
+            self.0
+                .draw(&Circle::new(at, radius, style))
+                .and_then(|()| self.0.draw(&Circle::new(at, radius, colour.stroke_width(2))))
+        } else {
+            let filled = Polygon::new(corners.clone(), style);
+            corners.extend(corners.first().copied());
+            self.0
+                .draw(&filled)
+                .and_then(|()| self.0.draw(&PathElement::new(corners, colour.stroke_width(2))))
+        };
+        inside.map_err(|e| e.to_string())
+    }
+
+    /// A line of dashes.
+    pub fn dashes(&self, points: Vec<(i32, i32)>, colour: RGBColor, width: u32) -> Drawn {
+        let style = colour.stroke_width(width);
+        self.0
+            .draw(&plotters::element::DashedPathElement::new(points, 7, 4, style))
+            .map_err(|e| e.to_string())
     }
 
     pub fn line(&self, points: Vec<(i32, i32)>, colour: RGBColor, width: u32) -> Drawn {

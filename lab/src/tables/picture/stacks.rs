@@ -66,7 +66,7 @@ fn panel(sheet: &Sheet, panel: &[Stack], top: i32) -> Drawn {
     sheet.bold(panel.first().map_or("", |stack| &stack.panel), (20, top + 12), 14)?;
     sheet.text("a frame, ms", (880, top + 12), 12, At::Right, FAINT)?;
     let (first, last) = (top + 26, top + 26 + ROW * panel.len() as i32);
-    for percent in [0, 25, 50, 75, 100] {
+    for percent in [0, 20, 40, 60, 80, 100] {
         let at = x(f64::from(percent));
         sheet.line(vec![(at, first - 4), (at, last)], GRID, 1)?;
         sheet.text(&format!("{percent} %"), (at, last + 10), 12, At::Middle, FAINT)?;
@@ -106,5 +106,6 @@ mod tests {
             assert!(svg.contains(text), "{text}: {svg}");
         }
         assert!(!svg.contains("balance 0") && !svg.contains("triangle tests 2"), "{svg}");
+        assert_eq!(crate::tables::picture::check::faults(&svg), Vec::<String>::new());
     }
 }

@@ -1,0 +1,92 @@
+//! What `picture` takes.
+
+use super::DetectArgs;
+use clap::builder::{StringValueParser, TypedValueParser};
+use clap::{Arg, Args, ValueEnum};
+use nearmiss::error::Error;
+use std::path::Path;
+
+/// What fills the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Around {
+    /// All bodies.
+    All,
+    /// What is red or orange; all bodies where nothing is.
+    Contacts,
+}
+
+/// Fewest and most pixels of either side of a picture.
+const SIDES: [usize; 2] = [16, 8192];
+
+#[derive(Args)]
+#[command(mut_args(of_picture))]
+pub struct PictureArgs {
+    #[command(flatten)]
+    pub detect: DetectArgs,
+    /// Width and height in pixels, each from 16 to 8192.
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1200x900", allow_hyphen_values = true, value_parser = size())]
+    pub size: [usize; 2],
+    /// From where one looks: a direction from the middle of the bodies, of any length.
+    #[arg(long, value_name = "X,Y,Z", default_value = "4,-7,3.5", allow_hyphen_values = true, value_parser = direction())]
+    pub view: [f64; 3],
+    /// Which direction is up in the picture, of any length.
+    #[arg(long, value_name = "X,Y,Z", default_value = "0,0,1", allow_hyphen_values = true, value_parser = direction())]
+    pub up: [f64; 3],
+    /// What fills the picture.
+    #[arg(long, value_enum, default_value_t = Around::All)]
+    pub around: Around,
+}
+
+/// Options of `detect` that a picture refuses.
+pub const IDLE: [&str; 9] =
+    ["repeat", "only", "earliest", "json", "geometry", "out_mesh", "file_faces", "rebuild", "rebuild_every"];
+
+/// An option of `detect`, as a picture has it.
+fn of_picture(option: Arg) -> Arg {
+    let about = "Where to write the picture (.png): all bodies as they are at t = 0. Triangles that meet, or have a vertex or an edge that \
+                 does, are red, those of unresolved contacts alone orange; all others have a colour a body, of a body alone a colour a \
+                 connected part.";
+    match option.get_id().as_str() {
+        "out" => option.required(true).help(about),
+        idle if IDLE.contains(&idle) => option.hide(true),
+        _ => option,
+    }
+}
+
+/// Refuses a file whose name is not that of a PNG.
+///
+/// # Errors
+/// [`Error::Choice`].
+pub fn check(path: &Path) -> Result<(), Error> {
+    match path.extension() {
+        Some(extension) if extension.eq_ignore_ascii_case("png") => Ok(()),
+        _ => Err(Error::Choice {
+            what: format!("{}: a picture cannot be written in that format", path.display()),
+            advice: "give --out a name that ends in .png".into(),
+        }),
+    }
+}
+
+fn size() -> impl TypedValueParser<Value = [usize; 2]> {
+    let [least, most] = SIDES;
+    let refused = format!("give two whole numbers from {least} to {most}, such as 1200x900");
+    StringValueParser::new().try_map(move |text: String| {
+        let side = |text: &str| text.parse().ok().filter(|side| (least..=most).contains(side));
+        let sides = text.split_once('x').and_then(|(width, height)| Some([side(width)?, side(height)?]));
+        sides.ok_or_else(|| refused.clone())
+    })
+}
+
+/// Three finite numbers that are not all 0, made of length 1.
+fn direction() -> impl TypedValueParser<Value = [f64; 3]> {
+    StringValueParser::new().try_map(|text: String| {
+        let numbers: Option<Vec<f64>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+        let numbers = numbers.and_then(|all| <[f64; 3]>::try_from(all).ok());
+        // By their largest first: squares neither overflow nor vanish.
+        let largest = numbers.map_or(0.0, |all| all.iter().fold(0.0f64, |most, x| most.max(x.abs())));
+        let whole = numbers.filter(|all| all.iter().all(|x| x.is_finite()) && largest > 0.0);
+        whole
+            .map(|all| crate::picture::unit(all.map(|x| x / largest)))
+            .ok_or("give three numbers that are not all 0, such as 4,-7,3.5")
+    })
+}

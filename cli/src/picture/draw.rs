@@ -1,0 +1,84 @@
+//! A mesh with a colour a triangle, drawn.
+
+use super::camera::Camera;
+use super::raster::{self, Canvas, Corner, FINE, Sides};
+use super::shade::{INK, PAPER, lit, normals};
+
+/// What is drawn.
+pub struct Picture<'a> {
+    pub points: &'a [[f64; 3]],
+    pub faces: &'a [[u32; 3]],
+    /// A colour a triangle.
+    pub colours: &'a [[u8; 3]],
+    /// Triangles that meet.
+    pub met: &'a [u32],
+    /// Lines between points of contacts.
+    pub marks: &'a [[[f64; 3]; 2]],
+}
+
+/// Bytes that a triangle takes while it is drawn: its corners' normals, places and neighbours.
+const OF_A_TRIANGLE: u64 = 300;
+
+/// Bytes that drawing takes.
+pub fn bytes([width, height]: [usize; 2], triangles: usize) -> u64 {
+    let samples = (width * height * FINE * FINE) as u64;
+    samples * raster::BYTES + (6 * width * height) as u64 + triangles as u64 * OF_A_TRIANGLE
+}
+
+/// Sides of triangles, pixels: from the first on sides are drawn, from the second on in full, that much darker.
+const SIDES: [f64; 2] = [7.0, 24.0];
+const DARK: f64 = 0.3;
+/// Half the width of a mark's line, and the radius of its ends, in pixels of a picture of 900; larger in larger ones.
+const LINE: f64 = 1.0;
+const POINT: f64 = 2.6;
+
+impl Picture<'_> {
+    /// The pixels, three bytes each, row by row from the top: looked at from the first direction with the second up, both of length 1. Around
+    /// what meets, or around everything.
+    pub fn draw(&self, directions: [[f64; 3]; 2], size: [usize; 2], around_met: bool) -> Vec<u8> {
+        let corners = |triangle: &u32| self.faces[*triangle as usize];
+        let framed: Vec<u32> =
+            if around_met { self.met.iter().flat_map(corners).collect() } else { Vec::new() };
+        let camera = Camera::new(self.points, &framed, directions, size);
+        let places: Vec<[f64; 3]> = self.points.iter().map(|point| camera.place(*point)).collect();
+        let normals = normals(self.points, self.faces);
+        let sides = self.sides(&places);
+        let mut canvas = Canvas::new(size, PAPER);
+        // What meets comes first: where two lie in one place, it is seen.
+        let mut is_met = vec![false; self.faces.len()];
+        self.met.iter().for_each(|triangle| is_met[*triangle as usize] = true);
+        for now in [true, false] {
+            for at in (0..self.faces.len()).filter(|at| is_met[*at] == now) {
+                let corner = |k: usize| Corner {
+                    place: places[self.faces[at][k] as usize],
+                    colour: lit(self.colours[at], normals[at][k], &camera),
+                };
+                canvas.triangle([corner(0), corner(1), corner(2)], sides);
+            }
+        }
+        let larger = (size[0].min(size[1]) as f64 / 900.0).max(0.5);
+        // A few may be large: they hide little.
+        let larger = if self.marks.len() < 10 { 1.8 * larger } else { larger };
+        for mark in self.marks {
+            let ends = mark.map(|point| camera.place(point));
+            canvas.line(ends, LINE * larger, INK);
+            ends.iter().for_each(|end| canvas.line([*end; 2], POINT * larger, INK));
+        }
+        canvas.pixels()
+    }
+
+    /// How dark sides are: not at all where triangles are small.
+    fn sides(&self, places: &[[f64; 3]]) -> Sides {
+        let length = |face: &[u32; 3]| {
+            let [a, b, c] = face.map(|vertex| places[vertex as usize]);
+            let apart =
+                |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k])).sum::<f64>().sqrt();
+            (apart(a, b) + apart(b, c) + apart(c, a)) / 3.0
+        };
+        let mut lengths: Vec<f64> = self.faces.iter().map(length).collect();
+        lengths.sort_by(f64::total_cmp);
+        let middle = lengths.get(lengths.len() / 2).copied().unwrap_or(0.0);
+        let part = ((middle - SIDES[0]) / (SIDES[1] - SIDES[0])).clamp(0.0, 1.0);
+        Sides((part * DARK) as f32)
+    }
+}

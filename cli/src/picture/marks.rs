@@ -1,0 +1,37 @@
+//! Where contacts are, as lines between the nearest points of both features.
+
+use nearmiss::contacts::{Answer, ContactGeometry, Contacts};
+use nearmiss::mesh::Body;
+
+/// More than this are not drawn: they would hide what they mark.
+const MOST: usize = 400;
+
+/// The nearest points of each contact, on the bodies as they are at t = 0: of a pair within a distance, and of a distance, how it is measured.
+/// None of triangle pairs, which have no points, and none of more than 400 contacts.
+pub fn of(
+    bodies: &[Body],
+    points: &[[f64; 3]],
+    found: &Contacts,
+    geometry: &[ContactGeometry],
+) -> Vec<[[f64; 3]; 2]> {
+    if let Answer::Distance(nearest) = &found.answer {
+        return nearest.iter().map(|nearest| nearest.points).collect();
+    }
+    if geometry.len() > MOST {
+        return Vec::new();
+    }
+    let mut starts = vec![0];
+    bodies.iter().for_each(|body| starts.push(starts[starts.len() - 1] + body.vertex_count()));
+    let mark = |of: &ContactGeometry| {
+        let [mut first, mut second] = [[0.0; 3]; 2];
+        for (at, (vertex, weight)) in of.vertices.iter().zip(of.weights).enumerate() {
+            let is_first = at < of.first;
+            let body = of.bodies[usize::from(!is_first)].index();
+            let point = points[starts[body] + *vertex as usize];
+            let sum = if is_first { &mut first } else { &mut second };
+            (0..3).for_each(|k| sum[k] += weight * point[k]);
+        }
+        [first, second]
+    };
+    geometry.iter().map(mark).collect()
+}

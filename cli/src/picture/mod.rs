@@ -1,0 +1,102 @@
+//! `picture`: the bodies of a frame as a PNG, with what meets in red.
+
+mod camera;
+mod draw;
+mod marks;
+mod raster;
+mod shade;
+
+use crate::args::PictureArgs;
+use crate::args::picture::{Around, check};
+use crate::detect::{Question, places, promise, question};
+use crate::output::{Target, print};
+use crate::paint::{self, GREY, ORANGE, RED};
+use crate::progress::during;
+use draw::Picture;
+use nearmiss::Detector;
+use nearmiss::contacts::Answer;
+use nearmiss::error::Error;
+use nearmiss::memory;
+use nearmiss::words::counted;
+use std::io::Write;
+use std::process::ExitCode;
+
+/// Asks a frame, draws it, and says what there is to see.
+///
+/// # Errors
+/// [`Error::Choice`] for a name that is not of a PNG and for several steps; [`Error::Output`] for a file that cannot be written;
+/// [`Error::OutOfMemory`] before the picture is drawn; those of the question and the machine.
+pub fn picture(args: &PictureArgs) -> Result<ExitCode, Error> {
+    let Some(out) = &args.detect.out else {
+        return Err(Error::Bug { what: "a picture without --out".into() });
+    };
+    check(out)?;
+    let target = Target::open(out)?;
+    let Question { scene, query, sequence } = question(&args.detect)?;
+    let steps = sequence.map_or(1, |all| all.steps(query.kind().is_at_rest()));
+    if steps > 1 {
+        let what = format!("{steps} steps or frames: a picture shows one");
+        let advice = "give the meshes of one frame, or of both ends of one step".into();
+        return Err(Error::Choice { what, advice });
+    }
+    let device = args.detect.machine.open()?;
+    promise(&query);
+    let mut detector = during("building", || Detector::new(device, scene, query))?;
+    let found = during("detecting", || detector.detect())?;
+    let geometry = match &found.answer {
+        Answer::Contacts(_) | Answer::Near(_) => places(&mut detector, &found)?,
+        Answer::Pairs(_) | Answer::Distance(_) | Answer::Earliest(_) => Vec::new(),
+    };
+    let bodies = detector.scene().bodies();
+    let triangles: usize = bodies.iter().map(|body| body.faces().len()).sum();
+    memory::require("the picture", draw::bytes(args.size, triangles))?;
+    let (mesh, mut colours) = paint::paint(bodies, &found, &geometry)?;
+    let [red, orange] = [RED, ORANGE].map(|of| colours.iter().filter(|colour| **colour == of).count());
+    let points = mesh.positions().to_f64();
+    let marks = marks::of(bodies, &points, &found, &geometry);
+    let own = shade::colours(bodies, mesh.faces(), points.len());
+    let met = |(at, colour): (usize, &[u8; 3])| (*colour != GREY).then_some(at as u32);
+    let met: Vec<u32> = colours.iter().enumerate().filter_map(met).collect();
+    let free = colours.iter_mut().zip(own).filter(|(colour, _)| **colour == GREY);
+    free.for_each(|(colour, own)| *colour = own);
+    let picture =
+        Picture { points: &points, faces: mesh.faces(), colours: &colours, met: &met, marks: &marks };
+    let framed = args.around == Around::Contacts;
+    let pixels = during("drawing", || picture.draw([args.view, args.up], args.size, framed));
+    target.write(|out| encode(out, args.size, &pixels).map_err(|e| e.to_string()))?;
+    let of = counted(triangles as u64, "triangle", "triangles");
+    let [width, height] = args.size;
+    print(&format!("{}: {width}x{height}, {of}, {red} red, {orange} orange\n", out.display()))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Writes pixels of three bytes as a PNG: the same bytes for the same pixels.
+fn encode(out: &mut dyn Write, [width, height]: [usize; 2], pixels: &[u8]) -> Result<(), png::EncodingError> {
+    let mut encoder = png::Encoder::new(out, width as u32, height as u32);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::High);
+    encoder.set_filter(png::Filter::Adaptive);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(pixels)?;
+    writer.finish()
+}
+
+/// The product of two vectors that is at right angles to both.
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn scaled(of: [f64; 3], by: f64) -> [f64; 3] {
+    of.map(|x| x * by)
+}
+
+/// A vector made of length 1; zeros of none.
+pub fn unit(of: [f64; 3]) -> [f64; 3] {
+    let length = dot(of, of).sqrt();
+    if length > 0.0 { of.map(|x| x / length) } else { [0.0; 3] }
+}

@@ -1,0 +1,186 @@
+//! `picture`: what is seen, in which colour, and what is refused.
+
+use super::{Folder, ok, refused};
+
+/// Two triangles across each other around the origin, and one alone beside them, towards the right as one looks along y.
+const MESH: &str = "v -3 0 -3\nv 3 0 -3\nv 0 0 3\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nv 9 0 -3\nv 15 0 -3\nv 12 0 3\n\
+                    f 1 2 3\nf 4 5 6\nf 7 8 9\n";
+
+/// A picture's width, height and pixels.
+struct Png(usize, usize, Vec<u8>);
+
+impl Png {
+    fn read(path: &str) -> Png {
+        let file = std::io::BufReader::new(std::fs::File::open(path).expect("written"));
+        let mut reader = png::Decoder::new(file).read_info().expect("a PNG");
+        let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
+        let head = reader.next_frame(&mut pixels).expect("whole");
+        assert_eq!((head.color_type, head.bit_depth), (png::ColorType::Rgb, png::BitDepth::Eight));
+        Png(head.width as usize, head.height as usize, pixels)
+    }
+
+    fn at(&self, x: usize, y: usize) -> [i32; 3] {
+        let at = 3 * (y * self.0 + x);
+        [0, 1, 2].map(|c| i32::from(self.2[at + c]))
+    }
+
+    /// How many pixels are far more red than green and blue.
+    fn red(&self) -> usize {
+        self.2.chunks(3).filter(|pixel| is_red([pixel[0], pixel[1], pixel[2]].map(i32::from))).count()
+    }
+}
+
+fn is_red([r, g, b]: [i32; 3]) -> bool {
+    r > 3 * g && r > 3 * b
+}
+
+/// The light colour around the bodies.
+const PAPER: [i32; 3] = [246, 247, 249];
+
+fn drawn(asked: &[&str], out: &str) -> (Png, String) {
+    let front = ["--backend", "cpu", "--view", "0,-1,0", "--out", out];
+    let said = ok(&[&["picture"], asked, &front[..]].concat());
+    (Png::read(out), said)
+}
+
+#[test]
+fn what_meets_is_red_and_what_does_not_is_not() {
+    let folder = Folder::new("picture");
+    let (mesh, out) = (folder.write("mesh.obj", MESH), folder.path("a.png"));
+    let (picture, said) = drawn(&[&mesh, "--size", "200x100"], &out);
+    assert!(said.ends_with("a.png: 200x100, 3 triangles, 2 red, 0 orange\n"), "{said}");
+    // 18 wide in nine tenths of 200 pixels: ten pixels a unit, the middle at x = 6.
+    assert_eq!((picture.0, picture.1), (200, 100));
+    assert_eq!(picture.at(2, 2), PAPER);
+    assert!(is_red(picture.at(40, 55)) && is_red(picture.at(40, 45)));
+    let [r, g, b] = picture.at(160, 60);
+    assert!(!is_red([r, g, b]) && [r, g, b] != PAPER, "{r} {g} {b}");
+    // Around what meets, that is all there is.
+    let (close, _) = drawn(&[&mesh, "--size", "200x100", "--around", "contacts"], &out);
+    assert!(close.red() > 2 * picture.red(), "{} and {}", close.red(), picture.red());
+    assert_eq!(close.at(195, 80), PAPER);
+}
+
+#[test]
+fn what_is_nearer_hides_what_is_farther() {
+    let folder = Folder::new("picture-depth");
+    let square = |y: f64, half: f64| {
+        format!(
+            "v -{half} {y} -{half}\nv {half} {y} -{half}\nv {half} {y} {half}\nv -{half} {y} {half}\nf 1 2 3 4\n"
+        )
+    };
+    let [large, small] = [("large", 0.0, 4.0), ("small", 1.0, 2.0)]
+        .map(|(name, y, half)| folder.write(&format!("{name}.obj"), &square(y, half)));
+    let out = folder.path("a.png");
+    let size = ["--size", "100x100"];
+    let both = ["--with", &small[..]];
+    let (front, _) = drawn(&[&[&large[..]], &both[..], &size].concat(), &out);
+    let behind =
+        [&["picture", &large[..]], &both[..], &size, &["--backend", "cpu", "--view", "0,1,0", "--out", &out]];
+    ok(&behind.concat());
+    let behind = Png::read(&out);
+    // Off the sides of the triangles, which are darker.
+    let near = |a: [i32; 3], b: [i32; 3]| (0..3).all(|c| (a[c] - b[c]).abs() < 8);
+    assert!(near(front.at(45, 60), front.at(10, 30)), "hidden: one colour");
+    assert!(!near(behind.at(45, 60), behind.at(10, 30)), "in front: its own");
+    assert!(near(behind.at(10, 30), front.at(10, 30)), "either side of a surface has its colour");
+}
+
+#[test]
+fn distances_and_near_pairs_have_their_lines() {
+    let folder = Folder::new("picture-lines");
+    let shape = |z: f64| format!("v -2 0 {z}\nv 2 0 {z}\nv 0 0 {}\nf 1 2 3\n", 2.0 * z);
+    let [above, below] =
+        [("above", 1.0), ("below", -1.0)].map(|(name, z)| folder.write(&format!("{name}.obj"), &shape(z)));
+    let out = folder.path("a.png");
+    for asked in [&["--distance"][..], &["--near", "2"]] {
+        let (picture, said) =
+            drawn(&[&[&above, "--with", &below, "--size", "100x100"], asked].concat(), &out);
+        assert!(said.contains("2 triangles, 2 red"), "{said}");
+        // Between both there is a dark line, somewhere along the gap.
+        assert!((0..100).any(|x| picture.at(x, 50).iter().sum::<i32>() < 600), "{asked:?}");
+    }
+    let (none, _) = drawn(&[&above, "--with", &below, "--size", "100x100"], &out);
+    assert!((0..100).all(|x| none.at(x, 50) == PAPER) && none.red() == 0);
+}
+
+#[test]
+fn the_same_question_has_the_same_bytes() {
+    let folder = Folder::new("picture-bytes");
+    let bytes = |threads: &str, name: &str| {
+        let out = folder.path(name);
+        let scene = ["picture", "--scene", "draped", "--triangles", "500", "--backend", "cpu"];
+        ok(&[&scene[..], &["--threads", threads, "--size", "160x120", "--out", &out]].concat());
+        let picture = Png::read(&out);
+        assert!(picture.red() > 100, "cloth in motion meets itself");
+        std::fs::read(out).expect("written")
+    };
+    assert_eq!(bytes("1", "a.png"), bytes("2", "b.png"));
+    // The usual size.
+    let out = folder.path("c.png");
+    drawn(&["--scene", "grid", "--triangles", "16"], &out);
+    let usual = Png::read(&out);
+    assert_eq!((usual.0, usual.1), (1200, 900));
+}
+
+#[test]
+fn a_scene_of_bodies_is_drawn_where_they_are() {
+    let folder = Folder::new("picture-scene");
+    folder.write("tri.obj", "v -2 0 -2\nv 2 0 -2\nv 0 0 2\nf 1 2 3\n");
+    let scene = "[[body]]\nname = \"a\"\nkind = \"static\"\nmesh = \"tri.obj\"\n\
+         [[body]]\nname = \"b\"\nkind = \"rigid\"\nmesh = \"tri.obj\"\nposes = [{ translation = [14, 0, 0] }]\n";
+    let (picture, said) =
+        drawn(&[&folder.write("scene.toml", scene), "--size", "200x100"], &folder.path("a.png"));
+    assert!(said.contains("2 triangles, 0 red"), "{said}");
+    let [one, other] = [picture.at(30, 60), picture.at(170, 60)];
+    assert!(one != PAPER && other != PAPER && one != other && picture.at(100, 50) == PAPER);
+}
+
+#[test]
+fn what_cannot_be_drawn_is_refused_before_the_work() {
+    let grid = ["picture", "--scene", "grid", "--triangles", "16"];
+    let more = |more: &[&str]| refused(2, &[&grid[..], more].concat());
+    assert!(more(&[]).contains("--out"));
+    assert!(
+        more(&["--out", "a.jpg"]).contains("a.jpg: a picture cannot be written in that format; give --out")
+    );
+    for size in ["1200", "0x900", "15x16", "8193x100", "-3x9", "100x", "12x9x3", "1e3x9"] {
+        assert!(more(&["--out", "a.png", "--size", size]).contains("from 16 to 8192"), "{size}");
+    }
+    for of in ["0,0,0", "1,2", "1,2,3,4", "1,NaN,0", "inf,0,0", "north"] {
+        assert!(more(&["--out", "a.png", "--view", of]).contains("three numbers that are not all 0"), "{of}");
+        assert!(more(&["--out", "a.png", "--up", of]).contains("three numbers that are not all 0"), "{of}");
+    }
+    for idle in [&["--earliest"][..], &["--repeat", "2"], &["--json"], &["--out-mesh", "a.ply"]] {
+        let text = more(&[&["--out", "a.png"], idle].concat());
+        assert!(text.contains("would do nothing: a picture shows one frame"), "{text}");
+    }
+    let folder = Folder::new("picture-refused");
+    let mesh = folder.write("mesh.obj", MESH);
+    let out = folder.path("a.png");
+    let several = refused(2, &["picture", &mesh, &mesh, &mesh, "--out", &out]);
+    assert!(several.contains("2 steps or frames: a picture shows one; give"), "{several}");
+    assert!(!std::path::Path::new(&out).exists());
+    let nowhere = folder.path("no/a.png");
+    assert!(refused(4, &["picture", "no.ply", "--out", &nowhere]).contains("no/a.png: cannot be written"));
+    assert!(refused(3, &["picture", "no.ply", "--out", &out]).contains("no.ply"));
+    // What was there stays where the work fails.
+    folder.write("a.png", "before");
+    refused(3, &["picture", &folder.path("no.ply"), "--out", &out]);
+    assert_eq!(folder.read("a.png"), "before");
+}
+
+#[test]
+fn any_direction_and_any_mesh_can_be_drawn() {
+    let folder = Folder::new("picture-any");
+    let out = folder.path("a.png");
+    let flat = folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 1e-30 5 5\nf 1 2 3\nf 1 1 1\n");
+    let huge = folder.write("huge.obj", "v 0 0 0\nv 1e140 0 0\nv 0 1e140 0\nf 1 2 3\n");
+    for mesh in [&flat, &huge] {
+        for view in ["0,0,1", "0,0,-1", "1e300,0,0", "1e-300,-1e-300,0", "0,1e-8,1"] {
+            ok(&["picture", mesh, "--backend", "cpu", "--size", "32x16", "--view", view, "--out", &out]);
+        }
+    }
+    ok(&["picture", &huge, "--backend", "cpu", "--size", "32x32", "--view", "0,0,1", "--out", &out]);
+    assert_ne!(Png::read(&out).at(10, 22), PAPER);
+}

@@ -1,0 +1,59 @@
+//! Names of lines at their ends, a line of text apart.
+
+use super::{At, Drawn, INK, Sheet};
+use plotters::style::RGBColor;
+
+/// Pixels between the middles of two names below each other.
+const LINE: i32 = 14;
+/// Their size.
+const SIZE: i32 = 12;
+
+/// About how wide a text of that size is, in pixels: rather too wide, fonts differ.
+pub fn width(text: &str, size: i32) -> i32 {
+    text.chars().count() as i32 * size * 60 / 100 + 2
+}
+
+/// The end of a line, and its name.
+pub struct End<'a> {
+    /// In pixels.
+    pub at: (i32, i32),
+    /// The line's.
+    pub colour: RGBColor,
+    /// What it is of.
+    pub label: &'a str,
+}
+
+/// Names in a column from `left`, each beside its line's end or led to it, none below `bottom`.
+pub fn draw(sheet: &Sheet, mut ends: Vec<End>, left: i32, bottom: i32) -> Drawn {
+    ends.sort_by_key(|end| end.at.1);
+    let heights = apart(ends.iter().map(|end| end.at.1).collect(), bottom);
+    for (end, y) in ends.into_iter().zip(heights) {
+        sheet.line(vec![(end.at.0 + 4, end.at.1), (left - 14, y), (left - 4, y)], end.colour, 1)?;
+        sheet.text(end.label, (left, y), SIZE, At::Left, INK)?;
+    }
+    Ok(())
+}
+
+/// Heights, ascending, moved apart so that a line of text fits between any two, none below `bottom`.
+fn apart(mut heights: Vec<i32>, bottom: i32) -> Vec<i32> {
+    for i in 1..heights.len() {
+        heights[i] = heights[i].max(heights[i - 1] + LINE);
+    }
+    let mut most = bottom;
+    for height in heights.iter_mut().rev() {
+        *height = (*height).min(most);
+        most = *height - LINE;
+    }
+    heights
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_stand_apart() {
+        assert_eq!(apart(vec![10, 10, 50], 100), [10, 24, 50]);
+        assert_eq!(apart(vec![95, 100, 100], 100), [72, 86, 100]);
+    }
+}
