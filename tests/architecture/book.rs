@@ -95,10 +95,18 @@ fn lead_nowhere(pages: &[Source]) -> Vec<String> {
     found
 }
 
+/// Whether lines stand in a file one after the other, however far they are indented.
+fn stands_in(file: &str, block: &[&str]) -> bool {
+    let found = if exists(file) { files(file) } else { Vec::new() };
+    let lines: Vec<&str> = found.iter().flat_map(|(_, text)| text.lines().map(str::trim)).collect();
+    !block.is_empty() && lines.windows(block.len()).any(|window| window == block)
+}
+
 /// The blocks of code that do not say by whom they are run.
 ///
-/// The line before a block is `<!-- run by CI -->` or `<!-- needs …: run by … -->`; of a text that a block prints, `<!-- printed -->`,
-/// right behind that block. A page with Rust is read by `cargo test --doc`, which runs all of it.
+/// The line before a block is `<!-- run by CI -->` or `<!-- needs …: run by FILE -->`, and its lines then stand in that file one after the
+/// other; of a text that a block of shell or C prints, `<!-- printed -->`, right behind that block. A page with Rust is read by
+/// `cargo test --doc`, which runs all of it.
 fn not_marked(pages: &[Source], tested: &str) -> Vec<String> {
     const RUN: [&str; 4] = ["sh", "python", "rust", "c"];
     let mut found = Vec::new();
@@ -116,15 +124,18 @@ fn not_marked(pages: &[Source], tested: &str) -> Vec<String> {
                 continue;
             }
             let mark = if at > 0 { lines[at - 1] } else { "" };
-            let needs =
-                mark.starts_with("<!-- needs ") && mark.contains(": run by ") && mark.ends_with(" -->");
+            let block = lines[at + 1..].iter().map(|line| line.trim()).take_while(|line| *line != "```");
+            let needs = mark
+                .strip_prefix("<!-- needs ")
+                .and_then(|mark| mark.strip_suffix(" -->")?.split_once(": run by "))
+                .is_some_and(|(_, file)| stands_in(file, &block.collect::<Vec<_>>()));
             let by_ci = mark == "<!-- run by CI -->" && RUN.contains(&language);
             let printed = mark == "<!-- printed -->" && language == "text" && ran;
             found.extend((!needs && !by_ci && !printed).then(|| format!("{name}:{}: ```{language}", at + 1)));
             if language == "rust" && !tested.contains(&format!("include_str!(\"../{name}\")")) {
                 found.push(format!("{name}:{}: no doctest has this page", at + 1));
             }
-            ran = by_ci;
+            ran = by_ci && ["sh", "c"].contains(&language);
         }
     }
     found
@@ -198,6 +209,8 @@ fn a_block_that_nobody_runs_is_noticed() {
         ("<!-- run by CI -->", ""),
         ("<!-- runs -->", "python"),
         ("<!-- needs a GPU -->", "python"),
+        ("<!-- needs a GPU: run by python/tests/test_gpu.py -->", "python"),
+        ("<!-- needs a GPU: run by none.py -->", "python"),
         ("<!-- printed -->", "text"),
     ] {
         let found = not_marked(&planted("docs/for/a.md", &block(mark, language)), "");
@@ -208,8 +221,8 @@ fn a_block_that_nobody_runs_is_noticed() {
     let printed = block("<!-- printed -->", "text");
     assert_eq!(not_marked(&planted("docs/for/a.md", &format!("{run}\n{printed}")), ""), NONE);
     assert_eq!(not_marked(&planted("docs/for/a.md", &format!("{run}\nwords\n\n{printed}")), "").len(), 1);
-    let needs = block("<!-- needs a GPU: run by python/tests/test_gpu.py -->", "python");
-    assert_eq!(not_marked(&planted("docs/concepts.md", &needs), ""), NONE);
+    let needs = "<!-- needs a GPU: run by python/tests/test_gpu.py -->\n```python\nimport numpy as np\n```\n";
+    assert_eq!(not_marked(&planted("docs/concepts.md", needs), ""), NONE);
     // Rust that no doctest has.
     let rust = planted("docs/for/a.md", &block("<!-- run by CI -->", "rust"));
     assert_eq!(not_marked(&rust, ""), ["docs/for/a.md:2: no doctest has this page"]);
