@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The Python module as a stranger gets it: a wheel, installed into an empty environment, asked what its README says.
+# The Python module as a stranger gets it: a wheel, installed into an empty environment, asked what its README and the book say.
 #
 # Rationale
 # - The profile is cargo's `dev`, which is optimised: what is tested is what is built anyway.
@@ -19,7 +19,7 @@ python3 -m venv "$folder/user"
 "$folder/user/bin/pip" -q install "$folder"/wheels/nearmiss-*.whl
 readelf -d "$folder"/user/lib/python3*/site-packages/nearmiss/_native*.so | grep -E 'libcuda|libpython' \
     && { echo "the module is linked against what a stranger may lack"; exit 1; }
-for page in README.md python/README.md; do
+for page in README.md python/README.md $(grep -rl --include='*.md' '^```python$' docs | sort); do
     "$folder/user/bin/python" .ci/python_blocks.py "$page"
 done
 "$folder/user/bin/pip" -q install 'pytest>=8' mypy ipctk coal

@@ -1,11 +1,13 @@
-"""Runs the Python blocks of a page that follow a line `<!-- run by CI -->`, one after the other in one program: what a line with
-`print` prints must be what stands behind its `#`. Lines without such a comment may print anything.
+"""Runs the Python blocks of a page that follow a line `<!-- run by CI -->`, one after the other in one program, in an empty folder: what a
+line with `print` prints must be what stands behind its `#`. Lines without such a comment may print anything.
 """
 
 import contextlib
 import io
+import os
 import re
 import sys
+import tempfile
 
 
 def blocks(text):
@@ -38,8 +40,11 @@ def main(page):
     found = blocks(open(page, encoding="utf-8").read())
     assert found, f"{page} marks no Python block with <!-- run by CI -->"
     known, bad = {}, []
-    for block in found:
-        bad += wrong(block, known)
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        for block in found:
+            bad += wrong(block, known)
+        os.chdir("/")
     if bad:
         sys.exit(f"{page}: " + "; ".join(bad))
 

@@ -76,3 +76,12 @@ pub use several::{DeviceShare, MultiDetector};
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 pub struct Readme;
+
+/// The programs of the book are tests.
+#[cfg(doctest)]
+pub mod book {
+    #[doc = include_str!("../docs/for/cloth-and-ipc.md")]
+    pub struct ClothAndIpc;
+    #[doc = include_str!("../docs/for/rigid.md")]
+    pub struct Rigid;
+}

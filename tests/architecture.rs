@@ -1,6 +1,8 @@
 //! Rules of the architecture. A rule is a function from sources to the lines that break it, so that each can be shown
 //! to hold (the repository breaks none) and to be able to fail (a planted line is named).
 
+#[path = "architecture/book.rs"]
+mod book;
 #[path = "architecture/choices.rs"]
 mod choices;
 #[path = "architecture/prose.rs"]
