@@ -31,15 +31,28 @@ impl NearmissDetector {
         })
     }
 
+    /// What inputs say, each as `take` takes it, with its body.
+    ///
+    /// # Safety
+    /// So many inputs lie there.
+    pub(crate) unsafe fn inputs<T>(
+        &self,
+        inputs: *const NearmissInput,
+        count: usize,
+        take: impl Fn(&NearmissInput) -> Result<T, Error>,
+    ) -> Result<Vec<(BodyId, T)>, Error> {
+        // SAFETY: the caller's promise.
+        let inputs = unsafe { items(inputs, count, "inputs") }?;
+        inputs.iter().map(|input| Ok((body(&self.ids, input.body)?, take(input)?))).collect()
+    }
+
     /// What a frame tells, copied.
     ///
     /// # Safety
     /// So many inputs lie there, and what they name.
     unsafe fn held(&self, inputs: *const NearmissInput, count: usize) -> Result<Vec<(BodyId, Held)>, Error> {
-        // SAFETY: the caller's promise.
-        let inputs = unsafe { items(inputs, count, "inputs") }?;
-        // SAFETY: the caller's promise.
-        inputs.iter().map(|input| Ok((body(&self.ids, input.body)?, unsafe { input.held() }?))).collect()
+        // SAFETY: the caller's promise, twice.
+        unsafe { self.inputs(inputs, count, |input| input.held()) }
     }
 }
 

@@ -3,8 +3,7 @@
 use crate::answer::NearmissAnswer;
 use crate::detector::NearmissDetector;
 use crate::error::{NearmissCode, NearmissError, given};
-use crate::input::{NearmissInput, body};
-use crate::rows::items;
+use crate::input::NearmissInput;
 use std::mem::MaybeUninit;
 
 /// Prepares frames that the host does not wait for: says where on the device bodies will be found (`on_device` of each input is 1), answers
@@ -22,13 +21,8 @@ pub unsafe extern "C" fn nearmiss_detector_prepare(
     error: Option<&mut MaybeUninit<NearmissError>>,
 ) -> NearmissCode {
     NearmissDetector::asked(detector, answer, error, |own| {
-        // SAFETY: the caller's promise.
-        let inputs = unsafe { items(inputs, count, "inputs") }?;
-        let one = |input: &NearmissInput| {
-            // SAFETY: the caller's promise.
-            Ok::<_, nearmiss::Error>((body(&own.ids, input.body)?, unsafe { input.on_device() }?))
-        };
-        let inputs = inputs.iter().map(one).collect::<Result<Vec<_>, _>>()?;
+        // SAFETY: the caller's promise, twice.
+        let inputs = unsafe { own.inputs(inputs, count, |input| input.on_device()) }?;
         own.detector.prepare(&inputs)
     })
 }

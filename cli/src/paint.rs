@@ -28,6 +28,16 @@ pub fn check(path: &Path) -> Result<(), Error> {
     }
 }
 
+/// The first vertex and the first triangle of each body in the mesh of all.
+pub fn starts(bodies: &[Body]) -> Vec<(u32, usize)> {
+    let next = |next: &mut (usize, usize), body: &Body| {
+        let own = *next;
+        *next = (own.0 + body.vertex_count(), own.1 + body.face_count());
+        Some((own.0 as u32, own.1))
+    };
+    bodies.iter().scan((0, 0), next).collect()
+}
+
 /// All bodies as one mesh, where they are at t = 0, and the colour of each triangle: those of the answer, and those that have a vertex or an
 /// edge of it.
 ///
@@ -38,10 +48,9 @@ pub fn paint(
     found: &Contacts,
     geometry: &[ContactGeometry],
 ) -> Result<(Mesh, Vec<[u8; 3]>), Error> {
-    let (mut starts, mut points, mut faces) = (Vec::new(), Vec::new(), Vec::new());
-    for body in bodies {
-        let first = points.len() as u32;
-        starts.push((first, faces.len()));
+    let starts = starts(bodies);
+    let (mut points, mut faces) = (Vec::new(), Vec::new());
+    for (body, &(first, _)) in bodies.iter().zip(&starts) {
         let own = body.positions_t0().to_f64();
         let [pose, _] = body.poses();
         let is_rigid = body.kind() == BodyKind::Rigid;

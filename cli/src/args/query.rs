@@ -66,9 +66,14 @@ impl DetectArgs {
         Ok(query)
     }
 
+    /// Whether `--out` is a `.vtp`, which says where contacts are without being told to.
+    pub fn writes_vtp(&self) -> bool {
+        self.out.as_ref().is_some_and(|out| Format::of(out).is_ok_and(|of| of == Format::Vtp))
+    }
+
     /// Refuses files of places of what has none.
     fn places(&self, kind: QueryKind) -> Result<(), Error> {
-        let vtp = self.out.as_ref().is_some_and(|out| Format::of(out).is_ok_and(|of| of == Format::Vtp));
+        let vtp = self.writes_vtp();
         let refused =
             |what: &str, advice: &str| Err(Error::Choice { what: what.into(), advice: advice.into() });
         match kind {

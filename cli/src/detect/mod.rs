@@ -176,8 +176,7 @@ pub fn geometry(
     detector: &mut Detector,
     found: &Contacts,
 ) -> Result<Option<Vec<ContactGeometry>>, Error> {
-    let vtp = args.out.as_ref().is_some_and(|out| Format::of(out).is_ok_and(|of| of == Format::Vtp));
-    if !(args.geometry || vtp || args.out_mesh.is_some()) {
+    if !(args.geometry || args.writes_vtp() || args.out_mesh.is_some()) {
         return Ok(None);
     }
     places(detector, found).map(Some)

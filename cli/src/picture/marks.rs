@@ -1,5 +1,6 @@
 //! Where contacts are, as lines between the nearest points of both features.
 
+use crate::paint::starts;
 use nearmiss::contacts::{Answer, ContactGeometry, Contacts};
 use nearmiss::mesh::Body;
 
@@ -20,14 +21,13 @@ pub fn of(
     if geometry.len() > MOST {
         return Vec::new();
     }
-    let mut starts = vec![0];
-    bodies.iter().for_each(|body| starts.push(starts[starts.len() - 1] + body.vertex_count()));
+    let starts = starts(bodies);
     let mark = |of: &ContactGeometry| {
         let [mut first, mut second] = [[0.0; 3]; 2];
         for (at, (vertex, weight)) in of.vertices.iter().zip(of.weights).enumerate() {
             let is_first = at < of.first;
             let body = of.bodies[usize::from(!is_first)].index();
-            let point = points[starts[body] + *vertex as usize];
+            let point = points[(starts[body].0 + *vertex) as usize];
             let sum = if is_first { &mut first } else { &mut second };
             (0..3).for_each(|k| sum[k] += weight * point[k]);
         }

@@ -18,6 +18,7 @@ use nearmiss::contacts::Answer;
 use nearmiss::error::Error;
 use nearmiss::memory;
 use nearmiss::words::counted;
+use nearmiss_kernels::math::Vec3;
 use std::io::Write;
 use std::process::ExitCode;
 
@@ -84,11 +85,11 @@ fn encode(out: &mut dyn Write, [width, height]: [usize; 2], pixels: &[u8]) -> Re
 
 /// The product of two vectors that is at right angles to both.
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    Vec3(a).cross(Vec3(b)).0
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    Vec3(a).dot(Vec3(b))
 }
 
 fn scaled(of: [f64; 3], by: f64) -> [f64; 3] {

@@ -20,6 +20,13 @@ fn array(vtp: &str, name: &str) -> Vec<f64> {
     text.split_whitespace().map(|x| x.parse().expect("a number")).collect()
 }
 
+/// What follows the head of a PLY that ends with `line`.
+fn behind<'a>(ply: &'a [u8], line: &str) -> &'a [u8] {
+    let head = format!("{line}end_header\n").into_bytes();
+    let at = ply.windows(head.len()).position(|part| part == head).expect("such a head");
+    &ply[at + head.len()..]
+}
+
 #[test]
 fn places_stand_behind_the_other_columns() {
     let folder = Folder::new("places");
@@ -86,9 +93,7 @@ fn what_meets_is_red() {
     for more in [&["--discrete"][..], &["--near", "1"]] {
         ok(&[&["detect", &mesh, "--backend", "cpu", "--out-mesh", &ply], more].concat());
         let bytes = std::fs::read(&ply).expect("written");
-        let head = b"property uchar blue\nend_header\n";
-        let at = bytes.windows(head.len()).position(|part| part == head).expect("colours") + head.len();
-        let faces = &bytes[at + 9 * 12..];
+        let faces = &behind(&bytes, "property uchar blue\n")[9 * 12..];
         let colours: Vec<&[u8]> = faces.chunks(16).map(|face| &face[13..]).collect();
         assert_eq!(colours, [[210, 30, 30], [210, 30, 30], [190, 190, 190]], "{more:?}");
         // It is a mesh as any other.
@@ -146,10 +151,9 @@ fn a_rigid_body_is_coloured_where_it_is() {
         (folder.write("scene.toml", scene), folder.path("out.ply"), folder.path("out.vtp"));
     ok(&["detect", &scene, "--backend", "cpu", "--distance", "--out-mesh", &ply, "--out", &vtp]);
     let bytes = std::fs::read(&ply).expect("written");
-    let head = b"end_header\n";
-    let at = bytes.windows(head.len()).position(|part| part == head).expect("a head") + head.len();
-    let number = |at: usize| f64::from_le_bytes(bytes[at..at + 8].try_into().expect("eight bytes"));
-    let heights: Vec<f64> = (0..6).map(|vertex| number(at + 24 * vertex + 16)).collect();
+    let points = behind(&bytes, "");
+    let number = |at: usize| f64::from_le_bytes(points[at..at + 8].try_into().expect("eight bytes"));
+    let heights: Vec<f64> = (0..6).map(|vertex| number(24 * vertex + 16)).collect();
     assert_eq!(heights, [0.0, 0.0, 0.0, 3.0, 3.0, 3.0]);
     let text = folder.read("out.vtp");
     assert_eq!((array(&text, "distance"), array(&text, "kind")), (vec![3.0], vec![3.0]));
