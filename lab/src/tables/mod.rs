@@ -27,5 +27,5 @@ pub use frames::{Frames, SCENES, frames, read};
 pub use front::front;
 pub use measure::measure;
 pub use scale::{ScaleRow, scale};
-pub use text::{Printed, digits, text};
+pub use text::{Printed, digits, grouped, text};
 pub use way::Way;

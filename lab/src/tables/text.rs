@@ -49,6 +49,13 @@ pub fn digits(x: f64) -> String {
     format!("{x:.*}", decimals as usize)
 }
 
+/// A count, a comma after each three digits.
+pub fn grouped(n: u64) -> String {
+    let digits = n.to_string();
+    let comma = |at: usize| if at > 0 && (digits.len() - at).is_multiple_of(3) { "," } else { "" };
+    digits.char_indices().map(|(at, digit)| format!("{}{digit}", comma(at))).collect()
+}
+
 fn maybe(x: Option<f64>) -> String {
     x.map_or("-".into(), digits)
 }
@@ -160,6 +167,12 @@ impl Printed for FrontRow {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn commas_stand_after_three_digits() {
+        let cases = [0, 999, 1000, 123_456, 1_234_567].map(grouped);
+        assert_eq!(cases, ["0", "999", "1,000", "123,456", "1,234,567"]);
+    }
 
     #[test]
     fn three_digits_count() {

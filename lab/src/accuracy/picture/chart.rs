@@ -2,9 +2,11 @@
 
 use super::axis::Axis;
 use super::style::Style;
-use crate::tables::digits;
 use crate::tables::picture::labels::{self, End};
-use crate::tables::picture::{At, Drawn, FAINT, GRID, INK, LEFT, OURS, RIGHT, Sheet, head_height, sheet};
+use crate::tables::picture::{
+    At, Drawn, FAINT, GRID, INK, LEFT, OURS, RIGHT, Sheet, WIDTH, head_height, sheet, wide_sheet,
+};
+use crate::tables::{digits, grouped};
 use nearmiss::error::Error;
 
 /// A curve.
@@ -27,28 +29,50 @@ pub struct Chart {
     pub curves: Vec<Curve>,
 }
 
+/// Charts beside each other, of one input.
+pub struct Group {
+    /// The input.
+    pub title: String,
+    /// A chart a quantity: in every group the same, in the same order.
+    pub charts: Vec<Chart>,
+}
+
 /// Height of a frame, and of what a chart has besides.
 const FRAME: i32 = 150;
-const CHART: i32 = 76;
-/// Where frames end; names stand to the right.
-const END: i32 = 640;
+const CHART: i32 = 68;
+/// Height of a group's title.
+const TITLE: i32 = 28;
+/// Width of a chart, and where its frame begins and ends; names stand to the right.
+const CELL: i32 = 460;
+const BEGIN: i32 = 64;
+const END: i32 = 310;
 
-/// The picture.
+/// The picture: a row a group, a column a quantity.
 ///
 /// # Errors
 /// [`Error::Bug`] where it cannot be drawn.
-pub fn charts(title: &str, device: &str, all: &[Chart]) -> Result<String, Error> {
-    // One place on an axis is no curve.
-    let is_curve = |chart: &&Chart| {
-        let mut places = chart.curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.0));
-        places.next().is_some_and(|first| places.any(|other| other != first))
+pub fn charts(title: &str, device: &str, all: &[Group]) -> Result<String, Error> {
+    // One place on an axis is no curve, and a chart of zeros tells nothing.
+    let tells = |chart: &&Chart| {
+        let mut points = chart.curves.iter().flat_map(|curve| &curve.points);
+        let is_any = points.clone().any(|point| point.1 != 0.0);
+        is_any && points.next().is_some_and(|first| points.any(|other| other.0 != first.0))
     };
-    let all: Vec<&Chart> = all.iter().filter(is_curve).collect();
-    sheet(head_height(1) + (FRAME + CHART) * all.len() as i32, |sheet| {
+    let columns_of =
+        |group: &Group| group.charts.iter().rposition(|chart| tells(&chart)).map_or(0, |at| at + 1);
+    let all: Vec<&Group> = all.iter().filter(|group| columns_of(group) > 0).collect();
+    let columns = all.iter().map(|group| columns_of(group)).max().unwrap_or(0) as i32;
+    let high = FRAME + CHART;
+    let size = [(CELL * columns).max(WIDTH), head_height(1) + (TITLE + high) * all.len() as i32];
+    wide_sheet(size, |sheet| {
         let mut y = sheet.head(title, &[(format!("nearmiss on {device}"), INK)])?;
-        for chart in all {
-            self::chart(sheet, chart, y)?;
-            y += FRAME + CHART;
+        for group in all {
+            sheet.bold(&group.title, (20, y + 12), 14)?;
+            y += TITLE;
+            for (column, chart) in group.charts.iter().enumerate().filter(|(_, chart)| tells(chart)) {
+                self::chart(&sheet.part((CELL * column as i32, y), (CELL, high)), chart)?;
+            }
+            y += high;
         }
         Ok(())
     })
@@ -81,16 +105,16 @@ pub fn frame(
     Ok(at)
 }
 
-fn chart(sheet: &Sheet, chart: &Chart, top: i32) -> Drawn {
+fn chart(sheet: &Sheet, chart: &Chart) -> Drawn {
     let points = || chart.curves.iter().flat_map(|curve| curve.points.iter().copied());
     let (x, y) = (
         Axis::of(points().map(|p| p.0).collect::<Vec<_>>().into_iter()),
         Axis::of(points().map(|p| p.1).collect::<Vec<_>>().into_iter()),
     );
-    sheet.bold(&y.named(&chart.title), (20, top + 12), 14)?;
-    let (first, last) = (top + 28, top + 28 + FRAME);
-    let at = frame(sheet, (&x, &y), [(LEFT / 2, first), (END, last)])?;
-    sheet.text(&x.named(&chart.x), ((LEFT / 2 + END) / 2, last + 31), 12, At::Middle, FAINT)?;
+    sheet.text(&y.named(&chart.title), (20, 8), 12, At::Left, INK)?;
+    let (first, last) = (24, 24 + FRAME);
+    let at = frame(sheet, (&x, &y), [(BEGIN, first), (END, last)])?;
+    sheet.text(&x.named(&chart.x), ((BEGIN + END) / 2, last + 31), 12, At::Middle, FAINT)?;
     let mut ends = Vec::new();
     for (place, curve) in chart.curves.iter().enumerate() {
         let mut sorted = curve.points.clone();
@@ -144,8 +168,14 @@ pub fn bars(
                 let end = LEFT + 60 + (part * f64::from(RIGHT - LEFT - 160)) as i32;
                 sheet.text(label, (LEFT + 52, y + 9), 12, At::Right, INK)?;
                 sheet.rectangle([(LEFT + 60, y), (end, y + 17)], OURS)?;
-                let time = ms.map_or_else(String::new, |ms| format!(", in {} ms", digits(ms)));
-                sheet.text(&format!("{number}{time}"), (end + 6, y + 9), 12, At::Left, INK)?;
+                let time = ms.map_or_else(String::new, |ms| format!("  in {} ms", digits(ms)));
+                sheet.text(
+                    &format!("{}{time}", grouped(*number as u64)),
+                    (end + 6, y + 9),
+                    12,
+                    At::Left,
+                    INK,
+                )?;
                 y += ROW;
             }
             y += PANEL - 30;
@@ -166,15 +196,18 @@ mod tests {
             let style = style::plain(label == "two");
             Curve { label: label.into(), style, points: vec![(1e-9, 0.0), (1e-1, y)] }
         };
-        let point = Curve { points: vec![(1.0, 1.0)], ..curve("a point", 0.0) };
-        let still = Chart { title: "no curve".into(), x: String::new(), curves: vec![point] };
+        let point = || Curve { points: vec![(1.0, 1.0)], ..curve("a point", 0.0) };
+        let still = || Chart { title: "no curve".into(), x: String::new(), curves: vec![point()] };
+        let groups = |chart| [Group { title: "an input".into(), charts: vec![still(), chart] }];
         let chart = Chart {
             title: "a <chart>".into(),
             x: "a quantity".into(),
             curves: vec![curve("one", 5e3), curve("two", 5e3), curve("three", 40.0)],
         };
-        let svg = charts("a title", "a GPU", &[chart, still]).expect("a picture");
-        for text in ["a title", "a GPU", "a &lt;chart&gt;", "one", "two", "1e-9", "a quantity, log scale"] {
+        let svg = charts("a title", "a GPU", &groups(chart)).expect("a picture");
+        for text in
+            ["a title", "a GPU", "an input", "a &lt;chart&gt;", "one", "two", "1e-9", "a quantity, log scale"]
+        {
             assert!(svg.contains(text), "{text}: {svg}");
         }
         assert!(!svg.contains("no curve"), "{svg}");
@@ -184,7 +217,7 @@ mod tests {
             vec![("left".to_owned(), 1234.0, Some(0.5)), ("none".to_owned(), 0.0, None)],
         );
         let svg = bars("a title", "a GPU", &[panel]).expect("a picture");
-        for text in ["a scene", "left", "1234, in 0.500 ms", "none", "log scale"] {
+        for text in ["a scene", "left", "1,234  in 0.500 ms", "none", "log scale"] {
             assert!(svg.contains(text), "{text}: {svg}");
         }
         assert_eq!(faults(&svg), Vec::<String>::new());

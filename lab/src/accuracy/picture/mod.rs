@@ -9,7 +9,7 @@ mod style;
 use super::funnel::FunnelRow;
 use super::refit::RefitRow;
 use super::row::Row;
-use chart::{Chart, Curve, charts};
+use chart::{Chart, Curve, Group, charts};
 use nearmiss::error::Error;
 pub use pareto::pareto;
 
@@ -30,17 +30,14 @@ pub fn tolerance(device: &str, rows: &[Row]) -> Result<String, Error> {
         ("boxes of 99 % of the listed pairs", |row| row.boxes_p99),
         ("nanoseconds a pair", |row| row.ns.unwrap_or(0.0)),
     ];
-    let mut all = Vec::new();
-    for rows in with.chunk_by(|a, b| a.input == b.input) {
-        for (what, of) in quantities {
+    let group = |rows: &[&Row]| {
+        let chart = |(what, of): Quantity| {
             let curves = curves(rows, |row| row.tolerance_edges.unwrap_or(0.0), of);
-            // A chart of zeros tells nothing.
-            if curves.iter().flat_map(|curve| &curve.points).any(|point| point.1 > 0.0) {
-                let title = format!("{}: {what}", rows[0].input);
-                all.push(Chart { title, x: "tolerance / mean edge".into(), curves });
-            }
-        }
-    }
+            Chart { title: what.into(), x: "tolerance / mean edge".into(), curves }
+        };
+        Group { title: rows[0].input.clone(), charts: quantities.map(chart).into() }
+    };
+    let all: Vec<Group> = with.chunk_by(|a, b| a.input == b.input).map(group).collect();
     charts("The tolerance: sharper times cost boxes", device, &all)
 }
 
@@ -64,15 +61,16 @@ pub fn sweeps(device: &str, rows: &[Row]) -> Result<String, Error> {
         let at = |row: &Row| row.at.unwrap_or(0.0);
         let x = rows[0].input.clone();
         let (cast, given): (Vec<&Row>, Vec<&Row>) = rows.iter().partition(|row| row.precision == "f32 cast");
-        for (rows, how) in [(given, ""), (cast, ", positions cast to f32")] {
-            let title = format!("{x}{how}: part of the contacts that is missed or late");
-            all.push(Chart { title, x: x.clone(), curves: curves(&rows, at, wrong) });
-        }
-        if x.contains("10^") {
+        let chart = |title: &str, curves| Chart { title: title.into(), x: x.clone(), curves };
+        let wrong_of = |rows: &[&Row]| curves(rows, at, wrong);
+        let second = if x.contains("10^") {
             let certified: Vec<&Row> = rows.iter().filter(|row| row.boxes_max > 0.0).copied().collect();
-            let title = format!("{x}: boxes of 99 % of the listed pairs");
-            all.push(Chart { title, x, curves: curves(&certified, at, |row| row.boxes_p99) });
-        }
+            chart("boxes of 99 % of the listed pairs", curves(&certified, at, |row| row.boxes_p99))
+        } else {
+            chart("the same, positions cast to f32", wrong_of(&cast))
+        };
+        let charts = vec![chart("part of the contacts that is missed or late", wrong_of(&given)), second];
+        all.push(Group { title: x.clone(), charts });
     }
     charts("Far away, large and small, degenerate", device, &all)
 }
@@ -95,8 +93,7 @@ pub fn funnel(device: &str, rows: &[FunnelRow]) -> Result<String, Error> {
 /// # Errors
 /// [`Error::Bug`] where it cannot be drawn.
 pub fn refit(device: &str, rows: &[RefitRow]) -> Result<String, Error> {
-    let mut all: Vec<Chart> = Vec::new();
-    for of in rows.chunk_by(|a, b| (&a.input, a.bv) == (&b.input, b.bv)) {
+    let chart = |of: &[RefitRow]| {
         let quantity = |label: &str, of_row: fn(&RefitRow) -> f64| Curve {
             label: label.into(),
             style: style::plain(label == "triangle pairs"),
@@ -106,9 +103,13 @@ pub fn refit(device: &str, rows: &[RefitRow]) -> Result<String, Error> {
             quantity("overlap tests", |row| row.refitted_tests as f64 / row.fresh_tests.max(1) as f64),
             quantity("triangle pairs", |row| row.refitted_pairs as f64 / row.fresh_pairs.max(1) as f64),
         ];
-        let title = format!("{}, {}: a refitted tree over a fresh one", of[0].input, of[0].bv);
-        all.push(Chart { title, x: "frame".into(), curves });
-    }
+        Chart { title: format!("{}: a refitted tree over a fresh one", of[0].bv), x: "frame".into(), curves }
+    };
+    let group = |of: &[RefitRow]| Group {
+        title: of[0].input.clone(),
+        charts: of.chunk_by(|a, b| a.bv == b.bv).map(chart).collect(),
+    };
+    let all: Vec<Group> = rows.chunk_by(|a, b| a.input == b.input).map(group).collect();
     charts("Refitting: what it costs in quality", device, &all)
 }
 

@@ -7,15 +7,18 @@ use super::chart::frame;
 use super::place::{Area, SIZE, places};
 use super::style;
 use crate::accuracy::row::Row;
-use crate::tables::picture::{At, Drawn, FAINT, INK, LEFT, Sheet, head_height, sheet};
+use crate::tables::picture::{At, Drawn, FAINT, INK, Sheet, head_height, wide_sheet};
 use nearmiss::error::Error;
 use nearmiss::query::Solver;
 use plotters::style::WHITE;
 
-/// Height of a frame, of what a panel has besides, and where frames end.
+/// Height of a frame, and of what a panel has besides.
 const FRAME: i32 = 220;
 const PANEL: i32 = 88;
-const END: i32 = 870;
+/// Width of a panel, and where its frame begins and ends.
+const CELL: i32 = 800;
+const BEGIN: i32 = 64;
+const END: i32 = 765;
 
 /// One mark.
 struct Event<'a> {
@@ -30,23 +33,25 @@ const QUANTITIES: [Quantity; 2] = [
     ("99 % of times early by at most, in mean edges", |row| row.early_edges_p99),
 ];
 
-/// The picture: of whole scenes milliseconds a frame, of single questions nanoseconds a pair. A panel an input and quantity.
+/// The picture: of whole scenes milliseconds a frame, of single questions nanoseconds a pair. A row an input, a column a quantity.
 ///
 /// # Errors
 /// [`Error::Bug`] where it cannot be drawn.
 pub fn pareto(device: &str, rows: &[Row]) -> Result<String, Error> {
-    let inputs = rows.chunk_by(|a, b| a.input == b.input).filter(|rows| rows.len() > 2);
     // A panel of zeros tells nothing.
-    let tells = |(rows, (_, of)): &(&[Row], Quantity)| rows.iter().any(|row| of(row) > 0.0);
-    let panels: Vec<(&[Row], Quantity)> =
-        inputs.flat_map(|rows| QUANTITIES.map(|quantity| (rows, quantity))).filter(tells).collect();
-    sheet(head_height(3) + (FRAME + PANEL) * panels.len() as i32, |sheet| {
+    let tells = |rows: &[Row], (_, of): &Quantity| rows.iter().any(|row| of(row) > 0.0);
+    let is_drawn = |rows: &&[Row]| rows.len() > 2 && QUANTITIES.iter().any(|of| tells(rows, of));
+    let inputs: Vec<&[Row]> = rows.chunk_by(|a, b| a.input == b.input).filter(is_drawn).collect();
+    let size = [CELL * QUANTITIES.len() as i32, head_height(3) + (FRAME + PANEL) * inputs.len() as i32];
+    wide_sheet(size, |sheet| {
         let hollow = "hollow: can miss and be late, and how many missed + late; named besides: cannot, and none better in both";
         let notes = [(format!("nearmiss on {device}"), INK), (hollow.into(), FAINT), (String::new(), INK)];
         let mut y = sheet.head("What to choose: left is faster, lower is better", &notes)?;
         legend(sheet, rows, y - 18)?;
-        for (rows, quantity) in panels {
-            panel(sheet, rows, quantity, y)?;
+        for rows in inputs {
+            for (column, quantity) in QUANTITIES.into_iter().enumerate().filter(|(_, of)| tells(rows, of)) {
+                panel(&sheet.part((CELL * column as i32, y), (CELL, FRAME + PANEL)), rows, quantity)?;
+            }
             y += FRAME + PANEL;
         }
         Ok(())
@@ -86,18 +91,18 @@ fn best<'a>(marks: &'a [Event]) -> impl Iterator<Item = &'a Event<'a>> {
     marks.iter().filter(right).filter(move |mark| !beaten(mark))
 }
 
-fn panel(sheet: &Sheet, rows: &[Row], (what, of): Quantity, top: i32) -> Drawn {
+fn panel(sheet: &Sheet, rows: &[Row], (what, of): Quantity) -> Drawn {
     let frames = rows.iter().any(|row| row.ms.is_some());
     let time = |row: &Row| if frames { row.ms } else { row.ns };
     let marks: Vec<Event> =
         asked(rows).filter_map(|row| Some(Event { row, x: time(row)?, y: of(row) })).collect();
     let (xs, ys): (Vec<f64>, Vec<f64>) = marks.iter().map(|m| (m.x, m.y)).unzip();
     let (xs, ys) = (Axis::of(xs.into_iter()), Axis::of(ys.into_iter()));
-    sheet.bold(&ys.named(&format!("{}: {what}", rows[0].input)), (20, top + 12), 14)?;
-    let (first, last) = (top + 30, top + 30 + FRAME);
-    let at = frame(sheet, (&xs, &ys), [(LEFT / 2, first), (END, last)])?;
+    sheet.bold(&ys.named(&format!("{}: {what}", rows[0].input)), (20, 12), 14)?;
+    let (first, last) = (30, 30 + FRAME);
+    let at = frame(sheet, (&xs, &ys), [(BEGIN, first), (END, last)])?;
     let unit = xs.named(if frames { "ms a frame" } else { "ns a pair" });
-    sheet.text(&unit, ((LEFT / 2 + END) / 2, last + 32), 12, At::Middle, FAINT)?;
+    sheet.text(&unit, ((BEGIN + END) / 2, last + 32), 12, At::Middle, FAINT)?;
     let place = |mark: &Event| <[i32; 2]>::from(at((mark.x, mark.y)));
     let unsure = marks.iter().filter(|mark| !is_sure(mark.row)).map(|mark| {
         let Row { missed, late, .. } = mark.row;
@@ -110,7 +115,7 @@ fn panel(sheet: &Sheet, rows: &[Row], (what, of): Quantity, top: i32) -> Drawn {
     let areas: Vec<Area> = marks.iter().map(|mark| Area::around(place(mark), 7)).collect();
     let names: Vec<([i32; 2], String)> =
         named.iter().map(|(mark, name)| (place(mark), name.clone())).collect();
-    let inside = Area { low: [LEFT / 2 + 2, first + 1], high: [END + 25, last - 1] };
+    let inside = Area { low: [BEGIN + 2, first + 1], high: [END + 25, last - 1] };
     let found = places(&names, &areas, &inside);
     for ((mark, name), found) in named.iter().zip(found) {
         // Where nothing is free the name is left out: the rows are in the file beside.

@@ -24,8 +24,8 @@ pub const INK: RGBColor = RGBColor(30, 30, 30);
 pub const FAINT: RGBColor = RGBColor(110, 110, 110);
 pub const GRID: RGBColor = RGBColor(215, 215, 215);
 
-/// Width of every picture, pixels.
-const WIDTH: i32 = 900;
+/// Width of a picture of one column, pixels.
+pub const WIDTH: i32 = 900;
 /// Where bars begin and end; labels stand to the left, figures to the right.
 pub const LEFT: i32 = 215;
 pub const RIGHT: i32 = 770;
@@ -72,9 +72,14 @@ pub struct Sheet<'a>(DrawingArea<SVGBackend<'a>, Shift>);
 
 /// Draws on a sheet of that height; the SVG.
 pub fn sheet(height: i32, draw: impl FnOnce(&Sheet) -> Drawn) -> Result<String, Error> {
+    wide_sheet([WIDTH, height], draw)
+}
+
+/// Draws on a sheet of that width and height; the SVG.
+pub fn wide_sheet(size: [i32; 2], draw: impl FnOnce(&Sheet) -> Drawn) -> Result<String, Error> {
     let mut svg = String::new();
-    let sheet =
-        Sheet(SVGBackend::with_string(&mut svg, (WIDTH as u32, height.max(1) as u32)).into_drawing_area());
+    let [width, height] = size.map(|side| side.max(1) as u32);
+    let sheet = Sheet(SVGBackend::with_string(&mut svg, (width, height)).into_drawing_area());
     let drawn = sheet.0.fill(&WHITE).map_err(|e| e.to_string()).and_then(|()| draw(&sheet));
     let done = drawn.and_then(|()| sheet.0.present().map_err(|e| e.to_string()));
     drop(sheet);
@@ -85,7 +90,12 @@ pub fn sheet(height: i32, draw: impl FnOnce(&Sheet) -> Drawn) -> Result<String, 
 /// Drawn, or why not.
 pub type Drawn = Result<(), String>;
 
-impl Sheet<'_> {
+impl<'a> Sheet<'a> {
+    /// A part of it, with pixels from its own upper left.
+    pub fn part(&self, corner: (i32, i32), size: (i32, i32)) -> Sheet<'a> {
+        Sheet(self.0.clone().shrink(corner, size))
+    }
+
     /// A text of `size` pixels, its middle at that height.
     pub fn text(&self, text: &str, (x, y): (i32, i32), size: i32, at: At, colour: RGBColor) -> Drawn {
         let h = match at {
