@@ -47,35 +47,55 @@ const CELL: i32 = 460;
 const BEGIN: i32 = 64;
 const END: i32 = 310;
 
-/// The picture: a row a group, a column a quantity.
+/// The picture: a row a group, a column a quantity that one of them tells; groups of few charts stand side by side.
 ///
 /// # Errors
 /// [`Error::Bug`] where it cannot be drawn.
 pub fn charts(title: &str, device: &str, all: &[Group]) -> Result<String, Error> {
     // One place on an axis is no curve, and a chart of zeros tells nothing.
-    let tells = |chart: &&Chart| {
+    let tells = |chart: &Chart| {
         let mut points = chart.curves.iter().flat_map(|curve| &curve.points);
         let is_any = points.clone().any(|point| point.1 != 0.0);
         is_any && points.next().is_some_and(|first| points.any(|other| other.0 != first.0))
     };
-    let columns_of =
-        |group: &Group| group.charts.iter().rposition(|chart| tells(&chart)).map_or(0, |at| at + 1);
-    let all: Vec<&Group> = all.iter().filter(|group| columns_of(group) > 0).collect();
-    let columns = all.iter().map(|group| columns_of(group)).max().unwrap_or(0) as i32;
-    let high = FRAME + CHART;
-    let size = [(CELL * columns).max(WIDTH), head_height(1) + (TITLE + high) * all.len() as i32];
+    let told = |group: &Group| (0..group.charts.len()).filter(|at| tells(&group.charts[*at])).collect();
+    let told: Vec<(&Group, Vec<usize>)> = all.iter().map(|group| (group, told(group))).collect();
+    let mut columns: Vec<usize> = told.iter().flat_map(|(_, charts)| charts).copied().collect();
+    columns.sort_unstable();
+    columns.dedup();
+    let column = |chart: usize| columns.partition_point(|other| *other < chart) as i32;
+    let widths: Vec<i32> =
+        told.iter().map(|(_, charts)| charts.last().map_or(0, |last| column(*last) + 1)).collect();
+    let places = side_by_side(&widths, columns.len() as i32);
+    let rows = places.last().map_or(0, |place| place[1] + 1);
+    let high = TITLE + FRAME + CHART;
+    let size = [(CELL * columns.len() as i32).max(WIDTH), head_height(1) + high * rows];
     wide_sheet(size, |sheet| {
-        let mut y = sheet.head(title, &[(format!("nearmiss on {device}"), INK)])?;
-        for group in all {
-            sheet.bold(&group.title, (20, y + 12), 14)?;
-            y += TITLE;
-            for (column, chart) in group.charts.iter().enumerate().filter(|(_, chart)| tells(chart)) {
-                self::chart(&sheet.part((CELL * column as i32, y), (CELL, high)), chart)?;
+        let top = sheet.head(title, &[(format!("nearmiss on {device}"), INK)])?;
+        for ((group, charts), [first, row]) in told.iter().zip(places).filter(|(of, _)| !of.1.is_empty()) {
+            let (x, y) = (CELL * first, top + high * row);
+            sheet.bold(&group.title, (x + 20, y + 12), 14)?;
+            for &at in charts {
+                let cell = sheet.part((x + CELL * column(at), y + TITLE), (CELL, high - TITLE));
+                chart(&cell, &group.charts[at])?;
             }
-            y += high;
         }
         Ok(())
     })
+}
+
+/// Where groups of those widths begin, column and row: each beside the one before it where there is room.
+fn side_by_side(widths: &[i32], columns: i32) -> Vec<[i32; 2]> {
+    let mut next = [0, 0];
+    let place = |wide: &i32| {
+        if next[0] + wide > columns {
+            next = [0, next[1] + 1];
+        }
+        let place = next;
+        next[0] += wide;
+        place
+    };
+    widths.iter().map(place).collect()
 }
 
 /// A frame with its lines and the numbers at them; from a point to pixels.
@@ -211,6 +231,8 @@ mod tests {
             assert!(svg.contains(text), "{text}: {svg}");
         }
         assert!(!svg.contains("no curve"), "{svg}");
+        // Nor is there a place for it.
+        assert!(svg.contains("width=\"900\""), "{svg}");
         assert_eq!(faults(&svg), Vec::<String>::new());
         let panel = (
             "a scene".to_owned(),
@@ -221,5 +243,11 @@ mod tests {
             assert!(svg.contains(text), "{text}: {svg}");
         }
         assert_eq!(faults(&svg), Vec::<String>::new());
+    }
+    #[test]
+    fn groups_stand_side_by_side_where_there_is_room() {
+        assert_eq!(side_by_side(&[2, 1, 1, 1], 2), [[0, 0], [0, 1], [1, 1], [0, 2]]);
+        assert_eq!(side_by_side(&[5, 5], 5), [[0, 0], [0, 1]]);
+        assert_eq!(side_by_side(&[0, 1], 1), [[0, 0], [0, 0]]);
     }
 }

@@ -1,5 +1,5 @@
 //! What to choose: time against what it buys, a mark a choice. Choices that can give wrong answers are hollow, with the
-//! counts of those they gave; of the others those are named that no other beats in both.
+//! counts of those they gave; a line leads along those of the others that no other beats in both, which are named.
 
 use super::Quantity;
 use super::axis::Axis;
@@ -10,7 +10,7 @@ use crate::accuracy::row::Row;
 use crate::tables::picture::{At, Drawn, FAINT, INK, Sheet, head_height, wide_sheet};
 use nearmiss::error::Error;
 use nearmiss::query::Solver;
-use plotters::style::WHITE;
+use plotters::style::{RGBColor, WHITE};
 
 /// Height of a frame, and of what a panel has besides.
 const FRAME: i32 = 220;
@@ -19,6 +19,9 @@ const PANEL: i32 = 88;
 const CELL: i32 = 800;
 const BEGIN: i32 = 64;
 const END: i32 = 765;
+
+/// The line along what is best.
+const STEPS: RGBColor = RGBColor(178, 190, 200);
 
 /// One mark.
 struct Event<'a> {
@@ -44,10 +47,10 @@ pub fn pareto(device: &str, rows: &[Row]) -> Result<String, Error> {
     let inputs: Vec<&[Row]> = rows.chunk_by(|a, b| a.input == b.input).filter(is_drawn).collect();
     let size = [CELL * QUANTITIES.len() as i32, head_height(3) + (FRAME + PANEL) * inputs.len() as i32];
     wide_sheet(size, |sheet| {
-        let hollow = "hollow: can miss and be late, and how many missed + late; named besides: cannot, and none better in both";
+        let hollow = "hollow: can miss and be late, and how many missed + late; on the line: cannot, and none better in both";
         let notes = [(format!("nearmiss on {device}"), INK), (hollow.into(), FAINT), (String::new(), INK)];
         let mut y = sheet.head("What to choose: left is faster, lower is better", &notes)?;
-        legend(sheet, rows, y - 18)?;
+        legend(sheet, &inputs, y - 18)?;
         for rows in inputs {
             for (column, quantity) in QUANTITIES.into_iter().enumerate().filter(|(_, of)| tells(rows, of)) {
                 panel(&sheet.part((CELL * column as i32, y), (CELL, FRAME + PANEL)), rows, quantity)?;
@@ -64,9 +67,10 @@ fn asked(rows: &[Row]) -> impl Iterator<Item = &Row> {
 }
 
 /// The solvers' colours, in a line.
-fn legend(sheet: &Sheet, rows: &[Row], y: i32) -> Drawn {
+fn legend(sheet: &Sheet, inputs: &[&[Row]], y: i32) -> Drawn {
     let mut x = 24;
-    for solver in Solver::ALL.into_iter().filter(|of| asked(rows).any(|row| row.solver == *of)) {
+    let is_drawn = |of: &Solver| inputs.iter().any(|rows| asked(rows).any(|row| row.solver == *of));
+    for solver in Solver::ALL.into_iter().filter(is_drawn) {
         let name = solver.name();
         let style = style::of(solver);
         sheet.mark(style.mark, (x, y), 5, style.colour, !style.dashed)?;
@@ -109,7 +113,10 @@ fn panel(sheet: &Sheet, rows: &[Row], (what, of): Quantity) -> Drawn {
         (mark, format!("{}: {missed} + {late}", mark.row.choice()))
     });
     let mut best: Vec<&Event> = best(&marks).collect();
-    best.sort_by(|a, b| b.y.total_cmp(&a.y).then(a.x.total_cmp(&b.x)));
+    best.sort_by(|a, b| a.x.total_cmp(&b.x).then(b.y.total_cmp(&a.y)));
+    let steps = best.windows(2).flat_map(|two| [(two[0].x, two[0].y), (two[1].x, two[0].y)]);
+    let steps = steps.chain(best.last().map(|last| (last.x, last.y)));
+    sheet.line(steps.map(&at).collect(), STEPS, 2)?;
     let named: Vec<(&Event, String)> =
         unsure.chain(best.into_iter().map(|mark| (mark, mark.row.choice()))).collect();
     let areas: Vec<Area> = marks.iter().map(|mark| Area::around(place(mark), 7)).collect();

@@ -48,7 +48,7 @@ pub struct Place {
 const HEIGHT: i32 = 14;
 pub const SIZE: i32 = 11;
 /// Distances from a mark that are tried, pixels; of the first no line is drawn.
-const APART: [i32; 14] = [9, 18, 28, 38, 50, 64, 80, 98, 118, 140, 164, 190, 220, 260];
+const APART: [i32; 10] = [9, 18, 28, 38, 50, 64, 80, 98, 118, 140];
 /// Directions that are tried, in hundredths.
 const AROUND: [[i32; 2]; 14] = [
     [100, 0],
