@@ -38,23 +38,33 @@ pub fn starts(bodies: &[Body]) -> Vec<(u32, usize)> {
     bodies.iter().scan((0, 0), next).collect()
 }
 
-/// All bodies as one mesh, where they are at t = 0, and the colour of each triangle: those of the answer, and those that have a vertex or an
-/// edge of it.
+/// A body's vertices at that time of the step, from 0 to 1; at 0 exactly.
+fn placed(body: &Body, time: f64) -> Vec<[f64; 3]> {
+    let [from, to] = if body.kind() == BodyKind::Rigid {
+        let own = body.positions_t0().to_f64();
+        body.poses().map(|pose| own.iter().map(|point| pose.apply(*point)).collect())
+    } else {
+        body.ends().map(Positions::to_f64)
+    };
+    let between = |(from, to): ([f64; 3], [f64; 3])| [0, 1, 2].map(|k| from[k] + time * (to[k] - from[k]));
+    from.into_iter().zip(to).map(between).collect()
+}
+
+/// All bodies as one mesh, where they are at that time of the step, from 0 to 1, and the colour of each triangle: those of the answer, and
+/// those that have a vertex or an edge of it.
 ///
 /// # Errors
 /// [`Error::Input`] for more vertices or triangles than a mesh may have.
 pub fn paint(
     bodies: &[Body],
+    time: f64,
     found: &Contacts,
     geometry: &[ContactGeometry],
 ) -> Result<(Mesh, Vec<[u8; 3]>), Error> {
     let starts = starts(bodies);
     let (mut points, mut faces) = (Vec::new(), Vec::new());
     for (body, &(first, _)) in bodies.iter().zip(&starts) {
-        let own = body.positions_t0().to_f64();
-        let [pose, _] = body.poses();
-        let is_rigid = body.kind() == BodyKind::Rigid;
-        points.extend(own.into_iter().map(|point| if is_rigid { pose.apply(point) } else { point }));
+        points.extend(placed(body, time));
         faces.extend(body.faces().iter().map(|face| face.map(|vertex| vertex + first)));
     }
     let mut met = Met::default();
@@ -79,7 +89,7 @@ pub fn paint(
         *colour = met.colour(*face).unwrap_or(*colour);
     }
     let is_single = |body: &Body| body.kind() != BodyKind::Rigid && !body.positions_t0().is_f64();
-    let single = bodies.iter().all(is_single);
+    let single = time == 0.0 && bodies.iter().all(is_single);
     let positions = if single {
         // They were of single precision: exact.
         Positions::F32(points.iter().map(|point| point.map(|x| x as f32)).collect())

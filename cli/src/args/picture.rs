@@ -35,6 +35,9 @@ pub struct PictureArgs {
     /// What fills the picture.
     #[arg(long, value_enum, default_value_t = Around::All)]
     pub around: Around,
+    /// When the bodies are where they are drawn: 0 at the start of the step, 1 at its end.
+    #[arg(long, value_name = "T", default_value_t = 0.0, allow_negative_numbers = true, value_parser = part())]
+    pub time: f64,
 }
 
 /// Options of `detect` that a picture refuses.
@@ -43,7 +46,7 @@ pub const IDLE: [&str; 9] =
 
 /// An option of `detect`, as a picture has it.
 fn of_picture(option: Arg) -> Arg {
-    let about = "Where to write the picture (.png): all bodies as they are at t = 0. Triangles that meet, or have a vertex or an edge that \
+    let about = "Where to write the picture (.png): all bodies as they are at --time. Triangles that meet, or have a vertex or an edge that \
                  does, are red, those of unresolved contacts alone orange; all others have a colour a body, of a body alone a colour a \
                  connected part.";
     match option.get_id().as_str() {
@@ -74,6 +77,13 @@ fn size() -> impl TypedValueParser<Value = [usize; 2]> {
         let side = |text: &str| text.parse().ok().filter(|side| (least..=most).contains(side));
         let sides = text.split_once('x').and_then(|(width, height)| Some([side(width)?, side(height)?]));
         sides.ok_or_else(|| refused.clone())
+    })
+}
+
+/// A number from 0 to 1.
+fn part() -> impl TypedValueParser<Value = f64> {
+    StringValueParser::new().try_map(|text: String| {
+        text.parse().ok().filter(|part| (0.0..=1.0).contains(part)).ok_or("give a number from 0 to 1")
     })
 }
 

@@ -141,7 +141,7 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
     let geometry = geometry(args, &mut detector, &contacts)?;
     if let Some(target) = painted {
         let (mesh, colours) =
-            paint::paint(detector.scene().bodies(), &contacts, geometry.as_deref().unwrap_or_default())?;
+            paint::paint(detector.scene().bodies(), 0.0, &contacts, geometry.as_deref().unwrap_or_default())?;
         target.write(|mut out| mesh.encode_ply_coloured(&mut out, &colours).map_err(|e| e.to_string()))?;
     }
     let again = (query.kind() == QueryKind::Earliest).then(|| detector.scene().clone());

@@ -7,7 +7,7 @@ use nearmiss::mesh::Body;
 /// More than this are not drawn: they would hide what they mark.
 const MOST: usize = 400;
 
-/// The nearest points of each contact, on the bodies as they are at t = 0: of a pair within a distance, and of a distance, how it is measured.
+/// The nearest points of each contact, on the bodies as they are drawn: of a pair within a distance, and of a distance, how it is measured.
 /// None of triangle pairs, which have no points, and none of more than 400 contacts.
 pub fn of(
     bodies: &[Body],

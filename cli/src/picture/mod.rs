@@ -17,6 +17,7 @@ use nearmiss::Detector;
 use nearmiss::contacts::Answer;
 use nearmiss::error::Error;
 use nearmiss::memory;
+use nearmiss::mesh::Body;
 use nearmiss::words::counted;
 use nearmiss_kernels::math::Vec3;
 use std::io::Write;
@@ -25,7 +26,7 @@ use std::process::ExitCode;
 /// Asks a frame, draws it, and says what there is to see.
 ///
 /// # Errors
-/// [`Error::Choice`] for a name that is not of a PNG and for several steps; [`Error::Output`] for a file that cannot be written;
+/// [`Error::Choice`] for a name that is not of a PNG, for several steps, and for a time where nothing moves; [`Error::Output`] for a file that cannot be written;
 /// [`Error::OutOfMemory`] before the picture is drawn; those of the question and the machine.
 pub fn picture(args: &PictureArgs) -> Result<ExitCode, Error> {
     let Some(out) = &args.detect.out else {
@@ -40,6 +41,11 @@ pub fn picture(args: &PictureArgs) -> Result<ExitCode, Error> {
         let advice = "give the meshes of one frame, or of both ends of one step".into();
         return Err(Error::Choice { what, advice });
     }
+    let moves = |body: &Body| body.is_moving() || body.poses()[0] != body.poses()[1];
+    if args.time > 0.0 && !scene.bodies().iter().any(moves) {
+        let what = "--time would do nothing: nothing moves".into();
+        return Err(Error::Choice { what, advice: "leave it out, or give both ends of a step".into() });
+    }
     let device = args.detect.machine.open()?;
     promise(&query);
     let mut detector = during("building", || Detector::new(device, scene, query))?;
@@ -51,7 +57,7 @@ pub fn picture(args: &PictureArgs) -> Result<ExitCode, Error> {
     let bodies = detector.scene().bodies();
     let triangles: usize = bodies.iter().map(|body| body.faces().len()).sum();
     memory::require("the picture", draw::bytes(args.size, triangles))?;
-    let (mesh, mut colours) = paint::paint(bodies, &found, &geometry)?;
+    let (mesh, mut colours) = paint::paint(bodies, args.time, &found, &geometry)?;
     let [red, orange] = [RED, ORANGE].map(|of| colours.iter().filter(|colour| **colour == of).count());
     let points = mesh.positions().to_f64();
     let marks = marks::of(bodies, &points, &found, &geometry);

@@ -137,6 +137,37 @@ fn a_scene_of_bodies_is_drawn_where_they_are() {
 }
 
 #[test]
+fn bodies_are_drawn_where_they_are_at_a_time() {
+    let folder = Folder::new("picture-time");
+    // One that falls by 8 beside one that rests; 18 wide in nine tenths of 200 pixels.
+    let mesh = |x: f64, z: f64| format!("v {x} 0 {z}\nv {} 0 {z}\nv {x} 0 {}\nf 1 2 3\n", x + 2.0, z + 2.0);
+    let rest = "v -2 1 -4\nv 16 1 -4\nv 16 1 -3.9\nf 1 2 3\n";
+    let [from, to, rest] = [("from", mesh(0.0, 4.0)), ("to", mesh(0.0, -4.0)), ("rest", rest.to_owned())]
+        .map(|(name, text)| folder.write(&format!("{name}.obj"), &text));
+    let out = folder.path("a.png");
+    let at = |time: &[&str]| {
+        let (picture, _) =
+            drawn(&[&[&from, &to, "--with", &rest, "--size", "200x200"][..], time].concat(), &out);
+        let column: Vec<usize> = (0..200).filter(|y| picture.at(34, *y) != PAPER).collect();
+        column[0]
+    };
+    let (start, middle, end) = (at(&[]), at(&["--time", "0.5"]), at(&["--time", "1"]));
+    assert_eq!(at(&["--time", "0"]), start);
+    assert!(start < middle && middle < end, "{start}, {middle}, {end}");
+    // Poses, too.
+    let scene = "[[body]]\nmesh = \"from.obj\"\nkind = \"rigid\"\n\
+         poses = [{}, { translation = [0, 0, -8] }]\n[[body]]\nmesh = \"rest.obj\"\nkind = \"static\"\n";
+    let (posed, _) = drawn(&[&folder.write("scene.toml", scene), "--size", "200x200", "--time", "0.5"], &out);
+    assert_eq!((0..200).find(|y| posed.at(34, *y) != PAPER), Some(middle));
+    let still = refused(2, &["picture", &from, "--time", "0.5", "--out", &out]);
+    assert!(still.contains("--time would do nothing: nothing moves"), "{still}");
+    for time in ["-0.1", "1.01", "NaN", "now"] {
+        let text = refused(2, &["picture", &from, &to, "--time", time, "--out", &out]);
+        assert!(text.contains("give a number from 0 to 1"), "{text}");
+    }
+}
+
+#[test]
 fn what_cannot_be_drawn_is_refused_before_the_work() {
     let grid = ["picture", "--scene", "grid", "--triangles", "16"];
     let more = |more: &[&str]| refused(2, &[&grid[..], more].concat());
