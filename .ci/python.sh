@@ -22,8 +22,8 @@ readelf -d "$folder"/user/lib/python3*/site-packages/nearmiss/_native*.so | grep
 for page in README.md python/README.md $(grep -rl --include='*.md' '^```python$' docs | sort); do
     "$folder/user/bin/python" .ci/python_blocks.py "$page"
 done
-"$folder/user/bin/pip" -q install 'pytest>=8' mypy ipctk coal
-for library in ipctk coal; do
+"$folder/user/bin/pip" -q install 'pytest>=8' mypy ipctk coal trimesh python-fcl libigl
+for library in ipctk coal trimesh libigl; do
     "$folder/user/bin/python" "python/examples/from_$library.py"
 done
 "$folder/user/bin/python" -m mypy --no-error-summary python/tests/typed.py
