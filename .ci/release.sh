@@ -7,10 +7,11 @@
 #   OUT/*.json      the bill of materials of each package (CycloneDX), OUT/SHA256SUMS of everything
 #
 # Rationale
-# - A release is of a clean tree whose changelog has a heading with the version. `--rehearse` asks for neither.
+# - A release is of a clean tree whose changelog has a heading with the version, and of packages without advisories. `--rehearse` asks for none of
+#   these.
 # - Zig's linker stands for old glibcs and for the other machine; it and maturin come from PyPI by name. The GPU's kernels are committed.
-# - What can run here is run before it is packed: the wheel in an empty environment with the README's lines, the C examples, the program.
-#   What is built for another machine is not, and is said so.
+# - What is packed has run: the wheels in empty environments with the READMEs' lines, the C examples, the program, whose answers are the same
+#   bytes for both machines. aarch64 runs under QEMU (.ci/aarch64.sh).
 # - The public interface is compared with that of the newest tag `v*` by cargo-semver-checks; where there is no tag there is nothing to compare.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -34,21 +35,27 @@ mkdir -p "$out/crates" "$out/wheels" "$out/archives" "$work"
 python3 -m venv "$tools"
 "$tools/bin/pip" -q install 'maturin>=1.16,<2' ziglang cargo-zigbuild twine
 export PATH=$tools/bin:$PATH
+
+# tool NAME: a tool of cargo's, built where this machine has none.
+tool() { command -v "$1" >/dev/null || cargo install -q --locked --root "$tools" "$1"; }
+
 arm=aarch64-unknown-linux-gnu
 intel=x86_64-unknown-linux-gnu
-targets=($intel)
-if rustup target add $arm 2>/dev/null || [ -d "$(rustc --print sysroot)/lib/rustlib/$arm" ]; then
-    targets+=($arm)
-else
-    echo "release: the library of Rust for $arm is not here: no files for it are made"
-fi
 [ "$(uname -m)" = x86_64 ] || { echo "release: made on x86-64, where the other half can be run" >&2; exit 1; }
+rustup target add $arm 2>/dev/null || [ -d "$(rustc --print sysroot)/lib/rustlib/$arm" ] || {
+    echo "release: Rust's library for $arm is not here: rustup target add $arm" >&2
+    exit 1
+}
+.ci/aarch64.sh "$work/aarch64"
 
 echo "=== licences, and the public interface"
-cargo test --locked -q --test licences
+tool cargo-deny
+cargo deny check licenses bans sources
+# The list of advisories comes from the network.
+$rehearse || cargo deny check advisories
 last=$(git tag --list 'v*' --sort=-version:refname | head -1)
 if [ -n "$last" ]; then
-    command -v cargo-semver-checks >/dev/null || cargo install -q --locked --root "$tools" cargo-semver-checks
+    tool cargo-semver-checks
     cargo semver-checks --baseline-rev "$last" -p nearmiss -p nearmiss-kernels -p nearmiss-emulator
 else
     echo "no tag v*: nothing to compare with"
@@ -63,43 +70,51 @@ cp "$work"/package/package/*.crate "$out/crates/"
 cargo test --locked -q --test package -- --include-ignored
 
 echo "=== wheels"
-for target in "${targets[@]}"; do
+for target in $intel $arm; do
     maturin build --locked --release --zig --target "$target" --compatibility manylinux2014 --manifest-path python/Cargo.toml --out "$out/wheels"
 done
 twine check --strict "$out"/wheels/*.whl
 python3 -m venv "$work/user"
 "$work/user/bin/pip" -q install "$out"/wheels/nearmiss-*x86_64.whl
-for page in README.md python/README.md; do
+# There pip is none: a wheel is an archive of what it installs.
+python3 -m zipfile -e "$out"/wheels/nearmiss-*aarch64.whl "$work/site"
+for page in "$PWD/README.md" "$PWD/python/README.md"; do
     "$work/user/bin/python" .ci/python_blocks.py "$page"
+    PYTHONPATH=$work/site "$work/aarch64/run" python3 "$PWD/.ci/python_blocks.py" "$page"
 done
 for wheel in "$out"/wheels/*.whl; do
     python3 -m zipfile -l "$wheel" | grep -q 'sboms/.*cyclonedx.json' || { echo "release: $wheel has no bill of materials" >&2; exit 1; }
 done
 
 echo "=== program and C interface"
-for target in "${targets[@]}"; do
+for target in $intel $arm; do
     machine=${target%%-*}
     cargo zigbuild --locked --release --features cuda -p nearmiss-cli -p nearmiss-c --target "$target.2.17"
     built=$(realpath "${CARGO_TARGET_DIR:-target}")/$target/release
     program=$work/nearmiss-$version-$machine-linux
     mkdir -p "$program/man" "$program/completions"
     cp "$built/nearmiss" README.md LICENSE* CHANGELOG.md "$program/"
-    if [ $target = $intel ]; then
-        nearmiss=$built/nearmiss
-        "$nearmiss" detect --scene draped --triangles 2000 >/dev/null
+    through=() cross=()
+    if [ $target = $arm ]; then
+        through=("$work/aarch64/run")
+        cross=(-DCMAKE_SYSTEM_NAME=Linux -DCMAKE_SYSTEM_PROCESSOR=aarch64 -DCMAKE_CROSSCOMPILING_EMULATOR="$work/aarch64/run"
+            -DCMAKE_C_COMPILER="$tools/bin/python-zig;cc;-target;aarch64-linux-gnu.2.17"
+            -DCMAKE_CXX_COMPILER="$tools/bin/python-zig;c++;-target;aarch64-linux-gnu.2.17")
     fi
+    for query in "" --discrete "--near 0.01" --distance --earliest; do
+        # shellcheck disable=SC2086
+        "${through[@]}" "$built/nearmiss" detect --scene cloth-ball --triangles 1000 --backend cpu $query --out "$work/answer${query%% *}-$machine.csv" >/dev/null
+        cmp "$work/answer${query%% *}-$machine.csv" "$work/answer${query%% *}-x86_64.csv"
+    done
+    nearmiss=${nearmiss:-$built/nearmiss}
     "$nearmiss" man >"$program/man/nearmiss.1"
     for command in $("$nearmiss" --help | awk '/^Commands:/ { inside = 1; next } inside && /^$/ { exit } inside && /^  [a-z]/ && $1 != "help" { print $1 }'); do
         "$nearmiss" man "$command" >"$program/man/nearmiss-$command.1"
     done
     for shell in bash zsh fish; do "$nearmiss" completions $shell >"$program/completions/nearmiss.$shell"; done
-    cmake -S c -B "$work/c-$machine" -DNEARMISS_LIBRARY_DIR="$built" -DCMAKE_INSTALL_LIBDIR=lib >/dev/null
-    if [ $target = $intel ]; then
-        cmake --build "$work/c-$machine" >/dev/null
-        ctest --test-dir "$work/c-$machine" --output-on-failure
-    else
-        echo "not run: the program, the wheel and the C interface for $machine"
-    fi
+    cmake -S c -B "$work/c-$machine" -DNEARMISS_LIBRARY_DIR="$built" -DCMAKE_INSTALL_LIBDIR=lib "${cross[@]}" >/dev/null
+    cmake --build "$work/c-$machine" >/dev/null
+    ctest --test-dir "$work/c-$machine" --output-on-failure
     cmake --install "$work/c-$machine" --prefix "$work/nearmiss-c-$version-$machine-linux" >/dev/null
     cp LICENSE* "$work/nearmiss-c-$version-$machine-linux/"
     for name in nearmiss nearmiss-c; do
@@ -108,7 +123,7 @@ for target in "${targets[@]}"; do
 done
 
 echo "=== bills of materials"
-command -v cargo-cyclonedx >/dev/null || cargo install -q --locked --root "$tools" cargo-cyclonedx
+tool cargo-cyclonedx
 cargo cyclonedx --format json --all-features --override-filename sbom
 for folder in "" kernels emulator lab cli c python; do
     bill=${folder:+$folder/}sbom.json
