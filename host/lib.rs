@@ -50,6 +50,8 @@ mod detector;
 pub mod device;
 pub mod error;
 #[doc(hidden)]
+pub mod file;
+#[doc(hidden)]
 pub mod memory;
 pub mod mesh;
 #[doc(hidden)]

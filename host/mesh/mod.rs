@@ -18,8 +18,6 @@ mod read;
 mod sequence;
 mod topology;
 mod topology_check;
-#[cfg(feature = "gz")]
-mod unpack;
 mod validate;
 mod weld;
 

@@ -3,7 +3,7 @@
 use super::sequence::difference;
 use super::{Mesh, Problem, cut, obj, ply_read};
 use crate::Error;
-use crate::memory;
+use crate::file::{self, is_packed};
 use std::path::Path;
 
 /// The formats that are read.
@@ -111,36 +111,9 @@ fn fans(name: String, format: Format, bytes: &[u8]) -> Result<Mesh, Error> {
 /// Name, format and bytes of a file.
 fn open(path: &Path) -> Result<(String, Format, Vec<u8>), Error> {
     let file = path.display().to_string();
-    let input = |problem| Error::Input { file: file.clone(), problem };
-    let format = Format::of(path).map_err(input)?;
-    let size = size(path).map_err(input)?;
-    memory::require(&format!("reading {file}"), size.saturating_mul(MULTIPLE))?;
-    let bytes = std::fs::read(path).map_err(|e| input(unreadable(e)))?;
-    #[cfg(feature = "gz")]
-    let bytes = if is_packed(path) { super::unpack::unpack(&file, &bytes, MULTIPLE)? } else { bytes };
-    Ok((file, format, bytes))
-}
-
-/// Whether a file is packed by gzip, and can be read.
-fn is_packed(path: &Path) -> bool {
-    cfg!(feature = "gz") && path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gz"))
+    let format = Format::of(path).map_err(|problem| Error::Input { file: file.clone(), problem })?;
+    Ok((file, format, file::read(path, MULTIPLE)?))
 }
 
 /// Most bytes of memory that a byte of a file takes, the file itself with it: texts of short numbers take most.
 const MULTIPLE: u64 = 8;
-
-fn unreadable(error: std::io::Error) -> Problem {
-    Problem::Unreadable { reason: error.to_string() }
-}
-
-/// The size of a file. Only of regular files: a pipe or a device may never end.
-fn size(path: &Path) -> Result<u64, Problem> {
-    let kind = std::fs::metadata(path).map_err(unreadable)?;
-    if kind.is_dir() {
-        return Err(Problem::Unreadable { reason: "it is a directory".into() });
-    }
-    if !kind.is_file() {
-        return Err(Problem::Unreadable { reason: "it is not a regular file".into() });
-    }
-    Ok(kind.len())
-}

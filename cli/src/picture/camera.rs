@@ -21,10 +21,15 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Looks from `view` at those points, with `up` up where the two are not parallel; both of length 1. What is framed are the points that
-    /// `framed` names, of all points where it names none.
-    pub fn new(points: &[[f64; 3]], framed: &[u32], [view, up]: [[f64; 3]; 2], size: [usize; 2]) -> Camera {
-        let (low, high) = bounds(points.iter().copied());
+    /// Looks from `view` at those points, with `up` up where the two are not parallel; both of length 1. What is framed are the points of
+    /// `framed`, all where it has none.
+    pub fn new(
+        points: impl Iterator<Item = [f64; 3]> + Clone,
+        framed: impl Iterator<Item = [f64; 3]> + Clone,
+        [view, up]: [[f64; 3]; 2],
+        size: [usize; 2],
+    ) -> Camera {
+        let (low, high) = bounds(points.clone());
         let longest = (0..3).fold(0.0f64, |most, k| most.max(high[k] - low[k]));
         let across = [up, [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]].map(|up| cross(up, view));
         let steep = |across: &&[f64; 3]| dot(**across, **across) > 1e-6;
@@ -37,12 +42,10 @@ impl Camera {
             scale: 1.0,
             size: size.map(|side| side as f64),
         };
-        let places = || points.iter().map(|point| camera.turned(camera.near_origin(*point)));
-        let (low, high) = if framed.is_empty() {
-            bounds(places())
-        } else {
-            let place = |at: &u32| camera.turned(camera.near_origin(points[*at as usize]));
-            bounds(framed.iter().map(place))
+        let place = |point: [f64; 3]| camera.turned(camera.near_origin(point));
+        let (low, high) = match framed.clone().next() {
+            None => bounds(points.map(place)),
+            Some(_) => bounds(framed.map(place)),
         };
         let sides = [0, 1].map(|k| (high[k] - low[k]).max(SMALLEST));
         (camera.centre, camera.scale) = (
@@ -86,40 +89,45 @@ mod tests {
     const CUBE: [[f64; 3]; 2] = [[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]];
     const Z: [f64; 3] = [0.0, 0.0, 1.0];
 
+    /// Looks at all points, or at those that are named.
+    fn looking(points: &[[f64; 3]], framed: &[usize], directions: [[f64; 3]; 2], size: [usize; 2]) -> Camera {
+        Camera::new(points.iter().copied(), framed.iter().map(|at| points[*at]), directions, size)
+    }
+
     fn close(a: [f64; 3], b: [f64; 3]) {
         assert!((0..3).all(|k| (a[k] - b[k]).abs() < 1e-9), "{a:?}, not {b:?}");
     }
 
     #[test]
     fn axes_are_those_of_the_picture() {
-        let front = Camera::new(&CUBE, &[], [[0.0, -1.0, 0.0], Z], [200, 100]);
+        let front = looking(&CUBE, &[], [[0.0, -1.0, 0.0], Z], [200, 100]);
         // The height of 2 fills nine tenths of 100 pixels.
         close(front.place([0.0; 3]), [100.0, 50.0, 0.0]);
         close(front.place([1.0, 0.0, 0.0]), [145.0, 50.0, 0.0]);
         close(front.place([0.0, 0.0, 1.0]), [100.0, 5.0, 0.0]);
         close(front.place([0.0, -1.0, 0.0]), [100.0, 50.0, 45.0]);
         // From above there is no up but another one.
-        let above = Camera::new(&CUBE, &[], [Z, Z], [100, 100]);
+        let above = looking(&CUBE, &[], [Z, Z], [100, 100]);
         close(above.place([1.0, 1.0, 1.0]), [95.0, 5.0, 45.0]);
     }
 
     #[test]
     fn what_is_framed_fills_the_picture() {
         let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 1.0], [100.0, 0.0, 100.0]];
-        let camera = Camera::new(&points, &[0, 1], [[0.0, -1.0, 0.0], Z], [100, 100]);
+        let camera = looking(&points, &[0, 1], [[0.0, -1.0, 0.0], Z], [100, 100]);
         close(camera.place([0.5, 0.0, 0.5]), [50.0, 50.0, 0.0]);
         assert_eq!(camera.place(points[1])[0].round(), 95.0);
         // One point alone is not looked at without end.
-        let one = Camera::new(&points, &[0], [[0.0, -1.0, 0.0], Z], [100, 100]);
+        let one = looking(&points, &[0], [[0.0, -1.0, 0.0], Z], [100, 100]);
         assert!((one.place(points[2])[0] - 50.0).abs() < 100.0 / SMALLEST);
     }
 
     #[test]
     fn no_size_is_too_large_or_too_small() {
         for size in [1e-300, 2f64.powi(480)] {
-            let camera = Camera::new(&CUBE.map(|point| scaled(point, size)), &[], [Z, Z], [100, 100]);
+            let camera = looking(&CUBE.map(|point| scaled(point, size)), &[], [Z, Z], [100, 100]);
             close(camera.place([size, size, size]), [95.0, 5.0, 45.0]);
         }
-        close(Camera::new(&[[3.0; 3]], &[], [Z, Z], [100, 100]).place([3.0; 3]), [50.0, 50.0, 0.0]);
+        close(looking(&[[3.0; 3]], &[], [Z, Z], [100, 100]).place([3.0; 3]), [50.0, 50.0, 0.0]);
     }
 }

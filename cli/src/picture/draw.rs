@@ -36,10 +36,11 @@ impl Picture<'_> {
     /// The pixels, three bytes each, row by row from the top: looked at from the first direction with the second up, both of length 1. Around
     /// what meets, or around everything.
     pub fn draw(&self, directions: [[f64; 3]; 2], size: [usize; 2], around_met: bool) -> Vec<u8> {
-        let corners = |triangle: &u32| self.faces[*triangle as usize];
-        let framed: Vec<u32> =
-            if around_met { self.met.iter().flat_map(corners).collect() } else { Vec::new() };
-        let camera = Camera::new(self.points, &framed, directions, size);
+        // A vertex of no triangle may be anywhere.
+        let corners = |face: &[u32; 3]| face.map(|vertex| self.points[vertex as usize]);
+        let framed = if around_met { self.met } else { &[] };
+        let framed = framed.iter().flat_map(|triangle| corners(&self.faces[*triangle as usize]));
+        let camera = Camera::new(self.faces.iter().flat_map(corners), framed, directions, size);
         let places: Vec<[f64; 3]> = self.points.iter().map(|point| camera.place(*point)).collect();
         let normals = normals(self.points, self.faces);
         let sides = self.sides(&places);

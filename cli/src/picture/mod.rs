@@ -17,7 +17,6 @@ use nearmiss::Detector;
 use nearmiss::contacts::Answer;
 use nearmiss::error::Error;
 use nearmiss::memory;
-use nearmiss::mesh::Body;
 use nearmiss::words::counted;
 use nearmiss_kernels::math::Vec3;
 use std::io::Write;
@@ -26,7 +25,7 @@ use std::process::ExitCode;
 /// Asks a frame, draws it, and says what there is to see.
 ///
 /// # Errors
-/// [`Error::Choice`] for a name that is not of a PNG, for several steps, and for a time where nothing moves; [`Error::Output`] for a file that cannot be written;
+/// [`Error::Choice`] for a name that is not of a PNG, for several steps, and for a time of a frame at rest; [`Error::Output`] for a file that cannot be written;
 /// [`Error::OutOfMemory`] before the picture is drawn; those of the question and the machine.
 pub fn picture(args: &PictureArgs) -> Result<ExitCode, Error> {
     let Some(out) = &args.detect.out else {
@@ -41,10 +40,9 @@ pub fn picture(args: &PictureArgs) -> Result<ExitCode, Error> {
         let advice = "give the meshes of one frame, or of both ends of one step".into();
         return Err(Error::Choice { what, advice });
     }
-    let moves = |body: &Body| body.is_moving() || body.poses()[0] != body.poses()[1];
-    if args.time > 0.0 && !scene.bodies().iter().any(moves) {
-        let what = "--time would do nothing: nothing moves".into();
-        return Err(Error::Choice { what, advice: "leave it out, or give both ends of a step".into() });
+    if args.time > 0.0 && query.kind().is_at_rest() {
+        let what = "--time would do nothing: what is asked is of a frame at rest".into();
+        return Err(Error::Choice { what, advice: "leave it out, or ask what meets in a step".into() });
     }
     let device = args.detect.machine.open()?;
     promise(&query);

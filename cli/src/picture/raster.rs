@@ -61,14 +61,25 @@ impl Canvas {
         });
         let (columns, rows) = (range(0), range(1));
         for row in rows {
-            for column in columns.clone() {
-                // A sample stands in the middle of its square.
+            // A sample stands in the middle of its square; on the inner side of a line where this is not negative.
+            let parts = |column: i64| {
                 let point = [column, row].map(|x| x * PARTS as i64 + PARTS as i64 / 2);
-                let parts =
-                    [0, 1, 2].map(|k| doubled(point, at[(k + 1) % 3], at[(k + 2) % 3]) * area.signum());
-                if parts.iter().any(|part| *part < 0) {
-                    continue;
+                [0, 1, 2].map(|k| doubled(point, at[(k + 1) % 3], at[(k + 2) % 3]) * area.signum())
+            };
+            // It grows by the same from column to column: so those within are told from the first two.
+            let (first, second) = (parts(0), parts(1));
+            let mut within = columns.clone();
+            for (start, next) in first.into_iter().zip(second) {
+                let grows = next - start;
+                match grows.signum() {
+                    1 => within.start = within.start.max(-start.div_euclid(grows)),
+                    -1 => within.end = within.end.min(start.div_euclid(-grows) + 1),
+                    _ if start < 0 => within.end = within.start,
+                    _ => {}
                 }
+            }
+            for column in within {
+                let parts = parts(column);
                 let weights = parts.map(|part| part as f64 / area.abs() as f64);
                 let depth = (0..3).map(|k| weights[k] * corners[k].place[2]).sum::<f64>() as f32;
                 let index = row as usize * self.size[0] + column as usize;
@@ -94,7 +105,14 @@ impl Canvas {
         let squared = along[0] * along[0] + along[1] * along[1];
         let (columns, rows) = (range(0), range(1));
         for row in rows {
-            for column in columns.clone() {
+            // The part of the line that is within a radius of the row, and a sample to either side for roundings.
+            let height = (row as f64 + 0.5) / FINE as f64 - from[1];
+            let part = |apart: f64| ((height + apart) / along[1]).clamp(0.0, 1.0);
+            let ends = if along[1] == 0.0 { [0.0, 1.0] } else { [part(-radius), part(radius)] };
+            let [one, other] = ends.map(|part| from[0] + part * along[0]);
+            let place = |x: f64| ((x * FINE as f64).max(0.0) as usize).clamp(columns.start, columns.end);
+            let reach = radius + 1.0 / FINE as f64;
+            for column in place(one.min(other) - reach)..place((one.max(other) + reach).ceil()) {
                 let point = [column, row].map(|x| (x as f64 + 0.5) / FINE as f64);
                 let own = [point[0] - from[0], point[1] - from[1]];
                 let dot = own[0] * along[0] + own[1] * along[1];
@@ -188,6 +206,32 @@ mod tests {
         }
         // Red of the ground would show.
         assert!(canvas.colours.iter().all(|colour| colour[0] == 0.0));
+    }
+
+    #[test]
+    fn samples_within_are_drawn_and_no_others() {
+        // Slivers in all directions, some beyond the canvas.
+        for turn in 0..64 {
+            let direction = |part: usize| f64::from(turn as u32 * 7 + part as u32 * 3) * 0.1;
+            let place = |part: usize, far: f64| {
+                [10.0 + far * direction(part).cos(), 10.0 + far * direction(part).sin(), 0.0]
+            };
+            let places = [place(0, 14.0), place(1, 9.0), place(30 + turn, 13.0)];
+            let mut canvas = Canvas::new([20, 20], WHITE);
+            draw(&mut canvas, places, BLUE);
+            let at = places.map(|place| [0, 1].map(|k| (place[k] * FINE as f64 * PARTS).round() as i64));
+            let area = doubled(at[0], at[1], at[2]);
+            for (index, colour) in canvas.colours.iter().enumerate() {
+                let point = [index % canvas.size[0], index / canvas.size[0]].map(|x| x as i64 * 16 + 8);
+                let sides =
+                    [0, 1, 2].map(|k| doubled(point, at[(k + 1) % 3], at[(k + 2) % 3]) * area.signum());
+                assert_eq!(
+                    colour[0] == 0.0,
+                    area != 0 && sides.iter().all(|side| *side >= 0),
+                    "{turn}: {point:?}"
+                );
+            }
+        }
     }
 
     #[test]

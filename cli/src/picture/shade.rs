@@ -59,7 +59,8 @@ fn top(above: &mut [u32], mut vertex: u32) -> u32 {
 /// The normal of each triangle's corners: the mean of those of its neighbours that go on smoothly, weighted by area. Zeros of a triangle
 /// without area.
 pub fn normals(points: &[[f64; 3]], faces: &[[u32; 3]]) -> Vec<[[f64; 3]; 3]> {
-    let longest = points.iter().flatten().fold(0.0f64, |most, x| most.max(x.abs())).max(f64::MIN_POSITIVE);
+    let used = faces.iter().flatten().flat_map(|vertex| points[*vertex as usize]);
+    let longest = used.fold(0.0f64, |most, x| most.max(x.abs())).max(f64::MIN_POSITIVE);
     let flat: Vec<[f64; 3]> = faces
         .iter()
         .map(|face| {

@@ -139,6 +139,8 @@ fn numbers_and_files_of_queries() {
     let message = refused(3, &["explain", "--between", "ee", "--queries", &plain, "--row", "2"]);
     assert!(message.contains("has no query 2: it has 2 of them"), "{message}");
     assert!(refused(2, &["explain", "--queries", &plain, "--row", "0"]).contains("--between vf"));
+    let endless = refused(3, &["explain", "--between", "ee", "--queries", "/dev/zero", "--row", "0"]);
+    assert!(endless.contains("/dev/zero: cannot be read: it is not a regular file"), "{endless}");
 }
 
 #[test]

@@ -159,8 +159,10 @@ fn bodies_are_drawn_where_they_are_at_a_time() {
          poses = [{}, { translation = [0, 0, -8] }]\n[[body]]\nmesh = \"rest.obj\"\nkind = \"static\"\n";
     let (posed, _) = drawn(&[&folder.write("scene.toml", scene), "--size", "200x200", "--time", "0.5"], &out);
     assert_eq!((0..200).find(|y| posed.at(34, *y) != PAPER), Some(middle));
-    let still = refused(2, &["picture", &from, "--time", "0.5", "--out", &out]);
-    assert!(still.contains("--time would do nothing: nothing moves"), "{still}");
+    for asked in [&["--discrete"][..], &["--near", "1"], &["--distance", "--with", &rest]] {
+        let still = refused(2, &[&["picture", &from, "--time", "0.5", "--out", &out], asked].concat());
+        assert!(still.contains("--time would do nothing: what is asked is of a frame at rest"), "{still}");
+    }
     for time in ["-0.1", "1.01", "NaN", "now"] {
         let text = refused(2, &["picture", &from, &to, "--time", time, "--out", &out]);
         assert!(text.contains("give a number from 0 to 1"), "{text}");
@@ -212,6 +214,12 @@ fn any_direction_and_any_mesh_can_be_drawn() {
             ok(&["picture", mesh, "--backend", "cpu", "--size", "32x16", "--view", view, "--out", &out]);
         }
     }
+    // A vertex of no triangle may be anywhere: nothing of it is seen.
+    let mut bytes = ["", "v 1e60 0 0\n"].into_iter().map(|more| {
+        let mesh = folder.write("far.obj", &format!("v 0 0 0\nv 4 1 0\nv 0 4 9\n{more}f 1 2 3\n"));
+        drawn(&[&mesh, "--size", "64x64"], &out).0.2
+    });
+    assert_eq!(bytes.next(), bytes.next());
     ok(&["picture", &huge, "--backend", "cpu", "--size", "32x32", "--view", "0,0,1", "--out", &out]);
     assert_ne!(Png::read(&out).at(10, 22), PAPER);
 }

@@ -56,12 +56,35 @@ fn bad(folder: &Path, what: impl std::fmt::Display) -> Error {
 
 fn walk(folder: &Path, files: &mut Vec<PathBuf>) -> Result<(), Error> {
     for entry in std::fs::read_dir(folder).map_err(|e| bad(folder, e))? {
-        let path = entry.map_err(|e| bad(folder, e))?.path();
-        if path.is_dir() {
-            walk(&path, files)?;
+        let entry = entry.map_err(|e| bad(folder, e))?;
+        // A link to a folder is not followed: it may lead to where it lies.
+        if entry.file_type().map_err(|e| bad(folder, e))?.is_dir() {
+            walk(&entry.path(), files)?;
         } else {
-            files.push(path);
+            files.push(entry.path());
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn a_link_that_leads_round_is_not_followed() {
+        let root = std::env::temp_dir().join(format!("nearmiss-queries-{}", std::process::id()));
+        let folder = root.join("vertex-face");
+        fs::create_dir_all(&folder).expect("a folder");
+        fs::write(folder.join("one.csv"), "0,1,0,1,0,1,1\n".repeat(8)).expect("a file");
+        for name in ["a", "b", "c"] {
+            std::os::unix::fs::symlink(&root, folder.join(name)).expect("a link");
+        }
+        std::os::unix::fs::symlink(folder.join("one.csv"), folder.join("two.csv")).expect("a link");
+        let found = queries(&root);
+        fs::remove_dir_all(&root).expect("ours");
+        let found = found.expect("a folder of queries");
+        assert_eq!((found.len(), found[0].cases.len()), (1, 2), "links to files are");
+    }
 }

@@ -7,11 +7,14 @@ use nearmiss::mesh::Problem;
 use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{ToPrimitive, Zero};
-use std::io::Read;
 use std::path::Path;
 
 /// Rows a query.
 const ROWS: usize = 8;
+/// Most bytes of memory that a byte of a file takes: a row of six numbers of one digit has 14 and takes 24 as a point, and 32 as a line.
+const MULTIPLE: u64 = 8;
+/// Most digits of a numerator or a denominator: those of a double have up to 324, and dividing larger ones takes ever longer.
+const DIGITS: usize = 1000;
 
 /// What the folders above a file say it asks of.
 pub fn features(path: &Path) -> Option<Features> {
@@ -25,17 +28,9 @@ pub fn features(path: &Path) -> Option<Features> {
 /// A file's text, unpacked where it is packed.
 ///
 /// # Errors
-/// [`Error::Input`] with the system's text.
+/// [`Error::Input`] for a file that cannot be read; [`Error::OutOfMemory`].
 pub fn text(path: &Path) -> Result<String, Error> {
-    let unreadable = |e: std::io::Error| input(path, Problem::Unreadable { reason: e.to_string() });
-    let bytes = std::fs::read(path).map_err(unreadable)?;
-    let mut text = String::new();
-    if bytes.starts_with(&[0x1f, 0x8b]) {
-        flate2::read::MultiGzDecoder::new(&bytes[..]).read_to_string(&mut text).map_err(unreadable)?;
-    } else {
-        (&bytes[..]).read_to_string(&mut text).map_err(unreadable)?;
-    }
-    Ok(text)
+    nearmiss::file::text(path, MULTIPLE)
 }
 
 /// The questions of a file, each with the file's own answer.
@@ -83,7 +78,12 @@ fn row(line: &str) -> Result<([f64; 3], bool), (String, &'static str)> {
 
 /// A quotient that f64 holds.
 fn number(numerator: &str, denominator: &str) -> Result<f64, (String, &'static str)> {
-    let whole = |cell: &str| cell.parse::<BigInt>().map_err(|_| (cell.to_owned(), "is no integer"));
+    let whole = |cell: &str| {
+        if cell.len() > DIGITS {
+            return Err((cell.chars().take(40).collect(), "begins a number of more than 1,000 digits"));
+        }
+        cell.parse::<BigInt>().map_err(|_| (cell.to_owned(), "is no integer"))
+    };
     let (numerator, denominator) = (whole(numerator)?, whole(denominator)?);
     if denominator.is_zero() {
         return Err((denominator.to_string(), "is a denominator, which is not zero"));
@@ -106,6 +106,7 @@ mod tests {
             ("1,3,3,4,0,1,0", "no double"),
             ("1,2,3,4,0,1,2", "0 or 1"),
             ("x,2,3,4,0,1,1", "no integer"),
+            (&format!("{},2,3,4,0,1,1", "9".repeat(DIGITS + 1)), "more than 1,000 digits"),
         ] {
             assert!(row(text).expect_err("refused").1.contains(why), "{text}");
         }

@@ -1,8 +1,8 @@
-//! Files that gzip has packed: `.ply.gz`, `.obj.gz`.
+//! What gzip has packed.
 
-use super::Problem;
 use crate::Error;
 use crate::memory;
+use crate::mesh::Problem;
 use flate2::bufread::MultiGzDecoder;
 use std::io::Read;
 

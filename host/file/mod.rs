@@ -1,0 +1,56 @@
+//! Files that are read whole: only regular ones, only where there is memory, unpacked where gzip has packed them.
+
+#[cfg(feature = "gz")]
+mod unpack;
+
+use crate::Error;
+use crate::memory;
+use crate::mesh::Problem;
+use std::path::Path;
+
+/// The bytes of a file; with feature `gz` unpacked where its name ends in `.gz`. Memory is asked for before, `multiple` bytes for each that it
+/// has: what its reader takes, the file itself with it.
+///
+/// # Errors
+/// [`Error::Input`] with [`Problem::Unreadable`], for a folder, a pipe and a device too, which may never end, or [`Problem::Packed`];
+/// [`Error::OutOfMemory`].
+pub fn read(path: &Path, multiple: u64) -> Result<Vec<u8>, Error> {
+    let file = path.display().to_string();
+    let input = |problem| Error::Input { file: file.clone(), problem };
+    let size = size(path).map_err(input)?;
+    memory::require(&format!("reading {file}"), size.saturating_mul(multiple))?;
+    let bytes = std::fs::read(path).map_err(|e| input(unreadable(e)))?;
+    #[cfg(feature = "gz")]
+    let bytes = if is_packed(path) { unpack::unpack(&file, &bytes, multiple)? } else { bytes };
+    Ok(bytes)
+}
+
+/// A file's text, as [`read`] its bytes.
+///
+/// # Errors
+/// Those of [`read`], and [`Problem::Unreadable`] for what is not UTF-8.
+pub fn text(path: &Path, multiple: u64) -> Result<String, Error> {
+    let other = |_| Problem::Unreadable { reason: "it is not UTF-8".into() };
+    String::from_utf8(read(path, multiple)?)
+        .map_err(|e| Error::Input { file: path.display().to_string(), problem: other(e) })
+}
+
+/// Whether a file is packed by gzip, and can be read.
+pub fn is_packed(path: &Path) -> bool {
+    cfg!(feature = "gz") && path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gz"))
+}
+
+fn unreadable(error: std::io::Error) -> Problem {
+    Problem::Unreadable { reason: error.to_string() }
+}
+
+fn size(path: &Path) -> Result<u64, Problem> {
+    let kind = std::fs::metadata(path).map_err(unreadable)?;
+    if kind.is_dir() {
+        return Err(Problem::Unreadable { reason: "it is a directory".into() });
+    }
+    if !kind.is_file() {
+        return Err(Problem::Unreadable { reason: "it is not a regular file".into() });
+    }
+    Ok(kind.len())
+}
