@@ -7,7 +7,7 @@ use crate::mesh::{Body, Positions};
 use crate::pipeline::below_precision::BelowPrecision;
 use crate::pipeline::{Layout, Seen, Stages, Whereabouts};
 use crate::query::Query;
-use crate::scene::{BodyKind, Pose};
+use crate::scene::Pose;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -48,13 +48,28 @@ impl Detector {
 
     /// Whether every body is where the host or a pipeline knows it to be.
     pub(super) fn all_known(&self) -> Result<(), Error> {
-        let lost = |body: &&Body| body.is_away() && body.lent().is_none();
-        match self.scene.bodies().iter().find(lost) {
+        self.none_lost()?;
+        let gone = |body: &&Body| body.is_away() && body.lent().is_none();
+        match self.scene.bodies().iter().find(gone) {
             Some(body) if self.pipeline.is_none() => Err(Error::Choice {
                 what: format!("only the device knew where {} was, and that memory is gone", body.name()),
                 advice: "say again where it is".into(),
             }),
             _ => Ok(()),
+        }
+    }
+
+    /// Whether no body was placed in a frame that was refused, and in none since.
+    pub(super) fn none_lost(&self) -> Result<(), Error> {
+        match self.scene.bodies().iter().find(|body| body.is_lost()) {
+            Some(body) => Err(Error::Choice {
+                what: format!(
+                    "nobody knows where {} is: the frame that named it last was refused, and has overwritten where it was",
+                    body.name()
+                ),
+                advice: "name it again, and all others of that frame".into(),
+            }),
+            None => Ok(()),
         }
     }
 
@@ -68,12 +83,7 @@ impl Detector {
         let mut are_single = true;
         for (i, body) in self.scene.bodies().iter().enumerate().filter(|(_, body)| body.is_away()) {
             let (ends, poses) = places.of(i);
-            if body.kind() == BodyKind::Rigid {
-                poses.iter().try_for_each(|pose| body.check_pose(pose))?;
-            }
-            for positions in &ends {
-                are_single &= body.is_single(positions)?;
-            }
+            are_single &= body.check_found(&ends, poses)?;
         }
         if self.f64s || are_single {
             // Only vertices that no face uses.
@@ -91,8 +101,15 @@ impl Detector {
         seen: Option<Seen>,
         start: Instant,
     ) -> Result<Contacts, Error> {
-        if seen.is_some_and(|seen| seen.invalid) && self.look()? {
-            return self.answer(start);
+        if seen.is_some_and(|seen| seen.invalid) {
+            let looked = self.look();
+            if looked.is_err() {
+                let bodies = self.scene.bodies_mut().iter_mut().zip(&self.named);
+                bodies.filter(|(_, named)| **named).for_each(|(body, _)| body.lose());
+            }
+            if looked? {
+                return self.answer(start);
+            }
         }
         self.answered = true;
         self.wear.tell(contacts.steps);

@@ -58,6 +58,8 @@ pub struct Detector {
     answered: bool,
     /// The largest coordinate that was seen in memory of the caller so far.
     largest: f64,
+    /// Of each body, whether the last frame named it.
+    named: Vec<bool>,
     /// Whether the pipeline holds positions in f64: where any body has them so, so that nothing is rounded.
     f64s: bool,
     /// None where nothing can meet, or where memory ended: then the next frame asks for it again.
@@ -118,6 +120,7 @@ impl Detector {
             construct_ms: 0.0,
             answered: false,
             largest: 0.0,
+            named: Vec::new(),
             f64s: false,
             pipeline: None,
             share,
@@ -231,6 +234,7 @@ impl Detector {
     /// The same, of a frame that began then.
     fn answer(&mut self, start: Instant) -> Result<Contacts, Error> {
         self.answered = false;
+        self.none_lost()?;
         let layout = self.layout()?;
         if self.is_worn(&layout) {
             self.renew()?;

@@ -15,7 +15,9 @@ impl Detector {
     ///
     /// # Errors
     /// [`Error::Choice`] for a body that is not in the scene, or named twice, or given what its kind does not take;
-    /// [`Error::Input`] for positions that no mesh may have: then nothing has moved. Those of the device.
+    /// [`Error::Input`] for positions that no mesh may have: then nothing has moved. Only what lies in a GPU's memory is seen when it is
+    /// read: after a frame that is refused for that, the next must name the same bodies, since where these were is gone. Those of the
+    /// device.
     pub fn frame(&mut self, inputs: &[(BodyId, Input)]) -> Result<Contacts, Error> {
         let start = Instant::now();
         self.device.work();
@@ -53,7 +55,13 @@ impl Detector {
                 });
             }
             body.check(input)?;
+            if let (false, Input::OnDevice(lent)) = (self.device.is_gpu(), input) {
+                // SAFETY: its maker has promised that the detector's device can read it during this call, and that is a CPU.
+                let (ends, poses) = unsafe { lent.read() };
+                body.check_found(&ends, &poses)?;
+            }
         }
+        self.named.clone_from(&named);
         for (id, input) in inputs {
             let body = self.scene.get_mut(*id).ok_or_else(|| nobody(*id))?;
             body.put(input);
@@ -79,7 +87,17 @@ impl Detector {
             }
             None => self.begun().map(drop),
         };
-        self.scene.bodies_mut().iter_mut().for_each(Body::placed);
+        let is_held = self.pipeline.is_some() || self.device.is_gpu();
+        for body in self.scene.bodies_mut() {
+            let lent = body.lent().copied();
+            body.placed();
+            // Where nothing can meet nothing holds it.
+            if let (false, Some(lent)) = (is_held, lent) {
+                // SAFETY: its maker has promised that the detector's device can read it during this call, and that is a CPU.
+                let (ends, poses) = unsafe { lent.read() };
+                body.bring(&ends, &poses);
+            }
+        }
         placed
     }
 

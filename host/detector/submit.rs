@@ -3,6 +3,7 @@
 use super::{Detector, contacts};
 use crate::contacts::{Contacts, DeviceAnswer};
 use crate::error::Error;
+use crate::mesh::Body;
 use crate::scene::{BodyId, DeviceInput, Input};
 use std::time::Instant;
 
@@ -70,6 +71,10 @@ impl Detector {
     pub fn collect(&mut self) -> Result<Contacts, Error> {
         let start = Instant::now();
         let layout = self.layout()?;
+        if self.is_prepared() {
+            // A submission reads the caller's memory anew, whatever became of the one before.
+            self.scene.bodies_mut().iter_mut().for_each(Body::placed_anew);
+        }
         let Some(pipeline) = &mut self.pipeline else { return Ok(Contacts::none(self.query)) };
         let whole = pipeline.collect()?.map(|(found, stages)| {
             let seen = found.seen;

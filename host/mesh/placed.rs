@@ -136,6 +136,38 @@ impl Body {
         }
     }
 
+    /// The frame that placed the body was refused: where it was before is not known either.
+    pub(crate) fn lose(&mut self) {
+        self.away = Some(Away::Lost { moving: self.is_moving() });
+    }
+
+    /// Whether it was placed in a frame that was refused, and in none since.
+    pub(crate) fn is_lost(&self) -> bool {
+        matches!(self.away, Some(Away::Lost { .. }))
+    }
+
+    /// The caller's memory was read anew.
+    pub(crate) fn placed_anew(&mut self) {
+        if let Some(Away::Lost { moving }) = self.away {
+            self.away = Some(Away::Placed { moving });
+        }
+    }
+
+    /// Whether a body can be where it was found: at both ends or at the only one.
+    ///
+    /// # Errors
+    /// [`Error::Choice`] and [`Error::Input`], as of [`Body::check`].
+    pub(crate) fn check_found(&self, ends: &[Positions], poses: &[Pose]) -> Result<bool, Error> {
+        if self.kind == BodyKind::Rigid {
+            poses.iter().try_for_each(|pose| self.check_pose(pose))?;
+        }
+        let mut are_single = true;
+        for positions in ends {
+            are_single &= self.is_single(positions)?;
+        }
+        Ok(are_single)
+    }
+
     /// Brings the body back from the device: where it was found there, at both ends or at the only one. One that rests is at
     /// the later end, whether or not that has been told to the device.
     pub(crate) fn bring(&mut self, ends: &[Positions], poses: &[Pose]) {
@@ -152,6 +184,9 @@ impl Body {
 
     /// A body that moved in the last step rests where that ended; whether it had moved.
     pub(crate) fn rest(&mut self) -> bool {
+        if self.is_lost() {
+            return false;
+        }
         if self.is_away() {
             let moved = self.is_moving();
             self.away = Some(Away::Placed { moving: false });

@@ -36,6 +36,11 @@ pub(crate) enum Away {
         /// Whether those are two.
         moving: bool,
     },
+    /// Nowhere: it was placed in a frame that was refused, at two ends or at one.
+    Lost {
+        /// Whether those are two.
+        moving: bool,
+    },
 }
 
 impl Body {

@@ -1,6 +1,8 @@
 //! Positions and poses that lie in the device's memory already.
 
+use super::Pose;
 use crate::error::Error;
+use crate::mesh::Positions;
 use nearmiss_kernels::abi::Lent;
 
 /// The kind of numbers that lie in a memory.
@@ -73,6 +75,49 @@ impl DeviceRows {
         self.number
     }
 
+    /// Rows of `N` numbers.
+    ///
+    /// # Safety
+    /// As of [`DeviceRows::new`], of memory that the host can read.
+    unsafe fn read<const N: usize, T: bytemuck::Pod>(&self) -> Vec<[T; N]> {
+        let row = |row: usize| {
+            let start = (self.address as usize + row * self.stride) as *const T;
+            // SAFETY: the caller's promise: there lie N numbers, at a multiple of their size.
+            std::array::from_fn(|k| unsafe { start.add(k).read() })
+        };
+        (0..self.rows).map(row).collect()
+    }
+
+    /// Three numbers a row.
+    ///
+    /// # Safety
+    /// As of [`DeviceRows::read`].
+    unsafe fn positions(&self) -> Positions {
+        // SAFETY: the caller's promise.
+        unsafe {
+            match self.number {
+                Number::F32 => Positions::F32(self.read()),
+                Number::F64 => Positions::F64(self.read()),
+            }
+        }
+    }
+
+    /// So many numbers of the first row; zeros where there is none.
+    ///
+    /// # Safety
+    /// As of [`DeviceRows::read`].
+    unsafe fn first<const N: usize>(&self) -> [f64; N] {
+        let first = DeviceRows { rows: self.rows.min(1), ..*self };
+        // SAFETY: the caller's promise.
+        let doubles: Vec<[f64; N]> = unsafe {
+            match self.number {
+                Number::F32 => first.read::<N, f32>().into_iter().map(|row| row.map(f64::from)).collect(),
+                Number::F64 => first.read(),
+            }
+        };
+        doubles.first().copied().unwrap_or([0.0; N])
+    }
+
     /// As a kernel reads it, with rows of that many numbers.
     pub(crate) fn record(&self, width: u32) -> Lent {
         // Checked when it was made.
@@ -122,6 +167,25 @@ impl DeviceInput {
             DeviceInput::At(rows) => rows.number == Number::F64,
             DeviceInput::Step(ends) => ends.iter().any(|rows| rows.number == Number::F64),
             DeviceInput::Pose(_) | DeviceInput::Poses(_) => false,
+        }
+    }
+
+    /// Positions of a deformable body, poses of a rigid one, at both ends or at the only one, as the host reads them.
+    ///
+    /// # Safety
+    /// As of [`DeviceRows::new`], of memory that the host can read: a CPU's.
+    pub(crate) unsafe fn read(&self) -> (Vec<Positions>, Vec<Pose>) {
+        // SAFETY: the caller's promise.
+        let ends = |rows: &[DeviceRows]| rows.iter().map(|rows| unsafe { rows.positions() }).collect();
+        // SAFETY: the caller's promise.
+        let pose = |pose: &DevicePose| unsafe {
+            Pose { rotation: pose.rotation.first(), translation: pose.translation.first() }
+        };
+        match self {
+            DeviceInput::At(rows) => (ends(std::slice::from_ref(rows)), Vec::new()),
+            DeviceInput::Step(both) => (ends(both), Vec::new()),
+            DeviceInput::Pose(one) => (Vec::new(), vec![pose(one)]),
+            DeviceInput::Poses(both) => (Vec::new(), both.iter().map(pose).collect()),
         }
     }
 

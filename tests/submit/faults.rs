@@ -31,6 +31,94 @@ fn a_vertex_that_is_no_point_is_named() {
     }
 }
 
+/// What a CPU is lent is looked at before anything moves.
+#[test]
+fn a_frame_that_is_refused_on_a_cpu_moves_nothing() {
+    let (scene, id, [t0, t1]) = pair(60);
+    for kind in QueryKind::ALL {
+        let device = engine();
+        let mut bad = t1.clone();
+        bad[17][1] = f32::NAN;
+        let memory = [&t0, &bad].map(|points| Points::new(&device, points));
+        let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
+        let mut detector = Detector::new(device, scene.clone(), query(kind)).expect("a detector");
+        let before = detector.detect().expect("an answer");
+        detector.frame(&[(id, Input::OnDevice(input))]).expect_err("no answer");
+        assert_eq!(detector.detect().expect("an answer").answer, before.answer, "{kind:?}");
+        assert_eq!(detector.frame(&[]).expect("an answer").answer, before.answer, "{kind:?}");
+        detector.add(Body::still(soup(20, 6).0)).expect("nothing is lost");
+    }
+}
+
+/// What is submitted is seen when it is read, and what was there before is overwritten: no answer is made of it.
+#[test]
+fn after_a_submission_that_is_refused_nothing_is_answered_of_its_bodies() {
+    let (mut scene, id, [t0, t1]) = pair(60);
+    let other = scene.add(Body::still(soup(20, 9).0));
+    for kind in QueryKind::ALL {
+        let device = engine();
+        let mut memory = [&t0, &t1].map(|points| Points::new(&device, points));
+        let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
+        let mut detector = Detector::new(device, scene.clone(), query(kind)).expect("a detector");
+        let good = detector.prepare(&[(id, input)]).expect("an answer");
+        let mut bad = t0.clone();
+        bad[17][1] = f32::NAN;
+        memory[0].write(&bad);
+        detector.submit().expect("submitted");
+        detector.collect().expect_err("no answer");
+        // Mended, the next submission is as good as any.
+        memory[0].write(&t0);
+        detector.submit().expect("submitted");
+        assert_eq!(detector.collect().expect("an answer").answer, good.answer, "{kind:?}");
+
+        memory[0].write(&bad);
+        detector.submit().expect("submitted");
+        detector.collect().expect_err("no answer");
+        let there = detector.scene().get(other).expect("a body").positions_t0().clone();
+        let refusals = [
+            detector.detect().map(drop),
+            detector.frame(&[]).map(drop),
+            detector.frame(&[(other, Input::At(&there))]).map(drop),
+            detector.fetch(),
+            detector.add(Body::still(soup(20, 6).0)).map(drop),
+        ];
+        for refused in refusals {
+            let text = refused.expect_err("nobody knows where it is").to_string();
+            assert!(text.contains("name it again"), "{kind:?}: {text}");
+        }
+        let [at, to] = [&t0, &t1].map(|points| Positions::F32(points.clone()));
+        let found = detector.frame(&[(id, Input::Step([&at, &to]))]).expect("an answer");
+        assert_eq!(found.answer, good.answer, "{kind:?}");
+    }
+}
+
+/// Where nothing can meet nothing is placed: what was lent is kept by the host.
+#[test]
+fn what_is_lent_where_nothing_can_meet_is_kept() {
+    let (mesh, [t0, t1]) = soup(60, 3);
+    let alone = |at: &[[f32; 3]]| {
+        let mesh = Mesh::new("soup", Positions::F32(at.to_vec()), mesh.faces().to_vec());
+        let mut scene = Scene::new();
+        scene.add(Body::still(mesh.expect("a mesh")));
+        scene
+    };
+    let device = engine();
+    let memory = Points::new(&device, &t1);
+    let mut detector = Detector::new(device, alone(&t0), query(QueryKind::Discrete)).expect("a detector");
+    let id = detector.scene().ids().next().expect("a body");
+    let input = [(id, Input::OnDevice(DeviceInput::At(memory.rows())))];
+    assert!(detector.frame(&input).expect("an answer").is_empty());
+    drop(memory);
+    let more = Body::still(soup(50, 8).0);
+    detector.add(more.clone()).expect("all is known");
+    let mut wanted = alone(&t1);
+    wanted.add(more);
+    let mut by_host = Detector::new(engine(), wanted, query(QueryKind::Discrete)).expect("a detector");
+    let found = detector.detect().expect("an answer");
+    assert!(!found.is_empty());
+    assert_eq!(found.answer, by_host.detect().expect("an answer").answer);
+}
+
 /// What no face uses may be anything.
 #[test]
 fn a_vertex_that_no_face_uses_is_not_looked_at() {
