@@ -105,12 +105,5 @@ fn comparable(args: &BenchArgs, chosen: &[cases::Chosen], earlier: &Earlier) -> 
 /// Refuses to write over the earlier file: what it says would be lost with the fault that it shows.
 fn keeps(args: &BenchArgs) -> Result<(), Error> {
     let (Some(out), Some(earlier)) = (&args.report.out, &args.against) else { return Ok(()) };
-    let [to, from] = [&out.join(file::NAME), earlier].map(|path| path.canonicalize().ok());
-    if to.is_none() || to != from {
-        return Ok(());
-    }
-    Err(Error::Choice {
-        what: format!("--out would write over {}, which --against reads", earlier.display()),
-        advice: "give another folder, and replace the file when its successor is as it should be".into(),
-    })
+    output::keeps("--out", &out.join(file::NAME), [earlier.as_path()])
 }
