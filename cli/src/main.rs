@@ -22,7 +22,7 @@ mod vtp;
 
 use args::{Command, ReportArgs};
 use nearmiss::error::Error;
-use output::{print, say};
+use output::{Target, print, say};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -68,10 +68,14 @@ fn report<T: serde::Serialize>(
     args: &ReportArgs,
     figures: &T,
     text: impl FnOnce(&T) -> String,
-    write: impl FnOnce(&T, &Path) -> Result<Vec<String>, Error>,
+    files: impl FnOnce(&T) -> Result<Vec<(String, Vec<u8>)>, Error>,
 ) -> Result<ExitCode, Error> {
     if let Some(out) = &args.out {
-        let names = write(figures, out)?;
+        let mut names = Vec::new();
+        for (name, bytes) in files(figures)? {
+            Target::open(&out.join(&name))?.write(|out| out.write_all(&bytes).map_err(|e| e.to_string()))?;
+            names.push(name);
+        }
         say(&format!("{} in {}", names.join(", "), out.display()));
     }
     if args.json {

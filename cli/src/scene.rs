@@ -2,7 +2,7 @@
 
 use super::args::SceneArgs;
 use super::progress::during;
-use crate::output::{self, print};
+use crate::output::{self, Target, print};
 use nearmiss::error::Error;
 use nearmiss::mesh::Mesh;
 use nearmiss::words::counted;
@@ -53,7 +53,7 @@ fn animated(args: &SceneArgs) -> Result<ExitCode, Error> {
 /// One frame.
 fn write(args: &SceneArgs, frame: &str, mesh: &Mesh) -> Result<(), Error> {
     let path: PathBuf = args.out.join(format!("{}_{frame}.ply", args.name));
-    mesh.write_ply(&path)?;
+    Target::open(&path)?.write(|mut out| mesh.encode_ply(&mut out).map_err(|e| e.to_string()))?;
     let triangles = counted(mesh.face_count() as u64, "triangle", "triangles");
     print(&format!("{}: {triangles}\n", path.display()))
 }

@@ -33,7 +33,7 @@ pub fn tables(args: &TablesArgs) -> Result<ExitCode, Error> {
         })?;
         scene(args, &device, &frames, &mut figures)?;
     }
-    super::report(&args.report, &figures, Figures::text, Figures::write)
+    super::report(&args.report, &figures, Figures::text, Figures::files)
 }
 
 /// Measures scenes of many bodies.

@@ -48,7 +48,7 @@ pub fn trade(args: &TradeArgs) -> Result<ExitCode, Error> {
         generated(args, &device, &mut all)?;
     }
     all.sum_up();
-    super::report(&args.report, &all, Trade::text, Trade::write)
+    super::report(&args.report, &all, Trade::text, Trade::files)
 }
 
 /// How many cases of a kind.

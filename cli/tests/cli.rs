@@ -14,6 +14,9 @@ mod explain;
 mod faces;
 #[path = "cli/idle.rs"]
 mod idle;
+#[cfg(target_os = "linux")]
+#[path = "cli/kept.rs"]
+mod kept;
 #[path = "cli/memory.rs"]
 mod memory;
 #[path = "cli/near.rs"]

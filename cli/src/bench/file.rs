@@ -82,7 +82,7 @@ impl Earlier {
 ///
 /// # Errors
 /// The writer's text.
-pub fn csv(all: &Figures) -> Result<Vec<u8>, String> {
+pub fn csv(all: &Figures) -> Result<Vec<u8>, Error> {
     let row = |of: &Measured, at: usize| {
         let times = &of.stages[at];
         Row {

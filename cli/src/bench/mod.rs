@@ -20,9 +20,7 @@ use machine::Machine;
 use measure::{Measured, measure};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
-use nearmiss_lab::tables::{failed, put};
 use serde::Serialize;
-use std::path::Path;
 use std::process::ExitCode;
 
 /// What was measured.
@@ -83,15 +81,13 @@ pub fn bench(args: &BenchArgs) -> Result<ExitCode, Error> {
     }
     let is_chosen = |case: &str, question: &str| args.has_case(case) && args.has_question(question);
     let faults = earlier.map_or(Vec::new(), |earlier| compare(&mut all, &earlier, is_chosen, args.limit));
-    let done = super::report(&args.report, &all, text::text, write)?;
+    let done = super::report(&args.report, &all, text::text, files)?;
     faults.into_iter().next().map_or(Ok(done), Err)
 }
 
-/// Writes the figures into a folder; the file's name.
-fn write(all: &Figures, folder: &Path) -> Result<Vec<String>, Error> {
-    let path = folder.join(file::NAME);
-    put(&path, &file::csv(all).map_err(|e| failed(&path, &e))?)?;
-    Ok(vec![file::NAME.into()])
+/// The file of the figures: its name, and its bytes.
+fn files(all: &Figures) -> Result<Vec<(String, Vec<u8>)>, Error> {
+    Ok(vec![(file::NAME.into(), file::csv(all)?)])
 }
 
 /// Refuses an earlier file that has nothing of what will be measured: such a check would always hold.
@@ -109,12 +105,5 @@ fn comparable(args: &BenchArgs, chosen: &[cases::Chosen], earlier: &Earlier) -> 
 /// Refuses to write over the earlier file: what it says would be lost with the fault that it shows.
 fn keeps(args: &BenchArgs) -> Result<(), Error> {
     let (Some(out), Some(earlier)) = (&args.report.out, &args.against) else { return Ok(()) };
-    let [to, from] = [&out.join(file::NAME), earlier].map(|path| path.canonicalize().ok());
-    if to.is_none() || to != from {
-        return Ok(());
-    }
-    Err(Error::Choice {
-        what: format!("--out would write over {}, which --against reads", earlier.display()),
-        advice: "give another folder, and replace the file when its successor is as it should be".into(),
-    })
+    output::keeps("--out", &out.join(file::NAME), [earlier.as_path()])
 }

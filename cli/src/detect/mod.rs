@@ -4,11 +4,11 @@ pub mod notes;
 mod text;
 
 use crate::args::DetectArgs;
-use crate::output::{Target, print, say};
+use crate::output::{self, Target, print, say};
 use crate::paint;
 use crate::progress::during;
 use crate::report::{self, FileFaces, Format, Report};
-use crate::sequence::{Sequence, is_scene, steps};
+use crate::sequence::{self, Sequence, is_scene, steps};
 use nearmiss::Detector;
 use nearmiss::contacts::{ContactGeometry, Contacts};
 use nearmiss::error::Error;
@@ -101,8 +101,28 @@ pub fn promise(query: &Query) {
     }
 }
 
+/// Refuses to write over what is read.
+///
+/// # Errors
+/// [`Error::Choice`].
+pub fn keeps(args: &DetectArgs) -> Result<(), Error> {
+    let targets = [("--out", &args.out), ("--out-mesh", &args.out_mesh)];
+    // What is not there is not read either.
+    let mut there = targets
+        .iter()
+        .filter_map(|(option, to)| Some((*option, to.as_ref()?)))
+        .filter(|(_, to)| to.exists())
+        .peekable();
+    if there.peek().is_none() {
+        return Ok(());
+    }
+    let files = sequence::files(args);
+    there.try_for_each(|(option, to)| output::keeps(option, to, files.iter().map(PathBuf::as_path)))
+}
+
 /// Finds contacts, writes and prints what was asked for.
 pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
+    keeps(args)?;
     let target = match &args.out {
         Some(out) => Some((Format::of(out)?, Target::open(out)?)),
         None => None,

@@ -8,7 +8,7 @@ mod shade;
 
 use crate::args::PictureArgs;
 use crate::args::picture::{Around, check};
-use crate::detect::{Question, places, promise, question};
+use crate::detect::{Question, keeps, places, promise, question};
 use crate::output::{Target, print};
 use crate::paint::{self, GREY, ORANGE, RED};
 use crate::progress::during;
@@ -32,6 +32,7 @@ pub fn picture(args: &PictureArgs) -> Result<ExitCode, Error> {
         return Err(Error::Bug { what: "a picture without --out".into() });
     };
     check(out)?;
+    keeps(&args.detect)?;
     let target = Target::open(out)?;
     let Question { scene, query, sequence } = question(&args.detect)?;
     let steps = sequence.map_or(1, |all| all.steps(query.kind().is_at_rest()));

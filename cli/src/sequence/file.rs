@@ -5,6 +5,7 @@ use nearmiss::memory;
 use nearmiss::mesh::Problem;
 use nearmiss::scene::{BodyKind, Meets, Pose};
 use serde::Deserialize;
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use toml::{Spanned, Table, Value};
 
@@ -83,7 +84,8 @@ pub fn wrong(file: &Path, what: impl Into<String>, advice: impl Into<String>) ->
 /// [`Error::Input`], naming the file, the body, the key and the value.
 pub fn read(path: &Path) -> Result<Vec<Described>, Error> {
     let text = text(path)?;
-    let line = |at: usize| 1 + text.as_bytes()[..at.min(text.len())].iter().filter(|b| **b == b'\n').count();
+    let ends: Vec<usize> = text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(at, _)| at).collect();
+    let line = |at: usize| 1 + ends.partition_point(|end| *end < at);
     let whole: Whole = toml::from_str(&text).map_err(|e| {
         let place = e.span().map_or(String::new(), |span| format!("line {}: ", line(span.start)));
         wrong(path, format!("{place}{}", e.message()), "a scene is tables [[body]] of TOML")
@@ -93,10 +95,11 @@ pub fn read(path: &Path) -> Result<Vec<Described>, Error> {
     }
     let count = whole.body.len();
     let mut all: Vec<Described> = Vec::with_capacity(count);
+    let mut names: HashMap<String, usize> = HashMap::with_capacity(count);
     for table in whole.body {
         let body = described(path, line(table.span().start), table.into_inner(), count)?;
-        if let Some(other) = all.iter().find(|other| other.name == body.name) {
-            let what = format!("{} has the name of {}", body.called, other.called);
+        if let Some(other) = names.insert(body.name.clone(), all.len()) {
+            let what = format!("{} has the name of {}", body.called, all[other].called);
             return Err(wrong(path, what, "give each a `name` of its own"));
         }
         all.push(body);

@@ -13,7 +13,7 @@ use nearmiss::memory;
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::scene::{BodyId, BodyKind, Input, Pose, Scene};
 use nearmiss::words::counted;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 /// Where a body is, frame by frame; of one entry it rests.
@@ -58,6 +58,22 @@ pub struct Sequence {
 /// Whether a file is one of a scene.
 pub fn is_scene(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
+}
+
+/// All files that the arguments name, and those that a scene names. What cannot be read is told where it is read.
+pub fn files(args: &DetectArgs) -> HashSet<PathBuf> {
+    let named: Vec<&PathBuf> = args.meshes.iter().chain(&args.with).collect();
+    let scenes = named.iter().filter(|path| is_scene(path));
+    let meshes = scenes.flat_map(|path| {
+        let bodies = file::read(path).unwrap_or_default();
+        bodies.into_iter().flat_map(|body| body.meshes).map(|mesh| folder_of(path).join(mesh))
+    });
+    meshes.chain(named.iter().map(|path| path.to_path_buf())).collect()
+}
+
+/// The folder from which a scene names its meshes.
+fn folder_of(scene: &Path) -> &Path {
+    scene.parent().unwrap_or(Path::new(""))
 }
 
 impl Sequence {
@@ -108,7 +124,7 @@ impl Sequence {
                 return Err(wrong(path, what, "give one, which rests, or as many as the others"));
             }
         }
-        let folder = path.parent().unwrap_or(Path::new(""));
+        let folder = folder_of(path);
         let mut read = HashMap::new();
         let mut told = Vec::with_capacity(described.len());
         for body in &described {

@@ -228,6 +228,18 @@ fn what_is_wrong_with_a_file_is_named() {
 }
 
 #[test]
+fn many_bodies_are_read_in_their_own_time() {
+    let folder = Folder::new("scene-many");
+    let body = |name: usize| format!("[[body]]\nname = \"{name}\"\nmesh = \"missing.obj\"\n");
+    let all: String = (0..100_000).chain([7]).map(body).collect();
+    let (file, start) = (folder.write("many.toml", &all), std::time::Instant::now());
+    let text = refused(3, &["detect", &file]);
+    assert!(text.contains("body \"7\" (line 300001) has the name of body \"7\" (line 22)"), "{text}");
+    // Each beside each of the others would take minutes.
+    assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
+}
+
+#[test]
 fn a_scene_stands_alone() {
     let folder = Folder::new("scene-alone");
     meshes(&folder);

@@ -5,10 +5,9 @@ use super::headline::headline;
 use super::picture;
 use super::refit::{RefitRow, advice};
 use super::row::Row;
-use crate::tables::{csv, failed, put, text};
+use crate::tables::{csv, text};
 use nearmiss::error::Error;
 use serde::Serialize;
-use std::path::Path;
 
 /// What was measured; what was not has no rows.
 #[derive(Debug, Serialize)]
@@ -54,39 +53,32 @@ impl Trade {
         all
     }
 
-    /// Writes `trade.csv`, `trade-sweeps.csv` and so on, and a picture of each, into a folder, which is made where there is
-    /// none; the files' names.
+    /// `trade.csv`, `trade-sweeps.csv` and so on, and a picture of each: names of files, and their bytes.
     ///
     /// # Errors
-    /// [`Error::Output`].
-    pub fn write(&self, folder: &Path) -> Result<Vec<String>, Error> {
-        std::fs::create_dir_all(folder).map_err(|e| failed(folder, &e))?;
-        let mut names = Vec::new();
-        let mut write = |name: &str, bytes: Result<Vec<u8>, String>| {
-            let path = folder.join(name);
-            put(&path, &bytes.map_err(|e| failed(&path, &e))?)?;
-            names.push(name.to_owned());
-            Ok::<_, Error>(())
-        };
+    /// Those of drawing.
+    pub fn files(&self) -> Result<Vec<(String, Vec<u8>)>, Error> {
+        let mut files = Vec::new();
+        let mut add = |name: &str, bytes: Vec<u8>| files.push((name.to_owned(), bytes));
         if !self.choices.is_empty() {
-            write("trade.csv", csv(&self.choices))?;
-            write("trade-pareto.svg", Ok(picture::pareto(&self.device, &self.choices)?.into_bytes()))?;
+            add("trade.csv", csv(&self.choices)?);
+            add("trade-pareto.svg", picture::pareto(&self.device, &self.choices)?.into_bytes());
         }
         if self.choices.iter().any(|row| row.tolerance_edges.is_some()) {
-            write("trade-tolerance.svg", Ok(picture::tolerance(&self.device, &self.choices)?.into_bytes()))?;
+            add("trade-tolerance.svg", picture::tolerance(&self.device, &self.choices)?.into_bytes());
         }
         if !self.sweeps.is_empty() {
-            write("trade-sweeps.csv", csv(&self.sweeps))?;
-            write("trade-sweeps.svg", Ok(picture::sweeps(&self.device, &self.sweeps)?.into_bytes()))?;
+            add("trade-sweeps.csv", csv(&self.sweeps)?);
+            add("trade-sweeps.svg", picture::sweeps(&self.device, &self.sweeps)?.into_bytes());
         }
         if !self.funnel.is_empty() {
-            write("trade-funnel.csv", csv(&self.funnel))?;
-            write("trade-funnel.svg", Ok(picture::funnel(&self.device, &self.funnel)?.into_bytes()))?;
+            add("trade-funnel.csv", csv(&self.funnel)?);
+            add("trade-funnel.svg", picture::funnel(&self.device, &self.funnel)?.into_bytes());
         }
         if !self.refit.is_empty() {
-            write("trade-refit.csv", csv(&self.refit))?;
-            write("trade-refit.svg", Ok(picture::refit(&self.device, &self.refit)?.into_bytes()))?;
+            add("trade-refit.csv", csv(&self.refit)?);
+            add("trade-refit.svg", picture::refit(&self.device, &self.refit)?.into_bytes());
         }
-        Ok(names)
+        Ok(files)
     }
 }

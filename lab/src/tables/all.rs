@@ -10,7 +10,6 @@ use super::text::text;
 use nearmiss::error::Error;
 use nearmiss::words::counted;
 use serde::Serialize;
-use std::path::Path;
 
 /// The figures that were asked for; those that were not have no rows.
 #[derive(Debug, Serialize)]
@@ -111,20 +110,15 @@ impl Figures {
         remarks
     }
 
-    /// Writes `figure-6.12.csv`, `figure-6.12.svg` and so on into a folder, which is made where there is none; the files'
-    /// names.
+    /// `figure-6.12.csv`, `figure-6.12.svg` and so on: names of files, and their bytes.
     ///
     /// # Errors
-    /// [`Error::Output`].
-    pub fn write(&self, folder: &Path) -> Result<Vec<String>, Error> {
-        std::fs::create_dir_all(folder).map_err(|e| failed(folder, &e))?;
-        let mut names = Vec::new();
-        let mut both = |name: &str, rows: Result<Vec<u8>, String>, svg: Result<String, Error>| {
-            let csv = folder.join(format!("{name}.csv"));
-            let rows = rows.map_err(|e| failed(&csv, &e))?;
-            put(&csv, &rows)?;
-            put(&folder.join(format!("{name}.svg")), svg?.as_bytes())?;
-            names.extend(["csv", "svg"].map(|kind| format!("{name}.{kind}")));
+    /// Those of drawing.
+    pub fn files(&self) -> Result<Vec<(String, Vec<u8>)>, Error> {
+        let mut files = Vec::new();
+        let mut both = |name: &str, rows: Result<Vec<u8>, Error>, svg: Result<String, Error>| {
+            files.push((format!("{name}.csv"), rows?));
+            files.push((format!("{name}.svg"), svg?.into_bytes()));
             Ok::<_, Error>(())
         };
         if !self.figure_6_12.is_empty() {
@@ -164,16 +158,12 @@ impl Figures {
             both("front", csv(&self.front), curves(title, &self.machine(), bound, &charts(&self.front)))?;
         }
         if !self.bodies.is_empty() {
-            let file = folder.join("bodies.csv");
-            put(&file, &csv(&self.bodies).map_err(|e| failed(&file, &e))?)?;
-            names.push("bodies.csv".into());
+            files.push(("bodies.csv".into(), csv(&self.bodies)?));
         }
         if !self.scale.is_empty() {
-            let file = folder.join("scale.csv");
-            put(&file, &csv(&self.scale).map_err(|e| failed(&file, &e))?)?;
-            names.push("scale.csv".into());
+            files.push(("scale.csv".into(), csv(&self.scale)?));
         }
-        Ok(names)
+        Ok(files)
     }
 }
 
@@ -235,18 +225,12 @@ fn panels<T>(rows: &[T], title: fn(&T) -> String, bar: fn(&T) -> Bar) -> Vec<Pan
 }
 
 /// Rows with a head.
-pub fn csv<T: Serialize>(rows: &[T]) -> Result<Vec<u8>, String> {
+///
+/// # Errors
+/// [`Error::Bug`] for rows that a table cannot hold.
+pub fn csv<T: Serialize>(rows: &[T]) -> Result<Vec<u8>, Error> {
+    let bug = |text: String| Error::Bug { what: text };
     let mut csv = csv::Writer::from_writer(Vec::new());
-    rows.iter().try_for_each(|row| csv.serialize(row)).map_err(|e| e.to_string())?;
-    csv.into_inner().map_err(|e| e.to_string())
-}
-
-/// Writes a file.
-pub fn put(path: &Path, bytes: &[u8]) -> Result<(), Error> {
-    std::fs::write(path, bytes).map_err(|e| failed(path, &e))
-}
-
-/// A file that could not be written.
-pub fn failed(path: &Path, text: &impl ToString) -> Error {
-    Error::Output { file: path.display().to_string(), text: text.to_string() }
+    rows.iter().try_for_each(|row| csv.serialize(row)).map_err(|e| bug(e.to_string()))?;
+    csv.into_inner().map_err(|e| bug(e.to_string()))
 }

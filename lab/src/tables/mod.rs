@@ -18,8 +18,7 @@ mod text;
 mod way;
 
 pub use agree::agree;
-pub use all::Figures;
-pub use all::{csv, failed, put};
+pub use all::{Figures, csv};
 pub use bodies::bodies;
 pub use build::build;
 pub use figures::{Paper, figure_612, figure_613, figure_614};

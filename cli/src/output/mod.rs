@@ -1,0 +1,95 @@
+//! What the program says and writes. Nothing is lost in silence: output that cannot be written is an error.
+
+mod pack;
+mod place;
+
+use nearmiss::error::Error;
+use place::Way;
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Prints to standard output, at once. A full disk is an error, and so is a reader that has gone.
+pub fn print(text: &str) -> Result<(), Error> {
+    let mut out = std::io::stdout().lock();
+    out.write_all(text.as_bytes()).and_then(|()| out.flush()).map_err(|e| stdout_failed(&e))
+}
+
+/// Standard output, which could not be written.
+pub fn stdout_failed(text: &impl ToString) -> Error {
+    failed(Path::new("standard output"), text)
+}
+
+/// Says something beside the answer. Where standard error cannot be written there is nobody to tell.
+pub fn say(text: &str) {
+    let _ = writeln!(std::io::stderr(), "nearmiss: {text}");
+}
+
+fn failed(path: &Path, text: &impl ToString) -> Error {
+    Error::Output { file: path.display().to_string(), text: text.to_string() }
+}
+
+/// A file that will be written when the work is done; whether it can be is known before.
+pub struct Target {
+    path: PathBuf,
+    /// Whether it is packed by gzip: its name ends in `.gz`.
+    packed: bool,
+    way: Way,
+}
+
+impl Target {
+    /// Looks whether the file can be written. What it holds stays.
+    ///
+    /// # Errors
+    /// [`Error::Output`].
+    pub fn open(path: &Path) -> Result<Target, Error> {
+        let way = place::way(path).map_err(|e| failed(path, &e))?;
+        Ok(Target { path: path.to_owned(), packed: is_packed(path), way })
+    }
+
+    /// Writes the file.
+    ///
+    /// # Errors
+    /// [`Error::Output`]; then a file that was there before is as it was, or empty where its folder takes no new ones.
+    pub fn write(self, put: impl FnOnce(&mut dyn Write) -> Result<(), String>) -> Result<(), Error> {
+        let put = |out: &mut dyn Write| if self.packed { pack::pack(out, put) } else { put(out) };
+        let written = match self.way {
+            Way::Open(file) => place::into(&file, put),
+            Way::Beside(real) => place::beside(&real, put),
+        };
+        written.map_err(|text| failed(&self.path, &text))
+    }
+}
+
+/// Whether a file's name says that it is packed by gzip.
+fn is_packed(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gz"))
+}
+
+/// A file's name without `.gz`.
+pub fn unpacked(path: &Path) -> PathBuf {
+    if is_packed(path) { path.with_extension("") } else { path.to_owned() }
+}
+
+/// A folder that files will be written into when the work is done: made where there is none.
+///
+/// # Errors
+/// [`Error::Output`] when it takes no files.
+pub fn folder(path: &Path) -> Result<(), Error> {
+    fs::create_dir_all(path).and_then(|()| place::probe(path)).map_err(|e| failed(path, &e))
+}
+
+/// Refuses to write over a file that is read, however it is named.
+///
+/// # Errors
+/// [`Error::Choice`], naming the option and the file.
+pub fn keeps<'a>(option: &str, to: &Path, read: impl IntoIterator<Item = &'a Path>) -> Result<(), Error> {
+    let Ok(real) = to.canonicalize() else { return Ok(()) };
+    match read.into_iter().find(|from| from.canonicalize().is_ok_and(|from| from == real)) {
+        None => Ok(()),
+        Some(from) => Err(Error::Choice {
+            what: format!("{option} would write over {}, which is read", from.display()),
+            advice: "give it another name, and replace the file when its successor is as it should be".into(),
+        }),
+    }
+}

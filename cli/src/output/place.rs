@@ -1,0 +1,166 @@
+//! Where a file goes: beside what is there until it is whole, or into what is open.
+
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, ErrorKind, Seek, Write};
+use std::path::{Path, PathBuf, is_separator};
+use tempfile::{Builder, NamedTempFile, PersistError};
+
+/// How a file is written.
+pub enum Way {
+    /// A new file beside it takes its place when it is whole: what was there stays until then.
+    Beside(PathBuf),
+    /// Into what is open: a device, a pipe, or a file in a folder that takes no new ones.
+    Open(File),
+}
+
+/// How a file can be written; nothing is made.
+///
+/// # Errors
+/// Where it cannot.
+pub fn way(path: &Path) -> io::Result<Way> {
+    let kind = match fs::metadata(path) {
+        Ok(kind) => kind,
+        Err(e) if e.kind() == ErrorKind::NotFound => {
+            let real = named(path)?;
+            probe(folder_of(&real))?;
+            return Ok(Way::Beside(real));
+        }
+        Err(e) => return Err(e),
+    };
+    if kind.is_dir() {
+        return Err(ErrorKind::IsADirectory.into());
+    }
+    let file = OpenOptions::new().write(true).open(path)?;
+    if kind.is_file() {
+        // A link stays one: the file that it names is replaced.
+        let real = fs::canonicalize(path)?;
+        match probe(folder_of(&real)) {
+            Ok(()) => return Ok(Way::Beside(real)),
+            Err(e) if takes_no_files(&e) => {}
+            Err(e) => return Err(e),
+        }
+    }
+    Ok(Way::Open(file))
+}
+
+/// The file that a path will name, where there is none yet: a link to nothing stays a link.
+fn named(path: &Path) -> io::Result<PathBuf> {
+    let mut real = path.to_owned();
+    // Rings of links have been told by the system, which follows no more than these.
+    for _ in 0..40 {
+        let Ok(next) = fs::read_link(&real) else { break };
+        real = folder_of(&real).join(next);
+    }
+    let is_folder = real.to_string_lossy().ends_with(is_separator);
+    if is_folder { Err(ErrorKind::IsADirectory.into()) } else { Ok(real) }
+}
+
+/// Whether a folder keeps its files to itself, and may yet have one that can be written.
+fn takes_no_files(error: &io::Error) -> bool {
+    matches!(error.kind(), ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem)
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."))
+}
+
+/// Whether a folder takes a new file.
+///
+/// # Errors
+/// Where it takes none.
+pub fn probe(folder: &Path) -> io::Result<()> {
+    temporary(folder)?.close()
+}
+
+/// A new file in a folder, by a name that no other has, which goes when it is dropped. Who may read it is as of any new file.
+fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
+    Builder::new().prefix(".nearmiss-").make_in(folder, |path| File::create_new(path))
+}
+
+/// Writes into what is open. Of a failed regular file nothing is left: half an answer would look like one.
+///
+/// # Errors
+/// Those of `put` and of the file.
+pub fn into(file: &File, put: impl FnOnce(&mut dyn Write) -> Result<(), String>) -> Result<(), String> {
+    // A pipe and a device keep nothing.
+    let is_regular = file.metadata().map_err(text)?.is_file();
+    let keep = |length: &dyn Fn(&File) -> io::Result<()>| if is_regular { length(file) } else { Ok(()) };
+    let clear = || keep(&|file| file.set_len(0));
+    clear().map_err(text)?;
+    let mut out = BufWriter::new(file);
+    let written = put(&mut out);
+    // A buffer that is dropped would write what it holds.
+    let (mut file, held) = out.into_parts();
+    let written = written.and_then(|()| file.write_all(&held.unwrap_or_default()).map_err(text));
+    written.and_then(|()| keep(&File::sync_all).map_err(text)).inspect_err(|_| {
+        // The first error is told.
+        let _ = clear();
+    })
+}
+
+fn text(error: io::Error) -> String {
+    error.to_string()
+}
+
+/// Writes a new file, which takes the place of what is there when it is whole.
+///
+/// # Errors
+/// Those of `put` and of the file; then what is there is as it was.
+pub fn beside(real: &Path, put: impl FnOnce(&mut dyn Write) -> Result<(), String>) -> Result<(), String> {
+    let new = temporary(folder_of(real)).map_err(text)?;
+    if let Ok(before) = fs::metadata(real) {
+        new.as_file().set_permissions(before.permissions()).map_err(text)?;
+    }
+    into(new.as_file(), put)?;
+    replace(new, real, |new| new.persist(real))
+}
+
+/// Gives a whole file its name. A name that cannot be given away (a file is mounted there, or is another's in a sticky folder) keeps
+/// its file, which takes the bytes.
+fn replace(
+    new: NamedTempFile,
+    real: &Path,
+    rename: impl FnOnce(NamedTempFile) -> Result<File, PersistError>,
+) -> Result<(), String> {
+    let Err(PersistError { error, file: new }) = rename(new) else { return Ok(()) };
+    let is_kept = matches!(
+        error.kind(),
+        ErrorKind::ResourceBusy | ErrorKind::PermissionDenied | ErrorKind::CrossesDevices
+    );
+    if !is_kept || !real.is_file() {
+        return Err(text(error));
+    }
+    let old = OpenOptions::new().write(true).open(real).map_err(text)?;
+    let mut new = new.as_file();
+    new.rewind().map_err(text)?;
+    into(&old, |mut out| io::copy(&mut new, &mut out).map(|_| ()).map_err(text))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{ErrorKind, PersistError, fs, io, replace, temporary};
+    use std::io::Write;
+
+    /// A whole file meets one that keeps its name: what it says, what is there then, and how many files.
+    fn kept(kind: ErrorKind) -> (Result<(), String>, String, usize) {
+        let folder = tempfile::tempdir().expect("a folder");
+        let real = folder.path().join("a.csv");
+        fs::write(&real, "what was there, and longer").expect("written");
+        let new = temporary(folder.path()).expect("a file");
+        new.as_file().write_all(b"new").expect("written");
+        let fails = |file| Err(PersistError { error: io::Error::from(kind), file });
+        let said = replace(new, &real, fails);
+        let count = fs::read_dir(folder.path()).expect("a folder").count();
+        (said, fs::read_to_string(&real).expect("text"), count)
+    }
+
+    #[test]
+    fn a_file_that_keeps_its_name_takes_the_bytes() {
+        for kind in [ErrorKind::ResourceBusy, ErrorKind::PermissionDenied, ErrorKind::CrossesDevices] {
+            assert_eq!(kept(kind), (Ok(()), "new".to_owned(), 1), "{kind}");
+        }
+        let (said, text, count) = kept(ErrorKind::StorageFull);
+        assert!(said.is_err(), "a full disk is no such reason");
+        assert_eq!((text.as_str(), count), ("what was there, and longer", 1));
+    }
+}
