@@ -1,7 +1,6 @@
 //! Files of scenes: TOML, a table a body.
 
 use nearmiss::error::Error;
-use nearmiss::memory;
 use nearmiss::mesh::Problem;
 use nearmiss::scene::{BodyKind, Meets, Pose};
 use serde::Deserialize;
@@ -112,18 +111,7 @@ pub fn read(path: &Path) -> Result<Vec<Described>, Error> {
 /// # Errors
 /// [`Error::Input`] with the system's text; [`Error::OutOfMemory`].
 pub fn text(path: &Path) -> Result<String, Error> {
-    let unreadable = |reason: String| {
-        let file = path.display().to_string();
-        Error::Input { file, problem: Problem::Unreadable { reason } }
-    };
-    let kind = std::fs::metadata(path).map_err(|e| unreadable(e.to_string()))?;
-    if !kind.is_file() {
-        // A pipe or a device may never end.
-        return Err(unreadable("it is not a regular file".into()));
-    }
-    let reading = format!("reading {}", path.display());
-    memory::require(&reading, kind.len().saturating_mul(MULTIPLE))?;
-    std::fs::read_to_string(path).map_err(|e| unreadable(e.to_string()))
+    nearmiss::file::text(path, MULTIPLE)
 }
 
 fn described(path: &Path, line: usize, table: Table, bodies: usize) -> Result<Described, Error> {

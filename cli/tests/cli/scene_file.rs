@@ -222,7 +222,7 @@ fn what_is_wrong_with_a_file_is_named() {
     assert!(refused(3, &["detect", &folder.path("binary.toml")]).contains("binary.toml: cannot be read"));
     assert!(refused(3, &["detect", &folder.path("missing.toml")]).contains("missing.toml: cannot be read"));
     std::fs::create_dir(folder.path("folder.toml")).expect("a folder");
-    assert!(refused(3, &["detect", &folder.path("folder.toml")]).contains("not a regular file"));
+    assert!(refused(3, &["detect", &folder.path("folder.toml")]).contains("it is a directory"));
     let deep = format!("body = {}", "[".repeat(100_000));
     assert!(refused(3, &["detect", &folder.write("deep.toml", &deep)]).contains("deep.toml: "));
 }
