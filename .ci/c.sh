@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # The C interface: builds the library, compiles the header as C99 and as C++, builds the examples without a warning, and runs them.
-# Then it is installed, and found there by a project of its own. The shared library shows nothing but names that begin with nearmiss_.
+# Then it is installed, moved, and found there by projects of CMake and by pkg-config. The shared library shows nothing but names that
+# begin with nearmiss_.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -16,10 +17,11 @@ cmake -S c -B "$target/c" -DNEARMISS_LIBRARY_DIR="$target/debug" \
 cmake --build "$target/c"
 ctest --test-dir "$target/c" --output-on-failure
 
-# As its users have it.
+# As its users have it: installed at another place than was configured, and moved from there.
 there=$(mktemp -d)
 trap 'rm -rf "$there"' EXIT
-cmake --install "$target/c" --prefix "$there/installed"
+cmake --install "$target/c" --prefix "$there/first"
+mv "$there/first" "$there/installed"
 mkdir "$there/user"
 cp c/examples/self_intersections.c "$there/user/"
 cat >"$there/user/CMakeLists.txt" <<'END'
@@ -35,4 +37,20 @@ cmake -S "$there/user" -B "$there/build" -DCMAKE_PREFIX_PATH="$there/installed"
 cmake --build "$there/build"
 for kind in nearmiss static; do
     "$there/build/by_$kind" | grep -x "3 pairs"
+done
+# By pkg-config: moved, in a folder of any depth, and in one that is named whole.
+by_pkg_config() {
+    local file
+    file=$(find "$1" -name nearmiss.pc)
+    export PKG_CONFIG_PATH=${file%/*}
+    read -ra flags <<<"$(pkg-config --cflags --libs nearmiss)"
+    cc "$there/user/self_intersections.c" "${flags[@]}" -o "$1/by_pkg_config"
+    LD_LIBRARY_PATH=$(pkg-config --variable=libdir nearmiss) "$1/by_pkg_config" | grep -x "3 pairs"
+}
+by_pkg_config "$there/installed"
+for libdir in lib/of/a-machine "$there/whole/lib"; do
+    cmake -S c -B "$there/deep" -DNEARMISS_LIBRARY_DIR="$target/debug" -DCMAKE_INSTALL_PREFIX="$there/whole" -DCMAKE_INSTALL_LIBDIR="$libdir" >/dev/null
+    cmake --install "$there/deep"
+    by_pkg_config "$there/whole"
+    rm -r "$there/whole"
 done
