@@ -22,7 +22,7 @@ there=$(mktemp -d)
 trap 'rm -rf "$there"' EXIT
 cmake --install "$target/c" --prefix "$there/first"
 mv "$there/first" "$there/installed"
-mkdir "$there/user"
+mkdir "$there/user" "$there/without"
 cp c/examples/self_intersections.c "$there/user/"
 cat >"$there/user/CMakeLists.txt" <<'END'
 cmake_minimum_required(VERSION 3.16)
@@ -38,6 +38,18 @@ cmake --build "$there/build"
 for kind in nearmiss static; do
     "$there/build/by_$kind" | grep -x "3 pairs"
 done
+# Where threads are not found, a project that can do without nearmiss goes on.
+cat >"$there/without/CMakeLists.txt" <<'END'
+cmake_minimum_required(VERSION 3.16)
+project(without C)
+find_package(nearmiss 0.1 QUIET)
+if(nearmiss_FOUND)
+    message(FATAL_ERROR "found, without what it needs")
+endif()
+message(STATUS "goes on without")
+END
+cmake -S "$there/without" -B "$there/without/build" -DCMAKE_PREFIX_PATH="$there/installed" -DCMAKE_DISABLE_FIND_PACKAGE_Threads=ON \
+    | grep "goes on without"
 # By pkg-config: moved, in a folder of any depth, and in one that is named whole.
 by_pkg_config() {
     local file
