@@ -25,8 +25,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// The version of this header, which changes whenever a struct or a function does. A program that compares it with `nearmiss_abi()` knows
-// that library and header are one.
+// The version of this header, which changes whenever a struct or a function does. Compare it with `nearmiss_abi()` before any other call: one
+// that takes or returns a struct of another version writes where it may not.
 #define NEARMISS_ABI 1
 
 // Bytes of the text of an error.
@@ -605,7 +605,7 @@ typedef struct {
 extern "C" {
 #endif // __cplusplus
 
-// The version of the header that this library was built with.
+// The version of the header that this library was built with. This and `nearmiss_version()` are the same in all versions.
 uint32_t nearmiss_abi(void);
 
 // The version of nearmiss, such as "0.1.0". It lives as long as the program.
