@@ -719,8 +719,8 @@ NearmissCode nearmiss_detector_remove(NearmissDetector *detector,
 // Frees the detector; waits for what it has submitted. Its answers stay.
 void nearmiss_detector_free(NearmissDetector *detector);
 
-// Opens a machine: a `NearmissBackend`, on a CPU with so many threads, 0 for all. Cost: of a GPU some 0.1 s for its context; its kernels
-// are compiled by the driver when first used.
+// Opens a machine: a `NearmissBackend`, on a CPU with so many threads, at most as many as there are processors; 0 for all. Cost: of a GPU
+// some 0.1 s for its context; its kernels are compiled by the driver when first used.
 //
 // Fails with `NEARMISS_DEVICE` when there is no such machine or its driver refuses.
 NearmissCode nearmiss_device_open(uint32_t backend,
