@@ -8,7 +8,7 @@ mod shade;
 
 use crate::args::PictureArgs;
 use crate::args::picture::{Around, check};
-use crate::detect::{Question, places, promise, question};
+use crate::detect::{Question, promise, question};
 use crate::output::{Target, print};
 use crate::paint::{self, GREY, ORANGE, RED};
 use crate::progress::during;
@@ -51,7 +51,7 @@ pub fn picture(args: &PictureArgs) -> Result<ExitCode, Error> {
     let mut detector = during("building", || Detector::new(device, scene, query))?;
     let found = during("detecting", || detector.detect())?;
     let geometry = match &found.answer {
-        Answer::Contacts(_) | Answer::Near(_) => places(&mut detector, &found)?,
+        Answer::Contacts(_) | Answer::Near(_) => detector.geometry(&found)?,
         Answer::Pairs(_) | Answer::Distance(_) | Answer::Earliest(_) => Vec::new(),
     };
     let bodies = detector.scene().bodies();
