@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # The C interface: builds the library, compiles the header as C99 and as C++, builds the examples without a warning, and runs them.
-# Then it is installed, and found there by a project of its own. The shared library shows nothing but names that begin with nearmiss_.
+# Then it is installed, moved, and found there by projects of CMake and by pkg-config. The shared library shows nothing but names that
+# begin with nearmiss_. Programs that find another header than the library's call nothing else of it.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -16,11 +17,46 @@ cmake -S c -B "$target/c" -DNEARMISS_LIBRARY_DIR="$target/debug" \
 cmake --build "$target/c"
 ctest --test-dir "$target/c" --output-on-failure
 
-# As its users have it.
+# With a library of another header, all else of which traps.
 there=$(mktemp -d)
 trap 'rm -rf "$there"' EXIT
-cmake --install "$target/c" --prefix "$there/installed"
-mkdir "$there/user"
+mkdir "$there/other"
+cat >"$there/other/library.c" <<'END'
+#include "nearmiss.h"
+uint32_t nearmiss_abi(void) { return NEARMISS_ABI + 1; }
+const char *nearmiss_version(void) { return "of another header"; }
+END
+cp c/examples/*.c c/examples/*.cpp "$there/other/"
+awk '/^```/ { inside = /^```c$/; next } inside' docs/for/porting.md >"$there/other/porting.c"
+cat >"$there/other/planted.c" <<'END'
+#include "nearmiss.h"
+int main(void)
+{
+    NearmissBody body = nearmiss_body();
+    return nearmiss_abi() != NEARMISS_ABI ? 1 : (int)body.kind;
+}
+END
+cc -c -Ic/include "$there/other/library.c" -o "$there/other/library.o"
+# compares PROGRAM: whether it compares before it calls anything else.
+compares() {
+    local compiler=cc status=0
+    [[ $1 != *.cpp ]] || compiler=c++
+    "$compiler" -c -Ic/include "$1" -o "$1.o"
+    nm -u "$1.o" | awk '/ nearmiss_/ && !/ nearmiss_(abi|version)$/ { printf "void %s(void) { __builtin_trap(); }\n", $NF }' >"$1.traps.c"
+    cc -c "$1.traps.c" -o "$1.traps.o"
+    "$compiler" "$1.o" "$1.traps.o" "$there/other/library.o" -o "$1.out" -lm -ldl
+    "$1.out" >"$1.said" 2>&1 || status=$?
+    [ $status = 1 ] && grep -q "the header is not that of the library of another header" "$1.said"
+}
+for program in "$there"/other/{self_intersections.c,on_device.c,cloth.cpp,porting.c}; do
+    compares "$program" || { echo "${program##*/} does not compare nearmiss_abi() first: $(cat "$program.said")"; exit 1; }
+done
+! compares "$there/other/planted.c" || { echo "a program that calls before it compares is not noticed"; exit 1; }
+
+# As its users have it: installed at another place than was configured, and moved from there.
+cmake --install "$target/c" --prefix "$there/first"
+mv "$there/first" "$there/installed"
+mkdir "$there/user" "$there/without"
 cp c/examples/self_intersections.c "$there/user/"
 cat >"$there/user/CMakeLists.txt" <<'END'
 cmake_minimum_required(VERSION 3.16)
@@ -35,4 +71,32 @@ cmake -S "$there/user" -B "$there/build" -DCMAKE_PREFIX_PATH="$there/installed"
 cmake --build "$there/build"
 for kind in nearmiss static; do
     "$there/build/by_$kind" | grep -x "3 pairs"
+done
+# Where threads are not found, a project that can do without nearmiss goes on.
+cat >"$there/without/CMakeLists.txt" <<'END'
+cmake_minimum_required(VERSION 3.16)
+project(without C)
+find_package(nearmiss 0.1 QUIET)
+if(nearmiss_FOUND)
+    message(FATAL_ERROR "found, without what it needs")
+endif()
+message(STATUS "goes on without")
+END
+cmake -S "$there/without" -B "$there/without/build" -DCMAKE_PREFIX_PATH="$there/installed" -DCMAKE_DISABLE_FIND_PACKAGE_Threads=ON \
+    | grep "goes on without"
+# By pkg-config: moved, in a folder of any depth, and in one that is named whole.
+by_pkg_config() {
+    local file
+    file=$(find "$1" -name nearmiss.pc)
+    export PKG_CONFIG_PATH=${file%/*}
+    read -ra flags <<<"$(pkg-config --cflags --libs nearmiss)"
+    cc "$there/user/self_intersections.c" "${flags[@]}" -o "$1/by_pkg_config"
+    LD_LIBRARY_PATH=$(pkg-config --variable=libdir nearmiss) "$1/by_pkg_config" | grep -x "3 pairs"
+}
+by_pkg_config "$there/installed"
+for libdir in lib/of/a-machine "$there/whole/lib"; do
+    cmake -S c -B "$there/deep" -DNEARMISS_LIBRARY_DIR="$target/debug" -DCMAKE_INSTALL_PREFIX="$there/whole" -DCMAKE_INSTALL_LIBDIR="$libdir" >/dev/null
+    cmake --install "$there/deep"
+    by_pkg_config "$there/whole"
+    rm -r "$there/whole"
 done

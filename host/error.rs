@@ -88,6 +88,12 @@ impl From<nearmiss_emulator::Error> for Error {
             E::Threads { threads, text } => {
                 Error::Device { what: format!("starting {threads} threads"), text, advice: "ask for fewer" }
             }
+            E::Forked => Error::Choice {
+                what: error.to_string(),
+                advice:
+                    "they are not here: start processes by spawn, or fork before the first device or detector"
+                        .into(),
+            },
             E::Memory { bytes } => {
                 Error::OutOfMemory { what: "host memory".into(), asked: bytes as u64, given: 0 }
             }

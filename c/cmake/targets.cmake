@@ -1,5 +1,4 @@
-# nearmiss::nearmiss and nearmiss::static, of the libraries in nearmiss_libraries and the header in nearmiss_include.
-find_package(Threads REQUIRED)
+# nearmiss::nearmiss and nearmiss::static, of the libraries in nearmiss_libraries and the header in nearmiss_include; Threads was found.
 if(NOT TARGET nearmiss::nearmiss)
     add_library(nearmiss::nearmiss SHARED IMPORTED GLOBAL)
     set_target_properties(nearmiss::nearmiss PROPERTIES

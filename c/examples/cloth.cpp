@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <memory>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace {
@@ -143,6 +144,8 @@ int limit(NearmissDetector *detector, uint32_t cloth, const std::vector<Point> &
 
 int run()
 {
+    if (nearmiss_abi() != NEARMISS_ABI)
+        throw std::runtime_error(std::string("the header is not that of the library ") + nearmiss_version());
     NearmissError error;
     NearmissDevice *opened = nullptr;
     check(nearmiss_device_open(NEARMISS_AUTO, 0, &opened, &error), error);

@@ -183,6 +183,10 @@ int main(void)
     NearmissAnswer *answer;
     NearmissInput lent, own;
 
+    if (nearmiss_abi() != NEARMISS_ABI) {
+        fprintf(stderr, "the header is not that of the library %s\n", nearmiss_version());
+        return 1;
+    }
     if (!open_driver() || cu.device(&device_number, 0) != 0) {
         printf("no GPU\n");
         return 77;

@@ -20,20 +20,23 @@ int main(void)
     NearmissAnswer *answer = NULL;
     const NearmissTrianglePair *pairs = NULL;
     size_t count = 0, i;
-    NearmissQuery query = nearmiss_query(NEARMISS_DISCRETE);
-    NearmissBody body = nearmiss_body();
+    NearmissQuery query;
+    NearmissBody body;
     int failed = 1;
 
+    /* Before any call that takes or returns a struct. */
+    if (nearmiss_abi() != NEARMISS_ABI) {
+        fprintf(stderr, "the header is not that of the library %s\n", nearmiss_version());
+        return 1;
+    }
+    query = nearmiss_query(NEARMISS_DISCRETE);
+    body = nearmiss_body();
     body.name = "two strips";
     body.positions = nearmiss_floats(&points[0][0], 8);
     body.triangles = &triangles[0][0];
     body.triangle_count = 4;
     body.self_contact = 1;
     error.code = NEARMISS_OK;
-    if (nearmiss_abi() != NEARMISS_ABI) {
-        fprintf(stderr, "the header is not that of the library %s\n", nearmiss_version());
-        return 1;
-    }
     if (nearmiss_device_open(NEARMISS_AUTO, 0, &device, &error) == NEARMISS_OK
         && nearmiss_scene_new(&scene, &error) == NEARMISS_OK
         && nearmiss_scene_add(scene, &body, NULL, &error) == NEARMISS_OK

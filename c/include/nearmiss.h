@@ -8,10 +8,15 @@
 // - Handles do not need each other: a device may be freed before its detectors, a scene as soon as its detector is made.
 //   What a call gives as a pointer into a handle stays there until that handle is freed, unless said otherwise.
 // - A call that can fail returns a `NearmissCode`, 0 for success, and tells more in a `NearmissError` of the caller where that
-//   is not NULL. Where it fails a handle that it would have made is NULL, and other results are not written. There is no global state.
+//   is not NULL. Where it fails a handle that it would have made is NULL, and other results are not written.
 // - Results go where a pointer says. NULL is refused with `NEARMISS_CHOICE`, but where it is said to mean something. Other pointers
 //   must be of the type that the declaration says, as C asks; results of one call may not overlap.
-// - A handle is used by one thread at a time; two handles, by two. Detectors of one device are one handle in this.
+// - A handle is used by one thread at a time; two handles, by two. Detectors of one device are one handle in this, and making one is
+//   a use of them; a device's name, kind, limit and end are not: `nearmiss_device_name`, `_is_gpu`, `_limit` and `_free` may be
+//   called while another thread works with its detectors. An answer is a handle by itself.
+// - All that handles share is threads of the host, one a processor, which prepare bodies and put answers in order: the first
+//   CPU or detector of the process starts them, and they stay. A process that was forked since has none of them: there a
+//   call that would need them fails with `NEARMISS_CHOICE`. Start processes by `posix_spawn` or `exec`, or fork before.
 // - Positions are floats or doubles in any unit, of a size up to 2^480, and finite where a triangle uses them; lengths are in that
 //   unit, times are parts of a step, from 0 to 1. All indices count from 0. Structs of options come from a function that fills in
 //   what is usual, `nearmiss_body()` and `nearmiss_query()`: then set what differs.
@@ -25,8 +30,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-// The version of this header, which changes whenever a struct or a function does. A program that compares it with `nearmiss_abi()` knows
-// that library and header are one.
+// The version of this header, which changes whenever a struct or a function does. Compare it with `nearmiss_abi()` before any other call: one
+// that takes or returns a struct of another version writes where it may not.
 #define NEARMISS_ABI 1
 
 // Bytes of the text of an error.
@@ -605,7 +610,7 @@ typedef struct {
 extern "C" {
 #endif // __cplusplus
 
-// The version of the header that this library was built with.
+// The version of the header that this library was built with. This and `nearmiss_version()` are the same in all versions.
 uint32_t nearmiss_abi(void);
 
 // The version of nearmiss, such as "0.1.0". It lives as long as the program.
@@ -719,8 +724,8 @@ NearmissCode nearmiss_detector_remove(NearmissDetector *detector,
 // Frees the detector; waits for what it has submitted. Its answers stay.
 void nearmiss_detector_free(NearmissDetector *detector);
 
-// Opens a machine: a `NearmissBackend`, on a CPU with so many threads, 0 for all. Cost: of a GPU some 0.1 s for its context; its kernels
-// are compiled by the driver when first used.
+// Opens a machine: a `NearmissBackend`, on a CPU with so many threads, at most as many as there are processors; 0 for all. Cost: of a GPU
+// some 0.1 s for its context; its kernels are compiled by the driver when first used.
 //
 // Fails with `NEARMISS_DEVICE` when there is no such machine or its driver refuses.
 NearmissCode nearmiss_device_open(uint32_t backend,

@@ -245,7 +245,11 @@ pub extern "C" fn nearmiss_detector_geometry(
         if !matches!(answer.shown, Shown::Contacts(_) | Shown::Near(_)) {
             return Err(answer.without("geometry of contacts"));
         }
-        answer.geometry = own.detector.geometry(&answer.found)?.iter().map(Into::into).collect();
+        // What was shown before makes room first.
+        answer.geometry = Vec::new();
+        let found = own.detector.geometry(&answer.found)?;
+        nearmiss::memory::require("the geometry", (found.len() * size_of::<NearmissGeometry>()) as u64)?;
+        answer.geometry = found.iter().map(Into::into).collect();
         show(&answer.geometry, items, count)
     })
 }

@@ -33,8 +33,8 @@ impl From<Device> for NearmissDevice {
     }
 }
 
-/// Opens a machine: a `NearmissBackend`, on a CPU with so many threads, 0 for all. Cost: of a GPU some 0.1 s for its context; its kernels
-/// are compiled by the driver when first used.
+/// Opens a machine: a `NearmissBackend`, on a CPU with so many threads, at most as many as there are processors; 0 for all. Cost: of a GPU
+/// some 0.1 s for its context; its kernels are compiled by the driver when first used.
 ///
 /// Fails with `NEARMISS_DEVICE` when there is no such machine or its driver refuses.
 #[unsafe(no_mangle)]

@@ -35,6 +35,9 @@ pub enum Error {
         /// The system's text.
         text: String,
     },
+    /// The threads are not here.
+    #[error("threads of the process that this one was forked from")]
+    Forked,
     /// The machine has no more memory.
     #[error("{bytes} bytes of host memory were needed")]
     Memory {
@@ -62,12 +65,20 @@ pub enum Mode {
     Sanitizer(Order),
 }
 
+/// Whether this is the process that first started threads: one that was forked since has none of them, and would wait for ever.
+fn has_threads() -> Result<(), Error> {
+    static STARTED_BY: OnceLock<u32> = OnceLock::new();
+    let own = std::process::id();
+    if *STARTED_BY.get_or_init(|| own) == own { Ok(()) } else { Err(Error::Forked) }
+}
+
 /// Starts the threads that all of a program shares, where they do not run yet: else the first to need them would panic where they
 /// cannot be started.
 ///
 /// # Errors
-/// [`Error::Threads`]; the same each time, as they are started once.
+/// [`Error::Threads`]; the same each time, as they are started once. [`Error::Forked`] in a process that was forked since.
 pub fn start_threads() -> Result<(), Error> {
+    has_threads()?;
     static STARTED: OnceLock<Result<(), String>> = OnceLock::new();
     let started = STARTED.get_or_init(|| match rayon::ThreadPoolBuilder::new().build_global() {
         // Without a source it is that they run already.
@@ -89,8 +100,9 @@ impl Emulator {
     /// An engine on `threads` threads, or on all cores; or a sanitizer, always on one thread.
     ///
     /// # Errors
-    /// [`Error::Threads`] when the threads cannot be started.
+    /// [`Error::Threads`] when the threads cannot be started; [`Error::Forked`] in a process that was forked after some were.
     pub fn new(mode: Mode, threads: Option<usize>) -> Result<Self, Error> {
+        has_threads()?;
         let pool = match threads {
             None => {
                 start_threads()?;

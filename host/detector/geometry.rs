@@ -4,6 +4,8 @@ use super::Detector;
 use crate::contacts::geometry::{Corners, Named};
 use crate::contacts::{Answer, ContactGeometry, Contacts, Kind};
 use crate::error::Error;
+use crate::memory;
+use crate::mesh::Body;
 use crate::pipeline::Layout;
 use rayon::prelude::*;
 
@@ -13,16 +15,30 @@ impl Detector {
     /// device, and a wait; 300 operations a contact.
     ///
     /// # Errors
-    /// [`Error::Choice`] for contacts of other bodies than there are now; those of the device.
+    /// [`Error::Choice`] for contacts of other bodies than there are now; [`Error::OutOfMemory`]; those of the device.
     pub fn geometry(&mut self, found: &Contacts) -> Result<Vec<ContactGeometry>, Error> {
+        let count = match &found.answer {
+            Answer::Contacts(contacts) => contacts.len(),
+            Answer::Near(pairs) => pairs.len(),
+            Answer::Pairs(_) | Answer::Earliest(_) | Answer::Distance(_) => return Ok(Vec::new()),
+        };
+        if count == 0 {
+            return Ok(Vec::new());
+        }
+        self.none_lost()?;
+        // The list in pieces and in one, what it is made of, and all vertices at both ends.
+        let of_one = 2 * size_of::<ContactGeometry>() + size_of::<Named>();
+        let vertices: usize = self.scene.bodies().iter().map(Body::vertex_count).sum();
+        memory::require(
+            "where contacts are",
+            (count * of_one + vertices * size_of::<[[f64; 3]; 2]>()) as u64,
+        )?;
+        let layout = self.layout()?;
+        let pipeline = self.pipeline.as_ref().ok_or_else(of_others)?;
         let named: Vec<Named> = match &found.answer {
             Answer::Contacts(contacts) => contacts.iter().map(Named::from).collect(),
             Answer::Near(pairs) => pairs.iter().map(Named::from).collect(),
             Answer::Pairs(_) | Answer::Earliest(_) | Answer::Distance(_) => Vec::new(),
-        };
-        let layout = self.layout()?;
-        let Some(pipeline) = self.pipeline.as_ref().filter(|_| !named.is_empty()) else {
-            return if named.is_empty() { Ok(Vec::new()) } else { Err(of_others()) };
         };
         let ends = pipeline.whereabouts()?.ends;
         let at = |vertex: u32| {

@@ -136,8 +136,10 @@ impl Detector {
         Ok(detector)
     }
 
-    /// Where every body lies in the memory that all share.
+    /// Where every body lies in the memory that all share. All that is asked begins here, so a process that was forked is told here that it
+    /// cannot ask.
     fn layout(&mut self) -> Result<Arc<Layout>, Error> {
+        start_threads()?;
         if let Some(layout) = &self.layout {
             return Ok(layout.clone());
         }

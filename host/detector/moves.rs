@@ -3,6 +3,7 @@
 use super::Detector;
 use super::edits::nobody;
 use crate::contacts::Contacts;
+use crate::device::emulator::start_threads;
 use crate::error::Error;
 use crate::mesh::Body;
 use crate::pipeline::Moved;
@@ -75,6 +76,7 @@ impl Detector {
         if moved.is_empty() {
             return Ok(());
         }
+        start_threads()?;
         self.answered = false;
         let widens = !self.f64s && moved.iter().any(|moved| self.scene.bodies()[moved.body].needs_f64());
         if widens {

@@ -2,6 +2,7 @@
 
 use super::{Detector, contacts};
 use crate::contacts::{Contacts, DeviceAnswer};
+use crate::device::emulator::start_threads;
 use crate::error::Error;
 use crate::mesh::Body;
 use crate::scene::{BodyId, DeviceInput, Input};
@@ -52,6 +53,7 @@ impl Detector {
     /// # Errors
     /// [`Error::Choice`] when it is not prepared; those of the device.
     pub fn submit(&mut self) -> Result<(), Error> {
+        start_threads()?;
         self.answered = false;
         self.pipeline.as_mut().map_or(Ok(()), |pipeline| pipeline.submit())
     }

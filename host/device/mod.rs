@@ -79,12 +79,15 @@ impl Machine {
 }
 
 impl Device {
-    /// The machine that `backend` names: the first GPU, or `threads` of the CPU, or all.
+    /// The machine that `backend` names: the first GPU, or so many threads of the CPU, or all: no more than there are processors, as more
+    /// only wait for each other.
     ///
     /// # Errors
     /// [`Error::Device`] when there is no such machine or its driver refuses, with the driver's text;
     /// [`Error::Stamp`] when the GPU's kernels come from other sources.
     pub fn open(backend: Backend, threads: Option<usize>) -> Result<Device, Error> {
+        let processors = std::thread::available_parallelism().map_or(usize::MAX, usize::from);
+        let threads = threads.map(|asked| asked.min(processors));
         match backend {
             Backend::Cpu => Ok(Self::emulator(Emulator::new(Mode::Engine, threads)?)),
             Backend::Cuda => Self::gpu(0),
@@ -355,6 +358,15 @@ mod tests {
         assert_eq!(device.bytes(), (12, 12));
         drop(buffer);
         assert_eq!(device.bytes(), (0, 12));
+    }
+
+    #[test]
+    fn no_more_threads_than_processors_are_taken() {
+        let processors = std::thread::available_parallelism().map_or(1, usize::from);
+        for asked in [processors + 1, usize::MAX] {
+            let device = Device::open(Backend::Cpu, Some(asked)).expect("threads");
+            assert_eq!(device.name(), format!("CPU, {}", counted(processors as u64, "thread", "threads")));
+        }
     }
 
     #[test]

@@ -9,7 +9,7 @@ use std::ptr::null_mut;
 /// A CPU, or an NVIDIA GPU.
 ///
 /// backend: "auto" (a GPU where there is one, else the CPU), "cpu" or "cuda".
-/// threads: of a CPU; default: all.
+/// threads: of a CPU, at most as many as there are processors; default: all.
 /// gpu:     a GPU by its number. It has a stream of its own.
 /// stream:  a stream of the caller, on the GPU that this thread is bound to: a torch or cupy stream, what has
 ///          __cuda_stream__, or a handle (0: the default stream). All work goes there, behind what is there. The stream must

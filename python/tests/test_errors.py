@@ -1,5 +1,8 @@
 """Refusals: what they are called, and what their sentence names."""
 
+import os
+import signal
+
 import numpy as np
 import pytest
 from shapes import sheet, two_triangles
@@ -91,3 +94,20 @@ def test_no_gpu_says_so():
         assert "CPU" in str(error)
     else:
         assert device.backend == "cuda" and device.gpu == 0
+
+
+@pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
+def test_a_forked_process_is_told():
+    own = detector()
+    own.detect()
+    child = os.fork()
+    if child == 0:
+        # Where it waits for ever this ends it.
+        signal.alarm(60)
+        try:
+            own.detect()
+        except nm.ChoiceError as error:
+            os._exit(0 if "spawn" in str(error) else 2)
+        finally:
+            os._exit(1)
+    assert os.waitpid(child, 0)[1] == 0

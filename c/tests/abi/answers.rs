@@ -160,3 +160,31 @@ fn plans_are_told_as_json() {
     assert_eq!(plan["bodies"]["deformable"], serde_json::json!([1, 60]));
     assert!(["build", "frame", "buffers", "transfers"].iter().all(|what| plan[what].is_array()), "{text}");
 }
+
+/// What the header says of threads: a device tells its name and takes a limit while another thread works with its detectors, and may end.
+#[test]
+fn a_device_is_asked_beside_its_detectors() {
+    let soup = soup(60, 1, false).expect("a soup");
+    let (device, scene) = (device(), scene(&[described(&soup)]));
+    // SAFETY: names are NULL.
+    let mut own = own(got(|made, error| unsafe {
+        nearmiss_detector_new(Some(&device), Some(&scene), Some(&nearmiss_query(0)), made, error)
+    }));
+    let works = std::thread::spawn(move || {
+        let hash = |answer: Box<NearmissAnswer>| {
+            got(|to, e| nearmiss_answer_summary(Some(&answer), to, e)).map(|s| s.hash)
+        };
+        (0..200)
+            .map(|_| hash(frame(&mut own, &[]).expect("an answer")).expect("a summary"))
+            .collect::<Vec<_>>()
+    });
+    for _ in 0..100 {
+        assert!(got(|name, e| nearmiss_device_name(Some(&device), name, e)).is_ok());
+        assert_eq!(got(|is, e| nearmiss_device_is_gpu(Some(&device), is, e)), Ok(false));
+        assert_eq!(told(|e| nearmiss_device_limit(Some(&device), 1 << 40, e)), Ok(()));
+        std::thread::yield_now();
+    }
+    nearmiss_device_free(Some(device));
+    let hashes = works.join().expect("no panic");
+    assert!(hashes.iter().all(|hash| *hash == hashes[0]), "{hashes:?}");
+}

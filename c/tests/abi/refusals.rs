@@ -59,6 +59,18 @@ fn what_is_no_machine_is_refused() {
 }
 
 #[test]
+fn more_threads_than_processors_are_as_many() {
+    let named = |threads| {
+        let device = own(got(|to, e| nearmiss_device_open(0, threads, to, e)));
+        let name = got(|to, e| nearmiss_device_name(Some(&device), to, e)).expect("a name");
+        // SAFETY: a text, as long as the device is.
+        unsafe { std::ffi::CStr::from_ptr(name) }.to_owned()
+    };
+    let processors = std::thread::available_parallelism().map_or(1, usize::from);
+    assert_eq!(named(usize::MAX), named(processors));
+}
+
+#[test]
 fn what_is_no_body_is_refused() {
     let soup = soup(10, 1, false).expect("a soup");
     let good = described(&soup);

@@ -12,7 +12,6 @@ use crate::sequence::{self, Sequence, is_scene, steps};
 use nearmiss::Detector;
 use nearmiss::contacts::{ContactGeometry, Contacts};
 use nearmiss::error::Error;
-use nearmiss::memory;
 use nearmiss::mesh::{Body, Mesh};
 use nearmiss::pipeline::Stages;
 use nearmiss::query::{Query, QueryKind, Traversal};
@@ -199,18 +198,7 @@ pub fn geometry(
     if !(args.geometry || args.writes_vtp() || args.out_mesh.is_some()) {
         return Ok(None);
     }
-    places(detector, found).map(Some)
-}
-
-/// Where contacts are.
-///
-/// # Errors
-/// [`Error::OutOfMemory`]; those of the device.
-pub fn places(detector: &mut Detector, found: &Contacts) -> Result<Vec<ContactGeometry>, Error> {
-    // A file of places has each twice on the way.
-    let bytes = found.len() as u64 * 2 * size_of::<ContactGeometry>() as u64;
-    memory::require("where contacts are", bytes)?;
-    detector.geometry(found)
+    detector.geometry(found).map(Some)
 }
 
 /// The answer, and the times of each run; of several runs the first only warms up.

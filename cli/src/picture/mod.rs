@@ -8,7 +8,7 @@ mod shade;
 
 use crate::args::PictureArgs;
 use crate::args::picture::{Around, check};
-use crate::detect::{Question, keeps, places, promise, question};
+use crate::detect::{Question, keeps, promise, question};
 use crate::output::{Target, print};
 use crate::paint::{self, GREY, ORANGE, RED};
 use crate::progress::during;
@@ -25,8 +25,8 @@ use std::process::ExitCode;
 /// Asks a frame, draws it, and says what there is to see.
 ///
 /// # Errors
-/// [`Error::Choice`] for a name that is not of a PNG, for several steps, and for a time of a frame at rest; [`Error::Output`] for a file that cannot be written;
-/// [`Error::OutOfMemory`] before the picture is drawn; those of the question and the machine.
+/// [`Error::Choice`] for a name that is not of a PNG, for several steps, and for a time of a frame at rest; [`Error::Output`] for a file that
+/// cannot be written; [`Error::OutOfMemory`] before the picture is drawn; those of the question and the machine.
 pub fn picture(args: &PictureArgs) -> Result<ExitCode, Error> {
     let Some(out) = &args.detect.out else {
         return Err(Error::Bug { what: "a picture without --out".into() });
@@ -50,7 +50,7 @@ pub fn picture(args: &PictureArgs) -> Result<ExitCode, Error> {
     let mut detector = during("building", || Detector::new(device, scene, query))?;
     let found = during("detecting", || detector.detect())?;
     let geometry = match &found.answer {
-        Answer::Contacts(_) | Answer::Near(_) => places(&mut detector, &found)?,
+        Answer::Contacts(_) | Answer::Near(_) => detector.geometry(&found)?,
         Answer::Pairs(_) | Answer::Distance(_) | Answer::Earliest(_) => Vec::new(),
     };
     let bodies = detector.scene().bodies();

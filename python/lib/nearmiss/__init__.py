@@ -7,6 +7,7 @@
 
 What is asked often is asked of a Detector: a Scene of Body objects on a Device, and a query (Discrete, Continuous, Earliest,
 Near, Distance). No contact is missed; where a solver cannot tell it says so, and where something ends it raises.
+Start processes by spawn: one that was forked after the first call has no threads to compute with, and raises ChoiceError.
 """
 
 from enum import IntEnum
