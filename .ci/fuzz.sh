@@ -26,8 +26,15 @@ env RUSTFLAGS="$(tr -s '\n ' ' ' <<<"$coverage")" CARGO_INCREMENTAL=0 CARGO_TARG
 programs=$(cd "$target_dir/$host/release" && pwd)
 
 log=$(mktemp)
-trap 'rm -f "$log"' EXIT
+trap 'rm -f "$log" "$log".*' EXIT
 failed=0
+# Each with the most bytes of an input.
+targets="discrete_pair 60
+continuous_pair 80
+scene 120
+near 120
+distance 120
+readers 2000"
 for target in discrete_pair continuous_pair scene near distance; do
     if NEARMISS_PLANT_A_FAULT=1 timeout 60 "$programs/$target" -max_total_time=30 -artifact_prefix=/dev/null >"$log" 2>&1 ||
         ! grep -aq 'panicked at' "$log"; then
@@ -44,23 +51,21 @@ run() {
     timeout $((seconds + 60)) "$programs/$target" -max_total_time="$seconds" -max_len="$2" -len_control=0 -timeout=20 \
         -artifact_prefix="artifacts/$target/" -print_final_stats=1 "corpus/$target" $kept
 }
+# Two at a time: a fuzzer takes one processor.
 while read -r target length; do
-    status=0
-    run "$target" "$length" >"$log" 2>&1 || status=$?
-    seed=$(sed -n 's/^INFO: Seed: //p' "$log")
+    [ "$(jobs -rp | wc -l)" -lt 2 ] || wait -n || true
+    (run "$target" "$length" >"$log.$target" 2>&1 || echo "$?" >"$log.$target.status") &
+done <<<"$targets"
+wait
+while read -r target _; do
+    status=$(cat "$log.$target.status" 2>/dev/null || echo 0)
+    seed=$(sed -n 's/^INFO: Seed: //p' "$log.$target")
     if [ "$status" = 0 ]; then
-        echo "fuzz: $target: nothing found in $(sed -n 's/^stat::number_of_executed_units: *//p' "$log") runs, seed $seed"
+        echo "fuzz: $target: nothing found in $(sed -n 's/^stat::number_of_executed_units: *//p' "$log.$target") runs, seed $seed"
     else
         echo "fuzz: $target FAILED ($status), seed $seed"
-        grep -aA3 -E 'panicked at|ERROR: libFuzzer|Base64|Test unit written' "$log" | cut -c1-2000
+        grep -aA3 -E 'panicked at|ERROR: libFuzzer|Base64|Test unit written' "$log.$target" | cut -c1-2000
         failed=1
     fi
-done <<'TARGETS'
-discrete_pair 60
-continuous_pair 80
-scene 120
-near 120
-distance 120
-readers 2000
-TARGETS
+done <<<"$targets"
 exit $failed

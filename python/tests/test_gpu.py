@@ -248,3 +248,22 @@ def test_frames_beside_a_graph_that_another_thread_records(stream):
     graph.replay()
     stream.synchronize()
     assert told == [wanted] * 3 and float(x.sum()) == 2000
+
+
+def test_what_a_refused_frame_left_behind_is_not_answered_of(stream):
+    t0, t1, faces = draped(20)
+    scene = nm.Scene(nm.Body(t0, faces, self_contact=True))
+    other = scene.add(nm.Body(t1 + 0.01, faces))
+    detector = nm.Detector(scene, nm.Continuous(), nm.Device(stream=stream))
+    judge = nm.Detector(scene, nm.Continuous(), nm.Device("cpu"))
+    here, there = (torch.from_numpy(array).cuda() for array in (t0, t1))
+    bad = there.clone()
+    bad[7, 1] = float("nan")
+    with pytest.raises(nm.InputError, match="vertex 7 has y"):
+        detector.frame({0: (here, bad)})
+    for asked in [lambda: detector.frame(), lambda: detector.frame({other: t1}), detector.detect]:
+        with pytest.raises(nm.ChoiceError, match="name it again"):
+            asked()
+    wanted = judge.frame({0: (t0, t1), other: t1})
+    found = detector.frame({0: (here, there), other: t1})
+    assert found.hash == wanted.hash and len(found) > 100
