@@ -4,7 +4,7 @@ use crate::answer::DeviceAnswer;
 use crate::contacts::Contacts;
 use crate::device::Device;
 use crate::errors::{choice, raised};
-use crate::frame::{Frame, known};
+use crate::frame::{Frame, Named, known, numbered};
 use crate::geometry::Geometry;
 use crate::lent::Held;
 use crate::query::Query;
@@ -13,7 +13,6 @@ use nearmiss::Error;
 use nearmiss::scene::BodyId;
 use nearmiss::words::counted;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use serde::Serialize;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -82,19 +81,23 @@ impl Detector {
         self.one.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn frame_of(&self, py: Python<'_>, inputs: Option<&Bound<'_, PyDict>>) -> PyResult<Frame> {
-        let (numbers, places): (Vec<_>, Vec<_>) = inputs.into_iter().flat_map(|all| all.iter()).unzip();
-        let numbers = numbers.iter().map(|number| number.extract()).collect::<PyResult<Vec<usize>>>()?;
+    fn frame_of(&self, py: Python<'_>, inputs: Option<&Bound<'_, PyAny>>) -> PyResult<Frame> {
+        let inputs = inputs.map_or_else(|| Ok(Vec::new()), numbered)?;
+        let (numbers, places): (Vec<_>, Vec<_>) = inputs.into_iter().unzip();
         let bodies = self.bodies(py, &numbers)?;
         Frame::of(bodies.into_iter().zip(places).collect(), &self.device.get().device)
     }
 
     /// The bodies with these numbers.
-    fn bodies(&self, py: Python<'_>, numbers: &[usize]) -> PyResult<Vec<BodyId>> {
+    fn bodies(&self, py: Python<'_>, numbers: &[usize]) -> PyResult<Vec<Named>> {
         let found = self.look(py, |detector| {
-            numbers.iter().map(|&number| detector.scene().id(number)).collect::<Vec<_>>()
+            let scene = detector.scene();
+            let named = |id| scene.get(id).map(|body| (id, body.name().to_owned(), body.vertex_count()));
+            numbers.iter().map(|&number| scene.id(number).and_then(named)).collect::<Vec<_>>()
         });
-        numbers.iter().zip(found).map(|(&number, found)| known(number, found)).collect()
+        let named =
+            |(&number, found)| known(number, found).map(|(id, name, vertices)| Named { id, name, vertices });
+        numbers.iter().zip(found).map(named).collect()
     }
 
     fn body(&self, py: Python<'_>, number: usize) -> PyResult<BodyId> {
@@ -163,11 +166,11 @@ impl Detector {
 
     /// Moves bodies, and answers.
     ///
-    /// inputs: a dictionary from a body's number to where it is: of a deformable body (n, 3) numbers, or two such arrays for the
+    /// inputs: a mapping from a body's number to where it is: of a deformable body (n, 3) numbers, or two such arrays for the
     ///         ends of a step; of a rigid body a Pose, or two. A body that is not named rests.
     ///         Arrays of the detector's GPU, and on a CPU numpy's arrays of packed rows, are read where they lie.
     #[pyo3(signature = (inputs = None))]
-    fn frame(&self, py: Python<'_>, inputs: Option<&Bound<'_, PyDict>>) -> PyResult<Contacts> {
+    fn frame(&self, py: Python<'_>, inputs: Option<&Bound<'_, PyAny>>) -> PyResult<Contacts> {
         let frame = self.frame_of(py, inputs)?;
         let given = frame.inputs();
         self.told(py, |detector| detector.frame(&given))
@@ -197,7 +200,7 @@ impl Detector {
     ///
     /// inputs: as for `frame`, of arrays that stay where they are: of the GPU, or on a CPU numpy's. Write into them between submissions; they
     ///         are held until the next `prepare` or `frame`.
-    fn prepare(&self, py: Python<'_>, inputs: &Bound<'_, PyDict>) -> PyResult<Contacts> {
+    fn prepare(&self, py: Python<'_>, inputs: &Bound<'_, PyAny>) -> PyResult<Contacts> {
         let frame = self.frame_of(py, Some(inputs))?;
         let given = frame.on_device()?;
         self.asked.fetch_add(1, Ordering::Relaxed);

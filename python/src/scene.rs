@@ -2,7 +2,7 @@
 
 use crate::errors::{choice, one_of, raised};
 use crate::frame::known;
-use crate::host::{faces, positions};
+use crate::host::{Most, faces, positions};
 use nearmiss::Mesh;
 use nearmiss::scene::Meets;
 use nearmiss::words::counted;
@@ -54,7 +54,7 @@ impl Body {
                 ));
             }
         };
-        let points = positions(vertices, &format!("vertices of {name}"))?;
+        let points = positions(vertices, &format!("vertices of {name}"), Most::OfAnyMesh)?;
         let triangles = self::faces(faces, name)?;
         let meets = Meets { environment, group, mask, self_contact };
         let made = py.detach(|| Mesh::new(name, points, triangles).map(|mesh| make(mesh).with(meets)));

@@ -2,6 +2,8 @@
 
 import gc
 import weakref
+from collections import ChainMap
+from types import MappingProxyType
 
 import numpy as np
 import pytest
@@ -52,6 +54,14 @@ def test_numbers_are_read_and_not_kept():
     del here
     gc.collect()
     assert gone() is None
+
+
+def test_inputs_are_any_mapping():
+    vertices, faces = sheet(6, lambda x, y: np.sin(9 * x))
+    detector = nm.Detector(nm.Body(vertices, faces), nm.Near(0.05), CPU)
+    wanted = detector.frame({0: vertices}).hash
+    for inputs in [MappingProxyType({0: vertices}), ChainMap({}, {np.int64(0): vertices})]:
+        assert detector.frame(inputs).hash == detector.prepare(inputs).hash == wanted
 
 
 def test_faces_of_any_integers():
