@@ -1,6 +1,6 @@
 //! What is asked. How candidates are found never changes an answer.
 
-use crate::errors::{choice, named, one_of, raised};
+use crate::errors::{choice, named, one_of, optional, raised};
 use nearmiss::query::{
     self, Broad, Bv, Certified, ContinuousSolver, Named, Order, Rebuild, Search, Solver, TriangleTest,
 };
@@ -79,6 +79,14 @@ fn in_motion(
     solver: &str,
     (tolerance, separation, budget): (Option<f64>, f64, Option<u32>),
 ) -> PyResult<ContinuousSolver> {
+    for (name, length) in [("tolerance", tolerance), ("separation", Some(separation))] {
+        if let Some(length) = length.filter(|length| !(0.0..f64::INFINITY).contains(length)) {
+            return Err(choice(
+                format!("{name} = {length}"),
+                "give a length from 0, in the unit of the vertices",
+            ));
+        }
+    }
     let by = Solver::of(solver).and_then(ContinuousSolver::named);
     match by {
         Some(ContinuousSolver::Certified(certified)) => {
@@ -96,13 +104,17 @@ fn in_motion(
     }
 }
 
+fn budget_of(given: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
+    Ok(optional(given, "budget", [1, u32::MAX.into()])?.map(|budget| budget as u32))
+}
+
 macro_rules! in_motion {
     ($(#[$doc:meta])* $kind:ident) => {
         $(#[$doc])*
         ///
         /// tolerance:  how well a time is told, as a length moved; default: 1e-4 of the mean edge.
         /// separation: what comes nearer than this is in contact, in the unit of the vertices; 0 for touching.
-        /// budget:     how many boxes a pair may cost before it is listed as unresolved.
+        /// budget:     how many boxes, from 1, a pair may cost before it is listed as unresolved.
         /// solver:     "certified" (none is missed, none late), "certified-f32", "certified-f64", or "cubic-f64" and "cubic-f32", which
         ///             can miss.
         /// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer.
@@ -120,7 +132,7 @@ macro_rules! in_motion {
             fn new(
                 tolerance: Option<f64>,
                 separation: f64,
-                budget: Option<u32>,
+                #[pyo3(from_py_with = budget_of)] budget: Option<u32>,
                 solver: &str,
                 broad: Option<&str>,
                 order: Option<&str>,

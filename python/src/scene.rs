@@ -1,12 +1,13 @@
 //! Which bodies there are, and what each does.
 
-use crate::errors::{choice, one_of, raised};
+use crate::errors::{choice, integer, one_of, optional, raised};
 use crate::frame::known;
 use crate::host::{Most, faces, positions};
 use nearmiss::Mesh;
 use nearmiss::scene::Meets;
 use nearmiss::words::counted;
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 
 /// A mesh, what it does from frame to frame, and which others it may meet.
 ///
@@ -15,7 +16,7 @@ use pyo3::prelude::*;
 /// kind:         "deformable" (each vertex moves by itself), "rigid" (a Pose a frame) or "static" (never moves; cheapest).
 /// self_contact: whether it is tested against itself.
 /// environment:  bodies of different environments never meet; None: in every one.
-/// group, mask:  two bodies meet if each is in a group (a bit) that the other's mask has.
+/// group, mask:  two bodies meet if each is in a group (a bit of 32) that the other's mask has. ~1: all bits but the lowest.
 /// name:         what messages call it.
 ///
 /// Raises InputError for vertices that are not finite and for indices that are not there.
@@ -38,9 +39,9 @@ impl Body {
         faces: &Bound<'_, PyAny>,
         kind: &str,
         self_contact: bool,
-        environment: Option<u32>,
-        group: u32,
-        mask: u32,
+        #[pyo3(from_py_with = environment_of)] environment: Option<u32>,
+        #[pyo3(from_py_with = group_of)] group: u32,
+        #[pyo3(from_py_with = mask_of)] mask: u32,
         name: &str,
     ) -> PyResult<Body> {
         let make = match kind {
@@ -90,6 +91,23 @@ impl Body {
     }
 }
 
+fn environment_of(given: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
+    Ok(optional(given, "environment", [0, u32::MAX.into()])?.map(|environment| environment as u32))
+}
+
+fn group_of(given: &Bound<'_, PyAny>) -> PyResult<u32> {
+    bits(given, "group")
+}
+
+fn mask_of(given: &Bound<'_, PyAny>) -> PyResult<u32> {
+    bits(given, "mask")
+}
+
+/// 32 bits; of a negative number, as ~1, the low ones.
+fn bits(given: &Bound<'_, PyAny>, name: &str) -> PyResult<u32> {
+    Ok(integer(given, name, [i32::MIN.into(), u32::MAX.into()])? as u32)
+}
+
 /// Bodies, numbered from 0 in the order in which they are added.
 #[pyclass(module = "nearmiss")]
 pub struct Scene {
@@ -100,12 +118,18 @@ pub struct Scene {
 impl Scene {
     #[new]
     #[pyo3(signature = (*bodies))]
-    fn new(bodies: Vec<PyRef<'_, Body>>) -> Scene {
+    fn new(bodies: &Bound<'_, PyTuple>) -> PyResult<Scene> {
         let mut scene = nearmiss::Scene::new();
         for body in bodies {
-            scene.add(body.body.clone());
+            let body = body.cast::<Body>().map_err(|_| {
+                choice(
+                    format!("a scene of {}", body.get_type()),
+                    "give bodies: Scene(a, b), or Scene(*bodies)",
+                )
+            })?;
+            scene.add(body.get().body.clone());
         }
-        Scene { scene }
+        Ok(Scene { scene })
     }
 
     /// Adds a body: its number.
