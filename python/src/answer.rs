@@ -74,8 +74,10 @@ impl DeviceArray {
         self.detector.get().with_answer(py, self.asked, || ())?;
         // -1 asks for no order.
         if stream != Some(ours.max(1) as i64) && stream != Some(-1) {
-            let now = || self.device.event()?.to(&self.device.event()?);
-            py.detach(now).map_err(raised)?;
+            self.detector
+                .get()
+                .in_turn(py, || self.device.event()?.to(&self.device.event()?))
+                .map_err(raised)?;
         }
         capsule(py, &self.shape, self.detector.clone_ref(py).into_any())
     }

@@ -76,7 +76,8 @@ def test_faces_of_any_integers():
 def test_columns_have_their_shapes():
     t0, faces = soup(120, 5, 0.6)
     detector = nm.Detector(nm.Body(t0, faces), nm.Continuous(), CPU)
-    for found in [detector.frame({0: (t0, t0 + 0.05 * np.cos(9 * t0))}), detector.frame({0: t0 + [0, 0, 9]})]:
+    for inputs in [(t0, t0 + 0.05 * np.cos(9 * t0)), t0 + [0, 0, 9]]:
+        found = detector.frame({0: inputs})
         k = len(found)
         shapes = [getattr(found, name).shape for name in ["kind", "bodies", "indices", "toi", "toi_hi", "status"]]
         assert shapes == [(k,), (k, 2), (k, 2), (k,), (k,), (k,)]
@@ -92,6 +93,10 @@ def test_a_column_is_made_once():
     at = detector.geometry(found)
     assert found.indices is found.indices and found.weights is found.weights and at.points is at.points
     assert found.indices is not detector.detect().indices
+    for column in [found.indices, found.distances, found.weights, at.points, at.first]:
+        with pytest.raises(ValueError, match="read-only"):
+            column[0] = 1
+        column.copy()[0] = 1
 
 
 def test_a_submission_reads_what_lies_there_when_its_turn_comes():

@@ -37,7 +37,22 @@ REFUSED = [
     (lambda: nm.Body(V, [[0, 1, -1]]), nm.ChoiceError, "face 0 of a mesh names vertex -1"),
     (lambda: nm.Body(V, [[0, 1, 6]]), nm.InputError, "corner 2 names vertex 6"),
     (lambda: nm.Body(NAN, F, name="nothing"), nm.InputError, "nothing: vertex 0 has x = NaN"),
+    *(
+        (lambda name=name, value=value: nm.Body(V, F, **{name: value}), nm.ChoiceError, f"{name} = {value!r}; give an integer from")
+        for name, value in [("mask", 2**32), ("mask", -(2**40)), ("mask", "x"), ("group", 1.5), ("environment", -1), ("environment", 2**80)]
+    ),
+    (lambda: nm.Continuous(budget=-1), nm.ChoiceError, "budget = -1; give an integer from 1"),
+    (lambda: nm.Earliest(budget=0), nm.ChoiceError, "budget = 0; give an integer from 1"),
+    (lambda: nm.Continuous(tolerance=-1), nm.ChoiceError, "tolerance = -1; give a length from 0"),
+    (lambda: nm.Earliest(tolerance=np.nan), nm.ChoiceError, "tolerance = NaN; give a length from 0"),
+    (lambda: nm.Continuous(separation=np.inf), nm.ChoiceError, "separation = inf; give a length from 0"),
+    (lambda: nm.Device(gpu=-1), nm.ChoiceError, "gpu = -1; give an integer from 0"),
+    (lambda: nm.Device("cpu", threads=0), nm.ChoiceError, "threads = 0; give an integer from 1 to 1024"),
+    (lambda: nm.Device("cpu", threads=-1), nm.ChoiceError, "threads = -1; give"),
+    (lambda: nm.Device("cpu", threads=1025), nm.ChoiceError, "threads = 1025; give"),
+    (lambda: nm.Scene([nm.Body(V, F)]), nm.ChoiceError, "a scene of <class 'list'>; give bodies: Scene(a, b), or Scene(*bodies)"),
     (lambda: nm.Detector(nm.Scene(), nm.Discrete(), CPU), nm.ChoiceError, "without bodies"),
+    (lambda: nm.Detector([nm.Body(V, F)], nm.Discrete(), CPU), nm.ChoiceError, "Detector(Scene(*bodies), query)"),
     (lambda: detector().frame({1: V}), nm.ChoiceError, "body 1, which is not in the scene"),
     (lambda: detector().frame({0: V[:3]}), nm.NearmissError, "3"),
     (lambda: detector().frame({0: (V, NAN)}), nm.InputError, "NaN"),
@@ -94,6 +109,54 @@ def test_geometry_of_other_bodies_is_refused():
     assert len(found) > 0
     with pytest.raises(nm.ChoiceError):
         detector(nm.Near(0.3)).geometry(found)
+
+
+def moves():
+    """What moves bodies, or may."""
+    yield lambda asked: asked.frame({0: V + np.float32([5, 5, 5])})
+    yield lambda asked: asked.frame()
+    yield lambda asked: asked.prepare({0: V.copy()})
+    yield lambda asked: asked.add(nm.Body(V, F))
+    yield lambda asked: asked.replace(0, nm.Body(V + 1, F))
+    yield lambda asked: (asked.add(nm.Body(V, F)), asked.remove(0))
+
+
+@pytest.mark.parametrize("move", list(moves()))
+def test_contacts_of_before_are_refused(move):
+    asked = detector(nm.Near(1))
+    found = asked.detect()
+    for _ in range(2):
+        assert len(asked.geometry(found)) == len(found) == asked.summary(found)["contacts"]
+        asked.detect()
+        asked.rebuild()
+        asked.plan()
+    move(asked)
+    for ask in [asked.geometry, asked.summary]:
+        with pytest.raises(nm.ChoiceError, match="contacts that were found before"):
+            ask(found)
+    again = asked.detect()
+    assert len(asked.geometry(again)) == len(again)
+
+
+def test_contacts_of_a_submission_are_of_it():
+    asked = detector(nm.Near(1))
+    here = V.copy()
+    found = asked.prepare({0: here})
+    assert len(asked.geometry(found)) == len(found)
+    here[3:, 2] += 0.25
+    asked.submit()
+    with pytest.raises(nm.ChoiceError, match="found before"):
+        asked.geometry(found)
+    later = asked.collect()
+    assert len(asked.geometry(later)) == len(later) == asked.summary(later)["contacts"]
+
+
+def test_contacts_of_another_detector_are_refused():
+    found = detector(nm.Near(1)).detect()
+    other = detector(nm.Near(1))
+    for ask in [other.geometry, other.summary]:
+        with pytest.raises(nm.ChoiceError, match="contacts of another detector"):
+            ask(found)
 
 
 def test_no_gpu_says_so():

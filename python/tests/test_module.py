@@ -93,6 +93,35 @@ def test_threads_take_turns_at_one_detector():
     assert told == [wanted] * 8
 
 
+@pytest.mark.parametrize("threads", [1, 2])
+def test_detectors_of_many_threads_share_a_device(threads):
+    vertices, faces = sheet(40, lambda x, y: 0.02 * np.sin(60 * x))
+    device, told = nm.Device("cpu", threads=threads), []
+    wanted = nm.near(vertices, faces, 0.03, device=nm.Device("cpu")).hash
+
+    def ask():
+        try:
+            detector = nm.Detector(nm.Body(vertices, faces), nm.Near(0.03), device)
+            for _ in range(5):
+                told.append(detector.frame({0: vertices}).hash)
+                detector.geometry(detector.detect())
+                told.append(detector.prepare({0: vertices}).hash)
+                detector.submit()
+                np.from_dlpack(detector.on_device().status)
+                told.append(detector.collect().hash)
+                detector.add(nm.Body(vertices + 9, faces))
+                detector.remove(1)
+        except Exception as error:
+            told.append(error)
+
+    others = [threading.Thread(target=ask) for _ in range(4)]
+    for other in others:
+        other.start()
+    for other in others:
+        other.join(60)
+    assert told == [wanted] * 60 and not any(other.is_alive() for other in others)
+
+
 @pytest.mark.skipif("NEARMISS_PROGRAM" not in os.environ, reason="NEARMISS_PROGRAM names the command line program")
 def test_the_program_gives_the_same_answer(tmp_path):
     program, name = os.environ["NEARMISS_PROGRAM"], "draped"
