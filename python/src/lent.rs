@@ -106,7 +106,7 @@ pub fn on_cpu(object: &Bound<'_, PyAny>, what: &str) -> PyResult<Option<LentRows
         strides: strides.iter().map(|&s| (s / size) as i64).collect(),
     };
     // An address that is no multiple of the number's size.
-    if address % size as u64 != 0 {
+    if !address.is_multiple_of(size as u64) {
         return Ok(None);
     }
     Ok(Some(LentRows {
