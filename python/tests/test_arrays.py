@@ -10,6 +10,7 @@ import pytest
 from shapes import sheet, soup
 
 import nearmiss as nm
+from nearmiss import arrays
 
 CPU = nm.Device("cpu", threads=1)
 
@@ -54,6 +55,42 @@ def test_numbers_are_read_and_not_kept():
     del here
     gc.collect()
     assert gone() is None
+
+
+def test_rows_of_tuples_are_no_step():
+    vertices, faces = sheet(6, lambda x, y: 0.1 * np.sin(9 * x))
+    # The numbers of a list are doubles: the same ones.
+    rows = tuple(map(tuple, vertices.tolist()))
+    assert nm.near(rows, faces, 0.05).hash == nm.near(vertices, faces, 0.05).hash
+    assert nm.self_intersections(rows, faces).shape[1] == 2
+    there = vertices[:, [1, 0, 2]]
+    wanted = nm.contacts(vertices, there, faces)
+    assert nm.contacts(rows, tuple(map(tuple, there.tolist())), faces).hash == wanted.hash
+    assert nm.time_of_impact(rows, there, faces) == wanted.earliest
+    assert len(nm.near(((0, 0, 0), (1, 1, 1)), [], 1.0)) == 0
+    for none in [(), []]:
+        with pytest.raises(nm.ChoiceError, match="shape .0.; give rows of three"):
+            nm.near(none, [], 1.0)
+
+
+class OfGpu:
+    """What says that it lies on a GPU."""
+
+    def __init__(self, number):
+        self.__dlpack_device__ = lambda: (2, number)
+
+
+class WithoutNumber:
+    """What has the second door alone."""
+
+    __cuda_array_interface__ = {"version": 3}
+
+
+def test_a_shortcut_asks_where_an_array_lies(monkeypatch):
+    monkeypatch.setattr(arrays, "Device", lambda **told: told)
+    assert [arrays.device_of(OfGpu(number)) for number in [0, 1]] == [{"gpu": 0}, {"gpu": 1}]
+    assert arrays.device_of(WithoutNumber()) == {"stream": 0}
+    assert arrays.device_of(np.zeros((1, 3))) == arrays.device_of([]) == {}
 
 
 def test_inputs_are_any_mapping():

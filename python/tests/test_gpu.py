@@ -40,6 +40,15 @@ def test_one_liners_take_tensors():
     assert np.array_equal(nm.self_intersections(*on_gpu[1:]), nm.self_intersections(t1, faces, device=cpu))
 
 
+def test_one_liners_take_tensors_of_another_gpu():
+    if torch.cuda.device_count() < 2:
+        pytest.skip("one GPU")
+    t0, t1, faces = draped()
+    on_gpu = [torch.from_numpy(array).to("cuda:1") for array in (t0, t1, faces)]
+    cpu = nm.Device("cpu")
+    assert torch.cuda.current_device() == 0
+    assert nm.near(on_gpu[1], on_gpu[2], 0.01).hash == nm.near(t1, faces, 0.01, device=cpu).hash
+    assert nm.contacts(*on_gpu).hash == nm.contacts(t0, t1, faces, device=cpu).hash
 
 
 def test_a_thousand_frames_without_a_copy_of_positions(stream):
