@@ -126,7 +126,7 @@ impl Detector {
 }
 
 /// As Python's own values.
-fn python<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
+pub fn python<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
     let text = serde_json::to_string(value)
         .map_err(|error| raised(Error::Bug { what: format!("figures that are no JSON: {error}") }))?;
     py.import("json")?.call_method1("loads", (text,))

@@ -19,11 +19,15 @@ pub fn read_mesh<'py>(
     path: PathBuf,
 ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyArray2<u32>>)> {
     let mesh = py.detach(|| Mesh::read(&path)).map_err(raised)?;
-    let vertices = match mesh.positions() {
+    Ok((points(py, mesh.positions()), rows(py, mesh.faces())))
+}
+
+/// Points in the precision that they have, copied.
+pub fn points<'py>(py: Python<'py>, of: &Positions) -> Bound<'py, PyAny> {
+    match of {
         Positions::F32(points) => rows(py, points).into_any(),
         Positions::F64(points) => rows(py, points).into_any(),
-    };
-    Ok((vertices, rows(py, mesh.faces())))
+    }
 }
 
 /// Rows of numbers, copied.

@@ -3,11 +3,12 @@
 use crate::errors::{choice, raised};
 use crate::host::row;
 use crate::lent::{Held, is_on_gpu, on_gpu};
+use crate::query::{Remade, remade};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::scene::{self, DevicePose, Input};
 use nearmiss::{Device, Error};
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyDict, PyTuple};
 
 /// Where a rigid body is: turned first, then moved.
 ///
@@ -74,6 +75,34 @@ impl Pose {
     #[getter]
     fn translation(&self, py: Python<'_>) -> Py<PyAny> {
         self.translation.clone_ref(py)
+    }
+
+    /// On a GPU: whether they are the same arrays.
+    fn __eq__(&self, other: PyRef<'_, Pose>) -> bool {
+        match (&self.known, &other.known) {
+            (Some(own), Some(theirs)) => own == theirs,
+            (None, None) => self.rotation.is(&other.rotation) && self.translation.is(&other.translation),
+            _ => false,
+        }
+    }
+
+    fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
+        match &self.known {
+            Some(pose) => PyTuple::new(py, [&pose.rotation[..], &pose.translation].concat())?.hash(),
+            None => Ok(self.rotation.as_ptr() as isize ^ self.translation.as_ptr() as isize),
+        }
+    }
+
+    /// For copy and pickle.
+    fn __reduce__<'py>(pose: &Bound<'py, Self>) -> PyResult<Remade<'py>> {
+        let (py, own) = (pose.py(), pose.get());
+        let given = match &own.known {
+            Some(at) => {
+                (PyTuple::new(py, at.rotation)?.into_any(), PyTuple::new(py, at.translation)?.into_any())
+            }
+            None => (own.rotation.bind(py).clone(), own.translation.bind(py).clone()),
+        };
+        remade(pose.get_type(), given.into_pyobject(py)?, PyDict::new(py))
     }
 
     fn __repr__(&self) -> String {

@@ -1,13 +1,15 @@
 //! Which bodies there are, and what each does.
 
+use crate::detector::python;
 use crate::errors::{choice, integer, one_of, optional, raised};
 use crate::frame::known;
-use crate::host::{Most, faces, positions};
+use crate::host::{Most, faces, points, positions, rows};
+use crate::query::{Remade, remade};
 use nearmiss::Mesh;
 use nearmiss::scene::Meets;
 use nearmiss::words::counted;
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyDict, PyTuple};
 
 /// A mesh, what it does from frame to frame, and which others it may meet.
 ///
@@ -55,10 +57,10 @@ impl Body {
                 ));
             }
         };
-        let points = positions(vertices, &format!("vertices of {name}"), Most::OfAnyMesh)?;
+        let given = positions(vertices, &format!("vertices of {name}"), Most::OfAnyMesh)?;
         let triangles = self::faces(faces, name)?;
         let meets = Meets { environment, group, mask, self_contact };
-        let made = py.detach(|| Mesh::new(name, points, triangles).map(|mesh| make(mesh).with(meets)));
+        let made = py.detach(|| Mesh::new(name, given, triangles).map(|mesh| make(mesh).with(meets)));
         Ok(Body { body: made.map_err(raised)? })
     }
 
@@ -78,6 +80,20 @@ impl Body {
     #[getter]
     fn face_count(&self) -> usize {
         self.body.face_count()
+    }
+
+    /// For copy and pickle.
+    fn __reduce__<'py>(body: &Bound<'py, Self>) -> PyResult<Remade<'py>> {
+        let (py, Body { body: own }) = (body.py(), body.get());
+        let mesh = (points(py, own.positions_t0()), rows(py, own.faces())).into_pyobject(py)?;
+        let (named, meets) = (PyDict::new(py), own.meets());
+        named.set_item("kind", python(py, &own.kind())?)?;
+        named.set_item("self_contact", meets.self_contact)?;
+        named.set_item("environment", meets.environment)?;
+        named.set_item("group", meets.group)?;
+        named.set_item("mask", meets.mask)?;
+        named.set_item("name", own.name())?;
+        remade(body.get_type(), mesh, named)
     }
 
     fn __repr__(&self) -> String {

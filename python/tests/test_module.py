@@ -1,9 +1,11 @@
 """The module itself: its stubs, its documentation, its threads, and the program beside it."""
 
 import ast
+import copy
 import inspect
 import json
 import os
+import pickle
 import subprocess
 import threading
 import time
@@ -56,6 +58,54 @@ def test_everything_has_its_documentation():
             for member, value in vars(thing).items():
                 if not member.startswith("_") and not isinstance(value, int):
                     assert value.__doc__, f"{name}.{member}"
+
+
+CHOICES = [
+    "Discrete()",
+    "Discrete(adjacent=True, broad='tree')",
+    "Discrete(solver='moller', order='median')",
+    "Continuous()",
+    "Continuous(tolerance=1e-06, separation=0.25, budget=7, solver='certified-f64', bv='aabb', rebuild='worn')",
+    "Continuous(solver='cubic-f32')",
+    "Earliest(separation=1.0)",
+    "Near(distance=0.5, broad='tiles')",
+    "Distance()",
+    "Pose(rotation=[0.0, 0.0, 0.0, 1.0], translation=[0.0, 0.0, 0.0])",
+    "Pose(rotation=[0.0, 0.0, 1.0, 0.0], translation=[1.0, 2.0, 3.5])",
+]
+
+
+@pytest.mark.parametrize("text", CHOICES)
+def test_what_is_written_is_made_again(text):
+    made = eval(f"nm.{text}")
+    assert repr(made) == text
+    copies = [eval(f"nm.{text}"), copy.copy(made), copy.deepcopy(made)]
+    copies += [pickle.loads(pickle.dumps(made, protocol)) for protocol in range(2, pickle.HIGHEST_PROTOCOL + 1)]
+    for other in copies:
+        assert other == made and hash(other) == hash(made) and repr(other) == text and type(other) is type(made)
+
+
+def test_what_differs_is_not_equal():
+    made = [eval(f"nm.{text}") for text in CHOICES]
+    for i, one in enumerate(made):
+        assert [one == other for other in made] == [i == j for j in range(len(made))]
+        assert one != CHOICES[i] and len({*made}) == len(made)
+    assert nm.Continuous(tolerance=-0.0, separation=-0.0) == nm.Continuous(tolerance=0.0)
+    assert hash(nm.Continuous(tolerance=-0.0)) == hash(nm.Continuous(tolerance=0.0))
+
+
+@pytest.mark.parametrize("kind", ["deformable", "rigid", "static"])
+def test_a_body_is_made_again(kind):
+    vertices, faces = sheet(4, lambda x, y: np.sin(9 * x))
+    choices = dict(kind=kind, self_contact=True, environment=3, group=5, mask=~2, name="a rag")
+    for points in [vertices, vertices.astype(float) / 3]:
+        body = nm.Body(points, faces, **choices)
+        for other in [copy.deepcopy(body), pickle.loads(pickle.dumps(body))]:
+            (_, mesh, told), (_, again, retold) = (one.__reduce__()[1] for one in (body, other))
+            assert told == retold == {**choices, "mask": 0xFFFFFFFD} and repr(other) == repr(body)
+            assert [a.dtype for a in again] == [points.dtype, np.uint32]
+            assert all(np.array_equal(a, b) for a, b in zip(mesh, again)) and np.array_equal(again[0], points)
+    assert pickle.loads(pickle.dumps(nm.Body(vertices, faces, environment=None))).__reduce__()[1][2]["environment"] is None
 
 
 def test_other_threads_run_while_a_frame_is_computed():
