@@ -35,6 +35,10 @@ impl DeviceArray {
     fn copied<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let (address, bytes) = (self.shape.address, self.bytes());
         let copy = move || {
+            // Where nothing is, there need not be an address.
+            if bytes == 0 {
+                return Vec::new();
+            }
             // SAFETY: the answer is there, and the lock is held under which alone it moves.
             unsafe { std::slice::from_raw_parts(address as *const u8, bytes) }.to_vec()
         };
@@ -70,8 +74,10 @@ impl DeviceArray {
         self.detector.get().with_answer(py, self.asked, || ())?;
         // -1 asks for no order.
         if stream != Some(ours.max(1) as i64) && stream != Some(-1) {
-            let now = || self.device.event()?.to(&self.device.event()?);
-            py.detach(now).map_err(raised)?;
+            self.detector
+                .get()
+                .in_turn(py, || self.device.event()?.to(&self.device.event()?))
+                .map_err(raised)?;
         }
         capsule(py, &self.shape, self.detector.clone_ref(py).into_any())
     }
@@ -88,6 +94,7 @@ impl DeviceArray {
                 "an array of the host: take it by DLPack",
             ));
         };
+        self.detector.get().with_answer(py, self.asked, || ())?;
         let Dtype { code, bits, .. } = self.shape.dtype;
         let size = i64::from(bits / 8);
         let letter = match code {
@@ -97,7 +104,8 @@ impl DeviceArray {
         };
         let told = PyDict::new(py);
         told.set_item("version", 3)?;
-        told.set_item("data", (self.shape.address, true))?;
+        // Whoever writes it spoils that answer and no other; torch refuses what is read-only.
+        told.set_item("data", (self.shape.address, false))?;
         told.set_item("shape", PyTuple::new(py, &self.shape.shape)?)?;
         told.set_item("strides", PyTuple::new(py, self.shape.strides.iter().map(|stride| stride * size))?)?;
         told.set_item("typestr", format!("<{letter}{size}"))?;
@@ -230,7 +238,7 @@ impl DeviceAnswer {
         self.answer.earliest.map(|address| self.array(py, address, REAL, (vec![1], vec![1])))
     }
 
-    /// (edges, 2) int32: the vertices of each edge; none of a discrete query.
+    /// (edges, 2) int32: the vertices of each edge; none of Discrete and Distance.
     #[getter]
     fn edges(&self, py: Python<'_>) -> DeviceArray {
         let edges = self.answer.edges;

@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 pub struct Columns(Mutex<HashMap<&'static str, Py<PyAny>>>);
 
 impl Columns {
-    /// The column of that name: the same array each time.
+    /// The column of that name: the same array each time, which nobody may write.
     pub fn get<'py, T>(
         &self,
         py: Python<'py>,
@@ -25,6 +25,8 @@ impl Columns {
         }
         // Made without the lock: Python may run others meanwhile, and the first to come stays.
         let made = make()?.into_any();
+        // What one holder writes the others would read.
+        made.call_method1("setflags", (false,))?;
         let mut columns = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         Ok(columns.entry(name).or_insert_with(|| made.unbind()).bind(py).clone())
     }

@@ -1,5 +1,6 @@
 //! Answers, as numpy's arrays: a row a contact, in canonical order.
 
+use crate::asked::Stamp;
 use crate::columns::Columns;
 use crate::errors::choice;
 use crate::host::rows;
@@ -7,22 +8,23 @@ use nearmiss::scene::BodyId;
 use numpy::{PyArray1, PyArray3, PyArrayMethods};
 use pyo3::prelude::*;
 
-/// An answer: a row a contact, in canonical order, the same on every machine. A column is made when it is first asked for, and kept.
+/// An answer: a row a contact, in canonical order, the same on every machine. A column is made when it is first asked for, and kept:
+/// it is read-only; copy what you want to write.
 ///
 /// What a column's query is: see there. Asked of another it raises ChoiceError.
 #[pyclass(module = "nearmiss", frozen)]
 pub struct Contacts {
     pub contacts: nearmiss::Contacts,
+    /// When it was answered.
+    pub stamp: Stamp,
     columns: Columns,
 }
 
-impl From<nearmiss::Contacts> for Contacts {
-    fn from(contacts: nearmiss::Contacts) -> Contacts {
-        Contacts { contacts, columns: Columns::default() }
-    }
-}
-
 impl Contacts {
+    pub fn new(contacts: nearmiss::Contacts, stamp: Stamp) -> Contacts {
+        Contacts { contacts, stamp, columns: Columns::default() }
+    }
+
     /// Of each row that has one.
     fn of_rows<T>(
         &self,

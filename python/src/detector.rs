@@ -1,21 +1,19 @@
 //! A scene on a device, asked frame after frame.
 
 use crate::answer::DeviceAnswer;
+use crate::asked::{Asked, Does};
 use crate::contacts::Contacts;
 use crate::device::Device;
 use crate::errors::{choice, raised};
-use crate::frame::{Frame, known};
+use crate::frame::{Frame, Named, known, numbered};
 use crate::geometry::Geometry;
-use crate::lent::Held;
 use crate::query::Query;
 use crate::scene::{Body, Scene};
 use nearmiss::Error;
 use nearmiss::scene::BodyId;
 use nearmiss::words::counted;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use serde::Serialize;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// A scene on a device, asked frame after frame.
@@ -29,47 +27,41 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 pub struct Detector {
     one: Mutex<Asked>,
     device: Py<Device>,
-    /// Counts what may move the answer that lies on the device.
-    asked: AtomicU64,
-}
-
-/// What one thread at a time asks.
-struct Asked {
-    detector: nearmiss::Detector,
-    /// What holds the arrays that submissions read. Dropped behind the detector, which reads them no longer then.
-    held: Vec<Held>,
-}
-
-impl Asked {
-    /// What nobody reads any longer.
-    fn unread(&mut self) -> Vec<Held> {
-        if self.detector.is_prepared() { Vec::new() } else { std::mem::take(&mut self.held) }
-    }
 }
 
 impl Detector {
-    /// Asks the detector, while the interpreter runs on: where its answer lay on the device it need not be any longer.
+    /// Asks the detector, in turn with all that share its device, while the interpreter runs on.
     fn ask<T: Send>(
         &self,
         py: Python<'_>,
-        ask: impl FnOnce(&mut nearmiss::Detector) -> Result<T, Error> + Send,
-    ) -> PyResult<T> {
-        self.asked.fetch_add(1, Ordering::Relaxed);
-        self.go_on(py, ask)
-    }
-
-    /// The same, of what leaves the answer where it is.
-    fn go_on<T: Send>(
-        &self,
-        py: Python<'_>,
+        does: Does,
         ask: impl FnOnce(&mut nearmiss::Detector) -> Result<T, Error> + Send,
     ) -> PyResult<T> {
         let (told, unread) = py.detach(|| {
             let mut one = self.locked();
+            let _turn = self.device.get().turn();
+            one.count(does);
             (ask(&mut one.detector), one.unread())
         });
         drop(unread);
         told.map_err(raised)
+    }
+
+    /// Asks what is answered by contacts.
+    fn told(
+        &self,
+        py: Python<'_>,
+        does: Does,
+        ask: impl FnOnce(&mut nearmiss::Detector) -> Result<nearmiss::Contacts, Error> + Send,
+    ) -> PyResult<Contacts> {
+        let (told, stamp, unread) = py.detach(|| {
+            let mut one = self.locked();
+            let _turn = self.device.get().turn();
+            one.count(does);
+            (ask(&mut one.detector), one.stamp(), one.unread())
+        });
+        drop(unread);
+        Ok(Contacts::new(told.map_err(raised)?, stamp))
     }
 
     /// Looks at the detector.
@@ -77,37 +69,40 @@ impl Detector {
         py.detach(|| look(&self.locked().detector))
     }
 
-    /// Never while the interpreter is held: whoever has the lock may wait for that.
+    /// Does something with the device, in turn with all that share it.
+    pub fn in_turn<T: Send>(&self, py: Python<'_>, work: impl FnOnce() -> T + Send) -> T {
+        py.detach(|| {
+            let _turn = self.device.get().turn();
+            work()
+        })
+    }
+
+    /// Never while the interpreter is held: whoever has the lock may wait for that. Before the device's turn.
     fn locked(&self) -> MutexGuard<'_, Asked> {
         self.one.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn frame_of(&self, py: Python<'_>, inputs: Option<&Bound<'_, PyDict>>) -> PyResult<Frame> {
-        let (numbers, places): (Vec<_>, Vec<_>) = inputs.into_iter().flat_map(|all| all.iter()).unzip();
-        let numbers = numbers.iter().map(|number| number.extract()).collect::<PyResult<Vec<usize>>>()?;
+    fn frame_of(&self, py: Python<'_>, inputs: Option<&Bound<'_, PyAny>>) -> PyResult<Frame> {
+        let inputs = inputs.map_or_else(|| Ok(Vec::new()), numbered)?;
+        let (numbers, places): (Vec<_>, Vec<_>) = inputs.into_iter().unzip();
         let bodies = self.bodies(py, &numbers)?;
         Frame::of(bodies.into_iter().zip(places).collect(), &self.device.get().device)
     }
 
     /// The bodies with these numbers.
-    fn bodies(&self, py: Python<'_>, numbers: &[usize]) -> PyResult<Vec<BodyId>> {
+    fn bodies(&self, py: Python<'_>, numbers: &[usize]) -> PyResult<Vec<Named>> {
         let found = self.look(py, |detector| {
-            numbers.iter().map(|&number| detector.scene().id(number)).collect::<Vec<_>>()
+            let scene = detector.scene();
+            let named = |id| scene.get(id).map(|body| (id, body.name().to_owned(), body.vertex_count()));
+            numbers.iter().map(|&number| scene.id(number).and_then(named)).collect::<Vec<_>>()
         });
-        numbers.iter().zip(found).map(|(&number, found)| known(number, found)).collect()
+        let named =
+            |(&number, found)| known(number, found).map(|(id, name, vertices)| Named { id, name, vertices });
+        numbers.iter().zip(found).map(named).collect()
     }
 
     fn body(&self, py: Python<'_>, number: usize) -> PyResult<BodyId> {
         known(number, self.look(py, |detector| detector.scene().id(number)))
-    }
-
-    /// Asks what is answered by contacts.
-    fn told(
-        &self,
-        py: Python<'_>,
-        ask: impl FnOnce(&mut nearmiss::Detector) -> Result<nearmiss::Contacts, Error> + Send,
-    ) -> PyResult<Contacts> {
-        Ok(self.ask(py, ask)?.into())
     }
 
     /// Does something with the answer that lay on the device when so many questions had been asked, if it still does.
@@ -117,10 +112,11 @@ impl Detector {
         asked: u64,
         with: impl FnOnce() -> T + Send,
     ) -> PyResult<T> {
-        let there = |detector: &nearmiss::Detector| {
-            (detector.is_prepared() && self.asked.load(Ordering::Relaxed) == asked).then(with)
+        let there = || {
+            let one = self.locked();
+            (one.detector.is_prepared() && one.asked == asked).then(with)
         };
-        self.look(py, there).ok_or_else(|| {
+        py.detach(there).ok_or_else(|| {
             choice(
                 "an answer on the device whose detector was asked anew, or has grown",
                 "ask `on_device` after `prepare`, and again when `is_prepared` is no longer true",
@@ -130,7 +126,7 @@ impl Detector {
 }
 
 /// As Python's own values.
-fn python<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
+pub fn python<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
     let text = serde_json::to_string(value)
         .map_err(|error| raised(Error::Bug { what: format!("figures that are no JSON: {error}") }))?;
     py.import("json")?.call_method1("loads", (text,))
@@ -151,66 +147,88 @@ impl Detector {
             None => py.get_type::<Device>().call0()?.cast_into::<Device>()?.unbind(),
         };
         // One body alone is tested against itself, as in the library.
-        let bodies = match scene.cast::<Body>() {
-            Ok(body) => nearmiss::Scene::from(body.get().body.clone()),
-            Err(_) => scene.cast::<Scene>()?.borrow().scene.clone(),
+        let bodies = match (scene.cast::<Body>(), scene.cast::<Scene>()) {
+            (Ok(body), _) => nearmiss::Scene::from(body.get().body.clone()),
+            (_, Ok(scene)) => scene.borrow().scene.clone(),
+            _ => {
+                return Err(choice(
+                    format!("a detector of {}", scene.get_type()),
+                    "give a Scene or a Body: Detector(Scene(*bodies), query)",
+                ));
+            }
         };
-        let (on, query) = (device.get().device.clone(), query.query);
-        let detector = py.detach(|| nearmiss::Detector::new(on, bodies, query)).map_err(raised)?;
-        let one = Mutex::new(Asked { detector, held: Vec::new() });
-        Ok(Detector { one, device, asked: AtomicU64::new(0) })
+        let (on, query, shared) = (device.get().device.clone(), query.query, device.get());
+        let detector = py.detach(|| {
+            let _turn = shared.turn();
+            nearmiss::Detector::new(on, bodies, query)
+        });
+        let one = Mutex::new(Asked::new(detector.map_err(raised)?));
+        Ok(Detector { one, device })
     }
 
     /// Moves bodies, and answers.
     ///
-    /// inputs: a dictionary from a body's number to where it is: of a deformable body (n, 3) numbers, or two such arrays for the
+    /// inputs: a mapping from a body's number to where it is: of a deformable body (n, 3) numbers, or two such arrays for the
     ///         ends of a step; of a rigid body a Pose, or two. A body that is not named rests.
     ///         Arrays of the detector's GPU, and on a CPU numpy's arrays of packed rows, are read where they lie.
     #[pyo3(signature = (inputs = None))]
-    fn frame(&self, py: Python<'_>, inputs: Option<&Bound<'_, PyDict>>) -> PyResult<Contacts> {
+    fn frame(&self, py: Python<'_>, inputs: Option<&Bound<'_, PyAny>>) -> PyResult<Contacts> {
         let frame = self.frame_of(py, inputs)?;
         let given = frame.inputs();
-        self.told(py, |detector| detector.frame(&given))
+        self.told(py, Does::Moves, |detector| detector.frame(&given))
     }
 
     /// Answers for where the bodies are.
     fn detect(&self, py: Python<'_>) -> PyResult<Contacts> {
-        self.told(py, nearmiss::Detector::detect)
+        self.told(py, Does::AsksAnew, nearmiss::Detector::detect)
     }
 
-    /// Where contacts or near pairs are: the bodies must be where they were when these were found.
+    /// Where contacts or near pairs are: of this detector, and before it is asked to move, add, remove or replace bodies; else ChoiceError.
     fn geometry(&self, py: Python<'_>, contacts: &Contacts) -> PyResult<Geometry> {
-        self.go_on(py, |detector| detector.geometry(&contacts.contacts)).map(Geometry::from)
+        let told = py.detach(|| {
+            let mut one = self.locked();
+            let _turn = self.device.get().turn();
+            one.check(contacts.stamp)?;
+            one.detector.geometry(&contacts.contacts)
+        });
+        told.map(Geometry::from).map_err(raised)
     }
 
     /// All figures of an answer, as the command line prints them: counts, milliseconds by stage, what it came to less than was asked.
+    /// Of the contacts that `geometry` takes.
     fn summary<'py>(&self, py: Python<'py>, contacts: &Contacts) -> PyResult<Bound<'py, PyAny>> {
-        python(py, &self.look(py, |detector| detector.summary(&contacts.contacts)))
+        let told = py.detach(|| {
+            let one = self.locked();
+            one.check(contacts.stamp).map(|()| one.detector.summary(&contacts.contacts))
+        });
+        python(py, &told.map_err(raised)?)
     }
 
     /// What a frame launches, holds and moves, by kernel and purpose: counted, as a dictionary.
     fn plan<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        python(py, &self.ask(py, nearmiss::Detector::plan)?)
+        python(py, &self.ask(py, Does::AsksAnew, nearmiss::Detector::plan)?)
     }
 
     /// Prepares frames that nobody waits for: `submit` then takes no memory and moves nothing through the host.
     ///
     /// inputs: as for `frame`, of arrays that stay where they are: of the GPU, or on a CPU numpy's. Write into them between submissions; they
     ///         are held until the next `prepare` or `frame`.
-    fn prepare(&self, py: Python<'_>, inputs: &Bound<'_, PyDict>) -> PyResult<Contacts> {
+    fn prepare(&self, py: Python<'_>, inputs: &Bound<'_, PyAny>) -> PyResult<Contacts> {
         let frame = self.frame_of(py, Some(inputs))?;
         let given = frame.on_device()?;
-        self.asked.fetch_add(1, Ordering::Relaxed);
         let held = frame.held;
-        let (told, unread) = py.detach(|| {
+        let (told, stamp, unread) = py.detach(|| {
             let mut one = self.locked();
+            let _turn = self.device.get().turn();
+            one.count(Does::Moves);
             let told = one.detector.prepare(&given);
             // A refusal may leave it as it was prepared before.
             let as_before = told.is_err() && one.detector.is_prepared();
-            (told, if as_before { held } else { std::mem::replace(&mut one.held, held) })
+            let unread = if as_before { held } else { std::mem::replace(&mut one.held, held) };
+            (told, one.stamp(), unread)
         });
         drop(unread);
-        told.map(Contacts::from).map_err(raised)
+        Ok(Contacts::new(told.map_err(raised)?, stamp))
     }
 
     /// Whether `submit` may be called, and a graph that recorded it be launched again.
@@ -221,14 +239,17 @@ impl Detector {
 
     /// Puts a frame into the device's stream and returns: may be captured in a graph (torch.cuda.graph, cupy).
     fn submit(&self, py: Python<'_>) -> PyResult<()> {
-        self.go_on(py, nearmiss::Detector::submit)
+        self.ask(py, Does::Submits, nearmiss::Detector::submit)
     }
 
     /// Where the answer of a submission will lie; None where it is not prepared.
     fn on_device(detector: Bound<'_, Self>) -> Option<DeviceAnswer> {
         let own = detector.get();
-        let asked = own.asked.load(Ordering::Relaxed);
-        let answer = own.look(detector.py(), nearmiss::Detector::on_device)?;
+        let (answer, asked) = detector.py().detach(|| {
+            let one = own.locked();
+            (one.detector.on_device(), one.asked)
+        });
+        let answer = answer?;
         let device = own.device.get().device.clone();
         Some(DeviceAnswer { answer, device, detector: detector.unbind(), asked })
     }
@@ -236,29 +257,29 @@ impl Detector {
     /// Waits for what was submitted last, and brings the answer to the host. Where a list was too short the frame is asked again, and
     /// the answer is whole; then the detector is no longer prepared.
     fn collect(&self, py: Python<'_>) -> PyResult<Contacts> {
-        self.go_on(py, nearmiss::Detector::collect).map(Contacts::from)
+        self.told(py, Does::Submits, nearmiss::Detector::collect)
     }
 
     /// Makes tiles or trees anew: pays when bodies have moved far from where they were made.
     fn rebuild(&self, py: Python<'_>) -> PyResult<()> {
-        self.ask(py, nearmiss::Detector::rebuild)
+        self.ask(py, Does::AsksAnew, nearmiss::Detector::rebuild)
     }
 
     /// Adds a body: its number.
     fn add(&self, py: Python<'_>, body: &Body) -> PyResult<usize> {
-        self.ask(py, |detector| detector.add(body.body.clone())).map(BodyId::index)
+        self.ask(py, Does::Moves, |detector| detector.add(body.body.clone())).map(BodyId::index)
     }
 
     /// Takes the body of that number out.
     fn remove(&self, py: Python<'_>, body: usize) -> PyResult<()> {
         let id = self.body(py, body)?;
-        self.ask(py, |detector| detector.remove(id).map(drop))
+        self.ask(py, Does::Moves, |detector| detector.remove(id).map(drop))
     }
 
     /// Puts another body in the place of that number.
     fn replace(&self, py: Python<'_>, body: usize, by: &Body) -> PyResult<()> {
         let id = self.body(py, body)?;
-        self.ask(py, |detector| detector.replace(id, by.body.clone()))
+        self.ask(py, Does::Moves, |detector| detector.replace(id, by.body.clone()))
     }
 
     /// The tolerance of a certified solver, a length.

@@ -1,26 +1,41 @@
 //! Where frames are computed.
 
-use crate::errors::{choice, named, raised};
+use crate::errors::{choice, named, optional, raised};
 use nearmiss::device::Backend;
 use pyo3::prelude::*;
 use std::ffi::c_void;
 use std::ptr::null_mut;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// More threads than any machine has cores for are a mistake.
+const MOST_THREADS: i64 = 1024;
 
 /// A CPU, or an NVIDIA GPU.
 ///
 /// backend: "auto" (a GPU where there is one, else the CPU), "cpu" or "cuda".
-/// threads: of a CPU, at most as many as there are processors; default: all.
+/// threads: of a CPU, 1 to 1024, of which no more are taken than there are processors; default: all.
 /// gpu:     a GPU by its number. It has a stream of its own.
 /// stream:  a stream of the caller, on the GPU that this thread is bound to: a torch or cupy stream, what has
 ///          __cuda_stream__, or a handle (0: the default stream). All work goes there, behind what is there. The stream must
 ///          outlive the device.
 ///
-/// Raises DeviceError where there is no such machine. One thread at a time uses a device; for work side by side open two.
+/// Raises DeviceError where there is no such machine. Detectors of any threads may share a device: they take turns; for work side by
+/// side open two.
 #[pyclass(module = "nearmiss", frozen)]
 pub struct Device {
     pub device: nearmiss::Device,
+    /// Whoever asks it something.
+    turn: Mutex<()>,
     /// The object that owns a borrowed stream.
     _stream: Option<Py<PyAny>>,
+}
+
+impl Device {
+    /// Waits until nobody else asks the device. Taken behind the lock of a detector, never before it, and never while the interpreter
+    /// is held.
+    pub fn turn(&self) -> MutexGuard<'_, ()> {
+        self.turn.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 #[pymethods]
@@ -30,8 +45,8 @@ impl Device {
     fn new(
         py: Python<'_>,
         backend: &str,
-        threads: Option<usize>,
-        gpu: Option<u32>,
+        #[pyo3(from_py_with = threads_of)] threads: Option<usize>,
+        #[pyo3(from_py_with = gpu_of)] gpu: Option<u32>,
         stream: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Device> {
         let backend = named::<Backend>("a device", backend)?;
@@ -49,7 +64,8 @@ impl Device {
             (None, Some(handle)) => unsafe { nearmiss::Device::borrow(null_mut(), handle as *mut c_void) },
             (None, None) => nearmiss::Device::open(backend, threads),
         });
-        Ok(Device { device: opened.map_err(raised)?, _stream: stream.map(Bound::unbind) })
+        let device = opened.map_err(raised)?;
+        Ok(Device { device, turn: Mutex::new(()), _stream: stream.map(Bound::unbind) })
     }
 
     /// What the machine calls itself.
@@ -85,6 +101,14 @@ impl Device {
     fn __repr__(&self) -> String {
         format!("<nearmiss.Device {}>", self.device.name())
     }
+}
+
+fn threads_of(given: &Bound<'_, PyAny>) -> PyResult<Option<usize>> {
+    Ok(optional(given, "threads", [1, MOST_THREADS])?.map(|threads| threads as usize))
+}
+
+fn gpu_of(given: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
+    Ok(optional(given, "gpu", [0, i32::MAX.into()])?.map(|gpu| gpu as u32))
 }
 
 /// The driver's handle of a stream: a number, or an object of torch, cupy, or by `__cuda_stream__`.

@@ -128,9 +128,9 @@ impl Taken {
 
 /// Strides of an array without gaps.
 pub fn packed(shape: &[i64]) -> Vec<i64> {
-    let mut strides = vec![1; shape.len()];
+    let mut strides = vec![1i64; shape.len()];
     for i in (1..shape.len()).rev() {
-        strides[i - 1] = strides[i] * shape[i];
+        strides[i - 1] = strides[i].saturating_mul(shape[i]);
     }
     strides
 }
@@ -174,8 +174,8 @@ pub fn capsule<'py>(py: Python<'py>, of: &Shape, owner: Py<PyAny>) -> PyResult<B
 
 /// Frees an array of ours.
 unsafe extern "C" fn freed(managed: *mut ManagedTensor) {
-    // Whoever has it may be no thread of Python's.
-    Python::attach(|_| {
+    // Whoever has it may be no thread of Python's. Where the interpreter is ending it is left to the system: nothing may unwind here.
+    let _ = Python::try_attach(|_| {
         // SAFETY: it is the box of `capsule`, freed once: by whoever took it, or by the capsule where nobody did.
         drop(unsafe { Box::from_raw(managed.cast::<Given>()) });
     });

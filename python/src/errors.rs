@@ -2,7 +2,7 @@
 
 use nearmiss::Error;
 use nearmiss::query::Named;
-use pyo3::{PyErr, PyResult};
+use pyo3::prelude::*;
 
 /// The classes of `lib/nearmiss/errors.py`.
 mod classes {
@@ -40,6 +40,22 @@ pub fn choice(what: impl Into<String>, advice: impl Into<String>) -> PyErr {
 pub fn named<T: Named>(what: &str, name: &str) -> PyResult<T> {
     T::of(name)
         .ok_or_else(|| choice(format!("{what} called {name}"), one_of(T::ALL.iter().map(|of| of.name()))))
+}
+
+/// An integer from `least` to `most`; `name` is the argument's.
+pub fn integer(given: &Bound<'_, PyAny>, name: &str, [least, most]: [i64; 2]) -> PyResult<i64> {
+    match given.extract::<i64>() {
+        Ok(number) if (least..=most).contains(&number) => Ok(number),
+        _ => Err(choice(
+            format!("{name} = {}", given.repr()?),
+            format!("give an integer from {least} to {most}"),
+        )),
+    }
+}
+
+/// An integer that may be left out.
+pub fn optional(given: &Bound<'_, PyAny>, name: &str, range: [i64; 2]) -> PyResult<Option<i64>> {
+    if given.is_none() { Ok(None) } else { integer(given, name, range).map(Some) }
 }
 
 /// Which names there are.

@@ -1,14 +1,14 @@
 //! What a frame tells of its bodies.
 
 use crate::errors::choice;
-use crate::host::positions;
+use crate::host::{Most, positions};
 use crate::lent::{Held, LentRows, is_on_gpu, on_cpu, on_gpu};
 use crate::pose::{GivenPose, Pose};
 use nearmiss::Device;
 use nearmiss::mesh::Positions;
 use nearmiss::scene::{BodyId, DeviceInput, Input};
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyList, PyMapping, PyTuple};
 
 /// Where bodies are, as Python told it.
 #[derive(Default)]
@@ -16,6 +16,21 @@ pub struct Frame {
     bodies: Vec<(BodyId, Given)>,
     /// What holds arrays that are read where they lie.
     pub held: Vec<Held>,
+}
+
+/// A body that a frame names.
+pub struct Named {
+    pub id: BodyId,
+    pub name: String,
+    pub vertices: usize,
+}
+
+/// Whose positions these are: on which device, what messages call them, and how many there may be.
+#[derive(Clone, Copy)]
+struct Of<'a> {
+    device: &'a Device,
+    what: &'a str,
+    most: Most<'a>,
 }
 
 enum Given {
@@ -32,10 +47,12 @@ enum End {
 
 impl Frame {
     /// Of bodies and where Python says that they are.
-    pub fn of(inputs: Vec<(BodyId, Bound<'_, PyAny>)>, device: &Device) -> PyResult<Frame> {
+    pub fn of(inputs: Vec<(Named, Bound<'_, PyAny>)>, device: &Device) -> PyResult<Frame> {
         let mut frame = Frame::default();
-        for (id, input) in inputs {
-            let given = frame.given(&input, device, &format!("positions of body {id}"))?;
+        for (Named { id, name, vertices }, input) in inputs {
+            let what = format!("positions of body {id}");
+            let given =
+                frame.given(&input, Of { device, what: &what, most: Most::Of { body: &name, vertices } })?;
             frame.bodies.push((id, given));
         }
         Ok(frame)
@@ -63,8 +80,16 @@ impl Frame {
         self.bodies.iter().map(lent).collect()
     }
 
-    fn given(&mut self, input: &Bound<'_, PyAny>, device: &Device, what: &str) -> PyResult<Given> {
-        let py = input.py();
+    fn given(&mut self, input: &Bound<'_, PyAny>, of: Of<'_>) -> PyResult<Given> {
+        let (py, Of { device, what, most }) = (input.py(), of);
+        if let Ok(list) = input.cast::<PyList>()
+            && list.iter().any(|end| end.is_instance_of::<Pose>())
+        {
+            return Err(choice(
+                format!("{what}: a list of poses"),
+                "give both ends of a step as a tuple of two",
+            ));
+        }
         let both = input.cast::<PyTuple>().ok().filter(|both| both.len() == 2);
         if let Some(both) = both {
             let ends = [both.get_item(0)?, both.get_item(1)?];
@@ -79,7 +104,7 @@ impl Frame {
                     _ => Err(halves(what)),
                 };
             }
-            return match (end(&ends[0], device, what)?, end(&ends[1], device, what)?) {
+            return match (end(&ends[0], of)?, end(&ends[1], of)?) {
                 (End::Here(a), End::Here(b)) => Ok(Given::Step([a, b])),
                 (End::Lent(a), End::Lent(b)) => {
                     self.held.extend([a.held, b.held]);
@@ -87,7 +112,7 @@ impl Frame {
                 }
                 // One of them is not laid out as it would have to be.
                 _ if !device.is_gpu() => {
-                    Ok(Given::Step([positions(&ends[0], what)?, positions(&ends[1], what)?]))
+                    Ok(Given::Step([positions(&ends[0], what, most)?, positions(&ends[1], what, most)?]))
                 }
                 _ => Err(halves(what)),
             };
@@ -101,7 +126,7 @@ impl Frame {
                 }
             }));
         }
-        Ok(match end(input, device, what)? {
+        Ok(match end(input, of)? {
             End::Here(at) => Given::At(at),
             End::Lent(at) => {
                 self.held.push(at.held);
@@ -112,7 +137,7 @@ impl Frame {
 }
 
 /// One end: read where it lies if the device reaches it there, else copied.
-fn end(object: &Bound<'_, PyAny>, device: &Device, what: &str) -> PyResult<End> {
+fn end(object: &Bound<'_, PyAny>, Of { device, what, most }: Of<'_>) -> PyResult<End> {
     if is_on_gpu(object) {
         return on_gpu(object, device, (3, what)).map(End::Lent);
     }
@@ -121,15 +146,37 @@ fn end(object: &Bound<'_, PyAny>, device: &Device, what: &str) -> PyResult<End> 
     {
         return Ok(End::Lent(lent));
     }
-    positions(object, what).map(End::Here)
+    positions(object, what, most).map(End::Here)
 }
 
 fn halves(what: &str) -> PyErr {
     choice(format!("{what}: one end on the GPU, one on the host"), "give both ends in one memory")
 }
 
+/// What a mapping says of which body, by its number.
+pub fn numbered<'py>(inputs: &Bound<'py, PyAny>) -> PyResult<Vec<(usize, Bound<'py, PyAny>)>> {
+    let mapping = inputs.cast::<PyMapping>().map_err(|_| no_mapping(inputs))?;
+    let mut all = Vec::new();
+    for item in mapping.items()? {
+        let (body, input) = item.extract::<(Bound<'_, PyAny>, Bound<'_, PyAny>)>()?;
+        let number = body.extract().or_else(|_| {
+            let what = format!("an input for body {}, which is no number of one", body.repr()?);
+            Err(choice(what, "give a number that `add` returned"))
+        })?;
+        all.push((number, input));
+    }
+    Ok(all)
+}
+
+fn no_mapping(inputs: &Bound<'_, PyAny>) -> PyErr {
+    choice(
+        format!("inputs of type {}", inputs.get_type()),
+        "give a dictionary from the number of a body to where it is, as {0: vertices}",
+    )
+}
+
 /// The body that was found by its number.
-pub fn known(index: usize, found: Option<BodyId>) -> PyResult<BodyId> {
+pub fn known<T>(index: usize, found: Option<T>) -> PyResult<T> {
     found.ok_or_else(|| {
         choice(format!("body {index}, which is not in the scene"), "give a number that `add` returned")
     })

@@ -6,7 +6,7 @@ use nearmiss::contacts::ContactGeometry;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 
-/// Where contacts are, at their time: a row a contact, in the order of the Contacts.
+/// Where contacts are, at their time: a row a contact, in the order of the Contacts. Columns are read-only.
 #[pyclass(module = "nearmiss", frozen)]
 pub struct Geometry {
     rows: Vec<ContactGeometry>,

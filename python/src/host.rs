@@ -1,14 +1,13 @@
 //! Arrays in the host's memory.
 
 use crate::errors::{choice, raised};
-use nearmiss::Mesh;
-use nearmiss::mesh::Positions;
+use nearmiss::mesh::{MAX_FACES, MAX_VERTICES, Positions, Problem};
+use nearmiss::{Error, Mesh, memory};
 use numpy::{
     Element, PyArray2, PyArrayDescrMethods, PyArrayMethods, PyReadonlyArray2, PyUntypedArray,
     PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
-use pyo3::types::IntoPyDict;
 use std::path::PathBuf;
 
 /// Reads a PLY or OBJ file: (vertices, faces), (n, 3) float32 or float64 as the file has them, and (m, 3) uint32.
@@ -20,11 +19,15 @@ pub fn read_mesh<'py>(
     path: PathBuf,
 ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyArray2<u32>>)> {
     let mesh = py.detach(|| Mesh::read(&path)).map_err(raised)?;
-    let vertices = match mesh.positions() {
+    Ok((points(py, mesh.positions()), rows(py, mesh.faces())))
+}
+
+/// Points in the precision that they have, copied.
+pub fn points<'py>(py: Python<'py>, of: &Positions) -> Bound<'py, PyAny> {
+    match of {
         Positions::F32(points) => rows(py, points).into_any(),
         Positions::F64(points) => rows(py, points).into_any(),
-    };
-    Ok((vertices, rows(py, mesh.faces())))
+    }
 }
 
 /// Rows of numbers, copied.
@@ -50,16 +53,11 @@ pub fn are_floats(array: &Bound<'_, PyUntypedArray>) -> bool {
     dtype.kind() == b'f' && [4, 8].contains(&dtype.itemsize()) && [b'=', b'|'].contains(&dtype.byteorder())
 }
 
-/// Numbers in single or in double precision, as they are; other numbers become doubles.
-fn floats<'py>(object: &Bound<'py, PyAny>, what: &str) -> PyResult<Bound<'py, PyUntypedArray>> {
-    let array = asarray(object)?;
+/// Refuses what are no numbers that become floats or doubles.
+fn are_numbers(array: &Bound<'_, PyUntypedArray>, what: &str) -> PyResult<()> {
     let dtype = array.dtype();
     match (dtype.kind(), dtype.itemsize()) {
-        _ if are_floats(&array) => Ok(array),
-        (b'f' | b'i' | b'u', ..=8) => {
-            let kwargs = [("copy", false)].into_py_dict(object.py())?;
-            Ok(array.call_method("astype", ("=f8",), Some(&kwargs))?.cast_into()?)
-        }
+        (b'f' | b'i' | b'u', ..=8) => Ok(()),
         _ => Err(choice(
             format!("{what} of type {}", dtype.str()?),
             "give numbers in single or double precision, or integers",
@@ -67,21 +65,69 @@ fn floats<'py>(object: &Bound<'py, PyAny>, what: &str) -> PyResult<Bound<'py, Py
     }
 }
 
-/// Points, three numbers each, copied.
-pub fn positions(object: &Bound<'_, PyAny>, what: &str) -> PyResult<Positions> {
-    let array = floats(object, what)?;
-    of_three(&array, what)?;
-    if let Ok(points) = array.cast::<PyArray2<f32>>() {
-        return Ok(Positions::F32(triples(&points.readonly())));
+/// Numbers in single or in double precision, as they are; other numbers become doubles.
+fn floats<'py>(array: Bound<'py, PyUntypedArray>, what: &str) -> PyResult<Bound<'py, PyUntypedArray>> {
+    if are_floats(&array) {
+        return Ok(array);
     }
-    Ok(Positions::F64(triples(&array.cast::<PyArray2<f64>>()?.readonly())))
+    require::<f64>(array.len(), what)?;
+    Ok(array.call_method1("astype", ("=f8",))?.cast_into()?)
+}
+
+/// Refuses so many numbers where the machine has no memory for them, before it is taken.
+fn require<T>(numbers: usize, what: &str) -> PyResult<()> {
+    memory::require(what, numbers.saturating_mul(size_of::<T>()) as u64).map_err(raised)
+}
+
+/// How many rows of points there may be.
+#[derive(Clone, Copy)]
+pub enum Most<'a> {
+    /// As many as a mesh may have.
+    OfAnyMesh,
+    /// As many as that body has.
+    Of { body: &'a str, vertices: usize },
+}
+
+impl Most<'_> {
+    /// Refuses more, before they are copied.
+    fn check(self, rows: usize, what: &str) -> PyResult<()> {
+        match self {
+            Most::OfAnyMesh => few("vertices", rows, MAX_VERTICES, what),
+            Most::Of { vertices, .. } if rows <= vertices => Ok(()),
+            Most::Of { body, vertices } => {
+                let problem = Problem::FrameVertices { first: body.into(), t0: vertices, t1: rows };
+                Err(raised(Error::Input { file: body.into(), problem }))
+            }
+        }
+    }
+}
+
+/// Refuses more of them than a mesh may have.
+fn few(of: &'static str, rows: usize, most: usize, what: &str) -> PyResult<()> {
+    if rows <= most {
+        return Ok(());
+    }
+    let problem = Problem::TooMany { what: of, count: rows as u64, limit: most as u64 };
+    Err(raised(Error::Input { file: what.into(), problem }))
+}
+
+/// Points, three numbers each, copied.
+pub fn positions(object: &Bound<'_, PyAny>, what: &str, most: Most<'_>) -> PyResult<Positions> {
+    let array = asarray(object)?;
+    are_numbers(&array, what)?;
+    most.check(of_three(&array, what)?, what)?;
+    let array = floats(array, what)?;
+    if let Ok(points) = array.cast::<PyArray2<f32>>() {
+        return Ok(Positions::F32(triples(&points.readonly(), what)?));
+    }
+    Ok(Positions::F64(triples(&array.cast::<PyArray2<f64>>()?.readonly(), what)?))
 }
 
 /// Triangles, three vertex indices each, copied.
 pub fn faces(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<[u32; 3]>> {
     let array = asarray(object)?;
     let (kind, shape) = (array.dtype().kind(), array.shape().to_vec());
-    let empty = shape.iter().product::<usize>() == 0;
+    let empty = shape.contains(&0);
     if empty && (shape.len() == 1 || shape.get(1) == Some(&3)) {
         return Ok(Vec::new());
     }
@@ -91,13 +137,15 @@ pub fn faces(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<[u32; 3]>> {
             "give integers: three vertex indices a triangle",
         ));
     }
-    of_three(&array, &format!("faces of {name}"))?;
+    let what = format!("faces of {name}");
+    few("triangles", of_three(&array, &what)?, MAX_FACES, &what)?;
     if let Ok(faces) = array.cast::<PyArray2<u32>>() {
-        return Ok(triples(&faces.readonly()));
+        return triples(&faces.readonly(), &what);
     }
+    require::<i64>(array.len(), &what)?;
     let wide = array.call_method1("astype", ("=i8",))?;
-    let wide = triples(&wide.cast::<PyArray2<i64>>()?.readonly());
-    let mut faces = Vec::with_capacity(wide.len());
+    let wide = triples(&wide.cast::<PyArray2<i64>>()?.readonly(), &what)?;
+    let mut faces = room(wide.len(), &what)?;
     for (face, corners) in wide.iter().enumerate() {
         let mut own = [0; 3];
         for (to, &from) in own.iter_mut().zip(corners) {
@@ -115,20 +163,42 @@ pub fn faces(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<[u32; 3]>> {
 
 /// A row of numbers in double precision.
 pub fn row<const N: usize>(object: &Bound<'_, PyAny>, what: &str) -> PyResult<[f64; N]> {
-    let numbers: Vec<f64> = asarray(object)?.call_method0("tolist")?.extract()?;
-    let count = numbers.len();
-    numbers.try_into().map_err(|_| choice(format!("{what} of {count} numbers"), format!("give {N}")))
+    let array = asarray(object)?;
+    are_numbers(&array, what)?;
+    let given = match array.shape() {
+        [count] if *count == N => {
+            return floats(array, what)?.call_method1("astype", ("=f8",))?.call_method0("tolist")?.extract();
+        }
+        [count] => format!("{what} of {count} numbers"),
+        shape => format!("{what} of shape {shape:?}"),
+    };
+    Err(choice(given, format!("give {N} numbers in a row")))
 }
 
-/// Refuses what are not rows of three.
-fn of_three(array: &Bound<'_, PyUntypedArray>, what: &str) -> PyResult<()> {
-    match array.shape() {
-        [_, 3] => Ok(()),
-        shape => Err(choice(format!("{what} of shape {shape:?}"), "give rows of three: shape (n, 3)")),
+/// How many rows of three there are; refuses what are none.
+fn of_three(array: &Bound<'_, PyUntypedArray>, what: &str) -> PyResult<usize> {
+    let advice = match array.shape() {
+        [rows, 3] => return Ok(*rows),
+        [_, _, 3] => "give rows of three: shape (n, 3); both ends of a step are a tuple of two such arrays",
+        _ => "give rows of three: shape (n, 3)",
+    };
+    Err(choice(format!("{what} of shape {:?}", array.shape()), advice))
+}
+
+/// An empty list with room for so many rows, or a sentence where the machine has none.
+fn room<T>(rows: usize, what: &str) -> PyResult<Vec<[T; 3]>> {
+    require::<[T; 3]>(rows, what)?;
+    let mut list = Vec::new();
+    if list.try_reserve_exact(rows).is_err() {
+        let (asked, given) = ((rows * size_of::<[T; 3]>()) as u64, memory::free().unwrap_or(0));
+        return Err(raised(Error::OutOfMemory { what: what.into(), asked, given }));
     }
+    Ok(list)
 }
 
-fn triples<T: Element + Copy>(array: &PyReadonlyArray2<'_, T>) -> Vec<[T; 3]> {
+fn triples<T: Element + Copy>(array: &PyReadonlyArray2<'_, T>, what: &str) -> PyResult<Vec<[T; 3]>> {
     let array = array.as_array();
-    array.rows().into_iter().map(|row| [row[0], row[1], row[2]]).collect()
+    let mut list = room(array.nrows(), what)?;
+    list.extend(array.rows().into_iter().map(|row| [row[0], row[1], row[2]]));
+    Ok(list)
 }

@@ -5,6 +5,7 @@ use crate::errors::{choice, raised};
 use crate::host::are_floats;
 use nearmiss::Device;
 use nearmiss::scene::{DeviceRows, Number};
+use numpy::npyffi::_PyArray_GET_ITEM_DATA;
 use numpy::{PyArrayDescrMethods, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict, PyDict};
@@ -39,22 +40,32 @@ pub fn is_on_gpu(object: &Bound<'_, PyAny>) -> bool {
 
 /// Rows of `width` numbers in a GPU's memory, behind all work that makes them.
 pub fn on_gpu(object: &Bound<'_, PyAny>, device: &Device, (width, what): (i64, &str)) -> PyResult<LentRows> {
+    let by_dlpack = object.hasattr("__dlpack__")?;
+    let told = if by_dlpack { None } else { Some(by_cuda_array_interface(object, what)?) };
     let Some((ordinal, stream)) = device.ordinal().zip(device.stream()) else {
         return Err(choice(
             format!("{what} on a GPU for a detector on the CPU"),
             "give the detector a device of that GPU, or arrays of the host",
         ));
     };
-    let (shape, held) = if object.hasattr("__dlpack__")? {
-        // 0 has no meaning there; 1 is the default stream.
-        let kwargs = [("stream", stream.max(1))].into_py_dict(object.py())?;
-        let tensor = Taken::of(&object.call_method("__dlpack__", (), Some(&kwargs))?)?;
-        (tensor.shape()?, Held::Taken { _tensor: tensor })
-    } else {
-        (
-            by_cuda_array_interface(object, (ordinal, stream), what)?,
-            Held::Object { _array: object.clone().unbind() },
-        )
+    let (shape, held) = match told {
+        // Where it says which stream makes the data that must be ours: nothing here waits for another.
+        Some((_, Some(theirs))) if theirs != stream.max(1) => {
+            return Err(choice(
+                format!("{what} of stream {theirs} for a detector on stream {stream}"),
+                "open the device on that stream: Device(stream=…)",
+            ));
+        }
+        Some((mut shape, _)) => {
+            shape.place.ordinal = ordinal as i32;
+            (shape, Held::Object { _array: object.clone().unbind() })
+        }
+        None => {
+            // 0 has no meaning there; 1 is the default stream.
+            let kwargs = [("stream", stream.max(1))].into_py_dict(object.py())?;
+            let tensor = Taken::of(&object.call_method("__dlpack__", (), Some(&kwargs))?)?;
+            (tensor.shape()?, Held::Taken { _tensor: tensor })
+        }
     };
     if shape.place.ordinal != ordinal as i32 {
         return Err(choice(
@@ -84,8 +95,9 @@ pub fn on_cpu(object: &Bound<'_, PyAny>, what: &str) -> PyResult<Option<LentRows
     if !fits || shape[0] == 0 {
         return Ok(None);
     }
-    let told = array.getattr("__array_interface__")?;
-    let (address, _) = told.get_item("data")?.extract::<(u64, bool)>()?;
+    // Of numpy's own struct: what a subclass says of itself may be anything.
+    // SAFETY: the array is alive, and the interpreter is held.
+    let address = unsafe { (*_PyArray_GET_ITEM_DATA(array.as_array_ptr())).data } as u64;
     let shape = Shape {
         address,
         place: Place { kind: CPU, ordinal: 0 },
@@ -94,7 +106,7 @@ pub fn on_cpu(object: &Bound<'_, PyAny>, what: &str) -> PyResult<Option<LentRows
         strides: strides.iter().map(|&s| (s / size) as i64).collect(),
     };
     // An address that is no multiple of the number's size.
-    if address % size as u64 != 0 {
+    if !address.is_multiple_of(size as u64) {
         return Ok(None);
     }
     Ok(Some(LentRows {
@@ -126,24 +138,21 @@ fn rows(of: &Shape, width: i64, what: &str) -> PyResult<DeviceRows> {
             ));
         }
     };
-    if within != 1 || stride < 0 {
+    let size = number.bytes();
+    let bytes = usize::try_from(stride).ok().and_then(|stride| stride.checked_mul(size));
+    let (Some(bytes), 1, Ok(count)) = (bytes, within, usize::try_from(count)) else {
         return Err(choice(
             format!("{what} whose rows are not packed, or run backwards"),
             "give a contiguous array: numbers of a row side by side",
         ));
-    }
-    let size = number.bytes();
+    };
     // SAFETY: the array's own description says that rows of such numbers lie there; what is returned holds it, and the detector lets
     // go of it when the work is done. That nobody writes them meanwhile is told to the caller.
-    unsafe { DeviceRows::new(of.address, count as usize, stride as usize * size, number) }.map_err(raised)
+    unsafe { DeviceRows::new(of.address, count, bytes, number) }.map_err(raised)
 }
 
-/// The second door, of what has no DLPack.
-fn by_cuda_array_interface(
-    object: &Bound<'_, PyAny>,
-    (ordinal, stream): (u32, u64),
-    what: &str,
-) -> PyResult<Shape> {
+/// The second door, of what has no DLPack: what it says of itself, on the first GPU, and which stream makes it.
+fn by_cuda_array_interface(object: &Bound<'_, PyAny>, what: &str) -> PyResult<(Shape, Option<u64>)> {
     let told = object.getattr("__cuda_array_interface__")?.cast_into::<PyDict>()?;
     let item = |name: &str| {
         told.get_item(name)?.ok_or_else(|| {
@@ -167,21 +176,19 @@ fn by_cuda_array_interface(
     };
     let strides = match told.get_item("strides")? {
         Some(bytes) if !bytes.is_none() => {
-            bytes.extract::<Vec<i64>>()?.into_iter().map(|s| s * 8 / i64::from(bits)).collect()
+            let (bytes, size) = (bytes.extract::<Vec<i64>>()?, i64::from(bits / 8));
+            if let Some(odd) = bytes.iter().find(|&&stride| stride % size != 0) {
+                return Err(choice(
+                    format!("{what} with a stride of {odd} bytes between numbers of {size}"),
+                    "give an array whose strides are multiples of the number's size: a copy is one",
+                ));
+            }
+            bytes.into_iter().map(|stride| stride / size).collect()
         }
         _ => packed(&shape),
     };
-    // Where it says which stream makes the data that must be ours: nothing here waits for another.
-    let theirs = match told.get_item("stream")? {
-        Some(theirs) if !theirs.is_none() => theirs.extract::<u64>()?,
-        _ => stream.max(1),
-    };
-    if theirs != stream.max(1) {
-        return Err(choice(
-            format!("{what} of stream {theirs} for a detector on stream {stream}"),
-            "open the device on that stream: Device(stream=…)",
-        ));
-    }
+    let theirs =
+        told.get_item("stream")?.map(|stream| stream.extract::<Option<u64>>()).transpose()?.flatten();
     let dtype = Dtype { code: FLOAT, bits, lanes: 1 };
-    Ok(Shape { address, place: Place { kind: CUDA, ordinal: ordinal as i32 }, dtype, shape, strides })
+    Ok((Shape { address, place: Place { kind: CUDA, ordinal: 0 }, dtype, shape, strides }, theirs))
 }

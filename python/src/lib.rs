@@ -5,6 +5,7 @@
 //! by DLPack or `__cuda_array_interface__`, and nothing here links to what made them. The interpreter runs on while a frame is computed.
 
 mod answer;
+mod asked;
 mod columns;
 mod contacts;
 mod detector;

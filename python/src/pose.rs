@@ -1,19 +1,21 @@
 //! Where a rigid body is.
 
-use crate::errors::choice;
+use crate::errors::{choice, raised};
 use crate::host::row;
 use crate::lent::{Held, is_on_gpu, on_gpu};
-use nearmiss::Device;
-use nearmiss::scene::{self, DevicePose};
+use crate::query::{Remade, remade};
+use nearmiss::mesh::{Body, Mesh, Positions};
+use nearmiss::scene::{self, DevicePose, Input};
+use nearmiss::{Device, Error};
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyDict, PyTuple};
 
 /// Where a rigid body is: turned first, then moved.
 ///
 /// rotation:    a unit quaternion x, y, z, w; default: none.
 /// translation: x, y, z, in the unit of the vertices; default: none.
 ///
-/// Both may lie on a GPU, 4 and 3 float32 or float64 numbers.
+/// Both may lie on a GPU, 4 and 3 float32 or float64 numbers. Raises ChoiceError for what is no pose; on a GPU the frame does.
 #[pyclass(module = "nearmiss", frozen)]
 pub struct Pose {
     rotation: Py<PyAny>,
@@ -49,10 +51,12 @@ impl Pose {
             let turned = rotation.as_ref().map(|rotation| row(rotation, "a rotation")).transpose()?;
             let moved =
                 translation.as_ref().map(|translation| row(translation, "a translation")).transpose()?;
-            Some(scene::Pose {
+            let pose = scene::Pose {
                 rotation: turned.unwrap_or(here.rotation),
                 translation: moved.unwrap_or(here.translation),
-            })
+            };
+            checked(&pose).map_err(raised)?;
+            Some(pose)
         };
         Ok(Pose {
             rotation: or(rotation, &here.rotation)?,
@@ -73,12 +77,46 @@ impl Pose {
         self.translation.clone_ref(py)
     }
 
+    /// On a GPU: whether they are the same arrays.
+    fn __eq__(&self, other: PyRef<'_, Pose>) -> bool {
+        match (&self.known, &other.known) {
+            (Some(own), Some(theirs)) => own == theirs,
+            (None, None) => self.rotation.is(&other.rotation) && self.translation.is(&other.translation),
+            _ => false,
+        }
+    }
+
+    fn __hash__(&self, py: Python<'_>) -> PyResult<isize> {
+        match &self.known {
+            Some(pose) => PyTuple::new(py, [&pose.rotation[..], &pose.translation].concat())?.hash(),
+            None => Ok(self.rotation.as_ptr() as isize ^ self.translation.as_ptr() as isize),
+        }
+    }
+
+    /// For copy and pickle.
+    fn __reduce__<'py>(pose: &Bound<'py, Self>) -> PyResult<Remade<'py>> {
+        let (py, own) = (pose.py(), pose.get());
+        let given = match &own.known {
+            Some(at) => {
+                (PyTuple::new(py, at.rotation)?.into_any(), PyTuple::new(py, at.translation)?.into_any())
+            }
+            None => (own.rotation.bind(py).clone(), own.translation.bind(py).clone()),
+        };
+        remade(pose.get_type(), given.into_pyobject(py)?, PyDict::new(py))
+    }
+
     fn __repr__(&self) -> String {
         match &self.known {
             Some(pose) => format!("Pose(rotation={:?}, translation={:?})", pose.rotation, pose.translation),
             None => "<nearmiss.Pose on a GPU>".into(),
         }
     }
+}
+
+/// Whether a body can be there.
+fn checked(pose: &scene::Pose) -> Result<(), Error> {
+    Body::rigid(Mesh::new("a body", Positions::F64(vec![[0.0; 3]; 3]), vec![[0, 1, 2]])?)
+        .check(&Input::Pose(*pose))
 }
 
 /// A pose as a frame takes it.
@@ -92,8 +130,18 @@ impl Pose {
         if let Some(pose) = self.known {
             return Ok(GivenPose::Known(pose));
         }
-        let translation = on_gpu(self.translation.bind(py), device, (3, "a translation"))?;
-        let rotation = on_gpu(self.rotation.bind(py), device, (4, "a rotation"))?;
+        let one_row = |of: &Py<PyAny>, width: i64, what: &str| {
+            let lent = on_gpu(of.bind(py), device, (width, what))?;
+            match lent.rows.len() {
+                1 => Ok(lent),
+                rows => Err(choice(
+                    format!("{what} of {rows} rows"),
+                    format!("give one row of {width} numbers, a pose a body"),
+                )),
+            }
+        };
+        let translation = one_row(&self.translation, 3, "a translation")?;
+        let rotation = one_row(&self.rotation, 4, "a rotation")?;
         let pose = DevicePose { translation: translation.rows, rotation: rotation.rows };
         Ok(GivenPose::Lent(pose, [translation.held, rotation.held]))
     }

@@ -1,10 +1,11 @@
 //! What is asked. How candidates are found never changes an answer.
 
-use crate::errors::{choice, named, one_of, raised};
+use crate::errors::{choice, named, one_of, optional, raised};
 use nearmiss::query::{
     self, Broad, Bv, Certified, ContinuousSolver, Named, Order, Rebuild, Search, Solver, TriangleTest,
 };
 use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple, PyType};
 
 /// A question, with all its choices: one of Discrete, Continuous, Earliest, Near and Distance.
 #[pyclass(module = "nearmiss", frozen, subclass)]
@@ -14,9 +15,80 @@ pub struct Query {
 
 #[pymethods]
 impl Query {
-    fn __repr__(&self) -> String {
-        format!("<nearmiss query {} by {}>", self.query.kind(), self.query.solver())
+    fn __eq__(&self, other: PyRef<'_, Query>) -> bool {
+        self.query == other.query
     }
+
+    fn __hash__(query: &Bound<'_, Self>) -> PyResult<isize> {
+        query.repr()?.hash()
+    }
+
+    fn __repr__(query: &Bound<'_, Self>) -> PyResult<String> {
+        let choices = query.get().choices(query.py())?;
+        let told = choices.iter().map(|(name, value)| Ok(format!("{name}={}", value.repr()?)));
+        Ok(format!("{}({})", query.get_type().name()?, told.collect::<PyResult<Vec<_>>>()?.join(", ")))
+    }
+
+    /// For copy and pickle: its class, and its choices.
+    fn __reduce__<'py>(query: &Bound<'py, Self>) -> PyResult<Remade<'py>> {
+        remade(query.get_type(), PyTuple::empty(query.py()), query.get().choices(query.py())?)
+    }
+}
+
+impl Query {
+    /// What differs from the defaults, by the names of the arguments.
+    fn choices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let choices = PyDict::new(py);
+        let (mut usual, mut certified) = ("exact", None);
+        match &self.query {
+            nearmiss::Query::Discrete(discrete)
+                if discrete.test == TriangleTest::Exact { adjacent: true } =>
+            {
+                choices.set_item("adjacent", true)?;
+            }
+            nearmiss::Query::Near(near) => {
+                choices.set_item("distance", near.distance)?;
+                usual = self.query.solver().name();
+            }
+            nearmiss::Query::Distance(_) => usual = self.query.solver().name(),
+            nearmiss::Query::Continuous(moving) => {
+                (usual, certified) = ("certified", moving.solver.certified())
+            }
+            nearmiss::Query::Earliest(moving) => {
+                (usual, certified) = ("certified", moving.solver.certified())
+            }
+            _ => {}
+        }
+        if let Some(certified) = certified {
+            set(&choices, "tolerance", certified.tolerance)?;
+            set(&choices, "separation", Some(certified.separation).filter(|&length| length != 0.0))?;
+            set(&choices, "budget", certified.budget)?;
+        }
+        set(&choices, "solver", Some(self.query.solver().name()).filter(|&name| name != usual))?;
+        let search = self.query.search();
+        set(&choices, "broad", search.broad.map(|broad| broad.name()))?;
+        set(&choices, "order", search.order.map(|order| order.name()))?;
+        set(&choices, "bv", search.bv.map(|bv| bv.name()))?;
+        set(&choices, "rebuild", search.rebuild.map(|rebuild| rebuild.name()))?;
+        Ok(choices)
+    }
+}
+
+fn set<'py>(choices: &Bound<'py, PyDict>, name: &str, value: Option<impl IntoPyObject<'py>>) -> PyResult<()> {
+    value.map_or(Ok(()), |value| choices.set_item(name, value))
+}
+
+/// What Python's pickle makes something of again: a function, and what it is given.
+pub type Remade<'py> = (Bound<'py, PyAny>, (Bound<'py, PyType>, Bound<'py, PyTuple>, Bound<'py, PyDict>));
+
+/// An object of that class, made of these arguments and named ones.
+pub fn remade<'py>(
+    class: Bound<'py, PyType>,
+    positional: Bound<'py, PyTuple>,
+    named: Bound<'py, PyDict>,
+) -> PyResult<Remade<'py>> {
+    let make = class.py().import("copyreg")?.getattr("__newobj_ex__")?;
+    Ok((make, (class, positional, named)))
 }
 
 /// The choices of how candidates are found, by their names.
@@ -79,9 +151,19 @@ fn in_motion(
     solver: &str,
     (tolerance, separation, budget): (Option<f64>, f64, Option<u32>),
 ) -> PyResult<ContinuousSolver> {
+    for (name, length) in [("tolerance", tolerance), ("separation", Some(separation))] {
+        if let Some(length) = length.filter(|length| !(0.0..f64::INFINITY).contains(length)) {
+            return Err(choice(
+                format!("{name} = {length}"),
+                "give a length from 0, in the unit of the vertices",
+            ));
+        }
+    }
     let by = Solver::of(solver).and_then(ContinuousSolver::named);
     match by {
         Some(ContinuousSolver::Certified(certified)) => {
+            // Adding zero turns -0.0 into 0.0.
+            let (tolerance, separation) = (tolerance.map(|length| length + 0.0), separation + 0.0);
             Ok(Certified { tolerance, separation, budget, ..certified }.into())
         }
         Some(other) if tolerance.is_none() && separation == 0.0 && budget.is_none() => Ok(other),
@@ -96,13 +178,17 @@ fn in_motion(
     }
 }
 
+fn budget_of(given: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
+    Ok(optional(given, "budget", [1, u32::MAX.into()])?.map(|budget| budget as u32))
+}
+
 macro_rules! in_motion {
     ($(#[$doc:meta])* $kind:ident) => {
         $(#[$doc])*
         ///
         /// tolerance:  how well a time is told, as a length moved; default: 1e-4 of the mean edge.
         /// separation: what comes nearer than this is in contact, in the unit of the vertices; 0 for touching.
-        /// budget:     how many boxes a pair may cost before it is listed as unresolved.
+        /// budget:     how many boxes, from 1, a pair may cost before it is listed as unresolved.
         /// solver:     "certified" (none is missed, none late), "certified-f32", "certified-f64", or "cubic-f64" and "cubic-f32", which
         ///             can miss.
         /// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer.
@@ -120,7 +206,7 @@ macro_rules! in_motion {
             fn new(
                 tolerance: Option<f64>,
                 separation: f64,
-                budget: Option<u32>,
+                #[pyo3(from_py_with = budget_of)] budget: Option<u32>,
                 solver: &str,
                 broad: Option<&str>,
                 order: Option<&str>,

@@ -1,12 +1,15 @@
 //! Which bodies there are, and what each does.
 
-use crate::errors::{choice, one_of, raised};
+use crate::detector::python;
+use crate::errors::{choice, integer, one_of, optional, raised};
 use crate::frame::known;
-use crate::host::{faces, positions};
+use crate::host::{Most, faces, points, positions, rows};
+use crate::query::{Remade, remade};
 use nearmiss::Mesh;
 use nearmiss::scene::Meets;
 use nearmiss::words::counted;
 use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
 
 /// A mesh, what it does from frame to frame, and which others it may meet.
 ///
@@ -15,7 +18,7 @@ use pyo3::prelude::*;
 /// kind:         "deformable" (each vertex moves by itself), "rigid" (a Pose a frame) or "static" (never moves; cheapest).
 /// self_contact: whether it is tested against itself.
 /// environment:  bodies of different environments never meet; None: in every one.
-/// group, mask:  two bodies meet if each is in a group (a bit) that the other's mask has.
+/// group, mask:  two bodies meet if each is in a group (a bit of 32) that the other's mask has. ~1: all bits but the lowest.
 /// name:         what messages call it.
 ///
 /// Raises InputError for vertices that are not finite and for indices that are not there.
@@ -38,9 +41,9 @@ impl Body {
         faces: &Bound<'_, PyAny>,
         kind: &str,
         self_contact: bool,
-        environment: Option<u32>,
-        group: u32,
-        mask: u32,
+        #[pyo3(from_py_with = environment_of)] environment: Option<u32>,
+        #[pyo3(from_py_with = group_of)] group: u32,
+        #[pyo3(from_py_with = mask_of)] mask: u32,
         name: &str,
     ) -> PyResult<Body> {
         let make = match kind {
@@ -54,10 +57,10 @@ impl Body {
                 ));
             }
         };
-        let points = positions(vertices, &format!("vertices of {name}"))?;
+        let given = positions(vertices, &format!("vertices of {name}"), Most::OfAnyMesh)?;
         let triangles = self::faces(faces, name)?;
         let meets = Meets { environment, group, mask, self_contact };
-        let made = py.detach(|| Mesh::new(name, points, triangles).map(|mesh| make(mesh).with(meets)));
+        let made = py.detach(|| Mesh::new(name, given, triangles).map(|mesh| make(mesh).with(meets)));
         Ok(Body { body: made.map_err(raised)? })
     }
 
@@ -79,6 +82,20 @@ impl Body {
         self.body.face_count()
     }
 
+    /// For copy and pickle.
+    fn __reduce__<'py>(body: &Bound<'py, Self>) -> PyResult<Remade<'py>> {
+        let (py, Body { body: own }) = (body.py(), body.get());
+        let mesh = (points(py, own.positions_t0()), rows(py, own.faces())).into_pyobject(py)?;
+        let (named, meets) = (PyDict::new(py), own.meets());
+        named.set_item("kind", python(py, &own.kind())?)?;
+        named.set_item("self_contact", meets.self_contact)?;
+        named.set_item("environment", meets.environment)?;
+        named.set_item("group", meets.group)?;
+        named.set_item("mask", meets.mask)?;
+        named.set_item("name", own.name())?;
+        remade(body.get_type(), mesh, named)
+    }
+
     fn __repr__(&self) -> String {
         let Body { body } = self;
         format!(
@@ -88,6 +105,23 @@ impl Body {
             body.face_count()
         )
     }
+}
+
+fn environment_of(given: &Bound<'_, PyAny>) -> PyResult<Option<u32>> {
+    Ok(optional(given, "environment", [0, u32::MAX.into()])?.map(|environment| environment as u32))
+}
+
+fn group_of(given: &Bound<'_, PyAny>) -> PyResult<u32> {
+    bits(given, "group")
+}
+
+fn mask_of(given: &Bound<'_, PyAny>) -> PyResult<u32> {
+    bits(given, "mask")
+}
+
+/// 32 bits; of a negative number, as ~1, the low ones.
+fn bits(given: &Bound<'_, PyAny>, name: &str) -> PyResult<u32> {
+    Ok(integer(given, name, [i32::MIN.into(), u32::MAX.into()])? as u32)
 }
 
 /// Bodies, numbered from 0 in the order in which they are added.
@@ -100,12 +134,18 @@ pub struct Scene {
 impl Scene {
     #[new]
     #[pyo3(signature = (*bodies))]
-    fn new(bodies: Vec<PyRef<'_, Body>>) -> Scene {
+    fn new(bodies: &Bound<'_, PyTuple>) -> PyResult<Scene> {
         let mut scene = nearmiss::Scene::new();
         for body in bodies {
-            scene.add(body.body.clone());
+            let body = body.cast::<Body>().map_err(|_| {
+                choice(
+                    format!("a scene of {}", body.get_type()),
+                    "give bodies: Scene(a, b), or Scene(*bodies)",
+                )
+            })?;
+            scene.add(body.get().body.clone());
         }
-        Scene { scene }
+        Ok(Scene { scene })
     }
 
     /// Adds a body: its number.

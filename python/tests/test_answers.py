@@ -134,6 +134,13 @@ def test_bodies_meet_as_they_say():
     assert len(detector.frame({other: (up, down)})) == len(found)
 
 
+def test_a_mask_is_its_low_bits():
+    vertices, faces = two_triangles()
+    for mask, meets in [(~1, 0), (-2, 0), (0xFFFFFFFE, 0), (~2, 1), (-1, 1)]:
+        scene = nm.Scene(nm.Body(vertices[:3], faces[:1], group=1), nm.Body(vertices[3:], faces[:1], mask=mask))
+        assert len(nm.Detector(scene, nm.Discrete()).detect()) == meets
+
+
 def test_the_nearest_bodies():
     vertices, faces = sheet(4)
     scene = nm.Scene(nm.Body(vertices, faces, kind="static"), nm.Body(vertices, faces, kind="rigid"))

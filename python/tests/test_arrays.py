@@ -2,12 +2,15 @@
 
 import gc
 import weakref
+from collections import ChainMap
+from types import MappingProxyType
 
 import numpy as np
 import pytest
 from shapes import sheet, soup
 
 import nearmiss as nm
+from nearmiss import arrays
 
 CPU = nm.Device("cpu", threads=1)
 
@@ -54,6 +57,50 @@ def test_numbers_are_read_and_not_kept():
     assert gone() is None
 
 
+def test_rows_of_tuples_are_no_step():
+    vertices, faces = sheet(6, lambda x, y: 0.1 * np.sin(9 * x))
+    # The numbers of a list are doubles: the same ones.
+    rows = tuple(map(tuple, vertices.tolist()))
+    assert nm.near(rows, faces, 0.05).hash == nm.near(vertices, faces, 0.05).hash
+    assert nm.self_intersections(rows, faces).shape[1] == 2
+    there = vertices[:, [1, 0, 2]]
+    wanted = nm.contacts(vertices, there, faces)
+    assert nm.contacts(rows, tuple(map(tuple, there.tolist())), faces).hash == wanted.hash
+    assert nm.time_of_impact(rows, there, faces) == wanted.earliest
+    assert len(nm.near(((0, 0, 0), (1, 1, 1)), [], 1.0)) == 0
+    for none in [(), []]:
+        with pytest.raises(nm.ChoiceError, match="shape .0.; give rows of three"):
+            nm.near(none, [], 1.0)
+
+
+class OfGpu:
+    """What says that it lies on a GPU."""
+
+    def __init__(self, number):
+        self.__dlpack_device__ = lambda: (2, number)
+
+
+class WithoutNumber:
+    """What has the second door alone."""
+
+    __cuda_array_interface__ = {"version": 3}
+
+
+def test_a_shortcut_asks_where_an_array_lies(monkeypatch):
+    monkeypatch.setattr(arrays, "Device", lambda **told: told)
+    assert [arrays.device_of(OfGpu(number)) for number in [0, 1]] == [{"gpu": 0}, {"gpu": 1}]
+    assert arrays.device_of(WithoutNumber()) == {"stream": 0}
+    assert arrays.device_of(np.zeros((1, 3))) == arrays.device_of([]) == {}
+
+
+def test_inputs_are_any_mapping():
+    vertices, faces = sheet(6, lambda x, y: np.sin(9 * x))
+    detector = nm.Detector(nm.Body(vertices, faces), nm.Near(0.05), CPU)
+    wanted = detector.frame({0: vertices}).hash
+    for inputs in [MappingProxyType({0: vertices}), ChainMap({}, {np.int64(0): vertices})]:
+        assert detector.frame(inputs).hash == detector.prepare(inputs).hash == wanted
+
+
 def test_faces_of_any_integers():
     vertices, faces = sheet(6, lambda x, y: np.sin(9 * x))
     wanted = nm.near(vertices, faces, 0.05).hash
@@ -66,7 +113,8 @@ def test_faces_of_any_integers():
 def test_columns_have_their_shapes():
     t0, faces = soup(120, 5, 0.6)
     detector = nm.Detector(nm.Body(t0, faces), nm.Continuous(), CPU)
-    for found in [detector.frame({0: (t0, t0 + 0.05 * np.cos(9 * t0))}), detector.frame({0: t0 + [0, 0, 9]})]:
+    for inputs in [(t0, t0 + 0.05 * np.cos(9 * t0)), t0 + [0, 0, 9]]:
+        found = detector.frame({0: inputs})
         k = len(found)
         shapes = [getattr(found, name).shape for name in ["kind", "bodies", "indices", "toi", "toi_hi", "status"]]
         assert shapes == [(k,), (k, 2), (k, 2), (k,), (k,), (k,)]
@@ -82,6 +130,10 @@ def test_a_column_is_made_once():
     at = detector.geometry(found)
     assert found.indices is found.indices and found.weights is found.weights and at.points is at.points
     assert found.indices is not detector.detect().indices
+    for column in [found.indices, found.distances, found.weights, at.points, at.first]:
+        with pytest.raises(ValueError, match="read-only"):
+            column[0] = 1
+        column.copy()[0] = 1
 
 
 def test_a_submission_reads_what_lies_there_when_its_turn_comes():

@@ -40,7 +40,22 @@ REFUSED = [
     (lambda: nm.Body(V, [[0, 1, -1]]), nm.ChoiceError, "face 0 of a mesh names vertex -1"),
     (lambda: nm.Body(V, [[0, 1, 6]]), nm.InputError, "corner 2 names vertex 6"),
     (lambda: nm.Body(NAN, F, name="nothing"), nm.InputError, "nothing: vertex 0 has x = NaN"),
+    *(
+        (lambda name=name, value=value: nm.Body(V, F, **{name: value}), nm.ChoiceError, f"{name} = {value!r}; give an integer from")
+        for name, value in [("mask", 2**32), ("mask", -(2**40)), ("mask", "x"), ("group", 1.5), ("environment", -1), ("environment", 2**80)]
+    ),
+    (lambda: nm.Continuous(budget=-1), nm.ChoiceError, "budget = -1; give an integer from 1"),
+    (lambda: nm.Earliest(budget=0), nm.ChoiceError, "budget = 0; give an integer from 1"),
+    (lambda: nm.Continuous(tolerance=-1), nm.ChoiceError, "tolerance = -1; give a length from 0"),
+    (lambda: nm.Earliest(tolerance=np.nan), nm.ChoiceError, "tolerance = NaN; give a length from 0"),
+    (lambda: nm.Continuous(separation=np.inf), nm.ChoiceError, "separation = inf; give a length from 0"),
+    (lambda: nm.Device(gpu=-1), nm.ChoiceError, "gpu = -1; give an integer from 0"),
+    (lambda: nm.Device("cpu", threads=0), nm.ChoiceError, "threads = 0; give an integer from 1 to 1024"),
+    (lambda: nm.Device("cpu", threads=-1), nm.ChoiceError, "threads = -1; give"),
+    (lambda: nm.Device("cpu", threads=1025), nm.ChoiceError, "threads = 1025; give"),
+    (lambda: nm.Scene([nm.Body(V, F)]), nm.ChoiceError, "a scene of <class 'list'>; give bodies: Scene(a, b), or Scene(*bodies)"),
     (lambda: nm.Detector(nm.Scene(), nm.Discrete(), CPU), nm.ChoiceError, "without bodies"),
+    (lambda: nm.Detector([nm.Body(V, F)], nm.Discrete(), CPU), nm.ChoiceError, "Detector(Scene(*bodies), query)"),
     (lambda: detector().frame({1: V}), nm.ChoiceError, "body 1, which is not in the scene"),
     (lambda: detector().frame({0: V[:3]}), nm.NearmissError, "3"),
     (lambda: detector().frame({0: (V, NAN)}), nm.InputError, "NaN"),
@@ -48,6 +63,18 @@ REFUSED = [
     (lambda: detector().frame({0: nm.Pose()}), nm.ChoiceError, "the two"),
     (lambda: detector().frame({0: (V, nm.Pose())}), nm.ChoiceError, "of type object"),
     (lambda: nm.Pose(rotation=(1, 2, 3)), nm.ChoiceError, "a rotation of 3 numbers"),
+    (lambda: nm.Pose(rotation=5), nm.ChoiceError, "a rotation of shape []; give 4"),
+    (lambda: nm.Pose(translation=[[0, 0, 1]]), nm.ChoiceError, "a translation of shape [1, 3]; give 3"),
+    (lambda: nm.Pose(translation="abc"), nm.ChoiceError, "a translation of type <U3"),
+    (lambda: nm.Pose(translation=(0, np.nan, 0)), nm.ChoiceError, "NaN"),
+    (lambda: nm.Pose(rotation=(1, 1, 1, 1)), nm.ChoiceError, "the pose [1.0, 1.0, 1.0, 1.0]"),
+    (lambda: nm.Pose(translation=(0, 0, 1e200)), nm.ChoiceError, "2^480"),
+    (lambda: detector().frame({-1: V}), nm.ChoiceError, "body -1, which is no number of one"),
+    (lambda: detector().frame({"0": V}), nm.ChoiceError, "body '0', which is no number of one"),
+    (lambda: detector().frame({0: [V, V]}), nm.ChoiceError, "of shape [2, 6, 3]; give rows of three: shape (n, 3); both ends"),
+    (lambda: detector().frame({0: [nm.Pose(), nm.Pose()]}), nm.ChoiceError, "a list of poses; give both ends"),
+    (lambda: detector().frame([V]), nm.ChoiceError, "inputs of type <class 'list'>; give a dictionary"),
+    (lambda: detector().prepare(V), nm.ChoiceError, "inputs of type <class 'numpy.ndarray'>"),
     (lambda: detector().detect().distances, nm.ChoiceError, "contacts in time"),
     (lambda: detector(nm.Discrete()).detect().toi, nm.ChoiceError, "triangle pairs"),
     (lambda: detector(nm.Earliest()).detect().indices, nm.ChoiceError, "one time"),
@@ -76,7 +103,27 @@ def test_nothing_moves_where_a_frame_is_refused():
     before = asked.detect().hash
     with pytest.raises(nm.InputError):
         asked.frame({0: NAN})
-    assert detector(nm.Discrete()).detect().hash == before
+    assert asked.detect().hash == before and asked.frame().hash == before
+
+
+def test_other_bodies_answer_as_before_where_a_frame_is_refused():
+    vertices, faces = sheet(10, lambda x, y: np.sin(30 * x) * 0.05)
+    scene = nm.Scene(nm.Body(vertices, faces), nm.Body(vertices + 0.01, faces))
+    asked, wanted = nm.Detector(scene, nm.Near(0.05)), nm.Detector(scene, nm.Near(0.05))
+    bad = vertices + 0.02
+    bad[7, 1] = np.nan
+    with pytest.raises(nm.InputError, match="vertex 7 has y"):
+        asked.frame({1: bad})
+    found = asked.frame({0: vertices + 0.001})
+    assert len(found) > 0 and found.hash == wanted.frame({0: vertices + 0.001}).hash
+
+
+def test_a_scene_is_filled_after_its_first_frame():
+    vertices, faces = sheet(10, lambda x, y: np.sin(30 * x) * 0.05)
+    asked = nm.Detector(nm.Scene(nm.Body(vertices, faces)), nm.Near(0.05))
+    assert len(asked.frame({0: vertices + 0.01})) == 0
+    asked.add(nm.Body(vertices, faces))
+    assert len(asked.detect()) > 0
 
 
 def test_geometry_of_other_bodies_is_refused():
@@ -85,6 +132,54 @@ def test_geometry_of_other_bodies_is_refused():
     assert len(found) > 0
     with pytest.raises(nm.ChoiceError):
         detector(nm.Near(0.3)).geometry(found)
+
+
+def moves():
+    """What moves bodies, or may."""
+    yield lambda asked: asked.frame({0: V + np.float32([5, 5, 5])})
+    yield lambda asked: asked.frame()
+    yield lambda asked: asked.prepare({0: V.copy()})
+    yield lambda asked: asked.add(nm.Body(V, F))
+    yield lambda asked: asked.replace(0, nm.Body(V + 1, F))
+    yield lambda asked: (asked.add(nm.Body(V, F)), asked.remove(0))
+
+
+@pytest.mark.parametrize("move", list(moves()))
+def test_contacts_of_before_are_refused(move):
+    asked = detector(nm.Near(1))
+    found = asked.detect()
+    for _ in range(2):
+        assert len(asked.geometry(found)) == len(found) == asked.summary(found)["contacts"]
+        asked.detect()
+        asked.rebuild()
+        asked.plan()
+    move(asked)
+    for ask in [asked.geometry, asked.summary]:
+        with pytest.raises(nm.ChoiceError, match="contacts that were found before"):
+            ask(found)
+    again = asked.detect()
+    assert len(asked.geometry(again)) == len(again)
+
+
+def test_contacts_of_a_submission_are_of_it():
+    asked = detector(nm.Near(1))
+    here = V.copy()
+    found = asked.prepare({0: here})
+    assert len(asked.geometry(found)) == len(found)
+    here[3:, 2] += 0.25
+    asked.submit()
+    with pytest.raises(nm.ChoiceError, match="found before"):
+        asked.geometry(found)
+    later = asked.collect()
+    assert len(asked.geometry(later)) == len(later) == asked.summary(later)["contacts"]
+
+
+def test_contacts_of_another_detector_are_refused():
+    found = detector(nm.Near(1)).detect()
+    other = detector(nm.Near(1))
+    for ask in [other.geometry, other.summary]:
+        with pytest.raises(nm.ChoiceError, match="contacts of another detector"):
+            ask(found)
 
 
 def test_no_gpu_says_so():

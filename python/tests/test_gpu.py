@@ -40,6 +40,15 @@ def test_one_liners_take_tensors():
     assert np.array_equal(nm.self_intersections(*on_gpu[1:]), nm.self_intersections(t1, faces, device=cpu))
 
 
+def test_one_liners_take_tensors_of_another_gpu():
+    if torch.cuda.device_count() < 2:
+        pytest.skip("one GPU")
+    t0, t1, faces = draped()
+    on_gpu = [torch.from_numpy(array).to("cuda:1") for array in (t0, t1, faces)]
+    cpu = nm.Device("cpu")
+    assert torch.cuda.current_device() == 0
+    assert nm.near(on_gpu[1], on_gpu[2], 0.01).hash == nm.near(t1, faces, 0.01, device=cpu).hash
+    assert nm.contacts(*on_gpu).hash == nm.contacts(t0, t1, faces, device=cpu).hash
 
 
 def test_a_thousand_frames_without_a_copy_of_positions(stream):
@@ -200,6 +209,32 @@ def test_poses_of_tensors(stream):
     detector = nm.Detector(scene, nm.Discrete(), nm.Device(stream=stream))
     pose = nm.Pose(*(torch.tensor(x, dtype=torch.float64, device="cuda") for x in (turn, move)))
     assert detector.frame({1: pose}).hash == wanted.hash and len(wanted) > 5
+
+
+def test_a_pose_is_one_row(stream):
+    vertices, faces = soup(10, 4, 0.5)
+    scene = nm.Scene(nm.Body(vertices, faces, kind="static"), nm.Body(vertices, faces, kind="rigid"))
+    detector = nm.Detector(scene, nm.Discrete(), nm.Device(stream=stream))
+    turn, move = torch.tensor([[0.0, 0, 0, 1]], device="cuda"), torch.zeros((1, 3), device="cuda")
+    detector.frame({1: nm.Pose(turn, move)})
+    for rows in [0, 2]:
+        with pytest.raises(nm.ChoiceError, match=f"a rotation of {rows} rows"):
+            detector.frame({1: nm.Pose(turn.expand(rows, 4), move)})
+        with pytest.raises(nm.ChoiceError, match=f"a translation of {rows} rows"):
+            detector.frame({1: nm.Pose(turn, move.expand(rows, 3))})
+
+
+def test_an_answer_that_has_moved_is_not_shown(stream):
+    t0, _, faces = draped(10)
+    detector = nm.Detector(nm.Body(t0, faces), nm.Near(0.02), nm.Device(stream=stream))
+    detector.prepare({0: torch.from_numpy(t0).cuda()})
+    detector.submit()
+    status = detector.on_device().status
+    assert status.__cuda_array_interface__["data"][1] is False
+    assert torch.as_tensor(status, device="cuda").shape == (4,)
+    detector.frame({0: t0})
+    with pytest.raises(nm.ChoiceError, match="asked anew"):
+        status.__cuda_array_interface__
 
 
 def test_arrays_of_cupy(stream):

@@ -16,5 +16,13 @@ def on_host(array):
 
 
 def device_of(array):
-    """Where to ask about an array: the GPU that it lies on, on that GPU's default stream; else any machine."""
-    return Device(stream=0) if is_on_gpu(array) else Device()
+    """Where to ask about an array: the GPU that it lies on, else any machine.
+
+    By DLPack an array says which GPU that is, and waits for who asks. What has no DLPack is of the GPU that this thread is bound to,
+    and made on its default stream.
+    """
+    if not is_on_gpu(array):
+        return Device()
+    if hasattr(array, "__dlpack_device__"):
+        return Device(gpu=int(array.__dlpack_device__()[1]))
+    return Device(stream=0)

@@ -42,7 +42,7 @@ def contacts(
     tolerance:  how well a time is told: as a length moved. Default: 1e-4 of the mean edge.
     Returns Contacts: kind, indices, toi and toi_hi (bounds of the first time, in [0, 1]), status. None is missed, none is late.
     """
-    return _ask((t0, t1), faces, Continuous(separation=separation, tolerance=tolerance), device)
+    return _ask(t0, faces, Continuous(separation=separation, tolerance=tolerance), device, t1)
 
 
 def time_of_impact(
@@ -52,10 +52,10 @@ def time_of_impact(
 
     Arguments as for contacts.
     """
-    return _ask((t0, t1), faces, Earliest(separation=separation, tolerance=tolerance), device).earliest
+    return _ask(t0, faces, Earliest(separation=separation, tolerance=tolerance), device, t1).earliest
 
 
-def _ask(where, faces, query, device):
-    first = where[0] if isinstance(where, tuple) else where
-    detector = Detector(Body(on_host(first), on_host(faces)), query, device or device_of(first))
-    return detector.frame({0: where}) if isinstance(where, tuple) else detector.detect()
+def _ask(here, faces, query, device, there=None):
+    """Of a mesh that rests here, or moves from here to there."""
+    detector = Detector(Body(on_host(here), on_host(faces)), query, device or device_of(here))
+    return detector.detect() if there is None else detector.frame({0: (here, there)})
