@@ -100,7 +100,9 @@ for target in $intel $arm; do
         through=("$work/aarch64/run")
         cross=(-DCMAKE_SYSTEM_NAME=Linux -DCMAKE_SYSTEM_PROCESSOR=aarch64 -DCMAKE_CROSSCOMPILING_EMULATOR="$work/aarch64/run"
             -DCMAKE_C_COMPILER="$tools/bin/python-zig;cc;-target;aarch64-linux-gnu.2.17"
-            -DCMAKE_CXX_COMPILER="$tools/bin/python-zig;c++;-target;aarch64-linux-gnu.2.17")
+            -DCMAKE_CXX_COMPILER="$tools/bin/python-zig;c++;-target;aarch64-linux-gnu.2.17"
+            # Which a linker of GCC's brings by itself.
+            -DCMAKE_C_STANDARD_LIBRARIES=-lunwind)
     fi
     for query in "" --discrete "--near 0.01" --distance --earliest; do
         # shellcheck disable=SC2086
