@@ -2,7 +2,7 @@
 
 use super::Detector;
 use crate::contacts::geometry::{Corners, Named};
-use crate::contacts::{Answer, ContactGeometry, Contacts, Kind};
+use crate::contacts::{ContactGeometry, Contacts, Kind};
 use crate::error::Error;
 use crate::memory;
 use crate::mesh::Body;
@@ -17,11 +17,8 @@ impl Detector {
     /// # Errors
     /// [`Error::Choice`] for contacts of other bodies than there are now; [`Error::OutOfMemory`]; those of the device.
     pub fn geometry(&mut self, found: &Contacts) -> Result<Vec<ContactGeometry>, Error> {
-        let count = match &found.answer {
-            Answer::Contacts(contacts) => contacts.len(),
-            Answer::Near(pairs) => pairs.len(),
-            Answer::Pairs(_) | Answer::Earliest(_) | Answer::Distance(_) => return Ok(Vec::new()),
-        };
+        let (contacts, pairs) = (found.contacts(), found.near());
+        let count = contacts.len() + pairs.len();
         if count == 0 {
             return Ok(Vec::new());
         }
@@ -35,11 +32,9 @@ impl Detector {
         )?;
         let layout = self.layout()?;
         let pipeline = self.pipeline.as_ref().ok_or_else(of_others)?;
-        let named: Vec<Named> = match &found.answer {
-            Answer::Contacts(contacts) => contacts.iter().map(Named::from).collect(),
-            Answer::Near(pairs) => pairs.iter().map(Named::from).collect(),
-            Answer::Pairs(_) | Answer::Earliest(_) | Answer::Distance(_) => Vec::new(),
-        };
+        // One of both is empty.
+        let named: Vec<Named> =
+            contacts.iter().map(Named::from).chain(pairs.iter().map(Named::from)).collect();
         let ends = pipeline.whereabouts()?.ends;
         let at = |vertex: u32| {
             let at =

@@ -30,9 +30,10 @@ pub fn read(path: &Path, multiple: u64) -> Result<Vec<u8>, Error> {
 /// # Errors
 /// Those of [`read`], and [`Problem::Unreadable`] for what is not UTF-8.
 pub fn text(path: &Path, multiple: u64) -> Result<String, Error> {
-    let other = |_| Problem::Unreadable { reason: "it is not UTF-8".into() };
-    String::from_utf8(read(path, multiple)?)
-        .map_err(|e| Error::Input { file: path.display().to_string(), problem: other(e) })
+    String::from_utf8(read(path, multiple)?).map_err(|_| Error::Input {
+        file: path.display().to_string(),
+        problem: Problem::Unreadable { reason: "it is not UTF-8".into() },
+    })
 }
 
 /// Whether a file is packed by gzip, and can be read.

@@ -4,6 +4,7 @@ mod pack;
 mod place;
 
 use nearmiss::error::Error;
+use nearmiss::file::is_packed;
 use place::Way;
 use std::fs;
 use std::io::Write;
@@ -59,11 +60,6 @@ impl Target {
         };
         written.map_err(|text| failed(&self.path, &text))
     }
-}
-
-/// Whether a file's name says that it is packed by gzip.
-fn is_packed(path: &Path) -> bool {
-    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gz"))
 }
 
 /// A file's name without `.gz`.
