@@ -1,17 +1,29 @@
 //! Numbers on the device that nothing can compute with, and memory that is gone: errors, never half an answer.
 
 use super::*;
+use nearmiss::contacts::Contacts;
+
+/// A detector that is prepared for the step of a body in memory of the caller: that memory, what names it, and the answer.
+fn prepared(
+    scene: &Scene,
+    id: BodyId,
+    kind: QueryKind,
+    ends: [&[[f32; 3]]; 2],
+) -> ([Points; 2], DeviceInput, Detector, Contacts) {
+    let device = engine();
+    let memory = ends.map(|points| Points::new(&device, points));
+    let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
+    let mut detector = Detector::new(device, scene.clone(), query(kind)).expect("a detector");
+    let good = detector.prepare(&[(id, input)]).expect("an answer");
+    (memory, input, detector, good)
+}
 
 #[test]
 fn a_vertex_that_is_no_point_is_named() {
     let (scene, id, [t0, t1]) = pair(60);
     for kind in QueryKind::ALL {
         for (value, what) in [(f32::NAN, "NaN"), (f32::INFINITY, "inf")] {
-            let device = engine();
-            let mut memory = [&t0, &t1].map(|points| Points::new(&device, points));
-            let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
-            let mut detector = Detector::new(device, scene.clone(), query(kind)).expect("a detector");
-            let good = detector.prepare(&[(id, input)]).expect("an answer");
+            let (mut memory, input, mut detector, good) = prepared(&scene, id, kind, [&t0, &t1]);
             let mut bad = t0.clone();
             bad[17][1] = value;
             memory[0].write(&bad);
@@ -56,11 +68,7 @@ fn after_a_submission_that_is_refused_nothing_is_answered_of_its_bodies() {
     let (mut scene, id, [t0, t1]) = pair(60);
     let other = scene.add(Body::still(soup(20, 9).0));
     for kind in QueryKind::ALL {
-        let device = engine();
-        let mut memory = [&t0, &t1].map(|points| Points::new(&device, points));
-        let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
-        let mut detector = Detector::new(device, scene.clone(), query(kind)).expect("a detector");
-        let good = detector.prepare(&[(id, input)]).expect("an answer");
+        let (mut memory, _, mut detector, good) = prepared(&scene, id, kind, [&t0, &t1]);
         let mut bad = t0.clone();
         bad[17][1] = f32::NAN;
         memory[0].write(&bad);

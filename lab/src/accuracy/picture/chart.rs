@@ -244,6 +244,7 @@ mod tests {
         }
         assert_eq!(faults(&svg), Vec::<String>::new());
     }
+
     #[test]
     fn groups_stand_side_by_side_where_there_is_room() {
         assert_eq!(side_by_side(&[2, 1, 1, 1], 2), [[0, 0], [0, 1], [1, 1], [0, 2]]);
