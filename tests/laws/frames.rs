@@ -1,0 +1,267 @@
+//! An answer about a frame depends on that frame's positions and the query alone: not on earlier frames, on what was
+//! asked before, on who was named when, on refused frames in between.
+
+use super::*;
+use nearmiss::device::Buffer;
+use nearmiss::scene::{DeviceInput, DevicePose, DeviceRows, Number};
+
+/// Where a body is at both ends of the last step.
+#[derive(Clone, Debug, PartialEq)]
+enum Place {
+    Vertices([Positions; 2]),
+    Poses([Pose; 2]),
+    Fixed,
+}
+
+impl Place {
+    /// Where a body that is not named is afterwards: where its step ended.
+    fn rests(&mut self) {
+        match self {
+            Place::Vertices([t0, t1]) => *t0 = t1.clone(),
+            Place::Poses([start, end]) => *start = *end,
+            Place::Fixed => {}
+        }
+    }
+
+    /// As a frame names it.
+    fn input(&self) -> Option<Input<'_>> {
+        Some(match self {
+            Place::Vertices([t0, t1]) if t0 == t1 => Input::At(t0),
+            Place::Vertices([t0, t1]) => Input::Step([t0, t1]),
+            Place::Poses([start, end]) if start == end => Input::Pose(*start),
+            Place::Poses(poses) => Input::Poses(*poses),
+            Place::Fixed => return None,
+        })
+    }
+}
+
+/// A body and where it is.
+struct Placed {
+    id: BodyId,
+    /// As it was added.
+    body: Body,
+    place: Place,
+}
+
+/// A body of any kind, in or near a unit cube; sometimes in doubles.
+fn body(rng: &mut SmallRng) -> (Body, Place) {
+    let is_f64 = rng.random_bool(0.2);
+    let mesh = mesh(rng, 0.5, 0.0, is_f64);
+    let at = mesh.positions().clone();
+    let meets = |is_fixed: bool| Meets { self_contact: !is_fixed, ..Meets::default() };
+    match rng.random_range(0..4) {
+        0 => (Body::fixed(mesh).with(meets(true)), Place::Fixed),
+        1 => (Body::rigid(mesh).with(meets(false)), Place::Poses([Pose::default(); 2])),
+        _ => (Body::still(mesh).with(meets(false)), Place::Vertices([at.clone(), at])),
+    }
+}
+
+/// Where a body goes next: on from where it was, or anywhere; a step, or no motion.
+fn next(rng: &mut SmallRng, place: &Place) -> Place {
+    let moves = rng.random_bool(0.7);
+    match place {
+        Place::Vertices([_, end]) => {
+            let start = if rng.random_bool(0.5) { end.clone() } else { moved(rng, end, 0.1) };
+            let end = if moves { moved(rng, &start, 0.2) } else { start.clone() };
+            Place::Vertices([start, end])
+        }
+        Place::Poses([_, end]) => {
+            let start = if rng.random_bool(0.5) { *end } else { pose(rng) };
+            Place::Poses([start, if moves { pose(rng) } else { start }])
+        }
+        Place::Fixed => Place::Fixed,
+    }
+}
+
+/// The same bodies in a detector that was made for this frame.
+fn fresh(bodies: &[Placed], query: Query) -> Contacts {
+    let mut scene = Scene::new();
+    let mut ids = Vec::new();
+    for placed in bodies {
+        ids.push(scene.add(placed.body.clone()));
+    }
+    let mut detector = Detector::new(engine(), scene, query).expect("a detector");
+    let inputs: Vec<(BodyId, Input)> =
+        ids.iter().zip(bodies).filter_map(|(id, placed)| Some((*id, placed.place.input()?))).collect();
+    detector.frame(&inputs).expect("an answer")
+}
+
+/// Numbers of the caller's, for one frame.
+enum Lent {
+    Rows([Buffer<f64>; 2]),
+    Poses([[Buffer<f64>; 2]; 2]),
+}
+
+impl Lent {
+    fn new(place: &Place) -> Option<Lent> {
+        let device = engine();
+        let upload = |numbers: &[f64]| device.upload(numbers).expect("memory");
+        Some(match place {
+            Place::Vertices(ends) => {
+                Lent::Rows(ends.each_ref().map(|end| upload(end.to_f64().as_flattened())))
+            }
+            Place::Poses(ends) => {
+                Lent::Poses(ends.map(|pose| [upload(&pose.translation), upload(&pose.rotation)]))
+            }
+            Place::Fixed => return None,
+        })
+    }
+
+    /// As a frame names it.
+    fn input(&self) -> DeviceInput {
+        // SAFETY: the buffers live and stay as they are until the frame has been answered.
+        let rows = |buffer: &Buffer<f64>, width: usize| unsafe {
+            DeviceRows::new(buffer.span().addr(), buffer.len() / width, 8 * width, Number::F64).expect("rows")
+        };
+        match self {
+            Lent::Rows(ends) => DeviceInput::Step(ends.each_ref().map(|end| rows(end, 3))),
+            Lent::Poses(ends) => DeviceInput::Poses(ends.each_ref().map(|[translation, rotation]| {
+                DevicePose { translation: rows(translation, 3), rotation: rows(rotation, 4) }
+            })),
+        }
+    }
+
+    /// What was lent is overwritten.
+    fn spoil(&mut self) {
+        let buffers: Vec<&mut Buffer<f64>> = match self {
+            Lent::Rows(ends) => ends.iter_mut().collect(),
+            Lent::Poses(ends) => ends.as_flattened_mut().iter_mut().collect(),
+        };
+        for buffer in buffers {
+            let spoilt = vec![f64::NAN; buffer.len()];
+            buffer.write(&spoilt).expect("written");
+        }
+    }
+}
+
+/// A detector's life, frame after frame, each compared with a detector that was made for it; how many contacts there were.
+fn life(seed: u64, query: Query, fault: impl Fn(&mut Contacts)) -> Result<usize, String> {
+    let mut rng = SmallRng::seed_from_u64(seed);
+    let mut bodies: Vec<Placed> = Vec::new();
+    let mut scene = Scene::new();
+    for _ in 0..rng.random_range(2..5) {
+        let (body, place) = body(&mut rng);
+        bodies.push(Placed { id: scene.add(body.clone()), body, place });
+    }
+    let mut detector = Detector::new(engine(), scene, query).expect("a detector");
+    let mut all = 0;
+    for frame in 0..8 {
+        if rng.random_bool(0.2) {
+            refused(&mut detector, &bodies);
+        }
+        if rng.random_bool(0.2) {
+            detector.detect().expect("an answer");
+        }
+        if rng.random_bool(0.2) {
+            detector.rebuild().expect("built");
+        }
+        if rng.random_bool(0.2) {
+            edit(&mut rng, &mut detector, &mut bodies);
+        }
+        let mut lent = Vec::new();
+        let mut named = Vec::new();
+        for placed in &mut bodies {
+            if rng.random_bool(0.6) {
+                placed.place = next(&mut rng, &placed.place);
+                named.push((placed.id, rng.random_bool(0.4)));
+            } else {
+                placed.place.rests();
+            }
+        }
+        let mut inputs = Vec::new();
+        for (id, is_lent) in named {
+            let placed = bodies.iter().find(|placed| placed.id == id).expect("a body");
+            match (Lent::new(&placed.place).filter(|_| is_lent), placed.place.input()) {
+                (Some(numbers), _) => {
+                    inputs.push((id, Input::OnDevice(numbers.input())));
+                    lent.push(numbers);
+                }
+                (None, Some(input)) => inputs.push((id, input)),
+                (None, None) => {}
+            }
+        }
+        let mut found = detector.frame(&inputs).expect("an answer");
+        lent.iter_mut().for_each(Lent::spoil);
+        fault(&mut found);
+        let wanted = fresh(&bodies, query);
+        if renumbered(&bodies, &found) != wanted.answer {
+            return Err(format!(
+                "frame {frame} of seed {seed}, {query:?}: {:?}, made for it {:?}",
+                found.answer, wanted.answer
+            ));
+        }
+        all += found.len();
+    }
+    Ok(all)
+}
+
+/// A frame that is refused, of a body that there is.
+fn refused(detector: &mut Detector, bodies: &[Placed]) {
+    let nan = |positions: &Positions| Positions::F64(vec![[f64::NAN; 3]; positions.len()]);
+    for placed in bodies {
+        let refused = match &placed.place {
+            Place::Vertices([t0, t1]) => {
+                let bad = nan(t1);
+                detector.frame(&[(placed.id, Input::Step([t0, &bad]))])
+            }
+            Place::Poses(_) => detector.frame(&[(placed.id, Input::Pose(Pose::at([f64::NAN; 3])))]),
+            Place::Fixed => detector.frame(&[(placed.id, Input::Pose(Pose::default()))]),
+        };
+        assert!(refused.is_err());
+    }
+}
+
+/// A body comes, or one goes.
+fn edit(rng: &mut SmallRng, detector: &mut Detector, bodies: &mut Vec<Placed>) {
+    if bodies.len() > 2 && rng.random_bool(0.5) {
+        let gone = bodies.remove(rng.random_range(0..bodies.len()));
+        detector.remove(gone.id).expect("a body");
+    } else {
+        let (body, place) = body(rng);
+        let id = detector.add(body.clone()).expect("room");
+        bodies.push(Placed { id, body, place });
+    }
+    // A number that was free is taken again: bodies are listed in the order of their numbers.
+    bodies.sort_by_key(|placed| placed.id);
+}
+
+/// An answer with bodies numbered as in a scene that has no gaps.
+fn renumbered(bodies: &[Placed], contacts: &Contacts) -> Answer {
+    let place = |id: BodyId| {
+        let at = bodies.iter().position(|placed| placed.id == id).expect("a body of the scene");
+        let mut scene = Scene::new();
+        (0..=at).map(|_| scene.add(bodies[0].body.clone())).last().expect("a body")
+    };
+    let mut answer = contacts.answer.clone();
+    match &mut answer {
+        Answer::Pairs(all) => all.iter_mut().for_each(|row| row.bodies = row.bodies.map(place)),
+        Answer::Contacts(all) => all.iter_mut().for_each(|row| row.bodies = row.bodies.map(place)),
+        Answer::Near(all) => all.iter_mut().for_each(|row| row.bodies = row.bodies.map(place)),
+        Answer::Distance(nearest) => nearest.iter_mut().for_each(|row| row.bodies = row.bodies.map(place)),
+        Answer::Earliest(_) => {}
+    }
+    answer
+}
+
+#[test]
+fn a_frame_depends_on_its_positions_alone() {
+    let mut found = 0;
+    for query in queries() {
+        for seed in 0..30 {
+            found += life(seed, query, |_| ()).unwrap_or_else(|difference| panic!("{difference}"));
+        }
+    }
+    assert!(found > 10_000, "{found}");
+}
+
+/// A comparison that nothing passes would be none.
+#[test]
+fn a_forgotten_contact_is_named() {
+    let forget = |contacts: &mut Contacts| {
+        if let Answer::Contacts(all) = &mut contacts.answer {
+            all.pop();
+        }
+    };
+    let named = (0..8).filter_map(|seed| life(seed, Query::continuous(), forget).err()).next();
+    assert!(named.expect("a difference").contains("made for it"));
+}

@@ -1,0 +1,186 @@
+//! An answer about two bodies depends on nothing else: adding, removing or having had another body, of any size,
+//! precision or environment, changes no row.
+
+use super::*;
+
+/// What an answer says about the bodies that were asked about.
+#[derive(Clone, Debug, PartialEq)]
+enum Rows {
+    Pairs(Vec<TrianglePair>),
+    Contacts(Vec<Contact>),
+    Near(Vec<NearPair>),
+}
+
+/// The rows of bodies below `own`; of a query that answers with one number, `None`: other bodies may have the least.
+fn rows(contacts: &Contacts, own: usize) -> Option<Rows> {
+    let is_own = |bodies: &[BodyId; 2]| bodies.iter().all(|body| body.index() < own);
+    Some(match &contacts.answer {
+        Answer::Pairs(all) => Rows::Pairs(all.iter().filter(|row| is_own(&row.bodies)).copied().collect()),
+        Answer::Contacts(all) => {
+            Rows::Contacts(all.iter().filter(|row| is_own(&row.bodies)).copied().collect())
+        }
+        Answer::Near(all) => Rows::Near(all.iter().filter(|row| is_own(&row.bodies)).copied().collect()),
+        Answer::Earliest(_) | Answer::Distance(_) => return None,
+    })
+}
+
+/// The one number of an answer that is one.
+fn least(contacts: &Contacts) -> Option<f64> {
+    match &contacts.answer {
+        Answer::Earliest(toi) => *toi,
+        Answer::Distance(nearest) => nearest.as_ref().map(|nearest| nearest.distance),
+        _ => panic!("an answer of rows"),
+    }
+}
+
+/// A body of any kind, around a place, of a size and a precision.
+fn body(rng: &mut SmallRng, (size, at, is_f64): (f64, f64, bool)) -> Body {
+    let mesh = mesh(rng, size, at, is_f64);
+    match rng.random_range(0..5) {
+        0 => Body::fixed(mesh),
+        1 => Body::rigid(mesh).at(&Input::Poses([pose(rng), pose(rng)])).expect("poses"),
+        2 => Body::still(mesh),
+        _ => {
+            let end = moved(rng, mesh.positions(), 0.5 * size);
+            let end = Mesh::new("end", end, mesh.faces().to_vec()).expect("a mesh");
+            Body::moving(mesh, end).expect("two frames")
+        }
+    }
+}
+
+/// Who may meet whom, at random; a fixed body has no contact with itself.
+fn meets(rng: &mut SmallRng, body: Body) -> Body {
+    let self_contact = body.kind() != BodyKind::Static && rng.random_bool(0.5);
+    let environment = [Some(0), Some(0), Some(1), None][rng.random_range(0..4)];
+    let [group, mask] =
+        [(); 2].map(|()| if rng.random_bool(0.7) { u32::MAX } else { rng.random_range(1..4) });
+    body.with(Meets { environment, group, mask, self_contact })
+}
+
+/// Two or three bodies that are asked about.
+fn own(rng: &mut SmallRng) -> Vec<Body> {
+    (0..rng.random_range(2..4))
+        .map(|_| {
+            let is_f64 = rng.random_bool(0.2);
+            let size = [0.3, 0.5, 1.0][rng.random_range(0..3)];
+            let body = body(rng, (size, 0.0, is_f64));
+            meets(rng, body)
+        })
+        .collect()
+}
+
+/// Up to three others: large, tiny, far, in doubles, in other environments.
+fn others(rng: &mut SmallRng) -> Vec<Body> {
+    (0..rng.random_range(1..4))
+        .map(|_| {
+            let size = [1e-4, 0.5, 2.0, 1e3, 1e6][rng.random_range(0..5)];
+            let at = [0.0, 0.0, 1e3, 1e7, 1e30][rng.random_range(0..5)];
+            let is_f64 = rng.random_bool(0.5);
+            let body = body(rng, (size, at, is_f64));
+            meets(rng, body)
+        })
+        .collect()
+}
+
+/// A scene of bodies that are asked as they are.
+fn scene(bodies: &[Body]) -> Scene {
+    let mut scene = Scene::new();
+    bodies.iter().for_each(|body| _ = scene.add(body.clone()));
+    scene
+}
+
+fn ask(bodies: &[Body], query: Query) -> Contacts {
+    support::ask_scene(engine(), scene(bodies), query)
+}
+
+/// The least number over bodies two by two.
+fn least_two_by_two(bodies: &[Body], query: Query) -> Option<f64> {
+    let mut all = Vec::new();
+    for i in 0..bodies.len() {
+        // A body with itself alone.
+        all.extend(least(&ask(&bodies[i..i + 1], query)));
+        for j in i + 1..bodies.len() {
+            // Who meets itself was asked above.
+            let alone = [i, j].map(|k| {
+                let meets = Meets { self_contact: false, ..*bodies[k].meets() };
+                bodies[k].clone().with(meets)
+            });
+            all.extend(least(&ask(&alone, query)));
+        }
+    }
+    all.into_iter().min_by(f64::total_cmp)
+}
+
+/// What differs where other bodies are, where they were added to a detector, and where they were and are gone.
+fn differs(own: &[Body], others: &[Body], query: Query) -> Option<String> {
+    let all: Vec<Body> = own.iter().chain(others).cloned().collect();
+    let alone = ask(own, query);
+    let together = ask(&all, query);
+    let Some(wanted) = rows(&alone, own.len()) else {
+        let both = [(least(&alone), own), (least(&together), &all[..])];
+        return both.into_iter().find_map(|(found, bodies)| {
+            let wanted = least_two_by_two(bodies, query);
+            (found != wanted).then(|| format!("{found:?}, two by two {wanted:?}"))
+        });
+    };
+    let mut detector = Detector::new(engine(), scene(own), query).expect("a detector");
+    let added: Vec<BodyId> = others.iter().map(|body| detector.add(body.clone()).expect("room")).collect();
+    let with_added = detector.detect().expect("an answer");
+    for id in added {
+        detector.remove(id).expect("a body");
+    }
+    let without = detector.detect().expect("an answer");
+    let found = [("together", together), ("added", with_added), ("removed", without)];
+    found.into_iter().find_map(|(when, contacts)| difference(when, &rows(&contacts, own.len())?, &wanted))
+}
+
+/// The first row that is not as it was alone.
+fn difference(when: &str, found: &Rows, wanted: &Rows) -> Option<String> {
+    fn first<T: PartialEq + std::fmt::Debug>(found: &[T], wanted: &[T]) -> String {
+        let at = (0..).find(|&i| found.get(i) != wanted.get(i)).unwrap_or_default();
+        format!("row {at} is {:?}, alone {:?}", found.get(at), wanted.get(at))
+    }
+    if found == wanted {
+        return None;
+    }
+    let what = match (found, wanted) {
+        (Rows::Pairs(found), Rows::Pairs(wanted)) => first(found, wanted),
+        (Rows::Contacts(found), Rows::Contacts(wanted)) => first(found, wanted),
+        (Rows::Near(found), Rows::Near(wanted)) => first(found, wanted),
+        _ => format!("{found:?}, alone {wanted:?}"),
+    };
+    Some(format!("{when}: {what}"))
+}
+
+#[test]
+fn other_bodies_change_no_row() {
+    let mut rows_found = 0;
+    for seed in 0..60 {
+        let mut rng = SmallRng::seed_from_u64(seed);
+        let (own, others) = (own(&mut rng), others(&mut rng));
+        for query in queries() {
+            let difference = differs(&own, &others, query);
+            assert_eq!(difference, None, "seed {seed}, {query:?}");
+        }
+        rows_found += ask(&own, Query::continuous()).len();
+    }
+    assert!(rows_found > 1_000, "{rows_found}");
+}
+
+/// The comparison names a row that is changed in its last bit, one that is missing, and another least number.
+#[test]
+fn a_changed_row_is_named() {
+    let mut rng = SmallRng::seed_from_u64(1);
+    let own = own(&mut rng);
+    let contacts = ask(&own, Query::continuous());
+    let Some(Rows::Contacts(rows)) = rows(&contacts, own.len()) else { panic!("contacts") };
+    assert!(rows.len() > 3);
+    let wanted = Rows::Contacts(rows.clone());
+    assert_eq!(difference("", &wanted, &wanted), None);
+    let mut late = rows.clone();
+    late[2].toi = late[2].toi.next_up();
+    let named = difference("", &Rows::Contacts(late), &wanted).expect("a difference");
+    assert!(named.contains("row 2"), "{named}");
+    let fewer = Rows::Contacts(rows[..rows.len() - 1].to_vec());
+    assert!(difference("", &fewer, &wanted).is_some_and(|named| named.contains("None")));
+}
