@@ -38,7 +38,7 @@ pub(crate) use wear::Wear;
 /// ]);
 /// let body = Body::still(Mesh::new("two triangles", at(1.0), faces)?);
 /// let device = Device::open(Backend::Auto, None)?;
-/// // One body alone is tested against itself.
+/// // A deformable body is tested against itself.
 /// let mut detector = Detector::new(device, body, Query::continuous())?;
 /// let triangles = detector.scene().ids().next().expect("a body");
 /// let contacts = detector.frame(&[(triangles, Input::Step([&at(1.0), &at(-1.0)]))])?;
@@ -82,11 +82,12 @@ pub struct Detector {
 const OF_A_TRIANGLE: u64 = 300;
 
 impl Detector {
-    /// Uploads a scene and builds its trees: of a single body, tested against itself, or of a list of bodies, too. Cost: linear
+    /// Uploads a scene and builds its trees: of a single body, or of a list of bodies, too. Cost: linear
     /// in triangles; memory grows with what is found.
     ///
     /// # Errors
-    /// [`Error::Choice`] for a scene without bodies and for numbers that mean nothing; those of the device.
+    /// [`Error::Choice`] for a scene without bodies, for self-contact of a static body and for numbers that mean nothing;
+    /// those of the device.
     pub fn new(device: Device, scene: impl Into<Scene>, query: impl Into<Query>) -> Result<Detector, Error> {
         Detector::with_share(device, scene.into(), query.into(), Share::WHOLE)
     }
@@ -109,6 +110,7 @@ impl Detector {
                 advice: "give one body to test against itself, or more to test against each other".into(),
             });
         }
+        scene.bodies().iter().try_for_each(Body::check_meets)?;
         let or_default = |asked: Option<f64>| asked.unwrap_or_else(|| pipeline::of_edges(scene.bodies()));
         let tolerance = query.certified().map(|certified| or_default(certified.tolerance));
         let mut detector = Detector {

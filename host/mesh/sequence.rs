@@ -100,6 +100,25 @@ impl Body {
         &self.meets
     }
 
+    /// Whether it is tested against itself: see [`Meets::is_own`].
+    pub fn meets_itself(&self) -> bool {
+        self.meets.is_own(self.kind)
+    }
+
+    /// Refuses self-contact of a static body, which would do nothing. Detectors check it, and whoever reads bodies may.
+    ///
+    /// # Errors
+    /// [`Error::Choice`], naming the body.
+    pub fn check_meets(&self) -> Result<(), Error> {
+        if self.kind == BodyKind::Static && self.meets.self_contact == Some(true) {
+            return Err(Error::Choice {
+                what: format!("self-contact of {}, which is static and never meets itself", self.name),
+                advice: "leave self-contact out, or make the body rigid or deformable".into(),
+            });
+        }
+        Ok(())
+    }
+
     /// The poses of a rigid body at both ends of the step; old ones where it [is away](Body::is_away).
     pub fn poses(&self) -> [Pose; 2] {
         self.poses

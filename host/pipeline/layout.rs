@@ -45,12 +45,12 @@ impl Layout {
         environments.dedup();
         let rank = |environment: u32| environments.partition_point(|&other| other < environment) as u32;
         for (i, body) in bodies.iter().enumerate() {
-            let Meets { environment, group, mask, self_contact } = *body.meets();
+            let Meets { environment, group, mask, .. } = *body.meets();
             all.records.push(BodyRecord {
                 triangle: at.triangle,
                 vertex: at.vertex,
                 environment: environment.map_or(EVERY, rank),
-                self_contact: (self_contact && kind.is_within_bodies()).into(),
+                self_contact: (body.meets_itself() && kind.is_within_bodies()).into(),
                 group,
                 mask,
             });

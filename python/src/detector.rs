@@ -18,7 +18,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// A scene on a device, asked frame after frame.
 ///
-/// scene:  a Scene, or one Body, which is tested against itself.
+/// scene:  a Scene, or one Body.
 /// query:  Discrete, Continuous, Earliest, Near or Distance.
 /// device: default: Device(), a GPU where there is one.
 ///
@@ -146,7 +146,6 @@ impl Detector {
             Some(device) => device,
             None => py.get_type::<Device>().call0()?.cast_into::<Device>()?.unbind(),
         };
-        // One body alone is tested against itself, as in the library.
         let bodies = match (scene.cast::<Body>(), scene.cast::<Scene>()) {
             (Ok(body), _) => nearmiss::Scene::from(body.get().body.clone()),
             (_, Ok(scene)) => scene.borrow().scene.clone(),

@@ -8,7 +8,7 @@ use nearmiss_lab::robustness;
 fn world(bodies: &[Body], environment: u32) -> impl Iterator<Item = Body> {
     let alone = bodies.len() == 1;
     bodies.iter().map(move |body| {
-        let meets = Meets { self_contact: alone, ..Meets::in_environment(environment) };
+        let meets = Meets { self_contact: Some(alone), ..Meets::in_environment(environment) };
         body.clone().with(meets)
     })
 }

@@ -11,7 +11,7 @@ fn asked(scene: &Scene, i: usize, j: usize) -> bool {
         return false;
     }
     if i == j {
-        return p.self_contact;
+        return a.meets_itself();
     }
     let together = p.environment == q.environment || p.environment.is_none() || q.environment.is_none();
     together && p.group & q.mask != 0 && q.group & p.mask != 0
@@ -68,11 +68,15 @@ pub fn mixed(seed: u64) -> Scene {
                 Body::moving(mesh, end).expect("two frames")
             }
         };
+        let own = match (rng.random_bool(0.5), body.kind()) {
+            (true, BodyKind::Static) => None,
+            (own, _) => Some(own),
+        };
         let meets = Meets {
             environment: [Some(0), Some(0), Some(1), None][rng.random_range(0..4)],
             group: if seed.is_multiple_of(2) { u32::MAX } else { rng.random_range(0..4) },
             mask: if seed.is_multiple_of(2) { u32::MAX } else { rng.random_range(0..4) },
-            self_contact: rng.random_bool(0.5),
+            self_contact: own,
         };
         let id = scene.add(body.with(meets));
         gone = gone.or((i == 3).then_some(id));

@@ -102,7 +102,16 @@ fn what_is_no_body_is_refused() {
         "a count that cannot be",
     );
     refused(added(NearmissBody { kind: 3, ..good }), NEARMISS_CHOICE, "a body of kind 3");
-    refused(added(NearmissBody { self_contact: 2, ..good }), NEARMISS_CHOICE, "2 for self_contact");
+    refused(added(NearmissBody { self_contact: 3, ..good }), NEARMISS_CHOICE, "3 for self_contact");
+    let own = |kind, self_contact| added(NearmissBody { kind, self_contact, ..good });
+    refused(own(0, 1), NEARMISS_CHOICE, "self-contact of a body, which is static");
+    for (kind, self_contact) in [(0, 0), (0, 2), (1, 0), (1, 1), (1, 2), (2, 0), (2, 1), (2, 2)] {
+        assert!(own(kind, self_contact).is_ok(), "kind {kind}, self_contact {self_contact}");
+    }
+    refused(added(NearmissBody { triangle_count: 0, ..good }), NEARMISS_INPUT, "no triangles");
+    refused(added(NearmissBody { group: 0, ..good }), NEARMISS_CHOICE, "group is 0");
+    // SAFETY: numbers and pointers, of which zeros are some.
+    refused(added(unsafe { std::mem::zeroed() }), NEARMISS_INPUT, "no triangles");
     let wrong = [[0u32, 1, 99]];
     let triangles = wrong.as_ptr().cast();
     refused(added(NearmissBody { triangles, triangle_count: 1, ..good }), NEARMISS_INPUT, "99");

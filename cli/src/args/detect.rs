@@ -76,6 +76,9 @@ pub struct DetectArgs {
     /// positions at the end of the step: --with B0 --with B1 A0 A1, or A0 A1 --with B0 B1.
     #[arg(long, value_name = "MESH")]
     pub with: Vec<PathBuf>,
+    /// Test the two meshes against each other only, not against themselves.
+    #[arg(long)]
+    pub no_self_contact: bool,
     /// Triangle pairs that share a point at t = 0 (the default for one frame).
     #[arg(long, conflicts_with_all = ["continuous", "earliest"])]
     pub discrete: bool,

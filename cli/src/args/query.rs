@@ -2,6 +2,7 @@
 
 use super::DetectArgs;
 use crate::report::Format;
+use nearmiss::scene::Meets;
 use nearmiss::error::Error;
 use nearmiss::query::{
     Certified, Continuous, ContinuousSolver, Discrete, Distance, Earliest, Near, Query, QueryKind, Search,
@@ -9,6 +10,11 @@ use nearmiss::query::{
 };
 
 impl DetectArgs {
+    /// Which bodies a mesh of the command line may meet.
+    pub fn meets(&self) -> Meets {
+        if self.no_self_contact { Meets::others() } else { Meets::default() }
+    }
+
     /// The query for bodies that move, or do not.
     ///
     /// # Errors

@@ -135,11 +135,12 @@ fn choices(detector: &Detector, device: &Device) -> String {
     if let Some(more) = bodies.len().checked_sub(MOST_TOLD).filter(|more| *more > 0) {
         let _ = writeln!(text, "and {more} bodies more");
     }
+    let own = query.kind().is_within_bodies() && bodies.iter().any(Body::meets_itself);
     let _ = writeln!(
         text,
         "query      {:?}, {}",
         query.kind(),
-        if detector.scene().bodies().len() == 1 { "self" } else { "between" }
+        if bodies.len() == 1 { "self" } else if own { "within and between" } else { "between" }
     );
     let _ = writeln!(text, "machine    {} ({})", device.name(), device.backend());
     let swept = !query.kind().is_at_rest() && query.bv() != Bv::Linear;

@@ -47,7 +47,7 @@ class Body:
         faces: Array,
         *,
         kind: Literal["deformable", "rigid", "static"] = "deformable",
-        self_contact: bool = False,
+        self_contact: bool | None = None,
         environment: int | None = 0,
         group: int = 0xFFFFFFFF,
         mask: int = 0xFFFFFFFF,
