@@ -78,7 +78,8 @@ pub unsafe extern "C" fn nearmiss_detector_new(
     })
 }
 
-/// The tolerance of a certified solver, a length: as asked, or the default for this scene; -1 of other solvers.
+/// The tolerance of a certified solver, a length: as asked, or the smallest default of a pair of bodies, which is the smaller of
+/// theirs; -1 of other solvers.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_detector_tolerance(
     detector: Option<&mut NearmissDetector>,
@@ -87,6 +88,20 @@ pub extern "C" fn nearmiss_detector_tolerance(
 ) -> NearmissCode {
     NearmissDetector::work(detector, error, |own| {
         given(tolerance, "the tolerance")?.write(own.detector.tolerance().unwrap_or(-1.0));
+        Ok(())
+    })
+}
+
+/// The largest tolerance of a pair of bodies, a length: that of `nearmiss_detector_tolerance` if all pairs have the same; -1 of other
+/// solvers.
+#[unsafe(no_mangle)]
+pub extern "C" fn nearmiss_detector_largest_tolerance(
+    detector: Option<&mut NearmissDetector>,
+    tolerance: Option<&mut MaybeUninit<f64>>,
+    error: Option<&mut MaybeUninit<NearmissError>>,
+) -> NearmissCode {
+    NearmissDetector::work(detector, error, |own| {
+        given(tolerance, "the tolerance")?.write(own.detector.largest_tolerance().unwrap_or(-1.0));
         Ok(())
     })
 }

@@ -30,8 +30,9 @@ impl Detector {
         body.check_meets()?;
         self.fits(None, &body)?;
         self.fetch()?;
+        let id = self.scene.add(body);
         self.changed();
-        Ok(self.scene.add(body))
+        Ok(id)
     }
 
     /// Takes a body out of the scene, from the next frame on; other bodies keep their numbers. Cost: as of
@@ -59,6 +60,7 @@ impl Detector {
     /// The next frame begins anew.
     fn changed(&mut self) {
         (self.pipeline, self.layout, self.answered, self.slices) = (None, None, false, 1);
+        self.choose_tolerances();
     }
 }
 

@@ -281,10 +281,16 @@ impl Detector {
         self.ask(py, Does::Moves, |detector| detector.replace(id, by.body.clone()))
     }
 
-    /// The tolerance of a certified solver, a length.
+    /// Smallest tolerance of a pair of bodies by a certified solver, a length.
     #[getter]
     fn tolerance(&self, py: Python<'_>) -> Option<f64> {
         self.look(py, nearmiss::Detector::tolerance)
+    }
+
+    /// Largest tolerance of a pair of bodies: that of `tolerance` if all pairs have the same.
+    #[getter]
+    fn largest_tolerance(&self, py: Python<'_>) -> Option<f64> {
+        self.look(py, nearmiss::Detector::largest_tolerance)
     }
 
     /// Where it is asked.

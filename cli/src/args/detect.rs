@@ -124,7 +124,7 @@ pub struct DetectArgs {
     #[arg(long, value_parser = choice::<Solver>())]
     pub solver: Option<Solver>,
     /// Certified: how near to contact may count as one, a length; 0 for all that the precision gives [default: 1e-4 of the
-    /// mean edge, rounded down to a power of two].
+    /// mean edge, rounded down to a power of two; of two bodies the smaller].
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub tolerance: Option<f64>,
     /// Certified: boxes that are looked at for a pair before it is left unresolved [default: 4096].

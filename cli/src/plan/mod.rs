@@ -159,10 +159,12 @@ fn choices(detector: &Detector, device: &Device) -> String {
     let _ = writeln!(text, "solver     {}", query.solver().promise());
     if let (Some(tolerance), Some(certified)) = (detector.tolerance(), query.certified()) {
         let why = if certified.tolerance.is_some() { "as asked" } else { "about 1e-4 of the mean edge" };
+        let largest = detector.largest_tolerance().filter(|largest| *largest != tolerance);
+        let largest = largest.map_or(String::new(), |largest| format!(" to {largest:e} by the bodies of a pair"));
         let boxes = certified.budget.unwrap_or(Certified::BUDGET);
         let _ = writeln!(
             text,
-            "tolerance  {tolerance:e}, {why}; at most {} a pair",
+            "tolerance  {tolerance:e}{largest}, {why}; at most {} a pair",
             counted(boxes.into(), "box", "boxes")
         );
         let separation = (certified.separation > 0.0).then_some(certified.separation);
