@@ -54,7 +54,7 @@ pub struct NearmissBody {
     pub self_contact: u32,
     /// Bodies of different environments never meet.
     pub environment: u32,
-    /// Whether it is in every environment, whatever `environment` says: 0 or 1.
+    /// Whether it is in every environment, and `environment` is 0: 0 or 1.
     pub everywhere: u32,
     /// Bits of the groups that it is in, at least one: two bodies meet if each is in a group that the other one's mask has.
     pub group: u32,
@@ -125,6 +125,10 @@ impl NearmissBody {
             return Err(refused(what, advice));
         }
         let everywhere = flag(self.everywhere, "everywhere")?;
+        if everywhere && self.environment != 0 {
+            let what = format!("environment {} of {name}, which is in every one", self.environment);
+            return Err(refused(what, "set environment or everywhere, not both"));
+        }
         let meets = Meets {
             environment: (!everywhere).then_some(self.environment),
             group: self.group,

@@ -10,6 +10,7 @@ use nearmiss::scene::BodyId;
 use nearmiss::{Detector, Device, Error};
 use std::ffi::CString;
 use std::mem::MaybeUninit;
+use std::sync::atomic::Ordering;
 
 /// A scene on a device, asked frame after frame.
 pub struct NearmissDetector {
@@ -46,7 +47,7 @@ impl NearmissDetector {
     }
 }
 
-/// Takes a copy of a scene to a device and builds its trees. Cost: linear in triangles; memory grows with what is found.
+/// Takes a copy of a scene, to which nothing can be added from then on, to a device and builds its trees. Cost: linear in triangles; memory grows with what is found.
 ///
 /// Fails with `NEARMISS_CHOICE` for a scene without bodies and for choices that do not go together; with `NEARMISS_OUT_OF_MEMORY` and
 /// `NEARMISS_DEVICE`.
@@ -63,10 +64,11 @@ pub unsafe extern "C" fn nearmiss_detector_new(
 ) -> NearmissCode {
     make(detector, "the detector", error, || {
         let device = given(device, "the device")?.device.clone();
-        let NearmissScene { scene, ids } = given(scene, "the scene")?;
+        let NearmissScene { scene, ids, taken } = given(scene, "the scene")?;
         // SAFETY: the caller's promise.
         let query = unsafe { given(query, "the query")?.query() }?;
         let detector = Detector::new(device.clone(), scene.clone(), query)?;
+        taken.store(true, Ordering::Relaxed);
         Ok(NearmissDetector {
             detector,
             device,

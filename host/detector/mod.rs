@@ -327,7 +327,9 @@ impl Detector {
     pub fn summary(&self, contacts: &Contacts) -> Summary {
         Summary {
             tolerance: self.tolerance(),
-            largest_tolerance: self.largest_tolerance().filter(|_| self.largest_tolerance() != self.tolerance()),
+            largest_tolerance: self
+                .largest_tolerance()
+                .filter(|_| self.largest_tolerance() != self.tolerance()),
             builds: self.builds,
             ..Summary::new(self.scene.bodies(), self.query, &self.device, contacts)
         }

@@ -68,7 +68,9 @@ impl Detector {
         if is_frame && in_motion && !inputs.is_empty() && !inputs.iter().any(|(_, input)| input.is_moving()) {
             return Err(Error::Choice {
                 what: format!("no body of the frame has two ends, and the query is {}", self.query.kind()),
-                advice: "give each body that moves both ends of the step: two arrays of positions, or two poses".into(),
+                advice:
+                    "give each body that moves both ends of the step: two arrays of positions, or two poses"
+                        .into(),
             });
         }
         self.named.clone_from(&named);

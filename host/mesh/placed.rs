@@ -1,7 +1,7 @@
 //! Where a body is put from frame to frame.
 
-use super::validate::{MAX_ABS_F32, MAX_ABS_F64};
 use super::sequence::Kept;
+use super::validate::{MAX_ABS_F32, MAX_ABS_F64};
 use super::{Away, Body, Positions, Problem, validate};
 use crate::Error;
 use crate::contacts::TURN_DEGREES;
@@ -244,8 +244,8 @@ impl Body {
     pub(crate) fn turn(&self, [start, end]: [Pose; 2]) -> Option<[f64; 2]> {
         let (angle, axis) = start.turn_to(&end);
         let degrees = angle.to_degrees();
-        // Also of a NaN, whose pose another check refuses.
-        if !(degrees > TURN_DEGREES) {
+        // A NaN is of a pose that another check refuses.
+        if degrees.is_nan() || degrees <= TURN_DEGREES {
             return None;
         }
         let axis = axis / axis.dot(&axis).sqrt();

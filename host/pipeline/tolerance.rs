@@ -76,7 +76,8 @@ impl Tolerances {
 
     /// As kernels read them, by the first vertex of each body; empty if all pairs have the same.
     pub fn records(&self, starts: &[Offsets]) -> Vec<BodyTolerance> {
-        let of = |(&tolerance, start): (&f64, &Offsets)| BodyTolerance { vertex: start.vertex, pad: 0, tolerance };
+        let of =
+            |(&tolerance, start): (&f64, &Offsets)| BodyTolerance { vertex: start.vertex, pad: 0, tolerance };
         self.bodies.iter().zip(starts).map(of).collect()
     }
 }

@@ -27,7 +27,6 @@ use crate::device::{Buffer, Device, Event, Replay};
 use crate::error::Error;
 use crate::mesh::Body;
 use crate::query::Query;
-use crate::scene::Pose;
 use nearmiss_kernels::abi::{BodyRecord, Pair, TraverseFlags, counter};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -96,11 +95,6 @@ pub trait Pipeline: repeat::Again + submit::Submits + Send {
     /// # Errors
     /// Those of the device.
     fn whereabouts(&self) -> Result<Whereabouts, Error>;
-    /// Poses that were found in memory of the caller, at both ends or at the only one, of each body; others are none.
-    ///
-    /// # Errors
-    /// Those of the device.
-    fn poses(&self) -> Result<Vec<Pose>, Error>;
     /// Builds the tree over what moves anew, from the positions at t = 0; the milliseconds it took.
     ///
     /// # Errors
@@ -325,10 +319,6 @@ impl<R: Precision> Pipeline for TypedPipeline<R> {
 
     fn whereabouts(&self) -> Result<Whereabouts, Error> {
         self.vertices.whereabouts()
-    }
-
-    fn poses(&self) -> Result<Vec<Pose>, Error> {
-        self.vertices.poses()
     }
 
     fn construct(&mut self) -> Result<f64, Error> {

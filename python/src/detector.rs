@@ -162,6 +162,9 @@ impl Detector {
             nearmiss::Detector::new(on, bodies, query)
         });
         let one = Mutex::new(Asked::new(detector.map_err(raised)?));
+        if let Ok(scene) = scene.cast::<Scene>() {
+            scene.try_borrow_mut()?.taken = true;
+        }
         Ok(Detector { one, device })
     }
 

@@ -128,9 +128,26 @@ fn bits(given: &Bound<'_, PyAny>, name: &str) -> PyResult<u32> {
 }
 
 /// Bodies, numbered from 0 in the order in which they are added.
+///
+/// A detector takes a copy; from then on the scene is not changed: add, remove and replace bodies of the detector.
 #[pyclass(module = "nearmiss")]
 pub struct Scene {
     pub scene: nearmiss::Scene,
+    /// Whether a detector has taken a copy.
+    pub taken: bool,
+}
+
+impl Scene {
+    /// Refuses a change that no detector would see.
+    fn is_free(&self, change: &str) -> PyResult<()> {
+        if self.taken {
+            return Err(choice(
+                format!("{change} a scene of which a detector has a copy, which would not change"),
+                "add, remove or replace bodies of the detector, or make another Scene",
+            ));
+        }
+        Ok(())
+    }
 }
 
 #[pymethods]
@@ -148,16 +165,18 @@ impl Scene {
             })?;
             scene.add(body.get().body.clone());
         }
-        Ok(Scene { scene })
+        Ok(Scene { scene, taken: false })
     }
 
     /// Adds a body: its number.
-    fn add(&mut self, body: &Body) -> usize {
-        self.scene.add(body.body.clone()).index()
+    fn add(&mut self, body: &Body) -> PyResult<usize> {
+        self.is_free("adding to")?;
+        Ok(self.scene.add(body.body.clone()).index())
     }
 
     /// Takes the body of that number out; the next one that is added may have its number.
     fn remove(&mut self, body: usize) -> PyResult<()> {
+        self.is_free("removing from")?;
         let id = known(body, self.scene.id(body))?;
         self.scene.remove(id);
         Ok(())

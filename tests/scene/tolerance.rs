@@ -20,9 +20,9 @@ fn sized(seed: u64, f64s: bool) -> Scene {
                 false => Positions::F32(points.iter().map(|p| about(p).map(|x| x as f32)).collect()),
             }
         };
-        let [t0, t1] = ends.each_ref().map(|end| {
-            Mesh::new("sized", scaled(end), mesh.faces().to_vec()).expect("a mesh")
-        });
+        let [t0, t1] = ends
+            .each_ref()
+            .map(|end| Mesh::new("sized", scaled(end), mesh.faces().to_vec()).expect("a mesh"));
         let body = match rng.random_range(0..4) {
             0 => Body::fixed(t0),
             _ => Body::moving(t0, t1).expect("two frames"),
@@ -91,13 +91,15 @@ fn one_tolerance_for_all_is_noticed() {
 fn sheet(from: f32, to: f32) -> Body {
     const SIDE: u32 = 12;
     let mesh = |height: f32| {
-        let at = |i: u32| [(i % (SIDE + 1)) as f32 / SIDE as f32, (i / (SIDE + 1)) as f32 / SIDE as f32, height];
+        let at =
+            |i: u32| [(i % (SIDE + 1)) as f32 / SIDE as f32, (i / (SIDE + 1)) as f32 / SIDE as f32, height];
         let square = |i: u32| {
             let corner = i / SIDE * (SIDE + 1) + i % SIDE;
             [[corner, corner + 1, corner + SIDE + 1], [corner + 1, corner + SIDE + 2, corner + SIDE + 1]]
         };
         let points = (0..(SIDE + 1) * (SIDE + 1)).map(at).collect();
-        Mesh::new("sheet", Positions::F32(points), (0..SIDE * SIDE).flat_map(square).collect()).expect("a mesh")
+        Mesh::new("sheet", Positions::F32(points), (0..SIDE * SIDE).flat_map(square).collect())
+            .expect("a mesh")
     };
     Body::moving(mesh(from), mesh(to)).expect("two frames")
 }

@@ -53,9 +53,15 @@ fn a_turn_of_more_than_thirty_degrees_is_named_with_its_bulge() {
                 ([], None) => {}
                 (&[(body, degrees, bulge)], Some((angle, arc))) => {
                     assert_eq!(body, bar);
-                    assert!((degrees - angle).abs() < 1e-9 && (bulge - arc).abs() < 1e-9, "{degrees} {bulge}");
+                    assert!(
+                        (degrees - angle).abs() < 1e-9 && (bulge - arc).abs() < 1e-9,
+                        "{degrees} {bulge}"
+                    );
                     let text = found.degraded()[0].to_string();
-                    assert!(text.contains("body 1 turns by") && found.degraded()[0].touches_answer(), "{text}");
+                    assert!(
+                        text.contains("body 1 turns by") && found.degraded()[0].touches_answer(),
+                        "{text}"
+                    );
                 }
                 (other, _) => panic!("{ends:?}: {other:?}, not {expected:?}"),
             }
@@ -100,6 +106,9 @@ fn poses_of_the_device_are_judged_too() {
         let found = detector.collect().expect("an answer");
         let told = turns(&found);
         assert_eq!(told.len(), expected, "{degrees}: {told:?}");
-        assert!(told.iter().all(|(body, angle, _)| *body == bar && (angle - degrees).abs() < 1e-9), "{told:?}");
+        assert!(
+            told.iter().all(|(body, angle, _)| *body == bar && (angle - degrees).abs() < 1e-9),
+            "{told:?}"
+        );
     }
 }

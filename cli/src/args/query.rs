@@ -2,12 +2,12 @@
 
 use super::DetectArgs;
 use crate::report::Format;
-use nearmiss::scene::Meets;
 use nearmiss::error::Error;
 use nearmiss::query::{
     Certified, Continuous, ContinuousSolver, Discrete, Distance, Earliest, Near, Query, QueryKind, Search,
     Solver, TriangleTest,
 };
+use nearmiss::scene::Meets;
 
 impl DetectArgs {
     /// Which bodies a mesh of the command line may meet.

@@ -140,7 +140,13 @@ fn choices(detector: &Detector, device: &Device) -> String {
         text,
         "query      {:?}, {}",
         query.kind(),
-        if bodies.len() == 1 { "self" } else if own { "within and between" } else { "between" }
+        if bodies.len() == 1 {
+            "self"
+        } else if own {
+            "within and between"
+        } else {
+            "between"
+        }
     );
     let _ = writeln!(text, "machine    {} ({})", device.name(), device.backend());
     let swept = !query.kind().is_at_rest() && query.bv() != Bv::Linear;
@@ -160,7 +166,8 @@ fn choices(detector: &Detector, device: &Device) -> String {
     if let (Some(tolerance), Some(certified)) = (detector.tolerance(), query.certified()) {
         let why = if certified.tolerance.is_some() { "as asked" } else { "about 1e-4 of the mean edge" };
         let largest = detector.largest_tolerance().filter(|largest| *largest != tolerance);
-        let largest = largest.map_or(String::new(), |largest| format!(" to {largest:e} by the bodies of a pair"));
+        let largest =
+            largest.map_or(String::new(), |largest| format!(" to {largest:e} by the bodies of a pair"));
         let boxes = certified.budget.unwrap_or(Certified::BUDGET);
         let _ = writeln!(
             text,

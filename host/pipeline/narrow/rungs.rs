@@ -4,11 +4,13 @@ use super::NarrowContext;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::layout::Layout;
-use crate::pipeline::{launch, purpose};
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::precision::Precision;
+use crate::pipeline::{launch, purpose};
 use crate::query::{Certified, CertifiedPrecision};
-use nearmiss_kernels::abi::{BodyTolerance, Counter, Hit, Listed, Output, Pair, RungArgs, RungFlags, Span, counter};
+use nearmiss_kernels::abi::{
+    BodyTolerance, Counter, Hit, Listed, Output, Pair, RungArgs, RungFlags, Span, counter,
+};
 use nearmiss_kernels::entry::Entry;
 
 /// A rung: one launch over the pairs that the one before left.

@@ -1,7 +1,8 @@
 //! Argument blocks of the last stage: from triangle pairs to contacts.
 
 use super::{
-    BodyTolerance, Counters, DiscreteFlags, Facet, Hit, NearHit, NearestHit, Output, Pair, Point, Positions, RungFlags, Span,
+    BodyTolerance, Counters, DiscreteFlags, Facet, Hit, NearHit, NearestHit, Output, Pair, Point, Positions,
+    RungFlags, Span,
 };
 use crate::math::Real;
 use crate::prim::inclusion::Params;

@@ -44,14 +44,28 @@ pub fn separate<R: Real, V: Rung<3>, E: Rung<4>, B: Block>(b: &mut B, a: &RungAr
         }
     });
     b.phase(|l| {
-        advance::<R, V, 3, _>(l, a, &a.vf, (&vf, drawn), |pair| of_vertex_face(l, a, pair), |pair, p| {
-            let (v, f) = vertex_face(l, (&a.frames, a.faces), pair);
-            Face::new(v, f, p)
-        });
-        advance::<R, E, 4, _>(l, a, &a.ee, (&ee, drawn), |pair| of_edge_edge(l, a, pair), |pair, p| {
-            let [x, y] = edge_edge(l, (&a.frames, a.edges), pair);
-            Edges::new(x, y, p)
-        });
+        advance::<R, V, 3, _>(
+            l,
+            a,
+            &a.vf,
+            (&vf, drawn),
+            |pair| of_vertex_face(l, a, pair),
+            |pair, p| {
+                let (v, f) = vertex_face(l, (&a.frames, a.faces), pair);
+                Face::new(v, f, p)
+            },
+        );
+        advance::<R, E, 4, _>(
+            l,
+            a,
+            &a.ee,
+            (&ee, drawn),
+            |pair| of_edge_edge(l, a, pair),
+            |pair, p| {
+                let [x, y] = edge_edge(l, (&a.frames, a.edges), pair);
+                Edges::new(x, y, p)
+            },
+        );
         l.meet();
     });
 }
