@@ -3,17 +3,17 @@
 //! [`Detector`] is the front door: a [`Scene`] of bodies in, [`Contacts`] out, on the CPU or on an NVIDIA GPU, to the same bit.
 //! [`Query`] holds every choice; [`Device`] is where it runs; [`Error`] says who must act.
 //!
-//! A cloth, tested against itself, that sinks onto something that stands still; what its vertices, edges and faces meet in a
+//! A cloth that sinks onto something that stands still; what its vertices, edges and faces meet in a
 //! step, and when:
 //!
 //! ```
-//! use nearmiss::scene::{Input, Meets, Scene};
+//! use nearmiss::scene::{Input, Scene};
 //! use nearmiss::{Body, Detector, Device, Mesh, Query, device::Backend, mesh::Positions};
 //!
 //! let triangle = |z: f32| Positions::F32(vec![[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]]);
 //! let mesh = |name, z| Mesh::new(name, triangle(z), vec![[0, 1, 2]]);
 //! let mut scene = Scene::new();
-//! let cloth = scene.add(Body::still(mesh("cloth", 0.5)?).with(Meets::and_itself()));
+//! let cloth = scene.add(Body::still(mesh("cloth", 0.5)?));
 //! let table = scene.add(Body::fixed(mesh("table", 0.0)?));
 //! let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene, Query::continuous())?;
 //! for step in 0..4 {

@@ -202,6 +202,11 @@ impl MultiDetector {
         self.parts[0].tolerance()
     }
 
+    /// As [`Detector::largest_tolerance`].
+    pub fn largest_tolerance(&self) -> Option<f64> {
+        self.parts[0].largest_tolerance()
+    }
+
     /// What each device did of the last frame.
     pub fn shares(&self) -> Vec<DeviceShare> {
         let one = |((part, share), &ms): ((&Detector, &Share), &f64)| DeviceShare {

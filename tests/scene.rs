@@ -13,6 +13,10 @@ mod pairwise;
 #[path = "scene/plan.rs"]
 mod plan;
 mod support;
+#[path = "scene/tolerance.rs"]
+mod tolerance;
+#[path = "scene/turns.rs"]
+mod turns;
 
 use nearmiss::contacts::{Contact, Contacts, NearPair, TrianglePair};
 use nearmiss::mesh::Positions;

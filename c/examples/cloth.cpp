@@ -65,7 +65,7 @@ uint32_t add(NearmissScene *scene, const char *name, const Sheet &mesh, Nearmiss
     body.triangles = mesh.triangles[0].data();
     body.triangle_count = mesh.triangles.size();
     body.kind = kind;
-    body.self_contact = self_contact;
+    body.self_contact = self_contact ? NEARMISS_SELF_CONTACT_ON : NEARMISS_SELF_CONTACT_OFF;
     uint32_t id = 0;
     check(nearmiss_scene_add(scene, &body, &id, &error), error);
     return id;

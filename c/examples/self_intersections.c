@@ -35,7 +35,6 @@ int main(void)
     body.positions = nearmiss_floats(&points[0][0], 8);
     body.triangles = &triangles[0][0];
     body.triangle_count = 4;
-    body.self_contact = 1;
     error.code = NEARMISS_OK;
     if (nearmiss_device_open(NEARMISS_AUTO, 0, &device, &error) == NEARMISS_OK
         && nearmiss_scene_new(&scene, &error) == NEARMISS_OK

@@ -2,6 +2,7 @@
 
 use crate::error::refused;
 use crate::rows::{NearmissNumber, NearmissRows, items, text};
+use nearmiss::mesh::Problem;
 use nearmiss::scene::Meets;
 use nearmiss::{Body, Error, Mesh};
 use std::ffi::c_char;
@@ -20,6 +21,19 @@ pub enum NearmissBodyKind {
     NEARMISS_DEFORMABLE = 2,
 }
 
+/// Whether a body is tested against itself. Deformable bodies are by default, rigid bodies if it is on, static bodies never.
+#[allow(non_camel_case_types, reason = "as C sees them")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum NearmissSelfContact {
+    /// The default of its kind, also of a struct of zeros.
+    NEARMISS_SELF_CONTACT_DEFAULT = 0,
+    /// It is; refused for static bodies.
+    NEARMISS_SELF_CONTACT_ON = 1,
+    /// It is not.
+    NEARMISS_SELF_CONTACT_OFF = 2,
+}
+
 /// A body to be added to a scene: its mesh, what it does, and which bodies it may meet. Begin with `nearmiss_body()`. All that it points to
 /// is copied by the call that takes it.
 #[derive(Clone, Copy, Debug)]
@@ -31,23 +45,24 @@ pub struct NearmissBody {
     pub positions: NearmissRows,
     /// Three indices of vertices a triangle, without gaps.
     pub triangles: *const u32,
-    /// How many triangles.
+    /// How many triangles, at least 1.
     pub triangle_count: usize,
     /// A `NearmissBodyKind`.
     pub kind: u32,
-    /// Whether it is tested against itself: 0 or 1.
+    /// A `NearmissSelfContact`. Deformable bodies are tested against themselves by default, rigid bodies if it is on, static
+    /// bodies never.
     pub self_contact: u32,
     /// Bodies of different environments never meet.
     pub environment: u32,
-    /// Whether it is in every environment, whatever `environment` says: 0 or 1.
+    /// Whether it is in every environment, and `environment` is 0: 0 or 1.
     pub everywhere: u32,
-    /// Bits of the groups that it is in: two bodies meet if each is in a group that the other one's mask has.
+    /// Bits of the groups that it is in, at least one: two bodies meet if each is in a group that the other one's mask has.
     pub group: u32,
-    /// Bits of the groups that it meets.
+    /// Bits of the groups that it meets; 0 for a body that meets no other.
     pub mask: u32,
 }
 
-/// A deformable body without a mesh, in environment 0, that meets all others and not itself.
+/// A deformable body without a mesh, in environment 0, that meets all others and itself.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_body() -> NearmissBody {
     let Meets { group, mask, .. } = Meets::default();
@@ -62,7 +77,7 @@ pub extern "C" fn nearmiss_body() -> NearmissBody {
         triangles: null(),
         triangle_count: 0,
         kind: NearmissBodyKind::NEARMISS_DEFORMABLE as u32,
-        self_contact: 0,
+        self_contact: NearmissSelfContact::NEARMISS_SELF_CONTACT_DEFAULT as u32,
         environment: 0,
         everywhere: 0,
         group,
@@ -101,15 +116,38 @@ impl NearmissBody {
                 return Err(refused(format!("a body of kind {other}"), advice));
             }
         };
+        if self.triangle_count == 0 {
+            return Err(Error::Input { file: name, problem: Problem::NoTriangles });
+        }
+        if self.group == 0 {
+            let what = format!("group is 0: {name} is in no group and meets no other body");
+            let advice = "begin with nearmiss_body(), which is in all groups; set mask to 0 for a body that meets no other";
+            return Err(refused(what, advice));
+        }
         let everywhere = flag(self.everywhere, "everywhere")?;
+        if everywhere && self.environment != 0 {
+            let what = format!("environment {} of {name}, which is in every one", self.environment);
+            return Err(refused(what, "set environment or everywhere, not both"));
+        }
         let meets = Meets {
             environment: (!everywhere).then_some(self.environment),
             group: self.group,
             mask: self.mask,
-            self_contact: flag(self.self_contact, "self_contact")?,
+            self_contact: match self.self_contact {
+                0 => None,
+                1 => Some(true),
+                2 => Some(false),
+                other => {
+                    let advice = "choose NEARMISS_SELF_CONTACT_DEFAULT, NEARMISS_SELF_CONTACT_ON or \
+                                  NEARMISS_SELF_CONTACT_OFF";
+                    return Err(refused(format!("{other} for self_contact"), advice));
+                }
+            },
         };
         nearmiss::memory::require("triangles", size_of_val(corners) as u64)?;
         let faces = corners.as_chunks::<3>().0.to_vec();
-        Ok(make(Mesh::new(name, positions, faces)?).with(meets))
+        let body = make(Mesh::new(name, positions, faces)?).with(meets);
+        body.check_meets()?;
+        Ok(body)
     }
 }

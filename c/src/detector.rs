@@ -10,6 +10,7 @@ use nearmiss::scene::BodyId;
 use nearmiss::{Detector, Device, Error};
 use std::ffi::CString;
 use std::mem::MaybeUninit;
+use std::sync::atomic::Ordering;
 
 /// A scene on a device, asked frame after frame.
 pub struct NearmissDetector {
@@ -46,7 +47,7 @@ impl NearmissDetector {
     }
 }
 
-/// Takes a copy of a scene to a device and builds its trees. Cost: linear in triangles; memory grows with what is found.
+/// Takes a copy of a scene, to which nothing can be added from then on, to a device and builds its trees. Cost: linear in triangles; memory grows with what is found.
 ///
 /// Fails with `NEARMISS_CHOICE` for a scene without bodies and for choices that do not go together; with `NEARMISS_OUT_OF_MEMORY` and
 /// `NEARMISS_DEVICE`.
@@ -63,10 +64,11 @@ pub unsafe extern "C" fn nearmiss_detector_new(
 ) -> NearmissCode {
     make(detector, "the detector", error, || {
         let device = given(device, "the device")?.device.clone();
-        let NearmissScene { scene, ids } = given(scene, "the scene")?;
+        let NearmissScene { scene, ids, taken } = given(scene, "the scene")?;
         // SAFETY: the caller's promise.
         let query = unsafe { given(query, "the query")?.query() }?;
         let detector = Detector::new(device.clone(), scene.clone(), query)?;
+        taken.store(true, Ordering::Relaxed);
         Ok(NearmissDetector {
             detector,
             device,
@@ -78,7 +80,8 @@ pub unsafe extern "C" fn nearmiss_detector_new(
     })
 }
 
-/// The tolerance of a certified solver, a length: as asked, or the default for this scene; -1 of other solvers.
+/// The tolerance of a certified solver, a length: as asked, or the smallest default of a pair of bodies, which is the smaller of
+/// theirs; -1 of other solvers.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_detector_tolerance(
     detector: Option<&mut NearmissDetector>,
@@ -87,6 +90,20 @@ pub extern "C" fn nearmiss_detector_tolerance(
 ) -> NearmissCode {
     NearmissDetector::work(detector, error, |own| {
         given(tolerance, "the tolerance")?.write(own.detector.tolerance().unwrap_or(-1.0));
+        Ok(())
+    })
+}
+
+/// The largest tolerance of a pair of bodies, a length: that of `nearmiss_detector_tolerance` if all pairs have the same; -1 of other
+/// solvers.
+#[unsafe(no_mangle)]
+pub extern "C" fn nearmiss_detector_largest_tolerance(
+    detector: Option<&mut NearmissDetector>,
+    tolerance: Option<&mut MaybeUninit<f64>>,
+    error: Option<&mut MaybeUninit<NearmissError>>,
+) -> NearmissCode {
+    NearmissDetector::work(detector, error, |own| {
+        given(tolerance, "the tolerance")?.write(own.detector.largest_tolerance().unwrap_or(-1.0));
         Ok(())
     })
 }

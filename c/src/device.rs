@@ -54,6 +54,10 @@ pub extern "C" fn nearmiss_device_open(
                 return Err(refused(format!("the backend {other}"), advice));
             }
         };
+        if backend == Backend::Cuda && threads > 0 {
+            let what = format!("{threads} threads of a GPU, which takes none");
+            return Err(refused(what, "give 0, or choose NEARMISS_CPU"));
+        }
         Device::open(backend, (threads > 0).then_some(threads)).map(NearmissDevice::from)
     })
 }

@@ -124,11 +124,37 @@ impl NearmissInput {
         refused(format!("an input of kind {}", self.kind), advice)
     }
 
+    /// Refuses rows that `kind` does not read.
+    fn check_idle(&self) -> Result<(), Error> {
+        let on_device = flag(self.on_device, "on_device")?;
+        let (positions, rotations) = match (self.kind, on_device) {
+            (0, _) => (1, 0),
+            (1, _) => (2, 0),
+            (2, true) => (1, 1),
+            (3, true) => (2, 2),
+            (2 | 3, false) => (0, 0),
+            _ => return Err(self.no_such_kind()),
+        };
+        for (name, rows, read) in
+            [("positions", &self.positions, positions), ("rotations", &self.rotations, rotations)]
+        {
+            if let Some(end) = (read..2).find(|&end| !rows[end].data.is_null() || rows[end].count > 0) {
+                let what = format!(
+                    "{name}[{end}] of body {}, which an input of kind {} does not read",
+                    self.body, self.kind
+                );
+                return Err(refused(what, "choose the kind that reads it, or leave it empty"));
+            }
+        }
+        Ok(())
+    }
+
     /// The library's input, wherever it lies.
     ///
     /// # Safety
     /// What `kind` names is there, and stays as long as the header says.
     pub(crate) unsafe fn held(&self) -> Result<Held, Error> {
+        self.check_idle()?;
         if flag(self.on_device, "on_device")? {
             // SAFETY: the caller's promise.
             return Ok(Held::Other(Input::OnDevice(unsafe { self.on_device() }?)));
@@ -154,6 +180,7 @@ impl NearmissInput {
             let what = format!("memory of the host for body {}", self.body);
             return Err(refused(what, "prepare frames with what lies on the device, and set `on_device`"));
         }
+        self.check_idle()?;
         let rows = |rows: &NearmissRows, width| {
             // SAFETY: the caller's promise.
             unsafe { rows.on_device(&format!("rows of body {}", self.body), width) }

@@ -384,7 +384,7 @@ fn a_plan_is_what_would_run() {
     }
     let folder = Folder::new("plan");
     let a = folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    assert!(ok(&["plan", &a, "--with", &a]).contains("Discrete, between"));
+    assert!(ok(&["plan", &a, "--with", &a]).contains("Discrete, within and between"));
 }
 
 #[test]

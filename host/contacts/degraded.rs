@@ -1,12 +1,13 @@
 //! What an answer, or its making, owes to a limit: said aloud, each by its reason.
 
 use crate::pipeline::{Found, Listed};
+use crate::scene::BodyId;
 use crate::words::counted;
 use nearmiss_kernels::abi::counter;
 use std::fmt;
 
 /// A way in which a frame came to less than all that was asked. Nothing is ever missed for any of them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(tag = "reason", rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Degraded {
@@ -33,9 +34,24 @@ pub enum Degraded {
         /// How many.
         pairs: u64,
     },
+    /// A rigid body that turns by more than [`TURN_DEGREES`] between the two poses of a step. Its vertices move in straight lines, which
+    /// leave their arcs: contacts of the turning body itself may be missed or early by as much as the bulge.
+    Turned {
+        /// The body.
+        body: BodyId,
+        /// The angle, in degrees up to 180.
+        degrees: f64,
+        /// Largest distance of a vertex from its arc, a length: `r (1 - cos(angle / 2))`, with r the distance of the farthest vertex
+        /// from the axis of the turn.
+        bulge: f64,
+    },
     /// The front did not pay: dropped, or not yet taken up again. The answer is whole.
     FrontDropped,
 }
+
+/// Largest turn of a rigid body in a step of which an answer says nothing, in degrees. There a vertex is at most 3.5 % of its distance
+/// from the axis off its arc: `1 - cos(15 degrees)`.
+pub const TURN_DEGREES: f64 = 30.0;
 
 impl Degraded {
     /// Whether the answer itself is less than was asked, not only the time that it took.
@@ -59,6 +75,7 @@ impl Degraded {
                 Degraded::DistanceBelowPrecision { pairs: b },
             ) => Degraded::DistanceBelowPrecision { pairs: a + b },
             (Degraded::FrontDropped, Degraded::FrontDropped) => Degraded::FrontDropped,
+            (Degraded::Turned { body: a, .. }, Degraded::Turned { body: b, .. }) if a == b => other,
             _ => return None,
         })
     }
@@ -104,6 +121,13 @@ impl fmt::Display for Degraded {
             Degraded::DistanceBelowPrecision { pairs } => {
                 let pairs = counted(*pairs, "pair", "pairs");
                 write!(f, "{pairs} listed, within the distance or by a rounding of doubles beyond it")
+            }
+            Degraded::Turned { body, degrees, bulge } => {
+                write!(
+                    f,
+                    "body {body} turns by {degrees:.1} degrees; its vertices move in straight lines, up to {bulge:e} off their arcs; \
+                     divide the step"
+                )
             }
             Degraded::FrontDropped => write!(f, "the front did not pay and was dropped; the answer is whole"),
         }

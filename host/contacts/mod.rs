@@ -11,7 +11,7 @@ mod summary;
 mod triangles;
 mod work;
 
-pub use degraded::Degraded;
+pub use degraded::{Degraded, TURN_DEGREES};
 pub use geometry::ContactGeometry;
 pub use near::{Closest, NearPair};
 pub use nearest::NearestTriangles;

@@ -43,8 +43,11 @@ pub struct Summary {
     pub unresolved: u64,
     /// In what the frame came to less than all that was asked; empty where nothing did.
     pub degraded: Vec<Degraded>,
-    /// The tolerance of a certified solver, a length.
+    /// The tolerance of a certified solver, a length: the smallest, if pairs have several.
     pub tolerance: Option<f64>,
+    /// The largest of them, if pairs have several.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub largest_tolerance: Option<f64>,
     /// The separation of a certified solver, a length; 0 for touching.
     pub separation: Option<f64>,
     /// The distance of a near query, a length.
@@ -94,6 +97,7 @@ impl Summary {
             unresolved: contacts.unresolved,
             degraded: contacts.degraded.clone(),
             tolerance: None,
+            largest_tolerance: None,
             separation: query.certified().map(|certified| certified.params().separation),
             distance: if let Query::Near(near) = query { Some(near.distance) } else { None },
             nearest: contacts.nearest().copied(),

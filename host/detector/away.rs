@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::mesh::{Body, Positions};
 use crate::pipeline::below_precision::BelowPrecision;
 use crate::pipeline::{Layout, Seen, Stages, Whereabouts};
-use crate::query::Query;
+use crate::query::{Certified, Query};
 use crate::scene::Pose;
 use std::sync::Arc;
 use std::time::Instant;
@@ -115,6 +115,7 @@ impl Detector {
         self.wear.tell(contacts.steps);
         self.largest = seen.map_or(self.largest, |seen| seen.largest.max(self.largest));
         self.tell_below_precision(&mut contacts)?;
+        self.tell_turns(&mut contacts)?;
         let wall = start.elapsed().as_secs_f64() * 1e3;
         contacts.stages = Stages { construct: self.construct_ms, wall, ..contacts.stages };
         Ok(contacts)
@@ -123,11 +124,12 @@ impl Detector {
     /// An earliest query lists no pairs, so whether they are too large for the tolerance hangs on where bodies are: of those that are
     /// away on the largest of their coordinates and, where that leaves it open, on themselves.
     fn tell_below_precision(&mut self, contacts: &mut Contacts) -> Result<(), Error> {
-        let (Query::Earliest(_), Some(certified)) =
-            (self.query, self.query_with_tolerance().certified().copied())
+        let (Query::Earliest(_), Some(certified), Some(tolerances)) =
+            (self.query, self.query.certified().copied(), &self.tolerances)
         else {
             return Ok(());
         };
+        let certified = Certified { tolerance: Some(tolerances.finest), ..certified };
         let is_away = self.scene.bodies().iter().any(Body::is_away);
         if !is_away || !BelowPrecision::may_be(&certified, 2.0 * self.largest) {
             return Ok(());

@@ -10,9 +10,11 @@ impl Detector {
     /// [`Detector::new`], at the next frame.
     ///
     /// # Errors
-    /// [`Error::Choice`] for a body that is not in the scene, and for more triangles than indices reach: then nothing has changed.
+    /// [`Error::Choice`] for a body that is not in the scene, for self-contact of a static body, and for
+    /// more triangles than indices reach: then nothing has changed.
     pub fn replace(&mut self, id: BodyId, body: Body) -> Result<(), Error> {
         let old = self.scene.get(id).ok_or_else(|| nobody(id))?;
+        body.check_meets()?;
         self.fits(Some(old), &body)?;
         self.fetch()?;
         *self.scene.get_mut(id).ok_or_else(|| nobody(id))? = body;
@@ -23,12 +25,14 @@ impl Detector {
     /// Adds a body to the scene, from the next frame on. Cost: as of [`Detector::new`], at the next frame.
     ///
     /// # Errors
-    /// [`Error::Choice`] for more triangles than indices reach: then nothing has changed.
+    /// [`Error::Choice`] for self-contact of a static body, and for more triangles than indices reach: then nothing has changed.
     pub fn add(&mut self, body: Body) -> Result<BodyId, Error> {
+        body.check_meets()?;
         self.fits(None, &body)?;
         self.fetch()?;
+        let id = self.scene.add(body);
         self.changed();
-        Ok(self.scene.add(body))
+        Ok(id)
     }
 
     /// Takes a body out of the scene, from the next frame on; other bodies keep their numbers. Cost: as of
@@ -56,6 +60,7 @@ impl Detector {
     /// The next frame begins anew.
     fn changed(&mut self) {
         (self.pipeline, self.layout, self.answered, self.slices) = (None, None, false, 1);
+        self.choose_tolerances();
     }
 }
 

@@ -8,6 +8,7 @@ pub mod plan;
 mod share;
 mod slices;
 mod submit;
+mod turns;
 mod wear;
 
 use crate::contacts::{Contacts, Degraded, Summary};
@@ -16,7 +17,7 @@ use crate::device::{Device, Work};
 use crate::error::Error;
 use crate::memory;
 use crate::mesh::{Body, MAX_FACES, MAX_VERTICES};
-use crate::pipeline::{self, Found, Layout, Pipeline, Share, Stage, Stages};
+use crate::pipeline::{self, Found, Layout, Pipeline, Share, Stage, Stages, Tolerances};
 use crate::query::{Query, Rebuild};
 use crate::scene::Scene;
 use std::sync::Arc;
@@ -38,7 +39,7 @@ pub(crate) use wear::Wear;
 /// ]);
 /// let body = Body::still(Mesh::new("two triangles", at(1.0), faces)?);
 /// let device = Device::open(Backend::Auto, None)?;
-/// // One body alone is tested against itself.
+/// // A deformable body is tested against itself.
 /// let mut detector = Detector::new(device, body, Query::continuous())?;
 /// let triangles = detector.scene().ids().next().expect("a body");
 /// let contacts = detector.frame(&[(triangles, Input::Step([&at(1.0), &at(-1.0)]))])?;
@@ -51,8 +52,8 @@ pub struct Detector {
     /// None where bodies came, went or changed since the last frame.
     layout: Option<Arc<Layout>>,
     query: Query,
-    /// The tolerance of a certified solver.
-    tolerance: Option<f64>,
+    /// The tolerances of a certified solver.
+    tolerances: Option<Tolerances>,
     construct_ms: f64,
     /// Whether the device holds the answer for where the bodies are now.
     answered: bool,
@@ -82,11 +83,12 @@ pub struct Detector {
 const OF_A_TRIANGLE: u64 = 300;
 
 impl Detector {
-    /// Uploads a scene and builds its trees: of a single body, tested against itself, or of a list of bodies, too. Cost: linear
+    /// Uploads a scene and builds its trees: of a single body, or of a list of bodies, too. Cost: linear
     /// in triangles; memory grows with what is found.
     ///
     /// # Errors
-    /// [`Error::Choice`] for a scene without bodies and for numbers that mean nothing; those of the device.
+    /// [`Error::Choice`] for a scene without bodies, for self-contact of a static body and for numbers that mean nothing;
+    /// those of the device.
     pub fn new(device: Device, scene: impl Into<Scene>, query: impl Into<Query>) -> Result<Detector, Error> {
         Detector::with_share(device, scene.into(), query.into(), Share::WHOLE)
     }
@@ -109,14 +111,13 @@ impl Detector {
                 advice: "give one body to test against itself, or more to test against each other".into(),
             });
         }
-        let or_default = |asked: Option<f64>| asked.unwrap_or_else(|| pipeline::of_edges(scene.bodies()));
-        let tolerance = query.certified().map(|certified| or_default(certified.tolerance));
+        scene.bodies().iter().try_for_each(Body::check_meets)?;
         let mut detector = Detector {
             device: device.for_one(),
             scene,
             layout: None,
             query,
-            tolerance,
+            tolerances: None,
             construct_ms: 0.0,
             answered: false,
             largest: 0.0,
@@ -132,8 +133,20 @@ impl Detector {
             build: Work::default(),
             work: Work::default(),
         };
+        detector.choose_tolerances();
         detector.begun()?;
         Ok(detector)
+    }
+
+    /// The tolerances of the bodies that there are now.
+    fn choose_tolerances(&mut self) {
+        self.tolerances = self.query.certified().copied().map(|certified| match certified.tolerance {
+            Some(tolerance) => Tolerances::named(tolerance),
+            None => {
+                self.scene.bodies_mut().iter_mut().for_each(Body::keep_tolerance);
+                Tolerances::of(self.scene.bodies())
+            }
+        });
     }
 
     /// Where every body lies in the memory that all share. All that is asked begins here, so a process that was forked is told here that it
@@ -147,7 +160,11 @@ impl Detector {
         let triangles: usize = bodies.iter().map(Body::face_count).sum();
         fits(triangles, bodies.iter().map(Body::vertex_count).sum())?;
         memory::require("trees and lists", triangles as u64 * OF_A_TRIANGLE)?;
-        let layout = Arc::new(Layout::new(bodies, self.query.kind()));
+        let mut layout = Layout::new(bodies, self.query.kind());
+        if let Some(tolerances) = &self.tolerances {
+            layout.tolerances = tolerances.records(&layout.starts);
+        }
+        let layout = Arc::new(layout);
         self.layout = Some(layout.clone());
         Ok(layout)
     }
@@ -188,11 +205,11 @@ impl Detector {
         self.builds
     }
 
-    /// The query, with its tolerance.
+    /// The query, with the largest tolerance of its pairs: volumes grow by it.
     fn query_with_tolerance(&self) -> Query {
         let mut query = self.query;
-        if let Some(certified) = query.certified_mut() {
-            certified.tolerance = self.tolerance;
+        if let (Some(certified), Some(tolerances)) = (query.certified_mut(), &self.tolerances) {
+            certified.tolerance = Some(tolerances.largest);
         }
         query
     }
@@ -293,16 +310,26 @@ impl Detector {
         &self.query
     }
 
-    /// The tolerance of a certified solver, a length: as asked, or by default [`Certified::TOLERANCE`](crate::query::Certified::TOLERANCE) of the mean edge of the
-    /// bodies at the start, rounded down to a power of two. It stays when bodies move, come and go.
+    /// Smallest tolerance of a pair of bodies by a certified solver, a length. As named, which is one for all pairs. By default
+    /// a pair has the smaller default of its two bodies: [`Certified::TOLERANCE`](crate::query::Certified::TOLERANCE) of the mean
+    /// edge of the mesh that a body was made of, rounded down to a power of two. It stays when bodies move.
     pub fn tolerance(&self) -> Option<f64> {
-        self.tolerance
+        self.tolerances.as_ref().map(|tolerances| tolerances.least)
+    }
+
+    /// Largest tolerance of a pair of bodies by a certified solver, a length: that of [`Detector::tolerance`] if all pairs have
+    /// the same.
+    pub fn largest_tolerance(&self) -> Option<f64> {
+        self.tolerances.as_ref().map(|tolerances| tolerances.largest)
     }
 
     /// What the command line prints of a result.
     pub fn summary(&self, contacts: &Contacts) -> Summary {
         Summary {
-            tolerance: self.tolerance,
+            tolerance: self.tolerance(),
+            largest_tolerance: self
+                .largest_tolerance()
+                .filter(|_| self.largest_tolerance() != self.tolerance()),
             builds: self.builds,
             ..Summary::new(self.scene.bodies(), self.query, &self.device, contacts)
         }

@@ -15,14 +15,15 @@ impl Detector {
     /// ended. One submission: an upload of what is named, one launch that places it, and the stages of a frame.
     ///
     /// # Errors
-    /// [`Error::Choice`] for a body that is not in the scene, or named twice, or given what its kind does not take;
+    /// [`Error::Choice`] for a body that is not in the scene, or named twice, or given what its kind does not take, and by a query in
+    /// motion for inputs of which none has two ends;
     /// [`Error::Input`] for positions that no mesh may have: then nothing has moved. Only what lies in a GPU's memory is seen when it is
     /// read: after a frame that is refused for that, the next must name the same bodies, since where these were is gone. Those of the
     /// device.
     pub fn frame(&mut self, inputs: &[(BodyId, Input)]) -> Result<Contacts, Error> {
         let start = Instant::now();
         self.device.work();
-        let named = self.put(inputs)?;
+        let named = self.put(inputs, true)?;
         let mut moved = Vec::with_capacity(inputs.len());
         for (body, (own, named)) in self.scene.bodies_mut().iter_mut().zip(named).enumerate() {
             if named || own.rest() {
@@ -37,15 +38,16 @@ impl Detector {
     /// at the next [`Detector::detect`].
     ///
     /// # Errors
-    /// As for [`Detector::frame`].
+    /// As for [`Detector::frame`]; bodies may all be put at one end.
     pub fn place(&mut self, inputs: &[(BodyId, Input)]) -> Result<(), Error> {
-        let named = self.put(inputs)?;
+        let named = self.put(inputs, false)?;
         let moved = named.iter().enumerate().filter(|(_, named)| **named);
         self.moved(&moved.map(|(body, _)| Moved { body, rests: false }).collect::<Vec<_>>())
     }
 
-    /// Moves bodies on the host, all or none; of each body of the scene, whether it was named.
-    fn put(&mut self, inputs: &[(BodyId, Input)]) -> Result<Vec<bool>, Error> {
+    /// Moves bodies on the host, all or none; of each body of the scene, whether it was named. In a frame of a query in motion that
+    /// names bodies one of them has two ends.
+    fn put(&mut self, inputs: &[(BodyId, Input)], is_frame: bool) -> Result<Vec<bool>, Error> {
         let mut named = vec![false; self.scene.bodies().len()];
         for (id, input) in inputs {
             let Some(body) = self.scene.get(*id) else { return Err(nobody(*id)) };
@@ -61,6 +63,15 @@ impl Detector {
                 let (ends, poses) = unsafe { lent.read() };
                 body.check_found(&ends, &poses)?;
             }
+        }
+        let in_motion = !self.query.kind().is_at_rest();
+        if is_frame && in_motion && !inputs.is_empty() && !inputs.iter().any(|(_, input)| input.is_moving()) {
+            return Err(Error::Choice {
+                what: format!("no body of the frame has two ends, and the query is {}", self.query.kind()),
+                advice:
+                    "give each body that moves both ends of the step: two arrays of positions, or two poses"
+                        .into(),
+            });
         }
         self.named.clone_from(&named);
         for (id, input) in inputs {
@@ -117,7 +128,8 @@ impl Detector {
                 advice: "give frames of the same mesh, or replace the body".into(),
             });
         };
-        self.scene.bodies_mut()[body] = frame.with(meets);
+        let old = &mut self.scene.bodies_mut()[body];
+        *old = frame.with(meets).with_tolerance_of(old);
         self.moved(&[Moved { body, rests: false }])
     }
 }

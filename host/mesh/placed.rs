@@ -1,9 +1,13 @@
 //! Where a body is put from frame to frame.
 
+use super::sequence::Kept;
 use super::validate::{MAX_ABS_F32, MAX_ABS_F64};
 use super::{Away, Body, Positions, Problem, validate};
 use crate::Error;
+use crate::contacts::TURN_DEGREES;
+use crate::pipeline::of_edges;
 use crate::scene::{BodyKind, DeviceInput, Input, Pose};
+use nalgebra::Vector3;
 
 /// The lower and the upper corner of a box.
 pub type Bounds = [[f64; 3]; 2];
@@ -104,6 +108,23 @@ impl Body {
         Ok(())
     }
 
+    /// The default tolerance of a certified solver for the mesh that the body was made of: it stays when the body moves. 0 if no
+    /// side of its triangles has a length. Cost: a root a side, once.
+    pub fn default_tolerance(&self) -> f64 {
+        self.tolerance.0.unwrap_or_else(|| of_edges(std::slice::from_ref(self)))
+    }
+
+    /// Computes the default tolerance, before the positions that it follows from are overwritten.
+    pub(crate) fn keep_tolerance(&mut self) {
+        self.tolerance = Kept(Some(self.default_tolerance()));
+    }
+
+    /// Takes over the default tolerance of the body of which this is another frame.
+    pub(crate) fn with_tolerance_of(mut self, body: &Body) -> Body {
+        self.tolerance = Kept(Some(body.default_tolerance()));
+        self
+    }
+
     /// Puts the body where a frame says, which [`Body::check`] has let pass. Cost: a copy of the positions.
     pub(crate) fn put(&mut self, input: &Input) {
         self.away = None;
@@ -119,6 +140,7 @@ impl Body {
     fn put_vertices(&mut self, t0: &Positions, t1: Option<&Positions>) {
         let single = |positions| matches!(validate::is_single(positions, &self.faces), Ok(true));
         let singles = std::iter::once(t0).chain(t1).all(single);
+        self.keep_tolerance();
         let take =
             |positions: &Positions| if singles { positions.clone() } else { positions.clone().promoted() };
         (self.positions_t0, self.positions_t1) = (take(t0), t1.map(take));
@@ -201,6 +223,7 @@ impl Body {
             }
             BodyKind::Deformable => match self.positions_t1.take() {
                 Some(end) => {
+                    self.keep_tolerance();
                     self.positions_t0 = end;
                     true
                 }
@@ -214,6 +237,27 @@ impl Body {
         self.positions_t0.is_f64()
             || self.lent().is_some_and(DeviceInput::has_f64)
             || self.posed_box().is_some_and(|bounds| size(&bounds) > f64::from(MAX_ABS_F32))
+    }
+
+    /// The angle by which the body turns from one pose to another, in degrees, and how far a vertex leaves its arc when it moves in a
+    /// straight line; `None` for a turn up to [`TURN_DEGREES`]. Cost: a pass over the faces of a body that turns farther.
+    pub(crate) fn turn(&self, [start, end]: [Pose; 2]) -> Option<[f64; 2]> {
+        let (angle, axis) = start.turn_to(&end);
+        let degrees = angle.to_degrees();
+        // A NaN is of a pose that another check refuses.
+        if degrees.is_nan() || degrees <= TURN_DEGREES {
+            return None;
+        }
+        let axis = axis / axis.dot(&axis).sqrt();
+        let from_axis = |&v: &u32| {
+            // Faces were checked when the mesh was made: every vertex is there.
+            let point = Vector3::from(self.positions_t0.get_f64(v as usize).unwrap_or_default());
+            let across = point.cross(&axis);
+            across.dot(&across).sqrt()
+        };
+        let farthest = self.faces.iter().flatten().map(from_axis).fold(0.0, f64::max);
+        // 1 - cos(angle / 2), without its cancellation.
+        Some([degrees, farthest * 2.0 * (angle / 4.0).sin().powi(2)])
     }
 
     /// A box that holds a rigid body at both ends of the step, where the host knows it; none of others.

@@ -22,8 +22,20 @@ pub struct Body {
     pub(super) poses: [Pose; 2],
     /// Of a rigid body: no vertex of a face is farther from where it turns.
     pub(super) radius: f64,
+    /// The default tolerance of the mesh that it was made of, once it was computed.
+    pub(super) tolerance: Kept,
     /// Where it is, if the host does not know: then positions and poses are old.
     pub(super) away: Option<Away>,
+}
+
+/// A number that follows from the mesh that a body was made of: bodies are equal whether or not it was computed.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Kept(pub(super) Option<f64>);
+
+impl PartialEq for Kept {
+    fn eq(&self, _: &Kept) -> bool {
+        true
+    }
 }
 
 /// Where a body is that the host has lost sight of.
@@ -57,6 +69,7 @@ impl Body {
             meets: Meets::default(),
             poses: [Pose::default(); 2],
             radius: 0.0,
+            tolerance: Kept::default(),
             away: None,
         }
     }
@@ -98,6 +111,25 @@ impl Body {
     /// Which bodies it may meet.
     pub fn meets(&self) -> &Meets {
         &self.meets
+    }
+
+    /// Whether it is tested against itself: see [`Meets::is_own`].
+    pub fn meets_itself(&self) -> bool {
+        self.meets.is_own(self.kind)
+    }
+
+    /// Refuses self-contact of a static body, which would do nothing. Detectors check it, and whoever reads bodies may.
+    ///
+    /// # Errors
+    /// [`Error::Choice`], naming the body.
+    pub fn check_meets(&self) -> Result<(), Error> {
+        if self.kind == BodyKind::Static && self.meets.self_contact == Some(true) {
+            return Err(Error::Choice {
+                what: format!("self-contact of {}, which is static and never meets itself", self.name),
+                advice: "leave self-contact out, or make the body rigid or deformable".into(),
+            });
+        }
+        Ok(())
     }
 
     /// The poses of a rigid body at both ends of the step; old ones where it [is away](Body::is_away).

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::mesh::{Body, Bounds, NOTHING, Positions, union};
 use crate::pipeline::launch;
 use crate::query::{Certified, CertifiedPrecision};
-use nearmiss_kernels::abi::{BelowPrecisionArgs, Hit, Span};
+use nearmiss_kernels::abi::{BelowPrecisionArgs, BodyTolerance, Hit, Span};
 use nearmiss_kernels::math::tolerance::Tolerance;
 use rayon::prelude::*;
 
@@ -70,6 +70,7 @@ fn finest(certified: &Certified) -> f64 {
 /// Those of the device.
 pub fn count<R: Precision>(
     below_precision: Option<BelowPrecision>,
+    tolerances: Span<BodyTolerance>,
     (edges, vf, ee): (Span<[u32; 2]>, &List<Hit>, &List<Hit>),
     given: &NarrowContext<R>,
 ) -> Result<(), Error> {
@@ -82,6 +83,7 @@ pub fn count<R: Precision>(
         ee: ee.output(given.counters),
         counters: given.counters,
         tolerance,
+        tolerances,
         finest,
     };
     launch::striding::<R::BelowPrecision>(given.device, vf.capacity() + ee.capacity(), &args)

@@ -3,7 +3,7 @@
 use crate::mesh::{Body, Topology};
 use crate::query::QueryKind;
 use crate::scene::{BodyId, BodyKind, Meets};
-use nearmiss_kernels::abi::{BodyRecord, EVERY, NodeFilter};
+use nearmiss_kernels::abi::{BodyRecord, BodyTolerance, EVERY, NodeFilter};
 
 /// The indices of one body: its own plus these.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -31,6 +31,8 @@ pub struct Layout {
     pub owners: Vec<u32>,
     /// What kernels know of each body.
     pub records: Vec<BodyRecord>,
+    /// Tolerances of bodies by their first vertices; empty if all pairs have the same, and of queries without one.
+    pub tolerances: Vec<BodyTolerance>,
     /// The bodies with triangles that may move, and those that are static.
     pub trees: [Vec<usize>; 2],
 }
@@ -45,12 +47,12 @@ impl Layout {
         environments.dedup();
         let rank = |environment: u32| environments.partition_point(|&other| other < environment) as u32;
         for (i, body) in bodies.iter().enumerate() {
-            let Meets { environment, group, mask, self_contact } = *body.meets();
+            let Meets { environment, group, mask, .. } = *body.meets();
             all.records.push(BodyRecord {
                 triangle: at.triangle,
                 vertex: at.vertex,
                 environment: environment.map_or(EVERY, rank),
-                self_contact: (self_contact && kind.is_within_bodies()).into(),
+                self_contact: (body.meets_itself() && kind.is_within_bodies()).into(),
                 group,
                 mask,
             });
@@ -82,6 +84,11 @@ impl Layout {
             trees: [vec![0], Vec::new()],
             ..Layout::default()
         }
+    }
+
+    /// The smallest tolerance above 0, if pairs have several.
+    pub fn finest_tolerance(&self) -> Option<f64> {
+        self.tolerances.iter().map(|record| record.tolerance).reduce(f64::min)
     }
 
     /// How many bodies there are.

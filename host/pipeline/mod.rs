@@ -21,7 +21,7 @@ pub use broad::Share;
 pub use layout::{Layout, Offsets};
 pub use placing::{Moved, Seen, Whereabouts};
 pub use timing::{Stage, Stages};
-pub use tolerance::{mean_side, of_edges};
+pub use tolerance::{Tolerances, mean_side, of_edges, of_pair};
 pub use typed::{Found, Hits, Listed, Pipeline, Submits};
 
 use crate::device::Device;

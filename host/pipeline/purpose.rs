@@ -28,6 +28,8 @@ pub const TILES: &str = "volumes of triangles, of tiles and above";
 pub const SHARES: &str = "what each tile cost, to divide work among devices";
 /// What kernels know of bodies.
 pub const RECORDS: &str = "environment, groups and ranges of each body";
+/// Tolerances of bodies.
+pub const TOLERANCES: &str = "tolerance of each body";
 /// Counters of a frame.
 pub const COUNTERS: &str = "counters of the frame";
 /// Work of the walk.

@@ -1,12 +1,85 @@
-//! How near may count as contact, when nobody says.
+//! Tolerances when none is named: that of a body, of a pair, of a scene.
 
+use super::layout::Offsets;
 use crate::mesh::Body;
 use crate::query::Certified;
+use crate::scene::BodyKind;
+use nearmiss_kernels::abi::BodyTolerance;
 
 /// [`Certified::TOLERANCE`] of the mean side of the triangles at t = 0, rounded down to a power of two; 0 where there is no
 /// side of a length. Cost: a root a side, on the host.
 pub fn of_edges(bodies: &[Body]) -> f64 {
     power_below(Certified::TOLERANCE * mean_side(bodies))
+}
+
+/// Tolerance of the pairs of two bodies, or of a body and itself: the smaller of both defaults, each that of the mesh that the
+/// body was made of. A body without a side of a length has none, and takes that of the other; 0 if neither has one.
+pub fn of_pair(a: &Body, b: &Body) -> f64 {
+    smaller(own(a), own(b))
+}
+
+/// The smaller of two; 0 if neither is finite.
+fn smaller(a: f64, b: f64) -> f64 {
+    let smaller = a.min(b);
+    if smaller.is_finite() { smaller } else { 0.0 }
+}
+
+/// The default of a body; infinite if it has none.
+fn own(body: &Body) -> f64 {
+    let tolerance = body.default_tolerance();
+    if tolerance > 0.0 { tolerance } else { f64::INFINITY }
+}
+
+/// Tolerances of a scene's pairs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tolerances {
+    /// The smallest of all pairs that may meet.
+    pub least: f64,
+    /// The largest.
+    pub largest: f64,
+    /// The smallest above 0; 0 if there is none.
+    pub finest: f64,
+    /// That of each body, infinite for one that has none; empty if all pairs have the same.
+    bodies: Vec<f64>,
+}
+
+impl Tolerances {
+    /// One for all pairs, as named.
+    pub fn named(tolerance: f64) -> Tolerances {
+        Tolerances { least: tolerance, largest: tolerance, finest: tolerance, bodies: Vec::new() }
+    }
+
+    /// The default of each pair. Whether environments and groups let it meet is not considered. Cost: a root a side of bodies
+    /// that have not told theirs, and a sort of the bodies.
+    pub fn of(bodies: &[Body]) -> Tolerances {
+        let all: Vec<f64> = bodies.iter().map(own).collect();
+        let mut order: Vec<usize> = (0..bodies.len()).filter(|&i| bodies[i].face_count() > 0).collect();
+        order.sort_by(|&i, &j| all[i].total_cmp(&all[j]));
+        // That of each pair of which the first body has the smaller one.
+        let moves = |i: usize| bodies[i].kind() != BodyKind::Static;
+        let mut mover_follows = false;
+        let mut follows = false;
+        let mut pairs = Vec::with_capacity(order.len());
+        for &i in order.iter().rev() {
+            if bodies[i].meets_itself() || mover_follows || (follows && moves(i)) {
+                pairs.push(smaller(all[i], all[i]));
+            }
+            follows = true;
+            mover_follows |= moves(i);
+        }
+        let least = pairs.iter().copied().reduce(f64::min).unwrap_or(0.0);
+        let largest = pairs.iter().copied().fold(0.0, f64::max);
+        let finest = pairs.iter().copied().filter(|&t| t > 0.0).reduce(f64::min).unwrap_or(0.0);
+        let bodies = if least == largest { Vec::new() } else { all };
+        Tolerances { least, largest, finest, bodies }
+    }
+
+    /// As kernels read them, by the first vertex of each body; empty if all pairs have the same.
+    pub fn records(&self, starts: &[Offsets]) -> Vec<BodyTolerance> {
+        let of =
+            |(&tolerance, start): (&f64, &Offsets)| BodyTolerance { vertex: start.vertex, pad: 0, tolerance };
+        self.bodies.iter().zip(starts).map(of).collect()
+    }
 }
 
 /// Mean side of the triangles at t = 0, each triangle's own three; 0 where there are none.
@@ -36,10 +109,15 @@ fn power_below(x: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::mesh::{Mesh, Positions};
+    use crate::scene::{Input, Meets};
+
+    fn mesh(size: f64) -> Mesh {
+        let points = vec![[0.0; 3], [3.0 * size, 0.0, 0.0], [0.0, 4.0 * size, 0.0]];
+        Mesh::new("test", Positions::F64(points), vec![[0, 1, 2]]).expect("a mesh")
+    }
 
     fn triangle(size: f64) -> Body {
-        let points = vec![[0.0; 3], [3.0 * size, 0.0, 0.0], [0.0, 4.0 * size, 0.0]];
-        Body::still(Mesh::new("test", Positions::F64(points), vec![[0, 1, 2]]).expect("a mesh"))
+        Body::still(mesh(size))
     }
 
     #[test]
@@ -55,5 +133,67 @@ mod tests {
         {
             assert_eq!(power_below(x), below);
         }
+    }
+
+    #[test]
+    fn a_pair_has_the_smaller_one_of_its_bodies_and_a_point_none() {
+        let [small, large, point] = [1.0, 1024.0, 0.0].map(triangle);
+        assert_eq!(of_pair(&small, &large), 2f64.powi(-12));
+        assert_eq!(of_pair(&large, &large), 2f64.powi(-2));
+        assert_eq!(of_pair(&large, &point), 2f64.powi(-2));
+        assert_eq!(of_pair(&point, &point), 0.0);
+    }
+
+    #[test]
+    fn those_of_a_scene_are_those_of_its_pairs() {
+        let alone = |body: Body| body.with(Meets::others());
+        let (small, large) = (2f64.powi(-12), 2f64.powi(-2));
+        let fixed = |size| Body::fixed(mesh(size));
+        let point = || alone(triangle(0.0));
+        for (bodies, [least, largest, finest], by_body) in [
+            (vec![triangle(1.0)], [small; 3], false),
+            (vec![], [0.0; 3], false),
+            (vec![point(), point()], [0.0; 3], false),
+            // A far ground of large triangles meets the others alone.
+            (vec![triangle(1.0), fixed(1024.0)], [small; 3], false),
+            (vec![triangle(1.0), fixed(1024.0), fixed(1024.0)], [small; 3], false),
+            (vec![triangle(1024.0), fixed(1.0)], [small, large, small], true),
+            (vec![alone(triangle(1024.0)), fixed(1.0)], [small; 3], false),
+            (vec![triangle(1.0), triangle(1024.0)], [small, large, small], true),
+            (vec![alone(triangle(1.0)), alone(triangle(1024.0))], [small; 3], false),
+            (vec![point(), triangle(1.0)], [small; 3], false),
+            (vec![point(), point(), triangle(1.0)], [0.0, small, small], true),
+        ] {
+            let found = Tolerances::of(&bodies);
+            assert_eq!([found.least, found.largest, found.finest], [least, largest, finest], "{bodies:?}");
+            assert_eq!(!found.bodies.is_empty(), by_body, "{bodies:?}");
+            // Each pair by itself.
+            let meets = |i: usize, j: usize| {
+                let fixed = |i: usize| bodies[i].kind() == BodyKind::Static;
+                if i == j { bodies[i].meets_itself() } else { !(fixed(i) && fixed(j)) }
+            };
+            let mut pairs: Vec<f64> = (0..bodies.len())
+                .flat_map(|i| (0..=i).map(move |j| (i, j)))
+                .filter(|&(i, j)| meets(i, j))
+                .map(|(i, j)| of_pair(&bodies[i], &bodies[j]))
+                .collect();
+            pairs.sort_by(f64::total_cmp);
+            let ends = [pairs.first(), pairs.last()].map(|end| end.copied().unwrap_or(0.0));
+            assert_eq!([found.least, found.largest], ends, "{bodies:?}");
+        }
+    }
+
+    #[test]
+    fn moving_does_not_change_it_and_another_mesh_does() {
+        let mut body = triangle(1.0);
+        let far = triangle(1024.0);
+        for input in [Input::At(far.positions_t0()), Input::Step([far.positions_t0(); 2])] {
+            body = body.at(&input).expect("a place");
+            assert_eq!(body.default_tolerance(), 2f64.powi(-12));
+        }
+        assert!(body.rest());
+        assert_eq!(body.default_tolerance(), 2f64.powi(-12));
+        let remade = Body::still(body.frames().remove(0));
+        assert_eq!(remade.default_tolerance(), 2f64.powi(-2));
     }
 }

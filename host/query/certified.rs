@@ -17,7 +17,8 @@ pub struct Certified {
     /// What it computes in.
     pub precision: CertifiedPrecision,
     /// How near to contact may count as one, a length; every time is early by what it takes to move that far, or less. 0 asks
-    /// for all that the precision gives. `None` for [`Certified::TOLERANCE`] of the bodies' mean edge.
+    /// for all that the precision gives; one for all pairs. `None`: of each pair the smaller default of its two bodies,
+    /// [`Certified::TOLERANCE`] of a body's mean edge.
     pub tolerance: Option<f64>,
     /// The most boxes that are looked at for a pair before it is left unresolved; `None` for [`Certified::BUDGET`].
     pub budget: Option<u32>,

@@ -18,3 +18,14 @@ pub enum Input<'a> {
     /// What lies in the device's memory already.
     OnDevice(DeviceInput),
 }
+
+impl Input<'_> {
+    /// Whether it has two ends.
+    pub(crate) fn is_moving(&self) -> bool {
+        match self {
+            Input::At(_) | Input::Pose(_) => false,
+            Input::Step(_) | Input::Poses(_) => true,
+            Input::OnDevice(input) => input.is_moving(),
+        }
+    }
+}

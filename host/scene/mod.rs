@@ -48,7 +48,8 @@ pub enum BodyKind {
 /// Which bodies a body may meet: see [`Body::with`](crate::mesh::Body::with).
 ///
 /// Two bodies are tested against each other if they are of one environment, or one of them is of every, and if each is in a
-/// group that the other meets. A body is tested against itself where it says so.
+/// group that the other meets. Deformable bodies are tested against themselves by default, rigid bodies if
+/// `self_contact` is true, static bodies never.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Meets {
     /// The environment; `None` for a body that is in every one. Bodies of different environments never meet.
@@ -57,33 +58,48 @@ pub struct Meets {
     pub group: u32,
     /// Bits of the groups that it meets.
     pub mask: u32,
-    /// Whether it is tested against itself.
-    pub self_contact: bool,
+    /// Whether it is tested against itself; `None` for the default of its kind: see [`Meets::is_own`].
+    pub self_contact: Option<bool>,
 }
 
 impl Meets {
     /// All other bodies, and itself.
     pub fn and_itself() -> Meets {
-        Meets { self_contact: true, ..Meets::default() }
+        Meets { self_contact: Some(true), ..Meets::default() }
+    }
+
+    /// All other bodies, not itself.
+    pub fn others() -> Meets {
+        Meets { self_contact: Some(false), ..Meets::default() }
     }
 
     /// All other bodies of that environment.
     pub fn in_environment(environment: u32) -> Meets {
         Meets { environment: Some(environment), ..Meets::default() }
     }
+
+    /// Whether a body of that kind is tested against itself. Deformable bodies are by default, rigid bodies if
+    /// `self_contact` is true, static bodies never.
+    pub fn is_own(&self, kind: BodyKind) -> bool {
+        match kind {
+            BodyKind::Static => false,
+            BodyKind::Rigid => self.self_contact == Some(true),
+            BodyKind::Deformable => self.self_contact != Some(false),
+        }
+    }
 }
 
 impl Default for Meets {
-    /// All other bodies, in environment 0; not itself.
+    /// All other bodies, in environment 0; itself if it is deformable.
     fn default() -> Meets {
-        Meets { environment: Some(0), group: u32::MAX, mask: u32::MAX, self_contact: false }
+        Meets { environment: Some(0), group: u32::MAX, mask: u32::MAX, self_contact: None }
     }
 }
 
 /// Bodies, by their numbers.
 ///
 /// ```
-/// use nearmiss::scene::{Meets, Scene};
+/// use nearmiss::scene::Scene;
 /// use nearmiss::{Body, Mesh, mesh::Positions};
 ///
 /// let triangle = |z: f32| {
@@ -91,7 +107,7 @@ impl Default for Meets {
 ///     Mesh::new("a triangle", Positions::F32(corners), vec![[0, 1, 2]])
 /// };
 /// let mut scene = Scene::new();
-/// let cloth = scene.add(Body::still(triangle(1.0)?).with(Meets::and_itself()));
+/// let cloth = scene.add(Body::still(triangle(1.0)?));
 /// let ball = scene.add(Body::rigid(triangle(0.5)?));
 /// let ground = scene.add(Body::fixed(triangle(0.0)?));
 /// assert_eq!([cloth, ball, ground].map(|body| body.index()), [0, 1, 2]);
@@ -168,18 +184,14 @@ impl Scene {
 }
 
 impl From<Vec<Body>> for Scene {
-    /// One body is tested against itself; more against each other, and against themselves where they say so.
-    fn from(mut bodies: Vec<Body>) -> Scene {
-        if let [only] = &mut bodies[..] {
-            let meets = Meets { self_contact: true, ..*only.meets() };
-            *only = std::mem::replace(only, Body::none()).with(meets);
-        }
+    /// These bodies, numbered in that order.
+    fn from(bodies: Vec<Body>) -> Scene {
         Scene { removed: vec![false; bodies.len()], bodies, free: Vec::new() }
     }
 }
 
 impl From<Body> for Scene {
-    /// A body, tested against itself.
+    /// A body alone.
     fn from(body: Body) -> Scene {
         Scene::from(vec![body])
     }
@@ -205,10 +217,29 @@ mod tests {
     }
 
     #[test]
-    fn one_body_is_tested_against_itself_and_two_are_not() {
-        let own = |scene: Scene| scene.bodies().iter().map(|b| b.meets().self_contact).collect::<Vec<_>>();
-        assert_eq!(own(Scene::from(soup(3, 1, false))), [true]);
-        assert_eq!(own(Scene::from(vec![soup(3, 1, false), soup(3, 2, false)])), [false, false]);
-        assert!(own(Scene::from(Vec::new())).is_empty());
+    fn self_contact_is_the_default_of_deformable_bodies_alone_and_among_others() {
+        let mesh = || soup(3, 1, false).frames().remove(0);
+        let kinds = [Body::still(mesh()), Body::rigid(mesh()), Body::fixed(mesh())];
+        for (meets, own) in [
+            (Meets::default(), [true, false, false]),
+            (Meets::in_environment(7), [true, false, false]),
+            (Meets::and_itself(), [true, true, false]),
+            (Meets::others(), [false; 3]),
+        ] {
+            let of = |scene: Scene| scene.bodies().iter().map(Body::meets_itself).collect::<Vec<_>>();
+            let bodies = kinds.clone().map(|body| body.with(meets));
+            assert_eq!(of(bodies.to_vec().into()), own, "{meets:?}");
+            for (body, own) in bodies.into_iter().zip(own) {
+                assert_eq!(of(body.into()), [own], "alone, {meets:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn self_contact_of_a_static_body_is_refused_by_name() {
+        let body = |meets| Body::fixed(soup(3, 1, false).frames().remove(0)).with(meets);
+        let text = body(Meets::and_itself()).check_meets().expect_err("refused").to_string();
+        assert!(text.contains("self-contact of") && text.contains("static"), "{text}");
+        assert!(body(Meets::others()).check_meets().is_ok() && body(Meets::default()).check_meets().is_ok());
     }
 }

@@ -66,6 +66,19 @@ impl Pose {
         })
     }
 
+    /// The turn from this pose to another: its angle in [0, pi], and its axis in the frame of the body's points, not of length 1.
+    /// Quaternions of opposite sign are the same rotation.
+    pub(crate) fn turn_to(&self, other: &Pose) -> (f64, Vector3<f64>) {
+        let parts = |pose: &Pose| {
+            let [x, y, z, w] = pose.record().rotation;
+            (Vector3::new(x, y, z), w)
+        };
+        let ((u, a), (v, b)) = (parts(self), parts(other));
+        // The conjugate of the first, times the second.
+        let axis = v * a - u * b - u.cross(&v);
+        (2.0 * axis.dot(&axis).sqrt().atan2((a * b + u.dot(&v)).abs()), axis)
+    }
+
     fn length(&self) -> f64 {
         let [x, y, z, w] = self.rotation;
         (x * x + y * y + z * z + w * w).sqrt()

@@ -68,6 +68,12 @@ impl Contacts {
         self.contacts.len()
     }
 
+    /// Caveats, a sentence each: in what the answer is less than was asked. Empty if there are none.
+    #[getter]
+    fn degraded(&self) -> Vec<String> {
+        self.contacts.degraded().iter().map(ToString::to_string).collect()
+    }
+
     /// (k,) uint8, see Kind: which features meet. Of Continuous and Near.
     #[getter]
     fn kind<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {

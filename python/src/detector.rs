@@ -18,7 +18,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// A scene on a device, asked frame after frame.
 ///
-/// scene:  a Scene, or one Body, which is tested against itself.
+/// scene:  a Scene, or one Body.
 /// query:  Discrete, Continuous, Earliest, Near or Distance.
 /// device: default: Device(), a GPU where there is one.
 ///
@@ -146,7 +146,6 @@ impl Detector {
             Some(device) => device,
             None => py.get_type::<Device>().call0()?.cast_into::<Device>()?.unbind(),
         };
-        // One body alone is tested against itself, as in the library.
         let bodies = match (scene.cast::<Body>(), scene.cast::<Scene>()) {
             (Ok(body), _) => nearmiss::Scene::from(body.get().body.clone()),
             (_, Ok(scene)) => scene.borrow().scene.clone(),
@@ -163,6 +162,9 @@ impl Detector {
             nearmiss::Detector::new(on, bodies, query)
         });
         let one = Mutex::new(Asked::new(detector.map_err(raised)?));
+        if let Ok(scene) = scene.cast::<Scene>() {
+            scene.try_borrow_mut()?.taken = true;
+        }
         Ok(Detector { one, device })
     }
 
@@ -282,10 +284,16 @@ impl Detector {
         self.ask(py, Does::Moves, |detector| detector.replace(id, by.body.clone()))
     }
 
-    /// The tolerance of a certified solver, a length.
+    /// Smallest tolerance of a pair of bodies by a certified solver, a length.
     #[getter]
     fn tolerance(&self, py: Python<'_>) -> Option<f64> {
         self.look(py, nearmiss::Detector::tolerance)
+    }
+
+    /// Largest tolerance of a pair of bodies: that of `tolerance` if all pairs have the same.
+    #[getter]
+    fn largest_tolerance(&self, py: Python<'_>) -> Option<f64> {
+        self.look(py, nearmiss::Detector::largest_tolerance)
     }
 
     /// Where it is asked.

@@ -57,6 +57,9 @@ impl Device {
                 "give threads for a CPU, gpu or stream for a GPU; a stream is of the GPU that the thread is bound to",
             ));
         }
+        if backend == Backend::Cuda && threads.is_some() {
+            return Err(choice("threads of a GPU, which takes none", "leave threads out, or choose \"cpu\""));
+        }
         let handle = stream.as_ref().map(handle_of).transpose()?;
         let opened = py.detach(|| match (gpu, handle) {
             (Some(gpu), _) => nearmiss::Device::gpu(gpu),

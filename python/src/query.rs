@@ -186,7 +186,7 @@ macro_rules! in_motion {
     ($(#[$doc:meta])* $kind:ident) => {
         $(#[$doc])*
         ///
-        /// tolerance:  how well a time is told, as a length moved; default: 1e-4 of the mean edge.
+        /// tolerance:  how well a time is told, as a length moved; default: of two bodies the smaller 1e-4 of the mean edge.
         /// separation: what comes nearer than this is in contact, in the unit of the vertices; 0 for touching.
         /// budget:     how many boxes, from 1, a pair may cost before it is listed as unresolved.
         /// solver:     "certified" (none is missed, none late), "certified-f32", "certified-f64", or "cubic-f64" and "cubic-f32", which

@@ -16,12 +16,14 @@ use pyo3::types::{PyDict, PyTuple};
 /// vertices:     (n, 3) numbers; float32 and float64 are kept as they are, others become float64. Copied.
 /// faces:        (m, 3) integers, the vertices of each triangle, from 0. Copied.
 /// kind:         "deformable" (each vertex moves by itself), "rigid" (a Pose a frame) or "static" (never moves; cheapest).
-/// self_contact: whether it is tested against itself.
+/// self_contact: whether it is tested against itself. Deformable bodies are by default (None), rigid bodies if it is True,
+///               static bodies never: True is refused for them.
 /// environment:  bodies of different environments never meet; None: in every one.
 /// group, mask:  two bodies meet if each is in a group (a bit of 32) that the other's mask has. ~1: all bits but the lowest.
 /// name:         what messages call it.
 ///
-/// Raises InputError for vertices that are not finite and for indices that are not there.
+/// Raises InputError for vertices that are not finite and for indices that are not there, ChoiceError for self-contact of a
+/// static body.
 #[pyclass(module = "nearmiss", frozen)]
 pub struct Body {
     pub body: nearmiss::Body,
@@ -31,7 +33,7 @@ pub struct Body {
 impl Body {
     #[new]
     #[pyo3(signature = (
-        vertices, faces, *, kind = "deformable", self_contact = false, environment = Some(0),
+        vertices, faces, *, kind = "deformable", self_contact = None, environment = Some(0),
         group = u32::MAX, mask = u32::MAX, name = "a mesh",
     ))]
     #[allow(clippy::too_many_arguments, reason = "they are named")]
@@ -40,7 +42,7 @@ impl Body {
         vertices: &Bound<'_, PyAny>,
         faces: &Bound<'_, PyAny>,
         kind: &str,
-        self_contact: bool,
+        self_contact: Option<bool>,
         #[pyo3(from_py_with = environment_of)] environment: Option<u32>,
         #[pyo3(from_py_with = group_of)] group: u32,
         #[pyo3(from_py_with = mask_of)] mask: u32,
@@ -61,7 +63,8 @@ impl Body {
         let triangles = self::faces(faces, name)?;
         let meets = Meets { environment, group, mask, self_contact };
         let made = py.detach(|| Mesh::new(name, given, triangles).map(|mesh| make(mesh).with(meets)));
-        Ok(Body { body: made.map_err(raised)? })
+        let body = made.and_then(|body| body.check_meets().map(|()| body));
+        Ok(Body { body: body.map_err(raised)? })
     }
 
     /// What messages call it.
@@ -125,9 +128,26 @@ fn bits(given: &Bound<'_, PyAny>, name: &str) -> PyResult<u32> {
 }
 
 /// Bodies, numbered from 0 in the order in which they are added.
+///
+/// A detector takes a copy; from then on the scene is not changed: add, remove and replace bodies of the detector.
 #[pyclass(module = "nearmiss")]
 pub struct Scene {
     pub scene: nearmiss::Scene,
+    /// Whether a detector has taken a copy.
+    pub taken: bool,
+}
+
+impl Scene {
+    /// Refuses a change that no detector would see.
+    fn is_free(&self, change: &str) -> PyResult<()> {
+        if self.taken {
+            return Err(choice(
+                format!("{change} a scene of which a detector has a copy, which would not change"),
+                "add, remove or replace bodies of the detector, or make another Scene",
+            ));
+        }
+        Ok(())
+    }
 }
 
 #[pymethods]
@@ -145,16 +165,18 @@ impl Scene {
             })?;
             scene.add(body.get().body.clone());
         }
-        Ok(Scene { scene })
+        Ok(Scene { scene, taken: false })
     }
 
     /// Adds a body: its number.
-    fn add(&mut self, body: &Body) -> usize {
-        self.scene.add(body.body.clone()).index()
+    fn add(&mut self, body: &Body) -> PyResult<usize> {
+        self.is_free("adding to")?;
+        Ok(self.scene.add(body.body.clone()).index())
     }
 
     /// Takes the body of that number out; the next one that is added may have its number.
     fn remove(&mut self, body: usize) -> PyResult<()> {
+        self.is_free("removing from")?;
         let id = known(body, self.scene.id(body))?;
         self.scene.remove(id);
         Ok(())

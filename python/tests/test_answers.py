@@ -172,3 +172,46 @@ def test_figures():
     plan = detector.plan()
     assert sum(buffer["bytes"] for buffer in plan["buffers"]) == detector.device.bytes[0] > 0
     assert found.unresolved >= 0 and "Near" not in repr(found) and "near pairs" in repr(found)
+
+
+def test_self_contact_is_the_default_of_deformable_bodies():
+    crossed = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.2, 0.2, -1], [0.2, 0.3, 1], [5, 5, 1]], np.float32)
+    faces = [[0, 1, 2], [3, 4, 5]]
+    far = crossed[:3] + 90
+    for choices, expected in [
+        ({}, 1), ({"self_contact": None}, 1), ({"self_contact": True}, 1), ({"self_contact": False}, 0),
+        ({"kind": "rigid"}, 0), ({"kind": "rigid", "self_contact": True}, 1), ({"kind": "static"}, 0),
+    ]:
+        body, other = nm.Body(crossed, faces, **choices), nm.Body(far, faces[:1])
+        assert len(nm.Detector(nm.Scene(body, other), nm.Discrete()).detect()) == expected, choices
+        assert len(nm.Detector(body, nm.Discrete()).detect()) == expected, choices
+    with pytest.raises(nm.ChoiceError, match="self-contact of a rug, which is static"):
+        nm.Body(crossed, faces, kind="static", self_contact=True, name="a rug")
+
+
+def test_a_scene_that_a_detector_has_is_not_changed():
+    vertices, faces = sheet(4, lambda x, y: 0 * x)
+    scene = nm.Scene(nm.Body(vertices, faces))
+    first = nm.Detector(scene, nm.Discrete())
+    nm.Detector(scene, nm.Near(0.1))
+    for change in [lambda: scene.add(nm.Body(vertices, faces)), lambda: scene.remove(0)]:
+        with pytest.raises(nm.ChoiceError, match="of which a detector has a copy"):
+            change()
+    assert first.add(nm.Body(vertices, faces)) == 1
+
+
+def test_a_frame_in_motion_has_two_ends_and_a_far_turn_a_caveat():
+    bar = np.array([[-2, 0, 0], [2, 0, 0], [0, 0.5, 0]], np.float32)
+    ground = nm.Body(bar - [0, 0, 9], [[0, 1, 2]], kind="static")
+    scene = nm.Scene(nm.Body(bar, [[0, 1, 2]], kind="rigid"), ground, nm.Body(bar + [0, 0, 9], [[0, 1, 2]]))
+    for query in [nm.Continuous(), nm.Earliest()]:
+        detector = nm.Detector(scene, query)
+        for inputs in [{2: bar}, {0: nm.Pose()}, {0: nm.Pose(), 2: bar}]:
+            with pytest.raises(nm.ChoiceError, match="no body of the frame has two ends"):
+                detector.frame(inputs)
+        assert detector.frame({0: (nm.Pose(), nm.Pose()), 2: bar}).degraded == []
+        half = np.radians(90) / 2
+        found = detector.frame({0: (nm.Pose(), nm.Pose((0, 0, np.sin(half), np.cos(half))))})
+        assert len(found.degraded) == 1 and "body 0 turns by 90.0 degrees" in found.degraded[0]
+        assert detector.frame().degraded == []
+        assert detector.tolerance == detector.largest_tolerance > 0

@@ -113,7 +113,7 @@ def test_faces_of_any_integers():
 def test_columns_have_their_shapes():
     t0, faces = soup(120, 5, 0.6)
     detector = nm.Detector(nm.Body(t0, faces), nm.Continuous(), CPU)
-    for inputs in [(t0, t0 + 0.05 * np.cos(9 * t0)), t0 + [0, 0, 9]]:
+    for inputs in [(t0, t0 + 0.05 * np.cos(9 * t0)), (t0 + [0, 0, 9],) * 2]:
         found = detector.frame({0: inputs})
         k = len(found)
         shapes = [getattr(found, name).shape for name in ["kind", "bodies", "indices", "toi", "toi_hi", "status"]]

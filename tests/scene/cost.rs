@@ -38,13 +38,15 @@ fn cost(scene: Scene, motion: QueryKind) -> (u64, u64, usize) {
     let ids: Vec<BodyId> = detector.scene().ids().collect();
     let bodies = detector.scene().bodies().to_vec();
     let inputs = |lift: f64| -> Vec<(BodyId, Input)> {
-        ids.iter()
-            .filter_map(|&id| match bodies[id.index()].kind() {
-                BodyKind::Rigid => Some((id, Input::Pose(Pose::at([0.0, 0.0, lift])))),
-                BodyKind::Deformable => Some((id, Input::At(bodies[id.index()].positions_t0()))),
-                _ => None,
-            })
-            .collect()
+        let pose = Pose::at([0.0, 0.0, lift]);
+        let input = |id: BodyId| match (bodies[id.index()].kind(), motion.is_at_rest()) {
+            (BodyKind::Rigid, true) => Some(Input::Pose(pose)),
+            (BodyKind::Rigid, false) => Some(Input::Poses([pose; 2])),
+            (BodyKind::Deformable, true) => Some(Input::At(bodies[id.index()].positions_t0())),
+            (BodyKind::Deformable, false) => Some(Input::Step([bodies[id.index()].positions_t0(); 2])),
+            _ => None,
+        };
+        ids.iter().filter_map(|&id| Some((id, input(id)?))).collect()
     };
     // The first frames find out how long lists are.
     for _ in 0..2 {

@@ -30,11 +30,16 @@ fn frames_move_what_they_name_and_others_rest() {
                     moved.push((id, ends, [body.poses()[1], pose(&mut rng)]));
                 }
             }
+            let turns = |(id, ..): &(BodyId, [Positions; 2], [Pose; 2])| {
+                scene.bodies()[id.index()].kind() == BodyKind::Rigid
+            };
+            // A frame of a query in motion moves something.
+            let steps = frame % 2 == 0 || !moved.iter().any(turns);
             let inputs: Vec<(BodyId, Input)> = moved
                 .iter()
                 .map(|(id, ends, poses)| match scene.bodies()[id.index()].kind() {
                     BodyKind::Rigid => (*id, Input::Poses(*poses)),
-                    _ if frame % 2 == 0 => (*id, Input::Step([&ends[0], &ends[1]])),
+                    _ if steps => (*id, Input::Step([&ends[0], &ends[1]])),
                     _ => (*id, Input::At(&ends[1])),
                 })
                 .collect();
@@ -91,7 +96,7 @@ fn a_scene_goes_over_to_doubles_once_and_stays_exact() {
     same_as_new(&detector, &found, "far");
     let doubles = Positions::F64(ends[1].to_f64().iter().map(|p| p.map(|x| x + 1e-12)).collect());
     let found = detector
-        .frame(&[(cloth, Input::At(&doubles)), (ball, Input::Pose(Pose::default()))])
+        .frame(&[(cloth, Input::Step([&doubles; 2])), (ball, Input::Pose(Pose::default()))])
         .expect("an answer");
     same_as_new(&detector, &found, "doubles");
 }
@@ -112,7 +117,9 @@ fn what_a_scene_cannot_do_is_told_and_nothing_has_moved() {
     bad[7][2] = f64::NAN;
     let bad = Positions::F64(bad);
     let there = Input::At(&ends[1]);
-    let refused: [(&[(BodyId, Input)], &str); 9] = [
+    let refused: [(&[(BodyId, Input)], &str); 11] = [
+        (&[(cloth, there)], "no body of the frame has two ends, and the query is continuous"),
+        (&[(cloth, there), (ball, Input::Pose(Pose::default()))], "both ends of the step"),
         (&[(gone, there)], "no body 3"),
         (&[(cloth, there), (cloth, there)], "two inputs for body 0"),
         (&[(ground, there)], "is static"),

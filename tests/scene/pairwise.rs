@@ -11,17 +11,17 @@ fn asked(scene: &Scene, i: usize, j: usize) -> bool {
         return false;
     }
     if i == j {
-        return p.self_contact;
+        return a.meets_itself();
     }
     let together = p.environment == q.environment || p.environment.is_none() || q.environment.is_none();
     together && p.group & q.mask != 0 && q.group & p.mask != 0
 }
 
 /// Triangle pairs, contacts and near pairs, of which a query has one kind.
-type Truth = (Vec<TrianglePair>, Vec<Contact>, Vec<NearPair>);
+pub type Truth = (Vec<TrianglePair>, Vec<Contact>, Vec<NearPair>);
 
 /// What the bodies of a scene have in common, asked two by two.
-fn two_by_two(scene: &Scene, query: Query) -> Truth {
+pub fn two_by_two(scene: &Scene, query: Query) -> Truth {
     let (mut pairs, mut contacts, mut near) = (Vec::new(), Vec::new(), Vec::new());
     let ids: Vec<BodyId> = scene.ids().collect();
     for &i in &ids {
@@ -41,7 +41,7 @@ fn two_by_two(scene: &Scene, query: Query) -> Truth {
 }
 
 /// What a scene's answer has too much or too little.
-fn differ(found: &Contacts, (pairs, contacts, near): &Truth) -> Option<String> {
+pub fn differ(found: &Contacts, (pairs, contacts, near): &Truth) -> Option<String> {
     fn first<T: PartialEq + std::fmt::Debug>(found: &[T], truth: &[T]) -> Option<String> {
         let both = |i: usize| (found.get(i), truth.get(i));
         let all = 0..found.len().max(truth.len());
@@ -72,7 +72,8 @@ pub fn mixed(seed: u64) -> Scene {
             environment: [Some(0), Some(0), Some(1), None][rng.random_range(0..4)],
             group: if seed.is_multiple_of(2) { u32::MAX } else { rng.random_range(0..4) },
             mask: if seed.is_multiple_of(2) { u32::MAX } else { rng.random_range(0..4) },
-            self_contact: rng.random_bool(0.5),
+            // Of a static body it is refused.
+            self_contact: Some(rng.random_bool(0.5)).filter(|own| !own || body.kind() != BodyKind::Static),
         };
         let id = scene.add(body.with(meets));
         gone = gone.or((i == 3).then_some(id));
@@ -81,7 +82,7 @@ pub fn mixed(seed: u64) -> Scene {
     scene
 }
 
-/// The tolerance hangs on the bodies' edges: fixed, so that two bodies are asked as seven are.
+/// With a tolerance that is named.
 fn query(motion: QueryKind) -> Query {
     support::asked::at(motion, 1e-4, 0.03)
 }

@@ -50,10 +50,16 @@ fn planned(device: &Device, scene: Scene, query: Query) -> (Plan, u64, u64) {
     let ids: Vec<BodyId> = detector.scene().ids().collect();
     let inputs: Vec<(BodyId, Input)> = ids
         .into_iter()
-        .filter_map(|id| match bodies[id.index()].kind() {
-            BodyKind::Rigid => Some((id, Input::Pose(Pose::at([0.0, 0.0, 0.1])))),
-            BodyKind::Deformable => Some((id, Input::At(bodies[id.index()].positions_t0()))),
-            _ => None,
+        .filter_map(|id| {
+            let (pose, t0) = (Pose::at([0.0, 0.0, 0.1]), bodies[id.index()].positions_t0());
+            let input = match (bodies[id.index()].kind(), query.kind().is_at_rest()) {
+                (BodyKind::Rigid, true) => Input::Pose(pose),
+                (BodyKind::Rigid, false) => Input::Poses([pose; 2]),
+                (BodyKind::Deformable, true) => Input::At(t0),
+                (BodyKind::Deformable, false) => Input::Step([t0; 2]),
+                _ => return None,
+            };
+            Some((id, input))
         })
         .collect();
     let (mut launches, mut hash) = (0, 0);

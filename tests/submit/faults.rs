@@ -86,7 +86,7 @@ fn after_a_submission_that_is_refused_nothing_is_answered_of_its_bodies() {
         let refusals = [
             detector.detect().map(drop),
             detector.frame(&[]).map(drop),
-            detector.frame(&[(other, Input::At(&there))]).map(drop),
+            detector.frame(&[(other, Input::Step([&there; 2]))]).map(drop),
             detector.fetch(),
             detector.add(Body::still(soup(20, 6).0)).map(drop),
         ];
@@ -196,7 +196,7 @@ fn a_pose_that_is_none_is_named() {
         // SAFETY: the buffer is kept.
         let row = |at| unsafe { DeviceRows::new(at, 1, 0, Number::F32) }.expect("a row");
         let pose = DevicePose { translation: row(at), rotation: row(at + 12) };
-        (buffer, DeviceInput::Pose(pose))
+        (buffer, pose)
     };
     let wrong = [
         [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.2],
@@ -206,15 +206,21 @@ fn a_pose_that_is_none_is_named() {
     ];
     for kind in QueryKind::ALL {
         let mut detector = Detector::new(device.clone(), scene.clone(), query(kind)).expect("a detector");
+        // A query in motion takes both ends.
+        let at_rest = kind.is_at_rest();
+        let input = |pose| if at_rest { DeviceInput::Pose(pose) } else { DeviceInput::Poses([pose; 2]) };
         for numbers in wrong {
-            let (_buffer, input) = held(numbers);
+            let (_buffer, pose) = held(numbers);
+            let input = input(pose);
             let error = detector.frame(&[(rigid, Input::OnDevice(input))]).expect_err("no pose");
             assert!(error.to_string().contains("the pose"), "{kind:?}: {error}");
         }
-        let (_buffer, input) = held([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+        let (_buffer, pose) = held([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+        let input = input(pose);
         let found = detector.frame(&[(rigid, Input::OnDevice(input))]).expect("an answer");
         let mut by_host = Detector::new(engine(), scene.clone(), query(kind)).expect("a detector");
-        let wanted = by_host.frame(&[(rigid, Input::Pose(Pose::default()))]).expect("an answer");
+        let input = if at_rest { Input::Pose(Pose::default()) } else { Input::Poses([Pose::default(); 2]) };
+        let wanted = by_host.frame(&[(rigid, input)]).expect("an answer");
         assert_eq!(found.answer, wanted.answer, "{kind:?}");
     }
 }

@@ -107,12 +107,16 @@ fn poses_on_the_device_are_poses() {
         // In single precision the pose is another one, and both know it.
         let [single, _] = [pose(1.7), pose(0.0)];
         let (_held, rows) = pose_rows(&device, &single, |x| x as f32, Number::F32);
-        let found = detector.frame(&[(rigid, Input::OnDevice(DeviceInput::Pose(rows)))]).expect("an answer");
+        // A query in motion takes both ends.
+        let at_rest = kind.is_at_rest();
+        let input = if at_rest { DeviceInput::Pose(rows) } else { DeviceInput::Poses([rows; 2]) };
+        let found = detector.frame(&[(rigid, Input::OnDevice(input))]).expect("an answer");
         let single = Pose {
             rotation: single.rotation.map(|x| f64::from(x as f32)),
             translation: single.translation.map(|x| f64::from(x as f32)),
         };
-        let wanted = by_host.frame(&[(rigid, Input::Pose(single))]).expect("an answer");
+        let input = if at_rest { Input::Pose(single) } else { Input::Poses([single; 2]) };
+        let wanted = by_host.frame(&[(rigid, input)]).expect("an answer");
         assert_eq!(found.answer, wanted.answer, "{kind:?}");
     }
 }
@@ -148,7 +152,7 @@ fn bodies_that_are_away_come_back_for_changes() {
     let other = detector.add(Body::still(soup(20, 11).0)).expect("room");
     detector.frame(&[(id, step)]).expect("an answer");
     let wide = soup(20, 11).1.map(Positions::F32).map(|p| Positions::F64(number(&p)));
-    let found = detector.frame(&[(other, Input::At(&wide[0]))]).expect("an answer");
+    let found = detector.frame(&[(other, Input::Step([&wide[0]; 2]))]).expect("an answer");
     detector.fetch().expect("positions");
     assert_eq!(number(detector.scene().bodies()[0].positions_t0()), number(&Positions::F32(t1)));
     let fresh = support::ask_scene(engine(), detector.scene().clone(), *detector.query());

@@ -10,7 +10,7 @@ pub use data::data;
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Broad, Bv, FrontShape, QueryKind, QueueShape, Refit, Search, StealShape, Traversal};
-use nearmiss::scene::Scene;
+use nearmiss::scene::{Meets, Scene};
 use nearmiss::{Detector, Device, Query};
 use std::io::Read;
 
@@ -73,9 +73,18 @@ pub fn ways(query: Query) -> impl Iterator<Item = Query> {
     Bv::ALL.into_iter().flat_map(move |bv| of_trees(bv).chain(tiles(bv)))
 }
 
-/// One answer on one device.
+/// One answer on one device: of one body against itself, of more against each other alone.
 pub fn ask(device: Device, bodies: Vec<Body>, query: Query) -> nearmiss::Contacts {
-    ask_scene(device, bodies, query)
+    ask_scene(device, if bodies.len() == 1 { bodies } else { between(bodies) }, query)
+}
+
+/// These bodies, none tested against itself.
+pub fn between(bodies: Vec<Body>) -> Vec<Body> {
+    let other = |body: Body| {
+        let meets = Meets { self_contact: Some(false), ..*body.meets() };
+        body.with(meets)
+    };
+    bodies.into_iter().map(other).collect()
 }
 
 /// The same, of any scene.

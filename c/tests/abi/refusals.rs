@@ -102,7 +102,17 @@ fn what_is_no_body_is_refused() {
         "a count that cannot be",
     );
     refused(added(NearmissBody { kind: 3, ..good }), NEARMISS_CHOICE, "a body of kind 3");
-    refused(added(NearmissBody { self_contact: 2, ..good }), NEARMISS_CHOICE, "2 for self_contact");
+    refused(added(NearmissBody { self_contact: 3, ..good }), NEARMISS_CHOICE, "3 for self_contact");
+    let own = |kind, self_contact| added(NearmissBody { kind, self_contact, ..good });
+    refused(own(0, 1), NEARMISS_CHOICE, "self-contact of a body, which is static");
+    for (kind, self_contact) in [(0, 0), (0, 2), (1, 0), (1, 1), (1, 2), (2, 0), (2, 1), (2, 2)] {
+        assert!(own(kind, self_contact).is_ok(), "kind {kind}, self_contact {self_contact}");
+    }
+    refused(added(NearmissBody { triangle_count: 0, ..good }), NEARMISS_INPUT, "no triangles");
+    refused(added(NearmissBody { group: 0, ..good }), NEARMISS_CHOICE, "group is 0");
+    refused(added(NearmissBody { everywhere: 1, environment: 3, ..good }), NEARMISS_CHOICE, "environment 3");
+    // SAFETY: numbers and pointers, of which zeros are some.
+    refused(added(unsafe { std::mem::zeroed() }), NEARMISS_INPUT, "no triangles");
     let wrong = [[0u32, 1, 99]];
     let triangles = wrong.as_ptr().cast();
     refused(added(NearmissBody { triangles, triangle_count: 1, ..good }), NEARMISS_INPUT, "99");
@@ -156,6 +166,14 @@ fn what_is_no_frame_is_refused() {
     refused(asked(&[NearmissInput { body: 1, ..at }]), NEARMISS_CHOICE, "there is no body 1 in the scene");
     refused(asked(&[at, at]), NEARMISS_CHOICE, "two inputs for body 0");
     refused(asked(&[NearmissInput { kind: 4, ..at }]), NEARMISS_CHOICE, "an input of kind 4");
+    let both = NearmissInput { positions: [at.positions[0]; 2], ..at };
+    refused(
+        asked(&[both]),
+        NEARMISS_CHOICE,
+        "positions[1] of body 0, which an input of kind 0 does not read",
+    );
+    let turned = NearmissInput { rotations: [at.positions[0]; 2], ..at };
+    refused(asked(&[turned]), NEARMISS_CHOICE, "rotations[0] of body 0");
     let pose = NearmissPose { rotation: [0.0, 0.0, 0.0, 1.0], translation: [0.0; 3] };
     assert!(asked(&[nearmiss_pose(0, pose)]).is_err());
     let torn = vec![[f64::NAN; 3]; soup.vertex_count()];
@@ -178,4 +196,36 @@ fn what_is_no_frame_is_refused() {
         NEARMISS_CHOICE,
         "sentence 7 of 0",
     );
+}
+
+#[test]
+fn a_scene_that_a_detector_has_copied_is_not_changed() {
+    let soup = soup(10, 1, false).expect("a soup");
+    let (device, mut own) = (device(), scene(&[described(&soup)]));
+    // SAFETY: names are NULL.
+    let made = got(|made, error| unsafe {
+        nearmiss_detector_new(Some(&device), Some(&own), Some(&nearmiss_query(0)), made, error)
+    });
+    let detector = super::own(made);
+    // SAFETY: the body's mesh is there.
+    let more = got(|id, e| unsafe { nearmiss_scene_add(Some(&mut own), Some(&described(&soup)), id, e) });
+    refused(more.map(drop), NEARMISS_CHOICE, "adding to a scene of which a detector has a copy");
+    nearmiss_detector_free(Some(detector));
+    nearmiss_scene_free(Some(own));
+    nearmiss_device_free(Some(device));
+}
+
+#[test]
+fn a_step_without_an_end_and_threads_of_a_gpu_are_refused() {
+    let soup = soup(10, 1, false).expect("a soup");
+    for kind in [1, 2] {
+        let mut own = detector(&[described(&soup)], nearmiss_query(kind)).expect("a detector");
+        let at = nearmiss_at(0, rows(soup.positions_t0()));
+        refused(frame(&mut own, &[at]).map(drop), NEARMISS_CHOICE, "no body of the frame has two ends");
+        let step = nearmiss_step(0, at.positions[0], at.positions[0]);
+        assert!(frame(&mut own, &[step]).is_ok() && frame(&mut own, &[]).is_ok());
+    }
+    let threads =
+        got(|to, e| nearmiss_device_open(NearmissBackend::NEARMISS_CUDA as u32, 2, to, e)).map(drop);
+    refused(threads, NEARMISS_CHOICE, "2 threads of a GPU");
 }

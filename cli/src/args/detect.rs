@@ -76,6 +76,9 @@ pub struct DetectArgs {
     /// positions at the end of the step: --with B0 --with B1 A0 A1, or A0 A1 --with B0 B1.
     #[arg(long, value_name = "MESH")]
     pub with: Vec<PathBuf>,
+    /// Test the two meshes against each other only, not against themselves.
+    #[arg(long)]
+    pub no_self_contact: bool,
     /// Triangle pairs that share a point at t = 0 (the default for one frame).
     #[arg(long, conflicts_with_all = ["continuous", "earliest"])]
     pub discrete: bool,
@@ -121,7 +124,7 @@ pub struct DetectArgs {
     #[arg(long, value_parser = choice::<Solver>())]
     pub solver: Option<Solver>,
     /// Certified: how near to contact may count as one, a length; 0 for all that the precision gives [default: 1e-4 of the
-    /// mean edge, rounded down to a power of two].
+    /// mean edge, rounded down to a power of two; of two bodies the smaller].
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub tolerance: Option<f64>,
     /// Certified: boxes that are looked at for a pair before it is left unresolved [default: 4096].

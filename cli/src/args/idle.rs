@@ -72,7 +72,7 @@ fn detect(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
         let advice = "leave it out, or ask with --continuous or --earliest";
         given.none_of(&["tolerance", "boxes", "separation"], why, advice)?;
         let why = "triangles of one body are not asked about each other";
-        given.none_of(&["adjacent"], why, "leave it out, or ask with --discrete")?;
+        given.none_of(&["adjacent", "no_self_contact"], why, "leave it out, or ask with --discrete")?;
         let why = "a distance has a walk of its own";
         given.none_of(&["traversal"], why, "leave it out")?;
         let why = "where two triangles are nearest is told by the weights of their corners";
@@ -87,6 +87,15 @@ fn detect(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
         given.none_of(&["adjacent"], why, "leave it out, or ask with --discrete")?;
         let why = "where two features are nearest is told by the weights of a triangle's corners";
         given.none_of(&["file_faces"], why, "leave it out")?;
+    }
+    if args.with.is_empty() {
+        let why = "there is no second mesh";
+        let advice = "add --with MESH, or leave it out; in a scene file say self_contact = false";
+        given.none_of(&["no_self_contact"], why, advice)?;
+    }
+    if args.scene.is_none() {
+        let why = "the bodies come from files";
+        given.none_of(&["triangles", "seed"], why, "leave it out, or give --scene NAME in place of files")?;
     }
     of_single(args.scene.as_deref(), given)
 }

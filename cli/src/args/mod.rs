@@ -112,7 +112,10 @@ fn several(own: &ArgMatches, args: &mut DetectArgs) -> Result<(), Error> {
 fn sort_out(command: &mut Command, own: &ArgMatches) -> Result<(), Error> {
     match command {
         Command::Detect(args) => several(own, args),
-        Command::Plan(args) => several(own, &mut args.detect),
+        Command::Plan(args) => {
+            several(own, &mut args.detect)?;
+            files::at_most_two(&args.detect.meshes, &args.detect.with)
+        }
         Command::Picture(args) => several(own, &mut args.detect),
         Command::Explain(args) => {
             files::part(own, &mut args.meshes, &mut args.with);

@@ -7,8 +7,14 @@ use nearmiss::query::{
     Certified, Continuous, ContinuousSolver, Discrete, Distance, Earliest, Near, Query, QueryKind, Search,
     Solver, TriangleTest,
 };
+use nearmiss::scene::Meets;
 
 impl DetectArgs {
+    /// Which bodies a mesh of the command line may meet.
+    pub fn meets(&self) -> Meets {
+        if self.no_self_contact { Meets::others() } else { Meets::default() }
+    }
+
     /// The query for bodies that move, or do not.
     ///
     /// # Errors

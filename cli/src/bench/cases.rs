@@ -6,7 +6,7 @@ use crate::detect::body;
 use crate::stem;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::scene::{BodyId, BodyKind, Input, Scene};
+use nearmiss::scene::{BodyId, BodyKind, Input, Meets, Scene};
 use nearmiss_lab::scene::{Bodies, scene};
 use std::path::PathBuf;
 
@@ -94,7 +94,7 @@ fn apart(body: Body) -> Result<Scene, Error> {
     };
     let [t0, t1] = body.ends().map(beside);
     let other = Body::moving(t0?, t1?)?;
-    Ok(vec![body, other].into())
+    Ok([body, other].map(|body| body.with(Meets::others())).to_vec().into())
 }
 
 /// What a case is made from.

@@ -82,6 +82,7 @@ fn bodies(args: &DetectArgs) -> Result<Vec<Body>, Error> {
     if !args.with.is_empty() {
         bodies.push(during("reading", || body(&args.with))?);
     }
+    bodies = bodies.into_iter().map(|body| body.with(args.meets())).collect();
     if args.weld {
         for body in &mut bodies {
             let (welded, merged) = body.weld();

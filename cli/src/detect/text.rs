@@ -37,8 +37,9 @@ pub fn human(told: &Report, contacts: &Contacts) -> String {
         let escalated: u64 = contacts.escalated_vf_ee.iter().sum();
         let _ = writeln!(
             text,
-            "  {} unresolved, {escalated} asked again in f64; tolerance {tolerance:e}{}",
+            "  {} unresolved, {escalated} asked again in f64; tolerance {tolerance:e}{}{}",
             summary.unresolved,
+            summary.largest_tolerance.map_or(String::new(), |largest| format!(" to {largest:e}")),
             match summary.separation {
                 Some(s) if s > 0.0 => format!(", separation {s:e}"),
                 _ => String::new(),

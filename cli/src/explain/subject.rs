@@ -4,7 +4,7 @@ use super::{Between, ExplainArgs};
 use crate::detect::body;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Positions, Problem, Topology};
-use nearmiss::pipeline::of_edges;
+use nearmiss::pipeline::of_pair;
 use nearmiss::query::Certified;
 use nearmiss_kernels::prim::adjacent::Shared;
 use nearmiss_kernels::prim::inclusion::Params;
@@ -90,7 +90,7 @@ pub fn of(args: &ExplainArgs) -> Result<Subject, Error> {
     }
     let case = Case { features, positions_t0: four(at(false)?)?, positions_t1: four(at(true)?)? };
     let single = bodies.iter().all(is_single);
-    Ok(Subject::Moving(Moving { of, case, single, notes, params: params(args, of_edges(&bodies)) }))
+    Ok(Subject::Moving(Moving { of, case, single, notes, params: params(args, of_pair(a, b)) }))
 }
 
 fn params(args: &ExplainArgs, default: f64) -> Params {

@@ -135,11 +135,18 @@ fn choices(detector: &Detector, device: &Device) -> String {
     if let Some(more) = bodies.len().checked_sub(MOST_TOLD).filter(|more| *more > 0) {
         let _ = writeln!(text, "and {more} bodies more");
     }
+    let own = query.kind().is_within_bodies() && bodies.iter().any(Body::meets_itself);
     let _ = writeln!(
         text,
         "query      {:?}, {}",
         query.kind(),
-        if detector.scene().bodies().len() == 1 { "self" } else { "between" }
+        if bodies.len() == 1 {
+            "self"
+        } else if own {
+            "within and between"
+        } else {
+            "between"
+        }
     );
     let _ = writeln!(text, "machine    {} ({})", device.name(), device.backend());
     let swept = !query.kind().is_at_rest() && query.bv() != Bv::Linear;
@@ -158,10 +165,13 @@ fn choices(detector: &Detector, device: &Device) -> String {
     let _ = writeln!(text, "solver     {}", query.solver().promise());
     if let (Some(tolerance), Some(certified)) = (detector.tolerance(), query.certified()) {
         let why = if certified.tolerance.is_some() { "as asked" } else { "about 1e-4 of the mean edge" };
+        let largest = detector.largest_tolerance().filter(|largest| *largest != tolerance);
+        let largest =
+            largest.map_or(String::new(), |largest| format!(" to {largest:e} by the bodies of a pair"));
         let boxes = certified.budget.unwrap_or(Certified::BUDGET);
         let _ = writeln!(
             text,
-            "tolerance  {tolerance:e}, {why}; at most {} a pair",
+            "tolerance  {tolerance:e}{largest}, {why}; at most {} a pair",
             counted(boxes.into(), "box", "boxes")
         );
         let separation = (certified.separation > 0.0).then_some(certified.separation);

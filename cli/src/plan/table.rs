@@ -72,6 +72,8 @@ pub fn json(
         bv: &'static str,
         solver: nearmiss::query::Solver,
         tolerance: Option<f64>,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        largest_tolerance: Option<f64>,
         depths: Vec<usize>,
         launches: Option<u64>,
         bytes: Option<u64>,
@@ -90,6 +92,7 @@ pub fn json(
         bv: query.bv().name(),
         solver: query.solver(),
         tolerance: detector.tolerance(),
+        largest_tolerance: detector.largest_tolerance().filter(|&t| Some(t) != detector.tolerance()),
         depths: detector.depths(),
         launches: plan.map(Plan::launches),
         bytes: plan.map(Plan::bytes),

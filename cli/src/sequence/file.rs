@@ -96,7 +96,7 @@ pub fn read(path: &Path) -> Result<Vec<Described>, Error> {
     let mut all: Vec<Described> = Vec::with_capacity(count);
     let mut names: HashMap<String, usize> = HashMap::with_capacity(count);
     for table in whole.body {
-        let body = described(path, line(table.span().start), table.into_inner(), count)?;
+        let body = described(path, line(table.span().start), table.into_inner())?;
         if let Some(other) = names.insert(body.name.clone(), all.len()) {
             let what = format!("{} has the name of {}", body.called, all[other].called);
             return Err(wrong(path, what, "give each a `name` of its own"));
@@ -114,7 +114,7 @@ pub fn text(path: &Path) -> Result<String, Error> {
     nearmiss::file::text(path, MULTIPLE)
 }
 
-fn described(path: &Path, line: usize, table: Table, bodies: usize) -> Result<Described, Error> {
+fn described(path: &Path, line: usize, table: Table) -> Result<Described, Error> {
     let named = table.get("name").and_then(Value::as_str).map(str::to_owned);
     let called = match &named {
         Some(name) => format!("body {name:?} (line {line})"),
@@ -167,8 +167,11 @@ fn described(path: &Path, line: usize, table: Table, bodies: usize) -> Result<De
         }
     };
     let (group, mask) = (table.group.unwrap_or(u32::MAX), table.mask.unwrap_or(u32::MAX));
-    // A body alone is tested against itself, as a mesh of the command line is.
-    let self_contact = table.self_contact.unwrap_or(bodies == 1);
+    if kind == BodyKind::Static && table.self_contact == Some(true) {
+        let what = "`self_contact` of a body that is static, which never meets itself";
+        return Err(bad(what, "leave it out, or make the body rigid or deformable"));
+    }
+    let self_contact = table.self_contact;
     let stem = || crate::stem(&meshes[0]);
     let name = table.name.unwrap_or_else(stem);
     let called = format!("body {name:?} (line {line})");

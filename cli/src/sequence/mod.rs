@@ -97,7 +97,11 @@ impl Sequence {
             _ if own.iter().all(|files| files.len() < 3) => return Ok(None),
             _ => {
                 let told = own.iter().filter(|files| !files.is_empty()).map(|files| of_mesh(files));
-                Sequence::new(told.collect::<Result<_, _>>()?, None)
+                let mut told = told.collect::<Result<Vec<_>, _>>()?;
+                for (body, _) in &mut told {
+                    *body = body.clone().with(args.meets());
+                }
+                Sequence::new(told, None)
             }
         };
         if args.weld {
@@ -156,12 +160,7 @@ impl Sequence {
                 None => body,
             });
         }
-        if self.names.is_none() {
-            return Ok(Scene::from(bodies));
-        }
-        let mut scene = Scene::new();
-        bodies.into_iter().for_each(|body| _ = scene.add(body));
-        Ok(scene)
+        Ok(Scene::from(bodies))
     }
 
     /// Where bodies go for a question.

@@ -9,8 +9,9 @@ fn options_that_would_do_nothing_are_refused() {
     let queues = "the walk has no queues; add --traversal queue";
     let planned = "a plan asks a frame for its costs alone";
     let files = "nothing is made here; add --full";
+    let from_files = "the bodies come from files";
     let still = "of what stands still there is one answer within the distance";
-    let table: [(&str, &[&str], &str); 44] = [
+    let table: [(&str, &[&str], &str); 55] = [
         ("detect", &["--budget", "8"], walk),
         ("detect", &["--budget", "8", "--traversal", "per-leaf"], walk),
         ("detect", &["--budget", "8", "--traversal", "steal"], walk),
@@ -55,9 +56,25 @@ fn options_that_would_do_nothing_are_refused() {
         ("trade", &["--queries", "a", "--cases", "9"], files),
         ("trade", &["--queries", "a", "--seed", "9"], files),
         ("trade", &["--truth", "a.csv"], "--mesh"),
+        ("detect", &["a.ply", "--triangles", "10"], from_files),
+        ("detect", &["a.ply", "--seed", "3"], from_files),
+        ("detect", &["a.ply", "--with", "b.ply", "--seed", "3"], from_files),
+        ("plan", &["a.ply", "--triangles", "10"], from_files),
+        ("picture", &["a.ply", "--seed", "3", "--out", "x.png"], from_files),
+        ("detect", &["a.ply", "--no-self-contact"], "there is no second mesh"),
+        ("plan", &["a.toml", "--no-self-contact"], "self_contact = false"),
+        ("detect", &["--scene", "soup", "--no-self-contact"], "there is no second mesh"),
+        (
+            "detect",
+            &["a.ply", "--with", "b.ply", "--distance", "--no-self-contact"],
+            "asked about each other",
+        ),
+        ("plan", &["m", "--with", "a", "b", "c"], "3 files for --with; give one, or two"),
+        ("plan", &["a", "b", "c"], "3 files for the mesh; give one, or two"),
     ];
     for (command, options, why) in table {
-        let scene: &[&str] = if matches!(command, "detect" | "plan") { &SOUP } else { &[] };
+        let is_named = !options[0].starts_with("--") || options.contains(&"--scene");
+        let scene: &[&str] = if matches!(command, "detect" | "plan") && !is_named { &SOUP } else { &[] };
         let text = refused(2, &[&[command], options, scene].concat());
         assert!(text.contains(why), "{command} {options:?}: {text}");
     }

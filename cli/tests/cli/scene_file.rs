@@ -266,3 +266,67 @@ fn the_scene_of_the_front_page_is_one() {
     let all = ok(&["detect", &folder.write("scene.toml", &text.replace(".ply", ".obj"))]);
     assert!(all.starts_with("3 bodies, 3 triangles, 9 vertices, 3 frames; Continuous"), "{all}");
 }
+
+#[test]
+fn self_contact_is_the_default_of_deformable_bodies() {
+    let folder = Folder::new("scene-self");
+    let crossed = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.2 0.2 -1\nv 0.2 0.3 1\nv 5 5 1\nf 1 2 3\nf 4 5 6\n";
+    let crossed = folder.write("crossed.obj", crossed);
+    let far = folder.write("far.obj", "v 90 0 0\nv 91 0 0\nv 90 1 0\nf 1 2 3\n");
+    let contacts = |args: &[&str]| summary(&[&["detect", "--json"], args].concat())["contacts"].as_u64();
+    for (text, expected) in [
+        ("", 1),
+        ("self_contact = true", 1),
+        ("self_contact = false", 0),
+        ("kind = \"rigid\"", 0),
+        ("kind = \"rigid\"\nself_contact = true", 1),
+        ("kind = \"static\"", 0),
+        ("kind = \"static\"\nself_contact = false", 0),
+    ] {
+        let body = format!("[[body]]\nmesh = \"crossed.obj\"\n{text}\n");
+        let two = folder.write("two.toml", &format!("{body}[[body]]\nmesh = \"far.obj\"\n"));
+        assert_eq!(contacts(&[&two]), Some(expected), "beside another: {text}");
+        let one = folder.write("one.toml", &body);
+        assert_eq!(contacts(&[&one]), Some(expected), "alone: {text}");
+    }
+    let fixed = "[[body]]\nmesh = \"far.obj\"\n[[body]]\nmesh = \"crossed.obj\"\nkind = \"static\"\nself_contact = true\n";
+    let text = refused(3, &["detect", &folder.write("fixed.toml", fixed)]);
+    assert!(
+        text.contains("body of line 3") && text.contains("`self_contact` of a body that is static"),
+        "{text}"
+    );
+    assert_eq!(contacts(&[&crossed, "--with", &far]), Some(1));
+    assert_eq!(contacts(&[&far, "--with", &crossed]), Some(1));
+    assert_eq!(contacts(&[&far, "--with", &crossed, "--no-self-contact"]), Some(0));
+}
+
+#[test]
+fn a_turn_and_tolerances_of_bodies_are_told() {
+    let folder = Folder::new("scene-turn");
+    folder.write("bar.obj", "v -2 0 0\nv 2 0 0\nv 0 0.5 0\nf 1 2 3\n");
+    folder.write("ground.obj", "v -3000 -3000 -9\nv 6000 -3000 -9\nv -3000 6000 -9\nf 1 2 3\n");
+    let scene = |angle: f64, kind: &str| {
+        let (sin, cos) = (angle.to_radians() / 2.0).sin_cos();
+        let text = format!(
+            "[[body]]\nmesh = \"bar.obj\"\nkind = \"rigid\"\nself_contact = true\n\
+             poses = [{{}}, {{ rotation = [0, 0, {sin}, {cos}] }}]\n[[body]]\nmesh = \"ground.obj\"\nkind = \"{kind}\"\n"
+        );
+        folder.write("scene.toml", &text)
+    };
+    let turned = summary(&["detect", &scene(180.0, "static"), "--json"]);
+    let reason = &turned["degraded"][0];
+    assert_eq!((reason["reason"].as_str(), reason["body"].as_u64()), (Some("turned"), Some(0)), "{turned}");
+    assert!((reason["bulge"].as_f64().expect("a length") - 2.0).abs() < 1e-9, "{turned}");
+    assert!(
+        turned["tolerance"].as_f64().expect("a length") < 1e-3 && turned.get("largest_tolerance").is_none()
+    );
+    let text = ok(&["detect", &scene(90.0, "static")]);
+    assert!(text.contains("degraded: body 0 turns by 90.0 degrees"), "{text}");
+    assert!(!ok(&["detect", &scene(29.9, "static")]).contains("turns by"));
+    let both = summary(&["detect", &scene(10.0, "deformable"), "--json"]);
+    let [least, largest] =
+        ["tolerance", "largest_tolerance"].map(|key| both[key].as_f64().expect("a length"));
+    assert!(least < 1e-3 && largest > 0.1, "{both}");
+    let plan = ok(&["plan", &scene(10.0, "deformable"), "--backend", "cpu"]);
+    assert!(plan.contains(" by the bodies of a pair"), "{plan}");
+}

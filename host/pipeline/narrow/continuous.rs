@@ -67,6 +67,8 @@ pub struct ContinuousNarrow {
     rungs: Rungs,
     /// Hits that are not certain, those whose budget ended, those of both, and those too large for the tolerance.
     counters: [Counter; 4],
+    /// The smallest tolerance above 0, if pairs have several.
+    finest: Option<f64>,
     /// Whether pairs may be too large for the tolerance: see [`BelowPrecision`].
     below_precision: Option<BelowPrecision>,
     /// The smallest toi, where only that is asked for.
@@ -132,13 +134,14 @@ impl ContinuousNarrow {
             survivors: (!is_apart).then(survivors).transpose()?,
             vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, capacities.hits[0])?,
             ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, capacities.hits[1])?,
-            rungs: Rungs::new(device, solver.certified(), capacities.left)?,
+            rungs: Rungs::new(device, layout, solver.certified(), capacities.left)?,
             counters: [
                 counter::UNRESOLVED,
                 counter::ENDED,
                 counter::ENDED_UNRESOLVED,
                 counter::BELOW_PRECISION,
             ],
+            finest: layout.finest_tolerance(),
             below_precision: None,
             earliest: None,
             bound: None,
@@ -225,7 +228,8 @@ impl ContinuousNarrow {
                 let hits = [&self.vf_hits, &self.ee_hits];
                 self.rungs.climb(given, (edges, given.is_sample), ([vf, ee], hits, earliest))?;
                 let listed = (edges, &self.vf_hits, &self.ee_hits);
-                return below_precision::count(self.below_precision, listed, given);
+                let tolerances = self.rungs.tolerances();
+                return below_precision::count(self.below_precision, tolerances, listed, given);
             }
             ContinuousSolver::Cubic(precision) => precision,
         };
@@ -313,7 +317,10 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
     }
 
     fn place(&mut self, bodies: &[Body]) {
-        let of = |certified| BelowPrecision::of(bodies, certified, self.earliest.is_some());
+        let of = |certified: &Certified| {
+            let tolerance = self.finest.or(certified.tolerance);
+            BelowPrecision::of(bodies, &Certified { tolerance, ..*certified }, self.earliest.is_some())
+        };
         self.below_precision = self.solver.certified().and_then(of);
     }
 

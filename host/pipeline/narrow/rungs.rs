@@ -1,13 +1,16 @@
 //! The ladder of certified solvers: which rungs a query has, the lists between them, their launches.
 
 use super::NarrowContext;
-use crate::device::Device;
+use crate::device::{Buffer, Device};
 use crate::error::Error;
-use crate::pipeline::launch;
+use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::precision::Precision;
+use crate::pipeline::{launch, purpose};
 use crate::query::{Certified, CertifiedPrecision};
-use nearmiss_kernels::abi::{Counter, Hit, Listed, Output, Pair, RungArgs, RungFlags, Span, counter};
+use nearmiss_kernels::abi::{
+    BodyTolerance, Counter, Hit, Listed, Output, Pair, RungArgs, RungFlags, Span, counter,
+};
 use nearmiss_kernels::entry::Entry;
 
 /// A rung: one launch over the pairs that the one before left.
@@ -77,6 +80,8 @@ pub struct Rungs {
     left: Vec<[List<Pair>; 2]>,
     /// Which of [`LEFT`] each is.
     names: Vec<usize>,
+    /// Tolerances of bodies; empty if all pairs have the same.
+    tolerances: Buffer<BodyTolerance>,
 }
 
 impl Rungs {
@@ -84,7 +89,12 @@ impl Rungs {
     ///
     /// # Errors
     /// Those of the device.
-    pub fn new(device: &Device, certified: Option<&Certified>, capacity: [usize; 2]) -> Result<Self, Error> {
+    pub fn new(
+        device: &Device,
+        layout: &Layout,
+        certified: Option<&Certified>,
+        capacity: [usize; 2],
+    ) -> Result<Self, Error> {
         let rungs = certified.map_or(&[][..], rungs);
         let names: Vec<_> = rungs.iter().rev().skip(1).rev().map(|rung| rung.left()).collect();
         let list = |(_, name, counter): (&str, &'static str, Counter), capacity| {
@@ -94,7 +104,13 @@ impl Rungs {
             .iter()
             .map(|&at| Ok([list(LEFT[at][0], capacity[0])?, list(LEFT[at][1], capacity[1])?]))
             .collect::<Result<_, Error>>()?;
-        Ok(Rungs { certified: certified.copied().unwrap_or_default(), rungs, left, names })
+        let tolerances = device.of(purpose::TOLERANCES).upload(&layout.tolerances)?;
+        Ok(Rungs { certified: certified.copied().unwrap_or_default(), rungs, left, names, tolerances })
+    }
+
+    /// The tolerances of bodies; empty if all pairs have the same.
+    pub fn tolerances(&self) -> Span<BodyTolerance> {
+        self.tolerances.span()
     }
 
     /// The lists that the rungs fill.
@@ -142,6 +158,7 @@ impl Rungs {
                 ee: listed(pairs[1], hits[1], left.map(|[_, ee]| ee)),
                 earliest,
                 counters: given.counters,
+                tolerances: self.tolerances.span(),
                 params: self.certified.params(),
                 flags: RungFlags::EVERYTHING.when(everything),
                 pad: 0,

@@ -123,11 +123,18 @@ impl<R: Precision> Placing<R> {
     /// # Errors
     /// Those of the device.
     pub fn whereabouts(&self) -> Result<Whereabouts, Error> {
-        let poses = self.lent.found.read(self.lent.found.len())?;
-        let pose = |found: &PoseRecord| Pose { rotation: found.rotation, translation: found.translation };
         Ok(Whereabouts {
             ends: self.positions()?.into_iter().map(R::positions).collect(),
-            poses: poses.iter().map(pose).collect(),
+            poses: self.poses()?,
         })
+    }
+
+    /// The poses alone, as of [`Whereabouts::poses`].
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn poses(&self) -> Result<Vec<Pose>, Error> {
+        let pose = |found: &PoseRecord| Pose { rotation: found.rotation, translation: found.translation };
+        Ok(self.lent.found.read(self.lent.found.len())?.iter().map(pose).collect())
     }
 }

@@ -10,6 +10,7 @@ use crate::pipeline::precision::Precision;
 use crate::pipeline::timing::{Stage, Stages};
 use crate::pipeline::typed::Found;
 use crate::pipeline::{launch, purpose};
+use crate::scene::Pose;
 use nearmiss_kernels::abi::{FrameStatus, Room, Span, StatusArgs, seen};
 use nearmiss_kernels::entry::status_frame;
 
@@ -48,9 +49,18 @@ pub trait Submits {
     fn collect(&mut self) -> Result<Option<(Found<'_>, Stages)>, Error>;
     /// Where it is.
     fn answer(&self) -> Option<DeviceAnswer>;
+    /// Poses that were found in memory of the caller, at both ends or at the only one, of each body; others are none.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn poses(&self) -> Result<Vec<Pose>, Error>;
 }
 
 impl<R: Precision> Submits for TypedPipeline<R> {
+    fn poses(&self) -> Result<Vec<Pose>, Error> {
+        self.vertices.poses()
+    }
+
     fn prepare(&mut self) -> Result<(), Error> {
         let refused = |what: &str, advice: &str| {
             Err(Error::Choice { what: what.to_owned(), advice: advice.to_owned() })

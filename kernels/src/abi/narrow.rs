@@ -1,7 +1,8 @@
 //! Argument blocks of the last stage: from triangle pairs to contacts.
 
 use super::{
-    Counters, DiscreteFlags, Facet, Hit, NearHit, NearestHit, Output, Pair, Point, Positions, RungFlags, Span,
+    BodyTolerance, Counters, DiscreteFlags, Facet, Hit, NearHit, NearestHit, Output, Pair, Point, Positions,
+    RungFlags, Span,
 };
 use crate::math::Real;
 use crate::prim::inclusion::Params;
@@ -128,8 +129,10 @@ arguments! {
         ee: Output<Hit>,
         /// Counters.
         counters: Counters,
-        /// The tolerance that was asked for, a length.
+        /// The tolerance, a length, if all pairs have the same.
         tolerance: f64,
+        /// The tolerances of bodies, by their first vertices; empty if all pairs have the same.
+        tolerances: Span<BodyTolerance>,
         /// The least part of a pair's extent that the solver can tell.
         finest: f64,
     }
@@ -159,6 +162,8 @@ arguments! {
         earliest: Span<u64>,
         /// Counters.
         counters: Counters,
+        /// The tolerances of bodies, by their first vertices; empty if all pairs have that of `params`.
+        tolerances: Span<BodyTolerance>,
         /// What is asked.
         params: Params,
         /// What it is told.

@@ -23,6 +23,19 @@ pub struct BodyRecord {
 }
 const _: () = assert!(size_of::<BodyRecord>() == 24);
 
+/// The tolerance of a body, from its first vertex on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct BodyTolerance {
+    /// Its first vertex.
+    pub vertex: u32,
+    /// Zero.
+    pub pad: u32,
+    /// A length; infinite for a body without an edge of a length, which takes that of the other.
+    pub tolerance: f64,
+}
+const _: () = assert!(size_of::<BodyTolerance>() == 16);
+
 /// [`BodyRecord::environment`]: meets bodies of every environment. Greater than any other.
 pub const EVERY: u32 = NodeFilter::NUMBER;
 

@@ -8,6 +8,7 @@ use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Broad, Certified, Continuous, Earliest, Query};
+use nearmiss::scene::Meets;
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::tri_tri::meets_exactly;
 
@@ -63,7 +64,8 @@ fn against_one(device: &Device, n: usize, report: &mut Report) -> Result<(), Err
         .map(|(i, _)| [0, i])
         .collect();
     let one = Body::still(Mesh::new("one", Positions::F32(one.to_vec()), vec![[0, 1, 2]])?);
-    let found = Detector::new(device.clone(), vec![one, soup], Query::discrete())?.detect()?;
+    let found =
+        Detector::new(device.clone(), vec![one, soup.with(Meets::others())], Query::discrete())?.detect()?;
     report.asked += 1;
     report.missed += truth.len().saturating_sub(found.len()) as u64;
     if found.pairs() != truth || truth.is_empty() {

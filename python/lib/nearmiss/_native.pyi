@@ -47,7 +47,7 @@ class Body:
         faces: Array,
         *,
         kind: Literal["deformable", "rigid", "static"] = "deformable",
-        self_contact: bool = False,
+        self_contact: bool | None = None,
         environment: int | None = 0,
         group: int = 0xFFFFFFFF,
         mask: int = 0xFFFFFFFF,
@@ -126,6 +126,8 @@ class Distance(Query):
 
 class Contacts:
     def __len__(self) -> int: ...
+    @property
+    def degraded(self) -> list[str]: ...
     @property
     def kind(self) -> NDArray[np.uint8]: ...
     @property
@@ -224,5 +226,7 @@ class Detector:
     def replace(self, body: int, by: Body) -> None: ...
     @property
     def tolerance(self) -> float | None: ...
+    @property
+    def largest_tolerance(self) -> float | None: ...
     @property
     def device(self) -> Device: ...

@@ -17,7 +17,7 @@ fn checked(fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), Error> {
     let device = Device::emulator(Emulator::new(Mode::Engine, None)?);
     let bodies: Vec<Body> = vec![
         soup(700, 5, false),
-        soup(1_000, 6, false).with(Meets { self_contact: false, ..Meets::default() }),
+        soup(1_000, 6, false).with(Meets::others()),
         Body::fixed(soup(900, 7, false).frames().swap_remove(0)),
     ];
     let layout = Layout::new(&bodies, QueryKind::Discrete);

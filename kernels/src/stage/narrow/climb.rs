@@ -4,7 +4,7 @@
 //!          over what isolation left; the slices of [`super::slice`] over the rest. With a separation [`separate_at_once`] over
 //!          all candidates, then [`super::separate`]. A lane a pair, both kinds in one launch: a block takes tiles of one kind; a
 //!          grid of any size strides.
-//! Reads    pairs, faces or edges, positions of both frames (four vertices).
+//! Reads    pairs, faces or edges, positions of both frames (four vertices); tolerances of bodies, if they differ.
 //! Writes   contacts and unresolved pairs with toi and toi_hi; or, when only the earliest is asked for, one number. And what
 //!          is left, in its own list.
 //! Before   candidates are complete.
@@ -16,7 +16,7 @@
 //!          f64 as many; settling some 30 exact signs for what touches at the start; the first planes of a separation
 //!          400 operations.
 
-use super::{edge_edge, vertex_face};
+use super::{edge_edge, of_edge_edge, of_vertex_face, vertex_face};
 use crate::abi::{Hit, Listed, Pair, RungArgs, RungFlags, counter};
 use crate::exec::{Block, Lane, Slot};
 use crate::math::Real;
@@ -32,14 +32,14 @@ pub fn isolate<R: Real, S: Grid, B: Block>(b: &mut B, a: &RungArgs<R>) {
         b,
         a,
         |l, pair| {
-            let (v, f) = vertex_face(l, (&a.frames, a.faces), pair);
-            let pair = Face::<S>::new(v, f, &a.params);
-            unless_later(l, a, &pair, |pair| isolated(pair, &a.params, last))
+            let (p, (v, f)) = (of_vertex_face(l, a, pair), vertex_face(l, (&a.frames, a.faces), pair));
+            let pair = Face::<S>::new(v, f, &p);
+            unless_later(l, a, &pair, |pair| isolated(pair, &p, last))
         },
         |l, pair| {
-            let [x, y] = edge_edge(l, (&a.frames, a.edges), pair);
-            let pair = Edges::<S>::new(x, y, &a.params);
-            unless_later(l, a, &pair, |pair| isolated(pair, &a.params, last))
+            let (p, [x, y]) = (of_edge_edge(l, a, pair), edge_edge(l, (&a.frames, a.edges), pair));
+            let pair = Edges::<S>::new(x, y, &p);
+            unless_later(l, a, &pair, |pair| isolated(pair, &p, last))
         },
     );
 }
@@ -51,14 +51,14 @@ pub fn settle<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
         b,
         a,
         |l, pair| {
-            let (v, f) = vertex_face(l, (&a.frames, a.faces), pair);
-            let pair = Face::<f64>::new(v, f, &a.params);
-            unless_later(l, a, &pair, |pair| settled(pair, || vf_touch(v, f), all, &a.params).ok())
+            let (p, (v, f)) = (of_vertex_face(l, a, pair), vertex_face(l, (&a.frames, a.faces), pair));
+            let pair = Face::<f64>::new(v, f, &p);
+            unless_later(l, a, &pair, |pair| settled(pair, || vf_touch(v, f), all, &p).ok())
         },
         |l, pair| {
-            let [x, y] = edge_edge(l, (&a.frames, a.edges), pair);
-            let pair = Edges::<f64>::new(x, y, &a.params);
-            unless_later(l, a, &pair, |pair| settled(pair, || ee_touch(x, y), all, &a.params).ok())
+            let (p, [x, y]) = (of_edge_edge(l, a, pair), edge_edge(l, (&a.frames, a.edges), pair));
+            let pair = Edges::<f64>::new(x, y, &p);
+            unless_later(l, a, &pair, |pair| settled(pair, || ee_touch(x, y), all, &p).ok())
         },
     );
 }
@@ -69,12 +69,12 @@ pub fn separate_at_once<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
         b,
         a,
         |l, pair| {
-            let (v, f) = vertex_face(l, (&a.frames, a.faces), pair);
-            at_once(&Face::new(v, f, &a.params), &a.params)
+            let (p, (v, f)) = (of_vertex_face(l, a, pair), vertex_face(l, (&a.frames, a.faces), pair));
+            at_once(&Face::new(v, f, &p), &p)
         },
         |l, pair| {
-            let [x, y] = edge_edge(l, (&a.frames, a.edges), pair);
-            at_once(&Edges::new(x, y, &a.params), &a.params)
+            let (p, [x, y]) = (of_edge_edge(l, a, pair), edge_edge(l, (&a.frames, a.edges), pair));
+            at_once(&Edges::new(x, y, &p), &p)
         },
     );
 }

@@ -17,10 +17,11 @@ pub mod separate;
 pub mod slice;
 pub mod solve;
 
-use crate::abi::{Output, Pair, Point, Positions, Span};
+use crate::abi::{BodyTolerance, Output, Pair, Point, Positions, RungArgs, Span};
 use crate::exec::{ALONE, Block, Lane, RowMap, Slot};
 use crate::math::{Real, Vec3};
 use crate::prim::cubic::Moving;
+use crate::prim::inclusion::Params;
 
 /// A vertex in motion.
 #[inline(always)]
@@ -59,6 +60,48 @@ fn edge_edge<R: Real, L: Lane>(
     pair: Pair,
 ) -> [[Moving<R>; 2]; 2] {
     [edge(l, frames, l.read(edges, pair.a)), edge(l, frames, l.read(edges, pair.b))]
+}
+
+/// Parameters of a vertex and a face, with the tolerance of their two bodies.
+#[inline(always)]
+fn of_vertex_face<R: Real, L: Lane>(l: &L, args: &RungArgs<R>, pair: Pair) -> Params {
+    if args.tolerances.is_empty() {
+        return args.params;
+    }
+    let vertices = [pair.a, l.read(args.faces, pair.b)[0]];
+    Params { tolerance: tolerance_of(l, args.tolerances, vertices), ..args.params }
+}
+
+/// Parameters of two edges, with the tolerance of their two bodies.
+#[inline(always)]
+fn of_edge_edge<R: Real, L: Lane>(l: &L, args: &RungArgs<R>, pair: Pair) -> Params {
+    if args.tolerances.is_empty() {
+        return args.params;
+    }
+    let vertices = [pair.a, pair.b].map(|edge| l.read(args.edges, edge)[0]);
+    Params { tolerance: tolerance_of(l, args.tolerances, vertices), ..args.params }
+}
+
+/// Tolerance of a pair of features by a vertex of each: the smaller of those of their bodies, 0 if neither has one.
+/// Cost: log2 of the bodies steps for each.
+#[inline(always)]
+fn tolerance_of<L: Lane>(l: &L, tolerances: Span<BodyTolerance>, [p, q]: [u32; 2]) -> f64 {
+    let of_body = |vertex: u32| {
+        // The body of a vertex is the last that begins there or before.
+        let (mut first, mut behind) = (0, tolerances.len() as u32);
+        while behind - first > 1 {
+            let middle = first + (behind - first) / 2;
+            if l.read(tolerances, middle).vertex <= vertex {
+                first = middle;
+            } else {
+                behind = middle;
+            }
+        }
+        l.read(tolerances, first).tolerance
+    };
+    let (p, q) = (of_body(p), of_body(q));
+    let smaller = if q < p { q } else { p };
+    if smaller < f64::INFINITY { smaller } else { 0.0 }
 }
 
 /// A vertex and the corners of a face, at rest.

@@ -4,7 +4,7 @@
 //!          f64 over what that left, or over all. Advancements are of different lengths: a lane takes a step, then the
 //!          next, and a lane that is done draws its block's next pair, so that few lanes wait. A block's pairs lie a grid apart,
 //!          and the kinds begin at opposite ends of the grid.
-//! Reads    pairs, faces or edges, positions of both frames (four vertices).
+//! Reads    pairs, faces or edges, positions of both frames (four vertices); tolerances of bodies, if they differ.
 //! Writes   contacts and unresolved pairs with toi and toi_hi; or the earliest. And in f32 what is left, in its own list.
 //! Before   pairs are complete.
 //! After    every pair that comes within the separation is listed or left, none late; see [`crate::prim::isolate::advance`].
@@ -14,10 +14,11 @@
 //!          steps.
 
 use super::climb::emit;
-use super::{edge_edge, vertex_face};
+use super::{edge_edge, of_edge_edge, of_vertex_face, vertex_face};
 use crate::abi::{Listed, Pair, RungArgs};
 use crate::exec::{Block, Lane, Shared};
 use crate::math::Real;
+use crate::prim::inclusion::Params;
 use crate::prim::isolate::separation::Rung;
 use crate::prim::isolate::{self, Edges, Face};
 
@@ -43,14 +44,28 @@ pub fn separate<R: Real, V: Rung<3>, E: Rung<4>, B: Block>(b: &mut B, a: &RungAr
         }
     });
     b.phase(|l| {
-        advance::<R, V, 3, _>(l, a, &a.vf, (&vf, drawn), |pair| {
-            let (v, f) = vertex_face(l, (&a.frames, a.faces), pair);
-            Face::new(v, f, &a.params)
-        });
-        advance::<R, E, 4, _>(l, a, &a.ee, (&ee, drawn), |pair| {
-            let [x, y] = edge_edge(l, (&a.frames, a.edges), pair);
-            Edges::new(x, y, &a.params)
-        });
+        advance::<R, V, 3, _>(
+            l,
+            a,
+            &a.vf,
+            (&vf, drawn),
+            |pair| of_vertex_face(l, a, pair),
+            |pair, p| {
+                let (v, f) = vertex_face(l, (&a.frames, a.faces), pair);
+                Face::new(v, f, p)
+            },
+        );
+        advance::<R, E, 4, _>(
+            l,
+            a,
+            &a.ee,
+            (&ee, drawn),
+            |pair| of_edge_edge(l, a, pair),
+            |pair, p| {
+                let [x, y] = edge_edge(l, (&a.frames, a.edges), pair);
+                Edges::new(x, y, p)
+            },
+        );
         l.meet();
     });
 }
@@ -71,7 +86,8 @@ fn advance<R: Real, T: Rung<N>, const N: usize, L: Lane>(
     a: &RungArgs<R>,
     of: &Listed,
     (share, drawn): (&WorkRange, Shared<u32>),
-    motion: impl Fn(Pair) -> isolate::Pair<T::S, N>,
+    asked: impl Fn(Pair) -> Params,
+    motion: impl Fn(Pair, &Params) -> isolate::Pair<T::S, N>,
 ) {
     let mut under_way: Option<(Pair, T)> = None;
     let mut more = true;
@@ -81,13 +97,14 @@ fn advance<R: Real, T: Rung<N>, const N: usize, L: Lane>(
             more = i < share.count;
             if more {
                 let pair = of.pairs.get(l, i as u32);
-                under_way = Some((pair, T::begin(motion(pair), &a.params)));
+                let p = asked(pair);
+                under_way = Some((pair, T::begin(motion(pair, &p), &p)));
             }
         }
         // Lanes that drew and lanes that did not step side by side.
         if l.any(under_way.is_some())
             && let Some((pair, rung)) = &mut under_way
-            && let Some(told) = rung.step(&a.params)
+            && let Some(told) = rung.step(&asked(*pair))
         {
             match told {
                 Some(verdict) => emit(l, a, of, (*pair, verdict)),

@@ -13,6 +13,7 @@ use nearmiss::contacts::{Contacts, Kind};
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Discrete, Query, TriangleTest};
+use nearmiss::scene::Meets;
 
 /// A body's numbers. In f32 where that holds them all, unless `wide`.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -120,12 +121,13 @@ impl Scene {
         if discrete { Discrete::by(TriangleTest::Exact { adjacent }).into() } else { Query::continuous() }
     }
 
-    /// The bodies.
+    /// The bodies: one is tested against itself, two against each other only.
     ///
     /// # Errors
     /// [`Error::Input`] where a mesh is refused.
     pub fn bodies(&self) -> Result<Vec<Body>, Error> {
-        self.bodies.iter().map(Numbers::body).collect()
+        let meets = if self.bodies.len() > 1 { Meets::others() } else { Meets::default() };
+        self.bodies.iter().map(|numbers| Ok(numbers.body()?.with(meets))).collect()
     }
 
     /// The triangle pairs of a discrete scene, by the list or the oracle.
