@@ -20,6 +20,12 @@ pub enum Problem {
         /// The unpacker's words.
         reason: String,
     },
+    /// The file is text in another encoding than UTF-8.
+    #[error("is text in {found}, and only UTF-8 is read: save it as UTF-8")]
+    Encoding {
+        /// The encoding, by the file's first bytes.
+        found: &'static str,
+    },
     /// The extension names no reader.
     #[error("has the extension {found:?}, which no reader knows; give a .ply or an .obj file")]
     UnknownExtension {
