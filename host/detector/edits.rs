@@ -3,6 +3,7 @@
 use super::{Detector, fits};
 use crate::error::Error;
 use crate::mesh::Body;
+use crate::pipeline::of_edges;
 use crate::scene::BodyId;
 
 impl Detector {
@@ -10,7 +11,8 @@ impl Detector {
     /// [`Detector::new`], at the next frame.
     ///
     /// # Errors
-    /// [`Error::Choice`] for a body that is not in the scene, and for more triangles than indices reach: then nothing has changed.
+    /// [`Error::Choice`] for a body that is not in the scene, [`Error::Input`] for more triangles than indices reach: then nothing
+    /// has changed.
     pub fn replace(&mut self, id: BodyId, body: Body) -> Result<(), Error> {
         let old = self.scene.get(id).ok_or_else(|| nobody(id))?;
         self.fits(Some(old), &body)?;
@@ -23,12 +25,18 @@ impl Detector {
     /// Adds a body to the scene, from the next frame on. Cost: as of [`Detector::new`], at the next frame.
     ///
     /// # Errors
-    /// [`Error::Choice`] for more triangles than indices reach: then nothing has changed.
+    /// [`Error::Input`] for more triangles than indices reach: then nothing has changed.
     pub fn add(&mut self, body: Body) -> Result<BodyId, Error> {
         self.fits(None, &body)?;
         self.fetch()?;
         self.changed();
-        Ok(self.scene.add(body))
+        let is_first = self.scene.ids().next().is_none();
+        let id = self.scene.add(body);
+        if is_first && self.query.certified().is_some_and(|certified| certified.tolerance.is_none()) {
+            // A scene without bodies has no edge to take it from.
+            self.tolerance = Some(of_edges(self.scene.bodies()));
+        }
+        Ok(id)
     }
 
     /// Takes a body out of the scene, from the next frame on; other bodies keep their numbers. Cost: as of

@@ -59,6 +59,24 @@ pub enum Problem {
         /// The limit, in words.
         limit: &'static str,
     },
+    /// A pose of a rigid body that is no motion.
+    #[error(
+        "has the pose {rotation:?} + {translation:?}; give a unit quaternion (x, y, z, w) and a finite translation"
+    )]
+    NoPose {
+        /// The quaternion as given.
+        rotation: [f64; 4],
+        /// The translation as given.
+        translation: [f64; 3],
+    },
+    /// A pose that takes a body out of the range of coordinates.
+    #[error(
+        "has a pose that takes it to coordinates of {size:e}; they may be at most 2^480 in size: move it nearer"
+    )]
+    PoseTooFar {
+        /// The largest coordinate, rounded up.
+        size: f64,
+    },
     /// A face names a vertex that does not exist.
     #[error(
         "face {face} corner {corner} names vertex {index}, but there are {vertices} vertices, counted from 0: \

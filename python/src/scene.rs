@@ -58,7 +58,7 @@ impl Body {
             }
         };
         let given = positions(vertices, &format!("vertices of {name}"), Most::OfAnyMesh)?;
-        let triangles = self::faces(faces, name)?;
+        let triangles = self::faces(faces, name, given.len())?;
         let meets = Meets { environment, group, mask, self_contact };
         let made = py.detach(|| Mesh::new(name, given, triangles).map(|mesh| make(mesh).with(meets)));
         Ok(Body { body: made.map_err(raised)? })

@@ -143,7 +143,6 @@ fn what_is_no_query_is_refused() {
         "the solver none; choose one of: exact",
     );
     refused(asked(0, |query| query.broad = c"none".as_ptr()), NEARMISS_CHOICE, "the broad phase none");
-    refused(detector(&[], nearmiss_query(0)).map(drop), NEARMISS_CHOICE, "a scene without bodies");
 }
 
 #[test]
@@ -157,7 +156,18 @@ fn what_is_no_frame_is_refused() {
     refused(asked(&[at, at]), NEARMISS_CHOICE, "two inputs for body 0");
     refused(asked(&[NearmissInput { kind: 4, ..at }]), NEARMISS_CHOICE, "an input of kind 4");
     let pose = NearmissPose { rotation: [0.0, 0.0, 0.0, 1.0], translation: [0.0; 3] };
-    assert!(asked(&[nearmiss_pose(0, pose)]).is_err());
+    refused(asked(&[nearmiss_pose(0, pose)]), NEARMISS_CHOICE, "give a deformable body positions");
+    let body = NearmissBody { kind: NearmissBodyKind::NEARMISS_RIGID as u32, ..described(&soup) };
+    let mut rigid = detector(&[body], nearmiss_query(0)).expect("a detector");
+    for bad in
+        [NearmissPose { rotation: [0.0; 4], ..pose }, NearmissPose { translation: [f64::NAN; 3], ..pose }]
+    {
+        refused(
+            frame(&mut rigid, &[nearmiss_pose(0, bad)]).map(drop),
+            NEARMISS_INPUT,
+            "a body: has the pose",
+        );
+    }
     let torn = vec![[f64::NAN; 3]; soup.vertex_count()];
     refused(
         asked(&[nearmiss_at(0, nearmiss_doubles(torn.as_ptr().cast(), torn.len()))]),
@@ -178,4 +188,17 @@ fn what_is_no_frame_is_refused() {
         NEARMISS_CHOICE,
         "sentence 7 of 0",
     );
+}
+
+/// Every query of a scene without bodies: an answer with nothing in it.
+#[test]
+fn a_scene_without_bodies_answers_nothing() {
+    for kind in 0..5 {
+        let mut query = nearmiss_query(kind);
+        query.distance = if kind == 3 { 1.0 } else { 0.0 };
+        let mut own = detector(&[], query).expect("a detector");
+        let answer = frame(&mut own, &[]).expect("an answer");
+        let summary = got(|to, e| nearmiss_answer_summary(Some(&answer), to, e)).expect("a summary");
+        assert_eq!(summary.contacts, 0, "{kind}");
+    }
 }
