@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # The C interface: builds the library, compiles the header as C99 and as C++, builds the examples without a warning, and runs them.
 # Then it is installed, moved, and found there by projects of CMake and by pkg-config. The shared library shows nothing but names that
-# begin with nearmiss_. Programs that find another header than the library's call nothing else of it.
+# begin with nearmiss_. As it is installed it has its SONAME, links under that and its short name, and no debug information. Programs
+# that find another header than the library's call nothing else of it.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -56,6 +57,28 @@ done
 # As its users have it: installed at another place than was configured, and moved from there.
 cmake --install "$target/c" --prefix "$there/first"
 mv "$there/first" "$there/installed"
+soname=libnearmiss_c.so.$(sed -n 's/^version = "\(0\.[0-9]*\|[1-9][0-9]*\)\..*/\1/p' Cargo.toml | head -1)
+# installed FOLDER: whether its libraries are as a system has them; says what is not so.
+installed() {
+    local libraries file
+    libraries=$(dirname "$(find "$1" -name libnearmiss_c.a)")
+    readelf -d "$libraries/libnearmiss_c.so" | grep -F "Library soname: [$soname]" >/dev/null || { echo "no SONAME $soname"; return 1; }
+    { [ -L "$libraries/libnearmiss_c.so" ] && [ -L "$libraries/$soname" ] && [ -f "$libraries/$soname" ]; } \
+        || { echo "no links under libnearmiss_c.so and $soname"; return 1; }
+    for file in "$libraries"/libnearmiss_c.*; do
+        ! readelf -SW "$file" 2>/dev/null | grep '[.]debug_' >/dev/null || { echo "$file has debug information"; return 1; }
+    done
+}
+installed "$there/installed"
+# Debug information, and a library without its SONAME: each is noticed.
+mkdir -p "$there/planted/lib"
+cp -P "$(dirname "$(find "$there/installed" -name libnearmiss_c.a)")"/libnearmiss_c.* "$there/planted/lib/"
+installed "$there/planted"
+cc -g -c -Ic/include "$there/other/library.c" -o "$there/other/debug.o"
+ar q "$there/planted/lib/libnearmiss_c.a" "$there/other/debug.o" 2>/dev/null
+! installed "$there/planted" >/dev/null || { echo "debug information is not noticed"; exit 1; }
+cc -shared "$there/other/library.o" -o "$there/planted/lib/$(readlink "$there/planted/lib/$soname")"
+! installed "$there/planted" >/dev/null || { echo "a library without a SONAME is not noticed"; exit 1; }
 mkdir "$there/user" "$there/without"
 cp c/examples/self_intersections.c "$there/user/"
 cat >"$there/user/CMakeLists.txt" <<'END'
@@ -72,6 +95,7 @@ cmake --build "$there/build"
 for kind in nearmiss static; do
     "$there/build/by_$kind" | grep -x "3 pairs"
 done
+readelf -d "$there/build/by_nearmiss" | grep -F "Shared library: [$soname]"
 # Where threads are not found, a project that can do without nearmiss goes on.
 cat >"$there/without/CMakeLists.txt" <<'END'
 cmake_minimum_required(VERSION 3.16)

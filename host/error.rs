@@ -1,4 +1,7 @@
 //! The one error type: grouped by who must act, each message saying what to do.
+//!
+//! The rule in every language: numbers that describe meshes, positions and poses, in files and in arrays, are *input*; all else
+//! that a caller passes (options, names, kinds, numbers of bodies, shapes and types of arrays, pointers) is a *choice*.
 
 use crate::mesh::Problem;
 
@@ -6,7 +9,7 @@ use crate::mesh::Problem;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A mesh file, a frame or a mesh given in memory that cannot be used. Mend the input.
+    /// Data that cannot be used: a file, or numbers of a mesh, of positions or of a pose, wherever they come from. Correct the data.
     #[error("{file}: {problem}")]
     Input {
         /// The file, scene or caller's name of the mesh.
@@ -14,7 +17,8 @@ pub enum Error {
         /// What is wrong with it, and where.
         problem: Problem,
     },
-    /// Choices that do not exist or do not go together. Choose again.
+    /// An argument that does not exist or does not go with the others, whatever the data: an option, a name, a kind, the number of a
+    /// body, the shape or type of an array, a pointer. Choose again.
     #[error("{what}; {advice}")]
     Choice {
         /// What was asked for.

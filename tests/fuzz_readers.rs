@@ -65,6 +65,10 @@ fn survive(format: Format, bytes: &[u8]) -> Result<(), TestCaseError> {
             prop_assert!(mesh.face_count() > 0);
             let again = Mesh::new("again", mesh.positions().clone(), mesh.faces().to_vec());
             prop_assert!(again.is_ok(), "the door refuses what it let in");
+            for note in mesh.notes() {
+                prop_assert!(note.count > 0 && note.to_string().starts_with("fuzz: "), "{note}");
+            }
+            prop_assert_eq!(mesh.notes().is_empty(), mesh.strict().is_ok());
         }
         Err(error) => prop_assert!(error.to_string().starts_with("fuzz: ")),
     }
@@ -111,6 +115,13 @@ fn damage() -> impl Strategy<Value = Damage> {
         "property float x\n",
         "f 1 2 3\n",
         "\\\n",
+        "\u{feff}",
+        "\r",
+        "\0",
+        "\nV",
+        "\nf 1 2\n",
+        "\nl 1 2\n",
+        "\n2 0 1\n",
     ];
     prop_oneof![
         8 => (at(), any::<u8>()).prop_map(|(i, byte)| Damage::Set(i, byte)),
@@ -167,6 +178,32 @@ proptest! {
         let (format, mut bytes) = valid_files().swap_remove(which);
         damages.iter().for_each(|damage| apply(&mut bytes, damage));
         survive(format, &bytes)?;
+    }
+
+    /// A mark before a file changes nothing of what is read.
+    #[test]
+    fn a_byte_order_mark_changes_nothing(which in 0usize..4, damages in proptest::collection::vec(damage(), 0..3)) {
+        let (format, mut bytes) = valid_files().swap_remove(which);
+        damages.iter().for_each(|damage| apply(&mut bytes, damage));
+        let marked = [b"\xef\xbb\xbf", &bytes[..]].concat();
+        prop_assume!(!bytes.starts_with(b"\xef\xbb\xbf") && bytes.get(..2).is_none_or(|two| !two.contains(&0)));
+        // NaN is not equal to itself, and is written alike.
+        let read = |bytes: &[u8]| format!("{:?}", Mesh::parse("fuzz", format, bytes));
+        prop_assert_eq!(read(&bytes), read(&marked));
+    }
+
+    /// A line whose first word is no keyword never goes in silence.
+    #[test]
+    fn unknown_words_are_noted_or_refused(word in "[vVfFtln:.\u{a0}1_#]{1,3}", at in 0usize..7, rest in "[ 0-9]{0,6}") {
+        const KNOWN: [&str; 6] = ["v", "f", "vt", "vn", "l", "#"];
+        let lines = ["v 0 0 0", "v 1 0 0", "v 0 1 0", "f 1 2 3", "f 3 2 1", "# end"];
+        let first = word.split('#').next().unwrap_or_default();
+        prop_assume!(!first.is_empty() && !KNOWN.contains(&first));
+        let mut file = lines.to_vec();
+        let line = format!("{word} {rest}");
+        file.insert(at.min(lines.len()), &line);
+        let read = Mesh::parse("fuzz", Format::Obj, file.join("\n").as_bytes());
+        prop_assert!(read.is_err() || read.is_ok_and(|mesh| mesh.notes().len() == 1), "{line}");
     }
 
     #[test]

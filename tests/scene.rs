@@ -4,6 +4,8 @@
 mod cost;
 #[path = "scene/edits.rs"]
 mod edits;
+#[path = "scene/empty.rs"]
+mod empty;
 #[path = "scene/extremes.rs"]
 mod extremes;
 #[path = "scene/matrix.rs"]
@@ -12,6 +14,8 @@ mod matrix;
 mod pairwise;
 #[path = "scene/plan.rs"]
 mod plan;
+#[path = "scene/rule.rs"]
+mod rule;
 mod support;
 #[path = "scene/tolerance.rs"]
 mod tolerance;

@@ -45,9 +45,10 @@ enum NearmissCode
  {
     // Done.
     NEARMISS_OK = 0,
-    // Choices, arguments or pointers that do not exist or do not go together. Choose again.
+    // An argument that does not exist or does not go with the others, whatever the data: an option, a name, a kind, the number of a body,
+    // a pointer. Choose again.
     NEARMISS_CHOICE = 1,
-    // A mesh or positions that cannot be used. Mend the input.
+    // Data that cannot be used: numbers of a mesh, of positions or of a pose. Correct the data.
     NEARMISS_INPUT = 2,
     // A result could not be written.
     NEARMISS_OUTPUT = 3,
@@ -327,7 +328,8 @@ typedef struct {
     uint32_t a;
     // The second feature's index in its body.
     uint32_t b;
-    // Their squared distance: its root is off by 192 half ulps of their extent at most.
+    // Their squared distance: its root is off by 192 half ulps of their extent at most. A square below 2^-1022 has fewer digits, one below
+    // 2^-1075 is 0, though the features may be apart.
     double squared_distance;
     // Of a vertex and a face the weights of the face's corners; of two edges how far along `a` and along `b`, from the end of the larger
     // index (0) to the other (1), and 0.
@@ -340,7 +342,8 @@ typedef struct {
     uint32_t bodies[2];
     // Their indices in those.
     uint32_t triangles[2];
-    // How far apart they are: 0 if and only if they share a point, else off by 192 half ulps of their extent at most.
+    // How far apart they are: 0 if and only if they share a point, else off by 192 half ulps at most of the larger of two extents: theirs,
+    // and that of the truly nearest triangles.
     double distance;
     // Of each the weights of its corners at the nearest point.
     double weights[2][3];
@@ -677,7 +680,7 @@ NearmissBody nearmiss_body(void);
 
 // Takes a copy of a scene to a device and builds its trees. Cost: linear in triangles; memory grows with what is found.
 //
-// Fails with `NEARMISS_CHOICE` for a scene without bodies and for choices that do not go together; with `NEARMISS_OUT_OF_MEMORY` and
+// A scene without bodies answers nothing. Fails with `NEARMISS_CHOICE` for choices that do not go together; with `NEARMISS_OUT_OF_MEMORY` and
 // `NEARMISS_DEVICE`.
 //
 // # Safety

@@ -49,7 +49,7 @@ impl NearmissDetector {
 
 /// Takes a copy of a scene, to which nothing can be added from then on, to a device and builds its trees. Cost: linear in triangles; memory grows with what is found.
 ///
-/// Fails with `NEARMISS_CHOICE` for a scene without bodies and for choices that do not go together; with `NEARMISS_OUT_OF_MEMORY` and
+/// A scene without bodies answers nothing. Fails with `NEARMISS_CHOICE` for choices that do not go together; with `NEARMISS_OUT_OF_MEMORY` and
 /// `NEARMISS_DEVICE`.
 ///
 /// # Safety

@@ -13,9 +13,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 pub enum NearmissCode {
     /// Done.
     NEARMISS_OK = 0,
-    /// Choices, arguments or pointers that do not exist or do not go together. Choose again.
+    /// An argument that does not exist or does not go with the others, whatever the data: an option, a name, a kind, the number of a body,
+    /// a pointer. Choose again.
     NEARMISS_CHOICE = 1,
-    /// A mesh or positions that cannot be used. Mend the input.
+    /// Data that cannot be used: numbers of a mesh, of positions or of a pose. Correct the data.
     NEARMISS_INPUT = 2,
     /// A result could not be written.
     NEARMISS_OUTPUT = 3,

@@ -5,6 +5,7 @@ mod bench;
 mod detect;
 mod explain;
 mod memory;
+mod meshes;
 mod output;
 mod paint;
 mod picture;

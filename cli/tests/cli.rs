@@ -21,6 +21,8 @@ mod kept;
 mod memory;
 #[path = "cli/near.rs"]
 mod near;
+#[path = "cli/notes.rs"]
+mod notes;
 #[path = "cli/numbers.rs"]
 mod numbers;
 #[path = "cli/output.rs"]

@@ -10,6 +10,8 @@ fuzz_target!(|bytes: &[u8]| {
             Ok(mesh) => {
                 let again = Mesh::new("again", mesh.positions().clone(), mesh.faces().to_vec());
                 assert!(again.is_ok(), "the door refuses what it let in");
+                assert!(mesh.notes().iter().all(|note| note.count > 0 && note.to_string().starts_with("fuzz: ")));
+                assert_eq!(mesh.notes().is_empty(), mesh.clone().strict().is_ok());
                 let topology = Topology::new(mesh.faces(), mesh.vertex_count());
                 assert_eq!(check(&topology, mesh.faces()), Ok(()));
             }

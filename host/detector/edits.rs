@@ -3,6 +3,7 @@
 use super::{Detector, fits};
 use crate::error::Error;
 use crate::mesh::Body;
+use crate::pipeline::of_edges;
 use crate::scene::BodyId;
 
 impl Detector {
@@ -10,8 +11,8 @@ impl Detector {
     /// [`Detector::new`], at the next frame.
     ///
     /// # Errors
-    /// [`Error::Choice`] for a body that is not in the scene, for self-contact of a static body, and for
-    /// more triangles than indices reach: then nothing has changed.
+    /// [`Error::Choice`] for a body that is not in the scene and for self-contact of a static body, [`Error::Input`] for more triangles
+    /// than indices reach: then nothing has changed.
     pub fn replace(&mut self, id: BodyId, body: Body) -> Result<(), Error> {
         let old = self.scene.get(id).ok_or_else(|| nobody(id))?;
         body.check_meets()?;
@@ -25,7 +26,8 @@ impl Detector {
     /// Adds a body to the scene, from the next frame on. Cost: as of [`Detector::new`], at the next frame.
     ///
     /// # Errors
-    /// [`Error::Choice`] for self-contact of a static body, and for more triangles than indices reach: then nothing has changed.
+    /// [`Error::Choice`] for self-contact of a static body, [`Error::Input`] for more triangles than indices reach: then nothing has
+    /// changed.
     pub fn add(&mut self, body: Body) -> Result<BodyId, Error> {
         body.check_meets()?;
         self.fits(None, &body)?;

@@ -16,7 +16,7 @@ use crate::device::emulator::start_threads;
 use crate::device::{Device, Work};
 use crate::error::Error;
 use crate::memory;
-use crate::mesh::{Body, MAX_FACES, MAX_VERTICES};
+use crate::mesh::{Body, MAX_FACES, MAX_VERTICES, Problem};
 use crate::pipeline::{self, Found, Layout, Pipeline, Share, Stage, Stages, Tolerances};
 use crate::query::{Query, Rebuild};
 use crate::scene::Scene;
@@ -83,12 +83,11 @@ pub struct Detector {
 const OF_A_TRIANGLE: u64 = 300;
 
 impl Detector {
-    /// Uploads a scene and builds its trees: of a single body, or of a list of bodies, too. Cost: linear
-    /// in triangles; memory grows with what is found.
+    /// Uploads a scene and builds its trees: of a single body, or of a list of bodies, too. A scene without bodies answers nothing,
+    /// whatever the query, until a body is [added](Detector::add). Cost: linear in triangles; memory grows with what is found.
     ///
     /// # Errors
-    /// [`Error::Choice`] for a scene without bodies, for self-contact of a static body and for numbers that mean nothing;
-    /// those of the device.
+    /// [`Error::Choice`] for self-contact of a static body and for numbers that mean nothing; those of the device.
     pub fn new(device: Device, scene: impl Into<Scene>, query: impl Into<Query>) -> Result<Detector, Error> {
         Detector::with_share(device, scene.into(), query.into(), Share::WHOLE)
     }
@@ -105,12 +104,6 @@ impl Detector {
     ) -> Result<Detector, Error> {
         query.check()?;
         start_threads()?;
-        if scene.ids().next().is_none() {
-            return Err(Error::Choice {
-                what: "a scene without bodies".into(),
-                advice: "give one body to test against itself, or more to test against each other".into(),
-            });
-        }
         scene.bodies().iter().try_for_each(Body::check_meets)?;
         let mut detector = Detector {
             device: device.for_one(),
@@ -372,14 +365,14 @@ fn contacts(found: Found, stages: Stages, layout: &Layout) -> Result<Contacts, E
 
 /// Whether indices of 32 bits reach all triangles, vertices and edges (at most three a triangle) of all bodies together.
 fn fits(triangles: usize, vertices: usize) -> Result<(), Error> {
-    let what = match (triangles > MAX_FACES, vertices > MAX_VERTICES) {
-        (true, _) => format!("bodies of {triangles} triangles in all"),
-        (_, true) => format!("bodies of {vertices} vertices in all"),
-        _ => return Ok(()),
-    };
-    let advice =
-        format!("give at most {MAX_FACES} triangles and {MAX_VERTICES} vertices; split the larger body");
-    Err(Error::Choice { what, advice })
+    let all = [("triangles", triangles, MAX_FACES), ("vertices", vertices, MAX_VERTICES)];
+    match all.into_iter().find(|(_, count, limit)| count > limit) {
+        None => Ok(()),
+        Some((what, count, limit)) => {
+            let problem = Problem::TooMany { what, count: count as u64, limit: limit as u64 };
+            Err(Error::Input { file: "the scene".into(), problem })
+        }
+    }
 }
 
 #[cfg(test)]

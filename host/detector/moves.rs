@@ -5,7 +5,7 @@ use super::edits::nobody;
 use crate::contacts::Contacts;
 use crate::device::emulator::start_threads;
 use crate::error::Error;
-use crate::mesh::Body;
+use crate::mesh::{Body, Problem};
 use crate::pipeline::Moved;
 use crate::scene::{BodyId, Input};
 use std::time::Instant;
@@ -117,19 +117,38 @@ impl Detector {
     /// Moves a body to where another of the same mesh is: as [`Detector::place`], but from a body, which is kept.
     ///
     /// # Errors
-    /// [`Error::Choice`] when the body has other faces than the one it replaces; those of the device.
+    /// [`Error::Input`] when the body has other faces than the one it replaces, [`Error::Choice`] when it is of another kind or there
+    /// is none to replace; those of the device.
     pub fn move_to(&mut self, body: usize, frame: Body) -> Result<(), Error> {
-        let old = self.scene.bodies().get(body);
-        let same = |old: &Body| old.faces() == frame.faces() && old.vertex_count() == frame.vertex_count();
-        let Some(meets) = old.filter(|old| same(old) && old.kind() == frame.kind()).map(|old| *old.meets())
-        else {
+        let same = |old: &&Body| old.kind() == frame.kind();
+        let Some(old) = self.scene.bodies().get(body).filter(same) else {
             return Err(Error::Choice {
                 what: format!("{} does not replace body {body} of this scene", frame.name()),
-                advice: "give frames of the same mesh, or replace the body".into(),
+                advice: "give a frame of a body of the scene, of its kind, or replace the body".into(),
             });
         };
+        if let Some(problem) = other_mesh(old, &frame) {
+            return Err(Error::Input { file: frame.name().to_owned(), problem });
+        }
+        let meets = *old.meets();
         let old = &mut self.scene.bodies_mut()[body];
         *old = frame.with(meets).with_tolerance_of(old);
         self.moved(&[Moved { body, rests: false }])
     }
+}
+
+/// What keeps a body from being a frame of another.
+fn other_mesh(old: &Body, new: &Body) -> Option<Problem> {
+    let first = || old.name().to_owned();
+    let [t0, t1] = [old, new].map(Body::vertex_count);
+    if t0 != t1 {
+        return Some(Problem::FrameVertices { first: first(), t0, t1 });
+    }
+    let [t0, t1] = [old, new].map(Body::face_count);
+    if t0 != t1 {
+        return Some(Problem::FrameFaces { first: first(), t0, t1 });
+    }
+    let face = old.faces().iter().zip(new.faces()).position(|(a, b)| a != b)?;
+    let [t0, t1] = [old, new].map(|body| body.faces()[face].to_vec());
+    Some(Problem::FrameFace { first: first(), face, t0, t1 })
 }

@@ -1,5 +1,6 @@
 //! Files that are read whole: only regular ones, only where there is memory, unpacked where gzip has packed them.
 
+pub(crate) mod encoding;
 #[cfg(feature = "gz")]
 mod unpack;
 
@@ -25,15 +26,13 @@ pub fn read(path: &Path, multiple: u64) -> Result<Vec<u8>, Error> {
     Ok(bytes)
 }
 
-/// A file's text, as [`read`] its bytes.
+/// A file's text, as [`read`] its bytes: without a byte order mark, its lines ended by LF or CR LF, also if the file ends them by CR.
 ///
 /// # Errors
-/// Those of [`read`], and [`Problem::Unreadable`] for what is not UTF-8.
+/// Those of [`read`], [`Problem::Encoding`] for UTF-16 and UTF-32, and [`Problem::Unreadable`] for all else that is not UTF-8.
 pub fn text(path: &Path, multiple: u64) -> Result<String, Error> {
-    String::from_utf8(read(path, multiple)?).map_err(|_| Error::Input {
-        file: path.display().to_string(),
-        problem: Problem::Unreadable { reason: "it is not UTF-8".into() },
-    })
+    let input = |problem| Error::Input { file: path.display().to_string(), problem };
+    encoding::text(read(path, multiple)?).map_err(input)
 }
 
 /// Whether a file is packed by gzip, and can be read.

@@ -4,7 +4,9 @@
 //! has passed [`Mesh::new`] needs no further check: finite where used, in range, indices valid.
 
 mod cut;
+mod note;
 mod obj;
+mod obj_words;
 mod placed;
 mod ply_header;
 mod ply_problem;
@@ -21,6 +23,7 @@ mod topology_check;
 mod validate;
 mod weld;
 
+pub use note::{Note, Treated};
 pub use obj::ObjProblem;
 pub(crate) use placed::{Bounds, NOTHING, union};
 pub use ply_problem::PlyProblem;
@@ -47,6 +50,7 @@ pub struct Mesh {
     positions: Positions,
     faces: Vec<[u32; 3]>,
     polygons: Polygons,
+    notes: Vec<Note>,
 }
 
 impl Mesh {
@@ -61,7 +65,9 @@ impl Mesh {
     pub fn new(name: impl Into<String>, positions: Positions, faces: Vec<[u32; 3]>) -> Result<Mesh, Error> {
         let name = name.into();
         match validate::check(positions, &faces) {
-            Ok(positions) => Ok(Mesh { name, positions, faces, polygons: Polygons::default() }),
+            Ok(positions) => {
+                Ok(Mesh { name, positions, faces, polygons: Polygons::default(), notes: Vec::new() })
+            }
             Err(problem) => Err(Error::Input { file: name, problem }),
         }
     }

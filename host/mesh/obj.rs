@@ -1,7 +1,10 @@
-//! OBJ files to positions and faces: the keywords `v` and `f`; all others are skipped.
+//! OBJ files to positions and faces: the keywords `v` and `f`. All others are counted or known to hold neither.
 
+use super::note::{Notes, Treated};
+use super::obj_words::Word;
 use super::polygons::Fans;
 use super::problem::shown;
+use super::read::Parsed;
 use super::{Positions, Problem};
 
 /// What is wrong with an OBJ file. Lines count from 1; a continued line has the number of its first part.
@@ -11,6 +14,11 @@ use super::{Positions, Problem};
 pub enum ObjProblem {
     #[error("line {line}: a vertex with {found} coordinates; x, y and z are needed")]
     ShortVertex { line: usize, found: usize },
+    #[error(
+        "line {line}: vertex {vertex} (from 0) has {found:?} after x, y and z; at most a weight and a colour of three \
+         numbers may follow: correct it, or begin a new line"
+    )]
+    LongVertex { line: usize, vertex: usize, found: String },
     #[error(
         "line {line}: the {axis} of vertex {vertex} (from 0) is {found:?}, which is not a number: correct it"
     )]
@@ -33,18 +41,40 @@ pub enum ObjProblem {
         "line {line}: vertex index {index}, but the file has {vertices} vertices, counted from 1: correct it"
     )]
     Index { line: usize, index: i64, vertices: usize },
+    #[error(
+        "line {line} begins with {found:?}, which is nearly v or f but is no keyword of OBJ: begin it with v for a \
+         vertex, with f for a face, or with # for a comment"
+    )]
+    Misspelt { line: usize, found: String },
+    #[error("line {line} begins with {found:?}, which is no keyword of OBJ: correct it or remove the line")]
+    Word { line: usize, found: String },
+    #[error(
+        "line {line} begins with {found:?}, which is not read; only vertices (v) and faces (f) are: give polygons, or \
+         remove the line"
+    )]
+    Element { line: usize, found: String },
+    #[error(
+        "line {line} ends in a backslash, so the next line, which begins with {found:?}, is a part of it: remove the \
+         backslash"
+    )]
+    Joined { line: usize, found: String },
+    #[error("line {line} has a NUL byte; the file is no text, or not UTF-8: save it as UTF-8")]
+    Nul { line: usize },
 }
 
-/// Reads the whole file. Coordinates are parsed as doubles and kept as
+/// Reads the whole file. Lines end in LF, CR LF or CR. Coordinates are parsed as doubles and kept as
 /// floats only if each is one exactly.
-pub(super) fn read(bytes: &[u8]) -> Result<(Positions, Fans), Problem> {
+pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Problem> {
     let mut obj = Obj::default();
     let mut joined = Vec::new();
     let mut first = 0;
-    for (i, line) in bytes.split(|&b| b == b'\n').enumerate() {
+    for (i, line) in lines(bytes).enumerate() {
         let line = line.trim_ascii_end();
         if joined.is_empty() {
             first = i + 1;
+        } else if let Some(word @ (b"v" | b"f")) = words(line).next() {
+            // No argument is called so: a vertex or a face would be lost.
+            return Err(ObjProblem::Joined { line: i, found: shown(word) }.into());
         }
         // A comment that ends in a backslash, say a path, must not swallow the next line.
         if let Some(part) = line.strip_suffix(b"\\").filter(|part| !part.contains(&b'#')) {
@@ -64,10 +94,30 @@ pub(super) fn read(bytes: &[u8]) -> Result<(Positions, Fans), Problem> {
     obj.finish()
 }
 
+/// Lines without their ends.
+fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let mut rest = Some(bytes);
+    std::iter::from_fn(move || {
+        let now = rest?;
+        let Some(end) = now.iter().position(|b| matches!(b, b'\n' | b'\r')) else {
+            rest = None;
+            return Some(now);
+        };
+        let length = if now[end..].starts_with(b"\r\n") { 2 } else { 1 };
+        rest = Some(&now[end + length..]);
+        Some(&now[..end])
+    })
+}
+
+fn words(text: &[u8]) -> impl Iterator<Item = &[u8]> {
+    text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty())
+}
+
 #[derive(Default)]
 struct Obj {
     points: Vec<[f64; 3]>,
     faces: Fans,
+    notes: Notes,
     /// The line and the index of the largest reference to a vertex that had not come yet.
     ahead: Option<(usize, i64)>,
 }
@@ -75,12 +125,24 @@ struct Obj {
 impl Obj {
     fn line(&mut self, line: usize, text: &[u8]) -> Result<(), ObjProblem> {
         let end = text.iter().position(|&b| b == b'#').unwrap_or(text.len());
-        let mut words = text[..end].split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
-        match words.next() {
-            Some(b"v") => self.vertex(line, words),
-            Some(b"f") => self.face(line, words),
-            _ => Ok(()),
+        let mut words = words(&text[..end]);
+        let Some(word) = words.next() else { return Ok(()) };
+        if text[..end].contains(&0) {
+            return Err(ObjProblem::Nul { line });
         }
+        match Word::of(word) {
+            Word::Vertex => self.vertex(line, words)?,
+            Word::Face => self.face(line, words)?,
+            Word::Quiet => {}
+            Word::Element => {
+                self.notes.add(Treated::NotRead, || ObjProblem::Element { line, found: shown(word) }.into())
+            }
+            Word::Misspelt => return Err(ObjProblem::Misspelt { line, found: shown(word) }),
+            Word::Unknown => {
+                self.notes.add(Treated::Unknown, || ObjProblem::Word { line, found: shown(word) }.into());
+            }
+        }
+        Ok(())
     }
 
     fn vertex<'a>(
@@ -88,13 +150,16 @@ impl Obj {
         line: usize,
         mut words: impl Iterator<Item = &'a [u8]>,
     ) -> Result<(), ObjProblem> {
+        let vertex = self.points.len();
         let mut point = [0.0; 3];
         for (found, (x, axis)) in point.iter_mut().zip(['x', 'y', 'z']).enumerate() {
             let word = words.next().ok_or(ObjProblem::ShortVertex { line, found })?;
-            *x = parse(word).ok_or_else(|| {
-                let vertex = self.points.len();
-                ObjProblem::Number { line, vertex, axis, found: shown(word) }
-            })?;
+            *x = parse(word).ok_or_else(|| ObjProblem::Number { line, vertex, axis, found: shown(word) })?;
+        }
+        for (at, word) in words.enumerate() {
+            if at >= MOST_AFTER || parse::<f64>(word).is_none() {
+                return Err(ObjProblem::LongVertex { line, vertex, found: shown(word) });
+            }
         }
         self.points.push(point);
         Ok(())
@@ -108,7 +173,8 @@ impl Obj {
             corners += 1;
         }
         if corners < 3 {
-            return Err(ObjProblem::ShortFace { line, corners });
+            self.faces.leave_out(corners as u64);
+            self.notes.add(Treated::LeftOut, || ObjProblem::ShortFace { line, corners }.into());
         }
         Ok(())
     }
@@ -139,7 +205,7 @@ impl Obj {
         Ok(index_u32)
     }
 
-    fn finish(self) -> Result<(Positions, Fans), Problem> {
+    fn finish(self) -> Result<Parsed, Problem> {
         let vertices = self.points.len();
         if let Some((line, index)) = self.ahead.filter(|&(_, index)| index > vertices as i64) {
             return Err(ObjProblem::Index { line, index, vertices }.into());
@@ -151,9 +217,12 @@ impl Obj {
         } else {
             Positions::F64(self.points)
         };
-        Ok((positions, self.faces))
+        Ok(Parsed { positions, fans: self.faces, notes: self.notes })
     }
 }
+
+/// Most numbers after the three of a vertex: a weight, and a colour of three.
+const MOST_AFTER: usize = 4;
 
 fn parse<T: std::str::FromStr>(word: &[u8]) -> Option<T> {
     std::str::from_utf8(word).ok()?.parse().ok()

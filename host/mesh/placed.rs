@@ -37,8 +37,8 @@ impl Body {
     /// Whether the body can be where a frame says. Cost: a pass over the positions of a deformable body.
     ///
     /// # Errors
-    /// [`Error::Choice`] for what its kind does not take and for a pose that is none; [`Error::Input`] for positions that no
-    /// mesh may have.
+    /// [`Error::Choice`] for what its kind does not take; [`Error::Input`] for positions that no mesh may have, and for a pose
+    /// that is none.
     pub fn check(&self, input: &Input) -> Result<(), Error> {
         match (self.kind, input) {
             (BodyKind::Deformable, Input::At(t0)) => self.check_vertices(&[t0]),
@@ -100,10 +100,7 @@ impl Body {
         pose.check(&self.name)?;
         let size = size(&self.around(pose));
         if size > MAX_ABS_F64 {
-            return Err(Error::Choice {
-                what: format!("a pose that takes {} to coordinates of {size:e}", self.name),
-                advice: "coordinates may be at most 2^480 in size".into(),
-            });
+            return Err(Error::Input { file: self.name.clone(), problem: Problem::PoseTooFar { size } });
         }
         Ok(())
     }
@@ -178,7 +175,7 @@ impl Body {
     /// Whether a body can be where it was found: at both ends or at the only one.
     ///
     /// # Errors
-    /// [`Error::Choice`] and [`Error::Input`], as of [`Body::check`].
+    /// [`Error::Input`], as of [`Body::check`].
     pub(crate) fn check_found(&self, ends: &[Positions], poses: &[Pose]) -> Result<bool, Error> {
         if self.kind == BodyKind::Rigid {
             poses.iter().try_for_each(|pose| self.check_pose(pose))?;

@@ -55,7 +55,7 @@ impl<'a> Header<'a> {
         let mut property_names = HashSet::new();
         while let Some(bytes) = lines.next() {
             let line = lines.read;
-            let keyword = bytes.split(u8::is_ascii_whitespace).next();
+            let keyword = bytes.trim_ascii_start().split(u8::is_ascii_whitespace).next();
             if matches!(keyword, Some(b"comment" | b"obj_info")) {
                 continue; // free text, in any encoding
             }

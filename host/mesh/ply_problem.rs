@@ -77,6 +77,11 @@ pub enum PlyProblem {
     Length { element: String, index: u64, property: String, length: u64, need: u128, left: usize },
     #[error("face {face} has {corners} corners; at least 3 are needed: remove the face or give its corners")]
     Corners { face: u64, corners: u64 },
+    #[error(
+        "its element {element}, of {count} entries, is not read; only vertex and face are: convert it into faces, or \
+         remove it"
+    )]
+    Unread { element: String, count: u64 },
     #[error("face {face} corner {corner} names vertex {index}; an index must be 0 or more: correct it")]
     NegativeIndex { face: u64, corner: u64, index: i64 },
     #[error(

@@ -3,33 +3,45 @@
 //! We have our own reader because the crates there are either allocate by the counts in the header, which a damaged
 //! file may have at any size, or lose the number of the element at fault.
 
+use super::note::{Notes, Treated};
 use super::ply_header::{Element, Encoding, Header, Kind, Property, is_corners};
 use super::ply_problem::PlyProblem;
 use super::ply_source::{Failure, Scalar, Source, Value};
 use super::polygons::Fans;
 use super::problem::shown;
+use super::read::Parsed;
 use super::validate::{self, MAX_FACES, MAX_VERTICES};
 use super::{Positions, Problem};
 
+/// Elements without surfaces, as scanners and modellers write them: they are skipped without a note.
+const QUIET: [&str; 5] = ["edge", "material", "camera", "user", "range_grid"];
+
 /// Reads the whole file; faces keep the file's order.
-pub(super) fn read(bytes: &[u8]) -> Result<(Positions, Fans), Problem> {
+pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Problem> {
     let header = Header::read(bytes)?;
     let vertex = header.elements.iter().find(|e| e.name == "vertex").ok_or(PlyProblem::NoVertices)?;
     let mut source = Source::new(&bytes[header.size..], header.encoding);
     let mut positions = Positions::F32(Vec::new());
-    let mut faces = Fans::default();
+    let (mut fans, mut notes) = (Fans::default(), Notes::default());
     for element in &header.elements {
         promise(element, &source)?;
         match element.name {
             "vertex" => positions = vertices(element, &mut source)?,
-            "face" => faces = polygons(element, vertex.count, &mut source)?,
+            "face" => fans = polygons(element, vertex.count, (&mut source, &mut notes))?,
             _ if element.properties.is_empty() => {} // any number of entries, no room
-            _ => entries(element, &mut source, |_, _, _, _| Ok(()))?,
+            name => {
+                entries(element, &mut source, |_, _, _, _| Ok(()))?;
+                if !QUIET.contains(&name) && element.count > 0 {
+                    let name = shown(name.as_bytes());
+                    let first = || PlyProblem::Unread { element: name, count: element.count }.into();
+                    notes.add_many(Treated::NotRead, element.count, first);
+                }
+            }
         }
     }
     source.begin_entry();
     match (source.left(), header.encoding) {
-        (0, _) => Ok((positions, faces)),
+        (0, _) => Ok(Parsed { positions, fans, notes }),
         (_, Encoding::Ascii) => Err(PlyProblem::TrailingText { found: shown(source.end_entry()) }.into()),
         (bytes, _) => Err(PlyProblem::Trailing { bytes }.into()),
     }
@@ -104,7 +116,11 @@ fn to_f64(value: Value) -> f64 {
     }
 }
 
-fn polygons(element: &Element<'_>, vertices: u64, source: &mut Source<'_>) -> Result<Fans, Problem> {
+fn polygons(
+    element: &Element<'_>,
+    vertices: u64,
+    (source, notes): (&mut Source<'_>, &mut Notes),
+) -> Result<Fans, Problem> {
     let mut lists = element.properties.iter().enumerate().filter(|(_, p)| is_corners(p.name));
     let column = match (lists.next(), lists.next()) {
         (Some((column, Property { kind: Kind::List { .. }, .. })), None) => column,
@@ -112,11 +128,20 @@ fn polygons(element: &Element<'_>, vertices: u64, source: &mut Source<'_>) -> Re
         _ => return Err(PlyProblem::NoCorners.into()),
     };
     let mut faces = Fans::of(element.count as usize); // see `promise`
+    let mut corners = 0;
     entries(element, source, |face, at, item, value| {
         let Value::Int(index) = value else { return Ok(()) };
         match item {
             _ if at != column => return Ok(()),
-            Item::Length if index < 3 => return Err(PlyProblem::Corners { face, corners: index as u64 }),
+            Item::Length => {
+                corners = index as u64; // not negative: see `Place::length`
+                if corners == 0 {
+                    faces.leave_out(corners);
+                }
+                if corners < 3 {
+                    notes.add(Treated::LeftOut, || PlyProblem::Corners { face, corners }.into());
+                }
+            }
             Item::At(corner) => {
                 if index < 0 {
                     return Err(PlyProblem::NegativeIndex { face, corner, index });
@@ -125,8 +150,11 @@ fn polygons(element: &Element<'_>, vertices: u64, source: &mut Source<'_>) -> Re
                     return Err(PlyProblem::Index { face, corner, index, vertices });
                 }
                 faces.corner(corner, index as u32); // below 2^32, as every whole number of PLY
+                if corners < 3 && corner + 1 == corners {
+                    faces.leave_out(corners);
+                }
             }
-            Item::Length | Item::Only => {}
+            Item::Only => {}
         }
         Ok(())
     })?;

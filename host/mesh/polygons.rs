@@ -1,7 +1,7 @@
 //! The faces of a file, behind the triangles that were made of them.
 
-/// Which triangles are of which face of the file, and the corners of the faces that are no fans. Nothing is kept where
-/// every face was a triangle; else 4 bytes a face, and 8 and 4 a corner for a face that is no fan.
+/// Which triangles are of which face of the file, and the corners of the faces that are no fans. A face that was left out has
+/// none. Nothing is kept if every face was a triangle; else 4 bytes a face, and 8 and 4 a corner for a face that is no fan.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct Polygons {
     /// The first triangle of each face, ascending; empty where every face was a triangle.
@@ -42,13 +42,14 @@ impl Polygons {
     pub fn corners(&self, face: usize, faces: &[[u32; 3]], into: &mut Vec<u32>) {
         into.clear();
         let triangles = &faces[self.triangles(face, faces.len())];
+        let Some(fan) = triangles.first() else { return }; // it was left out
         match self.cut.binary_search_by_key(&(face as u32), |cut| cut[0]) {
             Ok(at) => {
                 let from = self.cut[at][1] as usize;
                 into.extend(&self.corners[from..from + triangles.len() + 2]);
             }
             Err(_) => {
-                into.extend(&triangles[0][..2]);
+                into.extend(&fan[..2]);
                 into.extend(triangles.iter().map(|triangle| triangle[2]));
             }
         }
@@ -82,7 +83,7 @@ impl Fans {
         Fans { faces: Vec::with_capacity(count), ..Fans::default() }
     }
 
-    /// The next vertex, which is corner `corner` (from 0) of its face. A face has at least three.
+    /// The next vertex, which is corner `corner` (from 0) of its face. A face of fewer than three is left out afterwards.
     pub fn corner(&mut self, corner: u64, vertex: u32) {
         match corner {
             0 => {
@@ -101,5 +102,17 @@ impl Fans {
             _ => self.faces.push([self.first, self.last, vertex]),
         }
         self.last = vertex;
+    }
+    /// Leaves out the face that has just come with so many corners, two at most: it keeps its number, and has no triangles.
+    pub fn leave_out(&mut self, corners: u64) {
+        let others = if corners > 0 { self.read - 1 } else { self.read };
+        let (count, first) = (self.faces.len() as u32, &mut self.polygons.first);
+        if first.is_empty() {
+            first.extend(0..others);
+            first.push(count);
+        } else if corners == 0 {
+            first.push(count);
+        }
+        self.read = others + 1;
     }
 }

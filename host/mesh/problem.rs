@@ -20,6 +20,12 @@ pub enum Problem {
         /// The unpacker's words.
         reason: String,
     },
+    /// The file is text in another encoding than UTF-8.
+    #[error("is text in {found}, and only UTF-8 is read: save it as UTF-8")]
+    Encoding {
+        /// The encoding, by the file's first bytes.
+        found: &'static str,
+    },
     /// The extension names no reader.
     #[error("has the extension {found:?}, which no reader knows; give a .ply or an .obj file")]
     UnknownExtension {
@@ -52,6 +58,24 @@ pub enum Problem {
         value: f64,
         /// The limit, in words.
         limit: &'static str,
+    },
+    /// A pose of a rigid body that is no motion.
+    #[error(
+        "has the pose {rotation:?} + {translation:?}; give a unit quaternion (x, y, z, w) and a finite translation"
+    )]
+    NoPose {
+        /// The quaternion as given.
+        rotation: [f64; 4],
+        /// The translation as given.
+        translation: [f64; 3],
+    },
+    /// A pose that takes a body out of the range of coordinates.
+    #[error(
+        "has a pose that takes it to coordinates of {size:e}; they may be at most 2^480 in size: move it nearer"
+    )]
+    PoseTooFar {
+        /// The largest coordinate, rounded up.
+        size: f64,
     },
     /// A face names a vertex that does not exist.
     #[error(

@@ -1,9 +1,11 @@
 //! Files to meshes: opening, and the choice of the reader.
 
+use super::note::Notes;
+use super::polygons::Fans;
 use super::sequence::difference;
-use super::{Mesh, Problem, cut, obj, ply_read};
+use super::{Mesh, Positions, Problem, cut, obj, ply_read};
 use crate::Error;
-use crate::file::{self, is_packed};
+use crate::file::{self, encoding, is_packed};
 use std::path::Path;
 
 /// The formats that are read.
@@ -11,7 +13,7 @@ use std::path::Path;
 pub enum Format {
     /// Stanford PLY: ascii, binary little-endian or big-endian.
     Ply,
-    /// Wavefront OBJ: `v` and `f`; other keywords are skipped.
+    /// Wavefront OBJ: `v` and `f`; other keywords of the format are skipped, and all else is counted by [`Mesh::notes`].
     Obj,
 }
 
@@ -42,13 +44,16 @@ impl Mesh {
     /// thousandth of its extent) and crosses itself as it is seen. Corners may touch; a hole may be joined by
     /// an edge there and back.
     ///
+    /// A flat polygon that crosses itself is cut as a fan too, which covers all that it winds around, and may cover more. A
+    /// face of fewer than three corners is left out. [`Mesh::notes`] counts both, and all else that was not read; [`Mesh::strict`]
+    /// refuses them. A byte order mark of UTF-8 is skipped; UTF-16 and UTF-32 are refused.
+    ///
     /// Cost: O(n log n) for usual polygons, O(n^2) for bad ones. Memory: the file, the mesh, and at most a small multiple of the file on the way, whatever its header promises.
     ///
     /// # Errors
     /// [`Error::Input`], naming the file, the element and the value: a file that cannot be read or is no regular file,
-    /// an unknown extension, a malformed file, a mesh that fails [`Mesh::new`], one without triangles, or a flat
-    /// polygon that crosses itself ([`Problem::FaceCrosses`], [`Problem::FaceFolds`]), or one of more than 131,072
-    /// corners whose fan is wrong ([`Problem::FaceCorners`]). [`Error::OutOfMemory`] for a file that is too large for the memory there
+    /// an unknown extension, a malformed file, a mesh that fails [`Mesh::new`], one without triangles, or a
+    /// polygon of more than 131,072 corners whose fan is wrong ([`Problem::FaceCorners`]). [`Error::OutOfMemory`] for a file that is too large for the memory there
     /// is.
     pub fn read(path: &Path) -> Result<Mesh, Error> {
         let (file, format, bytes) = open(path)?;
@@ -61,7 +66,7 @@ impl Mesh {
     /// [`Body::moving`](super::Body::moving) takes such frames; a detector that goes from body to body does not.
     ///
     /// # Errors
-    /// As [`Mesh::read`], but for polygons that cross themselves; and those of [`Body::moving`](super::Body::moving).
+    /// As [`Mesh::read`], except for polygons, which are cut as here; and those of [`Body::moving`](super::Body::moving).
     pub fn read_frame(&self, path: &Path) -> Result<Mesh, Error> {
         let (file, format, bytes) = open(path)?;
         self.parse_frame(file, format, &bytes)
@@ -86,24 +91,36 @@ impl Mesh {
     pub fn parse_frame(&self, name: impl Into<String>, format: Format, bytes: &[u8]) -> Result<Mesh, Error> {
         let frame = fans(name.into(), format, bytes)?;
         match difference(self, &frame) {
-            None => Ok(Mesh { faces: self.faces.clone(), polygons: self.polygons.clone(), ..frame }),
+            None => {
+                let mut notes = frame.notes;
+                notes.retain(|note| !self.notes.iter().any(|known| known.is_as(note)));
+                Ok(Mesh { faces: self.faces.clone(), polygons: self.polygons.clone(), notes, ..frame })
+            }
             Some(problem) => Err(Error::Input { file: frame.name, problem }),
         }
     }
 }
 
+/// What a reader of a format makes of a file.
+pub(super) struct Parsed {
+    pub positions: Positions,
+    pub fans: Fans,
+    pub notes: Notes,
+}
+
 /// The mesh of a file, every polygon still a fan.
 fn fans(name: String, format: Format, bytes: &[u8]) -> Result<Mesh, Error> {
-    let parsed = match format {
+    let parsed = encoding::utf8(bytes).and_then(|bytes| match format {
         Format::Ply => ply_read::read(bytes),
         Format::Obj => obj::read(bytes),
-    };
-    let (positions, fans) = match parsed {
+    });
+    let Parsed { positions, fans, notes } = match parsed {
         Ok(parsed) => parsed,
         Err(problem) => return Err(Error::Input { file: name, problem }),
     };
     let mut mesh = Mesh::new(name, positions, fans.faces)?;
     mesh.polygons = fans.polygons;
+    mesh.notes = notes.of(&mesh.name);
     mesh.require_triangles()?;
     Ok(mesh)
 }

@@ -58,7 +58,7 @@ pub(crate) enum Away {
 impl Body {
     /// A body at one frame.
     pub fn still(mesh: Mesh) -> Body {
-        let Mesh { name, positions, faces, polygons } = mesh;
+        let Mesh { name, positions, faces, polygons, .. } = mesh;
         Body {
             name,
             faces,
@@ -94,6 +94,7 @@ impl Body {
             positions: nothing,
             faces: Vec::new(),
             polygons: Polygons::default(),
+            notes: Vec::new(),
         };
         Body::still(mesh)
     }
@@ -153,7 +154,7 @@ impl Body {
             (a, b) => (a.promoted(), b.promoted()),
         };
         let Mesh { name, faces, polygons, .. } = t0;
-        let still = Body::still(Mesh { name, positions: positions_t0, faces, polygons });
+        let still = Body::still(Mesh { name, positions: positions_t0, faces, polygons, notes: Vec::new() });
         Ok(Body { positions_t1: Some(positions_t1), ..still })
     }
 
@@ -240,6 +241,7 @@ impl Body {
             positions: positions.clone(),
             faces: self.faces.clone(),
             polygons: self.polygons.clone(),
+            notes: Vec::new(),
         };
         std::iter::once(&self.positions_t0).chain(&self.positions_t1).map(mesh).collect()
     }

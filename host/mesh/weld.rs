@@ -87,6 +87,7 @@ impl Mesh {
             positions: frame.positions.clone(),
             faces: faces.clone(),
             polygons: polygons.clone(),
+            notes: frame.notes.clone(),
         });
         Ok((welded.collect(), vertices.merged))
     }

@@ -1,6 +1,7 @@
 //! Where a rigid body is: a rotation and a translation.
 
 use crate::error::Error;
+use crate::mesh::Problem;
 use nalgebra::{Isometry3, Vector3};
 use nearmiss_kernels::abi::PoseRecord;
 use nearmiss_kernels::math::tolerance::POSE_UNIT;
@@ -53,17 +54,15 @@ impl Pose {
     /// Whether it is one.
     ///
     /// # Errors
-    /// [`Error::Choice`], naming `body`, for a rotation that is no unit quaternion and for what is not finite.
+    /// [`Error::Input`], naming `body`, for a rotation that is no unit quaternion and for what is not finite.
     pub(crate) fn check(&self, body: &str) -> Result<(), Error> {
         // NaN is not.
         let unit = (self.length() - 1.0).abs() <= POSE_UNIT;
         if unit && self.translation.iter().all(|t| t.is_finite()) {
             return Ok(());
         }
-        Err(Error::Choice {
-            what: format!("the pose {:?} + {:?} of {body}", self.rotation, self.translation),
-            advice: "give a unit quaternion (x, y, z, w) and a finite translation".into(),
-        })
+        let problem = Problem::NoPose { rotation: self.rotation, translation: self.translation };
+        Err(Error::Input { file: body.into(), problem })
     }
 
     /// The turn from this pose to another: its angle in [0, pi], and its axis in the frame of the body's points, not of length 1.

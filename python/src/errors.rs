@@ -14,9 +14,10 @@ mod classes {
     import_exception!(nearmiss.errors, DeviceError);
     import_exception!(nearmiss.errors, OutOfMemory);
     import_exception!(nearmiss.errors, Bug);
+    import_exception!(nearmiss.errors, MeshWarning);
 }
 
-use classes::{Bug, ChoiceError, DeviceError, InputError, NearmissError, OutOfMemory};
+use classes::{Bug, ChoiceError, DeviceError, InputError, MeshWarning, NearmissError, OutOfMemory};
 
 /// What Python raises.
 pub fn raised(error: Error) -> PyErr {
@@ -29,6 +30,12 @@ pub fn raised(error: Error) -> PyErr {
         Error::Bug { .. } => Bug::new_err(text),
         _ => NearmissError::new_err(text),
     }
+}
+
+/// Warns of a mesh that has not all that its file has. Where warnings are errors this is one.
+pub fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
+    let text = std::ffi::CString::new(text.replace('\0', "\\0"))?;
+    PyErr::warn(py, &py.get_type::<MeshWarning>(), &text, 1)
 }
 
 /// What was asked does not exist or does not fit.

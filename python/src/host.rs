@@ -1,6 +1,6 @@
 //! Arrays in the host's memory.
 
-use crate::errors::{choice, raised};
+use crate::errors::{choice, raised, warn};
 use nearmiss::mesh::{MAX_FACES, MAX_VERTICES, Positions, Problem};
 use nearmiss::{Error, Mesh, memory};
 use numpy::{
@@ -12,13 +12,24 @@ use std::path::PathBuf;
 
 /// Reads a PLY or OBJ file: (vertices, faces), (n, 3) float32 or float64 as the file has them, and (m, 3) uint32.
 ///
-/// Raises InputError for what is no mesh, with the line or element. Polygons are cut into triangles.
+/// Polygons are cut into triangles. Parts of the file that are skipped, left out (faces of one or two corners) or cut as a fan (faces
+/// that cross themselves) are counted by a MeshWarning each.
+///
+/// strict:  raise InputError for such a part.
+///
+/// Raises InputError for a file that is no mesh, with the line or element.
 #[pyfunction]
+#[pyo3(signature = (path, *, strict = false))]
 pub fn read_mesh<'py>(
     py: Python<'py>,
     path: PathBuf,
+    strict: bool,
 ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyArray2<u32>>)> {
-    let mesh = py.detach(|| Mesh::read(&path)).map_err(raised)?;
+    let read = || Mesh::read(&path).and_then(|mesh| if strict { mesh.strict() } else { Ok(mesh) });
+    let mesh = py.detach(read).map_err(raised)?;
+    for note in mesh.notes() {
+        warn(py, &note.to_string())?;
+    }
     Ok((points(py, mesh.positions()), rows(py, mesh.faces())))
 }
 
@@ -123,8 +134,8 @@ pub fn positions(object: &Bound<'_, PyAny>, what: &str, most: Most<'_>) -> PyRes
     Ok(Positions::F64(triples(&array.cast::<PyArray2<f64>>()?.readonly(), what)?))
 }
 
-/// Triangles, three vertex indices each, copied.
-pub fn faces(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<[u32; 3]>> {
+/// Triangles of a mesh of so many vertices, three vertex indices each, copied.
+pub fn faces(object: &Bound<'_, PyAny>, name: &str, vertices: usize) -> PyResult<Vec<[u32; 3]>> {
     let array = asarray(object)?;
     let (kind, shape) = (array.dtype().kind(), array.shape().to_vec());
     let empty = shape.contains(&0);
@@ -148,12 +159,10 @@ pub fn faces(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<[u32; 3]>> {
     let mut faces = room(wide.len(), &what)?;
     for (face, corners) in wide.iter().enumerate() {
         let mut own = [0; 3];
-        for (to, &from) in own.iter_mut().zip(corners) {
+        for (corner, (to, &from)) in own.iter_mut().zip(corners).enumerate() {
             *to = u32::try_from(from).map_err(|_| {
-                choice(
-                    format!("face {face} of {name} names vertex {from}"),
-                    "give indices from 0, as many as there are vertices",
-                )
+                let problem = Problem::IndexOutOfRange { face, corner, index: from, vertices };
+                raised(Error::Input { file: name.into(), problem })
             })?;
         }
         faces.push(own);

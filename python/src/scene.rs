@@ -60,7 +60,7 @@ impl Body {
             }
         };
         let given = positions(vertices, &format!("vertices of {name}"), Most::OfAnyMesh)?;
-        let triangles = self::faces(faces, name)?;
+        let triangles = self::faces(faces, name, given.len())?;
         let meets = Meets { environment, group, mask, self_contact };
         let made = py.detach(|| Mesh::new(name, given, triangles).map(|mesh| make(mesh).with(meets)));
         let body = made.and_then(|body| body.check_meets().map(|()| body));

@@ -2,6 +2,7 @@
 
 import os
 import signal
+import warnings
 
 import numpy as np
 import pytest
@@ -37,7 +38,7 @@ REFUSED = [
     (lambda: nm.Body(V[:, :2], F, name="flat"), nm.ChoiceError, "vertices of flat of shape [6, 2]"),
     (lambda: nm.Body(V.astype(complex), F), nm.ChoiceError, "complex128"),
     (lambda: nm.Body(V, F.astype(float)), nm.ChoiceError, "three vertex indices"),
-    (lambda: nm.Body(V, [[0, 1, -1]]), nm.ChoiceError, "face 0 of a mesh names vertex -1"),
+    (lambda: nm.Body(V, [[0, 1, -1]]), nm.InputError, "a mesh: face 0 corner 2 names vertex -1"),
     (lambda: nm.Body(V, [[0, 1, 6]]), nm.InputError, "corner 2 names vertex 6"),
     (lambda: nm.Body(NAN, F, name="nothing"), nm.InputError, "nothing: vertex 0 has x = NaN"),
     *(
@@ -54,7 +55,6 @@ REFUSED = [
     (lambda: nm.Device("cpu", threads=-1), nm.ChoiceError, "threads = -1; give"),
     (lambda: nm.Device("cpu", threads=1025), nm.ChoiceError, "threads = 1025; give"),
     (lambda: nm.Scene([nm.Body(V, F)]), nm.ChoiceError, "a scene of <class 'list'>; give bodies: Scene(a, b), or Scene(*bodies)"),
-    (lambda: nm.Detector(nm.Scene(), nm.Discrete(), CPU), nm.ChoiceError, "without bodies"),
     (lambda: nm.Detector([nm.Body(V, F)], nm.Discrete(), CPU), nm.ChoiceError, "Detector(Scene(*bodies), query)"),
     (lambda: detector().frame({1: V}), nm.ChoiceError, "body 1, which is not in the scene"),
     (lambda: detector().frame({0: V[:3]}), nm.NearmissError, "3"),
@@ -66,9 +66,9 @@ REFUSED = [
     (lambda: nm.Pose(rotation=5), nm.ChoiceError, "a rotation of shape []; give 4"),
     (lambda: nm.Pose(translation=[[0, 0, 1]]), nm.ChoiceError, "a translation of shape [1, 3]; give 3"),
     (lambda: nm.Pose(translation="abc"), nm.ChoiceError, "a translation of type <U3"),
-    (lambda: nm.Pose(translation=(0, np.nan, 0)), nm.ChoiceError, "NaN"),
-    (lambda: nm.Pose(rotation=(1, 1, 1, 1)), nm.ChoiceError, "the pose [1.0, 1.0, 1.0, 1.0]"),
-    (lambda: nm.Pose(translation=(0, 0, 1e200)), nm.ChoiceError, "2^480"),
+    (lambda: nm.Pose(translation=(0, np.nan, 0)), nm.InputError, "NaN"),
+    (lambda: nm.Pose(rotation=(1, 1, 1, 1)), nm.InputError, "the pose [1.0, 1.0, 1.0, 1.0]"),
+    (lambda: nm.Pose(translation=(0, 0, 1e200)), nm.InputError, "2^480"),
     (lambda: detector().frame({-1: V}), nm.ChoiceError, "body -1, which is no number of one"),
     (lambda: detector().frame({"0": V}), nm.ChoiceError, "body '0', which is no number of one"),
     (lambda: detector().frame({0: [V, V]}), nm.ChoiceError, "of shape [2, 6, 3]; give rows of three: shape (n, 3); both ends"),
@@ -96,6 +96,66 @@ def test_what_is_wrong_is_named(wrong):
 def test_classes_say_who_must_act():
     assert issubclass(nm.InputError, ValueError) and issubclass(nm.OutOfMemory, MemoryError)
     assert all(issubclass(kind, nm.NearmissError) for kind in [nm.ChoiceError, nm.DeviceError, nm.Bug])
+
+
+def test_the_same_fault_is_of_one_class_wherever_it_is_given():
+    """Data is InputError, an argument is ChoiceError; by hand, in a scene, in a frame."""
+    for bad in [-1, 6, 2**40, -(2**40)]:
+        for make in [lambda: nm.Body(V, [[0, 1, bad]]), lambda: nm.self_intersections(V, np.array([[0, bad, 1]]))]:
+            with pytest.raises(nm.InputError, match=f"names vertex {bad}"):
+                make()
+    for bad in [np.nan, np.inf, 1e200]:
+        points = V.astype(float)
+        points[0, 1] = bad
+        for make in [
+            lambda: nm.Body(points, F),
+            lambda: detector().frame({0: points}),
+            lambda: detector().frame({0: (V, points)}),
+            lambda: nm.Pose(translation=(0, bad, 0)),
+            lambda: nm.self_intersections(points, F),
+        ]:
+            with pytest.raises(nm.InputError):
+                make()
+    for call in [lambda: nm.Body(V[:, :2], F), lambda: detector().frame({5: V}), lambda: nm.Near(np.nan)]:
+        with pytest.raises(nm.ChoiceError):
+            call()
+
+
+@pytest.mark.parametrize("query", [nm.Discrete(), nm.Continuous(), nm.Earliest(), nm.Near(1), nm.Distance()])
+def test_a_scene_without_bodies_answers_nothing(query):
+    asked = nm.Detector(nm.Scene(), query, CPU)
+    for found in [asked.detect(), asked.frame(), asked.frame({}), asked.prepare({})]:
+        assert len(found) == 0
+        assert asked.summary(found)["contacts"] == 0
+    asked.submit()
+    assert len(asked.collect()) == 0
+    asked.rebuild(), asked.plan(), asked.fetch()
+    for _ in range(2):
+        asked.add(nm.Body(V, F, kind="rigid"))
+    wanted = nm.Detector(nm.Scene(*[nm.Body(V, F, kind="rigid")] * 2), query, CPU)
+    assert asked.detect().hash == wanted.detect().hash
+
+
+def test_a_mesh_that_lacks_a_part_of_its_file_warns(tmp_path):
+    corners = "v 0 0 0\nv 2 2 0\nv 2 0 0\nv 0 2 0\n"
+    path = tmp_path / "mesh.obj"
+    for lines, count, text in [
+        ("f 1 2 3 4\n", 2, "1 face was cut as a fan around the first corner; the first: face 0, with 4 corners, crosses itself"),
+        ("f 1 2 3\nf 1 2\nf 1\n", 1, "2 faces were left out; the first: line 6"),
+        ("f 1 2 3\nl 1 2\n", 1, "1 line was not read; the first: line 6"),
+        ("f 1 2 3\nfoo\n", 1, "1 line was passed over; the first: line 6"),
+    ]:
+        path.write_text(corners + lines)
+        with pytest.warns(nm.MeshWarning) as told:
+            _, faces = nm.read_mesh(path)
+        assert len(faces) == count and len(told) == 1
+        assert str(told[0].message).startswith(f"{path}: {text}")
+        with pytest.raises(nm.InputError):
+            nm.read_mesh(path, strict=True)
+    path.write_bytes(b"\xef\xbb\xbf" + corners.encode() + b"f 1 2 3\n")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert len(nm.read_mesh(path)[0]) == len(nm.read_mesh(path, strict=True)[0]) == 4
 
 
 def test_nothing_moves_where_a_frame_is_refused():

@@ -2,6 +2,7 @@
 
 use crate::support::{ask, engine, still};
 use nearmiss::contacts::Answer;
+use nearmiss::mesh::{Mesh, Positions};
 use nearmiss::query::{QueryKind, Traversal};
 use nearmiss::scene::{BodyId, Meets, Scene};
 use nearmiss::{Body, Detector, Query};
@@ -96,4 +97,43 @@ fn no_other_walk_is_taken() {
     assert!(error.to_string().contains("a discrete query by the traversal nearest first"), "{error}");
     assert!(Query::distance().with_traversal(Traversal::NearestFirst).check().is_ok());
     assert_eq!(Query::distance().traversal_on(true), Traversal::NearestFirst);
+}
+
+/// Triangles that cross are at one point of both, at any scale of doubles: powers of two scale it exactly, as long as no coordinate
+/// loses digits.
+#[test]
+fn triangles_that_cross_do_so_in_the_same_place_at_every_scale() {
+    let face = [[0.1, -0.2, 0.3], [4.3, 0.7, -0.1], [-0.4, 3.9, 0.8]];
+    let needle = [[1.3, 1.1, -2.7], [0.9, 1.25, 3.1], [1.6, 0.8, 2.9]];
+    let of = |exponent: i32| {
+        // Twice: a factor below 2^-1022 has no digits to lose.
+        let [half, rest] = [exponent / 2, exponent - exponent / 2].map(|k| 2f64.powi(k));
+        let body = |corners: [[f64; 3]; 3]| {
+            let positions = Positions::F64(corners.map(|p| p.map(|x| x * half * rest)).to_vec());
+            Body::still(Mesh::new("scaled", positions, vec![[0, 1, 2]]).expect("a mesh"))
+        };
+        *ask(engine(), vec![body(face), body(needle)], Query::distance()).nearest().expect("two bodies")
+    };
+    let plain = of(0);
+    let size = |p: [f64; 3]| p.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    let apart = |[a, b]: [[f64; 3]; 2]| size([0, 1, 2].map(|k| a[k] - b[k]));
+    assert!(plain.distance == 0.0 && apart(plain.points) < 1e-15 && size(plain.points[0]) > 0.5, "{plain:?}");
+    // The point is within both: no corner is near it.
+    assert!(
+        plain.weights.iter().flatten().all(|w| *w > 0.01) || plain.weights[1].contains(&0.0),
+        "{plain:?}"
+    );
+    for exponent in [-960, -700, -400, -359, -300, -100, -1, 1, 100, 300, 341, 400, 470] {
+        let found = of(exponent);
+        let points = found.points.map(|p| p.map(|x| x * 2f64.powi(-exponent)));
+        assert_eq!((found.weights, points), (plain.weights, plain.points), "2^{exponent}");
+    }
+    // Here coordinates have few digits: the points of both agree to those that they have.
+    for exponent in [-1020, -1050] {
+        let found = of(exponent);
+        let [half, rest] = [exponent / 2, exponent - exponent / 2].map(|k| 2f64.powi(-k));
+        let points = found.points.map(|p| p.map(|x| x * half * rest));
+        let digit = 2f64.powi(-1074 - exponent);
+        assert!(apart(points) <= 16.0 * digit, "2^{exponent}: {found:?}");
+    }
 }

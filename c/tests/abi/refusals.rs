@@ -153,7 +153,6 @@ fn what_is_no_query_is_refused() {
         "the solver none; choose one of: exact",
     );
     refused(asked(0, |query| query.broad = c"none".as_ptr()), NEARMISS_CHOICE, "the broad phase none");
-    refused(detector(&[], nearmiss_query(0)).map(drop), NEARMISS_CHOICE, "a scene without bodies");
 }
 
 #[test]
@@ -175,7 +174,18 @@ fn what_is_no_frame_is_refused() {
     let turned = NearmissInput { rotations: [at.positions[0]; 2], ..at };
     refused(asked(&[turned]), NEARMISS_CHOICE, "rotations[0] of body 0");
     let pose = NearmissPose { rotation: [0.0, 0.0, 0.0, 1.0], translation: [0.0; 3] };
-    assert!(asked(&[nearmiss_pose(0, pose)]).is_err());
+    refused(asked(&[nearmiss_pose(0, pose)]), NEARMISS_CHOICE, "give a deformable body positions");
+    let body = NearmissBody { kind: NearmissBodyKind::NEARMISS_RIGID as u32, ..described(&soup) };
+    let mut rigid = detector(&[body], nearmiss_query(0)).expect("a detector");
+    for bad in
+        [NearmissPose { rotation: [0.0; 4], ..pose }, NearmissPose { translation: [f64::NAN; 3], ..pose }]
+    {
+        refused(
+            frame(&mut rigid, &[nearmiss_pose(0, bad)]).map(drop),
+            NEARMISS_INPUT,
+            "a body: has the pose",
+        );
+    }
     let torn = vec![[f64::NAN; 3]; soup.vertex_count()];
     refused(
         asked(&[nearmiss_at(0, nearmiss_doubles(torn.as_ptr().cast(), torn.len()))]),
@@ -228,4 +238,17 @@ fn a_step_without_an_end_and_threads_of_a_gpu_are_refused() {
     let threads =
         got(|to, e| nearmiss_device_open(NearmissBackend::NEARMISS_CUDA as u32, 2, to, e)).map(drop);
     refused(threads, NEARMISS_CHOICE, "2 threads of a GPU");
+}
+
+/// Every query of a scene without bodies: an answer with nothing in it.
+#[test]
+fn a_scene_without_bodies_answers_nothing() {
+    for kind in 0..5 {
+        let mut query = nearmiss_query(kind);
+        query.distance = if kind == 3 { 1.0 } else { 0.0 };
+        let mut own = detector(&[], query).expect("a detector");
+        let answer = frame(&mut own, &[]).expect("an answer");
+        let summary = got(|to, e| nearmiss_answer_summary(Some(&answer), to, e)).expect("a summary");
+        assert_eq!(summary.contacts, 0, "{kind}");
+    }
 }

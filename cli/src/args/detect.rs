@@ -141,6 +141,9 @@ pub struct DetectArgs {
     /// Merge vertices that coincide in all frames of a mesh: seams that are vertices twice then meet themselves no more.
     #[arg(long)]
     pub weld: bool,
+    /// Refuse a mesh of which a part is skipped, left out or cut as it crosses itself, instead of a note that counts such parts.
+    #[arg(long, conflicts_with = "scene")]
+    pub strict: bool,
     /// With --out: triangles are told as the faces of the file that they were cut from, counted from 0.
     #[arg(long, requires = "out", conflicts_with_all = ["scene", "earliest"])]
     pub file_faces: bool,

@@ -4,6 +4,7 @@ pub mod notes;
 mod text;
 
 use crate::args::DetectArgs;
+use crate::meshes::Reader;
 use crate::output::{self, Target, print, say};
 use crate::paint;
 use crate::progress::during;
@@ -12,7 +13,7 @@ use crate::sequence::{self, Sequence, is_scene, steps};
 use nearmiss::Detector;
 use nearmiss::contacts::{ContactGeometry, Contacts};
 use nearmiss::error::Error;
-use nearmiss::mesh::{Body, Mesh};
+use nearmiss::mesh::Body;
 use nearmiss::pipeline::Stages;
 use nearmiss::query::{Query, QueryKind, Traversal};
 use nearmiss::scene::Scene;
@@ -20,15 +21,23 @@ use nearmiss::words::counted;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// A body from one file, or from two frames.
+/// A body from one file, or from two frames. Notes of its readers go to standard error.
 pub fn body(files: &[PathBuf]) -> Result<Body, Error> {
+    let mut reader = Reader::default();
+    let body = body_by(files, &mut reader)?;
+    reader.notes.iter().for_each(|note| say(note));
+    Ok(body)
+}
+
+/// The same; the reader keeps the notes.
+fn body_by(files: &[PathBuf], reader: &mut Reader) -> Result<Body, Error> {
     match files {
         [t0, t1] => {
-            let t0 = Mesh::read(t0)?;
-            let t1 = t0.read_frame(t1)?;
+            let t0 = reader.mesh(t0)?;
+            let t1 = reader.frame(&t0, t1)?;
             Body::moving(t0, t1)
         }
-        [still] => Ok(Body::still(Mesh::read(still)?)),
+        [still] => Ok(Body::still(reader.mesh(still)?)),
         // `args` asks for one or two.
         _ => Err(Error::Bug { what: format!("{} files for a mesh", files.len()) }),
     }
@@ -42,6 +51,8 @@ pub struct Question {
     pub query: Query,
     /// All frames, of a scene's file and of more than two frames.
     pub sequence: Option<Sequence>,
+    /// Notes of the readers of its files.
+    pub notes: Vec<String>,
 }
 
 /// What the arguments ask: bodies are welded where that was asked.
@@ -54,20 +65,22 @@ pub fn question(args: &DetectArgs) -> Result<Question, Error> {
         let steps = if frames < 3 { 1 } else { Sequence::steps_of(frames, query.kind().is_at_rest()) };
         steps::check(args, steps)?;
     }
+    let mut reader = Reader::new(args.strict);
     if args.scene.is_none()
-        && let Some(all) = during("reading", || Sequence::of(args))?
+        && let Some(all) = during("reading", || Sequence::of(args, &mut reader))?
     {
         let query = args.query(all.frames > 1)?;
         steps::check(args, all.steps(query.kind().is_at_rest()))?;
-        return Ok(Question { scene: all.scene(query.kind().is_at_rest())?, query, sequence: Some(all) });
+        let scene = all.scene(query.kind().is_at_rest())?;
+        return Ok(Question { scene, query, sequence: Some(all), notes: reader.notes });
     }
-    let bodies = bodies(args)?;
+    let bodies = bodies(args, &mut reader)?;
     let query = args.query(bodies.iter().any(Body::is_moving))?;
-    Ok(Question { scene: bodies.into(), query, sequence: None })
+    Ok(Question { scene: bodies.into(), query, sequence: None, notes: reader.notes })
 }
 
 /// One mesh or two, at one frame or two.
-fn bodies(args: &DetectArgs) -> Result<Vec<Body>, Error> {
+fn bodies(args: &DetectArgs, reader: &mut Reader) -> Result<Vec<Body>, Error> {
     let mut bodies = Vec::new();
     match &args.scene {
         Some(name) => bodies.push(during("making the scene", || {
@@ -77,10 +90,10 @@ fn bodies(args: &DetectArgs) -> Result<Vec<Body>, Error> {
                 args.seed,
             )
         })?),
-        None => bodies.push(during("reading", || body(&args.meshes))?),
+        None => bodies.push(during("reading", || body_by(&args.meshes, reader))?),
     }
     if !args.with.is_empty() {
-        bodies.push(during("reading", || body(&args.with))?);
+        bodies.push(during("reading", || body_by(&args.with, reader))?);
     }
     bodies = bodies.into_iter().map(|body| body.with(args.meets())).collect();
     if args.weld {
@@ -134,8 +147,9 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
         }
         None => None,
     };
-    let Question { scene, query, sequence } = question(args)?;
+    let Question { scene, query, sequence, notes: of_files } = question(args)?;
     if let Some(all) = sequence.as_ref().filter(|all| all.steps(query.kind().is_at_rest()) > 1) {
+        of_files.iter().for_each(|note| say(note));
         return steps::detect(args, all, (scene, query), target);
     }
     let device = args.machine.open()?;
@@ -171,7 +185,8 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
         Some(scene) => during("looking at the start", || notes::at_start(device, scene))?,
         None => None,
     };
-    let notes = notes::of(query.kind(), moves, &contacts, (pairs_at_start, coincident));
+    let mut notes = notes::of(query.kind(), moves, &contacts, (pairs_at_start, coincident));
+    notes.splice(..0, of_files);
     let told = Report { step: None, summary, pairs_at_start, notes };
     if let Some((format, target)) = target {
         let names = sequence.as_ref().and_then(|all| all.names.as_deref());

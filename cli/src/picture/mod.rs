@@ -9,7 +9,7 @@ mod shade;
 use crate::args::PictureArgs;
 use crate::args::picture::{Around, check};
 use crate::detect::{Question, keeps, promise, question};
-use crate::output::{Target, print};
+use crate::output::{Target, print, say};
 use crate::paint::{self, GREY, ORANGE, RED};
 use crate::progress::during;
 use draw::Picture;
@@ -34,7 +34,8 @@ pub fn picture(args: &PictureArgs) -> Result<ExitCode, Error> {
     check(out)?;
     keeps(&args.detect)?;
     let target = Target::open(out)?;
-    let Question { scene, query, sequence } = question(&args.detect)?;
+    let Question { scene, query, sequence, notes } = question(&args.detect)?;
+    notes.iter().for_each(|note| say(note));
     let steps = sequence.map_or(1, |all| all.steps(query.kind().is_at_rest()));
     if steps > 1 {
         let what = format!("{steps} steps or frames: a picture shows one");

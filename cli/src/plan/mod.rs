@@ -8,7 +8,7 @@ mod times;
 use crate::args::PlanArgs;
 use crate::detect::notes::has_memory;
 use crate::detect::{Question, question};
-use crate::output::print;
+use crate::output::{print, say};
 use crate::progress::during;
 use crate::sequence::Sequence;
 use model::Sample;
@@ -27,7 +27,8 @@ use std::process::ExitCode;
 /// Asks a frame and says what `detect` would do for each: what runs, is held and moved, how long it should take by what this machine
 /// does, and what there is not.
 pub fn plan(args: &PlanArgs) -> Result<ExitCode, Error> {
-    let Question { scene, query, sequence } = question(&args.detect)?;
+    let Question { scene, query, sequence, notes } = question(&args.detect)?;
+    notes.iter().for_each(|note| say(note));
     let device = args.detect.machine.open()?;
     let mut detector = during("building", || Detector::new(device.clone(), scene, query))?;
     let work = Work::of(detector.scene());

@@ -6,6 +6,7 @@ pub mod steps;
 pub use file::text as read_text;
 
 use crate::args::DetectArgs;
+use crate::meshes::Reader;
 use crate::output::say;
 use file::{Described, wrong};
 use nearmiss::error::Error;
@@ -81,12 +82,12 @@ impl Sequence {
     ///
     /// # Errors
     /// [`Error::Choice`] for files that do not go together; those of reading.
-    pub fn of(args: &DetectArgs) -> Result<Option<Sequence>, Error> {
+    pub fn of(args: &DetectArgs, reader: &mut Reader) -> Result<Option<Sequence>, Error> {
         let own = [&args.meshes, &args.with];
         let scenes = own.iter().flat_map(|files| files.iter()).filter(|path| is_scene(path)).count();
         let mut all = match &own {
             [files, with] if scenes > 0 => match (&files[..], &with[..]) {
-                ([file], []) => Sequence::read(file)?,
+                ([file], []) => Sequence::read(file, reader)?,
                 _ => {
                     return Err(Error::Choice {
                         what: "a scene (.toml) beside other files".into(),
@@ -96,7 +97,7 @@ impl Sequence {
             },
             _ if own.iter().all(|files| files.len() < 3) => return Ok(None),
             _ => {
-                let told = own.iter().filter(|files| !files.is_empty()).map(|files| of_mesh(files));
+                let told = own.iter().filter(|files| !files.is_empty()).map(|files| of_mesh(files, reader));
                 let mut told = told.collect::<Result<Vec<_>, _>>()?;
                 for (body, _) in &mut told {
                     *body = body.clone().with(args.meets());
@@ -117,7 +118,7 @@ impl Sequence {
     }
 
     /// Reads a scene and all of its meshes.
-    fn read(path: &Path) -> Result<Sequence, Error> {
+    fn read(path: &Path, reader: &mut Reader) -> Result<Sequence, Error> {
         let described = file::read(path)?;
         let counts = |body: &Described| body.meshes.len().max(body.poses.len());
         let longest =
@@ -132,7 +133,7 @@ impl Sequence {
         let mut read = HashMap::new();
         let mut told = Vec::with_capacity(described.len());
         for body in &described {
-            told.push(of_table(path, folder, body, &mut read)?);
+            told.push(of_table((path, folder), body, &mut read, reader)?);
         }
         Ok(Sequence::new(told, Some(described.into_iter().map(|body| body.name).collect())))
     }
@@ -191,19 +192,19 @@ impl Sequence {
 }
 
 /// A mesh and its positions frame after frame: all in double precision if any is.
-fn of_mesh(files: &[PathBuf]) -> Result<(Body, Track), Error> {
+fn of_mesh(files: &[PathBuf], reader: &mut Reader) -> Result<(Body, Track), Error> {
     let Some((first, others)) = files.split_first() else {
         return Err(Error::Bug { what: "a mesh without files".into() });
     };
-    let mesh = Mesh::read(first)?;
-    let track = track(&mesh, others)?;
+    let mesh = reader.mesh(first)?;
+    let track = track(&mesh, others, reader)?;
     Ok((Body::still(mesh), track))
 }
 
-fn track(mesh: &Mesh, others: &[PathBuf]) -> Result<Track, Error> {
+fn track(mesh: &Mesh, others: &[PathBuf], reader: &mut Reader) -> Result<Track, Error> {
     let mut frames = vec![mesh.positions().clone()];
     for file in others {
-        frames.push(mesh.read_frame(file)?.positions().clone());
+        frames.push(reader.frame(mesh, file)?.positions().clone());
     }
     if frames.iter().any(Positions::is_f64) {
         frames = frames.iter().map(|frame| Positions::F64(frame.to_f64())).collect();
@@ -216,21 +217,21 @@ const OF_A_TRIANGLE: u64 = 20;
 
 /// A body of a scene; files that several bodies name are read once.
 fn of_table(
-    path: &Path,
-    folder: &Path,
+    (path, folder): (&Path, &Path),
     table: &Described,
     read: &mut HashMap<PathBuf, Mesh>,
+    reader: &mut Reader,
 ) -> Result<(Body, Track), Error> {
     let files: Vec<PathBuf> = table.meshes.iter().map(|mesh| folder.join(mesh)).collect();
     if !read.contains_key(&files[0]) {
-        read.insert(files[0].clone(), Mesh::read(&files[0])?);
+        read.insert(files[0].clone(), reader.mesh(&files[0])?);
     }
     let mesh = read[&files[0]].clone();
     memory::require("the scene's bodies", mesh.face_count() as u64 * OF_A_TRIANGLE)?;
     let track = match table.kind {
         BodyKind::Rigid if table.poses.is_empty() => Track::Poses(vec![Pose::default()]),
         BodyKind::Rigid => Track::Poses(table.poses.clone()),
-        _ => track(&mesh, &files[1..])?,
+        _ => track(&mesh, &files[1..], reader)?,
     };
     let body = match table.kind {
         BodyKind::Static => Body::fixed(mesh),
@@ -241,8 +242,8 @@ fn of_table(
     if let Track::Poses(poses) = &track {
         for (at, pose) in poses.iter().enumerate() {
             body.check(&Input::Pose(*pose)).map_err(|e| {
-                let what = format!("{}: `poses`, the one of frame {at}: {}", table.called, choice(&e).0);
-                wrong(path, what, choice(&e).1)
+                let (what, advice) = parts(&e);
+                wrong(path, format!("{}: `poses`, the one of frame {at}: {what}", table.called), advice)
             })?;
         }
         body = body.at(&Input::Pose(poses[0]))?;
@@ -250,10 +251,9 @@ fn of_table(
     Ok((body, track))
 }
 
-/// What was asked for, and what to do instead.
-fn choice(error: &Error) -> (String, String) {
-    match error {
-        Error::Choice { what, advice } => (what.clone(), advice.clone()),
-        other => (other.to_string(), "mend it".into()),
-    }
+/// What is wrong, and what to do.
+fn parts(error: &Error) -> (String, String) {
+    let text = error.to_string();
+    let (what, advice) = text.split_once("; ").unwrap_or((&text, "correct it"));
+    (what.into(), advice.into())
 }

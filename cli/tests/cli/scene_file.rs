@@ -219,7 +219,7 @@ fn what_is_wrong_with_a_file_is_named() {
         assert!(message.contains("bad.toml: ") && message.contains(said), "{text}: {message}");
     }
     std::fs::write(folder.path("binary.toml"), [0xff, 0xfe, 0]).expect("written");
-    assert!(refused(3, &["detect", &folder.path("binary.toml")]).contains("binary.toml: cannot be read"));
+    assert!(refused(3, &["detect", &folder.path("binary.toml")]).contains("binary.toml: is text in UTF-16"));
     assert!(refused(3, &["detect", &folder.path("missing.toml")]).contains("missing.toml: cannot be read"));
     std::fs::create_dir(folder.path("folder.toml")).expect("a folder");
     assert!(refused(3, &["detect", &folder.path("folder.toml")]).contains("it is a directory"));

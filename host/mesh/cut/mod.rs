@@ -4,13 +4,16 @@
 //! right by what it is made of: a triangle more covers what it covers once, so where every triangle turns as the face
 //! does, each point is covered as often as the face winds around it, and a face that does not cross itself once.
 //!
-//! Every edge of a face is an edge of a triangle in any cut. So the fan of a face without area covers it whole.
+//! Every edge of a face is an edge of a triangle in any cut. So the fan of a face without area covers it whole. The fan of a
+//! face that crosses itself covers every point that the face winds around: how often that is, is the sum over the triangles of the
+//! fan, so where it is not 0 a triangle is. It may cover more, where two triangles that turn differently overlap.
 
 mod cross;
 mod ears;
 mod flat;
 mod plane;
 
+use super::note::{Notes, Treated};
 use super::{Mesh, Problem};
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::exact::orient2d_exact;
@@ -22,20 +25,21 @@ type Point = [f64; 2];
 /// Most corners of a face that is cut by ears.
 const MOST_CORNERS: usize = 1 << 17;
 
-/// Cuts anew every face of which the fan is wrong, and keeps its corners. As many triangles as before.
+/// Cuts anew every face of which the fan is wrong, and keeps its corners. As many triangles as before. A face that crosses
+/// itself keeps its fan, and is noted by [`Problem::FaceCrosses`] or [`Problem::FaceFolds`].
 ///
 /// Cost: O(corners) for faces of which the fan is right. Else ears and crossings are looked for among those whose
 /// extent along a line overlaps: O(n log n) for a face that winds little, O(n^2) at worst. Combs, spirals and stars of
 /// 100,000 corners took 8 to 33 s, of 10,000 a hundredth of that; beyond [`MOST_CORNERS`] a face is refused.
 ///
 /// # Errors
-/// [`Problem::FaceCrosses`], [`Problem::FaceFolds`] and [`Problem::FaceCorners`], of the first such face.
+/// [`Problem::FaceCorners`], of the first such face.
 pub(super) fn cut(mesh: &mut Mesh) -> Result<(), Problem> {
     if mesh.polygons.is_empty() {
         return Ok(());
     }
     mesh.faces.shrink_to_fit(); // room for what follows
-    let (mut corners, mut points) = (Vec::new(), Vec::new());
+    let (mut corners, mut points, mut notes) = (Vec::new(), Vec::new(), Notes::default());
     for face in 0..mesh.polygons.count(mesh.faces.len()) {
         let triangles = mesh.polygons.triangles(face, mesh.faces.len());
         if triangles.len() < 2 {
@@ -53,19 +57,19 @@ pub(super) fn cut(mesh: &mut Mesh) -> Result<(), Problem> {
                     *to = ear.map(|corner| corners[corner as usize]);
                 }
             }
-            Err(Fault::Crosses([e, f])) => {
-                return Err(Problem::FaceCrosses {
-                    face,
-                    corners: corners.len(),
-                    edges: [names(e), names(f)],
-                });
-            }
+            Err(Fault::Crosses([e, f])) => notes.add(Treated::Fan, || {
+                let edges = [names(e), names(f)];
+                Problem::FaceCrosses { face, corners: corners.len(), edges }
+            }),
             Err(Fault::Long) => {
                 return Err(Problem::FaceCorners { face, corners: corners.len(), limit: MOST_CORNERS });
             }
-            Err(Fault::Folds) => return Err(Problem::FaceFolds { face, corners: corners.len() }),
+            Err(Fault::Folds) => {
+                notes.add(Treated::Fan, || Problem::FaceFolds { face, corners: corners.len() });
+            }
         }
     }
+    mesh.notes.extend(notes.of(&mesh.name));
     Ok(())
 }
 
@@ -96,7 +100,7 @@ fn polygon(points: &[[f64; 3]]) -> Result<Option<Vec<[u32; 3]>>, Fault> {
     if short { refuse(points, views[0].axis) } else { Err(Fault::Long) }
 }
 
-/// A flat face is refused. One that is not has no right cut, so the fan is as good as any.
+/// A flat face is at fault. One that is not has no right cut, so the fan is as good as any.
 fn refuse(points: &[[f64; 3]], axis: usize) -> Result<Option<Vec<[u32; 3]>>, Fault> {
     if !flat::is_flat(points) {
         return Ok(None);

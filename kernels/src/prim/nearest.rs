@@ -3,7 +3,9 @@
 //! Triangles that share no point are nearest at a vertex of one and the other, or at an edge of each: fifteen pairs of features,
 //! measured as [`near`](super::near) measures them, and the first of the shortest is taken. So the computed distance has the bounds
 //! that hold there: at most the true one and `DISTANCE_ERROR` of the reach, at least the true one less `DISTANCE_CERTAIN`
-//! of it, where the reach is at most the largest difference of two coordinates of the six corners. It is never below the [`gap`] of
+//! of it, where the reach is at most the largest difference of two coordinates of the six corners. So the least of many pairs is at
+//! most the true least and `DISTANCE_ERROR` of the reach of the pair that has it, and at least that less `DISTANCE_CERTAIN` of the
+//! reach of the pair that is found: these may be two. It is never below the [`gap`] of
 //! their boxes, which is the true one where planes along an axis part them: so what is not nearer by its boxes need not be measured.
 //!
 //! Whether triangles share a point is not told by this, but by [`tri_tri`](super::tri_tri), exactly; where they do, [`Nearest::meeting`]
@@ -114,19 +116,35 @@ impl Nearest {
 }
 
 /// Where an edge goes through the plane of a face: how far along it, and the face's point nearest to there with its distance. `None`
-/// where it does not, or where products are no numbers.
+/// if it does not. Volumes are computed of differences that are multiplied by the power of two that brings the largest to [1, 2):
+/// exact, so their cubes neither end nor vanish, whatever the scale of the scene.
 #[inline]
 fn crossing([a, b]: [Vec3<f64>; 2], face: &Corners<f64>) -> Option<(f64, f64, [f64; 2])> {
     let [x, y, z] = *face;
-    let n = (y - x).cross(z - x);
-    let (before, behind) = (n.dot(a - x), n.dot(b - x));
+    let [p, q, from, to] = unit([y - x, z - x, a - x, b - x]);
+    let n = p.cross(q);
+    let (before, behind) = (n.dot(from), n.dot(to));
     let sides = before - behind;
-    if !((before >= 0.0) != (behind >= 0.0) && sides.abs() > 0.0 && sides.abs() < f64::INFINITY) {
+    if !((before >= 0.0) != (behind >= 0.0) && sides.abs() > 0.0) {
         return None;
     }
     let t = before / sides;
     let (far, at) = distance::<f64, true>([a + (b - a) * t, x, y, z]);
     Some((far, t, at))
+}
+
+/// The same vectors, multiplied by the power of two that brings the largest component to [1, 2), or as near as a factor of doubles
+/// does; zeros as they are.
+#[inline]
+fn unit(of: [Vec3<f64>; 4]) -> [Vec3<f64>; 4] {
+    let most = of[0].map(f64::abs).greater(of[1].map(f64::abs));
+    let most = most.greater(of[2].map(f64::abs)).greater(of[3].map(f64::abs));
+    let parts = most[0].greater(most[1]).greater(most[2]).parts();
+    if parts.mantissa == 0 {
+        return of;
+    }
+    let scale = f64::pow2(-(parts.exponent + 63 - parts.mantissa.leading_zeros() as i32));
+    [of[0] * scale, of[1] * scale, of[2] * scale, of[3] * scale]
 }
 
 /// How far apart the boxes of the corners are: 0 where they overlap, the difference where one axis alone parts them. Not above the true

@@ -3,6 +3,7 @@
 use crate::case::file::text;
 use nearmiss::contacts::Kind;
 use nearmiss::error::Error;
+use nearmiss::mesh::Problem;
 use std::path::Path;
 
 /// A pair of features, as a contact names it.
@@ -20,11 +21,11 @@ pub enum List {
 /// Reads `kind,a,b` (`vf` or `ee`) or `tri_a,tri_b`, CSV or CSV.gz, with or without a head.
 ///
 /// # Errors
-/// [`Error::Choice`] for a file that cannot be read or a row that is neither.
+/// [`Error::Input`] for a file that cannot be read or a row that is neither.
 pub fn list(file: &Path) -> Result<List, Error> {
-    parse(&text(file)?).map_err(|why| Error::Choice {
-        what: format!("{}: {why}", file.display()),
-        advice: "give --truth a list of kind,a,b or of tri_a,tri_b".into(),
+    parse(&text(file)?).map_err(|what| Error::Input {
+        file: file.display().to_string(),
+        problem: Problem::Scene { what, advice: "give --truth a list of kind,a,b or of tri_a,tri_b".into() },
     })
 }
 

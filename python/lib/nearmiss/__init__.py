@@ -31,7 +31,7 @@ from ._native import (
     __version__,
     read_mesh,
 )
-from .errors import Bug, ChoiceError, DeviceError, InputError, NearmissError, OutOfMemory
+from .errors import Bug, ChoiceError, DeviceError, InputError, MeshWarning, NearmissError, OutOfMemory
 from .shortcuts import contacts, near, self_intersections, time_of_impact
 
 
@@ -83,6 +83,7 @@ __all__ = [
     "Geometry",
     "InputError",
     "Kind",
+    "MeshWarning",
     "Near",
     "NearmissError",
     "OutOfMemory",

@@ -1,4 +1,8 @@
-"""What nearmiss raises: a class for each who must act, the message with what to do."""
+"""What nearmiss raises: a class for each who must act, the message with what to do.
+
+Numbers that describe meshes, positions and poses, in files and in arrays, are input (InputError); all else that a caller passes
+(options, names, kinds, numbers of bodies, shapes and types of arrays) is a choice (ChoiceError).
+"""
 
 
 class NearmissError(Exception):
@@ -6,11 +10,11 @@ class NearmissError(Exception):
 
 
 class InputError(NearmissError, ValueError):
-    """A mesh that cannot be used: the message names the vertex or the face. Mend the input."""
+    """Data that cannot be used: a file, or numbers of a mesh, of positions or of a pose. Correct the data."""
 
 
 class ChoiceError(NearmissError, ValueError):
-    """Choices that do not exist or do not go together. Choose again."""
+    """An argument that does not exist or does not go with the others, whatever the data. Choose again."""
 
 
 class DeviceError(NearmissError, RuntimeError):
@@ -19,6 +23,10 @@ class DeviceError(NearmissError, RuntimeError):
 
 class OutOfMemory(NearmissError, MemoryError):
     """Memory ran out. Nothing was lost in silence: there is no answer."""
+
+
+class MeshWarning(UserWarning):
+    """A mesh has less than its file, or a face is cut as it can be: read_mesh counts such parts."""
 
 
 class Bug(NearmissError, RuntimeError):

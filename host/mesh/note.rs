@@ -1,0 +1,108 @@
+//! Notes of a reader: parts of a file that it took otherwise than they stand there.
+
+use super::{Mesh, Problem};
+use crate::Error;
+use crate::words::counted;
+use std::fmt;
+
+/// A note of a reader: parts of one kind that a mesh lacks or has otherwise than its file, counted.
+///
+/// Its text names the file, the count, what was done, and the first of them. [`Mesh::strict`] makes an error of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Note {
+    /// The file, as [`Error::Input`] names it.
+    pub file: String,
+    /// How the reader treated them.
+    pub treated: Treated,
+    /// How many there are: at least one.
+    pub count: u64,
+    /// The first of them in the file, as [`Mesh::strict`] reports it.
+    pub first: Problem,
+}
+
+/// How a reader treated a part of a file that it could not take as it stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Treated {
+    /// A face that crosses itself was cut as a fan around its first corner. The fan covers every point that the face winds
+    /// around, and has all its edges: no contact is missed, and there may be more where it covers what the face does not.
+    Fan,
+    /// A face of fewer than three corners was left out; later faces keep their numbers.
+    LeftOut,
+    /// Geometry that is no polygon was not read: points, lines, curves and surfaces of OBJ, elements of PLY.
+    NotRead,
+    /// A line was passed over whose first word is no keyword of the format.
+    Unknown,
+}
+
+impl Note {
+    /// Whether both say the same of their files.
+    pub(super) fn is_as(&self, other: &Note) -> bool {
+        (self.treated, self.count, &self.first) == (other.treated, other.count, &other.first)
+    }
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Note { file, treated, count, first } = self;
+        let (one, many) = match (treated, first) {
+            (Treated::Fan | Treated::LeftOut, _) => ("face", "faces"),
+            (_, Problem::Ply(_)) => ("entry", "entries"),
+            _ => ("line", "lines"),
+        };
+        let done = match treated {
+            Treated::Fan => "cut as a fan around the first corner",
+            Treated::LeftOut => "left out",
+            Treated::NotRead => "not read",
+            Treated::Unknown => "passed over",
+        };
+        let verb = if *count == 1 { "was" } else { "were" };
+        write!(f, "{file}: {} {verb} {done}; the first: {first}", counted(*count, one, many))
+    }
+}
+
+impl Mesh {
+    /// Notes of the reader, one a kind of part: empty if the mesh is all that its file says, and if it was made in memory.
+    ///
+    /// A frame that was read by [`Mesh::read_frame`] has those notes that its first frame does not have.
+    pub fn notes(&self) -> &[Note] {
+        &self.notes
+    }
+
+    /// Refuses a mesh whose reader left [notes](Mesh::notes); returns any other as it is.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with the first part of the first note: [`Problem::FaceCrosses`], [`Problem::FaceFolds`], a face of
+    /// fewer than three corners, or a line or an element that no reader knows.
+    pub fn strict(self) -> Result<Mesh, Error> {
+        match self.notes.into_iter().next() {
+            Some(Note { file, first, .. }) => Err(Error::Input { file, problem: first }),
+            None => Ok(Mesh { notes: Vec::new(), ..self }),
+        }
+    }
+}
+
+/// Notes while a file is read, without its name.
+#[derive(Debug, Default)]
+pub(super) struct Notes(Vec<(Treated, u64, Problem)>);
+
+impl Notes {
+    /// Counts one part more; `first` is made for the first of its kind.
+    pub fn add(&mut self, treated: Treated, first: impl FnOnce() -> Problem) {
+        self.add_many(treated, 1, first);
+    }
+
+    /// Counts parts.
+    pub fn add_many(&mut self, treated: Treated, count: u64, first: impl FnOnce() -> Problem) {
+        match self.0.iter_mut().find(|note| note.0 == treated) {
+            Some(note) => note.1 += count,
+            None => self.0.push((treated, count, first())),
+        }
+    }
+
+    /// The notes of a file.
+    pub fn of(self, file: &str) -> Vec<Note> {
+        let note = |(treated, count, first)| Note { file: file.to_owned(), treated, count, first };
+        self.0.into_iter().map(note).collect()
+    }
+}

@@ -1,0 +1,76 @@
+//! The first words of the lines of an OBJ file: those of the specification (version 3.0, with what it supersedes), and others.
+
+/// What a reader of triangles does with a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Word {
+    Vertex,
+    Face,
+    /// It neither holds nor makes a surface: names, materials, texture coordinates, normals, display.
+    Quiet,
+    /// It holds or makes geometry that is no face: points, lines, curves, surfaces, another file.
+    Element,
+    /// No word of the specification, but near enough to `v` or `f` that a vertex or a face may be lost with it.
+    Misspelt,
+    Unknown,
+}
+
+/// Statements without geometry, by the chapters of the specification: vertex data, attributes of free-form curves and surfaces,
+/// the parts of one, connectivity, grouping, display, and superseded ones.
+const QUIET: [&[u8]; 32] = [
+    b"vt",
+    b"vn",
+    b"vp",
+    b"cstype",
+    b"deg",
+    b"bmat",
+    b"step",
+    b"curv2",
+    b"parm",
+    b"trim",
+    b"hole",
+    b"scrv",
+    b"sp",
+    b"end",
+    b"con",
+    b"g",
+    b"s",
+    b"mg",
+    b"o",
+    b"bevel",
+    b"c_interp",
+    b"d_interp",
+    b"lod",
+    b"usemtl",
+    b"mtllib",
+    b"usemap",
+    b"maplib",
+    b"shadow_obj",
+    b"trace_obj",
+    b"ctech",
+    b"stech",
+    b"res",
+];
+
+/// Statements with geometry that is not read; `call` and `csh` bring what another file or program gives.
+const ELEMENTS: [&[u8]; 10] = [b"p", b"l", b"curv", b"surf", b"bsp", b"bzp", b"cdc", b"cdp", b"call", b"csh"];
+
+impl Word {
+    pub fn of(word: &[u8]) -> Word {
+        match word {
+            b"v" => Word::Vertex,
+            // `fo` is how versions before 3.0 called a face.
+            b"f" | b"fo" => Word::Face,
+            _ if QUIET.contains(&word) => Word::Quiet,
+            _ if ELEMENTS.contains(&word) => Word::Element,
+            _ if is_nearly(word) => Word::Misspelt,
+            _ => Word::Unknown,
+        }
+    }
+}
+
+/// Whether the only letter of a word is `v` or `f`, in either case: `V`, `v:`, `v1.0`, a mark or a space of Unicode before it.
+fn is_nearly(word: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(word);
+    let mut letters = text.chars().filter(|c| c.is_alphabetic());
+    matches!((letters.next(), letters.next()), (Some('v' | 'V' | 'f' | 'F'), None))
+}
