@@ -29,8 +29,8 @@ impl Detector {
                 moved.push(Moved { body, rests: !named });
             }
         }
-        self.moved(&moved)?;
-        self.answer(start)
+        let answered = self.moved(&moved).and_then(|()| self.answer(start));
+        self.ended(answered)
     }
 
     /// Moves bodies to where the inputs say; others stay as they are, in the step that they are in. The trees are kept and refitted
@@ -41,7 +41,9 @@ impl Detector {
     pub fn place(&mut self, inputs: &[(BodyId, Input)]) -> Result<(), Error> {
         let named = self.put(inputs)?;
         let moved = named.iter().enumerate().filter(|(_, named)| **named);
-        self.moved(&moved.map(|(body, _)| Moved { body, rests: false }).collect::<Vec<_>>())
+        let moved: Vec<_> = moved.map(|(body, _)| Moved { body, rests: false }).collect();
+        let placed = self.moved(&moved);
+        self.ended(placed)
     }
 
     /// Moves bodies on the host, all or none; of each body of the scene, whether it was named.
@@ -118,6 +120,7 @@ impl Detector {
             });
         };
         self.scene.bodies_mut()[body] = frame.with(meets);
-        self.moved(&[Moved { body, rests: false }])
+        let moved = self.moved(&[Moved { body, rests: false }]);
+        self.ended(moved)
     }
 }
