@@ -13,10 +13,11 @@ mod classes {
     import_exception!(nearmiss.errors, ChoiceError);
     import_exception!(nearmiss.errors, DeviceError);
     import_exception!(nearmiss.errors, OutOfMemory);
+    import_exception!(nearmiss.errors, Interrupted);
     import_exception!(nearmiss.errors, Bug);
 }
 
-use classes::{Bug, ChoiceError, DeviceError, InputError, NearmissError, OutOfMemory};
+use classes::{Bug, ChoiceError, DeviceError, InputError, Interrupted, NearmissError, OutOfMemory};
 
 /// What Python raises.
 pub fn raised(error: Error) -> PyErr {
@@ -25,7 +26,8 @@ pub fn raised(error: Error) -> PyErr {
         Error::Input { .. } => InputError::new_err(text),
         Error::Choice { .. } => ChoiceError::new_err(text),
         Error::Device { .. } | Error::Stamp { .. } => DeviceError::new_err(text),
-        Error::OutOfMemory { .. } => OutOfMemory::new_err(text),
+        Error::OutOfMemory { .. } | Error::AnswerTooLarge { .. } => OutOfMemory::new_err(text),
+        Error::Interrupted => Interrupted::new_err(text),
         Error::Bug { .. } => Bug::new_err(text),
         _ => NearmissError::new_err(text),
     }

@@ -1,6 +1,7 @@
 //! Arrays in the host's memory.
 
 use crate::errors::{choice, raised};
+use crate::watch::left_behind;
 use nearmiss::mesh::{MAX_FACES, MAX_VERTICES, Positions, Problem};
 use nearmiss::{Error, Mesh, memory};
 use numpy::{
@@ -18,7 +19,7 @@ pub fn read_mesh<'py>(
     py: Python<'py>,
     path: PathBuf,
 ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyArray2<u32>>)> {
-    let mesh = py.detach(|| Mesh::read(&path)).map_err(raised)?;
+    let mesh = left_behind(py, move || Mesh::read(&path))?.map_err(raised)?;
     Ok((points(py, mesh.positions()), rows(py, mesh.faces())))
 }
 

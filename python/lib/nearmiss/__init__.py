@@ -31,7 +31,7 @@ from ._native import (
     __version__,
     read_mesh,
 )
-from .errors import Bug, ChoiceError, DeviceError, InputError, NearmissError, OutOfMemory
+from .errors import Bug, ChoiceError, DeviceError, InputError, Interrupted, NearmissError, OutOfMemory
 from .shortcuts import contacts, near, self_intersections, time_of_impact
 
 
@@ -82,6 +82,7 @@ __all__ = [
     "Earliest",
     "Geometry",
     "InputError",
+    "Interrupted",
     "Kind",
     "Near",
     "NearmissError",

@@ -21,5 +21,9 @@ class OutOfMemory(NearmissError, MemoryError):
     """Memory ran out. Nothing was lost in silence: there is no answer."""
 
 
+class Interrupted(NearmissError, RuntimeError):
+    """Another thread has called Detector.interrupt. There is no answer, and the detector can be used again."""
+
+
 class Bug(NearmissError, RuntimeError):
     """A fault of nearmiss itself. Tell us."""
