@@ -66,6 +66,21 @@ pub enum Error {
         /// Bytes there were.
         given: u64,
     },
+    /// An [`Interrupt`](crate::Interrupt) has ended the call. There is no answer; the detector can be used again.
+    #[error("interrupted; there is no answer, and the detector can be used again")]
+    Interrupted,
+    /// The answer has more rows than memory has room for. It was refused by its count, before it was made.
+    #[error("the answer has at least {pairs} pairs: {asked} bytes are needed and {given} are free; {advice}")]
+    AnswerTooLarge {
+        /// Rows that were counted.
+        pairs: u64,
+        /// Bytes that they need.
+        asked: u64,
+        /// Bytes that there are for them.
+        given: u64,
+        /// What to do.
+        advice: &'static str,
+    },
     /// The GPU's kernels were made from other sources than this program. Build again.
     #[error(
         "the kernels carry the stamp {found}, this program was built from {wanted}; run `cargo build` again"
@@ -101,13 +116,14 @@ impl From<nearmiss_emulator::Error> for Error {
             E::Memory { bytes } => {
                 Error::OutOfMemory { what: "host memory".into(), asked: bytes as u64, given: 0 }
             }
+            E::Interrupted => Error::Interrupted,
             rule => Error::Bug { what: rule.to_string() },
         }
     }
 }
 
 impl Error {
-    /// The exit status of the command line: 2 bad arguments, 3 bad input, 4 device, memory or output.
+    /// The exit status of the command line: 2 bad arguments, 3 bad input, 4 device, memory or output, 130 interrupted.
     pub fn exit_code(&self) -> u8 {
         match self {
             Error::Choice { .. } => 2,
@@ -116,8 +132,10 @@ impl Error {
             | Error::Device { .. }
             | Error::Regression { .. }
             | Error::OutOfMemory { .. }
+            | Error::AnswerTooLarge { .. }
             | Error::Stamp { .. }
             | Error::Bug { .. } => 4,
+            Error::Interrupted => 130,
         }
     }
 }

@@ -66,7 +66,7 @@ pub mod words;
 
 pub use contacts::{Answer, Contact, Contacts};
 pub use detector::{Detector, plan};
-pub use device::Device;
+pub use device::{Device, Interrupt};
 pub use error::Error;
 pub use mesh::{Body, Mesh};
 pub use pipeline::{Stage, Stages};

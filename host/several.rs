@@ -1,8 +1,10 @@
 //! One scene on several devices: every one has all positions, and finds what is its share of the tiles.
 
+mod interrupted;
+
 use crate::contacts::{ContactGeometry, Contacts};
 use crate::detector::{Detector, Wear};
-use crate::device::Device;
+use crate::device::{Device, Interrupt};
 use crate::error::Error;
 use crate::mesh::Body;
 use crate::pipeline::Share;
@@ -39,6 +41,8 @@ pub struct MultiDetector {
     /// Milliseconds of the last frame, on each device's own clock.
     ms: Vec<f64>,
     in_turn: bool,
+    /// What ends the work of all.
+    interrupt: Interrupt,
     /// How often each device had made its tiles when last all were made from the same positions: so that tiles are the same.
     builds: Vec<u64>,
     wear: Wear,
@@ -89,11 +93,15 @@ impl MultiDetector {
         let query = query.with_rebuild(Rebuild::Asked);
         let part = |k: usize| k as u64 * Share::ALL / count as u64;
         let shares: Vec<Share> = (0..count).map(|k| Share { from: part(k), to: part(k + 1) }).collect();
-        let part = |(device, &share)| Detector::with_share(device, scene.clone(), query, share);
+        let interrupt = devices.iter().find_map(Device::interrupt).cloned().unwrap_or_default();
+        let part = |(device, &share): (Device, _)| {
+            let device = device.with_interrupt(&interrupt);
+            Detector::with_share(device, scene.clone(), query, share).map(Detector::of_several)
+        };
         let parts = devices.into_iter().zip(&shares).map(part).collect::<Result<Vec<_>, _>>()?;
         let builds = parts.iter().map(Detector::builds).collect();
         let (ms, wear) = (vec![0.0; count], Wear::default());
-        Ok(MultiDetector { parts, shares, ms, in_turn, builds, wear, wears })
+        Ok(MultiDetector { parts, shares, ms, in_turn, interrupt, builds, wear, wears })
     }
 
     /// Asks the devices one after another: where they are one machine in truth, and each is to be timed as if it were alone.
@@ -112,7 +120,8 @@ impl MultiDetector {
                 advice: "give positions of the host".into(),
             });
         }
-        self.ask(|detector| detector.frame(inputs))
+        let answered = self.ask(|detector| detector.frame(inputs));
+        self.ended(answered)
     }
 
     /// As [`Detector::detect`].
@@ -120,7 +129,8 @@ impl MultiDetector {
     /// # Errors
     /// As there.
     pub fn detect(&mut self) -> Result<Contacts, Error> {
-        self.ask(Detector::detect)
+        let answered = self.ask(Detector::detect);
+        self.ended(answered)
     }
 
     /// As [`Detector::rebuild`].
@@ -128,6 +138,11 @@ impl MultiDetector {
     /// # Errors
     /// As there.
     pub fn rebuild(&mut self) -> Result<(), Error> {
+        let renewed = self.renew();
+        self.ended(renewed)
+    }
+
+    fn renew(&mut self) -> Result<(), Error> {
         self.each(Detector::rebuild)?;
         self.agree();
         Ok(())
@@ -177,9 +192,12 @@ impl MultiDetector {
         self.begin()
     }
 
-    /// After a change of bodies: the same tiles on all devices.
+    /// After a change of bodies: the same tiles on all devices. The change is made: a trigger waits for the next frame.
     fn begin(&mut self) -> Result<(), Error> {
-        self.each(Detector::begin)?;
+        match self.each(Detector::begin) {
+            Err(Error::Interrupted) => return Ok(()),
+            begun => begun?,
+        };
         self.agree();
         Ok(())
     }
@@ -189,7 +207,8 @@ impl MultiDetector {
     /// # Errors
     /// As there.
     pub fn geometry(&mut self, found: &Contacts) -> Result<Vec<ContactGeometry>, Error> {
-        self.parts[0].geometry(found)
+        let geometry = self.parts[0].geometry(found);
+        self.ended(geometry)
     }
 
     /// As [`Detector::scene`].
@@ -233,30 +252,30 @@ impl MultiDetector {
     ) -> Result<Contacts, Error> {
         let start = Instant::now();
         if self.wears && self.wear.is_worn(self.parts[0].moving_triangles()) {
-            self.rebuild()?;
+            self.renew()?;
         }
         self.divide()?;
         let mut answers = self.each(question)?;
         // A device that ran out of memory has made its tiles anew, and a share is of the same tiles on all.
         while self.parts.len() > 1 && self.builds_now() != self.builds {
-            self.rebuild()?;
+            self.renew()?;
             answers = self.each(Detector::detect)?;
         }
         self.ms = answers.iter().map(|answer| answer.stages.total).collect();
-        let none = || Error::Bug { what: "a scene on no device".into() };
-        let mut whole = Contacts::merged(answers, f64::max).ok_or_else(none)?;
+        let mut whole = self.merged(answers)?;
         self.wear.tell(whole.steps);
         whole.stages.wall = start.elapsed().as_secs_f64() * 1e3;
         Ok(whole)
     }
 
-    /// Does the same on every device, at the same time unless in turn.
+    /// Does the same on every device, at the same time unless in turn. All do it, whatever becomes of one.
     fn each<T: Send>(
         &mut self,
         what: impl Fn(&mut Detector) -> Result<T, Error> + Sync,
     ) -> Result<Vec<T>, Error> {
         if self.in_turn || self.parts.len() == 1 {
-            return self.parts.iter_mut().map(what).collect();
+            let done: Vec<_> = self.parts.iter_mut().map(what).collect();
+            return done.into_iter().collect();
         }
         let lost = |_| Err(Error::Bug { what: "a device's thread has panicked".into() });
         std::thread::scope(|scope| {

@@ -30,6 +30,8 @@ pub enum NearmissCode {
     NEARMISS_STAMP = 7,
     /// A fault of nearmiss itself. Tell us.
     NEARMISS_BUG = 8,
+    /// A `NearmissInterrupt` has ended the call. There is no answer, and the detector can be used again.
+    NEARMISS_INTERRUPTED = 9,
 }
 
 /// Bytes of the text of an error.
@@ -57,13 +59,14 @@ impl NearmissError {
     }
 }
 
-/// The exit status that the command line has for a code: 0 done, 2 bad arguments, 3 bad input, 4 all else.
+/// The exit status that the command line has for a code: 0 done, 2 bad arguments, 3 bad input, 130 interrupted, 4 all else.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_exit_code(code: u32) -> u32 {
     match code {
         0 => 0,
         1 => 2,
         2 => 3,
+        9 => 130,
         _ => 4,
     }
 }
@@ -75,8 +78,9 @@ fn code(error: &Error) -> NearmissCode {
         Error::Output { .. } => NearmissCode::NEARMISS_OUTPUT,
         Error::Device { .. } => NearmissCode::NEARMISS_DEVICE,
         Error::Regression { .. } => NearmissCode::NEARMISS_REGRESSION,
-        Error::OutOfMemory { .. } => NearmissCode::NEARMISS_OUT_OF_MEMORY,
+        Error::OutOfMemory { .. } | Error::AnswerTooLarge { .. } => NearmissCode::NEARMISS_OUT_OF_MEMORY,
         Error::Stamp { .. } => NearmissCode::NEARMISS_STAMP,
+        Error::Interrupted => NearmissCode::NEARMISS_INTERRUPTED,
         // A new kind of error needs a code of its own: until then it is our fault.
         _ => NearmissCode::NEARMISS_BUG,
     }
@@ -177,8 +181,10 @@ mod tests {
             (4, device),
             (5, Error::Regression { what: s(), text: s(), advice: "" }),
             (6, Error::OutOfMemory { what: s(), asked: 1, given: 0 }),
+            (6, Error::AnswerTooLarge { pairs: 1, asked: 1, given: 0, advice: "" }),
             (7, Error::Stamp { found: s(), wanted: s() }),
             (8, Error::Bug { what }),
+            (9, Error::Interrupted),
         ];
         for (number, error) in all {
             assert_eq!(code(&error) as u32, number, "{error}");

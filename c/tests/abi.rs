@@ -2,6 +2,8 @@
 
 #[path = "abi/answers.rs"]
 mod answers;
+#[path = "abi/interrupted.rs"]
+mod interrupted;
 #[path = "abi/refusals.rs"]
 mod refusals;
 #[path = "abi/submitted.rs"]

@@ -17,6 +17,7 @@ mod scene;
 mod selftest;
 mod sequence;
 mod shell;
+mod stop;
 mod tables;
 mod trade;
 mod vtp;
@@ -27,8 +28,10 @@ use output::{Target, print, say};
 use std::path::Path;
 use std::process::ExitCode;
 
-/// 0 done (contacts or not), 2 bad arguments, 3 bad input, 4 device, memory or output, and a check that fails.
+/// 0 done (contacts or not), 2 bad arguments, 3 bad input, 4 device, memory or output, and a check that fails; 130 and 143 for
+/// SIGINT and SIGTERM.
 fn main() -> ExitCode {
+    stop::listen();
     let done = match args::parse() {
         Ok(Ok(command)) => run(command),
         Ok(Err(code)) => Ok(code),

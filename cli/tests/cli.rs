@@ -14,6 +14,9 @@ mod explain;
 mod faces;
 #[path = "cli/idle.rs"]
 mod idle;
+#[cfg(unix)]
+#[path = "cli/interrupted.rs"]
+mod interrupted;
 #[cfg(target_os = "linux")]
 #[path = "cli/kept.rs"]
 mod kept;

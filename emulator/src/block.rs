@@ -11,7 +11,7 @@ use std::mem::MaybeUninit;
 use std::ptr::with_exposed_provenance_mut;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed, Ordering::SeqCst, fence};
 
-/// Who looks on. [`Unchecked`] costs nothing: every call is empty and vanishes.
+/// Who looks on: [`Looking`](crate::engine::Looking) or a [`BlockObserver`](crate::observer::BlockObserver).
 pub trait Watch: Copy {
     /// The lanes of a phase, in their order.
     fn lanes(&self, count: u32, phase: u32, body: impl FnMut(u32));
@@ -21,33 +21,10 @@ pub trait Watch: Copy {
     fn shared(&self, access: Access, offset: u32, bytes: usize, inside: bool, place: Place) -> bool;
     /// An access that might only have looked, [`Access::Swap`], has changed memory.
     fn changed(&self);
+    /// A lane takes part in an atomic: where one phase takes long, it does so again and again.
+    fn draws(&self);
     /// A barrier of the block: another block may go on.
     fn barrier(&self);
-}
-
-/// Nobody looks on.
-#[derive(Clone, Copy)]
-pub struct Unchecked;
-
-impl Watch for Unchecked {
-    #[inline(always)]
-    fn lanes(&self, count: u32, _: u32, body: impl FnMut(u32)) {
-        (0..count).for_each(body);
-    }
-    #[inline(always)]
-    fn device(&self, _: Access, _: u64, _: usize, inside: bool, _: Place) -> bool {
-        debug_assert!(inside, "a kernel left its span");
-        true
-    }
-    #[inline(always)]
-    fn shared(&self, _: Access, _: u32, _: usize, inside: bool, _: Place) -> bool {
-        debug_assert!(inside, "a kernel left its shared memory");
-        true
-    }
-    #[inline(always)]
-    fn changed(&self) {}
-    #[inline(always)]
-    fn barrier(&self) {}
 }
 
 /// The lane of a read that all lanes make together.
@@ -124,6 +101,7 @@ impl<W: Watch> EmulatedLane<W> {
     }
     #[inline(always)]
     fn atomic(&self, access: Access, span: Span<u64>, i: u32) -> Option<&AtomicU64> {
+        self.watch.draws();
         // SAFETY: inside a span of live, aligned device memory (kernels stay inside; the sanitizer and debug builds
         // check it), touched only atomically while others may touch it.
         device(&self.watch, access, span, i, self.place).map(|p| unsafe { AtomicU64::from_ptr(p) })
@@ -234,6 +212,7 @@ impl<W: Watch> Lane for EmulatedLane<W> {
     }
     #[inline(always)]
     fn shared_add(&self, words: Shared<u32>, i: u32, value: u32) -> u32 {
+        self.watch.draws();
         let Some(p) = self.word(Access::Atomic, words, i) else { return 0 };
         // SAFETY: as for `get`: one thread runs all lanes of a block, so this is atomic.
         unsafe {

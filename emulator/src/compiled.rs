@@ -1,12 +1,12 @@
 //! Every kernel of the table, compiled here for the emulator: a crate that launches one does not compile it again.
 
-use crate::{Emulator, Error};
+use crate::{Emulator, Error, Interrupt};
 use nearmiss_kernels::entry::{Entry, Visit, visit};
 use std::any::TypeId;
 use std::sync::OnceLock;
 
 /// [`Emulator::run`] of a kernel, with a pointer to its arguments.
-type Run = unsafe fn(&Emulator, u32, *const ()) -> Result<(), Error>;
+type Run = unsafe fn(&Emulator, u32, *const (), Option<&Interrupt>) -> Result<(), Error>;
 
 /// The kernels in the order of the table.
 #[derive(Default)]
@@ -30,9 +30,14 @@ fn all() -> &'static All {
 
 /// # Safety
 /// As of [`Emulator::launch`], and `args` points to the kernel's arguments.
-unsafe fn run<E: Entry>(emulator: &Emulator, blocks: u32, args: *const ()) -> Result<(), Error> {
+unsafe fn run<E: Entry>(
+    emulator: &Emulator,
+    blocks: u32,
+    args: *const (),
+    interrupt: Option<&Interrupt>,
+) -> Result<(), Error> {
     // SAFETY: the caller's promise.
-    emulator.run::<E>(blocks, unsafe { &*args.cast::<E::Args>() })
+    emulator.run::<E>(blocks, unsafe { &*args.cast::<E::Args>() }, interrupt)
 }
 
 /// Runs the kernel at that place of the table.
@@ -47,9 +52,10 @@ pub unsafe fn launch<E: Entry>(
     place: usize,
     blocks: u32,
     args: &E::Args,
+    interrupt: Option<&Interrupt>,
 ) -> Result<(), Error> {
     let (kernel, run) = all().0[place];
     assert_eq!(kernel, TypeId::of::<E>(), "{} has the place of another kernel", E::NAME);
     // SAFETY: the arguments are this kernel's, as just asserted; the rest is the caller's promise.
-    unsafe { run(emulator, blocks, (args as *const E::Args).cast()) }
+    unsafe { run(emulator, blocks, (args as *const E::Args).cast(), interrupt) }
 }

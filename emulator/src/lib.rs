@@ -3,6 +3,8 @@
 mod block;
 mod coherent;
 mod compiled;
+mod engine;
+mod interrupt;
 mod observer;
 mod order;
 mod prefetch;
@@ -11,10 +13,12 @@ mod sanitizer;
 mod shadow;
 mod turns;
 
+pub use interrupt::{Interrupt, Looks};
 pub use order::Order;
 pub use sanitizer::{Fault, Place, Sanitizer};
 
-use block::{Emulated, Unchecked};
+use block::Emulated;
+use engine::Looking;
 use nearmiss_kernels::entry::Entry;
 use observer::BlockObserver;
 use rayon::prelude::*;
@@ -44,6 +48,9 @@ pub enum Error {
         /// How many were asked for.
         bytes: usize,
     },
+    /// An [`Interrupt`] has ended the launch: its memory is half written.
+    #[error("interrupted")]
+    Interrupted,
     /// A kernel broke a rule.
     #[error("kernel {kernel}: {fault}")]
     Rule {
@@ -166,10 +173,10 @@ impl Emulator {
         Ok(memory)
     }
 
-    /// Runs every block of a launch, and returns when they are done.
+    /// Runs every block of a launch, and returns when they are done or `interrupt` is triggered.
     ///
     /// # Errors
-    /// Under the sanitizer, [`Error::Rule`] with the first access that broke a rule.
+    /// [`Error::Interrupted`]; under the sanitizer, [`Error::Rule`] with the first access that broke a rule.
     ///
     /// # Panics
     /// When the kernel does.
@@ -177,48 +184,64 @@ impl Emulator {
     /// # Safety
     /// The spans of `args` are of this emulator's [`Memory`], which lives until the launch returns and which no other thread
     /// touches meanwhile, and what the kernel's card asks under "Before" holds.
-    pub unsafe fn launch<E: Entry>(&self, blocks: u32, args: &E::Args) -> Result<(), Error> {
+    pub unsafe fn launch<E: Entry>(
+        &self,
+        blocks: u32,
+        args: &E::Args,
+        interrupt: Option<&Interrupt>,
+    ) -> Result<(), Error> {
         // A constant for each kernel, so that one of the table is not compiled again where it is launched.
         if const { E::PLACE.is_some() } {
             let place = E::PLACE.unwrap_or_default();
             // SAFETY: the caller's promise.
-            return unsafe { compiled::launch::<E>(self, place, blocks, args) };
+            return unsafe { compiled::launch::<E>(self, place, blocks, args, interrupt) };
         }
-        self.run::<E>(blocks, args)
+        self.run::<E>(blocks, args, interrupt)
     }
 
     /// Runs every block of a launch: [`Emulator::launch`], compiled where it is called.
-    fn run<E: Entry>(&self, blocks: u32, args: &E::Args) -> Result<(), Error> {
+    fn run<E: Entry>(&self, blocks: u32, args: &E::Args, interrupt: Option<&Interrupt>) -> Result<(), Error> {
         let lanes = self.lanes::<E>();
+        let looks = Looks::new(interrupt);
         if let Some(sanitizer) = &self.sanitizer {
             sanitizer.begin(E::NAME);
             let run = |block, observer: &BlockObserver| {
-                E::run(&mut Emulated::new(block, blocks, lanes, observer), args)
+                if !looks.ends() {
+                    E::run(&mut Emulated::new(block, blocks, lanes, observer), args);
+                }
             };
             let sequence = sanitizer.order().sequence(blocks, sanitizer.launches());
             if let Some(seed) = sanitizer.interleave() {
                 let seed = seed ^ sanitizer.launches().rotate_left(32);
                 TurnScheduler::run(sequence, seed, |block, scheduler, slot| {
-                    run(block, &BlockObserver::new(sanitizer, Some((scheduler, slot))));
+                    run(block, &BlockObserver::new(sanitizer, Some((scheduler, slot)), &looks));
                 });
             } else {
                 let all = || {
-                    sequence.into_iter().for_each(|block| run(block, &BlockObserver::new(sanitizer, None)))
+                    sequence
+                        .into_iter()
+                        .for_each(|block| run(block, &BlockObserver::new(sanitizer, None, &looks)))
                 };
                 turns::to_its_end(all).unwrap_or_else(turns::pass_on);
             }
-            return sanitizer.verdict();
+            sanitizer.verdict()?;
+        } else {
+            let block = |block| {
+                if !looks.ends() {
+                    E::run(&mut Emulated::new(block, blocks, lanes, Looking(&looks)), args);
+                }
+            };
+            let run = || {
+                // One block is not worth a thread's waking up.
+                if blocks == 1 { block(0) } else { (0..blocks).into_par_iter().for_each(block) }
+            };
+            let all = || match &self.pool {
+                Some(pool) => pool.install(run),
+                None => run(),
+            };
+            turns::to_its_end(all).unwrap_or_else(turns::pass_on);
         }
-        let run = || {
-            let block = |block| E::run(&mut Emulated::new(block, blocks, lanes, Unchecked), args);
-            // One block is not worth a thread's waking up.
-            if blocks == 1 { block(0) } else { (0..blocks).into_par_iter().for_each(block) }
-        };
-        match &self.pool {
-            Some(pool) => pool.install(run),
-            None => run(),
-        }
-        Ok(())
+        if looks.ended() { Err(Error::Interrupted) } else { Ok(()) }
     }
 }
 

@@ -1,9 +1,10 @@
 //! The sanitizer's observer on one block.
 
 use crate::block::Watch;
+use crate::interrupt::Looks;
 use crate::sanitizer::{Access, Fault, Place, Sanitizer};
 use crate::shadow::Shadow;
-use crate::turns::TurnScheduler;
+use crate::turns::{Stop, TurnScheduler};
 use std::cell::RefCell;
 
 /// Watches one block.
@@ -12,13 +13,24 @@ pub struct BlockObserver<'a> {
     launch: u64,
     /// Where blocks interleave, what says whose turn it is, and this block's slot.
     scheduler: Option<(&'a TurnScheduler, usize)>,
+    looks: &'a Looks<'a>,
     shared: RefCell<Vec<Shadow>>,
 }
 
 impl<'a> BlockObserver<'a> {
     /// An observer on a block that begins: its shared memory is new.
-    pub fn new(sanitizer: &'a Sanitizer, scheduler: Option<(&'a TurnScheduler, usize)>) -> Self {
-        BlockObserver { sanitizer, launch: sanitizer.launches(), scheduler, shared: RefCell::default() }
+    pub fn new(
+        sanitizer: &'a Sanitizer,
+        scheduler: Option<(&'a TurnScheduler, usize)>,
+        looks: &'a Looks<'a>,
+    ) -> Self {
+        BlockObserver {
+            sanitizer,
+            launch: sanitizer.launches(),
+            scheduler,
+            looks,
+            shared: RefCell::default(),
+        }
     }
 }
 
@@ -55,7 +67,13 @@ impl Watch for &BlockObserver<'_> {
     fn changed(&self) {
         self.sanitizer.changed();
     }
+    fn draws(&self) {
+        if self.looks.ends() {
+            Stop::now();
+        }
+    }
     fn barrier(&self) {
+        self.draws();
         if let Some((scheduler, slot)) = self.scheduler {
             scheduler.pass(slot);
         }

@@ -1,13 +1,18 @@
 //! Answers to parts of one question, by several devices or one after another, as one.
 
-use super::{Answer, Contact, Contacts, Degraded, TrianglePair, near};
+use super::{Answer, Contact, Contacts, Degraded, TrianglePair, near, sort};
 use crate::pipeline::Stages;
-use rayon::prelude::*;
+use nearmiss_emulator::Looks;
 
 impl Contacts {
     /// The answer to the whole, of those to its shares, of which there is at least one: lists together in canonical order, counts
     /// added, and of each stage what `of` makes of two: the longer of those at the same time, the sum of those one after another.
-    pub(crate) fn merged(shares: Vec<Contacts>, of: impl Fn(f64, f64) -> f64) -> Option<Contacts> {
+    /// No answer if a look ends it.
+    pub(crate) fn merged(
+        shares: Vec<Contacts>,
+        of: impl Fn(f64, f64) -> f64,
+        looks: &Looks,
+    ) -> Option<Contacts> {
         let ordered = shares.len() < 2;
         let mut all = shares.into_iter();
         let mut whole = all.next()?;
@@ -19,9 +24,9 @@ impl Contacts {
         if !ordered {
             // Each share is in order: a sort that merges.
             match &mut whole.answer {
-                Answer::Pairs(pairs) => pairs.par_sort_by_key(TrianglePair::key),
-                Answer::Contacts(contacts) => contacts.par_sort_by_key(Contact::key),
-                Answer::Near(pairs) => pairs.par_sort_by_key(near::NearPair::key),
+                Answer::Pairs(pairs) => sort::merge(pairs, TrianglePair::key, looks),
+                Answer::Contacts(contacts) => sort::merge(contacts, Contact::key, looks),
+                Answer::Near(pairs) => sort::merge(pairs, near::NearPair::key, looks),
                 Answer::Earliest(_) | Answer::Distance(_) => {}
             }
         }

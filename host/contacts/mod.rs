@@ -7,6 +7,7 @@ mod merge;
 mod near;
 mod nearest;
 pub mod on_device;
+mod sort;
 mod summary;
 mod triangles;
 mod work;
@@ -23,9 +24,9 @@ pub use work::{Front, Queues};
 use crate::pipeline::{Found, Layout, Listed, Stages};
 use crate::query::Query;
 use crate::scene::BodyId;
-use nearmiss_kernels::abi::{Pair, counter};
+use nearmiss_emulator::Looks;
+use nearmiss_kernels::abi::{Hit, Pair, counter};
 use nearmiss_kernels::prim::inclusion::Verdict;
-use rayon::prelude::*;
 
 /// Which features meet. Its number (`as u8`) stands for it in the hash, in files and in other languages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -201,12 +202,17 @@ impl Contacts {
         }
     }
 
-    /// Puts what the kernels found into canonical order and into the numbering of the bodies.
+    /// Puts what the kernels found into canonical order and into the numbering of the bodies. No answer if a look ends it.
     #[doc(hidden)]
-    pub fn new(found: Found, layout: &Layout, (stages, degraded): (Stages, Vec<Degraded>)) -> Contacts {
+    pub fn new(
+        found: Found,
+        layout: &Layout,
+        (stages, degraded): (Stages, Vec<Degraded>),
+        looks: &Looks,
+    ) -> Contacts {
         let answer = match &found.listed {
             Listed::Earliest { toi, .. } => Answer::Earliest(*toi),
-            Listed::Near(hits) => Answer::Near(near::pairs(hits, found.ordered, layout)),
+            Listed::Near(hits) => Answer::Near(near::pairs(hits, found.ordered, layout, looks)),
             Listed::Nearest(nearest) => {
                 Answer::Distance(nearest.first().map(|hit| NearestTriangles::new(hit, layout)))
             }
@@ -215,9 +221,10 @@ impl Contacts {
                     let [(a, p), (b, q)] = [p.a, p.b].map(|t| layout.locate(t, |at| at.triangle));
                     TrianglePair { bodies: [a, b], triangles: [p, q] }
                 };
-                let mut pairs: Vec<_> = listed.par_iter().map(pair).collect();
+                let mut pairs = Vec::new();
+                sort::extend(&mut pairs, listed, pair, looks);
                 if !found.ordered {
-                    pairs.par_sort_unstable_by_key(TrianglePair::key);
+                    sort::sort(&mut pairs, TrianglePair::key, looks);
                 }
                 Answer::Pairs(pairs)
             }
@@ -227,12 +234,13 @@ impl Contacts {
                     Contact { kind, bodies, a, b, toi: verdict.toi, toi_hi: verdict.toi_hi, status }
                 };
                 let [of_vf, of_ee] = hits.each();
-                let vf =
-                    of_vf.par_iter().map(|hit| contact(vertex_face(layout, [hit.a, hit.b]), &hit.verdict));
-                let ee = of_ee.par_iter().map(|hit| contact(edge_edge(layout, [hit.a, hit.b]), &hit.verdict));
-                let mut contacts: Vec<_> = vf.chain(ee).collect();
+                let vf = |hit: &Hit| contact(vertex_face(layout, [hit.a, hit.b]), &hit.verdict);
+                let ee = |hit: &Hit| contact(edge_edge(layout, [hit.a, hit.b]), &hit.verdict);
+                let mut contacts = Vec::with_capacity(of_vf.len() + of_ee.len());
+                sort::extend(&mut contacts, of_vf, vf, looks);
+                sort::extend(&mut contacts, of_ee, ee, looks);
                 if !found.ordered {
-                    contacts.par_sort_unstable_by_key(Contact::key);
+                    sort::sort(&mut contacts, Contact::key, looks);
                 }
                 Answer::Contacts(contacts)
             }

@@ -1,11 +1,11 @@
 //! Pairs of features within a distance.
 
-use super::{Features, Kind, edge_edge, vertex_face};
+use super::{Features, Kind, edge_edge, sort, vertex_face};
 use crate::pipeline::{Hits, Layout};
 use crate::scene::BodyId;
+use nearmiss_emulator::Looks;
 use nearmiss_kernels::abi::NearHit;
 use nearmiss_kernels::prim::near::corner_weights;
-use rayon::prelude::*;
 
 /// What is nearest of two features. Its number (`as u8`) stands for it in other languages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -96,14 +96,16 @@ impl NearPair {
     }
 }
 
-/// What the kernels found, in canonical order and in the numbering of the bodies.
-pub fn pairs(hits: &Hits<NearHit>, ordered: bool, layout: &Layout) -> Vec<NearPair> {
+/// What the kernels found, in canonical order and in the numbering of the bodies. No answer if a look ends it.
+pub fn pairs(hits: &Hits<NearHit>, ordered: bool, layout: &Layout, looks: &Looks) -> Vec<NearPair> {
     let [of_vf, of_ee] = hits.each();
-    let vf = of_vf.par_iter().map(|hit| NearPair::new(vertex_face(layout, [hit.a, hit.b]), hit));
-    let ee = of_ee.par_iter().map(|hit| NearPair::new(edge_edge(layout, [hit.a, hit.b]), hit));
-    let mut pairs: Vec<_> = vf.chain(ee).collect();
+    let vf = |hit: &NearHit| NearPair::new(vertex_face(layout, [hit.a, hit.b]), hit);
+    let ee = |hit: &NearHit| NearPair::new(edge_edge(layout, [hit.a, hit.b]), hit);
+    let mut pairs = Vec::with_capacity(of_vf.len() + of_ee.len());
+    sort::extend(&mut pairs, of_vf, vf, looks);
+    sort::extend(&mut pairs, of_ee, ee, looks);
     if !ordered {
-        pairs.par_sort_unstable_by_key(NearPair::key);
+        sort::sort(&mut pairs, NearPair::key, looks);
     }
     pairs
 }

@@ -46,6 +46,29 @@ impl Detector {
         }
     }
 
+    /// Brings every body to the host, before the device's memory goes. Bodies of the last frame whose positions no mesh may
+    /// have are lost: they have to be named again.
+    pub(super) fn bring_all(&mut self) {
+        let lost: Vec<bool> = self.scene.bodies().iter().map(Body::is_lost).collect();
+        let places = self.places().ok().flatten();
+        let is_valid = places.as_ref().is_some_and(|places| {
+            let mut away = self.scene.bodies().iter().enumerate().filter(|(_, body)| body.is_away());
+            away.all(|(i, body)| {
+                let (ends, poses) = places.of(i);
+                body.check_found(&ends, poses).is_ok()
+            })
+        });
+        if let Some(places) = &places {
+            self.bring(places);
+        }
+        let named = self.named.iter().chain(std::iter::repeat(&false));
+        for ((body, lost), named) in self.scene.bodies_mut().iter_mut().zip(lost).zip(named) {
+            if lost || *named && !is_valid {
+                body.lose();
+            }
+        }
+    }
+
     /// Whether every body is where the host or a pipeline knows it to be.
     pub(super) fn all_known(&self) -> Result<(), Error> {
         self.none_lost()?;

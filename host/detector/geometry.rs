@@ -30,6 +30,9 @@ impl Detector {
             "where contacts are",
             (count * of_one + vertices * size_of::<[[f64; 3]; 2]>()) as u64,
         )?;
+        // After an interrupted call there is none.
+        let begun = self.begun().map(drop);
+        self.ended(begun)?;
         let layout = self.layout()?;
         let pipeline = self.pipeline.as_ref().ok_or_else(of_others)?;
         // One of both is empty.

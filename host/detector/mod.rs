@@ -3,6 +3,7 @@
 mod away;
 mod edits;
 mod geometry;
+mod interrupted;
 mod moves;
 pub mod plan;
 mod share;
@@ -12,7 +13,7 @@ mod turns;
 mod wear;
 
 use crate::contacts::{Contacts, Degraded, Summary};
-use crate::device::emulator::start_threads;
+use crate::device::emulator::{Looks, start_threads};
 use crate::device::{Device, Work};
 use crate::error::Error;
 use crate::memory;
@@ -65,6 +66,8 @@ pub struct Detector {
     f64s: bool,
     /// None where nothing can meet, or where memory ended: then the next frame asks for it again.
     pipeline: Option<Box<dyn Pipeline>>,
+    /// Whether a [`MultiDetector`](crate::MultiDetector) runs it.
+    is_part: bool,
     /// Its part of the work, in how many slices it is asked, and what each tile cost where there are several.
     share: Share,
     slices: u32,
@@ -117,6 +120,7 @@ impl Detector {
             named: Vec::new(),
             f64s: false,
             pipeline: None,
+            is_part: false,
             share,
             slices: 1,
             work_of_tiles: Vec::new(),
@@ -127,7 +131,8 @@ impl Detector {
             work: Work::default(),
         };
         detector.choose_tolerances();
-        detector.begun()?;
+        let begun = detector.begun().map(drop);
+        detector.ended(begun)?;
         Ok(detector)
     }
 
@@ -179,9 +184,13 @@ impl Detector {
                 (self.f64s, self.first_slice()),
             )?;
             self.device.work();
-            self.construct_ms = pipeline.construct()?;
+            let constructed = pipeline.construct();
+            if matches!(constructed, Ok(_) | Err(Error::Interrupted)) {
+                // Also an interrupted one knows where bodies are.
+                self.pipeline = Some(pipeline);
+            }
+            self.construct_ms = constructed?;
             (self.asked, self.build) = (0, self.device.work());
-            self.pipeline = Some(pipeline);
             self.built();
         }
         Ok(())
@@ -214,7 +223,8 @@ impl Detector {
     /// Those of the device.
     pub fn rebuild(&mut self) -> Result<(), Error> {
         self.device.work();
-        self.renew()?;
+        let renewed = self.renew();
+        self.ended(renewed)?;
         self.build = self.device.work();
         Ok(())
     }
@@ -240,7 +250,8 @@ impl Detector {
     /// Those of the device: [`Error::OutOfMemory`] when memory ends all the same. There is no partial answer.
     pub fn detect(&mut self) -> Result<Contacts, Error> {
         self.device.work();
-        self.answer(Instant::now())
+        let answered = self.answer(Instant::now());
+        self.ended(answered)
     }
 
     /// The same, of a frame that began then.
@@ -264,6 +275,11 @@ impl Detector {
     /// # Errors
     /// Those of the device.
     pub fn repeat_stage(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
+        let ms = self.repeated(stage, times);
+        self.ended(ms)
+    }
+
+    fn repeated(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
         if !self.answered && matches!(stage, Stage::Traverse | Stage::Narrow | Stage::Order) {
             self.detect()?;
         }
@@ -290,7 +306,8 @@ impl Detector {
         if !self.answered {
             self.detect()?;
         }
-        self.pipeline.as_mut().map_or(Ok(Vec::new()), |pipeline| pipeline.narrow_steps())
+        let steps = self.pipeline.as_mut().map_or(Ok(Vec::new()), |pipeline| pipeline.narrow_steps());
+        self.ended(steps)
     }
 
     /// The bodies, where they are now.
@@ -357,10 +374,11 @@ impl Detector {
 }
 
 /// What was found, in the numbering of the bodies.
-fn contacts(found: Found, stages: Stages, layout: &Layout) -> Result<Contacts, Error> {
+fn contacts(found: Found, stages: Stages, layout: &Layout, looks: &Looks) -> Result<Contacts, Error> {
     let degraded = Degraded::of(&found);
     memory::require("the contacts", found.bytes())?;
-    Ok(Contacts::new(found, layout, (stages, degraded)))
+    let contacts = Contacts::new(found, layout, (stages, degraded), looks);
+    if looks.ended() { Err(Error::Interrupted) } else { Ok(contacts) }
 }
 
 /// Whether indices of 32 bits reach all triangles, vertices and edges (at most three a triangle) of all bodies together.

@@ -30,8 +30,8 @@ impl Detector {
                 moved.push(Moved { body, rests: !named });
             }
         }
-        self.moved(&moved)?;
-        self.answer(start)
+        let answered = self.moved(&moved).and_then(|()| self.answer(start));
+        self.ended(answered)
     }
 
     /// Moves bodies to where the inputs say; others stay as they are, in the step that they are in. The trees are kept and refitted
@@ -42,7 +42,9 @@ impl Detector {
     pub fn place(&mut self, inputs: &[(BodyId, Input)]) -> Result<(), Error> {
         let named = self.put(inputs, false)?;
         let moved = named.iter().enumerate().filter(|(_, named)| **named);
-        self.moved(&moved.map(|(body, _)| Moved { body, rests: false }).collect::<Vec<_>>())
+        let moved: Vec<_> = moved.map(|(body, _)| Moved { body, rests: false }).collect();
+        let placed = self.moved(&moved);
+        self.ended(placed)
     }
 
     /// Moves bodies on the host, all or none; of each body of the scene, whether it was named. In a frame of a query in motion that
@@ -133,7 +135,8 @@ impl Detector {
         let meets = *old.meets();
         let old = &mut self.scene.bodies_mut()[body];
         *old = frame.with(meets).with_tolerance_of(old);
-        self.moved(&[Moved { body, rests: false }])
+        let moved = self.moved(&[Moved { body, rests: false }]);
+        self.ended(moved)
     }
 }
 

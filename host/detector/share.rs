@@ -39,7 +39,8 @@ impl Detector {
     /// # Errors
     /// Those of the device.
     pub(crate) fn begin(&mut self) -> Result<(), Error> {
-        self.begun().map(drop)
+        let begun = self.begun().map(drop);
+        self.ended(begun)
     }
 
     /// Triangles of what moves.

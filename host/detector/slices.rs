@@ -46,15 +46,18 @@ impl Detector {
     /// All slices; the outer error is the device's, the inner that of bringing the answer.
     fn every_slice(&mut self, layout: &Layout) -> Result<Result<Option<Answered>, Error>, Error> {
         let (mut all, mut seen) = (Vec::new(), None);
+        let device = self.device.clone();
+        let looks = device.looks();
         self.work_of_tiles.clear();
         for k in 0..self.slices {
             let Some(pipeline) = &mut self.pipeline else { return Ok(Ok(None)) };
             if self.slices > 1 {
                 pipeline.take(self.share.slice(k, self.slices))?;
             }
+            pipeline.after(all.iter().map(|slice: &Contacts| slice.len() as u64).sum());
             let (found, stages) = pipeline.frame()?;
             seen = found.seen;
-            match contacts(found, stages, layout) {
+            match contacts(found, stages, layout, &looks) {
                 Ok(found) => all.push(found),
                 Err(error) => return Ok(Err(error)),
             }
@@ -64,7 +67,10 @@ impl Detector {
                 self.work_of_tiles.iter_mut().zip(work).for_each(|(all, slice)| *all += slice);
             }
         }
-        let whole = Contacts::merged(all, |a, b| a + b);
+        let whole = Contacts::merged(all, |a, b| a + b, &looks);
+        if looks.ended() {
+            return Ok(Err(Error::Interrupted));
+        }
         Ok(Ok(whole.map(|whole| (Contacts { slices: self.slices, ..whole }, seen))))
     }
 

@@ -16,6 +16,11 @@ impl Detector {
     /// # Errors
     /// As for [`Detector::frame`]; [`Error::Choice`] for a traversal that cannot do without the host.
     pub fn prepare(&mut self, inputs: &[(BodyId, DeviceInput)]) -> Result<Contacts, Error> {
+        let prepared = self.prepared(inputs);
+        self.ended(prepared)
+    }
+
+    fn prepared(&mut self, inputs: &[(BodyId, DeviceInput)]) -> Result<Contacts, Error> {
         let inputs: Vec<(BodyId, Input)> =
             inputs.iter().map(|&(id, input)| (id, Input::OnDevice(input))).collect();
         self.frame(&inputs)?;
@@ -55,7 +60,8 @@ impl Detector {
     pub fn submit(&mut self) -> Result<(), Error> {
         start_threads()?;
         self.answered = false;
-        self.pipeline.as_mut().map_or(Ok(()), |pipeline| pipeline.submit())
+        let submitted = self.pipeline.as_mut().map_or(Ok(()), |pipeline| pipeline.submit());
+        self.ended(submitted)
     }
 
     /// Where the answer of what is submitted lies, for kernels of the caller behind it; `None` where it is not prepared, or nothing can
@@ -71,6 +77,11 @@ impl Detector {
     /// # Errors
     /// [`Error::Input`] and [`Error::Choice`] for positions and poses of the caller that cannot be computed with; those of the device.
     pub fn collect(&mut self) -> Result<Contacts, Error> {
+        let collected = self.collected();
+        self.ended(collected)
+    }
+
+    fn collected(&mut self) -> Result<Contacts, Error> {
         let start = Instant::now();
         let layout = self.layout()?;
         if self.is_prepared() {
@@ -80,7 +91,7 @@ impl Detector {
         let Some(pipeline) = &mut self.pipeline else { return Ok(Contacts::none(self.query)) };
         let whole = pipeline.collect()?.map(|(found, stages)| {
             let seen = found.seen;
-            contacts(found, stages, &layout).map(|contacts| (contacts, seen))
+            contacts(found, stages, &layout, &self.device.looks()).map(|contacts| (contacts, seen))
         });
         match whole.transpose()? {
             Some((contacts, seen)) => self.complete(contacts, seen, start),

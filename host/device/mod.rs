@@ -1,9 +1,11 @@
 //! Where kernels run: an NVIDIA GPU, or the CPU.
 
+mod answers;
 mod buffer;
 #[cfg(feature = "cuda")]
 mod cuda;
 mod held;
+mod interrupt;
 mod ledger;
 mod marks;
 #[cfg(any(feature = "cuda", test))]
@@ -18,6 +20,7 @@ pub(crate) use ledger::Work;
 pub use marks::Event;
 #[doc(hidden)]
 pub use nearmiss_emulator as emulator;
+pub use nearmiss_emulator::Interrupt;
 pub(crate) use replay::{Marks, Replay};
 pub use view::{Ahead, View};
 
@@ -64,6 +67,8 @@ pub struct Device {
     ledger: Arc<Ledger>,
     /// What the memory is for that is taken next.
     purpose: &'static str,
+    /// What ends its work early.
+    interrupt: Option<Interrupt>,
 }
 
 enum Machine {
@@ -148,12 +153,13 @@ impl Device {
 
     fn with(machine: Machine) -> Device {
         let (usage, ledger) = (Arc::new(Usage::new()), Arc::new(Ledger::default()));
-        Device { machine: Arc::new(machine), usage, ledger, purpose: "of no purpose" }
+        Device { machine: Arc::new(machine), usage, ledger, purpose: "of no purpose", interrupt: None }
     }
 
     /// The same machine, for one user of it: what that takes, launches and moves is counted by itself too.
     pub(crate) fn for_one(&self) -> Device {
-        Device { ledger: Arc::new(Ledger::default()), ..self.clone() }
+        let interrupt = self.interrupt.clone().unwrap_or_default();
+        Device { ledger: Arc::new(Ledger::default()), interrupt: Some(interrupt), ..self.clone() }
     }
 
     /// The same machine: memory that is taken from it is for that.
@@ -305,7 +311,8 @@ impl Device {
     /// Starts a kernel behind all that was started before.
     ///
     /// # Errors
-    /// [`Error::Device`] with the driver's text; [`Error::Bug`] under the sanitizer, and while there is a [`View`].
+    /// [`Error::Device`] with the driver's text; [`Error::Interrupted`]; [`Error::Bug`] under the sanitizer, and while there is
+    /// a [`View`].
     ///
     /// # Safety
     /// The spans of `args` are of buffers of this device that live until the kernel is over (dropping a buffer waits) and that no
@@ -320,13 +327,16 @@ impl Device {
                 what: format!("{} was launched while the host looks at memory", E::NAME),
             });
         }
+        self.may_launch()?;
         self.usage.launches.fetch_add(1, Ordering::Relaxed);
         self.ledger.launched(E::NAME);
         #[cfg_attr(not(feature = "cuda"), allow(unused_variables, reason = "a CPU does it at once"))]
         let is_listed = held::list(&self.usage, |list| list.launch::<E>(blocks, args));
         match &*self.machine {
             // SAFETY: the caller's promise. What is listed is done all the same: nothing is gained by doing it later.
-            Machine::Emulator(e) => unsafe { e.launch::<E>(blocks, args) }.map_err(Error::from),
+            Machine::Emulator(e) => {
+                unsafe { e.launch::<E>(blocks, args, self.interrupt()) }.map_err(Error::from)
+            }
             #[cfg(feature = "cuda")]
             Machine::Cuda(c) if is_listed => c.load::<E>(),
             #[cfg(feature = "cuda")]

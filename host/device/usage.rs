@@ -22,13 +22,16 @@ pub struct Usage {
     pub views: AtomicU64,
     /// Most bytes that may be held; as many as there can be for what the machine has.
     pub most: AtomicU64,
+    /// Most bytes that the rows of one answer may have on the host.
+    pub answers: AtomicU64,
 }
 
 impl Usage {
     /// Nothing yet.
     pub fn new() -> Usage {
         let [launches, bytes, peak, allocations, waits, replays, views] = [const { AtomicU64::new(0) }; 7];
-        Usage { launches, bytes, peak, allocations, waits, replays, views, most: AtomicU64::new(u64::MAX) }
+        let [most, answers] = [const { AtomicU64::new(u64::MAX) }; 2];
+        Usage { launches, bytes, peak, allocations, waits, replays, views, most, answers }
     }
 
     /// Whether more than launches is allowed now, to this thread.

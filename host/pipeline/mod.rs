@@ -3,6 +3,7 @@
 pub mod below_precision;
 mod broad;
 pub mod counts;
+mod demand;
 pub mod enclose;
 mod launch;
 mod layout;

@@ -6,6 +6,7 @@ mod frame;
 mod in_order;
 #[cfg(test)]
 mod near;
+mod refuse;
 mod repeat;
 mod submit;
 #[cfg(test)]
@@ -14,10 +15,11 @@ mod submitted;
 pub use found::{Found, Hits, Listed, in_order};
 pub use submit::Submits;
 
-use super::broad::{BroadContext, BroadPhase, Candidates, Share, Which, broad_phase, growth};
+use super::broad::{BroadContext, BroadPhase, Share, Which, broad_phase, growth};
 use super::counts::{Counts, FrameCounters};
+use super::demand::Demand;
 use super::layout::Layout;
-use super::list::{GrowableOutput, List};
+use super::list::List;
 use super::narrow::{Narrow, NarrowContext, narrow};
 use super::placing::{Moved, Placing, Whereabouts};
 use super::precision::Precision;
@@ -27,7 +29,7 @@ use crate::device::{Buffer, Device, Event, Replay};
 use crate::error::Error;
 use crate::mesh::Body;
 use crate::query::Query;
-use nearmiss_kernels::abi::{BodyRecord, Pair, TraverseFlags, counter};
+use nearmiss_kernels::abi::{BodyRecord, Pair, counter};
 use rayon::prelude::*;
 use std::sync::Arc;
 use xxhash_rust::xxh3::xxh3_64;
@@ -77,6 +79,8 @@ pub struct TypedPipeline<R: Precision> {
     replay: Replay,
     /// Its part of the work.
     share: Share,
+    /// What is known of the answer's size.
+    demand: Demand,
     /// What the host took to launch this frame.
     launch_ms: f64,
     /// What a frame needs that is submitted and not waited for.
@@ -105,6 +109,8 @@ pub trait Pipeline: repeat::Again + submit::Submits + Send {
     /// # Errors
     /// Those of the device.
     fn frame(&mut self) -> Result<(Found<'_>, Stages), Error>;
+    /// The next frame is a slice behind others, which have found so many rows.
+    fn after(&mut self, rows: u64);
     /// From here on it finds what is its share.
     ///
     /// # Errors
@@ -165,6 +171,7 @@ impl<R: Precision> TypedPipeline<R> {
             settled: false,
             replay: frame::replay(&device)?,
             share: Share::WHOLE,
+            demand: Demand::new(&query),
             launch_ms: 0.0,
             submission: None,
             layout,
@@ -242,6 +249,7 @@ impl<R: Precision> TypedPipeline<R> {
                 return Ok(());
             }
             let mut counters = self.counters.read()?;
+            self.refuse(step, &counters)?;
             let mut grown = false;
             let mut again = Vec::new();
             let lists = match step {
@@ -271,15 +279,6 @@ impl<R: Precision> TypedPipeline<R> {
         }
     }
 
-    /// Whether a list of any step had too little room.
-    fn has_overflowed(&mut self, counters: &Counts) -> bool {
-        let mut steps = self.narrow_steps_at();
-        self.pairs.has_overflowed(counters)
-            || self.broad.lists().iter().any(|list| list.has_overflowed(counters))
-            || steps.any(|at| self.narrow.lists(at).iter().any(|list| list.has_overflowed(counters)))
-            || self.narrow.ordered().is_some_and(|list| list.has_overflowed(counters))
-    }
-
     /// What the broad phase does with what it is given.
     fn broadly<T>(
         &mut self,
@@ -292,18 +291,6 @@ impl<R: Precision> TypedPipeline<R> {
             records: self.records.span(),
         };
         what(&mut *self.broad, &given, &self.layout)
-    }
-
-    fn traverse(&mut self, which: Which) -> Result<(), Error> {
-        let counters = self.counters.counters();
-        let candidates = Candidates {
-            pairs: self.pairs.output(counters),
-            counters,
-            flags: TraverseFlags::KEEP_ADJACENT.when(self.query.keeps_adjacent()),
-            which,
-            share: self.share,
-        };
-        self.broadly(|broad, given, _| broad.traverse(given, &candidates))
     }
 }
 
@@ -336,10 +323,12 @@ impl<R: Precision> Pipeline for TypedPipeline<R> {
         self.launch_ms = 0.0;
         let mut fits = true;
         loop {
+            self.device.goes_on()?;
             self.launch(fits)?;
             fits = false;
             self.read_ahead()?;
             let counters = self.counters.read()?;
+            self.demand.counted(&counters, &self.device)?;
             if self.has_overflowed(&counters) {
                 // Some list, somewhere: find out step by step.
                 self.settled = false;
@@ -352,6 +341,10 @@ impl<R: Precision> Pipeline for TypedPipeline<R> {
             self.last.clone_from(&counters);
             return Ok((self.gather(counters, self.reruns - reruns)?, stages));
         }
+    }
+
+    fn after(&mut self, rows: u64) {
+        self.demand.before = rows;
     }
 
     fn take(&mut self, share: Share) -> Result<(), Error> {

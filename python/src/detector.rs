@@ -9,9 +9,10 @@ use crate::frame::{Frame, Named, known, numbered};
 use crate::geometry::Geometry;
 use crate::query::Query;
 use crate::scene::{Body, Scene};
-use nearmiss::Error;
+use crate::watch::watched;
 use nearmiss::scene::BodyId;
 use nearmiss::words::counted;
+use nearmiss::{Error, Interrupt};
 use pyo3::prelude::*;
 use serde::Serialize;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -27,6 +28,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 pub struct Detector {
     one: Mutex<Asked>,
     device: Py<Device>,
+    /// What ends its calls.
+    interrupt: Interrupt,
 }
 
 impl Detector {
@@ -37,14 +40,24 @@ impl Detector {
         does: Does,
         ask: impl FnOnce(&mut nearmiss::Detector) -> Result<T, Error> + Send,
     ) -> PyResult<T> {
-        let (told, unread) = py.detach(|| {
-            let mut one = self.locked();
-            let _turn = self.device.get().turn();
+        let (told, unread) = self.work(py, |one| {
             one.count(does);
             (ask(&mut one.detector), one.unread())
-        });
+        })?;
         drop(unread);
         told.map_err(raised)
+    }
+
+    /// Works with the detector, in turn with all that share its device, while the interpreter runs on. A signal ends it.
+    fn work<T: Send>(&self, py: Python<'_>, work: impl FnOnce(&mut Asked) -> T + Send) -> PyResult<T> {
+        let turn = &self.device.get().turn;
+        let done = watched(py, &self.interrupt, |watch| {
+            let mut one = watch.lock(&self.one)?;
+            let _turn = watch.lock(turn)?;
+            watch.begins();
+            Ok(work(&mut one))
+        });
+        done?.map_err(raised)
     }
 
     /// Asks what is answered by contacts.
@@ -54,19 +67,31 @@ impl Detector {
         does: Does,
         ask: impl FnOnce(&mut nearmiss::Detector) -> Result<nearmiss::Contacts, Error> + Send,
     ) -> PyResult<Contacts> {
-        let (told, stamp, unread) = py.detach(|| {
-            let mut one = self.locked();
-            let _turn = self.device.get().turn();
+        let (told, stamp, unread) = self.work(py, |one| {
             one.count(does);
             (ask(&mut one.detector), one.stamp(), one.unread())
-        });
+        })?;
         drop(unread);
         Ok(Contacts::new(told.map_err(raised)?, stamp))
     }
 
     /// Looks at the detector.
-    fn look<T: Send>(&self, py: Python<'_>, look: impl FnOnce(&nearmiss::Detector) -> T + Send) -> T {
-        py.detach(|| look(&self.locked().detector))
+    fn look<T: Send>(
+        &self,
+        py: Python<'_>,
+        look: impl FnOnce(&nearmiss::Detector) -> T + Send,
+    ) -> PyResult<T> {
+        self.look_at(py, |one| look(&one.detector))
+    }
+
+    /// The same, with what is known of what was asked.
+    fn look_at<T: Send>(&self, py: Python<'_>, look: impl FnOnce(&Asked) -> T + Send) -> PyResult<T> {
+        // Mostly nobody has the lock. Who has it may wait for the interpreter.
+        if let Ok(one) = self.one.try_lock() {
+            return Ok(look(&one));
+        }
+        let done = watched(py, &self.interrupt, |watch| watch.lock(&self.one).map(|one| look(&one)));
+        done?.map_err(raised)
     }
 
     /// Does something with the device, in turn with all that share it.
@@ -95,14 +120,14 @@ impl Detector {
             let scene = detector.scene();
             let named = |id| scene.get(id).map(|body| (id, body.name().to_owned(), body.vertex_count()));
             numbers.iter().map(|&number| scene.id(number).and_then(named)).collect::<Vec<_>>()
-        });
+        })?;
         let named =
             |(&number, found)| known(number, found).map(|(id, name, vertices)| Named { id, name, vertices });
         numbers.iter().zip(found).map(named).collect()
     }
 
     fn body(&self, py: Python<'_>, number: usize) -> PyResult<BodyId> {
-        known(number, self.look(py, |detector| detector.scene().id(number)))
+        known(number, self.look(py, |detector| detector.scene().id(number))?)
     }
 
     /// Does something with the answer that lay on the device when so many questions had been asked, if it still does.
@@ -112,11 +137,8 @@ impl Detector {
         asked: u64,
         with: impl FnOnce() -> T + Send,
     ) -> PyResult<T> {
-        let there = || {
-            let one = self.locked();
-            (one.detector.is_prepared() && one.asked == asked).then(with)
-        };
-        py.detach(there).ok_or_else(|| {
+        let there = |one: &Asked| (one.detector.is_prepared() && one.asked == asked).then(with);
+        self.look_at(py, there)?.ok_or_else(|| {
             choice(
                 "an answer on the device whose detector was asked anew, or has grown",
                 "ask `on_device` after `prepare`, and again when `is_prepared` is no longer true",
@@ -156,16 +178,18 @@ impl Detector {
                 ));
             }
         };
-        let (on, query, shared) = (device.get().device.clone(), query.query, device.get());
-        let detector = py.detach(|| {
-            let _turn = shared.turn();
+        let (query, turn, interrupt) = (query.query, &device.get().turn, Interrupt::new());
+        let on = device.get().device.clone().with_interrupt(&interrupt);
+        let detector = watched(py, &interrupt, |watch| {
+            let _turn = watch.lock(turn)?;
+            watch.begins();
             nearmiss::Detector::new(on, bodies, query)
         });
-        let one = Mutex::new(Asked::new(detector.map_err(raised)?));
+        let one = Mutex::new(Asked::new(detector?.map_err(raised)?));
         if let Ok(scene) = scene.cast::<Scene>() {
             scene.try_borrow_mut()?.taken = true;
         }
-        Ok(Detector { one, device })
+        Ok(Detector { one, device, interrupt })
     }
 
     /// Moves bodies, and answers.
@@ -187,22 +211,19 @@ impl Detector {
 
     /// Where contacts or near pairs are: of this detector, and before it is asked to move, add, remove or replace bodies; else ChoiceError.
     fn geometry(&self, py: Python<'_>, contacts: &Contacts) -> PyResult<Geometry> {
-        let told = py.detach(|| {
-            let mut one = self.locked();
-            let _turn = self.device.get().turn();
+        let told = self.work(py, |one| {
             one.check(contacts.stamp)?;
             one.detector.geometry(&contacts.contacts)
-        });
+        })?;
         told.map(Geometry::from).map_err(raised)
     }
 
     /// All figures of an answer, as the command line prints them: counts, milliseconds by stage, what it came to less than was asked.
     /// Of the contacts that `geometry` takes.
     fn summary<'py>(&self, py: Python<'py>, contacts: &Contacts) -> PyResult<Bound<'py, PyAny>> {
-        let told = py.detach(|| {
-            let one = self.locked();
+        let told = self.look_at(py, |one| {
             one.check(contacts.stamp).map(|()| one.detector.summary(&contacts.contacts))
-        });
+        })?;
         python(py, &told.map_err(raised)?)
     }
 
@@ -219,41 +240,45 @@ impl Detector {
         let frame = self.frame_of(py, Some(inputs))?;
         let given = frame.on_device()?;
         let held = frame.held;
-        let (told, stamp, unread) = py.detach(|| {
-            let mut one = self.locked();
-            let _turn = self.device.get().turn();
+        let (told, stamp, unread) = self.work(py, |one| {
             one.count(Does::Moves);
             let told = one.detector.prepare(&given);
             // A refusal may leave it as it was prepared before.
             let as_before = told.is_err() && one.detector.is_prepared();
             let unread = if as_before { held } else { std::mem::replace(&mut one.held, held) };
             (told, one.stamp(), unread)
-        });
+        })?;
         drop(unread);
         Ok(Contacts::new(told.map_err(raised)?, stamp))
     }
 
     /// Whether `submit` may be called, and a graph that recorded it be launched again.
     #[getter]
-    fn is_prepared(&self, py: Python<'_>) -> bool {
+    fn is_prepared(&self, py: Python<'_>) -> PyResult<bool> {
         self.look(py, nearmiss::Detector::is_prepared)
     }
 
     /// Puts a frame into the device's stream and returns: may be captured in a graph (torch.cuda.graph, cupy).
     fn submit(&self, py: Python<'_>) -> PyResult<()> {
+        if self.device.get().device.is_gpu() {
+            // Launches alone, and by the thread that may capture them.
+            let done = py.detach(|| {
+                let (mut one, _turn) = (self.locked(), self.device.get().turn());
+                one.count(Does::Submits);
+                (one.detector.submit(), one.unread())
+            });
+            return done.0.map_err(raised);
+        }
         self.ask(py, Does::Submits, nearmiss::Detector::submit)
     }
 
     /// Where the answer of a submission will lie; None where it is not prepared.
-    fn on_device(detector: Bound<'_, Self>) -> Option<DeviceAnswer> {
+    fn on_device(detector: Bound<'_, Self>) -> PyResult<Option<DeviceAnswer>> {
         let own = detector.get();
-        let (answer, asked) = detector.py().detach(|| {
-            let one = own.locked();
-            (one.detector.on_device(), one.asked)
-        });
-        let answer = answer?;
+        let (answer, asked) = own.look_at(detector.py(), |one| (one.detector.on_device(), one.asked))?;
+        let Some(answer) = answer else { return Ok(None) };
         let device = own.device.get().device.clone();
-        Some(DeviceAnswer { answer, device, detector: detector.unbind(), asked })
+        Ok(Some(DeviceAnswer { answer, device, detector: detector.unbind(), asked }))
     }
 
     /// Waits for what was submitted last, and brings the answer to the host. Where a list was too short the frame is asked again, and
@@ -265,6 +290,12 @@ impl Detector {
     /// Makes tiles or trees anew: pays when bodies have moved far from where they were made.
     fn rebuild(&self, py: Python<'_>) -> PyResult<()> {
         self.ask(py, Does::AsksAnew, nearmiss::Detector::rebuild)
+    }
+
+    /// Ends the call that another thread makes or, if none runs, the next one: it raises Interrupted, and the detector can be used
+    /// again. Bodies that the call named are where it said. On the main thread Ctrl-C does the same, and raises KeyboardInterrupt.
+    fn interrupt(&self) {
+        self.interrupt.trigger();
     }
 
     /// Adds a body: its number.
@@ -286,7 +317,7 @@ impl Detector {
 
     /// Smallest tolerance of a pair of bodies by a certified solver, a length.
     #[getter]
-    fn tolerance(&self, py: Python<'_>) -> Option<f64> {
+    fn tolerance(&self, py: Python<'_>) -> PyResult<Option<f64>> {
         self.look(py, nearmiss::Detector::tolerance)
     }
 
@@ -302,9 +333,9 @@ impl Detector {
         self.device.clone_ref(py)
     }
 
-    fn __repr__(&self, py: Python<'_>) -> String {
-        let (query, bodies) = self.look(py, |d| (d.query().kind(), d.scene().ids().count()));
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let (query, bodies) = self.look(py, |d| (d.query().kind(), d.scene().ids().count()))?;
         let bodies = counted(bodies as u64, "body", "bodies");
-        format!("<nearmiss.Detector: {query}, {bodies}, {}>", self.device.get().device.name())
+        Ok(format!("<nearmiss.Detector: {query}, {bodies}, {}>", self.device.get().device.name()))
     }
 }

@@ -25,7 +25,7 @@ const MOST_THREADS: i64 = 1024;
 pub struct Device {
     pub device: nearmiss::Device,
     /// Whoever asks it something.
-    turn: Mutex<()>,
+    pub turn: Mutex<()>,
     /// The object that owns a borrowed stream.
     _stream: Option<Py<PyAny>>,
 }

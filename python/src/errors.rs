@@ -13,11 +13,14 @@ mod classes {
     import_exception!(nearmiss.errors, ChoiceError);
     import_exception!(nearmiss.errors, DeviceError);
     import_exception!(nearmiss.errors, OutOfMemory);
+    import_exception!(nearmiss.errors, Interrupted);
     import_exception!(nearmiss.errors, Bug);
     import_exception!(nearmiss.errors, MeshWarning);
 }
 
-use classes::{Bug, ChoiceError, DeviceError, InputError, MeshWarning, NearmissError, OutOfMemory};
+use classes::{
+    Bug, ChoiceError, DeviceError, InputError, Interrupted, MeshWarning, NearmissError, OutOfMemory,
+};
 
 /// What Python raises.
 pub fn raised(error: Error) -> PyErr {
@@ -26,7 +29,8 @@ pub fn raised(error: Error) -> PyErr {
         Error::Input { .. } => InputError::new_err(text),
         Error::Choice { .. } => ChoiceError::new_err(text),
         Error::Device { .. } | Error::Stamp { .. } => DeviceError::new_err(text),
-        Error::OutOfMemory { .. } => OutOfMemory::new_err(text),
+        Error::OutOfMemory { .. } | Error::AnswerTooLarge { .. } => OutOfMemory::new_err(text),
+        Error::Interrupted => Interrupted::new_err(text),
         Error::Bug { .. } => Bug::new_err(text),
         _ => NearmissError::new_err(text),
     }

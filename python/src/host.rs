@@ -1,6 +1,7 @@
 //! Arrays in the host's memory.
 
 use crate::errors::{choice, raised, warn};
+use crate::watch::left_behind;
 use nearmiss::mesh::{MAX_FACES, MAX_VERTICES, Positions, Problem};
 use nearmiss::{Error, Mesh, memory};
 use numpy::{
@@ -25,8 +26,8 @@ pub fn read_mesh<'py>(
     path: PathBuf,
     strict: bool,
 ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyArray2<u32>>)> {
-    let read = || Mesh::read(&path).and_then(|mesh| if strict { mesh.strict() } else { Ok(mesh) });
-    let mesh = py.detach(read).map_err(raised)?;
+    let read = move || Mesh::read(&path).and_then(|mesh| if strict { mesh.strict() } else { Ok(mesh) });
+    let mesh = left_behind(py, read)?.map_err(raised)?;
     for note in mesh.notes() {
         warn(py, &note.to_string())?;
     }

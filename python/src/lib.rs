@@ -19,6 +19,7 @@ mod lent;
 mod pose;
 mod query;
 mod scene;
+mod watch;
 
 /// The compiled half of `nearmiss`.
 #[pyo3::pymodule]

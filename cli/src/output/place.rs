@@ -1,5 +1,6 @@
 //! Where a file goes: beside what is there until it is whole, or into what is open.
 
+use crate::stop::{self, Writing};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Seek, Write};
 use std::path::{Path, PathBuf, is_separator};
@@ -74,7 +75,7 @@ pub fn probe(folder: &Path) -> io::Result<()> {
 
 /// A new file in a folder, by a name that no other has, which goes when it is dropped. Who may read it is as of any new file.
 fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
-    Builder::new().prefix(".nearmiss-").make_in(folder, |path| File::create_new(path))
+    stop::making(|| Builder::new().prefix(".nearmiss-").make_in(folder, |path| File::create_new(path)))
 }
 
 /// Writes into what is open. Of a failed regular file nothing is left: half an answer would look like one.
@@ -87,15 +88,28 @@ pub fn into(file: &File, put: impl FnOnce(&mut dyn Write) -> Result<(), String>)
     let keep = |length: &dyn Fn(&File) -> io::Result<()>| if is_regular { length(file) } else { Ok(()) };
     let clear = || keep(&|file| file.set_len(0));
     clear().map_err(text)?;
-    let mut out = BufWriter::new(file);
-    let written = put(&mut out);
-    // A buffer that is dropped would write what it holds.
-    let (mut file, held) = out.into_parts();
-    let written = written.and_then(|()| file.write_all(&held.unwrap_or_default()).map_err(text));
+    let written = if is_regular {
+        let writing = Writing::new(file).map_err(text)?;
+        buffered(&writing, put)
+    } else {
+        buffered(file, put)
+    };
     written.and_then(|()| keep(&File::sync_all).map_err(text)).inspect_err(|_| {
         // The first error is told.
         let _ = clear();
     })
+}
+
+/// Writes by way of a buffer.
+///
+/// # Errors
+/// Those of `put` and of the file.
+fn buffered(to: impl Write, put: impl FnOnce(&mut dyn Write) -> Result<(), String>) -> Result<(), String> {
+    let mut out = BufWriter::new(to);
+    let written = put(&mut out);
+    // A buffer that is dropped would write what it holds.
+    let (mut to, held) = out.into_parts();
+    written.and_then(|()| to.write_all(&held.unwrap_or_default()).map_err(text))
 }
 
 fn text(error: io::Error) -> String {

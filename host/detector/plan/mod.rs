@@ -200,7 +200,8 @@ impl Detector {
     /// # Errors
     /// Those of [`Detector::detect`].
     pub fn plan(&mut self) -> Result<Plan, Error> {
-        self.begun()?;
+        let begun = self.begun().map(drop);
+        self.ended(begun)?;
         while self.pipeline.is_some() && self.asked < 2 {
             self.detect()?;
         }

@@ -87,7 +87,7 @@ impl<R: Precision> Placing<R> {
         if self.lent.any {
             self.lent.seen.clear()?;
         }
-        launch::striding::<R::Place>(device, args.count as usize, args)
+        launch::striding::<R::Place>(&device.undisturbed(), args.count as usize, args)
     }
 
     /// Whether the last frame placed nothing, or only what lies on the device.

@@ -244,7 +244,7 @@ impl<R: Precision> Placing<R> {
             pad: 0,
         };
         self.last = if uploaded == 0 && poses.is_empty() { Last::Device(args) } else { Last::Host };
-        launch::striding::<R::Place>(device, before as usize, &args)
+        launch::striding::<R::Place>(&device.undisturbed(), before as usize, &args)
     }
 }
 

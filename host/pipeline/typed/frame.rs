@@ -3,8 +3,10 @@
 use super::TypedPipeline;
 use crate::device::{Device, Marks, Replay};
 use crate::error::Error;
+use crate::pipeline::broad::{Candidates, Which};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::timing::{Stage, Stages};
+use nearmiss_kernels::abi::TraverseFlags;
 use std::time::Instant;
 
 /// The marks of a frame.
@@ -43,6 +45,19 @@ impl<R: Precision> TypedPipeline<R> {
         self.replay = replay;
         self.launch_ms += start.elapsed().as_secs_f64() * 1e3;
         done
+    }
+
+    /// Starts the walk.
+    pub(super) fn traverse(&mut self, which: Which) -> Result<(), Error> {
+        let counters = self.counters.counters();
+        let candidates = Candidates {
+            pairs: self.pairs.output(counters),
+            counters,
+            flags: TraverseFlags::KEEP_ADJACENT.when(self.query.keeps_adjacent()),
+            which,
+            share: self.share,
+        };
+        self.broadly(|broad, given, _| broad.traverse(given, &candidates))
     }
 
     fn stages(&mut self, fits: bool, marks: &mut Marks) -> Result<(), Error> {

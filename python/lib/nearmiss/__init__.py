@@ -31,7 +31,16 @@ from ._native import (
     __version__,
     read_mesh,
 )
-from .errors import Bug, ChoiceError, DeviceError, InputError, MeshWarning, NearmissError, OutOfMemory
+from .errors import (
+    Bug,
+    ChoiceError,
+    DeviceError,
+    InputError,
+    Interrupted,
+    MeshWarning,
+    NearmissError,
+    OutOfMemory,
+)
 from .shortcuts import contacts, near, self_intersections, time_of_impact
 
 
@@ -82,6 +91,7 @@ __all__ = [
     "Earliest",
     "Geometry",
     "InputError",
+    "Interrupted",
     "Kind",
     "MeshWarning",
     "Near",

@@ -29,5 +29,9 @@ class MeshWarning(UserWarning):
     """A mesh has less than its file, or a face is cut as it can be: read_mesh counts such parts."""
 
 
+class Interrupted(NearmissError, RuntimeError):
+    """Another thread has called Detector.interrupt. There is no answer, and the detector can be used again."""
+
+
 class Bug(NearmissError, RuntimeError):
     """A fault of nearmiss itself. Tell us."""

@@ -1,0 +1,162 @@
+//! Ending work early: a flag that any thread sets, and that work reads between blocks and phases.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering::Relaxed};
+
+/// Work goes on.
+const CALM: u32 = 0;
+/// Work ends at its next look.
+const TRIGGERED: u32 = 1;
+/// Looks are counted, and the last one triggers.
+const COUNTING: u32 = 2;
+
+/// What clones share.
+struct State {
+    stage: AtomicU32,
+    /// Looks until it triggers; only while they are counted.
+    left: AtomicU64,
+}
+
+static NEVER: State = State::new();
+
+impl State {
+    const fn new() -> State {
+        State { stage: AtomicU32::new(CALM), left: AtomicU64::new(0) }
+    }
+
+    /// Whether work is to end.
+    #[inline(always)]
+    fn ends(&self) -> bool {
+        self.stage.load(Relaxed) != CALM && self.ends_now()
+    }
+
+    #[cold]
+    fn ends_now(&self) -> bool {
+        if self.stage.load(Relaxed) == COUNTING {
+            let less = |left: u64| left.checked_sub(1);
+            match self.left.fetch_update(Relaxed, Relaxed, less) {
+                Ok(left) if left > 1 => return false,
+                _ => self.stage.store(TRIGGERED, Relaxed),
+            }
+        }
+        self.stage.load(Relaxed) == TRIGGERED
+    }
+}
+
+/// A handle that ends work of another thread. Clones are one handle.
+///
+/// Work reads it between launches, slices and blocks, on a CPU also between the phases of a block, and ends within milliseconds.
+/// [`Interrupt::trigger`] concerns the call that runs or, if none runs, the next one. The call that ends early clears the handle.
+#[derive(Clone)]
+pub struct Interrupt(Arc<State>);
+
+impl Default for Interrupt {
+    fn default() -> Self {
+        Interrupt::new()
+    }
+}
+
+impl std::fmt::Debug for Interrupt {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Interrupt").field("is_triggered", &self.is_triggered()).finish()
+    }
+}
+
+impl Interrupt {
+    /// A handle that ends nothing yet.
+    pub fn new() -> Interrupt {
+        Interrupt(Arc::new(State::new()))
+    }
+
+    /// Ends the call that runs, or else the next one. One atomic store: safe in a signal handler.
+    pub fn trigger(&self) {
+        self.0.stage.store(TRIGGERED, Relaxed);
+    }
+
+    /// Takes back a trigger that has ended no call yet.
+    pub fn clear(&self) {
+        self.0.stage.store(CALM, Relaxed);
+    }
+
+    /// Whether it was triggered, and has ended no call yet.
+    pub fn is_triggered(&self) -> bool {
+        self.0.stage.load(Relaxed) == TRIGGERED
+    }
+
+    /// Triggers itself at the look of that number, counted from 1: for tests, which end work at the same place each time.
+    #[doc(hidden)]
+    pub fn trigger_at(&self, look: u64) {
+        self.0.left.store(look, Relaxed);
+        self.0.stage.store(COUNTING, Relaxed);
+    }
+
+    /// Looks that [`Interrupt::trigger_at`] has left.
+    #[doc(hidden)]
+    pub fn looks_left(&self) -> u64 {
+        self.0.left.load(Relaxed)
+    }
+
+    /// Whether both are clones of one.
+    pub fn is(&self, other: &Interrupt) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
+    }
+}
+
+/// The looks of one piece of work, and whether one of them ended it. That stays so, whoever clears the handle meanwhile.
+pub struct Looks<'a> {
+    state: &'a State,
+    ended: AtomicBool,
+}
+
+impl<'a> Looks<'a> {
+    /// Of work that the handle may end, or nothing.
+    pub fn new(interrupt: Option<&'a Interrupt>) -> Looks<'a> {
+        Looks { state: interrupt.map_or(&NEVER, |interrupt| &interrupt.0), ended: AtomicBool::new(false) }
+    }
+
+    /// Whether the work is to end here. One relaxed load while nobody triggers.
+    #[inline(always)]
+    pub fn ends(&self) -> bool {
+        self.state.ends() && self.end()
+    }
+
+    #[cold]
+    fn end(&self) -> bool {
+        self.ended.store(true, Relaxed);
+        true
+    }
+
+    /// Whether a look has ended the work.
+    pub fn ended(&self) -> bool {
+        self.ended.load(Relaxed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_look_ends_work_once_it_is_triggered() {
+        let interrupt = Interrupt::new();
+        let looks = Looks::new(Some(&interrupt));
+        assert!(!looks.ends() && !interrupt.is_triggered());
+        interrupt.clone().trigger();
+        assert!(interrupt.is_triggered() && !looks.ended() && looks.ends());
+        interrupt.clear();
+        assert!(looks.ended() && !Looks::new(Some(&interrupt)).ends(), "what has ended stays so");
+        assert!(!Looks::new(None).ends());
+    }
+
+    #[test]
+    fn the_look_of_a_number_triggers() {
+        let interrupt = Interrupt::new();
+        let looks = Looks::new(Some(&interrupt));
+        for at in [1, 2, 5] {
+            interrupt.trigger_at(at);
+            assert_eq!((1..10).position(|_| looks.ends()), Some(at as usize - 1));
+            assert!(interrupt.is_triggered() && looks.ends(), "until it is cleared");
+            interrupt.clear();
+        }
+    }
+}

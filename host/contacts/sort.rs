@@ -1,0 +1,73 @@
+//! Long lists of the host, made and sorted so that an interrupt ends it.
+
+use nearmiss_emulator::Looks;
+use rayon::prelude::*;
+use std::cmp::Ordering;
+
+/// Entries between two looks.
+const CHUNK: usize = 1 << 18;
+
+/// Appends what becomes of each entry; less if the work ends early.
+pub fn extend<T: Sync, U: Send>(to: &mut Vec<U>, from: &[T], map: impl Fn(&T) -> U + Sync, looks: &Looks) {
+    to.reserve_exact(from.len());
+    for chunk in from.chunks(CHUNK) {
+        if looks.ends() {
+            return;
+        }
+        to.par_extend(chunk.par_iter().map(&map));
+    }
+}
+
+/// Compares by a key; all are equal once the work has ended, so that a sort ends soon.
+fn compare<T, K: Ord>(key: impl Fn(&T) -> K, looks: &Looks) -> impl Fn(&T, &T) -> Ordering {
+    move |a, b| if looks.ends() { Ordering::Equal } else { key(a).cmp(&key(b)) }
+}
+
+/// Sorts entries of which no two have the same key; any order if the work ends early.
+pub fn sort<T: Send, K: Ord>(list: &mut [T], key: impl Fn(&T) -> K + Sync, looks: &Looks) {
+    list.par_sort_unstable_by(compare(key, looks));
+}
+
+/// The same of a list that is made of few sorted ones.
+pub fn merge<T: Send, K: Ord>(list: &mut [T], key: impl Fn(&T) -> K + Sync, looks: &Looks) {
+    list.par_sort_by(compare(key, looks));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nearmiss_emulator::Interrupt;
+
+    #[test]
+    fn a_sort_that_is_interrupted_ends_and_loses_nothing() {
+        let numbers: Vec<u32> = (0..300_000u32).map(|i| i.wrapping_mul(2_654_435_761)).collect();
+        let mut sorted = numbers.clone();
+        sorted.sort_unstable();
+        for at in [1, 2, 1_000, 100_000, u64::MAX] {
+            for sort_by in [sort, merge] {
+                let interrupt = Interrupt::new();
+                interrupt.trigger_at(at);
+                let looks = Looks::new(Some(&interrupt));
+                let mut list = numbers.clone();
+                sort_by(&mut list, |&n| n, &looks);
+                assert_eq!(looks.ended(), at < u64::MAX);
+                assert_eq!(list == sorted, !looks.ended());
+                list.sort_unstable();
+                assert_eq!(list, sorted, "the same entries");
+            }
+        }
+    }
+
+    #[test]
+    fn a_list_that_is_interrupted_is_short() {
+        let from: Vec<usize> = (0..3 * CHUNK).collect();
+        for at in [1, 2, 4] {
+            let interrupt = Interrupt::new();
+            interrupt.trigger_at(at);
+            let mut to = Vec::new();
+            extend(&mut to, &from, |n| n + 1, &Looks::new(Some(&interrupt)));
+            assert_eq!(to.len(), (at as usize - 1) * CHUNK);
+            assert!(to.iter().zip(&from).all(|(to, from)| *to == from + 1));
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! Calls that end early, and what is left of them.
+
+use super::Detector;
+use crate::device::Interrupt;
+use crate::error::Error;
+use crate::mesh::Body;
+
+impl Detector {
+    /// The handle that ends this detector's calls from another thread, or from a signal handler: [`Interrupt::trigger`]. It is
+    /// the handle of [`Device::with_interrupt`](crate::Device::with_interrupt), if the device has one.
+    ///
+    /// A call that it ends returns [`Error::Interrupted`], clears the handle and leaves no answer. Its input was taken: bodies
+    /// that it named are where it said, the others rest. The next call builds tiles or trees again and answers as a new detector
+    /// would. A detector that was [prepared](Detector::prepare) is no longer.
+    ///
+    /// On a CPU a call ends within milliseconds. A GPU finishes the launch that runs, or the graph of one frame; the host's part
+    /// ends between launches, slices and reruns.
+    pub fn interrupter(&self) -> Interrupt {
+        self.device.interrupt().cloned().unwrap_or_default()
+    }
+
+    /// Ends a call: after one that was interrupted the next begins again.
+    ///
+    /// # Errors
+    /// That of the call.
+    pub(super) fn ended<T>(&mut self, done: Result<T, Error>) -> Result<T, Error> {
+        if let Err(Error::Interrupted) = done {
+            self.begin_again();
+            if let (false, Some(interrupt)) = (self.is_part, self.device.interrupt()) {
+                interrupt.clear();
+            }
+        }
+        done
+    }
+
+    /// One of several that a [`MultiDetector`](crate::MultiDetector) runs, which clears their handle.
+    pub(crate) fn of_several(mut self) -> Detector {
+        self.is_part = true;
+        self
+    }
+
+    /// Drops the device's memory, of which kernels may have written a half. Placing is never interrupted, so positions that
+    /// only the device has are whole: they come to the host first.
+    fn begin_again(&mut self) {
+        self.answered = false;
+        if self.pipeline.is_some() && self.scene.bodies().iter().any(Body::is_away) {
+            self.bring_all();
+        }
+        self.pipeline = None;
+    }
+}

@@ -1,0 +1,41 @@
+//! Calls of several devices that end early.
+
+use super::MultiDetector;
+use crate::contacts::Contacts;
+use crate::device::Interrupt;
+use crate::device::emulator::Looks;
+use crate::error::Error;
+
+impl MultiDetector {
+    /// As [`Detector::interrupter`](crate::Detector::interrupter): one handle for all devices. It is that of the first device
+    /// that was made [with one](crate::Device::with_interrupt).
+    pub fn interrupter(&self) -> Interrupt {
+        self.interrupt.clone()
+    }
+
+    /// Ends a call. Every device has taken its input, so all agree where bodies are.
+    ///
+    /// # Errors
+    /// That of the call.
+    pub(super) fn ended<T>(&mut self, done: Result<T, Error>) -> Result<T, Error> {
+        if let Err(Error::Interrupted) = done {
+            self.interrupt.clear();
+            // Work is divided by what the next frame costs.
+            self.ms.fill(0.0);
+        }
+        done
+    }
+
+    /// The answers of all devices as one.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`].
+    pub(super) fn merged(&self, answers: Vec<Contacts>) -> Result<Contacts, Error> {
+        let looks = Looks::new(Some(&self.interrupt));
+        let whole = Contacts::merged(answers, f64::max, &looks);
+        if looks.ended() {
+            return Err(Error::Interrupted);
+        }
+        whole.ok_or_else(|| Error::Bug { what: "a scene on no device".into() })
+    }
+}

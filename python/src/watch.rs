@@ -1,0 +1,150 @@
+//! Work that a signal ends: on the main thread, where Python handles signals, a frame runs beside the thread that waits for it.
+
+use nearmiss::{Error, Interrupt};
+use pyo3::prelude::*;
+use std::panic::resume_unwind;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::thread;
+use std::time::Duration;
+
+/// How often signals are looked for.
+const PERIOD: Duration = Duration::from_millis(50);
+/// How often a lock is tried that another thread has.
+const TURN: Duration = Duration::from_millis(1);
+
+/// What work and the thread that waits for it know of each other.
+#[derive(Default)]
+pub struct Watch {
+    /// A signal has come: whoever waits for a lock gives up.
+    cancelled: AtomicBool,
+    /// The work has all its locks: a trigger ends it, and no other thread's.
+    begun: AtomicBool,
+    over: Mutex<bool>,
+    ends: Condvar,
+}
+
+impl Watch {
+    /// Waits for a lock, unless a signal comes.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`].
+    pub fn lock<'a, T>(&self, of: &'a Mutex<T>) -> Result<MutexGuard<'a, T>, Error> {
+        loop {
+            match of.try_lock() {
+                Ok(guard) => return Ok(guard),
+                Err(TryLockError::Poisoned(guard)) => return Ok(guard.into_inner()),
+                Err(TryLockError::WouldBlock) if self.cancelled.load(Relaxed) => {
+                    return Err(Error::Interrupted);
+                }
+                Err(TryLockError::WouldBlock) => thread::sleep(TURN),
+            }
+        }
+    }
+
+    /// The work has all locks that it needs.
+    pub fn begins(&self) {
+        self.begun.store(true, Relaxed);
+    }
+
+    /// Whether the work is over, waiting for that a little.
+    fn is_over(&self) -> bool {
+        let over = self.over.lock().unwrap_or_else(PoisonError::into_inner);
+        let waited = self.ends.wait_timeout_while(over, PERIOD, |over| !*over);
+        *waited.unwrap_or_else(PoisonError::into_inner).0
+    }
+}
+
+/// Says that work is over, also after a panic.
+struct Over<'a>(&'a Watch);
+
+impl Drop for Over<'_> {
+    fn drop(&mut self) {
+        *self.0.over.lock().unwrap_or_else(PoisonError::into_inner) = true;
+        self.0.ends.notify_all();
+    }
+}
+
+/// Whether this is the thread on which Python handles signals.
+pub fn is_main(py: Python<'_>) -> PyResult<bool> {
+    let threading = py.import("threading")?;
+    let main = threading.call_method0("main_thread")?.getattr("ident")?;
+    main.eq(threading.call_method0("get_ident")?)
+}
+
+/// Runs work while the interpreter runs on. On the main thread a signal whose handler raises, as SIGINT's does, ends it within
+/// some 50 ms and what `interrupt` takes.
+///
+/// # Errors
+/// What the handler of a signal has raised.
+pub fn watched<T: Send>(
+    py: Python<'_>,
+    interrupt: &Interrupt,
+    work: impl FnOnce(&Watch) -> T + Send,
+) -> PyResult<T> {
+    let watch = Watch::default();
+    if !is_main(py)? {
+        return Ok(py.detach(|| work(&watch)));
+    }
+    let work = Mutex::new(Some(work));
+    let run = || {
+        let _over = Over(&watch);
+        let work = work.lock().unwrap_or_else(PoisonError::into_inner).take();
+        work.map(|work| work(&watch))
+    };
+    let mut raised = None;
+    let done = thread::scope(|scope| {
+        let Ok(worker) = thread::Builder::new().name("nearmiss".into()).spawn_scoped(scope, run) else {
+            // No thread is to be had: then no signal ends the work.
+            return py.detach(run);
+        };
+        while !py.detach(|| watch.is_over()) {
+            if raised.is_none()
+                && let Err(error) = py.check_signals()
+            {
+                raised = Some(error);
+                watch.cancelled.store(true, Relaxed);
+            }
+            if raised.is_some() && watch.begun.load(Relaxed) {
+                interrupt.trigger();
+            }
+        }
+        py.detach(|| worker.join()).unwrap_or_else(|panic| resume_unwind(panic))
+    });
+    match (raised, done) {
+        (Some(error), _) => {
+            interrupt.clear();
+            Err(error)
+        }
+        (None, Some(done)) => Ok(done),
+        // It is taken once.
+        (None, None) => Err(crate::errors::raised(Error::Bug { what: "work that nobody did".into() })),
+    }
+}
+
+/// Runs work that nothing ends. A signal leaves it behind: it goes on by itself, and what it comes to is dropped.
+///
+/// # Errors
+/// What the handler of a signal has raised.
+pub fn left_behind<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl Fn() -> T + Send + Sync + 'static,
+) -> PyResult<T> {
+    let (watch, work) = (Arc::new(Watch::default()), Arc::new(work));
+    let (own, its) = (watch.clone(), work.clone());
+    let run = move || {
+        let _over = Over(&own);
+        its()
+    };
+    match thread::Builder::new().name("nearmiss".into()).spawn(run) {
+        Ok(worker) if is_main(py)? => {
+            while !py.detach(|| watch.is_over()) {
+                py.check_signals()?;
+            }
+            Ok(py.detach(|| worker.join()).unwrap_or_else(|panic| resume_unwind(panic)))
+        }
+        Ok(worker) => Ok(py.detach(|| worker.join()).unwrap_or_else(|panic| resume_unwind(panic))),
+        // No thread is to be had: then no signal ends the work.
+        Err(_) => Ok(py.detach(|| work())),
+    }
+}

@@ -1,0 +1,159 @@
+"""Ctrl-C ends a call on the main thread; another thread ends one by Detector.interrupt; nothing stays locked."""
+
+import gc
+import os
+import signal
+import threading
+import time
+
+import numpy as np
+import pytest
+from shapes import soup, two_triangles
+
+import nearmiss as nm
+
+V, F = two_triangles()
+# Triangles in one place, all of which meet: a frame takes long.
+LONG = np.tile(np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32), (3000, 1)), np.arange(9000).reshape(-1, 3)
+# What a machine that does much else may add to the 0.2 s that are promised.
+SOON = 2.0
+
+
+def interrupted(call):
+    """Calls until a SIGINT ends it; seconds since the signal."""
+    sent = []
+
+    def send():
+        sent.append(time.monotonic())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    timer = threading.Timer(0.4, send)
+    timer.start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            call()
+            pytest.fail("it ended before the signal")
+        took = time.monotonic() - sent[0]
+    finally:
+        timer.join()
+    print(f"{took:.3f} s")
+    assert took < SOON
+    return took
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_a_signal_ends_a_frame(threads):
+    v, f = LONG
+    detector = nm.Detector(nm.Body(v, f), nm.Continuous(), nm.Device("cpu", threads=threads))
+    interrupted(lambda: detector.frame({0: (v, v + np.float32(0.25))}))
+    # Where that frame said: the same handle, another answer in time.
+    detector.replace(0, nm.Body(V, F))
+    assert len(detector.detect()) == len(nm.Detector(nm.Body(V, F), nm.Continuous(), detector.device).detect())
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda v, f: nm.contacts(v, v + np.float32(0.25), f),
+        lambda v, f: nm.time_of_impact(v, v + np.float32(0.25), f, separation=0.5, tolerance=1e-6),
+    ],
+)
+def test_a_signal_ends_a_question_in_one_line(call):
+    def again():
+        while True:
+            call(*LONG)
+
+    interrupted(again)
+
+
+def test_a_signal_ends_who_waits_for_the_device():
+    device = nm.Device("cpu", threads=1)
+    waiting = nm.Detector(nm.Body(V, F), nm.Discrete(), device)
+    busy = nm.Detector(nm.Body(*soup(3000, 1, 0.5)), nm.Continuous(), device)
+    stop, errors = threading.Event(), []
+
+    def frames():
+        try:
+            while not stop.is_set():
+                busy.frame()
+        except BaseException as error:  # noqa: BLE001
+            errors.append(error)
+
+    thread = threading.Thread(target=frames)
+    thread.start()
+    try:
+
+        def ask():
+            while True:
+                waiting.detect()
+                busy.detect()
+
+        interrupted(ask)
+    finally:
+        stop.set()
+        thread.join()
+    assert not errors, "signals are for the main thread"
+    assert len(waiting.detect()) == 1
+
+
+def test_another_thread_ends_a_frame():
+    detector = nm.Detector(nm.Body(*soup(500, 1)), nm.Discrete(), nm.Device("cpu"))
+    want = detector.detect()
+    timer = threading.Timer(0.3, detector.interrupt)
+    timer.start()
+    with pytest.raises(nm.Interrupted, match="can be used again"):
+        while True:
+            detector.detect()
+    timer.join()
+    assert np.array_equal(detector.detect().indices, want.indices)
+    # None runs: the next one ends.
+    detector.interrupt()
+    with pytest.raises(nm.Interrupted):
+        detector.detect()
+    assert np.array_equal(detector.detect().indices, want.indices)
+
+
+def test_a_frame_on_another_thread_is_ended_by_the_handle():
+    detector = nm.Detector(nm.Body(*LONG), nm.Continuous(), nm.Device("cpu"))
+    raised = []
+
+    def frame():
+        try:
+            detector.frame({0: (LONG[0], LONG[0] + np.float32(0.25))})
+        except nm.Interrupted as error:
+            raised.append(error)
+
+    threads = [threading.Thread(target=frame) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    while any(thread.is_alive() for thread in threads):
+        time.sleep(0.1)
+        detector.interrupt()
+    assert len(raised) == 2
+    del detector, threads
+    gc.collect()
+
+
+def test_a_refused_frame_leaves_nothing_locked():
+    detector = nm.Detector(nm.Body(*soup(20_000, 1)), nm.Near(50.0), nm.Device("cpu"))
+    for _ in range(2):
+        with pytest.raises(nm.OutOfMemory, match="at least 2999850000 pairs.* use a smaller distance"):
+            detector.detect()
+    ended = []
+    thread = threading.Thread(target=lambda: ended.append(repr(detector)))
+    thread.start()
+    thread.join(10)
+    assert ended and not thread.is_alive()
+    del detector
+    gc.collect()
+
+
+def test_a_signal_ends_reading(tmp_path):
+    file = tmp_path / "large.obj"
+    file.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\n" + "f 1 2 3\n" * 2_000_000)
+
+    def read():
+        while True:
+            nm.read_mesh(file)
+
+    interrupted(read)
