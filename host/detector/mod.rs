@@ -10,7 +10,7 @@ mod slices;
 mod submit;
 mod wear;
 
-use crate::contacts::{Contacts, Degraded, Summary};
+use crate::contacts::{Contacts, Degraded, Note, Summary};
 use crate::device::emulator::start_threads;
 use crate::device::{Device, Work};
 use crate::error::Error;
@@ -299,13 +299,20 @@ impl Detector {
         self.tolerance
     }
 
-    /// What the command line prints of a result.
+    /// The figures of an answer and the notes beside it, as the command line prints them. Cost: a hash of the answer, and the notes:
+    /// a comparison of both ends of the step if nothing moves, a sort of all vertices if there are [`Note::MANY`](crate::contacts::Note::MANY)
+    /// contacts.
     pub fn summary(&self, contacts: &Contacts) -> Summary {
         Summary {
             tolerance: self.tolerance,
             builds: self.builds,
             ..Summary::new(self.scene.bodies(), self.query, &self.device, contacts)
         }
+    }
+
+    /// The notes beside an answer, of bodies where they were: those of [`Detector::summary`], at the same cost.
+    pub fn notes(&self, contacts: &Contacts) -> Vec<Note> {
+        Note::of(self.scene.bodies(), &self.query, contacts)
     }
 
     /// How many levels the tree over what moves has, and that over what is static, where there is one.
