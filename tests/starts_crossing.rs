@@ -155,7 +155,9 @@ fn another_count_is_noticed() {
     let adjacent = listed(&scene, Discrete::by(TriangleTest::Exact { adjacent: true }).into());
     assert!(adjacent > right && differs(&of(&scene), adjacent).is_some());
     let mut two = Scene::new();
-    [&t0, &t1].map(|mesh| two.add(Body::still(mesh.clone()).with(Meets::default())));
+    for mesh in [&t0, &t1] {
+        two.add(Body::still(mesh.clone()).with(Meets::default()));
+    }
     let mut apart = Scene::new();
     for (world, mesh) in [&t0, &t1].into_iter().enumerate() {
         apart.add(Body::still(mesh.clone()).with(Meets::in_environment(world as u32)));
@@ -298,7 +300,9 @@ fn what_crosses_is_never_free() {
         assert_eq!(still(Query::discrete()).is_free(), crossing == 0);
         assert!(!still(Query::near(0.1)).is_free());
         let mut two = Scene::new();
-        [floor, other].map(|one| two.add(support::loose(&[one])));
+        for one in [floor, other] {
+            two.add(support::loose(&[one]));
+        }
         assert_eq!(found(engine(), &two, Query::distance()).is_free(), crossing == 0);
     }
     // Nothing can meet: it is known without a frame.
