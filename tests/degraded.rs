@@ -224,6 +224,7 @@ fn memory_that_ends_is_an_error() {
                 Ok(contacts) => {
                     assert_eq!(contacts.answer, truth.answer, "{part}");
                     assert_eq!(contacts.candidates, truth.candidates, "{part}");
+                    assert_eq!(contacts.starts_crossing, truth.starts_crossing, "{part}");
                     let again = detector.detect().expect("as much memory as before");
                     assert_eq!((again.hash(), again.slices), (contacts.hash(), contacts.slices), "{part}");
                     answered += 1;

@@ -195,9 +195,20 @@ fn geometry_goes_by_what_was_placed() {
     let mut detector = Detector::new(device, scene.clone(), certified()).expect("a detector");
     let found = detector.frame(&[(id, Input::OnDevice(DeviceInput::Step(rows)))]).expect("an answer");
     assert_eq!(detector.geometry(&found).expect("geometry"), wanted);
-    let mut discrete = Detector::new(engine(), scene, Query::discrete()).expect("a detector");
-    let pairs = discrete.detect().expect("an answer");
-    assert!(!pairs.is_empty() && discrete.geometry(&pairs).expect("none").is_empty());
+    // Answers without features are refused, whether or not anything was found.
+    for (query, name) in [
+        (Query::discrete(), "a discrete query"),
+        (Query::earliest(), "an earliest query"),
+        (Query::distance(), "a distance query"),
+    ] {
+        let mut own = Detector::new(engine(), scene.clone(), query).expect("a detector");
+        for found in [own.detect().expect("an answer"), nearmiss::Contacts::none(query)] {
+            let error = own.geometry(&found).expect_err("no features");
+            let told = error.to_string();
+            assert!(matches!(error, nearmiss::Error::Choice { .. }) && told.contains(name), "{told}");
+            assert!(told.contains("use a") || told.contains("`points`"), "{told}");
+        }
+    }
     // Contacts of a larger body than this one has.
     let mut other = Detector::new(engine(), Body::still(soup(5, 1).0), certified()).expect("a detector");
     assert!(matches!(found.answer, Answer::Contacts(_)));

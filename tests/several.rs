@@ -22,6 +22,7 @@ fn queries() -> Vec<Query> {
 fn is_the_same(one: &Contacts, several: &Contacts, what: &str) {
     assert_eq!(one.answer, several.answer, "{what}");
     assert_eq!(one.hash(), several.hash(), "{what}");
+    assert_eq!(one.starts_crossing, several.starts_crossing, "{what}");
     if !matches!(one.answer, nearmiss::Answer::Earliest(_)) {
         assert_eq!(one.triangle_pairs, several.triangle_pairs, "{what}");
         assert_eq!(one.candidates_vf_ee, several.candidates_vf_ee, "{what}");
@@ -93,10 +94,12 @@ fn bodies_that_move_are_divided_anew_and_found_alike() {
                 is_the_same(&want, &found, "clones of one device");
             }
         }
-        assert_eq!(
-            geometry(one.geometry(&want).expect("points")),
-            geometry(one.geometry(&found).expect("points"))
-        );
+        if matches!(query, Query::Continuous(_) | Query::Near(_)) {
+            assert_eq!(
+                geometry(one.geometry(&want).expect("points")),
+                geometry(one.geometry(&found).expect("points"))
+            );
+        }
     }
 }
 

@@ -99,6 +99,7 @@ fn agrees(device: &Device, query: Query, frames: usize) -> usize {
             let status = status(&detector);
             found = detector.collect().expect("an answer");
             assert_eq!(status.invalid, 0);
+            assert_eq!(status.crossing, found.starts_crossing.unwrap_or(u64::MAX), "{query:?}");
             if status.short == 0 && query.kind() != QueryKind::Earliest {
                 assert_eq!(status.first + status.second, found.len() as u64, "{query:?}");
             }
@@ -107,6 +108,8 @@ fn agrees(device: &Device, query: Query, frames: usize) -> usize {
         let [t0, t1] = ends.map(Positions::F32);
         let wanted = by_host.frame(&[(id, Input::Step([&t0, &t1]))]).expect("an answer");
         assert_eq!(found.answer, wanted.answer, "frame {frame} of {query:?}");
+        assert_eq!(found.starts_crossing, wanted.starts_crossing, "frame {frame} of {query:?}");
+        assert!(query.kind().is_at_rest() || wanted.starts_crossing > Some(0), "{query:?}");
         all += wanted.len();
     }
     all

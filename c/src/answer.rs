@@ -16,6 +16,7 @@ pub struct NearmissAnswer {
     shown: Shown,
     geometry: Vec<NearmissGeometry>,
     degraded: Vec<CString>,
+    notes: Vec<CString>,
     peak: u64,
 }
 
@@ -48,6 +49,10 @@ pub struct NearmissSummary {
     pub bytes: u64,
     /// Of the canonical answer: the same for equal answers on every machine.
     pub hash: u64,
+    /// Triangle pairs that share a point at the start of the step; 0 if `is_start_checked` is false.
+    pub starts_crossing: u64,
+    /// Whether the start was checked: of a continuous and an earliest query, unless it assumes a free start.
+    pub is_start_checked: bool,
     /// How many sentences `nearmiss_answer_degraded` has.
     pub degraded: u64,
     /// Times.
@@ -65,9 +70,8 @@ impl NearmissAnswer {
             Answer::Earliest(_) => Shown::Earliest,
             Answer::Distance(_) => Shown::Nearest,
         };
-        let sentence = |degraded: &dyn ToString| CString::new(degraded.to_string()).unwrap_or_default();
-        let degraded = found.degraded().iter().map(|degraded| sentence(degraded)).collect();
-        Ok(NearmissAnswer { found, shown, geometry: Vec::new(), degraded, peak })
+        let degraded = found.degraded().iter().map(sentence).collect();
+        Ok(NearmissAnswer { found, shown, geometry: Vec::new(), degraded, notes: Vec::new(), peak })
     }
 
     /// It does not have what was asked for.
@@ -81,6 +85,11 @@ impl NearmissAnswer {
         };
         refused(what, advice)
     }
+}
+
+/// A sentence, as C sees it.
+fn sentence(told: impl ToString) -> CString {
+    CString::new(told.to_string()).unwrap_or_default()
 }
 
 /// Shows a list. It lives as long as its handle.
@@ -164,7 +173,7 @@ pub extern "C" fn nearmiss_answer_nearest(
 }
 
 /// The smallest time of contact of an earliest or a continuous query, in [0, 1]: no contact is before it. `is_any` is false, and the time 1,
-/// where nothing meets.
+/// if nothing meets. Triangles that cross at the start need not meet again: `nearmiss_answer_is_free` says whether the step is free.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_answer_earliest(
     answer: Option<&NearmissAnswer>,
@@ -181,6 +190,21 @@ pub extern "C" fn nearmiss_answer_earliest(
         let found = answer.found.earliest_toi();
         is_any.write(found.is_some());
         to.write(found.unwrap_or(1.0));
+        Ok(())
+    })
+}
+
+/// Whether the answer proves that nothing touches. Continuous and earliest: the start was checked, no triangles share a point there, and
+/// nothing meets within the step. Discrete: no pair of triangles shares a point. Distance: it is above 0, or no two bodies may meet. Near:
+/// always false.
+#[unsafe(no_mangle)]
+pub extern "C" fn nearmiss_answer_is_free(
+    answer: Option<&NearmissAnswer>,
+    is_free: Option<&mut MaybeUninit<bool>>,
+    error: Option<&mut MaybeUninit<NearmissError>>,
+) -> NearmissCode {
+    call(error, || {
+        given(is_free, "whether it is free")?.write(given(answer, "the answer")?.found.is_free());
         Ok(())
     })
 }
@@ -204,6 +228,8 @@ pub extern "C" fn nearmiss_answer_summary(
             slices: u64::from(found.slices),
             bytes: answer.peak,
             hash: found.hash(),
+            starts_crossing: found.starts_crossing.unwrap_or(0),
+            is_start_checked: found.starts_crossing.is_some(),
             degraded: answer.degraded.len() as u64,
             ms: found.stages.into(),
         });
@@ -230,6 +256,45 @@ pub extern "C" fn nearmiss_answer_degraded(
     })
 }
 
+/// Makes the notes beside an answer, as the command line prints them, and counts them; mostly there are none. `nearmiss_answer_note` returns
+/// each. The bodies must be where they were at the frame. Cost: a comparison of both ends of the step if nothing moves; a sort of all
+/// vertices if there are 1,000 contacts.
+#[unsafe(no_mangle)]
+pub extern "C" fn nearmiss_detector_notes(
+    detector: Option<&mut NearmissDetector>,
+    answer: Option<&mut NearmissAnswer>,
+    count: Option<&mut MaybeUninit<usize>>,
+    error: Option<&mut MaybeUninit<NearmissError>>,
+) -> NearmissCode {
+    NearmissDetector::work(detector, error, |own| {
+        let (answer, count) = (given(answer, "the answer")?, given(count, "their count")?);
+        answer.notes = own.detector.notes(&answer.found).into_iter().map(sentence).collect();
+        count.write(answer.notes.len());
+        Ok(())
+    })
+}
+
+/// A note that `nearmiss_detector_notes` made, by its index. The text lives until they are made again, and no longer than the answer.
+#[unsafe(no_mangle)]
+pub extern "C" fn nearmiss_answer_note(
+    answer: Option<&NearmissAnswer>,
+    index: usize,
+    note: Option<&mut MaybeUninit<*const c_char>>,
+    error: Option<&mut MaybeUninit<NearmissError>>,
+) -> NearmissCode {
+    call(error, || {
+        let all = &given(answer, "the answer")?.notes;
+        let one = all.get(index).ok_or_else(|| {
+            refused(
+                format!("note {index} of {}", all.len()),
+                "count them from 0, as nearmiss_detector_notes does",
+            )
+        })?;
+        given(note, "the note")?.write(one.as_ptr());
+        Ok(())
+    })
+}
+
 /// Vertices, weights, points and normal of every contact, or of every pair within a distance, in their order. The bodies must be where they were
 /// at the frame. The list lives until this is asked of the answer again. Cost: a copy of all vertices from the device, and a wait; 300 operations a contact.
 #[unsafe(no_mangle)]
@@ -242,9 +307,6 @@ pub extern "C" fn nearmiss_detector_geometry(
 ) -> NearmissCode {
     NearmissDetector::work(detector, error, |own| {
         let answer = given(answer, "the answer")?;
-        if !matches!(answer.shown, Shown::Contacts(_) | Shown::Near(_)) {
-            return Err(answer.without("geometry of contacts"));
-        }
         // What was shown before makes room first.
         answer.geometry = Vec::new();
         let found = own.detector.geometry(&answer.found)?;

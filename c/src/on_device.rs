@@ -124,6 +124,8 @@ pub struct NearmissFrameStatus {
     pub short_of_room: u64,
     /// Not 0 where positions or poses of the caller cannot be computed with: then there is no answer.
     pub invalid: u64,
+    /// Triangle pairs that share a point at the start of the step; all bits set if the start is not checked.
+    pub crossing: u64,
 }
 
 // The kernels write these: the header may not differ.
@@ -136,6 +138,7 @@ const _: () = {
     assert!(size_of::<NearmissDeviceNearest>() == size_of::<on_device::NearestHit>());
     assert!(offset_of!(NearmissDeviceNearest, points) == offset_of!(on_device::NearestHit, points));
     assert!(size_of::<NearmissFrameStatus>() == size_of::<on_device::FrameStatus>());
+    assert!(offset_of!(NearmissFrameStatus, crossing) == offset_of!(on_device::FrameStatus, crossing));
     assert!(offset_of!(NearmissFrameStatus, short_of_room) == offset_of!(on_device::FrameStatus, short));
 };
 

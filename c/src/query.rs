@@ -19,7 +19,7 @@ pub enum NearmissQueryKind {
     NEARMISS_DISCRETE = 0,
     /// Which vertex/face and edge/edge pairs meet within the step, and when first? Answers `nearmiss_answer_contacts`.
     NEARMISS_CONTINUOUS = 1,
-    /// When does the first of them meet? Answers `nearmiss_answer_earliest`.
+    /// When does the first of them meet? Answers `nearmiss_answer_earliest`, and `nearmiss_answer_is_free`.
     NEARMISS_EARLIEST = 2,
     /// Which vertex/face and edge/edge pairs are within a distance now, and where? Answers `nearmiss_answer_near_pairs`.
     NEARMISS_NEAR = 3,
@@ -38,6 +38,8 @@ pub struct NearmissQuery {
     pub adjacent: u32,
     /// Continuous, earliest; certified: the most boxes that are looked at for a pair before it is left unresolved; 0 for the default.
     pub budget: u32,
+    /// Continuous, earliest: whether the start of the step is taken to be free of crossing triangles, and not checked: 0 or 1.
+    pub assume_free: u32,
     /// Near: how far apart two features may be to be listed, a length above 0.
     pub distance: f64,
     /// Certified: how near to contact may count as one, a length; times are early by what it takes to move that far, or less. -1 for
@@ -67,6 +69,7 @@ pub extern "C" fn nearmiss_query(kind: u32) -> NearmissQuery {
         kind,
         adjacent: 0,
         budget: 0,
+        assume_free: 0,
         distance: 0.0,
         tolerance: -1.0,
         separation: 0.0,
@@ -132,8 +135,10 @@ impl NearmissQuery {
             return Err(refused(what, format!("choose one of: {}", own.join(", "))));
         }
         let adjacent = flag(self.adjacent, "adjacent")?;
+        let assume_free = flag(self.assume_free, "assume_free")?;
         let idle = [
             ("adjacent", adjacent && solver != Solver::Exact),
+            ("assume_free", assume_free && kind.is_at_rest()),
             ("distance", self.distance != 0.0 && kind != QueryKind::Near),
             ("tolerance", self.tolerance != -1.0 && !solver.is_certified()),
             ("separation", self.separation != 0.0 && !solver.is_certified()),
@@ -145,8 +150,8 @@ impl NearmissQuery {
         }
         let in_motion = || ContinuousSolver::named(solver).unwrap_or_default();
         let mut query = match kind {
-            QueryKind::Continuous => Continuous::by(in_motion()).into(),
-            QueryKind::Earliest => Earliest::by(in_motion()).into(),
+            QueryKind::Continuous => Continuous::by(in_motion()).assuming_free(assume_free).into(),
+            QueryKind::Earliest => Earliest::by(in_motion()).assuming_free(assume_free).into(),
             QueryKind::Near => Query::near(self.distance),
             QueryKind::Distance => Query::distance(),
             _ if solver == Solver::Moller => Discrete::by(TriangleTest::Moller).into(),

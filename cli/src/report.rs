@@ -20,10 +20,6 @@ pub struct Report {
     /// Its figures.
     #[serde(flatten)]
     pub summary: Summary,
-    /// Of an earliest query, the triangle pairs that meet at the start of the step already.
-    pub pairs_at_start: Option<usize>,
-    /// What else a user should know.
-    pub notes: Vec<String>,
 }
 
 /// Of each triangle the face of the file that it was cut from, of one body or two.

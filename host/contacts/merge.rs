@@ -67,6 +67,8 @@ impl Contacts {
         pairs(&mut self.escalated_vf_ee, share.escalated_vf_ee);
         pairs(&mut self.open_vf_ee, share.open_vf_ee);
         pairs(&mut self.sliced_vf_ee, share.sliced_vf_ee);
+        self.starts_crossing =
+            self.starts_crossing.zip(share.starts_crossing).map(|(own, other)| own + other);
         self.triangle_pairs += share.triangle_pairs;
         self.candidates += share.candidates;
         self.unresolved += share.unresolved;

@@ -6,6 +6,7 @@ mod hash;
 mod merge;
 mod near;
 mod nearest;
+mod notes;
 pub mod on_device;
 mod sort;
 mod summary;
@@ -16,6 +17,7 @@ pub use degraded::{Degraded, TURN_DEGREES};
 pub use geometry::ContactGeometry;
 pub use near::{Closest, NearPair};
 pub use nearest::NearestTriangles;
+pub use notes::Note;
 pub use on_device::{DeviceAnswer, DeviceList, Entries};
 pub use summary::Summary;
 pub use triangles::{TriangleContact, triangle_contacts};
@@ -131,6 +133,10 @@ pub struct Contacts {
     pub answer: Answer,
     /// Milliseconds by stage.
     pub stages: Stages,
+    /// Triangle pairs that share a point at the start of the step, by the exact signs of a discrete query: as many as
+    /// [`Query::discrete`] lists at t = 0. Such a pair need not have a time of contact: an edge that is through a face stays
+    /// there. `None` if the start was not checked: of a query at rest, and of one that assumes a free start.
+    pub starts_crossing: Option<u64>,
     /// Triangle pairs that the volumes let through.
     pub triangle_pairs: u64,
     /// Pairs that the narrow test was asked: triangle pairs (discrete), vertex/face and edge/edge pairs (continuous).
@@ -150,7 +156,7 @@ pub struct Contacts {
     /// that are farther apart; of an earliest query, how many of the pairs that were asked: which of those
     /// that cannot be earlier are asked anyway is a matter of order, so this and the counts by rung may differ from run to run.
     pub unresolved: u64,
-    /// Pairs that the filter in the precision of the positions left undecided.
+    /// Triangle pairs that the filter in the precision of the positions left undecided; of a query in motion, at the start of the step.
     pub undecided: u64,
     /// Those of them that f64 left undecided too; none of f64 positions, which go straight to exact signs.
     pub undecided_wide: u64,
@@ -182,6 +188,7 @@ impl Contacts {
         Contacts {
             answer,
             stages: Stages::default(),
+            starts_crossing: query.checks_start().then_some(0),
             triangle_pairs: 0,
             candidates: 0,
             candidates_vf_ee: [0; 2],
@@ -251,6 +258,7 @@ impl Contacts {
         Contacts {
             answer,
             stages,
+            starts_crossing: found.is_start_checked.then(|| count(counter::STARTS_CROSSING)),
             triangle_pairs: count(counter::PAIRS),
             candidates: if of_triangles { count(counter::PAIRS) } else { vf_ee[0] + vf_ee[1] },
             candidates_vf_ee: vf_ee,
@@ -295,6 +303,31 @@ impl Contacts {
     /// Whether nothing meets.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// Whether the answer proves that nothing touches. Continuous and earliest: the start was checked, no triangles share a point
+    /// there, and nothing meets within the step. Discrete: no pair of triangles shares a point; pairs with a common vertex are not
+    /// tested. Distance: it is above 0, or no two bodies may meet. Near: always false, since features within a distance do not
+    /// say what crosses. As certain as the solver: see [`Solver::is_certain`](crate::query::Solver::is_certain).
+    ///
+    /// ```
+    /// use nearmiss::{Body, Detector, Device, Mesh, Query, device::Backend, mesh::Positions};
+    ///
+    /// // The second triangle is through the first, and both rest: no pair of features ever meets.
+    /// let corners = vec![[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [9.0, 9.0, 1.0]];
+    /// let mesh = Mesh::new("two triangles", Positions::F32(corners), vec![[0, 1, 2], [3, 4, 5]])?;
+    /// let device = Device::open(Backend::Cpu, None)?;
+    /// let found = Detector::new(device, Body::still(mesh), Query::earliest())?.detect()?;
+    /// assert_eq!((found.earliest_toi(), found.starts_crossing, found.is_free()), (None, Some(1), false));
+    /// # Ok::<(), nearmiss::Error>(())
+    /// ```
+    pub fn is_free(&self) -> bool {
+        match &self.answer {
+            Answer::Pairs(pairs) => pairs.is_empty(),
+            Answer::Contacts(_) | Answer::Earliest(_) => self.starts_crossing == Some(0) && self.is_empty(),
+            Answer::Near(_) => false,
+            Answer::Distance(nearest) => nearest.is_none_or(|nearest| nearest.distance > 0.0),
+        }
     }
 
     /// Triangle pairs, if that was asked.

@@ -1,6 +1,6 @@
 //! What is printed of a result.
 
-use super::{Contacts, Degraded, Front, NearestTriangles, Queues};
+use super::{Contacts, Degraded, Front, NearestTriangles, Note, Queues};
 use crate::device::Device;
 use crate::mesh::Body;
 use crate::pipeline::Stages;
@@ -56,6 +56,8 @@ pub struct Summary {
     pub nearest: Option<NearestTriangles>,
     /// The smallest time of contact.
     pub earliest_toi: Option<f64>,
+    /// Triangle pairs that share a point at the start of the step; none of a query that does not check it.
+    pub starts_crossing: Option<u64>,
     /// Hash of the canonical answer, sixteen hexadecimal digits.
     pub hash: String,
     /// How often a list was too short and grew, and a part of the frame ran again; the answer is whole.
@@ -72,6 +74,8 @@ pub struct Summary {
     pub ms: Stages,
     /// Most device memory held at once.
     pub bytes: u64,
+    /// Notes for the user, a sentence each; mostly none.
+    pub notes: Vec<Note>,
 }
 
 impl Summary {
@@ -102,6 +106,7 @@ impl Summary {
             distance: if let Query::Near(near) = query { Some(near.distance) } else { None },
             nearest: contacts.nearest().copied(),
             earliest_toi: contacts.earliest_toi(),
+            starts_crossing: contacts.starts_crossing,
             hash: format!("{:016x}", contacts.hash()),
             reruns: contacts.reruns,
             slices: contacts.slices,
@@ -110,6 +115,7 @@ impl Summary {
             front: contacts.front,
             ms: contacts.stages,
             bytes: device.bytes().1,
+            notes: Note::of(bodies, &query, contacts),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Detector;
 use crate::contacts::geometry::{Corners, Named};
-use crate::contacts::{ContactGeometry, Contacts, Kind};
+use crate::contacts::{Answer, ContactGeometry, Contacts, Kind};
 use crate::error::Error;
 use crate::memory;
 use crate::mesh::Body;
@@ -10,13 +10,14 @@ use crate::pipeline::Layout;
 use rayon::prelude::*;
 
 impl Detector {
-    /// Vertices, weights, points and normal of every contact, or of every pair within a distance, in their order; of triangle pairs and
-    /// of an earliest time there are none, and the nearest triangles tell theirs. The bodies must be where they were when `found` was. Cost: a copy of all vertices from the
+    /// Vertices, weights, points and normal of every contact, or of every pair within a distance, in their order: of the answer to a
+    /// continuous or a near query. The bodies must be where they were when `found` was. Cost: a copy of all vertices from the
     /// device, and a wait; 300 operations a contact.
     ///
     /// # Errors
-    /// [`Error::Choice`] for contacts of other bodies than there are now; [`Error::OutOfMemory`]; those of the device.
+    /// [`Error::Choice`] for the answer to a discrete, an earliest or a distance query, and for contacts of other bodies than there are now; [`Error::OutOfMemory`]; those of the device.
     pub fn geometry(&mut self, found: &Contacts) -> Result<Vec<ContactGeometry>, Error> {
+        has_geometry(found)?;
         let (contacts, pairs) = (found.contacts(), found.near());
         let count = contacts.len() + pairs.len();
         if count == 0 {
@@ -56,6 +57,22 @@ impl Detector {
         };
         named.par_iter().map(|named| one(named).ok_or_else(of_others)).collect()
     }
+}
+
+/// Refuses an answer that has no pairs of features.
+fn has_geometry(found: &Contacts) -> Result<(), Error> {
+    let (query, advice) = match found.answer {
+        Answer::Contacts(_) | Answer::Near(_) => return Ok(()),
+        Answer::Pairs(_) => {
+            ("a discrete", "use a near or a continuous query; this answer has triangle pairs alone")
+        }
+        Answer::Earliest(_) => ("an earliest", "use a continuous query; this answer has a time alone"),
+        Answer::Distance(_) => {
+            ("a distance", "read `points` and `weights` of this answer's nearest triangles")
+        }
+    };
+    let what = format!("geometry of the answer to {query} query, which has no pairs of features");
+    Err(Error::Choice { what, advice: advice.into() })
 }
 
 /// The four vertices of a contact, by their numbers of all, and the first vertex of the body of each; `None` where there are no such features.

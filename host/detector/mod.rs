@@ -12,7 +12,7 @@ mod submit;
 mod turns;
 mod wear;
 
-use crate::contacts::{Contacts, Degraded, Summary};
+use crate::contacts::{Contacts, Degraded, Note, Summary};
 use crate::device::emulator::{Looks, start_threads};
 use crate::device::{Device, Work};
 use crate::error::Error;
@@ -333,7 +333,9 @@ impl Detector {
         self.tolerances.as_ref().map(|tolerances| tolerances.largest)
     }
 
-    /// What the command line prints of a result.
+    /// The figures of an answer and the notes beside it, as the command line prints them. Cost: a hash of the answer, and the notes:
+    /// a comparison of both ends of the step if nothing moves, a sort of all vertices if there are [`Note::MANY`](crate::contacts::Note::MANY)
+    /// contacts.
     pub fn summary(&self, contacts: &Contacts) -> Summary {
         Summary {
             tolerance: self.tolerance(),
@@ -343,6 +345,11 @@ impl Detector {
             builds: self.builds,
             ..Summary::new(self.scene.bodies(), self.query, &self.device, contacts)
         }
+    }
+
+    /// The notes beside an answer, of bodies where they were: those of [`Detector::summary`], at the same cost.
+    pub fn notes(&self, contacts: &Contacts) -> Vec<Note> {
+        Note::of(self.scene.bodies(), &self.query, contacts)
     }
 
     /// How many levels the tree over what moves has, and that over what is static, where there is one.

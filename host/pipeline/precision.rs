@@ -32,6 +32,12 @@ pub trait Precision: Real + Send {
     const WIDENS: bool;
     /// The exact signs.
     type Exact: Entry<Args = DiscreteArgs<Self>>;
+    /// The discrete filter at the start of a step.
+    type StartFilter: Entry<Args = DiscreteArgs<Self>>;
+    /// The same in f64, where the positions are narrower.
+    type StartWide: Entry<Args = DiscreteArgs<Self>>;
+    /// The exact signs at the start of a step.
+    type StartExact: Entry<Args = DiscreteArgs<Self>>;
     /// Triangle pairs to pairs of features whose boxes meet.
     type Features: Entry<Args = FeaturesArgs<Self>>;
     /// The same of triangles at rest.
@@ -90,6 +96,9 @@ impl Precision for f32 {
     type Wide = entry::narrow_wide_f32;
     const WIDENS: bool = true;
     type Exact = entry::narrow_exact_f32;
+    type StartFilter = entry::narrow_start_filter_f32;
+    type StartWide = entry::narrow_start_wide_f32;
+    type StartExact = entry::narrow_start_exact_f32;
     type Features = entry::narrow_features_f32;
     type FeaturesAtRest = entry::narrow_features_at_rest_f32;
     type Near = entry::narrow_near_f32;
@@ -135,6 +144,9 @@ impl Precision for f64 {
     type Wide = entry::narrow_filter_f64;
     const WIDENS: bool = false;
     type Exact = entry::narrow_exact_f64;
+    type StartFilter = entry::narrow_start_filter_f64;
+    type StartWide = entry::narrow_start_filter_f64;
+    type StartExact = entry::narrow_start_exact_f64;
     type Features = entry::narrow_features_f64;
     type FeaturesAtRest = entry::narrow_features_at_rest_f64;
     type Near = entry::narrow_near_f64;

@@ -17,6 +17,9 @@ pub struct Continuous {
     pub solver: ContinuousSolver,
     /// How candidates are found.
     pub search: Search,
+    /// Whether the start of the step is taken to be free of crossing triangles. By default the pairs that share a point at t = 0
+    /// are counted: [`Contacts::starts_crossing`](crate::Contacts::starts_crossing).
+    pub assume_free: bool,
 }
 
 /// When does the first of them meet?
@@ -33,6 +36,8 @@ pub struct Earliest {
     pub solver: ContinuousSolver,
     /// How candidates are found.
     pub search: Search,
+    /// Whether the start of the step is taken to be free of crossing triangles, as in [`Continuous`].
+    pub assume_free: bool,
 }
 
 /// The test of a pair of features in motion.
@@ -112,7 +117,13 @@ macro_rules! in_motion {
         impl $kind {
             /// By that solver, all other choices at their defaults.
             pub fn by(solver: impl Into<ContinuousSolver>) -> $kind {
-                $kind { solver: solver.into(), search: Search::default() }
+                $kind { solver: solver.into(), ..$kind::default() }
+            }
+
+            /// The same, with a start that is taken to be free of crossing triangles, or not.
+            #[must_use]
+            pub const fn assuming_free(self, assume_free: bool) -> $kind {
+                $kind { assume_free, ..self }
             }
         }
 
@@ -131,6 +142,9 @@ macro_rules! in_motion {
             }
             fn solver(&self) -> Solver {
                 self.solver.name()
+            }
+            fn checks_start(&self) -> bool {
+                !self.assume_free
             }
             fn certified(&self) -> Option<&Certified> {
                 self.solver.certified()

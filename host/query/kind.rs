@@ -56,6 +56,10 @@ pub(crate) trait Question {
     fn listed_within(&self) -> f64 {
         0.0
     }
+    /// Whether it counts the triangle pairs that share a point at the start of the step.
+    fn checks_start(&self) -> bool {
+        false
+    }
     /// Whether its numbers mean something.
     fn check(&self) -> Result<(), Error> {
         Ok(())

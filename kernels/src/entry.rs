@@ -13,6 +13,7 @@ use crate::prim::isolate::separation::{Double, Single};
 use crate::queue::worker;
 use crate::sort;
 use crate::stage::construct::{cuts, graft, morton, tile_filters, tree, treelet};
+use crate::stage::narrow::discrete::{Start, Still};
 use crate::stage::narrow::features::{Moves, Rests};
 use crate::stage::narrow::{
     below_precision, climb, cull, discrete, features, near, nearest, separate, slice, solve,
@@ -294,11 +295,16 @@ kernels! {
     balance_copy: balance::copy, [BalanceArgs], BALANCE, 0;
     narrow_moller_f32: discrete::moller::<f32, B>, [DiscreteArgs<f32>], WIDE, 0;
     narrow_moller_f64: discrete::moller::<f64, B>, [DiscreteArgs<f64>], WIDE, 0;
-    narrow_filter_f32: discrete::filter::<f32, B>, [DiscreteArgs<f32>], WIDE, discrete::shared_bytes(WIDE), registers = 64;
-    narrow_filter_f64: discrete::filter::<f64, B>, [DiscreteArgs<f64>], WIDE, discrete::shared_bytes(WIDE);
-    narrow_wide_f32: discrete::wide, [DiscreteArgs<f32>], NARROW, 0;
-    narrow_exact_f32: discrete::exact::<f32, B>, [DiscreteArgs<f32>], NARROW, discrete::EXACT_SHARED;
-    narrow_exact_f64: discrete::exact::<f64, B>, [DiscreteArgs<f64>], NARROW, discrete::EXACT_SHARED;
+    narrow_filter_f32: discrete::filter::<f32, Still, B>, [DiscreteArgs<f32>], WIDE, discrete::shared_bytes(WIDE), registers = 64;
+    narrow_filter_f64: discrete::filter::<f64, Still, B>, [DiscreteArgs<f64>], WIDE, discrete::shared_bytes(WIDE);
+    narrow_wide_f32: discrete::wide::<Still, B>, [DiscreteArgs<f32>], NARROW, 0;
+    narrow_exact_f32: discrete::exact::<f32, Still, B>, [DiscreteArgs<f32>], NARROW, discrete::EXACT_SHARED;
+    narrow_exact_f64: discrete::exact::<f64, Still, B>, [DiscreteArgs<f64>], NARROW, discrete::EXACT_SHARED;
+    narrow_start_filter_f32: discrete::filter::<f32, Start, B>, [DiscreteArgs<f32>], WIDE, discrete::shared_bytes(WIDE), registers = 64;
+    narrow_start_filter_f64: discrete::filter::<f64, Start, B>, [DiscreteArgs<f64>], WIDE, discrete::shared_bytes(WIDE);
+    narrow_start_wide_f32: discrete::wide::<Start, B>, [DiscreteArgs<f32>], NARROW, 0;
+    narrow_start_exact_f32: discrete::exact::<f32, Start, B>, [DiscreteArgs<f32>], NARROW, discrete::EXACT_SHARED;
+    narrow_start_exact_f64: discrete::exact::<f64, Start, B>, [DiscreteArgs<f64>], NARROW, discrete::EXACT_SHARED;
     narrow_features_f32: features::features::<f32, Moves, B>, [FeaturesArgs<f32>], NARROW, features::shared_bytes(NARROW), registers = 80;
     narrow_features_f64: features::features::<f64, Moves, B>, [FeaturesArgs<f64>], NARROW, features::shared_bytes(NARROW);
     narrow_features_at_rest_f32: features::features::<f32, Rests, B>, [FeaturesArgs<f32>], NARROW, features::shared_bytes(NARROW);

@@ -35,7 +35,7 @@ table.agree("step size, within a thousandth of the step", 0 < theirs <= ours <= 
 free, none = table.row(
     "is a hundredth of it free",
     lambda: ipctk.is_step_collision_free(mesh, vertices, vertices + 0.01 * ours * (there - vertices)),
-    lambda: stepper.frame({0: (vertices, vertices + 0.01 * ours * (there - vertices))}).earliest is None,
+    lambda: stepper.frame({0: (vertices, vertices + 0.01 * ours * (there - vertices))}).is_free,
 )
 table.agree("is a hundredth of it free", free and none)
 

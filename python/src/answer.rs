@@ -224,12 +224,12 @@ impl DeviceAnswer {
         self.answer.lists.iter().map(list).collect()
     }
 
-    /// (4,) int64: entries of the first list; of the second, or, where one list has both kinds in order, how many of the second kind
+    /// (5,) int64: entries of the first list; of the second, or, where one list has both kinds in order, how many of the second kind
     /// follow; how many lists had too little room (unless 0 the answer is not whole: `collect` gives it); 0, or which vertex cannot be
-    /// computed with.
+    /// computed with; triangle pairs that share a point at the start of the step, -1 if that is not checked.
     #[getter]
     fn status(&self, py: Python<'_>) -> DeviceArray {
-        self.array(py, self.answer.status, COUNT, (vec![4], vec![1]))
+        self.array(py, self.answer.status, COUNT, (vec![5], vec![1]))
     }
 
     /// (1,) float64: of an earliest query its time, NaN where nothing meets.

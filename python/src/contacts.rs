@@ -191,7 +191,23 @@ impl Contacts {
         self.columns.get(py, "points", || self.threes(py, "points", |nearest| nearest.points))
     }
 
-    /// The first time of contact, in [0, 1], never late; None where nothing meets. Of Continuous and Earliest.
+    /// How many pairs of triangles share a point at the start of the step: as many as Discrete lists there. They need not have a time of
+    /// contact. Of Continuous and Earliest; None of other queries, and with `assume_free`.
+    #[getter]
+    fn starts_crossing(&self) -> Option<u64> {
+        self.contacts.starts_crossing
+    }
+
+    /// Whether the answer proves that nothing touches. Continuous and Earliest: the start was checked, no triangles share a point there,
+    /// and nothing meets within the step. Discrete: no pair of triangles shares a point. Distance: it is above 0, or no two bodies may
+    /// meet. Near: always False.
+    #[getter]
+    fn is_free(&self) -> bool {
+        self.contacts.is_free()
+    }
+
+    /// The first time of contact, in [0, 1], never late; None where nothing meets, though triangles may cross at the start: see
+    /// `is_free`. Of Continuous and Earliest.
     #[getter]
     fn earliest(&self) -> PyResult<Option<f64>> {
         match &self.contacts.answer {

@@ -209,7 +209,7 @@ impl Detector {
         self.told(py, Does::AsksAnew, nearmiss::Detector::detect)
     }
 
-    /// Where contacts or near pairs are: of this detector, and before it is asked to move, add, remove or replace bodies; else ChoiceError.
+    /// Where contacts or near pairs are, of Continuous and Near; else ChoiceError. Of this detector, and before it is asked to move, add, remove or replace bodies.
     fn geometry(&self, py: Python<'_>, contacts: &Contacts) -> PyResult<Geometry> {
         let told = self.work(py, |one| {
             one.check(contacts.stamp)?;
@@ -218,7 +218,8 @@ impl Detector {
         told.map(Geometry::from).map_err(raised)
     }
 
-    /// All figures of an answer, as the command line prints them: counts, milliseconds by stage, what it came to less than was asked.
+    /// All figures of an answer, as the command line prints them: counts, milliseconds by stage, what it came to less than was asked, and
+    /// `notes`: a sentence each.
     /// Of the contacts that `geometry` takes.
     fn summary<'py>(&self, py: Python<'py>, contacts: &Contacts) -> PyResult<Bound<'py, PyAny>> {
         let told = self.look_at(py, |one| {

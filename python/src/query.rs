@@ -59,6 +59,9 @@ impl Query {
             }
             _ => {}
         }
+        if !self.query.kind().is_at_rest() && !self.query.checks_start() {
+            choices.set_item("assume_free", true)?;
+        }
         if let Some(certified) = certified {
             set(&choices, "tolerance", certified.tolerance)?;
             set(&choices, "separation", Some(certified.separation).filter(|&length| length != 0.0))?;
@@ -189,6 +192,7 @@ macro_rules! in_motion {
         /// tolerance:  how well a time is told, as a length moved; default: of two bodies the smaller 1e-4 of the mean edge.
         /// separation: what comes nearer than this is in contact, in the unit of the vertices; 0 for touching.
         /// budget:     how many boxes, from 1, a pair may cost before it is listed as unresolved.
+        /// assume_free: leaves out the count of triangle pairs that share a point at the start: `Contacts.starts_crossing` is None then.
         /// solver:     "certified" (none is missed, none late), "certified-f32", "certified-f64", or "cubic-f64" and "cubic-f32", which
         ///             can miss.
         /// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer.
@@ -199,14 +203,15 @@ macro_rules! in_motion {
         impl $kind {
             #[new]
             #[pyo3(signature = (
-                *, tolerance = None, separation = 0.0, budget = None, solver = "certified", broad = None,
-                order = None, bv = None, rebuild = None,
+                *, tolerance = None, separation = 0.0, budget = None, assume_free = false, solver = "certified",
+                broad = None, order = None, bv = None, rebuild = None,
             ))]
             #[allow(clippy::too_many_arguments, reason = "they are named")]
             fn new(
                 tolerance: Option<f64>,
                 separation: f64,
                 #[pyo3(from_py_with = budget_of)] budget: Option<u32>,
+                assume_free: bool,
                 solver: &str,
                 broad: Option<&str>,
                 order: Option<&str>,
@@ -214,8 +219,8 @@ macro_rules! in_motion {
                 rebuild: Option<&str>,
             ) -> PyResult<PyClassInitializer<$kind>> {
                 let solver = in_motion(solver, (tolerance, separation, budget))?;
-                let query = Query::checked(query::$kind::by(solver), [broad, order, bv, rebuild])?;
-                Ok(query.add_subclass($kind))
+                let query = query::$kind::by(solver).assuming_free(assume_free);
+                Ok(Query::checked(query, [broad, order, bv, rebuild])?.add_subclass($kind))
             }
         }
     };
@@ -227,6 +232,7 @@ in_motion! {
 }
 in_motion! {
     /// When the first of all meets: how far a step may go. The answer's `earliest`, in [0, 1], is never late; None: nothing meets.
+    /// Triangles that cross at the start need not meet again: `Contacts.is_free` says whether the step is free.
     Earliest
 }
 

@@ -116,6 +116,41 @@ def test_a_fall_is_told_in_time_and_never_late():
     assert abs(nm.time_of_impact(t0, t1, faces, separation=0.5) - 0.25) < 1e-4
 
 
+def test_what_crosses_at_the_start_is_counted():
+    crossing, faces = two_triangles()
+    apart = crossing.copy()
+    apart[3:, 2] += 5
+    for query in [nm.Continuous, nm.Earliest]:
+        for start, pairs in [(crossing, 1), (apart, 0)]:
+            detector = nm.Detector(nm.Body(start, faces), query())
+            found = detector.frame({0: (start, start)})
+            assert (len(found), found.earliest) == (0, None)
+            assert (found.starts_crossing, found.is_free) == (pairs, pairs == 0)
+            summary = detector.summary(found)
+            assert summary["starts_crossing"] == pairs and "nothing moves" in summary["notes"][0]
+            told = [note for note in summary["notes"] if "1 triangle pair meets at the start" in note]
+            assert len(told) == pairs
+        assumed = nm.Detector(nm.Body(crossing, faces), query(assume_free=True)).detect()
+        assert (assumed.starts_crossing, assumed.is_free) == (None, False)
+        assert query(assume_free=True) != query() and "assume_free=True" in repr(query(assume_free=True))
+    for query, free in [(nm.Discrete(), False), (nm.Near(0.1), False)]:
+        found = nm.Detector(nm.Body(crossing, faces), query).detect()
+        assert (found.starts_crossing, found.is_free) == (None, free)
+    with pytest.raises(nm.InputError, match="1 triangle pair crosses at the start"):
+        nm.time_of_impact(crossing, crossing, faces)
+    assert nm.time_of_impact(crossing, crossing, faces, assume_free=True) is None
+    assert nm.time_of_impact(apart, apart, faces) is None
+    assert nm.contacts(crossing, crossing, faces).starts_crossing == 1
+
+
+def test_the_count_is_that_of_the_discrete_query():
+    t0, faces = soup(80, 3, 0.5)
+    t1 = t0 + 0.1 * np.cos(9 * t0)
+    listed = len(nm.self_intersections(t0, faces))
+    assert listed > 20 and listed != len(nm.self_intersections(t1, faces))
+    assert nm.contacts(t0, t1, faces).starts_crossing == listed
+
+
 def test_bodies_meet_as_they_say():
     vertices, faces = sheet(8)
     ground = nm.Body(vertices, faces, kind="static", name="ground")

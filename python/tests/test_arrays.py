@@ -156,6 +156,7 @@ def test_a_submission_reads_what_lies_there_when_its_turn_comes():
         met += len(found)
         if detector.is_prepared:
             counts = np.from_dlpack(answer.status)
+            assert counts.shape == (5,) and counts[4] == found.starts_crossing
             assert counts[:3].sum() == len(found)
             times = np.concatenate([np.from_dlpack(l["toi"])[:n] for l, n in zip(answer.lists, counts)])
             assert sorted(times.tolist()) == sorted(found.toi.tolist())

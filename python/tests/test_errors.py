@@ -20,6 +20,11 @@ def detector(query=None):
 
 NAN = np.full((6, 3), np.nan, np.float32)
 
+def geometry(query):
+    asked = detector(query)
+    return asked.geometry(asked.detect())
+
+
 REFUSED = [
     (lambda: nm.Near(0), nm.ChoiceError, "a distance of 0"),
     (lambda: nm.Near(np.nan), nm.ChoiceError, "a distance of NaN"),
@@ -78,6 +83,9 @@ REFUSED = [
     (lambda: detector().detect().distances, nm.ChoiceError, "contacts in time"),
     (lambda: detector(nm.Discrete()).detect().toi, nm.ChoiceError, "triangle pairs"),
     (lambda: detector(nm.Earliest()).detect().indices, nm.ChoiceError, "one time"),
+    (lambda: geometry(nm.Discrete()), nm.ChoiceError, "a discrete query, which has no pairs of features; use"),
+    (lambda: geometry(nm.Earliest()), nm.ChoiceError, "an earliest query, which has no pairs of features; use"),
+    (lambda: geometry(nm.Distance()), nm.ChoiceError, "a distance query, which has no pairs of features; read"),
     (lambda: detector(nm.Near(1)).detect().earliest, nm.ChoiceError, "near pairs"),
     (lambda: detector().submit(), nm.ChoiceError, "prepare"),
     (lambda: detector().prepare({0: V.tolist()}), nm.ChoiceError, "arrays that stay"),

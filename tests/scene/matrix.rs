@@ -83,12 +83,12 @@ fn asks(motion: QueryKind, bodies: usize) -> bool {
 fn launches_of_a_frame() {
     // A walk, and the rounds of what it spilled; two rounds of samples, and a walk.
     let walk = 1 + nearmiss_kernels::abi::ROUNDS as u64;
-    // Narrow: filter, f64 and exact signs; features, cull and four rungs; the same; features and distances; signs as of a discrete query,
+    // Narrow: filter, f64 and exact signs; these at the start, features, cull and four rungs; the same; features and distances; signs as of a discrete query,
     // the least distance, its first pair, and where that is nearest.
     let stages = [
         (QueryKind::Discrete, walk, 3),
-        (QueryKind::Continuous, walk, 6),
-        (QueryKind::Earliest, walk, 6),
+        (QueryKind::Continuous, walk, 9),
+        (QueryKind::Earliest, walk, 9),
         (QueryKind::Near, walk, 2),
         (QueryKind::Distance, 3, 6),
     ];
@@ -159,7 +159,12 @@ fn bytes_of_a_scene() {
             for list in ["undecided pairs", "contacts"] {
                 assert_eq!(bytes(&plan, list) > 0, of_triangles, "{name}, {motion:?}, {list}");
             }
-            for list in ["vertex/face pairs that may meet", "edge/edge pairs for f64"] {
+            for list in [
+                "vertex/face pairs that may meet",
+                "edge/edge pairs for f64",
+                "pairs undecided at the start",
+                "pairs undecided at the start in f64",
+            ] {
                 let asked = matches!(motion, QueryKind::Continuous | QueryKind::Earliest);
                 assert_eq!(bytes(&plan, list) > 0, asked, "{name}, {motion:?}, {list}");
             }

@@ -41,6 +41,21 @@ fn answers_are_the_librarys() {
         let summary = got(|to, error| nearmiss_answer_summary(Some(&answer), to, error)).expect("figures");
         assert_eq!((summary.hash, summary.contacts), (found.hash(), found.len() as u64));
         assert_eq!((summary.candidates, summary.unresolved), (found.candidates, found.unresolved));
+        let crossing = summary.is_start_checked.then_some(summary.starts_crossing);
+        assert_eq!(crossing, found.starts_crossing);
+        let is_free = got(|to, error| nearmiss_answer_is_free(Some(&answer), to, error));
+        assert_eq!(is_free, Ok(found.is_free()));
+        let notes = by_library.notes(&found);
+        let count =
+            got(|to, error| nearmiss_detector_notes(Some(&mut detector), Some(&mut answer), to, error));
+        assert_eq!(count, Ok(notes.len()));
+        for (index, note) in notes.iter().enumerate() {
+            let text = got(|to, error| nearmiss_answer_note(Some(&answer), index, to, error));
+            // SAFETY: a text of the library's, which lives as long as the answer.
+            let text = unsafe { std::ffi::CStr::from_ptr(text.expect("a note")) };
+            assert_eq!(text.to_str(), Ok(note.to_string().as_str()));
+        }
+        assert!(got(|to, error| nearmiss_answer_note(Some(&answer), notes.len(), to, error)).is_err());
         assert!(!found.is_empty() && summary.bytes > 0 && summary.slices == 1 && summary.ms.total > 0.0);
         for index in 0..summary.degraded as usize {
             got(|to, error| nearmiss_answer_degraded(Some(&answer), index, to, error)).expect("a sentence");
@@ -92,9 +107,9 @@ fn answers_are_the_librarys() {
             nearmiss_detector_geometry(Some(&mut detector), Some(&mut answer), to, n, error)
         });
         assert_eq!(shown.is_ok(), matches!(number, 1 | 3));
-        for (c, own) in
-            shown.iter().flat_map(|all| all.iter()).zip(by_library.geometry(&found).expect("geometry"))
-        {
+        let wanted = by_library.geometry(&found);
+        assert_eq!(wanted.is_ok(), shown.is_ok());
+        for (c, own) in shown.iter().flat_map(|all| all.iter()).zip(wanted.iter().flatten()) {
             assert_eq!((c.vertices, c.weights, c.points), (own.vertices, own.weights, own.points));
             assert_eq!((c.first as usize, c.distance, c.normal), (own.first, own.distance, own.normal));
         }
@@ -102,6 +117,43 @@ fn answers_are_the_librarys() {
         nearmiss_detector_free(Some(detector));
     }
     assert_eq!([Kind::Vf as u32, Kind::Fv as u32, Kind::Ee as u32], [0, 1, 2]);
+}
+
+/// What crosses at the start has no time of contact, and is not free; the notes say so.
+#[test]
+fn what_crosses_at_the_start_is_counted() {
+    let corners = [
+        [0.0, 0.0, 0.0],
+        [4.0, 0.0, 0.0],
+        [0.0, 4.0, 0.0],
+        [1.0, 1.0, -1.0],
+        [1.0, 1.0, 1.0],
+        [9.0, 9.0, 1.0],
+    ];
+    let mesh = nearmiss::Mesh::new("two", Positions::F32(corners.into()), vec![[0, 1, 2], [3, 4, 5]])
+        .expect("a mesh");
+    let of = nearmiss::Body::still(mesh);
+    for kind in [1, 2] {
+        for assume_free in [0, 1] {
+            let query = NearmissQuery { assume_free, ..nearmiss_query(kind) };
+            let mut detector = detector(&[described(&of)], query).expect("a detector");
+            let mut answer = own(got(|to, error| nearmiss_detector_detect(Some(&mut detector), to, error)));
+            let summary =
+                got(|to, error| nearmiss_answer_summary(Some(&answer), to, error)).expect("figures");
+            assert_eq!((summary.contacts, summary.is_start_checked), (0, assume_free == 0));
+            assert_eq!(summary.starts_crossing, u64::from(assume_free == 0));
+            let is_free = got(|to, error| nearmiss_answer_is_free(Some(&answer), to, error));
+            assert_eq!(is_free, Ok(false));
+            let count =
+                got(|to, error| nearmiss_detector_notes(Some(&mut detector), Some(&mut answer), to, error));
+            assert_eq!(count, Ok(2 - assume_free as usize));
+        }
+    }
+    for kind in [0, 3, 4] {
+        let distance = if kind == 3 { 1.0 } else { 0.0 };
+        let query = NearmissQuery { assume_free: 1, distance, ..nearmiss_query(kind) };
+        assert!(detector(&[described(&of)], query).is_err(), "it would do nothing");
+    }
 }
 
 /// Doubles with gaps between them are the same points.

@@ -133,6 +133,9 @@ pub struct DetectArgs {
     /// Certified: features that come this near are in contact, a length [default: 0, touching].
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub separation: Option<f64>,
+    /// Leave out the count of triangle pairs that cross at the start of the step.
+    #[arg(long, conflicts_with_all = ["discrete", "near", "distance"])]
+    pub assume_free: bool,
     #[command(flatten)]
     pub machine: MachineArgs,
     /// Discrete: also triangles that share a vertex, where they meet beyond it.

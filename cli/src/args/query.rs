@@ -29,6 +29,12 @@ impl DetectArgs {
                 advice: format!("choose one of: {}", known.join(", ")),
             });
         }
+        if self.assume_free && kind.is_at_rest() {
+            return Err(Error::Choice {
+                what: format!("--assume-free would do nothing: a {kind} query has no step"),
+                advice: "leave it out, or ask with --continuous or --earliest".into(),
+            });
+        }
         let limits = self.tolerance.is_some() || self.boxes.is_some() || self.separation.is_some();
         if limits && !solver.is_certified() {
             return Err(Error::Choice {
@@ -49,11 +55,11 @@ impl DetectArgs {
             _ if self.distance => Distance { search }.into(),
             (Some(distance), _) => Near { distance, search }.into(),
             (None, Some(solver)) => {
-                let solver = self.limited(solver);
+                let (solver, assume_free) = (self.limited(solver), self.assume_free);
                 if kind == QueryKind::Earliest {
-                    Earliest { solver, search }.into()
+                    Earliest { solver, search, assume_free }.into()
                 } else {
-                    Continuous { solver, search }.into()
+                    Continuous { solver, search, assume_free }.into()
                 }
             }
             (None, None) if solver == Solver::Moller => {

@@ -1,6 +1,5 @@
 //! `detect`.
 
-pub mod notes;
 mod text;
 
 use crate::args::DetectArgs;
@@ -11,11 +10,11 @@ use crate::progress::during;
 use crate::report::{self, FileFaces, Format, Report};
 use crate::sequence::{self, Sequence, is_scene, steps};
 use nearmiss::Detector;
-use nearmiss::contacts::{ContactGeometry, Contacts};
+use nearmiss::contacts::{Answer, ContactGeometry, Contacts, Note};
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
 use nearmiss::pipeline::Stages;
-use nearmiss::query::{Query, QueryKind, Traversal};
+use nearmiss::query::{Query, Traversal};
 use nearmiss::scene::Scene;
 use nearmiss::words::counted;
 use std::path::PathBuf;
@@ -164,30 +163,17 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
         *summary.ms.of_mut(stage) = middle(times);
     }
     let faces = args.file_faces.then(|| FileFaces::of(detector.scene().bodies()));
-    let moves = match &sequence {
-        None => notes::Moves::of(detector.scene().bodies()),
-        Some(all) => notes::Moves::of_scene(all),
-    };
     if let Some(all) = &sequence {
         summary.frames = all.frames;
     }
-    let coincident = notes::coincident(detector.scene().bodies(), &contacts);
     let geometry = geometry(args, &mut detector, &contacts)?;
     if let Some(target) = painted {
         let (mesh, colours) =
             paint::paint(detector.scene().bodies(), 0.0, &contacts, geometry.as_deref().unwrap_or_default())?;
         target.write(|mut out| mesh.encode_ply_coloured(&mut out, &colours).map_err(|e| e.to_string()))?;
     }
-    let again = (query.kind() == QueryKind::Earliest).then(|| detector.scene().clone());
-    // What it holds makes room.
-    drop(detector);
-    let pairs_at_start = match again {
-        Some(scene) => during("looking at the start", || notes::at_start(device, scene))?,
-        None => None,
-    };
-    let mut notes = notes::of(query.kind(), moves, &contacts, (pairs_at_start, coincident));
-    notes.splice(..0, of_files);
-    let told = Report { step: None, summary, pairs_at_start, notes };
+    summary.notes.splice(..0, of_files.into_iter().map(|text| Note::File { text }));
+    let told = Report { step: None, summary };
     if let Some((format, target)) = target {
         let names = sequence.as_ref().and_then(|all| all.names.as_deref());
         let geometry = geometry.as_deref().filter(|_| args.geometry || format == Format::Vtp);
@@ -211,10 +197,10 @@ pub fn geometry(
     detector: &mut Detector,
     found: &Contacts,
 ) -> Result<Option<Vec<ContactGeometry>>, Error> {
-    if !(args.geometry || args.writes_vtp() || args.out_mesh.is_some()) {
-        return Ok(None);
-    }
-    detector.geometry(found).map(Some)
+    let is_wanted = args.geometry || args.writes_vtp() || args.out_mesh.is_some();
+    // Triangles and a time have none; a file of the nearest triangles takes their points from the answer.
+    let has_any = matches!(found.answer, Answer::Contacts(_) | Answer::Near(_));
+    if is_wanted && has_any { detector.geometry(found).map(Some) } else { Ok(None) }
 }
 
 /// The answer, and the times of each run; of several runs the first only warms up.

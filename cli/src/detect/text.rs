@@ -58,7 +58,7 @@ pub fn human(told: &Report, contacts: &Contacts) -> String {
         );
         let _ = writeln!(text, "  from {:?} to {:?}", nearest.points[0], nearest.points[1]);
     }
-    for note in &told.notes {
+    for note in &summary.notes {
         let _ = writeln!(text, "  {note}");
     }
     for reason in &summary.degraded {

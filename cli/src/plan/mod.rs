@@ -6,7 +6,6 @@ mod table;
 mod times;
 
 use crate::args::PlanArgs;
-use crate::detect::notes::has_memory;
 use crate::detect::{Question, question};
 use crate::output::{print, say};
 use crate::progress::during;
@@ -225,4 +224,16 @@ fn of_trees(query: &Query, device: &Device) -> String {
         }
     );
     text
+}
+
+/// What was measured; `None` if there is no memory for it.
+///
+/// # Errors
+/// All others.
+fn has_memory<T>(done: Result<T, Error>) -> Result<Option<T>, Error> {
+    match done {
+        Ok(done) => Ok(Some(done)),
+        Err(Error::OutOfMemory { .. }) => Ok(None),
+        Err(error) => Err(error),
+    }
 }

@@ -170,16 +170,6 @@ impl Sequence {
         scene.ids().zip(inputs).filter_map(|(id, input)| input.map(|input| (id, input))).collect()
     }
 
-    /// Whether anything moves in a step.
-    pub fn moves(&self, step: usize) -> bool {
-        self.frames > 1
-            && self.tracks.iter().any(|track| match track {
-                _ if track.frames() < 2 => false,
-                Track::Positions(all) => all[step] != all[step + 1],
-                Track::Poses(all) => all[step] != all[step + 1],
-            })
-    }
-
     fn weld(&mut self) {
         for (body, track) in self.bodies.iter_mut().zip(&self.tracks) {
             let frames: &[Positions] = if let Track::Positions(all) = track { all } else { &[] };

@@ -2,14 +2,14 @@
 
 use super::Sequence;
 use crate::args::DetectArgs;
-use crate::detect::{geometry, notes, promise};
+use crate::detect::{geometry, promise};
 use crate::output::{Target, print};
 use crate::progress::during;
 use crate::report::{FileFaces, Format, Report};
 use crate::rows::{Columns, Rows};
 use crate::vtp::Vtp;
 use nearmiss::Detector;
-use nearmiss::contacts::{ContactGeometry, Contacts, Summary};
+use nearmiss::contacts::{ContactGeometry, Contacts, Note, Summary};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::query::{Query, QueryKind};
@@ -113,8 +113,6 @@ struct Steps<'a> {
     all: &'a Sequence,
     query: Query,
     detector: Detector,
-    /// Of an earliest query: what meets where steps begin; none where there is no memory for it.
-    starts: Option<Detector>,
     faces: Option<FileFaces>,
 }
 
@@ -126,11 +124,8 @@ impl Steps<'_> {
         (scene, query): (Scene, Query),
     ) -> Result<Steps<'a>, Error> {
         let faces = args.file_faces.then(|| FileFaces::of(scene.bodies()));
-        let starts = (query.kind() == QueryKind::Earliest).then(|| scene.clone());
-        let detector = during("building", || Detector::new(device.clone(), scene, query))?;
-        let start = |scene| notes::has_memory(Detector::new(device, scene, Query::discrete()));
-        let starts = starts.map_or(Ok(None), start)?;
-        Ok(Steps { args, all, query, detector, starts, faces })
+        let detector = during("building", || Detector::new(device, scene, query))?;
+        Ok(Steps { args, all, query, detector, faces })
     }
 
     fn run(mut self, mut out: Out) -> Result<(), Stop> {
@@ -140,7 +135,7 @@ impl Steps<'_> {
         }
         for step in 0..self.all.steps(at_rest) {
             let found = during(format!("step {step}"), || self.ask(step, at_rest))?;
-            let report = self.report(step, &found)?;
+            let report = self.report(step, &found);
             let geometry = geometry(self.args, &mut self.detector, &found)?;
             self.put(&mut out, &found, &report, geometry.as_deref()).map_err(Stop::File)?;
             total.add(step, &found);
@@ -187,24 +182,12 @@ impl Steps<'_> {
         }
     }
 
-    /// The summary, and what else there is to say.
-    fn report(&mut self, step: usize, found: &Contacts) -> Result<Report, Error> {
-        let at_rest = self.query.kind().is_at_rest();
+    /// The summary. Of a mesh one word about its seams is enough.
+    fn report(&self, step: usize, found: &Contacts) -> Report {
         let mut summary = self.detector.summary(found);
-        summary.frames = if at_rest { 1 } else { 2 };
-        let (mut pairs_at_start, mut keep) = (None, self.starts.take());
-        if let Some(starts) = &mut keep {
-            let inputs = self.all.inputs(starts.scene(), step, true);
-            let met = if step == 0 { starts.detect() } else { starts.frame(&inputs) };
-            pairs_at_start = notes::has_memory(met)?.map(|met| met.len());
-        }
-        self.starts = keep.filter(|_| pairs_at_start.is_some());
-        let moves =
-            if at_rest || self.all.moves(step) { notes::Moves::Yes } else { notes::Moves::SameFrames };
-        // Of a mesh one word about its seams is enough.
-        let coincident = if step == 0 { notes::coincident(self.detector.scene().bodies(), found) } else { 0 };
-        let notes = notes::of(self.query.kind(), moves, found, (pairs_at_start, coincident));
-        Ok(Report { step: Some(step), summary, pairs_at_start, notes })
+        summary.frames = if self.query.kind().is_at_rest() { 1 } else { 2 };
+        summary.notes.retain(|note| step == 0 || !matches!(note, Note::Coincident { .. }));
+        Report { step: Some(step), summary }
     }
 
     fn put(
@@ -279,7 +262,7 @@ fn line(report: &Report, at_rest: bool) -> String {
         summary.hash
     );
     // Writing to a String cannot fail.
-    report.notes.iter().for_each(|note| _ = writeln!(text, "  {note}"));
+    summary.notes.iter().for_each(|note| _ = writeln!(text, "  {note}"));
     summary.degraded.iter().for_each(|reason| _ = writeln!(text, "  degraded: {reason}"));
     text
 }

@@ -37,7 +37,8 @@ fn each_step_is_answered_as_alone() {
             for key in ["hash", "contacts", "earliest_toi", "frames", "triangles", "tolerance", "distance"] {
                 assert_eq!(step[key], one[key], "{question:?}, step {at}, {key}");
             }
-            assert_eq!(step["pairs_at_start"], one["pairs_at_start"], "{question:?}, step {at}");
+            assert_eq!(step["starts_crossing"], one["starts_crossing"], "{question:?}, step {at}");
+            assert_eq!(step["starts_crossing"].is_null(), at_rest, "{question:?}, step {at}");
             assert_eq!(step["step"], at);
             contacts += one["contacts"].as_u64().expect("a number");
         }

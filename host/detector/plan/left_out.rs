@@ -49,6 +49,8 @@ pub fn of(plan: &Plan, layout: &Layout, query: &Query, is_gpu: bool) -> Vec<Left
     put(buffer(purpose::EDGES), "edges", "triangles are asked about as a whole");
     let between = !query.kind().is_within_bodies();
     put(between, "pairs within a body", "a distance is that of two bodies");
+    let assumed = !query.kind().is_at_rest() && !query.checks_start();
+    put(assumed, "check of the start", "the query assumes that nothing crosses there");
     let earliest = query.kind() == QueryKind::Earliest;
     put(earliest, "lists of contacts", "only the smallest time is asked for");
     put(stage("fit"), "launch for the leaves", "treelets fit them where they merge them");

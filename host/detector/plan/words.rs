@@ -17,7 +17,7 @@ pub const STAGES: [(&str, &str); 9] = [
 const ORDER: usize = 7;
 
 /// Kernels by how their names begin, the longer beginnings first, and what each does.
-const KERNELS: [(&str, &str); 55] = [
+const KERNELS: [(&str, &str); 58] = [
     ("place", "poses applied, uploads put in place, the rest at rest"),
     ("construct_bounds", "the box of each body's centres"),
     ("construct_halves_bounds", "the box of each stretch of triangles"),
@@ -55,6 +55,9 @@ const KERNELS: [(&str, &str); 55] = [
     ("narrow_filter", "signs in the positions' precision"),
     ("narrow_wide", "signs in f64 of what that left"),
     ("narrow_exact", "exact signs of what is left"),
+    ("narrow_start_filter", "triangles that share a point at the start: boxes and signs"),
+    ("narrow_start_wide", "the same in f64 of what that left"),
+    ("narrow_start_exact", "the same by exact signs of what is left"),
     ("narrow_features_at_rest", "vertex/face and edge/edge pairs by their boxes"),
     ("narrow_features", "vertex/face and edge/edge pairs by their boxes in motion"),
     ("narrow_cull", "pairs that signs reject"),

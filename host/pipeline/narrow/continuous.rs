@@ -2,6 +2,7 @@
 
 use super::features::Features;
 use super::rungs::Rungs;
+use super::start::StartCheck;
 use super::{AnswerLists, Narrow, NarrowContext, growable};
 use crate::contacts::Entries;
 use crate::device::{Ahead, Buffer, Device};
@@ -44,6 +45,8 @@ impl Capacities {
 /// A step of the phase.
 #[derive(Clone, Copy)]
 enum Step {
+    /// How many triangle pairs share a point at the start.
+    Start,
     /// Vertex/face and edge/edge candidates.
     Features,
     /// Those that may meet.
@@ -55,6 +58,8 @@ enum Step {
 /// The lists and the topology of a continuous query, or of an earliest one.
 pub struct ContinuousNarrow {
     solver: ContinuousSolver,
+    /// What crosses at the start; none of a query that assumes that nothing does.
+    start: Option<StartCheck>,
     /// Topology, and the pairs whose boxes come within the separation.
     features: Features,
     /// Those that may meet; there is no such step with a separation.
@@ -130,6 +135,7 @@ impl ContinuousNarrow {
         let is_apart = solver.certified().is_some_and(Certified::is_apart);
         Ok(ContinuousNarrow {
             solver,
+            start: None,
             features: Features::new(device, layout, capacities.candidates)?,
             survivors: (!is_apart).then(survivors).transpose()?,
             vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, capacities.hits[0])?,
@@ -149,12 +155,21 @@ impl ContinuousNarrow {
         })
     }
 
+    /// The same, which also counts what crosses at the start, with room for `few` pairs that filters leave undecided.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn checking_start<R: Precision>(self, device: &Device, few: usize) -> Result<Self, Error> {
+        Ok(ContinuousNarrow { start: Some(StartCheck::new::<R>(device, few)?), ..self })
+    }
+
     /// The steps, in their order. With a separation there is nothing that signs could reject.
     fn all_steps(&self) -> &'static [Step] {
-        match self.survivors {
-            Some(_) => &[Step::Features, Step::Cull, Step::Solve],
-            None => &[Step::Features, Step::Solve],
-        }
+        let all = match self.survivors {
+            Some(_) => &[Step::Start, Step::Features, Step::Cull, Step::Solve][..],
+            None => &[Step::Start, Step::Features, Step::Solve],
+        };
+        if self.start.is_some() { all } else { &all[1..] }
     }
 
     /// What the solver is asked.
@@ -259,6 +274,7 @@ impl ContinuousNarrow {
 impl<R: Precision> Narrow<R> for ContinuousNarrow {
     fn steps(&self) -> Vec<&'static str> {
         let name = |step: &Step| match step {
+            Step::Start => "start",
             Step::Features => "features",
             Step::Cull => "cull",
             Step::Solve => "solve",
@@ -268,6 +284,10 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
 
     fn run(&mut self, step: usize, given: &NarrowContext<R>) -> Result<(), Error> {
         match self.all_steps()[step] {
+            // A sample has no more than a part of the candidates, and nothing of it is counted.
+            Step::Start => {
+                self.start.iter().filter(|_| !given.is_sample).try_for_each(|start| start.run(given))
+            }
             Step::Features => {
                 let gap = self.solver.certified().filter(|certified| certified.is_apart());
                 let known =
@@ -288,12 +308,17 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
         Ok(())
     }
 
+    fn checks_start(&self) -> bool {
+        self.start.is_some()
+    }
+
     fn bound(&self) -> Option<Span<u64>> {
         self.bound.as_ref().map(Buffer::span)
     }
 
     fn lists(&mut self, step: usize) -> Vec<&mut dyn GrowableOutput> {
         match self.all_steps()[step] {
+            Step::Start => self.start.as_mut().map_or(Vec::new(), StartCheck::lists),
             Step::Features => growable(&mut self.features.candidates).collect(),
             Step::Cull => growable(self.survivors.iter_mut().flatten()).collect(),
             Step::Solve => growable([&mut self.vf_hits, &mut self.ee_hits])
@@ -308,7 +333,8 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
             // What is asked of a pair hangs on what was found before.
             return Vec::new();
         }
-        let mut lists = self.features.between();
+        let mut lists: Vec<_> = self.start.iter().flat_map(StartCheck::undecided).collect();
+        lists.extend(self.features.between());
         if let Some([vf, ee]) = &self.survivors {
             lists.extend([("narrow: vf that may meet", vf), ("narrow: ee that may meet", ee)]);
         }
@@ -356,6 +382,7 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
         let lists = [&self.vf_hits, &self.ee_hits];
         AnswerLists {
             earliest: self.earliest.as_ref().map(|earliest| earliest.span().addr()),
+            crossing: self.start.as_ref().map(|_| counter::STARTS_CROSSING),
             edges: self.features.edges.span(),
             ..AnswerLists::of(Entries::Contacts, &lists, self.ordered.as_ref())
         }

@@ -62,7 +62,7 @@ impl DiscreteNarrow {
     /// Those of the device.
     pub fn decide<R: Precision>(&self, given: &NarrowContext<R>) -> Result<(), Error> {
         let args = |pairs: Output<Pair>, undecided: Option<&List<Pair>>| DiscreteArgs {
-            positions: given.frames.still,
+            frames: given.frames,
             faces: given.faces,
             pairs,
             contacts: self.contacts.output(given.counters),

@@ -119,6 +119,7 @@ impl<R: Precision> Narrow<R> for DistanceNarrow {
             is_ordered: true,
             counters: vec![self.nearest.counter()],
             earliest: None,
+            crossing: None,
             edges: Span::EMPTY,
         }
     }

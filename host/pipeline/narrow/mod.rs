@@ -7,6 +7,7 @@ mod distance;
 mod features;
 mod near;
 mod rungs;
+mod start;
 
 pub use answer::AnswerLists;
 pub use continuous::{Capacities, ContinuousNarrow};
@@ -68,6 +69,11 @@ pub trait Narrow<R: Precision>: Send {
         None
     }
 
+    /// Whether it counts the triangle pairs that share a point at the start of the step.
+    fn checks_start(&self) -> bool {
+        false
+    }
+
     /// The lists that the step of that place fills.
     fn lists(&mut self, step: usize) -> Vec<&mut dyn GrowableOutput>;
 
@@ -126,8 +132,14 @@ pub fn narrow<R: Precision>(
     let room = (capacity, few);
     let mut narrow: Box<dyn Narrow<R>> = match query {
         Query::Discrete(query) => Box::new(DiscreteNarrow::new::<R>(device, query.test, few)?),
-        Query::Continuous(query) => Box::new(ContinuousNarrow::all(device, layout, query.solver, room)?),
-        Query::Earliest(query) => Box::new(ContinuousNarrow::first(device, layout, query.solver, room)?),
+        Query::Continuous(query) => {
+            let narrow = ContinuousNarrow::all(device, layout, query.solver, room)?;
+            Box::new(if query.assume_free { narrow } else { narrow.checking_start::<R>(device, few / 4)? })
+        }
+        Query::Earliest(query) => {
+            let narrow = ContinuousNarrow::first(device, layout, query.solver, room)?;
+            Box::new(if query.assume_free { narrow } else { narrow.checking_start::<R>(device, few / 4)? })
+        }
         Query::Near(query) => Box::new(NearNarrow::new(device, layout, query.distance, room)?),
         Query::Distance(_) => Box::new(DistanceNarrow::new::<R>(device, few)?),
     };

@@ -48,6 +48,8 @@ pub struct Found<'a> {
     pub reruns: u64,
     /// Whether the walk's front did not pay.
     pub front_dropped: bool,
+    /// Whether the triangle pairs that share a point at the start of the step were counted.
+    pub is_start_checked: bool,
     /// What was seen of positions in memory of the caller; `None` where there are none.
     pub seen: Option<Seen>,
 }
@@ -140,6 +142,7 @@ impl<R: Precision> TypedPipeline<R> {
     pub(super) fn gather(&self, counters: Counts, reruns: u64) -> Result<Found<'_>, Error> {
         let (listed, ordered) = self.narrow.gather(&counters)?;
         let (front_dropped, seen) = (self.broad.front_dropped(), self.vertices.seen()?);
-        Ok(Found { listed, ordered, counters, reruns, front_dropped, seen })
+        let is_start_checked = self.narrow.checks_start();
+        Ok(Found { listed, ordered, counters, reruns, front_dropped, is_start_checked, seen })
     }
 }

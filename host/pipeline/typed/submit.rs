@@ -11,7 +11,7 @@ use crate::pipeline::timing::{Stage, Stages};
 use crate::pipeline::typed::Found;
 use crate::pipeline::{launch, purpose};
 use crate::scene::Pose;
-use nearmiss_kernels::abi::{FrameStatus, Room, Span, StatusArgs, seen};
+use nearmiss_kernels::abi::{Counter, FrameStatus, Room, Span, StatusArgs, seen};
 use nearmiss_kernels::entry::status_frame;
 
 /// What such a frame needs beside what every frame has.
@@ -150,10 +150,17 @@ impl<R: Precision> TypedPipeline<R> {
         [Stage::Fit, Stage::Refit, Stage::Traverse, Stage::Narrow, Stage::Order]
             .into_iter()
             .try_for_each(|stage| self.run(stage))?;
-        let counters = self.narrow.answer().counters;
-        let all = self.counters.counters();
-        let count = |k: usize| counters.get(k).map_or(Span::EMPTY, |&which| all.word(which));
-        let args = StatusArgs { counters: all, rooms, seen, status, first: count(0), second: count(1) };
+        let (lists, all) = (self.narrow.answer(), self.counters.counters());
+        let count = |which: Option<&Counter>| which.map_or(Span::EMPTY, |&which| all.word(which));
+        let args = StatusArgs {
+            counters: all,
+            rooms,
+            seen,
+            status,
+            first: count(lists.counters.first()),
+            second: count(lists.counters.get(1)),
+            crossing: count(lists.crossing.as_ref()),
+        };
         launch::blocks::<status_frame>(&self.device, 1, &args)
     }
 }

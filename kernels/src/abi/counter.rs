@@ -134,6 +134,8 @@ counters! { 0;
     WITNESS,
     /// 1 where there is such a pair.
     NEAREST_PAIRS,
+    /// Triangle pairs of a step that share a point at t = 0.
+    STARTS_CROSSING,
 }
 
 /// The counters of a frame, in device memory.

@@ -26,10 +26,10 @@ arguments! {
         /// The bits of a time: who only meets later does not matter. Empty where all do.
         known: Span<u64>,
     }
-    /// `narrow_moller`, `narrow_filter`, `narrow_wide`, `narrow_exact`: triangle pairs that meet.
+    /// `narrow_moller`, `narrow_filter`, `narrow_wide`, `narrow_exact`, and those of the start of a step: triangle pairs that meet.
     DiscreteArgs<R: Real> {
-        /// Positions.
-        positions: Span<Point<R>>,
+        /// Positions: the only ones, or those of a step, whose start is read.
+        frames: Positions<R>,
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
         /// Pairs to test.

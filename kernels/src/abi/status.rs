@@ -16,8 +16,10 @@ pub struct FrameStatus {
     /// Of the first vertex, or first vertex of a pose, in memory of the caller that cannot be computed with: `!vertex` of 32
     /// bits. Unless this is 0 there is no answer.
     pub invalid: u64,
+    /// Triangle pairs that share a point at the start of the step; all bits set if the start is not checked.
+    pub crossing: u64,
 }
-const _: () = assert!(size_of::<FrameStatus>() == 32);
+const _: () = assert!(size_of::<FrameStatus>() == 40);
 
 /// A list's room.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
@@ -47,5 +49,7 @@ arguments! {
         first: Span<u64>,
         /// Counts its second list.
         second: Span<u64>,
+        /// Counts the triangle pairs that share a point at the start; empty if the start is not checked.
+        crossing: Span<u64>,
     }
 }

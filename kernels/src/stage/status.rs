@@ -33,6 +33,7 @@ pub fn status<B: Block>(b: &mut B, a: &StatusArgs) {
                 second: count(a.second),
                 short: short.into(),
                 invalid: l.read(a.seen, seen::INVALID),
+                crossing: if a.crossing.is_empty() { u64::MAX } else { l.read(a.crossing, 0) },
             };
             l.write(a.status, 0, status);
         }

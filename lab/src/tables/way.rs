@@ -38,7 +38,9 @@ impl Way {
         let search =
             Search { broad: Some(Broad::Tree), bv: Some(self.bv), refit, traversal, ..Search::default() };
         if self.moves {
-            Continuous { solver: ContinuousSolver::Cubic(Precision::F64), search }.into()
+            // The thesis does not look at the start of a step either.
+            let solver = ContinuousSolver::Cubic(Precision::F64);
+            Continuous { solver, search, assume_free: true }.into()
         } else {
             Query::discrete().with_search(search)
         }

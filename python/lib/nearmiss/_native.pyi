@@ -89,6 +89,7 @@ class Continuous(Query):
         tolerance: float | None = None,
         separation: float = 0.0,
         budget: int | None = None,
+        assume_free: bool = False,
         solver: str = "certified",
         broad: str | None = None,
         order: str | None = None,
@@ -103,6 +104,7 @@ class Earliest(Query):
         tolerance: float | None = None,
         separation: float = 0.0,
         budget: int | None = None,
+        assume_free: bool = False,
         solver: str = "certified",
         broad: str | None = None,
         order: str | None = None,
@@ -150,6 +152,10 @@ class Contacts:
     def weights(self) -> NDArray[np.float64]: ...
     @property
     def points(self) -> NDArray[np.float64]: ...
+    @property
+    def starts_crossing(self) -> int | None: ...
+    @property
+    def is_free(self) -> bool: ...
     @property
     def earliest(self) -> float | None: ...
     @property

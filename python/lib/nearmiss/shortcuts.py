@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from ._native import Body, Contacts, Continuous, Detector, Device, Discrete, Earliest, Near
 from .arrays import device_of, on_host
+from .errors import InputError
 
 __all__ = ["contacts", "near", "self_intersections", "time_of_impact"]
 
@@ -41,18 +42,37 @@ def contacts(
     separation: what comes nearer than this is in contact, in the unit of the vertices; 0 for touching.
     tolerance:  how well a time is told: as a length moved. Default: 1e-4 of the mean edge.
     Returns Contacts: kind, indices, toi and toi_hi (bounds of the first time, in [0, 1]), status. None is missed, none is late.
+    `starts_crossing` counts the triangle pairs that share a point at the start: those need not have a time.
     """
     return _ask(t0, faces, Continuous(separation=separation, tolerance=tolerance), device, t1)
 
 
 def time_of_impact(
-    t0, t1, faces, *, separation: float = 0.0, tolerance: float | None = None, device: Device | None = None
+    t0,
+    t1,
+    faces,
+    *,
+    separation: float = 0.0,
+    tolerance: float | None = None,
+    assume_free: bool = False,
+    device: Device | None = None,
 ) -> float | None:
-    """How far a step may go: the first time in [0, 1] at which any two features meet, never late; None if none do.
+    """How far a step may go: the first time in [0, 1] at which any two features meet, never late; None if the step is free.
 
-    Arguments as for contacts.
+    Raises InputError if triangles cross at the start, unless the first time is 0: no step is free then, though none of their
+    features need meet again. assume_free: the start is not checked.
+    Other arguments as for contacts.
     """
-    return _ask(t0, faces, Earliest(separation=separation, tolerance=tolerance), device, t1).earliest
+    query = Earliest(separation=separation, tolerance=tolerance, assume_free=assume_free)
+    found = _ask(t0, faces, query, device, t1)
+    count = found.starts_crossing
+    if count and found.earliest != 0.0:
+        pairs = "1 triangle pair crosses" if count == 1 else f"{count} triangle pairs cross"
+        raise InputError(
+            f"{pairs} at the start of the step, so no part of it is free of contact; "
+            "list them by self_intersections(t0, faces), or leave them aside by assume_free=True"
+        )
+    return found.earliest
 
 
 def _ask(here, faces, query, device, there=None):

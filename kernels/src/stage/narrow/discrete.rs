@@ -1,29 +1,88 @@
 //! # Discrete: triangle pairs that share a point
 //! Paper    section 6.2.5 ([`moller()`], the seed's); beyond it: [`filter`] and [`exact`], the default.
 //! Launch   a lane a pair; a grid of any size strides. `filter` over the candidates; of f32 positions `wide` over what that
-//!          left undecided; `exact` over what is still undecided.
+//!          left undecided; `exact` over what is still undecided. [`Still`] where nothing moves; [`Start`] at the start of a
+//!          step, over the candidates of the whole step, each a kernel of its own.
 //! Reads    candidates, faces, positions.   Writes   contacts; `filter` and `wide` also the undecided pairs.
 //! Before   candidates are complete. Positions are finite.
 //! After    moller  the pairs that the float test believes in: it can miss and it can err.
 //!          filter, wide, exact  exactly the pairs whose closed triangles share a point; of pairs with a common vertex,
 //!          those that meet beyond it.
+//!          Of `Start`: contacts = {(a, b) in candidates : no common vertex, closed triangles share a point at t = 0}.
+//!          These are all such pairs of the scene: a swept volume holds its triangle at t = 0, so the volumes of such a pair
+//!          overlap at t = 0. A horizon is above 0, and a volume that is cut at it keeps its start; growth by a separation only adds
+//!          candidates. The list that an earliest query has after its sample is whole in this sense.
 //! Room     contacts, undecided: counted past the end, grown, run again.
-//! Cost     8 B pair, 24 B faces, 96 B positions (gathered); about 100 operations for a pair that a plane separates. A sign
+//!          `Start` has room for no contact: their number is what counts.
+//! Cost     8 B pair, 24 B faces, 96 B positions (gathered); about 100 operations for a pair that a plane separates, 40 for one of
+//!          `Start` whose boxes are apart. A sign
 //!          takes `wide` some 30 operations in f64, `exact` thousands on integers.
 
 use super::{Entries, append_each, expect, stride};
-use crate::abi::{DiscreteArgs, DiscreteFlags, Pair};
+use crate::abi::{DiscreteArgs, DiscreteFlags, Pair, Positions};
 use crate::exec::{Block, Lane, OPEN, RowMap, Slot};
 use crate::math::{Real, Vec3};
-use crate::prim::adjacent::{Shared, meets_beyond_shared};
+use crate::prim::adjacent::{Shared, meets_beyond_shared, share_a_vertex};
 use crate::prim::moller;
 use crate::prim::tri_tri::{self, Certain, Filter, SIGNS, Wide, meets, parted};
 use core::marker::PhantomData;
 
+/// Which positions are read, and what the first look at a pair of triangles is.
+pub trait Frame<R: Real> {
+    /// Whether pairs with a common vertex are among the candidates and are left out.
+    const LEAVES_OUT_ADJACENT: bool;
+    /// A vertex will be read soon.
+    fn expect<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32);
+    /// Reads a vertex.
+    fn at<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32) -> Vec3<R>;
+    /// Whether two triangles are apart, by a test without branches that most pairs pass. False proves nothing.
+    fn are_apart(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> bool;
+}
+
+/// Nothing moves. Candidates overlap here; most are parted by a plane.
+pub struct Still;
+
+impl<R: Real> Frame<R> for Still {
+    const LEAVES_OUT_ADJACENT: bool = false;
+    #[inline(always)]
+    fn expect<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32) {
+        l.expect(frames.still, vertex);
+    }
+    #[inline(always)]
+    fn at<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32) -> Vec3<R> {
+        l.read(frames.still, vertex).at
+    }
+    #[inline(always)]
+    fn are_apart(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> bool {
+        parted(p, q)
+    }
+}
+
+/// The start of a step. Candidates overlap at some time of it; the boxes of most are apart here.
+pub struct Start;
+
+impl<R: Real> Frame<R> for Start {
+    const LEAVES_OUT_ADJACENT: bool = true;
+    #[inline(always)]
+    fn expect<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32) {
+        l.expect(frames.moving, vertex);
+    }
+    #[inline(always)]
+    fn at<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32) -> Vec3<R> {
+        l.read(frames.moving, vertex).t0.at
+    }
+    #[inline(always)]
+    fn are_apart(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> bool {
+        let ends = |[x, y, z]: &[Vec3<R>; 3]| [x.lesser(*y).lesser(*z), x.greater(*y).greater(*z)];
+        let ([p_lo, p_hi], [q_lo, q_hi]) = (ends(p), ends(q));
+        let apart = |k: usize| (p_hi[k] < q_lo[k]) | (q_hi[k] < p_lo[k]);
+        apart(0) | apart(1) | apart(2)
+    }
+}
+
 /// The corners of a triangle.
-fn corners<R: Real, L: Lane>(l: &L, a: &DiscreteArgs<R>, face: [u32; 3]) -> [Vec3<R>; 3] {
-    let at = |v| l.read(a.positions, v).at;
-    [at(face[0]), at(face[1]), at(face[2])]
+fn corners<R: Real, F: Frame<R>, L: Lane>(l: &L, a: &DiscreteArgs<R>, face: [u32; 3]) -> [Vec3<R>; 3] {
+    face.map(|vertex| F::at(l, &a.frames, vertex))
 }
 
 /// The seed's test, in f32.
@@ -31,7 +90,7 @@ pub fn moller<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
     let count = a.pairs.listed(b);
     append_each(b, count, a.contacts, |l, i| {
         let pair = a.pairs.get(l, i);
-        let triangle = |t: u32| corners(l, a, l.read(a.faces, t));
+        let triangle = |t: u32| corners::<R, Still, _>(l, a, l.read(a.faces, t));
         moller::moller(&triangle(pair.a), &triangle(pair.b)).then_some(pair)
     });
 }
@@ -66,18 +125,18 @@ impl<B: Block> Verdicts<B> {
     }
 }
 
-/// Whether one of two triangles' planes parts them; what it does not is [`OPEN`].
-struct Parted<R>(PhantomData<R>);
+/// The first look at two triangles; what it does not decide is [`OPEN`].
+struct Apart<R, F>(PhantomData<(R, F)>);
 
-/// What [`Parted`] makes of two triangles that are apart.
+/// What [`Apart`] makes of two triangles that are apart.
 const APART: u32 = 0;
 
-impl<R: Real> RowMap for Parted<R> {
+impl<R: Real, F: Frame<R>> RowMap for Apart<R, F> {
     type Number = R;
     type Row = [[Vec3<R>; 3]; 2];
     #[inline(always)]
     fn at_once(&self, [p, q]: [[Vec3<R>; 3]; 2]) -> u32 {
-        if parted(&p, &q) { APART } else { OPEN }
+        if F::are_apart(&p, &q) { APART } else { OPEN }
     }
 }
 
@@ -88,7 +147,7 @@ pub const fn shared_bytes(lanes: u32) -> u32 {
 
 /// Signs with an error bound, in the precision of the positions: contacts, and pairs that it cannot decide. Most pairs are parted by a
 /// plane, which takes no branch; the others wait until there is one a lane.
-pub fn filter<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
+pub fn filter<R: Real, F: Frame<R>, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
     let (count, lanes) = (a.pairs.listed(b), b.lanes());
     let later = b.blocks() * lanes;
     let waiting = b.shared::<[u32; 2]>(2 * lanes);
@@ -98,7 +157,7 @@ pub fn filter<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
     let mut fill = 0;
     stride(b, count, |b, base| {
         b.map_rows(
-            &Parted(PhantomData),
+            &Apart::<R, F>(PhantomData),
             |l| {
                 let i = base + l.lane();
                 if i >= count {
@@ -106,14 +165,19 @@ pub fn filter<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
                 }
                 let pair = a.pairs.get(l, i);
                 let faces = [l.read(a.faces, pair.a), l.read(a.faces, pair.b)];
-                faces.into_iter().flatten().for_each(|vertex| l.expect(a.positions, vertex));
                 expect(l, &a.pairs, (i + later, count), |pair| {
                     l.expect(a.faces, pair.a);
                     l.expect(a.faces, pair.b);
                 });
+                if F::LEAVES_OUT_ADJACENT && share_a_vertex(faces[0], faces[1]) {
+                    return None;
+                }
+                faces.into_iter().flatten().for_each(|vertex| F::expect(l, &a.frames, vertex));
                 Some((pair, faces[0], faces[1]))
             },
-            |l, (_, p, q)| (!beyond_shared(a, p, q)).then(|| [corners(l, a, p), corners(l, a, q)]),
+            |l, (_, p, q)| {
+                (!beyond_shared(a, p, q)).then(|| [corners::<R, F, _>(l, a, p), corners::<R, F, _>(l, a, q)])
+            },
             |l, told| {
                 let left = told.and_then(|((pair, ..), what)| (what != APART).then_some(pair));
                 *open.of(l) = left;
@@ -131,10 +195,10 @@ pub fn filter<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
         fill += found;
         if fill >= lanes {
             fill -= lanes;
-            decide(b, a, &mut verdicts, |l| Some(l.get(waiting, fill + l.lane())));
+            decide::<R, F, B>(b, a, &mut verdicts, |l| Some(l.get(waiting, fill + l.lane())));
         }
     });
-    decide(b, a, &mut verdicts, |l| (l.lane() < fill).then(|| l.get(waiting, l.lane())));
+    decide::<R, F, B>(b, a, &mut verdicts, |l| (l.lane() < fill).then(|| l.get(waiting, l.lane())));
 }
 
 /// Whether a pair is asked about what is beyond the corners that it shares, which the filter leaves to others.
@@ -145,7 +209,7 @@ fn beyond_shared<R: Real>(a: &DiscreteArgs<R>, p: [u32; 3], q: [u32; 3]) -> bool
 
 /// All signs of the pairs that lanes have.
 #[inline(always)]
-fn decide<R: Real, B: Block>(
+fn decide<R: Real, F: Frame<R>, B: Block>(
     b: &mut B,
     a: &DiscreteArgs<R>,
     verdicts: &mut Verdicts<B>,
@@ -157,7 +221,8 @@ fn decide<R: Real, B: Block>(
             let verdict = if beyond_shared(a, faces[0], faces[1]) {
                 None
             } else {
-                meets::<R, Filter>(&corners(l, a, faces[0]), &corners(l, a, faces[1]))
+                let [x, y] = faces.map(|face| corners::<R, F, _>(l, a, face));
+                meets::<R, Filter>(&x, &y)
             };
             (Pair { a: p, b: q }, verdict)
         });
@@ -169,7 +234,7 @@ fn decide<R: Real, B: Block>(
 }
 
 /// The same in f64, for what f32 left undecided.
-pub fn wide<B: Block>(b: &mut B, a: &DiscreteArgs<f32>) {
+pub fn wide<F: Frame<f32>, B: Block>(b: &mut B, a: &DiscreteArgs<f32>) {
     let count = a.pairs.listed(b);
     let mut verdicts = Verdicts::new(b);
     stride(b, count, |b, base| {
@@ -180,7 +245,7 @@ pub fn wide<B: Block>(b: &mut B, a: &DiscreteArgs<f32>) {
             }
             let pair = a.pairs.get(l, i);
             let (p, q) = (l.read(a.faces, pair.a), l.read(a.faces, pair.b));
-            let (x, y) = (corners(l, a, p), corners(l, a, q));
+            let (x, y) = (corners::<f32, F, _>(l, a, p), corners::<f32, F, _>(l, a, q));
             let verdict = match Shared::by_index(p, q) {
                 Shared::Nothing => meets::<f32, Wide>(&x, &y),
                 shared => beyond(x, y, shared),
@@ -205,22 +270,22 @@ const LANES_A_PAIR: u32 = SIGNS.next_power_of_two();
 pub const EXACT_SHARED: u32 = 4 * TOGETHER * LANES_A_PAIR;
 
 /// Exact signs, for what the filters left undecided: each some thousand operations, one after the other.
-pub fn exact<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
+pub fn exact<R: Real, F: Frame<R>, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
     let count = a.pairs.listed(b);
     if a.flags.has(DiscreteFlags::KEEP_ADJACENT) || count > b.blocks() * TOGETHER {
         append_each(b, count, a.contacts, |l, i| {
-            let (pair, [p, q], shared) = given(l, a, i);
+            let (pair, [p, q], shared) = given::<R, F, _>(l, a, i);
             // `Certain` always answers; were it not to, the pair stays.
             (meets_beyond_shared::<R, Certain>(&p, &q, shared) != Some(false)).then_some(pair)
         });
     } else {
-        exact_of_few(b, a, count);
+        exact_of_few::<R, F, B>(b, a, count);
     }
 }
 
 /// The same of so few pairs that a lane works out one sign. One lane of each pair decides; it asks for more where the triangles lie in
 /// one plane.
-fn exact_of_few<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>, count: u32) {
+fn exact_of_few<R: Real, F: Frame<R>, B: Block>(b: &mut B, a: &DiscreteArgs<R>, count: u32) {
     let lanes = b.lanes();
     let signs = b.shared::<u32>(TOGETHER * LANES_A_PAIR);
     let base = (b.block() * TOGETHER).min(count);
@@ -230,7 +295,7 @@ fn exact_of_few<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>, count: u32) {
         while i < some * LANES_A_PAIR {
             let which = i % LANES_A_PAIR;
             if which < SIGNS {
-                let (_, [p, q], _) = given(l, a, base + i / LANES_A_PAIR);
+                let (_, [p, q], _) = given::<R, F, _>(l, a, base + i / LANES_A_PAIR);
                 let sign = tri_tri::sign::<R, Certain>(&p, &q, which).unwrap_or(0);
                 l.put(signs, i, (sign + 1) as u32);
             }
@@ -241,7 +306,7 @@ fn exact_of_few<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>, count: u32) {
     b.phase(|l| {
         let mut i = l.lane();
         while i < some {
-            let (pair, [p, q], _) = given(l, a, base + i);
+            let (pair, [p, q], _) = given::<R, F, _>(l, a, base + i);
             let sign = |k: usize| l.get(signs, i * LANES_A_PAIR + k as u32) as i32 - 1;
             let verdict = tri_tri::decided(&core::array::from_fn(sign));
             if verdict.or_else(|| meets::<R, Certain>(&p, &q)) != Some(false) {
@@ -255,8 +320,12 @@ fn exact_of_few<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>, count: u32) {
 
 /// A pair, its corners, and what they share.
 #[inline(always)]
-fn given<R: Real, L: Lane>(l: &L, a: &DiscreteArgs<R>, i: u32) -> (Pair, [[Vec3<R>; 3]; 2], Shared) {
+fn given<R: Real, F: Frame<R>, L: Lane>(
+    l: &L,
+    a: &DiscreteArgs<R>,
+    i: u32,
+) -> (Pair, [[Vec3<R>; 3]; 2], Shared) {
     let pair = a.pairs.get(l, i);
     let (p, q) = (l.read(a.faces, pair.a), l.read(a.faces, pair.b));
-    (pair, [corners(l, a, p), corners(l, a, q)], Shared::by_index(p, q))
+    (pair, [corners::<R, F, _>(l, a, p), corners::<R, F, _>(l, a, q)], Shared::by_index(p, q))
 }

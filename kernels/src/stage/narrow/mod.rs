@@ -1,6 +1,7 @@
 //! # Narrow: candidates → contacts
 //! Paper    section 6.2.5, "a variant of the Moeller test"; "the cubic equation for each of the 15 elementary tests".
-//! Steps    discrete: [`discrete`]. Continuous: [`features`] turns triangle pairs into vertex/face and edge/edge candidates,
+//! Steps    discrete: [`discrete`]. Continuous: [`discrete`] counts the triangle pairs that share a point at t = 0, unless the
+//!          query assumes that none does; [`features`] turns triangle pairs into vertex/face and edge/edge candidates,
 //!          each once; [`cull`] leaves out those that certainly stay apart; the rungs of [`climb`], [`mod@slice`] and
 //!          [`separate`] find what meets of the others and bound its first time, with proof; or [`solve`] does so by the
 //!          seed's cubic. Near: [`features`] too, and [`near`] measures what they leave. Distance: [`discrete`], then

@@ -1,0 +1,109 @@
+//! Notes beside an answer: what a user should know of it.
+
+use super::{Answer, Contacts};
+use crate::mesh::Body;
+use crate::query::Query;
+use crate::scene::BodyKind;
+use crate::words::counted;
+use std::fmt;
+
+/// A note beside an answer. Its text is the same in every language: [`Summary::notes`](super::Summary::notes).
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Note {
+    /// A note of the reader of a mesh file: see [`Mesh::notes`](crate::Mesh::notes).
+    File {
+        /// Its text.
+        text: String,
+    },
+    /// A query in motion of bodies that rest: no body was given positions or another pose for the end of the step.
+    OneFrame,
+    /// A query in motion of bodies whose start and end are the same.
+    SameFrames,
+    /// A distance query of bodies of which no two may meet.
+    NoTwoBodies,
+    /// Triangle pairs that share a point at the start of the step.
+    StartsCrossing {
+        /// How many.
+        pairs: u64,
+    },
+    /// An earliest time of 0.
+    ContactAtStart,
+    /// Vertices that share their place with another, beside at least [`Note::MANY`] contacts.
+    Coincident {
+        /// How many.
+        vertices: u64,
+    },
+}
+
+impl Note {
+    /// Contacts from which on vertices that coincide are counted.
+    pub const MANY: usize = 1_000;
+
+    /// The notes of an answer, of bodies where they were. Cost: a pass over positions that do not move; with [`Note::MANY`] contacts a
+    /// sort of all vertices.
+    #[doc(hidden)]
+    pub fn of(bodies: &[Body], query: &Query, contacts: &Contacts) -> Vec<Note> {
+        let rests = || (!query.kind().is_at_rest()).then(|| resting(bodies)).flatten();
+        let apart = contacts.answer == Answer::Distance(None);
+        let start = match contacts.starts_crossing {
+            Some(pairs @ 1..) => Some(Note::StartsCrossing { pairs }),
+            _ => (contacts.answer == Answer::Earliest(Some(0.0))).then_some(Note::ContactAtStart),
+        };
+        let coincide = || bodies.iter().map(Body::coincident).sum::<usize>() as u64;
+        let vertices = if contacts.len() < Note::MANY { 0 } else { coincide() };
+        let seams = (vertices > 0).then_some(Note::Coincident { vertices });
+        rests().into_iter().chain(apart.then_some(Note::NoTwoBodies)).chain(start).chain(seams).collect()
+    }
+}
+
+/// Why nothing moves, if nothing does. A body whose place only the device has moves if it was given two ends.
+fn resting(bodies: &[Body]) -> Option<Note> {
+    let moves = |body: &Body| match body.kind() {
+        _ if body.is_away() => body.is_moving(),
+        BodyKind::Rigid if body.poses()[0] != body.poses()[1] => true,
+        _ => body.positions_t1().is_some_and(|t1| t1 != body.positions_t0()),
+    };
+    match (bodies.iter().any(moves), bodies.iter().any(Body::is_moving)) {
+        (true, _) => None,
+        (false, true) => Some(Note::SameFrames),
+        (false, false) => Some(Note::OneFrame),
+    }
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Note::File { text } => f.write_str(text),
+            Note::OneFrame => write!(
+                f,
+                "nothing moves: there is one frame of every body, or two equal poses; give positions or poses for the end of the step"
+            ),
+            Note::SameFrames => write!(f, "nothing moves: both frames are the same"),
+            Note::NoTwoBodies => {
+                write!(f, "no two bodies may meet: give a second one, or bodies whose groups meet")
+            }
+            Note::StartsCrossing { pairs } => {
+                let meet = counted(*pairs, "triangle pair meets", "triangle pairs meet");
+                write!(
+                    f,
+                    "{meet} at the start of the step already: no step is free of contact; a discrete query lists them"
+                )
+            }
+            Note::ContactAtStart => {
+                write!(f, "in contact at the start of the step, or too near to tell: no step can be taken")
+            }
+            Note::Coincident { vertices } => {
+                let share = counted(*vertices, "vertex shares its", "vertices share their");
+                write!(f, "{share} place with another: contacts at seams are listed too; --weld merges them")
+            }
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl serde::Serialize for Note {
+    fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_str(self)
+    }
+}
