@@ -80,12 +80,12 @@ fn a_budget_that_ends_is_told() {
                 assert!(all.degraded().iter().any(Degraded::touches_answer));
             }
         }
-        // Not told apart, but told.
+        // An earliest query counts none: its time says whether it is certain.
         let first = with_tolerance(support::asked::by(QueryKind::Earliest, solver), 4e-3);
         let first = certified(first, |all| all.budget = Some(1));
         let first = ask(engine(), shrinking(), first);
-        assert!(first.degraded().contains(&Degraded::Unresolved { pairs: first.unresolved }));
-        assert!(first.unresolved > 0 && first.earliest_toi() <= truth.earliest_toi());
+        assert_eq!(first.degraded(), [Degraded::EarliestUnresolved]);
+        assert!(first.unresolved == 1 && first.earliest_toi() <= truth.earliest_toi());
     }
 }
 

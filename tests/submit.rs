@@ -4,6 +4,8 @@
 mod faults;
 #[path = "submit/inputs.rs"]
 mod inputs;
+#[path = "submit/refusals.rs"]
+mod refusals;
 mod support;
 
 use nearmiss::contacts::on_device::FrameStatus;

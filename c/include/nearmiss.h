@@ -385,7 +385,7 @@ typedef struct {
     uint64_t triangle_pairs;
     // Pairs that the narrow test was asked.
     uint64_t candidates;
-    // How many are neither confirmed nor refuted; of an earliest query how many of the pairs that were asked.
+    // How many are neither confirmed nor refuted; of an earliest query 1 if its time is that of such a pair, else 0.
     uint64_t unresolved;
     // How often a list was too short and a part of the frame ran again. The answer is whole.
     uint64_t reruns;
@@ -536,7 +536,8 @@ typedef struct {
     bool has_earliest;
     // Where the `NearmissFrameStatus` lies.
     uint64_t status;
-    // Where the earliest time lies: a double, all bits set where nothing meets.
+    // Where the earliest time lies: a double, all bits set where nothing meets. The next 8 bytes are twice those bits, plus 1 if the time is
+    // that of an unresolved pair and of no contact.
     uint64_t earliest;
     // The two vertices of every edge, 8 bytes each; none of a discrete query.
     NearmissDeviceList edges;

@@ -39,7 +39,7 @@ pub struct NearmissSummary {
     pub triangle_pairs: u64,
     /// Pairs that the narrow test was asked.
     pub candidates: u64,
-    /// How many are neither confirmed nor refuted; of an earliest query how many of the pairs that were asked.
+    /// How many are neither confirmed nor refuted; of an earliest query 1 if its time is that of such a pair, else 0.
     pub unresolved: u64,
     /// How often a list was too short and a part of the frame ran again. The answer is whole.
     pub reruns: u64,

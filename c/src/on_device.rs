@@ -48,7 +48,8 @@ pub struct NearmissDeviceAnswer {
     pub has_earliest: bool,
     /// Where the `NearmissFrameStatus` lies.
     pub status: u64,
-    /// Where the earliest time lies: a double, all bits set where nothing meets.
+    /// Where the earliest time lies: a double, all bits set where nothing meets. The next 8 bytes are twice those bits, plus 1 if the time is
+    /// that of an unresolved pair and of no contact.
     pub earliest: u64,
     /// The two vertices of every edge, 8 bytes each; none of a discrete query.
     pub edges: NearmissDeviceList,

@@ -11,12 +11,15 @@ use std::fmt;
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(tag = "reason", rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Degraded {
-    /// Pairs nearer than the tolerance that are neither certain to meet nor certain to stay apart. Of an earliest query
-    /// also those of [`Degraded::Boxes`].
+    /// Pairs nearer than the tolerance that are neither certain to meet nor certain to stay apart. Not of an earliest query:
+    /// see [`Degraded::EarliestUnresolved`].
     Unresolved {
         /// How many.
         pairs: u64,
     },
+    /// The earliest time is that of a pair that is neither certain to meet nor certain to stay apart, and no contact begins
+    /// then. An earliest query does not test pairs that begin later, so it cannot count them.
+    EarliestUnresolved,
     /// Pairs whose budget of boxes ended ([`Certified::budget`](crate::query::Certified::budget)): listed, but their times may be far too
     /// early. Not counted by an earliest query.
     Boxes {
@@ -74,6 +77,7 @@ impl Degraded {
                 Degraded::DistanceBelowPrecision { pairs: a },
                 Degraded::DistanceBelowPrecision { pairs: b },
             ) => Degraded::DistanceBelowPrecision { pairs: a + b },
+            (Degraded::EarliestUnresolved, Degraded::EarliestUnresolved) => Degraded::EarliestUnresolved,
             (Degraded::FrontDropped, Degraded::FrontDropped) => Degraded::FrontDropped,
             (Degraded::Turned { body: a, .. }, Degraded::Turned { body: b, .. }) if a == b => other,
             _ => return None,
@@ -90,7 +94,8 @@ impl Degraded {
         let mut put = |count: u64, reason: Degraded| all.extend((count > 0).then_some(reason));
         match found.listed {
             Listed::Near(_) => put(unsure, Degraded::DistanceBelowPrecision { pairs: unsure }),
-            Listed::Pairs(_) | Listed::Hits { .. } | Listed::Earliest { .. } | Listed::Nearest(_) => {
+            Listed::Earliest { unresolved, .. } => put(unresolved as u64, Degraded::EarliestUnresolved),
+            Listed::Pairs(_) | Listed::Hits { .. } | Listed::Nearest(_) => {
                 put(unsure, Degraded::Unresolved { pairs: unsure });
             }
         }
@@ -109,6 +114,9 @@ impl fmt::Display for Degraded {
             Degraded::Unresolved { pairs } => {
                 let pairs = counted(*pairs, "pair", "pairs");
                 write!(f, "{pairs} nearer than the tolerance, neither certain to meet nor to stay apart")
+            }
+            Degraded::EarliestUnresolved => {
+                write!(f, "the earliest time is that of a pair neither certain to meet nor to stay apart")
             }
             Degraded::Boxes { pairs } => {
                 let pairs = counted(*pairs, "pair", "pairs");

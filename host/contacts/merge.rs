@@ -34,13 +34,22 @@ impl Contacts {
     }
 
     /// What another share found, behind this one.
-    fn add(&mut self, share: Contacts) {
+    fn add(&mut self, mut share: Contacts) {
         match (&mut self.answer, share.answer) {
             (Answer::Pairs(own), Answer::Pairs(other)) => own.extend(other),
             (Answer::Contacts(own), Answer::Contacts(other)) => own.extend(other),
             (Answer::Near(own), Answer::Near(other)) => own.extend(other),
             (Answer::Earliest(own), Answer::Earliest(other)) => {
-                *own = own.iter().chain(&other).copied().min_by(f64::total_cmp);
+                let first = |toi: Option<f64>, unresolved: u64| toi.map(|toi| (toi, unresolved));
+                let both = [first(*own, self.unresolved), first(other, share.unresolved)];
+                let least = both.into_iter().flatten().min_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+                *own = least.map(|(toi, _)| toi);
+                // Of the earliest time alone.
+                (self.unresolved, share.unresolved) = (least.map_or(0, |(_, unresolved)| unresolved), 0);
+                let of_the_other = |reason: &Degraded| *reason != Degraded::EarliestUnresolved;
+                self.degraded.retain(of_the_other);
+                share.degraded.retain(of_the_other);
+                self.degraded.extend((self.unresolved > 0).then_some(Degraded::EarliestUnresolved));
             }
             (Answer::Distance(own), Answer::Distance(other)) => {
                 let nearer =

@@ -153,8 +153,8 @@ pub struct Contacts {
     /// Of these, those that were cut into slices: vertex/face, edge/edge.
     pub sliced_vf_ee: [u64; 2],
     /// How many contacts are [`Status::Unresolved`]; of a near query, how many of the listed pairs rounding cannot tell from such
-    /// that are farther apart; of an earliest query, how many of the pairs that were asked: which of those
-    /// that cannot be earlier are asked anyway is a matter of order, so this and the counts by rung may differ from run to run.
+    /// that are farther apart; of an earliest query 1 if its time is that of such a pair and of no contact, else 0. The counts by
+    /// rung of an earliest query may differ from run to run: pairs that cannot be earlier are skipped, and the order decides which.
     pub unresolved: u64,
     /// Triangle pairs that the filter in the precision of the positions left undecided; of a query in motion, at the start of the step.
     pub undecided: u64,
@@ -266,7 +266,12 @@ impl Contacts {
             escalated_vf_ee: [count(counter::VF_ESCALATED), count(counter::EE_ESCALATED)],
             open_vf_ee: [count(counter::VF_OPEN), count(counter::EE_OPEN)],
             sliced_vf_ee: [count(counter::VF_HARD), count(counter::EE_HARD)],
-            unresolved: count(counter::UNRESOLVED),
+            unresolved: match found.listed {
+                Listed::Earliest { unresolved, .. } => unresolved.into(),
+                Listed::Pairs(_) | Listed::Hits { .. } | Listed::Near(_) | Listed::Nearest(_) => {
+                    count(counter::UNRESOLVED)
+                }
+            },
             undecided: count(counter::UNDECIDED),
             undecided_wide: count(counter::UNDECIDED_WIDE),
             steps: count(counter::STEPS),

@@ -38,8 +38,8 @@ pub struct Summary {
     pub candidates: u64,
     /// Contacts found.
     pub contacts: usize,
-    /// How many of the contacts are neither confirmed nor refuted; of an earliest query, how many of the pairs
-    /// that were asked, which is a matter of order.
+    /// How many of the contacts are neither confirmed nor refuted; of an earliest query 1 if its time is that of such a pair,
+    /// else 0.
     pub unresolved: u64,
     /// In what the frame came to less than all that was asked; empty where nothing did.
     pub degraded: Vec<Degraded>,

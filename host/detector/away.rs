@@ -16,16 +16,34 @@ impl Detector {
     /// [`Detector::scene`] has them. Cost: a copy of all vertices, and a wait.
     ///
     /// # Errors
-    /// Those of the device.
+    /// [`Error::Input`] and [`Error::Choice`] for positions and poses of the caller that cannot be computed with; those of the device.
     pub fn fetch(&mut self) -> Result<(), Error> {
+        self.read_again(false);
         if !self.scene.bodies().iter().any(Body::is_away) {
             return Ok(());
         }
         self.all_known()?;
         if let Some(places) = self.places()? {
+            if places.all.seen.is_some_and(|seen| seen.invalid) {
+                self.check_places(&places)?;
+            }
             self.bring(&places);
         }
         Ok(())
+    }
+
+    /// Bodies that a submission reads are where their memory says, however often that was read: by a submission, or by one
+    /// that was recorded and launched again, of which nobody tells the detector. Those of one that was refused only if there
+    /// is another.
+    pub(super) fn read_again(&mut self, is_another: bool) {
+        if self.pipeline.as_ref().is_some_and(|pipeline| pipeline.is_prepared()) {
+            for &(id, moving) in &self.submits {
+                let body = &mut self.scene.bodies_mut()[id.index()];
+                if is_another || !body.is_lost() {
+                    body.placed_again(moving);
+                }
+            }
+        }
     }
 
     /// Where the device has placed all bodies; `None` where nothing can meet, and nothing was placed.
@@ -103,11 +121,7 @@ impl Detector {
     /// device.
     fn look(&mut self) -> Result<bool, Error> {
         let Some(places) = self.places()? else { return Ok(false) };
-        let mut are_single = true;
-        for (i, body) in self.scene.bodies().iter().enumerate().filter(|(_, body)| body.is_away()) {
-            let (ends, poses) = places.of(i);
-            are_single &= body.check_found(&ends, poses)?;
-        }
+        let are_single = self.check_places(&places)?;
         if self.f64s || are_single {
             // Only vertices that no face uses.
             return Ok(false);
@@ -117,6 +131,25 @@ impl Detector {
         Ok(true)
     }
 
+    /// Whether singles can compute with what was placed from memory of the caller. If nothing can, nobody knows where the bodies of
+    /// that frame are.
+    ///
+    /// # Errors
+    /// [`Error::Input`] and [`Error::Choice`], naming the body and the vertex.
+    fn check_places(&mut self, places: &Places) -> Result<bool, Error> {
+        let away = self.scene.bodies().iter().enumerate().filter(|(_, body)| body.is_away());
+        let checked = away.map(|(i, body)| {
+            let (ends, poses) = places.of(i);
+            body.check_found(&ends, poses)
+        });
+        let are_single = checked.reduce(|all, own| Ok(all? & own?)).unwrap_or(Ok(true));
+        if are_single.is_err() {
+            let bodies = self.scene.bodies_mut().iter_mut().zip(&self.named);
+            bodies.filter(|(_, named)| **named).for_each(|(body, _)| body.lose());
+        }
+        are_single
+    }
+
     /// The end of a frame: the answer, unless what was seen of the caller's memory says otherwise.
     pub(super) fn complete(
         &mut self,
@@ -124,15 +157,8 @@ impl Detector {
         seen: Option<Seen>,
         start: Instant,
     ) -> Result<Contacts, Error> {
-        if seen.is_some_and(|seen| seen.invalid) {
-            let looked = self.look();
-            if looked.is_err() {
-                let bodies = self.scene.bodies_mut().iter_mut().zip(&self.named);
-                bodies.filter(|(_, named)| **named).for_each(|(body, _)| body.lose());
-            }
-            if looked? {
-                return self.answer(start);
-            }
+        if seen.is_some_and(|seen| seen.invalid) && self.look()? {
+            return self.answer(start);
         }
         self.answered = true;
         self.wear.tell(contacts.steps);

@@ -3,7 +3,6 @@
 use super::{Detector, fits};
 use crate::error::Error;
 use crate::mesh::Body;
-use crate::pipeline::of_edges;
 use crate::scene::BodyId;
 
 impl Detector {

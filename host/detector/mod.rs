@@ -20,7 +20,7 @@ use crate::memory;
 use crate::mesh::{Body, MAX_FACES, MAX_VERTICES, Problem};
 use crate::pipeline::{self, Found, Layout, Pipeline, Share, Stage, Stages, Tolerances};
 use crate::query::{Query, Rebuild};
-use crate::scene::Scene;
+use crate::scene::{BodyId, Scene};
 use std::sync::Arc;
 use std::time::Instant;
 pub(crate) use wear::Wear;
@@ -62,6 +62,8 @@ pub struct Detector {
     largest: f64,
     /// Of each body, whether the last frame named it.
     named: Vec<bool>,
+    /// The bodies that a submission reads, and whether they move in its step; up to date while the pipeline is prepared.
+    submits: Vec<(BodyId, bool)>,
     /// Whether the pipeline holds positions in f64: where any body has them so, so that nothing is rounded.
     f64s: bool,
     /// None where nothing can meet, or where memory ended: then the next frame asks for it again.
@@ -118,6 +120,7 @@ impl Detector {
             answered: false,
             largest: 0.0,
             named: Vec::new(),
+            submits: Vec::new(),
             f64s: false,
             pipeline: None,
             is_part: false,
@@ -257,6 +260,7 @@ impl Detector {
     /// The same, of a frame that began then.
     fn answer(&mut self, start: Instant) -> Result<Contacts, Error> {
         self.answered = false;
+        self.read_again(false);
         self.none_lost()?;
         let layout = self.layout()?;
         if self.is_worn(&layout) {

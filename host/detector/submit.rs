@@ -4,7 +4,6 @@ use super::{Detector, contacts};
 use crate::contacts::{Contacts, DeviceAnswer};
 use crate::device::emulator::start_threads;
 use crate::error::Error;
-use crate::mesh::Body;
 use crate::scene::{BodyId, DeviceInput, Input};
 use std::time::Instant;
 
@@ -38,6 +37,12 @@ impl Detector {
         if let Some(pipeline) = &mut self.pipeline {
             pipeline.prepare()?;
         }
+        self.submits.clear();
+        for (id, input) in &inputs {
+            if let Input::OnDevice(input) = input {
+                self.submits.push((*id, input.is_moving()));
+            }
+        }
         Ok(contacts)
     }
 
@@ -60,6 +65,7 @@ impl Detector {
     pub fn submit(&mut self) -> Result<(), Error> {
         start_threads()?;
         self.answered = false;
+        self.read_again(true);
         let submitted = self.pipeline.as_mut().map_or(Ok(()), |pipeline| pipeline.submit());
         self.ended(submitted)
     }
@@ -84,10 +90,7 @@ impl Detector {
     fn collected(&mut self) -> Result<Contacts, Error> {
         let start = Instant::now();
         let layout = self.layout()?;
-        if self.is_prepared() {
-            // A submission reads the caller's memory anew, whatever became of the one before.
-            self.scene.bodies_mut().iter_mut().for_each(Body::placed_anew);
-        }
+        self.read_again(true);
         let Some(pipeline) = &mut self.pipeline else { return Ok(Contacts::none(self.query)) };
         let whole = pipeline.collect()?.map(|(found, stages)| {
             let seen = found.seen;

@@ -165,11 +165,9 @@ impl Body {
         matches!(self.away, Some(Away::Lost { .. }))
     }
 
-    /// The caller's memory was read anew.
-    pub(crate) fn placed_anew(&mut self) {
-        if let Some(Away::Lost { moving }) = self.away {
-            self.away = Some(Away::Placed { moving });
-        }
+    /// The caller's memory was read again, or may have been: whatever was known of the body's place is out of date.
+    pub(crate) fn placed_again(&mut self, moving: bool) {
+        self.away = Some(Away::Placed { moving });
     }
 
     /// Whether a body can be where it was found: at both ends or at the only one.

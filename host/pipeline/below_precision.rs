@@ -51,7 +51,8 @@ impl BelowPrecision {
 
     /// Whether pairs may be so large, where no two coordinates differ by more than that.
     pub fn may_be(certified: &Certified, extent: f64) -> bool {
-        certified.tolerance.unwrap_or(0.0) < finest(certified) * extent
+        // A tolerance of 0 is never below.
+        certified.tolerance.is_some_and(|tolerance| 0.0 < tolerance && tolerance < finest(certified) * extent)
     }
 }
 

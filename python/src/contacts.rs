@@ -231,7 +231,7 @@ impl Contacts {
         self.contacts.candidates
     }
 
-    /// How many are listed that are neither proven nor refuted.
+    /// How many are listed that are neither proven nor refuted; of an earliest query 1 if its time is that of such a pair, else 0.
     #[getter]
     fn unresolved(&self) -> u64 {
         self.contacts.unresolved

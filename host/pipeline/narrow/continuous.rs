@@ -17,7 +17,7 @@ use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Hits, Listed};
 use crate::pipeline::{launch, purpose};
 use crate::query::{self, Certified, ContinuousSolver};
-use nearmiss_kernels::abi::{Counter, CullArgs, Hit, Pair, SolveArgs, Span, counter};
+use nearmiss_kernels::abi::{Counter, CullArgs, Hit, Pair, SolveArgs, Span, counter, earliest};
 
 /// How many entries the lists of a continuous query have room for at first: vertex/face, edge/edge.
 pub struct Capacities {
@@ -110,7 +110,10 @@ impl ContinuousNarrow {
     ) -> Result<Self, Error> {
         let capacities = Capacities { hits: [0, 0], ..Capacities::usual(room) };
         let narrow = ContinuousNarrow::new(device, layout, solver, capacities)?;
-        Ok(ContinuousNarrow { earliest: Some(device.of(purpose::EARLIEST).buffer(1)?), ..narrow })
+        Ok(ContinuousNarrow {
+            earliest: Some(device.of(purpose::EARLIEST).buffer(earliest::WORDS as usize)?),
+            ..narrow
+        })
     }
 
     /// Takes the memory, with room for so many.
@@ -172,6 +175,11 @@ impl ContinuousNarrow {
         if self.start.is_some() { all } else { &all[1..] }
     }
 
+    /// The time that a sample has found, if all pairs are asked behind it.
+    fn known(&self, is_sample: bool) -> Span<u64> {
+        self.bound.as_ref().filter(|_| !is_sample).map_or(Span::EMPTY, Buffer::span)
+    }
+
     /// What the solver is asked.
     fn asked(&self) -> [&List<Pair>; 2] {
         self.survivors.as_ref().unwrap_or(&self.features.candidates).each_ref()
@@ -221,6 +229,7 @@ impl ContinuousNarrow {
             may_vf: may_vf.output(given.counters),
             may_ee: may_ee.output(given.counters),
             params: self.solver.certified().copied().unwrap_or_default().params(),
+            known: self.known(given.is_sample),
         };
         launch::striding::<R::Cull>(given.device, vf.capacity() + ee.capacity(), &args)
     }
@@ -290,8 +299,7 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
             }
             Step::Features => {
                 let gap = self.solver.certified().filter(|certified| certified.is_apart());
-                let known =
-                    self.bound.as_ref().filter(|_| !given.is_sample).map_or(Span::EMPTY, Buffer::span);
+                let known = self.known(given.is_sample);
                 self.features.run::<R, R::Features>(given, (gap.map_or(0.0, Certified::listed_within), known))
             }
             Step::Cull => self.cull(given),
@@ -303,7 +311,7 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
         // Only isolation has a time before which no answer can be.
         let isolates = self.solver.certified().is_some_and(|certified| !certified.is_apart());
         if self.earliest.is_some() && isolates {
-            self.bound = Some(device.of(purpose::EARLIEST).buffer(1)?);
+            self.bound = Some(device.of(purpose::EARLIEST).buffer(earliest::WORDS as usize)?);
         }
         Ok(())
     }
@@ -361,16 +369,17 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
 
     fn ahead(&self, last: &Counts) -> Vec<Ahead<'_>> {
         let mut all = Hits::ahead([&self.vf_hits, &self.ee_hits], self.ordered.as_ref(), last);
-        all.extend(self.earliest.as_ref().map(|earliest| earliest.ahead(1)));
+        all.extend(self.earliest.as_ref().map(|earliest| earliest.ahead(earliest.len())));
         all
     }
 
     fn gather(&self, counters: &Counts) -> Result<(Listed<'_>, bool), Error> {
-        if let Some(earliest) = &self.earliest {
-            let bits = earliest.read(1)?[0];
-            let toi = (bits != u64::MAX).then(|| f64::from_bits(bits));
+        if let Some(words) = &self.earliest {
+            let first = earliest::of_key(words.read(words.len())?[earliest::KEY as usize]);
             let below_precision = self.below_precision == Some(BelowPrecision::Unlisted);
-            return Ok((Listed::Earliest { toi, below_precision }, false));
+            let unresolved = first.is_some_and(|(_, unresolved)| unresolved);
+            let toi = first.map(|(toi, _)| toi);
+            return Ok((Listed::Earliest { toi, unresolved, below_precision }, false));
         }
         let lists = [&self.vf_hits, &self.ee_hits];
         let (hits, ordered) = Hits::of(lists, self.ordered.as_ref(), counters)?;

@@ -38,6 +38,8 @@ pub struct Whereabouts {
     pub ends: Vec<mesh::Positions>,
     /// Poses that were found in memory of the caller, at as many ends, of each body; others are none.
     pub poses: Vec<Pose>,
+    /// What placing saw of the caller's numbers; `None` if it read none.
+    pub seen: Option<Seen>,
 }
 
 impl LentMemory {
@@ -126,6 +128,7 @@ impl<R: Precision> Placing<R> {
         Ok(Whereabouts {
             ends: self.positions()?.into_iter().map(R::positions).collect(),
             poses: self.poses()?,
+            seen: self.seen()?,
         })
     }
 

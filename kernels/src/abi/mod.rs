@@ -5,6 +5,7 @@
 #[macro_use]
 mod args;
 pub mod counter;
+pub mod earliest;
 mod flags;
 mod narrow;
 mod order;

@@ -61,6 +61,8 @@ arguments! {
         may_ee: Output<Pair>,
         /// What is asked.
         params: Params,
+        /// The bits of a time: pairs that cannot meet before it are left out too. Empty where all are wanted.
+        known: Span<u64>,
     }
     /// `narrow_vf`, `narrow_ee`: the first time of contact of two primitives in motion.
     SolveArgs<R: Real> {
@@ -74,7 +76,7 @@ arguments! {
         survivors: Output<Pair>,
         /// Out: contacts; empty when only the earliest is asked for.
         hits: Output<Hit>,
-        /// Out: the smallest toi so far, as bits; or empty.
+        /// Out: the least toi so far, the words of [`super::earliest`]; or empty.
         earliest: Span<u64>,
         /// Counters.
         counters: Counters,
@@ -158,7 +160,7 @@ arguments! {
         vf: Listed,
         /// Edge/edge pairs.
         ee: Listed,
-        /// Out: the smallest toi so far, as bits; or empty.
+        /// Out: the least toi so far, the words of [`super::earliest`]; or empty.
         earliest: Span<u64>,
         /// Counters.
         counters: Counters,

@@ -105,6 +105,13 @@ impl Volume for Linear {
         !(apart | (from > to + MOVING_TIME))
     }
 
+    /// The computed begin errs by less than `MOVING_TIME`.
+    #[inline(always)]
+    fn overlaps_before(&self, o: &Self, time: f32) -> bool {
+        let (apart, from, to) = self.window(o);
+        !(apart | (from > to + MOVING_TIME) | (from > time + MOVING_TIME))
+    }
+
     const IN_PARTS: bool = true;
     /// Whether they are not apart on one axis at both ends of the step, on the same side: six pairs of differences, and no division.
     #[inline]

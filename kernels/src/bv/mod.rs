@@ -98,8 +98,14 @@ pub trait Volume: FillsNode + Sync + Send + core::fmt::Debug + PartialEq {
     fn may_overlap(&self, other: &Self) -> bool {
         self.overlaps(other)
     }
+    /// Whether they overlap as [`Volume::overlaps`] says, and not first behind a time in (0, 1]. Of volumes that overlap by
+    /// their roundings alone too: what is left out begins behind that time, certainly.
+    #[inline(always)]
+    fn overlaps_before(&self, other: &Self, _time: f32) -> bool {
+        self.overlaps(other)
+    }
     /// Around the same from t = 0 until a time between 0 and 1, which becomes the end of the step; or around all. Two volumes are tested
-    /// against each other as both are until the same time.
+    /// against each other as both are until the same time, by [`Volume::may_overlap`].
     #[inline(always)]
     fn until(&self, _time: f32) -> Self {
         *self

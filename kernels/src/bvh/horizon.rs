@@ -6,7 +6,8 @@ use crate::exec::Block;
 use crate::math::round;
 use crate::math::tolerance::HORIZON_MARGIN;
 
-/// The end of the step, or a time before it: what begins behind that is later than one that is known.
+/// The end of the step, or a time before it: no verdict of a pair whose boxes first overlap behind it begins before the
+/// time that is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Horizon(f32);
 

@@ -223,10 +223,25 @@ pub const MOVING_TIME: f32 = 16.0 * U32;
 /// What a mixture of two bounds of a moving box errs by: the complement, two products and a sum, `3.1u`, and the rounding of what is
 /// added for it; `8u`. Ratio of the larger bound.
 pub const MOVING_MIXTURE: f32 = 8.0 * U32;
-/// How much later than the earliest time that is known a pair may begin, and still have one that is computed to be earlier. A pair's
-/// time is not before its window less its margin, `ISOLATE_MARGIN` of f32, 2^-12. Windows of the volumes and of the triangles around
-/// the pair begin no later than its own but for what these are computed within: `MOVING_TIME` and `ISOLATE_WINDOW`, 2^-20 each; 2^-13
-/// is above all of these together. Fraction of the step.
+/// How far behind the earliest time that is known, `k`, the horizon `h` is: a pair of features whose boxes, moving with them,
+/// first share a point behind `h` has no verdict that begins at `k` or before. Fraction of the step.
+///
+/// Let `s` be the exact time at which those boxes first share a point. The volumes of the broad phase hold the features at every
+/// time, and so do the boxes of their triangles, so what is left out there for `h` has `s > h` too: `may_overlap` of volumes
+/// until `h` by an axis on which they stay apart until then, `overlaps_before`, the triangles' window and `rejected_before` by a
+/// computed begin that errs by less than the `MOVING_TIME` or `ISOLATE_WINDOW` that is taken off it, and the features' own boxes
+/// until `h` as `prim::sweep` derives. None of them leaves a pair out for `h` because its boxes never share a point, unless its
+/// window says so as well: then every rung does. A verdict begins no
+/// sooner than the computed begin of its rung's window less `ISOLATE_MARGIN` (`Pair::not_before`), which is at least
+/// `s - 7u - ISOLATE_WINDOW - ISOLATE_MARGIN`; in f32, the worse, `s - 2^-19 - 2^-12`. So `h = k + 2^-12 + 2^-13` will do.
+///
+/// A rung of f32 leaves a pair out itself when its own begin less the margin is not before `k`, though the verdict would be that
+/// of a rung of f64. There the begin is at least `s - 2^-48` and the margin 2^-26, while that of f32 is at most `s (1 + 7u)`
+/// less `ISOLATE_WINDOW` of f32, `16u`: so f64 begins later.
+///
+/// An axis on which control vectors measure less than 2^-60 (f32) or 2^-480 (f64) of the pair's extent may not clip its window,
+/// as products of two such lengths lose their digits: there `s` is that of the other axes, and volumes of f32 must not know
+/// better.
 pub const HORIZON_MARGIN: f64 = 1.0 / 4096.0 + 1.0 / 8192.0;
 
 /// How far `a_i . a_j` may be from 1 (i = j) or 0 in an oriented box, as computed: `12u`. The computation errs by less

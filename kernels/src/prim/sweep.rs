@@ -52,27 +52,42 @@ pub type Corners<R> = [Moving<R>; 3];
 /// A corner at a time of it errs by `3.1u` of the larger of its ends (the complement, two products, a sum), and growing by
 /// `u` more: `INCLUSION_INPUT` of the largest coordinate for each of both triangles. A product that underflows is within
 /// `INCLUSION_UNDERFLOW`.
+///
+/// If there is a horizon, a pair is left out only if the boxes that `Pair::window` moves with its features meet behind it, or
+/// never, which that window finds too. Those boxes mix the least coordinates of both ends, so at `t` they reach beyond the
+/// corners there by at most `t` of the extent at the end: until the horizon, that much is grown by. And the part begins
+/// `3 ISOLATE_WINDOW` sooner: features whose boxes meet only before it, and those of their triangles only behind that, have
+/// windows that are empty by more than they are widened.
 #[inline(always)]
 fn swept<R: Real>(p: &Corners<R>, q: &Corners<R>, gap: R, horizon: R) -> (bool, [[Swept<R>; 3]; 2]) {
     let mut window = Window::new();
+    let (cut, sooner) = if horizon < R::ONE {
+        (horizon * R::INCLUSION_UP, R::of(3.0) * R::ISOLATE_WINDOW)
+    } else {
+        (R::ZERO, R::ZERO)
+    };
     // One axis after the other, each by a number that the compiler knows: nothing goes to memory on the GPU.
     let grow = Vec3([
-        axis(0, &mut window, p, q, gap),
-        axis(1, &mut window, p, q, gap),
-        axis(2, &mut window, p, q, gap),
+        axis(0, &mut window, p, q, (gap, cut)),
+        axis(1, &mut window, p, q, (gap, cut)),
+        axis(2, &mut window, p, q, (gap, cut)),
     ]);
-    let part = window.within(horizon);
-    let part_or_all = part.unwrap_or((R::ZERO, R::ONE));
-    (part.is_some(), [ways(p, part_or_all, grow), ways(q, part_or_all, Vec3([R::ZERO; 3]))])
+    let whole = window.within(R::ONE);
+    let begins = whole.is_some_and(|part| part.0 <= horizon);
+    let (from, to) = whole.unwrap_or((R::ZERO, R::ONE));
+    let part = ((from - sooner).greater(R::ZERO), to.lesser(horizon));
+    (begins, [ways(p, part, grow), ways(q, part, Vec3([R::ZERO; 3]))])
 }
 
-/// Clips the part of the step by one axis; by how much boxes grow on it.
+/// Clips the part of the step by one axis; by how much boxes grow on it: the gap, roundings, and that part of the extents at the
+/// end of the step.
 #[inline(always)]
-fn axis<R: Real>(k: usize, window: &mut Window<R>, p: &Corners<R>, q: &Corners<R>, gap: R) -> R {
+fn axis<R: Real>(k: usize, window: &mut Window<R>, p: &Corners<R>, q: &Corners<R>, (gap, part): (R, R)) -> R {
     let (p, q) = (range(p, k), range(q, k));
     window.clip([p[0].1 - q[0].0 + gap, p[1].1 - q[1].0 + gap]);
     window.clip([q[0].1 - p[0].0 + gap, q[1].1 - p[1].0 + gap]);
-    (reach(p) + reach(q)) * R::INCLUSION_INPUT + gap + R::INCLUSION_UNDERFLOW
+    let extents = (p[1].1 - p[1].0) + (q[1].1 - q[1].0);
+    (reach(p) + reach(q)) * R::INCLUSION_INPUT + extents * part + gap + R::INCLUSION_UNDERFLOW
 }
 
 /// The least and the largest coordinate of three corners, at both ends of the step.
@@ -111,8 +126,8 @@ pub fn more<R: Real>(gap: f64) -> R {
     if gap > 0.0 { R::of(gap) * R::INCLUSION_UP + R::INCLUSION_UNDERFLOW } else { R::ZERO }
 }
 
-/// The tests of two triangles whose features have boxes that come within a gap, given as [`more`] of it, not later than the horizon: a
-/// time in (0, 1].
+/// The tests of two triangles whose features have boxes that come within a gap, given as [`more`] of it, and not first behind the
+/// horizon: a time in (0, 1].
 #[inline(always)]
 pub fn meeting<R: Real>(p: &Corners<R>, q: &Corners<R>, gap: R, horizon: R) -> u32 {
     let (meet, boxes) = swept(p, q, gap, horizon);

@@ -92,6 +92,14 @@ impl Verdict {
         Verdict { toi, toi_hi: end, state: UNRESOLVED | if exhausted { EXHAUSTED } else { 0 }, boxes }
     }
 
+    /// The same with no time before `begin`, before which there is no contact.
+    #[inline]
+    pub fn not_before(self, begin: f64) -> Self {
+        // Where features are separated the time is the end of the step, and later.
+        let toi = if begin > self.toi { begin } else { self.toi };
+        Verdict { toi, ..self }
+    }
+
     /// The answer.
     #[inline]
     pub fn answer(&self) -> Answer {

@@ -11,6 +11,9 @@
 //!
 //! With a separation, the rungs of [`super::separation`]. Every rung is a function of the pair and of what is
 //! asked, so the answer is; [`vf_certified`] and [`ee_certified`] climb for one pair as the kernels do for a list.
+//!
+//! Without a separation no verdict of a rung begins before [`Pair::not_before`] of the rung's own pair. A query for the
+//! earliest time alone skips pairs by that law, whatever their verdict would be; `HORIZON_MARGIN` derives it across rungs.
 
 use super::advance::{Advance, Advanced, Distance};
 use super::find::{CellResult, Found};
@@ -47,9 +50,15 @@ pub enum Rungs {
 /// by the signs of the cubic's coefficients over the step or over the window. About 150 operations.
 #[inline(always)]
 pub fn rejected<const N: usize>(pair: &Pair<f32, N>) -> bool {
+    rejected_before(pair, 1.0)
+}
+
+/// The same of the step until a horizon: also whether the window begins behind it.
+#[inline(always)]
+pub fn rejected_before<const N: usize>(pair: &Pair<f32, N>, horizon: f32) -> bool {
     let Some((begin, end)) = pair.window() else { return true };
     let g = pair.cubic();
-    pair.finite && (g.rootless_throughout() || g.rootless(begin, end))
+    begin > horizon || (pair.finite && (g.rootless_throughout() || g.rootless(begin, end)))
 }
 
 /// What isolation decides: separated, or a contact whose time is known as well as the tolerance demands and told from the
@@ -65,7 +74,7 @@ pub fn isolated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bo
     let closer = last && S::WIDE;
     let (again, near) = if closer { (AGAIN, near_enough(pair, p)) } else { (0, S::ZERO) };
     let look = CellResult { around: time_tolerance * S::of(AROUND[0]), steps: STEPS[0], again, near };
-    match pair.isolate(pair.with_margin(window), look) {
+    let verdict = match pair.isolate(pair.with_margin(window), look) {
         Found::Apart => Some(Verdict::separated(p.end, 0)),
         Found::Meets { from, to }
             if last || (from > S::ZERO && to - from <= time_tolerance + time_tolerance) =>
@@ -78,7 +87,9 @@ pub fn isolated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bo
             Some(Verdict::separated(p.end, 0))
         }
         _ => None,
-    }
+    };
+    // A time around a root near the window's begin begins before it.
+    verdict.map(|verdict| verdict.not_before(pair.not_before(window)))
 }
 
 /// A contact, if it is certain to be within the step.
@@ -305,17 +316,19 @@ pub fn settled<const N: usize>(
 pub fn decided<const N: usize>(
     pair: &Pair<f64, N>,
     first: Slice,
-    (_, end): (f64, f64),
+    window: (f64, f64),
     search: impl Fn(Verdict) -> Verdict,
     p: &Params,
 ) -> Verdict {
-    match first {
+    let verdict = match first {
         Slice::Apart => Verdict::separated(p.end, 0),
         Slice::Meets(verdict) => verdict,
         Slice::Near(from) => Verdict::unresolved(from, p.end, 0, false),
         Slice::Open(from) => {
-            let verdict = near(pair, (from, end), 1.0, p);
+            let verdict = near(pair, (from, window.1), 1.0, p);
             if verdict.is_separated() { verdict } else { search(verdict) }
         }
-    }
+    };
+    // A time around a root near the window's begin begins before it.
+    verdict.not_before(pair.not_before(window))
 }

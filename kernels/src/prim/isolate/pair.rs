@@ -116,6 +116,14 @@ impl<S: Grid, const N: usize> Pair<S, N> {
         if self.finite { window.within(self.end) } else { Some((S::ZERO, self.end)) }
     }
 
+    /// The time before which no verdict of this pair begins: its window's begin less the margin. A pair whose time
+    /// here is not before the earliest time that is known cannot lower it, whether its verdict is a contact or
+    /// undecided.
+    #[inline(always)]
+    pub fn not_before(&self, window: (S, S)) -> f64 {
+        self.with_margin(window).0.wide()
+    }
+
     /// A window with a margin, within the step: boxes that are flat share a moment only, too short for a sign to be seen to
     /// change. Nothing meets in the margin; it costs, and proves nothing.
     #[inline]

@@ -8,16 +8,17 @@
 //! Writes   contacts and unresolved pairs with toi and toi_hi; or, when only the earliest is asked for, one number. And what
 //!          is left, in its own list.
 //! Before   candidates are complete.
-//! After    every pair that meets is listed here or left, none late; see [`crate::prim::isolate`]. The earliest is the
-//!          least toi of all pairs, each asked over the whole step; a pair whose window with its margin begins no sooner
-//!          than one that is known is not asked: it could not be less. So it is the same in any order.
+//! After    every pair that meets is listed here or left, none late; see [`crate::prim::isolate`].
+//!          earliest = min {(toi, undecided) of each pair of the continuous query}. A pair is skipped if no verdict of
+//!          its own could begin before a time that is known ([`Pair::not_before`](isolate::Pair::not_before)): the
+//!          result is the same in any order.
 //! Room     hits, left: counted past the end, grown, run again.
 //! Cost     8 B pair, 12 B indices, 128 B positions (gathered); isolation about 1,100 operations for a pair with a root, of
 //!          f64 as many; settling some 30 exact signs for what touches at the start; the first planes of a separation
 //!          400 operations.
 
-use super::{edge_edge, of_edge_edge, of_vertex_face, vertex_face};
-use crate::abi::{Hit, Listed, Pair, RungArgs, RungFlags, counter};
+use super::{edge_edge, lower, of_edge_edge, of_vertex_face, vertex_face};
+use crate::abi::{Hit, Listed, Pair, RungArgs, RungFlags, counter, earliest};
 use crate::exec::{Block, Lane, Slot};
 use crate::math::Real;
 use crate::prim::inclusion::{Grid, Verdict};
@@ -79,7 +80,7 @@ pub fn separate_at_once<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
     );
 }
 
-/// The answer, unless only the earliest is asked for and the pair cannot meet before one that is known.
+/// The verdict; separated if only the earliest is asked for and no verdict of the pair begins before one that is known.
 #[inline(always)]
 fn unless_later<R: Real, S: Grid, L: Lane, const N: usize>(
     l: &L,
@@ -89,7 +90,7 @@ fn unless_later<R: Real, S: Grid, L: Lane, const N: usize>(
 ) -> Option<Verdict> {
     if !a.earliest.is_empty()
         && let Some(window) = pair.window()
-        && pair.with_margin(window).0.wide().to_bits() >= l.fetch_load(a.earliest, 0)
+        && earliest::key(pair.not_before(window), false) >= l.fetch_load(a.earliest, earliest::KEY)
     {
         return Some(Verdict::separated(a.params.end, 0));
     }
@@ -172,26 +173,23 @@ pub(super) fn emit<R: Real, L: Lane>(l: &L, a: &RungArgs<R>, of: &Listed, (pair,
     }
 }
 
-/// Whether an answer is to be listed; counts what is unresolved, and keeps the earliest where only that is asked for.
+/// Whether a verdict is to be listed. Counts what is unresolved, or lowers the earliest time if only that is asked for: then
+/// which pairs have a verdict depends on the order, so none is counted.
 #[inline(always)]
 fn keep<R: Real, L: Lane>(l: &L, a: &RungArgs<R>, verdict: Verdict) -> bool {
     if verdict.is_separated() {
         return false;
     }
+    if !a.earliest.is_empty() {
+        lower(l, a.earliest, verdict);
+        return false;
+    }
     if !verdict.is_contact() {
         a.counters.add(l, counter::UNRESOLVED, 1);
     }
-    if a.earliest.is_empty() {
-        if verdict.exhausted() {
-            a.counters.add(l, counter::ENDED, 1);
-            a.counters.add(l, counter::ENDED_UNRESOLVED, !verdict.is_contact() as u64);
-        }
-        return true;
+    if verdict.exhausted() {
+        a.counters.add(l, counter::ENDED, 1);
+        a.counters.add(l, counter::ENDED_UNRESOLVED, !verdict.is_contact() as u64);
     }
-    // Times are in [0, 1]: their bits are ordered as they are. Most are late, and need no turn at the one word.
-    let toi = verdict.toi.to_bits();
-    if toi < l.fetch_load(a.earliest, 0) {
-        l.fetch_min(a.earliest, 0, toi);
-    }
-    false
+    true
 }

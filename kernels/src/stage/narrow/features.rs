@@ -11,7 +11,7 @@
 //!          the owners as near, and that pair of triangles, adjacent or not, is in the list. Boxes are those of the part of
 //!          the step in which the boxes around the two triangles, moving with them, meet: outside of it no feature of one
 //!          can meet one of the other.
-//!          Where an earliest time is sought, none that only comes as near behind the horizon.
+//!          If an earliest time is known, none whose boxes first come as near behind the horizon.
 //! Room     vf, ee: counted past the end, grown, run again.
 //! Departs  the paper tests all 15 for every pair; owners (representative triangles: Curtis, Tamstorf, Manocha, "Fast
 //!          collision detection for deformable models using representative-triangles", 2008) leave about 3, shorter sweeps
@@ -60,7 +60,7 @@ pub trait Course<R: Real> {
     fn expect<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32);
     /// Reads it.
     fn corner<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32) -> Self::Corner;
-    /// Which tests of two triangles have features whose boxes come within a gap, and not later than the horizon.
+    /// Which tests of two triangles have features whose boxes come within a gap, and not first behind the horizon.
     fn meeting(p: &[Self::Corner; 3], q: &[Self::Corner; 3], gap: R, horizon: R) -> u32;
 }
 
@@ -102,7 +102,7 @@ impl<R: Real> Course<R> for Rests {
     }
 }
 
-/// Which tests of two triangles have features whose boxes come within a gap, and not later than the horizon.
+/// Which tests of two triangles have features whose boxes come within a gap, and not first behind the horizon.
 struct Meeting<R, C> {
     gap: R,
     horizon: R,

@@ -18,11 +18,22 @@ pub mod separate;
 pub mod slice;
 pub mod solve;
 
-use crate::abi::{BodyTolerance, Output, Pair, Point, Positions, RungArgs, Span};
+use crate::abi::{BodyTolerance, Output, Pair, Point, Positions, RungArgs, Span, earliest};
 use crate::exec::{ALONE, Block, Lane, RowMap, Slot};
 use crate::math::{Real, Vec3};
 use crate::prim::cubic::Moving;
-use crate::prim::inclusion::Params;
+use crate::prim::inclusion::{Params, Verdict};
+
+/// Lowers the earliest time to that of a verdict that is not separated. Most are later, and need no atomic.
+#[inline(always)]
+fn lower<L: Lane>(l: &L, earliest: Span<u64>, verdict: Verdict) {
+    let key = earliest::key(verdict.toi, !verdict.is_contact());
+    if key < l.fetch_load(earliest, earliest::KEY) {
+        // Times are in [0, 1]: their bits are ordered as they are.
+        l.fetch_min(earliest, earliest::TIME, verdict.toi.to_bits());
+        l.fetch_min(earliest, earliest::KEY, key);
+    }
+}
 
 /// A vertex in motion.
 #[inline(always)]

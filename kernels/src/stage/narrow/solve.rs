@@ -8,9 +8,9 @@
 //! Room     hits: counted past the end, grown, run again.
 //! Cost     8 B candidate, 12 B indices, 128 B positions (gathered); 400 to 1,500 operations.
 
-use super::{append_each, edge_edge, vertex_face};
+use super::{append_each, edge_edge, lower, vertex_face};
 use crate::abi::{Hit, Pair, SolveArgs, counter};
-use crate::exec::{Block, Lane};
+use crate::exec::Block;
 use crate::math::Real;
 use crate::prim::cubic::{ee_toi, vf_toi};
 use crate::prim::inclusion::Verdict;
@@ -41,14 +41,13 @@ fn solve<R: Real, B: Block>(b: &mut B, a: &SolveArgs<R>, ask: impl Fn(&B::Lane, 
     append_each(b, count, a.hits, |l, i| {
         let pair = a.survivors.get(l, i);
         let verdict = ask(l, pair)?;
+        if !a.earliest.is_empty() {
+            lower(l, a.earliest, verdict);
+            return None;
+        }
         if !verdict.is_contact() {
             a.counters.add(l, counter::UNRESOLVED, 1);
         }
-        if a.earliest.is_empty() {
-            return Some(Hit { a: pair.a, b: pair.b, verdict });
-        }
-        // Times are in [0, 1]: their bits are ordered as they are.
-        l.fetch_min(a.earliest, 0, verdict.toi.to_bits());
-        None
+        Some(Hit { a: pair.a, b: pair.b, verdict })
     });
 }

@@ -187,9 +187,11 @@ fn write<const HORIZON: bool, V: Volume, B: Block>(
             let mut keeps = true;
             if V::IN_PARTS {
                 let [first, second] = [p, q].map(|place| l.read(a.leaves, place));
-                keeps = horizon
-                    .cut::<HORIZON, V>(first.volume)
-                    .overlaps(&horizon.cut::<HORIZON, V>(second.volume));
+                keeps = if HORIZON {
+                    first.volume.overlaps_before(&second.volume, horizon.time())
+                } else {
+                    first.volume.overlaps(&second.volume)
+                };
                 (p, q) = (first.triangle(), second.triangle());
                 l.put(found, at, [p, q]);
             }
