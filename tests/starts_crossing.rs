@@ -6,7 +6,7 @@ use nearmiss::contacts::{Answer, Contacts, Note};
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::Positions;
 use nearmiss::query::{Certified, Continuous, Discrete, Earliest, QueryKind, TriangleTest};
-use nearmiss::scene::{BodyId, Input, Meets, Pose, Scene};
+use nearmiss::scene::{BodyId, BodyKind, Input, Meets, Pose, Scene};
 use nearmiss::{Body, Detector, Device, Mesh, MultiDetector, Query};
 use nearmiss_lab::scene;
 use rand::rngs::SmallRng;
@@ -71,7 +71,7 @@ fn random_scene(seed: u64) -> Scene {
             environment: [Some(0), Some(0), Some(1), None][rng.random_range(0..4)],
             group: if is_plain { u32::MAX } else { rng.random_range(0..4) },
             mask: if is_plain { u32::MAX } else { rng.random_range(0..4) },
-            self_contact: rng.random_bool(0.5),
+            self_contact: (body.kind() != BodyKind::Static).then(|| rng.random_bool(0.5)),
         }));
     }
     scene

@@ -23,12 +23,12 @@ impl Place {
         }
     }
 
-    /// As a frame names it.
-    fn input(&self) -> Option<Input<'_>> {
+    /// As a frame names it: at one end if it rests, or at both.
+    fn input(&self, at_both: bool) -> Option<Input<'_>> {
         Some(match self {
-            Place::Vertices([t0, t1]) if t0 == t1 => Input::At(t0),
+            Place::Vertices([t0, t1]) if t0 == t1 && !at_both => Input::At(t0),
             Place::Vertices([t0, t1]) => Input::Step([t0, t1]),
-            Place::Poses([start, end]) if start == end => Input::Pose(*start),
+            Place::Poses([start, end]) if start == end && !at_both => Input::Pose(*start),
             Place::Poses(poses) => Input::Poses(*poses),
             Place::Fixed => return None,
         })
@@ -48,7 +48,7 @@ fn body(rng: &mut SmallRng) -> (Body, Place) {
     let is_f64 = rng.random_bool(0.2);
     let mesh = mesh(rng, 0.5, 0.0, is_f64);
     let at = mesh.positions().clone();
-    let meets = |is_fixed: bool| Meets { self_contact: !is_fixed, ..Meets::default() };
+    let meets = |is_fixed: bool| Meets { self_contact: (!is_fixed).then_some(true), ..Meets::default() };
     match rng.random_range(0..4) {
         0 => (Body::fixed(mesh).with(meets(true)), Place::Fixed),
         1 => (Body::rigid(mesh).with(meets(false)), Place::Poses([Pose::default(); 2])),
@@ -82,8 +82,9 @@ fn fresh(bodies: &[Placed], query: Query) -> Contacts {
     }
     let mut detector = Detector::new(engine(), scene, query).expect("a detector");
     let inputs: Vec<(BodyId, Input)> =
-        ids.iter().zip(bodies).filter_map(|(id, placed)| Some((*id, placed.place.input()?))).collect();
-    detector.frame(&inputs).expect("an answer")
+        ids.iter().zip(bodies).filter_map(|(id, placed)| Some((*id, placed.place.input(false)?))).collect();
+    detector.place(&inputs).expect("placed");
+    detector.detect().expect("an answer")
 }
 
 /// Numbers of the caller's, for one frame.
@@ -171,7 +172,9 @@ fn life(seed: u64, query: Query, fault: impl Fn(&mut Contacts)) -> Result<usize,
         let mut inputs = Vec::new();
         for (id, is_lent) in named {
             let placed = bodies.iter().find(|placed| placed.id == id).expect("a body");
-            match (Lent::new(&placed.place).filter(|_| is_lent), placed.place.input()) {
+            // A frame of a query in motion has a body at both ends.
+            let at_both = inputs.is_empty() && !query.kind().is_at_rest();
+            match (Lent::new(&placed.place).filter(|_| is_lent), placed.place.input(at_both)) {
                 (Some(numbers), _) => {
                     inputs.push((id, Input::OnDevice(numbers.input())));
                     lent.push(numbers);

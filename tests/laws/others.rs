@@ -50,7 +50,7 @@ fn body(rng: &mut SmallRng, (size, at, is_f64): (f64, f64, bool)) -> Body {
 
 /// Who may meet whom, at random; a fixed body has no contact with itself.
 fn meets(rng: &mut SmallRng, body: Body) -> Body {
-    let self_contact = body.kind() != BodyKind::Static && rng.random_bool(0.5);
+    let self_contact = (body.kind() != BodyKind::Static).then(|| rng.random_bool(0.5));
     let environment = [Some(0), Some(0), Some(1), None][rng.random_range(0..4)];
     let [group, mask] =
         [(); 2].map(|()| if rng.random_bool(0.7) { u32::MAX } else { rng.random_range(1..4) });
@@ -102,8 +102,9 @@ fn least_two_by_two(bodies: &[Body], query: Query) -> Option<f64> {
         for j in i + 1..bodies.len() {
             // Who meets itself was asked above.
             let alone = [i, j].map(|k| {
-                let meets = Meets { self_contact: false, ..*bodies[k].meets() };
-                bodies[k].clone().with(meets)
+                let is_fixed = bodies[k].kind() == BodyKind::Static;
+                let self_contact = (!is_fixed).then_some(false);
+                bodies[k].clone().with(Meets { self_contact, ..*bodies[k].meets() })
             });
             all.extend(least(&ask(&alone, query)));
         }
