@@ -130,7 +130,7 @@ fn an_answer_instead_of_a_refusal_is_named() {
     let (scene, ..) = pair(40);
     let mut detector = Detector::new(engine(), scene, query(QueryKind::Earliest)).expect("a detector");
     let fault = lost("planted", detector.detect(), "vertex 17");
-    assert!(fault.is_some_and(|fault| fault.starts_with("planted: 1 contacts")));
+    assert!(fault.is_some_and(|fault| fault.starts_with("planted: 0 contacts")));
     let other = Error::Choice { what: "another".into(), advice: "reason".into() };
     assert!(lost("planted", Err(other), "vertex 17").is_some_and(|fault| fault.contains("another")));
 }
