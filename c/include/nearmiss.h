@@ -220,6 +220,27 @@ typedef uint32_t NearmissBodyKind;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
+// Whether a body is tested against itself. Deformable bodies are by default, rigid bodies if it is on, static bodies never.
+enum NearmissSelfContact
+#if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+  : uint32_t
+#endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
+ {
+    // The default of its kind, also of a struct of zeros.
+    NEARMISS_SELF_CONTACT_DEFAULT = 0,
+    // It is; refused for static bodies.
+    NEARMISS_SELF_CONTACT_ON = 1,
+    // It is not.
+    NEARMISS_SELF_CONTACT_OFF = 2,
+};
+#ifndef __cplusplus
+#if __STDC_VERSION__ >= 202311L
+typedef enum NearmissSelfContact NearmissSelfContact;
+#else
+typedef uint32_t NearmissSelfContact;
+#endif // __STDC_VERSION__ >= 202311L
+#endif // __cplusplus
+
 // What an input says.
 enum NearmissInputKind
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
@@ -440,19 +461,20 @@ typedef struct {
     NearmissRows positions;
     // Three indices of vertices a triangle, without gaps.
     const uint32_t *triangles;
-    // How many triangles.
+    // How many triangles, at least 1.
     size_t triangle_count;
     // A `NearmissBodyKind`.
     uint32_t kind;
-    // Whether it is tested against itself: 0 or 1.
+    // A `NearmissSelfContact`. Deformable bodies are tested against themselves by default, rigid bodies if it is on, static
+    // bodies never.
     uint32_t self_contact;
     // Bodies of different environments never meet.
     uint32_t environment;
-    // Whether it is in every environment, whatever `environment` says: 0 or 1.
+    // Whether it is in every environment, and `environment` is 0: 0 or 1.
     uint32_t everywhere;
-    // Bits of the groups that it is in: two bodies meet if each is in a group that the other one's mask has.
+    // Bits of the groups that it is in, at least one: two bodies meet if each is in a group that the other one's mask has.
     uint32_t group;
-    // Bits of the groups that it meets.
+    // Bits of the groups that it meets; 0 for a body that meets no other.
     uint32_t mask;
 } NearmissBody;
 
@@ -676,10 +698,10 @@ NearmissCode nearmiss_detector_geometry(NearmissDetector *detector,
 // Frees the answer, with all that it showed.
 void nearmiss_answer_free(NearmissAnswer *answer);
 
-// A deformable body without a mesh, in environment 0, that meets all others and not itself.
+// A deformable body without a mesh, in environment 0, that meets all others and itself.
 NearmissBody nearmiss_body(void);
 
-// Takes a copy of a scene to a device and builds its trees. Cost: linear in triangles; memory grows with what is found.
+// Takes a copy of a scene, to which nothing can be added from then on, to a device and builds its trees. Cost: linear in triangles; memory grows with what is found.
 //
 // A scene without bodies answers nothing. Fails with `NEARMISS_CHOICE` for choices that do not go together; with `NEARMISS_OUT_OF_MEMORY` and
 // `NEARMISS_DEVICE`.
@@ -692,10 +714,17 @@ NearmissCode nearmiss_detector_new(const NearmissDevice *device,
                                    NearmissDetector **detector,
                                    NearmissError *error);
 
-// The tolerance of a certified solver, a length: as asked, or the default for this scene; -1 of other solvers.
+// The tolerance of a certified solver, a length: as asked, or the smallest default of a pair of bodies, which is the smaller of
+// theirs; -1 of other solvers.
 NearmissCode nearmiss_detector_tolerance(NearmissDetector *detector,
                                          double *tolerance,
                                          NearmissError *error);
+
+// The largest tolerance of a pair of bodies, a length: that of `nearmiss_detector_tolerance` if all pairs have the same; -1 of other
+// solvers.
+NearmissCode nearmiss_detector_largest_tolerance(NearmissDetector *detector,
+                                                 double *tolerance,
+                                                 NearmissError *error);
 
 // Makes tiles or trees over what moves anew: pays when bodies have moved far from where these were made.
 NearmissCode nearmiss_detector_rebuild(NearmissDetector *detector,
@@ -841,7 +870,7 @@ NearmissCode nearmiss_scene_new(NearmissScene **scene, NearmissError *error);
 // Adds a body and tells its number: they are counted from 0. `id` may be NULL. Cost: a copy of the mesh, and a pass over it.
 //
 // Fails with `NEARMISS_INPUT` for positions that are not finite or too large, and for indices out of range, naming the first; with
-// `NEARMISS_CHOICE` for a body that cannot be. Then nothing is added.
+// `NEARMISS_CHOICE` for a body that cannot be, and for a scene of which a detector has a copy. Then nothing is added.
 //
 // # Safety
 // What the body points to is there.
