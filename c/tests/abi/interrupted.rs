@@ -35,7 +35,7 @@ fn own_handle(detector: &NearmissDetector) -> Box<NearmissInterrupt> {
 
 #[test]
 fn a_detector_is_interrupted_while_it_is_made() {
-    let handle = own(got(nearmiss_interrupt_new));
+    let handle = own(got(|handle, error| nearmiss_interrupt_new(handle, error)));
     let machine = device();
     let made = got(|made, error| nearmiss_device_interruptible(Some(&machine), Some(&handle), made, error));
     let machine = own(made);
