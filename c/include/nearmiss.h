@@ -14,6 +14,7 @@
 // - A handle is used by one thread at a time; two handles, by two. Detectors of one device are one handle in this, and making one is
 //   a use of them; a device's name, kind, limit and end are not: `nearmiss_device_name`, `_is_gpu`, `_limit` and `_free` may be
 //   called while another thread works with its detectors. An answer is a handle by itself.
+//   `nearmiss_interrupt` and `nearmiss_interrupt_clear` may be called from any thread and from a signal handler, at any time.
 // - All that handles share is threads of the host, one a processor, which prepare bodies and put answers in order: the first
 //   CPU or detector of the process starts them, and they stay. A process that was forked since has none of them: there a
 //   call that would need them fails with `NEARMISS_CHOICE`. Start processes by `posix_spawn` or `exec`, or fork before.
@@ -62,6 +63,8 @@ enum NearmissCode
     NEARMISS_STAMP = 7,
     // A fault of nearmiss itself. Tell us.
     NEARMISS_BUG = 8,
+    // A `NearmissInterrupt` has ended the call. There is no answer, and the detector can be used again.
+    NEARMISS_INTERRUPTED = 9,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -297,6 +300,9 @@ typedef struct NearmissDetector NearmissDetector;
 
 // A machine that runs kernels, and its memory.
 typedef struct NearmissDevice NearmissDevice;
+
+// A handle that ends calls early. Any thread may use it at any time, until it is freed.
+typedef struct NearmissInterrupt NearmissInterrupt;
 
 // Bodies, by their numbers.
 typedef struct NearmissScene NearmissScene;
@@ -799,7 +805,7 @@ NearmissCode nearmiss_device_limit(const NearmissDevice *device,
 // Frees the handle. The machine goes when its last detector does.
 void nearmiss_device_free(NearmissDevice *device);
 
-// The exit status that the command line has for a code: 0 done, 2 bad arguments, 3 bad input, 4 all else.
+// The exit status that the command line has for a code: 0 done, 2 bad arguments, 3 bad input, 130 interrupted, 4 all else.
 uint32_t nearmiss_exit_code(uint32_t code);
 
 // Moves bodies to where the inputs say, and answers. A body that is not named rests where it was, or where its step ended. Cost: one
@@ -841,6 +847,31 @@ NearmissInput nearmiss_pose(uint32_t body, NearmissPose pose);
 
 // A rigid body moves from one pose to another.
 NearmissInput nearmiss_poses(uint32_t body, NearmissPose from, NearmissPose to);
+
+// Makes a handle that ends nothing yet. Give it to `nearmiss_device_interruptible`.
+NearmissCode nearmiss_interrupt_new(NearmissInterrupt **interrupt, NearmissError *error);
+
+// A handle that ends the calls of a detector. Free it; the detector may go before it.
+NearmissCode nearmiss_detector_interrupter(const NearmissDetector *detector,
+                                           NearmissInterrupt **interrupt,
+                                           NearmissError *error);
+
+// Another handle of the same machine. The interrupt ends the calls of detectors that are made with it, and their making. Free it as
+// any device.
+NearmissCode nearmiss_device_interruptible(const NearmissDevice *device,
+                                           const NearmissInterrupt *interrupt,
+                                           NearmissDevice **made,
+                                           NearmissError *error);
+
+// Ends the call that runs or, if none runs, the next one: it returns `NEARMISS_INTERRUPTED`, without an answer, and the detector can be
+// used again. Bodies that the call named are where it said. One atomic store: safe in a signal handler. NULL does nothing.
+void nearmiss_interrupt(const NearmissInterrupt *interrupt);
+
+// Takes back an interrupt that has ended no call yet. As safe as `nearmiss_interrupt`.
+void nearmiss_interrupt_clear(const NearmissInterrupt *interrupt);
+
+// Frees a handle. Devices and detectors that it ends stay.
+void nearmiss_interrupt_free(NearmissInterrupt *interrupt);
 
 // Where the answer of what is submitted will lie, for kernels of the caller behind it. Fails with `NEARMISS_CHOICE` where the detector is
 // not prepared, or no two of its bodies can meet.
