@@ -15,7 +15,7 @@ pub struct LentMemory {
     pub places: Buffer<Lent>,
     /// What `places` holds.
     held: Vec<Lent>,
-    /// Poses as they were found: of each body, at both ends or at the only one.
+    /// Poses as they were found: two of each body, of which the second is that of a step.
     pub found: Buffer<PoseRecord>,
     /// See [`seen`].
     pub seen: Buffer<u64>,
@@ -36,6 +36,8 @@ pub struct Seen {
 pub struct Whereabouts {
     /// All vertices, at both ends or at the only one.
     pub ends: Vec<mesh::Positions>,
+    /// How many of these a frame looks at: one, where the other is that of steps of which the caller's memory had both ends.
+    pub looked_at: usize,
     /// Poses that were found in memory of the caller, at as many ends, of each body; others are none.
     pub poses: Vec<Pose>,
 }
@@ -123,11 +125,25 @@ impl<R: Precision> Placing<R> {
     /// # Errors
     /// Those of the device.
     pub fn whereabouts(&self) -> Result<Whereabouts, Error> {
-        let poses = self.lent.found.read(self.lent.found.len())?;
+        let found = self.lent.found.read(self.lent.found.len())?;
         let pose = |found: &PoseRecord| Pose { rotation: found.rotation, translation: found.translation };
-        Ok(Whereabouts {
-            ends: self.positions()?.into_iter().map(R::positions).collect(),
-            poses: poses.iter().map(pose).collect(),
-        })
+        let mut ends = self.positions()?;
+        let looked_at = ends.len();
+        if self.keeps.contains(&true) {
+            let later = self.later.read(self.later.len())?;
+            let mut end = ends[0].clone();
+            for body in (0..self.keeps.len()).filter(|&body| self.keeps[body]) {
+                let own = self.starts[body] as usize..self.starts[body + 1] as usize;
+                end[own.clone()].iter_mut().zip(&later[own]).for_each(|(to, from)| *to = from.at);
+            }
+            ends.push(end);
+        }
+        // The second pose of a body is one where it has two ends.
+        let has_end = |body: usize| looked_at == 2 || self.keeps[body];
+        let of = |(body, found): (usize, &[PoseRecord])| {
+            [0, usize::from(has_end(body))].map(|end| pose(&found[end])).into_iter().take(ends.len())
+        };
+        let poses = found.chunks_exact(2).enumerate().flat_map(of).collect();
+        Ok(Whereabouts { ends: ends.into_iter().map(R::positions).collect(), looked_at, poses })
     }
 }
