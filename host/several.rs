@@ -85,8 +85,8 @@ impl MultiDetector {
         let by_tiles = count > 1 && search.broad.is_none() && !search.is_of_trees();
         let query = if by_tiles { query.with_broad(Broad::Tiles) } else { query };
         // All devices together, or none.
-        let wears = query.search().rebuild == Some(Rebuild::Worn);
-        let query = query.with_rebuild(Rebuild::Asked);
+        let wears = query.search().rebuilds();
+        let query = query.with_rebuild(Rebuild::Never);
         let part = |k: usize| k as u64 * Share::ALL / count as u64;
         let shares: Vec<Share> = (0..count).map(|k| Share { from: part(k), to: part(k + 1) }).collect();
         let part = |(device, &share)| Detector::with_share(device, scene.clone(), query, share);
@@ -111,6 +111,12 @@ impl MultiDetector {
                 what: format!("positions of body {id} in the memory of one device, for several"),
                 advice: "give positions of the host".into(),
             });
+        }
+        if self.wears && self.parts[0].is_first_of(inputs) {
+            // All are built where the first frame of a body puts it.
+            self.each(|detector| detector.go(inputs))?;
+            self.rebuild()?;
+            return self.ask(Detector::detect);
         }
         self.ask(|detector| detector.frame(inputs))
     }

@@ -17,6 +17,7 @@ impl Detector {
         self.fetch()?;
         *self.scene.get_mut(id).ok_or_else(|| nobody(id))? = body;
         self.changed();
+        self.is_new_body(id);
         Ok(())
     }
 
@@ -28,7 +29,9 @@ impl Detector {
         self.fits(None, &body)?;
         self.fetch()?;
         self.changed();
-        Ok(self.scene.add(body))
+        let id = self.scene.add(body);
+        self.is_new_body(id);
+        Ok(id)
     }
 
     /// Takes a body out of the scene, from the next frame on; other bodies keep their numbers. Cost: as of
@@ -51,6 +54,13 @@ impl Detector {
             others - old.map_or(0, of) + of(new)
         };
         fits(all(Body::face_count), all(Body::vertex_count))
+    }
+
+    /// No frame has placed it.
+    fn is_new_body(&mut self, id: BodyId) {
+        if let Some(was_placed) = self.was_placed.get_mut(id.index()) {
+            *was_placed = false;
+        }
     }
 
     /// The next frame begins anew.

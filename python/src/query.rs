@@ -114,7 +114,8 @@ impl Query {
 ///
 /// adjacent: whether triangles that share a vertex are asked, too: do they share more than that?
 /// solver:   "exact", or "moller": a float test that can miss and invent.
-/// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer.
+/// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer. rebuild: "auto", the
+/// default, or "never".
 #[pyclass(module = "nearmiss", frozen, extends = Query)]
 pub struct Discrete;
 
@@ -191,7 +192,8 @@ macro_rules! in_motion {
         /// budget:     how many boxes, from 1, a pair may cost before it is listed as unresolved.
         /// solver:     "certified" (none is missed, none late), "certified-f32", "certified-f64", or "cubic-f64" and "cubic-f32", which
         ///             can miss.
-        /// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer.
+        /// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer. rebuild: "auto",
+        /// the default, or "never".
         #[pyclass(module = "nearmiss", frozen, extends = Query)]
         pub struct $kind;
 
@@ -233,7 +235,8 @@ in_motion! {
 /// Which vertices and faces, and which edges, are within a distance of each other now, and where they are nearest.
 ///
 /// distance: a length above 0, in the unit of the vertices. None within it is missed.
-/// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer.
+/// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer. rebuild: "auto", the
+/// default, or "never".
 #[pyclass(module = "nearmiss", frozen, extends = Query)]
 pub struct Near;
 
