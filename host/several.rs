@@ -89,8 +89,8 @@ impl MultiDetector {
         let by_tiles = count > 1 && search.broad.is_none() && !search.is_of_trees();
         let query = if by_tiles { query.with_broad(Broad::Tiles) } else { query };
         // All devices together, or none.
-        let wears = query.search().rebuild == Some(Rebuild::Worn);
-        let query = query.with_rebuild(Rebuild::Asked);
+        let wears = query.search().rebuilds();
+        let query = query.with_rebuild(Rebuild::Never);
         let part = |k: usize| k as u64 * Share::ALL / count as u64;
         let shares: Vec<Share> = (0..count).map(|k| Share { from: part(k), to: part(k + 1) }).collect();
         let interrupt = devices.iter().find_map(Device::interrupt).cloned().unwrap_or_default();
@@ -120,8 +120,18 @@ impl MultiDetector {
                 advice: "give positions of the host".into(),
             });
         }
-        let answered = self.ask(|detector| detector.frame(inputs));
+        let answered = self.moved(inputs);
         self.ended(answered)
+    }
+
+    fn moved(&mut self, inputs: &[(BodyId, Input)]) -> Result<Contacts, Error> {
+        if self.wears && self.parts[0].is_first_of(inputs) {
+            // All are built where the first frame of a body puts it.
+            self.each(|detector| detector.go(inputs))?;
+            self.renew()?;
+            return self.ask(Detector::detect);
+        }
+        self.ask(|detector| detector.frame(inputs))
     }
 
     /// As [`Detector::detect`].

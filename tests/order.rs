@@ -130,8 +130,9 @@ fn what_is_worn_is_made_anew_by_itself() {
     for broad in Broad::ALL {
         let query = Query::discrete().with_broad(broad);
         let start = scene::soup(3_000, 10, false).expect("a soup");
-        let mut never = Detector::new(engine(), start.clone(), query).expect("a detector");
-        let mut worn = Detector::new(engine(), start, query.with_rebuild(Rebuild::Worn)).expect("a detector");
+        let by = |rebuild| query.with_rebuild(rebuild);
+        let mut never = Detector::new(engine(), start.clone(), by(Rebuild::Never)).expect("a detector");
+        let mut worn = Detector::new(engine(), start, query).expect("a detector");
         let id = worn.scene().ids().next().expect("a body");
         let mut tests = [0, 0];
         for step in 0..30 {
@@ -185,7 +186,7 @@ fn devices_make_their_tiles_together() {
     }
     assert!(alone > 0, "a device was never short of memory after the first frame");
     // By themselves, too, and after an edit.
-    let worn = query.with_rebuild(Rebuild::Worn);
+    let worn = query.with_rebuild(Rebuild::Auto);
     let mut several = MultiDetector::new(vec![engine(), engine()], start.clone(), worn).expect("detectors");
     for step in 0..30 {
         let found = several.frame(&[(id, Input::At(&mixed(step)))]).expect("an answer");

@@ -58,12 +58,7 @@ fn posed(pose: &Pose, positions: &Positions) -> Positions {
     let at = |p: &[f64; 3]| {
         [0, 1, 2].map(|k| rows[k][0] * p[0] + rows[k][1] * p[1] + rows[k][2] * p[2] + pose.translation[k])
     };
-    match positions {
-        Positions::F32(points) => {
-            Positions::F32(points.iter().map(|p| at(&p.map(f64::from)).map(|x| x as f32)).collect())
-        }
-        Positions::F64(points) => Positions::F64(points.iter().map(at).collect()),
-    }
+    Positions::F64(positions.to_f64().iter().map(at).collect())
 }
 
 /// The body as a deformable one that is tested against nothing but what it is given: where it is now.

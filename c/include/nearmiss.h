@@ -511,13 +511,13 @@ typedef struct {
     const char *order;
     // Of trees: "levels", "treelets", "bottom-up".
     const char *refit;
-    // When tiles or trees are made anew: "asked", or "worn" for by themselves, too.
+    // When tiles or trees are made anew: "never", or "auto", the default.
     const char *rebuild;
 } NearmissQuery;
 
 // A rigid motion of the points of a body's mesh: turned first, then moved.
 typedef struct {
-    // A unit quaternion: x, y, z, w.
+    // A unit quaternion: x, y, z, w. It may be off unit length by up to 1.2e-4 (2^-13) and is normalised.
     double rotation[4];
     // What is added, in the unit of the positions.
     double translation[3];
@@ -535,7 +535,7 @@ typedef struct {
     uint32_t on_device;
     // A row a vertex; of a pose on the device its translation.
     NearmissRows positions[2];
-    // Of a pose on the device: a unit quaternion x, y, z, w.
+    // Of a pose on the device: a unit quaternion x, y, z, w, off unit length by at most 1.2e-4.
     NearmissRows rotations[2];
     // Of a rigid body whose poses the host has.
     NearmissPose poses[2];

@@ -27,7 +27,7 @@ pub enum NearmissInputKind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct NearmissPose {
-    /// A unit quaternion: x, y, z, w.
+    /// A unit quaternion: x, y, z, w. It may be off unit length by up to 1.2e-4 (2^-13) and is normalised.
     pub rotation: [f64; 4],
     /// What is added, in the unit of the positions.
     pub translation: [f64; 3],
@@ -47,7 +47,7 @@ pub struct NearmissInput {
     pub on_device: u32,
     /// A row a vertex; of a pose on the device its translation.
     pub positions: [NearmissRows; 2],
-    /// Of a pose on the device: a unit quaternion x, y, z, w.
+    /// Of a pose on the device: a unit quaternion x, y, z, w, off unit length by at most 1.2e-4.
     pub rotations: [NearmissRows; 2],
     /// Of a rigid body whose poses the host has.
     pub poses: [NearmissPose; 2],

@@ -58,7 +58,7 @@ pub struct NearmissQuery {
     pub order: *const c_char,
     /// Of trees: "levels", "treelets", "bottom-up".
     pub refit: *const c_char,
-    /// When tiles or trees are made anew: "asked", or "worn" for by themselves, too.
+    /// When tiles or trees are made anew: "never", or "auto", the default.
     pub rebuild: *const c_char,
 }
 

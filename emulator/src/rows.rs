@@ -70,6 +70,28 @@ fn each<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [[u32;
         for (place, result) in results.iter_mut().enumerate() {
             *result = map.at_once(row::<M>(columns, place));
         }
+        if M::HAS_SINGLES {
+            singles(map, columns, results);
+        }
+    }
+}
+
+/// Rows whose numbers are all f32 are mapped as such: side by side where there are some.
+#[inline(always)]
+fn singles<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [u32; WIDTH]) {
+    let mut are_single = [false; WIDTH];
+    for (place, is_single) in are_single.iter_mut().enumerate() {
+        *is_single = map.is_single(&row::<M>(columns, place));
+    }
+    if are_single == [false; WIDTH] {
+        return;
+    }
+    let mut mapped = [0; WIDTH];
+    for (place, result) in mapped.iter_mut().enumerate() {
+        *result = map.single_at_once(row::<M>(columns, place));
+    }
+    for place in 0..WIDTH {
+        results[place] = if are_single[place] { mapped[place] } else { results[place] };
     }
 }
 

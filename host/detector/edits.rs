@@ -19,6 +19,7 @@ impl Detector {
         self.fetch()?;
         *self.scene.get_mut(id).ok_or_else(|| nobody(id))? = body;
         self.changed();
+        self.is_new_body(id);
         Ok(())
     }
 
@@ -33,6 +34,7 @@ impl Detector {
         self.fetch()?;
         let id = self.scene.add(body);
         self.changed();
+        self.is_new_body(id);
         Ok(id)
     }
 
@@ -56,6 +58,13 @@ impl Detector {
             others - old.map_or(0, of) + of(new)
         };
         fits(all(Body::face_count), all(Body::vertex_count))
+    }
+
+    /// No frame has placed it.
+    fn is_new_body(&mut self, id: BodyId) {
+        if let Some(was_placed) = self.was_placed.get_mut(id.index()) {
+            *was_placed = false;
+        }
     }
 
     /// The next frame begins anew.

@@ -39,7 +39,9 @@ impl Detector {
         // One of both is empty.
         let named: Vec<Named> =
             contacts.iter().map(Named::from).chain(pairs.iter().map(Named::from)).collect();
-        let ends = pipeline.whereabouts()?.ends;
+        let mut places = pipeline.whereabouts()?;
+        places.ends.truncate(places.looked_at);
+        let ends = places.ends;
         let at = |vertex: u32| {
             let at =
                 |end: usize| ends.get(end.min(ends.len() - 1)).and_then(|end| end.get_f64(vertex as usize));

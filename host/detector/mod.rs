@@ -19,7 +19,9 @@ use crate::error::Error;
 use crate::memory;
 use crate::mesh::{Body, MAX_FACES, MAX_VERTICES, Problem};
 use crate::pipeline::{self, Found, Layout, Pipeline, Share, Stage, Stages, Tolerances};
-use crate::query::{Query, Rebuild};
+use crate::query::Query;
+#[cfg(doc)]
+use crate::query::Rebuild;
 use crate::scene::{BodyId, Scene};
 use std::sync::Arc;
 use std::time::Instant;
@@ -60,6 +62,10 @@ pub struct Detector {
     answered: bool,
     /// The largest coordinate that was seen in memory of the caller so far.
     largest: f64,
+    /// Of each body, whether a frame has placed it since it was added; and whether one did for the first time since tiles or trees
+    /// were made.
+    was_placed: Vec<bool>,
+    is_new_place: bool,
     /// Of each body, whether the last frame named it.
     named: Vec<bool>,
     /// The bodies that a submission reads, and whether they move in its step; up to date while the pipeline is prepared.
@@ -119,6 +125,8 @@ impl Detector {
             construct_ms: 0.0,
             answered: false,
             largest: 0.0,
+            was_placed: Vec::new(),
+            is_new_place: false,
             named: Vec::new(),
             submits: Vec::new(),
             f64s: false,
@@ -201,7 +209,7 @@ impl Detector {
 
     /// Tiles or trees are new.
     fn built(&mut self) {
-        (self.wear, self.builds) = (Wear::default(), self.builds + 1);
+        (self.wear, self.is_new_place, self.builds) = (Wear::default(), false, self.builds + 1);
     }
 
     /// How often tiles or trees were made: when the detector began, when asked, by itself where the query allows it, and whenever memory was
@@ -220,7 +228,7 @@ impl Detector {
     }
 
     /// Makes tiles, or the tree, over what moves anew: pays when bodies have moved far from where they were made. By itself where
-    /// [`Rebuild::Worn`] allows it.
+    /// [`Rebuild::Auto`] allows it, the default.
     ///
     /// # Errors
     /// Those of the device.
@@ -240,9 +248,11 @@ impl Detector {
         Ok(())
     }
 
-    /// Whether the next frame builds anew by itself.
+    /// Whether the next frame builds again by itself: the first one that places a body, as a rigid one was added without its pose, and
+    /// one by which the counted tests have become as many as building is worth.
     fn is_worn(&self, layout: &Layout) -> bool {
-        self.query.search().rebuild == Some(Rebuild::Worn) && self.wear.is_worn(layout.moving_triangles())
+        let is_worn = self.is_new_place || self.wear.is_worn(layout.moving_triangles());
+        self.query.search().rebuilds() && is_worn
     }
 
     /// All contacts with the bodies where they are, in canonical order. Where the lists of a frame outgrow the memory, or an index,

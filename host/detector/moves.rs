@@ -12,7 +12,7 @@ use std::time::Instant;
 
 impl Detector {
     /// Moves bodies to where the inputs say, and answers. A body that is not named rests where it was, or where its step
-    /// ended. One submission: an upload of what is named, one launch that places it, and the stages of a frame.
+    /// ended, in every query and wherever its positions came from: the answer depends on where bodies are in this frame alone. One submission: an upload of what is named, one launch that places it, and the stages of a frame.
     ///
     /// # Errors
     /// [`Error::Choice`] for a body that is not in the scene, or named twice, or given what its kind does not take, and by a query in
@@ -23,6 +23,17 @@ impl Detector {
     pub fn frame(&mut self, inputs: &[(BodyId, Input)]) -> Result<Contacts, Error> {
         let start = Instant::now();
         self.device.work();
+        let answered = self.go(inputs).and_then(|()| self.answer(start));
+        self.ended(answered)
+    }
+
+    /// Whether a frame of these places a body for the first time.
+    pub(crate) fn is_first_of(&self, inputs: &[(BodyId, Input)]) -> bool {
+        inputs.iter().any(|(id, _)| !self.was_placed.get(id.index()).is_some_and(|was| *was))
+    }
+
+    /// Moves bodies to where the inputs say; the others rest where they are, or where their step ended.
+    pub(crate) fn go(&mut self, inputs: &[(BodyId, Input)]) -> Result<(), Error> {
         let named = self.put(inputs, true)?;
         let mut moved = Vec::with_capacity(inputs.len());
         for (body, (own, named)) in self.scene.bodies_mut().iter_mut().zip(named).enumerate() {
@@ -30,8 +41,7 @@ impl Detector {
                 moved.push(Moved { body, rests: !named });
             }
         }
-        let answered = self.moved(&moved).and_then(|()| self.answer(start));
-        self.ended(answered)
+        self.moved(&moved)
     }
 
     /// Moves bodies to where the inputs say; others stay as they are, in the step that they are in. The trees are kept and refitted
@@ -91,6 +101,10 @@ impl Detector {
         }
         start_threads()?;
         self.answered = false;
+        self.was_placed.resize(self.scene.bodies().len(), false);
+        for moved in moved.iter().filter(|moved| !moved.rests) {
+            self.is_new_place |= !std::mem::replace(&mut self.was_placed[moved.body], true);
+        }
         let widens = !self.f64s && moved.iter().any(|moved| self.scene.bodies()[moved.body].needs_f64());
         if widens {
             self.fetch()?;

@@ -1,4 +1,4 @@
-//! When what triangles are ordered by is worn: decided by counted tests, so that every machine decides alike.
+//! When the order of triangles is stale: decided by counted tests, so that every machine decides alike.
 
 /// What building anew costs a triangle, in tests of two volumes: measured with tiles, cloth-ball, as the time of a construction over that of
 /// a test in a frame, 80 on an H200 and 30 to 60 on a CPU. It is in no answer.

@@ -1,7 +1,7 @@
 //! Where a body is put from frame to frame.
 
 use super::sequence::Kept;
-use super::validate::{MAX_ABS_F32, MAX_ABS_F64};
+use super::validate::MAX_ABS_F64;
 use super::{Away, Body, Positions, Problem, validate};
 use crate::Error;
 use crate::contacts::TURN_DEGREES;
@@ -98,7 +98,12 @@ impl Body {
 
     pub(crate) fn check_pose(&self, pose: &Pose) -> Result<(), Error> {
         pose.check(&self.name)?;
-        let size = size(&self.around(pose));
+        if size(&self.around(pose)) <= MAX_ABS_F64 {
+            return Ok(());
+        }
+        // The ball in which it turns is up to twice as large as the body: then its vertices decide.
+        let used = self.faces.iter().flatten().filter_map(|&v| self.positions_t0.get_f64(v as usize));
+        let size = used.flat_map(|point| pose.apply(point)).fold(0.0_f64, |most, x| most.max(x.abs()));
         if size > MAX_ABS_F64 {
             return Err(Error::Input { file: self.name.clone(), problem: Problem::PoseTooFar { size } });
         }
@@ -227,11 +232,12 @@ impl Body {
         }
     }
 
-    /// Whether its coordinates need f64.
+    /// Whether its coordinates need f64: those that are f64, and the placed vertices of every rigid body, which f32 holds exactly in
+    /// no pose but a few. A pose of the caller's memory is known too late to decide by.
     pub(crate) fn needs_f64(&self) -> bool {
         self.positions_t0.is_f64()
             || self.lent().is_some_and(DeviceInput::has_f64)
-            || self.posed_box().is_some_and(|bounds| size(&bounds) > f64::from(MAX_ABS_F32))
+            || (self.kind == BodyKind::Rigid && !self.faces.is_empty())
     }
 
     /// The angle by which the body turns from one pose to another, in degrees, and how far a vertex leaves its arc when it moves in a

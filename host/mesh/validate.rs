@@ -1,6 +1,7 @@
 //! The validation: what a mesh must satisfy before anything else sees it.
 
 use super::{Positions, Problem};
+use nearmiss_kernels::math::tolerance::SINGLE_MOST;
 
 /// Most vertices of one mesh: the ids of 2n - 1 tree nodes still fit an `i32`.
 pub const MAX_VERTICES: usize = 1 << 30;
@@ -8,7 +9,7 @@ pub const MAX_VERTICES: usize = 1 << 30;
 pub const MAX_FACES: usize = 1 << 30;
 /// Largest size of a coordinate that is kept in single precision, 2^60: dot products of differences stay finite,
 /// 3 (2^61)^2 < 2^124. A mesh with a larger one is kept in double precision.
-pub const MAX_ABS_F32: f32 = (1u64 << 60) as f32;
+pub const MAX_ABS_F32: f32 = SINGLE_MOST as f32;
 /// Largest size of a double precision coordinate, 2^480: dot products of differences stay finite, 3 (2^481)^2 < 2^964.
 pub const MAX_ABS_F64: f64 = f64::from_bits((1023 + 480) << 52);
 

@@ -16,11 +16,16 @@ pub struct Search {
     pub traversal: Option<Traversal>,
     /// The order of triangles in tiles; `None` for what is fastest.
     pub order: Option<Order>,
-    /// When tiles or trees are made anew; `None` for when asked.
+    /// When tiles or trees are built again; `None` for [`Rebuild::Auto`].
     pub rebuild: Option<Rebuild>,
 }
 
 impl Search {
+    /// Whether tiles or trees are built again by themselves.
+    pub(crate) fn rebuilds(&self) -> bool {
+        self.rebuild != Some(Rebuild::Never)
+    }
+
     /// Whether trees were asked for, by a choice that is theirs.
     pub(crate) fn is_of_trees(&self) -> bool {
         self.refit.is_some() || self.traversal.is_some()
@@ -136,13 +141,14 @@ impl Order {
 }
 
 named! {
-    /// When tiles or trees are made anew from where the bodies are. Nothing of it changes an answer.
+    /// When tiles or trees are built again from where the bodies are. No answer depends on it; hashes of lists between stages may.
     pub enum Rebuild {
-        /// When [`Detector::rebuild`](crate::Detector::rebuild) asks for it.
-        Asked = "asked",
-        /// By itself, too: before the frame at which tests of volumes beyond those of the first frame after building have cost as much as
-        /// building, by count. A submission builds nothing.
-        Worn = "worn",
+        /// By [`Detector::rebuild`](crate::Detector::rebuild) alone.
+        Never = "never",
+        /// By itself, too, the default: before the first frame after bodies were placed for the first time, and before the frame at which
+        /// volume tests beyond those of the first frame after building have cost as much as building, by count. The count is the
+        /// same on every machine, so the decision is. A submitted frame builds nothing.
+        Auto = "auto",
     }
 }
 

@@ -137,7 +137,7 @@ impl DeviceRows {
 pub struct DevicePose {
     /// One row: what is added.
     pub translation: DeviceRows,
-    /// One row: a unit quaternion x, y, z, w.
+    /// One row: a unit quaternion x, y, z, w, off unit length by at most 1.2e-4 and normalised, as [`Pose::rotation`](super::Pose::rotation).
     pub rotation: DeviceRows,
 }
 

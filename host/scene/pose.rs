@@ -4,9 +4,14 @@ use crate::error::Error;
 use crate::mesh::Problem;
 use nalgebra::{Isometry3, Vector3};
 use nearmiss_kernels::abi::PoseRecord;
+use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::math::tolerance::POSE_UNIT;
+use nearmiss_kernels::stage::place::moved;
 
 /// A rigid motion of the points of a body: turned first, then moved.
+///
+/// A placed vertex is `R v + t`, computed in doubles ([`Pose::apply`]), also of meshes in single precision; every answer is about these
+/// vertices. So a scene with a rigid body has positions in doubles.
 ///
 /// ```
 /// use nearmiss::scene::Pose;
@@ -18,7 +23,8 @@ use nearmiss_kernels::math::tolerance::POSE_UNIT;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// A unit quaternion: x, y, z, w.
+    /// Unit quaternion: x, y, z, w. It may be off unit length by up to 2^-13, 1.2e-4 (a quaternion rounded to f32 is off by 1e-7), and
+    /// is then normalised; one that is farther off is refused.
     pub rotation: [f64; 4],
     /// What is added, in the unit of the positions.
     pub translation: [f64; 3],
@@ -43,12 +49,10 @@ impl Pose {
         Pose { translation, ..Pose::default() }
     }
 
-    /// Where a point of the body goes, up to roundings.
+    /// Placed point `R v + t`, computed in doubles with the operations of every machine: its bits are those of the vertices that a
+    /// [`Detector`](crate::Detector) places, and that its answers are about. The quaternion is normalised first.
     pub fn apply(&self, point: [f64; 3]) -> [f64; 3] {
-        let PoseRecord { rotation: [x, y, z, w], translation, .. } = self.record();
-        let (axis, point) = (Vector3::new(x, y, z), Vector3::from(point));
-        let across = axis.cross(&point) * 2.0;
-        (point + across * w + axis.cross(&across) + Vector3::from(translation)).into()
+        moved(&self.record(), Vec3(point)).0
     }
 
     /// Whether it is one.

@@ -117,7 +117,8 @@ impl Query {
 ///
 /// adjacent: whether triangles that share a vertex are asked, too: do they share more than that?
 /// solver:   "exact", or "moller": a float test that can miss and invent.
-/// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer.
+/// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer. rebuild: "auto", the
+/// default, or "never".
 #[pyclass(module = "nearmiss", frozen, extends = Query)]
 pub struct Discrete;
 
@@ -195,7 +196,8 @@ macro_rules! in_motion {
         /// assume_free: leaves out the count of triangle pairs that share a point at the start: `Contacts.starts_crossing` is None then.
         /// solver:     "certified" (none is missed, none late), "certified-f32", "certified-f64", or "cubic-f64" and "cubic-f32", which
         ///             can miss.
-        /// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer.
+        /// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer. rebuild: "auto",
+        /// the default, or "never".
         #[pyclass(module = "nearmiss", frozen, extends = Query)]
         pub struct $kind;
 
@@ -239,7 +241,8 @@ in_motion! {
 /// Which vertices and faces, and which edges, are within a distance of each other now, and where they are nearest.
 ///
 /// distance: a length above 0, in the unit of the vertices. None within it is missed.
-/// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer.
+/// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer. rebuild: "auto", the
+/// default, or "never".
 #[pyclass(module = "nearmiss", frozen, extends = Query)]
 pub struct Near;
 

@@ -65,7 +65,7 @@ CHOICES = [
     "Discrete(adjacent=True, broad='tree')",
     "Discrete(solver='moller', order='median')",
     "Continuous()",
-    "Continuous(tolerance=1e-06, separation=0.25, budget=7, solver='certified-f64', bv='aabb', rebuild='worn')",
+    "Continuous(tolerance=1e-06, separation=0.25, budget=7, solver='certified-f64', bv='aabb', rebuild='never')",
     "Continuous(solver='cubic-f32')",
     "Earliest(separation=1.0)",
     "Near(distance=0.5, broad='tiles')",

@@ -90,9 +90,11 @@ fn a_scene_pays_for_what_it_has() {
         // Place is the one launch more that bodies of several kinds take; what is static takes none.
         let one = launches(Scene::from(pile(1, Body::still, false).bodies().to_vec()), motion);
         assert_eq!(launches(pile(2, Body::still, false), motion), one, "two deformable bodies");
-        assert_eq!(launches(pile(2, Body::rigid, false), motion), one + 1, "rigid bodies");
         assert_eq!(launches(with(Body::still, 1), motion), one + 1, "a deformable body over static ones");
-        assert_eq!(launches(with(Body::rigid, 300), motion), one + 1, "many rigid bodies over static ones");
+        // Rigid ones are in doubles: there are no wider signs for what single precision leaves undecided.
+        let rigid = one + 1 - u64::from(motion == QueryKind::Discrete);
+        assert_eq!(launches(pile(2, Body::rigid, false), motion), rigid, "rigid bodies");
+        assert_eq!(launches(with(Body::rigid, 300), motion), rigid, "many rigid bodies over static ones");
     }
 }
 

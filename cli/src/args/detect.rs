@@ -169,7 +169,7 @@ pub struct DetectArgs {
     /// Ask the same frame this often (after one run to warm up) and report each stage's median.
     #[arg(long, default_value_t = 1, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u32>(1, 100_000))]
     pub repeat: u32,
-    /// When tiles or trees are made anew [default: asked].
+    /// When tiles or trees are built again: auto (by itself, decided by counted tests) or never [default: auto].
     #[arg(long, value_parser = choice::<Rebuild>(), conflicts_with = "rebuild_every")]
     pub rebuild: Option<Rebuild>,
     /// Of several steps: build the tree anew every so many, where the mesh comes far [default: never, it is refitted].

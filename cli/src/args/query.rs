@@ -4,8 +4,8 @@ use super::DetectArgs;
 use crate::report::Format;
 use nearmiss::error::Error;
 use nearmiss::query::{
-    Certified, Continuous, ContinuousSolver, Discrete, Distance, Earliest, Near, Query, QueryKind, Search,
-    Solver, TriangleTest,
+    Certified, Continuous, ContinuousSolver, Discrete, Distance, Earliest, Near, Query, QueryKind, Rebuild,
+    Search, Solver, TriangleTest,
 };
 use nearmiss::scene::Meets;
 
@@ -49,7 +49,8 @@ impl DetectArgs {
             refit: self.refit,
             traversal,
             order: self.order,
-            rebuild: self.rebuild,
+            // Every so many frames, and at no other.
+            rebuild: self.rebuild.or(self.rebuild_every.map(|_| Rebuild::Never)),
         };
         let query: Query = match (near, ContinuousSolver::named(solver)) {
             _ if self.distance => Distance { search }.into(),

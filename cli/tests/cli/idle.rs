@@ -36,7 +36,7 @@ fn options_that_would_do_nothing_are_refused() {
         ("plan", &["--repeat", "2", "--only", "narrow"], planned),
         ("plan", &["--out", "a.csv"], planned),
         ("plan", &["--rebuild-every", "2"], planned),
-        ("plan", &["--rebuild", "worn"], planned),
+        ("plan", &["--rebuild", "never"], planned),
         ("plan", &["--budget", "8"], walk),
         ("explain", &["a.ply", "--tt", "0", "1", "--tolerance", "1"], "decided exactly"),
         ("explain", &["a.ply", "--tt", "0", "1", "--boxes", "1"], "decided exactly"),

@@ -141,7 +141,7 @@ fn what_one_question_takes_is_refused() {
         (&["detect", "a", "b", "c", "--repeat", "3", "--only", "narrow"], "--only would do nothing"),
         (&["detect", "a", "--rebuild-every", "3"], "--rebuild-every would do nothing: there is one step"),
         (&["detect", "a", "b", "--rebuild-every", "3"], "give more frames"),
-        (&["detect", "a", "b", "--rebuild", "worn"], "--rebuild would do nothing"),
+        (&["detect", "a", "b", "--rebuild", "never"], "--rebuild would do nothing"),
         (&["detect", "a", "b", "c", "--solver", "exact"], "choose one of: certified"),
         (&["detect", "a", "b", "c", "--rebuild-every", "0"], "a whole number from 1"),
     ] {

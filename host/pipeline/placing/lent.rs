@@ -15,7 +15,7 @@ pub struct LentMemory {
     pub places: Buffer<Lent>,
     /// What `places` holds.
     held: Vec<Lent>,
-    /// Poses as they were found: of each body, at both ends or at the only one.
+    /// Poses as they were found: two of each body, of which the second is that of a step.
     pub found: Buffer<PoseRecord>,
     /// See [`seen`].
     pub seen: Buffer<u64>,
@@ -36,6 +36,8 @@ pub struct Seen {
 pub struct Whereabouts {
     /// All vertices, at both ends or at the only one.
     pub ends: Vec<mesh::Positions>,
+    /// How many of these a frame looks at: one, where the other is that of steps of which the caller's memory had both ends.
+    pub looked_at: usize,
     /// Poses that were found in memory of the caller, at as many ends, of each body; others are none.
     pub poses: Vec<Pose>,
     /// What placing saw of the caller's numbers; `None` if it read none.
@@ -125,11 +127,26 @@ impl<R: Precision> Placing<R> {
     /// # Errors
     /// Those of the device.
     pub fn whereabouts(&self) -> Result<Whereabouts, Error> {
-        Ok(Whereabouts {
-            ends: self.positions()?.into_iter().map(R::positions).collect(),
-            poses: self.poses()?,
-            seen: self.seen()?,
-        })
+        let mut ends = self.positions()?;
+        let looked_at = ends.len();
+        if self.keeps.contains(&true) {
+            let later = self.later.read(self.later.len())?;
+            let mut end = ends[0].clone();
+            for body in (0..self.keeps.len()).filter(|&body| self.keeps[body]) {
+                let own = self.starts[body] as usize..self.starts[body + 1] as usize;
+                end[own.clone()].iter_mut().zip(&later[own]).for_each(|(to, from)| *to = from.at);
+            }
+            ends.push(end);
+        }
+        // The second pose of a body is one where it has two ends.
+        let found = self.poses()?;
+        let has_end = |body: usize| looked_at == 2 || self.keeps[body];
+        let of = |(body, found): (usize, &[Pose])| {
+            [0, usize::from(has_end(body))].map(|end| found[end]).into_iter().take(ends.len())
+        };
+        let poses = found.chunks_exact(2).enumerate().flat_map(of).collect();
+        let seen = self.seen()?;
+        Ok(Whereabouts { ends: ends.into_iter().map(R::positions).collect(), looked_at, poses, seen })
     }
 
     /// The poses alone, as of [`Whereabouts::poses`].

@@ -10,12 +10,12 @@ use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::mesh::{self, Body};
 use crate::pipeline::{launch, purpose};
-use crate::scene::{BodyKind, Pose};
+use crate::scene::{BodyKind, DeviceInput, Pose};
 use bytemuck::Pod;
 use lent::LentMemory;
 use nearmiss_kernels::abi::{
-    LENT, LENT_POSES, POSED, PlaceArgs, Placement, Point, PoseRecord, Positions, RESTING, Span, UPLOADED,
-    VertexMotion as Ends,
+    KEEPS_END, LENT, LENT_POSES, POSED, PlaceArgs, Placement, Point, PoseRecord, Positions, RESTING, Span,
+    UPLOADED, VertexMotion as Ends,
 };
 use nearmiss_kernels::math::{Real, Vec3};
 
@@ -26,6 +26,13 @@ pub struct Moved {
     pub body: usize,
     /// Whether it rests at the end of the last step, instead of being where it now is.
     pub rests: bool,
+}
+
+impl Moved {
+    /// As vertices with one end take it: what the host knows is placed where it now is; the device has only the other's end.
+    fn at_one_end(self, bodies: &[Body]) -> Moved {
+        Moved { rests: self.rests && bodies[self.body].is_away(), ..self }
+    }
 }
 
 /// Positions, as the query needs them.
@@ -93,6 +100,11 @@ pub struct Placing<R: Precision> {
     /// Vertices of rigid bodies without a pose, and where each body's begin.
     rest: Buffer<Point<R>>,
     rest_starts: Vec<u32>,
+    /// Each body's first vertex, and where the last one's end.
+    starts: Vec<u32>,
+    /// Where vertices have one end: ends of steps of which the caller's memory had both, and which bodies' those are.
+    later: Buffer<Point<R>>,
+    keeps: Vec<bool>,
     /// Of the last frame: vertices that came from the host, where not all did; who was moved, and how.
     uploaded: Vertices<R>,
     placements: Buffer<Placement>,
@@ -125,6 +137,9 @@ impl<R: Precision> Placing<R> {
         let mut placing = Placing {
             vertices: Vertices::new(device, moving, layout.starts[layout.bodies()].vertex as usize)?,
             rest_starts: rest_starts.collect(),
+            starts: layout.starts.iter().map(|at| at.vertex).collect(),
+            later: device.buffer(0)?,
+            keeps: vec![false; bodies.len()],
             rest: device.of(purpose::REST).upload(&rest)?,
             uploaded: Vertices::new(device, moving, 0)?,
             placements: device.buffer(0)?,
@@ -162,11 +177,36 @@ impl<R: Precision> Placing<R> {
     }
 
     /// Moves bodies, named in ascending order. One launch, and an upload of positions, of poses and, where others were moved
-    /// than in the frame before, of whom; of deformable bodies alone, when all are moved, an upload and no launch.
+    /// than in the frame before, of whom; of deformable bodies alone, when all are moved, an upload and no launch. Where vertices have
+    /// one end, bodies of the host that rest are placed by a launch before that of the caller's memory, which alone is placed
+    /// [again](Placing::again).
     ///
     /// # Errors
     /// Those of the device.
     pub fn put(
+        &mut self,
+        device: &Device,
+        layout: &Layout,
+        bodies: &[Body],
+        moved: &[Moved],
+    ) -> Result<(), Error> {
+        if matches!(self.vertices, Vertices::Moving(_)) {
+            return self.put_together(device, layout, bodies, moved);
+        }
+        let any_lent = moved.iter().any(|m| bodies[m.body].lent().is_some());
+        let goes_first = |m: &Moved| any_lent && m.rests && !bodies[m.body].is_away();
+        let one_end = |first: bool| {
+            let group = moved.iter().filter(|m| goes_first(m) == first);
+            group.map(|m| m.at_one_end(bodies)).collect::<Vec<_>>()
+        };
+        let first = one_end(true);
+        if !first.is_empty() {
+            self.put_together(device, layout, bodies, &first)?;
+        }
+        self.put_together(device, layout, bodies, &one_end(false))
+    }
+
+    fn put_together(
         &mut self,
         device: &Device,
         layout: &Layout,
@@ -179,6 +219,7 @@ impl<R: Precision> Placing<R> {
             !m.rests && bodies[m.body].kind() != BodyKind::Rigid && bodies[m.body].lent().is_none()
         };
         if all && moved.iter().all(comes) {
+            self.keeps.fill(false);
             self.last = Last::Host;
             return self.vertices.write(bodies.iter());
         }
@@ -189,18 +230,20 @@ impl<R: Precision> Placing<R> {
         for &Moved { body: i, rests } in moved {
             let (body, vertex) = (&bodies[i], layout.starts[i].vertex);
             let count = body.vertex_count() as u32;
-            // What rests is where it is already, if nothing has two ends.
-            if count == 0 || rests && !moving {
+            if count == 0 {
                 continue;
             }
+            let keeps = !moving && (rests || body.lent().is_some_and(DeviceInput::is_moving));
+            self.keeps[i] = keeps;
             let placement = Placement { vertex, before, source: self.rest_starts[i], ..Placement::default() };
             placed.push(match (rests, body.lent(), body.kind()) {
                 (true, _, _) => Placement { from: RESTING, ..placement },
                 (false, Some(input), kind) => {
                     let first = lent.len() as u32;
-                    lent.extend(input.records(ends));
+                    lent.extend(input.records(if keeps { 2 } else { ends }));
                     let from = if kind == BodyKind::Rigid { LENT_POSES } else { LENT };
-                    Placement { from, lent: first, pose: (i * ends) as u32, ..placement }
+                    let from = if keeps { from | KEEPS_END } else { from };
+                    Placement { from, lent: first, pose: 2 * i as u32, ..placement }
                 }
                 (false, None, BodyKind::Rigid) => {
                     let pose = poses.len() as u32;
@@ -229,7 +272,10 @@ impl<R: Precision> Placing<R> {
             write(&device.of(purpose::PLACEMENTS), &mut self.placements, &placed)?;
             self.placed = placed;
         }
-        self.lent.hold(&device.of(purpose::LENT), lent, bodies.len() * ends)?;
+        self.lent.hold(&device.of(purpose::LENT), lent, 2 * bodies.len())?;
+        if self.later.is_empty() && self.keeps.contains(&true) {
+            self.later = device.of(purpose::LENT).buffer(self.vertices.len())?;
+        }
         let args = PlaceArgs {
             placements: self.placements.span().part(0, self.placed.len() as u64),
             uploaded: self.uploaded.span(),
@@ -238,6 +284,7 @@ impl<R: Precision> Placing<R> {
             found: self.lent.found.span(),
             lent: self.lent.places.span(),
             vertices: self.vertices.span(),
+            later: self.later.span(),
             seen: self.lent.seen.span(),
             most: if R::WIDE { mesh::MAX_ABS_F64 } else { mesh::MAX_ABS_F32.into() },
             count: before,

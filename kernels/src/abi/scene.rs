@@ -84,7 +84,7 @@ pub struct Placement {
     pub vertex: u32,
     /// Vertices of the placed bodies before it.
     pub before: u32,
-    /// Where its vertices come from: [`UPLOADED`] and those behind it.
+    /// Where its vertices come from: [`UPLOADED`] and those behind it, with [`KEEPS_END`].
     pub from: u32,
     /// Its first vertex there: among those that were uploaded, or among the points at rest.
     pub source: u32,
@@ -97,7 +97,7 @@ const _: () = assert!(size_of::<Placement>() == 24);
 
 /// [`Placement::from`]: the vertices were uploaded as they are.
 pub const UPLOADED: u32 = 0;
-/// [`Placement::from`]: the body rests where it was at the end of the last step.
+/// [`Placement::from`]: the body rests where it was at the end of the last step; of one end in [`PlaceArgs::later`].
 pub const RESTING: u32 = 1;
 /// [`Placement::from`]: poses move points at rest.
 pub const POSED: u32 = 2;
@@ -106,6 +106,9 @@ pub const LENT: u32 = 3;
 /// [`Placement::from`]: poses that lie in memory of the caller move points at rest: of each a place of its translation, then one of
 /// its rotation.
 pub const LENT_POSES: u32 = 4;
+/// A bit of [`Placement::from`], beside [`LENT`] and [`LENT_POSES`] where vertices have one end: two ends lie in memory of the caller,
+/// and the later one is kept in [`PlaceArgs::later`].
+pub const KEEPS_END: u32 = 8;
 
 /// Rows of numbers in memory of the caller. Whoever launches a kernel that reads it promises that they are there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
@@ -171,6 +174,8 @@ arguments! {
         lent: Span<Lent>,
         /// Out: all vertices.
         vertices: Positions<R>,
+        /// In and out, where vertices have one end: where the steps ended of which the caller's memory had both; empty without such.
+        later: Span<Point<R>>,
         /// Out: what was seen of the caller's numbers, see [`seen`]; zero before.
         seen: Span<u64>,
         /// The largest size of a coordinate that can be computed with.

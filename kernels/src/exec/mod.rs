@@ -113,10 +113,22 @@ pub trait RowMap {
     type Row: Pod;
     /// What becomes of a row, or [`OPEN`] where that takes branches. To be `#[inline(always)]`.
     fn at_once(&self, row: Self::Row) -> u32;
+    /// Whether rows of f64 whose numbers are all f32 are mapped by [`RowMap::single_at_once`].
+    const HAS_SINGLES: bool = false;
+    /// Whether a row is such a one.
+    #[inline(always)]
+    fn is_single(&self, _: &Self::Row) -> bool {
+        false
+    }
+    /// What becomes of such a row, with the bits that the same row of f32 has. To be `#[inline(always)]`.
+    #[inline(always)]
+    fn single_at_once(&self, row: Self::Row) -> u32 {
+        self.at_once(row)
+    }
     /// What becomes of a row.
     #[inline(always)]
     fn apply(&self, row: Self::Row) -> u32 {
-        self.at_once(row)
+        if Self::HAS_SINGLES && self.is_single(&row) { self.single_at_once(row) } else { self.at_once(row) }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The two precisions that positions come in.
 
 use super::root::{sqrt32, sqrt64};
-use super::tolerance::{Tolerance, U32, U64};
+use super::tolerance::{SINGLE_MOST, Tolerance, U32, U64};
 use crate::exec::ptx::{greater32, lesser32};
 use bytemuck::Pod;
 use core::fmt::Debug;
@@ -51,6 +51,9 @@ pub trait Real:
     fn sign(self) -> u32;
     /// The square root, correctly rounded; of `self >= 0` only.
     fn sqrt(self) -> Self;
+    /// Whether a wide number is one of f32 that f32 can be computed with, [`SINGLE_MOST`] at most: then what is computed of it has the
+    /// bits that f32 positions have. False of f32, which is its own.
+    fn is_single(self) -> bool;
     /// Sign, integer mantissa and exponent; of finite numbers only. Exact, in integer operations.
     fn parts(self) -> Parts;
     /// `2^k`, exactly; for `k` in the range of normal numbers, elsewhere the nearest end of that range.
@@ -106,6 +109,10 @@ impl Real for f32 {
     fn greater(self, o: f32) -> f32 {
         greater32(self, o)
     }
+    #[inline(always)]
+    fn is_single(self) -> bool {
+        false
+    }
     #[inline]
     fn sqrt(self) -> f32 {
         sqrt32(self)
@@ -143,6 +150,10 @@ impl Real for f64 {
     #[inline]
     fn sign(self) -> u32 {
         (self.to_bits() >> 32) as u32
+    }
+    #[inline(always)]
+    fn is_single(self) -> bool {
+        (self as f32) as f64 == self && f64::abs(self) <= SINGLE_MOST
     }
     #[inline]
     fn sqrt(self) -> f64 {

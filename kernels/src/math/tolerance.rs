@@ -172,6 +172,9 @@ impl Tolerance for f64 {
     const ADVANCE_FINEST: f64 = 64.0 * U64;
 }
 
+/// Largest size of a coordinate that f32 is computed with, 2^60: dot products of differences stay finite, 3 (2^61)^2 < 2^124. Length.
+pub const SINGLE_MOST: f64 = f64::from_bits((1023 + 60) << 52);
+
 /// Largest extent, and one over the smallest, that a continuous test computes with as it is; outside, differences
 /// are first scaled by a power of two (exactly). `2^20`, so that cubes stay clear of both ends of f32. Length.
 pub const CUBIC_SCALE: f64 = 1048576.0;

@@ -64,6 +64,11 @@ impl<R: Real> Vec3<R> {
     pub fn narrow(self) -> Vec3<f32> {
         self.map(|x| x.wide() as f32)
     }
+    /// Whether all are [`Real::is_single`].
+    #[inline(always)]
+    pub fn is_single(self) -> bool {
+        self[0].is_single() && self[1].is_single() && self[2].is_single()
+    }
     /// Widened to f64; exact.
     #[inline]
     pub fn wide(self) -> Vec3<f64> {

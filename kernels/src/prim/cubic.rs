@@ -45,6 +45,19 @@ unsafe impl<R: Real> Zeroable for Moving<R> {}
 // SAFETY: repr(C), two of one type that is Pod: no padding.
 unsafe impl<R: Real> Pod for Moving<R> {}
 
+impl<R: Real> Moving<R> {
+    /// Whether both ends are [`Real::is_single`].
+    #[inline(always)]
+    pub fn is_single(&self) -> bool {
+        self.t0.is_single() && self.t1.is_single()
+    }
+    /// In f32: exact of what is single.
+    #[inline(always)]
+    pub fn narrow(&self) -> Moving<f32> {
+        Moving { t0: self.t0.narrow(), t1: self.t1.narrow() }
+    }
+}
+
 /// The first time in [0, 1] at which the vertex meets the closed face, computed in `S`; touching at 0 gives 0.
 /// Not certain: see the module text. About 130 operations where signs reject, 400 to 1500 else.
 pub fn vf_toi<R: Real, S: Real>(v: Moving<R>, f: [Moving<R>; 3]) -> Option<S> {

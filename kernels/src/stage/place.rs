@@ -2,28 +2,29 @@
 //! Paper    nothing; gProximity uploads every vertex every frame. A rigid body needs 64 B a pose.
 //! Launch   a lane a vertex of the bodies that were moved; a grid of any size strides.
 //! Reads    placements; points at rest and poses, uploaded vertices, or rows in memory of the caller.
-//! Writes   vertices, each once; poses that lay in memory of the caller; what was seen there, by atomics.
+//! Writes   vertices, each once; ends of steps that are kept; poses that lay in memory of the caller; what was seen there, by atomics.
 //! Before   placements come in the order of their vertices; every pose that the host gave gives coordinates that are small enough (it
 //!          has looked). `seen` is zero.
-//! After    a vertex of a rigid body is its point at rest, turned and moved by its pose at either end, in f64 and rounded once;
+//! After    a vertex of a rigid body is [`moved`] by its pose at either end, in f64 and as computed (a scene with a rigid body has
+//!          positions in f64);
 //!          one that was uploaded, or lies in memory of the caller, is as it was; one that rests is at both ends where it was at the
 //!          later one. Other bodies' vertices are as they were. An answer is with respect to these vertices. Of the caller's numbers,
 //!          `seen` tells whether all can be computed with (else there is no answer) and the largest.
+//!          With one end, a step in memory of the caller keeps its end in `later`, and a body that rests is copied from there.
 //! Room     fixed; cannot run out.
 //! Cost     16 B a point in and 16 or 32 B out (f32), 64 B a pose from cache; 50 operations a vertex and end.
 
 use crate::abi::{
-    LENT, Lent, POSED, PlaceArgs, Point, PoseRecord, RESTING, Span, UPLOADED, VertexMotion, seen,
+    KEEPS_END, LENT, Lent, POSED, PlaceArgs, Point, PoseRecord, RESTING, Span, UPLOADED, VertexMotion, seen,
 };
 use crate::bvh::filter::holder;
 use crate::exec::{Block, Lane};
 use crate::math::tolerance::POSE_UNIT;
 use crate::math::{Real, Vec3};
 
-/// Where the pose takes a point.
+/// Where the pose takes a point: `R v + t` by these operations, in doubles and in this order, on every machine.
 #[inline(always)]
-fn moved<R: Real>(pose: &PoseRecord, point: Vec3<R>) -> Point<R> {
-    let p = point.wide();
+pub fn moved(pose: &PoseRecord, p: Vec3<f64>) -> Vec3<f64> {
     let [x, y, z, w] = pose.rotation;
     let rows = [
         [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w)],
@@ -31,8 +32,14 @@ fn moved<R: Real>(pose: &PoseRecord, point: Vec3<R>) -> Point<R> {
         [2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)],
     ];
     let coordinate =
-        |k: usize| R::of(rows[k][0] * p[0] + rows[k][1] * p[1] + rows[k][2] * p[2] + pose.translation[k]);
-    Point::from(Vec3([coordinate(0), coordinate(1), coordinate(2)]))
+        |k: usize| rows[k][0] * p[0] + rows[k][1] * p[1] + rows[k][2] * p[2] + pose.translation[k];
+    Vec3([coordinate(0), coordinate(1), coordinate(2)])
+}
+
+/// The same of a point at rest.
+#[inline(always)]
+fn placed<R: Real>(pose: &PoseRecord, at_rest: Point<R>) -> Point<R> {
+    Point::from(moved(pose, at_rest.at.wide()).map(|x| R::of(x)))
 }
 
 /// A row of the caller's numbers.
@@ -99,9 +106,10 @@ pub fn place<R: Real, B: Block>(b: &mut B, a: &PlaceArgs<R>) {
             let own = i - placement.before;
             let (vertex, source) = (placement.vertex + own, placement.source + own);
             // At one end; the rest of a body in motion is below.
-            let mut end_of = |end: u32| match placement.from {
+            let from = placement.from & !KEEPS_END;
+            let mut end_of = |end: u32| match from {
                 UPLOADED => l.read(a.uploaded.still, source),
-                RESTING => l.read(a.vertices.still, vertex),
+                RESTING => l.read(a.later, vertex),
                 LENT => {
                     let point = row::<_, 3>(l, &l.read(a.lent, placement.lent + end), own);
                     let point = Point::from(Vec3(point.map(|x| R::of(x))));
@@ -110,7 +118,7 @@ pub fn place<R: Real, B: Block>(b: &mut B, a: &PlaceArgs<R>) {
                 }
                 POSED => {
                     let pose = l.read(a.poses, placement.pose + end);
-                    moved(&pose, l.read(a.rest, source).at)
+                    placed(&pose, l.read(a.rest, source))
                 }
                 _ => {
                     let lent = placement.lent + 2 * end;
@@ -122,7 +130,7 @@ pub fn place<R: Real, B: Block>(b: &mut B, a: &PlaceArgs<R>) {
                         l.write(a.found, placement.pose + end, found);
                     }
                     let pose = PoseRecord { rotation: rotation.map(|q| q / length), ..found };
-                    let point = moved(&pose, l.read(a.rest, source).at);
+                    let point = placed(&pose, l.read(a.rest, source));
                     seen.look(vertex, &point, Real::abs(length - 1.0) <= POSE_UNIT, a.most);
                     point
                 }
@@ -130,8 +138,12 @@ pub fn place<R: Real, B: Block>(b: &mut B, a: &PlaceArgs<R>) {
             if still {
                 let point = end_of(0);
                 l.write(a.vertices.still, vertex, point);
+                if placement.from & KEEPS_END != 0 {
+                    let end = end_of(1);
+                    l.write(a.later, vertex, end);
+                }
             } else {
-                let motion = match placement.from {
+                let motion = match from {
                     UPLOADED => l.read(a.uploaded.moving, source),
                     RESTING => {
                         let end = l.read(a.vertices.moving, vertex).t1;

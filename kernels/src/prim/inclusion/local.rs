@@ -102,6 +102,8 @@ pub struct Differences<S, const N: usize> {
     pub finite: bool,
     /// Bits: the points of which pairs are one at the start. Exact.
     pub together: u32,
+    /// The largest component.
+    pub largest: S,
 }
 
 /// The differences of pairs of points in motion.
@@ -116,12 +118,17 @@ pub fn differences<R: Real, S: Grid, const N: usize>(
             let (x, y) = pairs[k];
             less[k] = [x.t0.wide() - y.t0.wide(), x.t1.wide() - y.t1.wide()];
         }
-        let Differences { w: less, scale, finite, together } = scaled(less);
+        let Differences { w: less, scale, finite, together, largest } = scaled(less);
+        // What rounds up to 2 is scaled once more, as differences of f32 are that round before: the same bits of the same numbers. A
+        // difference of two f32 that rounds to f64 and then to f32 is the one that rounds once: 53 digits are more than twice 24 and 2.
+        let largest = S::of(largest);
+        let is_up = !S::WIDE && finite && largest >= S::of(2.0);
+        let (half, scale) = if is_up { (S::of(0.5), 0.5 * scale) } else { (S::ONE, scale) };
         let mut w = [[Vec3([S::ZERO; 3]); 2]; N];
         for k in 0..N {
-            w[k] = [less[k][0].map(S::of), less[k][1].map(S::of)];
+            w[k] = [less[k][0].map(S::of) * half, less[k][1].map(S::of) * half];
         }
-        Differences { w, scale, finite, together }
+        Differences { w, scale, finite, together, largest: largest * half }
     } else {
         let to = |x: Vec3<R>| x.map(|x| S::of(x.wide()));
         let mut w = [[Vec3([S::ZERO; 3]); 2]; N];
@@ -152,7 +159,7 @@ fn scaled<T: Real, const N: usize>(mut w: [[Vec3<T>; 2]; N]) -> Differences<T, N
     let finite = sum[0] + sum[1] + sum[2] < T::of(f64::INFINITY);
     let p = most.wide().parts();
     if !finite || p.mantissa == 0 {
-        return Differences { w, scale: 1.0, finite, together };
+        return Differences { w, scale: 1.0, finite, together, largest: most };
     }
     let scale = T::pow2(-(p.exponent + 63 - p.mantissa.leading_zeros() as i32));
     for k in 0..N {
@@ -160,5 +167,5 @@ fn scaled<T: Real, const N: usize>(mut w: [[Vec3<T>; 2]; N]) -> Differences<T, N
             w[k][i] = w[k][i] * scale;
         }
     }
-    Differences { w, scale: scale.wide(), finite, together }
+    Differences { w, scale: scale.wide(), finite, together, largest: most * scale }
 }

@@ -39,7 +39,7 @@ impl<S: Grid> Face<S> {
     #[inline(always)]
     pub fn new<R: Real>(v: Moving<R>, f: [Moving<R>; 3], p: &Params) -> Self {
         let pairs = [(v, f[0]), (v, f[1]), (v, f[2]), (f[1], f[0]), (f[2], f[0])];
-        let Differences { w: [w0, w1, w2, a, b], scale, finite, together } = differences(pairs);
+        let Differences { w: [w0, w1, w2, a, b], scale, finite, together, .. } = differences(pairs);
         Pair::of([w0, w1, w2], [a, b], (scale, finite, together), p)
     }
 }
@@ -49,7 +49,8 @@ impl<S: Grid> Edges<S> {
     #[inline(always)]
     pub fn new<R: Real>(a: [Moving<R>; 2], b: [Moving<R>; 2], p: &Params) -> Self {
         let pairs = [(a[0], b[0]), (a[0], b[1]), (a[1], b[0]), (a[1], b[1]), (a[1], a[0]), (b[1], b[0])];
-        let Differences { w: [w0, w1, w2, w3, along, across], scale, finite, together } = differences(pairs);
+        let Differences { w: [w0, w1, w2, w3, along, across], scale, finite, together, .. } =
+            differences(pairs);
         Pair::of([w0, w1, w2, w3], [along, across], (scale, finite, together), p)
     }
 }

@@ -91,7 +91,15 @@ pub fn moller<R: Real, B: Block>(b: &mut B, a: &DiscreteArgs<R>) {
     append_each(b, count, a.contacts, |l, i| {
         let pair = a.pairs.get(l, i);
         let triangle = |t: u32| corners::<R, Still, _>(l, a, l.read(a.faces, t));
-        moller::moller(&triangle(pair.a), &triangle(pair.b)).then_some(pair)
+        let (p, q) = (triangle(pair.a), triangle(pair.b));
+        // What it believes depends on roundings: f32 numbers have those of f32, whatever else is in the scene.
+        let is_single = p.iter().chain(&q).all(|x| x.is_single());
+        let meet = if is_single {
+            moller::moller(&p.map(|x| x.narrow()), &q.map(|x| x.narrow()))
+        } else {
+            moller::moller(&p, &q)
+        };
+        meet.then_some(pair)
     });
 }
 

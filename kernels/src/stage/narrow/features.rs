@@ -62,6 +62,10 @@ pub trait Course<R: Real> {
     fn corner<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32) -> Self::Corner;
     /// Which tests of two triangles have features whose boxes come within a gap, and not first behind the horizon.
     fn meeting(p: &[Self::Corner; 3], q: &[Self::Corner; 3], gap: R, horizon: R) -> u32;
+    /// Whether all its numbers are [`Real::is_single`].
+    fn is_single(corner: &Self::Corner) -> bool;
+    /// [`Course::meeting`] of such, in f32.
+    fn meeting_single(p: &[Self::Corner; 3], q: &[Self::Corner; 3], gap: f32, horizon: f32) -> u32;
 }
 
 /// Vertices move over a step.
@@ -80,6 +84,15 @@ impl<R: Real> Course<R> for Moves {
     #[inline(always)]
     fn meeting(p: &[Moving<R>; 3], q: &[Moving<R>; 3], gap: R, horizon: R) -> u32 {
         meeting(p, q, gap, horizon)
+    }
+    #[inline(always)]
+    fn is_single(corner: &Moving<R>) -> bool {
+        corner.is_single()
+    }
+    #[inline(always)]
+    fn meeting_single(p: &[Moving<R>; 3], q: &[Moving<R>; 3], gap: f32, horizon: f32) -> u32 {
+        let narrow = |[x, y, z]: &[Moving<R>; 3]| [x.narrow(), y.narrow(), z.narrow()];
+        meeting(&narrow(p), &narrow(q), gap, horizon)
     }
 }
 
@@ -100,12 +113,23 @@ impl<R: Real> Course<R> for Rests {
     fn meeting(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3], gap: R, _: R) -> u32 {
         meeting_at_rest(p, q, gap)
     }
+    #[inline(always)]
+    fn is_single(corner: &Vec3<R>) -> bool {
+        corner.is_single()
+    }
+    #[inline(always)]
+    fn meeting_single(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3], gap: f32, _: f32) -> u32 {
+        let narrow = |[x, y, z]: &[Vec3<R>; 3]| [x.narrow(), y.narrow(), z.narrow()];
+        meeting_at_rest(&narrow(p), &narrow(q), gap)
+    }
 }
 
 /// Which tests of two triangles have features whose boxes come within a gap, and not first behind the horizon.
 struct Meeting<R, C> {
     gap: R,
     horizon: R,
+    /// Both for f32 numbers.
+    single: [f32; 2],
     course: PhantomData<C>,
 }
 
@@ -115,6 +139,17 @@ impl<R: Real, C: Course<R>> RowMap for Meeting<R, C> {
     #[inline(always)]
     fn at_once(&self, [p, q]: Self::Row) -> u32 {
         C::meeting(&p, &q, self.gap, self.horizon)
+    }
+    // Boxes of f32 are grown by what f32 rounds, so they bring more: a solver without a proof would find more, too.
+    const HAS_SINGLES: bool = R::WIDE;
+    #[inline(always)]
+    fn is_single(&self, [[p, q, r], [s, t, u]]: &Self::Row) -> bool {
+        let both = C::is_single(p) && C::is_single(s);
+        both && C::is_single(q) && C::is_single(t) && C::is_single(r) && C::is_single(u)
+    }
+    #[inline(always)]
+    fn single_at_once(&self, [p, q]: Self::Row) -> u32 {
+        C::meeting_single(&p, &q, self.single[0], self.single[1])
     }
 }
 
@@ -134,8 +169,10 @@ const EE: u32 = 1 << 16;
 /// Vertex/face and edge/edge candidates of each triangle pair.
 pub fn features<R: Real, C: Course<R>, B: Block>(b: &mut B, a: &FeaturesArgs<R>) {
     let count = a.pairs.listed(b);
-    let horizon = R::of(Horizon::of(b, a.known).time().into());
-    let (lanes, map) = (b.lanes(), Meeting::<R, C> { gap: more(a.gap), horizon, course: PhantomData });
+    let time = Horizon::of(b, a.known).time();
+    let (horizon, single) = (R::of(time.into()), [more(a.gap), time]);
+    let map = Meeting::<R, C> { gap: more(a.gap), horizon, single, course: PhantomData };
+    let lanes = b.lanes();
     let tests = b.shared::<u32>(MOST * lanes);
     let mut masks = b.slot(0u32);
     let mut places = b.slot(0u32);

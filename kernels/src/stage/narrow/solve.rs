@@ -18,8 +18,14 @@ use crate::prim::inclusion::Verdict;
 /// Vertex/face, positions in R, the cubic in S.
 pub fn vf<R: Real, S: Real, B: Block>(b: &mut B, a: &SolveArgs<R>) {
     solve(b, a, |l, pair| {
-        let (v, f) = vertex_face(l, (&a.frames, a.faces), pair);
-        vf_toi::<R, S>(v, f).map(contact)
+        let (v, [x, y, z]) = vertex_face(l, (&a.frames, a.faces), pair);
+        // What the cubic finds depends on roundings: f32 numbers have those of f32, whatever else is in the scene.
+        let toi = if v.is_single() && x.is_single() && y.is_single() && z.is_single() {
+            vf_toi::<f32, S>(v.narrow(), [x.narrow(), y.narrow(), z.narrow()])
+        } else {
+            vf_toi::<R, S>(v, [x, y, z])
+        };
+        toi.map(contact)
     });
 }
 
@@ -27,7 +33,13 @@ pub fn vf<R: Real, S: Real, B: Block>(b: &mut B, a: &SolveArgs<R>) {
 pub fn ee<R: Real, S: Real, B: Block>(b: &mut B, a: &SolveArgs<R>) {
     solve(b, a, |l, pair| {
         let [x, y] = edge_edge(l, (&a.frames, a.edges), pair);
-        ee_toi::<R, S>(x, y).map(contact)
+        let is_single = x[0].is_single() && x[1].is_single() && y[0].is_single() && y[1].is_single();
+        let toi = if is_single {
+            ee_toi::<f32, S>([x[0].narrow(), x[1].narrow()], [y[0].narrow(), y[1].narrow()])
+        } else {
+            ee_toi::<R, S>(x, y)
+        };
+        toi.map(contact)
     });
 }
 
