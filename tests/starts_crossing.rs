@@ -67,11 +67,12 @@ fn random_scene(seed: u64) -> Scene {
             _ => Body::moving(t0, t1).expect("two frames"),
         };
         let is_plain = seed.is_multiple_of(2);
+        let self_contact = (body.kind() != BodyKind::Static).then(|| rng.random_bool(0.5));
         scene.add(body.with(Meets {
             environment: [Some(0), Some(0), Some(1), None][rng.random_range(0..4)],
             group: if is_plain { u32::MAX } else { rng.random_range(0..4) },
             mask: if is_plain { u32::MAX } else { rng.random_range(0..4) },
-            self_contact: (body.kind() != BodyKind::Static).then(|| rng.random_bool(0.5)),
+            self_contact,
         }));
     }
     scene

@@ -38,6 +38,7 @@ impl Memory {
             status: self.status[which].span(),
             first: Span::EMPTY,
             second: Span::EMPTY,
+            crossing: Span::EMPTY,
         };
         // SAFETY: buffers of this device that outlive the launch; no list, and room for everything that is seen.
         unsafe { device.launch::<status_frame>(1, &args) }
