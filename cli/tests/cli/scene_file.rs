@@ -136,7 +136,7 @@ fn rows_name_bodies() {
         assert_eq!(at, rows.len(), "{question:?}");
         assert!(at > 1, "{question:?}");
     }
-    assert!(ok(&["plan", &scene]).contains("Continuous, between"));
+    assert!(ok(&["plan", &scene]).contains("Continuous, within and between"));
     // Of one frame there is no column of steps, and a summary as of meshes.
     ok(&["detect", &beside(&folder, "mesh = \"parts/tip_down.obj\""), "--out", &csv, "--repeat", "2"]);
     assert_eq!(folder.read("a.csv"), "body_a,body_b,tri_a,tri_b\nflat,tip,0,0\n");
