@@ -333,8 +333,8 @@ impl Device {
         #[cfg_attr(not(feature = "cuda"), allow(unused_variables, reason = "a CPU does it at once"))]
         let is_listed = held::list(&self.usage, |list| list.launch::<E>(blocks, args));
         match &*self.machine {
-            // SAFETY: the caller's promise. What is listed is done all the same: nothing is gained by doing it later.
             Machine::Emulator(e) => {
+                // SAFETY: the caller's promise. What is listed is done all the same: nothing is gained by doing it later.
                 unsafe { e.launch::<E>(blocks, args, self.interrupt()) }.map_err(Error::from)
             }
             #[cfg(feature = "cuda")]

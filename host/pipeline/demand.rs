@@ -130,8 +130,7 @@ impl Group {
         };
         triangles.iter().fold(empty, |mut group, &triangle| {
             for vertex in layout.faces[triangle as usize] {
-                for axis in 0..3 {
-                    let at = positions[vertex as usize][axis];
+                for (axis, at) in positions[vertex as usize].into_iter().enumerate() {
                     group.low[axis] = group.low[axis].min(at);
                     group.high[axis] = group.high[axis].max(at);
                 }
