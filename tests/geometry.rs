@@ -33,10 +33,10 @@ fn met(query: Query, seed: u64) -> (Detector, Contacts) {
 fn at(detector: &Detector, body: BodyId, vertex: u32, t: f64) -> [f64; 3] {
     let body = &detector.scene().bodies()[body.index()];
     let ends = match body.kind() {
-        // Poses that only move: a sum, rounded as it is placed.
+        // Poses that only move: a sum in doubles.
         BodyKind::Rigid => body.poses().map(|pose| {
             let p = body.positions_t0().get_f64(vertex as usize).expect("a vertex");
-            [0, 1, 2].map(|k| f64::from((p[k] + pose.translation[k]) as f32))
+            [0, 1, 2].map(|k| p[k] + pose.translation[k])
         }),
         _ => body.ends().map(|ends| ends.get_f64(vertex as usize).expect("a vertex")),
     };

@@ -1,5 +1,6 @@
 //! The same scene from memory that the host does not look at: submitted where the walk can be, else asked as a frame.
 
+use super::scene::asked;
 use nearmiss::device::Buffer;
 use nearmiss::mesh::{Body, Positions};
 use nearmiss::scene::{BodyId, DeviceInput, DeviceRows, Input, Number};
@@ -42,7 +43,7 @@ pub fn detect(device: &Device, bodies: &[Body], query: Query) -> Result<Contacts
             Ok([Held::new(device, t0)?, Held::new(device, t1)?])
         })
         .collect::<Result<_, Error>>()?;
-    let mut detector = Detector::new(device.clone(), bodies.to_vec(), query)?;
+    let mut detector = Detector::new(device.clone(), asked(bodies), query)?;
     let ids: Vec<BodyId> = detector.scene().ids().collect();
     let inputs: Vec<(BodyId, DeviceInput)> = ids
         .into_iter()

@@ -8,6 +8,7 @@ use nearmiss::mesh::{Body, Mesh, Positions, Topology};
 use nearmiss::query::{
     Broad, Bv, FrontShape, Order, QueryKind, QueueShape, Refit, Search, StealShape, Traversal,
 };
+use nearmiss::scene::Meets;
 use nearmiss::{Contacts, Detector, Device, Error, Query};
 use nearmiss_lab::oracle::{Toi, first_contact, triangles_meet};
 use nearmiss_lab::{Case, Features};
@@ -95,12 +96,18 @@ pub fn ask(bytes: &[u8], lie: impl Fn(&mut Answer)) -> Result<(), String> {
     judge(&bodies, &query, &contacts.answer).map_err(|what| format!("{what}; {query:?}, {bodies:?}"))
 }
 
+/// The bodies as the judges ask them: one against itself, two against each other alone.
+pub fn asked(bodies: &[Body]) -> Vec<Body> {
+    let meets = if bodies.len() == 1 { Meets::and_itself() } else { Meets::others() };
+    bodies.iter().map(|body| body.clone().with(meets)).collect()
+}
+
 /// One answer.
 ///
 /// # Errors
 /// Those of the library.
 pub fn detect(bodies: &[Body], query: Query) -> Result<Contacts, Error> {
-    ENGINE.with(|engine| Detector::new(engine.clone(), bodies.to_vec(), query)?.detect())
+    ENGINE.with(|engine| Detector::new(engine.clone(), asked(bodies), query)?.detect())
 }
 
 /// A typed error is an answer, a fault of ours is none.

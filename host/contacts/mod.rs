@@ -1,6 +1,7 @@
 //! Results: contacts in canonical order, and their hash.
 
 mod degraded;
+mod features;
 pub(crate) mod geometry;
 mod hash;
 mod merge;
@@ -26,6 +27,7 @@ pub use work::{Front, Queues};
 use crate::pipeline::{Found, Layout, Listed, Stages};
 use crate::query::Query;
 use crate::scene::BodyId;
+use features::{Features, edge_edge, vertex_face};
 use nearmiss_emulator::Looks;
 use nearmiss_kernels::abi::{Hit, Pair, counter};
 use nearmiss_kernels::prim::inclusion::Verdict;
@@ -373,26 +375,6 @@ impl Contacts {
             Answer::Earliest(toi) => *toi,
         }
     }
-}
-
-/// Two features: their kind, their bodies and their indices there.
-type Features = (Kind, [BodyId; 2], [u32; 2]);
-
-/// A vertex and a face, by their numbers of all: the one of the smaller body first.
-fn vertex_face(layout: &Layout, [vertex, face]: [u32; 2]) -> Features {
-    let (of_vertex, vertex) = layout.locate(vertex, |at| at.vertex);
-    let (of_face, face) = layout.locate(face, |at| at.triangle);
-    if of_face < of_vertex {
-        (Kind::Fv, [of_face, of_vertex], [face, vertex])
-    } else {
-        (Kind::Vf, [of_vertex, of_face], [vertex, face])
-    }
-}
-
-/// Two edges, by their numbers of all.
-fn edge_edge(layout: &Layout, edges: [u32; 2]) -> Features {
-    let [(of_a, a), (of_b, b)] = edges.map(|edge| layout.locate(edge, |at| at.edge));
-    (Kind::Ee, [of_a, of_b], [a, b])
 }
 
 impl TrianglePair {

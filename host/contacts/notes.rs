@@ -59,10 +59,11 @@ impl Note {
 
 /// Why nothing moves, if nothing does. A body whose place only the device has moves if it was given two ends.
 fn resting(bodies: &[Body]) -> Option<Note> {
-    let moves = |body: &Body| match body.kind() {
-        _ if body.is_away() => body.is_moving(),
-        BodyKind::Rigid if body.poses()[0] != body.poses()[1] => true,
-        _ => body.positions_t1().is_some_and(|t1| t1 != body.positions_t0()),
+    let moves = |body: &Body| {
+        let [start, end] = body.poses();
+        let is_posed = body.kind() == BodyKind::Rigid && start != end;
+        let has_end = || body.positions_t1().is_some_and(|t1| t1 != body.positions_t0());
+        if body.is_away() { body.is_moving() } else { is_posed || has_end() }
     };
     match (bodies.iter().any(moves), bodies.iter().any(Body::is_moving)) {
         (true, _) => None,

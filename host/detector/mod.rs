@@ -2,6 +2,7 @@
 
 mod away;
 mod edits;
+mod figures;
 mod geometry;
 mod interrupted;
 mod moves;
@@ -12,7 +13,7 @@ mod submit;
 mod turns;
 mod wear;
 
-use crate::contacts::{Contacts, Degraded, Note, Summary};
+use crate::contacts::{Contacts, Degraded};
 use crate::device::emulator::{Looks, start_threads};
 use crate::device::{Device, Work};
 use crate::error::Error;
@@ -332,65 +333,6 @@ impl Detector {
     /// What is asked.
     pub fn query(&self) -> &Query {
         &self.query
-    }
-
-    /// Smallest tolerance of a pair of bodies by a certified solver, a length. As named, which is one for all pairs. By default
-    /// a pair has the smaller default of its two bodies: [`Certified::TOLERANCE`](crate::query::Certified::TOLERANCE) of the mean
-    /// edge of the mesh that a body was made of, rounded down to a power of two. It stays when bodies move.
-    pub fn tolerance(&self) -> Option<f64> {
-        self.tolerances.as_ref().map(|tolerances| tolerances.least)
-    }
-
-    /// Largest tolerance of a pair of bodies by a certified solver, a length: that of [`Detector::tolerance`] if all pairs have
-    /// the same.
-    pub fn largest_tolerance(&self) -> Option<f64> {
-        self.tolerances.as_ref().map(|tolerances| tolerances.largest)
-    }
-
-    /// The figures of an answer and the notes beside it, as the command line prints them. Cost: a hash of the answer, and the notes:
-    /// a comparison of both ends of the step if nothing moves, a sort of all vertices if there are [`Note::MANY`](crate::contacts::Note::MANY)
-    /// contacts.
-    pub fn summary(&self, contacts: &Contacts) -> Summary {
-        Summary {
-            tolerance: self.tolerance(),
-            largest_tolerance: self
-                .largest_tolerance()
-                .filter(|_| self.largest_tolerance() != self.tolerance()),
-            builds: self.builds,
-            ..Summary::new(self.scene.bodies(), self.query, &self.device, contacts)
-        }
-    }
-
-    /// The notes beside an answer, of bodies where they were: those of [`Detector::summary`], at the same cost.
-    pub fn notes(&self, contacts: &Contacts) -> Vec<Note> {
-        Note::of(self.scene.bodies(), &self.query, contacts)
-    }
-
-    /// How many levels the tree over what moves has, and that over what is static, where there is one.
-    pub fn depths(&self) -> Vec<usize> {
-        self.pipeline.as_ref().map_or(Vec::new(), |pipeline| pipeline.depths())
-    }
-
-    /// How often a list was too short and a frame was run again within itself, since the bodies were last replaced.
-    pub fn reruns(&self) -> u64 {
-        self.pipeline.as_ref().map_or(0, |pipeline| pipeline.reruns())
-    }
-
-    /// What each stage left in the device's memory after the last [`Detector::detect`], as hashes by stage: trees to
-    /// the bit, lists as sets. Two machines that agree on these agree on every kernel. For tests and `selftest`.
-    ///
-    /// # Errors
-    /// Those of the device.
-    pub fn fingerprints(&self) -> Result<Vec<(&'static str, u64)>, Error> {
-        self.pipeline.as_ref().map_or(Ok(Vec::new()), |pipeline| pipeline.fingerprints())
-    }
-
-    /// Checks every tree as it lies on the device; volumes too, which [`Detector::detect`] sets.
-    ///
-    /// # Errors
-    /// [`Error::Bug`] with the first violation; those of the device.
-    pub fn check_volumes(&self) -> Result<(), Error> {
-        self.pipeline.as_ref().map_or(Ok(()), |pipeline| pipeline.check())
     }
 }
 

@@ -2,11 +2,10 @@
 
 use super::counts::Counts;
 use super::layout::Layout;
-use crate::contacts::{Contact, NearPair, TrianglePair};
 use crate::device::Device;
 use crate::error::Error;
 use crate::memory;
-use crate::query::Query;
+use crate::query::{Query, Rows};
 use nearmiss_kernels::abi::{Counter, EVERY, counter};
 
 /// Smaller answers are not compared with the memory that is free, in bytes.
@@ -22,6 +21,7 @@ const COMPARED: u64 = 1 << 24;
 const CERTAIN: f64 = 1.0 - 1e-6;
 
 /// What is known of the answer's size.
+#[derive(Default)]
 pub struct Demand {
     /// Bytes of a row; 0 of queries that list nothing.
     row: u64,
@@ -36,29 +36,13 @@ pub struct Demand {
 impl Demand {
     /// Of a query, whose tolerance was chosen.
     pub fn new(query: &Query) -> Demand {
-        const OF_FEATURES: &[Counter] = &[counter::VF_HITS, counter::EE_HITS];
-        let (row, counters, within, advice) = match query {
-            Query::Discrete(_) => (
-                size_of::<TrianglePair>(),
-                &[counter::CONTACTS] as &[Counter],
-                None,
-                "use a smaller scene, or test bodies against each other only",
-            ),
-            Query::Near(near) => {
-                (size_of::<NearPair>(), OF_FEATURES, Some(near.distance), "use a smaller distance")
-            }
-            Query::Continuous(_) => {
-                let apart = query.certified().filter(|certified| certified.is_apart());
-                let advice = match apart {
-                    Some(_) => "use a smaller separation or tolerance",
-                    None => "use a shorter step or a smaller scene, or query the earliest contact alone",
-                };
-                let within = apart.map(|certified| certified.separation);
-                (size_of::<Contact>(), OF_FEATURES, within, advice)
-            }
-            Query::Earliest(_) | Query::Distance(_) => (0, &[] as &[Counter], None, ""),
+        let Some(Rows { bytes, within, advice }) = query.rows() else { return Demand::default() };
+        let counters: &[Counter] = if query.kind().is_of_features() {
+            &[counter::VF_HITS, counter::EE_HITS]
+        } else {
+            &[counter::CONTACTS]
         };
-        Demand { row: row as u64, counters, within, advice, before: 0 }
+        Demand { row: bytes as u64, counters, within, advice, before: 0 }
     }
 
     /// Bytes that the rows of all slices may have: what those before have, and what is free.

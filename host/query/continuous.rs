@@ -1,6 +1,7 @@
 //! Features in motion: all contacts of a step, or the first.
 
-use super::{Certified, CertifiedPrecision, Question, Search, Solver};
+use super::{Certified, CertifiedPrecision, Question, Rows, Search, Solver};
+use crate::contacts::Contact;
 use crate::error::Error;
 
 /// Which vertex/face and edge/edge pairs meet at some t in [0, 1], and when first?
@@ -113,7 +114,7 @@ impl ContinuousSolver {
 
 /// What both kinds say of themselves.
 macro_rules! in_motion {
-    ($kind:ident) => {
+    ($kind:ident, $rows:ident) => {
         impl $kind {
             /// By that solver, all other choices at their defaults.
             pub fn by(solver: impl Into<ContinuousSolver>) -> $kind {
@@ -130,6 +131,9 @@ macro_rules! in_motion {
         impl Question for $kind {
             fn is_at_rest() -> bool {
                 false
+            }
+            fn rows(&self) -> Option<Rows> {
+                $rows(&self.solver)
             }
             fn every() -> Vec<$kind> {
                 ContinuousSolver::ALL.map($kind::by).into()
@@ -162,5 +166,19 @@ macro_rules! in_motion {
     };
 }
 
-in_motion!(Continuous);
-in_motion!(Earliest);
+in_motion!(Continuous, of_contacts);
+in_motion!(Earliest, of_a_time);
+
+fn of_contacts(solver: &ContinuousSolver) -> Option<Rows> {
+    let apart = solver.certified().filter(|certified| certified.is_apart());
+    let advice = match apart {
+        Some(_) => "use a smaller separation or tolerance",
+        None => "use a shorter step or a smaller scene, or query the earliest contact alone",
+    };
+    let within = apart.map(|certified| certified.separation);
+    Some(Rows { bytes: size_of::<Contact>(), within, advice })
+}
+
+fn of_a_time(_: &ContinuousSolver) -> Option<Rows> {
+    None
+}

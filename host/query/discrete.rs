@@ -1,6 +1,7 @@
 //! Triangles at t = 0.
 
-use super::{Question, Search, Solver};
+use super::{Question, Rows, Search, Solver};
+use crate::contacts::TrianglePair;
 
 /// Which triangle pairs share a point at t = 0?
 ///
@@ -86,5 +87,9 @@ impl Question for Discrete {
     }
     fn keeps_adjacent(&self) -> bool {
         self.test.has_adjacent()
+    }
+    fn rows(&self) -> Option<Rows> {
+        let advice = "use a smaller scene, or test bodies against each other only";
+        Some(Rows { bytes: size_of::<TrianglePair>(), within: None, advice })
     }
 }

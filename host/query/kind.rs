@@ -3,6 +3,16 @@
 use super::{Certified, Search, Solver};
 use crate::error::Error;
 
+/// The rows of an answer that lists pairs.
+pub(crate) struct Rows {
+    /// Bytes of one.
+    pub bytes: usize,
+    /// Pairs of features are listed that are this near at the start, a length; `None` if that is not known of any.
+    pub within: Option<f64>,
+    /// How to get fewer.
+    pub advice: &'static str,
+}
+
 /// What a kind of query says of itself.
 pub(crate) trait Question {
     /// Whether it asks about t = 0 alone: then the end of a step is not looked at.
@@ -59,6 +69,10 @@ pub(crate) trait Question {
     /// Whether it counts the triangle pairs that share a point at the start of the step.
     fn checks_start(&self) -> bool {
         false
+    }
+    /// What it lists; `None` if it answers with one number.
+    fn rows(&self) -> Option<Rows> {
+        None
     }
     /// Whether its numbers mean something.
     fn check(&self) -> Result<(), Error> {

@@ -25,6 +25,7 @@ pub use search::{Broad, Order, Rebuild, Refit, Search, Traversal};
 pub use solver::Solver;
 
 use crate::error::Error;
+pub(crate) use kind::Rows;
 use kind::{Question, kinds};
 
 kinds! {
@@ -188,6 +189,11 @@ impl Query {
             });
         }
         self.search().check()
+    }
+
+    /// What it lists; `None` if it answers with one number.
+    pub(crate) fn rows(&self) -> Option<Rows> {
+        self.question().rows()
     }
 
     /// Whether triangles that share a vertex are candidates.

@@ -1,6 +1,7 @@
 //! Features at t = 0 within a distance.
 
-use super::{Question, Search, Solver};
+use super::{Question, Rows, Search, Solver};
+use crate::contacts::NearPair;
 use crate::error::Error;
 
 /// Which vertex/face and edge/edge pairs are within a distance of each other at t = 0, and where are they nearest?
@@ -45,6 +46,10 @@ impl Question for Near {
     }
     fn listed_within(&self) -> f64 {
         self.distance
+    }
+    fn rows(&self) -> Option<Rows> {
+        let advice = "use a smaller distance";
+        Some(Rows { bytes: size_of::<NearPair>(), within: Some(self.distance), advice })
     }
     fn check(&self) -> Result<(), Error> {
         if self.distance > 0.0 && self.distance < f64::INFINITY {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 /// What no proof of an answer rests on, or what is no allowance.
-const OTHERS: [(&str, &str); 25] = [
+const OTHERS: [(&str, &str); 26] = [
     ("U32", "the unit"),
     ("U64", "the unit"),
     ("CUBIC_VALUE", "a guess: the cubic's roots guarantee nothing"),
@@ -28,6 +28,7 @@ const OTHERS: [(&str, &str); 25] = [
     ("MOVING_LIMIT", "a range"),
     ("BOX_LIMIT", "a range"),
     ("COVARIANCE_ZERO", "a cost: any axes are valid"),
+    ("SINGLE_MOST", "a range: within it f32 overflows nowhere"),
     ("POSE_UNIT", "a range of what is taken for a pose"),
 ];
 

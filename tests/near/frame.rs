@@ -1,7 +1,7 @@
 //! Whole frames: beside all pairs asked one by one, in every way, on every machine, moved and turned about.
 
 use crate::judge::Truth;
-use crate::support::{ORDERS, ask, engine, loose, machines, mesh, sanitizer, still, ways};
+use crate::support::{ORDERS, ask, engine, judged, loose, machines, mesh, sanitizer, still, ways};
 use nearmiss::contacts::{Answer, Kind, NearPair, Status};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Bv, Certified, CertifiedPrecision, Continuous};
@@ -76,7 +76,8 @@ fn every_way_and_every_machine_finds_the_same() {
             assert_eq!(ask(engine(), bodies.clone(), way).answer, truth.answer, "{way:?}");
         }
         let print = |device| {
-            let mut detector = Detector::new(device, bodies.clone(), query).expect("a detector");
+            let bodies = judged(bodies.clone());
+            let mut detector = Detector::new(device, bodies, query).expect("a detector");
             let all = detector.detect().expect("an answer");
             detector.check_volumes().expect("sound trees");
             (all.hash(), detector.fingerprints().expect("prints"))

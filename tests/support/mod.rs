@@ -75,7 +75,12 @@ pub fn ways(query: Query) -> impl Iterator<Item = Query> {
 
 /// One answer on one device: of one body against itself, of more against each other alone.
 pub fn ask(device: Device, bodies: Vec<Body>, query: Query) -> nearmiss::Contacts {
-    ask_scene(device, if bodies.len() == 1 { bodies } else { between(bodies) }, query)
+    ask_scene(device, judged(bodies), query)
+}
+
+/// The bodies as judges ask them: one against itself, more against each other alone.
+pub fn judged(bodies: Vec<Body>) -> Vec<Body> {
+    if bodies.len() == 1 { bodies } else { between(bodies) }
 }
 
 /// These bodies, none tested against itself.

@@ -1,6 +1,6 @@
 //! `plan`: what a frame launches, holds and moves, and what there is not.
 
-use super::{Folder, ok, summary};
+use super::{Folder, SCENE, ok, summary};
 use serde_json::Value;
 
 const BOX: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.2 0.2 -1\nv 0.2 0.3 1\nv 5 5 1\nf 1 2 3\nf 4 5 6\n";
@@ -130,4 +130,40 @@ fn without_a_frame_there_is_what_is_known_before() {
     assert!(!text.contains("a frame: ") && !text.contains("memory: "), "{text}");
     let refused = super::refused(2, &["detect", "--scene", "soup", "--no-run"]);
     assert!(refused.contains("--no-run"), "{refused}");
+}
+
+#[test]
+fn a_plan_is_what_would_run() {
+    let plan = |more: &[&str]| ok(&[&["plan"], &SCENE[1..], more].concat());
+    let usual = plan(&["--backend", "cpu", "--threads", "2"]);
+    for part in [
+        "300 triangles, 900 vertices, positions in f32, two frames",
+        "Continuous, self",
+        "CPU, 2 threads (cpu)",
+        "broad      tiles: 32 neighbours against 32, no tree; the fastest on this machine",
+        "linear",
+        "certified: no contact is missed",
+        "tolerance  7.62939453125e-6, about 1e-4 of the mean edge; at most 4096 boxes a pair",
+        "a frame: ",
+    ] {
+        assert!(usual.contains(part), "{part} is not in {usual}");
+    }
+    let other =
+        plan(&["--discrete", "--solver", "moller", "--traversal", "per-leaf-spill", "--backend", "cpu"]);
+    for part in [
+        "Discrete, self",
+        "moller: a float test",
+        "as asked",
+        "Levels: the fastest on this machine",
+        "aabb\n",
+    ] {
+        assert!(other.contains(part), "{part} is not in {other}");
+    }
+    let queues = plan(&["--traversal", "queue-gtx285", "--queue", "100", "--backend", "cpu"]);
+    for part in ["cores: Some(128)", "local: 100", "take: 192", "balance: Copy"] {
+        assert!(queues.contains(part), "{part} is not in {queues}");
+    }
+    let folder = Folder::new("plan");
+    let a = folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    assert!(ok(&["plan", &a, "--with", &a]).contains("Discrete, within and between"));
 }

@@ -1,0 +1,25 @@
+//! Pairs of features in the numbering of the bodies.
+
+use super::Kind;
+use crate::pipeline::Layout;
+use crate::scene::BodyId;
+
+/// Two features: their kind, their bodies and their indices there.
+pub type Features = (Kind, [BodyId; 2], [u32; 2]);
+
+/// A vertex and a face, by their numbers of all: the one of the smaller body first.
+pub fn vertex_face(layout: &Layout, [vertex, face]: [u32; 2]) -> Features {
+    let (of_vertex, vertex) = layout.locate(vertex, |at| at.vertex);
+    let (of_face, face) = layout.locate(face, |at| at.triangle);
+    if of_face < of_vertex {
+        (Kind::Fv, [of_face, of_vertex], [face, vertex])
+    } else {
+        (Kind::Vf, [of_vertex, of_face], [vertex, face])
+    }
+}
+
+/// Two edges, by their numbers of all.
+pub fn edge_edge(layout: &Layout, edges: [u32; 2]) -> Features {
+    let [(of_a, a), (of_b, b)] = edges.map(|edge| layout.locate(edge, |at| at.edge));
+    (Kind::Ee, [of_a, of_b], [a, b])
+}
