@@ -278,7 +278,10 @@ fn copying(ptx: &str) -> Vec<&str> {
 /// (.ci/lanes.py) cannot tell that lanes are together.
 #[test]
 fn kernels_do_not_copy_their_arguments() {
-    assert_eq!(copying(&committed()), ["narrow_slice_f32", "narrow_slice_f64"]);
+    // Too large to be inlined: 37 words a lane are stored once, before hundreds of steps.
+    let known =
+        ["narrow_separate_f64_f32", "narrow_separate_f64_f64", "narrow_slice_f32", "narrow_slice_f64"];
+    assert_eq!(copying(&committed()), known);
 }
 
 #[test]

@@ -4,7 +4,7 @@ mod support;
 
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::query::{Broad, Bv, Refit};
+use nearmiss::query::{Broad, Bv, Rebuild, Refit};
 use nearmiss::{Detector, Device, Query};
 use nearmiss_lab::scene;
 use support::{ORDERS, engine, machines};
@@ -14,6 +14,11 @@ const WAYS: [Refit; 3] = [Refit::Levels, Refit::Treelets, Refit::BottomUp];
 /// A triangle far from everything: asked against it, a body of equal triangles has no contacts to count.
 fn far() -> Body {
     support::loose(&[[[1e6, 1e6, 1e6], [1e6 + 1.0, 1e6, 1e6], [1e6, 1e6 + 1.0, 1e6]]])
+}
+
+/// The body and the far triangle, neither tested against itself.
+fn from_afar(body: &Body) -> Vec<Body> {
+    support::between(vec![body.clone(), far()])
 }
 
 /// The deepest codes: for each of 63 bits a centre whose code has that bit alone, and `copies` triangles at each.
@@ -45,8 +50,8 @@ type Prints = Vec<(&'static str, u64)>;
 
 /// What construction, fit and refit left after each frame: as built, moved three times, built anew, and moved again.
 fn prints(device: Device, body: &Body, refit: Refit, bv: Bv) -> Vec<Prints> {
-    let query = Query::discrete().with_refit(refit).with_bv(bv);
-    let mut detector = Detector::new(device, vec![body.clone(), far()], query).expect("a detector");
+    let query = Query::discrete().with_refit(refit).with_bv(bv).with_rebuild(Rebuild::Never);
+    let mut detector = Detector::new(device, from_afar(body), query).expect("a detector");
     let mut all = Vec::new();
     for turn in 0..5 {
         if turn > 0 {
@@ -125,8 +130,8 @@ fn machines_cannot_be_told_apart() {
 fn a_stale_volume_is_noticed() {
     let body = scene::soup(600, 2, false).expect("a scene");
     let of = |turn| {
-        let query = Query::discrete().with_refit(Refit::Treelets);
-        let mut detector = Detector::new(engine(), vec![body.clone(), far()], query).expect("a detector");
+        let query = Query::discrete().with_refit(Refit::Treelets).with_rebuild(Rebuild::Never);
+        let mut detector = Detector::new(engine(), from_afar(&body), query).expect("a detector");
         detector.move_to(0, frame(&body, turn)).expect("a frame");
         detector.detect().expect("an answer");
         detector.fingerprints().expect("prints")
@@ -138,9 +143,8 @@ fn a_stale_volume_is_noticed() {
     // A frame in which nothing moved: what is left in memory is the last one's.
     assert_eq!(stages(&of(1), &of(2)), ["fit", "refit"]);
     // One triangle whose volume is another frame's.
-    let mut detector =
-        Detector::new(engine(), vec![body.clone(), far()], Query::default().with_broad(Broad::Tree))
-            .expect("a detector");
+    let query = Query::default().with_broad(Broad::Tree).with_rebuild(Rebuild::Never);
+    let mut detector = Detector::new(engine(), from_afar(&body), query).expect("a detector");
     let mut points = frame(&body, 1).positions_t0().to_f64();
     points[300..303].copy_from_slice(&frame(&body, 2).positions_t0().to_f64()[300..303]);
     let points = points.into_iter().map(|p| p.map(|x| x as f32)).collect();
@@ -155,7 +159,7 @@ fn a_frame_costs_as_few_launches_as_promised() {
     let launches = |body: Body, refit| {
         let device = engine();
         let query = Query::discrete().with_refit(refit);
-        let mut detector = Detector::new(device.clone(), vec![body, far()], query).expect("a detector");
+        let mut detector = Detector::new(device.clone(), from_afar(&body), query).expect("a detector");
         detector.detect().expect("an answer");
         let built = device.launches();
         detector.detect().expect("an answer");

@@ -325,7 +325,7 @@ impl Detector {
 
     /// Largest tolerance of a pair of bodies: that of `tolerance` if all pairs have the same.
     #[getter]
-    fn largest_tolerance(&self, py: Python<'_>) -> Option<f64> {
+    fn largest_tolerance(&self, py: Python<'_>) -> PyResult<Option<f64>> {
         self.look(py, nearmiss::Detector::largest_tolerance)
     }
 

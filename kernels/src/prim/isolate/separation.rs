@@ -26,7 +26,8 @@ pub trait Rung<const N: usize>: Copy {
     type S: Grid;
     /// Begins.
     fn begin(pair: Pair<Self::S, N>, p: &Params) -> Self;
-    /// A step; once it was the last, the verdict, or None where the next rung is to tell.
+    /// A step, whatever the tolerance of `p`: a pair keeps that which it began with. Once it was the last, the verdict, or `None` if the
+    /// next rung decides.
     fn step(&mut self, p: &Params) -> Option<Option<Verdict>>;
 }
 
@@ -90,13 +91,15 @@ pub struct Double<const N: usize> {
     pair: Pair<f64, N>,
     advance: Advance<f64, N>,
     nearness: bool,
+    /// The tolerance of the pair's two bodies, a length.
+    tolerance: f64,
 }
 
 impl<const N: usize> Rung<N> for Double<N> {
     type S = f64;
     #[inline(always)]
     fn begin(pair: Pair<f64, N>, p: &Params) -> Self {
-        Double { pair, advance: separating(&pair, p, ADVANCES), nearness: false }
+        Double { pair, advance: separating(&pair, p, ADVANCES), nearness: false, tolerance: p.tolerance }
     }
     #[inline(always)]
     fn step(&mut self, p: &Params) -> Option<Option<Verdict>> {
@@ -114,7 +117,8 @@ impl<const N: usize> Rung<N> for Double<N> {
             },
             Advanced::Open { from } => from,
         };
-        self.advance = nearness(&self.pair, (from, self.pair.end), 1.0, p);
+        let p = Params { tolerance: self.tolerance, ..*p };
+        self.advance = nearness(&self.pair, (from, self.pair.end), 1.0, &p);
         self.nearness = true;
         None
     }

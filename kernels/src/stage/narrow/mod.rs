@@ -77,21 +77,29 @@ fn edge_edge<R: Real, L: Lane>(
 /// Parameters of a vertex and a face, with the tolerance of their two bodies.
 #[inline(always)]
 fn of_vertex_face<R: Real, L: Lane>(l: &L, args: &RungArgs<R>, pair: Pair) -> Params {
-    if args.tolerances.is_empty() {
-        return args.params;
-    }
-    let vertices = [pair.a, l.read(args.faces, pair.b)[0]];
-    Params { tolerance: tolerance_of(l, args.tolerances, vertices), ..args.params }
+    with_tolerance(l, args, || [pair.a, l.read(args.faces, pair.b)[0]])
 }
 
 /// Parameters of two edges, with the tolerance of their two bodies.
 #[inline(always)]
 fn of_edge_edge<R: Real, L: Lane>(l: &L, args: &RungArgs<R>, pair: Pair) -> Params {
-    if args.tolerances.is_empty() {
-        return args.params;
-    }
-    let vertices = [pair.a, pair.b].map(|edge| l.read(args.edges, edge)[0]);
-    Params { tolerance: tolerance_of(l, args.tolerances, vertices), ..args.params }
+    with_tolerance(l, args, || [pair.a, pair.b].map(|edge| l.read(args.edges, edge)[0]))
+}
+
+/// The parameters, with the tolerance of the bodies of two vertices, if bodies differ. Field by field: an early return of all would be a
+/// copy in a lane's own memory.
+#[inline(always)]
+fn with_tolerance<R: Real, L: Lane>(
+    l: &L,
+    args: &RungArgs<R>,
+    vertices: impl FnOnce() -> [u32; 2],
+) -> Params {
+    let tolerance = if args.tolerances.is_empty() {
+        args.params.tolerance
+    } else {
+        tolerance_of(l, args.tolerances, vertices())
+    };
+    Params { tolerance, ..args.params }
 }
 
 /// Tolerance of a pair of features by a vertex of each: the smaller of those of their bodies, 0 if neither has one.

@@ -104,7 +104,7 @@ fn advance<R: Real, T: Rung<N>, const N: usize, L: Lane>(
         // Lanes that drew and lanes that did not step side by side.
         if l.any(under_way.is_some())
             && let Some((pair, rung)) = &mut under_way
-            && let Some(told) = rung.step(&asked(*pair))
+            && let Some(told) = rung.step(&a.params)
         {
             match told {
                 Some(verdict) => emit(l, a, of, (*pair, verdict)),
