@@ -84,7 +84,7 @@ fn more_undecided_pairs_than_room() {
 #[test]
 fn many_more_pairs_than_room_between_two_bodies() {
     let body = || scene::identical(120).expect("a scene");
-    let (contacts, reruns) = twice(engine(), vec![body(), body()], Query::discrete());
+    let (contacts, reruns) = twice(engine(), support::between(vec![body(), body()]), Query::discrete());
     assert!(reruns[0] > 0, "the scene no longer overflows the first room: make it larger");
     assert!(contacts.triangles().into_iter().eq((0..120).flat_map(|a| (0..120).map(move |b| [a, b]))));
 }
@@ -205,7 +205,7 @@ fn the_microscope_sees_no_fault_in_a_frame_that_runs_again() {
     }
     // 30 triangles: 2,610 + 3,915 elementary pairs, all of them contacts; between bodies twice as many and more.
     let (one, two) = (sliding(40), scene::identical(40).expect("a scene"));
-    let ask = |device| twice(device, vec![one.clone(), two.clone()], Query::continuous());
+    let ask = |device| twice(device, support::between(vec![one.clone(), two.clone()]), Query::continuous());
     let (on_engine, reruns) = ask(engine());
     assert!(reruns[0] > 0, "the scene no longer overflows the first room: make it larger");
     assert_eq!(on_engine.len(), (3 + 3 + 9) * 40 * 40);

@@ -134,6 +134,7 @@ fn bodies_come_and_go_on_every_device() {
 #[test]
 fn what_cannot_be_divided_is_refused() {
     let two = [scene::soup(50, 1, false), scene::soup(50, 2, false)].map(|body| body.expect("a soup"));
+    let two = support::between(two.to_vec());
     let refused = |count: usize, bodies: Vec<Body>, query: Query| {
         let error = MultiDetector::new(devices(count), bodies, query).map(drop).expect_err("refused");
         assert_eq!(error.exit_code(), 2, "{error}");

@@ -277,7 +277,7 @@ enum NearmissQueryKind
     NEARMISS_DISCRETE = 0,
     // Which vertex/face and edge/edge pairs meet within the step, and when first? Answers `nearmiss_answer_contacts`.
     NEARMISS_CONTINUOUS = 1,
-    // When does the first of them meet? Answers `nearmiss_answer_earliest`.
+    // When does the first of them meet? Answers `nearmiss_answer_earliest`, and `nearmiss_answer_is_free`.
     NEARMISS_EARLIEST = 2,
     // Which vertex/face and edge/edge pairs are within a distance now, and where? Answers `nearmiss_answer_near_pairs`.
     NEARMISS_NEAR = 3,
@@ -422,6 +422,10 @@ typedef struct {
     uint64_t bytes;
     // Of the canonical answer: the same for equal answers on every machine.
     uint64_t hash;
+    // Triangle pairs that share a point at the start of the step; 0 if `is_start_checked` is false.
+    uint64_t starts_crossing;
+    // Whether the start was checked: of a continuous and an earliest query, unless it assumes a free start.
+    bool is_start_checked;
     // How many sentences `nearmiss_answer_degraded` has.
     uint64_t degraded;
     // Times.
@@ -493,6 +497,8 @@ typedef struct {
     uint32_t adjacent;
     // Continuous, earliest; certified: the most boxes that are looked at for a pair before it is left unresolved; 0 for the default.
     uint32_t budget;
+    // Continuous, earliest: whether the start of the step is taken to be free of crossing triangles, and not checked: 0 or 1.
+    uint32_t assume_free;
     // Near: how far apart two features may be to be listed, a length above 0.
     double distance;
     // Certified: how near to contact may count as one, a length; times are early by what it takes to move that far, or less. -1 for
@@ -636,6 +642,8 @@ typedef struct {
     uint64_t short_of_room;
     // Not 0 where positions or poses of the caller cannot be computed with: then there is no answer.
     uint64_t invalid;
+    // Triangle pairs that share a point at the start of the step; all bits set if the start is not checked.
+    uint64_t crossing;
 } NearmissFrameStatus;
 
 #ifdef __cplusplus
@@ -675,11 +683,18 @@ NearmissCode nearmiss_answer_nearest(const NearmissAnswer *answer,
                                      NearmissError *error);
 
 // The smallest time of contact of an earliest or a continuous query, in [0, 1]: no contact is before it. `is_any` is false, and the time 1,
-// where nothing meets.
+// if nothing meets. Triangles that cross at the start need not meet again: `nearmiss_answer_is_free` says whether the step is free.
 NearmissCode nearmiss_answer_earliest(const NearmissAnswer *answer,
                                       bool *is_any,
                                       double *toi,
                                       NearmissError *error);
+
+// Whether the answer proves that nothing touches. Continuous and earliest: the start was checked, no triangles share a point there, and
+// nothing meets within the step. Discrete: no pair of triangles shares a point. Distance: it is above 0, or no two bodies may meet. Near:
+// always false.
+NearmissCode nearmiss_answer_is_free(const NearmissAnswer *answer,
+                                     bool *is_free,
+                                     NearmissError *error);
 
 // Figures: how much was found, of how many candidates, and how long it took. Cost: a pass over the answer, for its hash.
 NearmissCode nearmiss_answer_summary(const NearmissAnswer *answer,
@@ -692,6 +707,20 @@ NearmissCode nearmiss_answer_degraded(const NearmissAnswer *answer,
                                       size_t index,
                                       const char **sentence,
                                       NearmissError *error);
+
+// Makes the notes beside an answer, as the command line prints them, and counts them; mostly there are none. `nearmiss_answer_note` returns
+// each. The bodies must be where they were at the frame. Cost: a comparison of both ends of the step if nothing moves; a sort of all
+// vertices if there are 1,000 contacts.
+NearmissCode nearmiss_detector_notes(NearmissDetector *detector,
+                                     NearmissAnswer *answer,
+                                     size_t *count,
+                                     NearmissError *error);
+
+// A note that `nearmiss_detector_notes` made, by its index. The text lives until they are made again, and no longer than the answer.
+NearmissCode nearmiss_answer_note(const NearmissAnswer *answer,
+                                  size_t index,
+                                  const char **note,
+                                  NearmissError *error);
 
 // Vertices, weights, points and normal of every contact, or of every pair within a distance, in their order. The bodies must be where they were
 // at the frame. The list lives until this is asked of the answer again. Cost: a copy of all vertices from the device, and a wait; 300 operations a contact.

@@ -112,7 +112,8 @@ fn differences(rounded: bool) -> Vec<String> {
                     Query::Continuous(_) | Query::Near(_) => detector.geometry(&found).expect("points"),
                     _ => Vec::new(),
                 };
-                (rows(&found), geometry)
+                // The straight motion of a turn is a caveat of poses alone.
+                (found.answer, geometry)
             };
             let poses = steps.iter().map(|(poses, _)| Input::Poses(*poses)).collect();
             let ends = steps.iter().map(|(_, [t0, t1])| Input::Step([t0, t1])).collect();

@@ -160,7 +160,8 @@ impl Told {
         let inputs: Vec<(BodyId, Input)> =
             all.iter().filter_map(|(id, _, place)| Some((*id, place.input()?))).collect();
         let mut detector = Detector::new(engine(), scene, self.query).expect("a detector");
-        rows(&detector.frame(&inputs).expect("an answer"))
+        detector.place(&inputs).expect("placed");
+        rows(&detector.detect().expect("an answer"))
     }
 
     fn judge(&mut self, found: &Contacts, what: &str) {
@@ -174,7 +175,9 @@ impl Told {
         let mut named = Vec::new();
         for (k, (_, body, place)) in self.bodies.iter_mut().enumerate() {
             if !matches!(place, Place::Fixed) && rng.random_bool(0.4) {
-                let steps = rng.random_bool(0.7);
+                // A frame of a query in motion has a body at both ends.
+                let moves = named.is_empty() && !self.query.kind().is_at_rest();
+                let steps = rng.random_bool(0.7) || moves;
                 *place = Place::random(rng, body, steps);
                 named.push((k, steps));
             } else if rests && !self.is_planted {

@@ -107,7 +107,7 @@ fn what_is_lent_where_nothing_can_meet_is_kept() {
     let alone = |at: &[[f32; 3]]| {
         let mesh = Mesh::new("soup", Positions::F32(at.to_vec()), mesh.faces().to_vec());
         let mut scene = Scene::new();
-        scene.add(Body::still(mesh.expect("a mesh")));
+        scene.add(Body::still(mesh.expect("a mesh")).with(Meets::others()));
         scene
     };
     let device = engine();

@@ -67,7 +67,7 @@ fn one_mesh_has_no_distance_and_says_why() {
     let folder = Folder::new("no-distance");
     let low = folder.write("low.obj", LOW);
     let text = ok(&["detect", &low, "--backend", "cpu", "--distance"]);
-    assert!(text.contains("no two bodies may meet: give a second mesh by --with"), "{text}");
+    assert!(text.contains("no two bodies may meet: give a second one"), "{text}");
     let all = summary(&["detect", &low, "--distance", "--json"]);
     assert_eq!((&all["nearest"], &all["contacts"]), (&serde_json::Value::Null, &0.into()), "{all}");
 }

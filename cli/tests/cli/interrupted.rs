@@ -65,7 +65,7 @@ fn every_command_ends_by_a_signal() {
 
 #[test]
 fn rows_that_are_half_written_go() {
-    let folder = Folder::new("half");
+    let folder = Folder::new("half-written");
     for (name, before) in [("new.csv", None), ("old.csv", Some("what was there"))] {
         let csv = folder.path(name);
         if let Some(text) = before {

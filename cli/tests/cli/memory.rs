@@ -51,7 +51,9 @@ fn memory_that_ends_anywhere_is_no_abort() {
     let mut ask = |scene: &str, triangles: &str| {
         let (code, text) = within(500_000, &["detect", "--scene", scene, "--triangles", triangles]);
         assert!(code == Some(0) || code == Some(4), "{scene}, {triangles}: {code:?} {text}");
-        assert!(code == Some(0) || text.contains("bytes were needed"), "{scene}, {triangles}: {text}");
+        // Memory ended, or the answer was refused by its count.
+        let is_said = ["bytes were needed", "bytes are needed"].iter().any(|said| text.contains(said));
+        assert!(code == Some(0) || is_said, "{scene}, {triangles}: {text}");
         seen.push(code);
     };
     for scene in ["soup-moving", "draped"] {
