@@ -77,7 +77,7 @@ fn rows(found: &Contacts) -> String {
 /// Every query by every solver; those with a tolerance at one, and with a separation, too.
 fn queries(tolerance: f64, distance: f64) -> Vec<Query> {
     let at = |query| support::asked::with_tolerance(query, tolerance);
-    let mut all: Vec<Query> = Query::every().into_iter().map(at).collect();
+    let mut all: Vec<Query> = Query::every().map(at).collect();
     for query in all.iter_mut().filter(|query| matches!(query, Query::Near(_))) {
         *query = Query::near(distance);
     }

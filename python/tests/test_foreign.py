@@ -48,7 +48,9 @@ def test_the_end_is_seen():
 def test_every_column_of_the_device_can_be_taken(query):
     scene = nm.Scene(nm.Body(V[:3], F[:1]), nm.Body(V[3:], F[:1]))
     detector = nm.Detector(scene, query, CPU)
-    detector.prepare({0: V[:3].copy(), 1: V[3:].copy()})
+    is_at_rest = not isinstance(query, (nm.Continuous, nm.Earliest))
+    ends = [V[:3].copy(), V[3:].copy()]
+    detector.prepare({k: at if is_at_rest else (at, at) for k, at in enumerate(ends)})
     detector.submit()
     answer = detector.on_device()
     arrays = [answer.status, answer.edges, *(column for table in answer.lists for column in table.values())]
