@@ -125,6 +125,14 @@ fn gpu() -> Device {
     Device::open(nearmiss::device::Backend::Cuda, None).expect("a test with feature `cuda` needs a GPU")
 }
 
+/// The engine and, with feature `cuda`, the GPU.
+pub fn engine_and_gpu() -> Vec<Device> {
+    let machines = [engine()].into_iter();
+    #[cfg(feature = "cuda")]
+    let machines = machines.chain([gpu()]);
+    machines.collect()
+}
+
 /// Every machine that a test must not be able to tell apart: the engine on all threads and on one, with other blocks
 /// than usual, the sanitizer in each order, and the GPU.
 pub fn machines() -> Vec<Device> {
