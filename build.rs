@@ -1,4 +1,4 @@
-//! Embeds the kernels' PTX, with feature `cuda`; and says to the tests whether there are public test data.
+//! Embeds the kernels' compressed PTX, with feature `cuda`; and says to the tests whether there are public test data.
 //!
 //! The PTX in the kernels' package is taken if it carries the stamp of the sources beside it. Otherwise the kernels are
 //! compiled, if this machine has a device compiler (kernels/ptx.sh); if it has none, the build stops.
@@ -25,11 +25,12 @@ fn look_for_test_data() {
 #[cfg(feature = "cuda")]
 mod ptx {
     use sha2::{Digest, Sha256};
+    use std::io::{BufRead, BufReader};
     use std::path::{Path, PathBuf};
     use std::process::Command;
     use std::{env, fs};
 
-    const PTX: &str = "nearmiss.ptx";
+    const PTX: &str = "nearmiss.ptx.zst";
 
     pub fn embed() {
         let folder = |name| PathBuf::from(env::var_os(name).unwrap_or_else(|| panic!("cargo sets {name}")));
@@ -42,7 +43,7 @@ mod ptx {
 
         let text = out.join(PTX);
         let stamp = stamp(&kernels);
-        let packaged = fs::read_to_string(kernels.join(PTX)).unwrap_or_default();
+        let packaged = fs::read(kernels.join(PTX)).unwrap_or_default();
         if is_made_from(&packaged, &stamp) {
             fs::write(&text, packaged).expect("OUT_DIR takes the PTX");
         } else {
@@ -51,11 +52,16 @@ mod ptx {
         println!("cargo::rustc-env=NEARMISS_STAMP={stamp}");
     }
 
-    fn is_made_from(ptx: &str, stamp: &str) -> bool {
-        ptx.lines().next().is_some_and(|first| first.contains(&format!("sources {stamp},")))
+    /// Whether the first line of a compressed text names the stamp.
+    fn is_made_from(compressed: &[u8], stamp: &str) -> bool {
+        let mut first = String::new();
+        ruzstd::decoding::StreamingDecoder::new(compressed)
+            .is_ok_and(|text| BufReader::new(text).read_line(&mut first).is_ok())
+            && first.contains(&format!("sources {stamp},"))
     }
 
-    /// As `kernels/ptx.sh stamp` (tests/ptx.rs compares): a digest over one line a file, "digest  kernels/name".
+    /// As `kernels/ptx.sh stamp` (tests/ptx.rs compares): a digest over one line a file, "digest  kernels/name". A file's digest
+    /// is that of its compiled lines: none that is blank or only a comment.
     fn stamp(kernels: &Path) -> String {
         let mut names = vec!["Cargo.toml".to_owned()];
         rust_files(kernels, &kernels.join("src"), &mut names);
@@ -66,8 +72,10 @@ mod ptx {
             // A package's manifest is rewritten; what was written by hand lies beside it.
             let original = kernels.join("Cargo.toml.orig");
             let path = if name == "Cargo.toml" && original.exists() { original } else { path };
-            let bytes = fs::read(path).expect("a kernel source is readable");
-            all.update(format!("{}  kernels/{name}\n", hex(&Sha256::digest(bytes))));
+            let text = fs::read_to_string(path).expect("a kernel source is readable");
+            let is_compiled = |line: &&str| !line.trim().is_empty() && !line.trim_start().starts_with("//");
+            let compiled: String = text.lines().filter(is_compiled).flat_map(|line| [line, "\n"]).collect();
+            all.update(format!("{}  kernels/{name}\n", hex(&Sha256::digest(compiled))));
         }
         hex(&all.finalize())[..16].to_owned()
     }

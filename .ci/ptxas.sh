@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Assembles a PTX text as the driver would, without a GPU: what ptxas refuses, no GPU runs. And reads the machine code.
 #
-#   .ci/ptxas.sh FILE.ptx [ARCH...]      ARCH: sm_80 sm_90 sm_100 unless told
+#   .ci/ptxas.sh FILE.ptx[.zst] [ARCH...]      ARCH: sm_80 sm_90 sm_100 unless told
 #
 # Prints registers, stack, spills and shared memory of each kernel for the first ARCH, and makes sure
 # - that no product and sum became one operation: the code is the same where that is forbidden;
@@ -11,7 +11,7 @@
 # Exit status 77: no assembler or no disassembler to be had.
 set -euo pipefail
 
-[ $# -ge 1 ] || { echo "usage: .ci/ptxas.sh FILE.ptx [ARCH...]" >&2; exit 2; }
+[ $# -ge 1 ] || { echo "usage: .ci/ptxas.sh FILE.ptx[.zst] [ARCH...]" >&2; exit 2; }
 text=$1
 shift
 archs=("$@")
@@ -23,6 +23,10 @@ reader=nvidia-cuda-nvdisasm==13.5.37
 cache=${XDG_CACHE_HOME:-$HOME/.cache}/nearmiss/ptxas
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+if [[ $text == *.zst ]]; then
+    zstd -dq "$text" -o "$work/text.ptx"
+    text=$work/text.ptx
+fi
 
 # fetch PACKAGE PROGRAM: its path in the cache, or nothing.
 fetch() {

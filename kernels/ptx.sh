@@ -3,9 +3,9 @@
 #
 #   ptx.sh fetch        gets a device compiler, if this machine has none; installs nothing, needs no root
 #   ptx.sh compiler     prints the device compiler's path and version, or says how to get one
-#   ptx.sh build OUT    compiles the kernels to OUT
+#   ptx.sh build OUT    compiles the kernels to OUT, compressed by zstd
 #   ptx.sh stamp        prints the stamp of the sources: what the committed PTX must carry
-#   ptx.sh check        is kernels/nearmiss.ptx made from these sources?
+#   ptx.sh check        is kernels/nearmiss.ptx.zst made from these sources?
 #
 # A device compiler is an rustc that has the core library of nvptx64-nvidia-cuda, or the sources to build it
 # from. Looked for in this order: $NEARMISS_DEVICE_RUSTC (a path), rustup's nightly and default toolchains, the
@@ -15,7 +15,7 @@ set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 target=nvptx64-nvidia-cuda
 cache=${XDG_CACHE_HOME:-${HOME:-$root/target}/.cache}/nearmiss/device-compiler
-committed=$root/kernels/nearmiss.ptx
+committed=$root/kernels/nearmiss.ptx.zst
 
 say() { echo "ptx.sh: $*" >&2; }
 die() { say "$*"; exit 1; }
@@ -33,13 +33,18 @@ scrub() {
     done
 }
 
-# One line a file, "digest  name", in the order of the names' bytes; the stamp digests those lines.
-# build.rs computes the same; tests/ptx.rs compares.
+# The lines of a file that are compiled: none that is blank or only a comment.
+compiled() { LC_ALL=C sed '/^[[:space:]]*\(\/\/.*\)\{0,1\}$/d' "$1"; }
+
+# One line a file, "digest  name", in the order of the names' bytes; the stamp digests those lines. A digest is that of the
+# file's compiled lines. build.rs computes the same; tests/ptx.rs compares.
 stamp() {
     (
         cd "$root"
         { echo kernels/Cargo.toml && find kernels/src -name '*.rs' -type f; } | LC_ALL=C sort |
-            xargs -d '\n' sha256sum | sha256sum | cut -c1-16
+            while read -r name; do
+                printf '%s  %s\n' "$(compiled "$name" | sha256sum | cut -c1-64)" "$name"
+            done | sha256sum | cut -c1-16
     )
 }
 
@@ -140,6 +145,7 @@ WRAPPER
 
 build() {
     local out=$1 rustc cargo home version sources targets
+    command -v zstd >/dev/null || die "zstd is missing: it compresses the PTX. Install the package zstd"
     targets=${NEARMISS_PTX_TARGET_DIR:-${CARGO_TARGET_DIR:-$root/target}/ptx}
     rustc=$(need_compiler)
     cargo=$(dirname "$rustc")/cargo # the toolchain's own, where it has one: it knows how to build its core
@@ -176,31 +182,34 @@ build() {
 
     local text=$targets/$target/ptx/deps/nearmiss_kernels.s
     [ -s "$text" ] || die "the compiler left no PTX at $text"
-    { echo "// nearmiss kernels, sources $sources, $version" && cat "$text"; } >"$out.part"
+    { echo "// nearmiss kernels, sources $sources, $version" && cat "$text"; } | zstd -q -19 >"$out.part"
     mv "$out.part" "$out"
 }
 
-stamp_of() { sed -n '1s/^.*, sources \([0-9a-f]*\),.*$/\1/p' "$1"; }
-compiler_of() { sed -n '1s/^.*, sources [0-9a-f]*, //p' "$1"; }
+first_line() { zstd -dcq "$1" | sed -n 1p; }
+stamp_of() { first_line "$1" | sed -n 's/^.*, sources \([0-9a-f]*\),.*$/\1/p'; }
+compiler_of() { first_line "$1" | sed -n 's/^.*, sources [0-9a-f]*, //p'; }
+# The text without lines of the sources: a comment moves those, and changes nothing else.
+code_of() { zstd -dcq "$1" | sed '/^[[:space:]]*\.\(loc\|file\)[[:space:]]/d'; }
 
 check() {
     local now then rustc fresh
     now=$(stamp)
     then=$(stamp_of "$committed")
     [ "$now" = "$then" ] ||
-        die "kernels/nearmiss.ptx was made from sources $then; they are now $now. Run: kernels/ptx.sh build kernels/nearmiss.ptx"
-    say "kernels/nearmiss.ptx carries the stamp of its sources, $now"
+        die "$committed was made from sources $then; they are now $now. Run: kernels/ptx.sh build kernels/nearmiss.ptx.zst"
+    say "kernels/nearmiss.ptx.zst carries the stamp of its sources, $now"
     rustc=$(compiler) || { say "not recompiled: no device compiler here"; return; }
     fresh=$(mktemp)
     build "$fresh"
     if [ "$(compiler_of "$fresh")" != "$(compiler_of "$committed")" ]; then
         say "recompiled, not compared: this is $(compiler_of "$fresh"), that was $(compiler_of "$committed")"
-    elif cmp -s "$fresh" "$committed"; then
-        say "recompiled by the same compiler: the same text"
+    elif cmp -s <(code_of "$fresh") <(code_of "$committed"); then
+        say "recompiled by the same compiler: the same code"
     else
-        diff "$committed" "$fresh" | head -n 20 >&2 || true
+        diff <(code_of "$committed") <(code_of "$fresh") | head -n 20 >&2 || true
         rm -f "$fresh"
-        die "recompiled by the same compiler: another text. Run: kernels/ptx.sh build kernels/nearmiss.ptx"
+        die "recompiled by the same compiler: other code. Run: kernels/ptx.sh build kernels/nearmiss.ptx.zst"
     fi
     rm -f "$fresh"
 }

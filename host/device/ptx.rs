@@ -1,14 +1,28 @@
 //! The kernels' PTX, cut by kernel: the driver compiles a kernel when it is first used, not all of them at the start.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::io::Read;
+
+/// The text of a PTX that is compressed by zstd.
+///
+/// # Errors
+/// Why it is none.
+#[cfg(any(feature = "cuda", test))]
+pub fn decompressed(mut compressed: &[u8]) -> Result<String, String> {
+    let mut text = String::new();
+    let mut decoder =
+        ruzstd::decoding::StreamingDecoder::new(&mut compressed).map_err(|error| error.to_string())?;
+    decoder.read_to_string(&mut text).map_err(|error| error.to_string())?;
+    Ok(text)
+}
 
 /// PTX by its parts: what all kernels need, functions, kernels.
-pub struct Parts<'a> {
+pub struct Parts {
     shared: String,
-    declarations: BTreeMap<&'a str, String>,
+    declarations: BTreeMap<String, String>,
     /// In the text's order: a function is declared or defined before it is called.
-    functions: Vec<(&'a str, String)>,
-    entries: BTreeMap<&'a str, String>,
+    functions: Vec<(String, String)>,
+    entries: BTreeMap<String, String>,
 }
 
 /// The name that a line defines, if it opens a function or a kernel.
@@ -23,9 +37,9 @@ fn opens(line: &str) -> Option<(bool, &str)> {
     Some((is_entry, &rest[..end]))
 }
 
-impl<'a> Parts<'a> {
+impl Parts {
     /// Cuts a text as rustc writes it: a function ends with a brace, a declaration with a semicolon, at a line's start.
-    pub fn new(ptx: &'a str) -> Parts<'a> {
+    pub fn new(ptx: &str) -> Parts {
         let mut parts = Parts {
             shared: String::new(),
             declarations: BTreeMap::new(),
@@ -50,9 +64,9 @@ impl<'a> Parts<'a> {
                 }
             }
             match (has_body, is_entry) {
-                (false, _) => drop(parts.declarations.insert(name, text)),
-                (true, true) => drop(parts.entries.insert(name, text)),
-                (true, false) => parts.functions.push((name, text)),
+                (false, _) => drop(parts.declarations.insert(name.to_owned(), text)),
+                (true, true) => drop(parts.entries.insert(name.to_owned(), text)),
+                (true, false) => parts.functions.push((name.to_owned(), text)),
             }
         }
         parts
@@ -60,8 +74,8 @@ impl<'a> Parts<'a> {
 
     /// The names of the kernels.
     #[cfg(test)]
-    fn kernels(&self) -> impl Iterator<Item = &'a str> {
-        self.entries.keys().copied()
+    fn kernels(&self) -> impl Iterator<Item = &str> {
+        self.entries.keys().map(String::as_str)
     }
 
     /// A module of what all kernels share, without a kernel.
@@ -76,7 +90,7 @@ impl<'a> Parts<'a> {
         let mut texts = vec![entry.as_str()];
         while let Some(text) = texts.pop() {
             for (name, body) in &self.functions {
-                if text.contains(name) && needed.insert(*name) {
+                if text.contains(name.as_str()) && needed.insert(name.as_str()) {
                     texts.push(body);
                 }
             }
@@ -84,11 +98,11 @@ impl<'a> Parts<'a> {
         let mut module = self.shared.clone();
         // What is only declared (a function that the driver brings) is declared for all.
         for (name, text) in &self.declarations {
-            if needed.contains(name) || self.functions.iter().all(|(defined, _)| defined != name) {
+            if needed.contains(name.as_str()) || self.functions.iter().all(|(defined, _)| defined != name) {
                 module += text;
             }
         }
-        let called = self.functions.iter().filter(|(name, _)| needed.contains(name));
+        let called = self.functions.iter().filter(|(name, _)| needed.contains(name.as_str()));
         called.for_each(|(_, text)| module += text);
         module += entry;
         Some(module)
@@ -119,10 +133,10 @@ mod tests {
     }
 
     /// A function of a module that is called before it is declared or defined: no assembler takes that.
-    fn called_too_early<'a>(parts: &Parts<'a>, module: &str) -> Option<&'a str> {
+    fn called_too_early<'a>(parts: &'a Parts, module: &str) -> Option<&'a str> {
         let opened = |name: &str| module.lines().position(|line| opens(line).is_some_and(|(_, n)| n == name));
         let named = |name: &str| module.lines().position(|line| line.contains(name));
-        parts.functions.iter().map(|(name, _)| *name).find(|name| named(name) < opened(name))
+        parts.functions.iter().map(|(name, _)| name.as_str()).find(|name| named(name) < opened(name))
     }
 
     #[test]
@@ -136,8 +150,17 @@ mod tests {
     }
 
     #[test]
+    fn a_damaged_text_is_an_error() {
+        let whole = include_bytes!("../../kernels/nearmiss.ptx.zst");
+        for damaged in [&whole[..0], &whole[1..], &whole[..whole.len() / 2]] {
+            assert!(decompressed(damaged).is_err());
+        }
+    }
+
+    #[test]
     fn the_committed_text_has_every_kernel_of_the_table() {
-        let parts = Parts::new(include_str!("../../kernels/nearmiss.ptx"));
+        let text = decompressed(include_bytes!("../../kernels/nearmiss.ptx.zst")).expect("a text");
+        let parts = Parts::new(&text);
         for (name, _) in nearmiss_kernels::entry::TABLE {
             let module = parts.module(name).unwrap_or_else(|| panic!("{name} is missing"));
             assert_eq!(module.matches("\n.visible .entry ").count(), 1, "{name}");

@@ -13,7 +13,7 @@ pub use graph::Graph;
 pub use memory::Memory;
 pub use staging::Known;
 
-use super::ptx::Parts;
+use super::ptx::{Parts, decompressed};
 use super::replay::{Act, Listing};
 use crate::error::Error;
 use context::{Bound, Context, Gpu};
@@ -29,7 +29,7 @@ use stream::Stream;
 use types::{CUcontext, CUstream};
 
 /// The kernels, as build.rs found or made them.
-const PTX: &str = include_str!(concat!(env!("OUT_DIR"), "/nearmiss.ptx"));
+const PTX: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/nearmiss.ptx.zst"));
 /// The stamp of the sources that this program was built with.
 const STAMP: &str = env!("NEARMISS_STAMP");
 /// The oldest GPU that the PTX is for: compute capability 8.0.
@@ -46,7 +46,7 @@ pub struct Cuda {
     staging: Mutex<Staging>,
     /// Counts what may change the GPU's memory: what was read ahead holds until the next of these.
     epoch: AtomicU64,
-    parts: Parts<'static>,
+    parts: Parts,
     functions: Mutex<HashMap<&'static str, Function>>,
     stream: Stream,
     /// Where graphs are recorded, one at a time: what others put in the stream meanwhile is not theirs.
@@ -109,7 +109,9 @@ impl Cuda {
         }
         let processors = gpu.read(types::CU_DEVICE_ATTRIBUTE_MULTIPROCESSOR_COUNT)? as u32;
         let lanes = gpu.read(types::CU_DEVICE_ATTRIBUTE_MAX_THREADS_PER_MULTIPROCESSOR)? as u32;
-        let parts = Parts::new(PTX);
+        let text =
+            decompressed(PTX).map_err(|why| Error::Bug { what: format!("the embedded PTX: {why}") })?;
+        let parts = Parts::new(&text);
         let bound = context.bind().map_err(refused(BINDING))?;
         let common =
             Module::new(&context, &bound, parts.common(), None).map_err(refused("loading the kernels"))?;
