@@ -1,4 +1,5 @@
-//! What a frame of 200 rigid bodies costs, in milliseconds: as they are added, and once tiles were built where they are.
+//! Milliseconds of a frame of 200 rigid bodies: as they are added, and after tiles were built where they are. Then those of each
+//! step of the narrow phase.
 //!
 //! ```sh
 //! cargo run --release -p nearmiss-lab --example rigid_cost -- cpu 2       # two threads
@@ -7,6 +8,7 @@
 
 use nearmiss::device::Backend;
 use nearmiss::mesh::{Mesh, Positions};
+use nearmiss::query::Continuous;
 use nearmiss::scene::{BodyId, Input, Pose, Scene};
 use nearmiss::{Body, Detector, Device, Error, Query};
 
@@ -64,7 +66,8 @@ fn main() -> Result<(), Error> {
     let mesh = sphere(22, 1.0)?;
     let mut bodies = Scene::new();
     (0..BODIES).for_each(|_| _ = bodies.add(Body::rigid(mesh.clone())));
-    for query in [Query::discrete(), Query::continuous(), Query::near(0.02), Query::distance()] {
+    let free = Query::from(Continuous::default().assuming_free(true));
+    for query in [Query::discrete(), Query::continuous(), free, Query::near(0.02), Query::distance()] {
         let mut detector = Detector::new(device.clone(), bodies.clone(), query)?;
         let ids: Vec<BodyId> = detector.scene().ids().collect();
         for built in ["as added", "after a rebuild"] {
@@ -90,6 +93,9 @@ fn main() -> Result<(), Error> {
             );
             detector.rebuild()?;
         }
+        let steps = detector.narrow_steps()?;
+        let told: Vec<String> = steps.iter().map(|(name, ms)| format!("{name} {:.1}", ms * 1e3)).collect();
+        println!("    narrow, in microseconds: {}", told.join(", "));
     }
     Ok(())
 }
