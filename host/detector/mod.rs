@@ -171,6 +171,7 @@ impl Detector {
         fits(triangles, bodies.iter().map(Body::vertex_count).sum())?;
         memory::require("trees and lists", triangles as u64 * OF_A_TRIANGLE)?;
         let mut layout = Layout::new(bodies, self.query.kind());
+        layout.find_hubs(self.query.keeps_adjacent());
         if let Some(tolerances) = &self.tolerances {
             layout.tolerances = tolerances.records(&layout.starts);
         }

@@ -1,5 +1,6 @@
 //! Where each body lies in the memory that all bodies share.
 
+use super::hubs;
 use crate::mesh::{Body, Topology};
 use crate::query::QueryKind;
 use crate::scene::{BodyId, BodyKind, Meets};
@@ -33,6 +34,10 @@ pub struct Layout {
     pub records: Vec<BodyRecord>,
     /// Tolerances of bodies by their first vertices; empty if all pairs have the same, and of queries without one.
     pub tolerances: Vec<BodyTolerance>,
+    /// Of each triangle its [`NodeFilter::hub`], where pairs round a hub are no candidates; empty without hubs.
+    pub hubs: Vec<u32>,
+    /// The same where they are, so that only their rims tell pairs apart; empty without hubs.
+    pub rims: Vec<u32>,
     /// The bodies with triangles that may move, and those that are static.
     pub trees: [Vec<usize>; 2],
 }
@@ -86,6 +91,27 @@ impl Layout {
         }
     }
 
+    /// Finds the hubs of bodies that are tested against themselves, for a query that keeps adjacent pairs or not. Cost:
+    /// linear.
+    pub fn find_hubs(&mut self, keeps_adjacent: bool) {
+        let own = |record: &BodyRecord| record.self_contact != 0;
+        if !self.records.iter().any(own) {
+            return;
+        }
+        let vertices = self.starts.last().map_or(0, |end| end.vertex as usize);
+        let mut hubs = hubs::of(&self.faces, vertices);
+        for body in (0..self.bodies()).filter(|&body| !own(&self.records[body])) {
+            let (first, count) = self.triangles(body);
+            // Nothing where there is no hub at all.
+            if let Some(others) = hubs.get_mut(first as usize..(first + count) as usize) {
+                others.fill(0);
+            }
+        }
+        if hubs.iter().any(|&hub| hub != 0) {
+            *if keeps_adjacent { &mut self.rims } else { &mut self.hubs } = hubs;
+        }
+    }
+
     /// The smallest tolerance above 0, if pairs have several.
     pub fn finest_tolerance(&self) -> Option<f64> {
         self.tolerances.iter().map(|record| record.tolerance).reduce(f64::min)
@@ -103,8 +129,13 @@ impl Layout {
         !moving.is_empty() && (!alone || self.records[moving[0]].self_contact != 0)
     }
 
-    /// Whether which pairs are asked hangs on their bodies: not where there is one alone.
+    /// Whether which pairs are tested depends on their bodies, or on hubs.
     pub fn has_filters(&self) -> bool {
+        self.has_several() || !self.hubs.is_empty()
+    }
+
+    /// Whether several bodies have triangles.
+    pub fn has_several(&self) -> bool {
         self.trees.iter().map(Vec::len).sum::<usize>() > 1
     }
 
@@ -116,9 +147,12 @@ impl Layout {
 
     /// Whose each triangle is, as kernels ask.
     pub fn whose(&self) -> impl Iterator<Item = NodeFilter> {
-        let of = |body: usize| {
-            let filter = NodeFilter::leaf(body as u32, &self.records[body]);
-            std::iter::repeat_n(filter, self.triangles(body).1 as usize)
+        let of = move |body: usize| {
+            let (first, count) = self.triangles(body);
+            (first..first + count).map(move |triangle| {
+                let hub = self.hubs.get(triangle as usize).copied().unwrap_or(0);
+                NodeFilter::leaf(body as u32, &self.records[body], hub)
+            })
         };
         (0..self.bodies()).flat_map(of)
     }

@@ -5,6 +5,7 @@ mod broad;
 pub mod counts;
 mod demand;
 pub mod enclose;
+mod hubs;
 mod launch;
 mod layout;
 pub mod list;

@@ -24,6 +24,8 @@ pub const FILTERS: &str = "whose triangles lie below each node";
 pub const VOLUMES: &str = "volumes of all nodes";
 /// Volumes of triangles, of tiles and above.
 pub const TILES: &str = "volumes of triangles, of tiles and above";
+/// Edges opposite to hubs.
+pub const RIMS: &str = "hub of each triangle, volumes of the edges opposite to it";
 /// What each tile cost.
 pub const SHARES: &str = "what each tile cost, to divide work among devices";
 /// What kernels know of bodies.

@@ -374,6 +374,7 @@ kernels_of_volumes! {
         traverse_sample: nearest_first::sample::<R, V, B>, [NearestArgs<R, V>], NARROW, 0;
         fit: fitting::fit::<R, V, B>, [FitArgs<R, V>], WIDE, 0;
         fit_tiles: fitting::tiles::tiles::<R, V, B>, [FitTilesArgs<R, V>], fitting::tiles::LANES, fitting::tiles::shared_bytes::<V>(), exact = true;
+        fit_rims: fitting::rims::rims::<R, V, B>, [RimsArgs<R, V>], WIDE, 0;
         refit_treelets: treelets::treelets::<R, V, B>, [TreeletsArgs<R, V>], WIDE, treelets::shared_bytes::<V>();
     }
     groups {

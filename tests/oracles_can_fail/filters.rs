@@ -14,7 +14,9 @@ fn whose(triangle: u32) -> NodeFilter {
         2 | 3 => [1, 0, 1],
         _ => [2, EVERY, 0],
     };
-    NodeFilter::leaf(body, &BodyRecord { environment, self_contact, ..BodyRecord::default() })
+    // Triangles of body 1 have one hub, that of body 2 another; those of body 0 have none.
+    let hub = [0, 7, 9][body as usize];
+    NodeFilter::leaf(body, &BodyRecord { environment, self_contact, ..BodyRecord::default() }, hub)
 }
 
 /// The filters of a tree's nodes.
@@ -38,10 +40,10 @@ fn every_wrong_filter_is_noticed() {
     assert_eq!(check(&sound), Ok(()));
     for node in 1..sound.len() {
         for bit in 0..32 {
-            for who in [true, false] {
+            for field in 0..3 {
                 let mut wrong = sound.clone();
-                let number = if who { &mut wrong[node].who } else { &mut wrong[node].last };
-                *number ^= 1 << bit;
+                let NodeFilter { who, last, hub, .. } = &mut wrong[node];
+                *[who, last, hub][field] ^= 1 << bit;
                 // A wrong leaf is named itself; so is a node that its children are not.
                 assert_eq!(check(&wrong), Err(Violation::Filter { node: node as u32 }), "bit {bit}");
             }

@@ -42,8 +42,13 @@ pub fn of(plan: &Plan, layout: &Layout, query: &Query, is_gpu: bool) -> Vec<Left
     put(stage("construct"), "construction", "the tree is kept and refitted; a rebuild is asked for by name");
     put(fixed.is_empty(), "static tree", "no body is static");
     put(buffer(purpose::REST), "poses", "no body is rigid");
-    put(buffer(purpose::FILTERS), "filters of pairs", "one body alone: every pair of its triangles is asked");
-    let groups = layout.has_filters() && !layout.has_groups();
+    let why = if query.keeps_adjacent() {
+        "one body alone: every pair of its triangles is asked"
+    } else {
+        "one body alone, no vertex of 32 faces or more: every pair of its triangles is asked"
+    };
+    put(buffer(purpose::FILTERS), "filters of pairs", why);
+    let groups = layout.has_several() && !layout.has_groups();
     put(groups, "groups in the walk", "every body is in all groups, and meets all");
     put(query.kind().is_at_rest(), "positions at the end of the step", "only t = 0 is looked at");
     put(buffer(purpose::EDGES), "edges", "triangles are asked about as a whole");

@@ -17,7 +17,7 @@ pub const STAGES: [(&str, &str); 9] = [
 const ORDER: usize = 7;
 
 /// Kernels by how their names begin, the longer beginnings first, and what each does.
-const KERNELS: [(&str, &str); 58] = [
+const KERNELS: [(&str, &str); 59] = [
     ("place", "poses applied, uploads put in place, the rest at rest"),
     ("construct_bounds", "the box of each body's centres"),
     ("construct_halves_bounds", "the box of each stretch of triangles"),
@@ -33,6 +33,7 @@ const KERNELS: [(&str, &str); 58] = [
     ("construct_graft", "the static tree behind the other, once"),
     ("sort_pass", "a pass of the radix sort"),
     ("fit_tiles", "a volume a triangle, a tile, and 16 tiles"),
+    ("fit_rims", "edges opposite to hubs, a volume a tile and above"),
     ("fit_groups", "nodes of few leaves, from their points"),
     ("fit", "a volume a leaf"),
     ("refit_levels", "the volumes of a level"),

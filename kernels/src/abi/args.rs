@@ -136,6 +136,10 @@ arguments! {
         filters: Span<NodeFilter>,
         /// All bodies of the scene; empty where there are no filters.
         bodies: Span<BodyRecord>,
+        /// Of every triangle its [`NodeFilter::hub`]; empty without hubs.
+        hubs: Span<u32>,
+        /// Scratch, zeroed before. Of each inner node: 1 if its leaves have different hubs; empty without hubs.
+        mixed: Span<u64>,
         /// Out: the leaves' places; empty where nobody asks for treelets, as the next two are.
         leaf_places: Span<LeafPlace>,
         /// Out, zeroed before. For each chunk of leaves: how many leaves there are from the first on that begins a subtree of

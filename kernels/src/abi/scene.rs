@@ -57,14 +57,18 @@ const _: () = assert!(size_of::<TreeBody>() == 16);
 /// Whose triangles lie below a node. Of one body: the body, with [`SELF_CONTACT`] where it is tested against itself, and its
 /// environment. Of more: [`MIXED`], with the first of their environments, and the last.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
-#[repr(C, align(8))]
+#[repr(C, align(16))]
 pub struct NodeFilter {
     /// See above.
     pub who: u32,
     /// The last environment.
     pub last: u32,
+    /// The hub that all of these triangles share: its vertex and one; 0 without one. See [`crate::bvh::filter`].
+    pub hub: u32,
+    /// Zero.
+    pub pad: u32,
 }
-const _: () = assert!(size_of::<NodeFilter>() == 8);
+const _: () = assert!(size_of::<NodeFilter>() == 16);
 
 impl NodeFilter {
     /// The bits of [`NodeFilter::who`] that are a number.

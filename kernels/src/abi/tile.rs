@@ -65,12 +65,39 @@ arguments! {
         /// Nothing.
         pad: u32,
     }
+    /// `fit_rims`: the edges opposite to the hub of each node's triangles.
+    RimsArgs<R: Real, V: Pod> {
+        /// Positions.
+        frames: Positions<R>,
+        /// Vertex indices of every triangle.
+        faces: Span<[u32; 3]>,
+        /// Triangles in order: the lower halves.
+        triangles: Span<u64>,
+        /// Of every triangle its hub, as [`NodeFilter::hub`] has it.
+        hubs: Span<u32>,
+        /// Out, and of nodes above tiles in: of every node the hub as its link, and a volume.
+        rims: Span<Node<V>>,
+        /// The first node that is written.
+        first: u32,
+        /// How many are.
+        count: u32,
+        /// The first node below them; of tiles [`NONE`](super::NONE).
+        below: u32,
+        /// How many nodes are below them.
+        below_count: u32,
+        /// Which axes merged boxes take.
+        axes: Axes,
+        /// How much volumes grow.
+        margin: f32,
+    }
     /// `traverse_tiles`: pairs of tiles that overlap.
     TilePairsArgs<V: Pod> {
         /// The nodes: tiles, then those above them, a level behind the other.
         nodes: Span<Node<V>>,
         /// Whose triangles lie below each.
         filters: FilterArgs,
+        /// The rim of each; empty where none is made. See [`crate::stage::fit::rims`].
+        rims: Span<Node<V>>,
         /// Out: pairs of tiles, the earlier first.
         tile_pairs: Output<Pair>,
         /// Counters.

@@ -1,4 +1,9 @@
 //! Which pairs of nodes are asked at all: collision filters of bodies, as far up the tree as all below a node share one.
+//!
+//! Triangles that share a vertex are no candidates, unless a query keeps adjacent pairs. A vertex of many faces is a
+//! *hub*, and each of its triangles names at most one hub among its corners. Two nodes below which all triangles name
+//! the same hub have no pair, so `n` faces round one hub cost `n` tests, not `n²`. A query that keeps adjacent pairs
+//! has no hubs.
 
 use crate::abi::{BodyRecord, EVERY, FilterArgs, MIXED, NodeFilter, SELF_CONTACT};
 use crate::exec::Lane;
@@ -8,7 +13,7 @@ impl FilterArgs {
     #[inline(always)]
     pub fn of<L: Lane>(&self, l: &L, node: u32) -> NodeFilter {
         if self.nodes.is_empty() {
-            NodeFilter { who: SELF_CONTACT, last: 0 }
+            NodeFilter { who: SELF_CONTACT, ..NodeFilter::default() }
         } else {
             l.read(self.nodes, node)
         }
@@ -17,15 +22,19 @@ impl FilterArgs {
     /// Whether something below one node may be asked about something below the other. Two bodies must be of one environment,
     /// or one of every, and each in a group that the other meets; a body meets itself where it says so, whatever its groups.
     /// What it refuses for two nodes it refuses for all below them: environments are ranges of leaves, of which those below a
-    /// node are some.
+    /// node are some, and a hub of a node is one of all below it.
     #[inline(always)]
     pub fn allows<L: Lane>(&self, l: &L, p: NodeFilter, q: NodeFilter) -> bool {
         if self.nodes.is_empty() {
             return true;
         }
+        // A vertex is of one body, so nothing else can be below these two nodes.
+        if (p.hub == q.hub) & (p.hub != 0) {
+            return false;
+        }
         let mixed = (p.who | q.who) & MIXED != 0;
         if !mixed & (p.who == q.who) {
-            return p.meets_itself();
+            return p.who & SELF_CONTACT != 0;
         }
         let shared = (p.first() <= q.last) & (q.first() <= p.last);
         let together = shared | (p.last == EVERY) | (q.last == EVERY);
@@ -44,28 +53,30 @@ impl NodeFilter {
         if self.who & MIXED != 0 { self.who & NodeFilter::NUMBER } else { self.last }
     }
 
-    /// Whether it is one body's that is tested against itself.
+    /// Whether two triangles below it may meet: of several bodies, or of one that is tested against itself, without a
+    /// common hub.
     #[inline(always)]
     pub fn meets_itself(self) -> bool {
-        self.who & SELF_CONTACT != 0
+        (self.hub == 0) & (self.who & (MIXED | SELF_CONTACT) != 0)
     }
 
-    /// Of a leaf of a body.
+    /// Of a leaf of a body, and of its hub, as [`NodeFilter::hub`] has it.
     #[inline]
-    pub fn leaf(body: u32, record: &BodyRecord) -> NodeFilter {
+    pub fn leaf(body: u32, record: &BodyRecord, hub: u32) -> NodeFilter {
         let own = if record.self_contact != 0 { SELF_CONTACT } else { 0 };
-        NodeFilter { who: body | own, last: record.environment }
+        NodeFilter { who: body | own, last: record.environment, hub, pad: 0 }
     }
 
     /// Of a node above both.
     #[inline]
     pub fn above(self, other: NodeFilter) -> NodeFilter {
-        if self == other && self.who & MIXED == 0 {
-            return self;
+        let hub = if self.hub == other.hub { self.hub } else { 0 };
+        if self.who == other.who && self.who & MIXED == 0 {
+            return NodeFilter { hub, ..self };
         }
         let (p, q) = (self.first(), other.first());
         let last = if self.last > other.last { self.last } else { other.last };
-        NodeFilter { who: MIXED | if p < q { p } else { q }, last }
+        NodeFilter { who: MIXED | if p < q { p } else { q }, last, hub, pad: 0 }
     }
 }
 

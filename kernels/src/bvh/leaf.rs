@@ -14,7 +14,17 @@ pub fn volume<R: Real, V: Volume, L: Lane>(
     faces: Span<[u32; 3]>,
     (triangle, margin): (u32, f32),
 ) -> V {
-    let face = l.read(faces, triangle);
+    of_corners(l, frames, l.read(faces, triangle), margin)
+}
+
+/// The same around three vertices.
+#[inline(always)]
+pub fn of_corners<R: Real, V: Volume, L: Lane>(
+    l: &L,
+    frames: &Positions<R>,
+    face: [u32; 3],
+    margin: f32,
+) -> V {
     let volume = if frames.moving.is_empty() {
         V::still(face.map(|v| l.read(frames.still, v).at))
     } else {

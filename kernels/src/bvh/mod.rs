@@ -6,6 +6,7 @@ pub mod group;
 pub mod horizon;
 pub mod leaf;
 pub mod on_chip;
+pub mod rims;
 pub mod tiles;
 
 use crate::abi::{LEAF, Link, Node, NodeFilter};
@@ -60,6 +61,11 @@ pub enum Violation {
     },
     /// T8: a node does not tell whose triangles lie below it.
     Filter {
+        /// The node.
+        node: u32,
+    },
+    /// A node does not name the hub of all triangles below it, or its rim does not hold their opposite edges.
+    Rim {
         /// The node.
         node: u32,
     },

@@ -11,6 +11,7 @@
 //! Cost     12 B face, 48 B positions a frame (gathered), 8 B link in, 32 or 64 B node out.
 //!          `groups`: the same twice over for each of the leaves below (on average five nodes have a leaf).
 
+pub mod rims;
 pub mod tiles;
 
 use crate::abi::{FitArgs, GroupsArgs, Link};

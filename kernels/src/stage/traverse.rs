@@ -2,7 +2,7 @@
 //! Paper    section 6.2, pairs of nodes from work queues; per-leaf walks after Karras, "Thinking parallel", 2012.
 //! Launch   `leaves`: a lane a leaf (of what changes), in leaf order, so neighbours walk alike. Then `units`, [`crate::abi::ROUNDS`]
 //!          times: a lane a work unit that a longer walk left over. A grid of any size strides.
-//! Reads    nodes, two siblings at once (64 B), and in scenes of bodies their filters (16 B); faces, to leave out pairs that share a vertex.
+//! Reads    nodes, two siblings at once (64 B), and in scenes of bodies their filters (32 B); faces, to leave out pairs that share a vertex.
 //! Writes   candidate pairs, the smaller index first, each once, in no order.
 //! Before   all volumes are fitted and refitted.
 //! After    every pair of leaves whose volumes overlap and whose bodies are asked about is written, but for those that share
@@ -144,7 +144,7 @@ fn run<V: Volume, B: Block>(
         volume: V::zeroed(),
         triangle: 0,
         query: NONE,
-        filter: NodeFilter { who: 0, last: 0 },
+        filter: NodeFilter::default(),
         from: 0,
         steps: 0,
         budget: 0,

@@ -2,11 +2,11 @@
 
 use super::*;
 use crate::device::emulator::{Emulator, Mode};
-use crate::mesh::Body;
+use crate::mesh::{Body, Mesh, Positions};
 use crate::query::QueryKind;
 use crate::samples::soup;
 use crate::scene::Meets;
-use nearmiss_kernels::abi::{LEAF, Point, Positions};
+use nearmiss_kernels::abi::{self, LEAF, Point};
 use nearmiss_kernels::bv::{Aabb, Volume};
 
 /// Something that is done to sound tiles.
@@ -14,20 +14,35 @@ type Fault = fn(&mut Tiles<Aabb>);
 
 /// What the checker says of tiles over three bodies, one of them static, after `fault`.
 fn checked(fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), Error> {
-    let device = Device::emulator(Emulator::new(Mode::Engine, None)?);
-    let bodies: Vec<Body> = vec![
+    let bodies = [
         soup(700, 5, false),
         soup(1_000, 6, false).with(Meets::others()),
         Body::fixed(soup(900, 7, false).frames().swap_remove(0)),
     ];
-    let layout = Layout::new(&bodies, QueryKind::Discrete);
+    checked_of(&bodies, fault)
+}
+
+/// Of 4,096 faces round one hub, with rims.
+fn checked_rims(fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), Error> {
+    let n = 4_096;
+    let on_rim = |k: u32| [(k % 64) as f32, (k / 64) as f32, 1.0];
+    let points = std::iter::once([0.0; 3]).chain((0..n).map(on_rim)).collect();
+    let faces = (0..n).map(|k| [1 + k, 0, 1 + (k + 1) % n]).collect();
+    checked_of(&[Body::still(Mesh::new("fan", Positions::F32(points), faces)?)], fault)
+}
+
+/// What the checker says of tiles over these bodies after `fault`.
+fn checked_of(bodies: &[Body], fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), Error> {
+    let device = Device::emulator(Emulator::new(Mode::Engine, None)?);
+    let mut layout = Layout::new(bodies, QueryKind::Discrete);
+    layout.find_hubs(true);
     let positions = |body: &Body| body.positions_t0().to_f64();
     let at: Vec<Vec3<f32>> = bodies.iter().flat_map(positions).map(|p| Vec3(p.map(|x| x as f32))).collect();
     let points = device.upload(&at.iter().map(|&p| p.into()).collect::<Vec<Point<f32>>>())?;
     let (faces, records) = (device.upload(&layout.faces)?, device.upload(&layout.records)?);
     let given = BroadContext {
         device: &device,
-        frames: Positions { still: points.span(), moving: Span::EMPTY },
+        frames: abi::Positions { still: points.span(), moving: Span::EMPTY },
         faces: faces.span(),
         records: records.span(),
     };
@@ -91,7 +106,7 @@ fn a_triangle_outside_is_named() {
 
 #[test]
 fn every_fault_is_named() {
-    let faults: [(&str, Fault); 12] = [
+    let faults: [(&str, Fault); 14] = [
         ("Fit { node: 40 }", |tiles| change(&mut tiles.leaves, 40, |node| node.link = LEAF | 3)),
         ("Leaf { leaf: 41 }", |tiles| change(&mut tiles.leaves, 41, |node| node.last = 3)),
         ("Leaf { leaf: 42 }", |tiles| change(&mut tiles.leaves, 42, |node| node.link &= !LEAF)),
@@ -114,9 +129,34 @@ fn every_fault_is_named() {
         ("Merge { node: 97 }", |tiles| change(&mut tiles.nodes, ABOVE, |node| node.link = 0)),
         ("Filter { node: 3 }", |tiles| change(&mut tiles.filters, 3, |filter| filter.who ^= 1)),
         ("Filter { node: 97 }", |tiles| change(&mut tiles.filters, ABOVE, |filter| filter.last += 1)),
+        ("Filter { node: 4 }", |tiles| change(&mut tiles.filters, 4, |filter| filter.hub ^= 1)),
+        ("Filter { node: 97 }", |tiles| change(&mut tiles.filters, ABOVE, |filter| filter.hub = 9)),
     ];
     for (name, fault) in faults {
         let error = checked(fault).expect_err(name).to_string();
+        assert!(error.contains(name), "{name}: {error}");
+    }
+}
+
+/// Rims and their hubs, of tiles and of nodes above.
+#[test]
+fn every_fault_of_a_rim_is_named() {
+    checked_rims(|tiles| assert_eq!(tiles.rims.len(), 137)).expect("sound rims");
+    let faults: [(&str, Fault); 5] = [
+        ("Rim { node: 5 }", |tiles| change(&mut tiles.rims, 5, |rim| rim.link = 2)),
+        ("Rim { node: 6 }", |tiles| change(&mut tiles.rims, 6, |rim| rim.link = 0)),
+        ("Rim { node: 7 }", |tiles| {
+            let other = tiles.rims.read(9).expect("read")[8].volume;
+            change(&mut tiles.rims, 7, |rim| rim.volume = other);
+        }),
+        ("Rim { node: 128 }", |tiles| change(&mut tiles.rims, 128, |rim| rim.link = 0)),
+        ("Rim { node: 130 }", |tiles| {
+            let other = tiles.rims.read(9).expect("read")[8].volume;
+            change(&mut tiles.rims, 130, |rim| rim.volume = other);
+        }),
+    ];
+    for (name, fault) in faults {
+        let error = checked_rims(fault).expect_err(name).to_string();
         assert!(error.contains(name), "{name}: {error}");
     }
 }

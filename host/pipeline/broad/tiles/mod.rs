@@ -2,6 +2,7 @@
 
 #[cfg(test)]
 mod faults;
+mod rims;
 
 use super::sorted::{Sorted, place};
 use super::{BroadContext, BroadPhase, Candidates, Which};
@@ -49,6 +50,9 @@ pub struct Tiles<V> {
     filters: Buffer<NodeFilter>,
     /// Whose each triangle is; the same.
     whose: Buffer<NodeFilter>,
+    /// Of every triangle its hub, and of every node its rim; both empty where no pair is told apart by them.
+    hubs: Buffer<u32>,
+    rims: Buffer<Node<V>>,
     has_groups: bool,
     tile_pairs: List<Pair>,
     /// What each tile cost; where work is divided.
@@ -83,6 +87,9 @@ impl<V: Kernels> Tiles<V> {
         let filters = device.of(purpose::FILTERS);
         let mut of_nodes = filters.buffer(if whose.is_empty() { 0 } else { count })?;
         of_nodes.clear()?;
+        let mut rims = device.of(purpose::RIMS).buffer(if layout.rims.is_empty() { 0 } else { count })?;
+        // What is static has none.
+        rims.clear()?;
         let room = PAIRS_A_TILE * triangles[MOVING].div_ceil(TILE) as usize;
         Ok(Tiles {
             sorted: Sorted::new(device, layout, &layout.trees[MOVING], (Some(order), 0))?,
@@ -93,6 +100,8 @@ impl<V: Kernels> Tiles<V> {
             nodes: volumes.upload(&vec![nothing; count])?,
             filters: of_nodes,
             whose: filters.upload(&whose)?,
+            hubs: device.of(purpose::RIMS).upload(&layout.rims)?,
+            rims,
             has_groups: layout.has_groups(),
             tile_pairs: List::new(device, "pairs of tiles", counter::TILE_PAIRS, room)?,
             work: None,
@@ -219,7 +228,8 @@ impl<R: Precision, V: Kernels> BroadPhase<R> for Tiles<V> {
     }
 
     fn fit(&mut self, given: &BroadContext<R>) -> Result<(), Error> {
-        Tiles::fit(self, given, MOVING, self.sorted.triangles())
+        Tiles::fit(self, given, MOVING, self.sorted.triangles())?;
+        self.fit_rims(given)
     }
 
     fn refit(&mut self, given: &BroadContext<R>) -> Result<(), Error> {
@@ -243,6 +253,7 @@ impl<R: Precision, V: Kernels> BroadPhase<R> for Tiles<V> {
         let args = TilePairsArgs {
             nodes: self.nodes.span(),
             filters,
+            rims: self.rims.span(),
             tile_pairs,
             counters,
             top: self.levels.first(self.levels.count - 1),
@@ -356,6 +367,7 @@ impl<R: Precision, V: Kernels> BroadPhase<R> for Tiles<V> {
                 let ends = |v: u32| [&frames[0], &frames[frames.len() - 1]].map(|at| at[v as usize].wide());
                 tiles::check_held(&tiles, |triangle| faces[triangle as usize].map(ends))
             })
-            .map_err(super::broken)
+            .map_err(super::broken)?;
+        self.check_rims(&tiles, faces, frames)
     }
 }

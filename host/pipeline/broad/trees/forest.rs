@@ -132,10 +132,8 @@ impl<V: Kernels> Forest<V> {
     ) -> Result<(), Error> {
         self.tree.check()?;
         let filters = self.tree.filters.read(self.tree.filters.len())?;
-        let whose = |triangle: u32| {
-            let body = layout.locate(triangle, |at| at.triangle).0;
-            NodeFilter::leaf(body.index() as u32, &layout.records[body.index()])
-        };
+        let all: Vec<NodeFilter> = layout.whose().collect();
+        let whose = |triangle: u32| all[triangle as usize];
         let check_filters = |links: &[Link], filters: &[NodeFilter], root: u32| {
             if filters.is_empty() {
                 return Ok(());

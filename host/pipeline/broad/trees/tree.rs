@@ -30,11 +30,14 @@ pub struct Tree {
     pub levels: Buffer<u32>,
     /// Whose triangles lie below each node; empty where that does not matter.
     pub filters: Buffer<NodeFilter>,
+    /// Of every triangle of the scene its hub; empty without hubs.
+    hubs: Buffer<u32>,
     /// How it is refitted.
     pub way: RefitPlan,
     /// The same, as the host needs it to launch.
     starts: Vec<u32>,
-    /// Its triangles. What it keeps zero beside is for the counts of the depths, and for what the treelets count.
+    /// Its triangles. What it keeps zero beside is for the counts of the depths, for marks of nodes of different hubs, and
+    /// for what the treelets count.
     sorted: Sorted,
     count: u32,
     room: Room,
@@ -112,7 +115,8 @@ impl Tree {
         let all = n + room.others() as usize;
         let way = RefitPlan::new(&device.of(purpose::REFIT), refit, count, pairs)?;
         let scratch = device.of(purpose::SCRATCH);
-        let zeroed = words(device, count) + way.zeroed();
+        let mixed = if layout.hubs.is_empty() { 0 } else { inner };
+        let zeroed = words(device, count) + mixed + way.zeroed();
         Ok(Tree {
             links: device.buffer(room.root() as usize - 1 + 2 * n)?,
             pair_parents: device.buffer(all.max(pairs))?,
@@ -120,6 +124,7 @@ impl Tree {
             firsts: device.buffer(if groups { pairs } else { 0 })?,
             levels: device.buffer(MAX_LEVELS as usize + 2)?,
             filters: device.of(purpose::FILTERS).buffer(if layout.has_filters() { 2 * all } else { 0 })?,
+            hubs: device.of(purpose::FILTERS).upload(&layout.hubs)?,
             way,
             starts: Vec::new(),
             sorted: Sorted::new(device, layout, bodies, (None, zeroed))?,
@@ -150,7 +155,9 @@ impl Tree {
         self.sorted.construct::<R>(device, frames, faces)?;
         let depths = words(device, self.count) as u64;
         let (s, zeroed) = (&self.scratch, self.sorted.zeroed());
-        let [begins, tops] = self.way.parts(zeroed.part(depths, zeroed.len() - depths));
+        let mixed = if self.hubs.is_empty() { 0 } else { s.inner.len() as u64 };
+        let before = depths + mixed;
+        let [begins, tops] = self.way.parts(zeroed.part(before, zeroed.len() - before));
         let args = TreeArgs {
             items: self.sorted.triangles(),
             inner: s.inner.span(),
@@ -165,6 +172,8 @@ impl Tree {
             firsts: self.firsts.span(),
             filters: self.filters.span(),
             bodies: records,
+            hubs: self.hubs.span(),
+            mixed: zeroed.part(depths, mixed),
             leaf_places: self.way.leaf_places(),
             begins,
             tops,

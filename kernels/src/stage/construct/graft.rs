@@ -6,7 +6,7 @@
 //! After    Node 1 has the children [`GRAFTED_ROOT`] (this tree) and [`MOVING_ROOT`](crate::abi::MOVING_ROOT), and no volume:
 //!          nothing asks for it. Leaves of this tree come after the other's. On every path from the root indices ascend.
 //! Room     fixed; cannot run out.
-//! Cost     a node, a filter and half a parent in and out: 44 B each way (AABB).
+//! Cost     a node, a filter and half a parent in and out: 52 B each way (AABB).
 
 use crate::abi::{
     EVERY, GRAFTED_ROOT, GraftArgs, LEAF, Link, MIXED, NodeFilter, ROOT, grafted, grafted_link,
@@ -31,7 +31,7 @@ pub fn graft<V: Volume, B: Block>(b: &mut B, a: &GraftArgs<V>) {
             if node == ROOT {
                 let root = Link { link: GRAFTED_ROOT, last: link.last };
                 l.write(a.nodes, ROOT, root.with(V::zeroed()));
-                l.write(a.filters, ROOT, NodeFilter { who: MIXED, last: EVERY });
+                l.write(a.filters, ROOT, NodeFilter { who: MIXED, last: EVERY, hub: 0, pad: 0 });
                 if !a.pair_parents.is_empty() {
                     l.write(a.pair_parents, GRAFTED_ROOT / 2, ROOT);
                 }

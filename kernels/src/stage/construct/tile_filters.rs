@@ -5,7 +5,7 @@
 //! Before   the level below is written.
 //! After    as on the nodes of a tree: see [`NodeFilter`].
 //! Room     fixed; cannot run out.
-//! Cost     8 B twice a triangle, gathered; 8 B a node out.
+//! Cost     8 B and 16 B a triangle, gathered; 16 B a node out.
 
 use crate::abi::{NONE, NodeFilter, TileFiltersArgs};
 use crate::bvh::tiles::{FAN, TILE};

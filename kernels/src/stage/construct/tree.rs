@@ -8,7 +8,8 @@
 //!          T3 the leaves below a node are one range, and a node's `last` is its end.
 //!          T4 every leaf has one node, every triangle one leaf.  [`crate::bvh::check`] says which one is broken.
 //!          In a scene of bodies each node knows whose triangles lie below it: bodies, and with them environments, are
-//!          ranges of leaves, so the first leaf and the last tell.
+//!          ranges of leaves, so the first leaf and the last tell. Hubs are no ranges: a gap between leaves of different
+//!          hubs marks the nodes above it, until it comes to one that another gap has marked.
 //! Room     2n nodes, n - 1 inner nodes; at most [`MAX_LEVELS`] levels.
 //! Departs  Karras finds from a node's number an end of its range, then the other end, then the split. Here a node's number
 //!          is its split: n - 1 gaps between n leaves, each split once. Its range is all around the gap that shares as many
@@ -78,6 +79,12 @@ pub fn depth<B: Block>(b: &mut B, a: &TreeArgs) {
         }
         if gap + 1 >= a.leaves {
             return;
+        }
+        if !a.hubs.is_empty() && hub(l, a, gap) != hub(l, a, gap + 1) {
+            let mut node = gap;
+            while node != NONE && l.exchange(a.mixed, node, 1) == 0 {
+                node = l.read(a.parents, node);
+            }
         }
         let (mut depth, mut node) = (0, l.read(a.parents, gap));
         while node != NONE {
@@ -158,7 +165,11 @@ pub fn emit<B: Block>(b: &mut B, a: &TreeArgs) {
             l.write(a.firsts, link / 2, first);
         }
         if !a.filters.is_empty() {
-            l.write(a.filters, at, filter(l, a, first).above(filter(l, a, last)));
+            let mut above = filter(l, a, first).above(filter(l, a, last));
+            if !a.hubs.is_empty() && l.read(a.mixed, gap) != 0 {
+                above.hub = 0;
+            }
+            l.write(a.filters, at, above);
         }
         if first == gap {
             leaf(l, a, link, gap);
@@ -178,7 +189,12 @@ fn children(a: &TreeArgs, place: u32) -> u32 {
 fn filter<L: Lane>(l: &L, a: &TreeArgs, leaf: u32) -> NodeFilter {
     let triangle = l.read(a.items, leaf) as u32;
     let body = holder(a.bodies.len(), triangle, |k| l.read(a.bodies, k).triangle);
-    NodeFilter::leaf(body, &l.read(a.bodies, body))
+    NodeFilter::leaf(body, &l.read(a.bodies, body), if a.hubs.is_empty() { 0 } else { hub(l, a, leaf) })
+}
+
+/// The hub of a leaf's triangle.
+fn hub<L: Lane>(l: &L, a: &TreeArgs, leaf: u32) -> u32 {
+    l.read(a.hubs, l.read(a.items, leaf) as u32)
 }
 
 /// Writes a leaf's node, and tells the leaf.

@@ -64,7 +64,7 @@ impl Two {
         }
         let [p, q] = [tiles.a, tiles.b].map(|tile| b.load(filters, tile));
         // Of pairs of tiles this was asked where they were found.
-        let refused = same && p.who & MIXED == 0 && !p.meets_itself();
+        let refused = same && !p.meets_itself();
         (!refused).then_some(Two { tiles, ask: if (p.who | q.who) & MIXED != 0 { ASK } else { 0 } })
     }
 }

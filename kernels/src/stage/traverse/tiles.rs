@@ -5,7 +5,8 @@
 //! Before   all nodes are fitted.
 //! After    each pair of tiles whose volumes overlap, of which the first is one that seeks and whose triangles may meet, but for a tile with itself. Nodes
 //!          whose tiles are all at or before the own one are passed over. Of a sample: of every so many tiles the first. Where an
-//!          earliest time is sought, none that only meets behind the horizon.
+//!          earliest time is sought, none that only meets behind the horizon. With rims, of two tiles round one hub
+//!          only such of which one's rim overlaps the other.
 //! Room     `tile_pairs` may be too short: counters go on, the host grows it and runs again. On chip it cannot run out: two nodes are
 //!          taken from the top of the stack, those below the lower one put back first; so of each level at most 32 wait.
 //! Cost     a test a node of the top level behind the own one, 16 a node that overlaps.
@@ -40,6 +41,7 @@ pub fn pairs<const HORIZON: bool, V: Volume, B: Block>(b: &mut B, a: &TilePairsA
         let own = horizon.cut::<HORIZON, V>(b.load(a.nodes, tile).volume);
         let filters = a.filters.nodes;
         let whose = if filters.is_empty() { NodeFilter::default() } else { b.load(filters, tile) };
+        let hub = if a.rims.is_empty() { 0 } else { b.load(a.rims, tile).link };
         let (mut waiting, mut fill) = (0, 0);
         let mut top = tile >> a.shift;
         while top < a.tops || waiting > 0 {
@@ -59,7 +61,15 @@ pub fn pairs<const HORIZON: bool, V: Volume, B: Block>(b: &mut B, a: &TilePairsA
                     let meets = node.link != NONE
                         && node.last > tile
                         && own.may_overlap(&horizon.cut::<HORIZON, V>(node.volume))
-                        && (filters.is_empty() || a.filters.allows(l, whose, l.read(filters, place)));
+                        && (filters.is_empty() || a.filters.allows(l, whose, l.read(filters, place)))
+                        && (hub == 0 || {
+                            let other = l.read(a.rims, place);
+                            let [rim, round] = [l.read(a.rims, tile).volume, other.volume]
+                                .map(|volume| horizon.cut::<HORIZON, V>(volume));
+                            other.link != hub
+                                || rim.may_overlap(&horizon.cut::<HORIZON, V>(node.volume))
+                                || own.may_overlap(&round)
+                        });
                     if meets {
                         *hit.of(l) = (node.link, node.last);
                         let is_tile = node.link & LEAF != 0;
