@@ -129,11 +129,12 @@ fn agree(
     let (_, oracle, scene) = all.next().expect("the oracle");
     let wanted = match query == Query::discrete() {
         true => Answer::Pairs(without_adjacent(&oracle, &scene)),
-        false => oracle.answer,
+        false => oracle.answer.clone(),
     };
     let mut count = 0;
     for (own, contacts, _) in all {
         assert_eq!(contacts.answer, wanted, "{own:?}");
+        assert_eq!(contacts.starts_crossing, oracle.starts_crossing, "{own:?}");
         count = contacts.len();
     }
     count
