@@ -72,7 +72,8 @@ fn certified_earliest(scene: &Scene, body: &Body, all: &Contacts) {
 
 /// With a budget of two boxes nothing is lost; and nothing changes, as these frames need no search by boxes.
 fn starved(scene: &Scene, body: &Body, truth: &[Row]) {
-    for solver in [Solver::Certified, Solver::CertifiedF32, Solver::CertifiedF64] {
+    // In f32 alone there are no boxes, and no budget of them.
+    for solver in [Solver::Certified, Solver::CertifiedF64] {
         let query = support::asked::certified(by(QueryKind::Continuous, solver), |certified| {
             certified.budget = Some(2)
         });

@@ -179,7 +179,7 @@ fn a_front_that_is_dropped_is_told() {
 /// What was counted for one frame is not told of the next, nor is what the bodies were before they moved.
 #[test]
 fn each_frame_is_told_by_itself() {
-    let query = certified(with_tolerance(by(Solver::CertifiedF32), 1.3e-6), |all| all.budget = Some(2));
+    let query = with_tolerance(by(Solver::CertifiedF32), 1.3e-6);
     let frames = [scene::soup(60, 5, true), scene::soup(60, 6, true), scene::soup(60, 5, true)];
     let mut told = Vec::new();
     let mut detector = Detector::new(engine(), soup(), query).expect("a detector");

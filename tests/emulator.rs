@@ -6,8 +6,9 @@ mod support;
 #[path = "support/kernels.rs"]
 mod kernels;
 
-use nearmiss::Device;
+use nearmiss::device::Backend;
 use nearmiss::device::emulator::{Emulator, Mode, Order};
+use nearmiss::{Device, Error};
 use nearmiss_kernels::abi::Span;
 use nearmiss_kernels::entry::Entry;
 use nearmiss_kernels::exec::{BINS, Block, Lane, Slot, WARP, striped};
@@ -316,6 +317,19 @@ fn the_engine_runs_on_as_many_threads_as_asked() {
     assert_eq!(emulator(Mode::Engine, Some(3)), 3);
     assert_eq!(emulator(Mode::Sanitizer(Order::Forward), Some(3)), 1);
     assert!(emulator(Mode::Engine, None) >= 1);
+}
+
+#[test]
+fn threads_of_a_gpu_are_refused() {
+    for (threads, named) in [(1, "1 thread of a GPU"), (2, "2 threads of a GPU"), (0, "0 threads of a GPU")] {
+        let Err(error @ Error::Choice { .. }) = Device::open(Backend::Cuda, Some(threads)) else {
+            panic!("{threads} threads of a GPU are not refused");
+        };
+        assert!(error.to_string().starts_with(named), "{error}");
+        for backend in [Backend::Cpu, Backend::Auto] {
+            assert!(Device::open(backend, Some(threads.max(1))).is_ok(), "{backend:?}");
+        }
+    }
 }
 
 #[cfg(debug_assertions)]

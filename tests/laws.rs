@@ -7,7 +7,7 @@ mod frames;
 mod others;
 mod support;
 
-use nearmiss::contacts::{Answer, Contact, NearPair, TrianglePair};
+use nearmiss::contacts::{Answer, Contact, Degraded, NearPair, TrianglePair};
 use nearmiss::mesh::Positions;
 use nearmiss::query::QueryKind;
 use nearmiss::scene::{BodyId, BodyKind, Input, Meets, Pose, Scene};

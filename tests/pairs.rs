@@ -122,16 +122,32 @@ fn what_cannot_be_asked_is_refused() {
     let refused = |cases: &[Case], query: Query, stored| {
         let error =
             ask(&device, cases, &query, Options { stored, ..Options::default() }).expect_err("refused");
-        assert!(matches!(error, Error::Choice { .. }), "{error}");
-        error.to_string()
+        let is_data = matches!(error, Error::Input { .. });
+        assert!(is_data || matches!(error, Error::Choice { .. }), "{error}");
+        (is_data, error.to_string())
     };
     let mut case = cases(1);
-    assert!(refused(&case, Query::discrete(), Stored::F64).contains("continuous"));
+    let (is_data, text) = refused(&case, Query::discrete(), Stored::F64);
+    assert!(!is_data && text.contains("continuous"), "{text}");
     case[0].positions_t1[3][2] = 0.1;
-    assert!(refused(&case, continuous(), Stored::F32).contains("exact in f32"));
-    for x in [f64::NAN, f64::INFINITY, 1e300] {
+    let (is_data, text) = refused(&case, continuous(), Stored::F32);
+    assert!(!is_data && text.contains("that f32 does not hold; store it in f64"), "{text}");
+    // Numbers that no precision holds are data, stored either way; so of triangles.
+    for (x, named) in [(f64::NAN, "NaN"), (f64::INFINITY, "inf"), (1e300, "1e300")] {
         case[0].positions_t0[2][1] = x;
-        assert!(refused(&case, continuous(), Stored::F64).contains("case 0"));
+        for stored in [Stored::F64, Stored::F32] {
+            let (is_data, text) = refused(&case, continuous(), stored);
+            assert!(
+                is_data && text.starts_with("case 0: vertex 2 has y = ") && text.contains(named),
+                "{text}"
+            );
+        }
+        let mut pair = [[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]; 2];
+        pair[1][2][0] = x;
+        for stored in [Stored::F64, Stored::F32] {
+            let error = ask_triangles(&device, &[pair], &Query::default(), stored).err().expect("refused");
+            assert!(matches!(error, Error::Input { .. }), "{error}");
+        }
     }
     let none = ask(&device, &[], &continuous(), Options::default()).expect("no answers");
     assert!(none.verdicts.is_empty() && mean_edge(&[]) == 0.0);

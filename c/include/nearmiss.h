@@ -33,7 +33,7 @@
 
 // The version of this header, which changes whenever a struct or a function does. Compare it with `nearmiss_abi()` before any other call: one
 // that takes or returns a struct of another version writes where it may not.
-#define NEARMISS_ABI 1
+#define NEARMISS_ABI 2
 
 // Bytes of the text of an error.
 #define NEARMISS_TEXT 1016

@@ -3,6 +3,7 @@
 use crate::error::{NearmissCode, NearmissError, call, free, given, make, refused};
 use nearmiss::Device;
 use nearmiss::device::Backend;
+use nearmiss::words::counted;
 use std::ffi::{CString, c_char, c_void};
 use std::mem::MaybeUninit;
 
@@ -36,7 +37,8 @@ impl From<Device> for NearmissDevice {
 /// Opens a machine: a `NearmissBackend`, on a CPU with so many threads, at most as many as there are processors; 0 for all. Cost: of a GPU
 /// some 0.1 s for its context; its kernels are compiled by the driver when first used.
 ///
-/// Fails with `NEARMISS_DEVICE` when there is no such machine or its driver refuses.
+/// Fails with `NEARMISS_DEVICE` when there is no such machine or its driver refuses, and with `NEARMISS_CHOICE` for threads of
+/// `NEARMISS_CUDA`. With `NEARMISS_AUTO` the threads are those of the CPU that is taken if there is no GPU.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_device_open(
     backend: u32,
@@ -55,7 +57,8 @@ pub extern "C" fn nearmiss_device_open(
             }
         };
         if backend == Backend::Cuda && threads > 0 {
-            let what = format!("{threads} threads of a GPU, which takes none");
+            // As the library refuses it, in C's words.
+            let what = format!("{} of a GPU, which takes none", counted(threads as u64, "thread", "threads"));
             return Err(refused(what, "give 0, or choose NEARMISS_CPU"));
         }
         Device::open(backend, (threads > 0).then_some(threads)).map(NearmissDevice::from)

@@ -15,7 +15,8 @@ use std::ptr::null;
 pub enum NearmissInputKind {
     /// A deformable body stands at `positions[0]`.
     NEARMISS_AT = 0,
-    /// A deformable body moves from `positions[0]` to `positions[1]`, each vertex in a straight line.
+    /// A deformable body moves from `positions[0]` to `positions[1]`, each vertex in a straight line. Discrete, near and distance
+    /// queries test it at `positions[0]`; it rests at `positions[1]` if the next frame does not name it. So of poses.
     NEARMISS_STEP = 1,
     /// A rigid body stands in `poses[0]`.
     NEARMISS_POSE = 2,

@@ -39,7 +39,7 @@ use std::ffi::c_char;
 
 /// The version of this header, which changes whenever a struct or a function does. Compare it with `nearmiss_abi()` before any other call: one
 /// that takes or returns a struct of another version writes where it may not.
-pub const NEARMISS_ABI: u32 = 1;
+pub const NEARMISS_ABI: u32 = 2;
 
 /// The version of the header that this library was built with. This and `nearmiss_version()` are the same in all versions.
 #[unsafe(no_mangle)]

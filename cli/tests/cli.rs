@@ -8,6 +8,8 @@ mod degraded;
 mod distance;
 #[path = "cli/earliest.rs"]
 mod earliest;
+#[path = "cli/effects.rs"]
+mod effects;
 #[path = "cli/explain.rs"]
 mod explain;
 #[path = "cli/faces.rs"]

@@ -178,15 +178,22 @@ impl Detector {
         else {
             return Ok(());
         };
-        let certified = Certified { tolerance: Some(tolerances.finest), ..certified };
-        let is_away = self.scene.bodies().iter().any(Body::is_away);
-        if !is_away || !BelowPrecision::may_be(&certified, 2.0 * self.largest) {
+        let finest = Certified { tolerance: Some(tolerances.finest), ..certified };
+        let own = tolerances.least < tolerances.largest;
+        let certified = Certified { tolerance: Some(tolerances.largest), ..certified };
+        let unlisted = Degraded::ToleranceBelowPrecision { pairs: None };
+        // If no body came from memory of the caller the pipeline has looked at all.
+        let is_looked_at = self.largest == 0.0 && !self.scene.bodies().iter().any(Body::is_away);
+        if is_looked_at || contacts.degraded.contains(&unlisted) {
+            return Ok(());
+        }
+        let largest = self.largest.max(BelowPrecision::largest(self.scene.bodies()));
+        if !BelowPrecision::may_be(&finest, 2.0 * largest) {
             return Ok(());
         }
         self.fetch()?;
-        let unlisted = Degraded::ToleranceBelowPrecision { pairs: None };
-        let below = BelowPrecision::of(self.scene.bodies(), &certified, true);
-        if below == Some(BelowPrecision::Unlisted) && !contacts.degraded.contains(&unlisted) {
+        let below = BelowPrecision::of_earliest(self.scene.bodies(), &certified, own);
+        if below == Some(BelowPrecision::Unlisted) {
             contacts.degraded.push(unlisted);
         }
         Ok(())

@@ -170,7 +170,8 @@ impl Detector {
         let triangles: usize = bodies.iter().map(Body::face_count).sum();
         fits(triangles, bodies.iter().map(Body::vertex_count).sum())?;
         memory::require("trees and lists", triangles as u64 * OF_A_TRIANGLE)?;
-        let mut layout = Layout::new(bodies, self.query.kind());
+        let made = Layout::within(bodies, self.query.kind(), &self.device.looks());
+        let mut layout = made.ok_or(Error::Interrupted)?;
         layout.find_hubs(self.query.keeps_adjacent());
         if let Some(tolerances) = &self.tolerances {
             layout.tolerances = tolerances.records(&layout.starts);

@@ -84,19 +84,24 @@ impl Machine {
 }
 
 impl Device {
-    /// The machine that `backend` names: the first GPU, or so many threads of the CPU, or all: no more than there are processors, as more
-    /// only wait for each other.
+    /// The machine that `backend` names: the first GPU, or so many threads of the CPU, or all: no more
+    /// than there are processors, as more only wait for each other. With [`Backend::Auto`] the threads
+    /// are those of the CPU that is taken if there is no GPU.
     ///
     /// # Errors
-    /// [`Error::Device`] when there is no such machine or its driver refuses, with the driver's text;
-    /// [`Error::Stamp`] when the GPU's kernels come from other sources.
+    /// [`Error::Choice`] for threads of [`Backend::Cuda`]; [`Error::Device`] if there is no such machine or
+    /// its driver refuses, with the driver's text; [`Error::Stamp`] if the GPU's kernels are of other sources.
     pub fn open(backend: Backend, threads: Option<usize>) -> Result<Device, Error> {
+        if let (Backend::Cuda, Some(threads)) = (backend, threads) {
+            let what = format!("{} of a GPU, which takes none", counted(threads as u64, "thread", "threads"));
+            return Err(Error::Choice { what, advice: "leave the threads out, or choose the CPU".into() });
+        }
         let processors = std::thread::available_parallelism().map_or(usize::MAX, usize::from);
         let threads = threads.map(|asked| asked.min(processors));
         match backend {
             Backend::Cpu => Ok(Self::emulator(Emulator::new(Mode::Engine, threads)?)),
             Backend::Cuda => Self::gpu(0),
-            Backend::Auto if cfg!(feature = "cuda") => match Self::open(Backend::Cuda, threads) {
+            Backend::Auto if cfg!(feature = "cuda") => match Self::gpu(0) {
                 // No GPU is what `auto` is for; a GPU that refuses our kernels is a fault to hear of.
                 Err(Error::Device { .. }) => Self::open(Backend::Cpu, threads),
                 other => other,

@@ -1,5 +1,7 @@
 //! Edges, and which face owns which vertex and edge.
 
+use nearmiss_emulator::Looks;
+
 /// The edge id of a corner pair with equal ends, which is no edge.
 pub const NO_EDGE: u32 = u32::MAX;
 
@@ -30,14 +32,23 @@ impl Topology {
     /// If a face names a vertex of `vertex_count` or above, or there are 2^30 faces or more, both of which
     /// [`super::Mesh::new`] refuses.
     pub fn new(faces: &[[u32; 3]], vertex_count: usize) -> Topology {
+        // Nothing ends it.
+        Topology::within(faces, vertex_count, &Looks::new(None)).unwrap_or_default()
+    }
+
+    /// The same, of work that may be ended early: `None` if it was.
+    pub(crate) fn within(faces: &[[u32; 3]], vertex_count: usize, looks: &Looks) -> Option<Topology> {
         assert!(faces.len() <= super::MAX_FACES, "faces come from a Mesh, which limits their number");
-        let (starts, mut corners) = by_larger_vertex(faces, vertex_count);
+        let (starts, mut corners) = by_larger_vertex(faces, vertex_count, looks)?;
         let mut topology = Topology {
             edges: Vec::with_capacity(corners.len() / 2 + 2),
             face_edges: vec![[NO_EDGE; 3]; faces.len()],
-            owners: vertex_owners(faces, vertex_count),
+            owners: vertex_owners(faces, vertex_count, looks)?,
         };
         for (larger, ends) in starts.windows(2).enumerate() {
+            if larger % PIECE == 0 && looks.ends() {
+                return None;
+            }
             let bucket = &mut corners[ends[0] as usize..ends[1] as usize];
             bucket.sort_unstable();
             let mut last = None;
@@ -53,21 +64,35 @@ impl Topology {
                 topology.face_edges[face][k] = topology.edges.len() as u32 - 1;
             }
         }
-        topology
+        Some(topology)
     }
+}
+
+/// Faces or vertices from one look at an interrupt to the next: less than a millisecond.
+const PIECE: usize = 1 << 14;
+
+/// The pieces of some faces, with the number of the first face of each, until work is ended.
+fn pieces<'a>(
+    faces: &'a [[u32; 3]],
+    looks: &'a Looks,
+) -> impl Iterator<Item = Option<(usize, &'a [[u32; 3]])>> {
+    let pieces = faces.chunks(PIECE).enumerate();
+    pieces.map(|(at, piece)| (!looks.ends()).then_some((at * PIECE, piece)))
 }
 
 /// For each vertex a range (`starts[v]..starts[v + 1]`) of the edges whose larger end it is, packed as smaller end
 /// and corner, `3 face + k`.
-fn by_larger_vertex(faces: &[[u32; 3]], vertex_count: usize) -> (Vec<u32>, Vec<u64>) {
+fn by_larger_vertex(faces: &[[u32; 3]], vertex_count: usize, looks: &Looks) -> Option<(Vec<u32>, Vec<u64>)> {
     let ends = |face: &[u32; 3], k: usize| {
         let (a, b) = (face[k], face[(k + 1) % 3]);
         (a != b).then_some((a.max(b), a.min(b)))
     };
     let mut starts = vec![0u32; vertex_count + 1];
-    for face in faces {
-        for (larger, _) in (0..3).filter_map(|k| ends(face, k)) {
-            starts[larger as usize] += 1;
+    for piece in pieces(faces, looks) {
+        for face in piece?.1 {
+            for (larger, _) in (0..3).filter_map(|k| ends(face, k)) {
+                starts[larger as usize] += 1;
+            }
         }
     }
     let mut sum = 0;
@@ -76,26 +101,60 @@ fn by_larger_vertex(faces: &[[u32; 3]], vertex_count: usize) -> (Vec<u32>, Vec<u
         *start = sum; // the end of the range, from which the filling counts down to its start
     }
     let mut corners = vec![0u64; sum as usize];
-    for (face, index) in faces.iter().zip(0u64..) {
-        for k in 0..3 {
-            let Some((larger, smaller)) = ends(face, k) else { continue };
-            let slot = &mut starts[larger as usize];
-            *slot -= 1;
-            corners[*slot as usize] = u64::from(smaller) << 32 | (3 * index + k as u64);
+    for piece in pieces(faces, looks) {
+        let (first, piece) = piece?;
+        for (face, index) in piece.iter().zip(first as u64..) {
+            for k in 0..3 {
+                let Some((larger, smaller)) = ends(face, k) else { continue };
+                let slot = &mut starts[larger as usize];
+                *slot -= 1;
+                corners[*slot as usize] = u64::from(smaller) << 32 | (3 * index + k as u64);
+            }
         }
     }
-    (starts, corners)
+    Some((starts, corners))
 }
 
-fn vertex_owners(faces: &[[u32; 3]], vertex_count: usize) -> Vec<u32> {
+fn vertex_owners(faces: &[[u32; 3]], vertex_count: usize, looks: &Looks) -> Option<Vec<u32>> {
     let mut owned = vec![false; vertex_count];
-    let mut bits = |face: &[u32; 3]| {
-        let mut bits = 0;
-        for (k, &vertex) in face.iter().enumerate() {
-            let first = !std::mem::replace(&mut owned[vertex as usize], true);
-            bits |= u32::from(first) << k;
+    let mut owners = Vec::with_capacity(faces.len());
+    for piece in pieces(faces, looks) {
+        owners.extend(piece?.1.iter().map(|face| {
+            let mut bits = 0;
+            for (k, &vertex) in face.iter().enumerate() {
+                let first = !std::mem::replace(&mut owned[vertex as usize], true);
+                bits |= u32::from(first) << k;
+            }
+            bits
+        }));
+    }
+    Some(owners)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nearmiss_emulator::Interrupt;
+
+    /// Every look ends it, no piece of faces or vertices is without one, and what was ended can be made again.
+    #[test]
+    fn a_look_ends_it_within_a_piece() {
+        let pieces = 5;
+        let vertices = pieces * PIECE;
+        let faces: Vec<[u32; 3]> = (0..vertices as u32 - 2).map(|v| [v, v + 1, v + 2]).collect();
+        let wanted = Topology::new(&faces, vertices);
+        let interrupt = Interrupt::new();
+        let made = || Topology::within(&faces, vertices, &Looks::new(Some(&interrupt)));
+        interrupt.trigger_at(u64::MAX);
+        assert!(made().is_some_and(|made| made == wanted));
+        // Two passes for the ranges, one for the owners, one for the edges.
+        let looks = u64::MAX - interrupt.looks_left();
+        assert_eq!(looks, 4 * pieces as u64);
+        for look in 1..=looks {
+            interrupt.trigger_at(look);
+            assert!(made().is_none(), "look {look}");
+            interrupt.clear();
         }
-        bits
-    };
-    faces.iter().map(&mut bits).collect()
+        assert!(made().is_some_and(|made| made == wanted));
+    }
 }

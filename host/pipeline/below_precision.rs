@@ -3,10 +3,12 @@
 use super::list::List;
 use super::narrow::NarrowContext;
 use super::precision::Precision;
+use super::tolerance::of_pair;
 use crate::error::Error;
 use crate::mesh::{Body, Bounds, NOTHING, Positions, union};
 use crate::pipeline::launch;
 use crate::query::{Certified, CertifiedPrecision};
+use crate::scene::BodyKind;
 use nearmiss_kernels::abi::{BelowPrecisionArgs, BodyTolerance, Hit, Span};
 use nearmiss_kernels::math::tolerance::Tolerance;
 use rayon::prelude::*;
@@ -26,27 +28,62 @@ pub enum BelowPrecision {
 }
 
 impl BelowPrecision {
-    /// Of bodies where they are; none where no pair can be that large. Cost: a pass over the positions; where an earliest
-    /// query's tolerance is near the precision one over the faces.
-    pub fn of(bodies: &[Body], certified: &Certified, is_earliest: bool) -> Option<BelowPrecision> {
+    /// Of bodies where they are; `finest` is the smallest tolerance, if pairs have several. Of an earliest query with a body that is
+    /// away none: the detector finds it out behind the frame.
+    pub fn of(
+        bodies: &[Body],
+        certified: &Certified,
+        finest: Option<f64>,
+        is_earliest: bool,
+    ) -> Option<BelowPrecision> {
+        if !is_earliest {
+            let tolerance = finest.or(certified.tolerance);
+            return BelowPrecision::of_listed(bodies, &Certified { tolerance, ..*certified });
+        }
+        let is_known = !bodies.iter().any(Body::is_away);
+        is_known.then(|| BelowPrecision::of_earliest(bodies, certified, finest.is_some())).flatten()
+    }
+
+    /// Of a query that lists pairs, with bodies where they are; none if no pair can be that large. Cost: a pass over the positions.
+    fn of_listed(bodies: &[Body], certified: &Certified) -> Option<BelowPrecision> {
         let finest = finest(certified);
         // Positive, or not asked for.
         let tolerance = certified.tolerance.filter(|t| *t > 0.0)?;
-        let extent = extent(bodies);
-        if !is_earliest {
-            // How large it is where only the device knows, the kernels tell.
-            let away = bodies.iter().any(Body::is_away);
-            return (away || tolerance < finest * extent)
-                .then_some(BelowPrecision::Listed { tolerance, finest });
-        }
+        // How large it is where only the device knows, the kernels tell.
+        let away = bodies.iter().any(Body::is_away);
+        let extent = || extent(&bodies.iter().map(bounds).fold(NOTHING, union));
+        (away || tolerance < finest * extent()).then_some(BelowPrecision::Listed { tolerance, finest })
+    }
+
+    /// Of an earliest query, which lists no pairs, with bodies where the host knows them: whether two bodies that may meet, or
+    /// one that meets itself, have an edge too long for the tolerance of their pairs. Bodies farther apart than pairs are tested
+    /// do not count, nor does any other body. `own` is whether each pair has its own tolerance. Cost: a pass over the positions;
+    /// over the faces of bodies whose extent is too large; and over all bodies for each that has a long edge.
+    pub fn of_earliest(bodies: &[Body], certified: &Certified, own: bool) -> Option<BelowPrecision> {
+        let tolerance =
+            |a: &Body, b: &Body| if own { of_pair(a, b) } else { certified.tolerance.unwrap_or(0.0) };
+        // The smallest of all pairs: those of bodies with themselves.
+        let positive = bodies.iter().map(|body| tolerance(body, body)).filter(|t| *t > 0.0);
+        let least = positive.reduce(f64::min)?;
         // The two ends of an edge differ from any one point by half of its length, one or the other.
-        let is_long = |side: f64| tolerance < finest * side / 2.0;
-        let long = |body: &Body| {
-            let ends = body.ends();
-            let sides = |[p, q, r]: [u32; 3]| [[p, q], [q, r], [r, p]].map(|[p, q]| largest(&ends, p, q));
-            body.faces().par_iter().any(|&face| sides(face).into_iter().any(is_long))
+        let is_long =
+            |side: f64, tolerance: f64| 0.0 < tolerance && tolerance < finest(certified) * side / 2.0;
+        let boxes: Vec<Bounds> = bodies.iter().map(bounds).collect();
+        let large = (0..bodies.len()).filter(|&i| is_long(extent(&boxes[i]), least));
+        let long: Vec<(usize, f64)> = large.map(|i| (i, longest_side(&bodies[i]))).collect();
+        let within = certified.separation + certified.tolerance.unwrap_or(0.0);
+        let meets = |i: usize, j: usize| may_meet(bodies, [i, j]) && are_near([&boxes[i], &boxes[j]], within);
+        let has_partner = |(i, side): (usize, f64)| {
+            let mut others = (0..bodies.len()).filter(|&j| is_long(side, tolerance(&bodies[i], &bodies[j])));
+            others.any(|j| meets(i, j))
         };
-        (is_long(extent) && bodies.iter().any(long)).then_some(BelowPrecision::Unlisted)
+        long.into_iter().any(has_partner).then_some(BelowPrecision::Unlisted)
+    }
+
+    /// The largest coordinate of the bodies whose place the host knows.
+    pub fn largest(bodies: &[Body]) -> f64 {
+        let known = bodies.iter().filter(|body| !body.is_away() && body.face_count() > 0);
+        known.map(|body| largest_of(&bounds(body))).fold(0.0, f64::max)
     }
 
     /// Whether pairs may be so large, where no two coordinates differ by more than that.
@@ -104,21 +141,60 @@ fn largest(ends: &[&Positions; 2], p: u32, q: u32) -> f64 {
     apart(ends[0]).max(apart(ends[1]))
 }
 
-/// The largest difference of coordinates of all: no pair is larger. What no face uses counts too; of rigid bodies at least
-/// as much.
-fn extent(bodies: &[Body]) -> f64 {
-    let of = |body: &Body| {
-        body.posed_box().unwrap_or_else(|| {
-            body.ends().into_iter().fold(NOTHING, |bounds, positions| {
-                let own = match positions {
-                    Positions::F32(points) => of_points(points),
-                    Positions::F64(points) => of_points(points),
-                };
-                union(bounds, own)
-            })
-        })
+/// The longest side of a body's triangles, by the largest component and at either end of the step.
+fn longest_side(body: &Body) -> f64 {
+    let ends = body.ends();
+    let of_face = |&[p, q, r]: &[u32; 3]| {
+        [[p, q], [q, r], [r, p]].into_iter().map(|[p, q]| largest(&ends, p, q)).fold(0.0, f64::max)
     };
-    let bounds = bodies.iter().map(of).fold(NOTHING, union);
+    body.faces().par_iter().map(of_face).reduce(|| 0.0, f64::max)
+}
+
+/// Whether pairs of two bodies, or of a body and itself, are tested.
+fn may_meet(bodies: &[Body], [i, j]: [usize; 2]) -> bool {
+    let [a, b] = [&bodies[i], &bodies[j]];
+    if a.face_count() == 0 || b.face_count() == 0 {
+        return false;
+    }
+    if i == j {
+        return a.meets_itself();
+    }
+    let [p, q] = [a.meets(), b.meets()];
+    let is_fixed = |body: &Body| body.kind() == BodyKind::Static;
+    let together = p.environment == q.environment || p.environment.is_none() || q.environment.is_none();
+    together && p.group & q.mask != 0 && q.group & p.mask != 0 && !(is_fixed(a) && is_fixed(b))
+}
+
+/// A part of the largest coordinate by which boxes grow: more than what rounding adds to a volume.
+const ROUNDED: f64 = 1.0 / (1 << 18) as f64;
+
+/// Whether pairs of bodies in two boxes may be tested, if that is done within a distance.
+fn are_near(boxes: [&Bounds; 2], within: f64) -> bool {
+    let [a, b] = boxes;
+    let grown = 2.0 * within + ROUNDED * boxes.into_iter().map(largest_of).fold(0.0, f64::max);
+    (0..3).all(|k| a[0][k] <= b[1][k] + grown && b[0][k] <= a[1][k] + grown)
+}
+
+/// The largest coordinate in a box.
+fn largest_of(bounds: &Bounds) -> f64 {
+    bounds.iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()))
+}
+
+/// A box around a body in the step. What no face uses counts too; of rigid bodies it is at least as large as they are.
+fn bounds(body: &Body) -> Bounds {
+    body.posed_box().unwrap_or_else(|| {
+        body.ends().into_iter().fold(NOTHING, |bounds, positions| {
+            let own = match positions {
+                Positions::F32(points) => of_points(points),
+                Positions::F64(points) => of_points(points),
+            };
+            union(bounds, own)
+        })
+    })
+}
+
+/// The largest difference of coordinates in a box: no pair in it is larger.
+fn extent(bounds: &Bounds) -> f64 {
     (0..3).map(|k| bounds[1][k] - bounds[0][k]).fold(0.0, f64::max)
 }
 

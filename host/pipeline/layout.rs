@@ -4,6 +4,7 @@ use super::hubs;
 use crate::mesh::{Body, Topology};
 use crate::query::QueryKind;
 use crate::scene::{BodyId, BodyKind, Meets};
+use nearmiss_emulator::Looks;
 use nearmiss_kernels::abi::{BodyRecord, BodyTolerance, EVERY, NodeFilter};
 
 /// The indices of one body: its own plus these.
@@ -45,6 +46,12 @@ pub struct Layout {
 impl Layout {
     /// Lays bodies one behind the other for a query of that kind; edges only where it needs them.
     pub fn new(bodies: &[Body], kind: QueryKind) -> Layout {
+        // Nothing ends it.
+        Layout::within(bodies, kind, &Looks::new(None)).unwrap_or_default()
+    }
+
+    /// The same, of work that may be ended early: `None` if it was.
+    pub fn within(bodies: &[Body], kind: QueryKind, looks: &Looks) -> Option<Layout> {
         let mut all = Layout { starts: vec![Offsets::default()], ..Layout::default() };
         let mut at = Offsets::default();
         let mut environments: Vec<u32> = bodies.iter().filter_map(|body| body.meets().environment).collect();
@@ -66,7 +73,7 @@ impl Layout {
             }
             all.faces.extend(body.faces().iter().map(|face| face.map(|v| v + at.vertex)));
             if kind.is_of_features() {
-                let own = Topology::new(body.faces(), body.vertex_count());
+                let own = Topology::within(body.faces(), body.vertex_count(), looks)?;
                 all.edges.extend(own.edges.iter().map(|edge| edge.map(|v| v + at.vertex)));
                 // An edge that does not exist is owned by nobody, so its number is never used.
                 all.face_edges
@@ -78,7 +85,7 @@ impl Layout {
             at.edge = all.edges.len() as u32;
             all.starts.push(at);
         }
-        all
+        Some(all)
     }
 
     /// Of one body alone of so many triangles, to build a tree over them.

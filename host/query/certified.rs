@@ -20,7 +20,8 @@ pub struct Certified {
     /// for all that the precision gives; one for all pairs. `None`: of each pair the smaller default of its two bodies,
     /// [`Certified::TOLERANCE`] of a body's mean edge.
     pub tolerance: Option<f64>,
-    /// The most boxes that are looked at for a pair before it is left unresolved; `None` for [`Certified::BUDGET`].
+    /// The most boxes that are looked at for a pair before it is left unresolved; `None` for [`Certified::BUDGET`]. Refused in f32
+    /// alone without a separation, where no boxes are tested.
     pub budget: Option<u32>,
     /// Features that come this near are in contact, a length; times are then of coming so near. 0 for touching.
     pub separation: f64,
@@ -76,10 +77,20 @@ impl Certified {
                 "a tolerance that is no length, or a budget of no boxes",
                 "give a tolerance from 0, and at least 1 box",
             )
+        } else if self.budget.is_some() && !self.tests_boxes() {
+            (
+                "a budget of boxes for certified-f32 without a separation, which tests no boxes",
+                "leave it out, or choose certified or certified-f64",
+            )
         } else {
             return Ok(());
         };
         Err(Error::Choice { what: what.into(), advice: advice.into() })
+    }
+
+    /// Whether a pair may be searched by boxes, so that a budget means something.
+    fn tests_boxes(&self) -> bool {
+        self.precision != CertifiedPrecision::F32 || self.is_apart()
     }
 
     /// Whether a separation above 0 is asked for.

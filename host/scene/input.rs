@@ -4,6 +4,9 @@ use super::{DeviceInput, Pose};
 use crate::mesh::Positions;
 
 /// Where a body is at a frame, or at the two ends of a step. Borrowed: nothing of a body's topology is copied or looked at.
+///
+/// Every query takes both. Discrete, near and distance queries test a body that steps where its step begins, at t = 0; from the
+/// next frame on it rests where its step ended, unless that frame names it.
 #[derive(Clone, Copy, Debug)]
 pub enum Input<'a> {
     /// A deformable body stands at these positions.

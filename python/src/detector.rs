@@ -196,7 +196,7 @@ impl Detector {
     ///
     /// inputs: a mapping from a body's number to where it is: of a deformable body (n, 3) numbers, or two such arrays for the
     ///         ends of a step; of a rigid body a Pose, or two. A body that is not named rests
-    ///         where it is, or where its step ended.
+    ///         where it is, or where its step ended. Discrete, Near and Distance test a step where it begins.
     ///         Arrays of the detector's GPU, and on a CPU numpy's arrays of packed rows, are read where they lie.
     #[pyo3(signature = (inputs = None))]
     fn frame(&self, py: Python<'_>, inputs: Option<&Bound<'_, PyAny>>) -> PyResult<Contacts> {

@@ -60,6 +60,26 @@ fn a_detector_may_be_interrupted_while_it_is_made() {
     assert_eq!(own().expect("a detector").detect().expect("an answer").answer, want);
 }
 
+/// The edges of a mesh are found on the host, before anything is launched: that ends too.
+#[test]
+fn the_finding_of_edges_is_ended() {
+    let body = || scene::draped(120_000).expect("a scene");
+    let looks_of = |query| {
+        let interrupt = Interrupt::new();
+        looks(&interrupt, || Detector::new(threads(2).with_interrupt(&interrupt), body(), query).map(drop)).0
+    };
+    // A discrete query has no edges.
+    let [without, with] = [Query::discrete(), Query::near(1e-3)].map(looks_of);
+    assert!(with >= without + 20, "{with} looks, {without} without edges");
+    let interrupt = Interrupt::new();
+    let make = || Detector::new(threads(2).with_interrupt(&interrupt), body(), Query::near(1e-3));
+    for at in [1, 2, 10, 20] {
+        interrupt.trigger_at(at);
+        interrupted(&interrupt, make());
+    }
+    assert!(make().expect("a detector").detect().is_ok());
+}
+
 #[test]
 fn every_call_can_be_ended() {
     type Call = fn(&mut Detector) -> Result<(), Error>;

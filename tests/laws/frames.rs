@@ -268,3 +268,57 @@ fn a_forgotten_contact_is_named() {
     let named = (0..8).filter_map(|seed| life(seed, Query::continuous(), forget).err()).next();
     assert!(named.expect("a difference").contains("made for it"));
 }
+
+/// A query at rest, of a body at both ends of a step: first where the step begins, then, not named, where it ends. `end` is
+/// the end of which the first answer is expected; whether there was anything to tell the ends apart by.
+fn at_rest(seed: u64, query: Query, end: usize) -> Result<bool, String> {
+    let mut rng = SmallRng::seed_from_u64(seed);
+    let mut bodies: Vec<Placed> = Vec::new();
+    let mut scene = Scene::new();
+    for _ in 0..3 {
+        let (body, place) = body(&mut rng);
+        let place = next(&mut rng, &place);
+        bodies.push(Placed { id: scene.add(body.clone()), body, place });
+    }
+    let at = |end: usize| {
+        let one = |place: &Place| match place {
+            Place::Vertices(ends) => Place::Vertices([ends[end].clone(), ends[end].clone()]),
+            Place::Poses(ends) => Place::Poses([ends[end]; 2]),
+            Place::Fixed => Place::Fixed,
+        };
+        let moved =
+            |placed: &Placed| Placed { id: placed.id, body: placed.body.clone(), place: one(&placed.place) };
+        fresh(&bodies.iter().map(moved).collect::<Vec<_>>(), query).answer
+    };
+    let steps: Vec<(BodyId, Input)> =
+        bodies.iter().filter_map(|placed| Some((placed.id, placed.place.input(true)?))).collect();
+    let mut detector = Detector::new(engine(), scene, query).expect("a detector");
+    let first = detector.frame(&steps).expect("an answer");
+    let second = detector.frame(&[]).expect("an answer");
+    detector.place(&steps).expect("placed");
+    let placed = detector.detect().expect("an answer");
+    for (name, found, wanted) in
+        [("frame", first.answer, at(end)), ("place", placed.answer, at(end)), ("rest", second.answer, at(1))]
+    {
+        if found != wanted {
+            return Err(format!("{name} of seed {seed}, {query:?}: {found:?}, at one end {wanted:?}"));
+        }
+    }
+    Ok(at(0) != at(1))
+}
+
+#[test]
+fn a_query_at_rest_answers_where_a_step_begins() {
+    let mut told_apart = 0;
+    for query in queries().into_iter().filter(|query| query.kind().is_at_rest()) {
+        for seed in 0..20 {
+            let is_told = at_rest(seed, query, 0).unwrap_or_else(|difference| panic!("{difference}"));
+            told_apart += usize::from(is_told);
+            assert!(
+                !is_told || at_rest(seed, query, 1).is_err(),
+                "the other end passes: seed {seed}, {query:?}"
+            );
+        }
+    }
+    assert!(told_apart > 40, "{told_apart}");
+}

@@ -93,12 +93,26 @@ fn ask(bodies: &[Body], query: Query) -> Contacts {
     support::ask_scene(engine(), scene(bodies), query)
 }
 
-/// The least number over bodies two by two.
-fn least_two_by_two(bodies: &[Body], query: Query) -> Option<f64> {
+/// An answer that is one number, and whether it says that edges are too long for the tolerance.
+#[derive(Clone, Debug, PartialEq)]
+struct Least {
+    number: Option<f64>,
+    is_below_precision: bool,
+}
+
+impl Least {
+    fn of(contacts: &Contacts) -> Least {
+        let is_below = |reason: &Degraded| matches!(reason, Degraded::ToleranceBelowPrecision { .. });
+        Least { number: least(contacts), is_below_precision: contacts.degraded().iter().any(is_below) }
+    }
+}
+
+/// The least number over bodies two by two, and whether any two have edges too long.
+fn least_two_by_two(bodies: &[Body], query: Query) -> Least {
     let mut all = Vec::new();
     for i in 0..bodies.len() {
         // A body with itself alone.
-        all.extend(least(&ask(&bodies[i..i + 1], query)));
+        all.push(Least::of(&ask(&bodies[i..i + 1], query)));
         for j in i + 1..bodies.len() {
             // Who meets itself was asked above.
             let alone = [i, j].map(|k| {
@@ -106,10 +120,13 @@ fn least_two_by_two(bodies: &[Body], query: Query) -> Option<f64> {
                 let self_contact = (!is_fixed).then_some(false);
                 bodies[k].clone().with(Meets { self_contact, ..*bodies[k].meets() })
             });
-            all.extend(least(&ask(&alone, query)));
+            all.push(Least::of(&ask(&alone, query)));
         }
     }
-    all.into_iter().min_by(f64::total_cmp)
+    Least {
+        number: all.iter().filter_map(|of| of.number).min_by(f64::total_cmp),
+        is_below_precision: all.iter().any(|of| of.is_below_precision),
+    }
 }
 
 /// What differs where other bodies are, where they were added to a detector, and where they were and are gone.
@@ -118,11 +135,10 @@ fn differs(own: &[Body], others: &[Body], query: Query) -> Option<String> {
     let alone = ask(own, query);
     let together = ask(&all, query);
     let Some(wanted) = rows(&alone, own.len()) else {
-        let both = [(least(&alone), own), (least(&together), &all[..])];
-        return both.into_iter().find_map(|(found, bodies)| {
-            let wanted = least_two_by_two(bodies, query);
-            (found != wanted).then(|| format!("{found:?}, two by two {wanted:?}"))
-        });
+        let both = [(Least::of(&alone), own), (Least::of(&together), &all[..])];
+        return both
+            .into_iter()
+            .find_map(|(found, bodies)| other_least(&found, &least_two_by_two(bodies, query)));
     };
     let mut detector = Detector::new(engine(), scene(own), query).expect("a detector");
     let added: Vec<BodyId> = others.iter().map(|body| detector.add(body.clone()).expect("room")).collect();
@@ -133,6 +149,11 @@ fn differs(own: &[Body], others: &[Body], query: Query) -> Option<String> {
     let without = detector.detect().expect("an answer");
     let found = [("together", together), ("added", with_added), ("removed", without)];
     found.into_iter().find_map(|(when, contacts)| difference(when, &rows(&contacts, own.len())?, &wanted))
+}
+
+/// What differs from the least of bodies two by two.
+fn other_least(found: &Least, wanted: &Least) -> Option<String> {
+    (found != wanted).then(|| format!("{found:?}, two by two {wanted:?}"))
 }
 
 /// The first row that is not as it was alone.
@@ -168,6 +189,31 @@ fn other_bodies_change_no_row() {
     assert!(rows_found > 1_000, "{rows_found}");
 }
 
+/// A body adds the caveat of long edges only if it may meet another, and is near it.
+#[test]
+fn a_body_that_meets_none_adds_no_caveat() {
+    let mut told = [0; 2];
+    for seed in 0..20 {
+        let mut rng = SmallRng::seed_from_u64(seed);
+        let own = Body::still(mesh(&mut rng, 0.5, 0.0, false));
+        let huge = Body::still(mesh(&mut rng, 1e5, 0.0, true)).with(Meets::others());
+        let far = huge.positions_t0().to_f64().into_iter().map(|p| [p[0] + 1e7, p[1], p[2]]).collect();
+        let far = Mesh::new("far", Positions::F64(far), huge.faces().to_vec()).expect("a mesh");
+        let far = Body::still(far).with(Meets::others());
+        let elsewhere = Meets { environment: Some(7), ..Meets::others() };
+        let excluded = Meets { mask: 0, ..Meets::others() };
+        for query in queries().into_iter().filter(|query| query.kind() == QueryKind::Earliest) {
+            let below = |bodies: &[Body]| Least::of(&ask(bodies, query)).is_below_precision;
+            let alone = below(std::slice::from_ref(&own));
+            for other in [far.clone(), huge.clone().with(elsewhere), huge.clone().with(excluded)] {
+                assert_eq!(below(&[own.clone(), other]), alone, "seed {seed}, {query:?}");
+            }
+            told[usize::from(below(&[own.clone(), huge.clone()]))] += 1;
+        }
+    }
+    assert!(told.iter().all(|times| *times > 0), "{told:?}");
+}
+
 /// The comparison names a row that is changed in its last bit, one that is missing, and another least number.
 #[test]
 fn a_changed_row_is_named() {
@@ -182,6 +228,15 @@ fn a_changed_row_is_named() {
     late[2].toi = late[2].toi.next_up();
     let named = difference("", &Rows::Contacts(late), &wanted).expect("a difference");
     assert!(named.contains("row 2"), "{named}");
+    let alone = Least { number: Some(0.5), is_below_precision: false };
+    assert_eq!(other_least(&alone, &alone.clone()), None);
+    for planted in [
+        Least { number: Some(0.5f64.next_up()), ..alone.clone() },
+        Least { number: None, ..alone.clone() },
+        Least { is_below_precision: true, ..alone.clone() },
+    ] {
+        assert!(other_least(&planted, &alone).is_some(), "{planted:?}");
+    }
     let fewer = Rows::Contacts(rows[..rows.len() - 1].to_vec());
     assert!(difference("", &fewer, &wanted).is_some_and(|named| named.contains("None")));
 }

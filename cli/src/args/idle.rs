@@ -7,7 +7,7 @@ use clap::ArgMatches;
 use clap::parser::ValueSource;
 use nearmiss::device::Backend;
 use nearmiss::error::Error;
-use nearmiss_lab::scene::ANIMATIONS;
+use nearmiss_lab::scene::{ANIMATIONS, SEEDED};
 
 /// Looks through a command's options.
 ///
@@ -97,12 +97,18 @@ fn detect(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
         let why = "the bodies come from files";
         given.none_of(&["triangles", "seed"], why, "leave it out, or give --scene NAME in place of files")?;
     }
-    of_single(args.scene.as_deref(), given)
+    args.scene.as_deref().map_or(Ok(()), |scene| of_generated(scene, given))
 }
 
-fn of_single(scene: Option<&str>, given: CommandLine) -> Result<(), Error> {
-    if scene == Some("single") {
+/// Options of a generated scene.
+fn of_generated(scene: &str, given: CommandLine) -> Result<(), Error> {
+    if scene == "single" {
         given.none_of(&["triangles"], "the scene single has one triangle", "leave it out, or choose soup")?;
+    }
+    if !SEEDED.contains(&scene) {
+        let why = format!("the scene {scene} is the same with every seed");
+        let advice = format!("leave it out, or choose one of: {}", SEEDED.join(", "));
+        given.none_of(&["seed"], &why, &advice)?;
     }
     Ok(())
 }
@@ -141,7 +147,7 @@ fn scene(args: &SceneArgs, given: CommandLine) -> Result<(), Error> {
         let advice = "leave it out, or choose cloth-ball, flamenco or princess";
         given.none_of(&["contact"], "n-body has no cloth", advice)?;
     }
-    of_single(Some(&args.name), given)
+    of_generated(&args.name, given)
 }
 
 fn tables(args: &TablesArgs, given: CommandLine) -> Result<(), Error> {
@@ -149,6 +155,22 @@ fn tables(args: &TablesArgs, given: CommandLine) -> Result<(), Error> {
     if !args.mesh.is_empty() {
         let why = "the frames come from the files of --mesh";
         given.none_of(&["triangles", "frames", "seed"], why, "leave it out, or leave --mesh out")?;
+    }
+    let is_of = |figure: fn(&Table) -> bool| args.table.iter().any(figure);
+    let is_scaled = is_of(|table| matches!(table, Table::Scale));
+    if !is_scaled {
+        let why = "the figure scale alone divides frames among devices";
+        given.none_of(&["devices"], why, "add --table scale, or leave it out")?;
+    }
+    let is_of_scenes = |table: &Table| !matches!(table, Table::Bodies | Table::Scale);
+    if !args.table.is_empty() && !is_of(is_of_scenes) {
+        let why = "no figure of a single scene is measured";
+        let advice = "add --table 6.12, 6.13, 6.14 or front, or leave it out";
+        given.none_of(&["scene", "mesh", "seed", "bv", "profile"], why, advice)?;
+        if !is_scaled {
+            let why = "the figure bodies has scenes of one size";
+            given.none_of(&["triangles"], why, "add --table scale, or leave it out")?;
+        }
     }
     let frames = |table: &Table| matches!(table, Table::Frame | Table::Shares);
     if !args.table.is_empty() && !args.table.iter().any(frames) {

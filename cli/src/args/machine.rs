@@ -29,6 +29,11 @@ impl MachineArgs {
         Device::open(self.backend, self.threads.map(|asked| at_most_all(asked.into())))
     }
 
+    /// So many threads for the machine that the arguments name; none if it can be no CPU.
+    pub fn of_cpu(&self, threads: usize) -> Option<usize> {
+        (self.backend != Backend::Cuda).then_some(threads)
+    }
+
     /// How many threads a CPU gets: as many as were asked for and there are processors.
     pub fn count(&self) -> usize {
         let all = || std::thread::available_parallelism().map_or(1, usize::from);

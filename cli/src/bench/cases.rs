@@ -142,6 +142,13 @@ pub fn chosen(args: &BenchArgs) -> Result<Vec<Chosen>, Error> {
             advice: "figures are told by these names: give the file another".into(),
         });
     }
+    let read = &names[GENERATED.len()..];
+    if let Some(left_out) = read.iter().find(|name| !args.has_case(name)) {
+        return Err(Error::Choice {
+            what: format!("the file of --mesh {left_out} would do nothing: --case names other cases"),
+            advice: format!("add {left_out} to --case, or leave it out"),
+        });
+    }
     if let Some(unknown) = args.case.iter().find(|name| !names.contains(name)) {
         return Err(Error::Choice {
             what: format!("no case is named {unknown}"),

@@ -56,7 +56,8 @@ pub fn bench(args: &BenchArgs) -> Result<ExitCode, Error> {
     args.report.out.as_deref().map_or(Ok(()), output::folder)?;
     let threads = args.machine.count();
     // Held to the end: a device a question, so that each has a peak of its own, starts faster then.
-    let device = Device::open(args.machine.backend, Some(threads))?;
+    let open = || Device::open(args.machine.backend, args.machine.of_cpu(threads));
+    let device = open()?;
     let machine = Machine::of(&device, threads);
     if let Some(earlier) = &earlier {
         comparable(args, &chosen, earlier)?;
@@ -68,7 +69,7 @@ pub fn bench(args: &BenchArgs) -> Result<ExitCode, Error> {
     for case in &chosen {
         let scene = during(format!("making {}", case.name), || case.make())?;
         for question in cases::questions(args).filter(|question| question.is_for(scene.bodies())) {
-            let device = Device::open(args.machine.backend, Some(threads))?;
+            let device = open()?;
             let asked = || measure(&device, (&case.name, &scene), question, args.repeat);
             all.cases.push(during(format!("{}: {}", case.name, question.name()), asked)?);
         }

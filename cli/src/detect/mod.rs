@@ -75,6 +75,11 @@ pub fn question(args: &DetectArgs) -> Result<Question, Error> {
     }
     let bodies = bodies(args, &mut reader)?;
     let query = args.query(bodies.iter().any(Body::is_moving))?;
+    if args.scene.is_none() && query.kind().is_at_rest() && bodies.iter().any(Body::is_moving) {
+        let kind = query.kind();
+        let note = "of two files of a mesh the first is tested, and the second not";
+        reader.notes.push(format!("{note}: a {kind} query is of the start of a step"));
+    }
     Ok(Question { scene: bodies.into(), query, sequence: None, notes: reader.notes })
 }
 

@@ -116,10 +116,9 @@ fn from_file(args: &ExplainArgs, path: &Path, row: usize) -> Result<Subject, Err
 
 fn from_numbers(args: &ExplainArgs, points: &[f64]) -> Result<Subject, Error> {
     if let Some(bad) = points.iter().position(|x| !x.is_finite()) {
-        return Err(Error::Choice {
-            what: format!("number {bad} of --points, counted from 0, is {}", points[bad]),
-            advice: "give finite numbers".into(),
-        });
+        let (vertex, axis) = (bad / 3, ['x', 'y', 'z'][bad % 3]);
+        let problem = Problem::NonFinite { vertex, axis, value: points[bad] };
+        return Err(Error::Input { file: "--points".into(), problem });
     }
     let features = features(args.between.unwrap_or(Between::Vf));
     let all: Vec<[f64; 3]> = points.chunks_exact(3).map(|p| [p[0], p[1], p[2]]).collect();

@@ -173,7 +173,10 @@ fn what_there_is_not_is_named() {
         assert_eq!(run(args).status.code(), Some(2), "{args:?}");
     }
     let points = vec!["inf"; 24];
-    let message = refused(2, &[&["explain", "--between", "vf", "--points"][..], &points].concat());
-    assert!(message.contains("number 0 of --points"), "{message}");
+    let message = refused(3, &[&["explain", "--between", "vf", "--points"][..], &points].concat());
+    assert!(message.contains("--points: vertex 0 has x = inf"), "{message}");
+    let other = folder.write("other.obj", T0);
+    let message = refused(3, &["explain", &mesh, "--with", &other, "--fv", "0", "6"]);
+    assert!(message.contains("other.obj: has no vertex 6: it has 6 of them"), "{message}");
     assert!(refused(2, &["explain", &mesh, "--vf", "0", "1", "--tolerance", "nan"]).contains("from 0"));
 }

@@ -11,7 +11,27 @@ fn options_that_would_do_nothing_are_refused() {
     let files = "nothing is made here; add --full";
     let from_files = "the bodies come from files";
     let still = "of what stands still there is one answer within the distance";
-    let table: [(&str, &[&str], &str); 55] = [
+    let seedless = "is the same with every seed; leave it out, or choose one of: balls, cloth-ball";
+    let of_scenes = "no figure of a single scene is measured; add --table 6.12";
+    let table: [(&str, &[&str], &str); 69] = [
+        ("detect", &["--scene", "draped", "--seed", "3"], "the scene draped is the same with every seed"),
+        ("detect", &["--scene", "grid", "--seed", "1"], seedless),
+        ("plan", &["--scene", "line", "--seed", "3"], seedless),
+        ("picture", &["--scene", "identical", "--seed", "3", "--out", "x.png"], seedless),
+        ("scene", &["single", "--seed", "3", "--out", "x"], seedless),
+        ("tables", &["--table", "bodies", "--seed", "3"], of_scenes),
+        ("tables", &["--table", "scale", "--seed", "3"], of_scenes),
+        ("tables", &["--table", "scale", "--scene", "n-body"], of_scenes),
+        ("tables", &["--table", "bodies", "--bv", "aabb"], of_scenes),
+        ("tables", &["--table", "bodies", "--profile", "native"], of_scenes),
+        ("tables", &["--table", "bodies", "--mesh", "a.ply", "b.ply"], of_scenes),
+        ("tables", &["--table", "bodies", "--triangles", "9"], "scenes of one size; add --table scale"),
+        ("tables", &["--devices", "2"], "the figure scale alone divides frames"),
+        (
+            "detect",
+            &["--scene", "soup-moving", "--solver", "certified-f32", "--boxes", "9"],
+            "tests no boxes",
+        ),
         ("detect", &["--budget", "8"], walk),
         ("detect", &["--budget", "8", "--traversal", "per-leaf"], walk),
         ("detect", &["--budget", "8", "--traversal", "steal"], walk),

@@ -352,8 +352,7 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
 
     fn place(&mut self, bodies: &[Body]) {
         let of = |certified: &Certified| {
-            let tolerance = self.finest.or(certified.tolerance);
-            BelowPrecision::of(bodies, &Certified { tolerance, ..*certified }, self.earliest.is_some())
+            BelowPrecision::of(bodies, certified, self.finest, self.earliest.is_some())
         };
         self.below_precision = self.solver.certified().and_then(of);
     }

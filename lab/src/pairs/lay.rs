@@ -4,7 +4,7 @@ use super::Stored;
 use crate::case::{Case, Features};
 use nearmiss::device::{Buffer, Device};
 use nearmiss::error::Error;
-use nearmiss::mesh::{MAX_ABS_F32, MAX_ABS_F64};
+use nearmiss::mesh::{MAX_ABS_F32, MAX_ABS_F64, Problem};
 use nearmiss::pipeline::Layout;
 use nearmiss::pipeline::precision::Precision;
 use nearmiss_kernels::abi::{Pair, VertexMotion};
@@ -40,17 +40,22 @@ pub fn mean_edge(cases: &[Case]) -> f64 {
 /// Refuses coordinates that a mesh would not be let through with, and such as f32 does not hold where that is asked.
 pub fn check(cases: &[Case], stored: Stored) -> Result<(), Error> {
     let most = if stored == Stored::F32 { f64::from(MAX_ABS_F32) } else { MAX_ABS_F64 };
-    let refused = |x: f64| match stored {
-        _ if x.is_nan() || x.abs() > most => Some("is not finite, or too large"),
-        Stored::F32 if f64::from(x as f32) != x => Some("is not exact in f32"),
-        _ => None,
-    };
     for (at, case) in cases.iter().enumerate() {
-        for x in case.positions_t0.iter().chain(&case.positions_t1).flatten() {
-            if let Some(why) = refused(*x) {
+        let points = case.positions_t0.iter().chain(&case.positions_t1).enumerate();
+        for (vertex, axis, value) in
+            points.flat_map(|(v, p)| [0, 1, 2].map(|k| (v, ['x', 'y', 'z'][k], p[k])))
+        {
+            let input = |problem| Err(Error::Input { file: format!("case {at}"), problem });
+            if !value.is_finite() {
+                return input(Problem::NonFinite { vertex, axis, value });
+            }
+            if value.abs() > MAX_ABS_F64 {
+                return input(Problem::TooLarge { vertex, axis, value, limit: "2^480" });
+            }
+            if stored == Stored::F32 && (value.abs() > most || f64::from(value as f32) != value) {
                 return Err(Error::Choice {
-                    what: format!("case {at} has a coordinate {x:e} that {why}"),
-                    advice: format!("give finite coordinates up to {most:e}, and store them in f64"),
+                    what: format!("case {at} has a coordinate {value:e} that f32 does not hold"),
+                    advice: "store it in f64".into(),
                 });
             }
         }

@@ -5,7 +5,7 @@ use super::lay::AT_ONCE;
 use crate::oracle::Triangle;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
-use nearmiss::mesh::{Mesh, Positions};
+use nearmiss::mesh::{MAX_ABS_F64, Mesh, Positions};
 use nearmiss::pipeline::counts::{Counts, FrameCounters};
 use nearmiss::pipeline::list::List;
 use nearmiss::pipeline::narrow::{DiscreteNarrow, NarrowContext};
@@ -48,7 +48,11 @@ pub fn ask_triangles(
     for pairs in pairs.chunks(AT_ONCE) {
         let points: Vec<[f64; 3]> = pairs.iter().flatten().flatten().copied().collect();
         if stored == Stored::F32
-            && let Some(x) = points.iter().flatten().find(|x| f64::from(**x as f32) != **x)
+            // Numbers that no precision holds are refused as data by the mesh.
+            && let Some(x) = points
+                .iter()
+                .flatten()
+                .find(|x| x.abs() <= MAX_ABS_F64 && f64::from(**x as f32) != **x)
         {
             return Err(Error::Choice {
                 what: format!("a coordinate {x:e} that is not exact in f32"),

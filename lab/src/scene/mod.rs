@@ -56,6 +56,10 @@ pub const NAMES: [&str; 12] = [
 pub const FORMULAS: [&str; 8] =
     ["balls", "draped", "grid", "identical", "line", "single", "soup", "soup-moving"];
 
+/// Those of [`NAMES`] that use chance: a seed makes another scene of each.
+pub const SEEDED: [&str; 7] =
+    ["balls", "cloth-ball", "flamenco", "n-body", "princess", "soup", "soup-moving"];
+
 /// Triangles of a scene where none are asked for: the thesis's number for the scenes that it has, for the others that of
 /// UNC's cloth on a ball.
 pub fn usual(name: &str) -> usize {

@@ -161,3 +161,13 @@ fn volume(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3]) -> f64 {
     a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
         + a[2] * (b[0] * c[1] - b[1] * c[0])
 }
+
+/// A seed makes another scene of those that use chance, and the same of all others.
+#[test]
+fn the_seeded_scenes_are_those_that_use_chance() {
+    for name in NAMES {
+        let [one, two] = [1, 2].map(|seed| scene(name, 300, seed).unwrap().fingerprint());
+        assert_eq!(one != two, SEEDED.contains(&name), "{name}");
+    }
+    assert!(SEEDED.iter().all(|name| NAMES.contains(name)));
+}
