@@ -127,7 +127,7 @@ impl MultiDetector {
     fn moved(&mut self, inputs: &[(BodyId, Input)]) -> Result<Contacts, Error> {
         if self.wears && self.parts[0].is_first_of(inputs) {
             // All are built where the first frame of a body puts it.
-            self.each(|detector| detector.go(inputs))?;
+            self.each(|detector| detector.apply(inputs))?;
             self.renew()?;
             return self.ask(Detector::detect);
         }

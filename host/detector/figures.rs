@@ -9,13 +9,13 @@ impl Detector {
     /// a pair has the smaller default of its two bodies: [`Certified::TOLERANCE`](crate::query::Certified::TOLERANCE) of the mean
     /// edge of the mesh that a body was made of, rounded down to a power of two. It stays when bodies move.
     pub fn tolerance(&self) -> Option<f64> {
-        self.tolerances.as_ref().map(|tolerances| tolerances.least)
+        self.question.tolerances.as_ref().map(|tolerances| tolerances.least)
     }
 
     /// Largest tolerance of a pair of bodies by a certified solver, a length: that of [`Detector::tolerance`] if all pairs have
     /// the same.
     pub fn largest_tolerance(&self) -> Option<f64> {
-        self.tolerances.as_ref().map(|tolerances| tolerances.largest)
+        self.question.tolerances.as_ref().map(|tolerances| tolerances.largest)
     }
 
     /// The figures of an answer and the notes beside it, as the command line prints them. Cost: a hash of the answer, and the notes:
@@ -27,24 +27,24 @@ impl Detector {
             largest_tolerance: self
                 .largest_tolerance()
                 .filter(|_| self.largest_tolerance() != self.tolerance()),
-            builds: self.builds,
-            ..Summary::new(self.scene.bodies(), self.query, &self.device, contacts)
+            builds: self.engine.builds,
+            ..Summary::new(self.scene.bodies(), self.question.query, &self.device, contacts)
         }
     }
 
     /// The notes beside an answer, of bodies where they were: those of [`Detector::summary`], at the same cost.
     pub fn notes(&self, contacts: &Contacts) -> Vec<Note> {
-        Note::of(self.scene.bodies(), &self.query, contacts)
+        Note::of(self.scene.bodies(), &self.question.query, contacts)
     }
 
     /// How many levels the tree over what moves has, and that over what is static, where there is one.
     pub fn depths(&self) -> Vec<usize> {
-        self.pipeline.as_ref().map_or(Vec::new(), |pipeline| pipeline.depths())
+        self.engine.pipeline.as_ref().map_or(Vec::new(), |pipeline| pipeline.depths())
     }
 
     /// How often a list was too short and a frame was run again within itself, since the bodies were last replaced.
     pub fn reruns(&self) -> u64 {
-        self.pipeline.as_ref().map_or(0, |pipeline| pipeline.reruns())
+        self.engine.pipeline.as_ref().map_or(0, |pipeline| pipeline.reruns())
     }
 
     /// What each stage left in the device's memory after the last [`Detector::detect`], as hashes by stage: trees to
@@ -53,7 +53,7 @@ impl Detector {
     /// # Errors
     /// Those of the device.
     pub fn fingerprints(&self) -> Result<Vec<(&'static str, u64)>, Error> {
-        self.pipeline.as_ref().map_or(Ok(Vec::new()), |pipeline| pipeline.fingerprints())
+        self.engine.pipeline.as_ref().map_or(Ok(Vec::new()), |pipeline| pipeline.fingerprints())
     }
 
     /// Checks every tree as it lies on the device; volumes too, which [`Detector::detect`] sets.
@@ -61,6 +61,6 @@ impl Detector {
     /// # Errors
     /// [`Error::Bug`] with the first violation; those of the device.
     pub fn check_volumes(&self) -> Result<(), Error> {
-        self.pipeline.as_ref().map_or(Ok(()), |pipeline| pipeline.check())
+        self.engine.pipeline.as_ref().map_or(Ok(()), |pipeline| pipeline.check())
     }
 }

@@ -32,20 +32,34 @@ use crate::query::Query;
 use std::sync::Arc;
 use typed::TypedPipeline;
 
-/// The pipeline of a query, or of a share of its work; `f64s` tells whether any position needs f64.
+/// What a pipeline is made for.
+pub struct Pieces {
+    /// Where every body lies.
+    pub layout: Arc<Layout>,
+    /// The question.
+    pub query: Query,
+    /// Its part of the work.
+    pub share: Share,
+    /// Whether any position needs f64.
+    pub holds_f64: bool,
+}
+
+#[cfg(test)]
+impl Pieces {
+    /// All of a query's work, in single precision.
+    fn whole(layout: Arc<Layout>, query: Query) -> Pieces {
+        Pieces { layout, query, share: Share::WHOLE, holds_f64: false }
+    }
+}
+
+/// The pipeline of a query, or of a share of its work.
 ///
 /// # Errors
 /// Those of the device.
-pub fn pipeline(
-    device: Device,
-    bodies: &[Body],
-    layout: Arc<Layout>,
-    query: Query,
-    (f64s, share): (bool, Share),
-) -> Result<Box<dyn Pipeline>, Error> {
-    Ok(if f64s {
-        Box::new(TypedPipeline::<f64>::new(device, bodies, layout, (query, share))?)
+pub fn pipeline(device: Device, bodies: &[Body], pieces: Pieces) -> Result<Box<dyn Pipeline>, Error> {
+    Ok(if pieces.holds_f64 {
+        Box::new(TypedPipeline::<f64>::new(device, bodies, pieces)?)
     } else {
-        Box::new(TypedPipeline::<f32>::new(device, bodies, layout, (query, share))?)
+        Box::new(TypedPipeline::<f32>::new(device, bodies, pieces)?)
     })
 }

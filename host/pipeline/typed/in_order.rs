@@ -11,13 +11,9 @@ use crate::samples;
 fn answers(bodies: &[Body], query: Query, device_orders: bool, told: impl Fn(bool) -> bool) -> Vec<Contacts> {
     let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
     let layout = Arc::new(Layout::new(bodies, query.kind()));
-    let mut pipeline = TypedPipeline::<f32>::new(
-        device.clone(),
-        bodies,
-        layout.clone(),
-        (query, crate::pipeline::Share::WHOLE),
-    )
-    .expect("memory");
+    let mut pipeline =
+        TypedPipeline::<f32>::new(device.clone(), bodies, Pieces::whole(layout.clone(), query))
+            .expect("memory");
     if device_orders {
         // With less room than there are contacts: the list grows.
         pipeline.narrow.order_on(&device, &layout, 10).expect("memory");

@@ -1,15 +1,25 @@
 //! Bodies of which only the device knows where they are.
 
 use super::Detector;
-use crate::contacts::{Contacts, Degraded};
 use crate::error::Error;
 use crate::mesh::{Body, Positions};
-use crate::pipeline::below_precision::BelowPrecision;
-use crate::pipeline::{Layout, Seen, Stages, Whereabouts};
-use crate::query::{Certified, Query};
+use crate::pipeline::{Layout, Seen, Whereabouts};
 use crate::scene::Pose;
 use std::sync::Arc;
-use std::time::Instant;
+
+/// Knowledge of the bodies that are on the device.
+#[derive(Default)]
+pub struct Resident {
+    /// The largest coordinate that was seen in memory of the caller so far.
+    pub largest: f64,
+}
+
+impl Resident {
+    /// A frame saw this.
+    pub fn saw(&mut self, seen: Option<Seen>) {
+        self.largest = seen.map_or(self.largest, |seen| seen.largest.max(self.largest));
+    }
+}
 
 impl Detector {
     /// Brings the bodies to the host of which only the device knows where they are ([`Body::is_away`]), so that
@@ -36,12 +46,13 @@ impl Detector {
     /// that was recorded and launched again, of which nobody tells the detector. Those of one that was refused only if there
     /// is another.
     pub(super) fn read_again(&mut self, is_another: bool) {
-        if self.pipeline.as_ref().is_some_and(|pipeline| pipeline.is_prepared()) {
-            for &(id, moving) in &self.submits {
-                let body = &mut self.scene.bodies_mut()[id.index()];
-                if is_another || !body.is_lost() {
-                    body.placed_again(moving);
-                }
+        if !self.engine.is_prepared() {
+            return;
+        }
+        for submitted in &self.placed.submitted {
+            let body = &mut self.scene.bodies_mut()[submitted.body.index()];
+            if is_another || !body.is_lost() {
+                body.placed_again(submitted.moves);
             }
         }
     }
@@ -49,7 +60,7 @@ impl Detector {
     /// Where the device has placed all bodies; `None` where nothing can meet, and nothing was placed.
     fn places(&mut self) -> Result<Option<Places>, Error> {
         let layout = self.layout()?;
-        let Some(pipeline) = &self.pipeline else { return Ok(None) };
+        let Some(pipeline) = &self.engine.pipeline else { return Ok(None) };
         Ok(Some(Places { all: pipeline.whereabouts()?, layout }))
     }
 
@@ -79,7 +90,7 @@ impl Detector {
         if let Some(places) = &places {
             self.bring(places);
         }
-        let named = self.named.iter().chain(std::iter::repeat(&false));
+        let named = self.placed.named.iter().chain(std::iter::repeat(&false));
         for ((body, lost), named) in self.scene.bodies_mut().iter_mut().zip(lost).zip(named) {
             if lost || *named && !is_valid {
                 body.lose();
@@ -92,7 +103,7 @@ impl Detector {
         self.none_lost()?;
         let gone = |body: &&Body| body.is_away() && body.lent().is_none();
         match self.scene.bodies().iter().find(gone) {
-            Some(body) if self.pipeline.is_none() => Err(Error::Choice {
+            Some(body) if self.engine.pipeline.is_none() => Err(Error::Choice {
                 what: format!("only the device knew where {} was, and that memory is gone", body.name()),
                 advice: "say again where it is".into(),
             }),
@@ -114,21 +125,25 @@ impl Detector {
         }
     }
 
-    /// Looks at numbers of the caller that placing could not compute with. Where doubles can, all goes over to doubles: true.
+    /// Whether the answer holds, by what placing saw of positions in memory of the caller. Where these need doubles and the pipeline has
+    /// singles, the pipeline goes and the frame is to be run again: false.
     ///
     /// # Errors
     /// [`Error::Input`] and [`Error::Choice`] for what no precision can compute with, naming the body and the vertex; those of the
     /// device.
-    fn look(&mut self) -> Result<bool, Error> {
-        let Some(places) = self.places()? else { return Ok(false) };
+    pub(super) fn check_seen(&mut self, seen: Option<Seen>) -> Result<bool, Error> {
+        if !seen.is_some_and(|seen| seen.invalid) {
+            return Ok(true);
+        }
+        let Some(places) = self.places()? else { return Ok(true) };
         let are_single = self.check_places(&places)?;
-        if self.f64s || are_single {
+        if self.engine.holds_f64 || are_single {
             // Only vertices that no face uses.
-            return Ok(false);
+            return Ok(true);
         }
         self.bring(&places);
-        self.pipeline = None;
-        Ok(true)
+        self.engine.pipeline = None;
+        Ok(false)
     }
 
     /// Whether singles can compute with what was placed from memory of the caller. If nothing can, nobody knows where the bodies of
@@ -144,52 +159,10 @@ impl Detector {
         });
         let are_single = checked.reduce(|all, own| Ok(all? & own?)).unwrap_or(Ok(true));
         if are_single.is_err() {
-            let bodies = self.scene.bodies_mut().iter_mut().zip(&self.named);
+            let bodies = self.scene.bodies_mut().iter_mut().zip(&self.placed.named);
             bodies.filter(|(_, named)| **named).for_each(|(body, _)| body.lose());
         }
         are_single
-    }
-
-    /// The end of a frame: the answer, unless what was seen of the caller's memory says otherwise.
-    pub(super) fn complete(
-        &mut self,
-        mut contacts: Contacts,
-        seen: Option<Seen>,
-        start: Instant,
-    ) -> Result<Contacts, Error> {
-        if seen.is_some_and(|seen| seen.invalid) && self.look()? {
-            return self.answer(start);
-        }
-        self.answered = true;
-        self.wear.tell(contacts.steps);
-        self.largest = seen.map_or(self.largest, |seen| seen.largest.max(self.largest));
-        self.tell_below_precision(&mut contacts)?;
-        self.tell_turns(&mut contacts)?;
-        let wall = start.elapsed().as_secs_f64() * 1e3;
-        contacts.stages = Stages { construct: self.construct_ms, wall, ..contacts.stages };
-        Ok(contacts)
-    }
-
-    /// An earliest query lists no pairs, so whether they are too large for the tolerance hangs on where bodies are: of those that are
-    /// away on the largest of their coordinates and, where that leaves it open, on themselves.
-    fn tell_below_precision(&mut self, contacts: &mut Contacts) -> Result<(), Error> {
-        let (Query::Earliest(_), Some(certified), Some(tolerances)) =
-            (self.query, self.query.certified().copied(), &self.tolerances)
-        else {
-            return Ok(());
-        };
-        let certified = Certified { tolerance: Some(tolerances.finest), ..certified };
-        let is_away = self.scene.bodies().iter().any(Body::is_away);
-        if !is_away || !BelowPrecision::may_be(&certified, 2.0 * self.largest) {
-            return Ok(());
-        }
-        self.fetch()?;
-        let unlisted = Degraded::ToleranceBelowPrecision { pairs: None };
-        let below = BelowPrecision::of(self.scene.bodies(), &certified, true);
-        if below == Some(BelowPrecision::Unlisted) && !contacts.degraded.contains(&unlisted) {
-            contacts.degraded.push(unlisted);
-        }
-        Ok(())
     }
 }
 
