@@ -68,10 +68,10 @@ pub use contacts::{Answer, Contact, Contacts};
 pub use detector::{Detector, plan};
 pub use device::{Device, Interrupt};
 pub use error::Error;
-pub use mesh::{Body, Mesh};
+pub use mesh::Mesh;
 pub use pipeline::{Stage, Stages};
 pub use query::Query;
-pub use scene::Scene;
+pub use scene::{Body, Scene};
 pub use several::{DeviceShare, MultiDetector};
 
 /// The front page's program is a test.

@@ -7,10 +7,9 @@ use crate::contacts::{ContactGeometry, Contacts};
 use crate::detector::{Detector, Wear};
 use crate::device::{Device, Interrupt};
 use crate::error::Error;
-use crate::mesh::Body;
 use crate::pipeline::Share;
 use crate::query::{Broad, Query, Rebuild};
-use crate::scene::{BodyId, Input, Scene};
+use crate::scene::{Body, BodyId, Input, Scene};
 use cuts::cuts;
 use std::time::Instant;
 

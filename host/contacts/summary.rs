@@ -2,9 +2,9 @@
 
 use super::{Contacts, Degraded, Front, NearestTriangles, Note, Queues};
 use crate::device::Device;
-use crate::mesh::Body;
 use crate::pipeline::Stages;
 use crate::query::{Broad, Query, QueryKind, Refit, Solver, Traversal};
+use crate::scene::Body;
 
 /// What the command line prints of a result, as JSON or for people.
 #[derive(Clone, Debug)]

@@ -1,12 +1,11 @@
 //! Caveats beside an answer that follow from where bodies are: a turn too far for straight lines, a tolerance below the precision.
 
 use super::Detector;
-use crate::contacts::{Contacts, Degraded};
+use crate::contacts::{Contacts, Degraded, TURN_DEGREES};
 use crate::error::Error;
-use crate::mesh::Body;
 use crate::pipeline::below_precision::BelowPrecision;
 use crate::query::{Certified, Query};
-use crate::scene::BodyKind;
+use crate::scene::{Body, BodyKind};
 
 impl Detector {
     /// Adds a caveat for each rigid body that turns far in the step: [`Degraded::Turned`]. Poses that only the device knows are copied
@@ -32,7 +31,7 @@ impl Detector {
                 _ if body.is_away() => continue,
                 _ => body.poses(),
             };
-            if let Some([degrees, bulge]) = body.turn(poses) {
+            if let Some([degrees, bulge]) = body.turn_beyond(TURN_DEGREES, poses) {
                 contacts.degraded.push(Degraded::Turned { body: id, degrees, bulge });
             }
         }

@@ -3,8 +3,7 @@
 use super::Detector;
 use super::engine::fits;
 use crate::error::Error;
-use crate::mesh::Body;
-use crate::scene::BodyId;
+use crate::scene::{Body, BodyId};
 
 impl Detector {
     /// Puts another body, of any mesh, in the place of one: under its number, from the next frame on. Cost: as of

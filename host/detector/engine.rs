@@ -6,9 +6,9 @@ use crate::device::emulator::start_threads;
 use crate::device::{Device, Work};
 use crate::error::Error;
 use crate::memory;
-use crate::mesh::{Body, MAX_FACES, MAX_VERTICES, Problem};
+use crate::mesh::{MAX_FACES, MAX_VERTICES, Problem};
 use crate::pipeline::{self, Layout, Pieces, Pipeline};
-use crate::scene::Scene;
+use crate::scene::{Body, Scene};
 use std::sync::Arc;
 
 /// Fewest bytes of the host's memory that a triangle takes in a detector: its topology, and on a CPU its tree and first lists.

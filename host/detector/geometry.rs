@@ -5,8 +5,8 @@ use crate::contacts::geometry::{Corners, Named};
 use crate::contacts::{Answer, ContactGeometry, Contacts, Kind};
 use crate::error::Error;
 use crate::memory;
-use crate::mesh::Body;
 use crate::pipeline::Layout;
+use crate::scene::Body;
 use rayon::prelude::*;
 
 impl Detector {

@@ -3,7 +3,7 @@
 use super::Detector;
 use crate::device::Interrupt;
 use crate::error::Error;
-use crate::mesh::Body;
+use crate::scene::Body;
 
 impl Detector {
     /// The handle that ends this detector's calls from another thread, or from a signal handler: [`Interrupt::trigger`]. It is

@@ -4,9 +4,9 @@ use super::Detector;
 use super::edits::nobody;
 use crate::device::emulator::start_threads;
 use crate::error::Error;
-use crate::mesh::{Body, Problem};
+use crate::mesh::Problem;
 use crate::pipeline::Moved;
-use crate::scene::{BodyId, Input};
+use crate::scene::{Body, BodyId, Input};
 
 impl Detector {
     /// Moves bodies to where the inputs say; the others rest where they are, or where their step ended.
@@ -14,7 +14,7 @@ impl Detector {
         let named = self.put(inputs, true)?;
         let mut moved = Vec::with_capacity(inputs.len());
         for (body, (own, named)) in self.scene.bodies_mut().iter_mut().zip(named).enumerate() {
-            if named || own.rest() {
+            if named || !self.resident.is_lost(body) && own.rest() {
                 moved.push(Moved { body, rests: !named });
             }
         }
@@ -69,6 +69,7 @@ impl Detector {
         for (id, input) in inputs {
             let body = self.scene.get_mut(*id).ok_or_else(|| nobody(*id))?;
             body.put(input);
+            self.resident.set_lost(id.index(), false);
         }
         Ok(named)
     }
@@ -126,7 +127,17 @@ impl Detector {
         if let Some(problem) = other_mesh(old, &frame) {
             return Err(Error::Input { file: frame.name().to_owned(), problem });
         }
+        if frame.is_away() {
+            return Err(Error::Choice {
+                what: format!(
+                    "only a device knows where {} is, and its positions here are old",
+                    frame.name()
+                ),
+                advice: "bring it to the host first, with `fetch` of its detector".into(),
+            });
+        }
         let meets = *old.meets();
+        self.resident.set_lost(body, false);
         let old = &mut self.scene.bodies_mut()[body];
         *old = frame.with(meets).with_tolerance_of(old);
         let moved = self.moved(&[Moved { body, rests: false }]);

@@ -39,6 +39,11 @@ impl Placed {
         self.ever.get(body.index()).is_some_and(|was| *was)
     }
 
+    /// Whether the last frame named the body.
+    pub fn is_named(&self, body: usize) -> bool {
+        self.named.get(body).is_some_and(|is_named| *is_named)
+    }
+
     /// Another body has that number: no frame has placed it.
     pub fn forget(&mut self, body: BodyId) {
         if let Some(was_placed) = self.ever.get_mut(body.index()) {

@@ -1,9 +1,8 @@
 //! The question of a detector: a query, and the tolerances of its pairs.
 
-use crate::mesh::Body;
 use crate::pipeline::Tolerances;
 use crate::query::Query;
-use crate::scene::Scene;
+use crate::scene::{Body, Scene};
 
 /// A query, with the tolerances of a certified solver for the bodies of a scene.
 pub struct Question {

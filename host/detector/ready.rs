@@ -2,11 +2,11 @@
 
 use super::Detector;
 use crate::error::Error;
-use crate::mesh::Body;
 use crate::pipeline::{Layout, Pieces, Pipeline};
 use crate::query::Broad;
 #[cfg(doc)]
 use crate::query::Rebuild;
+use crate::scene::Body;
 use nearmiss_kernels::bvh::tiles::TILE;
 use std::sync::Arc;
 

@@ -2,9 +2,9 @@
 
 use super::Detector;
 use crate::error::Error;
-use crate::mesh::{Body, Positions};
+use crate::mesh::Positions;
 use crate::pipeline::{Layout, Seen, Whereabouts};
-use crate::scene::Pose;
+use crate::scene::{Body, Pose};
 use std::sync::Arc;
 
 /// Knowledge of the bodies that are on the device.
@@ -12,9 +12,26 @@ use std::sync::Arc;
 pub struct Resident {
     /// The largest coordinate that was seen in memory of the caller so far.
     pub largest: f64,
+    /// Of each body, whether the frame that placed it last was refused: where it was before is not known either.
+    lost: Vec<bool>,
 }
 
 impl Resident {
+    /// Whether a body was placed in a frame that was refused, and in none since.
+    pub fn is_lost(&self, body: usize) -> bool {
+        self.lost.get(body).is_some_and(|is_lost| *is_lost)
+    }
+
+    /// Whether nobody knows where a body is; one that is placed again is not lost.
+    pub fn set_lost(&mut self, body: usize, is_lost: bool) {
+        if is_lost {
+            self.lost.resize(self.lost.len().max(body + 1), false);
+        }
+        if let Some(was_lost) = self.lost.get_mut(body) {
+            *was_lost = is_lost;
+        }
+    }
+
     /// A frame saw this.
     pub fn saw(&mut self, seen: Option<Seen>) {
         self.largest = seen.map_or(self.largest, |seen| seen.largest.max(self.largest));
@@ -50,9 +67,10 @@ impl Detector {
             return;
         }
         for submitted in &self.placed.submitted {
-            let body = &mut self.scene.bodies_mut()[submitted.body.index()];
-            if is_another || !body.is_lost() {
-                body.placed_again(submitted.moves);
+            let body = submitted.body.index();
+            if is_another || !self.resident.is_lost(body) {
+                self.resident.set_lost(body, false);
+                self.scene.bodies_mut()[body].placed_again(submitted.moves);
             }
         }
     }
@@ -71,14 +89,22 @@ impl Detector {
             if body.is_away() && body.lent().is_none() {
                 let (ends, poses) = places.of(i);
                 body.bring(&ends, poses);
+                self.resident.set_lost(i, false);
             }
         }
+    }
+
+    /// Nobody knows where a body is.
+    fn lose(&mut self, body: usize) {
+        self.resident.set_lost(body, true);
+        self.scene.bodies_mut()[body].placed_again(false);
     }
 
     /// Brings every body to the host, before the device's memory goes. Bodies of the last frame whose positions no mesh may
     /// have are lost: they have to be named again.
     pub(super) fn bring_all(&mut self) {
-        let lost: Vec<bool> = self.scene.bodies().iter().map(Body::is_lost).collect();
+        let lost: Vec<bool> =
+            (0..self.scene.bodies().len()).map(|body| self.resident.is_lost(body)).collect();
         let places = self.places().ok().flatten();
         let is_valid = places.as_ref().is_some_and(|places| {
             let mut away = self.scene.bodies().iter().enumerate().filter(|(_, body)| body.is_away());
@@ -90,10 +116,9 @@ impl Detector {
         if let Some(places) = &places {
             self.bring(places);
         }
-        let named = self.placed.named.iter().chain(std::iter::repeat(&false));
-        for ((body, lost), named) in self.scene.bodies_mut().iter_mut().zip(lost).zip(named) {
-            if lost || *named && !is_valid {
-                body.lose();
+        for (body, was_lost) in lost.into_iter().enumerate() {
+            if was_lost || self.placed.is_named(body) && !is_valid {
+                self.lose(body);
             }
         }
     }
@@ -113,8 +138,9 @@ impl Detector {
 
     /// Whether no body was placed in a frame that was refused, and in none since.
     pub(super) fn none_lost(&self) -> Result<(), Error> {
-        match self.scene.bodies().iter().find(|body| body.is_lost()) {
-            Some(body) => Err(Error::Choice {
+        let mut bodies = self.scene.bodies().iter().enumerate();
+        match bodies.find(|(body, _)| self.resident.is_lost(*body)) {
+            Some((_, body)) => Err(Error::Choice {
                 what: format!(
                     "nobody knows where {} is: the frame that named it last was refused, and has overwritten where it was",
                     body.name()
@@ -159,8 +185,9 @@ impl Detector {
         });
         let are_single = checked.reduce(|all, own| Ok(all? & own?)).unwrap_or(Ok(true));
         if are_single.is_err() {
-            let bodies = self.scene.bodies_mut().iter_mut().zip(&self.placed.named);
-            bodies.filter(|(_, named)| **named).for_each(|(body, _)| body.lose());
+            let named: Vec<usize> =
+                (0..self.scene.bodies().len()).filter(|&body| self.placed.is_named(body)).collect();
+            named.into_iter().for_each(|body| self.lose(body));
         }
         are_single
     }

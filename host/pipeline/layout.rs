@@ -1,8 +1,8 @@
 //! Where each body lies in the memory that all bodies share.
 
-use crate::mesh::{Body, Topology};
+use crate::mesh::Topology;
 use crate::query::QueryKind;
-use crate::scene::{BodyId, BodyKind, Meets};
+use crate::scene::{Body, BodyId, BodyKind, Meets};
 use nearmiss_kernels::abi::{BodyRecord, BodyTolerance, EVERY, NodeFilter};
 
 /// The indices of one body: its own plus these.

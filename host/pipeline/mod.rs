@@ -22,13 +22,16 @@ pub use broad::Share;
 pub use layout::{Layout, Offsets};
 pub use placing::{Moved, Seen, Whereabouts};
 pub use timing::{Stage, Stages};
-pub use tolerance::{Tolerances, mean_side, of_edges, of_pair};
+pub use tolerance::{Tolerances, of_pair};
 pub use typed::{Found, Hits, Listed, Pipeline, Submits};
+
+#[doc(hidden)]
+pub use crate::scene::{mean_side, of_edges};
 
 use crate::device::Device;
 use crate::error::Error;
-use crate::mesh::Body;
 use crate::query::Query;
+use crate::scene::Body;
 use std::sync::Arc;
 use typed::TypedPipeline;
 

@@ -2,10 +2,9 @@
 
 use super::*;
 use crate::device::emulator::{Emulator, Mode};
-use crate::mesh::Body;
 use crate::query::QueryKind;
 use crate::samples::soup;
-use crate::scene::Meets;
+use crate::scene::{Body, Meets};
 use nearmiss_kernels::abi::{LEAF, Point, Positions};
 use nearmiss_kernels::bv::{Aabb, Volume};
 
