@@ -9,6 +9,8 @@ mod choices;
 mod prose;
 #[path = "architecture/robustness.rs"]
 mod robustness;
+#[path = "architecture/rooms.rs"]
+mod rooms;
 #[path = "architecture/sources.rs"]
 mod sources;
 

@@ -3,6 +3,8 @@
 use super::Detector;
 use crate::contacts::{Contacts, Note, Summary};
 use crate::error::Error;
+use crate::query::{Broad, Query};
+use crate::scene::Body;
 
 impl Detector {
     /// Smallest tolerance of a pair of bodies by a certified solver, a length. As named, which is one for all pairs. By default
@@ -22,13 +24,44 @@ impl Detector {
     /// a comparison of both ends of the step if nothing moves, a sort of all vertices if there are [`Note::MANY`](crate::contacts::Note::MANY)
     /// contacts.
     pub fn summary(&self, contacts: &Contacts) -> Summary {
+        let (bodies, query) = (self.scene.bodies(), self.question.query);
+        let broad = query.broad_on(self.device.is_gpu());
+        let by_trees = broad == Broad::Tree;
         Summary {
+            triangles: bodies.iter().map(Body::face_count).sum(),
+            vertices: bodies.iter().map(Body::vertex_count).sum(),
+            frames: if bodies.iter().any(Body::is_moving) { 2 } else { 1 },
+            query: query.kind(),
+            bv: query.bv().name(),
+            broad,
+            refit: by_trees.then(|| query.refit_on(self.device.is_gpu())),
+            traversal: by_trees.then(|| query.traversal_on(self.device.is_gpu())),
+            solver: query.solver(),
+            backend: self.device.backend(),
+            device: self.device.name(),
+            triangle_pairs: contacts.triangle_pairs,
+            candidates: contacts.candidates,
+            contacts: contacts.len(),
+            unresolved: contacts.unresolved,
+            degraded: contacts.degraded.clone(),
             tolerance: self.tolerance(),
             largest_tolerance: self
                 .largest_tolerance()
                 .filter(|_| self.largest_tolerance() != self.tolerance()),
+            separation: query.certified().map(|certified| certified.params().separation),
+            distance: if let Query::Near(near) = query { Some(near.distance) } else { None },
+            nearest: contacts.nearest().copied(),
+            earliest_toi: contacts.earliest_toi(),
+            starts_crossing: contacts.starts_crossing,
+            hash: format!("{:016x}", contacts.hash()),
+            reruns: contacts.reruns,
+            slices: contacts.slices,
             builds: self.engine.builds,
-            ..Summary::new(self.scene.bodies(), self.question.query, &self.device, contacts)
+            queues: contacts.queues,
+            front: contacts.front,
+            ms: contacts.stages,
+            bytes: self.device.bytes().1,
+            notes: Note::of(bodies, &query, contacts),
         }
     }
 

@@ -10,11 +10,9 @@
 //! | `ended` | a call that was interrupted leaves no answer | `interrupted.rs` |
 
 use super::Detector;
-use crate::contacts::{Contacts, Degraded};
-use crate::device::emulator::Looks;
+use crate::contacts::Contacts;
 use crate::error::Error;
-use crate::memory;
-use crate::pipeline::{Found, Layout, Seen, Stages};
+use crate::pipeline::{Seen, Stages};
 use crate::scene::{BodyId, Input};
 use std::time::Instant;
 
@@ -78,12 +76,4 @@ impl Detector {
         contacts.stages = Stages { construct: self.engine.construct_ms, wall, ..contacts.stages };
         Ok(contacts)
     }
-}
-
-/// Lists of the device as contacts, in the numbering of the bodies.
-pub fn contacts(found: Found, stages: Stages, layout: &Layout, looks: &Looks) -> Result<Contacts, Error> {
-    let degraded = Degraded::of(&found);
-    memory::require("the contacts", found.bytes())?;
-    let contacts = Contacts::new(found, layout, (stages, degraded), looks);
-    if looks.ended() { Err(Error::Interrupted) } else { Ok(contacts) }
 }

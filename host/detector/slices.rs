@@ -1,9 +1,10 @@
 //! A frame runs: at once, or in slices where the lists of a whole one would outgrow the memory, share after share of the tiles.
 
 use super::Detector;
-use super::frame::{Answered, contacts};
+use super::frame::Answered;
 use crate::contacts::Contacts;
 use crate::error::Error;
+use crate::pipeline::collect::collect;
 use crate::pipeline::{Layout, Share};
 
 /// Why slices stopped.
@@ -57,7 +58,7 @@ impl Detector {
             pipeline.after(all.iter().map(|slice: &Contacts| slice.len() as u64).sum());
             let (found, stages) = pipeline.frame()?;
             seen = found.seen;
-            all.push(contacts(found, stages, layout, &looks).map_err(Stopped::Host)?);
+            all.push(collect(found, stages, layout, &looks).map_err(Stopped::Host)?);
             if slices > 1 && self.portion.share != Share::WHOLE {
                 self.portion.add_work(pipeline.work()?);
             }

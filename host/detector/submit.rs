@@ -1,10 +1,11 @@
 //! Frames that are submitted and not waited for.
 
 use super::Detector;
-use super::frame::{Answered, contacts};
+use super::frame::Answered;
 use crate::contacts::{Contacts, DeviceAnswer};
 use crate::device::emulator::start_threads;
 use crate::error::Error;
+use crate::pipeline::collect::collect;
 use crate::scene::{BodyId, DeviceInput, Input};
 use std::time::Instant;
 
@@ -92,7 +93,7 @@ impl Detector {
         };
         let whole = pipeline.collect()?.map(|(found, stages)| {
             let seen = found.seen;
-            contacts(found, stages, &layout, &self.device.looks()).map(|contacts| Answered { contacts, seen })
+            collect(found, stages, &layout, &self.device.looks()).map(|contacts| Answered { contacts, seen })
         });
         match whole.transpose()? {
             Some(answered) if self.check_seen(answered.seen)? => self.collect_answer(answered, start),

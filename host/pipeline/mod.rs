@@ -2,6 +2,7 @@
 
 pub mod below_precision;
 mod broad;
+pub(crate) mod collect;
 pub mod counts;
 mod demand;
 pub mod enclose;
@@ -14,19 +15,18 @@ mod placing;
 pub mod precision;
 pub(crate) mod purpose;
 mod sorter;
-mod timing;
 mod tolerance;
 mod typed;
 
 pub use broad::Share;
 pub use layout::{Layout, Offsets};
 pub use placing::{Moved, Seen, Whereabouts};
-pub use timing::{Stage, Stages};
 pub use tolerance::{Tolerances, of_pair};
 pub use typed::{Found, Hits, Listed, Pipeline, Submits};
 
 #[doc(hidden)]
 pub use crate::scene::{mean_side, of_edges};
+pub use crate::stages::{Stage, Stages};
 
 use crate::device::Device;
 use crate::error::Error;

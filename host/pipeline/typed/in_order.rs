@@ -4,6 +4,7 @@
 use super::*;
 use crate::contacts::Contacts;
 use crate::device::emulator::{Emulator, Looks, Mode};
+use crate::pipeline::collect::collect;
 use crate::query::{Certified, Continuous};
 use crate::samples;
 
@@ -23,7 +24,7 @@ fn answers(bodies: &[Body], query: Query, device_orders: bool, told: impl Fn(boo
         let (mut found, stages) = pipeline.frame().expect("a frame");
         assert_eq!(found.ordered, device_orders);
         found.ordered = told(found.ordered);
-        Contacts::new(found, &layout, (stages, Vec::new()), &Looks::new(None))
+        collect(found, stages, &layout, &Looks::new(None)).expect("contacts")
     };
     vec![frame(), frame()]
 }
