@@ -61,6 +61,7 @@ pub mod query;
 mod samples;
 pub mod scene;
 mod several;
+mod stages;
 #[doc(hidden)]
 pub mod words;
 
@@ -68,11 +69,11 @@ pub use contacts::{Answer, Contact, Contacts};
 pub use detector::{Detector, plan};
 pub use device::{Device, Interrupt};
 pub use error::Error;
-pub use mesh::{Body, Mesh};
-pub use pipeline::{Stage, Stages};
+pub use mesh::Mesh;
 pub use query::Query;
-pub use scene::Scene;
+pub use scene::{Body, Scene};
 pub use several::{DeviceShare, MultiDetector};
+pub use stages::{Stage, Stages};
 
 /// The front page's program is a test.
 #[cfg(doctest)]

@@ -1,6 +1,7 @@
 //! Bodies and random words for unit tests. Scenes are the lab's, which a unit test cannot ask: it would meet this crate twice.
 
-use crate::mesh::{Body, Mesh, Positions};
+use crate::mesh::{Mesh, Positions};
+use crate::scene::Body;
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 

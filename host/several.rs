@@ -7,10 +7,9 @@ use crate::contacts::{ContactGeometry, Contacts};
 use crate::detector::{Detector, Wear};
 use crate::device::{Device, Interrupt};
 use crate::error::Error;
-use crate::mesh::Body;
 use crate::pipeline::Share;
 use crate::query::{Broad, Query, Rebuild};
-use crate::scene::{BodyId, Input, Scene};
+use crate::scene::{Body, BodyId, Input, Scene};
 use cuts::cuts;
 use std::time::Instant;
 
@@ -127,7 +126,7 @@ impl MultiDetector {
     fn moved(&mut self, inputs: &[(BodyId, Input)]) -> Result<Contacts, Error> {
         if self.wears && self.parts[0].is_first_of(inputs) {
             // All are built where the first frame of a body puts it.
-            self.each(|detector| detector.go(inputs))?;
+            self.each(|detector| detector.apply(inputs))?;
             self.renew()?;
             return self.ask(Detector::detect);
         }

@@ -11,6 +11,8 @@ mod prose;
 mod ptx;
 #[path = "architecture/robustness.rs"]
 mod robustness;
+#[path = "architecture/rooms.rs"]
+mod rooms;
 #[path = "architecture/sources.rs"]
 mod sources;
 

@@ -1,9 +1,7 @@
 //! What an answer, or its making, owes to a limit: said aloud, each by its reason.
 
-use crate::pipeline::{Found, Listed};
 use crate::scene::BodyId;
 use crate::words::counted;
-use nearmiss_kernels::abi::counter;
 use std::fmt;
 
 /// A way in which a frame came to less than all that was asked. Nothing is ever missed for any of them.
@@ -82,29 +80,6 @@ impl Degraded {
             (Degraded::Turned { body: a, .. }, Degraded::Turned { body: b, .. }) if a == b => other,
             _ => return None,
         })
-    }
-
-    /// All that holds of a frame, as the kernels counted.
-    #[doc(hidden)]
-    pub fn of(found: &Found) -> Vec<Degraded> {
-        let mut all = Vec::new();
-        let count = |which| found.counters[which];
-        let unsure = count(counter::UNRESOLVED) - count(counter::ENDED_UNRESOLVED);
-        let (ended, below_precision) = (count(counter::ENDED), count(counter::BELOW_PRECISION));
-        let mut put = |count: u64, reason: Degraded| all.extend((count > 0).then_some(reason));
-        match found.listed {
-            Listed::Near(_) => put(unsure, Degraded::DistanceBelowPrecision { pairs: unsure }),
-            Listed::Earliest { unresolved, .. } => put(unresolved as u64, Degraded::EarliestUnresolved),
-            Listed::Pairs(_) | Listed::Hits { .. } | Listed::Nearest(_) => {
-                put(unsure, Degraded::Unresolved { pairs: unsure });
-            }
-        }
-        put(ended, Degraded::Boxes { pairs: ended });
-        put(below_precision, Degraded::ToleranceBelowPrecision { pairs: Some(below_precision) });
-        let unlisted = matches!(found.listed, Listed::Earliest { below_precision: true, .. });
-        put(unlisted as u64, Degraded::ToleranceBelowPrecision { pairs: None });
-        put(found.front_dropped as u64, Degraded::FrontDropped);
-        all
     }
 }
 

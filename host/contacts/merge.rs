@@ -1,7 +1,7 @@
 //! Answers to parts of one question, by several devices or one after another, as one.
 
 use super::{Answer, Contact, Contacts, Degraded, TrianglePair, near, sort};
-use crate::pipeline::Stages;
+use crate::stages::Stages;
 use nearmiss_emulator::Looks;
 
 impl Contacts {

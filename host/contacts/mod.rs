@@ -1,7 +1,6 @@
 //! Results: contacts in canonical order, and their hash.
 
 mod degraded;
-mod features;
 pub(crate) mod geometry;
 mod hash;
 mod merge;
@@ -9,7 +8,7 @@ mod near;
 mod nearest;
 mod notes;
 pub mod on_device;
-mod sort;
+pub(crate) mod sort;
 mod summary;
 mod triangles;
 mod work;
@@ -24,12 +23,9 @@ pub use summary::Summary;
 pub use triangles::{TriangleContact, triangle_contacts};
 pub use work::{Front, Queues};
 
-use crate::pipeline::{Found, Layout, Listed, Stages};
 use crate::query::Query;
 use crate::scene::BodyId;
-use features::{Features, edge_edge, vertex_face};
-use nearmiss_emulator::Looks;
-use nearmiss_kernels::abi::{Hit, Pair, counter};
+use crate::stages::Stages;
 use nearmiss_kernels::prim::inclusion::Verdict;
 
 /// Which features meet. Its number (`as u8`) stands for it in the hash, in files and in other languages.
@@ -211,81 +207,6 @@ impl Contacts {
         }
     }
 
-    /// Puts what the kernels found into canonical order and into the numbering of the bodies. No answer if a look ends it.
-    #[doc(hidden)]
-    pub fn new(
-        found: Found,
-        layout: &Layout,
-        (stages, degraded): (Stages, Vec<Degraded>),
-        looks: &Looks,
-    ) -> Contacts {
-        let answer = match &found.listed {
-            Listed::Earliest { toi, .. } => Answer::Earliest(*toi),
-            Listed::Near(hits) => Answer::Near(near::pairs(hits, found.ordered, layout, looks)),
-            Listed::Nearest(nearest) => {
-                Answer::Distance(nearest.first().map(|hit| NearestTriangles::new(hit, layout)))
-            }
-            Listed::Pairs(listed) => {
-                let pair = |p: &Pair| {
-                    let [(a, p), (b, q)] = [p.a, p.b].map(|t| layout.locate(t, |at| at.triangle));
-                    TrianglePair { bodies: [a, b], triangles: [p, q] }
-                };
-                let mut pairs = Vec::new();
-                sort::extend(&mut pairs, listed, pair, looks);
-                if !found.ordered {
-                    sort::sort(&mut pairs, TrianglePair::key, looks);
-                }
-                Answer::Pairs(pairs)
-            }
-            Listed::Hits { hits, certified } => {
-                let contact = |(kind, bodies, [a, b]): Features, verdict: &Verdict| {
-                    let status = Status::of(*certified, verdict);
-                    Contact { kind, bodies, a, b, toi: verdict.toi, toi_hi: verdict.toi_hi, status }
-                };
-                let [of_vf, of_ee] = hits.each();
-                let vf = |hit: &Hit| contact(vertex_face(layout, [hit.a, hit.b]), &hit.verdict);
-                let ee = |hit: &Hit| contact(edge_edge(layout, [hit.a, hit.b]), &hit.verdict);
-                let mut contacts = Vec::with_capacity(of_vf.len() + of_ee.len());
-                sort::extend(&mut contacts, of_vf, vf, looks);
-                sort::extend(&mut contacts, of_ee, ee, looks);
-                if !found.ordered {
-                    sort::sort(&mut contacts, Contact::key, looks);
-                }
-                Answer::Contacts(contacts)
-            }
-        };
-        let count = |which| found.counters[which];
-        let vf_ee = [count(counter::VF), count(counter::EE)];
-        let of_triangles = matches!(found.listed, Listed::Pairs(_) | Listed::Nearest(_));
-        Contacts {
-            answer,
-            stages,
-            starts_crossing: found.is_start_checked.then(|| count(counter::STARTS_CROSSING)),
-            triangle_pairs: count(counter::PAIRS),
-            candidates: if of_triangles { count(counter::PAIRS) } else { vf_ee[0] + vf_ee[1] },
-            candidates_vf_ee: vf_ee,
-            survivors_vf_ee: [count(counter::VF_SURVIVORS), count(counter::EE_SURVIVORS)],
-            escalated_vf_ee: [count(counter::VF_ESCALATED), count(counter::EE_ESCALATED)],
-            open_vf_ee: [count(counter::VF_OPEN), count(counter::EE_OPEN)],
-            sliced_vf_ee: [count(counter::VF_HARD), count(counter::EE_HARD)],
-            unresolved: match found.listed {
-                Listed::Earliest { unresolved, .. } => unresolved.into(),
-                Listed::Pairs(_) | Listed::Hits { .. } | Listed::Near(_) | Listed::Nearest(_) => {
-                    count(counter::UNRESOLVED)
-                }
-            },
-            undecided: count(counter::UNDECIDED),
-            undecided_wide: count(counter::UNDECIDED_WIDE),
-            steps: count(counter::STEPS),
-            spilled: counter::SPILLED.map(count).iter().sum(),
-            reruns: found.reruns,
-            slices: 1,
-            queues: Queues::new(&found.counters),
-            front: Front::new(&found.counters),
-            degraded,
-        }
-    }
-
     /// How many contacts there are; of an earliest query, and of a distance, 1 or 0.
     pub fn len(&self) -> usize {
         match &self.answer {
@@ -379,14 +300,14 @@ impl Contacts {
 
 impl TrianglePair {
     /// What pairs are ordered by.
-    fn key(&self) -> [(BodyId, u32); 2] {
+    pub(crate) fn key(&self) -> [(BodyId, u32); 2] {
         [0, 1].map(|k| (self.bodies[k], self.triangles[k]))
     }
 }
 
 impl Contact {
     /// What contacts are ordered by.
-    fn key(&self) -> (Kind, [(BodyId, u32); 2]) {
+    pub(crate) fn key(&self) -> (Kind, [(BodyId, u32); 2]) {
         (self.kind, [(self.bodies[0], self.a), (self.bodies[1], self.b)])
     }
 }

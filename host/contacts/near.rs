@@ -1,11 +1,7 @@
 //! Pairs of features within a distance.
 
-use super::{Features, Kind, edge_edge, sort, vertex_face};
-use crate::pipeline::{Hits, Layout};
+use super::Kind;
 use crate::scene::BodyId;
-use nearmiss_emulator::Looks;
-use nearmiss_kernels::abi::NearHit;
-use nearmiss_kernels::prim::near::corner_weights;
 
 /// What is nearest of two features. Its number (`as u8`) stands for it in other languages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -69,15 +65,8 @@ pub struct NearPair {
 }
 
 impl NearPair {
-    /// Of a list's entry.
-    fn new((kind, bodies, [a, b]): Features, hit: &NearHit) -> NearPair {
-        let weights = if kind == Kind::Ee { [hit.at[0], hit.at[1], 0.0] } else { corner_weights(hit.at) };
-        let closest = Closest::of(kind, weights);
-        NearPair { kind, bodies, a, b, squared_distance: hit.squared, weights, closest }
-    }
-
     /// What pairs are ordered by.
-    pub(super) fn key(&self) -> (Kind, [(BodyId, u32); 2]) {
+    pub(crate) fn key(&self) -> (Kind, [(BodyId, u32); 2]) {
         (self.kind, [(self.bodies[0], self.a), (self.bodies[1], self.b)])
     }
 
@@ -94,18 +83,4 @@ impl NearPair {
         }
         bytes
     }
-}
-
-/// What the kernels found, in canonical order and in the numbering of the bodies. No answer if a look ends it.
-pub fn pairs(hits: &Hits<NearHit>, ordered: bool, layout: &Layout, looks: &Looks) -> Vec<NearPair> {
-    let [of_vf, of_ee] = hits.each();
-    let vf = |hit: &NearHit| NearPair::new(vertex_face(layout, [hit.a, hit.b]), hit);
-    let ee = |hit: &NearHit| NearPair::new(edge_edge(layout, [hit.a, hit.b]), hit);
-    let mut pairs = Vec::with_capacity(of_vf.len() + of_ee.len());
-    sort::extend(&mut pairs, of_vf, vf, looks);
-    sort::extend(&mut pairs, of_ee, ee, looks);
-    if !ordered {
-        sort::sort(&mut pairs, NearPair::key, looks);
-    }
-    pairs
 }

@@ -1,9 +1,6 @@
 //! The nearest triangles of different bodies.
 
-use crate::pipeline::Layout;
 use crate::scene::BodyId;
-use nearmiss_kernels::abi::NearestHit;
-use nearmiss_kernels::prim::near::corner_weights;
 
 /// The two triangles of different bodies that are nearest, and where. Of several pairs at the least distance, as it is computed, the
 /// first by its triangles and their bodies.
@@ -26,19 +23,6 @@ pub struct NearestTriangles {
 }
 
 impl NearestTriangles {
-    /// Of a list's entry, in the numbering of the bodies.
-    pub(super) fn new(hit: &NearestHit, layout: &Layout) -> NearestTriangles {
-        let [(a, p), (b, q)] = [hit.a, hit.b].map(|triangle| layout.locate(triangle, |at| at.triangle));
-        let NearestHit { distance, at, points, .. } = *hit;
-        NearestTriangles {
-            bodies: [a, b],
-            triangles: [p, q],
-            distance,
-            weights: at.map(corner_weights),
-            points,
-        }
-    }
-
     /// What a hash is told.
     pub(super) fn bytes(&self) -> Vec<u8> {
         let indices = self.bodies.iter().map(|body| body.0).chain(self.triangles);

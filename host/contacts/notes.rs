@@ -1,9 +1,8 @@
 //! Notes beside an answer: what a user should know of it.
 
 use super::{Answer, Contacts};
-use crate::mesh::Body;
 use crate::query::Query;
-use crate::scene::BodyKind;
+use crate::scene::{Body, BodyKind};
 use crate::words::counted;
 use std::fmt;
 

@@ -1,10 +1,8 @@
 //! What is printed of a result.
 
-use super::{Contacts, Degraded, Front, NearestTriangles, Note, Queues};
-use crate::device::Device;
-use crate::mesh::Body;
-use crate::pipeline::Stages;
-use crate::query::{Broad, Query, QueryKind, Refit, Solver, Traversal};
+use super::{Degraded, Front, NearestTriangles, Note, Queues};
+use crate::query::{Broad, QueryKind, Refit, Solver, Traversal};
+use crate::stages::Stages;
 
 /// What the command line prints of a result, as JSON or for people.
 #[derive(Clone, Debug)]
@@ -76,46 +74,4 @@ pub struct Summary {
     pub bytes: u64,
     /// Notes for the user, a sentence each; mostly none.
     pub notes: Vec<Note>,
-}
-
-impl Summary {
-    #[doc(hidden)]
-    pub fn new(bodies: &[Body], query: Query, device: &Device, contacts: &Contacts) -> Summary {
-        let broad = query.broad_on(device.is_gpu());
-        let by_trees = broad == Broad::Tree;
-        Summary {
-            triangles: bodies.iter().map(Body::face_count).sum(),
-            vertices: bodies.iter().map(Body::vertex_count).sum(),
-            frames: if bodies.iter().any(Body::is_moving) { 2 } else { 1 },
-            query: query.kind(),
-            bv: query.bv().name(),
-            broad,
-            refit: by_trees.then(|| query.refit_on(device.is_gpu())),
-            traversal: by_trees.then(|| query.traversal_on(device.is_gpu())),
-            solver: query.solver(),
-            backend: device.backend(),
-            device: device.name(),
-            triangle_pairs: contacts.triangle_pairs,
-            candidates: contacts.candidates,
-            contacts: contacts.len(),
-            unresolved: contacts.unresolved,
-            degraded: contacts.degraded.clone(),
-            tolerance: None,
-            largest_tolerance: None,
-            separation: query.certified().map(|certified| certified.params().separation),
-            distance: if let Query::Near(near) = query { Some(near.distance) } else { None },
-            nearest: contacts.nearest().copied(),
-            earliest_toi: contacts.earliest_toi(),
-            starts_crossing: contacts.starts_crossing,
-            hash: format!("{:016x}", contacts.hash()),
-            reruns: contacts.reruns,
-            slices: contacts.slices,
-            builds: 1,
-            queues: contacts.queues,
-            front: contacts.front,
-            ms: contacts.stages,
-            bytes: device.bytes().1,
-            notes: Note::of(bodies, &query, contacts),
-        }
-    }
 }

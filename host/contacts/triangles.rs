@@ -1,7 +1,8 @@
 //! From features to triangles: which triangle pairs meet in a step, and when first.
 
 use super::{Contact, Kind, TrianglePair};
-use crate::mesh::{Body, Topology};
+use crate::mesh::Topology;
+use crate::scene::Body;
 use std::collections::HashMap;
 
 /// Two triangles without a common vertex whose features meet during the step.

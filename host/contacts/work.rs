@@ -1,8 +1,5 @@
 //! What a traversal did: figures, not answers.
 
-use crate::pipeline::counts::Counts;
-use nearmiss_kernels::abi::counter;
-
 /// The front of a frame. All zero where there was none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
@@ -14,13 +11,6 @@ pub struct Front {
     pub tests: u64,
     /// Pairs that gave way to an ancestor.
     pub pruned: u64,
-}
-
-impl Front {
-    pub(super) fn new(counters: &Counts) -> Front {
-        let of = |which| counters[which];
-        Front { pairs: of(counter::ENDS), tests: of(counter::FRONT_TESTS), pruned: of(counter::PRUNED) }
-    }
 }
 
 /// What the work queues of a traversal did. All zero where it had none.
@@ -39,18 +29,4 @@ pub struct Queues {
     pub stolen: u64,
     /// Most units that waited in a segment, or in the list of all.
     pub longest: u64,
-}
-
-impl Queues {
-    pub(super) fn new(counters: &Counts) -> Queues {
-        let of = |which| counters[which];
-        Queues {
-            rounds: of(counter::QUEUE_ROUNDS),
-            idle_exits: of(counter::IDLE_EXITS),
-            spills: of(counter::QUEUE_SPILLS),
-            moves: of(counter::MOVES),
-            stolen: of(counter::STOLEN),
-            longest: of(counter::QUEUED),
-        }
-    }
 }

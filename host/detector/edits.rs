@@ -1,9 +1,9 @@
 //! Bodies come, go and change between frames.
 
-use super::{Detector, fits};
+use super::Detector;
+use super::engine::fits;
 use crate::error::Error;
-use crate::mesh::Body;
-use crate::scene::BodyId;
+use crate::scene::{Body, BodyId};
 
 impl Detector {
     /// Puts another body, of any mesh, in the place of one: under its number, from the next frame on. Cost: as of
@@ -19,7 +19,7 @@ impl Detector {
         self.fetch()?;
         *self.scene.get_mut(id).ok_or_else(|| nobody(id))? = body;
         self.changed();
-        self.is_new_body(id);
+        self.placed.forget(id);
         Ok(())
     }
 
@@ -34,7 +34,7 @@ impl Detector {
         self.fetch()?;
         let id = self.scene.add(body);
         self.changed();
-        self.is_new_body(id);
+        self.placed.forget(id);
         Ok(id)
     }
 
@@ -60,17 +60,11 @@ impl Detector {
         fits(all(Body::face_count), all(Body::vertex_count))
     }
 
-    /// No frame has placed it.
-    fn is_new_body(&mut self, id: BodyId) {
-        if let Some(was_placed) = self.was_placed.get_mut(id.index()) {
-            *was_placed = false;
-        }
-    }
-
     /// The next frame begins anew.
     fn changed(&mut self) {
-        (self.pipeline, self.layout, self.answered, self.slices) = (None, None, false, 1);
-        self.choose_tolerances();
+        self.engine.drop_all();
+        self.portion.slices = 1;
+        self.question.choose_tolerances(&mut self.scene);
     }
 }
 

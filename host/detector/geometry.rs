@@ -5,8 +5,8 @@ use crate::contacts::geometry::{Corners, Named};
 use crate::contacts::{Answer, ContactGeometry, Contacts, Kind};
 use crate::error::Error;
 use crate::memory;
-use crate::mesh::Body;
 use crate::pipeline::Layout;
+use crate::scene::Body;
 use rayon::prelude::*;
 
 impl Detector {
@@ -35,7 +35,7 @@ impl Detector {
         let begun = self.begun().map(drop);
         self.ended(begun)?;
         let layout = self.layout()?;
-        let pipeline = self.pipeline.as_ref().ok_or_else(of_others)?;
+        let pipeline = self.engine.pipeline.as_ref().ok_or_else(of_others)?;
         // One of both is empty.
         let named: Vec<Named> =
             contacts.iter().map(Named::from).chain(pairs.iter().map(Named::from)).collect();

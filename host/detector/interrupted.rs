@@ -3,7 +3,7 @@
 use super::Detector;
 use crate::device::Interrupt;
 use crate::error::Error;
-use crate::mesh::Body;
+use crate::scene::Body;
 
 impl Detector {
     /// The handle that ends this detector's calls from another thread, or from a signal handler: [`Interrupt::trigger`]. It is
@@ -26,7 +26,7 @@ impl Detector {
     pub(super) fn ended<T>(&mut self, done: Result<T, Error>) -> Result<T, Error> {
         if let Err(Error::Interrupted) = done {
             self.begin_again();
-            if let (false, Some(interrupt)) = (self.is_part, self.device.interrupt()) {
+            if let (false, Some(interrupt)) = (self.portion.is_part, self.device.interrupt()) {
                 interrupt.clear();
             }
         }
@@ -35,17 +35,17 @@ impl Detector {
 
     /// One of several that a [`MultiDetector`](crate::MultiDetector) runs, which clears their handle.
     pub(crate) fn of_several(mut self) -> Detector {
-        self.is_part = true;
+        self.portion.is_part = true;
         self
     }
 
     /// Drops the device's memory, of which kernels may have written a half. Placing is never interrupted, so positions that
     /// only the device has are whole: they come to the host first.
     fn begin_again(&mut self) {
-        self.answered = false;
-        if self.pipeline.is_some() && self.scene.bodies().iter().any(Body::is_away) {
+        self.engine.is_answered = false;
+        if self.engine.pipeline.is_some() && self.scene.bodies().iter().any(Body::is_away) {
             self.bring_all();
         }
-        self.pipeline = None;
+        self.engine.pipeline = None;
     }
 }

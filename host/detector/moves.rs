@@ -2,42 +2,19 @@
 
 use super::Detector;
 use super::edits::nobody;
-use crate::contacts::Contacts;
 use crate::device::emulator::start_threads;
 use crate::error::Error;
-use crate::mesh::{Body, Problem};
+use crate::mesh::Problem;
 use crate::pipeline::Moved;
-use crate::scene::{BodyId, Input};
-use std::time::Instant;
+use crate::scene::{Body, BodyId, Input};
 
 impl Detector {
-    /// Moves bodies to where the inputs say, and answers. A body that is not named rests where it was, or where its step
-    /// ended, in every query and wherever its positions came from: the answer depends on where bodies are in this frame alone. One submission: an upload of what is named, one launch that places it, and the stages of a frame.
-    ///
-    /// # Errors
-    /// [`Error::Choice`] for a body that is not in the scene, or named twice, or given what its kind does not take, and by a query in
-    /// motion for inputs of which none has two ends;
-    /// [`Error::Input`] for positions that no mesh may have: then nothing has moved. Only what lies in a GPU's memory is seen when it is
-    /// read: after a frame that is refused for that, the next must name the same bodies, since where these were is gone. Those of the
-    /// device.
-    pub fn frame(&mut self, inputs: &[(BodyId, Input)]) -> Result<Contacts, Error> {
-        let start = Instant::now();
-        self.device.work();
-        let answered = self.go(inputs).and_then(|()| self.answer(start));
-        self.ended(answered)
-    }
-
-    /// Whether a frame of these places a body for the first time.
-    pub(crate) fn is_first_of(&self, inputs: &[(BodyId, Input)]) -> bool {
-        inputs.iter().any(|(id, _)| !self.was_placed.get(id.index()).is_some_and(|was| *was))
-    }
-
     /// Moves bodies to where the inputs say; the others rest where they are, or where their step ended.
-    pub(crate) fn go(&mut self, inputs: &[(BodyId, Input)]) -> Result<(), Error> {
+    pub(crate) fn apply(&mut self, inputs: &[(BodyId, Input)]) -> Result<(), Error> {
         let named = self.put(inputs, true)?;
         let mut moved = Vec::with_capacity(inputs.len());
         for (body, (own, named)) in self.scene.bodies_mut().iter_mut().zip(named).enumerate() {
-            if named || own.rest() {
+            if named || !self.resident.is_lost(body) && own.rest() {
                 moved.push(Moved { body, rests: !named });
             }
         }
@@ -76,19 +53,23 @@ impl Detector {
                 body.check_found(&ends, &poses)?;
             }
         }
-        let in_motion = !self.query.kind().is_at_rest();
+        let in_motion = !self.question.query.kind().is_at_rest();
         if is_frame && in_motion && !inputs.is_empty() && !inputs.iter().any(|(_, input)| input.is_moving()) {
             return Err(Error::Choice {
-                what: format!("no body of the frame has two ends, and the query is {}", self.query.kind()),
+                what: format!(
+                    "no body of the frame has two ends, and the query is {}",
+                    self.question.query.kind()
+                ),
                 advice:
                     "give each body that moves both ends of the step: two arrays of positions, or two poses"
                         .into(),
             });
         }
-        self.named.clone_from(&named);
+        self.placed.named.clone_from(&named);
         for (id, input) in inputs {
             let body = self.scene.get_mut(*id).ok_or_else(|| nobody(*id))?;
             body.put(input);
+            self.resident.set_lost(id.index(), false);
         }
         Ok(named)
     }
@@ -100,23 +81,23 @@ impl Detector {
             return Ok(());
         }
         start_threads()?;
-        self.answered = false;
-        self.was_placed.resize(self.scene.bodies().len(), false);
-        for moved in moved.iter().filter(|moved| !moved.rests) {
-            self.is_new_place |= !std::mem::replace(&mut self.was_placed[moved.body], true);
+        self.engine.is_answered = false;
+        if self.placed.mark(self.scene.bodies().len(), moved) {
+            self.engine.wear.tell_new_place();
         }
-        let widens = !self.f64s && moved.iter().any(|moved| self.scene.bodies()[moved.body].needs_f64());
+        let widens =
+            !self.engine.holds_f64 && moved.iter().any(|moved| self.scene.bodies()[moved.body].needs_f64());
         if widens {
             self.fetch()?;
         }
         // What was held makes room first. Where placing fails there is nothing left to ask of the old positions.
-        let placed = match self.pipeline.take().filter(|_| !widens) {
+        let placed = match self.engine.pipeline.take().filter(|_| !widens) {
             Some(mut pipeline) => {
-                pipeline.place(self.scene.bodies(), moved).map(|()| self.pipeline = Some(pipeline))
+                pipeline.place(self.scene.bodies(), moved).map(|()| self.engine.pipeline = Some(pipeline))
             }
             None => self.begun().map(drop),
         };
-        let is_held = self.pipeline.is_some() || self.device.is_gpu();
+        let is_held = self.engine.pipeline.is_some() || self.device.is_gpu();
         for body in self.scene.bodies_mut() {
             let lent = body.lent().copied();
             body.placed();
@@ -146,7 +127,17 @@ impl Detector {
         if let Some(problem) = other_mesh(old, &frame) {
             return Err(Error::Input { file: frame.name().to_owned(), problem });
         }
+        if frame.is_away() {
+            return Err(Error::Choice {
+                what: format!(
+                    "only a device knows where {} is, and its positions here are old",
+                    frame.name()
+                ),
+                advice: "bring it to the host first, with `fetch` of its detector".into(),
+            });
+        }
         let meets = *old.meets();
+        self.resident.set_lost(body, false);
         let old = &mut self.scene.bodies_mut()[body];
         *old = frame.with(meets).with_tolerance_of(old);
         let moved = self.moved(&[Moved { body, rests: false }]);

@@ -1,9 +1,11 @@
 //! Frames that are submitted and not waited for.
 
-use super::{Detector, contacts};
+use super::Detector;
+use super::frame::Answered;
 use crate::contacts::{Contacts, DeviceAnswer};
 use crate::device::emulator::start_threads;
 use crate::error::Error;
+use crate::pipeline::collect::collect;
 use crate::scene::{BodyId, DeviceInput, Input};
 use std::time::Instant;
 
@@ -20,36 +22,31 @@ impl Detector {
     }
 
     fn prepared(&mut self, inputs: &[(BodyId, DeviceInput)]) -> Result<Contacts, Error> {
-        let inputs: Vec<(BodyId, Input)> =
+        let given: Vec<(BodyId, Input)> =
             inputs.iter().map(|&(id, input)| (id, Input::OnDevice(input))).collect();
-        self.frame(&inputs)?;
-        if let (true, Some(pipeline)) = (inputs.is_empty(), &mut self.pipeline) {
+        self.frame(&given)?;
+        if let (true, Some(pipeline)) = (inputs.is_empty(), &mut self.engine.pipeline) {
             pipeline.place(self.scene.bodies(), &[])?;
         }
         // Again, with lists and plans that this frame has settled.
         let contacts = self.detect()?;
-        if self.slices > 1 {
+        if self.portion.slices > 1 {
             return Err(Error::Choice {
-                what: format!("a submission in {} slices", self.slices),
+                what: format!("a submission in {} slices", self.portion.slices),
                 advice: "the lists of a whole frame have no room: give the device more memory, or ask frame by frame".into(),
             });
         }
-        if let Some(pipeline) = &mut self.pipeline {
+        if let Some(pipeline) = &mut self.engine.pipeline {
             pipeline.prepare()?;
         }
-        self.submits.clear();
-        for (id, input) in &inputs {
-            if let Input::OnDevice(input) = input {
-                self.submits.push((*id, input.is_moving()));
-            }
-        }
+        self.placed.submit(inputs);
         Ok(contacts)
     }
 
     /// Whether [`Detector::submit`] may be called, and what was recorded of it run again: [`Detector::prepare`] was called, and
     /// nothing since then that changes the detector.
     pub fn is_prepared(&self) -> bool {
-        let pipeline = self.pipeline.as_ref();
+        let pipeline = self.engine.pipeline.as_ref();
         pipeline.map_or_else(|| !self.may_meet(), |pipeline| pipeline.is_prepared())
     }
 
@@ -64,16 +61,16 @@ impl Detector {
     /// [`Error::Choice`] when it is not prepared; those of the device.
     pub fn submit(&mut self) -> Result<(), Error> {
         start_threads()?;
-        self.answered = false;
+        self.engine.is_answered = false;
         self.read_again(true);
-        let submitted = self.pipeline.as_mut().map_or(Ok(()), |pipeline| pipeline.submit());
+        let submitted = self.engine.pipeline.as_mut().map_or(Ok(()), |pipeline| pipeline.submit());
         self.ended(submitted)
     }
 
     /// Where the answer of what is submitted lies, for kernels of the caller behind it; `None` where it is not prepared, or nothing can
     /// meet.
     pub fn on_device(&self) -> Option<DeviceAnswer> {
-        self.pipeline.as_ref().and_then(|pipeline| pipeline.answer())
+        self.engine.pipeline.as_ref().and_then(|pipeline| pipeline.answer())
     }
 
     /// Waits for what was submitted last, or recorded and launched again, and brings the answer. Where a list had too little room it
@@ -91,18 +88,20 @@ impl Detector {
         let start = Instant::now();
         let layout = self.layout()?;
         self.read_again(true);
-        let Some(pipeline) = &mut self.pipeline else { return Ok(Contacts::none(self.query)) };
+        let Some(pipeline) = &mut self.engine.pipeline else {
+            return Ok(Contacts::none(self.question.query));
+        };
         let whole = pipeline.collect()?.map(|(found, stages)| {
             let seen = found.seen;
-            contacts(found, stages, &layout, &self.device.looks()).map(|contacts| (contacts, seen))
+            collect(found, stages, &layout, &self.device.looks()).map(|contacts| Answered { contacts, seen })
         });
         match whole.transpose()? {
-            Some((contacts, seen)) => self.complete(contacts, seen, start),
-            None => self.answer(start),
+            Some(answered) if self.check_seen(answered.seen)? => self.collect_answer(answered, start),
+            _ => self.answer(start),
         }
     }
 
     fn may_meet(&self) -> bool {
-        self.layout.as_ref().is_none_or(|layout| layout.may_meet())
+        self.engine.last_layout().is_none_or(|layout| layout.may_meet())
     }
 }

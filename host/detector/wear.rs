@@ -4,11 +4,13 @@
 /// a test in a frame, 80 on an H200 and 30 to 60 on a CPU. It is in no answer.
 const OF_A_TRIANGLE: u64 = 64;
 
-/// Tests beyond those of the first frame after building.
+/// Tests beyond those of the first frame after building, and bodies that got a place since.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Wear {
     first: Option<u64>,
     beyond: u64,
+    /// Whether a frame has placed a body for the first time since then.
+    has_new_place: bool,
 }
 
 impl Wear {
@@ -20,10 +22,15 @@ impl Wear {
         }
     }
 
-    /// Whether those beyond have cost as much as building anew: then at most twice as much is spent as by who knows what comes (Karlin,
+    /// A frame places a body for the first time, as a rigid one that was added without its pose.
+    pub fn tell_new_place(&mut self) {
+        self.has_new_place = true;
+    }
+
+    /// Whether the next frame builds again: there is a new place, or tests beyond have cost as much as building anew: then at most twice as much is spent as by who knows what comes (Karlin,
     /// Manasse, Rudolph and Sleator, "Competitive snoopy caching", 1988).
     pub fn is_worn(&self, triangles: usize) -> bool {
-        self.beyond > OF_A_TRIANGLE * triangles as u64
+        self.has_new_place || self.beyond > OF_A_TRIANGLE * triangles as u64
     }
 }
 

@@ -4,10 +4,10 @@
 //! has passed [`Mesh::new`] needs no further check: finite where used, in range, indices valid.
 
 mod cut;
+mod difference;
 mod note;
 mod obj;
 mod obj_words;
-mod placed;
 mod ply_header;
 mod ply_problem;
 mod ply_read;
@@ -17,27 +17,27 @@ mod polygons;
 mod positions;
 mod problem;
 mod read;
-mod sequence;
 mod topology;
 mod topology_check;
 mod validate;
 mod weld;
 
+pub use crate::scene::Body;
+pub(crate) use difference::difference;
 pub use note::{Note, Treated};
 pub use obj::ObjProblem;
-pub(crate) use placed::{Bounds, NOTHING, union};
 pub use ply_problem::PlyProblem;
 pub use positions::Positions;
 pub use problem::Problem;
 pub use read::Format;
-pub(crate) use sequence::Away;
-pub use sequence::Body;
 pub use topology::{NO_EDGE, Topology};
 pub use topology_check::{Violation, check};
 pub use validate::{MAX_ABS_F32, MAX_ABS_F64, MAX_FACES, MAX_VERTICES};
 
 use crate::Error;
-use polygons::Polygons;
+pub(crate) use polygons::Polygons;
+pub(crate) use validate::is_single;
+pub(crate) use weld::{Vertices, rename};
 
 /// One frame of a triangle mesh that has passed the validation.
 ///
@@ -46,11 +46,11 @@ use polygons::Polygons;
 /// may be anything, even NaN.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
-    name: String,
-    positions: Positions,
-    faces: Vec<[u32; 3]>,
-    polygons: Polygons,
-    notes: Vec<Note>,
+    pub(crate) name: String,
+    pub(crate) positions: Positions,
+    pub(crate) faces: Vec<[u32; 3]>,
+    pub(crate) polygons: Polygons,
+    pub(crate) notes: Vec<Note>,
 }
 
 impl Mesh {

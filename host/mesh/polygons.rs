@@ -3,7 +3,7 @@
 /// Which triangles are of which face of the file, and the corners of the faces that are no fans. A face that was left out has
 /// none. Nothing is kept if every face was a triangle; else 4 bytes a face, and 8 and 4 a corner for a face that is no fan.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub(super) struct Polygons {
+pub(crate) struct Polygons {
     /// The first triangle of each face, ascending; empty where every face was a triangle.
     first: Vec<u32>,
     /// The faces that are no fans, ascending, each with the place in `corners` where its corners begin.

@@ -1,8 +1,8 @@
 //! Files to meshes: opening, and the choice of the reader.
 
+use super::difference::difference;
 use super::note::Notes;
 use super::polygons::Fans;
-use super::sequence::difference;
 use super::{Mesh, Positions, Problem, cut, obj, ply_read};
 use crate::Error;
 use crate::file::{self, encoding, is_packed};

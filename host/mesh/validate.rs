@@ -33,7 +33,7 @@ pub(super) fn check(positions: Positions, faces: &[[u32; 3]]) -> Result<Position
 ///
 /// # Errors
 /// The first coordinate, in vertex order, of a vertex that a face uses, that no precision can be computed with.
-pub(super) fn is_single(positions: &Positions, faces: &[[u32; 3]]) -> Result<bool, Problem> {
+pub(crate) fn is_single(positions: &Positions, faces: &[[u32; 3]]) -> Result<bool, Problem> {
     match positions {
         Positions::F32(points) if coordinates(points, MAX_ABS_F32, "2^60", faces).is_ok() => Ok(true),
         // Every finite float is small as a double.

@@ -1,13 +1,13 @@
 //! Vertices at one place made one, for meshes whose seams are vertices twice.
 
+use super::difference::difference;
 use super::polygons::Polygons;
-use super::sequence::difference;
 use super::{Mesh, Positions};
 use crate::Error;
 use std::cmp::Ordering;
 
 /// Which vertex stands for each.
-pub(super) struct Vertices {
+pub(crate) struct Vertices {
     /// For each vertex the first that a face uses at its place; itself if none does.
     names: Vec<u32>,
     /// How many vertices that a face uses have another name.
@@ -46,7 +46,8 @@ fn place(frame: &Positions, a: usize, b: usize) -> Ordering {
     .unwrap_or(Ordering::Equal)
 }
 
-pub(super) fn rename(vertices: &Vertices, faces: &mut [[u32; 3]], polygons: &mut Polygons) {
+/// Gives faces and polygons those names.
+pub(crate) fn rename(vertices: &Vertices, faces: &mut [[u32; 3]], polygons: &mut Polygons) {
     faces.iter_mut().flatten().for_each(|vertex| *vertex = vertices.names[*vertex as usize]);
     polygons.rename(&vertices.names);
 }

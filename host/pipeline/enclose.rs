@@ -148,9 +148,9 @@ impl<R: Precision, V: Kernels> Enclosed<R, V> {
 mod tests {
     use super::*;
     use crate::device::emulator::{Emulator, Mode};
-    use crate::mesh::Body;
     use crate::query::{Bv, WithVolume};
     use crate::samples::{sheet, soup};
+    use crate::scene::Body;
 
     /// A body's positions, one frame or two, turned and put elsewhere so that f64 is not f32.
     fn frames<R: Precision>(body: &Body, size: f64, at: f64) -> [Vec<Vec3<R>>; 2] {

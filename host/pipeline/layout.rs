@@ -1,9 +1,9 @@
 //! Where each body lies in the memory that all bodies share.
 
 use super::hubs;
-use crate::mesh::{Body, Topology};
+use crate::mesh::Topology;
 use crate::query::QueryKind;
-use crate::scene::{BodyId, BodyKind, Meets};
+use crate::scene::{Body, BodyId, BodyKind, Meets};
 use nearmiss_emulator::Looks;
 use nearmiss_kernels::abi::{BodyRecord, BodyTolerance, EVERY, NodeFilter};
 

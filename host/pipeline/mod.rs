@@ -2,6 +2,7 @@
 
 pub mod below_precision;
 mod broad;
+pub(crate) mod collect;
 pub mod counts;
 mod demand;
 pub mod enclose;
@@ -15,38 +16,54 @@ mod placing;
 pub mod precision;
 pub(crate) mod purpose;
 mod sorter;
-mod timing;
 mod tolerance;
 mod typed;
 
 pub use broad::Share;
 pub use layout::{Layout, Offsets};
 pub use placing::{Moved, Seen, Whereabouts};
-pub use timing::{Stage, Stages};
-pub use tolerance::{Tolerances, mean_side, of_edges, of_pair};
+pub use tolerance::{Tolerances, of_pair};
 pub use typed::{Found, Hits, Listed, Pipeline, Submits};
+
+#[doc(hidden)]
+pub use crate::scene::{mean_side, of_edges};
+pub use crate::stages::{Stage, Stages};
 
 use crate::device::Device;
 use crate::error::Error;
-use crate::mesh::Body;
 use crate::query::Query;
+use crate::scene::Body;
 use std::sync::Arc;
 use typed::TypedPipeline;
 
-/// The pipeline of a query, or of a share of its work; `f64s` tells whether any position needs f64.
+/// What a pipeline is made for.
+pub struct Pieces {
+    /// Where every body lies.
+    pub layout: Arc<Layout>,
+    /// The question.
+    pub query: Query,
+    /// Its part of the work.
+    pub share: Share,
+    /// Whether any position needs f64.
+    pub holds_f64: bool,
+}
+
+#[cfg(test)]
+impl Pieces {
+    /// All of a query's work, in single precision.
+    fn whole(layout: Arc<Layout>, query: Query) -> Pieces {
+        Pieces { layout, query, share: Share::WHOLE, holds_f64: false }
+    }
+}
+
+/// The pipeline of a query, or of a share of its work.
 ///
 /// # Errors
 /// Those of the device.
-pub fn pipeline(
-    device: Device,
-    bodies: &[Body],
-    layout: Arc<Layout>,
-    query: Query,
-    (f64s, share): (bool, Share),
-) -> Result<Box<dyn Pipeline>, Error> {
-    Ok(if f64s {
-        Box::new(TypedPipeline::<f64>::new(device, bodies, layout, (query, share))?)
+pub fn pipeline(device: Device, bodies: &[Body], pieces: Pieces) -> Result<Box<dyn Pipeline>, Error> {
+    Ok(if pieces.holds_f64 {
+        Box::new(TypedPipeline::<f64>::new(device, bodies, pieces)?)
     } else {
-        Box::new(TypedPipeline::<f32>::new(device, bodies, layout, (query, share))?)
+        Box::new(TypedPipeline::<f32>::new(device, bodies, pieces)?)
     })
 }

@@ -1,16 +1,8 @@
 //! Tolerances when none is named: that of a body, of a pair, of a scene.
 
 use super::layout::Offsets;
-use crate::mesh::Body;
-use crate::query::Certified;
-use crate::scene::BodyKind;
+use crate::scene::{Body, BodyKind};
 use nearmiss_kernels::abi::BodyTolerance;
-
-/// [`Certified::TOLERANCE`] of the mean side of the triangles at t = 0, rounded down to a power of two; 0 where there is no
-/// side of a length. Cost: a root a side, on the host.
-pub fn of_edges(bodies: &[Body]) -> f64 {
-    power_below(Certified::TOLERANCE * mean_side(bodies))
-}
 
 /// Tolerance of the pairs of two bodies, or of a body and itself: the smaller of both defaults, each that of the mesh that the
 /// body was made of. A body without a side of a length has none, and takes that of the other; 0 if neither has one.
@@ -82,29 +74,6 @@ impl Tolerances {
     }
 }
 
-/// Mean side of the triangles at t = 0, each triangle's own three; 0 where there are none.
-pub fn mean_side(bodies: &[Body]) -> f64 {
-    let (mut sum, mut count) = (0.0, 0u64);
-    for body in bodies {
-        let at = body.positions_t0().to_f64();
-        for face in body.faces() {
-            for k in 0..3 {
-                let [p, q] = [face[k], face[(k + 1) % 3]].map(|v| at[v as usize]);
-                let d = [0, 1, 2].map(|k| p[k] - q[k]);
-                sum += (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
-                count += 1;
-            }
-        }
-    }
-    sum / count.max(1) as f64
-}
-
-/// The largest power of two not above `x`; 0 for what is not a normal number above 0.
-fn power_below(x: f64) -> f64 {
-    // Without the mantissa.
-    if x.is_normal() && x > 0.0 { f64::from_bits(x.to_bits() >> 52 << 52) } else { 0.0 }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -118,21 +87,6 @@ mod tests {
 
     fn triangle(size: f64) -> Body {
         Body::still(mesh(size))
-    }
-
-    #[test]
-    fn it_is_a_power_of_two_near_a_part_of_the_mean_side() {
-        // The mean side is 4.
-        assert_eq!(of_edges(&[triangle(1.0)]), 2f64.powi(-12));
-        assert_eq!(of_edges(&[triangle(1024.0)]), 2f64.powi(-2));
-        assert_eq!(of_edges(&[triangle(1.0), triangle(3.0)]), 2f64.powi(-11));
-        assert_eq!(of_edges(&[triangle(0.0)]), 0.0);
-        assert_eq!(of_edges(&[]), 0.0);
-        for (x, below) in
-            [(1.0, 1.0), (1.999, 1.0), (0.49, 0.25), (f64::NAN, 0.0), (f64::INFINITY, 0.0), (-1.0, 0.0)]
-        {
-            assert_eq!(power_below(x), below);
-        }
     }
 
     #[test]

@@ -15,6 +15,7 @@ mod submitted;
 pub use found::{Found, Hits, Listed, in_order};
 pub use submit::Submits;
 
+use super::Pieces;
 use super::broad::{BroadContext, BroadPhase, Share, Which, broad_phase, growth};
 use super::counts::{Counts, FrameCounters};
 use super::demand::Demand;
@@ -24,11 +25,11 @@ use super::narrow::{Narrow, NarrowContext, narrow};
 use super::placing::{Moved, Placing, Whereabouts};
 use super::precision::Precision;
 use super::purpose;
-use super::timing::{Stage, Stages};
 use crate::device::{Buffer, Device, Event, Replay};
 use crate::error::Error;
-use crate::mesh::Body;
 use crate::query::Query;
+use crate::scene::Body;
+use crate::stages::{Stage, Stages};
 use nearmiss_kernels::abi::{BodyRecord, Pair, counter};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -140,16 +141,12 @@ pub trait Pipeline: repeat::Again + submit::Submits + Send {
 }
 
 impl<R: Precision> TypedPipeline<R> {
-    /// Takes the memory that a share of the query's work needs and uploads topology and positions. Something in `layout` may meet.
+    /// Takes the memory that a share of the query's work needs and uploads topology and positions. Something in the layout may meet.
     ///
     /// # Errors
     /// [`Error::Choice`] where work cannot be divided; those of the device.
-    pub fn new(
-        device: Device,
-        bodies: &[Body],
-        layout: Arc<Layout>,
-        (query, share): (Query, Share),
-    ) -> Result<Self, Error> {
+    pub fn new(device: Device, bodies: &[Body], pieces: Pieces) -> Result<Self, Error> {
+        let Pieces { layout, query, share, .. } = pieces;
         let triangles = share.of(layout.moving_triangles() as u32).len();
         let still = query.kind().is_at_rest();
         let a_triangle = if still { PAIRS_A_TRIANGLE } else { SWEPT_PAIRS_A_TRIANGLE };

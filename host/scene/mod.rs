@@ -2,15 +2,21 @@
 //!
 //! A [`Scene`] is made on the host, once; a [`Detector`](crate::Detector) takes it to a device and asks it frame after frame.
 
+mod body;
 mod input;
 mod lent;
+mod place;
 mod pose;
+mod sides;
 
+pub use body::Body;
 pub use input::Input;
 pub use lent::{DeviceInput, DevicePose, DeviceRows, Number};
+pub(crate) use place::{Bounds, NOTHING, union};
 pub use pose::Pose;
+#[doc(hidden)]
+pub use sides::{mean_side, of_edges};
 
-use crate::mesh::Body;
 use std::fmt;
 
 /// A body of a scene: it stays with the body until that is removed.
@@ -45,7 +51,7 @@ pub enum BodyKind {
     Deformable,
 }
 
-/// Which bodies a body may meet: see [`Body::with`](crate::mesh::Body::with).
+/// Which bodies a body may meet: see [`Body::with`].
 ///
 /// Two bodies are tested against each other if they are of one environment, or one of them is of every, and if each is in a
 /// group that the other meets. Deformable bodies are tested against themselves by default, rigid bodies if

@@ -255,3 +255,24 @@ fn a_body_that_is_away_is_not_taken_along() {
     let there = support::ask_scene(engine(), detector.scene().clone(), query(QueryKind::Discrete));
     assert_eq!(there.answer, detector.detect().expect("an answer").answer);
 }
+
+/// Nor one that is put in the place of another: its positions are those from before.
+#[test]
+fn a_body_that_is_away_replaces_none() {
+    let (scene, id, [t0, _]) = pair(60);
+    let device = engine();
+    let memory = Points::new(&device, &t0);
+    let mut detector = Detector::new(device, scene, query(QueryKind::Discrete)).expect("a detector");
+    let before = detector.scene().bodies()[id.index()].clone();
+    detector.frame(&[(id, Input::OnDevice(DeviceInput::At(memory.rows())))]).expect("an answer");
+    let away = detector.scene().bodies()[id.index()].clone();
+    let error = detector.move_to(id.index(), away).expect_err("refused").to_string();
+    assert!(error.contains("only a device knows where") && error.contains("fetch"), "{error}");
+    // The detector is as it was.
+    let there = detector.detect().expect("an answer");
+    assert!(detector.scene().bodies()[id.index()].is_away());
+    detector.move_to(id.index(), before).expect("moved");
+    assert!(!detector.scene().bodies()[id.index()].is_away());
+    detector.frame(&[(id, Input::OnDevice(DeviceInput::At(memory.rows())))]).expect("an answer");
+    assert_eq!(detector.detect().expect("an answer").answer, there.answer);
+}

@@ -6,8 +6,7 @@ mod words;
 use super::Detector;
 use crate::device::{Count, Work};
 use crate::error::Error;
-use crate::mesh::Body;
-use crate::scene::BodyKind;
+use crate::scene::{Body, BodyKind};
 pub use left_out::LeftOut;
 use nearmiss_kernels::entry::TABLE;
 use std::collections::BTreeMap;
@@ -202,12 +201,16 @@ impl Detector {
     pub fn plan(&mut self) -> Result<Plan, Error> {
         let begun = self.begun().map(drop);
         self.ended(begun)?;
-        while self.pipeline.is_some() && self.asked < 2 {
+        while self.engine.pipeline.is_some() && self.engine.frames < 2 {
             self.detect()?;
         }
         let layout = self.layout()?;
-        let mut plan = Plan::new(self.scene.bodies(), (&self.build, &self.work), self.device.held());
-        plan.left_out = left_out::of(&plan, &layout, &self.query, self.device.is_gpu());
+        let mut plan = Plan::new(
+            self.scene.bodies(),
+            (&self.engine.build_work, &self.engine.frame_work),
+            self.device.held(),
+        );
+        plan.left_out = left_out::of(&plan, &layout, &self.question.query, self.device.is_gpu());
         Ok(plan)
     }
 }

@@ -7,7 +7,6 @@ use super::{AnswerLists, Narrow, NarrowContext, growable};
 use crate::contacts::Entries;
 use crate::device::{Ahead, Buffer, Device};
 use crate::error::Error;
-use crate::mesh::Body;
 use crate::pipeline::below_precision::{self, BelowPrecision};
 use crate::pipeline::counts::Counts;
 use crate::pipeline::layout::Layout;
@@ -17,6 +16,7 @@ use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Hits, Listed};
 use crate::pipeline::{launch, purpose};
 use crate::query::{self, Certified, ContinuousSolver};
+use crate::scene::Body;
 use nearmiss_kernels::abi::{Counter, CullArgs, Hit, Pair, SolveArgs, Span, counter, earliest};
 
 /// How many entries the lists of a continuous query have room for at first: vertex/face, edge/edge.

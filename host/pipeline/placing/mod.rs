@@ -8,9 +8,9 @@ use super::layout::Layout;
 use super::precision::Precision;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
-use crate::mesh::{self, Body};
+use crate::mesh;
 use crate::pipeline::{launch, purpose};
-use crate::scene::{BodyKind, DeviceInput, Pose};
+use crate::scene::{Body, BodyKind, DeviceInput, Pose};
 use bytemuck::Pod;
 use lent::LentMemory;
 use nearmiss_kernels::abi::{

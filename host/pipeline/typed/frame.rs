@@ -5,7 +5,7 @@ use crate::device::{Device, Marks, Replay};
 use crate::error::Error;
 use crate::pipeline::broad::{Candidates, Which};
 use crate::pipeline::precision::Precision;
-use crate::pipeline::timing::{Stage, Stages};
+use crate::stages::{Stage, Stages};
 use nearmiss_kernels::abi::TraverseFlags;
 use std::time::Instant;
 

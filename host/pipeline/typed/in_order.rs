@@ -4,6 +4,7 @@
 use super::*;
 use crate::contacts::Contacts;
 use crate::device::emulator::{Emulator, Looks, Mode};
+use crate::pipeline::collect::collect;
 use crate::query::{Certified, Continuous};
 use crate::samples;
 
@@ -11,13 +12,9 @@ use crate::samples;
 fn answers(bodies: &[Body], query: Query, device_orders: bool, told: impl Fn(bool) -> bool) -> Vec<Contacts> {
     let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
     let layout = Arc::new(Layout::new(bodies, query.kind()));
-    let mut pipeline = TypedPipeline::<f32>::new(
-        device.clone(),
-        bodies,
-        layout.clone(),
-        (query, crate::pipeline::Share::WHOLE),
-    )
-    .expect("memory");
+    let mut pipeline =
+        TypedPipeline::<f32>::new(device.clone(), bodies, Pieces::whole(layout.clone(), query))
+            .expect("memory");
     if device_orders {
         // With less room than there are contacts: the list grows.
         pipeline.narrow.order_on(&device, &layout, 10).expect("memory");
@@ -27,7 +24,7 @@ fn answers(bodies: &[Body], query: Query, device_orders: bool, told: impl Fn(boo
         let (mut found, stages) = pipeline.frame().expect("a frame");
         assert_eq!(found.ordered, device_orders);
         found.ordered = told(found.ordered);
-        Contacts::new(found, &layout, (stages, Vec::new()), &Looks::new(None))
+        collect(found, stages, &layout, &Looks::new(None)).expect("contacts")
     };
     vec![frame(), frame()]
 }

@@ -12,13 +12,9 @@ fn certain(query: Query, told: bool) -> usize {
     let scene = Scene::from(soup(60, 5, true));
     let bodies = scene.bodies();
     let layout = Arc::new(Layout::new(bodies, query.kind()));
-    let mut pipeline = TypedPipeline::<f32>::new(
-        device.clone(),
-        bodies,
-        layout.clone(),
-        (query, crate::pipeline::Share::WHOLE),
-    )
-    .expect("a pipeline");
+    let mut pipeline =
+        TypedPipeline::<f32>::new(device.clone(), bodies, Pieces::whole(layout.clone(), query))
+            .expect("a pipeline");
     if !told {
         pipeline.broad = broad_phase(&device, &layout, &query, 0.0).expect("a broad phase");
     }

@@ -4,7 +4,7 @@ use super::{Pipeline, Step, TypedPipeline};
 use crate::error::Error;
 use crate::pipeline::counts::Counts;
 use crate::pipeline::precision::Precision;
-use crate::pipeline::timing::Stage;
+use crate::stages::Stage;
 
 /// Stages again, on what the last frame left.
 pub trait Again {

@@ -7,10 +7,10 @@ use crate::device::{Buffer, Replay};
 use crate::error::Error;
 use crate::pipeline::list::GrowableOutput;
 use crate::pipeline::precision::Precision;
-use crate::pipeline::timing::{Stage, Stages};
 use crate::pipeline::typed::Found;
 use crate::pipeline::{launch, purpose};
 use crate::scene::Pose;
+use crate::stages::{Stage, Stages};
 use nearmiss_kernels::abi::{Counter, FrameStatus, Room, Span, StatusArgs, seen};
 use nearmiss_kernels::entry::status_frame;
 

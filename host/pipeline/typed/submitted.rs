@@ -11,8 +11,7 @@ fn prepared(device: &Device) -> TypedPipeline<f32> {
     let layout = Arc::new(Layout::new(&bodies, Query::discrete().kind()));
     let query = Query::discrete();
     let mut pipeline =
-        TypedPipeline::<f32>::new(device.clone(), &bodies, layout, (query, crate::pipeline::Share::WHOLE))
-            .expect("memory");
+        TypedPipeline::<f32>::new(device.clone(), &bodies, Pieces::whole(layout, query)).expect("memory");
     pipeline.construct().expect("a tree");
     pipeline.place(&bodies, &[]).expect("nothing to place");
     pipeline.frame().expect("a frame");

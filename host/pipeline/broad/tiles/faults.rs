@@ -2,10 +2,10 @@
 
 use super::*;
 use crate::device::emulator::{Emulator, Mode};
-use crate::mesh::{Body, Mesh, Positions};
+use crate::mesh::{Mesh, Positions};
 use crate::query::QueryKind;
 use crate::samples::soup;
-use crate::scene::Meets;
+use crate::scene::{Body, Meets};
 use nearmiss_kernels::abi::{self, LEAF, Point};
 use nearmiss_kernels::bv::{Aabb, Volume};
 

@@ -1,6 +1,6 @@
 //! Pairs of features in the numbering of the bodies.
 
-use super::Kind;
+use crate::contacts::Kind;
 use crate::pipeline::Layout;
 use crate::scene::BodyId;
 

@@ -1,11 +1,11 @@
 //! A body: one mesh at one frame, or at the two ends of a step, and what it does in a scene.
 
-use super::placed::radius;
-use super::polygons::Polygons;
-use super::weld::{self, Vertices};
-use super::{Mesh, Positions, Problem};
+use super::place::radius;
+use super::{BodyKind, DeviceInput, Meets, Pose};
 use crate::Error;
-use crate::scene::{BodyKind, DeviceInput, Meets, Pose};
+#[cfg(doc)]
+use crate::mesh::Problem;
+use crate::mesh::{Mesh, Polygons, Positions, Vertices, difference, rename};
 
 /// Faces with the positions of one frame (still), or of the two ends of a step (moving). Vertices move in straight
 /// lines from `positions_t0` to `positions_t1`, both of the same length and precision.
@@ -24,7 +24,7 @@ pub struct Body {
     pub(super) radius: f64,
     /// The default tolerance of the mesh that it was made of, once it was computed.
     pub(super) tolerance: Kept,
-    /// Where it is, if the host does not know: then positions and poses are old.
+    /// Where it is, if positions and poses are old.
     pub(super) away: Option<Away>,
 }
 
@@ -38,18 +38,13 @@ impl PartialEq for Kept {
     }
 }
 
-/// Where a body is that the host has lost sight of.
+/// Where a body is, of which positions and poses are old.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Away {
-    /// Where the caller's memory says; while it is being placed.
+    /// Where memory of the caller says.
     Lent(DeviceInput),
-    /// In the memory of the detector that has placed it, at two ends or at one.
+    /// On a device, at two ends or at one.
     Placed {
-        /// Whether those are two.
-        moving: bool,
-    },
-    /// Nowhere: it was placed in a frame that was refused, at two ends or at one.
-    Lost {
         /// Whether those are two.
         moving: bool,
     },
@@ -214,7 +209,7 @@ impl Body {
         let own = std::iter::once(&self.positions_t0).chain(&self.positions_t1);
         let vertices = Vertices::of(&own.chain(frames).collect::<Vec<_>>(), &self.faces);
         let mut welded = self.clone();
-        weld::rename(&vertices, &mut welded.faces, &mut welded.polygons);
+        rename(&vertices, &mut welded.faces, &mut welded.polygons);
         (welded, vertices.merged)
     }
 
@@ -258,26 +253,4 @@ impl Body {
         }
         hash.digest()
     }
-}
-
-/// What keeps two meshes from being frames of one; polygons are the same if their corners are, however they were cut.
-pub(super) fn difference(t0: &Mesh, t1: &Mesh) -> Option<Problem> {
-    let first = || t0.name.clone();
-    if t0.vertex_count() != t1.vertex_count() {
-        return Some(Problem::FrameVertices { first: first(), t0: t0.vertex_count(), t1: t1.vertex_count() });
-    }
-    if t0.faces == t1.faces {
-        return None;
-    }
-    let [count_t0, count_t1] = [t0, t1].map(Mesh::file_face_count);
-    if count_t0 != count_t1 {
-        return Some(Problem::FrameFaces { first: first(), t0: count_t0, t1: count_t1 });
-    }
-    let (mut a, mut b) = (Vec::new(), Vec::new());
-    let face = (0..count_t0).find(|&face| {
-        t0.polygons.corners(face, &t0.faces, &mut a);
-        t1.polygons.corners(face, &t1.faces, &mut b);
-        a != b
-    })?;
-    Some(Problem::FrameFace { first: first(), face, t0: a, t1: b })
 }

@@ -1,15 +1,42 @@
 //! Bodies of which only the device knows where they are.
 
 use super::Detector;
-use crate::contacts::{Contacts, Degraded};
 use crate::error::Error;
-use crate::mesh::{Body, Positions};
-use crate::pipeline::below_precision::BelowPrecision;
-use crate::pipeline::{Layout, Seen, Stages, Whereabouts};
-use crate::query::{Certified, Query};
-use crate::scene::Pose;
+use crate::mesh::Positions;
+use crate::pipeline::{Layout, Seen, Whereabouts};
+use crate::scene::{Body, Pose};
 use std::sync::Arc;
-use std::time::Instant;
+
+/// Knowledge of the bodies that are on the device.
+#[derive(Default)]
+pub struct Resident {
+    /// The largest coordinate that was seen in memory of the caller so far.
+    pub largest: f64,
+    /// Of each body, whether the frame that placed it last was refused: where it was before is not known either.
+    lost: Vec<bool>,
+}
+
+impl Resident {
+    /// Whether a body was placed in a frame that was refused, and in none since.
+    pub fn is_lost(&self, body: usize) -> bool {
+        self.lost.get(body).is_some_and(|is_lost| *is_lost)
+    }
+
+    /// Whether nobody knows where a body is; one that is placed again is not lost.
+    pub fn set_lost(&mut self, body: usize, is_lost: bool) {
+        if is_lost {
+            self.lost.resize(self.lost.len().max(body + 1), false);
+        }
+        if let Some(was_lost) = self.lost.get_mut(body) {
+            *was_lost = is_lost;
+        }
+    }
+
+    /// A frame saw this.
+    pub fn saw(&mut self, seen: Option<Seen>) {
+        self.largest = seen.map_or(self.largest, |seen| seen.largest.max(self.largest));
+    }
+}
 
 impl Detector {
     /// Brings the bodies to the host of which only the device knows where they are ([`Body::is_away`]), so that
@@ -36,12 +63,14 @@ impl Detector {
     /// that was recorded and launched again, of which nobody tells the detector. Those of one that was refused only if there
     /// is another.
     pub(super) fn read_again(&mut self, is_another: bool) {
-        if self.pipeline.as_ref().is_some_and(|pipeline| pipeline.is_prepared()) {
-            for &(id, moving) in &self.submits {
-                let body = &mut self.scene.bodies_mut()[id.index()];
-                if is_another || !body.is_lost() {
-                    body.placed_again(moving);
-                }
+        if !self.engine.is_prepared() {
+            return;
+        }
+        for submitted in &self.placed.submitted {
+            let body = submitted.body.index();
+            if is_another || !self.resident.is_lost(body) {
+                self.resident.set_lost(body, false);
+                self.scene.bodies_mut()[body].placed_again(submitted.moves);
             }
         }
     }
@@ -49,7 +78,7 @@ impl Detector {
     /// Where the device has placed all bodies; `None` where nothing can meet, and nothing was placed.
     fn places(&mut self) -> Result<Option<Places>, Error> {
         let layout = self.layout()?;
-        let Some(pipeline) = &self.pipeline else { return Ok(None) };
+        let Some(pipeline) = &self.engine.pipeline else { return Ok(None) };
         Ok(Some(Places { all: pipeline.whereabouts()?, layout }))
     }
 
@@ -60,14 +89,22 @@ impl Detector {
             if body.is_away() && body.lent().is_none() {
                 let (ends, poses) = places.of(i);
                 body.bring(&ends, poses);
+                self.resident.set_lost(i, false);
             }
         }
+    }
+
+    /// Nobody knows where a body is.
+    fn lose(&mut self, body: usize) {
+        self.resident.set_lost(body, true);
+        self.scene.bodies_mut()[body].placed_again(false);
     }
 
     /// Brings every body to the host, before the device's memory goes. Bodies of the last frame whose positions no mesh may
     /// have are lost: they have to be named again.
     pub(super) fn bring_all(&mut self) {
-        let lost: Vec<bool> = self.scene.bodies().iter().map(Body::is_lost).collect();
+        let lost: Vec<bool> =
+            (0..self.scene.bodies().len()).map(|body| self.resident.is_lost(body)).collect();
         let places = self.places().ok().flatten();
         let is_valid = places.as_ref().is_some_and(|places| {
             let mut away = self.scene.bodies().iter().enumerate().filter(|(_, body)| body.is_away());
@@ -79,10 +116,9 @@ impl Detector {
         if let Some(places) = &places {
             self.bring(places);
         }
-        let named = self.named.iter().chain(std::iter::repeat(&false));
-        for ((body, lost), named) in self.scene.bodies_mut().iter_mut().zip(lost).zip(named) {
-            if lost || *named && !is_valid {
-                body.lose();
+        for (body, was_lost) in lost.into_iter().enumerate() {
+            if was_lost || self.placed.is_named(body) && !is_valid {
+                self.lose(body);
             }
         }
     }
@@ -92,7 +128,7 @@ impl Detector {
         self.none_lost()?;
         let gone = |body: &&Body| body.is_away() && body.lent().is_none();
         match self.scene.bodies().iter().find(gone) {
-            Some(body) if self.pipeline.is_none() => Err(Error::Choice {
+            Some(body) if self.engine.pipeline.is_none() => Err(Error::Choice {
                 what: format!("only the device knew where {} was, and that memory is gone", body.name()),
                 advice: "say again where it is".into(),
             }),
@@ -102,8 +138,9 @@ impl Detector {
 
     /// Whether no body was placed in a frame that was refused, and in none since.
     pub(super) fn none_lost(&self) -> Result<(), Error> {
-        match self.scene.bodies().iter().find(|body| body.is_lost()) {
-            Some(body) => Err(Error::Choice {
+        let mut bodies = self.scene.bodies().iter().enumerate();
+        match bodies.find(|(body, _)| self.resident.is_lost(*body)) {
+            Some((_, body)) => Err(Error::Choice {
                 what: format!(
                     "nobody knows where {} is: the frame that named it last was refused, and has overwritten where it was",
                     body.name()
@@ -114,21 +151,25 @@ impl Detector {
         }
     }
 
-    /// Looks at numbers of the caller that placing could not compute with. Where doubles can, all goes over to doubles: true.
+    /// Whether the answer holds, by what placing saw of positions in memory of the caller. Where these need doubles and the pipeline has
+    /// singles, the pipeline goes and the frame is to be run again: false.
     ///
     /// # Errors
     /// [`Error::Input`] and [`Error::Choice`] for what no precision can compute with, naming the body and the vertex; those of the
     /// device.
-    fn look(&mut self) -> Result<bool, Error> {
-        let Some(places) = self.places()? else { return Ok(false) };
+    pub(super) fn check_seen(&mut self, seen: Option<Seen>) -> Result<bool, Error> {
+        if !seen.is_some_and(|seen| seen.invalid) {
+            return Ok(true);
+        }
+        let Some(places) = self.places()? else { return Ok(true) };
         let are_single = self.check_places(&places)?;
-        if self.f64s || are_single {
+        if self.engine.holds_f64 || are_single {
             // Only vertices that no face uses.
-            return Ok(false);
+            return Ok(true);
         }
         self.bring(&places);
-        self.pipeline = None;
-        Ok(true)
+        self.engine.pipeline = None;
+        Ok(false)
     }
 
     /// Whether singles can compute with what was placed from memory of the caller. If nothing can, nobody knows where the bodies of
@@ -144,59 +185,11 @@ impl Detector {
         });
         let are_single = checked.reduce(|all, own| Ok(all? & own?)).unwrap_or(Ok(true));
         if are_single.is_err() {
-            let bodies = self.scene.bodies_mut().iter_mut().zip(&self.named);
-            bodies.filter(|(_, named)| **named).for_each(|(body, _)| body.lose());
+            let named: Vec<usize> =
+                (0..self.scene.bodies().len()).filter(|&body| self.placed.is_named(body)).collect();
+            named.into_iter().for_each(|body| self.lose(body));
         }
         are_single
-    }
-
-    /// The end of a frame: the answer, unless what was seen of the caller's memory says otherwise.
-    pub(super) fn complete(
-        &mut self,
-        mut contacts: Contacts,
-        seen: Option<Seen>,
-        start: Instant,
-    ) -> Result<Contacts, Error> {
-        if seen.is_some_and(|seen| seen.invalid) && self.look()? {
-            return self.answer(start);
-        }
-        self.answered = true;
-        self.wear.tell(contacts.steps);
-        self.largest = seen.map_or(self.largest, |seen| seen.largest.max(self.largest));
-        self.tell_below_precision(&mut contacts)?;
-        self.tell_turns(&mut contacts)?;
-        let wall = start.elapsed().as_secs_f64() * 1e3;
-        contacts.stages = Stages { construct: self.construct_ms, wall, ..contacts.stages };
-        Ok(contacts)
-    }
-
-    /// An earliest query lists no pairs, so whether they are too large for the tolerance hangs on where bodies are: of those that are
-    /// away on the largest of their coordinates and, where that leaves it open, on themselves.
-    fn tell_below_precision(&mut self, contacts: &mut Contacts) -> Result<(), Error> {
-        let (Query::Earliest(_), Some(certified), Some(tolerances)) =
-            (self.query, self.query.certified().copied(), &self.tolerances)
-        else {
-            return Ok(());
-        };
-        let finest = Certified { tolerance: Some(tolerances.finest), ..certified };
-        let own = tolerances.least < tolerances.largest;
-        let certified = Certified { tolerance: Some(tolerances.largest), ..certified };
-        let unlisted = Degraded::ToleranceBelowPrecision { pairs: None };
-        // If no body came from memory of the caller the pipeline has looked at all.
-        let is_looked_at = self.largest == 0.0 && !self.scene.bodies().iter().any(Body::is_away);
-        if is_looked_at || contacts.degraded.contains(&unlisted) {
-            return Ok(());
-        }
-        let largest = self.largest.max(BelowPrecision::largest(self.scene.bodies()));
-        if !BelowPrecision::may_be(&finest, 2.0 * largest) {
-            return Ok(());
-        }
-        self.fetch()?;
-        let below = BelowPrecision::of_earliest(self.scene.bodies(), &certified, own);
-        if below == Some(BelowPrecision::Unlisted) {
-            contacts.degraded.push(unlisted);
-        }
-        Ok(())
     }
 }
 

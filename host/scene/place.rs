@@ -1,12 +1,9 @@
 //! Where a body is put from frame to frame.
 
-use super::sequence::Kept;
-use super::validate::MAX_ABS_F64;
-use super::{Away, Body, Positions, Problem, validate};
+use super::body::{Away, Kept};
+use super::{Body, BodyKind, DeviceInput, Input, Pose, of_edges};
 use crate::Error;
-use crate::contacts::TURN_DEGREES;
-use crate::pipeline::of_edges;
-use crate::scene::{BodyKind, DeviceInput, Input, Pose};
+use crate::mesh::{self, MAX_ABS_F64, Positions, Problem};
 use nalgebra::Vector3;
 
 /// The lower and the upper corner of a box.
@@ -93,7 +90,7 @@ impl Body {
     /// Whether positions can be computed with in single precision, or at all.
     pub(crate) fn is_single(&self, positions: &Positions) -> Result<bool, Error> {
         let wrong = |problem| Error::Input { file: self.name.clone(), problem };
-        validate::is_single(positions, &self.faces).map_err(wrong)
+        mesh::is_single(positions, &self.faces).map_err(wrong)
     }
 
     pub(crate) fn check_pose(&self, pose: &Pose) -> Result<(), Error> {
@@ -140,7 +137,7 @@ impl Body {
     }
 
     fn put_vertices(&mut self, t0: &Positions, t1: Option<&Positions>) {
-        let single = |positions| matches!(validate::is_single(positions, &self.faces), Ok(true));
+        let single = |positions| matches!(mesh::is_single(positions, &self.faces), Ok(true));
         let singles = std::iter::once(t0).chain(t1).all(single);
         self.keep_tolerance();
         let take =
@@ -158,16 +155,6 @@ impl Body {
         if let Some(Away::Lent(input)) = self.away {
             self.away = Some(Away::Placed { moving: input.is_moving() });
         }
-    }
-
-    /// The frame that placed the body was refused: where it was before is not known either.
-    pub(crate) fn lose(&mut self) {
-        self.away = Some(Away::Lost { moving: self.is_moving() });
-    }
-
-    /// Whether it was placed in a frame that was refused, and in none since.
-    pub(crate) fn is_lost(&self) -> bool {
-        matches!(self.away, Some(Away::Lost { .. }))
     }
 
     /// The caller's memory was read again, or may have been: whatever was known of the body's place is out of date.
@@ -206,9 +193,6 @@ impl Body {
 
     /// A body that moved in the last step rests where that ended; whether it had moved.
     pub(crate) fn rest(&mut self) -> bool {
-        if self.is_lost() {
-            return false;
-        }
         if self.is_away() {
             let moved = self.is_moving();
             self.away = Some(Away::Placed { moving: false });
@@ -241,12 +225,12 @@ impl Body {
     }
 
     /// The angle by which the body turns from one pose to another, in degrees, and how far a vertex leaves its arc when it moves in a
-    /// straight line; `None` for a turn up to [`TURN_DEGREES`]. Cost: a pass over the faces of a body that turns farther.
-    pub(crate) fn turn(&self, [start, end]: [Pose; 2]) -> Option<[f64; 2]> {
+    /// straight line; `None` for a turn up to so many degrees. Cost: a pass over the faces of a body that turns farther.
+    pub(crate) fn turn_beyond(&self, least: f64, [start, end]: [Pose; 2]) -> Option<[f64; 2]> {
         let (angle, axis) = start.turn_to(&end);
         let degrees = angle.to_degrees();
         // A NaN is of a pose that another check refuses.
-        if degrees.is_nan() || degrees <= TURN_DEGREES {
+        if degrees.is_nan() || degrees <= least {
             return None;
         }
         let axis = axis / axis.dot(&axis).sqrt();

@@ -1,0 +1,69 @@
+//! Caveats beside an answer that follow from where bodies are: a turn too far for straight lines, a tolerance below the precision.
+
+use super::Detector;
+use crate::contacts::{Contacts, Degraded, TURN_DEGREES};
+use crate::error::Error;
+use crate::pipeline::below_precision::BelowPrecision;
+use crate::query::{Certified, Query};
+use crate::scene::{Body, BodyKind};
+
+impl Detector {
+    /// Adds a caveat for each rigid body that turns far in the step: [`Degraded::Turned`]. Poses that only the device knows are copied
+    /// from it, if there are any.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub(super) fn tell_turns(&self, contacts: &mut Contacts) -> Result<(), Error> {
+        if self.question.query.kind().is_at_rest() {
+            return Ok(());
+        }
+        let is_rigid = |body: &&Body| body.kind() == BodyKind::Rigid && body.face_count() > 0;
+        let is_away = |body: &Body| body.is_away() && body.is_moving();
+        let bodies = self.scene.bodies();
+        let found = match &self.engine.pipeline {
+            Some(pipeline) if bodies.iter().filter(is_rigid).any(is_away) => pipeline.poses()?,
+            _ => Vec::new(),
+        };
+        for id in self.scene.ids() {
+            let Some(body) = self.scene.get(id).filter(is_rigid) else { continue };
+            let poses = match found.get(2 * id.index()..2 * id.index() + 2) {
+                Some(&[start, end]) if is_away(body) => [start, end],
+                _ if body.is_away() => continue,
+                _ => body.poses(),
+            };
+            if let Some([degrees, bulge]) = body.turn_beyond(TURN_DEGREES, poses) {
+                contacts.degraded.push(Degraded::Turned { body: id, degrees, bulge });
+            }
+        }
+        Ok(())
+    }
+
+    /// An earliest query lists no pairs, so whether they are too large for the tolerance hangs on where bodies are: of those that are
+    /// away on the largest of their coordinates and, where that leaves it open, on themselves.
+    pub(super) fn tell_below_precision(&mut self, contacts: &mut Contacts) -> Result<(), Error> {
+        let (Query::Earliest(_), Some(certified), Some(tolerances)) =
+            (self.question.query, self.question.query.certified().copied(), &self.question.tolerances)
+        else {
+            return Ok(());
+        };
+        let finest = Certified { tolerance: Some(tolerances.finest), ..certified };
+        let own = tolerances.least < tolerances.largest;
+        let certified = Certified { tolerance: Some(tolerances.largest), ..certified };
+        let unlisted = Degraded::ToleranceBelowPrecision { pairs: None };
+        // If no body came from memory of the caller the pipeline has looked at all.
+        let is_looked_at = self.resident.largest == 0.0 && !self.scene.bodies().iter().any(Body::is_away);
+        if is_looked_at || contacts.degraded.contains(&unlisted) {
+            return Ok(());
+        }
+        let largest = self.resident.largest.max(BelowPrecision::largest(self.scene.bodies()));
+        if !BelowPrecision::may_be(&finest, 2.0 * largest) {
+            return Ok(());
+        }
+        self.fetch()?;
+        let below = BelowPrecision::of_earliest(self.scene.bodies(), &certified, own);
+        if below == Some(BelowPrecision::Unlisted) {
+            contacts.degraded.push(unlisted);
+        }
+        Ok(())
+    }
+}

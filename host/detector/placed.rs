@@ -1,0 +1,66 @@
+//! Which bodies frames have placed: ever, in the last frame, and in every submission.
+
+use super::Detector;
+use crate::pipeline::Moved;
+use crate::scene::{BodyId, DeviceInput, Input};
+
+/// A record of who was placed.
+#[derive(Default)]
+pub struct Placed {
+    /// Of each body, whether a frame has placed it since it was added.
+    ever: Vec<bool>,
+    /// Of each body, whether the last frame named it.
+    pub named: Vec<bool>,
+    /// The bodies that a submission reads; up to date while the pipeline is prepared.
+    pub submitted: Vec<Submitted>,
+}
+
+/// A body that a submission reads.
+#[derive(Clone, Copy)]
+pub struct Submitted {
+    pub body: BodyId,
+    /// Whether it moves in the step.
+    pub moves: bool,
+}
+
+impl Placed {
+    /// A frame places these, of so many bodies; whether one of them was never placed before.
+    pub fn mark(&mut self, bodies: usize, moved: &[Moved]) -> bool {
+        self.ever.resize(bodies, false);
+        let mut any_first = false;
+        for moved in moved.iter().filter(|moved| !moved.rests) {
+            any_first |= !std::mem::replace(&mut self.ever[moved.body], true);
+        }
+        any_first
+    }
+
+    /// Whether a frame has placed the body.
+    fn was_placed(&self, body: BodyId) -> bool {
+        self.ever.get(body.index()).is_some_and(|was| *was)
+    }
+
+    /// Whether the last frame named the body.
+    pub fn is_named(&self, body: usize) -> bool {
+        self.named.get(body).is_some_and(|is_named| *is_named)
+    }
+
+    /// Another body has that number: no frame has placed it.
+    pub fn forget(&mut self, body: BodyId) {
+        if let Some(was_placed) = self.ever.get_mut(body.index()) {
+            *was_placed = false;
+        }
+    }
+
+    /// Submissions read these.
+    pub fn submit(&mut self, inputs: &[(BodyId, DeviceInput)]) {
+        let submitted = inputs.iter().map(|&(body, input)| Submitted { body, moves: input.is_moving() });
+        self.submitted = submitted.collect();
+    }
+}
+
+impl Detector {
+    /// Whether a frame of these places a body for the first time.
+    pub(crate) fn is_first_of(&self, inputs: &[(BodyId, Input)]) -> bool {
+        inputs.iter().any(|&(body, _)| !self.placed.was_placed(body))
+    }
+}

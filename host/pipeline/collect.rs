@@ -1,0 +1,164 @@
+//! Lists of the device become an answer: in canonical order and in the numbering of the bodies.
+
+mod features;
+
+use super::counts::Counts;
+use super::{Found, Hits, Layout, Listed, Stages};
+use crate::contacts::{
+    Answer, Closest, Contact, Contacts, Degraded, Front, Kind, NearPair, NearestTriangles, Queues, Status,
+    TrianglePair, sort,
+};
+use crate::error::Error;
+use crate::memory;
+use features::{Features, edge_edge, vertex_face};
+use nearmiss_emulator::Looks;
+use nearmiss_kernels::abi::{Hit, NearHit, NearestHit, Pair, counter};
+use nearmiss_kernels::prim::inclusion::Verdict;
+use nearmiss_kernels::prim::near::corner_weights;
+
+/// The contacts of a frame, with its figures.
+///
+/// # Errors
+/// [`Error::OutOfMemory`]; [`Error::Interrupted`] if a look ends it.
+pub fn collect(found: Found, stages: Stages, layout: &Layout, looks: &Looks) -> Result<Contacts, Error> {
+    memory::require("the contacts", found.bytes())?;
+    let count = |which| found.counters[which];
+    let vf_ee = [count(counter::VF), count(counter::EE)];
+    let of_triangles = matches!(found.listed, Listed::Pairs(_) | Listed::Nearest(_));
+    let contacts = Contacts {
+        answer: answer(&found, layout, looks),
+        stages,
+        starts_crossing: found.is_start_checked.then(|| count(counter::STARTS_CROSSING)),
+        triangle_pairs: count(counter::PAIRS),
+        candidates: if of_triangles { count(counter::PAIRS) } else { vf_ee[0] + vf_ee[1] },
+        candidates_vf_ee: vf_ee,
+        survivors_vf_ee: [count(counter::VF_SURVIVORS), count(counter::EE_SURVIVORS)],
+        escalated_vf_ee: [count(counter::VF_ESCALATED), count(counter::EE_ESCALATED)],
+        open_vf_ee: [count(counter::VF_OPEN), count(counter::EE_OPEN)],
+        sliced_vf_ee: [count(counter::VF_HARD), count(counter::EE_HARD)],
+        unresolved: match found.listed {
+            Listed::Earliest { unresolved, .. } => unresolved.into(),
+            Listed::Pairs(_) | Listed::Hits { .. } | Listed::Near(_) | Listed::Nearest(_) => {
+                count(counter::UNRESOLVED)
+            }
+        },
+        undecided: count(counter::UNDECIDED),
+        undecided_wide: count(counter::UNDECIDED_WIDE),
+        steps: count(counter::STEPS),
+        spilled: counter::SPILLED.map(count).iter().sum(),
+        reruns: found.reruns,
+        slices: 1,
+        queues: queues(&found.counters),
+        front: front(&found.counters),
+        degraded: degraded(&found),
+    };
+    if looks.ended() { Err(Error::Interrupted) } else { Ok(contacts) }
+}
+
+/// The answer. A part of it if a look ends it.
+fn answer(found: &Found, layout: &Layout, looks: &Looks) -> Answer {
+    match &found.listed {
+        Listed::Earliest { toi, .. } => Answer::Earliest(*toi),
+        Listed::Near(hits) => Answer::Near(near_pairs(hits, found.ordered, layout, looks)),
+        Listed::Nearest(nearest) => {
+            Answer::Distance(nearest.first().map(|hit| nearest_triangles(hit, layout)))
+        }
+        Listed::Pairs(listed) => {
+            let pair = |p: &Pair| {
+                let [(a, p), (b, q)] = [p.a, p.b].map(|t| layout.locate(t, |at| at.triangle));
+                TrianglePair { bodies: [a, b], triangles: [p, q] }
+            };
+            let mut pairs = Vec::new();
+            sort::extend(&mut pairs, listed, pair, looks);
+            if !found.ordered {
+                sort::sort(&mut pairs, TrianglePair::key, looks);
+            }
+            Answer::Pairs(pairs)
+        }
+        Listed::Hits { hits, certified } => {
+            let contact = |(kind, bodies, [a, b]): Features, verdict: &Verdict| {
+                let status = Status::of(*certified, verdict);
+                Contact { kind, bodies, a, b, toi: verdict.toi, toi_hi: verdict.toi_hi, status }
+            };
+            let [of_vf, of_ee] = hits.each();
+            let vf = |hit: &Hit| contact(vertex_face(layout, [hit.a, hit.b]), &hit.verdict);
+            let ee = |hit: &Hit| contact(edge_edge(layout, [hit.a, hit.b]), &hit.verdict);
+            let mut contacts = Vec::with_capacity(of_vf.len() + of_ee.len());
+            sort::extend(&mut contacts, of_vf, vf, looks);
+            sort::extend(&mut contacts, of_ee, ee, looks);
+            if !found.ordered {
+                sort::sort(&mut contacts, Contact::key, looks);
+            }
+            Answer::Contacts(contacts)
+        }
+    }
+}
+
+/// What the kernels found, in canonical order and in the numbering of the bodies. No answer if a look ends it.
+fn near_pairs(hits: &Hits<NearHit>, ordered: bool, layout: &Layout, looks: &Looks) -> Vec<NearPair> {
+    let [of_vf, of_ee] = hits.each();
+    let vf = |hit: &NearHit| near_pair(vertex_face(layout, [hit.a, hit.b]), hit);
+    let ee = |hit: &NearHit| near_pair(edge_edge(layout, [hit.a, hit.b]), hit);
+    let mut pairs = Vec::with_capacity(of_vf.len() + of_ee.len());
+    sort::extend(&mut pairs, of_vf, vf, looks);
+    sort::extend(&mut pairs, of_ee, ee, looks);
+    if !ordered {
+        sort::sort(&mut pairs, NearPair::key, looks);
+    }
+    pairs
+}
+
+/// Two features within a distance.
+fn near_pair((kind, bodies, [a, b]): Features, hit: &NearHit) -> NearPair {
+    let weights = if kind == Kind::Ee { [hit.at[0], hit.at[1], 0.0] } else { corner_weights(hit.at) };
+    let closest = Closest::of(kind, weights);
+    NearPair { kind, bodies, a, b, squared_distance: hit.squared, weights, closest }
+}
+
+/// The nearest triangles, in the numbering of the bodies.
+fn nearest_triangles(hit: &NearestHit, layout: &Layout) -> NearestTriangles {
+    let [(a, p), (b, q)] = [hit.a, hit.b].map(|triangle| layout.locate(triangle, |at| at.triangle));
+    let NearestHit { distance, at, points, .. } = *hit;
+    NearestTriangles { bodies: [a, b], triangles: [p, q], distance, weights: at.map(corner_weights), points }
+}
+
+/// All that holds of a frame, as the kernels counted.
+fn degraded(found: &Found) -> Vec<Degraded> {
+    let mut all = Vec::new();
+    let count = |which| found.counters[which];
+    let unsure = count(counter::UNRESOLVED) - count(counter::ENDED_UNRESOLVED);
+    let (ended, below_precision) = (count(counter::ENDED), count(counter::BELOW_PRECISION));
+    let mut put = |count: u64, reason: Degraded| all.extend((count > 0).then_some(reason));
+    match found.listed {
+        Listed::Near(_) => put(unsure, Degraded::DistanceBelowPrecision { pairs: unsure }),
+        Listed::Earliest { unresolved, .. } => put(unresolved as u64, Degraded::EarliestUnresolved),
+        Listed::Pairs(_) | Listed::Hits { .. } | Listed::Nearest(_) => {
+            put(unsure, Degraded::Unresolved { pairs: unsure });
+        }
+    }
+    put(ended, Degraded::Boxes { pairs: ended });
+    put(below_precision, Degraded::ToleranceBelowPrecision { pairs: Some(below_precision) });
+    let unlisted = matches!(found.listed, Listed::Earliest { below_precision: true, .. });
+    put(unlisted as u64, Degraded::ToleranceBelowPrecision { pairs: None });
+    put(found.front_dropped as u64, Degraded::FrontDropped);
+    all
+}
+
+/// Figures of the front.
+fn front(counters: &Counts) -> Front {
+    let of = |which| counters[which];
+    Front { pairs: of(counter::ENDS), tests: of(counter::FRONT_TESTS), pruned: of(counter::PRUNED) }
+}
+
+/// Figures of the work queues.
+fn queues(counters: &Counts) -> Queues {
+    let of = |which| counters[which];
+    Queues {
+        rounds: of(counter::QUEUE_ROUNDS),
+        idle_exits: of(counter::IDLE_EXITS),
+        spills: of(counter::QUEUE_SPILLS),
+        moves: of(counter::MOVES),
+        stolen: of(counter::STOLEN),
+        longest: of(counter::QUEUED),
+    }
+}
