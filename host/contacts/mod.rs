@@ -135,9 +135,11 @@ pub struct Contacts {
     pub answer: Answer,
     /// Milliseconds by stage.
     pub stages: Stages,
-    /// Triangle pairs that share a point at the start of the step, by the exact signs of a discrete query: as many as
-    /// [`Query::discrete`] lists at t = 0. Such a pair need not have a time of contact: an edge that is through a face stays
-    /// there. `None` if the start was not checked: of a query at rest, and of one that assumes a free start.
+    /// Triangle pairs that share a point at the start of the step, by the exact signs of a discrete
+    /// query: as many as
+    /// [`Query::discrete`] lists at t = 0. Such a pair need not have a time of contact: an edge
+    /// that is through a face stays there. `None` if the start was not checked: of a query at rest,
+    /// and of one that assumes a free start.
     pub starts_crossing: Option<u64>,
     /// Triangle pairs that the volumes let through.
     pub triangle_pairs: u64,
@@ -155,10 +157,12 @@ pub struct Contacts {
     /// Of these, those that were cut into slices: vertex/face, edge/edge.
     pub sliced_vf_ee: [u64; 2],
     /// How many contacts are [`Status::Unresolved`]; of a near query, how many of the listed pairs rounding cannot tell from such
-    /// that are farther apart; of an earliest query 1 if its time is that of such a pair and of no contact, else 0. The counts by
-    /// rung of an earliest query may differ from run to run: pairs that cannot be earlier are skipped, and the order decides which.
+    /// that are farther apart; of an earliest query 1 if its time is that of such a pair and of no
+    /// contact, else 0. The counts by rung of an earliest query may differ from run to run: pairs
+    /// that cannot be earlier are skipped, and the order decides which.
     pub unresolved: u64,
-    /// Triangle pairs that the filter in the precision of the positions left undecided; of a query in motion, at the start of the step.
+    /// Triangle pairs that the filter in the precision of the positions left undecided; of a query
+    /// in motion, at the start of the step.
     pub undecided: u64,
     /// Those of them that f64 left undecided too; none of f64 positions, which go straight to exact signs.
     pub undecided_wide: u64,
@@ -211,7 +215,8 @@ impl Contacts {
         }
     }
 
-    /// Puts what the kernels found into canonical order and into the numbering of the bodies. No answer if a look ends it.
+    /// Puts what the kernels found into canonical order and into the numbering of the bodies. No
+    /// answer if a look ends it.
     #[doc(hidden)]
     pub fn new(
         found: Found,
@@ -312,10 +317,12 @@ impl Contacts {
         self.len() == 0
     }
 
-    /// Whether the answer proves that nothing touches. Continuous and earliest: the start was checked, no triangles share a point
-    /// there, and nothing meets within the step. Discrete: no pair of triangles shares a point; pairs with a common vertex are not
-    /// tested. Distance: it is above 0, or no two bodies may meet. Near: always false, since features within a distance do not
-    /// say what crosses. As certain as the solver: see [`Solver::is_certain`](crate::query::Solver::is_certain).
+    /// Whether the answer proves that nothing touches. Continuous and earliest: the start was
+    /// checked, no triangles share a point there, and nothing meets within the step. Discrete: no
+    /// pair of triangles shares a point; pairs with a common vertex are not tested. Distance: it is
+    /// above 0, or no two bodies may meet. Near: always false, since features within a distance do
+    /// not say what crosses. As certain as the solver: see
+    /// [`Solver::is_certain`](crate::query::Solver::is_certain).
     ///
     /// ```
     /// use nearmiss::{Body, Detector, Device, Mesh, Query, device::Backend, mesh::Positions};

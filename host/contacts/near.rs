@@ -96,7 +96,8 @@ impl NearPair {
     }
 }
 
-/// What the kernels found, in canonical order and in the numbering of the bodies. No answer if a look ends it.
+/// What the kernels found, in canonical order and in the numbering of the bodies. No answer if a
+/// look ends it.
 pub fn pairs(hits: &Hits<NearHit>, ordered: bool, layout: &Layout, looks: &Looks) -> Vec<NearPair> {
     let [of_vf, of_ee] = hits.each();
     let vf = |hit: &NearHit| NearPair::new(vertex_face(layout, [hit.a, hit.b]), hit);

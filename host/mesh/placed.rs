@@ -37,8 +37,8 @@ impl Body {
     /// Whether the body can be where a frame says. Cost: a pass over the positions of a deformable body.
     ///
     /// # Errors
-    /// [`Error::Choice`] for what its kind does not take; [`Error::Input`] for positions that no mesh may have, and for a pose
-    /// that is none.
+    /// [`Error::Choice`] for what its kind does not take; [`Error::Input`] for positions that no
+    /// mesh may have, and for a pose that is none.
     pub fn check(&self, input: &Input) -> Result<(), Error> {
         match (self.kind, input) {
             (BodyKind::Deformable, Input::At(t0)) => self.check_vertices(&[t0]),
@@ -110,8 +110,8 @@ impl Body {
         Ok(())
     }
 
-    /// The default tolerance of a certified solver for the mesh that the body was made of: it stays when the body moves. 0 if no
-    /// side of its triangles has a length. Cost: a root a side, once.
+    /// The default tolerance of a certified solver for the mesh that the body was made of: it stays
+    /// when the body moves. 0 if no side of its triangles has a length. Cost: a root a side, once.
     pub fn default_tolerance(&self) -> f64 {
         self.tolerance.0.unwrap_or_else(|| of_edges(std::slice::from_ref(self)))
     }
@@ -170,7 +170,8 @@ impl Body {
         matches!(self.away, Some(Away::Lost { .. }))
     }
 
-    /// The caller's memory was read again, or may have been: whatever was known of the body's place is out of date.
+    /// The caller's memory was read again, or may have been: whatever was known of the body's place
+    /// is out of date.
     pub(crate) fn placed_again(&mut self, moving: bool) {
         self.away = Some(Away::Placed { moving });
     }
@@ -232,16 +233,18 @@ impl Body {
         }
     }
 
-    /// Whether its coordinates need f64: those that are f64, and the placed vertices of every rigid body, which f32 holds exactly in
-    /// no pose but a few. A pose of the caller's memory is known too late to decide by.
+    /// Whether its coordinates need f64: those that are f64, and the placed vertices of every rigid
+    /// body, which f32 holds exactly in no pose but a few. A pose of the caller's memory is known
+    /// too late to decide by.
     pub(crate) fn needs_f64(&self) -> bool {
         self.positions_t0.is_f64()
             || self.lent().is_some_and(DeviceInput::has_f64)
             || (self.kind == BodyKind::Rigid && !self.faces.is_empty())
     }
 
-    /// The angle by which the body turns from one pose to another, in degrees, and how far a vertex leaves its arc when it moves in a
-    /// straight line; `None` for a turn up to [`TURN_DEGREES`]. Cost: a pass over the faces of a body that turns farther.
+    /// The angle by which the body turns from one pose to another, in degrees, and how far a vertex
+    /// leaves its arc when it moves in a straight line; `None` for a turn up to [`TURN_DEGREES`].
+    /// Cost: a pass over the faces of a body that turns farther.
     pub(crate) fn turn(&self, [start, end]: [Pose; 2]) -> Option<[f64; 2]> {
         let (angle, axis) = start.turn_to(&end);
         let degrees = angle.to_degrees();

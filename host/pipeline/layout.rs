@@ -32,7 +32,8 @@ pub struct Layout {
     pub owners: Vec<u32>,
     /// What kernels know of each body.
     pub records: Vec<BodyRecord>,
-    /// Tolerances of bodies by their first vertices; empty if all pairs have the same, and of queries without one.
+    /// Tolerances of bodies by their first vertices; empty if all pairs have the same, and of
+    /// queries without one.
     pub tolerances: Vec<BodyTolerance>,
     /// The bodies with triangles that may move, and those that are static.
     pub trees: [Vec<usize>; 2],

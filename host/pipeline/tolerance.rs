@@ -12,8 +12,9 @@ pub fn of_edges(bodies: &[Body]) -> f64 {
     power_below(Certified::TOLERANCE * mean_side(bodies))
 }
 
-/// Tolerance of the pairs of two bodies, or of a body and itself: the smaller of both defaults, each that of the mesh that the
-/// body was made of. A body without a side of a length has none, and takes that of the other; 0 if neither has one.
+/// Tolerance of the pairs of two bodies, or of a body and itself: the smaller of both defaults,
+/// each that of the mesh that the body was made of. A body without a side of a length has none, and
+/// takes that of the other; 0 if neither has one.
 pub fn of_pair(a: &Body, b: &Body) -> f64 {
     smaller(own(a), own(b))
 }
@@ -49,8 +50,8 @@ impl Tolerances {
         Tolerances { least: tolerance, largest: tolerance, finest: tolerance, bodies: Vec::new() }
     }
 
-    /// The default of each pair. Whether environments and groups let it meet is not considered. Cost: a root a side of bodies
-    /// that have not told theirs, and a sort of the bodies.
+    /// The default of each pair. Whether environments and groups let it meet is not considered.
+    /// Cost: a root a side of bodies that have not told theirs, and a sort of the bodies.
     pub fn of(bodies: &[Body]) -> Tolerances {
         let all: Vec<f64> = bodies.iter().map(own).collect();
         let mut order: Vec<usize> = (0..bodies.len()).filter(|&i| bodies[i].face_count() > 0).collect();

@@ -1,4 +1,5 @@
-//! What a frame of 200 rigid bodies costs, in milliseconds: as they are added, and once tiles were built where they are.
+//! What a frame of 200 rigid bodies costs, in milliseconds: as they are added, and once tiles were
+//! built where they are.
 //!
 //! ```sh
 //! cargo run --release -p nearmiss-lab --example rigid_cost -- cpu 2       # two threads
@@ -16,7 +17,8 @@ const FRAMES: usize = 15;
 const BODIES: usize = 200;
 const SIDE: usize = 6;
 
-/// A sphere about the origin, by rings and twice as many meridians: `4 rings (rings - 1)` triangles.
+/// A sphere about the origin, by rings and twice as many meridians: `4 rings (rings - 1)`
+/// triangles.
 fn sphere(rings: u32, radius: f64) -> Result<Mesh, Error> {
     use std::f64::consts::PI;
     let around = 2 * rings;
@@ -40,7 +42,8 @@ fn sphere(rings: u32, radius: f64) -> Result<Mesh, Error> {
     Mesh::new("sphere", Positions::F32(points), faces)
 }
 
-/// Where body `k` is in a frame: on a grid whose cells are a little larger than it, drifting and turning.
+/// Where body `k` is in a frame: on a grid whose cells are a little larger than it, drifting and
+/// turning.
 fn pose(k: usize, frame: usize) -> Pose {
     let t = frame as f64 * 0.01;
     let phase = |n: usize| (k * n % 97) as f64;
