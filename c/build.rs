@@ -1,4 +1,5 @@
-//! Gives the shared library its SONAME: the name under which programs that were linked to it look for it.
+//! Gives the shared library its SONAME: the name under which programs that were linked to it look
+//! for it.
 
 use std::env::var;
 

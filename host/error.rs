@@ -1,7 +1,8 @@
 //! The one error type: grouped by who must act, each message saying what to do.
 //!
-//! The rule in every language: numbers that describe meshes, positions and poses, in files and in arrays, are *input*; all else
-//! that a caller passes (options, names, kinds, numbers of bodies, shapes and types of arrays, pointers) is a *choice*.
+//! The rule in every language: numbers that describe meshes, positions and poses, in files and in
+//! arrays, are *input*; all else that a caller passes (options, names, kinds, numbers of bodies,
+//! shapes and types of arrays, pointers) is a *choice*.
 
 use crate::mesh::Problem;
 
@@ -9,7 +10,8 @@ use crate::mesh::Problem;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// Data that cannot be used: a file, or numbers of a mesh, of positions or of a pose, wherever they come from. Correct the data.
+    /// Data that cannot be used: a file, or numbers of a mesh, of positions or of a pose, wherever
+    /// they come from. Correct the data.
     #[error("{file}: {problem}")]
     Input {
         /// The file, scene or caller's name of the mesh.
@@ -17,8 +19,9 @@ pub enum Error {
         /// What is wrong with it, and where.
         problem: Problem,
     },
-    /// An argument that does not exist or does not go with the others, whatever the data: an option, a name, a kind, the number of a
-    /// body, the shape or type of an array, a pointer. Choose again.
+    /// An argument that does not exist or does not go with the others, whatever the data: an
+    /// option, a name, a kind, the number of a body, the shape or type of an array, a pointer.
+    /// Choose again.
     #[error("{what}; {advice}")]
     Choice {
         /// What was asked for.
@@ -66,10 +69,12 @@ pub enum Error {
         /// Bytes there were.
         given: u64,
     },
-    /// An [`Interrupt`](crate::Interrupt) has ended the call. There is no answer; the detector can be used again.
+    /// An [`Interrupt`](crate::Interrupt) has ended the call. There is no answer; the detector can
+    /// be used again.
     #[error("interrupted; there is no answer, and the detector can be used again")]
     Interrupted,
-    /// The answer has more rows than memory has room for. It was refused by its count, before it was made.
+    /// The answer has more rows than memory has room for. It was refused by its count, before it
+    /// was made.
     #[error("the answer has at least {pairs} pairs: {asked} bytes are needed and {given} are free; {advice}")]
     AnswerTooLarge {
         /// Rows that were counted.
@@ -123,7 +128,8 @@ impl From<nearmiss_emulator::Error> for Error {
 }
 
 impl Error {
-    /// The exit status of the command line: 2 bad arguments, 3 bad input, 4 device, memory or output, 130 interrupted.
+    /// The exit status of the command line: 2 bad arguments, 3 bad input, 4 device, memory or
+    /// output, 130 interrupted.
     pub fn exit_code(&self) -> u8 {
         match self {
             Error::Choice { .. } => 2,

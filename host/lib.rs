@@ -3,8 +3,8 @@
 //! [`Detector`] is the front door: a [`Scene`] of bodies in, [`Contacts`] out, on the CPU or on an NVIDIA GPU, to the same bit.
 //! [`Query`] holds every choice; [`Device`] is where it runs; [`Error`] says who must act.
 //!
-//! A cloth that sinks onto something that stands still; what its vertices, edges and faces meet in a
-//! step, and when:
+//! A cloth that sinks onto something that stands still; what its vertices, edges and faces meet in
+//! a step, and when:
 //!
 //! ```
 //! use nearmiss::scene::{Input, Scene};

@@ -201,7 +201,8 @@ impl MultiDetector {
         self.begin()
     }
 
-    /// After a change of bodies: the same tiles on all devices. The change is made: a trigger waits for the next frame.
+    /// After a change of bodies: the same tiles on all devices. The change is made: a trigger waits
+    /// for the next frame.
     fn begin(&mut self) -> Result<(), Error> {
         match self.each(Detector::begin) {
             Err(Error::Interrupted) => return Ok(()),
@@ -277,7 +278,8 @@ impl MultiDetector {
         Ok(whole)
     }
 
-    /// Does the same on every device, at the same time unless in turn. All do it, whatever becomes of one.
+    /// Does the same on every device, at the same time unless in turn. All do it, whatever becomes
+    /// of one.
     fn each<T: Send>(
         &mut self,
         what: impl Fn(&mut Detector) -> Result<T, Error> + Sync,

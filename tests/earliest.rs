@@ -1,6 +1,7 @@
-//! The earliest time is a function of the question: the least time of the continuous query of the same scene and choices,
-//! undecided pairs included, and whether a contact begins then; by every order of tiles, broad phase, volume, walk, number of
-//! threads and order of blocks, with a sample and without one.
+//! The earliest time is a function of the question: the least time of the continuous query of the
+//! same scene and choices, undecided pairs included, and whether a contact begins then; by every
+//! order of tiles, broad phase, volume, walk, number of threads and order of blocks, with a sample
+//! and without one.
 
 #[path = "earliest/law.rs"]
 mod law;
@@ -37,7 +38,8 @@ fn point(rng: &mut Rng, [x, y, z]: Corner) -> Corner {
 /// Pairs of triangles, each pair far from the others, of one of these kinds.
 fn triangles(kind: u64, pairs: usize, rng: &mut Rng) -> Vec<Moved> {
     let mut all = Vec::new();
-    // Pairs of one scene are nearly alike, so that their windows begin within a rounding of each other.
+    // Pairs of one scene are nearly alike, so that their windows begin within a rounding of each
+    // other.
     let thin = [1.0, 10f64.powf(-7.0 * unit(rng)), 10f64.powf(-7.0 * unit(rng))];
     let model: Vec<Moved> = (0..2)
         .map(|_| {
@@ -176,8 +178,8 @@ const SOLVERS: [Solver; 5] =
     [Solver::Certified, Solver::CertifiedF32, Solver::CertifiedF64, Solver::CubicF32, Solver::CubicF64];
 const TOLERANCES: [f64; 6] = [0.0, 1e-9, 1e-6, 1e-3, 1e-2, 0.1];
 
-/// Nine nearly equal pairs of specks that grow to triangles: at a tolerance of 0.01 the order of the tiles once chose among
-/// three times.
+/// Nine nearly equal pairs of specks that grow to triangles: at a tolerance of 0.01 the order of
+/// the tiles once chose among three times.
 #[test]
 fn specks_that_grow_have_one_earliest_time() {
     let near =
@@ -239,7 +241,8 @@ fn any_order_of_blocks_gives_one_earliest_time() {
     }
 }
 
-/// Pairs of triangles of which one comes down on the other between 0.3 and 0.7 of the step, on a lattice.
+/// Pairs of triangles of which one comes down on the other between 0.3 and 0.7 of the step, on a
+/// lattice.
 fn landing(pairs: usize, rng: &mut Rng) -> Vec<Moved> {
     let mut all = Vec::new();
     for i in 0..pairs {

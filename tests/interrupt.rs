@@ -1,5 +1,5 @@
-//! Frames that are interrupted: at any look of theirs, by any query and schedule. There is no answer then, and the same question
-//! again has that of a detector that was never interrupted.
+//! Frames that are interrupted: at any look of theirs, by any query and schedule. There is no
+//! answer then, and the same question again has that of a detector that was never interrupted.
 
 #[path = "interrupt/calls.rs"]
 mod calls;
@@ -135,7 +135,8 @@ fn a_sample_answers_after_an_interrupt() {
     interrupts(|| threads(2), &scene, asked::of(QueryKind::Earliest), 6);
 }
 
-/// What an interrupt ends is a part of a frame: without one the frame has many more looks than a launch.
+/// What an interrupt ends is a part of a frame: without one the frame has many more looks than a
+/// launch.
 #[test]
 fn a_launch_is_looked_at_within_itself() {
     let mut detector =

@@ -1,5 +1,5 @@
-//! Two laws, by metamorphosis: an answer about two bodies depends on nothing else; an answer about a frame depends on
-//! that frame's positions and the query alone.
+//! Two laws, by metamorphosis: an answer about two bodies depends on nothing else; an answer about
+//! a frame depends on that frame's positions and the query alone.
 
 #[path = "laws/frames.rs"]
 mod frames;
@@ -16,15 +16,17 @@ use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 use support::engine;
 
-/// Every query by every solver, with the default tolerance and with a named one; a near one within a tenth.
+/// Every query by every solver, with the default tolerance and with a named one; a near one within
+/// a tenth.
 fn queries() -> Vec<Query> {
     let near = |query: Query| if query.kind() == QueryKind::Near { Query::near(0.1) } else { query };
     let named = |query: Query| query.certified().map(|_| support::asked::with_tolerance(query, 1e-4));
     Query::every().map(near).flat_map(|query| [Some(query), named(query)]).flatten().collect()
 }
 
-/// Random triangles around a place, some of which share vertices; in single precision or in doubles. One mesh in four
-/// lies on a coarse lattice: triangles without area, in one plane, and that touch.
+/// Random triangles around a place, some of which share vertices; in single precision or in
+/// doubles. One mesh in four lies on a coarse lattice: triangles without area, in one plane, and
+/// that touch.
 fn mesh(rng: &mut SmallRng, size: f64, at: f64, is_f64: bool) -> Mesh {
     let faces = rng.random_range(1..24u32);
     let vertices = rng.random_range(3..3 + 2 * faces);

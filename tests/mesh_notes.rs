@@ -1,4 +1,5 @@
-//! Parts of a file that a reader skips, leaves out or cuts as it can: each is counted by a note, or refused by its reason.
+//! Parts of a file that a reader skips, leaves out or cuts as it can: each is counted by a note, or
+//! refused by its reason.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use nearmiss::mesh::{Body, Format, Mesh, Treated};
@@ -55,7 +56,8 @@ fn marks_and_line_ends_change_nothing() {
     assert!(is_plain(&read(Format::Ply, binary).unwrap(), Format::Ply));
 }
 
-/// Every keyword of the specification, with what may stand behind it: faces and vertices are as without them.
+/// Every keyword of the specification, with what may stand behind it: faces and vertices are as
+/// without them.
 #[test]
 fn keywords_of_the_format_are_known() {
     let quiet = "vt vn vp cstype deg bmat step curv2 parm trim hole scrv sp end con g s mg o bevel c_interp d_interp lod \
@@ -80,7 +82,8 @@ fn keywords_of_the_format_are_known() {
     }
 }
 
-/// A line that begins with another word holds no vertex and no face, and is counted; or it nearly does, and is refused.
+/// A line that begins with another word holds no vertex and no face, and is counted; or it nearly
+/// does, and is refused.
 #[test]
 fn other_words_are_counted_or_refused() {
     for word in ["vertex", "VN", "1.0", "\u{feff}#", "//", "\u{1a}", "\u{a0}", "solid", "vv", "facet"] {

@@ -1,4 +1,5 @@
-//! Rigid bodies are where doubles place them, wherever that is; and an answer about two bodies depends on no other.
+//! Rigid bodies are where doubles place them, wherever that is; and an answer about two bodies
+//! depends on no other.
 
 #[path = "rigid/alone.rs"]
 mod alone;
@@ -30,7 +31,8 @@ fn unit_box() -> Mesh {
     Mesh::new("box", Positions::F32((0..8).map(corner).collect()), box_faces()).expect("a mesh")
 }
 
-/// A sphere about the origin, by rings and twice as many meridians: `4 rings (rings - 1)` triangles.
+/// A sphere about the origin, by rings and twice as many meridians: `4 rings (rings - 1)`
+/// triangles.
 fn sphere(rings: u32, radius: f64) -> Mesh {
     use std::f64::consts::PI;
     let around = 2 * rings;

@@ -1,4 +1,5 @@
-//! The triangle pairs that share a point at the start of a step: as many as a discrete query lists there, on every way.
+//! The triangle pairs that share a point at the start of a step: as many as a discrete query lists
+//! there, on every way.
 
 mod support;
 
@@ -17,7 +18,8 @@ fn threads(count: usize) -> Device {
     Device::emulator(Emulator::new(Mode::Engine, Some(count)).expect("threads"))
 }
 
-/// A crumpled sheet of `n` by `n` squares, so that neighbours share vertices and others cross; its end is another sheet.
+/// A crumpled sheet of `n` by `n` squares, so that neighbours share vertices and others cross; its
+/// end is another sheet.
 fn crumpled(n: u32, rng: &mut SmallRng) -> [Mesh; 2] {
     let faces: Vec<[u32; 3]> = (0..n * n)
         .flat_map(|i| {
@@ -78,7 +80,8 @@ fn random_scene(seed: u64) -> Scene {
     scene
 }
 
-/// Every query in motion, with a tolerance that does not hang on the bodies; with and without a separation.
+/// Every query in motion, with a tolerance that does not hang on the bodies; with and without a
+/// separation.
 fn queries() -> impl Iterator<Item = Query> {
     let apart = Certified { tolerance: Some(1e-4), separation: 0.02, ..Certified::default() };
     let every = Query::every().filter(|query| !query.kind().is_at_rest());
@@ -142,7 +145,8 @@ fn on_every_way_and_in_every_order() {
     }
 }
 
-/// The end of the step, pairs with a common vertex, and other filters: each is another number, and is noticed.
+/// The end of the step, pairs with a common vertex, and other filters: each is another number, and
+/// is noticed.
 #[test]
 fn another_count_is_noticed() {
     let [t0, t1] = crumpled(6, &mut SmallRng::seed_from_u64(5));
@@ -186,7 +190,8 @@ fn frame_after_frame() {
     }
 }
 
-/// So many tiles that an earliest query has a sample, whose bound cuts the volumes; several devices; slices.
+/// So many tiles that an earliest query has a sample, whose bound cuts the volumes; several
+/// devices; slices.
 #[test]
 fn behind_a_sample_on_several_devices_and_in_slices() {
     let scene = Scene::from(scene::soup(70_000, 7, true).expect("a soup"));
@@ -204,7 +209,8 @@ fn behind_a_sample_on_several_devices_and_in_slices() {
     assert_eq!(differs(&sliced, listed), None);
 }
 
-/// Triangles in one oblique plane that floats cannot see: more pairs than the lists between the filters have room for.
+/// Triangles in one oblique plane that floats cannot see: more pairs than the lists between the
+/// filters have room for.
 #[test]
 fn lists_of_undecided_pairs_grow() {
     const N: u32 = 110;
@@ -230,7 +236,8 @@ fn lists_of_undecided_pairs_grow() {
     }
 }
 
-/// With `assume_free` there is no kernel, no memory and no launch of it, and the answer is the same.
+/// With `assume_free` there is no kernel, no memory and no launch of it, and the answer is the
+/// same.
 #[test]
 fn what_is_assumed_costs_nothing() {
     let singles = Scene::from(scene::soup(200, 3, true).expect("a soup"));

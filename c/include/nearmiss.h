@@ -46,8 +46,8 @@ enum NearmissCode
  {
     // Done.
     NEARMISS_OK = 0,
-    // An argument that does not exist or does not go with the others, whatever the data: an option, a name, a kind, the number of a body,
-    // a pointer. Choose again.
+    // An argument that does not exist or does not go with the others, whatever the data: an
+    // option, a name, a kind, the number of a body, a pointer. Choose again.
     NEARMISS_CHOICE = 1,
     // Data that cannot be used: numbers of a mesh, of positions or of a pose. Correct the data.
     NEARMISS_INPUT = 2,
@@ -63,7 +63,8 @@ enum NearmissCode
     NEARMISS_STAMP = 7,
     // A fault of nearmiss itself. Tell us.
     NEARMISS_BUG = 8,
-    // A `NearmissInterrupt` has ended the call. There is no answer, and the detector can be used again.
+    // A `NearmissInterrupt` has ended the call. There is no answer, and the detector can be used
+    // again.
     NEARMISS_INTERRUPTED = 9,
 };
 #ifndef __cplusplus
@@ -223,7 +224,8 @@ typedef uint32_t NearmissBodyKind;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// Whether a body is tested against itself. Deformable bodies are by default, rigid bodies if it is on, static bodies never.
+// Whether a body is tested against itself. Deformable bodies are by default, rigid bodies if it is
+// on, static bodies never.
 enum NearmissSelfContact
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
@@ -252,7 +254,9 @@ enum NearmissInputKind
  {
     // A deformable body stands at `positions[0]`.
     NEARMISS_AT = 0,
-    // A deformable body moves from `positions[0]` to `positions[1]`, each vertex in a straight line.
+    // A deformable body moves from `positions[0]` to `positions[1]`, each vertex in a straight
+    // line. Discrete, near and distance queries test it at `positions[0]`; it rests at
+    // `positions[1]` if the next frame does not name it. So of poses.
     NEARMISS_STEP = 1,
     // A rigid body stands in `poses[0]`.
     NEARMISS_POSE = 2,
@@ -277,7 +281,8 @@ enum NearmissQueryKind
     NEARMISS_DISCRETE = 0,
     // Which vertex/face and edge/edge pairs meet within the step, and when first? Answers `nearmiss_answer_contacts`.
     NEARMISS_CONTINUOUS = 1,
-    // When does the first of them meet? Answers `nearmiss_answer_earliest`, and `nearmiss_answer_is_free`.
+    // When does the first of them meet? Answers `nearmiss_answer_earliest`, and
+    // `nearmiss_answer_is_free`.
     NEARMISS_EARLIEST = 2,
     // Which vertex/face and edge/edge pairs are within a distance now, and where? Answers `nearmiss_answer_near_pairs`.
     NEARMISS_NEAR = 3,
@@ -355,8 +360,8 @@ typedef struct {
     uint32_t a;
     // The second feature's index in its body.
     uint32_t b;
-    // Their squared distance: its root is off by 192 half ulps of their extent at most. A square below 2^-1022 has fewer digits, one below
-    // 2^-1075 is 0, though the features may be apart.
+    // Their squared distance: its root is off by 192 half ulps of their extent at most. A square
+    // below 2^-1022 has fewer digits, one below 2^-1075 is 0, though the features may be apart.
     double squared_distance;
     // Of a vertex and a face the weights of the face's corners; of two edges how far along `a` and along `b`, from the end of the larger
     // index (0) to the other (1), and 0.
@@ -369,8 +374,8 @@ typedef struct {
     uint32_t bodies[2];
     // Their indices in those.
     uint32_t triangles[2];
-    // How far apart they are: 0 if and only if they share a point, else off by 192 half ulps at most of the larger of two extents: theirs,
-    // and that of the truly nearest triangles.
+    // How far apart they are: 0 if and only if they share a point, else off by 192 half ulps at
+    // most of the larger of two extents: theirs, and that of the truly nearest triangles.
     double distance;
     // Of each the weights of its corners at the nearest point.
     double weights[2][3];
@@ -412,7 +417,8 @@ typedef struct {
     uint64_t triangle_pairs;
     // Pairs that the narrow test was asked.
     uint64_t candidates;
-    // How many are neither confirmed nor refuted; of an earliest query 1 if its time is that of such a pair, else 0.
+    // How many are neither confirmed nor refuted; of an earliest query 1 if its time is that of
+    // such a pair, else 0.
     uint64_t unresolved;
     // How often a list was too short and a part of the frame ran again. The answer is whole.
     uint64_t reruns;
@@ -422,9 +428,11 @@ typedef struct {
     uint64_t bytes;
     // Of the canonical answer: the same for equal answers on every machine.
     uint64_t hash;
-    // Triangle pairs that share a point at the start of the step; 0 if `is_start_checked` is false.
+    // Triangle pairs that share a point at the start of the step; 0 if `is_start_checked` is
+    // false.
     uint64_t starts_crossing;
-    // Whether the start was checked: of a continuous and an earliest query, unless it assumes a free start.
+    // Whether the start was checked: of a continuous and an earliest query, unless it assumes a
+    // free start.
     bool is_start_checked;
     // How many sentences `nearmiss_answer_degraded` has.
     uint64_t degraded;
@@ -475,14 +483,15 @@ typedef struct {
     size_t triangle_count;
     // A `NearmissBodyKind`.
     uint32_t kind;
-    // A `NearmissSelfContact`. Deformable bodies are tested against themselves by default, rigid bodies if it is on, static
-    // bodies never.
+    // A `NearmissSelfContact`. Deformable bodies are tested against themselves by default, rigid
+    // bodies if it is on, static bodies never.
     uint32_t self_contact;
     // Bodies of different environments never meet.
     uint32_t environment;
     // Whether it is in every environment, and `environment` is 0: 0 or 1.
     uint32_t everywhere;
-    // Bits of the groups that it is in, at least one: two bodies meet if each is in a group that the other one's mask has.
+    // Bits of the groups that it is in, at least one: two bodies meet if each is in a group that
+    // the other one's mask has.
     uint32_t group;
     // Bits of the groups that it meets; 0 for a body that meets no other.
     uint32_t mask;
@@ -497,7 +506,8 @@ typedef struct {
     uint32_t adjacent;
     // Continuous, earliest; certified: the most boxes that are looked at for a pair before it is left unresolved; 0 for the default.
     uint32_t budget;
-    // Continuous, earliest: whether the start of the step is taken to be free of crossing triangles, and not checked: 0 or 1.
+    // Continuous, earliest: whether the start of the step is taken to be free of crossing
+    // triangles, and not checked: 0 or 1.
     uint32_t assume_free;
     // Near: how far apart two features may be to be listed, a length above 0.
     double distance;
@@ -523,7 +533,8 @@ typedef struct {
 
 // A rigid motion of the points of a body's mesh: turned first, then moved.
 typedef struct {
-    // A unit quaternion: x, y, z, w. It may be off unit length by up to 1.2e-4 (2^-13) and is normalised.
+    // A unit quaternion: x, y, z, w. It may be off unit length by up to 1.2e-4 (2^-13) and is
+    // normalised.
     double rotation[4];
     // What is added, in the unit of the positions.
     double translation[3];
@@ -570,8 +581,8 @@ typedef struct {
     bool has_earliest;
     // Where the `NearmissFrameStatus` lies.
     uint64_t status;
-    // Where the earliest time lies: a double, all bits set where nothing meets. The next 8 bytes are twice those bits, plus 1 if the time is
-    // that of an unresolved pair and of no contact.
+    // Where the earliest time lies: a double, all bits set where nothing meets. The next 8 bytes
+    // are twice those bits, plus 1 if the time is that of an unresolved pair and of no contact.
     uint64_t earliest;
     // The two vertices of every edge, 8 bytes each; none of a discrete query.
     NearmissDeviceList edges;
@@ -642,7 +653,8 @@ typedef struct {
     uint64_t short_of_room;
     // Not 0 where positions or poses of the caller cannot be computed with: then there is no answer.
     uint64_t invalid;
-    // Triangle pairs that share a point at the start of the step; all bits set if the start is not checked.
+    // Triangle pairs that share a point at the start of the step; all bits set if the start is not
+    // checked.
     uint64_t crossing;
 } NearmissFrameStatus;
 
@@ -683,15 +695,17 @@ NearmissCode nearmiss_answer_nearest(const NearmissAnswer *answer,
                                      NearmissError *error);
 
 // The smallest time of contact of an earliest or a continuous query, in [0, 1]: no contact is before it. `is_any` is false, and the time 1,
-// if nothing meets. Triangles that cross at the start need not meet again: `nearmiss_answer_is_free` says whether the step is free.
+// if nothing meets. Triangles that cross at the start need not meet again:
+// `nearmiss_answer_is_free` says whether the step is free.
 NearmissCode nearmiss_answer_earliest(const NearmissAnswer *answer,
                                       bool *is_any,
                                       double *toi,
                                       NearmissError *error);
 
-// Whether the answer proves that nothing touches. Continuous and earliest: the start was checked, no triangles share a point there, and
-// nothing meets within the step. Discrete: no pair of triangles shares a point. Distance: it is above 0, or no two bodies may meet. Near:
-// always false.
+// Whether the answer proves that nothing touches. Continuous and earliest: the start was checked,
+// no triangles share a point there, and nothing meets within the step. Discrete: no pair of
+// triangles shares a point. Distance: it is above 0, or no two bodies may meet. Near: always
+// false.
 NearmissCode nearmiss_answer_is_free(const NearmissAnswer *answer,
                                      bool *is_free,
                                      NearmissError *error);
@@ -708,15 +722,17 @@ NearmissCode nearmiss_answer_degraded(const NearmissAnswer *answer,
                                       const char **sentence,
                                       NearmissError *error);
 
-// Makes the notes beside an answer, as the command line prints them, and counts them; mostly there are none. `nearmiss_answer_note` returns
-// each. The bodies must be where they were at the frame. Cost: a comparison of both ends of the step if nothing moves; a sort of all
-// vertices if there are 1,000 contacts.
+// Makes the notes beside an answer, as the command line prints them, and counts them; mostly there
+// are none. `nearmiss_answer_note` returns each. The bodies must be where they were at the frame.
+// Cost: a comparison of both ends of the step if nothing moves; a sort of all vertices if there
+// are 1,000 contacts.
 NearmissCode nearmiss_detector_notes(NearmissDetector *detector,
                                      NearmissAnswer *answer,
                                      size_t *count,
                                      NearmissError *error);
 
-// A note that `nearmiss_detector_notes` made, by its index. The text lives until they are made again, and no longer than the answer.
+// A note that `nearmiss_detector_notes` made, by its index. The text lives until they are made
+// again, and no longer than the answer.
 NearmissCode nearmiss_answer_note(const NearmissAnswer *answer,
                                   size_t index,
                                   const char **note,
@@ -736,10 +752,11 @@ void nearmiss_answer_free(NearmissAnswer *answer);
 // A deformable body without a mesh, in environment 0, that meets all others and itself.
 NearmissBody nearmiss_body(void);
 
-// Takes a copy of a scene, to which nothing can be added from then on, to a device and builds its trees. Cost: linear in triangles; memory grows with what is found.
+// Takes a copy of a scene, to which nothing can be added from then on, to a device and builds its
+// trees. Cost: linear in triangles; memory grows with what is found.
 //
-// A scene without bodies answers nothing. Fails with `NEARMISS_CHOICE` for choices that do not go together; with `NEARMISS_OUT_OF_MEMORY` and
-// `NEARMISS_DEVICE`.
+// A scene without bodies answers nothing. Fails with `NEARMISS_CHOICE` for choices that do not go
+// together; with `NEARMISS_OUT_OF_MEMORY` and `NEARMISS_DEVICE`.
 //
 // # Safety
 // The names of the query are texts or NULL.
@@ -749,14 +766,14 @@ NearmissCode nearmiss_detector_new(const NearmissDevice *device,
                                    NearmissDetector **detector,
                                    NearmissError *error);
 
-// The tolerance of a certified solver, a length: as asked, or the smallest default of a pair of bodies, which is the smaller of
-// theirs; -1 of other solvers.
+// The tolerance of a certified solver, a length: as asked, or the smallest default of a pair of
+// bodies, which is the smaller of theirs; -1 of other solvers.
 NearmissCode nearmiss_detector_tolerance(NearmissDetector *detector,
                                          double *tolerance,
                                          NearmissError *error);
 
-// The largest tolerance of a pair of bodies, a length: that of `nearmiss_detector_tolerance` if all pairs have the same; -1 of other
-// solvers.
+// The largest tolerance of a pair of bodies, a length: that of `nearmiss_detector_tolerance` if
+// all pairs have the same; -1 of other solvers.
 NearmissCode nearmiss_detector_largest_tolerance(NearmissDetector *detector,
                                                  double *tolerance,
                                                  NearmissError *error);
@@ -795,7 +812,9 @@ void nearmiss_detector_free(NearmissDetector *detector);
 // Opens a machine: a `NearmissBackend`, on a CPU with so many threads, at most as many as there are processors; 0 for all. Cost: of a GPU
 // some 0.1 s for its context; its kernels are compiled by the driver when first used.
 //
-// Fails with `NEARMISS_DEVICE` when there is no such machine or its driver refuses.
+// Fails with `NEARMISS_DEVICE` when there is no such machine or its driver refuses, and with
+// `NEARMISS_CHOICE` for threads of `NEARMISS_CUDA`. With `NEARMISS_AUTO` the threads are those of
+// the CPU that is taken if there is no GPU.
 NearmissCode nearmiss_device_open(uint32_t backend,
                                   size_t threads,
                                   NearmissDevice **device,
@@ -834,7 +853,8 @@ NearmissCode nearmiss_device_limit(const NearmissDevice *device,
 // Frees the handle. The machine goes when its last detector does.
 void nearmiss_device_free(NearmissDevice *device);
 
-// The exit status that the command line has for a code: 0 done, 2 bad arguments, 3 bad input, 130 interrupted, 4 all else.
+// The exit status that the command line has for a code: 0 done, 2 bad arguments, 3 bad input, 130
+// interrupted, 4 all else.
 uint32_t nearmiss_exit_code(uint32_t code);
 
 // Moves bodies to where the inputs say, and answers. A body that is not named rests where it was, or where its step ended. Cost: one
@@ -885,15 +905,16 @@ NearmissCode nearmiss_detector_interrupter(const NearmissDetector *detector,
                                            NearmissInterrupt **interrupt,
                                            NearmissError *error);
 
-// Another handle of the same machine. The interrupt ends the calls of detectors that are made with it, and their making. Free it as
-// any device.
+// Another handle of the same machine. The interrupt ends the calls of detectors that are made with
+// it, and their making. Free it as any device.
 NearmissCode nearmiss_device_interruptible(const NearmissDevice *device,
                                            const NearmissInterrupt *interrupt,
                                            NearmissDevice **made,
                                            NearmissError *error);
 
-// Ends the call that runs or, if none runs, the next one: it returns `NEARMISS_INTERRUPTED`, without an answer, and the detector can be
-// used again. Bodies that the call named are where it said. One atomic store: safe in a signal handler. NULL does nothing.
+// Ends the call that runs or, if none runs, the next one: it returns `NEARMISS_INTERRUPTED`,
+// without an answer, and the detector can be used again. Bodies that the call named are where it
+// said. One atomic store: safe in a signal handler. NULL does nothing.
 void nearmiss_interrupt(const NearmissInterrupt *interrupt);
 
 // Takes back an interrupt that has ended no call yet. As safe as `nearmiss_interrupt`.
@@ -930,7 +951,8 @@ NearmissCode nearmiss_scene_new(NearmissScene **scene, NearmissError *error);
 // Adds a body and tells its number: they are counted from 0. `id` may be NULL. Cost: a copy of the mesh, and a pass over it.
 //
 // Fails with `NEARMISS_INPUT` for positions that are not finite or too large, and for indices out of range, naming the first; with
-// `NEARMISS_CHOICE` for a body that cannot be, and for a scene of which a detector has a copy. Then nothing is added.
+// `NEARMISS_CHOICE` for a body that cannot be, and for a scene of which a detector has a copy.
+// Then nothing is added.
 //
 // # Safety
 // What the body points to is there.

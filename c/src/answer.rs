@@ -39,7 +39,8 @@ pub struct NearmissSummary {
     pub triangle_pairs: u64,
     /// Pairs that the narrow test was asked.
     pub candidates: u64,
-    /// How many are neither confirmed nor refuted; of an earliest query 1 if its time is that of such a pair, else 0.
+    /// How many are neither confirmed nor refuted; of an earliest query 1 if its time is that of
+    /// such a pair, else 0.
     pub unresolved: u64,
     /// How often a list was too short and a part of the frame ran again. The answer is whole.
     pub reruns: u64,
@@ -49,9 +50,11 @@ pub struct NearmissSummary {
     pub bytes: u64,
     /// Of the canonical answer: the same for equal answers on every machine.
     pub hash: u64,
-    /// Triangle pairs that share a point at the start of the step; 0 if `is_start_checked` is false.
+    /// Triangle pairs that share a point at the start of the step; 0 if `is_start_checked` is
+    /// false.
     pub starts_crossing: u64,
-    /// Whether the start was checked: of a continuous and an earliest query, unless it assumes a free start.
+    /// Whether the start was checked: of a continuous and an earliest query, unless it assumes a
+    /// free start.
     pub is_start_checked: bool,
     /// How many sentences `nearmiss_answer_degraded` has.
     pub degraded: u64,
@@ -173,7 +176,8 @@ pub extern "C" fn nearmiss_answer_nearest(
 }
 
 /// The smallest time of contact of an earliest or a continuous query, in [0, 1]: no contact is before it. `is_any` is false, and the time 1,
-/// if nothing meets. Triangles that cross at the start need not meet again: `nearmiss_answer_is_free` says whether the step is free.
+/// if nothing meets. Triangles that cross at the start need not meet again:
+/// `nearmiss_answer_is_free` says whether the step is free.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_answer_earliest(
     answer: Option<&NearmissAnswer>,
@@ -194,9 +198,10 @@ pub extern "C" fn nearmiss_answer_earliest(
     })
 }
 
-/// Whether the answer proves that nothing touches. Continuous and earliest: the start was checked, no triangles share a point there, and
-/// nothing meets within the step. Discrete: no pair of triangles shares a point. Distance: it is above 0, or no two bodies may meet. Near:
-/// always false.
+/// Whether the answer proves that nothing touches. Continuous and earliest: the start was checked,
+/// no triangles share a point there, and nothing meets within the step. Discrete: no pair of
+/// triangles shares a point. Distance: it is above 0, or no two bodies may meet. Near: always
+/// false.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_answer_is_free(
     answer: Option<&NearmissAnswer>,
@@ -256,9 +261,10 @@ pub extern "C" fn nearmiss_answer_degraded(
     })
 }
 
-/// Makes the notes beside an answer, as the command line prints them, and counts them; mostly there are none. `nearmiss_answer_note` returns
-/// each. The bodies must be where they were at the frame. Cost: a comparison of both ends of the step if nothing moves; a sort of all
-/// vertices if there are 1,000 contacts.
+/// Makes the notes beside an answer, as the command line prints them, and counts them; mostly there
+/// are none. `nearmiss_answer_note` returns each. The bodies must be where they were at the frame.
+/// Cost: a comparison of both ends of the step if nothing moves; a sort of all vertices if there
+/// are 1,000 contacts.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_detector_notes(
     detector: Option<&mut NearmissDetector>,
@@ -274,7 +280,8 @@ pub extern "C" fn nearmiss_detector_notes(
     })
 }
 
-/// A note that `nearmiss_detector_notes` made, by its index. The text lives until they are made again, and no longer than the answer.
+/// A note that `nearmiss_detector_notes` made, by its index. The text lives until they are made
+/// again, and no longer than the answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_answer_note(
     answer: Option<&NearmissAnswer>,

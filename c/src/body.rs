@@ -21,7 +21,8 @@ pub enum NearmissBodyKind {
     NEARMISS_DEFORMABLE = 2,
 }
 
-/// Whether a body is tested against itself. Deformable bodies are by default, rigid bodies if it is on, static bodies never.
+/// Whether a body is tested against itself. Deformable bodies are by default, rigid bodies if it is
+/// on, static bodies never.
 #[allow(non_camel_case_types, reason = "as C sees them")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
@@ -49,14 +50,15 @@ pub struct NearmissBody {
     pub triangle_count: usize,
     /// A `NearmissBodyKind`.
     pub kind: u32,
-    /// A `NearmissSelfContact`. Deformable bodies are tested against themselves by default, rigid bodies if it is on, static
-    /// bodies never.
+    /// A `NearmissSelfContact`. Deformable bodies are tested against themselves by default, rigid
+    /// bodies if it is on, static bodies never.
     pub self_contact: u32,
     /// Bodies of different environments never meet.
     pub environment: u32,
     /// Whether it is in every environment, and `environment` is 0: 0 or 1.
     pub everywhere: u32,
-    /// Bits of the groups that it is in, at least one: two bodies meet if each is in a group that the other one's mask has.
+    /// Bits of the groups that it is in, at least one: two bodies meet if each is in a group that
+    /// the other one's mask has.
     pub group: u32,
     /// Bits of the groups that it meets; 0 for a body that meets no other.
     pub mask: u32,

@@ -47,10 +47,11 @@ impl NearmissDetector {
     }
 }
 
-/// Takes a copy of a scene, to which nothing can be added from then on, to a device and builds its trees. Cost: linear in triangles; memory grows with what is found.
+/// Takes a copy of a scene, to which nothing can be added from then on, to a device and builds its
+/// trees. Cost: linear in triangles; memory grows with what is found.
 ///
-/// A scene without bodies answers nothing. Fails with `NEARMISS_CHOICE` for choices that do not go together; with `NEARMISS_OUT_OF_MEMORY` and
-/// `NEARMISS_DEVICE`.
+/// A scene without bodies answers nothing. Fails with `NEARMISS_CHOICE` for choices that do not go
+/// together; with `NEARMISS_OUT_OF_MEMORY` and `NEARMISS_DEVICE`.
 ///
 /// # Safety
 /// The names of the query are texts or NULL.
@@ -80,8 +81,8 @@ pub unsafe extern "C" fn nearmiss_detector_new(
     })
 }
 
-/// The tolerance of a certified solver, a length: as asked, or the smallest default of a pair of bodies, which is the smaller of
-/// theirs; -1 of other solvers.
+/// The tolerance of a certified solver, a length: as asked, or the smallest default of a pair of
+/// bodies, which is the smaller of theirs; -1 of other solvers.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_detector_tolerance(
     detector: Option<&mut NearmissDetector>,
@@ -94,8 +95,8 @@ pub extern "C" fn nearmiss_detector_tolerance(
     })
 }
 
-/// The largest tolerance of a pair of bodies, a length: that of `nearmiss_detector_tolerance` if all pairs have the same; -1 of other
-/// solvers.
+/// The largest tolerance of a pair of bodies, a length: that of `nearmiss_detector_tolerance` if
+/// all pairs have the same; -1 of other solvers.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_detector_largest_tolerance(
     detector: Option<&mut NearmissDetector>,

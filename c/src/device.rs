@@ -37,8 +37,9 @@ impl From<Device> for NearmissDevice {
 /// Opens a machine: a `NearmissBackend`, on a CPU with so many threads, at most as many as there are processors; 0 for all. Cost: of a GPU
 /// some 0.1 s for its context; its kernels are compiled by the driver when first used.
 ///
-/// Fails with `NEARMISS_DEVICE` when there is no such machine or its driver refuses, and with `NEARMISS_CHOICE` for threads of
-/// `NEARMISS_CUDA`. With `NEARMISS_AUTO` the threads are those of the CPU that is taken if there is no GPU.
+/// Fails with `NEARMISS_DEVICE` when there is no such machine or its driver refuses, and with
+/// `NEARMISS_CHOICE` for threads of `NEARMISS_CUDA`. With `NEARMISS_AUTO` the threads are those of
+/// the CPU that is taken if there is no GPU.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_device_open(
     backend: u32,

@@ -13,8 +13,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 pub enum NearmissCode {
     /// Done.
     NEARMISS_OK = 0,
-    /// An argument that does not exist or does not go with the others, whatever the data: an option, a name, a kind, the number of a body,
-    /// a pointer. Choose again.
+    /// An argument that does not exist or does not go with the others, whatever the data: an
+    /// option, a name, a kind, the number of a body, a pointer. Choose again.
     NEARMISS_CHOICE = 1,
     /// Data that cannot be used: numbers of a mesh, of positions or of a pose. Correct the data.
     NEARMISS_INPUT = 2,
@@ -30,7 +30,8 @@ pub enum NearmissCode {
     NEARMISS_STAMP = 7,
     /// A fault of nearmiss itself. Tell us.
     NEARMISS_BUG = 8,
-    /// A `NearmissInterrupt` has ended the call. There is no answer, and the detector can be used again.
+    /// A `NearmissInterrupt` has ended the call. There is no answer, and the detector can be used
+    /// again.
     NEARMISS_INTERRUPTED = 9,
 }
 
@@ -59,7 +60,8 @@ impl NearmissError {
     }
 }
 
-/// The exit status that the command line has for a code: 0 done, 2 bad arguments, 3 bad input, 130 interrupted, 4 all else.
+/// The exit status that the command line has for a code: 0 done, 2 bad arguments, 3 bad input, 130
+/// interrupted, 4 all else.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_exit_code(code: u32) -> u32 {
     match code {

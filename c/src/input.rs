@@ -15,8 +15,9 @@ use std::ptr::null;
 pub enum NearmissInputKind {
     /// A deformable body stands at `positions[0]`.
     NEARMISS_AT = 0,
-    /// A deformable body moves from `positions[0]` to `positions[1]`, each vertex in a straight line. Discrete, near and distance
-    /// queries test it at `positions[0]`; it rests at `positions[1]` if the next frame does not name it. So of poses.
+    /// A deformable body moves from `positions[0]` to `positions[1]`, each vertex in a straight
+    /// line. Discrete, near and distance queries test it at `positions[0]`; it rests at
+    /// `positions[1]` if the next frame does not name it. So of poses.
     NEARMISS_STEP = 1,
     /// A rigid body stands in `poses[0]`.
     NEARMISS_POSE = 2,
@@ -28,7 +29,8 @@ pub enum NearmissInputKind {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct NearmissPose {
-    /// A unit quaternion: x, y, z, w. It may be off unit length by up to 1.2e-4 (2^-13) and is normalised.
+    /// A unit quaternion: x, y, z, w. It may be off unit length by up to 1.2e-4 (2^-13) and is
+    /// normalised.
     pub rotation: [f64; 4],
     /// What is added, in the unit of the positions.
     pub translation: [f64; 3],

@@ -33,8 +33,8 @@ pub extern "C" fn nearmiss_detector_interrupter(
     })
 }
 
-/// Another handle of the same machine. The interrupt ends the calls of detectors that are made with it, and their making. Free it as
-/// any device.
+/// Another handle of the same machine. The interrupt ends the calls of detectors that are made with
+/// it, and their making. Free it as any device.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_device_interruptible(
     device: Option<&NearmissDevice>,
@@ -48,8 +48,9 @@ pub extern "C" fn nearmiss_device_interruptible(
     })
 }
 
-/// Ends the call that runs or, if none runs, the next one: it returns `NEARMISS_INTERRUPTED`, without an answer, and the detector can be
-/// used again. Bodies that the call named are where it said. One atomic store: safe in a signal handler. NULL does nothing.
+/// Ends the call that runs or, if none runs, the next one: it returns `NEARMISS_INTERRUPTED`,
+/// without an answer, and the detector can be used again. Bodies that the call named are where it
+/// said. One atomic store: safe in a signal handler. NULL does nothing.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_interrupt(interrupt: Option<&NearmissInterrupt>) {
     if let Some(interrupt) = interrupt {

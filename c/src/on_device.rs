@@ -48,8 +48,8 @@ pub struct NearmissDeviceAnswer {
     pub has_earliest: bool,
     /// Where the `NearmissFrameStatus` lies.
     pub status: u64,
-    /// Where the earliest time lies: a double, all bits set where nothing meets. The next 8 bytes are twice those bits, plus 1 if the time is
-    /// that of an unresolved pair and of no contact.
+    /// Where the earliest time lies: a double, all bits set where nothing meets. The next 8 bytes
+    /// are twice those bits, plus 1 if the time is that of an unresolved pair and of no contact.
     pub earliest: u64,
     /// The two vertices of every edge, 8 bytes each; none of a discrete query.
     pub edges: NearmissDeviceList,
@@ -125,7 +125,8 @@ pub struct NearmissFrameStatus {
     pub short_of_room: u64,
     /// Not 0 where positions or poses of the caller cannot be computed with: then there is no answer.
     pub invalid: u64,
-    /// Triangle pairs that share a point at the start of the step; all bits set if the start is not checked.
+    /// Triangle pairs that share a point at the start of the step; all bits set if the start is not
+    /// checked.
     pub crossing: u64,
 }
 

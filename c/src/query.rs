@@ -19,7 +19,8 @@ pub enum NearmissQueryKind {
     NEARMISS_DISCRETE = 0,
     /// Which vertex/face and edge/edge pairs meet within the step, and when first? Answers `nearmiss_answer_contacts`.
     NEARMISS_CONTINUOUS = 1,
-    /// When does the first of them meet? Answers `nearmiss_answer_earliest`, and `nearmiss_answer_is_free`.
+    /// When does the first of them meet? Answers `nearmiss_answer_earliest`, and
+    /// `nearmiss_answer_is_free`.
     NEARMISS_EARLIEST = 2,
     /// Which vertex/face and edge/edge pairs are within a distance now, and where? Answers `nearmiss_answer_near_pairs`.
     NEARMISS_NEAR = 3,
@@ -38,7 +39,8 @@ pub struct NearmissQuery {
     pub adjacent: u32,
     /// Continuous, earliest; certified: the most boxes that are looked at for a pair before it is left unresolved; 0 for the default.
     pub budget: u32,
-    /// Continuous, earliest: whether the start of the step is taken to be free of crossing triangles, and not checked: 0 or 1.
+    /// Continuous, earliest: whether the start of the step is taken to be free of crossing
+    /// triangles, and not checked: 0 or 1.
     pub assume_free: u32,
     /// Near: how far apart two features may be to be listed, a length above 0.
     pub distance: f64,

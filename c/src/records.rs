@@ -89,8 +89,8 @@ pub struct NearmissNearPair {
     pub a: u32,
     /// The second feature's index in its body.
     pub b: u32,
-    /// Their squared distance: its root is off by 192 half ulps of their extent at most. A square below 2^-1022 has fewer digits, one below
-    /// 2^-1075 is 0, though the features may be apart.
+    /// Their squared distance: its root is off by 192 half ulps of their extent at most. A square
+    /// below 2^-1022 has fewer digits, one below 2^-1075 is 0, though the features may be apart.
     pub squared_distance: f64,
     /// Of a vertex and a face the weights of the face's corners; of two edges how far along `a` and along `b`, from the end of the larger
     /// index (0) to the other (1), and 0.
@@ -105,8 +105,8 @@ pub struct NearmissNearest {
     pub bodies: [u32; 2],
     /// Their indices in those.
     pub triangles: [u32; 2],
-    /// How far apart they are: 0 if and only if they share a point, else off by 192 half ulps at most of the larger of two extents: theirs,
-    /// and that of the truly nearest triangles.
+    /// How far apart they are: 0 if and only if they share a point, else off by 192 half ulps at
+    /// most of the larger of two extents: theirs, and that of the truly nearest triangles.
     pub distance: f64,
     /// Of each the weights of its corners at the nearest point.
     pub weights: [[f64; 3]; 2],

@@ -28,8 +28,8 @@ use output::{Target, print, say};
 use std::path::Path;
 use std::process::ExitCode;
 
-/// 0 done (contacts or not), 2 bad arguments, 3 bad input, 4 device, memory or output, and a check that fails; 130 and 143 for
-/// SIGINT and SIGTERM.
+/// 0 done (contacts or not), 2 bad arguments, 3 bad input, 4 device, memory or output, and a check
+/// that fails; 130 and 143 for SIGINT and SIGTERM.
 fn main() -> ExitCode {
     stop::listen();
     let done = match args::parse() {

@@ -7,14 +7,16 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// What is not whole yet.
 struct Unfinished {
-    /// New files that have no name of their own yet. Those that are gone do no harm: no other file gets such a name.
+    /// New files that have no name of their own yet. Those that are gone do no harm: no other file
+    /// gets such a name.
     new: Vec<std::path::PathBuf>,
     /// Files that are written where they are, by their numbers.
     open: Vec<(u64, File)>,
     opened: u64,
 }
 
-/// Held by whoever makes, writes or gives up such a file; a signal holds it to the end, so that nothing is written behind it.
+/// Held by whoever makes, writes or gives up such a file; a signal holds it to the end, so that
+/// nothing is written behind it.
 static UNFINISHED: Mutex<Unfinished> =
     Mutex::new(Unfinished { new: Vec::new(), open: Vec::new(), opened: 0 });
 
@@ -33,7 +35,8 @@ pub fn making<T: AsRef<Path>>(make: impl FnOnce() -> io::Result<T>) -> io::Resul
     Ok(made)
 }
 
-/// A regular file that is being written. It is emptied if the program is ended before this is dropped.
+/// A regular file that is being written. It is emptied if the program is ended before this is
+/// dropped.
 pub struct Writing<'a> {
     file: &'a File,
     number: u64,
@@ -84,7 +87,8 @@ fn give_up() -> MutexGuard<'static, Unfinished> {
     unfinished
 }
 
-/// From here on the signals end the program as it is said above. Where no thread can be started they do what they do by default.
+/// From here on the signals end the program as it is said above. Where no thread can be started
+/// they do what they do by default.
 #[cfg(unix)]
 pub fn listen() {
     use signal_hook::consts::{SIGINT, SIGTERM};

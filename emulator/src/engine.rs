@@ -10,7 +10,8 @@ use crate::turns::Stop;
 pub struct Looking<'a>(pub &'a Looks<'a>);
 
 impl Looking<'_> {
-    /// Leaves the kernel where work is to end. Programs that abort on a panic cannot leave one: their blocks run to their end.
+    /// Leaves the kernel where work is to end. Programs that abort on a panic cannot leave one:
+    /// their blocks run to their end.
     #[inline(always)]
     fn look(&self) {
         if cfg!(panic = "unwind") && self.0.ends() {

@@ -45,8 +45,10 @@ impl State {
 
 /// A handle that ends work of another thread. Clones are one handle.
 ///
-/// Work reads it between launches, slices and blocks, on a CPU also between the phases of a block, and ends within milliseconds.
-/// [`Interrupt::trigger`] concerns the call that runs or, if none runs, the next one. The call that ends early clears the handle.
+/// Work reads it between launches, slices and blocks, on a CPU also between the phases of a block,
+/// and ends within milliseconds.
+/// [`Interrupt::trigger`] concerns the call that runs or, if none runs, the next one. The call that
+/// ends early clears the handle.
 #[derive(Clone)]
 pub struct Interrupt(Arc<State>);
 
@@ -83,7 +85,8 @@ impl Interrupt {
         self.0.stage.load(Relaxed) == TRIGGERED
     }
 
-    /// Triggers itself at the look of that number, counted from 1: for tests, which end work at the same place each time.
+    /// Triggers itself at the look of that number, counted from 1: for tests, which end work at the
+    /// same place each time.
     #[doc(hidden)]
     pub fn trigger_at(&self, look: u64) {
         self.0.left.store(look, Relaxed);
@@ -102,7 +105,8 @@ impl Interrupt {
     }
 }
 
-/// The looks of one piece of work, and whether one of them ended it. That stays so, whoever clears the handle meanwhile.
+/// The looks of one piece of work, and whether one of them ended it. That stays so, whoever clears
+/// the handle meanwhile.
 pub struct Looks<'a> {
     state: &'a State,
     ended: AtomicBool,

@@ -176,7 +176,8 @@ impl Emulator {
     /// Runs every block of a launch, and returns when they are done or `interrupt` is triggered.
     ///
     /// # Errors
-    /// [`Error::Interrupted`]; under the sanitizer, [`Error::Rule`] with the first access that broke a rule.
+    /// [`Error::Interrupted`]; under the sanitizer, [`Error::Rule`] with the first access that
+    /// broke a rule.
     ///
     /// # Panics
     /// When the kernel does.

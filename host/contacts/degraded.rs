@@ -9,14 +9,15 @@ use std::fmt;
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(tag = "reason", rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Degraded {
-    /// Pairs nearer than the tolerance that are neither certain to meet nor certain to stay apart. Not of an earliest query:
-    /// see [`Degraded::EarliestUnresolved`].
+    /// Pairs nearer than the tolerance that are neither certain to meet nor certain to stay apart.
+    /// Not of an earliest query: see [`Degraded::EarliestUnresolved`].
     Unresolved {
         /// How many.
         pairs: u64,
     },
-    /// The earliest time is that of a pair that is neither certain to meet nor certain to stay apart, and no contact begins
-    /// then. An earliest query does not test pairs that begin later, so it cannot count them.
+    /// The earliest time is that of a pair that is neither certain to meet nor certain to stay
+    /// apart, and no contact begins then. An earliest query does not test pairs that begin later,
+    /// so it cannot count them.
     EarliestUnresolved,
     /// Pairs whose budget of boxes ended ([`Certified::budget`](crate::query::Certified::budget)): listed, but their times may be far too
     /// early. Not counted by an earliest query.
@@ -35,23 +36,24 @@ pub enum Degraded {
         /// How many.
         pairs: u64,
     },
-    /// A rigid body that turns by more than [`TURN_DEGREES`] between the two poses of a step. Its vertices move in straight lines, which
-    /// leave their arcs: contacts of the turning body itself may be missed or early by as much as the bulge.
+    /// A rigid body that turns by more than [`TURN_DEGREES`] between the two poses of a step. Its
+    /// vertices move in straight lines, which leave their arcs: contacts of the turning body itself
+    /// may be missed or early by as much as the bulge.
     Turned {
         /// The body.
         body: BodyId,
         /// The angle, in degrees up to 180.
         degrees: f64,
-        /// Largest distance of a vertex from its arc, a length: `r (1 - cos(angle / 2))`, with r the distance of the farthest vertex
-        /// from the axis of the turn.
+        /// Largest distance of a vertex from its arc, a length: `r (1 - cos(angle / 2))`, with r
+        /// the distance of the farthest vertex from the axis of the turn.
         bulge: f64,
     },
     /// The front did not pay: dropped, or not yet taken up again. The answer is whole.
     FrontDropped,
 }
 
-/// Largest turn of a rigid body in a step of which an answer says nothing, in degrees. There a vertex is at most 3.5 % of its distance
-/// from the axis off its arc: `1 - cos(15 degrees)`.
+/// Largest turn of a rigid body in a step of which an answer says nothing, in degrees. There a
+/// vertex is at most 3.5 % of its distance from the axis off its arc: `1 - cos(15 degrees)`.
 pub const TURN_DEGREES: f64 = 30.0;
 
 impl Degraded {

@@ -11,9 +11,10 @@ pub struct NearestTriangles {
     pub bodies: [BodyId; 2],
     /// Their indices in those.
     pub triangles: [u32; 2],
-    /// How far apart they are: 0 if and only if they share a point, which exact signs decide. Else it is off from theirs by 192
-    /// half ulps of their extent at most, and no two triangles are nearer by more than 192 half ulps of the larger of their extent and that
-    /// of the truly nearest ones.
+    /// How far apart they are: 0 if and only if they share a point, which exact signs decide. Else
+    /// it is off from theirs by 192 half ulps of their extent at most, and no two triangles are
+    /// nearer by more than 192 half ulps of the larger of their extent and that of the truly
+    /// nearest ones.
     pub distance: f64,
     /// Where they are nearest: of each the weights of its corners, in the order in which the face names them. Where they share a point
     /// that is one of those, up to roundings.

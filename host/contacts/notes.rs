@@ -6,7 +6,8 @@ use crate::scene::{Body, BodyKind};
 use crate::words::counted;
 use std::fmt;
 
-/// A note beside an answer. Its text is the same in every language: [`Summary::notes`](super::Summary::notes).
+/// A note beside an answer. Its text is the same in every language:
+/// [`Summary::notes`](super::Summary::notes).
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Note {
@@ -15,7 +16,8 @@ pub enum Note {
         /// Its text.
         text: String,
     },
-    /// A query in motion of bodies that rest: no body was given positions or another pose for the end of the step.
+    /// A query in motion of bodies that rest: no body was given positions or another pose for the
+    /// end of the step.
     OneFrame,
     /// A query in motion of bodies whose start and end are the same.
     SameFrames,
@@ -39,8 +41,8 @@ impl Note {
     /// Contacts from which on vertices that coincide are counted.
     pub const MANY: usize = 1_000;
 
-    /// The notes of an answer, of bodies where they were. Cost: a pass over positions that do not move; with [`Note::MANY`] contacts a
-    /// sort of all vertices.
+    /// The notes of an answer, of bodies where they were. Cost: a pass over positions that do not
+    /// move; with [`Note::MANY`] contacts a sort of all vertices.
     #[doc(hidden)]
     pub fn of(bodies: &[Body], query: &Query, contacts: &Contacts) -> Vec<Note> {
         let rests = || (!query.kind().is_at_rest()).then(|| resting(bodies)).flatten();
@@ -56,7 +58,8 @@ impl Note {
     }
 }
 
-/// Why nothing moves, if nothing does. A body whose place only the device has moves if it was given two ends.
+/// Why nothing moves, if nothing does. A body whose place only the device has moves if it was given
+/// two ends.
 fn resting(bodies: &[Body]) -> Option<Note> {
     let moves = |body: &Body| {
         let [start, end] = body.poses();

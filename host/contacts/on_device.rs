@@ -40,8 +40,9 @@ pub struct DeviceAnswer {
     pub is_ordered: bool,
     /// Where the [`FrameStatus`] lies: how many entries there are, and whether the answer is whole.
     pub status: u64,
-    /// Of an earliest query where its time lies: an f64, all bits set where nothing meets. The next 8 bytes are twice those bits,
-    /// plus 1 if the time is that of an unresolved pair and of no contact.
+    /// Of an earliest query where its time lies: an f64, all bits set where nothing meets. The next
+    /// 8 bytes are twice those bits, plus 1 if the time is that of an unresolved pair and of no
+    /// contact.
     pub earliest: Option<u64>,
     /// The two vertices of every edge, 8 bytes each; none of a discrete query.
     pub edges: DeviceList,

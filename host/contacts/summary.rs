@@ -36,8 +36,8 @@ pub struct Summary {
     pub candidates: u64,
     /// Contacts found.
     pub contacts: usize,
-    /// How many of the contacts are neither confirmed nor refuted; of an earliest query 1 if its time is that of such a pair,
-    /// else 0.
+    /// How many of the contacts are neither confirmed nor refuted; of an earliest query 1 if its
+    /// time is that of such a pair, else 0.
     pub unresolved: u64,
     /// In what the frame came to less than all that was asked; empty where nothing did.
     pub degraded: Vec<Degraded>,
@@ -54,7 +54,8 @@ pub struct Summary {
     pub nearest: Option<NearestTriangles>,
     /// The smallest time of contact.
     pub earliest_toi: Option<f64>,
-    /// Triangle pairs that share a point at the start of the step; none of a query that does not check it.
+    /// Triangle pairs that share a point at the start of the step; none of a query that does not
+    /// check it.
     pub starts_crossing: Option<u64>,
     /// Hash of the canonical answer, sixteen hexadecimal digits.
     pub hash: String,

@@ -7,7 +7,8 @@ use crate::error::Error;
 use nearmiss_emulator::{Interrupt, Looks};
 
 impl Device {
-    /// The same machine; `interrupt` ends the work of every detector that is made with it, and its making.
+    /// The same machine; `interrupt` ends the work of every detector that is made with it, and its
+    /// making.
     pub fn with_interrupt(self, interrupt: &Interrupt) -> Device {
         Device { interrupt: Some(interrupt.clone()), ..self }
     }
@@ -17,7 +18,8 @@ impl Device {
         self.interrupt.as_ref()
     }
 
-    /// The same machine, for work that nothing ends early: what would be left half done could not be used again.
+    /// The same machine, for work that nothing ends early: what would be left half done could not
+    /// be used again.
     pub(crate) fn undisturbed(&self) -> Device {
         Device { interrupt: None, ..self.clone() }
     }

@@ -26,10 +26,12 @@ pub fn read(path: &Path, multiple: u64) -> Result<Vec<u8>, Error> {
     Ok(bytes)
 }
 
-/// A file's text, as [`read`] its bytes: without a byte order mark, its lines ended by LF or CR LF, also if the file ends them by CR.
+/// A file's text, as [`read`] its bytes: without a byte order mark, its lines ended by LF or CR LF,
+/// also if the file ends them by CR.
 ///
 /// # Errors
-/// Those of [`read`], [`Problem::Encoding`] for UTF-16 and UTF-32, and [`Problem::Unreadable`] for all else that is not UTF-8.
+/// Those of [`read`], [`Problem::Encoding`] for UTF-16 and UTF-32, and [`Problem::Unreadable`] for
+/// all else that is not UTF-8.
 pub fn text(path: &Path, multiple: u64) -> Result<String, Error> {
     let input = |problem| Error::Input { file: path.display().to_string(), problem };
     encoding::text(read(path, multiple)?).map_err(input)

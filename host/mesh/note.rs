@@ -7,7 +7,8 @@ use std::fmt;
 
 /// A note of a reader: parts of one kind that a mesh lacks or has otherwise than its file, counted.
 ///
-/// Its text names the file, the count, what was done, and the first of them. [`Mesh::strict`] makes an error of it.
+/// Its text names the file, the count, what was done, and the first of them. [`Mesh::strict`] makes
+/// an error of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Note {
     /// The file, as [`Error::Input`] names it.
@@ -24,12 +25,14 @@ pub struct Note {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Treated {
-    /// A face that crosses itself was cut as a fan around its first corner. The fan covers every point that the face winds
-    /// around, and has all its edges: no contact is missed, and there may be more where it covers what the face does not.
+    /// A face that crosses itself was cut as a fan around its first corner. The fan covers every
+    /// point that the face winds around, and has all its edges: no contact is missed, and there may
+    /// be more where it covers what the face does not.
     Fan,
     /// A face of fewer than three corners was left out; later faces keep their numbers.
     LeftOut,
-    /// Geometry that is no polygon was not read: points, lines, curves and surfaces of OBJ, elements of PLY.
+    /// Geometry that is no polygon was not read: points, lines, curves and surfaces of OBJ,
+    /// elements of PLY.
     NotRead,
     /// A line was passed over whose first word is no keyword of the format.
     Unknown,
@@ -62,9 +65,11 @@ impl fmt::Display for Note {
 }
 
 impl Mesh {
-    /// Notes of the reader, one a kind of part: empty if the mesh is all that its file says, and if it was made in memory.
+    /// Notes of the reader, one a kind of part: empty if the mesh is all that its file says, and if
+    /// it was made in memory.
     ///
-    /// A frame that was read by [`Mesh::read_frame`] has those notes that its first frame does not have.
+    /// A frame that was read by [`Mesh::read_frame`] has those notes that its first frame does not
+    /// have.
     pub fn notes(&self) -> &[Note] {
         &self.notes
     }
@@ -72,8 +77,9 @@ impl Mesh {
     /// Refuses a mesh whose reader left [notes](Mesh::notes); returns any other as it is.
     ///
     /// # Errors
-    /// [`Error::Input`] with the first part of the first note: [`Problem::FaceCrosses`], [`Problem::FaceFolds`], a face of
-    /// fewer than three corners, or a line or an element that no reader knows.
+    /// [`Error::Input`] with the first part of the first note: [`Problem::FaceCrosses`],
+    /// [`Problem::FaceFolds`], a face of fewer than three corners, or a line or an element that no
+    /// reader knows.
     pub fn strict(self) -> Result<Mesh, Error> {
         match self.notes.into_iter().next() {
             Some(Note { file, first, .. }) => Err(Error::Input { file, problem: first }),

@@ -1,4 +1,5 @@
-//! OBJ files to positions and faces: the keywords `v` and `f`. All others are counted or known to hold neither.
+//! OBJ files to positions and faces: the keywords `v` and `f`. All others are counted or known to
+//! hold neither.
 
 use super::note::{Notes, Treated};
 use super::obj_words::Word;
@@ -62,8 +63,8 @@ pub enum ObjProblem {
     Nul { line: usize },
 }
 
-/// Reads the whole file. Lines end in LF, CR LF or CR. Coordinates are parsed as doubles and kept as
-/// floats only if each is one exactly.
+/// Reads the whole file. Lines end in LF, CR LF or CR. Coordinates are parsed as doubles and kept
+/// as floats only if each is one exactly.
 pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Problem> {
     let mut obj = Obj::default();
     let mut joined = Vec::new();

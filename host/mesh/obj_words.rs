@@ -1,21 +1,25 @@
-//! The first words of the lines of an OBJ file: those of the specification (version 3.0, with what it supersedes), and others.
+//! The first words of the lines of an OBJ file: those of the specification (version 3.0, with what
+//! it supersedes), and others.
 
 /// What a reader of triangles does with a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Word {
     Vertex,
     Face,
-    /// It neither holds nor makes a surface: names, materials, texture coordinates, normals, display.
+    /// It neither holds nor makes a surface: names, materials, texture coordinates, normals,
+    /// display.
     Quiet,
     /// It holds or makes geometry that is no face: points, lines, curves, surfaces, another file.
     Element,
-    /// No word of the specification, but near enough to `v` or `f` that a vertex or a face may be lost with it.
+    /// No word of the specification, but near enough to `v` or `f` that a vertex or a face may be
+    /// lost with it.
     Misspelt,
     Unknown,
 }
 
-/// Statements without geometry, by the chapters of the specification: vertex data, attributes of free-form curves and surfaces,
-/// the parts of one, connectivity, grouping, display, and superseded ones.
+/// Statements without geometry, by the chapters of the specification: vertex data, attributes of
+/// free-form curves and surfaces, the parts of one, connectivity, grouping, display, and superseded
+/// ones.
 const QUIET: [&[u8]; 32] = [
     b"vt",
     b"vn",
@@ -51,7 +55,8 @@ const QUIET: [&[u8]; 32] = [
     b"res",
 ];
 
-/// Statements with geometry that is not read; `call` and `csh` bring what another file or program gives.
+/// Statements with geometry that is not read; `call` and `csh` bring what another file or program
+/// gives.
 const ELEMENTS: [&[u8]; 10] = [b"p", b"l", b"curv", b"surf", b"bsp", b"bzp", b"cdc", b"cdp", b"call", b"csh"];
 
 impl Word {
@@ -68,7 +73,8 @@ impl Word {
     }
 }
 
-/// Whether the only letter of a word is `v` or `f`, in either case: `V`, `v:`, `v1.0`, a mark or a space of Unicode before it.
+/// Whether the only letter of a word is `v` or `f`, in either case: `V`, `v:`, `v1.0`, a mark or a
+/// space of Unicode before it.
 fn is_nearly(word: &[u8]) -> bool {
     let text = String::from_utf8_lossy(word);
     let mut letters = text.chars().filter(|c| c.is_alphabetic());

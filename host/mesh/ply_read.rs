@@ -13,7 +13,8 @@ use super::read::Parsed;
 use super::validate::{self, MAX_FACES, MAX_VERTICES};
 use super::{Positions, Problem};
 
-/// Elements without surfaces, as scanners and modellers write them: they are skipped without a note.
+/// Elements without surfaces, as scanners and modellers write them: they are skipped without a
+/// note.
 const QUIET: [&str; 5] = ["edge", "material", "camera", "user", "range_grid"];
 
 /// Reads the whole file; faces keep the file's order.

@@ -1,7 +1,8 @@
 //! The faces of a file, behind the triangles that were made of them.
 
-/// Which triangles are of which face of the file, and the corners of the faces that are no fans. A face that was left out has
-/// none. Nothing is kept if every face was a triangle; else 4 bytes a face, and 8 and 4 a corner for a face that is no fan.
+/// Which triangles are of which face of the file, and the corners of the faces that are no fans. A
+/// face that was left out has none. Nothing is kept if every face was a triangle; else 4 bytes a
+/// face, and 8 and 4 a corner for a face that is no fan.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct Polygons {
     /// The first triangle of each face, ascending; empty where every face was a triangle.
@@ -83,7 +84,8 @@ impl Fans {
         Fans { faces: Vec::with_capacity(count), ..Fans::default() }
     }
 
-    /// The next vertex, which is corner `corner` (from 0) of its face. A face of fewer than three is left out afterwards.
+    /// The next vertex, which is corner `corner` (from 0) of its face. A face of fewer than three
+    /// is left out afterwards.
     pub fn corner(&mut self, corner: u64, vertex: u32) {
         match corner {
             0 => {
@@ -103,7 +105,8 @@ impl Fans {
         }
         self.last = vertex;
     }
-    /// Leaves out the face that has just come with so many corners, two at most: it keeps its number, and has no triangles.
+    /// Leaves out the face that has just come with so many corners, two at most: it keeps its
+    /// number, and has no triangles.
     pub fn leave_out(&mut self, corners: u64) {
         let others = if corners > 0 { self.read - 1 } else { self.read };
         let (count, first) = (self.faces.len() as u32, &mut self.polygons.first);

@@ -13,7 +13,8 @@ use std::path::Path;
 pub enum Format {
     /// Stanford PLY: ascii, binary little-endian or big-endian.
     Ply,
-    /// Wavefront OBJ: `v` and `f`; other keywords of the format are skipped, and all else is counted by [`Mesh::notes`].
+    /// Wavefront OBJ: `v` and `f`; other keywords of the format are skipped, and all else is
+    /// counted by [`Mesh::notes`].
     Obj,
 }
 
@@ -44,17 +45,19 @@ impl Mesh {
     /// thousandth of its extent) and crosses itself as it is seen. Corners may touch; a hole may be joined by
     /// an edge there and back.
     ///
-    /// A flat polygon that crosses itself is cut as a fan too, which covers all that it winds around, and may cover more. A
-    /// face of fewer than three corners is left out. [`Mesh::notes`] counts both, and all else that was not read; [`Mesh::strict`]
-    /// refuses them. A byte order mark of UTF-8 is skipped; UTF-16 and UTF-32 are refused.
+    /// A flat polygon that crosses itself is cut as a fan too, which covers all that it winds
+    /// around, and may cover more. A face of fewer than three corners is left out. [`Mesh::notes`]
+    /// counts both, and all else that was not read; [`Mesh::strict`] refuses them. A byte order
+    /// mark of UTF-8 is skipped; UTF-16 and UTF-32 are refused.
     ///
     /// Cost: O(n log n) for usual polygons, O(n^2) for bad ones. Memory: the file, the mesh, and at most a small multiple of the file on the way, whatever its header promises.
     ///
     /// # Errors
     /// [`Error::Input`], naming the file, the element and the value: a file that cannot be read or is no regular file,
-    /// an unknown extension, a malformed file, a mesh that fails [`Mesh::new`], one without triangles, or a
-    /// polygon of more than 131,072 corners whose fan is wrong ([`Problem::FaceCorners`]). [`Error::OutOfMemory`] for a file that is too large for the memory there
-    /// is.
+    /// an unknown extension, a malformed file, a mesh that fails [`Mesh::new`], one without
+    /// triangles, or a polygon of more than 131,072 corners whose fan is wrong
+    /// ([`Problem::FaceCorners`]). [`Error::OutOfMemory`] for a file that is too large for the
+    /// memory there is.
     pub fn read(path: &Path) -> Result<Mesh, Error> {
         let (file, format, bytes) = open(path)?;
         Mesh::parse(file, format, &bytes)
@@ -66,7 +69,8 @@ impl Mesh {
     /// [`Body::moving`](super::Body::moving) takes such frames; a detector that goes from body to body does not.
     ///
     /// # Errors
-    /// As [`Mesh::read`], except for polygons, which are cut as here; and those of [`Body::moving`](super::Body::moving).
+    /// As [`Mesh::read`], except for polygons, which are cut as here; and those of
+    /// [`Body::moving`](super::Body::moving).
     pub fn read_frame(&self, path: &Path) -> Result<Mesh, Error> {
         let (file, format, bytes) = open(path)?;
         self.parse_frame(file, format, &bytes)

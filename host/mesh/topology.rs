@@ -136,7 +136,8 @@ mod tests {
     use super::*;
     use nearmiss_emulator::Interrupt;
 
-    /// Every look ends it, no piece of faces or vertices is without one, and what was ended can be made again.
+    /// Every look ends it, no piece of faces or vertices is without one, and what was ended can be
+    /// made again.
     #[test]
     fn a_look_ends_it_within_a_piece() {
         let pieces = 5;

@@ -28,8 +28,8 @@ pub enum BelowPrecision {
 }
 
 impl BelowPrecision {
-    /// Of bodies where they are; `finest` is the smallest tolerance, if pairs have several. Of an earliest query with a body that is
-    /// away none: the detector finds it out behind the frame.
+    /// Of bodies where they are; `finest` is the smallest tolerance, if pairs have several. Of an
+    /// earliest query with a body that is away none: the detector finds it out behind the frame.
     pub fn of(
         bodies: &[Body],
         certified: &Certified,
@@ -44,7 +44,8 @@ impl BelowPrecision {
         is_known.then(|| BelowPrecision::of_earliest(bodies, certified, finest.is_some())).flatten()
     }
 
-    /// Of a query that lists pairs, with bodies where they are; none if no pair can be that large. Cost: a pass over the positions.
+    /// Of a query that lists pairs, with bodies where they are; none if no pair can be that large.
+    /// Cost: a pass over the positions.
     fn of_listed(bodies: &[Body], certified: &Certified) -> Option<BelowPrecision> {
         let finest = finest(certified);
         // Positive, or not asked for.
@@ -55,10 +56,12 @@ impl BelowPrecision {
         (away || tolerance < finest * extent()).then_some(BelowPrecision::Listed { tolerance, finest })
     }
 
-    /// Of an earliest query, which lists no pairs, with bodies where the host knows them: whether two bodies that may meet, or
-    /// one that meets itself, have an edge too long for the tolerance of their pairs. Bodies farther apart than pairs are tested
-    /// do not count, nor does any other body. `own` is whether each pair has its own tolerance. Cost: a pass over the positions;
-    /// over the faces of bodies whose extent is too large; and over all bodies for each that has a long edge.
+    /// Of an earliest query, which lists no pairs, with bodies where the host knows them: whether
+    /// two bodies that may meet, or one that meets itself, have an edge too long for the tolerance
+    /// of their pairs. Bodies farther apart than pairs are tested do not count, nor does any other
+    /// body. `own` is whether each pair has its own tolerance. Cost: a pass over the positions;
+    /// over the faces of bodies whose extent is too large; and over all bodies for each that has a
+    /// long edge.
     pub fn of_earliest(bodies: &[Body], certified: &Certified, own: bool) -> Option<BelowPrecision> {
         let tolerance =
             |a: &Body, b: &Body| if own { of_pair(a, b) } else { certified.tolerance.unwrap_or(0.0) };
@@ -180,7 +183,8 @@ fn largest_of(bounds: &Bounds) -> f64 {
     bounds.iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()))
 }
 
-/// A box around a body in the step. What no face uses counts too; of rigid bodies it is at least as large as they are.
+/// A box around a body in the step. What no face uses counts too; of rigid bodies it is at least as
+/// large as they are.
 fn bounds(body: &Body) -> Bounds {
     body.posed_box().unwrap_or_else(|| {
         body.ends().into_iter().fold(NOTHING, |bounds, positions| {

@@ -1,4 +1,5 @@
-//! How large an answer becomes: counted before it is made, so that one without room is refused early.
+//! How large an answer becomes: counted before it is made, so that one without room is refused
+//! early.
 
 use super::counts::Counts;
 use super::layout::Layout;
@@ -10,8 +11,9 @@ use nearmiss_kernels::abi::{Counter, EVERY, counter};
 
 /// Smaller answers are not compared with the memory that is free, in bytes.
 const LITTLE: u64 = 16 << 20;
-/// Rows that a candidate pair of triangles has in an answer of features, if all of them meet: 1 / 2 + 9 / 4 in a closed mesh, more
-/// in a soup. It decides when rows are counted on the host, and nothing else.
+/// Rows that a candidate pair of triangles has in an answer of features, if all of them meet: 1 / 2
+/// + 9 / 4 in a closed mesh, more in a soup. It decides when rows are counted on the host, and
+/// nothing else.
 const ROWS_A_PAIR: u64 = 4;
 /// Triangles of the smallest group.
 const GROUP: usize = 16;
@@ -53,7 +55,8 @@ impl Demand {
         held.saturating_add(free).min(device.answers())
     }
 
-    /// Refuses an answer of at least so many rows, with those of slices before, if there is no room for it.
+    /// Refuses an answer of at least so many rows, with those of slices before, if there is no room
+    /// for it.
     fn fits(&self, rows: u64, device: &Device) -> Result<(), Error> {
         let (asked, given) = (rows.saturating_mul(self.row), self.room(rows, device));
         if asked <= given {
@@ -71,7 +74,8 @@ impl Demand {
         self.fits(rows, device)
     }
 
-    /// Refuses an answer by what is certainly in it, if so many candidate pairs of triangles may make it too large.
+    /// Refuses an answer by what is certainly in it, if so many candidate pairs of triangles may
+    /// make it too large.
     ///
     /// # Errors
     /// [`Error::AnswerTooLarge`]; those of `positions`.

@@ -33,7 +33,8 @@ pub struct Layout {
     pub owners: Vec<u32>,
     /// What kernels know of each body.
     pub records: Vec<BodyRecord>,
-    /// Tolerances of bodies by their first vertices; empty if all pairs have the same, and of queries without one.
+    /// Tolerances of bodies by their first vertices; empty if all pairs have the same, and of
+    /// queries without one.
     pub tolerances: Vec<BodyTolerance>,
     /// Of each triangle its [`NodeFilter::hub`], where pairs round a hub are no candidates; empty without hubs.
     pub hubs: Vec<u32>,

@@ -17,11 +17,12 @@ pub struct Certified {
     /// What it computes in.
     pub precision: CertifiedPrecision,
     /// How near to contact may count as one, a length; every time is early by what it takes to move that far, or less. 0 asks
-    /// for all that the precision gives; one for all pairs. `None`: of each pair the smaller default of its two bodies,
+    /// for all that the precision gives; one for all pairs. `None`: of each pair the smaller
+    /// default of its two bodies,
     /// [`Certified::TOLERANCE`] of a body's mean edge.
     pub tolerance: Option<f64>,
-    /// The most boxes that are looked at for a pair before it is left unresolved; `None` for [`Certified::BUDGET`]. Refused in f32
-    /// alone without a separation, where no boxes are tested.
+    /// The most boxes that are looked at for a pair before it is left unresolved; `None` for
+    /// [`Certified::BUDGET`]. Refused in f32 alone without a separation, where no boxes are tested.
     pub budget: Option<u32>,
     /// Features that come this near are in contact, a length; times are then of coming so near. 0 for touching.
     pub separation: f64,

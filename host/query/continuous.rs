@@ -18,8 +18,9 @@ pub struct Continuous {
     pub solver: ContinuousSolver,
     /// How candidates are found.
     pub search: Search,
-    /// Whether the start of the step is taken to be free of crossing triangles. By default the pairs that share a point at t = 0
-    /// are counted: [`Contacts::starts_crossing`](crate::Contacts::starts_crossing).
+    /// Whether the start of the step is taken to be free of crossing triangles. By default the
+    /// pairs that share a point at t = 0 are counted:
+    /// [`Contacts::starts_crossing`](crate::Contacts::starts_crossing).
     pub assume_free: bool,
 }
 
@@ -37,7 +38,8 @@ pub struct Earliest {
     pub solver: ContinuousSolver,
     /// How candidates are found.
     pub search: Search,
-    /// Whether the start of the step is taken to be free of crossing triangles, as in [`Continuous`].
+    /// Whether the start of the step is taken to be free of crossing triangles, as in
+    /// [`Continuous`].
     pub assume_free: bool,
 }
 

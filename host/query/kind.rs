@@ -7,7 +7,8 @@ use crate::error::Error;
 pub(crate) struct Rows {
     /// Bytes of one.
     pub bytes: usize,
-    /// Pairs of features are listed that are this near at the start, a length; `None` if that is not known of any.
+    /// Pairs of features are listed that are this near at the start, a length; `None` if that is
+    /// not known of any.
     pub within: Option<f64>,
     /// How to get fewer.
     pub advice: &'static str,

@@ -124,8 +124,8 @@ impl Query {
         self.with_search(Search { traversal: Some(traversal), ..self.search() })
     }
 
-    /// Whether the triangle pairs that share a point at the start of the step are counted: of a continuous or an earliest query,
-    /// unless it assumes that there are none.
+    /// Whether the triangle pairs that share a point at the start of the step are counted: of a
+    /// continuous or an earliest query, unless it assumes that there are none.
     pub fn checks_start(&self) -> bool {
         self.question().checks_start()
     }

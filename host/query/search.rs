@@ -141,13 +141,15 @@ impl Order {
 }
 
 named! {
-    /// When tiles or trees are built again from where the bodies are. No answer depends on it; hashes of lists between stages may.
+    /// When tiles or trees are built again from where the bodies are. No answer depends on it;
+    /// hashes of lists between stages may.
     pub enum Rebuild {
         /// By [`Detector::rebuild`](crate::Detector::rebuild) alone.
         Never = "never",
-        /// By itself, too, the default: before the first frame after bodies were placed for the first time, and before the frame at which
-        /// volume tests beyond those of the first frame after building have cost as much as building, by count. The count is the
-        /// same on every machine, so the decision is. A submitted frame builds nothing.
+        /// By itself, too, the default: before the first frame after bodies were placed for the
+        /// first time, and before the frame at which volume tests beyond those of the first frame
+        /// after building have cost as much as building, by count. The count is the same on every
+        /// machine, so the decision is. A submitted frame builds nothing.
         Auto = "auto",
     }
 }

@@ -5,7 +5,8 @@ use crate::pipeline::Share;
 /// What a tile costs at least, of the mean: so that none is nothing.
 const LEAST: f64 = 0.01;
 
-/// Where tiles of those costs are cut into so many parts of about the same: one more than parts, ascending, from none to all.
+/// Where tiles of those costs are cut into so many parts of about the same: one more than parts,
+/// ascending, from none to all.
 pub fn cuts(costs: &[f64], parts: usize) -> Vec<u64> {
     let tiles = costs.len() as u64;
     let sum: f64 = costs.iter().sum();

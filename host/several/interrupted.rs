@@ -7,8 +7,8 @@ use crate::device::emulator::Looks;
 use crate::error::Error;
 
 impl MultiDetector {
-    /// As [`Detector::interrupter`](crate::Detector::interrupter): one handle for all devices. It is that of the first device
-    /// that was made [with one](crate::Device::with_interrupt).
+    /// As [`Detector::interrupter`](crate::Detector::interrupter): one handle for all devices. It
+    /// is that of the first device that was made [with one](crate::Device::with_interrupt).
     pub fn interrupter(&self) -> Interrupt {
         self.interrupt.clone()
     }

@@ -32,7 +32,8 @@ theirs, ours = table.row(
 )
 # Neither is late, and ipctk is the more careful one.
 table.agree("step size, within a thousandth of the step", 0 < theirs <= ours <= theirs + 1e-3)
-# A step along which nothing meets: ipctk does not look at the start, nearmiss counts what crosses there.
+# A step along which nothing meets: ipctk does not look at the start, nearmiss counts what crosses
+# there.
 step = (vertices, vertices + 0.01 * ours * (there - vertices))
 free, ours_free = table.row(
     "does nothing meet in a hundredth of it",

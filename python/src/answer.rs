@@ -224,9 +224,10 @@ impl DeviceAnswer {
         self.answer.lists.iter().map(list).collect()
     }
 
-    /// (5,) int64: entries of the first list; of the second, or, where one list has both kinds in order, how many of the second kind
-    /// follow; how many lists had too little room (unless 0 the answer is not whole: `collect` gives it); 0, or which vertex cannot be
-    /// computed with; triangle pairs that share a point at the start of the step, -1 if that is not checked.
+    /// (5,) int64: entries of the first list; of the second, or, where one list has both kinds in
+    /// order, how many of the second kind follow; how many lists had too little room (unless 0 the
+    /// answer is not whole: `collect` gives it); 0, or which vertex cannot be computed with;
+    /// triangle pairs that share a point at the start of the step, -1 if that is not checked.
     #[getter]
     fn status(&self, py: Python<'_>) -> DeviceArray {
         self.array(py, self.answer.status, COUNT, (vec![5], vec![1]))

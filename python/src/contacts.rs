@@ -68,7 +68,8 @@ impl Contacts {
         self.contacts.len()
     }
 
-    /// Caveats, a sentence each: in what the answer is less than was asked. Empty if there are none.
+    /// Caveats, a sentence each: in what the answer is less than was asked. Empty if there are
+    /// none.
     #[getter]
     fn degraded(&self) -> Vec<String> {
         self.contacts.degraded().iter().map(ToString::to_string).collect()
@@ -143,8 +144,9 @@ impl Contacts {
         })
     }
 
-    /// (k,) float64: how far apart they are, in the unit of the vertices. Of Near and Distance. Of Near these are roots of squares: below
-    /// 1.5e-154 they have fewer digits, below 1.6e-162 they are 0.
+    /// (k,) float64: how far apart they are, in the unit of the vertices. Of Near and Distance. Of
+    /// Near these are roots of squares: below 1.5e-154 they have fewer digits, below 1.6e-162 they
+    /// are 0.
     #[getter]
     fn distances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, "distances", || {
@@ -191,23 +193,25 @@ impl Contacts {
         self.columns.get(py, "points", || self.threes(py, "points", |nearest| nearest.points))
     }
 
-    /// How many pairs of triangles share a point at the start of the step: as many as Discrete lists there. They need not have a time of
-    /// contact. Of Continuous and Earliest; None of other queries, and with `assume_free`.
+    /// How many pairs of triangles share a point at the start of the step: as many as Discrete
+    /// lists there. They need not have a time of contact. Of Continuous and Earliest; None of other
+    /// queries, and with `assume_free`.
     #[getter]
     fn starts_crossing(&self) -> Option<u64> {
         self.contacts.starts_crossing
     }
 
-    /// Whether the answer proves that nothing touches. Continuous and Earliest: the start was checked, no triangles share a point there,
-    /// and nothing meets within the step. Discrete: no pair of triangles shares a point. Distance: it is above 0, or no two bodies may
-    /// meet. Near: always False.
+    /// Whether the answer proves that nothing touches. Continuous and Earliest: the start was
+    /// checked, no triangles share a point there, and nothing meets within the step. Discrete: no
+    /// pair of triangles shares a point. Distance: it is above 0, or no two bodies may meet. Near:
+    /// always False.
     #[getter]
     fn is_free(&self) -> bool {
         self.contacts.is_free()
     }
 
-    /// The first time of contact, in [0, 1], never late; None where nothing meets, though triangles may cross at the start: see
-    /// `is_free`. Of Continuous and Earliest.
+    /// The first time of contact, in [0, 1], never late; None where nothing meets, though triangles
+    /// may cross at the start: see `is_free`. Of Continuous and Earliest.
     #[getter]
     fn earliest(&self) -> PyResult<Option<f64>> {
         match &self.contacts.answer {
@@ -231,7 +235,8 @@ impl Contacts {
         self.contacts.candidates
     }
 
-    /// How many are listed that are neither proven nor refuted; of an earliest query 1 if its time is that of such a pair, else 0.
+    /// How many are listed that are neither proven nor refuted; of an earliest query 1 if its time
+    /// is that of such a pair, else 0.
     #[getter]
     fn unresolved(&self) -> u64 {
         self.contacts.unresolved

@@ -48,7 +48,8 @@ impl Detector {
         told.map_err(raised)
     }
 
-    /// Works with the detector, in turn with all that share its device, while the interpreter runs on. A signal ends it.
+    /// Works with the detector, in turn with all that share its device, while the interpreter runs
+    /// on. A signal ends it.
     fn work<T: Send>(&self, py: Python<'_>, work: impl FnOnce(&mut Asked) -> T + Send) -> PyResult<T> {
         let turn = &self.device.get().turn;
         let done = watched(py, &self.interrupt, |watch| {
@@ -196,8 +197,9 @@ impl Detector {
     ///
     /// inputs: a mapping from a body's number to where it is: of a deformable body (n, 3) numbers, or two such arrays for the
     ///         ends of a step; of a rigid body a Pose, or two. A body that is not named rests
-    ///         where it is, or where its step ended. Discrete, Near and Distance test a step where it begins.
-    ///         Arrays of the detector's GPU, and on a CPU numpy's arrays of packed rows, are read where they lie.
+    ///         where it is, or where its step ended. Discrete, Near and Distance test a step where
+    ///         it begins. Arrays of the detector's GPU, and on a CPU numpy's arrays of packed rows,
+    ///         are read where they lie.
     #[pyo3(signature = (inputs = None))]
     fn frame(&self, py: Python<'_>, inputs: Option<&Bound<'_, PyAny>>) -> PyResult<Contacts> {
         let frame = self.frame_of(py, inputs)?;
@@ -210,7 +212,8 @@ impl Detector {
         self.told(py, Does::AsksAnew, nearmiss::Detector::detect)
     }
 
-    /// Where contacts or near pairs are, of Continuous and Near; else ChoiceError. Of this detector, and before it is asked to move, add, remove or replace bodies.
+    /// Where contacts or near pairs are, of Continuous and Near; else ChoiceError. Of this
+    /// detector, and before it is asked to move, add, remove or replace bodies.
     fn geometry(&self, py: Python<'_>, contacts: &Contacts) -> PyResult<Geometry> {
         let told = self.work(py, |one| {
             one.check(contacts.stamp)?;
@@ -219,8 +222,8 @@ impl Detector {
         told.map(Geometry::from).map_err(raised)
     }
 
-    /// All figures of an answer, as the command line prints them: counts, milliseconds by stage, what it came to less than was asked, and
-    /// `notes`: a sentence each.
+    /// All figures of an answer, as the command line prints them: counts, milliseconds by stage,
+    /// what it came to less than was asked, and `notes`: a sentence each.
     /// Of the contacts that `geometry` takes.
     fn summary<'py>(&self, py: Python<'py>, contacts: &Contacts) -> PyResult<Bound<'py, PyAny>> {
         let told = self.look_at(py, |one| {
@@ -294,8 +297,9 @@ impl Detector {
         self.ask(py, Does::AsksAnew, nearmiss::Detector::rebuild)
     }
 
-    /// Ends the call that another thread makes or, if none runs, the next one: it raises Interrupted, and the detector can be used
-    /// again. Bodies that the call named are where it said. On the main thread Ctrl-C does the same, and raises KeyboardInterrupt.
+    /// Ends the call that another thread makes or, if none runs, the next one: it raises
+    /// Interrupted, and the detector can be used again. Bodies that the call named are where it
+    /// said. On the main thread Ctrl-C does the same, and raises KeyboardInterrupt.
     fn interrupt(&self) {
         self.interrupt.trigger();
     }

@@ -13,8 +13,8 @@ use std::path::PathBuf;
 
 /// Reads a PLY or OBJ file: (vertices, faces), (n, 3) float32 or float64 as the file has them, and (m, 3) uint32.
 ///
-/// Polygons are cut into triangles. Parts of the file that are skipped, left out (faces of one or two corners) or cut as a fan (faces
-/// that cross themselves) are counted by a MeshWarning each.
+/// Polygons are cut into triangles. Parts of the file that are skipped, left out (faces of one or
+/// two corners) or cut as a fan (faces that cross themselves) are counted by a MeshWarning each.
 ///
 /// strict:  raise InputError for such a part.
 ///

@@ -12,8 +12,9 @@ use pyo3::types::{PyDict, PyTuple};
 
 /// Where a rigid body is: turned first, then moved.
 ///
-/// rotation:    a unit quaternion x, y, z, w; default: none. It may be off unit length by up to 1.2e-4 (2^-13) and is normalised.
-/// translation: x, y, z, in the unit of the vertices; default: none.
+/// rotation:    a unit quaternion x, y, z, w; default: none. It may be off unit length by up to
+/// 1.2e-4 (2^-13) and is normalised. translation: x, y, z, in the unit of the vertices; default:
+/// none.
 ///
 /// A vertex is placed at R v + t in doubles, also of a mesh in float32.
 /// Both may lie on a GPU, 4 and 3 float32 or float64 numbers. Raises ChoiceError for what is no pose; on a GPU the frame does.

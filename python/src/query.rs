@@ -117,8 +117,8 @@ impl Query {
 ///
 /// adjacent: whether triangles that share a vertex are asked, too: do they share more than that?
 /// solver:   "exact", or "moller": a float test that can miss and invent.
-/// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer. rebuild: "auto", the
-/// default, or "never".
+/// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never
+/// change the answer. rebuild: "auto", the default, or "never".
 #[pyclass(module = "nearmiss", frozen, extends = Query)]
 pub struct Discrete;
 
@@ -190,15 +190,17 @@ macro_rules! in_motion {
     ($(#[$doc:meta])* $kind:ident) => {
         $(#[$doc])*
         ///
-        /// tolerance:  how well a time is told, as a length moved; default: of two bodies the smaller 1e-4 of the mean edge.
-        /// separation: what comes nearer than this is in contact, in the unit of the vertices; 0 for touching.
-        /// budget:     how many boxes, from 1, a pair may cost before it is listed as unresolved; not of "certified-f32" without a
+        /// tolerance:  how well a time is told, as a length moved; default: of two bodies the
+        /// smaller 1e-4 of the mean edge. separation: what comes nearer than this is in contact, in
+        /// the unit of the vertices; 0 for touching. budget:     how many boxes, from 1, a pair may
+        /// cost before it is listed as unresolved; not of "certified-f32" without a
         ///             separation, which tests no boxes.
-        /// assume_free: leaves out the count of triangle pairs that share a point at the start: `Contacts.starts_crossing` is None then.
-        /// solver:     "certified" (none is missed, none late), "certified-f32", "certified-f64", or "cubic-f64" and "cubic-f32", which
+        /// assume_free: leaves out the count of triangle pairs that share a point at the start:
+        /// `Contacts.starts_crossing` is None then. solver:     "certified" (none is missed, none
+        /// late), "certified-f32", "certified-f64", or "cubic-f64" and "cubic-f32", which
         ///             can miss.
-        /// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer. rebuild: "auto",
-        /// the default, or "never".
+        /// broad, order, bv, rebuild: how candidates are found, by the command line's names; they
+        /// never change the answer. rebuild: "auto", the default, or "never".
         #[pyclass(module = "nearmiss", frozen, extends = Query)]
         pub struct $kind;
 
@@ -235,15 +237,16 @@ in_motion! {
 }
 in_motion! {
     /// When the first of all meets: how far a step may go. The answer's `earliest`, in [0, 1], is never late; None: nothing meets.
-    /// Triangles that cross at the start need not meet again: `Contacts.is_free` says whether the step is free.
+    /// Triangles that cross at the start need not meet again: `Contacts.is_free` says whether the
+    /// step is free.
     Earliest
 }
 
 /// Which vertices and faces, and which edges, are within a distance of each other now, and where they are nearest.
 ///
 /// distance: a length above 0, in the unit of the vertices. None within it is missed.
-/// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never change the answer. rebuild: "auto", the
-/// default, or "never".
+/// broad, order, bv, rebuild: how candidates are found, by the command line's names; they never
+/// change the answer. rebuild: "auto", the default, or "never".
 #[pyclass(module = "nearmiss", frozen, extends = Query)]
 pub struct Near;
 

@@ -16,14 +16,15 @@ use pyo3::types::{PyDict, PyTuple};
 /// vertices:     (n, 3) numbers; float32 and float64 are kept as they are, others become float64. Copied.
 /// faces:        (m, 3) integers, the vertices of each triangle, from 0. Copied.
 /// kind:         "deformable" (each vertex moves by itself), "rigid" (a Pose a frame) or "static" (never moves; cheapest).
-/// self_contact: whether it is tested against itself. Deformable bodies are by default (None), rigid bodies if it is True,
+/// self_contact: whether it is tested against itself. Deformable bodies are by default (None),
+/// rigid bodies if it is True,
 ///               static bodies never: True is refused for them.
 /// environment:  bodies of different environments never meet; None: in every one.
 /// group, mask:  two bodies meet if each is in a group (a bit of 32) that the other's mask has. ~1: all bits but the lowest.
 /// name:         what messages call it.
 ///
-/// Raises InputError for vertices that are not finite and for indices that are not there, ChoiceError for self-contact of a
-/// static body.
+/// Raises InputError for vertices that are not finite and for indices that are not there,
+/// ChoiceError for self-contact of a static body.
 #[pyclass(module = "nearmiss", frozen)]
 pub struct Body {
     pub body: nearmiss::Body,
@@ -129,7 +130,8 @@ fn bits(given: &Bound<'_, PyAny>, name: &str) -> PyResult<u32> {
 
 /// Bodies, numbered from 0 in the order in which they are added.
 ///
-/// A detector takes a copy; from then on the scene is not changed: add, remove and replace bodies of the detector.
+/// A detector takes a copy; from then on the scene is not changed: add, remove and replace bodies
+/// of the detector.
 #[pyclass(module = "nearmiss")]
 pub struct Scene {
     pub scene: nearmiss::Scene,

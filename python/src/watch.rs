@@ -1,4 +1,5 @@
-//! Work that a signal ends: on the main thread, where Python handles signals, a frame runs beside the thread that waits for it.
+//! Work that a signal ends: on the main thread, where Python handles signals, a frame runs beside
+//! the thread that waits for it.
 
 use nearmiss::{Error, Interrupt};
 use pyo3::prelude::*;
@@ -72,8 +73,8 @@ pub fn is_main(py: Python<'_>) -> PyResult<bool> {
     main.eq(threading.call_method0("get_ident")?)
 }
 
-/// Runs work while the interpreter runs on. On the main thread a signal whose handler raises, as SIGINT's does, ends it within
-/// some 50 ms and what `interrupt` takes.
+/// Runs work while the interpreter runs on. On the main thread a signal whose handler raises, as
+/// SIGINT's does, ends it within some 50 ms and what `interrupt` takes.
 ///
 /// # Errors
 /// What the handler of a signal has raised.
@@ -122,7 +123,8 @@ pub fn watched<T: Send>(
     }
 }
 
-/// Runs work that nothing ends. A signal leaves it behind: it goes on by itself, and what it comes to is dropped.
+/// Runs work that nothing ends. A signal leaves it behind: it goes on by itself, and what it comes
+/// to is dropped.
 ///
 /// # Errors
 /// What the handler of a signal has raised.

@@ -99,8 +99,8 @@ fn no_other_walk_is_taken() {
     assert_eq!(Query::distance().traversal_on(true), Traversal::NearestFirst);
 }
 
-/// Triangles that cross are at one point of both, at any scale of doubles: powers of two scale it exactly, as long as no coordinate
-/// loses digits.
+/// Triangles that cross are at one point of both, at any scale of doubles: powers of two scale it
+/// exactly, as long as no coordinate loses digits.
 #[test]
 fn triangles_that_cross_do_so_in_the_same_place_at_every_scale() {
     let face = [[0.1, -0.2, 0.3], [4.3, 0.7, -0.1], [-0.4, 3.9, 0.8]];

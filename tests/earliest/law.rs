@@ -43,14 +43,15 @@ fn pairs(two: &[Moved], rungs: Rungs, p: &Params) -> Vec<Asked> {
     all
 }
 
-/// The law of a pair: whether its verdict begins before it may. A verdict of f32 keeps to the begin and the margin of f32: 2^-12, and
-/// 2^-18 for what both begins err by.
+/// The law of a pair: whether its verdict begins before it may. A verdict of f32 keeps to the begin
+/// and the margin of f32: 2^-12, and 2^-18 for what both begins err by.
 fn breaks_the_law(pair: &Asked, rungs: Rungs) -> bool {
     let margin = if rungs == Rungs::Double { 0.0 } else { 1.0 / 4096.0 + 1.0 / 262_144.0 };
     !pair.verdict.is_separated() && pair.verdict.toi < pair.not_before - margin
 }
 
-/// The least time by a rule that skips pairs: those that begin, as the rule has it, no sooner than what is known.
+/// The least time by a rule that skips pairs: those that begin, as the rule has it, no sooner than
+/// what is known.
 fn by_rule<'a>(pairs: impl Iterator<Item = &'a Asked>, begin: impl Fn(&Asked) -> f64) -> First {
     let mut known = u64::MAX;
     for pair in pairs {
@@ -61,8 +62,8 @@ fn by_rule<'a>(pairs: impl Iterator<Item = &'a Asked>, begin: impl Fn(&Asked) ->
     earliest::of_key(known)
 }
 
-/// Pairs of a few hundred scenes keep the law; a verdict that begins a little sooner breaks it, and a rule that skips by another
-/// begin is named by the comparison of two orders.
+/// Pairs of a few hundred scenes keep the law; a verdict that begins a little sooner breaks it, and
+/// a rule that skips by another begin is named by the comparison of two orders.
 #[test]
 fn verdicts_keep_the_law_and_rules_that_skip_more_are_named() {
     let mut rng = Rng::new(5);
@@ -86,7 +87,8 @@ fn verdicts_keep_the_law_and_rules_that_skip_more_are_named() {
                 asked.reverse();
             }
             kept += asked.iter().filter(|pair| !pair.verdict.is_separated()).count();
-            // What was so before: a look around a time near the begin is not kept within the window.
+            // What was so before: a look around a time near the begin is not kept within the
+            // window.
             for pair in asked.iter_mut().filter(|pair| !pair.verdict.is_separated() && pair.not_before > 0.0)
             {
                 pair.verdict.toi = pair.not_before - 1.0 / 2048.0;

@@ -1,5 +1,5 @@
-//! An answer about a frame depends on that frame's positions and the query alone: not on earlier frames, on what was
-//! asked before, on who was named when, on refused frames in between.
+//! An answer about a frame depends on that frame's positions and the query alone: not on earlier
+//! frames, on what was asked before, on who was named when, on refused frames in between.
 
 use super::*;
 use nearmiss::device::Buffer;
@@ -135,7 +135,8 @@ impl Lent {
     }
 }
 
-/// A detector's life, frame after frame, each compared with a detector that was made for it; how many contacts there were.
+/// A detector's life, frame after frame, each compared with a detector that was made for it; how
+/// many contacts there were.
 fn life(seed: u64, query: Query, fault: impl Fn(&mut Contacts)) -> Result<usize, String> {
     let mut rng = SmallRng::seed_from_u64(seed);
     let mut bodies: Vec<Placed> = Vec::new();
@@ -269,8 +270,9 @@ fn a_forgotten_contact_is_named() {
     assert!(named.expect("a difference").contains("made for it"));
 }
 
-/// A query at rest, of a body at both ends of a step: first where the step begins, then, not named, where it ends. `end` is
-/// the end of which the first answer is expected; whether there was anything to tell the ends apart by.
+/// A query at rest, of a body at both ends of a step: first where the step begins, then, not named,
+/// where it ends. `end` is the end of which the first answer is expected; whether there was
+/// anything to tell the ends apart by.
 fn at_rest(seed: u64, query: Query, end: usize) -> Result<bool, String> {
     let mut rng = SmallRng::seed_from_u64(seed);
     let mut bodies: Vec<Placed> = Vec::new();

@@ -1,5 +1,5 @@
-//! An answer about two bodies depends on nothing else: adding, removing or having had another body, of any size,
-//! precision or environment, changes no row.
+//! An answer about two bodies depends on nothing else: adding, removing or having had another body,
+//! of any size, precision or environment, changes no row.
 
 use super::*;
 
@@ -11,7 +11,8 @@ enum Rows {
     Near(Vec<NearPair>),
 }
 
-/// The rows of bodies below `own`; of a query that answers with one number, `None`: other bodies may have the least.
+/// The rows of bodies below `own`; of a query that answers with one number, `None`: other bodies
+/// may have the least.
 fn rows(contacts: &Contacts, own: usize) -> Option<Rows> {
     let is_own = |bodies: &[BodyId; 2]| bodies.iter().all(|body| body.index() < own);
     Some(match &contacts.answer {
@@ -129,7 +130,8 @@ fn least_two_by_two(bodies: &[Body], query: Query) -> Least {
     }
 }
 
-/// What differs where other bodies are, where they were added to a detector, and where they were and are gone.
+/// What differs where other bodies are, where they were added to a detector, and where they were
+/// and are gone.
 fn differs(own: &[Body], others: &[Body], query: Query) -> Option<String> {
     let all: Vec<Body> = own.iter().chain(others).cloned().collect();
     let alone = ask(own, query);
@@ -214,7 +216,8 @@ fn a_body_that_meets_none_adds_no_caveat() {
     assert!(told.iter().all(|times| *times > 0), "{told:?}");
 }
 
-/// The comparison names a row that is changed in its last bit, one that is missing, and another least number.
+/// The comparison names a row that is changed in its last bit, one that is missing, and another
+/// least number.
 #[test]
 fn a_changed_row_is_named() {
     let mut rng = SmallRng::seed_from_u64(1);

@@ -83,7 +83,8 @@ fn a_small_sphere_far_away_does_not_meet_itself() {
     }
 }
 
-/// Random rigid bodies and their placed vertices as deformable bodies in doubles: the same rows, of every query.
+/// Random rigid bodies and their placed vertices as deformable bodies in doubles: the same rows, of
+/// every query.
 fn differences(rounded: bool) -> Vec<String> {
     let mut rng = SmallRng::seed_from_u64(7);
     let mut different = Vec::new();

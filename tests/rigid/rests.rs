@@ -1,4 +1,5 @@
-//! An answer about a frame depends on that frame's positions and the query alone: a body that no frame names is where its step ended.
+//! An answer about a frame depends on that frame's positions and the query alone: a body that no
+//! frame names is where its step ended.
 
 use super::*;
 use nearmiss::device::Buffer;

@@ -83,8 +83,9 @@ fn asks(motion: QueryKind, bodies: usize) -> bool {
 fn launches_of_a_frame() {
     // A walk, and the rounds of what it spilled; two rounds of samples, and a walk.
     let walk = 1 + nearmiss_kernels::abi::ROUNDS as u64;
-    // Narrow: filter, f64 and exact signs; these at the start, features, cull and four rungs; the same; features and distances; signs as of a discrete query,
-    // the least distance, its first pair, and where that is nearest.
+    // Narrow: filter, f64 and exact signs; these at the start, features, cull and four rungs; the
+    // same; features and distances; signs as of a discrete query, the least distance, its first
+    // pair, and where that is nearest.
     let stages = [
         (QueryKind::Discrete, walk, 3),
         (QueryKind::Continuous, walk, 9),
@@ -128,7 +129,9 @@ fn bytes_of_a_scene() {
                 assert_eq!(bytes(&plan, what), expected, "{name}, {motion:?}, {what}");
             };
             let ends = if motion.is_at_rest() { 1 } else { 2 };
-            // A point is three floats and a word to fill 16 bytes, of a scene with a rigid body three doubles and a word; a node is a volume and two links, of moving boxes in 64 bytes.
+            // A point is three floats and a word to fill 16 bytes, of a scene with a rigid body
+            // three doubles and a word; a node is a volume and two links, of moving boxes in 64
+            // bytes.
             let point = if rigid > 0 { 32 } else { 16 };
             told("positions of all vertices", ends * point * vertices);
             told("vertices of each triangle", 12 * triangles);

@@ -1,4 +1,5 @@
-//! The rule of errors: numbers that describe meshes, positions and poses are input, all else that is passed is a choice.
+//! The rule of errors: numbers that describe meshes, positions and poses are input, all else that
+//! is passed is a choice.
 
 use super::*;
 use nearmiss::Error;

@@ -10,7 +10,8 @@ fn turned(degrees: f64) -> Pose {
     Pose { rotation: [0.0, 0.0, half.sin(), half.cos()], ..Pose::default() }
 }
 
-/// A bar of half length 2 along x, with the farthest vertex 5 above the axis' origin, and something that stands still.
+/// A bar of half length 2 along x, with the farthest vertex 5 above the axis' origin, and something
+/// that stands still.
 fn bar() -> (Scene, BodyId) {
     let corners = vec![[-2.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.5, 5.0]];
     let mesh = |corners| Mesh::new("bar", Positions::F32(corners), vec![[0, 1, 2]]).expect("a mesh");

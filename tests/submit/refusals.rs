@@ -1,9 +1,11 @@
-//! No refusal is lost: of each query, by each tolerance, each way of being refused, asked, submitted, and submitted again.
+//! No refusal is lost: of each query, by each tolerance, each way of being refused, asked,
+//! submitted, and submitted again.
 
 use super::*;
 use nearmiss::contacts::Contacts;
 
-/// Queries of each kind; of those that have one with tolerances that doubles give, that they do not, and 0.
+/// Queries of each kind; of those that have one with tolerances that doubles give, that they do
+/// not, and 0.
 fn queries() -> Vec<Query> {
     let of = |kind: QueryKind| {
         let all: &[f64] = if kind.is_at_rest() { &[1e-4] } else { &[1e-4, 1e-9, 1e-17, 0.0] };

@@ -1,4 +1,5 @@
-//! The layout of a header: sizes and offsets of its structs by the rules of C on a 64-bit machine, enums and functions.
+//! The layout of a header: sizes and offsets of its structs by the rules of C on a 64-bit machine,
+//! enums and functions.
 
 use std::collections::BTreeMap;
 

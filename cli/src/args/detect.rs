@@ -144,7 +144,8 @@ pub struct DetectArgs {
     /// Merge vertices that coincide in all frames of a mesh: seams that are vertices twice then meet themselves no more.
     #[arg(long)]
     pub weld: bool,
-    /// Refuse a mesh of which a part is skipped, left out or cut as it crosses itself, instead of a note that counts such parts.
+    /// Refuse a mesh of which a part is skipped, left out or cut as it crosses itself, instead of a
+    /// note that counts such parts.
     #[arg(long, conflicts_with = "scene")]
     pub strict: bool,
     /// With --out: triangles are told as the faces of the file that they were cut from, counted from 0.
@@ -169,7 +170,8 @@ pub struct DetectArgs {
     /// Ask the same frame this often (after one run to warm up) and report each stage's median.
     #[arg(long, default_value_t = 1, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u32>(1, 100_000))]
     pub repeat: u32,
-    /// When tiles or trees are built again: auto (by itself, decided by counted tests) or never [default: auto].
+    /// When tiles or trees are built again: auto (by itself, decided by counted tests) or never
+    /// [default: auto].
     #[arg(long, value_parser = choice::<Rebuild>(), conflicts_with = "rebuild_every")]
     pub rebuild: Option<Rebuild>,
     /// Of several steps: build the tree anew every so many, where the mesh comes far [default: never, it is refitted].

@@ -203,7 +203,8 @@ pub fn geometry(
     found: &Contacts,
 ) -> Result<Option<Vec<ContactGeometry>>, Error> {
     let is_wanted = args.geometry || args.writes_vtp() || args.out_mesh.is_some();
-    // Triangles and a time have none; a file of the nearest triangles takes their points from the answer.
+    // Triangles and a time have none; a file of the nearest triangles takes their points from the
+    // answer.
     let has_any = matches!(found.answer, Answer::Contacts(_) | Answer::Near(_));
     if is_wanted && has_any { detector.geometry(found).map(Some) } else { Ok(None) }
 }

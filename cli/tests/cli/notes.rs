@@ -1,4 +1,5 @@
-//! Parts of a file that its reader skips, leaves out or cuts as it can: notes of `detect`, and `--strict`.
+//! Parts of a file that its reader skips, leaves out or cuts as it can: notes of `detect`, and
+//! `--strict`.
 
 use super::{Folder, err, ok, refused, run, summary};
 

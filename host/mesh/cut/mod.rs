@@ -4,9 +4,10 @@
 //! right by what it is made of: a triangle more covers what it covers once, so where every triangle turns as the face
 //! does, each point is covered as often as the face winds around it, and a face that does not cross itself once.
 //!
-//! Every edge of a face is an edge of a triangle in any cut. So the fan of a face without area covers it whole. The fan of a
-//! face that crosses itself covers every point that the face winds around: how often that is, is the sum over the triangles of the
-//! fan, so where it is not 0 a triangle is. It may cover more, where two triangles that turn differently overlap.
+//! Every edge of a face is an edge of a triangle in any cut. So the fan of a face without area
+//! covers it whole. The fan of a face that crosses itself covers every point that the face winds
+//! around: how often that is, is the sum over the triangles of the fan, so where it is not 0 a
+//! triangle is. It may cover more, where two triangles that turn differently overlap.
 
 mod cross;
 mod ears;
@@ -25,8 +26,9 @@ type Point = [f64; 2];
 /// Most corners of a face that is cut by ears.
 const MOST_CORNERS: usize = 1 << 17;
 
-/// Cuts anew every face of which the fan is wrong, and keeps its corners. As many triangles as before. A face that crosses
-/// itself keeps its fan, and is noted by [`Problem::FaceCrosses`] or [`Problem::FaceFolds`].
+/// Cuts anew every face of which the fan is wrong, and keeps its corners. As many triangles as
+/// before. A face that crosses itself keeps its fan, and is noted by [`Problem::FaceCrosses`] or
+/// [`Problem::FaceFolds`].
 ///
 /// Cost: O(corners) for faces of which the fan is right. Else ears and crossings are looked for among those whose
 /// extent along a line overlaps: O(n log n) for a face that winds little, O(n^2) at worst. Combs, spirals and stars of

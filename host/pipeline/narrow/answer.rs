@@ -17,7 +17,8 @@ pub struct AnswerLists {
     pub counters: Vec<Counter>,
     /// Where the earliest time is, of such a query.
     pub earliest: Option<u64>,
-    /// Which counter counts the triangle pairs that share a point at the start; none if the start is not checked.
+    /// Which counter counts the triangle pairs that share a point at the start; none if the start
+    /// is not checked.
     pub crossing: Option<Counter>,
     /// End points of every edge.
     pub edges: Span<[u32; 2]>,

@@ -158,7 +158,8 @@ impl ContinuousNarrow {
         })
     }
 
-    /// The same, which also counts what crosses at the start, with room for `few` pairs that filters leave undecided.
+    /// The same, which also counts what crosses at the start, with room for `few` pairs that
+    /// filters leave undecided.
     ///
     /// # Errors
     /// Those of the device.

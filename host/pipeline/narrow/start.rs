@@ -1,4 +1,5 @@
-//! The triangle pairs of a step that share a point at its start: counted, by the kernels of a discrete query.
+//! The triangle pairs of a step that share a point at its start: counted, by the kernels of a
+//! discrete query.
 
 use super::{NarrowContext, growable};
 use crate::device::Device;
@@ -44,7 +45,8 @@ impl StartCheck {
             .zip(&self.undecided)
     }
 
-    /// Launches the step over all candidates: signs with an error bound, in f32 and in f64, and exact signs for what they leave.
+    /// Launches the step over all candidates: signs with an error bound, in f32 and in f64, and
+    /// exact signs for what they leave.
     ///
     /// # Errors
     /// Those of the device.

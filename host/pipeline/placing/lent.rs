@@ -36,7 +36,8 @@ pub struct Seen {
 pub struct Whereabouts {
     /// All vertices, at both ends or at the only one.
     pub ends: Vec<mesh::Positions>,
-    /// How many of these a frame looks at: one, where the other is that of steps of which the caller's memory had both ends.
+    /// How many of these a frame looks at: one, where the other is that of steps of which the
+    /// caller's memory had both ends.
     pub looked_at: usize,
     /// Poses that were found in memory of the caller, at as many ends, of each body; others are none.
     pub poses: Vec<Pose>,

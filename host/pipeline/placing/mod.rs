@@ -29,7 +29,8 @@ pub struct Moved {
 }
 
 impl Moved {
-    /// As vertices with one end take it: what the host knows is placed where it now is; the device has only the other's end.
+    /// As vertices with one end take it: what the host knows is placed where it now is; the device
+    /// has only the other's end.
     fn at_one_end(self, bodies: &[Body]) -> Moved {
         Moved { rests: self.rests && bodies[self.body].is_away(), ..self }
     }
@@ -102,7 +103,8 @@ pub struct Placing<R: Precision> {
     rest_starts: Vec<u32>,
     /// Each body's first vertex, and where the last one's end.
     starts: Vec<u32>,
-    /// Where vertices have one end: ends of steps of which the caller's memory had both, and which bodies' those are.
+    /// Where vertices have one end: ends of steps of which the caller's memory had both, and which
+    /// bodies' those are.
     later: Buffer<Point<R>>,
     keeps: Vec<bool>,
     /// Of the last frame: vertices that came from the host, where not all did; who was moved, and how.
@@ -177,8 +179,9 @@ impl<R: Precision> Placing<R> {
     }
 
     /// Moves bodies, named in ascending order. One launch, and an upload of positions, of poses and, where others were moved
-    /// than in the frame before, of whom; of deformable bodies alone, when all are moved, an upload and no launch. Where vertices have
-    /// one end, bodies of the host that rest are placed by a launch before that of the caller's memory, which alone is placed
+    /// than in the frame before, of whom; of deformable bodies alone, when all are moved, an upload
+    /// and no launch. Where vertices have one end, bodies of the host that rest are placed by a
+    /// launch before that of the caller's memory, which alone is placed
     /// [again](Placing::again).
     ///
     /// # Errors

@@ -18,8 +18,10 @@ use nearmiss_kernels::abi::{Hit, Output, Positions, Span, counter};
 /// at a time, so that half a gigabyte of device memory is enough.
 ///
 /// # Errors
-/// [`Error::Input`] for coordinates that are not finite or too large; [`Error::Choice`] for a query that is not of
-/// [`Query::Continuous`], and for coordinates that are to be stored in f32, which does not hold them; those of the device.
+/// [`Error::Input`] for coordinates that are not finite or too large; [`Error::Choice`] for a query
+/// that is not of
+/// [`Query::Continuous`], and for coordinates that are to be stored in f32, which does not hold
+/// them; those of the device.
 pub fn ask(device: &Device, cases: &[Case], query: &Query, how: Options) -> Result<Answers, Error> {
     query.check()?;
     let Query::Continuous(Continuous { mut solver, .. }) = *query else {
