@@ -74,9 +74,9 @@ fn fan(n: usize) -> Body {
     Body::moving(mesh.clone(), mesh).expect("two frames")
 }
 
-/// Round one vertex the boxes of all triangles meet, so each pair is looked at; but nothing is asked of those that share it.
+/// The boxes of all triangles round one vertex overlap, but few pairs are tested: pairs of tiles that share it are left out.
 #[test]
-fn a_fan_round_one_vertex_costs_a_look_a_pair() {
+fn a_fan_round_one_vertex_is_not_tested_pair_by_pair() {
     const TRIANGLES: u64 = 400;
     for motion in [QueryKind::Discrete, QueryKind::Continuous] {
         let all = ask(engine(), vec![fan(TRIANGLES as usize)], of(motion));
@@ -87,8 +87,7 @@ fn a_fan_round_one_vertex_costs_a_look_a_pair() {
             all.triangle_pairs,
             all.candidates
         );
-        // A walk of each leaf comes by each pair twice.
-        assert!((pairs..3 * pairs).contains(&all.overlap_tests()), "{}", all.overlap_tests());
+        assert!(all.overlap_tests() < pairs, "{}", all.overlap_tests());
         assert!(
             all.candidates < TRIANGLES / 10 && all.is_empty(),
             "{} asked, {} listed",

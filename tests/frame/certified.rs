@@ -54,7 +54,9 @@ fn brute(body: &Body, solver: Solver, p: &Params) -> (BTreeMap<Row, Verdict>, Ve
 
 fn asking(motion: QueryKind, solver: Solver, p: &Params) -> Query {
     certified(by(motion, solver), |certified| {
-        (certified.tolerance, certified.budget) = (Some(p.tolerance), Some(p.budget));
+        certified.tolerance = Some(p.tolerance);
+        // In f32 alone no boxes are tested, so a budget is refused.
+        certified.budget = (solver != Solver::CertifiedF32).then_some(p.budget);
     })
 }
 

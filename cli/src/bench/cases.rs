@@ -142,17 +142,17 @@ pub fn chosen(args: &BenchArgs) -> Result<Vec<Chosen>, Error> {
             advice: "figures are told by these names: give the file another".into(),
         });
     }
+    if let Some(unknown) = args.case.iter().find(|name| !names.contains(name)) {
+        return Err(Error::Choice {
+            what: format!("no case is named {unknown}"),
+            advice: format!("choose among: {}", names.join(", ")),
+        });
+    }
     let read = &names[GENERATED.len()..];
     if let Some(left_out) = read.iter().find(|name| !args.has_case(name)) {
         return Err(Error::Choice {
             what: format!("the file of --mesh {left_out} would do nothing: --case names other cases"),
             advice: format!("add {left_out} to --case, or leave it out"),
-        });
-    }
-    if let Some(unknown) = args.case.iter().find(|name| !names.contains(name)) {
-        return Err(Error::Choice {
-            what: format!("no case is named {unknown}"),
-            advice: format!("choose among: {}", names.join(", ")),
         });
     }
     all.retain(|case| args.has_case(&case.name));
