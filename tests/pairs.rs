@@ -145,7 +145,7 @@ fn what_cannot_be_asked_is_refused() {
         let mut pair = [[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]; 2];
         pair[1][2][0] = x;
         for stored in [Stored::F64, Stored::F32] {
-            let error = ask_triangles(&device, &[pair], &Query::default(), stored).err().expect("refused");
+            let error = ask_triangles(&device, &[pair], &Query::default(), stored).expect_err("refused");
             assert!(matches!(error, Error::Input { .. }), "{error}");
         }
     }

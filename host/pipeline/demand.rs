@@ -11,9 +11,9 @@ use nearmiss_kernels::abi::{Counter, EVERY, counter};
 
 /// Smaller answers are not compared with the memory that is free, in bytes.
 const LITTLE: u64 = 16 << 20;
-/// Rows that a candidate pair of triangles has in an answer of features, if all of them meet: 1 / 2
-/// + 9 / 4 in a closed mesh, more in a soup. It decides when rows are counted on the host, and
-/// nothing else.
+/// Rows that a candidate pair of triangles has in an answer of features, if all of them meet:
+/// 1 / 2 + 9 / 4 in a closed mesh, more in a soup. It decides when rows are counted on the host,
+/// and nothing else.
 const ROWS_A_PAIR: u64 = 4;
 /// Triangles of the smallest group.
 const GROUP: usize = 16;

@@ -20,15 +20,24 @@ const ELSEWHERE: [(&str, &[&str], &str); 4] = [
 /// A command with some arguments, then with others instead.
 type Pair<'a> = (&'a str, Vec<&'a str>, Vec<&'a str>, Vec<&'a str>);
 
-/// How the program ends and what it says and writes, without times and without what depends on the
-/// moment.
-fn outcome(args: &[&str], folder: &Folder) -> (Option<i32>, String, String, Vec<(String, Vec<u8>)>) {
+/// A run of the program, without times and without what depends on the moment.
+#[derive(PartialEq)]
+struct Outcome {
+    status: Option<i32>,
+    printed: String,
+    complained: String,
+    /// Path and content, in the order of paths.
+    files: Vec<(String, Vec<u8>)>,
+}
+
+/// Runs the program in an empty folder.
+fn outcome(args: &[&str], folder: &Folder) -> Outcome {
     let made = folder.path("made");
     let _ = std::fs::remove_dir_all(&made);
     std::fs::create_dir(&made).expect("a folder");
     let output = run(args);
     let text = out(&output);
-    let said = serde_json::from_str::<Value>(&text).map_or(text, |mut json| {
+    let printed = serde_json::from_str::<Value>(&text).map_or(text, |mut json| {
         scrub(&mut json);
         json.to_string()
     });
@@ -38,7 +47,7 @@ fn outcome(args: &[&str], folder: &Folder) -> (Option<i32>, String, String, Vec<
         .map(|path| (path.display().to_string(), std::fs::read(&path).expect("a file")))
         .collect();
     files.sort();
-    (output.status.code(), said, err(&output), files)
+    Outcome { status: output.status.code(), printed, complained: err(&output), files }
 }
 
 /// Takes times out.
