@@ -13,7 +13,7 @@ use nearmiss::{Answer, Contacts, Detector};
 use shapes::Shape;
 use support::{ORDERS, engine, sanitizer, walks};
 
-/// Of four times as many faces at most so many times as many tests of volumes; of a square it is 16.
+/// Most tests of volumes of four times as many faces, as a multiple; it is 16 if they grow by the square.
 const LINEAR: f64 = 6.0;
 
 /// A discrete query of adjacent triangles too.

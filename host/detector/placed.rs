@@ -7,9 +7,9 @@ use crate::scene::{BodyId, DeviceInput, Input};
 /// A record of who was placed.
 #[derive(Default)]
 pub struct Placed {
-    /// Of each body, whether a frame has placed it since it was added.
+    /// Whether a frame has placed each body since it was added.
     ever: Vec<bool>,
-    /// Of each body, whether the last frame named it.
+    /// Whether the last frame named each body.
     pub named: Vec<bool>,
     /// The bodies that a submission reads; up to date while the pipeline is prepared.
     pub submitted: Vec<Submitted>,

@@ -50,7 +50,7 @@ impl Detector {
         self.engine.pipeline.as_mut().map_or(Ok(()), |pipeline| pipeline.take(slice))
     }
 
-    /// What each tile of its share cost in the last frame, of all tiles; nothing where nothing can meet.
+    /// The cost of each tile of its share in the last frame, by tile; empty if nothing can meet.
     ///
     /// # Errors
     /// Those of the device.
@@ -83,7 +83,7 @@ impl Detector {
         self.engine.last_layout().map_or(0, |layout| layout.moving_triangles())
     }
 
-    /// What its machine calls itself.
+    /// The name of its machine.
     pub(crate) fn machine(&self) -> String {
         self.device.name()
     }

@@ -12,7 +12,7 @@ use std::sync::Arc;
 pub struct Resident {
     /// The largest coordinate that was seen in memory of the caller so far.
     pub largest: f64,
-    /// Of each body, whether the frame that placed it last was refused: where it was before is not known either.
+    /// Whether the last frame that placed each body was refused: its earlier position is not known either.
     lost: Vec<bool>,
 }
 

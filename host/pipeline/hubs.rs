@@ -5,7 +5,7 @@ use nearmiss_kernels::bvh::tiles::TILE;
 /// Faces that a hub has at least: those of a tile. Fewer make no tile, and no subtree worth a cut.
 pub const FACES: u32 = TILE;
 
-/// Of each face its hub's vertex and one; 0 without a hub. Of several hubs the one of the most faces, of such the first: so
+/// The vertex of each face's hub and one; 0 without a hub. Among several hubs the one of the most faces, then the first: so
 /// the faces round a hub name it, also if a few of them touch another. Nothing at all without hubs. Cost: linear.
 pub fn of(faces: &[[u32; 3]], vertices: usize) -> Vec<u32> {
     let mut valences = vec![0u32; vertices];

@@ -36,7 +36,7 @@ pub struct Layout {
     /// Tolerances of bodies by their first vertices; empty if all pairs have the same, and of
     /// queries without one.
     pub tolerances: Vec<BodyTolerance>,
-    /// Of each triangle its [`NodeFilter::hub`], where pairs round a hub are no candidates; empty without hubs.
+    /// The [`NodeFilter::hub`] of each triangle, if pairs round a hub are no candidates; empty without hubs.
     pub hubs: Vec<u32>,
     /// The same where they are, so that only their rims tell pairs apart; empty without hubs.
     pub rims: Vec<u32>,

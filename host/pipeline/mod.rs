@@ -36,7 +36,7 @@ use crate::scene::Body;
 use std::sync::Arc;
 use typed::TypedPipeline;
 
-/// What a pipeline is made for.
+/// The scene, query and share that a pipeline is made for.
 pub struct Pieces {
     /// Where every body lies.
     pub layout: Arc<Layout>,

@@ -136,7 +136,7 @@ arguments! {
         filters: Span<NodeFilter>,
         /// All bodies of the scene; empty where there are no filters.
         bodies: Span<BodyRecord>,
-        /// Of every triangle its [`NodeFilter::hub`]; empty without hubs.
+        /// The [`NodeFilter::hub`] of every triangle; empty without hubs.
         hubs: Span<u32>,
         /// Scratch, zeroed before. Of each inner node: 1 if its leaves have different hubs; empty without hubs.
         mixed: Span<u64>,

@@ -73,7 +73,7 @@ arguments! {
         faces: Span<[u32; 3]>,
         /// Triangles in order: the lower halves.
         triangles: Span<u64>,
-        /// Of every triangle its hub, as [`NodeFilter::hub`] has it.
+        /// The [`NodeFilter::hub`] of every triangle.
         hubs: Span<u32>,
         /// Out, and of nodes above tiles in: of every node the hub as its link, and a volume.
         rims: Span<Node<V>>,

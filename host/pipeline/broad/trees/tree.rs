@@ -30,7 +30,7 @@ pub struct Tree {
     pub levels: Buffer<u32>,
     /// Whose triangles lie below each node; empty where that does not matter.
     pub filters: Buffer<NodeFilter>,
-    /// Of every triangle of the scene its hub; empty without hubs.
+    /// The hub of every triangle of the scene; empty without hubs.
     hubs: Buffer<u32>,
     /// How it is refitted.
     pub way: RefitPlan,

@@ -20,7 +20,7 @@ use crate::bvh::tiles::{FAN, TILE};
 use crate::exec::{Block, Lane};
 use crate::math::Real;
 
-/// Of the nodes of a level.
+/// The rims of a level.
 pub fn rims<R: Real, V: Volume, B: Block>(b: &mut B, args: &RimsArgs<R, V>) {
     let stride = b.blocks() * b.lanes();
     b.phase(|lane| {
