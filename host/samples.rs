@@ -11,6 +11,12 @@ pub fn words(seed: u64) -> impl Iterator<Item = u64> {
     std::iter::repeat_with(move || rng.random())
 }
 
+/// A right triangle with sides of 3, 4 and 5 times that size, in doubles.
+pub fn right_triangle(size: f64) -> Mesh {
+    let points = vec![[0.0; 3], [3.0 * size, 0.0, 0.0], [0.0, 4.0 * size, 0.0]];
+    Mesh::new("test", Positions::F64(points), vec![[0, 1, 2]]).expect("a mesh")
+}
+
 /// `n` random triangles in the unit cube, so large that each meets a few others; still, or each corner moving on its own.
 pub fn soup(n: usize, seed: u64, moving: bool) -> Body {
     let size = 0.75 / (n as f32).cbrt();

@@ -28,8 +28,9 @@ pub enum BelowPrecision {
 }
 
 impl BelowPrecision {
-    /// Of bodies where they are; `finest` is the smallest tolerance, if pairs have several. Of an
-    /// earliest query with a body that is away none: the detector finds it out behind the frame.
+    /// The caveat of bodies where they are; `finest` is the smallest tolerance, if pairs have
+    /// several. None for an earliest query with a body that is away: the detector checks it after
+    /// the frame.
     pub fn of(
         bodies: &[Body],
         certified: &Certified,
@@ -162,10 +163,8 @@ fn may_meet(bodies: &[Body], [i, j]: [usize; 2]) -> bool {
     if i == j {
         return a.meets_itself();
     }
-    let [p, q] = [a.meets(), b.meets()];
-    let is_fixed = |body: &Body| body.kind() == BodyKind::Static;
-    let together = p.environment == q.environment || p.environment.is_none() || q.environment.is_none();
-    together && p.group & q.mask != 0 && q.group & p.mask != 0 && !(is_fixed(a) && is_fixed(b))
+    let is_static = |body: &Body| body.kind() == BodyKind::Static;
+    a.meets().allows(b.meets()) && !(is_static(a) && is_static(b))
 }
 
 /// A part of the largest coordinate by which boxes grow: more than what rounding adds to a volume.

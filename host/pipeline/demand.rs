@@ -7,7 +7,8 @@ use crate::device::Device;
 use crate::error::Error;
 use crate::memory;
 use crate::query::{Query, Rows};
-use nearmiss_kernels::abi::{Counter, EVERY, counter};
+use crate::scene::Meets;
+use nearmiss_kernels::abi::{BodyRecord, Counter, EVERY, counter};
 
 /// Smaller answers are not compared with the memory that is free, in bytes.
 const LITTLE: u64 = 16 << 20;
@@ -170,12 +171,15 @@ fn groups(triangles: &mut [u32], all: &mut Vec<Group>, (layout, positions): (&La
 /// Whether two bodies, or a body and itself, are tested.
 fn may_meet(layout: &Layout, a: usize, b: usize) -> bool {
     let is_static = |body| layout.trees[1].contains(&body);
-    let [p, q] = [a, b].map(|body| &layout.records[body]);
     if a == b {
-        return p.self_contact != 0 && !is_static(a);
+        return layout.records[a].self_contact != 0 && !is_static(a);
     }
-    let together = p.environment == q.environment || p.environment == EVERY || q.environment == EVERY;
-    together && p.group & q.mask != 0 && q.group & p.mask != 0 && !(is_static(a) && is_static(b))
+    let meets = |body: usize| {
+        let BodyRecord { environment, group, mask, .. } = layout.records[body];
+        let environment = (environment != EVERY).then_some(environment);
+        Meets { environment, group, mask, ..Meets::default() }
+    };
+    meets(a).allows(&meets(b)) && !(is_static(a) && is_static(b))
 }
 
 /// A number of pairs of features that are certainly within a distance, and have no common vertex.

@@ -77,16 +77,11 @@ impl Tolerances {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{Mesh, Positions};
+    use crate::samples::right_triangle;
     use crate::scene::{Input, Meets};
 
-    fn mesh(size: f64) -> Mesh {
-        let points = vec![[0.0; 3], [3.0 * size, 0.0, 0.0], [0.0, 4.0 * size, 0.0]];
-        Mesh::new("test", Positions::F64(points), vec![[0, 1, 2]]).expect("a mesh")
-    }
-
     fn triangle(size: f64) -> Body {
-        Body::still(mesh(size))
+        Body::still(right_triangle(size))
     }
 
     #[test]
@@ -102,7 +97,7 @@ mod tests {
     fn those_of_a_scene_are_those_of_its_pairs() {
         let alone = |body: Body| body.with(Meets::others());
         let (small, large) = (2f64.powi(-12), 2f64.powi(-2));
-        let fixed = |size| Body::fixed(mesh(size));
+        let fixed = |size| Body::fixed(right_triangle(size));
         let point = || alone(triangle(0.0));
         for (bodies, [least, largest, finest], by_body) in [
             (vec![triangle(1.0)], [small; 3], false),

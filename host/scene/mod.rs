@@ -84,6 +84,13 @@ impl Meets {
         Meets { environment: Some(environment), ..Meets::default() }
     }
 
+    /// Whether environments and groups let two different bodies meet.
+    pub(crate) fn allows(&self, other: &Meets) -> bool {
+        let is_everywhere = self.environment.is_none() || other.environment.is_none();
+        let is_together = is_everywhere || self.environment == other.environment;
+        is_together && self.group & other.mask != 0 && other.group & self.mask != 0
+    }
+
     /// Whether a body of that kind is tested against itself. Deformable bodies are by default, rigid bodies if
     /// `self_contact` is true, static bodies never.
     pub fn is_own(&self, kind: BodyKind) -> bool {

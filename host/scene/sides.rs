@@ -35,15 +35,10 @@ fn power_below(x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{Mesh, Positions};
-
-    fn mesh(size: f64) -> Mesh {
-        let points = vec![[0.0; 3], [3.0 * size, 0.0, 0.0], [0.0, 4.0 * size, 0.0]];
-        Mesh::new("test", Positions::F64(points), vec![[0, 1, 2]]).expect("a mesh")
-    }
+    use crate::samples::right_triangle;
 
     fn triangle(size: f64) -> Body {
-        Body::still(mesh(size))
+        Body::still(right_triangle(size))
     }
 
     #[test]

@@ -22,7 +22,7 @@ fn checked(fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), Error> {
     checked_of(&bodies, fault)
 }
 
-/// Of 4,096 faces round one hub, with rims.
+/// The checker's verdict on 4,096 faces round one hub, with rims, after `fault`.
 fn checked_rims(fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), Error> {
     let n = 4_096;
     let on_rim = |k: u32| [(k % 64) as f32, (k / 64) as f32, 1.0];
@@ -31,7 +31,7 @@ fn checked_rims(fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), Error> {
     checked_of(&[Body::still(Mesh::new("fan", Positions::F32(points), faces)?)], fault)
 }
 
-/// What the checker says of tiles over these bodies after `fault`.
+/// The checker's verdict on tiles over these bodies after `fault`.
 fn checked_of(bodies: &[Body], fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), Error> {
     let device = Device::emulator(Emulator::new(Mode::Engine, None)?);
     let mut layout = Layout::new(bodies, QueryKind::Discrete);

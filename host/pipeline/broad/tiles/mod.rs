@@ -19,7 +19,7 @@ use nearmiss_kernels::abi::{
     TileFiltersArgs, TilePairsArgs, TileTrianglesArgs, TreeBody, counter,
 };
 use nearmiss_kernels::bv::Axes;
-use nearmiss_kernels::bvh::tiles::{self, Levels, TILE};
+use nearmiss_kernels::bvh::tiles::{self, Levels, Part, TILE};
 use nearmiss_kernels::entry::{self, Entry, Kernels};
 use nearmiss_kernels::math::Vec3;
 use std::collections::BTreeSet;
@@ -50,7 +50,7 @@ pub struct Tiles<V> {
     filters: Buffer<NodeFilter>,
     /// Whose each triangle is; the same.
     whose: Buffer<NodeFilter>,
-    /// Of every triangle its hub, and of every node its rim; both empty where no pair is told apart by them.
+    /// The hub of every triangle, and the rim of every node; both empty if no pair is left out by them.
     hubs: Buffer<u32>,
     rims: Buffer<Node<V>>,
     has_groups: bool,
@@ -88,7 +88,7 @@ impl<V: Kernels> Tiles<V> {
         let mut of_nodes = filters.buffer(if whose.is_empty() { 0 } else { count })?;
         of_nodes.clear()?;
         let mut rims = device.of(purpose::RIMS).buffer(if layout.rims.is_empty() { 0 } else { count })?;
-        // What is static has none.
+        // Static tiles have none.
         rims.clear()?;
         let room = PAIRS_A_TILE * triangles[MOVING].div_ceil(TILE) as usize;
         Ok(Tiles {
@@ -112,22 +112,27 @@ impl<V: Kernels> Tiles<V> {
         })
     }
 
+    /// The nodes of a level of a part, and those below them; below tiles none, from [`NONE`] on.
+    fn own_and_below(&self, level: u32, part: usize) -> [Part; 2] {
+        let of = |level| self.levels.part(level, part, self.triangles[part]);
+        [of(level), level.checked_sub(1).map_or(Part { first: NONE, count: 0 }, of)]
+    }
+
     /// Whose triangles lie below each node of a part, once they are in order.
     fn filter(&self, device: &Device, part: usize, triangles: Span<u64>) -> Result<(), Error> {
         if self.filters.is_empty() {
             return Ok(());
         }
         for level in 0..self.levels.count {
-            let own = self.levels.part(level, part, self.triangles[part]);
-            let below = level.checked_sub(1).map(|level| self.levels.part(level, part, self.triangles[part]));
+            let [own, below] = self.own_and_below(level, part);
             let args = TileFiltersArgs {
                 triangles,
                 whose: self.whose.span(),
                 filters: self.filters.span(),
                 first: own.first,
                 count: own.count,
-                below: below.map_or(NONE, |below| below.first),
-                below_count: below.map_or(0, |below| below.count),
+                below: below.first,
+                below_count: below.count,
             };
             launch::each::<entry::construct_tile_filters>(device, own.count as usize, &args)?;
         }

@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::pipeline::broad::{BroadContext, broken};
 use crate::pipeline::launch;
 use crate::pipeline::precision::Precision;
-use nearmiss_kernels::abi::{NONE, RimsArgs};
+use nearmiss_kernels::abi::RimsArgs;
 use nearmiss_kernels::bvh::{rims, tiles};
 use nearmiss_kernels::entry::{self, Kernels};
 use nearmiss_kernels::math::Vec3;
@@ -20,8 +20,7 @@ impl<V: Kernels> Tiles<V> {
             return Ok(());
         }
         for level in 0..self.levels.count {
-            let of = |level| self.levels.part(level, MOVING, self.triangles[MOVING]);
-            let (own, below) = (of(level), level.checked_sub(1).map(of));
+            let [own, below] = self.own_and_below(level, MOVING);
             let args = RimsArgs {
                 frames: given.frames,
                 faces: given.faces,
@@ -30,8 +29,8 @@ impl<V: Kernels> Tiles<V> {
                 rims: self.rims.span(),
                 first: own.first,
                 count: own.count,
-                below: below.map_or(NONE, |below| below.first),
-                below_count: below.map_or(0, |below| below.count),
+                below: below.first,
+                below_count: below.count,
                 axes: self.axes,
                 margin: self.margin,
             };
