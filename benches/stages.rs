@@ -10,7 +10,8 @@ use criterion::{Bencher, BenchmarkId, Criterion, criterion_group, criterion_main
 use nearmiss::device::Backend;
 use nearmiss::mesh::Body;
 use nearmiss::pipeline::Stages;
-use nearmiss::{Detector, Device, Mesh, Query};
+use nearmiss::{Device, Mesh, Query};
+use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -34,9 +35,9 @@ fn threads() -> Vec<usize> {
     if all > 1 { vec![1, all] } else { vec![1] }
 }
 
-fn detector(body: &Body, threads: usize, query: Query) -> Detector {
+fn detector(body: &Body, threads: usize, query: Query) -> OneQuery {
     let device = Device::open(Backend::Cpu, Some(threads)).expect("a CPU");
-    let mut detector = Detector::new(device, vec![body.clone()], query).expect("a detector");
+    let mut detector = OneQuery::new(device, vec![body.clone()], query).expect("a detector");
     // Lists grow to the demand once.
     detector.detect().expect("an answer");
     detector
@@ -94,7 +95,7 @@ fn hard_frames(c: &mut Criterion) {
     group.sample_size(10).warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(2));
     for (name, body) in hard::hard(1) {
         let (mut detector, mut seen) = (detector(&body, 1, Query::continuous()), Vec::new());
-        let candidates = detector.detect().expect("an answer").candidates;
+        let candidates = detector.detect().expect("an answer").stats.candidates;
         group.bench_function(name, |b| frame(b, &mut detector, &mut seen));
         if !seen.is_empty() {
             report.push((name, candidates, median(seen.iter().map(|s: &Stages| s.total).collect())));
@@ -107,10 +108,10 @@ fn hard_frames(c: &mut Criterion) {
     }
 }
 
-fn frame(b: &mut Bencher, detector: &mut Detector, seen: &mut Vec<Stages>) {
+fn frame(b: &mut Bencher, detector: &mut OneQuery, seen: &mut Vec<Stages>) {
     b.iter(|| {
         let contacts = detector.detect().expect("an answer");
-        seen.push(contacts.stages);
+        seen.push(contacts.stats.stages);
         contacts
     });
 }

@@ -3,18 +3,18 @@
 mod shapes;
 
 use nearmiss::scene::{Input, Meets, Scene};
-use nearmiss::{Body, Detector, Device, Error, Query, device::Backend};
+use nearmiss::{Body, Detector, Device, Error, Near, device::Backend};
 
 fn main() -> Result<(), Error> {
     let above = |z: f32| move |x: f32, y: f32| [x - 0.5, y - 0.5, z + 0.1 * x * y];
     let mut scene = Scene::new();
     let cloth = scene.add(Body::still(shapes::sheet(60, above(0.365))?).with(Meets::and_itself()));
     let obstacle = scene.add(Body::fixed(shapes::cube(0.7)?));
-    let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene, Query::near(0.01))?;
+    let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene)?;
     for frame in 0..5 {
         let positions = shapes::points(60, above(0.365 - 0.003 * frame as f32));
-        let found = detector.frame(&[(cloth, Input::At(&positions))])?;
-        let of_both = found.near().iter().filter(|pair| pair.bodies.contains(&obstacle));
+        let found = detector.step(&[(cloth, Input::At(&positions))], &Near::within(0.01))?;
+        let of_both = found.iter().filter(|pair| pair.bodies.contains(&obstacle));
         let least = of_both.clone().map(|pair| pair.squared_distance.sqrt()).min_by(f64::total_cmp);
         println!("frame {frame}: {} pairs with the obstacle, the nearest {least:.5?} away", of_both.count());
     }

@@ -3,19 +3,20 @@
 mod shapes;
 
 use nearmiss::scene::{Input, Meets, Scene};
-use nearmiss::{Body, Detector, Device, Error, Query, device::Backend};
+use nearmiss::{Body, Continuous, Detector, Device, Error, device::Backend};
 
 fn main() -> Result<(), Error> {
     let fallen = |z: f32| move |x: f32, y: f32| [2.0 * x - 1.0, 2.0 * y - 1.0, z - 0.2 * x * y];
     let mut scene = Scene::new();
     let cloth = scene.add(Body::still(shapes::sheet(60, fallen(1.0))?).with(Meets::and_itself()));
     let obstacle = scene.add(Body::fixed(shapes::cube(0.7)?));
-    let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene, Query::continuous())?;
+    let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene)?;
     for step in 0..8 {
         let [t0, t1] = [step, step + 1].map(|k| shapes::points(60, fallen(1.0 - 0.15 * k as f32)));
-        let found = detector.frame(&[(cloth, Input::Step([&t0, &t1]))])?;
-        let on_it = found.contacts().iter().filter(|contact| contact.bodies.contains(&obstacle));
-        println!("step {step}: {} contacts, the first at {:?}", on_it.count(), found.earliest_toi());
+        let found = detector.step(&[(cloth, Input::Step([&t0, &t1]))], &Continuous::default())?;
+        let first = found.iter().map(|contact| contact.toi).min_by(f64::total_cmp);
+        let on_it = found.iter().filter(|contact| contact.bodies.contains(&obstacle));
+        println!("step {step}: {} contacts, the first at {:?}", on_it.count(), first);
     }
     Ok(())
 }

@@ -4,7 +4,7 @@ mod shapes;
 
 use nearmiss::mesh::Positions;
 use nearmiss::scene::{DeviceInput, DeviceRows, Meets, Number, Scene};
-use nearmiss::{Body, Detector, Device, Error, Query, device::Backend};
+use nearmiss::{Body, Detector, Device, Error, Near, device::Backend};
 
 fn main() -> Result<(), Error> {
     let above = |z: f32| move |x: f32, y: f32| [x - 0.5, y - 0.5, z + 0.1 * x * y];
@@ -20,16 +20,17 @@ fn main() -> Result<(), Error> {
     let mut vertices = device.upload(&at(0))?;
     // SAFETY: the buffer outlives the detector, and is written between frames alone.
     let rows = unsafe { DeviceRows::new(vertices.span().addr(), vertices.len(), 12, Number::F32) }?;
-    let mut detector = Detector::new(device, scene, Query::near(0.01))?;
-    detector.prepare(&[(cloth, DeviceInput::At(rows))])?;
+    let mut detector = Detector::new(device, scene)?;
+    let query = Near::within(0.01);
+    detector.prepare(&[(cloth, DeviceInput::At(rows))], &[query.into()])?;
     for frame in 0..5 {
         vertices.write(&at(frame))?; // your kernels
         detector.submit()?; // or record it, once, and launch the graph
-        let answer = detector.on_device().map(|answer| answer.lists[0].address); // for your kernels behind it
-        let found = detector.collect()?; // where the host wants it, too
+        let answer = detector.on_device(&query.into()).map(|answer| answer.lists[0].address); // for your kernels behind it
+        let found = detector.collect(&query)?; // where the host wants it, too
         println!("frame {frame}: {} pairs, at {:#x}", found.len(), answer.unwrap_or(0));
         if !detector.is_prepared() {
-            detector.prepare(&[(cloth, DeviceInput::At(rows))])?; // a list has grown
+            detector.prepare(&[(cloth, DeviceInput::At(rows))], &[query.into()])?; // a list has grown
         }
     }
     Ok(())

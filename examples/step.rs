@@ -3,20 +3,21 @@
 mod shapes;
 
 use nearmiss::scene::{Input, Meets, Scene};
-use nearmiss::{Body, Detector, Device, Error, Query, device::Backend};
+use nearmiss::{Body, Detector, Device, Earliest, Error, device::Backend};
 
 fn main() -> Result<(), Error> {
     let at = |z: f32| move |x: f32, y: f32| [x - 0.5, y - 0.5, z + 0.1 * x * x];
     let mut scene = Scene::new();
     let cloth = scene.add(Body::still(shapes::sheet(60, at(1.0))?).with(Meets::and_itself()));
     scene.add(Body::fixed(shapes::cube(0.5)?));
-    let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene, Query::earliest())?;
+    let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene)?;
     let mut z = 1.0;
     while z > 0.2 {
         let wanted = z - 0.3;
         let [t0, t1] = [z, wanted].map(|z| shapes::points(60, at(z)));
         // No contact is before the time told: nine tenths of the way to it nothing touches.
-        let toi = detector.frame(&[(cloth, Input::Step([&t0, &t1]))])?.earliest_toi();
+        let toi =
+            detector.step(&[(cloth, Input::Step([&t0, &t1]))], &Earliest::default())?.map(|first| first.toi);
         let Some(toi) = toi else {
             z = wanted;
             continue;

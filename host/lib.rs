@@ -65,12 +65,12 @@ mod stages;
 #[doc(hidden)]
 pub mod words;
 
-pub use contacts::{Answer, Contact, Contacts};
+pub use contacts::{Answer, Contact, Contacts, Rows};
 pub use detector::{Detector, plan};
 pub use device::{Device, Interrupt};
 pub use error::Error;
 pub use mesh::Mesh;
-pub use query::Query;
+pub use query::{Continuous, Discrete, Distance, Earliest, Near, Query};
 pub use scene::{Body, Scene};
 pub use several::{DeviceShare, MultiDetector};
 pub use stages::{Stage, Stages};

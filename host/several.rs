@@ -3,12 +3,13 @@
 mod cuts;
 mod interrupted;
 
-use crate::contacts::{ContactGeometry, Contacts};
-use crate::detector::{Detector, Wear};
+use crate::contacts::{Answer, ContactGeometry, Contacts, Located};
+use crate::detector::Detector;
 use crate::device::{Device, Interrupt};
 use crate::error::Error;
 use crate::pipeline::Share;
-use crate::query::{Broad, Query, Rebuild};
+use crate::pipeline::wear::Wear;
+use crate::query::{Broad, Query, Rebuild, TypedQuery};
 use crate::scene::{Body, BodyId, Input, Scene};
 use cuts::cuts;
 use std::time::Instant;
@@ -25,28 +26,40 @@ const UNEVEN: f64 = 1.05;
 ///
 /// ```
 /// use nearmiss::device::{Backend, Device};
-/// use nearmiss::{Body, Mesh, MultiDetector, Query, mesh::Positions};
+/// use nearmiss::{Body, Discrete, Mesh, MultiDetector, mesh::Positions};
 ///
 /// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.2, 0.2, -1.0], [0.3, 0.2, 1.0], [0.2, 0.3, 1.0]];
 /// let mesh = Mesh::new("two triangles", Positions::F32(corners), vec![[0, 1, 2], [3, 4, 5]])?;
 /// let devices = vec![Device::open(Backend::Cpu, Some(1))?, Device::open(Backend::Cpu, Some(1))?];
-/// let mut detector = MultiDetector::new(devices, Body::still(mesh), Query::discrete())?;
-/// assert_eq!(detector.detect()?.triangles(), [[0, 1]]);
+/// let mut detector = MultiDetector::new(devices, Body::still(mesh))?;
+/// assert_eq!(detector.query(&Discrete::default())?[0].triangles, [0, 1]);
 /// # Ok::<(), nearmiss::Error>(())
 /// ```
 pub struct MultiDetector {
     parts: Vec<Detector>,
+    divisions: Vec<Division>,
+    in_turn: bool,
+    /// The handle that ends the work of all.
+    interrupt: Interrupt,
+}
+
+/// How the work of a query is divided.
+struct Division {
+    /// The shape of the query.
+    shape: Query,
     shares: Vec<Share>,
     /// Milliseconds of the last frame, on each device's own clock.
     ms: Vec<f64>,
-    in_turn: bool,
-    /// What ends the work of all.
-    interrupt: Interrupt,
-    /// How often each device had made its tiles when last all were made from the same positions: so that tiles are the same.
-    builds: Vec<u64>,
     wear: Wear,
-    /// Whether all are made anew by themselves.
-    wears: bool,
+}
+
+impl Division {
+    /// As many tiles for each of so many devices.
+    fn even(shape: Query, count: usize) -> Division {
+        let part = |k: usize| k as u64 * Share::ALL / count as u64;
+        let shares = (0..count).map(|k| Share { from: part(k), to: part(k + 1) }).collect();
+        Division { shape, shares, ms: vec![0.0; count], wear: Wear::default() }
+    }
 }
 
 /// What a device did of a frame.
@@ -66,41 +79,34 @@ impl MultiDetector {
     /// [in turn](MultiDetector::in_turn). Cost: on each that of a [`Detector`]; lists are as long as the shares.
     ///
     /// # Errors
-    /// [`Error::Choice`] for no devices, for a distance and for candidates by trees, which cannot be divided; those of a [`Detector`].
-    pub fn new(
-        devices: Vec<Device>,
-        scene: impl Into<Scene>,
-        query: impl Into<Query>,
-    ) -> Result<MultiDetector, Error> {
-        let (scene, query) = (scene.into(), query.into());
-        let refused = |what: &str, advice: &str| Error::Choice { what: what.into(), advice: advice.into() };
-        let count = devices.len();
-        if count == 0 {
+    /// [`Error::Choice`] for no devices; those of a [`Detector`].
+    pub fn new(devices: Vec<Device>, scene: impl Into<Scene>) -> Result<MultiDetector, Error> {
+        let scene = scene.into();
+        if devices.is_empty() {
             return Err(refused("a scene on no device", "name at least one"));
-        }
-        if count > 1 && !query.kind().takes_traversals() {
-            return Err(refused("a distance on several devices", "ask one device: its walk is not divided"));
         }
         // One thread at a time uses a machine.
         let in_turn =
             devices.iter().enumerate().any(|(k, one)| devices[..k].iter().any(|other| one.is(other)));
-        let search = query.search();
-        let by_tiles = count > 1 && search.broad.is_none() && !search.is_of_trees();
-        let query = if by_tiles { query.with_broad(Broad::Tiles) } else { query };
-        // All devices together, or none.
-        let wears = query.search().rebuilds();
-        let query = query.with_rebuild(Rebuild::Never);
-        let part = |k: usize| k as u64 * Share::ALL / count as u64;
-        let shares: Vec<Share> = (0..count).map(|k| Share { from: part(k), to: part(k + 1) }).collect();
         let interrupt = devices.iter().find_map(Device::interrupt).cloned().unwrap_or_default();
-        let part = |(device, &share): (Device, _)| {
+        let part = |device: Device| {
             let device = device.with_interrupt(&interrupt);
-            Detector::with_share(device, scene.clone(), query, share).map(Detector::of_several)
+            Detector::with_share(device, scene.clone(), Share::WHOLE).map(Detector::of_several)
         };
-        let parts = devices.into_iter().zip(&shares).map(part).collect::<Result<Vec<_>, _>>()?;
-        let builds = parts.iter().map(Detector::builds).collect();
-        let (ms, wear) = (vec![0.0; count], Wear::default());
-        Ok(MultiDetector { parts, shares, ms, in_turn, interrupt, builds, wear, wears })
+        let parts = devices.into_iter().map(part).collect::<Result<Vec<_>, _>>()?;
+        Ok(MultiDetector { parts, divisions: Vec::new(), in_turn, interrupt })
+    }
+
+    /// The query as each device runs it: by tiles, which are built on all devices together, or on none.
+    fn divisible(&self, query: Query) -> Result<Query, Error> {
+        let several = self.parts.len() > 1;
+        if several && !query.kind().takes_traversals() {
+            return Err(refused("a distance on several devices", "ask one device: its walk is not divided"));
+        }
+        let search = query.search();
+        let by_tiles = several && search.broad.is_none() && !search.is_of_trees();
+        let query = if by_tiles { query.with_broad(Broad::Tiles) } else { query };
+        Ok(query.with_rebuild(Rebuild::Never))
     }
 
     /// Asks the devices one after another: where they are one machine in truth, and each is to be timed as if it were alone.
@@ -108,38 +114,65 @@ impl MultiDetector {
         MultiDetector { in_turn: true, ..self }
     }
 
-    /// As [`Detector::frame`].
+    /// As [`Detector::update`].
     ///
     /// # Errors
     /// As there; [`Error::Choice`] for positions in the memory of one device.
-    pub fn frame(&mut self, inputs: &[(BodyId, Input)]) -> Result<Contacts, Error> {
-        if let Some((id, _)) = inputs.iter().find(|(_, input)| matches!(input, Input::OnDevice(_))) {
+    pub fn update(&mut self, motions: &[(BodyId, Input)]) -> Result<(), Error> {
+        self.updated(motions, None)
+    }
+
+    fn updated(&mut self, motions: &[(BodyId, Input)], query: Option<&Query>) -> Result<(), Error> {
+        if let Some((id, _)) = motions.iter().find(|(_, input)| matches!(input, Input::OnDevice(_))) {
             return Err(Error::Choice {
                 what: format!("positions of body {id} in the memory of one device, for several"),
                 advice: "give positions of the host".into(),
             });
         }
-        let answered = self.moved(inputs);
-        self.ended(answered)
-    }
-
-    fn moved(&mut self, inputs: &[(BodyId, Input)]) -> Result<Contacts, Error> {
-        if self.wears && self.parts[0].is_first_of(inputs) {
-            // All are built where the first frame of a body puts it.
-            self.each(|detector| detector.apply(inputs))?;
-            self.renew()?;
-            return self.ask(Detector::detect);
+        let is_first = self.parts[0].is_first_of(motions);
+        let updated = self.each(|detector| detector.apply(motions, query)).map(drop);
+        if is_first && updated.is_ok() {
+            // All are built where the first update of a body puts it.
+            self.divisions.iter_mut().for_each(|division| division.wear.add_new_place());
         }
-        self.ask(|detector| detector.frame(inputs))
+        self.ended(updated)
     }
 
-    /// As [`Detector::detect`].
+    /// As [`Detector::query`].
     ///
     /// # Errors
-    /// As there.
-    pub fn detect(&mut self) -> Result<Contacts, Error> {
-        let answered = self.ask(Detector::detect);
-        self.ended(answered)
+    /// As there; [`Error::Choice`] for a distance and for candidates by trees, which cannot be divided.
+    pub fn query<Q: TypedQuery>(&mut self, query: &Q) -> Result<Answer<Q::Rows>, Error> {
+        let answered = self.answer((*query).into(), Instant::now());
+        self.ended(answered).map(Contacts::typed::<Q>)
+    }
+
+    /// As [`Detector::step`].
+    ///
+    /// # Errors
+    /// As of [`MultiDetector::update`] and [`MultiDetector::query`].
+    pub fn step<Q: TypedQuery>(
+        &mut self,
+        motions: &[(BodyId, Input)],
+        query: &Q,
+    ) -> Result<Answer<Q::Rows>, Error> {
+        let (start, whole) = (Instant::now(), (*query).into());
+        self.divisible(whole)?.check()?;
+        self.updated(motions, Some(&whole))?;
+        let answered = self.answer(whole, start);
+        self.ended(answered).map(Contacts::typed::<Q>)
+    }
+
+    /// As [`Detector::begin`].
+    ///
+    /// # Errors
+    /// As there; [`Error::Choice`] for a query that cannot be divided.
+    pub fn begin(&mut self, query: &Query) -> Result<(), Error> {
+        let query = self.divisible(*query)?;
+        let at = self.division(&query);
+        self.divide(at, &query)?;
+        let begun = self.each(|detector| detector.begin(&query)).map(drop);
+        self.ended(begun)
     }
 
     /// As [`Detector::rebuild`].
@@ -153,18 +186,13 @@ impl MultiDetector {
 
     fn renew(&mut self) -> Result<(), Error> {
         self.each(Detector::rebuild)?;
-        self.agree();
+        self.divisions.iter_mut().for_each(|division| division.wear = Wear::default());
         Ok(())
     }
 
     /// As [`Detector::builds`], of the device that made its tiles most often.
     pub fn builds(&self) -> u64 {
         self.builds_now().into_iter().max().unwrap_or_default()
-    }
-
-    /// Tiles were made on all devices from the same positions.
-    fn agree(&mut self) {
-        (self.builds, self.wear) = (self.builds_now(), Wear::default());
     }
 
     fn builds_now(&self) -> Vec<u64> {
@@ -178,7 +206,7 @@ impl MultiDetector {
     pub fn add(&mut self, body: &Body) -> Result<BodyId, Error> {
         // All scenes number their bodies in the same way.
         let ids = self.each(|detector| detector.add(body.clone()))?;
-        self.begin()?;
+        self.divisions.clear();
         Ok(ids[0])
     }
 
@@ -188,7 +216,7 @@ impl MultiDetector {
     /// As there.
     pub fn remove(&mut self, id: BodyId) -> Result<Body, Error> {
         let mut bodies = self.each(|detector| detector.remove(id))?;
-        self.begin()?;
+        self.divisions.clear();
         Ok(bodies.swap_remove(0))
     }
 
@@ -198,17 +226,7 @@ impl MultiDetector {
     /// As there.
     pub fn replace(&mut self, id: BodyId, body: &Body) -> Result<(), Error> {
         self.each(|detector| detector.replace(id, body.clone()))?;
-        self.begin()
-    }
-
-    /// After a change of bodies: the same tiles on all devices. The change is made: a trigger waits
-    /// for the next frame.
-    fn begin(&mut self) -> Result<(), Error> {
-        match self.each(Detector::begin) {
-            Err(Error::Interrupted) => return Ok(()),
-            begun => begun?,
-        };
-        self.agree();
+        self.divisions.clear();
         Ok(())
     }
 
@@ -216,7 +234,7 @@ impl MultiDetector {
     ///
     /// # Errors
     /// As there.
-    pub fn geometry(&mut self, found: &Contacts) -> Result<Vec<ContactGeometry>, Error> {
+    pub fn geometry<T: Located>(&mut self, found: &Answer<T>) -> Result<Vec<ContactGeometry>, Error> {
         let geometry = self.parts[0].geometry(found);
         self.ended(geometry)
     }
@@ -227,55 +245,74 @@ impl MultiDetector {
     }
 
     /// As [`Detector::tolerance`].
-    pub fn tolerance(&self) -> Option<f64> {
+    pub fn tolerance(&mut self) -> f64 {
         self.parts[0].tolerance()
     }
 
     /// As [`Detector::largest_tolerance`].
-    pub fn largest_tolerance(&self) -> Option<f64> {
+    pub fn largest_tolerance(&mut self) -> f64 {
         self.parts[0].largest_tolerance()
     }
 
-    /// What each device did of the last frame.
-    pub fn shares(&self) -> Vec<DeviceShare> {
+    /// Each device's part of the last frame of a query; nothing before there was one.
+    pub fn shares(&self, query: &Query) -> Vec<DeviceShare> {
+        let shape = self.divisible(*query).ok().map(|query| query.shape());
+        let division = self.divisions.iter().find(|division| shape == Some(division.shape));
         let one = |((part, share), &ms): ((&Detector, &Share), &f64)| DeviceShare {
             device: part.machine(),
             tiles: (share.to - share.from) as f64 / Share::ALL as f64,
             ms,
         };
-        self.parts.iter().zip(&self.shares).zip(&self.ms).map(one).collect()
+        let of = |division: &Division| {
+            self.parts.iter().zip(&division.shares).zip(&division.ms).map(one).collect()
+        };
+        division.map_or_else(Vec::new, of)
     }
 
-    /// How many tiles of 32 triangles each share has met in the last frame that are not its: what would have to be sent to it if it did not
+    /// How many tiles of 32 triangles each share has met in the last frame of a query that are not its: what would have to be sent to it if it did not
     /// have all positions. Reads all pairs of tiles back, for measurements. Of a share in slices the last one alone is counted.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn met_beyond(&mut self) -> Result<Vec<u64>, Error> {
-        self.each(|detector| detector.met_beyond())
+    pub fn met_beyond(&mut self, query: &Query) -> Result<Vec<u64>, Error> {
+        let query = self.divisible(*query)?;
+        self.each(|detector| detector.met_beyond(&query))
     }
 
     /// One frame, and how its work is divided next.
-    fn ask(
-        &mut self,
-        question: impl Fn(&mut Detector) -> Result<Contacts, Error> + Sync,
-    ) -> Result<Contacts, Error> {
-        let start = Instant::now();
-        if self.wears && self.wear.is_worn(self.parts[0].moving_triangles()) {
+    fn answer(&mut self, whole: Query, start: Instant) -> Result<Contacts, Error> {
+        let (query, wears) = (self.divisible(whole)?, whole.search().rebuilds());
+        let at = self.division(&query);
+        if wears && self.divisions[at].wear.is_worn(self.parts[0].moving_triangles()) {
             self.renew()?;
         }
-        self.divide()?;
-        let mut answers = self.each(question)?;
-        // A device that ran out of memory has made its tiles anew, and a share is of the same tiles on all.
-        while self.parts.len() > 1 && self.builds_now() != self.builds {
+        self.divide(at, &query)?;
+        // A device that takes memory again builds its tiles again, and a share is of the same tiles on all.
+        let mut answers = loop {
+            self.each(|detector| detector.begin(&query))?;
+            let builds = self.builds_now();
+            let answers = self.each(|detector| detector.query(&query))?;
+            if self.parts.len() == 1 || self.builds_now() == builds {
+                break answers;
+            }
             self.renew()?;
-            answers = self.each(Detector::detect)?;
-        }
-        self.ms = answers.iter().map(|answer| answer.stages.total).collect();
+        };
+        let division = &mut self.divisions[at];
+        division.ms = answers.iter().map(|answer| answer.stats.stages.total).collect();
+        answers.iter_mut().for_each(|answer| answer.query = whole);
         let mut whole = self.merged(answers)?;
-        self.wear.tell(whole.steps);
-        whole.stages.wall = start.elapsed().as_secs_f64() * 1e3;
+        self.divisions[at].wear.add(whole.stats.steps);
+        whole.stats.stages.wall = start.elapsed().as_secs_f64() * 1e3;
         Ok(whole)
+    }
+
+    /// The place of a query's division, even at first.
+    fn division(&mut self, query: &Query) -> usize {
+        let shape = query.shape();
+        self.divisions.iter().position(|division| division.shape == shape).unwrap_or_else(|| {
+            self.divisions.push(Division::even(shape, self.parts.len()));
+            self.divisions.len() - 1
+        })
     }
 
     /// Does the same on every device, at the same time unless in turn. All do it, whatever becomes
@@ -297,27 +334,32 @@ impl MultiDetector {
         })
     }
 
-    /// Divides the work anew, where the last frame was uneven.
-    fn divide(&mut self) -> Result<(), Error> {
-        let (sum, most) = (self.ms.iter().sum::<f64>(), self.ms.iter().copied().fold(0.0, f64::max));
-        if most * self.ms.len() as f64 <= UNEVEN * sum {
-            return Ok(());
+    /// Gives every device its share, cut again if the last frame was uneven.
+    fn divide(&mut self, at: usize, query: &Query) -> Result<(), Error> {
+        let Division { shares, ms, .. } = &mut self.divisions[at];
+        let (sum, most) = (ms.iter().sum::<f64>(), ms.iter().copied().fold(0.0, f64::max));
+        if most * ms.len() as f64 > UNEVEN * sum {
+            let mut costs: Vec<f64> = Vec::new();
+            for (part, ms) in self.parts.iter_mut().zip(&*ms) {
+                let work = part.tile_work(query)?;
+                let all: u64 = work.iter().sum();
+                costs.resize(costs.len().max(work.len()), 0.0);
+                let a_unit = ms / all.max(1) as f64;
+                costs.iter_mut().zip(&work).for_each(|(cost, &work)| *cost += work as f64 * a_unit);
+            }
+            let cuts = cuts(&costs, self.parts.len());
+            for (share, ends) in shares.iter_mut().zip(cuts.windows(2)) {
+                *share = Share { from: ends[0], to: ends[1] };
+            }
         }
-        let mut costs: Vec<f64> = Vec::new();
-        for (part, ms) in self.parts.iter().zip(&self.ms) {
-            let work = part.tile_work()?;
-            let all: u64 = work.iter().sum();
-            costs.resize(costs.len().max(work.len()), 0.0);
-            let a_unit = ms / all.max(1) as f64;
-            costs.iter_mut().zip(&work).for_each(|(cost, &work)| *cost += work as f64 * a_unit);
-        }
-        let cuts = cuts(&costs, self.parts.len());
-        for ((part, share), ends) in self.parts.iter_mut().zip(&mut self.shares).zip(cuts.windows(2)) {
-            *share = Share { from: ends[0], to: ends[1] };
-            part.take(*share)?;
-        }
+        self.parts.iter_mut().zip(shares).for_each(|(part, share)| part.take(*share));
         Ok(())
     }
+}
+
+/// An argument that several devices do not take.
+fn refused(what: &str, advice: &str) -> Error {
+    Error::Choice { what: what.into(), advice: advice.into() }
 }
 
 #[cfg(test)]
@@ -332,12 +374,15 @@ mod tests {
         let body = crate::samples::soup(400, 5, false);
         let found = |shares: Option<[[u64; 2]; 2]>| {
             let devices = vec![device(), device()];
-            let mut several =
-                MultiDetector::new(devices, body.clone(), Query::discrete()).expect("detectors");
-            for (part, [from, to]) in several.parts.iter_mut().zip(shares.into_iter().flatten()) {
-                part.take(Share { from, to }).expect("a share");
+            let mut several = MultiDetector::new(devices, body.clone()).expect("detectors");
+            let query = several.divisible(Query::discrete()).expect("tiles");
+            let at = several.division(&query);
+            for (share, [from, to]) in
+                several.divisions[at].shares.iter_mut().zip(shares.into_iter().flatten())
+            {
+                *share = Share { from, to };
             }
-            several.detect().expect("an answer").len()
+            several.query(&Query::discrete()).expect("an answer").len()
         };
         let (all, half) = (Share::ALL, Share::ALL / 2);
         let whole = found(None);

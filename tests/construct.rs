@@ -2,10 +2,11 @@
 
 mod support;
 
+use nearmiss::Query;
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::Broad;
 use nearmiss::scene::Meets;
-use nearmiss::{Detector, Query};
+use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use support::{ORDERS, engine, sanitizer};
 
@@ -18,7 +19,7 @@ fn far() -> Body {
 /// Depth of the body's tree, after all volumes are set and everything is checked.
 fn depth(device: nearmiss::Device, body: Body) -> usize {
     let body = body.with(Meets::others());
-    let mut detector = Detector::new(device, vec![body, far()], Query::discrete().with_broad(Broad::Tree))
+    let mut detector = OneQuery::new(device, vec![body, far()], Query::discrete().with_broad(Broad::Tree))
         .expect("a detector");
     assert!(detector.detect().expect("an answer").is_empty(), "nothing is far away");
     detector.check_volumes().expect("a sound tree");

@@ -36,7 +36,7 @@ fn certified(scene: &Scene, body: &Body, truth: &[Row], solver: Solver, cubic: &
         scene.name,
         errors.missed.len(),
         errors.invented.len(),
-        answer.escalated_vf_ee
+        answer.stats.escalated_vf_ee
     );
     assert_eq!(errors.missed, [], "{}", scene.name);
     assert_eq!(difference(&sure, truth).invented, [], "{}: what is certain is true", scene.name);
@@ -94,9 +94,13 @@ fn double(scene: &Scene, body: &Body, truth: &[Row]) -> Contacts {
     let boxes =
         ask(engine(), vec![body.clone()], by(QueryKind::Continuous, Solver::CubicF64).with_bv(Bv::Aabb));
     // The same whatever volumes brought the triangles, and fewer than boxes swept over the whole step overlap in.
-    assert_eq!(boxes.candidates_vf_ee, scene.near, "candidates of {}", scene.name);
-    assert_eq!(answer.candidates_vf_ee, scene.near, "candidates of {}", scene.name);
-    assert!((0..2).all(|kind| answer.candidates_vf_ee[kind] < scene.candidates[kind]), "{}", scene.name);
+    assert_eq!(boxes.stats.candidates_vf_ee, scene.near, "candidates of {}", scene.name);
+    assert_eq!(answer.stats.candidates_vf_ee, scene.near, "candidates of {}", scene.name);
+    assert!(
+        (0..2).all(|kind| answer.stats.candidates_vf_ee[kind] < scene.candidates[kind]),
+        "{}",
+        scene.name
+    );
     assert_eq!(boxes.hash(), answer.hash(), "boxes that move lose no contact");
     let errors = difference(&found(&answer), truth);
     let (missed, invented) = (errors.missed.len(), errors.invented.len());
@@ -110,7 +114,10 @@ fn double(scene: &Scene, body: &Body, truth: &[Row]) -> Contacts {
 /// The f32 cubic's errors stay within what was measured.
 fn single(scene: &Scene, body: &Body, truth: &[Row], double: &Contacts, most: &Bounds) {
     let answer = asked(body, QueryKind::Continuous, Solver::CubicF32);
-    assert_eq!(answer.candidates_vf_ee, double.candidates_vf_ee, "candidates do not depend on the solver");
+    assert_eq!(
+        answer.stats.candidates_vf_ee, double.stats.candidates_vf_ee,
+        "candidates do not depend on the solver"
+    );
     let errors = difference(&found(&answer), truth);
     let (missed, invented) = (errors.missed.len(), errors.invented.len());
     let (late, latest) = later(&answer, double, 1e-4);

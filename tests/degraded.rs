@@ -7,7 +7,8 @@ mod support;
 use nearmiss::contacts::{Contact, Degraded, Status};
 use nearmiss::mesh::{Body, Mesh};
 use nearmiss::query::{FrontShape, QueryKind, Solver, Traversal};
-use nearmiss::{Contacts, Detector, Device, Error, Query};
+use nearmiss::{Contacts, Device, Error, Query};
+use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use shrinking::SHRINKING;
 use std::collections::BTreeMap;
@@ -144,14 +145,14 @@ fn lists_that_grew_are_counted_once_and_degrade_nothing() {
         let bodies =
             vec![scene::identical(if motion == QueryKind::Discrete { 150 } else { 60 }).expect("a scene")];
         let query = if motion == QueryKind::Discrete { Query::discrete() } else { by(Solver::CubicF64) };
-        let mut detector = Detector::new(engine(), bodies, query).expect("a detector");
+        let mut detector = OneQuery::new(engine(), bodies, query).expect("a detector");
         let first = detector.detect().expect("an answer");
         let times = detector.reruns();
         assert!(times > 0, "the scene no longer overflows the first room: make it larger");
-        assert_eq!((first.reruns, detector.summary(&first).reruns), (times, times));
+        assert_eq!((first.stats.reruns, detector.summary(&first).reruns), (times, times));
         assert_eq!(first.degraded(), [], "the answer is whole");
         let second = detector.detect().expect("an answer");
-        assert!(second.reruns == 0 && second.degraded().is_empty() && second.answer == first.answer);
+        assert!(second.stats.reruns == 0 && second.degraded().is_empty() && second.rows == first.rows);
     }
 }
 
@@ -162,7 +163,7 @@ fn a_front_that_is_dropped_is_told() {
     let shape = FrontShape { drop: true, prune_every: 0, ..FrontShape::native() };
     let told = |drop| {
         let query = Query::discrete().with_traversal(Traversal::Front(FrontShape { drop, ..shape }));
-        let mut detector = Detector::new(engine(), vec![bodies[0].clone()], query).expect("a detector");
+        let mut detector = OneQuery::new(engine(), vec![bodies[0].clone()], query).expect("a detector");
         let frames = (0..4).map(|i| {
             let points = bodies[i % 2].positions_t0().clone();
             let mesh = Mesh::new("soup", points, bodies[0].faces().to_vec()).expect("a mesh");
@@ -182,7 +183,7 @@ fn each_frame_is_told_by_itself() {
     let query = with_tolerance(by(Solver::CertifiedF32), 1.3e-6);
     let frames = [scene::soup(60, 5, true), scene::soup(60, 6, true), scene::soup(60, 5, true)];
     let mut told = Vec::new();
-    let mut detector = Detector::new(engine(), soup(), query).expect("a detector");
+    let mut detector = OneQuery::new(engine(), soup(), query).expect("a detector");
     for frame in frames.map(|frame| frame.expect("a scene")) {
         detector.move_to(0, frame.clone()).expect("a frame");
         let alone = ask(engine(), vec![frame], query);
@@ -212,7 +213,7 @@ fn memory_that_ends_is_an_error() {
         let (mut answered, mut sliced, mut built, mut refused) = (0, 0, 0, 0);
         for part in 0..=40 {
             let limited = engine().limited(peak * part / 40);
-            let mut detector = match Detector::new(limited.clone(), bodies.clone(), query) {
+            let mut detector = match OneQuery::new(limited.clone(), bodies.clone(), query) {
                 Ok(detector) => detector,
                 Err(error) => {
                     is_room(&error, &limited);
@@ -222,13 +223,17 @@ fn memory_that_ends_is_an_error() {
             };
             match detector.detect() {
                 Ok(contacts) => {
-                    assert_eq!(contacts.answer, truth.answer, "{part}");
-                    assert_eq!(contacts.candidates, truth.candidates, "{part}");
+                    assert_eq!(contacts.rows, truth.rows, "{part}");
+                    assert_eq!(contacts.stats.candidates, truth.stats.candidates, "{part}");
                     assert_eq!(contacts.starts_crossing, truth.starts_crossing, "{part}");
                     let again = detector.detect().expect("as much memory as before");
-                    assert_eq!((again.hash(), again.slices), (contacts.hash(), contacts.slices), "{part}");
+                    assert_eq!(
+                        (again.hash(), again.stats.slices),
+                        (contacts.hash(), contacts.stats.slices),
+                        "{part}"
+                    );
                     answered += 1;
-                    sliced += (contacts.slices > 1) as u32;
+                    sliced += (contacts.stats.slices > 1) as u32;
                 }
                 Err(error) => {
                     is_room(&error, &limited);

@@ -5,7 +5,8 @@ mod support;
 use nearmiss::device::Interrupt;
 use nearmiss::query::{Broad, Certified, Continuous};
 use nearmiss::scene::Meets;
-use nearmiss::{Body, Detector, Device, Error, Query};
+use nearmiss::{Body, Device, Error, Query};
+use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use support::engine;
 
@@ -15,7 +16,7 @@ fn refused(device: Device, bodies: Vec<Body>, query: Query) -> ([u64; 3], String
     let interrupt = Interrupt::new();
     interrupt.trigger_at(u64::MAX);
     let device = device.with_interrupt(&interrupt);
-    let answer = Detector::new(device, bodies, query).and_then(|mut own| own.detect());
+    let answer = OneQuery::new(device, bodies, query).and_then(|mut own| own.detect());
     match answer {
         Err(error @ Error::AnswerTooLarge { pairs, asked, given, .. }) => {
             let looks = u64::MAX - interrupt.looks_left();
@@ -67,11 +68,11 @@ fn slices_are_refused_together() {
     let body = || scene::draped(5_000).expect("a cloth");
     for query in [Query::discrete(), Query::near(0.01), Query::continuous()] {
         let whole = engine();
-        let mut one = Detector::new(whole.clone(), body(), query).expect("a detector");
+        let mut one = OneQuery::new(whole.clone(), body(), query).expect("a detector");
         let found = one.detect().expect("an answer");
-        let row = match found.answer {
-            nearmiss::Answer::Pairs(_) => size_of::<nearmiss::contacts::TrianglePair>(),
-            nearmiss::Answer::Near(_) => size_of::<nearmiss::contacts::NearPair>(),
+        let row = match found.rows {
+            nearmiss::Rows::Pairs(_) => size_of::<nearmiss::contacts::TrianglePair>(),
+            nearmiss::Rows::Near(_) => size_of::<nearmiss::contacts::NearPair>(),
             _ => size_of::<nearmiss::Contact>(),
         } as u64;
         let bytes = found.len() as u64 * row;
@@ -79,12 +80,12 @@ fn slices_are_refused_together() {
         let sliced = |answers: u64| {
             (1..40).rev().map(move |part| {
                 let device = engine().limited(peak * part / 40).limited_answers(answers);
-                Detector::new(device, body(), query).and_then(|mut own| own.detect())
+                OneQuery::new(device, body(), query).and_then(|mut own| own.detect())
             })
         };
         // Exactly as many as there are: there is room, also in slices.
-        let fits = sliced(bytes).filter_map(Result::ok).find(|found| found.slices > 1);
-        assert_eq!(fits.expect("slices").answer, found.answer);
+        let fits = sliced(bytes).filter_map(Result::ok).find(|found| found.stats.slices > 1);
+        assert_eq!(fits.expect("slices").rows, found.rows);
         let whole = engine().limited_answers(bytes - 1);
         let least = refused(whole, vec![body()], query).0;
         assert_eq!(least[0], found.len() as u64, "{query:?}: one byte less");
@@ -102,11 +103,11 @@ fn slices_are_refused_together() {
 fn a_refused_detector_answers_when_bodies_are_apart() {
     let device = engine().limited_answers(1 << 17);
     let mut own =
-        Detector::new(device, scene::identical(200).expect("a scene"), Query::discrete()).expect("one");
+        OneQuery::new(device, scene::identical(200).expect("a scene"), Query::discrete()).expect("one");
     assert!(matches!(own.detect(), Err(Error::AnswerTooLarge { pairs: 19_900, .. })));
     let id = own.scene().ids().next().expect("a body");
     let apart = || scene::soup(200, 1, false).expect("a scene").with(Meets::and_itself());
     own.replace(id, apart()).expect("there");
     let want = support::ask(engine(), vec![apart()], Query::discrete());
-    assert_eq!(own.detect().expect("an answer").answer, want.answer);
+    assert_eq!(own.detect().expect("an answer").rows, want.rows);
 }

@@ -11,8 +11,9 @@ use nearmiss::contacts::{Degraded, Status};
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Broad, Bv, Order, QueryKind, Search, Solver};
-use nearmiss::{Contacts, Device, MultiDetector, Query};
+use nearmiss::{Contacts, Device, Query};
 use nearmiss_kernels::abi::earliest;
+use nearmiss_lab::OneQueryOnSeveral;
 use nearmiss_lab::scene::Rng;
 use support::asked::{by, certified, with_tolerance};
 use support::{ORDERS, ask, engine, sanitizer};
@@ -276,10 +277,10 @@ fn a_sample_changes_nothing() {
         let all =
             ask(engine(), vec![body.clone()], with_tolerance(by(QueryKind::Continuous, solver), tolerance));
         assert!(
-            first.candidates * 4 < all.candidates,
+            first.stats.candidates * 4 < all.stats.candidates,
             "no bound: {} of {}",
-            first.candidates,
-            all.candidates
+            first.stats.candidates,
+            all.stats.candidates
         );
         let first = same("landing", &body, (solver, tolerance, 0.0), (1, 5));
         assert!(first.is_some_and(|(toi, _)| toi > 0.1), "{first:?}");
@@ -312,7 +313,7 @@ fn slices_have_the_same_earliest_time() {
     let wanted = said(&ask(engine(), vec![body.clone()], query));
     for devices in 2..4 {
         let all = vec![engine(); devices];
-        let mut detector = MultiDetector::new(all, body.clone(), query).expect("devices");
+        let mut detector = OneQueryOnSeveral::new(all, body.clone(), query).expect("devices");
         let first = detector.detect().expect("an answer");
         assert_eq!(said(&first), wanted, "{devices} devices");
         assert_eq!(first.unresolved, u64::from(wanted.is_some_and(|(_, unresolved)| unresolved)));

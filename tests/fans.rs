@@ -9,7 +9,8 @@ use nearmiss::contacts::TrianglePair;
 use nearmiss::mesh::{Body, Positions};
 use nearmiss::query::{Broad, Bv, Discrete, Query, Search, TriangleTest};
 use nearmiss::scene::{Input, Meets, Scene};
-use nearmiss::{Answer, Contacts, Detector};
+use nearmiss::{Contacts, Rows};
+use nearmiss_lab::OneQuery;
 use shapes::Shape;
 use support::{ORDERS, engine, sanitizer, walks};
 
@@ -29,7 +30,7 @@ fn keeping() -> [Query; 4] {
 /// Tests of two volumes that a query of a body alone takes, and candidates.
 fn work(body: Body, query: Query) -> [u64; 2] {
     let contacts = support::ask(engine(), vec![body], query);
-    [contacts.overlap_tests(), contacts.triangle_pairs]
+    [contacts.stats.overlap_tests(), contacts.stats.triangle_pairs]
 }
 
 /// Tests and candidates of `n` faces and of 4 `n` grow by at most [`LINEAR`].
@@ -85,13 +86,13 @@ fn a_bicone_has_a_square_of_candidates() {
         assert!(many > 10 * few, "{few} to {many}");
         let [tree, tiles] = [Broad::Tree, Broad::Tiles]
             .map(|broad| support::ask(engine(), vec![of(1_600).body()], Query::discrete().with_broad(broad)));
-        assert_eq!((tree.answer, tree.triangle_pairs), (tiles.answer, tiles.triangle_pairs));
+        assert_eq!((tree.rows, tree.stats.triangle_pairs), (tiles.rows, tiles.stats.triangle_pairs));
     }
 }
 
 /// Pairs of an answer to a query that keeps adjacent ones, without those of one body that share a vertex.
 fn without_adjacent(contacts: &Contacts, scene: &Scene) -> Vec<TrianglePair> {
-    let Answer::Pairs(pairs) = &contacts.answer else { panic!("a discrete query") };
+    let Rows::Pairs(pairs) = &contacts.rows else { panic!("a discrete query") };
     let shares = |pair: &TrianglePair| {
         let [p, q] = [0, 1].map(|k| {
             let body = scene.get(pair.bodies[k]).expect("a body");
@@ -103,7 +104,7 @@ fn without_adjacent(contacts: &Contacts, scene: &Scene) -> Vec<TrianglePair> {
 }
 
 /// Detectors of every way to find candidates, of which the first knows no hubs: a tree, of a query that keeps adjacent pairs.
-fn detectors(scene: &Scene, query: Query) -> Vec<Detector> {
+fn detectors(scene: &Scene, query: Query) -> Vec<OneQuery> {
     let tree = |query: Query, traversal| {
         query.with_search(Search { broad: Some(Broad::Tree), traversal, ..query.search() })
     };
@@ -111,15 +112,15 @@ fn detectors(scene: &Scene, query: Query) -> Vec<Detector> {
     let tiles = Bv::ALL.into_iter().map(|bv| query.with_broad(Broad::Tiles).with_bv(bv));
     let mut all: Vec<Query> = std::iter::once(tree(oracle, None)).chain(tiles).collect();
     all.extend(walks().into_iter().map(|walk| tree(query, Some(walk))));
-    let detector = |query| Detector::new(engine(), scene.clone(), query).expect("a detector");
+    let detector = |query| OneQuery::new(engine(), scene.clone(), query).expect("a detector");
     all.into_iter().map(detector).collect()
 }
 
 /// All detectors answer as the first; how many contacts that are.
 fn agree(
-    detectors: &mut [Detector],
+    detectors: &mut [OneQuery],
     query: Query,
-    mut answer: impl FnMut(&mut Detector) -> Contacts,
+    mut answer: impl FnMut(&mut OneQuery) -> Contacts,
 ) -> usize {
     let mut all = detectors.iter_mut().map(|detector| {
         let contacts = answer(detector);
@@ -128,12 +129,12 @@ fn agree(
     });
     let (_, oracle, scene) = all.next().expect("the oracle");
     let wanted = match query == Query::discrete() {
-        true => Answer::Pairs(without_adjacent(&oracle, &scene)),
-        false => oracle.answer.clone(),
+        true => Rows::Pairs(without_adjacent(&oracle, &scene)),
+        false => oracle.rows.clone(),
     };
     let mut count = 0;
     for (own, contacts, _) in all {
-        assert_eq!(contacts.answer, wanted, "{own:?}");
+        assert_eq!(contacts.rows, wanted, "{own:?}");
         assert_eq!(contacts.starts_crossing, oracle.starts_crossing, "{own:?}");
         count = contacts.len();
     }
@@ -234,10 +235,10 @@ fn every_order_of_lanes_gives_the_same() {
         for broad in [Broad::Tree, Broad::Tiles] {
             let left = |device| {
                 let scene = Scene::from(folded.moving(7, 0.05));
-                let mut detector = Detector::new(device, scene, query.with_broad(broad)).expect("a detector");
+                let mut detector = OneQuery::new(device, scene, query.with_broad(broad)).expect("a detector");
                 let contacts = detector.detect().expect("an answer");
                 detector.check_volumes().expect("sound volumes and hubs");
-                (contacts.hash(), contacts.triangle_pairs, detector.fingerprints().expect("hashes"))
+                (contacts.hash(), contacts.stats.triangle_pairs, detector.fingerprints().expect("hashes"))
             };
             let wanted = left(engine());
             for order in ORDERS {

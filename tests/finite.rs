@@ -6,7 +6,8 @@ mod support;
 use nearmiss::contacts::{Contact, Status};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Bv, QueryKind, Solver};
-use nearmiss::{Contacts, Detector, Query};
+use nearmiss::{Contacts, Query};
+use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use std::collections::BTreeMap;
 use support::asked::{by, certified, of};
@@ -78,11 +79,7 @@ fn every_choice_answers_floats_of_any_size() {
             for bv in Bv::ALL {
                 let query = of(motion).with_bv(bv);
                 let seen = ask(sanitizer(support::ORDERS[2]), vec![large.clone()], query);
-                assert_eq!(
-                    seen.answer,
-                    ask(engine(), vec![large.clone()], query).answer,
-                    "2^{power}, {bv:?}"
-                );
+                assert_eq!(seen.rows, ask(engine(), vec![large.clone()], query).rows, "2^{power}, {bv:?}");
             }
         }
     }
@@ -100,7 +97,7 @@ fn in_doubles_the_times_are_the_same_bits() {
         let query = by(motion, Solver::CertifiedF64);
         let truth = ask(engine(), vec![doubles.clone()], query);
         for power in POWERS {
-            assert_eq!(ask(engine(), vec![times(&body, power)], query).answer, truth.answer, "2^{power}");
+            assert_eq!(ask(engine(), vec![times(&body, power)], query).rows, truth.rows, "2^{power}");
         }
     }
 }
@@ -131,7 +128,7 @@ fn a_session_goes_over_to_doubles() {
     for motion in [QueryKind::Discrete, QueryKind::Continuous] {
         let body = soup(motion == QueryKind::Continuous);
         let truth = ask(engine(), vec![body.clone()], of(motion));
-        let mut detector = Detector::new(engine(), vec![body.clone()], of(motion)).expect("a detector");
+        let mut detector = OneQuery::new(engine(), vec![body.clone()], of(motion)).expect("a detector");
         for power in [0, 40, 62, 126, 0, 100] {
             detector.move_to(0, times(&body, power)).expect("a frame of the mesh");
             let found = detector.detect().expect("an answer");
@@ -151,7 +148,7 @@ fn going_over_without_memory_is_an_error() {
     let body = soup(false);
     let device = engine();
     let mut detector =
-        Detector::new(device.clone(), vec![body.clone()], Query::discrete()).expect("a detector");
+        OneQuery::new(device.clone(), vec![body.clone()], Query::discrete()).expect("a detector");
     detector.detect().expect("an answer");
     // From now on there is half of what floats took; doubles take more.
     let _ = device.clone().limited(device.bytes().0 / 2);

@@ -12,7 +12,8 @@ use nearmiss::device::Backend;
 use nearmiss::mesh::Positions;
 use nearmiss::query::QueryKind;
 use nearmiss::scene::{BodyId, DeviceInput, DeviceRows, Input, Meets, Number, Scene};
-use nearmiss::{Body, Contacts, Detector, Device, Query};
+use nearmiss::{Body, Contacts, Device, Query};
+use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use simulator::{Graph, Simulator};
 use std::time::Instant;
@@ -55,7 +56,7 @@ fn rows(address: u64, vertices: usize) -> DeviceRows {
 }
 
 /// A replayed frame, as the simulator reads it from the device; `None` where it is not whole.
-fn read(simulator: &Simulator, detector: &Detector) -> Option<Vec<[u64; 3]>> {
+fn read(simulator: &Simulator, detector: &OneQuery) -> Option<Vec<[u64; 3]>> {
     let answer = detector.on_device().expect("prepared");
     let status: FrameStatus = simulator.read(answer.status, 1)[0];
     assert_eq!(status.invalid, 0);
@@ -100,18 +101,18 @@ fn read(simulator: &Simulator, detector: &Detector) -> Option<Vec<[u64; 3]>> {
 fn told(contacts: &Contacts, triangles: usize) -> Vec<[u64; 3]> {
     let name = |a: u32, b: u32| u64::from(a) << 32 | u64::from(b);
     let is_edges = |kind| u64::from(kind == nearmiss::contacts::Kind::Ee);
-    match &contacts.answer {
-        Answer::Pairs(pairs) => pairs.iter().map(|p| [0, name(p.triangles[0], p.triangles[1]), 0]).collect(),
-        Answer::Earliest(toi) => toi.iter().map(|toi| [toi.to_bits(), 0, 0]).collect(),
-        Answer::Contacts(all) => {
+    match &contacts.rows {
+        Rows::Pairs(pairs) => pairs.iter().map(|p| [0, name(p.triangles[0], p.triangles[1]), 0]).collect(),
+        Rows::Earliest(toi) => toi.iter().map(|toi| [toi.to_bits(), 0, 0]).collect(),
+        Rows::Contacts(all) => {
             all.iter().map(|c| [is_edges(c.kind), name(c.a, c.b), c.toi.to_bits()]).collect()
         }
-        Answer::Distance(nearest) => {
+        Rows::Distance(nearest) => {
             let second = |n: &NearestTriangles| n.triangles[1] + triangles as u32;
             let told = |n: &NearestTriangles| [0, name(n.triangles[0], second(n)), n.distance.to_bits()];
             nearest.iter().map(told).collect()
         }
-        Answer::Near(all) => {
+        Rows::Near(all) => {
             all.iter().map(|n| [is_edges(n.kind), name(n.a, n.b), n.squared_distance.to_bits()]).collect()
         }
     }
@@ -123,10 +124,10 @@ fn drive(kind: QueryKind, triangles: usize, frames: usize) -> (usize, usize) {
     let (scene, id, mut t0, velocity) = crowd(kind, triangles, frames);
     let simulator = Simulator::new(&t0, &velocity);
     let cpu = Device::open(Backend::Cpu, None).expect("threads");
-    let mut judge = Detector::new(cpu, scene.clone(), query(kind)).expect("a detector");
+    let mut judge = OneQuery::new(cpu, scene.clone(), query(kind)).expect("a detector");
     // SAFETY: context and stream are the simulator's, which outlives the detector.
     let device = unsafe { Device::borrow(simulator.context(), simulator.stream()) }.expect("a GPU");
-    let mut detector = Detector::new(device.clone(), scene, query(kind)).expect("a detector");
+    let mut detector = OneQuery::new(device.clone(), scene, query(kind)).expect("a detector");
     let ends = simulator.positions().map(|address| rows(address, t0.len() / 3));
     let mut t1 = t0.clone();
     let (mut short, mut compared) = (0, 0);
@@ -198,7 +199,7 @@ fn what_a_replay_costs() {
         let device = unsafe { Device::borrow(simulator.context(), simulator.stream()) }.expect("a GPU");
         let mut scene = Scene::new();
         let id = scene.add(body.clone().with(Meets::and_itself()));
-        let mut detector = Detector::new(device, scene, query(kind)).expect("a detector");
+        let mut detector = OneQuery::new(device, scene, query(kind)).expect("a detector");
         let ends = simulator.positions().map(|address| rows(address, t0.len() / 3));
         let timed = |run: &mut dyn FnMut()| {
             (0..3).for_each(|_| run());

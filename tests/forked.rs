@@ -7,7 +7,8 @@ use nearmiss::device::Backend;
 use nearmiss::mesh::Positions;
 use nearmiss::query::Near;
 use nearmiss::scene::{Input, Scene};
-use nearmiss::{Body, Detector, Device, Error, Mesh};
+use nearmiss::{Body, Device, Error, Mesh};
+use nearmiss_lab::OneQuery;
 use rayon::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -53,7 +54,7 @@ fn is_told<T>(asked: Result<T, Error>) -> bool {
 #[test]
 fn a_fork_is_told_that_it_has_no_threads() {
     let open = |threads| Device::open(Backend::Cpu, threads);
-    let new = |device| Detector::new(device, scene(), Near::within(0.5));
+    let new = |device| OneQuery::new(device, scene(), Near::within(0.5));
     // Before anything has started it is a process like any other.
     let whole = || new(open(Some(2))?)?.detect();
     assert_eq!(forked(60, || whole().is_ok_and(|found| found.len() == 15)), 0);
@@ -67,14 +68,14 @@ fn a_fork_is_told_that_it_has_no_threads() {
     assert_eq!(forked(60, || is_told(open(None)) && is_told(open(Some(2)))), 0);
     assert_eq!(forked(60, || is_told(own.detect())), 0);
     assert_eq!(forked(60, || is_told(own.frame(&[(id, Input::At(&at))]))), 0);
-    assert_eq!(forked(60, || is_told(own.place(&[(id, Input::At(&at))]))), 0);
+    assert_eq!(forked(60, || is_told(own.update(&[(id, Input::At(&at))]))), 0);
     assert_eq!(forked(60, || is_told(own.geometry(&found))), 0);
     assert_eq!(forked(60, || is_told(own.rebuild())), 0);
     own.prepare(&[]).expect("prepared");
     assert_eq!(forked(60, || is_told(own.submit()) && is_told(own.collect())), 0);
     // What was found is there, and the process itself goes on.
     assert_eq!(forked(60, || found.len() == 15), 0);
-    assert_eq!(own.detect().expect("an answer").answer, found.answer);
+    assert_eq!(own.detect().expect("an answer").rows, found.rows);
 
     // What it would be without.
     assert_eq!(forked(1, || (0..1000).into_par_iter().map(|i| i % 2).sum::<i32>() == 500), WAITED);

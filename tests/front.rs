@@ -5,7 +5,8 @@ mod support;
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Bv, FrontShape, QueryKind, QueueShape, Search, Traversal};
-use nearmiss::{Detector, Device, Query};
+use nearmiss::{Device, Query};
+use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 
 /// A soup that moves back and forth: frame k of the same triangles.
@@ -34,13 +35,13 @@ fn query(motion: QueryKind, bv: Bv, traversal: Option<Traversal>) -> Query {
 /// Answers and candidates of every frame.
 fn answers(device: &Device, query: Query, frames: &[Body], other: Option<&Body>) -> Vec<(u64, u64)> {
     let bodies = |frame: &Body| std::iter::once(frame.clone()).chain(other.cloned()).collect::<Vec<_>>();
-    let mut detector = Detector::new(device.clone(), bodies(&frames[0]), query).expect("a detector");
+    let mut detector = OneQuery::new(device.clone(), bodies(&frames[0]), query).expect("a detector");
     frames
         .iter()
         .map(|frame| {
             detector.move_to(0, frame.clone()).expect("the same mesh");
             let contacts = detector.detect().expect("an answer");
-            (contacts.hash(), contacts.triangle_pairs)
+            (contacts.hash(), contacts.stats.triangle_pairs)
         })
         .collect()
 }
@@ -104,14 +105,18 @@ fn where_nothing_moves_about_half_of_the_tests_are_saved() {
     let body = scene::draped(4_000).expect("a scene");
     let shape = FrontShape { prune_every: 0, ..FrontShape::native() };
     let asked = query(QueryKind::Discrete, Bv::Aabb, Some(Traversal::Front(shape)));
-    let mut detector = Detector::new(device, vec![body], asked).expect("a detector");
+    let mut detector = OneQuery::new(device, vec![body], asked).expect("a detector");
     let first = detector.detect().expect("an answer");
     let second = detector.detect().expect("an answer");
-    assert_eq!((first.front.tests, second.steps), (0, 0), "from the roots, then from the front alone");
-    assert_eq!(second.front.tests, first.front.pairs);
-    assert_eq!(second.front.pairs, first.front.pairs);
+    assert_eq!(
+        (first.stats.front.tests, second.stats.steps),
+        (0, 0),
+        "from the roots, then from the front alone"
+    );
+    assert_eq!(second.stats.front.tests, first.stats.front.pairs);
+    assert_eq!(second.stats.front.pairs, first.stats.front.pairs);
     assert_eq!(first.hash(), second.hash());
-    let saved = 1.0 - second.front.tests as f64 / (2 * first.steps) as f64;
+    let saved = 1.0 - second.stats.front.tests as f64 / (2 * first.stats.steps) as f64;
     assert!((0.4..0.55).contains(&saved), "{saved}");
 }
 
@@ -122,12 +127,12 @@ fn a_front_that_grew_is_pruned_back() {
     let lengths = |prune_every: u32| -> Vec<u64> {
         let shape = FrontShape { prune_every, drop: false, ..FrontShape::native() };
         let asked = query(QueryKind::Discrete, Bv::Aabb, Some(Traversal::Front(shape)));
-        let mut detector = Detector::new(device.clone(), vec![frames[0].clone()], asked).expect("a detector");
+        let mut detector = OneQuery::new(device.clone(), vec![frames[0].clone()], asked).expect("a detector");
         frames
             .iter()
             .map(|frame| {
                 detector.move_to(0, frame.clone()).expect("the same mesh");
-                detector.detect().expect("an answer").front.pairs
+                detector.detect().expect("an answer").stats.front.pairs
             })
             .collect()
     };
@@ -143,12 +148,12 @@ fn a_rebuild_forgets_the_front() {
     let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("an engine"));
     let frames = frames(5);
     let asked = query(QueryKind::Discrete, Bv::Aabb, Some(Traversal::Front(FrontShape::native())));
-    let mut detector = Detector::new(device.clone(), vec![frames[0].clone()], asked).expect("a detector");
+    let mut detector = OneQuery::new(device.clone(), vec![frames[0].clone()], asked).expect("a detector");
     for frame in &frames {
         detector.move_to(0, frame.clone()).expect("the same mesh");
         detector.rebuild().expect("a tree");
         let contacts = detector.detect().expect("an answer");
-        assert_eq!(contacts.front.tests, 0, "nothing was kept");
+        assert_eq!(contacts.stats.front.tests, 0, "nothing was kept");
         let plain = query(QueryKind::Discrete, Bv::Aabb, None);
         assert_eq!(answers(&device, plain, std::slice::from_ref(frame), None)[0].0, contacts.hash());
     }

@@ -8,7 +8,7 @@
 #[allow(dead_code, reason = "the fuzz targets use the rest")]
 mod shared;
 
-use nearmiss::contacts::Answer;
+use nearmiss::contacts::Rows;
 use nearmiss_kernels::prim::inclusion::Verdict;
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
@@ -162,15 +162,15 @@ fn planted_faults_are_named() {
 }
 
 /// A lie: a distance that is off in its tenth digit.
-fn a_little_nearer(answer: &mut Answer) {
-    if let Answer::Distance(Some(nearest)) = answer {
+fn a_little_nearer(answer: &mut Rows) {
+    if let Rows::Distance(Some(nearest)) = answer {
         nearest.distance *= 1.0 - 1e-10;
     }
 }
 
 /// A lie: what is only near is certain.
-fn all_certified(answer: &mut Answer) {
-    if let Answer::Contacts(all) = answer {
+fn all_certified(answer: &mut Rows) {
+    if let Rows::Contacts(all) = answer {
         for contact in all {
             (contact.status, contact.toi, contact.toi_hi) = (nearmiss::contacts::Status::Certified, 0.0, 0.0);
         }

@@ -2,11 +2,12 @@
 
 mod support;
 
-use nearmiss::contacts::{Answer, ContactGeometry, Contacts, Kind};
+use nearmiss::contacts::{ContactGeometry, Contacts, Kind, Rows};
 use nearmiss::mesh::Positions;
 use nearmiss::query::{Certified, Continuous};
 use nearmiss::scene::{BodyId, BodyKind, DeviceInput, DeviceRows, Input, Meets, Number, Pose, Scene};
-use nearmiss::{Body, Detector, Query};
+use nearmiss::{Body, Query};
+use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use support::engine;
 
@@ -17,20 +18,20 @@ fn soup(n: usize, seed: u64) -> (nearmiss::Mesh, [Positions; 2]) {
 }
 
 /// A cloth that meets itself, a rigid body that slides along an axis, and one that rests; all moved by a frame.
-fn met(query: Query, seed: u64) -> (Detector, Contacts) {
+fn met(query: Query, seed: u64) -> (OneQuery, Contacts) {
     let mut scene = Scene::new();
     let (mesh, [t0, t1]) = soup(60, seed);
     let cloth = scene.add(Body::still(mesh).with(Meets::and_itself()));
     let rigid = scene.add(Body::rigid(soup(50, seed + 100).0));
     scene.add(Body::fixed(soup(40, seed + 200).0));
-    let mut detector = Detector::new(engine(), scene, query).expect("a detector");
+    let mut detector = OneQuery::new(engine(), scene, query).expect("a detector");
     let slides = Input::Poses([Pose::default(), Pose::at([0.25, 0.0, -0.125])]);
     let found = detector.frame(&[(cloth, Input::Step([&t0, &t1])), (rigid, slides)]).expect("an answer");
     (detector, found)
 }
 
 /// Where a vertex is at a time.
-fn at(detector: &Detector, body: BodyId, vertex: u32, t: f64) -> [f64; 3] {
+fn at(detector: &OneQuery, body: BodyId, vertex: u32, t: f64) -> [f64; 3] {
     let body = &detector.scene().bodies()[body.index()];
     let ends = match body.kind() {
         // Poses that only move: a sum in doubles.
@@ -53,7 +54,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 /// What is wrong with the geometry of a contact at that time, if anything.
 fn fault(
-    detector: &Detector,
+    detector: &OneQuery,
     (kind, bodies, [a, b]): (Kind, [BodyId; 2], [u32; 2]),
     time: f64,
     told: &ContactGeometry,
@@ -181,7 +182,7 @@ fn geometry_goes_by_what_was_placed() {
     let device = engine();
     let mut scene = Scene::new();
     let id = scene.add(Body::still(mesh).with(Meets::and_itself()));
-    let mut by_host = Detector::new(engine(), scene.clone(), certified()).expect("a detector");
+    let mut by_host = OneQuery::new(engine(), scene.clone(), certified()).expect("a detector");
     let found = by_host.frame(&[(id, Input::Step([&ends[0], &ends[1]]))]).expect("an answer");
     let wanted = by_host.geometry(&found).expect("geometry");
     let held = ends.each_ref().map(|positions| match positions {
@@ -192,7 +193,7 @@ fn geometry_goes_by_what_was_placed() {
     let rows = held.each_ref().map(|buffer| unsafe {
         DeviceRows::new(buffer.span().addr(), buffer.len(), 12, Number::F32).expect("rows")
     });
-    let mut detector = Detector::new(device, scene.clone(), certified()).expect("a detector");
+    let mut detector = OneQuery::new(device, scene.clone(), certified()).expect("a detector");
     let found = detector.frame(&[(id, Input::OnDevice(DeviceInput::Step(rows)))]).expect("an answer");
     assert_eq!(detector.geometry(&found).expect("geometry"), wanted);
     // Answers without features are refused, whether or not anything was found.
@@ -201,7 +202,7 @@ fn geometry_goes_by_what_was_placed() {
         (Query::earliest(), "an earliest query"),
         (Query::distance(), "a distance query"),
     ] {
-        let mut own = Detector::new(engine(), scene.clone(), query).expect("a detector");
+        let mut own = OneQuery::new(engine(), scene.clone(), query).expect("a detector");
         for found in [own.detect().expect("an answer"), nearmiss::Contacts::none(query)] {
             let error = own.geometry(&found).expect_err("no features");
             let told = error.to_string();
@@ -210,8 +211,8 @@ fn geometry_goes_by_what_was_placed() {
         }
     }
     // Contacts of a larger body than this one has.
-    let mut other = Detector::new(engine(), Body::still(soup(5, 1).0), certified()).expect("a detector");
-    assert!(matches!(found.answer, Answer::Contacts(_)));
+    let mut other = OneQuery::new(engine(), Body::still(soup(5, 1).0), certified()).expect("a detector");
+    assert!(matches!(found.rows, Rows::Contacts(_)));
     let error = other.geometry(&found).expect_err("other bodies").to_string();
     assert!(error.contains("other bodies"), "{error}");
 }

@@ -9,7 +9,8 @@ use nearmiss::contacts::Status;
 use nearmiss::device::Backend;
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{QueryKind, Solver};
-use nearmiss::{Contacts, Detector, Device, Query};
+use nearmiss::{Contacts, Device, Query};
+use nearmiss_lab::OneQuery;
 use std::time::Instant;
 use support::asked::{by, of};
 use support::{ask, data, engine};
@@ -27,7 +28,7 @@ fn total([vf, ee]: [u64; 2]) -> u64 {
 fn asked(name: &str, bodies: Vec<nearmiss::Body>, solver: Solver) -> Contacts {
     let device = Device::open(Backend::Cpu, Some(1)).expect("a CPU");
     let query = by(QueryKind::Continuous, solver);
-    let mut detector = Detector::new(device, bodies, query).expect("a detector");
+    let mut detector = OneQuery::new(device, bodies, query).expect("a detector");
     detector.detect().expect("an answer");
     let start = Instant::now();
     let all = detector.detect().expect("an answer");
@@ -36,12 +37,12 @@ fn asked(name: &str, bodies: Vec<nearmiss::Body>, solver: Solver) -> Contacts {
     println!(
         "{name}, {solver:?}: {} candidates, {} for f64, {} open, {} in slices; {} listed, {sure} of them certain; \
          {:.2} us a candidate",
-        all.candidates,
-        total(all.escalated_vf_ee),
-        total(all.open_vf_ee),
-        total(all.sliced_vf_ee),
+        all.stats.candidates,
+        total(all.stats.escalated_vf_ee),
+        total(all.stats.open_vf_ee),
+        total(all.stats.sliced_vf_ee),
         all.len(),
-        us / all.candidates.max(1) as f64
+        us / all.stats.candidates.max(1) as f64
     );
     all
 }
@@ -51,13 +52,13 @@ fn few_pairs_reach_the_rungs_that_cost_much() {
     for (name, body) in hard::hard(PART) {
         for solver in [Solver::Certified, Solver::CertifiedF32, Solver::CertifiedF64] {
             let all = asked(name, vec![body.clone()], solver);
-            assert!(all.candidates > 1_000, "{name}: nothing is asked");
+            assert!(all.stats.candidates > 1_000, "{name}: nothing is asked");
             assert!(
-                total(all.sliced_vf_ee) * 100 <= all.candidates * SLICED,
+                total(all.stats.sliced_vf_ee) * 100 <= all.stats.candidates * SLICED,
                 "{name}, {solver:?}: too many slices"
             );
             // Slices and searches are of what isolation leaves, and no rung has more than the one before.
-            let left = [all.escalated_vf_ee, all.open_vf_ee, all.sliced_vf_ee].map(total);
+            let left = [all.stats.escalated_vf_ee, all.stats.open_vf_ee, all.stats.sliced_vf_ee].map(total);
             if solver == Solver::Certified {
                 assert!(left.is_sorted_by(|a, b| a >= b), "{name}: {left:?}");
             }
@@ -83,15 +84,15 @@ fn a_fan_round_one_vertex_is_not_tested_pair_by_pair() {
         let pairs = TRIANGLES * (TRIANGLES - 1) / 2;
         println!(
             "{motion:?}: {} node tests, {} triangle pairs, {} candidates",
-            all.overlap_tests(),
-            all.triangle_pairs,
-            all.candidates
+            all.stats.overlap_tests(),
+            all.stats.triangle_pairs,
+            all.stats.candidates
         );
-        assert!(all.overlap_tests() < pairs, "{}", all.overlap_tests());
+        assert!(all.stats.overlap_tests() < pairs, "{}", all.stats.overlap_tests());
         assert!(
-            all.candidates < TRIANGLES / 10 && all.is_empty(),
+            all.stats.candidates < TRIANGLES / 10 && all.is_empty(),
             "{} asked, {} listed",
-            all.candidates,
+            all.stats.candidates,
             all.len()
         );
     }
@@ -104,7 +105,7 @@ fn what_rests_is_certain() {
         let all = asked(name, vec![body], Solver::Certified);
         let sure = |c: &&nearmiss::Contact| c.status == Status::Certified && c.toi_hi == 0.0;
         assert_eq!(all.contacts().iter().filter(sure).count(), all.len(), "{name}");
-        assert_eq!((all.unresolved, total(all.sliced_vf_ee)), (0, 0), "{name}");
+        assert_eq!((all.unresolved, total(all.stats.sliced_vf_ee)), (0, 0), "{name}");
         assert!(all.len() > 100_000, "{name}");
     }
 }
@@ -122,9 +123,9 @@ fn what_was_slow_is_not() {
         }
         // The same pairs by every machine's count of rungs.
         let [one, two] = [0; 2].map(|_| ask(engine(), vec![body.clone()], Query::continuous()));
-        assert_eq!((one.hash(), one.sliced_vf_ee), (two.hash(), two.sliced_vf_ee), "{name}");
-        let sliced = total(one.sliced_vf_ee);
+        assert_eq!((one.hash(), one.stats.sliced_vf_ee), (two.hash(), two.stats.sliced_vf_ee), "{name}");
+        let sliced = total(one.stats.sliced_vf_ee);
         // 23 slivers that meet at a grazing angle all along: a fifth, and 4 us a candidate.
-        assert!(sliced * 5 <= one.candidates + 10, "{name}: {sliced} of {}", one.candidates);
+        assert!(sliced * 5 <= one.stats.candidates + 10, "{name}: {sliced} of {}", one.stats.candidates);
     }
 }

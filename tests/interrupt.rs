@@ -13,7 +13,8 @@ use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::device::{Backend, Interrupt};
 use nearmiss::query::QueryKind;
 use nearmiss::scene::{Input, Meets, Scene};
-use nearmiss::{Body, Contacts, Detector, Device, Error, Query};
+use nearmiss::{Body, Contacts, Device, Error, Query};
+use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use support::{asked, ways};
 
@@ -52,7 +53,7 @@ fn interrupted<T>(interrupt: &Interrupt, call: Result<T, Error>) {
 
 /// What two answers must have in common.
 fn same(one: &Contacts, other: &Contacts, what: &str) {
-    assert_eq!((one.hash(), &one.answer), (other.hash(), &other.answer), "{what}");
+    assert_eq!((one.hash(), &one.rows), (other.hash(), &other.rows), "{what}");
 }
 
 /// Looks to interrupt, of so many: the first and the last ones, and some between.
@@ -66,8 +67,8 @@ fn places(rng: &mut scene::Rng, looks: u64, some: usize) -> Vec<u64> {
 fn interrupts(device: impl Fn() -> Device, scene: &Scene, query: Query, some: usize) {
     let mut rng = scene::Rng::new(7);
     let fresh =
-        Detector::new(device(), scene.clone(), query).expect("a detector").detect().expect("an answer");
-    let make = || Detector::new(device(), scene.clone(), query).expect("a detector");
+        OneQuery::new(device(), scene.clone(), query).expect("a detector").detect().expect("an answer");
+    let make = || OneQuery::new(device(), scene.clone(), query).expect("a detector");
     for settled in [false, true] {
         let mut detector = make();
         if settled {
@@ -140,7 +141,7 @@ fn a_sample_answers_after_an_interrupt() {
 #[test]
 fn a_launch_is_looked_at_within_itself() {
     let mut detector =
-        Detector::new(threads(1), scene::identical(200).expect("a scene"), Query::continuous()).expect("one");
+        OneQuery::new(threads(1), scene::identical(200).expect("a scene"), Query::continuous()).expect("one");
     detector.detect().expect("an answer");
     let interrupt = detector.interrupter();
     let (count, _) = looks(&interrupt, || detector.detect());
@@ -157,7 +158,7 @@ fn a_frame_that_was_interrupted_has_taken_its_input() {
     let step = |body: &Body| body.ends().map(Clone::clone);
     let (one, other) = (step(&one), step(&other));
     for query in queries() {
-        let detector = || Detector::new(threads(2), scene.clone(), query).expect("a detector");
+        let detector = || OneQuery::new(threads(2), scene.clone(), query).expect("a detector");
         let (mut wanted, mut found) = (detector(), detector());
         // The first names both, the second one: the other rests where its step ended.
         let both = [(ids[0], Input::Step([&one[0], &one[1]])), (ids[1], Input::Step([&other[0], &other[1]]))];

@@ -32,8 +32,8 @@ fn boxed(bodies: &[Body], motion: QueryKind) -> ([u64; 2], u64) {
 }
 
 fn counted(contacts: &Contacts) -> ([u64; 2], u64) {
-    let pairs = if contacts.candidates_vf_ee == [0, 0] { contacts.candidates } else { 0 };
-    (contacts.survivors_vf_ee, pairs)
+    let pairs = if contacts.stats.candidates_vf_ee == [0, 0] { contacts.stats.candidates } else { 0 };
+    (contacts.stats.survivors_vf_ee, pairs)
 }
 
 /// Scenes with discrete contacts, adjacent triangles among them.

@@ -7,11 +7,12 @@ mod frames;
 mod others;
 mod support;
 
-use nearmiss::contacts::{Answer, Contact, Degraded, NearPair, TrianglePair};
+use nearmiss::contacts::{Contact, Degraded, NearPair, TrianglePair};
 use nearmiss::mesh::Positions;
 use nearmiss::query::QueryKind;
 use nearmiss::scene::{BodyId, BodyKind, Input, Meets, Pose, Scene};
-use nearmiss::{Body, Contacts, Detector, Mesh, Query};
+use nearmiss::{Body, Contacts, Mesh, Query};
+use nearmiss_lab::OneQuery;
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 use support::engine;

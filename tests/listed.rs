@@ -187,7 +187,7 @@ fn differs(bodies: &[Body], query: Query) -> Result<Contacts, String> {
     let truth = ask(engine(), bodies.to_vec(), query);
     for way in ways(query) {
         let answer = ask(engine(), bodies.to_vec(), way);
-        if answer.hash() != truth.hash() || answer.answer != truth.answer {
+        if answer.hash() != truth.hash() || answer.rows != truth.rows {
             let [ours, theirs] = [&truth, &answer].map(|a| a.contacts().to_vec());
             let odd = theirs.iter().find(|c| !ours.contains(c)).or(ours.iter().find(|c| !theirs.contains(c)));
             return Err(format!("{} listed, by {way:?} {}: {odd:?}", ours.len(), theirs.len()));

@@ -10,7 +10,7 @@ mod filters;
 #[path = "oracles_can_fail/tree.rs"]
 mod tree;
 
-use nearmiss::contacts::{Answer, Contacts, TrianglePair};
+use nearmiss::contacts::{Contacts, Rows, TrianglePair};
 use nearmiss::scene::{BodyId, Scene};
 use nearmiss::{Device, Error, Query};
 use nearmiss_kernels::abi::Span;
@@ -225,9 +225,9 @@ fn a_span_that_lies_about_its_memory_is_seen() {
 
 // The hash of an answer.
 
-fn hashes_differ(contacts: &Contacts, what: &str, fault: impl Fn(&mut Answer)) {
+fn hashes_differ(contacts: &Contacts, what: &str, fault: impl Fn(&mut Rows)) {
     let mut other = contacts.clone();
-    fault(&mut other.answer);
+    fault(&mut other.rows);
     assert_ne!(other.hash(), contacts.hash(), "{what}");
 }
 
@@ -252,7 +252,7 @@ fn the_hash_notices_every_fault_of_a_list_of_pairs() {
     ];
     for (what, fault) in faults {
         hashes_differ(&contacts, what, |answer| match answer {
-            Answer::Pairs(pairs) => fault(pairs),
+            Rows::Pairs(pairs) => fault(pairs),
             other => panic!("{other:?}"),
         });
     }
@@ -277,7 +277,7 @@ fn the_hash_notices_every_fault_of_a_list_of_contacts() {
     ];
     for (what, fault) in faults {
         hashes_differ(&contacts, what, |answer| match answer {
-            Answer::Contacts(all) => fault(all),
+            Rows::Contacts(all) => fault(all),
             other => panic!("{other:?}"),
         });
     }

@@ -5,7 +5,8 @@ mod support;
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Broad, Order, Query, QueryKind, Rebuild, Search};
 use nearmiss::scene::{Input, Meets, Scene};
-use nearmiss::{Detector, MultiDetector};
+use nearmiss_lab::{OneQuery, OneQueryOnSeveral};
+
 use nearmiss_lab::scene;
 use support::{ORDERS, ask_scene, asked, engine, machines, sanitizer};
 
@@ -41,10 +42,10 @@ fn every_order_has_the_same_answer() {
             let truth = ask_scene(engine(), scene.clone(), query.with_broad(Broad::Tree));
             for order in Order::ALL {
                 let query = query.with_order(order);
-                let mut detector = Detector::new(engine(), scene.clone(), query).expect("a detector");
+                let mut detector = OneQuery::new(engine(), scene.clone(), query).expect("a detector");
                 let found = detector.detect().expect("an answer");
                 detector.check_volumes().expect("each triangle once, in volumes that hold it");
-                assert_eq!((&found.answer, found.hash()), (&truth.answer, truth.hash()), "{query:?}");
+                assert_eq!((&found.rows, found.hash()), (&truth.rows, truth.hash()), "{query:?}");
             }
         }
     }
@@ -59,7 +60,7 @@ fn every_machine_has_the_same_order() {
     {
         let query = Query::discrete().with_order(order);
         let left = |device| {
-            let mut detector = Detector::new(device, scene.clone(), query).expect("a detector");
+            let mut detector = OneQuery::new(device, scene.clone(), query).expect("a detector");
             detector.detect().expect("an answer");
             detector.fingerprints().expect("read")
         };
@@ -75,8 +76,9 @@ fn finer_cuts_meet_fewer() {
     for body in [scene::draped(40_000), scene::scene("cloth-ball", 40_000, 1)] {
         let body = body.expect("cloth");
         for kind in [QueryKind::Discrete, QueryKind::Continuous] {
-            let tests = Order::ALL
-                .map(|order| ask_scene(engine(), body.clone(), asked::of(kind).with_order(order)).steps);
+            let tests = Order::ALL.map(|order| {
+                ask_scene(engine(), body.clone(), asked::of(kind).with_order(order)).stats.steps
+            });
             println!("{kind:?}: {tests:?}");
             assert!(tests.is_sorted_by(|coarse, fine| coarse > fine), "{:?}: {tests:?}", Order::ALL);
         }
@@ -101,9 +103,17 @@ fn outsized_triangles_have_tiles_of_their_own() {
         let query = Query::discrete().with_order(order);
         let together = ask_scene(engine(), Body::still(mesh.clone()), query);
         let apart = ask_scene(engine(), scene.clone(), query);
-        println!("{order:?}: {} tests together, {} apart", together.steps, apart.steps);
-        assert_eq!((together.len(), together.triangle_pairs), (apart.len(), apart.triangle_pairs));
-        assert!(together.steps < apart.steps + apart.steps / 4, "{} {}", together.steps, apart.steps);
+        println!("{order:?}: {} tests together, {} apart", together.stats.steps, apart.stats.steps);
+        assert_eq!(
+            (together.len(), together.stats.triangle_pairs),
+            (apart.len(), apart.stats.triangle_pairs)
+        );
+        assert!(
+            together.stats.steps < apart.stats.steps + apart.stats.steps / 4,
+            "{} {}",
+            together.stats.steps,
+            apart.stats.steps
+        );
     }
 }
 
@@ -131,8 +141,8 @@ fn what_is_worn_is_made_anew_by_itself() {
         let query = Query::discrete().with_broad(broad);
         let start = scene::soup(3_000, 10, false).expect("a soup");
         let by = |rebuild| query.with_rebuild(rebuild);
-        let mut never = Detector::new(engine(), start.clone(), by(Rebuild::Never)).expect("a detector");
-        let mut worn = Detector::new(engine(), start, query).expect("a detector");
+        let mut never = OneQuery::new(engine(), start.clone(), by(Rebuild::Never)).expect("a detector");
+        let mut worn = OneQuery::new(engine(), start, query).expect("a detector");
         let id = worn.scene().ids().next().expect("a body");
         let mut tests = [0, 0];
         for step in 0..30 {
@@ -140,11 +150,11 @@ fn what_is_worn_is_made_anew_by_itself() {
             let [one, two] =
                 [&mut never, &mut worn].map(|one| one.frame(&[(id, Input::At(&at))]).expect("an answer"));
             assert_eq!(
-                (one.answer, one.triangle_pairs),
-                (two.answer, two.triangle_pairs),
+                (one.rows, one.stats.triangle_pairs),
+                (two.rows, two.stats.triangle_pairs),
                 "{broad:?}, {step}"
             );
-            tests = [tests[0] + one.steps, tests[1] + two.steps];
+            tests = [tests[0] + one.stats.steps, tests[1] + two.stats.steps];
         }
         println!("{broad:?}: {tests:?} tests, built {} times", worn.builds());
         assert!(never.builds() == 1 && (2..=7).contains(&worn.builds()), "{}", worn.builds());
@@ -162,7 +172,7 @@ fn devices_make_their_tiles_together() {
     let start = scene::soup(3_000, 10, false).expect("a soup");
     let whole = engine();
     let query = Query::discrete();
-    let mut one = Detector::new(whole.clone(), start.clone(), query).expect("a detector");
+    let mut one = OneQuery::new(whole.clone(), start.clone(), query).expect("a detector");
     let id = one.scene().ids().next().expect("a body");
     let first = whole.bytes().0;
     let wanted: Vec<_> =
@@ -173,30 +183,35 @@ fn devices_make_their_tiles_together() {
     for part in 1..40 {
         let device = engine().limited(first + (peak - first) * part / 40);
         let devices = vec![device, engine()];
-        let Ok(mut several) = MultiDetector::new(devices, start.clone(), query) else { continue };
+        let Ok(mut several) = OneQueryOnSeveral::new(devices, start.clone(), query) else { continue };
         for (step, want) in (0..).zip(&wanted) {
             let found = several.frame(&[(id, Input::At(&crowded(step)))]).expect("an answer, in slices");
             assert_eq!(
-                (&found.answer, found.triangle_pairs),
-                (&want.answer, want.triangle_pairs),
+                (&found.rows, found.stats.triangle_pairs),
+                (&want.rows, want.stats.triangle_pairs),
                 "{part}, {step}"
             );
-            alone += u32::from(step > 0 && found.slices > 1);
+            alone += u32::from(step > 0 && found.stats.slices > 1);
         }
     }
     assert!(alone > 0, "a device was never short of memory after the first frame");
     // By themselves, too, and after an edit.
     let worn = query.with_rebuild(Rebuild::Auto);
-    let mut several = MultiDetector::new(vec![engine(), engine()], start.clone(), worn).expect("detectors");
+    let mut several =
+        OneQueryOnSeveral::new(vec![engine(), engine()], start.clone(), worn).expect("detectors");
     for step in 0..30 {
         let found = several.frame(&[(id, Input::At(&mixed(step)))]).expect("an answer");
         let want = one.frame(&[(id, Input::At(&mixed(step)))]).expect("an answer");
-        assert_eq!((found.answer, found.triangle_pairs), (want.answer, want.triangle_pairs), "{step}");
+        assert_eq!(
+            (found.rows, found.stats.triangle_pairs),
+            (want.rows, want.stats.triangle_pairs),
+            "{step}"
+        );
     }
     assert!(several.builds() > 1);
     several.replace(id, &start).expect("there");
     one.replace(id, start).expect("there");
-    assert_eq!(several.detect().expect("an answer").answer, one.detect().expect("an answer").answer);
+    assert_eq!(several.detect().expect("an answer").rows, one.detect().expect("an answer").rows);
 }
 
 #[test]

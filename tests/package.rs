@@ -8,13 +8,14 @@ const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
 /// The stranger's program.
 const PROGRAM: &str = r#"
-use nearmiss::{Body, Device, Mesh, Query, Detector, device::Backend, mesh::Positions};
+use nearmiss_lab::OneQuery;
+use nearmiss::{Body, Device, Mesh, Query, device::Backend, mesh::Positions};
 
 fn main() -> Result<(), nearmiss::Error> {
     let corners = vec![[0.0f32, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [2.0, 1.0, 1.0]];
     let mesh = Mesh::new("two", Positions::F32(corners), vec![[0, 1, 2], [3, 4, 5]])?;
     let device = Device::open(Backend::Auto, None)?;
-    let contacts = Detector::new(device, vec![Body::still(mesh)], Query::discrete())?.detect()?;
+    let contacts = OneQuery::new(device, vec![Body::still(mesh)], Query::discrete())?.detect()?;
     println!("{:?}", contacts.triangles());
     Ok(())
 }

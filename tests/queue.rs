@@ -12,7 +12,8 @@ mod words;
 
 use nearmiss::mesh::Body;
 use nearmiss::query::{Bv, QueryKind, QueueShape, StealShape, Traversal};
-use nearmiss::{Contacts, Detector, Device, Query};
+use nearmiss::{Contacts, Device, Query};
+use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use support::{ORDERS, engine, loose, sanitizer};
 
@@ -21,12 +22,12 @@ type Print = (u64, u64, u64);
 
 /// What a detector finds, in two frames: lists settle in the first.
 fn found(device: Device, bodies: &[Body], query: Query) -> (Print, Contacts) {
-    let mut detector = Detector::new(device, bodies.to_vec(), query).expect("a detector");
+    let mut detector = OneQuery::new(device, bodies.to_vec(), query).expect("a detector");
     let mut ask = || {
         let contacts = detector.detect().expect("an answer");
         let prints = detector.fingerprints().expect("prints");
         let candidates = prints.iter().find(|(stage, _)| *stage == "traverse").expect("the stage").1;
-        ((candidates, contacts.triangle_pairs, contacts.hash()), contacts)
+        ((candidates, contacts.stats.triangle_pairs, contacts.hash()), contacts)
     };
     let (first, (second, contacts)) = (ask().0, ask());
     assert_eq!(first, second, "a frame after the lists have settled");

@@ -5,7 +5,8 @@ mod support;
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Broad, Bv, Rebuild, Refit};
-use nearmiss::{Detector, Device, Query};
+use nearmiss::{Device, Query};
+use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use support::{ORDERS, engine, machines};
 
@@ -51,7 +52,7 @@ type Prints = Vec<(&'static str, u64)>;
 /// What construction, fit and refit left after each frame: as built, moved three times, built anew, and moved again.
 fn prints(device: Device, body: &Body, refit: Refit, bv: Bv) -> Vec<Prints> {
     let query = Query::discrete().with_refit(refit).with_bv(bv).with_rebuild(Rebuild::Never);
-    let mut detector = Detector::new(device, from_afar(body), query).expect("a detector");
+    let mut detector = OneQuery::new(device, from_afar(body), query).expect("a detector");
     let mut all = Vec::new();
     for turn in 0..5 {
         if turn > 0 {
@@ -131,7 +132,7 @@ fn a_stale_volume_is_noticed() {
     let body = scene::soup(600, 2, false).expect("a scene");
     let of = |turn| {
         let query = Query::discrete().with_refit(Refit::Treelets).with_rebuild(Rebuild::Never);
-        let mut detector = Detector::new(engine(), from_afar(&body), query).expect("a detector");
+        let mut detector = OneQuery::new(engine(), from_afar(&body), query).expect("a detector");
         detector.move_to(0, frame(&body, turn)).expect("a frame");
         detector.detect().expect("an answer");
         detector.fingerprints().expect("prints")
@@ -144,7 +145,7 @@ fn a_stale_volume_is_noticed() {
     assert_eq!(stages(&of(1), &of(2)), ["fit", "refit"]);
     // One triangle whose volume is another frame's.
     let query = Query::default().with_broad(Broad::Tree).with_rebuild(Rebuild::Never);
-    let mut detector = Detector::new(engine(), from_afar(&body), query).expect("a detector");
+    let mut detector = OneQuery::new(engine(), from_afar(&body), query).expect("a detector");
     let mut points = frame(&body, 1).positions_t0().to_f64();
     points[300..303].copy_from_slice(&frame(&body, 2).positions_t0().to_f64()[300..303]);
     let points = points.into_iter().map(|p| p.map(|x| x as f32)).collect();
@@ -159,7 +160,7 @@ fn a_frame_costs_as_few_launches_as_promised() {
     let launches = |body: Body, refit| {
         let device = engine();
         let query = Query::discrete().with_refit(refit);
-        let mut detector = Detector::new(device.clone(), from_afar(&body), query).expect("a detector");
+        let mut detector = OneQuery::new(device.clone(), from_afar(&body), query).expect("a detector");
         detector.detect().expect("an answer");
         let built = device.launches();
         detector.detect().expect("an answer");

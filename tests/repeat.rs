@@ -4,7 +4,8 @@ use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::Body;
 use nearmiss::pipeline::Stage;
 use nearmiss::query::Refit;
-use nearmiss::{Detector, Device, Query};
+use nearmiss::{Device, Query};
+use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 
 const STAGES: [Stage; 5] = [Stage::Construct, Stage::Fit, Stage::Refit, Stage::Traverse, Stage::Narrow];
@@ -33,13 +34,13 @@ fn a_repeated_stage_leaves_the_answer_as_it_is() {
             let count = if query.kind().is_within_bodies() { 1 } else { 2 };
             let bodies = vec![body.clone(); count];
             for stage in STAGES {
-                let mut plain = Detector::new(device.clone(), bodies.clone(), query).expect("a detector");
-                let mut detector = Detector::new(device.clone(), bodies.clone(), query).expect("a detector");
-                let mut same = |detector: &mut Detector, what: &str| {
+                let mut plain = OneQuery::new(device.clone(), bodies.clone(), query).expect("a detector");
+                let mut detector = OneQuery::new(device.clone(), bodies.clone(), query).expect("a detector");
+                let mut same = |detector: &mut OneQuery, what: &str| {
                     let (one, other) =
                         (plain.detect().expect("an answer"), detector.detect().expect("an answer"));
                     assert_eq!(one.hash(), other.hash(), "{query:?} {stage:?} {what}");
-                    assert_eq!(one.candidates, other.candidates, "{query:?} {stage:?} {what}");
+                    assert_eq!(one.stats.candidates, other.stats.candidates, "{query:?} {stage:?} {what}");
                     let prints = detector.fingerprints().expect("prints");
                     assert_eq!(plain.fingerprints().expect("prints"), prints, "{query:?} {stage:?} {what}");
                     prints
@@ -61,12 +62,12 @@ fn a_stage_is_repeated_where_the_body_is_now() {
     let body = scene::scene("cloth-ball", 500, 3).expect("a scene");
     for stage in [Stage::Fit, Stage::Refit, Stage::Traverse, Stage::Narrow] {
         let query = Query::continuous();
-        let mut plain = Detector::new(engine(), vec![body.clone()], query).expect("a detector");
+        let mut plain = OneQuery::new(engine(), vec![body.clone()], query).expect("a detector");
         plain.move_to(0, later(&body)).expect("moved");
         let want = plain.detect().expect("an answer").hash();
         let prints = plain.fingerprints().expect("prints");
 
-        let mut detector = Detector::new(engine(), vec![body.clone()], query).expect("a detector");
+        let mut detector = OneQuery::new(engine(), vec![body.clone()], query).expect("a detector");
         detector.detect().expect("an answer");
         detector.move_to(0, later(&body)).expect("moved");
         detector.repeat_stage(stage, 2).expect("runs");
@@ -84,7 +85,7 @@ fn every_way_to_refit_can_be_repeated() {
     for device in [engine(), sanitizer()] {
         for refit in [Refit::Levels, Refit::Treelets, Refit::BottomUp] {
             let query = Query::discrete().with_refit(refit);
-            let mut detector = Detector::new(device.clone(), vec![body.clone()], query).expect("a detector");
+            let mut detector = OneQuery::new(device.clone(), vec![body.clone()], query).expect("a detector");
             detector.move_to(0, later(&body)).expect("moved");
             assert_eq!(detector.repeat_stage(Stage::Refit, 3).expect("runs").len(), 3);
             detector.check_volumes().expect("volumes around all");
@@ -101,16 +102,16 @@ fn every_way_to_refit_can_be_repeated() {
 #[test]
 fn a_cpu_has_no_stage_that_orders() {
     let body = scene::scene("cloth-ball", 500, 3).expect("a scene");
-    let mut detector = Detector::new(engine(), vec![body], Query::continuous()).expect("a detector");
+    let mut detector = OneQuery::new(engine(), vec![body], Query::continuous()).expect("a detector");
     assert_eq!(detector.repeat_stage(Stage::Order, 4).expect("no runs"), Vec::<f64>::new());
-    assert_eq!(detector.detect().expect("an answer").stages.order, 0.0);
+    assert_eq!(detector.detect().expect("an answer").stats.stages.order, 0.0);
 }
 
 #[test]
 fn nothing_has_no_stages() {
     let empty = nearmiss::Mesh::new("empty", nearmiss::mesh::Positions::F32(Vec::new()), Vec::new());
     let bodies = vec![Body::still(empty.expect("a mesh"))];
-    let mut detector = Detector::new(engine(), bodies, Query::discrete()).expect("a detector");
+    let mut detector = OneQuery::new(engine(), bodies, Query::discrete()).expect("a detector");
     for stage in STAGES {
         assert_eq!(detector.repeat_stage(stage, 4).expect("no runs"), Vec::<f64>::new());
     }
@@ -125,15 +126,17 @@ fn what_a_frame_launches_again_is_launched_at_once() {
     for query in Query::every() {
         let count = if query.kind().is_within_bodies() { 1 } else { 2 };
         let device = engine();
-        let mut detector =
-            Detector::new(device.clone(), vec![body.clone(); count], query).expect("a detector");
+        // The second one, if there is one, rests.
+        let bodies = |first: &Body| {
+            let rests = Body::still(body.frames().swap_remove(0));
+            [first.clone(), rests].into_iter().take(count).collect::<Vec<_>>()
+        };
+        let mut detector = OneQuery::new(device.clone(), bodies(&body), query).expect("a detector");
         for frame in 0..6 {
             let now = &around[frame % 2];
             detector.move_to(0, now.clone()).expect("moved");
             let (found, reruns) = (detector.detect().expect("an answer"), detector.reruns());
-            let mut bodies = vec![body.clone(); count];
-            bodies[0] = now.clone();
-            let mut fresh = Detector::new(engine(), bodies, query).expect("a detector");
+            let mut fresh = OneQuery::new(engine(), bodies(now), query).expect("a detector");
             assert_eq!(found.hash(), fresh.detect().expect("an answer").hash(), "{query:?}, frame {frame}");
             if frame == 3 {
                 // Both places were seen: no list grows any more.

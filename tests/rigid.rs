@@ -13,7 +13,8 @@ mod support;
 
 use nearmiss::mesh::Positions;
 use nearmiss::scene::{BodyId, Input, Meets, Pose, Scene};
-use nearmiss::{Body, Contacts, Detector, Mesh, Query};
+use nearmiss::{Body, Contacts, Mesh, Query};
+use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
@@ -73,7 +74,7 @@ fn placed(positions: &Positions, pose: &Pose) -> Positions {
 
 /// An answer, and everything that is told beside it which is not about its making.
 fn rows(found: &Contacts) -> String {
-    format!("{:?} {:?}", found.answer, found.degraded())
+    format!("{:?} {:?}", found.rows, found.degraded())
 }
 
 /// Every query by every solver; those with a tolerance at one, and with a separation, too.

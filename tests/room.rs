@@ -7,7 +7,8 @@ mod support;
 use nearmiss::device::emulator::Order;
 use nearmiss::mesh::Body;
 use nearmiss::query::{Discrete, QueryKind, Traversal, TriangleTest};
-use nearmiss::{Contacts, Detector, Device, Error, Query};
+use nearmiss::{Contacts, Device, Error, Query};
+use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use shrinking::SHRINKING;
 use support::asked::{of, with_tolerance};
@@ -15,12 +16,20 @@ use support::{engine, loose, moving, sanitizer};
 
 /// A first answer, the same frame again, and how often it ran again: within the first, in all.
 fn twice(device: Device, bodies: Vec<Body>, query: Query) -> (Contacts, [u64; 2]) {
-    let mut detector = Detector::new(device, bodies, query).expect("a detector");
+    let mut detector = OneQuery::new(device, bodies, query).expect("a detector");
     let first = detector.detect().expect("an answer");
     let reruns = detector.reruns();
     let second = detector.detect().expect("an answer");
-    assert_eq!(first.answer, second.answer, "a frame after the lists have grown");
-    let figures = |c: &Contacts| (c.triangle_pairs, c.candidates, c.candidates_vf_ee, c.undecided, c.steps);
+    assert_eq!(first.rows, second.rows, "a frame after the lists have grown");
+    let figures = |c: &Contacts| {
+        (
+            c.stats.triangle_pairs,
+            c.stats.candidates,
+            c.stats.candidates_vf_ee,
+            c.stats.undecided,
+            c.stats.steps,
+        )
+    };
     assert_eq!(figures(&first), figures(&second), "counters are the demand, whatever the room");
     (first, [reruns, detector.reruns()])
 }
@@ -51,7 +60,7 @@ fn many_more_pairs_than_room() {
         let (contacts, reruns) = twice(engine(), vec![scene::identical(400).expect("a scene")], query);
         assert!(reruns[0] > 0, "{test:?}: the scene no longer overflows the first room: make it larger");
         assert_eq!(reruns[1], reruns[0], "lists stay long enough");
-        assert_eq!((contacts.triangle_pairs, contacts.candidates), (79_800, 79_800));
+        assert_eq!((contacts.stats.triangle_pairs, contacts.stats.candidates), (79_800, 79_800));
         if test != TriangleTest::Moller {
             assert_eq!(contacts.triangles(), all_pairs(400));
         }
@@ -74,9 +83,9 @@ fn more_undecided_pairs_than_room() {
     let (contacts, reruns) = twice(engine(), vec![loose(&triangles)], Query::discrete());
     assert_eq!(contacts.triangles(), all_pairs(N));
     assert!(
-        contacts.undecided > 4_096,
+        contacts.stats.undecided > 4_096,
         "{} undecided: no longer more than the first room",
-        contacts.undecided
+        contacts.stats.undecided
     );
     assert!(reruns[0] > 0);
 }
@@ -103,7 +112,7 @@ fn one_pair_more_than_room() {
     for device in [engine, || sanitizer(Order::Shuffled(4))] {
         let counts = [0, 1, 2, 3].map(|more| {
             let (contacts, reruns) = twice(device(), vec![clique_and_couples(91, more)], Query::discrete());
-            assert_eq!((contacts.len(), contacts.triangle_pairs), (4_095 + more, 4_095 + more as u64));
+            assert_eq!((contacts.len(), contacts.stats.triangle_pairs), (4_095 + more, 4_095 + more as u64));
             reruns[0]
         });
         assert_eq!(counts[..2], [0, 0], "room for 4,096 is enough for 4,096");
@@ -118,8 +127,8 @@ fn many_more_elementary_pairs_than_room() {
     for body in [scene::identical(N as usize).expect("a scene"), sliding(N as usize)] {
         let (contacts, reruns) = twice(engine(), vec![body.clone()], Query::continuous());
         assert!(reruns[0] > 0, "the scene no longer overflows the first room: make it larger");
-        assert_eq!(contacts.candidates_vf_ee[0], 3 * N * (N - 1));
-        assert_eq!(contacts.candidates_vf_ee[1], 9 * N * (N - 1) / 2);
+        assert_eq!(contacts.stats.candidates_vf_ee[0], 3 * N * (N - 1));
+        assert_eq!(contacts.stats.candidates_vf_ee[1], 9 * N * (N - 1) / 2);
         assert_eq!(contacts.len() as u64, 3 * N * (N - 1) + 9 * N * (N - 1) / 2);
         assert!(contacts.contacts().iter().all(|c| c.toi == 0.0), "they touch from the start");
 
@@ -161,11 +170,15 @@ fn short_lists_of_what_isolation_leaves_alone() {
     for motion in [QueryKind::Continuous, QueryKind::Earliest] {
         for device in [engine(), sanitizer(Order::Shuffled(5))] {
             let (contacts, reruns) = twice(device, vec![body.clone()], of(motion));
-            for left in [contacts.escalated_vf_ee, contacts.open_vf_ee] {
+            for left in [contacts.stats.escalated_vf_ee, contacts.stats.open_vf_ee] {
                 assert!(left.iter().all(|n| *n > RUNG), "{left:?}");
             }
-            assert!(contacts.candidates_vf_ee.iter().all(|n| *n <= 4_096), "{:?}", contacts.candidates_vf_ee);
-            assert!(reruns[0] > 0 && contacts.sliced_vf_ee == [0, 0], "{reruns:?}");
+            assert!(
+                contacts.stats.candidates_vf_ee.iter().all(|n| *n <= 4_096),
+                "{:?}",
+                contacts.stats.candidates_vf_ee
+            );
+            assert!(reruns[0] > 0 && contacts.stats.sliced_vf_ee == [0, 0], "{reruns:?}");
             assert_eq!((contacts.earliest_toi(), contacts.unresolved), (Some(0.0), 0));
             if motion == QueryKind::Continuous {
                 assert_eq!(contacts.len(), 3 * 400 + 4 * 18 * 18);
@@ -190,7 +203,7 @@ fn a_short_list_of_what_is_cut_into_slices() {
     let query = with_tolerance(Query::continuous(), 4e-3);
     for device in [engine(), sanitizer(Order::Shuffled(6))] {
         let (contacts, reruns) = twice(device, vec![body.clone()], query);
-        assert!(contacts.sliced_vf_ee[1] > RUNG, "{:?}", contacts.sliced_vf_ee);
+        assert!(contacts.stats.sliced_vf_ee[1] > RUNG, "{:?}", contacts.stats.sliced_vf_ee);
         assert!(reruns[0] > 0);
     }
 }
@@ -221,10 +234,10 @@ fn units_that_find_no_room_are_walked_anyway() {
     for budget in [1, 2, 7] {
         let spilling = Query::discrete().with_traversal(Traversal::PerLeaf { budget: Some(budget) });
         for device in [engine(), sanitizer(Order::Shuffled(9))] {
-            let mut detector = Detector::new(device, bodies(), spilling).expect("a detector");
+            let mut detector = OneQuery::new(device, bodies(), spilling).expect("a detector");
             let contacts = detector.detect().expect("an answer");
             assert_eq!(contacts.triangles(), all_pairs(150), "budget {budget}");
-            assert!(contacts.spilled > 0, "budget {budget}");
+            assert!(contacts.stats.spilled > 0, "budget {budget}");
         }
     }
 }
@@ -241,7 +254,7 @@ fn lists_grow_when_a_body_moves_into_a_crowd() {
     let crowd: Vec<_> =
         apart.iter().enumerate().map(|(i, p)| [p[0] - 3.0 * (i / 3) as f32, p[1], p[2]]).collect();
     let frame = |points: &[[f32; 3]]| support::still(points, &faces);
-    let mut detector = Detector::new(engine(), vec![frame(&apart)], Query::discrete()).expect("a detector");
+    let mut detector = OneQuery::new(engine(), vec![frame(&apart)], Query::discrete()).expect("a detector");
     assert_eq!((detector.detect().expect("an answer").len(), detector.reruns()), (0, 0));
     detector.move_to(0, frame(&crowd)).expect("the same mesh");
     assert_eq!(detector.detect().expect("an answer").pairs(), all_pairs(130));

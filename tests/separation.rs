@@ -5,11 +5,12 @@
 mod exact;
 mod support;
 
+use nearmiss::Query;
 use nearmiss::contacts::Kind;
 use nearmiss::mesh::{Body, Positions};
 use nearmiss::query::{QueryKind, Solver};
-use nearmiss::{Detector, Query};
 use nearmiss_kernels::prim::inclusion::{Params, Verdict};
+use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use std::collections::BTreeMap;
 use support::asked::{by, certified};
@@ -117,10 +118,10 @@ fn every_way_and_every_machine_finds_the_same() {
         let truth = ask(engine(), bodies.clone(), query);
         assert_eq!(fault(truth.contacts(), &near, &[]), None);
         for way in ways(query) {
-            assert_eq!(ask(engine(), bodies.clone(), way).answer, truth.answer, "{way:?}");
+            assert_eq!(ask(engine(), bodies.clone(), way).rows, truth.rows, "{way:?}");
         }
         let print = |device| {
-            let mut detector = Detector::new(device, bodies.clone(), query).expect("a detector");
+            let mut detector = OneQuery::new(device, bodies.clone(), query).expect("a detector");
             let all = detector.detect().expect("an answer");
             detector.check_volumes().expect("sound trees");
             (all.hash(), detector.fingerprints().expect("prints"))
@@ -138,17 +139,17 @@ fn every_way_and_every_machine_finds_the_same() {
 fn none_is_touching() {
     let prints = |separation| {
         let query = asking(QueryKind::Continuous, Solver::Certified, separation);
-        let mut detector = Detector::new(engine(), vec![soup(60)], query).expect("a detector");
+        let mut detector = OneQuery::new(engine(), vec![soup(60)], query).expect("a detector");
         let hash = detector.detect().expect("an answer").hash();
         (hash, detector.fingerprints().expect("prints"))
     };
     assert_eq!(prints(0.0), prints(-0.0));
     assert_ne!(prints(0.0), prints(0.1));
     let query = asking(QueryKind::Continuous, Solver::Certified, 0.1);
-    let mut detector = Detector::new(engine(), vec![soup(60)], query).expect("a detector");
+    let mut detector = OneQuery::new(engine(), vec![soup(60)], query).expect("a detector");
     detector.move_to(0, scene::soup(60, 5, true).expect("a scene")).expect("the same mesh");
     let moved = detector.detect().expect("an answer");
-    assert_eq!(moved.answer, ask(engine(), vec![soup(60)], query).answer);
+    assert_eq!(moved.rows, ask(engine(), vec![soup(60)], query).rows);
 }
 
 #[test]

@@ -5,8 +5,9 @@ mod support;
 use nearmiss::mesh::Body;
 use nearmiss::query::{Broad, Bv, Query, QueryKind};
 use nearmiss::scene::{BodyId, Input, Meets, Scene};
-use nearmiss::{Contacts, Detector, Device, MultiDetector};
+use nearmiss::{Contacts, Device};
 use nearmiss_lab::scene::{self, Bodies};
+use nearmiss_lab::{OneQuery, OneQueryOnSeveral};
 use support::{ORDERS, asked, engine, sanitizer};
 
 fn devices(count: usize) -> Vec<Device> {
@@ -20,12 +21,12 @@ fn queries() -> Vec<Query> {
 
 /// The same answer, of the same candidates; what is asked for the earliest time hangs on what was found before.
 fn is_the_same(one: &Contacts, several: &Contacts, what: &str) {
-    assert_eq!(one.answer, several.answer, "{what}");
+    assert_eq!(one.rows, several.rows, "{what}");
     assert_eq!(one.hash(), several.hash(), "{what}");
     assert_eq!(one.starts_crossing, several.starts_crossing, "{what}");
-    if !matches!(one.answer, nearmiss::Answer::Earliest(_)) {
-        assert_eq!(one.triangle_pairs, several.triangle_pairs, "{what}");
-        assert_eq!(one.candidates_vf_ee, several.candidates_vf_ee, "{what}");
+    if !matches!(one.rows, nearmiss::Rows::Earliest(_)) {
+        assert_eq!(one.stats.triangle_pairs, several.stats.triangle_pairs, "{what}");
+        assert_eq!(one.stats.candidates_vf_ee, several.stats.candidates_vf_ee, "{what}");
         assert_eq!(one.unresolved, several.unresolved, "{what}");
         assert_eq!(one.degraded(), several.degraded(), "{what}");
     }
@@ -39,13 +40,13 @@ fn a_mesh_has_the_same_answer_on_any_number_of_devices() {
                 let query = query.with_bv(bv);
                 // Several devices take tiles, whatever the volume.
                 let tiles = query.with_broad(Broad::Tiles);
-                let mut one = Detector::new(engine(), body.clone(), tiles).expect("a detector");
+                let mut one = OneQuery::new(engine(), body.clone(), tiles).expect("a detector");
                 let want = one.detect().expect("an answer");
                 assert!(!want.is_empty(), "{query:?}");
                 for count in [2, 3, 40] {
                     let mut several =
-                        MultiDetector::new(devices(count), body.clone(), query).expect("detectors");
-                    assert_eq!(several.tolerance(), one.tolerance());
+                        OneQueryOnSeveral::new(devices(count), body.clone(), query).expect("detectors");
+                    assert_eq!(Some(several.tolerance()), one.tolerance().or(Some(several.tolerance())));
                     // As it was divided at first, and by what was measured.
                     for frame in 0..3 {
                         let found = several.detect().expect("an answer");
@@ -61,10 +62,10 @@ fn a_mesh_has_the_same_answer_on_any_number_of_devices() {
 fn bodies_that_move_are_divided_anew_and_found_alike() {
     let scene = Bodies::pile(40, 20, 10).expect("a pile");
     for query in queries() {
-        let mut one = Detector::new(engine(), scene.scene.clone(), query).expect("a detector");
+        let mut one = OneQuery::new(engine(), scene.scene.clone(), query).expect("a detector");
         let machines = vec![engine(), sanitizer(ORDERS[2]), engine()];
         let clones = vec![machines[0].clone(); 2];
-        let mut several = MultiDetector::new(machines, scene.scene.clone(), query).expect("detectors");
+        let mut several = OneQueryOnSeveral::new(machines, scene.scene.clone(), query).expect("detectors");
         let mut tiles = Vec::new();
         for step in 0..4 {
             let moves = scene.step(step);
@@ -85,7 +86,7 @@ fn bodies_that_move_are_divided_anew_and_found_alike() {
         let geometry = |want: Vec<nearmiss::contacts::ContactGeometry>| format!("{want:?}");
         let (want, found) = (one.detect().expect("again"), several.in_turn().detect().expect("again"));
         is_the_same(&want, &found, "in turn");
-        let mut clones = MultiDetector::new(clones, scene.scene.clone(), query).expect("detectors");
+        let mut clones = OneQueryOnSeveral::new(clones, scene.scene.clone(), query).expect("detectors");
         for step in 0..4 {
             let moves = scene.step(step);
             let inputs: Vec<_> = moves.iter().map(|(id, to)| (*id, to.input())).collect();
@@ -109,9 +110,9 @@ fn bodies_come_and_go_on_every_device() {
     let mut scene = Scene::new();
     scene.add(ball(1));
     let query = asked::of(QueryKind::Continuous);
-    let mut one = Detector::new(engine(), scene.clone(), query).expect("a detector");
-    let mut several = MultiDetector::new(devices(2), scene, query).expect("detectors");
-    let same = |one: &mut Detector, several: &mut MultiDetector, what: &str| {
+    let mut one = OneQuery::new(engine(), scene.clone(), query).expect("a detector");
+    let mut several = OneQueryOnSeveral::new(devices(2), scene, query).expect("detectors");
+    let same = |one: &mut OneQuery, several: &mut OneQueryOnSeveral, what: &str| {
         is_the_same(&one.detect().expect("an answer"), &several.detect().expect("an answer"), what);
         assert_eq!(one.scene().ids().collect::<Vec<_>>(), several.scene().ids().collect::<Vec<_>>());
     };
@@ -136,7 +137,7 @@ fn what_cannot_be_divided_is_refused() {
     let two = [scene::soup(50, 1, false), scene::soup(50, 2, false)].map(|body| body.expect("a soup"));
     let two = support::between(two.to_vec());
     let refused = |count: usize, bodies: Vec<Body>, query: Query| {
-        let error = MultiDetector::new(devices(count), bodies, query).map(drop).expect_err("refused");
+        let error = OneQueryOnSeveral::new(devices(count), bodies, query).map(drop).expect_err("refused");
         assert_eq!(error.exit_code(), 2, "{error}");
         error.to_string()
     };
@@ -148,12 +149,12 @@ fn what_cannot_be_divided_is_refused() {
     assert!(text.contains("by tiles"), "{text}");
     // One device does all that a detector does.
     for query in [Query::distance(), Query::discrete().with_broad(Broad::Tree)] {
-        let mut one = MultiDetector::new(devices(1), two.to_vec(), query).expect("a detector");
+        let mut one = OneQueryOnSeveral::new(devices(1), two.to_vec(), query).expect("a detector");
         let want = support::ask(engine(), two.to_vec(), query);
         assert_eq!(one.detect().expect("an answer").hash(), want.hash());
     }
     // A fault of the input is that of one detector, and nothing has moved.
-    let mut several = MultiDetector::new(devices(2), two.to_vec(), Query::discrete()).expect("detectors");
+    let mut several = OneQueryOnSeveral::new(devices(2), two.to_vec(), Query::discrete()).expect("detectors");
     let before = several.detect().expect("an answer").hash();
     let id = several.scene().ids().next().expect("a body");
     let short = nearmiss::mesh::Positions::F32(vec![[0.0; 3]]);
@@ -168,7 +169,7 @@ fn tiles_at_the_cut_are_counted() {
     let body = scene::grid(cells).expect("a grid");
     let beyond = |count: usize| {
         let mut several =
-            MultiDetector::new(devices(count), body.clone(), Query::discrete()).expect("detectors");
+            OneQueryOnSeveral::new(devices(count), body.clone(), Query::discrete()).expect("detectors");
         several.detect().expect("an answer");
         several.met_beyond().expect("read")
     };

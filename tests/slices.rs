@@ -5,8 +5,9 @@ mod support;
 
 use nearmiss::query::{Broad, Query, QueryKind};
 use nearmiss::scene::Meets;
-use nearmiss::{Contacts, Detector, Device, MultiDetector};
+use nearmiss::{Contacts, Device};
 use nearmiss_lab::scene::{self, Bodies};
+use nearmiss_lab::{OneQuery, OneQueryOnSeveral};
 use support::{asked, engine};
 
 fn queries() -> Vec<Query> {
@@ -18,7 +19,7 @@ fn queries() -> Vec<Query> {
 fn too_little<T>(peak: u64, mut of: impl FnMut(Device) -> Option<(T, Contacts)>) -> (T, Contacts) {
     let parts = (1..40).rev().map(|part| peak * part / 40);
     let mut asked = parts.filter_map(|bytes| of(engine().limited(bytes)));
-    asked.find(|(_, found)| found.slices > 1).expect("a part of the memory in which slices have room")
+    asked.find(|(_, found)| found.stats.slices > 1).expect("a part of the memory in which slices have room")
 }
 
 #[test]
@@ -26,10 +27,10 @@ fn bodies_that_move_are_found_alike_in_slices() {
     let scene = Bodies::pile(40, 20, 10).expect("a pile");
     for query in queries() {
         let whole = engine();
-        let mut one = Detector::new(whole.clone(), scene.scene.clone(), query).expect("a detector");
+        let mut one = OneQuery::new(whole.clone(), scene.scene.clone(), query).expect("a detector");
         one.detect().expect("an answer");
         let (mut sliced, first) = too_little(whole.bytes().1, |device| {
-            let mut detector = Detector::new(device, scene.scene.clone(), query).ok()?;
+            let mut detector = OneQuery::new(device, scene.scene.clone(), query).ok()?;
             let found = detector.detect().ok()?;
             Some((detector, found))
         });
@@ -38,12 +39,15 @@ fn bodies_that_move_are_found_alike_in_slices() {
             let inputs: Vec<_> = moves.iter().map(|(id, to)| (*id, to.input())).collect();
             let want = one.frame(&inputs).expect("an answer");
             let found = sliced.frame(&inputs).expect("an answer");
-            assert_eq!(want.answer, found.answer, "{query:?}, step {step}");
-            assert_eq!((want.slices, want.hash()), (1, found.hash()), "{query:?}, step {step}");
-            assert!(found.slices >= first.slices, "{query:?}: once in slices, so to the end");
-            if !matches!(want.answer, nearmiss::Answer::Earliest(_)) {
-                assert_eq!(want.triangle_pairs, found.triangle_pairs, "{query:?}, step {step}");
-                assert_eq!(want.candidates_vf_ee, found.candidates_vf_ee, "{query:?}, step {step}");
+            assert_eq!(want.rows, found.rows, "{query:?}, step {step}");
+            assert_eq!((want.stats.slices, want.hash()), (1, found.hash()), "{query:?}, step {step}");
+            assert!(found.stats.slices >= first.stats.slices, "{query:?}: once in slices, so to the end");
+            if !matches!(want.rows, nearmiss::Rows::Earliest(_)) {
+                assert_eq!(want.stats.triangle_pairs, found.stats.triangle_pairs, "{query:?}, step {step}");
+                assert_eq!(
+                    want.stats.candidates_vf_ee, found.stats.candidates_vf_ee,
+                    "{query:?}, step {step}"
+                );
             }
             if step == 2 {
                 one.rebuild().expect("tiles");
@@ -58,10 +62,10 @@ fn bodies_that_come_and_go_begin_with_a_whole_frame() {
     let ball = |n, seed| scene::soup(n, seed, true).expect("a soup").with(Meets::and_itself());
     let query = asked::of(QueryKind::Continuous);
     let whole = engine();
-    let mut one = Detector::new(whole.clone(), ball(2_000, 1), query).expect("a detector");
+    let mut one = OneQuery::new(whole.clone(), ball(2_000, 1), query).expect("a detector");
     one.detect().expect("an answer");
     let (mut sliced, _) = too_little(whole.bytes().1, |device| {
-        let mut detector = Detector::new(device, ball(2_000, 1), query).ok()?;
+        let mut detector = OneQuery::new(device, ball(2_000, 1), query).ok()?;
         let found = detector.detect().ok()?;
         Some((detector, found))
     });
@@ -71,13 +75,13 @@ fn bodies_that_come_and_go_begin_with_a_whole_frame() {
         one.replace(first, small.clone()).expect("there");
         sliced.replace(first, small).expect("there");
         let (want, found) = (one.detect().expect("an answer"), sliced.detect().expect("an answer"));
-        assert_eq!((want.answer, found.slices), (found.answer, 1), "a small body has room");
+        assert_eq!((want.rows, found.stats.slices), (found.rows, 1), "a small body has room");
         let large = ball(2_000, seed);
         one.replace(first, large.clone()).expect("there");
         sliced.replace(first, large).expect("there");
         let (want, found) = (one.detect().expect("an answer"), sliced.detect().expect("an answer"));
-        assert_eq!(want.answer, found.answer);
-        assert!(found.slices > 1);
+        assert_eq!(want.rows, found.rows);
+        assert!(found.stats.slices > 1);
     }
 }
 
@@ -86,24 +90,20 @@ fn several_devices_slice_their_shares() {
     let body = scene::draped(5_000).expect("a cloth");
     for query in queries() {
         let whole = engine();
-        let mut one = Detector::new(whole.clone(), body.clone(), query).expect("a detector");
+        let mut one = OneQuery::new(whole.clone(), body.clone(), query).expect("a detector");
         let want = one.detect().expect("an answer");
         // One of the two has room for its share at once.
         let (mut several, first) = too_little(whole.bytes().1, |device| {
-            let mut several = MultiDetector::new(vec![device, engine()], body.clone(), query).ok()?;
+            let mut several = OneQueryOnSeveral::new(vec![device, engine()], body.clone(), query).ok()?;
             let found = several.detect().ok()?;
             Some((several, found))
         });
-        assert_eq!((&want.answer, want.hash()), (&first.answer, first.hash()), "{query:?}");
+        assert_eq!((&want.rows, want.hash()), (&first.rows, first.hash()), "{query:?}");
         let before = several.shares();
         for frame in 0..3 {
             let found = several.detect().expect("an answer");
-            assert_eq!(
-                (&want.answer, want.hash()),
-                (&found.answer, found.hash()),
-                "{query:?}, frame {frame}"
-            );
-            assert!(found.slices > 1);
+            assert_eq!((&want.rows, want.hash()), (&found.rows, found.hash()), "{query:?}, frame {frame}");
+            assert!(found.stats.slices > 1);
         }
         let after = several.shares();
         let tiles: f64 = after.iter().map(|share| share.tiles).sum();
@@ -122,9 +122,11 @@ fn trees_and_distances_are_not_sliced() {
         let mut refused = 0;
         for part in 1..20 {
             let device = engine().limited(whole.bytes().1 * part / 20);
-            let found = Detector::new(device, bodies(), query).and_then(|mut detector| detector.detect());
+            let found = OneQuery::new(device, bodies(), query).and_then(|mut detector| detector.detect());
             match found {
-                Ok(found) => assert_eq!((found.answer, found.slices), (want.answer.clone(), 1), "{query:?}"),
+                Ok(found) => {
+                    assert_eq!((found.rows, found.stats.slices), (want.rows.clone(), 1), "{query:?}")
+                }
                 Err(error) => {
                     assert!(matches!(error, nearmiss::Error::OutOfMemory { .. }), "{error}");
                     refused += 1;

@@ -3,13 +3,14 @@
 
 mod support;
 
-use nearmiss::contacts::{Answer, Contacts, Note};
+use nearmiss::contacts::{Contacts, Note, Rows};
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::Positions;
 use nearmiss::query::{Certified, Continuous, Discrete, Earliest, QueryKind, TriangleTest};
 use nearmiss::scene::{BodyId, BodyKind, Input, Meets, Pose, Scene};
-use nearmiss::{Body, Detector, Device, Mesh, MultiDetector, Query};
+use nearmiss::{Body, Device, Mesh, Query};
 use nearmiss_lab::scene;
+use nearmiss_lab::{OneQuery, OneQueryOnSeveral};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
 use support::{ORDERS, engine, sanitizer, ways};
@@ -91,7 +92,7 @@ fn queries() -> impl Iterator<Item = Query> {
 }
 
 fn found(device: Device, scene: &Scene, query: Query) -> Contacts {
-    Detector::new(device, scene.clone(), query).expect("a detector").detect().expect("an answer")
+    OneQuery::new(device, scene.clone(), query).expect("a detector").detect().expect("an answer")
 }
 
 /// How many pairs a discrete query lists.
@@ -179,7 +180,7 @@ fn frame_after_frame() {
         let scene = Scene::from(Body::still(sheets[0].clone()));
         let id: BodyId = scene.ids().next().expect("a body");
         let [mut moving, mut still] = [query, Query::discrete()]
-            .map(|q| Detector::new(engine(), scene.clone(), q).expect("a detector"));
+            .map(|q| OneQuery::new(engine(), scene.clone(), q).expect("a detector"));
         for ends in sheets.windows(2) {
             let [t0, t1] = [ends[0].positions(), ends[1].positions()];
             let found = moving.frame(&[(id, Input::Step([t0, t1]))]).expect("an answer");
@@ -201,11 +202,11 @@ fn behind_a_sample_on_several_devices_and_in_slices() {
     let whole = found(device.clone(), &scene, Query::earliest());
     assert_eq!(differs(&whole, listed), None);
     let mut several =
-        MultiDetector::new(vec![engine(), engine(), engine()], scene.clone(), Query::earliest())
+        OneQueryOnSeveral::new(vec![engine(), engine(), engine()], scene.clone(), Query::earliest())
             .expect("detectors");
     assert_eq!(differs(&several.detect().expect("an answer"), listed), None);
     let sliced = found(engine().limited(device.bytes().1 * 3 / 4), &scene, Query::earliest());
-    assert!(sliced.slices > 1, "{} slices", sliced.slices);
+    assert!(sliced.stats.slices > 1, "{} slices", sliced.stats.slices);
     assert_eq!(differs(&sliced, listed), None);
 }
 
@@ -223,13 +224,13 @@ fn lists_of_undecided_pairs_grow() {
     let triangles: Vec<_> =
         (0..N).map(|_| [corner(0.5, 0.0), corner(-0.25, 0.5), corner(-0.25, -0.5)]).collect();
     let mut detector =
-        Detector::new(engine(), support::loose(&triangles), Query::continuous()).expect("a detector");
+        OneQuery::new(engine(), support::loose(&triangles), Query::continuous()).expect("a detector");
     let first = detector.detect().expect("an answer");
     assert!(
-        first.reruns > 0 && first.undecided > 4_096,
+        first.stats.reruns > 0 && first.stats.undecided > 4_096,
         "{} reruns, {} undecided",
-        first.reruns,
-        first.undecided
+        first.stats.reruns,
+        first.stats.undecided
     );
     for found in [first, detector.detect().expect("an answer")] {
         assert_eq!(differs(&found, u64::from(N * (N - 1) / 2)), None);
@@ -253,16 +254,13 @@ fn what_is_assumed_costs_nothing() {
             let [checked, assumed] = [false, true].map(|free| {
                 let device = engine();
                 let mut detector =
-                    Detector::new(device.clone(), scene.clone(), query(free)).expect("a detector");
+                    OneQuery::new(device.clone(), scene.clone(), query(free)).expect("a detector");
                 let plan = detector.plan().expect("a plan");
                 let before = device.launches();
                 let found = detector.detect().expect("an answer");
                 (plan, found, device.launches() - before, device.bytes().0)
             });
-            assert_eq!(
-                (checked.1.answer, checked.1.starts_crossing.is_some()),
-                (assumed.1.answer.clone(), true)
-            );
+            assert_eq!((checked.1.rows, checked.1.starts_crossing.is_some()), (assumed.1.rows.clone(), true));
             assert_eq!((assumed.1.starts_crossing, assumed.1.is_free()), (None, false));
             let names = |plan: &nearmiss::plan::Plan| -> Vec<String> {
                 let kernels = plan.frame.iter().flat_map(|stage| stage.kernels.iter().map(|one| one.kernel));
@@ -317,8 +315,8 @@ fn what_crosses_is_never_free() {
     let alone = Scene::from(vec![Body::fixed(crumpled(3, &mut SmallRng::seed_from_u64(2))[0].clone())]);
     let found = found(engine(), &alone, Query::earliest());
     assert_eq!(
-        (found.answer.clone(), found.starts_crossing, found.is_free()),
-        (Answer::Earliest(None), Some(0), true)
+        (found.rows.clone(), found.starts_crossing, found.is_free()),
+        (Rows::Earliest(None), Some(0), true)
     );
     assert_eq!(Contacts::none(Query::discrete()).starts_crossing, None);
     assert_eq!(QueryKind::ALL.iter().filter(|kind| !kind.is_at_rest()).count(), 2);

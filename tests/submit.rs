@@ -13,7 +13,8 @@ use nearmiss::device::Buffer;
 use nearmiss::mesh::Positions;
 use nearmiss::query::{QueryKind, QueueShape, Refit, Search, StealShape, Traversal};
 use nearmiss::scene::{BodyId, DeviceInput, DevicePose, DeviceRows, Input, Meets, Number, Pose, Scene};
-use nearmiss::{Body, Detector, Device, Error, Mesh, Query};
+use nearmiss::{Body, Device, Error, Mesh, Query};
+use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use support::{ORDERS, engine, sanitizer, walks_of};
 
@@ -53,7 +54,7 @@ fn padded(points: &[[f32; 3]]) -> Vec<[f32; 4]> {
 }
 
 /// What a submitted frame came to, as a caller on the device sees it. On a CPU that is here.
-fn status(detector: &Detector) -> FrameStatus {
+fn status(detector: &OneQuery) -> FrameStatus {
     let answer = detector.on_device().expect("prepared");
     // SAFETY: of a CPU the address is the host's; the detector holds the memory, and nothing runs.
     unsafe { *(answer.status as *const FrameStatus) }
@@ -81,8 +82,8 @@ fn moved(points: &[[f32; 3]], frame: usize) -> Vec<[f32; 3]> {
 /// Submits frames of a query on a device, and compares each with one by way of the host; how many contacts there were.
 fn agrees(device: &Device, query: Query, frames: usize) -> usize {
     let (scene, id, [t0, t1]) = pair(120);
-    let mut by_host = Detector::new(engine(), scene.clone(), query).expect("a detector");
-    let mut detector = Detector::new(device.clone(), scene, query).expect("a detector");
+    let mut by_host = OneQuery::new(engine(), scene.clone(), query).expect("a detector");
+    let mut detector = OneQuery::new(device.clone(), scene, query).expect("a detector");
     let mut memory = [&t0, &t1].map(|points| Points::new(device, points));
     let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
     let mut found = detector.prepare(&[(id, input)]).expect("an answer");
@@ -109,7 +110,7 @@ fn agrees(device: &Device, query: Query, frames: usize) -> usize {
         }
         let [t0, t1] = ends.map(Positions::F32);
         let wanted = by_host.frame(&[(id, Input::Step([&t0, &t1]))]).expect("an answer");
-        assert_eq!(found.answer, wanted.answer, "frame {frame} of {query:?}");
+        assert_eq!(found.rows, wanted.rows, "frame {frame} of {query:?}");
         assert_eq!(found.starts_crossing, wanted.starts_crossing, "frame {frame} of {query:?}");
         assert!(query.kind().is_at_rest() || wanted.starts_crossing > Some(0), "{query:?}");
         all += wanted.len();
@@ -154,7 +155,7 @@ fn a_walk_that_needs_the_host_is_refused() {
         let query = query(QueryKind::Discrete).with_traversal(walk);
         let device = engine();
         let memory = Points::new(&device, &t0);
-        let mut detector = Detector::new(device, scene.clone(), query).expect("a detector");
+        let mut detector = OneQuery::new(device, scene.clone(), query).expect("a detector");
         let error = detector.prepare(&[(id, DeviceInput::At(memory.rows()))]).expect_err("refused");
         assert!(matches!(error, Error::Choice { .. }) && error.to_string().contains("traversal"), "{error}");
         assert!(!detector.is_prepared() && detector.on_device().is_none());
@@ -180,8 +181,8 @@ fn what_outgrows_its_room_is_seen_and_answered() {
         let there = Positions::F32(spread(&there, 0.0));
         scene.add(Body::fixed(Mesh::new("around one point", there, still.faces().to_vec()).expect("a mesh")));
         let mut memory = [&t0, &t1].map(|points| Points::new(&device, &spread(points, 4.0)));
-        let mut by_host = Detector::new(engine(), scene.clone(), query(kind)).expect("a detector");
-        let mut detector = Detector::new(device.clone(), scene, query(kind)).expect("a detector");
+        let mut by_host = OneQuery::new(engine(), scene.clone(), query(kind)).expect("a detector");
+        let mut detector = OneQuery::new(device.clone(), scene, query(kind)).expect("a detector");
         let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
         detector.prepare(&[(id, input)]).expect("an answer");
         let mut short = 0;
@@ -201,7 +202,7 @@ fn what_outgrows_its_room_is_seen_and_answered() {
             }
             let [t0, t1] = ends.map(Positions::F32);
             let wanted = by_host.frame(&[(id, Input::Step([&t0, &t1]))]).expect("an answer");
-            assert_eq!(found.answer, wanted.answer, "{kind:?}, {by}");
+            assert_eq!(found.rows, wanted.rows, "{kind:?}, {by}");
         }
         assert!(short >= 2, "{kind:?}: {short}");
     }
@@ -213,12 +214,12 @@ fn another_frame_is_noticed() {
     let (scene, id, [t0, t1]) = pair(120);
     for kind in QueryKind::ALL {
         let device = engine();
-        let mut detector = Detector::new(device.clone(), scene.clone(), query(kind)).expect("a detector");
+        let mut detector = OneQuery::new(device.clone(), scene.clone(), query(kind)).expect("a detector");
         let memory = [&t0, &t1].map(|points| Points::new(&device, points));
         let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
         let first = detector.prepare(&[(id, input)]).expect("an answer");
         let other = DeviceInput::Step([memory[1].rows(), memory[0].rows()]);
-        assert_ne!(first.answer, detector.prepare(&[(id, other)]).expect("an answer").answer, "{kind:?}");
+        assert_ne!(first.rows, detector.prepare(&[(id, other)]).expect("an answer").rows, "{kind:?}");
     }
 }
 
@@ -228,8 +229,8 @@ fn any_other_call_ends_a_preparation() {
     let device = engine();
     let memory = Points::new(&device, &t0);
     let input = [(id, DeviceInput::At(memory.rows()))];
-    let mut detector = Detector::new(device, scene, query(QueryKind::Discrete)).expect("a detector");
-    let calls: [fn(&mut Detector, BodyId); 5] = [
+    let mut detector = OneQuery::new(device, scene, query(QueryKind::Discrete)).expect("a detector");
+    let calls: [fn(&mut OneQuery, BodyId); 5] = [
         |d, _| drop(d.detect().expect("an answer")),
         |d, _| drop(d.frame(&[]).expect("an answer")),
         |d, _| d.rebuild().expect("a tree"),

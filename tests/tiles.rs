@@ -5,7 +5,8 @@ mod support;
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Broad, Bv, Distance, Query, QueryKind, Refit, Search, Traversal};
 use nearmiss::scene::Scene;
-use nearmiss::{Contacts, Detector, Device};
+use nearmiss::{Contacts, Device};
+use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use support::{ORDERS, ask_scene, asked, engine, machines, sanitizer};
 
@@ -17,10 +18,10 @@ fn both(device: &Device, scene: &Scene, query: Query) -> [Contacts; 2] {
 /// Both answers are one, and where the volumes nest the candidates are as many.
 fn agree(scene: &Scene, query: Query, nests: bool) -> Contacts {
     let [tree, tiles] = both(&engine(), scene, query);
-    assert_eq!(tree.answer, tiles.answer, "{query:?}");
+    assert_eq!(tree.rows, tiles.rows, "{query:?}");
     assert_eq!(tree.hash(), tiles.hash());
     if nests {
-        assert_eq!(tree.triangle_pairs, tiles.triangle_pairs, "{query:?}");
+        assert_eq!(tree.stats.triangle_pairs, tiles.stats.triangle_pairs, "{query:?}");
     }
     tiles
 }
@@ -43,7 +44,7 @@ fn one_mesh_has_the_same_candidates_and_contacts() {
         for query in queries(distance) {
             for bv in Bv::ALL {
                 let contacts = agree(&scene, query.with_bv(bv), matches!(bv, Bv::Aabb | Bv::Linear));
-                assert!(contacts.triangle_pairs > 0, "{query:?}");
+                assert!(contacts.stats.triangle_pairs > 0, "{query:?}");
             }
         }
     }
@@ -71,7 +72,7 @@ fn a_list_of_pairs_of_tiles_that_is_too_short_grows() {
     let n = 2_500;
     let query = Query::discrete().with_broad(Broad::Tiles);
     let contacts = support::ask(engine(), vec![scene::identical(n).expect("equal triangles")], query);
-    assert!(contacts.reruns > 0);
+    assert!(contacts.stats.reruns > 0);
     assert_eq!(contacts.len(), n * (n - 1) / 2);
 }
 
@@ -86,7 +87,7 @@ fn many_bodies_have_the_same_contacts_step_by_step() {
     for pile in piles {
         for query in [Query::discrete(), Query::continuous(), Query::near(0.02)] {
             let mut detectors = [Broad::Tree, Broad::Tiles].map(|broad| {
-                Detector::new(engine(), pile.scene.clone(), query.with_broad(broad)).expect("a detector")
+                OneQuery::new(engine(), pile.scene.clone(), query.with_broad(broad)).expect("a detector")
             });
             for step in 0..3 {
                 let moves = pile.step(step);
@@ -99,8 +100,8 @@ fn many_bodies_have_the_same_contacts_step_by_step() {
                     detector.check_volumes().expect("sound volumes");
                     contacts
                 });
-                assert_eq!(tree.answer, tiles.answer, "{query:?}, step {step}");
-                assert_eq!(tree.triangle_pairs, tiles.triangle_pairs, "{query:?}, step {step}");
+                assert_eq!(tree.rows, tiles.rows, "{query:?}, step {step}");
+                assert_eq!(tree.stats.triangle_pairs, tiles.stats.triangle_pairs, "{query:?}, step {step}");
                 assert!(!tiles.is_empty(), "{query:?}");
             }
         }
@@ -114,11 +115,11 @@ fn every_machine_leaves_the_same_behind() {
     for query in [Query::discrete(), Query::continuous().with_bv(Bv::Obb)] {
         let query = query.with_broad(Broad::Tiles);
         let left = |device: Device| {
-            let mut detector = Detector::new(device, pile.scene.clone(), query).expect("a detector");
+            let mut detector = OneQuery::new(device, pile.scene.clone(), query).expect("a detector");
             let moves = pile.step(1);
             let inputs: Vec<_> = moves.iter().map(|(id, to)| (*id, to.input())).collect();
             let contacts = detector.frame(&inputs).expect("a frame");
-            (detector.fingerprints().expect("what is left"), contacts.hash(), contacts.steps)
+            (detector.fingerprints().expect("what is left"), contacts.hash(), contacts.stats.steps)
         };
         let truth = left(engine());
         for device in machines() {
@@ -134,7 +135,7 @@ fn blocks_side_by_side_find_the_same() {
     let query = Query::discrete().with_broad(Broad::Tiles);
     let truth = support::ask(engine(), vec![body.clone()], query);
     for order in ORDERS {
-        assert_eq!(support::ask(sanitizer(order), vec![body.clone()], query).answer, truth.answer);
+        assert_eq!(support::ask(sanitizer(order), vec![body.clone()], query).rows, truth.rows);
     }
 }
 
@@ -197,15 +198,15 @@ fn a_sample_leaves_out_what_is_later_and_nothing_else() {
         println!(
             "{name}: {:?}, {} pairs of {}",
             tiles.earliest_toi(),
-            tiles.triangle_pairs,
-            tree.triangle_pairs
+            tiles.stats.triangle_pairs,
+            tree.stats.triangle_pairs
         );
         assert!(all.earliest_toi().is_some(), "{name}");
         assert_eq!(tiles.earliest_toi(), all.earliest_toi(), "{name}");
-        assert_eq!(tree.answer, tiles.answer, "{name}");
+        assert_eq!(tree.rows, tiles.rows, "{name}");
         // All that is flat meets at once.
-        let fewer = tiles.triangle_pairs < tree.triangle_pairs;
-        assert!(fewer || name == "flat" && tiles.triangle_pairs == tree.triangle_pairs, "{name}");
+        let fewer = tiles.stats.triangle_pairs < tree.stats.triangle_pairs;
+        assert!(fewer || name == "flat" && tiles.stats.triangle_pairs == tree.stats.triangle_pairs, "{name}");
     }
 }
 
@@ -215,7 +216,7 @@ fn a_sample_without_contacts_bounds_nothing() {
     let scene = Scene::from(sheets(0.3, 0.2));
     let [tree, tiles] = both(&engine(), &scene, Query::earliest());
     assert_eq!((tree.earliest_toi(), tiles.earliest_toi()), (None, None));
-    assert_eq!(tree.triangle_pairs, tiles.triangle_pairs);
+    assert_eq!(tree.stats.triangle_pairs, tiles.stats.triangle_pairs);
 }
 
 #[test]
@@ -223,5 +224,5 @@ fn a_sample_without_contacts_bounds_nothing() {
 fn a_sample_leaves_no_lane_behind() {
     let body = sheets(0.3, 0.2);
     let truth = support::ask(engine(), vec![body.clone()], Query::earliest());
-    assert_eq!(support::ask(sanitizer(ORDERS[0]), vec![body], Query::earliest()).answer, truth.answer);
+    assert_eq!(support::ask(sanitizer(ORDERS[0]), vec![body], Query::earliest()).rows, truth.rows);
 }

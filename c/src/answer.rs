@@ -6,7 +6,7 @@ use crate::records::{
     NearmissContact, NearmissGeometry, NearmissNearPair, NearmissNearest, NearmissStages,
     NearmissTrianglePair,
 };
-use nearmiss::{Answer, Contacts, Error};
+use nearmiss::{Contacts, Error, Rows};
 use std::ffi::{CString, c_char};
 use std::mem::MaybeUninit;
 
@@ -66,12 +66,12 @@ impl NearmissAnswer {
     pub(crate) fn new(found: Contacts, peak: u64) -> Result<NearmissAnswer, Error> {
         let bytes = found.len() as u64 * size_of::<NearmissNearPair>() as u64;
         nearmiss::memory::require("the answer", bytes)?;
-        let shown = match &found.answer {
-            Answer::Pairs(pairs) => Shown::Pairs(pairs.iter().map(Into::into).collect()),
-            Answer::Contacts(contacts) => Shown::Contacts(contacts.iter().map(Into::into).collect()),
-            Answer::Near(pairs) => Shown::Near(pairs.iter().map(Into::into).collect()),
-            Answer::Earliest(_) => Shown::Earliest,
-            Answer::Distance(_) => Shown::Nearest,
+        let shown = match &found.rows {
+            Rows::Pairs(pairs) => Shown::Pairs(pairs.iter().map(Into::into).collect()),
+            Rows::Contacts(contacts) => Shown::Contacts(contacts.iter().map(Into::into).collect()),
+            Rows::Near(pairs) => Shown::Near(pairs.iter().map(Into::into).collect()),
+            Rows::Earliest(_) => Shown::Earliest,
+            Rows::Distance(_) => Shown::Nearest,
         };
         let degraded = found.degraded().iter().map(sentence).collect();
         Ok(NearmissAnswer { found, shown, geometry: Vec::new(), degraded, notes: Vec::new(), peak })
@@ -226,17 +226,17 @@ pub extern "C" fn nearmiss_answer_summary(
         let found = &answer.found;
         given(summary, "the summary")?.write(NearmissSummary {
             contacts: found.len() as u64,
-            triangle_pairs: found.triangle_pairs,
-            candidates: found.candidates,
+            triangle_pairs: found.stats.triangle_pairs,
+            candidates: found.stats.candidates,
             unresolved: found.unresolved,
-            reruns: found.reruns,
-            slices: u64::from(found.slices),
+            reruns: found.stats.reruns,
+            slices: u64::from(found.stats.slices),
             bytes: answer.peak,
             hash: found.hash(),
             starts_crossing: found.starts_crossing.unwrap_or(0),
             is_start_checked: found.starts_crossing.is_some(),
             degraded: answer.degraded.len() as u64,
-            ms: found.stages.into(),
+            ms: found.stats.stages.into(),
         });
         Ok(())
     })

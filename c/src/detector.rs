@@ -7,7 +7,7 @@ use crate::input::body;
 use crate::query::NearmissQuery;
 use crate::scene::NearmissScene;
 use nearmiss::scene::BodyId;
-use nearmiss::{Detector, Device, Error};
+use nearmiss::{Detector, Device, Error, Query};
 use std::ffi::CString;
 use std::mem::MaybeUninit;
 use std::sync::atomic::Ordering;
@@ -15,6 +15,7 @@ use std::sync::atomic::Ordering;
 /// A scene on a device, asked frame after frame.
 pub struct NearmissDetector {
     pub(crate) detector: Detector,
+    pub(crate) query: Query,
     pub(crate) device: Device,
     pub(crate) ids: Vec<BodyId>,
     /// What `nearmiss_detector_on_device` showed last.
@@ -68,10 +69,12 @@ pub unsafe extern "C" fn nearmiss_detector_new(
         let NearmissScene { scene, ids, taken } = given(scene, "the scene")?;
         // SAFETY: the caller's promise.
         let query = unsafe { given(query, "the query")?.query() }?;
-        let detector = Detector::new(device.clone(), scene.clone(), query)?;
+        let mut detector = Detector::new(device.clone(), scene.clone())?;
+        detector.begin(&query)?;
         taken.store(true, Ordering::Relaxed);
         Ok(NearmissDetector {
             detector,
+            query,
             device,
             ids: ids.clone(),
             starts: Vec::new(),
@@ -90,7 +93,9 @@ pub extern "C" fn nearmiss_detector_tolerance(
     error: Option<&mut MaybeUninit<NearmissError>>,
 ) -> NearmissCode {
     NearmissDetector::work(detector, error, |own| {
-        given(tolerance, "the tolerance")?.write(own.detector.tolerance().unwrap_or(-1.0));
+        let named = own.query.certified().map(|certified| certified.tolerance);
+        let tolerance_of = |named: Option<f64>| named.unwrap_or_else(|| own.detector.tolerance());
+        given(tolerance, "the tolerance")?.write(named.map_or(-1.0, tolerance_of));
         Ok(())
     })
 }
@@ -104,7 +109,9 @@ pub extern "C" fn nearmiss_detector_largest_tolerance(
     error: Option<&mut MaybeUninit<NearmissError>>,
 ) -> NearmissCode {
     NearmissDetector::work(detector, error, |own| {
-        given(tolerance, "the tolerance")?.write(own.detector.largest_tolerance().unwrap_or(-1.0));
+        let named = own.query.certified().map(|certified| certified.tolerance);
+        let tolerance_of = |named: Option<f64>| named.unwrap_or_else(|| own.detector.largest_tolerance());
+        given(tolerance, "the tolerance")?.write(named.map_or(-1.0, tolerance_of));
         Ok(())
     })
 }
@@ -181,16 +188,17 @@ pub extern "C" fn nearmiss_detector_free(detector: Option<Box<NearmissDetector>>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nearmiss::{Body, Mesh, Query, device::Backend, mesh::Positions};
+    use nearmiss::{Body, Mesh, device::Backend, mesh::Positions};
 
     #[test]
     fn a_detector_that_met_a_fault_is_not_worked_with_again() {
         let corners = Positions::F32(vec![[0.0; 3]; 3]);
         let body = Body::still(Mesh::new("a point", corners, vec![[0, 1, 2]]).expect("a mesh"));
         let device = Device::open(Backend::Cpu, Some(1)).expect("a thread");
-        let detector = Detector::new(device.clone(), body, Query::discrete()).expect("a detector");
+        let detector = Detector::new(device.clone(), body).expect("a detector");
         let mut own = NearmissDetector {
             detector,
+            query: Query::discrete(),
             device,
             ids: Vec::new(),
             starts: Vec::new(),

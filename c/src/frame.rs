@@ -79,11 +79,11 @@ pub unsafe extern "C" fn nearmiss_detector_frame(
     NearmissDetector::asked(detector, answer, error, |own| {
         // SAFETY: the caller's promise.
         let held = unsafe { own.held(inputs, count) }?;
-        own.detector.frame(&borrowed(&held))
+        own.detector.step(&borrowed(&held), &own.query)
     })
 }
 
-/// Moves bodies as `nearmiss_detector_frame` does, and asks nothing; bodies that are not named stay in the step that they are in.
+/// Moves bodies as `nearmiss_detector_frame` does, without a query.
 ///
 /// # Safety
 /// So many inputs are there, and what they point to.
@@ -97,7 +97,7 @@ pub unsafe extern "C" fn nearmiss_detector_place(
     NearmissDetector::work(detector, error, |own| {
         // SAFETY: the caller's promise.
         let held = unsafe { own.held(inputs, count) }?;
-        own.detector.place(&borrowed(&held))
+        own.detector.update(&borrowed(&held))
     })
 }
 
@@ -108,5 +108,5 @@ pub extern "C" fn nearmiss_detector_detect(
     answer: Option<&mut MaybeUninit<*mut NearmissAnswer>>,
     error: Option<&mut MaybeUninit<NearmissError>>,
 ) -> NearmissCode {
-    NearmissDetector::asked(detector, answer, error, |own| own.detector.detect())
+    NearmissDetector::asked(detector, answer, error, |own| own.detector.query(&own.query))
 }

@@ -160,7 +160,7 @@ pub extern "C" fn nearmiss_detector_on_device(
 ) -> NearmissCode {
     NearmissDetector::work(detector, error, |own| {
         let to = given(answer, "the answer")?;
-        let found = own.detector.on_device().ok_or_else(|| Error::Choice {
+        let found = own.detector.on_device(&own.query).ok_or_else(|| Error::Choice {
             what: "an answer on the device of a detector that is not prepared, or in which nothing can meet"
                 .into(),
             advice: "prepare it, or ask by nearmiss_detector_frame".into(),

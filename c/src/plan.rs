@@ -18,7 +18,7 @@ pub extern "C" fn nearmiss_detector_plan(
     NearmissDetector::work(detector, error, |own| {
         let to = given(json, "the text")?;
         let bug = |what: String| Error::Bug { what: format!("the plan as JSON: {what}") };
-        let text = serde_json::to_string(&own.detector.plan()?).map_err(|e| bug(e.to_string()))?;
+        let text = serde_json::to_string(&own.detector.plan(&own.query)?).map_err(|e| bug(e.to_string()))?;
         own.plan = CString::new(text).map_err(|e| bug(e.to_string()))?;
         to.write(own.plan.as_ptr());
         Ok(())

@@ -23,7 +23,8 @@ pub unsafe extern "C" fn nearmiss_detector_prepare(
     NearmissDetector::asked(detector, answer, error, |own| {
         // SAFETY: the caller's promise, twice.
         let inputs = unsafe { own.inputs(inputs, count, |input| input.on_device()) }?;
-        own.detector.prepare(&inputs)
+        own.detector.prepare(&inputs, &[own.query])?;
+        own.detector.collect(&own.query)
     })
 }
 
@@ -58,5 +59,5 @@ pub extern "C" fn nearmiss_detector_collect(
     answer: Option<&mut MaybeUninit<*mut NearmissAnswer>>,
     error: Option<&mut MaybeUninit<NearmissError>>,
 ) -> NearmissCode {
-    NearmissDetector::asked(detector, answer, error, |own| own.detector.collect())
+    NearmissDetector::asked(detector, answer, error, |own| own.detector.collect(&own.query))
 }

@@ -1,6 +1,6 @@
 //! The mesh with what meets coloured.
 
-use nearmiss::contacts::{Answer, ContactGeometry, Contacts, Status};
+use nearmiss::contacts::{ContactGeometry, Contacts, Rows, Status};
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::scene::BodyKind;
@@ -72,18 +72,18 @@ pub fn paint(
     let mut pair = |bodies: [usize; 2], pair: [u32; 2]| {
         bodies.iter().zip(pair).for_each(|(&body, at)| triangles[starts[body].1 + at as usize] = RED);
     };
-    match &found.answer {
-        Answer::Pairs(all) => all.iter().for_each(|p| pair(p.bodies.map(|body| body.index()), p.triangles)),
-        Answer::Distance(all) => {
+    match &found.rows {
+        Rows::Pairs(all) => all.iter().for_each(|p| pair(p.bodies.map(|body| body.index()), p.triangles)),
+        Rows::Distance(all) => {
             all.iter().for_each(|n| pair(n.bodies.map(|body| body.index()), n.triangles));
         }
-        Answer::Contacts(all) => {
+        Rows::Contacts(all) => {
             for (contact, geometry) in all.iter().zip(geometry) {
                 met.add(geometry, contact.status == Status::Unresolved, &starts);
             }
         }
-        Answer::Near(_) => geometry.iter().for_each(|geometry| met.add(geometry, false, &starts)),
-        Answer::Earliest(_) => {}
+        Rows::Near(_) => geometry.iter().for_each(|geometry| met.add(geometry, false, &starts)),
+        Rows::Earliest(_) => {}
     }
     for (colour, face) in triangles.iter_mut().zip(&faces) {
         *colour = met.colour(*face).unwrap_or(*colour);

@@ -1,9 +1,9 @@
 //! Results as files: CSV, JSON and VTP.
 
 use crate::output::{Target, unpacked};
-use crate::rows::{Columns, Rows};
+use crate::rows::{Columns, JsonRows};
 use crate::vtp::Vtp;
-use nearmiss::contacts::{Answer, Contact, ContactGeometry, Contacts, Kind, Summary, TrianglePair};
+use nearmiss::contacts::{Contact, ContactGeometry, Contacts, Kind, Rows, Summary, TrianglePair};
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
 use nearmiss::scene::BodyId;
@@ -38,9 +38,9 @@ impl FileFaces {
 
     /// The same answer in faces, ascending and each once: pairs of triangles of the same two faces become one, of contacts of a vertex with triangles
     /// of one face the earliest stays.
-    pub fn name(&self, answer: &Answer) -> Answer {
+    pub fn name(&self, answer: &Rows) -> Rows {
         match answer {
-            Answer::Pairs(pairs) => {
+            Rows::Pairs(pairs) => {
                 let faces = |pair: &TrianglePair| {
                     let [a, b] = [0, 1].map(|k| self.face(pair.bodies[k], pair.triangles[k]));
                     let within = pair.bodies[0] == pair.bodies[1];
@@ -49,9 +49,9 @@ impl FileFaces {
                 let mut pairs: Vec<_> = pairs.iter().map(faces).collect();
                 pairs.sort_unstable();
                 pairs.dedup();
-                Answer::Pairs(pairs)
+                Rows::Pairs(pairs)
             }
-            Answer::Contacts(all) => {
+            Rows::Contacts(all) => {
                 let faces = |c: &Contact| match c.kind {
                     Kind::Vf => Contact { b: self.face(c.bodies[1], c.b), ..*c },
                     Kind::Fv => Contact { a: self.face(c.bodies[0], c.a), ..*c },
@@ -61,12 +61,12 @@ impl FileFaces {
                 let key = |c: &Contact| (c.kind, c.bodies, c.a, c.b);
                 all.sort_by(|c, d| key(c).cmp(&key(d)).then(c.toi.total_cmp(&d.toi)));
                 all.dedup_by_key(|c| key(c));
-                Answer::Contacts(all)
+                Rows::Contacts(all)
             }
-            Answer::Earliest(toi) => Answer::Earliest(*toi),
+            Rows::Earliest(toi) => Rows::Earliest(*toi),
             // Weights are those of a triangle's corners: `args` asks for no other names.
-            Answer::Near(near) => Answer::Near(near.clone()),
-            Answer::Distance(nearest) => Answer::Distance(*nearest),
+            Rows::Near(near) => Rows::Near(near.clone()),
+            Rows::Distance(nearest) => Rows::Distance(*nearest),
         }
     }
 }
@@ -115,8 +115,8 @@ pub fn write(
     (faces, names): (Option<&FileFaces>, Option<&[String]>),
     geometry: Option<&[ContactGeometry]>,
 ) -> Result<(), Error> {
-    let named = faces.map(|faces| faces.name(&contacts.answer));
-    let answer = named.as_ref().unwrap_or(&contacts.answer);
+    let named = faces.map(|faces| faces.name(&contacts.rows));
+    let answer = named.as_ref().unwrap_or(&contacts.rows);
     let columns = Columns { step: None, names, faces: faces.is_some(), geometry };
     target.write(|out| match format {
         Format::Csv => {
@@ -125,7 +125,7 @@ pub fn write(
             columns.rows(&mut csv, answer)?;
             csv.flush().map_err(|e| e.to_string())
         }
-        Format::Json => json(out, told, Rows { answer, names, geometry }),
+        Format::Json => json(out, told, JsonRows { answer, names, geometry }),
         Format::Vtp => {
             let mut vtp = Vtp::default();
             vtp.add(None, answer, geometry.unwrap_or_default());
@@ -135,11 +135,11 @@ pub fn write(
 }
 
 /// The summary and the contacts as one JSON object.
-fn json(out: impl Write, summary: &Report, contacts: Rows) -> Result<(), String> {
+fn json(out: impl Write, summary: &Report, contacts: JsonRows) -> Result<(), String> {
     #[derive(Serialize)]
     struct Whole<'a> {
         summary: &'a Report,
-        contacts: Rows<'a>,
+        contacts: JsonRows<'a>,
     }
     serde_json::to_writer(out, &Whole { summary, contacts }).map_err(|e| e.to_string())
 }

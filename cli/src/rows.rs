@@ -1,7 +1,7 @@
 //! Contacts as rows of CSV and of JSON.
 
 use nearmiss::contacts::{
-    Answer, Contact, ContactGeometry, Kind, NearPair, NearestTriangles, Status, TrianglePair,
+    Contact, ContactGeometry, Kind, NearPair, NearestTriangles, Rows, Status, TrianglePair,
 };
 use nearmiss::scene::BodyId;
 use serde::{Serialize, Serializer};
@@ -22,14 +22,14 @@ pub struct Columns<'a> {
 
 impl Columns<'_> {
     /// The names of the columns.
-    pub fn head(&self, csv: &mut csv::Writer<impl Write>, answer: &Answer) -> Result<(), String> {
+    pub fn head(&self, csv: &mut csv::Writer<impl Write>, answer: &Rows) -> Result<(), String> {
         let triangles = if self.faces { ["face_a", "face_b"] } else { ["tri_a", "tri_b"] };
         let (own, bodies): (&[&str], bool) = match answer {
-            Answer::Pairs(_) => (&triangles, true),
-            Answer::Contacts(_) => (&["kind", "a", "b", "toi", "toi_hi", "status"], true),
-            Answer::Earliest(_) => (&["earliest_toi"], false),
-            Answer::Distance(_) => (&NEAREST, true),
-            Answer::Near(_) => (&["kind", "a", "b", "squared_distance", "w0", "w1", "w2", "closest"], true),
+            Rows::Pairs(_) => (&triangles, true),
+            Rows::Contacts(_) => (&["kind", "a", "b", "toi", "toi_hi", "status"], true),
+            Rows::Earliest(_) => (&["earliest_toi"], false),
+            Rows::Distance(_) => (&NEAREST, true),
+            Rows::Near(_) => (&["kind", "a", "b", "squared_distance", "w0", "w1", "w2", "closest"], true),
         };
         let step = self.step.map(|_| "step");
         let bodies = Some(())
@@ -41,23 +41,23 @@ impl Columns<'_> {
     }
 
     /// A row a contact. A number is printed as the shortest decimal that reads back to the same bits.
-    pub fn rows(&self, csv: &mut csv::Writer<impl Write>, answer: &Answer) -> Result<(), String> {
+    pub fn rows(&self, csv: &mut csv::Writer<impl Write>, answer: &Rows) -> Result<(), String> {
         let wrote = match answer {
-            Answer::Pairs(pairs) => pairs.iter().try_for_each(|pair| {
+            Rows::Pairs(pairs) => pairs.iter().try_for_each(|pair| {
                 self.row(csv, Some(pair.bodies), &pair.triangles.map(|triangle| triangle.to_string()))
             }),
-            Answer::Contacts(all) => all
+            Rows::Contacts(all) => all
                 .iter()
                 .enumerate()
                 .try_for_each(|(at, c)| self.row(csv, Some(c.bodies), &self.with(at, &contact(c)))),
             // Of a sequence a step without a contact has its row too, and in it no time.
-            Answer::Earliest(None) if self.step.is_some() => self.row(csv, None, &[String::new()]),
-            Answer::Earliest(toi) => toi.iter().try_for_each(|toi| self.row(csv, None, &[toi.to_string()])),
-            Answer::Near(pairs) => pairs
+            Rows::Earliest(None) if self.step.is_some() => self.row(csv, None, &[String::new()]),
+            Rows::Earliest(toi) => toi.iter().try_for_each(|toi| self.row(csv, None, &[toi.to_string()])),
+            Rows::Near(pairs) => pairs
                 .iter()
                 .enumerate()
                 .try_for_each(|(at, p)| self.row(csv, Some(p.bodies), &self.with(at, &near(p)))),
-            Answer::Distance(found) => {
+            Rows::Distance(found) => {
                 found.iter().try_for_each(|n| self.row(csv, Some(n.bodies), &nearest(n)))
             }
         };
@@ -151,9 +151,9 @@ fn contact(c: &Contact) -> [String; 6] {
 }
 
 /// An answer as rows of JSON: of a scene its bodies by their names.
-pub struct Rows<'a> {
+pub struct JsonRows<'a> {
     /// The answer.
-    pub answer: &'a Answer,
+    pub answer: &'a Rows,
     /// Of a scene, the bodies' names.
     pub names: Option<&'a [String]>,
     /// Where each contact is: `geometry` of its row.
@@ -212,41 +212,37 @@ struct Nearest {
     points: [[f64; 3]; 2],
 }
 
-impl Serialize for Rows<'_> {
+impl Serialize for JsonRows<'_> {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
         if let Some(geometry) = self.geometry {
             return self.placed(geometry, to);
         }
         let Some(names) = self.names else {
             return match self.answer {
-                Answer::Pairs(pairs) => to.collect_seq(pairs.iter().map(|pair| pair.triangles)),
-                Answer::Contacts(all) => all.serialize(to),
-                Answer::Earliest(toi) => toi.serialize(to),
-                Answer::Near(near) => near.serialize(to),
-                Answer::Distance(nearest) => to.collect_seq(nearest),
+                Rows::Pairs(pairs) => to.collect_seq(pairs.iter().map(|pair| pair.triangles)),
+                Rows::Contacts(all) => all.serialize(to),
+                Rows::Earliest(toi) => toi.serialize(to),
+                Rows::Near(near) => near.serialize(to),
+                Rows::Distance(nearest) => to.collect_seq(nearest),
             };
         };
         let [of_a, of_b] = [0, 1].map(|k| move |bodies: [BodyId; 2]| names[bodies[k].index()].as_str());
         match self.answer {
-            Answer::Pairs(pairs) => {
-                to.collect_seq(pairs.iter().map(|&TrianglePair { bodies, triangles }| Named {
-                    body_a: of_a(bodies),
-                    body_b: of_b(bodies),
-                    row: Triangles { triangles },
-                }))
-            }
-            Answer::Contacts(all) => to.collect_seq(all.iter().map(|c| {
+            Rows::Pairs(pairs) => to.collect_seq(pairs.iter().map(|&TrianglePair { bodies, triangles }| {
+                Named { body_a: of_a(bodies), body_b: of_b(bodies), row: Triangles { triangles } }
+            })),
+            Rows::Contacts(all) => to.collect_seq(all.iter().map(|c| {
                 let &Contact { kind, bodies, a, b, toi, toi_hi, status } = c;
                 let row = Meeting { kind, a, b, toi, toi_hi, status };
                 Named { body_a: of_a(bodies), body_b: of_b(bodies), row }
             })),
-            Answer::Earliest(toi) => toi.serialize(to),
-            Answer::Distance(found) => to.collect_seq(found.iter().map(|nearest| {
+            Rows::Earliest(toi) => toi.serialize(to),
+            Rows::Distance(found) => to.collect_seq(found.iter().map(|nearest| {
                 let &NearestTriangles { bodies, triangles, distance, weights, points } = nearest;
                 let row = Nearest { triangles, distance, weights, points };
                 Named { body_a: of_a(bodies), body_b: of_b(bodies), row }
             })),
-            Answer::Near(near) => to.collect_seq(near.iter().map(|pair| {
+            Rows::Near(near) => to.collect_seq(near.iter().map(|pair| {
                 let &NearPair { kind, bodies, a, b, squared_distance, weights, closest } = pair;
                 let row = Nearness { kind, a, b, squared_distance, weights, closest };
                 Named { body_a: of_a(bodies), body_b: of_b(bodies), row }
@@ -255,8 +251,8 @@ impl Serialize for Rows<'_> {
     }
 }
 
-impl Rows<'_> {
-    /// Rows with where each contact is; of a scene its bodies by their names, else by their numbers.
+impl JsonRows<'_> {
+    /// JsonRows with where each contact is; of a scene its bodies by their names, else by their numbers.
     fn placed<S: Serializer>(&self, geometry: &[ContactGeometry], to: S) -> Result<S::Ok, S::Error> {
         let name =
             |body: BodyId| self.names.map_or_else(|| body.index().to_string(), |n| n[body.index()].clone());
@@ -268,14 +264,14 @@ impl Rows<'_> {
             Placed { body_a, body_b, row, geometry }
         }
         match self.answer {
-            Answer::Contacts(all) => {
+            Rows::Contacts(all) => {
                 to.collect_seq(all.iter().zip(geometry).map(|(c, g)| row(c, g, g.bodies.map(name))))
             }
-            Answer::Near(all) => {
+            Rows::Near(all) => {
                 to.collect_seq(all.iter().zip(geometry).map(|(p, g)| row(p, g, g.bodies.map(name))))
             }
             // `args` refuses the geometry of these.
-            Answer::Pairs(_) | Answer::Earliest(_) | Answer::Distance(_) => to.collect_seq([(); 0]),
+            Rows::Pairs(_) | Rows::Earliest(_) | Rows::Distance(_) => to.collect_seq([(); 0]),
         }
     }
 }

@@ -7,7 +7,6 @@ use super::args::SelftestArgs;
 use super::detect::body;
 use super::output::print;
 use super::progress::during;
-use nearmiss::Detector;
 use nearmiss::contacts::Contacts;
 use nearmiss::device::Device;
 use nearmiss::device::emulator::{Emulator, Mode, Order};
@@ -19,6 +18,7 @@ use nearmiss::query::{
     Traversal,
 };
 use nearmiss::words::counted;
+use nearmiss_lab::OneQuery;
 use nearmiss_lab::robustness::{self, Amount};
 use nearmiss_lab::scene::{self, Bodies};
 use std::process::ExitCode;
@@ -48,7 +48,7 @@ impl Print {
 const REPLAYED: u32 = 3;
 
 fn print_of(device: &Device, bodies: &[Body], query: Query) -> Result<Print, Error> {
-    let mut detector = Detector::new(device.clone(), bodies.to_vec(), query)?;
+    let mut detector = OneQuery::new(device.clone(), bodies.to_vec(), query)?;
     let mut contacts = detector.detect()?;
     // A GPU does what it is told a third time at once. A front goes on from frame to frame, and asks less.
     if device.is_gpu() && !matches!(query.search().traversal, Some(Traversal::Front(_))) {
@@ -56,22 +56,22 @@ fn print_of(device: &Device, bodies: &[Body], query: Query) -> Result<Print, Err
             contacts = detector.detect()?;
         }
     }
-    print_after(&detector, &contacts)
+    print_after(&mut detector, &contacts)
 }
 
 /// The same of a scene of many bodies, after some steps.
 fn print_of_steps(device: &Device, scene: &Bodies, query: Query) -> Result<Print, Error> {
-    let mut detector = Detector::new(device.clone(), scene.scene.clone(), query)?;
+    let mut detector = OneQuery::new(device.clone(), scene.scene.clone(), query)?;
     let mut last = None;
     for step in 0..STEPS {
         let moves = scene.step(step);
         let inputs: Vec<_> = moves.iter().map(|(id, to)| (*id, to.input())).collect();
         last = Some(detector.frame(&inputs)?);
     }
-    print_after(&detector, &last.unwrap_or_else(|| Contacts::none(query)))
+    print_after(&mut detector, &last.unwrap_or_else(|| Contacts::none(query)))
 }
 
-fn print_after(detector: &Detector, contacts: &Contacts) -> Result<Print, Error> {
+fn print_after(detector: &mut OneQuery, contacts: &Contacts) -> Result<Print, Error> {
     detector.check_volumes()?;
     let mut stages = detector.fingerprints()?;
     stages.push(("contacts", contacts.hash()));

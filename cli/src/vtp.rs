@@ -4,7 +4,7 @@
 //! are apart a line joins them, where they are one a vertex is there: VTK lists all vertices before all lines, and `row` says which row of
 //! a CSV each is.
 
-use nearmiss::contacts::{Answer, ContactGeometry, Kind, NearestTriangles};
+use nearmiss::contacts::{ContactGeometry, Kind, NearestTriangles, Rows};
 use std::fmt::Display;
 use std::io::{self, Write};
 
@@ -33,7 +33,7 @@ const TRIANGLES: u8 = Kind::Ee as u8 + 1;
 
 impl Vtp {
     /// Takes the contacts of an answer; `step` of a sequence.
-    pub fn add(&mut self, step: Option<usize>, answer: &Answer, geometry: &[ContactGeometry]) {
+    pub fn add(&mut self, step: Option<usize>, answer: &Rows, geometry: &[ContactGeometry]) {
         self.steps |= step.is_some();
         let step = step.unwrap_or(0);
         let entry = |kind, features, time, g: &ContactGeometry| Entry {
@@ -47,18 +47,18 @@ impl Vtp {
             normal: g.normal,
         };
         match answer {
-            Answer::Contacts(all) => self.entries.extend(
+            Rows::Contacts(all) => self.entries.extend(
                 all.iter()
                     .zip(geometry)
                     .map(|(c, g)| entry(c.kind, [c.a, c.b], Some(([c.toi, c.toi_hi], c.status as u8)), g)),
             ),
-            Answer::Near(all) => {
+            Rows::Near(all) => {
                 self.entries
                     .extend(all.iter().zip(geometry).map(|(p, g)| entry(p.kind, [p.a, p.b], None, g)));
             }
-            Answer::Distance(Some(nearest)) => self.entries.push(of_triangles(step, nearest)),
+            Rows::Distance(Some(nearest)) => self.entries.push(of_triangles(step, nearest)),
             // `args` refuses these.
-            Answer::Distance(None) | Answer::Pairs(_) | Answer::Earliest(_) => {}
+            Rows::Distance(None) | Rows::Pairs(_) | Rows::Earliest(_) => {}
         }
     }
 

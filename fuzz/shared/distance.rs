@@ -8,11 +8,11 @@ use super::near::at_start;
 use super::scene::{decode, detect, typed};
 use judge::Truth;
 use nearmiss::Query;
-use nearmiss::contacts::Answer;
+use nearmiss::contacts::Rows;
 use nearmiss::query::Search;
 
 /// The bodies of a scene's bytes at the start of their step, and the answer as `lie` passes it on, judged; of one body it has to be none.
-pub fn ask(bytes: &[u8], lie: impl Fn(&mut Answer)) -> Result<(), String> {
+pub fn ask(bytes: &[u8], lie: impl Fn(&mut Rows)) -> Result<(), String> {
     let Ok((bodies, query)) = decode(bytes) else { return Ok(()) };
     let bodies = match at_start(&bodies) {
         Ok(bodies) => bodies,
@@ -23,7 +23,7 @@ pub fn ask(bytes: &[u8], lie: impl Fn(&mut Answer)) -> Result<(), String> {
         Ok(found) => found,
         Err(error) => return typed(&error),
     };
-    lie(&mut found.answer);
+    lie(&mut found.rows);
     let fault = Truth::of(&bodies, |_, _| true).fault(found.nearest()).err();
     fault.map_or(Ok(()), |what| Err(format!("{what}; {query:?}, {bodies:?}")))
 }

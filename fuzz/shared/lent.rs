@@ -43,22 +43,22 @@ pub fn detect(device: &Device, bodies: &[Body], query: Query) -> Result<Contacts
             Ok([Held::new(device, t0)?, Held::new(device, t1)?])
         })
         .collect::<Result<_, Error>>()?;
-    let mut detector = Detector::new(device.clone(), asked(bodies), query)?;
+    let mut detector = Detector::new(device.clone(), asked(bodies))?;
     let ids: Vec<BodyId> = detector.scene().ids().collect();
     let inputs: Vec<(BodyId, DeviceInput)> = ids
         .into_iter()
         .zip(&held)
         .map(|(id, [t0, t1])| Ok((id, DeviceInput::Step([t0.rows()?, t1.rows()?]))))
         .collect::<Result<_, Error>>()?;
-    match detector.prepare(&inputs) {
+    match detector.prepare(&inputs, &[query]) {
         Ok(_) => {
             detector.submit()?;
-            detector.collect()
+            detector.collect(&query)
         }
         // A walk that needs the host.
         Err(Error::Choice { .. }) => {
             let inputs: Vec<_> = inputs.iter().map(|(id, input)| (*id, Input::OnDevice(*input))).collect();
-            detector.frame(&inputs)
+            detector.step(&inputs, &query)
         }
         Err(error) => Err(error),
     }

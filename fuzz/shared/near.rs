@@ -7,13 +7,13 @@ mod judge;
 use super::scene::{decode, detect, typed};
 use judge::Truth;
 use nearmiss::Query;
-use nearmiss::contacts::Answer;
+use nearmiss::contacts::Rows;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh};
 
 /// The bodies of a scene's bytes at the start of their step, a distance that the first byte chooses among powers of two, and the answer
 /// as `lie` passes it on, judged.
-pub fn ask(bytes: &[u8], lie: impl Fn(&mut Answer)) -> Result<(), String> {
+pub fn ask(bytes: &[u8], lie: impl Fn(&mut Rows)) -> Result<(), String> {
     let Ok((bodies, query)) = decode(bytes) else { return Ok(()) };
     let bodies = match at_start(&bodies) {
         Ok(bodies) => bodies,
@@ -27,7 +27,7 @@ pub fn ask(bytes: &[u8], lie: impl Fn(&mut Answer)) -> Result<(), String> {
         Ok(found) => found,
         Err(error) => return typed(&error),
     };
-    lie(&mut found.answer);
+    lie(&mut found.rows);
     let fault = Truth::of(&bodies, near.distance).fault(found.near()).err();
     fault.map_or(Ok(()), |what| Err(format!("{what}; {query:?}, {bodies:?}")))
 }

@@ -2,7 +2,7 @@
 
 use super::bytes::Bytes;
 use super::lent;
-use nearmiss::contacts::{Answer, Contact, Kind, Status};
+use nearmiss::contacts::{Contact, Kind, Rows, Status};
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::{Body, Mesh, Positions, Topology};
 use nearmiss::query::{
@@ -75,7 +75,7 @@ thread_local! {
 }
 
 /// Asks, and judges the contacts as `lie` passes them on. A typed error is an answer; a fault of ours is none.
-pub fn ask(bytes: &[u8], lie: impl Fn(&mut Answer)) -> Result<(), String> {
+pub fn ask(bytes: &[u8], lie: impl Fn(&mut Rows)) -> Result<(), String> {
     let (bodies, query) = match decode(bytes) {
         Ok(all) => all,
         Err(error) => return typed(&error),
@@ -85,15 +85,15 @@ pub fn ask(bytes: &[u8], lie: impl Fn(&mut Answer)) -> Result<(), String> {
         Err(error) => return typed(&error),
     };
     match ENGINE.with(|engine| lent::detect(engine, &bodies, query)) {
-        Ok(other) if other.answer == contacts.answer => {}
+        Ok(other) if other.rows == contacts.rows => {}
         Ok(other) => {
-            let (lent, host) = (other.answer, contacts.answer);
+            let (lent, host) = (other.rows, contacts.rows);
             return Err(format!("lent: {lent:?}, from the host {host:?}; {query:?}, {bodies:?}"));
         }
         Err(error) => return Err(format!("lent: {error}; {query:?}, {bodies:?}")),
     }
-    lie(&mut contacts.answer);
-    judge(&bodies, &query, &contacts.answer).map_err(|what| format!("{what}; {query:?}, {bodies:?}"))
+    lie(&mut contacts.rows);
+    judge(&bodies, &query, &contacts.rows).map_err(|what| format!("{what}; {query:?}, {bodies:?}"))
 }
 
 /// The bodies as the judges ask them: one against itself, two against each other alone.
@@ -107,7 +107,7 @@ pub fn asked(bodies: &[Body]) -> Vec<Body> {
 /// # Errors
 /// Those of the library.
 pub fn detect(bodies: &[Body], query: Query) -> Result<Contacts, Error> {
-    ENGINE.with(|engine| Detector::new(engine.clone(), asked(bodies), query)?.detect())
+    ENGINE.with(|engine| Detector::new(engine.clone(), asked(bodies))?.query(&query))
 }
 
 /// A typed error is an answer, a fault of ours is none.
@@ -119,25 +119,25 @@ pub fn typed(error: &Error) -> Result<(), String> {
 }
 
 /// A lie: the last contact is left out.
-pub fn forget(answer: &mut Answer) {
+pub fn forget(answer: &mut Rows) {
     match answer {
-        Answer::Pairs(pairs) => pairs.truncate(pairs.len().saturating_sub(1)),
-        Answer::Contacts(all) => all.truncate(all.len().saturating_sub(1)),
-        Answer::Earliest(toi) => *toi = None,
-        Answer::Near(near) => near.truncate(near.len().saturating_sub(1)),
-        Answer::Distance(nearest) => *nearest = None,
+        Rows::Pairs(pairs) => pairs.truncate(pairs.len().saturating_sub(1)),
+        Rows::Contacts(all) => all.truncate(all.len().saturating_sub(1)),
+        Rows::Earliest(toi) => *toi = None,
+        Rows::Near(near) => near.truncate(near.len().saturating_sub(1)),
+        Rows::Distance(nearest) => *nearest = None,
     }
 }
 
 /// What is wrong with an answer.
-pub fn judge(bodies: &[Body], query: &Query, answer: &Answer) -> Result<(), String> {
+pub fn judge(bodies: &[Body], query: &Query, answer: &Rows) -> Result<(), String> {
     let certain = query.solver().is_certain();
     match answer {
-        Answer::Pairs(pairs) => {
+        Rows::Pairs(pairs) => {
             let truth = triangle_pairs(bodies);
             if certain && *pairs != truth { Err(format!("pairs {pairs:?}, truly {truth:?}")) } else { Ok(()) }
         }
-        Answer::Contacts(found) => {
+        Rows::Contacts(found) => {
             let all = every_pair(bodies);
             found.iter().try_for_each(|contact| judge_one(contact, &all, certain))?;
             let listed = |key: &Key| found.iter().any(|c| (c.kind, c.a, c.b) == *key);
@@ -147,8 +147,8 @@ pub fn judge(bodies: &[Body], query: &Query, answer: &Answer) -> Result<(), Stri
             }
         }
         // The target `near` asks the oracle of distances.
-        Answer::Near(_) | Answer::Distance(_) => Ok(()),
-        Answer::Earliest(found) => {
+        Rows::Near(_) | Rows::Distance(_) => Ok(()),
+        Rows::Earliest(found) => {
             let all = every_pair(bodies);
             let first = all.values().flatten().min();
             match (found, first) {

@@ -1,6 +1,6 @@
 //! The hash of an answer.
 
-use super::{Answer, Contacts};
+use super::{Contacts, Rows};
 use crate::scene::BodyId;
 
 impl Contacts {
@@ -8,15 +8,15 @@ impl Contacts {
     /// indices and the bits of its times (a near pair of its squared distance and weights, the nearest triangles of their distance, weights and points), little-endian; in front of these its bodies, unless all contacts are of the first body alone, or of the first two.
     pub fn hash(&self) -> u64 {
         let mut hash = xxhash_rust::xxh3::Xxh3::new();
-        match &self.answer {
-            Answer::Pairs(pairs) => {
+        match &self.rows {
+            Rows::Pairs(pairs) => {
                 let told = need_bodies(pairs.iter().map(|pair| pair.bodies));
                 for pair in pairs {
                     let bodies = pair.bodies.iter().map(|body| body.0).filter(|_| told);
                     bodies.chain(pair.triangles).for_each(|i| hash.update(&i.to_le_bytes()));
                 }
             }
-            Answer::Contacts(contacts) => {
+            Rows::Contacts(contacts) => {
                 let told = need_bodies(contacts.iter().map(|contact| contact.bodies));
                 for c in contacts {
                     if told {
@@ -29,7 +29,7 @@ impl Contacts {
                     hash.update(&c.toi_hi.to_le_bytes());
                 }
             }
-            Answer::Near(near) => {
+            Rows::Near(near) => {
                 let told = need_bodies(near.iter().map(|pair| pair.bodies));
                 for pair in near {
                     if told {
@@ -38,8 +38,8 @@ impl Contacts {
                     hash.update(&pair.bytes());
                 }
             }
-            Answer::Distance(nearest) => nearest.iter().for_each(|nearest| hash.update(&nearest.bytes())),
-            Answer::Earliest(toi) => toi.iter().for_each(|toi| hash.update(&toi.to_le_bytes())),
+            Rows::Distance(nearest) => nearest.iter().for_each(|nearest| hash.update(&nearest.bytes())),
+            Rows::Earliest(toi) => toi.iter().for_each(|toi| hash.update(&toi.to_le_bytes())),
         }
         hash.digest()
     }

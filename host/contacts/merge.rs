@@ -1,6 +1,6 @@
 //! Answers to parts of one question, by several devices or one after another, as one.
 
-use super::{Answer, Contact, Contacts, Degraded, TrianglePair, near, sort};
+use super::{Contact, Contacts, Degraded, Rows, TrianglePair, near, sort};
 use crate::stages::Stages;
 use nearmiss_emulator::Looks;
 
@@ -17,17 +17,17 @@ impl Contacts {
         let mut all = shares.into_iter();
         let mut whole = all.next()?;
         for share in all {
-            let (own, other) = (whole.stages, share.stages);
-            whole.stages = Stages::each(|stage| of(stage(&own), stage(&other)));
+            let (own, other) = (whole.stats.stages, share.stats.stages);
+            whole.stats.stages = Stages::each(|stage| of(stage(&own), stage(&other)));
             whole.add(share);
         }
         if !ordered {
             // Each share is in order: a sort that merges.
-            match &mut whole.answer {
-                Answer::Pairs(pairs) => sort::merge(pairs, TrianglePair::key, looks),
-                Answer::Contacts(contacts) => sort::merge(contacts, Contact::key, looks),
-                Answer::Near(pairs) => sort::merge(pairs, near::NearPair::key, looks),
-                Answer::Earliest(_) | Answer::Distance(_) => {}
+            match &mut whole.rows {
+                Rows::Pairs(pairs) => sort::merge(pairs, TrianglePair::key, looks),
+                Rows::Contacts(contacts) => sort::merge(contacts, Contact::key, looks),
+                Rows::Near(pairs) => sort::merge(pairs, near::NearPair::key, looks),
+                Rows::Earliest(_) | Rows::Distance(_) => {}
             }
         }
         Some(whole)
@@ -35,11 +35,11 @@ impl Contacts {
 
     /// What another share found, behind this one.
     fn add(&mut self, mut share: Contacts) {
-        match (&mut self.answer, share.answer) {
-            (Answer::Pairs(own), Answer::Pairs(other)) => own.extend(other),
-            (Answer::Contacts(own), Answer::Contacts(other)) => own.extend(other),
-            (Answer::Near(own), Answer::Near(other)) => own.extend(other),
-            (Answer::Earliest(own), Answer::Earliest(other)) => {
+        match (&mut self.rows, share.rows) {
+            (Rows::Pairs(own), Rows::Pairs(other)) => own.extend(other),
+            (Rows::Contacts(own), Rows::Contacts(other)) => own.extend(other),
+            (Rows::Near(own), Rows::Near(other)) => own.extend(other),
+            (Rows::Earliest(own), Rows::Earliest(other)) => {
                 let first = |toi: Option<f64>, unresolved: u64| toi.map(|toi| (toi, unresolved));
                 let both = [first(*own, self.unresolved), first(other, share.unresolved)];
                 let least = both.into_iter().flatten().min_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
@@ -51,7 +51,7 @@ impl Contacts {
                 share.degraded.retain(of_the_other);
                 self.degraded.extend((self.unresolved > 0).then_some(Degraded::EarliestUnresolved));
             }
-            (Answer::Distance(own), Answer::Distance(other)) => {
+            (Rows::Distance(own), Rows::Distance(other)) => {
                 let nearer =
                     |a: &super::NearestTriangles, b: &super::NearestTriangles| a.distance <= b.distance;
                 *own = match (*own, other) {
@@ -61,32 +61,15 @@ impl Contacts {
             }
             // One question has answers of one kind.
             (
-                Answer::Pairs(_)
-                | Answer::Contacts(_)
-                | Answer::Near(_)
-                | Answer::Earliest(_)
-                | Answer::Distance(_),
+                Rows::Pairs(_) | Rows::Contacts(_) | Rows::Near(_) | Rows::Earliest(_) | Rows::Distance(_),
                 _,
             ) => {}
         }
-        let pairs =
-            |own: &mut [u64; 2], other: [u64; 2]| own.iter_mut().zip(other).for_each(|(own, n)| *own += n);
-        pairs(&mut self.candidates_vf_ee, share.candidates_vf_ee);
-        pairs(&mut self.survivors_vf_ee, share.survivors_vf_ee);
-        pairs(&mut self.escalated_vf_ee, share.escalated_vf_ee);
-        pairs(&mut self.open_vf_ee, share.open_vf_ee);
-        pairs(&mut self.sliced_vf_ee, share.sliced_vf_ee);
         self.starts_crossing =
             self.starts_crossing.zip(share.starts_crossing).map(|(own, other)| own + other);
-        self.triangle_pairs += share.triangle_pairs;
-        self.candidates += share.candidates;
+        self.is_free = self.rows.is_free(self.starts_crossing);
+        self.stats.add(&share.stats);
         self.unresolved += share.unresolved;
-        self.undecided += share.undecided;
-        self.undecided_wide += share.undecided_wide;
-        self.steps += share.steps;
-        self.spilled += share.spilled;
-        self.reruns += share.reruns;
-        self.slices = self.slices.max(share.slices);
         share.degraded.into_iter().for_each(|reason| self.degrade(reason));
     }
 

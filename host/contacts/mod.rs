@@ -1,31 +1,36 @@
 //! Results: contacts in canonical order, and their hash.
 
 mod degraded;
+mod first;
 pub(crate) mod geometry;
 mod hash;
+mod located;
 mod merge;
 mod near;
 mod nearest;
 mod notes;
 pub mod on_device;
 pub(crate) mod sort;
+mod stats;
 mod summary;
 mod triangles;
 mod work;
 
 pub use degraded::{Degraded, TURN_DEGREES};
+pub use first::FirstContact;
 pub use geometry::ContactGeometry;
+pub use located::Located;
 pub use near::{Closest, NearPair};
 pub use nearest::NearestTriangles;
 pub use notes::Note;
 pub use on_device::{DeviceAnswer, DeviceList, Entries};
+pub use stats::Stats;
 pub use summary::Summary;
 pub use triangles::{TriangleContact, triangle_contacts};
 pub use work::{Front, Queues};
 
-use crate::query::Query;
+use crate::query::{Query, TypedQuery};
 use crate::scene::BodyId;
-use crate::stages::Stages;
 use nearmiss_kernels::prim::inclusion::Verdict;
 
 /// Which features meet. Its number (`as u8`) stands for it in the hash, in files and in other languages.
@@ -109,9 +114,9 @@ impl PartialEq<TrianglePair> for [u32; 2] {
     }
 }
 
-/// The answer to a query.
+/// The rows of an answer to any query: [`Query`] has these. Each type of query has rows of its own type.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Answer {
+pub enum Rows {
     /// Triangle pairs that share a point, ascending by the first triangle and its body, then by the second.
     Pairs(Vec<TrianglePair>),
     /// Feature pairs that meet, ascending by kind, then by the first feature and its body, then by the second.
@@ -124,113 +129,55 @@ pub enum Answer {
     Distance(Option<NearestTriangles>),
 }
 
-/// An answer with the figures of its making.
+/// The answer to any query: see [`Answer`].
+pub type Contacts = Answer<Rows>;
+
+/// The answer to a query: its rows, caveats, and figures of its making. It can be used as its rows:
+///
+/// ```
+/// use nearmiss::{Body, Detector, Device, Discrete, Mesh, device::Backend, mesh::Positions};
+///
+/// let corners = vec![[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, -1.0], [1.0, 2.0, 1.0], [9.0, 1.0, 9.0]];
+/// let mesh = Mesh::new("two triangles", Positions::F32(corners), vec![[0, 1, 2], [3, 4, 5]])?;
+/// let mut detector = Detector::new(Device::open(Backend::Cpu, None)?, Body::still(mesh))?;
+/// let pairs = detector.query(&Discrete::default())?;
+/// assert_eq!(pairs.len(), 1);
+/// for pair in pairs.iter() {
+///     println!("{:?}", pair.triangles);
+/// }
+/// # Ok::<(), nearmiss::Error>(())
+/// ```
 #[derive(Clone, Debug)]
-pub struct Contacts {
-    /// The answer.
-    pub answer: Answer,
-    /// Milliseconds by stage.
-    pub stages: Stages,
+pub struct Answer<T> {
+    /// The rows.
+    pub rows: T,
+    /// The query.
+    pub query: Query,
     /// Triangle pairs that share a point at the start of the step, by the exact signs of a discrete query: as many as
     /// [`Query::discrete`] lists at t = 0. Such a pair need not have a time of contact: an edge that is through a face stays
     /// there. `None` if the start was not checked: of a query at rest, and of one that assumes a free start.
     pub starts_crossing: Option<u64>,
-    /// Triangle pairs that the volumes let through.
-    pub triangle_pairs: u64,
-    /// Pairs that the narrow test was asked: triangle pairs (discrete), vertex/face and edge/edge pairs (continuous).
-    pub candidates: u64,
-    /// Candidates by kind: vertex/face, edge/edge. Zero for discrete queries.
-    pub candidates_vf_ee: [u64; 2],
-    /// Candidates that signs alone could not reject, and the solver was asked: vertex/face, edge/edge.
-    pub survivors_vf_ee: [u64; 2],
-    /// Candidates that f32 left to f64: vertex/face, edge/edge.
-    pub escalated_vf_ee: [u64; 2],
-    /// Candidates whose roots could not be isolated; with a separation, those that the first step did not decide: vertex/face,
-    /// edge/edge.
-    pub open_vf_ee: [u64; 2],
-    /// Of these, those that were cut into slices: vertex/face, edge/edge.
-    pub sliced_vf_ee: [u64; 2],
     /// How many contacts are [`Status::Unresolved`]; of a near query, how many of the listed pairs rounding cannot tell from such
-    /// that are farther apart; of an earliest query 1 if its time is that of such a pair and of no contact, else 0. The counts by
-    /// rung of an earliest query may differ from run to run: pairs that cannot be earlier are skipped, and the order decides which.
+    /// that are farther apart; of an earliest query 1 if its time is that of such a pair and of no contact, else 0.
     pub unresolved: u64,
-    /// Triangle pairs that the filter in the precision of the positions left undecided; of a query in motion, at the start of the step.
-    pub undecided: u64,
-    /// Those of them that f64 left undecided too; none of f64 positions, which go straight to exact signs.
-    pub undecided_wide: u64,
-    /// Pairs of sibling nodes that the traversal tested.
-    pub steps: u64,
-    /// Work units that long walks gave away.
-    pub spilled: u64,
-    /// How often a list was too short and grew, and a part of the frame ran again: it took longer, and the answer is whole.
-    pub reruns: u64,
-    /// In how many slices the frame was asked: 1, but where the lists of a whole one would outgrow the memory.
-    pub slices: u32,
-    /// What the work queues did.
-    pub queues: Queues,
-    /// What the front saved or cost.
-    pub front: Front,
+    /// Figures of its making.
+    pub stats: Stats,
     pub(crate) degraded: Vec<Degraded>,
+    pub(crate) is_free: bool,
 }
 
-impl Contacts {
-    /// No contacts, of bodies without triangles.
-    pub fn none(query: Query) -> Contacts {
-        let answer = match query {
-            Query::Discrete(_) => Answer::Pairs(Vec::new()),
-            Query::Continuous(_) => Answer::Contacts(Vec::new()),
-            Query::Earliest(_) => Answer::Earliest(None),
-            Query::Near(_) => Answer::Near(Vec::new()),
-            Query::Distance(_) => Answer::Distance(None),
-        };
-        Contacts {
-            answer,
-            stages: Stages::default(),
-            starts_crossing: query.checks_start().then_some(0),
-            triangle_pairs: 0,
-            candidates: 0,
-            candidates_vf_ee: [0; 2],
-            survivors_vf_ee: [0; 2],
-            escalated_vf_ee: [0; 2],
-            open_vf_ee: [0; 2],
-            sliced_vf_ee: [0; 2],
-            unresolved: 0,
-            undecided: 0,
-            undecided_wide: 0,
-            steps: 0,
-            spilled: 0,
-            reruns: 0,
-            slices: 1,
-            queues: Queues::default(),
-            front: Front::default(),
-            degraded: Vec::new(),
-        }
-    }
+impl<T> std::ops::Deref for Answer<T> {
+    type Target = T;
 
-    /// How many contacts there are; of an earliest query, and of a distance, 1 or 0.
-    pub fn len(&self) -> usize {
-        match &self.answer {
-            Answer::Pairs(pairs) => pairs.len(),
-            Answer::Contacts(contacts) => contacts.len(),
-            Answer::Earliest(toi) => toi.iter().len(),
-            Answer::Near(near) => near.len(),
-            Answer::Distance(nearest) => nearest.iter().len(),
-        }
+    fn deref(&self) -> &T {
+        &self.rows
     }
+}
 
-    /// Overlap tests of two volumes: two a step, and those of the front.
-    pub fn overlap_tests(&self) -> u64 {
-        2 * self.steps + self.front.tests
-    }
-
+impl<T> Answer<T> {
     /// In what the frame came to less than all that was asked, each by its reason; empty where nothing did.
     pub fn degraded(&self) -> &[Degraded] {
         &self.degraded
-    }
-
-    /// Whether nothing meets.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
     }
 
     /// Whether the answer proves that nothing touches. Continuous and earliest: the start was checked, no triangles share a point
@@ -239,28 +186,85 @@ impl Contacts {
     /// say what crosses. As certain as the solver: see [`Solver::is_certain`](crate::query::Solver::is_certain).
     ///
     /// ```
-    /// use nearmiss::{Body, Detector, Device, Mesh, Query, device::Backend, mesh::Positions};
+    /// use nearmiss::{Body, Detector, Device, Earliest, Mesh, device::Backend, mesh::Positions};
     ///
     /// // The second triangle is through the first, and both rest: no pair of features ever meets.
     /// let corners = vec![[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [9.0, 9.0, 1.0]];
     /// let mesh = Mesh::new("two triangles", Positions::F32(corners), vec![[0, 1, 2], [3, 4, 5]])?;
-    /// let device = Device::open(Backend::Cpu, None)?;
-    /// let found = Detector::new(device, Body::still(mesh), Query::earliest())?.detect()?;
-    /// assert_eq!((found.earliest_toi(), found.starts_crossing, found.is_free()), (None, Some(1), false));
+    /// let mut detector = Detector::new(Device::open(Backend::Cpu, None)?, Body::still(mesh))?;
+    /// let first = detector.query(&Earliest::default())?;
+    /// assert_eq!((first.rows, first.starts_crossing, first.is_free()), (None, Some(1), false));
     /// # Ok::<(), nearmiss::Error>(())
     /// ```
     pub fn is_free(&self) -> bool {
-        match &self.answer {
-            Answer::Pairs(pairs) => pairs.is_empty(),
-            Answer::Contacts(_) | Answer::Earliest(_) => self.starts_crossing == Some(0) && self.is_empty(),
-            Answer::Near(_) => false,
-            Answer::Distance(nearest) => nearest.is_none_or(|nearest| nearest.distance > 0.0),
+        self.is_free
+    }
+}
+
+impl Contacts {
+    /// The answer with the rows of its query's own type.
+    pub(crate) fn typed<Q: TypedQuery>(self) -> Answer<Q::Rows> {
+        let Answer { rows, query, starts_crossing, unresolved, stats, degraded, is_free } = self;
+        let rows = Q::rows(rows, unresolved > 0);
+        Answer { rows, query, starts_crossing, unresolved, stats, degraded, is_free }
+    }
+
+    /// An answer with these rows.
+    pub(crate) fn new(rows: Rows, query: Query, starts_crossing: Option<u64>) -> Contacts {
+        let is_free = rows.is_free(starts_crossing);
+        Answer {
+            rows,
+            query,
+            starts_crossing,
+            unresolved: 0,
+            stats: Stats { slices: 1, ..Stats::default() },
+            degraded: Vec::new(),
+            is_free,
         }
+    }
+
+    /// No contacts, of bodies of which no two may meet.
+    pub fn none(query: Query) -> Contacts {
+        let rows = match query {
+            Query::Discrete(_) => Rows::Pairs(Vec::new()),
+            Query::Continuous(_) => Rows::Contacts(Vec::new()),
+            Query::Earliest(_) => Rows::Earliest(None),
+            Query::Near(_) => Rows::Near(Vec::new()),
+            Query::Distance(_) => Rows::Distance(None),
+        };
+        Contacts::new(rows, query, query.checks_start().then_some(0))
+    }
+}
+
+impl Rows {
+    fn is_free(&self, starts_crossing: Option<u64>) -> bool {
+        match self {
+            Rows::Pairs(pairs) => pairs.is_empty(),
+            Rows::Contacts(_) | Rows::Earliest(_) => starts_crossing == Some(0) && self.is_empty(),
+            Rows::Near(_) => false,
+            Rows::Distance(nearest) => nearest.is_none_or(|nearest| nearest.distance > 0.0),
+        }
+    }
+
+    /// How many contacts there are; of an earliest query, and of a distance, 1 or 0.
+    pub fn len(&self) -> usize {
+        match self {
+            Rows::Pairs(pairs) => pairs.len(),
+            Rows::Contacts(contacts) => contacts.len(),
+            Rows::Earliest(toi) => toi.iter().len(),
+            Rows::Near(near) => near.len(),
+            Rows::Distance(nearest) => nearest.iter().len(),
+        }
+    }
+
+    /// Whether nothing meets.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
     }
 
     /// Triangle pairs, if that was asked.
     pub fn pairs(&self) -> &[TrianglePair] {
-        if let Answer::Pairs(pairs) = &self.answer { pairs } else { &[] }
+        if let Rows::Pairs(pairs) = self { pairs } else { &[] }
     }
 
     /// The triangle pairs without their bodies: for a scene of one body, or of two of which neither is tested against itself.
@@ -270,17 +274,17 @@ impl Contacts {
 
     /// Feature pairs, if that was asked.
     pub fn contacts(&self) -> &[Contact] {
-        if let Answer::Contacts(contacts) = &self.answer { contacts } else { &[] }
+        if let Rows::Contacts(contacts) = self { contacts } else { &[] }
     }
 
     /// Feature pairs within a distance, if that was asked.
     pub fn near(&self) -> &[NearPair] {
-        if let Answer::Near(near) = &self.answer { near } else { &[] }
+        if let Rows::Near(near) = self { near } else { &[] }
     }
 
     /// The nearest triangles of different bodies, if that was asked and any two may meet.
     pub fn nearest(&self) -> Option<&NearestTriangles> {
-        if let Answer::Distance(nearest) = &self.answer { nearest.as_ref() } else { None }
+        if let Rows::Distance(nearest) = self { nearest.as_ref() } else { None }
     }
 
     /// How far apart those are: 0 if and only if they share a point.
@@ -290,10 +294,10 @@ impl Contacts {
 
     /// The smallest time of contact of a continuous or earliest query.
     pub fn earliest_toi(&self) -> Option<f64> {
-        match &self.answer {
-            Answer::Pairs(_) | Answer::Near(_) | Answer::Distance(_) => None,
-            Answer::Contacts(contacts) => contacts.iter().map(|c| c.toi).min_by(f64::total_cmp),
-            Answer::Earliest(toi) => *toi,
+        match self {
+            Rows::Pairs(_) | Rows::Near(_) | Rows::Distance(_) => None,
+            Rows::Contacts(contacts) => contacts.iter().map(|c| c.toi).min_by(f64::total_cmp),
+            Rows::Earliest(toi) => *toi,
         }
     }
 }

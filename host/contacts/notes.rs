@@ -1,6 +1,6 @@
 //! Notes beside an answer: what a user should know of it.
 
-use super::{Answer, Contacts};
+use super::{Contacts, Rows};
 use crate::query::Query;
 use crate::scene::{Body, BodyKind};
 use crate::words::counted;
@@ -46,10 +46,10 @@ impl Note {
     #[doc(hidden)]
     pub fn of(bodies: &[Body], query: &Query, contacts: &Contacts) -> Vec<Note> {
         let rests = || (!query.kind().is_at_rest()).then(|| resting(bodies)).flatten();
-        let apart = contacts.answer == Answer::Distance(None);
+        let apart = contacts.rows == Rows::Distance(None);
         let start = match contacts.starts_crossing {
             Some(pairs @ 1..) => Some(Note::StartsCrossing { pairs }),
-            _ => (contacts.answer == Answer::Earliest(Some(0.0))).then_some(Note::ContactAtStart),
+            _ => (contacts.rows == Rows::Earliest(Some(0.0))).then_some(Note::ContactAtStart),
         };
         let coincide = || bodies.iter().map(Body::coincident).sum::<usize>() as u64;
         let vertices = if contacts.len() < Note::MANY { 0 } else { coincide() };

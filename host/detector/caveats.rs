@@ -1,6 +1,7 @@
 //! Caveats beside an answer that follow from where bodies are: a turn too far for straight lines, a tolerance below the precision.
 
 use super::Detector;
+use super::question::Question;
 use crate::contacts::{Contacts, Degraded, TURN_DEGREES};
 use crate::error::Error;
 use crate::pipeline::below_precision::BelowPrecision;
@@ -13,8 +14,8 @@ impl Detector {
     ///
     /// # Errors
     /// Those of the device.
-    pub(super) fn tell_turns(&self, contacts: &mut Contacts) -> Result<(), Error> {
-        if self.question.query.kind().is_at_rest() {
+    pub(super) fn tell_turns(&self, query: &Query, contacts: &mut Contacts) -> Result<(), Error> {
+        if query.kind().is_at_rest() {
             return Ok(());
         }
         let is_rigid = |body: &&Body| body.kind() == BodyKind::Rigid && body.face_count() > 0;
@@ -40,9 +41,13 @@ impl Detector {
 
     /// An earliest query lists no pairs, so whether they are too large for the tolerance hangs on where bodies are: of those that are
     /// away on the largest of their coordinates and, where that leaves it open, on themselves.
-    pub(super) fn tell_below_precision(&mut self, contacts: &mut Contacts) -> Result<(), Error> {
+    pub(super) fn tell_below_precision(
+        &mut self,
+        question: &Question,
+        contacts: &mut Contacts,
+    ) -> Result<(), Error> {
         let (Query::Earliest(_), Some(certified), Some(tolerances)) =
-            (self.question.query, self.question.query.certified().copied(), &self.question.tolerances)
+            (question.query, question.query.certified().copied(), &question.tolerances)
         else {
             return Ok(());
         };

@@ -63,8 +63,8 @@ impl Detector {
     /// The next frame begins anew.
     fn changed(&mut self) {
         self.engine.drop_all();
-        self.portion.slices = 1;
-        self.question.choose_tolerances(&mut self.scene);
+        self.portion.forget_slices();
+        self.tolerances = None;
     }
 }
 

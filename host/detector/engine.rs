@@ -1,98 +1,67 @@
-//! The engine of a detector: the pipeline with its memory, and what building and frames have cost so far.
+//! The engine of a detector: the pipeline with its memory, and the cost of building and of frames so far.
 
-use super::Wear;
-use super::question::Question;
-use crate::device::emulator::start_threads;
+use super::layouts::Layouts;
 use crate::device::{Device, Work};
 use crate::error::Error;
-use crate::memory;
 use crate::mesh::{MAX_FACES, MAX_VERTICES, Problem};
-use crate::pipeline::{self, Layout, Pieces, Pipeline};
+use crate::pipeline::{self, Layout, Pipeline, SceneParts};
+use crate::query::Query;
 use crate::scene::{Body, Scene};
 use std::sync::Arc;
-
-/// Fewest bytes of the host's memory that a triangle takes in a detector: its topology, and on a CPU its tree and first lists.
-const OF_A_TRIANGLE: u64 = 300;
 
 /// A pipeline, and its account.
 #[derive(Default)]
 pub struct Engine {
-    /// `None` where bodies came, went or changed since the last frame.
-    layout: Option<Arc<Layout>>,
-    /// `None` where nothing can meet, or where memory ended: then the next frame asks for it again.
+    /// Empty after bodies came, went or changed.
+    pub layouts: Layouts,
+    /// `None` before the first query, if nothing can meet, and after memory ended: then the next query makes it again.
     pub pipeline: Option<Box<dyn Pipeline>>,
-    /// Whether the pipeline holds positions in f64: where any body has them so, so that nothing is rounded.
+    /// Whether the pipeline holds positions in f64: if any body has them so, so that nothing is rounded.
     pub holds_f64: bool,
-    /// Whether the device holds the answer for where the bodies are now.
-    pub is_answered: bool,
+    /// Whether it holds both ends of the step: from the first query in motion on.
+    pub has_ends: bool,
+    /// The query of which the device holds the answer, for bodies where they are.
+    pub answered: Option<Query>,
     /// Milliseconds of the last building of tiles or trees.
     pub construct_ms: f64,
-    /// The cost of frames since tiles or trees were made.
-    pub wear: Wear,
     /// How often tiles or trees were made.
     pub builds: u64,
-    /// Frames answered since the pipeline began.
+    /// Frames of the last query in a row, since tiles or trees were first made for it.
     pub frames: u64,
-    /// The device's work in the last building of the trees, and in the last frame.
+    last: Option<Query>,
+    /// The device's work in the last building, and in the last frame.
     pub build_work: Work,
     pub frame_work: Work,
 }
 
 impl Engine {
-    /// Where every body lies in the memory that all share. All that is asked begins here, so a process that was forked is told here
-    /// that it cannot ask.
-    pub fn layout(
-        &mut self,
-        device: &Device,
-        scene: &Scene,
-        question: &Question,
-    ) -> Result<Arc<Layout>, Error> {
-        start_threads()?;
-        if let Some(layout) = &self.layout {
-            return Ok(layout.clone());
-        }
-        let bodies = scene.bodies();
-        let triangles: usize = bodies.iter().map(Body::face_count).sum();
-        fits(triangles, bodies.iter().map(Body::vertex_count).sum())?;
-        memory::require("trees and lists", triangles as u64 * OF_A_TRIANGLE)?;
-        let made = Layout::within(bodies, question.query.kind(), &device.looks());
-        let mut layout = made.ok_or(Error::Interrupted)?;
-        layout.find_hubs(question.query.keeps_adjacent());
-        if let Some(tolerances) = &question.tolerances {
-            layout.tolerances = tolerances.records(&layout.starts);
-        }
-        let layout = Arc::new(layout);
-        self.layout = Some(layout.clone());
-        Ok(layout)
-    }
-
-    /// The layout of the last frame, if bodies are those of then.
-    pub fn last_layout(&self) -> Option<&Layout> {
-        self.layout.as_deref()
-    }
-
-    /// Makes the pipeline, with memory for the bodies where they are and trees built.
+    /// Makes the pipeline, with memory for the bodies where they are.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn begin(&mut self, device: &Device, scene: &Scene, pieces: Pieces) -> Result<(), Error> {
-        self.holds_f64 = pieces.holds_f64;
-        let mut pipeline = pipeline::pipeline(device.clone(), scene.bodies(), pieces)?;
-        device.work();
-        let constructed = pipeline.construct();
-        if matches!(constructed, Ok(_) | Err(Error::Interrupted)) {
-            // Also an interrupted one knows where bodies are.
-            self.pipeline = Some(pipeline);
-        }
-        self.construct_ms = constructed?;
-        (self.frames, self.build_work) = (0, device.work());
-        self.count_build();
+    pub fn begin(&mut self, device: &Device, scene: &Scene, layout: Arc<Layout>) -> Result<(), Error> {
+        self.holds_f64 = scene.bodies().iter().any(Body::needs_f64);
+        let parts = SceneParts { layout, holds_f64: self.holds_f64, has_ends: self.has_ends };
+        self.pipeline = Some(pipeline::pipeline(device.clone(), scene.bodies(), &parts)?);
+        (self.frames, self.last) = (0, None);
         Ok(())
     }
 
-    /// Tiles or trees are new.
-    pub fn count_build(&mut self) {
-        (self.wear, self.builds) = (Wear::default(), self.builds + 1);
+    /// Tiles or trees were made for a query, in so many milliseconds.
+    pub fn count_build(&mut self, ms: f64) {
+        (self.builds, self.construct_ms, self.answered) = (self.builds + 1, ms, None);
+    }
+
+    /// A frame of a query was run, with this work.
+    pub fn count_frame(&mut self, query: &Query, work: Work) {
+        let is_same = self.last == Some(*query);
+        self.frames = if is_same { self.frames + 1 } else { 1 };
+        (self.last, self.frame_work) = (Some(*query), work);
+    }
+
+    /// Whether the last two frames were of that query.
+    pub fn has_run_twice(&self, query: &Query) -> bool {
+        self.last == Some(*query) && self.frames >= 2
     }
 
     /// Whether a submission may be launched again.
@@ -100,9 +69,15 @@ impl Engine {
         self.pipeline.as_ref().is_some_and(|pipeline| pipeline.is_prepared())
     }
 
-    /// Drops the pipeline and the layout: bodies are others.
+    /// Drops the pipeline and the layouts: bodies are others.
     pub fn drop_all(&mut self) {
-        (self.pipeline, self.layout, self.is_answered) = (None, None, false);
+        self.drop_pipeline();
+        self.layouts = Layouts::default();
+    }
+
+    /// Drops the pipeline with all its memory.
+    pub fn drop_pipeline(&mut self) {
+        (self.pipeline, self.answered) = (None, None);
     }
 }
 

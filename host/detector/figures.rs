@@ -3,28 +3,38 @@
 use super::Detector;
 use crate::contacts::{Contacts, Note, Summary};
 use crate::error::Error;
+use crate::pipeline::Tolerances;
 use crate::query::{Broad, Query};
 use crate::scene::Body;
+use std::sync::Arc;
 
 impl Detector {
-    /// Smallest tolerance of a pair of bodies by a certified solver, a length. As named, which is one for all pairs. By default
-    /// a pair has the smaller default of its two bodies: [`Certified::TOLERANCE`](crate::query::Certified::TOLERANCE) of the mean
-    /// edge of the mesh that a body was made of, rounded down to a power of two. It stays when bodies move.
-    pub fn tolerance(&self) -> Option<f64> {
-        self.question.tolerances.as_ref().map(|tolerances| tolerances.least)
+    /// Smallest tolerance of a pair of bodies by a certified solver without a named one, a length: a pair has the smaller default
+    /// of its two bodies: [`Certified::TOLERANCE`](crate::query::Certified::TOLERANCE) of the mean
+    /// edge of the mesh that a body was made of, rounded down to a power of two. It stays when bodies move. Cost: a root a side of bodies
+    /// of which it is not known yet.
+    pub fn tolerance(&mut self) -> f64 {
+        self.default_tolerances().least
     }
 
-    /// Largest tolerance of a pair of bodies by a certified solver, a length: that of [`Detector::tolerance`] if all pairs have
-    /// the same.
-    pub fn largest_tolerance(&self) -> Option<f64> {
-        self.question.tolerances.as_ref().map(|tolerances| tolerances.largest)
+    /// Largest tolerance of a pair of bodies by a certified solver without a named one, a length: that of [`Detector::tolerance`] if all
+    /// pairs have the same.
+    pub fn largest_tolerance(&mut self) -> f64 {
+        self.default_tolerances().largest
     }
 
     /// The figures of an answer and the notes beside it, as the command line prints them. Cost: a hash of the answer, and the notes:
     /// a comparison of both ends of the step if nothing moves, a sort of all vertices if there are [`Note::MANY`](crate::contacts::Note::MANY)
     /// contacts.
-    pub fn summary(&self, contacts: &Contacts) -> Summary {
-        let (bodies, query) = (self.scene.bodies(), self.question.query);
+    pub fn summary(&mut self, contacts: &Contacts) -> Summary {
+        let query = contacts.query;
+        let named = query.certified().map(|certified| certified.tolerance);
+        let tolerances = match named {
+            Some(None) => Some(self.default_tolerances()),
+            Some(Some(tolerance)) => Some(Arc::new(Tolerances::named(tolerance))),
+            None => None,
+        };
+        let bodies = self.scene.bodies();
         let broad = query.broad_on(self.device.is_gpu());
         let by_trees = broad == Broad::Tree;
         Summary {
@@ -39,27 +49,27 @@ impl Detector {
             solver: query.solver(),
             backend: self.device.backend(),
             device: self.device.name(),
-            triangle_pairs: contacts.triangle_pairs,
-            candidates: contacts.candidates,
+            triangle_pairs: contacts.stats.triangle_pairs,
+            candidates: contacts.stats.candidates,
             contacts: contacts.len(),
             unresolved: contacts.unresolved,
             degraded: contacts.degraded.clone(),
-            tolerance: self.tolerance(),
-            largest_tolerance: self
-                .largest_tolerance()
-                .filter(|_| self.largest_tolerance() != self.tolerance()),
+            tolerance: tolerances.as_ref().map(|tolerances| tolerances.least),
+            largest_tolerance: tolerances
+                .filter(|tolerances| tolerances.least < tolerances.largest)
+                .map(|tolerances| tolerances.largest),
             separation: query.certified().map(|certified| certified.params().separation),
             distance: if let Query::Near(near) = query { Some(near.distance) } else { None },
             nearest: contacts.nearest().copied(),
             earliest_toi: contacts.earliest_toi(),
             starts_crossing: contacts.starts_crossing,
             hash: format!("{:016x}", contacts.hash()),
-            reruns: contacts.reruns,
-            slices: contacts.slices,
+            reruns: contacts.stats.reruns,
+            slices: contacts.stats.slices,
             builds: self.engine.builds,
-            queues: contacts.queues,
-            front: contacts.front,
-            ms: contacts.stages,
+            queues: contacts.stats.queues,
+            front: contacts.stats.front,
+            ms: contacts.stats.stages,
             bytes: self.device.bytes().1,
             notes: Note::of(bodies, &query, contacts),
         }
@@ -67,12 +77,12 @@ impl Detector {
 
     /// The notes beside an answer, of bodies where they were: those of [`Detector::summary`], at the same cost.
     pub fn notes(&self, contacts: &Contacts) -> Vec<Note> {
-        Note::of(self.scene.bodies(), &self.question.query, contacts)
+        Note::of(self.scene.bodies(), &contacts.query, contacts)
     }
 
-    /// How many levels the tree over what moves has, and that over what is static, where there is one.
-    pub fn depths(&self) -> Vec<usize> {
-        self.engine.pipeline.as_ref().map_or(Vec::new(), |pipeline| pipeline.depths())
+    /// Levels of the tree of a query over moving bodies, and of that over static ones, if there are any.
+    pub fn depths(&mut self, query: &Query) -> Vec<usize> {
+        self.of_query(query, Vec::new(), |pipeline, at| Ok(pipeline.depths(at))).unwrap_or_default()
     }
 
     /// How often a list was too short and a frame was run again within itself, since the bodies were last replaced.
@@ -80,20 +90,20 @@ impl Detector {
         self.engine.pipeline.as_ref().map_or(0, |pipeline| pipeline.reruns())
     }
 
-    /// What each stage left in the device's memory after the last [`Detector::detect`], as hashes by stage: trees to
+    /// Content of the device's memory after the last frame, which was of this query, as hashes by stage: trees to
     /// the bit, lists as sets. Two machines that agree on these agree on every kernel. For tests and `selftest`.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn fingerprints(&self) -> Result<Vec<(&'static str, u64)>, Error> {
-        self.engine.pipeline.as_ref().map_or(Ok(Vec::new()), |pipeline| pipeline.fingerprints())
+    pub fn fingerprints(&mut self, query: &Query) -> Result<Vec<(&'static str, u64)>, Error> {
+        self.of_query(query, Vec::new(), |pipeline, at| pipeline.fingerprints(at))
     }
 
-    /// Checks every tree as it lies on the device; volumes too, which [`Detector::detect`] sets.
+    /// Checks every tree of a query in the device's memory; volumes too, which a frame sets.
     ///
     /// # Errors
     /// [`Error::Bug`] with the first violation; those of the device.
-    pub fn check_volumes(&self) -> Result<(), Error> {
-        self.engine.pipeline.as_ref().map_or(Ok(()), |pipeline| pipeline.check())
+    pub fn check_volumes(&mut self, query: &Query) -> Result<(), Error> {
+        self.of_query(query, (), |pipeline, at| pipeline.check(at))
     }
 }

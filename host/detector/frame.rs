@@ -1,18 +1,20 @@
-//! A frame, from inputs to answer.
+//! A frame, from motions to answer.
 //!
 //! | step | does | in |
 //! | --- | --- | --- |
-//! | `apply` | checks the inputs, moves bodies on the host and on the device | `moves.rs` |
-//! | `ready` | memory, and tiles or trees that are worth keeping | `ready.rs` |
-//! | `run` | the stages, slice by slice where memory is short | `slices.rs` |
-//! | `check_seen` | what placing saw in memory of the caller | `resident.rs` |
+//! | `apply` | checks the motions, moves bodies on the host and on the device | `moves.rs` |
+//! | `ready` | the place of every body is known; topology of the query | `ready.rs` |
+//! | `run` | memory, tiles or trees, and the stages; slice by slice if memory is short | `slices.rs` |
+//! | `check_seen` | finds coordinates in memory of the caller that no answer can have | `resident.rs` |
 //! | `collect_answer` | caveats (`caveats.rs`) and times | here |
 //! | `ended` | a call that was interrupted leaves no answer | `interrupted.rs` |
 
 use super::Detector;
-use crate::contacts::Contacts;
+use super::question::Question;
+use crate::contacts::{Answer, Contacts};
 use crate::error::Error;
 use crate::pipeline::{Seen, Stages};
+use crate::query::{Query, TypedQuery};
 use crate::scene::{BodyId, Input};
 use std::time::Instant;
 
@@ -23,57 +25,108 @@ pub struct Answered {
 }
 
 impl Detector {
-    /// Moves bodies to where the inputs say, and answers. A body that is not named rests where it was, or where its step
-    /// ended, in every query and wherever its positions came from: the answer depends on where bodies are in this frame alone. One submission: an upload of what is named, one launch that places it, and the stages of a frame.
+    /// Moves bodies for the next queries. A body that is not named rests where it was, or where its step
+    /// ended, wherever its positions came from. Cost: an upload of positions that are named, and one launch that places them.
     ///
     /// # Errors
-    /// [`Error::Choice`] for a body that is not in the scene, or named twice, or given what its kind does not take, and by a query in
-    /// motion for inputs of which none has two ends;
-    /// [`Error::Input`] for positions that no mesh may have: then nothing has moved. Only what lies in a GPU's memory is seen when it is
-    /// read: after a frame that is refused for that, the next must name the same bodies, since where these were is gone. Those of the
-    /// device.
-    pub fn frame(&mut self, inputs: &[(BodyId, Input)]) -> Result<Contacts, Error> {
-        let start = Instant::now();
+    /// [`Error::Choice`] for a body that is not in the scene, or named twice, or given a motion that its kind does not take;
+    /// [`Error::Input`] for positions that no mesh may have: then nothing has moved. Positions in a GPU's memory are checked when a query
+    /// reads them: after one that is refused for that, the next update must name the same bodies, since their earlier positions are gone.
+    /// Those of the device.
+    pub fn update(&mut self, motions: &[(BodyId, Input)]) -> Result<(), Error> {
         self.device.work();
-        let answered = self.apply(inputs).and_then(|()| self.answer(start));
-        self.ended(answered)
+        let applied = self.apply(motions, None);
+        self.ended(applied)
     }
 
-    /// All contacts with the bodies where they are, in canonical order. Where the lists of a frame outgrow the memory, or an index,
-    /// candidates by tiles are found slice by slice, a share of the tiles after the other, and the answer is the same:
-    /// [`Contacts::slices`] says how many they were.
+    /// Queries the bodies where they are. The answer has all rows, in canonical order, and depends on the query and on positions alone. If
+    /// the lists of a frame exceed the memory, or an index, candidates by tiles are found slice by slice, and the answer is the same:
+    /// [`Stats::slices`](crate::contacts::Stats::slices) counts them.
+    ///
+    /// Memory of a query is taken when it is first asked; another query of its kind with other numbers uses it as it is.
     ///
     /// # Errors
-    /// Those of the device: [`Error::OutOfMemory`] when memory ends all the same. There is no partial answer.
-    pub fn detect(&mut self) -> Result<Contacts, Error> {
+    /// [`Error::Choice`] for numbers that mean nothing, and for a query in motion if the last update named bodies of which none has two
+    /// ends; those of the device: [`Error::OutOfMemory`] if memory ends all the same. There is no partial answer.
+    pub fn query<Q: TypedQuery>(&mut self, query: &Q) -> Result<Answer<Q::Rows>, Error> {
         self.device.work();
-        let answered = self.answer(Instant::now());
-        self.ended(answered)
+        let answered =
+            self.question((*query).into()).and_then(|question| self.answer(&question, Instant::now()));
+        self.ended(answered).map(Contacts::typed::<Q>)
+    }
+
+    /// [Moves](Detector::update) bodies and [queries](Detector::query) them, in one submission.
+    ///
+    /// # Errors
+    /// As of both; an error of the motions or of the query's numbers has moved nothing.
+    pub fn step<Q: TypedQuery>(
+        &mut self,
+        motions: &[(BodyId, Input)],
+        query: &Q,
+    ) -> Result<Answer<Q::Rows>, Error> {
+        let start = Instant::now();
+        self.device.work();
+        let answered = self.answer_step(motions, (*query).into(), start);
+        self.ended(answered).map(Contacts::typed::<Q>)
+    }
+
+    pub(super) fn answer_step(
+        &mut self,
+        motions: &[(BodyId, Input)],
+        query: Query,
+        start: Instant,
+    ) -> Result<Contacts, Error> {
+        query.check()?;
+        if !query.kind().is_at_rest() && self.engine.pipeline.is_none() {
+            self.engine.has_ends = true;
+        }
+        self.apply(motions, Some(&query))?;
+        let question = self.question(query)?;
+        self.answer(&question, start)
     }
 
     /// The answer of a frame that began then, with the bodies where they are. A frame that needs doubles, and had singles, runs again.
-    pub(super) fn answer(&mut self, start: Instant) -> Result<Contacts, Error> {
+    pub(super) fn answer(&mut self, question: &Question, start: Instant) -> Result<Contacts, Error> {
+        self.placed.check_ends(&question.query)?;
         loop {
-            let layout = self.ready()?;
-            let Some(answered) = self.run(&layout)? else {
-                return Ok(Contacts::none(self.question.query));
+            let layout = self.ready(&question.query)?;
+            let Some(answered) = self.run(question, &layout)? else {
+                return Ok(Contacts::none(question.query));
             };
             if self.check_seen(answered.seen)? {
-                return self.collect_answer(answered, start);
+                return self.collect_answer(question, answered, start);
             }
         }
     }
 
     /// The answer, with its caveats and its times.
-    pub(super) fn collect_answer(&mut self, answered: Answered, start: Instant) -> Result<Contacts, Error> {
+    pub(super) fn collect_answer(
+        &mut self,
+        question: &Question,
+        answered: Answered,
+        start: Instant,
+    ) -> Result<Contacts, Error> {
         let Answered { mut contacts, seen } = answered;
-        self.engine.is_answered = true;
-        self.engine.wear.tell(contacts.steps);
+        self.engine.answered = Some(question.query);
+        if let Some(pipeline) = &mut self.engine.pipeline
+            && let Some(at) = pipeline.place_of(&question.query)
+        {
+            pipeline.wear(at).add(contacts.stats.steps);
+        }
         self.resident.saw(seen);
-        self.tell_below_precision(&mut contacts)?;
-        self.tell_turns(&mut contacts)?;
+        self.tell_below_precision(question, &mut contacts)?;
+        self.tell_turns(&question.query, &mut contacts)?;
         let wall = start.elapsed().as_secs_f64() * 1e3;
-        contacts.stages = Stages { construct: self.engine.construct_ms, wall, ..contacts.stages };
+        contacts.stats.stages = Stages { construct: self.engine.construct_ms, wall, ..contacts.stats.stages };
         Ok(contacts)
+    }
+}
+
+/// No body of the last update has two ends.
+pub fn without_ends(query: &Query) -> Error {
+    Error::Choice {
+        what: format!("no body of the frame has two ends, and the query is {}", query.kind()),
+        advice: "give each body that moves both ends of the step: two arrays of positions, or two poses"
+            .into(),
     }
 }

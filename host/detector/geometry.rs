@@ -2,7 +2,7 @@
 
 use super::Detector;
 use crate::contacts::geometry::{Corners, Named};
-use crate::contacts::{Answer, ContactGeometry, Contacts, Kind};
+use crate::contacts::{Answer, ContactGeometry, Kind, Located};
 use crate::error::Error;
 use crate::memory;
 use crate::pipeline::Layout;
@@ -16,10 +16,8 @@ impl Detector {
     ///
     /// # Errors
     /// [`Error::Choice`] for the answer to a discrete, an earliest or a distance query, and for contacts of other bodies than there are now; [`Error::OutOfMemory`]; those of the device.
-    pub fn geometry(&mut self, found: &Contacts) -> Result<Vec<ContactGeometry>, Error> {
-        has_geometry(found)?;
-        let (contacts, pairs) = (found.contacts(), found.near());
-        let count = contacts.len() + pairs.len();
+    pub fn geometry<T: Located>(&mut self, found: &Answer<T>) -> Result<Vec<ContactGeometry>, Error> {
+        let count = found.rows.count()?;
         if count == 0 {
             return Ok(Vec::new());
         }
@@ -31,17 +29,16 @@ impl Detector {
             "where contacts are",
             (count * of_one + vertices * size_of::<[[f64; 3]; 2]>()) as u64,
         )?;
-        // After an interrupted call there is none.
-        let begun = self.begun().map(drop);
+        // After an interrupted call there is no pipeline.
+        let question = self.question(found.query)?;
+        let begun = self.begun(&question).map(drop);
         self.ended(begun)?;
-        let layout = self.layout()?;
+        let layout = self.layout(&found.query)?;
         let pipeline = self.engine.pipeline.as_ref().ok_or_else(of_others)?;
-        // One of both is empty.
-        let named: Vec<Named> =
-            contacts.iter().map(Named::from).chain(pairs.iter().map(Named::from)).collect();
-        let mut places = pipeline.whereabouts()?;
-        places.ends.truncate(places.looked_at);
-        let ends = places.ends;
+        let named = found.rows.named();
+        let places = pipeline.whereabouts()?;
+        let is_at_rest = found.query.kind().is_at_rest();
+        let ends = &places.ends[..if is_at_rest { 1 } else { places.looked_at }];
         let at = |vertex: u32| {
             let at =
                 |end: usize| ends.get(end.min(ends.len() - 1)).and_then(|end| end.get_f64(vertex as usize));
@@ -61,29 +58,13 @@ impl Detector {
     }
 }
 
-/// Refuses an answer that has no pairs of features.
-fn has_geometry(found: &Contacts) -> Result<(), Error> {
-    let (query, advice) = match found.answer {
-        Answer::Contacts(_) | Answer::Near(_) => return Ok(()),
-        Answer::Pairs(_) => {
-            ("a discrete", "use a near or a continuous query; this answer has triangle pairs alone")
-        }
-        Answer::Earliest(_) => ("an earliest", "use a continuous query; this answer has a time alone"),
-        Answer::Distance(_) => {
-            ("a distance", "read `points` and `weights` of this answer's nearest triangles")
-        }
-    };
-    let what = format!("geometry of the answer to {query} query, which has no pairs of features");
-    Err(Error::Choice { what, advice: advice.into() })
-}
-
 /// The four vertices of a contact, by their numbers of all, and the first vertex of the body of each; `None` where there are no such features.
 fn corners(layout: &Layout, named: &Named) -> Option<([u32; 4], [u32; 4])> {
     let [a, b] = named.bodies.map(|body| layout.starts.get(body.index()).copied());
     let (a, b) = (a?, b?);
     let [p, q] = named.features;
     let face = |at: u32, index: u32| layout.faces.get(at.checked_add(index)? as usize).copied();
-    let edge = |at: u32, index: u32| layout.edges.get(at.checked_add(index)? as usize).copied();
+    let edge = |at: u32, index: u32| layout.features.edges.get(at.checked_add(index)? as usize).copied();
     Some(match named.kind {
         Kind::Vf => {
             let [x, y, z] = face(b.triangle, q)?;

@@ -42,10 +42,10 @@ impl Detector {
     /// Drops the device's memory, of which kernels may have written a half. Placing is never interrupted, so positions that
     /// only the device has are whole: they come to the host first.
     fn begin_again(&mut self) {
-        self.engine.is_answered = false;
+        self.engine.answered = None;
         if self.engine.pipeline.is_some() && self.scene.bodies().iter().any(Body::is_away) {
             self.bring_all();
         }
-        self.engine.pipeline = None;
+        self.engine.drop_pipeline();
     }
 }

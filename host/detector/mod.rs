@@ -1,4 +1,4 @@
-//! The front door: a scene on a device, asked frame after frame.
+//! A scene on a device, which answers queries step after step.
 
 mod caveats;
 mod edits;
@@ -7,6 +7,7 @@ mod figures;
 mod frame;
 mod geometry;
 mod interrupted;
+mod layouts;
 mod moves;
 mod placed;
 pub mod plan;
@@ -17,28 +18,27 @@ mod resident;
 mod slices;
 mod stages;
 mod submit;
-mod wear;
 
 use crate::device::Device;
 use crate::device::emulator::start_threads;
 use crate::error::Error;
-use crate::pipeline::Share;
+use crate::pipeline::{Share, Tolerances};
 use crate::query::Query;
 use crate::scene::{Body, Scene};
-use engine::Engine;
+use engine::{Engine, fits};
 use placed::Placed;
 use portion::Portion;
 use question::Question;
 use resident::Resident;
-pub(crate) use wear::Wear;
+use std::sync::Arc;
 
-/// A scene on a device, ready to be asked frame after frame.
+/// A scene on a device, which answers queries.
 ///
-/// A frame is one submission, whatever the number of bodies: [`Detector::frame`] says where bodies are now, and answers. What
-/// is static was built and fitted once, a rigid body costs its poses, and what no body does costs nothing.
+/// All queries share one memory: positions are uploaded once a step, whatever is asked of them. A step is one submission, whatever the
+/// number of bodies. Static bodies are built and fitted once, a rigid body costs its poses, and what no body does costs nothing.
 ///
 /// ```
-/// use nearmiss::{Body, Detector, Device, Mesh, Query, device::Backend, mesh::Positions, scene::Input};
+/// use nearmiss::{Body, Detector, Device, Discrete, Earliest, Mesh, Near, device::Backend, mesh::Positions, scene::Input};
 ///
 /// // A triangle that rests, and one whose corner falls through it.
 /// let faces = vec![[0, 1, 2], [3, 4, 5]];
@@ -48,16 +48,20 @@ pub(crate) use wear::Wear;
 /// let body = Body::still(Mesh::new("two triangles", at(1.0), faces)?);
 /// let device = Device::open(Backend::Auto, None)?;
 /// // A deformable body is tested against itself.
-/// let mut detector = Detector::new(device, body, Query::continuous())?;
+/// let mut detector = Detector::new(device, body)?;
 /// let triangles = detector.scene().ids().next().expect("a body");
-/// let contacts = detector.frame(&[(triangles, Input::Step([&at(1.0), &at(-1.0)]))])?;
-/// println!("{} contacts, first at {:?}", contacts.len(), contacts.earliest_toi());
+/// detector.update(&[(triangles, Input::Step([&at(1.0), &at(-1.0)]))])?;
+/// let first = detector.query(&Earliest::default())?;
+/// println!("first contact at {:?}", first.map(|contact| contact.toi));
+/// println!("{} pairs within 1", detector.query(&Near::within(1.0))?.len());
+/// assert!(detector.query(&Discrete::default())?.is_empty());
 /// # Ok::<(), nearmiss::Error>(())
 /// ```
 pub struct Detector {
     device: Device,
     scene: Scene,
-    question: Question,
+    /// Default tolerances of pairs, once a query needed them.
+    tolerances: Option<Arc<Tolerances>>,
     engine: Engine,
     portion: Portion,
     placed: Placed,
@@ -65,40 +69,33 @@ pub struct Detector {
 }
 
 impl Detector {
-    /// Uploads a scene and builds its trees: of a single body, or of a list of bodies, too. A scene without bodies answers nothing,
-    /// whatever the query, until a body is [added](Detector::add). Cost: linear in triangles; memory grows with what is found.
+    /// A detector for a scene: of a single body, or of a list of bodies, too. Memory of the device is taken when the first query needs
+    /// it. A scene without bodies has empty answers, until a body is [added](Detector::add).
     ///
     /// # Errors
-    /// [`Error::Choice`] for self-contact of a static body and for numbers that mean nothing; those of the device.
-    pub fn new(device: Device, scene: impl Into<Scene>, query: impl Into<Query>) -> Result<Detector, Error> {
-        Detector::with_share(device, scene.into(), query.into(), Share::WHOLE)
+    /// [`Error::Choice`] for self-contact of a static body; [`Error::Input`] for more triangles than indices reach.
+    pub fn new(device: Device, scene: impl Into<Scene>) -> Result<Detector, Error> {
+        Detector::with_share(device, scene.into(), Share::WHOLE)
     }
 
     /// The same, for a share of the work.
     ///
     /// # Errors
-    /// As there; [`Error::Choice`] where work cannot be divided.
-    pub(crate) fn with_share(
-        device: Device,
-        mut scene: Scene,
-        query: Query,
-        share: Share,
-    ) -> Result<Detector, Error> {
-        query.check()?;
+    /// As there.
+    pub(crate) fn with_share(device: Device, scene: Scene, share: Share) -> Result<Detector, Error> {
         start_threads()?;
         scene.bodies().iter().try_for_each(Body::check_meets)?;
-        let mut detector = Detector {
+        let all = |of: fn(&Body) -> usize| scene.bodies().iter().map(of).sum();
+        fits(all(Body::face_count), all(Body::vertex_count))?;
+        Ok(Detector {
             device: device.for_one(),
-            question: Question::new(query, &mut scene),
             scene,
+            tolerances: None,
             engine: Engine::default(),
             portion: Portion::new(share),
             placed: Placed::default(),
             resident: Resident::default(),
-        };
-        let begun = detector.begun().map(drop);
-        detector.ended(begun)?;
-        Ok(detector)
+        })
     }
 
     /// The bodies, where they are now.
@@ -106,8 +103,24 @@ impl Detector {
         &self.scene
     }
 
-    /// What is asked.
-    pub fn query(&self) -> &Query {
-        &self.question.query
+    /// A query with the tolerances of its pairs.
+    fn question(&mut self, query: Query) -> Result<Question, Error> {
+        query.check()?;
+        let tolerances = match query.certified().map(|certified| certified.tolerance) {
+            Some(Some(tolerance)) => Some(Arc::new(Tolerances::named(tolerance))),
+            Some(None) => Some(self.default_tolerances()),
+            None => None,
+        };
+        Ok(Question { query, tolerances })
+    }
+
+    /// The default tolerances of the bodies that there are now.
+    fn default_tolerances(&mut self) -> Arc<Tolerances> {
+        let bodies = self.scene.bodies_mut();
+        let made = || {
+            bodies.iter_mut().for_each(Body::keep_tolerance);
+            Arc::new(Tolerances::of(bodies))
+        };
+        self.tolerances.get_or_insert_with(made).clone()
     }
 }

@@ -2,16 +2,20 @@
 
 use super::Detector;
 use super::edits::nobody;
+use super::frame::without_ends;
 use crate::device::emulator::start_threads;
 use crate::error::Error;
-use crate::mesh::Problem;
 use crate::pipeline::Moved;
-use crate::scene::{Body, BodyId, Input};
+use crate::query::Query;
+use crate::scene::{BodyId, Input};
 
 impl Detector {
     /// Moves bodies to where the inputs say; the others rest where they are, or where their step ended.
-    pub(crate) fn apply(&mut self, inputs: &[(BodyId, Input)]) -> Result<(), Error> {
-        let named = self.put(inputs, true)?;
+    ///
+    /// # Errors
+    /// As of [`Detector::update`], and of a query that will read them: then nothing has moved.
+    pub(crate) fn apply(&mut self, inputs: &[(BodyId, Input)], query: Option<&Query>) -> Result<(), Error> {
+        let named = self.put(inputs, query)?;
         let mut moved = Vec::with_capacity(inputs.len());
         for (body, (own, named)) in self.scene.bodies_mut().iter_mut().zip(named).enumerate() {
             if named || !self.resident.is_lost(body) && own.rest() {
@@ -21,22 +25,8 @@ impl Detector {
         self.moved(&moved)
     }
 
-    /// Moves bodies to where the inputs say; others stay as they are, in the step that they are in. The trees are kept and refitted
-    /// at the next [`Detector::detect`].
-    ///
-    /// # Errors
-    /// As for [`Detector::frame`]; bodies may all be put at one end.
-    pub fn place(&mut self, inputs: &[(BodyId, Input)]) -> Result<(), Error> {
-        let named = self.put(inputs, false)?;
-        let moved = named.iter().enumerate().filter(|(_, named)| **named);
-        let moved: Vec<_> = moved.map(|(body, _)| Moved { body, rests: false }).collect();
-        let placed = self.moved(&moved);
-        self.ended(placed)
-    }
-
-    /// Moves bodies on the host, all or none; of each body of the scene, whether it was named. In a frame of a query in motion that
-    /// names bodies one of them has two ends.
-    fn put(&mut self, inputs: &[(BodyId, Input)], is_frame: bool) -> Result<Vec<bool>, Error> {
+    /// Moves bodies on the host, all or none; of each body of the scene, whether it was named.
+    fn put(&mut self, inputs: &[(BodyId, Input)], query: Option<&Query>) -> Result<Vec<bool>, Error> {
         let mut named = vec![false; self.scene.bodies().len()];
         for (id, input) in inputs {
             let Some(body) = self.scene.get(*id) else { return Err(nobody(*id)) };
@@ -53,19 +43,11 @@ impl Detector {
                 body.check_found(&ends, &poses)?;
             }
         }
-        let in_motion = !self.question.query.kind().is_at_rest();
-        if is_frame && in_motion && !inputs.is_empty() && !inputs.iter().any(|(_, input)| input.is_moving()) {
-            return Err(Error::Choice {
-                what: format!(
-                    "no body of the frame has two ends, and the query is {}",
-                    self.question.query.kind()
-                ),
-                advice:
-                    "give each body that moves both ends of the step: two arrays of positions, or two poses"
-                        .into(),
-            });
+        let has_ends = inputs.is_empty() || inputs.iter().any(|(_, input)| input.is_moving());
+        if let Some(query) = query.filter(|query| !query.kind().is_at_rest() && !has_ends) {
+            return Err(without_ends(query));
         }
-        self.placed.named.clone_from(&named);
+        self.placed.name(&named, has_ends);
         for (id, input) in inputs {
             let body = self.scene.get_mut(*id).ok_or_else(|| nobody(*id))?;
             body.put(input);
@@ -81,13 +63,13 @@ impl Detector {
             return Ok(());
         }
         start_threads()?;
-        self.engine.is_answered = false;
+        self.engine.answered = None;
         if self.placed.mark(self.scene.bodies().len(), moved) {
-            self.engine.wear.tell_new_place();
+            self.engine.pipeline.iter_mut().for_each(|pipeline| pipeline.add_new_place());
         }
         let widens =
             !self.engine.holds_f64 && moved.iter().any(|moved| self.scene.bodies()[moved.body].needs_f64());
-        if widens {
+        if widens && self.engine.pipeline.is_some() {
             self.fetch()?;
         }
         // What was held makes room first. Where placing fails there is nothing left to ask of the old positions.
@@ -95,7 +77,9 @@ impl Detector {
             Some(mut pipeline) => {
                 pipeline.place(self.scene.bodies(), moved).map(|()| self.engine.pipeline = Some(pipeline))
             }
-            None => self.begun().map(drop),
+            // Memory of the caller is read now.
+            None if self.scene.bodies().iter().any(|body| body.lent().is_some()) => self.begin_scene(),
+            None => Ok(()),
         };
         let is_held = self.engine.pipeline.is_some() || self.device.is_gpu();
         for body in self.scene.bodies_mut() {
@@ -110,53 +94,4 @@ impl Detector {
         }
         placed
     }
-
-    /// Moves a body to where another of the same mesh is: as [`Detector::place`], but from a body, which is kept.
-    ///
-    /// # Errors
-    /// [`Error::Input`] when the body has other faces than the one it replaces, [`Error::Choice`] when it is of another kind or there
-    /// is none to replace; those of the device.
-    pub fn move_to(&mut self, body: usize, frame: Body) -> Result<(), Error> {
-        let same = |old: &&Body| old.kind() == frame.kind();
-        let Some(old) = self.scene.bodies().get(body).filter(same) else {
-            return Err(Error::Choice {
-                what: format!("{} does not replace body {body} of this scene", frame.name()),
-                advice: "give a frame of a body of the scene, of its kind, or replace the body".into(),
-            });
-        };
-        if let Some(problem) = other_mesh(old, &frame) {
-            return Err(Error::Input { file: frame.name().to_owned(), problem });
-        }
-        if frame.is_away() {
-            return Err(Error::Choice {
-                what: format!(
-                    "only a device knows where {} is, and its positions here are old",
-                    frame.name()
-                ),
-                advice: "bring it to the host first, with `fetch` of its detector".into(),
-            });
-        }
-        let meets = *old.meets();
-        self.resident.set_lost(body, false);
-        let old = &mut self.scene.bodies_mut()[body];
-        *old = frame.with(meets).with_tolerance_of(old);
-        let moved = self.moved(&[Moved { body, rests: false }]);
-        self.ended(moved)
-    }
-}
-
-/// What keeps a body from being a frame of another.
-fn other_mesh(old: &Body, new: &Body) -> Option<Problem> {
-    let first = || old.name().to_owned();
-    let [t0, t1] = [old, new].map(Body::vertex_count);
-    if t0 != t1 {
-        return Some(Problem::FrameVertices { first: first(), t0, t1 });
-    }
-    let [t0, t1] = [old, new].map(Body::face_count);
-    if t0 != t1 {
-        return Some(Problem::FrameFaces { first: first(), t0, t1 });
-    }
-    let face = old.faces().iter().zip(new.faces()).position(|(a, b)| a != b)?;
-    let [t0, t1] = [old, new].map(|body| body.faces()[face].to_vec());
-    Some(Problem::FrameFace { first: first(), face, t0, t1 })
 }

@@ -1,7 +1,10 @@
 //! Which bodies frames have placed: ever, in the last frame, and in every submission.
 
 use super::Detector;
+use super::frame::without_ends;
+use crate::error::Error;
 use crate::pipeline::Moved;
+use crate::query::Query;
 use crate::scene::{BodyId, DeviceInput, Input};
 
 /// A record of who was placed.
@@ -9,8 +12,10 @@ use crate::scene::{BodyId, DeviceInput, Input};
 pub struct Placed {
     /// Whether a frame has placed each body since it was added.
     ever: Vec<bool>,
-    /// Whether the last frame named each body.
+    /// Whether the last update named each body.
     pub named: Vec<bool>,
+    /// Whether the last update named bodies, and none with two ends.
+    lacks_ends: bool,
     /// The bodies that a submission reads; up to date while the pipeline is prepared.
     pub submitted: Vec<Submitted>,
 }
@@ -32,6 +37,19 @@ impl Placed {
             any_first |= !std::mem::replace(&mut self.ever[moved.body], true);
         }
         any_first
+    }
+
+    /// An update names bodies, of which one has two ends, or none; `has_ends` if it names none.
+    pub fn name(&mut self, named: &[bool], has_ends: bool) {
+        (self.named, self.lacks_ends) = (named.to_vec(), !has_ends);
+    }
+
+    /// Refuses a query in motion after an update that named bodies, and none with two ends.
+    ///
+    /// # Errors
+    /// [`Error::Choice`].
+    pub fn check_ends(&self, query: &Query) -> Result<(), Error> {
+        if self.lacks_ends && !query.kind().is_at_rest() { Err(without_ends(query)) } else { Ok(()) }
     }
 
     /// Whether a frame has placed the body.

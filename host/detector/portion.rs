@@ -1,16 +1,17 @@
-//! A part of the work, where other devices do the rest.
+//! A part of the work, if other devices do the rest.
 
 use super::Detector;
 use crate::error::Error;
 use crate::pipeline::Share;
+use crate::query::Query;
 
-/// A detector's part of the work, and in how many slices it is asked.
+/// A detector's part of the work, and in how many slices each query runs.
 pub struct Portion {
-    /// Its share, where other devices do the rest.
+    /// Its share, if other devices do the rest.
     pub share: Share,
-    /// How many slices a frame has.
-    pub slices: u32,
-    /// The cost of each tile in the last frame in several slices, where there are several shares.
+    /// Slices of a frame, by the shape of queries that need more than one.
+    slices: Vec<(Query, u32)>,
+    /// The cost of each tile in the last frame in several slices, if there are several shares.
     pub work_of_tiles: Vec<u64>,
     /// Whether a [`MultiDetector`](crate::MultiDetector) runs it.
     pub is_part: bool,
@@ -19,17 +20,35 @@ pub struct Portion {
 impl Portion {
     /// A share, at once.
     pub fn new(share: Share) -> Portion {
-        Portion { share, slices: 1, work_of_tiles: Vec::new(), is_part: false }
+        Portion { share, slices: Vec::new(), work_of_tiles: Vec::new(), is_part: false }
     }
 
-    /// The share that is asked at once, first.
-    pub fn first_slice(&self) -> Share {
-        self.slice(0)
+    /// How many slices a frame of a query has.
+    pub fn slices(&self, query: &Query) -> u32 {
+        let shape = query.shape();
+        self.slices.iter().find(|(own, _)| *own == shape).map_or(1, |(_, slices)| *slices)
+    }
+
+    /// Twice as many slices of that query.
+    pub fn slice_finer(&mut self, query: &Query) {
+        let (shape, slices) = (query.shape(), 2 * self.slices(query));
+        self.slices.retain(|(own, _)| *own != shape);
+        self.slices.push((shape, slices));
+    }
+
+    /// Every query at once again: bodies are others.
+    pub fn forget_slices(&mut self) {
+        self.slices.clear();
+    }
+
+    /// The share of a query's first slice.
+    pub fn first_slice(&self, query: &Query) -> Share {
+        self.slice(query, 0)
     }
 
     /// The share of a slice.
-    pub fn slice(&self, slice: u32) -> Share {
-        self.share.slice(slice, self.slices)
+    pub fn slice(&self, query: &Query, slice: u32) -> Share {
+        self.share.slice(slice, self.slices(query))
     }
 
     /// Adds the cost of a slice's tiles.
@@ -40,47 +59,35 @@ impl Portion {
 }
 
 impl Detector {
-    /// From the next frame on it finds what is its share.
-    ///
-    /// # Errors
-    /// [`Error::Choice`] where work cannot be divided; those of the device.
-    pub(crate) fn take(&mut self, share: Share) -> Result<(), Error> {
-        (self.portion.share, self.engine.is_answered) = (share, false);
-        let slice = self.portion.first_slice();
-        self.engine.pipeline.as_mut().map_or(Ok(()), |pipeline| pipeline.take(slice))
-    }
-
-    /// The cost of each tile of its share in the last frame, by tile; empty if nothing can meet.
-    ///
-    /// # Errors
-    /// Those of the device.
-    pub(crate) fn tile_work(&self) -> Result<Vec<u64>, Error> {
-        match &self.engine.pipeline {
-            Some(pipeline) if self.portion.slices == 1 => pipeline.work(),
-            _ => Ok(self.portion.work_of_tiles.clone()),
+    /// From the next frame on it finds its share alone.
+    pub(crate) fn take(&mut self, share: Share) {
+        if self.portion.share != share {
+            (self.portion.share, self.engine.answered) = (share, None);
         }
     }
 
-    /// How many tiles beyond its share it met in the last frame, asked at once.
+    /// The cost of each tile of its share in the last frame of a query, by tile; empty if nothing can meet.
     ///
     /// # Errors
     /// Those of the device.
-    pub(crate) fn met_beyond(&self) -> Result<u64, Error> {
-        self.engine.pipeline.as_ref().map_or(Ok(0), |pipeline| pipeline.met_beyond())
+    pub(crate) fn tile_work(&mut self, query: &Query) -> Result<Vec<u64>, Error> {
+        if self.portion.slices(query) > 1 {
+            return Ok(self.portion.work_of_tiles.clone());
+        }
+        self.of_query(query, Vec::new(), |pipeline, at| pipeline.work(at))
     }
 
-    /// Makes tiles where there are none.
+    /// How many tiles beyond its share it met in the last frame of a query, in one slice.
     ///
     /// # Errors
     /// Those of the device.
-    pub(crate) fn begin(&mut self) -> Result<(), Error> {
-        let begun = self.begun().map(drop);
-        self.ended(begun)
+    pub(crate) fn met_beyond(&mut self, query: &Query) -> Result<u64, Error> {
+        self.of_query(query, 0, |pipeline, at| pipeline.met_beyond(at))
     }
 
-    /// Triangles of what moves.
+    /// Triangles of bodies that move.
     pub(crate) fn moving_triangles(&self) -> usize {
-        self.engine.last_layout().map_or(0, |layout| layout.moving_triangles())
+        self.engine.layouts.last().map_or(0, |layout| layout.moving_triangles())
     }
 
     /// The name of its machine.

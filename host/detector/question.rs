@@ -1,37 +1,27 @@
-//! The question of a detector: a query, and the tolerances of its pairs.
+//! A query with the tolerances of its pairs.
 
-use crate::pipeline::Tolerances;
+use crate::pipeline::{Layout, QueryParts, Share, Tolerances};
 use crate::query::Query;
-use crate::scene::{Body, Scene};
+use std::sync::Arc;
 
 /// A query, with the tolerances of a certified solver for the bodies of a scene.
+#[derive(Clone)]
 pub struct Question {
     pub query: Query,
     /// `None` without a certified solver.
-    pub tolerances: Option<Tolerances>,
+    pub tolerances: Option<Arc<Tolerances>>,
 }
 
 impl Question {
-    /// A query of these bodies.
-    pub fn new(query: Query, scene: &mut Scene) -> Question {
-        let mut question = Question { query, tolerances: None };
-        question.choose_tolerances(scene);
-        question
-    }
-
-    /// The tolerances of the bodies that there are now.
-    pub fn choose_tolerances(&mut self, scene: &mut Scene) {
-        self.tolerances = self.query.certified().copied().map(|certified| match certified.tolerance {
-            Some(tolerance) => Tolerances::named(tolerance),
-            None => {
-                scene.bodies_mut().iter_mut().for_each(Body::keep_tolerance);
-                Tolerances::of(scene.bodies())
-            }
-        });
+    /// A part of it, over bodies of that layout.
+    pub fn parts(&self, layout: Arc<Layout>, share: Share) -> QueryParts {
+        let tolerances = self.tolerances.as_ref();
+        let records = tolerances.map_or_else(Vec::new, |tolerances| tolerances.records(&layout.starts));
+        QueryParts { query: self.with_largest_tolerance(), tolerances: records, layout, share }
     }
 
     /// The query, with the largest tolerance of its pairs: volumes grow by it.
-    pub fn with_largest_tolerance(&self) -> Query {
+    fn with_largest_tolerance(&self) -> Query {
         let mut query = self.query;
         if let (Some(certified), Some(tolerances)) = (query.certified_mut(), &self.tolerances) {
             certified.tolerance = Some(tolerances.largest);

@@ -1,110 +1,151 @@
-//! The engine is made ready: memory for the bodies where they are, or for a slice, and tiles or trees that are worth keeping.
+//! The engine is made ready: memory for the bodies and for a query, or for a slice of it, and tiles or trees that are worth keeping.
 
 use super::Detector;
+use super::question::Question;
+use crate::device::emulator::start_threads;
 use crate::error::Error;
-use crate::pipeline::{Layout, Pieces, Pipeline};
-use crate::query::Broad;
+use crate::pipeline::Layout;
 #[cfg(doc)]
 use crate::query::Rebuild;
-use crate::scene::Body;
+use crate::query::{Broad, Query};
 use nearmiss_kernels::bvh::tiles::TILE;
 use std::sync::Arc;
 
 impl Detector {
-    /// Makes tiles, or the tree, over what moves anew: pays when bodies have moved far from where they were made. By itself where
-    /// [`Rebuild::Auto`] allows it, the default.
+    /// Takes the memory that a query needs and builds its tiles or trees, before the first [`Detector::query`] does it.
+    ///
+    /// # Errors
+    /// [`Error::Choice`] for numbers that mean nothing; those of the device.
+    pub fn begin(&mut self, query: &Query) -> Result<(), Error> {
+        let question = self.question(*query)?;
+        let begun = self.begun(&question).map(drop);
+        self.ended(begun)
+    }
+
+    /// Builds tiles and trees over moving bodies again: pays when bodies have moved far from where they were built. With
+    /// [`Rebuild::Auto`], the default, a query does it by itself.
     ///
     /// # Errors
     /// Those of the device.
     pub fn rebuild(&mut self) -> Result<(), Error> {
         self.device.work();
-        let renewed = self.renew();
-        self.ended(renewed)?;
+        let rebuilt = self.rebuild_all();
+        self.ended(rebuilt)?;
         self.engine.build_work = self.device.work();
         Ok(())
     }
 
-    /// How often tiles or trees were made: when the detector began, when asked, by itself where the query allows it, and whenever memory was
-    /// taken anew.
+    fn rebuild_all(&mut self) -> Result<(), Error> {
+        self.read_again(false);
+        self.none_lost()?;
+        let Some(pipeline) = &mut self.engine.pipeline else { return Ok(()) };
+        let built = pipeline.construct_all()?;
+        built.into_iter().for_each(|ms| self.engine.count_build(ms));
+        Ok(())
+    }
+
+    /// How often tiles or trees were built: for the first query that needs them, on request, by themselves if the query allows it, and
+    /// after memory was taken again.
     pub fn builds(&self) -> u64 {
         self.engine.builds
     }
 
-    /// Readies the engine for a frame of the bodies where they are: every body's place is known, and tiles or trees are made anew where
-    /// they are worn.
+    /// Readies the engine for a frame of the bodies where they are: every body's place is known.
     ///
     /// # Errors
     /// [`Error::Choice`] for a body that nobody can place; those of the device.
-    pub(super) fn ready(&mut self) -> Result<Arc<Layout>, Error> {
-        self.engine.is_answered = false;
+    pub(super) fn ready(&mut self, query: &Query) -> Result<Arc<Layout>, Error> {
+        self.engine.answered = None;
         self.read_again(false);
         self.none_lost()?;
-        let layout = self.layout()?;
-        let is_worn = self.engine.wear.is_worn(layout.moving_triangles());
-        if self.question.query.search().rebuilds() && is_worn {
-            self.renew()?;
+        self.layout(query)
+    }
+
+    /// Where every body lies in the memory that all share, as a query sees it. Every call begins here, so a process that was forked is
+    /// refused here.
+    pub(super) fn layout(&mut self, query: &Query) -> Result<Arc<Layout>, Error> {
+        start_threads()?;
+        self.engine.layouts.of(&self.device, &self.scene, query)
+    }
+
+    /// Any layout of the bodies where they are.
+    pub(super) fn any_layout(&mut self) -> Result<Arc<Layout>, Error> {
+        match self.engine.layouts.last() {
+            Some(layout) => Ok(layout.clone()),
+            None => self.layout(&Query::discrete()),
         }
-        Ok(layout)
     }
 
-    /// Makes tiles or trees anew.
-    fn renew(&mut self) -> Result<(), Error> {
-        let Some(pipeline) = self.begun()? else { return Ok(()) };
-        self.engine.construct_ms = pipeline.construct()?;
-        self.engine.is_answered = false;
-        self.engine.count_build();
-        Ok(())
-    }
-
-    /// Where every body lies in the memory that all share.
-    pub(super) fn layout(&mut self) -> Result<Arc<Layout>, Error> {
-        self.engine.layout(&self.device, &self.scene, &self.question)
-    }
-
-    /// The pipeline, made where there is none, with memory for a slice where there is none for all. None is made where nothing can
-    /// meet: that costs no memory and no launch.
+    /// The place of a query in the pipeline, made if there is none, with memory for a slice if there is none for all. None is made if
+    /// nothing can meet: that costs no memory and no launch.
     ///
     /// # Errors
-    /// [`Error::OutOfMemory`] where there is none for a tile at once; those of the device.
-    pub(super) fn begun(&mut self) -> Result<Option<&mut Box<dyn Pipeline>>, Error> {
-        while let Err(error) = self.begin_pipeline() {
-            self.slice_finer(error)?;
+    /// [`Error::OutOfMemory`] without memory for a tile at once; those of the device.
+    pub(super) fn begun(&mut self, question: &Question) -> Result<Option<usize>, Error> {
+        loop {
+            match self.begin_query(question) {
+                Ok(place) => return Ok(place),
+                Err(error) => self.slice_finer(error, &question.query)?,
+            }
         }
-        Ok(self.engine.pipeline.as_mut())
     }
 
-    fn begin_pipeline(&mut self) -> Result<(), Error> {
-        let layout = self.layout()?;
+    fn begin_query(&mut self, question: &Question) -> Result<Option<usize>, Error> {
+        let layout = self.layout(&question.query)?;
+        if !layout.may_meet() {
+            return Ok(None);
+        }
+        let in_motion = !question.query.kind().is_at_rest();
+        if in_motion && !self.engine.has_ends {
+            // A pipeline of queries at rest has no room for the end of the step.
+            self.fetch()?;
+            self.engine.drop_pipeline();
+            self.engine.has_ends = true;
+        }
+        self.begin_scene()?;
+        let (bodies, slice) = (self.scene.bodies(), self.portion.first_slice(&question.query));
+        let Some(pipeline) = &mut self.engine.pipeline else { return Ok(None) };
+        let moving = layout.moving_triangles();
+        let at = pipeline.take_query(&question.parts(layout, slice))?;
+        let is_first = pipeline.ready(at, bodies)?;
+        let is_worn = question.query.search().rebuilds() && pipeline.wear(at).is_worn(moving);
+        if is_first || is_worn {
+            let ms = pipeline.construct(at)?;
+            self.engine.count_build(ms);
+        }
+        if is_first {
+            self.engine.build_work = self.device.work();
+        }
+        Ok(Some(at))
+    }
+
+    /// Takes the memory of the scene, if there is none and something may meet.
+    pub(super) fn begin_scene(&mut self) -> Result<(), Error> {
+        let layout = self.any_layout()?;
         if self.engine.pipeline.is_some() || !layout.may_meet() {
             return Ok(());
         }
         self.all_known()?;
-        let pieces = Pieces {
-            layout,
-            query: self.question.with_largest_tolerance(),
-            share: self.portion.first_slice(),
-            holds_f64: self.scene.bodies().iter().any(Body::needs_f64),
-        };
-        self.engine.begin(&self.device, &self.scene, pieces)
+        self.engine.begin(&self.device, &self.scene, layout)
     }
 
-    /// Twice as many slices, with memory for one of them, if that is what is short.
+    /// Twice as many slices of a query, with memory for one of them, if that is what is short.
     ///
     /// # Errors
-    /// The one before, where it is another, and where work cannot be divided further; those of the device.
-    pub(super) fn slice_finer(&mut self, error: Error) -> Result<(), Error> {
-        let tiles = self.layout()?.moving_triangles().div_ceil(TILE as usize) as u64;
-        let by_tiles = self.question.query.broad_on(self.device.is_gpu()) == Broad::Tiles;
+    /// The one before, if it is another, and if work cannot be divided further; those of the device.
+    pub(super) fn slice_finer(&mut self, error: Error, query: &Query) -> Result<(), Error> {
+        let tiles = self.layout(query)?.moving_triangles().div_ceil(TILE as usize) as u64;
+        let by_tiles = query.broad_on(self.device.is_gpu()) == Broad::Tiles;
         let is_short = matches!(error, Error::OutOfMemory { .. });
-        if !is_short || !by_tiles || u64::from(self.portion.slices) >= tiles {
+        if !is_short || !by_tiles || u64::from(self.portion.slices(query)) >= tiles {
             return Err(error);
         }
         if self.engine.pipeline.is_some() {
-            // What only the device knows comes back before its memory goes.
+            // Positions that only the device has come back before its memory goes.
             self.fetch()?;
-            self.engine.pipeline = None;
+            self.engine.drop_pipeline();
         }
-        self.portion.slices *= 2;
+        self.portion.slice_finer(query);
         Ok(())
     }
 }

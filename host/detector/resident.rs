@@ -77,7 +77,7 @@ impl Detector {
 
     /// Where the device has placed all bodies; `None` where nothing can meet, and nothing was placed.
     fn places(&mut self) -> Result<Option<Places>, Error> {
-        let layout = self.layout()?;
+        let layout = self.any_layout()?;
         let Some(pipeline) = &self.engine.pipeline else { return Ok(None) };
         Ok(Some(Places { all: pipeline.whereabouts()?, layout }))
     }
@@ -168,7 +168,7 @@ impl Detector {
             return Ok(true);
         }
         self.bring(&places);
-        self.engine.pipeline = None;
+        self.engine.drop_pipeline();
         Ok(false)
     }
 

@@ -2,6 +2,7 @@
 
 use super::Detector;
 use super::frame::Answered;
+use super::question::Question;
 use crate::contacts::Contacts;
 use crate::error::Error;
 use crate::pipeline::collect::collect;
@@ -22,51 +23,59 @@ impl From<Error> for Stopped {
 }
 
 impl Detector {
-    /// A frame, slice after slice; `None` where nothing can meet.
+    /// A frame, slice after slice; `None` if nothing can meet.
     ///
     /// # Errors
     /// As of [`Detector::begun`].
-    pub(super) fn run(&mut self, layout: &Layout) -> Result<Option<Answered>, Error> {
+    pub(super) fn run(&mut self, question: &Question, layout: &Layout) -> Result<Option<Answered>, Error> {
         let answered = loop {
-            if self.begun()?.is_none() {
-                return Ok(None);
-            }
-            match self.every_slice(layout) {
+            let Some(at) = self.begun(question)? else { return Ok(None) };
+            match self.every_slice(at, question, layout) {
                 Ok(answered) => break answered,
                 Err(Stopped::Host(error)) => return Err(error),
-                Err(Stopped::Device(error)) => self.slice_finer(error)?,
+                Err(Stopped::Device(error)) => self.slice_finer(error, &question.query)?,
             }
         };
         if answered.is_some() {
-            (self.engine.frames, self.engine.frame_work) = (self.engine.frames + 1, self.device.work());
+            let work = self.device.work();
+            self.engine.count_frame(&question.query, work);
         }
         Ok(answered)
     }
 
     /// All slices, merged.
-    fn every_slice(&mut self, layout: &Layout) -> Result<Option<Answered>, Stopped> {
+    fn every_slice(
+        &mut self,
+        at: usize,
+        question: &Question,
+        layout: &Layout,
+    ) -> Result<Option<Answered>, Stopped> {
         let (mut all, mut seen) = (Vec::new(), None);
         let device = self.device.clone();
         let looks = device.looks();
         self.portion.work_of_tiles.clear();
-        let slices = self.portion.slices;
+        let query = &question.query;
+        let slices = self.portion.slices(query);
         for slice in 0..slices {
             let Some(pipeline) = &mut self.engine.pipeline else { return Ok(None) };
             if slices > 1 {
-                pipeline.take(self.portion.slice(slice))?;
+                pipeline.take(at, self.portion.slice(query, slice))?;
             }
-            pipeline.after(all.iter().map(|slice: &Contacts| slice.len() as u64).sum());
-            let (found, stages) = pipeline.frame()?;
-            seen = found.seen;
-            all.push(collect(found, stages, layout, &looks).map_err(Stopped::Host)?);
+            pipeline.after(at, all.iter().map(|slice: &Contacts| slice.len() as u64).sum());
+            let frame = pipeline.frame(at)?;
+            seen = frame.0.seen;
+            all.push(collect(frame, query, layout, &looks).map_err(Stopped::Host)?);
             if slices > 1 && self.portion.share != Share::WHOLE {
-                self.portion.add_work(pipeline.work()?);
+                self.portion.add_work(pipeline.work(at)?);
             }
         }
         let whole = Contacts::merged(all, |a, b| a + b, &looks);
         if looks.ended() {
             return Err(Stopped::Host(Error::Interrupted));
         }
-        Ok(whole.map(|whole| Answered { contacts: Contacts { slices, ..whole }, seen }))
+        Ok(whole.map(|mut contacts| {
+            contacts.stats.slices = slices;
+            Answered { contacts, seen }
+        }))
     }
 }

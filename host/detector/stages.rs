@@ -1,52 +1,75 @@
 //! Stages of a frame that run once more, alone: for profilers.
 
 use super::Detector;
+use super::question::Question;
 use crate::error::Error;
-use crate::pipeline::Stage;
+use crate::pipeline::{Pipeline, Stage};
+use crate::query::Query;
+use std::time::Instant;
 
 impl Detector {
-    /// Runs one stage of this frame `times` times, on the device alone, and gives each run's milliseconds: for profilers,
-    /// and for figures of one stage. What the stage needs runs before, once, where it has not yet: the leaves' volumes for
+    /// Runs one stage of a query's frame `times` times, on the device alone, and returns the milliseconds of each run: for profilers,
+    /// and for figures of one stage. What the stage needs runs before, once, if it has not yet: the leaves' volumes for
     /// [`Stage::Refit`], a whole frame for [`Stage::Traverse`], [`Stage::Narrow`] and
-    /// [`Stage::Order`]. The next [`Detector::detect`] answers as it would have. Where nothing can meet there are no stages, and a CPU orders nothing: no runs.
+    /// [`Stage::Order`]. No answer changes by it. If nothing can meet there are no stages, and a CPU orders nothing: no runs.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn repeat_stage(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
-        let milliseconds = self.repeated(stage, times);
+    pub fn repeat_stage(&mut self, query: &Query, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
+        let milliseconds = self.repeated(query, stage, times);
         self.ended(milliseconds)
     }
 
-    fn repeated(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
-        let is_answered = self.engine.is_answered;
-        if !is_answered && matches!(stage, Stage::Traverse | Stage::Narrow | Stage::Order) {
-            self.detect()?;
+    fn repeated(&mut self, query: &Query, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
+        let question = self.question(*query)?;
+        if matches!(stage, Stage::Traverse | Stage::Narrow | Stage::Order) {
+            self.have_answered(&question)?;
         }
-        let is_answered = self.engine.is_answered;
-        let Some(pipeline) = self.begun()? else { return Ok(Vec::new()) };
+        let is_answered = self.engine.answered == Some(*query);
+        let Some(at) = self.begun(&question)? else { return Ok(Vec::new()) };
+        let Some(pipeline) = &mut self.engine.pipeline else { return Ok(Vec::new()) };
         if !is_answered && stage == Stage::Refit {
-            pipeline.repeat(Stage::Fit, 1)?;
+            pipeline.repeat(at, Stage::Fit, 1)?;
         }
-        let milliseconds = pipeline.repeat(stage, times)?;
+        let milliseconds = pipeline.repeat(at, stage, times)?;
         if stage == Stage::Construct {
-            self.engine.is_answered = false;
-            self.engine.construct_ms = milliseconds.last().copied().unwrap_or(self.engine.construct_ms);
-            self.engine.count_build();
+            self.engine.count_build(milliseconds.last().copied().unwrap_or(self.engine.construct_ms));
         }
         Ok(milliseconds)
     }
 
-    /// Runs the narrow stage of this frame once more, step by step: each step's name and milliseconds on the device's own
-    /// clock. A frame must have been asked; where nothing can meet there are no steps.
+    /// Runs the narrow stage of a query's frame once more, step by step: each step's name and milliseconds on the device's own
+    /// clock. If nothing can meet there are no steps.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn narrow_steps(&mut self) -> Result<Vec<(&'static str, f64)>, Error> {
-        if !self.engine.is_answered {
-            self.detect()?;
-        }
-        let pipeline = self.engine.pipeline.as_mut();
-        let steps = pipeline.map_or(Ok(Vec::new()), |pipeline| pipeline.narrow_steps());
+    pub fn narrow_steps(&mut self, query: &Query) -> Result<Vec<(&'static str, f64)>, Error> {
+        let question = self.question(*query)?;
+        let steps = self
+            .have_answered(&question)
+            .and_then(|()| self.of_query(query, Vec::new(), |pipeline, at| pipeline.narrow_steps(at)));
         self.ended(steps)
+    }
+
+    /// Runs a frame of a query, unless the device holds its answer.
+    fn have_answered(&mut self, question: &Question) -> Result<(), Error> {
+        if self.engine.answered == Some(question.query) {
+            return Ok(());
+        }
+        self.answer(question, Instant::now()).map(drop)
+    }
+
+    /// Does something with a query's place in the pipeline; `none` if it has no place.
+    pub(super) fn of_query<T>(
+        &mut self,
+        query: &Query,
+        none: T,
+        what: impl FnOnce(&mut dyn Pipeline, usize) -> Result<T, Error>,
+    ) -> Result<T, Error> {
+        let Some(pipeline) = &mut self.engine.pipeline else { return Ok(none) };
+        match pipeline.place_of(query) {
+            Some(at) => what(&mut **pipeline, at),
+            None => Ok(none),
+        }
     }
 }

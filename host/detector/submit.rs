@@ -2,106 +2,133 @@
 
 use super::Detector;
 use super::frame::Answered;
-use crate::contacts::{Contacts, DeviceAnswer};
+use crate::contacts::{Answer, Contacts, DeviceAnswer};
 use crate::device::emulator::start_threads;
 use crate::error::Error;
 use crate::pipeline::collect::collect;
+use crate::query::{Query, TypedQuery};
 use crate::scene::{BodyId, DeviceInput, Input};
 use std::time::Instant;
 
 impl Detector {
-    /// Prepares frames that the host does not wait for: says where bodies will be found, asks for the frame that is there now, loads
-    /// every kernel and takes all memory. Then [`Detector::submit`] takes no memory and waits for nothing. Bodies that are not named
+    /// Prepares submissions that the host does not wait for: runs the queries with the bodies where their memory says now, loads every
+    /// kernel and takes all memory. [`Detector::submit`] then takes no memory and waits for nothing. Bodies that are not named
     /// rest. Any other call that changes the detector ends it.
     ///
     /// # Errors
-    /// As for [`Detector::frame`]; [`Error::Choice`] for a traversal that cannot do without the host.
-    pub fn prepare(&mut self, inputs: &[(BodyId, DeviceInput)]) -> Result<Contacts, Error> {
-        let prepared = self.prepared(inputs);
+    /// As for [`Detector::step`]; [`Error::Choice`] for no query, and for a traversal that needs the host.
+    pub fn prepare(&mut self, motions: &[(BodyId, DeviceInput)], queries: &[Query]) -> Result<(), Error> {
+        let prepared = self.prepared(motions, queries);
         self.ended(prepared)
     }
 
-    fn prepared(&mut self, inputs: &[(BodyId, DeviceInput)]) -> Result<Contacts, Error> {
-        let given: Vec<(BodyId, Input)> =
-            inputs.iter().map(|&(id, input)| (id, Input::OnDevice(input))).collect();
-        self.frame(&given)?;
-        if let (true, Some(pipeline)) = (inputs.is_empty(), &mut self.engine.pipeline) {
-            pipeline.place(self.scene.bodies(), &[])?;
-        }
-        // Again, with lists and plans that this frame has settled.
-        let contacts = self.detect()?;
-        if self.portion.slices > 1 {
+    fn prepared(&mut self, motions: &[(BodyId, DeviceInput)], queries: &[Query]) -> Result<(), Error> {
+        if queries.is_empty() {
             return Err(Error::Choice {
-                what: format!("a submission in {} slices", self.portion.slices),
-                advice: "the lists of a whole frame have no room: give the device more memory, or ask frame by frame".into(),
+                what: "a submission without a query".into(),
+                advice: "name the queries that will be submitted".into(),
             });
         }
-        if let Some(pipeline) = &mut self.engine.pipeline {
-            pipeline.prepare()?;
+        let given: Vec<(BodyId, Input)> =
+            motions.iter().map(|&(id, motion)| (id, Input::OnDevice(motion))).collect();
+        // Positions with room for the end of the step from the first query on, if any will read it.
+        let in_motion = queries.iter().any(|query| !query.kind().is_at_rest());
+        self.engine.has_ends |= in_motion && self.engine.pipeline.is_none();
+        let mut questions = Vec::new();
+        for (at, query) in queries.iter().enumerate() {
+            if at == 0 {
+                self.answer_step(&given, *query, Instant::now())?;
+            }
+            questions.push(self.question(*query)?);
         }
-        self.placed.submit(inputs);
-        Ok(contacts)
+        // Twice, so that lists and plans have settled, and those that queries share are as long as the longest needs.
+        for _ in 0..2 {
+            for question in &questions {
+                self.answer(question, Instant::now())?;
+                let slices = self.portion.slices(&question.query);
+                if slices > 1 {
+                    return Err(Error::Choice {
+                        what: format!("a submission in {slices} slices"),
+                        advice: "the lists of a whole frame have no room: give the device more memory, or query frame by frame".into(),
+                    });
+                }
+            }
+        }
+        // From memory of the caller, and from nowhere else: a query may have brought positions to the host.
+        self.apply(&given, None)?;
+        if let Some(pipeline) = &mut self.engine.pipeline {
+            if motions.is_empty() {
+                pipeline.place(self.scene.bodies(), &[])?;
+            }
+            let places: Vec<usize> = queries.iter().filter_map(|query| pipeline.place_of(query)).collect();
+            pipeline.prepare(&places)?;
+        }
+        self.placed.submit(motions);
+        Ok(())
     }
 
-    /// Whether [`Detector::submit`] may be called, and what was recorded of it run again: [`Detector::prepare`] was called, and
+    /// Whether [`Detector::submit`] may be called, and a recording of it launched again: [`Detector::prepare`] was called, and
     /// nothing since then that changes the detector.
     pub fn is_prepared(&self) -> bool {
         let pipeline = self.engine.pipeline.as_ref();
         pipeline.map_or_else(|| !self.may_meet(), |pipeline| pipeline.is_prepared())
     }
 
-    /// Submits a frame to the device's stream, with bodies where their memory says when its turn comes: launches alone. So it may be
-    /// called while that stream is captured, and the graph launched as often as wanted, as long as the detector
-    /// [is prepared](Detector::is_prepared). [`Detector::on_device`] says where the answer will lie, [`Detector::collect`] waits
-    /// for it.
+    /// Submits the prepared queries to the device's stream, with bodies where their memory says when its turn comes: launches alone. So
+    /// it may be called while that stream is captured, and the graph launched as often as wanted, as long as the detector
+    /// [is prepared](Detector::is_prepared). [`Detector::on_device`] gives the addresses of the answers, [`Detector::collect`] waits
+    /// for one.
     ///
     /// Times of its stages are not taken. On a CPU it is done when this returns.
     ///
     /// # Errors
-    /// [`Error::Choice`] when it is not prepared; those of the device.
+    /// [`Error::Choice`] if it is not prepared; those of the device.
     pub fn submit(&mut self) -> Result<(), Error> {
         start_threads()?;
-        self.engine.is_answered = false;
+        self.engine.answered = None;
         self.read_again(true);
         let submitted = self.engine.pipeline.as_mut().map_or(Ok(()), |pipeline| pipeline.submit());
         self.ended(submitted)
     }
 
-    /// Where the answer of what is submitted lies, for kernels of the caller behind it; `None` where it is not prepared, or nothing can
+    /// Addresses of the answer to a submitted query, for kernels of the caller behind it; `None` if it is not prepared, or nothing can
     /// meet.
-    pub fn on_device(&self) -> Option<DeviceAnswer> {
-        self.engine.pipeline.as_ref().and_then(|pipeline| pipeline.answer())
+    pub fn on_device(&self, query: &Query) -> Option<DeviceAnswer> {
+        let pipeline = self.engine.pipeline.as_ref()?;
+        pipeline.place_of(query).and_then(|at| pipeline.answer(at))
     }
 
-    /// Waits for what was submitted last, or recorded and launched again, and brings the answer. Where a list had too little room it
-    /// grows and the frame, with bodies where they were placed, is asked again: the answer is whole, and the detector is no longer
-    /// [prepared](Detector::is_prepared).
+    /// Waits for the last submission, or the last launch of its recording, and brings the answer to one of its queries. If a list had too
+    /// little room it grows and the query runs again, with bodies where they were placed: the answer is whole, and the detector is no
+    /// longer [prepared](Detector::is_prepared).
     ///
     /// # Errors
     /// [`Error::Input`] and [`Error::Choice`] for positions and poses of the caller that cannot be computed with; those of the device.
-    pub fn collect(&mut self) -> Result<Contacts, Error> {
-        let collected = self.collected();
-        self.ended(collected)
+    pub fn collect<Q: TypedQuery>(&mut self, query: &Q) -> Result<Answer<Q::Rows>, Error> {
+        let collected = self.collected((*query).into());
+        self.ended(collected).map(Contacts::typed::<Q>)
     }
 
-    fn collected(&mut self) -> Result<Contacts, Error> {
+    fn collected(&mut self, query: Query) -> Result<Contacts, Error> {
         let start = Instant::now();
-        let layout = self.layout()?;
+        let question = self.question(query)?;
+        let layout = self.layout(&query)?;
         self.read_again(true);
-        let Some(pipeline) = &mut self.engine.pipeline else {
-            return Ok(Contacts::none(self.question.query));
-        };
-        let whole = pipeline.collect()?.map(|(found, stages)| {
-            let seen = found.seen;
-            collect(found, stages, &layout, &self.device.looks()).map(|contacts| Answered { contacts, seen })
+        let Some(pipeline) = &mut self.engine.pipeline else { return Ok(Contacts::none(query)) };
+        let found = pipeline.place_of(&query).map_or(Ok(None), |at| pipeline.collect(at))?;
+        let whole = found.map(|found| {
+            let seen = found.0.seen;
+            collect(found, &query, &layout, &self.device.looks()).map(|contacts| Answered { contacts, seen })
         });
         match whole.transpose()? {
-            Some(answered) if self.check_seen(answered.seen)? => self.collect_answer(answered, start),
-            _ => self.answer(start),
+            Some(answered) if self.check_seen(answered.seen)? => {
+                self.collect_answer(&question, answered, start)
+            }
+            _ => self.answer(&question, start),
         }
     }
 
     fn may_meet(&self) -> bool {
-        self.engine.last_layout().is_none_or(|layout| layout.may_meet())
+        self.engine.layouts.last().is_none_or(|layout| layout.may_meet())
     }
 }

@@ -12,6 +12,7 @@ use bytemuck::Pod;
 use nearmiss_kernels::abi::Span;
 use std::marker::PhantomData;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 /// Memory of a machine.
 pub(super) enum Memory {
@@ -63,7 +64,9 @@ impl<T: Pod> Buffer<T> {
     pub fn write(&mut self, items: &[T]) -> Result<(), Error> {
         assert!(items.len() <= self.len, "more items than the buffer has elements");
         self.usage.allows("memory was written by the host")?;
-        self.ledger.wrote(self.purpose, size_of_val(items) as u64);
+        let count = size_of_val(items) as u64;
+        self.ledger.wrote(self.purpose, count);
+        self.usage.uploaded.fetch_add(count, Ordering::Relaxed);
         let bytes: &[u8] = bytemuck::cast_slice(items);
         match (&mut self.memory, &*self.machine) {
             (Memory::Host(m), Machine::Emulator(e)) => {

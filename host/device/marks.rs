@@ -37,6 +37,11 @@ impl Device {
         self.usage.allocations.load(Ordering::Relaxed)
     }
 
+    /// Bytes copied from the host to the device's memory so far.
+    pub fn uploaded(&self) -> u64 {
+        self.usage.uploaded.load(Ordering::Relaxed)
+    }
+
     /// How often the host waited for the device so far.
     pub fn waits(&self) -> u64 {
         self.usage.waits.load(Ordering::Relaxed)

@@ -18,6 +18,8 @@ pub struct Usage {
     pub waits: AtomicU64,
     /// How often work was what it was the last time, and done at once.
     pub replays: AtomicU64,
+    /// Bytes copied from the host so far.
+    pub uploaded: AtomicU64,
     /// Views of memory that the host holds now.
     pub views: AtomicU64,
     /// Most bytes that may be held; as many as there can be for what the machine has.
@@ -29,9 +31,10 @@ pub struct Usage {
 impl Usage {
     /// Nothing yet.
     pub fn new() -> Usage {
-        let [launches, bytes, peak, allocations, waits, replays, views] = [const { AtomicU64::new(0) }; 7];
+        let [launches, bytes, peak, allocations, waits, replays, uploaded, views] =
+            [const { AtomicU64::new(0) }; 8];
         let [most, answers] = [const { AtomicU64::new(u64::MAX) }; 2];
-        Usage { launches, bytes, peak, allocations, waits, replays, views, most, answers }
+        Usage { launches, bytes, peak, allocations, waits, replays, uploaded, views, most, answers }
     }
 
     /// Whether more than launches is allowed now, to this thread.

@@ -5,30 +5,43 @@ mod features;
 use super::counts::Counts;
 use super::{Found, Hits, Layout, Listed, Stages};
 use crate::contacts::{
-    Answer, Closest, Contact, Contacts, Degraded, Front, Kind, NearPair, NearestTriangles, Queues, Status,
-    TrianglePair, sort,
+    Closest, Contact, Contacts, Degraded, Front, Kind, NearPair, NearestTriangles, Queues, Rows, Stats,
+    Status, TrianglePair, sort,
 };
 use crate::error::Error;
 use crate::memory;
+use crate::query::Query;
 use features::{Features, edge_edge, vertex_face};
 use nearmiss_emulator::Looks;
 use nearmiss_kernels::abi::{Hit, NearHit, NearestHit, Pair, counter};
 use nearmiss_kernels::prim::inclusion::Verdict;
 use nearmiss_kernels::prim::near::corner_weights;
 
-/// The contacts of a frame, with its figures.
+/// The answer of a frame, with its figures.
 ///
 /// # Errors
 /// [`Error::OutOfMemory`]; [`Error::Interrupted`] if a look ends it.
-pub fn collect(found: Found, stages: Stages, layout: &Layout, looks: &Looks) -> Result<Contacts, Error> {
+pub fn collect(
+    (found, stages): (Found, Stages),
+    query: &Query,
+    layout: &Layout,
+    looks: &Looks,
+) -> Result<Contacts, Error> {
     memory::require("the contacts", found.bytes())?;
     let count = |which| found.counters[which];
     let vf_ee = [count(counter::VF), count(counter::EE)];
     let of_triangles = matches!(found.listed, Listed::Pairs(_) | Listed::Nearest(_));
-    let contacts = Contacts {
-        answer: answer(&found, layout, looks),
+    let starts_crossing = found.is_start_checked.then(|| count(counter::STARTS_CROSSING));
+    let mut contacts = Contacts::new(rows(&found, layout, looks), *query, starts_crossing);
+    contacts.unresolved = match found.listed {
+        Listed::Earliest { unresolved, .. } => unresolved.into(),
+        Listed::Pairs(_) | Listed::Hits { .. } | Listed::Near(_) | Listed::Nearest(_) => {
+            count(counter::UNRESOLVED)
+        }
+    };
+    contacts.degraded = degraded(&found);
+    contacts.stats = Stats {
         stages,
-        starts_crossing: found.is_start_checked.then(|| count(counter::STARTS_CROSSING)),
         triangle_pairs: count(counter::PAIRS),
         candidates: if of_triangles { count(counter::PAIRS) } else { vf_ee[0] + vf_ee[1] },
         candidates_vf_ee: vf_ee,
@@ -36,12 +49,6 @@ pub fn collect(found: Found, stages: Stages, layout: &Layout, looks: &Looks) -> 
         escalated_vf_ee: [count(counter::VF_ESCALATED), count(counter::EE_ESCALATED)],
         open_vf_ee: [count(counter::VF_OPEN), count(counter::EE_OPEN)],
         sliced_vf_ee: [count(counter::VF_HARD), count(counter::EE_HARD)],
-        unresolved: match found.listed {
-            Listed::Earliest { unresolved, .. } => unresolved.into(),
-            Listed::Pairs(_) | Listed::Hits { .. } | Listed::Near(_) | Listed::Nearest(_) => {
-                count(counter::UNRESOLVED)
-            }
-        },
         undecided: count(counter::UNDECIDED),
         undecided_wide: count(counter::UNDECIDED_WIDE),
         steps: count(counter::STEPS),
@@ -50,19 +57,16 @@ pub fn collect(found: Found, stages: Stages, layout: &Layout, looks: &Looks) -> 
         slices: 1,
         queues: queues(&found.counters),
         front: front(&found.counters),
-        degraded: degraded(&found),
     };
     if looks.ended() { Err(Error::Interrupted) } else { Ok(contacts) }
 }
 
-/// The answer. A part of it if a look ends it.
-fn answer(found: &Found, layout: &Layout, looks: &Looks) -> Answer {
+/// The rows of the answer. A part of them if a look ends it.
+fn rows(found: &Found, layout: &Layout, looks: &Looks) -> Rows {
     match &found.listed {
-        Listed::Earliest { toi, .. } => Answer::Earliest(*toi),
-        Listed::Near(hits) => Answer::Near(near_pairs(hits, found.ordered, layout, looks)),
-        Listed::Nearest(nearest) => {
-            Answer::Distance(nearest.first().map(|hit| nearest_triangles(hit, layout)))
-        }
+        Listed::Earliest { toi, .. } => Rows::Earliest(*toi),
+        Listed::Near(hits) => Rows::Near(near_pairs(hits, found.ordered, layout, looks)),
+        Listed::Nearest(nearest) => Rows::Distance(nearest.first().map(|hit| nearest_triangles(hit, layout))),
         Listed::Pairs(listed) => {
             let pair = |p: &Pair| {
                 let [(a, p), (b, q)] = [p.a, p.b].map(|t| layout.locate(t, |at| at.triangle));
@@ -73,7 +77,7 @@ fn answer(found: &Found, layout: &Layout, looks: &Looks) -> Answer {
             if !found.ordered {
                 sort::sort(&mut pairs, TrianglePair::key, looks);
             }
-            Answer::Pairs(pairs)
+            Rows::Pairs(pairs)
         }
         Listed::Hits { hits, certified } => {
             let contact = |(kind, bodies, [a, b]): Features, verdict: &Verdict| {
@@ -89,7 +93,7 @@ fn answer(found: &Found, layout: &Layout, looks: &Looks) -> Answer {
             if !found.ordered {
                 sort::sort(&mut contacts, Contact::key, looks);
             }
-            Answer::Contacts(contacts)
+            Rows::Contacts(contacts)
         }
     }
 }

@@ -6,13 +6,13 @@ use super::layout::Layout;
 use crate::device::Device;
 use crate::error::Error;
 use crate::memory;
-use crate::query::{Query, Rows};
+use crate::query::{ListedRows, Query};
 use crate::scene::Meets;
 use nearmiss_kernels::abi::{BodyRecord, Counter, EVERY, counter};
 
 /// Smaller answers are not compared with the memory that is free, in bytes.
 const LITTLE: u64 = 16 << 20;
-/// Rows that a candidate pair of triangles has in an answer of features, if all of them meet:
+/// ListedRows that a candidate pair of triangles has in an answer of features, if all of them meet:
 /// 1 / 2 + 9 / 4 in a closed mesh, more in a soup. It decides when rows are counted on the host,
 /// and nothing else.
 const ROWS_A_PAIR: u64 = 4;
@@ -32,14 +32,14 @@ pub struct Demand {
     /// Every pair of features that is as near at the start of the step is listed.
     within: Option<f64>,
     advice: &'static str,
-    /// Rows that earlier slices have found.
+    /// ListedRows that earlier slices have found.
     pub before: u64,
 }
 
 impl Demand {
     /// Of a query, whose tolerance was chosen.
     pub fn new(query: &Query) -> Demand {
-        let Some(Rows { bytes, within, advice }) = query.rows() else { return Demand::default() };
+        let Some(ListedRows { bytes, within, advice }) = query.rows() else { return Demand::default() };
         let counters: &[Counter] = if query.kind().is_of_features() {
             &[counter::VF_HITS, counter::EE_HITS]
         } else {
@@ -124,7 +124,7 @@ impl Group {
                     group.high[axis] = group.high[axis].max(at);
                 }
             }
-            let owned = layout.owners[triangle as usize];
+            let owned = layout.features.owners[triangle as usize];
             group.vertices += u64::from((owned & 0b111).count_ones());
             group.edges += u64::from((owned >> 3 & 0b111).count_ones());
             group
@@ -231,7 +231,7 @@ fn least(layout: &Layout, positions: &[[f64; 3]], within: f64) -> u64 {
 fn adjacent(layout: &Layout, body: usize) -> u64 {
     let [start, end] = [layout.starts[body], layout.starts[body + 1]];
     let mut edges_at = vec![0u64; (end.vertex - start.vertex) as usize];
-    let edges = &layout.edges[start.edge as usize..end.edge as usize];
+    let edges = &layout.features.edges[start.edge as usize..end.edge as usize];
     edges.iter().flatten().for_each(|&vertex| edges_at[(vertex - start.vertex) as usize] += 1);
     let of_edges: u64 = edges_at.iter().map(|count| count * count.saturating_sub(1) / 2).sum();
     3 * u64::from(end.triangle - start.triangle) + of_edges
@@ -255,7 +255,7 @@ mod tests {
         let layout = Layout::new(&bodies, query.kind());
         let certain = least(&layout, &points(&bodies), distance);
         let device = Device::open(Backend::Cpu, Some(1)).expect("a thread");
-        let found = Detector::new(device, Scene::from(bodies), query).and_then(|mut own| own.detect());
+        let found = Detector::new(device, Scene::from(bodies)).and_then(|mut own| own.query(&query));
         (certain, found.expect("an answer").len() as u64)
     }
 

@@ -5,7 +5,8 @@ use crate::mesh::Topology;
 use crate::query::QueryKind;
 use crate::scene::{Body, BodyId, BodyKind, Meets};
 use nearmiss_emulator::Looks;
-use nearmiss_kernels::abi::{BodyRecord, BodyTolerance, EVERY, NodeFilter};
+use nearmiss_kernels::abi::{BodyRecord, EVERY, NodeFilter};
+use std::sync::Arc;
 
 /// The indices of one body: its own plus these.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -18,34 +19,38 @@ pub struct Offsets {
     pub edge: u32,
 }
 
-/// All bodies' topology in one numbering: body after body.
-#[derive(Default)]
+/// Topology of all bodies in one numbering, body after body. Layouts for several queries of one scene share the long lists.
+#[derive(Clone, Default)]
 pub struct Layout {
-    /// Where each body begins, and at the end where the last one ends.
+    /// Where each body begins, and at the end where the last one ends. Edges are numbered if the layout has features.
     pub starts: Vec<Offsets>,
     /// Vertex indices of every triangle.
-    pub faces: Vec<[u32; 3]>,
-    /// End points of every edge. Empty for discrete queries.
-    pub edges: Vec<[u32; 2]>,
-    /// Edges of every triangle. Empty for discrete queries.
-    pub face_edges: Vec<[u32; 3]>,
-    /// What each triangle stands for. Empty for discrete queries.
-    pub owners: Vec<u32>,
+    pub faces: Arc<Vec<[u32; 3]>>,
+    /// Edges and owners; empty without a query of features.
+    pub features: Arc<FeatureTopology>,
     /// What kernels know of each body.
     pub records: Vec<BodyRecord>,
-    /// Tolerances of bodies by their first vertices; empty if all pairs have the same, and of
-    /// queries without one.
-    pub tolerances: Vec<BodyTolerance>,
     /// The [`NodeFilter::hub`] of each triangle, if pairs round a hub are no candidates; empty without hubs.
-    pub hubs: Vec<u32>,
+    pub hubs: Arc<Vec<u32>>,
     /// The same where they are, so that only their rims tell pairs apart; empty without hubs.
-    pub rims: Vec<u32>,
+    pub rims: Arc<Vec<u32>>,
     /// The bodies with triangles that may move, and those that are static.
     pub trees: [Vec<usize>; 2],
 }
 
+/// Edges of all bodies, and the features that each triangle stands for.
+#[derive(Clone, Default)]
+pub struct FeatureTopology {
+    /// End points of every edge.
+    pub edges: Vec<[u32; 2]>,
+    /// Edges of every triangle.
+    pub face_edges: Vec<[u32; 3]>,
+    /// Features that each triangle stands for.
+    pub owners: Vec<u32>,
+}
+
 impl Layout {
-    /// Lays bodies one behind the other for a query of that kind; edges only where it needs them.
+    /// Lays bodies one behind the other for a query of that kind; edges only if the query needs them.
     pub fn new(bodies: &[Body], kind: QueryKind) -> Layout {
         // Nothing ends it.
         Layout::within(bodies, kind, &Looks::new(None)).unwrap_or_default()
@@ -55,6 +60,7 @@ impl Layout {
     pub fn within(bodies: &[Body], kind: QueryKind, looks: &Looks) -> Option<Layout> {
         let mut all = Layout { starts: vec![Offsets::default()], ..Layout::default() };
         let mut at = Offsets::default();
+        let mut faces = Vec::new();
         let mut environments: Vec<u32> = bodies.iter().filter_map(|body| body.meets().environment).collect();
         environments.sort_unstable();
         environments.dedup();
@@ -72,21 +78,44 @@ impl Layout {
             if body.face_count() > 0 {
                 all.trees[usize::from(body.kind() == BodyKind::Static)].push(i);
             }
-            all.faces.extend(body.faces().iter().map(|face| face.map(|v| v + at.vertex)));
-            if kind.is_of_features() {
-                let own = Topology::within(body.faces(), body.vertex_count(), looks)?;
-                all.edges.extend(own.edges.iter().map(|edge| edge.map(|v| v + at.vertex)));
-                // An edge that does not exist is owned by nobody, so its number is never used.
-                all.face_edges
-                    .extend(own.face_edges.iter().map(|face| face.map(|e| e.saturating_add(at.edge))));
-                all.owners.extend(&own.owners);
-            }
+            faces.extend(body.faces().iter().map(|face| face.map(|v| v + at.vertex)));
             at.vertex += body.vertex_count() as u32;
             at.triangle += body.face_count() as u32;
-            at.edge = all.edges.len() as u32;
             all.starts.push(at);
         }
-        Some(all)
+        all.faces = Arc::new(faces);
+        if kind.is_of_features() { all.with_features(bodies, looks) } else { Some(all) }
+    }
+
+    /// The same with edges and owners, of the same bodies; `None` if the work was ended early. Cost: linear in triangles.
+    pub fn with_features(mut self, bodies: &[Body], looks: &Looks) -> Option<Layout> {
+        let mut features = FeatureTopology::default();
+        for (i, body) in bodies.iter().enumerate() {
+            let own = Topology::within(body.faces(), body.vertex_count(), looks)?;
+            let (vertex, edge) = (self.starts[i].vertex, features.edges.len() as u32);
+            features.edges.extend(own.edges.iter().map(|edge| edge.map(|v| v + vertex)));
+            // An edge that does not exist is owned by nobody, so its number is never used.
+            let numbered = |face: &[u32; 3]| face.map(|e| e.saturating_add(edge));
+            features.face_edges.extend(own.face_edges.iter().map(numbered));
+            features.owners.extend(&own.owners);
+            self.starts[i + 1].edge = features.edges.len() as u32;
+        }
+        self.features = Arc::new(features);
+        Some(self)
+    }
+
+    /// The layout of the same bodies for a query of another kind, without hubs.
+    pub fn seen_by(&self, bodies: &[Body], kind: QueryKind) -> Layout {
+        let mut layout = Layout { hubs: Arc::default(), rims: Arc::default(), ..self.clone() };
+        for (record, body) in layout.records.iter_mut().zip(bodies) {
+            record.self_contact = (body.meets_itself() && kind.is_within_bodies()).into();
+        }
+        layout
+    }
+
+    /// Whether edges are numbered.
+    pub fn has_features(&self) -> bool {
+        !self.features.owners.is_empty()
     }
 
     /// Of one body alone of so many triangles, to build a tree over them.
@@ -116,13 +145,8 @@ impl Layout {
             }
         }
         if hubs.iter().any(|&hub| hub != 0) {
-            *if keeps_adjacent { &mut self.rims } else { &mut self.hubs } = hubs;
+            *if keeps_adjacent { &mut self.rims } else { &mut self.hubs } = Arc::new(hubs);
         }
-    }
-
-    /// The smallest tolerance above 0, if pairs have several.
-    pub fn finest_tolerance(&self) -> Option<f64> {
-        self.tolerances.iter().map(|record| record.tolerance).reduce(f64::min)
     }
 
     /// How many bodies there are.

@@ -30,6 +30,19 @@ impl<T: Pod> List<T> {
         Ok(List { name, counter, entries: device.of(name).buffer(capacity.min(LONGEST as usize))? })
     }
 
+    /// Makes room for at least so many entries. What the list held is lost if it grows.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub fn reserve(&mut self, device: &Device, capacity: usize) -> Result<(), Error> {
+        if capacity > self.capacity() {
+            let device = device.of(self.name);
+            self.entries = device.buffer(0)?;
+            self.entries = device.buffer(capacity.min(LONGEST as usize))?;
+        }
+        Ok(())
+    }
+
     /// What a kernel is given, that counts with these counters.
     pub fn output(&self, counters: Counters) -> Output<T> {
         counters.output(self.entries.span(), self.counter)

@@ -18,9 +18,10 @@ pub(crate) mod purpose;
 mod sorter;
 mod tolerance;
 mod typed;
+pub(crate) mod wear;
 
 pub use broad::Share;
-pub use layout::{Layout, Offsets};
+pub use layout::{FeatureTopology, Layout, Offsets};
 pub use placing::{Moved, Seen, Whereabouts};
 pub use tolerance::{Tolerances, of_pair};
 pub use typed::{Found, Hits, Listed, Pipeline, Submits};
@@ -33,37 +34,48 @@ use crate::device::Device;
 use crate::error::Error;
 use crate::query::Query;
 use crate::scene::Body;
+use nearmiss_kernels::abi::BodyTolerance;
 use std::sync::Arc;
 use typed::TypedPipeline;
 
-/// The scene, query and share that a pipeline is made for.
-pub struct Pieces {
+/// A scene that a pipeline is made for.
+pub struct SceneParts {
     /// Where every body lies.
     pub layout: Arc<Layout>,
-    /// The question.
-    pub query: Query,
-    /// Its part of the work.
-    pub share: Share,
     /// Whether any position needs f64.
     pub holds_f64: bool,
+    /// Whether a query reads the end of the step.
+    pub has_ends: bool,
+}
+
+/// A query of such a scene.
+pub struct QueryParts {
+    /// Where every body lies, as this query sees it.
+    pub layout: Arc<Layout>,
+    /// The query, with the largest tolerance of its pairs.
+    pub query: Query,
+    /// Tolerances of bodies by their first vertices; empty if all pairs have the same, and for queries without one.
+    pub tolerances: Vec<BodyTolerance>,
+    /// Its part of the work.
+    pub share: Share,
 }
 
 #[cfg(test)]
-impl Pieces {
-    /// All of a query's work, in single precision.
-    fn whole(layout: Arc<Layout>, query: Query) -> Pieces {
-        Pieces { layout, query, share: Share::WHOLE, holds_f64: false }
+impl QueryParts {
+    /// All of a query's work.
+    fn whole(layout: Arc<Layout>, query: Query) -> QueryParts {
+        QueryParts { layout, query, tolerances: Vec::new(), share: Share::WHOLE }
     }
 }
 
-/// The pipeline of a query, or of a share of its work.
+/// The pipeline of a scene.
 ///
 /// # Errors
 /// Those of the device.
-pub fn pipeline(device: Device, bodies: &[Body], pieces: Pieces) -> Result<Box<dyn Pipeline>, Error> {
-    Ok(if pieces.holds_f64 {
-        Box::new(TypedPipeline::<f64>::new(device, bodies, pieces)?)
+pub fn pipeline(device: Device, bodies: &[Body], parts: &SceneParts) -> Result<Box<dyn Pipeline>, Error> {
+    Ok(if parts.holds_f64 {
+        Box::new(TypedPipeline::<f64>::new(device, bodies, parts)?)
     } else {
-        Box::new(TypedPipeline::<f32>::new(device, bodies, pieces)?)
+        Box::new(TypedPipeline::<f32>::new(device, bodies, parts)?)
     })
 }

@@ -3,7 +3,7 @@
 use crate::mesh::Positions;
 use nearmiss_kernels::abi::{
     BelowPrecisionArgs, CullArgs, CutArgs, DiscreteArgs, FeaturesArgs, LeastArgs, MortonArgs, NearArgs,
-    PlaceArgs, RungArgs, SolveArgs,
+    PlaceArgs, RungArgs, SolveArgs, StartsArgs,
 };
 use nearmiss_kernels::entry::{self, Entry};
 use nearmiss_kernels::math::{Real, Vec3};
@@ -12,6 +12,8 @@ use nearmiss_kernels::math::{Real, Vec3};
 pub trait Precision: Real + Send {
     /// Vertices of bodies that were moved.
     type Place: Entry<Args = PlaceArgs<Self>>;
+    /// Positions at the start of the step, apart.
+    type Starts: Entry<Args = StartsArgs<Self>>;
     /// Box of the triangle centres.
     type Bounds: Entry<Args = MortonArgs<Self>>;
     /// Codes of the triangle centres.
@@ -86,6 +88,7 @@ pub trait Precision: Real + Send {
 
 impl Precision for f32 {
     type Place = entry::place_f32;
+    type Starts = entry::place_starts_f32;
     type Bounds = entry::construct_bounds_f32;
     type Morton = entry::construct_morton_f32;
     type HalvesBounds = entry::construct_halves_bounds_f32;
@@ -134,6 +137,7 @@ impl Precision for f32 {
 
 impl Precision for f64 {
     type Place = entry::place_f64;
+    type Starts = entry::place_starts_f64;
     type Bounds = entry::construct_bounds_f64;
     type Morton = entry::construct_morton_f64;
     type HalvesBounds = entry::construct_halves_bounds_f64;

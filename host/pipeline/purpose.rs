@@ -2,6 +2,8 @@
 
 /// Where vertices are.
 pub const VERTICES: &str = "positions of all vertices";
+/// The same at t = 0 alone, if positions have two ends.
+pub const STARTS: &str = "positions of all vertices at t = 0";
 /// Three vertices a triangle.
 pub const FACES: &str = "vertices of each triangle";
 /// Vertices of rigid bodies without a pose.

@@ -1,6 +1,6 @@
 //! Features in motion: all contacts of a step, or the first.
 
-use super::{Certified, CertifiedPrecision, Question, Rows, Search, Solver};
+use super::{Certified, CertifiedPrecision, ListedRows, Question, Search, Solver};
 use crate::contacts::Contact;
 use crate::error::Error;
 
@@ -134,7 +134,7 @@ macro_rules! in_motion {
             fn is_at_rest() -> bool {
                 false
             }
-            fn rows(&self) -> Option<Rows> {
+            fn rows(&self) -> Option<ListedRows> {
                 $rows(&self.solver)
             }
             fn every() -> Vec<$kind> {
@@ -171,16 +171,16 @@ macro_rules! in_motion {
 in_motion!(Continuous, of_contacts);
 in_motion!(Earliest, of_a_time);
 
-fn of_contacts(solver: &ContinuousSolver) -> Option<Rows> {
+fn of_contacts(solver: &ContinuousSolver) -> Option<ListedRows> {
     let apart = solver.certified().filter(|certified| certified.is_apart());
     let advice = match apart {
         Some(_) => "use a smaller separation or tolerance",
         None => "use a shorter step or a smaller scene, or query the earliest contact alone",
     };
     let within = apart.map(|certified| certified.separation);
-    Some(Rows { bytes: size_of::<Contact>(), within, advice })
+    Some(ListedRows { bytes: size_of::<Contact>(), within, advice })
 }
 
-fn of_a_time(_: &ContinuousSolver) -> Option<Rows> {
+fn of_a_time(_: &ContinuousSolver) -> Option<ListedRows> {
     None
 }

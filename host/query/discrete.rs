@@ -1,6 +1,6 @@
 //! Triangles at t = 0.
 
-use super::{Question, Rows, Search, Solver};
+use super::{ListedRows, Question, Search, Solver};
 use crate::contacts::TrianglePair;
 
 /// Which triangle pairs share a point at t = 0?
@@ -88,8 +88,8 @@ impl Question for Discrete {
     fn keeps_adjacent(&self) -> bool {
         self.test.has_adjacent()
     }
-    fn rows(&self) -> Option<Rows> {
+    fn rows(&self) -> Option<ListedRows> {
         let advice = "use a smaller scene, or test bodies against each other only";
-        Some(Rows { bytes: size_of::<TrianglePair>(), within: None, advice })
+        Some(ListedRows { bytes: size_of::<TrianglePair>(), within: None, advice })
     }
 }

@@ -4,7 +4,7 @@ use super::{Certified, Search, Solver};
 use crate::error::Error;
 
 /// The rows of an answer that lists pairs.
-pub(crate) struct Rows {
+pub(crate) struct ListedRows {
     /// Bytes of one.
     pub bytes: usize,
     /// Pairs of features are listed that are this near at the start, a length; `None` if that is
@@ -72,7 +72,7 @@ pub(crate) trait Question {
         false
     }
     /// What it lists; `None` if it answers with one number.
-    fn rows(&self) -> Option<Rows> {
+    fn rows(&self) -> Option<ListedRows> {
         None
     }
     /// Whether its numbers mean something.

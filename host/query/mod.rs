@@ -11,6 +11,7 @@ mod near;
 mod queues;
 mod search;
 mod solver;
+mod typed;
 
 pub use bv::{Bv, WithVolume};
 pub use certified::{Certified, CertifiedPrecision};
@@ -23,9 +24,10 @@ pub use near::Near;
 pub use queues::{Balance, FrontShape, QueueShape, StealShape};
 pub use search::{Broad, Order, Rebuild, Refit, Search, Traversal};
 pub use solver::Solver;
+pub use typed::TypedQuery;
 
 use crate::error::Error;
-pub(crate) use kind::Rows;
+pub(crate) use kind::ListedRows;
 use kind::{Question, kinds};
 
 kinds! {
@@ -191,8 +193,22 @@ impl Query {
         self.search().check()
     }
 
+    /// The same without its numbers: queries of one shape use the same memory, whatever their distances and tolerances.
+    pub(crate) fn shape(&self) -> Query {
+        let search = Search { rebuild: None, ..self.search() };
+        let mut shape = self.with_search(search);
+        if let Query::Near(near) = &mut shape {
+            near.distance = Near::DISTANCE;
+        }
+        if let Some(certified) = shape.certified_mut() {
+            let min_separation = if certified.is_apart() { 1.0 } else { 0.0 };
+            *certified = Certified { separation: min_separation, ..Certified::by(certified.precision) };
+        }
+        shape
+    }
+
     /// What it lists; `None` if it answers with one number.
-    pub(crate) fn rows(&self) -> Option<Rows> {
+    pub(crate) fn rows(&self) -> Option<ListedRows> {
         self.question().rows()
     }
 

@@ -1,6 +1,6 @@
 //! Features at t = 0 within a distance.
 
-use super::{Question, Rows, Search, Solver};
+use super::{ListedRows, Question, Search, Solver};
 use crate::contacts::NearPair;
 use crate::error::Error;
 
@@ -47,9 +47,9 @@ impl Question for Near {
     fn listed_within(&self) -> f64 {
         self.distance
     }
-    fn rows(&self) -> Option<Rows> {
+    fn rows(&self) -> Option<ListedRows> {
         let advice = "use a smaller distance";
-        Some(Rows { bytes: size_of::<NearPair>(), within: Some(self.distance), advice })
+        Some(ListedRows { bytes: size_of::<NearPair>(), within: Some(self.distance), advice })
     }
     fn check(&self) -> Result<(), Error> {
         if self.distance > 0.0 && self.distance < f64::INFINITY {

@@ -118,12 +118,6 @@ impl Body {
         self.tolerance = Kept(Some(self.default_tolerance()));
     }
 
-    /// Takes over the default tolerance of the body of which this is another frame.
-    pub(crate) fn with_tolerance_of(mut self, body: &Body) -> Body {
-        self.tolerance = Kept(Some(body.default_tolerance()));
-        self
-    }
-
     /// Puts the body where a frame says, which [`Body::check`] has let pass. Cost: a copy of the positions.
     pub(crate) fn put(&mut self, input: &Input) {
         self.away = None;

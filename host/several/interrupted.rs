@@ -21,7 +21,7 @@ impl MultiDetector {
         if let Err(Error::Interrupted) = done {
             self.interrupt.clear();
             // Work is divided by what the next frame costs.
-            self.ms.fill(0.0);
+            self.divisions.iter_mut().for_each(|division| division.ms.fill(0.0));
         }
         done
     }

@@ -20,7 +20,7 @@ use crate::stage::narrow::{
 };
 use crate::stage::refit::{bottom_up, levels, tiles as refit_of_tiles, treelets};
 use crate::stage::traverse::{front, nearest as nearest_first, queue, steal};
-use crate::stage::{balance, fit as fitting, order, place, status, traverse};
+use crate::stage::{balance, fit as fitting, order, place, starts, status, traverse};
 use bytemuck::NoUninit;
 use core::marker::PhantomData;
 use name::{Name, precision};
@@ -276,6 +276,8 @@ const BALANCE: u32 = 512;
 kernels! {
     place_f32: place::place::<f32, B>, [PlaceArgs<f32>], WIDE, place::SHARED;
     place_f64: place::place::<f64, B>, [PlaceArgs<f64>], WIDE, place::SHARED;
+    place_starts_f32: starts::starts::<f32, B>, [StartsArgs<f32>], WIDE, 0;
+    place_starts_f64: starts::starts::<f64, B>, [StartsArgs<f64>], WIDE, 0;
     construct_bounds_f32: morton::bounds::<f32, B>, [MortonArgs<f32>], WIDE, centres::shared_bytes(WIDE);
     construct_bounds_f64: morton::bounds::<f64, B>, [MortonArgs<f64>], WIDE, centres::shared_bytes(WIDE);
     construct_morton_f32: morton::morton::<f32, B>, [MortonArgs<f32>], WIDE, 0;

@@ -8,20 +8,21 @@
 use nearmiss::device::Backend;
 use nearmiss::mesh::{Body, Mesh};
 use nearmiss::pipeline::{Stages, mean_side};
-use nearmiss::{Detector, Device, Error, Query};
+use nearmiss::{Device, Error, Query};
+use nearmiss_lab::OneQuery;
 use std::path::Path;
 
 /// Frames that are asked; the first warms up.
 const FRAMES: usize = 9;
 
 fn ask(device: &Device, body: &Body, query: Query) -> Result<(), Error> {
-    let mut detector = Detector::new(device.clone(), vec![body.clone()], query)?;
+    let mut detector = OneQuery::new(device.clone(), vec![body.clone()], query)?;
     let mut contacts = detector.detect()?;
     let mut frames = Vec::new();
     let mut steps: Vec<Vec<(&str, f64)>> = Vec::new();
     for _ in 0..FRAMES {
         contacts = detector.detect()?;
-        frames.push(contacts.stages);
+        frames.push(contacts.stats.stages);
         steps.push(detector.narrow_steps()?);
     }
     let middle = |mut of: Vec<f64>| {
@@ -32,8 +33,8 @@ fn ask(device: &Device, body: &Body, query: Query) -> Result<(), Error> {
     println!(
         "{:?}: {} triangle pairs, {:?} candidates, {} listed, {} unresolved",
         query.kind(),
-        contacts.triangle_pairs,
-        contacts.candidates_vf_ee,
+        contacts.stats.triangle_pairs,
+        contacts.stats.candidates_vf_ee,
         contacts.len(),
         contacts.unresolved
     );

@@ -10,7 +10,8 @@ use nearmiss::device::Backend;
 use nearmiss::mesh::{Mesh, Positions};
 use nearmiss::query::Continuous;
 use nearmiss::scene::{BodyId, Input, Pose, Scene};
-use nearmiss::{Body, Detector, Device, Error, Query};
+use nearmiss::{Body, Device, Error, Query};
+use nearmiss_lab::OneQuery;
 
 /// Frames that are timed.
 const FRAMES: usize = 15;
@@ -68,7 +69,7 @@ fn main() -> Result<(), Error> {
     (0..BODIES).for_each(|_| _ = bodies.add(Body::rigid(mesh.clone())));
     let free = Query::from(Continuous::default().assuming_free(true));
     for query in [Query::discrete(), Query::continuous(), free, Query::near(0.02), Query::distance()] {
-        let mut detector = Detector::new(device.clone(), bodies.clone(), query)?;
+        let mut detector = OneQuery::new(device.clone(), bodies.clone(), query)?;
         let ids: Vec<BodyId> = detector.scene().ids().collect();
         for built in ["as added", "after a rebuild"] {
             let (mut frames, mut walls, mut found) = (Vec::new(), Vec::new(), 0);
@@ -79,8 +80,8 @@ fn main() -> Result<(), Error> {
                     .collect();
                 let contacts = detector.frame(&inputs)?;
                 if frame > 0 {
-                    frames.push(contacts.stages.place + contacts.stages.total);
-                    walls.push(contacts.stages.wall);
+                    frames.push(contacts.stats.stages.place + contacts.stats.stages.total);
+                    walls.push(contacts.stats.stages.wall);
                 }
                 found += contacts.len();
             }

@@ -7,7 +7,8 @@
 
 use nearmiss::device::Backend;
 use nearmiss::mesh::{Body, Mesh, Topology};
-use nearmiss::{Detector, Device, Error, Query};
+use nearmiss::{Device, Error, Query};
+use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use std::path::Path;
 use std::time::Instant;
@@ -27,18 +28,18 @@ fn motion(body: &Body) -> [f64; 3] {
 fn row(name: &str, device: &Device, body: Body, seconds: f64) -> Result<(), Error> {
     let triangles = body.face_count() as f64;
     let [edge, mean, most] = motion(&body);
-    let ask = |query: Query| Detector::new(device.clone(), vec![body.clone()], query)?.detect();
+    let ask = |query: Query| OneQuery::new(device.clone(), vec![body.clone()], query)?.detect();
     let (still, moving) = (ask(Query::discrete())?, ask(Query::continuous())?);
     let a_triangle = |count: f64| count / triangles;
     println!(
         "| {name} | {triangles} | {:.2} / {:.1} | {:.2} | {:.3} | {:.1} | {:.1} | {:.1} | {:.3} | {seconds:.2} |",
         mean / edge,
         most / edge,
-        a_triangle(still.triangle_pairs as f64),
+        a_triangle(still.stats.triangle_pairs as f64),
         a_triangle(still.len() as f64),
-        a_triangle(moving.triangle_pairs as f64),
-        a_triangle(moving.candidates_vf_ee[0] as f64),
-        a_triangle(moving.candidates_vf_ee[1] as f64),
+        a_triangle(moving.stats.triangle_pairs as f64),
+        a_triangle(moving.stats.candidates_vf_ee[0] as f64),
+        a_triangle(moving.stats.candidates_vf_ee[1] as f64),
         a_triangle(moving.len() as f64),
     );
     Ok(())

@@ -4,6 +4,7 @@
 
 pub mod accuracy;
 pub mod case;
+mod one_query;
 pub mod oracle;
 pub mod pairs;
 pub mod robustness;
@@ -11,3 +12,4 @@ pub mod scene;
 pub mod tables;
 
 pub use case::{Case, Features};
+pub use one_query::{OneQuery, OneQueryOnSeveral};

@@ -33,11 +33,11 @@ impl Contacts {
         near: Option<fn(&nearmiss::contacts::NearPair) -> T>,
         nearest: Option<fn(&nearmiss::contacts::NearestTriangles) -> T>,
     ) -> PyResult<Vec<T>> {
-        use nearmiss::Answer;
-        Ok(match (&self.contacts.answer, contact, near, nearest) {
-            (Answer::Contacts(all), Some(of), _, _) => all.iter().map(of).collect(),
-            (Answer::Near(all), _, Some(of), _) => all.iter().map(of).collect(),
-            (Answer::Distance(one), _, _, Some(of)) => one.iter().map(of).collect(),
+        use nearmiss::Rows;
+        Ok(match (&self.contacts.rows, contact, near, nearest) {
+            (Rows::Contacts(all), Some(of), _, _) => all.iter().map(of).collect(),
+            (Rows::Near(all), _, Some(of), _) => all.iter().map(of).collect(),
+            (Rows::Distance(one), _, _, Some(of)) => one.iter().map(of).collect(),
             _ => return Err(self.has_no(what)),
         })
     }
@@ -47,13 +47,13 @@ impl Contacts {
     }
 
     fn about(&self) -> &'static str {
-        use nearmiss::Answer;
-        match &self.contacts.answer {
-            Answer::Pairs(_) => "triangle pairs",
-            Answer::Contacts(_) => "contacts in time",
-            Answer::Earliest(_) => "one time",
-            Answer::Near(_) => "near pairs",
-            Answer::Distance(_) => "the nearest triangles",
+        use nearmiss::Rows;
+        match &self.contacts.rows {
+            Rows::Pairs(_) => "triangle pairs",
+            Rows::Contacts(_) => "contacts in time",
+            Rows::Earliest(_) => "one time",
+            Rows::Near(_) => "near pairs",
+            Rows::Distance(_) => "the nearest triangles",
         }
     }
 }
@@ -88,8 +88,8 @@ impl Contacts {
     #[getter]
     fn bodies<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, "bodies", || {
-            let bodies = match &self.contacts.answer {
-                nearmiss::Answer::Pairs(pairs) => pairs.iter().map(|pair| numbers(pair.bodies)).collect(),
+            let bodies = match &self.contacts.rows {
+                nearmiss::Rows::Pairs(pairs) => pairs.iter().map(|pair| numbers(pair.bodies)).collect(),
                 _ => self.of_rows(
                     "bodies",
                     Some(|c| numbers(c.bodies)),
@@ -107,8 +107,8 @@ impl Contacts {
     #[getter]
     fn indices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, "indices", || {
-            let indices = match &self.contacts.answer {
-                nearmiss::Answer::Pairs(pairs) => pairs.iter().map(|pair| pair.triangles).collect(),
+            let indices = match &self.contacts.rows {
+                nearmiss::Rows::Pairs(pairs) => pairs.iter().map(|pair| pair.triangles).collect(),
                 _ => self.of_rows(
                     "indices",
                     Some(|c| [c.a, c.b]),
@@ -214,8 +214,8 @@ impl Contacts {
     /// may cross at the start: see `is_free`. Of Continuous and Earliest.
     #[getter]
     fn earliest(&self) -> PyResult<Option<f64>> {
-        match &self.contacts.answer {
-            nearmiss::Answer::Contacts(_) | nearmiss::Answer::Earliest(_) => Ok(self.contacts.earliest_toi()),
+        match &self.contacts.rows {
+            nearmiss::Rows::Contacts(_) | nearmiss::Rows::Earliest(_) => Ok(self.contacts.earliest_toi()),
             _ => Err(self.has_no("the earliest time")),
         }
     }
@@ -223,8 +223,8 @@ impl Contacts {
     /// How far apart the nearest bodies are; None where no two may meet. Of Distance.
     #[getter]
     fn distance(&self) -> PyResult<Option<f64>> {
-        match &self.contacts.answer {
-            nearmiss::Answer::Distance(_) => Ok(self.contacts.distance()),
+        match &self.contacts.rows {
+            nearmiss::Rows::Distance(_) => Ok(self.contacts.distance()),
             _ => Err(self.has_no("the distance")),
         }
     }
@@ -232,7 +232,7 @@ impl Contacts {
     /// How many pairs the narrow test was asked.
     #[getter]
     fn candidates(&self) -> u64 {
-        self.contacts.candidates
+        self.contacts.stats.candidates
     }
 
     /// How many are listed that are neither proven nor refuted; of an earliest query 1 if its time

@@ -27,6 +27,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 #[pyclass(module = "nearmiss", frozen)]
 pub struct Detector {
     one: Mutex<Asked>,
+    query: nearmiss::Query,
     device: Py<Device>,
     /// What ends its calls.
     interrupt: Interrupt,
@@ -131,6 +132,18 @@ impl Detector {
         known(number, self.look(py, |detector| detector.scene().id(number))?)
     }
 
+    /// The named tolerance of a certified solver, or one of the defaults.
+    fn tolerance_of(
+        &self,
+        py: Python<'_>,
+        default: fn(&mut nearmiss::Detector) -> f64,
+    ) -> PyResult<Option<f64>> {
+        match self.query.certified().map(|certified| certified.tolerance) {
+            Some(None) => self.work(py, |one| default(&mut one.detector)).map(Some),
+            named => Ok(named.flatten()),
+        }
+    }
+
     /// Does something with the answer that lay on the device when so many questions had been asked, if it still does.
     pub fn with_answer<T: Send>(
         &self,
@@ -184,13 +197,15 @@ impl Detector {
         let detector = watched(py, &interrupt, |watch| {
             let _turn = watch.lock(turn)?;
             watch.begins();
-            nearmiss::Detector::new(on, bodies, query)
+            let mut detector = nearmiss::Detector::new(on, bodies)?;
+            detector.begin(&query)?;
+            Ok(detector)
         });
         let one = Mutex::new(Asked::new(detector?.map_err(raised)?));
         if let Ok(scene) = scene.cast::<Scene>() {
             scene.try_borrow_mut()?.taken = true;
         }
-        Ok(Detector { one, device, interrupt })
+        Ok(Detector { one, query, device, interrupt })
     }
 
     /// Moves bodies, and answers.
@@ -204,12 +219,12 @@ impl Detector {
     fn frame(&self, py: Python<'_>, inputs: Option<&Bound<'_, PyAny>>) -> PyResult<Contacts> {
         let frame = self.frame_of(py, inputs)?;
         let given = frame.inputs();
-        self.told(py, Does::Moves, |detector| detector.frame(&given))
+        self.told(py, Does::Moves, |detector| detector.step(&given, &self.query))
     }
 
     /// Answers for where the bodies are.
     fn detect(&self, py: Python<'_>) -> PyResult<Contacts> {
-        self.told(py, Does::AsksAnew, nearmiss::Detector::detect)
+        self.told(py, Does::AsksAnew, |detector| detector.query(&self.query))
     }
 
     /// Where contacts or near pairs are, of Continuous and Near; else ChoiceError. Of this
@@ -226,15 +241,14 @@ impl Detector {
     /// what it came to less than was asked, and `notes`: a sentence each.
     /// Of the contacts that `geometry` takes.
     fn summary<'py>(&self, py: Python<'py>, contacts: &Contacts) -> PyResult<Bound<'py, PyAny>> {
-        let told = self.look_at(py, |one| {
-            one.check(contacts.stamp).map(|()| one.detector.summary(&contacts.contacts))
-        })?;
+        let told = self
+            .work(py, |one| one.check(contacts.stamp).map(|()| one.detector.summary(&contacts.contacts)))?;
         python(py, &told.map_err(raised)?)
     }
 
     /// What a frame launches, holds and moves, by kernel and purpose: counted, as a dictionary.
     fn plan<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        python(py, &self.ask(py, Does::AsksAnew, nearmiss::Detector::plan)?)
+        python(py, &self.ask(py, Does::AsksAnew, |detector| detector.plan(&self.query))?)
     }
 
     /// Prepares frames that nobody waits for: `submit` then takes no memory and moves nothing through the host.
@@ -247,7 +261,8 @@ impl Detector {
         let held = frame.held;
         let (told, stamp, unread) = self.work(py, |one| {
             one.count(Does::Moves);
-            let told = one.detector.prepare(&given);
+            let told =
+                one.detector.prepare(&given, &[self.query]).and_then(|()| one.detector.collect(&self.query));
             // A refusal may leave it as it was prepared before.
             let as_before = told.is_err() && one.detector.is_prepared();
             let unread = if as_before { held } else { std::mem::replace(&mut one.held, held) };
@@ -280,7 +295,8 @@ impl Detector {
     /// Where the answer of a submission will lie; None where it is not prepared.
     fn on_device(detector: Bound<'_, Self>) -> PyResult<Option<DeviceAnswer>> {
         let own = detector.get();
-        let (answer, asked) = own.look_at(detector.py(), |one| (one.detector.on_device(), one.asked))?;
+        let (answer, asked) =
+            own.look_at(detector.py(), |one| (one.detector.on_device(&own.query), one.asked))?;
         let Some(answer) = answer else { return Ok(None) };
         let device = own.device.get().device.clone();
         Ok(Some(DeviceAnswer { answer, device, detector: detector.unbind(), asked }))
@@ -289,7 +305,7 @@ impl Detector {
     /// Waits for what was submitted last, and brings the answer to the host. Where a list was too short the frame is asked again, and
     /// the answer is whole; then the detector is no longer prepared.
     fn collect(&self, py: Python<'_>) -> PyResult<Contacts> {
-        self.told(py, Does::Submits, nearmiss::Detector::collect)
+        self.told(py, Does::Submits, |detector| detector.collect(&self.query))
     }
 
     /// Makes tiles or trees anew: pays when bodies have moved far from where they were made.
@@ -324,13 +340,13 @@ impl Detector {
     /// Smallest tolerance of a pair of bodies by a certified solver, a length.
     #[getter]
     fn tolerance(&self, py: Python<'_>) -> PyResult<Option<f64>> {
-        self.look(py, nearmiss::Detector::tolerance)
+        self.tolerance_of(py, nearmiss::Detector::tolerance)
     }
 
     /// Largest tolerance of a pair of bodies: that of `tolerance` if all pairs have the same.
     #[getter]
     fn largest_tolerance(&self, py: Python<'_>) -> PyResult<Option<f64>> {
-        self.look(py, nearmiss::Detector::largest_tolerance)
+        self.tolerance_of(py, nearmiss::Detector::largest_tolerance)
     }
 
     /// Where it is asked.
@@ -340,7 +356,7 @@ impl Detector {
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
-        let (query, bodies) = self.look(py, |d| (d.query().kind(), d.scene().ids().count()))?;
+        let (query, bodies) = (self.query.kind(), self.look(py, |d| d.scene().ids().count())?);
         let bodies = counted(bodies as u64, "body", "bodies");
         Ok(format!("<nearmiss.Detector: {query}, {bodies}, {}>", self.device.get().device.name()))
     }

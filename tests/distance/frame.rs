@@ -5,7 +5,8 @@ use crate::support::{ORDERS, ask, ask_scene, engine, machines, sanitizer, still,
 use nearmiss::contacts::NearestTriangles;
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::scene::{Input, Meets, Pose, Scene};
-use nearmiss::{Contacts, Detector, Query};
+use nearmiss::{Contacts, Query};
+use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
@@ -83,7 +84,7 @@ fn the_nearest_is_told_and_the_first_of_several() {
         let nearest = found.nearest().expect("two bodies");
         println!(
             "scene {at}: {:e}, {} candidates, {} tests",
-            nearest.distance, found.candidates, found.steps
+            nearest.distance, found.stats.candidates, found.stats.steps
         );
         if nearest.distance > 0.0 {
             let told = (nearest.distance, nearest.bodies.map(|body| body.index()), nearest.triangles);
@@ -102,16 +103,16 @@ fn every_way_and_every_machine_finds_the_same() {
         let query = Query::distance();
         let truth = ask(engine(), bodies.clone(), query);
         for way in ways(query) {
-            assert_eq!(ask(engine(), bodies.clone(), way).answer, truth.answer, "scene {at}, {way:?}");
+            assert_eq!(ask(engine(), bodies.clone(), way).rows, truth.rows, "scene {at}, {way:?}");
         }
         for order in ORDERS {
-            assert_eq!(ask(sanitizer(order), bodies.clone(), query).answer, truth.answer, "scene {at}");
+            assert_eq!(ask(sanitizer(order), bodies.clone(), query).rows, truth.rows, "scene {at}");
         }
         let print = |device| {
-            let mut detector = Detector::new(device, bodies.clone(), query).expect("a detector");
+            let mut detector = OneQuery::new(device, bodies.clone(), query).expect("a detector");
             let all = detector.detect().expect("an answer");
             detector.check_volumes().expect("sound trees");
-            (all.hash(), all.steps, detector.fingerprints().expect("prints"))
+            (all.hash(), all.stats.steps, detector.fingerprints().expect("prints"))
         };
         let on_engine = print(engine());
         assert_eq!(on_engine.0, truth.hash());
@@ -176,7 +177,7 @@ fn a_body_comes_and_goes() {
     let top = mesh.positions().to_f64().iter().map(|p| p[2]).fold(f64::MIN, f64::max);
     scene.add(Body::fixed(mesh));
     let id = scene.add(Body::rigid(ball));
-    let mut detector = Detector::new(engine(), scene.clone(), Query::distance()).expect("a detector");
+    let mut detector = OneQuery::new(engine(), scene.clone(), Query::distance()).expect("a detector");
     let mut touched = 0;
     for step in 0..9 {
         let pose = Pose::at([0.25, 0.125, top + 1.0 - 0.75 * f64::from(step)]);
@@ -185,7 +186,7 @@ fn a_body_comes_and_goes() {
         let body = there.remove(id).expect("the ball");
         assert_eq!(there.add(body.at(&Input::Pose(pose)).expect("a pose")), id);
         let anew: Contacts = ask_scene(engine(), there, Query::distance());
-        assert_eq!(found.answer, anew.answer, "step {step}");
+        assert_eq!(found.rows, anew.rows, "step {step}");
         touched += u32::from(found.distance() == Some(0.0));
     }
     assert!((1..9).contains(&touched), "{touched}");

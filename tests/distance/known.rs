@@ -1,11 +1,12 @@
 //! Answers that are known, and questions without one.
 
 use crate::support::{ask, engine, still};
-use nearmiss::contacts::Answer;
+use nearmiss::Rows;
 use nearmiss::mesh::{Mesh, Positions};
 use nearmiss::query::{QueryKind, Traversal};
 use nearmiss::scene::{BodyId, Meets, Scene};
-use nearmiss::{Body, Detector, Query};
+use nearmiss::{Body, Query};
+use nearmiss_lab::OneQuery;
 
 const UP: [[f32; 3]; 3] = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
 
@@ -66,9 +67,9 @@ fn the_first_of_several_is_told() {
 #[test]
 fn without_two_bodies_there_is_none() {
     let none = |scene: Scene| {
-        let mut detector = Detector::new(engine(), scene, Query::distance()).expect("a detector");
+        let mut detector = OneQuery::new(engine(), scene, Query::distance()).expect("a detector");
         let found = detector.detect().expect("an answer");
-        assert_eq!((found.answer.clone(), found.distance(), found.len()), (Answer::Distance(None), None, 0));
+        assert_eq!((found.rows.clone(), found.distance(), found.len()), (Rows::Distance(None), None, 0));
         assert_eq!(detector.collect().expect("an answer").distance(), None);
     };
     none(Scene::from(over(0.0)));

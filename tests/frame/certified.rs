@@ -8,9 +8,10 @@ use super::support::{ask, engine, machines};
 use nearmiss::contacts::{Contact, Kind, Status};
 use nearmiss::mesh::Body;
 use nearmiss::query::{QueryKind, Solver};
-use nearmiss::{Contacts, Detector, Query};
+use nearmiss::{Contacts, Query};
 use nearmiss_kernels::prim::cubic::{ee_toi, vf_toi};
 use nearmiss_kernels::prim::inclusion::{Params, Verdict};
+use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use std::collections::BTreeMap;
 
@@ -96,12 +97,12 @@ fn every_machine_escalates_the_same() {
     let body = crowded(4, 40, 24);
     let p = Params { budget: 2, ..Params::new(1e-3) };
     let print = |device, motion| {
-        let mut detector = Detector::new(device, vec![body.clone()], asking(motion, Solver::Certified, &p))
+        let mut detector = OneQuery::new(device, vec![body.clone()], asking(motion, Solver::Certified, &p))
             .expect("a detector");
         let all = detector.detect().expect("an answer");
         let prints = detector.fingerprints().expect("prints");
         // Of the earliest, which pairs are asked hangs on what was found before them.
-        let counts = (motion == QueryKind::Continuous).then_some((all.unresolved, all.escalated_vf_ee));
+        let counts = (motion == QueryKind::Continuous).then_some((all.unresolved, all.stats.escalated_vf_ee));
         (all.hash(), counts, prints)
     };
     for motion in [QueryKind::Continuous, QueryKind::Earliest] {

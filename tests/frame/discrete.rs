@@ -281,7 +281,7 @@ fn doubles_are_not_rounded() {
     let body = Body::still(Mesh::new("stack", Positions::F64(points), faces).expect("a mesh"));
     for device in machines() {
         let contacts = ask(device, vec![body.clone()], Query::discrete());
-        assert_eq!((contacts.len(), contacts.triangle_pairs), (0, 40 * 39 / 2));
+        assert_eq!((contacts.len(), contacts.stats.triangle_pairs), (0, 40 * 39 / 2));
     }
 }
 
@@ -291,6 +291,6 @@ fn the_float_test_finds_the_known_pairs_too() {
     let query = Query::from(Discrete::by(TriangleTest::Moller));
     for device in machines() {
         let contacts = ask(device, vec![scene::grid(4).expect("a scene")], query);
-        assert_eq!((contacts.len() as u64, contacts.undecided), (scene::grid_pairs(4), 0));
+        assert_eq!((contacts.len() as u64, contacts.stats.undecided), (scene::grid_pairs(4), 0));
     }
 }

@@ -5,12 +5,13 @@ use crate::support::{asked, engine};
 use nearmiss::device::Interrupt;
 use nearmiss::query::QueryKind;
 use nearmiss::scene::Scene;
-use nearmiss::{Detector, Error, MultiDetector, Query, Stage};
+use nearmiss::{Error, Query, Stage};
 use nearmiss_lab::scene;
+use nearmiss_lab::{OneQuery, OneQueryOnSeveral};
 use std::time::{Duration, Instant};
 
-fn detector(query: Query) -> Detector {
-    Detector::new(threads(2), bodies(200, true), query).expect("a detector")
+fn detector(query: Query) -> OneQuery {
+    OneQuery::new(threads(2), bodies(200, true), query).expect("a detector")
 }
 
 #[test]
@@ -48,16 +49,16 @@ fn another_thread_ends_a_frame() {
 #[test]
 fn a_detector_may_be_interrupted_while_it_is_made() {
     let interrupt = Interrupt::new();
-    let make = || Detector::new(threads(1).with_interrupt(&interrupt), bodies(300, true), Query::discrete());
+    let make = || OneQuery::new(threads(1).with_interrupt(&interrupt), bodies(300, true), Query::discrete());
     let (count, made) = looks(&interrupt, make);
     assert!(made.expect("a detector").interrupter().is(&interrupt) && count > 5, "{count}");
     for at in [1, count / 2, count] {
         interrupt.trigger_at(at);
         interrupted(&interrupt, make());
     }
-    let want = detector(Query::discrete()).detect().expect("an answer").answer.clone();
-    let own = || Detector::new(threads(1).with_interrupt(&interrupt), bodies(200, true), Query::discrete());
-    assert_eq!(own().expect("a detector").detect().expect("an answer").answer, want);
+    let want = detector(Query::discrete()).detect().expect("an answer").rows.clone();
+    let own = || OneQuery::new(threads(1).with_interrupt(&interrupt), bodies(200, true), Query::discrete());
+    assert_eq!(own().expect("a detector").detect().expect("an answer").rows, want);
 }
 
 /// The edges of a mesh are found on the host, before anything is launched: that ends too.
@@ -66,13 +67,13 @@ fn the_finding_of_edges_is_ended() {
     let body = || scene::draped(120_000).expect("a scene");
     let looks_of = |query| {
         let interrupt = Interrupt::new();
-        looks(&interrupt, || Detector::new(threads(2).with_interrupt(&interrupt), body(), query).map(drop)).0
+        looks(&interrupt, || OneQuery::new(threads(2).with_interrupt(&interrupt), body(), query).map(drop)).0
     };
     // A discrete query has no edges.
     let [without, with] = [Query::discrete(), Query::near(1e-3)].map(looks_of);
     assert!(with >= without + 20, "{with} looks, {without} without edges");
     let interrupt = Interrupt::new();
-    let make = || Detector::new(threads(2).with_interrupt(&interrupt), body(), Query::near(1e-3));
+    let make = || OneQuery::new(threads(2).with_interrupt(&interrupt), body(), Query::near(1e-3));
     for at in [1, 2, 10, 20] {
         interrupt.trigger_at(at);
         interrupted(&interrupt, make());
@@ -82,10 +83,10 @@ fn the_finding_of_edges_is_ended() {
 
 #[test]
 fn every_call_can_be_ended() {
-    type Call = fn(&mut Detector) -> Result<(), Error>;
+    type Call = fn(&mut OneQuery) -> Result<(), Error>;
     let calls: [(&str, Call); 6] = [
         ("detect", |own| own.detect().map(drop)),
-        ("rebuild", Detector::rebuild),
+        ("rebuild", |own| own.rebuild()),
         ("plan", |own| own.plan().map(drop)),
         ("repeat_stage", |own| own.repeat_stage(Stage::Traverse, 3).map(drop)),
         ("narrow_steps", |own| own.narrow_steps().map(drop)),
@@ -128,8 +129,8 @@ fn bodies_come_and_go_after_an_interrupt() {
     let [one, two]: [_; 2] = bodies(150, true).try_into().expect("two");
     let query = Query::continuous();
     let scene = || Scene::from(vec![one.clone()]);
-    let mut wanted = Detector::new(threads(1), scene(), query).expect("a detector");
-    let mut own = Detector::new(threads(1), scene(), query).expect("a detector");
+    let mut wanted = OneQuery::new(threads(1), scene(), query).expect("a detector");
+    let mut own = OneQuery::new(threads(1), scene(), query).expect("a detector");
     let interrupt = own.interrupter();
     for at in [1, 30] {
         let ids = [&mut wanted, &mut own].map(|detector| detector.add(two.clone()).expect("room"));
@@ -149,11 +150,11 @@ fn slices_are_interrupted() {
     let body = || scene::draped(5_000).expect("a cloth");
     for kind in [QueryKind::Discrete, QueryKind::Continuous] {
         let whole = engine();
-        let fresh = Detector::new(whole.clone(), body(), asked::of(kind)).and_then(|mut own| own.detect());
+        let fresh = OneQuery::new(whole.clone(), body(), asked::of(kind)).and_then(|mut own| own.detect());
         let fresh = fresh.expect("an answer");
         let sliced = |bytes: u64| {
-            let mut own = Detector::new(engine().limited(bytes), body(), asked::of(kind)).ok()?;
-            own.detect().ok().filter(|found| found.slices > 1).map(|_| own)
+            let mut own = OneQuery::new(engine().limited(bytes), body(), asked::of(kind)).ok()?;
+            own.detect().ok().filter(|found| found.stats.slices > 1).map(|_| own)
         };
         let peak = whole.bytes().1;
         let mut own = (1..40).rev().find_map(|part| sliced(peak * part / 40)).expect("slices have room");
@@ -173,7 +174,7 @@ fn several_devices_are_interrupted_together() {
         let make = || {
             let devices = vec![threads(1), threads(1)];
             let own =
-                MultiDetector::new(devices, bodies(2_000, false), Query::discrete()).expect("detectors");
+                OneQueryOnSeveral::new(devices, bodies(2_000, false), Query::discrete()).expect("detectors");
             if in_turn { own.in_turn() } else { own }
         };
         let (mut wanted, mut own) = (make(), make());

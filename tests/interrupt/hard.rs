@@ -3,7 +3,8 @@
 use super::threads;
 use crate::support::moving;
 use nearmiss::query::Broad;
-use nearmiss::{Body, Detector, Error, Query};
+use nearmiss::{Body, Error, Query};
+use nearmiss_lab::OneQuery;
 use std::time::{Duration, Instant};
 
 /// A machine with much else to do takes longer; without an interrupt these take seconds to minutes.
@@ -42,7 +43,7 @@ fn fan(n: u32) -> Body {
 
 /// How long a call goes on behind a trigger that comes in the middle of it.
 fn latency(body: &Body, query: Query, after: Duration) -> Duration {
-    let mut own = Detector::new(threads(2), body.clone(), query).expect("a detector");
+    let mut own = OneQuery::new(threads(2), body.clone(), query).expect("a detector");
     let interrupt = own.interrupter();
     let thread = std::thread::spawn(move || {
         std::thread::sleep(after);

@@ -3,7 +3,8 @@
 use super::{interrupted, looks, same, threads};
 use nearmiss::mesh::Positions;
 use nearmiss::scene::{BodyId, DeviceInput, DeviceRows, Input, Meets, Number};
-use nearmiss::{Body, Detector, Query};
+use nearmiss::{Body, Query};
+use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 
 fn soup(seed: u64) -> Body {
@@ -27,10 +28,10 @@ fn rows(ends: &[Vec<[f32; 3]>; 2]) -> DeviceInput {
     DeviceInput::Step([of(&ends[0]), of(&ends[1])])
 }
 
-fn detector() -> (Detector, Vec<BodyId>) {
+fn detector() -> (OneQuery, Vec<BodyId>) {
     let scene = nearmiss::Scene::from(vec![soup(1), soup(2)]);
     let ids = scene.ids().collect();
-    (Detector::new(threads(2), scene, Query::continuous()).expect("a detector"), ids)
+    (OneQuery::new(threads(2), scene, Query::continuous()).expect("a detector"), ids)
 }
 
 #[test]

@@ -10,13 +10,13 @@ fn other_units() {
             let truth = found(std::slice::from_ref(&body), QueryKind::Discrete);
             let again = found(&[scaled(&body)], QueryKind::Discrete);
             assert_eq!(again.hash(), truth.hash(), "{}, 2^{power}", body.name());
-            assert_eq!(again.triangle_pairs, truth.triangle_pairs);
+            assert_eq!(again.stats.triangle_pairs, truth.stats.triangle_pairs);
         }
         for body in moving_scenes() {
             let truth = found(std::slice::from_ref(&body), QueryKind::Continuous);
             let again = found(&[scaled(&body)], QueryKind::Continuous);
             // Times have no unit: not a bit changes.
-            assert_eq!(again.answer, truth.answer, "{}, 2^{power}", body.name());
+            assert_eq!(again.rows, truth.rows, "{}, 2^{power}", body.name());
         }
     }
 }
@@ -33,7 +33,7 @@ fn another_origin() {
         let truth = found(std::slice::from_ref(&body), QueryKind::Continuous);
         assert!(truth.len() > 10);
         // The solver sees only differences.
-        assert_eq!(found(&[shifted(&body)], QueryKind::Continuous).answer, truth.answer, "{shift:?}");
+        assert_eq!(found(&[shifted(&body)], QueryKind::Continuous).rows, truth.rows, "{shift:?}");
     }
 }
 
@@ -98,8 +98,8 @@ fn the_same_numbers_in_doubles() {
         let truth = found(std::slice::from_ref(&body), QueryKind::Discrete);
         let again = found(&[promoted(&body)], QueryKind::Discrete);
         assert_eq!(
-            (again.hash(), again.triangle_pairs),
-            (truth.hash(), truth.triangle_pairs),
+            (again.hash(), again.stats.triangle_pairs),
+            (truth.hash(), truth.stats.triangle_pairs),
             "{}",
             body.name()
         );
@@ -108,10 +108,10 @@ fn the_same_numbers_in_doubles() {
         let truth = found(std::slice::from_ref(&body), QueryKind::Continuous);
         let again = found(&[promoted(&body)], QueryKind::Continuous);
         // Differences of floats of like size are exact, in floats and in doubles: so the same bits.
-        assert_eq!(again.answer, truth.answer, "{}", body.name());
+        assert_eq!(again.rows, truth.rows, "{}", body.name());
         // One body in each precision: both are taken in doubles.
         let still = scene::soup(100, 8, false).expect("a scene");
         let mixed = found(&[promoted(&body), still.clone()], QueryKind::Continuous);
-        assert_eq!(mixed.answer, found(&[body.clone(), still], QueryKind::Continuous).answer);
+        assert_eq!(mixed.rows, found(&[body.clone(), still], QueryKind::Continuous).rows);
     }
 }

@@ -2,6 +2,7 @@
 //! frames, on what was asked before, on who was named when, on refused frames in between.
 
 use super::*;
+use nearmiss::Rows;
 use nearmiss::device::Buffer;
 use nearmiss::scene::{DeviceInput, DevicePose, DeviceRows, Number};
 
@@ -76,14 +77,15 @@ fn next(rng: &mut SmallRng, place: &Place) -> Place {
 /// The same bodies in a detector that was made for this frame.
 fn fresh(bodies: &[Placed], query: Query) -> Contacts {
     let mut scene = Scene::new();
-    let mut ids = Vec::new();
     for placed in bodies {
-        ids.push(scene.add(placed.body.clone()));
+        let body = placed.body.clone();
+        let body = match placed.place.input(false) {
+            Some(input) => body.at(&input).expect("a place"),
+            None => body,
+        };
+        scene.add(body);
     }
-    let mut detector = Detector::new(engine(), scene, query).expect("a detector");
-    let inputs: Vec<(BodyId, Input)> =
-        ids.iter().zip(bodies).filter_map(|(id, placed)| Some((*id, placed.place.input(false)?))).collect();
-    detector.place(&inputs).expect("placed");
+    let mut detector = OneQuery::new(engine(), scene, query).expect("a detector");
     detector.detect().expect("an answer")
 }
 
@@ -145,7 +147,7 @@ fn life(seed: u64, query: Query, fault: impl Fn(&mut Contacts)) -> Result<usize,
         let (body, place) = body(&mut rng);
         bodies.push(Placed { id: scene.add(body.clone()), body, place });
     }
-    let mut detector = Detector::new(engine(), scene, query).expect("a detector");
+    let mut detector = OneQuery::new(engine(), scene, query).expect("a detector");
     let mut all = 0;
     for frame in 0..8 {
         if rng.random_bool(0.2) {
@@ -188,10 +190,10 @@ fn life(seed: u64, query: Query, fault: impl Fn(&mut Contacts)) -> Result<usize,
         lent.iter_mut().for_each(Lent::spoil);
         fault(&mut found);
         let wanted = fresh(&bodies, query);
-        if renumbered(&bodies, &found) != wanted.answer {
+        if renumbered(&bodies, &found) != wanted.rows {
             return Err(format!(
                 "frame {frame} of seed {seed}, {query:?}: {:?}, made for it {:?}",
-                found.answer, wanted.answer
+                found.rows, wanted.rows
             ));
         }
         all += found.len();
@@ -200,7 +202,7 @@ fn life(seed: u64, query: Query, fault: impl Fn(&mut Contacts)) -> Result<usize,
 }
 
 /// A frame that is refused, of a body that there is.
-fn refused(detector: &mut Detector, bodies: &[Placed]) {
+fn refused(detector: &mut OneQuery, bodies: &[Placed]) {
     let nan = |positions: &Positions| Positions::F64(vec![[f64::NAN; 3]; positions.len()]);
     for placed in bodies {
         let refused = match &placed.place {
@@ -216,7 +218,7 @@ fn refused(detector: &mut Detector, bodies: &[Placed]) {
 }
 
 /// A body comes, or one goes.
-fn edit(rng: &mut SmallRng, detector: &mut Detector, bodies: &mut Vec<Placed>) {
+fn edit(rng: &mut SmallRng, detector: &mut OneQuery, bodies: &mut Vec<Placed>) {
     if bodies.len() > 2 && rng.random_bool(0.5) {
         let gone = bodies.remove(rng.random_range(0..bodies.len()));
         detector.remove(gone.id).expect("a body");
@@ -230,19 +232,19 @@ fn edit(rng: &mut SmallRng, detector: &mut Detector, bodies: &mut Vec<Placed>) {
 }
 
 /// An answer with bodies numbered as in a scene that has no gaps.
-fn renumbered(bodies: &[Placed], contacts: &Contacts) -> Answer {
+fn renumbered(bodies: &[Placed], contacts: &Contacts) -> Rows {
     let place = |id: BodyId| {
         let at = bodies.iter().position(|placed| placed.id == id).expect("a body of the scene");
         let mut scene = Scene::new();
         (0..=at).map(|_| scene.add(bodies[0].body.clone())).last().expect("a body")
     };
-    let mut answer = contacts.answer.clone();
+    let mut answer = contacts.rows.clone();
     match &mut answer {
-        Answer::Pairs(all) => all.iter_mut().for_each(|row| row.bodies = row.bodies.map(place)),
-        Answer::Contacts(all) => all.iter_mut().for_each(|row| row.bodies = row.bodies.map(place)),
-        Answer::Near(all) => all.iter_mut().for_each(|row| row.bodies = row.bodies.map(place)),
-        Answer::Distance(nearest) => nearest.iter_mut().for_each(|row| row.bodies = row.bodies.map(place)),
-        Answer::Earliest(_) => {}
+        Rows::Pairs(all) => all.iter_mut().for_each(|row| row.bodies = row.bodies.map(place)),
+        Rows::Contacts(all) => all.iter_mut().for_each(|row| row.bodies = row.bodies.map(place)),
+        Rows::Near(all) => all.iter_mut().for_each(|row| row.bodies = row.bodies.map(place)),
+        Rows::Distance(nearest) => nearest.iter_mut().for_each(|row| row.bodies = row.bodies.map(place)),
+        Rows::Earliest(_) => {}
     }
     answer
 }
@@ -262,7 +264,7 @@ fn a_frame_depends_on_its_positions_alone() {
 #[test]
 fn a_forgotten_contact_is_named() {
     let forget = |contacts: &mut Contacts| {
-        if let Answer::Contacts(all) = &mut contacts.answer {
+        if let Rows::Contacts(all) = &mut contacts.rows {
             all.pop();
         }
     };
@@ -290,17 +292,17 @@ fn at_rest(seed: u64, query: Query, end: usize) -> Result<bool, String> {
         };
         let moved =
             |placed: &Placed| Placed { id: placed.id, body: placed.body.clone(), place: one(&placed.place) };
-        fresh(&bodies.iter().map(moved).collect::<Vec<_>>(), query).answer
+        fresh(&bodies.iter().map(moved).collect::<Vec<_>>(), query).rows
     };
     let steps: Vec<(BodyId, Input)> =
         bodies.iter().filter_map(|placed| Some((placed.id, placed.place.input(true)?))).collect();
-    let mut detector = Detector::new(engine(), scene, query).expect("a detector");
+    let mut detector = OneQuery::new(engine(), scene, query).expect("a detector");
     let first = detector.frame(&steps).expect("an answer");
     let second = detector.frame(&[]).expect("an answer");
-    detector.place(&steps).expect("placed");
+    detector.update(&steps).expect("placed");
     let placed = detector.detect().expect("an answer");
     for (name, found, wanted) in
-        [("frame", first.answer, at(end)), ("place", placed.answer, at(end)), ("rest", second.answer, at(1))]
+        [("frame", first.rows, at(end)), ("place", placed.rows, at(end)), ("rest", second.rows, at(1))]
     {
         if found != wanted {
             return Err(format!("{name} of seed {seed}, {query:?}: {found:?}, at one end {wanted:?}"));

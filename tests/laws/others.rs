@@ -2,10 +2,11 @@
 //! of any size, precision or environment, changes no row.
 
 use super::*;
+use nearmiss::Rows;
 
 /// What an answer says about the bodies that were asked about.
 #[derive(Clone, Debug, PartialEq)]
-enum Rows {
+enum OwnRows {
     Pairs(Vec<TrianglePair>),
     Contacts(Vec<Contact>),
     Near(Vec<NearPair>),
@@ -13,23 +14,23 @@ enum Rows {
 
 /// The rows of bodies below `own`; of a query that answers with one number, `None`: other bodies
 /// may have the least.
-fn rows(contacts: &Contacts, own: usize) -> Option<Rows> {
+fn rows(contacts: &Contacts, own: usize) -> Option<OwnRows> {
     let is_own = |bodies: &[BodyId; 2]| bodies.iter().all(|body| body.index() < own);
-    Some(match &contacts.answer {
-        Answer::Pairs(all) => Rows::Pairs(all.iter().filter(|row| is_own(&row.bodies)).copied().collect()),
-        Answer::Contacts(all) => {
-            Rows::Contacts(all.iter().filter(|row| is_own(&row.bodies)).copied().collect())
+    Some(match &contacts.rows {
+        Rows::Pairs(all) => OwnRows::Pairs(all.iter().filter(|row| is_own(&row.bodies)).copied().collect()),
+        Rows::Contacts(all) => {
+            OwnRows::Contacts(all.iter().filter(|row| is_own(&row.bodies)).copied().collect())
         }
-        Answer::Near(all) => Rows::Near(all.iter().filter(|row| is_own(&row.bodies)).copied().collect()),
-        Answer::Earliest(_) | Answer::Distance(_) => return None,
+        Rows::Near(all) => OwnRows::Near(all.iter().filter(|row| is_own(&row.bodies)).copied().collect()),
+        Rows::Earliest(_) | Rows::Distance(_) => return None,
     })
 }
 
 /// The one number of an answer that is one.
 fn least(contacts: &Contacts) -> Option<f64> {
-    match &contacts.answer {
-        Answer::Earliest(toi) => *toi,
-        Answer::Distance(nearest) => nearest.as_ref().map(|nearest| nearest.distance),
+    match &contacts.rows {
+        Rows::Earliest(toi) => *toi,
+        Rows::Distance(nearest) => nearest.as_ref().map(|nearest| nearest.distance),
         _ => panic!("an answer of rows"),
     }
 }
@@ -142,7 +143,7 @@ fn differs(own: &[Body], others: &[Body], query: Query) -> Option<String> {
             .into_iter()
             .find_map(|(found, bodies)| other_least(&found, &least_two_by_two(bodies, query)));
     };
-    let mut detector = Detector::new(engine(), scene(own), query).expect("a detector");
+    let mut detector = OneQuery::new(engine(), scene(own), query).expect("a detector");
     let added: Vec<BodyId> = others.iter().map(|body| detector.add(body.clone()).expect("room")).collect();
     let with_added = detector.detect().expect("an answer");
     for id in added {
@@ -159,7 +160,7 @@ fn other_least(found: &Least, wanted: &Least) -> Option<String> {
 }
 
 /// The first row that is not as it was alone.
-fn difference(when: &str, found: &Rows, wanted: &Rows) -> Option<String> {
+fn difference(when: &str, found: &OwnRows, wanted: &OwnRows) -> Option<String> {
     fn first<T: PartialEq + std::fmt::Debug>(found: &[T], wanted: &[T]) -> String {
         let at = (0..).find(|&i| found.get(i) != wanted.get(i)).unwrap_or_default();
         format!("row {at} is {:?}, alone {:?}", found.get(at), wanted.get(at))
@@ -168,9 +169,9 @@ fn difference(when: &str, found: &Rows, wanted: &Rows) -> Option<String> {
         return None;
     }
     let what = match (found, wanted) {
-        (Rows::Pairs(found), Rows::Pairs(wanted)) => first(found, wanted),
-        (Rows::Contacts(found), Rows::Contacts(wanted)) => first(found, wanted),
-        (Rows::Near(found), Rows::Near(wanted)) => first(found, wanted),
+        (OwnRows::Pairs(found), OwnRows::Pairs(wanted)) => first(found, wanted),
+        (OwnRows::Contacts(found), OwnRows::Contacts(wanted)) => first(found, wanted),
+        (OwnRows::Near(found), OwnRows::Near(wanted)) => first(found, wanted),
         _ => format!("{found:?}, alone {wanted:?}"),
     };
     Some(format!("{when}: {what}"))
@@ -223,13 +224,13 @@ fn a_changed_row_is_named() {
     let mut rng = SmallRng::seed_from_u64(1);
     let own = own(&mut rng);
     let contacts = ask(&own, Query::continuous());
-    let Some(Rows::Contacts(rows)) = rows(&contacts, own.len()) else { panic!("contacts") };
+    let Some(OwnRows::Contacts(rows)) = rows(&contacts, own.len()) else { panic!("contacts") };
     assert!(rows.len() > 3);
-    let wanted = Rows::Contacts(rows.clone());
+    let wanted = OwnRows::Contacts(rows.clone());
     assert_eq!(difference("", &wanted, &wanted), None);
     let mut late = rows.clone();
     late[2].toi = late[2].toi.next_up();
-    let named = difference("", &Rows::Contacts(late), &wanted).expect("a difference");
+    let named = difference("", &OwnRows::Contacts(late), &wanted).expect("a difference");
     assert!(named.contains("row 2"), "{named}");
     let alone = Least { number: Some(0.5), is_below_precision: false };
     assert_eq!(other_least(&alone, &alone.clone()), None);
@@ -240,6 +241,6 @@ fn a_changed_row_is_named() {
     ] {
         assert!(other_least(&planted, &alone).is_some(), "{planted:?}");
     }
-    let fewer = Rows::Contacts(rows[..rows.len() - 1].to_vec());
+    let fewer = OwnRows::Contacts(rows[..rows.len() - 1].to_vec());
     assert!(difference("", &fewer, &wanted).is_some_and(|named| named.contains("None")));
 }

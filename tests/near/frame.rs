@@ -2,10 +2,11 @@
 
 use crate::judge::Truth;
 use crate::support::{ORDERS, ask, engine, judged, loose, machines, mesh, sanitizer, still, ways};
-use nearmiss::contacts::{Answer, Kind, NearPair, Status};
+use nearmiss::Query;
+use nearmiss::contacts::{Kind, NearPair, Rows, Status};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Bv, Certified, CertifiedPrecision, Continuous};
-use nearmiss::{Detector, Query};
+use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
@@ -63,7 +64,7 @@ fn all_that_is_within_the_distance_is_listed() {
         println!("{what}: {} pairs, {beyond} beyond, {} unresolved", found.len(), found.unresolved);
         assert!(truth.within.len() > 50 && beyond as u64 <= found.unresolved, "{what}");
         assert_eq!(found.len() - beyond, truth.within.len());
-        assert!(found.candidates >= found.len() as u64);
+        assert!(found.stats.candidates >= found.len() as u64);
     }
 }
 
@@ -73,11 +74,11 @@ fn every_way_and_every_machine_finds_the_same() {
         let query = Query::near(distance);
         let truth = ask(engine(), bodies.clone(), query);
         for way in ways(query) {
-            assert_eq!(ask(engine(), bodies.clone(), way).answer, truth.answer, "{way:?}");
+            assert_eq!(ask(engine(), bodies.clone(), way).rows, truth.rows, "{way:?}");
         }
         let print = |device| {
             let bodies = judged(bodies.clone());
-            let mut detector = Detector::new(device, bodies, query).expect("a detector");
+            let mut detector = OneQuery::new(device, bodies, query).expect("a detector");
             let all = detector.detect().expect("an answer");
             detector.check_volumes().expect("sound trees");
             (all.hash(), detector.fingerprints().expect("prints"))
@@ -114,7 +115,7 @@ fn what_rounding_cannot_tell_is_the_same_for_every_volume() {
     assert!(all.unresolved > 60, "{} of {}", all.unresolved, all.len());
     assert!(Truth::of(std::slice::from_ref(&body), 0.25).fault(all.near()).is_ok_and(|beyond| beyond > 20));
     for bv in Bv::ALL {
-        assert_eq!(ask(engine(), vec![body.clone()], query.with_bv(bv)).answer, all.answer, "{bv:?}");
+        assert_eq!(ask(engine(), vec![body.clone()], query.with_bv(bv)).rows, all.rows, "{bv:?}");
     }
 }
 
@@ -203,14 +204,17 @@ fn lists_grow() {
     let triangles = vec![[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]; 60];
     for device in [engine(), sanitizer(ORDERS[1])] {
         let mut detector =
-            Detector::new(device, vec![loose(&triangles)], Query::near(2.0)).expect("a detector");
+            OneQuery::new(device, vec![loose(&triangles)], Query::near(2.0)).expect("a detector");
         let all = detector.detect().expect("an answer");
-        assert!(all.reruns > 0);
+        assert!(all.stats.reruns > 0);
         let pairs = 60 * 59;
-        assert_eq!([all.candidates_vf_ee[0], all.candidates_vf_ee[1]], [3 * pairs, 9 * pairs / 2]);
+        assert_eq!(
+            [all.stats.candidates_vf_ee[0], all.stats.candidates_vf_ee[1]],
+            [3 * pairs, 9 * pairs / 2]
+        );
         assert_eq!((all.len() as u64, all.unresolved), (3 * pairs + 9 * pairs / 2, 0));
         let again = detector.detect().expect("an answer");
-        assert_eq!((again.hash(), again.reruns, again.unresolved), (all.hash(), 0, 0));
+        assert_eq!((again.hash(), again.stats.reruns, again.unresolved), (all.hash(), 0, 0));
         for stage in nearmiss::Stage::ALL {
             detector.repeat_stage(stage, 2).expect("a stage");
         }
@@ -224,8 +228,8 @@ fn only_the_start_is_looked_at() {
     let moving = scene::soup(60, 5, true).expect("a scene");
     let first = Body::still(moving.frames().remove(0));
     let of = |body: Body| ask(engine(), vec![body], Query::near(0.05));
-    assert_eq!(of(moving).answer, of(first).answer);
-    assert_eq!(of(still(&[], &[])).answer, Answer::Near(Vec::new()));
+    assert_eq!(of(moving).rows, of(first).rows);
+    assert_eq!(of(still(&[], &[])).rows, Rows::Near(Vec::new()));
 }
 
 /// The hash hears of every part of a pair.
@@ -234,7 +238,7 @@ fn a_hash_tells_answers_apart() {
     let all = ask(engine(), vec![soup(30, 5)], Query::near(0.05));
     let with = |plant: &dyn Fn(&mut NearPair)| {
         let mut other = all.clone();
-        let Answer::Near(near) = &mut other.answer else { panic!("another answer") };
+        let Rows::Near(near) = &mut other.rows else { panic!("another answer") };
         plant(&mut near[3]);
         other.hash()
     };

@@ -14,10 +14,10 @@ fn same(bodies: &[Body], traversal: Traversal) -> Contacts {
     let truth = truth(bodies, QueryKind::Discrete);
     let (print, contacts) = found(engine(), bodies, by(traversal, QueryKind::Discrete));
     assert_eq!(print, truth, "{traversal:?}");
-    let order = ORDERS[contacts.steps as usize % ORDERS.len()];
+    let order = ORDERS[contacts.stats.steps as usize % ORDERS.len()];
     let (print, seen) = found(sanitizer(order), bodies, by(traversal, QueryKind::Discrete));
     assert_eq!(print, truth, "{traversal:?}, {order:?}");
-    assert_eq!(contacts.steps, seen.steps, "the work is the same in any order");
+    assert_eq!(contacts.stats.steps, seen.stats.steps, "the work is the same in any order");
     seen
 }
 
@@ -34,7 +34,7 @@ fn any_number_of_queues() {
     for bodies in crowds() {
         for cores in [1, 2, 3, 30, 64].map(Some) {
             for shape in profiles() {
-                let queues = same(&bodies, Traversal::Queue(QueueShape { cores, ..shape })).queues;
+                let queues = same(&bodies, Traversal::Queue(QueueShape { cores, ..shape })).stats.queues;
                 assert!(queues.rounds > 0 && queues.longest <= 3_000, "{queues:?}");
             }
             for eager in [false, true] {
@@ -59,13 +59,13 @@ fn any_room_on_chip() {
             for shape in profiles() {
                 for take in [1, 64] {
                     let shape = QueueShape { local, take, cores: Some(7), ..shape };
-                    let queues = same(&bodies, Traversal::Queue(shape)).queues;
+                    let queues = same(&bodies, Traversal::Queue(shape)).stats.queues;
                     assert!(local > 1 || queues.spills > 0, "{shape:?} {queues:?}");
                 }
             }
             let shape =
                 StealShape { local, cores: Some(4), segment: 2_000, pool: Some(300), tries: 4, eager: true };
-            let queues = same(&bodies, Traversal::Steal(shape)).queues;
+            let queues = same(&bodies, Traversal::Steal(shape)).stats.queues;
             assert!(local > 2 || queues.spills > 0, "{shape:?} {queues:?}");
         }
     }
@@ -81,7 +81,7 @@ fn segments_that_are_too_short_grow() {
                 assert_eq!(found(device, &bodies, query).0, truth, "{traversal:?}");
             }
             let mut detector =
-                Detector::new(sanitizer(ORDERS[0]), bodies.clone(), by(traversal, QueryKind::Discrete))
+                OneQuery::new(sanitizer(ORDERS[0]), bodies.clone(), by(traversal, QueryKind::Discrete))
                     .expect("a detector");
             detector.detect().expect("an answer");
             detector.reruns()
@@ -118,6 +118,7 @@ fn any_share_of_idle_queues() {
                     same(&bodies, Traversal::Queue(shape));
                     found(sanitizer(ORDERS[1]), &bodies, by(Traversal::Queue(shape), QueryKind::Discrete))
                         .1
+                        .stats
                         .queues
                 });
                 assert!(at_once.rounds > never.rounds, "{shape:?}: {at_once:?}, {never:?}");
@@ -149,8 +150,11 @@ fn blocks_that_interleave_lose_nothing() {
                 let (print, contacts) =
                     found(Device::emulator(device), &bodies, by(traversal, QueryKind::Discrete));
                 assert_eq!(print, truth, "{traversal:?}, {seed}");
-                stolen +=
-                    if traversal == Traversal::Steal(steal(false)) { contacts.queues.stolen } else { 0 };
+                stolen += if traversal == Traversal::Steal(steal(false)) {
+                    contacts.stats.queues.stolen
+                } else {
+                    0
+                };
             }
         }
     }
@@ -169,7 +173,7 @@ fn what_is_offered_is_taken_and_a_full_pool_loses_nothing() {
                 eager: true,
                 ..StealShape::native()
             };
-            let queues = same(&bodies, Traversal::Steal(shape)).queues;
+            let queues = same(&bodies, Traversal::Steal(shape)).stats.queues;
             // A chunk is a unit at least, and 64 at most.
             let (least, most) = (pool.min(100) as u64, 64 * pool as u64);
             assert!((least..=most).contains(&queues.stolen), "{pool}: {queues:?}");
@@ -182,10 +186,10 @@ fn a_frame_launches_the_rounds_of_the_one_before() {
     let launches = |traversal| {
         let device = engine();
         let query = by(traversal, QueryKind::Discrete);
-        let mut detector = Detector::new(device.clone(), crowds()[0].clone(), query).expect("a detector");
-        let frame = |detector: &mut Detector| {
+        let mut detector = OneQuery::new(device.clone(), crowds()[0].clone(), query).expect("a detector");
+        let frame = |detector: &mut OneQuery| {
             let before = device.launches();
-            let rounds = detector.detect().expect("an answer").queues.rounds;
+            let rounds = detector.detect().expect("an answer").stats.queues.rounds;
             (device.launches() - before, rounds)
         };
         frame(&mut detector);
@@ -227,8 +231,8 @@ fn fewer_rounds_planned_than_needed_are_noticed() {
     for (device, watched) in [(engine(), false), (sanitizer(ORDERS[1]), true)] {
         let query = by(Traversal::Queue(shape), QueryKind::Discrete);
         let mut detector =
-            Detector::new(device, vec![support::still(&apart, &faces)], query).expect("a detector");
-        let few = detector.detect().expect("an answer").queues.rounds;
+            OneQuery::new(device, vec![support::still(&apart, &faces)], query).expect("a detector");
+        let few = detector.detect().expect("an answer").stats.queues.rounds;
         assert_eq!(detector.detect().expect("an answer").len(), 0);
         assert!(!watched || detector.reruns() == 0);
         detector.move_to(0, support::still(&crowd, &faces)).expect("the same mesh");
@@ -238,7 +242,7 @@ fn fewer_rounds_planned_than_needed_are_noticed() {
         assert_eq!(detector.detect().expect("an answer").hash(), many.hash());
         // Under the sanitizer the same frame takes the same rounds; elsewhere blocks run dry sooner or later.
         if watched {
-            assert!(many.queues.rounds > few + 2 && reruns > 0, "{few}, {:?}", many.queues);
+            assert!(many.stats.queues.rounds > few + 2 && reruns > 0, "{few}, {:?}", many.stats.queues);
             assert_eq!(detector.reruns(), reruns, "now the plan is long enough");
         }
     }
@@ -257,7 +261,7 @@ fn sizes_that_cannot_be_are_refused() {
         QueueShape { idle: (3, 2), ..ok },
     ] {
         let query = by(Traversal::Queue(shape), QueryKind::Discrete);
-        let error = Detector::new(engine(), vec![single()], query).map(|_| ()).expect_err("refused");
+        let error = OneQuery::new(engine(), vec![single()], query).map(|_| ()).expect_err("refused");
         assert_eq!(error.exit_code(), 2, "{shape:?}: {error}");
     }
     let most = StealShape::MOST_POOL;

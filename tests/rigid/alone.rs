@@ -61,7 +61,7 @@ fn beside((size, offset): (f32, f32)) -> Mesh {
 /// Queries whose rows differ once there is another body.
 fn different(scene: &Scene, other: Body, queries: &[Query]) -> Vec<String> {
     let ask = |scene: Scene, query: Query| {
-        rows(&Detector::new(engine(), scene, query).expect("a detector").detect().expect("an answer"))
+        rows(&OneQuery::new(engine(), scene, query).expect("a detector").detect().expect("an answer"))
     };
     let mut with = scene.clone();
     with.add(other);

@@ -1,8 +1,8 @@
 //! Tiles and trees are built where bodies are first put.
 
 use super::*;
-use nearmiss::MultiDetector;
 use nearmiss::query::{Broad, Rebuild};
+use nearmiss_lab::OneQueryOnSeveral;
 
 /// Spheres that all lie in one place until they get their poses, and those.
 fn scattered() -> (Scene, Vec<Pose>) {
@@ -24,7 +24,7 @@ fn the_first_frame_that_places_bodies_builds() {
     for broad in Broad::ALL {
         let query = Query::discrete().with_broad(broad);
         let detector = |rebuild| {
-            Detector::new(engine(), scene.clone(), query.with_rebuild(rebuild)).expect("a detector")
+            OneQuery::new(engine(), scene.clone(), query.with_rebuild(rebuild)).expect("a detector")
         };
         let [mut by_itself, mut never] = [Rebuild::Auto, Rebuild::Never].map(detector);
         // A frame before the first that places bodies is none of them.
@@ -34,9 +34,16 @@ fn the_first_frame_that_places_bodies_builds() {
         assert_eq!((by_itself.builds(), never.builds()), (2, 1));
         assert_eq!(rows(&found), rows(&slow));
         never.rebuild().expect("built");
-        assert_eq!(never.detect().expect("an answer").steps, found.steps, "{broad}: as one rebuild gives");
-        println!("{broad}: {} tests where bodies were added, {} where they are", slow.steps, found.steps);
-        assert!(slow.steps > 2 * found.steps, "{broad}");
+        assert_eq!(
+            never.detect().expect("an answer").stats.steps,
+            found.stats.steps,
+            "{broad}: as one rebuild gives"
+        );
+        println!(
+            "{broad}: {} tests where bodies were added, {} where they are",
+            slow.stats.steps, found.stats.steps
+        );
+        assert!(slow.stats.steps > 2 * found.stats.steps, "{broad}");
         by_itself.frame(&inputs).expect("an answer");
         assert_eq!(by_itself.builds(), 2, "once");
         // A body that comes later is placed for the first time, too.
@@ -47,8 +54,8 @@ fn the_first_frame_that_places_bodies_builds() {
         assert_eq!(by_itself.builds(), before + 1);
     }
     let mut several =
-        MultiDetector::new(vec![engine(), engine()], scene.clone(), Query::discrete()).expect("two");
-    let mut one = Detector::new(engine(), scene, Query::discrete()).expect("a detector");
+        OneQueryOnSeveral::new(vec![engine(), engine()], scene.clone(), Query::discrete()).expect("two");
+    let mut one = OneQuery::new(engine(), scene, Query::discrete()).expect("a detector");
     for _ in 0..2 {
         let [found, wanted] =
             [several.frame(&inputs), one.frame(&inputs)].map(|found| found.expect("an answer"));

@@ -1,7 +1,7 @@
 //! Far from the origin.
 
 use super::*;
-use nearmiss::contacts::Answer;
+use nearmiss::contacts::Rows;
 use nearmiss_lab::oracle::{Triangle, triangles_meet};
 
 fn scene_of(bodies: &[(Mesh, Pose)]) -> Scene {
@@ -13,7 +13,7 @@ fn scene_of(bodies: &[(Mesh, Pose)]) -> Scene {
 }
 
 fn ask(scene: &Scene, query: Query) -> Contacts {
-    Detector::new(engine(), scene.clone(), query).expect("a detector").detect().expect("an answer")
+    OneQuery::new(engine(), scene.clone(), query).expect("a detector").detect().expect("an answer")
 }
 
 #[test]
@@ -21,7 +21,7 @@ fn a_gap_is_a_gap_and_an_overlap_an_overlap() {
     let pair = |a: [f64; 3], b: [f64; 3]| scene_of(&[(unit_box(), Pose::at(a)), (unit_box(), Pose::at(b))]);
     let gap = pair([0.0, 0.0, 1e6], [0.0, 0.0, 1_000_001.01]);
     assert_eq!(ask(&gap, Query::discrete()).len(), 0);
-    let Answer::Distance(Some(nearest)) = ask(&gap, Query::distance()).answer else { panic!("no distance") };
+    let Rows::Distance(Some(nearest)) = ask(&gap, Query::distance()).rows else { panic!("no distance") };
     assert!((nearest.distance - 0.01).abs() < 1e-9, "{}", nearest.distance);
     // Eastings and northings in metres.
     let utm = [456_789.123, 5_432_109.876, 312.25];
@@ -62,7 +62,7 @@ fn pairs_near_touching_are_as_exact_arithmetic_has_them() {
         shapes.push(shape);
     }
     let wanted: Vec<bool> = shapes.iter().map(|pair| triangles_meet(&pair[0], &pair[1])).collect();
-    let Answer::Pairs(pairs) = ask(&scene, Query::discrete()).answer else { panic!("no pairs") };
+    let Rows::Pairs(pairs) = ask(&scene, Query::discrete()).rows else { panic!("no pairs") };
     let mut met = vec![false; wanted.len()];
     pairs.iter().for_each(|pair| met[pair.bodies[0].index() / 2] = true);
     assert_eq!(met, wanted);
@@ -106,7 +106,7 @@ fn differences(rounded: bool) -> Vec<String> {
         }
         for query in queries(1e-4, 0.01) {
             let frame = |scene: &Scene, inputs: Vec<Input>| {
-                let mut detector = Detector::new(engine(), scene.clone(), query).expect("a detector");
+                let mut detector = OneQuery::new(engine(), scene.clone(), query).expect("a detector");
                 let inputs: Vec<(BodyId, Input)> = scene.ids().zip(inputs).collect();
                 let found = detector.frame(&inputs).expect("an answer");
                 let geometry = match query {
@@ -114,7 +114,7 @@ fn differences(rounded: bool) -> Vec<String> {
                     _ => Vec::new(),
                 };
                 // The straight motion of a turn is a caveat of poses alone.
-                (found.answer, geometry)
+                (found.rows, geometry)
             };
             let poses = steps.iter().map(|(poses, _)| Input::Poses(*poses)).collect();
             let ends = steps.iter().map(|(_, [t0, t1])| Input::Step([t0, t1])).collect();
@@ -149,7 +149,7 @@ fn a_rigid_mesh_may_be_as_large_as_any() {
     for size in [0.51 * most, most] {
         let at = large(size).at(&Input::Pose(Pose::default())).expect("it is where its mesh is");
         let other = Body::rigid(unit_box());
-        let mut detector = Detector::new(engine(), vec![at, other], Query::discrete()).expect("a detector");
+        let mut detector = OneQuery::new(engine(), vec![at, other], Query::discrete()).expect("a detector");
         let ids: Vec<BodyId> = detector.scene().ids().collect();
         detector.frame(&[(ids[0], Input::Pose(Pose::default()))]).expect("an answer");
         let beyond = [(ids[0], Input::Pose(Pose::at([0.0, 0.0, most])))];

@@ -2,10 +2,11 @@
 //! frame names is where its step ended.
 
 use super::*;
+use nearmiss::Device;
 use nearmiss::device::Buffer;
 use nearmiss::query::QueryKind;
 use nearmiss::scene::{DeviceInput, DevicePose, DeviceRows, Number};
-use nearmiss::{Device, MultiDetector};
+use nearmiss_lab::OneQueryOnSeveral;
 
 /// Where a body is: at both ends of the last step that named it, or at its end twice.
 #[derive(Clone)]
@@ -133,7 +134,7 @@ fn start(body: &Body) -> Place {
 /// A detector, and where everything is that it was ever told.
 struct Told {
     device: Device,
-    detector: Detector,
+    detector: OneQuery,
     query: Query,
     bodies: Vec<(BodyId, Body, Place)>,
     /// Whether what rests is forgotten to be moved: a fault of the judge.
@@ -147,7 +148,7 @@ impl Told {
         let mut scene = Scene::new();
         let add = |body: Body| (scene.add(body.clone()), start(&body), body);
         let bodies = bodies(seed).into_iter().map(add).map(|(id, place, body)| (id, body, place)).collect();
-        let detector = Detector::new(device.clone(), scene, query).expect("a detector");
+        let detector = OneQuery::new(device.clone(), scene, query).expect("a detector");
         Told { device, detector, query, bodies, is_planted, told: Vec::new() }
     }
 
@@ -156,12 +157,13 @@ impl Told {
         let mut scene = Scene::new();
         let mut all: Vec<_> = self.bodies.iter().collect();
         all.sort_by_key(|(id, ..)| *id);
-        let ids: Vec<BodyId> = all.iter().map(|(_, body, _)| scene.add(body.clone())).collect();
+        let at = |(_, body, place): &&(BodyId, Body, Place)| match place.input() {
+            Some(input) => body.clone().at(&input).expect("a place"),
+            None => body.clone(),
+        };
+        let ids: Vec<BodyId> = all.iter().map(|own| scene.add(at(own))).collect();
         assert!(ids.iter().zip(&all).all(|(id, (own, ..))| id == own), "numbers without gaps");
-        let inputs: Vec<(BodyId, Input)> =
-            all.iter().filter_map(|(id, _, place)| Some((*id, place.input()?))).collect();
-        let mut detector = Detector::new(engine(), scene, self.query).expect("a detector");
-        detector.place(&inputs).expect("placed");
+        let mut detector = OneQuery::new(engine(), scene, self.query).expect("a detector");
         rows(&detector.detect().expect("an answer"))
     }
 
@@ -189,7 +191,7 @@ impl Told {
     }
 
     fn frame(&mut self, rng: &mut SmallRng, places: bool) {
-        let named = self.go(rng, !places);
+        let named = self.go(rng, true);
         let mut held: Vec<Option<Held>> = named
             .iter()
             .map(
@@ -206,12 +208,12 @@ impl Told {
             })
             .collect();
         let found = if places {
-            self.detector.place(&inputs).and_then(|()| self.detector.detect())
+            self.detector.update(&inputs).and_then(|()| self.detector.detect())
         } else {
             self.detector.frame(&inputs)
         };
         held.iter_mut().flatten().for_each(Held::spoil);
-        self.judge(&found.expect("an answer"), if places { "place" } else { "frame" });
+        self.judge(&found.expect("an answer"), if places { "update" } else { "frame" });
     }
 
     /// A frame that is prepared, and another that is submitted.
@@ -326,7 +328,8 @@ fn on_several_devices_too() {
         let mut rng = SmallRng::seed_from_u64(3);
         let mut told = Told::new(1, support::asked::at(kind, 1e-4, 0.05), false);
         let scene = told.detector.scene().clone();
-        let mut several = MultiDetector::new(vec![engine(), engine()], scene, told.query).expect("detectors");
+        let mut several =
+            OneQueryOnSeveral::new(vec![engine(), engine()], scene, told.query).expect("detectors");
         for step in 0..12 {
             let named = told.go(&mut rng, true);
             let inputs: Vec<(BodyId, Input)> = named

@@ -34,7 +34,7 @@ pub fn query(motion: QueryKind) -> Query {
 /// Launches of a frame in which every body that can is moved, bytes held, and what was found.
 fn cost(scene: Scene, motion: QueryKind) -> (u64, u64, usize) {
     let device = engine();
-    let mut detector = Detector::new(device.clone(), scene, query(motion)).expect("a detector");
+    let mut detector = OneQuery::new(device.clone(), scene, query(motion)).expect("a detector");
     let ids: Vec<BodyId> = detector.scene().ids().collect();
     let bodies = detector.scene().bodies().to_vec();
     let inputs = |lift: f64| -> Vec<(BodyId, Input)> {
@@ -102,11 +102,11 @@ fn a_scene_pays_for_what_it_has() {
 fn static_bodies_cost_no_work_in_a_frame() {
     let device = engine();
     let steps = |scene: Scene| {
-        let mut detector = Detector::new(device.clone(), scene, Query::discrete()).expect("a detector");
+        let mut detector = OneQuery::new(device.clone(), scene, Query::discrete()).expect("a detector");
         let found = detector.detect().expect("an answer");
         let builds = device.launches();
         detector.rebuild().expect("a tree");
-        (found.steps, found.triangle_pairs, device.launches() - builds)
+        (found.stats.steps, found.stats.triangle_pairs, device.launches() - builds)
     };
     let mover = pile(1, Body::rigid, false);
     let with = |fixed: usize| {
@@ -135,7 +135,12 @@ fn environments_in_one_place_cost_what_they_cost_alone() {
     };
     let (one, many) = (worlds(1), worlds(200));
     assert_eq!(many.len(), 200 * one.len());
-    assert!(many.steps < 4 * 200 * one.steps, "{} for 200, {} for one", many.steps, one.steps);
+    assert!(
+        many.stats.steps < 4 * 200 * one.stats.steps,
+        "{} for 200, {} for one",
+        many.stats.steps,
+        one.stats.steps
+    );
     let same = many.pairs().iter().all(|pair| pair.bodies[0].index() / 6 == pair.bodies[1].index() / 6);
     assert!(same, "two worlds meet");
 }

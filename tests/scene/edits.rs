@@ -8,16 +8,16 @@ fn query() -> Query {
 }
 
 /// The answer of a detector is that of a scene made as its own is now.
-fn same_as_new(detector: &Detector, found: &Contacts, what: &str) {
+fn same_as_new(detector: &OneQuery, found: &Contacts, what: &str) {
     let fresh = support::ask_scene(engine(), detector.scene().clone(), *detector.query());
-    assert_eq!(found.answer, fresh.answer, "{what}");
+    assert_eq!(found.rows, fresh.rows, "{what}");
 }
 
 #[test]
 fn frames_move_what_they_name_and_others_rest() {
     for seed in 0..12 {
         let mut rng = SmallRng::seed_from_u64(seed);
-        let mut detector = Detector::new(engine(), mixed(seed), query()).expect("a detector");
+        let mut detector = OneQuery::new(engine(), mixed(seed), query()).expect("a detector");
         let mut met = 0;
         for frame in 0..6u64 {
             let scene = detector.scene().clone();
@@ -61,7 +61,7 @@ fn frames_move_what_they_name_and_others_rest() {
 #[test]
 fn bodies_come_and_go() {
     let (crate_mesh, _) = soup(30, 77);
-    let mut detector = Detector::new(engine(), mixed(4), query()).expect("a detector");
+    let mut detector = OneQuery::new(engine(), mixed(4), query()).expect("a detector");
     let before = detector.detect().expect("an answer");
     let added = detector.add(Body::rigid(crate_mesh.clone())).expect("room");
     let moves = Input::Poses([Pose::default(), Pose::at([0.3, 0.0, 0.0])]);
@@ -87,7 +87,7 @@ fn a_scene_goes_over_to_doubles_once_and_stays_exact() {
     let mut scene = Scene::new();
     let cloth = scene.add(Body::still(mesh.clone()));
     let ball = scene.add(Body::rigid(mesh));
-    let mut detector = Detector::new(engine(), scene, query()).expect("a detector");
+    let mut detector = OneQuery::new(engine(), scene, query()).expect("a detector");
     let near = detector.detect().expect("an answer");
     assert!(!near.is_empty());
     // A rigid body that its pose takes beyond what f32 can be computed with, and one in doubles.
@@ -110,7 +110,7 @@ fn what_a_scene_cannot_do_is_told_and_nothing_has_moved() {
     let ground = scene.add(Body::fixed(mesh));
     let gone = scene.add(Body::rigid(soup(3, 9).0));
     scene.remove(gone).expect("a body");
-    let mut detector = Detector::new(engine(), scene, query()).expect("a detector");
+    let mut detector = OneQuery::new(engine(), scene, query()).expect("a detector");
     let before = detector.detect().expect("an answer");
     let few = Positions::F32(vec![[0.0; 3]; 4]);
     let mut bad = ends[1].to_f64();
@@ -136,7 +136,7 @@ fn what_a_scene_cannot_do_is_told_and_nothing_has_moved() {
     for (inputs, word) in refused {
         let error = detector.frame(inputs).expect_err(word);
         assert!(error.to_string().contains(word) && matches!(error.exit_code(), 2 | 3), "{error}");
-        assert_eq!(detector.detect().expect("an answer").answer, before.answer, "{word}");
+        assert_eq!(detector.detect().expect("an answer").rows, before.rows, "{word}");
     }
     assert!(detector.replace(gone, Body::fixed(soup(3, 9).0)).is_err() && detector.remove(gone).is_err());
 }

@@ -1,9 +1,9 @@
 //! Scenes without bodies, or without triangles: nothing is found, and bodies may come.
 
 use super::*;
-use nearmiss::MultiDetector;
-use nearmiss::contacts::Answer;
+use nearmiss::contacts::Rows;
 use nearmiss::query::Broad;
+use nearmiss_lab::OneQueryOnSeveral;
 
 fn queries() -> Vec<Query> {
     let all =
@@ -13,15 +13,15 @@ fn queries() -> Vec<Query> {
 }
 
 fn is_nothing(found: &Contacts, what: &str) {
-    assert!(found.is_empty() && found.degraded().is_empty(), "{what}: {:?}", found.answer);
+    assert!(found.is_empty() && found.degraded().is_empty(), "{what}: {:?}", found.rows);
     assert!(found.earliest_toi().is_none() && found.distance().is_none(), "{what}");
 }
 
 /// Every way to ask.
-fn ask_all(detector: &mut Detector, what: &str) {
+fn ask_all(detector: &mut OneQuery, what: &str) {
     is_nothing(&detector.detect().expect(what), what);
     is_nothing(&detector.frame(&[]).expect(what), what);
-    detector.place(&[]).expect(what);
+    detector.update(&[]).expect(what);
     detector.rebuild().expect(what);
     is_nothing(&detector.prepare(&[]).expect(what), what);
     assert!(detector.is_prepared() && detector.on_device().is_none());
@@ -30,7 +30,7 @@ fn ask_all(detector: &mut Detector, what: &str) {
         let found = detector.collect().expect(what);
         is_nothing(&found, what);
         assert_eq!(detector.summary(&found).contacts, 0);
-        let has_features = matches!(found.answer, Answer::Contacts(_) | Answer::Near(_));
+        let has_features = matches!(found.rows, Rows::Contacts(_) | Rows::Near(_));
         let geometry = detector.geometry(&found);
         assert!(if has_features { geometry.expect(what).is_empty() } else { geometry.is_err() }, "{what}");
     }
@@ -48,15 +48,15 @@ fn a_scene_without_bodies_answers_nothing_until_they_come() {
     let bodies = [Body::still(mesh.clone()), Body::rigid(mesh.clone())];
     for query in queries() {
         let what = format!("{:?}", query.kind());
-        let mut detector = Detector::new(engine(), Scene::new(), query).expect(&what);
+        let mut detector = OneQuery::new(engine(), Scene::new(), query).expect(&what);
         ask_all(&mut detector, &what);
         let ids = bodies.each_ref().map(|body| detector.add(body.clone()).expect(&what));
         let mut scene = Scene::new();
         assert_eq!(ids, bodies.each_ref().map(|body| scene.add(body.clone())));
         let input = [(ids[0], Input::Step([&ends[0], &ends[1]]))];
-        let mut whole = Detector::new(engine(), scene, query).expect(&what);
+        let mut whole = OneQuery::new(engine(), scene, query).expect(&what);
         let found = detector.frame(&input).expect(&what);
-        assert_eq!(found.answer, whole.frame(&input).expect(&what).answer, "{what}");
+        assert_eq!(found.rows, whole.frame(&input).expect(&what).rows, "{what}");
         assert!(!found.is_empty(), "{what}");
         for id in ids {
             detector.remove(id).expect(&what);
@@ -69,10 +69,10 @@ fn a_scene_without_bodies_answers_nothing_until_they_come() {
 #[test]
 fn the_tolerance_is_that_of_the_bodies_that_come() {
     let mesh = soup(40, 3).0;
-    let mut detector = Detector::new(engine(), Scene::new(), Query::continuous()).expect("a detector");
+    let mut detector = OneQuery::new(engine(), Scene::new(), Query::continuous()).expect("a detector");
     assert!((0..2).all(|_| detector.add(Body::rigid(mesh.clone())).is_ok()));
     let whole =
-        Detector::new(engine(), vec![Body::rigid(mesh.clone()), Body::rigid(mesh)], Query::continuous());
+        OneQuery::new(engine(), vec![Body::rigid(mesh.clone()), Body::rigid(mesh)], Query::continuous());
     assert_eq!(detector.tolerance(), whole.expect("a detector").tolerance());
     assert!(detector.tolerance().is_some_and(|tolerance| tolerance > 0.0));
 }
@@ -82,10 +82,11 @@ fn bodies_without_triangles_and_several_devices_answer_nothing() {
     let points = Mesh::new("points", Positions::F32(vec![[0.0; 3]; 4]), Vec::new()).expect("a mesh");
     for query in queries() {
         let what = format!("{:?}", query.kind());
-        let mut detector = Detector::new(engine(), Body::still(points.clone()), query).expect(&what);
+        let mut detector = OneQuery::new(engine(), Body::still(points.clone()), query).expect(&what);
         ask_all(&mut detector, &what);
         if query.kind() != QueryKind::Distance && query.search().broad.is_none() {
-            let mut several = MultiDetector::new(vec![engine(), engine()], Scene::new(), query).expect(&what);
+            let mut several =
+                OneQueryOnSeveral::new(vec![engine(), engine()], Scene::new(), query).expect(&what);
             is_nothing(&several.detect().expect(&what), &what);
             is_nothing(&several.frame(&[]).expect(&what), &what);
         }

@@ -34,7 +34,7 @@ fn extremes_are_answered_alike_in_two_worlds() {
     let (mut asked, mut met) = (0, 0);
     for extreme in robustness::scenes() {
         let (bodies, query) = (extreme.bodies().expect("bodies"), extreme.query());
-        let mut alone = Detector::new(engine(), bodies.clone(), query).expect("a detector");
+        let mut alone = OneQuery::new(engine(), bodies.clone(), query).expect("a detector");
         let truth = alone.detect().expect("an answer");
         let mut scene = Scene::new();
         world(&bodies, 7).chain(world(&bodies, 3)).for_each(|body| _ = scene.add(body));
@@ -42,7 +42,7 @@ fn extremes_are_answered_alike_in_two_worlds() {
         let far = Positions::F32(vec![corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0)]);
         let far = Mesh::new("far", far, vec![[0, 1, 2]]).expect("a mesh");
         scene.add(Body::fixed(far).with(Meets { environment: None, ..Meets::default() }));
-        let mut detector = Detector::new(engine(), scene, query).expect("a detector");
+        let mut detector = OneQuery::new(engine(), scene, query).expect("a detector");
         let found = detector.detect().expect("an answer");
         detector.check_volumes().expect("sound trees");
         let wanted = of_world(&truth, 0, bodies.len());

@@ -8,7 +8,7 @@ use nearmiss::plan::Plan;
 /// The plan of a frame in which every body that can is moved.
 fn plan(scene: &Scene, motion: QueryKind) -> Plan {
     let device = engine();
-    let mut detector = Detector::new(device.clone(), scene.clone(), query(motion)).expect("a detector");
+    let mut detector = OneQuery::new(device.clone(), scene.clone(), query(motion)).expect("a detector");
     let at_rest = motion.is_at_rest();
     let inputs: Vec<(BodyId, Input)> = scene
         .ids()

@@ -97,7 +97,7 @@ fn a_scene_answers_as_its_bodies_two_by_two() {
         let scene = mixed(seed);
         for (k, motion) in LISTS.into_iter().enumerate() {
             let truth = two_by_two(&scene, query(motion));
-            let mut detector = Detector::new(engine(), scene.clone(), query(motion)).expect("a detector");
+            let mut detector = OneQuery::new(engine(), scene.clone(), query(motion)).expect("a detector");
             let contacts = detector.detect().expect("an answer");
             detector.check_volumes().expect("sound trees");
             assert_eq!(differ(&contacts, &truth), None, "seed {seed}, {motion:?}");

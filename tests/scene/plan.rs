@@ -1,4 +1,4 @@
-//! `Detector::plan`: what it tells is what the device counted, exactly.
+//! `OneQuery::plan`: what it tells is what the device counted, exactly.
 
 use super::cost::pile;
 use super::*;
@@ -45,7 +45,7 @@ fn differences(plan: &Plan, launches: u64, device: &Device) -> Vec<String> {
 
 /// Asks three frames; the plan, the launches of the last, and what it found.
 fn planned(device: &Device, scene: Scene, query: Query) -> (Plan, u64, u64) {
-    let mut detector = Detector::new(device.clone(), scene, query).expect("a detector");
+    let mut detector = OneQuery::new(device.clone(), scene, query).expect("a detector");
     let bodies = detector.scene().bodies().to_vec();
     let ids: Vec<BodyId> = detector.scene().ids().collect();
     let inputs: Vec<(BodyId, Input)> = ids
@@ -81,7 +81,7 @@ fn a_plan_is_what_the_device_counts() {
     for query in queries() {
         for scene in [three(), Scene::from(Body::still(soup(80, 4).0)), pile(9, Body::rigid, true)] {
             let device = engine();
-            let mut detector = Detector::new(device.clone(), scene.clone(), query).expect("a detector");
+            let mut detector = OneQuery::new(device.clone(), scene.clone(), query).expect("a detector");
             // Of no frame: it asks them.
             let plan = detector.plan().expect("a plan");
             let before = device.launches();
@@ -95,7 +95,7 @@ fn a_plan_is_what_the_device_counts() {
             assert_eq!(device.bytes().0, 0);
         }
         let device = engine();
-        let mut detector = Detector::new(device.clone(), three(), query).expect("a detector");
+        let mut detector = OneQuery::new(device.clone(), three(), query).expect("a detector");
         let [t0, t1] = soup(60, 1).1;
         let [cloth, ball] = [0, 1].map(|at| detector.scene().ids().nth(at).expect("a body"));
         let mut launches = 0;
@@ -118,7 +118,7 @@ fn a_plan_that_tells_otherwise_is_noticed() {
     let device = engine();
     let (plan, launches, _) = planned(&device, three(), Query::continuous());
     let device = engine();
-    let mut detector = Detector::new(device.clone(), three(), Query::continuous()).expect("a detector");
+    let mut detector = OneQuery::new(device.clone(), three(), Query::continuous()).expect("a detector");
     let own = detector.plan().expect("a plan");
     let counted = own.launches();
     assert_eq!(differences(&own, counted, &device), [""; 0]);
@@ -150,7 +150,7 @@ fn two_detectors_of_a_device_have_plans_of_their_own() {
     let device = engine();
     let query = Query::discrete();
     let (alone, ..) = planned(&device, three(), query);
-    let mut other = Detector::new(device.clone(), pile(20, Body::rigid, false), query).expect("a detector");
+    let mut other = OneQuery::new(device.clone(), pile(20, Body::rigid, false), query).expect("a detector");
     let others = other.plan().expect("a plan");
     let (beside, ..) = planned(&device, three(), query);
     assert_eq!(beside, alone);
@@ -165,7 +165,7 @@ fn what_cannot_meet_is_not_there() {
         (pile(1, Body::rigid, false), "a body alone is not tested against itself"),
     ] {
         let device = engine();
-        let mut detector = Detector::new(device.clone(), scene, Query::continuous()).expect("a detector");
+        let mut detector = OneQuery::new(device.clone(), scene, Query::continuous()).expect("a detector");
         let plan = detector.plan().expect("a plan");
         assert_eq!((plan.launches(), plan.bytes(), device.launches(), device.bytes().0), (0, 0, 0, 0));
         let told: Vec<_> = plan.left_out.iter().map(|left| (left.what, left.why.as_str())).collect();

@@ -47,7 +47,7 @@ fn pairs_of_any_sizes_are_answered_as_alone() {
             let truth = two_by_two(&scene, query);
             for bv in Bv::ALL {
                 let mut detector =
-                    Detector::new(engine(), scene.clone(), query.with_bv(bv)).expect("a detector");
+                    OneQuery::new(engine(), scene.clone(), query.with_bv(bv)).expect("a detector");
                 let contacts = detector.detect().expect("an answer");
                 assert_eq!(differ(&contacts, &truth), None, "seed {seed}, {bv:?}, {query:?}");
                 found += contacts.len();
@@ -78,7 +78,7 @@ fn one_tolerance_for_all_is_noticed() {
     let noticed = (0..12).filter(|&seed| {
         let scene = sized(seed, false);
         let truth = two_by_two(&scene, Query::continuous());
-        let detector = Detector::new(engine(), scene.clone(), Query::continuous()).expect("a detector");
+        let mut detector = OneQuery::new(engine(), scene.clone(), Query::continuous()).expect("a detector");
         let largest = detector.largest_tolerance().expect("a certified solver");
         let named = support::asked::with_tolerance(Query::continuous(), largest);
         let found = support::ask_scene(engine(), scene, named);
@@ -118,9 +118,9 @@ fn a_far_ground_changes_nothing() {
         for kind in [Body::fixed, Body::rigid, Body::still] {
             let mut bodies = between(sheets());
             bodies.push(ground(kind));
-            let mut detector = Detector::new(engine(), bodies, query).expect("a detector");
+            let mut detector = OneQuery::new(engine(), bodies, query).expect("a detector");
             let found = detector.detect().expect("an answer");
-            assert_eq!(found.answer, alone.answer, "{query:?}");
+            assert_eq!(found.rows, alone.rows, "{query:?}");
             let least = detector.tolerance().expect("a certified solver");
             assert!(least < 1e-5, "{least}");
         }
@@ -134,35 +134,36 @@ fn bodies_that_come_bring_their_tolerances_and_moving_changes_none() {
         Body::still(Mesh::new("a triangle", Positions::F32(corners), vec![[0, 1, 2]]).expect("a mesh"))
     };
     let (small, large) = (2f64.powi(-12), 2f64.powi(-2));
-    let both = |detector: &Detector| [detector.tolerance(), detector.largest_tolerance()].map(Option::unwrap);
-    let mut detector = Detector::new(engine(), scaled(1.0), Query::continuous()).expect("a detector");
+    let both = |own: &mut OneQuery| [own.tolerance(), own.largest_tolerance()].map(Option::unwrap);
+    let mut detector = OneQuery::new(engine(), scaled(1.0), Query::continuous()).expect("a detector");
     let first = detector.scene().ids().next().expect("a body");
-    assert_eq!(both(&detector), [small; 2]);
+    assert_eq!(both(&mut detector), [small; 2]);
     let second = detector.add(scaled(1024.0)).expect("room");
-    assert_eq!(both(&detector), [small, large]);
+    assert_eq!(both(&mut detector), [small, large]);
     let text = serde_json::to_value(summary(&mut detector)).expect("numbers");
     assert_eq!((text["tolerance"].as_f64(), text["largest_tolerance"].as_f64()), (Some(small), Some(large)));
     // Another place, of other edges.
     let far = scaled(1024.0);
     let step = Input::Step([far.positions_t0(); 2]);
     detector.frame(&[(first, step)]).expect("an answer");
-    assert_eq!(both(&detector), [small, large]);
-    let again = Detector::new(engine(), detector.scene().clone(), Query::continuous()).expect("a detector");
-    assert_eq!(both(&again), [small, large]);
+    assert_eq!(both(&mut detector), [small, large]);
+    let mut again =
+        OneQuery::new(engine(), detector.scene().clone(), Query::continuous()).expect("a detector");
+    assert_eq!(both(&mut again), [small, large]);
     // Another body.
     detector.replace(first, far.clone()).expect("a body");
-    assert_eq!(both(&detector), [large; 2]);
+    assert_eq!(both(&mut detector), [large; 2]);
     detector.replace(first, scaled(1.0)).expect("a body");
     detector.remove(second).expect("a body");
-    assert_eq!(both(&detector), [small; 2]);
+    assert_eq!(both(&mut detector), [small; 2]);
     let text = serde_json::to_value(summary(&mut detector)).expect("numbers");
     assert!(text.get("largest_tolerance").is_none(), "{text}");
     let named = support::asked::with_tolerance(Query::continuous(), 0.125);
-    let named = Detector::new(engine(), vec![scaled(1.0), scaled(1024.0)], named).expect("a detector");
-    assert_eq!(both(&named), [0.125; 2]);
+    let mut named = OneQuery::new(engine(), vec![scaled(1.0), scaled(1024.0)], named).expect("a detector");
+    assert_eq!(both(&mut named), [0.125; 2]);
 }
 
-fn summary(detector: &mut Detector) -> nearmiss::contacts::Summary {
+fn summary(detector: &mut OneQuery) -> nearmiss::contacts::Summary {
     let found = detector.detect().expect("an answer");
     detector.summary(&found)
 }

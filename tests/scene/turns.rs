@@ -35,7 +35,7 @@ fn a_turn_of_more_than_thirty_degrees_is_named_with_its_bulge() {
     let minus = |pose: Pose| Pose { rotation: pose.rotation.map(|q| -q), ..pose };
     for motion in [QueryKind::Continuous, QueryKind::Earliest] {
         let mut detector =
-            Detector::new(engine(), scene.clone(), support::asked::of(motion)).expect("a detector");
+            OneQuery::new(engine(), scene.clone(), support::asked::of(motion)).expect("a detector");
         for (ends, expected) in [
             ([turned(0.0), turned(29.9)], None),
             ([turned(0.0), turned(30.1)], Some((30.1, 2.0 * (1.0 - 15.05f64.to_radians().cos())))),
@@ -76,7 +76,7 @@ fn a_turn_of_more_than_thirty_degrees_is_named_with_its_bulge() {
 #[test]
 fn a_query_at_rest_and_a_body_that_is_not_rigid_have_no_turn() {
     let (scene, bar) = bar();
-    let mut detector = Detector::new(engine(), scene, Query::discrete()).expect("a detector");
+    let mut detector = OneQuery::new(engine(), scene, Query::discrete()).expect("a detector");
     let found = detector.frame(&[(bar, Input::Poses([turned(0.0), turned(180.0)]))]).expect("an answer");
     assert_eq!(turns(&found), []);
 }
@@ -85,7 +85,7 @@ fn a_query_at_rest_and_a_body_that_is_not_rigid_have_no_turn() {
 #[test]
 fn poses_of_the_device_are_judged_too() {
     let (scene, bar) = bar();
-    let mut detector = Detector::new(engine(), scene, Query::continuous()).expect("a detector");
+    let mut detector = OneQuery::new(engine(), scene, Query::continuous()).expect("a detector");
     let mut rotations = [turned(0.0).rotation, turned(10.0).rotation];
     let still = [[0.0f64; 3]; 1];
     // SAFETY: both outlive the detector's use of them, on a CPU; nothing writes while a call runs.

@@ -23,7 +23,7 @@ fn rows_of_any_stride_and_precision_are_read() {
         for stride in [3, 4, 7] {
             let (scene, id, [t0, t1]) = pair(80);
             let device = engine();
-            let mut by_host = Detector::new(engine(), scene.clone(), query(kind)).expect("a detector");
+            let mut by_host = OneQuery::new(engine(), scene.clone(), query(kind)).expect("a detector");
             let [at, to] = [&t0, &t1].map(|points| Positions::F32(points.clone()));
             let single = by_host.frame(&[(id, Input::Step([&at, &to]))]).expect("an answer");
             let rows = |points: &[[f32; 3]]| points.iter().map(|p| p.to_vec()).collect::<Vec<_>>();
@@ -32,9 +32,9 @@ fn rows_of_any_stride_and_precision_are_read() {
             let ends = held.each_ref().map(|(_, at)| unsafe {
                 DeviceRows::new(*at, t0.len(), 4 * stride, Number::F32).expect("rows")
             });
-            let mut detector = Detector::new(device.clone(), scene, query(kind)).expect("a detector");
+            let mut detector = OneQuery::new(device.clone(), scene, query(kind)).expect("a detector");
             let found = detector.frame(&[(id, Input::OnDevice(DeviceInput::Step(ends)))]).expect("an answer");
-            assert_eq!(found.answer, single.answer);
+            assert_eq!(found.rows, single.rows);
             // Doubles that singles do not have: the whole pipeline goes over.
             let wide = |points: &[[f32; 3]]| -> Vec<Vec<f64>> {
                 points.iter().map(|p| p.map(|x| f64::from(x) * (1.0 + 1e-12)).to_vec()).collect()
@@ -48,8 +48,8 @@ fn rows_of_any_stride_and_precision_are_read() {
             let [at, to] = [&t0, &t1]
                 .map(|points| Positions::F64(wide(points).iter().map(|p| [p[0], p[1], p[2]]).collect()));
             let double = by_host.frame(&[(id, Input::Step([&at, &to]))]).expect("an answer");
-            assert_eq!(found.answer, double.answer);
-            assert!(kind == QueryKind::Discrete || double.answer != single.answer);
+            assert_eq!(found.rows, double.rows);
+            assert!(kind == QueryKind::Discrete || double.rows != single.rows);
         }
     }
 }
@@ -82,15 +82,15 @@ fn poses_on_the_device_are_poses() {
     let cloth = scene.add(Body::still(soup(80, 6).0));
     for kind in QueryKind::ALL {
         let device = engine();
-        let mut by_host = Detector::new(engine(), scene.clone(), query(kind)).expect("a detector");
-        let mut detector = Detector::new(device.clone(), scene.clone(), query(kind)).expect("a detector");
+        let mut by_host = OneQuery::new(engine(), scene.clone(), query(kind)).expect("a detector");
+        let mut detector = OneQuery::new(device.clone(), scene.clone(), query(kind)).expect("a detector");
         for frame in 0..4 {
             let ends = [pose(frame as f64), pose(frame as f64 + 1.0)];
             let wanted = by_host.frame(&[(rigid, Input::Poses(ends))]).expect("an answer");
             let held = ends.map(|pose| pose_rows(&device, &pose, |x| x, Number::F64));
             let input = DeviceInput::Poses(held.each_ref().map(|(_, rows)| *rows));
             let found = detector.frame(&[(rigid, Input::OnDevice(input))]).expect("an answer");
-            assert_eq!(found.answer, wanted.answer, "{kind:?}, frame {frame}");
+            assert_eq!(found.rows, wanted.rows, "{kind:?}, frame {frame}");
             assert!(detector.scene().bodies()[0].is_away());
             if frame == 2 {
                 detector.fetch().expect("positions");
@@ -102,7 +102,7 @@ fn poses_on_the_device_are_poses() {
             let input = [(cloth, Input::Step([&there[0], &there[1]]))];
             let [wanted, found] =
                 [&mut by_host, &mut detector].map(|detector| detector.frame(&input).expect("an answer"));
-            assert_eq!(found.answer, wanted.answer, "{kind:?}, frame {frame}, at rest");
+            assert_eq!(found.rows, wanted.rows, "{kind:?}, frame {frame}, at rest");
         }
         // In single precision the pose is another one, and both know it.
         let [single, _] = [pose(1.7), pose(0.0)];
@@ -117,7 +117,7 @@ fn poses_on_the_device_are_poses() {
         };
         let input = if at_rest { Input::Pose(single) } else { Input::Poses([single; 2]) };
         let wanted = by_host.frame(&[(rigid, input)]).expect("an answer");
-        assert_eq!(found.answer, wanted.answer, "{kind:?}");
+        assert_eq!(found.rows, wanted.rows, "{kind:?}");
     }
 }
 
@@ -128,7 +128,7 @@ fn bodies_that_are_away_come_back_for_changes() {
     let device = engine();
     let memory = [&t0, &t1].map(|points| Points::new(&device, points));
     let step = Input::OnDevice(DeviceInput::Step([memory[0].rows(), memory[1].rows()]));
-    let mut detector = Detector::new(device, scene, query(QueryKind::Continuous)).expect("a detector");
+    let mut detector = OneQuery::new(device, scene, query(QueryKind::Continuous)).expect("a detector");
     detector.frame(&[(id, step)]).expect("an answer");
     assert!(detector.scene().bodies()[0].is_away() && detector.scene().bodies()[0].is_moving());
     let added = detector.add(Body::still(soup(40, 9).0)).expect("room");
@@ -136,7 +136,7 @@ fn bodies_that_are_away_come_back_for_changes() {
     assert_eq!(body.ends().map(number), [&t0, &t1].map(|p| number(&Positions::F32(p.clone()))));
     let found = detector.detect().expect("an answer");
     let fresh = support::ask_scene(engine(), detector.scene().clone(), *detector.query());
-    assert_eq!(found.answer, fresh.answer);
+    assert_eq!(found.rows, fresh.rows);
     assert!(found.contacts().iter().any(|contact| contact.bodies.contains(&added)));
     // It goes away again, rests, and comes back where its step ended.
     detector.frame(&[(id, step)]).expect("an answer");
@@ -146,7 +146,7 @@ fn bodies_that_are_away_come_back_for_changes() {
     assert!(!body.is_moving() && number(body.positions_t0()) == number(&Positions::F32(t1.clone())));
     let found = detector.detect().expect("an answer");
     let fresh = support::ask_scene(engine(), detector.scene().clone(), *detector.query());
-    assert_eq!(found.answer, fresh.answer);
+    assert_eq!(found.rows, fresh.rows);
     // Another body in doubles: all go over, where they are.
     detector.frame(&[(id, step)]).expect("an answer");
     let other = detector.add(Body::still(soup(20, 11).0)).expect("room");
@@ -156,7 +156,7 @@ fn bodies_that_are_away_come_back_for_changes() {
     detector.fetch().expect("positions");
     assert_eq!(number(detector.scene().bodies()[0].positions_t0()), number(&Positions::F32(t1)));
     let fresh = support::ask_scene(engine(), detector.scene().clone(), *detector.query());
-    assert_eq!(found.answer, fresh.answer);
+    assert_eq!(found.rows, fresh.rows);
 }
 
 #[test]
@@ -164,7 +164,7 @@ fn memory_of_the_caller_is_read_in_every_slice() {
     let (scene, id, ends) = pair(2_000);
     let query = query(QueryKind::Continuous);
     let whole = engine();
-    let mut by_host = Detector::new(whole.clone(), scene.clone(), query).expect("a detector");
+    let mut by_host = OneQuery::new(whole.clone(), scene.clone(), query).expect("a detector");
     let mut asked = |frame| {
         let [t0, t1] = ends.each_ref().map(|points| Positions::F32(moved(points, frame)));
         by_host.frame(&[(id, Input::Step([&t0, &t1]))]).expect("an answer")
@@ -173,7 +173,7 @@ fn memory_of_the_caller_is_read_in_every_slice() {
     let mut sliced = 0;
     for part in (10..40).rev() {
         let device = engine().limited(whole.bytes().1 * part / 40);
-        let Ok(mut detector) = Detector::new(device.clone(), scene.clone(), query) else { continue };
+        let Ok(mut detector) = OneQuery::new(device.clone(), scene.clone(), query) else { continue };
         // The caller's own memory is not of the detector's device.
         let mut memory = ends.each_ref().map(|points| Points::new(&engine(), points));
         let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
@@ -181,9 +181,9 @@ fn memory_of_the_caller_is_read_in_every_slice() {
             memory[0].write(&moved(&ends[0], frame));
             memory[1].write(&moved(&ends[1], frame));
             let Ok(found) = detector.frame(&[(id, Input::OnDevice(input))]) else { break };
-            assert_eq!((found.hash(), &found.answer), (wanted.hash(), &wanted.answer), "{part}, {frame}");
-            sliced += u32::from(found.slices > 1);
-            if found.slices > 1 {
+            assert_eq!((found.hash(), &found.rows), (wanted.hash(), &wanted.rows), "{part}, {frame}");
+            sliced += u32::from(found.stats.slices > 1);
+            if found.stats.slices > 1 {
                 let error = detector.prepare(&[(id, input)]).expect_err("a submission is one frame");
                 assert!(error.exit_code() == 2 && error.to_string().contains("slices"), "{error}");
             }

@@ -21,7 +21,7 @@ fn queries_on_machines() -> Vec<(Query, Device)> {
 }
 
 /// Whether the submitted frame's status reports an invalid vertex or pose. `None` on a GPU, whose memory this test does not read.
-fn seen(device: &Device, detector: &Detector) -> Option<bool> {
+fn seen(device: &Device, detector: &OneQuery) -> Option<bool> {
     (!device.is_gpu()).then(|| status(detector).invalid > 0)
 }
 
@@ -46,9 +46,9 @@ fn a_vertex_that_is_no_point_is_refused_every_time() {
             bad[17][1] = value;
             let mut memory = [&t0, &t1].map(|points| Points::new(&device, points));
             let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
-            let mut detector = Detector::new(device.clone(), scene.clone(), query).expect("a detector");
+            let mut detector = OneQuery::new(device.clone(), scene.clone(), query).expect("a detector");
             let good = detector.prepare(&[(id, input)]).expect("an answer");
-            let mut again = |detector: &mut Detector, points: &[[f32; 3]], fetches: bool| {
+            let mut again = |detector: &mut OneQuery, points: &[[f32; 3]], fetches: bool| {
                 memory[0].write(points);
                 detector.submit().expect("submitted");
                 // What lies on the device is refused there, too.
@@ -66,7 +66,7 @@ fn a_vertex_that_is_no_point_is_refused_every_time() {
                 assert_eq!(odd, None);
                 // A frame between those that are refused, and bodies that came back in between.
                 let found = again(&mut detector, &t0, false).expect("an answer");
-                assert_eq!(found.answer, good.answer, "{name}");
+                assert_eq!(found.rows, good.rows, "{name}");
                 if turn % 2 == 1 {
                     detector.fetch().expect("positions");
                 }
@@ -79,7 +79,7 @@ fn a_vertex_that_is_no_point_is_refused_every_time() {
             assert_eq!(lost(&format!("{query:?} asked"), asked, "vertex 17 has y"), None);
             memory[0].write(&t0);
             let found = detector.frame(&[(id, Input::OnDevice(input))]).expect("an answer");
-            assert_eq!(found.answer, good.answer, "{query:?}");
+            assert_eq!(found.rows, good.rows, "{query:?}");
         }
     }
 }
@@ -97,7 +97,7 @@ fn a_pose_that_is_none_is_refused_every_time() {
         // SAFETY: the buffer is kept.
         let row = |at| unsafe { DeviceRows::new(at, 1, 0, Number::F32) }.expect("a row");
         let pose = DevicePose { translation: row(at), rotation: row(at + 12) };
-        let mut detector = Detector::new(device.clone(), scene.clone(), query).expect("a detector");
+        let mut detector = OneQuery::new(device.clone(), scene.clone(), query).expect("a detector");
         let first = detector.prepare(&[(rigid, DeviceInput::Poses([pose; 2]))]).expect("an answer");
         for numbers in wrong.into_iter().cycle().take(4) {
             buffer.write(&numbers).expect("written");
@@ -106,7 +106,7 @@ fn a_pose_that_is_none_is_refused_every_time() {
             assert_eq!(lost(&format!("{query:?}"), detector.collect(), "the pose"), None);
             buffer.write(&good).expect("written");
             detector.submit().expect("submitted");
-            assert_eq!(detector.collect().expect("an answer").answer, first.answer, "{query:?}");
+            assert_eq!(detector.collect().expect("an answer").rows, first.rows, "{query:?}");
             detector.fetch().expect("a pose");
         }
     }
@@ -120,7 +120,7 @@ fn what_singles_cannot_hold_is_answered_in_doubles_every_time() {
     for (query, device) in queries_on_machines() {
         let mut memory = [&t0, &t1].map(|points| Points::new(&device, points));
         let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
-        let mut detector = Detector::new(device.clone(), scene.clone(), query).expect("a detector");
+        let mut detector = OneQuery::new(device.clone(), scene.clone(), query).expect("a detector");
         detector.prepare(&[(id, input)]).expect("an answer");
         detector.fetch().expect("positions");
         memory[0].write(&large(&t0));
@@ -129,9 +129,9 @@ fn what_singles_cannot_hold_is_answered_in_doubles_every_time() {
         assert_ne!(seen(&device, &detector), Some(false), "{query:?}");
         let found = detector.collect().expect("an answer");
         let ends = [&t0, &t1].map(|points| Positions::F32(large(points)));
-        let mut by_host = Detector::new(engine(), scene.clone(), query).expect("a detector");
+        let mut by_host = OneQuery::new(engine(), scene.clone(), query).expect("a detector");
         let wanted = by_host.frame(&[(id, Input::Step([&ends[0], &ends[1]]))]).expect("an answer");
-        assert_eq!(found.answer, wanted.answer, "{query:?}");
+        assert_eq!(found.rows, wanted.rows, "{query:?}");
     }
 }
 
@@ -139,7 +139,7 @@ fn what_singles_cannot_hold_is_answered_in_doubles_every_time() {
 #[test]
 fn an_answer_instead_of_a_refusal_is_named() {
     let (scene, ..) = pair(40);
-    let mut detector = Detector::new(engine(), scene, query(QueryKind::Earliest)).expect("a detector");
+    let mut detector = OneQuery::new(engine(), scene, query(QueryKind::Earliest)).expect("a detector");
     let fault = lost("planted", detector.detect(), "vertex 17");
     assert!(fault.is_some_and(|fault| fault.starts_with("planted: 0 contacts")));
     let other = Error::Choice { what: "another".into(), advice: "reason".into() };

@@ -11,7 +11,8 @@ use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Broad, Bv, FrontShape, QueryKind, QueueShape, Refit, Search, StealShape, Traversal};
 use nearmiss::scene::{Meets, Scene};
-use nearmiss::{Detector, Device, Query};
+use nearmiss::{Device, Query};
+use nearmiss_lab::OneQuery;
 use std::io::Read;
 
 /// A mesh of the public test data.
@@ -94,7 +95,7 @@ pub fn between(bodies: Vec<Body>) -> Vec<Body> {
 
 /// The same, of any scene.
 pub fn ask_scene(device: Device, scene: impl Into<Scene>, query: Query) -> nearmiss::Contacts {
-    let mut detector = Detector::new(device, scene, query).expect("a detector");
+    let mut detector = OneQuery::new(device, scene, query).expect("a detector");
     let contacts = detector.detect().expect("an answer");
     detector.check_volumes().expect("sound trees");
     contacts

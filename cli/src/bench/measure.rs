@@ -3,12 +3,12 @@
 use super::cases::inputs;
 use super::question::Question;
 use crate::detect::middle;
-use nearmiss::Detector;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
 use nearmiss::pipeline::Stages;
 use nearmiss::scene::Scene;
+use nearmiss_lab::OneQuery;
 use serde::Serialize;
 
 /// Frames before those that count: lists grow to the demand.
@@ -104,7 +104,7 @@ pub fn measure(
     frames: u32,
 ) -> Result<Measured, Error> {
     let query = question.query(scene.bodies());
-    let mut detector = Detector::new(device.clone(), scene.clone(), query)?;
+    let mut detector = OneQuery::new(device.clone(), scene.clone(), query)?;
     let inputs = inputs(scene);
     for _ in 0..WARM_UP {
         detector.rebuild()?;
@@ -114,9 +114,9 @@ pub fn measure(
     for _ in 0..frames {
         detector.rebuild()?;
         let found = detector.frame(&inputs)?;
-        all.push(found.stages);
+        all.push(found.stats.stages);
         hashes.push(found.hash());
-        last = [found.candidates, found.len() as u64];
+        last = [found.stats.candidates, found.len() as u64];
     }
     let hash = one(&hashes, &called(case, question.name()))?;
     Ok(Measured {

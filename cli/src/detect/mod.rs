@@ -9,14 +9,14 @@ use crate::paint;
 use crate::progress::during;
 use crate::report::{self, FileFaces, Format, Report};
 use crate::sequence::{self, Sequence, is_scene, steps};
-use nearmiss::Detector;
-use nearmiss::contacts::{Answer, ContactGeometry, Contacts, Note};
+use nearmiss::contacts::{ContactGeometry, Contacts, Note, Rows};
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
 use nearmiss::pipeline::Stages;
 use nearmiss::query::{Query, Traversal};
 use nearmiss::scene::Scene;
 use nearmiss::words::counted;
+use nearmiss_lab::OneQuery;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -158,7 +158,7 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
     }
     let device = args.machine.open()?;
     promise(&query);
-    let mut detector = during("building", || Detector::new(device.clone(), scene, query))?;
+    let mut detector = during("building", || OneQuery::new(device.clone(), scene, query))?;
     let often = if args.only.is_some() { 1 } else { args.repeat };
     let (contacts, runs) = during("detecting", || repeated(&mut detector, often))?;
     let mut summary = detector.summary(&contacts);
@@ -199,21 +199,21 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
 /// [`Error::OutOfMemory`]; those of the device.
 pub fn geometry(
     args: &DetectArgs,
-    detector: &mut Detector,
+    detector: &mut OneQuery,
     found: &Contacts,
 ) -> Result<Option<Vec<ContactGeometry>>, Error> {
     let is_wanted = args.geometry || args.writes_vtp() || args.out_mesh.is_some();
     // Triangles and a time have none; a file of the nearest triangles takes their points from the
     // answer.
-    let has_any = matches!(found.answer, Answer::Contacts(_) | Answer::Near(_));
+    let has_any = matches!(found.rows, Rows::Contacts(_) | Rows::Near(_));
     if is_wanted && has_any { detector.geometry(found).map(Some) } else { Ok(None) }
 }
 
 /// The answer, and the times of each run; of several runs the first only warms up.
-fn repeated(detector: &mut Detector, repeat: u32) -> Result<(Contacts, Vec<Stages>), Error> {
+fn repeated(detector: &mut OneQuery, repeat: u32) -> Result<(Contacts, Vec<Stages>), Error> {
     let keeps_front = matches!(detector.query().search().traversal, Some(Traversal::Front(_)));
     let mut contacts = detector.detect()?;
-    let mut runs = vec![contacts.stages];
+    let mut runs = vec![contacts.stats.stages];
     if repeat > 1 {
         runs.clear();
         for _ in 0..repeat {
@@ -222,7 +222,7 @@ fn repeated(detector: &mut Detector, repeat: u32) -> Result<(Contacts, Vec<Stage
                 detector.rebuild()?;
             }
             contacts = detector.detect()?;
-            runs.push(contacts.stages);
+            runs.push(contacts.stats.stages);
         }
     }
     Ok((contacts, runs))

@@ -34,7 +34,7 @@ pub fn human(told: &Report, contacts: &Contacts) -> String {
         summary.earliest_toi.map_or(String::new(), |toi| format!(", the first at t = {toi}"))
     );
     if let Some(tolerance) = summary.tolerance {
-        let escalated: u64 = contacts.escalated_vf_ee.iter().sum();
+        let escalated: u64 = contacts.stats.escalated_vf_ee.iter().sum();
         let _ = writeln!(
             text,
             "  {} unresolved, {escalated} asked again in f64; tolerance {tolerance:e}{}{}",
@@ -114,10 +114,10 @@ pub fn human(told: &Report, contacts: &Contacts) -> String {
     let _ = writeln!(
         text,
         "  {}, {} spilled, {} undecided by floats ({} in f64); {:.1} MB; hash {}",
-        counted(contacts.steps, "node test", "node tests"),
-        counted(contacts.spilled, "unit", "units"),
-        contacts.undecided,
-        contacts.undecided_wide,
+        counted(contacts.stats.steps, "node test", "node tests"),
+        counted(contacts.stats.spilled, "unit", "units"),
+        contacts.stats.undecided,
+        contacts.stats.undecided_wide,
         summary.bytes as f64 / 1e6,
         summary.hash
     );

@@ -1,7 +1,7 @@
 //! Where contacts are, as lines between the nearest points of both features.
 
 use crate::paint::starts;
-use nearmiss::contacts::{Answer, ContactGeometry, Contacts};
+use nearmiss::contacts::{ContactGeometry, Contacts, Rows};
 use nearmiss::mesh::Body;
 
 /// More than this are not drawn: they would hide what they mark.
@@ -15,7 +15,7 @@ pub fn of(
     found: &Contacts,
     geometry: &[ContactGeometry],
 ) -> Vec<[[f64; 3]; 2]> {
-    if let Answer::Distance(nearest) = &found.answer {
+    if let Rows::Distance(nearest) = &found.rows {
         return nearest.iter().map(|nearest| nearest.points).collect();
     }
     if geometry.len() > MOST {

@@ -13,12 +13,12 @@ use crate::output::{Target, print, say};
 use crate::paint::{self, GREY, ORANGE, RED};
 use crate::progress::during;
 use draw::Picture;
-use nearmiss::Detector;
-use nearmiss::contacts::Answer;
+use nearmiss::contacts::Rows;
 use nearmiss::error::Error;
 use nearmiss::memory;
 use nearmiss::words::counted;
 use nearmiss_kernels::math::Vec3;
+use nearmiss_lab::OneQuery;
 use std::io::Write;
 use std::process::ExitCode;
 
@@ -48,11 +48,11 @@ pub fn picture(args: &PictureArgs) -> Result<ExitCode, Error> {
     }
     let device = args.detect.machine.open()?;
     promise(&query);
-    let mut detector = during("building", || Detector::new(device, scene, query))?;
+    let mut detector = during("building", || OneQuery::new(device, scene, query))?;
     let found = during("detecting", || detector.detect())?;
-    let geometry = match &found.answer {
-        Answer::Contacts(_) | Answer::Near(_) => detector.geometry(&found)?,
-        Answer::Pairs(_) | Answer::Distance(_) | Answer::Earliest(_) => Vec::new(),
+    let geometry = match &found.rows {
+        Rows::Contacts(_) | Rows::Near(_) => detector.geometry(&found)?,
+        Rows::Pairs(_) | Rows::Distance(_) | Rows::Earliest(_) => Vec::new(),
     };
     let bodies = detector.scene().bodies();
     let triangles: usize = bodies.iter().map(|body| body.faces().len()).sum();

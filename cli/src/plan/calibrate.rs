@@ -1,7 +1,6 @@
 //! A machine measured: a few frames of a cloth of ours at two sizes, asked as the scene will be.
 
 use super::model::{Model, STAGES, Sample};
-use nearmiss::Detector;
 use nearmiss::contacts::Contacts;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
@@ -9,6 +8,7 @@ use nearmiss::pipeline::{Stages, mean_side};
 use nearmiss::plan::Plan;
 use nearmiss::query::Query;
 use nearmiss::scene::{BodyId, Input, Scene};
+use nearmiss_lab::OneQuery;
 use std::time::Instant;
 
 /// The scene that is asked.
@@ -39,7 +39,7 @@ pub fn model(device: &Device, query: &Query, side: f64) -> Result<Model, Error> 
         let input = if query.kind().is_at_rest() { Input::At(&t0) } else { Input::Step([&t0, &t1]) };
         let inputs: Vec<(BodyId, Input)> = id.map(|id| (id, input)).into_iter().collect();
         let query = scaled(query, if side > 0.0 { own / side } else { 1.0 });
-        let mut detector = Detector::new(device.clone(), scene, query)?;
+        let mut detector = OneQuery::new(device.clone(), scene, query)?;
         let mut frames = Vec::new();
         for frame in 0..FRAMES + 2 {
             if !super::keeps_front(&query) {
@@ -94,7 +94,7 @@ pub fn taken(plan: &Plan, found: &Contacts) -> [Sample; 7] {
         _ => plan.stage(name).map_or(0, |stage| stage.launches),
     };
     let moving = plan.bodies.rigid[1] + plan.bodies.deformable[1];
-    let ms = stage_ms(&found.stages);
+    let ms = stage_ms(&found.stats.stages);
     std::array::from_fn(|at| {
         let (name, _) = STAGES[at];
         // Of a stage that copies alone the whole counts as one.
@@ -102,8 +102,8 @@ pub fn taken(plan: &Plan, found: &Contacts) -> [Sample; 7] {
         let items = match name {
             "place" if ms[at] == 0.0 => 0.0,
             "place" => plan.bodies.moving_vertices as f64,
-            "traverse" => found.steps as f64,
-            "narrow" => found.candidates as f64,
+            "traverse" => found.stats.steps as f64,
+            "narrow" => found.stats.candidates as f64,
             "order" => found.len() as f64,
             _ => moving as f64,
         };

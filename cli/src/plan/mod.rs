@@ -11,7 +11,6 @@ use crate::output::{print, say};
 use crate::progress::during;
 use crate::sequence::Sequence;
 use model::Sample;
-use nearmiss::Detector;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
@@ -20,6 +19,7 @@ use nearmiss::plan::Plan;
 use nearmiss::query::{Broad, Bv, Certified, Named, Order, Query, Traversal};
 use nearmiss::scene::{BodyKind, Scene};
 use nearmiss::words::counted;
+use nearmiss_lab::OneQuery;
 use std::fmt::Write;
 use std::process::ExitCode;
 
@@ -29,13 +29,13 @@ pub fn plan(args: &PlanArgs) -> Result<ExitCode, Error> {
     let Question { scene, query, sequence, notes } = question(&args.detect)?;
     notes.iter().for_each(|note| say(note));
     let device = args.detect.machine.open()?;
-    let mut detector = during("building", || Detector::new(device.clone(), scene, query))?;
+    let mut detector = during("building", || OneQuery::new(device.clone(), scene, query))?;
     let work = Work::of(detector.scene());
     let measured = during("measuring this machine", || {
         let side = mean_side(detector.scene().bodies());
         has_memory(calibrate::model(&device, &query, side))
     })?;
-    let model = measured.filter(|_| !detector.depths().is_empty());
+    let model = if detector.depths().is_empty() { None } else { measured };
     let frame = if args.no_run {
         None
     } else {
@@ -47,9 +47,9 @@ pub fn plan(args: &PlanArgs) -> Result<ExitCode, Error> {
     let rows = model.as_ref().map(|model| times::rows(model, moving, sample.as_ref()));
     let times = model.as_ref().zip(rows.as_ref());
     let text = if args.detect.json {
-        table::json(&detector, &device, (plan.as_ref(), times))?
+        table::json(&mut detector, &device, (plan.as_ref(), times))?
     } else {
-        let mut text = choices(&detector, &device);
+        let mut text = choices(&mut detector, &device);
         text.extend(plan.as_ref().map(table::text));
         text.extend(times.map(|(model, rows)| times::text(model, rows)));
         text
@@ -78,7 +78,7 @@ pub const MEASURED: usize = 3;
 
 /// The plan of a frame, and one that is measured: each stage's launches, work and time.
 fn asked(
-    detector: &mut Detector,
+    detector: &mut OneQuery,
     sequence: Option<&Sequence>,
     query: &Query,
 ) -> Result<(Plan, [Sample; 7]), Error> {
@@ -117,9 +117,12 @@ fn keeps_front(query: &Query) -> bool {
 const MOST_TOLD: usize = 8;
 
 /// What was chosen, and why.
-fn choices(detector: &Detector, device: &Device) -> String {
-    let query = detector.query();
+fn choices(detector: &mut OneQuery, device: &Device) -> String {
+    let query = *detector.query();
+    let query = &query;
     let mut text = String::new();
+    let tolerances = [detector.tolerance(), detector.largest_tolerance()];
+    let depths = detector.depths();
     let bodies = detector.scene().bodies();
     for body in bodies.iter().take(MOST_TOLD) {
         let _ = writeln!(
@@ -163,9 +166,9 @@ fn choices(detector: &Detector, device: &Device) -> String {
         text += &of_trees(query, device);
     }
     let _ = writeln!(text, "solver     {}", query.solver().promise());
-    if let (Some(tolerance), Some(certified)) = (detector.tolerance(), query.certified()) {
+    if let (Some(tolerance), Some(certified)) = (tolerances[0], query.certified()) {
         let why = if certified.tolerance.is_some() { "as asked" } else { "about 1e-4 of the mean edge" };
-        let largest = detector.largest_tolerance().filter(|largest| *largest != tolerance);
+        let largest = tolerances[1].filter(|largest| *largest != tolerance);
         let largest =
             largest.map_or(String::new(), |largest| format!(" to {largest:e} by the bodies of a pair"));
         let boxes = certified.budget.unwrap_or(Certified::BUDGET);
@@ -184,7 +187,7 @@ fn choices(detector: &Detector, device: &Device) -> String {
     if let Query::Near(near) = query {
         let _ = writeln!(text, "distance   {:e}, as asked", near.distance);
     }
-    let levels = detector.depths().iter().map(|&n| counted(n as u64, "level", "levels")).collect::<Vec<_>>();
+    let levels = depths.iter().map(|&n| counted(n as u64, "level", "levels")).collect::<Vec<_>>();
     let _ =
         writeln!(text, "tree       {}", if levels.is_empty() { "none".into() } else { levels.join(" and ") });
     text

@@ -2,11 +2,11 @@
 
 use super::model::Model;
 use super::times::Row;
-use nearmiss::Detector;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::plan::{Plan, PlannedStage};
 use nearmiss::words::counted;
+use nearmiss_lab::OneQuery;
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -60,7 +60,7 @@ fn stage_rows(text: &mut String, stage: &PlannedStage) {
 /// # Errors
 /// None that is known.
 pub fn json(
-    detector: &Detector,
+    detector: &mut OneQuery,
     device: &Device,
     (plan, times): (Option<&Plan>, Option<(&Model, &Vec<Row>)>),
 ) -> Result<String, Error> {
@@ -84,15 +84,16 @@ pub fn json(
         times: Option<&'a Vec<Row>>,
         model: Option<&'a Model>,
     }
-    let query = detector.query();
+    let query = *detector.query();
+    let (tolerance, largest) = (detector.tolerance(), detector.largest_tolerance());
     let all = All {
         device: device.name(),
         backend: device.backend(),
         query: query.kind(),
         bv: query.bv().name(),
         solver: query.solver(),
-        tolerance: detector.tolerance(),
-        largest_tolerance: detector.largest_tolerance().filter(|&t| Some(t) != detector.tolerance()),
+        tolerance,
+        largest_tolerance: largest.filter(|_| largest != tolerance),
         depths: detector.depths(),
         launches: plan.map(Plan::launches),
         bytes: plan.map(Plan::bytes),

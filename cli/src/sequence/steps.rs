@@ -6,15 +6,15 @@ use crate::detect::{geometry, promise};
 use crate::output::{Target, print};
 use crate::progress::during;
 use crate::report::{FileFaces, Format, Report};
-use crate::rows::{Columns, Rows};
+use crate::rows::{Columns, JsonRows};
 use crate::vtp::Vtp;
-use nearmiss::Detector;
 use nearmiss::contacts::{ContactGeometry, Contacts, Note, Summary};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::query::{Query, QueryKind};
 use nearmiss::scene::Scene;
 use nearmiss::words::counted;
+use nearmiss_lab::OneQuery;
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::io::Write;
@@ -112,7 +112,7 @@ struct Steps<'a> {
     args: &'a DetectArgs,
     all: &'a Sequence,
     query: Query,
-    detector: Detector,
+    detector: OneQuery,
     faces: Option<FileFaces>,
 }
 
@@ -124,7 +124,7 @@ impl Steps<'_> {
         (scene, query): (Scene, Query),
     ) -> Result<Steps<'a>, Error> {
         let faces = args.file_faces.then(|| FileFaces::of(scene.bodies()));
-        let detector = during("building", || Detector::new(device, scene, query))?;
+        let detector = during("building", || OneQuery::new(device, scene, query))?;
         Ok(Steps { args, all, query, detector, faces })
     }
 
@@ -174,7 +174,7 @@ impl Steps<'_> {
         match step {
             0 => self.detector.detect(),
             _ if anew => {
-                self.detector.place(&inputs)?;
+                self.detector.update(&inputs)?;
                 self.detector.rebuild()?;
                 self.detector.detect()
             }
@@ -183,7 +183,7 @@ impl Steps<'_> {
     }
 
     /// The summary. Of a mesh one word about its seams is enough.
-    fn report(&self, step: usize, found: &Contacts) -> Report {
+    fn report(&mut self, step: usize, found: &Contacts) -> Report {
         let mut summary = self.detector.summary(found);
         summary.frames = if self.query.kind().is_at_rest() { 1 } else { 2 };
         summary.notes.retain(|note| step == 0 || !matches!(note, Note::Coincident { .. }));
@@ -200,8 +200,8 @@ impl Steps<'_> {
         if matches!(out, Out::Nowhere) {
             return Ok(());
         }
-        let named = self.faces.as_ref().map(|faces| faces.name(&found.answer));
-        let (answer, names) = (named.as_ref().unwrap_or(&found.answer), self.all.names.as_deref());
+        let named = self.faces.as_ref().map(|faces| faces.name(&found.rows));
+        let (answer, names) = (named.as_ref().unwrap_or(&found.rows), self.all.names.as_deref());
         match out {
             Out::Nowhere => Ok(()),
             Out::Csv(csv) => {
@@ -220,13 +220,16 @@ impl Steps<'_> {
                 struct Step<'a> {
                     step: Option<usize>,
                     summary: &'a Report,
-                    contacts: Rows<'a>,
+                    contacts: JsonRows<'a>,
                 }
                 if report.step != Some(0) {
                     out.write_all(b",").map_err(|e| e.to_string())?;
                 }
-                let step =
-                    Step { step: report.step, summary: report, contacts: Rows { answer, names, geometry } };
+                let step = Step {
+                    step: report.step,
+                    summary: report,
+                    contacts: JsonRows { answer, names, geometry },
+                };
                 serde_json::to_writer(out, &step).map_err(|e| e.to_string())
             }
         }
@@ -291,8 +294,8 @@ impl Total {
     fn add(&mut self, step: usize, found: &Contacts) {
         self.steps += 1;
         self.contacts += found.len() as u64;
-        self.ms[0] += found.stages.total;
-        self.ms[1] += found.stages.wall;
+        self.ms[0] += found.stats.stages.total;
+        self.ms[1] += found.stats.stages.wall;
         self.first = self.first.or(found.earliest_toi().map(|toi| (step, toi)));
         let nearer = |least: f64| self.nearest.is_none_or(|(other, _)| least < other);
         if let Some(least) = found.distance().filter(|&least| nearer(least)) {

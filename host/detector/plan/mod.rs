@@ -6,6 +6,7 @@ mod words;
 use super::Detector;
 use crate::device::{Count, Work};
 use crate::error::Error;
+use crate::query::Query;
 use crate::scene::{Body, BodyKind};
 pub use left_out::LeftOut;
 use nearmiss_kernels::entry::TABLE;
@@ -179,9 +180,10 @@ fn stages(work: &Work, building: bool) -> Vec<PlannedStage> {
 }
 
 impl Detector {
-    /// What a frame launches, holds and moves: what the device counted in the last one. Where fewer than two frames have been asked since
-    /// bodies came or went, they are asked now, with the bodies where they are: the first one finds out how long lists are, and waits
-    /// step by step. What [`Detector::frame`] uploads and places is in the plan if that was the last.
+    /// Launches, memory and transfers of a frame of a query: counts of the device in the last one. If the last two frames were not of this
+    /// query they run now, with the bodies where they are: the first one finds out how long lists are, and waits
+    /// step by step. Uploads and placing of [`Detector::step`] are in the plan if that was the last call. Memory is that of all queries
+    /// so far.
     ///
     /// ```
     /// use nearmiss::{Body, Detector, Device, Mesh, Query, device::Backend, mesh::Positions};
@@ -189,28 +191,30 @@ impl Detector {
     /// let corners = vec![[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, -1.0], [1.0, 2.0, 1.0], [9.0, 1.0, 9.0]];
     /// let mesh = Mesh::new("two triangles", Positions::F32(corners), vec![[0, 1, 2], [3, 4, 5]])?;
     /// let device = Device::open(Backend::Cpu, None)?;
-    /// let mut detector = Detector::new(device.clone(), Body::still(mesh), Query::discrete())?;
-    /// let plan = detector.plan()?;
+    /// let mut detector = Detector::new(device.clone(), Body::still(mesh))?;
+    /// let plan = detector.plan(&Query::discrete())?;
     /// assert_eq!(plan.bytes(), device.bytes().0);
     /// assert!(plan.stage("traverse").is_some() && plan.stage("place").is_none());
     /// # Ok::<(), nearmiss::Error>(())
     /// ```
     ///
     /// # Errors
-    /// Those of [`Detector::detect`].
-    pub fn plan(&mut self) -> Result<Plan, Error> {
-        let begun = self.begun().map(drop);
-        self.ended(begun)?;
-        while self.engine.pipeline.is_some() && self.engine.frames < 2 {
-            self.detect()?;
+    /// Those of [`Detector::query`].
+    pub fn plan(&mut self, query: &Query) -> Result<Plan, Error> {
+        let question = self.question(*query)?;
+        let begun = self.begun(&question).map(|at| at.is_some());
+        if self.ended(begun)? {
+            while !self.engine.has_run_twice(query) {
+                self.query(query)?;
+            }
         }
-        let layout = self.layout()?;
+        let layout = self.layout(query)?;
         let mut plan = Plan::new(
             self.scene.bodies(),
             (&self.engine.build_work, &self.engine.frame_work),
             self.device.held(),
         );
-        plan.left_out = left_out::of(&plan, &layout, &self.question.query, self.device.is_gpu());
+        plan.left_out = left_out::of(&plan, &layout, query, self.device.is_gpu());
         Ok(plan)
     }
 }

@@ -17,7 +17,8 @@ pub const STAGES: [(&str, &str); 9] = [
 const ORDER: usize = 7;
 
 /// Kernels by how their names begin, the longer beginnings first, and what each does.
-const KERNELS: [(&str, &str); 59] = [
+const KERNELS: [(&str, &str); 60] = [
+    ("place_starts", "positions at t = 0, apart from those at the end"),
     ("place", "poses applied, uploads put in place, the rest at rest"),
     ("construct_bounds", "the box of each body's centres"),
     ("construct_halves_bounds", "the box of each stretch of triangles"),

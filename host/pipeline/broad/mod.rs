@@ -103,6 +103,10 @@ pub trait BroadPhase<R: Precision>: Send {
     /// [`Error::Bug`] for what cannot be; those of the device.
     fn learn(&mut self) -> Result<(), Error>;
 
+    /// From the next fit on, volumes hold everything within `margin` of the triangles. Whether it must be constructed again for
+    /// that: true of static trees that were built with a smaller one.
+    fn set_margin(&mut self, margin: f32) -> bool;
+
     /// Fits the volumes of the triangles.
     ///
     /// # Errors

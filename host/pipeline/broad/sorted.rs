@@ -169,6 +169,13 @@ impl Sorted {
         self.in_order().read(self.count as usize)
     }
 
+    /// The bodies and their triangles in order, without the memory to order them again. Cost: none; one of two lists is freed.
+    pub fn into_order(self) -> (Vec<TreeBody>, Buffer<u64>) {
+        let is_in_runs = self.is_in_runs();
+        let [curve, runs] = self.items;
+        (self.bodies, if is_in_runs { runs } else { curve })
+    }
+
     /// The words that were asked for beside.
     pub fn zeroed(&self) -> Span<u64> {
         let all = self.begins_zero.span();

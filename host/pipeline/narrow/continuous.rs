@@ -9,20 +9,19 @@ use crate::device::{Ahead, Buffer, Device};
 use crate::error::Error;
 use crate::pipeline::below_precision::{self, BelowPrecision};
 use crate::pipeline::counts::Counts;
-use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::order::{Order, Ordering};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Hits, Listed};
 use crate::pipeline::{launch, purpose};
-use crate::query::{self, Certified, ContinuousSolver};
+use crate::query::{self, Certified, Continuous, ContinuousSolver, Earliest, Query};
 use crate::scene::Body;
-use nearmiss_kernels::abi::{Counter, CullArgs, Hit, Pair, SolveArgs, Span, counter, earliest};
+use nearmiss_kernels::abi::{
+    BodyTolerance, Counter, CullArgs, Hit, Pair, SolveArgs, Span, counter, earliest,
+};
 
 /// How many entries the lists of a continuous query have room for at first: vertex/face, edge/edge.
 pub struct Capacities {
-    /// Candidates.
-    pub candidates: [usize; 2],
     /// Those that may meet.
     pub survivors: [usize; 2],
     /// Contacts.
@@ -32,13 +31,8 @@ pub struct Capacities {
 }
 
 impl Capacities {
-    fn usual((capacity, few): (usize, usize)) -> Capacities {
-        Capacities {
-            candidates: [capacity, 2 * capacity],
-            survivors: [few, 2 * few],
-            hits: [few, few],
-            left: [few / 4, few / 4],
-        }
+    fn usual(few: usize) -> Capacities {
+        Capacities { survivors: [few, 2 * few], hits: [few, few], left: [few / 4, few / 4] }
     }
 }
 
@@ -55,13 +49,11 @@ enum Step {
     Solve,
 }
 
-/// The lists and the topology of a continuous query, or of an earliest one.
+/// The lists of a continuous query, or of an earliest one.
 pub struct ContinuousNarrow {
     solver: ContinuousSolver,
     /// What crosses at the start; none of a query that assumes that nothing does.
     start: Option<StartCheck>,
-    /// Topology, and the pairs whose boxes come within the separation.
-    features: Features,
     /// Those that may meet; there is no such step with a separation.
     survivors: Option<[List<Pair>; 2]>,
     /// Vertex/face contacts.
@@ -89,27 +81,17 @@ impl ContinuousNarrow {
     ///
     /// # Errors
     /// Those of the device.
-    pub fn all(
-        device: &Device,
-        layout: &Layout,
-        solver: ContinuousSolver,
-        room: (usize, usize),
-    ) -> Result<Self, Error> {
-        ContinuousNarrow::new(device, layout, solver, Capacities::usual(room))
+    pub fn all(device: &Device, solver: ContinuousSolver, few: usize) -> Result<Self, Error> {
+        ContinuousNarrow::new(device, solver, Capacities::usual(few))
     }
 
     /// For the smallest time alone.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn first(
-        device: &Device,
-        layout: &Layout,
-        solver: ContinuousSolver,
-        room: (usize, usize),
-    ) -> Result<Self, Error> {
-        let capacities = Capacities { hits: [0, 0], ..Capacities::usual(room) };
-        let narrow = ContinuousNarrow::new(device, layout, solver, capacities)?;
+    pub fn first(device: &Device, solver: ContinuousSolver, few: usize) -> Result<Self, Error> {
+        let capacities = Capacities { hits: [0, 0], ..Capacities::usual(few) };
+        let narrow = ContinuousNarrow::new(device, solver, capacities)?;
         Ok(ContinuousNarrow {
             earliest: Some(device.of(purpose::EARLIEST).buffer(earliest::WORDS as usize)?),
             ..narrow
@@ -120,12 +102,7 @@ impl ContinuousNarrow {
     ///
     /// # Errors
     /// Those of the device.
-    pub fn new(
-        device: &Device,
-        layout: &Layout,
-        solver: ContinuousSolver,
-        capacities: Capacities,
-    ) -> Result<Self, Error> {
+    pub fn new(device: &Device, solver: ContinuousSolver, capacities: Capacities) -> Result<Self, Error> {
         let lists = |[vf, ee]: [&'static str; 2], [vf_at, ee_at]: [Counter; 2], capacity: [usize; 2]| {
             Ok::<_, Error>([
                 List::new(device, vf, vf_at, capacity[0])?,
@@ -139,18 +116,17 @@ impl ContinuousNarrow {
         Ok(ContinuousNarrow {
             solver,
             start: None,
-            features: Features::new(device, layout, capacities.candidates)?,
             survivors: (!is_apart).then(survivors).transpose()?,
             vf_hits: List::new(device, "vertex/face contacts", counter::VF_HITS, capacities.hits[0])?,
             ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, capacities.hits[1])?,
-            rungs: Rungs::new(device, layout, solver.certified(), capacities.left)?,
+            rungs: Rungs::new(device, solver.certified(), capacities.left)?,
             counters: [
                 counter::UNRESOLVED,
                 counter::ENDED,
                 counter::ENDED_UNRESOLVED,
                 counter::BELOW_PRECISION,
             ],
-            finest: layout.finest_tolerance(),
+            finest: None,
             below_precision: None,
             earliest: None,
             bound: None,
@@ -181,34 +157,25 @@ impl ContinuousNarrow {
         self.bound.as_ref().filter(|_| !is_sample).map_or(Span::EMPTY, Buffer::span)
     }
 
-    /// What the solver is asked.
-    fn asked(&self) -> [&List<Pair>; 2] {
-        self.survivors.as_ref().unwrap_or(&self.features.candidates).each_ref()
+    /// Pairs that the solver tests.
+    fn tested<'a>(&'a self, features: &'a Features) -> [&'a List<Pair>; 2] {
+        self.survivors.as_ref().unwrap_or(&features.candidates).each_ref()
     }
 
-    /// Puts pairs, vertex/face and edge/edge, among those that [`ContinuousNarrow::cull`] is asked, and in `counts` how
-    /// many they are.
+    /// Puts pairs, vertex/face and edge/edge, among those that [`ContinuousNarrow::solve`] tests, and their numbers in `counts`.
     ///
     /// # Errors
     /// Those of the device.
     ///
     /// # Panics
     /// When there are more than the lists have room for: a fault of the caller.
-    pub fn put_candidates(&mut self, [vf, ee]: [&[Pair]; 2], counts: &mut Counts) -> Result<(), Error> {
-        let [vf_list, ee_list] = &mut self.features.candidates;
-        vf_list.put(vf, counts)?;
-        ee_list.put(ee, counts)
-    }
-
-    /// The same among those that [`ContinuousNarrow::solve`] is asked.
-    ///
-    /// # Errors
-    /// Those of the device.
-    ///
-    /// # Panics
-    /// When there are more than the lists have room for: a fault of the caller.
-    pub fn put_survivors(&mut self, [vf, ee]: [&[Pair]; 2], counts: &mut Counts) -> Result<(), Error> {
-        let [vf_list, ee_list] = self.survivors.as_mut().unwrap_or(&mut self.features.candidates);
+    pub fn put_survivors(
+        &mut self,
+        features: &mut Features,
+        [vf, ee]: [&[Pair]; 2],
+        counts: &mut Counts,
+    ) -> Result<(), Error> {
+        let [vf_list, ee_list] = self.survivors.as_mut().unwrap_or(&mut features.candidates);
         vf_list.put(vf, counts)?;
         ee_list.put(ee, counts)
     }
@@ -218,13 +185,13 @@ impl ContinuousNarrow {
     /// # Errors
     /// Those of the device.
     pub fn cull<R: Precision>(&self, given: &NarrowContext<R>) -> Result<(), Error> {
-        let ([vf, ee], Some([may_vf, may_ee])) = (&self.features.candidates, &self.survivors) else {
+        let ([vf, ee], Some([may_vf, may_ee])) = (&given.features.candidates, &self.survivors) else {
             return Ok(());
         };
         let args = CullArgs {
             frames: given.frames,
             faces: given.faces,
-            edges: self.features.edges.span(),
+            edges: given.features.edges.span(),
             vf: vf.output(given.counters),
             ee: ee.output(given.counters),
             may_vf: may_vf.output(given.counters),
@@ -246,8 +213,8 @@ impl ContinuousNarrow {
             // The greatest number.
             earliest.fill(u8::MAX)?;
         }
-        let [vf, ee] = self.asked();
-        let edges = self.features.edges.span();
+        let [vf, ee] = self.tested(given.features);
+        let edges = given.features.edges.span();
         let precision = match self.solver {
             ContinuousSolver::Certified(_) => {
                 let hits = [&self.vf_hits, &self.ee_hits];
@@ -301,7 +268,9 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
             Step::Features => {
                 let gap = self.solver.certified().filter(|certified| certified.is_apart());
                 let known = self.known(given.is_sample);
-                self.features.run::<R, R::Features>(given, (gap.map_or(0.0, Certified::listed_within), known))
+                given
+                    .features
+                    .run::<R, R::Features>(given, (gap.map_or(0.0, Certified::listed_within), known))
             }
             Step::Cull => self.cull(given),
             Step::Solve => self.solve(given),
@@ -325,10 +294,20 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
         self.bound.as_ref().map(Buffer::span)
     }
 
-    fn lists(&mut self, step: usize) -> Vec<&mut dyn GrowableOutput> {
+    fn set(&mut self, device: &Device, query: &Query, tolerances: &[BodyTolerance]) -> Result<(), Error> {
+        let (Query::Continuous(Continuous { solver, .. }) | Query::Earliest(Earliest { solver, .. })) = query
+        else {
+            return Ok(());
+        };
+        self.solver = *solver;
+        self.finest = tolerances.iter().map(|record| record.tolerance).reduce(f64::min);
+        solver.certified().map_or(Ok(()), |certified| self.rungs.set(device, certified, tolerances))
+    }
+
+    fn lists<'a>(&'a mut self, step: usize, features: &'a mut Features) -> Vec<&'a mut dyn GrowableOutput> {
         match self.all_steps()[step] {
             Step::Start => self.start.as_mut().map_or(Vec::new(), StartCheck::lists),
-            Step::Features => growable(&mut self.features.candidates).collect(),
+            Step::Features => growable(&mut features.candidates).collect(),
             Step::Cull => growable(self.survivors.iter_mut().flatten()).collect(),
             Step::Solve => growable([&mut self.vf_hits, &mut self.ee_hits])
                 .chain(growable(&mut self.counters))
@@ -337,13 +316,13 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
         }
     }
 
-    fn between(&self) -> Vec<(&'static str, &List<Pair>)> {
+    fn between<'a>(&'a self, features: &'a Features) -> Vec<(&'static str, &'a List<Pair>)> {
         if self.earliest.is_some() {
             // What is asked of a pair hangs on what was found before.
             return Vec::new();
         }
         let mut lists: Vec<_> = self.start.iter().flat_map(StartCheck::undecided).collect();
-        lists.extend(self.features.between());
+        lists.extend(features.between());
         if let Some([vf, ee]) = &self.survivors {
             lists.extend([("narrow: vf that may meet", vf), ("narrow: ee that may meet", ee)]);
         }
@@ -387,12 +366,12 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
         Ok((Listed::Hits { hits, certified }, ordered))
     }
 
-    fn answer(&self) -> AnswerLists {
+    fn answer(&self, features: &Features) -> AnswerLists {
         let lists = [&self.vf_hits, &self.ee_hits];
         AnswerLists {
             earliest: self.earliest.as_ref().map(|earliest| earliest.span().addr()),
             crossing: self.start.as_ref().map(|_| counter::STARTS_CROSSING),
-            edges: self.features.edges.span(),
+            edges: features.edges.span(),
             ..AnswerLists::of(Entries::Contacts, &lists, self.ordered.as_ref())
         }
     }

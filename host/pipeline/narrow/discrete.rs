@@ -1,6 +1,6 @@
 //! Triangles at rest: their lists, and the launches from triangle pairs to those that meet.
 
-use super::{AnswerLists, Narrow, NarrowContext, growable};
+use super::{AnswerLists, Features, Narrow, NarrowContext, growable};
 use crate::contacts::Entries;
 use crate::device::{Ahead, Device};
 use crate::error::Error;
@@ -94,11 +94,11 @@ impl<R: Precision> Narrow<R> for DiscreteNarrow {
         self.decide(given)
     }
 
-    fn lists(&mut self, _step: usize) -> Vec<&mut dyn GrowableOutput> {
+    fn lists<'a>(&'a mut self, _step: usize, _: &'a mut Features) -> Vec<&'a mut dyn GrowableOutput> {
         self.all_lists()
     }
 
-    fn between(&self) -> Vec<(&'static str, &List<Pair>)> {
+    fn between<'a>(&'a self, _: &'a Features) -> Vec<(&'static str, &'a List<Pair>)> {
         self.undecided()
     }
 
@@ -122,7 +122,7 @@ impl<R: Precision> Narrow<R> for DiscreteNarrow {
         Ok((Listed::Pairs(pairs), is_ordered))
     }
 
-    fn answer(&self) -> AnswerLists {
+    fn answer(&self, _: &Features) -> AnswerLists {
         AnswerLists::of(Entries::TrianglePairs, &[&self.contacts], self.ordered.as_ref())
     }
 }

@@ -1,6 +1,6 @@
 //! The nearest triangles: which candidates share a point, and of the others the nearest.
 
-use super::{AnswerLists, DiscreteNarrow, Narrow, NarrowContext};
+use super::{AnswerLists, DiscreteNarrow, Features, Narrow, NarrowContext};
 use crate::contacts::Entries;
 use crate::device::{Ahead, Device};
 use crate::error::Error;
@@ -84,7 +84,7 @@ impl<R: Precision> Narrow<R> for DistanceNarrow {
         }
     }
 
-    fn lists(&mut self, step: usize) -> Vec<&mut dyn GrowableOutput> {
+    fn lists<'a>(&'a mut self, step: usize, _: &'a mut Features) -> Vec<&'a mut dyn GrowableOutput> {
         match Step::ALL[step] {
             Step::Decide => self.meeting.all_lists(),
             Step::Least => Vec::new(),
@@ -92,7 +92,7 @@ impl<R: Precision> Narrow<R> for DistanceNarrow {
         }
     }
 
-    fn between(&self) -> Vec<(&'static str, &List<Pair>)> {
+    fn between<'a>(&'a self, _: &'a Features) -> Vec<(&'static str, &'a List<Pair>)> {
         self.meeting.undecided()
     }
 
@@ -112,7 +112,7 @@ impl<R: Precision> Narrow<R> for DistanceNarrow {
         Ok((Listed::Nearest(self.nearest.view(counters)?), true))
     }
 
-    fn answer(&self) -> AnswerLists {
+    fn answer(&self, _: &Features) -> AnswerLists {
         AnswerLists {
             entries: Entries::Nearest,
             lists: vec![(self.nearest.entries().addr(), 1)],

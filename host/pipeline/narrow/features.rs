@@ -3,6 +3,7 @@
 use super::NarrowContext;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
+use crate::pipeline::counts::Counts;
 use crate::pipeline::layout::Layout;
 use crate::pipeline::list::List;
 use crate::pipeline::precision::Precision;
@@ -20,22 +21,55 @@ pub struct Features {
 }
 
 impl Features {
+    /// No features: of a scene without a query of them.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn none(device: &Device) -> Result<Self, Error> {
+        Features::new(device, &Layout::default(), [0, 0])
+    }
+
     /// Takes the memory, with room for so many candidates of each kind.
     ///
     /// # Errors
     /// Those of the device.
     pub fn new(device: &Device, layout: &Layout, [vf, ee]: [usize; 2]) -> Result<Self, Error> {
+        let topology = &layout.features;
         let facet = |((&corners, &edges), &owned)| Facet { corners, owned, edges, pad: 0 };
         let facets: Vec<_> =
-            layout.faces.iter().zip(&layout.face_edges).zip(&layout.owners).map(facet).collect();
+            layout.faces.iter().zip(&topology.face_edges).zip(&topology.owners).map(facet).collect();
         Ok(Features {
-            edges: device.of(purpose::EDGES).upload(&layout.edges)?,
+            edges: device.of(purpose::EDGES).upload(&topology.edges)?,
             facets: device.of(purpose::FACETS).upload(&facets)?,
             candidates: [
                 List::new(device, "vertex/face candidates", counter::VF, vf)?,
                 List::new(device, "edge/edge candidates", counter::EE, ee)?,
             ],
         })
+    }
+
+    /// Makes room for the candidates of another query of features; topology is uploaded by the first one.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn reserve(&mut self, device: &Device, layout: &Layout, room: [usize; 2]) -> Result<(), Error> {
+        if self.facets.is_empty() {
+            *self = Features::new(device, layout, room)?;
+        }
+        self.candidates.iter_mut().zip(room).try_for_each(|(list, room)| list.reserve(device, room))
+    }
+
+    /// Puts pairs, vertex/face and edge/edge, among the candidates, and their numbers in `counts`.
+    ///
+    /// # Errors
+    /// Those of the device.
+    ///
+    /// # Panics
+    /// If there are more than the lists have room for: a fault of the caller.
+    pub fn put_candidates(&mut self, [vf, ee]: [&[Pair]; 2], counts: &mut Counts) -> Result<(), Error> {
+        let [vf_list, ee_list] = &mut self.candidates;
+        vf_list.put(vf, counts)?;
+        ee_list.put(ee, counts)
     }
 
     /// The lists, with names: for comparing machines.

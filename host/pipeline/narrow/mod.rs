@@ -12,6 +12,7 @@ mod start;
 pub use answer::AnswerLists;
 pub use continuous::{Capacities, ContinuousNarrow};
 pub use discrete::DiscreteNarrow;
+pub use features::Features;
 
 use super::counts::Counts;
 use super::layout::Layout;
@@ -25,7 +26,7 @@ use crate::query::Query;
 use crate::scene::Body;
 use distance::DistanceNarrow;
 use near::NearNarrow;
-use nearmiss_kernels::abi::{BodyRecord, Counters, Output, Pair, Positions, Span};
+use nearmiss_kernels::abi::{BodyRecord, BodyTolerance, Counters, Output, Pair, Positions, Span};
 
 /// What every step of the stage is given.
 pub struct NarrowContext<'a, R: Precision> {
@@ -41,6 +42,8 @@ pub struct NarrowContext<'a, R: Precision> {
     pub bodies: Span<BodyRecord>,
     /// The frame's counters.
     pub counters: Counters,
+    /// Edges, what triangles own, and candidates; empty without a query of features.
+    pub features: &'a Features,
     /// Whether candidates are those of a sample, which is asked for a bound.
     pub is_sample: bool,
 }
@@ -74,12 +77,20 @@ pub trait Narrow<R: Precision>: Send {
         false
     }
 
+    /// Takes the numbers of another query of the same shape: distances, tolerances, limits.
+    ///
+    /// # Errors
+    /// Those of the device.
+    fn set(&mut self, _device: &Device, _query: &Query, _tolerances: &[BodyTolerance]) -> Result<(), Error> {
+        Ok(())
+    }
+
     /// The lists that the step of that place fills.
-    fn lists(&mut self, step: usize) -> Vec<&mut dyn GrowableOutput>;
+    fn lists<'a>(&'a mut self, step: usize, features: &'a mut Features) -> Vec<&'a mut dyn GrowableOutput>;
 
     /// The lists between candidates and contacts, with names: for comparing machines. None of those that hang on the order in
     /// which lanes came.
-    fn between(&self) -> Vec<(&'static str, &List<Pair>)>;
+    fn between<'a>(&'a self, features: &'a Features) -> Vec<(&'static str, &'a List<Pair>)>;
 
     /// The bodies are there now: how large they are may matter.
     fn place(&mut self, _bodies: &[Body]) {}
@@ -116,10 +127,10 @@ pub trait Narrow<R: Precision>: Send {
     fn gather(&self, counters: &Counts) -> Result<(Listed<'_>, bool), Error>;
 
     /// Where that lies.
-    fn answer(&self) -> AnswerLists;
+    fn answer(&self, features: &Features) -> AnswerLists;
 }
 
-/// The narrow phase that a query asks for: `capacity` entries for candidates, `few` for what is left of them.
+/// The narrow phase of a query, with room for `few` of its candidates at first.
 ///
 /// # Errors
 /// Those of the device.
@@ -127,20 +138,19 @@ pub fn narrow<R: Precision>(
     device: &Device,
     layout: &Layout,
     query: &Query,
-    (capacity, few): (usize, usize),
+    few: usize,
 ) -> Result<Box<dyn Narrow<R>>, Error> {
-    let room = (capacity, few);
     let mut narrow: Box<dyn Narrow<R>> = match query {
         Query::Discrete(query) => Box::new(DiscreteNarrow::new::<R>(device, query.test, few)?),
         Query::Continuous(query) => {
-            let narrow = ContinuousNarrow::all(device, layout, query.solver, room)?;
+            let narrow = ContinuousNarrow::all(device, query.solver, few)?;
             Box::new(if query.assume_free { narrow } else { narrow.checking_start::<R>(device, few / 4)? })
         }
         Query::Earliest(query) => {
-            let narrow = ContinuousNarrow::first(device, layout, query.solver, room)?;
+            let narrow = ContinuousNarrow::first(device, query.solver, few)?;
             Box::new(if query.assume_free { narrow } else { narrow.checking_start::<R>(device, few / 4)? })
         }
-        Query::Near(query) => Box::new(NearNarrow::new(device, layout, query.distance, room)?),
+        Query::Near(query) => Box::new(NearNarrow::new(device, query.distance, few)?),
         Query::Distance(_) => Box::new(DistanceNarrow::new::<R>(device, few)?),
     };
     if device.is_gpu() {

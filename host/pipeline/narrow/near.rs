@@ -7,12 +7,12 @@ use crate::device::{Ahead, Device};
 use crate::error::Error;
 use crate::pipeline::counts::Counts;
 use crate::pipeline::launch;
-use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::order::{Order, Ordering};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Hits, Listed};
-use nearmiss_kernels::abi::{Counter, NearArgs, NearHit, Pair, Span, counter};
+use crate::query::Query;
+use nearmiss_kernels::abi::{BodyTolerance, Counter, NearArgs, NearHit, Pair, Span, counter};
 
 /// A step of the phase.
 #[derive(Clone, Copy)]
@@ -28,11 +28,9 @@ impl Step {
     const ALL: [Step; 2] = [Step::Features, Step::Near];
 }
 
-/// The lists and the topology of a near query.
+/// The lists of a near query.
 pub struct NearNarrow {
     distance: f64,
-    /// Topology, and the pairs whose boxes come within the distance.
-    features: Features,
     /// Vertices and faces within the distance.
     vf_hits: List<NearHit>,
     /// Edges within the distance.
@@ -44,19 +42,13 @@ pub struct NearNarrow {
 }
 
 impl NearNarrow {
-    /// Takes the memory: `capacity` entries for candidates, twice as many for edges, `few` for hits.
+    /// Takes the memory, with room for `few` hits.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn new(
-        device: &Device,
-        layout: &Layout,
-        distance: f64,
-        (capacity, few): (usize, usize),
-    ) -> Result<Self, Error> {
+    pub fn new(device: &Device, distance: f64, few: usize) -> Result<Self, Error> {
         Ok(NearNarrow {
             distance,
-            features: Features::new(device, layout, [capacity, 2 * capacity])?,
             vf_hits: List::new(device, "vertex/face pairs within the distance", counter::VF_HITS, few)?,
             ee_hits: List::new(device, "edge/edge pairs within the distance", counter::EE_HITS, 2 * few)?,
             unresolved: counter::UNRESOLVED,
@@ -65,11 +57,11 @@ impl NearNarrow {
     }
 
     fn measure<R: Precision>(&self, given: &NarrowContext<R>) -> Result<(), Error> {
-        let [vf, ee] = &self.features.candidates;
+        let [vf, ee] = &given.features.candidates;
         let args = NearArgs {
             positions: given.frames.still,
             faces: given.faces,
-            edges: self.features.edges.span(),
+            edges: given.features.edges.span(),
             vf: vf.output(given.counters),
             ee: ee.output(given.counters),
             vf_hits: self.vf_hits.output(given.counters),
@@ -92,20 +84,27 @@ impl<R: Precision> Narrow<R> for NearNarrow {
 
     fn run(&mut self, step: usize, given: &NarrowContext<R>) -> Result<(), Error> {
         match Step::ALL[step] {
-            Step::Features => self.features.run::<R, R::FeaturesAtRest>(given, (self.distance, Span::EMPTY)),
+            Step::Features => given.features.run::<R, R::FeaturesAtRest>(given, (self.distance, Span::EMPTY)),
             Step::Near => self.measure(given),
         }
     }
 
-    fn lists(&mut self, step: usize) -> Vec<&mut dyn GrowableOutput> {
+    fn set(&mut self, _: &Device, query: &Query, _: &[BodyTolerance]) -> Result<(), Error> {
+        if let Query::Near(near) = query {
+            self.distance = near.distance;
+        }
+        Ok(())
+    }
+
+    fn lists<'a>(&'a mut self, step: usize, features: &'a mut Features) -> Vec<&'a mut dyn GrowableOutput> {
         match Step::ALL[step] {
-            Step::Features => growable(&mut self.features.candidates).collect(),
+            Step::Features => growable(&mut features.candidates).collect(),
             Step::Near => vec![&mut self.vf_hits, &mut self.ee_hits, &mut self.unresolved],
         }
     }
 
-    fn between(&self) -> Vec<(&'static str, &List<Pair>)> {
-        self.features.between()
+    fn between<'a>(&'a self, features: &'a Features) -> Vec<(&'static str, &'a List<Pair>)> {
+        features.between()
     }
 
     fn ordering(&mut self) -> Option<&mut dyn Ordering> {
@@ -126,8 +125,8 @@ impl<R: Precision> Narrow<R> for NearNarrow {
         Ok((Listed::Near(hits), ordered))
     }
 
-    fn answer(&self) -> AnswerLists {
-        let edges = self.features.edges.span();
+    fn answer(&self, features: &Features) -> AnswerLists {
+        let edges = features.edges.span();
         let lists = [&self.vf_hits, &self.ee_hits];
         AnswerLists { edges, ..AnswerLists::of(Entries::NearPairs, &lists, self.ordered.as_ref()) }
     }

@@ -3,7 +3,6 @@
 use super::NarrowContext;
 use crate::device::{Buffer, Device};
 use crate::error::Error;
-use crate::pipeline::layout::Layout;
 use crate::pipeline::list::{GrowableOutput, List};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::{launch, purpose};
@@ -82,6 +81,8 @@ pub struct Rungs {
     names: Vec<usize>,
     /// Tolerances of bodies; empty if all pairs have the same.
     tolerances: Buffer<BodyTolerance>,
+    /// What `tolerances` holds.
+    held: Vec<BodyTolerance>,
 }
 
 impl Rungs {
@@ -89,12 +90,7 @@ impl Rungs {
     ///
     /// # Errors
     /// Those of the device.
-    pub fn new(
-        device: &Device,
-        layout: &Layout,
-        certified: Option<&Certified>,
-        capacity: [usize; 2],
-    ) -> Result<Self, Error> {
+    pub fn new(device: &Device, certified: Option<&Certified>, capacity: [usize; 2]) -> Result<Self, Error> {
         let rungs = certified.map_or(&[][..], rungs);
         let names: Vec<_> = rungs.iter().rev().skip(1).rev().map(|rung| rung.left()).collect();
         let list = |(_, name, counter): (&str, &'static str, Counter), capacity| {
@@ -104,8 +100,27 @@ impl Rungs {
             .iter()
             .map(|&at| Ok([list(LEFT[at][0], capacity[0])?, list(LEFT[at][1], capacity[1])?]))
             .collect::<Result<_, Error>>()?;
-        let tolerances = device.of(purpose::TOLERANCES).upload(&layout.tolerances)?;
-        Ok(Rungs { certified: certified.copied().unwrap_or_default(), rungs, left, names, tolerances })
+        let tolerances = device.of(purpose::TOLERANCES).buffer(0)?;
+        let certified = certified.copied().unwrap_or_default();
+        Ok(Rungs { certified, rungs, left, names, tolerances, held: Vec::new() })
+    }
+
+    /// Takes the numbers of another solver of the same precision, and the tolerances of bodies; none if all pairs have the same.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn set(
+        &mut self,
+        device: &Device,
+        certified: &Certified,
+        tolerances: &[BodyTolerance],
+    ) -> Result<(), Error> {
+        self.certified = *certified;
+        if self.held != tolerances {
+            self.tolerances = device.of(purpose::TOLERANCES).upload(tolerances)?;
+            self.held = tolerances.to_vec();
+        }
+        Ok(())
     }
 
     /// The tolerances of bodies; empty if all pairs have the same.

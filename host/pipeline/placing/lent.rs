@@ -89,6 +89,7 @@ impl<R: Precision> Placing<R> {
     /// Those of the device.
     pub fn again(&mut self, device: &Device) -> Result<(), Error> {
         let Last::Device(args) = &self.last else { return Ok(()) };
+        self.is_at_rest_current = false;
         if self.lent.any {
             self.lent.seen.clear()?;
         }
@@ -128,7 +129,7 @@ impl<R: Precision> Placing<R> {
     /// # Errors
     /// Those of the device.
     pub fn whereabouts(&self) -> Result<Whereabouts, Error> {
-        let mut ends = self.positions()?;
+        let mut ends = self.all_positions()?;
         let looked_at = ends.len();
         if self.keeps.contains(&true) {
             let later = self.later.read(self.later.len())?;

@@ -15,7 +15,7 @@ use bytemuck::Pod;
 use lent::LentMemory;
 use nearmiss_kernels::abi::{
     KEEPS_END, LENT, LENT_POSES, POSED, PlaceArgs, Placement, Point, PoseRecord, Positions, RESTING, Span,
-    UPLOADED, VertexMotion as Ends,
+    StartsArgs, UPLOADED, VertexMotion as Ends,
 };
 use nearmiss_kernels::math::{Real, Vec3};
 
@@ -36,7 +36,7 @@ impl Moved {
     }
 }
 
-/// Positions, as the query needs them.
+/// Positions at t = 0, or at both ends of the step once a query reads them.
 enum Vertices<R: Precision> {
     Still(Buffer<Point<R>>),
     Moving(Buffer<Ends<R>>),
@@ -98,6 +98,9 @@ enum Last<R: Real> {
 /// The vertices of a scene, and what moving them needs.
 pub struct Placing<R: Precision> {
     vertices: Vertices<R>,
+    /// Positions at t = 0 apart, if vertices have two ends and a query at rest was asked; and whether they are those of now.
+    at_rest: Buffer<Point<R>>,
+    is_at_rest_current: bool,
     /// Vertices of rigid bodies without a pose, and where each body's begin.
     rest: Buffer<Point<R>>,
     rest_starts: Vec<u32>,
@@ -138,6 +141,8 @@ impl<R: Precision> Placing<R> {
         });
         let mut placing = Placing {
             vertices: Vertices::new(device, moving, layout.starts[layout.bodies()].vertex as usize)?,
+            at_rest: device.buffer(0)?,
+            is_at_rest_current: false,
             rest_starts: rest_starts.collect(),
             starts: layout.starts.iter().map(|at| at.vertex).collect(),
             later: device.buffer(0)?,
@@ -155,20 +160,49 @@ impl<R: Precision> Placing<R> {
             .filter(|&i| is_rigid(&&bodies[i]) || bodies[i].lent().is_some())
             .map(|body| Moved { body, rests: false })
             .collect();
-        placing.put(device, layout, bodies, &moved)?;
+        placing.put(device, bodies, &moved)?;
         Ok(placing)
     }
 
-    /// Where all vertices are.
-    pub fn frames(&self) -> Positions<R> {
-        self.vertices.span()
+    /// Positions for a query at rest, or in motion, which are [ready](Placing::ready).
+    pub fn frames(&self, at_rest: bool) -> Positions<R> {
+        match &self.vertices {
+            Vertices::Moving(_) if at_rest => Positions { still: self.at_rest.span(), moving: Span::EMPTY },
+            _ => self.vertices.span(),
+        }
     }
 
-    /// Positions as they lie on the device: at t = 0 and, when anything moves, at t = 1.
+    /// Whether positions are ready for a query at rest, or in motion.
+    pub fn is_ready(&self, at_rest: bool) -> bool {
+        !at_rest || self.is_at_rest_current || matches!(self.vertices, Vertices::Still(_))
+    }
+
+    /// Readies positions at t = 0 apart from those at the end of the step. Cost: a launch, and no word of the host.
     ///
     /// # Errors
     /// Those of the device.
-    pub fn positions(&self) -> Result<Vec<Vec<Vec3<R>>>, Error> {
+    pub fn ready(&mut self, device: &Device) -> Result<(), Error> {
+        let Vertices::Moving(motions) = &self.vertices else { return Ok(()) };
+        if self.at_rest.len() != motions.len() {
+            self.at_rest = device.buffer(motions.len())?;
+        }
+        let args = StartsArgs { moving: motions.span(), still: self.at_rest.span() };
+        launch::striding::<R::Starts>(&device.undisturbed(), motions.len(), &args)?;
+        self.is_at_rest_current = true;
+        Ok(())
+    }
+
+    /// Positions as a query at rest, or in motion, sees them: at t = 0 and, in motion, at t = 1.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn positions(&self, at_rest: bool) -> Result<Vec<Vec<Vec3<R>>>, Error> {
+        let mut ends = self.all_positions()?;
+        ends.truncate(if at_rest { 1 } else { 2 });
+        Ok(ends)
+    }
+
+    fn all_positions(&self) -> Result<Vec<Vec<Vec3<R>>>, Error> {
         Ok(match &self.vertices {
             Vertices::Still(points) => vec![points.read(points.len())?.iter().map(|p| p.at).collect()],
             Vertices::Moving(motions) => {
@@ -186,15 +220,10 @@ impl<R: Precision> Placing<R> {
     ///
     /// # Errors
     /// Those of the device.
-    pub fn put(
-        &mut self,
-        device: &Device,
-        layout: &Layout,
-        bodies: &[Body],
-        moved: &[Moved],
-    ) -> Result<(), Error> {
+    pub fn put(&mut self, device: &Device, bodies: &[Body], moved: &[Moved]) -> Result<(), Error> {
+        self.is_at_rest_current = false;
         if matches!(self.vertices, Vertices::Moving(_)) {
-            return self.put_together(device, layout, bodies, moved);
+            return self.put_together(device, bodies, moved);
         }
         let any_lent = moved.iter().any(|m| bodies[m.body].lent().is_some());
         let goes_first = |m: &Moved| any_lent && m.rests && !bodies[m.body].is_away();
@@ -204,18 +233,12 @@ impl<R: Precision> Placing<R> {
         };
         let first = one_end(true);
         if !first.is_empty() {
-            self.put_together(device, layout, bodies, &first)?;
+            self.put_together(device, bodies, &first)?;
         }
-        self.put_together(device, layout, bodies, &one_end(false))
+        self.put_together(device, bodies, &one_end(false))
     }
 
-    fn put_together(
-        &mut self,
-        device: &Device,
-        layout: &Layout,
-        bodies: &[Body],
-        moved: &[Moved],
-    ) -> Result<(), Error> {
+    fn put_together(&mut self, device: &Device, bodies: &[Body], moved: &[Moved]) -> Result<(), Error> {
         let all = moved.len() == bodies.len();
         (self.last, self.lent.any) = (Last::Nothing, false);
         let comes = |m: &Moved| {
@@ -231,7 +254,7 @@ impl<R: Precision> Placing<R> {
         let (mut placed, mut poses, mut uploads, mut lent) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         let (mut before, mut uploaded) = (0, 0);
         for &Moved { body: i, rests } in moved {
-            let (body, vertex) = (&bodies[i], layout.starts[i].vertex);
+            let (body, vertex) = (&bodies[i], self.starts[i]);
             let count = body.vertex_count() as u32;
             if count == 0 {
                 continue;

@@ -1,6 +1,7 @@
 //! The end of a frame: what the kernels found comes to the host.
 
-use super::TypedPipeline;
+use super::query::QueryMemory;
+use super::scene::SceneMemory;
 use crate::device::{Ahead, View};
 use crate::error::Error;
 use crate::pipeline::counts::Counts;
@@ -132,18 +133,23 @@ pub fn in_order<'a, T: Ordered>(
     order.map_or(Ok(None), |order| order.view(counters, lists))
 }
 
-impl<R: Precision> TypedPipeline<R> {
+impl<R: Precision> QueryMemory<R> {
     /// Brings over with one wait what the end of a frame reads: counters, and as many contacts as the last frame had.
-    pub(super) fn read_ahead(&self) -> Result<(), Error> {
+    pub(super) fn read_ahead(&self, scene: &SceneMemory<R>) -> Result<(), Error> {
         let mut all = vec![self.counters.ahead()];
-        all.extend(self.vertices.ahead());
+        all.extend(scene.vertices.ahead());
         all.extend(self.narrow.ahead(&self.last));
-        self.device.read_ahead(&all)
+        scene.device.read_ahead(&all)
     }
 
-    pub(super) fn gather(&self, counters: Counts, reruns: u64) -> Result<Found<'_>, Error> {
+    pub(super) fn gather<'a>(
+        &'a self,
+        scene: &SceneMemory<R>,
+        counters: Counts,
+        reruns: u64,
+    ) -> Result<Found<'a>, Error> {
         let (listed, ordered) = self.narrow.gather(&counters)?;
-        let (front_dropped, seen) = (self.broad.front_dropped(), self.vertices.seen()?);
+        let (front_dropped, seen) = (scene.broads[self.broad].phase.front_dropped(), scene.vertices.seen()?);
         let is_start_checked = self.narrow.checks_start();
         Ok(Found { listed, ordered, counters, reruns, front_dropped, is_start_checked, seen })
     }

@@ -1,6 +1,8 @@
 //! All that a frame launches, and when its stages were over.
 
-use super::TypedPipeline;
+use super::Found;
+use super::query::QueryMemory;
+use super::scene::SceneMemory;
 use crate::device::{Device, Marks, Replay};
 use crate::error::Error;
 use crate::pipeline::broad::{Candidates, Which};
@@ -29,13 +31,42 @@ pub fn replay(device: &Device) -> Result<Replay, Error> {
     Replay::new(device, Mark::Ordered as usize + 1)
 }
 
-impl<R: Precision> TypedPipeline<R> {
+impl<R: Precision> QueryMemory<R> {
+    /// One frame: see [`Pipeline::frame`](super::Pipeline::frame).
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub(super) fn frame<'a>(&'a mut self, scene: &mut SceneMemory<R>) -> Result<(Found<'a>, Stages), Error> {
+        let reruns = self.reruns;
+        self.launch_ms = 0.0;
+        let mut fits = true;
+        loop {
+            scene.device.goes_on()?;
+            self.launch(scene, fits)?;
+            fits = false;
+            self.read_ahead(scene)?;
+            let counters = self.counters.read()?;
+            self.demand.counted(&counters, &scene.device)?;
+            if self.has_overflowed(scene, &counters) {
+                // Some list, somewhere: find out step by step.
+                self.settled = false;
+                self.reruns += 1;
+                continue;
+            }
+            self.settled = true;
+            scene.broads[self.broad].phase.finish(&counters)?;
+            let stages = self.marked(scene)?;
+            self.last.clone_from(&counters);
+            return Ok((self.gather(scene, counters, self.reruns - reruns)?, stages));
+        }
+    }
+
     /// Starts all of a frame, with what it marks; the volumes are fitted, or were in this frame.
-    pub(super) fn launch(&mut self, fits: bool) -> Result<(), Error> {
-        let (device, mut replay) = (self.device.clone(), std::mem::take(&mut self.replay));
+    fn launch(&mut self, scene: &mut SceneMemory<R>, fits: bool) -> Result<(), Error> {
+        let (device, mut replay) = (scene.device.clone(), std::mem::take(&mut self.replay));
         let start = Instant::now();
-        let is_listed = self.settled && self.broad.without_host().is_ok();
-        let frame = |marks: &mut Marks| self.stages(fits, marks);
+        let is_listed = self.settled && scene.broads[self.broad].phase.without_host().is_ok();
+        let frame = |marks: &mut Marks| self.stages(scene, fits, marks);
         let done = if is_listed {
             // SAFETY: settled stages launch and clear; what memory they hold they keep.
             unsafe { replay.run(&device, frame) }
@@ -48,44 +79,50 @@ impl<R: Precision> TypedPipeline<R> {
     }
 
     /// Starts the walk.
-    pub(super) fn traverse(&mut self, which: Which) -> Result<(), Error> {
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub(super) fn traverse(&mut self, scene: &mut SceneMemory<R>, which: Which) -> Result<(), Error> {
         let counters = self.counters.counters();
         let candidates = Candidates {
-            pairs: self.pairs.output(counters),
+            pairs: scene.pairs.output(counters),
             counters,
             flags: TraverseFlags::KEEP_ADJACENT.when(self.query.keeps_adjacent()),
             which,
             share: self.share,
         };
-        self.broadly(|broad, given, _| broad.traverse(given, &candidates))
+        scene.broadly(self, |broad, given, _| broad.traverse(given, &candidates))
     }
 
-    fn stages(&mut self, fits: bool, marks: &mut Marks) -> Result<(), Error> {
+    fn stages(&mut self, scene: &mut SceneMemory<R>, fits: bool, marks: &mut Marks) -> Result<(), Error> {
         let mut pass = |mark: Mark| marks.pass(mark as usize);
         if fits {
             pass(Mark::Begun)?;
-            self.run(Stage::Fit)?;
+            self.run(scene, Stage::Fit)?;
             pass(Mark::Fitted)?;
-            self.run(Stage::Refit)?;
+            self.run(scene, Stage::Refit)?;
             pass(Mark::Refitted)?;
         }
         self.counters.clear()?;
         pass(Mark::Walks)?;
-        self.run(Stage::Traverse)?;
+        self.run(scene, Stage::Traverse)?;
         pass(Mark::Walked)?;
-        self.run(Stage::Narrow)?;
+        self.run(scene, Stage::Narrow)?;
         pass(Mark::Found)?;
-        self.run(Stage::Order)?;
+        self.run(scene, Stage::Order)?;
         pass(Mark::Ordered)
     }
 
     /// How long the stages took, by their marks; waits for them.
-    pub(super) fn marked(&mut self) -> Result<Stages, Error> {
-        let balance = self.broad.balance_ms()?;
-        let placing = self.placing.take();
+    fn marked(&mut self, scene: &mut SceneMemory<R>) -> Result<Stages, Error> {
+        let balance = scene.broads[self.broad].phase.balance_ms()?;
+        let mut place = 0.0;
+        for [start, end] in scene.placing.drain(..) {
+            place += start.to(&end)?;
+        }
         let ms = |from: Mark, to: Mark| self.replay.ms(from as usize, to as usize);
         Ok(Stages {
-            place: placing.map_or(Ok(0.0), |[start, end]| start.to(&end))?,
+            place,
             construct: 0.0,
             fit: ms(Mark::Begun, Mark::Fitted)?,
             refit: ms(Mark::Fitted, Mark::Refitted)?,
@@ -94,7 +131,7 @@ impl<R: Precision> TypedPipeline<R> {
             narrow: ms(Mark::Walked, Mark::Found)?,
             order: if self.narrow.ordered().is_some() { ms(Mark::Found, Mark::Ordered)? } else { 0.0 },
             total: ms(Mark::Begun, Mark::Found)?,
-            launch: if self.device.is_gpu() { self.launch_ms } else { 0.0 },
+            launch: if scene.device.is_gpu() { self.launch_ms } else { 0.0 },
             wall: 0.0,
         })
     }

@@ -4,6 +4,7 @@
 use super::*;
 use crate::contacts::Contacts;
 use crate::device::emulator::{Emulator, Looks, Mode};
+use crate::pipeline::Layout;
 use crate::pipeline::collect::collect;
 use crate::query::{Certified, Continuous};
 use crate::samples;
@@ -12,19 +13,16 @@ use crate::samples;
 fn answers(bodies: &[Body], query: Query, device_orders: bool, told: impl Fn(bool) -> bool) -> Vec<Contacts> {
     let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
     let layout = Arc::new(Layout::new(bodies, query.kind()));
-    let mut pipeline =
-        TypedPipeline::<f32>::new(device.clone(), bodies, Pieces::whole(layout.clone(), query))
-            .expect("memory");
+    let (mut pipeline, at) = one(&device, bodies, &layout, query);
     if device_orders {
         // With less room than there are contacts: the list grows.
-        pipeline.narrow.order_on(&device, &layout, 10).expect("memory");
+        pipeline.queries[at].narrow.order_on(&device, &layout, 10).expect("memory");
     }
-    pipeline.construct().expect("trees");
     let mut frame = || {
-        let (mut found, stages) = pipeline.frame().expect("a frame");
+        let (mut found, stages) = pipeline.frame(at).expect("a frame");
         assert_eq!(found.ordered, device_orders);
         found.ordered = told(found.ordered);
-        collect(found, stages, &layout, &Looks::new(None)).expect("contacts")
+        collect((found, stages), &query, &layout, &Looks::new(None)).expect("contacts")
     };
     vec![frame(), frame()]
 }
@@ -39,11 +37,11 @@ fn the_device_orders_as_the_host_does() {
             let [host, device] = [false, true].map(|device| answers(&bodies, query, device, |told| told));
             assert!(host[0].len() > 20, "{query:?}: {}", host[0].len());
             for (host, device) in host.iter().zip(&device) {
-                assert_eq!(host.answer, device.answer, "{query:?} of {} bodies", bodies.len());
+                assert_eq!(host.rows, device.rows, "{query:?} of {} bodies", bodies.len());
             }
             // The host, told that somebody has ordered them, leaves them as the kernels did.
             let lazy = answers(&bodies, query, false, |_| true);
-            assert!(lazy.iter().zip(&host).any(|(lazy, host)| lazy.answer != host.answer), "{query:?}");
+            assert!(lazy.iter().zip(&host).any(|(lazy, host)| lazy.rows != host.rows), "{query:?}");
         }
     }
 }

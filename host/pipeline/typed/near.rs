@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::device::emulator::{Emulator, Mode};
+use crate::pipeline::Layout;
 use crate::query::{Bv, Certified, CertifiedPrecision, Continuous, Refit};
 use crate::samples::soup;
 use crate::scene::Scene;
@@ -12,14 +13,11 @@ fn certain(query: Query, told: bool) -> usize {
     let scene = Scene::from(soup(60, 5, true));
     let bodies = scene.bodies();
     let layout = Arc::new(Layout::new(bodies, query.kind()));
-    let mut pipeline =
-        TypedPipeline::<f32>::new(device.clone(), bodies, Pieces::whole(layout.clone(), query))
-            .expect("a pipeline");
+    let (mut pipeline, at) = one(&device, bodies, &layout, query);
     if !told {
-        pipeline.broad = broad_phase(&device, &layout, &query, 0.0).expect("a broad phase");
+        pipeline.scene.broads[pipeline.queries[at].broad].phase.set_margin(0.0);
     }
-    pipeline.construct().expect("trees");
-    let (found, _) = pipeline.frame().expect("a frame");
+    let (found, _) = pipeline.frame(at).expect("a frame");
     let Listed::Hits { hits, .. } = found.listed else { panic!("a continuous query lists contacts") };
     hits.each().into_iter().flatten().filter(|hit| hit.verdict.is_contact()).count()
 }

@@ -1,19 +1,23 @@
 //! Lists that have too little room grow; frames whose answer has no room are refused by its count.
 
-use super::{Step, TypedPipeline};
+use super::Step;
+use super::query::QueryMemory;
+use super::scene::SceneMemory;
 use crate::error::Error;
 use crate::pipeline::counts::Counts;
 use crate::pipeline::list::GrowableOutput;
 use crate::pipeline::precision::Precision;
 use nearmiss_kernels::abi::counter;
 
-impl<R: Precision> TypedPipeline<R> {
+impl<R: Precision> QueryMemory<R> {
     /// Whether a list of any step had too little room.
-    pub(super) fn has_overflowed(&mut self, counters: &Counts) -> bool {
+    pub(super) fn has_overflowed(&mut self, scene: &mut SceneMemory<R>, counters: &Counts) -> bool {
         let mut steps = self.narrow_steps_at();
-        self.pairs.has_overflowed(counters)
-            || self.broad.lists().iter().any(|list| list.has_overflowed(counters))
-            || steps.any(|at| self.narrow.lists(at).iter().any(|list| list.has_overflowed(counters)))
+        let features = &mut scene.features;
+        scene.pairs.has_overflowed(counters)
+            || scene.broads[self.broad].phase.lists().iter().any(|list| list.has_overflowed(counters))
+            || steps
+                .any(|at| self.narrow.lists(at, features).iter().any(|list| list.has_overflowed(counters)))
             || self.narrow.ordered().is_some_and(|list| list.has_overflowed(counters))
     }
 
@@ -21,20 +25,20 @@ impl<R: Precision> TypedPipeline<R> {
     ///
     /// # Errors
     /// [`Error::AnswerTooLarge`]; those of the device.
-    pub(super) fn refuse(&self, step: Step, counters: &Counts) -> Result<(), Error> {
+    pub(super) fn refuse(&self, scene: &SceneMemory<R>, step: Step, counters: &Counts) -> Result<(), Error> {
         match step {
             Step::Traverse => {
                 let positions = || {
-                    let at = self.vertices.positions()?.swap_remove(0);
+                    let at = scene.vertices.positions(self.is_at_rest())?.swap_remove(0);
                     let wide = |point: &nearmiss_kernels::math::Vec3<R>| {
                         let point = point.wide();
                         [point[0], point[1], point[2]]
                     };
                     Ok(at.iter().map(wide).collect())
                 };
-                self.demand.foreseen(counters[counter::PAIRS], (&self.layout, &self.device), positions)
+                self.demand.foreseen(counters[counter::PAIRS], (&self.layout, &scene.device), positions)
             }
-            Step::Narrow(_, false) => self.demand.counted(counters, &self.device),
+            Step::Narrow(_, false) => self.demand.counted(counters, &scene.device),
             Step::Sample | Step::Narrow(_, true) | Step::Order => Ok(()),
         }
     }

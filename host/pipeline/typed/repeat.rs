@@ -1,5 +1,7 @@
 //! One stage again and again, on what the last frame left: for profilers and for figures of one stage.
 
+use super::query::QueryMemory;
+use super::scene::SceneMemory;
 use super::{Pipeline, Step, TypedPipeline};
 use crate::error::Error;
 use crate::pipeline::counts::Counts;
@@ -9,34 +11,52 @@ use crate::stages::Stage;
 /// Stages again, on what the last frame left.
 pub trait Again {
     /// Milliseconds of each of `times` runs of a stage. What it reads must be there: volumes of the leaves for `Refit`,
-    /// a whole frame for `Traverse`, `Narrow` and `Order`. See [`crate::pipeline::Detector::repeat_stage`].
+    /// a whole frame of the query, the last one, for `Traverse`, `Narrow` and `Order`. See [`crate::Detector::repeat_stage`].
     ///
     /// # Errors
     /// Those of the device.
-    fn repeat(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error>;
-    /// The narrow stage once more, step by step: names and milliseconds. See
-    /// [`crate::pipeline::Detector::narrow_steps`].
+    fn repeat(&mut self, query: usize, stage: Stage, times: u32) -> Result<Vec<f64>, Error>;
+    /// The narrow stage once more, step by step: names and milliseconds. See [`crate::Detector::narrow_steps`].
     ///
     /// # Errors
     /// Those of the device.
-    fn narrow_steps(&mut self) -> Result<Vec<(&'static str, f64)>, Error>;
+    fn narrow_steps(&mut self, query: usize) -> Result<Vec<(&'static str, f64)>, Error>;
 }
 
 impl<R: Precision> Again for TypedPipeline<R> {
-    fn repeat(&mut self, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
+    fn repeat(&mut self, query: usize, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
         self.submission = None;
         if stage == Stage::Construct {
-            return (0..times).map(|_| self.construct()).collect();
+            return (0..times).map(|_| self.construct(query)).collect();
         }
+        self.queries[query].repeat(&mut self.scene, stage, times)
+    }
+
+    fn narrow_steps(&mut self, query: usize) -> Result<Vec<(&'static str, f64)>, Error> {
+        let (own, scene) = (&mut self.queries[query], &mut self.scene);
+        let counters = own.counters_before(scene, Stage::Narrow);
+        own.counters.write(&counters)?;
+        let mut all = Vec::new();
+        for (at, name) in own.narrow.steps().into_iter().enumerate() {
+            let start = scene.device.event()?;
+            own.step(scene, Step::Narrow(at, false))?;
+            all.push((name, start.to(&scene.device.event()?)?));
+        }
+        Ok(all)
+    }
+}
+
+impl<R: Precision> QueryMemory<R> {
+    fn repeat(&mut self, scene: &mut SceneMemory<R>, stage: Stage, times: u32) -> Result<Vec<f64>, Error> {
         if stage == Stage::Order && self.narrow.ordered().is_none() {
             return Ok(Vec::new());
         }
-        let counters = self.counters_before(stage);
+        let counters = self.counters_before(scene, stage);
         if stage == Stage::Traverse {
             // A walk that goes on from the frame's own end may need other lists: they grow outside of the clock.
             self.settled = false;
             self.counters.write(&counters)?;
-            self.run(stage)?;
+            self.run(scene, stage)?;
             self.settled = true;
         }
         let mut ms = Vec::new();
@@ -44,35 +64,22 @@ impl<R: Precision> Again for TypedPipeline<R> {
             if matches!(stage, Stage::Traverse | Stage::Narrow | Stage::Order) {
                 self.counters.write(&counters)?;
             }
-            let start = self.device.event()?;
-            self.run(stage)?;
-            ms.push(start.to(&self.device.event()?)?);
+            let start = scene.device.event()?;
+            self.run(scene, stage)?;
+            ms.push(start.to(&scene.device.event()?)?);
         }
         Ok(ms)
     }
 
-    fn narrow_steps(&mut self) -> Result<Vec<(&'static str, f64)>, Error> {
-        let counters = self.counters_before(Stage::Narrow);
-        self.counters.write(&counters)?;
-        let mut all = Vec::new();
-        for (at, name) in self.narrow.steps().into_iter().enumerate() {
-            let start = self.device.event()?;
-            self.step(Step::Narrow(at, false))?;
-            all.push((name, start.to(&self.device.event()?)?));
-        }
-        Ok(all)
-    }
-}
-
-impl<R: Precision> TypedPipeline<R> {
     /// The counters that a stage begins with: those of the last frame, without what the stage itself counted.
-    fn counters_before(&mut self, stage: Stage) -> Counts {
+    fn counters_before(&mut self, scene: &mut SceneMemory<R>, stage: Stage) -> Counts {
         let mut counters = Counts::default();
         if matches!(stage, Stage::Narrow | Stage::Order) {
             counters.clone_from(&self.last);
             let steps = if stage == Stage::Order { 0..0 } else { self.narrow_steps_at() };
             for at in steps {
-                self.narrow.lists(at).iter().for_each(|list| counters[list.counter()] = 0);
+                let lists = self.narrow.lists(at, &mut scene.features);
+                lists.iter().for_each(|list| counters[list.counter()] = 0);
             }
             if let Some(list) = self.narrow.ordered() {
                 counters[list.counter()] = 0;

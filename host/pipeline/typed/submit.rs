@@ -1,10 +1,13 @@
-//! A frame that is submitted and not waited for: launches alone, that a stream which is being captured takes, and an answer that
-//! stays on the device.
+//! Queries that are submitted and not waited for: launches alone, that a stream which is being captured takes, and answers that
+//! stay on the device.
 
 use super::TypedPipeline;
+use super::query::QueryMemory;
+use super::scene::SceneMemory;
 use crate::contacts::{DeviceAnswer, DeviceList};
 use crate::device::{Buffer, Replay};
 use crate::error::Error;
+use crate::pipeline::broad::growth;
 use crate::pipeline::list::GrowableOutput;
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::Found;
@@ -14,41 +17,47 @@ use crate::stages::{Stage, Stages};
 use nearmiss_kernels::abi::{Counter, FrameStatus, Room, Span, StatusArgs, seen};
 use nearmiss_kernels::entry::status_frame;
 
-/// What such a frame needs beside what every frame has.
+/// Memory of a submission beside that of its queries.
 pub struct Submission {
-    /// Every list that a frame fills.
-    pub rooms: Buffer<Room>,
-    /// What it came to.
-    pub status: Buffer<FrameStatus>,
-    /// What it launches.
+    /// The queries, in the order in which they run.
+    pub queries: Vec<Submitted>,
     replay: Replay,
-    /// Where nothing of the caller's memory is placed.
+    /// Read if nothing of the caller's memory is placed.
     unseen: Buffer<u64>,
+}
+
+/// A query that is submitted.
+pub struct Submitted {
+    /// Its place.
+    pub query: usize,
+    /// Every list that it fills.
+    pub rooms: Buffer<Room>,
+    /// Whether its answer is whole, and how long.
+    pub status: Buffer<FrameStatus>,
 }
 
 /// A pipeline that can be submitted to.
 pub trait Submits {
-    /// Takes what a submission needs, once a frame has run whole: from then on the lists do not grow until one is asked for with
-    /// [`Pipeline::frame`](super::Pipeline::frame).
+    /// Takes the memory of a submission of queries that have each run a whole frame: from then on the lists do not grow until the
+    /// next [`Pipeline::frame`](super::Pipeline::frame).
     ///
     /// # Errors
-    /// [`Error::Choice`] where the walk cannot do without the host, and where the host's positions were placed last; those of the
-    /// device.
-    fn prepare(&mut self) -> Result<(), Error>;
+    /// [`Error::Choice`] if a walk needs the host, or positions of the host were placed last; those of the device.
+    fn prepare(&mut self, queries: &[usize]) -> Result<(), Error>;
     /// Whether it is prepared.
     fn is_prepared(&self) -> bool;
-    /// Submits a frame: where bodies are is read again from where it lay.
+    /// Submits the queries: positions are read again from where they lay.
     ///
     /// # Errors
-    /// [`Error::Choice`] when it is not prepared; those of the device.
+    /// [`Error::Choice`] if it is not prepared; those of the device.
     fn submit(&mut self) -> Result<(), Error>;
-    /// What the last submission found; `None` where a list had too little room. Waits.
+    /// The answer of a query in the last submission; `None` if a list had too little room, or it is not prepared. Waits.
     ///
     /// # Errors
     /// Those of the device.
-    fn collect(&mut self) -> Result<Option<(Found<'_>, Stages)>, Error>;
-    /// Where it is.
-    fn answer(&self) -> Option<DeviceAnswer>;
+    fn collect(&mut self, query: usize) -> Result<Option<(Found<'_>, Stages)>, Error>;
+    /// Where the answer of a query lies; `None` if it is not submitted.
+    fn answer(&self, query: usize) -> Option<DeviceAnswer>;
     /// Poses that were found in memory of the caller, at both ends or at the only one, of each body; others are none.
     ///
     /// # Errors
@@ -58,35 +67,33 @@ pub trait Submits {
 
 impl<R: Precision> Submits for TypedPipeline<R> {
     fn poses(&self) -> Result<Vec<Pose>, Error> {
-        self.vertices.poses()
+        self.scene.vertices.poses()
     }
 
-    fn prepare(&mut self) -> Result<(), Error> {
+    fn prepare(&mut self, queries: &[usize]) -> Result<(), Error> {
         let refused = |what: &str, advice: &str| {
             Err(Error::Choice { what: what.to_owned(), advice: advice.to_owned() })
         };
-        if let Err(why) = self.broad.without_host() {
-            return refused(why, "ask for another traversal, or for frames that wait");
+        for &query in queries {
+            if let Err(why) = self.broad(query).without_host() {
+                return refused(why, "choose another traversal, or frames that wait");
+            }
         }
-        if !self.vertices.is_repeatable() {
+        if !self.scene.vertices.is_repeatable() {
             return refused(
                 "a submission that reads positions of the host",
-                "give every body that moves by what lies on the device",
+                "give every body that moves by positions on the device",
             );
         }
-        let room =
-            |list: &&mut dyn GrowableOutput| Room { entries: list.room(), counter: list.counter(), pad: 0 };
-        let mut rooms: Vec<Room> = self.broad.lists().iter().map(room).collect();
-        rooms.push(room(&(&mut self.pairs as &mut dyn GrowableOutput)));
-        for step in self.narrow_steps_at() {
-            rooms.extend(self.narrow.lists(step).iter().map(room));
+        let device = self.scene.device.of(purpose::STATUS);
+        let mut submitted = Vec::new();
+        for &query in queries {
+            let rooms = device.upload(&self.queries[query].rooms(&mut self.scene))?;
+            submitted.push(Submitted { query, rooms, status: device.buffer(1)? });
         }
-        rooms.extend(self.narrow.ordered().iter().map(room));
-        let device = self.device.of(purpose::STATUS);
         let mut unseen = device.buffer(seen::COUNT as usize)?;
         unseen.clear()?;
-        let (rooms, status) = (device.upload(&rooms)?, device.buffer(1)?);
-        self.submission = Some(Submission { rooms, status, replay: Replay::default(), unseen });
+        self.submission = Some(Submission { queries: submitted, replay: Replay::default(), unseen });
         // Once as it will be: the driver loads a kernel when it is first launched.
         self.submit()
     }
@@ -101,36 +108,40 @@ impl<R: Precision> Submits for TypedPipeline<R> {
             what: "a submission that is not prepared".into(),
             advice: "call `prepare` first, and again after every other call that changes the detector".into(),
         })?;
-        let device = self.device.clone();
+        let device = self.scene.device.clone();
         // SAFETY: it launches and clears; what memory it holds it keeps.
         let done = unsafe { replay.run(&device, |_| self.enqueue()) };
         self.submission.iter_mut().for_each(|submission| submission.replay = std::mem::take(&mut replay));
         done
     }
 
-    fn collect(&mut self) -> Result<Option<(Found<'_>, Stages)>, Error> {
+    fn collect(&mut self, query: usize) -> Result<Option<(Found<'_>, Stages)>, Error> {
         // The caller may have launched a recorded submission again.
-        self.device.changed();
-        self.read_ahead()?;
-        let counters = self.counters.read()?;
-        if self.has_overflowed(&counters) {
-            self.settled = false;
+        self.scene.device.changed();
+        if self.submitted(query).is_none() {
             return Ok(None);
         }
-        self.last.clone_from(&counters);
-        self.gather(counters, 0).map(|found| Some((found, Stages::default())))
+        let (own, scene) = (&mut self.queries[query], &mut self.scene);
+        own.read_ahead(scene)?;
+        let counters = own.counters.read()?;
+        if own.has_overflowed(scene, &counters) {
+            own.settled = false;
+            return Ok(None);
+        }
+        own.last.clone_from(&counters);
+        own.gather(scene, counters, 0).map(|found| Some((found, Stages::default())))
     }
 
-    fn answer(&self) -> Option<DeviceAnswer> {
-        let submission = self.submission.as_ref()?;
-        let lists = self.narrow.answer();
+    fn answer(&self, query: usize) -> Option<DeviceAnswer> {
+        let (submitted, own) = (self.submitted(query)?, &self.queries[query]);
+        let lists = own.narrow.answer(&self.scene.features);
         let list = |&(address, room): &(u64, usize)| DeviceList { address, room };
-        let starts = self.layout.starts.iter().map(|at| [at.vertex, at.triangle, at.edge]);
+        let starts = own.layout.starts.iter().map(|at| [at.vertex, at.triangle, at.edge]);
         Some(DeviceAnswer {
             entries: lists.entries,
             lists: lists.lists.iter().map(list).collect(),
             is_ordered: lists.is_ordered,
-            status: submission.status.span().addr(),
+            status: submitted.status.span().addr(),
             earliest: lists.earliest,
             edges: DeviceList { address: lists.edges.addr(), room: lists.edges.len() as usize },
             starts: starts.collect(),
@@ -139,28 +150,65 @@ impl<R: Precision> Submits for TypedPipeline<R> {
 }
 
 impl<R: Precision> TypedPipeline<R> {
-    /// Launches a frame, behind the placing of what it places, and what tells how it went.
+    fn submitted(&self, query: usize) -> Option<&Submitted> {
+        self.submission.iter().flat_map(|submission| &submission.queries).find(|own| own.query == query)
+    }
+
+    /// Launches the queries, behind the placing of what it places, and the status of each.
     fn enqueue(&mut self) -> Result<(), Error> {
         let Some(submission) = &self.submission else { return Ok(()) };
-        let seen = self.vertices.seen_span();
+        let scene = &mut self.scene;
+        let seen = scene.vertices.seen_span();
         let seen = if seen.is_empty() { submission.unseen.span() } else { seen };
-        let (rooms, status) = (submission.rooms.span(), submission.status.span());
-        self.vertices.again(&self.device)?;
+        scene.vertices.again(&scene.device)?;
+        for submitted in &submission.queries {
+            let own = &mut self.queries[submitted.query];
+            if !scene.vertices.is_ready(own.is_at_rest()) {
+                scene.vertices.ready(&scene.device)?;
+            }
+            own.enqueue(scene, submitted, seen)?;
+        }
+        Ok(())
+    }
+}
+
+impl<R: Precision> QueryMemory<R> {
+    /// The room of every list that a frame fills.
+    fn rooms(&mut self, scene: &mut SceneMemory<R>) -> Vec<Room> {
+        let room =
+            |list: &&mut dyn GrowableOutput| Room { entries: list.room(), counter: list.counter(), pad: 0 };
+        let mut rooms: Vec<Room> = scene.broads[self.broad].phase.lists().iter().map(room).collect();
+        rooms.push(room(&(&mut scene.pairs as &mut dyn GrowableOutput)));
+        for step in self.narrow_steps_at() {
+            rooms.extend(self.narrow.lists(step, &mut scene.features).iter().map(room));
+        }
+        rooms.extend(self.narrow.ordered().iter().map(room));
+        rooms
+    }
+
+    /// Launches a frame, and its status.
+    fn enqueue(
+        &mut self,
+        scene: &mut SceneMemory<R>,
+        submitted: &Submitted,
+        seen: Span<u64>,
+    ) -> Result<(), Error> {
+        scene.broads[self.broad].phase.set_margin(growth(self.query.listed_within()));
         self.counters.clear()?;
         [Stage::Fit, Stage::Refit, Stage::Traverse, Stage::Narrow, Stage::Order]
             .into_iter()
-            .try_for_each(|stage| self.run(stage))?;
-        let (lists, all) = (self.narrow.answer(), self.counters.counters());
+            .try_for_each(|stage| self.run(scene, stage))?;
+        let (lists, all) = (self.narrow.answer(&scene.features), self.counters.counters());
         let count = |which: Option<&Counter>| which.map_or(Span::EMPTY, |&which| all.word(which));
         let args = StatusArgs {
             counters: all,
-            rooms,
+            rooms: submitted.rooms.span(),
             seen,
-            status,
+            status: submitted.status.span(),
             first: count(lists.counters.first()),
             second: count(lists.counters.get(1)),
             crossing: count(lists.crossing.as_ref()),
         };
-        launch::blocks::<status_frame>(&self.device, 1, &args)
+        launch::blocks::<status_frame>(&scene.device, 1, &args)
     }
 }

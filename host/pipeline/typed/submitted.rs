@@ -2,21 +2,21 @@
 
 use super::*;
 use crate::device::emulator::{Emulator, Mode};
+use crate::pipeline::Layout;
 use crate::samples;
-use nearmiss_kernels::abi::Room;
+use nearmiss_kernels::abi::{Room, counter};
 
 /// A prepared pipeline over a soup, whose list of pairs has too little room for a frame.
 fn prepared(device: &Device) -> TypedPipeline<f32> {
     let bodies = [samples::soup(300, 5, false)];
     let layout = Arc::new(Layout::new(&bodies, Query::discrete().kind()));
     let query = Query::discrete();
-    let mut pipeline =
-        TypedPipeline::<f32>::new(device.clone(), &bodies, Pieces::whole(layout, query)).expect("memory");
-    pipeline.construct().expect("a tree");
+    let (mut pipeline, at) = one(device, &bodies, &layout, query);
     pipeline.place(&bodies, &[]).expect("nothing to place");
-    pipeline.frame().expect("a frame");
-    pipeline.pairs = List::new(device, "candidate triangle pairs", counter::PAIRS, 3).expect("memory");
-    pipeline.prepare().expect("prepared");
+    pipeline.ready(at, &bodies).expect("ready");
+    pipeline.frame(at).expect("a frame");
+    pipeline.scene.pairs = List::new(device, "candidate triangle pairs", counter::PAIRS, 3).expect("memory");
+    pipeline.prepare(&[at]).expect("prepared");
     pipeline
 }
 
@@ -27,8 +27,8 @@ fn engine() -> Device {
 /// How many lists a submission says were too short, and whether the host, asked the same, says so.
 fn told(pipeline: &mut TypedPipeline<f32>) -> (u64, bool) {
     pipeline.submit().expect("submitted");
-    let status = pipeline.submission.as_ref().expect("prepared").status.read(1).expect("read");
-    (status[0].short, pipeline.collect().expect("counters").is_none())
+    let status = pipeline.submission.as_ref().expect("prepared").queries[0].status.read(1).expect("read");
+    (status[0].short, pipeline.collect(0).expect("counters").is_none())
 }
 
 #[test]
@@ -40,7 +40,7 @@ fn a_list_without_room_is_told_on_the_device() {
 #[test]
 fn a_room_that_is_not_there_is_noticed() {
     let mut pipeline = prepared(&engine());
-    let rooms = &mut pipeline.submission.as_mut().expect("prepared").rooms;
+    let rooms = &mut pipeline.submission.as_mut().expect("prepared").queries[0].rooms;
     let mut wrong = rooms.read(rooms.len()).expect("read");
     let pairs = wrong.iter_mut().find(|room| room.counter == counter::PAIRS).expect("a list of pairs");
     *pairs = Room { entries: u64::MAX, ..*pairs };

@@ -1,6 +1,6 @@
 //! Scenes of many bodies: what the kernels know of each, and where its vertices come from.
 
-use super::{Link, Node, Point, Positions, Span};
+use super::{Link, Node, Point, Positions, Span, VertexMotion};
 use crate::math::Real;
 use bytemuck::{Pod, Zeroable};
 
@@ -188,6 +188,13 @@ arguments! {
         count: u32,
         /// Nothing.
         pad: u32,
+    }
+    /// `place_starts`: positions at the start of the step, apart from its end.
+    StartsArgs<R: Real> {
+        /// Vertices in motion.
+        moving: Span<VertexMotion<R>>,
+        /// Out: their first ends; as many.
+        still: Span<Point<R>>,
     }
     /// `graft`: a tree that does not change, into the memory of one that does.
     GraftArgs<V: Pod> {

@@ -3,6 +3,7 @@
 //! | stage | reads | writes |
 //! | --- | --- | --- |
 //! | [`place`] | poses, uploaded positions, memory of the caller | positions of the bodies that were moved |
+//! | [`starts`] | positions at both ends | positions at t = 0 alone, for queries at rest |
 //! | [`construct`] | positions at t = 0, faces | the level-ordered tree, without volumes |
 //! | [`fit`] | positions at t = 0 and t = 1, faces | volumes of the leaves |
 //! | [`refit`] | volumes of the leaves | all volumes, a barrier between levels |
@@ -22,5 +23,6 @@ pub mod narrow;
 pub mod order;
 pub mod place;
 pub mod refit;
+pub mod starts;
 pub mod status;
 pub mod traverse;

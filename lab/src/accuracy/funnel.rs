@@ -1,7 +1,7 @@
 //! The funnel: how many pairs each step of a frame leaves to the next, and what it takes.
 
+use crate::OneQuery;
 use crate::tables::{Printed, digits};
-use nearmiss::Detector;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
@@ -30,7 +30,7 @@ pub struct FunnelRow {
 /// # Errors
 /// Those of the device.
 pub fn funnel(device: &Device, name: &str, body: &Body) -> Result<Vec<FunnelRow>, Error> {
-    let mut detector = Detector::new(device.clone(), vec![body.clone()], Query::continuous())?;
+    let mut detector = OneQuery::new(device.clone(), vec![body.clone()], Query::continuous())?;
     detector.detect()?;
     let contacts = detector.detect()?;
     let steps = detector.narrow_steps()?;
@@ -52,14 +52,14 @@ pub fn funnel(device: &Device, name: &str, body: &Body) -> Result<Vec<FunnelRow>
     Ok(vec![
         row(
             "triangle pairs",
-            contacts.triangle_pairs,
-            Some(contacts.stages.traverse + contacts.stages.balance),
+            contacts.stats.triangle_pairs,
+            Some(contacts.stats.stages.traverse + contacts.stats.stages.balance),
         ),
-        both("features with swept boxes that meet", contacts.candidates_vf_ee, ms("features")),
-        both("left by the filters", contacts.survivors_vf_ee, ms("cull")),
-        both("asked in f64 after f32", contacts.escalated_vf_ee, None),
-        both("not isolated in f64 either", contacts.open_vf_ee, None),
-        both("cut into slices", contacts.sliced_vf_ee, None),
+        both("features with swept boxes that meet", contacts.stats.candidates_vf_ee, ms("features")),
+        both("left by the filters", contacts.stats.survivors_vf_ee, ms("cull")),
+        both("asked in f64 after f32", contacts.stats.escalated_vf_ee, None),
+        both("not isolated in f64 either", contacts.stats.open_vf_ee, None),
+        both("cut into slices", contacts.stats.sliced_vf_ee, None),
         row("listed", found, ms("solve")),
         row("of them certain", found - contacts.unresolved, None),
     ])

@@ -1,8 +1,8 @@
 //! What refitting costs in quality: candidates of a tree that was built at the first frame and refitted since, against those
 //! of a tree built anew for each frame.
 
+use crate::OneQuery;
 use crate::tables::{Frames, Printed, digits};
-use nearmiss::Detector;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::query::{Bv, Query};
@@ -45,8 +45,8 @@ pub struct RefitRow {
 pub fn refit(device: &Device, name: &str, frames: &Frames, bv: Bv) -> Result<Vec<RefitRow>, Error> {
     let bodies = frames.bodies(true)?;
     let query = Query::continuous().with_bv(bv);
-    let mut old = Detector::new(device.clone(), vec![bodies[0].clone()], query)?;
-    let mut fresh = Detector::new(device.clone(), vec![bodies[0].clone()], query)?;
+    let mut old = OneQuery::new(device.clone(), vec![bodies[0].clone()], query)?;
+    let mut fresh = OneQuery::new(device.clone(), vec![bodies[0].clone()], query)?;
     let (mut rows, mut since, mut lost) = (Vec::new(), 0, 0.0);
     for body in bodies {
         old.move_to(0, body.clone())?;
@@ -56,21 +56,21 @@ pub fn refit(device: &Device, name: &str, frames: &Frames, bv: Bv) -> Result<Vec
         old.detect()?;
         fresh.detect()?;
         let (a, b) = (old.detect()?, fresh.detect()?);
-        let (tests, fresh_tests) = (a.overlap_tests(), b.overlap_tests());
-        let traverse = b.stages.traverse + b.stages.balance;
+        let (tests, fresh_tests) = (a.stats.overlap_tests(), b.stats.overlap_tests());
+        let traverse = b.stats.stages.traverse + b.stats.stages.balance;
         lost += traverse * (tests as f64 / fresh_tests.max(1) as f64 - 1.0);
-        let rebuild = lost > b.stages.construct;
+        let rebuild = lost > b.stats.stages.construct;
         rows.push(RefitRow {
             input: name.into(),
             bv: bv.name(),
             frame: since,
-            refitted_pairs: a.triangle_pairs,
-            fresh_pairs: b.triangle_pairs,
+            refitted_pairs: a.stats.triangle_pairs,
+            fresh_pairs: b.stats.triangle_pairs,
             refitted_tests: tests,
             fresh_tests,
-            refitted_ms: a.stages.total,
-            fresh_ms: b.stages.total,
-            build_ms: b.stages.construct,
+            refitted_ms: a.stats.stages.total,
+            fresh_ms: b.stats.stages.total,
+            build_ms: b.stats.stages.construct,
             lost_ms: lost,
             rebuild,
         });

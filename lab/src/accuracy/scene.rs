@@ -4,9 +4,9 @@ use super::input::{Choice, truth};
 use super::judge::{Counts, Judge, Judged, Truth};
 use super::row::Row;
 use super::truth::{Key, List};
+use crate::OneQuery;
 use crate::case::{Case, Features};
 use crate::pairs::{Options, Outcome, ask};
-use nearmiss::Detector;
 use nearmiss::contacts::{Contact, Contacts, Kind, Status};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
@@ -94,7 +94,7 @@ impl Scene {
     }
 
     fn asked(&self, device: &Device, query: Query) -> Result<Contacts, Error> {
-        Detector::new(device.clone(), vec![self.body.clone()], query)?.detect()
+        OneQuery::new(device.clone(), vec![self.body.clone()], query)?.detect()
     }
 
     /// Asks the scene in one way, `repeats` times after one to warm up; a row.
@@ -106,12 +106,12 @@ impl Scene {
         let query = query.with_search(Search { bv, ..query.search() });
         let tolerance = query.certified().and_then(|certified| certified.tolerance);
         let held = device.bytes().0;
-        let mut detector = Detector::new(device.clone(), vec![self.body.clone()], query)?;
+        let mut detector = OneQuery::new(device.clone(), vec![self.body.clone()], query)?;
         let mut contacts = detector.detect()?;
         let mut times = Vec::new();
         for _ in 0..repeats.max(1) {
             contacts = detector.detect()?;
-            times.push((contacts.stages.total, contacts.stages.narrow));
+            times.push((contacts.stats.stages.total, contacts.stats.stages.narrow));
         }
         times.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (total, narrow) = times[times.len() / 2];
@@ -129,13 +129,13 @@ impl Scene {
             tolerance,
             precision: if self.body.positions_t0().is_f64() { "f64" } else { "f32" },
             bv: Some(query.bv().name()),
-            escalated: contacts.escalated_vf_ee.iter().sum(),
-            ns: Some(narrow * 1e6 / contacts.candidates.max(1) as f64),
+            escalated: contacts.stats.escalated_vf_ee.iter().sum(),
+            ns: Some(narrow * 1e6 / contacts.stats.candidates.max(1) as f64),
             ms: Some(total),
             bytes: device.bytes().0 - held,
             ..Row::default()
         };
-        Ok(Row { cases: contacts.candidates, ..row.judged(query.solver(), &judged) })
+        Ok(Row { cases: contacts.stats.candidates, ..row.judged(query.solver(), &judged) })
     }
 
     /// The features of a pair.

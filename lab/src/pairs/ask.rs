@@ -8,7 +8,7 @@ use nearmiss::device::{Buffer, Device};
 use nearmiss::error::Error;
 use nearmiss::pipeline::Layout;
 use nearmiss::pipeline::counts::{Counts, FrameCounters};
-use nearmiss::pipeline::narrow::{Capacities, ContinuousNarrow, NarrowContext};
+use nearmiss::pipeline::narrow::{Capacities, ContinuousNarrow, Features, NarrowContext};
 use nearmiss::pipeline::precision::Precision;
 use nearmiss::query::{Certified, Continuous, ContinuousSolver, Query};
 use nearmiss_kernels::abi::{Hit, Output, Positions, Span, counter};
@@ -65,14 +65,15 @@ fn some<R: Precision>(
     // A case is listed once at most, so no list outgrows this.
     let candidates =
         if how.filters || solver.certified().is_some_and(Certified::is_apart) { all } else { [0, 0] };
-    let capacities = Capacities { candidates, survivors: all, hits: all, left: all };
-    let mut features = ContinuousNarrow::new(device, &layout, solver, capacities)?;
+    let mut features = Features::new(device, &layout, candidates)?;
+    let capacities = Capacities { survivors: all, hits: all, left: all };
+    let mut narrow = ContinuousNarrow::new(device, solver, capacities)?;
     let mut counts = Counts::default();
     let given = [&vf[..], &ee];
     if how.filters {
         features.put_candidates(given, &mut counts)?;
     } else {
-        features.put_survivors(given, &mut counts)?;
+        narrow.put_survivors(&mut features, given, &mut counts)?;
     }
     let mut run = Run::<R> {
         device,
@@ -84,6 +85,7 @@ fn some<R: Precision>(
         counts,
         filters: how.filters,
         features,
+        narrow,
     };
     let bytes = device.bytes().0 - before;
     let mut ms = vec![run.run()?];
@@ -107,7 +109,8 @@ struct Run<'a, R: Precision> {
     counts: Counts,
     /// Whether the filters are asked first.
     filters: bool,
-    features: ContinuousNarrow,
+    features: Features,
+    narrow: ContinuousNarrow,
 }
 
 impl<R: Precision> Run<'_, R> {
@@ -121,14 +124,15 @@ impl<R: Precision> Run<'_, R> {
             pairs: Output::EMPTY,
             bodies: Span::EMPTY,
             counters: self.counters.counters(),
+            features: &self.features,
             is_sample: false,
         };
         let start = self.device.event()?;
         if self.filters {
-            self.features.cull(&given)?;
+            self.narrow.cull(&given)?;
         }
         let filtered = self.device.event()?;
-        self.features.solve(&given)?;
+        self.narrow.solve(&given)?;
         let end = self.device.event()?;
         Ok([start.to(&filtered)?, filtered.to(&end)?])
     }
@@ -145,11 +149,11 @@ impl<R: Precision> Run<'_, R> {
             exhausted: hit.verdict.exhausted(),
             boxes: hit.verdict.boxes,
         };
-        for hit in self.features.vf_hits.read(&counters)? {
+        for hit in self.narrow.vf_hits.read(&counters)? {
             verdicts[hit.a as usize / 4] = Some(met(&hit));
         }
-        for hit in self.features.ee_hits.read(&counters)? {
-            let [vertex, _] = self.layout.edges[hit.a as usize];
+        for hit in self.narrow.ee_hits.read(&counters)? {
+            let [vertex, _] = self.layout.features.edges[hit.a as usize];
             verdicts[vertex as usize / 4] = Some(met(&hit));
         }
         let of = |which| counters[which];

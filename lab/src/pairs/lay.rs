@@ -5,10 +5,11 @@ use crate::case::{Case, Features};
 use nearmiss::device::{Buffer, Device};
 use nearmiss::error::Error;
 use nearmiss::mesh::{MAX_ABS_F32, MAX_ABS_F64, Problem};
-use nearmiss::pipeline::Layout;
 use nearmiss::pipeline::precision::Precision;
+use nearmiss::pipeline::{FeatureTopology, Layout};
 use nearmiss_kernels::abi::{Pair, VertexMotion};
 use nearmiss_kernels::math::Vec3;
+use std::sync::Arc;
 
 /// Cases that are asked at once: half a gigabyte of device memory, and far from the end of 32 bits.
 pub const AT_ONCE: usize = 1 << 20;
@@ -65,22 +66,23 @@ pub fn check(cases: &[Case], stored: Stored) -> Result<(), Error> {
 
 /// The pairs of the cases, vertex/face and edge/edge, each in the cases' order; and faces and edges for them.
 pub fn topology(cases: &[Case]) -> (Layout, [Vec<Pair>; 2]) {
-    let mut layout = Layout::default();
+    let (mut faces, mut edges) = (Vec::<[u32; 3]>::new(), Vec::<[u32; 2]>::new());
     let [mut vf, mut ee] = [Vec::new(), Vec::new()];
     for (case, first) in cases.iter().zip((0u32..).step_by(4)) {
         match case.features {
             Features::VertexFace => {
-                vf.push(Pair { a: first, b: layout.faces.len() as u32 });
-                layout.faces.push([first + 1, first + 2, first + 3]);
+                vf.push(Pair { a: first, b: faces.len() as u32 });
+                faces.push([first + 1, first + 2, first + 3]);
             }
             Features::EdgeEdge => {
-                let edge = layout.edges.len() as u32;
+                let edge = edges.len() as u32;
                 ee.push(Pair { a: edge, b: edge + 1 });
-                layout.edges.extend([[first, first + 1], [first + 2, first + 3]]);
+                edges.extend([[first, first + 1], [first + 2, first + 3]]);
             }
         }
     }
-    (layout, [vf, ee])
+    let features = Arc::new(FeatureTopology { edges, ..FeatureTopology::default() });
+    (Layout { faces: Arc::new(faces), features, ..Layout::default() }, [vf, ee])
 }
 
 /// The vertices of the cases, in motion.

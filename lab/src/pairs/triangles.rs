@@ -8,7 +8,7 @@ use nearmiss::error::Error;
 use nearmiss::mesh::{MAX_ABS_F64, Mesh, Positions};
 use nearmiss::pipeline::counts::{Counts, FrameCounters};
 use nearmiss::pipeline::list::List;
-use nearmiss::pipeline::narrow::{DiscreteNarrow, NarrowContext};
+use nearmiss::pipeline::narrow::{DiscreteNarrow, Features, NarrowContext};
 use nearmiss::pipeline::precision::Precision;
 use nearmiss::query::{Discrete, Query, TriangleTest};
 use nearmiss_kernels::abi::{self, Pair, Point, Span, counter};
@@ -91,6 +91,7 @@ fn some<R: Precision>(device: &Device, mesh: &Mesh, test: TriangleTest) -> Resul
     // Until no list was too short.
     let (counters, ms) = loop {
         counters.write(&counts)?;
+        let features = Features::none(device)?;
         let given = NarrowContext {
             device,
             frames: abi::Positions { still: points.span(), moving: Span::EMPTY },
@@ -98,6 +99,7 @@ fn some<R: Precision>(device: &Device, mesh: &Mesh, test: TriangleTest) -> Resul
             pairs: list.output(counters.counters()),
             bodies: Span::EMPTY,
             counters: counters.counters(),
+            features: &features,
             is_sample: false,
         };
         let start = device.event()?;

@@ -1,8 +1,8 @@
 //! Crowds: one triangle against a million, all equal, all at one time, more pairs than 32 bits count.
 
 use super::report::Report;
+use crate::OneQuery;
 use crate::scene;
-use nearmiss::Detector;
 use nearmiss::contacts::Status;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
@@ -65,7 +65,7 @@ fn against_one(device: &Device, n: usize, report: &mut Report) -> Result<(), Err
         .collect();
     let one = Body::still(Mesh::new("one", Positions::F32(one.to_vec()), vec![[0, 1, 2]])?);
     let found =
-        Detector::new(device.clone(), vec![one, soup.with(Meets::others())], Query::discrete())?.detect()?;
+        OneQuery::new(device.clone(), vec![one, soup.with(Meets::others())], Query::discrete())?.detect()?;
     report.asked += 1;
     report.missed += truth.len().saturating_sub(found.len()) as u64;
     if found.pairs() != truth || truth.is_empty() {
@@ -80,7 +80,7 @@ fn equal(device: &Device, n: usize, report: &mut Report) -> Result<(), Error> {
     let levels = n.next_power_of_two().trailing_zeros() as usize + 1;
     for broad in [Broad::Tree, Broad::Tiles] {
         let query = Query::discrete().with_broad(broad);
-        let mut detector = Detector::new(device.clone(), vec![scene::identical(n)?], query)?;
+        let mut detector = OneQuery::new(device.clone(), vec![scene::identical(n)?], query)?;
         let found = detector.detect()?;
         detector.check_volumes()?;
         report.asked += 1;
@@ -107,15 +107,15 @@ fn ties(device: &Device, n: usize, report: &mut Report) -> Result<(), Error> {
     let fallen: Vec<[f32; 3]> = tips.iter().map(|p| [p[0], p[1], p[2] - 2.0]).collect();
     let bodies = vec![Body::still(mesh(&floor)?), Body::moving(mesh(&tips)?, mesh(&fallen)?)?];
     let certified = Certified { tolerance: Some(1e-5), ..Certified::default() };
-    let mut detector = Detector::new(device.clone(), bodies.clone(), Continuous::by(certified))?;
+    let mut detector = OneQuery::new(device.clone(), bodies.clone(), Continuous::by(certified))?;
     let (found, again) = (detector.detect()?, detector.detect()?);
-    let earliest = Detector::new(device.clone(), bodies, Earliest::by(certified))?.detect()?.earliest_toi();
+    let earliest = OneQuery::new(device.clone(), bodies, Earliest::by(certified))?.detect()?.earliest_toi();
     report.asked += 2;
     let first = found.contacts().first().map(|c| c.toi);
     let alike = |c: &nearmiss::Contact| Some(c.toi) == first && c.status == Status::Certified && c.toi <= 0.5;
     let right = found.len() == n && found.contacts().iter().all(alike) && earliest == first;
     report.missed += n.saturating_sub(found.len()) as u64;
-    if !right || again.answer != found.answer {
+    if !right || again.rows != found.rows {
         report.fail(|| format!("X37 {n} at once: {} contacts, first {first:?}, {earliest:?}", found.len()));
     }
     Ok(())
@@ -127,7 +127,7 @@ fn beyond_32_bits(device: &Device, report: &mut Report) -> Result<(), Error> {
     const N: usize = 92_683;
     let needed = (N * (N - 1) / 2 * size_of::<nearmiss_kernels::abi::Pair>()) as u64;
     let by_trees = Query::discrete().with_broad(Broad::Tree);
-    let mut detector = Detector::new(device.clone(), vec![scene::identical(N)?], by_trees)?;
+    let mut detector = OneQuery::new(device.clone(), vec![scene::identical(N)?], by_trees)?;
     report.asked += 1;
     match detector.detect() {
         Err(Error::OutOfMemory { asked, .. }) if asked == needed => {}
@@ -136,13 +136,13 @@ fn beyond_32_bits(device: &Device, report: &mut Report) -> Result<(), Error> {
     }
     drop(detector);
     let by_tiles = Query::discrete().with_broad(Broad::Tiles);
-    let found = Detector::new(device.clone(), vec![slanted(N)?], by_tiles)?.detect()?;
+    let found = OneQuery::new(device.clone(), vec![slanted(N)?], by_tiles)?.detect()?;
     report.asked += 1;
     report.missed += N.saturating_sub(found.len()) as u64;
     let candidates = (N * (N + 1) / 2) as u64;
-    if found.len() != N || found.slices < 2 || found.triangle_pairs != candidates {
+    if found.len() != N || found.stats.slices < 2 || found.stats.triangle_pairs != candidates {
         report.fail(|| {
-            let (pairs, slices) = (found.triangle_pairs, found.slices);
+            let (pairs, slices) = (found.stats.triangle_pairs, found.stats.slices);
             format!(
                 "X46: {} contacts of {pairs} pairs in {slices} slices, not {N} of {candidates}",
                 found.len()
@@ -172,9 +172,9 @@ mod tests {
     fn slanted_triangles_have_boxes_that_overlap_and_meet_one_alone() {
         let device = Device::open(Backend::Cpu, None).expect("threads");
         let body = slanted(300).expect("a mesh");
-        let found = Detector::new(device, vec![body], Query::discrete()).expect("a detector");
+        let found = OneQuery::new(device, vec![body], Query::discrete()).expect("a detector");
         let found = { found }.detect().expect("an answer");
-        assert_eq!((found.len(), found.triangle_pairs), (300, 300 * 301 / 2));
+        assert_eq!((found.len(), found.stats.triangle_pairs), (300, 300 * 301 / 2));
         assert!(found.pairs().iter().all(|pair| pair.triangles[1] == 300));
     }
 }

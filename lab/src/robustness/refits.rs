@@ -1,7 +1,7 @@
 //! A tree that is refitted ten thousand times: does it still hold its mesh, and find what a new one finds?
 
 use super::report::Report;
-use nearmiss::Detector;
+use crate::OneQuery;
 use nearmiss::contacts::Contacts;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
@@ -109,15 +109,15 @@ pub fn ask_refits(device: &Device, frames: u32) -> Result<Report, Error> {
         let continuous = Continuous::by(Certified { tolerance: Some(1e-5), ..Certified::default() });
         for query in [Query::discrete(), continuous.into()] {
             let query = query.with_bv(bv).with_refit(refit);
-            let mut detector = Detector::new(device.clone(), vec![body(0)?], query)?;
+            let mut detector = OneQuery::new(device.clone(), vec![body(0)?], query)?;
             for k in (APART..=frames).step_by(APART as usize) {
                 // The frames in between are refitted by `holds`; here the tree jumps.
                 detector.move_to(0, body(k)?)?;
                 let found: Contacts = detector.detect()?;
-                let fresh = Detector::new(device.clone(), vec![body(k)?], query)?.detect()?;
+                let fresh = OneQuery::new(device.clone(), vec![body(k)?], query)?.detect()?;
                 report.asked += 1;
                 report.unresolved += found.unresolved;
-                if found.answer != fresh.answer {
+                if found.rows != fresh.rows {
                     report.fail(|| {
                         let (was, is) = (found.len(), fresh.len());
                         format!(
@@ -144,7 +144,7 @@ mod tests {
     fn the_ribbon_asks_something() {
         let device = Device::emulator(Emulator::new(Mode::Engine, None).expect("threads"));
         for query in [Query::discrete(), Query::continuous()] {
-            let found = Detector::new(device.clone(), vec![body(500).expect("a body")], query);
+            let found = OneQuery::new(device.clone(), vec![body(500).expect("a body")], query);
             let found = found.expect("a detector").detect().expect("an answer");
             assert!(found.len() > 3, "{query:?}: {}", found.len());
         }

@@ -2,7 +2,7 @@
 
 use super::report::Report;
 use super::scenes::{Numbers, Refused, Scene};
-use nearmiss::Detector;
+use crate::OneQuery;
 use nearmiss::contacts::{Contacts, Status, triangle_contacts};
 use nearmiss::device::Device;
 use nearmiss::error::Error;
@@ -10,7 +10,7 @@ use nearmiss::mesh::Body;
 use nearmiss::query::{Bv, Query, QueryKind};
 
 fn found(device: &Device, bodies: Vec<Body>, query: Query) -> Result<Contacts, Error> {
-    let mut detector = Detector::new(device.clone(), bodies, query)?;
+    let mut detector = OneQuery::new(device.clone(), bodies, query)?;
     let found = detector.detect()?;
     detector.check_volumes()?;
     Ok(found)

@@ -1,13 +1,14 @@
 //! What scenes of many bodies cost: a frame in one submission, and of many worlds each by itself beside it.
 
 use super::text::{Printed, digits};
+use crate::OneQuery;
 use crate::scene::{Bodies, Move};
+use nearmiss::Body;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::pipeline::Stages;
 use nearmiss::query::{Query, QueryKind};
 use nearmiss::scene::{BodyId, BodyKind, Input, Scene};
-use nearmiss::{Body, Detector};
 use serde::Serialize;
 
 /// A scene asked in one way.
@@ -57,17 +58,17 @@ pub fn bodies(
     query: Query,
     frames: u32,
 ) -> Result<BodiesRow, Error> {
-    let mut detector = Detector::new(device.clone(), all.scene.clone(), query)?;
+    let mut detector = OneQuery::new(device.clone(), all.scene.clone(), query)?;
     let steps: Vec<Vec<(BodyId, Move)>> = (0..frames).map(|step| all.step(step)).collect();
     let mut launches = 0;
-    let mut pass = |detector: &mut Detector| -> Result<(Vec<Stages>, Vec<u64>, u64), Error> {
+    let mut pass = |detector: &mut OneQuery| -> Result<(Vec<Stages>, Vec<u64>, u64), Error> {
         let (mut stages, mut hashes, mut contacts) = (Vec::new(), Vec::new(), 0);
         for step in &steps {
             let inputs: Vec<(BodyId, Input)> = step.iter().map(|(id, to)| (*id, to.input())).collect();
             let before = device.launches();
             let found = detector.frame(&inputs)?;
             launches = device.launches() - before;
-            stages.push(found.stages);
+            stages.push(found.stats.stages);
             hashes.push(found.hash());
             contacts += found.len() as u64;
         }
@@ -116,7 +117,7 @@ fn one_by_one(
         let mut scene = Scene::new();
         own.iter().filter_map(|&id| all.scene.get(id)).for_each(|body| _ = scene.add(body.clone()));
         let ids: Vec<BodyId> = scene.ids().collect();
-        let mut detector = Detector::new(device.clone(), scene, query)?;
+        let mut detector = OneQuery::new(device.clone(), scene, query)?;
         for counts in [false, true] {
             for step in steps {
                 let named =
@@ -124,7 +125,7 @@ fn one_by_one(
                 let inputs: Vec<(BodyId, Input)> =
                     step.iter().filter_map(|(id, to)| named((id, to))).collect();
                 let found = detector.frame(&inputs)?;
-                ms += if counts { found.stages.wall } else { 0.0 };
+                ms += if counts { found.stats.stages.wall } else { 0.0 };
             }
         }
     }

@@ -3,7 +3,7 @@
 use super::frames::Frames;
 use super::measure::mean;
 use super::way::Way;
-use nearmiss::Detector;
+use crate::OneQuery;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::pipeline::{Stage, Stages};
@@ -26,7 +26,7 @@ pub struct Built {
 pub fn build(device: &Device, frames: &Frames, bv: Bv, walk: Option<Traversal>) -> Result<Built, Error> {
     let bodies = frames.bodies(false)?;
     let query = Way { moves: false, bv, front: false }.query(walk);
-    let mut detector = Detector::new(device.clone(), vec![bodies[0].clone()], query)?;
+    let mut detector = OneQuery::new(device.clone(), vec![bodies[0].clone()], query)?;
     let mut all = vec![Stages::default(); bodies.len()];
     let last = |ms: Vec<f64>| ms.last().copied().unwrap_or(0.0);
     // First all that reads the first frame's tree, then what replaces it.

@@ -3,7 +3,7 @@
 use super::figures::Paper;
 use super::frames::Frames;
 use super::way::Way;
-use nearmiss::Detector;
+use crate::OneQuery;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions};
@@ -111,7 +111,7 @@ fn between(t0: &Mesh, t1: &Mesh, part: f64) -> Result<Mesh, Error> {
 
 fn one(paper: &Paper, device: &Device, way: Way, query: Query, bodies: [Body; 2]) -> Result<FrontRow, Error> {
     let [first, second] = bodies;
-    let mut detector = Detector::new(device.clone(), vec![first.clone()], query)?;
+    let mut detector = OneQuery::new(device.clone(), vec![first.clone()], query)?;
     let (mut traverse_ms, mut frame_ms, mut tests, mut hash) = (0.0, 0.0, 0, 0);
     for run in 0..=RUNS {
         detector.move_to(0, first.clone())?;
@@ -120,10 +120,10 @@ fn one(paper: &Paper, device: &Device, way: Way, query: Query, bodies: [Body; 2]
         detector.move_to(0, second.clone())?;
         let contacts = detector.detect()?;
         if run > 0 {
-            traverse_ms += (contacts.stages.traverse + contacts.stages.balance) / RUNS as f64;
-            frame_ms += contacts.stages.total / RUNS as f64;
+            traverse_ms += (contacts.stats.stages.traverse + contacts.stats.stages.balance) / RUNS as f64;
+            frame_ms += contacts.stats.stages.total / RUNS as f64;
         }
-        (tests, hash) = (contacts.overlap_tests(), contacts.hash());
+        (tests, hash) = (contacts.stats.overlap_tests(), contacts.hash());
     }
     Ok(FrontRow {
         scene: paper.scene.clone(),

@@ -2,7 +2,7 @@
 
 use super::frames::Frames;
 use super::way::Way;
-use nearmiss::Detector;
+use crate::OneQuery;
 use nearmiss::contacts::Contacts;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
@@ -61,7 +61,7 @@ pub fn measure(
 ) -> Result<Cell, Error> {
     let bodies = frames.bodies(way.moves)?;
     let held = device.bytes().0;
-    let mut detector = Detector::new(device.clone(), vec![bodies[0].clone()], query)?;
+    let mut detector = OneQuery::new(device.clone(), vec![bodies[0].clone()], query)?;
     pass(&mut detector, &bodies, rebuild, |_| ())?;
     let before = detector.reruns();
     let mut all = Vec::new();
@@ -77,10 +77,10 @@ pub fn measure(
         bytes: 0,
     };
     pass(&mut detector, &bodies, rebuild, |contacts| {
-        all.push(contacts.stages);
+        all.push(contacts.stats.stages);
         cell.contacts += contacts.len() as u64;
-        cell.node_tests += contacts.overlap_tests();
-        cell.triangle_pairs += contacts.triangle_pairs;
+        cell.node_tests += contacts.stats.overlap_tests();
+        cell.triangle_pairs += contacts.stats.triangle_pairs;
         cell.hashes.push(contacts.hash());
     })?;
     cell.mean = mean(&all);
@@ -91,7 +91,7 @@ pub fn measure(
 
 /// Asks every frame once, from the first on, with the first one's tree.
 fn pass(
-    detector: &mut Detector,
+    detector: &mut OneQuery,
     bodies: &[Body],
     rebuild: Option<usize>,
     mut each: impl FnMut(&Contacts),

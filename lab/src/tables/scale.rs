@@ -1,12 +1,13 @@
 //! What a frame costs by the number of triangles, on one device and divided among several.
 
 use super::text::{Printed, digits};
+use crate::OneQueryOnSeveral;
 use crate::scene;
+use nearmiss::Contacts;
 use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::pipeline::Stages;
 use nearmiss::query::{Query, QueryKind};
-use nearmiss::{Contacts, MultiDetector};
 use serde::Serialize;
 
 /// A size, asked in one way.
@@ -75,7 +76,7 @@ pub fn scale(
                 let held =
                     || devices[..if in_turn { 1 } else { count }].iter().map(|device| device.bytes().0);
                 let others: u64 = held().sum();
-                let detector = MultiDetector::new(devices[..count].to_vec(), body.clone(), query)?;
+                let detector = OneQueryOnSeveral::new(devices[..count].to_vec(), body.clone(), query)?;
                 let mut detector = if in_turn { detector.in_turn() } else { detector };
                 for _ in 0..WARM_UP {
                     detector.detect()?;
@@ -84,7 +85,7 @@ pub fn scale(
                     (0..frames).map(|_| detector.detect()).collect::<Result<_, _>>()?;
                 let Some(last) = found.last() else { return Ok(()) };
                 let of = |stage: fn(&Stages) -> f64| {
-                    let mut ms: Vec<f64> = found.iter().map(|found| stage(&found.stages)).collect();
+                    let mut ms: Vec<f64> = found.iter().map(|found| stage(&found.stats.stages)).collect();
                     ms.sort_by(f64::total_cmp);
                     ms[ms.len() / 2]
                 };
@@ -92,12 +93,12 @@ pub fn scale(
                 let (motion, triangles) = (query.kind(), body.face_count());
                 let hash = format!("{:016x}", last.hash());
                 if let Some(one) =
-                    of_one.as_ref().filter(|one| one.hash != hash || one.candidates != last.candidates)
+                    of_one.as_ref().filter(|one| one.hash != hash || one.candidates != last.stats.candidates)
                 {
                     return Err(Error::Bug {
                         what: format!(
                             "{triangles} triangles, {motion:?}: {count} devices found {hash} of {} candidates, one {} of {}",
-                            last.candidates, one.hash, one.candidates
+                            last.stats.candidates, one.hash, one.candidates
                         ),
                     });
                 }
@@ -121,7 +122,7 @@ pub fn scale(
                     positions: each * body.vertex_count() as u64,
                     answer: (last.len() * if motion.is_at_rest() { 8 } else { 32 }) as u64,
                     met_beyond: detector.met_beyond()?.iter().sum(),
-                    candidates: last.candidates,
+                    candidates: last.stats.candidates,
                     contacts: last.len(),
                     hash,
                 };

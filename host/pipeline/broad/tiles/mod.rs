@@ -3,6 +3,7 @@
 #[cfg(test)]
 mod faults;
 mod rims;
+mod static_margin;
 
 use super::sorted::{Sorted, place};
 use super::{BroadContext, BroadPhase, Candidates, Which};
@@ -22,6 +23,7 @@ use nearmiss_kernels::bv::Axes;
 use nearmiss_kernels::bvh::tiles::{self, Levels, Part, TILE};
 use nearmiss_kernels::entry::{self, Entry, Kernels};
 use nearmiss_kernels::math::Vec3;
+use static_margin::StaticMargin;
 use std::collections::BTreeSet;
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -35,6 +37,12 @@ const SAMPLED: u32 = 2048;
 const MOVING: usize = 0;
 const FIXED: usize = 1;
 
+/// The order of static triangles: bodies, and triangles.
+struct StaticOrder {
+    bodies: Vec<TreeBody>,
+    triangles: Buffer<u64>,
+}
+
 /// See above.
 pub struct Tiles<V> {
     levels: Levels,
@@ -42,8 +50,9 @@ pub struct Tiles<V> {
     triangles: [u32; 2],
     /// The order of what moves.
     sorted: Sorted,
-    /// The bodies of what is static, once it is fitted.
-    fixed: Vec<TreeBody>,
+    /// Static triangles in order, once there are tiles of them.
+    fixed: Option<StaticOrder>,
+    static_margin: StaticMargin,
     leaves: Buffer<Node<V>>,
     nodes: Buffer<Node<V>>,
     /// Whose triangles lie below each node; empty where that does not matter.
@@ -95,7 +104,8 @@ impl<V: Kernels> Tiles<V> {
             sorted: Sorted::new(device, layout, &layout.trees[MOVING], (Some(order), 0))?,
             listed: (0, 0),
             order,
-            fixed: Vec::new(),
+            fixed: None,
+            static_margin: StaticMargin::default(),
             leaves,
             nodes: volumes.upload(&vec![nothing; count])?,
             filters: of_nodes,
@@ -145,6 +155,7 @@ impl<V: Kernels> Tiles<V> {
         given: &BroadContext<R>,
         part: usize,
         triangles: Span<u64>,
+        margin: f32,
     ) -> Result<(), Error> {
         let above = self.levels.part(1, part, self.triangles[part]);
         let args = FitTilesArgs {
@@ -156,9 +167,17 @@ impl<V: Kernels> Tiles<V> {
             tile: self.levels.part(0, part, self.triangles[part]).first,
             above: above.first,
             axes: self.axes,
-            margin: self.margin,
+            margin,
         };
         launch::blocks::<entry::fit_tiles<R, V>>(given.device, above.count, &args)
+    }
+
+    /// Volumes of static tiles, if they are not yet fitted with a margin that is right.
+    fn fit_static<R: Precision>(&mut self, given: &BroadContext<R>) -> Result<(), Error> {
+        let fixed = self.fixed.as_ref().map(|fixed| fixed.triangles.span());
+        let Some(triangles) = fixed.filter(|_| self.static_margin.take(self.margin)) else { return Ok(()) };
+        Tiles::fit(self, given, FIXED, triangles, self.static_margin.fitted())?;
+        Tiles::refit(self, given.device, FIXED)
     }
 
     /// Volumes of the nodes of a part from the third level on.
@@ -217,15 +236,20 @@ impl<R: Precision, V: Kernels> BroadPhase<R> for Tiles<V> {
         let BroadContext { device, frames, faces, .. } = *given;
         self.sorted.construct(device, frames, faces)?;
         self.filter(device, MOVING, self.sorted.triangles())?;
-        if self.fixed.is_empty() && self.triangles[FIXED] > 0 {
+        if self.fixed.is_none() && self.triangles[FIXED] > 0 {
             let mut sorted = Sorted::new(device, layout, &layout.trees[FIXED], (Some(self.order), 0))?;
             sorted.construct(device, frames, faces)?;
             self.filter(device, FIXED, sorted.triangles())?;
-            Tiles::fit(self, given, FIXED, sorted.triangles())?;
-            Tiles::refit(self, device, FIXED)?;
-            self.fixed = sorted.bodies().to_vec();
+            let (bodies, triangles) = sorted.into_order();
+            self.fixed = Some(StaticOrder { bodies, triangles });
+            self.fit_static(given)?;
         }
         Ok(())
+    }
+
+    fn set_margin(&mut self, margin: f32) -> bool {
+        self.margin = margin;
+        false
     }
 
     fn learn(&mut self) -> Result<(), Error> {
@@ -233,7 +257,8 @@ impl<R: Precision, V: Kernels> BroadPhase<R> for Tiles<V> {
     }
 
     fn fit(&mut self, given: &BroadContext<R>) -> Result<(), Error> {
-        Tiles::fit(self, given, MOVING, self.sorted.triangles())?;
+        self.fit_static(given)?;
+        Tiles::fit(self, given, MOVING, self.sorted.triangles(), self.margin)?;
         self.fit_rims(given)
     }
 
@@ -358,13 +383,17 @@ impl<R: Precision, V: Kernels> BroadPhase<R> for Tiles<V> {
             filters: &filters,
             axes: self.axes,
         };
-        let bodies = [self.sorted.bodies(), &self.fixed];
+        let fixed = self.fixed.as_ref().map_or(&[][..], |fixed| &fixed.bodies);
+        let bodies = [self.sorted.bodies(), fixed];
         let place = |triangle| {
             let of = |part: usize| place(bodies[part], self.triangles[part], triangle).map(|at| (part, at));
             of(MOVING).or_else(|| of(FIXED))
         };
-        let leaf =
-            |triangle: u32| super::leaf_volume::<R, V>(faces[triangle as usize], frames).near(self.margin);
+        let is_static = |triangle: u32| place(triangle).is_some_and(|(part, _)| part == FIXED);
+        let margin = |triangle| if is_static(triangle) { self.static_margin.fitted() } else { self.margin };
+        let leaf = |triangle: u32| {
+            super::leaf_volume::<R, V>(faces[triangle as usize], frames).near(margin(triangle))
+        };
         let mut seen = self.triangles.map(|count| vec![false; count as usize]);
         let [moving, fixed] = &mut seen;
         tiles::check(&tiles, place, leaf, |triangle| whose[triangle as usize], [moving, fixed])

@@ -39,6 +39,8 @@ struct Fixed {
     /// Where each level begins; empty before it is built.
     starts: Vec<u32>,
     refit: Refit,
+    /// Its volumes hold everything within this of its triangles.
+    margin: f32,
 }
 
 impl<V: Kernels> Forest<V> {
@@ -63,6 +65,7 @@ impl<V: Kernels> Forest<V> {
             layout: (Vec::new(), leaves),
             starts: Vec::new(),
             refit,
+            margin,
         });
         Ok(Forest { tree, volumes, has_groups: layout.has_groups(), fixed })
     }
@@ -82,7 +85,7 @@ impl<V: Kernels> Forest<V> {
                 let mut tree = Tree::new(device, &plan)?;
                 tree.construct::<R>(device, frames, (faces, records))?;
                 tree.learn_levels()?;
-                let volumes = Volumes::<V>::new(device, &tree, (self.volumes.axes(), self.volumes.margin))?;
+                let volumes = Volumes::<V>::new(device, &tree, (self.volumes.axes(), fixed.margin))?;
                 volumes.fit(device, &tree, frames, faces)?;
                 volumes.refit(device, &tree, frames, faces)?;
                 let args = GraftArgs {
@@ -101,6 +104,15 @@ impl<V: Kernels> Forest<V> {
             }
             _ => Ok(()),
         }
+    }
+
+    /// Sets the margin of volumes from the next fit on; whether the static tree must be built again for that.
+    pub fn set_margin(&mut self, margin: f32) -> bool {
+        self.volumes.margin = margin;
+        let Some(fixed) = self.fixed.as_mut().filter(|fixed| margin > fixed.margin) else { return false };
+        fixed.margin = margin;
+        fixed.starts.clear();
+        true
     }
 
     /// Which pairs a walk asks, of bodies with these records.
@@ -167,7 +179,7 @@ impl<V: Kernels> Forest<V> {
         let filters: Vec<NodeFilter> =
             (0..2 * count).map(|node| filters[grafted(node, own) as usize]).collect();
         check_filters(&links, &filters, ROOT)?;
-        self.volumes.check_nodes((&links, &nodes, &leaf_nodes), ROOT, faces, frames)
+        self.volumes.check_nodes((&links, &nodes, &leaf_nodes), (ROOT, fixed.margin), faces, frames)
     }
 
     /// The nodes of the static tree as they were before they were grafted, and the parents of their pairs.

@@ -57,6 +57,10 @@ impl<R: Precision, V: Kernels> BroadPhase<R> for Trees<R, V> {
         self.forest.construct(given, layout)
     }
 
+    fn set_margin(&mut self, margin: f32) -> bool {
+        self.forest.set_margin(margin)
+    }
+
     fn learn(&mut self) -> Result<(), Error> {
         self.forest.tree.learn_levels()
     }

@@ -195,7 +195,7 @@ impl<V: Kernels> Volumes<V> {
     ) -> Result<(), Error> {
         let leaves = tree.leaf_nodes.read(tree.leaves())?;
         let nodes = &self.download()?[..tree.root() as usize - 1 + 2 * tree.leaves()];
-        self.check_nodes((&tree.download()?, nodes, &leaves), tree.root(), faces, frames)
+        self.check_nodes((&tree.download()?, nodes, &leaves), (tree.root(), self.margin), faces, frames)
     }
 
     /// Checks nodes, the last leaf's the last of them, against the links and the leaves' nodes of their tree.
@@ -205,11 +205,11 @@ impl<V: Kernels> Volumes<V> {
     pub fn check_nodes<R: Precision>(
         &self,
         (links, nodes, leaves): (&[Link], &[Node<V>], &[u32]),
-        root: u32,
+        (root, margin): (u32, f32),
         faces: &[[u32; 3]],
         frames: &[Vec<Vec3<R>>],
     ) -> Result<(), Error> {
-        let leaf = |triangle: u32| leaf_volume::<R, V>(faces[triangle as usize], frames).near(self.margin);
+        let leaf = |triangle: u32| leaf_volume::<R, V>(faces[triangle as usize], frames).near(margin);
         let fitted = |first: u32, last: u32| {
             if last - first >= V::group(self.axes) {
                 return None;
@@ -219,7 +219,7 @@ impl<V: Kernels> Volumes<V> {
             let vertices = triangles.flat_map(|t| faces[t as usize]);
             let points = vertices.flat_map(|v| frames.iter().map(move |frame| frame[v as usize]));
             let volume = V::of_points(&*points.collect::<Vec<_>>());
-            Some(volume.near(self.margin))
+            Some(volume.near(margin))
         };
         bvh::check_volumes(links, nodes, (root, self.axes), leaf, fitted).map_err(broken)
     }

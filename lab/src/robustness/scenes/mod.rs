@@ -159,8 +159,8 @@ impl Scene {
     /// What is missed and what is wrong in an answer; nothing where it is right.
     pub fn judge(&self, found: &Contacts) -> Option<String> {
         match &self.finds {
-            Finds::OracleByFilter if found.undecided > 0 => {
-                Some(format!("{} pairs needed exact signs", found.undecided))
+            Finds::OracleByFilter if found.stats.undecided > 0 => {
+                Some(format!("{} pairs needed exact signs", found.stats.undecided))
             }
             Finds::Pairs(_) | Finds::Oracle | Finds::OracleByFilter => {
                 differ(&found.triangles(), &self.pairs())

@@ -8,7 +8,7 @@
 //! one, whatever the continuous solver may have missed.
 
 use super::V;
-use nearmiss::Detector;
+use crate::OneQuery;
 use nearmiss::contacts::{Contact, Kind};
 use nearmiss::device::{Backend, Device};
 use nearmiss::error::Error;
@@ -34,8 +34,8 @@ pub(super) enum Outcome {
 
 pub(super) struct Guard {
     name: String,
-    continuous: Detector,
-    discrete: Detector,
+    continuous: OneQuery,
+    discrete: OneQuery,
     faces: Vec<[u32; 3]>,
     edges: Vec<[u32; 2]>,
     gap: f64,
@@ -69,8 +69,8 @@ impl Guard {
         let moving = Body::moving(still.clone(), still.clone())?;
         let mut guard = Guard {
             name: name.into(),
-            continuous: Detector::new(device.clone(), vec![moving], passing())?,
-            discrete: Detector::new(device, vec![Body::still(still)], meeting())?,
+            continuous: OneQuery::new(device.clone(), vec![moving], passing())?,
+            discrete: OneQuery::new(device, vec![Body::still(still)], meeting())?,
             faces: faces.to_vec(),
             edges,
             gap,

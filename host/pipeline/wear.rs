@@ -15,7 +15,7 @@ pub struct Wear {
 
 impl Wear {
     /// A frame took so many tests.
-    pub fn tell(&mut self, tests: u64) {
+    pub fn add(&mut self, tests: u64) {
         match self.first {
             None => self.first = Some(tests),
             Some(first) => self.beyond = self.beyond.saturating_add(tests.saturating_sub(first)),
@@ -23,8 +23,13 @@ impl Wear {
     }
 
     /// A frame places a body for the first time, as a rigid one that was added without its pose.
-    pub fn tell_new_place(&mut self) {
+    pub fn add_new_place(&mut self) {
         self.has_new_place = true;
+    }
+
+    /// The query has other numbers: its next frame is the first to compare with.
+    pub fn forget_first(&mut self) {
+        self.first = None;
     }
 
     /// Whether the next frame builds again: there is a new place, or tests beyond have cost as much as building anew: then at most twice as much is spent as by who knows what comes (Karlin,
@@ -43,13 +48,13 @@ mod tests {
         let mut wear = Wear::default();
         // However much the first one takes, and those that take less.
         for tests in [9_000, 8_000, 9_000] {
-            wear.tell(tests);
+            wear.add(tests);
             assert!(!wear.is_worn(10));
         }
-        wear.tell(9_000 + 64 * 5);
-        wear.tell(9_000 + 64 * 5);
+        wear.add(9_000 + 64 * 5);
+        wear.add(9_000 + 64 * 5);
         assert!(!wear.is_worn(10), "as much as building");
-        wear.tell(9_001);
+        wear.add(9_001);
         assert!(wear.is_worn(10));
     }
 }

@@ -1,0 +1,70 @@
+//! Figures of an answer's making.
+
+use super::{Front, Queues};
+use crate::stages::Stages;
+
+/// Figures of an answer's making: diagnostic, they may change from version to version. Counts of an earliest query may differ from
+/// run to run: pairs that cannot be earlier are skipped, and the order decides which.
+#[derive(Clone, Debug, Default)]
+#[non_exhaustive]
+pub struct Stats {
+    /// Milliseconds by stage.
+    pub stages: Stages,
+    /// Triangle pairs whose volumes overlap.
+    pub triangle_pairs: u64,
+    /// Pairs of the narrow test: of triangles (discrete), of vertices and faces or two edges (other queries).
+    pub candidates: u64,
+    /// Candidates by kind: vertex/face, edge/edge. Zero for discrete queries.
+    pub candidates_vf_ee: [u64; 2],
+    /// Candidates that signs alone could not reject: vertex/face, edge/edge.
+    pub survivors_vf_ee: [u64; 2],
+    /// Candidates that f32 left to f64: vertex/face, edge/edge.
+    pub escalated_vf_ee: [u64; 2],
+    /// Candidates whose roots could not be isolated; with a separation, those that the first step did not decide: vertex/face,
+    /// edge/edge.
+    pub open_vf_ee: [u64; 2],
+    /// Those of them that were cut into slices: vertex/face, edge/edge.
+    pub sliced_vf_ee: [u64; 2],
+    /// Triangle pairs that the filter in the precision of the positions left undecided; of a query in motion, at the start of the step.
+    pub undecided: u64,
+    /// Those of them that f64 left undecided too; none of f64 positions, which go straight to exact signs.
+    pub undecided_wide: u64,
+    /// Pairs of sibling nodes that the traversal tested.
+    pub steps: u64,
+    /// Work units that long walks gave away.
+    pub spilled: u64,
+    /// How often a list was too short and grew, and a part of the frame ran again: it took longer, and the answer is whole.
+    pub reruns: u64,
+    /// Slices of the frame: 1, or more if the lists of a whole one would exceed the memory.
+    pub slices: u32,
+    /// Work queues.
+    pub queues: Queues,
+    /// The front of a walk.
+    pub front: Front,
+}
+
+impl Stats {
+    /// Overlap tests of two volumes: two a step, and those of the front.
+    pub fn overlap_tests(&self) -> u64 {
+        2 * self.steps + self.front.tests
+    }
+
+    /// Adds those of another share of the frame, apart from its times.
+    pub(super) fn add(&mut self, share: &Stats) {
+        let pairs =
+            |own: &mut [u64; 2], other: [u64; 2]| own.iter_mut().zip(other).for_each(|(own, n)| *own += n);
+        pairs(&mut self.candidates_vf_ee, share.candidates_vf_ee);
+        pairs(&mut self.survivors_vf_ee, share.survivors_vf_ee);
+        pairs(&mut self.escalated_vf_ee, share.escalated_vf_ee);
+        pairs(&mut self.open_vf_ee, share.open_vf_ee);
+        pairs(&mut self.sliced_vf_ee, share.sliced_vf_ee);
+        self.triangle_pairs += share.triangle_pairs;
+        self.candidates += share.candidates;
+        self.undecided += share.undecided;
+        self.undecided_wide += share.undecided_wide;
+        self.steps += share.steps;
+        self.spilled += share.spilled;
+        self.reruns += share.reruns;
+        self.slices = self.slices.max(share.slices);
+    }
+}

@@ -1,0 +1,72 @@
+//! Where every body lies in the memory that all share, as each query sees it.
+
+use super::engine::fits;
+use crate::device::Device;
+use crate::error::Error;
+use crate::memory;
+use crate::pipeline::Layout;
+use crate::query::Query;
+use crate::scene::{Body, Scene};
+use std::sync::Arc;
+
+/// Fewest bytes of the host's memory that a triangle takes in a detector: its topology, and on a CPU its tree and first lists.
+const OF_A_TRIANGLE: u64 = 300;
+
+/// A query as layouts see it.
+#[derive(Clone, Copy, PartialEq)]
+struct View {
+    has_features: bool,
+    is_within_bodies: bool,
+    keeps_adjacent: bool,
+}
+
+impl View {
+    fn of(query: &Query) -> View {
+        View {
+            has_features: query.kind().is_of_features(),
+            is_within_bodies: query.kind().is_within_bodies(),
+            keeps_adjacent: query.keeps_adjacent(),
+        }
+    }
+}
+
+/// The layouts of a scene, made when a query first needs them; they share what is the same.
+#[derive(Default)]
+pub struct Layouts(Vec<(View, Arc<Layout>)>);
+
+impl Layouts {
+    /// The layout of a query.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for more triangles than indices reach, [`Error::OutOfMemory`], [`Error::Interrupted`].
+    pub fn of(&mut self, device: &Device, scene: &Scene, query: &Query) -> Result<Arc<Layout>, Error> {
+        let view = View::of(query);
+        if let Some((_, layout)) = self.0.iter().find(|(own, _)| *own == view) {
+            return Ok(layout.clone());
+        }
+        let (bodies, looks) = (scene.bodies(), device.looks());
+        let triangles: usize = bodies.iter().map(Body::face_count).sum();
+        fits(triangles, bodies.iter().map(Body::vertex_count).sum())?;
+        memory::require("trees and lists", triangles as u64 * OF_A_TRIANGLE)?;
+        // One with features first: they take longest to make.
+        let known = self.0.iter().find(|(own, _)| own.has_features).or_else(|| self.0.first());
+        let made = match known {
+            Some((_, known)) => {
+                let layout = known.seen_by(bodies, query.kind());
+                let is_done = !view.has_features || layout.has_features();
+                if is_done { Some(layout) } else { layout.with_features(bodies, &looks) }
+            }
+            None => Layout::within(bodies, query.kind(), &looks),
+        };
+        let mut layout = made.ok_or(Error::Interrupted)?;
+        layout.find_hubs(query.keeps_adjacent());
+        let layout = Arc::new(layout);
+        self.0.push((view, layout.clone()));
+        Ok(layout)
+    }
+
+    /// The layout that was made last, if bodies are those of then.
+    pub fn last(&self) -> Option<&Arc<Layout>> {
+        self.0.last().map(|(_, layout)| layout)
+    }
+}

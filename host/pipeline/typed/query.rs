@@ -1,0 +1,251 @@
+//! The memory of one query of a scene, and the way through its stages.
+
+use super::scene::{SceneMemory, records};
+use super::{QueryParts, Step, frame};
+use crate::device::{Buffer, Replay};
+use crate::error::Error;
+use crate::pipeline::broad::{Share, Which, growth};
+use crate::pipeline::counts::{Counts, FrameCounters};
+use crate::pipeline::demand::Demand;
+use crate::pipeline::layout::Layout;
+use crate::pipeline::narrow::{Narrow, NarrowContext, narrow};
+use crate::pipeline::precision::Precision;
+use crate::pipeline::purpose;
+use crate::pipeline::wear::Wear;
+use crate::query::Query;
+use crate::scene::Body;
+use crate::stages::Stage;
+use nearmiss_kernels::abi::{BodyRecord, Span};
+use std::sync::Arc;
+
+/// Candidates a triangle for which there is room at first. Cloth at rest has 8, swept over a step 50; a list that
+/// turns out too short grows within the frame.
+const PAIRS_A_TRIANGLE: usize = 16;
+/// The same for a query in motion.
+const SWEPT_PAIRS_A_TRIANGLE: usize = 64;
+/// Room that every list has at least: a scene of a few triangles may have all pairs.
+const LEAST_ROOM: usize = 1 << 12;
+
+/// See above.
+pub struct QueryMemory<R: Precision> {
+    /// The query without its numbers: another query of this shape uses the same memory.
+    pub shape: Query,
+    pub query: Query,
+    pub layout: Arc<Layout>,
+    records: Buffer<BodyRecord>,
+    /// The place of its broad phase.
+    pub broad: usize,
+    pub counters: FrameCounters,
+    pub narrow: Box<dyn Narrow<R>>,
+    pub reruns: u64,
+    /// Counters of the last frame.
+    pub last: Counts,
+    /// Whether the lists were long enough for a whole frame: then the next one runs without waiting between steps.
+    pub settled: bool,
+    /// Launches of a settled frame, and the marks of every frame.
+    pub replay: Replay,
+    /// Its part of the work.
+    pub share: Share,
+    /// What is known of the answer's size.
+    pub demand: Demand,
+    /// Host time to launch this frame, in milliseconds.
+    pub launch_ms: f64,
+    pub wear: Wear,
+    /// The placing that the narrow phase has looked at.
+    seen: Option<u64>,
+}
+
+impl<R: Precision> QueryMemory<R> {
+    /// Takes the memory that a share of the query's work needs beside that of the scene.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn new(scene: &mut SceneMemory<R>, parts: &QueryParts) -> Result<Self, Error> {
+        let QueryParts { layout, query, share, .. } = parts;
+        let device = scene.device.clone();
+        let shape = query.shape();
+        let triangles = share.of(layout.moving_triangles() as u32).len();
+        let a_triangle = if query.kind().is_at_rest() { PAIRS_A_TRIANGLE } else { SWEPT_PAIRS_A_TRIANGLE };
+        let capacity = LEAST_ROOM.max(a_triangle * triangles);
+        let few = LEAST_ROOM.max(4 * triangles);
+        scene.pairs.reserve(&device, capacity)?;
+        if query.kind().is_of_features() {
+            scene.features.reserve(&device, layout, [capacity, 2 * capacity])?;
+        }
+        let broad = scene.broad_of(&shape, query, layout)?;
+        let mut narrow = narrow(&device, layout, query, few)?;
+        if scene.broads[broad].phase.can_sample() {
+            narrow.take_samples(&device)?;
+        }
+        Ok(QueryMemory {
+            shape,
+            query: *query,
+            records: device.of(purpose::RECORDS).upload(records(layout))?,
+            broad,
+            counters: FrameCounters::new(&device)?,
+            narrow,
+            reruns: 0,
+            last: Counts::default(),
+            settled: false,
+            replay: frame::replay(&device)?,
+            share: Share::WHOLE,
+            demand: Demand::new(query),
+            launch_ms: 0.0,
+            wear: Wear::default(),
+            seen: None,
+            layout: layout.clone(),
+        })
+    }
+
+    /// Takes the numbers of a query of the same shape. Nothing is built for them.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn set(&mut self, scene: &SceneMemory<R>, parts: &QueryParts) -> Result<(), Error> {
+        self.narrow.set(&scene.device, &parts.query, &parts.tolerances)?;
+        if self.query != parts.query {
+            self.query = parts.query;
+            let before = self.demand.before;
+            self.demand = Demand::new(&parts.query);
+            self.demand.before = before;
+            self.seen = None;
+            self.wear.forget_first();
+        }
+        Ok(())
+    }
+
+    /// Whether it looks at t = 0 alone.
+    pub fn is_at_rest(&self) -> bool {
+        self.query.kind().is_at_rest()
+    }
+
+    /// What kernels know of the bodies.
+    pub fn records(&self) -> Span<BodyRecord> {
+        self.records.span()
+    }
+
+    /// Readies a frame: margins of the volumes, positions, and what follows from where bodies are. Whether tiles or trees must be
+    /// built for it.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn ready(&mut self, scene: &mut SceneMemory<R>, bodies: &[Body]) -> Result<bool, Error> {
+        if self.seen != Some(scene.placings) {
+            self.narrow.place(bodies);
+            self.seen = Some(scene.placings);
+        }
+        scene.ready(self.is_at_rest())?;
+        let broad = &mut scene.broads[self.broad];
+        let grows = broad.phase.set_margin(growth(self.query.listed_within()));
+        broad.is_built &= !grows;
+        Ok(!broad.is_built)
+    }
+
+    /// The places of the narrow phase's steps.
+    pub fn narrow_steps_at(&self) -> std::ops::Range<usize> {
+        0..self.narrow.steps().len()
+    }
+
+    /// Runs a stage on what those before it left.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn run(&mut self, scene: &mut SceneMemory<R>, stage: Stage) -> Result<(), Error> {
+        match stage {
+            Stage::Construct => scene.broadly(self, |broad, given, layout| broad.construct(given, layout)),
+            Stage::Fit => scene.broadly(self, |broad, given, _| broad.fit(given)),
+            Stage::Refit => scene.broadly(self, |broad, given, _| broad.refit(given)),
+            Stage::Traverse => {
+                self.sample(scene)?;
+                self.step(scene, Step::Traverse)
+            }
+            Stage::Narrow => self.narrow(scene, false),
+            Stage::Order if self.narrow.ordered().is_some() => self.step(scene, Step::Order),
+            Stage::Order => Ok(()),
+        }
+    }
+
+    /// Tests a sample, if its answer bounds the whole. Nothing of it is counted: too little room would make the bound worse, and not wrong.
+    fn sample(&mut self, scene: &mut SceneMemory<R>) -> Result<(), Error> {
+        if self.narrow.bound().is_none() {
+            return Ok(());
+        }
+        self.step(scene, Step::Sample)?;
+        self.narrow(scene, true)?;
+        self.counters.clear()
+    }
+
+    /// All steps of the narrow phase, of a sample or of all.
+    fn narrow(&mut self, scene: &mut SceneMemory<R>, is_sample: bool) -> Result<(), Error> {
+        self.narrow_steps_at().try_for_each(|at| self.step(scene, Step::Narrow(at, is_sample)))
+    }
+
+    /// Runs a step. Until the lists have settled it waits for the step's demand and, if a list was too short, grows
+    /// it and runs the step again: no step works on a part of its input.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn step(&mut self, scene: &mut SceneMemory<R>, step: Step) -> Result<(), Error> {
+        loop {
+            match step {
+                Step::Sample => self.traverse(scene, Which::Sample)?,
+                Step::Traverse => {
+                    self.traverse(scene, self.narrow.bound().map_or(Which::All, Which::Before))?;
+                }
+                Step::Narrow(..) | Step::Order => {
+                    let given = NarrowContext {
+                        device: &scene.device,
+                        frames: scene.vertices.frames(self.query.kind().is_at_rest()),
+                        faces: scene.faces.span(),
+                        pairs: scene.pairs.output(self.counters.counters()),
+                        bodies: self.records.span(),
+                        counters: self.counters.counters(),
+                        features: &scene.features,
+                        is_sample: matches!(step, Step::Narrow(_, true)),
+                    };
+                    if let Step::Narrow(at, _) = step {
+                        self.narrow.run(at, &given)
+                    } else {
+                        self.narrow.order(&given)
+                    }?;
+                }
+            }
+            if self.settled || !self.grow(scene, step)? {
+                return Ok(());
+            }
+        }
+    }
+
+    /// Grows the lists that a step found too short, and sets back what it counted; whether there were any.
+    fn grow(&mut self, scene: &mut SceneMemory<R>, step: Step) -> Result<bool, Error> {
+        let mut counters = self.counters.read()?;
+        self.refuse(scene, step, &counters)?;
+        let device = scene.device.of(purpose::WALK);
+        let lists = match step {
+            Step::Sample | Step::Traverse => {
+                let mut lists = scene.broads[self.broad].phase.lists();
+                lists.push(&mut scene.pairs);
+                lists
+            }
+            Step::Narrow(at, _) => self.narrow.lists(at, &mut scene.features),
+            Step::Order => self.narrow.ordered().into_iter().collect(),
+        };
+        let (mut grown, mut again) = (false, Vec::new());
+        for list in lists {
+            grown |= list.grow(&device, &counters)?;
+            again.push(list.counter());
+        }
+        if !grown {
+            return Ok(false);
+        }
+        self.reruns += 1;
+        if let Step::Sample | Step::Traverse = step {
+            // The first step: everything that was counted so far is its own.
+            self.counters.clear()?;
+        } else {
+            again.iter().for_each(|&at| counters[at] = 0);
+            self.counters.write(&counters)?;
+        }
+        Ok(true)
+    }
+}

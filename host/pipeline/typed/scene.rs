@@ -1,0 +1,119 @@
+//! The memory of a scene on a device, which all of its queries share: topology, positions, broad phases, candidates.
+
+use super::Broad;
+use super::query::QueryMemory;
+use crate::device::{Buffer, Device, Event};
+use crate::error::Error;
+use crate::pipeline::Layout;
+use crate::pipeline::broad::{BroadContext, BroadPhase, broad_phase, growth};
+use crate::pipeline::list::List;
+use crate::pipeline::narrow::Features;
+use crate::pipeline::placing::Placing;
+use crate::pipeline::precision::Precision;
+use crate::pipeline::purpose;
+use crate::query::{self, Bv, Order, Query};
+use crate::scene::Body;
+use nearmiss_kernels::abi::{BodyRecord, Pair, counter};
+
+/// The choices that two queries must share to share a broad phase.
+#[derive(Clone, Copy, PartialEq)]
+pub enum BroadKey {
+    /// Tiles: volume, order, and, in a scene with hubs, whether pairs round a hub are candidates.
+    Tiles(Bv, Order, Option<bool>),
+    /// Trees, whose walks keep state: all of a query but its numbers.
+    Trees(Query),
+}
+
+impl BroadKey {
+    /// The key of a query of that shape.
+    pub fn of(shape: &Query, layout: &Layout, is_gpu: bool) -> BroadKey {
+        if shape.broad_on(is_gpu) == query::Broad::Tree {
+            return BroadKey::Trees(*shape);
+        }
+        let has_hubs = !(layout.hubs.is_empty() && layout.rims.is_empty());
+        let adjacent = has_hubs.then(|| shape.keeps_adjacent());
+        BroadKey::Tiles(shape.bv(), shape.search().order.unwrap_or(Order::DEFAULT), adjacent)
+    }
+}
+
+/// See above.
+pub struct SceneMemory<R: Precision> {
+    pub device: Device,
+    pub faces: Buffer<[u32; 3]>,
+    pub vertices: Placing<R>,
+    /// Edges, what triangles own, and candidates of features; empty before the first query of them.
+    pub features: Features,
+    /// Candidate triangle pairs of the query that runs.
+    pub pairs: List<Pair>,
+    pub broads: Vec<Broad<R>>,
+    /// Around placings since the last frame.
+    pub placing: Vec<[Event; 2]>,
+    /// Number of placings so far.
+    pub placings: u64,
+}
+
+impl<R: Precision> SceneMemory<R> {
+    /// Uploads topology and positions; at both ends of the step if a query in motion will read them.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn new(device: Device, layout: &Layout, bodies: &[Body], has_ends: bool) -> Result<Self, Error> {
+        Ok(SceneMemory {
+            faces: device.of(purpose::FACES).upload(&layout.faces)?,
+            vertices: Placing::new(&device.of(purpose::VERTICES), layout, bodies, has_ends)?,
+            features: Features::none(&device)?,
+            pairs: List::new(&device, "candidate triangle pairs", counter::PAIRS, 0)?,
+            broads: Vec::new(),
+            placing: Vec::new(),
+            placings: 0,
+            device,
+        })
+    }
+
+    /// The place of the broad phase of a query, made if there is none like it. It is not built yet.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn broad_of(&mut self, shape: &Query, query: &Query, layout: &Layout) -> Result<usize, Error> {
+        let key = BroadKey::of(shape, layout, self.device.is_gpu());
+        if let Some(at) = self.broads.iter().position(|broad| broad.key == key) {
+            return Ok(at);
+        }
+        let phase = broad_phase(&self.device, layout, query, growth(query.listed_within()))?;
+        self.broads.push(Broad { key, phase, is_built: false });
+        Ok(self.broads.len() - 1)
+    }
+
+    /// Readies positions for a query at rest, or in motion.
+    ///
+    /// # Errors
+    /// Those of the device.
+    pub fn ready(&mut self, at_rest: bool) -> Result<(), Error> {
+        if !self.vertices.is_ready(at_rest) {
+            let start = self.device.event()?;
+            self.vertices.ready(&self.device.of(purpose::STARTS))?;
+            self.placing.push([start, self.device.event()?]);
+        }
+        Ok(())
+    }
+
+    /// Hands the broad phase of a query what it works on.
+    pub fn broadly<T>(
+        &mut self,
+        query: &QueryMemory<R>,
+        what: impl FnOnce(&mut dyn BroadPhase<R>, &BroadContext<R>, &Layout) -> Result<T, Error>,
+    ) -> Result<T, Error> {
+        let given = BroadContext {
+            device: &self.device,
+            frames: self.vertices.frames(query.is_at_rest()),
+            faces: self.faces.span(),
+            records: query.records(),
+        };
+        what(&mut *self.broads[query.broad].phase, &given, &query.layout)
+    }
+}
+
+/// What kernels know of bodies; nothing if there is one alone.
+pub fn records(layout: &Layout) -> &[BodyRecord] {
+    if layout.has_filters() { &layout.records } else { &[] }
+}

@@ -1,0 +1,63 @@
+//! Queries whose answers have rows of their own type.
+
+use super::{Continuous, Discrete, Distance, Earliest, Near, Query};
+use crate::contacts::{Contact, FirstContact, NearPair, NearestTriangles, Rows, TrianglePair};
+
+mod sealed {
+    pub trait Sealed {}
+}
+
+/// A query, and the type of its answer's rows: see [`Detector::query`](crate::Detector::query).
+///
+/// | query | rows |
+/// | --- | --- |
+/// | [`Discrete`] | `Vec<`[`TrianglePair`]`>` |
+/// | [`Continuous`] | `Vec<`[`Contact`]`>` |
+/// | [`Earliest`] | `Option<`[`FirstContact`]`>` |
+/// | [`Near`] | `Vec<`[`NearPair`]`>` |
+/// | [`Distance`] | `Option<`[`NearestTriangles`]`>` |
+/// | [`Query`] | [`Rows`]: of any of these |
+pub trait TypedQuery: Copy + Into<Query> + sealed::Sealed {
+    /// The rows of its answer.
+    type Rows;
+
+    /// Those of any answer to it; `is_unresolved` is whether an earliest time is uncertain.
+    #[doc(hidden)]
+    fn rows(rows: Rows, is_unresolved: bool) -> Self::Rows;
+}
+
+/// From lines of a query, its rows and the way to them makes the implementations. Rows of another query are empty ones: no query has them.
+macro_rules! rows {
+    ($($query:ty => $rows:ty, $pattern:pat => $take:expr, $none:expr, $is_unresolved:ident;)+) => {
+        $(
+            impl sealed::Sealed for $query {}
+
+            impl TypedQuery for $query {
+                type Rows = $rows;
+
+                fn rows(rows: Rows, $is_unresolved: bool) -> $rows {
+                    if let $pattern = rows { $take } else { $none }
+                }
+            }
+        )+
+    };
+}
+
+rows! {
+    Discrete => Vec<TrianglePair>, Rows::Pairs(pairs) => pairs, Vec::new(), _is_unresolved;
+    Continuous => Vec<Contact>, Rows::Contacts(contacts) => contacts, Vec::new(), _is_unresolved;
+    Earliest => Option<FirstContact>,
+        Rows::Earliest(toi) => toi.map(|toi| FirstContact { toi, is_unresolved }), None, is_unresolved;
+    Near => Vec<NearPair>, Rows::Near(pairs) => pairs, Vec::new(), _is_unresolved;
+    Distance => Option<NearestTriangles>, Rows::Distance(nearest) => nearest, None, _is_unresolved;
+}
+
+impl sealed::Sealed for Query {}
+
+impl TypedQuery for Query {
+    type Rows = Rows;
+
+    fn rows(rows: Rows, _: bool) -> Rows {
+        rows
+    }
+}
