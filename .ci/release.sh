@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Makes all that a release is, and uploads nothing: `.ci/release.sh OUT`. It ends with the commands that would.
 #
-#   OUT/crates      the three packages of the library, as crates.io takes them
+#   OUT/crates      the four packages of the library, as crates.io takes them
 #   OUT/wheels      Python's, for Linux on x86-64 and aarch64, glibc 2.17 and later, each with its bill of materials inside
 #   OUT/archives    the program with its manual pages and completions, and the C interface, for both machines
 #   OUT/*.json      the bill of materials of each package (CycloneDX), OUT/SHA256SUMS of everything
@@ -56,13 +56,13 @@ $rehearse || cargo deny check advisories
 last=$(git tag --list 'v*' --sort=-version:refname | head -1)
 if [ -n "$last" ]; then
     tool cargo-semver-checks
-    cargo semver-checks --baseline-rev "$last" -p nearmiss -p nearmiss-kernels -p nearmiss-emulator
+    cargo semver-checks --baseline-rev "$last" -p nearmiss -p nearmiss-kernels -p nearmiss-emulator -p nearmiss-io
 else
     echo "no tag v*: nothing to compare with"
 fi
 
 echo "=== crates"
-packages=(-p nearmiss-kernels -p nearmiss-emulator -p nearmiss)
+packages=(-p nearmiss-kernels -p nearmiss-emulator -p nearmiss -p nearmiss-io)
 dirty=()
 ! $rehearse || dirty=(--allow-dirty)
 cargo package --locked --no-verify "${dirty[@]}" "${packages[@]}" --target-dir "$work/package"
@@ -128,7 +128,7 @@ done
 echo "=== bills of materials"
 tool cargo-cyclonedx
 cargo cyclonedx --format json --all-features --override-filename sbom
-for folder in "" kernels emulator lab cli c python; do
+for folder in "" kernels emulator io lab cli c python; do
     bill=${folder:+$folder/}sbom.json
     [ ! -f "$bill" ] || mv "$bill" "$out/nearmiss${folder:+-$folder}.cyclonedx.json"
 done
@@ -139,7 +139,7 @@ cat <<END
 
 Nothing was uploaded. To do so, in this order:
   git tag -s v$version && git push origin v$version
-  cargo publish -p nearmiss-kernels && cargo publish -p nearmiss-emulator && cargo publish -p nearmiss
+  cargo publish -p nearmiss-kernels && cargo publish -p nearmiss-emulator && cargo publish -p nearmiss && cargo publish -p nearmiss-io
   twine upload $out/wheels/*.whl
   and attach $out/archives, $out/*.json and $out/SHA256SUMS to the release of v$version.
 END

@@ -10,7 +10,8 @@ use criterion::{Bencher, BenchmarkId, Criterion, criterion_group, criterion_main
 use nearmiss::device::Backend;
 use nearmiss::mesh::Body;
 use nearmiss::pipeline::Stages;
-use nearmiss::{Device, Mesh, Query};
+use nearmiss::{Device, Query};
+use nearmiss_io::MeshFile;
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use std::path::PathBuf;
@@ -21,7 +22,8 @@ fn scenes() -> Vec<(&'static str, Body)> {
     let mut all = vec![("draped-20k", scene::scene("draped", 20_000, 1).expect("a scene"))];
     let root = std::env::var_os("NEARMISS_DATA")
         .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data")), PathBuf::from);
-    let frame = |n: u32| Mesh::read(&root.join(format!("cloth-ball/cloth_ball{n}.ply")));
+    let frame =
+        |n: u32| MeshFile::read(&root.join(format!("cloth-ball/cloth_ball{n}.ply"))).map(MeshFile::into_mesh);
     match (frame(92), frame(93)) {
         (Ok(t0), Ok(t1)) => all.push(("cloth-ball-92", Body::moving(t0, t1).expect("two frames"))),
         _ => eprintln!("without the public frames (set NEARMISS_DATA)"),

@@ -49,9 +49,6 @@ pub mod contacts;
 mod detector;
 pub mod device;
 pub mod error;
-#[doc(hidden)]
-pub mod file;
-#[doc(hidden)]
 pub mod memory;
 pub mod mesh;
 #[doc(hidden)]

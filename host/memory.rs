@@ -1,5 +1,7 @@
-//! How much memory the machine has left: asked before much is taken, because an allocation that fails ends a program without a
-//! word, and on Linux one that cannot be kept does not even fail.
+//! Memory that the machine has left, for callers that take much: check before they take it.
+//!
+//! An allocation that fails ends a program without a message. On Linux one that cannot be kept does
+//! not even fail: the system ends the process later.
 
 use crate::error::Error;
 use std::fs::read_to_string;

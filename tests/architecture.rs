@@ -30,7 +30,7 @@ fn host_crates() -> Vec<String> {
         let names = own.unwrap_or("").lines().filter_map(|line| line.split(['.', ' ']).next());
         names.filter(|name| !name.is_empty()).map(|name| name.replace('-', "_")).collect()
     };
-    let all = ["Cargo.toml", "emulator/Cargo.toml", "lab/Cargo.toml", "cli/Cargo.toml"]
+    let all = ["Cargo.toml", "emulator/Cargo.toml", "io/Cargo.toml", "lab/Cargo.toml", "cli/Cargo.toml"]
         .iter()
         .flat_map(|manifest| of(manifest));
     all.filter(|name| name != "bytemuck" && name != "nearmiss_kernels")

@@ -5,7 +5,8 @@
 mod folder;
 
 use folder::Folder;
-use nearmiss::mesh::{Body, Mesh, Positions};
+use nearmiss::mesh::{Body, Positions};
+use nearmiss_io::{Format, MeshFile};
 use std::path::PathBuf;
 
 /// A header of an ascii file with three float vertices and one face.
@@ -209,10 +210,10 @@ fn every_bad_file_is_answered_with_its_element_value_and_advice() {
     for (file, bytes, parts) in bad_files() {
         let path = PathBuf::from(folder.path(file));
         std::fs::write(&path, bytes).unwrap();
-        let read = std::panic::catch_unwind(|| Mesh::read(&path));
+        let read = std::panic::catch_unwind(|| MeshFile::read(&path));
         match read {
             Err(_) => wrong.push(format!("{file}: panics")),
-            Ok(Ok(mesh)) => wrong.push(format!("{file}: accepted with {} faces", mesh.face_count())),
+            Ok(Ok(mesh)) => wrong.push(format!("{file}: accepted with {} faces", mesh.mesh().face_count())),
             Ok(Err(error)) => {
                 let text = error.to_string();
                 let lacks = parts.iter().find(|part| !text.contains(**part));
@@ -228,7 +229,7 @@ fn every_bad_file_is_answered_with_its_element_value_and_advice() {
 #[test]
 fn what_is_no_file_is_answered_in_the_words_of_the_system() {
     let folder = Folder::new("none");
-    let text = |name: &str| Mesh::read(folder.path(name).as_ref()).unwrap_err().to_string();
+    let text = |name: &str| MeshFile::read(folder.path(name).as_ref()).unwrap_err().to_string();
     assert!(
         text("missing.ply").contains("missing.ply: cannot be read: No such file"),
         "{}",
@@ -236,7 +237,7 @@ fn what_is_no_file_is_answered_in_the_words_of_the_system() {
     );
     std::fs::create_dir_all(folder.path("a.obj")).unwrap();
     assert!(text("a.obj").contains("a.obj: cannot be read: it is a directory; check the path"));
-    let device = Mesh::read("/dev/zero.ply".as_ref()).unwrap_err().to_string();
+    let device = MeshFile::read("/dev/zero.ply".as_ref()).unwrap_err().to_string();
     assert!(device.contains("/dev/zero.ply: cannot be read"));
     #[cfg(unix)]
     {
@@ -245,22 +246,25 @@ fn what_is_no_file_is_answered_in_the_words_of_the_system() {
     }
 }
 
-fn parse(name: &str, bytes: &[u8]) -> Mesh {
-    let format = nearmiss::mesh::Format::of(name.as_ref()).unwrap();
-    Mesh::parse(name, format, bytes).unwrap()
+fn parse(name: &str, bytes: &[u8]) -> MeshFile {
+    let format = Format::of(name.as_ref()).unwrap();
+    MeshFile::parse(name, format, bytes).unwrap()
 }
 
 #[test]
 fn frames_that_do_not_belong_together_are_refused() {
     let t0 = parse("t0.ply", &ply("face", "face"));
     let more = parse("t1.ply", &ply("vertex 3", "vertex 4").replace_text("0 0 0\n", "0 0 0\n5 5 5\n"));
-    let text = Body::moving(t0.clone(), more).unwrap_err().to_string();
+    let moving = |t1: MeshFile| Body::moving(t0.mesh().clone(), t1.into_mesh()).unwrap_err().to_string();
+    let text = moving(more.clone());
+    assert_eq!(more.cut_as(&t0).unwrap_err().to_string(), text);
     assert_eq!(
         text,
         "t1.ply: has 4 vertices, but the first frame, t0.ply, has 3: two frames of one body must have the same vertices"
     );
     let other = parse("t1.ply", &ply("3 0 1 2", "3 0 2 1"));
-    let text = Body::moving(t0, other).unwrap_err().to_string();
+    let text = moving(other.clone());
+    assert_eq!(other.cut_as(&t0).unwrap_err().to_string(), text);
     assert!(text.contains("face 0 is [0, 2, 1], but in the first frame, t0.ply, it is [0, 1, 2]"), "{text}");
 }
 
@@ -317,7 +321,7 @@ fn odd_but_legal_files_are_accepted() {
         ("ahead.obj", b"f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n".to_vec(), one),
     ];
     for (file, bytes, faces) in rows {
-        assert_eq!(parse(file, &bytes).faces(), faces, "{file}");
+        assert_eq!(parse(file, &bytes).mesh().faces(), faces, "{file}");
     }
 }
 
@@ -335,17 +339,17 @@ fn positions_keep_their_precision() {
         big.extend(z.to_be_bytes());
     }
     big.extend([3, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 2]);
-    let read = parse("big.ply", &big);
+    let read = parse("big.ply", &big).into_mesh();
     assert!(doubles(read.positions()));
     assert_eq!(read.positions().get_f64(0), Some([0.1, 7.0, 0.5]));
     assert_eq!(read.positions().get_f64(1), Some([1.0, -8.0, f64::from(0.1f32)]));
     assert_eq!(read.positions().get_f64(2).unwrap()[0].to_bits(), (-0.0f64).to_bits());
     // Declared floats are rounded to floats, as the format demands; an OBJ says nothing, so only exact floats are.
     let tenth = parse("tenth.ply", &ply("1 0 0", "0.1 0 0"));
-    assert_eq!(tenth.positions().get_f64(1), Some([f64::from(0.1f32), 0.0, 0.0]));
-    let obj = |x: &str| parse("x.obj", format!("v {x} 0 0\nf 1 1 1\n").as_bytes());
+    assert_eq!(tenth.mesh().positions().get_f64(1), Some([f64::from(0.1f32), 0.0, 0.0]));
+    let obj = |x: &str| parse("x.obj", format!("v {x} 0 0\nf 1 1 1\n").as_bytes()).into_mesh();
     assert_eq!(obj("0.1").positions(), &Positions::F64(vec![[0.1, 0.0, 0.0]]));
     assert_eq!(obj("0.125").positions(), &Positions::F32(vec![[0.125, 0.0, 0.0]]));
-    assert!(!doubles(parse("bytes.ply", &ply("float y", "int16 y")).positions()));
-    assert!(doubles(parse("ints.ply", &ply("float y", "int y")).positions()));
+    assert!(!doubles(parse("bytes.ply", &ply("float y", "int16 y")).mesh().positions()));
+    assert!(doubles(parse("ints.ply", &ply("float y", "int y")).mesh().positions()));
 }

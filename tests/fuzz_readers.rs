@@ -3,7 +3,8 @@
 //! Runs on stable, a few seconds; proptest prints the input that fails, and `PROPTEST_CASES` raises the number.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-use nearmiss::mesh::{Format, Mesh};
+use nearmiss::mesh::Mesh;
+use nearmiss_io::{Format, MeshFile, encode_ply};
 use proptest::prelude::*;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -58,17 +59,18 @@ fn bound(file: usize) -> usize {
 
 /// Reads; whatever comes out must be a mesh that the door would let in again, or a message.
 fn survive(format: Format, bytes: &[u8]) -> Result<(), TestCaseError> {
-    let (read, held) = peak(|| Mesh::parse("fuzz", format, bytes));
+    let (read, held) = peak(|| MeshFile::parse("fuzz", format, bytes));
     prop_assert!(held <= bound(bytes.len()), "{held} bytes held for a file of {}", bytes.len());
     match read {
-        Ok(mesh) => {
+        Ok(file) => {
+            let mesh = file.mesh();
             prop_assert!(mesh.face_count() > 0);
             let again = Mesh::new("again", mesh.positions().clone(), mesh.faces().to_vec());
             prop_assert!(again.is_ok(), "the door refuses what it let in");
-            for note in mesh.notes() {
+            for note in file.notes() {
                 prop_assert!(note.count > 0 && note.to_string().starts_with("fuzz: "), "{note}");
             }
-            prop_assert_eq!(mesh.notes().is_empty(), mesh.strict().is_ok());
+            prop_assert_eq!(file.notes().is_empty(), file.strict().is_ok());
         }
         Err(error) => prop_assert!(error.to_string().starts_with("fuzz: ")),
     }
@@ -82,8 +84,8 @@ fn valid_files() -> Vec<(Format, Vec<u8>)> {
                  0 0 0 0\n1 0 0 2 7 8\n0 1e0 0 0\n0 .5 1 0\n255 3 0 1 2\n0 4 0 1 2 3\n5\n";
     let obj = "# by hand\nv 0 0 0\nv 1 0 0\nv 0 1 0.1 # c\nv 0 0 1e3\nvt 0 0\nf 1/1 2//2 3/1/1\nf -1 \\\n -2 -3 1\n";
     let mut binary = Vec::new();
-    let mesh = Mesh::parse("ascii", Format::Ply, ascii.as_bytes()).unwrap();
-    mesh.encode_ply(&mut binary).unwrap();
+    let mesh = MeshFile::parse("ascii", Format::Ply, ascii.as_bytes()).unwrap();
+    encode_ply(mesh.mesh(), &mut binary).unwrap();
     let mut big =
         b"ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty uchar x\nproperty uchar y\n\
                     property uchar z\nelement face 2\nproperty list ushort uchar vertex_index\nend_header\n"
@@ -188,7 +190,7 @@ proptest! {
         let marked = [b"\xef\xbb\xbf", &bytes[..]].concat();
         prop_assume!(!bytes.starts_with(b"\xef\xbb\xbf") && bytes.get(..2).is_none_or(|two| !two.contains(&0)));
         // NaN is not equal to itself, and is written alike.
-        let read = |bytes: &[u8]| format!("{:?}", Mesh::parse("fuzz", format, bytes));
+        let read = |bytes: &[u8]| format!("{:?}", MeshFile::parse("fuzz", format, bytes));
         prop_assert_eq!(read(&bytes), read(&marked));
     }
 
@@ -202,8 +204,8 @@ proptest! {
         let mut file = lines.to_vec();
         let line = format!("{word} {rest}");
         file.insert(at.min(lines.len()), &line);
-        let read = Mesh::parse("fuzz", Format::Obj, file.join("\n").as_bytes());
-        prop_assert!(read.is_err() || read.is_ok_and(|mesh| mesh.notes().len() == 1), "{line}");
+        let read = MeshFile::parse("fuzz", Format::Obj, file.join("\n").as_bytes());
+        prop_assert!(read.is_err() || read.is_ok_and(|file| file.notes().len() == 1), "{line}");
     }
 
     #[test]
@@ -232,7 +234,7 @@ proptest! {
 #[test]
 fn the_valid_files_are_valid() {
     for (format, bytes) in valid_files() {
-        Mesh::parse("valid", format, &bytes).unwrap();
+        MeshFile::parse("valid", format, &bytes).unwrap();
     }
 }
 
@@ -245,8 +247,8 @@ fn the_worst_file_stays_below_the_bound() {
     let corners = (1u32 << 20) + 5;
     bytes.extend(corners.to_le_bytes());
     bytes.extend(std::iter::repeat_n(0, corners as usize));
-    let (mesh, held) = peak(|| Mesh::parse("fan", Format::Ply, &bytes).unwrap());
-    assert_eq!(mesh.face_count(), corners as usize - 2);
+    let (file, held) = peak(|| MeshFile::parse("fan", Format::Ply, &bytes).unwrap());
+    assert_eq!(file.mesh().face_count(), corners as usize - 2);
     assert!(
         held <= bound(bytes.len()) && held > 8 * bytes.len(),
         "{held} bytes for a file of {}",

@@ -116,7 +116,7 @@ fn what_rests_is_certain() {
 fn what_was_slow_is_not() {
     for name in ["slow-sliver-2tri", "slow-sliver-100702"] {
         let folder = data(&format!("finds/{name}"));
-        let mesh = |name: &str| nearmiss::Mesh::read(&folder.join(name)).expect("a mesh");
+        let mesh = |name: &str| nearmiss_io::MeshFile::read(&folder.join(name)).expect("a mesh").into_mesh();
         let body = nearmiss::Body::moving(mesh("a0.ply"), mesh("a1.ply")).expect("two frames");
         for solver in [Solver::Certified, Solver::CertifiedF32, Solver::CertifiedF64] {
             asked(name, vec![body.clone()], solver);

@@ -8,6 +8,7 @@ use nearmiss::contacts::{Kind, Status};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Bv, Certified, Continuous, Solver};
 use nearmiss::{Contacts, Query};
+use nearmiss_io::MeshFile;
 use nearmiss_kernels::prim::cubic::Moving;
 use nearmiss_kernels::prim::inclusion::{Params, Verdict};
 use nearmiss_lab::Features;
@@ -222,7 +223,7 @@ fn near_misses_are_listed_by_every_way_or_by_none() {
 fn what_once_differed_is_alike() {
     for folder in ["bv-hash-default-f32ply", "extmix-100027-min"] {
         let folder = data(&format!("finds/{folder}"));
-        let mesh = |name: &str| Mesh::read(&folder.join(name)).expect("a mesh");
+        let mesh = |name: &str| MeshFile::read(&folder.join(name)).expect("a mesh").into_mesh();
         let other = Body::still(mesh("b0.ply"));
         let bodies = vec![Body::moving(mesh("a0.ply"), mesh("a1.ply")).expect("two frames"), other];
         for tolerance in [None, Some(1e-1), Some(1e-3), Some(1e-6), Some(1e-9), Some(0.0)] {

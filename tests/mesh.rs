@@ -9,7 +9,8 @@ mod folder;
 use data::data;
 use folder::Folder;
 use nearmiss::Error;
-use nearmiss::mesh::{Body, Format, Mesh, NO_EDGE, Positions, Problem, Topology, Violation, check};
+use nearmiss::mesh::{Body, Mesh, NO_EDGE, Positions, Problem, Topology, Violation, check};
+use nearmiss_io::{Format, MeshFile, encode_ply_coloured, write_ply};
 use rand::{Rng, SeedableRng, rngs::SmallRng};
 use std::path::PathBuf;
 
@@ -121,13 +122,13 @@ fn what_is_written_reads_back_equal() {
     points[1] = [0.1, f64::MIN_POSITIVE / 8.0, -1e140];
     let double = mesh(Positions::F64(points), &TETRAHEDRON).unwrap();
     for written in [single, double] {
-        written.write_ply(&path).unwrap();
-        let read = Mesh::read(&path).unwrap();
+        write_ply(&written, &path).unwrap();
+        let read = MeshFile::read(&path).unwrap().into_mesh();
         assert_eq!(read.faces(), written.faces());
         assert_eq!(Body::still(read).fingerprint(), Body::still(written).fingerprint());
     }
     let nowhere = folder.path("no/such/folder.ply");
-    let nowhere = mesh(Positions::F32(corners()), &TETRAHEDRON).unwrap().write_ply(nowhere.as_ref());
+    let nowhere = write_ply(&mesh(Positions::F32(corners()), &TETRAHEDRON).unwrap(), nowhere.as_ref());
     assert!(matches!(nowhere, Err(nearmiss::Error::Output { .. })));
 }
 
@@ -135,16 +136,16 @@ fn what_is_written_reads_back_equal() {
 fn colours_are_one_a_triangle() {
     let mesh = mesh(Positions::F32(corners()), &TETRAHEDRON).unwrap();
     for wrong in [0, 3, 5] {
-        let error = mesh.encode_ply_coloured(&mut Vec::new(), &vec![[1, 2, 3]; wrong]).unwrap_err();
+        let error = encode_ply_coloured(&mesh, &mut Vec::new(), &vec![[1, 2, 3]; wrong]).unwrap_err();
         assert_eq!(error.to_string(), format!("{wrong} colours for 4 triangles: give one each"));
     }
     let mut bytes = Vec::new();
-    mesh.encode_ply_coloured(&mut bytes, &[[1, 2, 3], [4, 5, 6], [7, 8, 9], [10, 11, 12]]).unwrap();
+    encode_ply_coloured(&mesh, &mut bytes, &[[1, 2, 3], [4, 5, 6], [7, 8, 9], [10, 11, 12]]).unwrap();
     assert_eq!(bytes[bytes.len() - 3..], [10, 11, 12]);
     let folder = Folder::new("colours");
     let path = PathBuf::from(folder.path("coloured.ply"));
     std::fs::write(&path, bytes).unwrap();
-    assert_eq!(Mesh::read(&path).unwrap().faces(), mesh.faces());
+    assert_eq!(MeshFile::read(&path).unwrap().mesh().faces(), mesh.faces());
 }
 
 #[test]
@@ -195,13 +196,13 @@ fn the_topology_checker_notices_each_fault() {
 fn the_cloth_of_unc_reads_and_its_topology_holds() {
     // 46,598 vertices and 92,230 triangles: the header of the published file.
     let path = data("cloth-ball/cloth_ball92.ply");
-    let t0 = Mesh::read(&path).unwrap();
+    let t0 = MeshFile::read(&path).unwrap().into_mesh();
     assert_eq!((t0.vertex_count(), t0.face_count()), (46_598, 92_230));
     let start = std::time::Instant::now();
     let topology = Topology::new(t0.faces(), t0.vertex_count());
     eprintln!("topology of {} faces: {:?}", t0.face_count(), start.elapsed());
     assert_eq!(check(&topology, t0.faces()), Ok(()));
-    let t1 = Mesh::read(&path.with_file_name("cloth_ball93.ply")).unwrap();
+    let t1 = MeshFile::read(&path.with_file_name("cloth_ball93.ply")).unwrap().into_mesh();
     let body = Body::moving(t0, t1).unwrap();
     assert_eq!(body.frames().len(), 2);
 }

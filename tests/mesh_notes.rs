@@ -2,28 +2,29 @@
 //! refused by its reason.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-use nearmiss::mesh::{Body, Format, Mesh, Treated};
+use nearmiss::mesh::Body;
+use nearmiss_io::{Format, MeshFile, Treated, encode_ply};
 
 const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nf 1 2 3\nf 2 3 4\n";
 const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
                    element face 2\nproperty list uchar int vertex_indices\nend_header\n\
                    0 0 0\n1 0 0\n0 1 0\n5 5 5\n3 0 1 2\n3 1 2 3\n";
 
-fn read(format: Format, bytes: impl AsRef<[u8]>) -> Result<Mesh, String> {
-    Mesh::parse("a file", format, bytes.as_ref()).map_err(|error| {
+fn read(format: Format, bytes: impl AsRef<[u8]>) -> Result<MeshFile, String> {
+    MeshFile::parse("a file", format, bytes.as_ref()).map_err(|error| {
         assert_eq!(error.exit_code(), 3, "{error}");
         error.to_string()
     })
 }
 
-fn obj(bytes: impl AsRef<[u8]>) -> Result<Mesh, String> {
+fn obj(bytes: impl AsRef<[u8]>) -> Result<MeshFile, String> {
     read(Format::Obj, bytes)
 }
 
 /// A mesh of the same vertices and faces.
-fn is_plain(mesh: &Mesh, format: Format) -> bool {
-    let plain = read(format, if format == Format::Obj { OBJ } else { PLY }).unwrap();
-    (mesh.positions(), mesh.faces()) == (plain.positions(), plain.faces())
+fn is_plain(file: &MeshFile, format: Format) -> bool {
+    let plain = read(format, if format == Format::Obj { OBJ } else { PLY }).unwrap().into_mesh();
+    (file.mesh().positions(), file.mesh().faces()) == (plain.positions(), plain.faces())
 }
 
 fn utf16(text: &str, order: fn(u16) -> [u8; 2]) -> Vec<u8> {
@@ -52,7 +53,7 @@ fn marks_and_line_ends_change_nothing() {
         }
     }
     let mut binary = "\u{feff}".as_bytes().to_vec();
-    read(Format::Ply, PLY).unwrap().encode_ply(&mut binary).unwrap();
+    encode_ply(read(Format::Ply, PLY).unwrap().mesh(), &mut binary).unwrap();
     assert!(is_plain(&read(Format::Ply, binary).unwrap(), Format::Ply));
 }
 
@@ -123,12 +124,12 @@ fn odd_lines_are_read_or_refused_by_their_reason() {
         "\u{b}",
     ] {
         let mesh = with(line).unwrap();
-        assert!(mesh.faces().len() == 2 + usize::from(line.contains('f')), "{line:?}");
+        assert!(mesh.mesh().faces().len() == 2 + usize::from(line.contains('f')), "{line:?}");
     }
     for numbers in ["1e5 -1E-3 +.5", "1. 2 3 1.0", "1 2 3 0.5 0.5 0.5", "1 2 3 1 0.1 0.2 0.3"] {
         let mesh = obj(format!("v {numbers}\n{OBJ}")).unwrap();
         let first: f64 = numbers.split(' ').next().unwrap().parse().unwrap();
-        assert_eq!(mesh.positions().get_f64(0).unwrap()[0], first, "{numbers}");
+        assert_eq!(mesh.mesh().positions().get_f64(0).unwrap()[0], first, "{numbers}");
     }
     for (line, why) in [
         ("v 1,5 2 3", "the x of vertex 4 (from 0) is \"1,5\""),
@@ -160,7 +161,7 @@ fn odd_lines_are_read_or_refused_by_their_reason() {
 fn a_face_that_crosses_itself_is_cut_as_a_fan() {
     let bow = format!("{OBJ}v 0 0 9\nv 2 2 9\nv 2 0 9\nv 0 2 9\nf 5 6 7 8\nf 1 2 3\nf 6 7 8 5\n");
     let mesh = obj(&bow).unwrap();
-    assert_eq!(mesh.faces()[2..], [[4, 5, 6], [4, 6, 7], [0, 1, 2], [5, 6, 7], [5, 7, 4]]);
+    assert_eq!(mesh.mesh().faces()[2..], [[4, 5, 6], [4, 6, 7], [0, 1, 2], [5, 6, 7], [5, 7, 4]]);
     assert_eq!([2, 3, 4, 6].map(|t| mesh.file_face(t)), [2, 2, 3, 4]);
     let [note] = mesh.notes() else { panic!("{:?}", mesh.notes()) };
     assert_eq!((note.treated, note.count), (Treated::Fan, 2));
@@ -174,7 +175,7 @@ fn a_face_that_crosses_itself_is_cut_as_a_fan() {
     assert!(refused.starts_with("a file: face 2, with 4 corners, crosses itself"), "{refused}");
     // A frame is cut as its first, which has said so.
     let frame = mesh.parse_frame("next", Format::Obj, bow.as_bytes()).unwrap();
-    assert!(frame.notes().is_empty() && frame.faces() == mesh.faces());
+    assert!(frame.notes().is_empty() && frame.mesh().faces() == mesh.mesh().faces());
     let odd = mesh.parse_frame("next", Format::Obj, format!("{bow}x\n").as_bytes()).unwrap();
     assert_eq!(odd.notes().len(), 1);
 }
@@ -189,20 +190,19 @@ fn faces_of_fewer_than_three_corners_are_left_out() {
             format!("{}{short}\n{}{short}\nf 2 3 4\n{short}\n", quad[before], OBJ.replace("f 2 3 4\n", ""));
         let mesh = obj(&text).unwrap();
         let fan = 2 * before;
-        assert_eq!(mesh.faces()[fan..], [[0, 1, 2], [1, 2, 3]], "{text}");
+        assert_eq!(mesh.mesh().faces()[fan..], [[0, 1, 2], [1, 2, 3]], "{text}");
         assert_eq!(
             [fan, fan + 1].map(|t| mesh.file_face(t as u32) as usize),
             [before + 1, before + 3],
             "{text}"
         );
-        assert_eq!((mesh.file_face_count(), mesh.face_count()), (before + 5, fan + 2));
+        assert_eq!((mesh.file_face_count(), mesh.mesh().face_count()), (before + 5, fan + 2));
         let [note] = mesh.notes() else { panic!("{:?}", mesh.notes()) };
         assert_eq!((note.treated, note.count), (Treated::LeftOut, 3));
         assert!(note.to_string().contains(&format!("a face with {count} corners; at least 3")), "{note}");
         assert!(mesh.clone().strict().is_err());
-        assert!(Body::moving(mesh.clone(), mesh.clone()).is_ok());
-        let (welded, _) = mesh.weld();
-        assert_eq!(welded.notes(), mesh.notes());
+        assert_eq!(mesh.clone().cut_as(&mesh).unwrap().notes(), []);
+        assert!(Body::moving(mesh.mesh().clone(), mesh.clone().into_mesh()).is_ok());
         let list = ["0", "1 3", "2 0 1"][count];
         let head =
             PLY.replace("face 2", "face 4").replace("3 0 1 2\n", &format!("{list}\n3 0 1 2\n{list}\n"));

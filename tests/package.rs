@@ -6,17 +6,21 @@ use std::process::Command;
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
+/// The packages of the library, each after those that it needs.
+const PACKAGES: [&str; 4] = ["nearmiss-kernels", "nearmiss-emulator", "nearmiss", "nearmiss-io"];
+
 /// The stranger's program.
 const PROGRAM: &str = r#"
-use nearmiss_lab::OneQuery;
-use nearmiss::{Body, Device, Mesh, Query, device::Backend, mesh::Positions};
+use nearmiss::{Body, Detector, Device, Discrete, device::Backend};
+use nearmiss_io::{Format, MeshFile};
+
+const FILE: &[u8] = b"v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 -1\nv 1 1 1\nv 2 1 1\nf 1 2 3\nf 4 5 6\n";
 
 fn main() -> Result<(), nearmiss::Error> {
-    let corners = vec![[0.0f32, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [2.0, 1.0, 1.0]];
-    let mesh = Mesh::new("two", Positions::F32(corners), vec![[0, 1, 2], [3, 4, 5]])?;
+    let mesh = MeshFile::parse("two.obj", Format::Obj, FILE)?.into_mesh();
     let device = Device::open(Backend::Auto, None)?;
-    let contacts = OneQuery::new(device, vec![Body::still(mesh)], Query::discrete())?.detect()?;
-    println!("{:?}", contacts.triangles());
+    let pairs = Detector::new(device, Body::still(mesh))?.query(&Discrete::default())?;
+    println!("{:?}", pairs.iter().map(|pair| pair.triangles).collect::<Vec<_>>());
     Ok(())
 }
 "#;
@@ -70,7 +74,8 @@ fn a_function_of_the_driver_is_noticed() {
     assert_eq!(of_the_driver(symbols), ["cuInit"]);
 }
 
-/// With all that it needs itself, and with no parser of arguments, plots, progress bars, CSV or big numbers among it.
+/// With all that it needs itself, and with no parser of arguments, plots, progress bars, CSV, big numbers or readers of
+/// files among it.
 #[test]
 fn the_library_needs_few_crates() {
     let tree = ["tree", "--offline", "-p", "nearmiss", "-e", "normal", "--prefix", "none", "--format", "{p}"];
@@ -78,7 +83,18 @@ fn the_library_needs_few_crates() {
     let crates: std::collections::BTreeSet<&str> = told.lines().filter_map(|l| l.split(' ').next()).collect();
     assert!(crates.contains("nalgebra") && crates.contains("nearmiss-kernels"), "{crates:?}");
     assert!(crates.len() <= 40, "{}: {crates:?}", crates.len());
-    for foreign in ["clap", "plotters", "indicatif", "csv", "num-bigint", "nearmiss-lab", "cust", "serde"] {
+    for foreign in [
+        "clap",
+        "plotters",
+        "indicatif",
+        "csv",
+        "num-bigint",
+        "nearmiss-lab",
+        "nearmiss-io",
+        "flate2",
+        "cust",
+        "serde",
+    ] {
         assert!(!crates.contains(foreign), "{foreign}");
     }
 }
@@ -89,18 +105,20 @@ fn packages_build_anywhere() {
     let outside = Outside::new();
     let [folder, packed] = [outside.0.clone(), outside.0.join("packed")];
     let target = packed.to_str().expect("text");
-    let all = ["-p", "nearmiss-kernels", "-p", "nearmiss-emulator", "-p", "nearmiss", "--target-dir", target];
-    let package = ["package", "--offline", "--no-verify", "--allow-dirty"];
-    cargo(Path::new(ROOT), &[&package[..], &all].concat()).expect("packages");
+    let mut package = vec!["package", "--offline", "--no-verify", "--allow-dirty", "--target-dir", target];
+    package.extend(PACKAGES.iter().flat_map(|name| ["-p", name]));
+    cargo(Path::new(ROOT), &package).expect("packages");
     let version = env!("CARGO_PKG_VERSION");
-    for name in ["nearmiss-kernels", "nearmiss-emulator", "nearmiss"] {
+    for name in PACKAGES {
         let archive = packed.join(format!("package/{name}-{version}.crate"));
         let unpacked = Command::new("tar").arg("xzf").arg(&archive).current_dir(&folder).status();
         assert!(unpacked.expect("tar starts").success(), "{}", archive.display());
     }
     let manifest = format!(
         "[package]\nname = \"stranger\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n[dependencies]\n\
-         nearmiss = {{ path = \"nearmiss-{version}\", features = [\"cuda\"] }}\n\n[patch.crates-io]\n\
+         nearmiss = {{ path = \"nearmiss-{version}\", features = [\"cuda\"] }}\n\
+         nearmiss-io = {{ path = \"nearmiss-io-{version}\" }}\n\n[patch.crates-io]\n\
+         nearmiss = {{ path = \"nearmiss-{version}\" }}\n\
          nearmiss-emulator = {{ path = \"nearmiss-emulator-{version}\" }}\n\
          nearmiss-kernels = {{ path = \"nearmiss-kernels-{version}\" }}\n\n[workspace]\n"
     );

@@ -7,7 +7,9 @@ mod judge;
 mod shapes;
 
 use judge::{Flat, fan, judge, sign};
-use nearmiss::mesh::{Body, Format, Mesh};
+use nearmiss::Error;
+use nearmiss::mesh::{Body, Mesh};
+use nearmiss_io::{Format, MeshFile, Polygons, encode_ply};
 use rand::{Rng, SeedableRng, rngs::SmallRng};
 use shapes::{comb, named, simple, spiral};
 
@@ -19,8 +21,13 @@ fn one(points: &[[f64; 3]]) -> String {
     text + "\n"
 }
 
-fn parse(text: &str) -> Result<Mesh, String> {
-    Mesh::parse("a.obj", Format::Obj, text.as_bytes()).map_err(|error| error.to_string())
+fn parse(text: &str) -> Result<MeshFile, String> {
+    MeshFile::parse("a.obj", Format::Obj, text.as_bytes()).map_err(|error| error.to_string())
+}
+
+/// A body of two files at the ends of a step.
+fn moving(t0: &MeshFile, t1: &MeshFile) -> Result<Body, Error> {
+    Body::moving(t0.mesh().clone(), t1.clone().cut_as(t0)?.into_mesh())
 }
 
 /// In the plane on which one coordinate hangs on the others.
@@ -34,7 +41,7 @@ fn lift(flat: &[Flat], axis: usize, tilt: [i64; 2]) -> Vec<[f64; 3]> {
 }
 
 fn cut(flat: &[Flat], axis: usize, tilt: [i64; 2]) -> Vec<[u32; 3]> {
-    parse(&one(&lift(flat, axis, tilt))).unwrap().faces().to_vec()
+    parse(&one(&lift(flat, axis, tilt))).unwrap().mesh().faces().to_vec()
 }
 
 fn flats(points: &[[i64; 2]]) -> Vec<[f64; 3]> {
@@ -154,7 +161,7 @@ fn polygons_may_touch_themselves() {
 fn faces_that_cross_themselves_are_noted() {
     let says = |points: &[[f64; 3]], parts: &[&str]| {
         let mesh = parse(&one(points)).unwrap();
-        assert_eq!(mesh.faces(), fan(points.len()), "all that it winds around");
+        assert_eq!(mesh.mesh().faces(), fan(points.len()), "all that it winds around");
         let text = mesh.strict().unwrap_err().to_string();
         for part in ["a.obj", "face 0", "corners in order"].iter().chain(parts) {
             assert!(text.contains(part), "{part}: {text}");
@@ -186,7 +193,7 @@ fn faces_that_cross_themselves_are_noted() {
 #[test]
 fn creased_faces_keep_their_fan() {
     let creased = [[0.0, 0.0, 0.0], [0.1, 1.0, 0.1], [1.0, 0.0, 0.0], [0.9, 0.9, -0.1]];
-    assert_eq!(parse(&one(&creased)).unwrap().faces(), fan(4));
+    assert_eq!(parse(&one(&creased)).unwrap().mesh().faces(), fan(4));
 }
 
 #[test]
@@ -198,7 +205,11 @@ fn scale_and_place_do_not_matter() {
         let plain = parse(&one(&points)).unwrap();
         for scale in [2f64.powi(-1074), 2f64.powi(-600), 2f64.powi(460)] {
             let scaled: Vec<_> = points.iter().map(|p| p.map(|x| x * scale)).collect();
-            assert_eq!(parse(&one(&scaled)).unwrap().faces(), plain.faces(), "{name}, {scale:e}");
+            assert_eq!(
+                parse(&one(&scaled)).unwrap().mesh().faces(),
+                plain.mesh().faces(),
+                "{name}, {scale:e}"
+            );
         }
     }
 }
@@ -244,18 +255,17 @@ fn frame(places: &str) -> String {
 #[test]
 fn triangles_know_their_face_of_the_file() {
     let mesh = parse(DART).unwrap();
-    assert_eq!(mesh.faces(), [[0, 1, 4], [0, 1, 2], [3, 0, 2], [4, 3, 2]].as_slice());
+    assert_eq!(mesh.mesh().faces(), [[0, 1, 4], [0, 1, 2], [3, 0, 2], [4, 3, 2]].as_slice());
     assert_eq!([0, 1, 2, 3].map(|t| mesh.file_face(t)), [0, 1, 1, 2]);
-    assert_eq!((mesh.face_count(), mesh.file_face_count()), (4, 3));
-    let body = Body::moving(mesh.clone(), mesh.clone()).unwrap();
-    assert_eq!([0, 1, 2, 3].map(|t| body.file_face(t)), [0, 1, 1, 2]);
-    assert_eq!(body.frames()[1].file_face(3), 2);
-    let plain = Mesh::new("given", mesh.positions().clone(), mesh.faces().to_vec()).unwrap();
-    assert_eq!((plain.file_face(3), plain.file_face_count()), (3, 4));
+    assert_eq!((mesh.mesh().face_count(), mesh.file_face_count()), (4, 3));
+    assert_eq!([0, 1, 2, 3].map(|t| mesh.polygons().file_face(t)), [0, 1, 1, 2]);
+    assert_eq!(Polygons::default().file_face(3), 3);
+    let plain = parse("v 0 0 0\nv 3 0 0\nv 0 3 0\nf 1 2 3\nf 3 2 1\n").unwrap();
+    assert_eq!((plain.file_face(1), plain.file_face_count()), (1, 2));
     let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 4\n\
                property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n5 0 1 2 2 2\n3 0 1 2\n4 0 1 2 2\n3 0 0 0\n";
-    let mesh = Mesh::parse("a.ply", Format::Ply, ply.as_bytes()).unwrap();
-    let of: Vec<u32> = (0..mesh.face_count() as u32).map(|t| mesh.file_face(t)).collect();
+    let mesh = MeshFile::parse("a.ply", Format::Ply, ply.as_bytes()).unwrap();
+    let of: Vec<u32> = (0..mesh.mesh().face_count() as u32).map(|t| mesh.file_face(t)).collect();
     assert_eq!(of, [0, 0, 0, 1, 2, 2, 3]);
 }
 
@@ -265,17 +275,22 @@ fn frames_are_cut_as_the_first() {
     let t0 = parse(DART).unwrap();
     let text = frame("v 1 1 0\nv 3 1 0\n");
     let t1 = parse(&text).unwrap();
-    assert_ne!(t0.faces(), t1.faces());
-    let body = Body::moving(t0.clone(), t1.clone()).unwrap();
-    assert_eq!((body.faces(), body.positions_t1()), (t0.faces(), Some(t1.positions())));
-    assert_eq!(Body::moving(t1.clone(), t0.clone()).unwrap().faces(), t1.faces());
+    assert_ne!(t0.mesh().faces(), t1.mesh().faces());
+    let body = moving(&t0, &t1).unwrap();
+    assert_eq!((body.faces(), body.positions_t1()), (t0.mesh().faces(), Some(t1.mesh().positions())));
+    assert_eq!(moving(&t1, &t0).unwrap().faces(), t1.mesh().faces());
+    // Cut otherwise, they are no frames of one mesh.
+    let apart = Body::moving(t0.mesh().clone(), t1.mesh().clone()).unwrap_err().to_string();
+    assert!(apart.contains("face 1 is ") && apart.contains("in the first frame, a.obj"), "{apart}");
     let next = t0.parse_frame("b.obj", Format::Obj, text.as_bytes()).unwrap();
-    assert_eq!((next.faces(), next.positions(), next.name()), (t0.faces(), t1.positions(), "b.obj"));
+    assert_eq!((next.mesh().faces(), next.mesh().positions()), (t0.mesh().faces(), t1.mesh().positions()));
+    assert_eq!(next.mesh().name(), "b.obj");
     assert_eq!(next.file_face(2), 1);
     // Crossing at its end, a face is still what it was at its start.
     let crossed = frame("v 2 2 0\nv 1 -1 0\n");
     assert!(parse(&crossed).unwrap().strict().is_err());
     assert!(t0.parse_frame("b.obj", Format::Obj, crossed.as_bytes()).is_ok());
+    assert_eq!(parse(&crossed).unwrap().cut_as(&t0).unwrap().notes(), []);
     // Other corners, another start, more faces.
     for (from, to, part) in [
         (
@@ -289,21 +304,27 @@ fn frames_are_cut_as_the_first() {
     ] {
         let other = DART.replace(from, to);
         let read = t0.parse_frame("b.obj", Format::Obj, other.as_bytes()).unwrap_err().to_string();
-        let moved = Body::moving(t0.clone(), parse(&other).unwrap()).unwrap_err().to_string();
+        let moved = moving(&t0, &parse(&other).unwrap()).unwrap_err().to_string();
         assert!(read.contains("b.obj: ") && read.contains(part), "{read}");
         assert!(moved.contains(part), "{moved}");
     }
     // A file of these very triangles is the same mesh.
-    let cut = Mesh::new("cut", t1.positions().clone(), t0.faces().to_vec()).unwrap();
-    assert!(Body::moving(t0, cut).is_ok());
+    let cut = Mesh::new("cut", t1.mesh().positions().clone(), t0.mesh().faces().to_vec()).unwrap();
+    let mut written = Vec::new();
+    encode_ply(&cut, &mut written).unwrap();
+    let read = t0.parse_frame("cut.ply", Format::Ply, &written).unwrap();
+    assert_eq!((read.mesh().positions(), read.file_face(2)), (cut.positions(), 1));
+    assert!(Body::moving(t0.into_mesh(), cut).is_ok());
 }
 
 #[test]
-fn a_welded_mesh_keeps_its_polygons() {
+fn a_welded_mesh_keeps_its_triangles() {
     let text = DART.replace("v 9 9 9", "v -0 0 0");
-    let (mesh, merged) = parse(&text).unwrap().weld();
+    let file = parse(&text).unwrap();
+    let (mesh, merged) = file.mesh().weld();
     assert_eq!((merged, mesh.faces()), (1, [[0, 1, 0], [0, 1, 2], [3, 0, 2], [0, 3, 2]].as_slice()));
-    assert_eq!(mesh.file_face(2), 1);
-    let moved = parse(&frame("v 1 1 0\nv 3 1 0\n").replace("v 9 9 9", "v 0 0 0")).unwrap().weld().0;
-    assert_eq!(Body::moving(mesh.clone(), moved).unwrap().faces(), mesh.faces());
+    assert_eq!(file.file_face(2), 1);
+    let next = parse(&frame("v 1 1 0\nv 3 1 0\n").replace("v 9 9 9", "v 0 0 0")).unwrap();
+    let next = next.cut_as(&file).unwrap().mesh().weld().0;
+    assert_eq!(Body::moving(mesh.clone(), next).unwrap().faces(), mesh.faces());
 }

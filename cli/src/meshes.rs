@@ -1,7 +1,7 @@
 //! Meshes from files, with the notes of their readers.
 
 use nearmiss::error::Error;
-use nearmiss::mesh::Mesh;
+use nearmiss_io::MeshFile;
 use std::path::Path;
 
 /// Reads meshes one after another, and keeps what their readers noted.
@@ -22,20 +22,20 @@ impl Reader {
     /// A mesh.
     ///
     /// # Errors
-    /// Those of [`Mesh::read`]; where this is strict, those of [`Mesh::strict`].
-    pub fn mesh(&mut self, path: &Path) -> Result<Mesh, Error> {
-        Mesh::read(path).and_then(|mesh| self.noted(mesh))
+    /// Those of [`MeshFile::read`]; where this is strict, those of [`MeshFile::strict`].
+    pub fn mesh(&mut self, path: &Path) -> Result<MeshFile, Error> {
+        MeshFile::read(path).and_then(|mesh| self.noted(mesh))
     }
 
     /// Another frame of a mesh.
     ///
     /// # Errors
-    /// Those of [`Mesh::read_frame`]; where this is strict, those of [`Mesh::strict`].
-    pub fn frame(&mut self, of: &Mesh, path: &Path) -> Result<Mesh, Error> {
+    /// Those of [`MeshFile::read_frame`]; where this is strict, those of [`MeshFile::strict`].
+    pub fn frame(&mut self, of: &MeshFile, path: &Path) -> Result<MeshFile, Error> {
         of.read_frame(path).and_then(|mesh| self.noted(mesh))
     }
 
-    fn noted(&mut self, mesh: Mesh) -> Result<Mesh, Error> {
+    fn noted(&mut self, mesh: MeshFile) -> Result<MeshFile, Error> {
         if self.strict {
             return mesh.strict();
         }

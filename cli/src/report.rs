@@ -7,6 +7,7 @@ use nearmiss::contacts::{Contact, ContactGeometry, Contacts, Kind, Rows, Summary
 use nearmiss::error::Error;
 use nearmiss::mesh::Body;
 use nearmiss::scene::BodyId;
+use nearmiss_io::Polygons;
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
@@ -26,10 +27,12 @@ pub struct Report {
 pub struct FileFaces(Vec<Vec<u32>>);
 
 impl FileFaces {
-    /// Of these bodies.
-    pub fn of(bodies: &[Body]) -> FileFaces {
-        let all = |body: &Body| (0..body.face_count() as u32).map(|i| body.file_face(i)).collect();
-        FileFaces(bodies.iter().map(all).collect())
+    /// Of these bodies, each with the faces of its file.
+    pub fn of(bodies: &[Body], polygons: &[Polygons]) -> FileFaces {
+        let all = |(body, polygons): (&Body, &Polygons)| {
+            (0..body.face_count() as u32).map(|i| polygons.file_face(i)).collect()
+        };
+        FileFaces(bodies.iter().zip(polygons).map(all).collect())
     }
 
     fn face(&self, body: BodyId, triangle: u32) -> u32 {

@@ -6,6 +6,7 @@ use crate::output::{self, Target, print};
 use nearmiss::error::Error;
 use nearmiss::mesh::Mesh;
 use nearmiss::words::counted;
+use nearmiss_io::encode_ply;
 use nearmiss_lab::scene::{ANIMATIONS, Options, animation_with, scene as formula};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -53,7 +54,7 @@ fn animated(args: &SceneArgs) -> Result<ExitCode, Error> {
 /// One frame.
 fn write(args: &SceneArgs, frame: &str, mesh: &Mesh) -> Result<(), Error> {
     let path: PathBuf = args.out.join(format!("{}_{frame}.ply", args.name));
-    Target::open(&path)?.write(|mut out| mesh.encode_ply(&mut out).map_err(|e| e.to_string()))?;
+    Target::open(&path)?.write(|mut out| encode_ply(mesh, &mut out).map_err(|e| e.to_string()))?;
     let triangles = counted(mesh.face_count() as u64, "triangle", "triangles");
     print(&format!("{}: {triangles}\n", path.display()))
 }

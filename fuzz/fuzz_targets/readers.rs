@@ -2,16 +2,18 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use nearmiss::mesh::{Format, Mesh, Topology, check};
+use nearmiss::mesh::{Mesh, Topology, check};
+use nearmiss_io::{Format, MeshFile};
 
 fuzz_target!(|bytes: &[u8]| {
     for format in [Format::Ply, Format::Obj] {
-        match Mesh::parse("fuzz", format, bytes) {
-            Ok(mesh) => {
+        match MeshFile::parse("fuzz", format, bytes) {
+            Ok(file) => {
+                assert!(file.notes().iter().all(|note| note.count > 0 && note.to_string().starts_with("fuzz: ")));
+                assert_eq!(file.notes().is_empty(), file.clone().strict().is_ok());
+                let mesh = file.into_mesh();
                 let again = Mesh::new("again", mesh.positions().clone(), mesh.faces().to_vec());
                 assert!(again.is_ok(), "the door refuses what it let in");
-                assert!(mesh.notes().iter().all(|note| note.count > 0 && note.to_string().starts_with("fuzz: ")));
-                assert_eq!(mesh.notes().is_empty(), mesh.clone().strict().is_ok());
                 let topology = Topology::new(mesh.faces(), mesh.vertex_count());
                 assert_eq!(check(&topology, mesh.faces()), Ok(()));
             }

@@ -11,7 +11,7 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Note {
-    /// A note of the reader of a mesh file: see [`Mesh::notes`](crate::Mesh::notes).
+    /// A note of the reader of a mesh file, made by the package `nearmiss-io`.
     File {
         /// Its text.
         text: String,

@@ -1,22 +1,14 @@
-//! Meshes: read, validated once, then trusted.
+//! Meshes: validated once, then trusted.
 //!
 //! A [`Mesh`] is one frame, a [`Body`] one mesh at one or two frames, a [`Topology`] the edges of its faces. What
 //! has passed [`Mesh::new`] needs no further check: finite where used, in range, indices valid.
+//! Files are read and written by the package `nearmiss-io`.
 
-mod cut;
 mod difference;
-mod note;
-mod obj;
-mod obj_words;
-mod ply_header;
+mod obj_problem;
 mod ply_problem;
-mod ply_read;
-mod ply_source;
-mod ply_write;
-mod polygons;
 mod positions;
 mod problem;
-mod read;
 mod topology;
 mod topology_check;
 mod validate;
@@ -24,18 +16,15 @@ mod weld;
 
 pub use crate::scene::Body;
 pub(crate) use difference::difference;
-pub use note::{Note, Treated};
-pub use obj::ObjProblem;
+pub use obj_problem::ObjProblem;
 pub use ply_problem::PlyProblem;
 pub use positions::Positions;
 pub use problem::Problem;
-pub use read::Format;
 pub use topology::{NO_EDGE, Topology};
 pub use topology_check::{Violation, check};
 pub use validate::{MAX_ABS_F32, MAX_ABS_F64, MAX_FACES, MAX_VERTICES};
 
 use crate::Error;
-pub(crate) use polygons::Polygons;
 pub(crate) use validate::is_single;
 pub(crate) use weld::{Vertices, rename};
 
@@ -49,8 +38,6 @@ pub struct Mesh {
     pub(crate) name: String,
     pub(crate) positions: Positions,
     pub(crate) faces: Vec<[u32; 3]>,
-    pub(crate) polygons: Polygons,
-    pub(crate) notes: Vec<Note>,
 }
 
 impl Mesh {
@@ -65,9 +52,7 @@ impl Mesh {
     pub fn new(name: impl Into<String>, positions: Positions, faces: Vec<[u32; 3]>) -> Result<Mesh, Error> {
         let name = name.into();
         match validate::check(positions, &faces) {
-            Ok(positions) => {
-                Ok(Mesh { name, positions, faces, polygons: Polygons::default(), notes: Vec::new() })
-            }
+            Ok(positions) => Ok(Mesh { name, positions, faces }),
             Err(problem) => Err(Error::Input { file: name, problem }),
         }
     }
@@ -97,15 +82,9 @@ impl Mesh {
         self.faces.len()
     }
 
-    /// The face of the file that a triangle, below [`Mesh::face_count`], is part of; counted from 0, in the file's order.
-    /// The triangle itself where every face was a triangle, and in a mesh given in memory. Cost: a binary search.
-    pub fn file_face(&self, triangle: u32) -> u32 {
-        self.polygons.of(triangle)
-    }
-
-    /// Number of faces in the file, [`Mesh::face_count`] where every face was a triangle.
-    pub fn file_face_count(&self) -> usize {
-        self.polygons.count(self.faces.len())
+    /// Name, positions and faces, without a copy.
+    pub fn into_parts(self) -> (String, Positions, Vec<[u32; 3]>) {
+        (self.name, self.positions, self.faces)
     }
 
     /// Refuses a mesh without triangles. Readers ask this; a caller that builds meshes may.

@@ -14,7 +14,7 @@ pub enum Problem {
         /// The operating system's words.
         reason: String,
     },
-    /// The file was packed by gzip and is damaged: read with feature `gz`.
+    /// The file was packed by gzip and is damaged.
     #[error("its gz data cannot be unpacked: {reason}; copy the file again, or pack it again")]
     Packed {
         /// The unpacker's words.
@@ -139,7 +139,7 @@ pub enum Problem {
     FrameFace {
         /// Name of the first frame.
         first: String,
-        /// The first face of the file that differs.
+        /// The first face that differs, of the file if both are of files.
         face: usize,
         /// Its corners at t0.
         t0: Vec<u32>,
@@ -251,12 +251,4 @@ fn listed(corners: &[u32]) -> String {
         Some(most) if corners.len() > MOST => format!("{most:?} and {} more", corners.len() - MOST),
         _ => format!("{corners:?}"),
     }
-}
-
-/// A token as a message shows it: text with replaced bytes, and no more than a line's worth.
-pub(super) fn shown(token: &[u8]) -> String {
-    const MOST: usize = 40;
-    let cut = &token[..token.len().min(MOST)];
-    let dots = if token.len() > MOST { "…" } else { "" };
-    format!("{}{dots}", String::from_utf8_lossy(cut).escape_debug())
 }

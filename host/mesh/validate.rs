@@ -43,7 +43,7 @@ pub(crate) fn is_single(positions: &Positions, faces: &[[u32; 3]]) -> Result<boo
 }
 
 /// Refuses `found` of `what` over `limit`.
-pub(super) fn count(what: &'static str, found: usize, limit: usize) -> Result<(), Problem> {
+fn count(what: &'static str, found: usize, limit: usize) -> Result<(), Problem> {
     if found > limit {
         return Err(Problem::TooMany { what, count: found as u64, limit: limit as u64 });
     }

@@ -1,7 +1,6 @@
 //! Vertices at one place made one, for meshes whose seams are vertices twice.
 
 use super::difference::difference;
-use super::polygons::Polygons;
 use super::{Mesh, Positions};
 use crate::Error;
 use std::cmp::Ordering;
@@ -46,10 +45,9 @@ fn place(frame: &Positions, a: usize, b: usize) -> Ordering {
     .unwrap_or(Ordering::Equal)
 }
 
-/// Gives faces and polygons those names.
-pub(crate) fn rename(vertices: &Vertices, faces: &mut [[u32; 3]], polygons: &mut Polygons) {
+/// Gives faces those names.
+pub(crate) fn rename(vertices: &Vertices, faces: &mut [[u32; 3]]) {
     faces.iter_mut().flatten().for_each(|vertex| *vertex = vertices.names[*vertex as usize]);
-    polygons.rename(&vertices.names);
 }
 
 impl Mesh {
@@ -63,7 +61,7 @@ impl Mesh {
     pub fn weld(&self) -> (Mesh, usize) {
         let vertices = Vertices::of(&[&self.positions], &self.faces);
         let mut welded = self.clone();
-        rename(&vertices, &mut welded.faces, &mut welded.polygons);
+        rename(&vertices, &mut welded.faces);
         (welded, vertices.merged)
     }
 
@@ -81,14 +79,12 @@ impl Mesh {
         }
         let positions: Vec<&Positions> = frames.iter().map(Mesh::positions).collect();
         let vertices = Vertices::of(&positions, &first.faces);
-        let (mut faces, mut polygons) = (first.faces.clone(), first.polygons.clone());
-        rename(&vertices, &mut faces, &mut polygons);
+        let mut faces = first.faces.clone();
+        rename(&vertices, &mut faces);
         let welded = frames.iter().map(|frame| Mesh {
             name: frame.name.clone(),
             positions: frame.positions.clone(),
             faces: faces.clone(),
-            polygons: polygons.clone(),
-            notes: frame.notes.clone(),
         });
         Ok((welded.collect(), vertices.merged))
     }

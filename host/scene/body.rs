@@ -5,7 +5,7 @@ use super::{BodyKind, DeviceInput, Meets, Pose};
 use crate::Error;
 #[cfg(doc)]
 use crate::mesh::Problem;
-use crate::mesh::{Mesh, Polygons, Positions, Vertices, difference, rename};
+use crate::mesh::{Mesh, Positions, Vertices, difference, rename};
 
 /// Faces with the positions of one frame (still), or of the two ends of a step (moving). Vertices move in straight
 /// lines from `positions_t0` to `positions_t1`, both of the same length and precision.
@@ -13,7 +13,6 @@ use crate::mesh::{Mesh, Polygons, Positions, Vertices, difference, rename};
 pub struct Body {
     pub(super) name: String,
     pub(super) faces: Vec<[u32; 3]>,
-    polygons: Polygons,
     pub(super) positions_t0: Positions,
     pub(super) positions_t1: Option<Positions>,
     pub(super) kind: BodyKind,
@@ -53,11 +52,10 @@ pub(crate) enum Away {
 impl Body {
     /// A body at one frame.
     pub fn still(mesh: Mesh) -> Body {
-        let Mesh { name, positions, faces, polygons, .. } = mesh;
+        let Mesh { name, positions, faces } = mesh;
         Body {
             name,
             faces,
-            polygons,
             positions_t0: positions,
             positions_t1: None,
             kind: BodyKind::Deformable,
@@ -84,14 +82,7 @@ impl Body {
     /// No vertices, no triangles: what a body leaves that was taken out of a scene.
     pub(crate) fn none() -> Body {
         let nothing = Positions::F32(Vec::new());
-        let mesh = Mesh {
-            name: "nothing".into(),
-            positions: nothing,
-            faces: Vec::new(),
-            polygons: Polygons::default(),
-            notes: Vec::new(),
-        };
-        Body::still(mesh)
+        Body::still(Mesh { name: "nothing".into(), positions: nothing, faces: Vec::new() })
     }
 
     /// The body, meeting those.
@@ -133,11 +124,11 @@ impl Body {
         self.poses
     }
 
-    /// A body at two frames, of the triangles of the first: polygons that are the same in both files are cut as there,
-    /// however they were cut in the second. Where one frame is in single and one in double precision, both become double, exactly.
+    /// A body at two frames of the same faces. If one frame is in single and one in double
+    /// precision, both become double, exactly.
     ///
     /// # Errors
-    /// [`Problem::FrameVertices`], [`Problem::FrameFaces`] or [`Problem::FrameFace`] (the first face of the file that
+    /// [`Problem::FrameVertices`], [`Problem::FrameFaces`] or [`Problem::FrameFace`] (the first face that
     /// differs), against the second frame and naming the first. A vertex must be finite in both frames if a face uses it, which
     /// [`Mesh`] has seen to.
     pub fn moving(t0: Mesh, t1: Mesh) -> Result<Body, Error> {
@@ -148,8 +139,7 @@ impl Body {
             (a, b) if a.is_f64() == b.is_f64() => (a, b),
             (a, b) => (a.promoted(), b.promoted()),
         };
-        let Mesh { name, faces, polygons, .. } = t0;
-        let still = Body::still(Mesh { name, positions: positions_t0, faces, polygons, notes: Vec::new() });
+        let still = Body::still(Mesh { name: t0.name, positions: positions_t0, faces: t0.faces });
         Ok(Body { positions_t1: Some(positions_t1), ..still })
     }
 
@@ -194,11 +184,6 @@ impl Body {
         self.faces.len()
     }
 
-    /// The face of the file that a triangle is part of, as [`Mesh::file_face`].
-    pub fn file_face(&self, triangle: u32) -> u32 {
-        self.polygons.of(triangle)
-    }
-
     /// The body with vertices merged that coincide in all of its frames, and how many were merged; as [`Mesh::weld`].
     pub fn weld(&self) -> (Body, usize) {
         self.weld_through(&[])
@@ -209,7 +194,7 @@ impl Body {
         let own = std::iter::once(&self.positions_t0).chain(&self.positions_t1);
         let vertices = Vertices::of(&own.chain(frames).collect::<Vec<_>>(), &self.faces);
         let mut welded = self.clone();
-        rename(&vertices, &mut welded.faces, &mut welded.polygons);
+        rename(&vertices, &mut welded.faces);
         (welded, vertices.merged)
     }
 
@@ -235,8 +220,6 @@ impl Body {
             name: self.name.clone(),
             positions: positions.clone(),
             faces: self.faces.clone(),
-            polygons: self.polygons.clone(),
-            notes: Vec::new(),
         };
         std::iter::once(&self.positions_t0).chain(&self.positions_t1).map(mesh).collect()
     }

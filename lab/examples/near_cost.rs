@@ -6,9 +6,10 @@
 //! ```
 
 use nearmiss::device::Backend;
-use nearmiss::mesh::{Body, Mesh};
+use nearmiss::mesh::Body;
 use nearmiss::pipeline::{Stages, mean_side};
 use nearmiss::{Device, Error, Query};
+use nearmiss_io::MeshFile;
 use nearmiss_lab::OneQuery;
 use std::path::Path;
 
@@ -58,7 +59,7 @@ fn main() -> Result<(), Error> {
     let mut given = std::env::args().skip(1);
     let file = given.next().unwrap_or_default();
     let edges: f64 = given.next().and_then(|text| text.parse().ok()).unwrap_or(0.5);
-    let body = Body::still(Mesh::read(Path::new(&file))?);
+    let body = Body::still(MeshFile::read(Path::new(&file))?.into_mesh());
     let device = Device::open(Backend::Auto, None)?;
     let edge = mean_side(std::slice::from_ref(&body));
     println!("{}: mean edge {edge}, asked within {edges} of it", device.name());

@@ -6,8 +6,9 @@
 //! ```
 
 use nearmiss::device::Backend;
-use nearmiss::mesh::{Body, Mesh, Topology};
+use nearmiss::mesh::{Body, Topology};
 use nearmiss::{Device, Error, Query};
+use nearmiss_io::MeshFile;
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use std::path::Path;
@@ -54,7 +55,8 @@ fn main() -> Result<(), Error> {
     println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |");
     let files: Vec<String> = std::env::args().skip(1).collect();
     for pair in files.chunks_exact(2) {
-        let [t0, t1] = [&pair[0], &pair[1]].map(|file| Mesh::read(Path::new(file)));
+        let [t0, t1] =
+            [&pair[0], &pair[1]].map(|file| MeshFile::read(Path::new(file)).map(MeshFile::into_mesh));
         row(&pair[0], &device, Body::moving(t0?, t1?)?, 0.0)?;
     }
     if !files.is_empty() {

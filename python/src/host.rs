@@ -3,7 +3,8 @@
 use crate::errors::{choice, raised, warn};
 use crate::watch::left_behind;
 use nearmiss::mesh::{MAX_FACES, MAX_VERTICES, Positions, Problem};
-use nearmiss::{Error, Mesh, memory};
+use nearmiss::{Error, memory};
+use nearmiss_io::MeshFile;
 use numpy::{
     Element, PyArray2, PyArrayDescrMethods, PyArrayMethods, PyReadonlyArray2, PyUntypedArray,
     PyUntypedArrayMethods,
@@ -26,11 +27,12 @@ pub fn read_mesh<'py>(
     path: PathBuf,
     strict: bool,
 ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyArray2<u32>>)> {
-    let read = move || Mesh::read(&path).and_then(|mesh| if strict { mesh.strict() } else { Ok(mesh) });
+    let read = move || MeshFile::read(&path).and_then(|mesh| if strict { mesh.strict() } else { Ok(mesh) });
     let mesh = left_behind(py, read)?.map_err(raised)?;
     for note in mesh.notes() {
         warn(py, &note.to_string())?;
     }
+    let mesh = mesh.into_mesh();
     Ok((points(py, mesh.positions()), rows(py, mesh.faces())))
 }
 

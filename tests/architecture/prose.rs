@@ -110,7 +110,7 @@ fn no_text_names_a_machine() {
     let own = ["Cargo.toml", "build.rs", "README.md", "CHANGELOG.md", "CONTRIBUTING.md", "rustfmt.toml"];
     let folders = [
         ".ci", ".cargo", ".github", "benches", "c", "cli", "docs", "emulator", "examples", "fuzz", "host",
-        "python", "kernels", "lab", "tests",
+        "io", "python", "kernels", "lab", "tests",
     ];
     let ours =
         own.iter().chain(&folders).filter(|of| exists(of)).flat_map(|of| files(of)).collect::<Vec<_>>();

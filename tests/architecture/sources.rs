@@ -40,8 +40,11 @@ pub fn rust(of: &[&str]) -> Vec<Source> {
 /// All Rust that we wrote.
 pub fn all_rust() -> Vec<Source> {
     rust(
-        &["kernels", "emulator", "host", "lab", "cli", "c", "python", "tests", "benches", "build.rs", "fuzz"]
-            .map(|of| if exists(of) { of } else { "build.rs" }),
+        &[
+            "kernels", "emulator", "host", "io", "lab", "cli", "c", "python", "tests", "benches", "build.rs",
+            "fuzz",
+        ]
+        .map(|of| if exists(of) { of } else { "build.rs" }),
     )
 }
 

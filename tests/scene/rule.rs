@@ -3,8 +3,8 @@
 
 use super::*;
 use nearmiss::Error;
-use nearmiss::mesh::Format;
 use nearmiss::query::Traversal;
+use nearmiss_io::{Format, MeshFile};
 
 #[derive(Debug, PartialEq)]
 enum Class {
@@ -61,9 +61,9 @@ fn every_error_is_of_its_class() {
         ("a face's index", class(mesh(corners(0.0), [0, 1, 3]))),
         ("a coordinate", class(mesh(corners(f64::NAN), [0, 1, 2]))),
         ("a large one", class(mesh(corners(1e200), [0, 1, 2]))),
-        ("a file's text", class(Mesh::parse("a.obj", Format::Obj, b"v 0 0 x\n"))),
-        ("a file's name", class(Mesh::read("none.stl".as_ref()))),
-        ("a file", class(Mesh::read("none.ply".as_ref()))),
+        ("a file's text", class(MeshFile::parse("a.obj", Format::Obj, b"v 0 0 x\n"))),
+        ("a file's name", class(MeshFile::read("none.stl".as_ref()))),
+        ("a file", class(MeshFile::read("none.ply".as_ref()))),
         ("a frame's coordinate", class(frame(0, Input::At(&corners(f64::INFINITY))))),
         ("a step's", class(frame(0, Input::Step([&good, &corners(f64::NAN)])))),
         ("how many there are", class(frame(0, Input::At(&few)))),

@@ -12,12 +12,13 @@ use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Broad, Bv, FrontShape, QueryKind, QueueShape, Refit, Search, StealShape, Traversal};
 use nearmiss::scene::{Meets, Scene};
 use nearmiss::{Device, Query};
+use nearmiss_io::MeshFile;
 use nearmiss_lab::OneQuery;
 use std::io::Read;
 
 /// A mesh of the public test data.
 pub fn mesh(path: &str) -> Mesh {
-    Mesh::read(&data(path)).expect("public data is a mesh")
+    MeshFile::read(&data(path)).expect("public data is a mesh").into_mesh()
 }
 
 /// Rows of a gzip CSV of the public test data, without the header.

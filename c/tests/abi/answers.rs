@@ -16,9 +16,9 @@ fn library(query: Query, of: &Body, other: &Body, poses: [Pose; 2]) -> (Detector
     let first = scene.add(Body::still(still(of)).with(Meets::and_itself()));
     let second = scene.add(Body::rigid(still(other)).with(Meets::and_itself()));
     let device = Device::open(Backend::Cpu, Some(2)).expect("threads");
-    let mut detector = Detector::new(device, scene, query).expect("a detector");
+    let mut detector = Detector::new(device, scene).expect("a detector");
     let [t0, t1] = of.ends();
-    let found = detector.frame(&[(first, Input::Step([t0, t1])), (second, Input::Poses(poses))]);
+    let found = detector.step(&[(first, Input::Step([t0, t1])), (second, Input::Poses(poses))], &query);
     (detector, found.expect("an answer"))
 }
 
@@ -40,7 +40,7 @@ fn answers_are_the_librarys() {
         let mut answer = frame(&mut detector, &inputs).expect("an answer");
         let summary = got(|to, error| nearmiss_answer_summary(Some(&answer), to, error)).expect("figures");
         assert_eq!((summary.hash, summary.contacts), (found.hash(), found.len() as u64));
-        assert_eq!((summary.candidates, summary.unresolved), (found.candidates, found.unresolved));
+        assert_eq!((summary.candidates, summary.unresolved), (found.stats.candidates, found.unresolved));
         let crossing = summary.is_start_checked.then_some(summary.starts_crossing);
         assert_eq!(crossing, found.starts_crossing);
         let is_free = got(|to, error| nearmiss_answer_is_free(Some(&answer), to, error));

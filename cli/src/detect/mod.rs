@@ -16,6 +16,7 @@ use nearmiss::pipeline::Stages;
 use nearmiss::query::{Query, Traversal};
 use nearmiss::scene::Scene;
 use nearmiss::words::counted;
+use nearmiss_io::{Polygons, encode_ply_coloured};
 use nearmiss_lab::OneQuery;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -23,20 +24,25 @@ use std::process::ExitCode;
 /// A body from one file, or from two frames. Notes of its readers go to standard error.
 pub fn body(files: &[PathBuf]) -> Result<Body, Error> {
     let mut reader = Reader::default();
-    let body = body_by(files, &mut reader)?;
+    let (body, _) = body_by(files, &mut reader)?;
     reader.notes.iter().for_each(|note| say(note));
     Ok(body)
 }
 
-/// The same; the reader keeps the notes.
-fn body_by(files: &[PathBuf], reader: &mut Reader) -> Result<Body, Error> {
+/// The same with the faces of the file; the reader keeps the notes.
+fn body_by(files: &[PathBuf], reader: &mut Reader) -> Result<(Body, Polygons), Error> {
     match files {
         [t0, t1] => {
             let t0 = reader.mesh(t0)?;
             let t1 = reader.frame(&t0, t1)?;
-            Body::moving(t0, t1)
+            let polygons = t0.polygons().clone();
+            Ok((Body::moving(t0.into_mesh(), t1.into_mesh())?, polygons))
         }
-        [still] => Ok(Body::still(reader.mesh(still)?)),
+        [still] => {
+            let file = reader.mesh(still)?;
+            let polygons = file.polygons().clone();
+            Ok((Body::still(file.into_mesh()), polygons))
+        }
         // `args` asks for one or two.
         _ => Err(Error::Bug { what: format!("{} files for a mesh", files.len()) }),
     }
@@ -50,6 +56,8 @@ pub struct Question {
     pub query: Query,
     /// All frames, of a scene's file and of more than two frames.
     pub sequence: Option<Sequence>,
+    /// Faces of the files behind the triangles of each body.
+    pub polygons: Vec<Polygons>,
     /// Notes of the readers of its files.
     pub notes: Vec<String>,
 }
@@ -71,35 +79,40 @@ pub fn question(args: &DetectArgs) -> Result<Question, Error> {
         let query = args.query(all.frames > 1)?;
         steps::check(args, all.steps(query.kind().is_at_rest()))?;
         let scene = all.scene(query.kind().is_at_rest())?;
-        return Ok(Question { scene, query, sequence: Some(all), notes: reader.notes });
+        let polygons = all.polygons.clone();
+        return Ok(Question { scene, query, sequence: Some(all), polygons, notes: reader.notes });
     }
-    let bodies = bodies(args, &mut reader)?;
+    let (bodies, polygons) = bodies(args, &mut reader)?;
     let query = args.query(bodies.iter().any(Body::is_moving))?;
     if args.scene.is_none() && query.kind().is_at_rest() && bodies.iter().any(Body::is_moving) {
         let kind = query.kind();
         let note = "of two files of a mesh the first is tested, and the second not";
         reader.notes.push(format!("{note}: a {kind} query is of the start of a step"));
     }
-    Ok(Question { scene: bodies.into(), query, sequence: None, notes: reader.notes })
+    Ok(Question { scene: bodies.into(), query, sequence: None, polygons, notes: reader.notes })
 }
 
-/// One mesh or two, at one frame or two.
-fn bodies(args: &DetectArgs, reader: &mut Reader) -> Result<Vec<Body>, Error> {
-    let mut bodies = Vec::new();
+/// One mesh or two, at one frame or two, and the faces of their files.
+fn bodies(args: &DetectArgs, reader: &mut Reader) -> Result<(Vec<Body>, Vec<Polygons>), Error> {
+    let mut told = Vec::new();
     match &args.scene {
-        Some(name) => bodies.push(during("making the scene", || {
-            nearmiss_lab::scene::scene(
-                name,
-                args.triangles.unwrap_or(nearmiss_lab::scene::usual(name)),
-                args.seed,
-            )
-        })?),
-        None => bodies.push(during("reading", || body_by(&args.meshes, reader))?),
+        Some(name) => {
+            let body = during("making the scene", || {
+                nearmiss_lab::scene::scene(
+                    name,
+                    args.triangles.unwrap_or(nearmiss_lab::scene::usual(name)),
+                    args.seed,
+                )
+            })?;
+            told.push((body, Polygons::default()));
+        }
+        None => told.push(during("reading", || body_by(&args.meshes, reader))?),
     }
     if !args.with.is_empty() {
-        bodies.push(during("reading", || body_by(&args.with, reader))?);
+        told.push(during("reading", || body_by(&args.with, reader))?);
     }
-    bodies = bodies.into_iter().map(|body| body.with(args.meets())).collect();
+    let (bodies, polygons): (Vec<Body>, Vec<Polygons>) = told.into_iter().unzip();
+    let mut bodies: Vec<Body> = bodies.into_iter().map(|body| body.with(args.meets())).collect();
     if args.weld {
         for body in &mut bodies {
             let (welded, merged) = body.weld();
@@ -108,7 +121,7 @@ fn bodies(args: &DetectArgs, reader: &mut Reader) -> Result<Vec<Body>, Error> {
             *body = welded;
         }
     }
-    Ok(bodies)
+    Ok((bodies, polygons))
 }
 
 /// Says so where the answer is not certain.
@@ -151,7 +164,7 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
         }
         None => None,
     };
-    let Question { scene, query, sequence, notes: of_files } = question(args)?;
+    let Question { scene, query, sequence, polygons, notes: of_files } = question(args)?;
     if let Some(all) = sequence.as_ref().filter(|all| all.steps(query.kind().is_at_rest()) > 1) {
         of_files.iter().for_each(|note| say(note));
         return steps::detect(args, all, (scene, query), target);
@@ -167,7 +180,7 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
         let times = during("repeating a stage", || detector.repeat_stage(stage, args.repeat))?;
         *summary.ms.of_mut(stage) = middle(times);
     }
-    let faces = args.file_faces.then(|| FileFaces::of(detector.scene().bodies()));
+    let faces = args.file_faces.then(|| FileFaces::of(detector.scene().bodies(), &polygons));
     if let Some(all) = &sequence {
         summary.frames = all.frames;
     }
@@ -175,7 +188,7 @@ pub fn detect(args: &DetectArgs) -> Result<ExitCode, Error> {
     if let Some(target) = painted {
         let (mesh, colours) =
             paint::paint(detector.scene().bodies(), 0.0, &contacts, geometry.as_deref().unwrap_or_default())?;
-        target.write(|mut out| mesh.encode_ply_coloured(&mut out, &colours).map_err(|e| e.to_string()))?;
+        target.write(|mut out| encode_ply_coloured(&mesh, &mut out, &colours).map_err(|e| e.to_string()))?;
     }
     summary.notes.splice(..0, of_files.into_iter().map(|text| Note::File { text }));
     let told = Report { step: None, summary };

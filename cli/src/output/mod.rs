@@ -4,7 +4,7 @@ mod pack;
 mod place;
 
 use nearmiss::error::Error;
-use nearmiss::file::is_packed;
+use nearmiss_io::file::is_packed;
 use place::Way;
 use std::fs;
 use std::io::Write;

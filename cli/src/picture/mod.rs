@@ -34,7 +34,7 @@ pub fn picture(args: &PictureArgs) -> Result<ExitCode, Error> {
     check(out)?;
     keeps(&args.detect)?;
     let target = Target::open(out)?;
-    let Question { scene, query, sequence, notes } = question(&args.detect)?;
+    let Question { scene, query, sequence, notes, .. } = question(&args.detect)?;
     notes.iter().for_each(|note| say(note));
     let steps = sequence.map_or(1, |all| all.steps(query.kind().is_at_rest()));
     if steps > 1 {

@@ -26,7 +26,7 @@ use std::process::ExitCode;
 /// Asks a frame and says what `detect` would do for each: what runs, is held and moved, how long it should take by what this machine
 /// does, and what there is not.
 pub fn plan(args: &PlanArgs) -> Result<ExitCode, Error> {
-    let Question { scene, query, sequence, notes } = question(&args.detect)?;
+    let Question { scene, query, sequence, notes, .. } = question(&args.detect)?;
     notes.iter().for_each(|note| say(note));
     let device = args.detect.machine.open()?;
     let mut detector = during("building", || OneQuery::new(device.clone(), scene, query))?;

@@ -111,7 +111,7 @@ pub fn read(path: &Path) -> Result<Vec<Described>, Error> {
 /// # Errors
 /// [`Error::Input`] with the system's text; [`Error::OutOfMemory`].
 pub fn text(path: &Path) -> Result<String, Error> {
-    nearmiss::file::text(path, MULTIPLE)
+    nearmiss_io::file::text(path, MULTIPLE)
 }
 
 fn described(path: &Path, line: usize, table: Table) -> Result<Described, Error> {

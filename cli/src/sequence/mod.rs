@@ -11,9 +11,10 @@ use crate::output::say;
 use file::{Described, wrong};
 use nearmiss::error::Error;
 use nearmiss::memory;
-use nearmiss::mesh::{Body, Mesh, Positions};
+use nearmiss::mesh::{Body, Positions};
 use nearmiss::scene::{BodyId, BodyKind, Input, Pose, Scene};
 use nearmiss::words::counted;
+use nearmiss_io::{MeshFile, Polygons};
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
@@ -45,11 +46,20 @@ impl Track {
     }
 }
 
+/// What files say of a body.
+struct Told {
+    body: Body,
+    track: Track,
+    polygons: Polygons,
+}
+
 /// Bodies and their frames.
 pub struct Sequence {
     /// Each as it is at the first frame.
     bodies: Vec<Body>,
     tracks: Vec<Track>,
+    /// Of each the faces of its file behind its triangles.
+    pub polygons: Vec<Polygons>,
     /// How many frames there are: at least one.
     pub frames: usize,
     /// Of a file of a scene the bodies' names, by which rows tell them.
@@ -99,7 +109,7 @@ impl Sequence {
             _ => {
                 let told = own.iter().filter(|files| !files.is_empty()).map(|files| of_mesh(files, reader));
                 let mut told = told.collect::<Result<Vec<_>, _>>()?;
-                for (body, _) in &mut told {
+                for Told { body, .. } in &mut told {
                     *body = body.clone().with(args.meets());
                 }
                 Sequence::new(told, None)
@@ -111,10 +121,15 @@ impl Sequence {
         Ok(Some(all))
     }
 
-    fn new(told: Vec<(Body, Track)>, names: Option<Vec<String>>) -> Sequence {
-        let frames = told.iter().map(|(_, track)| track.frames()).max().unwrap_or(1);
-        let (bodies, tracks) = told.into_iter().unzip();
-        Sequence { bodies, tracks, frames, names }
+    fn new(told: Vec<Told>, names: Option<Vec<String>>) -> Sequence {
+        let frames = told.iter().map(|one| one.track.frames()).max().unwrap_or(1);
+        let all = Sequence { bodies: Vec::new(), tracks: Vec::new(), polygons: Vec::new(), frames, names };
+        told.into_iter().fold(all, |mut all, Told { body, track, polygons }| {
+            all.bodies.push(body);
+            all.tracks.push(track);
+            all.polygons.push(polygons);
+            all
+        })
     }
 
     /// Reads a scene and all of its meshes.
@@ -182,19 +197,19 @@ impl Sequence {
 }
 
 /// A mesh and its positions frame after frame: all in double precision if any is.
-fn of_mesh(files: &[PathBuf], reader: &mut Reader) -> Result<(Body, Track), Error> {
+fn of_mesh(files: &[PathBuf], reader: &mut Reader) -> Result<Told, Error> {
     let Some((first, others)) = files.split_first() else {
         return Err(Error::Bug { what: "a mesh without files".into() });
     };
     let mesh = reader.mesh(first)?;
-    let track = track(&mesh, others, reader)?;
-    Ok((Body::still(mesh), track))
+    let (track, polygons) = (track(&mesh, others, reader)?, mesh.polygons().clone());
+    Ok(Told { body: Body::still(mesh.into_mesh()), track, polygons })
 }
 
-fn track(mesh: &Mesh, others: &[PathBuf], reader: &mut Reader) -> Result<Track, Error> {
-    let mut frames = vec![mesh.positions().clone()];
+fn track(mesh: &MeshFile, others: &[PathBuf], reader: &mut Reader) -> Result<Track, Error> {
+    let mut frames = vec![mesh.mesh().positions().clone()];
     for file in others {
-        frames.push(reader.frame(mesh, file)?.positions().clone());
+        frames.push(reader.frame(mesh, file)?.mesh().positions().clone());
     }
     if frames.iter().any(Positions::is_f64) {
         frames = frames.iter().map(|frame| Positions::F64(frame.to_f64())).collect();
@@ -209,20 +224,22 @@ const OF_A_TRIANGLE: u64 = 20;
 fn of_table(
     (path, folder): (&Path, &Path),
     table: &Described,
-    read: &mut HashMap<PathBuf, Mesh>,
+    read: &mut HashMap<PathBuf, MeshFile>,
     reader: &mut Reader,
-) -> Result<(Body, Track), Error> {
+) -> Result<Told, Error> {
     let files: Vec<PathBuf> = table.meshes.iter().map(|mesh| folder.join(mesh)).collect();
     if !read.contains_key(&files[0]) {
         read.insert(files[0].clone(), reader.mesh(&files[0])?);
     }
     let mesh = read[&files[0]].clone();
-    memory::require("the scene's bodies", mesh.face_count() as u64 * OF_A_TRIANGLE)?;
+    memory::require("the scene's bodies", mesh.mesh().face_count() as u64 * OF_A_TRIANGLE)?;
     let track = match table.kind {
         BodyKind::Rigid if table.poses.is_empty() => Track::Poses(vec![Pose::default()]),
         BodyKind::Rigid => Track::Poses(table.poses.clone()),
         _ => track(&mesh, &files[1..], reader)?,
     };
+    let polygons = mesh.polygons().clone();
+    let mesh = mesh.into_mesh();
     let body = match table.kind {
         BodyKind::Static => Body::fixed(mesh),
         BodyKind::Rigid => Body::rigid(mesh),
@@ -238,7 +255,7 @@ fn of_table(
         }
         body = body.at(&Input::Pose(poses[0]))?;
     }
-    Ok((body, track))
+    Ok(Told { body, track, polygons })
 }
 
 /// What is wrong, and what to do.

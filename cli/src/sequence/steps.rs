@@ -123,7 +123,7 @@ impl Steps<'_> {
         device: Device,
         (scene, query): (Scene, Query),
     ) -> Result<Steps<'a>, Error> {
-        let faces = args.file_faces.then(|| FileFaces::of(scene.bodies()));
+        let faces = args.file_faces.then(|| FileFaces::of(scene.bodies(), &all.polygons));
         let detector = during("building", || OneQuery::new(device, scene, query))?;
         Ok(Steps { args, all, query, detector, faces })
     }

@@ -30,7 +30,7 @@ pub fn features(path: &Path) -> Option<Features> {
 /// # Errors
 /// [`Error::Input`] for a file that cannot be read; [`Error::OutOfMemory`].
 pub fn text(path: &Path) -> Result<String, Error> {
-    nearmiss::file::text(path, MULTIPLE)
+    nearmiss_io::file::text(path, MULTIPLE)
 }
 
 /// The questions of a file, each with the file's own answer.

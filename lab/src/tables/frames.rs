@@ -5,6 +5,7 @@ use nearmiss::error::Error;
 use nearmiss::memory;
 use nearmiss::mesh::{Body, Mesh};
 use nearmiss::words::counted;
+use nearmiss_io::MeshFile;
 use std::path::PathBuf;
 
 /// The scenes that stand in for the thesis's, with the triangles that it names.
@@ -74,5 +75,9 @@ pub fn frames(name: &str, triangles: usize, seed: u64, count: usize) -> Result<F
 /// # Errors
 /// Those of reading; [`Error::Input`] where two files are not frames of one mesh; [`Error::Choice`] for one file.
 pub fn read(scene: &str, files: &[PathBuf]) -> Result<Frames, Error> {
-    Frames::new(scene, files.iter().map(|file| Mesh::read(file)).collect::<Result<_, _>>()?)
+    let mut read = files.iter().map(|file| MeshFile::read(file)).collect::<Result<Vec<_>, _>>()?;
+    for at in 1..read.len() {
+        read[at] = read[at].clone().cut_as(&read[at - 1])?;
+    }
+    Frames::new(scene, read.into_iter().map(MeshFile::into_mesh).collect())
 }

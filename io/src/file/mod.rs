@@ -1,16 +1,14 @@
 //! Files that are read whole: only regular ones, only where there is memory, unpacked where gzip has packed them.
 
 pub(crate) mod encoding;
-#[cfg(feature = "gz")]
 mod unpack;
 
-use crate::Error;
-use crate::memory;
-use crate::mesh::Problem;
+use nearmiss::mesh::Problem;
+use nearmiss::{Error, memory};
 use std::path::Path;
 
-/// The bytes of a file; with feature `gz` unpacked where its name ends in `.gz`. Memory is asked for before, `multiple` bytes for each that it
-/// has: what its reader takes, the file itself with it.
+/// The bytes of a file, unpacked if its name ends in `.gz`. Memory is checked before: `multiple`
+/// bytes for each byte of the file, which its reader takes, the file itself included.
 ///
 /// # Errors
 /// [`Error::Input`] with [`Problem::Unreadable`], for a folder, a pipe and a device too, which may never end, or [`Problem::Packed`];
@@ -21,9 +19,7 @@ pub fn read(path: &Path, multiple: u64) -> Result<Vec<u8>, Error> {
     let size = size(path).map_err(input)?;
     memory::require(&format!("reading {file}"), size.saturating_mul(multiple))?;
     let bytes = std::fs::read(path).map_err(|e| input(unreadable(e)))?;
-    #[cfg(feature = "gz")]
-    let bytes = if is_packed(path) { unpack::unpack(&file, &bytes, multiple)? } else { bytes };
-    Ok(bytes)
+    if is_packed(path) { unpack::unpack(&file, &bytes, multiple) } else { Ok(bytes) }
 }
 
 /// A file's text, as [`read`] its bytes: without a byte order mark, its lines ended by LF or CR LF,
@@ -37,9 +33,9 @@ pub fn text(path: &Path, multiple: u64) -> Result<String, Error> {
     encoding::text(read(path, multiple)?).map_err(input)
 }
 
-/// Whether a file is packed by gzip, and can be read.
+/// Whether a file is packed by gzip: its name ends in `.gz`.
 pub fn is_packed(path: &Path) -> bool {
-    cfg!(feature = "gz") && path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gz"))
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gz"))
 }
 
 fn unreadable(error: std::io::Error) -> Problem {

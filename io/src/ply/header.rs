@@ -1,8 +1,8 @@
 //! The header of a PLY file: elements, their counts and their properties, borrowed from the bytes of the file.
 
-use super::ply_problem::PlyProblem;
-use super::ply_source::Scalar;
-use super::problem::shown;
+use super::source::Scalar;
+use crate::shown::shown;
+use nearmiss::mesh::PlyProblem;
 use std::collections::HashSet;
 
 /// How the body is written.

@@ -1,23 +1,22 @@
 //! Notes of a reader: parts of a file that it took otherwise than they stand there.
 
-use super::{Mesh, Problem};
-use crate::Error;
-use crate::words::counted;
+use nearmiss::mesh::Problem;
+use nearmiss::words::counted;
 use std::fmt;
 
 /// A note of a reader: parts of one kind that a mesh lacks or has otherwise than its file, counted.
 ///
-/// Its text names the file, the count, what was done, and the first of them. [`Mesh::strict`] makes
-/// an error of it.
+/// Its text names the file, the count, what was done, and the first of them.
+/// [`MeshFile::strict`](crate::MeshFile::strict) makes an error of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Note {
-    /// The file, as [`Error::Input`] names it.
+    /// The file, as [`Error::Input`](nearmiss::Error::Input) names it.
     pub file: String,
     /// How the reader treated them.
     pub treated: Treated,
     /// How many there are: at least one.
     pub count: u64,
-    /// The first of them in the file, as [`Mesh::strict`] reports it.
+    /// The first of them in the file, as [`MeshFile::strict`](crate::MeshFile::strict) reports it.
     pub first: Problem,
 }
 
@@ -40,7 +39,7 @@ pub enum Treated {
 
 impl Note {
     /// Whether both say the same of their files.
-    pub(super) fn is_as(&self, other: &Note) -> bool {
+    pub(crate) fn is_as(&self, other: &Note) -> bool {
         (self.treated, self.count, &self.first) == (other.treated, other.count, &other.first)
     }
 }
@@ -64,33 +63,9 @@ impl fmt::Display for Note {
     }
 }
 
-impl Mesh {
-    /// Notes of the reader, one a kind of part: empty if the mesh is all that its file says, and if
-    /// it was made in memory.
-    ///
-    /// A frame that was read by [`Mesh::read_frame`] has those notes that its first frame does not
-    /// have.
-    pub fn notes(&self) -> &[Note] {
-        &self.notes
-    }
-
-    /// Refuses a mesh whose reader left [notes](Mesh::notes); returns any other as it is.
-    ///
-    /// # Errors
-    /// [`Error::Input`] with the first part of the first note: [`Problem::FaceCrosses`],
-    /// [`Problem::FaceFolds`], a face of fewer than three corners, or a line or an element that no
-    /// reader knows.
-    pub fn strict(self) -> Result<Mesh, Error> {
-        match self.notes.into_iter().next() {
-            Some(Note { file, first, .. }) => Err(Error::Input { file, problem: first }),
-            None => Ok(Mesh { notes: Vec::new(), ..self }),
-        }
-    }
-}
-
 /// Notes while a file is read, without its name.
 #[derive(Debug, Default)]
-pub(super) struct Notes(Vec<(Treated, u64, Problem)>);
+pub(crate) struct Notes(Vec<(Treated, u64, Problem)>);
 
 impl Notes {
     /// Counts one part more; `first` is made for the first of its kind.

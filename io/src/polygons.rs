@@ -1,25 +1,31 @@
 //! The faces of a file, behind the triangles that were made of them.
 
-/// Which triangles are of which face of the file, and the corners of the faces that are no fans. A
-/// face that was left out has none. Nothing is kept if every face was a triangle; else 4 bytes a
-/// face, and 8 and 4 a corner for a face that is no fan.
+/// Faces of a file behind the triangles that were made of them.
+///
+/// A caller maps the triangles of an answer to faces of the file with it. By default every face is
+/// a triangle. Triangles keep their numbers when a mesh is welded or moved, so the map stays right.
+///
+/// Nothing is kept if every face was a triangle; else 4 bytes a face, and 8 and 4 a corner for a
+/// face that is no fan. A face that was left out has no triangle.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub(crate) struct Polygons {
+pub struct Polygons {
     /// The first triangle of each face, ascending; empty where every face was a triangle.
     first: Vec<u32>,
-    /// The faces that are no fans, ascending, each with the place in `corners` where its corners begin.
+    /// The faces that are no fans, ascending, each with the place in `corners` where its corners
+    /// begin.
     cut: Vec<[u32; 2]>,
     corners: Vec<u32>,
 }
 
 impl Polygons {
-    /// The number of faces, of which `triangles` were made.
-    pub fn count(&self, triangles: usize) -> usize {
+    /// Number of faces that `triangles` were made of.
+    pub(crate) fn count(&self, triangles: usize) -> usize {
         if self.first.is_empty() { triangles } else { self.first.len() }
     }
 
-    /// The face of a triangle. Cost: a binary search, or nothing where every face was a triangle.
-    pub fn of(&self, triangle: u32) -> u32 {
+    /// The face of the file that a triangle is part of, counted from 0 in the file's order; the
+    /// triangle itself if every face was a triangle. Cost: a binary search.
+    pub fn file_face(&self, triangle: u32) -> u32 {
         match self.first.partition_point(|&first| first <= triangle) {
             0 => triangle,
             after => after as u32 - 1,
@@ -27,7 +33,7 @@ impl Polygons {
     }
 
     /// The triangles of a face, among `triangles` of the mesh.
-    pub fn triangles(&self, face: usize, triangles: usize) -> std::ops::Range<usize> {
+    pub(crate) fn triangles(&self, face: usize, triangles: usize) -> std::ops::Range<usize> {
         match self.first.get(face) {
             None => face..face + 1,
             Some(&first) => first as usize..self.first.get(face + 1).map_or(triangles, |&next| next as usize),
@@ -35,12 +41,12 @@ impl Polygons {
     }
 
     /// Whether every face was a triangle.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.first.is_empty()
     }
 
     /// Writes the corners of a face, as the file has them, to `into`.
-    pub fn corners(&self, face: usize, faces: &[[u32; 3]], into: &mut Vec<u32>) {
+    pub(crate) fn corners(&self, face: usize, faces: &[[u32; 3]], into: &mut Vec<u32>) {
         into.clear();
         let triangles = &faces[self.triangles(face, faces.len())];
         let Some(fan) = triangles.first() else { return }; // it was left out
@@ -57,20 +63,15 @@ impl Polygons {
     }
 
     /// Keeps the corners of a face that will be no fan; faces come in ascending order.
-    pub fn keep(&mut self, face: usize, corners: &[u32]) {
+    pub(crate) fn keep(&mut self, face: usize, corners: &[u32]) {
         self.cut.push([face as u32, self.corners.len() as u32]);
         self.corners.extend(corners);
-    }
-
-    /// Gives vertices other names.
-    pub fn rename(&mut self, names: &[u32]) {
-        self.corners.iter_mut().for_each(|vertex| *vertex = names[*vertex as usize]);
     }
 }
 
 /// What readers gather: every face as a fan around its first corner, in the file's order.
 #[derive(Debug, Default)]
-pub(super) struct Fans {
+pub(crate) struct Fans {
     pub faces: Vec<[u32; 3]>,
     pub polygons: Polygons,
     read: u32,
@@ -105,6 +106,7 @@ impl Fans {
         }
         self.last = vertex;
     }
+
     /// Leaves out the face that has just come with so many corners, two at most: it keeps its
     /// number, and has no triangles.
     pub fn leave_out(&mut self, corners: u64) {

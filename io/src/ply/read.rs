@@ -3,22 +3,20 @@
 //! We have our own reader because the crates there are either allocate by the counts in the header, which a damaged
 //! file may have at any size, or lose the number of the element at fault.
 
-use super::note::{Notes, Treated};
-use super::ply_header::{Element, Encoding, Header, Kind, Property, is_corners};
-use super::ply_problem::PlyProblem;
-use super::ply_source::{Failure, Scalar, Source, Value};
-use super::polygons::Fans;
-use super::problem::shown;
-use super::read::Parsed;
-use super::validate::{self, MAX_FACES, MAX_VERTICES};
-use super::{Positions, Problem};
+use super::header::{Element, Encoding, Header, Kind, Property, is_corners};
+use super::source::{Failure, Scalar, Source, Value};
+use crate::mesh_file::Parsed;
+use crate::note::{Notes, Treated};
+use crate::polygons::Fans;
+use crate::shown::shown;
+use nearmiss::mesh::{MAX_FACES, MAX_VERTICES, PlyProblem, Positions, Problem};
 
 /// Elements without surfaces, as scanners and modellers write them: they are skipped without a
 /// note.
 const QUIET: [&str; 5] = ["edge", "material", "camera", "user", "range_grid"];
 
 /// Reads the whole file; faces keep the file's order.
-pub(super) fn read(bytes: &[u8]) -> Result<Parsed, Problem> {
+pub(crate) fn read(bytes: &[u8]) -> Result<Parsed, Problem> {
     let header = Header::read(bytes)?;
     let vertex = header.elements.iter().find(|e| e.name == "vertex").ok_or(PlyProblem::NoVertices)?;
     let mut source = Source::new(&bytes[header.size..], header.encoding);
@@ -62,7 +60,7 @@ fn promise(element: &Element<'_>, source: &Source<'_>) -> Result<(), PlyProblem>
 }
 
 fn vertices(element: &Element<'_>, source: &mut Source<'_>) -> Result<Positions, Problem> {
-    validate::count("vertices", usize::try_from(element.count).unwrap_or(usize::MAX), MAX_VERTICES)?;
+    within("vertices", element.count, MAX_VERTICES)?;
     let mut single = true;
     let mut columns = [0; 3];
     for (column, axis) in columns.iter_mut().zip(['x', 'y', 'z']) {
@@ -159,8 +157,14 @@ fn polygons(
         }
         Ok(())
     })?;
-    validate::count("triangles", faces.faces.len(), MAX_FACES)?;
+    within("triangles", faces.faces.len() as u64, MAX_FACES)?;
     Ok(faces)
+}
+
+/// Refuses more than a mesh may have, before there is a mesh.
+fn within(what: &'static str, count: u64, limit: usize) -> Result<(), Problem> {
+    let limit = limit as u64;
+    if count > limit { Err(Problem::TooMany { what, count, limit }) } else { Ok(()) }
 }
 
 /// Which part of a property a value is.

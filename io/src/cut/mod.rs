@@ -14,8 +14,9 @@ mod ears;
 mod flat;
 mod plane;
 
-use super::note::{Notes, Treated};
-use super::{Mesh, Problem};
+use crate::note::{Notes, Treated};
+use crate::polygons::Polygons;
+use nearmiss::mesh::{Positions, Problem};
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::exact::orient2d_exact;
 use nearmiss_kernels::prim::orient::{orient2d_filter, plane_of};
@@ -26,9 +27,9 @@ type Point = [f64; 2];
 /// Most corners of a face that is cut by ears.
 const MOST_CORNERS: usize = 1 << 17;
 
-/// Cuts anew every face of which the fan is wrong, and keeps its corners. As many triangles as
-/// before. A face that crosses itself keeps its fan, and is noted by [`Problem::FaceCrosses`] or
-/// [`Problem::FaceFolds`].
+/// Cuts every face again of which the fan is wrong, and keeps its corners. As many triangles as
+/// before. Every corner names a position. A face that crosses itself keeps its fan, and is noted by
+/// [`Problem::FaceCrosses`] or [`Problem::FaceFolds`].
 ///
 /// Cost: O(corners) for faces of which the fan is right. Else ears and crossings are looked for among those whose
 /// extent along a line overlaps: O(n log n) for a face that winds little, O(n^2) at worst. Combs, spirals and stars of
@@ -36,26 +37,30 @@ const MOST_CORNERS: usize = 1 << 17;
 ///
 /// # Errors
 /// [`Problem::FaceCorners`], of the first such face.
-pub(super) fn cut(mesh: &mut Mesh) -> Result<(), Problem> {
-    if mesh.polygons.is_empty() {
-        return Ok(());
-    }
-    mesh.faces.shrink_to_fit(); // room for what follows
+pub(super) fn cut(
+    positions: &Positions,
+    faces: &mut Vec<[u32; 3]>,
+    polygons: &mut Polygons,
+) -> Result<Notes, Problem> {
     let (mut corners, mut points, mut notes) = (Vec::new(), Vec::new(), Notes::default());
-    for face in 0..mesh.polygons.count(mesh.faces.len()) {
-        let triangles = mesh.polygons.triangles(face, mesh.faces.len());
+    if polygons.is_empty() {
+        return Ok(notes);
+    }
+    faces.shrink_to_fit(); // room for what follows
+    for face in 0..polygons.count(faces.len()) {
+        let triangles = polygons.triangles(face, faces.len());
         if triangles.len() < 2 {
             continue;
         }
-        mesh.polygons.corners(face, &mesh.faces, &mut corners);
+        polygons.corners(face, faces, &mut corners);
         points.clear();
-        points.extend(corners.iter().map(|&v| mesh.positions.get_f64(v as usize).unwrap_or_default()));
+        points.extend(corners.iter().map(|&v| positions.get_f64(v as usize).unwrap_or_default()));
         let names = |edge: [u32; 2]| edge.map(|corner| corners[corner as usize]);
         match polygon(&points) {
             Ok(None) => {}
             Ok(Some(ears)) => {
-                mesh.polygons.keep(face, &corners);
-                for (to, ear) in mesh.faces[triangles].iter_mut().zip(ears) {
+                polygons.keep(face, &corners);
+                for (to, ear) in faces[triangles].iter_mut().zip(ears) {
                     *to = ear.map(|corner| corners[corner as usize]);
                 }
             }
@@ -71,8 +76,7 @@ pub(super) fn cut(mesh: &mut Mesh) -> Result<(), Problem> {
             }
         }
     }
-    mesh.notes.extend(notes.of(&mesh.name));
-    Ok(())
+    Ok(notes)
 }
 
 /// What is wrong with a polygon, in its corners.

@@ -1,9 +1,8 @@
 //! What gzip has packed.
 
-use crate::Error;
-use crate::memory;
-use crate::mesh::Problem;
 use flate2::bufread::MultiGzDecoder;
+use nearmiss::mesh::Problem;
+use nearmiss::{Error, memory};
 use std::io::Read;
 
 /// The first piece that is unpacked; each next one is as long as all before it. Bytes.

@@ -1,6 +1,6 @@
 //! The scalars of a PLY body: one reader a type and an encoding, none of which allocates.
 
-use super::ply_header::Encoding;
+use super::header::Encoding;
 
 /// The scalar types of PLY.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! Encodings of text, told by the first bytes of a file.
 
-use crate::mesh::Problem;
+use nearmiss::mesh::Problem;
 
 /// The bytes without the byte order mark of UTF-8.
 ///

@@ -1,0 +1,77 @@
+//! Meshes to PLY files.
+
+use nearmiss::Error;
+use nearmiss::mesh::{Mesh, Positions};
+use std::io::{BufWriter, Write};
+use std::path::Path;
+
+/// Writes a mesh as binary little-endian PLY, floats or doubles as they are;
+/// [`MeshFile::read`](crate::MeshFile::read) gives equal vertices and triangles back, bit by bit.
+/// Replaces the file.
+///
+/// # Errors
+/// [`Error::Output`] with the operating system's words.
+pub fn write_ply(mesh: &Mesh, path: &Path) -> Result<(), Error> {
+    let write = || {
+        let mut out = BufWriter::new(std::fs::File::create(path)?);
+        encode_ply(mesh, &mut out)?;
+        out.into_inner().map_err(std::io::IntoInnerError::into_error)?;
+        Ok(())
+    };
+    write().map_err(|error: std::io::Error| Error::Output {
+        file: path.display().to_string(),
+        text: error.to_string(),
+    })
+}
+
+/// Writes the bytes of such a file to `out`, in small pieces: give a buffered writer.
+///
+/// # Errors
+/// Those of `out`.
+pub fn encode_ply(mesh: &Mesh, out: &mut impl Write) -> std::io::Result<()> {
+    encode(mesh, out, |_| None)
+}
+
+/// The same with a colour a triangle: `red`, `green` and `blue` of the element `face`, as viewers of PLY know them.
+///
+/// # Errors
+/// [`std::io::ErrorKind::InvalidInput`] unless there are as many colours as triangles; those of `out`.
+pub fn encode_ply_coloured(mesh: &Mesh, out: &mut impl Write, colours: &[[u8; 3]]) -> std::io::Result<()> {
+    if colours.len() != mesh.face_count() {
+        let text = format!("{} colours for {} triangles: give one each", colours.len(), mesh.face_count());
+        return Err(std::io::Error::new(std::io::ErrorKind::InvalidInput, text));
+    }
+    encode(mesh, out, |face| Some(colours[face]))
+}
+
+/// Writes the header, the points and the faces, each with its colour if it has one: all have, or none.
+fn encode(
+    mesh: &Mesh,
+    out: &mut impl Write,
+    colour: impl Fn(usize) -> Option<[u8; 3]>,
+) -> std::io::Result<()> {
+    let kind = if mesh.positions().is_f64() { "double" } else { "float" };
+    write!(out, "ply\nformat binary_little_endian 1.0\nelement vertex {}\n", mesh.vertex_count())?;
+    for axis in ['x', 'y', 'z'] {
+        writeln!(out, "property {kind} {axis}")?;
+    }
+    write!(out, "element face {}\nproperty list uchar uint vertex_indices\n", mesh.face_count())?;
+    if mesh.face_count() > 0 && colour(0).is_some() {
+        ["red", "green", "blue"].iter().try_for_each(|name| writeln!(out, "property uchar {name}"))?;
+    }
+    out.write_all(b"end_header\n")?;
+    match mesh.positions() {
+        Positions::F32(points) => {
+            points.iter().flatten().try_for_each(|x| out.write_all(&x.to_le_bytes()))?
+        }
+        Positions::F64(points) => {
+            points.iter().flatten().try_for_each(|x| out.write_all(&x.to_le_bytes()))?
+        }
+    }
+    for (at, face) in mesh.faces().iter().enumerate() {
+        out.write_all(&[3])?;
+        face.iter().try_for_each(|index| out.write_all(&index.to_le_bytes()))?;
+        colour(at).map_or(Ok(()), |colour| out.write_all(&colour))?;
+    }
+    Ok(())
+}
