@@ -13,14 +13,17 @@ use crate::prim::isolate::separation::{Double, Single};
 use crate::queue::worker;
 use crate::sort;
 use crate::stage::construct::{cuts, graft, morton, tile_filters, tree, treelet};
+use crate::stage::fit::{leaves as fit_of_leaves, rims, tiles as fit_of_tiles};
 use crate::stage::narrow::discrete::{Start, Still};
 use crate::stage::narrow::features::{Moves, Rests};
 use crate::stage::narrow::{
     below_precision, climb, cull, discrete, features, near, nearest, separate, slice, solve,
 };
 use crate::stage::refit::{bottom_up, levels, tiles as refit_of_tiles, treelets};
-use crate::stage::traverse::{front, nearest as nearest_first, queue, steal};
-use crate::stage::{balance, fit as fitting, order, place, status, traverse};
+use crate::stage::traverse::{
+    front, nearest as nearest_first, per_leaf, queue, steal, tile_triangles, tiles as tile_pairs,
+};
+use crate::stage::{balance, order, place, status};
 use bytemuck::NoUninit;
 use core::marker::PhantomData;
 use name::{Name, precision};
@@ -358,27 +361,27 @@ kernels_of_volumes! {
         construct_graft: graft::graft::<V, B>, [GraftArgs<V>], WIDE, 0;
         refit_levels: levels::levels::<V, B>, [RefitArgs<V>], WIDE, 0;
         refit_bottom_up: bottom_up::bottom_up::<V, B>, [BottomUpArgs<V>], WIDE, 0;
-        traverse_leaves: traverse::leaves::<V, B>, [TraverseArgs<V>], NARROW, traverse::shared_bytes(NARROW);
-        traverse_units: traverse::units::<V, B>, [TraverseArgs<V>], NARROW, traverse::shared_bytes(NARROW);
-        traverse_within: nearest_first::within::<V, B>, [TraverseArgs<V>], NARROW, traverse::shared_bytes(NARROW);
+        traverse_leaves: per_leaf::leaves::<V, B>, [TraverseArgs<V>], NARROW, per_leaf::shared_bytes(NARROW);
+        traverse_units: per_leaf::units::<V, B>, [TraverseArgs<V>], NARROW, per_leaf::shared_bytes(NARROW);
+        traverse_within: nearest_first::within::<V, B>, [TraverseArgs<V>], NARROW, per_leaf::shared_bytes(NARROW);
         traverse_front: front::front::<V, B>, [FrontArgs<V>], WIDE, 0;
         traverse_queue: queue::queue::<V, B>, [QueueArgs<V>], NARROW, worker::shared_bytes(NARROW);
         traverse_steal: steal::steal::<V, B>, [StealArgs<V>], NARROW, worker::shared_bytes(NARROW);
-        traverse_tiles: traverse::tiles::pairs::<false, V, B>, [TilePairsArgs<V>], traverse::tiles::LANES, traverse::tiles::SHARED, exact = true;
-        traverse_tiles_before: traverse::tiles::pairs::<true, V, B>, [TilePairsArgs<V>], traverse::tiles::LANES, traverse::tiles::SHARED, exact = true;
-        traverse_triangles: traverse::tile_triangles::triangles::<false, V, B>, [TileTrianglesArgs<V>], traverse::tile_triangles::LANES, traverse::tile_triangles::shared_bytes::<V>(), exact = true;
-        traverse_triangles_before: traverse::tile_triangles::triangles::<true, V, B>, [TileTrianglesArgs<V>], traverse::tile_triangles::LANES, traverse::tile_triangles::shared_bytes::<V>(), exact = true;
+        traverse_tiles: tile_pairs::pairs::<false, V, B>, [TilePairsArgs<V>], tile_pairs::LANES, tile_pairs::SHARED, exact = true;
+        traverse_tiles_before: tile_pairs::pairs::<true, V, B>, [TilePairsArgs<V>], tile_pairs::LANES, tile_pairs::SHARED, exact = true;
+        traverse_triangles: tile_triangles::triangles::<false, V, B>, [TileTrianglesArgs<V>], tile_triangles::LANES, tile_triangles::shared_bytes::<V>(), exact = true;
+        traverse_triangles_before: tile_triangles::triangles::<true, V, B>, [TileTrianglesArgs<V>], tile_triangles::LANES, tile_triangles::shared_bytes::<V>(), exact = true;
         refit_tiles: refit_of_tiles::tiles::<V, B>, [RefitTilesArgs<V>], refit_of_tiles::LANES, refit_of_tiles::shared_bytes::<V>(), exact = true;
     }
     each {
         traverse_sample: nearest_first::sample::<R, V, B>, [NearestArgs<R, V>], NARROW, 0;
-        fit: fitting::fit::<R, V, B>, [FitArgs<R, V>], WIDE, 0;
-        fit_tiles: fitting::tiles::tiles::<R, V, B>, [FitTilesArgs<R, V>], fitting::tiles::LANES, fitting::tiles::shared_bytes::<V>(), exact = true;
-        fit_rims: fitting::rims::rims::<R, V, B>, [RimsArgs<R, V>], WIDE, 0;
+        fit: fit_of_leaves::fit::<R, V, B>, [FitArgs<R, V>], WIDE, 0;
+        fit_tiles: fit_of_tiles::tiles::<R, V, B>, [FitTilesArgs<R, V>], fit_of_tiles::LANES, fit_of_tiles::shared_bytes::<V>(), exact = true;
+        fit_rims: rims::rims::<R, V, B>, [RimsArgs<R, V>], WIDE, 0;
         refit_treelets: treelets::treelets::<R, V, B>, [TreeletsArgs<R, V>], WIDE, treelets::shared_bytes::<V>();
     }
     groups {
-        fit_groups: fitting::groups::<R, V, B>, [GroupsArgs<R, V>], NARROW, 0;
+        fit_groups: fit_of_leaves::groups::<R, V, B>, [GroupsArgs<R, V>], NARROW, 0;
     }
 }
 

@@ -18,23 +18,28 @@ pub const OUTSIZED: u32 = KEYS + 2;
 /// A tile that has one has its box; so they have tiles of their own.
 const ABOVE: u64 = 5;
 
+/// A mesh: where its vertices are, and its faces.
+#[derive(Clone, Copy)]
+pub struct Mesh<'a, R: Real> {
+    /// Positions of the vertices.
+    pub frames: &'a Positions<R>,
+    /// Vertex indices of every triangle.
+    pub faces: Span<[u32; 3]>,
+}
+
 /// The corners of a triangle at t = 0.
-fn corners<R: Real, L: Lane>(
-    l: &L,
-    (frames, faces): (&Positions<R>, Span<[u32; 3]>),
-    triangle: u32,
-) -> [Vec3<f64>; 3] {
+fn corners<R: Real, L: Lane>(lane: &L, mesh: Mesh<R>, triangle: u32) -> [Vec3<f64>; 3] {
     let start = |v: u32| {
-        let moving = frames.moving;
-        if moving.is_empty() { l.read(frames.still, v).at } else { l.read(moving, v).t0.at }
+        let moving = mesh.frames.moving;
+        if moving.is_empty() { lane.read(mesh.frames.still, v).at } else { lane.read(moving, v).t0.at }
     };
-    l.read(faces, triangle).map(|v| start(v).wide())
+    lane.read(mesh.faces, triangle).map(|v| start(v).wide())
 }
 
 /// The centre of a triangle, in f64: any point near it would do, but all machines must choose the same.
 #[inline(always)]
-pub fn centre<R: Real, L: Lane>(l: &L, mesh: (&Positions<R>, Span<[u32; 3]>), triangle: u32) -> Vec3<f64> {
-    middle(corners(l, mesh, triangle))
+pub fn centre<R: Real, L: Lane>(lane: &L, mesh: Mesh<R>, triangle: u32) -> Vec3<f64> {
+    middle(corners(lane, mesh, triangle))
 }
 
 #[inline(always)]
@@ -62,13 +67,8 @@ impl Extent {
 
     /// With a triangle: its centre, and its size where that `counts`.
     #[inline(always)]
-    pub fn add<R: Real, L: Lane>(
-        &mut self,
-        l: &L,
-        mesh: (&Positions<R>, Span<[u32; 3]>),
-        (triangle, counts): (u32, bool),
-    ) {
-        let corners = corners(l, mesh, triangle);
+    pub fn add<R: Real, L: Lane>(&mut self, lane: &L, mesh: Mesh<R>, triangle: u32, counts: bool) {
+        let corners = corners(lane, mesh, triangle);
         let c = middle(corners);
         for k in 0..3 {
             let key = ordered::key(c[k]);
@@ -82,24 +82,24 @@ impl Extent {
 
     /// One word, told to all.
     #[inline(always)]
-    fn tell_word<L: Lane>(l: &L, (extents, at): (Span<u64>, u32), (k, word): (u32, u64)) {
+    fn report_word<L: Lane>(lane: &L, extents: Span<u64>, at: u32, k: u32, word: u64) {
         if k < KEYS {
-            l.fetch_max(extents, at + k, word);
+            lane.fetch_max(extents, at + k, word);
         } else if word > 0 {
-            l.fetch_add(extents, at + k, word);
+            lane.fetch_add(extents, at + k, word);
         }
     }
 
     /// A lane's, told to all.
     #[inline(always)]
-    pub fn tell<L: Lane>(&self, l: &L, to: (Span<u64>, u32)) {
-        (0..GATHERED).for_each(|k| Self::tell_word(l, to, (k, self.0[k as usize])));
+    pub fn report<L: Lane>(&self, lane: &L, extents: Span<u64>, at: u32) {
+        (0..GATHERED).for_each(|k| Self::report_word(lane, extents, at, k, self.0[k as usize]));
     }
 
-    /// A lane's, for [`tell_together`].
+    /// A lane's, for [`report_together`].
     #[inline(always)]
-    pub fn put<L: Lane>(&self, l: &L, lanes: u32, best: Shared<u64>) {
-        (0..GATHERED).for_each(|k| l.put(best, k * lanes + l.lane(), self.0[k as usize]));
+    pub fn put<L: Lane>(&self, lane: &L, lanes: u32, best: Shared<u64>) {
+        (0..GATHERED).for_each(|k| lane.put(best, k * lanes + lane.lane(), self.0[k as usize]));
     }
 }
 
@@ -109,62 +109,64 @@ pub const fn shared_bytes(lanes: u32) -> u32 {
 }
 
 /// For what the lanes of a block have put there.
-pub fn gathered<B: Block>(b: &mut B) -> Shared<u64> {
-    b.shared(GATHERED * b.lanes())
+pub fn gathered<B: Block>(block: &mut B) -> Shared<u64> {
+    block.shared(GATHERED * block.lanes())
 }
 
 /// What all lanes have put, told to all as one: it lies at a place of `extents`.
-pub fn tell_together<B: Block>(b: &mut B, best: Shared<u64>, to: (Span<u64>, u32)) {
-    let lanes = b.lanes();
+pub fn report_together<B: Block>(block: &mut B, best: Shared<u64>, extents: Span<u64>, at: u32) {
+    let lanes = block.lanes();
     let mut width = lanes;
     while width > 1 {
         let half = width.div_ceil(2);
-        b.phase(|l| {
-            let other = l.lane() + half;
+        block.phase(|lane| {
+            let other = lane.lane() + half;
             if other < width {
                 for k in 0..GATHERED {
-                    let at = k * lanes + l.lane();
-                    let (one, two) = (l.get(best, at), l.get(best, at + half));
-                    l.put(best, at, if k < KEYS { one.max(two) } else { one + two });
+                    let at = k * lanes + lane.lane();
+                    let (one, two) = (lane.get(best, at), lane.get(best, at + half));
+                    lane.put(best, at, if k < KEYS { one.max(two) } else { one + two });
                 }
             }
         });
         width = half;
     }
-    b.phase(|l| {
-        let words = (l.lane()..GATHERED).step_by(lanes as usize);
-        words.for_each(|k| Extent::tell_word(l, to, (k, l.get(best, k * lanes))));
+    block.phase(|lane| {
+        let words = (lane.lane()..GATHERED).step_by(lanes as usize);
+        words.for_each(|k| Extent::report_word(lane, extents, at, k, lane.get(best, k * lanes)));
     });
 }
 
 /// The extents of things that each have a stretch of `count` items: what a block looks at together is of one as a rule. `which` thing an
 /// item is of; `add` adds it, and its size if it is there for the first time, and says of which thing it is. Each has so many `words`.
 pub fn of_each<B: Block>(
-    b: &mut B,
-    (extents, words, count): (Span<u64>, u32, u32),
+    block: &mut B,
+    extents: Span<u64>,
+    words: u32,
+    count: u32,
     which: impl Fn(&B, u32) -> u32,
-    add: impl Fn(&B::Lane, &mut Extent, (u32, bool)) -> u32,
+    add: impl Fn(&B::Lane, &mut Extent, u32, bool) -> u32,
 ) {
-    let (best, lanes) = (gathered(b), b.lanes());
-    let mut first = b.block() * lanes;
+    let (best, lanes) = (gathered(block), block.lanes());
+    let mut first = block.block() * lanes;
     while first < count {
         let last = (count - 1).min(first + lanes - 1);
-        let [from, to] = [first, last].map(|i| which(b, i));
-        b.phase(|l| {
-            let i = first + l.lane();
+        let [from, to] = [first, last].map(|i| which(block, i));
+        block.phase(|lane| {
+            let i = first + lane.lane();
             let mut extent = Extent::NONE;
             // Beyond the end the last one, again: it changes no maximum.
-            let of = add(l, &mut extent, (i.min(last), i <= last));
+            let of = add(lane, &mut extent, i.min(last), i <= last);
             if from == to {
-                extent.put(l, lanes, best);
+                extent.put(lane, lanes, best);
             } else {
-                extent.tell(l, (extents, words * of));
+                extent.report(lane, extents, words * of);
             }
         });
         if from == to {
-            tell_together(b, best, (extents, words * from));
+            report_together(block, best, extents, words * from);
         }
-        first = first.saturating_add(b.blocks() * lanes);
+        first = first.saturating_add(block.blocks() * lanes);
     }
 }
 
@@ -215,10 +217,6 @@ pub fn outsized_from(at: u32, read: impl Fn(u32) -> u64) -> u64 {
 
 /// Whether a triangle is.
 #[inline(always)]
-pub fn is_outsized<R: Real, L: Lane>(
-    l: &L,
-    mesh: (&Positions<R>, Span<[u32; 3]>),
-    (triangle, from): (u32, u64),
-) -> bool {
-    exponent(corners(l, mesh, triangle)) >= from
+pub fn is_outsized<R: Real, L: Lane>(lane: &L, mesh: Mesh<R>, triangle: u32, from: u64) -> bool {
+    exponent(corners(lane, mesh, triangle)) >= from
 }

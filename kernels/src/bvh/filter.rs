@@ -11,11 +11,11 @@ use crate::exec::Lane;
 impl FilterArgs {
     /// The filter of a node; that of a body tested against itself where the scene has no filters.
     #[inline(always)]
-    pub fn of<L: Lane>(&self, l: &L, node: u32) -> NodeFilter {
+    pub fn of<L: Lane>(&self, lane: &L, node: u32) -> NodeFilter {
         if self.nodes.is_empty() {
             NodeFilter { who: SELF_CONTACT, ..NodeFilter::default() }
         } else {
-            l.read(self.nodes, node)
+            lane.read(self.nodes, node)
         }
     }
 
@@ -24,7 +24,7 @@ impl FilterArgs {
     /// What it refuses for two nodes it refuses for all below them: environments are ranges of leaves, of which those below a
     /// node are some, and a hub of a node is one of all below it.
     #[inline(always)]
-    pub fn allows<L: Lane>(&self, l: &L, p: NodeFilter, q: NodeFilter) -> bool {
+    pub fn allows<L: Lane>(&self, lane: &L, p: NodeFilter, q: NodeFilter) -> bool {
         if self.nodes.is_empty() {
             return true;
         }
@@ -41,7 +41,7 @@ impl FilterArgs {
         if !together | mixed | self.bodies.is_empty() {
             return together;
         }
-        let [p, q] = [p, q].map(|filter| l.read(self.bodies, filter.who & NodeFilter::NUMBER));
+        let [p, q] = [p, q].map(|filter| lane.read(self.bodies, filter.who & NodeFilter::NUMBER));
         (p.group & q.mask != 0) & (q.group & p.mask != 0)
     }
 }

@@ -14,8 +14,8 @@ pub struct Horizon(f32);
 impl Horizon {
     /// By the bits of a time that is known, of an earlier launch: those of no number where none is, or no memory.
     #[inline(always)]
-    pub fn of<B: Block>(b: &B, known: Span<u64>) -> Horizon {
-        Horizon::behind(if known.is_empty() { f64::NAN } else { f64::from_bits(b.load(known, 0)) })
+    pub fn of<B: Block>(block: &B, known: Span<u64>) -> Horizon {
+        Horizon::behind(if known.is_empty() { f64::NAN } else { f64::from_bits(block.load(known, 0)) })
     }
     /// Behind a time.
     #[inline(always)]

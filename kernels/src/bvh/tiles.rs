@@ -145,8 +145,8 @@ pub fn check<V: Volume>(
         }
     }
     (0..levels.count).try_for_each(|level| {
-        check_level(tiles, (level, 0), &whose)?;
-        check_level(tiles, (level, 1), &whose)
+        check_level(tiles, level, 0, &whose)?;
+        check_level(tiles, level, 1, &whose)
     })
 }
 
@@ -181,7 +181,8 @@ pub fn check_held<V: Contain>(
 /// Checks the nodes of a level above a part.
 fn check_level<V: Volume>(
     tiles: &Tiles<V>,
-    (level, at): (u32, usize),
+    level: u32,
+    at: usize,
     whose: &impl Fn(u32) -> NodeFilter,
 ) -> Result<(), Violation> {
     let Tiles { levels, triangles, leaves, nodes, filters, axes } = *tiles;

@@ -78,22 +78,22 @@ pub struct Buffer {
 impl Buffer {
     /// Asks for places of `count` pairs: the first of them, which may lie past the end.
     #[inline]
-    pub fn take<L: Lane>(&self, l: &L, count: u32) -> u32 {
-        l.shared_add(self.fill, 0, count)
+    pub fn take<L: Lane>(&self, lane: &L, count: u32) -> u32 {
+        lane.shared_add(self.fill, 0, count)
     }
     /// Puts a pair in its place; false when that lies past the end.
     #[inline]
-    pub fn put<L: Lane>(&self, l: &L, place: u32, pair: Pair) -> bool {
+    pub fn put<L: Lane>(&self, lane: &L, place: u32, pair: Pair) -> bool {
         let room = place < self.pairs.len;
         if room {
-            l.put(self.pairs, place, [pair.a, pair.b]);
+            lane.put(self.pairs, place, [pair.a, pair.b]);
         }
         room
     }
     /// A pair that was put in.
     #[inline]
-    pub fn get<L: Lane>(&self, l: &L, i: u32) -> Pair {
-        let [a, b] = l.get(self.pairs, i);
+    pub fn get<L: Lane>(&self, lane: &L, i: u32) -> Pair {
+        let [a, b] = lane.get(self.pairs, i);
         Pair { a, b }
     }
 }

@@ -1,0 +1,34 @@
+//! # Traverse: volumes → candidates, the pairs of triangles for the narrow phase
+//!
+//! Every walk lists the same set, up to order:
+//! `pairs = {(a, b) : a < b, volumes overlap, filters allow, no common vertex}`.
+//! With [`KEEP_ADJACENT`](crate::abi::TraverseFlags::KEEP_ADJACENT) pairs with a common vertex stay.
+//!
+//! | file | broad phase | used | source |
+//! | --- | --- | --- | --- |
+//! | [`tiles`], [`tile_triangles`] | tiles | **the default** (1) | not in the paper |
+//! | [`per_leaf`] | trees | default of trees on a CPU; on a GPU of `Aabb` (2) | Karras 2012 |
+//! | [`queue`] | trees | default of trees on a GPU, other volumes (2) | section 6.2 |
+//! | [`steal`] | trees | on request | departs from section 6.2 |
+//! | [`front`] | trees | on request | section 6.2.6 |
+//! | [`nearest`] | trees | every distance query, and no other | section 6.2; Larsen 1999 |
+//!
+//! Sections are those of Lauterbach's thesis, see [`crate::stage`].
+//!
+//! 1. Tiles answer every query except distance, on every machine, with volumes `Aabb` and `Linear`.
+//!    Only tiles take a sample, which gives an earliest query its bound (the entries `…_before`).
+//!    Only tiles divide work among devices, leave out fans by their rims, and have a chosen order.
+//! 2. Trees are used if the caller chooses trees, a refit or a walk of trees. They are the default
+//!    for oriented boxes, whose merges into tiles are loose.
+//!
+//! On a GPU the walk by leaves has a budget of steps. A longer walk spills the rest of its stack, and
+//! [`per_leaf::units`] continues it. On a CPU no walk spills. `Queue` and `Steal` hold pairs of nodes,
+//! which saves tests of costly volumes.
+
+pub mod front;
+pub mod nearest;
+pub mod per_leaf;
+pub mod queue;
+pub mod steal;
+pub mod tile_triangles;
+pub mod tiles;
