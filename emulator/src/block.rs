@@ -11,7 +11,8 @@ use std::mem::MaybeUninit;
 use std::ptr::with_exposed_provenance_mut;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed, Ordering::SeqCst, fence};
 
-/// Who looks on: [`Looking`](crate::engine::Looking) or a [`BlockObserver`](crate::observer::BlockObserver).
+/// Who looks on: [`Looking`](crate::engine::Looking) or a
+/// [`BlockObserver`](crate::observer::BlockObserver).
 pub trait Watch: Copy {
     /// The lanes of a phase, in their order.
     fn lanes(&self, count: u32, phase: u32, body: impl FnMut(u32));
@@ -102,8 +103,8 @@ impl<W: Watch> EmulatedLane<W> {
     #[inline(always)]
     fn atomic(&self, access: Access, span: Span<u64>, i: u32) -> Option<&AtomicU64> {
         self.watch.draws();
-        // SAFETY: inside a span of live, aligned device memory (kernels stay inside; the sanitizer and debug builds
-        // check it), touched only atomically while others may touch it.
+        // SAFETY: inside a span of live, aligned device memory (kernels stay inside; the sanitizer
+        // and debug builds check it), touched only atomically while others may touch it.
         device(&self.watch, access, span, i, self.place).map(|p| unsafe { AtomicU64::from_ptr(p) })
     }
 }
@@ -120,8 +121,8 @@ impl<W: Watch> Lane for EmulatedLane<W> {
     #[inline(always)]
     fn read<T: Pod>(&self, span: Span<T>, i: u32) -> T {
         match device(&self.watch, Access::Read, span, i, self.place) {
-            // SAFETY: inside a span of live, aligned, initialised memory, and nobody writes it in this phase: rules of
-            // `Lane`, checked by the sanitizer.
+            // SAFETY: inside a span of live, aligned, initialised memory, and nobody writes it in
+            // this phase: rules of `Lane`, checked by the sanitizer.
             Some(p) => unsafe { p.read() },
             None => T::zeroed(),
         }
@@ -200,7 +201,8 @@ impl<W: Watch> Lane for EmulatedLane<W> {
     }
     #[inline(always)]
     fn get<T: Word>(&self, words: Shared<T>, i: u32) -> T {
-        // SAFETY: inside the block's words (checked as for device memory), which only this thread touches.
+        // SAFETY: inside the block's words (checked as for device memory), which only this thread
+        // touches.
         self.word(Access::Read, words, i).map_or(T::zeroed(), |p| unsafe { p.read() })
     }
     #[inline(always)]

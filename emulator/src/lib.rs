@@ -1,4 +1,5 @@
-//! The GPU, emulated: as an engine (all cores, no checks) or as a sanitizer (any order, every access watched).
+//! The GPU, emulated: as an engine (all cores, no checks) or as a sanitizer (any order, every
+//! access watched).
 
 mod block;
 mod coherent;
@@ -64,26 +65,30 @@ pub enum Error {
 /// How the emulator runs.
 #[derive(Clone, Copy, Debug, Default)]
 pub enum Mode {
-    /// Blocks in parallel on all cores, lanes in order, nothing watched. What people without a GPU use.
+    /// Blocks in parallel on all cores, lanes in order, nothing watched. What people without a GPU
+    /// use.
     #[default]
     Engine,
-    /// One block after the other, each to its end, blocks and lanes in the given order (or interleaved, see
-    /// [`Emulator::with_interleave`]); races, bounds, unwritten memory and waits without end are watched.
+    /// One block after the other, each to its end, blocks and lanes in the given order (or
+    /// interleaved, see [`Emulator::with_interleave`]); races, bounds, unwritten memory and waits
+    /// without end are watched.
     Sanitizer(Order),
 }
 
-/// Whether this is the process that first started threads: one that was forked since has none of them, and would wait for ever.
+/// Whether this is the process that first started threads: one that was forked since has none of
+/// them, and would wait for ever.
 fn has_threads() -> Result<(), Error> {
     static STARTED_BY: OnceLock<u32> = OnceLock::new();
     let own = std::process::id();
     if *STARTED_BY.get_or_init(|| own) == own { Ok(()) } else { Err(Error::Forked) }
 }
 
-/// Starts the threads that all of a program shares, where they do not run yet: else the first to need them would panic where they
-/// cannot be started.
+/// Starts the threads that all of a program shares, where they do not run yet: else the first to
+/// need them would panic where they cannot be started.
 ///
 /// # Errors
-/// [`Error::Threads`]; the same each time, as they are started once. [`Error::Forked`] in a process that was forked since.
+/// [`Error::Threads`]; the same each time, as they are started once. [`Error::Forked`] in a process
+/// that was forked since.
 pub fn start_threads() -> Result<(), Error> {
     has_threads()?;
     static STARTED: OnceLock<Result<(), String>> = OnceLock::new();
@@ -107,7 +112,8 @@ impl Emulator {
     /// An engine on `threads` threads, or on all cores; or a sanitizer, always on one thread.
     ///
     /// # Errors
-    /// [`Error::Threads`] when the threads cannot be started; [`Error::Forked`] in a process that was forked after some were.
+    /// [`Error::Threads`] when the threads cannot be started; [`Error::Forked`] in a process that
+    /// was forked after some were.
     pub fn new(mode: Mode, threads: Option<usize>) -> Result<Self, Error> {
         has_threads()?;
         let pool = match threads {
@@ -127,14 +133,16 @@ impl Emulator {
         Ok(Emulator { pool, sanitizer, lanes: None })
     }
 
-    /// The same emulator with blocks of another size, but for kernels that have an exact one: answers must not depend on it.
+    /// The same emulator with blocks of another size, but for kernels that have an exact one:
+    /// answers must not depend on it.
     pub fn with_lanes(self, lanes: u32) -> Self {
         Emulator { lanes: Some(lanes), ..self }
     }
 
-    /// The same sanitizer, with blocks that interleave: up to 64 run at once, one of them moves at a time, and at the
-    /// ends of phases and at some accesses that blocks may share (atomics, gives, takes) another goes on, drawn by the
-    /// seed. For kernels whose blocks work together in a launch. Cost: microseconds a change. The engine is as it was.
+    /// The same sanitizer, with blocks that interleave: up to 64 run at once, one of them moves at
+    /// a time, and at the ends of phases and at some accesses that blocks may share (atomics,
+    /// gives, takes) another goes on, drawn by the seed. For kernels whose blocks work together in
+    /// a launch. Cost: microseconds a change. The engine is as it was.
     pub fn with_interleave(self, seed: u64) -> Self {
         let sanitizer = self.sanitizer.map(|sanitizer| Sanitizer::new(sanitizer.order(), Some(seed)));
         Emulator { sanitizer, ..self }
@@ -183,15 +191,17 @@ impl Emulator {
     /// When the kernel does.
     ///
     /// # Safety
-    /// The spans of `args` are of this emulator's [`Memory`], which lives until the launch returns and which no other thread
-    /// touches meanwhile, and what the kernel's card asks under "Before" holds.
+    /// The spans of `args` are of this emulator's [`Memory`], which lives until the launch returns
+    /// and which no other thread touches meanwhile, and what the kernel's card asks under "Before"
+    /// holds.
     pub unsafe fn launch<E: Entry>(
         &self,
         blocks: u32,
         args: &E::Args,
         interrupt: Option<&Interrupt>,
     ) -> Result<(), Error> {
-        // A constant for each kernel, so that one of the table is not compiled again where it is launched.
+        // A constant for each kernel, so that one of the table is not compiled again where it is
+        // launched.
         if const { E::PLACE.is_some() } {
             let place = E::PLACE.unwrap_or_default();
             // SAFETY: the caller's promise.
@@ -252,7 +262,8 @@ pub struct Memory {
     len: usize,
 }
 
-// SAFETY: an allocation like a Box; all access goes through the owner or through kernels under the rules of `Lane`.
+// SAFETY: an allocation like a Box; all access goes through the owner or through kernels under the
+// rules of `Lane`.
 unsafe impl Send for Memory {}
 // SAFETY: as above.
 unsafe impl Sync for Memory {}
@@ -277,8 +288,9 @@ impl Memory {
     /// The first `bytes` bytes.
     pub fn as_slice(&self, bytes: usize) -> &[u8] {
         assert!(bytes <= self.bytes());
-        // SAFETY: within the allocation, initialised from the start, and no kernel writes while the host reads
-        // (launches end before they return, and no other thread touches a launch's memory: `Device::launch`).
+        // SAFETY: within the allocation, initialised from the start, and no kernel writes while the
+        // host reads (launches end before they return, and no other thread touches a launch's
+        // memory: `Device::launch`).
         unsafe { std::slice::from_raw_parts(self.start.as_ptr().cast(), bytes) }
     }
     /// The first `bytes` bytes, to write.

@@ -6,7 +6,8 @@ use nearmiss_kernels::exec::RowMap;
 /// Rows that are mapped side by side: two vectors of f32 on most machines, or one.
 const WIDTH: usize = 16;
 
-/// Rows by columns, [`WIDTH`] at a time: number `k` of row `i` is `columns[i / WIDTH * NUMBERS + k][i % WIDTH]`.
+/// Rows by columns, [`WIDTH`] at a time: number `k` of row `i` is
+/// `columns[i / WIDTH * NUMBERS + k][i % WIDTH]`.
 pub struct Rows<'a, M: RowMap> {
     columns: &'a mut [[M::Number; WIDTH]],
 }

@@ -1,11 +1,14 @@
-//! The sanitizer: a shadow of every word of memory, so that races, strays and unwritten reads are seen.
+//! The sanitizer: a shadow of every word of memory, so that races, strays and unwritten reads are
+//! seen.
 //!
-//! Two accesses to a word, one of them a plain write, are a race when nothing orders them: other blocks of the same
-//! launch, or other lanes of the same block in the same phase. Atomic accesses, relaxed stores and loads may meet each other; one
-//! of them and a plain access are a race when one of the two writes. Whether flags and fences order what is given and
-//! taken is not watched: answers that differ from order to order show it.
+//! Two accesses to a word, one of them a plain write, are a race when nothing orders them: other
+//! blocks of the same launch, or other lanes of the same block in the same phase. Atomic accesses,
+//! relaxed stores and loads may meet each other; one of them and a plain access are a race when one
+//! of the two writes. Whether flags and fences order what is given and taken is not watched:
+//! answers that differ from order to order show it.
 //!
-//! Blocks run one after the other, each to its end, in the sanitizer's order; or interleaved (see `turns`).
+//! Blocks run one after the other, each to its end, in the sanitizer's order; or interleaved (see
+//! `turns`).
 
 use crate::Error;
 use crate::Order;
@@ -18,8 +21,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// What unwritten memory holds.
 pub const POISON: u8 = 0xcb;
 
-/// So many looks of a launch at device memory, between which no block changed it, are a wait for what nobody does.
-/// Lanes that poll while others work look some thousands of times.
+/// So many looks of a launch at device memory, between which no block changed it, are a wait for
+/// what nobody does. Lanes that poll while others work look some thousands of times.
 const LOOKS: u32 = 1 << 20;
 
 /// How a lane touches memory.
@@ -108,7 +111,8 @@ struct Seen {
 }
 
 impl Sanitizer {
-    /// A sanitizer that runs blocks and lanes in that order; with a seed, blocks start in that order and interleave.
+    /// A sanitizer that runs blocks and lanes in that order; with a seed, blocks start in that
+    /// order and interleave.
     pub fn new(order: Order, interleave: Option<u64>) -> Self {
         Sanitizer { order, interleave, seen: Mutex::default() }
     }
@@ -165,7 +169,8 @@ impl Sanitizer {
     pub(crate) fn changed(&self) {
         self.seen().looks = 0;
     }
-    /// An access to device memory; false where there is none. Stops the launch where it waits for what nobody does.
+    /// An access to device memory; false where there is none. Stops the launch where it waits for
+    /// what nobody does.
     pub(crate) fn see(&self, access: Access, addr: u64, bytes: usize, inside: bool, place: Place) -> bool {
         let mut seen = self.seen();
         let Seen { launches, fault, looks, device, .. } = &mut *seen;

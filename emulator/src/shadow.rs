@@ -1,9 +1,10 @@
-//! The shadow of a word of four bytes: who touched it last, and who of those is unordered with the next.
+//! The shadow of a word of four bytes: who touched it last, and who of those is unordered with the
+//! next.
 
 use crate::sanitizer::{Access, Fault, Place};
 
-/// Two accesses of a kind such that whoever races with any access of that kind races with one of the two: of two
-/// blocks where there were two, else of two lanes in the last phase.
+/// Two accesses of a kind such that whoever races with any access of that kind races with one of
+/// the two: of two blocks where there were two, else of two lanes in the last phase.
 #[derive(Clone, Copy, Default)]
 struct Pair(Option<Place>, Option<Place>);
 

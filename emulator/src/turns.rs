@@ -1,10 +1,12 @@
-//! Blocks that interleave: each runs on a thread of its own, and moves only while it has the turn. It passes the
-//! turn on at the end of each phase and reservation, and at some atomics, relaxed stores and loads; a seed says to whom. Some
-//! blocks are quick and some are slow, up to 256 times: where all went at one pace, a block that is far behind or far
-//! ahead of the others, which is what finds mistakes, would hardly be seen.
+//! Blocks that interleave: each runs on a thread of its own, and moves only while it has the turn.
+//! It passes the turn on at the end of each phase and reservation, and at some atomics, relaxed
+//! stores and loads; a seed says to whom. Some blocks are quick and some are slow, up to 256 times:
+//! where all went at one pace, a block that is far behind or far ahead of the others, which is what
+//! finds mistakes, would hardly be seen.
 //!
-//! At most [`SLOTS`] blocks run at once, as on a GPU: the next one starts where one ends. So what a launch does is a
-//! matter of its seed alone, and blocks that all wait for one that has not started wait for ever.
+//! At most [`SLOTS`] blocks run at once, as on a GPU: the next one starts where one ends. So what a
+//! launch does is a matter of its seed alone, and blocks that all wait for one that has not started
+//! wait for ever.
 
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
@@ -85,7 +87,8 @@ impl State {
 }
 
 impl TurnScheduler {
-    /// Runs those blocks, which start in that order; `run` is given the block, the scheduler and the block's slot.
+    /// Runs those blocks, which start in that order; `run` is given the block, the scheduler and
+    /// the block's slot.
     pub fn run(blocks: Vec<u32>, seed: u64, run: impl Fn(u32, &TurnScheduler, usize) + Sync) {
         let slots = blocks.len().min(SLOTS);
         if slots == 0 {

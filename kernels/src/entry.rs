@@ -1,5 +1,5 @@
-//! The kernel table: one line an entry, or one for an entry of every volume. The PTX entries and the host's list come from the
-//! same line.
+//! The kernel table: one line an entry, or one for an entry of every volume. The PTX entries and
+//! the host's list come from the same line.
 
 mod name;
 
@@ -40,7 +40,8 @@ pub trait Entry: 'static {
     const EXACT: bool = false;
     /// Bytes of shared memory of a block.
     const SHARED: u32;
-    /// Most registers of a lane: fewer than the compiler would take, so that more warps are resident. None is as many as it wants.
+    /// Most registers of a lane: fewer than the compiler would take, so that more warps are
+    /// resident. None is as many as it wants.
     const REGISTERS: Option<u32> = None;
     /// Its place in [`TABLE`]; none of kernels that are not in it, as tests have.
     const PLACE: Option<usize> = None;
@@ -75,7 +76,8 @@ macro_rules! entries {
             // SAFETY: called by the driver, once a thread, with arguments of the size in TABLE.
             #[unsafe(export_name = $name)]
             unsafe extern "ptx-kernel" fn entry(args: <$kernel as Entry>::Args) {
-                // SAFETY: the one block of this kernel, made at its start; the host launches it with as many lanes.
+                // SAFETY: the one block of this kernel, made at its start; the host launches it
+                // with as many lanes.
                 let mut block = unsafe { crate::exec::ptx::Gpu::<{ <$kernel as Entry>::LANES }>::new() };
                 <$kernel as Entry>::run(&mut block, &args);
             }
@@ -132,8 +134,9 @@ macro_rules! kernels {
     };
 }
 
-/// The same of the kernels of volumes: `both` precisions of positions have one, `each` has one (`R`), and `groups` are those of
-/// each precision that only some volumes have. [`crate::volumes`] says which volumes there are.
+/// The same of the kernels of volumes: `both` precisions of positions have one, `each` has one
+/// (`R`), and `groups` are those of each precision that only some volumes have. [`crate::volumes`]
+/// says which volumes there are.
 macro_rules! kernels_of_volumes {
     (
         both { $($name:ident: $path:expr, [$args:ty], $lanes:expr, $shared:expr $(, exact = $exact:literal)?;)* }
@@ -268,10 +271,11 @@ const fn put(all: &mut [Line], at: usize, lines: &[Line]) -> usize {
 
 /// Lanes of kernels whose work is the same for every lane.
 const WIDE: u32 = 256;
-/// Lanes of kernels with long or uneven work: small blocks, so that few lanes wait for a long one (measured:
-/// `benches/NOTES.md`).
+/// Lanes of kernels with long or uneven work: small blocks, so that few lanes wait for a long one
+/// (measured: `benches/NOTES.md`).
 const NARROW: u32 = 64;
-/// Lanes of rejection, of the rungs of a separation and of distances: work is uneven, and two lists are appended to.
+/// Lanes of rejection, of the rungs of a separation and of distances: work is uneven, and two lists
+/// are appended to.
 const RUNG: u32 = 128;
 /// Lanes of the one block that evens the queues, as in the paper.
 const BALANCE: u32 = 512;

@@ -1,11 +1,14 @@
-//! A stable radix sort by bytes, a launch a byte, and what kernels share that rank items by a small number.
+//! A stable radix sort by bytes, a launch a byte, and what kernels share that rank items by a small
+//! number.
 //!
-//! A tile is what one block ranks: `rounds` times [`EACH`] items a lane. Whoever makes a list counts its digits, tile by
-//! tile, as it goes ([`tally`]); so when a pass begins it knows how often each digit comes in each tile, and each block
-//! sums on its own what lies before its items ([`starts`]): no launch that counts, none that sums, nobody who waits.
+//! A tile is what one block ranks: `rounds` times [`EACH`] items a lane. Whoever makes a list
+//! counts its digits, tile by tile, as it goes ([`tally`]); so when a pass begins it knows how
+//! often each digit comes in each tile, and each block sums on its own what lies before its items
+//! ([`starts`]): no launch that counts, none that sums, nobody who waits.
 //!
-//! Four counts of 16 bits share a word, so a tile has fewer than 65,536 items. Every block reads the counts of all tiles,
-//! 512 B each: their number is kept small ([`MOST_TILES`]), and more items make longer tiles.
+//! Four counts of 16 bits share a word, so a tile has fewer than 65,536 items. Every block reads
+//! the counts of all tiles, 512 B each: their number is kept small ([`MOST_TILES`]), and more items
+//! make longer tiles.
 
 use crate::abi::{SortArgs, Tiles};
 use crate::exec::{BINS, Block, Lane, Shared, Slot, WARP, striped};
@@ -44,7 +47,8 @@ pub struct Bins {
     pub scratch: Shared<u32>,
 }
 
-/// Where this block's items go, digit by digit: behind all smaller digits, and behind the same one in earlier tiles.
+/// Where this block's items go, digit by digit: behind all smaller digits, and behind the same one
+/// in earlier tiles.
 #[inline]
 pub fn starts<B: Block>(block: &mut B, tiles: &Tiles) -> Bins {
     let (tile, lanes) = (block.block(), block.lanes());
@@ -109,13 +113,11 @@ pub fn starts<B: Block>(block: &mut B, tiles: &Tiles) -> Bins {
 }
 
 /// # Pass: items in the order of one byte; equal bytes keep their order
-/// Launch   a block a tile.
-/// Reads    items, their digits' counts; where only the device knows how many items there are, that number.
-/// Writes   items; the counts of the next byte's digits in the tiles they go to.
-/// Before   the counts are complete; those of the next byte are zero.
-/// Room     fixed; cannot run out.
-/// Cost     8 B in, 8 B out and an atomic a key; 512 B a tile and block, summed by each. Three rounds to L2 in a row: items
-///          and counts together, places, atomics.
+/// Launch   a block a tile. Reads    items, their digits' counts; where only the device knows how
+/// many items there are, that number. Writes   items; the counts of the next byte's digits in the
+/// tiles they go to. Before   the counts are complete; those of the next byte are zero. Room
+/// fixed; cannot run out. Cost     8 B in, 8 B out and an atomic a key; 512 B a tile and block,
+/// summed by each. Three rounds to L2 in a row: items and counts together, places, atomics.
 pub fn pass<B: Block>(block: &mut B, args: &SortArgs) {
     let bins = starts(block, &args.tiles);
     let (tile, lanes) = (block.block(), block.lanes());

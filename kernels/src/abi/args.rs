@@ -47,7 +47,8 @@ arguments! {
         faces: Span<[u32; 3]>,
         /// The tree's bodies.
         bodies: Span<TreeBody>,
-        /// What is known of each body's triangles, [`OF_A_BODY`](crate::bvh::centres::OF_A_BODY) words.
+        /// What is known of each body's triangles, [`OF_A_BODY`](crate::bvh::centres::OF_A_BODY)
+        /// words.
         extents: Span<u64>,
         /// Out: code of each triangle's centre, above the triangle.
         items: Span<u64>,
@@ -58,7 +59,8 @@ arguments! {
         /// Along which curve.
         flags: MortonFlags,
     }
-    /// `construct_halves_bounds`, `construct_halves`, `construct_runs`: stretches of triangles in order.
+    /// `construct_halves_bounds`, `construct_halves`, `construct_runs`: stretches of triangles in
+    /// order.
     CutArgs<R: Real> {
         /// Positions.
         frames: Positions<R>,
@@ -70,7 +72,8 @@ arguments! {
         extents: Span<u64>,
         /// Six ordered keys a stretch: the box of its triangles' centres.
         stretches: Span<u64>,
-        /// In order: something above its triangle. Of `construct_halves` also out: a code above its triangle.
+        /// In order: something above its triangle. Of `construct_halves` also out: a code above its
+        /// triangle.
         items: Span<u64>,
         /// Out of `construct_runs`: the same in their new order.
         out: Span<u64>,
@@ -83,7 +86,8 @@ arguments! {
     }
     /// How often each digit comes in each tile of a list, see [`crate::sort`].
     Tiles {
-        /// Four counts a word, [`crate::sort::WORDS`] words a tile. Zeroed before items are counted.
+        /// Four counts a word, [`crate::sort::WORDS`] words a tile. Zeroed before items are
+        /// counted.
         counts: Span<u64>,
         /// How many tiles; 0 for none.
         count: u32,
@@ -96,7 +100,8 @@ arguments! {
         items: Span<u64>,
         /// Items out.
         out: Span<u64>,
-        /// How many items there are, where only the device knows; else empty: as many as there is room for.
+        /// How many items there are, where only the device knows; else empty: as many as there is
+        /// room for.
         live: Span<u64>,
         /// Counts of this byte.
         tiles: Tiles,
@@ -107,8 +112,8 @@ arguments! {
         /// The next pass's.
         next_shift: u32,
     }
-    /// `construct_tree`, `construct_depth`, `construct_places`, `construct_emit`. An inner node is known by the gap between
-    /// leaves that it splits: gap i lies behind leaf i.
+    /// `construct_tree`, `construct_depth`, `construct_places`, `construct_emit`. An inner node is
+    /// known by the gap between leaves that it splits: gap i lies behind leaf i.
     TreeArgs {
         /// Sorted: a Morton code above its triangle.
         items: Span<u64>,
@@ -138,12 +143,13 @@ arguments! {
         bodies: Span<BodyRecord>,
         /// The [`NodeFilter::hub`] of every triangle; empty without hubs.
         hubs: Span<u32>,
-        /// Scratch, zeroed before. Of each inner node: 1 if its leaves have different hubs; empty without hubs.
+        /// Scratch, zeroed before. Of each inner node: 1 if its leaves have different hubs; empty
+        /// without hubs.
         mixed: Span<u64>,
         /// Out: the leaves' places; empty where nobody asks for treelets, as the next two are.
         leaf_places: Span<LeafPlace>,
-        /// Out, zeroed before. For each chunk of leaves: how many leaves there are from the first on that begins a subtree of
-        /// a treelet; 0 where none does.
+        /// Out, zeroed before. For each chunk of leaves: how many leaves there are from the first
+        /// on that begins a subtree of a treelet; 0 where none does.
         begins: Span<u64>,
         /// Out, zeroed before. For each depth: how many nodes span treelets; then as many cursors.
         tops: Span<u64>,
@@ -174,7 +180,8 @@ arguments! {
         merges: Span<Merge>,
         /// Out: merges of the nodes that span treelets, by depth.
         top: Span<Merge>,
-        /// Out: in how many depths there are such nodes, then where each depth begins in `top`, then where they end.
+        /// Out: in how many depths there are such nodes, then where each depth begins in `top`,
+        /// then where they end.
         top_starts: Span<u32>,
         /// How many leaves.
         leaves: u32,
@@ -193,12 +200,14 @@ arguments! {
         links: Span<Link>,
         /// Out: the leaves.
         nodes: Span<Node<V>>,
-        /// How much the volumes grow: half of the distance within which pairs are listed; 0 for touching alone.
+        /// How much the volumes grow: half of the distance within which pairs are listed; 0 for
+        /// touching alone.
         margin: f32,
         /// Nothing.
         pad: u32,
     }
-    /// `fit_groups_obb`: the oriented boxes of inner nodes of few leaves, around the points below them.
+    /// `fit_groups_obb`: the oriented boxes of inner nodes of few leaves, around the points below
+    /// them.
     GroupsArgs<R: Real, V: Pod> {
         /// Positions.
         frames: Positions<R>,
@@ -216,7 +225,8 @@ arguments! {
         nodes: Span<Node<V>>,
         /// The root's index.
         root: u32,
-        /// How much the volumes grow: half of the distance within which pairs are listed; 0 for touching alone.
+        /// How much the volumes grow: half of the distance within which pairs are listed; 0 for
+        /// touching alone.
         margin: f32,
     }
     /// `refit_levels`: the volumes of levels `from` to `to`, deepest first.
@@ -252,7 +262,8 @@ arguments! {
         merges: Span<Merge>,
         /// Merges of the nodes that span treelets, by depth.
         top: Span<Merge>,
-        /// In how many depths there are such nodes, then where each depth begins, then where they end.
+        /// In how many depths there are such nodes, then where each depth begins, then where they
+        /// end.
         top_starts: Span<u32>,
         /// One counter: tickets drawn by blocks so far, in all launches.
         ticket: Span<u64>,
@@ -260,7 +271,8 @@ arguments! {
         nodes: Span<Node<V>>,
         /// Which axes merged oriented boxes take, see [`crate::bv::Axes`].
         axes: Axes,
-        /// How much the volumes grow: half of the distance within which pairs are listed; 0 for touching alone.
+        /// How much the volumes grow: half of the distance within which pairs are listed; 0 for
+        /// touching alone.
         margin: f32,
     }
     /// `refit_bottom_up`: the volumes of the inner nodes, by whoever comes second.

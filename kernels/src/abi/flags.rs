@@ -48,7 +48,8 @@ flags! {
         /// Outsized triangles behind all others of their body.
         APART,
     }
-    /// What every traversal is told: [`TraverseArgs`](super::TraverseArgs), [`PairArgs`](super::PairArgs).
+    /// What every traversal is told: [`TraverseArgs`](super::TraverseArgs),
+    /// [`PairArgs`](super::PairArgs).
     ///
     /// ```
     /// use nearmiss_kernels::abi::TraverseFlags;
@@ -66,7 +67,8 @@ flags! {
     TraverseFlags {
         /// Pairs that share a vertex are emitted too.
         KEEP_ADJACENT,
-        /// Below the root lie a tree that does not change, whose pairs nobody asks for, and one that does.
+        /// Below the root lie a tree that does not change, whose pairs nobody asks for, and one
+        /// that does.
         GRAFTED,
         /// Of traversals by pairs of nodes: the pairs where the descent ends are listed too.
         FRONT,
@@ -95,8 +97,8 @@ flags! {
     }
     /// What a rung is told: [`RungArgs`](super::RungArgs).
     RungFlags {
-        /// Of `narrow_isolate`, a contact is one however well its time is known; of `narrow_settle`, nothing is left to a next
-        /// rung.
+        /// Of `narrow_isolate`, a contact is one however well its time is known; of
+        /// `narrow_settle`, nothing is left to a next rung.
         EVERYTHING,
     }
 }

@@ -26,7 +26,8 @@ arguments! {
         /// The bits of a time: who only meets later does not matter. Empty where all do.
         known: Span<u64>,
     }
-    /// `narrow_moller`, `narrow_filter`, `narrow_wide`, `narrow_exact`, and those of the start of a step: triangle pairs that meet.
+    /// `narrow_moller`, `narrow_filter`, `narrow_wide`, `narrow_exact`, and those of the start of a
+    /// step: triangle pairs that meet.
     DiscreteArgs<R: Real> {
         /// Positions: the only ones, or those of a step, whose start is read.
         frames: Positions<R>,
@@ -61,7 +62,8 @@ arguments! {
         may_ee: Output<Pair>,
         /// What is asked.
         params: Params,
-        /// The bits of a time: pairs that cannot meet before it are left out too. Empty where all are wanted.
+        /// The bits of a time: pairs that cannot meet before it are left out too. Empty where all
+        /// are wanted.
         known: Span<u64>,
     }
     /// `narrow_vf`, `narrow_ee`: the first time of contact of two primitives in motion.
@@ -117,7 +119,8 @@ arguments! {
         /// The distance, a length.
         distance: f64,
     }
-    /// `narrow_blunt`: hits so large that the solver's precision cannot tell as little as the tolerance.
+    /// `narrow_blunt`: hits so large that the solver's precision cannot tell as little as the
+    /// tolerance.
     BelowPrecisionArgs<R: Real> {
         /// Positions.
         frames: Positions<R>,
@@ -147,8 +150,8 @@ arguments! {
         /// Out: pairs for the next rung; empty where there is none.
         left: Output<Pair>,
     }
-    /// `narrow_isolate`, `narrow_settle`, `narrow_slice`, `narrow_separate`: what meets, and bounds of the first time, with
-    /// proof.
+    /// `narrow_isolate`, `narrow_settle`, `narrow_slice`, `narrow_separate`: what meets, and bounds
+    /// of the first time, with proof.
     RungArgs<R: Real> {
         /// Positions.
         frames: Positions<R>,
@@ -164,7 +167,8 @@ arguments! {
         earliest: Span<u64>,
         /// Counters.
         counters: Counters,
-        /// The tolerances of bodies, by their first vertices; empty if all pairs have that of `params`.
+        /// The tolerances of bodies, by their first vertices; empty if all pairs have that of
+        /// `params`.
         tolerances: Span<BodyTolerance>,
         /// What is asked.
         params: Params,

@@ -37,7 +37,8 @@ arguments! {
         items: Span<u64>,
         /// Counts of the keys' lowest bytes.
         tiles: Tiles,
-        /// The bodies; empty where no contact has a first feature of a later body than its second's.
+        /// The bodies; empty where no contact has a first feature of a later body than its
+        /// second's.
         bodies: Span<BodyRecord>,
         /// Bits of a feature.
         bits: u32,

@@ -3,10 +3,11 @@
 use super::Span;
 use bytemuck::{NoUninit, Zeroable};
 
-/// A list that a kernel appends to and the next one reads: its memory, and where its exact demand is counted.
+/// A list that a kernel appends to and the next one reads: its memory, and where its exact demand
+/// is counted.
 ///
-/// The two are private and never apart: a list is not counted by another's counter. Kernels append and read by what
-/// [`crate::exec`] adds to this type.
+/// The two are private and never apart: a list is not counted by another's counter. Kernels append
+/// and read by what [`crate::exec`] adds to this type.
 #[derive(Debug)]
 #[repr(C)]
 pub struct Output<T> {

@@ -96,7 +96,8 @@ arguments! {
         to: PairArgs<V>,
         /// A segment for each block: units that its own queue had no room for.
         units: Span<Pair>,
-        /// The places of the pool, a word each: what became of it, and in which launch. See [`pool`].
+        /// The places of the pool, a word each: what became of it, and in which launch. See
+        /// [`pool`].
         pool: Span<u64>,
         /// The units of the places, [`pool::CHUNK`] each.
         chunks: Span<Pair>,
@@ -115,16 +116,17 @@ arguments! {
     }
 }
 
-/// The word by which blocks of `traverse_steal` find each other: three counts in one, so that one atomic changes them
-/// together and one look sees them at one moment. Zero stands for a pair of roots that is on its way to who draws the
-/// first ticket.
+/// The word by which blocks of `traverse_steal` find each other: three counts in one, so that one
+/// atomic changes them together and one look sees them at one moment. Zero stands for a pair of
+/// roots that is on its way to who draws the first ticket.
 pub mod control {
-    /// A ticket drawn. Ticket 0 is for the roots, ticket `t` for place `t - 1` of the pool. At most one a place and, past
-    /// the end, one a block, and the first.
+    /// A ticket drawn. Ticket 0 is for the roots, ticket `t` for place `t - 1` of the pool. At most
+    /// one a place and, past the end, one a block, and the first.
     pub const TICKET: u64 = 1;
     /// A place taken to offer units. Past the end at most [`MOST_OFFERS`] a block.
     pub const OFFER: u64 = 1 << BITS;
-    /// One more at work: a block that has units, or a chunk of units on its way. Counted from 1: the roots.
+    /// One more at work: a block that has units, or a chunk of units on its way. Counted from 1:
+    /// the roots.
     pub const WORK: u64 = 1 << (2 * BITS);
     /// Bits of a count; the last has one more.
     const BITS: u32 = 21;
@@ -170,8 +172,9 @@ pub mod control {
     }
 }
 
-/// The pool of `traverse_steal`. A word of it that this launch did not write counts as empty, whatever it is, so nobody
-/// clears it: the number of the launch is in the bits above [`STATE`](pool::STATE), and no number comes twice.
+/// The pool of `traverse_steal`. A word of it that this launch did not write counts as empty,
+/// whatever it is, so nobody clears it: the number of the launch is in the bits above
+/// [`STATE`](pool::STATE), and no number comes twice.
 pub mod pool {
     /// Units of a place at most.
     pub const CHUNK: u32 = 64;

@@ -5,8 +5,8 @@ use crate::math::{Real, Vec3};
 use crate::prim::inclusion::Verdict;
 use bytemuck::{Pod, Zeroable};
 
-/// A node's place in the level-ordered tree. Two siblings are neighbours and start at an even index, so a parent finds
-/// both children in one line. Node 1 is the root; node 0 is not used.
+/// A node's place in the level-ordered tree. Two siblings are neighbours and start at an even
+/// index, so a parent finds both children in one line. Node 1 is the root; node 0 is not used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C, align(8))]
 pub struct Link {
@@ -17,7 +17,8 @@ pub struct Link {
 }
 const _: () = assert!(size_of::<Link>() == 8);
 
-/// A node as a walk reads it: its volume, and its place in the tree again, so that one access brings both.
+/// A node as a walk reads it: its volume, and its place in the tree again, so that one access
+/// brings both.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(16))]
 pub struct Node<V> {
@@ -65,7 +66,8 @@ impl<V> Node<V> {
     }
 }
 
-/// Two indices: a triangle pair (discrete candidates and contacts), a vertex and a face, or two edges.
+/// Two indices: a triangle pair (discrete candidates and contacts), a vertex and a face, or two
+/// edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Pod, Zeroable)]
 #[repr(C, align(8))]
 pub struct Pair {
@@ -150,8 +152,9 @@ pub struct NearestHit {
 }
 const _: () = assert!(size_of::<NearestHit>() == 96);
 
-/// An inner node of the radix tree, before it has a place in the level order: its range of leaves. It is known by the gap
-/// that it splits: its left child ends with the leaf of the gap's number, and its right child begins behind that.
+/// An inner node of the radix tree, before it has a place in the level order: its range of leaves.
+/// It is known by the gap that it splits: its left child ends with the leaf of the gap's number,
+/// and its right child begins behind that.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C, align(8))]
 pub struct Inner {
@@ -198,7 +201,8 @@ pub struct Merge {
     pub link: u32,
     /// Its last leaf.
     pub last: u32,
-    /// In a treelet: where the children's volumes are on chip, and in which round. See [`Merge::in_treelet`].
+    /// In a treelet: where the children's volumes are on chip, and in which round. See
+    /// [`Merge::in_treelet`].
     pub slots: u32,
 }
 const _: () = assert!(size_of::<Merge>() == 16);
@@ -211,7 +215,8 @@ impl Merge {
     pub fn in_treelet(left: u32, right: u32, round: u32) -> u32 {
         left | right << Self::SLOT | round << (2 * Self::SLOT)
     }
-    /// Where the left child's volume is: at its first leaf, counted from the treelet's; the merged one takes its place.
+    /// Where the left child's volume is: at its first leaf, counted from the treelet's; the merged
+    /// one takes its place.
     pub fn left(&self) -> u32 {
         self.slots & ((1 << Self::SLOT) - 1)
     }

@@ -54,8 +54,9 @@ pub struct TreeBody {
 }
 const _: () = assert!(size_of::<TreeBody>() == 16);
 
-/// Whose triangles lie below a node. Of one body: the body, with [`SELF_CONTACT`] where it is tested against itself, and its
-/// environment. Of more: [`MIXED`], with the first of their environments, and the last.
+/// Whose triangles lie below a node. Of one body: the body, with [`SELF_CONTACT`] where it is
+/// tested against itself, and its environment. Of more: [`MIXED`], with the first of their
+/// environments, and the last.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C, align(16))]
 pub struct NodeFilter {
@@ -63,7 +64,8 @@ pub struct NodeFilter {
     pub who: u32,
     /// The last environment.
     pub last: u32,
-    /// The hub that all of these triangles share: its vertex and one; 0 without one. See [`crate::bvh::filter`].
+    /// The hub that all of these triangles share: its vertex and one; 0 without one. See
+    /// [`crate::bvh::filter`].
     pub hub: u32,
     /// Zero.
     pub pad: u32,
@@ -101,20 +103,22 @@ const _: () = assert!(size_of::<Placement>() == 24);
 
 /// [`Placement::from`]: the vertices were uploaded as they are.
 pub const UPLOADED: u32 = 0;
-/// [`Placement::from`]: the body rests where it was at the end of the last step; of one end in [`PlaceArgs::later`].
+/// [`Placement::from`]: the body rests where it was at the end of the last step; of one end in
+/// [`PlaceArgs::later`].
 pub const RESTING: u32 = 1;
 /// [`Placement::from`]: poses move points at rest.
 pub const POSED: u32 = 2;
 /// [`Placement::from`]: the vertices lie in memory of the caller.
 pub const LENT: u32 = 3;
-/// [`Placement::from`]: poses that lie in memory of the caller move points at rest: of each a place of its translation, then one of
-/// its rotation.
+/// [`Placement::from`]: poses that lie in memory of the caller move points at rest: of each a place
+/// of its translation, then one of its rotation.
 pub const LENT_POSES: u32 = 4;
-/// A bit of [`Placement::from`], beside [`LENT`] and [`LENT_POSES`] where vertices have one end: two ends lie in memory of the caller,
-/// and the later one is kept in [`PlaceArgs::later`].
+/// A bit of [`Placement::from`], beside [`LENT`] and [`LENT_POSES`] where vertices have one end:
+/// two ends lie in memory of the caller, and the later one is kept in [`PlaceArgs::later`].
 pub const KEEPS_END: u32 = 8;
 
-/// Rows of numbers in memory of the caller. Whoever launches a kernel that reads it promises that they are there.
+/// Rows of numbers in memory of the caller. Whoever launches a kernel that reads it promises that
+/// they are there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C, align(8))]
 pub struct Lent {
@@ -133,7 +137,8 @@ const _: () = assert!(size_of::<Lent>() == 24);
 
 /// Words of [`PlaceArgs::seen`].
 pub mod seen {
-    /// Of the first vertex of the caller's memory that has no coordinates to compute with: its number's complement; else 0.
+    /// Of the first vertex of the caller's memory that has no coordinates to compute with: its
+    /// number's complement; else 0.
     pub const INVALID: u32 = 0;
     /// The largest size of a coordinate of the caller's memory: the bits of an f64.
     pub const LARGEST: u32 = 1;
@@ -155,7 +160,8 @@ pub struct PoseRecord {
 const _: () = assert!(size_of::<PoseRecord>() == 64);
 
 arguments! {
-    /// Which pairs of nodes are asked at all; both empty where a scene has one body, tested against itself.
+    /// Which pairs of nodes are asked at all; both empty where a scene has one body, tested against
+    /// itself.
     FilterArgs {
         /// Whose triangles lie below each node.
         nodes: Span<NodeFilter>,
@@ -178,7 +184,8 @@ arguments! {
         lent: Span<Lent>,
         /// Out: all vertices.
         vertices: Positions<R>,
-        /// In and out, where vertices have one end: where the steps ended of which the caller's memory had both; empty without such.
+        /// In and out, where vertices have one end: where the steps ended of which the caller's
+        /// memory had both; empty without such.
         later: Span<Point<R>>,
         /// Out: what was seen of the caller's numbers, see [`seen`]; zero before.
         seen: Span<u64>,
@@ -213,7 +220,8 @@ pub const GRAFTED_ROOT: u32 = 2;
 /// See [`GRAFTED_ROOT`].
 pub const MOVING_ROOT: u32 = 3;
 
-/// Where a node of a grafted tree lies, behind those of a tree of `leaves` leaves; a leaf's link stays as it is.
+/// Where a node of a grafted tree lies, behind those of a tree of `leaves` leaves; a leaf's link
+/// stays as it is.
 pub const fn grafted(node: u32, leaves: u32) -> u32 {
     if node == super::ROOT { GRAFTED_ROOT } else { 2 * leaves + node }
 }

@@ -33,8 +33,8 @@ impl<T> Span<T> {
     /// A span by address and length.
     ///
     /// # Safety
-    /// `addr` is aligned for `T`, and `len` elements from there on are memory of one device, valid as `T` whatever their
-    /// bits, for as long as launches are given the span.
+    /// `addr` is aligned for `T`, and `len` elements from there on are memory of one device, valid
+    /// as `T` whatever their bits, for as long as launches are given the span.
     pub const unsafe fn new(addr: u64, len: u64) -> Self {
         Span { addr, len, element: PhantomData }
     }

@@ -9,14 +9,17 @@ use bytemuck::{Pod, Zeroable};
 pub struct FrameStatus {
     /// Entries of the answer's first list; of an earliest query 0.
     pub first: u64,
-    /// Entries of its second list, where there is one. Where one list has both kinds in order, how many of the second kind follow.
+    /// Entries of its second list, where there is one. Where one list has both kinds in order, how
+    /// many of the second kind follow.
     pub second: u64,
-    /// How many lists had too little room. Unless this is 0 the answer is not whole: no part of it may be used.
+    /// How many lists had too little room. Unless this is 0 the answer is not whole: no part of it
+    /// may be used.
     pub short: u64,
-    /// Of the first vertex, or first vertex of a pose, in memory of the caller that cannot be computed with: `!vertex` of 32
-    /// bits. Unless this is 0 there is no answer.
+    /// Of the first vertex, or first vertex of a pose, in memory of the caller that cannot be
+    /// computed with: `!vertex` of 32 bits. Unless this is 0 there is no answer.
     pub invalid: u64,
-    /// Triangle pairs that share a point at the start of the step; all bits set if the start is not checked.
+    /// Triangle pairs that share a point at the start of the step; all bits set if the start is not
+    /// checked.
     pub crossing: u64,
 }
 const _: () = assert!(size_of::<FrameStatus>() == 40);
@@ -49,7 +52,8 @@ arguments! {
         first: Span<u64>,
         /// Counts its second list.
         second: Span<u64>,
-        /// Counts the triangle pairs that share a point at the start; empty if the start is not checked.
+        /// Counts the triangle pairs that share a point at the start; empty if the start is not
+        /// checked.
         crossing: Span<u64>,
     }
 }

@@ -108,7 +108,8 @@ arguments! {
         tops: u32,
         /// The number of a tile's node in the top level is the tile's, so many bits lower.
         shift: u32,
-        /// Tiles that seek others begin here and end there; at most those of what moves, which come first.
+        /// Tiles that seek others begin here and end there; at most those of what moves, which come
+        /// first.
         from: u32,
         /// See above.
         to: u32,
@@ -145,8 +146,9 @@ arguments! {
         every: u32,
         /// The bits of a time: who only meets later does not matter. Empty where all do.
         known: Span<u64>,
-        /// Out: what each tile that sought cost, in tests; see [`CANDIDATE`](crate::stage::traverse::tile_triangles::CANDIDATE).
-        /// Empty where nobody asks.
+        /// Out: what each tile that sought cost, in tests; see
+        /// [`CANDIDATE`](crate::stage::traverse::tile_triangles::CANDIDATE). Empty where nobody
+        /// asks.
         work: Span<u64>,
     }
 }

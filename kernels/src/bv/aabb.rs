@@ -1,4 +1,5 @@
-//! The axis-aligned box: six numbers, six comparisons. Union and overlap are exact; only fitting rounds, outward.
+//! The axis-aligned box: six numbers, six comparisons. Union and overlap are exact; only fitting
+//! rounds, outward.
 
 use super::contain::between;
 use super::{Axes, Contain, FillsNode, Volume, fills_node};
@@ -88,8 +89,8 @@ impl Volume for Aabb {
     fn overlaps(&self, other: &Self) -> bool {
         Aabb::overlaps(self, other)
     }
-    /// The root of the sum of the squared gaps. Each gap is rounded once, and the five operations behind it once each; where squares have
-    /// not all their digits, the largest gap is told.
+    /// The root of the sum of the squared gaps. Each gap is rounded once, and the five operations
+    /// behind it once each; where squares have not all their digits, the largest gap is told.
     #[inline]
     fn apart(&self, o: &Self) -> f32 {
         let gap = |k: usize| (self.lo[k] - o.hi[k]).greater(o.lo[k] - self.hi[k]).greater(0.0);

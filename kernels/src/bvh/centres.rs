@@ -1,4 +1,5 @@
-//! Centres of triangles: what they are put in order by, the boxes around them, and which triangles are outsized.
+//! Centres of triangles: what they are put in order by, the boxes around them, and which triangles
+//! are outsized.
 
 use crate::abi::{Positions, Span};
 use crate::exec::{Block, Lane, Shared};
@@ -6,7 +7,8 @@ use crate::math::{Real, Vec3, ordered};
 
 /// Keys of a box: upper x, y, z, and lower x, y, z (complemented), so that all are maxima.
 pub const KEYS: u32 = 6;
-/// Where a body's triangles are: a box, the sum of the exponents of their sizes, how many have one, and how many are outsized.
+/// Where a body's triangles are: a box, the sum of the exponents of their sizes, how many have one,
+/// and how many are outsized.
 pub const OF_A_BODY: u32 = KEYS + 3;
 /// The sum of the exponents.
 const EXPONENTS: u32 = KEYS;
@@ -14,8 +16,9 @@ const EXPONENTS: u32 = KEYS;
 const SIZED: u32 = KEYS + 1;
 /// How many are outsized.
 pub const OUTSIZED: u32 = KEYS + 2;
-/// A triangle is outsized whose size has an exponent so much above the mean one: which is 8 to 32 times the geometric mean of the sizes.
-/// A tile that has one has its box; so they have tiles of their own.
+/// A triangle is outsized whose size has an exponent so much above the mean one: which is 8 to 32
+/// times the geometric mean of the sizes. A tile that has one has its box; so they have tiles of
+/// their own.
 const ABOVE: u64 = 5;
 
 /// A mesh: where its vertices are, and its faces.
@@ -36,7 +39,8 @@ fn corners<R: Real, L: Lane>(lane: &L, mesh: Mesh<R>, triangle: u32) -> [Vec3<f6
     lane.read(mesh.faces, triangle).map(|v| start(v).wide())
 }
 
-/// The centre of a triangle, in f64: any point near it would do, but all machines must choose the same.
+/// The centre of a triangle, in f64: any point near it would do, but all machines must choose the
+/// same.
 #[inline(always)]
 pub fn centre<R: Real, L: Lane>(lane: &L, mesh: Mesh<R>, triangle: u32) -> Vec3<f64> {
     middle(corners(lane, mesh, triangle))
@@ -47,7 +51,8 @@ fn middle([p, q, r]: [Vec3<f64>; 3]) -> Vec3<f64> {
     (p + q + r) * (1.0 / 3.0)
 }
 
-/// The exponent of the longest side of the box around a triangle, as IEEE 754 has it; 0 where there is no extent to speak of.
+/// The exponent of the longest side of the box around a triangle, as IEEE 754 has it; 0 where there
+/// is no extent to speak of.
 #[inline(always)]
 fn exponent([p, q, r]: [Vec3<f64>; 3]) -> u64 {
     let sides = p.greater(q).greater(r) - p.lesser(q).lesser(r);
@@ -137,8 +142,9 @@ pub fn report_together<B: Block>(block: &mut B, best: Shared<u64>, extents: Span
     });
 }
 
-/// The extents of things that each have a stretch of `count` items: what a block looks at together is of one as a rule. `which` thing an
-/// item is of; `add` adds it, and its size if it is there for the first time, and says of which thing it is. Each has so many `words`.
+/// The extents of things that each have a stretch of `count` items: what a block looks at together
+/// is of one as a rule. `which` thing an item is of; `add` adds it, and its size if it is there for
+/// the first time, and says of which thing it is. Each has so many `words`.
 pub fn of_each<B: Block>(
     block: &mut B,
     extents: Span<u64>,

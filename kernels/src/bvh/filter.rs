@@ -1,9 +1,10 @@
-//! Which pairs of nodes are asked at all: collision filters of bodies, as far up the tree as all below a node share one.
+//! Which pairs of nodes are asked at all: collision filters of bodies, as far up the tree as all
+//! below a node share one.
 //!
-//! Triangles that share a vertex are no candidates, unless a query keeps adjacent pairs. A vertex of many faces is a
-//! *hub*, and each of its triangles names at most one hub among its corners. Two nodes below which all triangles name
-//! the same hub have no pair, so `n` faces round one hub cost `n` tests, not `n²`. A query that keeps adjacent pairs
-//! has no hubs.
+//! Triangles that share a vertex are no candidates, unless a query keeps adjacent pairs. A vertex
+//! of many faces is a *hub*, and each of its triangles names at most one hub among its corners. Two
+//! nodes below which all triangles name the same hub have no pair, so `n` faces round one hub cost
+//! `n` tests, not `n²`. A query that keeps adjacent pairs has no hubs.
 
 use crate::abi::{BodyRecord, EVERY, FilterArgs, MIXED, NodeFilter, SELF_CONTACT};
 use crate::exec::Lane;
@@ -19,10 +20,11 @@ impl FilterArgs {
         }
     }
 
-    /// Whether something below one node may be asked about something below the other. Two bodies must be of one environment,
-    /// or one of every, and each in a group that the other meets; a body meets itself where it says so, whatever its groups.
-    /// What it refuses for two nodes it refuses for all below them: environments are ranges of leaves, of which those below a
-    /// node are some, and a hub of a node is one of all below it.
+    /// Whether something below one node may be asked about something below the other. Two bodies
+    /// must be of one environment, or one of every, and each in a group that the other meets; a
+    /// body meets itself where it says so, whatever its groups. What it refuses for two nodes it
+    /// refuses for all below them: environments are ranges of leaves, of which those below a node
+    /// are some, and a hub of a node is one of all below it.
     #[inline(always)]
     pub fn allows<L: Lane>(&self, lane: &L, p: NodeFilter, q: NodeFilter) -> bool {
         if self.nodes.is_empty() {
@@ -53,8 +55,8 @@ impl NodeFilter {
         if self.who & MIXED != 0 { self.who & NodeFilter::NUMBER } else { self.last }
     }
 
-    /// Whether two triangles below it may meet: of several bodies, or of one that is tested against itself, without a
-    /// common hub.
+    /// Whether two triangles below it may meet: of several bodies, or of one that is tested against
+    /// itself, without a common hub.
     #[inline(always)]
     pub fn meets_itself(self) -> bool {
         (self.hub == 0) & (self.who & (MIXED | SELF_CONTACT) != 0)
@@ -80,8 +82,8 @@ impl NodeFilter {
     }
 }
 
-/// Which of `count` things that lie one behind the other, at least one, has `i`: the last that begins at or before it. The
-/// first begins at 0.
+/// Which of `count` things that lie one behind the other, at least one, has `i`: the last that
+/// begins at or before it. The first begins at 0.
 #[inline]
 pub fn holder(count: u64, i: u32, begin: impl Fn(u32) -> u32) -> u32 {
     let (mut low, mut high) = (0, count as u32);

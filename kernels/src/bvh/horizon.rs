@@ -6,13 +6,14 @@ use crate::exec::Block;
 use crate::math::round;
 use crate::math::tolerance::HORIZON_MARGIN;
 
-/// The end of the step, or a time before it: no verdict of a pair whose boxes first overlap behind it begins before the
-/// time that is known.
+/// The end of the step, or a time before it: no verdict of a pair whose boxes first overlap behind
+/// it begins before the time that is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Horizon(f32);
 
 impl Horizon {
-    /// By the bits of a time that is known, of an earlier launch: those of no number where none is, or no memory.
+    /// By the bits of a time that is known, of an earlier launch: those of no number where none is,
+    /// or no memory.
     #[inline(always)]
     pub fn of<B: Block>(block: &B, known: Span<u64>) -> Horizon {
         Horizon::behind(if known.is_empty() { f64::NAN } else { f64::from_bits(block.load(known, 0)) })

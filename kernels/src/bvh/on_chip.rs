@@ -42,8 +42,9 @@ impl OnChip {
         }
     }
 
-    /// Merges runs of volumes, each lane's in its own place and in `volumes`: of every `each` that are `apart` lanes from each other the
-    /// first one's becomes the merge of all, those half of them further on first.
+    /// Merges runs of volumes, each lane's in its own place and in `volumes`: of every `each` that
+    /// are `apart` lanes from each other the first one's becomes the merge of all, those half of
+    /// them further on first.
     pub fn merge<V: Volume, B: Block>(
         self,
         block: &mut B,

@@ -6,9 +6,10 @@ use crate::abi::Node;
 use crate::bv::Contain;
 use crate::math::Vec3;
 
-/// Checks that each node of sound tiles names the hub that all triangles below it name, or none; and that its rim holds,
-/// exactly, every corner of these that is no hub, which moves between its `ends`. `face` has the corners of a triangle, and
-/// its hub as [`crate::abi::NodeFilter::hub`] has it. Cost: linear, levels times.
+/// Checks that each node of sound tiles names the hub that all triangles below it name, or none;
+/// and that its rim holds, exactly, every corner of these that is no hub, which moves between its
+/// `ends`. `face` has the corners of a triangle, and its hub as [`crate::abi::NodeFilter::hub`] has
+/// it. Cost: linear, levels times.
 ///
 /// # Errors
 /// The first violation, from the first tile on.

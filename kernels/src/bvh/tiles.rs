@@ -1,4 +1,5 @@
-//! Tiles and the nodes above them: where each lies, what holds of them, and a checker that names what does not.
+//! Tiles and the nodes above them: where each lies, what holds of them, and a checker that names
+//! what does not.
 
 use super::Violation;
 use crate::abi::{LEAF, NONE, Node, NodeFilter};
@@ -11,8 +12,8 @@ pub const TILE: u32 = 32;
 pub const FAN: u32 = 16;
 /// Levels at most: 2^32 triangles have 2^27 tiles, and the top level at most [`MOST_TOPS`] nodes.
 pub const MOST_LEVELS: u32 = 6;
-/// Nodes of the top level at most, unless there are two levels: a warp looks at all of them, 32 at once (measured,
-/// `benches/NOTES.md`).
+/// Nodes of the top level at most, unless there are two levels: a warp looks at all of them, 32 at
+/// once (measured, `benches/NOTES.md`).
 pub const MOST_TOPS: u32 = 1024;
 const FAN_BITS: u32 = FAN.trailing_zeros();
 const _: () = assert!(FAN.is_power_of_two() && MOST_TOPS << (FAN_BITS * (MOST_LEVELS - 1)) >= 1 << 27);
@@ -22,8 +23,9 @@ pub const fn below(level: u32) -> u32 {
     1 << (FAN_BITS * level)
 }
 
-/// Where tiles and the nodes above them lie: level behind level, tiles first, the nodes of a level as their tiles. Tiles of what moves
-/// come first, those of what is static behind them, below other nodes of every level.
+/// Where tiles and the nodes above them lie: level behind level, tiles first, the nodes of a level
+/// as their tiles. Tiles of what moves come first, those of what is static behind them, below other
+/// nodes of every level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Levels {
     /// How many levels there are: at least 2, the tiles one of them.
@@ -98,9 +100,10 @@ pub struct Tiles<'a, V> {
     pub axes: Axes,
 }
 
-/// Checks that each triangle has one place, in its part, that the triangles' volumes are what `leaf` says, every other the merge of those
-/// below it, and the same of filters, of which `whose` tells that of a triangle. `place` tells in which part a triangle is, and which of
-/// its triangles; `seen` has a false flag for each. Cost: linear.
+/// Checks that each triangle has one place, in its part, that the triangles' volumes are what
+/// `leaf` says, every other the merge of those below it, and the same of filters, of which `whose`
+/// tells that of a triangle. `place` tells in which part a triangle is, and which of its triangles;
+/// `seen` has a false flag for each. Cost: linear.
 ///
 /// # Errors
 /// The first violation, from the first leaf on; nodes and leaves are counted as they lie.
@@ -150,8 +153,9 @@ pub fn check<V: Volume>(
     })
 }
 
-/// Checks that the volume of every triangle, and of every node above it, holds its three corners, which move from the first to the second
-/// of their `ends`: exactly, by arithmetic that no builder has. Cost: linear, levels times.
+/// Checks that the volume of every triangle, and of every node above it, holds its three corners,
+/// which move from the first to the second of their `ends`: exactly, by arithmetic that no builder
+/// has. Cost: linear, levels times.
 ///
 /// # Errors
 /// The first violation, from the first leaf and its own volume on.

@@ -33,8 +33,8 @@ impl<T> Shared<T> {
     }
 }
 
-/// Words of four bytes of a `T` that lanes give and take. What is not made of whole aligned words does not compile:
-/// call it in a `const` block.
+/// Words of four bytes of a `T` that lanes give and take. What is not made of whole aligned words
+/// does not compile: call it in a `const` block.
 pub const fn whole_words<T>() -> usize {
     assert!(align_of::<T>() >= 4, "lanes give and take whole words");
     size_of::<T>() / 4

@@ -1,11 +1,13 @@
-//! What kernels do with lists, append to them and read those that an earlier launch filled, and with counters.
+//! What kernels do with lists, append to them and read those that an earlier launch filled, and
+//! with counters.
 
 use super::{Block, Lane};
 use crate::abi::{Counter, Counters, Output};
 use bytemuck::Pod;
 
 impl<T: Pod> Output<T> {
-    /// How many entries are there: as many as were counted, or as there is room for. Nothing in this launch may append.
+    /// How many entries are there: as many as were counted, or as there is room for. Nothing in
+    /// this launch may append.
     #[inline(always)]
     pub fn listed<B: Block>(&self, block: &B) -> u32 {
         block.load(self.count(), 0).min(self.room()) as u32
@@ -60,15 +62,17 @@ impl Counters {
     pub fn look<L: Lane>(&self, lane: &L, which: Counter) -> u64 {
         lane.fetch_load(self.words(), which.place())
     }
-    /// As [`Counters::raise`], where it mostly is not below: a look is cheaper than many atomics of one word.
+    /// As [`Counters::raise`], where it mostly is not below: a look is cheaper than many atomics of
+    /// one word.
     #[inline(always)]
     pub fn raise_seldom<L: Lane>(&self, lane: &L, which: Counter, least: u64) {
         if self.look(lane, which) < least {
             self.raise(lane, which, least);
         }
     }
-    /// The shortest length that one was told, infinite where there is none: it holds the complement of its bits, so that zero is none and
-    /// the largest is the shortest. Nothing in this launch may tell one.
+    /// The shortest length that one was told, infinite where there is none: it holds the complement
+    /// of its bits, so that zero is none and the largest is the shortest. Nothing in this launch
+    /// may tell one.
     #[inline(always)]
     pub fn shortest<B: Block>(&self, block: &B, which: Counter) -> f64 {
         let word = block.load(self.words(), which.place());

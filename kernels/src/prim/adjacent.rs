@@ -26,8 +26,8 @@ pub enum Shared {
 }
 
 impl Shared {
-    /// What the triangles with these vertex indices share. A triangle may name a vertex twice: then it is a segment (or
-    /// a point), and a vertex counts once.
+    /// What the triangles with these vertex indices share. A triangle may name a vertex twice: then
+    /// it is a segment (or a point), and a vertex counts once.
     pub fn by_index(p: [u32; 3], q: [u32; 3]) -> Self {
         let again = |t: [u32; 3]| (0..3).position(|k| t[..k].contains(&t[k]));
         let foreign = |t: [u32; 3], o: [u32; 3]| t.iter().position(|v| !o.contains(v));
@@ -42,7 +42,8 @@ impl Shared {
         match common {
             None => Shared::Nothing,
             Some((i, j)) if count == 1 => Shared::Corner(i, j),
-            // The apex is the corner that is not shared, or, of a segment that is the shared edge, the one named twice.
+            // The apex is the corner that is not shared, or, of a segment that is the shared edge,
+            // the one named twice.
             Some(_) if count == 2 => {
                 let apex = |t, o| foreign(t, o).or(again(t)).unwrap_or(0);
                 Shared::Edge(apex(p, q), apex(q, p))
@@ -52,8 +53,9 @@ impl Shared {
     }
 }
 
-/// Whether the closed triangles share a point that is not on the shared corner, or on the segment of the shared
-/// edge. Duplicates always do. Triangles without area are segments or points here too. `None` only if a sign is.
+/// Whether the closed triangles share a point that is not on the shared corner, or on the segment
+/// of the shared edge. Duplicates always do. Triangles without area are segments or points here
+/// too. `None` only if a sign is.
 pub fn meets_beyond_shared<R: Real, S: Signs<R>>(
     p: &[Vec3<R>; 3],
     q: &[Vec3<R>; 3],
@@ -71,9 +73,10 @@ pub fn meets_beyond_shared<R: Real, S: Signs<R>>(
     }
 }
 
-/// Corner 0 of both is one point v. Any further common point x gives, on the ray from v through x, a last point of
-/// `p` on the edge opposite v and a last point of `q` likewise; the nearer is in both. So the opposite edges decide,
-/// as long as they do not pass through v. One that does (no area) is cut there: then `p` is two segments from v.
+/// Corner 0 of both is one point v. Any further common point x gives, on the ray from v through x,
+/// a last point of `p` on the edge opposite v and a last point of `q` likewise; the nearer is in
+/// both. So the opposite edges decide, as long as they do not pass through v. One that does (no
+/// area) is cut there: then `p` is two segments from v.
 fn beyond_corner<R: Real, S: Signs<R>>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> Option<bool> {
     // q touches the plane of p at v alone, or the other way round: the common case.
     let apart = |s: [Option<i32>; 3]| s[1].is_some_and(|x| x != 0) && s[1] == s[2];
@@ -108,9 +111,9 @@ fn rays<R: Real, S: Signs<R>>(t: &[Vec3<R>; 3]) -> Option<[Option<[Vec3<R>; 2]>;
     Some([Some([a, b]), None])
 }
 
-/// `v`, `w` are shared, `a` and `b` the apexes. With area: in one plane, and the apexes strictly on one side of the
-/// edge. An edge of no length gives only zeros, an apex on the edge's line one zero: false, unless all four are on one
-/// line, where both apexes must be beyond the same end.
+/// `v`, `w` are shared, `a` and `b` the apexes. With area: in one plane, and the apexes strictly on
+/// one side of the edge. An edge of no length gives only zeros, an apex on the edge's line one
+/// zero: false, unless all four are on one line, where both apexes must be beyond the same end.
 fn beyond_edge<R: Real, S: Signs<R>>(v: Vec3<R>, w: Vec3<R>, a: Vec3<R>, b: Vec3<R>) -> Option<bool> {
     if S::orient3d(v, w, a, b)? != 0 {
         return Some(false);

@@ -1,4 +1,5 @@
-//! Work units that wait: the stack of one walk, a block's buffer, a block's queue; and the tree that pairs of nodes form.
+//! Work units that wait: the stack of one walk, a block's buffer, a block's queue; and the tree
+//! that pairs of nodes form.
 
 pub mod bvtt;
 pub mod pair;
@@ -15,8 +16,9 @@ pub const ROOM: usize = MAX_LEVELS as usize;
 /// The memory of a stack; see [`crate::exec::Block::words`].
 pub type Words = [MaybeUninit<u32>; ROOM];
 
-/// A stack of work that cannot overflow: a depth-first walk leaves at most one waiting entry a level behind. Between
-/// phases its words and its length lie in slots of their own, so that nothing copies the words.
+/// A stack of work that cannot overflow: a depth-first walk leaves at most one waiting entry a
+/// level behind. Between phases its words and its length lie in slots of their own, so that nothing
+/// copies the words.
 pub struct Stack<'a> {
     words: &'a mut Words,
     len: &'a mut u32,
@@ -26,7 +28,8 @@ impl<'a> Stack<'a> {
     /// A stack of the first `len` entries of `words`.
     ///
     /// # Safety
-    /// As many were pushed to these words, and a walk pushes no more than [`ROOM`]: a tree has at most [`MAX_LEVELS`] levels.
+    /// As many were pushed to these words, and a walk pushes no more than [`ROOM`]: a tree has at
+    /// most [`MAX_LEVELS`] levels.
     #[inline(always)]
     pub unsafe fn new(words: &'a mut Words, len: &'a mut u32) -> Self {
         Stack { words, len }
@@ -66,7 +69,8 @@ impl<'a> Stack<'a> {
     }
 }
 
-/// A block's buffer of pairs in shared memory. Lanes append at any time; when it is full they wait for a flush.
+/// A block's buffer of pairs in shared memory. Lanes append at any time; when it is full they wait
+/// for a flush.
 #[derive(Clone, Copy)]
 pub struct Buffer {
     /// The pairs.

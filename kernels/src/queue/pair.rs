@@ -33,7 +33,8 @@ impl ChildPairs {
         ends: 0,
     };
 
-    /// Says of pair `k`, of nodes `p` and `q`, what it is, from whether it overlaps. Its triangles are named in ascending order.
+    /// Says of pair `k`, of nodes `p` and `q`, what it is, from whether it overlaps. Its triangles
+    /// are named in ascending order.
     #[inline(always)]
     fn note<V>(&mut self, k: usize, overlap: bool, p: &Node<V>, q: &Node<V>) {
         let leaves = p.is_leaf() & q.is_leaf();
@@ -56,7 +57,8 @@ pub fn below<V: Volume, L: Lane>(lane: &L, to: &PairArgs<V>, unit: Pair) -> Chil
     }
     let together = unit.a == unit.b;
     let in_a = together | bvtt::descends_in_a(unit, a.is_leaf(), b.is_leaf());
-    // One path for both nodes, by values: a volume's test is long, and references into a choice would be memory.
+    // One path for both nodes, by values: a volume's test is long, and references into a choice
+    // would be memory.
     let link = if in_a { a.link } else { b.link };
     let (left, right) = (lane.read(to.nodes, link), lane.read(to.nodes, link + 1));
     let other = if together {
@@ -67,7 +69,8 @@ pub fn below<V: Volume, L: Lane>(lane: &L, to: &PairArgs<V>, unit: Pair) -> Chil
         a
     };
     let mut into_left = left.volume.overlaps(&other.volume);
-    // Of the pairs left with other, right with other; together also of left and right with themselves.
+    // Of the pairs left with other, right with other; together also of left and right with
+    // themselves.
     let mut allowed = [true; 4];
     if !to.filters.nodes.is_empty() {
         let node = if together {

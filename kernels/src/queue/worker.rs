@@ -1,6 +1,8 @@
-//! A block at work on pairs of nodes: its queue in shared memory, last in first out, and the candidates it found.
+//! A block at work on pairs of nodes: its queue in shared memory, last in first out, and the
+//! candidates it found.
 //!
-//! Sizes and places come from sums over the block, never from atomics: a block's work is the same each time.
+//! Sizes and places come from sums over the block, never from atomics: a block's work is the same
+//! each time.
 
 use super::pair::{ChildPairs, ROOTS, below};
 use crate::abi::{Counters, Pair, PairArgs, Span, TraverseFlags, counter};
@@ -8,29 +10,34 @@ use crate::bv::Volume;
 use crate::exec::{Block, Lane, Shared, Slot};
 use crate::prim::adjacent::share_a_vertex;
 
-/// Units that a block's queue has room for: with what else the block holds, a third of what a block may have and less
-/// than the 16 KB of the paper's cores, so that 18 blocks of 64 lanes fit on a core of today.
+/// Units that a block's queue has room for: with what else the block holds, a third of what a block
+/// may have and less than the 16 KB of the paper's cores, so that 18 blocks of 64 lanes fit on a
+/// core of today.
 pub const ROOM: u32 = 1024;
 /// Candidates that wait on chip, a lane: room for two more each when a flush is put off.
 const FOUND_A_LANE: u32 = 6;
-/// A lane's units and its candidates in one word of a sum: bits of each. 1,024 lanes have at most 3,072 and 2,048.
+/// A lane's units and its candidates in one word of a sum: bits of each. 1,024 lanes have at most
+/// 3,072 and 2,048.
 const FIELD: u32 = 12;
 /// The bits of a field.
 const MASK: u32 = (1 << FIELD) - 1;
 
-/// Bytes of shared memory for a launch with that many lanes, four words of the kernel's own included.
+/// Bytes of shared memory for a launch with that many lanes, four words of the kernel's own
+/// included.
 pub const fn shared_bytes(lanes: u32) -> u32 {
     8 * ROOM + 8 * FOUND_A_LANE * lanes + 16
 }
 
-/// Where units go that the queue has no room for: a segment of the block's own, or a list of all blocks.
+/// Where units go that the queue has no room for: a segment of the block's own, or a list of all
+/// blocks.
 #[derive(Clone, Copy)]
 pub struct Outside {
     /// The memory.
     pub units: Span<Pair>,
     /// Where the block's segment begins and how long it is; a length of 0 for a list of all blocks.
     pub segment: (u32, u32),
-    /// Units in the segment, past its end too; of a list of all blocks those that came from this block.
+    /// Units in the segment, past its end too; of a list of all blocks those that came from this
+    /// block.
     pub stored: u64,
     /// Counts the units of a list of all blocks: which counter.
     pub count: (Span<u64>, u32),
@@ -155,8 +162,9 @@ impl<B: Block> Worker<B> {
         self.top = from;
     }
 
-    /// A unit a lane, from the top: pairs below that go deeper go back on top, what has no room there `outside`. Whether
-    /// lane 0 votes for what it looked at: it looks before the work and votes after, so that nobody waits for the look.
+    /// A unit a lane, from the top: pairs below that go deeper go back on top, what has no room
+    /// there `outside`. Whether lane 0 votes for what it looked at: it looks before the work and
+    /// votes after, so that nobody waits for the look.
     #[inline]
     pub fn step<V: Volume>(
         &mut self,

@@ -1,5 +1,6 @@
-//! Device memory that blocks of one launch share: relaxed accesses of the whole GPU, which meet in its L2 cache, and
-//! the fence. Their assembly is neither pure nor silent about memory, so the compiler keeps each where it stands.
+//! Device memory that blocks of one launch share: relaxed accesses of the whole GPU, which meet in
+//! its L2 cache, and the fence. Their assembly is neither pure nor silent about memory, so the
+//! compiler keeps each where it stands.
 
 use crate::exec::whole_words;
 use bytemuck::Pod;
@@ -13,10 +14,12 @@ pub fn fence() {
     unsafe { asm!("fence.acq_rel.gpu;", options(nostack)) }
 }
 
-/// Sets `at` to `new` if it holds `current`; the value before. (The compiler's own is of the whole system's scope.)
+/// Sets `at` to `new` if it holds `current`; the value before. (The compiler's own is of the whole
+/// system's scope.)
 ///
 /// # Safety
-/// `at` is aligned device memory, valid for reads and writes; what meets it is relaxed or atomic too.
+/// `at` is aligned device memory, valid for reads and writes; what meets it is relaxed or atomic
+/// too.
 #[inline(always)]
 pub unsafe fn compare_and_swap(at: *mut u64, current: u64, new: u64) -> u64 {
     let before: u64;
@@ -40,7 +43,8 @@ pub unsafe fn load_coherent<T: Pod>(from: *const T) -> T {
     let mut word = 0;
     while word < words {
         let at = from as u64 + 4 * word as u64;
-        // SAFETY: the pieces lie in `from` and in `value`, and are aligned: sizes are multiples of alignments.
+        // SAFETY: the pieces lie in `from` and in `value`, and are aligned: sizes are multiples of
+        // alignments.
         unsafe {
             if align >= 16 {
                 let (a, b): (u64, u64);
@@ -78,7 +82,8 @@ pub unsafe fn store_coherent<T: Pod>(to: *mut T, value: T) {
     let mut word = 0;
     while word < words {
         let at = to as u64 + 4 * word as u64;
-        // SAFETY: the pieces lie in `value` and in `to`, and are aligned: sizes are multiples of alignments.
+        // SAFETY: the pieces lie in `value` and in `to`, and are aligned: sizes are multiples of
+        // alignments.
         unsafe {
             if align >= 16 {
                 let [a, b] = from.add(word).cast::<[u64; 2]>().read();

@@ -2,7 +2,8 @@
 
 use crate::math::{Real, Vec3};
 
-/// A precision with its grid of parameters: multiples of 2^-24 (f32) or 2^-50 (f64) in [0, 1], all exact.
+/// A precision with its grid of parameters: multiples of 2^-24 (f32) or 2^-50 (f64) in [0, 1], all
+/// exact.
 pub trait Grid: Real {
     /// The distance of neighbours.
     const STEP: Self;
@@ -65,8 +66,8 @@ impl<S: Grid> Cell<S> {
         Cell { low: Vec3([S::ZERO; 3]), high: Vec3([end, S::ONE, S::ONE]) }
     }
 
-    /// What is left without those parts of each range at its low and its high end, which hold no contact; rounded
-    /// outward. None if nothing is.
+    /// What is left without those parts of each range at its low and its high end, which hold no
+    /// contact; rounded outward. None if nothing is.
     #[inline]
     pub fn without(&self, low: [S; 3], high: [S; 3]) -> Option<Self> {
         let mut left = *self;

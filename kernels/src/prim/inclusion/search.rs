@@ -1,4 +1,5 @@
-//! The search: boxes of parameters, the nearest first, cut along their own directions, until all is decided.
+//! The search: boxes of parameters, the nearest first, cut along their own directions, until all is
+//! decided.
 
 use super::bound::Image;
 use super::cell::{Cell, Grid};
@@ -14,7 +15,8 @@ use core::mem::MaybeUninit;
 struct Known<S> {
     /// The earliest start of an accepted box.
     accepted: S,
-    /// The earliest start of a box that was skipped since it starts within the tolerance of something known.
+    /// The earliest start of a box that was skipped since it starts within the tolerance of
+    /// something known.
     skipped: S,
     /// There is a contact, not later.
     certain: S,
@@ -32,8 +34,8 @@ enum CellResult<S> {
     Halves(Cell<S>, Cell<S>),
 }
 
-/// A search under way: what is asked, what is known, and the box to look at next. One box a step, so that a GPU's lanes
-/// can take up new pairs as they are done with theirs.
+/// A search under way: what is asked, what is known, and the box to look at next. One box a step,
+/// so that a GPU's lanes can take up new pairs as they are done with theirs.
 pub struct Search<'a, S, const N: usize> {
     m: Local<S, N>,
     known: Known<S>,
@@ -46,11 +48,12 @@ pub struct Search<'a, S, const N: usize> {
 }
 
 impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
-    /// Begins; or tells at once what the filters settle, and what is no number. The stack needs [`super::STACK`] places at
-    /// most; with fewer the answer may be early.
+    /// Begins; or tells at once what the filters settle, and what is no number. The stack needs
+    /// [`super::STACK`] places at most; with fewer the answer may be early.
     ///
     /// # Errors
-    /// The verdict, where no search is needed, and whether more precision would tell nothing that was asked.
+    /// The verdict, where no search is needed, and whether more precision would tell nothing that
+    /// was asked.
     #[inline]
     pub fn begin(
         m: Local<S, N>,
@@ -66,7 +69,8 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
     /// Begins without the filters, at a time before which there is no contact.
     ///
     /// # Errors
-    /// The verdict, where no search is needed, and whether more precision would tell nothing that was asked.
+    /// The verdict, where no search is needed, and whether more precision would tell nothing that
+    /// was asked.
     #[inline]
     pub fn from(
         m: Local<S, N>,
@@ -82,7 +86,8 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
     /// Begins without the filters.
     ///
     /// # Errors
-    /// The verdict, where no search is needed, and whether more precision would tell nothing that was asked.
+    /// The verdict, where no search is needed, and whether more precision would tell nothing that
+    /// was asked.
     #[inline]
     pub fn unfiltered(
         m: Local<S, N>,
@@ -99,7 +104,8 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
         Ok(Search { m, known, cell: Cell::whole(m.end), stack, depth: 0, boxes: 0, exhausted: false })
     }
 
-    /// Looks at one box. Once no box is left: the verdict, and whether more precision would tell nothing that was asked.
+    /// Looks at one box. Once no box is left: the verdict, and whether more precision would tell
+    /// nothing that was asked.
     #[inline]
     pub fn step(&mut self, p: &Params) -> Option<(Verdict, bool)> {
         self.boxes += 1;
@@ -130,7 +136,8 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
         loop {
             if next.is_none() && self.depth > 0 {
                 self.depth -= 1;
-                // SAFETY: `depth` is this search's own, and places below it were written when it passed them.
+                // SAFETY: `depth` is this search's own, and places below it were written when it
+                // passed them.
                 next = Some(unsafe { self.stack[self.depth].assume_init() });
             }
             let Some(cell) = next else {
@@ -180,8 +187,9 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
 }
 
 impl<S: Grid, const N: usize> Local<S, N> {
-    /// Looks at a box: at its image, its projections along several directions, and what of it they leave. About 1,200
-    /// operations. A function of its own, so that the search's state does not take registers from it on the GPU.
+    /// Looks at a box: at its image, its projections along several directions, and what of it they
+    /// leave. About 1,200 operations. A function of its own, so that the search's state does not
+    /// take registers from it on the GPU.
     #[inline(never)]
     fn look(&self, cell: &Cell<S>, known: &mut Known<S>) -> CellResult<S> {
         let image = self.image(cell);
@@ -204,7 +212,8 @@ impl<S: Grid, const N: usize> Local<S, N> {
         let directions = Directions::of(f);
         let slack = image.slack();
         for i in 0..directions.count(self.separation > S::ZERO) {
-            // Those that decouple the parameters have cut it much: the others will cut the rest better.
+            // Those that decouple the parameters have cut it much: the others will cut the rest
+            // better.
             if i == DECOUPLING && cuts.deep() {
                 break;
             }
@@ -237,7 +246,8 @@ impl<S: Grid, const N: usize> Local<S, N> {
                 along = (k, extent);
             }
         };
-        // Of a flat image the roots are a curve: earlier times first, or both halves are followed to their ends.
+        // Of a flat image the roots are a curve: earlier times first, or both halves are followed
+        // to their ends.
         let lasting = self.extent(f, 0);
         consider(0, if directions.flat() && lasting > self.tolerance { S::of(64.0) } else { lasting });
         consider(1, self.extent(f, 1));
@@ -255,8 +265,9 @@ impl<S: Grid, const N: usize> Local<S, N> {
         }
     }
 
-    /// How much a parameter changes what decides: the image; of features apart by a separation the distance from the
-    /// origin, to the first order along the direction there and to the second across it.
+    /// How much a parameter changes what decides: the image; of features apart by a separation the
+    /// distance from the origin, to the first order along the direction there and to the second
+    /// across it.
     #[inline(always)]
     fn extent(&self, f: &[Vec3<S>; 8], k: usize) -> S {
         let most = longest(f, k);
@@ -268,18 +279,20 @@ impl<S: Grid, const N: usize> Local<S, N> {
         most.min(along + most * most / self.separation)
     }
 
-    /// Whether a time of the grid is within the step, the end of which may have been rounded up to the grid.
+    /// Whether a time of the grid is within the step, the end of which may have been rounded up to
+    /// the grid.
     #[inline(always)]
     fn within_step(&self, t: S) -> bool {
         !(self.beyond && t >= self.end)
     }
 
-    /// Notes the corner where the box begins, or where its time ends, if it is certainly within the separation. Both
-    /// belong to the features: a face's box is never wholly beyond `u + v = 1`.
+    /// Notes the corner where the box begins, or where its time ends, if it is certainly within the
+    /// separation. Both belong to the features: a face's box is never wholly beyond `u + v = 1`.
     #[inline(always)]
     fn within_separation(&self, cell: &Cell<S>, image: &Image<S>, known: &mut Known<S>) {
-        // The separation was rounded up; this is below the one that was asked for. The square may lose to underflow
-        // what is far below the margin of the error, as the largest reach is about one.
+        // The separation was rounded up; this is below the one that was asked for. The square may
+        // lose to underflow what is far below the margin of the error, as the largest reach is
+        // about one.
         let less = self.separation * (S::ONE - S::of(16.0) * S::U) - S::INCLUSION_UNDERFLOW;
         let error = image.error[0] + image.error[1] + image.error[2];
         let held = |x: Vec3<S>| (x.dot(x).sqrt() + error) * S::INCLUSION_UP <= less;

@@ -6,11 +6,12 @@ use bytemuck::{Pod, Zeroable};
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Params {
-    /// How near to contact may be taken for contact, a length. Only how much is reported depends on it, and the work;
-    /// 0 asks for as much as the precision gives.
+    /// How near to contact may be taken for contact, a length. Only how much is reported depends on
+    /// it, and the work; 0 asks for as much as the precision gives.
     pub tolerance: f64,
-    /// Features this near are in contact, a length; 0 for touching. With a separation a tolerance below a millionth of it
-    /// mostly ends as exhausted: the first contact of round shapes is tangent to them.
+    /// Features this near are in contact, a length; 0 for touching. With a separation a tolerance
+    /// below a millionth of it mostly ends as exhausted: the first contact of round shapes is
+    /// tangent to them.
     pub separation: f64,
     /// The end of the step, in (0, 1].
     pub end: f64,
@@ -26,7 +27,8 @@ impl Params {
         Params { tolerance, separation: 0.0, end: 1.0, budget: Self::BUDGET, pad: 0 }
     }
 
-    /// Boxes after which a pair is left unresolved, unless told: ten times what the hardest of public scenes take.
+    /// Boxes after which a pair is left unresolved, unless told: ten times what the hardest of
+    /// public scenes take.
     pub const BUDGET: u32 = 4096;
 }
 
@@ -129,8 +131,8 @@ impl Verdict {
         self.state & EXHAUSTED != 0
     }
 
-    /// Whether more precision would tell nothing that was asked: separated, or a contact whose time is known as well as
-    /// the tolerance demands (`time_tolerance` is the time that it takes).
+    /// Whether more precision would tell nothing that was asked: separated, or a contact whose time
+    /// is known as well as the tolerance demands (`time_tolerance` is the time that it takes).
     #[inline]
     pub(super) fn is_settled(&self, time_tolerance: f64) -> bool {
         let known = self.is_contact() && !self.exhausted() && self.toi_hi - self.toi <= 2.0 * time_tolerance;

@@ -1,4 +1,5 @@
-//! The cubic that is zero where all control vectors lie in one plane through the origin, restricted to any part of the step.
+//! The cubic that is zero where all control vectors lie in one plane through the origin, restricted
+//! to any part of the step.
 
 use super::pair::{Pair, most};
 use crate::math::{Real, Vec3};
@@ -8,7 +9,8 @@ use crate::prim::inclusion::Grid;
 #[derive(Clone, Copy, Debug)]
 pub struct Cubic<S> {
     k: [S; 4],
-    /// A computed coefficient of a restriction beyond it has the exact one's sign: [`ISOLATE_CUBIC`] of the permanent.
+    /// A computed coefficient of a restriction beyond it has the exact one's sign:
+    /// [`ISOLATE_CUBIC`] of the permanent.
     ///
     /// [`ISOLATE_CUBIC`]: crate::math::tolerance::Tolerance::ISOLATE_CUBIC
     pub error: S,
@@ -56,7 +58,8 @@ fn mix<S: Real>(x: S, y: S, t: S) -> S {
 }
 
 impl<S: Real> Cubic<S> {
-    /// The coefficients over `[from, to]`, by blossoming: three mixtures, each of numbers within the hull of the four.
+    /// The coefficients over `[from, to]`, by blossoming: three mixtures, each of numbers within
+    /// the hull of the four.
     #[inline(always)]
     pub fn part(&self, from: S, to: S) -> Part<S> {
         let k = &self.k;
@@ -68,7 +71,8 @@ impl<S: Real> Cubic<S> {
         [mix(pp[0], pp[1], from), mix(pp[0], pp[1], to), mix(pq[0], pq[1], to), mix(qq[0], qq[1], to)]
     }
 
-    /// Whether the cubic certainly has no root in a part: all coefficients are of one sign, beyond their error.
+    /// Whether the cubic certainly has no root in a part: all coefficients are of one sign, beyond
+    /// their error.
     #[inline(always)]
     pub fn one_sign(&self, part: &Part<S>) -> bool {
         beyond(part, self.error)
@@ -93,7 +97,8 @@ impl<S: Real> Cubic<S> {
         self.one_sign(&self.part(from, to))
     }
 
-    /// Whether its values at both ends have opposite signs, beyond their error: then it has a root between.
+    /// Whether its values at both ends have opposite signs, beyond their error: then it has a root
+    /// between.
     #[inline(always)]
     pub fn changes_sign(&self, from: S, to: S) -> bool {
         let [a, _, _, d] = self.part(from, to);
@@ -115,7 +120,8 @@ pub fn slope<S: Real>(o: &Part<S>, s: S) -> S {
     mix(mix(a, b, s), mix(b, c, s), s) * S::of(3.0)
 }
 
-/// Where a part's slope may vanish within (0, 1), ascending; 1 where there is no such place. For guesses.
+/// Where a part's slope may vanish within (0, 1), ascending; 1 where there is no such place. For
+/// guesses.
 #[inline(always)]
 pub fn turns<S: Real>(o: &Part<S>) -> [S; 2] {
     let (d0, d1, d2) = (o[1] - o[0], o[2] - o[1], o[3] - o[2]);
@@ -138,8 +144,8 @@ pub fn turns<S: Real>(o: &Part<S>) -> [S; 2] {
     }
 }
 
-/// A root of a part between two places where its values have opposite signs: a guess, bettered step by step and kept between
-/// them. Where the root truly is is for the certificate to say.
+/// A root of a part between two places where its values have opposite signs: a guess, bettered step
+/// by step and kept between them. Where the root truly is is for the certificate to say.
 #[derive(Clone, Copy, Debug)]
 pub struct Root<S> {
     low: S,
@@ -158,7 +164,8 @@ impl<S: Real> Root<S> {
         Root { low, high, rises: below < S::ZERO, at }
     }
 
-    /// Newton's step; where it would leave the bracket, the middle. Whether the guess moved: if not, it never will.
+    /// Newton's step; where it would leave the bracket, the middle. Whether the guess moved: if
+    /// not, it never will.
     #[inline(always)]
     pub fn step(&mut self, o: &Part<S>) -> bool {
         let f = value(o, self.at);

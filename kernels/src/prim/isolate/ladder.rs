@@ -1,4 +1,5 @@
-//! The ladder: each rung decides what it can, certainly, and leaves the rest to the next, which costs more.
+//! The ladder: each rung decides what it can, certainly, and leaves the rest to the next, which
+//! costs more.
 //!
 //! | rung | decides | in |
 //! | --- | --- | --- |
@@ -9,11 +10,13 @@
 //! | [`near`] | what stays farther than half the tolerance; and when what does not comes nearer | f64 |
 //! | the search of [`crate::prim::inclusion`] | what is left, by boxes | f64 |
 //!
-//! With a separation, the rungs of [`super::separation`]. Every rung is a function of the pair and of what is
-//! asked, so the answer is; [`vf_certified`] and [`ee_certified`] climb for one pair as the kernels do for a list.
+//! With a separation, the rungs of [`super::separation`]. Every rung is a function of the pair and
+//! of what is asked, so the answer is; [`vf_certified`] and [`ee_certified`] climb for one pair as
+//! the kernels do for a list.
 //!
-//! Without a separation no verdict of a rung begins before [`Pair::not_before`] of the rung's own pair. A query for the
-//! earliest time alone skips pairs by that law, whatever their verdict would be; `HORIZON_MARGIN` derives it across rungs.
+//! Without a separation no verdict of a rung begins before [`Pair::not_before`] of the rung's own
+//! pair. A query for the earliest time alone skips pairs by that law, whatever their verdict would
+//! be; `HORIZON_MARGIN` derives it across rungs.
 
 use super::advance::{Advance, Advanced, Distance};
 use super::find::{CellResult, Found};
@@ -33,7 +36,8 @@ pub const SLICES: u32 = 32;
 const STEPS: [u32; 2] = [6, 12];
 /// How often a suspect time is looked at again, where no other isolation follows.
 const AGAIN: u32 = 3;
-/// How long around a suspect time is looked at, in pauses, where signs need no more: first, and in a slice. Both sides are less than two pauses.
+/// How long around a suspect time is looked at, in pauses, where signs need no more: first, and in
+/// a slice. Both sides are less than two pauses.
 const AROUND: [f64; 2] = [0.9, 0.03];
 /// Which rungs there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,8 +50,9 @@ pub enum Rungs {
     Double,
 }
 
-/// Whether the features certainly do not meet in the step: not even their boxes do, or the four points never share a plane,
-/// by the signs of the cubic's coefficients over the step or over the window. About 150 operations.
+/// Whether the features certainly do not meet in the step: not even their boxes do, or the four
+/// points never share a plane, by the signs of the cubic's coefficients over the step or over the
+/// window. About 150 operations.
 #[inline(always)]
 pub fn rejected<const N: usize>(pair: &Pair<f32, N>) -> bool {
     rejected_before(pair, 1.0)
@@ -61,8 +66,8 @@ pub fn rejected_before<const N: usize>(pair: &Pair<f32, N>, horizon: f32) -> boo
     begin > horizon || (pair.finite && (g.rootless_throughout() || g.rootless(begin, end)))
 }
 
-/// What isolation decides: separated, or a contact whose time is known as well as the tolerance demands and told from the
-/// start; of the `last` rung that isolates, any contact.
+/// What isolation decides: separated, or a contact whose time is known as well as the tolerance
+/// demands and told from the start; of the `last` rung that isolates, any contact.
 #[inline(always)]
 pub fn isolated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bool) -> Option<Verdict> {
     let Some(window) = pair.window() else { return Some(Verdict::separated(p.end, 0)) };
@@ -82,7 +87,8 @@ pub fn isolated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bo
             met(from, to, p)
         }
         Found::Near { from } => Some(Verdict::unresolved(from.wide(), p.end, 0, false)),
-        // What stays in one plane, of a body that moves as a whole for example, has no sign to go by, but a direction.
+        // What stays in one plane, of a body that moves as a whole for example, has no sign to go
+        // by, but a direction.
         Found::Open { from, flat: true } if pair.misses_throughout(from, window.1) => {
             Some(Verdict::separated(p.end, 0))
         }
@@ -123,7 +129,8 @@ pub enum Slice {
     Open(f64),
 }
 
-/// Whether all four points stay in one plane throughout the window, as far as f64 can tell: no slice will tell more.
+/// Whether all four points stay in one plane throughout the window, as far as f64 can tell: no
+/// slice will tell more.
 #[inline]
 pub fn is_flat<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64)) -> bool {
     let g = pair.cubic();
@@ -153,8 +160,9 @@ pub fn sliced<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), i: 
     }
 }
 
-/// Half the tolerance, in the units of the control vectors. A tolerance counts as at least [`NEAR_FINEST`] of the pair's
-/// extent. Volumes that grow by this bring every pair that comes within it.
+/// Half the tolerance, in the units of the control vectors. A tolerance counts as at least
+/// [`NEAR_FINEST`] of the pair's extent. Volumes that grow by this bring every pair that comes
+/// within it.
 #[inline(always)]
 fn half<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params) -> S {
     S::of(0.5) * pair.scaled(p.tolerance).max(S::of(NEAR_FINEST) * pair.reach)
@@ -166,12 +174,13 @@ fn near_enough<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params) -> S {
     half(pair, p) * S::INCLUSION_DOWN
 }
 
-/// What part of [`half`] is asked where nothing but f32 has isolated: the less it is, the fewer pairs are listed that do not
-/// meet, at the cost of some steps.
+/// What part of [`half`] is asked where nothing but f32 has isolated: the less it is, the fewer
+/// pairs are listed that do not meet, at the cost of some steps.
 const NEARER: f64 = 1.0 / 8.0;
 
-/// The last word without a search: separated, if the features stay farther apart than the separation and such a part of half
-/// the tolerance; else unresolved, from when they come within that.
+/// The last word without a search: separated, if the features stay farther apart than the
+/// separation and such a part of half the tolerance; else unresolved, from when they come within
+/// that.
 #[inline(always)]
 pub fn near<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), part: f64, p: &Params) -> Verdict {
     let mut advance = nearness(pair, (begin, end), part, p);
@@ -231,7 +240,8 @@ fn later(found: Verdict, known: Verdict, p: &Params) -> Verdict {
     }
 }
 
-/// Whether, and when, a vertex first comes within the separation of a closed face, by all rungs that there are.
+/// Whether, and when, a vertex first comes within the separation of a closed face, by all rungs
+/// that there are.
 #[inline]
 pub fn vf_certified<R: Real>(v: Moving<R>, f: [Moving<R>; 3], rungs: Rungs, p: &Params) -> Verdict {
     let touch = || vf_touch(v, f);
@@ -239,7 +249,8 @@ pub fn vf_certified<R: Real>(v: Moving<R>, f: [Moving<R>; 3], rungs: Rungs, p: &
     climb(|| Face::<f32>::new(v, f, p), || Face::<f64>::new(v, f, p), (touch, search), rungs, p)
 }
 
-/// Whether, and when, two closed edges first come within the separation, by all rungs that there are.
+/// Whether, and when, two closed edges first come within the separation, by all rungs that there
+/// are.
 #[inline]
 pub fn ee_certified<R: Real>(a: [Moving<R>; 2], b: [Moving<R>; 2], rungs: Rungs, p: &Params) -> Verdict {
     let touch = || ee_touch(a, b);
@@ -285,8 +296,8 @@ fn climb<const N: usize>(
     }
 }
 
-/// The rungs behind isolation that need no slices: what touches at the start, what has no window, what is flat; with
-/// `all`, everything. The window of what is left.
+/// The rungs behind isolation that need no slices: what touches at the start, what has no window,
+/// what is flat; with `all`, everything. The window of what is left.
 ///
 /// # Errors
 /// The window, where slices may tell more.

@@ -1,7 +1,9 @@
-//! The rungs of a separation: a plane or two in f32; then advancement in f32; then in f64, and nearness.
+//! The rungs of a separation: a plane or two in f32; then advancement in f32; then in f64, and
+//! nearness.
 //!
-//! A rung is taken step by step, so that a GPU's lanes can take up new pairs as they are done. What the first planes tell is a
-//! rung of its own: they decide nine of ten pairs, and all in the same time.
+//! A rung is taken step by step, so that a GPU's lanes can take up new pairs as they are done. What
+//! the first planes tell is a rung of its own: they decide nine of ten pairs, and all in the same
+//! time.
 
 use super::advance::{Advance, Advanced, Distance};
 use super::ladder::{met, nearly, nearness};
@@ -26,8 +28,8 @@ pub trait Rung<const N: usize>: Copy {
     type S: Grid;
     /// Begins.
     fn begin(pair: Pair<Self::S, N>, p: &Params) -> Self;
-    /// A step, whatever the tolerance of `p`: a pair keeps that which it began with. Once it was the last, the verdict, or `None` if the
-    /// next rung decides.
+    /// A step, whatever the tolerance of `p`: a pair keeps that which it began with. Once it was
+    /// the last, the verdict, or `None` if the next rung decides.
     fn step(&mut self, p: &Params) -> Option<Option<Verdict>>;
 }
 
@@ -51,7 +53,8 @@ pub fn at_once<const N: usize>(pair: &Pair<f32, N>, p: &Params) -> Option<Verdic
     }
 }
 
-/// In f32: separated, or when first within the separation, if that is known as well as the tolerance demands.
+/// In f32: separated, or when first within the separation, if that is known as well as the
+/// tolerance demands.
 #[derive(Clone, Copy, Debug)]
 pub struct Single<const N: usize> {
     advance: Advance<f32, N>,

@@ -1,11 +1,14 @@
-//! A plane that turns with the features: whether they certainly stay farther from it than a distance between two times.
+//! A plane that turns with the features: whether they certainly stay farther from it than a
+//! distance between two times.
 //!
-//! At each of the times the nearest point of the hull gives a direction. The plane's normal is the mixture of both, linear in
-//! time, and so are the control vectors: their products with it are quadratics, with three Bernstein coefficients each. The
-//! length of the normal is convex, at most the mixture of its lengths at both ends. Where every coefficient is above the
-//! distance times that of the lengths, raised to a quadratic, the hull is beyond the distance throughout. A fixed plane
-//! ([`super::advance`]) lasts until the fastest corner reaches it, and features at a distance that hardly changes use it up by
-//! turning; this one errs by the square of the angle only, whichever features are the nearest.
+//! At each of the times the nearest point of the hull gives a direction. The plane's normal is the
+//! mixture of both, linear in time, and so are the control vectors: their products with it are
+//! quadratics, with three Bernstein coefficients each. The length of the normal is convex, at most
+//! the mixture of its lengths at both ends. Where every coefficient is above the distance times
+//! that of the lengths, raised to a quadratic, the hull is beyond the distance throughout. A fixed
+//! plane ([`super::advance`]) lasts until the fastest corner reaches it, and features at a distance
+//! that hardly changes use it up by turning; this one errs by the square of the angle only,
+//! whichever features are the nearest.
 
 use super::nearest::nearest;
 use super::pair::Pair;
@@ -17,7 +20,8 @@ use crate::prim::inclusion::Grid;
 pub struct Facing<S, const N: usize> {
     /// Control vectors.
     pub x: [Vec3<S>; N],
-    /// The point nearest to the origin, as computed. Whatever it is, what is said of planes along it holds.
+    /// The point nearest to the origin, as computed. Whatever it is, what is said of planes along
+    /// it holds.
     pub p: Vec3<S>,
 }
 
@@ -29,7 +33,8 @@ impl<S: Grid, const N: usize> Pair<S, N> {
         Facing { x, p: nearest(&x) }
     }
 
-    /// Whether the features certainly stay farther apart than `over` between the times of both. About 100 operations.
+    /// Whether the features certainly stay farther apart than `over` between the times of both.
+    /// About 100 operations.
     ///
     /// Of the coefficient in the middle, half a sum of two products, twice is asked.
     #[inline(always)]
