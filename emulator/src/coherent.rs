@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 pub unsafe fn load<T: Pod>(from: *mut T) -> T {
     let words = const { whole_words::<T>() };
     let mut value = MaybeUninit::<T>::uninit();
-    // SAFETY: the pieces lie in `from` and in `value`, and are aligned: sizes are multiples of
+    // SAFETY: the pieces are within `from` and `value`, and aligned: sizes are multiples of
     // alignments. At the end every word was written, and any bits are a T.
     unsafe {
         if align_of::<T>() >= 8 {
@@ -42,7 +42,7 @@ pub unsafe fn load<T: Pod>(from: *mut T) -> T {
 pub unsafe fn store<T: Pod>(to: *mut T, value: T) {
     let words = const { whole_words::<T>() };
     let from = &raw const value;
-    // SAFETY: the pieces lie in `value` and in `to`, and are aligned: sizes are multiples of
+    // SAFETY: the pieces are within `value` and `to`, and aligned: sizes are multiples of
     // alignments.
     unsafe {
         if align_of::<T>() >= 8 {

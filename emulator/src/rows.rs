@@ -41,7 +41,7 @@ impl<'a, M: RowMap> Rows<'a, M> {
         row::<M>(&self.columns[i / WIDTH * Self::NUMBERS..], i % WIDTH)
     }
 
-    /// What becomes of each row in vectors, or that it is open.
+    /// The result of each row in vectors, or [`OPEN`](nearmiss_kernels::exec::OPEN).
     pub fn at_once(&self, map: &M) -> Vec<u32> {
         let mut results = vec![[0; WIDTH]; self.columns.len() / Self::NUMBERS];
         at_once(map, self.columns, &mut results);
@@ -112,7 +112,7 @@ mod tests {
     use super::{Rows, WIDTH, each};
     use nearmiss_kernels::exec::RowMap;
 
-    /// What a row of four becomes: comparisons, a division, a choice; as kernels' maps are.
+    /// The result for a row of four: comparisons, a division, a choice; as in kernels' maps.
     struct Mixed;
 
     impl RowMap for Mixed {
@@ -133,7 +133,7 @@ mod tests {
         (0..5 * WIDTH + 3).map(|i| [[pick(i, 0), pick(i, 1)], [pick(i, 2), pick(i, 3)]]).collect()
     }
 
-    /// NaN has many bits; which one is nobody's promise.
+    /// NaN has many bits, and none is promised.
     fn told(bits: u32) -> u32 {
         if f32::from_bits(bits).is_nan() { f32::NAN.to_bits() } else { bits }
     }

@@ -28,11 +28,11 @@ use bytemuck::NoUninit;
 use core::marker::PhantomData;
 use name::{Name, precision};
 
-/// A kernel as the host knows it.
+/// A kernel, for the host.
 pub trait Entry: 'static {
     /// The name of the PTX entry, of the profiler's row and of this type: stage and step.
     const NAME: &'static str;
-    /// What it is launched with.
+    /// Launch arguments.
     type Args: NoUninit + Send + Sync;
     /// Lanes of a block.
     const LANES: u32;
@@ -41,7 +41,7 @@ pub trait Entry: 'static {
     /// Bytes of shared memory of a block.
     const SHARED: u32;
     /// Most registers of a lane: fewer than the compiler would take, so that more warps are
-    /// resident. None is as many as it wants.
+    /// resident. `None` sets no limit.
     const REGISTERS: Option<u32> = None;
     /// Its place in [`TABLE`]; none of kernels that are not in it, as tests have.
     const PLACE: Option<usize> = None;
@@ -94,7 +94,7 @@ macro_rules! entries {
 #[unsafe(no_mangle)]
 pub static NEARMISS_STAMP: u64 = stamp::SOURCES;
 
-/// What a kernel is, of the parts of its line.
+/// The associated constants of a kernel, from the parts of its line.
 macro_rules! is_entry {
     ($path:expr, [$args:ty], $lanes:expr, $shared:expr $(, exact = $exact:literal)? $(, registers = $registers:literal)?) => {
         type Args = $args;
@@ -134,9 +134,9 @@ macro_rules! kernels {
     };
 }
 
-/// The same of the kernels of volumes: `both` precisions of positions have one, `each` has one
-/// (`R`), and `groups` are those of each precision that only some volumes have. [`crate::volumes`]
-/// says which volumes there are.
+/// The same for the kernels of volumes. `both` precisions of positions share one; `each` has one a
+/// precision (`R`). `groups` are those of each precision for some volumes only. [`crate::volumes`]
+/// lists the volumes.
 macro_rules! kernels_of_volumes {
     (
         both { $($name:ident: $path:expr, [$args:ty], $lanes:expr, $shared:expr $(, exact = $exact:literal)?;)* }
@@ -254,7 +254,7 @@ macro_rules! table {
     };
 }
 
-/// What stands behind, where a volume has groups.
+/// Its second part, if a volume has groups.
 macro_rules! for_groups {
     (groups $($what:tt)*) => { $($what)* };
 }

@@ -1,14 +1,13 @@
-//! A stable radix sort by bytes, a launch a byte, and what kernels share that rank items by a small
-//! number.
+//! A stable radix sort by bytes, a launch a byte, and the ranking that other kernels share.
 //!
-//! A tile is what one block ranks: `rounds` times [`EACH`] items a lane. Whoever makes a list
-//! counts its digits, tile by tile, as it goes ([`tally`]); so when a pass begins it knows how
-//! often each digit comes in each tile, and each block sums on its own what lies before its items
-//! ([`starts`]): no launch that counts, none that sums, nobody who waits.
+//! A tile is the share of one block: `rounds` times [`EACH`] items a lane. The producer of a list
+//! counts its digits, tile by tile, as it writes ([`tally`]). So a pass has the counts of each
+//! digit in each tile from the start. Each block sums those before its items by itself
+//! ([`starts`]). So no launch counts, no launch sums, and no block depends on another.
 //!
 //! Four counts of 16 bits share a word, so a tile has fewer than 65,536 items. Every block reads
-//! the counts of all tiles, 512 B each: their number is kept small ([`MOST_TILES`]), and more items
-//! make longer tiles.
+//! the counts of all tiles, 512 B each. So tiles are few ([`MOST_TILES`]), and more items make
+//! longer tiles.
 
 use crate::abi::{SortArgs, Tiles};
 use crate::exec::{BINS, Block, Lane, Shared, Slot, WARP, striped};
@@ -31,7 +30,7 @@ pub const fn shared_bytes(lanes: u32) -> u32 {
     4 * BINS * (2 + lanes.div_ceil(WARP))
 }
 
-/// Counts an item that lies, or will lie, at a place.
+/// Counts an item that is, or will be, at a place.
 #[inline]
 pub fn tally<L: Lane>(lane: &L, tiles: &Tiles, place: u32, digit: u32) {
     lane.fetch_add(tiles.counts, place / tiles.items * WORDS + digit / A_WORD, 1 << (16 * (digit % A_WORD)));
@@ -39,16 +38,16 @@ pub fn tally<L: Lane>(lane: &L, tiles: &Tiles, place: u32, digit: u32) {
 
 /// Shared memory for [`starts`] and for [`Block::ranks`].
 pub struct Bins {
-    /// Of each digit: where the block's next item goes.
+    /// For each digit: the place of the block's next item.
     pub next: Shared<u32>,
-    /// Of each digit: how many items there are in all.
+    /// For each digit: the number of items in all.
     pub totals: Shared<u32>,
     /// For `ranks`.
     pub scratch: Shared<u32>,
 }
 
-/// Where this block's items go, digit by digit: behind all smaller digits, and behind the same one
-/// in earlier tiles.
+/// The places of this block's items, digit by digit: after all smaller digits, and after the same
+/// one in earlier tiles.
 #[inline]
 pub fn starts<B: Block>(block: &mut B, tiles: &Tiles) -> Bins {
     let (tile, lanes) = (block.block(), block.lanes());
@@ -113,11 +112,15 @@ pub fn starts<B: Block>(block: &mut B, tiles: &Tiles) -> Bins {
 }
 
 /// # Pass: items in the order of one byte; equal bytes keep their order
-/// Launch   a block a tile. Reads    items, their digits' counts; where only the device knows how
-/// many items there are, that number. Writes   items; the counts of the next byte's digits in the
-/// tiles they go to. Before   the counts are complete; those of the next byte are zero. Room
-/// fixed; cannot run out. Cost     8 B in, 8 B out and an atomic a key; 512 B a tile and block,
-/// summed by each. Three rounds to L2 in a row: items and counts together, places, atomics.
+/// Paper    a radix sort as in the thesis's construction; this one is not in the paper.
+/// Launch   a block a tile.
+/// Reads    items; counts of their digits; the number of items, if only the device has it.
+/// Writes   items; the counts of the next byte's digits in the tiles of their new places.
+/// Before   the counts are complete; those of the next byte = 0.
+/// After    out = items, stably ascending by (item >> shift) & 255.
+/// Room     fixed; cannot run out.
+/// Cost     8 B in, 8 B out and an atomic a key; 512 B a tile and block, summed by each.
+///          Three rounds to L2 in a row: items and counts together, places, atomics.
 pub fn pass<B: Block>(block: &mut B, args: &SortArgs) {
     let bins = starts(block, &args.tiles);
     let (tile, lanes) = (block.block(), block.lanes());

@@ -17,9 +17,9 @@ macro_rules! arguments {
         #[derive(Clone, Copy, Debug)]
         #[repr(C)]
         pub struct $name $(<$($g: $bound),*>)? { $($(#[$fdoc])* pub $field: $ty,)* }
-        // SAFETY: every field is Zeroable, which `FITS` asks.
+        // SAFETY: every field is Zeroable, which `FITS` checks.
         unsafe impl $(<$($g: $bound),*>)? Zeroable for $name $(<$($g),*>)? {}
-        // SAFETY: no field has padding, nor is there any between them, both of which `FITS` asks.
+        // SAFETY: no field has padding, nor is there any between them; `FITS` checks both.
         unsafe impl $(<$($g: $bound),*>)? bytemuck::NoUninit for $name $(<$($g),*>)? {}
         impl $(<$($g: $bound),*>)? $name $(<$($g),*>)? {
             /// Evaluated for every block that is launched: no padding, and every field may be zero.
@@ -47,8 +47,7 @@ arguments! {
         faces: Span<[u32; 3]>,
         /// The tree's bodies.
         bodies: Span<TreeBody>,
-        /// What is known of each body's triangles, [`OF_A_BODY`](crate::bvh::centres::OF_A_BODY)
-        /// words.
+        /// Extents of each body's triangles, [`OF_A_BODY`](crate::bvh::centres::OF_A_BODY) words.
         extents: Span<u64>,
         /// Out: code of each triangle's centre, above the triangle.
         items: Span<u64>,
@@ -68,12 +67,12 @@ arguments! {
         faces: Span<[u32; 3]>,
         /// The tree's bodies.
         bodies: Span<TreeBody>,
-        /// What is known of each body's triangles.
+        /// Extents of each body's triangles.
         extents: Span<u64>,
         /// Six ordered keys a stretch: the box of its triangles' centres.
         stretches: Span<u64>,
-        /// In order: something above its triangle. Of `construct_halves` also out: a code above its
-        /// triangle.
+        /// Items in order, above each its triangle. For `construct_halves` also out: a code above
+        /// its triangle.
         items: Span<u64>,
         /// Out of `construct_runs`: the same in their new order.
         out: Span<u64>,
@@ -100,8 +99,7 @@ arguments! {
         items: Span<u64>,
         /// Items out.
         out: Span<u64>,
-        /// How many items there are, where only the device knows; else empty: as many as there is
-        /// room for.
+        /// The number of items, if only the device has it; else empty: the list is full.
         live: Span<u64>,
         /// Counts of this byte.
         tiles: Tiles,
@@ -112,8 +110,8 @@ arguments! {
         /// The next pass's.
         next_shift: u32,
     }
-    /// `construct_tree`, `construct_depth`, `construct_places`, `construct_emit`. An inner node is
-    /// known by the gap between leaves that it splits: gap i lies behind leaf i.
+    /// `construct_tree`, `construct_depth`, `construct_places`, `construct_emit`. The number of an
+    /// inner node is the gap between leaves that it splits: gap i is behind leaf i.
     TreeArgs {
         /// Sorted: a Morton code above its triangle.
         items: Span<u64>,
@@ -135,18 +133,18 @@ arguments! {
         pair_parents: Span<u32>,
         /// Out: each leaf's node.
         leaf_nodes: Span<u32>,
-        /// Out: the first leaf below each pair of siblings; empty where nobody asks.
+        /// Out: the first leaf below each pair of siblings; empty if not needed.
         firsts: Span<u32>,
-        /// Out: whose triangles lie below each node; empty where all are of one body.
+        /// Out: filters of the triangles below each node; empty if all are of one body.
         filters: Span<NodeFilter>,
         /// All bodies of the scene; empty where there are no filters.
         bodies: Span<BodyRecord>,
         /// The [`NodeFilter::hub`] of every triangle; empty without hubs.
         hubs: Span<u32>,
-        /// Scratch, zeroed before. Of each inner node: 1 if its leaves have different hubs; empty
+        /// Scratch, zeroed before. For each inner node: 1 if its leaves have different hubs; empty
         /// without hubs.
         mixed: Span<u64>,
-        /// Out: the leaves' places; empty where nobody asks for treelets, as the next two are.
+        /// Out: the leaves' places; empty without treelets, as the next two are.
         leaf_places: Span<LeafPlace>,
         /// Out, zeroed before. For each chunk of leaves: how many leaves there are from the first
         /// on that begins a subtree of a treelet; 0 where none does.
@@ -275,7 +273,7 @@ arguments! {
         /// touching alone.
         margin: f32,
     }
-    /// `refit_bottom_up`: the volumes of the inner nodes, by whoever comes second.
+    /// `refit_bottom_up`: the volumes of the inner nodes, by the second arrival.
     BottomUpArgs<V: Pod> {
         /// The tree.
         links: Span<Link>,
@@ -300,7 +298,7 @@ arguments! {
         nodes: Span<Node<V>>,
         /// The node of each leaf that walks.
         leaf_nodes: Span<u32>,
-        /// Which pairs are asked.
+        /// Collision filters.
         filters: FilterArgs,
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
@@ -327,7 +325,7 @@ arguments! {
         nodes: Span<Node<V>>,
         /// The node of each leaf that may be a sample.
         leaf_nodes: Span<u32>,
-        /// Which pairs are asked.
+        /// Collision filters.
         filters: FilterArgs,
         /// Counters.
         counters: Counters,
@@ -335,7 +333,7 @@ arguments! {
         samples: u32,
         /// How many pairs of triangles a sample measures at most.
         measures: u32,
-        /// How many pairs of siblings it looks at.
+        /// Most pairs of siblings that a walk tests.
         steps: u32,
         /// [`TraverseFlags::GRAFTED`].
         flags: TraverseFlags,

@@ -23,7 +23,7 @@ arguments! {
         ee: Output<Pair>,
         /// Features whose boxes come within it are listed, a length; 0 for touching.
         gap: f64,
-        /// The bits of a time: who only meets later does not matter. Empty where all do.
+        /// The bits of a time: pairs that first meet later do not matter. Empty if all matter.
         known: Span<u64>,
     }
     /// `narrow_moller`, `narrow_filter`, `narrow_wide`, `narrow_exact`, and those of the start of a
@@ -39,7 +39,7 @@ arguments! {
         contacts: Output<Pair>,
         /// Out: pairs that a filter leaves to what comes next; empty for the last one.
         undecided: Output<Pair>,
-        /// What is asked of them.
+        /// Flags of the test.
         flags: DiscreteFlags,
         /// Zero.
         pad: u32,
@@ -60,7 +60,7 @@ arguments! {
         may_vf: Output<Pair>,
         /// Out: edge/edge pairs that may meet.
         may_ee: Output<Pair>,
-        /// What is asked.
+        /// Parameters of the query.
         params: Params,
         /// The bits of a time: pairs that cannot meet before it are left out too. Empty where all
         /// are wanted.
@@ -76,7 +76,7 @@ arguments! {
         edges: Span<[u32; 2]>,
         /// Candidates that may meet.
         survivors: Output<Pair>,
-        /// Out: contacts; empty when only the earliest is asked for.
+        /// Out: contacts; empty if only the earliest is wanted.
         hits: Output<Hit>,
         /// Out: the least toi so far, the words of [`super::earliest`]; or empty.
         earliest: Span<u64>,
@@ -119,8 +119,7 @@ arguments! {
         /// The distance, a length.
         distance: f64,
     }
-    /// `narrow_blunt`: hits so large that the solver's precision cannot tell as little as the
-    /// tolerance.
+    /// `narrow_below_precision`: hits so large that the solver's precision does not resolve the tolerance.
     BelowPrecisionArgs<R: Real> {
         /// Positions.
         frames: Positions<R>,
@@ -138,14 +137,14 @@ arguments! {
         tolerance: f64,
         /// The tolerances of bodies, by their first vertices; empty if all pairs have the same.
         tolerances: Span<BodyTolerance>,
-        /// The least part of a pair's extent that the solver can tell.
+        /// The least part of a pair's extent that the solver resolves.
         finest: f64,
     }
     /// Pairs of one kind for a rung, and where they go.
     Listed {
         /// Pairs.
         pairs: Output<Pair>,
-        /// Out: contacts and unresolved pairs; empty when only the earliest is asked for.
+        /// Out: contacts and unresolved pairs; empty if only the earliest is wanted.
         hits: Output<Hit>,
         /// Out: pairs for the next rung; empty where there is none.
         left: Output<Pair>,
@@ -170,9 +169,9 @@ arguments! {
         /// The tolerances of bodies, by their first vertices; empty if all pairs have that of
         /// `params`.
         tolerances: Span<BodyTolerance>,
-        /// What is asked.
+        /// Parameters of the query.
         params: Params,
-        /// What it is told.
+        /// Flags of the rung.
         flags: RungFlags,
         /// Zero.
         pad: u32,

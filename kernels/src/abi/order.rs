@@ -3,7 +3,7 @@
 use super::{BodyRecord, Hit, NearHit, Output, Pair, Span, Tiles};
 use bytemuck::{Pod, Zeroable};
 
-/// What contacts are ordered by.
+/// The sort key of a contact.
 pub trait Named {
     /// The two features.
     fn name(&self) -> [u32; 2];

@@ -53,7 +53,7 @@ impl<T> Output<T> {
     /// The word that counts the entries, those without room included; none where there is no list.
     #[inline(always)]
     pub const fn count(&self) -> Span<u64> {
-        // SAFETY: the word of a span of one; who made that span promised what is asked here.
+        // SAFETY: the word of a span of one; the maker of that span promised what is required here.
         unsafe { Span::new(self.count, (self.count != 0) as u64) }
     }
 }

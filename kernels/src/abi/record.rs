@@ -115,7 +115,7 @@ pub struct Hit {
     pub a: u32,
     /// The face, or the second edge.
     pub b: u32,
-    /// What is known of it: bounds of the first time of contact, and whether it is certain.
+    /// The verdict: bounds of the first time of contact, and whether it is certain.
     pub verdict: Verdict,
 }
 const _: () = assert!(size_of::<Hit>() == 32);
@@ -130,7 +130,7 @@ pub struct NearHit {
     pub b: u32,
     /// Their squared distance.
     pub squared: f64,
-    /// Where they are nearest, see [`crate::prim::near::Near::at`].
+    /// The nearest points, see [`crate::prim::near::Near::at`].
     pub at: [f64; 2],
 }
 const _: () = assert!(size_of::<NearHit>() == 32);
@@ -145,7 +145,7 @@ pub struct NearestHit {
     pub b: u32,
     /// How far they are apart: 0 only if they share a point.
     pub distance: f64,
-    /// Where they are nearest: of each the weights of corners 1 and 2.
+    /// The nearest points: for each triangle the weights of corners 1 and 2.
     pub at: [[f64; 2]; 2],
     /// Those points.
     pub points: [[f64; 3]; 2],
@@ -180,7 +180,7 @@ pub struct Treelet {
 }
 const _: () = assert!(size_of::<Treelet>() == 16);
 
-/// Where a leaf lies, in leaf order.
+/// The place of a leaf, in leaf order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C, align(8))]
 pub struct LeafPlace {
@@ -215,12 +215,12 @@ impl Merge {
     pub fn in_treelet(left: u32, right: u32, round: u32) -> u32 {
         left | right << Self::SLOT | round << (2 * Self::SLOT)
     }
-    /// Where the left child's volume is: at its first leaf, counted from the treelet's; the merged
-    /// one takes its place.
+    /// The slot of the left child's volume: its first leaf, counted from the treelet's. The merged
+    /// volume takes the same slot.
     pub fn left(&self) -> u32 {
         self.slots & ((1 << Self::SLOT) - 1)
     }
-    /// Where the right child's volume is.
+    /// The slot of the right child's volume.
     pub fn right(&self) -> u32 {
         self.slots >> Self::SLOT & ((1 << Self::SLOT) - 1)
     }
@@ -250,7 +250,7 @@ impl<R: Real> From<Vec3<R>> for Point<R> {
     }
 }
 
-/// A vertex in motion: both ends of the step lie together, since whoever needs one needs both.
+/// A vertex in motion. Both ends of the step are adjacent: a reader of one needs both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct VertexMotion<R> {

@@ -89,8 +89,8 @@ impl Volume for Aabb {
     fn overlaps(&self, other: &Self) -> bool {
         Aabb::overlaps(self, other)
     }
-    /// The root of the sum of the squared gaps. Each gap is rounded once, and the five operations
-    /// behind it once each; where squares have not all their digits, the largest gap is told.
+    /// The root of the sum of the squared gaps. Each gap is rounded once, and each of the five
+    /// operations behind it once. If squares lose digits, the largest gap is returned.
     #[inline]
     fn apart(&self, o: &Self) -> f32 {
         let gap = |k: usize| (self.lo[k] - o.hi[k]).greater(o.lo[k] - self.hi[k]).greater(0.0);

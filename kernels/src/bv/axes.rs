@@ -103,9 +103,9 @@ impl Covariance {
         self
     }
 
-    /// The principal axes, those of the largest and of the second variance first; the world's where
-    /// there are none (no variance, NaN). Cyclic Jacobi rotations on the matrix divided by its
-    /// largest entry.
+    /// The principal axes, that of the largest variance first, then that of the second. The world's
+    /// axes if there are none (no variance, NaN). Cyclic Jacobi rotations on the matrix divided by
+    /// its largest entry.
     #[inline]
     pub fn axes(mut self) -> Frame {
         let most = Real::max(Real::max(self.on[0], self.on[1]), self.on[2]);

@@ -7,8 +7,8 @@ use crate::math::{Real, Vec3, ordered};
 
 /// Keys of a box: upper x, y, z, and lower x, y, z (complemented), so that all are maxima.
 pub const KEYS: u32 = 6;
-/// Where a body's triangles are: a box, the sum of the exponents of their sizes, how many have one,
-/// and how many are outsized.
+/// Words of a body's extent: a box, the sum of the exponents of its triangles' sizes, the number of
+/// these, and the number that are outsized.
 pub const OF_A_BODY: u32 = KEYS + 3;
 /// The sum of the exponents.
 const EXPONENTS: u32 = KEYS;
@@ -51,8 +51,8 @@ fn middle([p, q, r]: [Vec3<f64>; 3]) -> Vec3<f64> {
     (p + q + r) * (1.0 / 3.0)
 }
 
-/// The exponent of the longest side of the box around a triangle, as IEEE 754 has it; 0 where there
-/// is no extent to speak of.
+/// The exponent of the longest side of the box around a triangle, as in IEEE 754; 0 if the triangle
+/// has no extent.
 #[inline(always)]
 fn exponent([p, q, r]: [Vec3<f64>; 3]) -> u64 {
     let sides = p.greater(q).greater(r) - p.lesser(q).lesser(r);
@@ -62,12 +62,12 @@ fn exponent([p, q, r]: [Vec3<f64>; 3]) -> u64 {
 /// Words that blocks gather of an extent.
 const GATHERED: u32 = SIZED + 1;
 
-/// What is known of some triangles: the first words of [`OF_A_BODY`].
+/// The extent of some triangles: the first words of [`OF_A_BODY`].
 #[derive(Clone, Copy)]
 pub struct Extent([u64; GATHERED as usize]);
 
 impl Extent {
-    /// Of none.
+    /// The extent of no triangles.
     pub const NONE: Extent = Extent([0; GATHERED as usize]);
 
     /// With a triangle: its centre, and its size where that `counts`.
@@ -85,7 +85,7 @@ impl Extent {
         self.0[SIZED as usize] += (exponent > 0) as u64;
     }
 
-    /// One word, told to all.
+    /// Merges one word into memory.
     #[inline(always)]
     fn report_word<L: Lane>(lane: &L, extents: Span<u64>, at: u32, k: u32, word: u64) {
         if k < KEYS {
@@ -95,7 +95,7 @@ impl Extent {
         }
     }
 
-    /// A lane's, told to all.
+    /// Merges a lane's extent into memory.
     #[inline(always)]
     pub fn report<L: Lane>(&self, lane: &L, extents: Span<u64>, at: u32) {
         (0..GATHERED).for_each(|k| Self::report_word(lane, extents, at, k, self.0[k as usize]));
@@ -118,7 +118,7 @@ pub fn gathered<B: Block>(block: &mut B) -> Shared<u64> {
     block.shared(GATHERED * block.lanes())
 }
 
-/// What all lanes have put, told to all as one: it lies at a place of `extents`.
+/// Merges the extents that all lanes have put, into memory at `at`, by one lane a word.
 pub fn report_together<B: Block>(block: &mut B, best: Shared<u64>, extents: Span<u64>, at: u32) {
     let lanes = block.lanes();
     let mut width = lanes;
@@ -142,9 +142,10 @@ pub fn report_together<B: Block>(block: &mut B, best: Shared<u64>, extents: Span
     });
 }
 
-/// The extents of things that each have a stretch of `count` items: what a block looks at together
-/// is of one as a rule. `which` thing an item is of; `add` adds it, and its size if it is there for
-/// the first time, and says of which thing it is. Each has so many `words`.
+/// The extents of groups, each a contiguous range of the `count` items. A block's items mostly
+/// belong to one group. `which` returns the group of an item. `add` adds an item and returns its
+/// group; the flag is false for a repeated item, whose size does not count. An extent has `words`
+/// words.
 pub fn of_each<B: Block>(
     block: &mut B,
     extents: Span<u64>,
@@ -185,7 +186,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Of the box with these keys.
+    /// The grid of the box with these keys.
     #[inline(always)]
     pub fn new(keys: [u64; KEYS as usize], bits: u32) -> Grid {
         let (lo, sides) = sides(keys);

@@ -16,7 +16,7 @@ pub fn is_fitted<V: Volume, L: Lane>(lane: &L, firsts: Span<u32>, link: Link, ax
 /// The corners of the triangles of neighbouring leaves: leaf by leaf, each corner at t = 0 and,
 /// when there are two frames, at t = 1.
 pub struct GroupPoints<'a, R: Real, L> {
-    /// Who reads.
+    /// The lane that reads.
     pub lane: &'a L,
     /// Positions.
     pub frames: Positions<R>,

@@ -1,4 +1,4 @@
-//! Of a query for the earliest time alone: until when a pair matters.
+//! The horizon of an earliest query: the time until which a pair matters.
 
 use crate::abi::Span;
 use crate::bv::Volume;

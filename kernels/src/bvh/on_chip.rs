@@ -3,7 +3,7 @@
 use crate::bv::{Axes, Volume};
 use crate::exec::{Block, Lane, Shared, Slot};
 
-/// Places for volumes, word by word, so that neighbours lie in different banks.
+/// Places for volumes, stored word by word, so that neighbours are in different banks.
 #[derive(Clone, Copy)]
 pub struct OnChip {
     words: Shared<[u32; 2]>,
@@ -42,9 +42,9 @@ impl OnChip {
         }
     }
 
-    /// Merges runs of volumes, each lane's in its own place and in `volumes`: of every `each` that
-    /// are `apart` lanes from each other the first one's becomes the merge of all, those half of
-    /// them further on first.
+    /// Merges runs of volumes, each lane's in its own place and in `volumes`. A run is `each`
+    /// lanes, `apart` lanes from one to the next. The first one's volume becomes the merge of all;
+    /// the first merge spans half a run.
     pub fn merge<V: Volume, B: Block>(
         self,
         block: &mut B,

@@ -1,5 +1,5 @@
-//! What kernels do with lists, append to them and read those that an earlier launch filled, and
-//! with counters.
+//! Operations of kernels on lists and counters: append to a list, or read one that an earlier
+//! launch filled.
 
 use super::{Block, Lane};
 use crate::abi::{Counter, Counters, Output};
@@ -42,7 +42,7 @@ impl<T: Pod> Output<T> {
 }
 
 impl Counters {
-    /// What one stands at.
+    /// The value of a counter.
     #[inline(always)]
     pub fn get<L: Lane>(&self, lane: &L, which: Counter) -> u64 {
         lane.read(self.words(), which.place())
@@ -57,7 +57,7 @@ impl Counters {
     pub fn add_once<B: Block>(&self, block: &mut B, which: Counter, count: u64) {
         block.reserve(self.words(), which.place(), count);
     }
-    /// What one stands at while lanes change it.
+    /// The value of a counter while lanes change it.
     #[inline(always)]
     pub fn look<L: Lane>(&self, lane: &L, which: Counter) -> u64 {
         lane.fetch_load(self.words(), which.place())
@@ -70,15 +70,15 @@ impl Counters {
             self.raise(lane, which, least);
         }
     }
-    /// The shortest length that one was told, infinite where there is none: it holds the complement
-    /// of its bits, so that zero is none and the largest is the shortest. Nothing in this launch
-    /// may tell one.
+    /// The shortest length in a counter; infinite if there is none. The word is the complement of
+    /// the length's bits, so 0 is none and the largest word is the shortest length. No lane of this
+    /// launch may shorten it.
     #[inline(always)]
     pub fn shortest<B: Block>(&self, block: &B, which: Counter) -> f64 {
         let word = block.load(self.words(), which.place());
         if word == 0 { f64::INFINITY } else { f64::from_bits(!word) }
     }
-    /// Tells one a length, which is not below 0.
+    /// Lowers a counter to a length, which is at least 0.
     #[inline(always)]
     pub fn shorten<L: Lane>(&self, lane: &L, which: Counter, length: f64) {
         self.raise_seldom(lane, which, !length.to_bits());

@@ -72,8 +72,8 @@ pub trait Real:
     fn max(self, o: Self) -> Self {
         if o > self { o } else { self }
     }
-    /// As [`Real::min`], but of two zeros either, as is quickest on the machine: where nothing
-    /// hangs on the sign of a zero.
+    /// As [`Real::min`], but of two zeros either one, the faster on the machine. For uses that do
+    /// not depend on the sign of a zero.
     #[inline]
     fn lesser(self, o: Self) -> Self {
         self.min(o)

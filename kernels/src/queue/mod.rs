@@ -16,9 +16,9 @@ pub const ROOM: usize = MAX_LEVELS as usize;
 /// The memory of a stack; see [`crate::exec::Block::words`].
 pub type Words = [MaybeUninit<u32>; ROOM];
 
-/// A stack of work that cannot overflow: a depth-first walk leaves at most one waiting entry a
-/// level behind. Between phases its words and its length lie in slots of their own, so that nothing
-/// copies the words.
+/// A stack of work that cannot overflow: a depth-first walk leaves at most one sibling a level
+/// behind. Between phases its words and its length are in slots of their own. So nothing copies the
+/// words.
 pub struct Stack<'a> {
     words: &'a mut Words,
     len: &'a mut u32,
@@ -39,7 +39,7 @@ impl<'a> Stack<'a> {
     pub fn len(&self) -> u32 {
         *self.len
     }
-    /// Whether no entry waits.
+    /// Whether the stack is empty.
     #[inline]
     pub fn is_empty(&self) -> bool {
         *self.len == 0
@@ -48,7 +48,7 @@ impl<'a> Stack<'a> {
     #[inline]
     pub fn push(&mut self, item: u32) {
         debug_assert!((*self.len as usize) < ROOM);
-        // SAFETY: a walk holds at most ROOM entries: who made the stack promised it.
+        // SAFETY: a walk holds at most ROOM entries, as the caller of `new` promised.
         unsafe { self.words.get_unchecked_mut(*self.len as usize).write(item) };
         *self.len += 1;
     }
@@ -75,17 +75,17 @@ impl<'a> Stack<'a> {
 pub struct Buffer {
     /// The pairs.
     pub pairs: Shared<[u32; 2]>,
-    /// One word: how many were asked to be put in.
+    /// One word: the number of pairs put in, past the end too.
     pub fill: Shared<u32>,
 }
 
 impl Buffer {
-    /// Asks for places of `count` pairs: the first of them, which may lie past the end.
+    /// Takes places for `count` pairs. Returns the first, which may be past the end.
     #[inline]
     pub fn take<L: Lane>(&self, lane: &L, count: u32) -> u32 {
         lane.shared_add(self.fill, 0, count)
     }
-    /// Puts a pair in its place; false when that lies past the end.
+    /// Puts a pair in its place; false if that is past the end.
     #[inline]
     pub fn put<L: Lane>(&self, lane: &L, place: u32, pair: Pair) -> bool {
         let room = place < self.pairs.len;

@@ -33,8 +33,8 @@ impl ChildPairs {
         ends: 0,
     };
 
-    /// Says of pair `k`, of nodes `p` and `q`, what it is, from whether it overlaps. Its triangles
-    /// are named in ascending order.
+    /// Classifies pair `k`, of nodes `p` and `q`, by whether it overlaps. Its triangles are named
+    /// in ascending order.
     #[inline(always)]
     fn note<V>(&mut self, k: usize, overlap: bool, p: &Node<V>, q: &Node<V>) {
         let leaves = p.is_leaf() & q.is_leaf();
@@ -47,7 +47,7 @@ impl ChildPairs {
     }
 }
 
-/// The pairs below `unit` that are asked about. A leaf with itself is no pair.
+/// The pairs below `unit` that the filters allow. A leaf with itself is no pair.
 #[inline(always)]
 pub fn below<V: Volume, L: Lane>(lane: &L, to: &PairArgs<V>, unit: Pair) -> ChildPairs {
     let mut below = ChildPairs::NONE;
@@ -69,8 +69,8 @@ pub fn below<V: Volume, L: Lane>(lane: &L, to: &PairArgs<V>, unit: Pair) -> Chil
         a
     };
     let mut into_left = left.volume.overlaps(&other.volume);
-    // Of the pairs left with other, right with other; together also of left and right with
-    // themselves.
+    // For the pairs (left, other) and (right, other); with `together` also (left, left) and (right,
+    // right).
     let mut allowed = [true; 4];
     if !to.filters.nodes.is_empty() {
         let node = if together {

@@ -10,9 +10,8 @@ use crate::bv::Volume;
 use crate::exec::{Block, Lane, Shared, Slot};
 use crate::prim::adjacent::share_a_vertex;
 
-/// Units that a block's queue has room for: with what else the block holds, a third of what a block
-/// may have and less than the 16 KB of the paper's cores, so that 18 blocks of 64 lanes fit on a
-/// core of today.
+/// Capacity of a block's queue, in units. With its buffer a block uses less than the 16 KB of the
+/// paper's cores. So 18 blocks of 64 lanes fit on a core of today.
 pub const ROOM: u32 = 1024;
 /// Candidates that wait on chip, a lane: room for two more each when a flush is put off.
 const FOUND_A_LANE: u32 = 6;
@@ -28,13 +27,13 @@ pub const fn shared_bytes(lanes: u32) -> u32 {
     8 * ROOM + 8 * FOUND_A_LANE * lanes + 16
 }
 
-/// Where units go that the queue has no room for: a segment of the block's own, or a list of all
-/// blocks.
+/// The destination of units without room in the queue: a segment of the block's own, or a list of
+/// all blocks.
 #[derive(Clone, Copy)]
 pub struct Outside {
     /// The memory.
     pub units: Span<Pair>,
-    /// Where the block's segment begins and how long it is; a length of 0 for a list of all blocks.
+    /// Start and length of the block's segment; length 0 for a list of all blocks.
     pub segment: (u32, u32),
     /// Units in the segment, past its end too; of a list of all blocks those that came from this
     /// block.
@@ -52,7 +51,7 @@ pub struct Places {
     first: u64,
     /// Behind the last place that exists.
     end: u64,
-    /// What the memory would have to hold.
+    /// Capacity that the memory would need.
     demand: u64,
 }
 
@@ -74,7 +73,7 @@ impl Outside {
 }
 
 impl Places {
-    /// Puts unit `i` in its place; where that does not exist the demand tells.
+    /// Puts unit `i` in its place. If that does not exist, only the demand counts it.
     #[inline]
     pub fn put<L: Lane>(&self, lane: &L, i: u32, unit: Pair) {
         let at = self.first + i as u64;
@@ -82,7 +81,7 @@ impl Places {
             lane.write(self.units, at as u32, unit);
         }
     }
-    /// Tells the host how many units there are. For one lane.
+    /// Reports the number of units to the host. For one lane.
     #[inline]
     pub fn report<L: Lane>(&self, lane: &L, counters: Counters) {
         counters.raise(lane, counter::QUEUED, self.demand);
@@ -120,7 +119,7 @@ impl<B: Block> Worker<B> {
         Worker { queue, found, below, sums, kept, top: roots as u32, fill: 0, units: 0, spills: 0 }
     }
 
-    /// Fills the empty queue with `count` units, which `unit` knows.
+    /// Fills the empty queue with `count` units, given by `unit`.
     #[inline]
     pub fn fill(&mut self, block: &mut B, count: u32, unit: impl Fn(&B::Lane, u32) -> Pair) {
         let (queue, lanes) = (self.queue, block.lanes());
@@ -135,7 +134,7 @@ impl<B: Block> Worker<B> {
         self.top = count;
     }
 
-    /// A unit that waits.
+    /// A unit of the queue.
     #[inline]
     pub fn unit(&self, lane: &B::Lane, i: u32) -> Pair {
         let [a, b] = lane.get(self.queue, i);
@@ -162,9 +161,9 @@ impl<B: Block> Worker<B> {
         self.top = from;
     }
 
-    /// A unit a lane, from the top: pairs below that go deeper go back on top, what has no room
-    /// there `outside`. Whether lane 0 votes for what it looked at: it looks before the work and
-    /// votes after, so that nobody waits for the look.
+    /// Processes a unit a lane, from the top. Pairs that go deeper return to the top; those without
+    /// room go `outside`. Returns lane 0's vote on the word that it read. The read precedes the
+    /// work and the vote follows it, which hides the latency.
     #[inline]
     pub fn step<V: Volume>(
         &mut self,

@@ -43,7 +43,7 @@ pub unsafe fn load_coherent<T: Pod>(from: *const T) -> T {
     let mut word = 0;
     while word < words {
         let at = from as u64 + 4 * word as u64;
-        // SAFETY: the pieces lie in `from` and in `value`, and are aligned: sizes are multiples of
+        // SAFETY: the pieces are within `from` and `value`, and aligned: sizes are multiples of
         // alignments.
         unsafe {
             if align >= 16 {
@@ -82,7 +82,7 @@ pub unsafe fn store_coherent<T: Pod>(to: *mut T, value: T) {
     let mut word = 0;
     while word < words {
         let at = to as u64 + 4 * word as u64;
-        // SAFETY: the pieces lie in `value` and in `to`, and are aligned: sizes are multiples of
+        // SAFETY: the pieces are within `value` and `to`, and aligned: sizes are multiples of
         // alignments.
         unsafe {
             if align >= 16 {

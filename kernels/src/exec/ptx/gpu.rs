@@ -59,13 +59,13 @@ impl Lane for Thread {
     }
     #[inline(always)]
     fn read<T: Pod>(&self, span: Span<T>, i: u32) -> T {
-        // SAFETY: as for `atomic`; nobody writes it in this phase, which the emulator's race watch
+        // SAFETY: as for `atomic`; no lane writes it in this phase, which the emulator's race watch
         // checks.
         unsafe { load_global(element(span, i)) }
     }
     #[inline(always)]
     fn write<T: Pod>(&self, span: Span<T>, i: u32, value: T) {
-        // SAFETY: as for `read`; nobody else touches it in this phase.
+        // SAFETY: as for `read`; no other lane accesses it in this phase.
         unsafe { element(span, i).write(value) }
     }
     #[inline(always)]
@@ -173,7 +173,7 @@ impl<const LANES: u32> Gpu<LANES> {
         let (lane, block) = unsafe { (thread_idx_x() as u32, block_idx_x() as u32) };
         Gpu { taken: 0, lane: Thread { lane, global: block * LANES + lane } }
     }
-    /// What lanes did to shared memory before it, all of them see behind it.
+    /// Stores of lanes to shared memory before it are visible to all of them after it.
     #[inline(always)]
     fn barrier(&self) {
         if Self::ONE_WARP { sync_warp() } else { sync_threads() }
@@ -319,9 +319,9 @@ impl<const LANES: u32> Block for Gpu<LANES> {
     }
     #[inline(always)]
     fn ticket(&mut self, counter: Span<u64>, i: u32) -> u64 {
-        // The barrier at the end of the phase before puts the other lanes' gives before lane 0's
-        // fence, which with its atomic releases them all; atomic and fence acquire, and the
-        // broadcast's barrier passes that on to all lanes.
+        // The barrier at the end of the phase before orders the other lanes' stores before lane 0's
+        // fence. That fence and its atomic release them all. Atomic and fence acquire, and the
+        // broadcast's barrier extends that to all lanes.
         self.broadcast(|| {
             fence();
             let ticket = self.lane.fetch_add(counter, i, 1);
@@ -345,8 +345,8 @@ impl<const LANES: u32> Block for Gpu<LANES> {
             bin += WARP;
         }
         sync_warp();
-        // Each warp counts by itself, an item a lane after the other: where its items lie among its
-        // own.
+        // Each warp counts by itself, an item a lane in sequence: the ranks of its items within the
+        // warp.
         let mut before = [0; K];
         for k in 0..K {
             let digit = digits.0[k];

@@ -17,7 +17,7 @@ pub use gpu::Gpu;
 /// GPU's lanes go side by side: what one of them needs costs all of them, and a branch around it
 /// more.
 pub const ALONE: bool = cfg!(not(target_arch = "nvptx64"));
-/// The smaller and the larger of two finite numbers, of two zeros either; and the square root,
+/// The smaller and the larger of two finite numbers, of two zeros either. The square root,
 /// correctly rounded on every machine.
 #[cfg(target_arch = "nvptx64")]
 pub use raw::{greater32, lesser32, sqrt32, sqrt64};
