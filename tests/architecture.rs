@@ -5,6 +5,8 @@
 mod book;
 #[path = "architecture/choices.rs"]
 mod choices;
+#[path = "architecture/proofs.rs"]
+mod proofs;
 #[path = "architecture/prose.rs"]
 mod prose;
 #[path = "support/ptx.rs"]

@@ -1,7 +1,7 @@
-//! The fifteen elementary tests of two triangles, and who owns a vertex or an edge.
+//! The fifteen elementary tests of two triangles, and the owners of vertices and edges.
 //!
 //! Edge `k` of a triangle runs from corner `k` to corner `(k + 1) % 3`. Vertices and edges belong
-//! to several triangles; each is owned by one, so that each elementary pair is tested once: by the
+//! to several triangles, and one of these owns each. So each elementary pair is tested once: by the
 //! triangles that own its parts.
 
 /// How many elementary tests two triangles have: six of a vertex and a face, nine of two edges.
@@ -18,14 +18,13 @@ pub const VERTEX_FACE: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 0), (1
 pub const EDGE_EDGE: [(usize, usize); 9] =
     [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (2, 0), (2, 1), (2, 2)];
 
-/// The bit of an ownership mask that says that the triangle owns the vertex at corner `k` (bits 0
-/// to 2).
+/// The bit of an ownership mask for the vertex at corner `k` (bits 0 to 2).
 #[inline]
 pub const fn vertex_bit(k: usize) -> u32 {
     1 << k
 }
 
-/// The bit of an ownership mask that says that the triangle owns its edge `k` (bits 3 to 5).
+/// The bit of an ownership mask for edge `k` (bits 3 to 5).
 #[inline]
 pub const fn edge_bit(k: usize) -> u32 {
     1 << (k + 3)

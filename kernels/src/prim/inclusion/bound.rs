@@ -17,8 +17,8 @@ pub struct Image<S> {
 }
 
 impl<S: Grid> Image<S> {
-    /// What each component of a corner adds to the error of a product with it: its own, and the
-    /// product's.
+    /// The part of each component of a corner in the error of a product with it: its own error, and
+    /// the product's.
     #[inline(always)]
     pub fn slack(&self) -> Vec3<S> {
         let reach = self.low.map(S::abs).max(self.high.map(S::abs));
@@ -64,12 +64,12 @@ impl<S: Grid, const N: usize> Local<S, N> {
         Image { f, low, high, error: self.error(cell) }
     }
 
-    /// The most that a component of a computed corner of `F` errs, per axis: [`INCLUSION_FACE`]
-    /// times the sum of the weights' magnitudes, which beyond the face is `2 (u + v) - 1`, or
+    /// The largest error of a component of a computed corner of `F`, per axis. [`INCLUSION_FACE`]
+    /// times the sum of the weights' magnitudes, which beyond the face is `2 (u + v) - 1`; or
     /// [`INCLUSION_EDGE`].
     ///
-    /// [`INCLUSION_FACE`]: crate::math::tolerance::Tolerance::INCLUSION_FACE [`INCLUSION_EDGE`]:
-    /// crate::math::tolerance::Tolerance::INCLUSION_EDGE
+    /// [`INCLUSION_FACE`]: crate::math::tolerance::Tolerance::INCLUSION_FACE
+    /// [`INCLUSION_EDGE`]: crate::math::tolerance::Tolerance::INCLUSION_EDGE
     #[inline]
     pub fn error(&self, cell: &Cell<S>) -> Vec3<S> {
         let each = if N == 3 {

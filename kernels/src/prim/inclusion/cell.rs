@@ -49,13 +49,13 @@ impl Grid for f64 {
     }
 }
 
-/// A box of parameters: t, u, v. Both corners lie on the grid.
+/// A box of parameters: t, u, v. Both corners are on the grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Cell<S> {
-    /// Where it begins.
+    /// The lower ends.
     pub low: Vec3<S>,
-    /// Where it ends, included.
+    /// The upper ends, included.
     pub high: Vec3<S>,
 }
 
@@ -66,8 +66,8 @@ impl<S: Grid> Cell<S> {
         Cell { low: Vec3([S::ZERO; 3]), high: Vec3([end, S::ONE, S::ONE]) }
     }
 
-    /// What is left without those parts of each range at its low and its high end, which hold no
-    /// contact; rounded outward. None if nothing is.
+    /// The rest of the box without those parts of each range, at its low and its high end, that
+    /// have no contact; rounded outward. `None` if nothing remains.
     #[inline]
     pub fn without(&self, low: [S; 3], high: [S; 3]) -> Option<Self> {
         let mut left = *self;
@@ -82,7 +82,7 @@ impl<S: Grid> Cell<S> {
         Some(left)
     }
 
-    /// What is left within a face, where `u + v <= 1`. None if nothing is. Exact.
+    /// The rest of the box within a face: `u + v <= 1`. `None` if nothing remains. Exact.
     #[inline]
     pub fn in_face(mut self) -> Option<Self> {
         let (u, v) = (S::ONE - self.low[2], S::ONE - self.low[1]);

@@ -16,7 +16,7 @@ pub struct Directions<S> {
 }
 
 impl<S: Grid> Directions<S> {
-    /// Of the corners of an image.
+    /// The directions of the corners of an image.
     #[inline(always)]
     pub fn of(f: &[Vec3<S>; 8]) -> Self {
         let c = [change(f, 0), change(f, 1), change(f, 2)];
@@ -150,13 +150,13 @@ impl<S: Grid> CutFraction<S> {
     }
 }
 
-/// What projections have left of a box.
+/// The rest of a box after projections.
 pub struct Cuts<S> {
     /// The parts of the ranges of `t`, `u`, `v` that hold no contact, at their low ends.
     low: [CutFraction<S>; 3],
     /// And at their high ends.
     high: [CutFraction<S>; 3],
-    /// Bit `k`: along direction `k` the two faces of parameter `k` lie on opposite sides.
+    /// Bit `k`: along direction `k` the two faces of parameter `k` are on opposite sides.
     pub signs: u32,
 }
 
@@ -181,13 +181,13 @@ impl<S: Grid> Cuts<S> {
         [&self.low, &self.high].map(|end| [0, 1, 2].map(|k| end[k].over / end[k].under))
     }
 
-    /// Takes the corners' products with direction `i`, each wrong by at most `error`; at a contact
-    /// the exact product is within `apart` of zero. False if the box holds no contact.
+    /// Takes the corners' products with direction `i`, each wrong by at most `error`. At a contact
+    /// the exact product is within `apart` of zero. False if the box has no contact.
     #[inline(always)]
     pub fn projection(&mut self, s: &[S; 8], error: S, apart: S, i: usize) -> bool {
         let bound = error + apart;
-        // Twice the error keeps faces on strict sides, so that a box that was cut can still be
-        // certain of its contact.
+        // Twice the error keeps faces on strict sides. So a contact can still be certain in a box
+        // that was cut.
         let wide = bound + error;
         let ranges = [ranges(s, 0), ranges(s, 1), ranges(s, 2)];
         let [low, high] = ranges[0];

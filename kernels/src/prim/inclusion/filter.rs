@@ -1,4 +1,4 @@
-//! Rejection without a search: the hull of the control vectors lies on one side of the origin.
+//! Rejection without a search: the hull of the control vectors is on one side of the origin.
 
 use super::cell::Grid;
 use super::local::Local;
@@ -19,8 +19,8 @@ impl<S: Grid, const N: usize> Local<S, N> {
     }
 
     /// Whether the features certainly stay farther apart than the separation: all control vectors
-    /// lie on one side of a plane. Directions are tried from the middle of the hull towards its
-    /// point nearest to the origin (Frank and Wolfe's steps); any direction is valid, however badly
+    /// are on one side of a plane. Directions start at the middle of the hull, and step towards its
+    /// point nearest to the origin (Frank and Wolfe). Any direction is valid, however badly
     /// computed. About 60 operations a step.
     #[inline]
     pub fn apart_by_planes(&self) -> bool {
@@ -31,7 +31,7 @@ impl<S: Grid, const N: usize> Local<S, N> {
         d = d * S::of(0.5 / N as f64);
         for _ in 0..=STEPS {
             let (low, at, error) = self.least(d);
-            // A direction too short for its square to have correct digits says nothing of lengths.
+            // A direction too short for its square to have correct digits gives no lengths.
             if low > error + self.apart(d) && d.dot(d) > S::INCLUSION_UNDERFLOW {
                 return self.finite;
             }

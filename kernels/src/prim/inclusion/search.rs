@@ -10,7 +10,7 @@ use crate::math::Vec3;
 use crate::math::tolerance::INCLUSION_SHRUNK;
 use core::mem::MaybeUninit;
 
-/// What is known so far; [`Grid::NEVER`] where there is none.
+/// Known times; [`Grid::NEVER`] for none.
 #[derive(Clone, Copy, Debug)]
 struct Known<S> {
     /// The earliest start of an accepted box.
@@ -22,11 +22,11 @@ struct Known<S> {
     certain: S,
 }
 
-/// What a look at a box gives.
+/// The result of a test of a box.
 enum CellResult<S> {
     /// No contact in it.
     Nothing,
-    /// As small as can be told; where it starts.
+    /// As small as the precision resolves; its start.
     Small(S),
     /// No contact but in a part, much smaller.
     Part(Cell<S>),
@@ -34,8 +34,8 @@ enum CellResult<S> {
     Halves(Cell<S>, Cell<S>),
 }
 
-/// A search under way: what is asked, what is known, and the box to look at next. One box a step,
-/// so that a GPU's lanes can take up new pairs as they are done with theirs.
+/// A search in progress: parameters, known times, and the next box. One box a step, so that a GPU's
+/// lanes can take new pairs when they finish theirs.
 pub struct Search<'a, S, const N: usize> {
     m: Local<S, N>,
     known: Known<S>,
@@ -48,12 +48,11 @@ pub struct Search<'a, S, const N: usize> {
 }
 
 impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
-    /// Begins; or tells at once what the filters settle, and what is no number. The stack needs
-    /// [`super::STACK`] places at most; with fewer the answer may be early.
+    /// Starts a search, or returns at once the result of the filters, or of input that is not
+    /// finite. The stack needs at most [`super::STACK`] places. With fewer the answer may be early.
     ///
     /// # Errors
-    /// The verdict, where no search is needed, and whether more precision would tell nothing that
-    /// was asked.
+    /// The verdict, if no search is needed, and whether it is final.
     #[inline]
     pub fn begin(
         m: Local<S, N>,
@@ -66,11 +65,10 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
         Self::unfiltered(m, p, stack)
     }
 
-    /// Begins without the filters, at a time before which there is no contact.
+    /// Starts without the filters, at a time before which there is no contact.
     ///
     /// # Errors
-    /// The verdict, where no search is needed, and whether more precision would tell nothing that
-    /// was asked.
+    /// The verdict, if no search is needed, and whether it is final.
     #[inline]
     pub fn from(
         m: Local<S, N>,
@@ -83,11 +81,10 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
         Ok(search)
     }
 
-    /// Begins without the filters.
+    /// Starts without the filters.
     ///
     /// # Errors
-    /// The verdict, where no search is needed, and whether more precision would tell nothing that
-    /// was asked.
+    /// The verdict, if no search is needed, and whether it is final.
     #[inline]
     pub fn unfiltered(
         m: Local<S, N>,
@@ -104,8 +101,7 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
         Ok(Search { m, known, cell: Cell::whole(m.end), stack, depth: 0, boxes: 0, exhausted: false })
     }
 
-    /// Looks at one box. Once no box is left: the verdict, and whether more precision would tell
-    /// nothing that was asked.
+    /// Tests one box. When no box is left: the verdict, and whether it is final.
     #[inline]
     pub fn step(&mut self, p: &Params) -> Option<(Verdict, bool)> {
         self.boxes += 1;
@@ -168,7 +164,7 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
         self.known.accepted = self.known.accepted.min(start);
     }
 
-    /// What is known when no box is left.
+    /// The verdict when no box is left.
     #[inline]
     fn verdict(&self, p: &Params) -> Verdict {
         let (known, boxes, exhausted) = (&self.known, self.boxes, self.exhausted);
@@ -187,7 +183,7 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
 }
 
 impl<S: Grid, const N: usize> Local<S, N> {
-    /// Looks at a box: at its image, its projections along several directions, and what of it they
+    /// Tests a box: its image, its projections along several directions, and the rest that they
     /// leave. About 1,200 operations. A function of its own, so that the search's state does not
     /// take registers from it on the GPU.
     #[inline(never)]
@@ -246,7 +242,7 @@ impl<S: Grid, const N: usize> Local<S, N> {
                 along = (k, extent);
             }
         };
-        // Of a flat image the roots are a curve: earlier times first, or both halves are followed
+        // The roots of a flat image are a curve: earlier times first, or both halves are followed
         // to their ends.
         let lasting = self.extent(f, 0);
         consider(0, if directions.flat() && lasting > self.tolerance { S::of(64.0) } else { lasting });
@@ -265,9 +261,9 @@ impl<S: Grid, const N: usize> Local<S, N> {
         }
     }
 
-    /// How much a parameter changes what decides: the image; of features apart by a separation the
-    /// distance from the origin, to the first order along the direction there and to the second
-    /// across it.
+    /// The effect of a parameter on the decision. That is the change of the image. With a
+    /// separation it is the change of the distance from the origin: first order along the
+    /// direction, second order across it.
     #[inline(always)]
     fn extent(&self, f: &[Vec3<S>; 8], k: usize) -> S {
         let most = longest(f, k);
@@ -279,8 +275,8 @@ impl<S: Grid, const N: usize> Local<S, N> {
         most.min(along + most * most / self.separation)
     }
 
-    /// Whether a time of the grid is within the step, the end of which may have been rounded up to
-    /// the grid.
+    /// Whether a time of the grid is within the step. The end of the step may have been rounded up
+    /// to the grid.
     #[inline(always)]
     fn within_step(&self, t: S) -> bool {
         !(self.beyond && t >= self.end)
@@ -290,9 +286,8 @@ impl<S: Grid, const N: usize> Local<S, N> {
     /// separation. Both belong to the features: a face's box is never wholly beyond `u + v = 1`.
     #[inline(always)]
     fn within_separation(&self, cell: &Cell<S>, image: &Image<S>, known: &mut Known<S>) {
-        // The separation was rounded up; this is below the one that was asked for. The square may
-        // lose to underflow what is far below the margin of the error, as the largest reach is
-        // about one.
+        // The separation was rounded up; this is below the requested one. The square may underflow
+        // far below the margin of the error, as the largest reach is about one.
         let less = self.separation * (S::ONE - S::of(16.0) * S::U) - S::INCLUSION_UNDERFLOW;
         let error = image.error[0] + image.error[1] + image.error[2];
         let held = |x: Vec3<S>| (x.dot(x).sqrt() + error) * S::INCLUSION_UP <= less;

@@ -1,13 +1,13 @@
-//! What is asked and what is answered.
+//! Parameters and answers of certified tests.
 
 use bytemuck::{Pod, Zeroable};
 
-/// What a certified test is asked.
+/// Parameters of a certified test.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Params {
-    /// How near to contact may be taken for contact, a length. Only how much is reported depends on
-    /// it, and the work; 0 asks for as much as the precision gives.
+    /// Allowance for contact, a length. Only the work and the number of reported pairs depend on
+    /// it; 0 is the limit of the precision.
     pub tolerance: f64,
     /// Features this near are in contact, a length; 0 for touching. With a separation a tolerance
     /// below a millionth of it mostly ends as exhausted: the first contact of round shapes is
@@ -27,7 +27,7 @@ impl Params {
         Params { tolerance, separation: 0.0, end: 1.0, budget: Self::BUDGET, pad: 0 }
     }
 
-    /// Boxes after which a pair is left unresolved, unless told: ten times what the hardest of
+    /// Default number of boxes after which a pair is left unresolved: ten times what the hardest of
     /// public scenes take.
     pub const BUDGET: u32 = 4096;
 }
@@ -97,7 +97,7 @@ impl Verdict {
     /// The same with no time before `begin`, before which there is no contact.
     #[inline]
     pub fn not_before(self, begin: f64) -> Self {
-        // Where features are separated the time is the end of the step, and later.
+        // For separated features the time is the end of the step, and later.
         let toi = if begin > self.toi { begin } else { self.toi };
         Verdict { toi, ..self }
     }
@@ -131,8 +131,8 @@ impl Verdict {
         self.state & EXHAUSTED != 0
     }
 
-    /// Whether more precision would tell nothing that was asked: separated, or a contact whose time
-    /// is known as well as the tolerance demands (`time_tolerance` is the time that it takes).
+    /// Whether the verdict is final: separated, or a contact whose time is within the tolerance.
+    /// `time_tolerance` is the time in which the features move by the tolerance.
     #[inline]
     pub(super) fn is_settled(&self, time_tolerance: f64) -> bool {
         let known = self.is_contact() && !self.exhausted() && self.toi_hi - self.toi <= 2.0 * time_tolerance;

@@ -9,7 +9,7 @@ use crate::exec::ALONE;
 use crate::math::Real;
 use crate::prim::inclusion::Grid;
 
-/// What isolation finds.
+/// The result of isolation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Found<S> {
     /// No contact in the window.
@@ -30,8 +30,7 @@ pub enum Found<S> {
     Open {
         /// No contact in the window before it.
         from: S,
-        /// All points stay in one plane with the origin, as far as can be told: no sign will ever
-        /// change.
+        /// All points stay in one plane with the origin, up to rounding: no sign will ever change.
         flat: bool,
     },
 }
@@ -44,10 +43,9 @@ pub struct CellResult<S> {
     pub around: S,
     /// Newton's steps towards it, in each look.
     pub steps: u32,
-    /// How often it is looked at again where a look tells nothing, each time for a 64th of the
-    /// time.
+    /// Further attempts after a test without a result, each with a 64th of the time.
     pub again: u32,
-    /// What is near: where no look tells anything, but the features come within this, that is told.
+    /// Distance that counts as near. A pair within it that no attempt decides is reported as near.
     pub near: S,
 }
 
@@ -55,12 +53,11 @@ impl<S: Grid, const N: usize> Pair<S, N> {
     /// Whether and when the features first meet within `[begin, end]`, a window outside of which
     /// they do not. About 1,100 operations for a window with one root.
     ///
-    /// Contact needs all four points in one plane: a root of [`Pair::cubic`]. The window is cut
-    /// where the cubic turns. Suspect are the root of a piece whose ends differ in sign, and every
-    /// end without a certain sign; around a suspect time one certificate decides
-    /// ([`Pair::around`]). What lies between is shown to be rootless by the signs of its
-    /// coefficients. Pieces are closed and share their ends as the same numbers, so together they
-    /// are the window.
+    /// Contact needs all four points in one plane: a root of [`Pair::cubic`]. The window is cut at
+    /// the turning points of the cubic. Suspect are the root of a piece whose ends differ in sign,
+    /// and every end without a certain sign. One certificate decides the time around a suspect
+    /// ([`Pair::around`]). Signs of coefficients prove that there is no root between suspects.
+    /// Pieces are closed and share their ends as the same numbers, so together they are the window.
     #[inline(always)]
     pub fn isolate(&self, (begin, end): (S, S), look: CellResult<S>) -> Found<S> {
         let g = self.cubic();
@@ -136,7 +133,7 @@ impl<S: Grid, const N: usize> Pair<S, N> {
                 }
                 let hopeless = !moves && (!clear || half <= unsure);
                 if hopeless || again == 0 {
-                    // What touches at the start is for exact signs to tell.
+                    // Exact signs decide touching at the start.
                     let may = look.again > 0 && t > S::ZERO;
                     return match apart {
                         Some(from) if may && self.at_most(nearest(&self.at(t))) <= look.near => {
@@ -164,9 +161,9 @@ impl<S: Grid, const N: usize> Pair<S, N> {
 /// By how much a look is closer than the one before. Costs, proves nothing.
 const CLOSER: f64 = 64.0;
 
-/// How far from a root the sign of the cubic is looked for, in units of where its error would end
-/// if it were a straight line. The less, the shorter the interval of a contact; too little, and the
-/// sign is not seen. Costs, proves nothing.
+/// Distance from a root at which the sign of the cubic is tested. The unit is the distance at which
+/// a straight line would leave its error. A smaller one gives a shorter interval of a contact. If
+/// it is too small, the sign is not certain. A cost, not part of a proof.
 const BEYOND: f64 = 1.125;
 
 /// How much more of it is looked at first, where the tolerance allows: curved, the sign may be seen

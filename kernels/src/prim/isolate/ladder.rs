@@ -1,22 +1,21 @@
-//! The ladder: each rung decides what it can, certainly, and leaves the rest to the next, which
-//! costs more.
+//! The ladder: each rung decides with certainty, or leaves the pair to the next, which costs more.
 //!
 //! | rung | decides | in |
 //! | --- | --- | --- |
-//! | [`rejected`] | pairs whose cubic keeps its sign, over the step or over their window | f32 |
-//! | [`isolated`] | a point in common at the start, by comparisons; roots, by a certificate each; what is flat, by a direction | f32, then f64 |
-//! | [`vf_touch`], [`ee_touch`] | what touches at t = 0, by exact signs | integers |
+//! | [`rejected`] | pairs whose cubic keeps its sign, over the step or their window | f32 |
+//! | [`isolated`] | a common point at the start; roots, by certificates; flat motion | f32, then f64 |
+//! | [`vf_touch`], [`ee_touch`] | touching at t = 0, by exact signs | integers |
 //! | [`sliced`] | the window in [`SLICES`] slices | f64 |
-//! | [`near`] | what stays farther than half the tolerance; and when what does not comes nearer | f64 |
-//! | the search of [`crate::prim::inclusion`] | what is left, by boxes | f64 |
+//! | [`near`] | pairs that stay farther than half the tolerance | f64 |
+//! | [`searched`] | the rest, by boxes of [`crate::prim::inclusion`] | f64 |
 //!
-//! With a separation, the rungs of [`super::separation`]. Every rung is a function of the pair and
-//! of what is asked, so the answer is; [`vf_certified`] and [`ee_certified`] climb for one pair as
-//! the kernels do for a list.
+//! With a separation, the rungs are those of [`super::separation`]. Every rung is a function of the
+//! pair and of the parameters, so the answer is. [`vf_certified`] and [`ee_certified`] climb for
+//! one pair as the kernels do for a list.
 //!
 //! Without a separation no verdict of a rung begins before [`Pair::not_before`] of the rung's own
-//! pair. A query for the earliest time alone skips pairs by that law, whatever their verdict would
-//! be; `HORIZON_MARGIN` derives it across rungs.
+//! pair. An earliest query skips pairs by that law, whatever their verdicts would be.
+//! `HORIZON_MARGIN` derives it across rungs.
 
 use super::advance::{Advance, Advanced, Distance};
 use super::find::{CellResult, Found};
@@ -50,9 +49,9 @@ pub enum Rungs {
     Double,
 }
 
-/// Whether the features certainly do not meet in the step: not even their boxes do, or the four
-/// points never share a plane, by the signs of the cubic's coefficients over the step or over the
-/// window. About 150 operations.
+/// Whether the features certainly do not meet in the step. Either their boxes never overlap, or the
+/// four points never share a plane, by signs of the cubic over the step or over the window. About
+/// 150 operations.
 #[inline(always)]
 pub fn rejected<const N: usize>(pair: &Pair<f32, N>) -> bool {
     rejected_before(pair, 1.0)
@@ -66,8 +65,8 @@ pub fn rejected_before<const N: usize>(pair: &Pair<f32, N>, horizon: f32) -> boo
     begin > horizon || (pair.finite && (g.rootless_throughout() || g.rootless(begin, end)))
 }
 
-/// What isolation decides: separated, or a contact whose time is known as well as the tolerance
-/// demands and told from the start; of the `last` rung that isolates, any contact.
+/// The verdict of isolation: separated, or a contact later than the start whose time is within the
+/// tolerance. The `last` rung that isolates accepts any contact.
 #[inline(always)]
 pub fn isolated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bool) -> Option<Verdict> {
     let Some(window) = pair.window() else { return Some(Verdict::separated(p.end, 0)) };
@@ -75,7 +74,7 @@ pub fn isolated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bo
         return Some(Verdict::TOUCHING);
     }
     let time_tolerance = pair.time_tolerance(pair.scaled(p.tolerance));
-    // f32 has a rung behind it that tells more.
+    // f32 has a rung behind it that resolves more.
     let closer = last && S::WIDE;
     let (again, near) = if closer { (AGAIN, near_enough(pair, p)) } else { (0, S::ZERO) };
     let look = CellResult { around: time_tolerance * S::of(AROUND[0]), steps: STEPS[0], again, near };
@@ -87,8 +86,8 @@ pub fn isolated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bo
             met(from, to, p)
         }
         Found::Near { from } => Some(Verdict::unresolved(from.wide(), p.end, 0, false)),
-        // What stays in one plane, of a body that moves as a whole for example, has no sign to go
-        // by, but a direction.
+        // Motion in one plane, of a body that moves as a whole for example, has no signs. A
+        // direction decides it.
         Found::Open { from, flat: true } if pair.misses_throughout(from, window.1) => {
             Some(Verdict::separated(p.end, 0))
         }
@@ -116,7 +115,7 @@ pub fn ee_touch<R: Real>(a: [Moving<R>; 2], b: [Moving<R>; 2]) -> bool {
     segments_meet::<R, Certain>(a.map(|v| v.t0), b.map(|v| v.t0)) == Some(true)
 }
 
-/// What a slice of the window holds.
+/// The result for a slice of the window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Slice {
     /// No contact.
@@ -129,8 +128,8 @@ pub enum Slice {
     Open(f64),
 }
 
-/// Whether all four points stay in one plane throughout the window, as far as f64 can tell: no
-/// slice will tell more.
+/// Whether all four points stay in one plane throughout the window, up to the rounding of f64.
+/// Slices would decide nothing more.
 #[inline]
 pub fn is_flat<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64)) -> bool {
     let g = pair.cubic();
@@ -174,13 +173,13 @@ fn near_enough<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params) -> S {
     half(pair, p) * S::INCLUSION_DOWN
 }
 
-/// What part of [`half`] is asked where nothing but f32 has isolated: the less it is, the fewer
-/// pairs are listed that do not meet, at the cost of some steps.
+/// The part of [`half`] that counts as near if only f32 has isolated. A smaller part lists fewer
+/// pairs that do not meet, and takes more steps.
 const NEARER: f64 = 1.0 / 8.0;
 
-/// The last word without a search: separated, if the features stay farther apart than the
-/// separation and such a part of half the tolerance; else unresolved, from when they come within
-/// that.
+/// The last rung without a search. Separated, if the features stay farther apart than the
+/// separation and such a part of half the tolerance. Else unresolved, from the time when they come
+/// within that.
 #[inline(always)]
 pub fn near<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), part: f64, p: &Params) -> Verdict {
     let mut advance = nearness(pair, (begin, end), part, p);
@@ -296,11 +295,11 @@ fn climb<const N: usize>(
     }
 }
 
-/// The rungs behind isolation that need no slices: what touches at the start, what has no window,
-/// what is flat; with `all`, everything. The window of what is left.
+/// The rungs behind isolation without slices: touching at the start, no window, flat motion; with
+/// `all`, everything. Else the window for the slices.
 ///
 /// # Errors
-/// The window, where slices may tell more.
+/// The window, if slices may decide more.
 #[inline]
 pub fn settled<const N: usize>(
     pair: &Pair<f64, N>,
@@ -315,7 +314,7 @@ pub fn settled<const N: usize>(
     if !(all || is_flat(pair, window)) {
         return Err(window);
     }
-    // Else isolation has asked for a direction already.
+    // Else isolation has tried a direction already.
     if all && pair.misses_throughout(window.0, window.1) {
         return Ok(Verdict::separated(p.end, 0));
     }

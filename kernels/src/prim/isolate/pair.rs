@@ -7,15 +7,16 @@ use crate::prim::inclusion::local::{Differences, differences};
 use crate::prim::inclusion::{Grid, Params};
 
 /// The relative motion of two features: `F(t)` is the hull of `N` control vectors that move
-/// linearly. `N` is 3 for a vertex and a face (vertex less corner), 4 for two edges (at `2j + k`
-/// end j of the first less end k of the second). Contact is where the hull holds the origin.
+/// linearly. `N` is 3 for a vertex and a face: vertex less corner. `N` is 4 for two edges: at
+/// `2j + k`, end j of the first less end k of the second. The features meet if the hull contains
+/// the origin.
 #[derive(Clone, Copy, Debug)]
 pub struct Pair<S, const N: usize> {
     /// Control vectors at the start and at the end, scaled: the largest component of these and the
     /// edges is in [1, 2).
     pub w: [[Vec3<S>; 2]; N],
-    /// The two edges that span the hull, at both ends: differences of positions, rounded once. Of a
-    /// face those from its first corner; else both edges.
+    /// The two edges that span the hull, at both ends: differences of positions, rounded once. For
+    /// a face those from its first corner; else both edges.
     pub edges: [[Vec3<S>; 2]; 2],
     /// The largest component of `w`.
     pub reach: S,
@@ -26,7 +27,7 @@ pub struct Pair<S, const N: usize> {
     /// Whether a corner of one feature is where a corner of the other is at the start: they touch.
     /// Exact.
     pub together: bool,
-    /// What lengths were multiplied by.
+    /// Scale of all lengths.
     pub scale: f64,
     /// The end of the step, rounded up to `S`.
     pub end: S,
@@ -98,11 +99,11 @@ impl<S: Grid, const N: usize> Pair<S, N> {
         self.w.map(|[start, end]| start * before + end * t)
     }
 
-    /// The part of the step in which the boxes around the two features, which move with them, can
-    /// share a point: there is no contact outside. None if there is no such time.
+    /// The part of the step in which the boxes around the two features, moving with them, can share
+    /// a point. There is no contact outside. `None` if there is no such time.
     ///
-    /// The boxes overlap on an axis where the least component of the control vectors is not above
-    /// zero and the largest not below.
+    /// The boxes overlap on an axis if the least component of the control vectors is not above zero
+    /// and the largest not below.
     #[inline(always)]
     pub fn window(&self) -> Option<(S, S)> {
         let mut window = Window::new();
@@ -120,9 +121,9 @@ impl<S: Grid, const N: usize> Pair<S, N> {
         if self.finite { window.within(self.end) } else { Some((S::ZERO, self.end)) }
     }
 
-    /// The time before which no verdict of this pair begins: its window's begin less the margin. A
-    /// pair whose time here is not before the earliest time that is known cannot lower it, whether
-    /// its verdict is a contact or undecided.
+    /// The time before which no verdict of this pair begins: its window's begin less the margin. If
+    /// it is not before the earliest known time, the pair cannot lower that, whether its verdict is
+    /// a contact or undecided.
     #[inline(always)]
     pub fn not_before(&self, window: (S, S)) -> f64 {
         self.with_margin(window).0.wide()
@@ -137,13 +138,13 @@ impl<S: Grid, const N: usize> Pair<S, N> {
     }
 }
 
-/// The part of the step in which several numbers, each linear in time, are all not below zero.
+/// The part of the step in which several numbers, each linear in time, are all at least zero.
 ///
 /// A number is a mixture of its values at the ends of the step. Computed values err by at most `3u`
-/// of themselves, or lie above the exact ones. The sign changes at `|d0| / (|d0| + |d1|)`, computed
-/// within `8u` where the sum is above [`ISOLATE_UNDERFLOW`] (a value below that may have lost its
-/// digits, and clips nothing). Of several ends the innermost is picked by products, before the one
-/// division: an end that is picked wrongly is still an end.
+/// of themselves, or are above the exact ones. The sign changes at `|d0| / (|d0| + |d1|)`. That is
+/// computed within `8u` if the sum is above [`ISOLATE_UNDERFLOW`]. (A value below that may have
+/// lost its digits, and clips nothing.) Among several ends the innermost is selected by products,
+/// before the one division. An end that is selected wrongly is still an end.
 ///
 /// [`ISOLATE_UNDERFLOW`]: crate::math::tolerance::Tolerance::ISOLATE_UNDERFLOW
 #[derive(Clone, Copy, Debug)]
@@ -174,7 +175,7 @@ impl<S: Real> Window<S> {
         self.to = if known & after & (over * to.1 < to.0 * under) { (over, under) } else { to };
     }
 
-    /// What is left of the step until `end`, widened by what the ends err by.
+    /// The rest of the step until `end`, widened by the errors of the ends.
     #[inline(always)]
     pub fn within(&self, end: S) -> Option<(S, S)> {
         let (from, to) = (self.from.0 / self.from.1, self.to.0 / self.to.1);
