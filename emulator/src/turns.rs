@@ -1,8 +1,8 @@
 //! Blocks that interleave. Each runs on a thread of its own, and moves only while it has the turn.
-//! It passes the turn on at the end of each phase and reservation, and at some atomics, relaxed
-//! stores and loads. A number determines the next block. Blocks differ in speed by up to 256 times.
-//! At one pace a block would hardly ever be far behind or far ahead of the others, which is what
-//! finds faults.
+//! It passes the turn on at the end of each phase and reservation. It also does so at some atomics,
+//! relaxed stores and loads. A number determines the next block. Blocks differ in speed by up to
+//! 256 times. At one pace a block would hardly ever be far behind or ahead of the others. Such
+//! distances find faults.
 //!
 //! At most [`SLOTS`] blocks run at once, as on a GPU: the next one starts when one ends. So a
 //! launch is determined by that number alone. Blocks that all wait for one that has not started

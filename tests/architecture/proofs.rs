@@ -8,7 +8,9 @@ fn tests(sources: &[Source]) -> Vec<&str> {
     for (_, text) in sources {
         let lines: Vec<&str> = text.lines().map(str::trim).collect();
         for (at, line) in lines.iter().enumerate() {
-            let Some(name) = line.strip_prefix("fn ").and_then(|rest| rest.split("()").next()) else { continue };
+            let Some(name) = line.strip_prefix("fn ").and_then(|rest| rest.split("()").next()) else {
+                continue;
+            };
             let attributes = lines[..at].iter().rev().take_while(|line| line.starts_with("#["));
             found.extend(attributes.into_iter().any(|line| *line == "#[test]").then_some(name));
         }

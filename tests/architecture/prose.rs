@@ -55,7 +55,10 @@ fn a_missing_card_is_noticed() {
     for word in ["Launch", "Reads", "Before", "After", "Room", "Cost"] {
         assert_eq!(without_card(&planted("leaves.rs", &without(word))), [format!("leaves.rs: no {word}")]);
     }
-    assert_eq!(without_card(&planted("leaves.rs", &text.replacen("//! # ", "//! ", 1))), ["leaves.rs: no title"]);
+    assert_eq!(
+        without_card(&planted("leaves.rs", &text.replacen("//! # ", "//! ", 1))),
+        ["leaves.rs: no title"]
+    );
     assert_eq!(without_card(&planted("leaves.rs", "fn fit() {}")).len(), 8);
 }
 

@@ -119,7 +119,7 @@ arguments! {
         /// The distance, a length.
         distance: f64,
     }
-    /// `narrow_below_precision`: hits so large that the solver's precision does not resolve the tolerance.
+    /// `narrow_below_precision`: hits too large for the solver's precision to resolve the tolerance.
     BelowPrecisionArgs<R: Real> {
         /// Positions.
         frames: Positions<R>,

@@ -38,7 +38,7 @@ macro_rules! volumes {
                 Linear = "linear", PCA, "Boxes that move: axis-aligned at both ends of the step, in between on straight lines.";
             }
             Obb = "obb" [groups] {
-                Obb = "obb", PCA, "Oriented boxes along the principal axes of what they hold; the seed's.";
+                Obb = "obb", PCA, "Oriented boxes along the principal axes of what they hold; the paper's.";
                 ObbChild = "obb-child", CHILD, "Oriented boxes that keep the axes of a child: the older rule.";
             }
         }
@@ -59,9 +59,8 @@ pub const fn fills_node<V>() -> bool {
 
 /// A bounding volume: the part of a node that encloses everything below it.
 pub trait Volume: FillsNode + Sync + Send + core::fmt::Debug + PartialEq {
-    /// Whether overlap tests nest: parts of two volumes that are apart are apart too. They do not
-    /// nest if a safety slack makes a small volume overlap one that a larger volume around it does
-    /// not.
+    /// Whether overlap tests nest: parts of two volumes that are apart are apart too. A safety
+    /// slack prevents nesting: a small volume may overlap one that its larger parent does not.
     const NESTS: bool;
     /// Around a triangle that stands still.
     fn still<R: Real>(corners: [Vec3<R>; 3]) -> Self;
@@ -88,8 +87,8 @@ pub trait Volume: FillsNode + Sync + Send + core::fmt::Debug + PartialEq {
     fn grown(&self, by: f32) -> Self;
     /// At least the largest magnitude of a coordinate of what it is around.
     fn reach(&self) -> f32;
-    /// Around all points within `by` of its own, and within the least distance that the last rung
-    /// of a certified solver resolves. Itself if `by` is 0. See [`NEAR_GROWTH`].
+    /// Around all points within `by` of its own. Also around those within the least distance that
+    /// the last rung of a certified solver resolves. Itself if `by` is 0. See [`NEAR_GROWTH`].
     #[inline(always)]
     fn near(&self, by: f32) -> Self {
         if by > 0.0 { self.grown(by + NEAR_GROWTH * self.reach()) } else { *self }
@@ -99,7 +98,7 @@ pub trait Volume: FillsNode + Sync + Send + core::fmt::Debug + PartialEq {
     /// Whether [`Volume::may_overlap`] is less than [`Volume::overlaps`].
     const IN_PARTS: bool = false;
     /// The cheap part of [`Volume::overlaps`]: false only if that is false. If lanes test many
-    /// against many side by side, the other part would cost all lanes for the sake of one.
+    /// against many, the other part would cost all lanes for the sake of one.
     #[inline(always)]
     fn may_overlap(&self, other: &Self) -> bool {
         self.overlaps(other)
@@ -111,8 +110,8 @@ pub trait Volume: FillsNode + Sync + Send + core::fmt::Debug + PartialEq {
     fn overlaps_before(&self, other: &Self, _time: f32) -> bool {
         self.overlaps(other)
     }
-    /// The volume from t = 0 until a time in (0, 1), which becomes the end of the step; or the
-    /// whole. Two volumes cut at the same time are tested by [`Volume::may_overlap`].
+    /// The volume from t = 0 until a time in (0, 1), which becomes the end of the step. Or the
+    /// whole volume. Two volumes cut at the same time are tested by [`Volume::may_overlap`].
     #[inline(always)]
     fn until(&self, _time: f32) -> Self {
         *self
@@ -128,9 +127,9 @@ pub trait Volume: FillsNode + Sync + Send + core::fmt::Debug + PartialEq {
 pub struct Axes(pub u32);
 
 impl Axes {
-    /// Nodes of up to [`GROUP`] leaves take the principal axes of the points below them, or the
-    /// world's if these have less surface. Larger nodes take those of the child whose axes have
-    /// less surface.
+    /// Nodes of up to [`GROUP`] leaves take the principal axes of the points below them. If the
+    /// world's axes give less surface, they take those. Larger nodes take those of the child whose
+    /// axes have less surface.
     pub const PCA: Axes = Axes(0);
     /// Those of the larger child: cheap, and a little looser.
     pub const CHILD: Axes = Axes(1);

@@ -2,8 +2,8 @@
 //!
 //! A point p is in the box iff `|a_i . (p - c)| <= h_i` for i = 0, 1, 2. This is exact arithmetic
 //! on the stored numbers; `a_2` is the *rounded* cross product of `a_0` and `a_1`. Containment
-//! assumes nothing of the axes. Below, u is the unit roundoff of f32 and `A A^T = I + E`. Axes are
-//! only taken if `|E_ij| <= mu = 16u` (`axes::frame`).
+//! holds for any axes. Below, u is the unit roundoff of f32 and `A A^T = I + E`. Axes are only
+//! taken if `|E_ij| <= mu = 16u` (`axes::frame`).
 //!
 //! **A child in its parent.** Points of the child with axes B are `c' + B^-1 y`, `|y_k| <= g_k`,
 //! and `a . B^-1 y = (B^-T a) . y`. Now `B^-T = (B B^T)^-1 B`, which is `(I - F) B` with
@@ -138,8 +138,8 @@ impl Obb {
         Obb::new(c, [Vec3(self.a0), Vec3(self.a1)], reach(self, h).max(reach(o, r)))
     }
 
-    /// The computed reach of the box from a point `c` along three axes, and the most by which it is
-    /// too small. `r` is its reach along them from its own centre.
+    /// The computed reach of the box from a point `c` along three axes, and its largest shortfall.
+    /// `r` is its reach along them from its own centre.
     #[inline]
     pub fn reach(&self, a: [Vec3<f32>; 3], c: Vec3<f32>, r: Vec3<f32>) -> (Vec3<f32>, f32) {
         let t = Vec3(self.c) - c;

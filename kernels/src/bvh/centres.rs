@@ -7,8 +7,8 @@ use crate::math::{Real, Vec3, ordered};
 
 /// Keys of a box: upper x, y, z, and lower x, y, z (complemented), so that all are maxima.
 pub const KEYS: u32 = 6;
-/// Words of a body's extent: a box, the sum of the exponents of its triangles' sizes, the number of
-/// these, and the number that are outsized.
+/// Words of a body's extent: a box, the sum of the exponents of its triangles' sizes, their number,
+/// and the number that are outsized.
 pub const OF_A_BODY: u32 = KEYS + 3;
 /// The sum of the exponents.
 const EXPONENTS: u32 = KEYS;
@@ -51,8 +51,8 @@ fn middle([p, q, r]: [Vec3<f64>; 3]) -> Vec3<f64> {
     (p + q + r) * (1.0 / 3.0)
 }
 
-/// The exponent of the longest side of the box around a triangle, as in IEEE 754; 0 if the triangle
-/// has no extent.
+/// The exponent of the longest side of the box around a triangle, as in IEEE 754. It is 0 without
+/// extent.
 #[inline(always)]
 fn exponent([p, q, r]: [Vec3<f64>; 3]) -> u64 {
     let sides = p.greater(q).greater(r) - p.lesser(q).lesser(r);
@@ -144,7 +144,7 @@ pub fn report_together<B: Block>(block: &mut B, best: Shared<u64>, extents: Span
 
 /// The extents of groups, each a contiguous range of the `count` items. A block's items mostly
 /// belong to one group. `which` returns the group of an item. `add` adds an item and returns its
-/// group; the flag is false for a repeated item, whose size does not count. An extent has `words`
+/// group. Its flag is false for a repeated item, whose size does not count. An extent has `words`
 /// words.
 pub fn of_each<B: Block>(
     block: &mut B,

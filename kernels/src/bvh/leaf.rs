@@ -5,8 +5,8 @@ use crate::bv::Volume;
 use crate::exec::Lane;
 use crate::math::Real;
 
-/// Around a triangle and all points within `margin` of it; at every t in [0, 1] if there are two
-/// frames. Rounded outward.
+/// Around a triangle and all points within `margin` of it. With two frames: at every t in [0, 1].
+/// Rounded outward.
 #[inline(always)]
 pub fn volume<R: Real, V: Volume, L: Lane>(
     lane: &L,

@@ -66,7 +66,7 @@ pub enum Violation {
         /// The node.
         node: u32,
     },
-    /// A node does not name the hub of all triangles below it, or its rim misses one of their
+    /// A node does not name the hub of all triangles below it. Or its rim misses one of their
     /// opposite edges.
     Rim {
         /// The node.

@@ -3,8 +3,8 @@
 //! A kernel is a plain function over a [`Block`], a sequence of *phases*. The body of a phase runs
 //! once for each lane. The end of a phase is the block's barrier, so no lane can skip one. Code
 //! between phases is the same for all lanes. The GPU runs it in every lane, the emulator once. So
-//! it has uniform values only. A value of a lane that lives across phases is in a [`Slot`] (a
-//! register on the GPU, an array on the CPU) or in [`Shared`] words.
+//! it has uniform values only. A value of a lane that lives across phases is in a [`Slot`] or in
+//! [`Shared`] words. A slot is a register on the GPU and an array on the CPU.
 //!
 //! A barrier for the whole grid is the same one level up: the end of the launch.
 //!
@@ -18,9 +18,9 @@
 //!
 //! **The law of waiting.** To wait is to poll a flag by [`Lane::fetch_load`] or
 //! [`Lane::compare_exchange`] until it changes. A lane may wait only for another lane's later step
-//! in the same phase, and only after it has read an atomic of that lane, a reservation for example.
-//! That step must not wait itself. No lane waits for the end of a phase, nor for a block that may
-//! not have started: blocks may run in sequence.
+//! in the same phase. Before it waits, it must have read an atomic of that lane, a reservation for
+//! example. That step must not wait itself. No lane waits for the end of a phase, nor for a block
+//! that may not have started: blocks may run in sequence.
 
 mod memory;
 mod output;
@@ -38,8 +38,8 @@ use core::mem::MaybeUninit;
 /// Memory is read and written by value; no reference to memory of another lane exists. Suppose two
 /// lanes access one word by plain accesses, and one of them writes. Then the accesses must be in
 /// different phases (one block) or different launches (two blocks). Atomic accesses, relaxed stores
-/// and relaxed loads may meet each other, but no plain access if one of the two writes. The
-/// emulator's sanitizer checks these rules and all bounds.
+/// and relaxed loads may meet each other. One of them and a plain access may meet if neither
+/// writes. The emulator's sanitizer checks these rules and all bounds.
 pub trait Lane {
     /// The lane's number in its block, from 0.
     fn lane(&self) -> u32;
@@ -68,8 +68,8 @@ pub trait Lane {
     /// fails without cause.
     fn compare_exchange(&self, span: Span<u64>, i: u32, current: u64, new: u64) -> u64;
 
-    /// Sets element `i` of device memory so that other blocks of this launch may
-    /// [read](Lane::load_relaxed) it, under the law of giving (see the [module](self)). Orders
+    /// Sets element `i` of device memory for other blocks of this launch to
+    /// [read](Lane::load_relaxed). The law of giving applies (see the [module](self)). Orders
     /// nothing by itself. Two stores of an element may meet, and a load may meet a store. Then each
     /// piece of `T`'s alignment, of 8 bytes at most, is whole, but pieces may be of different
     /// values. `T` is made of [whole words](whole_words), and an element is stored and loaded as
@@ -77,9 +77,9 @@ pub trait Lane {
     fn store_relaxed<T: Pod>(&self, span: Span<T>, i: u32, value: T);
     /// Element `i` of device memory as another block of this launch gave it: read afresh each time.
     fn load_relaxed<T: Pod>(&self, span: Span<T>, i: u32) -> T;
-    /// Orders all stores, loads and atomics of this lane before it against those after it, for all
-    /// lanes of the launch. Atomics by themselves order nothing. Plain accesses of other blocks
-    /// remain races.
+    /// Orders all stores, loads and atomics of this lane before it against those after it. The
+    /// order holds for all lanes of the launch. Atomics by themselves order nothing. Plain accesses
+    /// of other blocks remain races.
     fn fence(&self);
 
     /// True if `mine` is; it may also be true while another lane's is. On a GPU the lanes of a warp

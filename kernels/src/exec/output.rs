@@ -71,8 +71,8 @@ impl Counters {
         }
     }
     /// The shortest length in a counter; infinite if there is none. The word is the complement of
-    /// the length's bits, so 0 is none and the largest word is the shortest length. No lane of this
-    /// launch may shorten it.
+    /// the length's bits. So 0 is none, and the largest word is the shortest length. No lane of
+    /// this launch may shorten it.
     #[inline(always)]
     pub fn shortest<B: Block>(&self, block: &B, which: Counter) -> f64 {
         let word = block.load(self.words(), which.place());

@@ -46,19 +46,20 @@ pub trait Tolerance: Sized {
     /// Products lose less. So: 2^-100. In f64 there are 18 inner products, times `CUBIC_SCALE`
     /// each, in all below 2^-1050. So: 2^-960. Length cubed.
     const CUBIC_UNDERFLOW: Self;
-    /// Allowance at a root of the cubic, for a vertex outside of the face, or an edge away from the
-    /// other. Relative to the largest difference of positions. A root is known to about `u` divided
-    /// by the slope of the cubic. A sharper value would miss contacts on shared edges; a wider one
-    /// makes false alarms.
+    /// Allowance at a root of the cubic: for a vertex outside of the face, or edges apart. Relative
+    /// to the largest difference of positions. A root is known to about `u` divided by the slope of
+    /// the cubic. A sharper value would miss contacts on shared edges; a wider one makes false
+    /// alarms.
     const CUBIC_INSIDE: Self;
     /// A squared sine below which two directions count as parallel: there the direction of their
     /// cross product has no correct digit (its relative error is `u` over the sine). `16 u^2`,
     /// ratio.
     const PARALLEL: Self;
     /// Error of a computed corner of a vertex/face image: `6.5u`. Relative to the largest control
-    /// component of its axis and to the sum of the weights' magnitudes (1 within the face). Three
-    /// roundings give the point between the two times (difference, product, sum). Three more give
-    /// the mixture (product, two sums). The half covers `u^2` and the roundings of the bound.
+    /// component of its axis, and to the sum of the weights' magnitudes. That sum is 1 within the
+    /// face. Three roundings give the point between the two times (difference, product, sum). Three
+    /// more give the mixture (product, two sums). The half covers `u^2` and the roundings of the
+    /// bound.
     const INCLUSION_FACE: Self;
     /// The same for edge/edge: `7.5u`. Three roundings to the point between the times, two for each
     /// of two mixtures.
@@ -261,9 +262,9 @@ pub const MOVING_TIME: f32 = 16.0 * U32;
 /// Error of a mixture of two bounds of a moving box: `8u`. The complement, two products and a sum
 /// take `3.1u`; the rest is the rounding of what is added for it. Ratio of the larger bound.
 pub const MOVING_MIXTURE: f32 = 8.0 * U32;
-/// Distance of the horizon `h` behind the earliest known time `k`. A pair of features whose boxes,
-/// moving with them, first share a point behind `h` has no verdict that begins at `k` or before.
-/// Fraction of the step.
+/// Distance of the horizon `h` behind the earliest known time `k`. Take a pair of features whose
+/// boxes, moving with them, first share a point behind `h`. None of its verdicts begins at `k` or
+/// before. Fraction of the step.
 ///
 /// Let `s` be the exact time at which those boxes first share a point. The volumes of the broad
 /// phase hold the features at every time, and so do the boxes of their triangles. So a pair left
@@ -273,8 +274,8 @@ pub const MOVING_MIXTURE: f32 = 8.0 * U32;
 ///   by less than the `MOVING_TIME` or `ISOLATE_WINDOW` that is subtracted.
 /// - The features' own boxes until `h`, derived in `prim::sweep`.
 ///
-/// None of them leaves a pair out for `h` because its boxes never share a point, unless its window
-/// has that result as well. Then every rung has it.
+/// A pair whose boxes never share a point is left out for `h` only if its window has that result,
+/// too. Then every rung has it.
 ///
 /// A verdict begins no sooner than the computed begin of its rung's window less `ISOLATE_MARGIN`
 /// (`Pair::not_before`). That is at least `s - 7u - ISOLATE_WINDOW - ISOLATE_MARGIN`. In f32, the
@@ -285,9 +286,9 @@ pub const MOVING_MIXTURE: f32 = 8.0 * U32;
 /// margin 2^-26. The begin of f32 is at most `s (1 + 7u)` less `ISOLATE_WINDOW` of f32, `16u`. So
 /// f64 begins later.
 ///
-/// An axis may not clip its window if control vectors measure less than 2^-60 (f32) or 2^-480 (f64)
-/// of the pair's extent on it. Products of two such lengths lose their digits. Then `s` is that of
-/// the other axes, and volumes of f32 must not use this axis either.
+/// An axis may not clip its window if control vectors are too short on it. That is less than 2^-60
+/// (f32) or 2^-480 (f64) of the pair's extent. Products of two such lengths lose their digits. Then
+/// `s` is that of the other axes, and volumes of f32 must not use this axis either.
 pub const HORIZON_MARGIN: f64 = 1.0 / 4096.0 + 1.0 / 8192.0;
 
 /// How far `a_i . a_j` may be from 1 (i = j) or 0 in an oriented box, as computed: `12u`. The
@@ -329,8 +330,8 @@ pub const BOX_LIMIT: f32 = f32::from_bits((120 + 127) << 23);
 /// An entry off the diagonal of a covariance below which it counts as zero; the largest entry is 1.
 /// `2^-40`: far below the roundings of the others, and its square does not underflow. Ratio.
 pub const COVARIANCE_ZERO: f32 = f32::from_bits((127 - 40) << 23);
-/// A cell that loses more than this part of a range to the directions that decouple its parameters
-/// is tested again before the others. Ratio; a cost, not part of a proof.
+/// A cell is tested again before the others if decoupling directions remove more than this part of
+/// a range. Ratio; a cost, not part of a proof.
 pub const INCLUSION_DEEP: f64 = 0.5;
 /// Tolerance of the length of a rotation's quaternion about 1: a thousand roundings of f32, the
 /// precision of simulators. A quaternion within it is divided by its length. Ratio.

@@ -75,9 +75,9 @@ pub fn meets_beyond_shared<R: Real, S: Signs<R>>(
 }
 
 /// Corner 0 of both is one point v. Suppose x is another common point. The ray from v through x
-/// ends in `p` at a last point on the edge opposite to v, and in `q` likewise. The nearer of the
-/// two is in both. So the opposite edges decide, unless one passes through v (no area). Such an
-/// edge is cut there: then `p` is two segments from v.
+/// leaves `p` at a point on the edge opposite to v, and `q` likewise. The nearer of the two is in
+/// both. So the opposite edges decide, unless one passes through v (no area). Such an edge is cut
+/// there: then `p` is two segments from v.
 fn beyond_corner<R: Real, S: Signs<R>>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> Option<bool> {
     // q touches the plane of p at v alone, or the other way round: the common case.
     let apart = |s: [Option<i32>; 3]| s[1].is_some_and(|x| x != 0) && s[1] == s[2];

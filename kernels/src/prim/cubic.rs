@@ -3,9 +3,9 @@
 //!
 //! Let `a`, `b` be the two edge vectors and `c` the offset, all linear in time. The four points are
 //! coplanar if `(a x b) . c` is zero: a cubic. Its roots in [0, 1] are visited in ascending order.
-//! The first at which the features are together is the time of impact. If the cubic vanishes
-//! identically (motion within a plane, parallel edges, faces without area), the events at which a
-//! point passes a segment are visited instead.
+//! The first at which the features are together is the time of impact. The cubic may vanish
+//! identically: motion within a plane, parallel edges, faces without area. Then the events at which
+//! a point passes a segment are visited instead.
 //!
 //! # Misses
 //!
@@ -55,15 +55,14 @@ impl<R: Real> Moving<R> {
     }
 }
 
-/// The first time in [0, 1] at which the vertex meets the closed face, computed in `S`; touching at
+/// The first time in [0, 1] at which the vertex meets the closed face, computed in `S`. Touching at
 /// 0 gives 0. Unproven: see the module text. About 130 operations if signs reject, else 400 to
 /// 1500.
 pub fn vf_toi<R: Real, S: Real>(v: Moving<R>, f: [Moving<R>; 3]) -> Option<S> {
     first::<S>(&Relative::new([(f[1], f[0]), (f[2], f[0]), (v, f[0])]), Kind::VertexFace)
 }
 
-/// The first time in [0, 1] at which the closed edges `ea` and `eb` meet, computed in `S`; as
-/// [`vf_toi`].
+/// The same for two closed edges `ea` and `eb`.
 pub fn ee_toi<R: Real, S: Real>(ea: [Moving<R>; 2], eb: [Moving<R>; 2]) -> Option<S> {
     first::<S>(&Relative::new([(ea[1], ea[0]), (eb[1], eb[0]), (eb[0], ea[0])]), Kind::EdgeEdge)
 }
@@ -102,7 +101,7 @@ impl<S: Real> Linear<S> {
 
 /// Whether vertex and face certainly do not meet within the step, by signs alone, for any `S`. Then
 /// no solver is needed. Either the relative motion stays on one side of a coordinate plane, or the
-/// cubic has no root in [0, 1]. Both are proven beyond rounding. About 150 operations.
+/// cubic has no root. Both are proven beyond rounding. About 150 operations.
 #[inline]
 pub fn vf_apart<R: Real, S: Real>(v: Moving<R>, f: [Moving<R>; 3]) -> bool {
     // The vertex is on one side of all three corners, at both ends of the step. Differences are
@@ -164,8 +163,8 @@ fn separated<R: Real, const N: usize>(differences: [[Vec3<R>; 2]; N]) -> bool {
     (0..3).any(|k| low[k] > R::ZERO || high[k] < R::ZERO)
 }
 
-/// The four points relative to one of them: edges `a` and `b`, offset `c`; and the largest
-/// component of all.
+/// The four points relative to one: edges `a`, `b`, offset `c`; their largest component. edges `a`
+/// and `b`, offset `c`; and the largest component of all.
 struct Relative<S> {
     a: Linear<S>,
     b: Linear<S>,
@@ -174,8 +173,9 @@ struct Relative<S> {
 }
 
 impl<S: Real> Relative<S> {
-    /// Differences in the wider of both precisions (f32 alone only if `S` and the positions are
-    /// f32), rounded once to `S`. Then scaled by a power of two if cubes could leave the range.
+    /// Differences in the wider of both precisions, rounded once to `S`. They are in f32 alone only
+    /// if `S` and the positions are f32. Then scaled by a power of two if cubes could leave the
+    /// range.
     #[inline]
     fn new<R: Real>(pairs: [(Moving<R>, Moving<R>); 3]) -> Self {
         let [a, b, c] = if R::WIDE {
@@ -209,8 +209,7 @@ fn scaled<T: Real>(d: [Linear<T>; 3]) -> [Linear<T>; 3] {
 }
 
 impl<S: Real> Relative<S> {
-    /// The coplanarity cubic in Bernstein form (inner coefficients times three), and the permanent
-    /// that bounds errors.
+    /// The coplanarity cubic in Bernstein form, and the permanent that bounds errors.
     #[inline]
     fn cubic(&self) -> ([S; 4], S) {
         let (a, b, c) = (&self.a, &self.b, &self.c);

@@ -4,7 +4,7 @@
 use super::signs::Signs;
 use crate::math::{Real, Vec3};
 
-/// Whether the closed segments `ab` and `cd` meet; any of them may be a point, and they need not be
+/// Whether the closed segments `ab` and `cd` meet. Any of them may be a point. They need not be
 /// coplanar. Undecided only if the source is.
 ///
 /// If they are not coplanar they are apart. Else some axis can be dropped without folding the
@@ -72,8 +72,8 @@ pub fn projection<R: Real, S: Signs<R>>(t: &[Vec3<R>; 3]) -> Option<Option<(usiz
     if unsure { None } else { Some(None) }
 }
 
-/// Whether two closed triangles in one plane meet, or two that are both segments or points (in one
-/// plane or not). Nine pairs of edges, then corners inside. Undecided only if the source is.
+/// Whether two closed triangles in one plane meet. Or two that are both segments or points, in one
+/// plane or not. Nine pairs of edges, then corners inside. Undecided only if the source is.
 ///
 /// By value and out of line: the common path of the caller then keeps its corners in registers and
 /// stays small.

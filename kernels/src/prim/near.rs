@@ -2,7 +2,7 @@
 //!
 //! Both kinds are one problem. Let `x(s, t) = r + s p + t q` be the point of the second feature
 //! less that of the first. Find the shortest `x`. For a vertex and a face the domain is the
-//! triangle `s, t >= 0`, `s + t <= 1`; `r` is corner 0 less the vertex, `p` and `q` the sides from
+//! triangle `s, t >= 0`, `s + t <= 1`. `r` is corner 0 less the vertex, `p` and `q` the sides from
 //! there. For two edges it is the square `0 <= s, t <= 1`. As in Ericson's closest points
 //! (Real-Time Collision Detection, 5.1.5 and 5.1.9), but no region decides. Every side of the
 //! domain and the point inside are computed, and the shortest is taken. So a wrong branch costs
@@ -26,7 +26,7 @@
 //!    `46u l`, and one of `8/3 u l D / h`. But `t` is clamped, so `y <= h`. If `h < 16u l` that is
 //!    all. Else the second part adds no more than `y^2 / 2D <= 3u l`. The point that keeps `x` at
 //!    right angles to `p` may be outside of the domain. Then its way there from the true one
-//!    crosses a side, on which the distance is no larger, and 2 finds it. `s` errs by `19u l`.
+//!    crosses a side. The distance on that side is no larger, and 2 finds it. `s` errs by `19u l`.
 //! 4. *Evaluation.* `x` at given weights: `8u l`; its squared length: `3u` of it.
 //!
 //! So the computed distance is at least the true one less `15.5u l`, and at most the true one and

@@ -1,13 +1,13 @@
 //! The distance of two triangles, and their nearest points. In f64.
 //!
-//! Triangles that share no point are nearest at a vertex of one and the other, or at an edge of
-//! each. These are fifteen pairs of features, measured by [`near`](super::near), and the first of
-//! the shortest is taken. So its bounds hold for the computed distance. It is at most the true one
-//! and `DISTANCE_ERROR` of the reach. It is at least the true one less `DISTANCE_CERTAIN` of the
-//! reach. The reach is at most the largest difference of two coordinates of the six corners.
+//! Triangles that share no point are nearest at a vertex of one, or at an edge of each. These are
+//! fifteen pairs of features, measured by [`near`](super::near), and the first of the shortest is
+//! taken. So its bounds hold for the computed distance. It is at most the true one and
+//! `DISTANCE_ERROR` of the reach. It is at least the true one less `DISTANCE_CERTAIN` of the reach.
+//! The reach is at most the largest difference of two coordinates of the six corners.
 //!
-//! So the least of many pairs is at most the true least and `DISTANCE_ERROR` of the reach of the
-//! pair that has it. It is at least the true least less `DISTANCE_CERTAIN` of the reach of the
+//! Consider many pairs. The computed least is at most the true least and `DISTANCE_ERROR` of the
+//! reach of its pair. It is at least the true least less `DISTANCE_CERTAIN` of the reach of the
 //! returned pair. These may be two pairs.
 //!
 //! The computed distance is never below the [`gap`] of the boxes. That is the true distance if
@@ -141,8 +141,8 @@ fn crossing([a, b]: [Vec3<f64>; 2], face: &Corners<f64>) -> Option<(f64, f64, [f
     Some((far, t, at))
 }
 
-/// The same vectors, scaled by the power of two that brings the largest component to [1, 2), or as
-/// near as a factor of f64 does. Zeros stay.
+/// The same vectors, scaled by the power of two that brings the largest component to [1, 2). The
+/// scale is limited to a factor of f64. Zeros stay.
 #[inline]
 fn unit(of: [Vec3<f64>; 4]) -> [Vec3<f64>; 4] {
     let most = of[0].map(f64::abs).greater(of[1].map(f64::abs));
@@ -173,8 +173,8 @@ pub fn gap<R: Real>(p: &Corners<R>, q: &Corners<R>) -> f64 {
 /// Sums of squares that have all their digits.
 const SQUARES: RangeInclusive<f64> = f64::MIN_POSITIVE / U64..=f64::MAX;
 
-/// A length of f32 that bounds the distance of volumes of the nearest pair, if a pair at `best` is
-/// known and no coordinate is larger than `largest`.
+/// A length of f32 that bounds the distance of volumes of the nearest pair. A pair at `best` is
+/// known, and no coordinate exceeds `largest`.
 #[inline]
 pub fn bound(best: f64, largest: f32) -> f32 {
     round::up((best + DISTANCE_CERTAIN * (2.0 * largest.wide())) * DISTANCE_UP)

@@ -29,9 +29,10 @@
 //!
 //! # Zero
 //!
-//! A difference is 0 exactly if its operands are equal (gradual underflow). The determinant is 0
-//! exactly if every product of the expansion has such a factor, or two of the four points coincide.
-//! This makes axis-aligned coplanar geometry free. Any other zero is left to [`super::exact`].
+//! A difference is 0 exactly if its operands are equal (gradual underflow). It makes the
+//! determinant 0 exactly if every product of the expansion has such a factor. So do two equal
+//! points among the four. This makes axis-aligned coplanar geometry free. Any other zero is left to
+//! [`super::exact`].
 
 use crate::math::{Real, Vec3};
 
@@ -146,8 +147,8 @@ pub fn orient2d_filter<R: Real>(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, axis: usize)
     }
 }
 
-/// The computed determinant of two rows of differences of positions, and its largest error from the
-/// determinant of the exact differences.
+/// The computed determinant of two rows of differences of positions, and its largest error. The
+/// error is relative to the exact differences.
 #[inline]
 pub fn area<R: Real>(e: (R, R), f: (R, R)) -> (R, R) {
     let (x, y) = (e.0 * f.1, e.1 * f.0);

@@ -47,20 +47,21 @@ fn signs<R: Real>(x: Vec3<R>, y: Vec3<R>) -> u32 {
 /// The corners of a triangle.
 pub type Corners<R> = [Moving<R>; 3];
 
-/// Boxes around the paths of the corners of two triangles, over a part of the step, and whether
+/// Boxes around the paths of the corners of two triangles, over a part of the step. Also whether
 /// there is such a part. In it the boxes around the triangles come within the gap, and it ends at
 /// the horizon. Boxes of the first triangle grow by the gap and by all roundings.
 ///
-/// A corner at a time of it errs by `3.1u` of the larger of its ends (the complement, two products,
-/// a sum). Growing adds `u`: `INCLUSION_INPUT` of the largest coordinate for each of both
-/// triangles. A product that underflows is within `INCLUSION_UNDERFLOW`.
+/// A corner at such a time errs by `3.1u` of the larger of its ends: the complement, two products,
+/// a sum. Growing adds `u`: `INCLUSION_INPUT` of the largest coordinate for each of both triangles.
+/// A product that underflows is within `INCLUSION_UNDERFLOW`.
 ///
-/// With a horizon, a pair may be left out only if the boxes that `Pair::window` moves with its
-/// features meet behind it. Or if they never meet, which that window finds, too. Those boxes mix
-/// the least coordinates of both ends. So at `t` they reach beyond the corners there by at most `t`
-/// of the extent at the end. Boxes grow by that much, until the horizon. The part begins
-/// `3 ISOLATE_WINDOW` sooner. Suppose boxes of features meet only before the part, and those of
-/// their triangles only behind that. Then their windows are empty by more than they are widened.
+/// With a horizon, a pair may be left out only if its boxes meet behind it. Those are the boxes
+/// that `Pair::window` moves with its features. Or if they never meet, which that window finds,
+/// too. Those boxes mix the least coordinates of both ends. So at `t` they reach beyond the corners
+/// there by at most `t` of the extent at the end. Boxes grow by that much, until the horizon. The
+/// part begins `3 ISOLATE_WINDOW` sooner. Suppose boxes of features meet only before the part, and
+/// those of their triangles only behind that. Then their windows are empty by more than they are
+/// widened.
 #[inline(always)]
 fn swept<R: Real>(p: &Corners<R>, q: &Corners<R>, gap: R, horizon: R) -> (bool, [[Swept<R>; 3]; 2]) {
     let mut window = Window::new();

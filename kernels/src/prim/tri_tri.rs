@@ -1,8 +1,8 @@
 //! Whether two closed triangles share a point, by signs of determinants alone.
 //!
 //! The answer has no tolerance and constructs no point: it is a function of exact signs. With a
-//! source that never errs it is exact, and does not depend on the order of corners and of
-//! triangles. Touching counts. A triangle without area is the segment or point that it is.
+//! source that never errs it is exact. It does not depend on the order of corners and triangles.
+//! Touching counts. A triangle without area is the segment or point that it is.
 
 pub use super::flat::{boxes_meet, point_on_triangle, segments_meet};
 pub use super::signs::{Certain, Exact, Filter, Signs, Wide};
@@ -18,9 +18,9 @@ use crate::math::{Real, Vec3};
 /// - All six signs zero: one plane, or neither has area; `prim::flat`. (A triangle with area in the
 ///   other's plane makes both triples zero. One without area makes the other's triple zero.)
 /// - Else two triangles meet if an edge of one pierces the other. An edge within the other's plane
-///   is left out. If it has a common point, so does an end of it, or an edge of the other that
-///   crosses it. In the first case a neighbouring edge that leaves the plane finds the point. If
-///   one of the two is a segment or point, only its edges are tested.
+///   is left out. If it has a common point, so does an end of it, or a crossing edge of the other.
+///   In the first case a neighbouring edge that leaves the plane finds the point. If one of the two
+///   is a segment or point, only its edges are tested.
 #[inline]
 pub fn meets<R: Real, S: Signs<R>>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> Option<bool> {
     let q_of_p = S::sides(p, q);
@@ -59,7 +59,7 @@ pub fn sign<R: Real, S: Signs<R>>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3], which: u32
     S::orient3d(a, b, c, d)
 }
 
-/// The result of [`meets`] for triangles with these signs, in the order of [`sign`]; `None` if it
+/// The result of [`meets`] for triangles with these signs, in the order of [`sign`]. `None` if it
 /// depends on a test within a plane.
 pub fn decided(signs: &[i32; SIGNS as usize]) -> Option<bool> {
     let of = |i: usize| [signs[3 * i], signs[3 * i + 1], signs[3 * i + 2]];
@@ -136,7 +136,7 @@ fn leaves(side: [i32; 3], i: usize) -> bool {
     from * to <= 0 && (from, to) != (0, 0)
 }
 
-/// Whether an edge of `p` that leaves the plane of `q` meets `q`, which has area; `side` is of
+/// Whether an edge of `p` that leaves the plane of `q` meets `q`, which has area. `side` is of
 /// `p`'s corners. By value and out of line, as few pairs come here. So the common path keeps its
 /// corners in registers.
 #[inline(never)]

@@ -26,10 +26,11 @@
 //! No stage calls another. They exchange data in memory, through [`crate::abi`]. [`traverse`] and
 //! [`narrow`] share one rule for earliest queries: [`crate::bvh::horizon`].
 //!
-//! Every kernel file opens with a card. `Before` and `After` are its conditions. `Paper` cites the
-//! source: "the thesis" is C. Lauterbach, "Interactive ray tracing and collision detection of
-//! dynamic models", 2010, chapter 5 or section 6.2; the paper is Lauterbach, Mo and Manocha,
-//! "gProximity", 2010.
+//! Every kernel file opens with a card. `Before` and `After` are its conditions. `Paper` cites its
+//! source. *The thesis* is C. Lauterbach, "Interactive Ray Tracing of Massive and Deformable
+//! Models", 2010: chapter 5 or section 6.2. *The paper* is the same system in short: Lauterbach, Mo
+//! and Manocha, "gProximity: Hierarchical GPU-based Operations for Collision and Distance Queries",
+//! 2010.
 
 pub mod balance;
 pub mod construct;

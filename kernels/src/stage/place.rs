@@ -18,7 +18,7 @@
 //!          With one end, a step in the caller's memory keeps its end in `later`. A resting body is
 //!          copied from there.
 //! Room     fixed; cannot run out.
-//! Cost     16 B a point in and 16 or 32 B out (f32), 64 B a pose from cache; 50 operations a
+//! Cost     16 B a point in and 16 or 32 B out (f32), 64 B a pose from cache. 50 operations a
 //!          vertex and end.
 
 use crate::abi::{

@@ -2,14 +2,14 @@
 //!
 //! The difference of two features is a function `F(t, u, v)`, affine in each parameter. So its
 //! values on a box of parameters are in the hull of its eight corners. A box has no contact if its
-//! corners are on one side of a plane through the origin, beyond rounding ([`bound`]). Other boxes
-//! are cut along their own directions to the part that may have a contact. They are split, nearest
-//! first, until they are smaller than the tolerance ([`search`]). Before that the hull of the whole
-//! motion rejects most pairs ([`filter`]).
+//! corners are on one side of a plane through the origin ([`bound`]: beyond all rounding). Other
+//! boxes are cut along their own directions to the part that may have a contact. They are split,
+//! nearest first, until they are smaller than the tolerance ([`search`]). Before that the hull of
+//! the whole motion rejects most pairs ([`filter`]).
 //!
 //! `docs/internals/isolation.md` explains how this follows [`isolate`](super::isolate).
 //!
-//! # What is proven
+//! # Claims
 //!
 //! For positions as given, moving on straight lines, in real numbers; touching is contact;
 //! distances are Euclidean.
@@ -25,9 +25,9 @@
 //!   inner product with a direction errs by at most the `bound` of [`search`]. At a contact the
 //!   product is at most the separation times the direction's length. So a box beyond the bound has
 //!   no contact.
-//! - (b) Along one parameter, the others fixed, the product is linear, with ends in the ranges of
-//!   the two opposite faces. A cut removes only a part where that line is beyond the bound, and is
-//!   rounded outward.
+//! - (b) Along one parameter, the others fixed, the product is linear. Its ends are in the ranges
+//!   of the two opposite faces. A cut removes only a part where that line is beyond the bound, and
+//!   is rounded outward.
 //! - (c) Together the halves, and the rest after a cut, cover everything that may have a contact.
 //! - (d) Every box ends rejected, accepted, or skipped. The last two charge its start to `toi`. So
 //!   does each box left when the budget or the stack ends. The box with the first contact is never

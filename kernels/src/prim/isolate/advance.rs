@@ -158,8 +158,8 @@ impl<S: Grid, const N: usize> Advance<S, N> {
 
     /// If fixed planes take many steps, a turning one may take few. Returns the time until which it
     /// proves the distance, or `next`. The first attempt is four times as long as the last success.
-    /// If that is too long and the distance is reached, the next attempt ends before it, by the
-    /// line between the distances at both ends. Further attempts are a quarter as long.
+    /// If that fails and the distance is reached, the next attempt ends before it. The line between
+    /// the distances at both ends estimates the time. Further attempts are a quarter as long.
     #[inline(always)]
     fn farther(&mut self, now: &Facing<S, N>, next: S) -> S {
         let (t, over) = (self.at, self.distance.over);
@@ -215,16 +215,16 @@ impl<S: Grid, const N: usize> Pair<S, N> {
         S::ADVANCE_POINT * self.reach + S::ISOLATE_UNDERFLOW
     }
 
-    /// Least computed product of a control vector with `n`, of any length, that proves it farther
-    /// than the distance along `n`. That is the distance times the length of `n`, and the error of
-    /// the product. `ADVANCE_POINT` covers the roundings of the vector (4u) and of the inner
+    /// Least computed product of a control vector with `n` that proves it farther than the distance
+    /// along `n`. `n` has any length. That is the distance times the length of `n`, and the error
+    /// of the product. `ADVANCE_POINT` covers the roundings of the vector (4u) and of the inner
     /// product (3u).
     #[inline(always)]
     pub(super) fn need(&self, n: Vec3<S>, over: S) -> S {
         over * (n.dot(n).sqrt() * S::INCLUSION_UP) + sum(n) * self.point_error()
     }
 
-    /// The time until which all control vectors are farther than the distance along `p`; `None` if
+    /// The time until which all control vectors are farther than the distance along `p`. `None` if
     /// they are not even at the time of `x`.
     ///
     /// `n` is `p / |p|` as rounded. Suppose a computed value at the start is above `need` and at

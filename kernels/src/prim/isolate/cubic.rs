@@ -1,5 +1,5 @@
-//! The cubic that is zero if all control vectors are in one plane through the origin, restricted to
-//! any part of the step.
+//! The cubic of a pair, restricted to any part of the step. It is zero if all control vectors are
+//! coplanar with the origin.
 
 use super::pair::{Pair, most};
 use crate::math::{Real, Vec3};

@@ -3,7 +3,7 @@
 //! | rung | decides | in |
 //! | --- | --- | --- |
 //! | [`rejected`] | pairs whose cubic keeps its sign, over the step or their window | f32 |
-//! | [`isolated`] | a common point at the start; roots, by certificates; flat motion | f32, then f64 |
+//! | [`isolated`] | a common point at the start; roots; flat motion | f32, then f64 |
 //! | [`vf_touch`], [`ee_touch`] | touching at t = 0, by exact signs | integers |
 //! | [`sliced`] | the window in [`SLICES`] slices | f64 |
 //! | [`near`] | pairs that stay farther than half the tolerance | f64 |
@@ -50,8 +50,8 @@ pub enum Rungs {
 }
 
 /// Whether the features certainly do not meet in the step. Either their boxes never overlap, or the
-/// four points never share a plane, by signs of the cubic over the step or over the window. About
-/// 150 operations.
+/// four points never share a plane. Signs of the cubic show the latter, over the step or over the
+/// window. About 150 operations.
 #[inline(always)]
 pub fn rejected<const N: usize>(pair: &Pair<f32, N>) -> bool {
     rejected_before(pair, 1.0)

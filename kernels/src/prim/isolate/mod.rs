@@ -19,7 +19,7 @@
 //! | [`turning`], [`normal`] | planes that turn with the features |
 //!
 //! The answers and their proofs are those of [`crate::prim::inclusion`]. No pair that meets is
-//! separated, no time is late, a contact is one, and an unresolved pair comes within the tolerance.
+//! separated, and no time is late. A contact is one. An unresolved pair comes within the tolerance.
 //! All bounds are in [`crate::math::tolerance`] (`ISOLATE_*`, `ADVANCE_*`).
 //!
 //! Only `+ - * /`, the square root and conversions are used, so every machine gives the same bits.

@@ -1,9 +1,9 @@
 //! The plane along both features, and how long they certainly stay farther from it than a distance.
 //!
 //! The normal of a face, or of two edges, has the same product with all control vectors: the cubic
-//! `g`. So the hull is at least `|g| / |n|` from the origin at every time, and exactly that if its
-//! nearest point is inside. In that case, and for a distance small to the features' extent, this
-//! plane lasts longer than that of [`super::turning`].
+//! `g`. So the hull is at least `|g| / |n|` from the origin at every time. It is exactly that far
+//! if its nearest point is inside. In that case, and for a distance small to the features' extent,
+//! this plane lasts longer than that of [`super::turning`].
 
 use super::cubic::{Cubic, beyond, reach};
 use super::pair::Pair;

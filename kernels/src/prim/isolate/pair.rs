@@ -102,8 +102,8 @@ impl<S: Grid, const N: usize> Pair<S, N> {
     /// The part of the step in which the boxes around the two features, moving with them, can share
     /// a point. There is no contact outside. `None` if there is no such time.
     ///
-    /// The boxes overlap on an axis if the least component of the control vectors is not above zero
-    /// and the largest not below.
+    /// The boxes overlap on an axis if the components of the control vectors are not all positive
+    /// and not all negative.
     #[inline(always)]
     pub fn window(&self) -> Option<(S, S)> {
         let mut window = Window::new();
@@ -121,9 +121,9 @@ impl<S: Grid, const N: usize> Pair<S, N> {
         if self.finite { window.within(self.end) } else { Some((S::ZERO, self.end)) }
     }
 
-    /// The time before which no verdict of this pair begins: its window's begin less the margin. If
-    /// it is not before the earliest known time, the pair cannot lower that, whether its verdict is
-    /// a contact or undecided.
+    /// The time before which no verdict of this pair begins: its window's begin less the margin. A
+    /// pair cannot lower the earliest known time if that is not later. That holds for a contact and
+    /// for an undecided verdict.
     #[inline(always)]
     pub fn not_before(&self, window: (S, S)) -> f64 {
         self.with_margin(window).0.wide()

@@ -1,5 +1,5 @@
-//! A plane that turns with the features, and whether they certainly stay farther from it than a
-//! distance between two times.
+//! A plane that turns with the features. It may prove that they stay farther apart than a distance
+//! between two times.
 //!
 //! At each of the times the nearest point of the hull gives a direction. The plane's normal is the
 //! mixture of both, linear in time, and so are the control vectors. Their products are quadratics,

@@ -66,8 +66,8 @@ pub fn below_precision<R: Real, B: Block>(block: &mut B, args: &BelowPrecisionAr
     args.counters.add_once(block, counter::BELOW_PRECISION, sum as u64);
 }
 
-/// The largest difference of coordinates between a vertex of `one` and a vertex of `other`, at
-/// either end of the step.
+/// The largest difference of coordinates between the vertices of `one` and `other`, at either end
+/// of the step.
 fn reach<R: Real>(one: &[Moving<R>], other: &[Moving<R>]) -> f64 {
     let mut most = 0.0f64;
     for p in one {

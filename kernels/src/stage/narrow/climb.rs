@@ -1,4 +1,4 @@
-//! # Climb: vertex/face and edge/edge pairs → contacts, proven, with bounds of their first time; the rest, for the next rung
+//! # Climb: vertex/face and edge/edge pairs → proven contacts; the rest, for the next rung
 //! Paper    not in the paper.
 //! Launch   [`isolate()`] in f32 over the survivors, then in f64 over the rest (or in one of them
 //!          over all). [`settle`] over the rest of that.

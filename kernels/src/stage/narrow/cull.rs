@@ -14,7 +14,7 @@
 //!          [`crate::prim::isolate`].
 //! Room     survivors: counted past the end, grown, run again.
 //! Cost     8 B candidate, 12 B indices, 128 B positions (gathered).
-//!          About 100 operations for half of the candidates of real cloth, 300 for the others; on a
+//!          About 100 operations for half of the candidates of real cloth, 300 for the others. On a
 //!          CPU 300 for all, in vectors.
 //!          A tenth survives.
 

@@ -18,12 +18,11 @@
 //!          With a known earliest time none is listed whose boxes first come within the gap behind
 //!          the horizon.
 //! Room     vf, ee: counted past the end, grown, run again.
-//! Departs  the paper runs all 15 tests for every pair. Owners leave about 3; shorter sweeps about
-//!          1. Owners are the
-//!          representative triangles of Curtis, Tamstorf, Manocha, "Fast collision detection for
-//!          deformable models", 2008.
+//! Departs  the paper runs all 15 tests for every pair. Owners leave about 3, shorter sweeps 1.
+//!          Owners are the representative triangles of Curtis, Tamstorf, Manocha, "Fast collision
+//!          detection for deformable models using representative-triangles", 2008.
 //! Cost     8 B pair, 64 B facets, 192 B positions (gathered; at rest 96 B).
-//!          Some 500 operations, half of them for the 15 tests (at rest those alone, 300), without
+//!          Some 500 operations, half of them for the 15 tests (at rest those alone, 300). No
 //!          branches; on a CPU in vectors.
 //!          Output is numbered in shared memory first, so that all lanes write.
 

@@ -1,4 +1,4 @@
-//! # Separate: pairs that may come within a separation → contacts, proven, with bounds of their first time
+//! # Separate: pairs that may come within a separation → proven contacts
 //! Paper    not in the paper.
 //! Launch   as many blocks as are resident, both kinds of pairs in one launch. In f32 over the rest
 //!          of `climb::separate_at_once`.

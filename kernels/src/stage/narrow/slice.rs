@@ -1,4 +1,4 @@
-//! # Slice: the few pairs that isolation leaves → contacts, proven, with bounds of their first time
+//! # Slice: the few pairs that isolation leaves → proven contacts
 //! Paper    not in the paper.
 //! Launch   a block a pair, best of [`SLICES`] lanes. A lane takes a slice of the pair's window,
 //!          then every [`SLICES`] / lanes on.

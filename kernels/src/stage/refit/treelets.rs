@@ -14,7 +14,7 @@
 //!          treelet's root.
 //! Cost     8 B place, 12 B face, 48 B positions a frame and leaf; 16 B a merge; two nodes out a
 //!          leaf: 148 B (AABB).
-//!          A chain of some 12 rounds on chip, a ticket, and a round trip to L2 for each depth of
+//!          A chain of some 12 rounds on chip, and a ticket. A round trip to L2 for each depth of
 //!          the top (13 on cloth-ball).
 
 use crate::abi::{Link, Merge, Treelet, TreeletsArgs};

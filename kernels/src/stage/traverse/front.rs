@@ -129,8 +129,8 @@ fn overlaps<V: Volume, L: Lane>(lane: &L, args: &FrontArgs<V>, pair: Pair, p: &V
     allowed && p.overlaps(q)
 }
 
-/// The topmost ancestor of a pair up to which all are apart, and the number of tests, that of the
-/// pair included. The ancestor is `NOTHING` unless this pair comes first below it.
+/// The topmost ancestor of a pair up to which all are apart, and the number of tests, its own
+/// included. The ancestor is `NOTHING` unless this pair comes first below it.
 #[inline]
 fn climb<V: Volume, L: Lane>(lane: &L, args: &FrontArgs<V>, pair: Pair) -> (Pair, u32) {
     let (mut top, mut first, mut tests) = (pair, true, 1);

@@ -2,7 +2,7 @@
 //!
 //! Every walk lists the same set, up to order:
 //! `pairs = {(a, b) : a < b, volumes overlap, filters allow, no common vertex}`.
-//! With [`KEEP_ADJACENT`](crate::abi::TraverseFlags::KEEP_ADJACENT) pairs with a common vertex stay.
+//! [`KEEP_ADJACENT`](crate::abi::TraverseFlags::KEEP_ADJACENT) keeps pairs with a common vertex.
 //!
 //! | file | broad phase | used | source |
 //! | --- | --- | --- | --- |
@@ -21,9 +21,9 @@
 //! 2. Trees are used if the caller chooses trees, a refit or a walk of trees. They are the default
 //!    for oriented boxes, whose merges into tiles are loose.
 //!
-//! On a GPU the walk by leaves has a budget of steps. A longer walk spills the rest of its stack, and
-//! [`per_leaf::units`] continues it. On a CPU no walk spills. `Queue` and `Steal` hold pairs of nodes,
-//! which saves tests of costly volumes.
+//! On a GPU the walk by leaves has a budget of steps. A longer walk spills the rest of its stack,
+//! and [`per_leaf::units`] continues it. On a CPU no walk spills. [`queue`] and [`steal`] test
+//! pairs of nodes: fewer tests, which pays for costly volumes.
 
 pub mod front;
 pub mod nearest;

@@ -37,8 +37,8 @@
 //! It cannot leave by (b), which is false. It cannot leave by (c): the chunk counts as work. So it
 //! draws that ticket in the end. It needs no other block for that: blocks may run in sequence.
 //!
-//! **`work` is 0 only at the end.** The atomic that takes places counts their chunks as work, while
-//! the giver itself is counted. The receiver of a chunk takes over its count. It returns the count
+//! **`work` is 0 only at the end.** The atomic that takes places counts their chunks as work. The
+//! giver itself is counted then. The receiver of a chunk takes over its count. It returns the count
 //! with its next ticket, when it has no units left, on chip or in its segment. A giver returns the
 //! count of chunks that it keeps while it is counted itself. So `work` is at least the number of
 //! blocks with units and of chunks in transit. At 0 there are none, and units come from units

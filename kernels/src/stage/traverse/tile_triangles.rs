@@ -1,6 +1,6 @@
 //! # Triangles of tiles: pairs of tiles → candidates
 //! Paper    not in the paper.
-//! Launch   blocks of a warp, as many as are resident, stride over the moving tiles, each with
+//! Launch   blocks of a warp, as many as are resident. They stride over the moving tiles, each with
 //!          itself, and then the pairs of tiles.
 //! Reads    32 contiguous leaves of each tile; the bodies and faces of candidate triangles.
 //! Writes   candidate pairs, the smaller index first, each once, in no order.
