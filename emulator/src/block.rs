@@ -22,7 +22,7 @@ pub trait Watch: Copy {
     fn shared(&self, access: Access, offset: u32, bytes: usize, inside: bool, place: Place) -> bool;
     /// An access that might only have looked, [`Access::Swap`], has changed memory.
     fn changed(&self);
-    /// A lane takes part in an atomic: where one phase takes long, it does so again and again.
+    /// A lane takes part in an atomic: a phase that takes long mostly does so again and again.
     fn draws(&self);
     /// A barrier of the block: another block may go on.
     fn barrier(&self);

@@ -83,8 +83,8 @@ fn has_threads() -> Result<(), Error> {
     if *STARTED_BY.get_or_init(|| own) == own { Ok(()) } else { Err(Error::Forked) }
 }
 
-/// Starts the threads that all of a program shares, where they do not run yet: else the first to
-/// need them would panic where they cannot be started.
+/// Starts the threads that all of a program shares, if they do not run yet: else the first to need
+/// them would panic if they cannot be started.
 ///
 /// # Errors
 /// [`Error::Threads`]; the same each time, as they are started once. [`Error::Forked`] in a process
@@ -200,8 +200,8 @@ impl Emulator {
         args: &E::Args,
         interrupt: Option<&Interrupt>,
     ) -> Result<(), Error> {
-        // A constant for each kernel, so that one of the table is not compiled again where it is
-        // launched.
+        // A constant for each kernel, so that one of the table is not compiled again at each
+        // launch.
         if const { E::PLACE.is_some() } {
             let place = E::PLACE.unwrap_or_default();
             // SAFETY: the caller's promise.
@@ -210,7 +210,7 @@ impl Emulator {
         self.run::<E>(blocks, args, interrupt)
     }
 
-    /// Runs every block of a launch: [`Emulator::launch`], compiled where it is called.
+    /// Runs every block of a launch: [`Emulator::launch`], compiled at its call.
     fn run<E: Entry>(&self, blocks: u32, args: &E::Args, interrupt: Option<&Interrupt>) -> Result<(), Error> {
         let lanes = self.lanes::<E>();
         let looks = Looks::new(interrupt);

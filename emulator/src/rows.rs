@@ -52,7 +52,7 @@ impl<'a, M: RowMap> Rows<'a, M> {
 fn at_once<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [[u32; WIDTH]]) {
     #[cfg(target_arch = "x86_64")]
     if is_x86_feature_detected!("avx2") {
-        // SAFETY: the machine has what the function is compiled for.
+        // SAFETY: the machine has the features that the function is compiled for.
         return unsafe { at_once_avx2(map, columns, results) };
     }
     each(map, columns, results);
@@ -77,7 +77,7 @@ fn each<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [[u32;
     }
 }
 
-/// Rows whose numbers are all f32 are mapped as such: side by side where there are some.
+/// Rows whose numbers are all f32 are mapped as such: side by side if there are some.
 #[inline(always)]
 fn singles<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [u32; WIDTH]) {
     let mut are_single = [false; WIDTH];

@@ -39,7 +39,7 @@ pub enum Access {
     Look,
     /// A write that other blocks may read.
     StoreRelaxed,
-    /// A read of what other blocks may write.
+    /// A read of memory that other blocks may write.
     LoadRelaxed,
 }
 
@@ -72,7 +72,7 @@ impl fmt::Display for Place {
 pub enum Fault {
     /// Outside its span, or outside all memory.
     Outside(Place),
-    /// A read of what nothing wrote.
+    /// A read of unwritten memory.
     Unwritten(Place),
     /// Two accesses that nothing orders.
     Race(Place, Place),
@@ -128,7 +128,7 @@ impl Sanitizer {
         self.seen().launches
     }
     fn seen(&self) -> MutexGuard<'_, Seen> {
-        // A kernel that panics leaves what was seen in order.
+        // A kernel that panics leaves the observations in order.
         self.seen.lock().unwrap_or_else(PoisonError::into_inner)
     }
     /// A launch begins.

@@ -32,7 +32,7 @@ impl Stop {
     }
 }
 
-/// Runs a block. Whether it came to its end; it did not where it was stopped or panicked.
+/// Runs a block. Whether it came to its end; it did not if it was stopped or panicked.
 pub fn to_its_end(block: impl FnOnce()) -> Result<(), Box<dyn Any + Send>> {
     // A stopped kernel leaves device memory half changed; the launch has failed.
     catch_unwind(AssertUnwindSafe(block))
@@ -56,7 +56,7 @@ struct State {
     random: SmallRng,
     /// The block that has the turn.
     holder: usize,
-    /// How quick the block of each slot is; 0 where there is none.
+    /// How quick the block of each slot is; 0 if there is none.
     pace: Vec<u32>,
     /// Blocks that have not started.
     waiting: VecDeque<u32>,

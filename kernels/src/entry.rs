@@ -259,7 +259,7 @@ macro_rules! for_groups {
     (groups $($what:tt)*) => { $($what)* };
 }
 
-/// Puts lines into the table; where they end.
+/// Puts lines into the table; returns their end.
 const fn put(all: &mut [Line], at: usize, lines: &[Line]) -> usize {
     let mut i = 0;
     while i < lines.len() {

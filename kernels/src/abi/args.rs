@@ -1,4 +1,4 @@
-//! One argument block for each kernel: what it is launched with, by value.
+//! One argument block for each kernel: its launch arguments, by value.
 
 use super::{
     BodyRecord, Counter, Counters, FilterArgs, Inner, LeafPlace, Link, Merge, MortonFlags, Node, NodeFilter,
@@ -125,7 +125,7 @@ arguments! {
         tiles: Tiles,
         /// Place of each inner node in level order.
         places: Span<u32>,
-        /// Out: number of levels, then where each begins, then where the last ends.
+        /// Out: number of levels, then the start of each, then the end of the last.
         levels: Span<u32>,
         /// Out: the tree.
         links: Span<Link>,
@@ -137,7 +137,7 @@ arguments! {
         firsts: Span<u32>,
         /// Out: filters of the triangles below each node; empty if all are of one body.
         filters: Span<NodeFilter>,
-        /// All bodies of the scene; empty where there are no filters.
+        /// All bodies of the scene; empty without filters.
         bodies: Span<BodyRecord>,
         /// The [`NodeFilter::hub`] of every triangle; empty without hubs.
         hubs: Span<u32>,
@@ -147,7 +147,7 @@ arguments! {
         /// Out: the leaves' places; empty without treelets, as the next two are.
         leaf_places: Span<LeafPlace>,
         /// Out, zeroed before. For each chunk of leaves: how many leaves there are from the first
-        /// on that begins a subtree of a treelet; 0 where none does.
+        /// on that begins a subtree of a treelet; 0 if none does.
         begins: Span<u64>,
         /// Out, zeroed before. For each depth: how many nodes span treelets; then as many cursors.
         tops: Span<u64>,
@@ -156,7 +156,7 @@ arguments! {
         /// The root's index; its children follow it.
         root: u32,
     }
-    /// `construct_treelets`: what a refit by treelets needs to know of a tree.
+    /// `construct_treelets`: the plan of a refit by treelets.
     PlanArgs {
         /// The leaves of each inner node.
         inner: Span<Inner>,
@@ -178,8 +178,8 @@ arguments! {
         merges: Span<Merge>,
         /// Out: merges of the nodes that span treelets, by depth.
         top: Span<Merge>,
-        /// Out: in how many depths there are such nodes, then where each depth begins in `top`,
-        /// then where they end.
+        /// Out: the number of depths with such nodes, then the start of each depth in `top`, then
+        /// the end.
         top_starts: Span<u32>,
         /// How many leaves.
         leaves: u32,
@@ -233,9 +233,9 @@ arguments! {
         links: Span<Link>,
         /// The volumes: those of the leaves in, the others out.
         nodes: Span<Node<V>>,
-        /// Number of levels, then where each begins.
+        /// Number of levels, then the start of each.
         levels: Span<u32>,
-        /// The first leaf below each pair of siblings; empty where all nodes are merged.
+        /// The first leaf below each pair of siblings; empty if all nodes are merged.
         firsts: Span<u32>,
         /// The first level (nearest the root).
         from: u32,
@@ -260,8 +260,7 @@ arguments! {
         merges: Span<Merge>,
         /// Merges of the nodes that span treelets, by depth.
         top: Span<Merge>,
-        /// In how many depths there are such nodes, then where each depth begins, then where they
-        /// end.
+        /// The number of depths with such nodes, then the start of each depth, then the end.
         top_starts: Span<u32>,
         /// One counter: tickets drawn by blocks so far, in all launches.
         ticket: Span<u64>,
@@ -281,7 +280,7 @@ arguments! {
         pair_parents: Span<u32>,
         /// Each leaf's node.
         leaf_nodes: Span<u32>,
-        /// The first leaf below each pair of siblings; empty where all nodes are merged.
+        /// The first leaf below each pair of siblings; empty if all nodes are merged.
         firsts: Span<u32>,
         /// For each pair of siblings: how many came by so far, in all launches.
         arrivals: Span<u64>,

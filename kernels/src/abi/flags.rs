@@ -70,7 +70,7 @@ flags! {
         /// The root has two trees below it: a static one, whose own pairs are not wanted, and a
         /// moving one.
         GRAFTED,
-        /// Traversals by pairs of nodes also list the pairs where the descent ends.
+        /// Traversals by pairs of nodes also list the pairs at which the descent ends.
         FRONT,
     }
     /// Flags of a round of queues: [`QueueArgs`](super::QueueArgs).

@@ -37,7 +37,7 @@ arguments! {
         pairs: Output<Pair>,
         /// Out: pairs that meet.
         contacts: Output<Pair>,
-        /// Out: pairs that a filter leaves to what comes next; empty for the last one.
+        /// Out: pairs that a filter leaves to the next one; empty for the last one.
         undecided: Output<Pair>,
         /// Flags of the test.
         flags: DiscreteFlags,
@@ -62,8 +62,8 @@ arguments! {
         may_ee: Output<Pair>,
         /// Parameters of the query.
         params: Params,
-        /// The bits of a time: pairs that cannot meet before it are left out too. Empty where all
-        /// are wanted.
+        /// The bits of a time: pairs that cannot meet before it are left out too. Empty if all are
+        /// wanted.
         known: Span<u64>,
     }
     /// `narrow_vf`, `narrow_ee`: the first time of contact of two primitives in motion.
@@ -140,17 +140,17 @@ arguments! {
         /// The least part of a pair's extent that the solver resolves.
         finest: f64,
     }
-    /// Pairs of one kind for a rung, and where they go.
+    /// Pairs of one kind for a rung, and its output lists.
     Listed {
         /// Pairs.
         pairs: Output<Pair>,
         /// Out: contacts and unresolved pairs; empty if only the earliest is wanted.
         hits: Output<Hit>,
-        /// Out: pairs for the next rung; empty where there is none.
+        /// Out: pairs for the next rung; empty without one.
         left: Output<Pair>,
     }
-    /// `narrow_isolate`, `narrow_settle`, `narrow_slice`, `narrow_separate`: what meets, and bounds
-    /// of the first time, with proof.
+    /// `narrow_isolate`, `narrow_settle`, `narrow_slice`, `narrow_separate`: the pairs that meet,
+    /// and bounds of the first time, with proof.
     RungArgs<R: Real> {
         /// Positions.
         frames: Positions<R>,

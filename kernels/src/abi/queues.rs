@@ -16,7 +16,7 @@ arguments! {
         faces: Span<[u32; 3]>,
         /// Out: candidate triangle pairs.
         pairs: Output<Pair>,
-        /// Out, with [`TraverseFlags::FRONT`]: the pairs of nodes where the descent ended.
+        /// Out, with [`TraverseFlags::FRONT`]: the pairs of nodes at which the descent ended.
         ends: Output<Pair>,
         /// Counters.
         counters: Counters,
@@ -27,7 +27,7 @@ arguments! {
     }
     /// `traverse_queue`: a round of work queues, one a block.
     QueueArgs<V: Pod> {
-        /// The tree, and where candidates go.
+        /// The tree, and the list of candidates.
         to: PairArgs<V>,
         /// Units of this round.
         units: Span<Pair>,
@@ -41,7 +41,7 @@ arguments! {
         idle: Span<u64>,
         /// Which round this is, in `idle` and in the counts of one list.
         round: u32,
-        /// Units of a block's segment; 0 where all blocks share one list.
+        /// Units of a block's segment; 0 if all blocks share one list.
         segment: u32,
         /// Units that a block takes at a time.
         take: u32,
@@ -58,7 +58,7 @@ arguments! {
     }
     /// `traverse_front`: a pass over the last frame's front.
     FrontArgs<V: Pod> {
-        /// The tree, and where candidates and ends go.
+        /// The tree, and the lists of candidates and ends.
         to: PairArgs<V>,
         /// The ends of the last descent.
         front: Span<Pair>,
@@ -92,11 +92,11 @@ arguments! {
     }
     /// `traverse_steal`: work queues that help each other out within one launch.
     StealArgs<V: Pod> {
-        /// The tree, and where candidates go.
+        /// The tree, and the list of candidates.
         to: PairArgs<V>,
         /// A segment for each block: units that its own queue had no room for.
         units: Span<Pair>,
-        /// The places of the pool, a word each: what became of it, and in which launch. See
+        /// The places of the pool, a word each: its state, and the launch that set it. See
         /// [`pool`].
         pool: Span<u64>,
         /// The units of the places, [`pool::CHUNK`] each.

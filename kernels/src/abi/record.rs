@@ -191,7 +191,7 @@ pub struct LeafPlace {
 }
 const _: () = assert!(size_of::<LeafPlace>() == 8);
 
-/// An inner node whose volume is to be made of its children's.
+/// An inner node whose volume is the merge of its children's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C, align(16))]
 pub struct Merge {
@@ -201,7 +201,7 @@ pub struct Merge {
     pub link: u32,
     /// Its last leaf.
     pub last: u32,
-    /// In a treelet: where the children's volumes are on chip, and in which round. See
+    /// In a treelet: the places of the children's volumes on chip, and the round. See
     /// [`Merge::in_treelet`].
     pub slots: u32,
 }

@@ -1,4 +1,4 @@
-//! Scenes of many bodies: what the kernels know of each, and where its vertices come from.
+//! Scenes of many bodies: the record of each, and the source of its vertices.
 
 use super::{Link, Node, Point, Positions, Span};
 use crate::math::Real;
@@ -14,7 +14,7 @@ pub struct BodyRecord {
     pub vertex: u32,
     /// Its environment, by its rank among those that there are; or [`EVERY`].
     pub environment: u32,
-    /// 1 where it is tested against itself.
+    /// 1 if it is tested against itself.
     pub self_contact: u32,
     /// Bits of the groups that it is in.
     pub group: u32,
@@ -103,7 +103,7 @@ const _: () = assert!(size_of::<Placement>() == 24);
 
 /// [`Placement::from`]: the vertices were uploaded as they are.
 pub const UPLOADED: u32 = 0;
-/// [`Placement::from`]: the body rests where it was at the end of the last step; of one end in
+/// [`Placement::from`]: the body rests at its position of the end of the last step; of one end in
 /// [`PlaceArgs::later`].
 pub const RESTING: u32 = 1;
 /// [`Placement::from`]: poses move points at rest.
@@ -164,10 +164,10 @@ arguments! {
     FilterArgs {
         /// Filters of the triangles below each node.
         nodes: Span<NodeFilter>,
-        /// The bodies; empty where all are in all groups and meet all.
+        /// The bodies; empty if all are in all groups and meet all.
         bodies: Span<BodyRecord>,
     }
-    /// `place`: where vertices are, of the bodies that were moved.
+    /// `place`: positions of the vertices of moved bodies.
     PlaceArgs<R: Real> {
         /// The bodies, in the order of their vertices.
         placements: Span<Placement>,
@@ -183,10 +183,10 @@ arguments! {
         lent: Span<Lent>,
         /// Out: all vertices.
         vertices: Positions<R>,
-        /// In and out, where vertices have one end: where the steps ended of which the caller's
-        /// memory had both; empty without such.
+        /// In and out, if vertices have one end: the ends of steps of which the caller's memory had
+        /// both; empty without such.
         later: Span<Point<R>>,
-        /// Out: what was seen of the caller's numbers, see [`seen`]; zero before.
+        /// Out: checks of the caller's numbers, see [`seen`]; zero before.
         seen: Span<u64>,
         /// The largest size of a coordinate that can be computed with.
         most: f64,

@@ -48,7 +48,7 @@ arguments! {
         seen: Span<u64>,
         /// Out: one.
         status: Span<FrameStatus>,
-        /// Counts the answer's first list: one word, or none where there is no list.
+        /// Counts the answer's first list: one word, or none without a list.
         first: Span<u64>,
         /// Counts its second list.
         second: Span<u64>,

@@ -1,4 +1,4 @@
-//! Tiles: what their kernels are launched with.
+//! Tiles: the arguments of their kernels.
 
 use super::{Counters, FilterArgs, Node, NodeFilter, Output, Pair, Positions, Span, TraverseFlags};
 use crate::bv::Axes;
@@ -96,7 +96,7 @@ arguments! {
         nodes: Span<Node<V>>,
         /// Collision filters of the nodes.
         filters: FilterArgs,
-        /// The rim of each; empty where none is made. See [`crate::stage::fit::rims`].
+        /// The rim of each; empty if none is made. See [`crate::stage::fit::rims`].
         rims: Span<Node<V>>,
         /// Out: pairs of tiles, the earlier first.
         tile_pairs: Output<Pair>,

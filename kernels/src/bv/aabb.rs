@@ -25,7 +25,7 @@ impl Aabb {
     /// Encloses nothing; the neutral element of [`Aabb::merge`].
     pub const EMPTY: Aabb = Aabb { lo: [f32::INFINITY; 3], hi: [f32::NEG_INFINITY; 3] };
 
-    /// The box of points, rounded outward where they are finer than f32. Finite points only.
+    /// The box of points, rounded outward if they are finer than f32. Finite points only.
     #[inline]
     pub fn of<R: Real, const N: usize>(points: [Vec3<R>; N]) -> Aabb {
         let (mut lo, mut hi) = (points[0], points[0]);

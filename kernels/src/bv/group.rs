@@ -1,5 +1,5 @@
-//! The oriented box of a few dozen points: tighter by half than what is merged of boxes, whose
-//! paddings and corners add up.
+//! The oriented box of a few dozen points: tighter by half than a merge of boxes, whose paddings
+//! and corners add up.
 //!
 //! Points are gone through twice, for axes and for extents, and never kept. `a_i . (p - c)` is
 //! taken as `a_i . (p - base) - a_i . (c - base)` with the first point as base: the centre is known
@@ -47,7 +47,7 @@ impl Obb {
             (lo, hi, sum, count) = (lo.min(d), hi.max(d), sum + d, count + 1.0);
             spread.add(d);
         });
-        // An infinity or NaN stays in the sum, also where comparisons drop it.
+        // An infinity or NaN stays in the sum, also if comparisons drop it.
         let whole = sum[0].abs() + sum[1].abs() + sum[2].abs();
         let reach = hi.max(-lo);
         let fits = reach[0].max(reach[1]).max(reach[2]) <= BOX_LIMIT;

@@ -73,7 +73,7 @@ impl Volume for Linear {
         b
     }
 
-    /// Both ends grow, and what is between them as much.
+    /// Both ends grow, and every box between them as much.
     #[inline]
     fn grown(&self, by: f32) -> Self {
         let grown = |lo, hi| Aabb { lo, hi }.grown(by);

@@ -74,8 +74,7 @@ pub trait Volume: FillsNode + Sync + Send + core::fmt::Debug + PartialEq {
     fn group(_: Axes) -> u32 {
         0
     }
-    /// Around points, which is what inner nodes that are not merged are fitted to (see
-    /// [`Volume::group`]).
+    /// Around points: the fit of inner nodes that are not merged (see [`Volume::group`]).
     #[inline(always)]
     fn of_points<R: Real>(points: &(impl Points<R> + ?Sized)) -> Self {
         let mut all = Self::still([points.first(); 3]);
@@ -85,7 +84,7 @@ pub trait Volume: FillsNode + Sync + Send + core::fmt::Debug + PartialEq {
     /// Around all points within `by`, a length above 0, of a point that it is around. Rounded
     /// outward.
     fn grown(&self, by: f32) -> Self;
-    /// At least the largest magnitude of a coordinate of what it is around.
+    /// At least the largest magnitude of a coordinate inside it.
     fn reach(&self) -> f32;
     /// Around all points within `by` of its own. Also around those within the least distance that
     /// the last rung of a certified solver resolves. Itself if `by` is 0. See [`NEAR_GROWTH`].
@@ -116,7 +115,7 @@ pub trait Volume: FillsNode + Sync + Send + core::fmt::Debug + PartialEq {
     fn until(&self, _time: f32) -> Self {
         *self
     }
-    /// Never more than the distance of two points that they are around, at t = 0; 0 where they
+    /// Never more than the distance of two points that they are around, at t = 0; 0 if they
     /// overlap.
     fn apart(&self, other: &Self) -> f32;
 }

@@ -179,7 +179,7 @@ fn surface(h: Vec3<f32>, r: Vec3<f32>, t: Vec3<f32>) -> f32 {
     e[0] * e[1] + e[1] * e[2] + e[2] * e[0]
 }
 
-/// One of two, word by word: what a machine may select without keeping either in memory.
+/// One of two, word by word: a machine may select one without keeping either in memory.
 #[inline]
 fn select(first: bool, x: [f32; 3], y: [f32; 3]) -> [f32; 3] {
     let one = |k: usize| if first { x[k] } else { y[k] };

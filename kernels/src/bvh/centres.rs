@@ -1,5 +1,5 @@
-//! Centres of triangles: what they are put in order by, the boxes around them, and which triangles
-//! are outsized.
+//! Centres of triangles: the sort keys of triangles, the boxes around the centres, and the outsized
+//! triangles.
 
 use crate::abi::{Positions, Span};
 use crate::exec::{Block, Lane, Shared};
@@ -21,7 +21,7 @@ pub const OUTSIZED: u32 = KEYS + 2;
 /// their own.
 const ABOVE: u64 = 5;
 
-/// A mesh: where its vertices are, and its faces.
+/// A mesh: its positions and its faces.
 #[derive(Clone, Copy)]
 pub struct Mesh<'a, R: Real> {
     /// Positions of the vertices.
@@ -70,7 +70,7 @@ impl Extent {
     /// The extent of no triangles.
     pub const NONE: Extent = Extent([0; GATHERED as usize]);
 
-    /// With a triangle: its centre, and its size where that `counts`.
+    /// Adds a triangle: its centre, and its size if that `counts`.
     #[inline(always)]
     pub fn add<R: Real, L: Lane>(&mut self, lane: &L, mesh: Mesh<R>, triangle: u32, counts: bool) {
         let corners = corners(lane, mesh, triangle);
@@ -113,7 +113,7 @@ pub const fn shared_bytes(lanes: u32) -> u32 {
     GATHERED * 8 * lanes
 }
 
-/// For what the lanes of a block have put there.
+/// Shared memory for the extents of a block's lanes.
 pub fn gathered<B: Block>(block: &mut B) -> Shared<u64> {
     block.shared(GATHERED * block.lanes())
 }
@@ -210,13 +210,13 @@ pub fn sides(keys: [u64; KEYS as usize]) -> ([f64; 3], [f64; 3]) {
     (lo, [0, 1, 2].map(|k| ordered::number(keys[k]) - lo[k]))
 }
 
-/// The keys of a box at a place of `extents`, by what reads a word.
+/// The keys of a box at a place of `extents`; `read` returns a word.
 #[inline(always)]
 pub fn keys(at: u32, read: impl Fn(u32) -> u64) -> [u64; KEYS as usize] {
     [0, 1, 2, 3, 4, 5].map(|k| read(at + k))
 }
 
-/// From which exponent on a body's triangles are outsized, by what reads a word of its extent.
+/// The least exponent of a body's outsized triangles; `read` returns a word of its extent.
 #[inline(always)]
 pub fn outsized_from(at: u32, read: impl Fn(u32) -> u64) -> u64 {
     read(at + EXPONENTS) / read(at + SIZED).max(1) + ABOVE

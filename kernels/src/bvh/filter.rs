@@ -10,7 +10,7 @@ use crate::abi::{BodyRecord, EVERY, FilterArgs, MIXED, NodeFilter, SELF_CONTACT}
 use crate::exec::Lane;
 
 impl FilterArgs {
-    /// The filter of a node; that of a body tested against itself where the scene has no filters.
+    /// The filter of a node; that of a body tested against itself if the scene has no filters.
     #[inline(always)]
     pub fn of<L: Lane>(&self, lane: &L, node: u32) -> NodeFilter {
         if self.nodes.is_empty() {

@@ -12,8 +12,7 @@ use crate::math::tolerance::HORIZON_MARGIN;
 pub struct Horizon(f32);
 
 impl Horizon {
-    /// By the bits of a time that is known, of an earlier launch: those of no number where none is,
-    /// or no memory.
+    /// By the bits of a time that is known, of an earlier launch: NaN for none, or no memory.
     #[inline(always)]
     pub fn of<B: Block>(block: &B, known: Span<u64>) -> Horizon {
         Horizon::behind(if known.is_empty() { f64::NAN } else { f64::from_bits(block.load(known, 0)) })
@@ -29,7 +28,7 @@ impl Horizon {
     pub fn time(self) -> f32 {
         self.0
     }
-    /// A volume until then, where there is a horizon at all.
+    /// A volume until the horizon, if there is one.
     #[inline(always)]
     pub fn cut<const THERE: bool, V: Volume>(self, volume: V) -> V {
         if THERE && self.0 < 1.0 { volume.until(self.0) } else { volume }

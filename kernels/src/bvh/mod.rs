@@ -1,4 +1,4 @@
-//! The level-ordered tree: what holds of it, and a checker that names what does not.
+//! The level-ordered tree: its invariants, and a checker that names the broken one.
 
 pub mod centres;
 pub mod filter;
@@ -94,7 +94,7 @@ pub struct Tree<'a> {
     pub links: &'a [Link],
     /// The parent of each pair of siblings.
     pub pair_parents: &'a [u32],
-    /// Number of levels, then where each begins, then where the last ends.
+    /// Number of levels, then the start of each, then the end of the last.
     pub levels: &'a [u32],
     /// Each leaf's node.
     pub leaf_nodes: &'a [u32],

@@ -29,7 +29,7 @@ pub const fn below(level: u32) -> u32 {
 pub struct Levels {
     /// How many levels there are: at least 2, the tiles one of them.
     pub count: u32,
-    /// Nodes of the top level above what moves, and above what is static.
+    /// Nodes of the top level above moving tiles, and above static ones.
     pub tops: [u32; 2],
 }
 
@@ -87,7 +87,7 @@ impl Levels {
 pub struct Tiles<'a, V> {
     /// The layout.
     pub levels: Levels,
-    /// Triangles of what moves, and of what is static.
+    /// Moving triangles, and static ones.
     pub triangles: [u32; 2],
     /// Places for triangles, tile by tile.
     pub leaves: &'a [Node<V>],

@@ -203,11 +203,11 @@ pub trait Block {
     fn number(&mut self, wishes: &mut Self::Slot<u32>) -> u32 {
         self.scan(wishes)
     }
-    /// Adds `count` to a counter once for the whole block; the value before. No atomic, and 0,
-    /// where `count` is 0.
+    /// Adds `count` to a counter once for the whole block; the value before. No atomic, and 0, if
+    /// `count` is 0.
     ///
-    /// It orders nothing between blocks, even where each lane has called [`Lane::fence`] in the
-    /// phase before: a fence speaks for the atomics of its own lane, and here only lane 0 has one.
+    /// It orders nothing between blocks, even if each lane has called [`Lane::fence`] in the phase
+    /// before: a fence speaks for the atomics of its own lane, and here only lane 0 has one.
     /// [`Block::ticket`] does order.
     fn reserve(&mut self, counter: Span<u64>, i: u32, count: u64) -> u64;
     /// [`Block::reserve`] of two counters, each the first of its span, in the time of one.
@@ -230,9 +230,9 @@ pub trait Block {
         scratch: Shared<u32>,
     );
 
-    /// Room in a list for what the lanes want to append: replaces each lane's wish by the number of
-    /// entries before its own, and returns where the block's entries begin. The counter goes past
-    /// the end of the list, so that its final value is the exact demand.
+    /// Room in a list for the entries that the lanes append: replaces each lane's wish by the
+    /// number of entries before its own, and returns the start of the block's entries. The counter
+    /// goes past the end of the list, so that its final value is the exact demand.
     fn append(&mut self, wishes: &mut Self::Slot<u32>, counter: Span<u64>, i: u32) -> u64 {
         let total = self.scan(wishes);
         self.reserve(counter, i, total as u64)
@@ -245,8 +245,8 @@ pub const BINS: u32 = 256;
 pub const WARP: u32 = 32;
 
 /// The place of a lane's item `k` among the block's, `each` a lane: warps one after the other, and
-/// in a warp all first items, then all second ones. So a warp's accesses are neighbours, and what
-/// it ranks by itself is one stretch.
+/// in a warp all first items, then all second ones. So a warp's accesses are neighbours, and the
+/// items that it ranks by itself are contiguous.
 pub const fn striped(lane: u32, lanes: u32, k: u32, each: u32) -> u32 {
     let before = lane / WARP * WARP;
     let width = if lanes - before < WARP { lanes - before } else { WARP };

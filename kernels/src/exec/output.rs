@@ -22,12 +22,12 @@ impl<T: Pod> Output<T> {
     pub fn reserve<B: Block>(&self, block: &mut B, count: u64) -> u64 {
         block.reserve(self.count(), 0, count)
     }
-    /// Takes places for what the lanes want to append, see [`Block::append`].
+    /// Takes places for the entries that the lanes append, see [`Block::append`].
     #[inline(always)]
     pub fn append<B: Block>(&self, block: &mut B, wishes: &mut B::Slot<u32>) -> u64 {
         block.append(wishes, self.count(), 0)
     }
-    /// Puts an entry in a place that was taken, where there is room.
+    /// Puts an entry in a place that was taken, if there is room.
     #[inline(always)]
     pub fn put<L: Lane>(&self, lane: &L, place: u64, entry: T) {
         if place < self.room() {
@@ -52,7 +52,7 @@ impl Counters {
     pub fn add<L: Lane>(&self, lane: &L, which: Counter, count: u64) {
         lane.fetch_add(self.words(), which.place(), count);
     }
-    /// Adds to one, once for the whole block; nothing where `count` is 0.
+    /// Adds to one, once for the whole block; nothing if `count` is 0.
     #[inline(always)]
     pub fn add_once<B: Block>(&self, block: &mut B, which: Counter, count: u64) {
         block.reserve(self.words(), which.place(), count);
@@ -62,8 +62,8 @@ impl Counters {
     pub fn look<L: Lane>(&self, lane: &L, which: Counter) -> u64 {
         lane.fetch_load(self.words(), which.place())
     }
-    /// As [`Counters::raise`], where it mostly is not below: a look is cheaper than many atomics of
-    /// one word.
+    /// As [`Counters::raise`], for a counter that mostly is not below: a look is cheaper than many
+    /// atomics of one word.
     #[inline(always)]
     pub fn raise_seldom<L: Lane>(&self, lane: &L, which: Counter, least: u64) {
         if self.look(lane, which) < least {
@@ -83,7 +83,7 @@ impl Counters {
     pub fn shorten<L: Lane>(&self, lane: &L, which: Counter, length: f64) {
         self.raise_seldom(lane, which, !length.to_bits());
     }
-    /// Raises one to `least`, where it is below, by an atomic of this lane.
+    /// Raises one to `least`, if it is below, by an atomic of this lane.
     #[inline(always)]
     pub fn raise<L: Lane>(&self, lane: &L, which: Counter, least: u64) {
         lane.fetch_max(self.words(), which.place(), least);

@@ -43,7 +43,7 @@ pub trait Real:
     /// f64: its exponents spread too far for the middle size of exact integers.
     const WIDE: bool;
 
-    /// The nearest value of this precision (exact where `x` is representable).
+    /// The nearest value of this precision (exact if `x` is representable).
     fn of(x: f64) -> Self;
     /// The value, widened; exact.
     fn wide(self) -> f64;
@@ -54,8 +54,7 @@ pub trait Real:
     /// The square root, correctly rounded; of `self >= 0` only.
     fn sqrt(self) -> Self;
     /// Whether a wide number is one of f32 that f32 can be computed with, [`SINGLE_MOST`] at most:
-    /// then what is computed of it has the bits that f32 positions have. False of f32, which is its
-    /// own.
+    /// then computations give the bits of f32 positions. False of f32, which is its own.
     fn is_single(self) -> bool;
     /// Sign, integer mantissa and exponent; of finite numbers only. Exact, in integer operations.
     fn parts(self) -> Parts;

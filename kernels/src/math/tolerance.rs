@@ -207,12 +207,11 @@ pub const SINGLE_MOST: f64 = f64::from_bits((1023 + 60) << 52);
 pub const CUBIC_SCALE: f64 = 1048576.0;
 
 /// The least tolerance that decides what is listed, relative to a pair's extent: `256 u` of f64.
-/// Advancement to half of it leaves `128u`, four times what the two errors of a nearest point take.
-/// Ratio.
+/// Advancement to half of it leaves `128u`, four times the two errors of a nearest point. Ratio.
 pub const NEAR_FINEST: f64 = 256.0 * U64;
-/// Growth of volumes for it, relative to the largest coordinate of what they hold. A pair's extent
-/// is at most the sum of both coordinates, so each side's part is [`NEAR_FINEST`]. Twice that, for
-/// the roundings of f32. `2^-44`. Ratio.
+/// Growth of volumes for it, relative to the largest coordinate in them. A pair's extent is at most
+/// the sum of both coordinates, so each side's part is [`NEAR_FINEST`]. Twice that, for the
+/// roundings of f32. `2^-44`. Ratio.
 pub const NEAR_GROWTH: f32 = f32::from_bits((127 - 44) << 23);
 
 /// Excess of a computed distance of two features at rest over the true one: at most `192u` of f64.
@@ -260,7 +259,7 @@ pub const MOVING_LIMIT: f32 = f32::from_bits((125 + 127) << 23);
 pub const MOVING_TIME: f32 = 16.0 * U32;
 
 /// Error of a mixture of two bounds of a moving box: `8u`. The complement, two products and a sum
-/// take `3.1u`; the rest is the rounding of what is added for it. Ratio of the larger bound.
+/// take `3.1u`; the rest is the rounding of its allowance. Ratio of the larger bound.
 pub const MOVING_MIXTURE: f32 = 8.0 * U32;
 /// Distance of the horizon `h` behind the earliest known time `k`. Take a pair of features whose
 /// boxes, moving with them, first share a point behind `h`. None of its verdicts begins at `k` or

@@ -1,4 +1,4 @@
-//! Triangles that share corners by index: whether they meet beyond what they share.
+//! Triangles that share corners by index: whether they meet beyond their shared vertices.
 
 use super::flat::{boxes_meet, projection};
 use super::signs::Signs;
@@ -114,7 +114,8 @@ fn rays<R: Real, S: Signs<R>>(t: &[Vec3<R>; 3]) -> Option<[Option<[Vec3<R>; 2]>;
 
 /// `v`, `w` are shared, `a` and `b` the apexes. With area: in one plane, and the apexes strictly on
 /// one side of the edge. An edge of no length gives only zeros, an apex on the edge's line one
-/// zero: false, unless all four are on one line, where both apexes must be beyond the same end.
+/// zero: false, unless all four are on one line, in which case both apexes must be beyond the same
+/// end.
 fn beyond_edge<R: Real, S: Signs<R>>(v: Vec3<R>, w: Vec3<R>, a: Vec3<R>, b: Vec3<R>) -> Option<bool> {
     if S::orient3d(v, w, a, b)? != 0 {
         return Some(false);

@@ -48,7 +48,7 @@ impl<R: Real> Moving<R> {
     pub fn is_single(&self) -> bool {
         self.t0.is_single() && self.t1.is_single()
     }
-    /// In f32: exact of what is single.
+    /// In f32: exact for single numbers.
     #[inline(always)]
     pub fn narrow(&self) -> Moving<f32> {
         Moving { t0: self.t0.narrow(), t1: self.t1.narrow() }

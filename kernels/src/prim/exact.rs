@@ -29,7 +29,7 @@ struct Int<const N: usize> {
 impl<const N: usize> Int<N> {
     const ZERO: Self = Int { negative: false, len: 0, limb: [0; N] };
 
-    /// `x / 2^grid`, where the grid divides `x`.
+    /// `x / 2^grid`, if the grid divides `x`.
     #[inline(never)]
     fn of<R: Real>(x: R, grid: i32) -> Self {
         let p = x.parts();
@@ -220,7 +220,7 @@ fn difference<R: Real>(x: Vec3<R>, y: Vec3<R>, low: [i32; 3]) -> [i64; 3] {
     core::array::from_fn(|k| to(x, k) - to(y, k))
 }
 
-/// The same of at most [`SMALL`] bits, as two digits: the low one, and what is above, which has the
+/// The same of at most [`SMALL`] bits, as two digits: the low one, and the high one, which has the
 /// sign.
 #[inline]
 fn digits<R: Real>(x: Vec3<R>, y: Vec3<R>, low: [i32; 3]) -> [[i64; 2]; 3] {

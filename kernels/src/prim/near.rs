@@ -69,7 +69,7 @@ pub fn corner_weights([s, t]: [f64; 2]) -> [f64; 3] {
     [(1.0 - t) - s, s, t]
 }
 
-/// The differences that a pair is made of, each rounded once, or twice where S is narrower than R:
+/// The differences that a pair is made of, each rounded once, or twice if S is narrower than R:
 /// `r`, `p`, `q`.
 #[inline(always)]
 fn differences<R: Real, S: Real, const TRIANGLE: bool>([a, b, c, d]: [Vec3<R>; 4]) -> [Vec3<S>; 3] {
@@ -79,14 +79,14 @@ fn differences<R: Real, S: Real, const TRIANGLE: bool>([a, b, c, d]: [Vec3<R>; 4
     if TRIANGLE { [minus(b, a), minus(c, b), minus(d, b)] } else { [minus(a, c), minus(b, a), minus(c, d)] }
 }
 
-/// A vertex and a face: where they are nearest, unless they are certainly farther apart than
+/// A vertex and a face: the nearest points, unless they are certainly farther apart than
 /// `distance`.
 #[inline(always)]
 pub fn vertex_face<R: Real>(v: Vec3<R>, [a, b, c]: [Vec3<R>; 3], distance: f64) -> Option<Near> {
     within::<true>(differences::<R, f64, true>([v, a, b, c]), distance)
 }
 
-/// Two edges: where they are nearest, unless they are certainly farther apart than `distance`.
+/// Two edges: the nearest points, unless they are certainly farther apart than `distance`.
 #[inline(always)]
 pub fn edge_edge<R: Real>([a, b]: [Vec3<R>; 2], [c, d]: [Vec3<R>; 2], distance: f64) -> Option<Near> {
     within::<false>(differences::<R, f64, false>([a, b, c, d]), distance)
@@ -197,7 +197,7 @@ impl<S: Real> Candidate<S> {
     }
 }
 
-/// Into [0, `most`]; what is no number becomes 0.
+/// Into [0, `most`]; NaN becomes 0.
 #[inline(always)]
 fn clamped<S: Real>(x: S, most: S) -> S {
     let x = if x > S::ZERO { x } else { S::ZERO };

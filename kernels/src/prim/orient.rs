@@ -59,8 +59,8 @@ impl<R: Real> Plane<R> {
         Plane { a, b, c, e, f, normal: Vec3([x.0, y.0, z.0]), permanent: Vec3([x.1, y.1, z.1]) }
     }
 
-    /// The sign of det[a-d, b-d, c-d] where rounding cannot have changed it, else `None`. Never
-    /// wrong for finite points (module text). 3 differences, 7 products, 5 sums in the common case.
+    /// The sign of det[a-d, b-d, c-d] if rounding cannot have changed it, else `None`. Never wrong
+    /// for finite points (module text). 3 differences, 7 products, 5 sums in the common case.
     #[inline]
     pub fn side(&self, d: Vec3<R>) -> Option<i32> {
         let (det, bound) = self.measured(d);

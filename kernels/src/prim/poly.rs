@@ -37,7 +37,7 @@ impl<S: Real> Cubic<S> {
         at
     }
 
-    /// The root between `low` and `high`, where the cubic has different strict signs, `below` at
+    /// The root between `low` and `high`, at which the cubic has different strict signs, `below` at
     /// `low`: Newton's steps, kept in a shrinking bracket by bisection. To the last bit or so; 4 to
     /// 8 steps as a rule, never more than [`Self::STEPS`].
     pub fn root(&self, mut low: S, mut high: S, below: bool) -> S {

@@ -5,15 +5,15 @@ use crate::bv::Volume;
 use crate::exec::Lane;
 use crate::queue::bvtt;
 
-/// The root with itself, where every descent begins.
+/// The root with itself: the start of every descent.
 pub const ROOTS: Pair = Pair { a: ROOT, b: ROOT };
 
-/// The pairs below a unit, at most three, and what each of them is (bit k: pair k).
+/// The pairs below a unit, at most three, and the kind of each of them (bit k: pair k).
 #[derive(Clone, Copy)]
 pub struct ChildPairs {
     /// The pairs.
     pub nodes: [Pair; 3],
-    /// Their triangles, where both nodes are leaves; never the third.
+    /// Their triangles, if both nodes are leaves; never the third.
     pub faces: [Pair; 2],
     /// They overlap and go deeper: units.
     pub units: u32,

@@ -141,7 +141,7 @@ impl<B: Block> Worker<B> {
         Pair { a, b }
     }
 
-    /// Puts a unit where there is room.
+    /// Puts a unit in a free place.
     #[inline]
     pub fn put(&self, lane: &B::Lane, i: u32, unit: Pair) {
         lane.put(self.queue, i, [unit.a, unit.b]);
@@ -230,7 +230,7 @@ impl<B: Block> Worker<B> {
         sum >> (2 * FIELD) != 0
     }
 
-    /// Lists the pairs where the descent ended in this step.
+    /// Lists the pairs at which the descent ended in this step.
     fn list_ends<V: Volume>(&mut self, block: &mut B, to: &PairArgs<V>) {
         let Worker { below: slots, sums, .. } = self;
         block.phase(|lane| *sums.of(lane) = slots.of(lane).ends.count_ones());

@@ -42,8 +42,7 @@ pub fn copy<B: Block>(block: &mut B, args: &BalanceArgs) {
         }
         let mut i = lane.lane() as u64;
         while i < total {
-            // The last segment that begins at or before unit i. An empty one begins where the next
-            // does.
+            // The last segment that begins at or before unit i. An empty one begins with the next.
             let (mut low, mut high) = (0, cores);
             while high - low > 1 {
                 let middle = low + (high - low) / 2;

@@ -1,4 +1,4 @@
-//! Single instructions, as functions. Intrinsics where lanes act together, assembly for loads,
+//! Single instructions, as functions. Intrinsics for collective operations, assembly for loads,
 //! shared memory and roots.
 
 use crate::abi::Span;
@@ -155,7 +155,7 @@ pub fn address<T: Word>(words: Shared<T>, i: u32) -> u32 {
     shared_address(words.offset + i * size_of::<T>() as u32)
 }
 
-/// The value of the lane `delta` before this one in its warp; its own where there is none. A
+/// The value of the lane `delta` before this one in its warp; its own if there is none. A
 /// [`sync_warp`] goes before.
 #[inline(always)]
 pub fn shuffle_up(v: u32, delta: u32) -> u32 {

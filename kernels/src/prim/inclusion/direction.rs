@@ -1,4 +1,4 @@
-//! Directions along which a box is judged, and what a projection along one leaves of it.
+//! Directions along which a box is tested, and the rest of it after a projection.
 
 use super::cell::Grid;
 use crate::math::Vec3;
@@ -210,7 +210,7 @@ impl<S: Grid> Cuts<S> {
         self.cut(k, -wide - low.1, -wide - high.1);
     }
 
-    /// Keeps only where the line from `a` to `b` is not above zero.
+    /// Keeps only the part in which the line from `a` to `b` is not above zero.
     #[inline(always)]
     fn cut(&mut self, k: usize, a: S, b: S) {
         self.low[k].take(a, a - b, (a > S::ZERO) & (b < a));

@@ -153,7 +153,7 @@ fn scaled<T: Real, const N: usize>(mut w: [[Vec3<T>; 2]; N]) -> Differences<T, N
     let (mut most, mut sum) = (Vec3([T::ZERO; 3]), Vec3([T::ZERO; 3]));
     let mut together = 0;
     for k in 0..N {
-        // Differences of floats are zero where the points are equal, and only there.
+        // Differences of floats are zero if and only if the points are equal.
         let [x, y, z] = w[k][0].0;
         together |= (((x == T::ZERO) & (y == T::ZERO) & (z == T::ZERO)) as u32) << k;
         for i in 0..2 {

@@ -26,8 +26,8 @@
 //!   product is at most the separation times the direction's length. So a box beyond the bound has
 //!   no contact.
 //! - (b) Along one parameter, the others fixed, the product is linear. Its ends are in the ranges
-//!   of the two opposite faces. A cut removes only a part where that line is beyond the bound, and
-//!   is rounded outward.
+//!   of the two opposite faces. A cut removes only a part in which that line is beyond the bound,
+//!   and is rounded outward.
 //! - (c) Together the halves, and the rest after a cut, cover everything that may have a contact.
 //! - (d) Every box ends rejected, accepted, or skipped. The last two charge its start to `toi`. So
 //!   does each box left when the budget or the stack ends. The box with the first contact is never
@@ -65,8 +65,8 @@ use core::mem::MaybeUninit;
 pub const STACK: usize = 64;
 
 /// Whether, and when, a vertex first comes within the separation of a closed face; positions in
-/// `R`, computed in `S`. About 130 operations where the first filter rejects, 400 where the second
-/// does, 1,200 a box beyond.
+/// `R`, computed in `S`. About 130 operations if the first filter rejects, 400 if the second does,
+/// else 1,200 a box.
 #[inline]
 pub fn vf_certified<R: Real, S: Grid>(v: Moving<R>, f: [Moving<R>; 3], p: &Params) -> Verdict {
     certified(Face::<S>::new(v, f, p), p)

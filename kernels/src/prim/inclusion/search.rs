@@ -282,8 +282,9 @@ impl<S: Grid, const N: usize> Local<S, N> {
         !(self.beyond && t >= self.end)
     }
 
-    /// Notes the corner where the box begins, or where its time ends, if it is certainly within the
-    /// separation. Both belong to the features: a face's box is never wholly beyond `u + v = 1`.
+    /// Notes the corner at the start of the box, or at the end of its time, if it is certainly
+    /// within the separation. Both belong to the features: a face's box is never wholly beyond
+    /// `u + v = 1`.
     #[inline(always)]
     fn within_separation(&self, cell: &Cell<S>, image: &Image<S>, known: &mut Known<S>) {
         // The separation was rounded up; this is below the requested one. The square may underflow

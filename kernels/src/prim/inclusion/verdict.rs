@@ -27,8 +27,8 @@ impl Params {
         Params { tolerance, separation: 0.0, end: 1.0, budget: Self::BUDGET, pad: 0 }
     }
 
-    /// Default number of boxes after which a pair is left unresolved: ten times what the hardest of
-    /// public scenes take.
+    /// Default number of boxes after which a pair is left unresolved: ten times the number for the
+    /// hardest public scenes.
     pub const BUDGET: u32 = 4096;
 }
 
@@ -38,9 +38,9 @@ impl Params {
 pub struct Verdict {
     /// No contact before; in [0, 1], never -0.0 or NaN.
     pub toi: f64,
-    /// The first contact is not after; the end of the step, where there need be none.
+    /// The first contact is not after; the end of the step, if there need be none.
     pub toi_hi: f64,
-    /// 0 separated, 1 contact, 2 unresolved; and 4 where the budget or the stack ended.
+    /// 0 separated, 1 contact, 2 unresolved; plus 4 if the budget or the stack ended.
     pub state: u32,
     /// Boxes looked at.
     pub boxes: u32,

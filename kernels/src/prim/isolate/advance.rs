@@ -98,8 +98,8 @@ impl<S: Grid, const N: usize> Advance<S, N> {
         }
     }
 
-    /// One step; what is known, once that is all. About 150 operations, twice that where the
-    /// distance is near, and up to 1,000 more for a plane that turns.
+    /// One step; the result, once it is final. About 150 operations, twice that if the distance is
+    /// near, and up to 1,000 more for a plane that turns.
     #[inline(always)]
     pub fn step(&mut self) -> Option<Advanced<S>> {
         match self.fixed() {
@@ -254,8 +254,7 @@ impl<S: Grid, const N: usize> Pair<S, N> {
 
 /// Steps of a near pair before it is reported as near.
 const PATIENCE: u32 = 16;
-/// How often a turning plane is tried in a step: in f32, where many lanes would wait for a few, and
-/// in f64.
+/// Attempts of a turning plane in a step: in f32, whose lanes would wait for a few, and in f64.
 const TURNING: [u32; 2] = [1, 3];
 /// How often the time that is looked ahead doubles.
 const AHEAD: u32 = 12;

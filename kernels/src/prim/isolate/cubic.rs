@@ -5,7 +5,7 @@ use super::pair::{Pair, most};
 use crate::math::{Real, Vec3};
 use crate::prim::inclusion::Grid;
 
-/// A cubic over [0, 1] by its Bernstein coefficients, and what a restricted coefficient errs by.
+/// A cubic over [0, 1] by its Bernstein coefficients, and the error of a restricted coefficient.
 #[derive(Clone, Copy, Debug)]
 pub struct Cubic<S> {
     k: [S; 4],

@@ -166,15 +166,15 @@ const CLOSER: f64 = 64.0;
 /// it is too small, the sign is not certain. A cost, not part of a proof.
 const BEYOND: f64 = 1.125;
 
-/// How much more of it is looked at first, where the tolerance allows: curved, the sign may be seen
+/// How much more of it is tested first, if the tolerance allows: curved, the sign may be seen
 /// later. Costs, proves nothing.
 const SPARE: f64 = 4.0;
 
 /// The longest time around a suspect, of the step and of the window. Costs, proves nothing.
 const WIDEST: f64 = 1.0 / 16.0;
 
-/// Whether the cubic certainly has no root in `[from, to]`: as a whole, or cut where it turns, each
-/// piece as a whole or as its two halves. NaN is not clear.
+/// Whether the cubic certainly has no root in `[from, to]`: as a whole, or cut at its turning
+/// points, each piece as a whole or as its two halves. NaN is not clear.
 #[inline(always)]
 fn clear<S: Real>(g: &Cubic<S>, (from, to): (S, S), cuts: [S; 2]) -> bool {
     if to <= from {

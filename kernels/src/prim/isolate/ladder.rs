@@ -31,12 +31,12 @@ use core::mem::MaybeUninit;
 
 /// Slices of a window, a lane each.
 pub const SLICES: u32 = 32;
-/// Newton's steps where a root is isolated first, and in a slice.
+/// Newton's steps at the first isolation of a root, and in a slice.
 const STEPS: [u32; 2] = [6, 12];
-/// How often a suspect time is looked at again, where no other isolation follows.
+/// Further tests of a suspect time, if no other isolation follows.
 const AGAIN: u32 = 3;
-/// How long around a suspect time is looked at, in pauses, where signs need no more: first, and in
-/// a slice. Both sides are less than two pauses.
+/// The time around a suspect that is tested, in time tolerances, if signs need no more: first, and
+/// in a slice. Both sides are less than two time tolerances.
 const AROUND: [f64; 2] = [0.9, 0.03];
 /// Which rungs there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -139,7 +139,7 @@ pub fn is_flat<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64)) ->
 /// Slice `i` of the window. About 3,000 operations.
 #[inline]
 pub fn sliced<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), i: u32, p: &Params) -> Slice {
-    // Both slices at a cut compute the same number; the last ends where the window does.
+    // Both slices at a cut compute the same number; the last ends with the window.
     let (begin, end) = pair.with_margin((begin, end));
     let cut = |i: u32| if i == SLICES { end } else { begin + (end - begin) * (i as f64 / SLICES as f64) };
     let (from, to) = (cut(i), cut(i + 1));
@@ -211,7 +211,8 @@ pub(super) fn nearly(told: Advanced<f64>, steps: u32, p: &Params) -> Verdict {
     }
 }
 
-/// Searches by boxes from `from` on what [`near`] left unresolved: the surer of both answers.
+/// Searches by boxes a pair that [`near`] left unresolved, from its time on: the surer of both
+/// answers.
 #[inline]
 pub fn searched<const N: usize>(local: inclusion::Local<f64, N>, unresolved: Verdict, p: &Params) -> Verdict {
     let mut stack = [const { MaybeUninit::uninit() }; STACK];

@@ -24,8 +24,8 @@ pub struct Pair<S, const N: usize> {
     pub speed: S,
     /// Whether all differences are finite numbers; nothing is ever rejected otherwise.
     pub finite: bool,
-    /// Whether a corner of one feature is where a corner of the other is at the start: they touch.
-    /// Exact.
+    /// Whether a corner of one feature coincides with a corner of the other at the start: they
+    /// touch. Exact.
     pub together: bool,
     /// Scale of all lengths.
     pub scale: f64,
@@ -85,7 +85,7 @@ impl<S: Grid, const N: usize> Pair<S, N> {
         S::of((length * self.scale).max(0.0))
     }
 
-    /// Within this time no component moves by more than that length; 1 where nothing moves.
+    /// Within this time no component moves by more than that length; 1 if nothing moves.
     #[inline]
     pub fn time_tolerance(&self, length: S) -> S {
         if self.speed > length { length / self.speed * S::INCLUSION_DOWN } else { S::ONE }

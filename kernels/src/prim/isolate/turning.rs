@@ -21,8 +21,8 @@ use crate::prim::inclusion::Grid;
 pub struct Facing<S, const N: usize> {
     /// Control vectors.
     pub x: [Vec3<S>; N],
-    /// The point nearest to the origin, as computed. Whatever it is, what is said of planes along
-    /// it holds.
+    /// The point nearest to the origin, as computed. Statements about planes along it hold for any
+    /// value.
     pub p: Vec3<S>,
 }
 

@@ -39,7 +39,7 @@ const PARTS: u32 = RUN / PART;
 /// Bits of a cell along an axis: three in a word, and one to spare.
 const CELL_BITS: u32 = 21;
 const CELL: u64 = (1 << CELL_BITS) - 1;
-/// Bits of what a run is sorted by: two bytes, stretch and place.
+/// Bits of the sort key of a run: two bytes, stretch and place.
 const SORTED_BITS: u32 = 16;
 /// The lower half of an item of a run: which of its triangles.
 const WHICH: u32 = (1 << SORTED_BITS) - 1;
@@ -215,7 +215,7 @@ impl Run {
         });
     }
 
-    /// The box of each stretch of a level, where its first part is.
+    /// The box of each stretch of a level, at its first part.
     fn bounds<R: Real, B: Block>(&self, block: &mut B, args: &CutArgs<R>, level: u32) {
         let stretch = RUN >> level;
         each(block, PARTS, |lane, part| {

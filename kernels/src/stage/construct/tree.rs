@@ -77,7 +77,7 @@ pub fn tree<B: Block>(block: &mut B, args: &TreeArgs) {
     });
 }
 
-/// The depth of each inner node, counted by tiles; and what the treelets need to know first.
+/// The depth of each inner node, counted by tiles; and the starts of treelets.
 pub fn depth<B: Block>(block: &mut B, args: &TreeArgs) {
     block.phase(|lane| {
         let gap = lane.global();

@@ -38,7 +38,7 @@ pub fn rims<R: Real, V: Volume, B: Block>(block: &mut B, args: &RimsArgs<R, V>) 
     });
 }
 
-/// The rim of a node; nothing where those below it have different hubs, or none.
+/// The rim of a node; nothing if those below it have different hubs, or none.
 fn above<R: Real, V: Volume, L: Lane>(lane: &L, args: &RimsArgs<R, V>, node: u32) -> Node<V> {
     let is_tile = args.below == NONE;
     let (each, all) = if is_tile { (TILE, args.triangles.len() as u32) } else { (FAN, args.below_count) };

@@ -19,7 +19,7 @@
 //! Room     hits, left: counted past the end, grown, run again.
 //! Cost     8 B pair, 12 B indices, 128 B positions (gathered). Isolation: about 1,100 operations
 //!          for a pair with a root, as many in f64.
-//!          Settling: some 30 exact signs for what touches at the start. The first planes of a
+//!          Settling: some 30 exact signs for pairs that touch at the start. The first planes of a
 //!          separation: 400 operations.
 
 use super::{edge_edge, lower, of_edge_edge, of_vertex_face, vertex_face};
@@ -52,7 +52,7 @@ pub fn isolate<R: Real, S: Grid, B: Block>(block: &mut B, args: &RungArgs<R>) {
     );
 }
 
-/// Touching at the start, and what is flat; with [`RungFlags::EVERYTHING`] all that is left.
+/// Touching at the start, and flat motion; with [`RungFlags::EVERYTHING`] all that is left.
 pub fn settle<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
     let all = args.flags.has(RungFlags::EVERYTHING);
     rung(

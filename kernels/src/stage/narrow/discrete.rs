@@ -113,7 +113,7 @@ pub fn moller<R: Real, B: Block>(block: &mut B, args: &DiscreteArgs<R>) {
     });
 }
 
-/// Pairs of a block and what is known of each.
+/// Pairs of a block and the verdict of each.
 struct Verdicts<B: Block> {
     pairs: B::Slot<Pair>,
     verdicts: B::Slot<Option<bool>>,
@@ -259,7 +259,7 @@ fn decide<R: Real, F: Frame<R>, B: Block>(
     verdicts.sort_out(block, args);
 }
 
-/// The same in f64, for what f32 left undecided.
+/// The same in f64, for pairs that f32 left undecided.
 pub fn wide<F: Frame<f32>, B: Block>(block: &mut B, args: &DiscreteArgs<f32>) {
     let count = args.pairs.listed(block);
     let mut verdicts = Verdicts::new(block);
@@ -346,7 +346,7 @@ fn exact_of_few<R: Real, F: Frame<R>, B: Block>(block: &mut B, args: &DiscreteAr
     });
 }
 
-/// A pair, its corners, and what they share.
+/// A pair, its corners, and their shared vertices.
 #[inline(always)]
 fn given<R: Real, F: Frame<R>, L: Lane>(
     lane: &L,

@@ -59,7 +59,7 @@ fn owned(p: &Facet, q: &Facet) -> u32 {
     mask
 }
 
-/// Whether triangles move, and what the test of their boxes reads of a vertex.
+/// Whether triangles move, and the part of a vertex that the test of their boxes reads.
 pub trait Course<R: Real> {
     /// The part of a vertex that it reads.
     type Corner: Pod;

@@ -248,7 +248,7 @@ impl<B: Block, T: bytemuck::Pod> Entries<B, T> {
         lane.meet();
     }
 
-    /// Appends what there is, as far as there is room.
+    /// Appends the entries, as far as there is room.
     fn append(&mut self, block: &mut B, to: Output<T>) {
         let start = to.append(block, &mut self.places);
         block.phase(|lane| {

@@ -3,9 +3,8 @@
 //!          one every pair of features.
 //! Launch   a lane a candidate, both kinds in one launch; a grid of any size strides. First in f32,
 //!          on a CPU in vectors.
-//!          The same lane measures in f64 what f32 does not drop. Numbering these first, for full
-//!          warps, takes a third longer on an H200
-//!          (`benches/NOTES.md`).
+//!          The same lane measures the rest in f64. Numbering these first, for full warps, takes a
+//!          third longer on an H200 (`benches/NOTES.md`).
 //! Reads    candidates, faces or edges, positions (four vertices).
 //! Writes   pairs with squared distance and nearest points; the number of pairs that are not
 //!          certainly within the distance.
@@ -54,7 +53,7 @@ pub fn near<R: Real, B: Block>(block: &mut B, args: &NearArgs<R>) {
     );
 }
 
-/// One kind: filters the candidates of each stretch, and measures what is kept.
+/// One kind: filters the candidates of each stretch, and measures the rest.
 #[inline(always)]
 fn each<R: Real, B: Block, M: RowMap<Row = [Vec3<R>; 4]>>(
     block: &mut B,

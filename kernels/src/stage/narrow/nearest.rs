@@ -41,7 +41,7 @@ fn apart<R: Real>([p, q]: &[Corners<R>; 2]) -> f64 {
     Nearest::of(p, q).distance.greater(BARELY)
 }
 
-/// How many candidates are to be measured: none where some share a point.
+/// How many candidates are to be measured: none if some share a point.
 fn measured<R: Real, B: Block>(block: &B, args: &LeastArgs<R>) -> u32 {
     if block.load(args.meeting.count(), 0) > 0 { 0 } else { args.pairs.listed(block) }
 }
@@ -49,7 +49,7 @@ fn measured<R: Real, B: Block>(block: &B, args: &LeastArgs<R>) -> u32 {
 /// The least distance.
 pub fn least<R: Real, B: Block>(block: &mut B, args: &LeastArgs<R>) {
     let count = measured(block, args);
-    // That of some candidate: what is not nearer need not be known.
+    // That of some candidate: only nearer pairs matter.
     let sampled = args.counters.shortest(block, counter::SAMPLED_AGAIN).greater(BARELY);
     stride(block, count, |block, base| {
         block.phase(|lane| {
@@ -104,7 +104,7 @@ pub fn witness<R: Real, B: Block>(block: &mut B, args: &LeastArgs<R>) {
     });
 }
 
-/// That pair with where it is nearest.
+/// That pair with its nearest points.
 pub fn nearest<R: Real, B: Block>(block: &mut B, args: &LeastArgs<R>) {
     let witness = block.load(args.counters.word(counter::WITNESS), 0);
     let meets = block.load(args.meeting.count(), 0) > 0;

@@ -8,7 +8,7 @@
 //! Writes   contacts and unresolved pairs; or the earliest.
 //! Before   no pair touches at the start: `climb::settle` has decided these.
 //! After    {pairs that meet} ⊆ listed; no time is late. The first slice that is not apart decides.
-//!          One lane decides what that slice leaves open: by nearness, then by a search of boxes. A
+//!          One lane decides a slice that is left open: by nearness, then by a search of boxes. A
 //!          pair whose iterations run out is listed.
 //! Room     hits: counted past the end, grown, run again.
 //! Cost     about 3,000 operations of f64 a lane; a search 1,200 a box, one lane. Its stack of

@@ -70,7 +70,7 @@ impl<V> Walk<V> {
 
 /// Which volumes a walk goes into.
 pub(super) trait Wanted: Copy {
-    /// Whether what a volume is around is wanted by what the walk's own is around.
+    /// Whether the walk of volume `own` goes into the volume `other`.
     fn wants<V: Volume>(self, own: &V, other: &V) -> bool;
 }
 
@@ -191,7 +191,7 @@ fn run<V: Volume, B: Block>(
     args.counters.add_once(block, counter::STEPS, sum as u64);
 }
 
-/// Walks on until nothing is left, the budget is used up or the buffer is full.
+/// Walks until its stack is empty, the budget is used up or the buffer is full.
 #[inline]
 fn advance<V: Volume, L: Lane>(
     lane: &L,

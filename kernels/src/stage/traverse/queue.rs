@@ -72,7 +72,7 @@ pub fn queue<V: Volume, B: Block>(block: &mut B, args: &QueueArgs<V>) {
     worker.finish(block, &args.to);
 }
 
-/// Leaves to the next round what is in the queue and the `rest` of the share.
+/// Leaves the units of the queue and the `rest` of the share to the next round.
 fn leave<V: Volume, B: Block>(
     block: &mut B,
     args: &QueueArgs<V>,

@@ -73,7 +73,7 @@ struct OfferPolicy {
     keep: u32,
     /// Least surplus to give. A smaller one is worth less than the step that giving takes.
     spare: u32,
-    /// The smallest chunk, where many wait.
+    /// The smallest chunk, if many tickets are open.
     least: u32,
 }
 
