@@ -2,8 +2,8 @@
 //! Paper    not in the paper. A sort on the host would take longer than the frame on a GPU.
 //! Launch   `keys` (a grid of any size strides), a pass of [`crate::sort`] for each byte of a name,
 //!          `gather` (strides).
-//! Reads    one or two lists of contacts.   Writes   one list of all, by kind, first and second
-//!          feature.
+//! Reads    one or two lists of contacts.
+//! Writes   one list of all, by kind, first and second feature.
 //! Before   the lists are complete; counts of the keys' bytes = 0; names and numbers fit 64 bits.
 //! After    out = first ∪ second, ascending by (kind, x, y).
 //!          Kind 0: {(vertex, face) : body(vertex) ≤ body(face)}. Kind 1: {(face, vertex) :

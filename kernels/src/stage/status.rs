@@ -1,7 +1,8 @@
 //! # Status: counters → whether the answer is complete
 //! Paper    not in the paper: gProximity's lists have a fixed length and lose what does not fit.
 //! Launch   one block.
-//! Reads    the frame's counters, the capacity of every list, `seen`.      Writes   one record.
+//! Reads    the frame's counters, the capacity of every list, `seen`.
+//! Writes   one record.
 //! Before   every other launch of the frame is complete.
 //! After    status.short = |{list : count(list) > capacity(list)}|; status.first and status.second
 //!          = lengths of the answer.

@@ -2,8 +2,8 @@
 //! Paper    not in the paper: gProximity has one kind of body. Static bodies are built, fitted and
 //!          refitted once.
 //! Launch   a lane a node, once for each construction.
-//! Reads    nodes, filters and parents of the fitted tree.    Writes   the same behind the other
-//!          tree's; the root of both.
+//! Reads    nodes, filters and parents of the fitted tree.
+//! Writes   the same behind the other tree's; the root of both.
 //! Before   the tree is fitted and refitted; there is room behind the other's nodes.
 //! After    children(1) = {[`GRAFTED_ROOT`] (this tree), [`MOVING_ROOT`](crate::abi::MOVING_ROOT)}.
 //!          Node 1 has no volume: nothing reads it.

@@ -2,8 +2,8 @@
 //! Paper    the thesis, chapter 5; the rule for ranges is after Karras 2012, see [`super`].
 //! Launch   `tree`, `depth` (a lane a gap between leaves), `places` (a block a tile of gaps),
 //!          `emit` (a lane a gap); at least one block each.
-//! Reads    sorted codes and triangles.    Writes   links, leaf ranges, parents and leaf nodes;
-//!          level offsets.
+//! Reads    sorted codes and triangles.
+//! Writes   links, leaf ranges, parents and leaf nodes; level offsets.
 //! Before   codes ascend. Counts of depths, and the counts of `treelet`, = 0. No launch without
 //!          triangles.
 //! After    T1 the root comes first: node 1, or [`crate::abi::MOVING_ROOT`]. Siblings are

@@ -3,7 +3,8 @@
 //!          block.
 //! Launch   `mark` and `begin` in `construct_depth`; `plan` (a block a chunk of [`TREELET`]
 //!          leaves).
-//! Reads    the radix tree, depths, places.       Writes   treelets, merges; merges of the top.
+//! Reads    the radix tree, depths, places.
+//! Writes   treelets, merges; merges of the top.
 //! Before   the tree is in level order; `begins` and `tops` = 0 when its construction began.
 //! After    top = {node : leaves(node) > [`TREELET`]}. Every other node belongs to one treelet.
 //!          A subtree of at most [`TREELET`] leaves whose parent has more belongs to the chunk of

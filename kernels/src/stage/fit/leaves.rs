@@ -3,8 +3,8 @@
 //!          the actual geometric primitives".
 //! Launch   `fit`: a lane a leaf. `groups`, if V has groups: a lane an inner node, in level order.
 //!          Then neighbouring lanes have about as many leaves, near each other in memory.
-//! Reads    positions at t = 0 (and t = 1), faces, the leaf's node.    Writes   the nodes of the
-//!          leaves, each once.
+//! Reads    positions at t = 0 (and t = 1), faces, the leaf's node.
+//! Writes   the nodes of the leaves, each once.
 //! Before   the tree is constructed; positions are finite.
 //! After    volume(leaf) ⊇ {p : distance(p, triangle(t)) ≤ margin}, for every t in [0, 1] with two
 //!          frames, else at t = 0. Rounded outward.

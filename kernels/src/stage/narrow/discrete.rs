@@ -6,8 +6,8 @@
 //!          undecided.
 //!          [`Still`] at rest; [`Start`] at the start of a step, over the candidates of the whole
 //!          step. Each is a kernel of its own.
-//! Reads    candidates, faces, positions.   Writes   contacts; `filter` and `wide` also the
-//!          undecided pairs.
+//! Reads    candidates, faces, positions.
+//! Writes   contacts; `filter` and `wide` also the undecided pairs.
 //! Before   candidates are complete. Positions are finite.
 //! After    filter, wide, exact  contacts = {(a, b) in candidates : closed triangles share a
 //!          point}. With a common vertex: beyond it.

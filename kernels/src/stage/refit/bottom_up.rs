@@ -3,8 +3,8 @@
 //!          2012, section 5.
 //! Launch   a lane a leaf. It climbs to the root, or stops if it arrives first at a pair of
 //!          siblings.
-//! Reads    links, parents, leaf nodes; volumes of siblings, acquired.   Writes   inner nodes, each
-//!          once, released.
+//! Reads    links, parents, leaf nodes; volumes of siblings, acquired.
+//! Writes   inner nodes, each once, released.
 //! Before   the leaves are fitted; every counter of arrivals is even.
 //! After    volume(node) = merge of its children's, unless it is fitted. Every counter is even
 //!          again.

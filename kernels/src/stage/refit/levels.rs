@@ -3,7 +3,8 @@
 //! Launch   a lane a node, a launch a level, leaves first: the launch boundary is the barrier.
 //!          Levels that one block can hold share a launch of one block, whose phases are the
 //!          barriers.
-//! Reads    links; volumes of level l + 1.     Writes   inner nodes of level l, each once.
+//! Reads    links; volumes of level l + 1.
+//! Writes   inner nodes of level l, each once.
 //! Before   level l + 1 is fitted.
 //! After    volume(node) = merge of its children's, unless it is fitted; it encloses theirs.
 //! Room     fixed; cannot run out.

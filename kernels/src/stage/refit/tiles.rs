@@ -1,7 +1,8 @@
 //! # Refit tiles: nodes → the nodes above them
 //! Paper    not in the paper; a launch a level, as in its refit.
 //! Launch   a block 32 nodes, a lane a node below; for each level from the third on.
-//! Reads    the nodes below.     Writes   the nodes of a level.
+//! Reads    the nodes below.
+//! Writes   the nodes of a level.
 //! Before   the level below is fitted.
 //! After    volume(node) = merge of the 16 volumes below it, neighbours first, at distances 8, 4, 2
 //!          and 1.

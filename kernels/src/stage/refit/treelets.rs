@@ -4,7 +4,7 @@
 //! Launch   a block a treelet, a lane a leaf and a lane a merge. The last block to finish merges
 //!          the top.
 //! Reads    positions, faces, leaf_places, merges; the last block also volumes of others, acquired.
-//!          Writes   all nodes, each once.
+//! Writes   all nodes, each once.
 //! Before   `construct_treelets` has planned the tree; positions are finite.
 //! After    volume(leaf) ⊇ its triangle, as after `fit`. Every other volume = merge of its
 //!          children's, unless it is fitted.

@@ -1,8 +1,9 @@
 //! # Traverse: volumes → candidates, the pairs of triangles for the narrow phase
 //!
-//! Every walk lists the same set, up to order:
-//! `pairs = {(a, b) : a < b, volumes overlap, filters allow, no common vertex}`.
+//! Every walk lists `pairs = {(a, b) : a < b, volumes overlap, filters allow, no common vertex}`.
 //! [`KEEP_ADJACENT`](crate::abi::TraverseFlags::KEEP_ADJACENT) keeps pairs with a common vertex.
+//! For a volume whose tests nest the set is the same by every walk. Tests that do not nest, and the
+//! rims of tiles, leave out pairs that do not meet. So contacts are the same always.
 //!
 //! | file | broad phase | used | source |
 //! | --- | --- | --- | --- |

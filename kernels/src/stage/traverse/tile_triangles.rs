@@ -5,8 +5,7 @@
 //! Reads    32 contiguous leaves of each tile; the bodies and faces of candidate triangles.
 //! Writes   candidate pairs, the smaller index first, each once, in no order.
 //! Before   leaves and tiles are fitted; pairs of tiles are listed.
-//! After    pairs = {(a, b) : a < b, volumes overlap, filters allow, no common vertex}: as by the
-//!          walks of a tree.
+//! After    pairs = {(a, b) : a < b, volumes overlap, filters allow, no common vertex}.
 //!          With [`TraverseFlags::KEEP_ADJACENT`] pairs with a common vertex stay. A sample
 //!          restricts the set to its tiles.
 //!          With a horizon: {(a, b) : volumes overlap before the horizon}.

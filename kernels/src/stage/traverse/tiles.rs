@@ -1,8 +1,8 @@
 //! # Pairs of tiles: nodes → tiles that overlap
 //! Paper    not in the paper.
 //! Launch   a block of a warp a moving tile, or a tile of a share of them.
-//! Reads    nodes: 32 of the top level, or twice 16 below others, at once.     Writes   pairs of
-//!          tiles, the earlier first.
+//! Reads    nodes: 32 of the top level, or twice 16 below others, at once.
+//! Writes   pairs of tiles, the earlier first.
 //! Before   all nodes are fitted.
 //! After    tile_pairs = {(a, b) : a < b, volumes overlap, a moves, filters allow}.
 //!          With a share or a sample: a in [from, to), every `every`-th. With a horizon: volumes
