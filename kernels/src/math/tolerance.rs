@@ -273,8 +273,8 @@ pub const MOVING_MIXTURE: f32 = 8.0 * U32;
 ///   by less than the `MOVING_TIME` or `ISOLATE_WINDOW` that is subtracted.
 /// - The features' own boxes until `h`, derived in `prim::sweep`.
 ///
-/// A pair whose boxes never share a point is left out for `h` only if its window has that result,
-/// too. Then every rung has it.
+/// A pair whose boxes never share a point is left out for `h` only if its window agrees. Then every
+/// rung has it.
 ///
 /// A verdict begins no sooner than the computed begin of its rung's window less `ISOLATE_MARGIN`
 /// (`Pair::not_before`). That is at least `s - 7u - ISOLATE_WINDOW - ISOLATE_MARGIN`. In f32, the

@@ -37,9 +37,9 @@
 //! 2^129, those of f64 up to 2^481. Those below `DISTANCE_SMALL` are scaled, exactly.
 //!
 //! [`Filter`] is the same in f32, without branches. It drops pairs that are certainly farther, by
-//! that bound with the `u` of f32. (A difference of f64 rounds once more, `3u l`, for which there
-//! is room.) It drops no pair with a reach outside of `DISTANCE_FILTERED`: there squares of f32
-//! could leave the range.
+//! that bound with the `u` of f32. A difference of f64 rounds once more, `3u l`, for which there is
+//! room. It drops no pair with a reach outside of `DISTANCE_FILTERED`: there squares of f32 could
+//! leave the range.
 
 use crate::exec::RowMap;
 use crate::math::tolerance::{

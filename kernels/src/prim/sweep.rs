@@ -55,9 +55,9 @@ pub type Corners<R> = [Moving<R>; 3];
 /// a sum. Growing adds `u`: `INCLUSION_INPUT` of the largest coordinate for each of both triangles.
 /// A product that underflows is within `INCLUSION_UNDERFLOW`.
 ///
-/// With a horizon, a pair may be left out only if its boxes meet behind it. Those are the boxes
-/// that `Pair::window` moves with its features. Or if they never meet, which that window finds,
-/// too. Those boxes mix the least coordinates of both ends. So at `t` they reach beyond the corners
+/// With a horizon, a pair may be left out in two cases. The boxes that `Pair::window` moves with
+/// its features first meet behind the horizon. Or they never meet, which that window finds, too.
+/// Those boxes mix the least coordinates of both ends. So at `t` they reach beyond the corners
 /// there by at most `t` of the extent at the end. Boxes grow by that much, until the horizon. The
 /// part begins `3 ISOLATE_WINDOW` sooner. Suppose boxes of features meet only before the part, and
 /// those of their triangles only behind that. Then their windows are empty by more than they are

@@ -66,8 +66,8 @@ impl<S: Grid> Cell<S> {
         Cell { low: Vec3([S::ZERO; 3]), high: Vec3([end, S::ONE, S::ONE]) }
     }
 
-    /// The rest of the box without the parts of each range that have no contact, at its low and
-    /// high end. Rounded outward. `None` if nothing remains.
+    /// The rest of the box without the ends of each range that have no contact. Rounded outward.
+    /// `None` if nothing remains.
     #[inline]
     pub fn without(&self, low: [S; 3], high: [S; 3]) -> Option<Self> {
         let mut left = *self;

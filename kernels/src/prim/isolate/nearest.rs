@@ -7,7 +7,7 @@ use crate::math::{Real, Vec3};
 ///
 /// The weights are computed without care and then clamped. The point is a mixture of the corners
 /// with these weights. So it is a point of the hull, up to roundings of at most `6u` of the largest
-/// component. (Weights sum to 1 within `2u`; the mixture has three roundings, or twice three.) With
+/// component. Weights sum to 1 within `2u`; the mixture has three roundings, or twice three. With
 /// the `4u` of corners from [`super::Pair::at`] that is within `ADVANCE_POINT`.
 #[inline(always)]
 pub fn nearest<S: Real, const N: usize>(x: &[Vec3<S>; N]) -> Vec3<S> {

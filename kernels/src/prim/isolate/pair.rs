@@ -142,9 +142,9 @@ impl<S: Grid, const N: usize> Pair<S, N> {
 ///
 /// A number is a mixture of its values at the ends of the step. Computed values err by at most `3u`
 /// of themselves, or are above the exact ones. The sign changes at `|d0| / (|d0| + |d1|)`. That is
-/// computed within `8u` if the sum is above [`ISOLATE_UNDERFLOW`]. (A value below that may have
-/// lost its digits, and clips nothing.) Among several ends the innermost is selected by products,
-/// before the one division. An end that is selected wrongly is still an end.
+/// computed within `8u` if the sum is above [`ISOLATE_UNDERFLOW`]. A value below that may have lost
+/// its digits, and clips nothing. Among several ends the innermost is selected by products, before
+/// the one division. An end that is selected wrongly is still an end.
 ///
 /// [`ISOLATE_UNDERFLOW`]: crate::math::tolerance::Tolerance::ISOLATE_UNDERFLOW
 #[derive(Clone, Copy, Debug)]

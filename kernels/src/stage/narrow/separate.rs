@@ -15,7 +15,7 @@
 //!          [`crate::prim::isolate::advance`].
 //!          A pair whose steps run out in f64 is listed as unresolved.
 //! Room     hits, left: counted past the end, grown, run again.
-//! Cost     8 B pair, 12 B indices, 128 B positions (gathered); 300 to 600 operations a step,
+//! Cost     8 B pair, 12 B indices, 128 B positions (gathered). 300 to 600 operations a step,
 //!          mostly two to fifteen steps.
 
 use super::climb::emit;

@@ -12,7 +12,7 @@
 //!          lane.
 //! Departs  fit is included: the volumes of a treelet stay on chip from the triangles to the
 //!          treelet's root.
-//! Cost     8 B place, 12 B face, 48 B positions a frame and leaf; 16 B a merge; two nodes out a
+//! Cost     8 B place, 12 B face, 48 B positions a frame and leaf. 16 B a merge; two nodes out a
 //!          leaf: 148 B (AABB).
 //!          A chain of some 12 rounds on chip, and a ticket. A round trip to L2 for each depth of
 //!          the top (13 on cloth-ball).
