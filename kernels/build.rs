@@ -1,5 +1,5 @@
-//! Tells the build scripts of dependents, as `DEP_NEARMISS_KERNELS_ROOT`, where this package lies: its PTX and the sources
-//! that the PTX is made from.
+//! Gives the build scripts of dependents the root of this package, as `DEP_NEARMISS_KERNELS_ROOT`:
+//! it has the PTX and the sources of the PTX.
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");

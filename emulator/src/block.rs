@@ -11,7 +11,8 @@ use std::mem::MaybeUninit;
 use std::ptr::with_exposed_provenance_mut;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed, Ordering::SeqCst, fence};
 
-/// Who looks on: [`Looking`](crate::engine::Looking) or a [`BlockObserver`](crate::observer::BlockObserver).
+/// The observer: [`Looking`](crate::engine::Looking) or a
+/// [`BlockObserver`](crate::observer::BlockObserver).
 pub trait Watch: Copy {
     /// The lanes of a phase, in their order.
     fn lanes(&self, count: u32, phase: u32, body: impl FnMut(u32));
@@ -21,7 +22,7 @@ pub trait Watch: Copy {
     fn shared(&self, access: Access, offset: u32, bytes: usize, inside: bool, place: Place) -> bool;
     /// An access that might only have looked, [`Access::Swap`], has changed memory.
     fn changed(&self);
-    /// A lane takes part in an atomic: where one phase takes long, it does so again and again.
+    /// A lane takes part in an atomic: a phase that takes long mostly does so again and again.
     fn draws(&self);
     /// A barrier of the block: another block may go on.
     fn barrier(&self);
@@ -35,7 +36,7 @@ pub struct Emulated<W> {
     block: u32,
     blocks: u32,
     lanes: u32,
-    /// Phases and collectives so far: what lies in different ones is ordered.
+    /// Phases and collectives so far: accesses in different ones are ordered.
     phase: u32,
     /// Shared memory, and how many bytes of it are given out.
     words: Vec<u64>,
@@ -102,8 +103,9 @@ impl<W: Watch> EmulatedLane<W> {
     #[inline(always)]
     fn atomic(&self, access: Access, span: Span<u64>, i: u32) -> Option<&AtomicU64> {
         self.watch.draws();
-        // SAFETY: inside a span of live, aligned device memory (kernels stay inside; the sanitizer and debug builds
-        // check it), touched only atomically while others may touch it.
+        // SAFETY: inside a span of live, aligned device memory: kernels stay inside, which the
+        // sanitizer and debug builds check. It is accessed only atomically while others may access
+        // it.
         device(&self.watch, access, span, i, self.place).map(|p| unsafe { AtomicU64::from_ptr(p) })
     }
 }
@@ -120,8 +122,8 @@ impl<W: Watch> Lane for EmulatedLane<W> {
     #[inline(always)]
     fn read<T: Pod>(&self, span: Span<T>, i: u32) -> T {
         match device(&self.watch, Access::Read, span, i, self.place) {
-            // SAFETY: inside a span of live, aligned, initialised memory, and nobody writes it in this phase: rules of
-            // `Lane`, checked by the sanitizer.
+            // SAFETY: inside a span of live, aligned, initialised memory. No lane writes it in this
+            // phase: rules of `Lane`, checked by the sanitizer.
             Some(p) => unsafe { p.read() },
             None => T::zeroed(),
         }
@@ -133,7 +135,7 @@ impl<W: Watch> Lane for EmulatedLane<W> {
     #[inline(always)]
     fn write<T: Pod>(&self, span: Span<T>, i: u32, value: T) {
         if let Some(p) = device(&self.watch, Access::Write, span, i, self.place) {
-            // SAFETY: as for `read`; nobody else touches it in this phase.
+            // SAFETY: as for `read`; no other lane accesses it in this phase.
             unsafe { p.write(value) }
         }
     }
@@ -200,7 +202,8 @@ impl<W: Watch> Lane for EmulatedLane<W> {
     }
     #[inline(always)]
     fn get<T: Word>(&self, words: Shared<T>, i: u32) -> T {
-        // SAFETY: inside the block's words (checked as for device memory), which only this thread touches.
+        // SAFETY: inside the block's words (checked as for device memory), which only this thread
+        // touches.
         self.word(Access::Read, words, i).map_or(T::zeroed(), |p| unsafe { p.read() })
     }
     #[inline(always)]

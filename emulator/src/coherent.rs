@@ -1,20 +1,23 @@
-//! Device memory that blocks of one launch share: relaxed atomic pieces, so that accesses that meet are no data race.
+//! Device memory that blocks of one launch share: relaxed atomic pieces, so that accesses that meet
+//! are no data race.
 
 use bytemuck::Pod;
 use nearmiss_kernels::exec::whole_words;
 use std::mem::MaybeUninit;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 
-/// Reads a `T` in pieces of its alignment, of 8 bytes at most: the size of the atomics that may meet it.
+/// Reads a `T` in pieces of its alignment, of 8 bytes at most: the size of the atomics that may
+/// meet it.
 ///
 /// # Safety
-/// `from` is aligned, valid memory that others touch at the same time only in atomic pieces of this size.
+/// `from` is aligned, valid memory that others touch at the same time only in atomic pieces of this
+/// size.
 #[inline(always)]
 pub unsafe fn load<T: Pod>(from: *mut T) -> T {
     let words = const { whole_words::<T>() };
     let mut value = MaybeUninit::<T>::uninit();
-    // SAFETY: the pieces lie in `from` and in `value`, and are aligned: sizes are multiples of alignments. At the end
-    // every word was written, and any bits are a T.
+    // SAFETY: the pieces are within `from` and `value`, and aligned: sizes are multiples of
+    // alignments. At the end every word was written, and any bits are a T.
     unsafe {
         if align_of::<T>() >= 8 {
             let to = value.as_mut_ptr().cast::<u64>();
@@ -39,7 +42,8 @@ pub unsafe fn load<T: Pod>(from: *mut T) -> T {
 pub unsafe fn store<T: Pod>(to: *mut T, value: T) {
     let words = const { whole_words::<T>() };
     let from = &raw const value;
-    // SAFETY: the pieces lie in `value` and in `to`, and are aligned: sizes are multiples of alignments.
+    // SAFETY: the pieces are within `value` and `to`, and aligned: sizes are multiples of
+    // alignments.
     unsafe {
         if align_of::<T>() >= 8 {
             for i in 0..words / 2 {

@@ -1,4 +1,5 @@
-//! Every kernel of the table, compiled here for the emulator: a crate that launches one does not compile it again.
+//! Every kernel of the table, compiled here for the emulator: a crate that launches one does not
+//! compile it again.
 
 use crate::{Emulator, Error, Interrupt};
 use nearmiss_kernels::entry::{Entry, Visit, visit};

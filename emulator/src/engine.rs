@@ -1,4 +1,4 @@
-//! The engine's observer on a block: it checks no access, and ends the block where work is to end.
+//! The engine's observer on a block: it checks no access, and ends the block when work is to end.
 
 use crate::block::Watch;
 use crate::interrupt::Looks;
@@ -10,7 +10,7 @@ use crate::turns::Stop;
 pub struct Looking<'a>(pub &'a Looks<'a>);
 
 impl Looking<'_> {
-    /// Leaves the kernel where work is to end. Programs that abort on a panic cannot leave one:
+    /// Leaves the kernel when work is to end. Programs that abort on a panic cannot leave one:
     /// their blocks run to their end.
     #[inline(always)]
     fn look(&self) {

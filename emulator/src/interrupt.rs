@@ -10,7 +10,7 @@ const TRIGGERED: u32 = 1;
 /// Looks are counted, and the last one triggers.
 const COUNTING: u32 = 2;
 
-/// What clones share.
+/// The shared state of clones.
 struct State {
     stage: AtomicU32,
     /// Looks until it triggers; only while they are counted.
@@ -45,10 +45,9 @@ impl State {
 
 /// A handle that ends work of another thread. Clones are one handle.
 ///
-/// Work reads it between launches, slices and blocks, on a CPU also between the phases of a block,
-/// and ends within milliseconds.
-/// [`Interrupt::trigger`] concerns the call that runs or, if none runs, the next one. The call that
-/// ends early clears the handle.
+/// Work reads it between launches, slices and blocks, on a CPU also between the phases of a block.
+/// It ends within milliseconds. [`Interrupt::trigger`] concerns the running call or, if there is
+/// none, the next one. The call that ends early clears the handle.
 #[derive(Clone)]
 pub struct Interrupt(Arc<State>);
 
@@ -105,20 +104,20 @@ impl Interrupt {
     }
 }
 
-/// The looks of one piece of work, and whether one of them ended it. That stays so, whoever clears
-/// the handle meanwhile.
+/// The polls of one piece of work, and whether one of them ended it. That remains so even if the
+/// handle is cleared meanwhile.
 pub struct Looks<'a> {
     state: &'a State,
     ended: AtomicBool,
 }
 
 impl<'a> Looks<'a> {
-    /// Of work that the handle may end, or nothing.
+    /// Polls for work that the handle may end; `None` for no handle.
     pub fn new(interrupt: Option<&'a Interrupt>) -> Looks<'a> {
         Looks { state: interrupt.map_or(&NEVER, |interrupt| &interrupt.0), ended: AtomicBool::new(false) }
     }
 
-    /// Whether the work is to end here. One relaxed load while nobody triggers.
+    /// Whether the work is to end here. One relaxed load until the handle is triggered.
     #[inline(always)]
     pub fn ends(&self) -> bool {
         self.state.ends() && self.end()

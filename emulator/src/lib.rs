@@ -1,4 +1,5 @@
-//! The GPU, emulated: as an engine (all cores, no checks) or as a sanitizer (any order, every access watched).
+//! The GPU, emulated: as an engine (all cores, no checks) or as a sanitizer (any order, every
+//! access watched).
 
 mod block;
 mod coherent;
@@ -27,7 +28,7 @@ use std::ptr::NonNull;
 use std::sync::OnceLock;
 use turns::TurnScheduler;
 
-/// What an emulator cannot do, or found.
+/// Failures and findings of an emulator.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -45,7 +46,7 @@ pub enum Error {
     /// The machine has no more memory.
     #[error("{bytes} bytes of host memory were needed")]
     Memory {
-        /// How many were asked for.
+        /// The number of bytes requested.
         bytes: usize,
     },
     /// An [`Interrupt`] has ended the launch: its memory is half written.
@@ -56,7 +57,7 @@ pub enum Error {
     Rule {
         /// Its name.
         kernel: &'static str,
-        /// What it did, and where.
+        /// The fault, with its place.
         fault: Fault,
     },
 }
@@ -64,26 +65,30 @@ pub enum Error {
 /// How the emulator runs.
 #[derive(Clone, Copy, Debug, Default)]
 pub enum Mode {
-    /// Blocks in parallel on all cores, lanes in order, nothing watched. What people without a GPU use.
+    /// Blocks in parallel on all cores, lanes in order, without checks: the engine for machines
+    /// without a GPU.
     #[default]
     Engine,
-    /// One block after the other, each to its end, blocks and lanes in the given order (or interleaved, see
-    /// [`Emulator::with_interleave`]); races, bounds, unwritten memory and waits without end are watched.
+    /// Blocks in sequence, each to its end, blocks and lanes in the given order (or interleaved,
+    /// see [`Emulator::with_interleave`]). Races, bounds, unwritten memory and endless waits are
+    /// detected.
     Sanitizer(Order),
 }
 
-/// Whether this is the process that first started threads: one that was forked since has none of them, and would wait for ever.
+/// Whether this is the process that first started threads: one that was forked since has none of
+/// them, and would wait for ever.
 fn has_threads() -> Result<(), Error> {
     static STARTED_BY: OnceLock<u32> = OnceLock::new();
     let own = std::process::id();
     if *STARTED_BY.get_or_init(|| own) == own { Ok(()) } else { Err(Error::Forked) }
 }
 
-/// Starts the threads that all of a program shares, where they do not run yet: else the first to need them would panic where they
-/// cannot be started.
+/// Starts the threads that all of a program shares, if they do not run yet: else the first to need
+/// them would panic if they cannot be started.
 ///
 /// # Errors
-/// [`Error::Threads`]; the same each time, as they are started once. [`Error::Forked`] in a process that was forked since.
+/// [`Error::Threads`]; the same each time, as they are started once. [`Error::Forked`] in a process
+/// that was forked since.
 pub fn start_threads() -> Result<(), Error> {
     has_threads()?;
     static STARTED: OnceLock<Result<(), String>> = OnceLock::new();
@@ -107,7 +112,8 @@ impl Emulator {
     /// An engine on `threads` threads, or on all cores; or a sanitizer, always on one thread.
     ///
     /// # Errors
-    /// [`Error::Threads`] when the threads cannot be started; [`Error::Forked`] in a process that was forked after some were.
+    /// [`Error::Threads`] when the threads cannot be started; [`Error::Forked`] in a process that
+    /// was forked after some were.
     pub fn new(mode: Mode, threads: Option<usize>) -> Result<Self, Error> {
         has_threads()?;
         let pool = match threads {
@@ -127,14 +133,16 @@ impl Emulator {
         Ok(Emulator { pool, sanitizer, lanes: None })
     }
 
-    /// The same emulator with blocks of another size, but for kernels that have an exact one: answers must not depend on it.
+    /// The same emulator with blocks of another size, except for kernels with an exact one. Answers
+    /// must not depend on it.
     pub fn with_lanes(self, lanes: u32) -> Self {
         Emulator { lanes: Some(lanes), ..self }
     }
 
-    /// The same sanitizer, with blocks that interleave: up to 64 run at once, one of them moves at a time, and at the
-    /// ends of phases and at some accesses that blocks may share (atomics, gives, takes) another goes on, drawn by the
-    /// seed. For kernels whose blocks work together in a launch. Cost: microseconds a change. The engine is as it was.
+    /// The same sanitizer, with blocks that interleave. Up to 64 run at once, and one of them moves
+    /// at a time. Another continues at the ends of phases and at some accesses that blocks may
+    /// share (atomics, relaxed stores and loads). `seed` determines which. For kernels whose blocks
+    /// cooperate in a launch. Cost: microseconds a change. The engine is unchanged.
     pub fn with_interleave(self, seed: u64) -> Self {
         let sanitizer = self.sanitizer.map(|sanitizer| Sanitizer::new(sanitizer.order(), Some(seed)));
         Emulator { sanitizer, ..self }
@@ -180,18 +188,20 @@ impl Emulator {
     /// broke a rule.
     ///
     /// # Panics
-    /// When the kernel does.
+    /// If the kernel does.
     ///
     /// # Safety
-    /// The spans of `args` are of this emulator's [`Memory`], which lives until the launch returns and which no other thread
-    /// touches meanwhile, and what the kernel's card asks under "Before" holds.
+    /// The spans of `args` are of this emulator's [`Memory`]. It lives until the launch returns,
+    /// and no other thread accesses it meanwhile. The conditions under "Before" of the kernel's
+    /// card hold.
     pub unsafe fn launch<E: Entry>(
         &self,
         blocks: u32,
         args: &E::Args,
         interrupt: Option<&Interrupt>,
     ) -> Result<(), Error> {
-        // A constant for each kernel, so that one of the table is not compiled again where it is launched.
+        // A constant for each kernel, so that one of the table is not compiled again at each
+        // launch.
         if const { E::PLACE.is_some() } {
             let place = E::PLACE.unwrap_or_default();
             // SAFETY: the caller's promise.
@@ -200,7 +210,7 @@ impl Emulator {
         self.run::<E>(blocks, args, interrupt)
     }
 
-    /// Runs every block of a launch: [`Emulator::launch`], compiled where it is called.
+    /// Runs every block of a launch: [`Emulator::launch`], compiled at its call.
     fn run<E: Entry>(&self, blocks: u32, args: &E::Args, interrupt: Option<&Interrupt>) -> Result<(), Error> {
         let lanes = self.lanes::<E>();
         let looks = Looks::new(interrupt);
@@ -252,7 +262,8 @@ pub struct Memory {
     len: usize,
 }
 
-// SAFETY: an allocation like a Box; all access goes through the owner or through kernels under the rules of `Lane`.
+// SAFETY: an allocation like a Box; all access goes through the owner or through kernels under the
+// rules of `Lane`.
 unsafe impl Send for Memory {}
 // SAFETY: as above.
 unsafe impl Sync for Memory {}
@@ -277,8 +288,9 @@ impl Memory {
     /// The first `bytes` bytes.
     pub fn as_slice(&self, bytes: usize) -> &[u8] {
         assert!(bytes <= self.bytes());
-        // SAFETY: within the allocation, initialised from the start, and no kernel writes while the host reads
-        // (launches end before they return, and no other thread touches a launch's memory: `Device::launch`).
+        // SAFETY: within the allocation, initialised from the start. No kernel writes while the
+        // host reads: launches end before they return, and no other thread accesses a launch's
+        // memory (`Device::launch`).
         unsafe { std::slice::from_raw_parts(self.start.as_ptr().cast(), bytes) }
     }
     /// The first `bytes` bytes, to write.

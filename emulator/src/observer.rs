@@ -11,7 +11,7 @@ use std::cell::RefCell;
 pub struct BlockObserver<'a> {
     sanitizer: &'a Sanitizer,
     launch: u64,
-    /// Where blocks interleave, what says whose turn it is, and this block's slot.
+    /// The scheduler of interleaved blocks, and this block's slot.
     scheduler: Option<(&'a TurnScheduler, usize)>,
     looks: &'a Looks<'a>,
     shared: RefCell<Vec<Shadow>>,

@@ -7,12 +7,12 @@ pub enum Order {
     Forward,
     /// …, 2, 1, 0
     Reverse,
-    /// A permutation drawn from the seed, another one each launch and phase.
+    /// A permutation drawn from a number, another one each launch and phase.
     Shuffled(u64),
 }
 
 impl Order {
-    /// The numbers below `count` in this order; `turn` tells one launch or phase from the next.
+    /// The numbers below `count` in this order; `turn` distinguishes launches and phases.
     pub fn sequence(self, count: u32, turn: u64) -> Vec<u32> {
         let mut numbers: Vec<u32> = (0..count).collect();
         match self {

@@ -6,7 +6,8 @@ use nearmiss_kernels::exec::RowMap;
 /// Rows that are mapped side by side: two vectors of f32 on most machines, or one.
 const WIDTH: usize = 16;
 
-/// Rows by columns, [`WIDTH`] at a time: number `k` of row `i` is `columns[i / WIDTH * NUMBERS + k][i % WIDTH]`.
+/// Rows by columns, [`WIDTH`] at a time: number `k` of row `i` is
+/// `columns[i / WIDTH * NUMBERS + k][i % WIDTH]`.
 pub struct Rows<'a, M: RowMap> {
     columns: &'a mut [[M::Number; WIDTH]],
 }
@@ -40,7 +41,7 @@ impl<'a, M: RowMap> Rows<'a, M> {
         row::<M>(&self.columns[i / WIDTH * Self::NUMBERS..], i % WIDTH)
     }
 
-    /// What becomes of each row in vectors, or that it is open.
+    /// The result of each row in vectors, or [`OPEN`](nearmiss_kernels::exec::OPEN).
     pub fn at_once(&self, map: &M) -> Vec<u32> {
         let mut results = vec![[0; WIDTH]; self.columns.len() / Self::NUMBERS];
         at_once(map, self.columns, &mut results);
@@ -51,7 +52,7 @@ impl<'a, M: RowMap> Rows<'a, M> {
 fn at_once<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [[u32; WIDTH]]) {
     #[cfg(target_arch = "x86_64")]
     if is_x86_feature_detected!("avx2") {
-        // SAFETY: the machine has what the function is compiled for.
+        // SAFETY: the machine has the features that the function is compiled for.
         return unsafe { at_once_avx2(map, columns, results) };
     }
     each(map, columns, results);
@@ -76,7 +77,7 @@ fn each<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [[u32;
     }
 }
 
-/// Rows whose numbers are all f32 are mapped as such: side by side where there are some.
+/// Rows whose numbers are all f32 are mapped as such: side by side if there are some.
 #[inline(always)]
 fn singles<M: RowMap>(map: &M, columns: &[[M::Number; WIDTH]], results: &mut [u32; WIDTH]) {
     let mut are_single = [false; WIDTH];
@@ -111,7 +112,7 @@ mod tests {
     use super::{Rows, WIDTH, each};
     use nearmiss_kernels::exec::RowMap;
 
-    /// What a row of four becomes: comparisons, a division, a choice; as kernels' maps are.
+    /// The result for a row of four: comparisons, a division, a choice; as in kernels' maps.
     struct Mixed;
 
     impl RowMap for Mixed {
@@ -132,7 +133,7 @@ mod tests {
         (0..5 * WIDTH + 3).map(|i| [[pick(i, 0), pick(i, 1)], [pick(i, 2), pick(i, 3)]]).collect()
     }
 
-    /// NaN has many bits; which one is nobody's promise.
+    /// NaN has many bits, and none is promised.
     fn told(bits: u32) -> u32 {
         if f32::from_bits(bits).is_nan() { f32::NAN.to_bits() } else { bits }
     }

@@ -1,11 +1,13 @@
-//! The sanitizer: a shadow of every word of memory, so that races, strays and unwritten reads are seen.
+//! The sanitizer: a shadow of every word of memory, which shows races, accesses out of bounds and
+//! unwritten reads.
 //!
-//! Two accesses to a word, one of them a plain write, are a race when nothing orders them: other blocks of the same
-//! launch, or other lanes of the same block in the same phase. Atomic accesses, relaxed stores and loads may meet each other; one
-//! of them and a plain access are a race when one of the two writes. Whether flags and fences order what is given and
-//! taken is not watched: answers that differ from order to order show it.
+//! Two accesses to a word, one of them a plain write, are a race unless they are ordered. Other
+//! blocks of the same launch, or other lanes of the same block in the same phase, are not ordered.
+//! Atomic accesses, relaxed stores and relaxed loads may meet each other. One of them and a plain
+//! access are a race if one of the two writes. The order by flags and fences is not checked:
+//! answers that differ from order to order show a fault there.
 //!
-//! Blocks run one after the other, each to its end, in the sanitizer's order; or interleaved (see `turns`).
+//! Blocks run in sequence, each to its end, in the sanitizer's order; or interleaved (see `turns`).
 
 use crate::Error;
 use crate::Order;
@@ -15,11 +17,11 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// What unwritten memory holds.
+/// Content of unwritten memory.
 pub const POISON: u8 = 0xcb;
 
-/// So many looks of a launch at device memory, between which no block changed it, are a wait for what nobody does.
-/// Lanes that poll while others work look some thousands of times.
+/// So many polls of device memory without a change by any block are an endless wait. Lanes that
+/// poll while others work do so some thousands of times.
 const LOOKS: u32 = 1 << 20;
 
 /// How a lane touches memory.
@@ -37,11 +39,11 @@ pub enum Access {
     Look,
     /// A write that other blocks may read.
     StoreRelaxed,
-    /// A read of what other blocks may write.
+    /// A read of memory that other blocks may write.
     LoadRelaxed,
 }
 
-/// Where in a launch an access happens.
+/// The place of an access in a launch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
     /// The block.
@@ -70,11 +72,11 @@ impl fmt::Display for Place {
 pub enum Fault {
     /// Outside its span, or outside all memory.
     Outside(Place),
-    /// A read of what nothing wrote.
+    /// A read of unwritten memory.
     Unwritten(Place),
     /// Two accesses that nothing orders.
     Race(Place, Place),
-    /// A wait for what nobody does.
+    /// An endless wait.
     Waits(Place),
 }
 
@@ -96,7 +98,7 @@ pub struct Sanitizer {
     seen: Mutex<Seen>,
 }
 
-/// What it has seen.
+/// Its observations.
 #[derive(Default)]
 struct Seen {
     launches: u64,
@@ -108,7 +110,8 @@ struct Seen {
 }
 
 impl Sanitizer {
-    /// A sanitizer that runs blocks and lanes in that order; with a seed, blocks start in that order and interleave.
+    /// A sanitizer that runs blocks and lanes in that order; with a seed, blocks start in that
+    /// order and interleave.
     pub fn new(order: Order, interleave: Option<u64>) -> Self {
         Sanitizer { order, interleave, seen: Mutex::default() }
     }
@@ -116,7 +119,7 @@ impl Sanitizer {
     pub fn order(&self) -> Order {
         self.order
     }
-    /// The seed by which blocks interleave; none where each runs to its end.
+    /// The number that determines how blocks interleave; `None` if each runs to its end.
     pub fn interleave(&self) -> Option<u64> {
         self.interleave
     }
@@ -125,7 +128,7 @@ impl Sanitizer {
         self.seen().launches
     }
     fn seen(&self) -> MutexGuard<'_, Seen> {
-        // A kernel that panics leaves what was seen in order.
+        // A kernel that panics leaves the observations in order.
         self.seen.lock().unwrap_or_else(PoisonError::into_inner)
     }
     /// A launch begins.
@@ -165,7 +168,7 @@ impl Sanitizer {
     pub(crate) fn changed(&self) {
         self.seen().looks = 0;
     }
-    /// An access to device memory; false where there is none. Stops the launch where it waits for what nobody does.
+    /// An access to device memory; false if there is none. Stops the launch at an endless wait.
     pub(crate) fn see(&self, access: Access, addr: u64, bytes: usize, inside: bool, place: Place) -> bool {
         let mut seen = self.seen();
         let Seen { launches, fault, looks, device, .. } = &mut *seen;

@@ -1,16 +1,16 @@
-//! The shadow of a word of four bytes: who touched it last, and who of those is unordered with the next.
+//! The shadow of a word of four bytes: its last accesses that may be unordered with the next one.
 
 use crate::sanitizer::{Access, Fault, Place};
 
-/// Two accesses of a kind such that whoever races with any access of that kind races with one of the two: of two
-/// blocks where there were two, else of two lanes in the last phase.
+/// Two accesses of a kind. An access that races with any access of that kind races with one of the
+/// two. They are of two blocks if there were two, else of two lanes in the last phase.
 #[derive(Clone, Copy, Default)]
 struct Pair(Option<Place>, Option<Place>);
 
 impl Pair {
     fn note(&mut self, place: Place) {
         match (self.0, self.1) {
-            // Nobody is in the same block as both.
+            // No access is in the same block as both.
             (Some(first), Some(other)) if first.block != other.block => {}
             (Some(first), _) if first.meets(place) => self.1 = Some(place),
             _ => self.0 = Some(place),

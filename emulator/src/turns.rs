@@ -1,10 +1,12 @@
-//! Blocks that interleave: each runs on a thread of its own, and moves only while it has the turn. It passes the
-//! turn on at the end of each phase and reservation, and at some atomics, relaxed stores and loads; a seed says to whom. Some
-//! blocks are quick and some are slow, up to 256 times: where all went at one pace, a block that is far behind or far
-//! ahead of the others, which is what finds mistakes, would hardly be seen.
+//! Blocks that interleave. Each runs on a thread of its own, and moves only while it has the turn.
+//! It passes the turn on at the end of each phase and reservation. It also does so at some atomics,
+//! relaxed stores and loads. A number determines the next block. Blocks differ in speed by up to
+//! 256 times. At one pace a block would hardly ever be far behind or ahead of the others. Such
+//! distances find faults.
 //!
-//! At most [`SLOTS`] blocks run at once, as on a GPU: the next one starts where one ends. So what a launch does is a
-//! matter of its seed alone, and blocks that all wait for one that has not started wait for ever.
+//! At most [`SLOTS`] blocks run at once, as on a GPU: the next one starts when one ends. So a
+//! launch is determined by that number alone. Blocks that all wait for one that has not started
+//! wait for ever.
 
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
@@ -20,7 +22,7 @@ const PASSES: u32 = 4;
 /// One in so many passes changes how quick a block is.
 const CHANGES: u32 = 64;
 
-/// Ends a block in the middle: what is wrong has been noted, and nobody need hear of a panic.
+/// Ends a block in the middle: the fault has been noted, and the panic is not reported.
 pub struct Stop;
 
 impl Stop {
@@ -30,9 +32,9 @@ impl Stop {
     }
 }
 
-/// Runs a block. Whether it came to its end; it did not where it was stopped or panicked.
+/// Runs a block. Whether it came to its end; it did not if it was stopped or panicked.
 pub fn to_its_end(block: impl FnOnce()) -> Result<(), Box<dyn Any + Send>> {
-    // What a kernel was changing when it stopped is device memory, and the launch has failed.
+    // A stopped kernel leaves device memory half changed; the launch has failed.
     catch_unwind(AssertUnwindSafe(block))
 }
 
@@ -43,7 +45,7 @@ pub fn pass_on(panic: Box<dyn Any + Send>) {
     }
 }
 
-/// Who moves.
+/// The schedule of turns.
 pub struct TurnScheduler {
     state: Mutex<State>,
     /// A bell for each slot: it is your turn.
@@ -52,9 +54,9 @@ pub struct TurnScheduler {
 
 struct State {
     random: SmallRng,
-    /// Whose turn it is.
+    /// The block that has the turn.
     holder: usize,
-    /// How quick the block of each slot is; 0 where there is none.
+    /// How quick the block of each slot is; 0 if there is none.
     pace: Vec<u32>,
     /// Blocks that have not started.
     waiting: VecDeque<u32>,
@@ -67,7 +69,7 @@ impl State {
     fn draw_pace(&mut self) -> u32 {
         4u32.pow(self.random.random_range(0..=4))
     }
-    /// The next to move, unless nobody is left.
+    /// The next to move; `None` if no block is left.
     fn draw(&mut self) -> Option<usize> {
         let all: u32 = self.pace.iter().sum();
         if all == 0 {
@@ -85,7 +87,8 @@ impl State {
 }
 
 impl TurnScheduler {
-    /// Runs those blocks, which start in that order; `run` is given the block, the scheduler and the block's slot.
+    /// Runs those blocks, which start in that order; `run` is given the block, the scheduler and
+    /// the block's slot.
     pub fn run(blocks: Vec<u32>, seed: u64, run: impl Fn(u32, &TurnScheduler, usize) + Sync) {
         let slots = blocks.len().min(SLOTS);
         if slots == 0 {
@@ -131,7 +134,7 @@ impl TurnScheduler {
         }
     }
 
-    /// Passes the turn to a block drawn from all that run, and waits until it comes back.
+    /// Passes the turn to a block drawn from all that run, and returns when it comes back.
     pub fn pass(&self, slot: usize) {
         let state = self.state();
         self.pass_from(slot, state);

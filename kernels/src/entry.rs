@@ -1,5 +1,5 @@
-//! The kernel table: one line an entry, or one for an entry of every volume. The PTX entries and the host's list come from the
-//! same line.
+//! The kernel table: one line an entry, or one for an entry of every volume. The PTX entries and
+//! the host's list come from the same line.
 
 mod name;
 
@@ -13,23 +13,26 @@ use crate::prim::isolate::separation::{Double, Single};
 use crate::queue::worker;
 use crate::sort;
 use crate::stage::construct::{cuts, graft, morton, tile_filters, tree, treelet};
+use crate::stage::fit::{leaves as fit_of_leaves, rims, tiles as fit_of_tiles};
 use crate::stage::narrow::discrete::{Start, Still};
 use crate::stage::narrow::features::{Moves, Rests};
 use crate::stage::narrow::{
     below_precision, climb, cull, discrete, features, near, nearest, separate, slice, solve,
 };
 use crate::stage::refit::{bottom_up, levels, tiles as refit_of_tiles, treelets};
-use crate::stage::traverse::{front, nearest as nearest_first, queue, steal};
-use crate::stage::{balance, fit as fitting, order, place, starts, status, traverse};
+use crate::stage::traverse::{
+    front, nearest as nearest_first, per_leaf, queue, steal, tile_triangles, tiles as tile_pairs,
+};
+use crate::stage::{balance, order, place, starts, status};
 use bytemuck::NoUninit;
 use core::marker::PhantomData;
 use name::{Name, precision};
 
-/// A kernel as the host knows it.
+/// A kernel, for the host.
 pub trait Entry: 'static {
     /// The name of the PTX entry, of the profiler's row and of this type: stage and step.
     const NAME: &'static str;
-    /// What it is launched with.
+    /// Launch arguments.
     type Args: NoUninit + Send + Sync;
     /// Lanes of a block.
     const LANES: u32;
@@ -37,7 +40,8 @@ pub trait Entry: 'static {
     const EXACT: bool = false;
     /// Bytes of shared memory of a block.
     const SHARED: u32;
-    /// Most registers of a lane: fewer than the compiler would take, so that more warps are resident. None is as many as it wants.
+    /// Most registers of a lane: fewer than the compiler would take, so that more warps are
+    /// resident. `None` sets no limit.
     const REGISTERS: Option<u32> = None;
     /// Its place in [`TABLE`]; none of kernels that are not in it, as tests have.
     const PLACE: Option<usize> = None;
@@ -72,7 +76,8 @@ macro_rules! entries {
             // SAFETY: called by the driver, once a thread, with arguments of the size in TABLE.
             #[unsafe(export_name = $name)]
             unsafe extern "ptx-kernel" fn entry(args: <$kernel as Entry>::Args) {
-                // SAFETY: the one block of this kernel, made at its start; the host launches it with as many lanes.
+                // SAFETY: the one block of this kernel, made at its start; the host launches it
+                // with as many lanes.
                 let mut block = unsafe { crate::exec::ptx::Gpu::<{ <$kernel as Entry>::LANES }>::new() };
                 <$kernel as Entry>::run(&mut block, &args);
             }
@@ -89,7 +94,7 @@ macro_rules! entries {
 #[unsafe(no_mangle)]
 pub static NEARMISS_STAMP: u64 = stamp::SOURCES;
 
-/// What a kernel is, of the parts of its line.
+/// The associated constants of a kernel, from the parts of its line.
 macro_rules! is_entry {
     ($path:expr, [$args:ty], $lanes:expr, $shared:expr $(, exact = $exact:literal)? $(, registers = $registers:literal)?) => {
         type Args = $args;
@@ -129,8 +134,9 @@ macro_rules! kernels {
     };
 }
 
-/// The same of the kernels of volumes: `both` precisions of positions have one, `each` has one (`R`), and `groups` are those of
-/// each precision that only some volumes have. [`crate::volumes`] says which volumes there are.
+/// The same for the kernels of volumes. `both` precisions of positions share one; `each` has one a
+/// precision (`R`). `groups` are those of each precision for some volumes only. [`crate::volumes`]
+/// lists the volumes.
 macro_rules! kernels_of_volumes {
     (
         both { $($name:ident: $path:expr, [$args:ty], $lanes:expr, $shared:expr $(, exact = $exact:literal)?;)* }
@@ -248,12 +254,12 @@ macro_rules! table {
     };
 }
 
-/// What stands behind, where a volume has groups.
+/// Its second part, if a volume has groups.
 macro_rules! for_groups {
     (groups $($what:tt)*) => { $($what)* };
 }
 
-/// Puts lines into the table; where they end.
+/// Puts lines into the table; returns their end.
 const fn put(all: &mut [Line], at: usize, lines: &[Line]) -> usize {
     let mut i = 0;
     while i < lines.len() {
@@ -265,10 +271,11 @@ const fn put(all: &mut [Line], at: usize, lines: &[Line]) -> usize {
 
 /// Lanes of kernels whose work is the same for every lane.
 const WIDE: u32 = 256;
-/// Lanes of kernels with long or uneven work: small blocks, so that few lanes wait for a long one (measured:
-/// `benches/NOTES.md`).
+/// Lanes of kernels with long or uneven work: small blocks, so that few lanes wait for a long one
+/// (measured: `benches/NOTES.md`).
 const NARROW: u32 = 64;
-/// Lanes of rejection, of the rungs of a separation and of distances: work is uneven, and two lists are appended to.
+/// Lanes of rejection, of the rungs of a separation and of distances: work is uneven, and two lists
+/// are appended to.
 const RUNG: u32 = 128;
 /// Lanes of the one block that evens the queues, as in the paper.
 const BALANCE: u32 = 512;
@@ -360,27 +367,27 @@ kernels_of_volumes! {
         construct_graft: graft::graft::<V, B>, [GraftArgs<V>], WIDE, 0;
         refit_levels: levels::levels::<V, B>, [RefitArgs<V>], WIDE, 0;
         refit_bottom_up: bottom_up::bottom_up::<V, B>, [BottomUpArgs<V>], WIDE, 0;
-        traverse_leaves: traverse::leaves::<V, B>, [TraverseArgs<V>], NARROW, traverse::shared_bytes(NARROW);
-        traverse_units: traverse::units::<V, B>, [TraverseArgs<V>], NARROW, traverse::shared_bytes(NARROW);
-        traverse_within: nearest_first::within::<V, B>, [TraverseArgs<V>], NARROW, traverse::shared_bytes(NARROW);
+        traverse_leaves: per_leaf::leaves::<V, B>, [TraverseArgs<V>], NARROW, per_leaf::shared_bytes(NARROW);
+        traverse_units: per_leaf::units::<V, B>, [TraverseArgs<V>], NARROW, per_leaf::shared_bytes(NARROW);
+        traverse_within: nearest_first::within::<V, B>, [TraverseArgs<V>], NARROW, per_leaf::shared_bytes(NARROW);
         traverse_front: front::front::<V, B>, [FrontArgs<V>], WIDE, 0;
         traverse_queue: queue::queue::<V, B>, [QueueArgs<V>], NARROW, worker::shared_bytes(NARROW);
         traverse_steal: steal::steal::<V, B>, [StealArgs<V>], NARROW, worker::shared_bytes(NARROW);
-        traverse_tiles: traverse::tiles::pairs::<false, V, B>, [TilePairsArgs<V>], traverse::tiles::LANES, traverse::tiles::SHARED, exact = true;
-        traverse_tiles_before: traverse::tiles::pairs::<true, V, B>, [TilePairsArgs<V>], traverse::tiles::LANES, traverse::tiles::SHARED, exact = true;
-        traverse_triangles: traverse::tile_triangles::triangles::<false, V, B>, [TileTrianglesArgs<V>], traverse::tile_triangles::LANES, traverse::tile_triangles::shared_bytes::<V>(), exact = true;
-        traverse_triangles_before: traverse::tile_triangles::triangles::<true, V, B>, [TileTrianglesArgs<V>], traverse::tile_triangles::LANES, traverse::tile_triangles::shared_bytes::<V>(), exact = true;
+        traverse_tiles: tile_pairs::pairs::<false, V, B>, [TilePairsArgs<V>], tile_pairs::LANES, tile_pairs::SHARED, exact = true;
+        traverse_tiles_before: tile_pairs::pairs::<true, V, B>, [TilePairsArgs<V>], tile_pairs::LANES, tile_pairs::SHARED, exact = true;
+        traverse_triangles: tile_triangles::triangles::<false, V, B>, [TileTrianglesArgs<V>], tile_triangles::LANES, tile_triangles::shared_bytes::<V>(), exact = true;
+        traverse_triangles_before: tile_triangles::triangles::<true, V, B>, [TileTrianglesArgs<V>], tile_triangles::LANES, tile_triangles::shared_bytes::<V>(), exact = true;
         refit_tiles: refit_of_tiles::tiles::<V, B>, [RefitTilesArgs<V>], refit_of_tiles::LANES, refit_of_tiles::shared_bytes::<V>(), exact = true;
     }
     each {
         traverse_sample: nearest_first::sample::<R, V, B>, [NearestArgs<R, V>], NARROW, 0;
-        fit: fitting::fit::<R, V, B>, [FitArgs<R, V>], WIDE, 0;
-        fit_tiles: fitting::tiles::tiles::<R, V, B>, [FitTilesArgs<R, V>], fitting::tiles::LANES, fitting::tiles::shared_bytes::<V>(), exact = true;
-        fit_rims: fitting::rims::rims::<R, V, B>, [RimsArgs<R, V>], WIDE, 0;
+        fit: fit_of_leaves::fit::<R, V, B>, [FitArgs<R, V>], WIDE, 0;
+        fit_tiles: fit_of_tiles::tiles::<R, V, B>, [FitTilesArgs<R, V>], fit_of_tiles::LANES, fit_of_tiles::shared_bytes::<V>(), exact = true;
+        fit_rims: rims::rims::<R, V, B>, [RimsArgs<R, V>], WIDE, 0;
         refit_treelets: treelets::treelets::<R, V, B>, [TreeletsArgs<R, V>], WIDE, treelets::shared_bytes::<V>();
     }
     groups {
-        fit_groups: fitting::groups::<R, V, B>, [GroupsArgs<R, V>], NARROW, 0;
+        fit_groups: fit_of_leaves::groups::<R, V, B>, [GroupsArgs<R, V>], NARROW, 0;
     }
 }
 

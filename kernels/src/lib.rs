@@ -1,9 +1,9 @@
 #![no_std]
-//! The kernels of nearmiss: what runs on the GPU, and on the CPU from the same source.
+//! The kernels of nearmiss: one source for the GPU and for the CPU.
 //!
-//! Nothing here knows a host, a file or an allocator. Shelves hold what is used ([`abi`], [`exec`], [`math`], [`bv`],
-//! [`bvh`], [`queue`], [`sort`], [`prim`]); the pipeline [`stage`] holds what happens, one file a stage, in the order in which
-//! data flows. [`entry`] is the kernel table.
+//! The crate has no host, no files and no allocator. Its tools are [`abi`], [`exec`], [`math`],
+//! [`bv`], [`bvh`], [`queue`], [`sort`] and [`prim`]. [`stage`] is the pipeline, one file a stage,
+//! in the order in which data flows. [`entry`] is the kernel table.
 
 pub mod abi;
 pub mod bv;

@@ -1,11 +1,13 @@
-//! A stable radix sort by bytes, a launch a byte, and what kernels share that rank items by a small number.
+//! A stable radix sort by bytes, a launch a byte, and the ranking that other kernels share.
 //!
-//! A tile is what one block ranks: `rounds` times [`EACH`] items a lane. Whoever makes a list counts its digits, tile by
-//! tile, as it goes ([`tally`]); so when a pass begins it knows how often each digit comes in each tile, and each block
-//! sums on its own what lies before its items ([`starts`]): no launch that counts, none that sums, nobody who waits.
+//! A tile is the share of one block: `rounds` times [`EACH`] items a lane. The producer of a list
+//! counts its digits, tile by tile, as it writes ([`tally`]). So a pass has the counts of each
+//! digit in each tile from the start. Each block sums those before its items by itself
+//! ([`starts`]). So no launch counts, no launch sums, and no block depends on another.
 //!
-//! Four counts of 16 bits share a word, so a tile has fewer than 65,536 items. Every block reads the counts of all tiles,
-//! 512 B each: their number is kept small ([`MOST_TILES`]), and more items make longer tiles.
+//! Four counts of 16 bits share a word, so a tile has fewer than 65,536 items. Every block reads
+//! the counts of all tiles, 512 B each. So tiles are few ([`MOST_TILES`]), and more items make
+//! longer tiles.
 
 use crate::abi::{SortArgs, Tiles};
 use crate::exec::{BINS, Block, Lane, Shared, Slot, WARP, striped};
@@ -28,44 +30,48 @@ pub const fn shared_bytes(lanes: u32) -> u32 {
     4 * BINS * (2 + lanes.div_ceil(WARP))
 }
 
-/// Counts an item that lies, or will lie, at a place.
+/// Counts an item that is, or will be, at a place.
 #[inline]
-pub fn tally<L: Lane>(l: &L, tiles: &Tiles, place: u32, digit: u32) {
-    l.fetch_add(tiles.counts, place / tiles.items * WORDS + digit / A_WORD, 1 << (16 * (digit % A_WORD)));
+pub fn tally<L: Lane>(lane: &L, tiles: &Tiles, place: u32, digit: u32) {
+    lane.fetch_add(tiles.counts, place / tiles.items * WORDS + digit / A_WORD, 1 << (16 * (digit % A_WORD)));
 }
 
 /// Shared memory for [`starts`] and for [`Block::ranks`].
 pub struct Bins {
-    /// Of each digit: where the block's next item goes.
+    /// For each digit: the place of the block's next item.
     pub next: Shared<u32>,
-    /// Of each digit: how many items there are in all.
+    /// For each digit: the number of items in all.
     pub totals: Shared<u32>,
     /// For `ranks`.
     pub scratch: Shared<u32>,
 }
 
-/// Where this block's items go, digit by digit: behind all smaller digits, and behind the same one in earlier tiles.
+/// The places of this block's items, digit by digit: after all smaller digits, and after the same
+/// one in earlier tiles.
 #[inline]
-pub fn starts<B: Block>(b: &mut B, tiles: &Tiles) -> Bins {
-    let (tile, lanes) = (b.block(), b.lanes());
-    let bins =
-        Bins { next: b.shared(BINS), totals: b.shared(BINS), scratch: b.shared(BINS * lanes.div_ceil(WARP)) };
-    each_bin(b, |l, bin| {
-        l.put(bins.next, bin, 0);
-        l.put(bins.totals, bin, 0);
+pub fn starts<B: Block>(block: &mut B, tiles: &Tiles) -> Bins {
+    let (tile, lanes) = (block.block(), block.lanes());
+    let bins = Bins {
+        next: block.shared(BINS),
+        totals: block.shared(BINS),
+        scratch: block.shared(BINS * lanes.div_ceil(WARP)),
+    };
+    each_bin(block, |lane, bin| {
+        lane.put(bins.next, bin, 0);
+        lane.put(bins.totals, bin, 0);
     });
     // A lane a word, and as many lanes a word as there are.
     let shares = (lanes / WORDS).max(1);
-    b.phase(|l| {
-        let share = l.lane() / WORDS;
-        let mut word = if share < shares { l.lane() % WORDS } else { WORDS };
+    block.phase(|lane| {
+        let share = lane.lane() / WORDS;
+        let mut word = if share < shares { lane.lane() % WORDS } else { WORDS };
         while word < WORDS {
             let (mut before, mut total) = ([0u32; A_WORD as usize], [0u32; A_WORD as usize]);
             let mut from = share;
             while from < tiles.count {
                 let last = tiles.count - 1;
                 let counts: [u64; AHEAD as usize] = core::array::from_fn(|k| {
-                    l.read(tiles.counts, (from + k as u32 * shares).min(last) * WORDS + word)
+                    lane.read(tiles.counts, (from + k as u32 * shares).min(last) * WORDS + word)
                 });
                 for (k, counts) in counts.into_iter().enumerate() {
                     let from = from + k as u32 * shares;
@@ -78,25 +84,25 @@ pub fn starts<B: Block>(b: &mut B, tiles: &Tiles) -> Bins {
                 from += AHEAD * shares;
             }
             for part in 0..A_WORD {
-                l.shared_add(bins.next, A_WORD * word + part, before[part as usize]);
-                l.shared_add(bins.totals, A_WORD * word + part, total[part as usize]);
+                lane.shared_add(bins.next, A_WORD * word + part, before[part as usize]);
+                lane.shared_add(bins.totals, A_WORD * word + part, total[part as usize]);
             }
             word += lanes.min(WORDS);
         }
-        l.meet();
+        lane.meet();
     });
-    let mut values = b.slot(0u32);
+    let mut values = block.slot(0u32);
     let (mut smaller, mut bin) = (0, 0);
     while bin < BINS {
-        b.phase(|l| {
-            let d = bin + l.lane();
-            *values.of(l) = if d < BINS { l.get(bins.totals, d) } else { 0 };
+        block.phase(|lane| {
+            let d = bin + lane.lane();
+            *values.of(lane) = if d < BINS { lane.get(bins.totals, d) } else { 0 };
         });
-        let sum = b.scan(&mut values);
-        b.phase(|l| {
-            let d = bin + l.lane();
+        let sum = block.scan(&mut values);
+        block.phase(|lane| {
+            let d = bin + lane.lane();
             if d < BINS {
-                l.put(bins.next, d, smaller + *values.of(l) + l.get(bins.next, d));
+                lane.put(bins.next, d, smaller + *values.of(lane) + lane.get(bins.next, d));
             }
         });
         smaller += sum;
@@ -106,43 +112,45 @@ pub fn starts<B: Block>(b: &mut B, tiles: &Tiles) -> Bins {
 }
 
 /// # Pass: items in the order of one byte; equal bytes keep their order
+/// Paper    a radix sort as in the thesis's construction; this one is not in the paper.
 /// Launch   a block a tile.
-/// Reads    items, their digits' counts; where only the device knows how many items there are, that number.
-/// Writes   items; the counts of the next byte's digits in the tiles they go to.
-/// Before   the counts are complete; those of the next byte are zero.
+/// Reads    items; counts of their digits; the number of items, if only the device has it.
+/// Writes   items; the counts of the next byte's digits in the tiles of their new places.
+/// Before   the counts are complete; those of the next byte = 0.
+/// After    out = items, stably ascending by (item >> shift) & 255.
 /// Room     fixed; cannot run out.
-/// Cost     8 B in, 8 B out and an atomic a key; 512 B a tile and block, summed by each. Three rounds to L2 in a row: items
-///          and counts together, places, atomics.
-pub fn pass<B: Block>(b: &mut B, a: &SortArgs) {
-    let bins = starts(b, &a.tiles);
-    let (tile, lanes) = (b.block(), b.lanes());
-    let room = a.items.len() as u32;
-    let count = if a.live.is_empty() { room } else { b.load(a.live, 0).min(room.into()) as u32 };
-    let mut items = b.slot([0u64; EACH]);
-    let mut places = b.slot([BINS; EACH]);
-    let mut at = tile * a.tiles.items;
-    let end = count.min(at + a.tiles.items);
+/// Cost     8 B in, 8 B out and an atomic a key; 512 B a tile and block, summed by each.
+///          Three rounds to L2 in a row: items and counts together, places, atomics.
+pub fn pass<B: Block>(block: &mut B, args: &SortArgs) {
+    let bins = starts(block, &args.tiles);
+    let (tile, lanes) = (block.block(), block.lanes());
+    let room = args.items.len() as u32;
+    let count = if args.live.is_empty() { room } else { block.load(args.live, 0).min(room.into()) as u32 };
+    let mut items = block.slot([0u64; EACH]);
+    let mut places = block.slot([BINS; EACH]);
+    let mut at = tile * args.tiles.items;
+    let end = count.min(at + args.tiles.items);
     while at < end {
-        b.phase(|l| {
+        block.phase(|lane| {
             for k in 0..EACH {
-                let i = at + striped(l.lane(), lanes, k as u32, EACH as u32);
-                let item = l.read(a.items, i.min(count - 1));
-                items.of(l)[k] = item;
-                places.of(l)[k] = if i < end { (item >> a.shift) as u32 & (BINS - 1) } else { BINS };
+                let i = at + striped(lane.lane(), lanes, k as u32, EACH as u32);
+                let item = lane.read(args.items, i.min(count - 1));
+                items.of(lane)[k] = item;
+                places.of(lane)[k] = if i < end { (item >> args.shift) as u32 & (BINS - 1) } else { BINS };
             }
         });
-        b.ranks(&mut places, bins.next, bins.scratch);
-        b.phase(|l| {
+        block.ranks(&mut places, bins.next, bins.scratch);
+        block.phase(|lane| {
             for k in 0..EACH {
-                let (item, place) = (items.of(l)[k], places.of(l)[k]);
-                if at + striped(l.lane(), lanes, k as u32, EACH as u32) < end {
-                    l.write(a.out, place, item);
-                    if a.next.count > 0 {
-                        tally(l, &a.next, place, (item >> a.next_shift) as u32 & (BINS - 1));
+                let (item, place) = (items.of(lane)[k], places.of(lane)[k]);
+                if at + striped(lane.lane(), lanes, k as u32, EACH as u32) < end {
+                    lane.write(args.out, place, item);
+                    if args.next.count > 0 {
+                        tally(lane, &args.next, place, (item >> args.next_shift) as u32 & (BINS - 1));
                     }
                 }
             }
-            l.meet();
+            lane.meet();
         });
         at += EACH as u32 * lanes;
     }
@@ -150,14 +158,14 @@ pub fn pass<B: Block>(b: &mut B, a: &SortArgs) {
 
 /// A phase over all bins, whatever the number of lanes.
 #[inline]
-pub fn each_bin<B: Block>(b: &mut B, mut body: impl FnMut(&B::Lane, u32)) {
-    let lanes = b.lanes();
-    b.phase(|l| {
-        let mut bin = l.lane();
+pub fn each_bin<B: Block>(block: &mut B, mut body: impl FnMut(&B::Lane, u32)) {
+    let lanes = block.lanes();
+    block.phase(|lane| {
+        let mut bin = lane.lane();
         while bin < BINS {
-            body(l, bin);
+            body(lane, bin);
             bin += lanes;
         }
-        l.meet();
+        lane.meet();
     });
 }

@@ -49,14 +49,17 @@ fn every_stage_opens_with_its_card() {
 
 #[test]
 fn a_missing_card_is_noticed() {
-    let (_, text) = &files("kernels/src/stage/fit.rs")[0];
-    assert_eq!(without_card(&planted("fit.rs", text)), NONE);
+    let (_, text) = &files("kernels/src/stage/fit/leaves.rs")[0];
+    assert_eq!(without_card(&planted("leaves.rs", text)), NONE);
     let without = |word: &str| text.replacen(&format!("//! {word} "), "//! Other ", 1);
     for word in ["Launch", "Reads", "Before", "After", "Room", "Cost"] {
-        assert_eq!(without_card(&planted("fit.rs", &without(word))), [format!("fit.rs: no {word}")]);
+        assert_eq!(without_card(&planted("leaves.rs", &without(word))), [format!("leaves.rs: no {word}")]);
     }
-    assert_eq!(without_card(&planted("fit.rs", &text.replacen("//! # ", "//! ", 1))), ["fit.rs: no title"]);
-    assert_eq!(without_card(&planted("fit.rs", "fn fit() {}")).len(), 8);
+    assert_eq!(
+        without_card(&planted("leaves.rs", &text.replacen("//! # ", "//! ", 1))),
+        ["leaves.rs: no title"]
+    );
+    assert_eq!(without_card(&planted("leaves.rs", "fn fit() {}")).len(), 8);
 }
 
 // Nothing is left half done, and no test sleeps without saying why.

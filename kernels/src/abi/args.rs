@@ -1,4 +1,4 @@
-//! One argument block for each kernel: what it is launched with, by value.
+//! One argument block for each kernel: its launch arguments, by value.
 
 use super::{
     BodyRecord, Counter, Counters, FilterArgs, Inner, LeafPlace, Link, Merge, MortonFlags, Node, NodeFilter,
@@ -17,9 +17,9 @@ macro_rules! arguments {
         #[derive(Clone, Copy, Debug)]
         #[repr(C)]
         pub struct $name $(<$($g: $bound),*>)? { $($(#[$fdoc])* pub $field: $ty,)* }
-        // SAFETY: every field is Zeroable, which `FITS` asks.
+        // SAFETY: every field is Zeroable, which `FITS` checks.
         unsafe impl $(<$($g: $bound),*>)? Zeroable for $name $(<$($g),*>)? {}
-        // SAFETY: no field has padding, nor is there any between them, both of which `FITS` asks.
+        // SAFETY: no field has padding, nor is there any between them; `FITS` checks both.
         unsafe impl $(<$($g: $bound),*>)? bytemuck::NoUninit for $name $(<$($g),*>)? {}
         impl $(<$($g: $bound),*>)? $name $(<$($g),*>)? {
             /// Evaluated for every block that is launched: no padding, and every field may be zero.
@@ -47,7 +47,7 @@ arguments! {
         faces: Span<[u32; 3]>,
         /// The tree's bodies.
         bodies: Span<TreeBody>,
-        /// What is known of each body's triangles, [`OF_A_BODY`](crate::bvh::centres::OF_A_BODY) words.
+        /// Extents of each body's triangles, [`OF_A_BODY`](crate::bvh::centres::OF_A_BODY) words.
         extents: Span<u64>,
         /// Out: code of each triangle's centre, above the triangle.
         items: Span<u64>,
@@ -58,7 +58,8 @@ arguments! {
         /// Along which curve.
         flags: MortonFlags,
     }
-    /// `construct_halves_bounds`, `construct_halves`, `construct_runs`: stretches of triangles in order.
+    /// `construct_halves_bounds`, `construct_halves`, `construct_runs`: stretches of triangles in
+    /// order.
     CutArgs<R: Real> {
         /// Positions.
         frames: Positions<R>,
@@ -66,11 +67,12 @@ arguments! {
         faces: Span<[u32; 3]>,
         /// The tree's bodies.
         bodies: Span<TreeBody>,
-        /// What is known of each body's triangles.
+        /// Extents of each body's triangles.
         extents: Span<u64>,
         /// Six ordered keys a stretch: the box of its triangles' centres.
         stretches: Span<u64>,
-        /// In order: something above its triangle. Of `construct_halves` also out: a code above its triangle.
+        /// Items in order, above each its triangle. For `construct_halves` also out: a code above
+        /// its triangle.
         items: Span<u64>,
         /// Out of `construct_runs`: the same in their new order.
         out: Span<u64>,
@@ -83,7 +85,8 @@ arguments! {
     }
     /// How often each digit comes in each tile of a list, see [`crate::sort`].
     Tiles {
-        /// Four counts a word, [`crate::sort::WORDS`] words a tile. Zeroed before items are counted.
+        /// Four counts a word, [`crate::sort::WORDS`] words a tile. Zeroed before items are
+        /// counted.
         counts: Span<u64>,
         /// How many tiles; 0 for none.
         count: u32,
@@ -96,7 +99,7 @@ arguments! {
         items: Span<u64>,
         /// Items out.
         out: Span<u64>,
-        /// How many items there are, where only the device knows; else empty: as many as there is room for.
+        /// The number of items, if only the device has it; else empty: the list is full.
         live: Span<u64>,
         /// Counts of this byte.
         tiles: Tiles,
@@ -107,8 +110,8 @@ arguments! {
         /// The next pass's.
         next_shift: u32,
     }
-    /// `construct_tree`, `construct_depth`, `construct_places`, `construct_emit`. An inner node is known by the gap between
-    /// leaves that it splits: gap i lies behind leaf i.
+    /// `construct_tree`, `construct_depth`, `construct_places`, `construct_emit`. The number of an
+    /// inner node is the gap between leaves that it splits: gap i is behind leaf i.
     TreeArgs {
         /// Sorted: a Morton code above its triangle.
         items: Span<u64>,
@@ -122,7 +125,7 @@ arguments! {
         tiles: Tiles,
         /// Place of each inner node in level order.
         places: Span<u32>,
-        /// Out: number of levels, then where each begins, then where the last ends.
+        /// Out: number of levels, then the start of each, then the end of the last.
         levels: Span<u32>,
         /// Out: the tree.
         links: Span<Link>,
@@ -130,20 +133,21 @@ arguments! {
         pair_parents: Span<u32>,
         /// Out: each leaf's node.
         leaf_nodes: Span<u32>,
-        /// Out: the first leaf below each pair of siblings; empty where nobody asks.
+        /// Out: the first leaf below each pair of siblings; empty if not needed.
         firsts: Span<u32>,
-        /// Out: whose triangles lie below each node; empty where all are of one body.
+        /// Out: filters of the triangles below each node; empty if all are of one body.
         filters: Span<NodeFilter>,
-        /// All bodies of the scene; empty where there are no filters.
+        /// All bodies of the scene; empty without filters.
         bodies: Span<BodyRecord>,
         /// The [`NodeFilter::hub`] of every triangle; empty without hubs.
         hubs: Span<u32>,
-        /// Scratch, zeroed before. Of each inner node: 1 if its leaves have different hubs; empty without hubs.
+        /// Scratch, zeroed before. For each inner node: 1 if its leaves have different hubs; empty
+        /// without hubs.
         mixed: Span<u64>,
-        /// Out: the leaves' places; empty where nobody asks for treelets, as the next two are.
+        /// Out: the leaves' places; empty without treelets, as the next two are.
         leaf_places: Span<LeafPlace>,
-        /// Out, zeroed before. For each chunk of leaves: how many leaves there are from the first on that begins a subtree of
-        /// a treelet; 0 where none does.
+        /// Out, zeroed before. For each chunk of leaves: how many leaves there are from the first
+        /// on that begins a subtree of a treelet; 0 if none does.
         begins: Span<u64>,
         /// Out, zeroed before. For each depth: how many nodes span treelets; then as many cursors.
         tops: Span<u64>,
@@ -152,7 +156,7 @@ arguments! {
         /// The root's index; its children follow it.
         root: u32,
     }
-    /// `construct_treelets`: what a refit by treelets needs to know of a tree.
+    /// `construct_treelets`: the plan of a refit by treelets.
     PlanArgs {
         /// The leaves of each inner node.
         inner: Span<Inner>,
@@ -174,7 +178,8 @@ arguments! {
         merges: Span<Merge>,
         /// Out: merges of the nodes that span treelets, by depth.
         top: Span<Merge>,
-        /// Out: in how many depths there are such nodes, then where each depth begins in `top`, then where they end.
+        /// Out: the number of depths with such nodes, then the start of each depth in `top`, then
+        /// the end.
         top_starts: Span<u32>,
         /// How many leaves.
         leaves: u32,
@@ -193,12 +198,14 @@ arguments! {
         links: Span<Link>,
         /// Out: the leaves.
         nodes: Span<Node<V>>,
-        /// How much the volumes grow: half of the distance within which pairs are listed; 0 for touching alone.
+        /// How much the volumes grow: half of the distance within which pairs are listed; 0 for
+        /// touching alone.
         margin: f32,
         /// Nothing.
         pad: u32,
     }
-    /// `fit_groups_obb`: the oriented boxes of inner nodes of few leaves, around the points below them.
+    /// `fit_groups_obb`: the oriented boxes of inner nodes of few leaves, around the points below
+    /// them.
     GroupsArgs<R: Real, V: Pod> {
         /// Positions.
         frames: Positions<R>,
@@ -216,7 +223,8 @@ arguments! {
         nodes: Span<Node<V>>,
         /// The root's index.
         root: u32,
-        /// How much the volumes grow: half of the distance within which pairs are listed; 0 for touching alone.
+        /// How much the volumes grow: half of the distance within which pairs are listed; 0 for
+        /// touching alone.
         margin: f32,
     }
     /// `refit_levels`: the volumes of levels `from` to `to`, deepest first.
@@ -225,9 +233,9 @@ arguments! {
         links: Span<Link>,
         /// The volumes: those of the leaves in, the others out.
         nodes: Span<Node<V>>,
-        /// Number of levels, then where each begins.
+        /// Number of levels, then the start of each.
         levels: Span<u32>,
-        /// The first leaf below each pair of siblings; empty where all nodes are merged.
+        /// The first leaf below each pair of siblings; empty if all nodes are merged.
         firsts: Span<u32>,
         /// The first level (nearest the root).
         from: u32,
@@ -252,7 +260,7 @@ arguments! {
         merges: Span<Merge>,
         /// Merges of the nodes that span treelets, by depth.
         top: Span<Merge>,
-        /// In how many depths there are such nodes, then where each depth begins, then where they end.
+        /// The number of depths with such nodes, then the start of each depth, then the end.
         top_starts: Span<u32>,
         /// One counter: tickets drawn by blocks so far, in all launches.
         ticket: Span<u64>,
@@ -260,10 +268,11 @@ arguments! {
         nodes: Span<Node<V>>,
         /// Which axes merged oriented boxes take, see [`crate::bv::Axes`].
         axes: Axes,
-        /// How much the volumes grow: half of the distance within which pairs are listed; 0 for touching alone.
+        /// How much the volumes grow: half of the distance within which pairs are listed; 0 for
+        /// touching alone.
         margin: f32,
     }
-    /// `refit_bottom_up`: the volumes of the inner nodes, by whoever comes second.
+    /// `refit_bottom_up`: the volumes of the inner nodes, by the second arrival.
     BottomUpArgs<V: Pod> {
         /// The tree.
         links: Span<Link>,
@@ -271,7 +280,7 @@ arguments! {
         pair_parents: Span<u32>,
         /// Each leaf's node.
         leaf_nodes: Span<u32>,
-        /// The first leaf below each pair of siblings; empty where all nodes are merged.
+        /// The first leaf below each pair of siblings; empty if all nodes are merged.
         firsts: Span<u32>,
         /// For each pair of siblings: how many came by so far, in all launches.
         arrivals: Span<u64>,
@@ -288,7 +297,7 @@ arguments! {
         nodes: Span<Node<V>>,
         /// The node of each leaf that walks.
         leaf_nodes: Span<u32>,
-        /// Which pairs are asked.
+        /// Collision filters.
         filters: FilterArgs,
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
@@ -315,7 +324,7 @@ arguments! {
         nodes: Span<Node<V>>,
         /// The node of each leaf that may be a sample.
         leaf_nodes: Span<u32>,
-        /// Which pairs are asked.
+        /// Collision filters.
         filters: FilterArgs,
         /// Counters.
         counters: Counters,
@@ -323,7 +332,7 @@ arguments! {
         samples: u32,
         /// How many pairs of triangles a sample measures at most.
         measures: u32,
-        /// How many pairs of siblings it looks at.
+        /// Most pairs of siblings that a walk tests.
         steps: u32,
         /// [`TraverseFlags::GRAFTED`].
         flags: TraverseFlags,

@@ -1,4 +1,4 @@
-//! The counters of a frame: what each counts, and the memory that they are in.
+//! The counters of a frame: their meanings, and their memory.
 
 use super::{Output, Span};
 use bytemuck::{NoUninit, Pod, Zeroable};
@@ -52,7 +52,7 @@ macro_rules! counters {
     };
 }
 
-// Those of lists are the exact demand, also where the list was too short.
+// Those of lists are the exact demand, also if the list was too short.
 counters! { 0;
     /// Candidate triangle pairs.
     PAIRS,
@@ -78,7 +78,7 @@ counters! { 0;
     TILE_PAIRS,
     /// Units spilled by each round of the traversal that may.
     SPILLED: [ROUNDS],
-    /// Pairs of nodes where the descent ended.
+    /// Pairs of nodes at which the descent ended.
     ENDS,
     /// Most units that waited in the longest list of a queue, or past its end.
     QUEUED,
@@ -132,7 +132,7 @@ counters! { 0;
     NEAREST,
     /// The complement of the first pair of that distance: its smaller triangle above the other.
     WITNESS,
-    /// 1 where there is such a pair.
+    /// 1 if there is such a pair.
     NEAREST_PAIRS,
     /// Triangle pairs of a step that share a point at t = 0.
     STARTS_CROSSING,

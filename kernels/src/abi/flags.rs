@@ -41,14 +41,15 @@ macro_rules! flags {
 }
 
 flags! {
-    /// Of [`MortonArgs`](super::MortonArgs).
+    /// Flags of [`MortonArgs`](super::MortonArgs).
     MortonFlags {
         /// Along Hilbert's curve, not Morton's: neighbours along it are neighbours in space.
         HILBERT,
         /// Outsized triangles behind all others of their body.
         APART,
     }
-    /// What every traversal is told: [`TraverseArgs`](super::TraverseArgs), [`PairArgs`](super::PairArgs).
+    /// Flags of every traversal: [`TraverseArgs`](super::TraverseArgs),
+    /// [`PairArgs`](super::PairArgs).
     ///
     /// ```
     /// use nearmiss_kernels::abi::TraverseFlags;
@@ -66,37 +67,38 @@ flags! {
     TraverseFlags {
         /// Pairs that share a vertex are emitted too.
         KEEP_ADJACENT,
-        /// Below the root lie a tree that does not change, whose pairs nobody asks for, and one that does.
+        /// The root has two trees below it: a static one, whose own pairs are not wanted, and a
+        /// moving one.
         GRAFTED,
-        /// Of traversals by pairs of nodes: the pairs where the descent ends are listed too.
+        /// Traversals by pairs of nodes also list the pairs at which the descent ends.
         FRONT,
     }
-    /// What a round of queues is told: [`QueueArgs`](super::QueueArgs).
+    /// Flags of a round of queues: [`QueueArgs`](super::QueueArgs).
     QueueFlags {
         /// The first block begins with the pair of roots; no units are read.
         START,
-        /// What is left then is counted as unfinished.
+        /// Units left after this round count as unfinished.
         LAST,
     }
-    /// What a pass over a front is told: [`FrontArgs`](super::FrontArgs).
+    /// Flags of a pass over a front: [`FrontArgs`](super::FrontArgs).
     FrontFlags {
-        /// Pairs give way to an ancestor that is apart.
+        /// Pairs are replaced by an ancestor that is apart.
         PRUNE,
     }
-    /// What queues that help each other out are told: [`StealArgs`](super::StealArgs).
+    /// Flags of queues with stealing: [`StealArgs`](super::StealArgs).
     StealFlags {
-        /// Units are offered whether or not a block looks for some.
+        /// Blocks offer units even if no block is idle.
         EAGER,
     }
-    /// What tests of triangle pairs are told: [`DiscreteArgs`](super::DiscreteArgs).
+    /// Flags of tests of triangle pairs: [`DiscreteArgs`](super::DiscreteArgs).
     DiscreteFlags {
-        /// Pairs that share a vertex are asked whether they meet beyond it.
+        /// Pairs that share a vertex are tested beyond it.
         KEEP_ADJACENT,
     }
-    /// What a rung is told: [`RungArgs`](super::RungArgs).
+    /// Flags of a rung: [`RungArgs`](super::RungArgs).
     RungFlags {
-        /// Of `narrow_isolate`, a contact is one however well its time is known; of `narrow_settle`, nothing is left to a next
-        /// rung.
+        /// `narrow_isolate` accepts a contact with any bounds of its time. `narrow_settle` leaves
+        /// nothing to a next rung.
         EVERYTHING,
     }
 }

@@ -1,4 +1,4 @@
-//! What crosses the border between host and GPU: spans of device memory, records, argument blocks.
+//! The interface between host and GPU: spans of device memory, records, argument blocks.
 //!
 //! The law for records: `repr(C)`, plain old data, no padding; sizes are asserted at compile time.
 

@@ -23,10 +23,11 @@ arguments! {
         ee: Output<Pair>,
         /// Features whose boxes come within it are listed, a length; 0 for touching.
         gap: f64,
-        /// The bits of a time: who only meets later does not matter. Empty where all do.
+        /// The bits of a time: pairs that first meet later do not matter. Empty if all matter.
         known: Span<u64>,
     }
-    /// `narrow_moller`, `narrow_filter`, `narrow_wide`, `narrow_exact`, and those of the start of a step: triangle pairs that meet.
+    /// `narrow_moller`, `narrow_filter`, `narrow_wide`, `narrow_exact`, and those of the start of a
+    /// step: triangle pairs that meet.
     DiscreteArgs<R: Real> {
         /// Positions: the only ones, or those of a step, whose start is read.
         frames: Positions<R>,
@@ -36,9 +37,9 @@ arguments! {
         pairs: Output<Pair>,
         /// Out: pairs that meet.
         contacts: Output<Pair>,
-        /// Out: pairs that a filter leaves to what comes next; empty for the last one.
+        /// Out: pairs that a filter leaves to the next one; empty for the last one.
         undecided: Output<Pair>,
-        /// What is asked of them.
+        /// Flags of the test.
         flags: DiscreteFlags,
         /// Zero.
         pad: u32,
@@ -59,9 +60,10 @@ arguments! {
         may_vf: Output<Pair>,
         /// Out: edge/edge pairs that may meet.
         may_ee: Output<Pair>,
-        /// What is asked.
+        /// Parameters of the query.
         params: Params,
-        /// The bits of a time: pairs that cannot meet before it are left out too. Empty where all are wanted.
+        /// The bits of a time: pairs that cannot meet before it are left out too. Empty if all are
+        /// wanted.
         known: Span<u64>,
     }
     /// `narrow_vf`, `narrow_ee`: the first time of contact of two primitives in motion.
@@ -74,7 +76,7 @@ arguments! {
         edges: Span<[u32; 2]>,
         /// Candidates that may meet.
         survivors: Output<Pair>,
-        /// Out: contacts; empty when only the earliest is asked for.
+        /// Out: contacts; empty if only the earliest is wanted.
         hits: Output<Hit>,
         /// Out: the least toi so far, the words of [`super::earliest`]; or empty.
         earliest: Span<u64>,
@@ -117,7 +119,7 @@ arguments! {
         /// The distance, a length.
         distance: f64,
     }
-    /// `narrow_blunt`: hits so large that the solver's precision cannot tell as little as the tolerance.
+    /// `narrow_below_precision`: hits too large for the solver's precision to resolve the tolerance.
     BelowPrecisionArgs<R: Real> {
         /// Positions.
         frames: Positions<R>,
@@ -135,20 +137,20 @@ arguments! {
         tolerance: f64,
         /// The tolerances of bodies, by their first vertices; empty if all pairs have the same.
         tolerances: Span<BodyTolerance>,
-        /// The least part of a pair's extent that the solver can tell.
+        /// The least part of a pair's extent that the solver resolves.
         finest: f64,
     }
-    /// Pairs of one kind for a rung, and where they go.
+    /// Pairs of one kind for a rung, and its output lists.
     Listed {
         /// Pairs.
         pairs: Output<Pair>,
-        /// Out: contacts and unresolved pairs; empty when only the earliest is asked for.
+        /// Out: contacts and unresolved pairs; empty if only the earliest is wanted.
         hits: Output<Hit>,
-        /// Out: pairs for the next rung; empty where there is none.
+        /// Out: pairs for the next rung; empty without one.
         left: Output<Pair>,
     }
-    /// `narrow_isolate`, `narrow_settle`, `narrow_slice`, `narrow_separate`: what meets, and bounds of the first time, with
-    /// proof.
+    /// `narrow_isolate`, `narrow_settle`, `narrow_slice`, `narrow_separate`: the pairs that meet,
+    /// and bounds of the first time, with proof.
     RungArgs<R: Real> {
         /// Positions.
         frames: Positions<R>,
@@ -164,11 +166,12 @@ arguments! {
         earliest: Span<u64>,
         /// Counters.
         counters: Counters,
-        /// The tolerances of bodies, by their first vertices; empty if all pairs have that of `params`.
+        /// The tolerances of bodies, by their first vertices; empty if all pairs have that of
+        /// `params`.
         tolerances: Span<BodyTolerance>,
-        /// What is asked.
+        /// Parameters of the query.
         params: Params,
-        /// What it is told.
+        /// Flags of the rung.
         flags: RungFlags,
         /// Zero.
         pad: u32,

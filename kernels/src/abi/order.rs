@@ -1,9 +1,9 @@
-//! Contacts into canonical order: what they are ordered by, and the argument block.
+//! Contacts into canonical order: their sort key, and the argument block.
 
 use super::{BodyRecord, Hit, NearHit, Output, Pair, Span, Tiles};
 use bytemuck::{Pod, Zeroable};
 
-/// What contacts are ordered by.
+/// The sort key of a contact.
 pub trait Named {
     /// The two features.
     fn name(&self) -> [u32; 2];
@@ -37,7 +37,7 @@ arguments! {
         items: Span<u64>,
         /// Counts of the keys' lowest bytes.
         tiles: Tiles,
-        /// The bodies; empty where no contact has a first feature of a later body than its second's.
+        /// The bodies; empty if no contact has a first feature of a later body than its second's.
         bodies: Span<BodyRecord>,
         /// Bits of a feature.
         bits: u32,

@@ -1,17 +1,18 @@
-//! A list of device memory together with what counts it.
+//! A list of device memory together with its counter.
 
 use super::Span;
 use bytemuck::{NoUninit, Zeroable};
 
-/// A list that a kernel appends to and the next one reads: its memory, and where its exact demand is counted.
+/// A list that a kernel appends to and the next one reads: its memory, and the counter of its exact
+/// demand.
 ///
-/// The two are private and never apart: a list is not counted by another's counter. Kernels append and read by what
-/// [`crate::exec`] adds to this type.
+/// The two are private and never apart: a list is not counted by another's counter. Kernels append
+/// and read by the methods of [`crate::exec`] for this type.
 #[derive(Debug)]
 #[repr(C)]
 pub struct Output<T> {
     items: Span<T>,
-    /// The address of one `u64`; 0 where nothing is counted, since there is no list.
+    /// The address of one `u64`; 0 without a list, so nothing is counted.
     count: u64,
 }
 
@@ -49,10 +50,10 @@ impl<T> Output<T> {
     pub const fn room(&self) -> u64 {
         self.items.len()
     }
-    /// The word that counts the entries, those without room included; none where there is no list.
+    /// The word that counts the entries, those without room included; none without a list.
     #[inline(always)]
     pub const fn count(&self) -> Span<u64> {
-        // SAFETY: the word of a span of one; who made that span promised what is asked here.
+        // SAFETY: the word of a span of one; the maker of that span promised what is required here.
         unsafe { Span::new(self.count, (self.count != 0) as u64) }
     }
 }

@@ -6,28 +6,28 @@ use super::{
 use bytemuck::{Pod, Zeroable};
 
 arguments! {
-    /// What every traversal by pairs of nodes is given.
+    /// Arguments of every traversal by pairs of nodes.
     PairArgs<V: Pod> {
         /// The tree.
         nodes: Span<Node<V>>,
-        /// Which pairs are asked.
+        /// Collision filters.
         filters: FilterArgs,
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
         /// Out: candidate triangle pairs.
         pairs: Output<Pair>,
-        /// Out, with [`TraverseFlags::FRONT`]: the pairs of nodes where the descent ended.
+        /// Out, with [`TraverseFlags::FRONT`]: the pairs of nodes at which the descent ended.
         ends: Output<Pair>,
         /// Counters.
         counters: Counters,
-        /// What it is told.
+        /// Flags of the traversal.
         flags: TraverseFlags,
         /// Units that a block's own queue may hold, at least 1.
         local: u32,
     }
     /// `traverse_queue`: a round of work queues, one a block.
     QueueArgs<V: Pod> {
-        /// The tree, and where candidates go.
+        /// The tree, and the list of candidates.
         to: PairArgs<V>,
         /// Units of this round.
         units: Span<Pair>,
@@ -41,26 +41,26 @@ arguments! {
         idle: Span<u64>,
         /// Which round this is, in `idle` and in the counts of one list.
         round: u32,
-        /// Units of a block's segment; 0 where all blocks share one list.
+        /// Units of a block's segment; 0 if all blocks share one list.
         segment: u32,
         /// Units that a block takes at a time.
         take: u32,
         /// Blocks that may run dry before the others leave.
         idle_limit: u32,
-        /// Steps that a block takes before it heeds the blocks that ran dry.
+        /// Steps that a block takes before it polls the number of idle blocks.
         patience: u32,
         /// A block leaves when its own queue holds more.
         full: u32,
-        /// What it is told.
+        /// Flags of the round.
         flags: QueueFlags,
         /// Nothing.
         pad: u32,
     }
     /// `traverse_front`: a pass over the last frame's front.
     FrontArgs<V: Pod> {
-        /// The tree, and where candidates and ends go.
+        /// The tree, and the lists of candidates and ends.
         to: PairArgs<V>,
-        /// Where the last descent ended.
+        /// The ends of the last descent.
         front: Span<Pair>,
         /// Out: pairs that go deeper.
         units: Output<Pair>,
@@ -68,7 +68,7 @@ arguments! {
         pair_parents: Span<u32>,
         /// Pairs of the front.
         count: u32,
-        /// What it is told.
+        /// Flags of the pass.
         flags: FrontFlags,
     }
     /// `balance_copy`: evens the blocks' segments.
@@ -92,39 +92,41 @@ arguments! {
     }
     /// `traverse_steal`: work queues that help each other out within one launch.
     StealArgs<V: Pod> {
-        /// The tree, and where candidates go.
+        /// The tree, and the list of candidates.
         to: PairArgs<V>,
         /// A segment for each block: units that its own queue had no room for.
         units: Span<Pair>,
-        /// The places of the pool, a word each: what became of it, and in which launch. See [`pool`].
+        /// The places of the pool, a word each: its state, and the launch that set it. See
+        /// [`pool`].
         pool: Span<u64>,
         /// The units of the places, [`pool::CHUNK`] each.
         chunks: Span<Pair>,
         /// One word: see [`control`]. Zero before the launch.
         control: Span<u64>,
-        /// What marks the words of the pool as this launch's: see [`pool`].
+        /// This launch's mark in the words of the pool: see [`pool`].
         launch: u64,
         /// Units of a block's segment.
         segment: u32,
         /// How often a block without work looks for some before it leaves.
         tries: u32,
-        /// What it is told.
+        /// Flags of the launch.
         flags: StealFlags,
         /// Nothing.
         pad: u32,
     }
 }
 
-/// The word by which blocks of `traverse_steal` find each other: three counts in one, so that one atomic changes them
-/// together and one look sees them at one moment. Zero stands for a pair of roots that is on its way to who draws the
-/// first ticket.
+/// The word that coordinates the blocks of `traverse_steal`. It has three counts, so one atomic
+/// changes them together, and one load reads them at one moment. Zero means that the pair of roots
+/// belongs to the first ticket.
 pub mod control {
-    /// A ticket drawn. Ticket 0 is for the roots, ticket `t` for place `t - 1` of the pool. At most one a place and, past
-    /// the end, one a block, and the first.
+    /// A ticket drawn. Ticket 0 is for the roots, ticket `t` for place `t - 1` of the pool. At most
+    /// one a place and, past the end, one a block, and the first.
     pub const TICKET: u64 = 1;
     /// A place taken to offer units. Past the end at most [`MOST_OFFERS`] a block.
     pub const OFFER: u64 = 1 << BITS;
-    /// One more at work: a block that has units, or a chunk of units on its way. Counted from 1: the roots.
+    /// One more at work: a block that has units, or a chunk of units on its way. Counted from 1:
+    /// the roots.
     pub const WORK: u64 = 1 << (2 * BITS);
     /// Bits of a count; the last has one more.
     const BITS: u32 = 21;
@@ -145,7 +147,7 @@ pub mod control {
         pub tickets: u32,
         /// Places taken.
         pub offers: u32,
-        /// Blocks and chunks at work; 0: all is done, and nobody can ever have work again.
+        /// Blocks and chunks at work. 0: all is done, and no work can appear again.
         pub work: u32,
     }
 
@@ -157,7 +159,7 @@ pub mod control {
             let work = (word >> (2 * BITS)) as u32;
             Counts { tickets: count(0), offers: count(1), work: (work + 1) & (u32::MAX >> (2 * BITS - 32)) }
         }
-        /// Tickets for places that nobody has taken.
+        /// Tickets for places not taken yet.
         #[inline]
         pub fn waiting(self) -> u32 {
             self.tickets.saturating_sub(self.offers + 1)
@@ -170,15 +172,16 @@ pub mod control {
     }
 }
 
-/// The pool of `traverse_steal`. A word of it that this launch did not write counts as empty, whatever it is, so nobody
-/// clears it: the number of the launch is in the bits above [`STATE`](pool::STATE), and no number comes twice.
+/// The pool of `traverse_steal`. A word of it that this launch did not write counts as empty,
+/// whatever its bits. So the pool is never cleared: the bits above [`STATE`](pool::STATE) are the
+/// number of the launch, and no number repeats.
 pub mod pool {
     /// Units of a place at most.
     pub const CHUNK: u32 = 64;
     /// The number of a launch begins at this bit.
     pub const LAUNCH: u32 = 16;
-    /// What became of the place: so many units, or [`GONE`].
+    /// State of the place: a number of units, or [`GONE`].
     pub const STATE: u64 = (1 << LAUNCH) - 1;
-    /// Who had the ticket gave up.
+    /// The holder of the ticket has left.
     pub const GONE: u64 = STATE;
 }

@@ -5,8 +5,8 @@ use crate::math::{Real, Vec3};
 use crate::prim::inclusion::Verdict;
 use bytemuck::{Pod, Zeroable};
 
-/// A node's place in the level-ordered tree. Two siblings are neighbours and start at an even index, so a parent finds
-/// both children in one line. Node 1 is the root; node 0 is not used.
+/// A node's place in the level-ordered tree. Two siblings are neighbours and start at an even
+/// index, so a parent finds both children in one line. Node 1 is the root; node 0 is not used.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C, align(8))]
 pub struct Link {
@@ -17,7 +17,8 @@ pub struct Link {
 }
 const _: () = assert!(size_of::<Link>() == 8);
 
-/// A node as a walk reads it: its volume, and its place in the tree again, so that one access brings both.
+/// A node as a walk reads it: its volume, and its place in the tree again, so that one access
+/// brings both.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(16))]
 pub struct Node<V> {
@@ -65,7 +66,8 @@ impl<V> Node<V> {
     }
 }
 
-/// Two indices: a triangle pair (discrete candidates and contacts), a vertex and a face, or two edges.
+/// Two indices: a triangle pair (discrete candidates and contacts), a vertex and a face, or two
+/// edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Pod, Zeroable)]
 #[repr(C, align(8))]
 pub struct Pair {
@@ -113,7 +115,7 @@ pub struct Hit {
     pub a: u32,
     /// The face, or the second edge.
     pub b: u32,
-    /// What is known of it: bounds of the first time of contact, and whether it is certain.
+    /// The verdict: bounds of the first time of contact, and whether it is certain.
     pub verdict: Verdict,
 }
 const _: () = assert!(size_of::<Hit>() == 32);
@@ -128,7 +130,7 @@ pub struct NearHit {
     pub b: u32,
     /// Their squared distance.
     pub squared: f64,
-    /// Where they are nearest, see [`crate::prim::near::Near::at`].
+    /// The nearest points, see [`crate::prim::near::Near::at`].
     pub at: [f64; 2],
 }
 const _: () = assert!(size_of::<NearHit>() == 32);
@@ -143,15 +145,16 @@ pub struct NearestHit {
     pub b: u32,
     /// How far they are apart: 0 only if they share a point.
     pub distance: f64,
-    /// Where they are nearest: of each the weights of corners 1 and 2.
+    /// The nearest points: for each triangle the weights of corners 1 and 2.
     pub at: [[f64; 2]; 2],
     /// Those points.
     pub points: [[f64; 3]; 2],
 }
 const _: () = assert!(size_of::<NearestHit>() == 96);
 
-/// An inner node of the radix tree, before it has a place in the level order: its range of leaves. It is known by the gap
-/// that it splits: its left child ends with the leaf of the gap's number, and its right child begins behind that.
+/// An inner node of the radix tree, before it has a place in the level order: its range of leaves.
+/// It is known by the gap that it splits: its left child ends with the leaf of the gap's number,
+/// and its right child begins behind that.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C, align(8))]
 pub struct Inner {
@@ -177,7 +180,7 @@ pub struct Treelet {
 }
 const _: () = assert!(size_of::<Treelet>() == 16);
 
-/// Where a leaf lies, in leaf order.
+/// The place of a leaf, in leaf order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C, align(8))]
 pub struct LeafPlace {
@@ -188,7 +191,7 @@ pub struct LeafPlace {
 }
 const _: () = assert!(size_of::<LeafPlace>() == 8);
 
-/// An inner node whose volume is to be made of its children's.
+/// An inner node whose volume is the merge of its children's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C, align(16))]
 pub struct Merge {
@@ -198,7 +201,8 @@ pub struct Merge {
     pub link: u32,
     /// Its last leaf.
     pub last: u32,
-    /// In a treelet: where the children's volumes are on chip, and in which round. See [`Merge::in_treelet`].
+    /// In a treelet: the places of the children's volumes on chip, and the round. See
+    /// [`Merge::in_treelet`].
     pub slots: u32,
 }
 const _: () = assert!(size_of::<Merge>() == 16);
@@ -211,11 +215,12 @@ impl Merge {
     pub fn in_treelet(left: u32, right: u32, round: u32) -> u32 {
         left | right << Self::SLOT | round << (2 * Self::SLOT)
     }
-    /// Where the left child's volume is: at its first leaf, counted from the treelet's; the merged one takes its place.
+    /// The slot of the left child's volume: its first leaf, counted from the treelet's. The merged
+    /// volume takes the same slot.
     pub fn left(&self) -> u32 {
         self.slots & ((1 << Self::SLOT) - 1)
     }
-    /// Where the right child's volume is.
+    /// The slot of the right child's volume.
     pub fn right(&self) -> u32 {
         self.slots >> Self::SLOT & ((1 << Self::SLOT) - 1)
     }
@@ -245,7 +250,7 @@ impl<R: Real> From<Vec3<R>> for Point<R> {
     }
 }
 
-/// A vertex in motion: both ends of the step lie together, since whoever needs one needs both.
+/// A vertex in motion. Both ends of the step are adjacent: a reader of one needs both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct VertexMotion<R> {

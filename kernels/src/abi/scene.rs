@@ -1,4 +1,4 @@
-//! Scenes of many bodies: what the kernels know of each, and where its vertices come from.
+//! Scenes of many bodies: the record of each, and the source of its vertices.
 
 use super::{Link, Node, Point, Positions, Span, VertexMotion};
 use crate::math::Real;
@@ -14,7 +14,7 @@ pub struct BodyRecord {
     pub vertex: u32,
     /// Its environment, by its rank among those that there are; or [`EVERY`].
     pub environment: u32,
-    /// 1 where it is tested against itself.
+    /// 1 if it is tested against itself.
     pub self_contact: u32,
     /// Bits of the groups that it is in.
     pub group: u32,
@@ -54,8 +54,9 @@ pub struct TreeBody {
 }
 const _: () = assert!(size_of::<TreeBody>() == 16);
 
-/// Whose triangles lie below a node. Of one body: the body, with [`SELF_CONTACT`] where it is tested against itself, and its
-/// environment. Of more: [`MIXED`], with the first of their environments, and the last.
+/// Filter of the triangles below a node. For one body: the body, with [`SELF_CONTACT`] if it is
+/// tested against itself, and its environment. For more: [`MIXED`], with the first and the last of
+/// their environments.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C, align(16))]
 pub struct NodeFilter {
@@ -63,7 +64,8 @@ pub struct NodeFilter {
     pub who: u32,
     /// The last environment.
     pub last: u32,
-    /// The hub that all of these triangles share: its vertex and one; 0 without one. See [`crate::bvh::filter`].
+    /// The hub that all of these triangles share: its vertex and one; 0 without one. See
+    /// [`crate::bvh::filter`].
     pub hub: u32,
     /// Zero.
     pub pad: u32,
@@ -88,7 +90,7 @@ pub struct Placement {
     pub vertex: u32,
     /// Vertices of the placed bodies before it.
     pub before: u32,
-    /// Where its vertices come from: [`UPLOADED`] and those behind it, with [`KEEPS_END`].
+    /// Source of its vertices: [`UPLOADED`] or one of those behind it, with [`KEEPS_END`].
     pub from: u32,
     /// Its first vertex there: among those that were uploaded, or among the points at rest.
     pub source: u32,
@@ -101,26 +103,28 @@ const _: () = assert!(size_of::<Placement>() == 24);
 
 /// [`Placement::from`]: the vertices were uploaded as they are.
 pub const UPLOADED: u32 = 0;
-/// [`Placement::from`]: the body rests where it was at the end of the last step; of one end in [`PlaceArgs::later`].
+/// [`Placement::from`]: the body rests at its position of the end of the last step; of one end in
+/// [`PlaceArgs::later`].
 pub const RESTING: u32 = 1;
 /// [`Placement::from`]: poses move points at rest.
 pub const POSED: u32 = 2;
-/// [`Placement::from`]: the vertices lie in memory of the caller.
+/// [`Placement::from`]: the vertices are in the caller's memory.
 pub const LENT: u32 = 3;
-/// [`Placement::from`]: poses that lie in memory of the caller move points at rest: of each a place of its translation, then one of
-/// its rotation.
+/// [`Placement::from`]: poses in the caller's memory move points at rest. Each has a place for its
+/// translation, then one for its rotation.
 pub const LENT_POSES: u32 = 4;
-/// A bit of [`Placement::from`], beside [`LENT`] and [`LENT_POSES`] where vertices have one end: two ends lie in memory of the caller,
-/// and the later one is kept in [`PlaceArgs::later`].
+/// A bit of [`Placement::from`], next to [`LENT`] and [`LENT_POSES`], for vertices with one end.
+/// Two ends are in the caller's memory, and the later one is kept in [`PlaceArgs::later`].
 pub const KEEPS_END: u32 = 8;
 
-/// Rows of numbers in memory of the caller. Whoever launches a kernel that reads it promises that they are there.
+/// Rows of numbers in the caller's memory. The launcher of a kernel that reads it promises that
+/// they exist.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C, align(8))]
 pub struct Lent {
-    /// Where the first number lies: aligned for its kind.
+    /// Address of the first number, aligned for its kind.
     pub address: u64,
-    /// How many numbers lie from there to the end of the last row.
+    /// The number of numbers from there to the end of the last row.
     pub numbers: u32,
     /// From the first number of a row to that of the next one, in numbers.
     pub stride: u32,
@@ -133,7 +137,8 @@ const _: () = assert!(size_of::<Lent>() == 24);
 
 /// Words of [`PlaceArgs::seen`].
 pub mod seen {
-    /// Of the first vertex of the caller's memory that has no coordinates to compute with: its number's complement; else 0.
+    /// The first vertex of the caller's memory without usable coordinates: its number's complement;
+    /// else 0.
     pub const INVALID: u32 = 0;
     /// The largest size of a coordinate of the caller's memory: the bits of an f64.
     pub const LARGEST: u32 = 1;
@@ -147,7 +152,7 @@ pub mod seen {
 pub struct PoseRecord {
     /// A quaternion of length 1: x, y, z, w.
     pub rotation: [f64; 4],
-    /// What is added.
+    /// The translation.
     pub translation: [f64; 3],
     /// Zero.
     pub pad: f64,
@@ -155,14 +160,14 @@ pub struct PoseRecord {
 const _: () = assert!(size_of::<PoseRecord>() == 64);
 
 arguments! {
-    /// Which pairs of nodes are asked at all; both empty where a scene has one body, tested against itself.
+    /// Collision filters; both empty if a scene has one body, tested against itself.
     FilterArgs {
-        /// Whose triangles lie below each node.
+        /// Filters of the triangles below each node.
         nodes: Span<NodeFilter>,
-        /// The bodies; empty where all are in all groups and meet all.
+        /// The bodies; empty if all are in all groups and meet all.
         bodies: Span<BodyRecord>,
     }
-    /// `place`: where vertices are, of the bodies that were moved.
+    /// `place`: positions of the vertices of moved bodies.
     PlaceArgs<R: Real> {
         /// The bodies, in the order of their vertices.
         placements: Span<Placement>,
@@ -172,15 +177,16 @@ arguments! {
         rest: Span<Point<R>>,
         /// Poses at both ends of the step, or at the only frame: two a body, or one.
         poses: Span<PoseRecord>,
-        /// Out: those that lie in memory of the caller, as they were found there.
+        /// Out: poses in the caller's memory, as they were read.
         found: Span<PoseRecord>,
         /// Places in memory of the caller, at both ends of the step, or at the only frame.
         lent: Span<Lent>,
         /// Out: all vertices.
         vertices: Positions<R>,
-        /// In and out, where vertices have one end: where the steps ended of which the caller's memory had both; empty without such.
+        /// In and out, if vertices have one end: the ends of steps of which the caller's memory had
+        /// both; empty without such.
         later: Span<Point<R>>,
-        /// Out: what was seen of the caller's numbers, see [`seen`]; zero before.
+        /// Out: checks of the caller's numbers, see [`seen`]; zero before.
         seen: Span<u64>,
         /// The largest size of a coordinate that can be computed with.
         most: f64,
@@ -200,11 +206,11 @@ arguments! {
     GraftArgs<V: Pod> {
         /// Its nodes; the root is node 1.
         from: Span<Node<V>>,
-        /// Whose triangles lie below them.
+        /// Filters of its nodes.
         from_filters: Span<NodeFilter>,
         /// Out: the nodes of both trees below one root.
         nodes: Span<Node<V>>,
-        /// Out: the parents of both; empty where nobody asks.
+        /// Out: the parents of both; empty if not needed.
         pair_parents: Span<u32>,
         /// Out: the filters of both.
         filters: Span<NodeFilter>,
@@ -220,7 +226,8 @@ pub const GRAFTED_ROOT: u32 = 2;
 /// See [`GRAFTED_ROOT`].
 pub const MOVING_ROOT: u32 = 3;
 
-/// Where a node of a grafted tree lies, behind those of a tree of `leaves` leaves; a leaf's link stays as it is.
+/// The number of a node of a grafted tree behind a tree of `leaves` leaves. A leaf's link stays as
+/// it is.
 pub const fn grafted(node: u32, leaves: u32) -> u32 {
     if node == super::ROOT { GRAFTED_ROOT } else { 2 * leaves + node }
 }

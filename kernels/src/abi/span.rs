@@ -5,7 +5,7 @@ use core::marker::PhantomData;
 
 /// `len` elements of `T` at a device address. On the CPU the address is the host's.
 ///
-/// Only a device's buffer makes one that is not empty: who has a span may hand it to a launch.
+/// Only a device's buffer makes one that is not empty: a holder of a span may pass it to a launch.
 #[derive(Debug)]
 #[repr(C)]
 pub struct Span<T> {
@@ -33,12 +33,12 @@ impl<T> Span<T> {
     /// A span by address and length.
     ///
     /// # Safety
-    /// `addr` is aligned for `T`, and `len` elements from there on are memory of one device, valid as `T` whatever their
-    /// bits, for as long as launches are given the span.
+    /// `addr` is aligned for `T`. The `len` elements from there on are memory of one device, valid
+    /// as `T` whatever their bits. They live as long as launches are given the span.
     pub const unsafe fn new(addr: u64, len: u64) -> Self {
         Span { addr, len, element: PhantomData }
     }
-    /// Where the first element lies; 0 for an empty span.
+    /// Address of the first element; 0 for an empty span.
     #[inline(always)]
     pub const fn addr(&self) -> u64 {
         self.addr
@@ -56,7 +56,7 @@ impl<T> Span<T> {
     /// `len` of its elements from element `from` on.
     ///
     /// # Panics
-    /// When they do not lie in it: a fault of the caller.
+    /// If they are not inside it: a fault of the caller.
     pub const fn part(&self, from: u64, len: u64) -> Self {
         assert!(from <= self.len && len <= self.len - from, "a part of a span lies in it");
         Span { addr: self.addr + from * size_of::<T>() as u64, len, element: PhantomData }

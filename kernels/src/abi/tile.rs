@@ -1,4 +1,4 @@
-//! Tiles: what their kernels are launched with.
+//! Tiles: the arguments of their kernels.
 
 use super::{Counters, FilterArgs, Node, NodeFilter, Output, Pair, Positions, Span, TraverseFlags};
 use crate::bv::Axes;
@@ -6,11 +6,11 @@ use crate::math::Real;
 use bytemuck::{Pod, Zeroable};
 
 arguments! {
-    /// `construct_tile_filters`: whose triangles lie below each node.
+    /// `construct_tile_filters`: filters of the triangles below each node.
     TileFiltersArgs {
         /// Triangles in order: the lower halves.
         triangles: Span<u64>,
-        /// Whose each triangle is.
+        /// Filter of each triangle.
         whose: Span<NodeFilter>,
         /// Out, and of nodes above tiles in: of every node.
         filters: Span<NodeFilter>,
@@ -94,9 +94,9 @@ arguments! {
     TilePairsArgs<V: Pod> {
         /// The nodes: tiles, then those above them, a level behind the other.
         nodes: Span<Node<V>>,
-        /// Whose triangles lie below each.
+        /// Collision filters of the nodes.
         filters: FilterArgs,
-        /// The rim of each; empty where none is made. See [`crate::stage::fit::rims`].
+        /// The rim of each; empty if none is made. See [`crate::stage::fit::rims`].
         rims: Span<Node<V>>,
         /// Out: pairs of tiles, the earlier first.
         tile_pairs: Output<Pair>,
@@ -108,13 +108,14 @@ arguments! {
         tops: u32,
         /// The number of a tile's node in the top level is the tile's, so many bits lower.
         shift: u32,
-        /// Tiles that seek others begin here and end there; at most those of what moves, which come first.
+        /// Tiles from here to `to` are tested against the others; at most the moving ones, which
+        /// come first.
         from: u32,
         /// See above.
         to: u32,
-        /// Of these one of so many does; 1 for all.
+        /// One of so many of these tiles; 1 for all.
         every: u32,
-        /// The bits of a time: who only meets later does not matter. Empty where all do.
+        /// The bits of a time: pairs that first meet later do not matter. Empty if all matter.
         known: Span<u64>,
     }
     /// `traverse_triangles`: pairs of triangles that overlap, of pairs of tiles.
@@ -125,9 +126,9 @@ arguments! {
         nodes: Span<Node<V>>,
         /// Vertex indices of every triangle.
         faces: Span<[u32; 3]>,
-        /// Whose triangles lie below each node.
+        /// Collision filters of the nodes.
         filters: FilterArgs,
-        /// Whose each triangle is; empty where that does not matter.
+        /// Filter of each triangle; empty if not needed.
         whose: Span<NodeFilter>,
         /// Pairs of tiles.
         tile_pairs: Output<Pair>,
@@ -135,18 +136,18 @@ arguments! {
         pairs: Output<Pair>,
         /// Counters.
         counters: Counters,
-        /// Tiles that are looked at with themselves begin here and end there: those that sought.
+        /// Tiles from here to `to` are tested with themselves: the same as in [`TilePairsArgs`].
         from: u32,
         /// See above.
         to: u32,
         /// All but [`TraverseFlags::GRAFTED`] and [`TraverseFlags::FRONT`].
         flags: TraverseFlags,
-        /// Of these tiles one of so many; 1 for all.
+        /// One of so many of these tiles; 1 for all.
         every: u32,
-        /// The bits of a time: who only meets later does not matter. Empty where all do.
+        /// The bits of a time: pairs that first meet later do not matter. Empty if all matter.
         known: Span<u64>,
-        /// Out: what each tile that sought cost, in tests; see [`CANDIDATE`](crate::stage::traverse::tile_triangles::CANDIDATE).
-        /// Empty where nobody asks.
+        /// Out: the cost of each of these tiles, in tests; see
+        /// [`CANDIDATE`](crate::stage::traverse::tile_triangles::CANDIDATE). Empty if not needed.
         work: Span<u64>,
     }
 }

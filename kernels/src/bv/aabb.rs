@@ -1,4 +1,5 @@
-//! The axis-aligned box: six numbers, six comparisons. Union and overlap are exact; only fitting rounds, outward.
+//! The axis-aligned box: six numbers, six comparisons. Union and overlap are exact; only fitting
+//! rounds, outward.
 
 use super::contain::between;
 use super::{Axes, Contain, FillsNode, Volume, fills_node};
@@ -24,7 +25,7 @@ impl Aabb {
     /// Encloses nothing; the neutral element of [`Aabb::merge`].
     pub const EMPTY: Aabb = Aabb { lo: [f32::INFINITY; 3], hi: [f32::NEG_INFINITY; 3] };
 
-    /// The box of points, rounded outward where they are finer than f32. Finite points only.
+    /// The box of points, rounded outward if they are finer than f32. Finite points only.
     #[inline]
     pub fn of<R: Real, const N: usize>(points: [Vec3<R>; N]) -> Aabb {
         let (mut lo, mut hi) = (points[0], points[0]);
@@ -88,8 +89,8 @@ impl Volume for Aabb {
     fn overlaps(&self, other: &Self) -> bool {
         Aabb::overlaps(self, other)
     }
-    /// The root of the sum of the squared gaps. Each gap is rounded once, and the five operations behind it once each; where squares have
-    /// not all their digits, the largest gap is told.
+    /// The root of the sum of the squared gaps. Each gap is rounded once, and each of the five
+    /// operations behind it once. If squares lose digits, the largest gap is returned.
     #[inline]
     fn apart(&self, o: &Self) -> f32 {
         let gap = |k: usize| (self.lo[k] - o.hi[k]).greater(o.lo[k] - self.hi[k]).greater(0.0);

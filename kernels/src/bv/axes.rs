@@ -1,4 +1,5 @@
-//! Axes for oriented boxes. Any will do for soundness, if they are nearly orthonormal; good ones make tight boxes.
+//! Axes for oriented boxes. Any will do for soundness, if they are nearly orthonormal; good ones
+//! make tight boxes.
 
 use crate::math::tolerance::{BOX_AXES, COVARIANCE_ZERO};
 use crate::math::{Real, Vec3};
@@ -21,8 +22,8 @@ fn unit(v: Vec3<f32>) -> Vec3<f32> {
     v.map(|x| x / length)
 }
 
-/// The axes with the first along `v` and the second towards `w`; none if that is not well defined. The components
-/// of `v` should be about 1 in size.
+/// The axes with the first along `v` and the second towards `w`; none if that is not well defined.
+/// The components of `v` should be about 1 in size.
 #[inline]
 pub fn frame(v: Vec3<f32>, w: Vec3<f32>) -> Option<Frame> {
     let x = unit(v);
@@ -41,8 +42,9 @@ pub fn frame(v: Vec3<f32>, w: Vec3<f32>) -> Option<Frame> {
     sound.then_some([x, y])
 }
 
-/// The axes of a triangle with the edges `e`: its longest edge, and across it in its plane. No box around a triangle
-/// has a smaller face. A segment takes any axis across it, a point the axes of the world.
+/// The axes of a triangle with the edges `e`: its longest edge, and across it in its plane. No box
+/// around a triangle has a smaller face. A segment takes any axis across it, a point the axes of
+/// the world.
 #[inline]
 pub fn of_edges(e: [Vec3<f32>; 3]) -> Frame {
     let (mut longest, mut next, mut most) = (e[0], e[1], e[0].dot(e[0]));
@@ -101,8 +103,9 @@ impl Covariance {
         self
     }
 
-    /// The principal axes, those of the largest and of the second variance first; the world's where there are none
-    /// (no variance, NaN). Cyclic Jacobi rotations on the matrix divided by its largest entry.
+    /// The principal axes, that of the largest variance first, then that of the second. The world's
+    /// axes if there are none (no variance, NaN). Cyclic Jacobi rotations on the matrix divided by
+    /// its largest entry.
     #[inline]
     pub fn axes(mut self) -> Frame {
         let most = Real::max(Real::max(self.on[0], self.on[1]), self.on[2]);
@@ -156,5 +159,6 @@ impl Covariance {
     }
 }
 
-/// Sweeps of Jacobi rotations at most. Convergence is quadratic; after three, boxes are as small as after six.
+/// Sweeps of Jacobi rotations at most. Convergence is quadratic; after three, boxes are as small as
+/// after six.
 const SWEEPS: u32 = 3;

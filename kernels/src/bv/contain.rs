@@ -1,12 +1,13 @@
-//! Is a point in a volume? Exactly: the judge of the builders, which shares no arithmetic with them. For hosts.
+//! Is a point in a volume? Exactly: the judge of the builders, which shares no arithmetic with
+//! them. For hosts.
 
 use super::Volume;
 use crate::math::Vec3;
 
-/// Volumes that can be asked exactly what they hold.
+/// Volumes with an exact test of containment.
 pub trait Contain: Volume {
-    /// Whether a vertex that moves linearly from `t0` to `t1` is inside at every t in [0, 1]; for a point that stands still
-    /// give it twice. Of finite coordinates up to `2^480`; exact.
+    /// Whether a vertex that moves linearly from `t0` to `t1` is inside at every t in [0, 1]. For a
+    /// point at rest pass it twice. Coordinates are finite and at most `2^480`. Exact.
     fn holds(&self, t0: Vec3<f64>, t1: Vec3<f64>) -> bool;
 }
 
@@ -15,8 +16,9 @@ pub fn between(lo: [f32; 3], p: Vec3<f64>, hi: [f32; 3]) -> bool {
     (0..3).all(|k| lo[k] as f64 <= p[k] && p[k] <= hi[k] as f64)
 }
 
-/// A power of two that lifts products of subnormals out of the underflow: coordinates are multiples of `2^-1074`,
-/// axes of `2^-149`, so lifted products are multiples of `2^-823`; and at most `2^480 2^400` in size.
+/// A power of two that lifts products of subnormals out of the underflow. Coordinates are multiples
+/// of `2^-1074`, axes of `2^-149`. So lifted products are multiples of `2^-823`, and at most
+/// `2^480 2^400` in size.
 const LIFT: f64 = f64::from_bits((400 + 1023) << 52);
 
 /// Whether `|a . (p - c)| <= h`.
@@ -35,8 +37,8 @@ pub fn within(a: Vec3<f32>, p: Vec3<f64>, c: [f32; 3], h: f32) -> bool {
     above.sign() <= 0 && below.sign() >= 0
 }
 
-/// An exact sum: doubles that do not overlap, ascending (Shewchuk, "Adaptive precision floating-point arithmetic",
-/// 1997, figure 6).
+/// An exact sum: doubles that do not overlap, ascending (Shewchuk, "Adaptive precision
+/// floating-point arithmetic", 1997, figure 6).
 #[derive(Clone, Copy, Default)]
 struct Sum {
     parts: [f64; 13],

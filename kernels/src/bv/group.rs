@@ -1,15 +1,18 @@
-//! The oriented box of a few dozen points: tighter by half than what is merged of boxes, whose paddings and corners add up.
+//! The oriented box of a few dozen points: tighter by half than a merge of boxes, whose paddings
+//! and corners add up.
 //!
-//! Points are gone through twice, for axes and for extents, and never kept. `a_i . (p - c)` is taken as
-//! `a_i . (p - base) - a_i . (c - base)` with the first point as base: the centre is known only when the extents are.
+//! Points are gone through twice, for axes and for extents, and never kept. `a_i . (p - c)` is
+//! taken as `a_i . (p - base) - a_i . (c - base)` with the first point as base: the centre is known
+//! only when the extents are.
 
 use super::Obb;
 use super::axes::{self, Covariance, three};
 use crate::math::tolerance::{BOX_GROUP, BOX_GROUP_UNDERFLOW, BOX_LIMIT, BOX_UP};
 use crate::math::{Real, Vec3};
 
-/// Leaves of the largest inner node whose oriented box is fitted to the points below it. Volume tests of a walk fall by
-/// a third to a half up to 32, and by a tenth for each doubling from there, which doubles the longest lane's work.
+/// Leaves of the largest inner node whose oriented box is fitted to the points below it. Up to 32,
+/// volume tests of a walk fall by a third to a half. Each doubling from there saves a tenth and
+/// doubles the longest lane's work.
 pub const GROUP: u32 = 32;
 
 /// Points that can be gone through again, always in the same order; at least one.
@@ -30,9 +33,10 @@ impl<R: Real> Points<R> for [Vec3<R>] {
 }
 
 impl Obb {
-    /// The box of points: their principal axes, or the world's where these have less surface (and where sizes beyond
-    /// `2^60` or below `2^-60` leave no others). The box of everything where a point is not finite or too large.
-    /// Deterministic: the same points in the same order give the same bits.
+    /// The box of points, along their principal axes. The world's axes are used if these have less
+    /// surface, or for sizes beyond `2^60` or below `2^-60`. The box of everything if a point is
+    /// not finite or too large. Deterministic: the same points in the same order give the same
+    /// bits.
     #[inline(always)]
     pub fn of<R: Real>(points: &(impl Points<R> + ?Sized)) -> Obb {
         let base = points.first();
@@ -43,7 +47,7 @@ impl Obb {
             (lo, hi, sum, count) = (lo.min(d), hi.max(d), sum + d, count + 1.0);
             spread.add(d);
         });
-        // An infinity or NaN stays in the sum, also where comparisons drop it.
+        // An infinity or NaN stays in the sum, also if comparisons drop it.
         let whole = sum[0].abs() + sum[1].abs() + sum[2].abs();
         let reach = hi.max(-lo);
         let fits = reach[0].max(reach[1]).max(reach[2]) <= BOX_LIMIT;

@@ -1,8 +1,8 @@
-//! The box that moves: one box at the begin of the step, one at its end, and every box between them.
+//! The moving box: one box at the start of the step, one at its end, and every box between them.
 //!
-//! At time t it is the box from `(1-t) lo0 + t lo1` to `(1-t) hi0 + t hi1`. A vertex that moves linearly from the first
-//! box to the second is in it at every t, since both sides of each inequality are the same mixture. So fitting rounds
-//! outward twice, and union is exact, as for [`Aabb`].
+//! At time t it is the box from `(1-t) lo0 + t lo1` to `(1-t) hi0 + t hi1`. A vertex that moves
+//! linearly from the first box to the second is in it at every t: both sides of each inequality are
+//! the same mixture. So fitting rounds outward twice, and union is exact, as for [`Aabb`].
 
 use super::contain::between;
 use super::{Aabb, Axes, Contain, FillsNode, Volume, fills_node};
@@ -11,7 +11,8 @@ use crate::math::tolerance::{MOVING_LIMIT, MOVING_MIXTURE, MOVING_TIME};
 use crate::math::{Real, Vec3};
 use bytemuck::{Pod, Zeroable};
 
-/// A closed box that moves and changes linearly over the step. 56 bytes; with a node's two words, 64.
+/// A closed box that moves and changes linearly over the step. 56 bytes; with a node's two words,
+/// 64.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Linear {
@@ -72,7 +73,7 @@ impl Volume for Linear {
         b
     }
 
-    /// Both ends grow, and what is between them as much.
+    /// Both ends grow, and every box between them as much.
     #[inline]
     fn grown(&self, by: f32) -> Self {
         let grown = |lo, hi| Aabb { lo, hi }.grown(by);
@@ -85,20 +86,24 @@ impl Volume for Linear {
         Real::max(at(self.lo0, self.hi0), at(self.lo1, self.hi1))
     }
 
-    /// Whether there is a t in [0, 1] at which the closed boxes share a point; true also where rounding leaves it
-    /// open, that is where the overlap on one axis ends within `MOVING_TIME` of the begin of another's. Symmetric.
+    /// Whether there is a t in [0, 1] at which the closed boxes share a point. True also if
+    /// rounding leaves it open: the overlap on one axis ends within `MOVING_TIME` of the start of
+    /// another's. Symmetric.
     ///
-    /// Each axis asks twice for `f(t) = (1-t) d0 + t d1 >= 0`, with d0 and d1 differences of bounds. A computed
-    /// difference has the right sign (subtraction underflows to nothing) and a relative error of u. Where both are
-    /// negative f is too, and the boxes are apart. Where only one is, f changes sign at
-    /// `q = |d0| / (|d0| + |d1|)`, computed within `((1+u)/(1-u))^2 < 1 + 5u` and half a subnormal. If there is a t
-    /// that meets all six, each true lower end is at most each true upper one, so the largest computed lower end is
-    /// at most `10u` and a subnormal above the smallest computed upper one. `MOVING_TIME` is `16u`, and adding it to
-    /// a number of at most 1 loses less than `2u`.
+    /// Each axis has two conditions `f(t) = (1-t) d0 + t d1 >= 0`, with d0 and d1 differences of
+    /// bounds. A computed difference has the right sign (subtraction underflows to nothing) and a
+    /// relative error of u. If both are negative f is too, and the boxes are apart. If only one is,
+    /// f changes sign at `q = |d0| / (|d0| + |d1|)`. It is computed within
+    /// `((1+u)/(1-u))^2 < 1 + 5u` and half a subnormal.
     ///
-    /// Bounds are finite and small enough that no sum of differences overflows, or infinite outward: then a
-    /// difference is infinite upward only. If it is d1, q is 0: no bound. If it is d0, q is NaN, as it is where both
-    /// are zero; every comparison with NaN is false, so it clips nothing.
+    /// Suppose some t meets all six. Then each true lower end is at most each true upper one. So
+    /// the largest computed lower end is at most `10u` and a subnormal above the smallest computed
+    /// upper one. `MOVING_TIME` is `16u`, and adding it to a number of at most 1 loses less than
+    /// `2u`.
+    ///
+    /// Bounds are finite and so small that no sum of differences overflows, or infinite outward.
+    /// Then a difference is infinite upward only. If it is d1, q is 0: no bound. If it is d0, q is
+    /// NaN, as it is if both are zero. Every comparison with NaN is false, so it clips nothing.
     #[inline(always)]
     fn overlaps(&self, o: &Self) -> bool {
         let (apart, from, to) = self.window(o);
@@ -113,7 +118,8 @@ impl Volume for Linear {
     }
 
     const IN_PARTS: bool = true;
-    /// Whether they are not apart on one axis at both ends of the step, on the same side: six pairs of differences, and no division.
+    /// Whether they are not apart on one axis at both ends of the step, on the same side: six pairs
+    /// of differences, and no division.
     #[inline]
     fn may_overlap(&self, o: &Self) -> bool {
         let mut apart = false;
@@ -149,8 +155,8 @@ impl Volume for Linear {
 }
 
 impl Linear {
-    /// Whether the boxes are apart on one axis throughout; else from when and until when they overlap on all, as computed:
-    /// both ends together are wrong by less than `MOVING_TIME`.
+    /// Whether the boxes are apart on one axis throughout. Else the computed times between which
+    /// they overlap on all. Both ends together are wrong by less than `MOVING_TIME`.
     #[inline(always)]
     pub fn window(&self, o: &Self) -> (bool, f32, f32) {
         let (mut apart, mut partly, mut from, mut to) = (false, false, 0.0f32, 1.0f32);

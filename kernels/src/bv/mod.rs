@@ -1,10 +1,10 @@
-//! Bounding volumes: they enclose, rounded outward, and they never say "apart" of two things that touch.
+//! Bounding volumes. They enclose, rounded outward. Two things that touch are never reported apart.
 //!
-//! | volume | bytes | overlap | good where |
+//! | volume | bytes | overlap | best for |
 //! | --- | --- | --- | --- |
-//! | [`Aabb`] | 24 | 6 comparisons, exact | nothing moves, or little |
-//! | [`Linear`] | 56 | 6 clips of an interval of time | things move, and turn little |
-//! | [`Obb`] | 56 | up to 15 separating axes | triangles are long, thin or slanted |
+//! | [`Aabb`] | 24 | 6 comparisons, exact | rest, or little motion |
+//! | [`Linear`] | 56 | 6 clips of an interval of time | motion with little turning |
+//! | [`Obb`] | 56 | up to 15 separating axes | long, thin or slanted triangles |
 
 mod aabb;
 mod axes;
@@ -23,9 +23,10 @@ use crate::math::tolerance::NEAR_GROWTH;
 use crate::math::{Real, Vec3};
 use bytemuck::{Pod, Zeroable};
 
-/// The volumes, an entry each: the type, its part of the names of its kernels, whether inner nodes of few leaves are fitted
-/// (`groups`, see [`Volume::group`]); then the choices that people name, each with its name, its rule of axes, and what it is. The
-/// kernels, the host's choice and the command line are made of this list.
+/// The list of volumes, an entry each. An entry has the type, its part of kernel names, and whether
+/// small inner nodes are fitted (`groups`, see [`Volume::group`]). Then the choices of a caller:
+/// name, rule of axes, description. Kernels, the host's choice and the command line are made from
+/// this list.
 #[macro_export]
 macro_rules! volumes {
     ($then:ident) => {
@@ -37,28 +38,29 @@ macro_rules! volumes {
                 Linear = "linear", PCA, "Boxes that move: axis-aligned at both ends of the step, in between on straight lines.";
             }
             Obb = "obb" [groups] {
-                Obb = "obb", PCA, "Oriented boxes along the principal axes of what they hold; the seed's.";
+                Obb = "obb", PCA, "Oriented boxes along the principal axes of what they hold; the paper's.";
                 ObbChild = "obb-child", CHILD, "Oriented boxes that keep the axes of a child: the older rule.";
             }
         }
     };
 }
 
-/// What fits into a node of the tree without padding.
+/// A volume that fits into a node of the tree without padding.
 ///
 /// # Safety
-/// [`fills_node`] says yes.
+/// [`fills_node`] is true.
 pub unsafe trait FillsNode: Pod {}
 
-/// Whether a volume and two words of four bytes fill up a multiple of 16 bytes, to which nodes are aligned.
+/// Whether a volume and two words of four bytes fill a multiple of 16 bytes, the alignment of
+/// nodes.
 pub const fn fills_node<V>() -> bool {
     (size_of::<V>() + 8).is_multiple_of(16) && align_of::<V>() <= 16
 }
 
-/// A bounding volume: what a node of the tree says about everything below it.
+/// A bounding volume: the part of a node that encloses everything below it.
 pub trait Volume: FillsNode + Sync + Send + core::fmt::Debug + PartialEq {
-    /// Whether overlap tests nest: whatever lies in two volumes that are apart is apart too. Not so where a slack, for
-    /// safety, makes a small volume meet what a large one around it does not.
+    /// Whether overlap tests nest: parts of two volumes that are apart are apart too. A safety
+    /// slack prevents nesting: a small volume may overlap one that its larger parent does not.
     const NESTS: bool;
     /// Around a triangle that stands still.
     fn still<R: Real>(corners: [Vec3<R>; 3]) -> Self;
@@ -66,24 +68,26 @@ pub trait Volume: FillsNode + Sync + Send + core::fmt::Debug + PartialEq {
     fn moving<R: Real>(t0: [Vec3<R>; 3], t1: [Vec3<R>; 3]) -> Self;
     /// Around both, by the rule of axes (only oriented boxes have one).
     fn merge(&self, other: &Self, axes: Axes) -> Self;
-    /// Inner nodes of up to so many leaves are fitted to the points below them; the others are merged. 0: all are merged.
+    /// Inner nodes of up to so many leaves are fitted to the points below them; the others are
+    /// merged. 0: all are merged.
     #[inline(always)]
     fn group(_: Axes) -> u32 {
         0
     }
-    /// Around points, which is what inner nodes that are not merged are fitted to (see [`Volume::group`]).
+    /// Around points: the fit of inner nodes that are not merged (see [`Volume::group`]).
     #[inline(always)]
     fn of_points<R: Real>(points: &(impl Points<R> + ?Sized)) -> Self {
         let mut all = Self::still([points.first(); 3]);
         points.each(|p| all = all.merge(&Self::still([p; 3]), Axes::PCA));
         all
     }
-    /// Around all points within `by`, a length above 0, of a point that it is around. Rounded outward.
+    /// Around all points within `by`, a length above 0, of a point that it is around. Rounded
+    /// outward.
     fn grown(&self, by: f32) -> Self;
-    /// At least the largest magnitude of a coordinate of what it is around.
+    /// At least the largest magnitude of a coordinate inside it.
     fn reach(&self) -> f32;
-    /// Around all points within `by`, and within what the last rung of a certified solver cannot tell, of a point that it is
-    /// around; itself where `by` is 0. See [`NEAR_GROWTH`].
+    /// Around all points within `by` of its own. Also around those within the least distance that
+    /// the last rung of a certified solver resolves. Itself if `by` is 0. See [`NEAR_GROWTH`].
     #[inline(always)]
     fn near(&self, by: f32) -> Self {
         if by > 0.0 { self.grown(by + NEAR_GROWTH * self.reach()) } else { *self }
@@ -92,25 +96,27 @@ pub trait Volume: FillsNode + Sync + Send + core::fmt::Debug + PartialEq {
     fn overlaps(&self, other: &Self) -> bool;
     /// Whether [`Volume::may_overlap`] is less than [`Volume::overlaps`].
     const IN_PARTS: bool = false;
-    /// The part of [`Volume::overlaps`] that costs little: false only if that is. Where many are tested against many by lanes side by
-    /// side, the other part costs all of them what one of them needs.
+    /// The cheap part of [`Volume::overlaps`]: false only if that is false. If lanes test many
+    /// against many, the other part would cost all lanes for the sake of one.
     #[inline(always)]
     fn may_overlap(&self, other: &Self) -> bool {
         self.overlaps(other)
     }
-    /// Whether they overlap as [`Volume::overlaps`] says, and not first behind a time in (0, 1]. Of volumes that overlap by
-    /// their roundings alone too: what is left out begins behind that time, certainly.
+    /// Whether they overlap as in [`Volume::overlaps`], and not first behind a time in (0, 1]. True
+    /// also for an overlap by rounding alone. Volumes that it refuses certainly first overlap
+    /// behind that time.
     #[inline(always)]
     fn overlaps_before(&self, other: &Self, _time: f32) -> bool {
         self.overlaps(other)
     }
-    /// Around the same from t = 0 until a time between 0 and 1, which becomes the end of the step; or around all. Two volumes are tested
-    /// against each other as both are until the same time, by [`Volume::may_overlap`].
+    /// The volume from t = 0 until a time in (0, 1), which becomes the end of the step. Or the
+    /// whole volume. Two volumes cut at the same time are tested by [`Volume::may_overlap`].
     #[inline(always)]
     fn until(&self, _time: f32) -> Self {
         *self
     }
-    /// Never more than the distance of two points that they are around, at t = 0; 0 where they overlap.
+    /// Never more than the distance of two points that they are around, at t = 0; 0 if they
+    /// overlap.
     fn apart(&self, other: &Self) -> f32;
 }
 
@@ -120,8 +126,9 @@ pub trait Volume: FillsNode + Sync + Send + core::fmt::Debug + PartialEq {
 pub struct Axes(pub u32);
 
 impl Axes {
-    /// Nodes of up to [`GROUP`] leaves take the principal axes of the points below them, or the world's where these have
-    /// less surface; larger ones those of the child whose axes have less surface.
+    /// Nodes of up to [`GROUP`] leaves take the principal axes of the points below them. If the
+    /// world's axes give less surface, they take those. Larger nodes take those of the child whose
+    /// axes have less surface.
     pub const PCA: Axes = Axes(0);
     /// Those of the larger child: cheap, and a little looser.
     pub const CHILD: Axes = Axes(1);

@@ -1,26 +1,31 @@
 //! The oriented box: three slabs about a centre.
 //!
-//! A point p is in the box iff `|a_i . (p - c)| <= h_i` for i = 0, 1, 2, in exact arithmetic on the stored numbers, where
-//! `a_2` is the *rounded* cross product of `a_0` and `a_1`. Nothing is assumed of the axes for containment. Below, u
-//! is the unit roundoff of f32 and `A A^T = I + E`; axes are only taken if `|E_ij| <= mu = 16u` (`axes::frame`).
+//! A point p is in the box iff `|a_i . (p - c)| <= h_i` for i = 0, 1, 2. This is exact arithmetic
+//! on the stored numbers; `a_2` is the *rounded* cross product of `a_0` and `a_1`. Containment
+//! holds for any axes. Below, u is the unit roundoff of f32 and `A A^T = I + E`. Axes are only
+//! taken if `|E_ij| <= mu = 16u` (`axes::frame`).
 //!
-//! **A child in its parent.** Points of the child with axes B are `c' + B^-1 y`, `|y_k| <= g_k`, and
-//! `a . B^-1 y = (B^-T a) . y`. As `B^-T = (B B^T)^-1 B`, which is `(I - F) B` with `|F_ij| <= 1.01 mu`, the component k of
-//! `B^-T a` is at most `|a . b_k| + 1.76 mu`, so the child reaches at most `sum g_k |a . b_k| + 28u sum g_k` from the
-//! image of its centre. Rounded dot products of unit vectors err by 3.1u, sums of three products by `3.1u sum g`.
+//! **A child in its parent.** Points of the child with axes B are `c' + B^-1 y`, `|y_k| <= g_k`,
+//! and `a . B^-1 y = (B^-T a) . y`. Now `B^-T = (B B^T)^-1 B`, which is `(I - F) B` with
+//! `|F_ij| <= 1.01 mu`. So the component k of `B^-T a` is at most `|a . b_k| + 1.76 mu`. So the
+//! child reaches at most `sum g_k |a . b_k| + 28u sum g_k` from the image of its centre. Rounded
+//! dot products of unit vectors err by 3.1u, sums of three products by `3.1u sum g`.
 //!
-//! **Separating axes.** Slab boxes are convex, so any direction may separate them; boxes that share a point have
-//! `|L . T| <= r_A + r_B`, with `T = c_B - c_A` and radii `r_A = sum h_i |(A^-T L)_i|`. Let S be the sum of all half extents.
-//! - `L = a_i`: `r_A` is `h_i` exactly, `r_B` as above; with `|T| <= 1.01 S` for boxes that share a point, roundings of
-//!   `a_i . T` are 4.2u S, of `r` 8u S. Sum: 41u S.
-//! - `L = R_1j a_2 - R_2j a_1` (and its two like), where `R_ij` is the computed `a_i . b_j`: a combination of A's axes, so
-//!   `r_A = h_1 |R_2j| + h_2 |R_1j|` exactly, and `L . T` is the same combination of the `a_i . T`: 9u S. `r_B` needs the
-//!   `b_k . L`, cofactors of R. For orthonormal axes they are entries of R (0 for k = j). With
-//!   `A = (I + E/2) P`, `B = (I + G/2) Q` up to terms of mu², P and Q orthogonal, `cof R` differs from `+-P Q^T` by
-//!   `(tr E/2 - E) P Q^T + P Q^T (tr G/2 - G)`, at most `6.5 mu`: 104u; `28u` as above, and 11u of roundings in R and
-//!   in the sums. Sum: 152u S.
+//! **Separating axes.** Slab boxes are convex, so any direction may separate them. Boxes that share
+//! a point have `|L . T| <= r_A + r_B`, with `T = c_B - c_A` and radii
+//! `r_A = sum h_i |(A^-T L)_i|`. Let S be the sum of all half extents.
+//! - `L = a_i`: `r_A` is `h_i` exactly, `r_B` as above. Boxes that share a point have
+//!   `|T| <= 1.01 S`. So roundings of `a_i . T` are 4.2u S, of `r` 8u S. Sum: 41u S.
+//! - `L = R_1j a_2 - R_2j a_1` (and its two like), with `R_ij` the computed `a_i . b_j`. It is a
+//!   combination of A's axes, so `r_A = h_1 |R_2j| + h_2 |R_1j|` exactly. `L . T` is the same
+//!   combination of the `a_i . T`: 9u S. `r_B` needs the `b_k . L`, cofactors of R. For orthonormal
+//!   axes they are entries of R (0 for k = j). Let `A = (I + E/2) P` and `B = (I + G/2) Q` up to
+//!   terms of mu², with P and Q orthogonal. Then `cof R` differs from `+-P Q^T` by
+//!   `(tr E/2 - E) P Q^T + P Q^T (tr G/2 - G)`. That is at most `6.5 mu`: 104u. Add `28u` as above,
+//!   and 11u of roundings in R and in the sums. Sum: 152u S.
 //!
-//! `BOX_APART` is 256u, and what is lost when it is multiplied, added and compared with a difference is below 4u.
+//! `BOX_APART` is 256u. Multiplying it, adding it and comparing it with a difference loses less
+//! than 4u.
 
 use super::axes::{self, Frame, three};
 use super::contain::within;
@@ -44,7 +49,8 @@ pub struct Obb {
     pub a1: [f32; 3],
     /// Half extents along the three axes; infinite in the box of everything.
     pub h: [f32; 3],
-    /// `BOX_APART` of the sum of the half extents, and the underflow: this box's share of the slack of an overlap test.
+    /// `BOX_APART` of the sum of the half extents, and the underflow: this box's share of the slack
+    /// of an overlap test.
     pub slack: f32,
     /// Zero.
     pub pad: u32,
@@ -81,10 +87,11 @@ impl Obb {
         Obb { c: c.0, a0: frame[0].0, a1: frame[1].0, h: h.0, slack, pad: 0 }
     }
 
-    /// The box of points with these axes. Each point's difference to the centre is taken in the points' precision, and
-    /// the extents are measured about the centre as rounded.
+    /// The box of points with these axes. Each point's difference to the centre is taken in the
+    /// points' precision. The extents are measured about the centre as rounded.
     ///
-    /// `s = a . q` errs by at most four roundings (five, the first tiny, for f64) and, near zero, six underflows.
+    /// `s = a . q` errs by at most four roundings (five, the first tiny, for f64) and, near zero,
+    /// six underflows.
     #[inline]
     fn around<R: Real>(points: &[Vec3<R>; 3], frame: Frame) -> Obb {
         let a = three(frame);
@@ -115,8 +122,8 @@ impl Obb {
         Obb::new(c, frame, h)
     }
 
-    /// The box around this one and another, with the axes of this one: `r` is how far the other reaches along them from
-    /// its centre.
+    /// The box around this one and another, with the axes of this one: `r` is how far the other
+    /// reaches along them from its centre.
     #[inline]
     fn union(&self, o: &Obb, r: Vec3<f32>) -> Obb {
         let (a, c, h) = (self.axes(), Vec3(self.c), Vec3(self.h));
@@ -131,8 +138,8 @@ impl Obb {
         Obb::new(c, [Vec3(self.a0), Vec3(self.a1)], reach(self, h).max(reach(o, r)))
     }
 
-    /// How far the box reaches from a point `c` along three axes, of which `r` from its own centre, as computed; and the
-    /// most by which that is too little.
+    /// The computed reach of the box from a point `c` along three axes, and its largest shortfall.
+    /// `r` is its reach along them from its own centre.
     #[inline]
     pub fn reach(&self, a: [Vec3<f32>; 3], c: Vec3<f32>, r: Vec3<f32>) -> (Vec3<f32>, f32) {
         let t = Vec3(self.c) - c;
@@ -142,7 +149,8 @@ impl Obb {
     }
 }
 
-/// The corners of a triangle at both ends of the step, gone through without a loop: they stay in registers.
+/// The corners of a triangle at both ends of the step, gone through without a loop: they stay in
+/// registers.
 struct Corners<R>([Vec3<R>; 6]);
 
 impl<R: Real> Points<R> for Corners<R> {
@@ -162,8 +170,8 @@ impl<R: Real> Points<R> for Corners<R> {
     }
 }
 
-/// The surface, in no particular unit and without paddings, of the box around slabs of half extents h about the
-/// origin and others of r about t.
+/// The surface, up to a factor and without paddings, of a box around two sets of slabs: half
+/// extents h about the origin, r about t.
 #[inline]
 fn surface(h: Vec3<f32>, r: Vec3<f32>, t: Vec3<f32>) -> f32 {
     let t = t.map(Real::abs);
@@ -171,7 +179,7 @@ fn surface(h: Vec3<f32>, r: Vec3<f32>, t: Vec3<f32>) -> f32 {
     e[0] * e[1] + e[1] * e[2] + e[2] * e[0]
 }
 
-/// One of two, word by word: what a machine may select without keeping either in memory.
+/// One of two, word by word: a machine may select one without keeping either in memory.
 #[inline]
 fn select(first: bool, x: [f32; 3], y: [f32; 3]) -> [f32; 3] {
     let one = |k: usize| if first { x[k] } else { y[k] };
@@ -181,8 +189,8 @@ fn select(first: bool, x: [f32; 3], y: [f32; 3]) -> [f32; 3] {
 impl Volume for Obb {
     const NESTS: bool = false;
 
-    /// The axes are the longest edge, across it, and the normal: no rectangle around a triangle is smaller, and they
-    /// cost no rotations.
+    /// The axes are the longest edge, across it, and the normal: no rectangle around a triangle is
+    /// smaller, and they cost no rotations.
     #[inline]
     fn still<R: Real>(corners: [Vec3<R>; 3]) -> Self {
         let [p, q, r] = corners;
@@ -196,8 +204,9 @@ impl Volume for Obb {
         Obb::of(&Corners([p, s, q, t, r, u]))
     }
 
-    /// Along its own axes a box reaches as far as its extents, so only the other's reach is computed, for both choices
-    /// from the same nine products. Sizes beyond `2^60` or below `2^-60` may take the axes with more surface.
+    /// Along its own axes a box reaches as far as its extents. So only the other's reach is
+    /// computed, for both choices from the same nine products. Sizes beyond `2^60` or below `2^-60`
+    /// may take the axes with more surface.
     #[inline]
     fn merge(&self, o: &Self, rule: Axes) -> Self {
         if (self.slack == f32::INFINITY) | (o.slack == f32::INFINITY) {
@@ -234,7 +243,8 @@ impl Volume for Obb {
         Obb::new(Vec3(self.c), [Vec3(self.a0), Vec3(self.a1)], Vec3(h))
     }
 
-    /// No component of an axis is above 1 by more than a rounding, which the centre's part outweighs where it is not alone.
+    /// No component of an axis is above 1 by more than a rounding. The centre's part outweighs that
+    /// unless it is zero.
     #[inline]
     fn reach(&self) -> f32 {
         let (c, h) = (Vec3(self.c).map(Real::abs), Vec3(self.h));
@@ -251,8 +261,9 @@ impl Volume for Obb {
         Obb::of(points)
     }
 
-    /// Faces first, all six at once: they separate nearly all boxes that are apart. The slack is for all axes alike;
-    /// see the module's text. Every comparison with NaN is false, which the box of everything relies on.
+    /// Faces first, all six at once: they separate nearly all boxes that are apart. The slack is
+    /// for all axes alike; see the module's text. Every comparison with NaN is false, which the box
+    /// of everything relies on.
     #[inline]
     fn overlaps(&self, o: &Self) -> bool {
         let (a, b) = (self.axes(), o.axes());
@@ -284,9 +295,11 @@ impl Volume for Obb {
         !apart
     }
 
-    /// The largest gap along the six face normals, less the slack, which is as for [`Obb::overlaps`] but for `4.2u |T|` of a difference of
-    /// centres that no sum of extents bounds: as `|T|` is at most the distance and `1.01 S`, that is `4.2u` of the distance beside
-    /// what the slack has room for. An axis is longer than 1 by less than `8u`. Every comparison with NaN is false, which the box of everything relies on.
+    /// The largest gap along the six face normals, less the slack of [`Obb::overlaps`] and
+    /// `4.2u |T|` more. No sum of extents bounds that difference of centres here. `|T|` is at most
+    /// the distance and `1.01 S`. So `4.2u` of the distance is needed beyond the slack. An axis is
+    /// longer than 1 by less than `8u`. Every comparison with NaN is false, on which the box of
+    /// everything relies.
     #[inline]
     fn apart(&self, o: &Self) -> f32 {
         let (a, b) = (self.axes(), o.axes());

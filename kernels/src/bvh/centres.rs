@@ -1,4 +1,5 @@
-//! Centres of triangles: what they are put in order by, the boxes around them, and which triangles are outsized.
+//! Centres of triangles: the sort keys of triangles, the boxes around the centres, and the outsized
+//! triangles.
 
 use crate::abi::{Positions, Span};
 use crate::exec::{Block, Lane, Shared};
@@ -6,7 +7,8 @@ use crate::math::{Real, Vec3, ordered};
 
 /// Keys of a box: upper x, y, z, and lower x, y, z (complemented), so that all are maxima.
 pub const KEYS: u32 = 6;
-/// Where a body's triangles are: a box, the sum of the exponents of their sizes, how many have one, and how many are outsized.
+/// Words of a body's extent: a box, the sum of the exponents of its triangles' sizes, their number,
+/// and the number that are outsized.
 pub const OF_A_BODY: u32 = KEYS + 3;
 /// The sum of the exponents.
 const EXPONENTS: u32 = KEYS;
@@ -14,27 +16,34 @@ const EXPONENTS: u32 = KEYS;
 const SIZED: u32 = KEYS + 1;
 /// How many are outsized.
 pub const OUTSIZED: u32 = KEYS + 2;
-/// A triangle is outsized whose size has an exponent so much above the mean one: which is 8 to 32 times the geometric mean of the sizes.
-/// A tile that has one has its box; so they have tiles of their own.
+/// A triangle is outsized whose size has an exponent so much above the mean one: which is 8 to 32
+/// times the geometric mean of the sizes. A tile that has one has its box; so they have tiles of
+/// their own.
 const ABOVE: u64 = 5;
 
-/// The corners of a triangle at t = 0.
-fn corners<R: Real, L: Lane>(
-    l: &L,
-    (frames, faces): (&Positions<R>, Span<[u32; 3]>),
-    triangle: u32,
-) -> [Vec3<f64>; 3] {
-    let start = |v: u32| {
-        let moving = frames.moving;
-        if moving.is_empty() { l.read(frames.still, v).at } else { l.read(moving, v).t0.at }
-    };
-    l.read(faces, triangle).map(|v| start(v).wide())
+/// A mesh: its positions and its faces.
+#[derive(Clone, Copy)]
+pub struct Mesh<'a, R: Real> {
+    /// Positions of the vertices.
+    pub frames: &'a Positions<R>,
+    /// Vertex indices of every triangle.
+    pub faces: Span<[u32; 3]>,
 }
 
-/// The centre of a triangle, in f64: any point near it would do, but all machines must choose the same.
+/// The corners of a triangle at t = 0.
+fn corners<R: Real, L: Lane>(lane: &L, mesh: Mesh<R>, triangle: u32) -> [Vec3<f64>; 3] {
+    let start = |v: u32| {
+        let moving = mesh.frames.moving;
+        if moving.is_empty() { lane.read(mesh.frames.still, v).at } else { lane.read(moving, v).t0.at }
+    };
+    lane.read(mesh.faces, triangle).map(|v| start(v).wide())
+}
+
+/// The centre of a triangle, in f64: any point near it would do, but all machines must choose the
+/// same.
 #[inline(always)]
-pub fn centre<R: Real, L: Lane>(l: &L, mesh: (&Positions<R>, Span<[u32; 3]>), triangle: u32) -> Vec3<f64> {
-    middle(corners(l, mesh, triangle))
+pub fn centre<R: Real, L: Lane>(lane: &L, mesh: Mesh<R>, triangle: u32) -> Vec3<f64> {
+    middle(corners(lane, mesh, triangle))
 }
 
 #[inline(always)]
@@ -42,7 +51,8 @@ fn middle([p, q, r]: [Vec3<f64>; 3]) -> Vec3<f64> {
     (p + q + r) * (1.0 / 3.0)
 }
 
-/// The exponent of the longest side of the box around a triangle, as IEEE 754 has it; 0 where there is no extent to speak of.
+/// The exponent of the longest side of the box around a triangle, as in IEEE 754. It is 0 without
+/// extent.
 #[inline(always)]
 fn exponent([p, q, r]: [Vec3<f64>; 3]) -> u64 {
     let sides = p.greater(q).greater(r) - p.lesser(q).lesser(r);
@@ -52,23 +62,18 @@ fn exponent([p, q, r]: [Vec3<f64>; 3]) -> u64 {
 /// Words that blocks gather of an extent.
 const GATHERED: u32 = SIZED + 1;
 
-/// What is known of some triangles: the first words of [`OF_A_BODY`].
+/// The extent of some triangles: the first words of [`OF_A_BODY`].
 #[derive(Clone, Copy)]
 pub struct Extent([u64; GATHERED as usize]);
 
 impl Extent {
-    /// Of none.
+    /// The extent of no triangles.
     pub const NONE: Extent = Extent([0; GATHERED as usize]);
 
-    /// With a triangle: its centre, and its size where that `counts`.
+    /// Adds a triangle: its centre, and its size if that `counts`.
     #[inline(always)]
-    pub fn add<R: Real, L: Lane>(
-        &mut self,
-        l: &L,
-        mesh: (&Positions<R>, Span<[u32; 3]>),
-        (triangle, counts): (u32, bool),
-    ) {
-        let corners = corners(l, mesh, triangle);
+    pub fn add<R: Real, L: Lane>(&mut self, lane: &L, mesh: Mesh<R>, triangle: u32, counts: bool) {
+        let corners = corners(lane, mesh, triangle);
         let c = middle(corners);
         for k in 0..3 {
             let key = ordered::key(c[k]);
@@ -80,26 +85,26 @@ impl Extent {
         self.0[SIZED as usize] += (exponent > 0) as u64;
     }
 
-    /// One word, told to all.
+    /// Merges one word into memory.
     #[inline(always)]
-    fn tell_word<L: Lane>(l: &L, (extents, at): (Span<u64>, u32), (k, word): (u32, u64)) {
+    fn report_word<L: Lane>(lane: &L, extents: Span<u64>, at: u32, k: u32, word: u64) {
         if k < KEYS {
-            l.fetch_max(extents, at + k, word);
+            lane.fetch_max(extents, at + k, word);
         } else if word > 0 {
-            l.fetch_add(extents, at + k, word);
+            lane.fetch_add(extents, at + k, word);
         }
     }
 
-    /// A lane's, told to all.
+    /// Merges a lane's extent into memory.
     #[inline(always)]
-    pub fn tell<L: Lane>(&self, l: &L, to: (Span<u64>, u32)) {
-        (0..GATHERED).for_each(|k| Self::tell_word(l, to, (k, self.0[k as usize])));
+    pub fn report<L: Lane>(&self, lane: &L, extents: Span<u64>, at: u32) {
+        (0..GATHERED).for_each(|k| Self::report_word(lane, extents, at, k, self.0[k as usize]));
     }
 
-    /// A lane's, for [`tell_together`].
+    /// A lane's, for [`report_together`].
     #[inline(always)]
-    pub fn put<L: Lane>(&self, l: &L, lanes: u32, best: Shared<u64>) {
-        (0..GATHERED).for_each(|k| l.put(best, k * lanes + l.lane(), self.0[k as usize]));
+    pub fn put<L: Lane>(&self, lane: &L, lanes: u32, best: Shared<u64>) {
+        (0..GATHERED).for_each(|k| lane.put(best, k * lanes + lane.lane(), self.0[k as usize]));
     }
 }
 
@@ -108,63 +113,67 @@ pub const fn shared_bytes(lanes: u32) -> u32 {
     GATHERED * 8 * lanes
 }
 
-/// For what the lanes of a block have put there.
-pub fn gathered<B: Block>(b: &mut B) -> Shared<u64> {
-    b.shared(GATHERED * b.lanes())
+/// Shared memory for the extents of a block's lanes.
+pub fn gathered<B: Block>(block: &mut B) -> Shared<u64> {
+    block.shared(GATHERED * block.lanes())
 }
 
-/// What all lanes have put, told to all as one: it lies at a place of `extents`.
-pub fn tell_together<B: Block>(b: &mut B, best: Shared<u64>, to: (Span<u64>, u32)) {
-    let lanes = b.lanes();
+/// Merges the extents that all lanes have put, into memory at `at`, by one lane a word.
+pub fn report_together<B: Block>(block: &mut B, best: Shared<u64>, extents: Span<u64>, at: u32) {
+    let lanes = block.lanes();
     let mut width = lanes;
     while width > 1 {
         let half = width.div_ceil(2);
-        b.phase(|l| {
-            let other = l.lane() + half;
+        block.phase(|lane| {
+            let other = lane.lane() + half;
             if other < width {
                 for k in 0..GATHERED {
-                    let at = k * lanes + l.lane();
-                    let (one, two) = (l.get(best, at), l.get(best, at + half));
-                    l.put(best, at, if k < KEYS { one.max(two) } else { one + two });
+                    let at = k * lanes + lane.lane();
+                    let (one, two) = (lane.get(best, at), lane.get(best, at + half));
+                    lane.put(best, at, if k < KEYS { one.max(two) } else { one + two });
                 }
             }
         });
         width = half;
     }
-    b.phase(|l| {
-        let words = (l.lane()..GATHERED).step_by(lanes as usize);
-        words.for_each(|k| Extent::tell_word(l, to, (k, l.get(best, k * lanes))));
+    block.phase(|lane| {
+        let words = (lane.lane()..GATHERED).step_by(lanes as usize);
+        words.for_each(|k| Extent::report_word(lane, extents, at, k, lane.get(best, k * lanes)));
     });
 }
 
-/// The extents of things that each have a stretch of `count` items: what a block looks at together is of one as a rule. `which` thing an
-/// item is of; `add` adds it, and its size if it is there for the first time, and says of which thing it is. Each has so many `words`.
+/// The extents of groups, each a contiguous range of the `count` items. A block's items mostly
+/// belong to one group. `which` returns the group of an item. `add` adds an item and returns its
+/// group. Its flag is false for a repeated item, whose size does not count. An extent has `words`
+/// words.
 pub fn of_each<B: Block>(
-    b: &mut B,
-    (extents, words, count): (Span<u64>, u32, u32),
+    block: &mut B,
+    extents: Span<u64>,
+    words: u32,
+    count: u32,
     which: impl Fn(&B, u32) -> u32,
-    add: impl Fn(&B::Lane, &mut Extent, (u32, bool)) -> u32,
+    add: impl Fn(&B::Lane, &mut Extent, u32, bool) -> u32,
 ) {
-    let (best, lanes) = (gathered(b), b.lanes());
-    let mut first = b.block() * lanes;
+    let (best, lanes) = (gathered(block), block.lanes());
+    let mut first = block.block() * lanes;
     while first < count {
         let last = (count - 1).min(first + lanes - 1);
-        let [from, to] = [first, last].map(|i| which(b, i));
-        b.phase(|l| {
-            let i = first + l.lane();
+        let [from, to] = [first, last].map(|i| which(block, i));
+        block.phase(|lane| {
+            let i = first + lane.lane();
             let mut extent = Extent::NONE;
             // Beyond the end the last one, again: it changes no maximum.
-            let of = add(l, &mut extent, (i.min(last), i <= last));
+            let of = add(lane, &mut extent, i.min(last), i <= last);
             if from == to {
-                extent.put(l, lanes, best);
+                extent.put(lane, lanes, best);
             } else {
-                extent.tell(l, (extents, words * of));
+                extent.report(lane, extents, words * of);
             }
         });
         if from == to {
-            tell_together(b, best, (extents, words * from));
+            report_together(block, best, extents, words * from);
         }
-        first = first.saturating_add(b.blocks() * lanes);
+        first = first.saturating_add(block.blocks() * lanes);
     }
 }
 
@@ -177,7 +186,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Of the box with these keys.
+    /// The grid of the box with these keys.
     #[inline(always)]
     pub fn new(keys: [u64; KEYS as usize], bits: u32) -> Grid {
         let (lo, sides) = sides(keys);
@@ -201,13 +210,13 @@ pub fn sides(keys: [u64; KEYS as usize]) -> ([f64; 3], [f64; 3]) {
     (lo, [0, 1, 2].map(|k| ordered::number(keys[k]) - lo[k]))
 }
 
-/// The keys of a box at a place of `extents`, by what reads a word.
+/// The keys of a box at a place of `extents`; `read` returns a word.
 #[inline(always)]
 pub fn keys(at: u32, read: impl Fn(u32) -> u64) -> [u64; KEYS as usize] {
     [0, 1, 2, 3, 4, 5].map(|k| read(at + k))
 }
 
-/// From which exponent on a body's triangles are outsized, by what reads a word of its extent.
+/// The least exponent of a body's outsized triangles; `read` returns a word of its extent.
 #[inline(always)]
 pub fn outsized_from(at: u32, read: impl Fn(u32) -> u64) -> u64 {
     read(at + EXPONENTS) / read(at + SIZED).max(1) + ABOVE
@@ -215,10 +224,6 @@ pub fn outsized_from(at: u32, read: impl Fn(u32) -> u64) -> u64 {
 
 /// Whether a triangle is.
 #[inline(always)]
-pub fn is_outsized<R: Real, L: Lane>(
-    l: &L,
-    mesh: (&Positions<R>, Span<[u32; 3]>),
-    (triangle, from): (u32, u64),
-) -> bool {
-    exponent(corners(l, mesh, triangle)) >= from
+pub fn is_outsized<R: Real, L: Lane>(lane: &L, mesh: Mesh<R>, triangle: u32, from: u64) -> bool {
+    exponent(corners(lane, mesh, triangle)) >= from
 }

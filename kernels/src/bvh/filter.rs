@@ -1,30 +1,32 @@
-//! Which pairs of nodes are asked at all: collision filters of bodies, as far up the tree as all below a node share one.
+//! Collision filters of bodies on nodes: the pairs of nodes that are allowed. A node has the filter
+//! of the bodies below it, as far as they share one.
 //!
-//! Triangles that share a vertex are no candidates, unless a query keeps adjacent pairs. A vertex of many faces is a
-//! *hub*, and each of its triangles names at most one hub among its corners. Two nodes below which all triangles name
-//! the same hub have no pair, so `n` faces round one hub cost `n` tests, not `n²`. A query that keeps adjacent pairs
-//! has no hubs.
+//! Triangles that share a vertex are no candidates, unless a query keeps adjacent pairs. A vertex
+//! of many faces is a *hub*. Each of its triangles names at most one hub among its corners. Two
+//! nodes whose triangles all name the same hub have no pair. So `n` faces round one hub cost `n`
+//! tests, not `n²`. A query that keeps adjacent pairs has no hubs.
 
 use crate::abi::{BodyRecord, EVERY, FilterArgs, MIXED, NodeFilter, SELF_CONTACT};
 use crate::exec::Lane;
 
 impl FilterArgs {
-    /// The filter of a node; that of a body tested against itself where the scene has no filters.
+    /// The filter of a node; that of a body tested against itself if the scene has no filters.
     #[inline(always)]
-    pub fn of<L: Lane>(&self, l: &L, node: u32) -> NodeFilter {
+    pub fn of<L: Lane>(&self, lane: &L, node: u32) -> NodeFilter {
         if self.nodes.is_empty() {
             NodeFilter { who: SELF_CONTACT, ..NodeFilter::default() }
         } else {
-            l.read(self.nodes, node)
+            lane.read(self.nodes, node)
         }
     }
 
-    /// Whether something below one node may be asked about something below the other. Two bodies must be of one environment,
-    /// or one of every, and each in a group that the other meets; a body meets itself where it says so, whatever its groups.
-    /// What it refuses for two nodes it refuses for all below them: environments are ranges of leaves, of which those below a
-    /// node are some, and a hub of a node is one of all below it.
+    /// Whether triangles below one node may meet triangles below the other. Two bodies must share
+    /// an environment, or one is in every environment. Each must be in a group that the other
+    /// meets. A body meets itself by its own flag, whatever its groups. A refusal for two nodes
+    /// holds for all below them: environments are ranges of leaves, and a hub of a node is one of
+    /// all below it.
     #[inline(always)]
-    pub fn allows<L: Lane>(&self, l: &L, p: NodeFilter, q: NodeFilter) -> bool {
+    pub fn allows<L: Lane>(&self, lane: &L, p: NodeFilter, q: NodeFilter) -> bool {
         if self.nodes.is_empty() {
             return true;
         }
@@ -41,7 +43,7 @@ impl FilterArgs {
         if !together | mixed | self.bodies.is_empty() {
             return together;
         }
-        let [p, q] = [p, q].map(|filter| l.read(self.bodies, filter.who & NodeFilter::NUMBER));
+        let [p, q] = [p, q].map(|filter| lane.read(self.bodies, filter.who & NodeFilter::NUMBER));
         (p.group & q.mask != 0) & (q.group & p.mask != 0)
     }
 }
@@ -53,21 +55,21 @@ impl NodeFilter {
         if self.who & MIXED != 0 { self.who & NodeFilter::NUMBER } else { self.last }
     }
 
-    /// Whether two triangles below it may meet: of several bodies, or of one that is tested against itself, without a
-    /// common hub.
+    /// Whether two triangles below it may meet: of several bodies, or of one that is tested against
+    /// itself, without a common hub.
     #[inline(always)]
     pub fn meets_itself(self) -> bool {
         (self.hub == 0) & (self.who & (MIXED | SELF_CONTACT) != 0)
     }
 
-    /// Of a leaf of a body, and of its hub, as [`NodeFilter::hub`] has it.
+    /// The filter of a leaf of a body with this hub, see [`NodeFilter::hub`].
     #[inline]
     pub fn leaf(body: u32, record: &BodyRecord, hub: u32) -> NodeFilter {
         let own = if record.self_contact != 0 { SELF_CONTACT } else { 0 };
         NodeFilter { who: body | own, last: record.environment, hub, pad: 0 }
     }
 
-    /// Of a node above both.
+    /// The filter of a node above both.
     #[inline]
     pub fn above(self, other: NodeFilter) -> NodeFilter {
         let hub = if self.hub == other.hub { self.hub } else { 0 };
@@ -80,8 +82,8 @@ impl NodeFilter {
     }
 }
 
-/// Which of `count` things that lie one behind the other, at least one, has `i`: the last that begins at or before it. The
-/// first begins at 0.
+/// The number of the group that has item `i`, of `count` ≥ 1 contiguous groups: the last that
+/// begins at or before `i`. The first begins at 0.
 #[inline]
 pub fn holder(count: u64, i: u32, begin: impl Fn(u32) -> u32) -> u32 {
     let (mut low, mut high) = (0, count as u32);

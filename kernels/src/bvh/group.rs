@@ -5,17 +5,18 @@ use crate::bv::{Axes, Points, Volume};
 use crate::exec::Lane;
 use crate::math::{Real, Vec3};
 
-/// Whether the volume of an inner node is fitted: then no refit touches it. `firsts` has the first leaf of each pair.
+/// Whether the volume of an inner node is fitted: then no refit touches it. `firsts` has the first
+/// leaf of each pair.
 #[inline(always)]
-pub fn is_fitted<V: Volume, L: Lane>(l: &L, firsts: Span<u32>, link: Link, axes: Axes) -> bool {
+pub fn is_fitted<V: Volume, L: Lane>(lane: &L, firsts: Span<u32>, link: Link, axes: Axes) -> bool {
     let most = V::group(axes);
-    most > 0 && link.last - l.read(firsts, link.link / 2) < most
+    most > 0 && link.last - lane.read(firsts, link.link / 2) < most
 }
 
-/// The corners of the triangles of neighbouring leaves: leaf by leaf, each corner at t = 0 and, when there are two
-/// frames, at t = 1.
+/// The corners of the triangles of neighbouring leaves: leaf by leaf, each corner at t = 0 and,
+/// when there are two frames, at t = 1.
 pub struct GroupPoints<'a, R: Real, L> {
-    /// Who reads.
+    /// The lane that reads.
     pub lane: &'a L,
     /// Positions.
     pub frames: Positions<R>,

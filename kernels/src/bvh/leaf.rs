@@ -5,30 +5,31 @@ use crate::bv::Volume;
 use crate::exec::Lane;
 use crate::math::Real;
 
-/// Around a triangle, at every t in [0, 1] when there are two frames, and around what is within `margin` of it. Rounded
-/// outward.
+/// Around a triangle and all points within `margin` of it. With two frames: at every t in [0, 1].
+/// Rounded outward.
 #[inline(always)]
 pub fn volume<R: Real, V: Volume, L: Lane>(
-    l: &L,
+    lane: &L,
     frames: &Positions<R>,
     faces: Span<[u32; 3]>,
-    (triangle, margin): (u32, f32),
+    triangle: u32,
+    margin: f32,
 ) -> V {
-    of_corners(l, frames, l.read(faces, triangle), margin)
+    of_corners(lane, frames, lane.read(faces, triangle), margin)
 }
 
 /// The same around three vertices.
 #[inline(always)]
 pub fn of_corners<R: Real, V: Volume, L: Lane>(
-    l: &L,
+    lane: &L,
     frames: &Positions<R>,
     face: [u32; 3],
     margin: f32,
 ) -> V {
     let volume = if frames.moving.is_empty() {
-        V::still(face.map(|v| l.read(frames.still, v).at))
+        V::still(face.map(|v| lane.read(frames.still, v).at))
     } else {
-        let ends = face.map(|v| l.read(frames.moving, v));
+        let ends = face.map(|v| lane.read(frames.moving, v));
         V::moving(ends.map(|v| v.t0.at), ends.map(|v| v.t1.at))
     };
     volume.near(margin)

@@ -1,4 +1,4 @@
-//! The level-ordered tree: what holds of it, and a checker that names what does not.
+//! The level-ordered tree: its invariants, and a checker that names the broken one.
 
 pub mod centres;
 pub mod filter;
@@ -15,12 +15,13 @@ use crate::bv::{Axes, Volume};
 /// Bits of a triangle's Morton code: four passes of the radix sort.
 pub const CODE_BITS: u32 = 32;
 
-/// Levels that a tree can have: a path from the root splits on one of the bits of the code or, between equal codes, on one
-/// of the 32 bits of the index, each at most once; and the leaves.
+/// Most levels of a tree. A path from the root splits on each bit of the code at most once. Between
+/// equal codes it splits on each of the 32 bits of the index at most once. Leaves add one level.
 pub const MAX_LEVELS: u32 = CODE_BITS + 32 + 1;
 
-/// Leaves of the largest subtree of a treelet, and of the chunk in which a treelet's subtrees begin; so a treelet has
-/// fewer than twice as many. As many as a block has lanes; the volumes of 512 leaves, 56 bytes each, fit on chip.
+/// Leaves of the largest subtree of a treelet, and of the chunk in which a treelet's subtrees
+/// begin. So a treelet has fewer than twice as many. It equals the lanes of a block. The volumes of
+/// 512 leaves, 56 bytes each, fit on chip.
 pub const TREELET: u32 = 256;
 const _: () = assert!(TREELET <= 512, "a merge counts slots with ten bits");
 
@@ -44,7 +45,8 @@ pub enum Violation {
         /// The node.
         node: u32,
     },
-    /// T4: a leaf's node is not where `leaf_nodes` says, or its triangle is not one of the body's, or comes twice.
+    /// T4: a leaf's node is not the one in `leaf_nodes`, or its triangle is not the body's, or
+    /// appears twice.
     Leaf {
         /// The leaf, in leaf order.
         leaf: u32,
@@ -59,12 +61,13 @@ pub enum Violation {
         /// The parent.
         node: u32,
     },
-    /// T8: a node does not tell whose triangles lie below it.
+    /// T8: a node's filter is not that of the triangles below it.
     Filter {
         /// The node.
         node: u32,
     },
-    /// A node does not name the hub of all triangles below it, or its rim does not hold their opposite edges.
+    /// A node does not name the hub of all triangles below it. Or its rim misses one of their
+    /// opposite edges.
     Rim {
         /// The node.
         node: u32,
@@ -73,10 +76,11 @@ pub enum Violation {
     Outside {
         /// The triangle's leaf.
         leaf: u32,
-        /// Whose volume: 0 its own, 1 its tile's, and so on upward.
+        /// The volume's level: 0 its own, 1 its tile's, and so on upward.
         level: u32,
     },
-    /// T7: a node's volume is not the one fitted to the points below it, a leaf's to its triangle, or its links are not the tree's.
+    /// T7: a node's volume is not the one fitted to the points below it (a leaf's: to its
+    /// triangle), or its links are not the tree's.
     Fit {
         /// The node.
         node: u32,
@@ -90,7 +94,7 @@ pub struct Tree<'a> {
     pub links: &'a [Link],
     /// The parent of each pair of siblings.
     pub pair_parents: &'a [u32],
-    /// Number of levels, then where each begins, then where the last ends.
+    /// Number of levels, then the start of each, then the end of the last.
     pub levels: &'a [u32],
     /// Each leaf's node.
     pub leaf_nodes: &'a [u32],
@@ -100,8 +104,8 @@ pub struct Tree<'a> {
     pub place: &'a dyn Fn(u32) -> Option<usize>,
 }
 
-/// Checks T1 to T5 (see [`crate::stage::construct::tree`]). `seen` is one false flag for each triangle of the bodies.
-/// Cost: linear.
+/// Checks T1 to T5 (see [`crate::stage::construct::tree`]). `seen` is one false flag for each
+/// triangle of the bodies. Cost: linear.
 ///
 /// # Errors
 /// The first violation.
@@ -158,7 +162,8 @@ pub fn check(tree: &Tree, seen: &mut [bool]) -> Result<(), Violation> {
     }
 }
 
-/// Checks T8 on a sound tree: `filters` has as many elements as `links`; `leaf` tells whose a triangle is. Cost: linear.
+/// Checks T8 on a sound tree: `filters` has as many elements as `links`; `leaf` returns the filter
+/// of a triangle. Cost: linear.
 ///
 /// # Errors
 /// The first violation, from the last node to the root.
@@ -181,9 +186,10 @@ pub fn check_filters(
     Ok(())
 }
 
-/// Checks T6 and T7 on a sound tree, from its root on. `nodes` has as many elements as `links`; `leaf` tells the volume of a leaf from its
-/// triangle, `fitted` that of an inner node from its first and last leaf, if it is not a merge. Cost: a merge or a fit and a
-/// walk down a node.
+/// Checks T6 and T7 on a sound tree, from its root on. `nodes` has as many elements as `links`.
+/// `leaf` returns the volume of a leaf from its triangle. `fitted` returns that of an inner node
+/// from its first and last leaf, or `None` for a merge. Cost: a merge or a fit and a walk down a
+/// node.
 ///
 /// # Errors
 /// The first violation.

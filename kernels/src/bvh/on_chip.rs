@@ -3,7 +3,7 @@
 use crate::bv::{Axes, Volume};
 use crate::exec::{Block, Lane, Shared, Slot};
 
-/// Places for volumes, word by word, so that neighbours lie in different banks.
+/// Places for volumes, stored word by word, so that neighbours are in different banks.
 #[derive(Clone, Copy)]
 pub struct OnChip {
     words: Shared<[u32; 2]>,
@@ -18,48 +18,50 @@ impl OnChip {
 
     /// Takes `count` places.
     #[inline(always)]
-    pub fn new<V: Volume, B: Block>(b: &mut B, count: u32) -> OnChip {
-        OnChip { words: b.shared(OnChip::bytes::<V>(count) / 8), count }
+    pub fn new<V: Volume, B: Block>(block: &mut B, count: u32) -> OnChip {
+        OnChip { words: block.shared(OnChip::bytes::<V>(count) / 8), count }
     }
 
     /// The volume at a place.
     #[inline(always)]
-    pub fn get<V: Volume, L: Lane>(self, l: &L, place: u32) -> V {
+    pub fn get<V: Volume, L: Lane>(self, lane: &L, place: u32) -> V {
         let mut volume = V::zeroed();
         let words: &mut [[u32; 2]] = bytemuck::cast_slice_mut(core::slice::from_mut(&mut volume));
         for (i, word) in words.iter_mut().enumerate() {
-            *word = l.get(self.words, i as u32 * self.count + place);
+            *word = lane.get(self.words, i as u32 * self.count + place);
         }
         volume
     }
 
     /// Puts a volume at a place.
     #[inline(always)]
-    pub fn put<V: Volume, L: Lane>(self, l: &L, place: u32, volume: V) {
+    pub fn put<V: Volume, L: Lane>(self, lane: &L, place: u32, volume: V) {
         let words: &[[u32; 2]] = bytemuck::cast_slice(core::slice::from_ref(&volume));
         for (i, word) in words.iter().enumerate() {
-            l.put(self.words, i as u32 * self.count + place, *word);
+            lane.put(self.words, i as u32 * self.count + place, *word);
         }
     }
 
-    /// Merges runs of volumes, each lane's in its own place and in `volumes`: of every `each` that are `apart` lanes from each other the
-    /// first one's becomes the merge of all, those half of them further on first.
+    /// Merges runs of volumes, each lane's in its own place and in `volumes`. A run is `each`
+    /// lanes, `apart` lanes from one to the next. The first one's volume becomes the merge of all;
+    /// the first merge spans half a run.
     pub fn merge<V: Volume, B: Block>(
         self,
-        b: &mut B,
+        block: &mut B,
         volumes: &mut B::Slot<V>,
-        (each, apart): (u32, u32),
+        each: u32,
+        apart: u32,
         axes: Axes,
     ) {
         let mut width = each / 2;
         while width > 0 {
-            b.phase(|l| {
-                if l.lane() % (each * apart) < width * apart && l.lane().is_multiple_of(apart) {
-                    let merged = volumes.of(l).merge(&self.get(l, l.lane() + width * apart), axes);
-                    *volumes.of(l) = merged;
-                    self.put(l, l.lane(), merged);
+            block.phase(|lane| {
+                if lane.lane() % (each * apart) < width * apart && lane.lane().is_multiple_of(apart) {
+                    let merged = volumes.of(lane).merge(&self.get(lane, lane.lane() + width * apart), axes);
+                    *volumes.of(lane) = merged;
+                    self.put(lane, lane.lane(), merged);
                 }
-                l.meet();
+                lane.meet();
             });
             width /= 2;
         }

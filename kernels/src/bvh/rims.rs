@@ -6,9 +6,10 @@ use crate::abi::Node;
 use crate::bv::Contain;
 use crate::math::Vec3;
 
-/// Checks that each node of sound tiles names the hub that all triangles below it name, or none; and that its rim holds,
-/// exactly, every corner of these that is no hub, which moves between its `ends`. `face` has the corners of a triangle, and
-/// its hub as [`crate::abi::NodeFilter::hub`] has it. Cost: linear, levels times.
+/// Checks the hubs and rims of sound tiles. Each node names the hub that all triangles below it
+/// name, or none. Its rim holds, exactly, every other corner of these, moving between its `ends`.
+/// `face` returns the corners of a triangle and its hub, see [`crate::abi::NodeFilter::hub`]. Cost:
+/// linear, levels times.
 ///
 /// # Errors
 /// The first violation, from the first tile on.
@@ -29,7 +30,7 @@ pub fn check<V: Contain>(
             let end = (i + 1).saturating_mul(each).min(triangles[part]);
             let faces = || (i * each..end).map(|k| face(leaves[(first + k) as usize].triangle()));
             let (_, hub) = faces().next().ok_or(Violation::Levels)?;
-            // What is static is not tested against itself.
+            // Static tiles are not tested against themselves.
             let is_one = part == 0 && faces().all(|(_, other)| other == hub);
             let held = |v: u32| {
                 let [t0, t1] = ends(v);

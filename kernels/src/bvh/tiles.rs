@@ -1,4 +1,5 @@
-//! Tiles and the nodes above them: where each lies, what holds of them, and a checker that names what does not.
+//! Tiles and the nodes above them: their layout, their invariants, and a checker that names the
+//! broken one.
 
 use super::Violation;
 use crate::abi::{LEAF, NONE, Node, NodeFilter};
@@ -11,8 +12,8 @@ pub const TILE: u32 = 32;
 pub const FAN: u32 = 16;
 /// Levels at most: 2^32 triangles have 2^27 tiles, and the top level at most [`MOST_TOPS`] nodes.
 pub const MOST_LEVELS: u32 = 6;
-/// Nodes of the top level at most, unless there are two levels: a warp looks at all of them, 32 at once (measured,
-/// `benches/NOTES.md`).
+/// Most nodes of the top level, unless there are two levels. A warp tests all of them, 32 at once
+/// (measured, `benches/NOTES.md`).
 pub const MOST_TOPS: u32 = 1024;
 const FAN_BITS: u32 = FAN.trailing_zeros();
 const _: () = assert!(FAN.is_power_of_two() && MOST_TOPS << (FAN_BITS * (MOST_LEVELS - 1)) >= 1 << 27);
@@ -22,13 +23,13 @@ pub const fn below(level: u32) -> u32 {
     1 << (FAN_BITS * level)
 }
 
-/// Where tiles and the nodes above them lie: level behind level, tiles first, the nodes of a level as their tiles. Tiles of what moves
-/// come first, those of what is static behind them, below other nodes of every level.
+/// Layout of tiles and of the nodes above them: level by level, tiles first. Within a level moving
+/// tiles come first, then static ones. The two have separate nodes on every level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Levels {
     /// How many levels there are: at least 2, the tiles one of them.
     pub count: u32,
-    /// Nodes of the top level above what moves, and above what is static.
+    /// Nodes of the top level above moving tiles, and above static ones.
     pub tops: [u32; 2],
 }
 
@@ -42,7 +43,7 @@ pub struct Part {
 }
 
 impl Levels {
-    /// Of so many triangles of what moves, and of what is static.
+    /// The levels for so many moving and so many static triangles.
     pub fn of(triangles: [u32; 2]) -> Levels {
         let mut count = 2;
         loop {
@@ -84,26 +85,27 @@ impl Levels {
 /// Tiles on the host, to be checked.
 #[derive(Clone, Copy)]
 pub struct Tiles<'a, V> {
-    /// Where they lie.
+    /// The layout.
     pub levels: Levels,
-    /// Triangles of what moves, and of what is static.
+    /// Moving triangles, and static ones.
     pub triangles: [u32; 2],
     /// Places for triangles, tile by tile.
     pub leaves: &'a [Node<V>],
     /// The nodes.
     pub nodes: &'a [Node<V>],
-    /// Whose triangles lie below each; empty where that does not matter.
+    /// The filter of the triangles below each node; empty without filters.
     pub filters: &'a [NodeFilter],
     /// Which axes merged boxes take.
     pub axes: Axes,
 }
 
-/// Checks that each triangle has one place, in its part, that the triangles' volumes are what `leaf` says, every other the merge of those
-/// below it, and the same of filters, of which `whose` tells that of a triangle. `place` tells in which part a triangle is, and which of
-/// its triangles; `seen` has a false flag for each. Cost: linear.
+/// Checks tiles. Each triangle has one place, in its part. Volumes of triangles are those of
+/// `leaf`; every other is the merge of those below it. Filters likewise, with `whose` for a
+/// triangle's. `place` returns the part of a triangle and its number there. `seen` has a false flag
+/// for each triangle. Cost: linear.
 ///
 /// # Errors
-/// The first violation, from the first leaf on; nodes and leaves are counted as they lie.
+/// The first violation, from the first leaf on; nodes and leaves are counted in memory order.
 pub fn check<V: Volume>(
     tiles: &Tiles<V>,
     place: impl Fn(u32) -> Option<(usize, usize)>,
@@ -145,13 +147,14 @@ pub fn check<V: Volume>(
         }
     }
     (0..levels.count).try_for_each(|level| {
-        check_level(tiles, (level, 0), &whose)?;
-        check_level(tiles, (level, 1), &whose)
+        check_level(tiles, level, 0, &whose)?;
+        check_level(tiles, level, 1, &whose)
     })
 }
 
-/// Checks that the volume of every triangle, and of every node above it, holds its three corners, which move from the first to the second
-/// of their `ends`: exactly, by arithmetic that no builder has. Cost: linear, levels times.
+/// Checks that the volume of every triangle, and of every node above it, holds its three corners. A
+/// corner moves from the first to the second of its `ends`. Exact, by arithmetic that no builder
+/// has. Cost: linear, levels times.
 ///
 /// # Errors
 /// The first violation, from the first leaf and its own volume on.
@@ -181,7 +184,8 @@ pub fn check_held<V: Contain>(
 /// Checks the nodes of a level above a part.
 fn check_level<V: Volume>(
     tiles: &Tiles<V>,
-    (level, at): (u32, usize),
+    level: u32,
+    at: usize,
     whose: &impl Fn(u32) -> NodeFilter,
 ) -> Result<(), Violation> {
     let Tiles { levels, triangles, leaves, nodes, filters, axes } = *tiles;

@@ -10,7 +10,7 @@ pub struct Name {
 }
 
 impl Name {
-    /// Of parts, one behind the other.
+    /// The concatenation of the parts.
     pub const fn of(parts: &[&str]) -> Name {
         let mut name = Name { bytes: [0; 64], len: 0 };
         let mut part = 0;
@@ -34,12 +34,12 @@ impl Name {
     }
 }
 
-/// What names call a precision.
+/// The suffix of a precision in names.
 pub const fn precision<R: Real>() -> &'static str {
     if size_of::<R>() == 4 { "_f32" } else { "_f64" }
 }
 
-/// Where a kernel of that name is in the table.
+/// The place in the table of a kernel with that name.
 pub const fn place(name: &str) -> Option<usize> {
     let mut place = 0;
     while place < TABLE.len() {

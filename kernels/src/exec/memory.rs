@@ -3,7 +3,7 @@
 use bytemuck::Pod;
 use core::marker::PhantomData;
 
-/// What shared memory holds: whole words of four or eight bytes.
+/// Elements of shared memory: whole words of four or eight bytes.
 pub trait Word: Pod {}
 impl Word for u32 {}
 impl Word for u64 {}
@@ -33,8 +33,8 @@ impl<T> Shared<T> {
     }
 }
 
-/// Words of four bytes of a `T` that lanes give and take. What is not made of whole aligned words does not compile:
-/// call it in a `const` block.
+/// Words of four bytes of a `T` that blocks exchange. A type not made of whole aligned words does
+/// not compile: call it in a `const` block.
 pub const fn whole_words<T>() -> usize {
     assert!(align_of::<T>() >= 4, "lanes give and take whole words");
     size_of::<T>() / 4

@@ -1,20 +1,26 @@
-//! The machine as a kernel sees it: blocks of lanes, memory, barriers.
+//! The machine, for a kernel: blocks of lanes, memory, barriers.
 //!
-//! A kernel is a plain function over a [`Block`]. It is a sequence of *phases*: the body of a phase runs once for
-//! each lane, and the end of a phase is the block's barrier, so no lane can skip one. Code between phases is the
-//! same for all lanes (the GPU runs it in every lane, the emulator once), so it can only know uniform values.
-//! What a lane must remember from one phase to the next sits in a [`Slot`] (a register on the GPU, an array on
-//! the CPU) or in [`Shared`] words.
+//! A kernel is a plain function over a [`Block`], a sequence of *phases*. The body of a phase runs
+//! once for each lane. The end of a phase is the block's barrier, so no lane can skip one. Code
+//! between phases is the same for all lanes. The GPU runs it in every lane, the emulator once. So
+//! it has uniform values only. A value of a lane that lives across phases is in a [`Slot`] or in
+//! [`Shared`] words. A slot is a register on the GPU and an array on the CPU.
 //!
-//! A barrier for the whole grid is the same idea one level up: the end of the launch.
+//! A barrier for the whole grid is the same one level up: the end of the launch.
 //!
-//! Blocks of one launch talk to each other by [`Lane::store_relaxed`], [`Lane::load_relaxed`] and atomics, ordered by [`Lane::fence`]
-//! or [`Block::ticket`]. **The law of giving:** what a lane gives before a `fence` and then an atomic on a flag, a lane
-//! that saw the flag's new value by an atomic and then called `fence` may take. A barrier passes this on within a block, at
-//! both ends: what its lanes gave in earlier phases, and what its lanes may take in later ones. **The law of waiting:** a lane may
-//! wait (look at a flag by [`Lane::fetch_load`] or [`Lane::compare_exchange`] until it changes) only for what a lane
-//! of which an atomic was seen, a reservation for example, does further on in the same phase, without waiting itself.
-//! Nobody waits for the end of a phase, nor for a block that may not have started: blocks may run one after the other.
+//! Blocks of one launch communicate by [`Lane::store_relaxed`], [`Lane::load_relaxed`] and atomics,
+//! ordered by [`Lane::fence`] or [`Block::ticket`].
+//!
+//! **The law of giving.** A lane stores values, then calls `fence`, then changes a flag by an
+//! atomic. Another lane reads the new flag by an atomic, then calls `fence`. Now it may load these
+//! values. A barrier extends this within a block at both ends: to values stored by its lanes in
+//! earlier phases, and to loads by its lanes in later ones.
+//!
+//! **The law of waiting.** To wait is to poll a flag by [`Lane::fetch_load`] or
+//! [`Lane::compare_exchange`] until it changes. A lane may wait only for another lane's later step
+//! in the same phase. Before it waits, it must have read an atomic of that lane, a reservation for
+//! example. That step must not wait itself. No lane waits for the end of a phase, nor for a block
+//! that may not have started: blocks may run in sequence.
 
 mod memory;
 mod output;
@@ -27,12 +33,13 @@ use crate::abi::Span;
 use bytemuck::Pod;
 use core::mem::MaybeUninit;
 
-/// One lane of a block, inside a phase: its number and its hands on memory.
+/// One lane of a block, inside a phase: its number and its access to memory.
 ///
-/// Memory is read and written by value; nobody holds a reference to what another lane can reach. Plain accesses
-/// to one word by two lanes, one of them writing, must lie in different phases (one block) or different launches
-/// (two blocks); atomic accesses, relaxed stores and loads may meet each other, but not plain ones of which one writes. The
-/// emulator's sanitizer checks these rules and all bounds.
+/// Memory is read and written by value; no reference to memory of another lane exists. Suppose two
+/// lanes access one word by plain accesses, and one of them writes. Then the accesses must be in
+/// different phases (one block) or different launches (two blocks). Atomic accesses, relaxed stores
+/// and relaxed loads may meet each other. One of them and a plain access may meet if neither
+/// writes. The emulator's sanitizer checks these rules and all bounds.
 pub trait Lane {
     /// The lane's number in its block, from 0.
     fn lane(&self) -> u32;
@@ -41,8 +48,8 @@ pub trait Lane {
 
     /// Element `i` of device memory.
     fn read<T: Pod>(&self, span: Span<T>, i: u32) -> T;
-    /// Element `i` of device memory will be read soon. Where lanes run one after another their memory can be on its way before
-    /// they come to it; nothing to a GPU.
+    /// Prefetches element `i` of device memory. It helps if lanes run in sequence; it does nothing
+    /// on a GPU.
     #[inline(always)]
     fn expect<T: Pod>(&self, _span: Span<T>, _i: u32) {}
     /// Sets element `i` of device memory.
@@ -57,28 +64,34 @@ pub trait Lane {
     fn fetch_load(&self, span: Span<u64>, i: u32) -> u64;
     /// Atomically sets device memory; the value before.
     fn exchange(&self, span: Span<u64>, i: u32, value: u64) -> u64;
-    /// Atomically sets device memory to `new` if it holds `current`; the value before. It never fails without cause.
+    /// Atomically sets device memory to `new` if it holds `current`; the value before. It never
+    /// fails without cause.
     fn compare_exchange(&self, span: Span<u64>, i: u32, current: u64, new: u64) -> u64;
 
-    /// Sets element `i` of device memory so that other blocks of this launch may [read](Lane::load_relaxed) it, under the law
-    /// of relaxed stores (see the [module](self)). Orders nothing by itself. Two of an element may meet, and a load may
-    /// meet a store: then pieces of `T`'s alignment, of 8 bytes at most, are whole, and not all need be of one value.
-    /// `T` is made of [whole words](whole_words), and an element is given and taken as the same `T`.
+    /// Sets element `i` of device memory for other blocks of this launch to
+    /// [read](Lane::load_relaxed). The law of giving applies (see the [module](self)). Orders
+    /// nothing by itself. Two stores of an element may meet, and a load may meet a store. Then each
+    /// piece of `T`'s alignment, of 8 bytes at most, is whole, but pieces may be of different
+    /// values. `T` is made of [whole words](whole_words), and an element is stored and loaded as
+    /// the same `T`.
     fn store_relaxed<T: Pod>(&self, span: Span<T>, i: u32, value: T);
     /// Element `i` of device memory as another block of this launch gave it: read afresh each time.
     fn load_relaxed<T: Pod>(&self, span: Span<T>, i: u32) -> T;
-    /// Orders what this lane gave, took and did by atomics before it against what it does after, as seen by all lanes of
-    /// the launch. Atomics by themselves order nothing. Plain accesses of other blocks stay races all the same.
+    /// Orders all stores, loads and atomics of this lane before it against those after it. The
+    /// order holds for all lanes of the launch. Atomics by themselves order nothing. Plain accesses
+    /// of other blocks remain races.
     fn fence(&self);
 
-    /// True if `mine` is; and it may be true if it is not, while another lane's is. On a GPU the lanes of a warp meet here:
-    /// those that took different ways go on side by side, and leave a loop together of which this is the condition. All
-    /// lanes of a warp must come. Nothing but speed may hang on it: lanes that run one after another know only their own.
+    /// True if `mine` is; it may also be true while another lane's is. On a GPU the lanes of a warp
+    /// meet here. Lanes that took different paths continue side by side, and leave together a loop
+    /// with this condition. All lanes of a warp must come. Only speed may depend on it: lanes that
+    /// run in sequence have only their own value.
     fn any(&self, mine: bool) -> bool;
 
-    /// The end of a phase's body: on a GPU the lanes of a warp come together here, and the assembler cannot leave it out. For
-    /// bodies whose loops lanes leave at different turns: behind these it believes that they are together, although they are
-    /// not (`.ci/lanes.py` finds such places). All lanes of a warp must come. Lanes that run one after another need not.
+    /// The end of a phase's body: on a GPU the lanes of a warp come together here, and the
+    /// assembler cannot leave it out. For bodies whose loops lanes leave at different turns: behind
+    /// these it believes that they are together, although they are not (`.ci/lanes.py` finds such
+    /// places). All lanes of a warp must come. Lanes that run one after another need not.
     fn meet(&self) {}
 
     /// Word `i` of shared memory.
@@ -103,15 +116,15 @@ pub trait Slot<T, L> {
 
 /// A function of a row of numbers, without memory.
 ///
-/// A GPU's lanes each apply it to their row. A CPU collects rows first and asks for many of them at once, in a loop that its
-/// compiler can turn into vectors: so everything that [`RowMap::at_once`] calls is inlined, arrays are filled by index, and no
-/// branch matters.
+/// Each lane of a GPU applies it to its row. A CPU collects rows first and maps many at once, in a
+/// loop that its compiler can vectorize. So everything that [`RowMap::at_once`] calls is inlined,
+/// arrays are filled by index, and no branch matters.
 pub trait RowMap {
     /// The number that rows are made of.
     type Number: Pod;
-    /// What is read of memory: a whole number of [`RowMap::Number`]s.
+    /// A row, as read from memory: a whole number of [`RowMap::Number`]s.
     type Row: Pod;
-    /// What becomes of a row, or [`OPEN`] where that takes branches. To be `#[inline(always)]`.
+    /// The result for a row, or [`OPEN`] if that takes branches. To be `#[inline(always)]`.
     fn at_once(&self, row: Self::Row) -> u32;
     /// Whether rows of f64 whose numbers are all f32 are mapped by [`RowMap::single_at_once`].
     const HAS_SINGLES: bool = false;
@@ -120,24 +133,24 @@ pub trait RowMap {
     fn is_single(&self, _: &Self::Row) -> bool {
         false
     }
-    /// What becomes of such a row, with the bits that the same row of f32 has. To be `#[inline(always)]`.
+    /// The result for such a row, with the bits of the same row in f32. To be `#[inline(always)]`.
     #[inline(always)]
     fn single_at_once(&self, row: Self::Row) -> u32 {
         self.at_once(row)
     }
-    /// What becomes of a row.
+    /// The result for a row.
     #[inline(always)]
     fn apply(&self, row: Self::Row) -> u32 {
         if Self::HAS_SINGLES && self.is_single(&row) { self.single_at_once(row) } else { self.at_once(row) }
     }
 }
 
-/// What becomes of a row is still open.
+/// The result for a row is still open.
 pub const OPEN: u32 = u32::MAX;
 
 /// A block of lanes: the phases of a kernel and the steps that its lanes take together.
 pub trait Block {
-    /// What a phase's body is given.
+    /// The argument of a phase's body.
     type Lane: Lane;
     /// A value of each lane.
     type Slot<T: Copy>: Slot<T, Self::Lane>;
@@ -155,12 +168,12 @@ pub trait Block {
     fn slot<T: Copy>(&self, init: T) -> Self::Slot<T>;
     /// Gives each lane words that live across phases and begin unwritten.
     fn words<const N: usize>(&self) -> Self::Slot<[MaybeUninit<u32>; N]>;
-    /// Runs `body` once for each lane, then waits for all of them.
+    /// Runs `body` once for each lane; returns when all are done.
     fn phase(&mut self, body: impl FnMut(&Self::Lane));
 
-    /// A phase in steps: each lane finds which row it has, or none; gathers it, or leaves it [`OPEN`]; rows are mapped; each
-    /// lane is given what became of its row. Where lanes run one after another, all take a step before the first takes the
-    /// next: memory answers many at once.
+    /// A phase in steps. Each lane finds its row, or none. It gathers the row, or leaves it
+    /// [`OPEN`]. Rows are mapped. Each lane receives the result of its row. If lanes run in
+    /// sequence, all take a step before the first takes the next: so many memory accesses overlap.
     #[inline(always)]
     fn map_rows<M: RowMap, T: Copy>(
         &mut self,
@@ -177,32 +190,39 @@ pub trait Block {
 
     /// A uniform read of device memory, between phases. Nothing in this launch may write it.
     fn load<T: Pod>(&self, span: Span<T>, i: u32) -> T;
-    /// A uniform read of shared memory, between phases; a barrier follows, so that the next phase may write the word.
+    /// A uniform read of shared memory, between phases; a barrier follows, so that the next phase
+    /// may write the word.
     fn peek<T: Word>(&mut self, words: Shared<T>, i: u32) -> T;
 
     /// Whether any lane's value is true.
     fn any(&mut self, values: &mut Self::Slot<bool>) -> bool;
-    /// Replaces each lane's value by the sum of those of the lanes before it; returns the sum of all.
+    /// Replaces each lane's value by the sum of those of the lanes before it; returns the sum of
+    /// all.
     fn scan(&mut self, values: &mut Self::Slot<u32>) -> u32;
     /// [`Block::scan`] of zeros and ones. Cost: two instructions in a block of one warp.
     fn number(&mut self, wishes: &mut Self::Slot<u32>) -> u32 {
         self.scan(wishes)
     }
-    /// Adds `count` to a counter once for the whole block; the value before. No atomic, and 0, where `count` is 0.
+    /// Adds `count` to a counter once for the whole block; the value before. No atomic, and 0, if
+    /// `count` is 0.
     ///
-    /// It orders nothing between blocks, even where each lane has called [`Lane::fence`] in the phase before: a fence
-    /// speaks for the atomics of its own lane, and here only lane 0 has one. [`Block::ticket`] does order.
+    /// It orders nothing between blocks, even if each lane has called [`Lane::fence`] in the phase
+    /// before: a fence speaks for the atomics of its own lane, and here only lane 0 has one.
+    /// [`Block::ticket`] does order.
     fn reserve(&mut self, counter: Span<u64>, i: u32, count: u64) -> u64;
     /// [`Block::reserve`] of two counters, each the first of its span, in the time of one.
     fn reserve_both(&mut self, [one, two]: [Span<u64>; 2], [count, other]: [u64; 2]) -> [u64; 2] {
         [self.reserve(one, 0, count), self.reserve(two, 0, other)]
     }
-    /// Adds one to a counter once for the whole block, and orders it: what all lanes of all blocks that drew smaller
-    /// tickets gave before they drew, the lanes of this block may take. The block that draws the last ticket knows
-    /// that all others are past theirs. Lanes need no fence for it. Cost: an atomic and two fences of one lane.
+    /// Adds one to a counter once for the whole block. It orders the blocks: lanes of this block
+    /// may load what lanes of all blocks stored before they drew smaller tickets. The block with
+    /// the last ticket can rely on all others being past theirs. Lanes need no fence for it. Cost:
+    /// an atomic and two fences of one lane.
     fn ticket(&mut self, counter: Span<u64>, i: u32) -> u64;
-    /// As if the block's `K` digits a lane, in the order of [`striped`], each took `bins[digit]` and added one to it: each
-    /// digit (under [`BINS`]; others take nothing) is replaced by what it took. `scratch` has `BINS * lanes / 32` words.
+    /// Ranks the block's digits, `K` a lane in the order of [`striped`]. The effect is as if each
+    /// digit in turn took `bins[digit]` and added one to it. Each digit is replaced by the value
+    /// that it took. Digits of [`BINS`] and more take nothing. `scratch` has `BINS * lanes / 32`
+    /// words.
     fn ranks<const K: usize>(
         &mut self,
         digits: &mut Self::Slot<[u32; K]>,
@@ -210,9 +230,9 @@ pub trait Block {
         scratch: Shared<u32>,
     );
 
-    /// Room in a list for what the lanes want to append: replaces each lane's wish by the number of entries
-    /// before its own, and returns where the block's entries begin. The counter goes past the end of the list,
-    /// so that its final value is the exact demand.
+    /// Room in a list for the entries that the lanes append: replaces each lane's wish by the
+    /// number of entries before its own, and returns the start of the block's entries. The counter
+    /// goes past the end of the list, so that its final value is the exact demand.
     fn append(&mut self, wishes: &mut Self::Slot<u32>, counter: Span<u64>, i: u32) -> u64 {
         let total = self.scan(wishes);
         self.reserve(counter, i, total as u64)
@@ -224,8 +244,9 @@ pub const BINS: u32 = 256;
 /// Lanes of a warp, on every GPU.
 pub const WARP: u32 = 32;
 
-/// The place of a lane's item `k` among the block's, `each` a lane: warps one after the other, and in a warp all first
-/// items, then all second ones. So a warp's accesses are neighbours, and what it ranks by itself is one stretch.
+/// The place of a lane's item `k` among the block's, `each` a lane: warps one after the other, and
+/// in a warp all first items, then all second ones. So a warp's accesses are neighbours, and the
+/// items that it ranks by itself are contiguous.
 pub const fn striped(lane: u32, lanes: u32, k: u32, each: u32) -> u32 {
     let before = lane / WARP * WARP;
     let width = if lanes - before < WARP { lanes - before } else { WARP };

@@ -7,7 +7,8 @@ use bytemuck::Pod;
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A finite number taken apart: the value is `±mantissa * 2^exponent`. Zero, of either sign, has mantissa 0.
+/// A finite number taken apart: the value is `±mantissa * 2^exponent`. Zero, of either sign, has
+/// mantissa 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Parts {
     /// Below zero. Never set for -0.0.
@@ -18,7 +19,8 @@ pub struct Parts {
     pub exponent: i32,
 }
 
-/// A binary floating-point number: f32 or f64. Arithmetic is IEEE, round to nearest, never contracted.
+/// A binary floating-point number: f32 or f64. Arithmetic is IEEE, round to nearest, never
+/// contracted.
 pub trait Real:
     Pod
     + Send
@@ -41,7 +43,7 @@ pub trait Real:
     /// f64: its exponents spread too far for the middle size of exact integers.
     const WIDE: bool;
 
-    /// The nearest value of this precision (exact where `x` is representable).
+    /// The nearest value of this precision (exact if `x` is representable).
     fn of(x: f64) -> Self;
     /// The value, widened; exact.
     fn wide(self) -> f64;
@@ -51,12 +53,13 @@ pub trait Real:
     fn sign(self) -> u32;
     /// The square root, correctly rounded; of `self >= 0` only.
     fn sqrt(self) -> Self;
-    /// Whether a wide number is one of f32 that f32 can be computed with, [`SINGLE_MOST`] at most: then what is computed of it has the
-    /// bits that f32 positions have. False of f32, which is its own.
+    /// Whether a wide number is one of f32 that f32 can be computed with, [`SINGLE_MOST`] at most:
+    /// then computations give the bits of f32 positions. False of f32, which is its own.
     fn is_single(self) -> bool;
     /// Sign, integer mantissa and exponent; of finite numbers only. Exact, in integer operations.
     fn parts(self) -> Parts;
-    /// `2^k`, exactly; for `k` in the range of normal numbers, elsewhere the nearest end of that range.
+    /// `2^k`, exactly; for `k` in the range of normal numbers, elsewhere the nearest end of that
+    /// range.
     fn pow2(k: i32) -> Self;
     /// The smaller; of finite numbers only.
     #[inline]
@@ -68,7 +71,8 @@ pub trait Real:
     fn max(self, o: Self) -> Self {
         if o > self { o } else { self }
     }
-    /// As [`Real::min`], but of two zeros either, as is quickest on the machine: where nothing hangs on the sign of a zero.
+    /// As [`Real::min`], but of two zeros either one, the faster on the machine. For uses that do
+    /// not depend on the sign of a zero.
     #[inline]
     fn lesser(self, o: Self) -> Self {
         self.min(o)

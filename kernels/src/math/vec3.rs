@@ -4,7 +4,7 @@ use super::Real;
 use bytemuck::{Pod, Zeroable};
 use core::ops::{Add, Index, Mul, Neg, Sub};
 
-/// A point or a vector, as it lies in memory: three scalars, no padding.
+/// A point or a vector, as in memory: three scalars, no padding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(transparent)]
 pub struct Vec3<R>(pub [R; 3]);

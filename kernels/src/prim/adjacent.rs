@@ -1,4 +1,4 @@
-//! Triangles that share corners by index: whether they meet beyond what they share.
+//! Triangles that share corners by index: whether they meet beyond their shared vertices.
 
 use super::flat::{boxes_meet, projection};
 use super::signs::Signs;
@@ -12,7 +12,8 @@ pub fn share_a_vertex(p: [u32; 3], q: [u32; 3]) -> bool {
     has(p[0]) | has(p[1]) | has(p[2])
 }
 
-/// What two triangles share by index: corners numbered 0 to 2, first of `p`, then of `q`.
+/// The vertices that two triangles share by index: corners numbered 0 to 2, first of `p`, then of
+/// `q`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shared {
     /// No corner.
@@ -26,8 +27,8 @@ pub enum Shared {
 }
 
 impl Shared {
-    /// What the triangles with these vertex indices share. A triangle may name a vertex twice: then it is a segment (or
-    /// a point), and a vertex counts once.
+    /// The shared vertices of the triangles with these vertex indices. A triangle may name a vertex
+    /// twice: then it is a segment (or a point), and a vertex counts once.
     pub fn by_index(p: [u32; 3], q: [u32; 3]) -> Self {
         let again = |t: [u32; 3]| (0..3).position(|k| t[..k].contains(&t[k]));
         let foreign = |t: [u32; 3], o: [u32; 3]| t.iter().position(|v| !o.contains(v));
@@ -42,7 +43,8 @@ impl Shared {
         match common {
             None => Shared::Nothing,
             Some((i, j)) if count == 1 => Shared::Corner(i, j),
-            // The apex is the corner that is not shared, or, of a segment that is the shared edge, the one named twice.
+            // The apex is the corner that is not shared. For a segment that is the shared edge, it
+            // is the corner named twice.
             Some(_) if count == 2 => {
                 let apex = |t, o| foreign(t, o).or(again(t)).unwrap_or(0);
                 Shared::Edge(apex(p, q), apex(q, p))
@@ -52,8 +54,9 @@ impl Shared {
     }
 }
 
-/// Whether the closed triangles share a point that is not on the shared corner, or on the segment of the shared
-/// edge. Duplicates always do. Triangles without area are segments or points here too. `None` only if a sign is.
+/// Whether the closed triangles share a point beyond the shared corner, or beyond the segment of
+/// the shared edge. Duplicates always do. Triangles without area are segments or points here, too.
+/// `None` only if a sign is `None`.
 pub fn meets_beyond_shared<R: Real, S: Signs<R>>(
     p: &[Vec3<R>; 3],
     q: &[Vec3<R>; 3],
@@ -71,9 +74,10 @@ pub fn meets_beyond_shared<R: Real, S: Signs<R>>(
     }
 }
 
-/// Corner 0 of both is one point v. Any further common point x gives, on the ray from v through x, a last point of
-/// `p` on the edge opposite v and a last point of `q` likewise; the nearer is in both. So the opposite edges decide,
-/// as long as they do not pass through v. One that does (no area) is cut there: then `p` is two segments from v.
+/// Corner 0 of both is one point v. Suppose x is another common point. The ray from v through x
+/// leaves `p` at a point on the edge opposite to v, and `q` likewise. The nearer of the two is in
+/// both. So the opposite edges decide, unless one passes through v (no area). Such an edge is cut
+/// there: then `p` is two segments from v.
 fn beyond_corner<R: Real, S: Signs<R>>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> Option<bool> {
     // q touches the plane of p at v alone, or the other way round: the common case.
     let apart = |s: [Option<i32>; 3]| s[1].is_some_and(|x| x != 0) && s[1] == s[2];
@@ -108,9 +112,10 @@ fn rays<R: Real, S: Signs<R>>(t: &[Vec3<R>; 3]) -> Option<[Option<[Vec3<R>; 2]>;
     Some([Some([a, b]), None])
 }
 
-/// `v`, `w` are shared, `a` and `b` the apexes. With area: in one plane, and the apexes strictly on one side of the
-/// edge. An edge of no length gives only zeros, an apex on the edge's line one zero: false, unless all four are on one
-/// line, where both apexes must be beyond the same end.
+/// `v`, `w` are shared, `a` and `b` the apexes. With area: in one plane, and the apexes strictly on
+/// one side of the edge. An edge of no length gives only zeros, an apex on the edge's line one
+/// zero: false, unless all four are on one line, in which case both apexes must be beyond the same
+/// end.
 fn beyond_edge<R: Real, S: Signs<R>>(v: Vec3<R>, w: Vec3<R>, a: Vec3<R>, b: Vec3<R>) -> Option<bool> {
     if S::orient3d(v, w, a, b)? != 0 {
         return Some(false);

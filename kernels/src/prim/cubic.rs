@@ -1,26 +1,22 @@
-//! The seed's continuous tests: vertex against face and edge against edge, by the roots of the coplanarity cubic.
+//! The paper's continuous tests: vertex against face and edge against edge, by the roots of the
+//! coplanarity cubic (thesis, section 6.2.5).
 //!
-//! With `a`, `b` the two edge vectors and `c` the offset, all linear in time, the four points are coplanar where
-//! `(a x b) . c` is zero: a cubic. Its roots in [0, 1] are visited in ascending order; the first at which the
-//! features are together is the time of impact. Where the cubic vanishes identically (motion within a plane,
-//! parallel edges, faces without area) the events at which a point passes a segment are visited instead.
+//! Let `a`, `b` be the two edge vectors and `c` the offset, all linear in time. The four points are
+//! coplanar if `(a x b) . c` is zero: a cubic. Its roots in [0, 1] are visited in ascending order.
+//! The first at which the features are together is the time of impact. The cubic may vanish
+//! identically: motion within a plane, parallel edges, faces without area. Then the events at which
+//! a point passes a segment are visited instead.
 //!
-//! # What it can miss
+//! # Misses
 //!
-//! It has tolerances ([`crate::math::tolerance`], `CUBIC_*`) where a proof would need bounds, so it guarantees
-//! nothing: a contact is missed, or its time is late, where a root is so ill-conditioned that the features have
-//! moved by more than `CUBIC_INSIDE` within the uncertainty of the root (nearly coplanar motion, slivers, double
-//! roots). False alarms are gaps below the same tolerance: 1.5e-11 of the local extent in f64, 4e-6 in f32. Measured:
+//! The test has tolerances ([`crate::math::tolerance`], `CUBIC_*`) in place of bounds, so it
+//! guarantees nothing. A contact is missed, or its time is late, at an ill-conditioned root: nearly
+//! coplanar motion, slivers, double roots. Then the features move by more than `CUBIC_INSIDE`
+//! within the uncertainty of the root. False alarms are gaps below the same tolerance: 1.5e-11 of
+//! the local extent in f64, 4e-6 in f32.
 //!
-//! | | f64 | f32 |
-//! | --- | --- | --- |
-//! | public cloth on ball, 92 to 93: 113,854 contacts of 6.9 M candidates | all, no other | none missed, 5 false |
-//! | public n-body: 50,490 contacts of 31.8 M candidates | all, no other | none missed, 12 false |
-//! | public handcrafted queries (1,500 vertex/face, 1,250 edge/edge) | 0 missed, 66 and 99 false | 0 missed, 125 and 193 false |
-//! | 48,000 contacts built in small integers, degenerate ones among them | 0 missed, 0 late | 35 missed, 13 late, all edge/edge |
-//!
-//! Wider integers and slivers are missed in both precisions: `docs/accuracy.md` has the table, `tests/limits.rs` an
-//! input for each class.
+//! `docs/accuracy.md` has the measured misses and false alarms, `tests/limits.rs` an input for each
+//! class.
 //!
 //! The rejection by signs alone (the common case) is proven: it misses nothing in either precision.
 //! Times are in [0, 1], never -0.0 and never NaN for finite input.
@@ -30,7 +26,8 @@ use crate::math::tolerance::CUBIC_SCALE;
 use crate::math::{Real, Vec3};
 use bytemuck::{Pod, Zeroable};
 
-/// A vertex at the start and at the end of a step; in between it moves on the straight line, at even speed.
+/// A vertex at the start and at the end of a step. In between it moves on the straight line, at
+/// constant speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Moving<R> {
@@ -51,20 +48,21 @@ impl<R: Real> Moving<R> {
     pub fn is_single(&self) -> bool {
         self.t0.is_single() && self.t1.is_single()
     }
-    /// In f32: exact of what is single.
+    /// In f32: exact for single numbers.
     #[inline(always)]
     pub fn narrow(&self) -> Moving<f32> {
         Moving { t0: self.t0.narrow(), t1: self.t1.narrow() }
     }
 }
 
-/// The first time in [0, 1] at which the vertex meets the closed face, computed in `S`; touching at 0 gives 0.
-/// Not certain: see the module text. About 130 operations where signs reject, 400 to 1500 else.
+/// The first time in [0, 1] at which the vertex meets the closed face, computed in `S`. Touching at
+/// 0 gives 0. Unproven: see the module text. About 130 operations if signs reject, else 400 to
+/// 1500.
 pub fn vf_toi<R: Real, S: Real>(v: Moving<R>, f: [Moving<R>; 3]) -> Option<S> {
     first::<S>(&Relative::new([(f[1], f[0]), (f[2], f[0]), (v, f[0])]), Kind::VertexFace)
 }
 
-/// The first time in [0, 1] at which the closed edges `ea` and `eb` meet, computed in `S`; as [`vf_toi`].
+/// The same for two closed edges `ea` and `eb`.
 pub fn ee_toi<R: Real, S: Real>(ea: [Moving<R>; 2], eb: [Moving<R>; 2]) -> Option<S> {
     first::<S>(&Relative::new([(ea[1], ea[0]), (eb[1], eb[0]), (eb[0], ea[0])]), Kind::EdgeEdge)
 }
@@ -101,13 +99,14 @@ impl<S: Real> Linear<S> {
     }
 }
 
-/// Whether vertex and face certainly do not meet within the step, by signs alone, whatever `S`: what this rejects needs
-/// no solver: the relative motion stays on one side of a coordinate plane, or the coplanarity cubic has no root in
-/// [0, 1], both proven beyond rounding. About 150 operations.
+/// Whether vertex and face certainly do not meet within the step, by signs alone, for any `S`. Then
+/// no solver is needed. Either the relative motion stays on one side of a coordinate plane, or the
+/// cubic has no root. Both are proven beyond rounding. About 150 operations.
 #[inline]
 pub fn vf_apart<R: Real, S: Real>(v: Moving<R>, f: [Moving<R>; 3]) -> bool {
-    // The vertex lies on one side of all three corners, at both ends of the step: differences are linear in time and
-    // in the corners' weights. A computed difference has the sign of the exact one (or is 0, which proves nothing).
+    // The vertex is on one side of all three corners, at both ends of the step. Differences are
+    // linear in time and in the corners' weights. A computed difference has the sign of the exact
+    // one (or is 0, which proves nothing).
     if separated([
         [v.t0 - f[0].t0, v.t1 - f[0].t1],
         [v.t0 - f[1].t0, v.t1 - f[1].t1],
@@ -129,8 +128,8 @@ pub fn ee_apart<R: Real, S: Real>(ea: [Moving<R>; 2], eb: [Moving<R>; 2]) -> boo
     Relative::<S>::new([(ea[1], ea[0]), (eb[1], eb[0]), (eb[0], ea[0])]).apart()
 }
 
-/// The coplanarity cubic of a motion in Bernstein form, its inner coefficients times three, and how far they may be off.
-/// Of the motion as it is where its extent is within [`CUBIC_SCALE`] of one.
+/// The coplanarity cubic of a motion in Bernstein form, its inner coefficients times three, and
+/// their error bounds. The motion is scaled if its extent is beyond [`CUBIC_SCALE`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coplanarity<S> {
     /// The coefficients.
@@ -164,7 +163,8 @@ fn separated<R: Real, const N: usize>(differences: [[Vec3<R>; 2]; N]) -> bool {
     (0..3).any(|k| low[k] > R::ZERO || high[k] < R::ZERO)
 }
 
-/// The four points relative to one of them: edges `a` and `b`, offset `c`; and the largest component of all.
+/// The four points relative to one: edges `a`, `b`, offset `c`; their largest component. edges `a`
+/// and `b`, offset `c`; and the largest component of all.
 struct Relative<S> {
     a: Linear<S>,
     b: Linear<S>,
@@ -173,8 +173,9 @@ struct Relative<S> {
 }
 
 impl<S: Real> Relative<S> {
-    /// Differences in the wider of both precisions (of f32 in f32 alone only when `S` is), rounded once to `S`; then
-    /// scaled by a power of two if cubes could leave the range.
+    /// Differences in the wider of both precisions, rounded once to `S`. They are in f32 alone only
+    /// if `S` and the positions are f32. Then scaled by a power of two if cubes could leave the
+    /// range.
     #[inline]
     fn new<R: Real>(pairs: [(Moving<R>, Moving<R>); 3]) -> Self {
         let [a, b, c] = if R::WIDE {
@@ -208,7 +209,7 @@ fn scaled<T: Real>(d: [Linear<T>; 3]) -> [Linear<T>; 3] {
 }
 
 impl<S: Real> Relative<S> {
-    /// The coplanarity cubic in Bernstein form (inner coefficients times three), and the permanent that bounds errors.
+    /// The coplanarity cubic in Bernstein form, and the permanent that bounds errors.
     #[inline]
     fn cubic(&self) -> ([S; 4], S) {
         let (a, b, c) = (&self.a, &self.b, &self.c);
@@ -229,8 +230,8 @@ impl<S: Real> Relative<S> {
         Coplanarity { k, outer, inner }
     }
 
-    /// Whether the cubic certainly has no root in [0, 1]: it lies in the hull of its coefficients, and those are of one
-    /// sign beyond their rounding errors. Proven; a contact is never rejected.
+    /// Whether the cubic certainly has no root in [0, 1]. It is in the hull of its coefficients,
+    /// and those have one sign beyond their rounding errors. Proven; a contact is never rejected.
     #[inline]
     fn apart(&self) -> bool {
         let Coplanarity { k, outer, inner } = self.coplanarity();
@@ -286,8 +287,8 @@ fn earlier<S: Real>(a: Option<S>, b: Option<S>) -> Option<S> {
     }
 }
 
-/// The earliest time at which a point passes a segment and the features are together: for motion in a plane.
-/// The first contact of such a motion is one of these or at time 0.
+/// The earliest time at which a point passes a segment and the features are together: for motion in
+/// a plane. The first contact of such a motion is one of these or at time 0.
 #[cold]
 #[inline(never)]
 fn events<S: Real>(m: &Relative<S>, kind: Kind, together: impl Fn(S, bool) -> bool) -> Option<S> {
@@ -337,8 +338,8 @@ fn spanned<S: Real>(a: Vec3<S>, b: Vec3<S>) -> Option<(Vec3<S>, S)> {
     (square > S::PARALLEL * (a.dot(a) * b.dot(b))).then_some((n, square))
 }
 
-/// Whether at `t` the vertex is at the face: inside, or within `CUBIC_INSIDE`; at a root distances are measured in
-/// the plane, as the one along the normal is rounding, else in space.
+/// Whether at `t` the vertex is at the face: inside, or within `CUBIC_INSIDE`. At a root distances
+/// are measured in the plane, as the one along the normal is rounding; else in space.
 fn vertex_at_face<S: Real>(m: &Relative<S>, t: S, rooted: bool) -> bool {
     let (a, b, c) = (m.a.at(t), m.b.at(t), m.c.at(t));
     let near = S::CUBIC_INSIDE * m.extent;
@@ -358,7 +359,8 @@ fn vertex_at_face<S: Real>(m: &Relative<S>, t: S, rooted: bool) -> bool {
     distance(p, o, a) <= near || distance(p, o, b) <= near || distance(p, a, b) <= near
 }
 
-/// Whether at `t` the edges are together; as [`vertex_at_face`]. Of parallel edges an end is at the other edge.
+/// Whether at `t` the edges are together, as [`vertex_at_face`]. For parallel edges: whether an end
+/// is at the other edge.
 fn edges_at<S: Real>(m: &Relative<S>, t: S, rooted: bool) -> bool {
     let (a, b, c) = (m.a.at(t), m.b.at(t), m.c.at(t));
     let near = S::CUBIC_INSIDE * m.extent;

@@ -1,20 +1,24 @@
-//! Signs of determinants in integers: always right, for all finite numbers, denormals and both zeros included.
+//! Signs of determinants in integers: always right, for all finite numbers, subnormals and both
+//! zeros included.
 //!
-//! The coordinates of one axis are integers times a common power of two, and scaling an axis does not change the
-//! sign of a determinant. So each axis is put on its own grid, and differences, 2x2 minors and the determinant are
-//! integer arithmetic: nothing rounds, underflows or contracts, and there is nothing to prove but the sizes.
+//! The coordinates of one axis are integers times a common power of two. Scaling an axis does not
+//! change the sign of a determinant. So each axis is put on its own grid, and differences, 2x2
+//! minors and the determinant are integer arithmetic. Nothing rounds, underflows or contracts. Only
+//! the sizes need a proof.
 //!
-//! Sizes: an axis that spans `b` bits gives differences of `b+1`, minors of `2b+3` and a determinant of `3b+6`
-//! bits. Up to 60 bits (most f32 data) two machine integers of 128 bits hold it all, up to 94 (most f64 data; f32 data with
-//! a coordinate that is nearly zero) five. Beyond, two sizes of stack arrays are compiled (their steps out of line: they are
-//! rare, and a GPU compiles them at first use), and the run picks the smallest that fits: 286 bits (every finite f32 has
-//! 277), 2098 bits (every finite f64). Loops run over the limbs in use.
+//! Sizes: an axis that spans `b` bits gives differences of `b+1`, minors of `2b+3` and a
+//! determinant of `3b+6` bits. Up to 60 bits (most f32 data) two machine integers of 128 bits are
+//! enough. Up to 94 (most f64 data; f32 data with a coordinate near zero) five are. Beyond, two
+//! sizes of stack arrays are compiled, and the run takes the smallest that fits. They are 286 bits
+//! (every finite f32 has 277) and 2098 bits (every finite f64). Their steps are out of line: they
+//! are rare, and a GPU compiles them at first use. Loops run over the limbs in use.
 
 use super::orient::plane_of;
 use crate::math::{Real, Vec3};
 use core::cmp::Ordering;
 
-/// A signed integer of at most `N` limbs of 32 bits: sign and magnitude. Limbs from `len` on are 0, the one before is not.
+/// A signed integer of at most `N` limbs of 32 bits: sign and magnitude. Limbs from `len` on are 0,
+/// the one before is not.
 #[derive(Clone, Copy)]
 struct Int<const N: usize> {
     negative: bool,
@@ -25,7 +29,7 @@ struct Int<const N: usize> {
 impl<const N: usize> Int<N> {
     const ZERO: Self = Int { negative: false, len: 0, limb: [0; N] };
 
-    /// `x / 2^grid`, where the grid divides `x`.
+    /// `x / 2^grid`, if the grid divides `x`.
     #[inline(never)]
     fn of<R: Real>(x: R, grid: i32) -> Self {
         let p = x.parts();
@@ -139,16 +143,17 @@ fn grid<R: Real, const K: usize>(points: [Vec3<R>; K]) -> ([i32; 3], i32) {
     (low, bits)
 }
 
-/// Bits of one axis up to which differences (61 bits) fit i64, minors (123) i128, and each half of the determinant, as
-/// [`Halves`] has it, i128 too: `61 + 64` bits, thrice.
+/// Most bits of one axis for the smallest size. Differences (61 bits) fit i64, minors (123) i128.
+/// Each half of the determinant ([`Halves`]) fits i128, too: `61 + 64` bits, three times.
 const TINY: i32 = 60;
-/// Bits of one axis up to which a difference has two digits of [`DIGIT`] bits, a minor four, and a determinant five.
+/// Most bits of one axis for the second size. A difference has two digits of [`DIGIT`] bits, a
+/// minor four, and a determinant five.
 const SMALL: i32 = 94;
 /// The same for 9 limbs; every set of finite f32 numbers is within (128 + 149).
 const MIDDLE: i32 = 286;
 
-/// The exact sign of det[a-d, b-d, c-d], for any finite points. On a CPU core about 0.2 us where
-/// exponents are alike; grows with the square of their spread, to 2 us when they are 1300 apart.
+/// The exact sign of det[a-d, b-d, c-d], for any finite points. On a CPU core about 0.2 us for
+/// equal exponents. The time grows with the square of their spread, to 2 us if they are 1300 apart.
 pub fn orient3d_exact<R: Real>(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, d: Vec3<R>) -> i32 {
     let (low, bits) = grid([a, b, c, d]);
     if bits <= TINY {
@@ -178,8 +183,8 @@ pub fn orient3d_exact<R: Real>(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, d: Vec3<R>) -
     }
 }
 
-/// The exact sign of the orientation of `a`, `b`, `c` with coordinate `axis` dropped, as
-/// [`super::orient::orient2d_filter`] has it; for any finite points.
+/// The exact sign of the orientation of `a`, `b`, `c` with coordinate `axis` dropped, for any
+/// finite points. See [`super::orient::orient2d_filter`].
 pub fn orient2d_exact<R: Real>(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, axis: usize) -> i32 {
     let (low, bits) = grid([a, b, c]);
     if bits <= TINY {
@@ -215,7 +220,8 @@ fn difference<R: Real>(x: Vec3<R>, y: Vec3<R>, low: [i32; 3]) -> [i64; 3] {
     core::array::from_fn(|k| to(x, k) - to(y, k))
 }
 
-/// The same of at most [`SMALL`] bits, as two digits: the low one, and what is above, which has the sign.
+/// The same of at most [`SMALL`] bits, as two digits: the low one, and the high one, which has the
+/// sign.
 #[inline]
 fn digits<R: Real>(x: Vec3<R>, y: Vec3<R>, low: [i32; 3]) -> [[i64; 2]; 3] {
     let to = |p: Vec3<R>, k: usize| {

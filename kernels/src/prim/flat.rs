@@ -1,15 +1,16 @@
-//! Triangles, segments and points that lie in one plane, or are no triangles: the part of the
-//! triangle/triangle test that has no plane to stand on.
+//! Triangles, segments and points in one plane, and triangles without area: the part of the
+//! triangle/triangle test that has no plane of its own.
 
 use super::signs::Signs;
 use crate::math::{Real, Vec3};
 
-/// Whether the closed segments `ab` and `cd` meet; any of them may be a point, and they need not be coplanar.
-/// Undecided only if the source is.
+/// Whether the closed segments `ab` and `cd` meet. Any of them may be a point. They need not be
+/// coplanar. Undecided only if the source is.
 ///
-/// Not coplanar: apart. Else some axis can be dropped without folding the plane, namely one along which three of
-/// the four points are not collinear; there the signs of the four triples decide. If no triple is proper, all
-/// four are on one line, along which each coordinate is monotone, and the boxes decide.
+/// If they are not coplanar they are apart. Else some axis can be dropped without folding the
+/// plane: one along which three of the four points are not collinear. There the signs of the four
+/// triples decide. If no triple is proper, all four are on one line. Each coordinate is monotone
+/// along it, and the boxes decide.
 pub fn segments_meet<R: Real, S: Signs<R>>([a, b]: [Vec3<R>; 2], [c, d]: [Vec3<R>; 2]) -> Option<bool> {
     if !boxes_meet(&[a, b], &[c, d]) {
         return Some(false);
@@ -31,7 +32,8 @@ pub fn segments_meet<R: Real, S: Signs<R>>([a, b]: [Vec3<R>; 2], [c, d]: [Vec3<R
     Some(true)
 }
 
-/// Whether a point lies on a closed triangle, which may be a segment or a point. Undecided only if the source is.
+/// Whether a point is on a closed triangle, which may be a segment or a point. Undecided only if
+/// the source is.
 pub fn point_on_triangle<R: Real, S: Signs<R>>(x: Vec3<R>, t: &[Vec3<R>; 3]) -> Option<bool> {
     if !boxes_meet(&[x], t) || S::orient3d(t[0], t[1], t[2], x)? != 0 {
         return Some(false);
@@ -56,8 +58,8 @@ pub fn boxes_meet<R: Real>(p: &[Vec3<R>], q: &[Vec3<R>]) -> bool {
     })
 }
 
-/// An axis along which the projection of `t` is a proper triangle, and its orientation there; `Some(None)` when
-/// `t` is a segment or a point.
+/// An axis along which the projection of `t` is a proper triangle, and its orientation there.
+/// `Some(None)` if `t` is a segment or a point.
 pub fn projection<R: Real, S: Signs<R>>(t: &[Vec3<R>; 3]) -> Option<Option<(usize, i32)>> {
     let mut unsure = false;
     for axis in 0..3 {
@@ -70,10 +72,11 @@ pub fn projection<R: Real, S: Signs<R>>(t: &[Vec3<R>; 3]) -> Option<Option<(usiz
     if unsure { None } else { Some(None) }
 }
 
-/// Whether two closed triangles meet that lie in one plane, or of which both are segments or points (then in one
-/// plane or not). Nine pairs of edges, then corners inside. Undecided only if the source is.
+/// Whether two closed triangles in one plane meet. Or two that are both segments or points, in one
+/// plane or not. Nine pairs of edges, then corners inside. Undecided only if the source is.
 ///
-/// By value and out of line: the common path of the caller then keeps its corners in registers and stays small.
+/// By value and out of line: the common path of the caller then keeps its corners in registers and
+/// stays small.
 #[cold]
 #[inline(never)]
 pub fn flat_meet<R: Real, S: Signs<R>>(p: [Vec3<R>; 3], q: [Vec3<R>; 3]) -> Option<bool> {
@@ -98,7 +101,8 @@ pub fn flat_meet<R: Real, S: Signs<R>>(p: [Vec3<R>; 3], q: [Vec3<R>; 3]) -> Opti
     if unsure { None } else { Some(false) }
 }
 
-/// Whether the closed triangle `t` holds the point `x` of its plane. False for a segment: its edges were asked.
+/// Whether the closed triangle `t` contains the point `x` of its plane. False for a segment: its
+/// edges were tested.
 fn holds<R: Real, S: Signs<R>>(t: &[Vec3<R>; 3], x: Vec3<R>) -> Option<bool> {
     let Some((axis, s)) = projection::<R, S>(t)? else { return Some(false) };
     let mut unsure = false;

@@ -1,11 +1,18 @@
-//! Two primitives: the narrow tests.
+//! Tests of two primitives: the narrow phase.
 //!
-//! Discrete, from fast to certain: [`moller`] (plain floats, can miss), [`tri_tri`] on the signs of [`orient`]
-//! (floats with a proven error bound: right or silent) and of [`exact`] (integers: always right).
-//! Continuous: [`cubic`] (the coplanarity cubic; can miss, and says how), and certified, never missing, never late:
-//! [`isolate`] (in closed form) and behind it [`inclusion`] (by boxes). [`stencil`] names the fifteen vertex/face and
-//! edge/edge tests of two triangles; [`sweep`] tells which of them have boxes that meet. At rest: [`near`], how far they are from each other; [`nearest`], how far two
-//! triangles are.
+//! | test | kind | certainty |
+//! | --- | --- | --- |
+//! | [`moller`] | discrete, in plain floats; the paper's | can miss |
+//! | [`tri_tri`] on signs of [`orient`] | discrete, floats with a bound | right or undecided |
+//! | [`tri_tri`] on signs of [`exact`] | discrete, in integers | always right |
+//! | [`cubic`] | continuous, the coplanarity cubic; the paper's | can miss |
+//! | [`isolate`] | continuous, in closed form | no miss, never late |
+//! | [`inclusion`] | continuous, by boxes, behind [`isolate`] | no miss, never late |
+//! | [`near`] | distance of two features at rest | proven bounds |
+//! | [`nearest`] | distance of two triangles at rest | proven bounds |
+//!
+//! [`stencil`] names the fifteen vertex/face and edge/edge tests of two triangles. [`sweep`]
+//! selects those whose boxes meet.
 
 pub mod adjacent;
 pub mod cubic;

@@ -1,17 +1,19 @@
-//! The interval test of two triangles in plain floats, after Möller (1997): the seed's discrete test, fast, unproven.
+//! The interval test of two triangles in plain floats, after Möller (1997): the paper's discrete
+//! test, fast, unproven.
 //!
-//! **Can err both ways**, without notice: signs of plane distances are taken as rounded. It misses pairs that touch
-//! or nearly touch, and slivers whose normal is mostly rounding (the pairs that the filter of [`super::tri_tri`] calls
-//! undecided), and it may depend on the order of corners. Coordinates are taken relative to a corner, so far from the
-//! origin it loses nothing more. Not for coordinates above 2^20 or geometry below 2^-20 in f32, whose products leave
-//! the range. About 150 operations, no loop over data.
+//! **It can err both ways**, without notice: signs of plane distances are taken as rounded. It
+//! misses pairs that touch or nearly touch, and slivers whose normal is mostly rounding. (The
+//! filter of [`super::tri_tri`] reports these as undecided.) It may depend on the order of corners.
+//! Coordinates are taken relative to a corner, so it loses nothing more far from the origin. Not
+//! for coordinates above 2^20 or geometry below 2^-20 in f32, whose products leave the range. About
+//! 150 operations, no loop over data.
 
 use super::flat::flat_meet;
 use super::orient::orient2d_filter;
 use super::signs::Signs;
 use crate::math::{Real, Vec3};
 
-/// Whether the closed triangles meet, as far as plain arithmetic can tell: see the module text for what it misses.
+/// Whether the closed triangles meet, in plain arithmetic. The module text lists the misses.
 pub fn moller<R: Real>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> bool {
     let o = p[0];
     let local = |t: &[Vec3<R>; 3]| t.map(|x| x - o);
@@ -26,7 +28,8 @@ pub fn moller<R: Real>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> bool {
     if one_side(dp) {
         return false;
     }
-    // Both triangles cut the line along n x m in an interval; compare them along its largest component.
+    // Both triangles cut the line along n x m in an interval; compare them along its largest
+    // component.
     let along = n.cross(m);
     let axis = largest(along);
     if along[axis] == R::ZERO {
@@ -38,7 +41,7 @@ pub fn moller<R: Real>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> bool {
     }
 }
 
-/// Signs as rounded, of points that are taken to lie in one plane.
+/// Signs as rounded, of points that are taken to be in one plane.
 struct InPlane;
 
 impl<R: Real> Signs<R> for InPlane {
@@ -46,7 +49,7 @@ impl<R: Real> Signs<R> for InPlane {
         Some(0)
     }
     fn orient2d(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, axis: usize) -> Option<i32> {
-        // What the filter cannot tell is nearest to zero.
+        // A value that the filter leaves undecided is nearest to zero.
         Some(orient2d_filter(a, b, c, axis).unwrap_or(0))
     }
 }
@@ -70,8 +73,8 @@ fn largest<R: Real>(v: Vec3<R>) -> usize {
     }
 }
 
-/// Where the triangle with coordinates `x` along the line and distances `d` to the other plane cuts that plane.
-/// `None` if all of it lies in the plane.
+/// The cut of a triangle with the other plane: coordinates `x` along the line, distances `d` to the
+/// plane. `None` if all of it is in the plane.
 #[inline]
 fn interval<R: Real>(x: [R; 3], d: [R; 3]) -> Option<(R, R)> {
     let mut found: Option<(R, R)> = None;

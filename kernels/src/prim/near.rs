@@ -1,38 +1,45 @@
-//! How near two features are that stand still: their distance, its place, and whether it is within a length. In doubles.
+//! The distance of two features at rest, its place, and whether it is within a length. In f64.
 //!
-//! Both kinds are one question. With `x(s, t) = r + s p + t q`, the point of the second feature less that of the first, where is `x`
-//! shortest? Over the triangle `s, t >= 0`, `s + t <= 1` (a vertex and a face: `r` is corner 0 less the vertex, `p` and `q` the sides
-//! from there), or over the square `0 <= s, t <= 1` (two edges). Like Ericson's closest points (Real-Time Collision Detection, 5.1.5
-//! and 5.1.9), but no region decides: every side of the domain and the point inside are asked, and the shortest is taken. So a wrong turn
-//! costs nothing, and what can be off is bounded, however flat, short or parallel the features are.
+//! Both kinds are one problem. Let `x(s, t) = r + s p + t q` be the point of the second feature
+//! less that of the first. Find the shortest `x`. For a vertex and a face the domain is the
+//! triangle `s, t >= 0`, `s + t <= 1`. `r` is corner 0 less the vertex, `p` and `q` the sides from
+//! there. For two edges it is the square `0 <= s, t <= 1`. As in Ericson's closest points
+//! (Real-Time Collision Detection, 5.1.5 and 5.1.9), but no region decides. Every side of the
+//! domain and the point inside are computed, and the shortest is taken. So a wrong branch costs
+//! nothing, and the error is bounded, however flat, short or parallel the features are.
 //!
 //! # The bound
 //!
-//! `u` is half an ulp of 1, `l` the longest of `r`, `p`, `q`, at most `sqrt 3` times their largest component, the *reach*. All to first
-//! order in `u`, generously rounded up.
+//! `u` is half an ulp of 1. `l` is the length of the longest of `r`, `p`, `q`, at most `sqrt 3`
+//! times their largest component, the *reach*. All to first order in `u`, generously rounded up.
 //!
 //! 1. *Inputs.* Each difference rounds once: `x` moves by `3u l`. A distance is 1-Lipschitz in `x`.
-//! 2. *A side* `x + t e`: `t = -x.e / e.e` errs by `8u |x| / |e|` before it is clamped, so the point on the side by `8u |x|`; the side
-//!    opposite to corner 0, and those at 1 of the square, have `|x| <= 2l` of two more roundings: `24u l` at most. A side so short that
-//!    `e.e` underflows is within that all the same; then `t` is some number in range.
-//! 3. *Inside*, where the shortest is no point of a side. Take `p` out of `q` and `r`: `q' = q - m p`, `r' = r - n p`; then
-//!    `t = -r'.q' / q'.q'`, and `s = -(n + t m)`. Let `h = |q'|` and `D` be the distance. The roundings of `q'` and `r'` are `2u l` in
-//!    any direction and `8u l` along `p`, to which the other one is nearly at right angles. With a `t` wrong by `c`, `x` is off
-//!    by `y = h c`, and its length becomes `sqrt(D^2 + y^2)`, not more than `D + y`. `y` has a part of `46u l`, and one of
-//!    `8/3 u l D / h`; but `t` is clamped, so `y <= h`. If `h < 16u l` that is all; else the second part adds no more than
-//!    `y^2 / 2D <= 3u l`. The point that keeps `x` at right angles to `p` may lie outside of the domain: then its way there from the
-//!    true one crosses a side, on which the distance is no larger, and 2 finds it. `s` errs by `19u l`.
+//! 2. *A side* `x + t e`: `t = -x.e / e.e` errs by `8u |x| / |e|` before it is clamped. So the
+//!    point on the side errs by `8u |x|`. The side opposite to corner 0, and those at 1 of the
+//!    square, have `|x| <= 2l` of two more roundings: `24u l` at most. A side so short that `e.e`
+//!    underflows is within that all the same; then `t` is some number in range.
+//! 3. *Inside*, if the shortest is no point of a side. Take `p` out of `q` and `r`: `q' = q - m p`,
+//!    `r' = r - n p`. Then `t = -r'.q' / q'.q'`, and `s = -(n + t m)`. Let `h = |q'|` and `D` be
+//!    the distance. The roundings of `q'` and `r'` are `2u l` in any direction and `8u l` along
+//!    `p`. The other vector is nearly at right angles to `p`. With a `t` wrong by `c`, `x` is off
+//!    by `y = h c`. Its length becomes `sqrt(D^2 + y^2)`, at most `D + y`. `y` has a part of
+//!    `46u l`, and one of `8/3 u l D / h`. But `t` is clamped, so `y <= h`. If `h < 16u l` that is
+//!    all. Else the second part adds no more than `y^2 / 2D <= 3u l`. The point that keeps `x` at
+//!    right angles to `p` may be outside of the domain. Then its way there from the true one
+//!    crosses a side. The distance on that side is no larger, and 2 finds it. `s` errs by `19u l`.
 //! 4. *Evaluation.* `x` at given weights: `8u l`; its squared length: `3u` of it.
 //!
-//! So the computed distance is at least the true one less `15.5u l`, and at most the true one and `3 + 73 + 8 + 4.5 = 88.5u l`:
-//! `DISTANCE_CERTAIN` and `DISTANCE_ERROR` of the reach. What is within a length is listed at that length and `DISTANCE_ERROR`.
+//! So the computed distance is at least the true one less `15.5u l`, and at most the true one and
+//! `3 + 73 + 8 + 4.5 = 88.5u l`. These are `DISTANCE_CERTAIN` and `DISTANCE_ERROR` of the reach. A
+//! pair within a length is listed at that length and `DISTANCE_ERROR`.
 //!
-//! Doubles reach as far as squares of differences do: positions of f32 give differences from 2^-149 to 2^129, those of f64 up to 2^481.
-//! Smaller ones than `DISTANCE_SMALL` are scaled, exactly.
+//! The range of f64 covers squares of differences: positions of f32 give differences from 2^-149 to
+//! 2^129, those of f64 up to 2^481. Those below `DISTANCE_SMALL` are scaled, exactly.
 //!
-//! [`Filter`] is the same in f32, without branches: it lets go what is certainly farther by that bound with the `u` of f32 (a difference of
-//! doubles rounds once more, `3u l`, for which there is room). Of a reach outside of `DISTANCE_FILTERED`, where squares of f32
-//! could end, it lets nothing go.
+//! [`Filter`] is the same in f32, without branches. It drops pairs that are certainly farther, by
+//! that bound with the `u` of f32. A difference of f64 rounds once more, `3u l`, for which there is
+//! room. It drops no pair with a reach outside of `DISTANCE_FILTERED`: there squares of f32 could
+//! leave the range.
 
 use crate::exec::RowMap;
 use crate::math::tolerance::{
@@ -45,23 +52,25 @@ use core::marker::PhantomData;
 /// Two features that may be within a length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Near {
-    /// Their squared distance. Its root is within `DISTANCE_ERROR` of the reach of theirs; below 2^-1022 it has fewer digits, below
-    /// 2^-1075 none.
+    /// Their squared distance. Its root is within `DISTANCE_ERROR` of the reach of theirs; below
+    /// 2^-1022 it has fewer digits, below 2^-1075 none.
     pub squared: f64,
-    /// Where they are nearest: of a face the weights of corners 1 and 2, of edges how far along each.
+    /// The nearest points: for a face the weights of corners 1 and 2, for edges the parameter along
+    /// each.
     pub at: [f64; 2],
     /// Whether they are within the length beyond all rounding.
     pub certain: bool,
 }
 
-/// The weights of a face's corners, of those that [`Near::at`] has: none negative, their sum 1 but for a rounding, and those of corners
-/// that the nearest point has no part of exactly 0.
+/// The weights of a face's corners, from those in [`Near::at`]. None is negative; their sum is 1 up
+/// to a rounding. A corner without part in the nearest point has weight 0 exactly.
 #[inline(always)]
 pub fn corner_weights([s, t]: [f64; 2]) -> [f64; 3] {
     [(1.0 - t) - s, s, t]
 }
 
-/// The differences that a pair is made of, each rounded once, or twice where S is narrower than R: `r`, `p`, `q`.
+/// The differences that a pair is made of, each rounded once, or twice if S is narrower than R:
+/// `r`, `p`, `q`.
 #[inline(always)]
 fn differences<R: Real, S: Real, const TRIANGLE: bool>([a, b, c, d]: [Vec3<R>; 4]) -> [Vec3<S>; 3] {
     let minus = |x: Vec3<R>, y: Vec3<R>| {
@@ -70,19 +79,21 @@ fn differences<R: Real, S: Real, const TRIANGLE: bool>([a, b, c, d]: [Vec3<R>; 4
     if TRIANGLE { [minus(b, a), minus(c, b), minus(d, b)] } else { [minus(a, c), minus(b, a), minus(c, d)] }
 }
 
-/// A vertex and a face: where they are nearest, unless they are certainly farther apart than `distance`.
+/// A vertex and a face: the nearest points, unless they are certainly farther apart than
+/// `distance`.
 #[inline(always)]
 pub fn vertex_face<R: Real>(v: Vec3<R>, [a, b, c]: [Vec3<R>; 3], distance: f64) -> Option<Near> {
     within::<true>(differences::<R, f64, true>([v, a, b, c]), distance)
 }
 
-/// Two edges: where they are nearest, unless they are certainly farther apart than `distance`.
+/// Two edges: the nearest points, unless they are certainly farther apart than `distance`.
 #[inline(always)]
 pub fn edge_edge<R: Real>([a, b]: [Vec3<R>; 2], [c, d]: [Vec3<R>; 2], distance: f64) -> Option<Near> {
     within::<false>(differences::<R, f64, false>([a, b, c, d]), distance)
 }
 
-/// Whether two features may be within a distance: a vertex and the corners of a face, or the ends of one edge and those of another.
+/// Whether two features may be within a distance: a vertex and the corners of a face, or the ends
+/// of one edge and those of another.
 pub struct Filter<R, const TRIANGLE: bool> {
     distance: f32,
     positions: PhantomData<R>,
@@ -137,8 +148,9 @@ fn within<const TRIANGLE: bool>(of: [Vec3<f64>; 3], distance: f64) -> Option<Nea
     })
 }
 
-/// How far apart two features are, and where they are nearest as [`Near::at`] tells it: a vertex and the corners of a face, or
-/// the ends of one edge and those of another. The distance is within `DISTANCE_ERROR` of the reach, and of a subnormal number.
+/// The distance of two features, and their nearest points as in [`Near::at`]: a vertex and the
+/// corners of a face, or the ends of two edges. The distance is within `DISTANCE_ERROR` of the
+/// reach, and a subnormal number.
 #[inline(always)]
 pub fn distance<R: Real, const TRIANGLE: bool>(corners: [Vec3<R>; 4]) -> (f64, [f64; 2]) {
     let Scaled { found, down, .. } = Scaled::of::<TRIANGLE>(differences::<R, f64, TRIANGLE>(corners));
@@ -185,7 +197,7 @@ impl<S: Real> Candidate<S> {
     }
 }
 
-/// Into [0, `most`]; what is no number becomes 0.
+/// Into [0, `most`]; NaN becomes 0.
 #[inline(always)]
 fn clamped<S: Real>(x: S, most: S) -> S {
     let x = if x > S::ZERO { x } else { S::ZERO };

@@ -1,15 +1,21 @@
-//! How far apart two triangles are, and where they are nearest. In doubles.
+//! The distance of two triangles, and their nearest points. In f64.
 //!
-//! Triangles that share no point are nearest at a vertex of one and the other, or at an edge of each: fifteen pairs of features,
-//! measured as [`near`](super::near) measures them, and the first of the shortest is taken. So the computed distance has the bounds
-//! that hold there: at most the true one and `DISTANCE_ERROR` of the reach, at least the true one less `DISTANCE_CERTAIN`
-//! of it, where the reach is at most the largest difference of two coordinates of the six corners. So the least of many pairs is at
-//! most the true least and `DISTANCE_ERROR` of the reach of the pair that has it, and at least that less `DISTANCE_CERTAIN` of the
-//! reach of the pair that is found: these may be two. It is never below the [`gap`] of
-//! their boxes, which is the true one where planes along an axis part them: so what is not nearer by its boxes need not be measured.
+//! Triangles that share no point are nearest at a vertex of one, or at an edge of each. These are
+//! fifteen pairs of features, measured by [`near`](super::near), and the first of the shortest is
+//! taken. So its bounds hold for the computed distance. It is at most the true one and
+//! `DISTANCE_ERROR` of the reach. It is at least the true one less `DISTANCE_CERTAIN` of the reach.
+//! The reach is at most the largest difference of two coordinates of the six corners.
 //!
-//! Whether triangles share a point is not told by this, but by [`tri_tri`](super::tri_tri), exactly; where they do, [`Nearest::meeting`]
-//! finds a point of both.
+//! Consider many pairs. The computed least is at most the true least and `DISTANCE_ERROR` of the
+//! reach of its pair. It is at least the true least less `DISTANCE_CERTAIN` of the reach of the
+//! returned pair. These may be two pairs.
+//!
+//! The computed distance is never below the [`gap`] of the boxes. That is the true distance if
+//! planes along an axis separate the triangles. So a pair whose boxes are not nearer than the best
+//! need not be measured.
+//!
+//! [`tri_tri`](super::tri_tri) decides exactly whether triangles share a point. If they do,
+//! [`Nearest::meeting`] finds a point of both.
 
 use super::near::distance;
 use crate::math::tolerance::{DISTANCE_CERTAIN, DISTANCE_UP, U64};
@@ -19,12 +25,12 @@ use core::ops::RangeInclusive;
 /// The corners of a triangle.
 pub type Corners<R> = [Vec3<R>; 3];
 
-/// Where two triangles are nearest.
+/// The nearest points of two triangles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest {
     /// How far apart those points are, as computed; never below 0.
     pub distance: f64,
-    /// Of each triangle the weights of corners 1 and 2.
+    /// For each triangle the weights of corners 1 and 2.
     pub at: [[f64; 2]; 2],
 }
 
@@ -60,7 +66,7 @@ impl Nearest {
         if distance < self.distance { Nearest { distance, at: at() } } else { self }
     }
 
-    /// Of two triangles by their features.
+    /// Nearest points of two triangles, by their features.
     #[inline]
     pub fn of<R: Real>(p: &Corners<R>, q: &Corners<R>) -> Nearest {
         let mut best = Nearest::NONE;
@@ -92,8 +98,9 @@ impl Nearest {
         best
     }
 
-    /// Of two triangles that share a point: by their features, and where an edge of one goes through the other. The points of both
-    /// differ by roundings; the distance, which is theirs, says by how much.
+    /// Nearest points of two triangles that share a point: by their features, and at edges that
+    /// pierce the other triangle. The points of both differ by roundings; the distance is that
+    /// between them.
     #[inline]
     pub fn meeting<R: Real>(p: &Corners<R>, q: &Corners<R>) -> Nearest {
         let mut best = Nearest::of(p, q);
@@ -115,9 +122,10 @@ impl Nearest {
     }
 }
 
-/// Where an edge goes through the plane of a face: how far along it, and the face's point nearest to there with its distance. `None`
-/// if it does not. Volumes are computed of differences that are multiplied by the power of two that brings the largest to [1, 2):
-/// exact, so their cubes neither end nor vanish, whatever the scale of the scene.
+/// The point at which an edge pierces the plane of a face: its parameter along the edge, and the
+/// nearest point of the face with its distance. `None` if it does not. Volumes are computed from
+/// differences scaled by the power of two that brings the largest to [1, 2). That is exact, so
+/// cubes neither overflow nor vanish at any scale of the scene.
 #[inline]
 fn crossing([a, b]: [Vec3<f64>; 2], face: &Corners<f64>) -> Option<(f64, f64, [f64; 2])> {
     let [x, y, z] = *face;
@@ -133,8 +141,8 @@ fn crossing([a, b]: [Vec3<f64>; 2], face: &Corners<f64>) -> Option<(f64, f64, [f
     Some((far, t, at))
 }
 
-/// The same vectors, multiplied by the power of two that brings the largest component to [1, 2), or as near as a factor of doubles
-/// does; zeros as they are.
+/// The same vectors, scaled by the power of two that brings the largest component to [1, 2). The
+/// scale is limited to a factor of f64. Zeros stay.
 #[inline]
 fn unit(of: [Vec3<f64>; 4]) -> [Vec3<f64>; 4] {
     let most = of[0].map(f64::abs).greater(of[1].map(f64::abs));
@@ -147,8 +155,9 @@ fn unit(of: [Vec3<f64>; 4]) -> [Vec3<f64>; 4] {
     [of[0] * scale, of[1] * scale, of[2] * scale, of[3] * scale]
 }
 
-/// How far apart the boxes of the corners are: 0 where they overlap, the difference where one axis alone parts them. Not above the true
-/// distance of the triangles by more than `6u` of that, for a difference, squares, their sum and its root.
+/// The distance of the boxes of the corners: 0 if they overlap, the difference if one axis alone
+/// separates them. At most the true distance of the triangles and `6u` of it: a difference,
+/// squares, their sum and its root.
 #[inline]
 pub fn gap<R: Real>(p: &Corners<R>, q: &Corners<R>) -> f64 {
     let lowest = |c: &Corners<R>| c[0].lesser(c[1]).lesser(c[2]).map(|x| x.wide());
@@ -156,7 +165,7 @@ pub fn gap<R: Real>(p: &Corners<R>, q: &Corners<R>) -> f64 {
     let gaps = (lowest(q) - highest(p)).greater(lowest(p) - highest(q)).greater(Vec3([0.0; 3]));
     let largest = gaps[0].greater(gaps[1]).greater(gaps[2]);
     let squares = gaps.dot(gaps);
-    // Where squares are too small or too large to tell, or there is but one, the largest gap is enough.
+    // If squares leave the range, or there is only one, the largest gap is enough.
     let is_one = squares == largest * largest;
     if SQUARES.contains(&squares) && !is_one { Real::sqrt(squares) } else { largest }
 }
@@ -164,8 +173,8 @@ pub fn gap<R: Real>(p: &Corners<R>, q: &Corners<R>) -> f64 {
 /// Sums of squares that have all their digits.
 const SQUARES: RangeInclusive<f64> = f64::MIN_POSITIVE / U64..=f64::MAX;
 
-/// A length of f32 that no nearest pair's volumes are farther apart than, if a pair at `best` is known, and no coordinate is
-/// larger than `largest`.
+/// A length of f32 that bounds the distance of volumes of the nearest pair. A pair at `best` is
+/// known, and no coordinate exceeds `largest`.
 #[inline]
 pub fn bound(best: f64, largest: f32) -> f32 {
     round::up((best + DISTANCE_CERTAIN * (2.0 * largest.wide())) * DISTANCE_UP)

@@ -1,33 +1,43 @@
-//! Signs of determinants in plain floating point, given only where they are certain.
+//! Signs of determinants in plain floating point, returned only if they are certain.
 //!
 //! # The bound of [`Plane::side`]
 //!
-//! With `e = a-c`, `f = b-c`, `g = c-d` the determinant of the rows `a-d, b-d, c-d` is `(e x f) . g`. Let `T_i` be
-//! the exact 2x2 permanent `|e_j f_k| + |e_k f_j|`, `u` the unit roundoff and `eta` half the smallest subnormal.
-//! A difference has relative error `u` and no underflow; a product has relative error `u` or, when it underflows,
-//! absolute error `eta`. On the longest path lie 8 roundings (e, f, product, difference; g, product, two sums), so
+//! Let `e = a-c`, `f = b-c`, `g = c-d`. Then the determinant of the rows `a-d, b-d, c-d` is
+//! `(e x f) . g`. Let `T_i` be the exact 2x2 permanent `|e_j f_k| + |e_k f_j|`, `u` the unit
+//! roundoff and `eta` half the smallest subnormal. A difference has relative error `u` and no
+//! underflow. A product has relative error `u` or, if it underflows, absolute error `eta`. The
+//! longest path has 8 roundings (e, f, product, difference; g, product, two sums), so
 //!
 //! `|det' - det| <= gamma_8 sum T_i |g_i| + 2 eta (1+u)^5 sum |g_i| + 3 eta (1+u)^2`.
 //!
-//! The permanent is computed by the same operations on magnitudes, with `k = ORIENT3D_INNER_UNDERFLOW` added to
-//! each 2x2 part: `perm' >= (1-u)^9 sum T_i |g_i| + k (1-2^-20) sum |g_i| - 3 eta`. Hence with
-//! `c = ORIENT3D_RELATIVE = 8u(1+32u)` and `s = ORIENT_OUTER_UNDERFLOW = 8 eta` the *computed* `c perm' + s` is at
-//! least the error: `c(1-9u)(1-2u) >= 8u(1+20u) >= gamma_8`; `c k >= 4 eta`, or more, against `2 eta (1+u)^5`; and
-//! `8 eta` against `3 eta` above, `eta` for the product with `c`, and `3 c eta`.
-//! Rounding is monotone, so `|det'| <= perm'`: where anything overflows `perm'` is infinite (or a NaN appears), the
-//! comparison fails and the answer is `None`. No range of inputs has to be checked first.
+//! The permanent is computed by the same operations on magnitudes, with
+//! `k = ORIENT3D_INNER_UNDERFLOW` added to each 2x2 part:
+//!
+//! `perm' >= (1-u)^9 sum T_i |g_i| + k (1-2^-20) sum |g_i| - 3 eta`.
+//!
+//! Let `c = ORIENT3D_RELATIVE = 8u(1+32u)` and `s = ORIENT_OUTER_UNDERFLOW = 8 eta`. Then the
+//! *computed* `c perm' + s` is at least the error:
+//! - `c(1-9u)(1-2u) >= 8u(1+20u) >= gamma_8`;
+//! - `c k >= 4 eta`, or more, against `2 eta (1+u)^5`;
+//! - `8 eta` against `3 eta` above, `eta` for the product with `c`, and `3 c eta`.
+//!
+//! Rounding is monotone, so `|det'| <= perm'`. If anything overflows, `perm'` is infinite (or a NaN
+//! appears). Then the comparison fails and the answer is `None`. No range of inputs has to be
+//! checked first.
 //!
 //! [`orient2d_filter`] is the same with 4 roundings and `c = 4u(1+16u)`, `s = 8 eta`.
 //!
 //! # Zero
 //!
-//! A difference is 0 exactly when its operands are equal (gradual underflow). If every product of the expansion
-//! has such a factor, or two of the four points coincide, the determinant is 0 exactly. This makes axis-aligned
-//! coplanar geometry free; any other zero is left to [`super::exact`].
+//! A difference is 0 exactly if its operands are equal (gradual underflow). It makes the
+//! determinant 0 exactly if every product of the expansion has such a factor. So do two equal
+//! points among the four. This makes axis-aligned coplanar geometry free. Any other zero is left to
+//! [`super::exact`].
 
 use crate::math::{Real, Vec3};
 
-/// The plane through three points, ready to say on which side a fourth lies: normal and permanents computed once.
+/// The plane through three points, for tests of the side of a fourth: normal and permanents,
+/// computed once.
 #[derive(Clone, Copy, Debug)]
 pub struct Plane<R> {
     a: Vec3<R>,
@@ -40,7 +50,8 @@ pub struct Plane<R> {
 }
 
 impl<R: Real> Plane<R> {
-    /// Through `a`, `b`, `c`; any three finite points, collinear ones too. 6 differences, 6 products, 9 sums.
+    /// Through `a`, `b`, `c`; any three finite points, collinear ones too. 6 differences, 6
+    /// products, 9 sums.
     #[inline(always)]
     pub fn through(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>) -> Self {
         let (e, f) = (a - c, b - c);
@@ -48,8 +59,8 @@ impl<R: Real> Plane<R> {
         Plane { a, b, c, e, f, normal: Vec3([x.0, y.0, z.0]), permanent: Vec3([x.1, y.1, z.1]) }
     }
 
-    /// The sign of det[a-d, b-d, c-d] where rounding cannot have changed it, else `None`. Never wrong for finite
-    /// points (module text). 3 differences, 7 products, 5 sums in the common case.
+    /// The sign of det[a-d, b-d, c-d] if rounding cannot have changed it, else `None`. Never wrong
+    /// for finite points (module text). 3 differences, 7 products, 5 sums in the common case.
     #[inline]
     pub fn side(&self, d: Vec3<R>) -> Option<i32> {
         let (det, bound) = self.measured(d);
@@ -100,7 +111,8 @@ fn minor<R: Real>(e: Vec3<R>, f: Vec3<R>, i: usize, j: usize) -> (R, R) {
     (x - y, x.abs() + y.abs() + R::ORIENT3D_INNER_UNDERFLOW)
 }
 
-/// The sign of det[a-d, b-d, c-d]: positive when `d` sees `a`, `b`, `c` clockwise. `None` where floats cannot tell.
+/// The sign of det[a-d, b-d, c-d]: positive if `d` sees `a`, `b`, `c` clockwise. `None` if floats
+/// do not decide.
 #[inline]
 pub fn orient3d_filter<R: Real>(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, d: Vec3<R>) -> Option<i32> {
     Plane::through(a, b, c).side(d)
@@ -116,8 +128,8 @@ pub fn plane_of(axis: usize) -> (usize, usize) {
     }
 }
 
-/// The sign of the orientation of `a`, `b`, `c` with coordinate `axis` dropped: that of component `axis` of
-/// `(a-c) x (b-c)`. `None` where floats cannot tell.
+/// The sign of the orientation of `a`, `b`, `c` with coordinate `axis` dropped: that of component
+/// `axis` of `(a-c) x (b-c)`. `None` if floats do not decide.
 #[inline]
 pub fn orient2d_filter<R: Real>(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, axis: usize) -> Option<i32> {
     let (i, j) = plane_of(axis);
@@ -135,8 +147,8 @@ pub fn orient2d_filter<R: Real>(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, axis: usize)
     }
 }
 
-/// The determinant of two rows, which are differences of positions, as computed; and the most that it errs from the
-/// determinant of the exact differences.
+/// The computed determinant of two rows of differences of positions, and its largest error. The
+/// error is relative to the exact differences.
 #[inline]
 pub fn area<R: Real>(e: (R, R), f: (R, R)) -> (R, R) {
     let (x, y) = (e.0 * f.1, e.1 * f.0);

@@ -2,7 +2,8 @@
 
 use crate::math::Real;
 
-/// `b0 (1-t)^3 + b1 t (1-t)^2 + b2 t^2 (1-t) + b3 t^3`: Bernstein coefficients, the inner ones times three.
+/// `b0 (1-t)^3 + b1 t (1-t)^2 + b2 t^2 (1-t) + b3 t^3`: Bernstein coefficients, the inner ones
+/// times three.
 #[derive(Clone, Copy, Debug)]
 pub struct Cubic<S>(pub [S; 4]);
 
@@ -21,8 +22,8 @@ impl<S: Real> Cubic<S> {
         [b - three * a, two * (three * a - two * b + c), three * (d - c + b - a)]
     }
 
-    /// 0, the critical points within (0, 1) and 1, ascending: between two neighbours the cubic is monotone, up to
-    /// rounding. Where there are fewer, 1 is repeated.
+    /// 0, the critical points within (0, 1), and 1, ascending. Between two neighbours the cubic is
+    /// monotone, up to rounding. If there are fewer, 1 is repeated.
     pub fn pieces(&self) -> [S; 4] {
         let (mut at, mut n) = ([S::ZERO, S::ONE, S::ONE, S::ONE], 1);
         let [a, b, _] = quadratic(self.slope());
@@ -36,9 +37,9 @@ impl<S: Real> Cubic<S> {
         at
     }
 
-    /// The root between `low` and `high`, where the cubic has different strict signs, `below` at `low`:
-    /// Newton's steps, kept in a shrinking bracket by bisection. To the last bit or so; 4 to 8 steps as a rule,
-    /// never more than [`Self::STEPS`].
+    /// The root between `low` and `high`, at which the cubic has different strict signs, `below` at
+    /// `low`: Newton's steps, kept in a shrinking bracket by bisection. To the last bit or so; 4 to
+    /// 8 steps as a rule, never more than [`Self::STEPS`].
     pub fn root(&self, mut low: S, mut high: S, below: bool) -> S {
         let (half, k) = (S::of(0.5), self.slope());
         let mut t = half * (low + high);
@@ -67,9 +68,9 @@ impl<S: Real> Cubic<S> {
     const STEPS: usize = 80;
 }
 
-/// The real roots of `k0 + k1 t + k2 t^2` and the place of its extremum; what does not exist is infinite or NaN, so
-/// every comparison with it must be of the kind that then fails. No degree is special: a zero `k2` divides to
-/// infinity. Neither root cancels.
+/// The real roots of `k0 + k1 t + k2 t^2` and the place of its extremum. Missing ones are infinite
+/// or NaN, so every comparison with them must be of the kind that then fails. No degree is special:
+/// a zero `k2` divides to infinity. Neither root cancels.
 #[inline]
 pub fn quadratic<S: Real>([k0, k1, k2]: [S; 3]) -> [S; 3] {
     let d = k1 * k1 - S::of(4.0) * k0 * k2;

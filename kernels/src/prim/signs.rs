@@ -1,29 +1,34 @@
-//! Where the signs of determinants come from: one decision logic, several sources.
+//! Sources of the signs of determinants: one decision logic, several sources.
 
 use super::exact::{orient2d_exact, orient3d_exact};
 use super::orient::{Plane, orient2d_filter};
 use crate::math::{Real, Vec3};
 
-/// A source of signs. Each sign is right or `None`; so a decision made of them is right or undecided.
+/// A source of signs. Each sign is right or `None`; so a decision made of them is right or
+/// undecided.
 pub trait Signs<R: Real> {
     /// The sign of det[a-d, b-d, c-d].
     fn orient3d(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, d: Vec3<R>) -> Option<i32>;
-    /// The sign of the orientation of three points with coordinate `axis` dropped (1, 2 of 0; 2, 0 of 1; 0, 1 of 2).
+    /// The sign of the orientation of three points with coordinate `axis` dropped. Coordinates are
+    /// (1, 2), (2, 0) or (0, 1).
     fn orient2d(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, axis: usize) -> Option<i32>;
-    /// `orient3d(t[0], t[1], t[2], p)` for three points: what a source can do cheaper in one go.
+    /// `orient3d(t[0], t[1], t[2], p)` for three points: some sources do them cheaper together.
     #[inline]
     fn sides(t: &[Vec3<R>; 3], p: &[Vec3<R>; 3]) -> [Option<i32>; 3] {
         p.map(|d| Self::orient3d(t[0], t[1], t[2], d))
     }
 }
 
-/// Floats of the input's precision with a proven bound; `None` where they cannot tell. See [`super::orient`].
+/// Floats of the input's precision with a proven bound; `None` if they do not decide. See
+/// [`super::orient`].
 pub struct Filter;
-/// f64 with a proven bound, from f32 input: what the f32 filter leaves, this nearly always decides.
+/// f64 with a proven bound, from f32 input: it nearly always decides the pairs that the f32 filter
+/// leaves.
 pub struct Wide;
 /// Integers, never `None`. See [`super::exact`].
 pub struct Exact;
-/// [`Filter`], then [`Exact`] for the very signs that it leaves: never `None`, and what a CPU should use.
+/// [`Filter`], then [`Exact`] for the very signs that it leaves: never `None`, and the best for a
+/// CPU.
 pub struct Certain;
 
 impl<R: Real> Signs<R> for Filter {

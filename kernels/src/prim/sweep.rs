@@ -1,5 +1,6 @@
-//! The boxes around the features of two triangles, or around their ways, and which of them come within a gap. Without branches: some lane of
-//! a GPU would take each, and a CPU makes vectors of it. Some 500 operations.
+//! The boxes around the features of two triangles, or around their ways, and which of them come
+//! within a gap. Without branches: some lane of a GPU would take each, and a CPU makes vectors of
+//! it. Some 500 operations.
 
 use super::cubic::Moving;
 use super::isolate::pair::Window;
@@ -22,8 +23,8 @@ impl<R: Real> Swept<R> {
     fn merge(self, o: Self) -> Self {
         Swept { lo: self.lo.lesser(o.lo), hi: self.hi.greater(o.hi) }
     }
-    /// In bit 31, whether two boxes share no point. The ends of [`swept`] are never -0 at the upper side, so a difference of
-    /// two that are equal is +0.
+    /// In bit 31, whether two boxes share no point. The upper ends of [`swept`] are never -0, so a
+    /// difference of two equal ends is +0.
     #[inline(always)]
     fn apart(&self, o: &Self) -> u32 {
         let (x, y) = (o.hi - self.lo, self.hi - o.lo);
@@ -46,18 +47,21 @@ fn signs<R: Real>(x: Vec3<R>, y: Vec3<R>) -> u32 {
 /// The corners of a triangle.
 pub type Corners<R> = [Moving<R>; 3];
 
-/// A box around the way of each corner of two triangles, over the part of the step in which the boxes around the triangles
-/// come within the gap, until the horizon; those of the first grown by the gap and by all roundings. And whether there is such a part.
+/// Boxes around the paths of the corners of two triangles, over a part of the step. Also whether
+/// there is such a part. In it the boxes around the triangles come within the gap, and it ends at
+/// the horizon. Boxes of the first triangle grow by the gap and by all roundings.
 ///
-/// A corner at a time of it errs by `3.1u` of the larger of its ends (the complement, two products, a sum), and growing by
-/// `u` more: `INCLUSION_INPUT` of the largest coordinate for each of both triangles. A product that underflows is within
-/// `INCLUSION_UNDERFLOW`.
+/// A corner at such a time errs by `3.1u` of the larger of its ends: the complement, two products,
+/// a sum. Growing adds `u`: `INCLUSION_INPUT` of the largest coordinate for each of both triangles.
+/// A product that underflows is within `INCLUSION_UNDERFLOW`.
 ///
-/// If there is a horizon, a pair is left out only if the boxes that `Pair::window` moves with its features meet behind it, or
-/// never, which that window finds too. Those boxes mix the least coordinates of both ends, so at `t` they reach beyond the
-/// corners there by at most `t` of the extent at the end: until the horizon, that much is grown by. And the part begins
-/// `3 ISOLATE_WINDOW` sooner: features whose boxes meet only before it, and those of their triangles only behind that, have
-/// windows that are empty by more than they are widened.
+/// With a horizon, a pair may be left out in two cases. The boxes that `Pair::window` moves with
+/// its features first meet behind the horizon. Or they never meet, which that window finds, too.
+/// Those boxes mix the least coordinates of both ends. So at `t` they reach beyond the corners
+/// there by at most `t` of the extent at the end. Boxes grow by that much, until the horizon. The
+/// part begins `3 ISOLATE_WINDOW` sooner. Suppose boxes of features meet only before the part, and
+/// those of their triangles only behind that. Then their windows are empty by more than they are
+/// widened.
 #[inline(always)]
 fn swept<R: Real>(p: &Corners<R>, q: &Corners<R>, gap: R, horizon: R) -> (bool, [[Swept<R>; 3]; 2]) {
     let mut window = Window::new();
@@ -66,7 +70,7 @@ fn swept<R: Real>(p: &Corners<R>, q: &Corners<R>, gap: R, horizon: R) -> (bool, 
     } else {
         (R::ZERO, R::ZERO)
     };
-    // One axis after the other, each by a number that the compiler knows: nothing goes to memory on the GPU.
+    // One axis after the other, each by a constant number: nothing goes to memory on the GPU.
     let grow = Vec3([
         axis(0, &mut window, p, q, (gap, cut)),
         axis(1, &mut window, p, q, (gap, cut)),
@@ -79,8 +83,8 @@ fn swept<R: Real>(p: &Corners<R>, q: &Corners<R>, gap: R, horizon: R) -> (bool, 
     (begins, [ways(p, part, grow), ways(q, part, Vec3([R::ZERO; 3]))])
 }
 
-/// Clips the part of the step by one axis; by how much boxes grow on it: the gap, roundings, and that part of the extents at the
-/// end of the step.
+/// Clips the part of the step by one axis; by how much boxes grow on it: the gap, roundings, and
+/// that part of the extents at the end of the step.
 #[inline(always)]
 fn axis<R: Real>(k: usize, window: &mut Window<R>, p: &Corners<R>, q: &Corners<R>, (gap, part): (R, R)) -> R {
     let (p, q) = (range(p, k), range(q, k));
@@ -126,16 +130,17 @@ pub fn more<R: Real>(gap: f64) -> R {
     if gap > 0.0 { R::of(gap) * R::INCLUSION_UP + R::INCLUSION_UNDERFLOW } else { R::ZERO }
 }
 
-/// The tests of two triangles whose features have boxes that come within a gap, given as [`more`] of it, and not first behind the
-/// horizon: a time in (0, 1].
+/// The tests of two triangles whose features' boxes come within a gap, and not first behind the
+/// horizon. The gap is [`more`] of the given one; the horizon is a time in (0, 1].
 #[inline(always)]
 pub fn meeting<R: Real>(p: &Corners<R>, q: &Corners<R>, gap: R, horizon: R) -> u32 {
     let (meet, boxes) = swept(p, q, gap, horizon);
     if meet { sharing(&boxes, Swept::apart) } else { 0 }
 }
 
-/// The same of two triangles at rest, by their corners; the gap is above 0, and [`more`] of it. Boxes are not grown, so that what is
-/// far from the origin has no more candidates than what is near it: a difference rounds to no more than the gap if it is none.
+/// The same of two triangles at rest, by their corners; the gap is above 0, and [`more`] of it.
+/// Boxes do not grow, so the number of candidates does not depend on the distance from the origin.
+/// A difference within the gap rounds to at most the gap.
 #[inline(always)]
 pub fn meeting_at_rest<R: Real>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3], gap: R) -> u32 {
     sharing(&[points(p), points(q)], |x, y| x.apart_by(y, gap))
@@ -147,8 +152,9 @@ fn points<R: Real>(&[x, y, z]: &[Vec3<R>; 3]) -> [Swept<R>; 3] {
     [Swept { lo: x, hi: x }, Swept { lo: y, hi: y }, Swept { lo: z, hi: z }]
 }
 
-/// The tests whose features have boxes that share a point: bits 0 to 2 a vertex of p and q, 3 to 5 a vertex of q and p,
-/// 6 + 3 i + j edge i of p and j of q. By signs of differences, as half of a GPU's lanes compare at a time.
+/// The tests whose features' boxes share a point. Bits 0 to 2: a vertex of p and q. Bits 3 to 5: a
+/// vertex of q and p. Bits 6 + 3 i + j: edge i of p and edge j of q. By signs of differences, since
+/// only half of a GPU's lanes compare at a time.
 #[inline(always)]
 fn sharing<R: Real>([p, q]: &[[Swept<R>; 3]; 2], apart_of: impl Fn(&Swept<R>, &Swept<R>) -> u32) -> u32 {
     let (of_p, of_q) = (p[0].merge(p[1]).merge(p[2]), q[0].merge(q[1]).merge(q[2]));

@@ -1,8 +1,8 @@
 //! Whether two closed triangles share a point, by signs of determinants alone.
 //!
-//! The answer has no tolerance and constructs no point: it is a function of exact signs, so with a source that
-//! never errs it is exact, and the order of corners and of triangles cannot change it. Touching counts. A triangle
-//! without area is the segment or point that it is.
+//! The answer has no tolerance and constructs no point: it is a function of exact signs. With a
+//! source that never errs it is exact. It does not depend on the order of corners and triangles.
+//! Touching counts. A triangle without area is the segment or point that it is.
 
 pub use super::flat::{boxes_meet, point_on_triangle, segments_meet};
 pub use super::signs::{Certain, Exact, Filter, Signs, Wide};
@@ -13,12 +13,14 @@ use crate::math::{Real, Vec3};
 
 /// Whether the closed triangles `p` and `q` share a point; `None` only if a needed sign is.
 ///
-/// - All of one triangle strictly on one side of the other's plane: apart. 2 planes, 6 signs, the common case.
-/// - All six signs zero: one plane, or neither has area (a triangle with area in the other's plane makes both
-///   triples zero; one without area makes the other's triple zero): `prim::flat`.
-/// - Else two triangles meet where an edge of one pierces the other. An edge within the other's plane is left out:
-///   if it holds a common point, so does an end of it (then a neighbouring edge that leaves the plane finds it) or
-///   an edge of the other that crosses it. If one of the two is a segment or point, only its edges are asked.
+/// - All of one triangle strictly on one side of the other's plane: apart. 2 planes, 6 signs, the
+///   common case.
+/// - All six signs zero: one plane, or neither has area; `prim::flat`. (A triangle with area in the
+///   other's plane makes both triples zero. One without area makes the other's triple zero.)
+/// - Else two triangles meet if an edge of one pierces the other. An edge within the other's plane
+///   is left out. If it has a common point, so does an end of it, or a crossing edge of the other.
+///   In the first case a neighbouring edge that leaves the plane finds the point. If one of the two
+///   is a segment or point, only its edges are tested.
 #[inline]
 pub fn meets<R: Real, S: Signs<R>>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> Option<bool> {
     let q_of_p = S::sides(p, q);
@@ -32,15 +34,16 @@ pub fn meets<R: Real, S: Signs<R>>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> Option
     meets_on::<R, S>(p, q, known(&p_of_q)?, known(&q_of_p)?)
 }
 
-/// Whether [`meets`] by [`Filter`] says at its first two questions that the triangles are apart: all of one is strictly on one
-/// side of the other's plane. Without branches.
+/// Whether [`meets`] by [`Filter`] finds the triangles apart by its first two tests: all of one is
+/// strictly on one side of the other's plane. Without branches.
 #[inline(always)]
 pub fn parted<R: Real>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> bool {
     Plane::through(p[0], p[1], p[2]).beside(q) | Plane::through(q[0], q[1], q[2]).beside(p)
 }
 
-/// The signs that decide two triangles, unless they lie in one plane: of `q`'s corners about `p`'s plane, of `p`'s about `q`'s, and of each
-/// edge of `p` about each of `q`. They do not depend on each other: lanes can work them out side by side.
+/// The number of signs that decide two triangles, unless they are coplanar: of `q`'s corners about
+/// `p`'s plane, of `p`'s about `q`'s, and of each edge of `p` about each of `q`. They are
+/// independent: lanes can compute them side by side.
 pub const SIGNS: u32 = 15;
 
 /// Sign number `which` of those of [`SIGNS`].
@@ -56,7 +59,8 @@ pub fn sign<R: Real, S: Signs<R>>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3], which: u32
     S::orient3d(a, b, c, d)
 }
 
-/// What [`meets`] says of triangles with these signs, in the order of [`sign`]; `None` where it asks whether they meet in a plane.
+/// The result of [`meets`] for triangles with these signs, in the order of [`sign`]. `None` if it
+/// depends on a test within a plane.
 pub fn decided(signs: &[i32; SIGNS as usize]) -> Option<bool> {
     let of = |i: usize| [signs[3 * i], signs[3 * i + 1], signs[3 * i + 2]];
     let (q_of_p, p_of_q) = (of(0), of(1));
@@ -95,7 +99,8 @@ fn known(s: &[Option<i32>; 3]) -> Option<[i32; 3]> {
     Some([s[0]?, s[1]?, s[2]?])
 }
 
-/// The rest of [`meets`], with the signs of `p`'s corners about `q`'s plane and the other way round.
+/// The rest of [`meets`], with the signs of `p`'s corners about `q`'s plane and the other way
+/// round.
 fn meets_on<R: Real, S: Signs<R>>(
     p: &[Vec3<R>; 3],
     q: &[Vec3<R>; 3],
@@ -131,8 +136,9 @@ fn leaves(side: [i32; 3], i: usize) -> bool {
     from * to <= 0 && (from, to) != (0, 0)
 }
 
-/// Whether an edge of `p` that leaves the plane of `q` meets `q`, which has area; `side` is of `p`'s corners.
-/// By value and out of line, as few pairs come here: the common path keeps its corners in registers.
+/// Whether an edge of `p` that leaves the plane of `q` meets `q`, which has area. `side` is of
+/// `p`'s corners. By value and out of line, as few pairs come here. So the common path keeps its
+/// corners in registers.
 #[inline(never)]
 fn edges_pierce<R: Real, S: Signs<R>>(p: [Vec3<R>; 3], side: [i32; 3], q: [Vec3<R>; 3]) -> Option<bool> {
     let mut unsure = false;
@@ -149,8 +155,8 @@ fn edges_pierce<R: Real, S: Signs<R>>(p: [Vec3<R>; 3], side: [i32; 3], q: [Vec3<
     if unsure { None } else { Some(false) }
 }
 
-/// Whether the line through `u` and `v`, which crosses the plane of `q` in one point, does so within `q`: it then
-/// passes all three edges on the same side, or touches.
+/// Whether the line through `u` and `v`, which crosses the plane of `q` in one point, does so
+/// within `q`: it then passes all three edges on the same side, or touches.
 #[inline]
 fn line_stabs<R: Real, S: Signs<R>>(u: Vec3<R>, v: Vec3<R>, q: &[Vec3<R>; 3]) -> Option<bool> {
     let (mut left, mut right, mut unsure) = (false, false, false);

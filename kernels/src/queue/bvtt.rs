@@ -1,12 +1,14 @@
-//! The bounding volume test tree: the pairs of nodes that a traversal of a tree with itself may come to,
-//! and who is whose parent there.
+//! The bounding volume test tree: the pairs of nodes that a traversal of a tree with itself may
+//! visit, and the parent of each pair.
 //!
-//! A pair (a, b) descends into the children of one of its nodes: the one with the smaller index, which is the one nearer
-//! the root since nodes lie in level order; the other where that one is a leaf. A node paired
-//! with itself descends into three pairs: left with left, left with right, right with right.
+//! A pair (a, b) descends into the children of one of its nodes: the one with the smaller index.
+//! That is the one nearer the root, since nodes are in level order. If it is a leaf, the other
+//! descends. A node paired with itself descends into three pairs: left with left, left with right,
+//! right with right.
 //!
-//! So every pair has one parent, and it can be told from the pair: on a path the nodes that were descended ascend, for
-//! the smaller of two always goes first and is replaced by a larger. The last one is the larger of the two parents.
+//! So every pair has one parent, and the pair determines it. On a path the descended nodes ascend:
+//! the smaller of two goes first and is replaced by a larger one. The last one is the larger of the
+//! two parents.
 
 use crate::abi::Pair;
 
@@ -16,8 +18,8 @@ pub fn descends_in_a(pair: Pair, a_is_leaf: bool, b_is_leaf: bool) -> bool {
     !a_is_leaf & (b_is_leaf | (pair.a <= pair.b))
 }
 
-/// The parent of a pair, from the parents of its nodes ([`crate::abi::NONE`] for the root's). Not to be asked of the root
-/// with itself.
+/// The parent of a pair, from the parents of its nodes ([`crate::abi::NONE`] for the root's). The
+/// pair of the root with itself has none and is not allowed.
 #[inline]
 pub fn parent(pair: Pair, parent_a: u32, parent_b: u32) -> Pair {
     use crate::abi::NONE;

@@ -1,4 +1,5 @@
-//! Work units that wait: the stack of one walk, a block's buffer, a block's queue; and the tree that pairs of nodes form.
+//! Work units that wait: the stack of one walk, a block's buffer, a block's queue; and the tree
+//! that pairs of nodes form.
 
 pub mod bvtt;
 pub mod pair;
@@ -15,8 +16,9 @@ pub const ROOM: usize = MAX_LEVELS as usize;
 /// The memory of a stack; see [`crate::exec::Block::words`].
 pub type Words = [MaybeUninit<u32>; ROOM];
 
-/// A stack of work that cannot overflow: a depth-first walk leaves at most one waiting entry a level behind. Between
-/// phases its words and its length lie in slots of their own, so that nothing copies the words.
+/// A stack of work that cannot overflow: a depth-first walk leaves at most one sibling a level
+/// behind. Between phases its words and its length are in slots of their own. So nothing copies the
+/// words.
 pub struct Stack<'a> {
     words: &'a mut Words,
     len: &'a mut u32,
@@ -26,7 +28,8 @@ impl<'a> Stack<'a> {
     /// A stack of the first `len` entries of `words`.
     ///
     /// # Safety
-    /// As many were pushed to these words, and a walk pushes no more than [`ROOM`]: a tree has at most [`MAX_LEVELS`] levels.
+    /// As many were pushed to these words, and a walk pushes no more than [`ROOM`]: a tree has at
+    /// most [`MAX_LEVELS`] levels.
     #[inline(always)]
     pub unsafe fn new(words: &'a mut Words, len: &'a mut u32) -> Self {
         Stack { words, len }
@@ -36,7 +39,7 @@ impl<'a> Stack<'a> {
     pub fn len(&self) -> u32 {
         *self.len
     }
-    /// Whether no entry waits.
+    /// Whether the stack is empty.
     #[inline]
     pub fn is_empty(&self) -> bool {
         *self.len == 0
@@ -45,7 +48,7 @@ impl<'a> Stack<'a> {
     #[inline]
     pub fn push(&mut self, item: u32) {
         debug_assert!((*self.len as usize) < ROOM);
-        // SAFETY: a walk holds at most ROOM entries: who made the stack promised it.
+        // SAFETY: a walk holds at most ROOM entries, as the caller of `new` promised.
         unsafe { self.words.get_unchecked_mut(*self.len as usize).write(item) };
         *self.len += 1;
     }
@@ -66,34 +69,35 @@ impl<'a> Stack<'a> {
     }
 }
 
-/// A block's buffer of pairs in shared memory. Lanes append at any time; when it is full they wait for a flush.
+/// A block's buffer of pairs in shared memory. Lanes append at any time; when it is full they wait
+/// for a flush.
 #[derive(Clone, Copy)]
 pub struct Buffer {
     /// The pairs.
     pub pairs: Shared<[u32; 2]>,
-    /// One word: how many were asked to be put in.
+    /// One word: the number of pairs put in, past the end too.
     pub fill: Shared<u32>,
 }
 
 impl Buffer {
-    /// Asks for places of `count` pairs: the first of them, which may lie past the end.
+    /// Takes places for `count` pairs. Returns the first, which may be past the end.
     #[inline]
-    pub fn take<L: Lane>(&self, l: &L, count: u32) -> u32 {
-        l.shared_add(self.fill, 0, count)
+    pub fn take<L: Lane>(&self, lane: &L, count: u32) -> u32 {
+        lane.shared_add(self.fill, 0, count)
     }
-    /// Puts a pair in its place; false when that lies past the end.
+    /// Puts a pair in its place; false if that is past the end.
     #[inline]
-    pub fn put<L: Lane>(&self, l: &L, place: u32, pair: Pair) -> bool {
+    pub fn put<L: Lane>(&self, lane: &L, place: u32, pair: Pair) -> bool {
         let room = place < self.pairs.len;
         if room {
-            l.put(self.pairs, place, [pair.a, pair.b]);
+            lane.put(self.pairs, place, [pair.a, pair.b]);
         }
         room
     }
     /// A pair that was put in.
     #[inline]
-    pub fn get<L: Lane>(&self, l: &L, i: u32) -> Pair {
-        let [a, b] = l.get(self.pairs, i);
+    pub fn get<L: Lane>(&self, lane: &L, i: u32) -> Pair {
+        let [a, b] = lane.get(self.pairs, i);
         Pair { a, b }
     }
 }

@@ -5,15 +5,15 @@ use crate::bv::Volume;
 use crate::exec::Lane;
 use crate::queue::bvtt;
 
-/// The root with itself, where every descent begins.
+/// The root with itself: the start of every descent.
 pub const ROOTS: Pair = Pair { a: ROOT, b: ROOT };
 
-/// The pairs below a unit, at most three, and what each of them is (bit k: pair k).
+/// The pairs below a unit, at most three, and the kind of each of them (bit k: pair k).
 #[derive(Clone, Copy)]
 pub struct ChildPairs {
     /// The pairs.
     pub nodes: [Pair; 3],
-    /// Their triangles, where both nodes are leaves; never the third.
+    /// Their triangles, if both nodes are leaves; never the third.
     pub faces: [Pair; 2],
     /// They overlap and go deeper: units.
     pub units: u32,
@@ -33,9 +33,10 @@ impl ChildPairs {
         ends: 0,
     };
 
-    /// Says of pair `k`, of nodes `p` and `q`, what it is, from whether it overlaps. Its triangles are named in ascending order.
+    /// Classifies pair `k`, of nodes `p` and `q`, by whether it overlaps. Its triangles are named
+    /// in ascending order.
     #[inline(always)]
-    fn note<V>(&mut self, k: usize, overlap: bool, (p, q): (&Node<V>, &Node<V>)) {
+    fn note<V>(&mut self, k: usize, overlap: bool, p: &Node<V>, q: &Node<V>) {
         let leaves = p.is_leaf() & q.is_leaf();
         let bit = 1 << k;
         self.units |= if overlap & !leaves { bit } else { 0 };
@@ -46,19 +47,20 @@ impl ChildPairs {
     }
 }
 
-/// The pairs below `unit` that are asked about. A leaf with itself is no pair.
+/// The pairs below `unit` that the filters allow. A leaf with itself is no pair.
 #[inline(always)]
-pub fn below<V: Volume, L: Lane>(l: &L, to: &PairArgs<V>, unit: Pair) -> ChildPairs {
+pub fn below<V: Volume, L: Lane>(lane: &L, to: &PairArgs<V>, unit: Pair) -> ChildPairs {
     let mut below = ChildPairs::NONE;
-    let (a, b) = (l.read(to.nodes, unit.a), l.read(to.nodes, unit.b));
+    let (a, b) = (lane.read(to.nodes, unit.a), lane.read(to.nodes, unit.b));
     if a.is_leaf() & b.is_leaf() {
         return below;
     }
     let together = unit.a == unit.b;
     let in_a = together | bvtt::descends_in_a(unit, a.is_leaf(), b.is_leaf());
-    // One path for both nodes, by values: a volume's test is long, and references into a choice would be memory.
+    // One path for both nodes, by values: a volume's test is long, and references into a choice
+    // would be memory.
     let link = if in_a { a.link } else { b.link };
-    let (left, right) = (l.read(to.nodes, link), l.read(to.nodes, link + 1));
+    let (left, right) = (lane.read(to.nodes, link), lane.read(to.nodes, link + 1));
     let other = if together {
         right
     } else if in_a {
@@ -67,7 +69,8 @@ pub fn below<V: Volume, L: Lane>(l: &L, to: &PairArgs<V>, unit: Pair) -> ChildPa
         a
     };
     let mut into_left = left.volume.overlaps(&other.volume);
-    // Of the pairs left with other, right with other; together also of left and right with themselves.
+    // For the pairs (left, other) and (right, other); with `together` also (left, left) and (right,
+    // right).
     let mut allowed = [true; 4];
     if !to.filters.nodes.is_empty() {
         let node = if together {
@@ -77,15 +80,15 @@ pub fn below<V: Volume, L: Lane>(l: &L, to: &PairArgs<V>, unit: Pair) -> ChildPa
         } else {
             unit.a
         };
-        let [left, right, other] = [link, link + 1, node].map(|node| to.filters.of(l, node));
+        let [left, right, other] = [link, link + 1, node].map(|node| to.filters.of(lane, node));
         allowed = [(left, other), (right, other), (left, left), (right, right)]
-            .map(|(p, q)| to.filters.allows(l, p, q));
+            .map(|(p, q)| to.filters.allows(lane, p, q));
     }
     into_left &= allowed[0];
     if together {
         let (x, y) = (link, link + 1);
         below.nodes = [Pair { a: x, b: y }, Pair { a: x, b: x }, Pair { a: y, b: y }];
-        below.note(0, into_left, (&left, &other));
+        below.note(0, into_left, &left, &other);
         let still = to.flags.has(TraverseFlags::GRAFTED) & (unit.a == ROOT);
         below.units |= if left.is_leaf() | still | !allowed[2] { 0 } else { 2 };
         below.units |= if right.is_leaf() | !allowed[3] { 0 } else { 4 };
@@ -94,8 +97,8 @@ pub fn below<V: Volume, L: Lane>(l: &L, to: &PairArgs<V>, unit: Pair) -> ChildPa
         let child = |node| if in_a { Pair { a: node, b: unit.b } } else { Pair { a: unit.a, b: node } };
         below.nodes[0] = child(link);
         below.nodes[1] = child(link + 1);
-        below.note(0, into_left, (&left, &other));
-        below.note(1, into_right, (&right, &other));
+        below.note(0, into_left, &left, &other);
+        below.note(1, into_right, &right, &other);
     }
     below
 }

@@ -1,59 +1,60 @@
-//! # Balance: queues of work → as many units in each
-//! Paper    section 6.2: between two launches of the traversal, units are moved from full queues to empty ones.
+//! # Balance: queues of work → equal numbers of units in each
+//! Paper    Lauterbach's thesis, section 6.2: units move from full queues to empty ones between two
+//!          launches of the traversal.
 //! Launch   `copy`: one block.
-//! Reads    all units, and how many each segment holds.
+//! Reads    all units; the number of units in each segment.
 //! Writes   the same units in the same order, cut into even segments.
-//! Before   a round of `traverse_queue` is over and no segment was too short.
-//! After    segments differ by one unit at most.
+//! Before   a round of `traverse_queue` is complete; no segment overflowed.
+//! After    segments = even cuts of the list of all units; sizes differ by at most 1.
 //! Room     a segment that held the longest queue holds an even one.
-//! Departs  the paper moves single units between queues; here all are copied, each lane its own.
-//! Cost     16 B a unit, and a search among the segments.
+//! Departs  the paper moves single units between queues. Here all units are copied, one a lane.
+//! Cost     16 B a unit, and a binary search among the segments.
 
 use crate::abi::{BalanceArgs, counter};
 use crate::exec::{Block, Lane, Slot};
 
 /// Copies all units into even segments.
-pub fn copy<B: Block>(b: &mut B, a: &BalanceArgs) {
-    let (lanes, cores) = (b.lanes(), a.cores);
-    let mut counts = b.slot(0u32);
+pub fn copy<B: Block>(block: &mut B, args: &BalanceArgs) {
+    let (lanes, cores) = (block.lanes(), args.cores);
+    let mut counts = block.slot(0u32);
     let (mut total, mut base) = (0u64, 0);
     while base < cores {
-        b.phase(|l| {
-            let core = base + l.lane();
-            *counts.of(l) = if core < cores { l.read(a.counts, core) as u32 } else { 0 };
+        block.phase(|lane| {
+            let core = base + lane.lane();
+            *counts.of(lane) = if core < cores { lane.read(args.counts, core) as u32 } else { 0 };
         });
-        let sum = b.scan(&mut counts);
-        b.phase(|l| {
-            let core = base + l.lane();
+        let sum = block.scan(&mut counts);
+        block.phase(|lane| {
+            let core = base + lane.lane();
             if core < cores {
-                l.write(a.starts, core, total + *counts.of(l) as u64);
+                lane.write(args.starts, core, total + *counts.of(lane) as u64);
             }
         });
         total += sum as u64;
         base += lanes;
     }
     let share = |core: u32| core as u64 * total / cores as u64;
-    b.phase(|l| {
-        let mut core = l.lane();
+    block.phase(|lane| {
+        let mut core = lane.lane();
         while core < cores {
-            l.write(a.even_counts, core, share(core + 1) - share(core));
+            lane.write(args.even_counts, core, share(core + 1) - share(core));
             core += lanes;
         }
-        let mut i = l.lane() as u64;
+        let mut i = lane.lane() as u64;
         while i < total {
-            // The last segment that begins at or before unit i: empty ones begin where the next does.
+            // The last segment that begins at or before unit i. An empty one begins with the next.
             let (mut low, mut high) = (0, cores);
             while high - low > 1 {
                 let middle = low + (high - low) / 2;
-                if l.read(a.starts, middle) <= i { low = middle } else { high = middle }
+                if lane.read(args.starts, middle) <= i { low = middle } else { high = middle }
             }
-            let unit = l.read(a.units, low * a.segment + (i - l.read(a.starts, low)) as u32);
+            let unit = lane.read(args.units, low * args.segment + (i - lane.read(args.starts, low)) as u32);
             let core = (((i + 1) * cores as u64 - 1) / total) as u32;
-            l.write(a.even, core * a.segment + (i - share(core)) as u32, unit);
+            lane.write(args.even, core * args.segment + (i - share(core)) as u32, unit);
             i += lanes as u64;
         }
-        if l.lane() == 0 {
-            a.counters.add(l, counter::MOVES, total);
+        if lane.lane() == 0 {
+            args.counters.add(lane, counter::MOVES, total);
         }
     });
 }

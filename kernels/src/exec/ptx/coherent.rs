@@ -1,5 +1,6 @@
-//! Device memory that blocks of one launch share: relaxed accesses of the whole GPU, which meet in its L2 cache, and
-//! the fence. Their assembly is neither pure nor silent about memory, so the compiler keeps each where it stands.
+//! Device memory that blocks of one launch share: relaxed accesses of the whole GPU, which meet in
+//! its L2 cache, and the fence. Their assembly is neither pure nor silent about memory, so the
+//! compiler keeps each in its place.
 
 use crate::exec::whole_words;
 use bytemuck::Pod;
@@ -13,10 +14,12 @@ pub fn fence() {
     unsafe { asm!("fence.acq_rel.gpu;", options(nostack)) }
 }
 
-/// Sets `at` to `new` if it holds `current`; the value before. (The compiler's own is of the whole system's scope.)
+/// Sets `at` to `new` if it holds `current`; the value before. (The compiler's own is of the whole
+/// system's scope.)
 ///
 /// # Safety
-/// `at` is aligned device memory, valid for reads and writes; what meets it is relaxed or atomic too.
+/// `at` is aligned device memory, valid for reads and writes; accesses that meet it are relaxed or
+/// atomic, too.
 #[inline(always)]
 pub unsafe fn compare_and_swap(at: *mut u64, current: u64, new: u64) -> u64 {
     let before: u64;
@@ -31,7 +34,8 @@ pub unsafe fn compare_and_swap(at: *mut u64, current: u64, new: u64) -> u64 {
 /// A load past the L1 cache, in the widest pieces that `T`'s alignment allows.
 ///
 /// # Safety
-/// `from` is aligned device memory, valid for reads; what meets it is relaxed or atomic too.
+/// `from` is aligned device memory, valid for reads; accesses that meet it are relaxed or atomic,
+/// too.
 #[inline(always)]
 pub unsafe fn load_coherent<T: Pod>(from: *const T) -> T {
     let (words, align) = (const { whole_words::<T>() }, align_of::<T>());
@@ -40,7 +44,8 @@ pub unsafe fn load_coherent<T: Pod>(from: *const T) -> T {
     let mut word = 0;
     while word < words {
         let at = from as u64 + 4 * word as u64;
-        // SAFETY: the pieces lie in `from` and in `value`, and are aligned: sizes are multiples of alignments.
+        // SAFETY: the pieces are within `from` and `value`, and aligned: sizes are multiples of
+        // alignments.
         unsafe {
             if align >= 16 {
                 let (a, b): (u64, u64);
@@ -67,10 +72,11 @@ pub unsafe fn load_coherent<T: Pod>(from: *const T) -> T {
     unsafe { value.assume_init() }
 }
 
-/// A store to where all blocks see it, in the widest pieces that `T`'s alignment allows.
+/// A store that all blocks see, in the widest pieces that `T`'s alignment allows.
 ///
 /// # Safety
-/// `to` is aligned device memory, valid for writes; what meets it is relaxed or atomic too.
+/// `to` is aligned device memory, valid for writes; accesses that meet it are relaxed or atomic,
+/// too.
 #[inline(always)]
 pub unsafe fn store_coherent<T: Pod>(to: *mut T, value: T) {
     let (words, align) = (const { whole_words::<T>() }, align_of::<T>());
@@ -78,7 +84,8 @@ pub unsafe fn store_coherent<T: Pod>(to: *mut T, value: T) {
     let mut word = 0;
     while word < words {
         let at = to as u64 + 4 * word as u64;
-        // SAFETY: the pieces lie in `value` and in `to`, and are aligned: sizes are multiples of alignments.
+        // SAFETY: the pieces are within `value` and `to`, and aligned: sizes are multiples of
+        // alignments.
         unsafe {
             if align >= 16 {
                 let [a, b] = from.add(word).cast::<[u64; 2]>().read();

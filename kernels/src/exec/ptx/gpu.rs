@@ -23,8 +23,8 @@ fn panic(_: &core::panic::PanicInfo) -> ! {
     unsafe { core::arch::nvptx::trap() }
 }
 
-/// The block of `LANES` threads that this thread belongs to. A block of one warp has no barriers but the warp's, and its collectives
-/// pass values from register to register.
+/// The block of `LANES` threads that this thread belongs to. A block of one warp has no barriers
+/// but the warp's, and its collectives pass values from register to register.
 pub struct Gpu<const LANES: u32> {
     /// Bytes of shared memory given out.
     taken: u32,
@@ -59,12 +59,13 @@ impl Lane for Thread {
     }
     #[inline(always)]
     fn read<T: Pod>(&self, span: Span<T>, i: u32) -> T {
-        // SAFETY: as for `atomic`; nobody writes it in this phase, which the emulator's race watch checks.
+        // SAFETY: as for `atomic`; no lane writes it in this phase, which the emulator's race watch
+        // checks.
         unsafe { load_global(element(span, i)) }
     }
     #[inline(always)]
     fn write<T: Pod>(&self, span: Span<T>, i: u32, value: T) {
-        // SAFETY: as for `read`; nobody else touches it in this phase.
+        // SAFETY: as for `read`; no other lane accesses it in this phase.
         unsafe { element(span, i).write(value) }
     }
     #[inline(always)]
@@ -164,14 +165,15 @@ impl<const LANES: u32> Gpu<LANES> {
     /// This thread's block.
     ///
     /// # Safety
-    /// Once a kernel, at its start: shared memory is given out from the beginning. The kernel was launched with blocks of `LANES`.
+    /// Once a kernel, at its start: shared memory is given out from the beginning. The kernel was
+    /// launched with blocks of `LANES`.
     #[inline(always)]
     pub unsafe fn new() -> Self {
         // SAFETY: reads special registers.
         let (lane, block) = unsafe { (thread_idx_x() as u32, block_idx_x() as u32) };
         Gpu { taken: 0, lane: Thread { lane, global: block * LANES + lane } }
     }
-    /// What lanes did to shared memory before it, all of them see behind it.
+    /// Stores of lanes to shared memory before it are visible to all of them after it.
     #[inline(always)]
     fn barrier(&self) {
         if Self::ONE_WARP { sync_warp() } else { sync_threads() }
@@ -317,8 +319,9 @@ impl<const LANES: u32> Block for Gpu<LANES> {
     }
     #[inline(always)]
     fn ticket(&mut self, counter: Span<u64>, i: u32) -> u64 {
-        // The barrier at the end of the phase before puts the other lanes' gives before lane 0's fence, which with its
-        // atomic releases them all; atomic and fence acquire, and the broadcast's barrier passes that on to all lanes.
+        // The barrier at the end of the phase before orders the other lanes' stores before lane 0's
+        // fence. That fence and its atomic release them all. Atomic and fence acquire, and the
+        // broadcast's barrier extends that to all lanes.
         self.broadcast(|| {
             fence();
             let ticket = self.lane.fetch_add(counter, i, 1);
@@ -342,7 +345,8 @@ impl<const LANES: u32> Block for Gpu<LANES> {
             bin += WARP;
         }
         sync_warp();
-        // Each warp counts by itself, an item a lane after the other: where its items lie among its own.
+        // Each warp counts by itself, an item a lane in sequence: the ranks of its items within the
+        // warp.
         let mut before = [0; K];
         for k in 0..K {
             let digit = digits.0[k];

@@ -1,4 +1,4 @@
-//! What the GPU has an instruction for, where there is no GPU.
+//! Portable versions of GPU instructions, for the host.
 
 /// The smaller of two finite numbers; of two zeros the first.
 #[inline(always)]

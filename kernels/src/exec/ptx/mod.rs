@@ -1,6 +1,8 @@
-//! The GPU: the only room with intrinsics and assembly. Function names follow `cuda_std` where it has them.
+//! The GPU: the only room with intrinsics and assembly. Function names follow `cuda_std` if it has
+//! them.
 //!
-//! Shared memory is the launch's dynamic shared memory; the collectives have a few words of their own.
+//! Shared memory is the launch's dynamic shared memory; the collectives have a few words of their
+//! own.
 
 #[cfg(target_arch = "nvptx64")]
 mod coherent;
@@ -11,10 +13,12 @@ mod raw;
 
 #[cfg(target_arch = "nvptx64")]
 pub use gpu::Gpu;
-/// Whether lanes run one after another: then one may leave out what its answer does not need. A GPU's lanes go side by side:
-/// what one of them needs costs all of them, and a branch around it more.
+/// Whether lanes run one after another: then one may skip work that its answer does not need. A
+/// GPU's lanes go side by side: work for one of them costs all of them, and a branch around it
+/// more.
 pub const ALONE: bool = cfg!(not(target_arch = "nvptx64"));
-/// The smaller and the larger of two finite numbers, of two zeros either; and the square root, correctly rounded on every machine.
+/// The smaller and the larger of two finite numbers, of two zeros either. The square root,
+/// correctly rounded on every machine.
 #[cfg(target_arch = "nvptx64")]
 pub use raw::{greater32, lesser32, sqrt32, sqrt64};
 

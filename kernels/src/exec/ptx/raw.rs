@@ -1,4 +1,5 @@
-//! Single instructions, as functions. Intrinsics where lanes act together, assembly for loads, shared memory and roots.
+//! Single instructions, as functions. Intrinsics for collective operations, assembly for loads,
+//! shared memory and roots.
 
 use crate::abi::Span;
 use crate::exec::{Shared, Word};
@@ -7,8 +8,8 @@ use core::arch::{asm, global_asm};
 use core::mem::MaybeUninit;
 use core::sync::atomic::AtomicU64;
 
-// What the lanes of a warp or block do together is an intrinsic, not assembly: the compiler knows that it must not
-// move these into or out of branches (they are convergent), which it does not know of an `asm!`.
+// Collective operations of a warp or block are intrinsics, not assembly. The compiler must not move
+// them into or out of branches: they are convergent. For an `asm!` it has no such rule.
 unsafe extern "C" {
     #[link_name = "llvm.nvvm.barrier.cta.sync.aligned.all"]
     pub fn barrier_sync(barrier: u32);
@@ -33,7 +34,7 @@ const ALL: u32 = u32::MAX;
 global_asm!(".extern .shared .align 16 .b8 nearmiss_shared[];");
 // 32 warp sums and two broadcast values.
 global_asm!(".shared .align 16 .b8 nearmiss_scratch[144];");
-/// Where the broadcast values lie in the scratch words, in bytes.
+/// Offset of the broadcast values in the scratch words, in bytes.
 pub const BROADCAST: u32 = 128;
 
 /// The smaller of two finite numbers; of two zeros the negative one. One instruction.
@@ -71,18 +72,20 @@ pub fn sqrt64(x: f64) -> f64 {
 /// The barrier of the block.
 #[inline(always)]
 pub fn sync_threads() {
-    // SAFETY: called by all threads of the block: phases and collectives are not inside a lane's control flow.
+    // SAFETY: called by all threads of the block: phases and collectives are not inside a lane's
+    // control flow.
     unsafe { barrier_sync(0) }
 }
 
-/// The lanes of a warp come together, for certain: what lanes do together begins with it. What they did to shared memory before
-/// it, all of them see behind it.
+/// Reconverges the lanes of a warp, for certain. Every collective operation begins with it. Stores
+/// of lanes to shared memory before it are visible to all of them after it.
 ///
-/// The names of 32 lanes in a shuffle's mask do not make it wait: ptxas (12.9, 13.0, the driver's) waits only where it does not
-/// believe the warp to be together, and it believes so, wrongly, behind loops that lanes leave at different turns. It
-/// leaves out a warp barrier as well where it believes, unless it does not know the mask. This one is all lanes, by two
-/// registers of which it knows nothing. `.ci/ptxas.sh` looks for the instruction. The registers are read afresh each time, or
-/// the mask would take a register between.
+/// A shuffle's mask that names 32 lanes does not make it wait. ptxas (12.9, 13.0, the driver's)
+/// waits only if its analysis finds the warp diverged. Behind loops that lanes leave at different
+/// turns that analysis is wrong. It removes a warp barrier for the same reason, unless the mask is
+/// opaque to it. This mask is all lanes, from two registers that are opaque to it. `.ci/ptxas.sh`
+/// looks for the instruction. The registers are read each time, or the mask would occupy a register
+/// in between.
 #[inline(always)]
 pub fn sync_warp() {
     let mask: u32;
@@ -113,8 +116,8 @@ pub fn scratch_address(offset: u32) -> u32 {
 #[inline(always)]
 pub fn load_shared32(at: u32) -> u32 {
     let v: u32;
-    // SAFETY: `at` is an aligned address inside the block's shared memory (kernels stay inside their words; the
-    // emulator checks it).
+    // SAFETY: `at` is an aligned address inside the block's shared memory (kernels stay inside
+    // their words; the emulator checks it).
     unsafe { asm!("ld.shared.b32 {}, [{}];", out(reg32) v, in(reg32) at) };
     v
 }
@@ -152,7 +155,8 @@ pub fn address<T: Word>(words: Shared<T>, i: u32) -> u32 {
     shared_address(words.offset + i * size_of::<T>() as u32)
 }
 
-/// The value of the lane `delta` before this one in its warp; its own where there is none. A [`sync_warp`] goes before.
+/// The value of the lane `delta` before this one in its warp; its own if there is none. A
+/// [`sync_warp`] goes before.
 #[inline(always)]
 pub fn shuffle_up(v: u32, delta: u32) -> u32 {
     // SAFETY: called by all threads of the warp.
@@ -181,12 +185,13 @@ pub fn warp_sum(v: u32) -> u32 {
     };
     sum
 }
-/// Whether any lane of the warp votes for it; all lanes come. Without a [`sync_warp`]: lanes that vote by themselves lose time
-/// and no answer (`Lane::any`), the assembler asks the hardware whether all are there, and in the search's loop its way to
-/// wait for a mask that it does not know, a match and a reduction, costs 88 bytes of spills in f32.
+/// Whether any lane of the warp votes for it; all lanes come. It has no [`sync_warp`]: lanes that
+/// vote by themselves lose time and no answer (`Lane::any`). The hardware checks whether all lanes
+/// are there. A wait for an opaque mask is a match and a reduction. In the loop of the search that
+/// would cost 88 bytes of spills in f32.
 #[inline(always)]
 pub fn warp_any(vote: bool) -> bool {
-    // SAFETY: called by all lanes of the warp: `Lane::any` says so.
+    // SAFETY: called by all lanes of the warp, as `Lane::any` requires.
     unsafe { vote_any(ALL, vote) }
 }
 
@@ -202,11 +207,11 @@ pub fn match_any(v: u32) -> u32 {
 pub fn element<T>(span: Span<T>, i: u32) -> *mut T {
     (span.addr() as *mut T).wrapping_add(i as usize)
 }
-/// A load that knows that its address is device memory, in the widest pieces that `T`'s alignment allows. (A
-/// pointer out of an argument block is generic to the compiler: such a load asks at run time which memory it means.)
+/// A load of device memory, in the widest pieces that `T`'s alignment allows. (A pointer out of an
+/// argument block is generic to the compiler: such a load finds the kind of memory at run time.)
 ///
 /// # Safety
-/// `from` is valid for reads, and nobody writes it in this phase.
+/// `from` is valid for reads, and no lane writes it in this phase.
 #[inline(always)]
 pub unsafe fn load_global<T: Pod>(from: *const T) -> T {
     let (size, align) = (size_of::<T>(), align_of::<T>());
@@ -216,7 +221,8 @@ pub unsafe fn load_global<T: Pod>(from: *const T) -> T {
     let mut word = 0;
     while 4 * word < size {
         let at = at + 4 * word as u64;
-        // SAFETY: the pieces lie in `from` and in `value`, and are aligned: sizes are multiples of alignments.
+        // SAFETY: the pieces are within `from` and `value`, and aligned: sizes are multiples of
+        // alignments.
         unsafe {
             if align >= 16 {
                 let (a, b, c, d): (u32, u32, u32, u32);
@@ -245,7 +251,7 @@ pub unsafe fn load_global<T: Pod>(from: *const T) -> T {
 }
 #[inline(always)]
 pub fn atomic(span: Span<u64>, i: u32) -> &'static AtomicU64 {
-    // SAFETY: the span is device memory that outlives the launch, aligned for u64, and `i` lies in it: kernels
-    // stay inside their spans, which the emulator checks on every access.
+    // SAFETY: the span is device memory that outlives the launch, aligned for u64, and `i` is in
+    // it. Kernels stay inside their spans, which the emulator checks on every access.
     unsafe { AtomicU64::from_ptr(element(span, i)) }
 }

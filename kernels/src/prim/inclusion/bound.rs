@@ -17,14 +17,16 @@ pub struct Image<S> {
 }
 
 impl<S: Grid> Image<S> {
-    /// What each component of a corner adds to the error of a product with it: its own, and the product's.
+    /// The part of each component of a corner in the error of a product with it: its own error, and
+    /// the product's.
     #[inline(always)]
     pub fn slack(&self) -> Vec3<S> {
         let reach = self.low.map(S::abs).max(self.high.map(S::abs));
         Vec3([0, 1, 2].map(|k| self.error[k] + S::INCLUSION_SHADOW * reach[k]))
     }
 
-    /// The corners' products with a direction, and the most that one errs; `slack` as by [`Image::slack`].
+    /// The corners' products with a direction, and the most that one errs; `slack` as by
+    /// [`Image::slack`].
     #[inline(always)]
     pub fn projection(&self, d: Vec3<S>, slack: Vec3<S>) -> ([S; 8], S) {
         let error = d.map(S::abs).dot(slack) * S::INCLUSION_UP + S::INCLUSION_UNDERFLOW;
@@ -62,8 +64,9 @@ impl<S: Grid, const N: usize> Local<S, N> {
         Image { f, low, high, error: self.error(cell) }
     }
 
-    /// The most that a component of a computed corner of `F` errs, per axis: [`INCLUSION_FACE`] times the sum of the
-    /// weights' magnitudes, which beyond the face is `2 (u + v) - 1`, or [`INCLUSION_EDGE`].
+    /// The largest error of a component of a computed corner of `F`, per axis. [`INCLUSION_FACE`]
+    /// times the sum of the weights' magnitudes, which beyond the face is `2 (u + v) - 1`; or
+    /// [`INCLUSION_EDGE`].
     ///
     /// [`INCLUSION_FACE`]: crate::math::tolerance::Tolerance::INCLUSION_FACE
     /// [`INCLUSION_EDGE`]: crate::math::tolerance::Tolerance::INCLUSION_EDGE

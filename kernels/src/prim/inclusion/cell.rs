@@ -2,7 +2,8 @@
 
 use crate::math::{Real, Vec3};
 
-/// A precision with its grid of parameters: multiples of 2^-24 (f32) or 2^-50 (f64) in [0, 1], all exact.
+/// A precision with its grid of parameters: multiples of 2^-24 (f32) or 2^-50 (f64) in [0, 1], all
+/// exact.
 pub trait Grid: Real {
     /// The distance of neighbours.
     const STEP: Self;
@@ -48,13 +49,13 @@ impl Grid for f64 {
     }
 }
 
-/// A box of parameters: t, u, v. Both corners lie on the grid.
+/// A box of parameters: t, u, v. Both corners are on the grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Cell<S> {
-    /// Where it begins.
+    /// The lower ends.
     pub low: Vec3<S>,
-    /// Where it ends, included.
+    /// The upper ends, included.
     pub high: Vec3<S>,
 }
 
@@ -65,8 +66,8 @@ impl<S: Grid> Cell<S> {
         Cell { low: Vec3([S::ZERO; 3]), high: Vec3([end, S::ONE, S::ONE]) }
     }
 
-    /// What is left without those parts of each range at its low and its high end, which hold no contact; rounded
-    /// outward. None if nothing is.
+    /// The rest of the box without the ends of each range that have no contact. Rounded outward.
+    /// `None` if nothing remains.
     #[inline]
     pub fn without(&self, low: [S; 3], high: [S; 3]) -> Option<Self> {
         let mut left = *self;
@@ -81,7 +82,7 @@ impl<S: Grid> Cell<S> {
         Some(left)
     }
 
-    /// What is left within a face, where `u + v <= 1`. None if nothing is. Exact.
+    /// The rest of the box within a face: `u + v <= 1`. `None` if nothing remains. Exact.
     #[inline]
     pub fn in_face(mut self) -> Option<Self> {
         let (u, v) = (S::ONE - self.low[2], S::ONE - self.low[1]);

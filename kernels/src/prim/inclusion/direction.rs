@@ -1,4 +1,4 @@
-//! Directions along which a box is judged, and what a projection along one leaves of it.
+//! Directions along which a box is tested, and the rest of it after a projection.
 
 use super::cell::Grid;
 use crate::math::Vec3;
@@ -7,8 +7,8 @@ use crate::math::tolerance::{INCLUSION_DEEP, INCLUSION_FLAT};
 /// How many of the directions decouple the parameters: they come first.
 pub const DECOUPLING: usize = 3;
 
-/// A box's own directions, from how its image changes with `t`, `u` and `v`. Any is valid; these cut well: on the cross
-/// product of two changes only the third parameter has a projection.
+/// A box's own directions, from how its image changes with `t`, `u` and `v`. Any is valid; these
+/// cut well: on the cross product of two changes only the third parameter has a projection.
 pub struct Directions<S> {
     c: [Vec3<S>; 3],
     /// The normal, if the image is flat.
@@ -16,7 +16,7 @@ pub struct Directions<S> {
 }
 
 impl<S: Grid> Directions<S> {
-    /// Of the corners of an image.
+    /// The directions of the corners of an image.
     #[inline(always)]
     pub fn of(f: &[Vec3<S>; 8]) -> Self {
         let c = [change(f, 0), change(f, 1), change(f, 2)];
@@ -57,7 +57,8 @@ impl<S: Grid> Directions<S> {
             (0, _) => u.cross(v),
             (1, _) => v.cross(t),
             (2, _) => t.cross(u),
-            // Edges that stay parallel, faces without area: off the only direction that u and v have.
+            // Edges that stay parallel, faces without area: off the only direction that u and v
+            // have.
             (3, _) => {
                 let along = if u.dot(u) < v.dot(v) { v } else { u };
                 t - along * (t.dot(along) / along.dot(along))
@@ -128,7 +129,8 @@ pub fn unit<S: Grid>(d: Vec3<S>) -> Option<Vec3<S>> {
     (most > S::INCLUSION_FAINT).then(|| d * (S::ONE / most))
 }
 
-/// A part of a range as a fraction, of which the larger is kept: no division until all projections are taken.
+/// A part of a range as a fraction, of which the larger is kept: no division until all projections
+/// are taken.
 #[derive(Clone, Copy)]
 struct CutFraction<S> {
     over: S,
@@ -138,8 +140,8 @@ struct CutFraction<S> {
 impl<S: Grid> CutFraction<S> {
     const NONE: Self = CutFraction { over: S::ZERO, under: S::ONE };
 
-    /// Takes `over / under` if that is more; `under` must be positive. Any share that was taken is a valid cut, so it does
-    /// not matter that products round.
+    /// Takes `over / under` if that is more; `under` must be positive. Any share that was taken is
+    /// a valid cut, so it does not matter that products round.
     #[inline(always)]
     fn take(&mut self, over: S, under: S, holds: bool) {
         if holds & (over * self.under > self.over * under) {
@@ -148,13 +150,13 @@ impl<S: Grid> CutFraction<S> {
     }
 }
 
-/// What projections have left of a box.
+/// The rest of a box after projections.
 pub struct Cuts<S> {
     /// The parts of the ranges of `t`, `u`, `v` that hold no contact, at their low ends.
     low: [CutFraction<S>; 3],
     /// And at their high ends.
     high: [CutFraction<S>; 3],
-    /// Bit `k`: along direction `k` the two faces of parameter `k` lie on opposite sides.
+    /// Bit `k`: along direction `k` the two faces of parameter `k` are on opposite sides.
     pub signs: u32,
 }
 
@@ -179,12 +181,13 @@ impl<S: Grid> Cuts<S> {
         [&self.low, &self.high].map(|end| [0, 1, 2].map(|k| end[k].over / end[k].under))
     }
 
-    /// Takes the corners' products with direction `i`, each wrong by at most `error`; at a contact the exact product is
-    /// within `apart` of zero. False if the box holds no contact.
+    /// Takes the corners' products with direction `i`, each wrong by at most `error`. At a contact
+    /// the exact product is within `apart` of zero. False if the box has no contact.
     #[inline(always)]
     pub fn projection(&mut self, s: &[S; 8], error: S, apart: S, i: usize) -> bool {
         let bound = error + apart;
-        // Twice the error keeps faces on strict sides, so that a box that was cut can still be certain of its contact.
+        // Twice the error keeps faces on strict sides. So a contact can still be certain in a box
+        // that was cut.
         let wide = bound + error;
         let ranges = [ranges(s, 0), ranges(s, 1), ranges(s, 2)];
         let [low, high] = ranges[0];
@@ -207,7 +210,7 @@ impl<S: Grid> Cuts<S> {
         self.cut(k, -wide - low.1, -wide - high.1);
     }
 
-    /// Keeps only where the line from `a` to `b` is not above zero.
+    /// Keeps only the part in which the line from `a` to `b` is not above zero.
     #[inline(always)]
     fn cut(&mut self, k: usize, a: S, b: S) {
         self.low[k].take(a, a - b, (a > S::ZERO) & (b < a));

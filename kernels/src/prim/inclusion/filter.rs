@@ -1,12 +1,12 @@
-//! Rejection without a search: the hull of the control vectors lies on one side of the origin.
+//! Rejection without a search: the hull of the control vectors is on one side of the origin.
 
 use super::cell::Grid;
 use super::local::Local;
 use crate::math::Vec3;
 
 impl<S: Grid, const N: usize> Local<S, N> {
-    /// Whether the features certainly stay farther apart than the separation: on a coordinate axis all control vectors
-    /// are. About 60 operations.
+    /// Whether the features certainly stay farther apart than the separation: on a coordinate axis
+    /// all control vectors are. About 60 operations.
     #[inline]
     pub fn apart_by_axes(&self) -> bool {
         let (mut low, mut high) = (self.w[0][0], self.w[0][0]);
@@ -18,9 +18,10 @@ impl<S: Grid, const N: usize> Local<S, N> {
         self.finite && (0..3).any(|k| low[k] > more(k) || high[k] < -more(k))
     }
 
-    /// Whether the features certainly stay farther apart than the separation: all control vectors lie on one side of a
-    /// plane. Directions are tried from the middle of the hull towards its point nearest to the origin (Frank and
-    /// Wolfe's steps); any direction is valid, however badly computed. About 60 operations a step.
+    /// Whether the features certainly stay farther apart than the separation: all control vectors
+    /// are on one side of a plane. Directions start at the middle of the hull, and step towards its
+    /// point nearest to the origin (Frank and Wolfe). Any direction is valid, however badly
+    /// computed. About 60 operations a step.
     #[inline]
     pub fn apart_by_planes(&self) -> bool {
         let mut d = Vec3([S::ZERO; 3]);
@@ -30,7 +31,7 @@ impl<S: Grid, const N: usize> Local<S, N> {
         d = d * S::of(0.5 / N as f64);
         for _ in 0..=STEPS {
             let (low, at, error) = self.least(d);
-            // A direction too short for its square to have correct digits says nothing of lengths.
+            // A direction too short for its square to have correct digits gives no lengths.
             if low > error + self.apart(d) && d.dot(d) > S::INCLUSION_UNDERFLOW {
                 return self.finite;
             }
@@ -45,8 +46,8 @@ impl<S: Grid, const N: usize> Local<S, N> {
         false
     }
 
-    /// The control vector that is least along a direction: its product with that, itself, and the most that the product
-    /// errs from that of exact differences.
+    /// The control vector that is least along a direction: its product with that, itself, and the
+    /// most that the product errs from that of exact differences.
     #[inline]
     pub fn least(&self, d: Vec3<S>) -> (S, Vec3<S>, S) {
         let (mut low, mut at) = (d.dot(self.w[0][0]), self.w[0][0]);
@@ -61,7 +62,8 @@ impl<S: Grid, const N: usize> Local<S, N> {
         (low, at, S::INCLUSION_HULL * d.map(S::abs).dot(self.reach) + S::INCLUSION_UNDERFLOW)
     }
 
-    /// The separation along a direction that need not be of length one; not below the exact product.
+    /// The separation along a direction that need not be of length one; not below the exact
+    /// product.
     #[inline]
     pub fn apart(&self, d: Vec3<S>) -> S {
         if self.separation > S::ZERO {

@@ -1,17 +1,20 @@
-//! Motions by differences: the control vectors of `F(t, u, v)`, one feature's point less the other's.
+//! Motions by differences: the control vectors of `F(t, u, v)`, one feature's point less the
+//! other's.
 //!
-//! `F` is a mixture (weights in [0, 1], sum 1) of the control vectors, for edges everywhere and for a vertex and a face
-//! within the face: it lies in their hull. Differences are taken in the positions' precision and rounded to `S` once,
-//! so errors are relative to the local extent, wherever the features are. All lengths are then multiplied by the power
-//! of two that brings the largest to [1, 2): exact, and neither the range of `S` nor the scale of a scene matters.
+//! `F` is a mixture of the control vectors, with weights in [0, 1] and sum 1. So it is in their
+//! hull: for edges everywhere, for a vertex and a face within the face. Differences are taken in
+//! the positions' precision and rounded to `S` once. So errors are relative to the local extent,
+//! wherever the features are. All lengths are then multiplied by the power of two that brings the
+//! largest to [1, 2). That is exact, and neither the range of `S` nor the scale of a scene matters.
 
 use super::Params;
 use super::cell::Grid;
 use crate::math::{Real, Vec3};
 use crate::prim::cubic::Moving;
 
-/// The relative motion of a pair, with the lengths that it is compared with. `N` is 3 for a vertex and the corners
-/// of a face (vertex less corner), 4 for two edges (at `2j + k` end j of the first less end k of the second).
+/// The relative motion of a pair, with the lengths that it is compared with. `N` is 3 for a vertex
+/// and the corners of a face: vertex less corner. `N` is 4 for two edges: at `2j + k`, end j of the
+/// first less end k of the second.
 #[derive(Clone, Copy, Debug)]
 pub struct Local<S, const N: usize> {
     /// Control vectors at the start and at the end.
@@ -20,9 +23,10 @@ pub struct Local<S, const N: usize> {
     pub reach: Vec3<S>,
     /// Whether all differences are finite numbers; nothing is ever rejected otherwise.
     pub finite: bool,
-    /// The tolerance, in the same units as `w`; at least what can be told from zero.
+    /// The tolerance, in the same units as `w`; at least the smallest length that is distinct from
+    /// zero.
     pub tolerance: S,
-    /// Whether a smaller tolerance was asked for than can be told from zero.
+    /// Whether the requested tolerance was smaller than that.
     pub below_precision: bool,
     /// The separation, rounded up.
     pub separation: S,
@@ -69,7 +73,7 @@ impl<S: Grid, const N: usize> Local<S, N> {
         let asked = S::of((p.tolerance * scale).max(0.0));
         let tolerance = asked.max(finest);
         let fastest = speed[0].max(speed[1]).max(speed[2]);
-        // What divides to NaN never moves, or has no tolerance: only the time that is charged depends on it.
+        // A NaN quotient means no motion, or no tolerance: only the reported time depends on it.
         let time_tolerance = if fastest > S::ZERO { tolerance / fastest * S::INCLUSION_DOWN } else { S::ONE };
         let (end, beyond) = S::end(p.end);
         Local {
@@ -85,7 +89,8 @@ impl<S: Grid, const N: usize> Local<S, N> {
         }
     }
 
-    /// Whether every control vector is zero: in contact throughout. Not of rounded zeros: the largest was scaled to 1.
+    /// Whether every control vector is zero: in contact throughout. Not of rounded zeros: the
+    /// largest was scaled to 1.
     #[inline]
     pub fn still_together(&self) -> bool {
         self.finite && !(0..3).any(|k| self.reach[k] > S::ZERO)
@@ -119,8 +124,10 @@ pub fn differences<R: Real, S: Grid, const N: usize>(
             less[k] = [x.t0.wide() - y.t0.wide(), x.t1.wide() - y.t1.wide()];
         }
         let Differences { w: less, scale, finite, together, largest } = scaled(less);
-        // What rounds up to 2 is scaled once more, as differences of f32 are that round before: the same bits of the same numbers. A
-        // difference of two f32 that rounds to f64 and then to f32 is the one that rounds once: 53 digits are more than twice 24 and 2.
+        // A largest component that rounds up to 2 is scaled once more, as for differences of f32
+        // that round before. So the same numbers give the same bits. A difference of two f32 that
+        // rounds to f64 and then to f32 is the one that rounds once: 53 digits are more than twice
+        // 24 and 2.
         let largest = S::of(largest);
         let is_up = !S::WIDE && finite && largest >= S::of(2.0);
         let (half, scale) = if is_up { (S::of(0.5), 0.5 * scale) } else { (S::ONE, scale) };
@@ -146,7 +153,7 @@ fn scaled<T: Real, const N: usize>(mut w: [[Vec3<T>; 2]; N]) -> Differences<T, N
     let (mut most, mut sum) = (Vec3([T::ZERO; 3]), Vec3([T::ZERO; 3]));
     let mut together = 0;
     for k in 0..N {
-        // Differences of floats are zero where the points are equal, and only there.
+        // Differences of floats are zero if and only if the points are equal.
         let [x, y, z] = w[k][0].0;
         together |= (((x == T::ZERO) & (y == T::ZERO) & (z == T::ZERO)) as u32) << k;
         for i in 0..2 {

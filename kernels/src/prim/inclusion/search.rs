@@ -1,4 +1,5 @@
-//! The search: boxes of parameters, the nearest first, cut along their own directions, until all is decided.
+//! The search: boxes of parameters, the nearest first, cut along their own directions, until all is
+//! decided.
 
 use super::bound::Image;
 use super::cell::{Cell, Grid};
@@ -9,22 +10,23 @@ use crate::math::Vec3;
 use crate::math::tolerance::INCLUSION_SHRUNK;
 use core::mem::MaybeUninit;
 
-/// What is known so far; [`Grid::NEVER`] where there is none.
+/// Known times; [`Grid::NEVER`] for none.
 #[derive(Clone, Copy, Debug)]
 struct Known<S> {
     /// The earliest start of an accepted box.
     accepted: S,
-    /// The earliest start of a box that was skipped since it starts within the tolerance of something known.
+    /// The earliest start of a box that was skipped since it starts within the tolerance of
+    /// something known.
     skipped: S,
     /// There is a contact, not later.
     certain: S,
 }
 
-/// What a look at a box gives.
+/// The result of a test of a box.
 enum CellResult<S> {
     /// No contact in it.
     Nothing,
-    /// As small as can be told; where it starts.
+    /// As small as the precision resolves; its start.
     Small(S),
     /// No contact but in a part, much smaller.
     Part(Cell<S>),
@@ -32,8 +34,8 @@ enum CellResult<S> {
     Halves(Cell<S>, Cell<S>),
 }
 
-/// A search under way: what is asked, what is known, and the box to look at next. One box a step, so that a GPU's lanes
-/// can take up new pairs as they are done with theirs.
+/// A search in progress: parameters, known times, and the next box. One box a step, so that a GPU's
+/// lanes can take new pairs when they finish theirs.
 pub struct Search<'a, S, const N: usize> {
     m: Local<S, N>,
     known: Known<S>,
@@ -46,11 +48,11 @@ pub struct Search<'a, S, const N: usize> {
 }
 
 impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
-    /// Begins; or tells at once what the filters settle, and what is no number. The stack needs [`super::STACK`] places at
-    /// most; with fewer the answer may be early.
+    /// Starts a search, or returns at once the result of the filters, or of input that is not
+    /// finite. The stack needs at most [`super::STACK`] places. With fewer the answer may be early.
     ///
     /// # Errors
-    /// The verdict, where no search is needed, and whether more precision would tell nothing that was asked.
+    /// The verdict, if no search is needed, and whether it is final.
     #[inline]
     pub fn begin(
         m: Local<S, N>,
@@ -63,10 +65,10 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
         Self::unfiltered(m, p, stack)
     }
 
-    /// Begins without the filters, at a time before which there is no contact.
+    /// Starts without the filters, at a time before which there is no contact.
     ///
     /// # Errors
-    /// The verdict, where no search is needed, and whether more precision would tell nothing that was asked.
+    /// The verdict, if no search is needed, and whether it is final.
     #[inline]
     pub fn from(
         m: Local<S, N>,
@@ -79,10 +81,10 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
         Ok(search)
     }
 
-    /// Begins without the filters.
+    /// Starts without the filters.
     ///
     /// # Errors
-    /// The verdict, where no search is needed, and whether more precision would tell nothing that was asked.
+    /// The verdict, if no search is needed, and whether it is final.
     #[inline]
     pub fn unfiltered(
         m: Local<S, N>,
@@ -99,7 +101,7 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
         Ok(Search { m, known, cell: Cell::whole(m.end), stack, depth: 0, boxes: 0, exhausted: false })
     }
 
-    /// Looks at one box. Once no box is left: the verdict, and whether more precision would tell nothing that was asked.
+    /// Tests one box. When no box is left: the verdict, and whether it is final.
     #[inline]
     pub fn step(&mut self, p: &Params) -> Option<(Verdict, bool)> {
         self.boxes += 1;
@@ -130,7 +132,8 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
         loop {
             if next.is_none() && self.depth > 0 {
                 self.depth -= 1;
-                // SAFETY: `depth` is this search's own, and places below it were written when it passed them.
+                // SAFETY: `depth` is this search's own, and places below it were written when it
+                // passed them.
                 next = Some(unsafe { self.stack[self.depth].assume_init() });
             }
             let Some(cell) = next else {
@@ -161,7 +164,7 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
         self.known.accepted = self.known.accepted.min(start);
     }
 
-    /// What is known when no box is left.
+    /// The verdict when no box is left.
     #[inline]
     fn verdict(&self, p: &Params) -> Verdict {
         let (known, boxes, exhausted) = (&self.known, self.boxes, self.exhausted);
@@ -180,8 +183,9 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
 }
 
 impl<S: Grid, const N: usize> Local<S, N> {
-    /// Looks at a box: at its image, its projections along several directions, and what of it they leave. About 1,200
-    /// operations. A function of its own, so that the search's state does not take registers from it on the GPU.
+    /// Tests a box: its image, its projections along several directions, and the rest that they
+    /// leave. About 1,200 operations. A function of its own, so that the search's state does not
+    /// take registers from it on the GPU.
     #[inline(never)]
     fn look(&self, cell: &Cell<S>, known: &mut Known<S>) -> CellResult<S> {
         let image = self.image(cell);
@@ -204,7 +208,8 @@ impl<S: Grid, const N: usize> Local<S, N> {
         let directions = Directions::of(f);
         let slack = image.slack();
         for i in 0..directions.count(self.separation > S::ZERO) {
-            // Those that decouple the parameters have cut it much: the others will cut the rest better.
+            // Those that decouple the parameters have cut it much: the others will cut the rest
+            // better.
             if i == DECOUPLING && cuts.deep() {
                 break;
             }
@@ -237,7 +242,8 @@ impl<S: Grid, const N: usize> Local<S, N> {
                 along = (k, extent);
             }
         };
-        // Of a flat image the roots are a curve: earlier times first, or both halves are followed to their ends.
+        // The roots of a flat image are a curve: earlier times first, or both halves are followed
+        // to their ends.
         let lasting = self.extent(f, 0);
         consider(0, if directions.flat() && lasting > self.tolerance { S::of(64.0) } else { lasting });
         consider(1, self.extent(f, 1));
@@ -255,8 +261,9 @@ impl<S: Grid, const N: usize> Local<S, N> {
         }
     }
 
-    /// How much a parameter changes what decides: the image; of features apart by a separation the distance from the
-    /// origin, to the first order along the direction there and to the second across it.
+    /// The effect of a parameter on the decision. That is the change of the image. With a
+    /// separation it is the change of the distance from the origin: first order along the
+    /// direction, second order across it.
     #[inline(always)]
     fn extent(&self, f: &[Vec3<S>; 8], k: usize) -> S {
         let most = longest(f, k);
@@ -268,18 +275,20 @@ impl<S: Grid, const N: usize> Local<S, N> {
         most.min(along + most * most / self.separation)
     }
 
-    /// Whether a time of the grid is within the step, the end of which may have been rounded up to the grid.
+    /// Whether a time of the grid is within the step. The end of the step may have been rounded up
+    /// to the grid.
     #[inline(always)]
     fn within_step(&self, t: S) -> bool {
         !(self.beyond && t >= self.end)
     }
 
-    /// Notes the corner where the box begins, or where its time ends, if it is certainly within the separation. Both
-    /// belong to the features: a face's box is never wholly beyond `u + v = 1`.
+    /// Notes the corner at the start of the box, or at the end of its time, if it is certainly
+    /// within the separation. Both belong to the features: a face's box is never wholly beyond
+    /// `u + v = 1`.
     #[inline(always)]
     fn within_separation(&self, cell: &Cell<S>, image: &Image<S>, known: &mut Known<S>) {
-        // The separation was rounded up; this is below the one that was asked for. The square may lose to underflow
-        // what is far below the margin of the error, as the largest reach is about one.
+        // The separation was rounded up; this is below the requested one. The square may underflow
+        // far below the margin of the error, as the largest reach is about one.
         let less = self.separation * (S::ONE - S::of(16.0) * S::U) - S::INCLUSION_UNDERFLOW;
         let error = image.error[0] + image.error[1] + image.error[2];
         let held = |x: Vec3<S>| (x.dot(x).sqrt() + error) * S::INCLUSION_UP <= less;

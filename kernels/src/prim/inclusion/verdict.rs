@@ -1,16 +1,17 @@
-//! What is asked and what is answered.
+//! Parameters and answers of certified tests.
 
 use bytemuck::{Pod, Zeroable};
 
-/// What a certified test is asked.
+/// Parameters of a certified test.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Params {
-    /// How near to contact may be taken for contact, a length. Only how much is reported depends on it, and the work;
-    /// 0 asks for as much as the precision gives.
+    /// Allowance for contact, a length. Only the work and the number of reported pairs depend on
+    /// it; 0 is the limit of the precision.
     pub tolerance: f64,
-    /// Features this near are in contact, a length; 0 for touching. With a separation a tolerance below a millionth of it
-    /// mostly ends as exhausted: the first contact of round shapes is tangent to them.
+    /// Features this near are in contact, a length; 0 for touching. With a separation a tolerance
+    /// below a millionth of it mostly ends as exhausted: the first contact of round shapes is
+    /// tangent to them.
     pub separation: f64,
     /// The end of the step, in (0, 1].
     pub end: f64,
@@ -26,7 +27,8 @@ impl Params {
         Params { tolerance, separation: 0.0, end: 1.0, budget: Self::BUDGET, pad: 0 }
     }
 
-    /// Boxes after which a pair is left unresolved, unless told: ten times what the hardest of public scenes take.
+    /// Default number of boxes after which a pair is left unresolved: ten times the number for the
+    /// hardest public scenes.
     pub const BUDGET: u32 = 4096;
 }
 
@@ -36,9 +38,9 @@ impl Params {
 pub struct Verdict {
     /// No contact before; in [0, 1], never -0.0 or NaN.
     pub toi: f64,
-    /// The first contact is not after; the end of the step, where there need be none.
+    /// The first contact is not after; the end of the step, if there need be none.
     pub toi_hi: f64,
-    /// 0 separated, 1 contact, 2 unresolved; and 4 where the budget or the stack ended.
+    /// 0 separated, 1 contact, 2 unresolved; plus 4 if the budget or the stack ended.
     pub state: u32,
     /// Boxes looked at.
     pub boxes: u32,
@@ -95,7 +97,7 @@ impl Verdict {
     /// The same with no time before `begin`, before which there is no contact.
     #[inline]
     pub fn not_before(self, begin: f64) -> Self {
-        // Where features are separated the time is the end of the step, and later.
+        // For separated features the time is the end of the step, and later.
         let toi = if begin > self.toi { begin } else { self.toi };
         Verdict { toi, ..self }
     }
@@ -129,8 +131,8 @@ impl Verdict {
         self.state & EXHAUSTED != 0
     }
 
-    /// Whether more precision would tell nothing that was asked: separated, or a contact whose time is known as well as
-    /// the tolerance demands (`time_tolerance` is the time that it takes).
+    /// Whether the verdict is final: separated, or a contact whose time is within the tolerance.
+    /// `time_tolerance` is the time in which the features move by the tolerance.
     #[inline]
     pub(super) fn is_settled(&self, time_tolerance: f64) -> bool {
         let known = self.is_contact() && !self.exhausted() && self.toi_hi - self.toi <= 2.0 * time_tolerance;

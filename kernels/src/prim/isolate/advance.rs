@@ -1,9 +1,11 @@
-//! Advancement by supporting planes: until when features certainly stay farther apart than a distance.
+//! Advancement by supporting planes: the time until which features certainly stay farther apart
+//! than a distance.
 //!
-//! At a time `t` the point of the hull nearest to the origin gives a direction `n`. Along it the control vectors are linear
-//! in time; as long as all are beyond the distance, so is the hull. The time at which the first of them no longer is begins
-//! the next step, or a later one that a turning plane reaches ([`super::turning`], [`super::normal`]). (Conservative advancement,
-//! Mirtich 1996, with the plane's own motion instead of a bound of speeds.)
+//! At a time `t` the point of the hull nearest to the origin gives a direction `n`. Along it the
+//! control vectors are linear in time. As long as all are beyond the distance, so is the hull. The
+//! next step starts at the time when the first of them no longer is. It starts later if a turning
+//! plane reaches farther ([`super::turning`], [`super::normal`]). This is conservative advancement
+//! (Mirtich 1996), with the plane's own motion instead of a bound of speeds.
 
 use super::nearest::nearest;
 use super::pair::{Pair, sum};
@@ -11,7 +13,7 @@ use super::turning::Facing;
 use crate::math::Vec3;
 use crate::prim::inclusion::Grid;
 
-/// What distance is asked about.
+/// The distance of a query, with its roundings.
 #[derive(Clone, Copy, Debug)]
 pub struct Distance<S> {
     /// Not below the distance: farther than this is farther.
@@ -25,7 +27,7 @@ pub struct Distance<S> {
 }
 
 impl<S: Grid> Distance<S> {
-    /// Of a distance and a slack in the units of the pair's control vectors.
+    /// From a distance and a slack in the units of the pair's control vectors.
     #[inline(always)]
     pub fn of<const N: usize>(pair: &Pair<S, N>, distance: S, slack: S) -> Self {
         Distance {
@@ -37,7 +39,7 @@ impl<S: Grid> Distance<S> {
     }
 }
 
-/// What advancement tells.
+/// The result of advancement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Advanced<S> {
     /// Farther than the distance throughout.
@@ -61,7 +63,8 @@ pub enum Advanced<S> {
     },
 }
 
-/// An advancement under way, one step after the other, so that a GPU's lanes can take up new pairs as they are done.
+/// An advancement in progress, one step after the other. So a GPU's lanes can take new pairs when
+/// they finish theirs.
 #[derive(Clone, Copy, Debug)]
 pub struct Advance<S, const N: usize> {
     pair: Pair<S, N>,
@@ -77,7 +80,8 @@ pub struct Advance<S, const N: usize> {
 }
 
 impl<S: Grid, const N: usize> Advance<S, N> {
-    /// From `begin`, before which the features are farther apart than the distance, to `end`, in so many steps.
+    /// From `begin`, before which the features are farther apart than the distance, to `end`, in so
+    /// many steps.
     #[inline(always)]
     pub fn new(pair: Pair<S, N>, (begin, end): (S, S), distance: Distance<S>, most: u32) -> Self {
         let most = if pair.finite { most } else { 0 };
@@ -94,8 +98,8 @@ impl<S: Grid, const N: usize> Advance<S, N> {
         }
     }
 
-    /// One step; what is known, once that is all. About 150 operations, twice that where the distance is near, and up to 1,000
-    /// more for a plane that turns.
+    /// One step; the result, once it is final. About 150 operations, twice that if the distance is
+    /// near, and up to 1,000 more for a plane that turns.
     #[inline(always)]
     pub fn step(&mut self) -> Option<Advanced<S>> {
         match self.fixed() {
@@ -107,10 +111,11 @@ impl<S: Grid, const N: usize> Advance<S, N> {
         }
     }
 
-    /// A step by a fixed plane: what is known, if that is all.
+    /// A step by a fixed plane: the result, if it is final.
     ///
     /// # Errors
-    /// How the features lie now, and until when they certainly stay farther apart: the step is not at its end.
+    /// The hull now, and the time until which the features certainly stay farther apart. The step
+    /// continues from there.
     #[inline(always)]
     pub fn fixed(&mut self) -> Result<Advanced<S>, (Facing<S, N>, S)> {
         let (d, t) = (&self.distance, self.at);
@@ -123,7 +128,8 @@ impl<S: Grid, const N: usize> Advance<S, N> {
         if length <= d.under {
             return Ok(Advanced::Within { from: t, to: t });
         }
-        // Where the plane is reached to a rounding there is no next time: it may still be certain soon.
+        // If the plane is reached to a rounding there is no next time. The result may still be
+        // certain soon.
         let next = self.pair.until(&now, d.over).map_or(t, |next| next.max(t));
         if next >= self.end {
             return Ok(Advanced::Apart);
@@ -144,16 +150,16 @@ impl<S: Grid, const N: usize> Advance<S, N> {
         Err((now, next))
     }
 
-    /// Whether one plane that turns tells that the features stay farther apart until the end.
+    /// Whether one turning plane proves that the features stay farther apart until the end.
     #[inline(always)]
     pub fn stays_to_the_end(&self, now: &Facing<S, N>) -> bool {
         self.pair.stays_farther(now, &self.pair.facing(self.end), self.distance.over)
     }
 
-    /// Where fixed planes take many steps, one that turns may take few: until when it is certain from now on, or `next`.
-    /// Tried is first four times as long as it was known to last before; where that was too long, until before the distance is
-    /// reached, if it is, as the line between the distances at both ends tells; else, or where that was too long too, for a
-    /// quarter of the time.
+    /// If fixed planes take many steps, a turning one may take few. Returns the time until which it
+    /// proves the distance, or `next`. The first attempt is four times as long as the last success.
+    /// If that fails and the distance is reached, the next attempt ends before it. The line between
+    /// the distances at both ends estimates the time. Further attempts are a quarter as long.
     #[inline(always)]
     fn farther(&mut self, now: &Facing<S, N>, next: S) -> S {
         let (t, over) = (self.at, self.distance.over);
@@ -196,7 +202,8 @@ impl<S: Grid, const N: usize> Advance<S, N> {
 }
 
 impl<S: Grid, const N: usize> Pair<S, N> {
-    /// The computed nearest point is within this of the origin, and so is a point of the exact hull.
+    /// The computed nearest point is within this of the origin, and so is a point of the exact
+    /// hull.
     #[inline(always)]
     pub fn at_most(&self, p: Vec3<S>) -> S {
         let error = self.point_error();
@@ -208,18 +215,21 @@ impl<S: Grid, const N: usize> Pair<S, N> {
         S::ADVANCE_POINT * self.reach + S::ISOLATE_UNDERFLOW
     }
 
-    /// A control vector at a time is farther than the distance along `n`, whatever its length, where their product as computed is
-    /// above this: the distance times the length of `n`, and the error of the product, of which `ADVANCE_POINT` holds the
-    /// roundings of the vector (4u) and of the inner product (3u).
+    /// Least computed product of a control vector with `n` that proves it farther than the distance
+    /// along `n`. `n` has any length. That is the distance times the length of `n`, and the error
+    /// of the product. `ADVANCE_POINT` covers the roundings of the vector (4u) and of the inner
+    /// product (3u).
     #[inline(always)]
     pub(super) fn need(&self, n: Vec3<S>, over: S) -> S {
         over * (n.dot(n).sqrt() * S::INCLUSION_UP) + sum(n) * self.point_error()
     }
 
-    /// Until when all control vectors are farther than the distance along `p`; None if they are not even at the time of `x`.
+    /// The time until which all control vectors are farther than the distance along `p`. `None` if
+    /// they are not even at the time of `x`.
     ///
-    /// `n` is `p / |p|` as rounded. Where a computed value at the start is above `need` and at the end below, the line between them is
-    /// below the exact one, and its root, a quotient of three roundings and this product, is rounded down.
+    /// `n` is `p / |p|` as rounded. Suppose a computed value at the start is above `need` and at
+    /// the end below. Then the line between them is below the exact one. Its root, a quotient of
+    /// three roundings and this product, is rounded down.
     #[inline(always)]
     fn until(&self, Facing { x, p }: &Facing<S, N>, over: S) -> Option<S> {
         let n = *p * (S::ONE / p.dot(*p).sqrt());
@@ -230,7 +240,7 @@ impl<S: Grid, const N: usize> Pair<S, N> {
                 return None;
             }
             let (start, end) = (n.dot(self.w[k][0]) - need, n.dot(self.w[k][1]) - need);
-            // Where it is above at the end, it is so all the way: it is linear, and above now.
+            // If it is above at the end, it is so all the way: it is linear, and above now.
             if !(end > S::ZERO) {
                 if !(start > S::ZERO) {
                     return None;
@@ -242,9 +252,9 @@ impl<S: Grid, const N: usize> Pair<S, N> {
     }
 }
 
-/// Steps that a pair may take before it is told as near, where it is.
+/// Steps of a near pair before it is reported as near.
 const PATIENCE: u32 = 16;
-/// How often a turning plane is tried in a step: in f32, where many lanes would wait for a few, and in f64.
+/// Attempts of a turning plane in a step: in f32, whose lanes would wait for a few, and in f64.
 const TURNING: [u32; 2] = [1, 3];
 /// How often the time that is looked ahead doubles.
 const AHEAD: u32 = 12;

@@ -1,20 +1,22 @@
-//! The cubic that is zero where all control vectors lie in one plane through the origin, restricted to any part of the step.
+//! The cubic of a pair, restricted to any part of the step. It is zero if all control vectors are
+//! coplanar with the origin.
 
 use super::pair::{Pair, most};
 use crate::math::{Real, Vec3};
 use crate::prim::inclusion::Grid;
 
-/// A cubic over [0, 1] by its Bernstein coefficients, and what a restricted coefficient errs by.
+/// A cubic over [0, 1] by its Bernstein coefficients, and the error of a restricted coefficient.
 #[derive(Clone, Copy, Debug)]
 pub struct Cubic<S> {
     k: [S; 4],
-    /// A computed coefficient of a restriction beyond it has the exact one's sign: [`ISOLATE_CUBIC`] of the permanent.
+    /// A computed coefficient of a restriction beyond it has the exact one's sign:
+    /// [`ISOLATE_CUBIC`] of the permanent.
     ///
     /// [`ISOLATE_CUBIC`]: crate::math::tolerance::Tolerance::ISOLATE_CUBIC
     pub error: S,
 }
 
-/// A cubic over a part of the step: its four coefficients there. It lies in their hull.
+/// A cubic over a part of the step: its four coefficients there. Its values are in their hull.
 pub type Part<S> = [S; 4];
 
 impl<S: Grid, const N: usize> Pair<S, N> {
@@ -56,7 +58,8 @@ fn mix<S: Real>(x: S, y: S, t: S) -> S {
 }
 
 impl<S: Real> Cubic<S> {
-    /// The coefficients over `[from, to]`, by blossoming: three mixtures, each of numbers within the hull of the four.
+    /// The coefficients over `[from, to]`, by blossoming: three mixtures, each of numbers within
+    /// the hull of the four.
     #[inline(always)]
     pub fn part(&self, from: S, to: S) -> Part<S> {
         let k = &self.k;
@@ -68,7 +71,8 @@ impl<S: Real> Cubic<S> {
         [mix(pp[0], pp[1], from), mix(pp[0], pp[1], to), mix(pq[0], pq[1], to), mix(qq[0], qq[1], to)]
     }
 
-    /// Whether the cubic certainly has no root in a part: all coefficients are of one sign, beyond their error.
+    /// Whether the cubic certainly has no root in a part: all coefficients are of one sign, beyond
+    /// their error.
     #[inline(always)]
     pub fn one_sign(&self, part: &Part<S>) -> bool {
         beyond(part, self.error)
@@ -93,7 +97,8 @@ impl<S: Real> Cubic<S> {
         self.one_sign(&self.part(from, to))
     }
 
-    /// Whether its values at both ends have opposite signs, beyond their error: then it has a root between.
+    /// Whether its values at both ends have opposite signs, beyond their error: then it has a root
+    /// between.
     #[inline(always)]
     pub fn changes_sign(&self, from: S, to: S) -> bool {
         let [a, _, _, d] = self.part(from, to);
@@ -101,21 +106,21 @@ impl<S: Real> Cubic<S> {
     }
 }
 
-/// The value of a part at `s` in [0, 1]. For guesses: its rounding is in no bound.
+/// The value of a part at `s` in [0, 1]. An estimate: its rounding is in no bound.
 #[inline(always)]
 pub fn value<S: Real>(o: &Part<S>, s: S) -> S {
     let (a, b, c) = (mix(o[0], o[1], s), mix(o[1], o[2], s), mix(o[2], o[3], s));
     mix(mix(a, b, s), mix(b, c, s), s)
 }
 
-/// A part's slope at `s`, for guesses.
+/// A part's slope at `s`, an estimate.
 #[inline(always)]
 pub fn slope<S: Real>(o: &Part<S>, s: S) -> S {
     let (a, b, c) = (o[1] - o[0], o[2] - o[1], o[3] - o[2]);
     mix(mix(a, b, s), mix(b, c, s), s) * S::of(3.0)
 }
 
-/// Where a part's slope may vanish within (0, 1), ascending; 1 where there is no such place. For guesses.
+/// Zeros of a part's slope within (0, 1), ascending; 1 for a missing one. Estimates.
 #[inline(always)]
 pub fn turns<S: Real>(o: &Part<S>) -> [S; 2] {
     let (d0, d1, d2) = (o[1] - o[0], o[2] - o[1], o[3] - o[2]);
@@ -138,15 +143,15 @@ pub fn turns<S: Real>(o: &Part<S>) -> [S; 2] {
     }
 }
 
-/// A root of a part between two places where its values have opposite signs: a guess, bettered step by step and kept between
-/// them. Where the root truly is is for the certificate to say.
+/// A root of a part between two places where its values have opposite signs. It is an estimate,
+/// refined step by step and kept between them. The certificate proves the root's place.
 #[derive(Clone, Copy, Debug)]
 pub struct Root<S> {
     low: S,
     high: S,
     /// Whether the values below the root are below zero.
     rises: bool,
-    /// The guess.
+    /// The estimate.
     pub at: S,
 }
 
@@ -158,7 +163,8 @@ impl<S: Real> Root<S> {
         Root { low, high, rises: below < S::ZERO, at }
     }
 
-    /// Newton's step; where it would leave the bracket, the middle. Whether the guess moved: if not, it never will.
+    /// Newton's step; if it would leave the bracket, the middle. Whether the estimate moved: if
+    /// not, it never will.
     #[inline(always)]
     pub fn step(&mut self, o: &Part<S>) -> bool {
         let f = value(o, self.at);

@@ -1,4 +1,5 @@
-//! Isolation: the window is cut at suspect times; between them nothing meets, around each one certificate decides.
+//! Isolation: the window is cut at suspect times; between them nothing meets, around each one
+//! certificate decides.
 
 use super::cubic::{Cubic, Root, slope, turns, value};
 use super::nearest::nearest;
@@ -8,7 +9,7 @@ use crate::exec::ALONE;
 use crate::math::Real;
 use crate::prim::inclusion::Grid;
 
-/// What isolation finds.
+/// The result of isolation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Found<S> {
     /// No contact in the window.
@@ -29,7 +30,7 @@ pub enum Found<S> {
     Open {
         /// No contact in the window before it.
         from: S,
-        /// All points stay in one plane with the origin, as far as can be told: no sign will ever change.
+        /// All points stay in one plane with the origin, up to rounding: no sign will ever change.
         flat: bool,
     },
 }
@@ -37,25 +38,26 @@ pub enum Found<S> {
 /// How a suspect time is looked at.
 #[derive(Clone, Copy, Debug)]
 pub struct CellResult<S> {
-    /// How long around it: of a root at most, if signs need no more; of an end without a sign at first. The certificate holds more
-    /// easily in less time, the sign change in more.
+    /// How long around it: of a root at most, if signs need no more; of an end without a sign at
+    /// first. The certificate holds more easily in less time, the sign change in more.
     pub around: S,
     /// Newton's steps towards it, in each look.
     pub steps: u32,
-    /// How often it is looked at again where a look tells nothing, each time for a 64th of the time.
+    /// Further attempts after a test without a result, each with a 64th of the time.
     pub again: u32,
-    /// What is near: where no look tells anything, but the features come within this, that is told.
+    /// Distance that counts as near. A pair within it that no attempt decides is reported as near.
     pub near: S,
 }
 
 impl<S: Grid, const N: usize> Pair<S, N> {
-    /// Whether and when the features first meet within `[begin, end]`, a window outside of which they do not. About 1,100
-    /// operations for a window with one root.
+    /// Whether and when the features first meet within `[begin, end]`, a window outside of which
+    /// they do not. About 1,100 operations for a window with one root.
     ///
-    /// Contact needs all four points in one plane: a root of [`Pair::cubic`]. The window is cut where the cubic turns. Suspect are
-    /// the root of a piece whose ends differ in sign, and every end without a certain sign; around a suspect time one certificate
-    /// decides ([`Pair::around`]). What lies between is shown to be rootless by the signs of its coefficients. Pieces are closed
-    /// and share their ends as the same numbers, so together they are the window.
+    /// Contact needs all four points in one plane: a root of [`Pair::cubic`]. The window is cut at
+    /// the turning points of the cubic. Suspect are the root of a piece whose ends differ in sign,
+    /// and every end without a certain sign. One certificate decides the time around a suspect
+    /// ([`Pair::around`]). Signs of coefficients prove that there is no root between suspects.
+    /// Pieces are closed and share their ends as the same numbers, so together they are the window.
     #[inline(always)]
     pub fn isolate(&self, (begin, end): (S, S), look: CellResult<S>) -> Found<S> {
         let g = self.cubic();
@@ -131,7 +133,7 @@ impl<S: Grid, const N: usize> Pair<S, N> {
                 }
                 let hopeless = !moves && (!clear || half <= unsure);
                 if hopeless || again == 0 {
-                    // What touches at the start is for exact signs to tell.
+                    // Exact signs decide touching at the start.
                     let may = look.again > 0 && t > S::ZERO;
                     return match apart {
                         Some(from) if may && self.at_most(nearest(&self.at(t))) <= look.near => {
@@ -159,19 +161,20 @@ impl<S: Grid, const N: usize> Pair<S, N> {
 /// By how much a look is closer than the one before. Costs, proves nothing.
 const CLOSER: f64 = 64.0;
 
-/// How far from a root the sign of the cubic is looked for, in units of where its error would end if it were a straight
-/// line. The less, the shorter the interval of a contact; too little, and the sign is not seen. Costs, proves nothing.
+/// Distance from a root at which the sign of the cubic is tested. The unit is the distance at which
+/// a straight line would leave its error. A smaller one gives a shorter interval of a contact. If
+/// it is too small, the sign is not certain. A cost, not part of a proof.
 const BEYOND: f64 = 1.125;
 
-/// How much more of it is looked at first, where the tolerance allows: curved, the sign may be seen later. Costs, proves
-/// nothing.
+/// How much more of it is tested first, if the tolerance allows: curved, the sign may be seen
+/// later. Costs, proves nothing.
 const SPARE: f64 = 4.0;
 
 /// The longest time around a suspect, of the step and of the window. Costs, proves nothing.
 const WIDEST: f64 = 1.0 / 16.0;
 
-/// Whether the cubic certainly has no root in `[from, to]`: as a whole, or cut where it turns, each piece as a whole or as
-/// its two halves. NaN is not clear.
+/// Whether the cubic certainly has no root in `[from, to]`: as a whole, or cut at its turning
+/// points, each piece as a whole or as its two halves. NaN is not clear.
 #[inline(always)]
 fn clear<S: Real>(g: &Cubic<S>, (from, to): (S, S), cuts: [S; 2]) -> bool {
     if to <= from {

@@ -1,19 +1,21 @@
-//! The ladder: each rung decides what it can, certainly, and leaves the rest to the next, which costs more.
+//! The ladder: each rung decides with certainty, or leaves the pair to the next, which costs more.
 //!
 //! | rung | decides | in |
 //! | --- | --- | --- |
-//! | [`rejected`] | pairs whose cubic keeps its sign, over the step or over their window | f32 |
-//! | [`isolated`] | a point in common at the start, by comparisons; roots, by a certificate each; what is flat, by a direction | f32, then f64 |
-//! | [`vf_touch`], [`ee_touch`] | what touches at t = 0, by exact signs | integers |
+//! | [`rejected`] | pairs whose cubic keeps its sign, over the step or their window | f32 |
+//! | [`isolated`] | a common point at the start; roots; flat motion | f32, then f64 |
+//! | [`vf_touch`], [`ee_touch`] | touching at t = 0, by exact signs | integers |
 //! | [`sliced`] | the window in [`SLICES`] slices | f64 |
-//! | [`near`] | what stays farther than half the tolerance; and when what does not comes nearer | f64 |
-//! | the search of [`crate::prim::inclusion`] | what is left, by boxes | f64 |
+//! | [`near`] | pairs that stay farther than half the tolerance | f64 |
+//! | [`searched`] | the rest, by boxes of [`crate::prim::inclusion`] | f64 |
 //!
-//! With a separation, the rungs of [`super::separation`]. Every rung is a function of the pair and of what is
-//! asked, so the answer is; [`vf_certified`] and [`ee_certified`] climb for one pair as the kernels do for a list.
+//! With a separation, the rungs are those of [`super::separation`]. Every rung is a function of the
+//! pair and of the parameters, so the answer is. [`vf_certified`] and [`ee_certified`] climb for
+//! one pair as the kernels do for a list.
 //!
-//! Without a separation no verdict of a rung begins before [`Pair::not_before`] of the rung's own pair. A query for the
-//! earliest time alone skips pairs by that law, whatever their verdict would be; `HORIZON_MARGIN` derives it across rungs.
+//! Without a separation no verdict of a rung begins before [`Pair::not_before`] of the rung's own
+//! pair. An earliest query skips pairs by that law, whatever their verdicts would be.
+//! `HORIZON_MARGIN` derives it across rungs.
 
 use super::advance::{Advance, Advanced, Distance};
 use super::find::{CellResult, Found};
@@ -29,11 +31,12 @@ use core::mem::MaybeUninit;
 
 /// Slices of a window, a lane each.
 pub const SLICES: u32 = 32;
-/// Newton's steps where a root is isolated first, and in a slice.
+/// Newton's steps at the first isolation of a root, and in a slice.
 const STEPS: [u32; 2] = [6, 12];
-/// How often a suspect time is looked at again, where no other isolation follows.
+/// Further tests of a suspect time, if no other isolation follows.
 const AGAIN: u32 = 3;
-/// How long around a suspect time is looked at, in pauses, where signs need no more: first, and in a slice. Both sides are less than two pauses.
+/// The time around a suspect that is tested, in time tolerances, if signs need no more: first, and
+/// in a slice. Both sides are less than two time tolerances.
 const AROUND: [f64; 2] = [0.9, 0.03];
 /// Which rungs there are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,8 +49,9 @@ pub enum Rungs {
     Double,
 }
 
-/// Whether the features certainly do not meet in the step: not even their boxes do, or the four points never share a plane,
-/// by the signs of the cubic's coefficients over the step or over the window. About 150 operations.
+/// Whether the features certainly do not meet in the step. Either their boxes never overlap, or the
+/// four points never share a plane. Signs of the cubic show the latter, over the step or over the
+/// window. About 150 operations.
 #[inline(always)]
 pub fn rejected<const N: usize>(pair: &Pair<f32, N>) -> bool {
     rejected_before(pair, 1.0)
@@ -61,8 +65,8 @@ pub fn rejected_before<const N: usize>(pair: &Pair<f32, N>, horizon: f32) -> boo
     begin > horizon || (pair.finite && (g.rootless_throughout() || g.rootless(begin, end)))
 }
 
-/// What isolation decides: separated, or a contact whose time is known as well as the tolerance demands and told from the
-/// start; of the `last` rung that isolates, any contact.
+/// The verdict of isolation: separated, or a contact later than the start whose time is within the
+/// tolerance. The `last` rung that isolates accepts any contact.
 #[inline(always)]
 pub fn isolated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bool) -> Option<Verdict> {
     let Some(window) = pair.window() else { return Some(Verdict::separated(p.end, 0)) };
@@ -70,7 +74,7 @@ pub fn isolated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bo
         return Some(Verdict::TOUCHING);
     }
     let time_tolerance = pair.time_tolerance(pair.scaled(p.tolerance));
-    // f32 has a rung behind it that tells more.
+    // f32 has a rung behind it that resolves more.
     let closer = last && S::WIDE;
     let (again, near) = if closer { (AGAIN, near_enough(pair, p)) } else { (0, S::ZERO) };
     let look = CellResult { around: time_tolerance * S::of(AROUND[0]), steps: STEPS[0], again, near };
@@ -82,7 +86,8 @@ pub fn isolated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bo
             met(from, to, p)
         }
         Found::Near { from } => Some(Verdict::unresolved(from.wide(), p.end, 0, false)),
-        // What stays in one plane, of a body that moves as a whole for example, has no sign to go by, but a direction.
+        // Motion in one plane, of a body that moves as a whole for example, has no signs. A
+        // direction decides it.
         Found::Open { from, flat: true } if pair.misses_throughout(from, window.1) => {
             Some(Verdict::separated(p.end, 0))
         }
@@ -110,7 +115,7 @@ pub fn ee_touch<R: Real>(a: [Moving<R>; 2], b: [Moving<R>; 2]) -> bool {
     segments_meet::<R, Certain>(a.map(|v| v.t0), b.map(|v| v.t0)) == Some(true)
 }
 
-/// What a slice of the window holds.
+/// The result for a slice of the window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Slice {
     /// No contact.
@@ -123,7 +128,8 @@ pub enum Slice {
     Open(f64),
 }
 
-/// Whether all four points stay in one plane throughout the window, as far as f64 can tell: no slice will tell more.
+/// Whether all four points stay in one plane throughout the window, up to the rounding of f64.
+/// Slices would decide nothing more.
 #[inline]
 pub fn is_flat<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64)) -> bool {
     let g = pair.cubic();
@@ -133,7 +139,7 @@ pub fn is_flat<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64)) ->
 /// Slice `i` of the window. About 3,000 operations.
 #[inline]
 pub fn sliced<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), i: u32, p: &Params) -> Slice {
-    // Both slices at a cut compute the same number; the last ends where the window does.
+    // Both slices at a cut compute the same number; the last ends with the window.
     let (begin, end) = pair.with_margin((begin, end));
     let cut = |i: u32| if i == SLICES { end } else { begin + (end - begin) * (i as f64 / SLICES as f64) };
     let (from, to) = (cut(i), cut(i + 1));
@@ -153,8 +159,9 @@ pub fn sliced<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), i: 
     }
 }
 
-/// Half the tolerance, in the units of the control vectors. A tolerance counts as at least [`NEAR_FINEST`] of the pair's
-/// extent. Volumes that grow by this bring every pair that comes within it.
+/// Half the tolerance, in the units of the control vectors. A tolerance counts as at least
+/// [`NEAR_FINEST`] of the pair's extent. Volumes that grow by this bring every pair that comes
+/// within it.
 #[inline(always)]
 fn half<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params) -> S {
     S::of(0.5) * pair.scaled(p.tolerance).max(S::of(NEAR_FINEST) * pair.reach)
@@ -166,12 +173,13 @@ fn near_enough<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params) -> S {
     half(pair, p) * S::INCLUSION_DOWN
 }
 
-/// What part of [`half`] is asked where nothing but f32 has isolated: the less it is, the fewer pairs are listed that do not
-/// meet, at the cost of some steps.
+/// The part of [`half`] that counts as near if only f32 has isolated. A smaller part lists fewer
+/// pairs that do not meet, and takes more steps.
 const NEARER: f64 = 1.0 / 8.0;
 
-/// The last word without a search: separated, if the features stay farther apart than the separation and such a part of half
-/// the tolerance; else unresolved, from when they come within that.
+/// The last rung without a search. Separated, if the features stay farther apart than the
+/// separation and such a part of half the tolerance. Else unresolved, from the time when they come
+/// within that.
 #[inline(always)]
 pub fn near<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), part: f64, p: &Params) -> Verdict {
     let mut advance = nearness(pair, (begin, end), part, p);
@@ -203,7 +211,8 @@ pub(super) fn nearly(told: Advanced<f64>, steps: u32, p: &Params) -> Verdict {
     }
 }
 
-/// Searches by boxes from `from` on what [`near`] left unresolved: the surer of both answers.
+/// Searches by boxes a pair that [`near`] left unresolved, from its time on: the surer of both
+/// answers.
 #[inline]
 pub fn searched<const N: usize>(local: inclusion::Local<f64, N>, unresolved: Verdict, p: &Params) -> Verdict {
     let mut stack = [const { MaybeUninit::uninit() }; STACK];
@@ -231,7 +240,8 @@ fn later(found: Verdict, known: Verdict, p: &Params) -> Verdict {
     }
 }
 
-/// Whether, and when, a vertex first comes within the separation of a closed face, by all rungs that there are.
+/// Whether, and when, a vertex first comes within the separation of a closed face, by all rungs
+/// that there are.
 #[inline]
 pub fn vf_certified<R: Real>(v: Moving<R>, f: [Moving<R>; 3], rungs: Rungs, p: &Params) -> Verdict {
     let touch = || vf_touch(v, f);
@@ -239,7 +249,8 @@ pub fn vf_certified<R: Real>(v: Moving<R>, f: [Moving<R>; 3], rungs: Rungs, p: &
     climb(|| Face::<f32>::new(v, f, p), || Face::<f64>::new(v, f, p), (touch, search), rungs, p)
 }
 
-/// Whether, and when, two closed edges first come within the separation, by all rungs that there are.
+/// Whether, and when, two closed edges first come within the separation, by all rungs that there
+/// are.
 #[inline]
 pub fn ee_certified<R: Real>(a: [Moving<R>; 2], b: [Moving<R>; 2], rungs: Rungs, p: &Params) -> Verdict {
     let touch = || ee_touch(a, b);
@@ -285,11 +296,11 @@ fn climb<const N: usize>(
     }
 }
 
-/// The rungs behind isolation that need no slices: what touches at the start, what has no window, what is flat; with
-/// `all`, everything. The window of what is left.
+/// The rungs behind isolation without slices: touching at the start, no window, flat motion; with
+/// `all`, everything. Else the window for the slices.
 ///
 /// # Errors
-/// The window, where slices may tell more.
+/// The window, if slices may decide more.
 #[inline]
 pub fn settled<const N: usize>(
     pair: &Pair<f64, N>,
@@ -304,7 +315,7 @@ pub fn settled<const N: usize>(
     if !(all || is_flat(pair, window)) {
         return Err(window);
     }
-    // Else isolation has asked for a direction already.
+    // Else isolation has tried a direction already.
     if all && pair.misses_throughout(window.0, window.1) {
         return Ok(Verdict::separated(p.end, 0));
     }

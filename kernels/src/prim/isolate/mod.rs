@@ -1,18 +1,29 @@
-//! Continuous tests that are certain, in closed form: vertex against face and edge against edge, by isolating the times at
-//! which they can meet.
+//! Certified continuous tests in closed form: vertex against face and edge against edge. They
+//! isolate the times at which the features can meet.
 //!
-//! The difference of two features is the hull of three or four vectors that move linearly ([`Pair`]); they meet where it
-//! holds the origin. Then the four points lie in one plane: a root of a cubic. So the step is cut at its roots; that
-//! nothing meets between them is proven by the signs of Bernstein coefficients ([`cubic`]), and around each root one
-//! certificate tells whether the hull holds the origin or misses it ([`suspect`], [`find`]). What signs cannot tell goes up
-//! a [`ladder`]. A separation is asked by supporting planes ([`advance`]), in rungs of its own ([`separation`]).
+//! `docs/internals/isolation.md` explains it, with the cubic, a picture and the certificate.
 //!
-//! What is proven is what [`crate::prim::inclusion`] says of its answers, whose words these are: nothing that meets is called
-//! separated, no time is late, a contact is one, and what is listed as unresolved comes within the tolerance. All
-//! bounds are in [`crate::math::tolerance`] (`ISOLATE_*`, `ADVANCE_*`).
+//! The difference of two features is the hull of three or four vectors that move linearly
+//! ([`Pair`]). The features meet if it contains the origin. Then the four points are coplanar: a
+//! root of a cubic. So the step is cut at its roots.
 //!
-//! Only `+ - * /`, the square root and conversions are used, so that every machine gives the same bits. Comparisons are
-//! written so that NaN decides nothing.
+//! | file | step |
+//! | --- | --- |
+//! | [`pair`] | control vectors; the window in which the boxes overlap |
+//! | [`cubic`] | the cubic; signs of Bernstein coefficients prove that there is no root |
+//! | [`find`] | cuts the window, finds suspect times |
+//! | [`suspect`] | the certificate around a suspect time |
+//! | [`ladder`] | rungs, from f32 to f64, for pairs that signs leave undecided |
+//! | [`separation`] | rungs of a minimum separation |
+//! | [`advance`], [`nearest`] | supporting planes, for a separation |
+//! | [`turning`], [`normal`] | planes that turn with the features |
+//!
+//! The answers and their proofs are those of [`crate::prim::inclusion`]. No pair that meets is
+//! separated, and no time is late. A contact is one. An unresolved pair comes within the tolerance.
+//! All bounds are in [`crate::math::tolerance`] (`ISOLATE_*`, `ADVANCE_*`).
+//!
+//! Only `+ - * /`, the square root and conversions are used, so every machine gives the same bits.
+//! Comparisons are written so that NaN decides nothing.
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "comparisons that NaN fails")]
 #![allow(clippy::needless_range_loop, reason = "loops by index unroll: nothing goes to memory on the GPU")]
 

@@ -2,12 +2,13 @@
 
 use crate::math::{Real, Vec3};
 
-/// A point of the hull, near the one that is nearest to the origin: for 3 corners their triangle, for 4 the parallelogram of
-/// two edges (corner `2j + k`).
+/// A point of the hull, near the one that is nearest to the origin. The hull of 3 corners is their
+/// triangle, that of 4 the parallelogram of two edges (corner `2j + k`).
 ///
-/// The weights are computed carelessly and then clamped, and the point is mixed of the corners with them: it is a point of
-/// the hull, but for roundings of at most `6u` of the largest component (weights that sum to 1 within `2u`, three roundings
-/// of the mixture, or twice three). With the `4u` of corners from [`super::Pair::at`] that is within `ADVANCE_POINT`.
+/// The weights are computed without care and then clamped. The point is a mixture of the corners
+/// with these weights. So it is a point of the hull, up to roundings of at most `6u` of the largest
+/// component. Weights sum to 1 within `2u`; the mixture has three roundings, or twice three. With
+/// the `4u` of corners from [`super::Pair::at`] that is within `ADVANCE_POINT`.
 #[inline(always)]
 pub fn nearest<S: Real, const N: usize>(x: &[Vec3<S>; N]) -> Vec3<S> {
     if N == 3 { of_triangle(x[0], x[1], x[2]) } else { of_parallelogram(x[0], x[1], x[2], x[N - 1]) }
@@ -19,7 +20,8 @@ fn clamped<S: Real>(x: S) -> S {
     if x > S::ZERO { x.min(S::ONE) } else { S::ZERO }
 }
 
-/// The region of the triangle in which the origin's foot lies (Ericson, Real-Time Collision Detection, 5.1.5).
+/// The region of the triangle with the origin's foot (Ericson, Real-Time Collision Detection,
+/// 5.1.5).
 #[inline(always)]
 fn of_triangle<S: Real>(a: Vec3<S>, b: Vec3<S>, c: Vec3<S>) -> Vec3<S> {
     let (ab, ac) = (b - a, c - a);

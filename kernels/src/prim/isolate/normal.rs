@@ -1,8 +1,9 @@
-//! The plane along both features: how long they certainly stay farther from it than a distance.
+//! The plane along both features, and how long they certainly stay farther from it than a distance.
 //!
-//! The normal of a face, or of two edges, makes the same product with all control vectors: the cubic `g`. So the hull is
-//! at least `|g| / |n|` from the origin at every time, and exactly that where its nearest point is inside. There, and where the
-//! distance is small to the features' extent, it tells more than the plane that [`super::turning`] turns.
+//! The normal of a face, or of two edges, has the same product with all control vectors: the cubic
+//! `g`. So the hull is at least `|g| / |n|` from the origin at every time. It is exactly that far
+//! if its nearest point is inside. In that case, and for a distance small to the features' extent,
+//! this plane lasts longer than that of [`super::turning`].
 
 use super::cubic::{Cubic, beyond, reach};
 use super::pair::Pair;
@@ -15,8 +16,9 @@ pub struct Normal<S> {
     g: Cubic<S>,
     /// Bernstein coefficients of the normal, a quadratic.
     normal: [Vec3<S>; 3],
-    /// What the length of a coefficient errs by: [`ISOLATE_CUBIC`] of the magnitudes of its products, of which six
-    /// roundings (edges, products, their difference, the mixture) and those of a restriction are a fourth.
+    /// The error of the length of a coefficient: [`ISOLATE_CUBIC`] of the magnitudes of its
+    /// products. Six roundings (edges, products, their difference, the mixture) and those of a
+    /// restriction are a fourth of that.
     ///
     /// [`ISOLATE_CUBIC`]: crate::math::tolerance::Tolerance::ISOLATE_CUBIC
     error: S,
@@ -39,9 +41,9 @@ impl<S: Grid, const N: usize> Pair<S, N> {
 }
 
 impl<S: Real> Normal<S> {
-    /// Whether the features certainly stay farther apart than `over` in `[from, to]`: the coefficients of the cubic are of one
-    /// sign, beyond the distance times the longest coefficient of the normal; both lie in the hulls of theirs. About 100
-    /// operations.
+    /// Whether the features certainly stay farther apart than `over` in `[from, to]`. The cubic's
+    /// coefficients must have one sign, beyond the distance times the longest coefficient of the
+    /// normal. Both functions are in the hulls of their coefficients. About 100 operations.
     #[inline(always)]
     pub fn is_farther(&self, (from, to): (S, S), over: S) -> bool {
         let [n0, n1, n2] = self.normal;

@@ -1,19 +1,22 @@
-//! A pair in motion, scaled to its own size: control vectors, edges, the window of time in which it can meet.
+//! A pair in motion, scaled to its own size: control vectors, edges, the window of time in which it
+//! can meet.
 
 use crate::math::{Real, Vec3};
 use crate::prim::cubic::Moving;
 use crate::prim::inclusion::local::{Differences, differences};
 use crate::prim::inclusion::{Grid, Params};
 
-/// The relative motion of two features: `F(t)` is the hull of `N` control vectors that move linearly. `N` is 3 for a vertex
-/// and a face (vertex less corner), 4 for two edges (at `2j + k` end j of the first less end k of the second). Contact is
-/// where the hull holds the origin.
+/// The relative motion of two features: `F(t)` is the hull of `N` control vectors that move
+/// linearly. `N` is 3 for a vertex and a face: vertex less corner. `N` is 4 for two edges: at
+/// `2j + k`, end j of the first less end k of the second. The features meet if the hull contains
+/// the origin.
 #[derive(Clone, Copy, Debug)]
 pub struct Pair<S, const N: usize> {
-    /// Control vectors at the start and at the end, scaled: the largest component of these and the edges is in [1, 2).
+    /// Control vectors at the start and at the end, scaled: the largest component of these and the
+    /// edges is in [1, 2).
     pub w: [[Vec3<S>; 2]; N],
-    /// The two edges that span the hull, at both ends: differences of positions, rounded once. Of a face those from its
-    /// first corner; else both edges.
+    /// The two edges that span the hull, at both ends: differences of positions, rounded once. For
+    /// a face those from its first corner; else both edges.
     pub edges: [[Vec3<S>; 2]; 2],
     /// The largest component of `w`.
     pub reach: S,
@@ -21,9 +24,10 @@ pub struct Pair<S, const N: usize> {
     pub speed: S,
     /// Whether all differences are finite numbers; nothing is ever rejected otherwise.
     pub finite: bool,
-    /// Whether a corner of one feature is where a corner of the other is at the start: they touch. Exact.
+    /// Whether a corner of one feature coincides with a corner of the other at the start: they
+    /// touch. Exact.
     pub together: bool,
-    /// What lengths were multiplied by.
+    /// Scale of all lengths.
     pub scale: f64,
     /// The end of the step, rounded up to `S`.
     pub end: S,
@@ -81,25 +85,25 @@ impl<S: Grid, const N: usize> Pair<S, N> {
         S::of((length * self.scale).max(0.0))
     }
 
-    /// Within this time no component moves by more than that length; 1 where nothing moves.
+    /// Within this time no component moves by more than that length; 1 if nothing moves.
     #[inline]
     pub fn time_tolerance(&self, length: S) -> S {
         if self.speed > length { length / self.speed * S::INCLUSION_DOWN } else { S::ONE }
     }
 
-    /// The control vectors at a time. Each component errs by less than 4u of `reach`: one rounding of the input, three of
-    /// the mixture.
+    /// The control vectors at a time. Each component errs by less than 4u of `reach`: one rounding
+    /// of the input, three of the mixture.
     #[inline(always)]
     pub fn at(&self, t: S) -> [Vec3<S>; N] {
         let before = S::ONE - t;
         self.w.map(|[start, end]| start * before + end * t)
     }
 
-    /// The part of the step in which the boxes around the two features, which move with them, can share a point: there is no
-    /// contact outside. None if there is no such time.
+    /// The part of the step in which the boxes around the two features, moving with them, can share
+    /// a point. There is no contact outside. `None` if there is no such time.
     ///
-    /// The boxes overlap on an axis where the least component of the control vectors is not above zero and the largest not
-    /// below.
+    /// The boxes overlap on an axis if the components of the control vectors are not all positive
+    /// and not all negative.
     #[inline(always)]
     pub fn window(&self) -> Option<(S, S)> {
         let mut window = Window::new();
@@ -117,16 +121,16 @@ impl<S: Grid, const N: usize> Pair<S, N> {
         if self.finite { window.within(self.end) } else { Some((S::ZERO, self.end)) }
     }
 
-    /// The time before which no verdict of this pair begins: its window's begin less the margin. A pair whose time
-    /// here is not before the earliest time that is known cannot lower it, whether its verdict is a contact or
-    /// undecided.
+    /// The time before which no verdict of this pair begins: its window's begin less the margin. A
+    /// pair cannot lower the earliest known time if that is not later. That holds for a contact and
+    /// for an undecided verdict.
     #[inline(always)]
     pub fn not_before(&self, window: (S, S)) -> f64 {
         self.with_margin(window).0.wide()
     }
 
-    /// A window with a margin, within the step: boxes that are flat share a moment only, too short for a sign to be seen to
-    /// change. Nothing meets in the margin; it costs, and proves nothing.
+    /// A window with a margin, within the step: boxes that are flat share a moment only, too short
+    /// for a sign to be seen to change. Nothing meets in the margin; it costs, and proves nothing.
     #[inline]
     pub fn with_margin(&self, (begin, end): (S, S)) -> (S, S) {
         let margin = S::ISOLATE_MARGIN;
@@ -134,12 +138,13 @@ impl<S: Grid, const N: usize> Pair<S, N> {
     }
 }
 
-/// The part of the step in which several numbers, each linear in time, are all not below zero.
+/// The part of the step in which several numbers, each linear in time, are all at least zero.
 ///
-/// A number is a mixture of its values at the ends of the step. Computed values err by at most `3u` of themselves, or lie above
-/// the exact ones. The sign changes at `|d0| / (|d0| + |d1|)`, computed within `8u` where the sum is above
-/// [`ISOLATE_UNDERFLOW`] (a value below that may have lost its digits, and clips nothing). Of several ends the innermost
-/// is picked by products, before the one division: an end that is picked wrongly is still an end.
+/// A number is a mixture of its values at the ends of the step. Computed values err by at most `3u`
+/// of themselves, or are above the exact ones. The sign changes at `|d0| / (|d0| + |d1|)`. That is
+/// computed within `8u` if the sum is above [`ISOLATE_UNDERFLOW`]. A value below that may have lost
+/// its digits, and clips nothing. Among several ends the innermost is selected by products, before
+/// the one division. An end that is selected wrongly is still an end.
 ///
 /// [`ISOLATE_UNDERFLOW`]: crate::math::tolerance::Tolerance::ISOLATE_UNDERFLOW
 #[derive(Clone, Copy, Debug)]
@@ -170,7 +175,7 @@ impl<S: Real> Window<S> {
         self.to = if known & after & (over * to.1 < to.0 * under) { (over, under) } else { to };
     }
 
-    /// What is left of the step until `end`, widened by what the ends err by.
+    /// The rest of the step until `end`, widened by the errors of the ends.
     #[inline(always)]
     pub fn within(&self, end: S) -> Option<(S, S)> {
         let (from, to) = (self.from.0 / self.from.1, self.to.0 / self.to.1);

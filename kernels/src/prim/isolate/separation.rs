@@ -1,14 +1,15 @@
-//! The rungs of a separation: a plane or two in f32; then advancement in f32; then in f64, and nearness.
+//! The rungs of a separation: one or two planes in f32, advancement in f32, then advancement and
+//! nearness in f64.
 //!
-//! A rung is taken step by step, so that a GPU's lanes can take up new pairs as they are done. What the first planes tell is a
-//! rung of its own: they decide nine of ten pairs, and all in the same time.
+//! A rung runs step by step, so a GPU's lanes can take new pairs when they finish theirs. The first
+//! planes are a rung of their own: they decide nine of ten pairs, and all in the same time.
 
 use super::advance::{Advance, Advanced, Distance};
 use super::ladder::{met, nearly, nearness};
 use super::pair::Pair;
 use crate::prim::inclusion::{Grid, Params, Verdict};
 
-/// Steps of advancement in f32 before f64 is asked; few pairs take more.
+/// Steps of advancement in f32 before f64 takes over; few pairs take more.
 const SINGLE: u32 = 24;
 /// Steps of advancement in f64, at least.
 pub(super) const ADVANCES: u32 = 32;
@@ -26,8 +27,8 @@ pub trait Rung<const N: usize>: Copy {
     type S: Grid;
     /// Begins.
     fn begin(pair: Pair<Self::S, N>, p: &Params) -> Self;
-    /// A step, whatever the tolerance of `p`: a pair keeps that which it began with. Once it was the last, the verdict, or `None` if the
-    /// next rung decides.
+    /// A step, whatever the tolerance of `p`: a pair keeps that which it began with. Once it was
+    /// the last, the verdict, or `None` if the next rung decides.
     fn step(&mut self, p: &Params) -> Option<Option<Verdict>>;
 }
 
@@ -41,7 +42,7 @@ pub fn stepped<T: Rung<N>, const N: usize>(mut rung: T, p: &Params) -> Option<Ve
     }
 }
 
-/// What a plane or two tell in f32: separated, or within the separation at once.
+/// The verdict of one or two planes in f32: separated, or within the separation at once.
 #[inline(always)]
 pub fn at_once<const N: usize>(pair: &Pair<f32, N>, p: &Params) -> Option<Verdict> {
     let mut single = Single::begin(*pair, p);
@@ -51,7 +52,8 @@ pub fn at_once<const N: usize>(pair: &Pair<f32, N>, p: &Params) -> Option<Verdic
     }
 }
 
-/// In f32: separated, or when first within the separation, if that is known as well as the tolerance demands.
+/// In f32: separated, or when first within the separation, if that is known as well as the
+/// tolerance demands.
 #[derive(Clone, Copy, Debug)]
 pub struct Single<const N: usize> {
     advance: Advance<f32, N>,
@@ -85,7 +87,7 @@ impl<const N: usize> Single<N> {
     }
 }
 
-/// In f64: advancement to the separation; where that does not tell, nearness.
+/// In f64: advancement to the separation; nearness if that does not decide.
 #[derive(Clone, Copy, Debug)]
 pub struct Double<const N: usize> {
     pair: Pair<f64, N>,

@@ -1,4 +1,5 @@
-//! What is so around a suspect time: the hull holds the origin at a moment, or at none, or neither can be told.
+//! The certificate around a suspect time: the hull contains the origin at a moment, or at none, or
+//! neither is certain.
 
 use super::cubic::largest;
 use super::pair::{Pair, most, sum};
@@ -8,7 +9,8 @@ use crate::prim::inclusion::Grid;
 /// An answer about a short time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Around {
-    /// If all control vectors lie in one plane with the origin at some moment of it, the hull holds the origin then.
+    /// If all control vectors are coplanar with the origin at some moment of it, the hull contains
+    /// the origin then.
     Holds,
     /// At no moment of it the hull holds the origin.
     Misses,
@@ -26,21 +28,26 @@ fn ring<const N: usize>(k: usize) -> usize {
 }
 
 impl<S: Grid, const N: usize> Pair<S, N> {
-    /// Looks at the hull at `t`, for all times within `half` of it. About 200 operations.
+    /// Tests the hull at `t`, for all times within `half` of it. About 200 operations.
     ///
-    /// Let `x` be the computed control vectors at `t` and `y` the exact ones at a time within `half`. No component of a
-    /// `y - x` is beyond `rho = ISOLATE_PLACE reach + half speed (1 + 8u)`.
+    /// Let `x` be the computed control vectors at `t` and `y` the exact ones at a time within
+    /// `half`. No component of a `y - x` is beyond
+    /// `rho = ISOLATE_PLACE reach + half speed (1 + 8u)`.
     ///
-    /// *Holds.* For any vector `n`, taken as the exact vector of its rounded components, the numbers
-    /// `n . (y_k x y_k+1)` around the ring have the computed ones' signs where those are beyond
-    /// `6 |n| (2 rho R + rho^2 + ISOLATE_TURN R^2)`, with R the largest component of `x` and |n| that of `n`: a component of
-    /// a cross product of `y` differs from that of `x` by at most `2 (2 rho R + rho^2)`, three such meet `n`, and five
-    /// roundings of products of at most `2 R^2` are `30u |n| R^2`. Let all be of one sign, and at some moment of the time all
-    /// `y` in one plane through the origin, with normal `m`. There `y_k x y_k+1` is `m` times the turn of edge k about the
-    /// origin, so all turns are of one sign, none is zero: the ring winds about the origin, which is inside.
+    /// *Holds.* Let `n` be any vector, taken as the exact vector of its rounded components. Let R
+    /// be the largest component of `x` and |n| that of `n`. The numbers `n . (y_k x y_k+1)` around
+    /// the ring have the computed signs if those are beyond
+    /// `6 |n| (2 rho R + rho^2 + ISOLATE_TURN R^2)`. For a component of a cross product of `y`
+    /// differs from that of `x` by at most `2 (2 rho R + rho^2)`. Three such components meet `n`.
+    /// Five roundings of products of at most `2 R^2` are `30u |n| R^2`.
     ///
-    /// *Misses.* A direction `d` with all `d . x` on one side of zero beyond `|d|_1 (rho + ISOLATE_SIDE R)` has all `d . y`
-    /// there too, and with them the hull.
+    /// Let all numbers have one sign. Suppose that at some moment of the time all `y` are in one
+    /// plane through the origin, with normal `m`. There `y_k x y_k+1` is `m` times the turn of edge
+    /// k about the origin. So all turns have one sign, and none is zero. The ring winds about the
+    /// origin, which is inside.
+    ///
+    /// *Misses.* Let a direction `d` have all `d . x` on one side of zero beyond
+    /// `|d|_1 (rho + ISOLATE_SIDE R)`. Then all `d . y` are there, too, and with them the hull.
     #[inline(always)]
     pub fn around(&self, t: S, half: S) -> Around {
         let x = self.at(t);
@@ -61,7 +68,8 @@ impl<S: Grid, const N: usize> Pair<S, N> {
         if above | below {
             return Around::Holds;
         }
-        // The edge of which the origin is farthest outside: by turn over length, compared as squares.
+        // The edge of which the origin is farthest outside: by turn over length, compared as
+        // squares.
         let (mut farthest, mut edge) = (S::ZERO, Vec3([S::ZERO; 3]));
         for k in 0..N {
             let e = x[ring::<N>(k + 1)] - x[ring::<N>(k)];
@@ -78,7 +86,8 @@ impl<S: Grid, const N: usize> Pair<S, N> {
         }
     }
 
-    /// Whether all of `x` lie on one side of the origin along `d`, each known to `error` a component.
+    /// Whether all of `x` are on one side of the origin along `d`, each known to `error` a
+    /// component.
     #[inline(always)]
     fn beside(&self, x: &[Vec3<S>; N], d: Vec3<S>, error: S) -> bool {
         let bound = sum(d) * error + S::ISOLATE_UNDERFLOW;
@@ -90,13 +99,15 @@ impl<S: Grid, const N: usize> Pair<S, N> {
         low > bound || high < -bound
     }
 
-    /// Whether the hull certainly misses the origin throughout `[from, to]`: the control vectors at both ends lie on one side
-    /// of a plane. Directions are tried from the middle of all towards the point nearest to the origin (Frank and Wolfe's
-    /// steps), with every axis in its own unit. About 70 operations a step.
+    /// Whether the hull certainly misses the origin throughout `[from, to]`: the control vectors at
+    /// both ends are on one side of a plane. Directions start at the middle of all, and step
+    /// towards the point nearest to the origin (Frank and Wolfe). Every axis has its own unit.
+    /// About 70 operations a step.
     #[inline]
     pub fn misses_throughout(&self, from: S, to: S) -> bool {
-        // An axis has its own errors, and its own unit: of a pair that is long on one axis, the others still tell. It counts as
-        // at least so long: where numbers lose their digits they err by more than of themselves.
+        // An axis has its own errors, and its own unit. If a pair is long on one axis, the others
+        // still decide. An axis counts as at least so long: numbers that lose their digits err by
+        // more than themselves.
         let mut reach = Vec3([S::ISOLATE_UNDERFLOW; 3]);
         for k in 0..N {
             reach = reach.greater(self.w[k][0].map(S::abs)).greater(self.w[k][1].map(S::abs));
@@ -104,7 +115,8 @@ impl<S: Grid, const N: usize> Pair<S, N> {
         let unit = reach.map(|x| S::ONE / x);
         let error = (S::ISOLATE_PLACE + S::ISOLATE_SIDE) * S::INCLUSION_UP;
         let times = |x: Vec3<S>, y: Vec3<S>| Vec3([x[0] * y[0], x[1] * y[1], x[2] * y[2]]);
-        // Points are computed anew each time, with the bits of `at`: kept, they would take registers from all who never ask.
+        // Points are recomputed each time, with the bits of `at`. Kept, they would take registers
+        // from callers that never come here.
         let point = |k: usize, t: S| self.w[k][0] * (S::ONE - t) + self.w[k][1] * t;
         let mut d = Vec3([S::ZERO; 3]);
         for k in 0..N {
@@ -124,7 +136,7 @@ impl<S: Grid, const N: usize> Pair<S, N> {
                     }
                 }
             }
-            // Of finite numbers nothing above is NaN.
+            // Nothing above is NaN for finite numbers.
             if least > bound {
                 return self.finite;
             }

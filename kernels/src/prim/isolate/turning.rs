@@ -1,11 +1,15 @@
-//! A plane that turns with the features: whether they certainly stay farther from it than a distance between two times.
+//! A plane that turns with the features. It may prove that they stay farther apart than a distance
+//! between two times.
 //!
-//! At each of the times the nearest point of the hull gives a direction. The plane's normal is the mixture of both, linear in
-//! time, and so are the control vectors: their products with it are quadratics, with three Bernstein coefficients each. The
-//! length of the normal is convex, at most the mixture of its lengths at both ends. Where every coefficient is above the
-//! distance times that of the lengths, raised to a quadratic, the hull is beyond the distance throughout. A fixed plane
-//! ([`super::advance`]) lasts until the fastest corner reaches it, and features at a distance that hardly changes use it up by
-//! turning; this one errs by the square of the angle only, whichever features are the nearest.
+//! At each of the times the nearest point of the hull gives a direction. The plane's normal is the
+//! mixture of both, linear in time, and so are the control vectors. Their products are quadratics,
+//! with three Bernstein coefficients each. The length of the normal is convex, at most the mixture
+//! of its lengths at both ends. Raise that mixture, times the distance, to a quadratic. If every
+//! coefficient is above its coefficient, the hull is beyond the distance throughout.
+//!
+//! A fixed plane ([`super::advance`]) lasts until the fastest corner reaches it. Features that turn
+//! at a nearly constant distance use it up soon. This plane errs by the square of the angle only,
+//! whichever features are the nearest.
 
 use super::nearest::nearest;
 use super::pair::Pair;
@@ -17,21 +21,23 @@ use crate::prim::inclusion::Grid;
 pub struct Facing<S, const N: usize> {
     /// Control vectors.
     pub x: [Vec3<S>; N],
-    /// The point nearest to the origin, as computed. Whatever it is, what is said of planes along it holds.
+    /// The point nearest to the origin, as computed. Statements about planes along it hold for any
+    /// value.
     pub p: Vec3<S>,
 }
 
 impl<S: Grid, const N: usize> Pair<S, N> {
-    /// How the hull lies at a time. About 120 operations.
+    /// The hull at a time, and its direction. About 120 operations.
     #[inline(always)]
     pub fn facing(&self, t: S) -> Facing<S, N> {
         let x = self.at(t);
         Facing { x, p: nearest(&x) }
     }
 
-    /// Whether the features certainly stay farther apart than `over` between the times of both. About 100 operations.
+    /// Whether the features certainly stay farther apart than `over` between the times of both.
+    /// About 100 operations.
     ///
-    /// Of the coefficient in the middle, half a sum of two products, twice is asked.
+    /// The coefficient in the middle is half a sum of two products. Twice that is compared.
     #[inline(always)]
     pub fn stays_farther(&self, from: &Facing<S, N>, to: &Facing<S, N>, over: S) -> bool {
         let (first, last) = (self.need(from.p, over), self.need(to.p, over));

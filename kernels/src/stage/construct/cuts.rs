@@ -1,18 +1,25 @@
 //! # Cuts: triangles along a curve → triangles in halves of halves
-//! Paper    nothing of the seed's; cuts at the median are those of J. L. Bentley, "Multidimensional binary search trees", 1975.
-//! Launch   `halves_bounds`, `halves` and a sort for each level above a run, the widest first, where all is to be cut; `runs`, a block a run.
-//! Reads    the order, positions at t = 0, faces, the tree's bodies, what is known of them.      Writes   the order; codes of a level.
-//! Before   triangles are in the order of their codes; what `halves_bounds` writes, and counts, are zero.
-//! After    A stretch is so many runs, a power of two, aligned, or a part of a run down to two tiles. The triangles of each are in the order of
-//!          their centres along the longest axis of the box around these, so that its halves are apart. What is of several bodies,
-//!          or outsized in part, is not: there the stretches stay as they are, so bodies never share more tiles than before.
+//! Paper    not in the paper. Cuts at the median: J. L. Bentley, "Multidimensional binary search
+//!          trees", 1975.
+//! Launch   `halves_bounds`, `halves` and a sort for each level above a run, the widest first, if
+//!          all is to be cut. Then `runs`, a block a run.
+//! Reads    the order, positions at t = 0, faces, the tree's bodies and their extents.      Writes
+//!          the order; codes of a level.
+//! Before   triangles ascend by their codes; the output of `halves_bounds` and the counts = 0.
+//! After    A stretch is an aligned power of two of runs, or a part of a run down to two tiles.
+//!          The triangles of a stretch ascend by their centres along the longest axis of the box of
+//!          these centres.
+//!          So the two halves of a stretch are apart along that axis.
+//!          A stretch of several bodies, or with some outsized triangles, stays as it is. So cuts
+//!          never make bodies share more tiles.
 //! Room     fixed; cannot run out.
-//! Silent   cuts steer how many tiles meet; no answer depends on them.
-//! Cost     a level of all: 24 B gathered a triangle, twice, and a sort. `runs`: the same once, then all on chip: of each of 4 levels
-//!          some 20 phases and two passes of a radix sort of 512 items.
+//! Silent   cuts affect how many tiles overlap. No answer depends on them.
+//! Cost     a level of all: 24 B gathered a triangle, twice, and a sort. `runs`: the same once,
+//!          then all on chip.
+//!          Each of its 4 levels takes some 20 phases and two passes of a radix sort of 512 items.
 
 use crate::abi::CutArgs;
-use crate::bvh::centres::{self, Grid, KEYS, OF_A_BODY, OUTSIZED};
+use crate::bvh::centres::{self, Grid, KEYS, Mesh, OF_A_BODY, OUTSIZED};
 use crate::bvh::filter::holder;
 use crate::bvh::tiles::{FAN, TILE};
 use crate::exec::{BINS, Block, Lane, Shared, Slot, WARP, striped};
@@ -25,19 +32,19 @@ pub const RUN: u32 = FAN * TILE;
 pub const LANES: u32 = RUN / EACH as u32;
 /// Levels of a run that are cut, down to two tiles.
 const LEVELS: u32 = (RUN / TILE).ilog2();
-/// Triangles of a part, which one lane looks at.
+/// Triangles of a part: the share of one lane.
 const PART: u32 = 8;
 /// Parts of a run.
 const PARTS: u32 = RUN / PART;
 /// Bits of a cell along an axis: three in a word, and one to spare.
 const CELL_BITS: u32 = 21;
 const CELL: u64 = (1 << CELL_BITS) - 1;
-/// Bits of what a run is sorted by: two bytes, stretch and place.
+/// Bits of the sort key of a run: two bytes, stretch and place.
 const SORTED_BITS: u32 = 16;
 /// The lower half of an item of a run: which of its triangles.
 const WHICH: u32 = (1 << SORTED_BITS) - 1;
 const _: () = assert!(RUN - 1 <= WHICH && LEVELS < SORTED_BITS && RUN.is_power_of_two());
-/// Of a part whose stretch is not cut.
+/// Mark of a part whose stretch is not cut.
 const MIXED: u64 = 1 << 63;
 
 /// Shared memory of `runs`.
@@ -46,21 +53,27 @@ pub const fn shared_bytes(lanes: u32) -> u32 {
 }
 
 impl<R: Real> CutArgs<R> {
-    /// Of which body a place is, and whether of its outsized ones: outsized triangles are the last of a body, and cuts leave them there.
+    /// Positions and faces.
+    fn mesh(&self) -> Mesh<'_, R> {
+        Mesh { frames: &self.frames, faces: self.faces }
+    }
+
+    /// The body of a place, and whether its triangle is outsized. Outsized triangles are the last
+    /// of a body; cuts leave them there.
     #[inline(always)]
-    fn class<L: Lane>(&self, l: &L, place: u32) -> (u32, bool) {
-        let body = holder(self.bodies.len(), place, |k| l.read(self.bodies, k).before);
+    fn class<L: Lane>(&self, lane: &L, place: u32) -> (u32, bool) {
+        let body = holder(self.bodies.len(), place, |k| lane.read(self.bodies, k).before);
         let next = body + 1;
         let end =
-            if (next as u64) < self.bodies.len() { l.read(self.bodies, next).before } else { self.count };
-        let outsized = l.read(self.extents, OF_A_BODY * body + OUTSIZED) as u32;
+            if (next as u64) < self.bodies.len() { lane.read(self.bodies, next).before } else { self.count };
+        let outsized = lane.read(self.extents, OF_A_BODY * body + OUTSIZED) as u32;
         (body, place >= end - outsized)
     }
 
     /// Whether a stretch, which is not empty, is cut.
     #[inline(always)]
-    fn is_cut<L: Lane>(&self, l: &L, first: u32, end: u32) -> bool {
-        self.class(l, first) == self.class(l, end - 1)
+    fn is_cut<L: Lane>(&self, lane: &L, first: u32, end: u32) -> bool {
+        self.class(lane, first) == self.class(lane, end - 1)
     }
 
     /// Triangles of a stretch of all; 2^31 is more than there are.
@@ -71,39 +84,41 @@ impl<R: Real> CutArgs<R> {
 }
 
 /// The boxes of the centres of each stretch.
-pub fn halves_bounds<R: Real, B: Block>(b: &mut B, a: &CutArgs<R>) {
-    let stretch = a.stretch();
+pub fn halves_bounds<R: Real, B: Block>(block: &mut B, args: &CutArgs<R>) {
+    let stretch = args.stretch();
     centres::of_each(
-        b,
-        (a.stretches, KEYS, a.count),
+        block,
+        args.stretches,
+        KEYS,
+        args.count,
         |_, i| i / stretch,
-        |l, extent, (i, _)| {
-            extent.add(l, (&a.frames, a.faces), (l.read(a.items, i) as u32, false));
+        |lane, extent, i, _| {
+            extent.add(lane, args.mesh(), lane.read(args.items, i) as u32, false);
             i / stretch
         },
     );
 }
 
-/// A code a triangle: its stretch, and where it lies in it along the longest axis.
-pub fn halves<R: Real, B: Block>(b: &mut B, a: &CutArgs<R>) {
-    let stretch = a.stretch();
-    let bits = u32::BITS - ((a.count - 1) / stretch).leading_zeros();
-    let stride = b.blocks() * b.lanes();
-    b.phase(|l| {
-        let mut i = l.global();
-        while i < a.count {
-            let triangle = l.read(a.items, i) as u32;
+/// A code a triangle: its stretch, then its position along the longest axis of the stretch.
+pub fn halves<R: Real, B: Block>(block: &mut B, args: &CutArgs<R>) {
+    let stretch = args.stretch();
+    let bits = u32::BITS - ((args.count - 1) / stretch).leading_zeros();
+    let stride = block.blocks() * block.lanes();
+    block.phase(|lane| {
+        let mut i = lane.global();
+        while i < args.count {
+            let triangle = lane.read(args.items, i) as u32;
             let own = i / stretch;
             let first = own * stretch;
             let mut code = (own as u64) << (u32::BITS - bits);
-            if a.is_cut(l, first, first.saturating_add(stretch).min(a.count)) {
-                let keys = centres::keys(KEYS * own, |k| l.read(a.stretches, k));
+            if args.is_cut(lane, first, first.saturating_add(stretch).min(args.count)) {
+                let keys = centres::keys(KEYS * own, |k| lane.read(args.stretches, k));
                 let axis = longest(centres::sides(keys).1);
-                let c = centres::centre(l, (&a.frames, a.faces), triangle);
+                let c = centres::centre(lane, args.mesh(), triangle);
                 code |= Grid::new(keys, u32::BITS - bits).cell(c, axis) as u64;
             }
-            l.write(a.items, i, code << 32 | triangle as u64);
-            sort::tally(l, &a.tiles, i, code as u32 & (BINS - 1));
+            lane.write(args.items, i, code << 32 | triangle as u64);
+            sort::tally(lane, &args.tiles, i, code as u32 & (BINS - 1));
             i = i.saturating_add(stride);
         }
     });
@@ -121,9 +136,10 @@ fn longest<N: PartialOrd + Copy>(sides: [N; 3]) -> usize {
     }
 }
 
-/// The box of a part's cells, and then of the parts behind it, in two words: the lower corner, and the upper one with [`MIXED`].
+/// The box of a part's cells, later merged with parts behind it. Two words: the lower corner; the
+/// upper corner with [`MIXED`].
 type Bounds = [u64; 2];
-/// Of no cells.
+/// The box of no cells.
 const NOTHING: Bounds = [CELL << (2 * CELL_BITS) | CELL << CELL_BITS | CELL, 0];
 
 #[inline(always)]
@@ -155,151 +171,151 @@ struct Run {
 }
 
 /// Each run in halves of halves.
-pub fn runs<R: Real, B: Block>(b: &mut B, a: &CutArgs<R>) {
+pub fn runs<R: Real, B: Block>(block: &mut B, args: &CutArgs<R>) {
     let mut run = Run {
-        first: b.block() * RUN,
+        first: block.block() * RUN,
         height: 0,
-        cells: b.shared(RUN),
-        order: b.shared(RUN),
-        other: b.shared(RUN),
-        parts: [b.shared(PARTS), b.shared(PARTS)],
-        bins: [b.shared(BINS), b.shared(BINS)],
-        scratch: b.shared(BINS * b.lanes().div_ceil(WARP)),
+        cells: block.shared(RUN),
+        order: block.shared(RUN),
+        other: block.shared(RUN),
+        parts: [block.shared(PARTS), block.shared(PARTS)],
+        bins: [block.shared(BINS), block.shared(BINS)],
+        scratch: block.shared(BINS * block.lanes().div_ceil(WARP)),
     };
-    while run.first < a.count {
-        run.height = RUN.min(a.count - run.first);
-        run.load(b, a);
+    while run.first < args.count {
+        run.height = RUN.min(args.count - run.first);
+        run.load(block, args);
         for level in 0..LEVELS {
-            run.bounds(b, a, level);
-            run.keys(b, level);
-            run.sort(b, 0);
+            run.bounds(block, args, level);
+            run.keys(block, level);
+            run.sort(block, 0);
             core::mem::swap(&mut run.order, &mut run.other);
-            run.sort(b, 1);
+            run.sort(block, 1);
             core::mem::swap(&mut run.order, &mut run.other);
         }
-        each(b, run.height, |l, p| {
-            let which = l.get(run.order, p) & WHICH;
-            l.write(a.out, run.first + p, l.read(a.items, run.first + which));
+        each(block, run.height, |lane, p| {
+            let which = lane.get(run.order, p) & WHICH;
+            lane.write(args.out, run.first + p, lane.read(args.items, run.first + which));
         });
-        run.first = run.first.saturating_add(b.blocks() * RUN);
+        run.first = run.first.saturating_add(block.blocks() * RUN);
     }
 }
 
 impl Run {
-    /// The triangles' cells, as they lie.
-    fn load<R: Real, B: Block>(&self, b: &mut B, a: &CutArgs<R>) {
-        each(b, self.height, |l, p| {
+    /// The triangles' cells, in the order in memory.
+    fn load<R: Real, B: Block>(&self, block: &mut B, args: &CutArgs<R>) {
+        each(block, self.height, |lane, p| {
             let place = self.first + p;
-            let (body, _) = a.class(l, place);
-            let grid = Grid::new(centres::keys(OF_A_BODY * body, |k| l.read(a.extents, k)), CELL_BITS);
-            let c = centres::centre(l, (&a.frames, a.faces), l.read(a.items, place) as u32);
+            let (body, _) = args.class(lane, place);
+            let grid = Grid::new(centres::keys(OF_A_BODY * body, |k| lane.read(args.extents, k)), CELL_BITS);
+            let c = centres::centre(lane, args.mesh(), lane.read(args.items, place) as u32);
             let cell = |k: usize| (grid.cell(c, k) as u64) << (k as u32 * CELL_BITS);
-            l.put(self.cells, p, cell(0) | cell(1) | cell(2));
-            l.put(self.order, p, p);
+            lane.put(self.cells, p, cell(0) | cell(1) | cell(2));
+            lane.put(self.order, p, p);
         });
     }
 
-    /// The box of each stretch of a level, where its first part is.
-    fn bounds<R: Real, B: Block>(&self, b: &mut B, a: &CutArgs<R>, level: u32) {
+    /// The box of each stretch of a level, at its first part.
+    fn bounds<R: Real, B: Block>(&self, block: &mut B, args: &CutArgs<R>, level: u32) {
         let stretch = RUN >> level;
-        each(b, PARTS, |l, part| {
+        each(block, PARTS, |lane, part| {
             let first = part * PART / stretch * stretch;
             let end = (first + stretch).min(self.height);
             let mut all = NOTHING;
-            if first < end && a.is_cut(l, self.first + first, self.first + end) {
+            if first < end && args.is_cut(lane, self.first + first, self.first + end) {
                 for p in part * PART..end.min(part * PART + PART) {
-                    let cell = l.get(self.cells, l.get(self.order, p) & WHICH);
+                    let cell = lane.get(self.cells, lane.get(self.order, p) & WHICH);
                     all = merge(all, [cell, cell]);
                 }
             } else {
                 all[1] |= MIXED;
             }
-            self.put_part(l, part, all);
-            l.meet();
+            self.put_part(lane, part, all);
+            lane.meet();
         });
         let mut width = stretch / PART / 2;
         while width > 0 {
-            each(b, PARTS / 2, |l, i| {
+            each(block, PARTS / 2, |lane, i| {
                 let part = i / width * (2 * width) + i % width;
                 if part % (stretch / PART) < width {
-                    let merged = merge(self.part(l, part), self.part(l, part + width));
-                    self.put_part(l, part, merged);
+                    let merged = merge(self.part(lane, part), self.part(lane, part + width));
+                    self.put_part(lane, part, merged);
                 }
             });
             width /= 2;
         }
         for bins in self.bins {
-            each(b, BINS, |l, bin| l.put(bins, bin, 0));
+            each(block, BINS, |lane, bin| lane.put(bins, bin, 0));
         }
     }
 
     #[inline(always)]
-    fn part<L: Lane>(&self, l: &L, part: u32) -> Bounds {
-        self.parts.map(|words| l.get(words, part))
+    fn part<L: Lane>(&self, lane: &L, part: u32) -> Bounds {
+        self.parts.map(|words| lane.get(words, part))
     }
 
     #[inline(always)]
-    fn put_part<L: Lane>(&self, l: &L, part: u32, bounds: Bounds) {
-        (0..2).for_each(|k| l.put(self.parts[k], part, bounds[k]));
+    fn put_part<L: Lane>(&self, lane: &L, part: u32, bounds: Bounds) {
+        (0..2).for_each(|k| lane.put(self.parts[k], part, bounds[k]));
     }
 
-    /// What each triangle is sorted by, above which one it is; both bytes of it are counted.
-    fn keys<B: Block>(&self, b: &mut B, level: u32) {
+    /// Sort keys: two counted bytes above the number of the triangle.
+    fn keys<B: Block>(&self, block: &mut B, level: u32) {
         let (stretch, bits) = (RUN >> level, SORTED_BITS - level);
-        each(b, self.height, |l, p| {
-            let which = l.get(self.order, p) & WHICH;
+        each(block, self.height, |lane, p| {
+            let which = lane.get(self.order, p) & WHICH;
             let own = p / stretch;
-            let [lo, hi] = self.part(l, own * (stretch / PART));
+            let [lo, hi] = self.part(lane, own * (stretch / PART));
             let mut key = own << bits;
             if hi & MIXED == 0 {
                 let sides = [0, 1, 2].map(|axis| side(hi, axis) - side(lo, axis));
                 let axis = longest(sides);
                 let much = u64::BITS - sides[axis].leading_zeros();
-                let place = side(l.get(self.cells, which), axis as u32) - side(lo, axis as u32);
+                let place = side(lane.get(self.cells, which), axis as u32) - side(lo, axis as u32);
                 key |= (place >> much.saturating_sub(bits)) as u32;
             }
-            l.put(self.order, p, key << SORTED_BITS | which);
+            lane.put(self.order, p, key << SORTED_BITS | which);
             for (byte, bins) in self.bins.into_iter().enumerate() {
-                l.shared_add(bins, key >> (8 * byte) & (BINS - 1), 1);
+                lane.shared_add(bins, key >> (8 * byte) & (BINS - 1), 1);
             }
         });
     }
 
     /// From the order to the other one, by a byte.
-    fn sort<B: Block>(&self, b: &mut B, byte: usize) {
-        let (bins, lanes) = (self.bins[byte], b.lanes());
-        let mut values = b.slot(0u32);
+    fn sort<B: Block>(&self, block: &mut B, byte: usize) {
+        let (bins, lanes) = (self.bins[byte], block.lanes());
+        let mut values = block.slot(0u32);
         let (mut smaller, mut bin) = (0, 0);
         while bin < BINS {
-            let at = |l: &B::Lane| bin + l.lane();
-            b.phase(|l| *values.of(l) = if at(l) < BINS { l.get(bins, at(l)) } else { 0 });
-            let sum = b.scan(&mut values);
-            b.phase(|l| {
-                if at(l) < BINS {
-                    l.put(bins, at(l), smaller + *values.of(l));
+            let at = |lane: &B::Lane| bin + lane.lane();
+            block.phase(|lane| *values.of(lane) = if at(lane) < BINS { lane.get(bins, at(lane)) } else { 0 });
+            let sum = block.scan(&mut values);
+            block.phase(|lane| {
+                if at(lane) < BINS {
+                    lane.put(bins, at(lane), smaller + *values.of(lane));
                 }
             });
             smaller += sum;
             bin += lanes;
         }
-        let mut items = b.slot([0u32; EACH]);
-        let mut places = b.slot([BINS; EACH]);
+        let mut items = block.slot([0u32; EACH]);
+        let mut places = block.slot([BINS; EACH]);
         let mut base = 0;
         while base < self.height {
-            b.phase(|l| {
+            block.phase(|lane| {
                 for k in 0..EACH {
-                    let p = base + striped(l.lane(), lanes, k as u32, EACH as u32);
-                    let item = l.get(self.order, p.min(self.height - 1));
+                    let p = base + striped(lane.lane(), lanes, k as u32, EACH as u32);
+                    let item = lane.get(self.order, p.min(self.height - 1));
                     let digit = item >> (SORTED_BITS + 8 * byte as u32) & (BINS - 1);
-                    items.of(l)[k] = item;
-                    places.of(l)[k] = if p < self.height { digit } else { BINS };
+                    items.of(lane)[k] = item;
+                    places.of(lane)[k] = if p < self.height { digit } else { BINS };
                 }
             });
-            b.ranks(&mut places, bins, self.scratch);
-            b.phase(|l| {
+            block.ranks(&mut places, bins, self.scratch);
+            block.phase(|lane| {
                 for k in 0..EACH {
-                    if base + striped(l.lane(), lanes, k as u32, EACH as u32) < self.height {
-                        l.put(self.other, places.of(l)[k], items.of(l)[k]);
+                    if base + striped(lane.lane(), lanes, k as u32, EACH as u32) < self.height {
+                        lane.put(self.other, places.of(lane)[k], items.of(lane)[k]);
                     }
                 }
             });
@@ -310,14 +326,14 @@ impl Run {
 
 /// A phase over so many things, whatever the number of lanes.
 #[inline(always)]
-fn each<B: Block>(b: &mut B, count: u32, mut body: impl FnMut(&B::Lane, u32)) {
-    let lanes = b.lanes();
-    b.phase(|l| {
-        let mut i = l.lane();
+fn each<B: Block>(block: &mut B, count: u32, mut body: impl FnMut(&B::Lane, u32)) {
+    let lanes = block.lanes();
+    block.phase(|lane| {
+        let mut i = lane.lane();
         while i < count {
-            body(l, i);
+            body(lane, i);
             i += lanes;
         }
-        l.meet();
+        lane.meet();
     });
 }

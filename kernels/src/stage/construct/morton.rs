@@ -1,23 +1,33 @@
 //! # Morton: positions → codes
+//! Paper    the thesis, chapter 5. Hilbert's curve, for tiles, is not in the paper.
 //! Launch   `bounds`, then `morton`; a grid of any size strides over the triangles.
-//! Reads    positions at t = 0, faces, the tree's bodies.      Writes   the box of each body's triangle centres, their mean size; a code with
-//!          its triangle each.
-//! Before   the extents and the counts hold zeros. For `morton` the bodies have prefixes, none of which begins another; of one body
-//!          it is empty.
-//! After    code = the body's prefix, then as many bits as there is room for of 33, 11 an axis, interleaved, x highest, in the
-//!          body's own box; the codes' lowest bytes are counted. So a body's triangles are one range of the sorted codes, and
-//!          the bits of the prefixes are the tree over the bodies. Tiles take the same bits along Hilbert's curve: neighbours along it
-//!          are neighbours in space; trees are better cut at planes.
-//!          For tiles the first bit behind the prefix tells outsized triangles ([`crate::bvh::centres`]) from all others.
+//! Reads    positions at t = 0, faces, the tree's bodies.
+//! Writes   the box of each body's triangle centres and their mean size; a code with its triangle
+//!          each.
+//! Before   extents and counts = 0. For `morton` each body has a prefix; none begins another. The
+//!          prefix of a single body is empty.
+//! After    code = prefix(body) · the bits of up to 33 that fit: 11 an axis, interleaved, x
+//!          highest, in the body's own box.
+//!          The lowest bytes of the codes are counted. The triangles of a body are one range of the
+//!          sorted codes.
+//!          The bits of the prefixes are the tree over the bodies.
+//!          Tiles take the same bits along Hilbert's curve: neighbours along it are neighbours in
+//!          space. Trees are better cut at planes.
+//!          For tiles the first bit behind the prefix marks outsized triangles
+//!          ([`crate::bvh::centres`]).
 //! Room     fixed; cannot run out.
-//! Silent   the thesis does not say which box is cut. Ours is the cube over the largest extent, so that cells are cubes;
-//!          an axis without extent gives code 0. Codes steer quality only; no answer depends on them.
-//! Cost     24 B + 12 B in a triangle (twice), 8 B and an atomic out. `bounds`: two loads in a row for four triangles a lane,
-//!          8 atomics a block on one line: few blocks. Of many bodies 8 atomics a block that lies in one body, else a triangle.
+//! Silent   the thesis does not name the box that is cut. Here it is the cube over the largest
+//!          extent, so cells are cubes.
+//!          An axis without extent gives code 0. Codes affect quality only. No answer depends on
+//!          them.
+//! Cost     24 B + 12 B in a triangle (twice), 8 B and an atomic out. `bounds`: two loads in a row
+//!          for four triangles a lane.
+//!          A block adds 8 atomics on one line, so blocks are few. With many bodies: 8 atomics a
+//!          block within one body, else a triangle.
 
 use crate::abi::{MortonArgs, MortonFlags};
 use crate::bvh::CODE_BITS;
-use crate::bvh::centres::{self, Extent, Grid, OF_A_BODY, OUTSIZED};
+use crate::bvh::centres::{self, Extent, Grid, Mesh, OF_A_BODY, OUTSIZED};
 use crate::bvh::filter::holder;
 use crate::exec::{BINS, Block, Lane};
 use crate::math::{Real, Vec3};
@@ -30,27 +40,36 @@ const AXIS_BITS: u32 = CODE_BITS.div_ceil(3);
 pub const TOGETHER: u32 = 4;
 
 /// The boxes of the bodies' triangle centres, as ordered keys, and how large their triangles are.
-pub fn bounds<R: Real, B: Block>(b: &mut B, a: &MortonArgs<R>) {
-    let (mesh, apart) = ((&a.frames, a.faces), a.flags.has(MortonFlags::APART));
-    if a.bodies.len() > 1 {
-        let which = |b: &B, i: u32| holder(a.bodies.len(), i, |k| b.load(a.bodies, k).before);
-        return centres::of_each(b, (a.extents, OF_A_BODY, a.count), which, |l, extent, (i, is_new)| {
-            let (body, triangle) = triangle(l, a, i);
-            extent.add(l, mesh, (triangle, is_new && apart));
-            body
-        });
+pub fn bounds<R: Real, B: Block>(block: &mut B, args: &MortonArgs<R>) {
+    let (mesh, apart) =
+        (Mesh { frames: &args.frames, faces: args.faces }, args.flags.has(MortonFlags::APART));
+    if args.bodies.len() > 1 {
+        let which = |block: &B, i: u32| holder(args.bodies.len(), i, |k| block.load(args.bodies, k).before);
+        return centres::of_each(
+            block,
+            args.extents,
+            OF_A_BODY,
+            args.count,
+            which,
+            |lane, extent, i, is_new| {
+                let (body, triangle) = triangle(lane, args, i);
+                extent.add(lane, mesh, triangle, is_new && apart);
+                body
+            },
+        );
     }
-    let (best, lanes) = (centres::gathered(b), b.lanes());
-    let stride = b.blocks() * lanes;
-    let base = b.load(a.bodies, 0).triangle;
-    b.phase(|l| {
+    let (best, lanes) = (centres::gathered(block), block.lanes());
+    let stride = block.blocks() * lanes;
+    let base = block.load(args.bodies, 0).triangle;
+    block.phase(|lane| {
         let mut mine = Extent::NONE;
-        let mut triangle = l.global();
-        while triangle < a.count {
-            // Beyond the end the last one, again: it changes no maximum. One by one, so that they stay in registers.
+        let mut triangle = lane.global();
+        while triangle < args.count {
+            // Beyond the end the last triangle repeats, which changes no maximum. One call each
+            // keeps the values in registers.
             let mut add = |k: u32| {
                 let i = triangle.saturating_add(k * stride);
-                mine.add(l, mesh, (base + i.min(a.count - 1), i < a.count && apart));
+                mine.add(lane, mesh, base + i.min(args.count - 1), i < args.count && apart);
             };
             add(0);
             add(1);
@@ -58,41 +77,47 @@ pub fn bounds<R: Real, B: Block>(b: &mut B, a: &MortonArgs<R>) {
             add(3);
             triangle = triangle.saturating_add(TOGETHER * stride);
         }
-        mine.put(l, lanes, best);
+        mine.put(lane, lanes, best);
     });
-    centres::tell_together(b, best, (a.extents, 0));
+    centres::report_together(block, best, args.extents, 0);
 }
 
 /// The code of each triangle's centre.
-pub fn morton<R: Real, B: Block>(b: &mut B, a: &MortonArgs<R>) {
-    let (mesh, apart) = ((&a.frames, a.faces), a.flags.has(MortonFlags::APART));
-    // Of one body the box is the same for all.
-    let only = (a.bodies.len() == 1).then(|| {
-        let word = |k| b.load(a.extents, k);
-        (b.load(a.bodies, 0), Grid::new(centres::keys(0, word), AXIS_BITS), centres::outsized_from(0, word))
+pub fn morton<R: Real, B: Block>(block: &mut B, args: &MortonArgs<R>) {
+    let (mesh, apart) =
+        (Mesh { frames: &args.frames, faces: args.faces }, args.flags.has(MortonFlags::APART));
+    // A single body has one box for all.
+    let only = (args.bodies.len() == 1).then(|| {
+        let word = |k| block.load(args.extents, k);
+        (
+            block.load(args.bodies, 0),
+            Grid::new(centres::keys(0, word), AXIS_BITS),
+            centres::outsized_from(0, word),
+        )
     });
-    let stride = b.blocks() * b.lanes();
-    b.phase(|l| {
-        let mut i = l.global();
-        while i < a.count {
-            let (at, triangle) = triangle(l, a, i);
+    let stride = block.blocks() * block.lanes();
+    block.phase(|lane| {
+        let mut i = lane.global();
+        while i < args.count {
+            let (at, triangle) = triangle(lane, args, i);
             let (body, grid, outsized_from) = only.unwrap_or_else(|| {
-                let (word, first) = (|k| l.read(a.extents, k), OF_A_BODY * at);
+                let (word, first) = (|k| lane.read(args.extents, k), OF_A_BODY * at);
                 let grid = Grid::new(centres::keys(first, word), AXIS_BITS);
-                (l.read(a.bodies, at), grid, centres::outsized_from(first, word))
+                (lane.read(args.bodies, at), grid, centres::outsized_from(first, word))
             });
-            let mut code = code(&grid, centres::centre(l, mesh, triangle), a.flags.has(MortonFlags::HILBERT));
+            let mut code =
+                code(&grid, centres::centre(lane, mesh, triangle), args.flags.has(MortonFlags::HILBERT));
             if apart && body.prefix_bits < CODE_BITS {
                 code >>= 1;
-                if centres::is_outsized(l, mesh, (triangle, outsized_from)) {
+                if centres::is_outsized(lane, mesh, triangle, outsized_from) {
                     // Behind all others of its body.
                     code |= 1 << (CODE_BITS - 1);
-                    l.fetch_add(a.extents, OF_A_BODY * at + OUTSIZED, 1);
+                    lane.fetch_add(args.extents, OF_A_BODY * at + OUTSIZED, 1);
                 }
             }
             let code = code >> body.prefix_bits | body.prefix as u64;
-            l.write(a.items, i, code << 32 | triangle as u64);
-            sort::tally(l, &a.tiles, i, code as u32 & (BINS - 1));
+            lane.write(args.items, i, code << 32 | triangle as u64);
+            sort::tally(lane, &args.tiles, i, code as u32 & (BINS - 1));
             i = i.saturating_add(stride);
         }
     });
@@ -100,9 +125,9 @@ pub fn morton<R: Real, B: Block>(b: &mut B, a: &MortonArgs<R>) {
 
 /// Which body has the tree's triangle number `i`, and which triangle of all that is.
 #[inline(always)]
-fn triangle<R: Real, L: Lane>(l: &L, a: &MortonArgs<R>, i: u32) -> (u32, u32) {
-    let at = holder(a.bodies.len(), i, |k| l.read(a.bodies, k).before);
-    let body = l.read(a.bodies, at);
+fn triangle<R: Real, L: Lane>(lane: &L, args: &MortonArgs<R>, i: u32) -> (u32, u32) {
+    let at = holder(args.bodies.len(), i, |k| lane.read(args.bodies, k).before);
+    let body = lane.read(args.bodies, at);
     (at, body.triangle + (i - body.before))
 }
 
@@ -117,9 +142,10 @@ fn code(grid: &Grid, c: Vec3<f64>, is_hilbert: bool) -> u64 {
     (x << 2 | y << 1 | z) >> (3 * AXIS_BITS - CODE_BITS)
 }
 
-/// A cell's coordinates changed so that interleaved, the first one's bits highest, they count cells along Hilbert's curve.
-/// From the highest bit on, what is below it is inverted or changes places with that of the first axis, as the cell's own octant is
-/// turned; then Gray's code is undone: Skilling, "Programming the Hilbert curve", AIP Conference Proceedings 707, 2004.
+/// Transforms a cell's coordinates: interleaved, bits of the first axis highest, they count cells
+/// along Hilbert's curve. From the highest bit on, the bits below are inverted or exchanged with
+/// those of the first axis. That undoes the turn of the cell's octant. Then Gray's code is undone.
+/// See Skilling, "Programming the Hilbert curve", AIP Conference Proceedings 707, 2004.
 #[inline(always)]
 fn along_hilbert([mut x, mut y, mut z]: [u32; 3]) -> [u32; 3] {
     let mut bit = 1 << (AXIS_BITS - 1);

@@ -1,17 +1,23 @@
 //! # Rims: positions → volumes of the edges opposite to hubs
 //! Paper    not in the paper.
-//! Launch   a lane a node; for tiles, then for each level above. Only for a query that keeps adjacent pairs, with hubs.
-//! Reads    the order, hubs; of triangles with a hub faces and positions; of levels above the 16 rims below.
+//! Launch   a lane a node; for tiles, then for each level above. Only for a query that keeps
+//!          adjacent pairs, with hubs.
+//! Reads    the order, hubs; faces and positions of triangles with a hub; above tiles the 16 rims
+//!          below.
 //! Writes   a rim a node: its volume, and the hub as its link.
 //! Before   the level below is written.
-//! After    link = the hub that all triangles below the node name, 0 without one. The volume holds, as a leaf's does,
-//!          the edge of each of these triangles that is opposite to the hub; without a hub it is nothing.
-//!          Features of two triangles round a hub that share no vertex are a feature of one's opposite edge and a
-//!          feature of the other. So if neither rim overlaps the other's volume, there is no such pair to test. The
-//!          same holds of points that both triangles have beyond the hub: on the ray from the hub through such a
-//!          point the first edge that ends either triangle is opposite, and the point on it is in both.
+//! After    link = the common hub of all triangles below the node, else 0.
+//!          volume ⊇ {edge opposite to the hub, of each triangle below}, as a leaf's volume would;
+//!          nothing without a hub.
+//!          Let two triangles share a hub. Two features that share no vertex are one's opposite
+//!          edge and some feature of the other.
+//!          So if neither rim overlaps the other's volume, there is no such pair to test.
+//!          The same holds for points common to both triangles beyond the hub. Take the ray from
+//!          the hub through such a point.
+//!          The first edge that ends either triangle on the ray is opposite to the hub. Its point
+//!          on the ray is in both triangles.
 //! Room     fixed; cannot run out.
-//! Cost     4 B a triangle, gathered; of one with a hub 12 B face and 32 B positions a frame. A node out.
+//! Cost     4 B a triangle, gathered; with a hub 12 B face and 32 B positions a frame. A node out.
 
 use crate::abi::{NONE, Node, RimsArgs};
 use crate::bv::Volume;
@@ -21,9 +27,9 @@ use crate::exec::{Block, Lane};
 use crate::math::Real;
 
 /// The rims of a level.
-pub fn rims<R: Real, V: Volume, B: Block>(b: &mut B, args: &RimsArgs<R, V>) {
-    let stride = b.blocks() * b.lanes();
-    b.phase(|lane| {
+pub fn rims<R: Real, V: Volume, B: Block>(block: &mut B, args: &RimsArgs<R, V>) {
+    let stride = block.blocks() * block.lanes();
+    block.phase(|lane| {
         let mut node = lane.global();
         while node < args.count {
             lane.write(args.rims, args.first + node, above(lane, args, node));
@@ -32,7 +38,7 @@ pub fn rims<R: Real, V: Volume, B: Block>(b: &mut B, args: &RimsArgs<R, V>) {
     });
 }
 
-/// The rim of a node; nothing where those below it have different hubs, or none.
+/// The rim of a node; nothing if those below it have different hubs, or none.
 fn above<R: Real, V: Volume, L: Lane>(lane: &L, args: &RimsArgs<R, V>, node: u32) -> Node<V> {
     let is_tile = args.below == NONE;
     let (each, all) = if is_tile { (TILE, args.triangles.len() as u32) } else { (FAN, args.below_count) };
@@ -67,7 +73,8 @@ fn of_triangle<R: Real, V: Volume, L: Lane>(lane: &L, args: &RimsArgs<R, V>, pla
     Node { volume: leaf::of_corners(lane, &args.frames, rim, args.margin), link: hub, last: 0 }
 }
 
-/// The corners of a face beside its hub, one of them twice; of a face that names no other vertex the hub.
+/// The corners of a face other than its hub, one of them twice. A face that repeats one vertex
+/// gives the hub.
 pub fn opposite(face: [u32; 3], hub: u32) -> [u32; 3] {
     let [a, b, c] = face;
     let first = if a != hub {

@@ -1,21 +1,26 @@
-//! # Climb: vertex/face and edge/edge pairs → contacts, proven, with bounds of their first time; what is left, for the next rung
-//! Paper    none: beyond it.
-//! Launch   [`isolate()`] in f32 over what may meet, then in f64 over what that left (or in one of them over all); [`settle`]
-//!          over what isolation left; the slices of [`super::slice`] over the rest. With a separation [`separate_at_once`] over
-//!          all candidates, then [`super::separate`]. A lane a pair, both kinds in one launch: a block takes tiles of one kind; a
-//!          grid of any size strides.
-//! Reads    pairs, faces or edges, positions of both frames (four vertices); tolerances of bodies, if they differ.
-//! Writes   contacts and unresolved pairs with toi and toi_hi; or, when only the earliest is asked for, one number. And what
-//!          is left, in its own list.
+//! # Climb: vertex/face and edge/edge pairs → proven contacts; the rest, for the next rung
+//! Paper    not in the paper.
+//! Launch   [`isolate()`] in f32 over the survivors, then in f64 over the rest (or in one of them
+//!          over all). [`settle`] over the rest of that.
+//!          Then the slices of [`super::slice`] over the rest of that. With a separation:
+//!          [`separate_at_once`] over all, then [`super::separate`].
+//!          A lane a pair, both kinds in one launch. A block takes tiles of one kind; a grid of any
+//!          size strides.
+//! Reads    pairs, faces or edges, positions of both frames (four vertices); tolerances of bodies,
+//!          if they differ.
+//! Writes   contacts and unresolved pairs with bounds of toi; or one number, for an earliest query.
+//!          The rest, in its own list.
 //! Before   candidates are complete.
-//! After    every pair that meets is listed here or left, none late; see [`crate::prim::isolate`].
-//!          earliest = min {(toi, undecided) of each pair of the continuous query}. A pair is skipped if no verdict of
-//!          its own could begin before a time that is known ([`Pair::not_before`](isolate::Pair::not_before)): the
-//!          result is the same in any order.
+//! After    {pairs that meet} ⊆ listed ∪ left; no time is late. See [`crate::prim::isolate`].
+//!          earliest = min {(toi, undecided) of each pair of the continuous query}.
+//!          A pair is skipped if none of its verdicts could begin before a known time
+//!          ([`Pair::not_before`](isolate::Pair::not_before)).
+//!          So the result is the same in any order.
 //! Room     hits, left: counted past the end, grown, run again.
-//! Cost     8 B pair, 12 B indices, 128 B positions (gathered); isolation about 1,100 operations for a pair with a root, of
-//!          f64 as many; settling some 30 exact signs for what touches at the start; the first planes of a separation
-//!          400 operations.
+//! Cost     8 B pair, 12 B indices, 128 B positions (gathered). Isolation: about 1,100 operations
+//!          for a pair with a root, as many in f64.
+//!          Settling: some 30 exact signs for pairs that touch at the start. The first planes of a
+//!          separation: 400 operations.
 
 use super::{edge_edge, lower, of_edge_edge, of_vertex_face, vertex_face};
 use crate::abi::{Hit, Listed, Pair, RungArgs, RungFlags, counter, earliest};
@@ -27,139 +32,149 @@ use crate::prim::isolate::separation::at_once;
 use crate::prim::isolate::{self, Edges, Face};
 
 /// Isolation of roots, positions in R, computed in S.
-pub fn isolate<R: Real, S: Grid, B: Block>(b: &mut B, a: &RungArgs<R>) {
-    let last = a.flags.has(RungFlags::EVERYTHING);
+pub fn isolate<R: Real, S: Grid, B: Block>(block: &mut B, args: &RungArgs<R>) {
+    let last = args.flags.has(RungFlags::EVERYTHING);
     rung(
-        b,
-        a,
-        |l, pair| {
-            let (p, (v, f)) = (of_vertex_face(l, a, pair), vertex_face(l, (&a.frames, a.faces), pair));
+        block,
+        args,
+        |lane, pair| {
+            let (p, (v, f)) =
+                (of_vertex_face(lane, args, pair), vertex_face(lane, &args.frames, args.faces, pair));
             let pair = Face::<S>::new(v, f, &p);
-            unless_later(l, a, &pair, |pair| isolated(pair, &p, last))
+            unless_later(lane, args, &pair, |pair| isolated(pair, &p, last))
         },
-        |l, pair| {
-            let (p, [x, y]) = (of_edge_edge(l, a, pair), edge_edge(l, (&a.frames, a.edges), pair));
+        |lane, pair| {
+            let (p, [x, y]) =
+                (of_edge_edge(lane, args, pair), edge_edge(lane, &args.frames, args.edges, pair));
             let pair = Edges::<S>::new(x, y, &p);
-            unless_later(l, a, &pair, |pair| isolated(pair, &p, last))
+            unless_later(lane, args, &pair, |pair| isolated(pair, &p, last))
         },
     );
 }
 
-/// Touching at the start, and what is flat; with [`RungFlags::EVERYTHING`] all that is left.
-pub fn settle<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
-    let all = a.flags.has(RungFlags::EVERYTHING);
+/// Touching at the start, and flat motion; with [`RungFlags::EVERYTHING`] all that is left.
+pub fn settle<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
+    let all = args.flags.has(RungFlags::EVERYTHING);
     rung(
-        b,
-        a,
-        |l, pair| {
-            let (p, (v, f)) = (of_vertex_face(l, a, pair), vertex_face(l, (&a.frames, a.faces), pair));
+        block,
+        args,
+        |lane, pair| {
+            let (p, (v, f)) =
+                (of_vertex_face(lane, args, pair), vertex_face(lane, &args.frames, args.faces, pair));
             let pair = Face::<f64>::new(v, f, &p);
-            unless_later(l, a, &pair, |pair| settled(pair, || vf_touch(v, f), all, &p).ok())
+            unless_later(lane, args, &pair, |pair| settled(pair, || vf_touch(v, f), all, &p).ok())
         },
-        |l, pair| {
-            let (p, [x, y]) = (of_edge_edge(l, a, pair), edge_edge(l, (&a.frames, a.edges), pair));
+        |lane, pair| {
+            let (p, [x, y]) =
+                (of_edge_edge(lane, args, pair), edge_edge(lane, &args.frames, args.edges, pair));
             let pair = Edges::<f64>::new(x, y, &p);
-            unless_later(l, a, &pair, |pair| settled(pair, || ee_touch(x, y), all, &p).ok())
+            unless_later(lane, args, &pair, |pair| settled(pair, || ee_touch(x, y), all, &p).ok())
         },
     );
 }
 
 /// The first rung of a separation, in f32.
-pub fn separate_at_once<R: Real, B: Block>(b: &mut B, a: &RungArgs<R>) {
+pub fn separate_at_once<R: Real, B: Block>(block: &mut B, args: &RungArgs<R>) {
     rung(
-        b,
-        a,
-        |l, pair| {
-            let (p, (v, f)) = (of_vertex_face(l, a, pair), vertex_face(l, (&a.frames, a.faces), pair));
+        block,
+        args,
+        |lane, pair| {
+            let (p, (v, f)) =
+                (of_vertex_face(lane, args, pair), vertex_face(lane, &args.frames, args.faces, pair));
             at_once(&Face::new(v, f, &p), &p)
         },
-        |l, pair| {
-            let (p, [x, y]) = (of_edge_edge(l, a, pair), edge_edge(l, (&a.frames, a.edges), pair));
+        |lane, pair| {
+            let (p, [x, y]) =
+                (of_edge_edge(lane, args, pair), edge_edge(lane, &args.frames, args.edges, pair));
             at_once(&Edges::new(x, y, &p), &p)
         },
     );
 }
 
-/// The verdict; separated if only the earliest is asked for and no verdict of the pair begins before one that is known.
+/// The verdict. It is "separated" if only the earliest is wanted and no verdict of the pair begins
+/// before a known time.
 #[inline(always)]
 fn unless_later<R: Real, S: Grid, L: Lane, const N: usize>(
-    l: &L,
-    a: &RungArgs<R>,
+    lane: &L,
+    args: &RungArgs<R>,
     pair: &isolate::Pair<S, N>,
-    ask: impl FnOnce(&isolate::Pair<S, N>) -> Option<Verdict>,
+    test: impl FnOnce(&isolate::Pair<S, N>) -> Option<Verdict>,
 ) -> Option<Verdict> {
-    if !a.earliest.is_empty()
+    if !args.earliest.is_empty()
         && let Some(window) = pair.window()
-        && earliest::key(pair.not_before(window), false) >= l.fetch_load(a.earliest, earliest::KEY)
+        && earliest::key(pair.not_before(window), false) >= lane.fetch_load(args.earliest, earliest::KEY)
     {
-        return Some(Verdict::separated(a.params.end, 0));
+        return Some(Verdict::separated(args.params.end, 0));
     }
-    ask(pair)
+    test(pair)
 }
 
-/// What becomes of a pair: nothing, [`LISTED`] or [`LEFT`]; both are counted in one word.
+/// The fate of a pair: nothing, [`LISTED`] or [`LEFT`]. Both are counted in one word.
 const LISTED: u32 = 1;
 const LEFT: u32 = 1 << 16;
 
-/// Asks each pair of both kinds. The kinds begin at opposite ends of the grid, so that short lists are spread over it.
+/// Tests each pair of both kinds. The kinds begin at opposite ends of the grid, so short lists
+/// spread over it.
 #[inline(always)]
 fn rung<R: Real, B: Block>(
-    b: &mut B,
-    a: &RungArgs<R>,
+    block: &mut B,
+    args: &RungArgs<R>,
     vf: impl Fn(&B::Lane, Pair) -> Option<Verdict>,
     ee: impl Fn(&B::Lane, Pair) -> Option<Verdict>,
 ) {
-    let (first, blocks) = (b.block(), b.blocks());
-    each(b, (a, &a.vf), first, vf);
-    each(b, (a, &a.ee), blocks - 1 - first, ee);
+    let (first, blocks) = (block.block(), block.blocks());
+    each(block, args, &args.vf, first, vf);
+    each(block, args, &args.ee, blocks - 1 - first, ee);
 }
 
-/// Asks each pair of one kind; lists what is unresolved or in contact, and leaves to the next rung what has no answer.
+/// Tests each pair of one kind. Lists unresolved pairs and contacts; leaves pairs without an answer
+/// to the next rung.
 #[inline(always)]
 fn each<R: Real, B: Block>(
-    b: &mut B,
-    (a, of): (&RungArgs<R>, &Listed),
+    block: &mut B,
+    args: &RungArgs<R>,
+    of: &Listed,
     first: u32,
-    ask: impl Fn(&B::Lane, Pair) -> Option<Verdict>,
+    test: impl Fn(&B::Lane, Pair) -> Option<Verdict>,
 ) {
-    let (lanes, stride) = (b.lanes(), b.blocks() * b.lanes());
-    let count = of.pairs.listed(b);
-    let mut hits = b.slot(Hit::default());
-    let mut wishes = b.slot(0u32);
-    let mut places = b.slot(0u32);
+    let (lanes, stride) = (block.lanes(), block.blocks() * block.lanes());
+    let count = of.pairs.listed(block);
+    let mut hits = block.slot(Hit::default());
+    let mut wishes = block.slot(0u32);
+    let mut places = block.slot(0u32);
     let mut base = first * lanes;
     while base < count {
-        b.phase(|l| {
-            let i = base + l.lane();
+        block.phase(|lane| {
+            let i = base + lane.lane();
             let mut wish = 0;
             if i < count {
-                let pair = of.pairs.get(l, i);
-                let told = ask(l, pair);
-                *hits.of(l) = Hit { a: pair.a, b: pair.b, verdict: told.unwrap_or_default() };
-                wish = match told {
+                let pair = of.pairs.get(lane, i);
+                let answer = test(lane, pair);
+                *hits.of(lane) = Hit { a: pair.a, b: pair.b, verdict: answer.unwrap_or_default() };
+                wish = match answer {
                     None => LEFT,
-                    Some(verdict) if keep(l, a, verdict) => LISTED,
+                    Some(verdict) if keep(lane, args, verdict) => LISTED,
                     Some(_) => 0,
                 };
             }
-            *wishes.of(l) = wish;
-            *places.of(l) = wish;
-            l.meet();
+            *wishes.of(lane) = wish;
+            *places.of(lane) = wish;
+            lane.meet();
         });
-        let total = b.scan(&mut places);
+        let total = block.scan(&mut places);
         let wanted = [(total & (LEFT - 1)) as u64, (total / LEFT) as u64];
-        let [start, start_left] = b.reserve_both([of.hits.count(), of.left.count()], wanted);
-        b.phase(|l| {
-            let (wish, before, hit) = (*wishes.of(l), *places.of(l), *hits.of(l));
+        let [start, start_left] = block.reserve_both([of.hits.count(), of.left.count()], wanted);
+        block.phase(|lane| {
+            let (wish, before, hit) = (*wishes.of(lane), *places.of(lane), *hits.of(lane));
             let place = start + (before & (LEFT - 1)) as u64;
             if wish == LISTED {
-                of.hits.put(l, place, hit);
+                of.hits.put(lane, place, hit);
             }
             let place = start_left + (before / LEFT) as u64;
             if wish == LEFT {
-                of.left.put(l, place, Pair { a: hit.a, b: hit.b });
+                of.left.put(lane, place, Pair { a: hit.a, b: hit.b });
             }
-            l.meet();
+            lane.meet();
         });
         base += stride;
     }
@@ -167,29 +182,35 @@ fn each<R: Real, B: Block>(
 
 /// Lists an answer that is to be listed; a lane by itself.
 #[inline(always)]
-pub(super) fn emit<R: Real, L: Lane>(l: &L, a: &RungArgs<R>, of: &Listed, (pair, verdict): (Pair, Verdict)) {
-    if keep(l, a, verdict) {
-        of.hits.push(l, Hit { a: pair.a, b: pair.b, verdict });
+pub(super) fn emit<R: Real, L: Lane>(
+    lane: &L,
+    args: &RungArgs<R>,
+    of: &Listed,
+    pair: Pair,
+    verdict: Verdict,
+) {
+    if keep(lane, args, verdict) {
+        of.hits.push(lane, Hit { a: pair.a, b: pair.b, verdict });
     }
 }
 
-/// Whether a verdict is to be listed. Counts what is unresolved, or lowers the earliest time if only that is asked for: then
-/// which pairs have a verdict depends on the order, so none is counted.
+/// Whether to list a verdict. Counts the unresolved, or lowers the earliest time if only that is
+/// wanted. Then the pairs with a verdict depend on the order, so none is counted.
 #[inline(always)]
-fn keep<R: Real, L: Lane>(l: &L, a: &RungArgs<R>, verdict: Verdict) -> bool {
+fn keep<R: Real, L: Lane>(lane: &L, args: &RungArgs<R>, verdict: Verdict) -> bool {
     if verdict.is_separated() {
         return false;
     }
-    if !a.earliest.is_empty() {
-        lower(l, a.earliest, verdict);
+    if !args.earliest.is_empty() {
+        lower(lane, args.earliest, verdict);
         return false;
     }
     if !verdict.is_contact() {
-        a.counters.add(l, counter::UNRESOLVED, 1);
+        args.counters.add(lane, counter::UNRESOLVED, 1);
     }
     if verdict.exhausted() {
-        a.counters.add(l, counter::ENDED, 1);
-        a.counters.add(l, counter::ENDED_UNRESOLVED, !verdict.is_contact() as u64);
+        args.counters.add(lane, counter::ENDED, 1);
+        args.counters.add(lane, counter::ENDED_UNRESOLVED, !verdict.is_contact() as u64);
     }
     true
 }

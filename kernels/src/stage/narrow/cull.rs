@@ -1,16 +1,22 @@
 //! # Reject: candidates → candidates that may meet
-//! Paper    none: the paper solves the cubic for every candidate.
+//! Paper    not in the paper, which solves the cubic for every candidate.
 //! Launch   a lane a candidate, both kinds in one launch; a grid of any size strides.
 //! Reads    candidates, faces or edges, positions of both frames (four vertices).
 //! Writes   the candidates that may meet.
 //! Before   candidates are complete.
-//! After    no contact is left out: a candidate goes only when the boxes around its features, moving with them, share a point
-//!          at no time, or its four points never share a plane in the time that they do; both beyond all rounding. f32
-//!          throughout, after a subtraction in the precision of the positions. See [`crate::prim::isolate`]. If a time is
-//!          known, also when those boxes first share a point behind the horizon ([`crate::bvh::horizon`]).
+//! After    survivors ⊇ {candidates that meet}. A candidate is dropped in two cases, both beyond
+//!          all rounding.
+//!          (1) The boxes around its features, moving with them, share a point at no time.
+//!          (2) Its four points share no plane while these boxes overlap.
+//!          With a known time also if the boxes first share a point behind the horizon
+//!          ([`crate::bvh::horizon`]).
+//!          All in f32, after a subtraction in the precision of the positions. See
+//!          [`crate::prim::isolate`].
 //! Room     survivors: counted past the end, grown, run again.
-//! Cost     8 B candidate, 12 B indices, 128 B positions (gathered); about 100 operations for half of the candidates of real
-//!          cloth, 300 for the others; on a CPU 300 for all, in vectors. A tenth survives.
+//! Cost     8 B candidate, 12 B indices, 128 B positions (gathered).
+//!          About 100 operations for half of the candidates of real cloth, 300 for the others. On a
+//!          CPU 300 for all, in vectors.
+//!          A tenth survives.
 
 use super::{append_mapped, edge, expect, moving};
 use crate::abi::CullArgs;
@@ -24,48 +30,48 @@ use crate::prim::isolate::{Edges, Face};
 use core::marker::PhantomData;
 
 /// Both kinds.
-pub fn cull<R: Real, B: Block>(b: &mut B, a: &CullArgs<R>) {
-    let later = b.blocks() * b.lanes();
-    let count = a.vf.listed(b);
-    let horizon = Horizon::of(b, a.known).time();
-    let may = VertexFace(a.params, horizon, PhantomData);
+pub fn cull<R: Real, B: Block>(block: &mut B, args: &CullArgs<R>) {
+    let later = block.blocks() * block.lanes();
+    let count = args.vf.listed(block);
+    let horizon = Horizon::of(block, args.known).time();
+    let may = VertexFace(args.params, horizon, PhantomData);
     append_mapped(
-        b,
+        block,
         count,
-        a.may_vf,
+        args.may_vf,
         &may,
-        |l, i| {
-            let (pair, later) = (a.vf.get(l, i), (i + later, count));
-            let face = l.read(a.faces, pair.b);
+        |lane, i| {
+            let pair = args.vf.get(lane, i);
+            let face = lane.read(args.faces, pair.b);
             [pair.a, face[0], face[1], face[2]]
                 .into_iter()
-                .for_each(|vertex| l.expect(a.frames.moving, vertex));
-            expect(l, &a.vf, later, |pair| l.expect(a.faces, pair.b));
+                .for_each(|vertex| lane.expect(args.frames.moving, vertex));
+            expect(lane, &args.vf, i + later, count, |pair| lane.expect(args.faces, pair.b));
             (pair, face)
         },
-        |l, (pair, [x, y, z])| {
-            let at = |vertex| moving(l, &a.frames, vertex);
+        |lane, (pair, [x, y, z])| {
+            let at = |vertex| moving(lane, &args.frames, vertex);
             [at(pair.a), at(x), at(y), at(z)]
         },
     );
-    let count = a.ee.listed(b);
-    let may = EdgeEdge(a.params, horizon, PhantomData);
+    let count = args.ee.listed(block);
+    let may = EdgeEdge(args.params, horizon, PhantomData);
     append_mapped(
-        b,
+        block,
         count,
-        a.may_ee,
+        args.may_ee,
         &may,
-        |l, i| {
-            let (pair, later) = (a.ee.get(l, i), (i + later, count));
-            let edges = [l.read(a.edges, pair.a), l.read(a.edges, pair.b)];
-            edges.into_iter().flatten().for_each(|vertex| l.expect(a.frames.moving, vertex));
-            expect(l, &a.ee, later, |pair| {
-                l.expect(a.edges, pair.a);
-                l.expect(a.edges, pair.b);
+        |lane, i| {
+            let pair = args.ee.get(lane, i);
+            let edges = [lane.read(args.edges, pair.a), lane.read(args.edges, pair.b)];
+            edges.into_iter().flatten().for_each(|vertex| lane.expect(args.frames.moving, vertex));
+            expect(lane, &args.ee, i + later, count, |pair| {
+                lane.expect(args.edges, pair.a);
+                lane.expect(args.edges, pair.b);
             });
             (pair, edges)
         },
-        |l, (_, [x, y])| [edge(l, &a.frames, x), edge(l, &a.frames, y)],
+        |lane, (_, [x, y])| [edge(lane, &args.frames, x), edge(lane, &args.frames, y)],
     );
 }
 

@@ -1,23 +1,30 @@
 //! # Features: triangle pairs → vertex/face and edge/edge candidates
-//! Paper    section 6.2.5, "each of the 15 elementary vertex/face and edge/edge tests".
+//! Paper    the thesis, section 6.2.5: "each of the 15 elementary vertex/face and edge/edge tests".
 //! Launch   a lane a triangle pair; a grid of any size strides.
-//!          [`Moves`] over a step, [`Rests`] where nothing moves, each a kernel of its own.
-//! Reads    candidates (pairs that share a vertex among them), facets, positions of both frames, or of the one.
+//!          [`Moves`] over a step, [`Rests`] at rest; each is a kernel of its own.
+//! Reads    candidates (pairs that share a vertex among them), facets, positions of both frames, or
+//!          of one.
 //! Writes   those vertex/face and edge/edge pairs whose boxes come within the gap, each once.
-//! Before   every pair of triangles that come within the gap is listed, adjacent ones too.
-//! After    every vertex/face and edge/edge pair without a common vertex that comes within the gap is listed.
-//!          Why once: each vertex and each edge is owned by one of its triangles, and a pair of features is tested only
-//!          where owners meet. Why none is lost: a feature lies in its owner, so what comes within the gap of another brings
-//!          the owners as near, and that pair of triangles, adjacent or not, is in the list. Boxes are those of the part of
-//!          the step in which the boxes around the two triangles, moving with them, meet: outside of it no feature of one
-//!          can meet one of the other.
-//!          If an earliest time is known, none whose boxes first come as near behind the horizon.
+//! Before   pairs ⊇ {triangle pairs that come within the gap}, adjacent ones too.
+//! After    vf ∪ ee ⊇ {feature pairs : no common vertex, within the gap}, each pair once.
+//!          Once: each vertex and each edge has one owner, a triangle. A pair of features is tested
+//!          only at its two owners.
+//!          None is lost: a feature is part of its owner. So features within the gap bring their
+//!          owners within the gap.
+//!          That pair of triangles, adjacent or not, is in the list.
+//!          Boxes are those of the time in which the boxes around the two triangles, moving with
+//!          them, overlap.
+//!          Outside of it no feature of one can meet one of the other.
+//!          With a known earliest time none is listed whose boxes first come within the gap behind
+//!          the horizon.
 //! Room     vf, ee: counted past the end, grown, run again.
-//! Departs  the paper tests all 15 for every pair; owners (representative triangles: Curtis, Tamstorf, Manocha, "Fast
-//!          collision detection for deformable models using representative-triangles", 2008) leave about 3, shorter sweeps
-//!          about 1.
-//! Cost     8 B pair, 64 B facets, 192 B positions (gathered; at rest 96 B); some 500 operations, half of them for the 15 tests
-//!          (at rest those alone, 300), without branches; on a CPU in vectors. What is to be listed is numbered in shared memory first, so that all lanes write.
+//! Departs  the paper runs all 15 tests for every pair. Owners leave about 3, shorter sweeps 1.
+//!          Owners are the representative triangles of Curtis, Tamstorf, Manocha, "Fast collision
+//!          detection for deformable models using representative-triangles", 2008.
+//! Cost     8 B pair, 64 B facets, 192 B positions (gathered; at rest 96 B).
+//!          Some 500 operations, half of them for the 15 tests (at rest those alone, 300). No
+//!          branches; on a CPU in vectors.
+//!          Output is numbered in shared memory first, so that all lanes write.
 
 use super::{expect, moving};
 use crate::abi::{Facet, FeaturesArgs, Pair, Positions};
@@ -29,8 +36,8 @@ use crate::prim::sweep::{MOST, meeting, meeting_at_rest, more};
 use bytemuck::Pod;
 use core::marker::PhantomData;
 
-/// Bits of the tests that two triangles own: 0 to 2 a vertex of p and q, 3 to 5 a vertex of q and p, 6 + 3 i + j edge i of p
-/// and j of q; none of features that share a vertex.
+/// Bits of the tests that two triangles own. 0 to 2: a vertex of p and q. 3 to 5: a vertex of q and
+/// p. 6 + 3 i + j: edge i of p and edge j of q. Features that share a vertex have no bit.
 #[inline(always)]
 fn owned(p: &Facet, q: &Facet) -> u32 {
     // Bit j of row i: corner i of p is corner j of q.
@@ -52,15 +59,15 @@ fn owned(p: &Facet, q: &Facet) -> u32 {
     mask
 }
 
-/// Whether triangles move, and what the test of their boxes reads of a vertex.
+/// Whether triangles move, and the part of a vertex that the test of their boxes reads.
 pub trait Course<R: Real> {
-    /// What it reads.
+    /// The part of a vertex that it reads.
     type Corner: Pod;
     /// It will be read soon.
-    fn expect<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32);
+    fn expect<L: Lane>(lane: &L, frames: &Positions<R>, vertex: u32);
     /// Reads it.
-    fn corner<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32) -> Self::Corner;
-    /// Which tests of two triangles have features whose boxes come within a gap, and not first behind the horizon.
+    fn corner<L: Lane>(lane: &L, frames: &Positions<R>, vertex: u32) -> Self::Corner;
+    /// The tests whose features' boxes come within a gap, and not first behind the horizon.
     fn meeting(p: &[Self::Corner; 3], q: &[Self::Corner; 3], gap: R, horizon: R) -> u32;
     /// Whether all its numbers are [`Real::is_single`].
     fn is_single(corner: &Self::Corner) -> bool;
@@ -74,12 +81,12 @@ pub struct Moves;
 impl<R: Real> Course<R> for Moves {
     type Corner = Moving<R>;
     #[inline(always)]
-    fn expect<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32) {
-        l.expect(frames.moving, vertex);
+    fn expect<L: Lane>(lane: &L, frames: &Positions<R>, vertex: u32) {
+        lane.expect(frames.moving, vertex);
     }
     #[inline(always)]
-    fn corner<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32) -> Moving<R> {
-        moving(l, frames, vertex)
+    fn corner<L: Lane>(lane: &L, frames: &Positions<R>, vertex: u32) -> Moving<R> {
+        moving(lane, frames, vertex)
     }
     #[inline(always)]
     fn meeting(p: &[Moving<R>; 3], q: &[Moving<R>; 3], gap: R, horizon: R) -> u32 {
@@ -102,12 +109,12 @@ pub struct Rests;
 impl<R: Real> Course<R> for Rests {
     type Corner = Vec3<R>;
     #[inline(always)]
-    fn expect<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32) {
-        l.expect(frames.still, vertex);
+    fn expect<L: Lane>(lane: &L, frames: &Positions<R>, vertex: u32) {
+        lane.expect(frames.still, vertex);
     }
     #[inline(always)]
-    fn corner<L: Lane>(l: &L, frames: &Positions<R>, vertex: u32) -> Vec3<R> {
-        l.read(frames.still, vertex).at
+    fn corner<L: Lane>(lane: &L, frames: &Positions<R>, vertex: u32) -> Vec3<R> {
+        lane.read(frames.still, vertex).at
     }
     #[inline(always)]
     fn meeting(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3], gap: R, _: R) -> u32 {
@@ -124,7 +131,7 @@ impl<R: Real> Course<R> for Rests {
     }
 }
 
-/// Which tests of two triangles have features whose boxes come within a gap, and not first behind the horizon.
+/// The tests whose features' boxes come within a gap, and not first behind the horizon.
 struct Meeting<R, C> {
     gap: R,
     horizon: R,
@@ -140,7 +147,8 @@ impl<R: Real, C: Course<R>> RowMap for Meeting<R, C> {
     fn at_once(&self, [p, q]: Self::Row) -> u32 {
         C::meeting(&p, &q, self.gap, self.horizon)
     }
-    // Boxes of f32 are grown by what f32 rounds, so they bring more: a solver without a proof would find more, too.
+    // Boxes of f32 grow by the roundings of f32, so they list more. A solver without a proof would
+    // then find more, too.
     const HAS_SINGLES: bool = R::WIDE;
     #[inline(always)]
     fn is_single(&self, [[p, q, r], [s, t, u]]: &Self::Row) -> bool {
@@ -163,82 +171,86 @@ pub const fn shared_bytes(lanes: u32) -> u32 {
 
 /// Bits of [`owned`] that are vertices and faces.
 const VERTICES: u32 = 63;
-/// Counts of both kinds in one word: at most 15 a lane, so blocks of up to 1,024 lanes stay within 16 bits.
+/// Counts of both kinds in one word: at most 15 a lane, so blocks of up to 1,024 lanes fit 16 bits.
 const EE: u32 = 1 << 16;
 
 /// Vertex/face and edge/edge candidates of each triangle pair.
-pub fn features<R: Real, C: Course<R>, B: Block>(b: &mut B, a: &FeaturesArgs<R>) {
-    let count = a.pairs.listed(b);
-    let time = Horizon::of(b, a.known).time();
-    let (horizon, single) = (R::of(time.into()), [more(a.gap), time]);
-    let map = Meeting::<R, C> { gap: more(a.gap), horizon, single, course: PhantomData };
-    let lanes = b.lanes();
-    let tests = b.shared::<u32>(MOST * lanes);
-    let mut masks = b.slot(0u32);
-    let mut places = b.slot(0u32);
-    let mut base = b.block() * lanes;
-    let stride = b.blocks() * lanes;
+pub fn features<R: Real, C: Course<R>, B: Block>(block: &mut B, args: &FeaturesArgs<R>) {
+    let count = args.pairs.listed(block);
+    let time = Horizon::of(block, args.known).time();
+    let (horizon, single) = (R::of(time.into()), [more(args.gap), time]);
+    let map = Meeting::<R, C> { gap: more(args.gap), horizon, single, course: PhantomData };
+    let lanes = block.lanes();
+    let tests = block.shared::<u32>(MOST * lanes);
+    let mut masks = block.slot(0u32);
+    let mut places = block.slot(0u32);
+    let mut base = block.block() * lanes;
+    let stride = block.blocks() * lanes;
     while base < count {
-        b.map_rows(
+        block.map_rows(
             &map,
-            |l| {
-                let i = base + l.lane();
+            |lane| {
+                let i = base + lane.lane();
                 if i >= count {
                     return None;
                 }
-                let pair = a.pairs.get(l, i);
-                let (p, q) = (l.read(a.facets, pair.a), l.read(a.facets, pair.b));
+                let pair = args.pairs.get(lane, i);
+                let (p, q) = (lane.read(args.facets, pair.a), lane.read(args.facets, pair.b));
                 [p, q]
                     .iter()
                     .flat_map(|facet| facet.corners)
-                    .for_each(|vertex| C::expect(l, &a.frames, vertex));
-                expect(l, &a.pairs, (i + stride, count), |pair| {
-                    l.expect(a.facets, pair.a);
-                    l.expect(a.facets, pair.b);
+                    .for_each(|vertex| C::expect(lane, &args.frames, vertex));
+                expect(lane, &args.pairs, i + stride, count, |pair| {
+                    lane.expect(args.facets, pair.a);
+                    lane.expect(args.facets, pair.b);
                 });
                 Some((owned(&p, &q), p.corners, q.corners))
             },
-            |l, (_, p, q)| {
-                let at = |vertex| C::corner(l, &a.frames, vertex);
+            |lane, (_, p, q)| {
+                let at = |vertex| C::corner(lane, &args.frames, vertex);
                 let corners = |[x, y, z]: [u32; 3]| [at(x), at(y), at(z)];
                 Some([corners(p), corners(q)])
             },
-            |l, told| {
-                let mask = told.map_or(0, |((owned, ..), meeting)| owned & meeting);
-                *masks.of(l) = mask;
-                *places.of(l) = (mask & VERTICES).count_ones() + EE * (mask & !VERTICES).count_ones();
-                l.meet();
+            |lane, result| {
+                let mask = result.map_or(0, |((owned, ..), meeting)| owned & meeting);
+                *masks.of(lane) = mask;
+                *places.of(lane) = (mask & VERTICES).count_ones() + EE * (mask & !VERTICES).count_ones();
+                lane.meet();
             },
         );
-        let total = b.scan(&mut places);
+        let total = block.scan(&mut places);
         let (vf, ee) = (total % EE, total / EE);
-        let starts = b.reserve_both([a.vf.count(), a.ee.count()], [vf.into(), ee.into()]);
+        let starts = block.reserve_both([args.vf.count(), args.ee.count()], [vf.into(), ee.into()]);
         // Which lane's test each candidate is: written by few lanes that have many, read by all.
-        b.phase(|l| {
-            let (mut mask, before) = (*masks.of(l), *places.of(l));
+        block.phase(|lane| {
+            let (mut mask, before) = (*masks.of(lane), *places.of(lane));
             let (mut next_vf, mut next_ee) = (before % EE, vf + before / EE);
             while mask != 0 {
                 let k = mask.trailing_zeros();
                 mask &= mask - 1;
                 let next = if k < 6 { &mut next_vf } else { &mut next_ee };
-                l.put(tests, *next, l.lane() * TESTS + k);
+                lane.put(tests, *next, lane.lane() * TESTS + k);
                 *next += 1;
             }
-            l.meet();
+            lane.meet();
         });
-        b.phase(|l| {
-            let mut i = l.lane();
+        block.phase(|lane| {
+            let mut i = lane.lane();
             while i < vf + ee {
-                let test = l.get(tests, i);
-                let pair = a.pairs.get(l, base + test / TESTS);
+                let test = lane.get(tests, i);
+                let pair = args.pairs.get(lane, base + test / TESTS);
                 if i < vf {
-                    a.vf.put(l, starts[0] + i as u64, vertex_and_face(l, a, pair, test % TESTS));
+                    args.vf.put(lane, starts[0] + i as u64, vertex_and_face(lane, args, pair, test % TESTS));
                 } else {
-                    a.ee.put(l, starts[1] + (i - vf) as u64, two_edges(l, a, pair, test % TESTS - 6));
+                    args.ee.put(
+                        lane,
+                        starts[1] + (i - vf) as u64,
+                        two_edges(lane, args, pair, test % TESTS - 6),
+                    );
                 }
                 i += lanes;
             }
-            l.meet();
+            lane.meet();
         });
         base += stride;
     }
@@ -246,15 +258,15 @@ pub fn features<R: Real, C: Course<R>, B: Block>(b: &mut B, a: &FeaturesArgs<R>)
 
 /// Test 0 to 5: a vertex of the first triangle and the second, or the other way round.
 #[inline(always)]
-fn vertex_and_face<R: Real, L: Lane>(l: &L, a: &FeaturesArgs<R>, pair: Pair, test: u32) -> Pair {
+fn vertex_and_face<R: Real, L: Lane>(lane: &L, args: &FeaturesArgs<R>, pair: Pair, test: u32) -> Pair {
     let (of, face, k) = if test < 3 { (pair.a, pair.b, test) } else { (pair.b, pair.a, test - 3) };
-    Pair { a: pick(l.read(a.facets, of).corners, k), b: face }
+    Pair { a: pick(lane.read(args.facets, of).corners, k), b: face }
 }
 
 /// Test 6 to 14, less 6: an edge of each.
 #[inline(always)]
-fn two_edges<R: Real, L: Lane>(l: &L, a: &FeaturesArgs<R>, pair: Pair, test: u32) -> Pair {
-    let edge = |of: u32, k: u32| pick(l.read(a.facets, of).edges, k);
+fn two_edges<R: Real, L: Lane>(lane: &L, args: &FeaturesArgs<R>, pair: Pair, test: u32) -> Pair {
+    let edge = |of: u32, k: u32| pick(lane.read(args.facets, of).edges, k);
     let (x, y) = (edge(pair.a, test / 3), edge(pair.b, test % 3));
     Pair { a: x.min(y), b: x.max(y) }
 }

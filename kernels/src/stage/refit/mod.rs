@@ -1,8 +1,15 @@
-//! # Refit: leaf volumes → all volumes
-//! Paper    section 6.2.4, "Parallel hierarchy refitting"; table 6.12, right half.
-//! Ways     [`levels`] is the paper's: a launch a level. [`treelets`] is one launch, whose barriers are those of blocks.
-//!          [`bottom_up`] has no barrier: of two siblings, who comes second goes on. All merge left with right, so all
-//!          give the same bits. [`tiles`] is of what has no tree.
+//! # Refit: volumes of a level → volumes of the level above
+//! Paper    the thesis, section 6.2.4, "Parallel hierarchy refitting", for [`levels`]. The others
+//!          are not in the paper.
+//!
+//! | file | broad phase | launches | used |
+//! | --- | --- | --- | --- |
+//! | [`tiles`] | tiles: **the default** | one a level, from the third on | every machine |
+//! | [`treelets`] | trees | one, with barriers within blocks | default of trees on a GPU |
+//! | [`levels`] | trees, the paper's | one a level | default of trees on a CPU |
+//! | [`bottom_up`] | trees | one, without barriers | on request |
+//!
+//! All three of trees merge left with right, so they give the same bits.
 
 pub mod bottom_up;
 pub mod levels;

@@ -1,12 +1,14 @@
 //! # Refit tiles: nodes → the nodes above them
-//! Paper    nothing of the seed's; a launch a level, as its refit.
+//! Paper    not in the paper; a launch a level, as in its refit.
 //! Launch   a block 32 nodes, a lane a node below; for each level from the third on.
-//! Reads    the nodes below.     Writes   the nodes of a level.
+//! Reads    the nodes below.
+//! Writes   the nodes of a level.
 //! Before   the level below is fitted.
-//! After    every volume is the merge of those below it, of neighbours first, of those 8, 4, 2 and 1 further on. Behind the last one
-//!          they are the last one, again.
+//! After    volume(node) = merge of the 16 volumes below it, neighbours first, at distances 8, 4, 2
+//!          and 1.
+//!          Beyond the end the last volume repeats.
 //! Room     fixed; cannot run out.
-//! Cost     a node in a node below, 32 or 64 B, in one stretch. Four rounds on chip.
+//! Cost     a node in a node below, 32 or 64 B, contiguous. Four rounds on chip.
 
 use crate::abi::{Node, RefitTilesArgs};
 use crate::bv::Volume;
@@ -23,24 +25,24 @@ pub const fn shared_bytes<V>() -> u32 {
 }
 
 /// Volumes of the nodes of a level.
-pub fn tiles<V: Volume, B: Block>(b: &mut B, a: &RefitTilesArgs<V>) {
-    let chip = OnChip::new::<V, B>(b, LANES);
-    let mut volumes = b.slot(V::zeroed());
-    let block = b.block();
-    b.phase(|l| {
-        let place = (block * LANES + l.lane()).min(a.below_count - 1);
-        let volume = l.read(a.nodes, a.below + place).volume;
-        chip.put(l, l.lane(), volume);
-        *volumes.of(l) = volume;
+pub fn tiles<V: Volume, B: Block>(block: &mut B, args: &RefitTilesArgs<V>) {
+    let chip = OnChip::new::<V, B>(block, LANES);
+    let mut volumes = block.slot(V::zeroed());
+    let index = block.block();
+    block.phase(|lane| {
+        let place = (index * LANES + lane.lane()).min(args.below_count - 1);
+        let volume = lane.read(args.nodes, args.below + place).volume;
+        chip.put(lane, lane.lane(), volume);
+        *volumes.of(lane) = volume;
     });
-    chip.merge(b, &mut volumes, (FAN, 1), a.axes);
-    b.phase(|l| {
-        let node = (block * LANES + l.lane()) / FAN;
-        if l.lane().is_multiple_of(FAN) && node < a.count {
-            let link = a.below + node * FAN;
-            let last = a.tile + (node + 1) * a.tiles - 1;
-            l.write(a.nodes, a.first + node, Node { volume: *volumes.of(l), link, last });
+    chip.merge(block, &mut volumes, FAN, 1, args.axes);
+    block.phase(|lane| {
+        let node = (index * LANES + lane.lane()) / FAN;
+        if lane.lane().is_multiple_of(FAN) && node < args.count {
+            let link = args.below + node * FAN;
+            let last = args.tile + (node + 1) * args.tiles - 1;
+            lane.write(args.nodes, args.first + node, Node { volume: *volumes.of(lane), link, last });
         }
-        l.meet();
+        lane.meet();
     });
 }

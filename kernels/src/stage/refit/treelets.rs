@@ -1,13 +1,21 @@
 //! # Treelets: positions → all volumes, in one launch
-//! Paper    section 6.2.4: a barrier between levels. Here a level's barrier is a block's, not the launch's.
-//! Launch   a block a treelet, a lane a leaf and a lane a merge; the block that is done last merges the top.
-//! Reads    positions, faces, leaf_places, merges; the last block volumes of others, taken.   Writes   all nodes, each once.
+//! Paper    the thesis, section 6.2.4, has a barrier between levels. Here a level's barrier is
+//!          within one block.
+//! Launch   a block a treelet, a lane a leaf and a lane a merge. The last block to finish merges
+//!          the top.
+//! Reads    positions, faces, leaf_places, merges; the last block also volumes of others, acquired.
+//! Writes   all nodes, each once.
 //! Before   `construct_treelets` has planned the tree; positions are finite.
-//! After    leaves enclose their triangles as after `fit`, every other volume that is not fitted is the merge of its children's.
-//! Room     fixed; cannot run out. Any number of merges in the top: rounds of as many as a block has lanes.
-//! Departs  fit is part of it: the volumes of a treelet stay on chip from the triangle to the treelet's root.
-//! Cost     8 B place, 12 B face, 48 B positions a frame and leaf; 16 B a merge; two nodes out a leaf: 148 B (AABB). A
-//!          chain of some 12 rounds on chip, a ticket, and a round trip to L2 a depth of the top (13 on cloth-ball).
+//! After    volume(leaf) ⊇ its triangle, as after `fit`. Every other volume = merge of its
+//!          children's, unless it is fitted.
+//! Room     fixed; cannot run out. The top may have any number of merges: a round has at most one a
+//!          lane.
+//! Departs  fit is included: the volumes of a treelet stay on chip from the triangles to the
+//!          treelet's root.
+//! Cost     8 B place, 12 B face, 48 B positions a frame and leaf. 16 B a merge; two nodes out a
+//!          leaf: 148 B (AABB).
+//!          A chain of some 12 rounds on chip, and a ticket. A round trip to L2 for each depth of
+//!          the top (13 on cloth-ball).
 
 use crate::abi::{Link, Merge, Treelet, TreeletsArgs};
 use crate::bv::Volume;
@@ -19,47 +27,47 @@ use crate::math::Real;
 /// Most leaves of a treelet, rounded up.
 const SLOTS: u32 = 2 * TREELET;
 
-/// Shared memory of a block: volumes, merges, where rounds end.
+/// Shared memory of a block: volumes, merges, ends of rounds.
 pub const fn shared_bytes<V>() -> u32 {
     OnChip::bytes::<V>(SLOTS) + SLOTS * size_of::<Merge>() as u32 + 4 * MAX_LEVELS
 }
 
 /// All volumes.
-pub fn treelets<R: Real, V: Volume, B: Block>(b: &mut B, a: &TreeletsArgs<R, V>) {
+pub fn treelets<R: Real, V: Volume, B: Block>(block: &mut B, args: &TreeletsArgs<R, V>) {
     // Each volume at its first leaf.
-    let chip = OnChip::new::<V, B>(b, SLOTS);
-    let places = b.shared::<[u32; 2]>(SLOTS);
-    let ranges = b.shared::<[u32; 2]>(SLOTS);
-    let ends = b.shared::<u32>(MAX_LEVELS);
-    let Treelet { first, leaves, merges, rounds } = b.load(a.treelets, b.block());
-    let (lanes, fitted) = (b.lanes(), V::group(a.axes));
-    b.phase(|l| {
-        let mut i = l.lane();
+    let chip = OnChip::new::<V, B>(block, SLOTS);
+    let places = block.shared::<[u32; 2]>(SLOTS);
+    let ranges = block.shared::<[u32; 2]>(SLOTS);
+    let ends = block.shared::<u32>(MAX_LEVELS);
+    let Treelet { first, leaves, merges, rounds } = block.load(args.treelets, block.block());
+    let (lanes, fitted) = (block.lanes(), V::group(args.axes));
+    block.phase(|lane| {
+        let mut i = lane.lane();
         while i < leaves {
-            let place = l.read(a.leaf_places, first + i);
+            let place = lane.read(args.leaf_places, first + i);
             let link = Link { link: place.link, last: first + i };
-            let volume: V = leaf::volume(l, &a.frames, a.faces, (link.triangle(), a.margin));
-            chip.put(l, i, volume);
-            l.store_relaxed(a.nodes, place.node, link.with(volume));
+            let volume: V = leaf::volume(lane, &args.frames, args.faces, link.triangle(), args.margin);
+            chip.put(lane, i, volume);
+            lane.store_relaxed(args.nodes, place.node, link.with(volume));
             i += lanes;
         }
-        let mut i = l.lane();
+        let mut i = lane.lane();
         while i < merges {
-            let merge = l.read(a.merges, first + i);
-            l.put(places, i, [merge.node, merge.link]);
-            l.put(ranges, i, [merge.last, merge.slots]);
-            if i + 1 == merges || l.read(a.merges, first + i + 1).round() != merge.round() {
-                l.put(ends, merge.round(), i + 1);
+            let merge = lane.read(args.merges, first + i);
+            lane.put(places, i, [merge.node, merge.link]);
+            lane.put(ranges, i, [merge.last, merge.slots]);
+            if i + 1 == merges || lane.read(args.merges, first + i + 1).round() != merge.round() {
+                lane.put(ends, merge.round(), i + 1);
             }
             i += lanes;
         }
     });
     for round in 0..rounds {
-        b.phase(|l| {
-            let mut i = l.lane() + if round == 0 { 0 } else { l.get(ends, round - 1) };
-            let end = l.get(ends, round);
+        block.phase(|lane| {
+            let mut i = lane.lane() + if round == 0 { 0 } else { lane.get(ends, round - 1) };
+            let end = lane.get(ends, round);
             while i < end {
-                let ([node, link], [last, slots]) = (l.get(places, i), l.get(ranges, i));
+                let ([node, link], [last, slots]) = (lane.get(places, i), lane.get(ranges, i));
                 let merge = Merge { node, link, last, slots };
                 i += lanes;
                 let [from, split] = [merge.left(), merge.right()];
@@ -70,65 +78,68 @@ pub fn treelets<R: Real, V: Volume, B: Block>(b: &mut B, a: &TreeletsArgs<R, V>)
                 }
                 let child = |slot: u32, k: u32| {
                     if (2..=fitted).contains(&counts[k as usize]) {
-                        l.read(a.nodes, link + k).volume
+                        lane.read(args.nodes, link + k).volume
                     } else {
-                        chip.get::<V, _>(l, slot)
+                        chip.get::<V, _>(lane, slot)
                     }
                 };
-                let volume = child(from, 0).merge(&child(split, 1), a.axes);
-                chip.put(l, from, volume);
-                l.store_relaxed(a.nodes, node, merge.link().with(volume));
+                let volume = child(from, 0).merge(&child(split, 1), args.axes);
+                chip.put(lane, from, volume);
+                lane.store_relaxed(args.nodes, node, merge.link().with(volume));
             }
         });
     }
-    let blocks = b.blocks() as u64;
-    if b.ticket(a.ticket, 0) % blocks == blocks - 1 {
-        top(b, a, ends);
+    let blocks = block.blocks() as u64;
+    if block.ticket(args.ticket, 0) % blocks == blocks - 1 {
+        top(block, args, ends);
     }
 }
 
 /// Merges of the nodes that span treelets, deepest first, by one block when all treelets are done.
-fn top<R: Real, V: Volume, B: Block>(b: &mut B, a: &TreeletsArgs<R, V>, starts: Shared<u32>) {
-    let lanes = b.lanes();
-    let mut depth = b.load(a.top_starts, 0);
+fn top<R: Real, V: Volume, B: Block>(block: &mut B, args: &TreeletsArgs<R, V>, starts: Shared<u32>) {
+    let lanes = block.lanes();
+    let mut depth = block.load(args.top_starts, 0);
     if depth == 0 {
         return;
     }
-    let deepest = [b.load(a.top_starts, depth), b.load(a.top_starts, depth + 1)];
-    // A lane's first merge of the next depth is on its way while volumes of this one are: one round trip, not two.
-    let mut ahead = b.slot(Merge::default());
-    let fetch = |l: &B::Lane, ahead: &mut B::Slot<Merge>, [start, end]: [u32; 2]| {
-        if start + l.lane() < end {
-            *ahead.of(l) = l.read(a.top, start + l.lane());
+    let deepest = [block.load(args.top_starts, depth), block.load(args.top_starts, depth + 1)];
+    // A lane's first merge of the next depth is prefetched with the volumes of this depth: one
+    // round trip instead of two.
+    let mut ahead = block.slot(Merge::default());
+    let fetch = |lane: &B::Lane, ahead: &mut B::Slot<Merge>, [start, end]: [u32; 2]| {
+        if start + lane.lane() < end {
+            *ahead.of(lane) = lane.read(args.top, start + lane.lane());
         }
     };
-    b.phase(|l| {
-        fetch(l, &mut ahead, deepest);
-        let mut i = l.lane();
+    block.phase(|lane| {
+        fetch(lane, &mut ahead, deepest);
+        let mut i = lane.lane();
         while i <= depth {
-            l.put(starts, i, l.read(a.top_starts, i + 1));
+            lane.put(starts, i, lane.read(args.top_starts, i + 1));
             i += lanes;
         }
     });
     while depth > 0 {
         depth -= 1;
-        b.phase(|l| {
-            let (mut i, end) = (l.get(starts, depth) + l.lane(), l.get(starts, depth + 1));
-            let mut merge = *ahead.of(l);
+        block.phase(|lane| {
+            let (mut i, end) = (lane.get(starts, depth) + lane.lane(), lane.get(starts, depth + 1));
+            let mut merge = *ahead.of(lane);
             if depth > 0 {
-                fetch(l, &mut ahead, [l.get(starts, depth - 1), l.get(starts, depth)]);
+                fetch(lane, &mut ahead, [lane.get(starts, depth - 1), lane.get(starts, depth)]);
             }
             while i < end {
-                let (left, right) =
-                    (l.load_relaxed(a.nodes, merge.link), l.load_relaxed(a.nodes, merge.link + 1));
-                l.store_relaxed(
-                    a.nodes,
+                let (left, right) = (
+                    lane.load_relaxed(args.nodes, merge.link),
+                    lane.load_relaxed(args.nodes, merge.link + 1),
+                );
+                lane.store_relaxed(
+                    args.nodes,
                     merge.node,
-                    merge.link().with(left.volume.merge(&right.volume, a.axes)),
+                    merge.link().with(left.volume.merge(&right.volume, args.axes)),
                 );
                 i += lanes;
                 if i < end {
-                    merge = l.read(a.top, i);
+                    merge = lane.read(args.top, i);
                 }
             }
         });

@@ -1,15 +1,18 @@
 //! # Pairs of tiles: nodes → tiles that overlap
-//! Paper    nothing of the seed's.
-//! Launch   a block of a warp a tile of what moves, or of a share of it.
-//! Reads    nodes, 32 of the top level or twice 16 below others at once.     Writes   pairs of tiles, the earlier first.
+//! Paper    not in the paper.
+//! Launch   a block of a warp a moving tile, or a tile of a share of them.
+//! Reads    nodes: 32 of the top level, or twice 16 below others, at once.
+//! Writes   pairs of tiles, the earlier first.
 //! Before   all nodes are fitted.
-//! After    each pair of tiles whose volumes overlap, of which the first is one that seeks and whose triangles may meet, but for a tile with itself. Nodes
-//!          whose tiles are all at or before the own one are passed over. Of a sample: of every so many tiles the first. Where an
-//!          earliest time is sought, none that only meets behind the horizon. With rims, of two tiles round one hub
-//!          only such of which one's rim overlaps the other.
-//! Room     `tile_pairs` may be too short: counters go on, the host grows it and runs again. On chip it cannot run out: two nodes are
-//!          taken from the top of the stack, those below the lower one put back first; so of each level at most 32 wait.
-//! Cost     a test a node of the top level behind the own one, 16 a node that overlaps.
+//! After    tile_pairs = {(a, b) : a < b, volumes overlap, a moves, filters allow}.
+//!          With a share or a sample: a in [from, to), every `every`-th. With a horizon: volumes
+//!          overlap before it.
+//!          With rims, for two tiles round one hub also: one's rim overlaps the other.
+//! Room     `tile_pairs` may be too short: counters go on, the host grows it and runs again. The
+//!          stack on chip cannot overflow.
+//!          Two nodes are taken from its top, and children of the lower one are put back first. So
+//!          each level has at most 32 on it.
+//! Cost     a test a node of the top level from the tile's own on, 16 a node that overlaps.
 
 use crate::abi::{LEAF, NONE, NodeFilter, Pair, TilePairsArgs, counter};
 use crate::bv::Volume;
@@ -28,64 +31,65 @@ const FOUND: u32 = 256;
 pub const SHARED: u32 = 4 * (STACK + FOUND);
 
 /// Pairs of tiles that overlap, before the horizon.
-pub fn pairs<const HORIZON: bool, V: Volume, B: Block>(b: &mut B, a: &TilePairsArgs<V>) {
-    let stack = b.shared::<u32>(STACK);
-    let found = b.shared::<u32>(FOUND);
-    let mut hit = b.slot((NONE, NONE));
-    let mut nodes = b.slot(0u32);
-    let mut tiles = b.slot(0u32);
+pub fn pairs<const HORIZON: bool, V: Volume, B: Block>(block: &mut B, args: &TilePairsArgs<V>) {
+    let stack = block.shared::<u32>(STACK);
+    let found = block.shared::<u32>(FOUND);
+    let mut hit = block.slot((NONE, NONE));
+    let mut nodes = block.slot(0u32);
+    let mut tiles = block.slot(0u32);
     let mut tests = 0u64;
-    let horizon = Horizon::of(b, a.known);
-    let mut tile = a.from + b.block() * a.every;
-    while tile < a.to {
-        let own = horizon.cut::<HORIZON, V>(b.load(a.nodes, tile).volume);
-        let filters = a.filters.nodes;
-        let whose = if filters.is_empty() { NodeFilter::default() } else { b.load(filters, tile) };
-        let hub = if a.rims.is_empty() { 0 } else { b.load(a.rims, tile).link };
+    let horizon = Horizon::of(block, args.known);
+    let mut tile = args.from + block.block() * args.every;
+    while tile < args.to {
+        let own = horizon.cut::<HORIZON, V>(block.load(args.nodes, tile).volume);
+        let filters = args.filters.nodes;
+        let whose = if filters.is_empty() { NodeFilter::default() } else { block.load(filters, tile) };
+        let hub = if args.rims.is_empty() { 0 } else { block.load(args.rims, tile).link };
         let (mut waiting, mut fill) = (0, 0);
-        let mut top = tile >> a.shift;
-        while top < a.tops || waiting > 0 {
+        let mut top = tile >> args.shift;
+        while top < args.tops || waiting > 0 {
             let taken = waiting.min(2);
-            b.phase(|l| {
+            block.phase(|lane| {
                 let place = if taken == 0 {
-                    if top + l.lane() < a.tops { a.top + top + l.lane() } else { NONE }
-                } else if l.lane() / FAN < taken {
-                    l.get(stack, waiting - taken + l.lane() / FAN) + l.lane() % FAN
+                    if top + lane.lane() < args.tops { args.top + top + lane.lane() } else { NONE }
+                } else if lane.lane() / FAN < taken {
+                    lane.get(stack, waiting - taken + lane.lane() / FAN) + lane.lane() % FAN
                 } else {
                     NONE
                 };
-                *hit.of(l) = (NONE, NONE);
-                (*nodes.of(l), *tiles.of(l)) = (0, 0);
+                *hit.of(lane) = (NONE, NONE);
+                (*nodes.of(lane), *tiles.of(lane)) = (0, 0);
                 if place != NONE {
-                    let node = l.read(a.nodes, place);
+                    let node = lane.read(args.nodes, place);
                     let meets = node.link != NONE
                         && node.last > tile
                         && own.may_overlap(&horizon.cut::<HORIZON, V>(node.volume))
-                        && (filters.is_empty() || a.filters.allows(l, whose, l.read(filters, place)))
+                        && (filters.is_empty()
+                            || args.filters.allows(lane, whose, lane.read(filters, place)))
                         && (hub == 0 || {
-                            let other = l.read(a.rims, place);
-                            let [rim, round] = [l.read(a.rims, tile).volume, other.volume]
+                            let other = lane.read(args.rims, place);
+                            let [rim, round] = [lane.read(args.rims, tile).volume, other.volume]
                                 .map(|volume| horizon.cut::<HORIZON, V>(volume));
                             other.link != hub
                                 || rim.may_overlap(&horizon.cut::<HORIZON, V>(node.volume))
                                 || own.may_overlap(&round)
                         });
                     if meets {
-                        *hit.of(l) = (node.link, node.last);
+                        *hit.of(lane) = (node.link, node.last);
                         let is_tile = node.link & LEAF != 0;
-                        (*nodes.of(l), *tiles.of(l)) = (!is_tile as u32, is_tile as u32);
+                        (*nodes.of(lane), *tiles.of(lane)) = (!is_tile as u32, is_tile as u32);
                     }
                 }
             });
             tests += LANES as u64;
-            let [met, hits] = [b.number(&mut nodes), b.number(&mut tiles)];
+            let [met, hits] = [block.number(&mut nodes), block.number(&mut tiles)];
             waiting -= taken;
-            b.phase(|l| {
-                let (link, last) = *hit.of(l);
+            block.phase(|lane| {
+                let (link, last) = *hit.of(lane);
                 if link != NONE && link & LEAF == 0 {
-                    l.put(stack, waiting + *nodes.of(l), link);
+                    lane.put(stack, waiting + *nodes.of(lane), link);
                 } else if link != NONE {
-                    l.put(found, fill + *tiles.of(l), last);
+                    lane.put(found, fill + *tiles.of(lane), last);
                 }
             });
             if taken == 0 {
@@ -94,23 +98,29 @@ pub fn pairs<const HORIZON: bool, V: Volume, B: Block>(b: &mut B, a: &TilePairsA
             waiting += met;
             fill += hits;
             if fill > FOUND - LANES {
-                write(b, a, (found, fill), tile);
+                write(block, args, tile, found, fill);
                 fill = 0;
             }
         }
-        write(b, a, (found, fill), tile);
-        tile += b.blocks() * a.every;
+        write(block, args, tile, found, fill);
+        tile += block.blocks() * args.every;
     }
-    a.counters.add_once(b, counter::STEPS, tests);
+    args.counters.add_once(block, counter::STEPS, tests);
 }
 
 /// Appends the pairs of a tile with those that it has found.
-fn write<V: Volume, B: Block>(b: &mut B, a: &TilePairsArgs<V>, (found, fill): (Shared<u32>, u32), tile: u32) {
-    let base = a.tile_pairs.reserve(b, fill as u64);
-    b.phase(|l| {
-        let mut i = l.lane();
+fn write<V: Volume, B: Block>(
+    block: &mut B,
+    args: &TilePairsArgs<V>,
+    tile: u32,
+    found: Shared<u32>,
+    fill: u32,
+) {
+    let base = args.tile_pairs.reserve(block, fill as u64);
+    block.phase(|lane| {
+        let mut i = lane.lane();
         while i < fill {
-            a.tile_pairs.put(l, base + i as u64, Pair { a: tile, b: l.get(found, i) });
+            args.tile_pairs.put(lane, base + i as u64, Pair { a: tile, b: lane.get(found, i) });
             i += LANES;
         }
     });

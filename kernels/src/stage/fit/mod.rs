@@ -1,0 +1,15 @@
+//! # Fit: positions → volumes of triangles
+//! Paper    the thesis, section 6.2.4, for [`leaves`]. [`tiles`] and [`rims`] are not in the paper.
+//!
+//! | file | broad phase | writes volumes of | used |
+//! | --- | --- | --- | --- |
+//! | [`tiles`] | tiles: **the default** | triangles, tiles, nodes above tiles | each frame |
+//! | [`rims`] | tiles | edges opposite to hubs | if adjacent pairs are kept |
+//! | [`leaves`] | trees, the paper's | leaves | by the refits by level and bottom-up |
+//! | [`leaves`] `groups` | trees | nodes with few leaves | by oriented boxes |
+//!
+//! The refit by treelets fits its leaves itself: see [`crate::stage::refit`].
+
+pub mod leaves;
+pub mod rims;
+pub mod tiles;
