@@ -1,13 +1,13 @@
 //! Which call a trigger ends, and every call that may be ended.
 
 use super::{bodies, interrupted, looks, same, threads};
-use crate::support::{asked, engine};
 use nearmiss::device::Interrupt;
 use nearmiss::query::QueryKind;
 use nearmiss::scene::Scene;
 use nearmiss::{Detector, Error, MultiDetector, Query, Stage};
 use nearmiss_lab::scene;
 use std::time::{Duration, Instant};
+use support::{asked, engine};
 
 fn detector(query: Query) -> Detector {
     Detector::new(threads(2), bodies(200, true), query).expect("a detector")
