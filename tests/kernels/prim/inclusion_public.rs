@@ -1,14 +1,12 @@
 //! The certified continuous tests on public data with exact answers.
 
 use super::inclusion::{certified, in_passes};
-use super::public::{Key, scene};
 use nearmiss_kernels::math::{Real, Vec3};
-use nearmiss_kernels::prim::cubic::{Moving, ee_apart, ee_toi, vf_apart, vf_toi};
+use nearmiss_kernels::prim::cubic::{Moving, ee_apart, vf_apart};
 use nearmiss_kernels::prim::inclusion::{Edges, Face, Params, Verdict};
 use nearmiss_lab::robustness::MOTIONS;
 use std::collections::HashSet;
-use std::hint::black_box;
-use std::time::Instant;
+use support::candidates::{Key, scene};
 use support::truth::queries::folders;
 
 fn moving<R: Real>(x: &[[f64; 3]; 8]) -> [Moving<R>; 4] {
@@ -144,71 +142,5 @@ fn filters(all: &[(Key, [Moving<f32>; 4])], truth: &HashSet<Key>, p: &Params) {
     }
     for (name, n) in names.iter().zip(removed) {
         println!("{name}: {:.2} %", n as f64 * 100.0 / all.len() as f64);
-    }
-}
-
-/// Nanoseconds a candidate on one core: `cargo test --release --test kernels nanoseconds -- --ignored --nocapture`.
-#[test]
-#[ignore = "times, not truths"]
-fn nanoseconds() {
-    let (all, _, mean) = scene("cloth-ball", "cloth_ball92", "cloth_ball93");
-    let p = Params::new(1e-4 * mean);
-    let time = |name: &str, f: &dyn Fn(bool, [Moving<f32>; 4]) -> bool| {
-        let start = Instant::now();
-        let n = all.iter().filter(|(key, x)| black_box(f(key.0, black_box(*x)))).count();
-        let ns = start.elapsed().as_secs_f64() * 1e9 / all.len() as f64;
-        println!("{name:30} {ns:7.1} ns   ({n} of {})", all.len());
-    };
-    for _ in 0..2 {
-        time("cubic f64", &|face, [a, b, c, d]| {
-            if face {
-                vf_toi::<f32, f64>(a, [b, c, d]).is_some()
-            } else {
-                ee_toi::<f32, f64>([a, b], [c, d]).is_some()
-            }
-        });
-        time("rejection by signs", &|face, [a, b, c, d]| {
-            if face { vf_apart::<f32, f32>(a, [b, c, d]) } else { ee_apart::<f32, f32>([a, b], [c, d]) }
-        });
-        time("filters f32", &|face, [a, b, c, d]| {
-            if face {
-                let m = Face::<f32>::new(a, [b, c, d], &p);
-                m.apart_by_axes() || m.apart_by_planes()
-            } else {
-                let m = Edges::<f32>::new([a, b], [c, d], &p);
-                m.apart_by_axes() || m.apart_by_planes()
-            }
-        });
-        time("certified f32", &|face, x| !certified::<f32, f32>(x, face, &p).is_separated());
-        time("certified f64", &|face, x| !certified::<f32, f64>(x, face, &p).is_separated());
-        time("certified f32, then f64", &|face, x| !in_passes(x, face, &p).is_separated());
-    }
-}
-
-/// How many boxes the searches of real cloth take: `cargo test --release --test kernels boxes -- --ignored --nocapture`.
-#[test]
-#[ignore = "figures, not truths"]
-fn boxes() {
-    let (all, _, mean) = scene("cloth-ball", "cloth_ball92", "cloth_ball93");
-    let p = Params::new(1e-4 * mean);
-    for (name, solver) in [
-        ("f32", certified::<f32, f32> as fn([Moving<f32>; 4], bool, &Params) -> Verdict),
-        ("f64", certified::<f32, f64>),
-    ] {
-        let start = Instant::now();
-        let mut boxes: Vec<_> = all.iter().map(|(key, x)| solver(*x, key.0, &p).boxes).collect();
-        let ms = start.elapsed().as_secs_f64() * 1e3;
-        boxes.retain(|boxes| *boxes > 0);
-        boxes.sort_unstable();
-        let at = |part: f64| boxes[((boxes.len() - 1) as f64 * part) as usize];
-        println!(
-            "{name}: {} searched, {} boxes; median {}, 99 % {}, 99.9 % {}, most {}; {ms:.0} ms",
-            boxes.len(),
-            boxes.iter().sum::<u32>(),
-            at(0.5),
-            at(0.99),
-            at(0.999),
-            at(1.0)
-        );
     }
 }

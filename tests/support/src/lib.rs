@@ -3,6 +3,7 @@
 
 pub mod asked;
 pub mod brute;
+pub mod candidates;
 mod data;
 pub mod folder;
 pub mod fuzz;
@@ -11,6 +12,7 @@ pub mod judges;
 mod kernels;
 pub mod ptx;
 pub mod shrinking;
+pub mod triangles;
 pub mod truth;
 
 pub use data::data;
