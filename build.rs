@@ -60,7 +60,7 @@ mod ptx {
             && first.contains(&format!("sources {stamp},"))
     }
 
-    /// As `kernels/ptx.sh stamp` (tests/ptx.rs compares): a digest over one line a file, "digest  kernels/name". A file's digest
+    /// As `kernels/ptx.sh stamp` (tests/gpu/ptx.rs compares): a digest over one line a file, "digest  kernels/name". A file's digest
     /// is that of its compiled lines: none that is blank or only a comment.
     fn stamp(kernels: &Path) -> String {
         let mut names = vec!["Cargo.toml".to_owned()];

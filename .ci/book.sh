@@ -7,7 +7,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 root=$PWD
 target=$(mkdir -p "${CARGO_TARGET_DIR:-target}" && cd "${CARGO_TARGET_DIR:-target}" && pwd)
 cargo build --locked --release -p nearmiss-cli
-cargo build --locked -p nearmiss-c
+# As .ci/c.sh.
+cargo build --locked --lib --bins --examples
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 

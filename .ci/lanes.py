@@ -138,7 +138,7 @@ def needs(step, masks):
     if step.op == "BAR" or step.op == "VOTE" and not step.counts:
         return TOGETHER
     if step.op == "SHFL":
-        # The kernels shuffle by SHFL.UP and do not ask whether there is a lane: tests/ptx.rs looks into the text.
+        # The kernels shuffle by SHFL.UP and do not ask whether there is a lane: tests/gpu/ptx.rs looks into the text.
         return TOGETHER if step.name != "SHFL.IDX" and step.parts[0] == "PT" else COUNTED
     return APART
 

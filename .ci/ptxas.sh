@@ -1,17 +1,20 @@
 #!/usr/bin/env bash
 # Assembles a PTX text as the driver would, without a GPU: what ptxas refuses, no GPU runs. And reads the machine code.
 #
-#   .ci/ptxas.sh FILE.ptx[.zst] [ARCH...]      ARCH: sm_80 sm_90 sm_100 unless told
+#   .ci/ptxas.sh [--newest] FILE.ptx[.zst] [ARCH...]      ARCH: sm_80 sm_90 sm_100 unless told
 #
 # Prints registers, stack, spills and shared memory of each kernel for the first ARCH, and makes sure
 # - that no product and sum became one operation: the code is the same where that is forbidden;
 # - that the lanes of a warp are together wherever they must be (.ci/lanes.py says what is proven), for each ARCH.
 # Each is done by two assemblers, NVIDIA's Python packages, unpacked into the cache (150 MB); without them by $PTXAS, or the one
-# on the PATH or in /usr/local/cuda. Each check is first shown a text with a fault in it. Five minutes on two cores.
+# on the PATH or in /usr/local/cuda. With --newest the newer of the two does it alone. Each check is first shown a text with a fault
+# in it. Two assemblers and three ARCHs take five minutes on two cores; --newest and one ARCH, one.
 # Exit status 77: no assembler or no disassembler to be had.
 set -euo pipefail
 
-[ $# -ge 1 ] || { echo "usage: .ci/ptxas.sh FILE.ptx[.zst] [ARCH...]" >&2; exit 2; }
+newest=false
+[ "${1:-}" != --newest ] || { newest=true; shift; }
+[ $# -ge 1 ] || { echo "usage: .ci/ptxas.sh [--newest] FILE.ptx[.zst] [ARCH...]" >&2; exit 2; }
 text=$1
 shift
 archs=("$@")
@@ -19,6 +22,7 @@ archs=("$@")
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 # The last of CUDA 12 and the newest: `python3 -m pip index versions nvidia-cuda-nvcc` tells of newer ones.
 packages=(nvidia-cuda-nvcc-cu12==12.9.86 nvidia-cuda-nvcc==13.5.37)
+! $newest || packages=("${packages[-1]}")
 reader=nvidia-cuda-nvdisasm==13.5.37
 cache=${XDG_CACHE_HOME:-$HOME/.cache}/nearmiss/ptxas
 work=$(mktemp -d)

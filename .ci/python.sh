@@ -27,5 +27,6 @@ for library in ipctk coal trimesh libigl; do
     "$folder/user/bin/python" "python/examples/from_$library.py"
 done
 "$folder/user/bin/python" -m mypy --no-error-summary python/tests/typed.py
-cargo build --locked -p nearmiss-cli
+# As the tests have it: -p would choose other features of what others need, which is a second build.
+cargo build --locked --lib --bins --examples
 NEARMISS_PROGRAM=$target/debug/nearmiss "$folder/user/bin/python" -m pytest -q -rs python

@@ -67,7 +67,7 @@ dirty=()
 ! $rehearse || dirty=(--allow-dirty)
 cargo package --locked --no-verify "${dirty[@]}" "${packages[@]}" --target-dir "$work/package"
 cp "$work"/package/package/*.crate "$out/crates/"
-cargo test --locked -q --test package -- --include-ignored
+cargo test --locked -q --test architecture package -- --include-ignored
 
 echo "=== wheels"
 for target in $intel $arm; do

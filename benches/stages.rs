@@ -3,9 +3,6 @@
 //! Criterion times what can be asked alone: `construct` and whole frames. The stages of a frame cannot, so each
 //! frame's own clock is read, and their medians are printed after it. Public scenes are timed where their files are.
 
-#[path = "hard/mod.rs"]
-mod hard;
-
 use criterion::{Bencher, BenchmarkId, Criterion, criterion_group, criterion_main};
 use nearmiss::device::Backend;
 use nearmiss::mesh::Body;
@@ -16,6 +13,7 @@ use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use std::path::PathBuf;
 use std::time::Duration;
+use support::hard;
 
 /// Name and moving body of each scene.
 fn scenes() -> Vec<(&'static str, Body)> {

@@ -37,7 +37,7 @@ scrub() {
 compiled() { LC_ALL=C sed '/^[[:space:]]*\(\/\/.*\)\{0,1\}$/d' "$1"; }
 
 # One line a file, "digest  name", in the order of the names' bytes; the stamp digests those lines. A digest is that of the
-# file's compiled lines. build.rs computes the same; tests/ptx.rs compares.
+# file's compiled lines. build.rs computes the same; tests/gpu/ptx.rs compares.
 stamp() {
     (
         cd "$root"

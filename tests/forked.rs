@@ -1,8 +1,6 @@
 //! A process that was forked has none of the threads: it is told so, where it would wait for ever.
 #![cfg(target_os = "linux")]
 
-mod support;
-
 use nearmiss::device::Backend;
 use nearmiss::mesh::Positions;
 use nearmiss::query::Near;

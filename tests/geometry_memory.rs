@@ -1,8 +1,6 @@
 //! Where contacts are takes memory, which is asked for before it is taken. The only test of its process, whose memory it limits.
 #![cfg(target_os = "linux")]
 
-mod support;
-
 use nearmiss::mesh::Positions;
 use nearmiss::query::Near;
 use nearmiss::{Body, Error, Mesh};

@@ -1,7 +1,6 @@
 //! The committed header is what the sources say. `NEARMISS_BLESS=1 cargo test -p nearmiss-c --test header` writes it anew.
 //! `c/abi.txt` lists what the header lays out; it changes with `NEARMISS_ABI` alone.
 
-#[path = "layout/header.rs"]
 mod layout;
 
 use layout::{Layout, Shape, compared};

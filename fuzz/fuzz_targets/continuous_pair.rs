@@ -1,13 +1,9 @@
 //! Two features that move: certified answers miss nothing, are never late and certify nothing that is not; others say times.
 #![no_main]
 
-#[path = "../shared/mod.rs"]
-#[allow(dead_code, reason = "each target uses a part")]
-mod shared;
-
 use libfuzzer_sys::fuzz_target;
 use nearmiss_kernels::prim::inclusion::Verdict;
-use shared::{continuous, planted};
+use support::fuzz::{continuous, planted};
 
 fuzz_target!(|bytes: &[u8]| {
     if let Err(what) = continuous::ask(bytes, |verdict| {

@@ -1,12 +1,8 @@
 //! A handful of triangles at rest: what is within a distance against the oracle's answer for every pair.
 #![no_main]
 
-#[path = "../shared/mod.rs"]
-#[allow(dead_code, reason = "each target uses a part")]
-mod shared;
-
 use libfuzzer_sys::fuzz_target;
-use shared::{near, planted, scene};
+use support::fuzz::{near, planted, scene};
 
 fuzz_target!(|bytes: &[u8]| {
     if let Err(what) = near::ask(bytes, |answer| {

@@ -20,7 +20,9 @@ const WARM_UP: usize = 3;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();
-    let [backend, t0, t1] = &args[..] else { return Err("give cpu or cuda, and the two meshes of a step".into()) };
+    let [backend, t0, t1] = &args[..] else {
+        return Err("give cpu or cuda, and the two meshes of a step".into());
+    };
     let backend = if backend == "cuda" { Backend::Cuda } else { Backend::Cpu };
     let mesh = |path: &str| MeshFile::read(Path::new(path)).map(MeshFile::into_mesh);
     let body = Body::moving(mesh(t0)?, mesh(t1)?)?;

@@ -90,7 +90,7 @@ fn what_is_half_done_is_noticed() {
 // No machine's paths.
 
 /// Judges plant paths to condemn them.
-const PLANTERS: [&str; 1] = ["tests/ptx.rs"];
+const PLANTERS: [&str; 1] = ["tests/gpu/ptx.rs"];
 
 fn name_a_machine(sources: &[Source]) -> Vec<String> {
     let folders = ["root", "home", "work", "Users"].map(|folder| format!("/{folder}/"));

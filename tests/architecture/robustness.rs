@@ -103,7 +103,7 @@ fn broken(table: &str, sources: &[Source]) -> Vec<String> {
             let known = |ids: Vec<&str>| ids.contains(id);
             if wanted.iter().any(|w| w == id)
                 && *id != "X23"
-                && *file == "tests/robustness.rs"
+                && *file == "tests/frames/robustness.rs"
                 && asked_by(name).is_some_and(|ids| !known(ids))
             {
                 found.push(format!("{id}: {name} does not ask it"));
@@ -138,21 +138,21 @@ fn an_extreme_without_a_test_is_noticed() {
     assert_eq!(with("| X17 |", "| X99 |"), ["X17: 0 rows"]);
     assert_eq!(with("| X18 |", "| X17 |"), ["X17: 2 rows", "X18: 0 rows"]);
     assert_eq!(
-        with("`tests/volume/bounds.rs::a_chain_of_merges_stays_small` |\n| X57", "nothing |\n| X57"),
+        with("`tests/kernels/volume/bounds.rs::a_chain_of_merges_stays_small` |\n| X57", "nothing |\n| X57"),
         ["X56: no test"]
     );
     assert_eq!(
         with("bounds.rs::a_chain_of_merges_stays_small` |\n| X57", "bounds.rs::surface` |\n| X57"),
-        ["X56: tests/volume/bounds.rs has no test surface"]
+        ["X56: tests/kernels/volume/bounds.rs has no test surface"]
     );
     assert_eq!(
-        with("`tests/ptx.rs::an_inexact_instruction", "`tests/none.rs::an_inexact_instruction"),
+        with("`tests/gpu/ptx.rs::an_inexact_instruction", "`tests/none.rs::an_inexact_instruction"),
         ["X59: tests/none.rs has no test an_inexact_instruction_is_noticed"]
     );
     assert_eq!(
         with(
-            "apart | `tests/robustness.rs::questions_are_answered` |",
-            "apart | `tests/robustness.rs::what_cannot_be_is_refused` |"
+            "apart | `tests/frames/robustness.rs::questions_are_answered` |",
+            "apart | `tests/frames/robustness.rs::what_cannot_be_is_refused` |"
         ),
         ["X13: what_cannot_be_is_refused does not ask it"]
     );

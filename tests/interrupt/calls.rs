@@ -1,7 +1,6 @@
 //! Which call a trigger ends, and every call that may be ended.
 
 use super::{bodies, interrupted, looks, same, threads};
-use crate::support::{asked, engine};
 use nearmiss::device::Interrupt;
 use nearmiss::query::QueryKind;
 use nearmiss::scene::Scene;
@@ -9,6 +8,7 @@ use nearmiss::{Error, Query, Stage};
 use nearmiss_lab::scene;
 use nearmiss_lab::{OneQuery, OneQueryOnSeveral};
 use std::time::{Duration, Instant};
+use support::{asked, engine};
 
 fn detector(query: Query) -> OneQuery {
     OneQuery::new(threads(2), bodies(200, true), query).expect("a detector")

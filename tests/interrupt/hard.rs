@@ -1,11 +1,11 @@
 //! Hard scenes, whose launches and blocks are long: they end soon after a trigger all the same.
 
 use super::threads;
-use crate::support::moving;
 use nearmiss::query::Broad;
 use nearmiss::{Body, Error, Query};
 use nearmiss_lab::OneQuery;
 use std::time::{Duration, Instant};
+use support::moving;
 
 /// A machine with much else to do takes longer; without an interrupt these take seconds to minutes.
 const SOON: Duration = Duration::from_secs(2);

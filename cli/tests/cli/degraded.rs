@@ -1,8 +1,8 @@
 //! What the program says where an answer is less than was asked, as text and as JSON.
 
-use super::folder::Folder;
 use super::ok;
-use super::shrinking::SHRINKING;
+use support::folder::Folder;
+use support::shrinking::SHRINKING;
 
 #[test]
 fn the_program_tells() {

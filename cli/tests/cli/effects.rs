@@ -11,8 +11,8 @@ const COMMANDS: [&str; 8] = ["detect", "plan", "picture", "explain", "scene", "b
 /// Options of commands that take long: the test that sees what each changes.
 const ELSEWHERE: [(&str, &[&str], &str); 4] = [
     ("bench", &["question", "repeat", "against", "limit", "out", "json", "list"], "tests/cli/bench.rs"),
-    ("tables", &["frames", "table", "bv", "out", "json", "mesh", "profile", "scene"], "tests/tables.rs"),
-    ("trade", &["queries", "mesh", "truth", "out", "json"], "tests/trade.rs"),
+    ("tables", &["frames", "table", "bv", "out", "json", "mesh", "profile", "scene"], "tests/cli/tables.rs"),
+    ("trade", &["queries", "mesh", "truth", "out", "json"], "tests/cli/trade.rs"),
     // How much is measured, and how often: no test has the minutes to hours that these take.
     ("trade", &["full", "repeat"], "src/trade.rs"),
 ];

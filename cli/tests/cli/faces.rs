@@ -1,7 +1,7 @@
 //! Seams and polygons: `--weld`, the hint at it, `--file-faces`.
 
-use super::folder::Folder;
 use super::{err, ok, run, summary};
+use support::folder::Folder;
 
 /// A strip of `n` squares as an OBJ file, every square with corners of its own, bent so that neighbours touch in their seam only.
 fn seams(n: u32) -> String {

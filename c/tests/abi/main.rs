@@ -1,0 +1,109 @@
+//! The functions as C calls them: the answers are the library's, and what cannot be is refused with its code and sentence.
+
+mod answers;
+mod interrupted;
+mod refusals;
+mod submitted;
+
+use nearmiss::Body;
+use nearmiss::mesh::Positions;
+use nearmiss_c::*;
+use std::mem::MaybeUninit;
+
+/// What a call wrote, and how it ended.
+type Told<T> = Result<T, (NearmissCode, String)>;
+
+/// Calls with an error of the caller.
+fn told(call: impl FnOnce(Option<&mut MaybeUninit<NearmissError>>) -> NearmissCode) -> Told<()> {
+    let mut error = MaybeUninit::uninit();
+    let code = call(Some(&mut error));
+    // SAFETY: every call writes it.
+    let error = unsafe { error.assume_init() };
+    assert_eq!(error.code, code);
+    if code == NearmissCode::NEARMISS_OK {
+        return Ok(());
+    }
+    let bytes = error.text.iter().take_while(|c| **c != 0).map(|c| *c as u8).collect();
+    Err((code, String::from_utf8(bytes).expect("UTF-8")))
+}
+
+/// The same of a call with one result.
+fn got<T>(
+    call: impl FnOnce(Option<&mut MaybeUninit<T>>, Option<&mut MaybeUninit<NearmissError>>) -> NearmissCode,
+) -> Told<T> {
+    let mut to = MaybeUninit::uninit();
+    told(|error| call(Some(&mut to), error))?;
+    // SAFETY: a call that succeeds writes it.
+    Ok(unsafe { to.assume_init() })
+}
+
+/// A handle that was made.
+fn own<T>(made: Told<*mut T>) -> Box<T> {
+    // SAFETY: made by the library, which makes it of a box.
+    unsafe { Box::from_raw(made.expect("made")) }
+}
+
+/// A list that an answer shows.
+fn list<'a, T>(
+    call: impl FnOnce(
+        Option<&mut MaybeUninit<*const T>>,
+        Option<&mut MaybeUninit<usize>>,
+        Option<&mut MaybeUninit<NearmissError>>,
+    ) -> NearmissCode,
+) -> Told<&'a [T]> {
+    let mut count = MaybeUninit::uninit();
+    let items = got(|items, error| call(items, Some(&mut count), error))?;
+    // SAFETY: as many are there, as long as the answer is; tests keep it.
+    Ok(unsafe { std::slice::from_raw_parts(items, count.assume_init()) })
+}
+
+fn device() -> Box<NearmissDevice> {
+    own(got(|device, error| nearmiss_device_open(NearmissBackend::NEARMISS_CPU as u32, 2, device, error)))
+}
+
+fn rows(positions: &Positions) -> NearmissRows {
+    match positions {
+        Positions::F32(points) => nearmiss_floats(points.as_ptr().cast(), points.len()),
+        Positions::F64(points) => nearmiss_doubles(points.as_ptr().cast(), points.len()),
+    }
+}
+
+/// A body at its first frame.
+fn described(body: &Body) -> NearmissBody {
+    NearmissBody {
+        positions: rows(body.positions_t0()),
+        triangles: body.faces().as_ptr().cast(),
+        triangle_count: body.face_count(),
+        self_contact: 1,
+        ..nearmiss_body()
+    }
+}
+
+fn scene(bodies: &[NearmissBody]) -> Box<NearmissScene> {
+    let mut scene = own(got(|scene, error| nearmiss_scene_new(scene, error)));
+    for (number, body) in bodies.iter().enumerate() {
+        // SAFETY: tests keep what bodies point to.
+        let id = got(|id, error| unsafe { nearmiss_scene_add(Some(&mut scene), Some(body), id, error) });
+        assert_eq!(id, Ok(number as u32));
+    }
+    scene
+}
+
+fn detector(bodies: &[NearmissBody], query: NearmissQuery) -> Told<Box<NearmissDetector>> {
+    let (device, scene) = (device(), scene(bodies));
+    // SAFETY: names are NULL or texts of the tests.
+    let made = got(|made, error| unsafe {
+        nearmiss_detector_new(Some(&device), Some(&scene), Some(&query), made, error)
+    });
+    nearmiss_device_free(Some(device));
+    nearmiss_scene_free(Some(scene));
+    made.map(|made| own(Ok(made)))
+}
+
+fn frame(detector: &mut NearmissDetector, inputs: &[NearmissInput]) -> Told<Box<NearmissAnswer>> {
+    // SAFETY: tests keep what inputs point to.
+    let made = got(|answer, error| unsafe {
+        nearmiss_detector_frame(Some(detector), inputs.as_ptr(), inputs.len(), answer, error)
+    });
+    made.map(|made| own(Ok(made)))
+}

@@ -1,0 +1,9 @@
+//! Files of meshes: read, cut, welded, or refused by their reason.
+//!
+//! The allocator of `fuzz_readers` counts for each thread, so that no test beside it moves its counts.
+
+mod bad_input;
+mod fuzz_readers;
+mod mesh;
+mod notes;
+mod polygons;

@@ -1,0 +1,19 @@
+//! Whole frames, by every query: against brute force, exact lists and laws.
+
+mod animation;
+mod contacts;
+mod degraded;
+mod distance;
+mod earliest;
+mod exact;
+mod finite;
+mod frame;
+mod fuzz_pairs;
+mod hard;
+mod invariance;
+mod laws;
+mod listed;
+mod near;
+mod robustness;
+mod separation;
+mod triangles;

@@ -1,0 +1,12 @@
+//! What a kernel computes, without a detector: the narrow tests, their bounds, bounding volumes, a block of the emulator.
+
+mod bounds;
+mod bvtt;
+mod emulator;
+mod isolate;
+mod limits;
+mod pairs;
+mod prim;
+mod queries;
+mod sweep;
+mod volume;

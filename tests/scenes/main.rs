@@ -1,0 +1,11 @@
+//! Scenes of many bodies: their kinds, places, filters and memories, on one device and on several.
+
+mod fans;
+mod geometry;
+mod one_detector;
+mod rigid;
+mod scene;
+mod several;
+mod slices;
+mod starts_crossing;
+mod submit;

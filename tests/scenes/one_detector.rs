@@ -1,0 +1,259 @@
+//! One detector answers several queries: with one memory, one upload, and answers that depend on positions alone.
+
+use nearmiss::contacts::Contacts;
+use nearmiss::device::Device;
+use nearmiss::mesh::Positions;
+use nearmiss::query::{Certified, Continuous};
+use nearmiss::scene::{BodyId, DeviceInput, DeviceRows, Input, Meets, Number, Pose, Scene};
+use nearmiss::{Body, Detector, Discrete, Earliest, Near, Query};
+use nearmiss_lab::scene;
+use rand::rngs::SmallRng;
+use rand::{Rng, SeedableRng};
+use support::engine;
+
+/// Queries of every kind; the numbers of some differ.
+fn queries() -> Vec<Query> {
+    let apart = Certified { separation: 0.02, tolerance: Some(1e-3), ..Certified::default() };
+    vec![
+        Near::within(0.02).into(),
+        Earliest::default().into(),
+        Discrete::default().into(),
+        Query::continuous(),
+        Near::within(0.11).into(),
+        Continuous::by(apart).into(),
+        Query::distance(),
+        Query::discrete().with_broad(nearmiss::query::Broad::Tree),
+    ]
+}
+
+/// Bodies of every kind around one place.
+struct Bodies {
+    scene: Scene,
+    cloth: BodyId,
+    ball: BodyId,
+}
+
+impl Bodies {
+    fn new(seed: u64) -> Bodies {
+        let soup = |seed, triangles| scene::soup(triangles, seed, false).expect("a scene");
+        let mesh = |seed, triangles| soup(seed, triangles).frames().swap_remove(0);
+        let mut scene = Scene::new();
+        let cloth = scene.add(soup(seed, 60).with(Meets::and_itself()));
+        let ball = scene.add(Body::rigid(mesh(seed + 1, 40)));
+        scene.add(Body::fixed(mesh(seed + 2, 50)));
+        Bodies { scene, cloth, ball }
+    }
+}
+
+/// Where bodies are in a step.
+struct Step {
+    cloth: [Positions; 2],
+    ball: [Pose; 2],
+}
+
+impl Step {
+    fn random(rng: &mut SmallRng, bodies: &Bodies) -> Step {
+        let start = bodies.scene.get(bodies.cloth).expect("a body").positions_t0().to_f64();
+        let mut moved = |by: f32| {
+            let shift = [0, 1, 2].map(|_| rng.random_range(-by..by));
+            let at = |p: &[f64; 3]| [0, 1, 2].map(|k| p[k] as f32 + shift[k]);
+            Positions::F32(start.iter().map(at).collect())
+        };
+        let cloth = [moved(0.2), moved(0.3)];
+        let mut pose = || Pose::at([0, 1, 2].map(|_| rng.random_range(-0.2..0.2)));
+        Step { cloth, ball: [pose(), pose()] }
+    }
+
+    fn motions(&self, bodies: &Bodies) -> [(BodyId, Input<'_>); 2] {
+        let [start, end] = &self.cloth;
+        [(bodies.cloth, Input::Step([start, end])), (bodies.ball, Input::Poses(self.ball))]
+    }
+}
+
+/// The answer of a detector that is asked this alone.
+fn alone(bodies: &Bodies, step: &Step, query: &Query) -> Contacts {
+    let mut detector = Detector::new(engine(), bodies.scene.clone()).expect("a detector");
+    detector.step(&step.motions(bodies), query).expect("an answer")
+}
+
+/// How two answers differ.
+fn difference(found: &Contacts, wanted: &Contacts) -> Option<String> {
+    let of = |answer: &Contacts| {
+        (answer.rows.clone(), answer.starts_crossing, answer.degraded().to_vec(), answer.is_free())
+    };
+    (of(found) != of(wanted))
+        .then(|| format!("{:?}: {} rows, alone {}", found.query, found.rows.len(), wanted.rows.len()))
+}
+
+/// The first query of a life whose answer is not that of a detector that is asked it alone. `spoil` plants a fault.
+fn life(seed: u64, spoil: impl Fn(&mut Contacts)) -> (usize, Option<String>) {
+    let mut rng = SmallRng::seed_from_u64(seed);
+    let bodies = Bodies::new(10 * seed);
+    let mut detector = Detector::new(engine(), bodies.scene.clone()).expect("a detector");
+    let all = queries();
+    let mut found = 0;
+    for _ in 0..4 {
+        let step = Step::random(&mut rng, &bodies);
+        detector.update(&step.motions(&bodies)).expect("moved");
+        for _ in 0..5 {
+            let query = all[rng.random_range(0..all.len())];
+            if rng.random_bool(0.1) {
+                detector.rebuild().expect("built");
+            }
+            let mut answer = detector.query(&query).expect("an answer");
+            spoil(&mut answer);
+            found += answer.rows.len();
+            detector.check_volumes(&query).expect("sound volumes");
+            if let Some(what) = difference(&answer, &alone(&bodies, &step, &query)) {
+                return (found, Some(what));
+            }
+        }
+    }
+    (found, None)
+}
+
+#[test]
+fn an_answer_does_not_depend_on_what_was_asked_before() {
+    let mut found = 0;
+    for seed in 0..12 {
+        let (rows, fault) = life(seed, |_| ());
+        assert_eq!(fault, None, "seed {seed}");
+        found += rows;
+    }
+    assert!(found > 5_000, "{found}");
+}
+
+#[test]
+fn an_answer_that_is_not_its_own_is_named() {
+    let forget = |answer: &mut Contacts| {
+        if let nearmiss::Rows::Near(pairs) = &mut answer.rows {
+            pairs.pop();
+        }
+    };
+    let fault = (0..4).find_map(|seed| life(seed, forget).1).expect("a difference");
+    assert!(fault.contains("Near"), "{fault}");
+}
+
+/// A cloth that folds, a step at a time.
+fn cloth() -> Body {
+    scene::scene("cloth-ball", 3_000, 3).expect("a scene")
+}
+
+/// The three queries of every step of a barrier method.
+const STEP: usize = 3;
+
+fn ask_three(detector: &mut Detector) -> [usize; STEP] {
+    let near = detector.query(&Near::within(1e-3)).expect("an answer").len();
+    let first = detector.query(&Earliest::default()).expect("an answer").iter().len();
+    [near, first, detector.query(&Discrete::default()).expect("an answer").len()]
+}
+
+#[test]
+fn three_queries_take_at_most_1_3_times_the_memory_of_one() {
+    let (body, device) = (cloth(), engine());
+    let one = engine();
+    let mut alone = Detector::new(one.clone(), body.clone()).expect("a detector");
+    alone.query(&Earliest::default()).expect("an answer");
+    let mut detector = Detector::new(device.clone(), body).expect("a detector");
+    ask_three(&mut detector);
+    let ratio = device.bytes().0 as f64 / one.bytes().0 as f64;
+    assert!(ratio > 1.0 && ratio <= 1.3, "{ratio}");
+}
+
+/// Bytes of positions that a call copies to the device.
+fn uploaded(detector: &mut Detector, device: &Device, call: impl FnOnce(&mut Detector)) -> u64 {
+    let before = device.uploaded();
+    call(detector);
+    device.uploaded() - before
+}
+
+#[test]
+fn positions_are_uploaded_once_a_step_whatever_is_asked() {
+    let (body, device) = (cloth(), engine());
+    let [start, end] = body.ends().map(Clone::clone);
+    let mut detector = Detector::new(device.clone(), body).expect("a detector");
+    let id = detector.scene().ids().next().expect("a body");
+    ask_three(&mut detector);
+    let moves = |detector: &mut Detector| {
+        detector.update(&[(id, Input::Step([&start, &end]))]).expect("moved");
+    };
+    let bytes = uploaded(&mut detector, &device, moves);
+    assert_eq!(bytes, 32 * start.len() as u64, "both ends of every vertex");
+    let asks = |detector: &mut Detector| {
+        ask_three(detector);
+    };
+    // Lists grow at first.
+    asks(&mut detector);
+    assert_eq!(uploaded(&mut detector, &device, asks), 0);
+}
+
+#[test]
+fn numbers_of_a_query_change_from_frame_to_frame_and_build_nothing() {
+    let bodies = Bodies::new(3);
+    let device = engine();
+    let mut detector = Detector::new(device.clone(), bodies.scene.clone()).expect("a detector");
+    let certified = |separation: f64, tolerance: f64| {
+        let numbers = Certified { separation, tolerance: Some(tolerance), ..Certified::default() };
+        Query::from(Continuous::by(numbers))
+    };
+    let largest = [Query::near(0.2), certified(0.1, 1e-2)];
+    // Twice: the first query in motion takes memory again, with both ends of the step.
+    for query in largest.iter().chain(&largest) {
+        detector.query(query).expect("an answer");
+    }
+    let (builds, taken) = (detector.builds(), device.allocations());
+    for k in 1..8 {
+        let part = f64::from(k) / 8.0;
+        for query in [Query::near(0.2 * part), certified(0.1 * part, 1e-2 * part)] {
+            let found = detector.query(&query).expect("an answer");
+            let mut own = Detector::new(engine(), bodies.scene.clone()).expect("a detector");
+            let wanted = own.query(&query).expect("an answer");
+            assert_eq!(difference(&found, &wanted), None);
+        }
+    }
+    assert_eq!((detector.builds(), device.allocations()), (builds, taken));
+}
+
+#[test]
+fn one_submission_holds_several_queries() {
+    let (body, device) = (cloth(), engine());
+    let points = |positions: &Positions| match positions {
+        Positions::F32(points) => points.clone(),
+        Positions::F64(_) => panic!("a scene in singles"),
+    };
+    let [start, end] = body.ends().map(points);
+    let mut memory = [device.upload(&start).expect("memory"), device.upload(&end).expect("memory")];
+    let rows = [0, 1].map(|k: usize| {
+        let (address, count) = (memory[k].span().addr(), memory[k].len());
+        // SAFETY: the buffers outlive the detector, and are written between submissions alone.
+        unsafe { DeviceRows::new(address, count, 12, Number::F32) }.expect("rows")
+    });
+    let mut detector = Detector::new(device, body.clone()).expect("a detector");
+    let id = detector.scene().ids().next().expect("a body");
+    let queries = [Query::near(1e-3), Query::earliest(), Query::discrete()];
+    detector.prepare(&[(id, DeviceInput::Step(rows))], &queries).expect("prepared");
+    assert!(detector.is_prepared() && queries.iter().all(|query| detector.on_device(query).is_some()));
+    assert!(detector.on_device(&Query::continuous()).is_none());
+    for step in 0..3 {
+        let shifted = |points: &[[f32; 3]]| -> Vec<[f32; 3]> {
+            points.iter().map(|p| [p[0], p[1] * (1.0 - 0.001 * step as f32), p[2]]).collect()
+        };
+        let ends = [shifted(&start), shifted(&end)];
+        memory.iter_mut().zip(&ends).for_each(|(to, from)| to.write(from).expect("written"));
+        detector.submit().expect("submitted");
+        for query in &queries {
+            let found = detector.collect(query).expect("an answer");
+            let [start, end] = ends.clone().map(Positions::F32);
+            let mut own = Detector::new(engine(), body.clone()).expect("a detector");
+            let wanted = own.step(&[(id, Input::Step([&start, &end]))], query).expect("an answer");
+            assert_eq!(found.rows, wanted.rows, "{query:?}, step {step}");
+        }
+    }
+}
+
+#[test]
+fn a_submission_without_a_query_is_refused() {
+    let mut detector = Detector::new(engine(), cloth()).expect("a detector");
+    let error = detector.prepare(&[], &[]).expect_err("refused").to_string();
+    assert!(error.contains("without a query"), "{error}");
+}

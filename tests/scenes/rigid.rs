@@ -1,0 +1,89 @@
+//! Rigid bodies are where doubles place them, wherever that is; and an answer about two bodies
+//! depends on no other.
+
+mod alone;
+mod builds;
+mod far;
+mod rests;
+
+use nearmiss::mesh::Positions;
+use nearmiss::scene::{BodyId, Input, Meets, Pose, Scene};
+use nearmiss::{Body, Contacts, Mesh, Query};
+use nearmiss_lab::OneQuery;
+use nearmiss_lab::scene;
+use rand::rngs::SmallRng;
+use rand::{Rng, SeedableRng};
+use support::engine;
+
+/// The faces of a box whose corner `k` is at bit 0, 1 and 2 of `k`.
+fn box_faces() -> Vec<[u32; 3]> {
+    let quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
+    quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect()
+}
+
+/// The unit box.
+fn unit_box() -> Mesh {
+    let corner = |k: usize| [0, 1, 2].map(|axis| (k >> axis & 1) as f32);
+    Mesh::new("box", Positions::F32((0..8).map(corner).collect()), box_faces()).expect("a mesh")
+}
+
+/// A sphere about the origin, by rings and twice as many meridians: `4 rings (rings - 1)`
+/// triangles.
+fn sphere(rings: u32, radius: f64) -> Mesh {
+    use std::f64::consts::PI;
+    let around = 2 * rings;
+    let point = |ring: u32, k: u32| {
+        let (up, turn) = (PI * f64::from(ring) / f64::from(rings), PI * f64::from(k) / f64::from(rings));
+        [up.sin() * turn.cos(), up.sin() * turn.sin(), up.cos()].map(|x| (radius * x) as f32)
+    };
+    let mut points = vec![point(0, 0), point(rings, 0)];
+    points.extend((1..rings).flat_map(|ring| (0..around).map(move |k| point(ring, k))));
+    let at = |ring: u32, k: u32| match ring {
+        0 => 0,
+        ring if ring == rings => 1,
+        ring => 2 + (ring - 1) * around + k % around,
+    };
+    let quads = (0..rings).flat_map(|ring| (0..around).map(move |k| (ring, k)));
+    let triangles = quads.flat_map(|(ring, k)| {
+        let [a, b, c, d] = [at(ring, k), at(ring + 1, k), at(ring + 1, k + 1), at(ring, k + 1)];
+        [[a, b, c], [a, c, d]]
+    });
+    let faces = triangles.filter(|[a, b, c]| a != b && b != c && a != c).collect();
+    Mesh::new("sphere", Positions::F32(points), faces).expect("a mesh")
+}
+
+/// A rotation of any size, and a translation about a place.
+fn pose(rng: &mut SmallRng, place: [f64; 3], by: f64) -> Pose {
+    let [x, y, z, w]: [f64; 4] = [(); 4].map(|()| rng.random_range(-1.0..1.0));
+    let length = (x * x + y * y + z * z + w * w).sqrt();
+    Pose {
+        rotation: [x, y, z, w].map(|q| q / length),
+        translation: place.map(|x| x + rng.random_range(-by..by)),
+    }
+}
+
+/// Positions in a pose, by the host.
+fn placed(positions: &Positions, pose: &Pose) -> Positions {
+    Positions::F64(positions.to_f64().into_iter().map(|point| pose.apply(point)).collect())
+}
+
+/// An answer, and everything that is told beside it which is not about its making.
+fn rows(found: &Contacts) -> String {
+    format!("{:?} {:?}", found.rows, found.degraded())
+}
+
+/// Every query by every solver; those with a tolerance at one, and with a separation, too.
+fn queries(tolerance: f64, distance: f64) -> Vec<Query> {
+    let at = |query| support::asked::with_tolerance(query, tolerance);
+    let mut all: Vec<Query> = Query::every().map(at).collect();
+    for query in all.iter_mut().filter(|query| matches!(query, Query::Near(_))) {
+        *query = Query::near(distance);
+    }
+    let apart = |query: Query| {
+        let separated = query.certified().is_some();
+        separated.then(|| support::asked::certified(query, |one| one.separation = distance))
+    };
+    let separated: Vec<Query> = all.iter().filter_map(|&query| apart(query)).collect();
+    all.extend(separated);
+    all
+}

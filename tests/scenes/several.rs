@@ -1,0 +1,179 @@
+//! A scene that is divided among devices: the answer of one, to the bit, however it is divided.
+
+use nearmiss::mesh::Body;
+use nearmiss::query::{Broad, Bv, Query, QueryKind};
+use nearmiss::scene::{BodyId, Input, Meets, Scene};
+use nearmiss::{Contacts, Device};
+use nearmiss_lab::scene::{self, Bodies};
+use nearmiss_lab::{OneQuery, OneQueryOnSeveral};
+use support::{ORDERS, asked, engine, sanitizer};
+
+fn devices(count: usize) -> Vec<Device> {
+    (0..count).map(|_| engine()).collect()
+}
+
+fn queries() -> Vec<Query> {
+    let kinds = [QueryKind::Discrete, QueryKind::Continuous, QueryKind::Earliest];
+    kinds.map(asked::of).into_iter().chain([Query::near(0.01)]).collect()
+}
+
+/// The same answer, of the same candidates; what is asked for the earliest time hangs on what was found before.
+fn is_the_same(one: &Contacts, several: &Contacts, what: &str) {
+    assert_eq!(one.rows, several.rows, "{what}");
+    assert_eq!(one.hash(), several.hash(), "{what}");
+    assert_eq!(one.starts_crossing, several.starts_crossing, "{what}");
+    if !matches!(one.rows, nearmiss::Rows::Earliest(_)) {
+        assert_eq!(one.stats.triangle_pairs, several.stats.triangle_pairs, "{what}");
+        assert_eq!(one.stats.candidates_vf_ee, several.stats.candidates_vf_ee, "{what}");
+        assert_eq!(one.unresolved, several.unresolved, "{what}");
+        assert_eq!(one.degraded(), several.degraded(), "{what}");
+    }
+}
+
+#[test]
+fn a_mesh_has_the_same_answer_on_any_number_of_devices() {
+    for body in [scene::draped(5_000), scene::soup(700, 3, true)].map(|body| body.expect("a scene")) {
+        for query in queries() {
+            for bv in Bv::ALL {
+                let query = query.with_bv(bv);
+                // Several devices take tiles, whatever the volume.
+                let tiles = query.with_broad(Broad::Tiles);
+                let mut one = OneQuery::new(engine(), body.clone(), tiles).expect("a detector");
+                let want = one.detect().expect("an answer");
+                assert!(!want.is_empty(), "{query:?}");
+                for count in [2, 3, 40] {
+                    let mut several =
+                        OneQueryOnSeveral::new(devices(count), body.clone(), query).expect("detectors");
+                    assert_eq!(Some(several.tolerance()), one.tolerance().or(Some(several.tolerance())));
+                    // As it was divided at first, and by what was measured.
+                    for frame in 0..3 {
+                        let found = several.detect().expect("an answer");
+                        is_the_same(&want, &found, &format!("{query:?}, {count} devices, frame {frame}"));
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn bodies_that_move_are_divided_anew_and_found_alike() {
+    let scene = Bodies::pile(40, 20, 10).expect("a pile");
+    for query in queries() {
+        let mut one = OneQuery::new(engine(), scene.scene.clone(), query).expect("a detector");
+        let machines = vec![engine(), sanitizer(ORDERS[2]), engine()];
+        let clones = vec![machines[0].clone(); 2];
+        let mut several = OneQueryOnSeveral::new(machines, scene.scene.clone(), query).expect("detectors");
+        let mut tiles = Vec::new();
+        for step in 0..4 {
+            let moves = scene.step(step);
+            let inputs: Vec<_> = moves.iter().map(|(id, to)| (*id, to.input())).collect();
+            let (want, found) = (one.frame(&inputs), several.frame(&inputs));
+            let (want, found) = (want.expect("an answer"), found.expect("an answer"));
+            is_the_same(&want, &found, &format!("{query:?}, step {step}"));
+            if step == 2 {
+                one.rebuild().expect("tiles");
+                several.rebuild().expect("tiles");
+            }
+            tiles.push(several.shares().iter().map(|share| share.tiles).collect::<Vec<_>>());
+            assert!((tiles[step as usize].iter().sum::<f64>() - 1.0).abs() < 1e-9);
+            assert!(several.shares().iter().all(|share| share.ms > 0.0));
+        }
+        // One of the three counts every access, and is slower by far: that is uneven.
+        assert!(tiles[1..].iter().any(|later| *later != tiles[0]), "{query:?}: {tiles:?}");
+        let geometry = |want: Vec<nearmiss::contacts::ContactGeometry>| format!("{want:?}");
+        let (want, found) = (one.detect().expect("again"), several.in_turn().detect().expect("again"));
+        is_the_same(&want, &found, "in turn");
+        let mut clones = OneQueryOnSeveral::new(clones, scene.scene.clone(), query).expect("detectors");
+        for step in 0..4 {
+            let moves = scene.step(step);
+            let inputs: Vec<_> = moves.iter().map(|(id, to)| (*id, to.input())).collect();
+            let found = clones.frame(&inputs).expect("an answer");
+            if step == 3 {
+                is_the_same(&want, &found, "clones of one device");
+            }
+        }
+        if matches!(query, Query::Continuous(_) | Query::Near(_)) {
+            assert_eq!(
+                geometry(one.geometry(&want).expect("points")),
+                geometry(one.geometry(&found).expect("points"))
+            );
+        }
+    }
+}
+
+#[test]
+fn bodies_come_and_go_on_every_device() {
+    let ball = |seed| scene::soup(200, seed, true).expect("a soup").with(Meets::and_itself());
+    let mut scene = Scene::new();
+    scene.add(ball(1));
+    let query = asked::of(QueryKind::Continuous);
+    let mut one = OneQuery::new(engine(), scene.clone(), query).expect("a detector");
+    let mut several = OneQueryOnSeveral::new(devices(2), scene, query).expect("detectors");
+    let same = |one: &mut OneQuery, several: &mut OneQueryOnSeveral, what: &str| {
+        is_the_same(&one.detect().expect("an answer"), &several.detect().expect("an answer"), what);
+        assert_eq!(one.scene().ids().collect::<Vec<_>>(), several.scene().ids().collect::<Vec<_>>());
+    };
+    same(&mut one, &mut several, "one body");
+    let added: [BodyId; 2] = [one.add(ball(2)).expect("room"), several.add(&ball(2)).expect("room")];
+    assert_eq!(added[0], added[1]);
+    same(&mut one, &mut several, "two");
+    one.replace(added[0], ball(3)).expect("there");
+    several.replace(added[0], &ball(3)).expect("there");
+    same(&mut one, &mut several, "another");
+    assert_eq!(
+        one.remove(added[0]).expect("there").face_count(),
+        several.remove(added[0]).expect("there").face_count()
+    );
+    same(&mut one, &mut several, "one again");
+    assert!(several.remove(added[0]).is_err());
+    same(&mut one, &mut several, "after a refusal");
+}
+
+#[test]
+fn what_cannot_be_divided_is_refused() {
+    let two = [scene::soup(50, 1, false), scene::soup(50, 2, false)].map(|body| body.expect("a soup"));
+    let two = support::between(two.to_vec());
+    let refused = |count: usize, bodies: Vec<Body>, query: Query| {
+        let error = OneQueryOnSeveral::new(devices(count), bodies, query).map(drop).expect_err("refused");
+        assert_eq!(error.exit_code(), 2, "{error}");
+        error.to_string()
+    };
+    let text = refused(0, two.to_vec(), Query::discrete());
+    assert!(text.contains("no device"), "{text}");
+    let text = refused(2, two.to_vec(), Query::distance());
+    assert!(text.contains("a distance on several devices"), "{text}");
+    let text = refused(2, two.to_vec(), Query::discrete().with_broad(Broad::Tree));
+    assert!(text.contains("by tiles"), "{text}");
+    // One device does all that a detector does.
+    for query in [Query::distance(), Query::discrete().with_broad(Broad::Tree)] {
+        let mut one = OneQueryOnSeveral::new(devices(1), two.to_vec(), query).expect("a detector");
+        let want = support::ask(engine(), two.to_vec(), query);
+        assert_eq!(one.detect().expect("an answer").hash(), want.hash());
+    }
+    // A fault of the input is that of one detector, and nothing has moved.
+    let mut several = OneQueryOnSeveral::new(devices(2), two.to_vec(), Query::discrete()).expect("detectors");
+    let before = several.detect().expect("an answer").hash();
+    let id = several.scene().ids().next().expect("a body");
+    let short = nearmiss::mesh::Positions::F32(vec![[0.0; 3]]);
+    assert!(several.frame(&[(id, Input::At(&short))]).is_err());
+    assert_eq!(several.detect().expect("an answer").hash(), before);
+}
+
+/// Tiles beyond a share: none of the whole, none of the last share, and of the others those at the cut.
+#[test]
+fn tiles_at_the_cut_are_counted() {
+    let cells = 64;
+    let body = scene::grid(cells).expect("a grid");
+    let beyond = |count: usize| {
+        let mut several =
+            OneQueryOnSeveral::new(devices(count), body.clone(), Query::discrete()).expect("detectors");
+        several.detect().expect("an answer");
+        several.met_beyond().expect("read")
+    };
+    assert_eq!(beyond(1), [0]);
+    let [two, four] = [2, 4].map(beyond);
+    assert!(two[0] > 0 && two[1] == 0 && four[3] == 0, "{two:?} {four:?}");
+    let tiles = body.face_count() as u64 / 32;
+    assert!(four.iter().sum::<u64>() < tiles / 2 && two[0] < tiles / 4, "{two:?} {four:?} of {tiles}");
+}

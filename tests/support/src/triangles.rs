@@ -1,0 +1,38 @@
+//! Triangles at random, and as a kernel or the oracle sees them.
+
+use nearmiss_kernels::math::{Real, Vec3};
+use nearmiss_lab::oracle::Triangle;
+use rand::rngs::SmallRng;
+use rand::{Rng, SeedableRng};
+
+/// Reproducible random numbers.
+pub fn random(seed: u64) -> SmallRng {
+    SmallRng::seed_from_u64(seed)
+}
+
+/// The triangle in a kernel's precision; its coordinates are exact there or the caller wants them rounded.
+pub fn corners<R: Real>(t: &Triangle) -> [Vec3<R>; 3] {
+    t.map(|p| Vec3(p.map(R::of)))
+}
+
+/// The triangle that the oracle sees: the numbers that the kernels see.
+pub fn seen<R: Real>(t: &[Vec3<R>; 3]) -> Triangle {
+    t.map(|p| p.0.map(R::wide))
+}
+
+/// Corners on the grid 0..n: with a small n most triangles touch, align, coincide or collapse.
+pub fn on_grid(r: &mut SmallRng, n: i32) -> Triangle {
+    let mut t = [[0.0; 3]; 3];
+    t.iter_mut().flatten().for_each(|x| *x = r.random_range(0..n) as f64);
+    t
+}
+
+/// Corners anywhere in the unit cube.
+pub fn anywhere(r: &mut SmallRng) -> Triangle {
+    let mut t = [[0.0; 3]; 3];
+    t.iter_mut().flatten().for_each(|x| *x = r.random::<f64>());
+    t
+}
+
+/// The six orders of three corners.
+pub const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];

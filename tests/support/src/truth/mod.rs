@@ -1,0 +1,5 @@
+//! Questions with exact answers.
+
+pub mod built;
+pub mod frames;
+pub mod queries;
