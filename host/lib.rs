@@ -1,40 +1,45 @@
 //! nearmiss: collision detection for deformable triangle meshes.
 //!
-//! [`Detector`] is the front door: a [`Scene`] of bodies in, [`Contacts`] out, on the CPU or on an NVIDIA GPU, to the same bit.
-//! [`Query`] holds every choice; [`Device`] is where it runs; [`Error`] says who must act.
+//! A [`Detector`] takes a [`Scene`] of bodies to a [`Device`], moves them, and answers queries: on the CPU or on an NVIDIA GPU, to the
+//! same bit. [`Error`] names the fault and the remedy.
 //!
-//! A cloth that sinks onto something that stands still; what its vertices, edges and faces meet in
-//! a step, and when:
+//! A cloth that sinks onto a table. One detector answers several queries of each step:
 //!
 //! ```
 //! use nearmiss::scene::{Input, Scene};
-//! use nearmiss::{Body, Detector, Device, Mesh, Query, device::Backend, mesh::Positions};
+//! use nearmiss::{Body, Continuous, Detector, Device, Discrete, Mesh, Near, device::Backend, mesh::Positions};
 //!
 //! let triangle = |z: f32| Positions::F32(vec![[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]]);
 //! let mesh = |name, z| Mesh::new(name, triangle(z), vec![[0, 1, 2]]);
 //! let mut scene = Scene::new();
 //! let cloth = scene.add(Body::still(mesh("cloth", 0.5)?));
 //! let table = scene.add(Body::fixed(mesh("table", 0.0)?));
-//! let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene, Query::continuous())?;
+//! let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene)?;
 //! for step in 0..4 {
 //!     let [t0, t1] = [step, step + 1].map(|k| triangle(0.5 - 0.2 * k as f32));
-//!     let found = detector.frame(&[(cloth, Input::Step([&t0, &t1]))])?;
-//!     for contact in found.contacts() {
+//!     detector.update(&[(cloth, Input::Step([&t0, &t1]))])?;
+//!     for contact in detector.query(&Continuous::default())?.iter() {
 //!         assert_eq!(contact.bodies, [cloth, table]);
 //!         println!("step {step}: {:?} {} and {} at {:.3}", contact.kind, contact.a, contact.b, contact.toi);
 //!     }
+//!     let near = detector.query(&Near::within(0.2))?;
+//!     println!("step {step}: {} pairs within 0.2", near.len());
+//!     assert!(detector.query(&Discrete::default())?.is_empty());
 //! }
 //! # Ok::<(), nearmiss::Error>(())
 //! ```
 //!
-//! | to ask | give |
+//! | query | rows of its answer |
 //! | --- | --- |
-//! | which triangles touch now | [`Query::discrete`] |
-//! | what meets in a step, and when first | [`Query::continuous`] |
-//! | how far a step may go | [`Query::earliest`] |
-//! | which features are within a distance, how far and where | [`Query::near`] |
+//! | [`Discrete`] | triangles that share a point now |
+//! | [`Continuous`] | features that meet in a step, and when first |
+//! | [`Earliest`] | the first contact of a step: how far the step may go |
+//! | [`Near`] | features within a distance, how far and where |
+//! | [`Distance`] | the two nearest bodies, how far and where |
 //!
-//! [`MultiDetector`] divides a scene among several devices. [`Detector::geometry`] tells where contacts are: vertices, weights, points, normals.
+//! [`Query`] holds any of these, for programs that choose at run time.
+//!
+//! [`MultiDetector`] divides a scene among several devices. [`Detector::geometry`] computes vertices, weights, points and normals of contacts.
 //!
 //! A simulator whose data lie on the GPU lends its stream ([`Device::borrow`]) and its arrays
 //! ([`Input::OnDevice`](scene::Input::OnDevice)), and submits frames that neither allocate nor wait ([`Detector::submit`]).

@@ -46,9 +46,9 @@ pub struct Stages {
     pub total: f64,
     /// The host's own time until a GPU had the frame to do, the placing of what was moved not included. Zero where the host does it.
     pub launch: f64,
-    /// What the caller of [`Detector::frame`](crate::Detector::frame) or [`Detector::detect`](crate::Detector::detect) waits
-    /// for: placing where bodies were moved, `total`, ordering, launching, and reading the
-    /// contacts, on the host's clock.
+    /// The wait of a caller of [`Detector::step`](crate::Detector::step) or [`Detector::query`](crate::Detector::query),
+    /// on the clock of the host: placing, `total`, ordering, launching, and reading the
+    /// contacts.
     pub wall: f64,
 }
 

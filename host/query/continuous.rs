@@ -20,7 +20,7 @@ pub struct Continuous {
     pub search: Search,
     /// Whether the start of the step is taken to be free of crossing triangles. By default the
     /// pairs that share a point at t = 0 are counted:
-    /// [`Contacts::starts_crossing`](crate::Contacts::starts_crossing).
+    /// [`Answer::starts_crossing`](crate::Answer::starts_crossing).
     pub assume_free: bool,
 }
 

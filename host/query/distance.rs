@@ -7,15 +7,15 @@ use crate::error::Error;
 /// meet; what is tested against itself is not asked about itself. 0 only where some share a point, which exact signs decide.
 ///
 /// ```
-/// use nearmiss::{Body, Detector, Device, Mesh, Query, device::Backend, mesh::Positions};
+/// use nearmiss::{Body, Detector, Device, Distance, Mesh, device::Backend, mesh::Positions};
 ///
 /// let triangle = |z: f32| {
 ///     let corners = vec![[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]];
 ///     Mesh::new("a triangle", Positions::F32(corners), vec![[0, 1, 2]]).map(Body::still)
 /// };
 /// let bodies = vec![triangle(0.0)?, triangle(0.25)?];
-/// let found = Detector::new(Device::open(Backend::Cpu, None)?, bodies, Query::distance())?.detect()?;
-/// assert_eq!(found.distance(), Some(0.25));
+/// let nearest = Detector::new(Device::open(Backend::Cpu, None)?, bodies)?.query(&Distance::default())?;
+/// assert_eq!(nearest.map(|nearest| nearest.distance), Some(0.25));
 /// # Ok::<(), nearmiss::Error>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

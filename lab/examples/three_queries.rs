@@ -7,8 +7,9 @@
 //! Prints CSV: who answers, milliseconds of the caller for a step (median of 30), bytes of the device that are held, bytes that a step
 //! uploads, and the hashes of the answers.
 
-use nearmiss::device::Backend;
-use nearmiss::scene::{BodyId, Input};
+use nearmiss::device::{Backend, Buffer};
+use nearmiss::mesh::Positions;
+use nearmiss::scene::{BodyId, DeviceInput, DeviceRows, Input, Number};
 use nearmiss::{Body, Detector, Device, Error, Query};
 use nearmiss_io::MeshFile;
 use std::path::Path;
@@ -33,7 +34,41 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let device = Device::open(backend, None)?;
         println!("{count},{}", measured(&device, &body, &queries, count)?);
     }
+    println!("submitted,{}", submitted(&Device::open(backend, None)?, &body, &queries)?);
     Ok(())
+}
+
+/// Figures of steps that one detector answers in one submission, from positions on the device.
+fn submitted(device: &Device, body: &Body, queries: &[Query; 3]) -> Result<String, Error> {
+    let points = |positions: &Positions| match positions {
+        Positions::F32(points) => device.upload(points),
+        Positions::F64(_) => Err(Error::Bug { what: "a mesh in doubles".into() }),
+    };
+    let [start, end] = body.ends();
+    let memory = [points(start)?, points(end)?];
+    let rows = |k: usize| {
+        let buffer: &Buffer<[f32; 3]> = &memory[k];
+        // SAFETY: the buffers outlive the detector, and nobody writes them.
+        unsafe { DeviceRows::new(buffer.span().addr(), buffer.len(), 12, Number::F32) }
+    };
+    let mut detector = Detector::new(device.clone(), body.clone())?;
+    let ids: Vec<BodyId> = detector.scene().ids().collect();
+    detector.prepare(&[(ids[0], DeviceInput::Step([rows(0)?, rows(1)?]))], queries)?;
+    let (mut times, mut hashes, mut before) = (Vec::new(), String::new(), 0);
+    for _ in 0..STEPS {
+        before = device.uploaded();
+        let start = Instant::now();
+        detector.submit()?;
+        let mut found = Vec::new();
+        for query in queries {
+            found.push(format!("{:016x}", detector.collect(query)?.hash()));
+        }
+        times.push(start.elapsed().as_secs_f64() * 1e3);
+        hashes = found.join(" ");
+    }
+    times.sort_by(f64::total_cmp);
+    let wait = times[times.len() / 2];
+    Ok(format!("{wait:.3},{},{},{hashes}", device.bytes().0, device.uploaded() - before))
 }
 
 /// Figures of steps that so many detectors answer.

@@ -1,11 +1,12 @@
 //! Tiles: 32 triangles that are neighbours along a curve, and nodes above them without links; see `nearmiss_kernels::bvh::tiles`.
 
+mod check;
 #[cfg(test)]
 mod faults;
 mod rims;
 mod static_margin;
 
-use super::sorted::{Sorted, place};
+use super::sorted::Sorted;
 use super::{BroadContext, BroadPhase, Candidates, Which};
 use crate::device::{Buffer, Device};
 use crate::error::Error;
@@ -373,35 +374,6 @@ impl<R: Precision, V: Kernels> BroadPhase<R> for Tiles<V> {
     }
 
     fn check(&self, layout: &Layout, faces: &[[u32; 3]], frames: &[Vec<Vec3<R>>]) -> Result<(), Error> {
-        let filters = self.filters.read(self.filters.len())?;
-        let whose: Vec<NodeFilter> = layout.whose().collect();
-        let tiles = tiles::Tiles {
-            levels: self.levels,
-            triangles: self.triangles,
-            leaves: &self.leaves.read(self.leaves.len())?,
-            nodes: &self.nodes.read(self.nodes.len())?,
-            filters: &filters,
-            axes: self.axes,
-        };
-        let fixed = self.fixed.as_ref().map_or(&[][..], |fixed| &fixed.bodies);
-        let bodies = [self.sorted.bodies(), fixed];
-        let place = |triangle| {
-            let of = |part: usize| place(bodies[part], self.triangles[part], triangle).map(|at| (part, at));
-            of(MOVING).or_else(|| of(FIXED))
-        };
-        let is_static = |triangle: u32| place(triangle).is_some_and(|(part, _)| part == FIXED);
-        let margin = |triangle| if is_static(triangle) { self.static_margin.fitted() } else { self.margin };
-        let leaf = |triangle: u32| {
-            super::leaf_volume::<R, V>(faces[triangle as usize], frames).near(margin(triangle))
-        };
-        let mut seen = self.triangles.map(|count| vec![false; count as usize]);
-        let [moving, fixed] = &mut seen;
-        tiles::check(&tiles, place, leaf, |triangle| whose[triangle as usize], [moving, fixed])
-            .and_then(|()| {
-                let ends = |v: u32| [&frames[0], &frames[frames.len() - 1]].map(|at| at[v as usize].wide());
-                tiles::check_held(&tiles, |triangle| faces[triangle as usize].map(ends))
-            })
-            .map_err(super::broken)?;
-        self.check_rims(&tiles, faces, frames)
+        self.check_tiles(layout, faces, frames)
     }
 }
