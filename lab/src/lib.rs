@@ -4,6 +4,7 @@
 
 pub mod accuracy;
 pub mod case;
+pub mod figures;
 pub mod oracle;
 pub mod pairs;
 pub mod robustness;
