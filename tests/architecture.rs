@@ -5,6 +5,8 @@
 mod book;
 #[path = "architecture/choices.rs"]
 mod choices;
+#[path = "architecture/figures.rs"]
+mod figures;
 #[path = "architecture/prose.rs"]
 mod prose;
 #[path = "support/ptx.rs"]
@@ -15,6 +17,8 @@ mod robustness;
 mod rooms;
 #[path = "architecture/sources.rs"]
 mod sources;
+#[path = "architecture/words.rs"]
+mod words;
 
 use nearmiss_kernels::entry::TABLE;
 use nearmiss_kernels::{abi, bv};

@@ -215,7 +215,7 @@ fn a_block_that_nobody_runs_is_noticed() {
     ] {
         let found = not_marked(&planted("docs/for/a.md", &block(mark, language)), "");
         assert_eq!(found, [format!("docs/for/a.md:2: ```{language}")], "{mark}");
-        assert_eq!(not_marked(&planted("docs/design.md", &block(mark, language)), ""), NONE);
+        assert_eq!(not_marked(&planted("docs/internals/map.md", &block(mark, language)), ""), NONE);
     }
     let run = block("<!-- run by CI -->", "sh");
     let printed = block("<!-- printed -->", "text");

@@ -19,7 +19,7 @@
 //! | public handcrafted queries (1,500 vertex/face, 1,250 edge/edge) | 0 missed, 66 and 99 false | 0 missed, 125 and 193 false |
 //! | 48,000 contacts built in small integers, degenerate ones among them | 0 missed, 0 late | 35 missed, 13 late, all edge/edge |
 //!
-//! Wider integers and slivers are missed in both precisions: `docs/accuracy.md` has the table, `tests/limits.rs` an
+//! Wider integers and slivers are missed in both precisions: `docs/internals/accuracy.md` has the table, `tests/limits.rs` an
 //! input for each class.
 //!
 //! The rejection by signs alone (the common case) is proven: it misses nothing in either precision.
