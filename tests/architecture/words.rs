@@ -72,11 +72,14 @@ fn lines(text: &str) -> Vec<(usize, Line<'_>)> {
         is_code ^= is_fence;
         if !is_made {
             let other = is_code || is_fence || ["#", "<!--", "!["].iter().any(|m| trimmed.starts_with(m));
-            found.push((at + 1, match trimmed {
-                _ if other => Line::Other,
-                _ if trimmed.starts_with('|') => Line::Cells(line),
-                _ => Line::Prose(line),
-            }));
+            found.push((
+                at + 1,
+                match trimmed {
+                    _ if other => Line::Other,
+                    _ if trimmed.starts_with('|') => Line::Cells(line),
+                    _ => Line::Prose(line),
+                },
+            ));
         }
         is_made &= trimmed != "<!-- end -->";
     }
@@ -220,8 +223,9 @@ fn loose_figures((name, text): &Source) -> Vec<String> {
         let is_number = |part: &str| part.starts_with(|c: char| c.is_ascii_digit());
         let bare = |part: &str| part.trim_matches(|c: char| !c.is_alphanumeric() && c != '%').to_owned();
         for pair in parts.windows(2) {
-            if is_number(pair[0]) && UNITS.contains(&bare(pair[1]).as_str()) {
-                found.push(format!("{name}:{at}: {} {}", pair[0], pair[1]));
+            let [number, unit] = [bare(pair[0]), bare(pair[1])];
+            if is_number(&number) && UNITS.contains(&unit.as_str()) {
+                found.push(format!("{name}:{at}: {number} {unit}"));
             }
         }
     }
@@ -290,7 +294,7 @@ fn wide_lines_large_pages_and_loose_figures_are_noticed() {
     for (text, expected) in [
         ("A frame takes 0.14 ms on a GPU.", "README.md:1: 0.14 ms"),
         ("| memory | 28 MB |", "README.md:1: 28 MB"),
-        ("It takes (12 s).", "README.md:1: 12 s)."),
+        ("It takes (12 s).", "README.md:1: 12 s"),
     ] {
         assert_eq!(loose_figures(&page(text)), [expected], "{text}");
     }

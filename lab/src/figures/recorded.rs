@@ -30,8 +30,7 @@ impl Recorded {
     /// A sentence that names the file.
     pub fn open(folder: &Path) -> Result<Recorded, String> {
         let path = folder.join("origins.csv");
-        let mut reader =
-            csv::Reader::from_path(&path).map_err(|e| format!("{}: {e}", path.display()))?;
+        let mut reader = csv::Reader::from_path(&path).map_err(|e| format!("{}: {e}", path.display()))?;
         let origins: Result<Vec<Origin>, _> = reader.deserialize().collect();
         let origins = origins.map_err(|e| format!("{}: {e}", path.display()))?;
         Ok(Recorded { folder: folder.to_path_buf(), origins, files: HashMap::new() })
