@@ -4,7 +4,7 @@ import numpy as np
 import torch
 import nearmiss
 
-DHAT = 0.02
+DHAT = 0.005
 side = np.linspace(0, 1, 61)
 x, y = (axis.ravel() for axis in np.meshgrid(side, side, indexing="ij"))
 at = (np.arange(60)[:, None] * 61 + np.arange(60)).ravel()
