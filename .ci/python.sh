@@ -4,7 +4,7 @@
 # Rationale
 # - The profile is cargo's `dev`, which is optimised: what is tested is what is built anyway.
 # - The environment is new each time; nothing of this machine's Python is seen.
-# - Tests that need a GPU say that they were skipped. They run where there is one: see docs/toolchain.md.
+# - Tests that need a GPU say that they were skipped. They run where there is one: see docs/internals/toolchain.md.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

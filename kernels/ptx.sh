@@ -9,7 +9,7 @@
 #
 # A device compiler is an rustc that has the core library of nvptx64-nvidia-cuda, or the sources to build it
 # from. Looked for in this order: $NEARMISS_DEVICE_RUSTC (a path), rustup's nightly and default toolchains, the
-# folder that `fetch` fills. docs/toolchain.md has the details.
+# folder that `fetch` fills. docs/internals/toolchain.md has the details.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

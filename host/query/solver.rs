@@ -67,10 +67,10 @@ impl Solver {
                  less than a proven bound"
             }
             Solver::CubicF32 => {
-                "cubic-f32: a float solver that can miss contacts and report them late; docs/accuracy.md has figures"
+                "cubic-f32: a float solver that can miss contacts and report them late; docs/internals/accuracy.md has figures"
             }
             Solver::CubicF64 => {
-                "cubic-f64: can miss contacts of degenerate motion (coplanar, parallel, slivers); docs/accuracy.md has \
+                "cubic-f64: can miss contacts of degenerate motion (coplanar, parallel, slivers); docs/internals/accuracy.md has \
                  figures"
             }
         }

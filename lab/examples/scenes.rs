@@ -1,4 +1,4 @@
-//! How crowded scenes are: the table of docs/scenes.md.
+//! How crowded scenes are: the table of docs/internals/scenes.md.
 //!
 //! ```sh
 //! cargo run --release --example scenes                          # the generated ones

@@ -4,6 +4,7 @@
 
 pub mod accuracy;
 pub mod case;
+pub mod figures;
 mod one_query;
 pub mod oracle;
 pub mod pairs;

@@ -1,7 +1,9 @@
 """On a GPU: arrays of torch and cupy, answers of the CPU. Skipped, visibly, where there is no GPU or no such library."""
 
 import gc
+import runpy
 import threading
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -302,3 +304,8 @@ def test_what_a_refused_frame_left_behind_is_not_answered_of(stream):
     wanted = judge.frame({0: (t0, t1), other: t1})
     found = detector.frame({0: (here, there), other: t1})
     assert found.hash == wanted.hash and len(found) > 100
+
+
+def test_the_graph_of_forces_of_the_book(capsys):
+    runpy.run_path(str(Path(__file__).parents[1] / "examples" / "graph_of_forces.py"))
+    assert 0 < float(capsys.readouterr().out) < 1

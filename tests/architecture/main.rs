@@ -3,6 +3,7 @@
 
 mod book;
 mod choices;
+mod figures;
 mod licences;
 mod package;
 mod proofs;
@@ -10,6 +11,7 @@ mod prose;
 mod robustness;
 mod rooms;
 mod sources;
+mod words;
 
 use nearmiss_kernels::entry::TABLE;
 use nearmiss_kernels::{abi, bv};

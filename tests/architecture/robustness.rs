@@ -1,4 +1,4 @@
-//! The rule about the catalogue of extremes: every id has a row in `docs/robustness.md`, every row its tests, and every test
+//! The rule about the catalogue of extremes: every id has a row in `docs/internals/robustness.md`, every row its tests, and every test
 //! exists, is a test, and asks that id where it runs over the catalogue's data.
 
 use crate::sources::{NONE, Source, files};
@@ -114,7 +114,7 @@ fn broken(table: &str, sources: &[Source]) -> Vec<String> {
 }
 
 fn table() -> String {
-    files("docs/robustness.md")[0].1.clone()
+    files("docs/internals/robustness.md")[0].1.clone()
 }
 
 /// Where tests are.

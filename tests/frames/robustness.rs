@@ -1,5 +1,5 @@
 //! The catalogue of extremes on the CPU: the engine asks all of it, the sanitizer a share. `nearmiss selftest` asks the
-//! same on the machine that it is on. `docs/robustness.md` says which test holds which id.
+//! same on the machine that it is on. `docs/internals/robustness.md` says which test holds which id.
 
 mod planted;
 

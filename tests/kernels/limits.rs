@@ -1,4 +1,4 @@
-//! What the cubic gets wrong: one small input for each class of `docs/accuracy.md`, with its exact answer.
+//! What the cubic gets wrong: one small input for each class of `docs/internals/accuracy.md`, with its exact answer.
 //!
 //! These tests hold the text to the program. If one fails because the cubic answers right, mend the text.
 

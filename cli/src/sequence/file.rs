@@ -123,7 +123,7 @@ fn described(path: &Path, line: usize, table: Table) -> Result<Described, Error>
     let bad = |what: &str, advice: &str| wrong(path, format!("{called}: {what}"), advice);
     let table: BodyTable = table.try_into().map_err(|e: toml::de::Error| {
         // Where in the table it is follows on a line of its own.
-        bad(e.to_string().trim().replace('\n', ", ").as_str(), "README.md has the keys and what they take")
+        bad(e.to_string().trim().replace('\n', ", ").as_str(), "docs/cli.md lists the keys and their values")
     })?;
     let meshes = match (table.mesh, table.meshes) {
         (Some(mesh), None) => vec![mesh],

@@ -152,7 +152,7 @@ fn what_is_wrong_with_a_file_is_named() {
     let poses = |text: &str| format!("{tip}kind = \"rigid\"\nposes = {text}");
     let body = "body \"tip\" (line 5)";
     let table: Vec<(String, Vec<&str>)> = vec![
-        (format!("{tip}colour = 3"), vec![body, "unknown field `colour`", "`self_contact`", "README.md"]),
+        (format!("{tip}colour = 3"), vec![body, "unknown field `colour`", "`self_contact`", "docs/cli.md"]),
         (format!("{tip}kind = \"soft\""), vec![body, "unknown variant `soft`", "`rigid`", "in `kind`"]),
         (format!("{tip}group = -1"), vec![body, "-1", "in `group`"]),
         (format!("{tip}mask = 4294967296"), vec![body, "4294967296", "in `mask`"]),
@@ -256,9 +256,9 @@ fn a_scene_stands_alone() {
 }
 
 #[test]
-fn the_scene_of_the_front_page_is_one() {
+fn the_scene_of_the_programs_page_is_one() {
     let folder = Folder::new("scene-readme");
-    let page = include_str!("../../../README.md");
+    let page = include_str!("../../../docs/cli.md");
     let text = page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a scene");
     for name in ["cloth_0", "cloth_1", "cloth_2", "ball", "ground"] {
         folder.write(&format!("{name}.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");

@@ -15,7 +15,7 @@
 //! within the uncertainty of the root. False alarms are gaps below the same tolerance: 1.5e-11 of
 //! the local extent in f64, 4e-6 in f32.
 //!
-//! `docs/accuracy.md` has the measured misses and false alarms, `tests/kernels/limits.rs` an input for each
+//! `docs/internals/accuracy.md` has the measured misses and false alarms, `tests/kernels/limits.rs` an input for each
 //! class.
 //!
 //! The rejection by signs alone (the common case) is proven: it misses nothing in either precision.

@@ -1,4 +1,4 @@
-//! The catalogue of extremes as data: what breaks other programs, and what must be said of it. `docs/robustness.md` lists
+//! The catalogue of extremes as data: what breaks other programs, and what must be said of it. `docs/internals/robustness.md` lists
 //! every id with the tests that hold it; tests run it on the CPU, `nearmiss selftest` on the machine that it is on.
 
 mod ask;

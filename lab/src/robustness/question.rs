@@ -19,7 +19,7 @@ pub enum Expect {
 /// A question with its answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Question {
-    /// Its name in `docs/robustness.md`.
+    /// Its name in `docs/internals/robustness.md`.
     pub id: &'static str,
     /// What is extreme about it.
     pub what: &'static str,

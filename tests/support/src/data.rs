@@ -1,4 +1,4 @@
-//! Where public test data lies: its sources and licences are in docs/accuracy.md. It is not part of the project.
+//! Where public test data lies: its sources and licences are in docs/internals/accuracy.md. It is not part of the project.
 //!
 //! build.rs looks for the folder; a test that needs it opens with
 //! `#[cfg_attr(not(public_data), ignore = "no public test data: set NEARMISS_DATA")]`, so that it is reported as ignored

@@ -87,7 +87,7 @@ pub enum Finds {
 /// A scene with its answer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// Its name in `docs/robustness.md`.
+    /// Its name in `docs/internals/robustness.md`.
     pub id: &'static str,
     /// What is extreme about it.
     pub what: String,

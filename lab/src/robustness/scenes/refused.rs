@@ -5,7 +5,7 @@ use super::Numbers;
 /// Numbers and the words of their refusal; none where they must be accepted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refused {
-    /// Its name in `docs/robustness.md`.
+    /// Its name in `docs/internals/robustness.md`.
     pub id: &'static str,
     /// What is extreme about it.
     pub what: &'static str,
