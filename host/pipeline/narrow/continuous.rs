@@ -14,7 +14,7 @@ use crate::pipeline::order::{Order, Ordering};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Hits, Listed};
 use crate::pipeline::{launch, purpose};
-use crate::query::{self, Certified, Continuous, ContinuousSolver, Earliest, Query};
+use crate::query::{self, Certified, ContinuousSolver, Query};
 use crate::scene::Body;
 use nearmiss_kernels::abi::{
     BodyTolerance, Counter, CullArgs, Hit, Pair, SolveArgs, Span, counter, earliest,
@@ -295,13 +295,10 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
     }
 
     fn set(&mut self, device: &Device, query: &Query, tolerances: &[BodyTolerance]) -> Result<(), Error> {
-        let (Query::Continuous(Continuous { solver, .. }) | Query::Earliest(Earliest { solver, .. })) = query
-        else {
-            return Ok(());
-        };
-        self.solver = *solver;
+        let Some(certified) = query.certified() else { return Ok(()) };
+        self.solver = (*certified).into();
         self.finest = tolerances.iter().map(|record| record.tolerance).reduce(f64::min);
-        solver.certified().map_or(Ok(()), |certified| self.rungs.set(device, certified, tolerances))
+        self.rungs.set(device, certified, tolerances)
     }
 
     fn lists<'a>(&'a mut self, step: usize, features: &'a mut Features) -> Vec<&'a mut dyn GrowableOutput> {

@@ -90,9 +90,7 @@ impl<R: Precision> Narrow<R> for NearNarrow {
     }
 
     fn set(&mut self, _: &Device, query: &Query, _: &[BodyTolerance]) -> Result<(), Error> {
-        if let Query::Near(near) = query {
-            self.distance = near.distance;
-        }
+        self.distance = query.listed_within();
         Ok(())
     }
 
