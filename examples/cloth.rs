@@ -2,7 +2,7 @@
 
 mod shapes;
 
-use nearmiss::scene::{Input, Meets, Scene};
+use nearmiss::scene::{Meets, Motion, Scene};
 use nearmiss::{Body, Detector, Device, Discrete, Error, device::Backend};
 
 fn main() -> Result<(), Error> {
@@ -13,7 +13,7 @@ fn main() -> Result<(), Error> {
     let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene)?;
     for frame in 0..5 {
         let positions = shapes::points(100, fold(0.2 * (4 - frame) as f32));
-        let found = detector.step(&[(cloth, Input::At(&positions))], &Discrete::default())?;
+        let found = detector.step(&[(cloth, Motion::positions(&positions))], &Discrete::default())?;
         println!("frame {frame}: {} pairs, {:.2} ms", found.len(), found.stats.stages.wall);
     }
     Ok(())

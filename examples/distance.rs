@@ -2,7 +2,7 @@
 
 mod shapes;
 
-use nearmiss::scene::{Input, Pose, Scene};
+use nearmiss::scene::{Motion, Pose, Scene};
 use nearmiss::{Body, Detector, Device, Distance, Error, device::Backend};
 
 fn main() -> Result<(), Error> {
@@ -12,7 +12,7 @@ fn main() -> Result<(), Error> {
     let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene)?;
     for frame in 0..5 {
         let pose = Pose::at([0.0, 0.0, 0.7 - 0.12 * f64::from(frame)]);
-        let found = detector.step(&[(cube, Input::Pose(pose))], &Distance::default())?;
+        let found = detector.step(&[(cube, Motion::pose(pose))], &Distance::default())?;
         if let Some(nearest) = found.rows {
             println!(
                 "frame {frame}: {:.5} apart, from {:.3?} to {:.3?}",

@@ -2,7 +2,7 @@
 
 mod shapes;
 
-use nearmiss::scene::{Input, Meets, Pose, Scene};
+use nearmiss::scene::{Meets, Motion, Pose, Scene};
 use nearmiss::{Body, Detector, Device, Discrete, Error, device::Backend};
 
 fn main() -> Result<(), Error> {
@@ -16,7 +16,7 @@ fn main() -> Result<(), Error> {
     let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene)?;
     for frame in 0..5 {
         let lift = |world: usize| 0.0001 * (world * (frame + 1)) as f64 - 0.05;
-        let poses = |world| Input::Pose(Pose::at([0.01, 0.02, lift(world)]));
+        let poses = |world| Motion::pose(Pose::at([0.01, 0.02, lift(world)]));
         let inputs: Vec<_> = arms.iter().enumerate().map(|(world, &arm)| (arm, poses(world))).collect();
         let found = detector.step(&inputs, &Discrete::default())?;
         println!("frame {frame}: {} pairs in all worlds, {:.2} ms", found.len(), found.stats.stages.wall);

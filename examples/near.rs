@@ -2,7 +2,7 @@
 
 mod shapes;
 
-use nearmiss::scene::{Input, Meets, Scene};
+use nearmiss::scene::{Meets, Motion, Scene};
 use nearmiss::{Body, Detector, Device, Error, Near, device::Backend};
 
 fn main() -> Result<(), Error> {
@@ -13,7 +13,7 @@ fn main() -> Result<(), Error> {
     let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene)?;
     for frame in 0..5 {
         let positions = shapes::points(60, above(0.365 - 0.003 * frame as f32));
-        let found = detector.step(&[(cloth, Input::At(&positions))], &Near::within(0.01))?;
+        let found = detector.step(&[(cloth, Motion::positions(&positions))], &Near::within(0.01))?;
         let of_both = found.iter().filter(|pair| pair.bodies.contains(&obstacle));
         let least = of_both.clone().map(|pair| pair.squared_distance.sqrt()).min_by(f64::total_cmp);
         println!("frame {frame}: {} pairs with the obstacle, the nearest {least:.5?} away", of_both.count());

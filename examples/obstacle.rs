@@ -2,7 +2,7 @@
 
 mod shapes;
 
-use nearmiss::scene::{Input, Meets, Scene};
+use nearmiss::scene::{Meets, Motion, Scene};
 use nearmiss::{Body, Continuous, Detector, Device, Error, device::Backend};
 
 fn main() -> Result<(), Error> {
@@ -13,7 +13,7 @@ fn main() -> Result<(), Error> {
     let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene)?;
     for step in 0..8 {
         let [t0, t1] = [step, step + 1].map(|k| shapes::points(60, fallen(1.0 - 0.15 * k as f32)));
-        let found = detector.step(&[(cloth, Input::Step([&t0, &t1]))], &Continuous::default())?;
+        let found = detector.step(&[(cloth, Motion::step(&t0, &t1))], &Continuous::default())?;
         let first = found.iter().map(|contact| contact.toi).min_by(f64::total_cmp);
         let on_it = found.iter().filter(|contact| contact.bodies.contains(&obstacle));
         println!("step {step}: {} contacts, the first at {:?}", on_it.count(), first);

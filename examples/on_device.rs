@@ -3,7 +3,7 @@
 mod shapes;
 
 use nearmiss::mesh::Positions;
-use nearmiss::scene::{DeviceInput, DeviceRows, Meets, Number, Scene};
+use nearmiss::scene::{DeviceMotion, DeviceRows, Meets, Number, Scene};
 use nearmiss::{Body, Detector, Device, Error, Near, device::Backend};
 
 fn main() -> Result<(), Error> {
@@ -22,7 +22,7 @@ fn main() -> Result<(), Error> {
     let rows = unsafe { DeviceRows::new(vertices.span().addr(), vertices.len(), 12, Number::F32) }?;
     let mut detector = Detector::new(device, scene)?;
     let query = Near::within(0.01);
-    detector.prepare(&[(cloth, DeviceInput::At(rows))], &[query.into()])?;
+    detector.prepare(&[(cloth, DeviceMotion::Positions(rows))], &[query.into()])?;
     for frame in 0..5 {
         vertices.write(&at(frame))?; // your kernels
         detector.submit()?; // or record it, once, and launch the graph
@@ -30,7 +30,7 @@ fn main() -> Result<(), Error> {
         let found = detector.collect(&query)?; // where the host wants it, too
         println!("frame {frame}: {} pairs, at {:#x}", found.len(), answer.unwrap_or(0));
         if !detector.is_prepared() {
-            detector.prepare(&[(cloth, DeviceInput::At(rows))], &[query.into()])?; // a list has grown
+            detector.prepare(&[(cloth, DeviceMotion::Positions(rows))], &[query.into()])?; // a list has grown
         }
     }
     Ok(())

@@ -2,7 +2,7 @@
 
 mod shapes;
 
-use nearmiss::scene::{BodyId, Input, Pose, Scene};
+use nearmiss::scene::{BodyId, Motion, Pose, Scene};
 use nearmiss::{Body, Detector, Device, Discrete, Error, device::Backend};
 
 fn main() -> Result<(), Error> {
@@ -15,7 +15,7 @@ fn main() -> Result<(), Error> {
         let sunk = 0.05 * f64::from(frame);
         let at = |i: usize| [i % 10, i / 10 % 10, i / 100].map(|k| 1.1 * k as f64 + 0.6 - sunk);
         let inputs: Vec<_> =
-            cubes.iter().enumerate().map(|(i, &id)| (id, Input::Pose(Pose::at(at(i))))).collect();
+            cubes.iter().enumerate().map(|(i, &id)| (id, Motion::pose(Pose::at(at(i))))).collect();
         let found = detector.step(&inputs, &Discrete::default())?;
         let on_ground = found.iter().filter(|pair| pair.bodies.contains(&ground)).count();
         println!(

@@ -2,7 +2,7 @@
 
 mod shapes;
 
-use nearmiss::scene::{Input, Meets, Scene};
+use nearmiss::scene::{Meets, Motion, Scene};
 use nearmiss::{Body, Detector, Device, Earliest, Error, device::Backend};
 
 fn main() -> Result<(), Error> {
@@ -17,7 +17,7 @@ fn main() -> Result<(), Error> {
         let [t0, t1] = [z, wanted].map(|z| shapes::points(60, at(z)));
         // No contact is before the time told: nine tenths of the way to it nothing touches.
         let toi =
-            detector.step(&[(cloth, Input::Step([&t0, &t1]))], &Earliest::default())?.map(|first| first.toi);
+            detector.step(&[(cloth, Motion::step(&t0, &t1))], &Earliest::default())?.map(|first| first.toi);
         let Some(toi) = toi else {
             z = wanted;
             continue;

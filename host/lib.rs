@@ -6,7 +6,7 @@
 //! A cloth that sinks onto a table. One detector answers several queries of each step:
 //!
 //! ```
-//! use nearmiss::scene::{Input, Scene};
+//! use nearmiss::scene::{Motion, Scene};
 //! use nearmiss::{Body, Continuous, Detector, Device, Discrete, Mesh, Near, device::Backend, mesh::Positions};
 //!
 //! let triangle = |z: f32| Positions::F32(vec![[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]]);
@@ -17,7 +17,7 @@
 //! let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene)?;
 //! for step in 0..4 {
 //!     let [t0, t1] = [step, step + 1].map(|k| triangle(0.5 - 0.2 * k as f32));
-//!     detector.update(&[(cloth, Input::Step([&t0, &t1]))])?;
+//!     detector.update(&[(cloth, Motion::step(&t0, &t1))])?;
 //!     for contact in detector.query(&Continuous::default())?.iter() {
 //!         assert_eq!(contact.bodies, [cloth, table]);
 //!         println!("step {step}: {:?} {} and {} at {:.3}", contact.kind, contact.a, contact.b, contact.toi);
@@ -42,7 +42,7 @@
 //! [`MultiDetector`] divides a scene among several devices. [`Detector::geometry`] computes vertices, weights, points and normals of contacts.
 //!
 //! A simulator whose data lie on the GPU lends its stream ([`Device::borrow`]) and its arrays
-//! ([`Input::OnDevice`](scene::Input::OnDevice)), and submits frames that neither allocate nor wait ([`Detector::submit`]).
+//! ([`Motion::OnDevice`](scene::Motion::OnDevice)), and submits frames that neither allocate nor wait ([`Detector::submit`]).
 //!
 //! The folder `examples` of the repository has a program of some twenty lines for each of: a cloth, a cloth with an obstacle, a rigid
 //! pile, 1,000 environments, near pairs, a step limited by `earliest`, and frames of what lies on the device.

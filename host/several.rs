@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::pipeline::Share;
 use crate::pipeline::wear::Wear;
 use crate::query::{Broad, Query, Rebuild, TypedQuery};
-use crate::scene::{Body, BodyId, Input, Scene};
+use crate::scene::{Body, BodyId, Motion, Scene};
 use cuts::cuts;
 use std::time::Instant;
 
@@ -118,12 +118,12 @@ impl MultiDetector {
     ///
     /// # Errors
     /// As there; [`Error::Choice`] for positions in the memory of one device.
-    pub fn update(&mut self, motions: &[(BodyId, Input)]) -> Result<(), Error> {
+    pub fn update(&mut self, motions: &[(BodyId, Motion)]) -> Result<(), Error> {
         self.updated(motions, None)
     }
 
-    fn updated(&mut self, motions: &[(BodyId, Input)], query: Option<&Query>) -> Result<(), Error> {
-        if let Some((id, _)) = motions.iter().find(|(_, input)| matches!(input, Input::OnDevice(_))) {
+    fn updated(&mut self, motions: &[(BodyId, Motion)], query: Option<&Query>) -> Result<(), Error> {
+        if let Some((id, _)) = motions.iter().find(|(_, input)| matches!(input, Motion::OnDevice(_))) {
             return Err(Error::Choice {
                 what: format!("positions of body {id} in the memory of one device, for several"),
                 advice: "give positions of the host".into(),
@@ -153,7 +153,7 @@ impl MultiDetector {
     /// As of [`MultiDetector::update`] and [`MultiDetector::query`].
     pub fn step<Q: TypedQuery>(
         &mut self,
-        motions: &[(BodyId, Input)],
+        motions: &[(BodyId, Motion)],
         query: &Q,
     ) -> Result<Answer<Q::Rows>, Error> {
         let (start, whole) = (Instant::now(), (*query).into());

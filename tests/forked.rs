@@ -4,7 +4,7 @@
 use nearmiss::device::Backend;
 use nearmiss::mesh::Positions;
 use nearmiss::query::Near;
-use nearmiss::scene::{Input, Scene};
+use nearmiss::scene::{Motion, Scene};
 use nearmiss::{Body, Device, Error, Mesh};
 use nearmiss_lab::OneQuery;
 use rayon::prelude::*;
@@ -65,8 +65,8 @@ fn a_fork_is_told_that_it_has_no_threads() {
     let at = Positions::F32([[0.0f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].repeat(2));
     assert_eq!(forked(60, || is_told(open(None)) && is_told(open(Some(2)))), 0);
     assert_eq!(forked(60, || is_told(own.detect())), 0);
-    assert_eq!(forked(60, || is_told(own.frame(&[(id, Input::At(&at))]))), 0);
-    assert_eq!(forked(60, || is_told(own.update(&[(id, Input::At(&at))]))), 0);
+    assert_eq!(forked(60, || is_told(own.frame(&[(id, Motion::positions(&at))]))), 0);
+    assert_eq!(forked(60, || is_told(own.update(&[(id, Motion::positions(&at))]))), 0);
     assert_eq!(forked(60, || is_told(own.geometry(&found))), 0);
     assert_eq!(forked(60, || is_told(own.rebuild())), 0);
     own.prepare(&[]).expect("prepared");

@@ -5,7 +5,7 @@ use crate::detector::NearmissDetector;
 use crate::error::{NearmissCode, NearmissError, given};
 use crate::input::{Held, NearmissInput, body};
 use crate::rows::items;
-use nearmiss::scene::{BodyId, Input};
+use nearmiss::scene::{BodyId, Motion};
 use nearmiss::{Contacts, Error};
 use std::mem::MaybeUninit;
 
@@ -56,7 +56,7 @@ impl NearmissDetector {
     }
 }
 
-fn borrowed(held: &[(BodyId, Held)]) -> Vec<(BodyId, Input<'_>)> {
+fn borrowed(held: &[(BodyId, Held)]) -> Vec<(BodyId, Motion<'_>)> {
     held.iter().map(|(id, held)| (*id, held.input())).collect()
 }
 

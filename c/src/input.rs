@@ -5,7 +5,7 @@ use crate::error::refused;
 use crate::rows::{NearmissNumber, NearmissRows};
 use nearmiss::Error;
 use nearmiss::mesh::Positions;
-use nearmiss::scene::{BodyId, DeviceInput, DevicePose, Input, Pose};
+use nearmiss::scene::{BodyId, DeviceMotion, DevicePose, Motion, Pose};
 use std::ptr::null;
 
 /// What an input says.
@@ -100,14 +100,14 @@ impl From<NearmissPose> for Pose {
 pub(crate) enum Held {
     At(Positions),
     Step([Positions; 2]),
-    Other(Input<'static>),
+    Other(Motion<'static>),
 }
 
 impl Held {
-    pub(crate) fn input(&self) -> Input<'_> {
+    pub(crate) fn input(&self) -> Motion<'_> {
         match self {
-            Held::At(positions) => Input::At(positions),
-            Held::Step([from, to]) => Input::Step([from, to]),
+            Held::At(positions) => Motion::positions(positions),
+            Held::Step([from, to]) => Motion::step(from, to),
             Held::Other(input) => *input,
         }
     }
@@ -160,7 +160,7 @@ impl NearmissInput {
         self.check_idle()?;
         if flag(self.on_device, "on_device")? {
             // SAFETY: the caller's promise.
-            return Ok(Held::Other(Input::OnDevice(unsafe { self.on_device() }?)));
+            return Ok(Held::Other(Motion::OnDevice(unsafe { self.on_device() }?)));
         }
         let what = || format!("positions of body {}", self.body);
         // SAFETY: the caller's promise.
@@ -168,8 +168,8 @@ impl NearmissInput {
         Ok(match self.kind {
             0 => Held::At(at(0)?),
             1 => Held::Step([at(0)?, at(1)?]),
-            2 => Held::Other(Input::Pose(self.poses[0].into())),
-            3 => Held::Other(Input::Poses(self.poses.map(Pose::from))),
+            2 => Held::Other(Motion::Pose(self.poses[0].into())),
+            3 => Held::Other(Motion::PoseStep(self.poses.map(Pose::from))),
             _ => return Err(self.no_such_kind()),
         })
     }
@@ -178,7 +178,7 @@ impl NearmissInput {
     ///
     /// # Safety
     /// As there.
-    pub(crate) unsafe fn on_device(&self) -> Result<DeviceInput, Error> {
+    pub(crate) unsafe fn on_device(&self) -> Result<DeviceMotion, Error> {
         if !flag(self.on_device, "on_device")? {
             let what = format!("memory of the host for body {}", self.body);
             return Err(refused(what, "prepare frames with what lies on the device, and set `on_device`"));
@@ -193,10 +193,10 @@ impl NearmissInput {
             Ok::<_, Error>(DevicePose { translation: at(end)?, rotation: rows(&self.rotations[end], 4)? })
         };
         Ok(match self.kind {
-            0 => DeviceInput::At(at(0)?),
-            1 => DeviceInput::Step([at(0)?, at(1)?]),
-            2 => DeviceInput::Pose(pose(0)?),
-            3 => DeviceInput::Poses([pose(0)?, pose(1)?]),
+            0 => DeviceMotion::Positions(at(0)?),
+            1 => DeviceMotion::Step([at(0)?, at(1)?]),
+            2 => DeviceMotion::Pose(pose(0)?),
+            3 => DeviceMotion::PoseStep([pose(0)?, pose(1)?]),
             _ => return Err(self.no_such_kind()),
         })
     }

@@ -15,7 +15,7 @@ use crate::contacts::{Answer, Contacts};
 use crate::error::Error;
 use crate::pipeline::{Seen, Stages};
 use crate::query::{Query, TypedQuery};
-use crate::scene::{BodyId, Input};
+use crate::scene::{BodyId, Motion};
 use std::time::Instant;
 
 /// The answer of a frame, and what placing saw of positions in memory of the caller.
@@ -33,7 +33,7 @@ impl Detector {
     /// [`Error::Input`] for positions that no mesh may have: then nothing has moved. Positions in a GPU's memory are checked when a query
     /// reads them: after one that is refused for that, the next update must name the same bodies, since their earlier positions are gone.
     /// Those of the device.
-    pub fn update(&mut self, motions: &[(BodyId, Input)]) -> Result<(), Error> {
+    pub fn update(&mut self, motions: &[(BodyId, Motion)]) -> Result<(), Error> {
         self.device.work();
         let applied = self.apply(motions, None);
         self.ended(applied)
@@ -61,7 +61,7 @@ impl Detector {
     /// As of both; an error of the motions or of the query's numbers has moved nothing.
     pub fn step<Q: TypedQuery>(
         &mut self,
-        motions: &[(BodyId, Input)],
+        motions: &[(BodyId, Motion)],
         query: &Q,
     ) -> Result<Answer<Q::Rows>, Error> {
         let start = Instant::now();
@@ -72,7 +72,7 @@ impl Detector {
 
     pub(super) fn answer_step(
         &mut self,
-        motions: &[(BodyId, Input)],
+        motions: &[(BodyId, Motion)],
         query: Query,
         start: Instant,
     ) -> Result<Contacts, Error> {

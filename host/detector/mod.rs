@@ -38,7 +38,7 @@ use std::sync::Arc;
 /// number of bodies. Static bodies are built and fitted once, a rigid body costs its poses, and what no body does costs nothing.
 ///
 /// ```
-/// use nearmiss::{Body, Detector, Device, Discrete, Earliest, Mesh, Near, device::Backend, mesh::Positions, scene::Input};
+/// use nearmiss::{Body, Detector, Device, Discrete, Earliest, Mesh, Near, device::Backend, mesh::Positions, scene::Motion};
 ///
 /// // A triangle that rests, and one whose corner falls through it.
 /// let faces = vec![[0, 1, 2], [3, 4, 5]];
@@ -50,7 +50,7 @@ use std::sync::Arc;
 /// // A deformable body is tested against itself.
 /// let mut detector = Detector::new(device, body)?;
 /// let triangles = detector.scene().ids().next().expect("a body");
-/// detector.update(&[(triangles, Input::Step([&at(1.0), &at(-1.0)]))])?;
+/// detector.update(&[(triangles, Motion::Step([&at(1.0), &at(-1.0)]))])?;
 /// let first = detector.query(&Earliest::default())?;
 /// println!("first contact at {:?}", first.map(|contact| contact.toi));
 /// println!("{} pairs within 1", detector.query(&Near::within(1.0))?.len());

@@ -7,14 +7,14 @@ use crate::device::emulator::start_threads;
 use crate::error::Error;
 use crate::pipeline::Moved;
 use crate::query::Query;
-use crate::scene::{BodyId, Input};
+use crate::scene::{BodyId, Motion};
 
 impl Detector {
     /// Moves bodies to where the inputs say; the others rest where they are, or where their step ended.
     ///
     /// # Errors
     /// As of [`Detector::update`], and of a query that will read them: then nothing has moved.
-    pub(crate) fn apply(&mut self, inputs: &[(BodyId, Input)], query: Option<&Query>) -> Result<(), Error> {
+    pub(crate) fn apply(&mut self, inputs: &[(BodyId, Motion)], query: Option<&Query>) -> Result<(), Error> {
         let named = self.put(inputs, query)?;
         let mut moved = Vec::with_capacity(inputs.len());
         for (body, (own, named)) in self.scene.bodies_mut().iter_mut().zip(named).enumerate() {
@@ -26,7 +26,7 @@ impl Detector {
     }
 
     /// Moves bodies on the host, all or none; of each body of the scene, whether it was named.
-    fn put(&mut self, inputs: &[(BodyId, Input)], query: Option<&Query>) -> Result<Vec<bool>, Error> {
+    fn put(&mut self, inputs: &[(BodyId, Motion)], query: Option<&Query>) -> Result<Vec<bool>, Error> {
         let mut named = vec![false; self.scene.bodies().len()];
         for (id, input) in inputs {
             let Some(body) = self.scene.get(*id) else { return Err(nobody(*id)) };
@@ -37,7 +37,7 @@ impl Detector {
                 });
             }
             body.check(input)?;
-            if let (false, Input::OnDevice(lent)) = (self.device.is_gpu(), input) {
+            if let (false, Motion::OnDevice(lent)) = (self.device.is_gpu(), input) {
                 // SAFETY: its maker has promised that the detector's device can read it during this call, and that is a CPU.
                 let (ends, poses) = unsafe { lent.read() };
                 body.check_found(&ends, &poses)?;

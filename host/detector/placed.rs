@@ -5,7 +5,7 @@ use super::frame::without_ends;
 use crate::error::Error;
 use crate::pipeline::Moved;
 use crate::query::Query;
-use crate::scene::{BodyId, DeviceInput, Input};
+use crate::scene::{BodyId, DeviceMotion, Motion};
 
 /// A record of who was placed.
 #[derive(Default)]
@@ -70,7 +70,7 @@ impl Placed {
     }
 
     /// Submissions read these.
-    pub fn submit(&mut self, inputs: &[(BodyId, DeviceInput)]) {
+    pub fn submit(&mut self, inputs: &[(BodyId, DeviceMotion)]) {
         let submitted = inputs.iter().map(|&(body, input)| Submitted { body, moves: input.is_moving() });
         self.submitted = submitted.collect();
     }
@@ -78,7 +78,7 @@ impl Placed {
 
 impl Detector {
     /// Whether a frame of these places a body for the first time.
-    pub(crate) fn is_first_of(&self, inputs: &[(BodyId, Input)]) -> bool {
+    pub(crate) fn is_first_of(&self, inputs: &[(BodyId, Motion)]) -> bool {
         inputs.iter().any(|&(body, _)| !self.placed.was_placed(body))
     }
 }

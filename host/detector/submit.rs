@@ -7,7 +7,7 @@ use crate::device::emulator::start_threads;
 use crate::error::Error;
 use crate::pipeline::collect::collect;
 use crate::query::{Query, TypedQuery};
-use crate::scene::{BodyId, DeviceInput, Input};
+use crate::scene::{BodyId, DeviceMotion, Motion};
 use std::time::Instant;
 
 impl Detector {
@@ -17,20 +17,20 @@ impl Detector {
     ///
     /// # Errors
     /// As for [`Detector::step`]; [`Error::Choice`] for no query, and for a traversal that needs the host.
-    pub fn prepare(&mut self, motions: &[(BodyId, DeviceInput)], queries: &[Query]) -> Result<(), Error> {
+    pub fn prepare(&mut self, motions: &[(BodyId, DeviceMotion)], queries: &[Query]) -> Result<(), Error> {
         let prepared = self.prepared(motions, queries);
         self.ended(prepared)
     }
 
-    fn prepared(&mut self, motions: &[(BodyId, DeviceInput)], queries: &[Query]) -> Result<(), Error> {
+    fn prepared(&mut self, motions: &[(BodyId, DeviceMotion)], queries: &[Query]) -> Result<(), Error> {
         if queries.is_empty() {
             return Err(Error::Choice {
                 what: "a submission without a query".into(),
                 advice: "name the queries that will be submitted".into(),
             });
         }
-        let given: Vec<(BodyId, Input)> =
-            motions.iter().map(|&(id, motion)| (id, Input::OnDevice(motion))).collect();
+        let given: Vec<(BodyId, Motion)> =
+            motions.iter().map(|&(id, motion)| (id, Motion::OnDevice(motion))).collect();
         // Positions with room for the end of the step from the first query on, if any will read it.
         let in_motion = queries.iter().any(|query| !query.kind().is_at_rest());
         self.engine.has_ends |= in_motion && self.engine.pipeline.is_none();

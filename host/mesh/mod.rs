@@ -7,6 +7,7 @@
 mod difference;
 mod obj_problem;
 mod ply_problem;
+mod points;
 mod positions;
 mod problem;
 mod topology;
@@ -18,6 +19,7 @@ pub use crate::scene::Body;
 pub(crate) use difference::difference;
 pub use obj_problem::ObjProblem;
 pub use ply_problem::PlyProblem;
+pub use points::{Coordinate, Points};
 pub use positions::Positions;
 pub use problem::Problem;
 pub use topology::{NO_EDGE, Topology};

@@ -1,6 +1,6 @@
 //! The validation: what a mesh must satisfy before anything else sees it.
 
-use super::{Positions, Problem};
+use super::{Points, Positions, Problem};
 use nearmiss_kernels::math::tolerance::SINGLE_MOST;
 
 /// Most vertices of one mesh: the ids of 2n - 1 tree nodes still fit an `i32`.
@@ -26,19 +26,19 @@ pub(super) fn check(positions: Positions, faces: &[[u32; 3]]) -> Result<Position
             }
         }
     }
-    Ok(if is_single(&positions, faces)? { positions } else { positions.promoted() })
+    Ok(if is_single((&positions).into(), faces)? { positions } else { positions.promoted() })
 }
 
 /// Whether positions can be computed with in single precision. Those given in it that cannot are doubles.
 ///
 /// # Errors
 /// The first coordinate, in vertex order, of a vertex that a face uses, that no precision can be computed with.
-pub(crate) fn is_single(positions: &Positions, faces: &[[u32; 3]]) -> Result<bool, Problem> {
+pub(crate) fn is_single(positions: Points, faces: &[[u32; 3]]) -> Result<bool, Problem> {
     match positions {
-        Positions::F32(points) if coordinates(points, MAX_ABS_F32, "2^60", faces).is_ok() => Ok(true),
+        Points::F32(points) if coordinates(points, MAX_ABS_F32, "2^60", faces).is_ok() => Ok(true),
         // Every finite float is small as a double.
-        Positions::F32(points) => coordinates(points, f32::MAX, "2^480", faces).map(|()| false),
-        Positions::F64(points) => coordinates(points, MAX_ABS_F64, "2^480", faces).map(|()| false),
+        Points::F32(points) => coordinates(points, f32::MAX, "2^480", faces).map(|()| false),
+        Points::F64(points) => coordinates(points, MAX_ABS_F64, "2^480", faces).map(|()| false),
     }
 }
 

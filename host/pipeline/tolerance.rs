@@ -78,7 +78,7 @@ impl Tolerances {
 mod tests {
     use super::*;
     use crate::samples::right_triangle;
-    use crate::scene::{Input, Meets};
+    use crate::scene::{Meets, Motion};
 
     fn triangle(size: f64) -> Body {
         Body::still(right_triangle(size))
@@ -136,7 +136,9 @@ mod tests {
     fn moving_does_not_change_it_and_another_mesh_does() {
         let mut body = triangle(1.0);
         let far = triangle(1024.0);
-        for input in [Input::At(far.positions_t0()), Input::Step([far.positions_t0(); 2])] {
+        for input in
+            [Motion::positions(far.positions_t0()), Motion::step(far.positions_t0(), far.positions_t0())]
+        {
             body = body.at(&input).expect("a place");
             assert_eq!(body.default_tolerance(), 2f64.powi(-12));
         }

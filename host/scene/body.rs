@@ -1,7 +1,7 @@
 //! A body: one mesh at one frame, or at the two ends of a step, and what it does in a scene.
 
 use super::place::radius;
-use super::{BodyKind, DeviceInput, Meets, Pose};
+use super::{BodyKind, DeviceMotion, Meets, Pose};
 use crate::Error;
 #[cfg(doc)]
 use crate::mesh::Problem;
@@ -41,7 +41,7 @@ impl PartialEq for Kept {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Away {
     /// Where memory of the caller says.
-    Lent(DeviceInput),
+    Lent(DeviceMotion),
     /// On a device, at two ends or at one.
     Placed {
         /// Whether those are two.
@@ -153,7 +153,7 @@ impl Body {
         &self.faces
     }
 
-    /// Whether only the device knows where the body is: it was put there by [`Input::OnDevice`](crate::scene::Input::OnDevice), and
+    /// Whether only the device knows where the body is: it was put there by [`Motion::OnDevice`](crate::scene::Motion::OnDevice), and
     /// positions and poses here are those from before. [`Detector::fetch`](crate::Detector::fetch) brings them.
     pub fn is_away(&self) -> bool {
         self.away.is_some()

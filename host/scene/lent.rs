@@ -144,29 +144,29 @@ pub struct DevicePose {
 /// What a frame tells of a body by what lies in the device's memory. Nothing of it passes through the host; it is read on
 /// the device's stream, behind all work that was put there before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DeviceInput {
+pub enum DeviceMotion {
     /// A deformable body stands at these positions.
-    At(DeviceRows),
+    Positions(DeviceRows),
     /// A deformable body moves from the first positions to the second, each vertex in a straight line.
     Step([DeviceRows; 2]),
     /// A rigid body stands in this pose.
     Pose(DevicePose),
     /// A rigid body moves from the first pose to the second, each vertex in a straight line.
-    Poses([DevicePose; 2]),
+    PoseStep([DevicePose; 2]),
 }
 
-impl DeviceInput {
+impl DeviceMotion {
     /// Whether it has two ends.
     pub(crate) fn is_moving(&self) -> bool {
-        matches!(self, DeviceInput::Step(_) | DeviceInput::Poses(_))
+        matches!(self, DeviceMotion::Step(_) | DeviceMotion::PoseStep(_))
     }
 
     /// Whether any of its positions are doubles.
     pub(crate) fn has_f64(&self) -> bool {
         match self {
-            DeviceInput::At(rows) => rows.number == Number::F64,
-            DeviceInput::Step(ends) => ends.iter().any(|rows| rows.number == Number::F64),
-            DeviceInput::Pose(_) | DeviceInput::Poses(_) => false,
+            DeviceMotion::Positions(rows) => rows.number == Number::F64,
+            DeviceMotion::Step(ends) => ends.iter().any(|rows| rows.number == Number::F64),
+            DeviceMotion::Pose(_) | DeviceMotion::PoseStep(_) => false,
         }
     }
 
@@ -182,10 +182,10 @@ impl DeviceInput {
             Pose { rotation: pose.rotation.first(), translation: pose.translation.first() }
         };
         match self {
-            DeviceInput::At(rows) => (ends(std::slice::from_ref(rows)), Vec::new()),
-            DeviceInput::Step(both) => (ends(both), Vec::new()),
-            DeviceInput::Pose(one) => (Vec::new(), vec![pose(one)]),
-            DeviceInput::Poses(both) => (Vec::new(), both.iter().map(pose).collect()),
+            DeviceMotion::Positions(rows) => (ends(std::slice::from_ref(rows)), Vec::new()),
+            DeviceMotion::Step(both) => (ends(both), Vec::new()),
+            DeviceMotion::Pose(one) => (Vec::new(), vec![pose(one)]),
+            DeviceMotion::PoseStep(both) => (Vec::new(), both.iter().map(pose).collect()),
         }
     }
 
@@ -193,10 +193,10 @@ impl DeviceInput {
     pub(crate) fn records(&self, ends: usize) -> Vec<Lent> {
         let pose = |pose: &DevicePose| [pose.translation.record(3), pose.rotation.record(4)];
         match self {
-            DeviceInput::At(rows) => vec![rows.record(3); ends],
-            DeviceInput::Step(both) => both[..ends].iter().map(|rows| rows.record(3)).collect(),
-            DeviceInput::Pose(one) => [pose(one)].repeat(ends).concat(),
-            DeviceInput::Poses(both) => both[..ends].iter().flat_map(pose).collect(),
+            DeviceMotion::Positions(rows) => vec![rows.record(3); ends],
+            DeviceMotion::Step(both) => both[..ends].iter().map(|rows| rows.record(3)).collect(),
+            DeviceMotion::Pose(one) => [pose(one)].repeat(ends).concat(),
+            DeviceMotion::PoseStep(both) => both[..ends].iter().flat_map(pose).collect(),
         }
     }
 }
@@ -230,12 +230,12 @@ mod tests {
     fn records_say_where_and_how_far() {
         let at = rows(64, 5, 32, Number::F64).expect("rows");
         let record = Lent { address: 64, numbers: 19, stride: 4, is_f64: 1, pad: 0 };
-        assert_eq!(DeviceInput::At(at).records(2), [record, record]);
-        assert!(DeviceInput::At(at).has_f64() && !DeviceInput::At(at).is_moving());
+        assert_eq!(DeviceMotion::Positions(at).records(2), [record, record]);
+        assert!(DeviceMotion::Positions(at).has_f64() && !DeviceMotion::Positions(at).is_moving());
         let none = rows(64, 0, 32, Number::F32).expect("no rows");
         assert_eq!(none.record(3).numbers, 3);
         let [translation, rotation] = [1024, 2048].map(|at| rows(at, 1, 0, Number::F32).expect("a row"));
-        let pose = DeviceInput::Poses([DevicePose { translation, rotation }; 2]);
+        let pose = DeviceMotion::PoseStep([DevicePose { translation, rotation }; 2]);
         assert_eq!(
             pose.records(2).iter().map(|r| (r.address, r.numbers)).collect::<Vec<_>>(),
             [(1024, 3), (2048, 4), (1024, 3), (2048, 4)]

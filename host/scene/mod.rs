@@ -3,15 +3,15 @@
 //! A [`Scene`] is made on the host, once; a [`Detector`](crate::Detector) takes it to a device and asks it frame after frame.
 
 mod body;
-mod input;
 mod lent;
+mod motion;
 mod place;
 mod pose;
 mod sides;
 
 pub use body::Body;
-pub use input::Input;
-pub use lent::{DeviceInput, DevicePose, DeviceRows, Number};
+pub use lent::{DeviceMotion, DevicePose, DeviceRows, Number};
+pub use motion::Motion;
 pub(crate) use place::{Bounds, NOTHING, union};
 pub use pose::Pose;
 #[doc(hidden)]

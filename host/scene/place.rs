@@ -1,9 +1,9 @@
 //! Where a body is put from frame to frame.
 
 use super::body::{Away, Kept};
-use super::{Body, BodyKind, DeviceInput, Input, Pose, of_edges};
+use super::{Body, BodyKind, DeviceMotion, Motion, Pose, of_edges};
 use crate::Error;
-use crate::mesh::{self, MAX_ABS_F64, Positions, Problem};
+use crate::mesh::{self, MAX_ABS_F64, Points, Positions, Problem};
 use nalgebra::Vector3;
 
 /// The lower and the upper corner of a box.
@@ -13,19 +13,19 @@ impl Body {
     /// The body, where a frame says: for scenes that begin there.
     ///
     /// ```
-    /// use nearmiss::scene::{Input, Pose};
+    /// use nearmiss::scene::{Motion, Pose};
     /// use nearmiss::{Body, Mesh, mesh::Positions};
     ///
     /// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     /// let mesh = Mesh::new("a triangle", Positions::F32(corners), vec![[0, 1, 2]])?;
-    /// let body = Body::rigid(mesh).at(&Input::Pose(Pose::at([0.0, 0.0, 2.0])))?;
+    /// let body = Body::rigid(mesh).at(&Motion::Pose(Pose::at([0.0, 0.0, 2.0])))?;
     /// assert_eq!(body.poses()[0].translation, [0.0, 0.0, 2.0]);
     /// # Ok::<(), nearmiss::Error>(())
     /// ```
     ///
     /// # Errors
     /// As [`Body::check`].
-    pub fn at(mut self, input: &Input) -> Result<Body, Error> {
+    pub fn at(mut self, input: &Motion) -> Result<Body, Error> {
         self.check(input)?;
         self.put(input);
         Ok(self)
@@ -36,28 +36,30 @@ impl Body {
     /// # Errors
     /// [`Error::Choice`] for what its kind does not take; [`Error::Input`] for positions that no mesh may have, and for a pose
     /// that is none.
-    pub fn check(&self, input: &Input) -> Result<(), Error> {
+    pub fn check(&self, input: &Motion) -> Result<(), Error> {
         match (self.kind, input) {
-            (BodyKind::Deformable, Input::At(t0)) => self.check_vertices(&[t0]),
-            (BodyKind::Deformable, Input::Step(ends)) => self.check_vertices(ends),
-            (BodyKind::Rigid, Input::Pose(pose)) => self.check_pose(pose),
-            (BodyKind::Rigid, Input::Poses([t0, t1])) => {
+            (BodyKind::Deformable, Motion::Positions(t0)) => self.check_vertices(&[*t0]),
+            (BodyKind::Deformable, Motion::Step(ends)) => self.check_vertices(ends),
+            (BodyKind::Rigid, Motion::Pose(pose)) => self.check_pose(pose),
+            (BodyKind::Rigid, Motion::PoseStep([t0, t1])) => {
                 self.check_pose(t0).and_then(|()| self.check_pose(t1))
             }
-            (BodyKind::Deformable, Input::OnDevice(DeviceInput::At(t0))) => self.check_rows(&[t0.len()]),
-            (BodyKind::Deformable, Input::OnDevice(DeviceInput::Step(ends))) => {
+            (BodyKind::Deformable, Motion::OnDevice(DeviceMotion::Positions(t0))) => {
+                self.check_rows(&[t0.len()])
+            }
+            (BodyKind::Deformable, Motion::OnDevice(DeviceMotion::Step(ends))) => {
                 self.check_rows(&ends.map(|rows| rows.len()))
             }
             // Of a pose one row of each is read, which its maker has promised.
-            (BodyKind::Rigid, Input::OnDevice(DeviceInput::Pose(_) | DeviceInput::Poses(_))) => Ok(()),
+            (BodyKind::Rigid, Motion::OnDevice(DeviceMotion::Pose(_) | DeviceMotion::PoseStep(_))) => Ok(()),
             (kind, input) => {
                 let (given, advice) = match (kind, input) {
                     (BodyKind::Static, _) => ("a frame", "make it rigid or deformable, or replace it"),
                     (
                         _,
-                        Input::At(_)
-                        | Input::Step(_)
-                        | Input::OnDevice(DeviceInput::At(_) | DeviceInput::Step(_)),
+                        Motion::Positions(_)
+                        | Motion::Step(_)
+                        | Motion::OnDevice(DeviceMotion::Positions(_) | DeviceMotion::Step(_)),
                     ) => ("positions", "give a rigid body poses"),
                     _ => ("a pose", "give a deformable body positions"),
                 };
@@ -67,10 +69,10 @@ impl Body {
         }
     }
 
-    fn check_vertices(&self, ends: &[&Positions]) -> Result<(), Error> {
-        for positions in ends {
-            self.check_rows(&[positions.len()])?;
-            self.is_single(positions)?;
+    fn check_vertices(&self, ends: &[Points]) -> Result<(), Error> {
+        for points in ends {
+            self.check_rows(&[points.len()])?;
+            self.is_single(*points)?;
         }
         Ok(())
     }
@@ -88,9 +90,9 @@ impl Body {
     }
 
     /// Whether positions can be computed with in single precision, or at all.
-    pub(crate) fn is_single(&self, positions: &Positions) -> Result<bool, Error> {
+    pub(crate) fn is_single(&self, points: Points) -> Result<bool, Error> {
         let wrong = |problem| Error::Input { file: self.name.clone(), problem };
-        mesh::is_single(positions, &self.faces).map_err(wrong)
+        mesh::is_single(points, &self.faces).map_err(wrong)
     }
 
     pub(crate) fn check_pose(&self, pose: &Pose) -> Result<(), Error> {
@@ -119,28 +121,33 @@ impl Body {
     }
 
     /// Puts the body where a frame says, which [`Body::check`] has let pass. Cost: a copy of the positions.
-    pub(crate) fn put(&mut self, input: &Input) {
+    pub(crate) fn put(&mut self, input: &Motion) {
         self.away = None;
         match input {
-            Input::OnDevice(input) => (self.away, self.positions_t1) = (Some(Away::Lent(*input)), None),
-            Input::At(t0) => self.put_vertices(t0, None),
-            Input::Step([t0, t1]) => self.put_vertices(t0, Some(t1)),
-            Input::Pose(pose) => self.poses = [*pose; 2],
-            Input::Poses(poses) => self.poses = *poses,
+            Motion::OnDevice(input) => (self.away, self.positions_t1) = (Some(Away::Lent(*input)), None),
+            Motion::Positions(t0) => self.put_vertices(*t0, None),
+            Motion::Step([t0, t1]) => self.put_vertices(*t0, Some(*t1)),
+            Motion::Pose(pose) => self.poses = [*pose; 2],
+            Motion::PoseStep(poses) => self.poses = *poses,
         }
     }
 
-    fn put_vertices(&mut self, t0: &Positions, t1: Option<&Positions>) {
-        let single = |positions| matches!(mesh::is_single(positions, &self.faces), Ok(true));
-        let singles = std::iter::once(t0).chain(t1).all(single);
+    fn put_vertices(&mut self, t0: Points, t1: Option<Points>) {
+        let single = |points| matches!(mesh::is_single(points, &self.faces), Ok(true));
+        let as_f64 = !std::iter::once(t0).chain(t1).all(single);
         self.keep_tolerance();
-        let take =
-            |positions: &Positions| if singles { positions.clone() } else { positions.clone().promoted() };
-        (self.positions_t0, self.positions_t1) = (take(t0), t1.map(take));
+        t0.copy_to(&mut self.positions_t0, as_f64);
+        match t1 {
+            Some(t1) => {
+                let end = self.positions_t1.get_or_insert_with(|| Positions::F32(Vec::new()));
+                t1.copy_to(end, as_f64);
+            }
+            None => self.positions_t1 = None,
+        }
     }
 
     /// What places the body from the caller's memory, if that is where it is.
-    pub(crate) fn lent(&self) -> Option<&DeviceInput> {
+    pub(crate) fn lent(&self) -> Option<&DeviceMotion> {
         if let Some(Away::Lent(input)) = &self.away { Some(input) } else { None }
     }
 
@@ -166,7 +173,7 @@ impl Body {
         }
         let mut are_single = true;
         for positions in ends {
-            are_single &= self.is_single(positions)?;
+            are_single &= self.is_single(positions.into())?;
         }
         Ok(are_single)
     }
@@ -179,8 +186,8 @@ impl Body {
         match (self.kind, ends, poses) {
             (BodyKind::Rigid, _, [start, end]) if moving => self.poses = [*start, *end],
             (BodyKind::Rigid, _, [.., end]) => self.poses = [*end; 2],
-            (_, [t0, t1], _) if moving => self.put_vertices(t0, Some(t1)),
-            (_, [.., end], _) => self.put_vertices(end, None),
+            (_, [t0, t1], _) if moving => self.put_vertices(t0.into(), Some(t1.into())),
+            (_, [.., end], _) => self.put_vertices(end.into(), None),
             (_, [], _) => {}
         }
     }
@@ -214,7 +221,7 @@ impl Body {
     /// no pose but a few. A pose of the caller's memory is known too late to decide by.
     pub(crate) fn needs_f64(&self) -> bool {
         self.positions_t0.is_f64()
-            || self.lent().is_some_and(DeviceInput::has_f64)
+            || self.lent().is_some_and(DeviceMotion::has_f64)
             || (self.kind == BodyKind::Rigid && !self.faces.is_empty())
     }
 

@@ -9,7 +9,7 @@
 use nearmiss::device::Backend;
 use nearmiss::mesh::{Mesh, Positions};
 use nearmiss::query::Continuous;
-use nearmiss::scene::{BodyId, Input, Pose, Scene};
+use nearmiss::scene::{BodyId, Motion, Pose, Scene};
 use nearmiss::{Body, Device, Error, Query};
 use nearmiss_lab::OneQuery;
 
@@ -74,9 +74,9 @@ fn main() -> Result<(), Error> {
         for built in ["as added", "after a rebuild"] {
             let (mut frames, mut walls, mut found) = (Vec::new(), Vec::new(), 0);
             for frame in 0..=FRAMES {
-                let inputs: Vec<(BodyId, Input)> = ids
+                let inputs: Vec<(BodyId, Motion)> = ids
                     .iter()
-                    .map(|&id| (id, Input::Poses([frame, frame + 1].map(|at| pose(id.index(), at)))))
+                    .map(|&id| (id, Motion::PoseStep([frame, frame + 1].map(|at| pose(id.index(), at)))))
                     .collect();
                 let contacts = detector.frame(&inputs)?;
                 if frame > 0 {

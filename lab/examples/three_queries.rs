@@ -9,7 +9,7 @@
 
 use nearmiss::device::{Backend, Buffer};
 use nearmiss::mesh::Positions;
-use nearmiss::scene::{BodyId, DeviceInput, DeviceRows, Input, Number};
+use nearmiss::scene::{BodyId, DeviceMotion, DeviceRows, Motion, Number};
 use nearmiss::{Body, Detector, Device, Error, Query};
 use nearmiss_io::MeshFile;
 use std::path::Path;
@@ -53,7 +53,7 @@ fn submitted(device: &Device, body: &Body, queries: &[Query; 3]) -> Result<Strin
     };
     let mut detector = Detector::new(device.clone(), body.clone())?;
     let ids: Vec<BodyId> = detector.scene().ids().collect();
-    detector.prepare(&[(ids[0], DeviceInput::Step([rows(0)?, rows(1)?]))], queries)?;
+    detector.prepare(&[(ids[0], DeviceMotion::Step([rows(0)?, rows(1)?]))], queries)?;
     let (mut times, mut hashes, mut before) = (Vec::new(), String::new(), 0);
     for _ in 0..STEPS {
         before = device.uploaded();
@@ -82,7 +82,7 @@ fn measured(device: &Device, body: &Body, queries: &[Query; 3], count: usize) ->
     for step in 0..WARM_UP + STEPS {
         before = device.uploaded();
         let start = Instant::now();
-        let motions = [(id[0], Input::Step(body.ends()))];
+        let motions = [(id[0], Motion::Step(body.ends().map(Into::into)))];
         detectors.iter_mut().try_for_each(|detector| detector.update(&motions))?;
         let mut found = Vec::new();
         for (at, query) in queries.iter().enumerate() {

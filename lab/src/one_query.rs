@@ -3,7 +3,7 @@
 use nearmiss::contacts::DeviceAnswer;
 use nearmiss::device::Device;
 use nearmiss::scene::BodyId;
-use nearmiss::scene::{DeviceInput, Input};
+use nearmiss::scene::{DeviceMotion, Motion};
 use nearmiss::{Body, Contacts, Detector, DeviceShare, Error, MultiDetector, Query, Scene, Stage, plan};
 use std::ops::{Deref, DerefMut};
 
@@ -49,7 +49,7 @@ impl OneQuery {
     ///
     /// # Errors
     /// As there.
-    pub fn frame(&mut self, motions: &[(BodyId, Input)]) -> Result<Contacts, Error> {
+    pub fn frame(&mut self, motions: &[(BodyId, Motion)]) -> Result<Contacts, Error> {
         self.detector.step(motions, &self.query)
     }
 
@@ -79,9 +79,9 @@ impl OneQuery {
             let id = self.detector.scene().id(body);
             let id = id.ok_or_else(|| Error::Bug { what: format!("there is no body {body}") })?;
             let motion = match (frame.kind(), frame.positions_t1()) {
-                (nearmiss::scene::BodyKind::Rigid, _) => Input::Poses(frame.poses()),
-                (_, None) => Input::At(frame.positions_t0()),
-                (_, Some(end)) => Input::Step([frame.positions_t0(), end]),
+                (nearmiss::scene::BodyKind::Rigid, _) => Motion::PoseStep(frame.poses()),
+                (_, None) => Motion::positions(frame.positions_t0()),
+                (_, Some(end)) => Motion::step(frame.positions_t0(), end),
             };
             motions.push((id, motion));
         }
@@ -92,7 +92,7 @@ impl OneQuery {
     ///
     /// # Errors
     /// As there.
-    pub fn prepare(&mut self, motions: &[(BodyId, DeviceInput)]) -> Result<Contacts, Error> {
+    pub fn prepare(&mut self, motions: &[(BodyId, DeviceMotion)]) -> Result<Contacts, Error> {
         self.detector.prepare(motions, &[self.query])?;
         self.detector.collect(&self.query)
     }
@@ -215,7 +215,7 @@ impl OneQueryOnSeveral {
     ///
     /// # Errors
     /// As there.
-    pub fn frame(&mut self, motions: &[(BodyId, Input)]) -> Result<Contacts, Error> {
+    pub fn frame(&mut self, motions: &[(BodyId, Motion)]) -> Result<Contacts, Error> {
         self.detector.step(motions, &self.query)
     }
 

@@ -6,7 +6,7 @@ use crate::lent::{Held, LentRows, is_on_gpu, on_cpu, on_gpu};
 use crate::pose::{GivenPose, Pose};
 use nearmiss::Device;
 use nearmiss::mesh::Positions;
-use nearmiss::scene::{BodyId, DeviceInput, Input};
+use nearmiss::scene::{BodyId, DeviceMotion, Motion};
 use pyo3::prelude::*;
 use pyo3::types::{PyList, PyMapping, PyTuple};
 
@@ -36,7 +36,7 @@ struct Of<'a> {
 enum Given {
     At(Positions),
     Step([Positions; 2]),
-    Known(Input<'static>),
+    Known(Motion<'static>),
 }
 
 /// One end of a deformable body.
@@ -59,19 +59,19 @@ impl Frame {
     }
 
     /// As the library takes it.
-    pub fn inputs(&self) -> Vec<(BodyId, Input<'_>)> {
+    pub fn inputs(&self) -> Vec<(BodyId, Motion<'_>)> {
         let input = |given| match given {
             &Given::Known(input) => input,
-            Given::At(at) => Input::At(at),
-            Given::Step([t0, t1]) => Input::Step([t0, t1]),
+            Given::At(at) => Motion::positions(at),
+            Given::Step([t0, t1]) => Motion::step(t0, t1),
         };
         self.bodies.iter().map(|(id, given)| (*id, input(given))).collect()
     }
 
     /// As the library takes what lies on the device.
-    pub fn on_device(&self) -> PyResult<Vec<(BodyId, DeviceInput)>> {
+    pub fn on_device(&self) -> PyResult<Vec<(BodyId, DeviceMotion)>> {
         let lent = |(id, given): &(BodyId, Given)| match given {
-            Given::Known(Input::OnDevice(input)) => Ok((*id, *input)),
+            Given::Known(Motion::OnDevice(input)) => Ok((*id, *input)),
             Given::At(_) | Given::Step(_) | Given::Known(_) => Err(choice(
                 format!("body {id} of a submission, whose input would be copied"),
                 "give arrays that stay: of the GPU, or, on a CPU, of numpy in single or double precision with packed rows",
@@ -96,10 +96,10 @@ impl Frame {
             if let [Ok(a), Ok(b)] = [&ends[0], &ends[1]].map(|end| end.cast::<Pose>()) {
                 let [a, b] = [a.get().given(py, device)?, b.get().given(py, device)?];
                 return match (a, b) {
-                    (GivenPose::Known(a), GivenPose::Known(b)) => Ok(Given::Known(Input::Poses([a, b]))),
+                    (GivenPose::Known(a), GivenPose::Known(b)) => Ok(Given::Known(Motion::PoseStep([a, b]))),
                     (GivenPose::Lent(a, held), GivenPose::Lent(b, more)) => {
                         self.held.extend(held.into_iter().chain(more));
-                        Ok(Given::Known(Input::OnDevice(DeviceInput::Poses([a, b]))))
+                        Ok(Given::Known(Motion::OnDevice(DeviceMotion::PoseStep([a, b]))))
                     }
                     _ => Err(halves(what)),
                 };
@@ -108,7 +108,7 @@ impl Frame {
                 (End::Here(a), End::Here(b)) => Ok(Given::Step([a, b])),
                 (End::Lent(a), End::Lent(b)) => {
                     self.held.extend([a.held, b.held]);
-                    Ok(Given::Known(Input::OnDevice(DeviceInput::Step([a.rows, b.rows]))))
+                    Ok(Given::Known(Motion::OnDevice(DeviceMotion::Step([a.rows, b.rows]))))
                 }
                 // One of them is not laid out as it would have to be.
                 _ if !device.is_gpu() => {
@@ -119,10 +119,10 @@ impl Frame {
         }
         if let Ok(pose) = input.cast::<Pose>() {
             return Ok(Given::Known(match pose.get().given(py, device)? {
-                GivenPose::Known(pose) => Input::Pose(pose),
+                GivenPose::Known(pose) => Motion::pose(pose),
                 GivenPose::Lent(pose, held) => {
                     self.held.extend(held);
-                    Input::OnDevice(DeviceInput::Pose(pose))
+                    Motion::OnDevice(DeviceMotion::Pose(pose))
                 }
             }));
         }
@@ -130,7 +130,7 @@ impl Frame {
             End::Here(at) => Given::At(at),
             End::Lent(at) => {
                 self.held.push(at.held);
-                Given::Known(Input::OnDevice(DeviceInput::At(at.rows)))
+                Given::Known(Motion::OnDevice(DeviceMotion::Positions(at.rows)))
             }
         })
     }

@@ -5,7 +5,7 @@ use crate::host::row;
 use crate::lent::{Held, is_on_gpu, on_gpu};
 use crate::query::{Remade, remade};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::scene::{self, DevicePose, Input};
+use nearmiss::scene::{self, DevicePose, Motion};
 use nearmiss::{Device, Error};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -118,7 +118,7 @@ impl Pose {
 /// Whether a body can be there.
 fn checked(pose: &scene::Pose) -> Result<(), Error> {
     Body::rigid(Mesh::new("a body", Positions::F64(vec![[0.0; 3]; 3]), vec![[0, 1, 2]])?)
-        .check(&Input::Pose(*pose))
+        .check(&Motion::pose(*pose))
 }
 
 /// A pose as a frame takes it.

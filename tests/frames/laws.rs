@@ -7,7 +7,7 @@ mod others;
 use nearmiss::contacts::{Contact, Degraded, NearPair, TrianglePair};
 use nearmiss::mesh::Positions;
 use nearmiss::query::QueryKind;
-use nearmiss::scene::{BodyId, BodyKind, Input, Meets, Pose, Scene};
+use nearmiss::scene::{BodyId, BodyKind, Meets, Motion, Pose, Scene};
 use nearmiss::{Body, Contacts, Mesh, Query};
 use nearmiss_lab::OneQuery;
 use rand::rngs::SmallRng;

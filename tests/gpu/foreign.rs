@@ -9,7 +9,7 @@ use nearmiss::contacts::{Answer, NearestTriangles};
 use nearmiss::device::Backend;
 use nearmiss::mesh::Positions;
 use nearmiss::query::QueryKind;
-use nearmiss::scene::{BodyId, DeviceInput, DeviceRows, Input, Meets, Number, Scene};
+use nearmiss::scene::{BodyId, DeviceMotion, DeviceRows, Meets, Motion, Number, Scene};
 use nearmiss::{Body, Contacts, Device, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
@@ -132,7 +132,7 @@ fn drive(kind: QueryKind, triangles: usize, frames: usize) -> (usize, usize) {
     let mut graph: Option<Graph> = None;
     for frame in 0..frames {
         if graph.is_none() {
-            detector.prepare(&[(id, DeviceInput::Step(ends))]).expect("an answer");
+            detector.prepare(&[(id, DeviceMotion::Step(ends))]).expect("an answer");
             let before = (device.allocations(), device.waits());
             graph = Some(simulator.record(|| {
                 simulator.step();
@@ -151,7 +151,7 @@ fn drive(kind: QueryKind, triangles: usize, frames: usize) -> (usize, usize) {
             assert!(!detector.is_prepared());
             told(&contacts, triangles)
         });
-        let input = [(id, Input::Step([&positions(&t0), &positions(&t1)]))];
+        let input = [(id, Motion::step(&positions(&t0), &positions(&t1)))];
         let wanted = told(&judge.frame(&input).expect("an answer"), triangles);
         assert!(found == wanted, "{kind:?}, frame {frame}: {} and {}", found.len(), wanted.len());
         compared += wanted.len();
@@ -207,13 +207,13 @@ fn what_a_replay_costs() {
         };
         let host = [positions(&t0), positions(&t1)];
         let by_host = timed(&mut || {
-            detector.frame(&[(id, Input::Step([&host[0], &host[1]]))]).map(drop).expect("an answer");
+            detector.frame(&[(id, Motion::step(&host[0], &host[1]))]).map(drop).expect("an answer");
         });
         let by_device = timed(&mut || {
-            let input = Input::OnDevice(DeviceInput::Step(ends));
+            let input = Motion::OnDevice(DeviceMotion::Step(ends));
             detector.frame(&[(id, input)]).map(drop).expect("an answer");
         });
-        detector.prepare(&[(id, DeviceInput::Step(ends))]).expect("an answer");
+        detector.prepare(&[(id, DeviceMotion::Step(ends))]).expect("an answer");
         let submitted = timed(&mut || {
             detector.submit().expect("submitted");
             simulator.wait();

@@ -184,7 +184,7 @@ fn several_devices_are_interrupted_together() {
         for (k, at) in [1, 7, count / 4, count / 2].into_iter().enumerate() {
             // Whichever device is interrupted, both have taken the input.
             let to = scene::soup(2_000, 20 + k as u64, false).expect("a scene");
-            let input = [(ids[k % 2], nearmiss::scene::Input::At(to.positions_t0()))];
+            let input = [(ids[k % 2], nearmiss::scene::Motion::positions(to.positions_t0()))];
             let want = wanted.frame(&input).expect("an answer");
             interrupt.trigger_at(at);
             interrupted(&interrupt, own.frame(&input));

@@ -2,7 +2,7 @@
 
 use super::{interrupted, looks, same, threads};
 use nearmiss::mesh::Positions;
-use nearmiss::scene::{BodyId, DeviceInput, DeviceRows, Input, Meets, Number};
+use nearmiss::scene::{BodyId, DeviceMotion, DeviceRows, Meets, Motion, Number};
 use nearmiss::{Body, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
@@ -19,13 +19,13 @@ fn points(body: &Body) -> [Vec<[f32; 3]>; 2] {
 }
 
 /// Both ends of a step, where the caller has them.
-fn rows(ends: &[Vec<[f32; 3]>; 2]) -> DeviceInput {
+fn rows(ends: &[Vec<[f32; 3]>; 2]) -> DeviceMotion {
     let of = |points: &Vec<[f32; 3]>| {
         let address = points.as_ptr().expose_provenance() as u64;
         // SAFETY: the test holds the points while the detector reads them.
         unsafe { DeviceRows::new(address, points.len(), 12, Number::F32) }.expect("rows")
     };
-    DeviceInput::Step([of(&ends[0]), of(&ends[1])])
+    DeviceMotion::Step([of(&ends[0]), of(&ends[1])])
 }
 
 fn detector() -> (OneQuery, Vec<BodyId>) {
@@ -40,7 +40,7 @@ fn rows_of_the_caller_were_read_by_a_frame_that_was_interrupted() {
     let interrupt = own.interrupter();
     for (k, at) in [1, 2, 5, 60].into_iter().enumerate() {
         let mut ends = points(&soup(30 + k as u64));
-        let input = |ends| [(ids[0], Input::OnDevice(rows(ends)))];
+        let input = |ends| [(ids[0], Motion::OnDevice(rows(ends)))];
         let want = wanted.frame(&input(&ends)).expect("an answer");
         interrupt.trigger_at(at);
         interrupted(&interrupt, own.frame(&input(&ends)));

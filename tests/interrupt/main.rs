@@ -8,7 +8,7 @@ mod lent;
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::device::{Backend, Interrupt};
 use nearmiss::query::QueryKind;
-use nearmiss::scene::{Input, Meets, Scene};
+use nearmiss::scene::{Meets, Motion, Scene};
 use nearmiss::{Body, Contacts, Device, Error, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
@@ -157,8 +157,8 @@ fn a_frame_that_was_interrupted_has_taken_its_input() {
         let detector = || OneQuery::new(threads(2), scene.clone(), query).expect("a detector");
         let (mut wanted, mut found) = (detector(), detector());
         // The first names both, the second one: the other rests where its step ended.
-        let both = [(ids[0], Input::Step([&one[0], &one[1]])), (ids[1], Input::Step([&other[0], &other[1]]))];
-        let first = [(ids[0], Input::Step([&one[1], &other[0]]))];
+        let both = [(ids[0], Motion::step(&one[0], &one[1])), (ids[1], Motion::step(&other[0], &other[1]))];
+        let first = [(ids[0], Motion::step(&one[1], &other[0]))];
         let interrupt = found.interrupter();
         let all = [&both[..], if query.kind().is_at_rest() { &both[..] } else { &first[..] }];
         for at in [1, 2, 9, 40] {

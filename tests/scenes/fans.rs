@@ -5,7 +5,7 @@ mod shapes;
 use nearmiss::contacts::TrianglePair;
 use nearmiss::mesh::{Body, Positions};
 use nearmiss::query::{Broad, Bv, Discrete, Query, Search, TriangleTest};
-use nearmiss::scene::{Input, Meets, Scene};
+use nearmiss::scene::{Meets, Motion, Scene};
 use nearmiss::{Contacts, Rows};
 use nearmiss_lab::OneQuery;
 use shapes::Shape;
@@ -187,8 +187,8 @@ fn fans_meet_so_in_every_frame_and_after_edits() {
         for step in 0..3 {
             let ends = [step, step + 1].map(|k| Positions::F32(Shape::folded(150, 1).moved(k, 0.2)));
             let input = match query == Query::continuous() || query == Query::earliest() {
-                true => Input::Step([&ends[0], &ends[1]]),
-                false => Input::At(&ends[1]),
+                true => Motion::step(&ends[0], &ends[1]),
+                false => Motion::positions(&ends[1]),
             };
             let count = agree(&mut all, query, |detector| {
                 if step == 2 {

@@ -3,7 +3,7 @@
 use nearmiss::contacts::{ContactGeometry, Contacts, Kind, Rows};
 use nearmiss::mesh::Positions;
 use nearmiss::query::{Certified, Continuous};
-use nearmiss::scene::{BodyId, BodyKind, DeviceInput, DeviceRows, Input, Meets, Number, Pose, Scene};
+use nearmiss::scene::{BodyId, BodyKind, DeviceMotion, DeviceRows, Meets, Motion, Number, Pose, Scene};
 use nearmiss::{Body, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
@@ -23,8 +23,8 @@ fn met(query: Query, seed: u64) -> (OneQuery, Contacts) {
     let rigid = scene.add(Body::rigid(soup(50, seed + 100).0));
     scene.add(Body::fixed(soup(40, seed + 200).0));
     let mut detector = OneQuery::new(engine(), scene, query).expect("a detector");
-    let slides = Input::Poses([Pose::default(), Pose::at([0.25, 0.0, -0.125])]);
-    let found = detector.frame(&[(cloth, Input::Step([&t0, &t1])), (rigid, slides)]).expect("an answer");
+    let slides = Motion::PoseStep([Pose::default(), Pose::at([0.25, 0.0, -0.125])]);
+    let found = detector.frame(&[(cloth, Motion::step(&t0, &t1)), (rigid, slides)]).expect("an answer");
     (detector, found)
 }
 
@@ -181,7 +181,7 @@ fn geometry_goes_by_what_was_placed() {
     let mut scene = Scene::new();
     let id = scene.add(Body::still(mesh).with(Meets::and_itself()));
     let mut by_host = OneQuery::new(engine(), scene.clone(), certified()).expect("a detector");
-    let found = by_host.frame(&[(id, Input::Step([&ends[0], &ends[1]]))]).expect("an answer");
+    let found = by_host.frame(&[(id, Motion::step(&ends[0], &ends[1]))]).expect("an answer");
     let wanted = by_host.geometry(&found).expect("geometry");
     let held = ends.each_ref().map(|positions| match positions {
         Positions::F32(points) => device.upload(points).expect("memory"),
@@ -192,7 +192,7 @@ fn geometry_goes_by_what_was_placed() {
         DeviceRows::new(buffer.span().addr(), buffer.len(), 12, Number::F32).expect("rows")
     });
     let mut detector = OneQuery::new(device, scene.clone(), certified()).expect("a detector");
-    let found = detector.frame(&[(id, Input::OnDevice(DeviceInput::Step(rows)))]).expect("an answer");
+    let found = detector.frame(&[(id, Motion::OnDevice(DeviceMotion::Step(rows)))]).expect("an answer");
     assert_eq!(detector.geometry(&found).expect("geometry"), wanted);
     // Answers without features are refused, whether or not anything was found.
     for (query, name) in [

@@ -4,7 +4,7 @@ use nearmiss::contacts::Contacts;
 use nearmiss::device::Device;
 use nearmiss::mesh::Positions;
 use nearmiss::query::{Certified, Continuous};
-use nearmiss::scene::{BodyId, DeviceInput, DeviceRows, Input, Meets, Number, Pose, Scene};
+use nearmiss::scene::{BodyId, DeviceMotion, DeviceRows, Meets, Motion, Number, Pose, Scene};
 use nearmiss::{Body, Detector, Discrete, Earliest, Near, Query};
 use nearmiss_lab::scene;
 use rand::rngs::SmallRng;
@@ -64,9 +64,9 @@ impl Step {
         Step { cloth, ball: [pose(), pose()] }
     }
 
-    fn motions(&self, bodies: &Bodies) -> [(BodyId, Input<'_>); 2] {
+    fn motions(&self, bodies: &Bodies) -> [(BodyId, Motion<'_>); 2] {
         let [start, end] = &self.cloth;
-        [(bodies.cloth, Input::Step([start, end])), (bodies.ball, Input::Poses(self.ball))]
+        [(bodies.cloth, Motion::step(start, end)), (bodies.ball, Motion::PoseStep(self.ball))]
     }
 }
 
@@ -175,7 +175,7 @@ fn positions_are_uploaded_once_a_step_whatever_is_asked() {
     let id = detector.scene().ids().next().expect("a body");
     ask_three(&mut detector);
     let moves = |detector: &mut Detector| {
-        detector.update(&[(id, Input::Step([&start, &end]))]).expect("moved");
+        detector.update(&[(id, Motion::step(&start, &end))]).expect("moved");
     };
     let bytes = uploaded(&mut detector, &device, moves);
     assert_eq!(bytes, 32 * start.len() as u64, "both ends of every vertex");
@@ -231,7 +231,7 @@ fn one_submission_holds_several_queries() {
     let mut detector = Detector::new(device, body.clone()).expect("a detector");
     let id = detector.scene().ids().next().expect("a body");
     let queries = [Query::near(1e-3), Query::earliest(), Query::discrete()];
-    detector.prepare(&[(id, DeviceInput::Step(rows))], &queries).expect("prepared");
+    detector.prepare(&[(id, DeviceMotion::Step(rows))], &queries).expect("prepared");
     assert!(detector.is_prepared() && queries.iter().all(|query| detector.on_device(query).is_some()));
     assert!(detector.on_device(&Query::continuous()).is_none());
     for step in 0..3 {
@@ -245,7 +245,7 @@ fn one_submission_holds_several_queries() {
             let found = detector.collect(query).expect("an answer");
             let [start, end] = ends.clone().map(Positions::F32);
             let mut own = Detector::new(engine(), body.clone()).expect("a detector");
-            let wanted = own.step(&[(id, Input::Step([&start, &end]))], query).expect("an answer");
+            let wanted = own.step(&[(id, Motion::step(&start, &end))], query).expect("an answer");
             assert_eq!(found.rows, wanted.rows, "{query:?}, step {step}");
         }
     }

@@ -7,7 +7,7 @@ mod far;
 mod rests;
 
 use nearmiss::mesh::Positions;
-use nearmiss::scene::{BodyId, Input, Meets, Pose, Scene};
+use nearmiss::scene::{BodyId, Meets, Motion, Pose, Scene};
 use nearmiss::{Body, Contacts, Mesh, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;

@@ -2,7 +2,7 @@
 
 use nearmiss::mesh::Body;
 use nearmiss::query::{Broad, Bv, Query, QueryKind};
-use nearmiss::scene::{BodyId, Input, Meets, Scene};
+use nearmiss::scene::{BodyId, Meets, Motion, Scene};
 use nearmiss::{Contacts, Device};
 use nearmiss_lab::scene::{self, Bodies};
 use nearmiss_lab::{OneQuery, OneQueryOnSeveral};
@@ -156,7 +156,7 @@ fn what_cannot_be_divided_is_refused() {
     let before = several.detect().expect("an answer").hash();
     let id = several.scene().ids().next().expect("a body");
     let short = nearmiss::mesh::Positions::F32(vec![[0.0; 3]]);
-    assert!(several.frame(&[(id, Input::At(&short))]).is_err());
+    assert!(several.frame(&[(id, Motion::positions(&short))]).is_err());
     assert_eq!(several.detect().expect("an answer").hash(), before);
 }
 

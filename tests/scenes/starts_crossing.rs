@@ -5,7 +5,7 @@ use nearmiss::contacts::{Contacts, Note, Rows};
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::Positions;
 use nearmiss::query::{Certified, Continuous, Discrete, Earliest, QueryKind, TriangleTest};
-use nearmiss::scene::{BodyId, BodyKind, Input, Meets, Pose, Scene};
+use nearmiss::scene::{BodyId, BodyKind, Meets, Motion, Pose, Scene};
 use nearmiss::{Body, Device, Mesh, Query};
 use nearmiss_lab::scene;
 use nearmiss_lab::{OneQuery, OneQueryOnSeveral};
@@ -63,7 +63,7 @@ fn random_scene(seed: u64) -> Scene {
             0 => Body::fixed(t0),
             1 => {
                 let end = Pose { rotation: [0.1, 0.0, 0.0, 0.99f64.sqrt()], translation: [0.1, 0.0, 0.2] };
-                Body::rigid(t0).at(&Input::Poses([Pose::default(), end])).expect("poses")
+                Body::rigid(t0).at(&Motion::PoseStep([Pose::default(), end])).expect("poses")
             }
             _ => Body::moving(t0, t1).expect("two frames"),
         };
@@ -181,8 +181,8 @@ fn frame_after_frame() {
             .map(|q| OneQuery::new(engine(), scene.clone(), q).expect("a detector"));
         for ends in sheets.windows(2) {
             let [t0, t1] = [ends[0].positions(), ends[1].positions()];
-            let found = moving.frame(&[(id, Input::Step([t0, t1]))]).expect("an answer");
-            let listed = still.frame(&[(id, Input::At(t0))]).expect("an answer").len() as u64;
+            let found = moving.frame(&[(id, Motion::step(t0, t1))]).expect("an answer");
+            let listed = still.frame(&[(id, Motion::positions(t0))]).expect("an answer").len() as u64;
             assert!(listed > 10);
             assert_eq!(differs(&found, listed), None, "{query:?}");
         }

@@ -8,7 +8,7 @@ use nearmiss::contacts::on_device::FrameStatus;
 use nearmiss::device::Buffer;
 use nearmiss::mesh::Positions;
 use nearmiss::query::{QueryKind, QueueShape, Refit, Search, StealShape, Traversal};
-use nearmiss::scene::{BodyId, DeviceInput, DevicePose, DeviceRows, Input, Meets, Number, Pose, Scene};
+use nearmiss::scene::{BodyId, DeviceMotion, DevicePose, DeviceRows, Meets, Motion, Number, Pose, Scene};
 use nearmiss::{Body, Device, Error, Mesh, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
@@ -81,7 +81,7 @@ fn agrees(device: &Device, query: Query, frames: usize) -> usize {
     let mut by_host = OneQuery::new(engine(), scene.clone(), query).expect("a detector");
     let mut detector = OneQuery::new(device.clone(), scene, query).expect("a detector");
     let mut memory = [&t0, &t1].map(|points| Points::new(device, points));
-    let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
+    let input = DeviceMotion::Step([memory[0].rows(), memory[1].rows()]);
     let mut found = detector.prepare(&[(id, input)]).expect("an answer");
     let mut all = 0;
     for frame in 0..frames {
@@ -105,7 +105,7 @@ fn agrees(device: &Device, query: Query, frames: usize) -> usize {
             assert_eq!(status.short == 0, detector.is_prepared(), "{query:?}");
         }
         let [t0, t1] = ends.map(Positions::F32);
-        let wanted = by_host.frame(&[(id, Input::Step([&t0, &t1]))]).expect("an answer");
+        let wanted = by_host.frame(&[(id, Motion::step(&t0, &t1))]).expect("an answer");
         assert_eq!(found.rows, wanted.rows, "frame {frame} of {query:?}");
         assert_eq!(found.starts_crossing, wanted.starts_crossing, "frame {frame} of {query:?}");
         assert!(query.kind().is_at_rest() || wanted.starts_crossing > Some(0), "{query:?}");
@@ -152,7 +152,7 @@ fn a_walk_that_needs_the_host_is_refused() {
         let device = engine();
         let memory = Points::new(&device, &t0);
         let mut detector = OneQuery::new(device, scene.clone(), query).expect("a detector");
-        let error = detector.prepare(&[(id, DeviceInput::At(memory.rows()))]).expect_err("refused");
+        let error = detector.prepare(&[(id, DeviceMotion::Positions(memory.rows()))]).expect_err("refused");
         assert!(matches!(error, Error::Choice { .. }) && error.to_string().contains("traversal"), "{error}");
         assert!(!detector.is_prepared() && detector.on_device().is_none());
     }
@@ -179,7 +179,7 @@ fn what_outgrows_its_room_is_seen_and_answered() {
         let mut memory = [&t0, &t1].map(|points| Points::new(&device, &spread(points, 4.0)));
         let mut by_host = OneQuery::new(engine(), scene.clone(), query(kind)).expect("a detector");
         let mut detector = OneQuery::new(device.clone(), scene, query(kind)).expect("a detector");
-        let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
+        let input = DeviceMotion::Step([memory[0].rows(), memory[1].rows()]);
         detector.prepare(&[(id, input)]).expect("an answer");
         let mut short = 0;
         for by in [3.0, 0.4, 0.39, 0.1, 0.0] {
@@ -197,7 +197,7 @@ fn what_outgrows_its_room_is_seen_and_answered() {
                 detector.prepare(&[(id, input)]).expect("an answer");
             }
             let [t0, t1] = ends.map(Positions::F32);
-            let wanted = by_host.frame(&[(id, Input::Step([&t0, &t1]))]).expect("an answer");
+            let wanted = by_host.frame(&[(id, Motion::step(&t0, &t1))]).expect("an answer");
             assert_eq!(found.rows, wanted.rows, "{kind:?}, {by}");
         }
         assert!(short >= 2, "{kind:?}: {short}");
@@ -212,9 +212,9 @@ fn another_frame_is_noticed() {
         let device = engine();
         let mut detector = OneQuery::new(device.clone(), scene.clone(), query(kind)).expect("a detector");
         let memory = [&t0, &t1].map(|points| Points::new(&device, points));
-        let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
+        let input = DeviceMotion::Step([memory[0].rows(), memory[1].rows()]);
         let first = detector.prepare(&[(id, input)]).expect("an answer");
-        let other = DeviceInput::Step([memory[1].rows(), memory[0].rows()]);
+        let other = DeviceMotion::Step([memory[1].rows(), memory[0].rows()]);
         assert_ne!(first.rows, detector.prepare(&[(id, other)]).expect("an answer").rows, "{kind:?}");
     }
 }
@@ -224,7 +224,7 @@ fn any_other_call_ends_a_preparation() {
     let (scene, id, [t0, _]) = pair(60);
     let device = engine();
     let memory = Points::new(&device, &t0);
-    let input = [(id, DeviceInput::At(memory.rows()))];
+    let input = [(id, DeviceMotion::Positions(memory.rows()))];
     let mut detector = OneQuery::new(device, scene, query(QueryKind::Discrete)).expect("a detector");
     let calls: [fn(&mut OneQuery, BodyId); 5] = [
         |d, _| drop(d.detect().expect("an answer")),

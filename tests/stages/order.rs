@@ -2,7 +2,7 @@
 
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Broad, Order, Query, QueryKind, Rebuild, Search};
-use nearmiss::scene::{Input, Meets, Scene};
+use nearmiss::scene::{Meets, Motion, Scene};
 use nearmiss_lab::{OneQuery, OneQueryOnSeveral};
 
 use nearmiss_lab::scene;
@@ -145,8 +145,8 @@ fn what_is_worn_is_made_anew_by_itself() {
         let mut tests = [0, 0];
         for step in 0..30 {
             let at = mixed(step);
-            let [one, two] =
-                [&mut never, &mut worn].map(|one| one.frame(&[(id, Input::At(&at))]).expect("an answer"));
+            let [one, two] = [&mut never, &mut worn]
+                .map(|one| one.frame(&[(id, Motion::positions(&at))]).expect("an answer"));
             assert_eq!(
                 (one.rows, one.stats.triangle_pairs),
                 (two.rows, two.stats.triangle_pairs),
@@ -173,8 +173,9 @@ fn devices_make_their_tiles_together() {
     let mut one = OneQuery::new(whole.clone(), start.clone(), query).expect("a detector");
     let id = one.scene().ids().next().expect("a body");
     let first = whole.bytes().0;
-    let wanted: Vec<_> =
-        (0..6).map(|step| one.frame(&[(id, Input::At(&crowded(step)))]).expect("an answer")).collect();
+    let wanted: Vec<_> = (0..6)
+        .map(|step| one.frame(&[(id, Motion::positions(&crowded(step)))]).expect("an answer"))
+        .collect();
     let peak = whole.bytes().1;
     let mut alone = 0;
     // Memory that ends on one device at one frame or another, and there it makes its tiles anew.
@@ -183,7 +184,8 @@ fn devices_make_their_tiles_together() {
         let devices = vec![device, engine()];
         let Ok(mut several) = OneQueryOnSeveral::new(devices, start.clone(), query) else { continue };
         for (step, want) in (0..).zip(&wanted) {
-            let found = several.frame(&[(id, Input::At(&crowded(step)))]).expect("an answer, in slices");
+            let found =
+                several.frame(&[(id, Motion::positions(&crowded(step)))]).expect("an answer, in slices");
             assert_eq!(
                 (&found.rows, found.stats.triangle_pairs),
                 (&want.rows, want.stats.triangle_pairs),
@@ -198,8 +200,8 @@ fn devices_make_their_tiles_together() {
     let mut several =
         OneQueryOnSeveral::new(vec![engine(), engine()], start.clone(), worn).expect("detectors");
     for step in 0..30 {
-        let found = several.frame(&[(id, Input::At(&mixed(step)))]).expect("an answer");
-        let want = one.frame(&[(id, Input::At(&mixed(step)))]).expect("an answer");
+        let found = several.frame(&[(id, Motion::positions(&mixed(step)))]).expect("an answer");
+        let want = one.frame(&[(id, Motion::positions(&mixed(step)))]).expect("an answer");
         assert_eq!(
             (found.rows, found.stats.triangle_pairs),
             (want.rows, want.stats.triangle_pairs),

@@ -3,7 +3,7 @@
 use super::*;
 use nearmiss::contacts::Kind;
 use nearmiss::device::Backend;
-use nearmiss::scene::{Input, Meets, Pose, Scene};
+use nearmiss::scene::{Meets, Motion, Pose, Scene};
 use nearmiss::{Contacts, Detector, Device, Mesh, Query};
 use nearmiss_lab::scene::soup;
 
@@ -18,7 +18,7 @@ fn library(query: Query, of: &Body, other: &Body, poses: [Pose; 2]) -> (Detector
     let device = Device::open(Backend::Cpu, Some(2)).expect("threads");
     let mut detector = Detector::new(device, scene).expect("a detector");
     let [t0, t1] = of.ends();
-    let found = detector.step(&[(first, Input::Step([t0, t1])), (second, Input::Poses(poses))], &query);
+    let found = detector.step(&[(first, Motion::step(t0, t1)), (second, Motion::PoseStep(poses))], &query);
     (detector, found.expect("an answer"))
 }
 

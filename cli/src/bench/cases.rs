@@ -6,7 +6,7 @@ use crate::detect::body;
 use crate::stem;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::scene::{BodyId, BodyKind, Input, Meets, Scene};
+use nearmiss::scene::{BodyId, BodyKind, Meets, Motion, Scene};
 use nearmiss_lab::scene::{Bodies, scene};
 use std::path::PathBuf;
 
@@ -167,13 +167,13 @@ pub fn questions(args: &BenchArgs) -> impl Iterator<Item = Question> {
 }
 
 /// Where everything that can move is in the step that the scene is in, as a simulator tells it frame after frame.
-pub fn inputs(scene: &Scene) -> Vec<(BodyId, Input<'_>)> {
+pub fn inputs(scene: &Scene) -> Vec<(BodyId, Motion<'_>)> {
     let input = |id| {
         let body = scene.get(id)?;
         let to = match body.kind() {
-            BodyKind::Rigid => Input::Poses(body.poses()),
-            BodyKind::Deformable if body.is_moving() => Input::Step(body.ends()),
-            BodyKind::Deformable => Input::At(body.positions_t0()),
+            BodyKind::Rigid => Motion::PoseStep(body.poses()),
+            BodyKind::Deformable if body.is_moving() => Motion::Step(body.ends().map(Into::into)),
+            BodyKind::Deformable => Motion::positions(body.positions_t0()),
             // Of kinds that do not move there is nothing to tell.
             _ => return None,
         };

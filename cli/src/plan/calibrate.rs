@@ -7,7 +7,7 @@ use nearmiss::error::Error;
 use nearmiss::pipeline::{Stages, mean_side};
 use nearmiss::plan::Plan;
 use nearmiss::query::Query;
-use nearmiss::scene::{BodyId, Input, Scene};
+use nearmiss::scene::{BodyId, Motion, Scene};
 use nearmiss_lab::OneQuery;
 use std::time::Instant;
 
@@ -36,8 +36,8 @@ pub fn model(device: &Device, query: &Query, side: f64) -> Result<Model, Error> 
         let [t0, t1] = body.ends().map(Clone::clone);
         let scene = Scene::from(body);
         let id = scene.ids().next();
-        let input = if query.kind().is_at_rest() { Input::At(&t0) } else { Input::Step([&t0, &t1]) };
-        let inputs: Vec<(BodyId, Input)> = id.map(|id| (id, input)).into_iter().collect();
+        let input = if query.kind().is_at_rest() { Motion::positions(&t0) } else { Motion::step(&t0, &t1) };
+        let inputs: Vec<(BodyId, Motion)> = id.map(|id| (id, input)).into_iter().collect();
         let query = scaled(query, if side > 0.0 { own / side } else { 1.0 });
         let mut detector = OneQuery::new(device.clone(), scene, query)?;
         let mut frames = Vec::new();

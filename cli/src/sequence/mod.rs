@@ -12,7 +12,7 @@ use file::{Described, wrong};
 use nearmiss::error::Error;
 use nearmiss::memory;
 use nearmiss::mesh::{Body, Positions};
-use nearmiss::scene::{BodyId, BodyKind, Input, Pose, Scene};
+use nearmiss::scene::{BodyId, BodyKind, Motion, Pose, Scene};
 use nearmiss::words::counted;
 use nearmiss_io::{MeshFile, Polygons};
 use std::collections::{HashMap, HashSet};
@@ -35,13 +35,13 @@ impl Track {
     }
 
     /// At a frame, or in the step from it to the next; of what rests there is nothing to say.
-    fn input(&self, at: usize, at_rest: bool) -> Option<Input<'_>> {
+    fn input(&self, at: usize, at_rest: bool) -> Option<Motion<'_>> {
         match self {
             _ if self.frames() < 2 => None,
-            Track::Positions(all) if at_rest => Some(Input::At(&all[at])),
-            Track::Positions(all) => Some(Input::Step([&all[at], &all[at + 1]])),
-            Track::Poses(all) if at_rest => Some(Input::Pose(all[at])),
-            Track::Poses(all) => Some(Input::Poses([all[at], all[at + 1]])),
+            Track::Positions(all) if at_rest => Some(Motion::positions(&all[at])),
+            Track::Positions(all) => Some(Motion::step(&all[at], &all[at + 1])),
+            Track::Poses(all) if at_rest => Some(Motion::pose(all[at])),
+            Track::Poses(all) => Some(Motion::PoseStep([all[at], all[at + 1]])),
         }
     }
 }
@@ -180,7 +180,7 @@ impl Sequence {
     }
 
     /// Where bodies go for a question.
-    pub fn inputs<'a>(&'a self, scene: &Scene, step: usize, at_rest: bool) -> Vec<(BodyId, Input<'a>)> {
+    pub fn inputs<'a>(&'a self, scene: &Scene, step: usize, at_rest: bool) -> Vec<(BodyId, Motion<'a>)> {
         let inputs = self.tracks.iter().map(|track| track.input(step, at_rest));
         scene.ids().zip(inputs).filter_map(|(id, input)| input.map(|input| (id, input))).collect()
     }
@@ -248,12 +248,12 @@ fn of_table(
     let mut body = body.with(table.meets);
     if let Track::Poses(poses) = &track {
         for (at, pose) in poses.iter().enumerate() {
-            body.check(&Input::Pose(*pose)).map_err(|e| {
+            body.check(&Motion::pose(*pose)).map_err(|e| {
                 let (what, advice) = parts(&e);
                 wrong(path, format!("{}: `poses`, the one of frame {at}: {what}", table.called), advice)
             })?;
         }
-        body = body.at(&Input::Pose(poses[0]))?;
+        body = body.at(&Motion::pose(poses[0]))?;
     }
     Ok(Told { body, track, polygons })
 }

@@ -10,7 +10,7 @@ use crate::device::{Buffer, Device};
 use crate::error::Error;
 use crate::mesh;
 use crate::pipeline::{launch, purpose};
-use crate::scene::{Body, BodyKind, DeviceInput, Pose};
+use crate::scene::{Body, BodyKind, DeviceMotion, Pose};
 use bytemuck::Pod;
 use lent::LentMemory;
 use nearmiss_kernels::abi::{
@@ -259,7 +259,7 @@ impl<R: Precision> Placing<R> {
             if count == 0 {
                 continue;
             }
-            let keeps = !moving && (rests || body.lent().is_some_and(DeviceInput::is_moving));
+            let keeps = !moving && (rests || body.lent().is_some_and(DeviceMotion::is_moving));
             self.keeps[i] = keeps;
             let placement = Placement { vertex, before, source: self.rest_starts[i], ..Placement::default() };
             placed.push(match (rests, body.lent(), body.kind()) {

@@ -3,7 +3,7 @@
 use super::sphere::{Sphere, sphere};
 use super::{Rng, room};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::scene::{BodyId, Input, Meets, Pose, Scene};
+use nearmiss::scene::{BodyId, Meets, Motion, Pose, Scene};
 use nearmiss::{Error, memory};
 
 /// A scene, and how its bodies move.
@@ -35,10 +35,10 @@ pub enum Move {
 
 impl Move {
     /// As a detector is told.
-    pub fn input(&self) -> Input<'_> {
+    pub fn input(&self) -> Motion<'_> {
         match self {
-            Move::Poses(poses) => Input::Poses(*poses),
-            Move::Step([t0, t1]) => Input::Step([t0, t1]),
+            Move::Poses(poses) => Motion::PoseStep(*poses),
+            Move::Step([t0, t1]) => Motion::step(t0, t1),
         }
     }
 }

@@ -8,7 +8,7 @@ use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::pipeline::Stages;
 use nearmiss::query::{Query, QueryKind};
-use nearmiss::scene::{BodyId, BodyKind, Input, Scene};
+use nearmiss::scene::{BodyId, BodyKind, Motion, Scene};
 use serde::Serialize;
 
 /// A scene asked in one way.
@@ -64,7 +64,7 @@ pub fn bodies(
     let mut pass = |detector: &mut OneQuery| -> Result<(Vec<Stages>, Vec<u64>, u64), Error> {
         let (mut stages, mut hashes, mut contacts) = (Vec::new(), Vec::new(), 0);
         for step in &steps {
-            let inputs: Vec<(BodyId, Input)> = step.iter().map(|(id, to)| (*id, to.input())).collect();
+            let inputs: Vec<(BodyId, Motion)> = step.iter().map(|(id, to)| (*id, to.input())).collect();
             let before = device.launches();
             let found = detector.frame(&inputs)?;
             launches = device.launches() - before;
@@ -122,7 +122,7 @@ fn one_by_one(
             for step in steps {
                 let named =
                     |(id, to)| own.iter().position(|own| own == id).map(|at| (ids[at], Move::input(to)));
-                let inputs: Vec<(BodyId, Input)> =
+                let inputs: Vec<(BodyId, Motion)> =
                     step.iter().filter_map(|(id, to)| named((id, to))).collect();
                 let found = detector.frame(&inputs)?;
                 ms += if counts { found.stats.stages.wall } else { 0.0 };

@@ -2,7 +2,7 @@
 
 use nearmiss::contacts::NearestTriangles;
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::scene::{Input, Meets, Pose, Scene};
+use nearmiss::scene::{Meets, Motion, Pose, Scene};
 use nearmiss::{Contacts, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
@@ -181,10 +181,10 @@ fn a_body_comes_and_goes() {
     let mut touched = 0;
     for step in 0..9 {
         let pose = Pose::at([0.25, 0.125, top + 1.0 - 0.75 * f64::from(step)]);
-        let found = detector.frame(&[(id, Input::Pose(pose))]).expect("an answer");
+        let found = detector.frame(&[(id, Motion::pose(pose))]).expect("an answer");
         let mut there = scene.clone();
         let body = there.remove(id).expect("the ball");
-        assert_eq!(there.add(body.at(&Input::Pose(pose)).expect("a pose")), id);
+        assert_eq!(there.add(body.at(&Motion::pose(pose)).expect("a pose")), id);
         let anew: Contacts = ask_scene(engine(), there, Query::distance());
         assert_eq!(found.rows, anew.rows, "step {step}");
         touched += u32::from(found.distance() == Some(0.0));

@@ -4,7 +4,7 @@
 use super::*;
 use nearmiss::Rows;
 use nearmiss::device::Buffer;
-use nearmiss::scene::{DeviceInput, DevicePose, DeviceRows, Number};
+use nearmiss::scene::{DeviceMotion, DevicePose, DeviceRows, Number};
 
 /// Where a body is at both ends of the last step.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,12 +25,12 @@ impl Place {
     }
 
     /// As a frame names it: at one end if it rests, or at both.
-    fn input(&self, at_both: bool) -> Option<Input<'_>> {
+    fn input(&self, at_both: bool) -> Option<Motion<'_>> {
         Some(match self {
-            Place::Vertices([t0, t1]) if t0 == t1 && !at_both => Input::At(t0),
-            Place::Vertices([t0, t1]) => Input::Step([t0, t1]),
-            Place::Poses([start, end]) if start == end && !at_both => Input::Pose(*start),
-            Place::Poses(poses) => Input::Poses(*poses),
+            Place::Vertices([t0, t1]) if t0 == t1 && !at_both => Motion::positions(t0),
+            Place::Vertices([t0, t1]) => Motion::step(t0, t1),
+            Place::Poses([start, end]) if start == end && !at_both => Motion::pose(*start),
+            Place::Poses(poses) => Motion::PoseStep(*poses),
             Place::Fixed => return None,
         })
     }
@@ -111,14 +111,14 @@ impl Lent {
     }
 
     /// As a frame names it.
-    fn input(&self) -> DeviceInput {
+    fn input(&self) -> DeviceMotion {
         // SAFETY: the buffers live and stay as they are until the frame has been answered.
         let rows = |buffer: &Buffer<f64>, width: usize| unsafe {
             DeviceRows::new(buffer.span().addr(), buffer.len() / width, 8 * width, Number::F64).expect("rows")
         };
         match self {
-            Lent::Rows(ends) => DeviceInput::Step(ends.each_ref().map(|end| rows(end, 3))),
-            Lent::Poses(ends) => DeviceInput::Poses(ends.each_ref().map(|[translation, rotation]| {
+            Lent::Rows(ends) => DeviceMotion::Step(ends.each_ref().map(|end| rows(end, 3))),
+            Lent::Poses(ends) => DeviceMotion::PoseStep(ends.each_ref().map(|[translation, rotation]| {
                 DevicePose { translation: rows(translation, 3), rotation: rows(rotation, 4) }
             })),
         }
@@ -179,7 +179,7 @@ fn life(seed: u64, query: Query, fault: impl Fn(&mut Contacts)) -> Result<usize,
             let at_both = inputs.is_empty() && !query.kind().is_at_rest();
             match (Lent::new(&placed.place).filter(|_| is_lent), placed.place.input(at_both)) {
                 (Some(numbers), _) => {
-                    inputs.push((id, Input::OnDevice(numbers.input())));
+                    inputs.push((id, Motion::OnDevice(numbers.input())));
                     lent.push(numbers);
                 }
                 (None, Some(input)) => inputs.push((id, input)),
@@ -208,10 +208,10 @@ fn refused(detector: &mut OneQuery, bodies: &[Placed]) {
         let refused = match &placed.place {
             Place::Vertices([t0, t1]) => {
                 let bad = nan(t1);
-                detector.frame(&[(placed.id, Input::Step([t0, &bad]))])
+                detector.frame(&[(placed.id, Motion::step(t0, &bad))])
             }
-            Place::Poses(_) => detector.frame(&[(placed.id, Input::Pose(Pose::at([f64::NAN; 3])))]),
-            Place::Fixed => detector.frame(&[(placed.id, Input::Pose(Pose::default()))]),
+            Place::Poses(_) => detector.frame(&[(placed.id, Motion::pose(Pose::at([f64::NAN; 3])))]),
+            Place::Fixed => detector.frame(&[(placed.id, Motion::pose(Pose::default()))]),
         };
         assert!(refused.is_err());
     }
@@ -294,7 +294,7 @@ fn at_rest(seed: u64, query: Query, end: usize) -> Result<bool, String> {
             |placed: &Placed| Placed { id: placed.id, body: placed.body.clone(), place: one(&placed.place) };
         fresh(&bodies.iter().map(moved).collect::<Vec<_>>(), query).rows
     };
-    let steps: Vec<(BodyId, Input)> =
+    let steps: Vec<(BodyId, Motion)> =
         bodies.iter().filter_map(|placed| Some((placed.id, placed.place.input(true)?))).collect();
     let mut detector = OneQuery::new(engine(), scene, query).expect("a detector");
     let first = detector.frame(&steps).expect("an answer");

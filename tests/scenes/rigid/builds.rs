@@ -20,7 +20,7 @@ fn scattered() -> (Scene, Vec<Pose>) {
 fn the_first_frame_that_places_bodies_builds() {
     let (scene, poses) = scattered();
     let ids: Vec<BodyId> = scene.ids().collect();
-    let inputs: Vec<_> = ids.iter().zip(&poses).map(|(&id, pose)| (id, Input::Pose(*pose))).collect();
+    let inputs: Vec<_> = ids.iter().zip(&poses).map(|(&id, pose)| (id, Motion::pose(*pose))).collect();
     for broad in Broad::ALL {
         let query = Query::discrete().with_broad(broad);
         let detector = |rebuild| {
@@ -50,7 +50,7 @@ fn the_first_frame_that_places_bodies_builds() {
         let id = by_itself.add(scene.bodies()[0].clone()).expect("added");
         by_itself.detect().expect("an answer");
         let before = by_itself.builds();
-        by_itself.frame(&[(id, Input::Pose(poses[7]))]).expect("an answer");
+        by_itself.frame(&[(id, Motion::pose(poses[7]))]).expect("an answer");
         assert_eq!(by_itself.builds(), before + 1);
     }
     let mut several =

@@ -7,7 +7,7 @@ use nearmiss_lab::oracle::{Triangle, triangles_meet};
 fn scene_of(bodies: &[(Mesh, Pose)]) -> Scene {
     let mut scene = Scene::new();
     for (mesh, pose) in bodies {
-        scene.add(Body::rigid(mesh.clone()).at(&Input::Pose(*pose)).expect("a pose"));
+        scene.add(Body::rigid(mesh.clone()).at(&Motion::pose(*pose)).expect("a pose"));
     }
     scene
 }
@@ -56,7 +56,7 @@ fn pairs_near_touching_are_as_exact_arithmetic_has_them() {
             let mesh =
                 Mesh::new("one", Positions::F32(corners[k].to_vec()), vec![[0, 1, 2]]).expect("a mesh");
             let body = Body::rigid(mesh).with(Meets::in_environment(world));
-            scene.add(body.at(&Input::Pose(poses[k])).expect("a pose"));
+            scene.add(body.at(&Motion::pose(poses[k])).expect("a pose"));
             shape.push(wide[k].map(|corner| poses[k].apply(corner)));
         }
         shapes.push(shape);
@@ -78,7 +78,7 @@ fn pairs_near_touching_are_as_exact_arithmetic_has_them() {
 fn a_small_sphere_far_away_does_not_meet_itself() {
     let sphere = Body::rigid(sphere(24, 0.01)).with(Meets::and_itself());
     for place in [[1e5; 3], [1e5, -3e5, 7e4]] {
-        let at = sphere.clone().at(&Input::Pose(Pose::at(place))).expect("a pose");
+        let at = sphere.clone().at(&Motion::pose(Pose::at(place))).expect("a pose");
         assert_eq!(ask(&Scene::from(vec![at]), Query::discrete()).len(), 0);
     }
 }
@@ -105,9 +105,9 @@ fn differences(rounded: bool) -> Vec<String> {
             steps.push((poses, ends));
         }
         for query in queries(1e-4, 0.01) {
-            let frame = |scene: &Scene, inputs: Vec<Input>| {
+            let frame = |scene: &Scene, inputs: Vec<Motion>| {
                 let mut detector = OneQuery::new(engine(), scene.clone(), query).expect("a detector");
-                let inputs: Vec<(BodyId, Input)> = scene.ids().zip(inputs).collect();
+                let inputs: Vec<(BodyId, Motion)> = scene.ids().zip(inputs).collect();
                 let found = detector.frame(&inputs).expect("an answer");
                 let geometry = match query {
                     Query::Continuous(_) | Query::Near(_) => detector.geometry(&found).expect("points"),
@@ -116,8 +116,8 @@ fn differences(rounded: bool) -> Vec<String> {
                 // The straight motion of a turn is a caveat of poses alone.
                 (found.rows, geometry)
             };
-            let poses = steps.iter().map(|(poses, _)| Input::Poses(*poses)).collect();
-            let ends = steps.iter().map(|(_, [t0, t1])| Input::Step([t0, t1])).collect();
+            let poses = steps.iter().map(|(poses, _)| Motion::PoseStep(*poses)).collect();
+            let ends = steps.iter().map(|(_, [t0, t1])| Motion::step(t0, t1)).collect();
             if frame(&by_pose, poses) != frame(&by_host, ends) {
                 different.push(format!("{query:?} at {place:?}"));
             }
@@ -147,16 +147,16 @@ fn a_rigid_mesh_may_be_as_large_as_any() {
         Body::rigid(Mesh::new("large", Positions::F64(corners), vec![[0, 1, 2]]).expect("a mesh"))
     };
     for size in [0.51 * most, most] {
-        let at = large(size).at(&Input::Pose(Pose::default())).expect("it is where its mesh is");
+        let at = large(size).at(&Motion::pose(Pose::default())).expect("it is where its mesh is");
         let other = Body::rigid(unit_box());
         let mut detector = OneQuery::new(engine(), vec![at, other], Query::discrete()).expect("a detector");
         let ids: Vec<BodyId> = detector.scene().ids().collect();
-        detector.frame(&[(ids[0], Input::Pose(Pose::default()))]).expect("an answer");
-        let beyond = [(ids[0], Input::Pose(Pose::at([0.0, 0.0, most])))];
+        detector.frame(&[(ids[0], Motion::pose(Pose::default()))]).expect("an answer");
+        let beyond = [(ids[0], Motion::pose(Pose::at([0.0, 0.0, most])))];
         let error = detector.frame(&beyond).expect_err("too far").to_string();
         assert!(error.contains("2^480") && error.contains("large"), "{error}");
         // Turned by a half about z it is as large as before.
         let turned = Pose { rotation: [0.0, 0.0, 1.0, 0.0], translation: [0.0; 3] };
-        detector.frame(&[(ids[0], Input::Pose(turned))]).expect("an answer");
+        detector.frame(&[(ids[0], Motion::pose(turned))]).expect("an answer");
     }
 }

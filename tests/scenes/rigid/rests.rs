@@ -5,7 +5,7 @@ use super::*;
 use nearmiss::Device;
 use nearmiss::device::Buffer;
 use nearmiss::query::QueryKind;
-use nearmiss::scene::{DeviceInput, DevicePose, DeviceRows, Number};
+use nearmiss::scene::{DeviceMotion, DevicePose, DeviceRows, Number};
 use nearmiss_lab::OneQueryOnSeveral;
 
 /// Where a body is: at both ends of the last step that named it, or at its end twice.
@@ -41,12 +41,12 @@ impl Place {
     }
 
     /// As a frame is told: with both ends, or one where they are the same.
-    fn input(&self) -> Option<Input<'_>> {
+    fn input(&self) -> Option<Motion<'_>> {
         match self {
-            Place::Points([start, end]) if start == end => Some(Input::At(start)),
-            Place::Points([start, end]) => Some(Input::Step([start, end])),
-            Place::Poses([start, end]) if start == end => Some(Input::Pose(*start)),
-            Place::Poses(poses) => Some(Input::Poses(*poses)),
+            Place::Points([start, end]) if start == end => Some(Motion::positions(start)),
+            Place::Points([start, end]) => Some(Motion::step(start, end)),
+            Place::Poses([start, end]) if start == end => Some(Motion::pose(*start)),
+            Place::Poses(poses) => Some(Motion::PoseStep(*poses)),
             Place::Fixed => None,
         }
     }
@@ -90,21 +90,21 @@ impl Held {
         }
     }
 
-    fn input(&self, steps: bool) -> DeviceInput {
+    fn input(&self, steps: bool) -> DeviceMotion {
         // SAFETY: the test keeps the memory until the frame is answered.
         let rows =
             |at, len, stride, number| unsafe { DeviceRows::new(at, len, stride, number) }.expect("rows");
         match self {
             Held::Points(ends) => {
                 let [t0, t1] = ends.each_ref().map(|end| rows(end.span().addr(), end.len(), 12, Number::F32));
-                if steps { DeviceInput::Step([t0, t1]) } else { DeviceInput::At(t0) }
+                if steps { DeviceMotion::Step([t0, t1]) } else { DeviceMotion::Positions(t0) }
             }
             Held::Poses(ends) => {
                 let [t0, t1] = ends.each_ref().map(|end| DevicePose {
                     translation: rows(end.span().addr(), 1, 0, Number::F64),
                     rotation: rows(end.span().addr() + 24, 1, 0, Number::F64),
                 });
-                if steps { DeviceInput::Poses([t0, t1]) } else { DeviceInput::Pose(t0) }
+                if steps { DeviceMotion::PoseStep([t0, t1]) } else { DeviceMotion::Pose(t0) }
             }
         }
     }
@@ -198,12 +198,12 @@ impl Told {
                 |&(k, _)| if rng.random_bool(0.5) { Held::of(&self.device, &self.bodies[k].2) } else { None },
             )
             .collect();
-        let inputs: Vec<(BodyId, Input)> = named
+        let inputs: Vec<(BodyId, Motion)> = named
             .iter()
             .zip(&held)
             .filter_map(|(&(k, steps), held)| {
                 let (id, _, place) = &self.bodies[k];
-                let lent = held.as_ref().map(|held| Input::OnDevice(held.input(steps)));
+                let lent = held.as_ref().map(|held| Motion::OnDevice(held.input(steps)));
                 Some((*id, lent.or_else(|| place.input())?))
             })
             .collect();
@@ -221,7 +221,7 @@ impl Told {
         let named = self.go(rng, true);
         let mut held: Vec<Held> =
             named.iter().filter_map(|&(k, _)| Held::of(&self.device, &self.bodies[k].2)).collect();
-        let inputs: Vec<(BodyId, DeviceInput)> = named
+        let inputs: Vec<(BodyId, DeviceMotion)> = named
             .iter()
             .zip(&held)
             .map(|(&(k, steps), held)| (self.bodies[k].0, held.input(steps)))
@@ -256,7 +256,7 @@ impl Told {
         };
         let lent = Held::of(&self.device, &nowhere).map(|held| (held.input(true), held)).expect("memory");
         let wrong = match rng.random_bool(0.5) {
-            true => Input::OnDevice(lent.0),
+            true => Motion::OnDevice(lent.0),
             false => nowhere.input().expect("a place"),
         };
         let inputs = [(good.0, elsewhere.input().expect("a place")), (bad.0, wrong)];
@@ -332,7 +332,7 @@ fn on_several_devices_too() {
             OneQueryOnSeveral::new(vec![engine(), engine()], scene, told.query).expect("detectors");
         for step in 0..12 {
             let named = told.go(&mut rng, true);
-            let inputs: Vec<(BodyId, Input)> = named
+            let inputs: Vec<(BodyId, Motion)> = named
                 .iter()
                 .filter_map(|&(k, _)| Some((told.bodies[k].0, told.bodies[k].2.input()?)))
                 .collect();

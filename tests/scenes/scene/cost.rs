@@ -37,13 +37,15 @@ fn cost(scene: Scene, motion: QueryKind) -> (u64, u64, usize) {
     let mut detector = OneQuery::new(device.clone(), scene, query(motion)).expect("a detector");
     let ids: Vec<BodyId> = detector.scene().ids().collect();
     let bodies = detector.scene().bodies().to_vec();
-    let inputs = |lift: f64| -> Vec<(BodyId, Input)> {
+    let inputs = |lift: f64| -> Vec<(BodyId, Motion)> {
         let pose = Pose::at([0.0, 0.0, lift]);
         let input = |id: BodyId| match (bodies[id.index()].kind(), motion.is_at_rest()) {
-            (BodyKind::Rigid, true) => Some(Input::Pose(pose)),
-            (BodyKind::Rigid, false) => Some(Input::Poses([pose; 2])),
-            (BodyKind::Deformable, true) => Some(Input::At(bodies[id.index()].positions_t0())),
-            (BodyKind::Deformable, false) => Some(Input::Step([bodies[id.index()].positions_t0(); 2])),
+            (BodyKind::Rigid, true) => Some(Motion::pose(pose)),
+            (BodyKind::Rigid, false) => Some(Motion::PoseStep([pose; 2])),
+            (BodyKind::Deformable, true) => Some(Motion::positions(bodies[id.index()].positions_t0())),
+            (BodyKind::Deformable, false) => {
+                Some(Motion::step(bodies[id.index()].positions_t0(), bodies[id.index()].positions_t0()))
+            }
             _ => None,
         };
         ids.iter().filter_map(|&id| Some((id, input(id)?))).collect()

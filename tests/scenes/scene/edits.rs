@@ -35,12 +35,12 @@ fn frames_move_what_they_name_and_others_rest() {
             };
             // A frame of a query in motion moves something.
             let steps = frame % 2 == 0 || !moved.iter().any(turns);
-            let inputs: Vec<(BodyId, Input)> = moved
+            let inputs: Vec<(BodyId, Motion)> = moved
                 .iter()
                 .map(|(id, ends, poses)| match scene.bodies()[id.index()].kind() {
-                    BodyKind::Rigid => (*id, Input::Poses(*poses)),
-                    _ if steps => (*id, Input::Step([&ends[0], &ends[1]])),
-                    _ => (*id, Input::At(&ends[1])),
+                    BodyKind::Rigid => (*id, Motion::PoseStep(*poses)),
+                    _ if steps => (*id, Motion::step(&ends[0], &ends[1])),
+                    _ => (*id, Motion::positions(&ends[1])),
                 })
                 .collect();
             let found = detector.frame(&inputs).expect("an answer");
@@ -64,13 +64,13 @@ fn bodies_come_and_go() {
     let mut detector = OneQuery::new(engine(), mixed(4), query()).expect("a detector");
     let before = detector.detect().expect("an answer");
     let added = detector.add(Body::rigid(crate_mesh.clone())).expect("room");
-    let moves = Input::Poses([Pose::default(), Pose::at([0.3, 0.0, 0.0])]);
+    let moves = Motion::PoseStep([Pose::default(), Pose::at([0.3, 0.0, 0.0])]);
     let found = detector.frame(&[(added, moves)]).expect("an answer");
     assert!(found.contacts().iter().any(|contact| contact.bodies.contains(&added)));
     same_as_new(&detector, &found, "added");
     let (other, [start, end]) = soup(55, 78);
     detector.replace(added, Body::still(other)).expect("a body");
-    let found = detector.frame(&[(added, Input::Step([&start, &end]))]).expect("an answer");
+    let found = detector.frame(&[(added, Motion::step(&start, &end))]).expect("an answer");
     assert!(found.contacts().iter().any(|contact| contact.bodies.contains(&added)));
     same_as_new(&detector, &found, "replaced");
     assert_eq!(detector.remove(added).expect("a body").face_count(), 55);
@@ -91,12 +91,12 @@ fn a_scene_goes_over_to_doubles_once_and_stays_exact() {
     let near = detector.detect().expect("an answer");
     assert!(!near.is_empty());
     // A rigid body that its pose takes beyond what f32 can be computed with, and one in doubles.
-    let poses = Input::Poses([Pose::default(), Pose::at([far, 0.0, 0.0])]);
+    let poses = Motion::PoseStep([Pose::default(), Pose::at([far, 0.0, 0.0])]);
     let found = detector.frame(&[(ball, poses)]).expect("an answer");
     same_as_new(&detector, &found, "far");
     let doubles = Positions::F64(ends[1].to_f64().iter().map(|p| p.map(|x| x + 1e-12)).collect());
     let found = detector
-        .frame(&[(cloth, Input::Step([&doubles; 2])), (ball, Input::Pose(Pose::default()))])
+        .frame(&[(cloth, Motion::step(&doubles, &doubles)), (ball, Motion::pose(Pose::default()))])
         .expect("an answer");
     same_as_new(&detector, &found, "doubles");
 }
@@ -116,22 +116,22 @@ fn what_a_scene_cannot_do_is_told_and_nothing_has_moved() {
     let mut bad = ends[1].to_f64();
     bad[7][2] = f64::NAN;
     let bad = Positions::F64(bad);
-    let there = Input::At(&ends[1]);
-    let refused: [(&[(BodyId, Input)], &str); 11] = [
+    let there = Motion::positions(&ends[1]);
+    let refused: [(&[(BodyId, Motion)], &str); 11] = [
         (&[(cloth, there)], "no body of the frame has two ends, and the query is continuous"),
-        (&[(cloth, there), (ball, Input::Pose(Pose::default()))], "both ends of the step"),
+        (&[(cloth, there), (ball, Motion::pose(Pose::default()))], "both ends of the step"),
         (&[(gone, there)], "no body 3"),
         (&[(cloth, there), (cloth, there)], "two inputs for body 0"),
         (&[(ground, there)], "is static"),
-        (&[(cloth, Input::Pose(Pose::default()))], "give a deformable body positions"),
+        (&[(cloth, Motion::pose(Pose::default()))], "give a deformable body positions"),
         (&[(ball, there)], "give a rigid body poses"),
-        (&[(cloth, Input::At(&few))], "vertices"),
-        (&[(cloth, Input::Step([&ends[0], &bad]))], "vertex 7 has z = NaN"),
+        (&[(cloth, Motion::positions(&few))], "vertices"),
+        (&[(cloth, Motion::step(&ends[0], &bad))], "vertex 7 has z = NaN"),
         (
-            &[(cloth, there), (ball, Input::Pose(Pose { rotation: [0.0; 4], ..Pose::default() }))],
+            &[(cloth, there), (ball, Motion::pose(Pose { rotation: [0.0; 4], ..Pose::default() }))],
             "unit quaternion",
         ),
-        (&[(cloth, there), (ball, Input::Pose(Pose::at([1e200, 0.0, 0.0])))], "2^480"),
+        (&[(cloth, there), (ball, Motion::pose(Pose::at([1e200, 0.0, 0.0])))], "2^480"),
     ];
     for (inputs, word) in refused {
         let error = detector.frame(inputs).expect_err(word);

@@ -53,7 +53,7 @@ fn a_scene_without_bodies_answers_nothing_until_they_come() {
         let ids = bodies.each_ref().map(|body| detector.add(body.clone()).expect(&what));
         let mut scene = Scene::new();
         assert_eq!(ids, bodies.each_ref().map(|body| scene.add(body.clone())));
-        let input = [(ids[0], Input::Step([&ends[0], &ends[1]]))];
+        let input = [(ids[0], Motion::step(&ends[0], &ends[1]))];
         let mut whole = OneQuery::new(engine(), scene, query).expect(&what);
         let found = detector.frame(&input).expect(&what);
         assert_eq!(found.rows, whole.frame(&input).expect(&what).rows, "{what}");

@@ -10,17 +10,17 @@ fn plan(scene: &Scene, motion: QueryKind) -> Plan {
     let device = engine();
     let mut detector = OneQuery::new(device.clone(), scene.clone(), query(motion)).expect("a detector");
     let at_rest = motion.is_at_rest();
-    let inputs: Vec<(BodyId, Input)> = scene
+    let inputs: Vec<(BodyId, Motion)> = scene
         .ids()
         .filter_map(|id| {
             let body = scene.get(id)?;
             let [t0, _] = body.ends();
             let poses = [0.0, 0.01].map(|lift| Pose::at([0.0, 0.0, lift]));
             match (body.kind(), at_rest) {
-                (BodyKind::Rigid, true) => Some((id, Input::Pose(poses[1]))),
-                (BodyKind::Rigid, false) => Some((id, Input::Poses(poses))),
-                (BodyKind::Deformable, true) => Some((id, Input::At(t0))),
-                (BodyKind::Deformable, false) => Some((id, Input::Step([t0, t0]))),
+                (BodyKind::Rigid, true) => Some((id, Motion::pose(poses[1]))),
+                (BodyKind::Rigid, false) => Some((id, Motion::PoseStep(poses))),
+                (BodyKind::Deformable, true) => Some((id, Motion::positions(t0))),
+                (BodyKind::Deformable, false) => Some((id, Motion::step(t0, t0))),
                 _ => None,
             }
         })

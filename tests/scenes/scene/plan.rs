@@ -48,15 +48,15 @@ fn planned(device: &Device, scene: Scene, query: Query) -> (Plan, u64, u64) {
     let mut detector = OneQuery::new(device.clone(), scene, query).expect("a detector");
     let bodies = detector.scene().bodies().to_vec();
     let ids: Vec<BodyId> = detector.scene().ids().collect();
-    let inputs: Vec<(BodyId, Input)> = ids
+    let inputs: Vec<(BodyId, Motion)> = ids
         .into_iter()
         .filter_map(|id| {
             let (pose, t0) = (Pose::at([0.0, 0.0, 0.1]), bodies[id.index()].positions_t0());
             let input = match (bodies[id.index()].kind(), query.kind().is_at_rest()) {
-                (BodyKind::Rigid, true) => Input::Pose(pose),
-                (BodyKind::Rigid, false) => Input::Poses([pose; 2]),
-                (BodyKind::Deformable, true) => Input::At(t0),
-                (BodyKind::Deformable, false) => Input::Step([t0; 2]),
+                (BodyKind::Rigid, true) => Motion::pose(pose),
+                (BodyKind::Rigid, false) => Motion::PoseStep([pose; 2]),
+                (BodyKind::Deformable, true) => Motion::positions(t0),
+                (BodyKind::Deformable, false) => Motion::step(t0, t0),
                 _ => return None,
             };
             Some((id, input))
@@ -101,8 +101,8 @@ fn a_plan_is_what_the_device_counts() {
         let mut launches = 0;
         for _ in 0..3 {
             let before = device.launches();
-            let pose = Input::Pose(Pose::at([0.1, 0.0, 0.0]));
-            detector.frame(&[(cloth, Input::Step([&t0, &t1])), (ball, pose)]).expect("an answer");
+            let pose = Motion::pose(Pose::at([0.1, 0.0, 0.0]));
+            detector.frame(&[(cloth, Motion::step(&t0, &t1)), (ball, pose)]).expect("an answer");
             launches = device.launches() - before;
         }
         let plan = detector.plan().expect("a plan");

@@ -36,13 +36,13 @@ fn detector() -> (OneQuery, [BodyId; 3]) {
     (OneQuery::new(engine(), scene, Query::discrete()).expect("a detector"), ids)
 }
 
-fn frame(body: usize, input: Input) -> Result<Contacts, Error> {
+fn frame(body: usize, input: Motion) -> Result<Contacts, Error> {
     let (mut detector, ids) = detector();
     detector.frame(&[(ids[body], input)])
 }
 
 fn posed(rotation: [f64; 4], translation: [f64; 3]) -> Result<Contacts, Error> {
-    frame(1, Input::Pose(Pose { rotation, translation }))
+    frame(1, Motion::pose(Pose { rotation, translation }))
 }
 
 fn moved(new: Body) -> Result<(), Error> {
@@ -64,9 +64,9 @@ fn every_error_is_of_its_class() {
         ("a file's text", class(MeshFile::parse("a.obj", Format::Obj, b"v 0 0 x\n"))),
         ("a file's name", class(MeshFile::read("none.stl".as_ref()))),
         ("a file", class(MeshFile::read("none.ply".as_ref()))),
-        ("a frame's coordinate", class(frame(0, Input::At(&corners(f64::INFINITY))))),
-        ("a step's", class(frame(0, Input::Step([&good, &corners(f64::NAN)])))),
-        ("how many there are", class(frame(0, Input::At(&few)))),
+        ("a frame's coordinate", class(frame(0, Motion::positions(&corners(f64::INFINITY))))),
+        ("a step's", class(frame(0, Motion::step(&good, &corners(f64::NAN))))),
+        ("how many there are", class(frame(0, Motion::positions(&few)))),
         ("a quaternion", class(posed([0.0; 4], [0.0; 3]))),
         ("a translation", class(posed(unit, [0.0, f64::NAN, 0.0]))),
         ("a large one", class(posed(unit, [0.0, 1e200, 0.0]))),
@@ -74,7 +74,7 @@ fn every_error_is_of_its_class() {
             "a body's pose",
             class(
                 Body::rigid(mesh(corners(0.0), [0; 3]).expect("a mesh"))
-                    .at(&Input::Pose(Pose::at([f64::NAN; 3]))),
+                    .at(&Motion::pose(Pose::at([f64::NAN; 3]))),
             ),
         ),
         ("more vertices", class(moved(still(more, [0, 1, 2]).expect("a body")))),
@@ -93,13 +93,18 @@ fn every_error_is_of_its_class() {
     own.remove(ids[0]).expect("a body");
     let fixed = mesh(corners(0.0), [0, 1, 2]).map(Body::fixed).expect("a body");
     let choice = [
-        ("a body that is gone", class(own.frame(&[(ids[0], Input::At(&good))]))),
+        ("a body that is gone", class(own.frame(&[(ids[0], Motion::positions(&good))]))),
         ("to remove it", class(own.remove(ids[0]))),
         ("to replace it", class(own.replace(ids[0], fixed.clone()))),
-        ("two inputs", class(detector().0.frame(&[(ids[0], Input::At(&good)), (ids[0], Input::At(&good))]))),
-        ("a pose of a deformable body", class(frame(0, Input::Pose(Pose::default())))),
-        ("positions of a rigid one", class(frame(1, Input::At(&good)))),
-        ("a frame of a static one", class(frame(2, Input::At(&good)))),
+        (
+            "two inputs",
+            class(
+                detector().0.frame(&[(ids[0], Motion::positions(&good)), (ids[0], Motion::positions(&good))]),
+            ),
+        ),
+        ("a pose of a deformable body", class(frame(0, Motion::pose(Pose::default())))),
+        ("positions of a rigid one", class(frame(1, Motion::positions(&good)))),
+        ("a frame of a static one", class(frame(2, Motion::positions(&good)))),
         ("a distance", class(of(Query::near(f64::NAN)))),
         ("no distance", class(of(Query::near(0.0)))),
         ("a tolerance", class(of(support::asked::with_tolerance(Query::continuous(), -1.0)))),

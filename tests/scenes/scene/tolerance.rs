@@ -144,7 +144,7 @@ fn bodies_that_come_bring_their_tolerances_and_moving_changes_none() {
     assert_eq!((text["tolerance"].as_f64(), text["largest_tolerance"].as_f64()), (Some(small), Some(large)));
     // Another place, of other edges.
     let far = scaled(1024.0);
-    let step = Input::Step([far.positions_t0(); 2]);
+    let step = Motion::step(far.positions_t0(), far.positions_t0());
     detector.frame(&[(first, step)]).expect("an answer");
     assert_eq!(both(&mut detector), [small, large]);
     let mut again =

@@ -2,7 +2,7 @@
 
 use super::*;
 use nearmiss::contacts::{Degraded, TURN_DEGREES};
-use nearmiss::scene::{DeviceInput, DevicePose, DeviceRows, Number};
+use nearmiss::scene::{DeviceMotion, DevicePose, DeviceRows, Number};
 
 /// A pose turned about z.
 fn turned(degrees: f64) -> Pose {
@@ -49,7 +49,7 @@ fn a_turn_of_more_than_thirty_degrees_is_named_with_its_bulge() {
             ([turned(0.0), minus(turned(20.0))], None),
             ([turned(0.0), minus(turned(60.0))], Some((60.0, 2.0 - 3f64.sqrt()))),
         ] {
-            let found = detector.frame(&[(bar, Input::Poses(ends))]).expect("an answer");
+            let found = detector.frame(&[(bar, Motion::PoseStep(ends))]).expect("an answer");
             match (&turns(&found)[..], expected) {
                 ([], None) => {}
                 (&[(body, degrees, bulge)], Some((angle, arc))) => {
@@ -77,7 +77,7 @@ fn a_turn_of_more_than_thirty_degrees_is_named_with_its_bulge() {
 fn a_query_at_rest_and_a_body_that_is_not_rigid_have_no_turn() {
     let (scene, bar) = bar();
     let mut detector = OneQuery::new(engine(), scene, Query::discrete()).expect("a detector");
-    let found = detector.frame(&[(bar, Input::Poses([turned(0.0), turned(180.0)]))]).expect("an answer");
+    let found = detector.frame(&[(bar, Motion::PoseStep([turned(0.0), turned(180.0)]))]).expect("an answer");
     assert_eq!(turns(&found), []);
 }
 
@@ -96,8 +96,8 @@ fn poses_of_the_device_are_judged_too() {
         translation: rows(still.as_ptr().cast(), 3),
         rotation: rows(rotation.as_ptr(), 4),
     };
-    let input = DeviceInput::Poses([pose(&rotations[0]), pose(&rotations[1])]);
-    let found = detector.frame(&[(bar, Input::OnDevice(input))]).expect("an answer");
+    let input = DeviceMotion::PoseStep([pose(&rotations[0]), pose(&rotations[1])]);
+    let found = detector.frame(&[(bar, Motion::OnDevice(input))]).expect("an answer");
     assert_eq!(turns(&found), []);
     detector.prepare(&[(bar, input)]).expect("an answer");
     for (degrees, expected) in [(10.0, 0), (170.0, 1), (20.0, 0)] {

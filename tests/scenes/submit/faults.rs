@@ -9,10 +9,10 @@ fn prepared(
     id: BodyId,
     kind: QueryKind,
     ends: [&[[f32; 3]]; 2],
-) -> ([Points; 2], DeviceInput, OneQuery, Contacts) {
+) -> ([Points; 2], DeviceMotion, OneQuery, Contacts) {
     let device = engine();
     let memory = ends.map(|points| Points::new(&device, points));
-    let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
+    let input = DeviceMotion::Step([memory[0].rows(), memory[1].rows()]);
     let mut detector = OneQuery::new(device, scene.clone(), query(kind)).expect("a detector");
     let good = detector.prepare(&[(id, input)]).expect("an answer");
     (memory, input, detector, good)
@@ -33,11 +33,11 @@ fn a_vertex_that_is_no_point_is_named() {
             let text = error.to_string();
             assert!(matches!(error, Error::Input { .. }) && text.contains("vertex 17 has y"), "{text}");
             assert!(text.contains(what), "{text}");
-            let error = detector.frame(&[(id, Input::OnDevice(input))]).expect_err("no answer");
+            let error = detector.frame(&[(id, Motion::OnDevice(input))]).expect_err("no answer");
             assert!(error.to_string().contains("vertex 17 has y"), "{error}");
             // Mended, all is as before.
             memory[0].write(&t0);
-            let found = detector.frame(&[(id, Input::OnDevice(input))]).expect("an answer");
+            let found = detector.frame(&[(id, Motion::OnDevice(input))]).expect("an answer");
             assert_eq!(found.rows, good.rows, "{kind:?}");
         }
     }
@@ -52,10 +52,10 @@ fn a_frame_that_is_refused_on_a_cpu_moves_nothing() {
         let mut bad = t1.clone();
         bad[17][1] = f32::NAN;
         let memory = [&t0, &bad].map(|points| Points::new(&device, points));
-        let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
+        let input = DeviceMotion::Step([memory[0].rows(), memory[1].rows()]);
         let mut detector = OneQuery::new(device, scene.clone(), query(kind)).expect("a detector");
         let before = detector.detect().expect("an answer");
-        detector.frame(&[(id, Input::OnDevice(input))]).expect_err("no answer");
+        detector.frame(&[(id, Motion::OnDevice(input))]).expect_err("no answer");
         assert_eq!(detector.detect().expect("an answer").rows, before.rows, "{kind:?}");
         assert_eq!(detector.frame(&[]).expect("an answer").rows, before.rows, "{kind:?}");
         detector.add(Body::still(soup(20, 6).0)).expect("nothing is lost");
@@ -86,7 +86,7 @@ fn after_a_submission_that_is_refused_nothing_is_answered_of_its_bodies() {
         let refusals = [
             detector.detect().map(drop),
             detector.frame(&[]).map(drop),
-            detector.frame(&[(other, Input::Step([&there; 2]))]).map(drop),
+            detector.frame(&[(other, Motion::step(&there, &there))]).map(drop),
             detector.fetch(),
             detector.add(Body::still(soup(20, 6).0)).map(drop),
         ];
@@ -95,7 +95,7 @@ fn after_a_submission_that_is_refused_nothing_is_answered_of_its_bodies() {
             assert!(text.contains("name it again"), "{kind:?}: {text}");
         }
         let [at, to] = [&t0, &t1].map(|points| Positions::F32(points.clone()));
-        let found = detector.frame(&[(id, Input::Step([&at, &to]))]).expect("an answer");
+        let found = detector.frame(&[(id, Motion::step(&at, &to))]).expect("an answer");
         assert_eq!(found.rows, good.rows, "{kind:?}");
     }
 }
@@ -114,7 +114,7 @@ fn what_is_lent_where_nothing_can_meet_is_kept() {
     let memory = Points::new(&device, &t1);
     let mut detector = OneQuery::new(device, alone(&t0), query(QueryKind::Discrete)).expect("a detector");
     let id = detector.scene().ids().next().expect("a body");
-    let input = [(id, Input::OnDevice(DeviceInput::At(memory.rows())))];
+    let input = [(id, Motion::OnDevice(DeviceMotion::Positions(memory.rows())))];
     assert!(detector.frame(&input).expect("an answer").is_empty());
     drop(memory);
     let more = Body::still(soup(50, 8).0);
@@ -139,7 +139,7 @@ fn a_vertex_that_no_face_uses_is_not_looked_at() {
     let id = detector.scene().ids().next().expect("a body");
     let wanted = detector.detect().expect("an answer");
     let memory = Points::new(&engine(), &points);
-    let input = [(id, Input::OnDevice(DeviceInput::At(memory.rows())))];
+    let input = [(id, Motion::OnDevice(DeviceMotion::Positions(memory.rows())))];
     assert_eq!(detector.frame(&input).expect("an answer").rows, wanted.rows);
 }
 
@@ -151,11 +151,11 @@ fn coordinates_too_large_for_singles_become_doubles() {
         let device = engine();
         let memory = large.each_ref().map(|points| Points::new(&device, points));
         let mut detector = OneQuery::new(device, scene.clone(), query(kind)).expect("a detector");
-        let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
-        let found = detector.frame(&[(id, Input::OnDevice(input))]).expect("an answer");
+        let input = DeviceMotion::Step([memory[0].rows(), memory[1].rows()]);
+        let found = detector.frame(&[(id, Motion::OnDevice(input))]).expect("an answer");
         let [t0, t1] = large.clone().map(Positions::F32);
         let mut by_host = OneQuery::new(engine(), scene.clone(), query(kind)).expect("a detector");
-        let wanted = by_host.frame(&[(id, Input::Step([&t0, &t1]))]).expect("an answer");
+        let wanted = by_host.frame(&[(id, Motion::step(&t0, &t1))]).expect("an answer");
         assert_eq!(found.rows, wanted.rows, "{kind:?}");
         assert_eq!(found.degraded(), wanted.degraded(), "{kind:?}");
         // Prepared, in doubles by then.
@@ -169,15 +169,15 @@ fn what_is_below_precision_is_told_of_what_is_away() {
     let (scene, id, ends) = pair(60);
     let device = engine();
     let memory = ends.each_ref().map(|points| Points::new(&device, points));
-    let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
+    let input = DeviceMotion::Step([memory[0].rows(), memory[1].rows()]);
     for kind in [QueryKind::Continuous, QueryKind::Earliest] {
         for tolerance in [1e-4, 1e-16] {
             let query = support::asked::at(kind, tolerance, 0.02);
             let mut by_host = OneQuery::new(engine(), scene.clone(), query).expect("a detector");
             let [t0, t1] = ends.clone().map(Positions::F32);
-            let wanted = by_host.frame(&[(id, Input::Step([&t0, &t1]))]).expect("an answer");
+            let wanted = by_host.frame(&[(id, Motion::step(&t0, &t1))]).expect("an answer");
             let mut detector = OneQuery::new(device.clone(), scene.clone(), query).expect("a detector");
-            let found = detector.frame(&[(id, Input::OnDevice(input))]).expect("an answer");
+            let found = detector.frame(&[(id, Motion::OnDevice(input))]).expect("an answer");
             assert_eq!(found.degraded(), wanted.degraded(), "{kind:?}, {tolerance}");
             assert_eq!(found.degraded().is_empty(), tolerance > 1e-10, "{:?}", found.degraded());
         }
@@ -208,18 +208,19 @@ fn a_pose_that_is_none_is_named() {
         let mut detector = OneQuery::new(device.clone(), scene.clone(), query(kind)).expect("a detector");
         // A query in motion takes both ends.
         let at_rest = kind.is_at_rest();
-        let input = |pose| if at_rest { DeviceInput::Pose(pose) } else { DeviceInput::Poses([pose; 2]) };
+        let input = |pose| if at_rest { DeviceMotion::Pose(pose) } else { DeviceMotion::PoseStep([pose; 2]) };
         for numbers in wrong {
             let (_buffer, pose) = held(numbers);
             let input = input(pose);
-            let error = detector.frame(&[(rigid, Input::OnDevice(input))]).expect_err("no pose");
+            let error = detector.frame(&[(rigid, Motion::OnDevice(input))]).expect_err("no pose");
             assert!(error.to_string().contains("the pose"), "{kind:?}: {error}");
         }
         let (_buffer, pose) = held([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
         let input = input(pose);
-        let found = detector.frame(&[(rigid, Input::OnDevice(input))]).expect("an answer");
+        let found = detector.frame(&[(rigid, Motion::OnDevice(input))]).expect("an answer");
         let mut by_host = OneQuery::new(engine(), scene.clone(), query(kind)).expect("a detector");
-        let input = if at_rest { Input::Pose(Pose::default()) } else { Input::Poses([Pose::default(); 2]) };
+        let input =
+            if at_rest { Motion::pose(Pose::default()) } else { Motion::PoseStep([Pose::default(); 2]) };
         let wanted = by_host.frame(&[(rigid, input)]).expect("an answer");
         assert_eq!(found.rows, wanted.rows, "{kind:?}");
     }
@@ -233,11 +234,11 @@ fn inputs_that_do_not_fit_their_body_are_refused() {
     let rows = memory.rows();
     let mut detector = OneQuery::new(device, scene, query(QueryKind::Discrete)).expect("a detector");
     let mut refused =
-        |input| detector.frame(&[(id, Input::OnDevice(input))]).expect_err("refused").to_string();
-    assert!(refused(DeviceInput::At(rows)).contains("179 vertices"));
-    assert!(refused(DeviceInput::Step([rows; 2])).contains("179 vertices"));
+        |input| detector.frame(&[(id, Motion::OnDevice(input))]).expect_err("refused").to_string();
+    assert!(refused(DeviceMotion::Positions(rows)).contains("179 vertices"));
+    assert!(refused(DeviceMotion::Step([rows; 2])).contains("179 vertices"));
     let pose = DevicePose { translation: rows, rotation: rows };
-    assert!(refused(DeviceInput::Pose(pose)).contains("positions"));
+    assert!(refused(DeviceMotion::Pose(pose)).contains("positions"));
 }
 
 /// A body that only another detector knows is none that this one can ask about.
@@ -247,7 +248,7 @@ fn a_body_that_is_away_is_not_taken_along() {
     let device = engine();
     let memory = Points::new(&device, &t0);
     let mut detector = OneQuery::new(device, scene, query(QueryKind::Discrete)).expect("a detector");
-    detector.frame(&[(id, Input::OnDevice(DeviceInput::At(memory.rows())))]).expect("an answer");
+    detector.frame(&[(id, Motion::OnDevice(DeviceMotion::Positions(memory.rows())))]).expect("an answer");
     let away = detector.scene().clone();
     let Err(error) = OneQuery::new(engine(), away, query(QueryKind::Discrete)) else { panic!("it is away") };
     assert!(error.to_string().contains("say again where it is"), "{error}");

@@ -25,7 +25,7 @@ fn rows_of_any_stride_and_precision_are_read() {
             let device = engine();
             let mut by_host = OneQuery::new(engine(), scene.clone(), query(kind)).expect("a detector");
             let [at, to] = [&t0, &t1].map(|points| Positions::F32(points.clone()));
-            let single = by_host.frame(&[(id, Input::Step([&at, &to]))]).expect("an answer");
+            let single = by_host.frame(&[(id, Motion::step(&at, &to))]).expect("an answer");
             let rows = |points: &[[f32; 3]]| points.iter().map(|p| p.to_vec()).collect::<Vec<_>>();
             let held = [&t0, &t1].map(|points| spaced(&device, &rows(points), stride));
             // SAFETY: the buffers live to the end of the test.
@@ -33,7 +33,8 @@ fn rows_of_any_stride_and_precision_are_read() {
                 DeviceRows::new(*at, t0.len(), 4 * stride, Number::F32).expect("rows")
             });
             let mut detector = OneQuery::new(device.clone(), scene, query(kind)).expect("a detector");
-            let found = detector.frame(&[(id, Input::OnDevice(DeviceInput::Step(ends)))]).expect("an answer");
+            let found =
+                detector.frame(&[(id, Motion::OnDevice(DeviceMotion::Step(ends)))]).expect("an answer");
             assert_eq!(found.rows, single.rows);
             // Doubles that singles do not have: the whole pipeline goes over.
             let wide = |points: &[[f32; 3]]| -> Vec<Vec<f64>> {
@@ -44,10 +45,11 @@ fn rows_of_any_stride_and_precision_are_read() {
             let ends = held.each_ref().map(|(_, at)| unsafe {
                 DeviceRows::new(*at, t0.len(), 8 * stride, Number::F64).expect("rows")
             });
-            let found = detector.frame(&[(id, Input::OnDevice(DeviceInput::Step(ends)))]).expect("an answer");
+            let found =
+                detector.frame(&[(id, Motion::OnDevice(DeviceMotion::Step(ends)))]).expect("an answer");
             let [at, to] = [&t0, &t1]
                 .map(|points| Positions::F64(wide(points).iter().map(|p| [p[0], p[1], p[2]]).collect()));
-            let double = by_host.frame(&[(id, Input::Step([&at, &to]))]).expect("an answer");
+            let double = by_host.frame(&[(id, Motion::step(&at, &to))]).expect("an answer");
             assert_eq!(found.rows, double.rows);
             assert!(kind == QueryKind::Discrete || double.rows != single.rows);
         }
@@ -86,10 +88,10 @@ fn poses_on_the_device_are_poses() {
         let mut detector = OneQuery::new(device.clone(), scene.clone(), query(kind)).expect("a detector");
         for frame in 0..4 {
             let ends = [pose(frame as f64), pose(frame as f64 + 1.0)];
-            let wanted = by_host.frame(&[(rigid, Input::Poses(ends))]).expect("an answer");
+            let wanted = by_host.frame(&[(rigid, Motion::PoseStep(ends))]).expect("an answer");
             let held = ends.map(|pose| pose_rows(&device, &pose, |x| x, Number::F64));
-            let input = DeviceInput::Poses(held.each_ref().map(|(_, rows)| *rows));
-            let found = detector.frame(&[(rigid, Input::OnDevice(input))]).expect("an answer");
+            let input = DeviceMotion::PoseStep(held.each_ref().map(|(_, rows)| *rows));
+            let found = detector.frame(&[(rigid, Motion::OnDevice(input))]).expect("an answer");
             assert_eq!(found.rows, wanted.rows, "{kind:?}, frame {frame}");
             assert!(detector.scene().bodies()[0].is_away());
             if frame == 2 {
@@ -99,7 +101,7 @@ fn poses_on_the_device_are_poses() {
             }
             // It rests where it was, while the other body moves by the host's word.
             let there = soup(80, 6).1.map(Positions::F32);
-            let input = [(cloth, Input::Step([&there[0], &there[1]]))];
+            let input = [(cloth, Motion::step(&there[0], &there[1]))];
             let [wanted, found] =
                 [&mut by_host, &mut detector].map(|detector| detector.frame(&input).expect("an answer"));
             assert_eq!(found.rows, wanted.rows, "{kind:?}, frame {frame}, at rest");
@@ -109,13 +111,13 @@ fn poses_on_the_device_are_poses() {
         let (_held, rows) = pose_rows(&device, &single, |x| x as f32, Number::F32);
         // A query in motion takes both ends.
         let at_rest = kind.is_at_rest();
-        let input = if at_rest { DeviceInput::Pose(rows) } else { DeviceInput::Poses([rows; 2]) };
-        let found = detector.frame(&[(rigid, Input::OnDevice(input))]).expect("an answer");
+        let input = if at_rest { DeviceMotion::Pose(rows) } else { DeviceMotion::PoseStep([rows; 2]) };
+        let found = detector.frame(&[(rigid, Motion::OnDevice(input))]).expect("an answer");
         let single = Pose {
             rotation: single.rotation.map(|x| f64::from(x as f32)),
             translation: single.translation.map(|x| f64::from(x as f32)),
         };
-        let input = if at_rest { Input::Pose(single) } else { Input::Poses([single; 2]) };
+        let input = if at_rest { Motion::pose(single) } else { Motion::PoseStep([single; 2]) };
         let wanted = by_host.frame(&[(rigid, input)]).expect("an answer");
         assert_eq!(found.rows, wanted.rows, "{kind:?}");
     }
@@ -127,7 +129,7 @@ fn bodies_that_are_away_come_back_for_changes() {
     let (scene, id, [t0, t1]) = pair(80);
     let device = engine();
     let memory = [&t0, &t1].map(|points| Points::new(&device, points));
-    let step = Input::OnDevice(DeviceInput::Step([memory[0].rows(), memory[1].rows()]));
+    let step = Motion::OnDevice(DeviceMotion::Step([memory[0].rows(), memory[1].rows()]));
     let mut detector = OneQuery::new(device, scene, query(QueryKind::Continuous)).expect("a detector");
     detector.frame(&[(id, step)]).expect("an answer");
     assert!(detector.scene().bodies()[0].is_away() && detector.scene().bodies()[0].is_moving());
@@ -152,7 +154,7 @@ fn bodies_that_are_away_come_back_for_changes() {
     let other = detector.add(Body::still(soup(20, 11).0)).expect("room");
     detector.frame(&[(id, step)]).expect("an answer");
     let wide = soup(20, 11).1.map(Positions::F32).map(|p| Positions::F64(number(&p)));
-    let found = detector.frame(&[(other, Input::Step([&wide[0]; 2]))]).expect("an answer");
+    let found = detector.frame(&[(other, Motion::step(&wide[0], &wide[0]))]).expect("an answer");
     detector.fetch().expect("positions");
     assert_eq!(number(detector.scene().bodies()[0].positions_t0()), number(&Positions::F32(t1)));
     let fresh = support::ask_scene(engine(), detector.scene().clone(), *detector.query());
@@ -167,7 +169,7 @@ fn memory_of_the_caller_is_read_in_every_slice() {
     let mut by_host = OneQuery::new(whole.clone(), scene.clone(), query).expect("a detector");
     let mut asked = |frame| {
         let [t0, t1] = ends.each_ref().map(|points| Positions::F32(moved(points, frame)));
-        by_host.frame(&[(id, Input::Step([&t0, &t1]))]).expect("an answer")
+        by_host.frame(&[(id, Motion::step(&t0, &t1))]).expect("an answer")
     };
     let wanted = [0, 1, 2].map(&mut asked);
     let mut sliced = 0;
@@ -176,11 +178,11 @@ fn memory_of_the_caller_is_read_in_every_slice() {
         let Ok(mut detector) = OneQuery::new(device.clone(), scene.clone(), query) else { continue };
         // The caller's own memory is not of the detector's device.
         let mut memory = ends.each_ref().map(|points| Points::new(&engine(), points));
-        let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
+        let input = DeviceMotion::Step([memory[0].rows(), memory[1].rows()]);
         for (frame, wanted) in wanted.iter().enumerate() {
             memory[0].write(&moved(&ends[0], frame));
             memory[1].write(&moved(&ends[1], frame));
-            let Ok(found) = detector.frame(&[(id, Input::OnDevice(input))]) else { break };
+            let Ok(found) = detector.frame(&[(id, Motion::OnDevice(input))]) else { break };
             assert_eq!((found.hash(), &found.rows), (wanted.hash(), &wanted.rows), "{part}, {frame}");
             sliced += u32::from(found.stats.slices > 1);
             if found.stats.slices > 1 {

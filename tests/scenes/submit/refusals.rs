@@ -45,7 +45,7 @@ fn a_vertex_that_is_no_point_is_refused_every_time() {
             let mut bad = t0.clone();
             bad[17][1] = value;
             let mut memory = [&t0, &t1].map(|points| Points::new(&device, points));
-            let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
+            let input = DeviceMotion::Step([memory[0].rows(), memory[1].rows()]);
             let mut detector = OneQuery::new(device.clone(), scene.clone(), query).expect("a detector");
             let good = detector.prepare(&[(id, input)]).expect("an answer");
             let mut again = |detector: &mut OneQuery, points: &[[f32; 3]], fetches: bool| {
@@ -75,10 +75,10 @@ fn a_vertex_that_is_no_point_is_refused_every_time() {
             memory[0].write(&bad);
             detector.submit().expect("submitted");
             assert_eq!(lost(&format!("{query:?} detected"), detector.detect(), "vertex 17 has y"), None);
-            let asked = detector.frame(&[(id, Input::OnDevice(input))]);
+            let asked = detector.frame(&[(id, Motion::OnDevice(input))]);
             assert_eq!(lost(&format!("{query:?} asked"), asked, "vertex 17 has y"), None);
             memory[0].write(&t0);
-            let found = detector.frame(&[(id, Input::OnDevice(input))]).expect("an answer");
+            let found = detector.frame(&[(id, Motion::OnDevice(input))]).expect("an answer");
             assert_eq!(found.rows, good.rows, "{query:?}");
         }
     }
@@ -98,7 +98,7 @@ fn a_pose_that_is_none_is_refused_every_time() {
         let row = |at| unsafe { DeviceRows::new(at, 1, 0, Number::F32) }.expect("a row");
         let pose = DevicePose { translation: row(at), rotation: row(at + 12) };
         let mut detector = OneQuery::new(device.clone(), scene.clone(), query).expect("a detector");
-        let first = detector.prepare(&[(rigid, DeviceInput::Poses([pose; 2]))]).expect("an answer");
+        let first = detector.prepare(&[(rigid, DeviceMotion::PoseStep([pose; 2]))]).expect("an answer");
         for numbers in wrong.into_iter().cycle().take(4) {
             buffer.write(&numbers).expect("written");
             detector.submit().expect("submitted");
@@ -119,7 +119,7 @@ fn what_singles_cannot_hold_is_answered_in_doubles_every_time() {
     let large = |points: &[[f32; 3]]| points.iter().map(|p| p.map(|x| x * 1e25)).collect::<Vec<_>>();
     for (query, device) in queries_on_machines() {
         let mut memory = [&t0, &t1].map(|points| Points::new(&device, points));
-        let input = DeviceInput::Step([memory[0].rows(), memory[1].rows()]);
+        let input = DeviceMotion::Step([memory[0].rows(), memory[1].rows()]);
         let mut detector = OneQuery::new(device.clone(), scene.clone(), query).expect("a detector");
         detector.prepare(&[(id, input)]).expect("an answer");
         detector.fetch().expect("positions");
@@ -130,7 +130,7 @@ fn what_singles_cannot_hold_is_answered_in_doubles_every_time() {
         let found = detector.collect().expect("an answer");
         let ends = [&t0, &t1].map(|points| Positions::F32(large(points)));
         let mut by_host = OneQuery::new(engine(), scene.clone(), query).expect("a detector");
-        let wanted = by_host.frame(&[(id, Input::Step([&ends[0], &ends[1]]))]).expect("an answer");
+        let wanted = by_host.frame(&[(id, Motion::step(&ends[0], &ends[1]))]).expect("an answer");
         assert_eq!(found.rows, wanted.rows, "{query:?}");
     }
 }

@@ -3,7 +3,7 @@
 use super::scene::asked;
 use nearmiss::device::Buffer;
 use nearmiss::mesh::{Body, Positions};
-use nearmiss::scene::{BodyId, DeviceInput, DeviceRows, Input, Number};
+use nearmiss::scene::{BodyId, DeviceMotion, DeviceRows, Motion, Number};
 use nearmiss::{Contacts, Detector, Device, Error, Query};
 
 /// Positions in a device's memory.
@@ -45,10 +45,10 @@ pub fn detect(device: &Device, bodies: &[Body], query: Query) -> Result<Contacts
         .collect::<Result<_, Error>>()?;
     let mut detector = Detector::new(device.clone(), asked(bodies))?;
     let ids: Vec<BodyId> = detector.scene().ids().collect();
-    let inputs: Vec<(BodyId, DeviceInput)> = ids
+    let inputs: Vec<(BodyId, DeviceMotion)> = ids
         .into_iter()
         .zip(&held)
-        .map(|(id, [t0, t1])| Ok((id, DeviceInput::Step([t0.rows()?, t1.rows()?]))))
+        .map(|(id, [t0, t1])| Ok((id, DeviceMotion::Step([t0.rows()?, t1.rows()?]))))
         .collect::<Result<_, Error>>()?;
     match detector.prepare(&inputs, &[query]) {
         Ok(_) => {
@@ -57,7 +57,7 @@ pub fn detect(device: &Device, bodies: &[Body], query: Query) -> Result<Contacts
         }
         // A walk that needs the host.
         Err(Error::Choice { .. }) => {
-            let inputs: Vec<_> = inputs.iter().map(|(id, input)| (*id, Input::OnDevice(*input))).collect();
+            let inputs: Vec<_> = inputs.iter().map(|(id, input)| (*id, Motion::OnDevice(*input))).collect();
             detector.step(&inputs, &query)
         }
         Err(error) => Err(error),

@@ -1,0 +1,63 @@
+//! The motion of a body in a step.
+
+use super::{DeviceMotion, Pose};
+use crate::mesh::Points;
+
+/// Where a body is at a frame, or at the two ends of a step. Borrowed: nothing of a body's topology is copied or looked at.
+///
+/// Every query takes both. Discrete, near and distance queries test a body that steps where its step begins, at t = 0; from the
+/// next update on it rests where its step ended, unless that update names it.
+///
+/// ```
+/// use nearmiss::scene::{Motion, Pose};
+///
+/// let [start, end] = [[[0.0f32; 3]; 3], [[1.0; 3]; 3]];
+/// let fall = Motion::step(&start, &end);
+/// let stands = Motion::pose(Pose::at([0.0, 0.0, 1.0]));
+/// # let _ = (fall, stands);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub enum Motion<'a> {
+    /// A deformable body stands at these positions.
+    Positions(Points<'a>),
+    /// A deformable body moves from the first positions to the second, each vertex in a straight line.
+    Step([Points<'a>; 2]),
+    /// A rigid body stands in this pose.
+    Pose(Pose),
+    /// A rigid body moves from the first pose to the second, **each vertex in a straight line**: between the poses it is not
+    /// rigid. Give steps in which it turns little.
+    PoseStep([Pose; 2]),
+    /// Positions or poses in the device's memory.
+    OnDevice(DeviceMotion),
+}
+
+impl<'a> Motion<'a> {
+    /// A deformable body stands at these positions: an array, a vector or a slice of points, or [`Positions`](crate::mesh::Positions).
+    pub fn positions(at: impl Into<Points<'a>>) -> Motion<'a> {
+        Motion::Positions(at.into())
+    }
+
+    /// A deformable body moves from the first positions to the second, each vertex in a straight line.
+    pub fn step(start: impl Into<Points<'a>>, end: impl Into<Points<'a>>) -> Motion<'a> {
+        Motion::Step([start.into(), end.into()])
+    }
+
+    /// A rigid body stands in this pose.
+    pub fn pose(pose: impl Into<Pose>) -> Motion<'a> {
+        Motion::Pose(pose.into())
+    }
+
+    /// A rigid body moves from the first pose to the second, each vertex in a straight line.
+    pub fn pose_step(start: impl Into<Pose>, end: impl Into<Pose>) -> Motion<'a> {
+        Motion::PoseStep([start.into(), end.into()])
+    }
+
+    /// Whether it has two ends.
+    pub(crate) fn is_moving(&self) -> bool {
+        match self {
+            Motion::Positions(_) | Motion::Pose(_) => false,
+            Motion::Step(_) | Motion::PoseStep(_) => true,
+            Motion::OnDevice(motion) => motion.is_moving(),
+        }
+    }
+}
