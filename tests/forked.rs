@@ -68,7 +68,8 @@ fn a_fork_is_told_that_it_has_no_threads() {
     assert_eq!(forked(60, || is_told(own.frame(&[(id, Motion::positions(&at))]))), 0);
     assert_eq!(forked(60, || is_told(own.update(&[(id, Motion::positions(&at))]))), 0);
     assert_eq!(forked(60, || is_told(own.geometry(&found))), 0);
-    assert_eq!(forked(60, || is_told(own.rebuild())), 0);
+    assert_eq!(forked(60, || is_told(own.rebuild()) && is_told(own.fingerprints())), 0);
+    assert_eq!(forked(60, || is_told(own.narrow_steps()) && is_told(own.plan())), 0);
     own.prepare(&[]).expect("prepared");
     assert_eq!(forked(60, || is_told(own.submit()) && is_told(own.collect())), 0);
     // What was found is there, and the process itself goes on.

@@ -36,6 +36,7 @@ impl Detector {
     }
 
     fn rebuild_all(&mut self) -> Result<(), Error> {
+        start_threads()?;
         self.read_again(false);
         self.none_lost()?;
         let Some(pipeline) = &mut self.engine.pipeline else { return Ok(()) };

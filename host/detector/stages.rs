@@ -2,6 +2,7 @@
 
 use super::Detector;
 use super::question::Question;
+use crate::device::emulator::start_threads;
 use crate::error::Error;
 use crate::pipeline::{Pipeline, Stage};
 use crate::query::Query;
@@ -66,6 +67,7 @@ impl Detector {
         none: T,
         what: impl FnOnce(&mut dyn Pipeline, usize) -> Result<T, Error>,
     ) -> Result<T, Error> {
+        start_threads()?;
         let Some(pipeline) = &mut self.engine.pipeline else { return Ok(none) };
         match pipeline.place_of(query) {
             Some(at) => what(&mut **pipeline, at),
