@@ -168,7 +168,7 @@ impl<R: Precision> Placing<R> {
     pub fn frames(&self, at_rest: bool) -> Positions<R> {
         match &self.vertices {
             Vertices::Moving(_) if at_rest => Positions { still: self.at_rest.span(), moving: Span::EMPTY },
-            _ => self.vertices.span(),
+            Vertices::Still(_) | Vertices::Moving(_) => self.vertices.span(),
         }
     }
 
