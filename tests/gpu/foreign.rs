@@ -5,7 +5,7 @@
 mod simulator;
 
 use nearmiss::contacts::on_device::{FrameStatus, Hit, NearHit, NearestHit, Pair};
-use nearmiss::contacts::{Answer, NearestTriangles};
+use nearmiss::contacts::{NearestTriangles, Rows};
 use nearmiss::device::Backend;
 use nearmiss::mesh::Positions;
 use nearmiss::query::QueryKind;
@@ -151,7 +151,8 @@ fn drive(kind: QueryKind, triangles: usize, frames: usize) -> (usize, usize) {
             assert!(!detector.is_prepared());
             told(&contacts, triangles)
         });
-        let input = [(id, Motion::step(&positions(&t0), &positions(&t1)))];
+        let [start, end] = [positions(&t0), positions(&t1)];
+        let input = [(id, Motion::step(&start, &end))];
         let wanted = told(&judge.frame(&input).expect("an answer"), triangles);
         assert!(found == wanted, "{kind:?}, frame {frame}: {} and {}", found.len(), wanted.len());
         compared += wanted.len();
