@@ -871,7 +871,7 @@ NearmissCode nearmiss_detector_frame(NearmissDetector *detector,
                                      NearmissAnswer **answer,
                                      NearmissError *error);
 
-// Moves bodies as `nearmiss_detector_frame` does, and asks nothing; bodies that are not named stay in the step that they are in.
+// Moves bodies as `nearmiss_detector_frame` does, without a query.
 //
 // # Safety
 // So many inputs are there, and what they point to.
