@@ -32,6 +32,8 @@ pub struct BroadContext<'a, R: Precision> {
     pub faces: Span<[u32; 3]>,
     /// What the kernels know of the bodies; empty where there is one alone.
     pub records: Span<BodyRecord>,
+    /// Whether launches may be recorded and run later, or never: then the host must not rely on them.
+    pub is_submitted: bool,
 }
 
 /// A part of the tiles of what moves, in parts of 2^32 of their number: whose first tile it is, finds a pair. Shares that touch leave

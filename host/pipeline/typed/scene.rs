@@ -46,6 +46,8 @@ pub struct SceneMemory<R: Precision> {
     /// Candidate triangle pairs of the query that runs.
     pub pairs: List<Pair>,
     pub broads: Vec<Broad<R>>,
+    /// Whether a submission is being enqueued.
+    pub is_submitting: bool,
     /// Around placings since the last frame.
     pub placing: Vec<[Event; 2]>,
     /// Number of placings so far.
@@ -64,6 +66,7 @@ impl<R: Precision> SceneMemory<R> {
             features: Features::none(&device)?,
             pairs: List::new(&device, "candidate triangle pairs", counter::PAIRS, 0)?,
             broads: Vec::new(),
+            is_submitting: false,
             placing: Vec::new(),
             placings: 0,
             device,
@@ -108,6 +111,7 @@ impl<R: Precision> SceneMemory<R> {
             frames: self.vertices.frames(query.is_at_rest()),
             faces: self.faces.span(),
             records: query.records(),
+            is_submitted: self.is_submitting,
         };
         what(&mut *self.broads[query.broad].phase, &given, &query.layout)
     }

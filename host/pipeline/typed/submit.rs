@@ -161,14 +161,17 @@ impl<R: Precision> TypedPipeline<R> {
         let seen = scene.vertices.seen_span();
         let seen = if seen.is_empty() { submission.unseen.span() } else { seen };
         scene.vertices.again(&scene.device)?;
-        for submitted in &submission.queries {
-            let own = &mut self.queries[submitted.query];
+        scene.is_submitting = true;
+        let queries = &mut self.queries;
+        let enqueued = submission.queries.iter().try_for_each(|submitted| {
+            let own = &mut queries[submitted.query];
             if !scene.vertices.is_ready(own.is_at_rest()) {
                 scene.vertices.ready(&scene.device)?;
             }
-            own.enqueue(scene, submitted, seen)?;
-        }
-        Ok(())
+            own.enqueue(scene, submitted, seen)
+        });
+        scene.is_submitting = false;
+        enqueued
     }
 }
 

@@ -45,6 +45,7 @@ fn checked_of(bodies: &[Body], fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), E
         frames: abi::Positions { still: points.span(), moving: Span::EMPTY },
         faces: faces.span(),
         records: records.span(),
+        is_submitted: false,
     };
     let mut tiles = Tiles::<Aabb>::new(&device, &layout, (Order::DEFAULT, Axes::PCA, 0.01))?;
     tiles.construct(&given, &layout)?;

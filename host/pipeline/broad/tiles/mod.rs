@@ -176,7 +176,10 @@ impl<V: Kernels> Tiles<V> {
     /// Volumes of static tiles, if they are not yet fitted with a margin that is right.
     fn fit_static<R: Precision>(&mut self, given: &BroadContext<R>) -> Result<(), Error> {
         let fixed = self.fixed.as_ref().map(|fixed| fixed.triangles.span());
-        let Some(triangles) = fixed.filter(|_| self.static_margin.take(self.margin)) else { return Ok(()) };
+        let Some(triangles) = fixed.filter(|_| self.static_margin.take(self.margin, !given.is_submitted))
+        else {
+            return Ok(());
+        };
         Tiles::fit(self, given, FIXED, triangles, self.static_margin.fitted())?;
         Tiles::refit(self, given.device, FIXED)
     }

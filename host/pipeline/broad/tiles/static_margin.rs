@@ -18,12 +18,13 @@ pub struct StaticMargin {
 }
 
 impl StaticMargin {
-    /// A query needs this margin: whether static tiles must be fitted now, with [`StaticMargin::fitted`].
-    pub fn take(&mut self, margin: f32) -> bool {
+    /// A query needs this margin: whether static tiles must be fitted now, with [`StaticMargin::fitted`]. It does not shrink in a
+    /// submission, which may be recorded and never run; and it need not grow there, as each query has run before.
+    pub fn take(&mut self, margin: f32, may_shrink: bool) -> bool {
         (self.most, self.fits) = (self.most.max(margin), self.fits + 1);
         let fitted = match self.fitted {
             Some(fitted) if margin <= fitted => {
-                if self.fits < PATIENCE {
+                if self.fits < PATIENCE || !may_shrink {
                     return false;
                 }
                 let most = self.most;
@@ -52,13 +53,14 @@ mod tests {
     #[test]
     fn it_never_holds_less_than_a_query_needs_and_shrinks_after_a_while() {
         let mut margin = StaticMargin::default();
-        assert!(margin.take(0.0) && margin.fitted() == 0.0);
-        assert!(margin.take(1.0) && margin.fitted() == 1.0);
+        assert!(margin.take(0.0, true) && margin.fitted() == 0.0);
+        assert!(margin.take(1.0, true) && margin.fitted() == 1.0);
         // Two queries by turns fit nothing.
         for _ in 0..5 * PATIENCE {
-            assert!(!margin.take(0.1) && !margin.take(1.0));
+            assert!(!margin.take(0.1, true) && !margin.take(1.0, true));
         }
-        let fits = (0..2 * PATIENCE).filter(|_| margin.take(0.1)).count();
+        assert_eq!((0..2 * PATIENCE).filter(|_| margin.take(0.1, false)).count(), 0, "in submissions");
+        let fits = (0..2 * PATIENCE).filter(|_| margin.take(0.1, true)).count();
         assert!(fits == 1 && margin.fitted() == 0.1, "{margin:?}");
     }
 
@@ -66,10 +68,10 @@ mod tests {
     #[test]
     fn the_largest_of_the_last_needs_counts() {
         let mut margin = StaticMargin::default();
-        margin.take(8.0);
+        margin.take(8.0, true);
         for k in 0..10 * PATIENCE {
             let need = if k % 7 == 0 { 2.0 } else { 0.5 };
-            margin.take(need);
+            margin.take(need, true);
             assert!(margin.fitted() >= need);
         }
         assert_eq!(margin.fitted(), 2.0);

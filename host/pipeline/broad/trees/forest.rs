@@ -75,7 +75,7 @@ impl<V: Kernels> Forest<V> {
     /// # Errors
     /// Those of the device.
     pub fn construct<R: Precision>(&mut self, given: &BroadContext<R>, layout: &Layout) -> Result<(), Error> {
-        let BroadContext { device, frames, faces, records } = *given;
+        let BroadContext { device, frames, faces, records, .. } = *given;
         self.tree.construct::<R>(device, frames, (faces, records))?;
         match &mut self.fixed {
             Some(fixed) if fixed.starts.is_empty() => {
