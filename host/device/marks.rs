@@ -5,8 +5,15 @@ use super::cuda;
 use super::held::LaunchesOnly;
 use super::{Device, Machine};
 use crate::error::Error;
+use std::fmt;
 use std::sync::atomic::Ordering;
 use std::time::Instant;
+
+impl fmt::Debug for Device {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.debug_struct("Device").field("backend", &self.backend()).field("name", &self.name()).finish()
+    }
+}
 
 impl Device {
     /// A point in the stream of work, to measure from or to.

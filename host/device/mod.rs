@@ -83,12 +83,6 @@ impl Machine {
     }
 }
 
-impl std::fmt::Debug for Device {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        f.debug_struct("Device").field("backend", &self.backend()).field("name", &self.name()).finish()
-    }
-}
-
 impl Device {
     /// The machine that `backend` names: the first GPU, or so many threads of the CPU, or all: no more
     /// than there are processors, as more only wait for each other. With [`Backend::Auto`] the threads
