@@ -50,7 +50,7 @@ use std::sync::Arc;
 /// // A deformable body is tested against itself.
 /// let mut detector = Detector::new(device, body)?;
 /// let triangles = detector.scene().ids().next().expect("a body");
-/// detector.update(&[(triangles, Motion::Step([&at(1.0), &at(-1.0)]))])?;
+/// detector.update(&[(triangles, Motion::step(&at(1.0), &at(-1.0)))])?;
 /// let first = detector.query(&Earliest::default())?;
 /// println!("first contact at {:?}", first.map(|contact| contact.toi));
 /// println!("{} pairs within 1", detector.query(&Near::within(1.0))?.len());
