@@ -18,6 +18,8 @@ pub struct Placed {
     lacks_ends: bool,
     /// The bodies that a submission reads; up to date while the pipeline is prepared.
     pub submitted: Vec<Submitted>,
+    /// Its queries; the same.
+    queries: Vec<Query>,
 }
 
 /// A body that a submission reads.
@@ -69,8 +71,14 @@ impl Placed {
         }
     }
 
-    /// Submissions read these.
-    pub fn submit(&mut self, inputs: &[(BodyId, DeviceMotion)]) {
+    /// Whether a submission answers a query, with these numbers.
+    pub fn answers(&self, query: &Query) -> bool {
+        self.queries.contains(query)
+    }
+
+    /// Submissions read these, and answer those.
+    pub fn submit(&mut self, inputs: &[(BodyId, DeviceMotion)], queries: &[Query]) {
+        self.queries = queries.to_vec();
         let submitted = inputs.iter().map(|&(body, input)| Submitted { body, moves: input.is_moving() });
         self.submitted = submitted.collect();
     }

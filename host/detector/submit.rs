@@ -16,7 +16,8 @@ impl Detector {
     /// rest. Any other call that changes the detector ends it.
     ///
     /// # Errors
-    /// As for [`Detector::step`]; [`Error::Choice`] for no query, and for a traversal that needs the host.
+    /// As for [`Detector::step`]; [`Error::Choice`] for no query, for two that differ in numbers alone, and for a traversal that needs
+    /// the host.
     pub fn prepare(&mut self, motions: &[(BodyId, DeviceMotion)], queries: &[Query]) -> Result<(), Error> {
         let prepared = self.prepared(motions, queries);
         self.ended(prepared)
@@ -28,6 +29,17 @@ impl Detector {
                 what: "a submission without a query".into(),
                 advice: "name the queries that will be submitted".into(),
             });
+        }
+        for (at, query) in queries.iter().enumerate() {
+            if queries[..at].iter().any(|other| other.shape() == query.shape()) {
+                return Err(Error::Choice {
+                    what: format!(
+                        "two {} queries that differ in numbers alone, in one submission",
+                        query.kind()
+                    ),
+                    advice: "prepare the one that includes the other, or use two detectors".into(),
+                });
+            }
         }
         let given: Vec<(BodyId, Motion)> =
             motions.iter().map(|&(id, motion)| (id, Motion::OnDevice(motion))).collect();
@@ -63,7 +75,7 @@ impl Detector {
             let places: Vec<usize> = queries.iter().filter_map(|query| pipeline.place_of(query)).collect();
             pipeline.prepare(&places)?;
         }
-        self.placed.submit(motions);
+        self.placed.submit(motions, queries);
         Ok(())
     }
 
@@ -94,13 +106,13 @@ impl Detector {
     /// Addresses of the answer to a submitted query, for kernels of the caller behind it; `None` if it is not prepared, or nothing can
     /// meet.
     pub fn on_device(&self, query: &Query) -> Option<DeviceAnswer> {
-        let pipeline = self.engine.pipeline.as_ref()?;
+        let pipeline = self.engine.pipeline.as_ref().filter(|_| self.placed.answers(query))?;
         pipeline.place_of(query).and_then(|at| pipeline.answer(at))
     }
 
     /// Waits for the last submission, or the last launch of its recording, and brings the answer to one of its queries. If a list had too
     /// little room it grows and the query runs again, with bodies where they were placed: the answer is whole, and the detector is no
-    /// longer [prepared](Detector::is_prepared).
+    /// longer [prepared](Detector::is_prepared). So does a query that was not prepared with these numbers.
     ///
     /// # Errors
     /// [`Error::Input`] and [`Error::Choice`] for positions and poses of the caller that cannot be computed with; those of the device.
@@ -115,7 +127,8 @@ impl Detector {
         let layout = self.layout(&query)?;
         self.read_again(true);
         let Some(pipeline) = &mut self.engine.pipeline else { return Ok(Contacts::none(query)) };
-        let found = pipeline.place_of(&query).map_or(Ok(None), |at| pipeline.collect(at))?;
+        let place = pipeline.place_of(&query).filter(|_| self.placed.answers(&query));
+        let found = place.map_or(Ok(None), |at| pipeline.collect(at))?;
         let whole = found.map(|found| {
             let seen = found.0.seen;
             collect(found, &query, &layout, &self.device.looks()).map(|contacts| Answered { contacts, seen })

@@ -159,6 +159,10 @@ impl<R: Precision> Pipeline for TypedPipeline<R> {
                 self.queries.len() - 1
             }
         };
+        if self.queries[at].query != parts.query {
+            // Submissions have the numbers that they were prepared with.
+            self.submission = None;
+        }
         self.queries[at].set(&self.scene, parts)?;
         if self.queries[at].share != parts.share {
             self.take(at, parts.share)?;

@@ -252,8 +252,35 @@ fn one_submission_holds_several_queries() {
 }
 
 #[test]
-fn a_submission_without_a_query_is_refused() {
+fn a_submission_without_a_query_or_with_two_of_one_shape_is_refused() {
     let mut detector = Detector::new(engine(), cloth()).expect("a detector");
-    let error = detector.prepare(&[], &[]).expect_err("refused").to_string();
-    assert!(error.contains("without a query"), "{error}");
+    let mut refused = |queries: &[Query]| detector.prepare(&[], queries).expect_err("refused").to_string();
+    assert!(refused(&[]).contains("without a query"));
+    let two = refused(&[Query::near(1e-3), Query::earliest(), Query::near(2e-3)]);
+    assert!(two.contains("two near queries"), "{two}");
+}
+
+/// Numbers that were not prepared are answered, never with rows of others.
+#[test]
+fn a_submission_has_the_numbers_that_it_was_prepared_with() {
+    // At rest: a body that no motion names stays where its step ended.
+    let body = Body::still(cloth().frames().swap_remove(0));
+    let [small, large] = [Query::near(1e-3), Query::near(4e-3)];
+    let alone = |query: &Query| {
+        Detector::new(engine(), body.clone()).expect("a detector").query(query).expect("an answer")
+    };
+    let mut detector = Detector::new(engine(), body.clone()).expect("a detector");
+    let before = detector.query(&large).expect("an answer");
+    detector.prepare(&[], &[small]).expect("prepared");
+    assert!(detector.on_device(&small).is_some() && detector.on_device(&large).is_none());
+    detector.submit().expect("submitted");
+    assert_eq!(detector.collect(&small).expect("an answer").rows, alone(&small).rows);
+    // Geometry of an answer with other numbers ends the preparation, and the next submission is refused.
+    detector.geometry(&before).expect("places");
+    assert!(!detector.is_prepared() && detector.submit().is_err());
+    detector.prepare(&[], &[small]).expect("prepared");
+    detector.submit().expect("submitted");
+    let found = detector.collect(&large).expect("an answer");
+    assert_eq!(found.rows, alone(&large).rows);
+    assert_ne!(found.rows, alone(&small).rows);
 }
