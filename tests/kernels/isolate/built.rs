@@ -1,7 +1,7 @@
 //! Motions built in integers, at ordinary scales and at the ends of both precisions: every answer against the rational
 //! oracle, and every rung has its share.
 
-use super::rung::{Rung, certified, deciding, fault};
+use super::rung::{Rung, certified, deciding};
 use nearmiss_kernels::math::Real;
 use nearmiss_kernels::prim::inclusion::{Params, Verdict};
 use nearmiss_kernels::prim::isolate::Rungs;
@@ -9,6 +9,7 @@ use nearmiss_lab::oracle::first_contact;
 use nearmiss_lab::pairs::built::{Built, REACH_F32, built};
 use nearmiss_lab::pairs::directed::{DIRECTED, directed};
 use std::collections::BTreeMap;
+use support::fuzz::continuous::fault;
 
 /// How many each rung decided: separated, in contact, unresolved.
 pub type Shares = BTreeMap<Rung, [u32; 3]>;

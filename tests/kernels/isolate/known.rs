@@ -1,10 +1,11 @@
 //! Known answers, and for each rung motions that it decides and no rung before it.
 
-use super::rung::{Rung, certified, deciding, fault};
+use super::rung::{Rung, certified, deciding};
 use nearmiss_kernels::prim::inclusion::Params;
 use nearmiss_kernels::prim::isolate::Rungs;
 use nearmiss_lab::oracle::first_contact;
 use nearmiss_lab::{Case, Features};
+use support::fuzz::continuous::fault;
 
 type Points = [[f64; 3]; 4];
 

@@ -1,7 +1,7 @@
 //! What the certificates rest on, against contacts whose times are known exactly; and each of it weakened, which is seen
 //! to be wrong.
 
-use super::rung::{certified, deciding, fault, points};
+use super::rung::{certified, deciding, points};
 use nearmiss_kernels::math::tolerance::Tolerance;
 use nearmiss_kernels::math::{Real, Vec3};
 use nearmiss_kernels::prim::cubic::Moving;
@@ -13,6 +13,7 @@ use nearmiss_lab::pairs::built::{Built, REACH_F32, built};
 use nearmiss_lab::{Case, Features};
 use rand::rngs::SmallRng;
 use rand::{Rng, SeedableRng};
+use support::fuzz::continuous::fault;
 
 /// Contacts at a known time, of coordinates that f32 holds.
 fn contacts(seed: u64, n: usize) -> impl Iterator<Item = (Built, f64)> {

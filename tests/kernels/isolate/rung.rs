@@ -7,7 +7,6 @@ use nearmiss_kernels::prim::isolate::ladder::{
     SLICES, Slice, ee_touch, is_flat, isolated, near, searched, sliced, vf_touch,
 };
 use nearmiss_kernels::prim::isolate::{Edges, Face, Pair, Rungs, ee_certified, vf_certified};
-use nearmiss_lab::oracle::Toi;
 use nearmiss_lab::{Case, Features};
 
 /// What decides.
@@ -134,20 +133,5 @@ fn climb<const N: usize>(
             let verdict = near(double, (from, window.1), 1.0, p);
             if verdict.is_separated() { (Rung::Near, verdict) } else { (Rung::Search, search(verdict)) }
         }
-    }
-}
-
-/// What is wrong with a verdict, given the exact time.
-pub fn fault(verdict: &Verdict, truth: Option<&Toi>) -> Option<&'static str> {
-    let Verdict { toi, toi_hi, .. } = *verdict;
-    if !(0.0 <= toi && toi <= toi_hi && toi_hi <= 1.0) {
-        return Some("times that are none");
-    }
-    match truth {
-        None => verdict.is_contact().then_some("a false certificate"),
-        Some(_) if verdict.is_separated() => Some("missed"),
-        Some(truth) if truth.cmp_f64(toi).is_lt() => Some("late"),
-        Some(truth) => (verdict.is_contact() && truth.cmp_f64(toi_hi).is_gt())
-            .then_some("a false certificate: the contact is after toi_hi"),
     }
 }
