@@ -213,14 +213,7 @@ fn behind_a_sample_on_several_devices_and_in_slices() {
 #[test]
 fn lists_of_undecided_pairs_grow() {
     const N: u32 = 110;
-    let mut rng = scene::Rng::new(8);
-    let mut corner = |x: f64, y: f64| {
-        let [dx, dy, _] = rng.point(0.1);
-        let [x, y] = [x + dx, y + dy].map(|x| (x * 1_048_576.0).round() / 1_048_576.0);
-        [x as f32, y as f32, (-x - y) as f32]
-    };
-    let triangles: Vec<_> =
-        (0..N).map(|_| [corner(0.5, 0.0), corner(-0.25, 0.5), corner(-0.25, -0.5)]).collect();
+    let triangles = support::triangles::in_one_plane(N);
     let mut detector =
         OneQuery::new(engine(), support::loose(&triangles), Query::continuous()).expect("a detector");
     let first = detector.detect().expect("an answer");

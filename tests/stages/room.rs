@@ -65,17 +65,8 @@ fn many_more_pairs_than_room() {
 
 #[test]
 fn more_undecided_pairs_than_room() {
-    // Different triangles around the origin in the plane x + y + z = 0, corners on a fine grid: the sums are exact in
-    // floats, their products are not, so the filter cannot see the plane, and every pair meets in the origin.
     const N: u32 = 110;
-    let mut rng = scene::Rng::new(8);
-    let mut corner = |x: f64, y: f64| {
-        let [dx, dy, _] = rng.point(0.1);
-        let [x, y] = [x + dx, y + dy].map(|x| (x * 1_048_576.0).round() / 1_048_576.0);
-        [x as f32, y as f32, (-x - y) as f32]
-    };
-    let triangles: Vec<_> =
-        (0..N).map(|_| [corner(0.5, 0.0), corner(-0.25, 0.5), corner(-0.25, -0.5)]).collect();
+    let triangles = support::triangles::in_one_plane(N);
     let (contacts, reruns) = twice(engine(), vec![loose(&triangles)], Query::discrete());
     assert_eq!(contacts.triangles(), all_pairs(N));
     assert!(

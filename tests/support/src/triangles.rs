@@ -36,3 +36,15 @@ pub fn anywhere(r: &mut SmallRng) -> Triangle {
 
 /// The six orders of three corners.
 pub const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
+
+/// Different triangles around the origin in the plane x + y + z = 0, corners on a fine grid: the sums are exact in
+/// floats, their products are not, so the filters cannot see the plane, and every pair meets in the origin.
+pub fn in_one_plane(count: u32) -> Vec<[[f32; 3]; 3]> {
+    let mut rng = nearmiss_lab::scene::Rng::new(8);
+    let mut corner = |x: f64, y: f64| {
+        let [dx, dy, _] = rng.point(0.1);
+        let [x, y] = [x + dx, y + dy].map(|x| (x * 1_048_576.0).round() / 1_048_576.0);
+        [x as f32, y as f32, (-x - y) as f32]
+    };
+    (0..count).map(|_| [corner(0.5, 0.0), corner(-0.25, 0.5), corner(-0.25, -0.5)]).collect()
+}
