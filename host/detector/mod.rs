@@ -34,7 +34,7 @@ use std::sync::Arc;
 
 /// A scene on a device, which answers queries.
 ///
-/// All queries share one memory: positions are uploaded once a step, whatever is asked of them. A step is one submission, whatever the
+/// All queries share one memory: positions are uploaded once a step, for any number of queries. A step is one submission, whatever the
 /// number of bodies. Static bodies are built and fitted once, a rigid body costs its poses, and what no body does costs nothing.
 ///
 /// ```
