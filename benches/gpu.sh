@@ -143,10 +143,10 @@ stages = ["construct", "fit", "refit", "traverse", "balance", "narrow", "total",
 with open(f"{out}/times.csv", "w", newline="") as file:
     write = csv.writer(file)
     write.writerow(["machine", "scene", "triangles", "query", "solver", "triangle_pairs", "candidates", "contacts",
-                    "unresolved", "hash", "bytes"] + [s + "_us" for s in stages])
+                    "undecided", "hash", "bytes"] + [s + "_us" for s in stages])
     for r in rows:
         write.writerow([machine, r["scene"], r["triangles"], r["query"], r["solver"], r["triangle_pairs"],
-                        r["candidates"], r["contacts"], r["unresolved"], r["hash"], r["bytes"]] +
+                        r["candidates"], r["contacts"], r["undecided"], r["hash"], r["bytes"]] +
                        [round(1e3 * r["ms"][s], 1) for s in stages])
 choices = [json.loads(line) for line in open(f"{out}/choices.jsonl")]
 with open(f"{out}/choices.csv", "w", newline="") as file:

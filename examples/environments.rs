@@ -2,16 +2,16 @@
 
 mod shapes;
 
-use nearmiss::scene::{Meets, Motion, Pose, Scene};
+use nearmiss::scene::{CollisionFilter, Motion, Pose, Scene};
 use nearmiss::{Body, Detector, Device, Discrete, Error, device::Backend};
 
 fn main() -> Result<(), Error> {
     let mut scene = Scene::new();
     let mut arms = Vec::new();
     for world in 0..1_000 {
-        let meets = Meets::in_environment(world);
-        arms.push(scene.add(Body::rigid(shapes::sheet(16, |x, y| [x, y, 0.1 * x])?).with(meets)));
-        scene.add(Body::fixed(shapes::sheet(16, |x, y| [2.0 * x, 2.0 * y, 0.0])?).with(meets));
+        let meets = CollisionFilter::in_environment(world);
+        arms.push(scene.add(Body::rigid(shapes::sheet(16, |x, y| [x, y, 0.1 * x])?).with_filter(meets)));
+        scene.add(Body::fixed(shapes::sheet(16, |x, y| [2.0 * x, 2.0 * y, 0.0])?).with_filter(meets));
     }
     let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene)?;
     for frame in 0..5 {

@@ -2,13 +2,16 @@
 
 mod shapes;
 
-use nearmiss::scene::{Meets, Motion, Scene};
+use nearmiss::scene::{CollisionFilter, Motion, Scene};
 use nearmiss::{Body, Detector, Device, Error, Near, device::Backend};
 
 fn main() -> Result<(), Error> {
     let above = |z: f32| move |x: f32, y: f32| [x - 0.5, y - 0.5, z + 0.1 * x * y];
     let mut scene = Scene::new();
-    let cloth = scene.add(Body::still(shapes::sheet(60, above(0.365))?).with(Meets::and_itself()));
+    let cloth = scene.add(
+        Body::deformable(shapes::sheet(60, above(0.365))?)
+            .with_filter(CollisionFilter::with_self_collision()),
+    );
     let obstacle = scene.add(Body::fixed(shapes::cube(0.7)?));
     let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene)?;
     for frame in 0..5 {

@@ -2,13 +2,15 @@
 
 mod shapes;
 
-use nearmiss::scene::{Meets, Motion, Scene};
+use nearmiss::scene::{CollisionFilter, Motion, Scene};
 use nearmiss::{Body, Continuous, Detector, Device, Error, device::Backend};
 
 fn main() -> Result<(), Error> {
     let fallen = |z: f32| move |x: f32, y: f32| [2.0 * x - 1.0, 2.0 * y - 1.0, z - 0.2 * x * y];
     let mut scene = Scene::new();
-    let cloth = scene.add(Body::still(shapes::sheet(60, fallen(1.0))?).with(Meets::and_itself()));
+    let cloth = scene.add(
+        Body::deformable(shapes::sheet(60, fallen(1.0))?).with_filter(CollisionFilter::with_self_collision()),
+    );
     let obstacle = scene.add(Body::fixed(shapes::cube(0.7)?));
     let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene)?;
     for step in 0..8 {

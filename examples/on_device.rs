@@ -3,7 +3,7 @@
 mod shapes;
 
 use nearmiss::mesh::Positions;
-use nearmiss::scene::{DeviceMotion, DeviceRows, Meets, Number, Scene};
+use nearmiss::scene::{CollisionFilter, DeviceMotion, DeviceRows, Number, Scene};
 use nearmiss::{Body, Detector, Device, Error, Near, device::Backend};
 
 fn main() -> Result<(), Error> {
@@ -13,9 +13,12 @@ fn main() -> Result<(), Error> {
         Positions::F64(_) => Vec::new(),
     };
     let mut scene = Scene::new();
-    let cloth = scene.add(Body::still(shapes::sheet(60, above(0.365))?).with(Meets::and_itself()));
+    let cloth = scene.add(
+        Body::deformable(shapes::sheet(60, above(0.365))?)
+            .with_filter(CollisionFilter::with_self_collision()),
+    );
     scene.add(Body::fixed(shapes::cube(0.7)?));
-    // With your own context and stream: `unsafe { Device::borrow(context, stream) }`.
+    // With your own context and stream: `unsafe { Device::from_stream(context, stream) }`.
     let device = Device::open(Backend::Auto, None)?;
     let mut vertices = device.upload(&at(0))?;
     // SAFETY: the buffer outlives the detector, and is written between frames alone.

@@ -2,13 +2,15 @@
 
 mod shapes;
 
-use nearmiss::scene::{Meets, Motion, Scene};
+use nearmiss::scene::{CollisionFilter, Motion, Scene};
 use nearmiss::{Body, Detector, Device, Earliest, Error, device::Backend};
 
 fn main() -> Result<(), Error> {
     let at = |z: f32| move |x: f32, y: f32| [x - 0.5, y - 0.5, z + 0.1 * x * x];
     let mut scene = Scene::new();
-    let cloth = scene.add(Body::still(shapes::sheet(60, at(1.0))?).with(Meets::and_itself()));
+    let cloth = scene.add(
+        Body::deformable(shapes::sheet(60, at(1.0))?).with_filter(CollisionFilter::with_self_collision()),
+    );
     scene.add(Body::fixed(shapes::cube(0.5)?));
     let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene)?;
     let mut z = 1.0;

@@ -23,7 +23,7 @@ pub enum Error {
     /// option, a name, a kind, the number of a body, the shape or type of an array, a pointer.
     /// Choose again.
     #[error("{what}; {advice}")]
-    Choice {
+    InvalidArgument {
         /// What was asked for.
         what: String,
         /// What there is instead.
@@ -90,7 +90,7 @@ pub enum Error {
     #[error(
         "the kernels carry the stamp {found}, this program was built from {wanted}; run `cargo build` again"
     )]
-    Stamp {
+    KernelMismatch {
         /// What the PTX exports.
         found: String,
         /// What the program expects.
@@ -112,7 +112,7 @@ impl From<nearmiss_emulator::Error> for Error {
             E::Threads { threads, text } => {
                 Error::Device { what: format!("starting {threads} threads"), text, advice: "ask for fewer" }
             }
-            E::Forked => Error::Choice {
+            E::Forked => Error::InvalidArgument {
                 what: error.to_string(),
                 advice:
                     "they are not here: start processes by spawn, or fork before the first device or detector"
@@ -132,14 +132,14 @@ impl Error {
     /// output, 130 interrupted.
     pub fn exit_code(&self) -> u8 {
         match self {
-            Error::Choice { .. } => 2,
+            Error::InvalidArgument { .. } => 2,
             Error::Input { .. } => 3,
             Error::Output { .. }
             | Error::Device { .. }
             | Error::Regression { .. }
             | Error::OutOfMemory { .. }
             | Error::AnswerTooLarge { .. }
-            | Error::Stamp { .. }
+            | Error::KernelMismatch { .. }
             | Error::Bug { .. } => 4,
             Error::Interrupted => 130,
         }

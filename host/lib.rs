@@ -12,7 +12,7 @@
 //! let triangle = |z: f32| Positions::F32(vec![[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]]);
 //! let mesh = |name, z| Mesh::new(name, triangle(z), vec![[0, 1, 2]]);
 //! let mut scene = Scene::new();
-//! let cloth = scene.add(Body::still(mesh("cloth", 0.5)?));
+//! let cloth = scene.add(Body::deformable(mesh("cloth", 0.5)?));
 //! let table = scene.add(Body::fixed(mesh("table", 0.0)?));
 //! let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene)?;
 //! for step in 0..4 {
@@ -41,7 +41,7 @@
 //!
 //! [`MultiDetector`] divides a scene among several devices. [`Detector::geometry`] computes vertices, weights, points and normals of contacts.
 //!
-//! A simulator whose data lie on the GPU lends its stream ([`Device::borrow`]) and its arrays
+//! A simulator whose data lie on the GPU lends its stream ([`Device::from_stream`]) and its arrays
 //! ([`Motion::OnDevice`](scene::Motion::OnDevice)), and submits frames that neither allocate nor wait ([`Detector::submit`]).
 //!
 //! The folder `examples` of the repository has a program of some twenty lines for each of: a cloth, a cloth with an obstacle, a rigid

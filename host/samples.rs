@@ -32,7 +32,7 @@ pub fn soup(n: usize, seed: u64, moving: bool) -> Body {
         let faces = (0..n as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         Mesh::new("soup", Positions::F32(positions), faces).expect("a mesh")
     };
-    if moving { Body::moving(frame(t0), frame(t1)).expect("a body") } else { Body::still(frame(t0)) }
+    if moving { Body::moving(frame(t0), frame(t1)).expect("a body") } else { Body::deformable(frame(t0)) }
 }
 
 /// A sheet with waves of `n` by `n` squares, of two triangles each, that sinks.

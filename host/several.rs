@@ -31,7 +31,7 @@ const UNEVEN: f64 = 1.05;
 /// let corners = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.2, 0.2, -1.0], [0.3, 0.2, 1.0], [0.2, 0.3, 1.0]];
 /// let mesh = Mesh::new("two triangles", Positions::F32(corners), vec![[0, 1, 2], [3, 4, 5]])?;
 /// let devices = vec![Device::open(Backend::Cpu, Some(1))?, Device::open(Backend::Cpu, Some(1))?];
-/// let mut detector = MultiDetector::new(devices, Body::still(mesh))?;
+/// let mut detector = MultiDetector::new(devices, Body::deformable(mesh))?;
 /// assert_eq!(detector.query(&Discrete::default())?[0].triangles, [0, 1]);
 /// # Ok::<(), nearmiss::Error>(())
 /// ```
@@ -79,7 +79,7 @@ impl MultiDetector {
     /// [in turn](MultiDetector::in_turn). Cost: on each that of a [`Detector`]; lists are as long as the shares.
     ///
     /// # Errors
-    /// [`Error::Choice`] for no devices; those of a [`Detector`].
+    /// [`Error::InvalidArgument`] for no devices; those of a [`Detector`].
     pub fn new(devices: Vec<Device>, scene: impl Into<Scene>) -> Result<MultiDetector, Error> {
         let scene = scene.into();
         if devices.is_empty() {
@@ -106,7 +106,7 @@ impl MultiDetector {
         let search = query.search();
         let by_tiles = several && search.broad.is_none() && !search.is_of_trees();
         let query = if by_tiles { query.with_broad(Broad::Tiles) } else { query };
-        Ok(query.with_rebuild(Rebuild::Never))
+        Ok(query.with_rebuild(Rebuild::Manual))
     }
 
     /// Asks the devices one after another: where they are one machine in truth, and each is to be timed as if it were alone.
@@ -117,14 +117,14 @@ impl MultiDetector {
     /// As [`Detector::update`].
     ///
     /// # Errors
-    /// As there; [`Error::Choice`] for positions in the memory of one device.
+    /// As there; [`Error::InvalidArgument`] for positions in the memory of one device.
     pub fn update(&mut self, motions: &[(BodyId, Motion)]) -> Result<(), Error> {
         self.updated(motions, None)
     }
 
     fn updated(&mut self, motions: &[(BodyId, Motion)], query: Option<&Query>) -> Result<(), Error> {
         if let Some((id, _)) = motions.iter().find(|(_, input)| matches!(input, Motion::OnDevice(_))) {
-            return Err(Error::Choice {
+            return Err(Error::InvalidArgument {
                 what: format!("positions of body {id} in the memory of one device, for several"),
                 advice: "give positions of the host".into(),
             });
@@ -141,7 +141,7 @@ impl MultiDetector {
     /// As [`Detector::query`].
     ///
     /// # Errors
-    /// As there; [`Error::Choice`] for a distance and for candidates by trees, which cannot be divided.
+    /// As there; [`Error::InvalidArgument`] for a distance and for candidates by trees, which cannot be divided.
     pub fn query<Q: TypedQuery>(&mut self, query: &Q) -> Result<Answer<Q::Rows>, Error> {
         let answered = self.answer((*query).into(), Instant::now());
         self.ended(answered).map(Contacts::typed::<Q>)
@@ -166,7 +166,7 @@ impl MultiDetector {
     /// As [`Detector::begin`].
     ///
     /// # Errors
-    /// As there; [`Error::Choice`] for a query that cannot be divided.
+    /// As there; [`Error::InvalidArgument`] for a query that cannot be divided.
     pub fn begin(&mut self, query: &Query) -> Result<(), Error> {
         let query = self.divisible(*query)?;
         let at = self.division(&query);
@@ -359,7 +359,7 @@ impl MultiDetector {
 
 /// An argument that several devices do not take.
 fn refused(what: &str, advice: &str) -> Error {
-    Error::Choice { what: what.into(), advice: advice.into() }
+    Error::InvalidArgument { what: what.into(), advice: advice.into() }
 }
 
 #[cfg(test)]

@@ -40,11 +40,11 @@ fn forked(seconds: u32, is_so: impl FnOnce() -> bool) -> i32 {
 fn scene() -> Scene {
     let corners = [[0.0f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].repeat(2);
     let mesh = Mesh::new("two triangles", Positions::F32(corners), vec![[0, 1, 2], [3, 4, 5]]);
-    Body::still(mesh.expect("a mesh")).into()
+    Body::deformable(mesh.expect("a mesh")).into()
 }
 
 fn is_told<T>(asked: Result<T, Error>) -> bool {
-    let Err(Error::Choice { what, advice }) = asked else { return false };
+    let Err(Error::InvalidArgument { what, advice }) = asked else { return false };
     what.contains("forked") && advice.contains("spawn")
 }
 

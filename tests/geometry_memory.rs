@@ -44,7 +44,8 @@ fn geometry_without_memory_is_refused() {
     let corners = [[0.0f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].repeat(n);
     let faces = (0..n as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let mesh = Mesh::new("equal triangles", Positions::F32(corners), faces).expect("a mesh");
-    let mut detector = OneQuery::new(engine(), Body::still(mesh), Near::within(0.1)).expect("a detector");
+    let mut detector =
+        OneQuery::new(engine(), Body::deformable(mesh), Near::within(0.1)).expect("a detector");
     let found = detector.detect().expect("an answer");
     assert_eq!(found.len(), 15 * n * (n - 1) / 2);
     assert_eq!(detector.geometry(&found).expect("room").len(), found.len());

@@ -56,7 +56,7 @@ template <typename At> Sheet sheet(int side, At at)
     return made;
 }
 
-uint32_t add(NearmissScene *scene, const char *name, const Sheet &mesh, NearmissBodyKind kind, bool self_contact)
+uint32_t add(NearmissScene *scene, const char *name, const Sheet &mesh, NearmissBodyKind kind, bool self_collision)
 {
     NearmissError error;
     NearmissBody body = nearmiss_body();
@@ -65,7 +65,7 @@ uint32_t add(NearmissScene *scene, const char *name, const Sheet &mesh, Nearmiss
     body.triangles = mesh.triangles[0].data();
     body.triangle_count = mesh.triangles.size();
     body.kind = kind;
-    body.self_contact = self_contact ? NEARMISS_SELF_CONTACT_ON : NEARMISS_SELF_CONTACT_OFF;
+    body.self_collision = self_collision ? NEARMISS_SELF_COLLISION_ON : NEARMISS_SELF_COLLISION_OFF;
     uint32_t id = 0;
     check(nearmiss_scene_add(scene, &body, &id, &error), error);
     return id;
@@ -156,7 +156,7 @@ int run()
     const Sheet cloth = sheet(SIDE, [](double x, double y) { return Point{x, y, 0.1 + 0.2 * x * y}; });
     const Sheet ground = sheet(4, [](double x, double y) { return Point{4 * x - 1.5, 4 * y - 1.5, 0}; });
     const uint32_t id = add(scene.get(), "cloth", cloth, NEARMISS_DEFORMABLE, true);
-    add(scene.get(), "ground", ground, NEARMISS_STATIC, false);
+    add(scene.get(), "ground", ground, NEARMISS_FIXED, false);
     NearmissQuery query = nearmiss_query(NEARMISS_CONTINUOUS);
     query.tolerance = 1e-6;
     NearmissDetector *made = nullptr;

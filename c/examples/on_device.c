@@ -129,7 +129,7 @@ static NearmissDetector *detector_on(const NearmissDevice *device)
     body.triangle_count = TRIANGLES;
     body.name = "ground";
     body.positions = nearmiss_floats(ground, VERTICES);
-    body.kind = NEARMISS_STATIC;
+    body.kind = NEARMISS_FIXED;
     check(nearmiss_scene_add(scene, &body, NULL, &error));
     body.name = "sheet";
     body.positions = nearmiss_floats(at[0], VERTICES);
@@ -204,7 +204,7 @@ int main(void)
         cuda(cu.up(arrays[i], i < 2 ? at[i] : velocity, BYTES), "a copy");
     }
 
-    check(nearmiss_device_borrow(context, stream, &gpu, &error));
+    check(nearmiss_device_from_stream(context, stream, &gpu, &error));
     check(nearmiss_device_open(NEARMISS_CPU, 0, &cpu, &error));
     detector = detector_on(gpu);
     judge = detector_on(cpu);

@@ -9,7 +9,7 @@
 //   What a call gives as a pointer into a handle stays there until that handle is freed, unless said otherwise.
 // - A call that can fail returns a `NearmissCode`, 0 for success, and tells more in a `NearmissError` of the caller where that
 //   is not NULL. Where it fails a handle that it would have made is NULL, and other results are not written.
-// - Results go where a pointer says. NULL is refused with `NEARMISS_CHOICE`, but where it is said to mean something. Other pointers
+// - Results go where a pointer says. NULL is refused with `NEARMISS_INVALID_ARGUMENT`, but where it is said to mean something. Other pointers
 //   must be of the type that the declaration says, as C asks; results of one call may not overlap.
 // - A handle is used by one thread at a time; two handles, by two. Detectors of one device are one handle in this, and making one is
 //   a use of them; a device's name, kind, limit and end are not: `nearmiss_device_name`, `_is_gpu`, `_limit` and `_free` may be
@@ -17,7 +17,7 @@
 //   `nearmiss_interrupt` and `nearmiss_interrupt_clear` may be called from any thread and from a signal handler, at any time.
 // - All that handles share is threads of the host, one a processor, which prepare bodies and put answers in order: the first
 //   CPU or detector of the process starts them, and they stay. A process that was forked since has none of them: there a
-//   call that would need them fails with `NEARMISS_CHOICE`. Start processes by `posix_spawn` or `exec`, or fork before.
+//   call that would need them fails with `NEARMISS_INVALID_ARGUMENT`. Start processes by `posix_spawn` or `exec`, or fork before.
 // - Positions are floats or doubles in any unit, of a size up to 2^480, and finite where a triangle uses them; lengths are in that
 //   unit, times are parts of a step, from 0 to 1. All indices count from 0. Structs of options come from a function that fills in
 //   what is usual, `nearmiss_body()` and `nearmiss_query()`: then set what differs.
@@ -48,7 +48,7 @@ enum NearmissCode
     NEARMISS_OK = 0,
     // An argument that does not exist or does not go with the others, whatever the data: an
     // option, a name, a kind, the number of a body, a pointer. Choose again.
-    NEARMISS_CHOICE = 1,
+    NEARMISS_INVALID_ARGUMENT = 1,
     // Data that cannot be used: numbers of a mesh, of positions or of a pose. Correct the data.
     NEARMISS_INPUT = 2,
     // A result could not be written.
@@ -104,10 +104,10 @@ enum NearmissStatus
  {
     // A solver that can be wrong says so.
     NEARMISS_CONTACT = 0,
-    // They meet, proven, first in `[toi, toi_hi]`.
+    // They meet, proven, first in `[toi, toi_upper]`.
     NEARMISS_CERTIFIED = 1,
     // They come nearer than the tolerance, or the budget ended; if they meet, not before `toi`. Proven as well.
-    NEARMISS_UNRESOLVED = 2,
+    NEARMISS_UNDECIDED = 2,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -210,7 +210,7 @@ enum NearmissBodyKind
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     // It stands where it was made: built once, costs nothing a frame, and is never tested against what is static too.
-    NEARMISS_STATIC = 0,
+    NEARMISS_FIXED = 0,
     // It moves as one, by poses.
     NEARMISS_RIGID = 1,
     // Each vertex moves by itself.
@@ -226,23 +226,23 @@ typedef uint32_t NearmissBodyKind;
 
 // Whether a body is tested against itself. Deformable bodies are by default, rigid bodies if it is
 // on, static bodies never.
-enum NearmissSelfContact
+enum NearmissSelfCollision
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
 #endif // defined(__cplusplus) || __STDC_VERSION__ >= 202311L
  {
     // The default of its kind, also of a struct of zeros.
-    NEARMISS_SELF_CONTACT_DEFAULT = 0,
+    NEARMISS_SELF_COLLISION_DEFAULT = 0,
     // It is; refused for static bodies.
-    NEARMISS_SELF_CONTACT_ON = 1,
+    NEARMISS_SELF_COLLISION_ON = 1,
     // It is not.
-    NEARMISS_SELF_CONTACT_OFF = 2,
+    NEARMISS_SELF_COLLISION_OFF = 2,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
-typedef enum NearmissSelfContact NearmissSelfContact;
+typedef enum NearmissSelfCollision NearmissSelfCollision;
 #else
-typedef uint32_t NearmissSelfContact;
+typedef uint32_t NearmissSelfCollision;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
@@ -344,8 +344,8 @@ typedef struct {
     uint32_t b;
     // First time of contact, in [0, 1]; by a certified solver not after it.
     double toi;
-    // The time by which they have met, in [toi, 1]; of an unresolved pair the end of the step.
-    double toi_hi;
+    // The time by which they have met, in [toi, 1]; of an undecided pair the end of the step.
+    double toi_upper;
 } NearmissContact;
 
 // Two features that are within a distance of each other, and where they are nearest.
@@ -419,7 +419,7 @@ typedef struct {
     uint64_t candidates;
     // How many are neither confirmed nor refuted; of an earliest query 1 if its time is that of
     // such a pair, else 0.
-    uint64_t unresolved;
+    uint64_t undecided;
     // How often a list was too short and a part of the frame ran again. The answer is whole.
     uint64_t reruns;
     // In how many slices the frame was asked, for want of memory; 1 is the whole at once.
@@ -435,7 +435,7 @@ typedef struct {
     // free start.
     bool is_start_checked;
     // How many sentences `nearmiss_answer_degraded` has.
-    uint64_t degraded;
+    uint64_t caveats;
     // Times.
     NearmissStages ms;
 } NearmissSummary;
@@ -483,9 +483,9 @@ typedef struct {
     size_t triangle_count;
     // A `NearmissBodyKind`.
     uint32_t kind;
-    // A `NearmissSelfContact`. Deformable bodies are tested against themselves by default, rigid
+    // A `NearmissSelfCollision`. Deformable bodies are tested against themselves by default, rigid
     // bodies if it is on, static bodies never.
-    uint32_t self_contact;
+    uint32_t self_collision;
     // Bodies of different environments never meet.
     uint32_t environment;
     // Whether it is in every environment, and `environment` is 0: 0 or 1.
@@ -504,7 +504,7 @@ typedef struct {
     uint32_t kind;
     // Discrete, exact: whether triangles that share a vertex are told too, where they meet beyond it: 0 or 1.
     uint32_t adjacent;
-    // Continuous, earliest; certified: the most boxes that are looked at for a pair before it is left unresolved; 0 for the default.
+    // Continuous, earliest; certified: the most boxes that are looked at for a pair before it is left undecided; 0 for the default.
     uint32_t budget;
     // Continuous, earliest: whether the start of the step is taken to be free of crossing
     // triangles, and not checked: 0 or 1.
@@ -582,7 +582,7 @@ typedef struct {
     // Where the `NearmissFrameStatus` lies.
     uint64_t status;
     // Where the earliest time lies: a double, all bits set where nothing meets. The next 8 bytes
-    // are twice those bits, plus 1 if the time is that of an unresolved pair and of no contact.
+    // are twice those bits, plus 1 if the time is that of an undecided pair and of no contact.
     uint64_t earliest;
     // The two vertices of every edge, 8 bytes each; none of a discrete query.
     NearmissDeviceList edges;
@@ -610,8 +610,8 @@ typedef struct {
     // No contact before.
     double toi;
     // The first contact is not after; the end of the step, where there need be none.
-    double toi_hi;
-    // 1 contact, 2 unresolved; and 4 where the budget ended.
+    double toi_upper;
+    // 1 contact, 2 undecided; and 4 where the budget ended.
     uint32_t state;
     // Boxes looked at.
     uint32_t boxes;
@@ -755,7 +755,7 @@ NearmissBody nearmiss_body(void);
 // Takes a copy of a scene, to which nothing can be added from then on, to a device and builds its
 // trees. Cost: linear in triangles; memory grows with what is found.
 //
-// A scene without bodies answers nothing. Fails with `NEARMISS_CHOICE` for choices that do not go
+// A scene without bodies answers nothing. Fails with `NEARMISS_INVALID_ARGUMENT` for choices that do not go
 // together; with `NEARMISS_OUT_OF_MEMORY` and `NEARMISS_DEVICE`.
 //
 // # Safety
@@ -813,7 +813,7 @@ void nearmiss_detector_free(NearmissDetector *detector);
 // some 0.1 s for its context; its kernels are compiled by the driver when first used.
 //
 // Fails with `NEARMISS_DEVICE` when there is no such machine or its driver refuses, and with
-// `NEARMISS_CHOICE` for threads of `NEARMISS_CUDA`. With `NEARMISS_AUTO` the threads are those of
+// `NEARMISS_INVALID_ARGUMENT` for threads of `NEARMISS_CUDA`. With `NEARMISS_AUTO` the threads are those of
 // the CPU that is taken if there is no GPU.
 NearmissCode nearmiss_device_open(uint32_t backend,
                                   size_t threads,
@@ -830,7 +830,7 @@ NearmissCode nearmiss_device_gpu(uint32_t ordinal,
 //
 // # Safety
 // The stream is of that context, and both outlive the device and all detectors made with it.
-NearmissCode nearmiss_device_borrow(void *context,
+NearmissCode nearmiss_device_from_stream(void *context,
                                     void *stream,
                                     NearmissDevice **device,
                                     NearmissError *error);
@@ -860,7 +860,7 @@ uint32_t nearmiss_exit_code(uint32_t code);
 // Moves bodies to where the inputs say, and answers. A body that is not named rests where it was, or where its step ended. Cost: one
 // submission whatever the number of bodies, and a copy of what the host has.
 //
-// Fails with `NEARMISS_CHOICE` for a body that is not there, or named twice, or given what its kind does not take; with `NEARMISS_INPUT` for
+// Fails with `NEARMISS_INVALID_ARGUMENT` for a body that is not there, or named twice, or given what its kind does not take; with `NEARMISS_INPUT` for
 // positions that no mesh may have: then nothing has moved. There is no partial answer.
 //
 // # Safety
@@ -923,7 +923,7 @@ void nearmiss_interrupt_clear(const NearmissInterrupt *interrupt);
 // Frees a handle. Devices and detectors that it ends stay.
 void nearmiss_interrupt_free(NearmissInterrupt *interrupt);
 
-// Where the answer of what is submitted will lie, for kernels of the caller behind it. Fails with `NEARMISS_CHOICE` where the detector is
+// Where the answer of what is submitted will lie, for kernels of the caller behind it. Fails with `NEARMISS_INVALID_ARGUMENT` where the detector is
 // not prepared, or no two of its bodies can meet.
 NearmissCode nearmiss_detector_on_device(NearmissDetector *detector,
                                          NearmissDeviceAnswer *answer,
@@ -951,7 +951,7 @@ NearmissCode nearmiss_scene_new(NearmissScene **scene, NearmissError *error);
 // Adds a body and tells its number: they are counted from 0. `id` may be NULL. Cost: a copy of the mesh, and a pass over it.
 //
 // Fails with `NEARMISS_INPUT` for positions that are not finite or too large, and for indices out of range, naming the first; with
-// `NEARMISS_CHOICE` for a body that cannot be, and for a scene of which a detector has a copy.
+// `NEARMISS_INVALID_ARGUMENT` for a body that cannot be, and for a scene of which a detector has a copy.
 // Then nothing is added.
 //
 // # Safety

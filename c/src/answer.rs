@@ -15,7 +15,7 @@ pub struct NearmissAnswer {
     found: Contacts,
     shown: Shown,
     geometry: Vec<NearmissGeometry>,
-    degraded: Vec<CString>,
+    caveats: Vec<CString>,
     notes: Vec<CString>,
     peak: u64,
 }
@@ -41,7 +41,7 @@ pub struct NearmissSummary {
     pub candidates: u64,
     /// How many are neither confirmed nor refuted; of an earliest query 1 if its time is that of
     /// such a pair, else 0.
-    pub unresolved: u64,
+    pub undecided: u64,
     /// How often a list was too short and a part of the frame ran again. The answer is whole.
     pub reruns: u64,
     /// In how many slices the frame was asked, for want of memory; 1 is the whole at once.
@@ -56,8 +56,8 @@ pub struct NearmissSummary {
     /// Whether the start was checked: of a continuous and an earliest query, unless it assumes a
     /// free start.
     pub is_start_checked: bool,
-    /// How many sentences `nearmiss_answer_degraded` has.
-    pub degraded: u64,
+    /// How many sentences `nearmiss_answer_caveats` has.
+    pub caveats: u64,
     /// Times.
     pub ms: NearmissStages,
 }
@@ -73,8 +73,8 @@ impl NearmissAnswer {
             Rows::Earliest(_) => Shown::Earliest,
             Rows::Distance(_) => Shown::Nearest,
         };
-        let degraded = found.degraded().iter().map(sentence).collect();
-        Ok(NearmissAnswer { found, shown, geometry: Vec::new(), degraded, notes: Vec::new(), peak })
+        let caveats = found.caveats().iter().map(sentence).collect();
+        Ok(NearmissAnswer { found, shown, geometry: Vec::new(), caveats, notes: Vec::new(), peak })
     }
 
     /// It does not have what was asked for.
@@ -228,14 +228,14 @@ pub extern "C" fn nearmiss_answer_summary(
             contacts: found.len() as u64,
             triangle_pairs: found.stats.triangle_pairs,
             candidates: found.stats.candidates,
-            unresolved: found.unresolved,
+            undecided: found.undecided,
             reruns: found.stats.reruns,
             slices: u64::from(found.stats.slices),
             bytes: answer.peak,
             hash: found.hash(),
             starts_crossing: found.starts_crossing.unwrap_or(0),
             is_start_checked: found.starts_crossing.is_some(),
-            degraded: answer.degraded.len() as u64,
+            caveats: answer.caveats.len() as u64,
             ms: found.stats.stages.into(),
         });
         Ok(())
@@ -245,14 +245,14 @@ pub extern "C" fn nearmiss_answer_summary(
 /// In what the frame came to less than all that was asked: a sentence each, by its index. Nothing is ever missed for any of them. The text
 /// lives as long as the answer.
 #[unsafe(no_mangle)]
-pub extern "C" fn nearmiss_answer_degraded(
+pub extern "C" fn nearmiss_answer_caveats(
     answer: Option<&NearmissAnswer>,
     index: usize,
     sentence: Option<&mut MaybeUninit<*const c_char>>,
     error: Option<&mut MaybeUninit<NearmissError>>,
 ) -> NearmissCode {
     call(error, || {
-        let all = &given(answer, "the answer")?.degraded;
+        let all = &given(answer, "the answer")?.caveats;
         let one = all.get(index).ok_or_else(|| {
             refused(format!("sentence {index} of {}", all.len()), "count them from 0, as the summary tells")
         })?;

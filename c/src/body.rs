@@ -3,7 +3,7 @@
 use crate::error::refused;
 use crate::rows::{NearmissNumber, NearmissRows, items, text};
 use nearmiss::mesh::Problem;
-use nearmiss::scene::Meets;
+use nearmiss::scene::CollisionFilter;
 use nearmiss::{Body, Error, Mesh};
 use std::ffi::c_char;
 use std::ptr::null;
@@ -14,7 +14,7 @@ use std::ptr::null;
 #[repr(u32)]
 pub enum NearmissBodyKind {
     /// It stands where it was made: built once, costs nothing a frame, and is never tested against what is static too.
-    NEARMISS_STATIC = 0,
+    NEARMISS_FIXED = 0,
     /// It moves as one, by poses.
     NEARMISS_RIGID = 1,
     /// Each vertex moves by itself.
@@ -26,13 +26,13 @@ pub enum NearmissBodyKind {
 #[allow(non_camel_case_types, reason = "as C sees them")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
-pub enum NearmissSelfContact {
+pub enum NearmissSelfCollision {
     /// The default of its kind, also of a struct of zeros.
-    NEARMISS_SELF_CONTACT_DEFAULT = 0,
+    NEARMISS_SELF_COLLISION_DEFAULT = 0,
     /// It is; refused for static bodies.
-    NEARMISS_SELF_CONTACT_ON = 1,
+    NEARMISS_SELF_COLLISION_ON = 1,
     /// It is not.
-    NEARMISS_SELF_CONTACT_OFF = 2,
+    NEARMISS_SELF_COLLISION_OFF = 2,
 }
 
 /// A body to be added to a scene: its mesh, what it does, and which bodies it may meet. Begin with `nearmiss_body()`. All that it points to
@@ -50,9 +50,9 @@ pub struct NearmissBody {
     pub triangle_count: usize,
     /// A `NearmissBodyKind`.
     pub kind: u32,
-    /// A `NearmissSelfContact`. Deformable bodies are tested against themselves by default, rigid
+    /// A `NearmissSelfCollision`. Deformable bodies are tested against themselves by default, rigid
     /// bodies if it is on, static bodies never.
-    pub self_contact: u32,
+    pub self_collision: u32,
     /// Bodies of different environments never meet.
     pub environment: u32,
     /// Whether it is in every environment, and `environment` is 0: 0 or 1.
@@ -67,7 +67,7 @@ pub struct NearmissBody {
 /// A deformable body without a mesh, in environment 0, that meets all others and itself.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_body() -> NearmissBody {
-    let Meets { group, mask, .. } = Meets::default();
+    let CollisionFilter { group, mask, .. } = CollisionFilter::default();
     NearmissBody {
         name: null(),
         positions: NearmissRows {
@@ -79,7 +79,7 @@ pub extern "C" fn nearmiss_body() -> NearmissBody {
         triangles: null(),
         triangle_count: 0,
         kind: NearmissBodyKind::NEARMISS_DEFORMABLE as u32,
-        self_contact: NearmissSelfContact::NEARMISS_SELF_CONTACT_DEFAULT as u32,
+        self_collision: NearmissSelfCollision::NEARMISS_SELF_COLLISION_DEFAULT as u32,
         environment: 0,
         everywhere: 0,
         group,
@@ -112,9 +112,9 @@ impl NearmissBody {
         let make = match self.kind {
             0 => Body::fixed,
             1 => Body::rigid,
-            2 => Body::still,
+            2 => Body::deformable,
             other => {
-                let advice = "choose NEARMISS_STATIC, NEARMISS_RIGID or NEARMISS_DEFORMABLE";
+                let advice = "choose NEARMISS_FIXED, NEARMISS_RIGID or NEARMISS_DEFORMABLE";
                 return Err(refused(format!("a body of kind {other}"), advice));
             }
         };
@@ -131,25 +131,25 @@ impl NearmissBody {
             let what = format!("environment {} of {name}, which is in every one", self.environment);
             return Err(refused(what, "set environment or everywhere, not both"));
         }
-        let meets = Meets {
+        let meets = CollisionFilter {
             environment: (!everywhere).then_some(self.environment),
             group: self.group,
             mask: self.mask,
-            self_contact: match self.self_contact {
+            self_collision: match self.self_collision {
                 0 => None,
                 1 => Some(true),
                 2 => Some(false),
                 other => {
-                    let advice = "choose NEARMISS_SELF_CONTACT_DEFAULT, NEARMISS_SELF_CONTACT_ON or \
-                                  NEARMISS_SELF_CONTACT_OFF";
-                    return Err(refused(format!("{other} for self_contact"), advice));
+                    let advice = "choose NEARMISS_SELF_COLLISION_DEFAULT, NEARMISS_SELF_COLLISION_ON or \
+                                  NEARMISS_SELF_COLLISION_OFF";
+                    return Err(refused(format!("{other} for self_collision"), advice));
                 }
             },
         };
         nearmiss::memory::require("triangles", size_of_val(corners) as u64)?;
         let faces = corners.as_chunks::<3>().0.to_vec();
-        let body = make(Mesh::new(name, positions, faces)?).with(meets);
-        body.check_meets()?;
+        let body = make(Mesh::new(name, positions, faces)?).with_filter(meets);
+        body.check_filter()?;
         Ok(body)
     }
 }

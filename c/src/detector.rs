@@ -51,7 +51,7 @@ impl NearmissDetector {
 /// Takes a copy of a scene, to which nothing can be added from then on, to a device and builds its
 /// trees. Cost: linear in triangles; memory grows with what is found.
 ///
-/// A scene without bodies answers nothing. Fails with `NEARMISS_CHOICE` for choices that do not go
+/// A scene without bodies answers nothing. Fails with `NEARMISS_INVALID_ARGUMENT` for choices that do not go
 /// together; with `NEARMISS_OUT_OF_MEMORY` and `NEARMISS_DEVICE`.
 ///
 /// # Safety
@@ -193,7 +193,7 @@ mod tests {
     #[test]
     fn a_detector_that_met_a_fault_is_not_worked_with_again() {
         let corners = Positions::F32(vec![[0.0; 3]; 3]);
-        let body = Body::still(Mesh::new("a point", corners, vec![[0, 1, 2]]).expect("a mesh"));
+        let body = Body::deformable(Mesh::new("a point", corners, vec![[0, 1, 2]]).expect("a mesh"));
         let device = Device::open(Backend::Cpu, Some(1)).expect("a thread");
         let detector = Detector::new(device.clone(), body).expect("a detector");
         let mut own = NearmissDetector {

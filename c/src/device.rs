@@ -38,7 +38,7 @@ impl From<Device> for NearmissDevice {
 /// some 0.1 s for its context; its kernels are compiled by the driver when first used.
 ///
 /// Fails with `NEARMISS_DEVICE` when there is no such machine or its driver refuses, and with
-/// `NEARMISS_CHOICE` for threads of `NEARMISS_CUDA`. With `NEARMISS_AUTO` the threads are those of
+/// `NEARMISS_INVALID_ARGUMENT` for threads of `NEARMISS_CUDA`. With `NEARMISS_AUTO` the threads are those of
 /// the CPU that is taken if there is no GPU.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_device_open(
@@ -82,7 +82,7 @@ pub extern "C" fn nearmiss_device_gpu(
 /// # Safety
 /// The stream is of that context, and both outlive the device and all detectors made with it.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn nearmiss_device_borrow(
+pub unsafe extern "C" fn nearmiss_device_from_stream(
     context: *mut c_void,
     stream: *mut c_void,
     device: Option<&mut MaybeUninit<*mut NearmissDevice>>,
@@ -90,7 +90,7 @@ pub unsafe extern "C" fn nearmiss_device_borrow(
 ) -> NearmissCode {
     make(device, "the device", error, || {
         // SAFETY: the caller's promise.
-        unsafe { Device::borrow(context, stream) }.map(NearmissDevice::from)
+        unsafe { Device::from_stream(context, stream) }.map(NearmissDevice::from)
     })
 }
 
@@ -130,7 +130,7 @@ pub extern "C" fn nearmiss_device_limit(
     error: Option<&mut MaybeUninit<NearmissError>>,
 ) -> NearmissCode {
     call(error, || {
-        let _ = given(device, "the device")?.device.clone().limited(bytes);
+        let _ = given(device, "the device")?.device.clone().with_memory_limit(bytes);
         Ok(())
     })
 }

@@ -15,7 +15,7 @@ pub enum NearmissCode {
     NEARMISS_OK = 0,
     /// An argument that does not exist or does not go with the others, whatever the data: an
     /// option, a name, a kind, the number of a body, a pointer. Choose again.
-    NEARMISS_CHOICE = 1,
+    NEARMISS_INVALID_ARGUMENT = 1,
     /// Data that cannot be used: numbers of a mesh, of positions or of a pose. Correct the data.
     NEARMISS_INPUT = 2,
     /// A result could not be written.
@@ -75,13 +75,13 @@ pub extern "C" fn nearmiss_exit_code(code: u32) -> u32 {
 
 fn code(error: &Error) -> NearmissCode {
     match error {
-        Error::Choice { .. } => NearmissCode::NEARMISS_CHOICE,
+        Error::InvalidArgument { .. } => NearmissCode::NEARMISS_INVALID_ARGUMENT,
         Error::Input { .. } => NearmissCode::NEARMISS_INPUT,
         Error::Output { .. } => NearmissCode::NEARMISS_OUTPUT,
         Error::Device { .. } => NearmissCode::NEARMISS_DEVICE,
         Error::Regression { .. } => NearmissCode::NEARMISS_REGRESSION,
         Error::OutOfMemory { .. } | Error::AnswerTooLarge { .. } => NearmissCode::NEARMISS_OUT_OF_MEMORY,
-        Error::Stamp { .. } => NearmissCode::NEARMISS_STAMP,
+        Error::KernelMismatch { .. } => NearmissCode::NEARMISS_STAMP,
         Error::Interrupted => NearmissCode::NEARMISS_INTERRUPTED,
         // A new kind of error needs a code of its own: until then it is our fault.
         _ => NearmissCode::NEARMISS_BUG,
@@ -90,7 +90,7 @@ fn code(error: &Error) -> NearmissCode {
 
 /// Arguments that the library cannot be given.
 pub(crate) fn refused(what: impl Into<String>, advice: impl Into<String>) -> Error {
-    Error::Choice { what: what.into(), advice: advice.into() }
+    Error::InvalidArgument { what: what.into(), advice: advice.into() }
 }
 
 /// What a pointer of the caller points to.
@@ -184,7 +184,7 @@ mod tests {
             (5, Error::Regression { what: s(), text: s(), advice: "" }),
             (6, Error::OutOfMemory { what: s(), asked: 1, given: 0 }),
             (6, Error::AnswerTooLarge { pairs: 1, asked: 1, given: 0, advice: "" }),
-            (7, Error::Stamp { found: s(), wanted: s() }),
+            (7, Error::KernelMismatch { found: s(), wanted: s() }),
             (8, Error::Bug { what }),
             (9, Error::Interrupted),
         ];
@@ -199,8 +199,8 @@ mod tests {
         let mut handle = MaybeUninit::<*mut u8>::uninit();
         let code = make(Some(&mut handle), "a handle", None, || Err(refused("no", "none")));
         // SAFETY: written before the work.
-        assert!(code == NearmissCode::NEARMISS_CHOICE && unsafe { handle.assume_init() }.is_null());
-        assert_eq!(make::<u8>(None, "a handle", None, || Ok(1)), NearmissCode::NEARMISS_CHOICE);
+        assert!(code == NearmissCode::NEARMISS_INVALID_ARGUMENT && unsafe { handle.assume_init() }.is_null());
+        assert_eq!(make::<u8>(None, "a handle", None, || Ok(1)), NearmissCode::NEARMISS_INVALID_ARGUMENT);
         free::<u8>(None);
     }
 }

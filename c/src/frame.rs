@@ -63,7 +63,7 @@ fn borrowed(held: &[(BodyId, Held)]) -> Vec<(BodyId, Motion<'_>)> {
 /// Moves bodies to where the inputs say, and answers. A body that is not named rests where it was, or where its step ended. Cost: one
 /// submission whatever the number of bodies, and a copy of what the host has.
 ///
-/// Fails with `NEARMISS_CHOICE` for a body that is not there, or named twice, or given what its kind does not take; with `NEARMISS_INPUT` for
+/// Fails with `NEARMISS_INVALID_ARGUMENT` for a body that is not there, or named twice, or given what its kind does not take; with `NEARMISS_INPUT` for
 /// positions that no mesh may have: then nothing has moved. There is no partial answer.
 ///
 /// # Safety

@@ -49,7 +49,7 @@ pub struct NearmissDeviceAnswer {
     /// Where the `NearmissFrameStatus` lies.
     pub status: u64,
     /// Where the earliest time lies: a double, all bits set where nothing meets. The next 8 bytes
-    /// are twice those bits, plus 1 if the time is that of an unresolved pair and of no contact.
+    /// are twice those bits, plus 1 if the time is that of an undecided pair and of no contact.
     pub earliest: u64,
     /// The two vertices of every edge, 8 bytes each; none of a discrete query.
     pub edges: NearmissDeviceList,
@@ -79,8 +79,8 @@ pub struct NearmissDeviceHit {
     /// No contact before.
     pub toi: f64,
     /// The first contact is not after; the end of the step, where there need be none.
-    pub toi_hi: f64,
-    /// 1 contact, 2 unresolved; and 4 where the budget ended.
+    pub toi_upper: f64,
+    /// 1 contact, 2 undecided; and 4 where the budget ended.
     pub state: u32,
     /// Boxes looked at.
     pub boxes: u32,
@@ -150,7 +150,7 @@ impl From<DeviceList> for NearmissDeviceList {
     }
 }
 
-/// Where the answer of what is submitted will lie, for kernels of the caller behind it. Fails with `NEARMISS_CHOICE` where the detector is
+/// Where the answer of what is submitted will lie, for kernels of the caller behind it. Fails with `NEARMISS_INVALID_ARGUMENT` where the detector is
 /// not prepared, or no two of its bodies can meet.
 #[unsafe(no_mangle)]
 pub extern "C" fn nearmiss_detector_on_device(
@@ -160,7 +160,7 @@ pub extern "C" fn nearmiss_detector_on_device(
 ) -> NearmissCode {
     NearmissDetector::work(detector, error, |own| {
         let to = given(answer, "the answer")?;
-        let found = own.detector.on_device(&own.query).ok_or_else(|| Error::Choice {
+        let found = own.detector.on_device(&own.query).ok_or_else(|| Error::InvalidArgument {
             what: "an answer on the device of a detector that is not prepared, or in which nothing can meet"
                 .into(),
             advice: "prepare it, or ask by nearmiss_detector_frame".into(),

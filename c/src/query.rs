@@ -37,7 +37,7 @@ pub struct NearmissQuery {
     pub kind: u32,
     /// Discrete, exact: whether triangles that share a vertex are told too, where they meet beyond it: 0 or 1.
     pub adjacent: u32,
-    /// Continuous, earliest; certified: the most boxes that are looked at for a pair before it is left unresolved; 0 for the default.
+    /// Continuous, earliest; certified: the most boxes that are looked at for a pair before it is left undecided; 0 for the default.
     pub budget: u32,
     /// Continuous, earliest: whether the start of the step is taken to be free of crossing
     /// triangles, and not checked: 0 or 1.

@@ -24,10 +24,10 @@ pub enum NearmissKind {
 pub enum NearmissStatus {
     /// A solver that can be wrong says so.
     NEARMISS_CONTACT = 0,
-    /// They meet, proven, first in `[toi, toi_hi]`.
+    /// They meet, proven, first in `[toi, toi_upper]`.
     NEARMISS_CERTIFIED = 1,
     /// They come nearer than the tolerance, or the budget ended; if they meet, not before `toi`. Proven as well.
-    NEARMISS_UNRESOLVED = 2,
+    NEARMISS_UNDECIDED = 2,
 }
 
 /// What is nearest of two features.
@@ -61,8 +61,8 @@ pub struct NearmissContact {
     pub b: u32,
     /// First time of contact, in [0, 1]; by a certified solver not after it.
     pub toi: f64,
-    /// The time by which they have met, in [toi, 1]; of an unresolved pair the end of the step.
-    pub toi_hi: f64,
+    /// The time by which they have met, in [toi, 1]; of an undecided pair the end of the step.
+    pub toi_upper: f64,
 }
 
 /// Two triangles that share a point.
@@ -178,13 +178,13 @@ impl From<Kind> for NearmissKind {
 
 impl From<&Contact> for NearmissContact {
     fn from(contact: &Contact) -> NearmissContact {
-        let Contact { kind, bodies, a, b, toi, toi_hi, status } = *contact;
+        let Contact { kind, bodies, a, b, toi, toi_upper, status } = *contact;
         let status = match status {
-            Status::Contact => NearmissStatus::NEARMISS_CONTACT,
+            Status::Unverified => NearmissStatus::NEARMISS_CONTACT,
             Status::Certified => NearmissStatus::NEARMISS_CERTIFIED,
-            Status::Unresolved => NearmissStatus::NEARMISS_UNRESOLVED,
+            Status::Undecided => NearmissStatus::NEARMISS_UNDECIDED,
         };
-        NearmissContact { kind: kind.into(), status, bodies: numbers(bodies), a, b, toi, toi_hi }
+        NearmissContact { kind: kind.into(), status, bodies: numbers(bodies), a, b, toi, toi_upper }
     }
 }
 

@@ -30,7 +30,7 @@ pub extern "C" fn nearmiss_scene_new(
 /// Adds a body and tells its number: they are counted from 0. `id` may be NULL. Cost: a copy of the mesh, and a pass over it.
 ///
 /// Fails with `NEARMISS_INPUT` for positions that are not finite or too large, and for indices out of range, naming the first; with
-/// `NEARMISS_CHOICE` for a body that cannot be, and for a scene of which a detector has a copy.
+/// `NEARMISS_INVALID_ARGUMENT` for a body that cannot be, and for a scene of which a detector has a copy.
 /// Then nothing is added.
 ///
 /// # Safety

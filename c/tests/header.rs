@@ -114,7 +114,7 @@ fn the_compiler_lays_out_the_same() {
         NearmissQuery,
         NearmissQueryKind,
         NearmissRows,
-        NearmissSelfContact,
+        NearmissSelfCollision,
         NearmissStages,
         NearmissStatus,
         NearmissSummary,

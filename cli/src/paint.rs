@@ -9,7 +9,7 @@ use std::path::Path;
 
 /// What meets nothing.
 pub const GREY: [u8; 3] = [190, 190, 190];
-/// What may meet: nothing else is known of it than contacts left unresolved.
+/// What may meet: nothing else is known of it than contacts left undecided.
 pub const ORANGE: [u8; 3] = [240, 160, 30];
 /// What meets, or is near.
 pub const RED: [u8; 3] = [210, 30, 30];
@@ -17,11 +17,11 @@ pub const RED: [u8; 3] = [210, 30, 30];
 /// Refuses a file whose name is not that of a PLY.
 ///
 /// # Errors
-/// [`Error::Choice`].
+/// [`Error::InvalidArgument`].
 pub fn check(path: &Path) -> Result<(), Error> {
     match crate::output::unpacked(path).extension().and_then(|e| e.to_str()) {
         Some("ply") => Ok(()),
-        _ => Err(Error::Choice {
+        _ => Err(Error::InvalidArgument {
             what: format!("{}: the coloured mesh cannot be written in that format", path.display()),
             advice: "give --out-mesh a name that ends in .ply or .ply.gz".into(),
         }),
@@ -79,7 +79,7 @@ pub fn paint(
         }
         Rows::Contacts(all) => {
             for (contact, geometry) in all.iter().zip(geometry) {
-                met.add(geometry, contact.status == Status::Unresolved, &starts);
+                met.add(geometry, contact.status == Status::Undecided, &starts);
             }
         }
         Rows::Near(_) => geometry.iter().for_each(|geometry| met.add(geometry, false, &starts)),
@@ -99,7 +99,7 @@ pub fn paint(
     Ok((Mesh::new("the coloured mesh", positions, faces)?, triangles))
 }
 
-/// Features that meet, by their vertices; whether each is in unresolved contacts alone.
+/// Features that meet, by their vertices; whether each is in undecided contacts alone.
 #[derive(Default)]
 struct Met {
     vertices: HashMap<u32, bool>,
@@ -108,7 +108,7 @@ struct Met {
 }
 
 impl Met {
-    fn add(&mut self, of: &ContactGeometry, unresolved: bool, starts: &[(u32, usize)]) {
+    fn add(&mut self, of: &ContactGeometry, undecided: bool, starts: &[(u32, usize)]) {
         let [a, b] = of.bodies.map(|body| starts[body.index()].0);
         let (first, second) = of.vertices.split_at(of.first);
         for (vertices, start) in [(first, a), (second, b)] {
@@ -120,7 +120,7 @@ impl Met {
                 [v, w, x] => self.faces.entry([v, w, x]).or_insert(true),
                 _ => continue,
             };
-            *known &= unresolved;
+            *known &= undecided;
         }
     }
 
@@ -131,7 +131,7 @@ impl Met {
         let edges = [[v, w], [w, x], [v, x]];
         let sides = edges.iter().filter_map(|edge| self.edges.get(edge));
         let all = corners.chain(sides).chain(self.faces.get(&face));
-        let unresolved = all.copied().reduce(|one, other| one & other)?;
-        Some(if unresolved { ORANGE } else { RED })
+        let undecided = all.copied().reduce(|one, other| one & other)?;
+        Some(if undecided { ORANGE } else { RED })
     }
 }

@@ -77,7 +77,7 @@ impl FileFaces {
 /// Formats that contacts can be written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// `tri_a,tri_b` (`face_a,face_b`), or `kind,a,b,toi,toi_hi,status`, or
+    /// `tri_a,tri_b` (`face_a,face_b`), or `kind,a,b,toi,toi_upper,status`, or
     /// `kind,a,b,squared_distance,w0,w1,w2,closest`, or `tri_a,tri_b,distance,x_a,y_a,z_a,x_b,y_b,z_b`; before these the step and the bodies, where there are several.
     Csv,
     /// One object: the summary, and the rows under `contacts`.
@@ -90,13 +90,13 @@ impl Format {
     /// The format that a file's name asks for.
     ///
     /// # Errors
-    /// [`Error::Choice`] with the known ones.
+    /// [`Error::InvalidArgument`] with the known ones.
     pub fn of(path: &Path) -> Result<Format, Error> {
         match unpacked(path).extension().and_then(|e| e.to_str()) {
             Some("csv") => Ok(Format::Csv),
             Some("json") => Ok(Format::Json),
             Some("vtp") => Ok(Format::Vtp),
-            _ => Err(Error::Choice {
+            _ => Err(Error::InvalidArgument {
                 what: format!("{}: contacts cannot be written in that format", path.display()),
                 advice:
                     "give --out a name that ends in one of: .csv, .json, .vtp, each also with .gz behind it"

@@ -26,7 +26,7 @@ impl Columns<'_> {
         let triangles = if self.faces { ["face_a", "face_b"] } else { ["tri_a", "tri_b"] };
         let (own, bodies): (&[&str], bool) = match answer {
             Rows::Pairs(_) => (&triangles, true),
-            Rows::Contacts(_) => (&["kind", "a", "b", "toi", "toi_hi", "status"], true),
+            Rows::Contacts(_) => (&["kind", "a", "b", "toi", "toi_upper", "status"], true),
             Rows::Earliest(_) => (&["earliest_toi"], false),
             Rows::Distance(_) => (&NEAREST, true),
             Rows::Near(_) => (&["kind", "a", "b", "squared_distance", "w0", "w1", "w2", "closest"], true),
@@ -142,12 +142,12 @@ fn nearest(n: &NearestTriangles) -> [String; 9] {
 
 fn contact(c: &Contact) -> [String; 6] {
     let status = match c.status {
-        Status::Contact => "contact",
+        Status::Unverified => "contact",
         Status::Certified => "certified",
-        Status::Unresolved => "unresolved",
+        Status::Undecided => "undecided",
     };
     let [a, b] = [c.a, c.b].map(|i| i.to_string());
-    [kind(c.kind), a, b, c.toi.to_string(), c.toi_hi.to_string(), status.into()]
+    [kind(c.kind), a, b, c.toi.to_string(), c.toi_upper.to_string(), status.into()]
 }
 
 /// An answer as rows of JSON: of a scene its bodies by their names.
@@ -190,7 +190,7 @@ struct Meeting {
     a: u32,
     b: u32,
     toi: f64,
-    toi_hi: f64,
+    toi_upper: f64,
     status: Status,
 }
 
@@ -232,8 +232,8 @@ impl Serialize for JsonRows<'_> {
                 Named { body_a: of_a(bodies), body_b: of_b(bodies), row: Triangles { triangles } }
             })),
             Rows::Contacts(all) => to.collect_seq(all.iter().map(|c| {
-                let &Contact { kind, bodies, a, b, toi, toi_hi, status } = c;
-                let row = Meeting { kind, a, b, toi, toi_hi, status };
+                let &Contact { kind, bodies, a, b, toi, toi_upper, status } = c;
+                let row = Meeting { kind, a, b, toi, toi_upper, status };
                 Named { body_a: of_a(bodies), body_b: of_b(bodies), row }
             })),
             Rows::Earliest(toi) => toi.serialize(to),

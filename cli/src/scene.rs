@@ -21,7 +21,7 @@ fn by_formula(args: &SceneArgs) -> Result<ExitCode, Error> {
     let has = formula(&args.name, 8, args.seed)?.frames().len() as u64;
     let asked = args.frames.map_or(has, u64::from);
     if asked > has {
-        return Err(Error::Choice {
+        return Err(Error::InvalidArgument {
             what: format!("{} of {}, which has {has}", counted(asked, "frame", "frames"), args.name),
             advice: format!("choose one that goes on: {}", ANIMATIONS.join(", ")),
         });

@@ -38,7 +38,7 @@ pub fn man(args: &ManArgs) -> Result<ExitCode, Error> {
         Some(name) => {
             let known: Vec<_> = all.get_subcommands().map(|own| own.get_name().to_owned()).collect();
             let found = all.find_subcommand(name).cloned();
-            found.ok_or_else(|| Error::Choice {
+            found.ok_or_else(|| Error::InvalidArgument {
                 what: format!("there is no command {name:?}"),
                 advice: format!("choose one of: {}", known.join(", ")),
             })?

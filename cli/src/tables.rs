@@ -71,7 +71,7 @@ fn scenes(args: &TablesArgs) -> Result<Vec<(String, usize)>, Error> {
         return match args.scene.as_slice() {
             [] => Ok(vec![(super::stem(file), 0)]),
             [name] => Ok(vec![(name.clone(), 0)]),
-            several => Err(Error::Choice {
+            several => Err(Error::InvalidArgument {
                 what: format!("--mesh with {} scenes", several.len()),
                 advice: "name the one scene of the thesis that the frames are, or none".into(),
             }),

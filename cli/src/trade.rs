@@ -109,7 +109,7 @@ fn generated(args: &TradeArgs, device: &Device, all: &mut Trade) -> Result<(), E
         let frames = during(format!("making {name}"), || tables::frames(name, triangles, args.seed, count))?;
         let step = frames.bodies(true)?.swap_remove(0);
         let mesh = frames.meshes[0].clone();
-        let still = known(device, &format!("{name}, still"), Body::still(mesh), None)?;
+        let still = known(device, &format!("{name}, still"), Body::deformable(mesh), None)?;
         scene(args, device, &still, all)?;
         scene(args, device, &known(device, name, step, None)?, all)?;
         for bv in [Bv::Aabb, Query::continuous().bv()] {

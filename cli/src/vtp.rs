@@ -50,7 +50,7 @@ impl Vtp {
             Rows::Contacts(all) => self.entries.extend(
                 all.iter()
                     .zip(geometry)
-                    .map(|(c, g)| entry(c.kind, [c.a, c.b], Some(([c.toi, c.toi_hi], c.status as u8)), g)),
+                    .map(|(c, g)| entry(c.kind, [c.a, c.b], Some(([c.toi, c.toi_upper], c.status as u8)), g)),
             ),
             Rows::Near(all) => {
                 self.entries
@@ -111,7 +111,7 @@ impl Vtp {
         if self.entries.iter().any(|e| e.time.is_some()) {
             let times = |end: usize| all().filter_map(move |e| e.time.map(|(toi, _)| exponent(toi[end])));
             array(out, "Float64", "toi", 1, times(0))?;
-            array(out, "Float64", "toi_hi", 1, times(1))?;
+            array(out, "Float64", "toi_upper", 1, times(1))?;
             array(out, "UInt8", "status", 1, all().filter_map(|e| e.time.map(|(_, status)| status)))?;
         }
         Ok(())

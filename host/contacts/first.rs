@@ -7,5 +7,5 @@ pub struct FirstContact {
     /// Its time, in \[0, 1\] of the step; by a certified solver never later than the first contact.
     pub toi: f64,
     /// Whether the pair at that time is neither certain to meet nor certain to stay apart, and no contact begins then.
-    pub is_unresolved: bool,
+    pub is_undecided: bool,
 }

@@ -26,7 +26,7 @@ impl Contacts {
                     hash.update(&c.a.to_le_bytes());
                     hash.update(&c.b.to_le_bytes());
                     hash.update(&c.toi.to_le_bytes());
-                    hash.update(&c.toi_hi.to_le_bytes());
+                    hash.update(&c.toi_upper.to_le_bytes());
                 }
             }
             Rows::Near(near) => {

@@ -16,7 +16,7 @@ mod sealed {
         /// How many there are.
         ///
         /// # Errors
-        /// [`Error::Choice`] for rows without pairs of features.
+        /// [`Error::InvalidArgument`] for rows without pairs of features.
         fn count(&self) -> Result<usize, Error>;
         /// Their features.
         fn named(&self) -> Vec<Named>;
@@ -56,7 +56,7 @@ impl sealed::Rows for Rows {
             }
         };
         let what = format!("geometry of the answer to {query} query, which has no pairs of features");
-        Err(Error::Choice { what, advice: advice.into() })
+        Err(Error::InvalidArgument { what, advice: advice.into() })
     }
 
     fn named(&self) -> Vec<Named> {

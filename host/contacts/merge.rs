@@ -1,6 +1,6 @@
 //! Answers to parts of one question, by several devices or one after another, as one.
 
-use super::{Contact, Contacts, Degraded, Rows, TrianglePair, near, sort};
+use super::{Caveat, Contact, Contacts, Rows, TrianglePair, near, sort};
 use crate::stages::Stages;
 use nearmiss_emulator::Looks;
 
@@ -40,16 +40,16 @@ impl Contacts {
             (Rows::Contacts(own), Rows::Contacts(other)) => own.extend(other),
             (Rows::Near(own), Rows::Near(other)) => own.extend(other),
             (Rows::Earliest(own), Rows::Earliest(other)) => {
-                let first = |toi: Option<f64>, unresolved: u64| toi.map(|toi| (toi, unresolved));
-                let both = [first(*own, self.unresolved), first(other, share.unresolved)];
+                let first = |toi: Option<f64>, undecided: u64| toi.map(|toi| (toi, undecided));
+                let both = [first(*own, self.undecided), first(other, share.undecided)];
                 let least = both.into_iter().flatten().min_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
                 *own = least.map(|(toi, _)| toi);
                 // Of the earliest time alone.
-                (self.unresolved, share.unresolved) = (least.map_or(0, |(_, unresolved)| unresolved), 0);
-                let of_the_other = |reason: &Degraded| *reason != Degraded::EarliestUnresolved;
-                self.degraded.retain(of_the_other);
-                share.degraded.retain(of_the_other);
-                self.degraded.extend((self.unresolved > 0).then_some(Degraded::EarliestUnresolved));
+                (self.undecided, share.undecided) = (least.map_or(0, |(_, undecided)| undecided), 0);
+                let of_the_other = |reason: &Caveat| *reason != Caveat::EarliestUndecided;
+                self.caveats.retain(of_the_other);
+                share.caveats.retain(of_the_other);
+                self.caveats.extend((self.undecided > 0).then_some(Caveat::EarliestUndecided));
             }
             (Rows::Distance(own), Rows::Distance(other)) => {
                 let nearer =
@@ -69,14 +69,14 @@ impl Contacts {
             self.starts_crossing.zip(share.starts_crossing).map(|(own, other)| own + other);
         self.is_free = self.rows.is_free(self.starts_crossing);
         self.stats.add(&share.stats);
-        self.unresolved += share.unresolved;
-        share.degraded.into_iter().for_each(|reason| self.degrade(reason));
+        self.undecided += share.undecided;
+        share.caveats.into_iter().for_each(|reason| self.degrade(reason));
     }
 
-    fn degrade(&mut self, reason: Degraded) {
-        match self.degraded.iter_mut().find_map(|own| own.and(reason).map(|both| (own, both))) {
+    fn degrade(&mut self, reason: Caveat) {
+        match self.caveats.iter_mut().find_map(|own| own.and(reason).map(|both| (own, both))) {
             Some((own, both)) => *own = both,
-            None => self.degraded.push(reason),
+            None => self.caveats.push(reason),
         }
     }
 }

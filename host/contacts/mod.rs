@@ -1,6 +1,6 @@
 //! Results: contacts in canonical order, and their hash.
 
-mod degraded;
+mod caveats;
 mod first;
 pub(crate) mod geometry;
 mod hash;
@@ -16,7 +16,7 @@ mod summary;
 mod triangles;
 mod work;
 
-pub use degraded::{Degraded, TURN_DEGREES};
+pub use caveats::{Caveat, TURN_DEGREES};
 pub use first::FirstContact;
 pub use geometry::ContactGeometry;
 pub use located::Located;
@@ -52,11 +52,11 @@ pub enum Kind {
 #[repr(u8)]
 pub enum Status {
     /// A solver that can be wrong says so.
-    Contact = 0,
-    /// They meet, proven, first in `[toi, toi_hi]`.
+    Unverified = 0,
+    /// They meet, proven, first in `[toi, toi_upper]`.
     Certified = 1,
     /// They come nearer than the tolerance, or the budget ended; if they meet, not before `toi`. Proven as well.
-    Unresolved = 2,
+    Undecided = 2,
 }
 
 impl Status {
@@ -64,8 +64,8 @@ impl Status {
     #[doc(hidden)]
     pub fn of(certified: bool, verdict: &Verdict) -> Status {
         match (certified, verdict.is_contact()) {
-            (_, false) => Status::Unresolved,
-            (false, true) => Status::Contact,
+            (_, false) => Status::Undecided,
+            (false, true) => Status::Unverified,
             (true, true) => Status::Certified,
         }
     }
@@ -85,8 +85,8 @@ pub struct Contact {
     pub b: u32,
     /// First time of contact, or of coming as near as the separation, in [0, 1]; by a certified solver not after it.
     pub toi: f64,
-    /// The time by which they have met, in [toi, 1]; of an unresolved pair the end of the step.
-    pub toi_hi: f64,
+    /// The time by which they have met, in [toi, 1]; of an undecided pair the end of the step.
+    pub toi_upper: f64,
     /// How sure that is.
     pub status: Status,
 }
@@ -139,7 +139,7 @@ pub type Contacts = Answer<Rows>;
 ///
 /// let corners = vec![[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, -1.0], [1.0, 2.0, 1.0], [9.0, 1.0, 9.0]];
 /// let mesh = Mesh::new("two triangles", Positions::F32(corners), vec![[0, 1, 2], [3, 4, 5]])?;
-/// let mut detector = Detector::new(Device::open(Backend::Cpu, None)?, Body::still(mesh))?;
+/// let mut detector = Detector::new(Device::open(Backend::Cpu, None)?, Body::deformable(mesh))?;
 /// let pairs = detector.query(&Discrete::default())?;
 /// assert_eq!(pairs.len(), 1);
 /// for pair in pairs.iter() {
@@ -157,12 +157,12 @@ pub struct Answer<T> {
     /// [`Query::discrete`] lists at t = 0. Such a pair need not have a time of contact: an edge that is through a face stays
     /// there. `None` if the start was not checked: of a query at rest, and of one that assumes a free start.
     pub starts_crossing: Option<u64>,
-    /// How many contacts are [`Status::Unresolved`]; of a near query, how many of the listed pairs rounding cannot tell from such
+    /// How many contacts are [`Status::Undecided`]; of a near query, how many of the listed pairs rounding cannot tell from such
     /// that are farther apart; of an earliest query 1 if its time is that of such a pair and of no contact, else 0.
-    pub unresolved: u64,
+    pub undecided: u64,
     /// Figures of its making.
     pub stats: Stats,
-    pub(crate) degraded: Vec<Degraded>,
+    pub(crate) caveats: Vec<Caveat>,
     pub(crate) is_free: bool,
 }
 
@@ -176,8 +176,8 @@ impl<T> std::ops::Deref for Answer<T> {
 
 impl<T> Answer<T> {
     /// In what the frame came to less than all that was asked, each by its reason; empty where nothing did.
-    pub fn degraded(&self) -> &[Degraded] {
-        &self.degraded
+    pub fn caveats(&self) -> &[Caveat] {
+        &self.caveats
     }
 
     /// Whether the answer proves that nothing touches. Continuous and earliest: the start was checked, no triangles share a point
@@ -191,7 +191,7 @@ impl<T> Answer<T> {
     /// // The second triangle is through the first, and both rest: no pair of features ever meets.
     /// let corners = vec![[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [9.0, 9.0, 1.0]];
     /// let mesh = Mesh::new("two triangles", Positions::F32(corners), vec![[0, 1, 2], [3, 4, 5]])?;
-    /// let mut detector = Detector::new(Device::open(Backend::Cpu, None)?, Body::still(mesh))?;
+    /// let mut detector = Detector::new(Device::open(Backend::Cpu, None)?, Body::deformable(mesh))?;
     /// let first = detector.query(&Earliest::default())?;
     /// assert_eq!((first.rows, first.starts_crossing, first.is_free()), (None, Some(1), false));
     /// # Ok::<(), nearmiss::Error>(())
@@ -204,9 +204,9 @@ impl<T> Answer<T> {
 impl Contacts {
     /// The answer with the rows of its query's own type.
     pub(crate) fn typed<Q: TypedQuery>(self) -> Answer<Q::Rows> {
-        let Answer { rows, query, starts_crossing, unresolved, stats, degraded, is_free } = self;
-        let rows = Q::rows(rows, unresolved > 0);
-        Answer { rows, query, starts_crossing, unresolved, stats, degraded, is_free }
+        let Answer { rows, query, starts_crossing, undecided, stats, caveats, is_free } = self;
+        let rows = Q::rows(rows, undecided > 0);
+        Answer { rows, query, starts_crossing, undecided, stats, caveats, is_free }
     }
 
     /// An answer with these rows.
@@ -216,9 +216,9 @@ impl Contacts {
             rows,
             query,
             starts_crossing,
-            unresolved: 0,
+            undecided: 0,
             stats: Stats { slices: 1, ..Stats::default() },
-            degraded: Vec::new(),
+            caveats: Vec::new(),
             is_free,
         }
     }

@@ -65,7 +65,7 @@ fn resting(bodies: &[Body]) -> Option<Note> {
         let [start, end] = body.poses();
         let is_posed = body.kind() == BodyKind::Rigid && start != end;
         let has_end = || body.positions_t1().is_some_and(|t1| t1 != body.positions_t0());
-        if body.is_away() { body.is_moving() } else { is_posed || has_end() }
+        if body.is_device_resident() { body.is_moving() } else { is_posed || has_end() }
     };
     match (bodies.iter().any(moves), bodies.iter().any(Body::is_moving)) {
         (true, _) => None,

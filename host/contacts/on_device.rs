@@ -41,7 +41,7 @@ pub struct DeviceAnswer {
     /// Where the [`FrameStatus`] lies: how many entries there are, and whether the answer is whole.
     pub status: u64,
     /// Of an earliest query where its time lies: an f64, all bits set where nothing meets. The next
-    /// 8 bytes are twice those bits, plus 1 if the time is that of an unresolved pair and of no
+    /// 8 bytes are twice those bits, plus 1 if the time is that of an undecided pair and of no
     /// contact.
     pub earliest: Option<u64>,
     /// The two vertices of every edge, 8 bytes each; none of a discrete query.

@@ -25,10 +25,10 @@ pub struct Stats {
     pub open_vf_ee: [u64; 2],
     /// Those of them that were cut into slices: vertex/face, edge/edge.
     pub sliced_vf_ee: [u64; 2],
-    /// Triangle pairs that the filter in the precision of the positions left undecided; of a query in motion, at the start of the step.
-    pub undecided: u64,
-    /// Those of them that f64 left undecided too; none of f64 positions, which go straight to exact signs.
-    pub undecided_wide: u64,
+    /// Triangle pairs that the filter in the precision of the positions left uncertain; of a query in motion, at the start of the step.
+    pub uncertain: u64,
+    /// Those of them that f64 left uncertain too; none of f64 positions, which go straight to exact signs.
+    pub uncertain_wide: u64,
     /// Pairs of sibling nodes that the traversal tested.
     pub steps: u64,
     /// Work units that long walks gave away.
@@ -60,8 +60,8 @@ impl Stats {
         pairs(&mut self.sliced_vf_ee, share.sliced_vf_ee);
         self.triangle_pairs += share.triangle_pairs;
         self.candidates += share.candidates;
-        self.undecided += share.undecided;
-        self.undecided_wide += share.undecided_wide;
+        self.uncertain += share.uncertain;
+        self.uncertain_wide += share.uncertain_wide;
         self.steps += share.steps;
         self.spilled += share.spilled;
         self.reruns += share.reruns;

@@ -1,6 +1,6 @@
 //! What is printed of a result.
 
-use super::{Degraded, Front, NearestTriangles, Note, Queues};
+use super::{Caveat, Front, NearestTriangles, Note, Queues};
 use crate::query::{Broad, QueryKind, Refit, Solver, Traversal};
 use crate::stages::Stages;
 
@@ -38,9 +38,9 @@ pub struct Summary {
     pub contacts: usize,
     /// How many of the contacts are neither confirmed nor refuted; of an earliest query 1 if its
     /// time is that of such a pair, else 0.
-    pub unresolved: u64,
+    pub undecided: u64,
     /// In what the frame came to less than all that was asked; empty where nothing did.
-    pub degraded: Vec<Degraded>,
+    pub caveats: Vec<Caveat>,
     /// The tolerance of a certified solver, a length: the smallest, if pairs have several.
     pub tolerance: Option<f64>,
     /// The largest of them, if pairs have several.

@@ -2,14 +2,14 @@
 
 use super::Detector;
 use super::question::Question;
-use crate::contacts::{Contacts, Degraded, TURN_DEGREES};
+use crate::contacts::{Caveat, Contacts, TURN_DEGREES};
 use crate::error::Error;
 use crate::pipeline::below_precision::BelowPrecision;
 use crate::query::{Certified, Query};
 use crate::scene::{Body, BodyKind};
 
 impl Detector {
-    /// Adds a caveat for each rigid body that turns far in the step: [`Degraded::Turned`]. Poses that only the device knows are copied
+    /// Adds a caveat for each rigid body that turns far in the step: [`Caveat::Turned`]. Poses that only the device knows are copied
     /// from it, if there are any.
     ///
     /// # Errors
@@ -19,21 +19,21 @@ impl Detector {
             return Ok(());
         }
         let is_rigid = |body: &&Body| body.kind() == BodyKind::Rigid && body.face_count() > 0;
-        let is_away = |body: &Body| body.is_away() && body.is_moving();
+        let is_device_resident = |body: &Body| body.is_device_resident() && body.is_moving();
         let bodies = self.scene.bodies();
         let found = match &self.engine.pipeline {
-            Some(pipeline) if bodies.iter().filter(is_rigid).any(is_away) => pipeline.poses()?,
+            Some(pipeline) if bodies.iter().filter(is_rigid).any(is_device_resident) => pipeline.poses()?,
             _ => Vec::new(),
         };
         for id in self.scene.ids() {
             let Some(body) = self.scene.get(id).filter(is_rigid) else { continue };
             let poses = match found.get(2 * id.index()..2 * id.index() + 2) {
-                Some(&[start, end]) if is_away(body) => [start, end],
-                _ if body.is_away() => continue,
+                Some(&[start, end]) if is_device_resident(body) => [start, end],
+                _ if body.is_device_resident() => continue,
                 _ => body.poses(),
             };
             if let Some([degrees, bulge]) = body.turn_beyond(TURN_DEGREES, poses) {
-                contacts.degraded.push(Degraded::Turned { body: id, degrees, bulge });
+                contacts.caveats.push(Caveat::Turned { body: id, degrees, bulge });
             }
         }
         Ok(())
@@ -54,20 +54,21 @@ impl Detector {
         let finest = Certified { tolerance: Some(tolerances.finest), ..certified };
         let own = tolerances.least < tolerances.largest;
         let certified = Certified { tolerance: Some(tolerances.largest), ..certified };
-        let unlisted = Degraded::ToleranceBelowPrecision { pairs: None };
+        let unlisted = Caveat::ToleranceBelowPrecision { pairs: None };
         // If no body came from memory of the caller the pipeline has looked at all.
-        let is_looked_at = self.resident.largest == 0.0 && !self.scene.bodies().iter().any(Body::is_away);
-        if is_looked_at || contacts.degraded.contains(&unlisted) {
+        let is_looked_at =
+            self.resident.largest == 0.0 && !self.scene.bodies().iter().any(Body::is_device_resident);
+        if is_looked_at || contacts.caveats.contains(&unlisted) {
             return Ok(());
         }
         let largest = self.resident.largest.max(BelowPrecision::largest(self.scene.bodies()));
         if !BelowPrecision::may_be(&finest, 2.0 * largest) {
             return Ok(());
         }
-        self.fetch()?;
+        self.download_positions()?;
         let below = BelowPrecision::of_earliest(self.scene.bodies(), &certified, own);
         if below == Some(BelowPrecision::Unlisted) {
-            contacts.degraded.push(unlisted);
+            contacts.caveats.push(unlisted);
         }
         Ok(())
     }

@@ -10,13 +10,13 @@ impl Detector {
     /// [`Detector::new`], at the next frame.
     ///
     /// # Errors
-    /// [`Error::Choice`] for a body that is not in the scene and for self-contact of a static body, [`Error::Input`] for more triangles
+    /// [`Error::InvalidArgument`] for a body that is not in the scene and for self-collision of a static body, [`Error::Input`] for more triangles
     /// than indices reach: then nothing has changed.
     pub fn replace(&mut self, id: BodyId, body: Body) -> Result<(), Error> {
         let old = self.scene.get(id).ok_or_else(|| nobody(id))?;
-        body.check_meets()?;
+        body.check_filter()?;
         self.fits(Some(old), &body)?;
-        self.fetch()?;
+        self.download_positions()?;
         *self.scene.get_mut(id).ok_or_else(|| nobody(id))? = body;
         self.changed();
         self.placed.forget(id);
@@ -26,12 +26,12 @@ impl Detector {
     /// Adds a body to the scene, from the next frame on. Cost: as of [`Detector::new`], at the next frame.
     ///
     /// # Errors
-    /// [`Error::Choice`] for self-contact of a static body, [`Error::Input`] for more triangles than indices reach: then nothing has
+    /// [`Error::InvalidArgument`] for self-collision of a static body, [`Error::Input`] for more triangles than indices reach: then nothing has
     /// changed.
     pub fn add(&mut self, body: Body) -> Result<BodyId, Error> {
-        body.check_meets()?;
+        body.check_filter()?;
         self.fits(None, &body)?;
-        self.fetch()?;
+        self.download_positions()?;
         let id = self.scene.add(body);
         self.changed();
         self.placed.forget(id);
@@ -42,10 +42,10 @@ impl Detector {
     /// [`Detector::new`], at the next frame.
     ///
     /// # Errors
-    /// [`Error::Choice`] for a body that is not in the scene.
+    /// [`Error::InvalidArgument`] for a body that is not in the scene.
     pub fn remove(&mut self, id: BodyId) -> Result<Body, Error> {
         self.scene.get(id).ok_or_else(|| nobody(id))?;
-        self.fetch()?;
+        self.download_positions()?;
         let body = self.scene.remove(id).ok_or_else(|| nobody(id))?;
         self.changed();
         Ok(body)
@@ -70,7 +70,7 @@ impl Detector {
 
 /// There is no such body.
 pub(super) fn nobody(id: BodyId) -> Error {
-    Error::Choice {
+    Error::InvalidArgument {
         what: format!("there is no body {id} in the scene"),
         advice: "name a body by what adding it gave, until it is removed".into(),
     }

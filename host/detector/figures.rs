@@ -52,8 +52,8 @@ impl Detector {
             triangle_pairs: contacts.stats.triangle_pairs,
             candidates: contacts.stats.candidates,
             contacts: contacts.len(),
-            unresolved: contacts.unresolved,
-            degraded: contacts.degraded.clone(),
+            undecided: contacts.undecided,
+            caveats: contacts.caveats.clone(),
             tolerance: tolerances.as_ref().map(|tolerances| tolerances.least),
             largest_tolerance: tolerances
                 .filter(|tolerances| tolerances.least < tolerances.largest)

@@ -29,7 +29,7 @@ impl Detector {
     /// ended, wherever its positions came from. Cost: an upload of positions that are named, and one launch that places them.
     ///
     /// # Errors
-    /// [`Error::Choice`] for a body that is not in the scene, or named twice, or given a motion that its kind does not take;
+    /// [`Error::InvalidArgument`] for a body that is not in the scene, or named twice, or given a motion that its kind does not take;
     /// [`Error::Input`] for positions that no mesh may have: then nothing has moved. Positions in a GPU's memory are checked when a query
     /// reads them: after one that is refused for that, the next update must name the same bodies, since their earlier positions are gone.
     /// Those of the device.
@@ -46,7 +46,7 @@ impl Detector {
     /// Memory of a query is taken when it is first asked; another query of its kind with other numbers uses it as it is.
     ///
     /// # Errors
-    /// [`Error::Choice`] for numbers that mean nothing, and for a query in motion if the last update named bodies of which none has two
+    /// [`Error::InvalidArgument`] for numbers that mean nothing, and for a query in motion if the last update named bodies of which none has two
     /// ends; those of the device: [`Error::OutOfMemory`] if memory ends all the same. There is no partial answer.
     pub fn query<Q: TypedQuery>(&mut self, query: &Q) -> Result<Answer<Q::Rows>, Error> {
         self.device.work();
@@ -124,7 +124,7 @@ impl Detector {
 
 /// No body of the last update has two ends.
 pub fn without_ends(query: &Query) -> Error {
-    Error::Choice {
+    Error::InvalidArgument {
         what: format!("no body of the frame has two ends, and the query is {}", query.kind()),
         advice: "give each body that moves both ends of the step: two arrays of positions, or two poses"
             .into(),

@@ -15,7 +15,7 @@ impl Detector {
     /// device, and a wait; 300 operations a contact.
     ///
     /// # Errors
-    /// [`Error::Choice`] for the answer to a discrete, an earliest or a distance query, and for contacts of other bodies than there are now; [`Error::OutOfMemory`]; those of the device.
+    /// [`Error::InvalidArgument`] for the answer to a discrete, an earliest or a distance query, and for contacts of other bodies than there are now; [`Error::OutOfMemory`]; those of the device.
     pub fn geometry<T: Located>(&mut self, found: &Answer<T>) -> Result<Vec<ContactGeometry>, Error> {
         let count = found.rows.count()?;
         if count == 0 {
@@ -83,7 +83,7 @@ fn corners(layout: &Layout, named: &Named) -> Option<([u32; 4], [u32; 4])> {
 
 /// The contacts are not of these bodies.
 fn of_others() -> Error {
-    Error::Choice {
+    Error::InvalidArgument {
         what: "contacts of other bodies than the scene has now".into(),
         advice: "ask for their geometry before bodies come, go or change".into(),
     }

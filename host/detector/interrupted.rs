@@ -43,7 +43,7 @@ impl Detector {
     /// only the device has are whole: they come to the host first.
     fn begin_again(&mut self) {
         self.engine.answered = None;
-        if self.engine.pipeline.is_some() && self.scene.bodies().iter().any(Body::is_away) {
+        if self.engine.pipeline.is_some() && self.scene.bodies().iter().any(Body::is_device_resident) {
             self.bring_all();
         }
         self.engine.drop_pipeline();

@@ -45,7 +45,7 @@ use std::sync::Arc;
 /// let at = |z| Positions::F32(vec![
 ///     [0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, z], [1.0, 9.0, 9.0], [9.0, 1.0, 9.0],
 /// ]);
-/// let body = Body::still(Mesh::new("two triangles", at(1.0), faces)?);
+/// let body = Body::deformable(Mesh::new("two triangles", at(1.0), faces)?);
 /// let device = Device::open(Backend::Auto, None)?;
 /// // A deformable body is tested against itself.
 /// let mut detector = Detector::new(device, body)?;
@@ -73,7 +73,7 @@ impl Detector {
     /// it. A scene without bodies has empty answers, until a body is [added](Detector::add).
     ///
     /// # Errors
-    /// [`Error::Choice`] for self-contact of a static body; [`Error::Input`] for more triangles than indices reach.
+    /// [`Error::InvalidArgument`] for self-collision of a static body; [`Error::Input`] for more triangles than indices reach.
     pub fn new(device: Device, scene: impl Into<Scene>) -> Result<Detector, Error> {
         Detector::with_share(device, scene.into(), Share::WHOLE)
     }
@@ -84,7 +84,7 @@ impl Detector {
     /// As there.
     pub(crate) fn with_share(device: Device, scene: Scene, share: Share) -> Result<Detector, Error> {
         start_threads()?;
-        scene.bodies().iter().try_for_each(Body::check_meets)?;
+        scene.bodies().iter().try_for_each(Body::check_filter)?;
         let all = |of: fn(&Body) -> usize| scene.bodies().iter().map(of).sum();
         fits(all(Body::face_count), all(Body::vertex_count))?;
         Ok(Detector {

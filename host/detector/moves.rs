@@ -31,7 +31,7 @@ impl Detector {
         for (id, input) in inputs {
             let Some(body) = self.scene.get(*id) else { return Err(nobody(*id)) };
             if std::mem::replace(&mut named[id.index()], true) {
-                return Err(Error::Choice {
+                return Err(Error::InvalidArgument {
                     what: format!("two inputs for body {id}, {}", body.name()),
                     advice: "give one a frame".into(),
                 });
@@ -70,7 +70,7 @@ impl Detector {
         let widens =
             !self.engine.holds_f64 && moved.iter().any(|moved| self.scene.bodies()[moved.body].needs_f64());
         if widens && self.engine.pipeline.is_some() {
-            self.fetch()?;
+            self.download_positions()?;
         }
         // What was held makes room first. Where placing fails there is nothing left to ask of the old positions.
         let placed = match self.engine.pipeline.take().filter(|_| !widens) {

@@ -49,7 +49,7 @@ impl Placed {
     /// Refuses a query in motion after an update that named bodies, and none with two ends.
     ///
     /// # Errors
-    /// [`Error::Choice`].
+    /// [`Error::InvalidArgument`].
     pub fn check_ends(&self, query: &Query) -> Result<(), Error> {
         if self.lacks_ends && !query.kind().is_at_rest() { Err(without_ends(query)) } else { Ok(()) }
     }

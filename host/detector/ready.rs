@@ -15,7 +15,7 @@ impl Detector {
     /// Takes the memory that a query needs and builds its tiles or trees, before the first [`Detector::query`] does it.
     ///
     /// # Errors
-    /// [`Error::Choice`] for numbers that mean nothing; those of the device.
+    /// [`Error::InvalidArgument`] for numbers that mean nothing; those of the device.
     pub fn begin(&mut self, query: &Query) -> Result<(), Error> {
         let question = self.question(*query)?;
         let begun = self.begun(&question).map(drop);
@@ -54,7 +54,7 @@ impl Detector {
     /// Readies the engine for a frame of the bodies where they are: every body's place is known.
     ///
     /// # Errors
-    /// [`Error::Choice`] for a body that nobody can place; those of the device.
+    /// [`Error::InvalidArgument`] for a body that nobody can place; those of the device.
     pub(super) fn ready(&mut self, query: &Query) -> Result<Arc<Layout>, Error> {
         self.engine.answered = None;
         self.read_again(false);
@@ -99,7 +99,7 @@ impl Detector {
         let in_motion = !question.query.kind().is_at_rest();
         if in_motion && !self.engine.has_ends {
             // A pipeline of queries at rest has no room for the end of the step.
-            self.fetch()?;
+            self.download_positions()?;
             self.engine.drop_pipeline();
             self.engine.has_ends = true;
         }
@@ -143,7 +143,7 @@ impl Detector {
         }
         if self.engine.pipeline.is_some() {
             // Positions that only the device has come back before its memory goes.
-            self.fetch()?;
+            self.download_positions()?;
             self.engine.drop_pipeline();
         }
         self.portion.slice_finer(query);

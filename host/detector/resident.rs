@@ -39,14 +39,14 @@ impl Resident {
 }
 
 impl Detector {
-    /// Brings the bodies to the host of which only the device knows where they are ([`Body::is_away`]), so that
+    /// Brings the bodies to the host of which only the device knows where they are ([`Body::is_device_resident`]), so that
     /// [`Detector::scene`] has them. Cost: a copy of all vertices, and a wait.
     ///
     /// # Errors
-    /// [`Error::Input`] and [`Error::Choice`] for positions and poses of the caller that cannot be computed with; those of the device.
-    pub fn fetch(&mut self) -> Result<(), Error> {
+    /// [`Error::Input`] and [`Error::InvalidArgument`] for positions and poses of the caller that cannot be computed with; those of the device.
+    pub fn download_positions(&mut self) -> Result<(), Error> {
         self.read_again(false);
-        if !self.scene.bodies().iter().any(Body::is_away) {
+        if !self.scene.bodies().iter().any(Body::is_device_resident) {
             return Ok(());
         }
         self.all_known()?;
@@ -86,7 +86,7 @@ impl Detector {
     fn bring(&mut self, places: &Places) {
         for (i, body) in self.scene.bodies_mut().iter_mut().enumerate() {
             // Who is lent has another place now.
-            if body.is_away() && body.lent().is_none() {
+            if body.is_device_resident() && body.lent().is_none() {
                 let (ends, poses) = places.of(i);
                 body.bring(&ends, poses);
                 self.resident.set_lost(i, false);
@@ -107,7 +107,8 @@ impl Detector {
             (0..self.scene.bodies().len()).map(|body| self.resident.is_lost(body)).collect();
         let places = self.places().ok().flatten();
         let is_valid = places.as_ref().is_some_and(|places| {
-            let mut away = self.scene.bodies().iter().enumerate().filter(|(_, body)| body.is_away());
+            let mut away =
+                self.scene.bodies().iter().enumerate().filter(|(_, body)| body.is_device_resident());
             away.all(|(i, body)| {
                 let (ends, poses) = places.of(i);
                 body.check_found(&ends, poses).is_ok()
@@ -126,9 +127,9 @@ impl Detector {
     /// Whether every body is where the host or a pipeline knows it to be.
     pub(super) fn all_known(&self) -> Result<(), Error> {
         self.none_lost()?;
-        let gone = |body: &&Body| body.is_away() && body.lent().is_none();
+        let gone = |body: &&Body| body.is_device_resident() && body.lent().is_none();
         match self.scene.bodies().iter().find(gone) {
-            Some(body) if self.engine.pipeline.is_none() => Err(Error::Choice {
+            Some(body) if self.engine.pipeline.is_none() => Err(Error::InvalidArgument {
                 what: format!("only the device knew where {} was, and that memory is gone", body.name()),
                 advice: "say again where it is".into(),
             }),
@@ -140,7 +141,7 @@ impl Detector {
     pub(super) fn none_lost(&self) -> Result<(), Error> {
         let mut bodies = self.scene.bodies().iter().enumerate();
         match bodies.find(|(body, _)| self.resident.is_lost(*body)) {
-            Some((_, body)) => Err(Error::Choice {
+            Some((_, body)) => Err(Error::InvalidArgument {
                 what: format!(
                     "nobody knows where {} is: the frame that named it last was refused, and has overwritten where it was",
                     body.name()
@@ -155,7 +156,7 @@ impl Detector {
     /// singles, the pipeline goes and the frame is to be run again: false.
     ///
     /// # Errors
-    /// [`Error::Input`] and [`Error::Choice`] for what no precision can compute with, naming the body and the vertex; those of the
+    /// [`Error::Input`] and [`Error::InvalidArgument`] for what no precision can compute with, naming the body and the vertex; those of the
     /// device.
     pub(super) fn check_seen(&mut self, seen: Option<Seen>) -> Result<bool, Error> {
         if !seen.is_some_and(|seen| seen.invalid) {
@@ -176,9 +177,9 @@ impl Detector {
     /// that frame are.
     ///
     /// # Errors
-    /// [`Error::Input`] and [`Error::Choice`], naming the body and the vertex.
+    /// [`Error::Input`] and [`Error::InvalidArgument`], naming the body and the vertex.
     fn check_places(&mut self, places: &Places) -> Result<bool, Error> {
-        let away = self.scene.bodies().iter().enumerate().filter(|(_, body)| body.is_away());
+        let away = self.scene.bodies().iter().enumerate().filter(|(_, body)| body.is_device_resident());
         let checked = away.map(|(i, body)| {
             let (ends, poses) = places.of(i);
             body.check_found(&ends, poses)

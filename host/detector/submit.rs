@@ -16,7 +16,7 @@ impl Detector {
     /// rest. Any other call that changes the detector ends it.
     ///
     /// # Errors
-    /// As for [`Detector::step`]; [`Error::Choice`] for no query, for two that differ in numbers alone, and for a traversal that needs
+    /// As for [`Detector::step`]; [`Error::InvalidArgument`] for no query, for two that differ in numbers alone, and for a traversal that needs
     /// the host.
     pub fn prepare(&mut self, motions: &[(BodyId, DeviceMotion)], queries: &[Query]) -> Result<(), Error> {
         let prepared = self.prepared(motions, queries);
@@ -25,14 +25,14 @@ impl Detector {
 
     fn prepared(&mut self, motions: &[(BodyId, DeviceMotion)], queries: &[Query]) -> Result<(), Error> {
         if queries.is_empty() {
-            return Err(Error::Choice {
+            return Err(Error::InvalidArgument {
                 what: "a submission without a query".into(),
                 advice: "name the queries that will be submitted".into(),
             });
         }
         for (at, query) in queries.iter().enumerate() {
             if queries[..at].iter().any(|other| other.shape() == query.shape()) {
-                return Err(Error::Choice {
+                return Err(Error::InvalidArgument {
                     what: format!(
                         "two {} queries that differ in numbers alone, in one submission",
                         query.kind()
@@ -59,7 +59,7 @@ impl Detector {
                 self.answer(question, Instant::now())?;
                 let slices = self.portion.slices(&question.query);
                 if slices > 1 {
-                    return Err(Error::Choice {
+                    return Err(Error::InvalidArgument {
                         what: format!("a submission in {slices} slices"),
                         advice: "the lists of a whole frame have no room: give the device more memory, or query frame by frame".into(),
                     });
@@ -94,7 +94,7 @@ impl Detector {
     /// Times of its stages are not taken. On a CPU it is done when this returns.
     ///
     /// # Errors
-    /// [`Error::Choice`] if it is not prepared; those of the device.
+    /// [`Error::InvalidArgument`] if it is not prepared; those of the device.
     pub fn submit(&mut self) -> Result<(), Error> {
         start_threads()?;
         self.engine.answered = None;
@@ -115,7 +115,7 @@ impl Detector {
     /// longer [prepared](Detector::is_prepared). So does a query that was not prepared with these numbers.
     ///
     /// # Errors
-    /// [`Error::Input`] and [`Error::Choice`] for positions and poses of the caller that cannot be computed with; those of the device.
+    /// [`Error::Input`] and [`Error::InvalidArgument`] for positions and poses of the caller that cannot be computed with; those of the device.
     pub fn collect<Q: TypedQuery>(&mut self, query: &Q) -> Result<Answer<Q::Rows>, Error> {
         let collected = self.collected((*query).into());
         self.ended(collected).map(Contacts::typed::<Q>)

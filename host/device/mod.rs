@@ -89,12 +89,15 @@ impl Device {
     /// are those of the CPU that is taken if there is no GPU.
     ///
     /// # Errors
-    /// [`Error::Choice`] for threads of [`Backend::Cuda`]; [`Error::Device`] if there is no such machine or
-    /// its driver refuses, with the driver's text; [`Error::Stamp`] if the GPU's kernels are of other sources.
+    /// [`Error::InvalidArgument`] for threads of [`Backend::Cuda`]; [`Error::Device`] if there is no such machine or
+    /// its driver refuses, with the driver's text; [`Error::KernelMismatch`] if the GPU's kernels are of other sources.
     pub fn open(backend: Backend, threads: Option<usize>) -> Result<Device, Error> {
         if let (Backend::Cuda, Some(threads)) = (backend, threads) {
             let what = format!("{} of a GPU, which takes none", counted(threads as u64, "thread", "threads"));
-            return Err(Error::Choice { what, advice: "leave the threads out, or choose the CPU".into() });
+            return Err(Error::InvalidArgument {
+                what,
+                advice: "leave the threads out, or choose the CPU".into(),
+            });
         }
         let processors = std::thread::available_parallelism().map_or(usize::MAX, usize::from);
         let threads = threads.map(|asked| asked.min(processors));
@@ -137,10 +140,12 @@ impl Device {
     /// Both are handles of CUDA's driver (`CUcontext`, `CUstream`; of its runtime a `cudaStream_t` and a null context), the
     /// stream is of that context, and both outlive the device, its clones and all that was made of them.
     #[cfg_attr(not(feature = "cuda"), allow(unused_variables, reason = "there is none"))]
-    pub unsafe fn borrow(context: *mut c_void, stream: *mut c_void) -> Result<Device, Error> {
+    pub unsafe fn from_stream(context: *mut c_void, stream: *mut c_void) -> Result<Device, Error> {
         #[cfg(feature = "cuda")]
         // SAFETY: the caller's promise.
-        return Ok(Self::with(Machine::Cuda(unsafe { cuda::Cuda::borrow(context.cast(), stream.cast()) }?)));
+        return Ok(Self::with(Machine::Cuda(unsafe {
+            cuda::Cuda::from_stream(context.cast(), stream.cast())
+        }?)));
         #[cfg(not(feature = "cuda"))]
         Self::gpu(0)
     }
@@ -151,7 +156,7 @@ impl Device {
     }
 
     /// The same machine with no more than `bytes` of memory, whatever it has; of its clones too.
-    pub fn limited(self, bytes: u64) -> Device {
+    pub fn with_memory_limit(self, bytes: u64) -> Device {
         self.usage.most.store(bytes, Ordering::Relaxed);
         self
     }
@@ -268,7 +273,7 @@ impl Device {
     /// Memory for `len` elements: zeroed (poisoned under the sanitizer).
     ///
     /// # Errors
-    /// [`Error::OutOfMemory`] when the machine has no more, or may use no more: see [`Device::limited`].
+    /// [`Error::OutOfMemory`] when the machine has no more, or may use no more: see [`Device::with_memory_limit`].
     pub fn buffer<T: Pod>(&self, len: usize) -> Result<Buffer<T>, Error> {
         self.usage.allows("memory was taken")?;
         self.usage.allocations.fetch_add(1, Ordering::Relaxed);

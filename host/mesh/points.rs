@@ -26,13 +26,13 @@ impl<'a> Points<'a> {
     /// Points of numbers one behind the other: x, y, z, x, y, z, …
     ///
     /// # Errors
-    /// [`Error::Choice`] for a number of numbers that is no multiple of three.
+    /// [`Error::InvalidArgument`] for a number of numbers that is no multiple of three.
     pub fn flat<T: Coordinate>(numbers: &'a [T]) -> Result<Points<'a>, Error> {
         let (points, rest) = numbers.as_chunks();
         if rest.is_empty() {
             return Ok(T::points(points));
         }
-        Err(Error::Choice {
+        Err(Error::InvalidArgument {
             what: format!("{} numbers, which are no whole points", numbers.len()),
             advice: "give three numbers a point".into(),
         })
@@ -41,7 +41,7 @@ impl<'a> Points<'a> {
     /// Points of another library, as glam's `Vec3` and `DVec3`: types of three numbers and nothing else, which bytemuck knows.
     ///
     /// # Errors
-    /// [`Error::Choice`] for a type of another size, or with another alignment.
+    /// [`Error::InvalidArgument`] for a type of another size, or with another alignment.
     pub fn of<T: Coordinate, P: NoUninit>(points: &'a [P]) -> Result<Points<'a>, Error> {
         if size_of::<P>() != 3 * size_of::<T>() {
             return Err(no_points::<P>());
@@ -127,7 +127,7 @@ impl<'a> From<&'a Positions> for Points<'a> {
 }
 
 fn no_points<P>() -> Error {
-    Error::Choice {
+    Error::InvalidArgument {
         what: format!("points of type {}, which is not three numbers alone", std::any::type_name::<P>()),
         advice: "give a type of three f32 or three f64 without padding".into(),
     }

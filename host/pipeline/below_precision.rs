@@ -41,7 +41,7 @@ impl BelowPrecision {
             let tolerance = finest.or(certified.tolerance);
             return BelowPrecision::of_listed(bodies, &Certified { tolerance, ..*certified });
         }
-        let is_known = !bodies.iter().any(Body::is_away);
+        let is_known = !bodies.iter().any(Body::is_device_resident);
         is_known.then(|| BelowPrecision::of_earliest(bodies, certified, finest.is_some())).flatten()
     }
 
@@ -52,7 +52,7 @@ impl BelowPrecision {
         // Positive, or not asked for.
         let tolerance = certified.tolerance.filter(|t| *t > 0.0)?;
         // How large it is where only the device knows, the kernels tell.
-        let away = bodies.iter().any(Body::is_away);
+        let away = bodies.iter().any(Body::is_device_resident);
         let extent = || extent(&bodies.iter().map(bounds).fold(NOTHING, union));
         (away || tolerance < finest * extent()).then_some(BelowPrecision::Listed { tolerance, finest })
     }
@@ -86,7 +86,7 @@ impl BelowPrecision {
 
     /// The largest coordinate of the bodies whose place the host knows.
     pub fn largest(bodies: &[Body]) -> f64 {
-        let known = bodies.iter().filter(|body| !body.is_away() && body.face_count() > 0);
+        let known = bodies.iter().filter(|body| !body.is_device_resident() && body.face_count() > 0);
         known.map(|body| largest_of(&bounds(body))).fold(0.0, f64::max)
     }
 
@@ -161,10 +161,10 @@ fn may_meet(bodies: &[Body], [i, j]: [usize; 2]) -> bool {
         return false;
     }
     if i == j {
-        return a.meets_itself();
+        return a.self_collides();
     }
-    let is_static = |body: &Body| body.kind() == BodyKind::Static;
-    a.meets().allows(b.meets()) && !(is_static(a) && is_static(b))
+    let is_static = |body: &Body| body.kind() == BodyKind::Fixed;
+    a.filter().allows(b.filter()) && !(is_static(a) && is_static(b))
 }
 
 /// A part of the largest coordinate by which boxes grow: more than what rounding adds to a volume.

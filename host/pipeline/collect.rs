@@ -5,8 +5,8 @@ mod features;
 use super::counts::Counts;
 use super::{Found, Hits, Layout, Listed, Stages};
 use crate::contacts::{
-    Closest, Contact, Contacts, Degraded, Front, Kind, NearPair, NearestTriangles, Queues, Rows, Stats,
-    Status, TrianglePair, sort,
+    Caveat, Closest, Contact, Contacts, Front, Kind, NearPair, NearestTriangles, Queues, Rows, Stats, Status,
+    TrianglePair, sort,
 };
 use crate::error::Error;
 use crate::memory;
@@ -33,13 +33,13 @@ pub fn collect(
     let of_triangles = matches!(found.listed, Listed::Pairs(_) | Listed::Nearest(_));
     let starts_crossing = found.is_start_checked.then(|| count(counter::STARTS_CROSSING));
     let mut contacts = Contacts::new(rows(&found, layout, looks), *query, starts_crossing);
-    contacts.unresolved = match found.listed {
-        Listed::Earliest { unresolved, .. } => unresolved.into(),
+    contacts.undecided = match found.listed {
+        Listed::Earliest { undecided, .. } => undecided.into(),
         Listed::Pairs(_) | Listed::Hits { .. } | Listed::Near(_) | Listed::Nearest(_) => {
-            count(counter::UNRESOLVED)
+            count(counter::UNDECIDED)
         }
     };
-    contacts.degraded = degraded(&found);
+    contacts.caveats = caveats(&found);
     contacts.stats = Stats {
         stages,
         triangle_pairs: count(counter::PAIRS),
@@ -49,8 +49,8 @@ pub fn collect(
         escalated_vf_ee: [count(counter::VF_ESCALATED), count(counter::EE_ESCALATED)],
         open_vf_ee: [count(counter::VF_OPEN), count(counter::EE_OPEN)],
         sliced_vf_ee: [count(counter::VF_HARD), count(counter::EE_HARD)],
-        undecided: count(counter::UNDECIDED),
-        undecided_wide: count(counter::UNDECIDED_WIDE),
+        uncertain: count(counter::UNCERTAIN),
+        uncertain_wide: count(counter::UNCERTAIN_WIDE),
         steps: count(counter::STEPS),
         spilled: counter::SPILLED.map(count).iter().sum(),
         reruns: found.reruns,
@@ -82,7 +82,7 @@ fn rows(found: &Found, layout: &Layout, looks: &Looks) -> Rows {
         Listed::Hits { hits, certified } => {
             let contact = |(kind, bodies, [a, b]): Features, verdict: &Verdict| {
                 let status = Status::of(*certified, verdict);
-                Contact { kind, bodies, a, b, toi: verdict.toi, toi_hi: verdict.toi_hi, status }
+                Contact { kind, bodies, a, b, toi: verdict.toi, toi_upper: verdict.toi_upper, status }
             };
             let [of_vf, of_ee] = hits.each();
             let vf = |hit: &Hit| contact(vertex_face(layout, [hit.a, hit.b]), &hit.verdict);
@@ -127,24 +127,24 @@ fn nearest_triangles(hit: &NearestHit, layout: &Layout) -> NearestTriangles {
 }
 
 /// All that holds of a frame, as the kernels counted.
-fn degraded(found: &Found) -> Vec<Degraded> {
+fn caveats(found: &Found) -> Vec<Caveat> {
     let mut all = Vec::new();
     let count = |which| found.counters[which];
-    let unsure = count(counter::UNRESOLVED) - count(counter::ENDED_UNRESOLVED);
+    let unsure = count(counter::UNDECIDED) - count(counter::ENDED_UNDECIDED);
     let (ended, below_precision) = (count(counter::ENDED), count(counter::BELOW_PRECISION));
-    let mut put = |count: u64, reason: Degraded| all.extend((count > 0).then_some(reason));
+    let mut put = |count: u64, reason: Caveat| all.extend((count > 0).then_some(reason));
     match found.listed {
-        Listed::Near(_) => put(unsure, Degraded::DistanceBelowPrecision { pairs: unsure }),
-        Listed::Earliest { unresolved, .. } => put(unresolved as u64, Degraded::EarliestUnresolved),
+        Listed::Near(_) => put(unsure, Caveat::DistanceBelowPrecision { pairs: unsure }),
+        Listed::Earliest { undecided, .. } => put(undecided as u64, Caveat::EarliestUndecided),
         Listed::Pairs(_) | Listed::Hits { .. } | Listed::Nearest(_) => {
-            put(unsure, Degraded::Unresolved { pairs: unsure });
+            put(unsure, Caveat::Undecided { pairs: unsure });
         }
     }
-    put(ended, Degraded::Boxes { pairs: ended });
-    put(below_precision, Degraded::ToleranceBelowPrecision { pairs: Some(below_precision) });
+    put(ended, Caveat::Iterations { pairs: ended });
+    put(below_precision, Caveat::ToleranceBelowPrecision { pairs: Some(below_precision) });
     let unlisted = matches!(found.listed, Listed::Earliest { below_precision: true, .. });
-    put(unlisted as u64, Degraded::ToleranceBelowPrecision { pairs: None });
-    put(found.front_dropped as u64, Degraded::FrontDropped);
+    put(unlisted as u64, Caveat::ToleranceBelowPrecision { pairs: None });
+    put(found.front_dropped as u64, Caveat::FrontDropped);
     all
 }
 

@@ -7,7 +7,7 @@ use crate::device::Device;
 use crate::error::Error;
 use crate::memory;
 use crate::query::{ListedRows, Query};
-use crate::scene::Meets;
+use crate::scene::CollisionFilter;
 use nearmiss_kernels::abi::{BodyRecord, Counter, EVERY, counter};
 
 /// Smaller answers are not compared with the memory that is free, in bytes.
@@ -172,12 +172,12 @@ fn groups(triangles: &mut [u32], all: &mut Vec<Group>, (layout, positions): (&La
 fn may_meet(layout: &Layout, a: usize, b: usize) -> bool {
     let is_static = |body| layout.trees[1].contains(&body);
     if a == b {
-        return layout.records[a].self_contact != 0 && !is_static(a);
+        return layout.records[a].self_collision != 0 && !is_static(a);
     }
     let meets = |body: usize| {
         let BodyRecord { environment, group, mask, .. } = layout.records[body];
         let environment = (environment != EVERY).then_some(environment);
-        Meets { environment, group, mask, ..Meets::default() }
+        CollisionFilter { environment, group, mask, ..CollisionFilter::default() }
     };
     meets(a).allows(&meets(b)) && !(is_static(a) && is_static(b))
 }
@@ -242,7 +242,7 @@ mod tests {
     use super::*;
     use crate::device::Backend;
     use crate::samples::soup;
-    use crate::scene::{Meets, Scene};
+    use crate::scene::{CollisionFilter, Scene};
     use crate::{Body, Detector};
 
     fn points(bodies: &[Body]) -> Vec<[f64; 3]> {
@@ -261,8 +261,12 @@ mod tests {
 
     #[test]
     fn what_is_certain_is_there() {
-        let bodies = |meets: fn() -> Meets| vec![soup(90, 1, false).with(meets()), soup(70, 2, false)];
-        for meets in [Meets::default as fn() -> Meets, Meets::and_itself] {
+        let bodies = |meets: fn() -> CollisionFilter| {
+            vec![soup(90, 1, false).with_filter(meets()), soup(70, 2, false)]
+        };
+        for meets in
+            [CollisionFilter::default as fn() -> CollisionFilter, CollisionFilter::with_self_collision]
+        {
             let mut some = 0;
             for distance in [0.01, 0.1, 0.3, 0.6, 1.0] {
                 let (certain, found) = rows(bodies(meets), distance);
@@ -279,7 +283,7 @@ mod tests {
     #[test]
     fn bodies_that_do_not_meet_have_no_rows() {
         let fixed = || Body::fixed(soup(30, 1, false).frames().swap_remove(0));
-        let bodies = [fixed(), fixed(), soup(40, 2, false).with(Meets::default())];
+        let bodies = [fixed(), fixed(), soup(40, 2, false).with_filter(CollisionFilter::default())];
         let layout = Layout::new(&bodies, Query::near(1.0).kind());
         let tested = |a, b| may_meet(&layout, a, b);
         assert!(!tested(0, 0) && !tested(0, 1) && tested(0, 2) && tested(1, 2));

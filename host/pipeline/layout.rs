@@ -3,7 +3,7 @@
 use super::hubs;
 use crate::mesh::Topology;
 use crate::query::QueryKind;
-use crate::scene::{Body, BodyId, BodyKind, Meets};
+use crate::scene::{Body, BodyId, BodyKind, CollisionFilter};
 use nearmiss_emulator::Looks;
 use nearmiss_kernels::abi::{BodyRecord, EVERY, NodeFilter};
 use std::sync::Arc;
@@ -61,22 +61,22 @@ impl Layout {
         let mut all = Layout { starts: vec![Offsets::default()], ..Layout::default() };
         let mut at = Offsets::default();
         let mut faces = Vec::new();
-        let mut environments: Vec<u32> = bodies.iter().filter_map(|body| body.meets().environment).collect();
+        let mut environments: Vec<u32> = bodies.iter().filter_map(|body| body.filter().environment).collect();
         environments.sort_unstable();
         environments.dedup();
         let rank = |environment: u32| environments.partition_point(|&other| other < environment) as u32;
         for (i, body) in bodies.iter().enumerate() {
-            let Meets { environment, group, mask, .. } = *body.meets();
+            let CollisionFilter { environment, group, mask, .. } = *body.filter();
             all.records.push(BodyRecord {
                 triangle: at.triangle,
                 vertex: at.vertex,
                 environment: environment.map_or(EVERY, rank),
-                self_contact: (body.meets_itself() && kind.is_within_bodies()).into(),
+                self_collision: (body.self_collides() && kind.is_within_bodies()).into(),
                 group,
                 mask,
             });
             if body.face_count() > 0 {
-                all.trees[usize::from(body.kind() == BodyKind::Static)].push(i);
+                all.trees[usize::from(body.kind() == BodyKind::Fixed)].push(i);
             }
             faces.extend(body.faces().iter().map(|face| face.map(|v| v + at.vertex)));
             at.vertex += body.vertex_count() as u32;
@@ -108,7 +108,7 @@ impl Layout {
     pub fn seen_by(&self, bodies: &[Body], kind: QueryKind) -> Layout {
         let mut layout = Layout { hubs: Arc::default(), rims: Arc::default(), ..self.clone() };
         for (record, body) in layout.records.iter_mut().zip(bodies) {
-            record.self_contact = (body.meets_itself() && kind.is_within_bodies()).into();
+            record.self_collision = (body.self_collides() && kind.is_within_bodies()).into();
         }
         layout
     }
@@ -122,7 +122,7 @@ impl Layout {
     pub fn single(triangles: u32) -> Layout {
         Layout {
             starts: vec![Offsets::default(), Offsets { triangle: triangles, ..Offsets::default() }],
-            records: vec![BodyRecord { self_contact: 1, ..BodyRecord::default() }],
+            records: vec![BodyRecord { self_collision: 1, ..BodyRecord::default() }],
             trees: [vec![0], Vec::new()],
             ..Layout::default()
         }
@@ -131,7 +131,7 @@ impl Layout {
     /// Finds the hubs of bodies that are tested against themselves, for a query that keeps adjacent pairs or not. Cost:
     /// linear.
     pub fn find_hubs(&mut self, keeps_adjacent: bool) {
-        let own = |record: &BodyRecord| record.self_contact != 0;
+        let own = |record: &BodyRecord| record.self_collision != 0;
         if !self.records.iter().any(own) {
             return;
         }
@@ -158,7 +158,7 @@ impl Layout {
     pub fn may_meet(&self) -> bool {
         let [moving, fixed] = &self.trees;
         let alone = moving.len() == 1 && fixed.is_empty();
-        !moving.is_empty() && (!alone || self.records[moving[0]].self_contact != 0)
+        !moving.is_empty() && (!alone || self.records[moving[0]].self_collision != 0)
     }
 
     /// Whether which pairs are tested depends on their bodies, or on hubs.

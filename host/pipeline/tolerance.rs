@@ -48,12 +48,12 @@ impl Tolerances {
         let mut order: Vec<usize> = (0..bodies.len()).filter(|&i| bodies[i].face_count() > 0).collect();
         order.sort_by(|&i, &j| all[i].total_cmp(&all[j]));
         // That of each pair of which the first body has the smaller one.
-        let moves = |i: usize| bodies[i].kind() != BodyKind::Static;
+        let moves = |i: usize| bodies[i].kind() != BodyKind::Fixed;
         let mut mover_follows = false;
         let mut follows = false;
         let mut pairs = Vec::with_capacity(order.len());
         for &i in order.iter().rev() {
-            if bodies[i].meets_itself() || mover_follows || (follows && moves(i)) {
+            if bodies[i].self_collides() || mover_follows || (follows && moves(i)) {
                 pairs.push(smaller(all[i], all[i]));
             }
             follows = true;
@@ -78,10 +78,10 @@ impl Tolerances {
 mod tests {
     use super::*;
     use crate::samples::right_triangle;
-    use crate::scene::{Meets, Motion};
+    use crate::scene::{CollisionFilter, Motion};
 
     fn triangle(size: f64) -> Body {
-        Body::still(right_triangle(size))
+        Body::deformable(right_triangle(size))
     }
 
     #[test]
@@ -95,7 +95,7 @@ mod tests {
 
     #[test]
     fn those_of_a_scene_are_those_of_its_pairs() {
-        let alone = |body: Body| body.with(Meets::others());
+        let alone = |body: Body| body.with_filter(CollisionFilter::without_self_collision());
         let (small, large) = (2f64.powi(-12), 2f64.powi(-2));
         let fixed = |size| Body::fixed(right_triangle(size));
         let point = || alone(triangle(0.0));
@@ -118,8 +118,8 @@ mod tests {
             assert_eq!(!found.bodies.is_empty(), by_body, "{bodies:?}");
             // Each pair by itself.
             let meets = |i: usize, j: usize| {
-                let fixed = |i: usize| bodies[i].kind() == BodyKind::Static;
-                if i == j { bodies[i].meets_itself() } else { !(fixed(i) && fixed(j)) }
+                let fixed = |i: usize| bodies[i].kind() == BodyKind::Fixed;
+                if i == j { bodies[i].self_collides() } else { !(fixed(i) && fixed(j)) }
             };
             let mut pairs: Vec<f64> = (0..bodies.len())
                 .flat_map(|i| (0..=i).map(move |j| (i, j)))
@@ -144,7 +144,7 @@ mod tests {
         }
         assert!(body.rest());
         assert_eq!(body.default_tolerance(), 2f64.powi(-12));
-        let remade = Body::still(body.frames().remove(0));
+        let remade = Body::deformable(body.frames().remove(0));
         assert_eq!(remade.default_tolerance(), 2f64.powi(-2));
     }
 }

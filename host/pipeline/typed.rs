@@ -69,7 +69,7 @@ pub trait Pipeline: repeat::Again + submit::Submits + Send {
     /// The place of a query; its memory is made if there is none of its shape. From then on its numbers are those.
     ///
     /// # Errors
-    /// [`Error::Choice`] if work cannot be divided; those of the device.
+    /// [`Error::InvalidArgument`] if work cannot be divided; those of the device.
     fn take_query(&mut self, parts: &QueryParts) -> Result<usize, Error>;
     /// Moves bodies to where they are now, those that are named, in ascending order.
     ///
@@ -108,7 +108,7 @@ pub trait Pipeline: repeat::Again + submit::Submits + Send {
     /// From here on it finds its share alone.
     ///
     /// # Errors
-    /// [`Error::Choice`] if work cannot be divided; those of the device.
+    /// [`Error::InvalidArgument`] if work cannot be divided; those of the device.
     fn take(&mut self, query: usize, share: Share) -> Result<(), Error>;
     /// Cost of each tile of its share in the last frame, of all tiles; nothing if there is one share.
     ///

@@ -21,21 +21,21 @@ pub struct Certified {
     /// default of its two bodies,
     /// [`Certified::TOLERANCE`] of a body's mean edge.
     pub tolerance: Option<f64>,
-    /// The most boxes that are looked at for a pair before it is left unresolved; `None` for
+    /// The most boxes that are looked at for a pair before it is left undecided; `None` for
     /// [`Certified::BUDGET`]. Refused in f32 alone without a separation, where no boxes are tested.
     pub budget: Option<u32>,
     /// Features that come this near are in contact, a length; times are then of coming so near. 0 for touching.
     pub separation: f64,
 }
 
-/// What a certified solver computes in. None misses; they differ in what they leave unresolved, and in cost.
+/// What a certified solver computes in. None misses; they differ in what they leave undecided, and in cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum CertifiedPrecision {
     /// In f32 and, where that is not enough, in f64 and beyond.
     #[default]
     Mixed,
-    /// In f32 alone: leaves more unresolved.
+    /// In f32 alone: leaves more undecided.
     F32,
     /// In f64 alone: costs more.
     F64,
@@ -86,7 +86,7 @@ impl Certified {
         } else {
             return Ok(());
         };
-        Err(Error::Choice { what: what.into(), advice: advice.into() })
+        Err(Error::InvalidArgument { what: what.into(), advice: advice.into() })
     }
 
     /// Whether a pair may be searched by boxes, so that a budget means something.

@@ -11,7 +11,7 @@ use crate::error::Error;
 ///
 /// let triangle = |z: f32| {
 ///     let corners = vec![[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]];
-///     Mesh::new("a triangle", Positions::F32(corners), vec![[0, 1, 2]]).map(Body::still)
+///     Mesh::new("a triangle", Positions::F32(corners), vec![[0, 1, 2]]).map(Body::deformable)
 /// };
 /// let bodies = vec![triangle(0.0)?, triangle(0.25)?];
 /// let nearest = Detector::new(Device::open(Backend::Cpu, None)?, bodies)?.query(&Distance::default())?;
@@ -52,7 +52,7 @@ impl Question for Distance {
     fn check(&self) -> Result<(), Error> {
         match self.search.traversal {
             None | Some(Traversal::NearestFirst) => Ok(()),
-            Some(other) => Err(Error::Choice {
+            Some(other) => Err(Error::InvalidArgument {
                 what: format!("a distance by the traversal {other:?}"),
                 advice: "leave the traversal to the query: it has one of its own, nearest first".into(),
             }),

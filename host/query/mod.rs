@@ -174,18 +174,18 @@ impl Query {
     /// Whether its numbers mean something: lengths are lengths, queues have possible sizes.
     ///
     /// # Errors
-    /// [`Error::Choice`] with what would.
+    /// [`Error::InvalidArgument`] with what would.
     pub fn check(&self) -> Result<(), Error> {
         self.question().check()?;
         if self.kind().takes_traversals() && self.search().traversal == Some(Traversal::NearestFirst) {
-            return Err(Error::Choice {
+            return Err(Error::InvalidArgument {
                 what: format!("a {} query by the traversal nearest first", self.kind()),
                 advice: "keep that for distances, which have no other; choose another or none".into(),
             });
         }
         let by_tiles = self.search().broad == Some(Broad::Tiles) || self.search().order.is_some();
         if !self.kind().takes_traversals() && by_tiles {
-            return Err(Error::Choice {
+            return Err(Error::InvalidArgument {
                 what: format!("a {} query by tiles", self.kind()),
                 advice: "choose trees, or nothing: the nearest is sought down a tree".into(),
             });

@@ -55,7 +55,7 @@ impl Question for Near {
         if self.distance > 0.0 && self.distance < f64::INFINITY {
             return Ok(());
         }
-        Err(Error::Choice {
+        Err(Error::InvalidArgument {
             what: format!("a distance of {}", self.distance),
             advice: "give a length above 0".into(),
         })

@@ -109,11 +109,11 @@ impl QueueShape {
     /// Whether the sizes are possible.
     ///
     /// # Errors
-    /// [`Error::Choice`].
+    /// [`Error::InvalidArgument`].
     pub fn check(&self) -> Result<(), Error> {
         sizes(self.cores, self.local, self.segment)?;
         if self.take == 0 || self.idle.1 == 0 || self.idle.0 > self.idle.1 {
-            return Err(Error::Choice {
+            return Err(Error::InvalidArgument {
                 what: format!("queues that take {} units, idle share {:?}", self.take, self.idle),
                 advice: "take at least 1, and give the idle share as a fraction from 0 to 1".into(),
             });
@@ -134,11 +134,11 @@ impl StealShape {
     /// Whether the sizes are possible.
     ///
     /// # Errors
-    /// [`Error::Choice`].
+    /// [`Error::InvalidArgument`].
     pub fn check(&self) -> Result<(), Error> {
         sizes(self.cores, self.local, self.segment)?;
         match self.pool {
-            Some(pool) if pool > Self::MOST_POOL => Err(Error::Choice {
+            Some(pool) if pool > Self::MOST_POOL => Err(Error::InvalidArgument {
                 what: format!("a pool of {pool} chunks"),
                 advice: format!("use at most {}", Self::MOST_POOL),
             }),
@@ -156,7 +156,7 @@ fn sizes(cores: Option<u32>, local: u32, segment: u32) -> Result<(), Error> {
     if fits {
         return Ok(());
     }
-    Err(Error::Choice {
+    Err(Error::InvalidArgument {
         what: format!("{} queues of {local} units on chip and {segment} behind", cores.unwrap_or(0)),
         advice: format!("use 1 to {MOST_CORES} queues of 1 to {ROOM} units"),
     })

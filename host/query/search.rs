@@ -23,7 +23,7 @@ pub struct Search {
 impl Search {
     /// Whether tiles or trees are built again by themselves.
     pub(crate) fn rebuilds(&self) -> bool {
-        self.rebuild != Some(Rebuild::Never)
+        self.rebuild != Some(Rebuild::Manual)
     }
 
     /// Whether trees were asked for, by a choice that is theirs.
@@ -46,13 +46,13 @@ impl Search {
     /// Whether queues have possible sizes, and tiles no choices of trees.
     pub(super) fn check(&self) -> Result<(), Error> {
         if self.broad == Some(Broad::Tiles) && self.is_of_trees() {
-            return Err(Error::Choice {
+            return Err(Error::InvalidArgument {
                 what: "tiles with a refit or a traversal of trees".into(),
                 advice: "choose trees, or leave out the refit and the traversal: tiles have one way".into(),
             });
         }
         if self.order.is_some() && (self.broad == Some(Broad::Tree) || self.is_of_trees()) {
-            return Err(Error::Choice {
+            return Err(Error::InvalidArgument {
                 what: "an order of tiles for trees".into(),
                 advice: "choose tiles, or leave out the order: trees are built along Morton's curve".into(),
             });
@@ -145,7 +145,7 @@ named! {
     /// hashes of lists between stages may.
     pub enum Rebuild {
         /// By [`Detector::rebuild`](crate::Detector::rebuild) alone.
-        Never = "never",
+        Manual = "manual",
         /// By itself, too, the default: before the first frame after bodies were placed for the
         /// first time, and before the frame at which volume tests beyond those of the first frame
         /// after building have cost as much as building, by count. The count is the same on every

@@ -11,7 +11,7 @@ named! {
         Moller = "moller",
         /// Continuous: isolated roots, in f32 and, where that is not enough, in f64 and beyond. Never misses, is never late.
         Certified = "certified",
-        /// The same in f32 alone: leaves more unresolved.
+        /// The same in f32 alone: leaves more undecided.
         CertifiedF32 = "certified-f32",
         /// The same in f64 alone: costs more.
         CertifiedF64 = "certified-f64",
@@ -56,10 +56,10 @@ impl Solver {
                 "moller: a float test that can miss contacts and invent some; use exact for certainty"
             }
             Solver::Certified => {
-                "certified: no contact is missed, none is late; what is nearer than the tolerance may be listed as unresolved"
+                "certified: no contact is missed, none is late; what is nearer than the tolerance may be listed as undecided"
             }
             Solver::CertifiedF32 => {
-                "certified-f32: no contact is missed, none is late; what f32 cannot tell is listed as unresolved"
+                "certified-f32: no contact is missed, none is late; what f32 cannot tell is listed as undecided"
             }
             Solver::CertifiedF64 => "certified-f64: as certified, in f64 throughout",
             Solver::Bounded => {

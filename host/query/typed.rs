@@ -21,21 +21,21 @@ pub trait TypedQuery: Copy + Into<Query> + sealed::Sealed {
     /// The rows of its answer.
     type Rows;
 
-    /// Those of any answer to it; `is_unresolved` is whether an earliest time is uncertain.
+    /// Those of any answer to it; `is_undecided` is whether an earliest time is uncertain.
     #[doc(hidden)]
-    fn rows(rows: Rows, is_unresolved: bool) -> Self::Rows;
+    fn rows(rows: Rows, is_undecided: bool) -> Self::Rows;
 }
 
 /// From lines of a query, its rows and the way to them makes the implementations. Rows of another query are empty ones: no query has them.
 macro_rules! rows {
-    ($($query:ty => $rows:ty, $pattern:pat => $take:expr, $none:expr, $is_unresolved:ident;)+) => {
+    ($($query:ty => $rows:ty, $pattern:pat => $take:expr, $none:expr, $is_undecided:ident;)+) => {
         $(
             impl sealed::Sealed for $query {}
 
             impl TypedQuery for $query {
                 type Rows = $rows;
 
-                fn rows(rows: Rows, $is_unresolved: bool) -> $rows {
+                fn rows(rows: Rows, $is_undecided: bool) -> $rows {
                     if let $pattern = rows { $take } else { $none }
                 }
             }
@@ -44,12 +44,12 @@ macro_rules! rows {
 }
 
 rows! {
-    Discrete => Vec<TrianglePair>, Rows::Pairs(pairs) => pairs, Vec::new(), _is_unresolved;
-    Continuous => Vec<Contact>, Rows::Contacts(contacts) => contacts, Vec::new(), _is_unresolved;
+    Discrete => Vec<TrianglePair>, Rows::Pairs(pairs) => pairs, Vec::new(), _is_undecided;
+    Continuous => Vec<Contact>, Rows::Contacts(contacts) => contacts, Vec::new(), _is_undecided;
     Earliest => Option<FirstContact>,
-        Rows::Earliest(toi) => toi.map(|toi| FirstContact { toi, is_unresolved }), None, is_unresolved;
-    Near => Vec<NearPair>, Rows::Near(pairs) => pairs, Vec::new(), _is_unresolved;
-    Distance => Option<NearestTriangles>, Rows::Distance(nearest) => nearest, None, _is_unresolved;
+        Rows::Earliest(toi) => toi.map(|toi| FirstContact { toi, is_undecided }), None, is_undecided;
+    Near => Vec<NearPair>, Rows::Near(pairs) => pairs, Vec::new(), _is_undecided;
+    Distance => Option<NearestTriangles>, Rows::Distance(nearest) => nearest, None, _is_undecided;
 }
 
 impl sealed::Sealed for Query {}

@@ -1,7 +1,7 @@
 //! A body: one mesh at one frame, or at the two ends of a step, and what it does in a scene.
 
 use super::place::radius;
-use super::{BodyKind, DeviceMotion, Meets, Pose};
+use super::{BodyKind, CollisionFilter, DeviceMotion, Pose};
 use crate::Error;
 #[cfg(doc)]
 use crate::mesh::Problem;
@@ -16,7 +16,7 @@ pub struct Body {
     pub(super) positions_t0: Positions,
     pub(super) positions_t1: Option<Positions>,
     pub(super) kind: BodyKind,
-    pub(super) meets: Meets,
+    pub(super) filter: CollisionFilter,
     /// Of a rigid body: at both ends of the step.
     pub(super) poses: [Pose; 2],
     /// Of a rigid body: no vertex of a face is farther from where it turns.
@@ -51,7 +51,7 @@ pub(crate) enum Away {
 
 impl Body {
     /// A body at one frame.
-    pub fn still(mesh: Mesh) -> Body {
+    pub fn deformable(mesh: Mesh) -> Body {
         let Mesh { name, positions, faces } = mesh;
         Body {
             name,
@@ -59,7 +59,7 @@ impl Body {
             positions_t0: positions,
             positions_t1: None,
             kind: BodyKind::Deformable,
-            meets: Meets::default(),
+            filter: CollisionFilter::default(),
             poses: [Pose::default(); 2],
             radius: 0.0,
             tolerance: Kept::default(),
@@ -69,25 +69,25 @@ impl Body {
 
     /// A body that never moves.
     pub fn fixed(mesh: Mesh) -> Body {
-        Body { kind: BodyKind::Static, ..Body::still(mesh) }
+        Body { kind: BodyKind::Fixed, ..Body::deformable(mesh) }
     }
 
     /// A body that moves as one; without a pose it is where its mesh is.
     pub fn rigid(mesh: Mesh) -> Body {
         let points = mesh.faces.iter().flatten().filter_map(|&v| mesh.positions.get_f64(v as usize));
         let radius = radius(points);
-        Body { kind: BodyKind::Rigid, radius, ..Body::still(mesh) }
+        Body { kind: BodyKind::Rigid, radius, ..Body::deformable(mesh) }
     }
 
     /// No vertices, no triangles: what a body leaves that was taken out of a scene.
     pub(crate) fn none() -> Body {
         let nothing = Positions::F32(Vec::new());
-        Body::still(Mesh { name: "nothing".into(), positions: nothing, faces: Vec::new() })
+        Body::deformable(Mesh { name: "nothing".into(), positions: nothing, faces: Vec::new() })
     }
 
     /// The body, meeting those.
-    pub fn with(self, meets: Meets) -> Body {
-        Body { meets, ..self }
+    pub fn with_filter(self, filter: CollisionFilter) -> Body {
+        Body { filter, ..self }
     }
 
     /// What the body does from frame to frame.
@@ -96,30 +96,30 @@ impl Body {
     }
 
     /// Which bodies it may meet.
-    pub fn meets(&self) -> &Meets {
-        &self.meets
+    pub fn filter(&self) -> &CollisionFilter {
+        &self.filter
     }
 
-    /// Whether it is tested against itself: see [`Meets::is_own`].
-    pub fn meets_itself(&self) -> bool {
-        self.meets.is_own(self.kind)
+    /// Whether it is tested against itself: see [`CollisionFilter::self_collides`].
+    pub fn self_collides(&self) -> bool {
+        self.filter.self_collides(self.kind)
     }
 
-    /// Refuses self-contact of a static body, which would do nothing. Detectors check it, and whoever reads bodies may.
+    /// Refuses self-collision of a static body, which would do nothing. Detectors check it, and whoever reads bodies may.
     ///
     /// # Errors
-    /// [`Error::Choice`], naming the body.
-    pub fn check_meets(&self) -> Result<(), Error> {
-        if self.kind == BodyKind::Static && self.meets.self_contact == Some(true) {
-            return Err(Error::Choice {
-                what: format!("self-contact of {}, which is static and never meets itself", self.name),
-                advice: "leave self-contact out, or make the body rigid or deformable".into(),
+    /// [`Error::InvalidArgument`], naming the body.
+    pub fn check_filter(&self) -> Result<(), Error> {
+        if self.kind == BodyKind::Fixed && self.filter.self_collision == Some(true) {
+            return Err(Error::InvalidArgument {
+                what: format!("self-collision of {}, which is static and never meets itself", self.name),
+                advice: "leave self-collision out, or make the body rigid or deformable".into(),
             });
         }
         Ok(())
     }
 
-    /// The poses of a rigid body at both ends of the step; old ones where it [is away](Body::is_away).
+    /// The poses of a rigid body at both ends of the step; old ones where it [is away](Body::is_device_resident).
     pub fn poses(&self) -> [Pose; 2] {
         self.poses
     }
@@ -139,7 +139,7 @@ impl Body {
             (a, b) if a.is_f64() == b.is_f64() => (a, b),
             (a, b) => (a.promoted(), b.promoted()),
         };
-        let still = Body::still(Mesh { name: t0.name, positions: positions_t0, faces: t0.faces });
+        let still = Body::deformable(Mesh { name: t0.name, positions: positions_t0, faces: t0.faces });
         Ok(Body { positions_t1: Some(positions_t1), ..still })
     }
 
@@ -154,12 +154,12 @@ impl Body {
     }
 
     /// Whether only the device knows where the body is: it was put there by [`Motion::OnDevice`](crate::scene::Motion::OnDevice), and
-    /// positions and poses here are those from before. [`Detector::fetch`](crate::Detector::fetch) brings them.
-    pub fn is_away(&self) -> bool {
+    /// positions and poses here are those from before. [`Detector::download_positions`](crate::Detector::download_positions) brings them.
+    pub fn is_device_resident(&self) -> bool {
         self.away.is_some()
     }
 
-    /// Positions at the start of the step, or of the only frame; old ones where the body [is away](Body::is_away).
+    /// Positions at the start of the step, or of the only frame; old ones where the body [is away](Body::is_device_resident).
     pub fn positions_t0(&self) -> &Positions {
         &self.positions_t0
     }

@@ -3,14 +3,14 @@
 //! A [`Scene`] is made on the host, once; a [`Detector`](crate::Detector) takes it to a device and asks it frame after frame.
 
 mod body;
-mod lent;
+mod device_motion;
 mod motion;
 mod place;
 mod pose;
 mod sides;
 
 pub use body::Body;
-pub use lent::{DeviceMotion, DevicePose, DeviceRows, Number};
+pub use device_motion::{DeviceMotion, DevicePose, DeviceRows, Number};
 pub use motion::Motion;
 pub(crate) use place::{Bounds, NOTHING, union};
 pub use pose::Pose;
@@ -43,7 +43,7 @@ impl fmt::Display for BodyId {
 #[non_exhaustive]
 pub enum BodyKind {
     /// It stands where it was made: its tree is built and fitted once, and it is never tested against what is static too.
-    Static,
+    Fixed,
     /// It moves as one: 7 numbers a frame and end of a step, applied on the device.
     Rigid,
     /// Each vertex moves by itself.
@@ -51,61 +51,61 @@ pub enum BodyKind {
     Deformable,
 }
 
-/// Which bodies a body may meet: see [`Body::with`].
+/// Which bodies a body may meet: see [`Body::with_filter`].
 ///
 /// Two bodies are tested against each other if they are of one environment, or one of them is of every, and if each is in a
 /// group that the other meets. Deformable bodies are tested against themselves by default, rigid bodies if
-/// `self_contact` is true, static bodies never.
+/// `self_collision` is true, static bodies never.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Meets {
+pub struct CollisionFilter {
     /// The environment; `None` for a body that is in every one. Bodies of different environments never meet.
     pub environment: Option<u32>,
     /// Bits of the groups that the body is in.
     pub group: u32,
     /// Bits of the groups that it meets.
     pub mask: u32,
-    /// Whether it is tested against itself; `None` for the default of its kind: see [`Meets::is_own`].
-    pub self_contact: Option<bool>,
+    /// Whether it is tested against itself; `None` for the default of its kind: see [`CollisionFilter::self_collides`].
+    pub self_collision: Option<bool>,
 }
 
-impl Meets {
+impl CollisionFilter {
     /// All other bodies, and itself.
-    pub fn and_itself() -> Meets {
-        Meets { self_contact: Some(true), ..Meets::default() }
+    pub fn with_self_collision() -> CollisionFilter {
+        CollisionFilter { self_collision: Some(true), ..CollisionFilter::default() }
     }
 
     /// All other bodies, not itself.
-    pub fn others() -> Meets {
-        Meets { self_contact: Some(false), ..Meets::default() }
+    pub fn without_self_collision() -> CollisionFilter {
+        CollisionFilter { self_collision: Some(false), ..CollisionFilter::default() }
     }
 
     /// All other bodies of that environment.
-    pub fn in_environment(environment: u32) -> Meets {
-        Meets { environment: Some(environment), ..Meets::default() }
+    pub fn in_environment(environment: u32) -> CollisionFilter {
+        CollisionFilter { environment: Some(environment), ..CollisionFilter::default() }
     }
 
     /// Whether environments and groups let two different bodies meet.
-    pub(crate) fn allows(&self, other: &Meets) -> bool {
+    pub(crate) fn allows(&self, other: &CollisionFilter) -> bool {
         let is_everywhere = self.environment.is_none() || other.environment.is_none();
         let is_together = is_everywhere || self.environment == other.environment;
         is_together && self.group & other.mask != 0 && other.group & self.mask != 0
     }
 
     /// Whether a body of that kind is tested against itself. Deformable bodies are by default, rigid bodies if
-    /// `self_contact` is true, static bodies never.
-    pub fn is_own(&self, kind: BodyKind) -> bool {
+    /// `self_collision` is true, static bodies never.
+    pub fn self_collides(&self, kind: BodyKind) -> bool {
         match kind {
-            BodyKind::Static => false,
-            BodyKind::Rigid => self.self_contact == Some(true),
-            BodyKind::Deformable => self.self_contact != Some(false),
+            BodyKind::Fixed => false,
+            BodyKind::Rigid => self.self_collision == Some(true),
+            BodyKind::Deformable => self.self_collision != Some(false),
         }
     }
 }
 
-impl Default for Meets {
+impl Default for CollisionFilter {
     /// All other bodies, in environment 0; itself if it is deformable.
-    fn default() -> Meets {
-        Meets { environment: Some(0), group: u32::MAX, mask: u32::MAX, self_contact: None }
+    fn default() -> CollisionFilter {
+        CollisionFilter { environment: Some(0), group: u32::MAX, mask: u32::MAX, self_collision: None }
     }
 }
 
@@ -120,7 +120,7 @@ impl Default for Meets {
 ///     Mesh::new("a triangle", Positions::F32(corners), vec![[0, 1, 2]])
 /// };
 /// let mut scene = Scene::new();
-/// let cloth = scene.add(Body::still(triangle(1.0)?));
+/// let cloth = scene.add(Body::deformable(triangle(1.0)?));
 /// let ball = scene.add(Body::rigid(triangle(0.5)?));
 /// let ground = scene.add(Body::fixed(triangle(0.0)?));
 /// assert_eq!([cloth, ball, ground].map(|body| body.index()), [0, 1, 2]);
@@ -232,15 +232,15 @@ mod tests {
     #[test]
     fn self_contact_is_the_default_of_deformable_bodies_alone_and_among_others() {
         let mesh = || soup(3, 1, false).frames().remove(0);
-        let kinds = [Body::still(mesh()), Body::rigid(mesh()), Body::fixed(mesh())];
+        let kinds = [Body::deformable(mesh()), Body::rigid(mesh()), Body::fixed(mesh())];
         for (meets, own) in [
-            (Meets::default(), [true, false, false]),
-            (Meets::in_environment(7), [true, false, false]),
-            (Meets::and_itself(), [true, true, false]),
-            (Meets::others(), [false; 3]),
+            (CollisionFilter::default(), [true, false, false]),
+            (CollisionFilter::in_environment(7), [true, false, false]),
+            (CollisionFilter::with_self_collision(), [true, true, false]),
+            (CollisionFilter::without_self_collision(), [false; 3]),
         ] {
-            let of = |scene: Scene| scene.bodies().iter().map(Body::meets_itself).collect::<Vec<_>>();
-            let bodies = kinds.clone().map(|body| body.with(meets));
+            let of = |scene: Scene| scene.bodies().iter().map(Body::self_collides).collect::<Vec<_>>();
+            let bodies = kinds.clone().map(|body| body.with_filter(meets));
             assert_eq!(of(bodies.to_vec().into()), own, "{meets:?}");
             for (body, own) in bodies.into_iter().zip(own) {
                 assert_eq!(of(body.into()), [own], "alone, {meets:?}");
@@ -250,9 +250,13 @@ mod tests {
 
     #[test]
     fn self_contact_of_a_static_body_is_refused_by_name() {
-        let body = |meets| Body::fixed(soup(3, 1, false).frames().remove(0)).with(meets);
-        let text = body(Meets::and_itself()).check_meets().expect_err("refused").to_string();
-        assert!(text.contains("self-contact of") && text.contains("static"), "{text}");
-        assert!(body(Meets::others()).check_meets().is_ok() && body(Meets::default()).check_meets().is_ok());
+        let body = |meets| Body::fixed(soup(3, 1, false).frames().remove(0)).with_filter(meets);
+        let text =
+            body(CollisionFilter::with_self_collision()).check_filter().expect_err("refused").to_string();
+        assert!(text.contains("self-collision of") && text.contains("static"), "{text}");
+        assert!(
+            body(CollisionFilter::without_self_collision()).check_filter().is_ok()
+                && body(CollisionFilter::default()).check_filter().is_ok()
+        );
     }
 }

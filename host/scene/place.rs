@@ -34,7 +34,7 @@ impl Body {
     /// Whether the body can be where a frame says. Cost: a pass over the positions of a deformable body.
     ///
     /// # Errors
-    /// [`Error::Choice`] for what its kind does not take; [`Error::Input`] for positions that no mesh may have, and for a pose
+    /// [`Error::InvalidArgument`] for what its kind does not take; [`Error::Input`] for positions that no mesh may have, and for a pose
     /// that is none.
     pub fn check(&self, input: &Motion) -> Result<(), Error> {
         match (self.kind, input) {
@@ -54,7 +54,7 @@ impl Body {
             (BodyKind::Rigid, Motion::OnDevice(DeviceMotion::Pose(_) | DeviceMotion::PoseStep(_))) => Ok(()),
             (kind, input) => {
                 let (given, advice) = match (kind, input) {
-                    (BodyKind::Static, _) => ("a frame", "make it rigid or deformable, or replace it"),
+                    (BodyKind::Fixed, _) => ("a frame", "make it rigid or deformable, or replace it"),
                     (
                         _,
                         Motion::Positions(_)
@@ -64,7 +64,7 @@ impl Body {
                     _ => ("a pose", "give a deformable body positions"),
                 };
                 let what = format!("{given} for {}, which is {}", self.name, kind.name());
-                Err(Error::Choice { what, advice: advice.into() })
+                Err(Error::InvalidArgument { what, advice: advice.into() })
             }
         }
     }
@@ -194,13 +194,13 @@ impl Body {
 
     /// A body that moved in the last step rests where that ended; whether it had moved.
     pub(crate) fn rest(&mut self) -> bool {
-        if self.is_away() {
+        if self.is_device_resident() {
             let moved = self.is_moving();
             self.away = Some(Away::Placed { moving: false });
             return moved;
         }
         match self.kind {
-            BodyKind::Static => false,
+            BodyKind::Fixed => false,
             BodyKind::Rigid => {
                 let [start, end] = self.poses;
                 self.poses = [end; 2];
@@ -248,7 +248,7 @@ impl Body {
 
     /// A box that holds a rigid body at both ends of the step, where the host knows it; none of others.
     pub(crate) fn posed_box(&self) -> Option<Bounds> {
-        let rigid = self.kind == BodyKind::Rigid && !self.faces.is_empty() && !self.is_away();
+        let rigid = self.kind == BodyKind::Rigid && !self.faces.is_empty() && !self.is_device_resident();
         rigid.then(|| union(self.around(&self.poses[0]), self.around(&self.poses[1])))
     }
 
@@ -262,7 +262,7 @@ impl BodyKind {
     /// Its name.
     pub(crate) fn name(self) -> &'static str {
         match self {
-            BodyKind::Static => "static",
+            BodyKind::Fixed => "static",
             BodyKind::Rigid => "rigid",
             BodyKind::Deformable => "deformable",
         }

@@ -38,7 +38,7 @@ mod tests {
     use crate::samples::right_triangle;
 
     fn triangle(size: f64) -> Body {
-        Body::still(right_triangle(size))
+        Body::deformable(right_triangle(size))
     }
 
     #[test]

@@ -17,7 +17,7 @@
 //! for note in file.notes() {
 //!     eprintln!("{note}");
 //! }
-//! let body = Body::still(file.into_mesh());
+//! let body = Body::deformable(file.into_mesh());
 //! # assert_eq!(body.name(), "square.obj");
 //! # Ok::<(), nearmiss::Error>(())
 //! ```

@@ -32,12 +32,12 @@ fn ask(device: &Device, body: &Body, query: Query) -> Result<(), Error> {
     };
     let of = |stage: fn(&Stages) -> f64| middle(frames.iter().map(stage).collect());
     println!(
-        "{:?}: {} triangle pairs, {:?} candidates, {} listed, {} unresolved",
+        "{:?}: {} triangle pairs, {:?} candidates, {} listed, {} undecided",
         query.kind(),
         contacts.stats.triangle_pairs,
         contacts.stats.candidates_vf_ee,
         contacts.len(),
-        contacts.unresolved
+        contacts.undecided
     );
     println!(
         "  ms: fit {:.3}, refit {:.3}, traverse {:.3}, narrow {:.3}; a frame {:.3}, order {:.3}, waited for {:.3}",
@@ -59,7 +59,7 @@ fn main() -> Result<(), Error> {
     let mut given = std::env::args().skip(1);
     let file = given.next().unwrap_or_default();
     let edges: f64 = given.next().and_then(|text| text.parse().ok()).unwrap_or(0.5);
-    let body = Body::still(MeshFile::read(Path::new(&file))?.into_mesh());
+    let body = Body::deformable(MeshFile::read(Path::new(&file))?.into_mesh());
     let device = Device::open(Backend::Auto, None)?;
     let edge = mean_side(std::slice::from_ref(&body));
     println!("{}: mean edge {edge}, asked within {edges} of it", device.name());

@@ -150,7 +150,7 @@ fn columns(entries: Entries) -> (u64, &'static [Column]) {
             &[
                 ("indices", 0, INDEX, &[2]),
                 ("toi", 8, REAL, &[]),
-                ("toi_hi", 16, REAL, &[]),
+                ("toi_upper", 16, REAL, &[]),
                 ("state", 24, STATE, &[]),
             ],
         ),
@@ -205,7 +205,7 @@ impl DeviceAnswer {
     }
 
     /// The lists, each a dictionary of columns with room for more rows than there are: `status` says how many are used. Triangle pairs:
-    /// indices (room, 2) int32. Contacts: indices, toi, toi_hi (room,) float64, state (room,) uint32 (1 contact, 2 unresolved; 4 more
+    /// indices (room, 2) int32. Contacts: indices, toi, toi_upper (room,) float64, state (room,) uint32 (1 contact, 2 undecided; 4 more
     /// where the budget ended). Near pairs: indices, squared_distances, at (room, 2) float64. Nearest triangles: indices, distances,
     /// at (room, 2, 2), points (room, 2, 3).
     #[getter]

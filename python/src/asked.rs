@@ -70,6 +70,6 @@ impl Asked {
             _ => "contacts of another detector",
         };
         let advice = "ask about contacts before the next `frame`, and the detector that found them";
-        Err(Error::Choice { what: what.into(), advice: advice.into() })
+        Err(Error::InvalidArgument { what: what.into(), advice: advice.into() })
     }
 }

@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 /// An answer: a row a contact, in canonical order, the same on every machine. A column is made when it is first asked for, and kept:
 /// it is read-only; copy what you want to write.
 ///
-/// What a column's query is: see there. Asked of another it raises ChoiceError.
+/// What a column's query is: see there. Asked of another it raises InvalidArgumentError.
 #[pyclass(module = "nearmiss", frozen)]
 pub struct Contacts {
     pub contacts: nearmiss::Contacts,
@@ -71,8 +71,8 @@ impl Contacts {
     /// Caveats, a sentence each: in what the answer is less than was asked. Empty if there are
     /// none.
     #[getter]
-    fn degraded(&self) -> Vec<String> {
-        self.contacts.degraded().iter().map(ToString::to_string).collect()
+    fn caveats(&self) -> Vec<String> {
+        self.contacts.caveats().iter().map(ToString::to_string).collect()
     }
 
     /// (k,) uint8, see Kind: which features meet. Of Continuous and Near.
@@ -130,9 +130,9 @@ impl Contacts {
 
     /// (k,) float64 in [toi, 1]: the time by which they have met. Of Continuous.
     #[getter]
-    fn toi_hi<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, "toi_hi", || {
-            Ok(PyArray1::from_vec(py, self.of_rows("times", Some(|c| c.toi_hi), None, None)?))
+    fn toi_upper<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, "toi_upper", || {
+            Ok(PyArray1::from_vec(py, self.of_rows("times", Some(|c| c.toi_upper), None, None)?))
         })
     }
 
@@ -238,8 +238,8 @@ impl Contacts {
     /// How many are listed that are neither proven nor refuted; of an earliest query 1 if its time
     /// is that of such a pair, else 0.
     #[getter]
-    fn unresolved(&self) -> u64 {
-        self.contacts.unresolved
+    fn undecided(&self) -> u64 {
+        self.contacts.undecided
     }
 
     /// A hash of the answer, the same on every machine: 16 hexadecimal digits.

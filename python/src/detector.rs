@@ -227,7 +227,7 @@ impl Detector {
         self.told(py, Does::AsksAnew, |detector| detector.query(&self.query))
     }
 
-    /// Where contacts or near pairs are, of Continuous and Near; else ChoiceError. Of this
+    /// Where contacts or near pairs are, of Continuous and Near; else InvalidArgumentError. Of this
     /// detector, and before it is asked to move, add, remove or replace bodies.
     fn geometry(&self, py: Python<'_>, contacts: &Contacts) -> PyResult<Geometry> {
         let told = self.work(py, |one| {

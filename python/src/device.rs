@@ -64,7 +64,9 @@ impl Device {
         let opened = py.detach(|| match (gpu, handle) {
             (Some(gpu), _) => nearmiss::Device::gpu(gpu),
             // SAFETY: `nearmiss.Device` tells its caller what a stream must be; the object that was given is held.
-            (None, Some(handle)) => unsafe { nearmiss::Device::borrow(null_mut(), handle as *mut c_void) },
+            (None, Some(handle)) => unsafe {
+                nearmiss::Device::from_stream(null_mut(), handle as *mut c_void)
+            },
             (None, None) => nearmiss::Device::open(backend, threads),
         });
         let device = opened.map_err(raised)?;

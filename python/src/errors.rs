@@ -10,7 +10,7 @@ mod classes {
 
     import_exception!(nearmiss.errors, NearmissError);
     import_exception!(nearmiss.errors, InputError);
-    import_exception!(nearmiss.errors, ChoiceError);
+    import_exception!(nearmiss.errors, InvalidArgumentError);
     import_exception!(nearmiss.errors, DeviceError);
     import_exception!(nearmiss.errors, OutOfMemory);
     import_exception!(nearmiss.errors, Interrupted);
@@ -19,7 +19,7 @@ mod classes {
 }
 
 use classes::{
-    Bug, ChoiceError, DeviceError, InputError, Interrupted, MeshWarning, NearmissError, OutOfMemory,
+    Bug, DeviceError, InputError, Interrupted, InvalidArgumentError, MeshWarning, NearmissError, OutOfMemory,
 };
 
 /// What Python raises.
@@ -27,8 +27,8 @@ pub fn raised(error: Error) -> PyErr {
     let text = error.to_string();
     match error {
         Error::Input { .. } => InputError::new_err(text),
-        Error::Choice { .. } => ChoiceError::new_err(text),
-        Error::Device { .. } | Error::Stamp { .. } => DeviceError::new_err(text),
+        Error::InvalidArgument { .. } => InvalidArgumentError::new_err(text),
+        Error::Device { .. } | Error::KernelMismatch { .. } => DeviceError::new_err(text),
         Error::OutOfMemory { .. } | Error::AnswerTooLarge { .. } => OutOfMemory::new_err(text),
         Error::Interrupted => Interrupted::new_err(text),
         Error::Bug { .. } => Bug::new_err(text),
@@ -44,7 +44,7 @@ pub fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
 
 /// What was asked does not exist or does not fit.
 pub fn choice(what: impl Into<String>, advice: impl Into<String>) -> PyErr {
-    raised(Error::Choice { what: what.into(), advice: advice.into() })
+    raised(Error::InvalidArgument { what: what.into(), advice: advice.into() })
 }
 
 /// The choice of that name.

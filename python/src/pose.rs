@@ -17,7 +17,7 @@ use pyo3::types::{PyDict, PyTuple};
 /// none.
 ///
 /// A vertex is placed at R v + t in doubles, also of a mesh in float32.
-/// Both may lie on a GPU, 4 and 3 float32 or float64 numbers. Raises ChoiceError for what is no pose; on a GPU the frame does.
+/// Both may lie on a GPU, 4 and 3 float32 or float64 numbers. Raises InvalidArgumentError for what is no pose; on a GPU the frame does.
 #[pyclass(module = "nearmiss", frozen)]
 pub struct Pose {
     rotation: Py<PyAny>,

@@ -193,7 +193,7 @@ macro_rules! in_motion {
         /// tolerance:  how well a time is told, as a length moved; default: of two bodies the
         /// smaller 1e-4 of the mean edge. separation: what comes nearer than this is in contact, in
         /// the unit of the vertices; 0 for touching. budget:     how many boxes, from 1, a pair may
-        /// cost before it is listed as unresolved; not of "certified-f32" without a
+        /// cost before it is listed as undecided; not of "certified-f32" without a
         ///             separation, which tests no boxes.
         /// assume_free: leaves out the count of triangle pairs that share a point at the start:
         /// `Contacts.starts_crossing` is None then. solver:     "certified" (none is missed, none
@@ -232,7 +232,7 @@ macro_rules! in_motion {
 }
 
 in_motion! {
-    /// What meets while vertices move in straight lines, and when first: kind, indices, toi, toi_hi, status.
+    /// What meets while vertices move in straight lines, and when first: kind, indices, toi, toi_upper, status.
     Continuous
 }
 in_motion! {

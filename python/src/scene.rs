@@ -6,7 +6,7 @@ use crate::frame::known;
 use crate::host::{Most, faces, points, positions, rows};
 use crate::query::{Remade, remade};
 use nearmiss::Mesh;
-use nearmiss::scene::Meets;
+use nearmiss::scene::CollisionFilter;
 use nearmiss::words::counted;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -16,7 +16,7 @@ use pyo3::types::{PyDict, PyTuple};
 /// vertices:     (n, 3) numbers; float32 and float64 are kept as they are, others become float64. Copied.
 /// faces:        (m, 3) integers, the vertices of each triangle, from 0. Copied.
 /// kind:         "deformable" (each vertex moves by itself), "rigid" (a Pose a frame) or "static" (never moves; cheapest).
-/// self_contact: whether it is tested against itself. Deformable bodies are by default (None),
+/// self_collision: whether it is tested against itself. Deformable bodies are by default (None),
 /// rigid bodies if it is True,
 ///               static bodies never: True is refused for them.
 /// environment:  bodies of different environments never meet; None: in every one.
@@ -24,7 +24,7 @@ use pyo3::types::{PyDict, PyTuple};
 /// name:         what messages call it.
 ///
 /// Raises InputError for vertices that are not finite and for indices that are not there,
-/// ChoiceError for self-contact of a static body.
+/// InvalidArgumentError for self-collision of a static body.
 #[pyclass(module = "nearmiss", frozen)]
 pub struct Body {
     pub body: nearmiss::Body,
@@ -34,7 +34,7 @@ pub struct Body {
 impl Body {
     #[new]
     #[pyo3(signature = (
-        vertices, faces, *, kind = "deformable", self_contact = None, environment = Some(0),
+        vertices, faces, *, kind = "deformable", self_collision = None, environment = Some(0),
         group = u32::MAX, mask = u32::MAX, name = "a mesh",
     ))]
     #[allow(clippy::too_many_arguments, reason = "they are named")]
@@ -43,14 +43,14 @@ impl Body {
         vertices: &Bound<'_, PyAny>,
         faces: &Bound<'_, PyAny>,
         kind: &str,
-        self_contact: Option<bool>,
+        self_collision: Option<bool>,
         #[pyo3(from_py_with = environment_of)] environment: Option<u32>,
         #[pyo3(from_py_with = group_of)] group: u32,
         #[pyo3(from_py_with = mask_of)] mask: u32,
         name: &str,
     ) -> PyResult<Body> {
         let make = match kind {
-            "deformable" => nearmiss::Body::still,
+            "deformable" => nearmiss::Body::deformable,
             "rigid" => nearmiss::Body::rigid,
             "static" => nearmiss::Body::fixed,
             other => {
@@ -62,9 +62,9 @@ impl Body {
         };
         let given = positions(vertices, &format!("vertices of {name}"), Most::OfAnyMesh)?;
         let triangles = self::faces(faces, name, given.len())?;
-        let meets = Meets { environment, group, mask, self_contact };
-        let made = py.detach(|| Mesh::new(name, given, triangles).map(|mesh| make(mesh).with(meets)));
-        let body = made.and_then(|body| body.check_meets().map(|()| body));
+        let meets = CollisionFilter { environment, group, mask, self_collision };
+        let made = py.detach(|| Mesh::new(name, given, triangles).map(|mesh| make(mesh).with_filter(meets)));
+        let body = made.and_then(|body| body.check_filter().map(|()| body));
         Ok(Body { body: body.map_err(raised)? })
     }
 
@@ -90,9 +90,9 @@ impl Body {
     fn __reduce__<'py>(body: &Bound<'py, Self>) -> PyResult<Remade<'py>> {
         let (py, Body { body: own }) = (body.py(), body.get());
         let mesh = (points(py, own.positions_t0()), rows(py, own.faces())).into_pyobject(py)?;
-        let (named, meets) = (PyDict::new(py), own.meets());
+        let (named, meets) = (PyDict::new(py), own.filter());
         named.set_item("kind", python(py, &own.kind())?)?;
-        named.set_item("self_contact", meets.self_contact)?;
+        named.set_item("self_collision", meets.self_collision)?;
         named.set_item("environment", meets.environment)?;
         named.set_item("group", meets.group)?;
         named.set_item("mask", meets.mask)?;

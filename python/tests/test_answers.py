@@ -109,7 +109,7 @@ def test_a_fall_is_told_in_time_and_never_late():
     found = nm.contacts(t0, t1, faces, tolerance=1e-9)
     assert found.kind.tolist() == [nm.Kind.VERTEX_FACE] and found.indices.tolist() == [[3, 0]]
     assert found.status.tolist() == [nm.Status.CERTIFIED]
-    assert found.toi[0] <= 0.5 <= found.toi_hi[0] and found.toi_hi[0] - found.toi[0] < 1e-8
+    assert found.toi[0] <= 0.5 <= found.toi_upper[0] and found.toi_upper[0] - found.toi[0] < 1e-8
     assert found.earliest == found.toi[0] == nm.time_of_impact(t0, t1, faces, tolerance=1e-9)
     assert nm.time_of_impact(t0, t0, faces) is None
     # Half a unit sooner with a separation of half a unit: a quarter of the step.
@@ -206,7 +206,7 @@ def test_figures():
     assert told["contacts"] == len(found) and told["hash"] == found.hash and told["candidates"] == found.candidates
     plan = detector.plan()
     assert sum(buffer["bytes"] for buffer in plan["buffers"]) == detector.device.bytes[0] > 0
-    assert found.unresolved >= 0 and "Near" not in repr(found) and "near pairs" in repr(found)
+    assert found.undecided >= 0 and "Near" not in repr(found) and "near pairs" in repr(found)
 
 
 def test_self_contact_is_the_default_of_deformable_bodies():
@@ -214,14 +214,14 @@ def test_self_contact_is_the_default_of_deformable_bodies():
     faces = [[0, 1, 2], [3, 4, 5]]
     far = crossed[:3] + 90
     for choices, expected in [
-        ({}, 1), ({"self_contact": None}, 1), ({"self_contact": True}, 1), ({"self_contact": False}, 0),
-        ({"kind": "rigid"}, 0), ({"kind": "rigid", "self_contact": True}, 1), ({"kind": "static"}, 0),
+        ({}, 1), ({"self_collision": None}, 1), ({"self_collision": True}, 1), ({"self_collision": False}, 0),
+        ({"kind": "rigid"}, 0), ({"kind": "rigid", "self_collision": True}, 1), ({"kind": "static"}, 0),
     ]:
         body, other = nm.Body(crossed, faces, **choices), nm.Body(far, faces[:1])
         assert len(nm.Detector(nm.Scene(body, other), nm.Discrete()).detect()) == expected, choices
         assert len(nm.Detector(body, nm.Discrete()).detect()) == expected, choices
-    with pytest.raises(nm.ChoiceError, match="self-contact of a rug, which is static"):
-        nm.Body(crossed, faces, kind="static", self_contact=True, name="a rug")
+    with pytest.raises(nm.InvalidArgumentError, match="self-collision of a rug, which is static"):
+        nm.Body(crossed, faces, kind="static", self_collision=True, name="a rug")
 
 
 def test_a_scene_that_a_detector_has_is_not_changed():
@@ -230,7 +230,7 @@ def test_a_scene_that_a_detector_has_is_not_changed():
     first = nm.Detector(scene, nm.Discrete())
     nm.Detector(scene, nm.Near(0.1))
     for change in [lambda: scene.add(nm.Body(vertices, faces)), lambda: scene.remove(0)]:
-        with pytest.raises(nm.ChoiceError, match="of which a detector has a copy"):
+        with pytest.raises(nm.InvalidArgumentError, match="of which a detector has a copy"):
             change()
     assert first.add(nm.Body(vertices, faces)) == 1
 
@@ -242,11 +242,11 @@ def test_a_frame_in_motion_has_two_ends_and_a_far_turn_a_caveat():
     for query in [nm.Continuous(), nm.Earliest()]:
         detector = nm.Detector(scene, query)
         for inputs in [{2: bar}, {0: nm.Pose()}, {0: nm.Pose(), 2: bar}]:
-            with pytest.raises(nm.ChoiceError, match="no body of the frame has two ends"):
+            with pytest.raises(nm.InvalidArgumentError, match="no body of the frame has two ends"):
                 detector.frame(inputs)
-        assert detector.frame({0: (nm.Pose(), nm.Pose()), 2: bar}).degraded == []
+        assert detector.frame({0: (nm.Pose(), nm.Pose()), 2: bar}).caveats == []
         half = np.radians(90) / 2
         found = detector.frame({0: (nm.Pose(), nm.Pose((0, 0, np.sin(half), np.cos(half))))})
-        assert len(found.degraded) == 1 and "body 0 turns by 90.0 degrees" in found.degraded[0]
-        assert not any("turns" in caveat for caveat in detector.frame().degraded)
+        assert len(found.caveats) == 1 and "body 0 turns by 90.0 degrees" in found.caveats[0]
+        assert not any("turns" in caveat for caveat in detector.frame().caveats)
         assert detector.tolerance == detector.largest_tolerance > 0

@@ -26,75 +26,75 @@ def geometry(query):
 
 
 REFUSED = [
-    (lambda: nm.Near(0), nm.ChoiceError, "a distance of 0"),
-    (lambda: nm.Near(np.nan), nm.ChoiceError, "a distance of NaN"),
-    (lambda: nm.Continuous(separation=-1), nm.ChoiceError, "separation"),
-    (lambda: nm.Continuous(solver="exact"), nm.ChoiceError, '"certified"'),
-    (lambda: nm.Earliest(solver="cubic-f64", separation=1), nm.ChoiceError, "cubic-f64"),
-    (lambda: nm.Discrete(solver="certified"), nm.ChoiceError, '"moller"'),
-    (lambda: nm.Discrete(solver="moller", adjacent=True), nm.ChoiceError, "adjacent"),
-    (lambda: nm.Discrete(broad="octree"), nm.ChoiceError, '"tree", "tiles"'),
-    (lambda: nm.Discrete(broad="tree", order="median"), nm.ChoiceError, "order of tiles for trees"),
-    (lambda: nm.Device("gpu"), nm.ChoiceError, '"cuda"'),
-    (lambda: nm.Device("cpu", gpu=0), nm.ChoiceError, "threads for a CPU"),
-    (lambda: nm.Device(gpu=0, stream=1), nm.ChoiceError, "a stream is of the GPU"),
-    (lambda: nm.Device(stream="mine"), nm.ChoiceError, "a stream of type str"),
-    (lambda: nm.Body(V, F, kind="soft"), nm.ChoiceError, '"rigid"'),
-    (lambda: nm.Body(V[:, :2], F, name="flat"), nm.ChoiceError, "vertices of flat of shape [6, 2]"),
-    (lambda: nm.Body(V.astype(complex), F), nm.ChoiceError, "complex128"),
-    (lambda: nm.Body(V, F.astype(float)), nm.ChoiceError, "three vertex indices"),
+    (lambda: nm.Near(0), nm.InvalidArgumentError, "a distance of 0"),
+    (lambda: nm.Near(np.nan), nm.InvalidArgumentError, "a distance of NaN"),
+    (lambda: nm.Continuous(separation=-1), nm.InvalidArgumentError, "separation"),
+    (lambda: nm.Continuous(solver="exact"), nm.InvalidArgumentError, '"certified"'),
+    (lambda: nm.Earliest(solver="cubic-f64", separation=1), nm.InvalidArgumentError, "cubic-f64"),
+    (lambda: nm.Discrete(solver="certified"), nm.InvalidArgumentError, '"moller"'),
+    (lambda: nm.Discrete(solver="moller", adjacent=True), nm.InvalidArgumentError, "adjacent"),
+    (lambda: nm.Discrete(broad="octree"), nm.InvalidArgumentError, '"tree", "tiles"'),
+    (lambda: nm.Discrete(broad="tree", order="median"), nm.InvalidArgumentError, "order of tiles for trees"),
+    (lambda: nm.Device("gpu"), nm.InvalidArgumentError, '"cuda"'),
+    (lambda: nm.Device("cpu", gpu=0), nm.InvalidArgumentError, "threads for a CPU"),
+    (lambda: nm.Device(gpu=0, stream=1), nm.InvalidArgumentError, "a stream is of the GPU"),
+    (lambda: nm.Device(stream="mine"), nm.InvalidArgumentError, "a stream of type str"),
+    (lambda: nm.Body(V, F, kind="soft"), nm.InvalidArgumentError, '"rigid"'),
+    (lambda: nm.Body(V[:, :2], F, name="flat"), nm.InvalidArgumentError, "vertices of flat of shape [6, 2]"),
+    (lambda: nm.Body(V.astype(complex), F), nm.InvalidArgumentError, "complex128"),
+    (lambda: nm.Body(V, F.astype(float)), nm.InvalidArgumentError, "three vertex indices"),
     (lambda: nm.Body(V, [[0, 1, -1]]), nm.InputError, "a mesh: face 0 corner 2 names vertex -1"),
     (lambda: nm.Body(V, [[0, 1, 6]]), nm.InputError, "corner 2 names vertex 6"),
     (lambda: nm.Body(NAN, F, name="nothing"), nm.InputError, "nothing: vertex 0 has x = NaN"),
     *(
-        (lambda name=name, value=value: nm.Body(V, F, **{name: value}), nm.ChoiceError, f"{name} = {value!r}; give an integer from")
+        (lambda name=name, value=value: nm.Body(V, F, **{name: value}), nm.InvalidArgumentError, f"{name} = {value!r}; give an integer from")
         for name, value in [("mask", 2**32), ("mask", -(2**40)), ("mask", "x"), ("group", 1.5), ("environment", -1), ("environment", 2**80)]
     ),
-    (lambda: nm.Continuous(budget=-1), nm.ChoiceError, "budget = -1; give an integer from 1"),
-    (lambda: nm.Earliest(budget=0), nm.ChoiceError, "budget = 0; give an integer from 1"),
+    (lambda: nm.Continuous(budget=-1), nm.InvalidArgumentError, "budget = -1; give an integer from 1"),
+    (lambda: nm.Earliest(budget=0), nm.InvalidArgumentError, "budget = 0; give an integer from 1"),
     (
         lambda: nm.Detector(nm.Body(V, F), nm.Continuous(budget=9, solver="certified-f32"), CPU),
-        nm.ChoiceError,
+        nm.InvalidArgumentError,
         "a budget of boxes for certified-f32 without a separation",
     ),
-    (lambda: nm.Continuous(tolerance=-1), nm.ChoiceError, "tolerance = -1; give a length from 0"),
-    (lambda: nm.Earliest(tolerance=np.nan), nm.ChoiceError, "tolerance = NaN; give a length from 0"),
-    (lambda: nm.Continuous(separation=np.inf), nm.ChoiceError, "separation = inf; give a length from 0"),
-    (lambda: nm.Device(gpu=-1), nm.ChoiceError, "gpu = -1; give an integer from 0"),
-    (lambda: nm.Device("cuda", threads=2), nm.ChoiceError, "threads of a GPU, which takes none"),
-    (lambda: nm.Device("cpu", threads=0), nm.ChoiceError, "threads = 0; give an integer from 1 to 1024"),
-    (lambda: nm.Device("cpu", threads=-1), nm.ChoiceError, "threads = -1; give"),
-    (lambda: nm.Device("cpu", threads=1025), nm.ChoiceError, "threads = 1025; give"),
-    (lambda: nm.Scene([nm.Body(V, F)]), nm.ChoiceError, "a scene of <class 'list'>; give bodies: Scene(a, b), or Scene(*bodies)"),
-    (lambda: nm.Detector([nm.Body(V, F)], nm.Discrete(), CPU), nm.ChoiceError, "Detector(Scene(*bodies), query)"),
-    (lambda: detector().frame({1: V}), nm.ChoiceError, "body 1, which is not in the scene"),
+    (lambda: nm.Continuous(tolerance=-1), nm.InvalidArgumentError, "tolerance = -1; give a length from 0"),
+    (lambda: nm.Earliest(tolerance=np.nan), nm.InvalidArgumentError, "tolerance = NaN; give a length from 0"),
+    (lambda: nm.Continuous(separation=np.inf), nm.InvalidArgumentError, "separation = inf; give a length from 0"),
+    (lambda: nm.Device(gpu=-1), nm.InvalidArgumentError, "gpu = -1; give an integer from 0"),
+    (lambda: nm.Device("cuda", threads=2), nm.InvalidArgumentError, "threads of a GPU, which takes none"),
+    (lambda: nm.Device("cpu", threads=0), nm.InvalidArgumentError, "threads = 0; give an integer from 1 to 1024"),
+    (lambda: nm.Device("cpu", threads=-1), nm.InvalidArgumentError, "threads = -1; give"),
+    (lambda: nm.Device("cpu", threads=1025), nm.InvalidArgumentError, "threads = 1025; give"),
+    (lambda: nm.Scene([nm.Body(V, F)]), nm.InvalidArgumentError, "a scene of <class 'list'>; give bodies: Scene(a, b), or Scene(*bodies)"),
+    (lambda: nm.Detector([nm.Body(V, F)], nm.Discrete(), CPU), nm.InvalidArgumentError, "Detector(Scene(*bodies), query)"),
+    (lambda: detector().frame({1: V}), nm.InvalidArgumentError, "body 1, which is not in the scene"),
     (lambda: detector().frame({0: V[:3]}), nm.NearmissError, "3"),
     (lambda: detector().frame({0: (V, NAN)}), nm.InputError, "NaN"),
     (lambda: detector().frame({0: (V, [[np.inf] * 3] * 6)}), nm.InputError, "inf"),
-    (lambda: detector().frame({0: nm.Pose()}), nm.ChoiceError, "the two"),
-    (lambda: detector().frame({0: (V, nm.Pose())}), nm.ChoiceError, "of type object"),
-    (lambda: nm.Pose(rotation=(1, 2, 3)), nm.ChoiceError, "a rotation of 3 numbers"),
-    (lambda: nm.Pose(rotation=5), nm.ChoiceError, "a rotation of shape []; give 4"),
-    (lambda: nm.Pose(translation=[[0, 0, 1]]), nm.ChoiceError, "a translation of shape [1, 3]; give 3"),
-    (lambda: nm.Pose(translation="abc"), nm.ChoiceError, "a translation of type <U3"),
+    (lambda: detector().frame({0: nm.Pose()}), nm.InvalidArgumentError, "the two"),
+    (lambda: detector().frame({0: (V, nm.Pose())}), nm.InvalidArgumentError, "of type object"),
+    (lambda: nm.Pose(rotation=(1, 2, 3)), nm.InvalidArgumentError, "a rotation of 3 numbers"),
+    (lambda: nm.Pose(rotation=5), nm.InvalidArgumentError, "a rotation of shape []; give 4"),
+    (lambda: nm.Pose(translation=[[0, 0, 1]]), nm.InvalidArgumentError, "a translation of shape [1, 3]; give 3"),
+    (lambda: nm.Pose(translation="abc"), nm.InvalidArgumentError, "a translation of type <U3"),
     (lambda: nm.Pose(translation=(0, np.nan, 0)), nm.InputError, "NaN"),
     (lambda: nm.Pose(rotation=(1, 1, 1, 1)), nm.InputError, "the pose [1.0, 1.0, 1.0, 1.0]"),
     (lambda: nm.Pose(translation=(0, 0, 1e200)), nm.InputError, "2^480"),
-    (lambda: detector().frame({-1: V}), nm.ChoiceError, "body -1, which is no number of one"),
-    (lambda: detector().frame({"0": V}), nm.ChoiceError, "body '0', which is no number of one"),
-    (lambda: detector().frame({0: [V, V]}), nm.ChoiceError, "of shape [2, 6, 3]; give rows of three: shape (n, 3); both ends"),
-    (lambda: detector().frame({0: [nm.Pose(), nm.Pose()]}), nm.ChoiceError, "a list of poses; give both ends"),
-    (lambda: detector().frame([V]), nm.ChoiceError, "inputs of type <class 'list'>; give a dictionary"),
-    (lambda: detector().prepare(V), nm.ChoiceError, "inputs of type <class 'numpy.ndarray'>"),
-    (lambda: detector().detect().distances, nm.ChoiceError, "contacts in time"),
-    (lambda: detector(nm.Discrete()).detect().toi, nm.ChoiceError, "triangle pairs"),
-    (lambda: detector(nm.Earliest()).detect().indices, nm.ChoiceError, "one time"),
-    (lambda: geometry(nm.Discrete()), nm.ChoiceError, "a discrete query, which has no pairs of features; use"),
-    (lambda: geometry(nm.Earliest()), nm.ChoiceError, "an earliest query, which has no pairs of features; use"),
-    (lambda: geometry(nm.Distance()), nm.ChoiceError, "a distance query, which has no pairs of features; read"),
-    (lambda: detector(nm.Near(1)).detect().earliest, nm.ChoiceError, "near pairs"),
-    (lambda: detector().submit(), nm.ChoiceError, "prepare"),
-    (lambda: detector().prepare({0: V.tolist()}), nm.ChoiceError, "arrays that stay"),
+    (lambda: detector().frame({-1: V}), nm.InvalidArgumentError, "body -1, which is no number of one"),
+    (lambda: detector().frame({"0": V}), nm.InvalidArgumentError, "body '0', which is no number of one"),
+    (lambda: detector().frame({0: [V, V]}), nm.InvalidArgumentError, "of shape [2, 6, 3]; give rows of three: shape (n, 3); both ends"),
+    (lambda: detector().frame({0: [nm.Pose(), nm.Pose()]}), nm.InvalidArgumentError, "a list of poses; give both ends"),
+    (lambda: detector().frame([V]), nm.InvalidArgumentError, "inputs of type <class 'list'>; give a dictionary"),
+    (lambda: detector().prepare(V), nm.InvalidArgumentError, "inputs of type <class 'numpy.ndarray'>"),
+    (lambda: detector().detect().distances, nm.InvalidArgumentError, "contacts in time"),
+    (lambda: detector(nm.Discrete()).detect().toi, nm.InvalidArgumentError, "triangle pairs"),
+    (lambda: detector(nm.Earliest()).detect().indices, nm.InvalidArgumentError, "one time"),
+    (lambda: geometry(nm.Discrete()), nm.InvalidArgumentError, "a discrete query, which has no pairs of features; use"),
+    (lambda: geometry(nm.Earliest()), nm.InvalidArgumentError, "an earliest query, which has no pairs of features; use"),
+    (lambda: geometry(nm.Distance()), nm.InvalidArgumentError, "a distance query, which has no pairs of features; read"),
+    (lambda: detector(nm.Near(1)).detect().earliest, nm.InvalidArgumentError, "near pairs"),
+    (lambda: detector().submit(), nm.InvalidArgumentError, "prepare"),
+    (lambda: detector().prepare({0: V.tolist()}), nm.InvalidArgumentError, "arrays that stay"),
     (lambda: nm.read_mesh("no such file.ply"), nm.InputError, "no such file.ply"),
 ]
 
@@ -109,11 +109,11 @@ def test_what_is_wrong_is_named(wrong):
 
 def test_classes_say_who_must_act():
     assert issubclass(nm.InputError, ValueError) and issubclass(nm.OutOfMemory, MemoryError)
-    assert all(issubclass(kind, nm.NearmissError) for kind in [nm.ChoiceError, nm.DeviceError, nm.Bug])
+    assert all(issubclass(kind, nm.NearmissError) for kind in [nm.InvalidArgumentError, nm.DeviceError, nm.Bug])
 
 
 def test_the_same_fault_is_of_one_class_wherever_it_is_given():
-    """Data is InputError, an argument is ChoiceError; by hand, in a scene, in a frame."""
+    """Data is InputError, an argument is InvalidArgumentError; by hand, in a scene, in a frame."""
     for bad in [-1, 6, 2**40, -(2**40)]:
         for make in [lambda: nm.Body(V, [[0, 1, bad]]), lambda: nm.self_intersections(V, np.array([[0, bad, 1]]))]:
             with pytest.raises(nm.InputError, match=f"names vertex {bad}"):
@@ -131,7 +131,7 @@ def test_the_same_fault_is_of_one_class_wherever_it_is_given():
             with pytest.raises(nm.InputError):
                 make()
     for call in [lambda: nm.Body(V[:, :2], F), lambda: detector().frame({5: V}), lambda: nm.Near(np.nan)]:
-        with pytest.raises(nm.ChoiceError):
+        with pytest.raises(nm.InvalidArgumentError):
             call()
 
 
@@ -205,7 +205,7 @@ def test_geometry_of_other_bodies_is_refused():
     vertices, faces = sheet(10, lambda x, y: np.sin(30 * x) * 0.05)
     found = nm.near(vertices, faces, 0.3)
     assert len(found) > 0
-    with pytest.raises(nm.ChoiceError):
+    with pytest.raises(nm.InvalidArgumentError):
         detector(nm.Near(0.3)).geometry(found)
 
 
@@ -230,7 +230,7 @@ def test_contacts_of_before_are_refused(move):
         asked.plan()
     move(asked)
     for ask in [asked.geometry, asked.summary]:
-        with pytest.raises(nm.ChoiceError, match="contacts that were found before"):
+        with pytest.raises(nm.InvalidArgumentError, match="contacts that were found before"):
             ask(found)
     again = asked.detect()
     assert len(asked.geometry(again)) == len(again)
@@ -243,7 +243,7 @@ def test_contacts_of_a_submission_are_of_it():
     assert len(asked.geometry(found)) == len(found)
     here[3:, 2] += 0.25
     asked.submit()
-    with pytest.raises(nm.ChoiceError, match="found before"):
+    with pytest.raises(nm.InvalidArgumentError, match="found before"):
         asked.geometry(found)
     later = asked.collect()
     assert len(asked.geometry(later)) == len(later) == asked.summary(later)["contacts"]
@@ -253,7 +253,7 @@ def test_contacts_of_another_detector_are_refused():
     found = detector(nm.Near(1)).detect()
     other = detector(nm.Near(1))
     for ask in [other.geometry, other.summary]:
-        with pytest.raises(nm.ChoiceError, match="contacts of another detector"):
+        with pytest.raises(nm.InvalidArgumentError, match="contacts of another detector"):
             ask(found)
 
 
@@ -276,7 +276,7 @@ def test_a_forked_process_is_told():
         signal.alarm(60)
         try:
             own.detect()
-        except nm.ChoiceError as error:
+        except nm.InvalidArgumentError as error:
             os._exit(0 if "spawn" in str(error) else 2)
         finally:
             os._exit(1)

@@ -113,8 +113,8 @@ class ByInterface:
 
 def test_strides_between_numbers_are_refused():
     asked = nm.Detector(nm.Body(V, F), nm.Near(1), CPU)
-    with pytest.raises(nm.ChoiceError, match="a stride of 13 bytes between numbers of 4"):
+    with pytest.raises(nm.InvalidArgumentError, match="a stride of 13 bytes between numbers of 4"):
         asked.frame({0: ByInterface(strides=(13, 4))})
     for whole in [None, (16, 4), (2**62, 4)]:
-        with pytest.raises(nm.ChoiceError, match="on a GPU for a detector on the CPU"):
+        with pytest.raises(nm.InvalidArgumentError, match="on a GPU for a detector on the CPU"):
             asked.frame({0: ByInterface(strides=whole)})

@@ -152,12 +152,12 @@ def test_any_layout_and_precision(stream):
     for tensor in [torch.from_numpy(t1).cuda(), wide[:, 1:4], torch.from_numpy(t1).cuda().double()]:
         assert detector.frame({0: tensor}).hash == wanted.hash
     for wrong in [wide[:, 1:3], wide[:, 1:4].half(), torch.from_numpy(t1).cuda().T.contiguous().T]:
-        with pytest.raises(nm.ChoiceError):
+        with pytest.raises(nm.InvalidArgumentError):
             detector.frame({0: wrong})
     with pytest.raises(nm.InputError, match="vertex 7"):
         wide[7, 1] = float("nan")
         detector.frame({0: wide[:, 1:4]})
-    with pytest.raises(nm.ChoiceError, match="on the CPU"):
+    with pytest.raises(nm.InvalidArgumentError, match="on the CPU"):
         nm.Detector(nm.Body(t0, faces), nm.Near(0.01), nm.Device("cpu")).frame({0: wide[:, 1:4]})
 
 
@@ -176,7 +176,7 @@ def test_the_second_door(stream):
     wanted = detector.frame({0: t1}).hash
     assert detector.frame({0: ByInterface(tensor)}).hash == wanted
     assert detector.frame({0: ByInterface(tensor, stream=stream.cuda_stream)}).hash == wanted
-    with pytest.raises(nm.ChoiceError, match="of stream 1"):
+    with pytest.raises(nm.InvalidArgumentError, match="of stream 1"):
         detector.frame({0: ByInterface(tensor, stream=1)})
 
 
@@ -220,9 +220,9 @@ def test_a_pose_is_one_row(stream):
     turn, move = torch.tensor([[0.0, 0, 0, 1]], device="cuda"), torch.zeros((1, 3), device="cuda")
     detector.frame({1: nm.Pose(turn, move)})
     for rows in [0, 2]:
-        with pytest.raises(nm.ChoiceError, match=f"a rotation of {rows} rows"):
+        with pytest.raises(nm.InvalidArgumentError, match=f"a rotation of {rows} rows"):
             detector.frame({1: nm.Pose(turn.expand(rows, 4), move)})
-        with pytest.raises(nm.ChoiceError, match=f"a translation of {rows} rows"):
+        with pytest.raises(nm.InvalidArgumentError, match=f"a translation of {rows} rows"):
             detector.frame({1: nm.Pose(turn, move.expand(rows, 3))})
 
 
@@ -235,7 +235,7 @@ def test_an_answer_that_has_moved_is_not_shown(stream):
     assert status.__cuda_array_interface__["data"][1] is False
     assert torch.as_tensor(status, device="cuda").shape == (4,)
     detector.frame({0: t0})
-    with pytest.raises(nm.ChoiceError, match="asked anew"):
+    with pytest.raises(nm.InvalidArgumentError, match="asked anew"):
         status.__cuda_array_interface__
 
 
@@ -289,7 +289,7 @@ def test_frames_beside_a_graph_that_another_thread_records(stream):
 
 def test_what_a_refused_frame_left_behind_is_not_answered_of(stream):
     t0, t1, faces = draped(20)
-    scene = nm.Scene(nm.Body(t0, faces, self_contact=True))
+    scene = nm.Scene(nm.Body(t0, faces, self_collision=True))
     other = scene.add(nm.Body(t1 + 0.01, faces))
     detector = nm.Detector(scene, nm.Continuous(), nm.Device(stream=stream))
     judge = nm.Detector(scene, nm.Continuous(), nm.Device("cpu"))
@@ -299,7 +299,7 @@ def test_what_a_refused_frame_left_behind_is_not_answered_of(stream):
     with pytest.raises(nm.InputError, match="vertex 7 has y"):
         detector.frame({0: (here, bad)})
     for asked in [lambda: detector.frame(), lambda: detector.frame({other: t1}), detector.detect]:
-        with pytest.raises(nm.ChoiceError, match="name it again"):
+        with pytest.raises(nm.InvalidArgumentError, match="name it again"):
             asked()
     wanted = judge.frame({0: (t0, t1), other: t1})
     found = detector.frame({0: (here, there), other: t1})

@@ -98,7 +98,7 @@ def test_what_differs_is_not_equal():
 def test_a_body_is_made_again(kind):
     vertices, faces = sheet(4, lambda x, y: np.sin(9 * x))
     own = None if kind == "static" else True
-    choices = dict(kind=kind, self_contact=own, environment=3, group=5, mask=~2, name="a rag")
+    choices = dict(kind=kind, self_collision=own, environment=3, group=5, mask=~2, name="a rag")
     for points in [vertices, vertices.astype(float) / 3]:
         body = nm.Body(points, faces, **choices)
         for other in [copy.deepcopy(body), pickle.loads(pickle.dumps(body))]:

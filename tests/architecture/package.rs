@@ -19,7 +19,7 @@ const FILE: &[u8] = b"v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 -1\nv 1 1 1\nv 2 1 1\nf 1
 fn main() -> Result<(), nearmiss::Error> {
     let mesh = MeshFile::parse("two.obj", Format::Obj, FILE)?.into_mesh();
     let device = Device::open(Backend::Auto, None)?;
-    let pairs = Detector::new(device, Body::still(mesh))?.query(&Discrete::default())?;
+    let pairs = Detector::new(device, Body::deformable(mesh))?.query(&Discrete::default())?;
     println!("{:?}", pairs.iter().map(|pair| pair.triangles).collect::<Vec<_>>());
     Ok(())
 }

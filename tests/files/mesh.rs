@@ -84,7 +84,7 @@ fn frames_of_different_precision_become_double_exactly() {
     let body = Body::moving(t0.clone(), t1).unwrap();
     assert_eq!(body.positions_t0(), &Positions::F64(t0.positions().to_f64()));
     assert_eq!(body.positions_t1(), Some(&Positions::F64(points)));
-    assert!(!Body::still(t0).is_moving());
+    assert!(!Body::deformable(t0).is_moving());
 }
 
 #[test]
@@ -120,7 +120,7 @@ fn what_is_written_reads_back_equal() {
         write_ply(&written, &path).unwrap();
         let read = MeshFile::read(&path).unwrap().into_mesh();
         assert_eq!(read.faces(), written.faces());
-        assert_eq!(Body::still(read).fingerprint(), Body::still(written).fingerprint());
+        assert_eq!(Body::deformable(read).fingerprint(), Body::deformable(written).fingerprint());
     }
     let nowhere = folder.path("no/such/folder.ply");
     let nowhere = write_ply(&mesh(Positions::F32(corners()), &TETRAHEDRON).unwrap(), nowhere.as_ref());
@@ -258,7 +258,7 @@ fn frames_are_welded_where_vertices_coincide_in_all() {
             assert!(welded.iter().all(|mesh| mesh.faces() == wanted), "{case}");
             assert_eq!(welded[count - 1].positions(), meshes[count - 1].positions());
             let body = match &meshes[..] {
-                [still] => Body::still(still.clone()),
+                [still] => Body::deformable(still.clone()),
                 [t0, t1] => Body::moving(t0.clone(), t1.clone()).unwrap(),
                 _ => continue,
             };

@@ -15,7 +15,7 @@ fn fingerprint(name: &str) -> u64 {
         all.extend(animation.positions());
     }
     let mesh = Mesh::new(name, Positions::F32(all), animation.faces().to_vec()).expect("a mesh");
-    Body::still(mesh).fingerprint()
+    Body::deformable(mesh).fingerprint()
 }
 
 /// For about 700 triangles and seed 7. Pinned: other bits are another scene, and figures about it no longer hold.
@@ -125,7 +125,7 @@ fn meeting(name: &str, contact: bool, frames: u64) -> Vec<usize> {
     let mut found = Vec::new();
     for _ in 0..frames {
         animation.advance(1).expect("a frame");
-        let body = Body::still(animation.mesh().expect("a mesh"));
+        let body = Body::deformable(animation.mesh().expect("a mesh"));
         let query = Query::from(Discrete::by(TriangleTest::Exact { adjacent: true }));
         found.push(ask(engine(), vec![body], query).len());
     }

@@ -21,15 +21,15 @@ struct Bounds {
     late: usize,
 }
 
-/// A certified solver misses nothing, and what it calls certain is listed; of what it leaves unresolved at most four in a
+/// A certified solver misses nothing, and what it calls certain is listed; of what it leaves undecided at most four in a
 /// million candidates are no contacts. No time is late, and what is certain has happened by the end of its interval.
 fn certified(scene: &Scene, body: &Body, truth: &[Row], solver: Solver, cubic: &Contacts) -> Contacts {
     let answer = asked(body, QueryKind::Continuous, solver);
     let errors = difference(&found(&answer), truth);
     let sure: Vec<Row> = rows(&answer, |status| status == Status::Certified);
-    let unresolved = rows(&answer, |status| status == Status::Unresolved).len();
+    let undecided = rows(&answer, |status| status == Status::Undecided).len();
     println!(
-        "{}: {solver:?} misses {}, invents {}, {unresolved} unresolved, {:?} escalated",
+        "{}: {solver:?} misses {}, invents {}, {undecided} undecided, {:?} escalated",
         scene.name,
         errors.missed.len(),
         errors.invented.len(),
@@ -37,7 +37,7 @@ fn certified(scene: &Scene, body: &Body, truth: &[Row], solver: Solver, cubic: &
     );
     assert_eq!(errors.missed, [], "{}", scene.name);
     assert_eq!(difference(&sure, truth).invented, [], "{}: what is certain is true", scene.name);
-    assert_eq!((sure.len() + unresolved, unresolved as u64), (answer.len(), answer.unresolved));
+    assert_eq!((sure.len() + undecided, undecided as u64), (answer.len(), answer.undecided));
     // Of the candidates that there are, whatever the volumes leave out of them.
     let candidates: u64 = scene.candidates.iter().sum();
     assert!(errors.invented.len() as u64 * 1_000_000 <= 4 * candidates, "{:?}", errors.invented);
@@ -45,7 +45,7 @@ fn certified(scene: &Scene, body: &Body, truth: &[Row], solver: Solver, cubic: &
     let mut others = cubic.contacts().iter();
     for c in answer.contacts().iter().filter(|c| c.status == Status::Certified) {
         let same = others.find(|o| (o.kind, o.a, o.b) == (c.kind, c.a, c.b)).expect("the cubic finds all");
-        assert!(c.toi <= c.toi_hi && same.toi <= c.toi_hi + ROUNDING, "{c:?}, {}", same.toi);
+        assert!(c.toi <= c.toi_upper && same.toi <= c.toi_upper + ROUNDING, "{c:?}, {}", same.toi);
     }
     answer
 }
@@ -61,7 +61,7 @@ fn rows(answer: &Contacts, status: impl Fn(Status) -> bool) -> Vec<Row> {
 /// The earliest by a certified solver is the least of all, not late, and early by little.
 fn certified_earliest(scene: &Scene, body: &Body, all: &Contacts) {
     let answer = asked(body, QueryKind::Earliest, Solver::Certified);
-    assert_eq!((answer.earliest_toi(), answer.unresolved), (all.earliest_toi(), all.unresolved));
+    assert_eq!((answer.earliest_toi(), answer.undecided), (all.earliest_toi(), all.undecided));
     let toi = answer.earliest_toi().expect("a contact");
     println!("{}: earliest {toi:e}, certified; exactly {:e}", scene.name, scene.earliest);
     assert!(toi <= scene.earliest && scene.earliest - toi < 1e-4, "{toi:e}");

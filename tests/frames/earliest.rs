@@ -1,11 +1,11 @@
 //! The earliest time is a function of the question: the least time of the continuous query of the
-//! same scene and choices, undecided pairs included, and whether a contact begins then; by every
+//! same scene and choices, uncertain pairs included, and whether a contact begins then; by every
 //! order of tiles, broad phase, volume, walk, number of threads and order of blocks, with a sample
 //! and without one.
 
 mod law;
 
-use nearmiss::contacts::{Degraded, Status};
+use nearmiss::contacts::{Caveat, Status};
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Broad, Bv, Order, QueryKind, Search, Solver};
@@ -97,18 +97,18 @@ fn body(triangles: &[Moved], single: bool) -> Body {
     Body::moving(mesh(0), mesh(1)).expect("two frames")
 }
 
-/// An earliest time, and whether it is that of an undecided pair alone.
+/// An earliest time, and whether it is that of an uncertain pair alone.
 type First = Option<(f64, bool)>;
 
 /// That of all contacts.
 fn least(all: &Contacts) -> First {
-    let keys = all.contacts().iter().map(|c| earliest::key(c.toi, c.status == Status::Unresolved));
+    let keys = all.contacts().iter().map(|c| earliest::key(c.toi, c.status == Status::Undecided));
     keys.min().and_then(earliest::of_key)
 }
 
 /// That of an earliest query.
 fn said(first: &Contacts) -> First {
-    first.earliest_toi().map(|toi| (toi, first.degraded().contains(&Degraded::EarliestUnresolved)))
+    first.earliest_toi().map(|toi| (toi, first.caveats().contains(&Caveat::EarliestUndecided)))
 }
 
 /// The comparison: a fault in words, if the one answer is not the other.
@@ -166,7 +166,7 @@ fn same(
         let first = ask(device, vec![body.clone()], query);
         let odd = fault(&way, wanted, said(&first));
         assert_eq!(odd, None, "{what}, {solver:?}, tolerance {tolerance:e}, separation {separation:e}");
-        assert_eq!(first.unresolved, u64::from(wanted.is_some_and(|(_, unresolved)| unresolved)), "{what}");
+        assert_eq!(first.undecided, u64::from(wanted.is_some_and(|(_, undecided)| undecided)), "{what}");
         hashes.push(first.hash());
     }
     assert!(hashes.windows(2).all(|two| two[0] == two[1]), "{what}: {hashes:x?}");
@@ -222,9 +222,9 @@ fn hostile_scenes_have_one_earliest_time() {
         let parts = (scene as usize % 9, 9);
         let first =
             same(&format!("scene {scene} of kind {kind}"), &body, (solver, tolerance, separation), parts);
-        found[first.map_or(0, |(_, unresolved)| 1 + usize::from(unresolved))] += 1;
+        found[first.map_or(0, |(_, undecided)| 1 + usize::from(undecided))] += 1;
     }
-    println!("nothing, a contact, an undecided pair: {found:?}");
+    println!("nothing, a contact, an uncertain pair: {found:?}");
     assert!(found.iter().all(|n| *n > 100), "{found:?}: of each some");
 }
 
@@ -302,7 +302,7 @@ fn the_comparison_can_fail() {
     }
 }
 
-/// The least of all devices' shares, and whether it is undecided, is that of the whole.
+/// The least of all devices' shares, and whether it is uncertain, is that of the whole.
 #[test]
 fn slices_have_the_same_earliest_time() {
     let mut rng = Rng::new(13);
@@ -314,6 +314,6 @@ fn slices_have_the_same_earliest_time() {
         let mut detector = OneQueryOnSeveral::new(all, body.clone(), query).expect("devices");
         let first = detector.detect().expect("an answer");
         assert_eq!(said(&first), wanted, "{devices} devices");
-        assert_eq!(first.unresolved, u64::from(wanted.is_some_and(|(_, unresolved)| unresolved)));
+        assert_eq!(first.undecided, u64::from(wanted.is_some_and(|(_, undecided)| undecided)));
     }
 }

@@ -11,7 +11,7 @@ fn listed(path: &str) -> Vec<[u32; 2]> {
 }
 
 fn bodies(names: &[&str]) -> Vec<Body> {
-    names.iter().map(|name| Body::still(mesh(name))).collect()
+    names.iter().map(|name| Body::deformable(mesh(name))).collect()
 }
 
 /// First difference of two ascending lists: what is missing, or what is too many.

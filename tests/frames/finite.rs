@@ -25,7 +25,7 @@ fn times(body: &Body, power: i32) -> Body {
     };
     let t0 = mesh(body.positions_t0());
     match body.positions_t1() {
-        None => Body::still(t0),
+        None => Body::deformable(t0),
         Some(t1) => Body::moving(t0, mesh(t1)).expect("two frames"),
     }
 }
@@ -52,7 +52,7 @@ fn fault(truth: &Contacts, found: &Contacts) -> Option<String> {
     let missed = |one: &BTreeMap<_, Contact>, other: &BTreeMap<_, Contact>| {
         one.values().filter(sure).find_map(|c| match other.get(&(c.kind, c.a, c.b)) {
             None => Some(format!("{c:?} is only in one")),
-            Some(o) if o.toi > c.toi_hi || o.status == Status::Certified && c.toi > o.toi_hi => {
+            Some(o) if o.toi > c.toi_upper || o.status == Status::Certified && c.toi > o.toi_upper => {
                 Some(format!("{c:?} and {o:?}"))
             }
             Some(_) => None,
@@ -149,7 +149,7 @@ fn going_over_without_memory_is_an_error() {
         OneQuery::new(device.clone(), vec![body.clone()], Query::discrete()).expect("a detector");
     detector.detect().expect("an answer");
     // From now on there is half of what floats took; doubles take more.
-    let _ = device.clone().limited(device.bytes().0 / 2);
+    let _ = device.clone().with_memory_limit(device.bytes().0 / 2);
     for _ in 0..2 {
         let moved = detector.move_to(0, times(&body, 100)).and_then(|()| detector.detect().map(drop));
         assert_eq!(moved.expect_err("doubles take more").exit_code(), 4);

@@ -137,7 +137,7 @@ fn planted_faults_are_named() {
             ("always certain", 80, |b| continuous::ask(b, |_| Verdict::contact(0.0, 0.0, 0, false))),
             "false certificate",
         ),
-        (("at the end", 80, |b| continuous::ask(b, |v| Verdict { toi: 1.0, toi_hi: 1.0, ..v })), "late"),
+        (("at the end", 80, |b| continuous::ask(b, |v| Verdict { toi: 1.0, toi_upper: 1.0, ..v })), "late"),
         (
             ("no number", 80, |b| continuous::ask(b, |v| Verdict { toi: f64::NAN, ..v })),
             "times that are none",
@@ -168,7 +168,8 @@ fn a_little_nearer(answer: &mut Rows) {
 fn all_certified(answer: &mut Rows) {
     if let Rows::Contacts(all) = answer {
         for contact in all {
-            (contact.status, contact.toi, contact.toi_hi) = (nearmiss::contacts::Status::Certified, 0.0, 0.0);
+            (contact.status, contact.toi, contact.toi_upper) =
+                (nearmiss::contacts::Status::Certified, 0.0, 0.0);
         }
     }
 }

@@ -99,9 +99,9 @@ fn a_fan_round_one_vertex_is_not_tested_pair_by_pair() {
 fn what_rests_is_certain() {
     for (name, body) in hard::hard(PART).into_iter().filter(|(name, _)| name.contains("equal")) {
         let all = asked(name, vec![body], Solver::Certified);
-        let sure = |c: &&nearmiss::Contact| c.status == Status::Certified && c.toi_hi == 0.0;
+        let sure = |c: &&nearmiss::Contact| c.status == Status::Certified && c.toi_upper == 0.0;
         assert_eq!(all.contacts().iter().filter(sure).count(), all.len(), "{name}");
-        assert_eq!((all.unresolved, total(all.stats.sliced_vf_ee)), (0, 0), "{name}");
+        assert_eq!((all.undecided, total(all.stats.sliced_vf_ee)), (0, 0), "{name}");
         assert!(all.len() > 100_000, "{name}");
     }
 }

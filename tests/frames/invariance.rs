@@ -66,7 +66,7 @@ fn changed(body: &Body, faces: Vec<[u32; 3]>, change: impl Fn(Vec<[f64; 3]>) -> 
     };
     let t0 = mesh(body.positions_t0());
     match body.positions_t1() {
-        None => Body::still(t0),
+        None => Body::deformable(t0),
         Some(t1) => Body::moving(t0, mesh(t1)).expect("two frames"),
     }
 }
@@ -79,7 +79,7 @@ fn mapped(body: &Body, point: impl Fn([f64; 3]) -> [f64; 3]) -> Body {
 /// A contact by what it is, not by its numbers: kind, and vertices of the original mesh. The two edges of a pair, and
 /// the vertices of each, are in ascending order.
 type Named = (Kind, Vec<u32>, Vec<u32>);
-/// The bits of a contact's times, `toi` and `toi_hi`.
+/// The bits of a contact's times, `toi` and `toi_upper`.
 type Times = [u64; 2];
 
 /// The contacts of one body as named features with their times. `vertex` gives each vertex its original
@@ -103,7 +103,7 @@ fn named(body: &Body, contacts: &[Contact], vertex: impl Fn(u32) -> u32) -> BTre
                 (Kind::Ee, a, b)
             }
         };
-        assert_eq!(all.insert(name, [c.toi, c.toi_hi].map(f64::to_bits)), None, "a contact twice: {c:?}");
+        assert_eq!(all.insert(name, [c.toi, c.toi_upper].map(f64::to_bits)), None, "a contact twice: {c:?}");
     }
     all
 }
@@ -126,7 +126,7 @@ fn the_comparison_can_fail() {
     let less = contacts.contacts()[1..].to_vec();
     assert_ne!(named(&body, &less, |v| v), truth);
     let mut late = contacts.contacts().to_vec();
-    (late[0].toi, late[0].toi_hi) = (late[0].toi_hi + 1e-6, late[0].toi_hi + 2e-6);
+    (late[0].toi, late[0].toi_upper) = (late[0].toi_upper + 1e-6, late[0].toi_upper + 2e-6);
     let late = named(&body, &late, |v| v);
     assert!(std::panic::catch_unwind(|| assert_close(&late, &truth, "late")).is_err());
     assert!(std::panic::catch_unwind(|| assert_close(&named(&body, &less, |v| v), &truth, "less")).is_err());

@@ -4,10 +4,10 @@
 mod frames;
 mod others;
 
-use nearmiss::contacts::{Contact, Degraded, NearPair, TrianglePair};
+use nearmiss::contacts::{Caveat, Contact, NearPair, TrianglePair};
 use nearmiss::mesh::Positions;
 use nearmiss::query::QueryKind;
-use nearmiss::scene::{BodyId, BodyKind, Meets, Motion, Pose, Scene};
+use nearmiss::scene::{BodyId, BodyKind, CollisionFilter, Motion, Pose, Scene};
 use nearmiss::{Body, Contacts, Mesh, Query};
 use nearmiss_lab::OneQuery;
 use rand::rngs::SmallRng;

@@ -178,7 +178,7 @@ fn meets(a: &[Moving<f64>], b: &[Moving<f64>]) -> bool {
 }
 
 fn near_misses(answer: &Contacts) -> usize {
-    answer.contacts().iter().filter(|c| c.status == Status::Unresolved).count()
+    answer.contacts().iter().filter(|c| c.status == Status::Undecided).count()
 }
 
 /// Asks in every way; the first that differs.
@@ -207,7 +207,7 @@ fn near_misses_are_listed_by_every_way_or_by_none() {
             let answer = differs(&bodies, query).unwrap_or_else(|odd| panic!("{what}: {odd}"));
             let p = Params { budget: budget.unwrap_or(Params::BUDGET), ..Params::new(tolerance) };
             assert_eq!(fault(answer.contacts(), &brute(&bodies, &p), &[]), None, "{what}");
-            println!("{what}: {} listed, {} of them unresolved", answer.len(), near_misses(&answer));
+            println!("{what}: {} listed, {} of them undecided", answer.len(), near_misses(&answer));
             counts.push((name.clone(), near_misses(&answer)));
         }
     }
@@ -222,7 +222,7 @@ fn what_once_differed_is_alike() {
     for folder in ["bv-hash-default-f32ply", "extmix-100027-min"] {
         let folder = data(&format!("finds/{folder}"));
         let mesh = |name: &str| MeshFile::read(&folder.join(name)).expect("a mesh").into_mesh();
-        let other = Body::still(mesh("b0.ply"));
+        let other = Body::deformable(mesh("b0.ply"));
         let bodies = vec![Body::moving(mesh("a0.ply"), mesh("a1.ply")).expect("two frames"), other];
         for tolerance in [None, Some(1e-1), Some(1e-3), Some(1e-6), Some(1e-9), Some(0.0)] {
             for boxes in [None, Some(1)] {
@@ -254,7 +254,7 @@ fn the_comparison_can_fail() {
     let (query, p) = (asking(1e-2, None), Params::new(1e-2));
     let answer = ask(engine(), bodies.clone(), query);
     let near = brute(&bodies, &p);
-    let at = answer.contacts().iter().position(|c| c.status == Status::Unresolved).expect("a near miss");
+    let at = answer.contacts().iter().position(|c| c.status == Status::Undecided).expect("a near miss");
     let mut less = answer.contacts().to_vec();
     less.remove(at);
     assert!(fault(&less, &near, &[]).is_some_and(|fault| fault.contains("is missed")));

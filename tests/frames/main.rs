@@ -1,8 +1,8 @@
 //! Whole frames, by every query: against brute force, exact lists and laws.
 
 mod animation;
+mod caveats;
 mod contacts;
-mod degraded;
 mod distance;
 mod earliest;
 mod exact;

@@ -9,7 +9,7 @@ use nearmiss::contacts::{NearestTriangles, Rows};
 use nearmiss::device::Backend;
 use nearmiss::mesh::Positions;
 use nearmiss::query::QueryKind;
-use nearmiss::scene::{BodyId, DeviceMotion, DeviceRows, Meets, Motion, Number, Scene};
+use nearmiss::scene::{BodyId, CollisionFilter, DeviceMotion, DeviceRows, Motion, Number, Scene};
 use nearmiss::{Body, Contacts, Device, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
@@ -30,7 +30,7 @@ fn crowd(kind: QueryKind, triangles: usize, frames: usize) -> (Scene, BodyId, Ve
         }
     }
     let mut scene = Scene::new();
-    let id = scene.add(body.with(Meets::and_itself()));
+    let id = scene.add(body.with_filter(CollisionFilter::with_self_collision()));
     if kind == QueryKind::Distance {
         // It is that of two bodies.
         let other = scene::soup(50, 2, false).expect("a scene");
@@ -124,7 +124,7 @@ fn drive(kind: QueryKind, triangles: usize, frames: usize) -> (usize, usize) {
     let cpu = Device::open(Backend::Cpu, None).expect("threads");
     let mut judge = OneQuery::new(cpu, scene.clone(), query(kind)).expect("a detector");
     // SAFETY: context and stream are the simulator's, which outlives the detector.
-    let device = unsafe { Device::borrow(simulator.context(), simulator.stream()) }.expect("a GPU");
+    let device = unsafe { Device::from_stream(simulator.context(), simulator.stream()) }.expect("a GPU");
     let mut detector = OneQuery::new(device.clone(), scene, query(kind)).expect("a detector");
     let ends = simulator.positions().map(|address| rows(address, t0.len() / 3));
     let mut t1 = t0.clone();
@@ -195,9 +195,9 @@ fn what_a_replay_costs() {
         let simulator = Simulator::new(&t0, &velocity);
         simulator.write(&t0, &t1);
         // SAFETY: as above.
-        let device = unsafe { Device::borrow(simulator.context(), simulator.stream()) }.expect("a GPU");
+        let device = unsafe { Device::from_stream(simulator.context(), simulator.stream()) }.expect("a GPU");
         let mut scene = Scene::new();
-        let id = scene.add(body.clone().with(Meets::and_itself()));
+        let id = scene.add(body.clone().with_filter(CollisionFilter::with_self_collision()));
         let mut detector = OneQuery::new(device, scene, query(kind)).expect("a detector");
         let ends = simulator.positions().map(|address| rows(address, t0.len() / 3));
         let timed = |run: &mut dyn FnMut()| {

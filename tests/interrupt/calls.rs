@@ -153,7 +153,7 @@ fn slices_are_interrupted() {
         let fresh = OneQuery::new(whole.clone(), body(), asked::of(kind)).and_then(|mut own| own.detect());
         let fresh = fresh.expect("an answer");
         let sliced = |bytes: u64| {
-            let mut own = OneQuery::new(engine().limited(bytes), body(), asked::of(kind)).ok()?;
+            let mut own = OneQuery::new(engine().with_memory_limit(bytes), body(), asked::of(kind)).ok()?;
             own.detect().ok().filter(|found| found.stats.slices > 1).map(|_| own)
         };
         let peak = whole.bytes().1;

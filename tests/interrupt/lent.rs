@@ -2,13 +2,13 @@
 
 use super::{interrupted, looks, same, threads};
 use nearmiss::mesh::Positions;
-use nearmiss::scene::{BodyId, DeviceMotion, DeviceRows, Meets, Motion, Number};
+use nearmiss::scene::{BodyId, CollisionFilter, DeviceMotion, DeviceRows, Motion, Number};
 use nearmiss::{Body, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 
 fn soup(seed: u64) -> Body {
-    scene::soup(200, seed, true).expect("a scene").with(Meets::and_itself())
+    scene::soup(200, seed, true).expect("a scene").with_filter(CollisionFilter::with_self_collision())
 }
 
 fn points(body: &Body) -> [Vec<[f32; 3]>; 2] {

@@ -8,7 +8,7 @@ mod lent;
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::device::{Backend, Interrupt};
 use nearmiss::query::QueryKind;
-use nearmiss::scene::{Meets, Motion, Scene};
+use nearmiss::scene::{CollisionFilter, Motion, Scene};
 use nearmiss::{Body, Contacts, Device, Error, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
@@ -16,7 +16,11 @@ use support::{asked, ways};
 
 /// Two soups that meet each other and themselves.
 fn bodies(n: usize, moving: bool) -> Vec<Body> {
-    [1, 2].map(|seed| scene::soup(n, seed, moving).expect("a scene").with(Meets::and_itself())).into()
+    [1, 2]
+        .map(|seed| {
+            scene::soup(n, seed, moving).expect("a scene").with_filter(CollisionFilter::with_self_collision())
+        })
+        .into()
 }
 
 fn threads(count: usize) -> Device {

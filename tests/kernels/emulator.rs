@@ -315,7 +315,7 @@ fn the_engine_runs_on_as_many_threads_as_asked() {
 #[test]
 fn threads_of_a_gpu_are_refused() {
     for (threads, named) in [(1, "1 thread of a GPU"), (2, "2 threads of a GPU"), (0, "0 threads of a GPU")] {
-        let Err(error @ Error::Choice { .. }) = Device::open(Backend::Cuda, Some(threads)) else {
+        let Err(error @ Error::InvalidArgument { .. }) = Device::open(Backend::Cuda, Some(threads)) else {
             panic!("{threads} threads of a GPU are not refused");
         };
         assert!(error.to_string().starts_with(named), "{error}");

@@ -11,7 +11,7 @@ import unittest
 import pyvista
 
 KINDS = ["vf", "fv", "ee"]
-STATUS = ["contact", "certified", "unresolved"]
+STATUS = ["contact", "certified", "undecided"]
 
 
 def differences(mesh, rows):
@@ -23,7 +23,7 @@ def differences(mesh, rows):
         row = rows[int(cells["row"][at])]
         pairs = [(KINDS[cells["kind"][at]], row["kind"]), (list(cells["bodies"][at]), [int(row["body_a"]), int(row["body_b"])])]
         pairs += [(int(cells[name][at]), int(row[name])) for name in "ab"]
-        timed = ["toi", "toi_hi"] if "toi" in cells else []
+        timed = ["toi", "toi_upper"] if "toi" in cells else []
         pairs += [(float(cells[name][at]), float(row[name])) for name in ["distance", *timed]]
         if timed:
             pairs.append((STATUS[cells["status"][at]], row["status"]))

@@ -5,7 +5,7 @@ mod shapes;
 use nearmiss::contacts::TrianglePair;
 use nearmiss::mesh::{Body, Positions};
 use nearmiss::query::{Broad, Bv, Discrete, Query, Search, TriangleTest};
-use nearmiss::scene::{Meets, Motion, Scene};
+use nearmiss::scene::{CollisionFilter, Motion, Scene};
 use nearmiss::{Contacts, Rows};
 use nearmiss_lab::OneQuery;
 use shapes::Shape;
@@ -156,15 +156,19 @@ fn a_folded_fan_meets_itself_and_others_as_without_hubs() {
 #[test]
 fn fans_of_several_bodies_meet_as_without_hubs() {
     let fan = |seed| Shape::folded(120, seed);
-    let environment = |at: u32| Meets::in_environment(at);
+    let environment = |at: u32| CollisionFilter::in_environment(at);
     // At one place, with equal local vertex numbers; a static one; one that is not tested against itself; environments.
     let scenes: [Vec<Body>; 3] = [
         vec![fan(1).moving(1, 0.1), fan(1).moving(2, 0.1)],
-        vec![fan(1).moving(1, 0.1), fan(2).fixed(), fan(3).body().with(Meets::others())],
         vec![
-            fan(1).moving(1, 0.1).with(environment(3)),
-            fan(2).body().with(environment(1)),
-            fan(1).moving(3, 0.1).with(environment(3)),
+            fan(1).moving(1, 0.1),
+            fan(2).fixed(),
+            fan(3).body().with_filter(CollisionFilter::without_self_collision()),
+        ],
+        vec![
+            fan(1).moving(1, 0.1).with_filter(environment(3)),
+            fan(2).body().with_filter(environment(1)),
+            fan(1).moving(3, 0.1).with_filter(environment(3)),
             fan(4).fixed(),
         ],
     ];

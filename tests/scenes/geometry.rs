@@ -3,7 +3,9 @@
 use nearmiss::contacts::{ContactGeometry, Contacts, Kind, Rows};
 use nearmiss::mesh::Positions;
 use nearmiss::query::{Certified, Continuous};
-use nearmiss::scene::{BodyId, BodyKind, DeviceMotion, DeviceRows, Meets, Motion, Number, Pose, Scene};
+use nearmiss::scene::{
+    BodyId, BodyKind, CollisionFilter, DeviceMotion, DeviceRows, Motion, Number, Pose, Scene,
+};
 use nearmiss::{Body, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
@@ -19,7 +21,7 @@ fn soup(n: usize, seed: u64) -> (nearmiss::Mesh, [Positions; 2]) {
 fn met(query: Query, seed: u64) -> (OneQuery, Contacts) {
     let mut scene = Scene::new();
     let (mesh, [t0, t1]) = soup(60, seed);
-    let cloth = scene.add(Body::still(mesh).with(Meets::and_itself()));
+    let cloth = scene.add(Body::deformable(mesh).with_filter(CollisionFilter::with_self_collision()));
     let rigid = scene.add(Body::rigid(soup(50, seed + 100).0));
     scene.add(Body::fixed(soup(40, seed + 200).0));
     let mut detector = OneQuery::new(engine(), scene, query).expect("a detector");
@@ -179,7 +181,7 @@ fn geometry_goes_by_what_was_placed() {
     let (mesh, ends) = soup(60, 3);
     let device = engine();
     let mut scene = Scene::new();
-    let id = scene.add(Body::still(mesh).with(Meets::and_itself()));
+    let id = scene.add(Body::deformable(mesh).with_filter(CollisionFilter::with_self_collision()));
     let mut by_host = OneQuery::new(engine(), scene.clone(), certified()).expect("a detector");
     let found = by_host.frame(&[(id, Motion::step(&ends[0], &ends[1]))]).expect("an answer");
     let wanted = by_host.geometry(&found).expect("geometry");
@@ -204,12 +206,15 @@ fn geometry_goes_by_what_was_placed() {
         for found in [own.detect().expect("an answer"), nearmiss::Contacts::none(query)] {
             let error = own.geometry(&found).expect_err("no features");
             let told = error.to_string();
-            assert!(matches!(error, nearmiss::Error::Choice { .. }) && told.contains(name), "{told}");
+            assert!(
+                matches!(error, nearmiss::Error::InvalidArgument { .. }) && told.contains(name),
+                "{told}"
+            );
             assert!(told.contains("use a") || told.contains("`points`"), "{told}");
         }
     }
     // Contacts of a larger body than this one has.
-    let mut other = OneQuery::new(engine(), Body::still(soup(5, 1).0), certified()).expect("a detector");
+    let mut other = OneQuery::new(engine(), Body::deformable(soup(5, 1).0), certified()).expect("a detector");
     assert!(matches!(found.rows, Rows::Contacts(_)));
     let error = other.geometry(&found).expect_err("other bodies").to_string();
     assert!(error.contains("other bodies"), "{error}");

@@ -4,7 +4,7 @@ use nearmiss::contacts::Contacts;
 use nearmiss::device::Device;
 use nearmiss::mesh::Positions;
 use nearmiss::query::{Certified, Continuous};
-use nearmiss::scene::{BodyId, DeviceMotion, DeviceRows, Meets, Motion, Number, Pose, Scene};
+use nearmiss::scene::{BodyId, CollisionFilter, DeviceMotion, DeviceRows, Motion, Number, Pose, Scene};
 use nearmiss::{Body, Detector, Discrete, Earliest, Near, Query};
 use nearmiss_lab::scene;
 use rand::rngs::SmallRng;
@@ -38,7 +38,7 @@ impl Bodies {
         let soup = |seed, triangles| scene::soup(triangles, seed, false).expect("a scene");
         let mesh = |seed, triangles| soup(seed, triangles).frames().swap_remove(0);
         let mut scene = Scene::new();
-        let cloth = scene.add(soup(seed, 60).with(Meets::and_itself()));
+        let cloth = scene.add(soup(seed, 60).with_filter(CollisionFilter::with_self_collision()));
         let ball = scene.add(Body::rigid(mesh(seed + 1, 40)));
         scene.add(Body::fixed(mesh(seed + 2, 50)));
         Bodies { scene, cloth, ball }
@@ -79,7 +79,7 @@ fn alone(bodies: &Bodies, step: &Step, query: &Query) -> Contacts {
 /// How two answers differ.
 fn difference(found: &Contacts, wanted: &Contacts) -> Option<String> {
     let of = |answer: &Contacts| {
-        (answer.rows.clone(), answer.starts_crossing, answer.degraded().to_vec(), answer.is_free())
+        (answer.rows.clone(), answer.starts_crossing, answer.caveats().to_vec(), answer.is_free())
     };
     (of(found) != of(wanted))
         .then(|| format!("{:?}: {} rows, alone {}", found.query, found.rows.len(), wanted.rows.len()))
@@ -264,7 +264,7 @@ fn a_submission_without_a_query_or_with_two_of_one_shape_is_refused() {
 #[test]
 fn a_submission_has_the_numbers_that_it_was_prepared_with() {
     // At rest: a body that no motion names stays where its step ended.
-    let body = Body::still(cloth().frames().swap_remove(0));
+    let body = Body::deformable(cloth().frames().swap_remove(0));
     let [small, large] = [Query::near(1e-3), Query::near(4e-3)];
     let alone = |query: &Query| {
         Detector::new(engine(), body.clone()).expect("a detector").query(query).expect("an answer")

@@ -7,7 +7,7 @@ mod far;
 mod rests;
 
 use nearmiss::mesh::Positions;
-use nearmiss::scene::{BodyId, Meets, Motion, Pose, Scene};
+use nearmiss::scene::{BodyId, CollisionFilter, Motion, Pose, Scene};
 use nearmiss::{Body, Contacts, Mesh, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
@@ -69,7 +69,7 @@ fn placed(positions: &Positions, pose: &Pose) -> Positions {
 
 /// An answer, and everything that is told beside it which is not about its making.
 fn rows(found: &Contacts) -> String {
-    format!("{:?} {:?}", found.rows, found.degraded())
+    format!("{:?} {:?}", found.rows, found.caveats())
 }
 
 /// Every query by every solver; those with a tolerance at one, and with a separation, too.

@@ -14,7 +14,7 @@ mod turns;
 use nearmiss::contacts::{Contact, Contacts, NearPair, TrianglePair};
 use nearmiss::mesh::Positions;
 use nearmiss::query::QueryKind;
-use nearmiss::scene::{BodyId, BodyKind, Meets, Motion, Pose, Scene};
+use nearmiss::scene::{BodyId, BodyKind, CollisionFilter, Motion, Pose, Scene};
 use nearmiss::{Body, Mesh, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;

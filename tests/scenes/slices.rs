@@ -2,7 +2,7 @@
 //! several devices.
 
 use nearmiss::query::{Broad, Query, QueryKind};
-use nearmiss::scene::Meets;
+use nearmiss::scene::CollisionFilter;
 use nearmiss::{Contacts, Device};
 use nearmiss_lab::scene::{self, Bodies};
 use nearmiss_lab::{OneQuery, OneQueryOnSeveral};
@@ -16,7 +16,7 @@ fn queries() -> Vec<Query> {
 /// The largest part of what a whole frame takes that is too little for one: what the first frame, asked so, comes to.
 fn too_little<T>(peak: u64, mut of: impl FnMut(Device) -> Option<(T, Contacts)>) -> (T, Contacts) {
     let parts = (1..40).rev().map(|part| peak * part / 40);
-    let mut asked = parts.filter_map(|bytes| of(engine().limited(bytes)));
+    let mut asked = parts.filter_map(|bytes| of(engine().with_memory_limit(bytes)));
     asked.find(|(_, found)| found.stats.slices > 1).expect("a part of the memory in which slices have room")
 }
 
@@ -57,7 +57,9 @@ fn bodies_that_move_are_found_alike_in_slices() {
 
 #[test]
 fn bodies_that_come_and_go_begin_with_a_whole_frame() {
-    let ball = |n, seed| scene::soup(n, seed, true).expect("a soup").with(Meets::and_itself());
+    let ball = |n, seed| {
+        scene::soup(n, seed, true).expect("a soup").with_filter(CollisionFilter::with_self_collision())
+    };
     let query = asked::of(QueryKind::Continuous);
     let whole = engine();
     let mut one = OneQuery::new(whole.clone(), ball(2_000, 1), query).expect("a detector");
@@ -114,12 +116,16 @@ fn trees_and_distances_are_not_sliced() {
     let body = scene::draped(2_000).expect("a cloth");
     for query in [asked::of(QueryKind::Continuous).with_broad(Broad::Tree), Query::distance()] {
         let whole = engine();
-        let bodies =
-            || vec![body.clone().with(Meets::and_itself()), scene::soup(50, 1, false).expect("a soup")];
+        let bodies = || {
+            vec![
+                body.clone().with_filter(CollisionFilter::with_self_collision()),
+                scene::soup(50, 1, false).expect("a soup"),
+            ]
+        };
         let want = support::ask(whole.clone(), bodies(), query);
         let mut refused = 0;
         for part in 1..20 {
-            let device = engine().limited(whole.bytes().1 * part / 20);
+            let device = engine().with_memory_limit(whole.bytes().1 * part / 20);
             let found = OneQuery::new(device, bodies(), query).and_then(|mut detector| detector.detect());
             match found {
                 Ok(found) => {

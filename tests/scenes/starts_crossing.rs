@@ -5,7 +5,7 @@ use nearmiss::contacts::{Contacts, Note, Rows};
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::Positions;
 use nearmiss::query::{Certified, Continuous, Discrete, Earliest, QueryKind, TriangleTest};
-use nearmiss::scene::{BodyId, BodyKind, Meets, Motion, Pose, Scene};
+use nearmiss::scene::{BodyId, BodyKind, CollisionFilter, Motion, Pose, Scene};
 use nearmiss::{Body, Device, Mesh, Query};
 use nearmiss_lab::scene;
 use nearmiss_lab::{OneQuery, OneQueryOnSeveral};
@@ -68,12 +68,12 @@ fn random_scene(seed: u64) -> Scene {
             _ => Body::moving(t0, t1).expect("two frames"),
         };
         let is_plain = seed.is_multiple_of(2);
-        let self_contact = (body.kind() != BodyKind::Static).then(|| rng.random_bool(0.5));
-        scene.add(body.with(Meets {
+        let self_collision = (body.kind() != BodyKind::Fixed).then(|| rng.random_bool(0.5));
+        scene.add(body.with_filter(CollisionFilter {
             environment: [Some(0), Some(0), Some(1), None][rng.random_range(0..4)],
             group: if is_plain { u32::MAX } else { rng.random_range(0..4) },
             mask: if is_plain { u32::MAX } else { rng.random_range(0..4) },
-            self_contact,
+            self_collision,
         }));
     }
     scene
@@ -160,11 +160,11 @@ fn another_count_is_noticed() {
     assert!(adjacent > right && differs(&of(&scene), adjacent).is_some());
     let mut two = Scene::new();
     for mesh in [&t0, &t1] {
-        two.add(Body::still(mesh.clone()).with(Meets::default()));
+        two.add(Body::deformable(mesh.clone()).with_filter(CollisionFilter::default()));
     }
     let mut apart = Scene::new();
     for (world, mesh) in [&t0, &t1].into_iter().enumerate() {
-        apart.add(Body::still(mesh.clone()).with(Meets::in_environment(world as u32)));
+        apart.add(Body::deformable(mesh.clone()).with_filter(CollisionFilter::in_environment(world as u32)));
     }
     assert!(differs(&of(&apart), listed(&two, Query::discrete())).is_some());
 }
@@ -175,7 +175,7 @@ fn frame_after_frame() {
     let rng = &mut SmallRng::seed_from_u64(9);
     let sheets: Vec<Mesh> = (0..4).flat_map(|_| crumpled(8, rng)).collect();
     for query in [Query::continuous(), Query::earliest()] {
-        let scene = Scene::from(Body::still(sheets[0].clone()));
+        let scene = Scene::from(Body::deformable(sheets[0].clone()));
         let id: BodyId = scene.ids().next().expect("a body");
         let [mut moving, mut still] = [query, Query::discrete()]
             .map(|q| OneQuery::new(engine(), scene.clone(), q).expect("a detector"));
@@ -203,7 +203,7 @@ fn behind_a_sample_on_several_devices_and_in_slices() {
         OneQueryOnSeveral::new(vec![engine(), engine(), engine()], scene.clone(), Query::earliest())
             .expect("detectors");
     assert_eq!(differs(&several.detect().expect("an answer"), listed), None);
-    let sliced = found(engine().limited(device.bytes().1 * 3 / 4), &scene, Query::earliest());
+    let sliced = found(engine().with_memory_limit(device.bytes().1 * 3 / 4), &scene, Query::earliest());
     assert!(sliced.stats.slices > 1, "{} slices", sliced.stats.slices);
     assert_eq!(differs(&sliced, listed), None);
 }
@@ -218,10 +218,10 @@ fn lists_of_undecided_pairs_grow() {
         OneQuery::new(engine(), support::loose(&triangles), Query::continuous()).expect("a detector");
     let first = detector.detect().expect("an answer");
     assert!(
-        first.stats.reruns > 0 && first.stats.undecided > 4_096,
-        "{} reruns, {} undecided",
+        first.stats.reruns > 0 && first.stats.uncertain > 4_096,
+        "{} reruns, {} uncertain",
         first.stats.reruns,
-        first.stats.undecided
+        first.stats.uncertain
     );
     for found in [first, detector.detect().expect("an answer")] {
         assert_eq!(differs(&found, u64::from(N * (N - 1) / 2)), None);

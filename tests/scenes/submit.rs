@@ -8,7 +8,9 @@ use nearmiss::contacts::on_device::FrameStatus;
 use nearmiss::device::Buffer;
 use nearmiss::mesh::Positions;
 use nearmiss::query::{QueryKind, QueueShape, Refit, Search, StealShape, Traversal};
-use nearmiss::scene::{BodyId, DeviceMotion, DevicePose, DeviceRows, Meets, Motion, Number, Pose, Scene};
+use nearmiss::scene::{
+    BodyId, CollisionFilter, DeviceMotion, DevicePose, DeviceRows, Motion, Number, Pose, Scene,
+};
 use nearmiss::{Body, Device, Error, Mesh, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
@@ -64,7 +66,7 @@ fn query(kind: QueryKind) -> Query {
 fn pair(n: usize) -> (Scene, BodyId, [Vec<[f32; 3]>; 2]) {
     let (mesh, ends) = soup(n, 1);
     let mut scene = Scene::new();
-    let id = scene.add(Body::still(mesh).with(Meets::and_itself()));
+    let id = scene.add(Body::deformable(mesh).with_filter(CollisionFilter::with_self_collision()));
     scene.add(Body::fixed(soup(n / 2, 2).0));
     (scene, id, ends)
 }
@@ -153,7 +155,10 @@ fn a_walk_that_needs_the_host_is_refused() {
         let memory = Points::new(&device, &t0);
         let mut detector = OneQuery::new(device, scene.clone(), query).expect("a detector");
         let error = detector.prepare(&[(id, DeviceMotion::Positions(memory.rows()))]).expect_err("refused");
-        assert!(matches!(error, Error::Choice { .. }) && error.to_string().contains("traversal"), "{error}");
+        assert!(
+            matches!(error, Error::InvalidArgument { .. }) && error.to_string().contains("traversal"),
+            "{error}"
+        );
         assert!(!detector.is_prepared() && detector.on_device().is_none());
     }
 }
@@ -233,7 +238,7 @@ fn any_other_call_ends_a_preparation() {
         |d, _| drop(d.repeat_stage(nearmiss::Stage::Fit, 1).expect("times")),
         |d, id| {
             let body = d.remove(id).expect("a body");
-            assert!(!body.is_away());
+            assert!(!body.is_device_resident());
             assert_eq!(d.add(body).expect("room"), id);
         },
     ];

@@ -3,7 +3,7 @@
 use nearmiss::Query;
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::Broad;
-use nearmiss::scene::Meets;
+use nearmiss::scene::CollisionFilter;
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
 use support::{ORDERS, engine, sanitizer};
@@ -16,7 +16,7 @@ fn far() -> Body {
 
 /// Depth of the body's tree, after all volumes are set and everything is checked.
 fn depth(device: nearmiss::Device, body: Body) -> usize {
-    let body = body.with(Meets::others());
+    let body = body.with_filter(CollisionFilter::without_self_collision());
     let mut detector = OneQuery::new(device, vec![body, far()], Query::discrete().with_broad(Broad::Tree))
         .expect("a detector");
     assert!(detector.detect().expect("an answer").is_empty(), "nothing is far away");
@@ -58,7 +58,7 @@ fn halving_distances_make_the_deepest_codes_and_stay_within_the_stack() {
         })
         .collect();
     let faces = (0..40).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-    let body = Body::still(Mesh::new("halving", Positions::F32(corners), faces).expect("a mesh"));
+    let body = Body::deformable(Mesh::new("halving", Positions::F32(corners), faces).expect("a mesh"));
     // 11 bits an axis: the first 11 splits take off one each, the other 29 share a cell, and ties halve them.
     let levels = depth(engine(), body);
     assert_eq!(levels, 11 + balanced(29));

@@ -2,7 +2,7 @@
 
 use nearmiss::device::Interrupt;
 use nearmiss::query::{Broad, Certified, Continuous};
-use nearmiss::scene::Meets;
+use nearmiss::scene::CollisionFilter;
 use nearmiss::{Body, Device, Error, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
@@ -32,7 +32,7 @@ fn near_within_a_huge_distance_is_refused_by_what_is_certain() {
     let own = 60_000u64;
     let all = own * 20_000 + own * (own - 1) / 2 - 20_000 * 6;
     for query in [Query::near(50.0), Query::near(50.0).with_broad(Broad::Tree)] {
-        let device = || engine().limited(2 << 30).limited_answers(1 << 30);
+        let device = || engine().with_memory_limit(2 << 30).limited_answers(1 << 30);
         let ([pairs, asked, given], text, looks) = refused(device(), body(), query);
         assert_eq!((pairs, given), (all, 1 << 30), "all are certain within 50");
         assert!(asked >= 48 * pairs && text.contains("use a smaller distance"), "{text}");
@@ -77,7 +77,7 @@ fn slices_are_refused_together() {
         let peak = whole.bytes().1;
         let sliced = |answers: u64| {
             (1..40).rev().map(move |part| {
-                let device = engine().limited(peak * part / 40).limited_answers(answers);
+                let device = engine().with_memory_limit(peak * part / 40).limited_answers(answers);
                 OneQuery::new(device, body(), query).and_then(|mut own| own.detect())
             })
         };
@@ -104,7 +104,8 @@ fn a_refused_detector_answers_when_bodies_are_apart() {
         OneQuery::new(device, scene::identical(200).expect("a scene"), Query::discrete()).expect("one");
     assert!(matches!(own.detect(), Err(Error::AnswerTooLarge { pairs: 19_900, .. })));
     let id = own.scene().ids().next().expect("a body");
-    let apart = || scene::soup(200, 1, false).expect("a scene").with(Meets::and_itself());
+    let apart =
+        || scene::soup(200, 1, false).expect("a scene").with_filter(CollisionFilter::with_self_collision());
     own.replace(id, apart()).expect("there");
     let want = support::ask(engine(), vec![apart()], Query::discrete());
     assert_eq!(own.detect().expect("an answer").rows, want.rows);

@@ -30,7 +30,7 @@ fn deep(copies: usize) -> Body {
         })
         .collect();
     let faces = (0..63 * copies as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-    Body::still(Mesh::new("deep", Positions::F32(corners), faces).expect("a mesh"))
+    Body::deformable(Mesh::new("deep", Positions::F32(corners), faces).expect("a mesh"))
 }
 
 /// The body a frame later: every vertex elsewhere, some volumes larger and some smaller.
@@ -42,14 +42,14 @@ fn frame(body: &Body, turn: u32) -> Body {
     });
     let points: Vec<[f32; 3]> = points.collect();
     let mesh = Mesh::new(body.name(), Positions::F32(points), body.faces().to_vec()).expect("a mesh");
-    Body::still(mesh)
+    Body::deformable(mesh)
 }
 
 type Prints = Vec<(&'static str, u64)>;
 
 /// What construction, fit and refit left after each frame: as built, moved three times, built anew, and moved again.
 fn prints(device: Device, body: &Body, refit: Refit, bv: Bv) -> Vec<Prints> {
-    let query = Query::discrete().with_refit(refit).with_bv(bv).with_rebuild(Rebuild::Never);
+    let query = Query::discrete().with_refit(refit).with_bv(bv).with_rebuild(Rebuild::Manual);
     let mut detector = OneQuery::new(device, from_afar(body), query).expect("a detector");
     let mut all = Vec::new();
     for turn in 0..5 {
@@ -129,7 +129,7 @@ fn machines_cannot_be_told_apart() {
 fn a_stale_volume_is_noticed() {
     let body = scene::soup(600, 2, false).expect("a scene");
     let of = |turn| {
-        let query = Query::discrete().with_refit(Refit::Treelets).with_rebuild(Rebuild::Never);
+        let query = Query::discrete().with_refit(Refit::Treelets).with_rebuild(Rebuild::Manual);
         let mut detector = OneQuery::new(engine(), from_afar(&body), query).expect("a detector");
         detector.move_to(0, frame(&body, turn)).expect("a frame");
         detector.detect().expect("an answer");
@@ -142,13 +142,13 @@ fn a_stale_volume_is_noticed() {
     // A frame in which nothing moved: what is left in memory is the last one's.
     assert_eq!(stages(&of(1), &of(2)), ["fit", "refit"]);
     // One triangle whose volume is another frame's.
-    let query = Query::default().with_broad(Broad::Tree).with_rebuild(Rebuild::Never);
+    let query = Query::default().with_broad(Broad::Tree).with_rebuild(Rebuild::Manual);
     let mut detector = OneQuery::new(engine(), from_afar(&body), query).expect("a detector");
     let mut points = frame(&body, 1).positions_t0().to_f64();
     points[300..303].copy_from_slice(&frame(&body, 2).positions_t0().to_f64()[300..303]);
     let points = points.into_iter().map(|p| p.map(|x| x as f32)).collect();
     let moved = Mesh::new("late", Positions::F32(points), body.faces().to_vec()).expect("a mesh");
-    detector.move_to(0, Body::still(moved)).expect("a frame");
+    detector.move_to(0, Body::deformable(moved)).expect("a frame");
     detector.detect().expect("an answer");
     assert_eq!(stages(&detector.fingerprints().expect("prints"), &of(1)), ["fit", "refit"]);
 }

@@ -110,7 +110,7 @@ fn a_cpu_has_no_stage_that_orders() {
 #[test]
 fn nothing_has_no_stages() {
     let empty = nearmiss::Mesh::new("empty", nearmiss::mesh::Positions::F32(Vec::new()), Vec::new());
-    let bodies = vec![Body::still(empty.expect("a mesh"))];
+    let bodies = vec![Body::deformable(empty.expect("a mesh"))];
     let mut detector = OneQuery::new(engine(), bodies, Query::discrete()).expect("a detector");
     for stage in STAGES {
         assert_eq!(detector.repeat_stage(stage, 4).expect("no runs"), Vec::<f64>::new());
@@ -128,7 +128,7 @@ fn what_a_frame_launches_again_is_launched_at_once() {
         let device = engine();
         // The second one, if there is one, rests.
         let bodies = |first: &Body| {
-            let rests = Body::still(body.frames().swap_remove(0));
+            let rests = Body::deformable(body.frames().swap_remove(0));
             [first.clone(), rests].into_iter().take(count).collect::<Vec<_>>()
         };
         let mut detector = OneQuery::new(device.clone(), bodies(&body), query).expect("a detector");

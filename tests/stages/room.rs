@@ -22,7 +22,7 @@ fn twice(device: Device, bodies: Vec<Body>, query: Query) -> (Contacts, [u64; 2]
             c.stats.triangle_pairs,
             c.stats.candidates,
             c.stats.candidates_vf_ee,
-            c.stats.undecided,
+            c.stats.uncertain,
             c.stats.steps,
         )
     };
@@ -70,9 +70,9 @@ fn more_undecided_pairs_than_room() {
     let (contacts, reruns) = twice(engine(), vec![loose(&triangles)], Query::discrete());
     assert_eq!(contacts.triangles(), all_pairs(N));
     assert!(
-        contacts.stats.undecided > 4_096,
-        "{} undecided: no longer more than the first room",
-        contacts.stats.undecided
+        contacts.stats.uncertain > 4_096,
+        "{} uncertain: no longer more than the first room",
+        contacts.stats.uncertain
     );
     assert!(reruns[0] > 0);
 }
@@ -166,7 +166,7 @@ fn short_lists_of_what_isolation_leaves_alone() {
                 contacts.stats.candidates_vf_ee
             );
             assert!(reruns[0] > 0 && contacts.stats.sliced_vf_ee == [0, 0], "{reruns:?}");
-            assert_eq!((contacts.earliest_toi(), contacts.unresolved), (Some(0.0), 0));
+            assert_eq!((contacts.earliest_toi(), contacts.undecided), (Some(0.0), 0));
             if motion == QueryKind::Continuous {
                 assert_eq!(contacts.len(), 3 * 400 + 4 * 18 * 18);
             }

@@ -74,7 +74,7 @@ fn described(body: &Body) -> NearmissBody {
         positions: rows(body.positions_t0()),
         triangles: body.faces().as_ptr().cast(),
         triangle_count: body.face_count(),
-        self_contact: 1,
+        self_collision: 1,
         ..nearmiss_body()
     }
 }

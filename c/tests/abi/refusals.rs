@@ -1,7 +1,7 @@
 //! What cannot be is refused.
 
 use super::*;
-use NearmissCode::{NEARMISS_CHOICE, NEARMISS_DEVICE, NEARMISS_INPUT};
+use NearmissCode::{NEARMISS_DEVICE, NEARMISS_INPUT, NEARMISS_INVALID_ARGUMENT};
 use nearmiss_lab::scene::soup;
 use std::ptr::null;
 
@@ -19,33 +19,41 @@ fn added(body: NearmissBody) -> Told<u32> {
 
 #[test]
 fn null_is_refused_everywhere() {
-    assert_eq!(nearmiss_device_open(0, 1, None, None), NEARMISS_CHOICE);
-    assert_eq!(nearmiss_scene_new(None, None), NEARMISS_CHOICE);
+    assert_eq!(nearmiss_device_open(0, 1, None, None), NEARMISS_INVALID_ARGUMENT);
+    assert_eq!(nearmiss_scene_new(None, None), NEARMISS_INVALID_ARGUMENT);
     refused(
         told(|e| nearmiss_device_name(None, None, e)),
-        NEARMISS_CHOICE,
+        NEARMISS_INVALID_ARGUMENT,
         "NULL for the device; give a pointer",
     );
     // SAFETY: NULL is refused before anything is read; so below.
     refused(
         told(|e| unsafe { nearmiss_scene_add(None, None, None, e) }),
-        NEARMISS_CHOICE,
+        NEARMISS_INVALID_ARGUMENT,
         "NULL for the scene",
     );
     // SAFETY: NULL is refused before anything is read.
     let made = got(|to, e| unsafe { nearmiss_detector_new(None, None, None, to, e) });
-    refused(made, NEARMISS_CHOICE, "NULL for the device");
+    refused(made, NEARMISS_INVALID_ARGUMENT, "NULL for the device");
     // SAFETY: NULL is refused before anything is read.
     let made = got(|to, e| unsafe { nearmiss_detector_frame(None, null(), 0, to, e) });
-    refused(made, NEARMISS_CHOICE, "NULL for the detector");
-    refused(got(|to, e| nearmiss_detector_collect(None, to, e)), NEARMISS_CHOICE, "NULL for the detector");
-    refused(told(|e| nearmiss_answer_contacts(None, None, None, e)), NEARMISS_CHOICE, "NULL for the answer");
+    refused(made, NEARMISS_INVALID_ARGUMENT, "NULL for the detector");
+    refused(
+        got(|to, e| nearmiss_detector_collect(None, to, e)),
+        NEARMISS_INVALID_ARGUMENT,
+        "NULL for the detector",
+    );
+    refused(
+        told(|e| nearmiss_answer_contacts(None, None, None, e)),
+        NEARMISS_INVALID_ARGUMENT,
+        "NULL for the answer",
+    );
     let soup = soup(10, 1, false).expect("a soup");
     let mut own = detector(&[described(&soup)], nearmiss_query(0)).expect("a detector");
-    assert_eq!(nearmiss_detector_detect(Some(&mut own), None, None), NEARMISS_CHOICE);
+    assert_eq!(nearmiss_detector_detect(Some(&mut own), None, None), NEARMISS_INVALID_ARGUMENT);
     // SAFETY: as above.
     let one = told(|e| unsafe { nearmiss_detector_place(Some(&mut own), null(), 1, e) });
-    refused(one, NEARMISS_CHOICE, "NULL for 1 inputs");
+    refused(one, NEARMISS_INVALID_ARGUMENT, "NULL for 1 inputs");
     nearmiss_device_free(None);
     nearmiss_scene_free(None);
     nearmiss_detector_free(None);
@@ -54,7 +62,7 @@ fn null_is_refused_everywhere() {
 
 #[test]
 fn what_is_no_machine_is_refused() {
-    refused(got(|to, e| nearmiss_device_open(9, 0, to, e)), NEARMISS_CHOICE, "the backend 9");
+    refused(got(|to, e| nearmiss_device_open(9, 0, to, e)), NEARMISS_INVALID_ARGUMENT, "the backend 9");
     refused(got(|to, e| nearmiss_device_gpu(u32::MAX, to, e)), NEARMISS_DEVICE, "opening");
 }
 
@@ -82,35 +90,47 @@ fn what_is_no_body_is_refused() {
     };
     refused(
         positions(|rows| rows.stride = 8),
-        NEARMISS_CHOICE,
+        NEARMISS_INVALID_ARGUMENT,
         "positions of a body 8 bytes apart; give a multiple of 4",
     );
-    refused(positions(|rows| rows.stride = 14), NEARMISS_CHOICE, "14 bytes apart");
-    refused(positions(|rows| rows.number = 7), NEARMISS_CHOICE, "numbers of kind 7");
-    refused(positions(|rows| rows.data = null()), NEARMISS_CHOICE, "NULL for positions of a body");
+    refused(positions(|rows| rows.stride = 14), NEARMISS_INVALID_ARGUMENT, "14 bytes apart");
+    refused(positions(|rows| rows.number = 7), NEARMISS_INVALID_ARGUMENT, "numbers of kind 7");
+    refused(positions(|rows| rows.data = null()), NEARMISS_INVALID_ARGUMENT, "NULL for positions of a body");
     refused(
         positions(|rows| rows.data = rows.data.wrapping_byte_add(1)),
-        NEARMISS_CHOICE,
+        NEARMISS_INVALID_ARGUMENT,
         "between two numbers",
     );
-    refused(positions(|rows| rows.count = usize::MAX / 4), NEARMISS_CHOICE, "rows for positions");
+    refused(positions(|rows| rows.count = usize::MAX / 4), NEARMISS_INVALID_ARGUMENT, "rows for positions");
     refused(positions(|rows| rows.count = 2), NEARMISS_INPUT, "a body: ");
-    refused(added(NearmissBody { triangles: null(), ..good }), NEARMISS_CHOICE, "NULL for 30 indices");
+    refused(
+        added(NearmissBody { triangles: null(), ..good }),
+        NEARMISS_INVALID_ARGUMENT,
+        "NULL for 30 indices",
+    );
     refused(
         added(NearmissBody { triangle_count: usize::MAX, ..good }),
-        NEARMISS_CHOICE,
+        NEARMISS_INVALID_ARGUMENT,
         "a count that cannot be",
     );
-    refused(added(NearmissBody { kind: 3, ..good }), NEARMISS_CHOICE, "a body of kind 3");
-    refused(added(NearmissBody { self_contact: 3, ..good }), NEARMISS_CHOICE, "3 for self_contact");
-    let own = |kind, self_contact| added(NearmissBody { kind, self_contact, ..good });
-    refused(own(0, 1), NEARMISS_CHOICE, "self-contact of a body, which is static");
-    for (kind, self_contact) in [(0, 0), (0, 2), (1, 0), (1, 1), (1, 2), (2, 0), (2, 1), (2, 2)] {
-        assert!(own(kind, self_contact).is_ok(), "kind {kind}, self_contact {self_contact}");
+    refused(added(NearmissBody { kind: 3, ..good }), NEARMISS_INVALID_ARGUMENT, "a body of kind 3");
+    refused(
+        added(NearmissBody { self_collision: 3, ..good }),
+        NEARMISS_INVALID_ARGUMENT,
+        "3 for self_collision",
+    );
+    let own = |kind, self_collision| added(NearmissBody { kind, self_collision, ..good });
+    refused(own(0, 1), NEARMISS_INVALID_ARGUMENT, "self-collision of a body, which is static");
+    for (kind, self_collision) in [(0, 0), (0, 2), (1, 0), (1, 1), (1, 2), (2, 0), (2, 1), (2, 2)] {
+        assert!(own(kind, self_collision).is_ok(), "kind {kind}, self_collision {self_collision}");
     }
     refused(added(NearmissBody { triangle_count: 0, ..good }), NEARMISS_INPUT, "no triangles");
-    refused(added(NearmissBody { group: 0, ..good }), NEARMISS_CHOICE, "group is 0");
-    refused(added(NearmissBody { everywhere: 1, environment: 3, ..good }), NEARMISS_CHOICE, "environment 3");
+    refused(added(NearmissBody { group: 0, ..good }), NEARMISS_INVALID_ARGUMENT, "group is 0");
+    refused(
+        added(NearmissBody { everywhere: 1, environment: 3, ..good }),
+        NEARMISS_INVALID_ARGUMENT,
+        "environment 3",
+    );
     // SAFETY: numbers and pointers, of which zeros are some.
     refused(added(unsafe { std::mem::zeroed() }), NEARMISS_INPUT, "no triangles");
     let wrong = [[0u32, 1, 99]];
@@ -139,20 +159,48 @@ fn what_is_no_query_is_refused() {
     assert_eq!(asked(1, |query| query.solver = c"cubic-f64".as_ptr()), Ok(()));
     assert_eq!(asked(1, |query| (query.tolerance, query.separation) = (1e-6, 1e-3)), Ok(()));
     assert_eq!(asked(0, |query| query.bv = c"obb".as_ptr()), Ok(()));
-    refused(asked(5, |_| ()), NEARMISS_CHOICE, "a query of kind 5");
-    refused(asked(3, |_| ()), NEARMISS_CHOICE, "a distance of 0");
-    refused(asked(0, |query| query.distance = 1.0), NEARMISS_CHOICE, "distance of a discrete query");
-    refused(asked(0, |query| query.tolerance = 0.1), NEARMISS_CHOICE, "tolerance of a discrete query");
-    refused(asked(1, |query| query.tolerance = -2.0), NEARMISS_CHOICE, "a tolerance that is no length");
-    refused(asked(1, |query| query.separation = f64::NAN), NEARMISS_CHOICE, "a separation that is no length");
-    refused(asked(1, |query| query.adjacent = 1), NEARMISS_CHOICE, "adjacent of a continuous query");
-    refused(asked(1, |query| query.solver = c"exact".as_ptr()), NEARMISS_CHOICE, "choose one of: certified");
+    refused(asked(5, |_| ()), NEARMISS_INVALID_ARGUMENT, "a query of kind 5");
+    refused(asked(3, |_| ()), NEARMISS_INVALID_ARGUMENT, "a distance of 0");
+    refused(
+        asked(0, |query| query.distance = 1.0),
+        NEARMISS_INVALID_ARGUMENT,
+        "distance of a discrete query",
+    );
+    refused(
+        asked(0, |query| query.tolerance = 0.1),
+        NEARMISS_INVALID_ARGUMENT,
+        "tolerance of a discrete query",
+    );
+    refused(
+        asked(1, |query| query.tolerance = -2.0),
+        NEARMISS_INVALID_ARGUMENT,
+        "a tolerance that is no length",
+    );
+    refused(
+        asked(1, |query| query.separation = f64::NAN),
+        NEARMISS_INVALID_ARGUMENT,
+        "a separation that is no length",
+    );
+    refused(
+        asked(1, |query| query.adjacent = 1),
+        NEARMISS_INVALID_ARGUMENT,
+        "adjacent of a continuous query",
+    );
+    refused(
+        asked(1, |query| query.solver = c"exact".as_ptr()),
+        NEARMISS_INVALID_ARGUMENT,
+        "choose one of: certified",
+    );
     refused(
         asked(1, |query| query.solver = c"none".as_ptr()),
-        NEARMISS_CHOICE,
+        NEARMISS_INVALID_ARGUMENT,
         "the solver none; choose one of: exact",
     );
-    refused(asked(0, |query| query.broad = c"none".as_ptr()), NEARMISS_CHOICE, "the broad phase none");
+    refused(
+        asked(0, |query| query.broad = c"none".as_ptr()),
+        NEARMISS_INVALID_ARGUMENT,
+        "the broad phase none",
+    );
 }
 
 #[test]
@@ -162,19 +210,23 @@ fn what_is_no_frame_is_refused() {
     let at = nearmiss_at(0, rows(soup.positions_t0()));
     let mut asked = |inputs: &[NearmissInput]| frame(&mut own, inputs).map(drop);
     assert_eq!(asked(&[at]), Ok(()));
-    refused(asked(&[NearmissInput { body: 1, ..at }]), NEARMISS_CHOICE, "there is no body 1 in the scene");
-    refused(asked(&[at, at]), NEARMISS_CHOICE, "two inputs for body 0");
-    refused(asked(&[NearmissInput { kind: 4, ..at }]), NEARMISS_CHOICE, "an input of kind 4");
+    refused(
+        asked(&[NearmissInput { body: 1, ..at }]),
+        NEARMISS_INVALID_ARGUMENT,
+        "there is no body 1 in the scene",
+    );
+    refused(asked(&[at, at]), NEARMISS_INVALID_ARGUMENT, "two inputs for body 0");
+    refused(asked(&[NearmissInput { kind: 4, ..at }]), NEARMISS_INVALID_ARGUMENT, "an input of kind 4");
     let both = NearmissInput { positions: [at.positions[0]; 2], ..at };
     refused(
         asked(&[both]),
-        NEARMISS_CHOICE,
+        NEARMISS_INVALID_ARGUMENT,
         "positions[1] of body 0, which an input of kind 0 does not read",
     );
     let turned = NearmissInput { rotations: [at.positions[0]; 2], ..at };
-    refused(asked(&[turned]), NEARMISS_CHOICE, "rotations[0] of body 0");
+    refused(asked(&[turned]), NEARMISS_INVALID_ARGUMENT, "rotations[0] of body 0");
     let pose = NearmissPose { rotation: [0.0, 0.0, 0.0, 1.0], translation: [0.0; 3] };
-    refused(asked(&[nearmiss_pose(0, pose)]), NEARMISS_CHOICE, "give a deformable body positions");
+    refused(asked(&[nearmiss_pose(0, pose)]), NEARMISS_INVALID_ARGUMENT, "give a deformable body positions");
     let body = NearmissBody { kind: NearmissBodyKind::NEARMISS_RIGID as u32, ..described(&soup) };
     let mut rigid = detector(&[body], nearmiss_query(0)).expect("a detector");
     for bad in
@@ -196,14 +248,18 @@ fn what_is_no_frame_is_refused() {
     assert_eq!(asked(&[at]), Ok(()));
     // SAFETY: what the input names lives to the end of the test.
     let on_host = got(|to, e| unsafe { nearmiss_detector_prepare(Some(&mut own), &at, 1, to, e) });
-    refused(on_host, NEARMISS_CHOICE, "memory of the host for body 0");
-    refused(got(|to, e| nearmiss_detector_on_device(Some(&mut own), to, e)), NEARMISS_CHOICE, "not prepared");
+    refused(on_host, NEARMISS_INVALID_ARGUMENT, "memory of the host for body 0");
+    refused(
+        got(|to, e| nearmiss_detector_on_device(Some(&mut own), to, e)),
+        NEARMISS_INVALID_ARGUMENT,
+        "not prepared",
+    );
     let answer = frame(&mut own, &[]).expect("an answer");
     let wrong = list(|to, n, e| nearmiss_answer_contacts(Some(&answer), to, n, e)).map(|_| ());
-    refused(wrong, NEARMISS_CHOICE, "contacts; this is the answer to a discrete query");
+    refused(wrong, NEARMISS_INVALID_ARGUMENT, "contacts; this is the answer to a discrete query");
     refused(
-        got(|to, e| nearmiss_answer_degraded(Some(&answer), 7, to, e)),
-        NEARMISS_CHOICE,
+        got(|to, e| nearmiss_answer_caveats(Some(&answer), 7, to, e)),
+        NEARMISS_INVALID_ARGUMENT,
         "sentence 7 of 0",
     );
 }
@@ -219,7 +275,7 @@ fn a_scene_that_a_detector_has_copied_is_not_changed() {
     let detector = super::own(made);
     // SAFETY: the body's mesh is there.
     let more = got(|id, e| unsafe { nearmiss_scene_add(Some(&mut own), Some(&described(&soup)), id, e) });
-    refused(more.map(drop), NEARMISS_CHOICE, "adding to a scene of which a detector has a copy");
+    refused(more.map(drop), NEARMISS_INVALID_ARGUMENT, "adding to a scene of which a detector has a copy");
     nearmiss_detector_free(Some(detector));
     nearmiss_scene_free(Some(own));
     nearmiss_device_free(Some(device));
@@ -231,13 +287,17 @@ fn a_step_without_an_end_and_threads_of_a_gpu_are_refused() {
     for kind in [1, 2] {
         let mut own = detector(&[described(&soup)], nearmiss_query(kind)).expect("a detector");
         let at = nearmiss_at(0, rows(soup.positions_t0()));
-        refused(frame(&mut own, &[at]).map(drop), NEARMISS_CHOICE, "no body of the frame has two ends");
+        refused(
+            frame(&mut own, &[at]).map(drop),
+            NEARMISS_INVALID_ARGUMENT,
+            "no body of the frame has two ends",
+        );
         let step = nearmiss_step(0, at.positions[0], at.positions[0]);
         assert!(frame(&mut own, &[step]).is_ok() && frame(&mut own, &[]).is_ok());
     }
     let threads =
         got(|to, e| nearmiss_device_open(NearmissBackend::NEARMISS_CUDA as u32, 2, to, e)).map(drop);
-    refused(threads, NEARMISS_CHOICE, "2 threads of a GPU");
+    refused(threads, NEARMISS_INVALID_ARGUMENT, "2 threads of a GPU");
 }
 
 /// Every query of a scene without bodies: an answer with nothing in it.

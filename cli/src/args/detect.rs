@@ -127,7 +127,7 @@ pub struct DetectArgs {
     /// mean edge, rounded down to a power of two; of two bodies the smaller].
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub tolerance: Option<f64>,
-    /// Certified: boxes that are looked at for a pair before it is left unresolved [default: 4096].
+    /// Certified: boxes that are looked at for a pair before it is left undecided [default: 4096].
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = some::<u32>())]
     pub boxes: Option<u32>,
     /// Certified: features that come this near are in contact, a length [default: 0, touching].
@@ -153,7 +153,7 @@ pub struct DetectArgs {
     pub file_faces: bool,
     /// Where to write the contacts: .csv, .json, or .vtp for ParaView; each also with .gz behind it. A .vtp has two points a contact, where
     /// both features are nearest, and of each contact `kind` (0 vf, 1 fv, 2 ee, 3 two triangles), `status` (0 contact, 1 certified,
-    /// 2 unresolved), `row` (of a .csv, from 0), `bodies`, `a`, `b`, `toi`, `toi_hi` and `distance`.
+    /// 2 undecided), `row` (of a .csv, from 0), `bodies`, `a`, `b`, `toi`, `toi_upper` and `distance`.
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
     /// With --out, .csv or .json: also the vertices of both features, their weights, nearest points, distance and normal, behind the
@@ -161,7 +161,7 @@ pub struct DetectArgs {
     #[arg(long, requires = "out", conflicts_with_all = ["file_faces", "earliest", "discrete", "distance"])]
     pub geometry: bool,
     /// Where to write all bodies as one mesh (.ply, .ply.gz), as they are at t = 0: triangles that meet, or have a vertex or an edge that
-    /// does, are red, those of unresolved contacts alone orange, all others grey.
+    /// does, are red, those of undecided contacts alone orange, all others grey.
     #[arg(long, value_name = "FILE", conflicts_with = "earliest")]
     pub out_mesh: Option<PathBuf>,
     /// Print the summary as one JSON object.

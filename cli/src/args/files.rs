@@ -25,11 +25,11 @@ pub fn part(matches: &ArgMatches, meshes: &mut Vec<PathBuf>, with: &mut Vec<Path
 /// A step has two ends.
 ///
 /// # Errors
-/// [`Error::Choice`] for more than two of either.
+/// [`Error::InvalidArgument`] for more than two of either.
 pub fn at_most_two(meshes: &[PathBuf], with: &[PathBuf]) -> Result<(), Error> {
     match [("the mesh", meshes.len()), ("--with", with.len())].into_iter().find(|(_, files)| *files > 2) {
         None => Ok(()),
-        Some((of, files)) => Err(Error::Choice {
+        Some((of, files)) => Err(Error::InvalidArgument {
             what: format!("{} for {of}", counted(files as u64, "file", "files")),
             advice: "give one, or two for both ends of a step".into(),
         }),
@@ -39,11 +39,11 @@ pub fn at_most_two(meshes: &[PathBuf], with: &[PathBuf]) -> Result<(), Error> {
 /// A mesh rests, or has as many frames as the other.
 ///
 /// # Errors
-/// [`Error::Choice`] for different numbers of frames.
+/// [`Error::InvalidArgument`] for different numbers of frames.
 pub fn as_many(meshes: &[PathBuf], with: &[PathBuf]) -> Result<(), Error> {
     match (meshes.len(), with.len()) {
         (a, b) if a < 2 || b < 2 || a == b => Ok(()),
-        (a, b) => Err(Error::Choice {
+        (a, b) => Err(Error::InvalidArgument {
             what: format!("{} for the mesh and {b} for --with", counted(a as u64, "file", "files")),
             advice: "give each one, which rests, or as many as the other".into(),
         }),

@@ -12,7 +12,7 @@ use nearmiss_lab::scene::{ANIMATIONS, SEEDED};
 /// Looks through a command's options.
 ///
 /// # Errors
-/// [`Error::Choice`] with the first that would do nothing.
+/// [`Error::InvalidArgument`] with the first that would do nothing.
 pub fn check(command: &Command, own: &ArgMatches) -> Result<(), Error> {
     let given = CommandLine(own);
     match command {
@@ -41,7 +41,7 @@ impl CommandLine<'_> {
     fn none_of(self, options: &[&str], why: &str, advice: &str) -> Result<(), Error> {
         match options.iter().find(|option| self.has(option)) {
             None => Ok(()),
-            Some(option) => Err(Error::Choice {
+            Some(option) => Err(Error::InvalidArgument {
                 what: format!("--{} would do nothing: {why}", option.replace('_', "-")),
                 advice: advice.into(),
             }),
@@ -90,7 +90,7 @@ fn detect(args: &DetectArgs, given: CommandLine) -> Result<(), Error> {
     }
     if args.with.is_empty() {
         let why = "there is no second mesh";
-        let advice = "add --with MESH, or leave it out; in a scene file say self_contact = false";
+        let advice = "add --with MESH, or leave it out; in a scene file say self_collision = false";
         given.none_of(&["no_self_contact"], why, advice)?;
     }
     if args.scene.is_none() {

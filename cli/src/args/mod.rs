@@ -76,7 +76,7 @@ fn choice<T: Named>() -> impl TypedValueParser<Value = T> {
 /// The command, or the exit status where clap has said all that there is to say.
 ///
 /// # Errors
-/// [`Error::Choice`] for options that do not go together, or that would do nothing; [`Error::Output`] for help that cannot be
+/// [`Error::InvalidArgument`] for options that do not go together, or that would do nothing; [`Error::Output`] for help that cannot be
 /// printed.
 pub fn parse() -> Result<Result<Command, ExitCode>, Error> {
     let parsed = Cli::command().try_get_matches().and_then(|all| {

@@ -47,7 +47,7 @@ pub const IDLE: [&str; 9] =
 /// An option of `detect`, as a picture has it.
 fn of_picture(option: Arg) -> Arg {
     let about = "Where to write the picture (.png): all bodies as they are at --time. Triangles that meet, or have a vertex or an edge that \
-                 does, are red, those of unresolved contacts alone orange; all others have a colour a body, of a body alone a colour a \
+                 does, are red, those of undecided contacts alone orange; all others have a colour a body, of a body alone a colour a \
                  connected part.";
     match option.get_id().as_str() {
         "out" => option.required(true).help(about),
@@ -59,11 +59,11 @@ fn of_picture(option: Arg) -> Arg {
 /// Refuses a file whose name is not that of a PNG.
 ///
 /// # Errors
-/// [`Error::Choice`].
+/// [`Error::InvalidArgument`].
 pub fn check(path: &Path) -> Result<(), Error> {
     match path.extension() {
         Some(extension) if extension.eq_ignore_ascii_case("png") => Ok(()),
-        _ => Err(Error::Choice {
+        _ => Err(Error::InvalidArgument {
             what: format!("{}: a picture cannot be written in that format", path.display()),
             advice: "give --out a name that ends in .png".into(),
         }),

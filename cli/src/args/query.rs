@@ -7,37 +7,41 @@ use nearmiss::query::{
     Certified, Continuous, ContinuousSolver, Discrete, Distance, Earliest, Near, Query, QueryKind, Rebuild,
     Search, Solver, TriangleTest,
 };
-use nearmiss::scene::Meets;
+use nearmiss::scene::CollisionFilter;
 
 impl DetectArgs {
     /// Which bodies a mesh of the command line may meet.
-    pub fn meets(&self) -> Meets {
-        if self.no_self_contact { Meets::others() } else { Meets::default() }
+    pub fn filter(&self) -> CollisionFilter {
+        if self.no_self_contact {
+            CollisionFilter::without_self_collision()
+        } else {
+            CollisionFilter::default()
+        }
     }
 
     /// The query for bodies that move, or do not.
     ///
     /// # Errors
-    /// [`Error::Choice`] for options that do not go together, and for numbers that mean nothing.
+    /// [`Error::InvalidArgument`] for options that do not go together, and for numbers that mean nothing.
     pub fn query(&self, moving: bool) -> Result<Query, Error> {
         let (kind, near) = self.kind(moving);
         let solver = self.solver.unwrap_or(Solver::default_for(kind));
         if !solver.answers(kind) {
             let known: Vec<_> = kind.solvers().iter().map(|solver| solver.name()).collect();
-            return Err(Error::Choice {
+            return Err(Error::InvalidArgument {
                 what: format!("the solver {solver:?} does not answer a {kind:?} query"),
                 advice: format!("choose one of: {}", known.join(", ")),
             });
         }
         if self.assume_free && kind.is_at_rest() {
-            return Err(Error::Choice {
+            return Err(Error::InvalidArgument {
                 what: format!("--assume-free would do nothing: a {kind} query has no step"),
                 advice: "leave it out, or ask with --continuous or --earliest".into(),
             });
         }
         let limits = self.tolerance.is_some() || self.boxes.is_some() || self.separation.is_some();
         if limits && !solver.is_certified() {
-            return Err(Error::Choice {
+            return Err(Error::InvalidArgument {
                 what: format!("the solver {solver:?} takes no tolerance, no budget and no separation"),
                 advice: "give these to a certified solver".into(),
             });
@@ -50,7 +54,7 @@ impl DetectArgs {
             traversal,
             order: self.order,
             // Every so many frames, and at no other.
-            rebuild: self.rebuild.or(self.rebuild_every.map(|_| Rebuild::Never)),
+            rebuild: self.rebuild.or(self.rebuild_every.map(|_| Rebuild::Manual)),
         };
         let query: Query = match (near, ContinuousSolver::named(solver)) {
             _ if self.distance => Distance { search }.into(),
@@ -71,7 +75,7 @@ impl DetectArgs {
         query.check()?;
         self.places(kind)?;
         if self.adjacent && solver != Solver::Exact {
-            return Err(Error::Choice {
+            return Err(Error::InvalidArgument {
                 what: "adjacent triangles are decided by exact signs only".into(),
                 advice: "ask for adjacent triangles in a discrete query with the solver exact".into(),
             });
@@ -87,8 +91,9 @@ impl DetectArgs {
     /// Refuses files of places of what has none.
     fn places(&self, kind: QueryKind) -> Result<(), Error> {
         let vtp = self.writes_vtp();
-        let refused =
-            |what: &str, advice: &str| Err(Error::Choice { what: what.into(), advice: advice.into() });
+        let refused = |what: &str, advice: &str| {
+            Err(Error::InvalidArgument { what: what.into(), advice: advice.into() })
+        };
         match kind {
             QueryKind::Discrete | QueryKind::Earliest if vtp || self.geometry => refused(
                 "a discrete query tells triangles, and an earliest one a time: neither has points",

@@ -6,7 +6,7 @@ use crate::detect::body;
 use crate::stem;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::scene::{BodyId, BodyKind, Meets, Motion, Scene};
+use nearmiss::scene::{BodyId, BodyKind, CollisionFilter, Motion, Scene};
 use nearmiss_lab::scene::{Bodies, scene};
 use std::path::PathBuf;
 
@@ -94,7 +94,7 @@ fn apart(body: Body) -> Result<Scene, Error> {
     };
     let [t0, t1] = body.ends().map(beside);
     let other = Body::moving(t0?, t1?)?;
-    Ok([body, other].map(|body| body.with(Meets::others())).to_vec().into())
+    Ok([body, other].map(|body| body.with_filter(CollisionFilter::without_self_collision())).to_vec().into())
 }
 
 /// What a case is made from.
@@ -126,7 +126,7 @@ impl Chosen {
 /// The cases that the arguments name, in the order of the list, meshes last; of no names all.
 ///
 /// # Errors
-/// [`Error::Choice`] for a name that no case has, and for one that two have.
+/// [`Error::InvalidArgument`] for a name that no case has, and for one that two have.
 pub fn chosen(args: &BenchArgs) -> Result<Vec<Chosen>, Error> {
     let made =
         GENERATED.iter().map(|of| Chosen { name: of.name.to_owned(), source: Source::Generated(of.make) });
@@ -137,20 +137,20 @@ pub fn chosen(args: &BenchArgs) -> Result<Vec<Chosen>, Error> {
     let mut all: Vec<Chosen> = made.chain(read).collect();
     let names: Vec<String> = all.iter().map(|case| case.name.clone()).collect();
     if let Some((_, twice)) = names.iter().enumerate().find(|(at, name)| names[..*at].contains(name)) {
-        return Err(Error::Choice {
+        return Err(Error::InvalidArgument {
             what: format!("two cases are named {twice}"),
             advice: "figures are told by these names: give the file another".into(),
         });
     }
     if let Some(unknown) = args.case.iter().find(|name| !names.contains(name)) {
-        return Err(Error::Choice {
+        return Err(Error::InvalidArgument {
             what: format!("no case is named {unknown}"),
             advice: format!("choose among: {}", names.join(", ")),
         });
     }
     let read = &names[GENERATED.len()..];
     if let Some(left_out) = read.iter().find(|name| !args.has_case(name)) {
-        return Err(Error::Choice {
+        return Err(Error::InvalidArgument {
             what: format!("the file of --mesh {left_out} would do nothing: --case names other cases"),
             advice: format!("add {left_out} to --case, or leave it out"),
         });

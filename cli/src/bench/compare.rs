@@ -30,12 +30,12 @@ pub struct Against {
 /// Whether the figures of another machine may have a limit: they may not.
 ///
 /// # Errors
-/// [`Error::Choice`] naming both machines.
+/// [`Error::InvalidArgument`] naming both machines.
 pub fn may_limit(now: &Machine, earlier: &Earlier) -> Result<(), Error> {
     if *now == earlier.machine {
         return Ok(());
     }
-    Err(Error::Choice {
+    Err(Error::InvalidArgument {
         what: format!("--limit with {}, which is of {}: this is {now}", earlier.file, earlier.machine),
         advice: "leave it out, or give --against a file of this machine with as many threads".into(),
     })

@@ -42,7 +42,7 @@ pub struct Figures {
 /// Measures what was asked for, prints it, and writes it where `--out` says.
 ///
 /// # Errors
-/// [`Error::Choice`] for what cannot be compared, [`Error::Input`] for an earlier file that cannot be used, both before anything is
+/// [`Error::InvalidArgument`] for what cannot be compared, [`Error::Input`] for an earlier file that cannot be used, both before anything is
 /// measured; [`Error::Regression`] for the first answer that is another than in that file, or frame that takes too long; those of
 /// the device.
 pub fn bench(args: &BenchArgs) -> Result<ExitCode, Error> {
@@ -75,7 +75,7 @@ pub fn bench(args: &BenchArgs) -> Result<ExitCode, Error> {
         }
     }
     if all.cases.is_empty() {
-        return Err(Error::Choice {
+        return Err(Error::InvalidArgument {
             what: "no case can be asked that".into(),
             advice: "of what stands still there is no step, and of one body no distance: choose another question or case".into(),
         });
@@ -97,7 +97,7 @@ fn comparable(args: &BenchArgs, chosen: &[cases::Chosen], earlier: &Earlier) -> 
     if chosen.iter().any(|case| has(&case.name)) {
         return Ok(());
     }
-    Err(Error::Choice {
+    Err(Error::InvalidArgument {
         what: format!("--against would do nothing: {} has none of what is asked", earlier.file),
         advice: "give a file of the same cases and questions, or leave it out".into(),
     })

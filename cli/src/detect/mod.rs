@@ -41,7 +41,7 @@ fn body_by(files: &[PathBuf], reader: &mut Reader) -> Result<(Body, Polygons), E
         [still] => {
             let file = reader.mesh(still)?;
             let polygons = file.polygons().clone();
-            Ok((Body::still(file.into_mesh()), polygons))
+            Ok((Body::deformable(file.into_mesh()), polygons))
         }
         // `args` asks for one or two.
         _ => Err(Error::Bug { what: format!("{} files for a mesh", files.len()) }),
@@ -112,7 +112,7 @@ fn bodies(args: &DetectArgs, reader: &mut Reader) -> Result<(Vec<Body>, Vec<Poly
         told.push(during("reading", || body_by(&args.with, reader))?);
     }
     let (bodies, polygons): (Vec<Body>, Vec<Polygons>) = told.into_iter().unzip();
-    let mut bodies: Vec<Body> = bodies.into_iter().map(|body| body.with(args.meets())).collect();
+    let mut bodies: Vec<Body> = bodies.into_iter().map(|body| body.with_filter(args.filter())).collect();
     if args.weld {
         for body in &mut bodies {
             let (welded, merged) = body.weld();
@@ -134,7 +134,7 @@ pub fn promise(query: &Query) {
 /// Refuses to write over what is read.
 ///
 /// # Errors
-/// [`Error::Choice`].
+/// [`Error::InvalidArgument`].
 pub fn keeps(args: &DetectArgs) -> Result<(), Error> {
     let targets = [("--out", &args.out), ("--out-mesh", &args.out_mesh)];
     // What is not there is not read either.

@@ -37,8 +37,8 @@ pub fn human(told: &Report, contacts: &Contacts) -> String {
         let escalated: u64 = contacts.stats.escalated_vf_ee.iter().sum();
         let _ = writeln!(
             text,
-            "  {} unresolved, {escalated} asked again in f64; tolerance {tolerance:e}{}{}",
-            summary.unresolved,
+            "  {} undecided, {escalated} asked again in f64; tolerance {tolerance:e}{}{}",
+            summary.undecided,
             summary.largest_tolerance.map_or(String::new(), |largest| format!(" to {largest:e}")),
             match summary.separation {
                 Some(s) if s > 0.0 => format!(", separation {s:e}"),
@@ -47,7 +47,7 @@ pub fn human(told: &Report, contacts: &Contacts) -> String {
         );
     }
     if let Some(distance) = summary.distance {
-        let _ = writeln!(text, "  within {distance:e}; {} of them unresolved", summary.unresolved);
+        let _ = writeln!(text, "  within {distance:e}; {} of them undecided", summary.undecided);
     }
     if let Some(nearest) = &summary.nearest {
         let [[a, b], [p, q]] = [nearest.bodies.map(|body| body.index() as u32), nearest.triangles];
@@ -61,8 +61,8 @@ pub fn human(told: &Report, contacts: &Contacts) -> String {
     for note in &summary.notes {
         let _ = writeln!(text, "  {note}");
     }
-    for reason in &summary.degraded {
-        let _ = writeln!(text, "  degraded: {reason}");
+    for reason in &summary.caveats {
+        let _ = writeln!(text, "  caveats: {reason}");
     }
     if summary.slices > 1 {
         let _ =
@@ -116,8 +116,8 @@ pub fn human(told: &Report, contacts: &Contacts) -> String {
         "  {}, {} spilled, {} undecided by floats ({} in f64); {:.1} MB; hash {}",
         counted(contacts.stats.steps, "node test", "node tests"),
         counted(contacts.stats.spilled, "unit", "units"),
-        contacts.stats.undecided,
-        contacts.stats.undecided_wide,
+        contacts.stats.uncertain,
+        contacts.stats.uncertain_wide,
         summary.bytes as f64 / 1e6,
         summary.hash
     );

@@ -20,10 +20,10 @@ pub enum Said {
         /// Not before.
         toi: f64,
         /// Not after.
-        toi_hi: f64,
+        toi_upper: f64,
     },
     /// They come near; if they meet, not before that time, certainly.
-    Unresolved {
+    Undecided {
         /// Not before.
         toi: f64,
     },
@@ -64,8 +64,8 @@ impl From<Verdict> for Said {
     fn from(verdict: Verdict) -> Said {
         match verdict.answer() {
             Answer::Separated => Said::Apart,
-            Answer::Contact { toi, toi_hi } => Said::Certified { toi, toi_hi },
-            Answer::Unresolved { toi, .. } => Said::Unresolved { toi },
+            Answer::Contact { toi, toi_upper } => Said::Certified { toi, toi_upper },
+            Answer::Undecided { toi, .. } => Said::Undecided { toi },
         }
     }
 }
@@ -80,7 +80,7 @@ impl Said {
     pub fn toi(&self) -> Option<f64> {
         match *self {
             Said::Apart => None,
-            Said::Meet { toi } | Said::Certified { toi, .. } | Said::Unresolved { toi } => Some(toi),
+            Said::Meet { toi } | Said::Certified { toi, .. } | Said::Undecided { toi } => Some(toi),
         }
     }
 }
@@ -93,7 +93,7 @@ pub fn judge(said: &Said, exact: Option<&Toi>) -> Judgement {
         (Some(_), None) => {
             return match said {
                 Said::Certified { .. } => Judgement::FalseCertificate,
-                Said::Unresolved { .. } => Judgement::UnresolvedApart,
+                Said::Undecided { .. } => Judgement::UnresolvedApart,
                 _ => Judgement::FalseAlarm,
             };
         }
@@ -108,8 +108,8 @@ pub fn judge(said: &Said, exact: Option<&Toi>) -> Judgement {
     match said {
         Said::Meet { .. } if toi == below || toi == above => Judgement::Right,
         _ if by > 0.0 => Judgement::Late { by },
-        Said::Certified { toi_hi, .. } if exact.cmp_f64(*toi_hi).is_gt() => Judgement::FalseCertificate,
-        Said::Unresolved { .. } => Judgement::UnresolvedEarly { by: -by },
+        Said::Certified { toi_upper, .. } if exact.cmp_f64(*toi_upper).is_gt() => Judgement::FalseCertificate,
+        Said::Undecided { .. } => Judgement::UnresolvedEarly { by: -by },
         _ if toi == below => Judgement::Right,
         _ => Judgement::Early { by: -by },
     }
@@ -137,8 +137,8 @@ mod tests {
         let (hit, none) = (exact(true), exact(false));
         let third: f64 = 1.0 / 3.0;
         let meet = |toi| Said::Meet { toi };
-        let sure = |toi, toi_hi| Said::Certified { toi, toi_hi };
-        let open = |toi| Said::Unresolved { toi };
+        let sure = |toi, toi_upper| Said::Certified { toi, toi_upper };
+        let open = |toi| Said::Undecided { toi };
         assert!(none.is_none());
         for (said, expected) in [
             (Said::Apart, Judgement::Missed),
@@ -161,7 +161,7 @@ mod tests {
         let off = |said: Said| match judge(&said, hit.as_ref()) {
             Judgement::Late { by } => ("late", by),
             Judgement::Early { by } => ("early", by),
-            Judgement::UnresolvedEarly { by } => ("unresolved", by),
+            Judgement::UnresolvedEarly { by } => ("undecided", by),
             other => panic!("{said:?}: {other:?}"),
         };
         for (said, name, by) in [
@@ -170,7 +170,7 @@ mod tests {
             (open(0.5), "late", 1.0 / 6.0),
             (meet(0.25), "early", 1.0 / 12.0),
             (sure(0.25, 0.5), "early", 1.0 / 12.0),
-            (open(0.25), "unresolved", 1.0 / 12.0),
+            (open(0.25), "undecided", 1.0 / 12.0),
         ] {
             let found = off(said);
             assert!(found.0 == name && (found.1 - by).abs() < 1e-15, "{said:?}: {found:?}");

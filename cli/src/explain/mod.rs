@@ -59,7 +59,7 @@ pub struct ExplainArgs {
     /// a power of two; else 1e-6].
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub tolerance: Option<f64>,
-    /// Certified: boxes that are looked at before the pair is left unresolved [default: 4096].
+    /// Certified: boxes that are looked at before the pair is left undecided [default: 4096].
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole::<u32>(1, u64::from(u32::MAX)))]
     pub boxes: Option<u32>,
     /// Print one JSON object.
@@ -70,7 +70,7 @@ pub struct ExplainArgs {
 /// Asks every solver and the oracle, and prints how they compare.
 pub fn explain(args: &ExplainArgs) -> Result<ExitCode, Error> {
     if args.tolerance.is_some_and(|t| !(0.0..f64::INFINITY).contains(&t)) {
-        return Err(Error::Choice {
+        return Err(Error::InvalidArgument {
             what: "a tolerance that is no length".into(),
             advice: "give --tolerance a finite length from 0".into(),
         });

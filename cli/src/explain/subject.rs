@@ -99,10 +99,14 @@ fn params(args: &ExplainArgs, default: f64) -> Params {
 }
 
 fn from_file(args: &ExplainArgs, path: &Path, row: usize) -> Result<Subject, Error> {
-    let features = args.between.map(features).or(file::features(path)).ok_or_else(|| Error::Choice {
-        what: format!("{}: no folder called vertex-face or edge-edge says what it is about", path.display()),
-        advice: "give --between vf or --between ee".into(),
-    })?;
+    let features =
+        args.between.map(features).or(file::features(path)).ok_or_else(|| Error::InvalidArgument {
+            what: format!(
+                "{}: no folder called vertex-face or edge-edge says what it is about",
+                path.display()
+            ),
+            advice: "give --between vf or --between ee".into(),
+        })?;
     let queries = file::queries(path, features)?;
     let &(case, truth) = queries.get(row).ok_or_else(|| Error::Input {
         file: path.display().to_string(),

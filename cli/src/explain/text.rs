@@ -161,8 +161,8 @@ fn says(row: &Row, continuous: Option<f64>) -> String {
         Said::Apart => "apart".into(),
         Said::Meet { .. } if continuous.is_none() => "meet".into(),
         Said::Meet { toi } => format!("{toi}"),
-        Said::Certified { toi, toi_hi } => format!("{toi} to {toi_hi}"),
-        Said::Unresolved { toi } => format!("{toi} or later, or never"),
+        Said::Certified { toi, toi_upper } => format!("{toi} to {toi_upper}"),
+        Said::Undecided { toi } => format!("{toi} or later, or never"),
     }
 }
 
@@ -174,7 +174,7 @@ fn found(judgement: &Judgement) -> String {
         Judgement::Early { by } => format!("early by {by:.2e}"),
         Judgement::FalseAlarm => "false alarm".into(),
         Judgement::FalseCertificate => "FALSE CERTIFICATE".into(),
-        Judgement::UnresolvedApart => "unresolved: they never meet".into(),
-        Judgement::UnresolvedEarly { by } => format!("unresolved; early by {by:.2e}"),
+        Judgement::UnresolvedApart => "undecided: they never meet".into(),
+        Judgement::UnresolvedEarly { by } => format!("undecided; early by {by:.2e}"),
     }
 }

@@ -78,12 +78,12 @@ pub fn folder(path: &Path) -> Result<(), Error> {
 /// Refuses to write over a file that is read, however it is named.
 ///
 /// # Errors
-/// [`Error::Choice`], naming the option and the file.
+/// [`Error::InvalidArgument`], naming the option and the file.
 pub fn keeps<'a>(option: &str, to: &Path, read: impl IntoIterator<Item = &'a Path>) -> Result<(), Error> {
     let Ok(real) = to.canonicalize() else { return Ok(()) };
     match read.into_iter().find(|from| from.canonicalize().is_ok_and(|from| from == real)) {
         None => Ok(()),
-        Some(from) => Err(Error::Choice {
+        Some(from) => Err(Error::InvalidArgument {
             what: format!("{option} would write over {}, which is read", from.display()),
             advice: "give it another name, and replace the file when its successor is as it should be".into(),
         }),

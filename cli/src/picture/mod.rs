@@ -25,7 +25,7 @@ use std::process::ExitCode;
 /// Asks a frame, draws it, and says what there is to see.
 ///
 /// # Errors
-/// [`Error::Choice`] for a name that is not of a PNG, for several steps, and for a time of a frame at rest; [`Error::Output`] for a file that
+/// [`Error::InvalidArgument`] for a name that is not of a PNG, for several steps, and for a time of a frame at rest; [`Error::Output`] for a file that
 /// cannot be written; [`Error::OutOfMemory`] before the picture is drawn; those of the question and the machine.
 pub fn picture(args: &PictureArgs) -> Result<ExitCode, Error> {
     let Some(out) = &args.detect.out else {
@@ -40,11 +40,14 @@ pub fn picture(args: &PictureArgs) -> Result<ExitCode, Error> {
     if steps > 1 {
         let what = format!("{steps} steps or frames: a picture shows one");
         let advice = "give the meshes of one frame, or of both ends of one step".into();
-        return Err(Error::Choice { what, advice });
+        return Err(Error::InvalidArgument { what, advice });
     }
     if args.time > 0.0 && query.kind().is_at_rest() {
         let what = "--time would do nothing: what is asked is of a frame at rest".into();
-        return Err(Error::Choice { what, advice: "leave it out, or ask what meets in a step".into() });
+        return Err(Error::InvalidArgument {
+            what,
+            advice: "leave it out, or ask what meets in a step".into(),
+        });
     }
     let device = args.detect.machine.open()?;
     promise(&query);

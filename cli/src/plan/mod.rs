@@ -66,7 +66,7 @@ struct Work {
 
 impl Work {
     fn of(scene: &Scene) -> Work {
-        let moving = || scene.bodies().iter().filter(|body| body.kind() != BodyKind::Static);
+        let moving = || scene.bodies().iter().filter(|body| body.kind() != BodyKind::Fixed);
         let triangles: usize = moving().map(Body::face_count).sum();
         let vertices: usize = moving().map(Body::vertex_count).sum();
         Work { triangles: triangles as f64, vertices: vertices as f64 }
@@ -138,7 +138,7 @@ fn choices(detector: &mut OneQuery, device: &Device) -> String {
     if let Some(more) = bodies.len().checked_sub(MOST_TOLD).filter(|more| *more > 0) {
         let _ = writeln!(text, "and {more} bodies more");
     }
-    let own = query.kind().is_within_bodies() && bodies.iter().any(Body::meets_itself);
+    let own = query.kind().is_within_bodies() && bodies.iter().any(Body::self_collides);
     let _ = writeln!(
         text,
         "query      {:?}, {}",

@@ -37,8 +37,8 @@ fn fault(found: &TriangleAnswers, truth: &TriangleAnswers) -> Option<String> {
     if other > 0 {
         return Some(format!("{other} answers differ"));
     }
-    (found.undecided != truth.undecided)
-        .then(|| format!("{} pairs left undecided for {}", found.undecided, truth.undecided))
+    (found.uncertain != truth.uncertain)
+        .then(|| format!("{} pairs left uncertain for {}", found.uncertain, truth.uncertain))
 }
 
 /// The same of features in motion; what is rejected, left to the next rung and listed is counted by the kernels.
@@ -104,13 +104,13 @@ mod tests {
 
     #[test]
     fn what_is_lost_or_doubled_is_named() {
-        let truth = TriangleAnswers { meet: vec![true, false, true], listed: 2, undecided: 1, ms: 0.0 };
+        let truth = TriangleAnswers { meet: vec![true, false, true], listed: 2, uncertain: 1, ms: 0.0 };
         assert_eq!(fault(&truth, &truth), None);
         let lost = TriangleAnswers { meet: vec![true, false, false], listed: 1, ..truth.clone() };
         assert!(fault(&lost, &truth).is_some_and(|fault| fault == "1 answers differ"));
         let twice = TriangleAnswers { listed: 3, ..truth.clone() };
         assert!(fault(&twice, &truth).is_some_and(|fault| fault == "3 entries for 2 pairs"));
-        let left = TriangleAnswers { undecided: 0, ..truth.clone() };
+        let left = TriangleAnswers { uncertain: 0, ..truth.clone() };
         assert!(fault(&left, &truth).is_some_and(|fault| fault.starts_with("0 pairs left")));
     }
 
@@ -120,7 +120,7 @@ mod tests {
         assert_eq!(fault_in_motion(&truth, &truth), None);
         let less = Answers { rejected: [3, 3], ..truth.clone() };
         assert!(fault_in_motion(&less, &truth).is_some());
-        let met = Outcome { status: Status::Certified, toi: 0.5, toi_hi: 0.5, exhausted: false, boxes: 0 };
+        let met = Outcome { status: Status::Certified, toi: 0.5, toi_upper: 0.5, exhausted: false, boxes: 0 };
         let other = Answers { verdicts: vec![Some(met)], ..truth.clone() };
         assert!(fault_in_motion(&other, &truth).is_some_and(|fault| fault == "1 verdicts differ"));
     }

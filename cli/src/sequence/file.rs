@@ -2,7 +2,7 @@
 
 use nearmiss::error::Error;
 use nearmiss::mesh::Problem;
-use nearmiss::scene::{BodyKind, Meets, Pose};
+use nearmiss::scene::{BodyKind, CollisionFilter, Pose};
 use serde::Deserialize;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ pub struct Described {
     /// A pose a frame, or one, or none.
     pub poses: Vec<Pose>,
     /// What it meets.
-    pub meets: Meets,
+    pub meets: CollisionFilter,
     /// How messages call it: its name, and the line at which it begins.
     pub called: String,
 }
@@ -43,7 +43,7 @@ struct BodyTable {
     environment: Option<Value>,
     group: Option<u32>,
     mask: Option<u32>,
-    self_contact: Option<bool>,
+    self_collision: Option<bool>,
 }
 
 #[derive(Clone, Copy, Default, Deserialize)]
@@ -135,7 +135,7 @@ fn described(path: &Path, line: usize, table: Table) -> Result<Described, Error>
         }
     };
     let kind = match table.kind {
-        Kind::Static => BodyKind::Static,
+        Kind::Static => BodyKind::Fixed,
         Kind::Rigid => BodyKind::Rigid,
         Kind::Deformable => BodyKind::Deformable,
     };
@@ -167,22 +167,22 @@ fn described(path: &Path, line: usize, table: Table) -> Result<Described, Error>
         }
     };
     let (group, mask) = (table.group.unwrap_or(u32::MAX), table.mask.unwrap_or(u32::MAX));
-    if kind == BodyKind::Static && table.self_contact == Some(true) {
-        let what = "`self_contact` of a body that is static, which never meets itself";
+    if kind == BodyKind::Fixed && table.self_collision == Some(true) {
+        let what = "`self_collision` of a body that is static, which never meets itself";
         return Err(bad(what, "leave it out, or make the body rigid or deformable"));
     }
-    let self_contact = table.self_contact;
+    let self_collision = table.self_collision;
     let stem = || crate::stem(&meshes[0]);
     let name = table.name.unwrap_or_else(stem);
     let called = format!("body {name:?} (line {line})");
-    let meets = Meets { environment, group, mask, self_contact };
+    let meets = CollisionFilter { environment, group, mask, self_collision };
     Ok(Described { name, meshes, kind, poses, meets, called })
 }
 
 /// As a file names it.
 fn name_of(kind: BodyKind) -> &'static str {
     match kind {
-        BodyKind::Static => "static",
+        BodyKind::Fixed => "static",
         BodyKind::Rigid => "rigid",
         _ => "deformable",
     }

@@ -91,7 +91,7 @@ impl Sequence {
     /// What the arguments name, where that is a file of a scene or more than two frames of a mesh.
     ///
     /// # Errors
-    /// [`Error::Choice`] for files that do not go together; those of reading.
+    /// [`Error::InvalidArgument`] for files that do not go together; those of reading.
     pub fn of(args: &DetectArgs, reader: &mut Reader) -> Result<Option<Sequence>, Error> {
         let own = [&args.meshes, &args.with];
         let scenes = own.iter().flat_map(|files| files.iter()).filter(|path| is_scene(path)).count();
@@ -99,7 +99,7 @@ impl Sequence {
             [files, with] if scenes > 0 => match (&files[..], &with[..]) {
                 ([file], []) => Sequence::read(file, reader)?,
                 _ => {
-                    return Err(Error::Choice {
+                    return Err(Error::InvalidArgument {
                         what: "a scene (.toml) beside other files".into(),
                         advice: "give it alone: it names all meshes".into(),
                     });
@@ -110,7 +110,7 @@ impl Sequence {
                 let told = own.iter().filter(|files| !files.is_empty()).map(|files| of_mesh(files, reader));
                 let mut told = told.collect::<Result<Vec<_>, _>>()?;
                 for Told { body, .. } in &mut told {
-                    *body = body.clone().with(args.meets());
+                    *body = body.clone().with_filter(args.filter());
                 }
                 Sequence::new(told, None)
             }
@@ -203,7 +203,7 @@ fn of_mesh(files: &[PathBuf], reader: &mut Reader) -> Result<Told, Error> {
     };
     let mesh = reader.mesh(first)?;
     let (track, polygons) = (track(&mesh, others, reader)?, mesh.polygons().clone());
-    Ok(Told { body: Body::still(mesh.into_mesh()), track, polygons })
+    Ok(Told { body: Body::deformable(mesh.into_mesh()), track, polygons })
 }
 
 fn track(mesh: &MeshFile, others: &[PathBuf], reader: &mut Reader) -> Result<Track, Error> {
@@ -241,11 +241,11 @@ fn of_table(
     let polygons = mesh.polygons().clone();
     let mesh = mesh.into_mesh();
     let body = match table.kind {
-        BodyKind::Static => Body::fixed(mesh),
+        BodyKind::Fixed => Body::fixed(mesh),
         BodyKind::Rigid => Body::rigid(mesh),
-        _ => Body::still(mesh),
+        _ => Body::deformable(mesh),
     };
-    let mut body = body.with(table.meets);
+    let mut body = body.with_filter(table.meets);
     if let Track::Poses(poses) = &track {
         for (at, pose) in poses.iter().enumerate() {
             body.check(&Motion::pose(*pose)).map_err(|e| {

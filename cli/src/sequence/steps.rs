@@ -46,22 +46,22 @@ enum Out<'a> {
 /// Refuses what one question takes, and several do not.
 ///
 /// # Errors
-/// [`Error::Choice`].
+/// [`Error::InvalidArgument`].
 pub fn check(args: &DetectArgs, steps: usize) -> Result<(), Error> {
     let refused = |option: &str, why: &str| {
         let what = format!("{option} would do nothing: {why}");
-        Err(Error::Choice { what, advice: "leave it out, or ask one step or frame".into() })
+        Err(Error::InvalidArgument { what, advice: "leave it out, or ask one step or frame".into() })
     };
     match (steps > 1, args.rebuild_every) {
         (true, _) if args.only.is_some() => refused("--only", "each of several steps runs once"),
-        (true, _) if args.out_mesh.is_some() => Err(Error::Choice {
+        (true, _) if args.out_mesh.is_some() => Err(Error::InvalidArgument {
             what: "--out-mesh of several steps: a file holds one mesh".into(),
             advice: "ask one step or frame, or write contacts by --out".into(),
         }),
         (true, _) if args.repeat > 1 => refused("--repeat", "each of several steps runs once"),
         (false, every) if every.is_some() || args.rebuild.is_some() => {
             let option = if every.is_some() { "--rebuild-every" } else { "--rebuild" };
-            Err(Error::Choice {
+            Err(Error::InvalidArgument {
                 what: format!("{option} would do nothing: there is one step, and its tree is new"),
                 advice: "leave it out, or give more frames".into(),
             })
@@ -266,7 +266,7 @@ fn line(report: &Report, at_rest: bool) -> String {
     );
     // Writing to a String cannot fail.
     summary.notes.iter().for_each(|note| _ = writeln!(text, "  {note}"));
-    summary.degraded.iter().for_each(|reason| _ = writeln!(text, "  degraded: {reason}"));
+    summary.caveats.iter().for_each(|reason| _ = writeln!(text, "  caveats: {reason}"));
     text
 }
 

@@ -109,7 +109,7 @@ fn every_option_changes_something_or_is_refused() {
         ("detect", vec!["--scene", "soup"], vec!["--triangles", "40"], vec!["--triangles", "80"]),
         ("detect", still.clone(), no.clone(), vec!["--seed", "2"]),
         ("detect", vec![&t0, "--json"], no.clone(), vec!["--with", &other]),
-        ("detect", vec![&t0, "--with", &other, "--json"], no.clone(), vec!["--no-self-contact"]),
+        ("detect", vec![&t0, "--with", &other, "--json"], no.clone(), vec!["--no-self-collision"]),
         ("detect", scene.clone(), no.clone(), vec!["--discrete"]),
         ("detect", still.clone(), no.clone(), vec!["--continuous"]),
         ("detect", scene.clone(), no.clone(), vec!["--earliest"]),

@@ -1,7 +1,7 @@
 //! The program: exit codes, messages, the JSON summary, files. Scripts rely on these.
 
 mod bench;
-mod degraded;
+mod caveats;
 mod distance;
 mod earliest;
 mod effects;
@@ -82,7 +82,7 @@ const KEYS: [&str; 18] = [
     "device",
     "candidates",
     "contacts",
-    "unresolved",
+    "undecided",
     "earliest_toi",
     "hash",
     "ms",
@@ -145,7 +145,7 @@ fn choices_change_no_hash() {
 fn the_summary_for_people_says_the_same() {
     let people = ok(&SCENE);
     let json = summary(&[&SCENE[..], &["--json"]].concat());
-    for part in ["300 triangles, 900 vertices", "by Certified on", "0 unresolved", "tolerance 7.6"] {
+    for part in ["300 triangles, 900 vertices", "by Certified on", "0 undecided", "tolerance 7.6"] {
         assert!(people.contains(part), "{people}");
     }
     assert!(people.contains(&format!("{} contacts", json["contacts"])), "{people}");
@@ -190,7 +190,7 @@ fn files_of_contacts_agree_to_the_bit() {
     let rows = whole["contacts"].as_array().expect("rows");
     let text = folder.read("a.csv");
     let mut lines = text.lines();
-    assert_eq!(lines.next(), Some("kind,a,b,toi,toi_hi,status"));
+    assert_eq!(lines.next(), Some("kind,a,b,toi,toi_upper,status"));
     let (mut before, mut times) = (None, Vec::new());
     for (line, row) in lines.clone().zip(rows) {
         let cells: Vec<&str> = line.split(',').collect();
@@ -208,11 +208,11 @@ fn files_of_contacts_agree_to_the_bit() {
     }
     assert_eq!(lines.count(), rows.len());
     assert_eq!(whole["summary"]["contacts"].as_u64(), Some(rows.len() as u64));
-    let [toi, toi_hi, least] =
-        ["toi", "toi_hi", "earliest_toi"].map(|key| numbers(&folder.read("a.json"), key));
+    let [toi, toi_upper, least] =
+        ["toi", "toi_upper", "earliest_toi"].map(|key| numbers(&folder.read("a.json"), key));
     assert!(times.iter().map(|time| time[0]).eq(toi.iter().copied().map(f64::to_bits)), "toi");
-    assert!(times.iter().map(|time| time[1]).eq(toi_hi.iter().copied().map(f64::to_bits)), "toi_hi");
-    assert!(toi.iter().zip(&toi_hi).all(|(toi, hi)| 0.0 <= *toi && toi <= hi && *hi <= 1.0));
+    assert!(times.iter().map(|time| time[1]).eq(toi_upper.iter().copied().map(f64::to_bits)), "toi_upper");
+    assert!(toi.iter().zip(&toi_upper).all(|(toi, hi)| 0.0 <= *toi && toi <= hi && *hi <= 1.0));
     assert_eq!(least, [toi.iter().copied().min_by(f64::total_cmp).expect("a contact")]);
 
     ok(&[&SCENE[..], &["--earliest", "--out", &csv]].concat());

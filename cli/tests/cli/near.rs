@@ -16,16 +16,16 @@ fn near_features_are_told() {
         "{text}"
     );
     // At the distance itself, to the bit: rounding could not tell them from such that are farther.
-    assert!(text.contains("degraded: 2 pairs listed, within the distance or by a rounding"), "{text}");
+    assert!(text.contains("caveats: 2 pairs listed, within the distance or by a rounding"), "{text}");
     let all = summary(&[&asked[..], &["--json"]].concat());
     assert_eq!(
-        (&all["query"], &all["distance"], &all["unresolved"]),
+        (&all["query"], &all["distance"], &all["undecided"]),
         (&"near".into(), &1.0.into(), &2.into()),
         "{all}"
     );
-    assert_eq!(all["degraded"][0]["reason"], "distance-below-precision", "{all}");
+    assert_eq!(all["caveats"][0]["reason"], "distance-below-precision", "{all}");
     let more = summary(&["detect", &mesh, "--near", "1.125", "--json"]);
-    assert_eq!((&more["contacts"], &more["degraded"]), (&2.into(), &serde_json::json!([])), "{more}");
+    assert_eq!((&more["contacts"], &more["caveats"]), (&2.into(), &serde_json::json!([])), "{more}");
     assert_eq!(summary(&["detect", &mesh, "--near", "0.99", "--json"])["contacts"], 0);
 
     let rows = "kind,a,b,squared_distance,w0,w1,w2,closest\n\

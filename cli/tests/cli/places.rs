@@ -101,7 +101,7 @@ fn what_meets_is_red() {
     }
 }
 
-/// A point that meets a triangle's border alone stays unresolved.
+/// A point that meets a triangle's border alone stays undecided.
 #[test]
 fn what_may_meet_is_orange() {
     let folder = Folder::new("orange");
@@ -110,7 +110,7 @@ fn what_may_meet_is_orange() {
     let (ply, csv) = (folder.path("out.ply"), folder.path("out.csv"));
     let asked = ["detect", &files[0], &files[1], "--backend", "cpu"];
     ok(&[&asked[..], &["--out-mesh", &ply, "--out", &csv]].concat());
-    assert!(folder.read("out.csv").lines().skip(1).all(|row| row.ends_with(",unresolved")));
+    assert!(folder.read("out.csv").lines().skip(1).all(|row| row.ends_with(",undecided")));
     let bytes = std::fs::read(&ply).expect("written");
     assert_eq!(bytes[bytes.len() - 3..], [240, 160, 30]);
 }

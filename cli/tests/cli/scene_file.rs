@@ -72,14 +72,14 @@ fn who_meets_whom_is_told() {
         ("mask = 0", 0),
         ("group = 0", 0),
         ("kind = \"static\"", 1),
-        ("self_contact = true", 1),
+        ("self_collision = true", 1),
     ] {
         assert_eq!(contacts(text), Some(expected), "{text}");
     }
     // One body alone is tested against itself, unless it says that it is not.
     let crossed = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.2 0.2 -1\nv 0.2 0.3 1\nv 5 5 1\nf 1 2 3\nf 4 5 6\n";
     folder.write("parts/crossed.obj", crossed);
-    for (text, expected) in [("", 1), ("self_contact = true", 1), ("self_contact = false", 0)] {
+    for (text, expected) in [("", 1), ("self_collision = true", 1), ("self_collision = false", 0)] {
         let path = folder.write("one.toml", &format!("[[body]]\nmesh = \"parts/crossed.obj\"\n{text}\n"));
         assert_eq!(summary(&["detect", &path, "--json"])["contacts"], expected, "{text}");
     }
@@ -152,11 +152,11 @@ fn what_is_wrong_with_a_file_is_named() {
     let poses = |text: &str| format!("{tip}kind = \"rigid\"\nposes = {text}");
     let body = "body \"tip\" (line 5)";
     let table: Vec<(String, Vec<&str>)> = vec![
-        (format!("{tip}colour = 3"), vec![body, "unknown field `colour`", "`self_contact`", "docs/cli.md"]),
+        (format!("{tip}colour = 3"), vec![body, "unknown field `colour`", "`self_collision`", "docs/cli.md"]),
         (format!("{tip}kind = \"soft\""), vec![body, "unknown variant `soft`", "`rigid`", "in `kind`"]),
         (format!("{tip}group = -1"), vec![body, "-1", "in `group`"]),
         (format!("{tip}mask = 4294967296"), vec![body, "4294967296", "in `mask`"]),
-        (format!("{tip}self_contact = 1"), vec![body, "integer `1`", "boolean", "in `self_contact`"]),
+        (format!("{tip}self_collision = 1"), vec![body, "integer `1`", "boolean", "in `self_collision`"]),
         (format!("{tip}environment = \"none\""), vec![body, "`environment` is \"none\"", "\"all\""]),
         (format!("{tip}environment = -3"), vec![body, "`environment` is -3", "0 to 4294967295"]),
         (format!("{tip}environment = [1]"), vec![body, "`environment` is of type array"]),
@@ -276,8 +276,8 @@ fn self_contact_is_the_default_of_deformable_bodies() {
     let contacts = |args: &[&str]| summary(&[&["detect", "--json"], args].concat())["contacts"].as_u64();
     for (text, expected) in [
         ("", 1),
-        ("self_contact = true", 1),
-        ("self_contact = false", 0),
+        ("self_collision = true", 1),
+        ("self_collision = false", 0),
         ("kind = \"rigid\"", 0),
         ("kind = \"rigid\"\nself_contact = true", 1),
         ("kind = \"static\"", 0),
@@ -292,12 +292,12 @@ fn self_contact_is_the_default_of_deformable_bodies() {
     let fixed = "[[body]]\nmesh = \"far.obj\"\n[[body]]\nmesh = \"crossed.obj\"\nkind = \"static\"\nself_contact = true\n";
     let text = refused(3, &["detect", &folder.write("fixed.toml", fixed)]);
     assert!(
-        text.contains("body of line 3") && text.contains("`self_contact` of a body that is static"),
+        text.contains("body of line 3") && text.contains("`self_collision` of a body that is static"),
         "{text}"
     );
     assert_eq!(contacts(&[&crossed, "--with", &far]), Some(1));
     assert_eq!(contacts(&[&far, "--with", &crossed]), Some(1));
-    assert_eq!(contacts(&[&far, "--with", &crossed, "--no-self-contact"]), Some(0));
+    assert_eq!(contacts(&[&far, "--with", &crossed, "--no-self-collision"]), Some(0));
 }
 
 #[test]
@@ -314,14 +314,14 @@ fn a_turn_and_tolerances_of_bodies_are_told() {
         folder.write("scene.toml", &text)
     };
     let turned = summary(&["detect", &scene(180.0, "static"), "--json"]);
-    let reason = &turned["degraded"][0];
+    let reason = &turned["caveats"][0];
     assert_eq!((reason["reason"].as_str(), reason["body"].as_u64()), (Some("turned"), Some(0)), "{turned}");
     assert!((reason["bulge"].as_f64().expect("a length") - 2.0).abs() < 1e-9, "{turned}");
     assert!(
         turned["tolerance"].as_f64().expect("a length") < 1e-3 && turned.get("largest_tolerance").is_none()
     );
     let text = ok(&["detect", &scene(90.0, "static")]);
-    assert!(text.contains("degraded: body 0 turns by 90.0 degrees"), "{text}");
+    assert!(text.contains("caveats: body 0 turns by 90.0 degrees"), "{text}");
     assert!(!ok(&["detect", &scene(29.9, "static")]).contains("turns by"));
     let both = summary(&["detect", &scene(10.0, "deformable"), "--json"]);
     let [least, largest] =

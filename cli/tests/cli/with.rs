@@ -34,7 +34,7 @@ fn the_other_mesh_may_stand_before_or_behind() {
     // Not right behind it: the mesh's own.
     assert_eq!(hash(&[&a, "--with", &b1, "--discrete", &a]).1, Some(2));
     assert!(ok(&["plan", "--with", &b0, &a]).contains("Discrete, within and between"));
-    let between = ["plan", "--with", &b0, &a, "--no-self-contact"];
+    let between = ["plan", "--with", &b0, &a, "--no-self-collision"];
     assert!(ok(&between).contains("Discrete, between"));
 
     let explained = ok(&["explain", "--with", &b0, "--with", &b1, &a, &a, "--fv", "0", "0"]);

@@ -103,13 +103,13 @@ impl Plan {
         let mut of = Bodies { vertices: bodies.iter().map(Body::vertex_count).sum(), ..Bodies::default() };
         for body in bodies.iter().filter(|body| body.face_count() > 0) {
             let own = match body.kind() {
-                BodyKind::Static => &mut of.fixed,
+                BodyKind::Fixed => &mut of.fixed,
                 BodyKind::Rigid => &mut of.rigid,
                 BodyKind::Deformable => &mut of.deformable,
             };
             own[0] += 1;
             own[1] += body.face_count();
-            of.moving_vertices += if body.kind() == BodyKind::Static { 0 } else { body.vertex_count() };
+            of.moving_vertices += if body.kind() == BodyKind::Fixed { 0 } else { body.vertex_count() };
         }
         let mut transfers: BTreeMap<&'static str, [Count; 2]> = BTreeMap::new();
         for (way, all) in [&frame.writes, &frame.reads].into_iter().enumerate() {
@@ -191,7 +191,7 @@ impl Detector {
     /// let corners = vec![[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, -1.0], [1.0, 2.0, 1.0], [9.0, 1.0, 9.0]];
     /// let mesh = Mesh::new("two triangles", Positions::F32(corners), vec![[0, 1, 2], [3, 4, 5]])?;
     /// let device = Device::open(Backend::Cpu, None)?;
-    /// let mut detector = Detector::new(device.clone(), Body::still(mesh))?;
+    /// let mut detector = Detector::new(device.clone(), Body::deformable(mesh))?;
     /// let plan = detector.plan(&Query::discrete())?;
     /// assert_eq!(plan.bytes(), device.bytes().0);
     /// assert!(plan.stage("traverse").is_some() && plan.stage("place").is_none());

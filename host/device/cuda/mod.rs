@@ -82,8 +82,8 @@ impl Cuda {
     /// A GPU by a context and a stream of the caller.
     ///
     /// # Safety
-    /// See [`super::Device::borrow`].
-    pub unsafe fn borrow(context: CUcontext, stream: CUstream) -> Result<Self, Error> {
+    /// See [`super::Device::from_stream`].
+    pub unsafe fn from_stream(context: CUcontext, stream: CUstream) -> Result<Self, Error> {
         // SAFETY: the caller's promise.
         let (gpu, context) = unsafe { Gpu::of(context) }?;
         // SAFETY: as above.
@@ -364,7 +364,7 @@ impl Drop for Cuda {
 /// Whether kernels with that stamp come from this program's sources.
 fn is_ours(found: u64) -> Result<(), Error> {
     let found = format!("{found:016x}");
-    if found == STAMP { Ok(()) } else { Err(Error::Stamp { found, wanted: STAMP.into() }) }
+    if found == STAMP { Ok(()) } else { Err(Error::KernelMismatch { found, wanted: STAMP.into() }) }
 }
 
 #[cfg(test)]
@@ -377,7 +377,7 @@ mod tests {
         is_ours(ours).expect("our own");
         for bit in 0..64 {
             let error = is_ours(ours ^ 1 << bit).expect_err("another bit");
-            assert!(matches!(error, Error::Stamp { .. }) && error.exit_code() == 4, "{error}");
+            assert!(matches!(error, Error::KernelMismatch { .. }) && error.exit_code() == 4, "{error}");
             assert!(
                 error.to_string().contains(STAMP) && error.to_string().contains("cargo build"),
                 "{error}"

@@ -138,9 +138,9 @@ pub trait BroadPhase<R: Precision>: Send {
     /// Prepares for a share that is not the whole.
     ///
     /// # Errors
-    /// [`Error::Choice`] where work cannot be divided; those of the device.
+    /// [`Error::InvalidArgument`] where work cannot be divided; those of the device.
     fn divide(&mut self, _device: &Device) -> Result<(), Error> {
-        Err(Error::Choice {
+        Err(Error::InvalidArgument {
             what: "a tree that several devices go down".into(),
             advice: "find candidates by tiles, or ask one device".into(),
         })

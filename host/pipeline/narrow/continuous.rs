@@ -121,9 +121,9 @@ impl ContinuousNarrow {
             ee_hits: List::new(device, "edge/edge contacts", counter::EE_HITS, capacities.hits[1])?,
             rungs: Rungs::new(device, solver.certified(), capacities.left)?,
             counters: [
-                counter::UNRESOLVED,
+                counter::UNDECIDED,
                 counter::ENDED,
-                counter::ENDED_UNRESOLVED,
+                counter::ENDED_UNDECIDED,
                 counter::BELOW_PRECISION,
             ],
             finest: None,
@@ -135,7 +135,7 @@ impl ContinuousNarrow {
     }
 
     /// The same, which also counts what crosses at the start, with room for `few` pairs that
-    /// filters leave undecided.
+    /// filters leave uncertain.
     ///
     /// # Errors
     /// Those of the device.
@@ -318,7 +318,7 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
             // What is asked of a pair hangs on what was found before.
             return Vec::new();
         }
-        let mut lists: Vec<_> = self.start.iter().flat_map(StartCheck::undecided).collect();
+        let mut lists: Vec<_> = self.start.iter().flat_map(StartCheck::uncertain).collect();
         lists.extend(features.between());
         if let Some([vf, ee]) = &self.survivors {
             lists.extend([("narrow: vf that may meet", vf), ("narrow: ee that may meet", ee)]);
@@ -353,9 +353,9 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
         if let Some(words) = &self.earliest {
             let first = earliest::of_key(words.read(words.len())?[earliest::KEY as usize]);
             let below_precision = self.below_precision == Some(BelowPrecision::Unlisted);
-            let unresolved = first.is_some_and(|(_, unresolved)| unresolved);
+            let undecided = first.is_some_and(|(_, undecided)| undecided);
             let toi = first.map(|(toi, _)| toi);
-            return Ok((Listed::Earliest { toi, unresolved, below_precision }, false));
+            return Ok((Listed::Earliest { toi, undecided, below_precision }, false));
         }
         let lists = [&self.vf_hits, &self.ee_hits];
         let (hits, ordered) = Hits::of(lists, self.ordered.as_ref(), counters)?;

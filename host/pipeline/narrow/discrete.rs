@@ -19,7 +19,7 @@ pub struct DiscreteNarrow {
     /// Pairs that meet.
     pub contacts: List<Pair>,
     /// Pairs that each filter left to the next, the last one to exact signs; of the exact test alone.
-    undecided: Vec<List<Pair>>,
+    uncertain: Vec<List<Pair>>,
     /// The contacts in order, where the device orders them.
     ordered: Option<Order<Pair>>,
 }
@@ -30,30 +30,30 @@ impl DiscreteNarrow {
     /// # Errors
     /// Those of the device.
     pub fn new<R: Precision>(device: &Device, test: TriangleTest, few: usize) -> Result<Self, Error> {
-        let mut undecided = Vec::new();
+        let mut uncertain = Vec::new();
         match test {
             TriangleTest::Exact { .. } => {
-                undecided.push(List::new(device, "undecided pairs", counter::UNDECIDED, few)?);
+                uncertain.push(List::new(device, "uncertain pairs", counter::UNCERTAIN, few)?);
                 if R::WIDENS {
-                    let at = counter::UNDECIDED_WIDE;
-                    undecided.push(List::new(device, "pairs undecided in f64", at, few / 4)?);
+                    let at = counter::UNCERTAIN_WIDE;
+                    uncertain.push(List::new(device, "pairs uncertain in f64", at, few / 4)?);
                 }
             }
             TriangleTest::Moller => {}
         }
         let contacts = List::new(device, "contacts", counter::CONTACTS, few)?;
-        Ok(DiscreteNarrow { test, contacts, undecided, ordered: None })
+        Ok(DiscreteNarrow { test, contacts, uncertain, ordered: None })
     }
 
     /// The lists that the one step fills.
     pub fn all_lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
         let contacts = std::iter::once(&mut self.contacts as &mut dyn GrowableOutput);
-        contacts.chain(growable(&mut self.undecided)).collect()
+        contacts.chain(growable(&mut self.uncertain)).collect()
     }
 
     /// What each filter left to the next, with names.
-    pub fn undecided(&self) -> Vec<(&'static str, &List<Pair>)> {
-        ["narrow: undecided", "narrow: undecided in f64"].into_iter().zip(&self.undecided).collect()
+    pub fn uncertain(&self) -> Vec<(&'static str, &List<Pair>)> {
+        ["narrow: uncertain", "narrow: uncertain in f64"].into_iter().zip(&self.uncertain).collect()
     }
 
     /// Launches the one step: by floats, or by floats with a bound, in f32 and in f64, and exact signs for what they leave.
@@ -61,18 +61,18 @@ impl DiscreteNarrow {
     /// # Errors
     /// Those of the device.
     pub fn decide<R: Precision>(&self, given: &NarrowContext<R>) -> Result<(), Error> {
-        let args = |pairs: Output<Pair>, undecided: Option<&List<Pair>>| DiscreteArgs {
+        let args = |pairs: Output<Pair>, uncertain: Option<&List<Pair>>| DiscreteArgs {
             frames: given.frames,
             faces: given.faces,
             pairs,
             contacts: self.contacts.output(given.counters),
-            undecided: undecided.map_or(Output::EMPTY, |list| list.output(given.counters)),
+            uncertain: uncertain.map_or(Output::EMPTY, |list| list.output(given.counters)),
             flags: DiscreteFlags::KEEP_ADJACENT.when(self.test.has_adjacent()),
             pad: 0,
         };
         let (device, capacity) = (given.device, given.pairs.room() as usize);
-        let candidates = args(given.pairs, self.undecided.first());
-        let (first, last) = match &*self.undecided {
+        let candidates = args(given.pairs, self.uncertain.first());
+        let (first, last) = match &*self.uncertain {
             [] => return launch::striding::<R::Moller>(device, capacity, &candidates),
             [first, .., last] => (first, Some(last)),
             [first] => (first, None),
@@ -99,7 +99,7 @@ impl<R: Precision> Narrow<R> for DiscreteNarrow {
     }
 
     fn between<'a>(&'a self, _: &'a Features) -> Vec<(&'static str, &'a List<Pair>)> {
-        self.undecided()
+        self.uncertain()
     }
 
     fn ordering(&mut self) -> Option<&mut dyn Ordering> {

@@ -93,7 +93,7 @@ impl<R: Precision> Narrow<R> for DistanceNarrow {
     }
 
     fn between<'a>(&'a self, _: &'a Features) -> Vec<(&'static str, &'a List<Pair>)> {
-        self.meeting.undecided()
+        self.meeting.uncertain()
     }
 
     fn ordering(&mut self) -> Option<&mut dyn Ordering> {

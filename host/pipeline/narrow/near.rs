@@ -36,7 +36,7 @@ pub struct NearNarrow {
     /// Edges within the distance.
     ee_hits: List<NearHit>,
     /// Hits that are not certainly within it.
-    unresolved: Counter,
+    undecided: Counter,
     /// All hits in order, where the device orders them.
     ordered: Option<Order<NearHit>>,
 }
@@ -51,7 +51,7 @@ impl NearNarrow {
             distance,
             vf_hits: List::new(device, "vertex/face pairs within the distance", counter::VF_HITS, few)?,
             ee_hits: List::new(device, "edge/edge pairs within the distance", counter::EE_HITS, 2 * few)?,
-            unresolved: counter::UNRESOLVED,
+            undecided: counter::UNDECIDED,
             ordered: None,
         })
     }
@@ -97,7 +97,7 @@ impl<R: Precision> Narrow<R> for NearNarrow {
     fn lists<'a>(&'a mut self, step: usize, features: &'a mut Features) -> Vec<&'a mut dyn GrowableOutput> {
         match Step::ALL[step] {
             Step::Features => growable(&mut features.candidates).collect(),
-            Step::Near => vec![&mut self.vf_hits, &mut self.ee_hits, &mut self.unresolved],
+            Step::Near => vec![&mut self.vf_hits, &mut self.ee_hits, &mut self.undecided],
         }
     }
 

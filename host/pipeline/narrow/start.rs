@@ -12,37 +12,37 @@ use nearmiss_kernels::abi::{Counter, DiscreteArgs, DiscreteFlags, Output, Pair, 
 /// The lists between the filters, and the count.
 pub struct StartCheck {
     /// Pairs that each filter left to the next, the last one to exact signs.
-    undecided: Vec<List<Pair>>,
+    uncertain: Vec<List<Pair>>,
     /// Pairs that share a point. They are not listed.
     crossing: Counter,
 }
 
 impl StartCheck {
-    /// Takes the memory for positions of that precision, with room for `few` undecided pairs.
+    /// Takes the memory for positions of that precision, with room for `few` uncertain pairs.
     ///
     /// # Errors
     /// Those of the device.
     pub fn new<R: Precision>(device: &Device, few: usize) -> Result<Self, Error> {
         let list = |name, at, room| List::new(device, name, at, room);
-        let mut undecided = vec![list("pairs undecided at the start", counter::UNDECIDED, few)?];
+        let mut uncertain = vec![list("pairs uncertain at the start", counter::UNCERTAIN, few)?];
         if R::WIDENS {
-            let name = "pairs undecided at the start in f64";
-            undecided.push(list(name, counter::UNDECIDED_WIDE, few / 4)?);
+            let name = "pairs uncertain at the start in f64";
+            uncertain.push(list(name, counter::UNCERTAIN_WIDE, few / 4)?);
         }
-        Ok(StartCheck { undecided, crossing: counter::STARTS_CROSSING })
+        Ok(StartCheck { uncertain, crossing: counter::STARTS_CROSSING })
     }
 
     /// The lists that the step fills.
     pub fn lists(&mut self) -> Vec<&mut dyn GrowableOutput> {
         let crossing = std::iter::once(&mut self.crossing as &mut dyn GrowableOutput);
-        crossing.chain(growable(&mut self.undecided)).collect()
+        crossing.chain(growable(&mut self.uncertain)).collect()
     }
 
     /// What each filter left to the next, with names.
-    pub fn undecided(&self) -> impl Iterator<Item = (&'static str, &List<Pair>)> {
-        ["narrow: undecided at the start", "narrow: undecided at the start in f64"]
+    pub fn uncertain(&self) -> impl Iterator<Item = (&'static str, &List<Pair>)> {
+        ["narrow: uncertain at the start", "narrow: uncertain at the start in f64"]
             .into_iter()
-            .zip(&self.undecided)
+            .zip(&self.uncertain)
     }
 
     /// Launches the step over all candidates: signs with an error bound, in f32 and in f64, and
@@ -51,18 +51,18 @@ impl StartCheck {
     /// # Errors
     /// Those of the device.
     pub fn run<R: Precision>(&self, given: &NarrowContext<R>) -> Result<(), Error> {
-        let args = |pairs: Output<Pair>, undecided: Option<&List<Pair>>| DiscreteArgs {
+        let args = |pairs: Output<Pair>, uncertain: Option<&List<Pair>>| DiscreteArgs {
             frames: given.frames,
             faces: given.faces,
             pairs,
             contacts: given.counters.output(Span::EMPTY, self.crossing),
-            undecided: undecided.map_or(Output::EMPTY, |list| list.output(given.counters)),
+            uncertain: uncertain.map_or(Output::EMPTY, |list| list.output(given.counters)),
             flags: DiscreteFlags::NONE,
             pad: 0,
         };
         let (device, mut left) = (given.device, given.pairs);
         let mut room = left.room() as usize;
-        for (at, list) in self.undecided.iter().enumerate() {
+        for (at, list) in self.uncertain.iter().enumerate() {
             let args = args(left, Some(list));
             if at == 0 {
                 launch::striding::<R::StartFilter>(device, room, &args)

@@ -32,7 +32,7 @@ impl Moved {
     /// As vertices with one end take it: what the host knows is placed where it now is; the device
     /// has only the other's end.
     fn at_one_end(self, bodies: &[Body]) -> Moved {
-        Moved { rests: self.rests && bodies[self.body].is_away(), ..self }
+        Moved { rests: self.rests && bodies[self.body].is_device_resident(), ..self }
     }
 }
 
@@ -226,7 +226,7 @@ impl<R: Precision> Placing<R> {
             return self.put_together(device, bodies, moved);
         }
         let any_lent = moved.iter().any(|m| bodies[m.body].lent().is_some());
-        let goes_first = |m: &Moved| any_lent && m.rests && !bodies[m.body].is_away();
+        let goes_first = |m: &Moved| any_lent && m.rests && !bodies[m.body].is_device_resident();
         let one_end = |first: bool| {
             let group = moved.iter().filter(|m| goes_first(m) == first);
             group.map(|m| m.at_one_end(bodies)).collect::<Vec<_>>()
@@ -276,7 +276,7 @@ impl<R: Precision> Placing<R> {
                     poses.extend(body.poses().iter().take(ends).map(Pose::record));
                     Placement { from: POSED, pose, ..placement }
                 }
-                (false, None, BodyKind::Deformable | BodyKind::Static) => {
+                (false, None, BodyKind::Deformable | BodyKind::Fixed) => {
                     uploads.push(i);
                     uploaded += count;
                     Placement { from: UPLOADED, source: uploaded - count, ..placement }

@@ -29,7 +29,7 @@ pub enum Listed<'a> {
         /// The smallest toi, if there is one.
         toi: Option<f64>,
         /// Whether that is the time of a pair that is neither certain to meet nor certain to stay apart, and of no contact.
-        unresolved: bool,
+        undecided: bool,
         /// Whether pairs may be too large for the tolerance in the solver's precision.
         below_precision: bool,
     },

@@ -42,14 +42,14 @@ pub trait Submits {
     /// next [`Pipeline::frame`](super::Pipeline::frame).
     ///
     /// # Errors
-    /// [`Error::Choice`] if a walk needs the host, or positions of the host were placed last; those of the device.
+    /// [`Error::InvalidArgument`] if a walk needs the host, or positions of the host were placed last; those of the device.
     fn prepare(&mut self, queries: &[usize]) -> Result<(), Error>;
     /// Whether it is prepared.
     fn is_prepared(&self) -> bool;
     /// Submits the queries: positions are read again from where they lay.
     ///
     /// # Errors
-    /// [`Error::Choice`] if it is not prepared; those of the device.
+    /// [`Error::InvalidArgument`] if it is not prepared; those of the device.
     fn submit(&mut self) -> Result<(), Error>;
     /// The answer of a query in the last submission; `None` if a list had too little room, or it is not prepared. Waits.
     ///
@@ -72,7 +72,7 @@ impl<R: Precision> Submits for TypedPipeline<R> {
 
     fn prepare(&mut self, queries: &[usize]) -> Result<(), Error> {
         let refused = |what: &str, advice: &str| {
-            Err(Error::Choice { what: what.to_owned(), advice: advice.to_owned() })
+            Err(Error::InvalidArgument { what: what.to_owned(), advice: advice.to_owned() })
         };
         for &query in queries {
             if let Err(why) = self.broad(query).without_host() {
@@ -104,7 +104,7 @@ impl<R: Precision> Submits for TypedPipeline<R> {
 
     fn submit(&mut self) -> Result<(), Error> {
         let submission = self.submission.as_mut().map(|submission| std::mem::take(&mut submission.replay));
-        let mut replay = submission.ok_or_else(|| Error::Choice {
+        let mut replay = submission.ok_or_else(|| Error::InvalidArgument {
             what: "a submission that is not prepared".into(),
             advice: "call `prepare` first, and again after every other call that changes the detector".into(),
         })?;

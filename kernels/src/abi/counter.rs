@@ -61,7 +61,7 @@ counters! { 0;
     /// Edge/edge candidates.
     EE,
     /// Pairs that the discrete filter could not decide.
-    UNDECIDED,
+    UNCERTAIN,
     /// Triangle pairs in contact.
     CONTACTS,
     /// Vertex/face contacts.
@@ -103,7 +103,7 @@ counters! { 0;
     /// Edge/edge pairs that f32 leaves to f64.
     EE_ESCALATED,
     /// Hits that are neither certain contacts nor certainly none.
-    UNRESOLVED,
+    UNDECIDED,
     /// Vertex/face pairs that isolation leaves.
     VF_OPEN,
     /// Edge/edge pairs that isolation leaves.
@@ -115,11 +115,11 @@ counters! { 0;
     /// Hits whose budget of boxes ended.
     ENDED,
     /// Those of them that are neither certain contacts nor certainly none.
-    ENDED_UNRESOLVED,
+    ENDED_UNDECIDED,
     /// Hits too large for the tolerance.
     BELOW_PRECISION,
     /// Pairs that the discrete filter could not decide in f64 either.
-    UNDECIDED_WIDE,
+    UNCERTAIN_WIDE,
     /// Contacts that were put into order.
     ORDERED,
     /// The least distance before any is known: always 0, see [`Counters::shortest`].

@@ -38,7 +38,7 @@ arguments! {
         /// Out: pairs that meet.
         contacts: Output<Pair>,
         /// Out: pairs that a filter leaves to the next one; empty for the last one.
-        undecided: Output<Pair>,
+        uncertain: Output<Pair>,
         /// Flags of the test.
         flags: DiscreteFlags,
         /// Zero.
@@ -144,7 +144,7 @@ arguments! {
     Listed {
         /// Pairs.
         pairs: Output<Pair>,
-        /// Out: contacts and unresolved pairs; empty if only the earliest is wanted.
+        /// Out: contacts and undecided pairs; empty if only the earliest is wanted.
         hits: Output<Hit>,
         /// Out: pairs for the next rung; empty without one.
         left: Output<Pair>,

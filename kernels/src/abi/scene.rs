@@ -15,7 +15,7 @@ pub struct BodyRecord {
     /// Its environment, by its rank among those that there are; or [`EVERY`].
     pub environment: u32,
     /// 1 if it is tested against itself.
-    pub self_contact: u32,
+    pub self_collision: u32,
     /// Bits of the groups that it is in.
     pub group: u32,
     /// Bits of the groups that it meets.

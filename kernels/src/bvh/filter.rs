@@ -58,14 +58,14 @@ impl NodeFilter {
     /// Whether two triangles below it may meet: of several bodies, or of one that is tested against
     /// itself, without a common hub.
     #[inline(always)]
-    pub fn meets_itself(self) -> bool {
+    pub fn self_collides(self) -> bool {
         (self.hub == 0) & (self.who & (MIXED | SELF_CONTACT) != 0)
     }
 
     /// The filter of a leaf of a body with this hub, see [`NodeFilter::hub`].
     #[inline]
     pub fn leaf(body: u32, record: &BodyRecord, hub: u32) -> NodeFilter {
-        let own = if record.self_contact != 0 { SELF_CONTACT } else { 0 };
+        let own = if record.self_collision != 0 { SELF_CONTACT } else { 0 };
         NodeFilter { who: body | own, last: record.environment, hub, pad: 0 }
     }
 

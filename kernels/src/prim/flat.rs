@@ -5,7 +5,7 @@ use super::signs::Signs;
 use crate::math::{Real, Vec3};
 
 /// Whether the closed segments `ab` and `cd` meet. Any of them may be a point. They need not be
-/// coplanar. Undecided only if the source is.
+/// coplanar. Uncertain only if the source is.
 ///
 /// If they are not coplanar they are apart. Else some axis can be dropped without folding the
 /// plane: one along which three of the four points are not collinear. There the signs of the four
@@ -32,7 +32,7 @@ pub fn segments_meet<R: Real, S: Signs<R>>([a, b]: [Vec3<R>; 2], [c, d]: [Vec3<R
     Some(true)
 }
 
-/// Whether a point is on a closed triangle, which may be a segment or a point. Undecided only if
+/// Whether a point is on a closed triangle, which may be a segment or a point. Uncertain only if
 /// the source is.
 pub fn point_on_triangle<R: Real, S: Signs<R>>(x: Vec3<R>, t: &[Vec3<R>; 3]) -> Option<bool> {
     if !boxes_meet(&[x], t) || S::orient3d(t[0], t[1], t[2], x)? != 0 {
@@ -73,7 +73,7 @@ pub fn projection<R: Real, S: Signs<R>>(t: &[Vec3<R>; 3]) -> Option<Option<(usiz
 }
 
 /// Whether two closed triangles in one plane meet. Or two that are both segments or points, in one
-/// plane or not. Nine pairs of edges, then corners inside. Undecided only if the source is.
+/// plane or not. Nine pairs of edges, then corners inside. Uncertain only if the source is.
 ///
 /// By value and out of line: the common path of the caller then keeps its corners in registers and
 /// stays small.

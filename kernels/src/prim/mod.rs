@@ -3,7 +3,7 @@
 //! | test | kind | certainty |
 //! | --- | --- | --- |
 //! | [`moller`] | discrete, in plain floats; the paper's | can miss |
-//! | [`tri_tri`] on signs of [`orient`] | discrete, floats with a bound | right or undecided |
+//! | [`tri_tri`] on signs of [`orient`] | discrete, floats with a bound | right or uncertain |
 //! | [`tri_tri`] on signs of [`exact`] | discrete, in integers | always right |
 //! | [`cubic`] | continuous, the coplanarity cubic; the paper's | can miss |
 //! | [`isolate`] | continuous, in closed form | no miss, never late |

@@ -3,7 +3,7 @@
 //!
 //! **It can err both ways**, without notice: signs of plane distances are taken as rounded. It
 //! misses pairs that touch or nearly touch, and slivers whose normal is mostly rounding. (The
-//! filter of [`super::tri_tri`] reports these as undecided.) It may depend on the order of corners.
+//! filter of [`super::tri_tri`] reports these as uncertain.) It may depend on the order of corners.
 //! Coordinates are taken relative to a corner, so it loses nothing more far from the origin. Not
 //! for coordinates above 2^20 or geometry below 2^-20 in f32, whose products leave the range. About
 //! 150 operations, no loop over data.
@@ -49,7 +49,7 @@ impl<R: Real> Signs<R> for InPlane {
         Some(0)
     }
     fn orient2d(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, axis: usize) -> Option<i32> {
-        // A value that the filter leaves undecided is nearest to zero.
+        // A value that the filter leaves uncertain is nearest to zero.
         Some(orient2d_filter(a, b, c, axis).unwrap_or(0))
     }
 }

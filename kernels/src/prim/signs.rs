@@ -5,7 +5,7 @@ use super::orient::{Plane, orient2d_filter};
 use crate::math::{Real, Vec3};
 
 /// A source of signs. Each sign is right or `None`; so a decision made of them is right or
-/// undecided.
+/// uncertain.
 pub trait Signs<R: Real> {
     /// The sign of det[a-d, b-d, c-d].
     fn orient3d(a: Vec3<R>, b: Vec3<R>, c: Vec3<R>, d: Vec3<R>) -> Option<i32>;

@@ -83,7 +83,7 @@ pub fn decided(signs: &[i32; SIGNS as usize]) -> Option<bool> {
 pub fn meets_exactly<R: Real>(p: &[Vec3<R>; 3], q: &[Vec3<R>; 3]) -> bool {
     match meets::<R, Filter>(p, q) {
         Some(answer) => answer,
-        // Certain is never undecided; `true` would keep the pair.
+        // Certain is never uncertain; `true` would keep the pair.
         None => meets::<R, Certain>(p, q).unwrap_or(true),
     }
 }

@@ -61,7 +61,7 @@ pub fn funnel(device: &Device, name: &str, body: &Body) -> Result<Vec<FunnelRow>
         both("not isolated in f64 either", contacts.stats.open_vf_ee, None),
         both("cut into slices", contacts.stats.sliced_vf_ee, None),
         row("listed", found, ms("solve")),
-        row("of them certain", found - contacts.unresolved, None),
+        row("of them certain", found - contacts.undecided, None),
     ])
 }
 

@@ -13,8 +13,8 @@ fn is_default(row: &Row) -> bool {
         && row.precision != "f32 cast"
 }
 
-/// `0 missed, k late, x ppm unresolved, y ms at tolerance = z edge lengths`, of all rows of the default choice: missed and late
-/// of all that they asked; unresolved of the pairs, and milliseconds of a frame, of the largest moving scene.
+/// `0 missed, k late, x ppm undecided, y ms at tolerance = z edge lengths`, of all rows of the default choice: missed and late
+/// of all that they asked; undecided of the pairs, and milliseconds of a frame, of the largest moving scene.
 pub fn headline(rows: &[Row]) -> String {
     let of: Vec<&Row> = rows.iter().filter(|row| is_default(row)).collect();
     let sum = |count: fn(&Row) -> u64| of.iter().map(|row| count(row)).sum::<u64>();
@@ -22,8 +22,8 @@ pub fn headline(rows: &[Row]) -> String {
     let moving = of.iter().filter(|row| row.ms.is_some() && row.tolerance_edges.is_some());
     let frame = match moving.max_by_key(|row| row.cases) {
         Some(row) => format!(
-            ", {} ppm unresolved, {} ms at tolerance = {:.0e} edge lengths ({}, {}",
-            digits(row.unresolved as f64 * 1e6 / row.cases.max(1) as f64),
+            ", {} ppm undecided, {} ms at tolerance = {:.0e} edge lengths ({}, {}",
+            digits(row.undecided as f64 * 1e6 / row.cases.max(1) as f64),
             row.ms.map_or_else(String::new, digits),
             Certified::TOLERANCE,
             row.solver.name(),
@@ -52,12 +52,12 @@ mod tests {
     #[test]
     fn it_is_counted_not_claimed() {
         let default = row(Solver::Certified, Some(Certified::TOLERANCE));
-        let frame = Row { ms: Some(12.5), bv: Some("linear"), unresolved: 4, ..default.clone() };
+        let frame = Row { ms: Some(12.5), bv: Some("linear"), undecided: 4, ..default.clone() };
         let planted = Row { missed: 3, late: 2, ..default.clone() };
         let cast = Row { missed: 9, precision: "f32 cast", ..default.clone() };
         let other = Row { missed: 70, ..row(Solver::CubicF32, None) };
         let line = headline(&[default, frame, planted, cast, other]);
-        let want = "3 missed, 2 late, 2.00 ppm unresolved, 12.5 ms at tolerance = 1e-4 edge lengths (certified, a scene; of \
+        let want = "3 missed, 2 late, 2.00 ppm undecided, 12.5 ms at tolerance = 1e-4 edge lengths (certified, a scene; of \
                     6000000 pairs asked, 150 of them contacts)";
         assert_eq!(line, want);
         assert!(headline(&[]).starts_with("0 missed, 0 late (certified; of 0 pairs"));

@@ -68,7 +68,7 @@ impl Input {
     /// each, by when it has met if it meets, must not contradict it.
     ///
     /// # Errors
-    /// [`Error::Choice`] for a case that is not as it is said to be.
+    /// [`Error::InvalidArgument`] for a case that is not as it is said to be.
     pub fn new(name: &str, cases: Vec<Case>, meet: &[Option<f64>]) -> Result<Input, Error> {
         let truths: Vec<Truth> = cases.par_iter().map(truth).collect();
         let differs = |(truth, meet): (&Truth, &Option<f64>)| match (truth, meet) {
@@ -77,7 +77,7 @@ impl Input {
             _ => true,
         };
         if let Some(at) = truths.iter().zip(meet).position(differs) {
-            return Err(Error::Choice {
+            return Err(Error::InvalidArgument {
                 what: format!(
                     "{name}: query {} is said to meet: {:?}; exactly: {:?}",
                     at + 1,

@@ -63,8 +63,8 @@ pub struct Counts {
     pub false_certificates: u64,
     /// Cases listed as certain.
     pub certified: u64,
-    /// Cases listed as unresolved.
-    pub unresolved: u64,
+    /// Cases listed as undecided.
+    pub undecided: u64,
     /// Cases whose budget of boxes ended.
     pub exhausted: u64,
 }
@@ -127,7 +127,7 @@ impl Judge {
         self.counts.cases += 1;
         if let Some(met) = met {
             self.counts.certified += (met.status == Status::Certified) as u64;
-            self.counts.unresolved += (met.status == Status::Unresolved) as u64;
+            self.counts.undecided += (met.status == Status::Undecided) as u64;
             self.counts.exhausted += met.exhausted as u64;
             self.boxes.push(met.boxes);
         }
@@ -144,7 +144,7 @@ impl Judge {
                 let late = met.toi.is_nan() || met.toi > by + self.margin();
                 self.counts.late += late as u64;
                 self.counts.latest = self.counts.latest.max(met.toi - by);
-                if met.status == Status::Certified && met.toi_hi < not_before {
+                if met.status == Status::Certified && met.toi_upper < not_before {
                     // The first contact is later than a certificate claims.
                     self.counts.false_certificates += 1;
                 }

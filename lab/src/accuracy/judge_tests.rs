@@ -10,8 +10,8 @@ fn falling(to: f64) -> Case {
     Case { features: Features::VertexFace, positions_t0: at(1.0), positions_t1: at(to) }
 }
 
-fn met(status: Status, toi: f64, toi_hi: f64) -> Option<Outcome> {
-    Some(Outcome { status, toi, toi_hi, exhausted: false, boxes: 5 })
+fn met(status: Status, toi: f64, toi_upper: f64) -> Option<Outcome> {
+    Some(Outcome { status, toi, toi_upper, exhausted: false, boxes: 5 })
 }
 
 fn judged(solver: Solver, to: f64, truth: Truth, answer: Option<Outcome>) -> Judged {
@@ -51,10 +51,10 @@ fn a_late_time_is_counted() {
         (Solver::CubicF32, 0.5005, 0),
         (Solver::CubicF32, 0.6, 1),
     ] {
-        let counts = judged(solver, -1.0, HALF, met(Status::Contact, toi, 1.0)).counts;
+        let counts = judged(solver, -1.0, HALF, met(Status::Unverified, toi, 1.0)).counts;
         assert_eq!((counts.late, counts.missed), (late, 0), "{solver:?} {toi}");
     }
-    let latest = judged(Solver::CubicF32, -1.0, HALF, met(Status::Contact, 0.75, 1.0)).counts.latest;
+    let latest = judged(Solver::CubicF32, -1.0, HALF, met(Status::Unverified, 0.75, 1.0)).counts.latest;
     assert_eq!(latest, 0.25);
 }
 
@@ -70,7 +70,7 @@ fn a_false_certificate_is_counted() {
 
 #[test]
 fn a_false_alarm_is_within_contract_or_not() {
-    let at_end = |to, solver| judged(solver, to, Truth::Apart, met(Status::Unresolved, 1.0, 1.0)).counts;
+    let at_end = |to, solver| judged(solver, to, Truth::Apart, met(Status::Undecided, 1.0, 1.0)).counts;
     let near = at_end(5e-3, Solver::Certified);
     assert_eq!((near.false_alarms, near.within_contract, near.violations), (1, 1, 0));
     let far = at_end(6e-3, Solver::Certified);
@@ -78,7 +78,7 @@ fn a_false_alarm_is_within_contract_or_not() {
     let cubic = at_end(6e-3, Solver::CubicF64);
     assert_eq!((cubic.false_alarms, cubic.violations), (1, 0), "no contract, no breach");
     let mut judge = Judge::new(Solver::Certified, 1e-3, 1.0);
-    let ended = Outcome { status: Status::Unresolved, toi: 0.0, toi_hi: 1.0, exhausted: true, boxes: 4096 };
+    let ended = Outcome { status: Status::Undecided, toi: 0.0, toi_upper: 1.0, exhausted: true, boxes: 4096 };
     judge.note(&falling(0.5), Truth::Apart, Some(ended));
     judge.note(&falling(0.5), Truth::Unknown, Some(ended));
     let Counts { violations, exhausted, unknown, false_alarms, .. } = judge.judged().counts;

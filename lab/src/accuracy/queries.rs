@@ -17,7 +17,7 @@ pub struct Queries {
 /// Walks a folder: every `.csv` and `.csv.gz` in a folder called `vertex-face` or `edge-edge` is read, in order of names.
 ///
 /// # Errors
-/// [`Error::Choice`] for a folder without such a file; [`Error::Input`] for a row that cannot be used, with its line.
+/// [`Error::InvalidArgument`] for a folder without such a file; [`Error::Input`] for a row that cannot be used, with its line.
 pub fn queries(root: &Path) -> Result<Vec<Queries>, Error> {
     let mut files = Vec::new();
     walk(root, &mut files)?;
@@ -46,7 +46,7 @@ pub fn queries(root: &Path) -> Result<Vec<Queries>, Error> {
 }
 
 fn bad(folder: &Path, what: impl std::fmt::Display) -> Error {
-    Error::Choice {
+    Error::InvalidArgument {
         what: format!("{}: {what}", folder.display()),
         advice:
             "give a folder of query files: eight rows a query, three numerators and denominators, and 0 or 1"

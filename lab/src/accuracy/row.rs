@@ -44,8 +44,8 @@ pub struct Row {
     pub violations: Option<u64>,
     /// Pairs called certain that are not so.
     pub false_certificates: u64,
-    /// Pairs listed as unresolved.
-    pub unresolved: u64,
+    /// Pairs listed as undecided.
+    pub undecided: u64,
     /// Pairs whose budget of boxes ended.
     pub exhausted: u64,
     /// Pairs that f32 left to f64.
@@ -91,7 +91,7 @@ impl Row {
             within_contract: contract(counts.within_contract),
             violations: contract(counts.violations),
             false_certificates: counts.false_certificates,
-            unresolved: counts.unresolved,
+            undecided: counts.undecided,
             exhausted: counts.exhausted,
             early_median: early.median,
             early_p99: early.p99,
@@ -135,7 +135,7 @@ impl Printed for Row {
         "late",
         "false",
         "breach",
-        "unresolved",
+        "undecided",
         "early p99",
         "early max",
         "boxes p99",
@@ -155,7 +155,7 @@ impl Printed for Row {
             self.late.to_string(),
             self.false_alarms.to_string(),
             self.violations.map_or("-".into(), |n| (n + self.false_certificates).to_string()),
-            self.unresolved.to_string(),
+            self.undecided.to_string(),
             small(self.early_edges_p99),
             small(self.early_edges_max),
             format!("{:.0}", self.boxes_p99),

@@ -35,15 +35,15 @@ pub struct Scene {
 
 /// The tolerance of the reference, in mean edges.
 const FINEST: f64 = 1e-9;
-/// Pairs that the reference leaves unresolved, for the oracle to decide: some seconds of it.
+/// Pairs that the reference leaves undecided, for the oracle to decide: some seconds of it.
 const FEW: usize = 20_000;
 
 impl Scene {
     /// Finds out what meets: by exact signs, or by the certified solver in f64 at 1e-9 of the mean edge, which proves an
-    /// interval of each first time; what it leaves unresolved the oracle decides, unless a list tells, or it is too much.
+    /// interval of each first time; what it leaves undecided the oracle decides, unless a list tells, or it is too much.
     ///
     /// # Errors
-    /// [`Error::Choice`] for a list of the other kind; those of the device.
+    /// [`Error::InvalidArgument`] for a list of the other kind; those of the device.
     pub fn new(device: &Device, name: &str, body: Body, list: Option<List>) -> Result<Scene, Error> {
         let edge = mean_side(std::slice::from_ref(&body));
         let mut scene = Scene {
@@ -67,14 +67,14 @@ impl Scene {
         scene.edges = Topology::new(scene.body.faces(), scene.body.vertex_count()).edges;
         let finest = Certified { tolerance: Some(FINEST * edge), ..Certified::by(CertifiedPrecision::F64) };
         let found = scene.asked(device, Continuous::by(finest).into())?;
-        let bounds = |c: &Contact| Truth::Meet { not_before: c.toi, by: c.toi_hi };
+        let bounds = |c: &Contact| Truth::Meet { not_before: c.toi, by: c.toi_upper };
         let of = |c: &Contact| (c.kind, c.a, c.b);
         scene.truths = match list {
             None => {
-                let unresolved = found.contacts().iter().filter(|c| c.status == Status::Unresolved).count();
+                let undecided = found.contacts().iter().filter(|c| c.status == Status::Undecided).count();
                 let known = |c: &Contact| match c.status {
-                    Status::Unresolved if unresolved > FEW => Truth::Unknown,
-                    Status::Unresolved => truth(&scene.case(of(c))),
+                    Status::Undecided if undecided > FEW => Truth::Unknown,
+                    Status::Undecided => truth(&scene.case(of(c))),
                     _ => bounds(c),
                 };
                 found.contacts().par_iter().map(|c| (of(c), known(c))).collect()
@@ -157,10 +157,10 @@ impl Scene {
         }
     }
 
-    /// Unresolved contacts whose budget ended: a frame does not say, so they are asked again, each by itself.
+    /// Undecided contacts whose budget ended: a frame does not say, so they are asked again, each by itself.
     fn exhausted(&self, device: &Device, query: &Query, found: &[Contact]) -> Result<Vec<Key>, Error> {
-        let unresolved = found.iter().filter(|c| c.status == Status::Unresolved);
-        let keys: Vec<Key> = unresolved.map(|c| (c.kind, c.a, c.b)).collect();
+        let undecided = found.iter().filter(|c| c.status == Status::Undecided);
+        let keys: Vec<Key> = undecided.map(|c| (c.kind, c.a, c.b)).collect();
         let cases: Vec<Case> = keys.iter().map(|key| self.case(*key)).collect();
         let answers = ask(device, &cases, query, Options::default())?;
         let ended = answers.verdicts.iter().map(|met| met.is_some_and(|met| met.exhausted));
@@ -177,9 +177,9 @@ impl Scene {
                 judge.note(&self.case(*missed), *truth, None);
             }
             let truth = known.next_if(|(k, _)| *k == key).map_or(Truth::Apart, |(_, truth)| *truth);
-            let Contact { status, toi, toi_hi, .. } = *contact;
+            let Contact { status, toi, toi_upper, .. } = *contact;
             let exhausted = exhausted.binary_search(&key).is_ok();
-            let met = Outcome { status, toi, toi_hi, exhausted, boxes: 0 };
+            let met = Outcome { status, toi, toi_upper, exhausted, boxes: 0 };
             judge.note(&self.case(key), truth, Some(met));
         }
         for (missed, truth) in known {
@@ -204,7 +204,7 @@ impl Scene {
 }
 
 fn other_kind(frames: &str, rows: &str) -> Error {
-    Error::Choice {
+    Error::InvalidArgument {
         what: format!("a list of the other kind, of {frames}"),
         advice: format!("give --truth a list of {rows}"),
     }
@@ -233,8 +233,8 @@ mod tests {
         without.pop();
         assert_eq!(of(&without).missed, 2);
         let mut late = found.contacts().to_vec();
-        late[3].toi = (late[3].toi_hi + 1.0) / 2.0;
-        late[3].toi_hi = 1.0;
+        late[3].toi = (late[3].toi_upper + 1.0) / 2.0;
+        late[3].toi_upper = 1.0;
         assert_eq!(of(&late).late, 1);
         let mut invented = found.contacts().to_vec();
         let Some(free) = (0..120).find(|&f| {
@@ -248,7 +248,7 @@ mod tests {
             a: 0,
             b: free,
             toi: 0.0,
-            toi_hi: 0.0,
+            toi_upper: 0.0,
             status: Status::Certified,
         });
         invented.sort_by_key(|c| (c.kind, c.a, c.b));

@@ -40,7 +40,7 @@ pub fn triangles(device: &Device, n: usize, seed: u64) -> Result<Vec<Row>, Error
                 input: format!("triangles on a grid of {side} a side"),
                 reference: "exact",
                 precision: "f64",
-                escalated: answers.undecided,
+                escalated: answers.uncertain,
                 ns: Some(answers.ms * 1e6 / n.max(1) as f64),
                 ..Row::default()
             };

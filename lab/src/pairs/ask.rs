@@ -18,14 +18,14 @@ use nearmiss_kernels::abi::{Hit, Output, Positions, Span, counter};
 /// at a time, so that half a gigabyte of device memory is enough.
 ///
 /// # Errors
-/// [`Error::Input`] for coordinates that are not finite or too large; [`Error::Choice`] for a query
+/// [`Error::Input`] for coordinates that are not finite or too large; [`Error::InvalidArgument`] for a query
 /// that is not of
 /// [`Query::Continuous`], and for coordinates that are to be stored in f32, which does not hold
 /// them; those of the device.
 pub fn ask(device: &Device, cases: &[Case], query: &Query, how: Options) -> Result<Answers, Error> {
     query.check()?;
     let Query::Continuous(Continuous { mut solver, .. }) = *query else {
-        return Err(Error::Choice {
+        return Err(Error::InvalidArgument {
             what: format!("a {:?} query of single features", query.kind()),
             advice: "ask continuous queries; of triangles that stand still, ask_triangles".into(),
         });
@@ -145,7 +145,7 @@ impl<R: Precision> Run<'_, R> {
         let met = |hit: &Hit| Outcome {
             status: Status::of(certified, &hit.verdict),
             toi: hit.verdict.toi,
-            toi_hi: hit.verdict.toi_hi,
+            toi_upper: hit.verdict.toi_upper,
             exhausted: hit.verdict.exhausted(),
             boxes: hit.verdict.boxes,
         };

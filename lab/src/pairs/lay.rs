@@ -54,7 +54,7 @@ pub fn check(cases: &[Case], stored: Stored) -> Result<(), Error> {
                 return input(Problem::TooLarge { vertex, axis, value, limit: "2^480" });
             }
             if stored == Stored::F32 && (value.abs() > most || f64::from(value as f32) != value) {
-                return Err(Error::Choice {
+                return Err(Error::InvalidArgument {
                     what: format!("case {at} has a coordinate {value:e} that f32 does not hold"),
                     advice: "store it in f64".into(),
                 });

@@ -46,8 +46,8 @@ pub struct Outcome {
     pub status: Status,
     /// First time of contact, in [0, 1]; by a certified solver not after it.
     pub toi: f64,
-    /// The time by which they have met, in [toi, 1]; of an unresolved pair the end of the step.
-    pub toi_hi: f64,
+    /// The time by which they have met, in [toi, 1]; of an undecided pair the end of the step.
+    pub toi_upper: f64,
     /// Certified: the budget or the stack ended, so `toi` may be far too early.
     pub exhausted: bool,
     /// Certified: boxes that the precision that answered looked at.

@@ -21,7 +21,7 @@ pub struct TriangleAnswers {
     /// How many entries the list of those that do had: as many, where each is appended once.
     pub listed: u64,
     /// Pairs that the float filter left to exact signs.
-    pub undecided: u64,
+    pub uncertain: u64,
     /// Milliseconds, on the device's own clock.
     pub ms: f64,
 }
@@ -29,7 +29,7 @@ pub struct TriangleAnswers {
 /// Asks of every pair of triangles whether they share a point: by the query's solver, with the kernels of a frame.
 ///
 /// # Errors
-/// [`Error::Choice`] for a query that is not of [`Query::Discrete`], and for coordinates that are not exact in f32 where
+/// [`Error::InvalidArgument`] for a query that is not of [`Query::Discrete`], and for coordinates that are not exact in f32 where
 /// they are to be stored so; [`Error::Input`] for such as no mesh may have; those of the device.
 pub fn ask_triangles(
     device: &Device,
@@ -39,7 +39,7 @@ pub fn ask_triangles(
 ) -> Result<TriangleAnswers, Error> {
     query.check()?;
     let Query::Discrete(Discrete { test, .. }) = *query else {
-        return Err(Error::Choice {
+        return Err(Error::InvalidArgument {
             what: format!("a {:?} query of triangles that stand still", query.kind()),
             advice: "ask a discrete query, or features in motion".into(),
         });
@@ -54,7 +54,7 @@ pub fn ask_triangles(
                 .flatten()
                 .find(|x| x.abs() <= MAX_ABS_F64 && f64::from(**x as f32) != **x)
         {
-            return Err(Error::Choice {
+            return Err(Error::InvalidArgument {
                 what: format!("a coordinate {x:e} that is not exact in f32"),
                 advice: "store it in f64".into(),
             });
@@ -71,7 +71,7 @@ pub fn ask_triangles(
         };
         all.meet.extend(some.meet);
         all.listed += some.listed;
-        all.undecided += some.undecided;
+        all.uncertain += some.uncertain;
         all.ms += some.ms;
     }
     Ok(all)
@@ -116,6 +116,6 @@ fn some<R: Precision>(device: &Device, mesh: &Mesh, test: TriangleTest) -> Resul
     };
     let mut meet = vec![false; count];
     narrow.contacts.read(&counters)?.iter().for_each(|pair| meet[pair.a as usize / 2] = true);
-    let [listed, undecided] = [counter::CONTACTS, counter::UNDECIDED].map(|which| counters[which]);
-    Ok(TriangleAnswers { meet, listed, undecided, ms })
+    let [listed, uncertain] = [counter::CONTACTS, counter::UNCERTAIN].map(|which| counters[which]);
+    Ok(TriangleAnswers { meet, listed, uncertain, ms })
 }

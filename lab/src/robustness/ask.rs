@@ -24,16 +24,16 @@ const ALL_OPTIONS: [Options; 3] = [
 pub(super) fn verdict(met: Option<Outcome>, end: f64) -> Verdict {
     match met {
         None => Verdict::separated(end, 0),
-        Some(m) if m.status == Status::Unresolved => {
-            Verdict::unresolved(m.toi, m.toi_hi, m.boxes, m.exhausted)
+        Some(m) if m.status == Status::Undecided => {
+            Verdict::undecided(m.toi, m.toi_upper, m.boxes, m.exhausted)
         }
-        Some(m) => Verdict::contact(m.toi, m.toi_hi, m.boxes, m.exhausted),
+        Some(m) => Verdict::contact(m.toi, m.toi_upper, m.boxes, m.exhausted),
     }
 }
 
 /// Whether a query of a whole step answers the question too: what meets before an end meets first without one.
 fn is_public(q: &Question) -> bool {
-    q.end == 1.0 || matches!(q.expect, Expect::Meets(_) | Expect::Sure(_))
+    q.end == 1.0 || matches!(q.expect, Expect::CollisionFilter(_) | Expect::Sure(_))
 }
 
 /// Answers to questions that may have a tolerance and a separation each; `None` where it cannot be asked so.
@@ -71,7 +71,7 @@ pub fn ask_questions(device: &Device, questions: &[Question]) -> Result<Report, 
         let all = answers(device, questions, solver, how)?;
         for (q, said) in questions.iter().zip(&all) {
             let Some(said) = said else { continue };
-            report.unresolved += u64::from(!said.is_contact() && !said.is_separated());
+            report.undecided += u64::from(!said.is_contact() && !said.is_separated());
             let fault = q.judge(said, solver == CertifiedPrecision::F32);
             report.note(fault, || {
                 format!("{} {}: {said:?}, not {:?}, by {solver:?}, {how:?}", q.id, q.what, q.expect)
@@ -178,7 +178,7 @@ pub fn ask_turned_questions(device: &Device, questions: &[Question]) -> Result<R
                     // Another order may leave without a certificate what had one.
                     false => match turned.expect {
                         Expect::Sure(t) => {
-                            Question { expect: Expect::Meets(t), ..*turned }.judge(&is, narrow)
+                            Question { expect: Expect::CollisionFilter(t), ..*turned }.judge(&is, narrow)
                         }
                         _ => turned.judge(&is, narrow),
                     },
@@ -198,7 +198,7 @@ pub fn ask_turned_questions(device: &Device, questions: &[Question]) -> Result<R
         let said = answers(device, &backwards, solver, Options::default())?;
         for (q, is) in whole.iter().zip(said).filter_map(|(q, is)| Some((q, is?))) {
             let fault = match q.expect {
-                Expect::Meets(_) | Expect::Sure(_) => is.is_separated().then_some(Fault::Missed),
+                Expect::CollisionFilter(_) | Expect::Sure(_) => is.is_separated().then_some(Fault::Missed),
                 Expect::Apart | Expect::Near => is.is_contact().then_some(Fault::FalseCertificate),
             };
             report.note(fault, || format!("{} {}, backwards: {is:?}, by {solver:?}", q.id, q.what));

@@ -26,7 +26,7 @@ fn judge(motion: &Built, met: Option<Outcome>) -> Option<Fault> {
         Some(_) if said.is_separated() => Some(Fault::Missed),
         // They may have met before: late is certain, early is not.
         Some(t) if said.toi > t => Some(Fault::Late),
-        _ if said.toi > said.toi_hi => Some(Fault::FalseCertificate),
+        _ if said.toi > said.toi_upper => Some(Fault::FalseCertificate),
         None if said.is_contact() => Some(Fault::FalseCertificate),
         _ => None,
     }
@@ -95,7 +95,7 @@ fn note(
         let answers = ask(device, &cases, &query, how)?;
         for (motion, met) in motions.iter().zip(answers.verdicts) {
             let met = heard(met);
-            report.unresolved += u64::from(met.is_some_and(|m| m.status == Status::Unresolved));
+            report.undecided += u64::from(met.is_some_and(|m| m.status == Status::Undecided));
             report.note(judge(motion, met), || {
                 format!(
                     "{id} {}, {solver:?}, {how:?}: {met:?}, not {:?}: {:?}",

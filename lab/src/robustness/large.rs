@@ -8,7 +8,7 @@ use nearmiss::device::Device;
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Broad, Certified, Continuous, Earliest, Query};
-use nearmiss::scene::Meets;
+use nearmiss::scene::CollisionFilter;
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::tri_tri::meets_exactly;
 
@@ -63,9 +63,13 @@ fn against_one(device: &Device, n: usize, report: &mut Report) -> Result<(), Err
         .filter(|(_, face)| meets_exactly(&one.map(Vec3), &face.map(corner)))
         .map(|(i, _)| [0, i])
         .collect();
-    let one = Body::still(Mesh::new("one", Positions::F32(one.to_vec()), vec![[0, 1, 2]])?);
-    let found =
-        OneQuery::new(device.clone(), vec![one, soup.with(Meets::others())], Query::discrete())?.detect()?;
+    let one = Body::deformable(Mesh::new("one", Positions::F32(one.to_vec()), vec![[0, 1, 2]])?);
+    let found = OneQuery::new(
+        device.clone(),
+        vec![one, soup.with_filter(CollisionFilter::without_self_collision())],
+        Query::discrete(),
+    )?
+    .detect()?;
     report.asked += 1;
     report.missed += truth.len().saturating_sub(found.len()) as u64;
     if found.pairs() != truth || truth.is_empty() {
@@ -105,7 +109,7 @@ fn ties(device: &Device, n: usize, report: &mut Report) -> Result<(), Error> {
     let faces: Vec<[u32; 3]> = (0..n as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let mesh = |points: &[[f32; 3]]| Mesh::new("ties", Positions::F32(points.to_vec()), faces.clone());
     let fallen: Vec<[f32; 3]> = tips.iter().map(|p| [p[0], p[1], p[2] - 2.0]).collect();
-    let bodies = vec![Body::still(mesh(&floor)?), Body::moving(mesh(&tips)?, mesh(&fallen)?)?];
+    let bodies = vec![Body::deformable(mesh(&floor)?), Body::moving(mesh(&tips)?, mesh(&fallen)?)?];
     let certified = Certified { tolerance: Some(1e-5), ..Certified::default() };
     let mut detector = OneQuery::new(device.clone(), bodies.clone(), Continuous::by(certified))?;
     let (found, again) = (detector.detect()?, detector.detect()?);
@@ -160,7 +164,7 @@ fn slanted(n: usize) -> Result<Body, Error> {
     let through = [[0.25, 0.25, -1.0], [0.25, 0.25, 3.0], [0.25, 0.75, -1.0]];
     let points: Vec<[f32; 3]> = (0..n).flat_map(corners).chain(through).collect();
     let faces = (0..=n as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    Ok(Body::still(Mesh::new("slanted", Positions::F32(points), faces)?))
+    Ok(Body::deformable(Mesh::new("slanted", Positions::F32(points), faces)?))
 }
 
 #[cfg(test)]

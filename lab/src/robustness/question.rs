@@ -11,7 +11,7 @@ pub enum Expect {
     /// They do not meet, but nearly: anything but a certificate.
     Near,
     /// They meet first at that time: not separated, not late, early by [`Question::early`] at most.
-    Meets(f64),
+    CollisionFilter(f64),
     /// The same, and a search in f64 must be certain of it.
     Sure(f64),
 }
@@ -92,14 +92,14 @@ impl Question {
             Expect::Apart | Expect::Near if said.is_contact() => Some(Fault::FalseCertificate),
             Expect::Apart => unexpected(!said.is_separated() || said.boxes > MOST_BOXES),
             Expect::Near => None,
-            Expect::Meets(t) | Expect::Sure(t) => {
+            Expect::CollisionFilter(t) | Expect::Sure(t) => {
                 let unsure = matches!(self.expect, Expect::Sure(_)) && !narrow && !said.is_contact();
                 let early = said.toi < t - self.early || said.exhausted();
                 if said.is_separated() {
                     Some(Fault::Missed)
                 } else if said.toi > t + self.blur {
                     Some(Fault::Late)
-                } else if said.is_contact() && said.toi_hi < t - self.blur {
+                } else if said.is_contact() && said.toi_upper < t - self.blur {
                     Some(Fault::FalseCertificate)
                 } else {
                     unexpected(unsure || early || said.boxes > MOST_BOXES)
@@ -117,13 +117,13 @@ mod tests {
     fn each_fault_is_named() {
         let of = |expect| Question::new(("X", "planted"), Features::EdgeEdge, [[[0.0; 3]; 4]; 2], expect);
         let apart = Verdict::separated(1.0, 3);
-        let contact = |toi, toi_hi| Verdict::contact(toi, toi_hi, 3, false);
-        let unsure = |toi| Verdict::unresolved(toi, 1.0, 3, false);
+        let contact = |toi, toi_upper| Verdict::contact(toi, toi_upper, 3, false);
+        let unsure = |toi| Verdict::undecided(toi, 1.0, 3, false);
         let judged = |expect, said: Verdict| of(expect).judge(&said, false);
         assert_eq!(judged(Expect::Sure(0.5), contact(0.4999, 0.5)), None);
         assert_eq!(judged(Expect::Sure(0.5), unsure(0.4999)), Some(Fault::Unexpected));
         assert_eq!(of(Expect::Sure(0.5)).judge(&unsure(0.4999), true), None);
-        for expect in [Expect::Sure(0.5), Expect::Meets(0.5)] {
+        for expect in [Expect::Sure(0.5), Expect::CollisionFilter(0.5)] {
             assert_eq!(judged(expect, apart), Some(Fault::Missed));
             assert_eq!(judged(expect, contact(0.51, 0.6)), Some(Fault::Late));
             assert_eq!(judged(expect, contact(0.4999, 0.49995)), Some(Fault::FalseCertificate));

@@ -116,7 +116,7 @@ pub fn ask_refits(device: &Device, frames: u32) -> Result<Report, Error> {
                 let found: Contacts = detector.detect()?;
                 let fresh = OneQuery::new(device.clone(), vec![body(k)?], query)?.detect()?;
                 report.asked += 1;
-                report.unresolved += found.unresolved;
+                report.undecided += found.undecided;
                 if found.rows != fresh.rows {
                     report.fail(|| {
                         let (was, is) = (found.len(), fresh.len());

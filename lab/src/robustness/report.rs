@@ -18,7 +18,7 @@ pub struct Report {
     /// Certificates of what is not so.
     pub false_certificates: u64,
     /// Answers without a certificate either way.
-    pub unresolved: u64,
+    pub undecided: u64,
     /// The id of each failure, and what it was; at most [`Report::SHOWN`].
     pub failures: Vec<String>,
     /// How many failures there were.
@@ -64,11 +64,11 @@ impl Report {
 /// One line, and one for each failure.
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Report { suite, asked, missed, late, false_certificates, unresolved, failed, .. } = self;
+        let Report { suite, asked, missed, late, false_certificates, undecided, failed, .. } = self;
         write!(
             f,
             "{suite:<20} {asked:>9} asked, {missed} missed, {late} late, {false_certificates} falsely certain, \
-             {unresolved} unresolved, {}",
+             {undecided} undecided, {}",
             counted(*failed, "failure", "failures")
         )?;
         self.failures.iter().try_for_each(|failure| write!(f, "\n    {failure}"))

@@ -34,7 +34,7 @@ pub fn ask_scenes(device: &Device, scenes: &[Scene]) -> Result<Report, Error> {
         for bv in Bv::ALL {
             let found = found(device, bodies.clone(), scene.query().with_bv(bv))?;
             report.asked += 1;
-            report.unresolved += found.unresolved;
+            report.undecided += found.undecided;
             if let Some(wrong) = scene.judge(&found) {
                 report.missed += u64::from(wrong.starts_with("missed"));
                 report.late += u64::from(wrong.starts_with("late"));

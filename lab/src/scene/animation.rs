@@ -61,7 +61,7 @@ pub fn animation(name: &str, triangles: usize, seed: u64) -> Result<Animation, E
 ///
 /// # Errors
 /// [`Problem::UnknownScene`] with the known names, [`Problem::NoTriangles`] for 0, [`Problem::TooMany`] above
-/// [`super::MAX_TRIANGLES`], each as [`Error::Input`]; [`Error::Choice`] for contact in `n-body`, which has no cloth.
+/// [`super::MAX_TRIANGLES`], each as [`Error::Input`]; [`Error::InvalidArgument`] for contact in `n-body`, which has no cloth.
 pub fn animation_with(name: &str, options: Options) -> Result<Animation, Error> {
     let Options { triangles, seed, contact } = options;
     let input = |problem| Error::Input { file: name.into(), problem };
@@ -78,7 +78,7 @@ pub fn animation_with(name: &str, options: Options) -> Result<Animation, Error> 
         "flamenco" => (flamenco::world(triangles, seed), flamenco::OPENING),
         "princess" => (princess::world(triangles, seed), princess::OPENING),
         _ if contact => {
-            return Err(Error::Choice {
+            return Err(Error::InvalidArgument {
                 what: format!("contact of cloth in {name}, which has none"),
                 advice: "choose cloth-ball, flamenco or princess, or leave contact out".into(),
             });

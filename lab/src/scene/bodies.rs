@@ -3,7 +3,7 @@
 use super::sphere::{Sphere, sphere};
 use super::{Rng, room};
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::scene::{BodyId, Meets, Motion, Pose, Scene};
+use nearmiss::scene::{BodyId, CollisionFilter, Motion, Pose, Scene};
 use nearmiss::{Error, memory};
 
 /// A scene, and how its bodies move.
@@ -90,7 +90,11 @@ impl Bodies {
         }
         let sheet = (cloth > 0).then(|| {
             let mesh = Mesh::new("cloth", waves(cloth, 1.2 * half, (0, 0.0)), squares_of(cloth))?;
-            Ok::<_, Error>((scene.add(Body::still(mesh).with(Meets::and_itself())), cloth, 1.2 * half))
+            Ok::<_, Error>((
+                scene.add(Body::deformable(mesh).with_filter(CollisionFilter::with_self_collision())),
+                cloth,
+                1.2 * half,
+            ))
         });
         if floor > 0 {
             let flat = waves(floor, 2.0 * half, (0, LIFT - 0.1));
@@ -114,15 +118,15 @@ impl Bodies {
         let mut movers = Vec::new();
         for world in 0..count {
             let mut rng = Rng::new(u64::from(world));
-            let meets = Meets::in_environment(world);
+            let meets = CollisionFilter::in_environment(world);
             for _ in 0..balls {
                 let mut centre = rng.point(half);
                 centre[2] += half;
-                let body = Body::rigid(round("ball", &ball, 0.5)?).with(meets);
+                let body = Body::rigid(round("ball", &ball, 0.5)?).with_filter(meets);
                 movers.push((scene.add(body), Ball::new(&mut rng, centre)));
             }
             let floor = Mesh::new("floor", waves(1, 2.0 * half, (0, LIFT - 0.1)), squares_of(1))?;
-            scene.add(Body::fixed(floor).with(meets));
+            scene.add(Body::fixed(floor).with_filter(meets));
         }
         Ok(Bodies { scene, balls: movers, cloth: None })
     }

@@ -145,7 +145,7 @@ impl Builder {
     /// The body: moving if its vertices were added as moving.
     fn body(self, name: &str) -> Result<Body, Error> {
         if self.t1.is_empty() {
-            return Ok(Body::still(Mesh::new(name, Positions::F32(self.t0), self.faces)?));
+            return Ok(Body::deformable(Mesh::new(name, Positions::F32(self.t0), self.faces)?));
         }
         let t0 = Mesh::new(name, Positions::F32(self.t0), self.faces.clone())?;
         Body::moving(t0, Mesh::new(name, Positions::F32(self.t1), self.faces)?)

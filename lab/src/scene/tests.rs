@@ -30,7 +30,7 @@ fn the_fingerprint_notices_one_bit() {
     let body = single().unwrap();
     let Positions::F32(mut points) = body.positions_t0().clone() else { unreachable!() };
     points[0][0] = -0.0;
-    let other = Body::still(Mesh::new("single", Positions::F32(points), body.faces().to_vec()).unwrap());
+    let other = Body::deformable(Mesh::new("single", Positions::F32(points), body.faces().to_vec()).unwrap());
     assert_ne!(body.fingerprint(), other.fingerprint());
     assert_ne!(soup(9, 1, true).unwrap().fingerprint(), soup(9, 2, true).unwrap().fingerprint());
 }

@@ -87,7 +87,7 @@ pub fn bodies(
         motion: query.kind(),
         bodies: all.scene.ids().count(),
         triangles: triangles(|_| true),
-        moving: triangles(|body| body.kind() != BodyKind::Static),
+        moving: triangles(|body| body.kind() != BodyKind::Fixed),
         launches,
         bytes,
         place_ms: mean.place,
@@ -106,7 +106,7 @@ fn one_by_one(
     query: Query,
     steps: &[Vec<(BodyId, Move)>],
 ) -> Result<Option<f64>, Error> {
-    let of = |id: BodyId| all.scene.get(id).and_then(|body| body.meets().environment);
+    let of = |id: BodyId| all.scene.get(id).and_then(|body| body.filter().environment);
     let worlds = all.scene.ids().filter_map(of).max().map_or(0, |last| last as usize + 1);
     if worlds < 2 {
         return Ok(None);

@@ -27,7 +27,7 @@ impl Frames {
     /// [`Error::Input`] where two frames are not of one mesh.
     pub fn bodies(&self, moves: bool) -> Result<Vec<Body>, Error> {
         if !moves {
-            return Ok(self.meshes.iter().cloned().map(Body::still).collect());
+            return Ok(self.meshes.iter().cloned().map(Body::deformable).collect());
         }
         self.meshes.windows(2).map(|pair| Body::moving(pair[0].clone(), pair[1].clone())).collect()
     }
@@ -40,7 +40,7 @@ impl Frames {
     fn new(scene: &str, meshes: Vec<Mesh>) -> Result<Frames, Error> {
         let frames = Frames { scene: scene.into(), meshes };
         if frames.meshes.len() < 2 {
-            return Err(Error::Choice {
+            return Err(Error::InvalidArgument {
                 what: format!("{scene} has {}", counted(frames.meshes.len() as u64, "frame", "frames")),
                 advice: "a step needs two: give more files after --mesh, or a larger --frames".into(),
             });
@@ -55,7 +55,7 @@ impl Frames {
 /// and gathers. Cost: those frames too are computed.
 ///
 /// # Errors
-/// Those of the scene; [`Error::Choice`] for fewer than two frames.
+/// Those of the scene; [`Error::InvalidArgument`] for fewer than two frames.
 pub fn frames(name: &str, triangles: usize, seed: u64, count: usize) -> Result<Frames, Error> {
     let mut animation = scene::animation(name, triangles, seed)?;
     animation.advance(animation.opening())?;
@@ -73,7 +73,7 @@ pub fn frames(name: &str, triangles: usize, seed: u64, count: usize) -> Result<F
 /// Frames from files, in the order given.
 ///
 /// # Errors
-/// Those of reading; [`Error::Input`] where two files are not frames of one mesh; [`Error::Choice`] for one file.
+/// Those of reading; [`Error::Input`] where two files are not frames of one mesh; [`Error::InvalidArgument`] for one file.
 pub fn read(scene: &str, files: &[PathBuf]) -> Result<Frames, Error> {
     let mut read = files.iter().map(|file| MeshFile::read(file)).collect::<Result<Vec<_>, _>>()?;
     for at in 1..read.len() {

@@ -93,7 +93,7 @@ fn step(frames: &Frames, moves: bool, part: f64) -> Result<(Body, Body), Error> 
     Ok(if moves {
         (Body::moving(t0.clone(), t0.clone())?, Body::moving(t0.clone(), moved)?)
     } else {
-        (Body::still(t0.clone()), Body::still(moved))
+        (Body::deformable(t0.clone()), Body::deformable(moved))
     })
 }
 

@@ -7,7 +7,7 @@
 
 What is asked often is asked of a Detector: a Scene of Body objects on a Device, and a query (Discrete, Continuous, Earliest,
 Near, Distance). No contact is missed; where a solver cannot tell it says so, and where something ends it raises.
-Start processes by spawn: one that was forked after the first call has no threads to compute with, and raises ChoiceError.
+Start processes by spawn: one that was forked after the first call has no threads to compute with, and raises InvalidArgumentError.
 """
 
 from enum import IntEnum
@@ -33,7 +33,7 @@ from ._native import (
 )
 from .errors import (
     Bug,
-    ChoiceError,
+    InvalidArgumentError,
     DeviceError,
     InputError,
     Interrupted,
@@ -60,8 +60,8 @@ class Status(IntEnum):
     CONTACT = 0
     """A solver that can be wrong says so."""
     CERTIFIED = 1
-    """They meet, proven, first in [toi, toi_hi]."""
-    UNRESOLVED = 2
+    """They meet, proven, first in [toi, toi_upper]."""
+    UNDECIDED = 2
     """They come nearer than the tolerance; if they meet, not before toi. Proven as well."""
 
 
@@ -77,7 +77,7 @@ class Closest(IntEnum):
 __all__ = [
     "Body",
     "Bug",
-    "ChoiceError",
+    "InvalidArgumentError",
     "Closest",
     "Contacts",
     "Continuous",

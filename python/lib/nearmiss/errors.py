@@ -1,7 +1,7 @@
 """What nearmiss raises: a class for each who must act, the message with what to do.
 
 Numbers that describe meshes, positions and poses, in files and in arrays, are input (InputError); all else that a caller passes
-(options, names, kinds, numbers of bodies, shapes and types of arrays) is a choice (ChoiceError).
+(options, names, kinds, numbers of bodies, shapes and types of arrays) is a choice (InvalidArgumentError).
 """
 
 
@@ -13,7 +13,7 @@ class InputError(NearmissError, ValueError):
     """Data that cannot be used: a file, or numbers of a mesh, of positions or of a pose. Correct the data."""
 
 
-class ChoiceError(NearmissError, ValueError):
+class InvalidArgumentError(NearmissError, ValueError):
     """An argument that does not exist or does not go with the others, whatever the data. Choose again."""
 
 

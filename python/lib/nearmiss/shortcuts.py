@@ -41,7 +41,7 @@ def contacts(
     t0, t1:     (n, 3) numbers each, as vertices of self_intersections.
     separation: what comes nearer than this is in contact, in the unit of the vertices; 0 for touching.
     tolerance:  how well a time is told: as a length moved. Default: 1e-4 of the mean edge.
-    Returns Contacts: kind, indices, toi and toi_hi (bounds of the first time, in [0, 1]), status. None is missed, none is late.
+    Returns Contacts: kind, indices, toi and toi_upper (bounds of the first time, in [0, 1]), status. None is missed, none is late.
     `starts_crossing` counts the triangle pairs that share a point at the start: those need not have a time.
     """
     return _ask(t0, faces, Continuous(separation=separation, tolerance=tolerance), device, t1)

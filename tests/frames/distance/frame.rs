@@ -2,7 +2,7 @@
 
 use nearmiss::contacts::NearestTriangles;
 use nearmiss::mesh::{Body, Mesh, Positions};
-use nearmiss::scene::{Meets, Motion, Pose, Scene};
+use nearmiss::scene::{CollisionFilter, Motion, Pose, Scene};
 use nearmiss::{Contacts, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
@@ -19,7 +19,7 @@ fn moved(body: &Body, by: [f64; 3], single: bool) -> Body {
     } else {
         Positions::F64(points.collect())
     };
-    Body::still(Mesh::new(body.name(), positions, body.faces().to_vec()).expect("a mesh"))
+    Body::deformable(Mesh::new(body.name(), positions, body.faces().to_vec()).expect("a mesh"))
 }
 
 fn soup(n: usize, seed: u64) -> Body {
@@ -140,20 +140,20 @@ fn bodies_that_may_not_meet_are_not_asked_about() {
             let body = match r.random_range(0..3) {
                 0 => Body::fixed(mesh),
                 1 => Body::rigid(mesh),
-                _ => Body::still(mesh),
+                _ => Body::deformable(mesh),
             };
-            let fixed = body.kind() == nearmiss::scene::BodyKind::Static;
-            scene.add(body.with(Meets {
+            let fixed = body.kind() == nearmiss::scene::BodyKind::Fixed;
+            scene.add(body.with_filter(CollisionFilter {
                 environment: [Some(0), Some(1), None][r.random_range(0..3)],
                 group: r.random_range(0..4),
                 mask: r.random_range(0..4),
-                self_contact: Some(r.random_bool(0.5) && !fixed),
+                self_collision: Some(r.random_bool(0.5) && !fixed),
             }));
         }
         let may = |i: usize, j: usize| {
             let [a, b] = [i, j].map(|i| &scene.bodies()[i]);
-            let [p, q] = [a.meets(), b.meets()];
-            let fixed = [a, b].iter().all(|body| body.kind() == nearmiss::scene::BodyKind::Static);
+            let [p, q] = [a.filter(), b.filter()];
+            let fixed = [a, b].iter().all(|body| body.kind() == nearmiss::scene::BodyKind::Fixed);
             let together =
                 p.environment == q.environment || p.environment.is_none() || q.environment.is_none();
             !fixed && together && p.group & q.mask != 0 && q.group & p.mask != 0
@@ -203,7 +203,7 @@ fn scales_change_nothing_else() {
             } else {
                 Positions::F64(points.collect())
             };
-            Body::still(Mesh::new("scaled", positions, body.faces().to_vec()).expect("a mesh"))
+            Body::deformable(Mesh::new("scaled", positions, body.faces().to_vec()).expect("a mesh"))
         });
         *ask(engine(), bodies.to_vec(), Query::distance()).nearest().expect("two bodies")
     };

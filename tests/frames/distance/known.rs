@@ -3,7 +3,7 @@
 use nearmiss::Rows;
 use nearmiss::mesh::{Mesh, Positions};
 use nearmiss::query::{QueryKind, Traversal};
-use nearmiss::scene::{BodyId, Meets, Scene};
+use nearmiss::scene::{BodyId, CollisionFilter, Scene};
 use nearmiss::{Body, Query};
 use nearmiss_lab::OneQuery;
 use support::{ask, engine, still};
@@ -74,10 +74,10 @@ fn without_two_bodies_there_is_none() {
     };
     none(Scene::from(over(0.0)));
     none(Scene::from(vec![over(0.0), still(&[], &[])]));
-    none(Scene::from(over(0.0).with(Meets::and_itself())));
+    none(Scene::from(over(0.0).with_filter(CollisionFilter::with_self_collision())));
     let mut scene = Scene::new();
     for world in [0, 1] {
-        scene.add(over(world as f32).with(Meets::in_environment(world)));
+        scene.add(over(world as f32).with_filter(CollisionFilter::in_environment(world)));
     }
     none(scene);
     let mut scene = Scene::new();
@@ -111,7 +111,7 @@ fn triangles_that_cross_do_so_in_the_same_place_at_every_scale() {
         let [half, rest] = [exponent / 2, exponent - exponent / 2].map(|k| 2f64.powi(k));
         let body = |corners: [[f64; 3]; 3]| {
             let positions = Positions::F64(corners.map(|p| p.map(|x| x * half * rest)).to_vec());
-            Body::still(Mesh::new("scaled", positions, vec![[0, 1, 2]]).expect("a mesh"))
+            Body::deformable(Mesh::new("scaled", positions, vec![[0, 1, 2]]).expect("a mesh"))
         };
         *ask(engine(), vec![body(face), body(needle)], Query::distance()).nearest().expect("two bodies")
     };

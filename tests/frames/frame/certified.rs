@@ -61,8 +61,8 @@ fn asking(motion: QueryKind, solver: Solver, p: &Params) -> Query {
     })
 }
 
-fn unresolved(answer: &Contacts) -> usize {
-    answer.contacts().iter().filter(|c| c.status == Status::Unresolved).count()
+fn undecided(answer: &Contacts) -> usize {
+    answer.contacts().iter().filter(|c| c.status == Status::Undecided).count()
 }
 
 #[test]
@@ -78,11 +78,11 @@ fn nothing_is_lost_at_any_tolerance_and_budget() {
                 let all = ask(engine(), vec![body.clone()], asking(QueryKind::Continuous, solver, &p));
                 let what = format!("{}, {solver:?}, {p:?}", body.name());
                 assert_eq!(fault(all.contacts(), &near, &meet), None, "{what}");
-                assert_eq!(unresolved(&all) as u64, all.unresolved, "{what}");
+                assert_eq!(undecided(&all) as u64, all.undecided, "{what}");
                 if (tolerance, budget) == (1e-4, 4096) {
-                    ample = all.unresolved;
+                    ample = all.undecided;
                 }
-                assert!(budget > 1 || all.unresolved >= ample, "{what}: a budget of one box is not more");
+                assert!(budget > 1 || all.undecided >= ample, "{what}: a budget of one box is not more");
                 let first = ask(engine(), vec![body.clone()], asking(QueryKind::Earliest, solver, &p));
                 // Pairs that could not be earlier than one that is known are not asked, so not counted either.
                 let least = [&first, &all].map(|a| a.earliest_toi().map(f64::to_bits));
@@ -102,7 +102,7 @@ fn every_machine_escalates_the_same() {
         let all = detector.detect().expect("an answer");
         let prints = detector.fingerprints().expect("prints");
         // Of the earliest, which pairs are asked hangs on what was found before them.
-        let counts = (motion == QueryKind::Continuous).then_some((all.unresolved, all.stats.escalated_vf_ee));
+        let counts = (motion == QueryKind::Continuous).then_some((all.undecided, all.stats.escalated_vf_ee));
         (all.hash(), counts, prints)
     };
     for motion in [QueryKind::Continuous, QueryKind::Earliest] {
@@ -130,7 +130,7 @@ fn the_comparison_can_fail() {
         |all| all.retain(|c| c.status != Status::Certified),
         |all| all.truncate(all.len() / 2),
         |all| all.insert(1, all[1]),
-        |all| all[0].toi_hi += 1e-9,
+        |all| all[0].toi_upper += 1e-9,
         |all| all[0].b += 1000,
     ];
     assert!(faults.into_iter().all(|fault| with(fault).is_some()));

@@ -2,7 +2,7 @@
 
 use nearmiss::mesh::Body;
 use nearmiss::query::{Discrete, Near, QueryKind, Solver, Traversal, TriangleTest};
-use nearmiss::scene::Meets;
+use nearmiss::scene::CollisionFilter;
 use nearmiss::{Device, Query};
 use nearmiss_lab::OneQuery;
 use nearmiss_lab::scene;
@@ -34,8 +34,8 @@ fn bodies_without_triangles_cost_nothing() {
         for bodies in [
             vec![none.clone()],
             vec![unused.clone()],
-            vec![none.clone(), soup().with(Meets::others())],
-            vec![soup().with(Meets::others()), unused.clone()],
+            vec![none.clone(), soup().with_filter(CollisionFilter::without_self_collision())],
+            vec![soup().with_filter(CollisionFilter::without_self_collision()), unused.clone()],
         ] {
             for query in Query::every() {
                 assert_eq!(work(&device, bodies.clone(), query), (0, 0, 0), "{query:?}");
@@ -89,7 +89,7 @@ fn each_query_holds_what_it_needs() {
     let exact = bytes(of(QueryKind::Discrete));
     let moller = bytes(Discrete::by(TriangleTest::Moller).into());
     let [continuous, earliest] = [QueryKind::Continuous, QueryKind::Earliest].map(|motion| bytes(of(motion)));
-    assert!(moller < exact, "no list of undecided pairs: {moller} {exact}");
+    assert!(moller < exact, "no list of uncertain pairs: {moller} {exact}");
     let near = bytes(Query::near(Near::DISTANCE));
     assert!(exact < near && near < continuous, "edges and owners, but no second frame: {near}");
     assert!(exact < earliest, "no edges, owners and second frame: {exact} {earliest}");
@@ -113,7 +113,7 @@ fn a_walk_that_never_spills_has_no_second_round() {
 #[test]
 fn a_discrete_query_does_not_see_the_end_of_the_step() {
     let ask = |body| support::ask(engine(), vec![body], Query::discrete());
-    let first = Body::still(soup().frames().remove(0));
+    let first = Body::deformable(soup().frames().remove(0));
     assert_eq!(ask(soup()).rows, ask(first).rows);
     assert!(!ask(soup()).is_empty());
 }

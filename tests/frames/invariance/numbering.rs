@@ -122,7 +122,7 @@ fn bodies_exchanged() {
         // A vertex/face pair is the same query to the solver: same bits. Of two edges the first one changes.
         let of = |contacts: &Contacts, kind| -> BTreeMap<[u32; 2], Times> {
             let all = contacts.contacts().iter().filter(|c| c.kind == kind);
-            all.map(|c| ([c.a, c.b], [c.toi, c.toi_hi].map(f64::to_bits))).collect()
+            all.map(|c| ([c.a, c.b], [c.toi, c.toi_upper].map(f64::to_bits))).collect()
         };
         let turned = |kind| -> BTreeMap<[u32; 2], Times> {
             of(&back, kind).into_iter().map(|([a, b], toi)| ([b, a], toi)).collect()

@@ -90,7 +90,7 @@ fn the_same_numbers_in_doubles() {
         };
         let t0 = f64s(body.positions_t0());
         match body.positions_t1() {
-            None => Body::still(t0),
+            None => Body::deformable(t0),
             Some(t1) => Body::moving(t0, f64s(t1)).expect("two frames"),
         }
     };

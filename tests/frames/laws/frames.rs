@@ -49,11 +49,14 @@ fn body(rng: &mut SmallRng) -> (Body, Place) {
     let is_f64 = rng.random_bool(0.2);
     let mesh = mesh(rng, 0.5, 0.0, is_f64);
     let at = mesh.positions().clone();
-    let meets = |is_fixed: bool| Meets { self_contact: (!is_fixed).then_some(true), ..Meets::default() };
+    let meets = |is_fixed: bool| CollisionFilter {
+        self_collision: (!is_fixed).then_some(true),
+        ..CollisionFilter::default()
+    };
     match rng.random_range(0..4) {
-        0 => (Body::fixed(mesh).with(meets(true)), Place::Fixed),
-        1 => (Body::rigid(mesh).with(meets(false)), Place::Poses([Pose::default(); 2])),
-        _ => (Body::still(mesh).with(meets(false)), Place::Vertices([at.clone(), at])),
+        0 => (Body::fixed(mesh).with_filter(meets(true)), Place::Fixed),
+        1 => (Body::rigid(mesh).with_filter(meets(false)), Place::Poses([Pose::default(); 2])),
+        _ => (Body::deformable(mesh).with_filter(meets(false)), Place::Vertices([at.clone(), at])),
     }
 }
 

@@ -41,7 +41,7 @@ fn body(rng: &mut SmallRng, (size, at, is_f64): (f64, f64, bool)) -> Body {
     match rng.random_range(0..5) {
         0 => Body::fixed(mesh),
         1 => Body::rigid(mesh).at(&Motion::PoseStep([pose(rng), pose(rng)])).expect("poses"),
-        2 => Body::still(mesh),
+        2 => Body::deformable(mesh),
         _ => {
             let end = moved(rng, mesh.positions(), 0.5 * size);
             let end = Mesh::new("end", end, mesh.faces().to_vec()).expect("a mesh");
@@ -52,11 +52,11 @@ fn body(rng: &mut SmallRng, (size, at, is_f64): (f64, f64, bool)) -> Body {
 
 /// Who may meet whom, at random; a fixed body has no contact with itself.
 fn meets(rng: &mut SmallRng, body: Body) -> Body {
-    let self_contact = (body.kind() != BodyKind::Static).then(|| rng.random_bool(0.5));
+    let self_collision = (body.kind() != BodyKind::Fixed).then(|| rng.random_bool(0.5));
     let environment = [Some(0), Some(0), Some(1), None][rng.random_range(0..4)];
     let [group, mask] =
         [(); 2].map(|()| if rng.random_bool(0.7) { u32::MAX } else { rng.random_range(1..4) });
-    body.with(Meets { environment, group, mask, self_contact })
+    body.with_filter(CollisionFilter { environment, group, mask, self_collision })
 }
 
 /// Two or three bodies that are asked about.
@@ -104,8 +104,8 @@ struct Least {
 
 impl Least {
     fn of(contacts: &Contacts) -> Least {
-        let is_below = |reason: &Degraded| matches!(reason, Degraded::ToleranceBelowPrecision { .. });
-        Least { number: least(contacts), is_below_precision: contacts.degraded().iter().any(is_below) }
+        let is_below = |reason: &Caveat| matches!(reason, Caveat::ToleranceBelowPrecision { .. });
+        Least { number: least(contacts), is_below_precision: contacts.caveats().iter().any(is_below) }
     }
 }
 
@@ -118,9 +118,9 @@ fn least_two_by_two(bodies: &[Body], query: Query) -> Least {
         for j in i + 1..bodies.len() {
             // Who meets itself was asked above.
             let alone = [i, j].map(|k| {
-                let is_fixed = bodies[k].kind() == BodyKind::Static;
-                let self_contact = (!is_fixed).then_some(false);
-                bodies[k].clone().with(Meets { self_contact, ..*bodies[k].meets() })
+                let is_fixed = bodies[k].kind() == BodyKind::Fixed;
+                let self_collision = (!is_fixed).then_some(false);
+                bodies[k].clone().with_filter(CollisionFilter { self_collision, ..*bodies[k].filter() })
             });
             all.push(Least::of(&ask(&alone, query)));
         }
@@ -198,17 +198,20 @@ fn a_body_that_meets_none_adds_no_caveat() {
     let mut told = [0; 2];
     for seed in 0..20 {
         let mut rng = SmallRng::seed_from_u64(seed);
-        let own = Body::still(mesh(&mut rng, 0.5, 0.0, false));
-        let huge = Body::still(mesh(&mut rng, 1e5, 0.0, true)).with(Meets::others());
+        let own = Body::deformable(mesh(&mut rng, 0.5, 0.0, false));
+        let huge = Body::deformable(mesh(&mut rng, 1e5, 0.0, true))
+            .with_filter(CollisionFilter::without_self_collision());
         let far = huge.positions_t0().to_f64().into_iter().map(|p| [p[0] + 1e7, p[1], p[2]]).collect();
         let far = Mesh::new("far", Positions::F64(far), huge.faces().to_vec()).expect("a mesh");
-        let far = Body::still(far).with(Meets::others());
-        let elsewhere = Meets { environment: Some(7), ..Meets::others() };
-        let excluded = Meets { mask: 0, ..Meets::others() };
+        let far = Body::deformable(far).with_filter(CollisionFilter::without_self_collision());
+        let elsewhere = CollisionFilter { environment: Some(7), ..CollisionFilter::without_self_collision() };
+        let excluded = CollisionFilter { mask: 0, ..CollisionFilter::without_self_collision() };
         for query in queries().into_iter().filter(|query| query.kind() == QueryKind::Earliest) {
             let below = |bodies: &[Body]| Least::of(&ask(bodies, query)).is_below_precision;
             let alone = below(std::slice::from_ref(&own));
-            for other in [far.clone(), huge.clone().with(elsewhere), huge.clone().with(excluded)] {
+            for other in
+                [far.clone(), huge.clone().with_filter(elsewhere), huge.clone().with_filter(excluded)]
+            {
                 assert_eq!(below(&[own.clone(), other]), alone, "seed {seed}, {query:?}");
             }
             told[usize::from(below(&[own.clone(), huge.clone()]))] += 1;

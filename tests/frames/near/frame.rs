@@ -20,7 +20,7 @@ fn placed(body: &Body, at: impl Fn([f64; 3]) -> [f64; 3], single: bool) -> Body 
     } else {
         Positions::F64(points)
     };
-    Body::still(Mesh::new(body.name(), positions, body.faces().to_vec()).expect("a mesh"))
+    Body::deformable(Mesh::new(body.name(), positions, body.faces().to_vec()).expect("a mesh"))
 }
 
 /// In doubles that f32 does not hold.
@@ -61,8 +61,8 @@ fn all_that_is_within_the_distance_is_listed() {
         let found = ask(engine(), bodies.clone(), Query::near(distance));
         let what = format!("{}, {distance}", bodies[0].name());
         let beyond = truth.fault(found.near()).unwrap_or_else(|fault| panic!("{fault}: {what}"));
-        println!("{what}: {} pairs, {beyond} beyond, {} unresolved", found.len(), found.unresolved);
-        assert!(truth.within.len() > 50 && beyond as u64 <= found.unresolved, "{what}");
+        println!("{what}: {} pairs, {beyond} beyond, {} undecided", found.len(), found.undecided);
+        assert!(truth.within.len() > 50 && beyond as u64 <= found.undecided, "{what}");
         assert_eq!(found.len() - beyond, truth.within.len());
         assert!(found.stats.candidates >= found.len() as u64);
     }
@@ -109,10 +109,10 @@ fn what_rounding_cannot_tell_is_the_same_for_every_volume() {
     }
     let points: Vec<[f64; 3]> = triangles.as_flattened().to_vec();
     let faces = (0..120).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    let body = Body::still(Mesh::new("stacked", Positions::F64(points), faces).expect("a mesh"));
+    let body = Body::deformable(Mesh::new("stacked", Positions::F64(points), faces).expect("a mesh"));
     let query = Query::near(0.25);
     let all = ask(engine(), vec![body.clone()], query);
-    assert!(all.unresolved > 60, "{} of {}", all.unresolved, all.len());
+    assert!(all.undecided > 60, "{} of {}", all.undecided, all.len());
     assert!(Truth::of(std::slice::from_ref(&body), 0.25).fault(all.near()).is_ok_and(|beyond| beyond > 20));
     for bv in Bv::ALL {
         assert_eq!(ask(engine(), vec![body.clone()], query.with_bv(bv)).rows, all.rows, "{bv:?}");
@@ -192,7 +192,7 @@ fn a_step_without_motion_comes_to_the_same() {
             assert!(rows(near.near()).is_subset(&all), "{solver:?}: missed by the step");
             assert!(all.is_subset(&rows(farther.near())), "{solver:?}: missed by near");
             assert!(certain.clone().all(|c| rows(near.near()).contains(&(c.kind, c.a, c.b))), "{solver:?}");
-            assert!(certain.count() * 10 > 9 * near.len() || near.unresolved > 0, "{solver:?}");
+            assert!(certain.count() * 10 > 9 * near.len() || near.undecided > 0, "{solver:?}");
         }
     }
 }
@@ -212,9 +212,9 @@ fn lists_grow() {
             [all.stats.candidates_vf_ee[0], all.stats.candidates_vf_ee[1]],
             [3 * pairs, 9 * pairs / 2]
         );
-        assert_eq!((all.len() as u64, all.unresolved), (3 * pairs + 9 * pairs / 2, 0));
+        assert_eq!((all.len() as u64, all.undecided), (3 * pairs + 9 * pairs / 2, 0));
         let again = detector.detect().expect("an answer");
-        assert_eq!((again.hash(), again.stats.reruns, again.unresolved), (all.hash(), 0, 0));
+        assert_eq!((again.hash(), again.stats.reruns, again.undecided), (all.hash(), 0, 0));
         for stage in nearmiss::Stage::ALL {
             detector.repeat_stage(stage, 2).expect("a stage");
         }
@@ -226,7 +226,7 @@ fn lists_grow() {
 #[test]
 fn only_the_start_is_looked_at() {
     let moving = scene::soup(60, 5, true).expect("a scene");
-    let first = Body::still(moving.frames().remove(0));
+    let first = Body::deformable(moving.frames().remove(0));
     let of = |body: Body| ask(engine(), vec![body], Query::near(0.05));
     assert_eq!(of(moving).rows, of(first).rows);
     assert_eq!(of(still(&[], &[])).rows, Rows::Near(Vec::new()));
@@ -263,7 +263,7 @@ fn a_hash_tells_answers_apart() {
 #[test]
 #[cfg_attr(not(public_data), ignore = "no public test data: set NEARMISS_DATA")]
 fn real_cloth_agrees_with_the_step_without_motion() {
-    let body = Body::still(mesh("cloth-ball/cloth_ball92.ply"));
+    let body = Body::deformable(mesh("cloth-ball/cloth_ball92.ply"));
     let distance = 0.01;
     let near = ask(engine(), vec![body.clone()], Query::near(distance));
     let separation = Certified { separation: distance, tolerance: Some(1e-7), ..Certified::default() };

@@ -124,7 +124,7 @@ struct Seen {
     /// Listed, but farther apart than asked.
     beyond: u32,
     /// Not certain.
-    unresolved: u32,
+    undecided: u32,
     /// Beyond, of those that are not at their own distance.
     filtered: u32,
     /// The worst error of a distance, in half ulps of the reach.
@@ -150,7 +150,7 @@ fn hunt<R: Real>(name: &str, seen: &mut Seen) {
             seen.asked += 1;
             seen.within += u32::from(within);
             seen.beyond += u32::from(said.is_some() && !within);
-            seen.unresolved += u32::from(said.is_some_and(|near| !near.certain));
+            seen.undecided += u32::from(said.is_some_and(|near| !near.certain));
             seen.filtered += u32::from(!kept);
             if let Some(said) = said.filter(|_| truth.to_f64() > 1e-290) {
                 let error = (said.squared - truth.to_f64()) / (said.squared.sqrt() + near);

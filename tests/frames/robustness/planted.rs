@@ -17,8 +17,8 @@ fn names(report: &Report, id: &str) -> bool {
 fn a_wrong_expectation_is_named() {
     for (id, wrong) in [
         ("X15", Expect::Apart),
-        ("X16", Expect::Meets(0.5)),
-        ("X27", Expect::Meets(0.25)),
+        ("X16", Expect::CollisionFilter(0.5)),
+        ("X27", Expect::CollisionFilter(0.25)),
         ("X28", Expect::Sure(0.25)),
         ("ti-head-filter", Expect::Apart),
     ] {
@@ -76,10 +76,10 @@ fn a_wrong_answer_to_a_built_contact_is_counted() {
     assert!(sound.is_right(), "{sound}");
     let deaf = with(|_| None);
     assert!(deaf.missed > 100 && deaf.failed == deaf.missed && !deaf.is_right(), "{deaf}");
-    let late = with(|met| met.map(|m| Outcome { toi: (m.toi + 0.6).min(1.0), toi_hi: 1.0, ..m }));
+    let late = with(|met| met.map(|m| Outcome { toi: (m.toi + 0.6).min(1.0), toi_upper: 1.0, ..m }));
     assert!(late.late > 100 && !late.is_right(), "{late}");
     let sure = with(|met| met.map(|m| Outcome { status: nearmiss::contacts::Status::Certified, ..m }));
-    assert!(sure.false_certificates >= sound.false_certificates && sure.unresolved == 0, "{sure}");
-    let backwards = with(|met| met.map(|m| Outcome { toi: m.toi_hi, toi_hi: m.toi, ..m }));
+    assert!(sure.false_certificates >= sound.false_certificates && sure.undecided == 0, "{sure}");
+    let backwards = with(|met| met.map(|m| Outcome { toi: m.toi_upper, toi_upper: m.toi, ..m }));
     assert!(!backwards.is_right(), "{backwards}");
 }

@@ -112,7 +112,7 @@ fn bodies(pairs: &[Pair], scale: f64, at: f64, wide: bool) -> Vec<Body> {
         let positions = if wide { Positions::F64(points.clone()) } else { Positions::F32(narrow()) };
         Mesh::new("exact", positions, faces).expect("a mesh")
     };
-    vec![Body::still(mesh(|x| x.still)), Body::moving(mesh(|x| x.from), mesh(|x| x.to)).expect("frames")]
+    vec![Body::deformable(mesh(|x| x.still)), Body::moving(mesh(|x| x.from), mesh(|x| x.to)).expect("frames")]
 }
 
 /// What was found of pair `i`'s nearest features. Edge 0 of a triangle of three new vertices joins its first two.
@@ -163,7 +163,7 @@ fn what_is_exactly_that_far_is_found() {
                         When::Passing | When::Through => 0.5,
                     };
                     assert!(c.toi <= truth, "late, {} after {truth}: {what}", c.toi);
-                    assert!(c.status == Status::Unresolved || c.toi_hi >= c.toi, "{what}");
+                    assert!(c.status == Status::Undecided || c.toi_upper >= c.toi, "{what}");
                     let deep = when == When::Through;
                     assert!(!deep || c.toi > 0.499_9 && c.status == Status::Certified, "{c:?}: {what}");
                 }

@@ -22,7 +22,7 @@ kernels! { [Lists], 64, 0;
         b.phase(|l| {
             (0..l.lane() % 3).for_each(|i| a.one.put(l, start + (*wishes.of(l) + i) as u64, l.global()));
             a.other.push(l, l.global());
-            a.counters.add(l, counter::UNRESOLVED, 2);
+            a.counters.add(l, counter::UNDECIDED, 2);
             a.counters.raise(l, counter::QUEUED, l.global() as u64);
         });
         a.counters.add_once(b, counter::STEPS, 5);
@@ -63,7 +63,7 @@ fn a_list_is_counted_by_its_own_counter_past_its_end() {
             // Of 64 lanes 21 append one and 21 two.
             wanted[counter::VF] = 63 * blocks as u64;
             wanted[counter::EE] = lanes;
-            wanted[counter::UNRESOLVED] = 2 * lanes;
+            wanted[counter::UNDECIDED] = 2 * lanes;
             wanted[counter::QUEUED] = lanes - 1;
             wanted[counter::STEPS] = 5 * blocks as u64;
             assert_eq!(counts, wanted);

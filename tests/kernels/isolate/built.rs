@@ -11,7 +11,7 @@ use nearmiss_lab::pairs::directed::{DIRECTED, directed};
 use std::collections::BTreeMap;
 use support::fuzz::continuous::fault;
 
-/// How many each rung decided: separated, in contact, unresolved.
+/// How many each rung decided: separated, in contact, undecided.
 pub type Shares = BTreeMap<Rung, [u32; 3]>;
 
 fn note(shares: &mut Shares, rung: Rung, verdict: &Verdict) {
@@ -45,7 +45,7 @@ fn ask<R: Real>(all: &[Built], tolerances: &[f64], shares: &mut Shares) -> Optio
 }
 
 fn print(name: &str, shares: &Shares) {
-    println!("{name}: separated, in contact, unresolved");
+    println!("{name}: separated, in contact, undecided");
     shares.iter().for_each(|(rung, shares)| println!("  {rung:?} {shares:?}"));
 }
 

@@ -175,7 +175,7 @@ fn known_motions_are_decided_by_their_rung() {
                 && (at_start || rung <= Rung::Double && rungs != Rungs::Single)
             {
                 assert!(said.is_contact(), "{name}");
-                assert!(!at_start || said.toi_hi == 0.0, "{name}");
+                assert!(!at_start || said.toi_upper == 0.0, "{name}");
                 assert!(truth.lateness(said.toi) > -1e-4, "{name}");
             }
             assert!(
@@ -200,7 +200,7 @@ fn a_finer_tolerance_gives_finer_times() {
         assert_eq!(fault(&verdict, Some(&truth)), None, "{tolerance}");
         // The vertex moves by 3 in the step, and both sides of a time may be the tolerance.
         let most = 2.0 * tolerance.max(1e-13) / 3.0;
-        assert!(verdict.is_contact() && verdict.toi_hi - verdict.toi <= most, "{tolerance}: {verdict:?}");
+        assert!(verdict.is_contact() && verdict.toi_upper - verdict.toi <= most, "{tolerance}: {verdict:?}");
         rungs.push(rung);
     }
     assert!(rungs.is_sorted() && rungs[0] == Rung::Single && rungs[5] == Rung::Double, "{rungs:?}");

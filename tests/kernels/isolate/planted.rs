@@ -246,7 +246,7 @@ fn a_shorter_time_around_a_root_would_be_false() {
         }
         let first = first_contact(&case).expect("a contact");
         let (low, high) = first.bracket();
-        let (middle, half) = ((said.toi + said.toi_hi) * 0.5, (said.toi_hi - said.toi) * 0.5);
+        let (middle, half) = ((said.toi + said.toi_upper) * 0.5, (said.toi_upper - said.toi) * 0.5);
         let off = (low - middle).abs().max((high - middle).abs());
         assert!(off <= half, "{low}: {said:?} of {case:?}");
         most = most.max(off / half);
@@ -263,13 +263,13 @@ fn lies_are_named() {
     type Lie = fn(Verdict) -> Verdict;
     let lies: [(Lie, &str); 5] = [
         (|_| Verdict::separated(1.0, 0), "missed"),
-        (|v| Verdict { toi: v.toi_hi + 1e-4, toi_hi: 1.0, ..v }, "late"),
+        (|v| Verdict { toi: v.toi_upper + 1e-4, toi_upper: 1.0, ..v }, "late"),
         (
-            |v| Verdict { toi: 0.0, toi_hi: v.toi * 0.5, ..v },
-            "a false certificate: the contact is after toi_hi",
+            |v| Verdict { toi: 0.0, toi_upper: v.toi * 0.5, ..v },
+            "a false certificate: the contact is after toi_upper",
         ),
         (|v| Verdict { toi: f64::NAN, ..v }, "times that are none"),
-        (|v| Verdict { toi_hi: 0.0, ..v }, "times that are none"),
+        (|v| Verdict { toi_upper: 0.0, ..v }, "times that are none"),
     ];
     let all: Vec<Built> = contacts(25, 5).filter(|(_, toi)| *toi == 0.5).map(|(built, _)| built).collect();
     for (lie, named) in lies {

@@ -36,7 +36,7 @@ pub fn in_passes<R: Real>(x: [Moving<R>; 4], face: bool, params: &Params) -> Ver
 
 fn well_formed(v: &Verdict, params: &Params) {
     assert!((0.0..=1.0).contains(&v.toi) && v.toi.is_sign_positive(), "{v:?}");
-    assert!(v.toi <= v.toi_hi && v.toi_hi <= params.end, "{v:?}");
+    assert!(v.toi <= v.toi_upper && v.toi_upper <= params.end, "{v:?}");
     assert!(v.boxes <= params.budget, "{v:?}");
 }
 
@@ -53,7 +53,7 @@ struct Judge {
 impl Judge {
     fn note(&mut self, v: Verdict, truth: f64) {
         self.missed += v.is_separated() as u32;
-        self.late += (v.toi > truth || v.toi > v.toi_hi) as u32;
+        self.late += (v.toi > truth || v.toi > v.toi_upper) as u32;
         self.contacts += v.is_contact() as u32;
         self.exhausted += v.exhausted() as u32;
         self.boxes += v.boxes as u64;
@@ -176,7 +176,7 @@ fn planted_faults_are_noticed() {
     assert!(wrong(forgetful) > 100);
     let late = built(82, 40, |x, face, p| {
         let v = certified::<f64, f64>(x, face, p);
-        Verdict { toi: (v.toi + 1e-6).min(v.toi_hi), ..v }
+        Verdict { toi: (v.toi + 1e-6).min(v.toi_upper), ..v }
     });
     assert!(wrong(late) > 100);
 }
@@ -238,7 +238,7 @@ fn exchanges(m: &Motion, face: bool, p: &Params, one: &Verdict) {
     for order in orders {
         let v = certified::<f64, f32>(order.map(|i| x[i]), face, p);
         for (a, b) in [(one, &v), (&v, one)] {
-            assert!(!a.is_contact() || (!b.is_separated() && b.toi <= a.toi_hi), "{one:?}, {v:?}");
+            assert!(!a.is_contact() || (!b.is_separated() && b.toi <= a.toi_upper), "{one:?}, {v:?}");
         }
     }
 }

@@ -67,7 +67,7 @@ fn reported_motions() {
                 // Decimals of the truth are rounded.
                 Some(t) => {
                     assert!(!v.is_separated() && v.toi <= t + 1e-11, "{name}");
-                    assert!(!v.is_contact() || v.toi_hi >= t - 1e-11, "{name}");
+                    assert!(!v.is_contact() || v.toi_upper >= t - 1e-11, "{name}");
                 }
                 None => assert!(!v.is_contact(), "{name}"),
             }
@@ -114,7 +114,7 @@ fn frames(folder: &str, before: &str, after: &str, most: usize) {
         }
         println!(
             "{folder}, {name}: of {} candidates {} meet; missed {missed}, false {alarms}, falsely certain {sure}, \
-             unresolved {unsure}, exhausted {exhausted}; {searched} searched, {boxes} boxes, at most {largest}",
+             undecided {unsure}, exhausted {exhausted}; {searched} searched, {boxes} boxes, at most {largest}",
             all.len(),
             truth.len()
         );

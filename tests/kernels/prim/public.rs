@@ -47,7 +47,7 @@ fn exact_pairs() {
             }
         });
         println!(
-            "{name}: {candidates} candidates, {} meet; undecided by f32 {unsure}, by f64 {wide}",
+            "{name}: {candidates} candidates, {} meet; uncertain by f32 {unsure}, by f64 {wide}",
             found.len()
         );
         assert!(

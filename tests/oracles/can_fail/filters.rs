@@ -9,14 +9,14 @@ use nearmiss_kernels::bvh::{Violation, check_filters};
 /// Of the five triangles of the tree the first two are of body 0 in environment 1, the next two of body 1 in environment 0,
 /// tested against itself, the last of body 2 in every one.
 fn whose(triangle: u32) -> NodeFilter {
-    let [body, environment, self_contact] = match triangle - 10 {
+    let [body, environment, self_collision] = match triangle - 10 {
         0 | 1 => [0, 1, 0],
         2 | 3 => [1, 0, 1],
         _ => [2, EVERY, 0],
     };
     // Triangles of body 1 have one hub, that of body 2 another; those of body 0 have none.
     let hub = [0, 7, 9][body as usize];
-    NodeFilter::leaf(body, &BodyRecord { environment, self_contact, ..BodyRecord::default() }, hub)
+    NodeFilter::leaf(body, &BodyRecord { environment, self_collision, ..BodyRecord::default() }, hub)
 }
 
 /// The filters of a tree's nodes.

@@ -80,7 +80,7 @@ impl Shape {
 
     /// At rest.
     pub fn body(&self) -> Body {
-        Body::still(self.mesh(self.points.clone()))
+        Body::deformable(self.mesh(self.points.clone()))
     }
 
     /// Static.

@@ -33,13 +33,13 @@ fn bodies(seed: u64, (scale, offset): (f32, f32)) -> Scene {
         let [t0, t1] = soup.ends().map(at);
         let faces = soup.faces().to_vec();
         let body = Body::moving(mesh(t0, faces.clone()), mesh(t1, faces)).expect("two frames");
-        scene.add(body.with(Meets::and_itself()));
+        scene.add(body.with_filter(CollisionFilter::with_self_collision()));
     }
     let faces: Vec<[u32; 3]> =
         (0..4).flat_map(|n| box_faces().into_iter().map(move |f| f.map(|v| v + 8 * n))).collect();
     let [t0, t1] = [false, true].map(|end| mesh(Positions::F32(boxes(scale, offset, end)), faces.clone()));
     scene.add(Body::fixed(t0.clone()));
-    scene.add(Body::moving(t0, t1).expect("two frames").with(Meets::and_itself()));
+    scene.add(Body::moving(t0, t1).expect("two frames").with_filter(CollisionFilter::with_self_collision()));
     scene
 }
 
@@ -82,12 +82,12 @@ fn a_body_far_away_changes_no_row() {
                 queries.iter().filter(|query| query.kind() != QueryKind::Earliest).copied().collect();
             let other = match seed % 3 {
                 0 => Body::fixed(far()),
-                1 => Body::still(far()),
+                1 => Body::deformable(far()),
                 _ => Body::rigid(far()),
             };
             let told = different(&scene, other, &listing);
             assert!(told.is_empty(), "{place:?}, {tolerance}: {told:#?}");
-            for other in [Body::still(beside(place)), Body::rigid(beside(place))] {
+            for other in [Body::deformable(beside(place)), Body::rigid(beside(place))] {
                 let told = different(&scene, other, &queries);
                 assert!(told.is_empty(), "{place:?}, {tolerance}: {told:#?}");
             }
@@ -112,7 +112,7 @@ fn a_distance_next_to_that_of_two_faces_lists_the_same() {
 #[test]
 fn a_changed_row_is_noticed() {
     let scene = bodies(1, (1.0, 0.0));
-    let near = Body::still(unit_box());
+    let near = Body::deformable(unit_box());
     let told = different(&scene, near, &queries(1e-4, 0.02));
     for kind in [QueryKind::Discrete, QueryKind::Continuous, QueryKind::Near] {
         let name = format!("{kind:?}");

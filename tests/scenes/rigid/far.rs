@@ -55,7 +55,7 @@ fn pairs_near_touching_are_as_exact_arithmetic_has_them() {
         for k in 0..2 {
             let mesh =
                 Mesh::new("one", Positions::F32(corners[k].to_vec()), vec![[0, 1, 2]]).expect("a mesh");
-            let body = Body::rigid(mesh).with(Meets::in_environment(world));
+            let body = Body::rigid(mesh).with_filter(CollisionFilter::in_environment(world));
             scene.add(body.at(&Motion::pose(poses[k])).expect("a pose"));
             shape.push(wide[k].map(|corner| poses[k].apply(corner)));
         }
@@ -76,7 +76,7 @@ fn pairs_near_touching_are_as_exact_arithmetic_has_them() {
 
 #[test]
 fn a_small_sphere_far_away_does_not_meet_itself() {
-    let sphere = Body::rigid(sphere(24, 0.01)).with(Meets::and_itself());
+    let sphere = Body::rigid(sphere(24, 0.01)).with_filter(CollisionFilter::with_self_collision());
     for place in [[1e5; 3], [1e5, -3e5, 7e4]] {
         let at = sphere.clone().at(&Motion::pose(Pose::at(place))).expect("a pose");
         assert_eq!(ask(&Scene::from(vec![at]), Query::discrete()).len(), 0);
@@ -100,8 +100,8 @@ fn differences(rounded: bool) -> Vec<String> {
                 }
                 exact => exact,
             });
-            by_pose.add(Body::rigid(mesh.clone()).with(Meets::and_itself()));
-            by_host.add(Body::still(mesh).with(Meets::and_itself()));
+            by_pose.add(Body::rigid(mesh.clone()).with_filter(CollisionFilter::with_self_collision()));
+            by_host.add(Body::deformable(mesh).with_filter(CollisionFilter::with_self_collision()));
             steps.push((poses, ends));
         }
         for query in queries(1e-4, 0.01) {

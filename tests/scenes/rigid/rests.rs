@@ -119,14 +119,14 @@ impl Held {
 
 fn bodies(seed: u64) -> Vec<Body> {
     let mesh = |k| scene::soup(12, 20 * seed + k, false).expect("a soup").frames().swap_remove(0);
-    let kinds = [Body::rigid, Body::still, Body::rigid, Body::still, Body::fixed];
+    let kinds = [Body::rigid, Body::deformable, Body::rigid, Body::deformable, Body::fixed];
     (0..).zip(kinds).map(|(k, kind)| kind(mesh(k))).collect()
 }
 
 fn start(body: &Body) -> Place {
     match body.kind() {
         nearmiss::scene::BodyKind::Rigid => Place::Poses(body.poses()),
-        nearmiss::scene::BodyKind::Static => Place::Fixed,
+        nearmiss::scene::BodyKind::Fixed => Place::Fixed,
         _ => Place::Points(body.ends().map(Clone::clone)),
     }
 }
@@ -296,7 +296,7 @@ fn hunt(kind: QueryKind, seed: u64, is_planted: bool) -> Vec<String> {
             6 => told.frame(&mut rng, true),
             7 => told.refused(&mut rng),
             8 => told.edit(&mut rng),
-            9 => told.detector.fetch().expect("fetched"),
+            9 => told.detector.download_positions().expect("fetched"),
             10 => told.detector.rebuild().expect("built"),
             _ => told.submit(&mut rng),
         }

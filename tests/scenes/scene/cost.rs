@@ -15,7 +15,7 @@ pub fn pile(n: usize, kind: fn(Mesh) -> Body, environments: bool) -> Scene {
         let faces = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
         let mesh = Mesh::new("crate", Positions::F32((0..8).map(corner).collect()), faces).expect("a mesh");
         let environment = Some(if environments { i as u32 } else { 0 });
-        scene.add(kind(mesh).with(Meets { environment, ..Meets::default() }));
+        scene.add(kind(mesh).with_filter(CollisionFilter { environment, ..CollisionFilter::default() }));
     }
     scene
 }
@@ -62,7 +62,7 @@ fn cost(scene: Scene, motion: QueryKind) -> (u64, u64, usize) {
 #[test]
 fn launches_do_not_grow_with_bodies() {
     for motion in [QueryKind::Discrete, QueryKind::Continuous, QueryKind::Earliest] {
-        for kind in [Body::rigid, Body::still] {
+        for kind in [Body::rigid, Body::deformable] {
             let [few, many] = [5, 300].map(|n| cost(pile(n, kind, false), motion));
             assert_eq!(few.0, many.0, "{motion:?}");
             assert!(motion == QueryKind::Earliest || many.2 > 50 * few.2, "{few:?} {many:?}");
@@ -90,10 +90,14 @@ fn a_scene_pays_for_what_it_has() {
     };
     for motion in [QueryKind::Discrete, QueryKind::Continuous] {
         // Place is the one launch more that bodies of several kinds take; what is static takes none.
-        let one = launches(Scene::from(pile(1, Body::still, false).bodies().to_vec()), motion);
-        assert_eq!(launches(pile(2, Body::still, false), motion), one, "two deformable bodies");
-        assert_eq!(launches(with(Body::still, 1), motion), one + 1, "a deformable body over static ones");
-        // Rigid ones are in doubles: there are no wider signs for what single precision leaves undecided.
+        let one = launches(Scene::from(pile(1, Body::deformable, false).bodies().to_vec()), motion);
+        assert_eq!(launches(pile(2, Body::deformable, false), motion), one, "two deformable bodies");
+        assert_eq!(
+            launches(with(Body::deformable, 1), motion),
+            one + 1,
+            "a deformable body over static ones"
+        );
+        // Rigid ones are in doubles: there are no wider signs for what single precision leaves uncertain.
         let rigid = one;
         assert_eq!(launches(pile(2, Body::rigid, false), motion), rigid, "rigid bodies");
         assert_eq!(launches(with(Body::rigid, 300), motion), rigid, "many rigid bodies over static ones");
@@ -129,8 +133,8 @@ fn environments_in_one_place_cost_what_they_cost_alone() {
         let mut scene = Scene::new();
         for world in 0..n {
             for body in pile(6, Body::rigid, false).bodies() {
-                let meets = Meets { environment: Some(world), ..*body.meets() };
-                scene.add(body.clone().with(meets));
+                let meets = CollisionFilter { environment: Some(world), ..*body.filter() };
+                scene.add(body.clone().with_filter(meets));
             }
         }
         support::ask_scene(engine(), scene, Query::discrete())

@@ -25,7 +25,7 @@ fn frames_move_what_they_name_and_others_rest() {
             let mut moved: Vec<(BodyId, [Positions; 2], [Pose; 2])> = Vec::new();
             for id in scene.ids() {
                 let body = &scene.bodies()[id.index()];
-                if body.kind() != BodyKind::Static && rng.random_bool(0.6) {
+                if body.kind() != BodyKind::Fixed && rng.random_bool(0.6) {
                     let ends = soup(body.face_count(), 1_000 * frame + seed).1;
                     moved.push((id, ends, [body.poses()[1], pose(&mut rng)]));
                 }
@@ -69,7 +69,7 @@ fn bodies_come_and_go() {
     assert!(found.contacts().iter().any(|contact| contact.bodies.contains(&added)));
     same_as_new(&detector, &found, "added");
     let (other, [start, end]) = soup(55, 78);
-    detector.replace(added, Body::still(other)).expect("a body");
+    detector.replace(added, Body::deformable(other)).expect("a body");
     let found = detector.frame(&[(added, Motion::step(&start, &end))]).expect("an answer");
     assert!(found.contacts().iter().any(|contact| contact.bodies.contains(&added)));
     same_as_new(&detector, &found, "replaced");
@@ -85,7 +85,7 @@ fn a_scene_goes_over_to_doubles_once_and_stays_exact() {
     let far = 1e25;
     let (mesh, ends) = soup(20, 5);
     let mut scene = Scene::new();
-    let cloth = scene.add(Body::still(mesh.clone()));
+    let cloth = scene.add(Body::deformable(mesh.clone()));
     let ball = scene.add(Body::rigid(mesh));
     let mut detector = OneQuery::new(engine(), scene, query()).expect("a detector");
     let near = detector.detect().expect("an answer");
@@ -105,7 +105,7 @@ fn a_scene_goes_over_to_doubles_once_and_stays_exact() {
 fn what_a_scene_cannot_do_is_told_and_nothing_has_moved() {
     let (mesh, ends) = soup(20, 5);
     let mut scene = Scene::new();
-    let cloth = scene.add(Body::still(mesh.clone()));
+    let cloth = scene.add(Body::deformable(mesh.clone()));
     let ball = scene.add(Body::rigid(mesh.clone()));
     let ground = scene.add(Body::fixed(mesh));
     let gone = scene.add(Body::rigid(soup(3, 9).0));

@@ -13,7 +13,7 @@ fn queries() -> Vec<Query> {
 }
 
 fn is_nothing(found: &Contacts, what: &str) {
-    assert!(found.is_empty() && found.degraded().is_empty(), "{what}: {:?}", found.rows);
+    assert!(found.is_empty() && found.caveats().is_empty(), "{what}: {:?}", found.rows);
     assert!(found.earliest_toi().is_none() && found.distance().is_none(), "{what}");
 }
 
@@ -34,7 +34,7 @@ fn ask_all(detector: &mut OneQuery, what: &str) {
         let geometry = detector.geometry(&found);
         assert!(if has_features { geometry.expect(what).is_empty() } else { geometry.is_err() }, "{what}");
     }
-    detector.fetch().expect(what);
+    detector.download_positions().expect(what);
     detector.plan().expect(what);
     detector.check_volumes().expect(what);
     assert!(
@@ -45,7 +45,7 @@ fn ask_all(detector: &mut OneQuery, what: &str) {
 #[test]
 fn a_scene_without_bodies_answers_nothing_until_they_come() {
     let (mesh, ends) = soup(40, 3);
-    let bodies = [Body::still(mesh.clone()), Body::rigid(mesh.clone())];
+    let bodies = [Body::deformable(mesh.clone()), Body::rigid(mesh.clone())];
     for query in queries() {
         let what = format!("{:?}", query.kind());
         let mut detector = OneQuery::new(engine(), Scene::new(), query).expect(&what);
@@ -82,7 +82,7 @@ fn bodies_without_triangles_and_several_devices_answer_nothing() {
     let points = Mesh::new("points", Positions::F32(vec![[0.0; 3]; 4]), Vec::new()).expect("a mesh");
     for query in queries() {
         let what = format!("{:?}", query.kind());
-        let mut detector = OneQuery::new(engine(), Body::still(points.clone()), query).expect(&what);
+        let mut detector = OneQuery::new(engine(), Body::deformable(points.clone()), query).expect(&what);
         ask_all(&mut detector, &what);
         if query.kind() != QueryKind::Distance && query.search().broad.is_none() {
             let mut several =

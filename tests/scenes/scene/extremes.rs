@@ -8,8 +8,9 @@ use nearmiss_lab::robustness;
 fn world(bodies: &[Body], environment: u32) -> impl Iterator<Item = Body> {
     let alone = bodies.len() == 1;
     bodies.iter().map(move |body| {
-        let meets = Meets { self_contact: Some(alone), ..Meets::in_environment(environment) };
-        body.clone().with(meets)
+        let meets =
+            CollisionFilter { self_collision: Some(alone), ..CollisionFilter::in_environment(environment) };
+        body.clone().with_filter(meets)
     })
 }
 
@@ -41,7 +42,9 @@ fn extremes_are_answered_alike_in_two_worlds() {
         let corner = |x: f32, y: f32| [-3e18 + x * 1e16, 1e15 * y, 2e18];
         let far = Positions::F32(vec![corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0)]);
         let far = Mesh::new("far", far, vec![[0, 1, 2]]).expect("a mesh");
-        scene.add(Body::fixed(far).with(Meets { environment: None, ..Meets::default() }));
+        scene.add(
+            Body::fixed(far).with_filter(CollisionFilter { environment: None, ..CollisionFilter::default() }),
+        );
         let mut detector = OneQuery::new(engine(), scene, query).expect("a detector");
         let found = detector.detect().expect("an answer");
         detector.check_volumes().expect("sound trees");

@@ -50,24 +50,26 @@ fn bytes(plan: &Plan, what: &str) -> u64 {
 
 /// One crate that is tested against itself.
 fn one() -> Scene {
-    Scene::from(pile(1, Body::still, false).bodies().to_vec())
+    Scene::from(pile(1, Body::deformable, false).bodies().to_vec())
 }
 
 /// The rows of the matrix: a scene, and how many of its bodies, vertices and triangles move.
 fn scenes() -> [(&'static str, Scene, [u64; 3]); 6] {
-    let mut pair = pile(1, Body::still, false);
+    let mut pair = pile(1, Body::deformable, false);
     pair.add(pile(1, Body::fixed, false).bodies()[0].clone());
     let mut worlds = Scene::new();
     for world in 0..500 {
         for body in pile(2, Body::rigid, false).bodies() {
-            worlds.add(body.clone().with(Meets { environment: Some(world), ..*body.meets() }));
+            worlds.add(
+                body.clone().with_filter(CollisionFilter { environment: Some(world), ..*body.filter() }),
+            );
         }
     }
     [
         ("static only", pile(10, Body::fixed, false), [0, 0, 0]),
         ("rigid only", pile(10, Body::rigid, false), [10, 80, 120]),
         ("one deformable", one(), [1, 8, 12]),
-        ("two deformable", pile(2, Body::still, false), [2, 16, 24]),
+        ("two deformable", pile(2, Body::deformable, false), [2, 16, 24]),
         ("one over a static one", pair, [1, 8, 12]),
         ("500 environments", worlds, [1000, 8000, 12000]),
     ]
@@ -163,16 +165,16 @@ fn bytes_of_a_scene() {
                     "{name}, {motion:?}, {list}"
                 );
             }
-            for list in ["undecided pairs", "contacts"] {
+            for list in ["uncertain pairs", "contacts"] {
                 assert_eq!(bytes(&plan, list) > 0, of_triangles, "{name}, {motion:?}, {list}");
             }
             for list in
-                ["vertex/face pairs that may meet", "edge/edge pairs for f64", "pairs undecided at the start"]
+                ["vertex/face pairs that may meet", "edge/edge pairs for f64", "pairs uncertain at the start"]
             {
                 let asked = matches!(motion, QueryKind::Continuous | QueryKind::Earliest);
                 assert_eq!(bytes(&plan, list) > 0, asked, "{name}, {motion:?}, {list}");
             }
-            let wider = bytes(&plan, "pairs undecided at the start in f64") > 0;
+            let wider = bytes(&plan, "pairs uncertain at the start in f64") > 0;
             let asked = matches!(motion, QueryKind::Continuous | QueryKind::Earliest) && rigid == 0;
             assert_eq!(wider, asked, "{name}, {motion:?}");
             told("the nearest pair", if motion == QueryKind::Distance { 96 } else { 0 });

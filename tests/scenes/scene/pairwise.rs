@@ -6,12 +6,12 @@ use support::{ORDERS, sanitizer, ways};
 /// Whether a pair is asked, as the documentation says it.
 fn asked(scene: &Scene, i: usize, j: usize) -> bool {
     let [a, b] = [i, j].map(|i| &scene.bodies()[i]);
-    let [p, q] = [a, b].map(|body| body.meets());
-    if a.kind() == BodyKind::Static && b.kind() == BodyKind::Static {
+    let [p, q] = [a, b].map(|body| body.filter());
+    if a.kind() == BodyKind::Fixed && b.kind() == BodyKind::Fixed {
         return false;
     }
     if i == j {
-        return a.meets_itself();
+        return a.self_collides();
     }
     let together = p.environment == q.environment || p.environment.is_none() || q.environment.is_none();
     together && p.group & q.mask != 0 && q.group & p.mask != 0
@@ -68,14 +68,14 @@ pub fn mixed(seed: u64) -> Scene {
                 Body::moving(mesh, end).expect("two frames")
             }
         };
-        let meets = Meets {
+        let meets = CollisionFilter {
             environment: [Some(0), Some(0), Some(1), None][rng.random_range(0..4)],
             group: if seed.is_multiple_of(2) { u32::MAX } else { rng.random_range(0..4) },
             mask: if seed.is_multiple_of(2) { u32::MAX } else { rng.random_range(0..4) },
             // Of a static body it is refused.
-            self_contact: Some(rng.random_bool(0.5)).filter(|own| !own || body.kind() != BodyKind::Static),
+            self_collision: Some(rng.random_bool(0.5)).filter(|own| !own || body.kind() != BodyKind::Fixed),
         };
-        let id = scene.add(body.with(meets));
+        let id = scene.add(body.with_filter(meets));
         gone = gone.or((i == 3).then_some(id));
     }
     scene.remove(gone.expect("the fourth")).expect("a body");

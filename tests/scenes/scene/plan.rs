@@ -9,7 +9,7 @@ use nearmiss::query::{FrontShape, QueueShape, Refit, StealShape, Traversal};
 /// A body of each kind, and where a frame puts those that move.
 fn three() -> Scene {
     let mut scene = Scene::new();
-    scene.add(Body::still(soup(60, 1).0).with(Meets::and_itself()));
+    scene.add(Body::deformable(soup(60, 1).0).with_filter(CollisionFilter::with_self_collision()));
     scene.add(Body::rigid(soup(40, 2).0));
     scene.add(Body::fixed(soup(50, 3).0));
     scene
@@ -79,7 +79,7 @@ fn planned(device: &Device, scene: Scene, query: Query) -> (Plan, u64, u64) {
 #[test]
 fn a_plan_is_what_the_device_counts() {
     for query in queries() {
-        for scene in [three(), Scene::from(Body::still(soup(80, 4).0)), pile(9, Body::rigid, true)] {
+        for scene in [three(), Scene::from(Body::deformable(soup(80, 4).0)), pile(9, Body::rigid, true)] {
             let device = engine();
             let mut detector = OneQuery::new(device.clone(), scene.clone(), query).expect("a detector");
             // Of no frame: it asks them.

@@ -15,7 +15,7 @@ enum Class {
 fn class<T>(done: Result<T, Error>) -> Option<Class> {
     match done.err()? {
         Error::Input { .. } => Some(Class::Input),
-        Error::Choice { .. } => Some(Class::Choice),
+        Error::InvalidArgument { .. } => Some(Class::Choice),
         other => panic!("{other}"),
     }
 }
@@ -32,7 +32,7 @@ fn corners(last: f64) -> Positions {
 fn detector() -> (OneQuery, [BodyId; 3]) {
     let own = || mesh(corners(0.0), [0, 1, 2]).expect("a mesh");
     let mut scene = Scene::new();
-    let ids = [Body::still(own()), Body::rigid(own()), Body::fixed(own())].map(|body| scene.add(body));
+    let ids = [Body::deformable(own()), Body::rigid(own()), Body::fixed(own())].map(|body| scene.add(body));
     (OneQuery::new(engine(), scene, Query::discrete()).expect("a detector"), ids)
 }
 
@@ -52,7 +52,7 @@ fn moved(new: Body) -> Result<(), Error> {
 #[test]
 fn every_error_is_of_its_class() {
     let good = corners(0.0);
-    let still = |numbers, face| mesh(numbers, face).map(Body::still);
+    let still = |numbers, face| mesh(numbers, face).map(Body::deformable);
     let few = Positions::F64(vec![[0.0; 3]; 2]);
     let more = Positions::F64(vec![[0.0; 3]; 4]);
     let unit = [0.0, 0.0, 0.0, 1.0];

@@ -115,7 +115,7 @@ fn a_far_ground_changes_nothing() {
     for query in [Query::earliest(), Query::continuous()] {
         let alone = support::ask(engine(), sheets(), query);
         assert!(alone.is_empty() && alone.earliest_toi().is_none(), "{query:?}");
-        for kind in [Body::fixed, Body::rigid, Body::still] {
+        for kind in [Body::fixed, Body::rigid, Body::deformable] {
             let mut bodies = between(sheets());
             bodies.push(ground(kind));
             let mut detector = OneQuery::new(engine(), bodies, query).expect("a detector");
@@ -131,7 +131,7 @@ fn a_far_ground_changes_nothing() {
 fn bodies_that_come_bring_their_tolerances_and_moving_changes_none() {
     let scaled = |size: f32| {
         let corners = vec![[0.0, 0.0, 0.0], [3.0 * size, 0.0, 0.0], [0.0, 4.0 * size, 0.0]];
-        Body::still(Mesh::new("a triangle", Positions::F32(corners), vec![[0, 1, 2]]).expect("a mesh"))
+        Body::deformable(Mesh::new("a triangle", Positions::F32(corners), vec![[0, 1, 2]]).expect("a mesh"))
     };
     let (small, large) = (2f64.powi(-12), 2f64.powi(-2));
     let both = |own: &mut OneQuery| [own.tolerance(), own.largest_tolerance()].map(Option::unwrap);

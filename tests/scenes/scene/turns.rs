@@ -1,7 +1,7 @@
 //! A body that turns far in a step is named, with how far its vertices leave their arcs.
 
 use super::*;
-use nearmiss::contacts::{Degraded, TURN_DEGREES};
+use nearmiss::contacts::{Caveat, TURN_DEGREES};
 use nearmiss::scene::{DeviceMotion, DevicePose, DeviceRows, Number};
 
 /// A pose turned about z.
@@ -22,11 +22,11 @@ fn bar() -> (Scene, BodyId) {
 }
 
 fn turns(found: &Contacts) -> Vec<(BodyId, f64, f64)> {
-    let of = |reason: &Degraded| match *reason {
-        Degraded::Turned { body, degrees, bulge } => Some((body, degrees, bulge)),
+    let of = |reason: &Caveat| match *reason {
+        Caveat::Turned { body, degrees, bulge } => Some((body, degrees, bulge)),
         _ => None,
     };
-    found.degraded().iter().filter_map(of).collect()
+    found.caveats().iter().filter_map(of).collect()
 }
 
 #[test]
@@ -58,9 +58,9 @@ fn a_turn_of_more_than_thirty_degrees_is_named_with_its_bulge() {
                         (degrees - angle).abs() < 1e-9 && (bulge - arc).abs() < 1e-9,
                         "{degrees} {bulge}"
                     );
-                    let text = found.degraded()[0].to_string();
+                    let text = found.caveats()[0].to_string();
                     assert!(
-                        text.contains("body 1 turns by") && found.degraded()[0].touches_answer(),
+                        text.contains("body 1 turns by") && found.caveats()[0].affects_answer(),
                         "{text}"
                     );
                 }

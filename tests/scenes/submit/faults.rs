@@ -58,7 +58,7 @@ fn a_frame_that_is_refused_on_a_cpu_moves_nothing() {
         detector.frame(&[(id, Motion::OnDevice(input))]).expect_err("no answer");
         assert_eq!(detector.detect().expect("an answer").rows, before.rows, "{kind:?}");
         assert_eq!(detector.frame(&[]).expect("an answer").rows, before.rows, "{kind:?}");
-        detector.add(Body::still(soup(20, 6).0)).expect("nothing is lost");
+        detector.add(Body::deformable(soup(20, 6).0)).expect("nothing is lost");
     }
 }
 
@@ -66,7 +66,7 @@ fn a_frame_that_is_refused_on_a_cpu_moves_nothing() {
 #[test]
 fn after_a_submission_that_is_refused_nothing_is_answered_of_its_bodies() {
     let (mut scene, id, [t0, t1]) = pair(60);
-    let other = scene.add(Body::still(soup(20, 9).0));
+    let other = scene.add(Body::deformable(soup(20, 9).0));
     for kind in QueryKind::ALL {
         let (mut memory, _, mut detector, good) = prepared(&scene, id, kind, [&t0, &t1]);
         let mut bad = t0.clone();
@@ -87,8 +87,8 @@ fn after_a_submission_that_is_refused_nothing_is_answered_of_its_bodies() {
             detector.detect().map(drop),
             detector.frame(&[]).map(drop),
             detector.frame(&[(other, Motion::step(&there, &there))]).map(drop),
-            detector.fetch(),
-            detector.add(Body::still(soup(20, 6).0)).map(drop),
+            detector.download_positions(),
+            detector.add(Body::deformable(soup(20, 6).0)).map(drop),
         ];
         for refused in refusals {
             let text = refused.expect_err("nobody knows where it is").to_string();
@@ -107,7 +107,9 @@ fn what_is_lent_where_nothing_can_meet_is_kept() {
     let alone = |at: &[[f32; 3]]| {
         let mesh = Mesh::new("soup", Positions::F32(at.to_vec()), mesh.faces().to_vec());
         let mut scene = Scene::new();
-        scene.add(Body::still(mesh.expect("a mesh")).with(Meets::others()));
+        scene.add(
+            Body::deformable(mesh.expect("a mesh")).with_filter(CollisionFilter::without_self_collision()),
+        );
         scene
     };
     let device = engine();
@@ -117,7 +119,7 @@ fn what_is_lent_where_nothing_can_meet_is_kept() {
     let input = [(id, Motion::OnDevice(DeviceMotion::Positions(memory.rows())))];
     assert!(detector.frame(&input).expect("an answer").is_empty());
     drop(memory);
-    let more = Body::still(soup(50, 8).0);
+    let more = Body::deformable(soup(50, 8).0);
     detector.add(more.clone()).expect("all is known");
     let mut wanted = alone(&t1);
     wanted.add(more);
@@ -132,7 +134,8 @@ fn what_is_lent_where_nothing_can_meet_is_kept() {
 fn a_vertex_that_no_face_uses_is_not_looked_at() {
     let (mesh, [mut points, _]) = soup(50, 3);
     points.push([f32::NAN; 3]);
-    let body = |positions| Body::still(Mesh::new("soup", positions, mesh.faces().to_vec()).expect("a mesh"));
+    let body =
+        |positions| Body::deformable(Mesh::new("soup", positions, mesh.faces().to_vec()).expect("a mesh"));
     let mut detector =
         OneQuery::new(engine(), body(Positions::F32(points.clone())), query(QueryKind::Discrete))
             .expect("a detector");
@@ -157,7 +160,7 @@ fn coordinates_too_large_for_singles_become_doubles() {
         let mut by_host = OneQuery::new(engine(), scene.clone(), query(kind)).expect("a detector");
         let wanted = by_host.frame(&[(id, Motion::step(&t0, &t1))]).expect("an answer");
         assert_eq!(found.rows, wanted.rows, "{kind:?}");
-        assert_eq!(found.degraded(), wanted.degraded(), "{kind:?}");
+        assert_eq!(found.caveats(), wanted.caveats(), "{kind:?}");
         // Prepared, in doubles by then.
         assert_eq!(detector.prepare(&[(id, input)]).expect("an answer").rows, wanted.rows, "{kind:?}");
     }
@@ -178,8 +181,8 @@ fn what_is_below_precision_is_told_of_what_is_away() {
             let wanted = by_host.frame(&[(id, Motion::step(&t0, &t1))]).expect("an answer");
             let mut detector = OneQuery::new(device.clone(), scene.clone(), query).expect("a detector");
             let found = detector.frame(&[(id, Motion::OnDevice(input))]).expect("an answer");
-            assert_eq!(found.degraded(), wanted.degraded(), "{kind:?}, {tolerance}");
-            assert_eq!(found.degraded().is_empty(), tolerance > 1e-10, "{:?}", found.degraded());
+            assert_eq!(found.caveats(), wanted.caveats(), "{kind:?}, {tolerance}");
+            assert_eq!(found.caveats().is_empty(), tolerance > 1e-10, "{:?}", found.caveats());
         }
     }
 }
@@ -188,7 +191,7 @@ fn what_is_below_precision_is_told_of_what_is_away() {
 fn a_pose_that_is_none_is_named() {
     let mut scene = Scene::new();
     let rigid = scene.add(Body::rigid(soup(20, 5).0));
-    scene.add(Body::still(soup(20, 6).0));
+    scene.add(Body::deformable(soup(20, 6).0));
     let device = engine();
     let held = |numbers: [f32; 7]| {
         let buffer = device.upload(&numbers).expect("memory");
@@ -252,7 +255,7 @@ fn a_body_that_is_away_is_not_taken_along() {
     let away = detector.scene().clone();
     let Err(error) = OneQuery::new(engine(), away, query(QueryKind::Discrete)) else { panic!("it is away") };
     assert!(error.to_string().contains("say again where it is"), "{error}");
-    detector.fetch().expect("positions");
+    detector.download_positions().expect("positions");
     let there = support::ask_scene(engine(), detector.scene().clone(), query(QueryKind::Discrete));
     assert_eq!(there.rows, detector.detect().expect("an answer").rows);
 }

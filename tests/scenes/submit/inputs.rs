@@ -81,7 +81,7 @@ fn poses_on_the_device_are_poses() {
     let (mesh, _) = soup(60, 5);
     let mut scene = Scene::new();
     let rigid = scene.add(Body::rigid(mesh));
-    let cloth = scene.add(Body::still(soup(80, 6).0));
+    let cloth = scene.add(Body::deformable(soup(80, 6).0));
     for kind in QueryKind::ALL {
         let device = engine();
         let mut by_host = OneQuery::new(engine(), scene.clone(), query(kind)).expect("a detector");
@@ -93,11 +93,11 @@ fn poses_on_the_device_are_poses() {
             let input = DeviceMotion::PoseStep(held.each_ref().map(|(_, rows)| *rows));
             let found = detector.frame(&[(rigid, Motion::OnDevice(input))]).expect("an answer");
             assert_eq!(found.rows, wanted.rows, "{kind:?}, frame {frame}");
-            assert!(detector.scene().bodies()[0].is_away());
+            assert!(detector.scene().bodies()[0].is_device_resident());
             if frame == 2 {
-                detector.fetch().expect("positions");
+                detector.download_positions().expect("positions");
                 assert_eq!(detector.scene().bodies()[0].poses()[0], ends[0]);
-                assert!(!detector.scene().bodies()[0].is_away());
+                assert!(!detector.scene().bodies()[0].is_device_resident());
             }
             // It rests where it was, while the other body moves by the host's word.
             let there = soup(80, 6).1.map(Positions::F32);
@@ -132,8 +132,8 @@ fn bodies_that_are_away_come_back_for_changes() {
     let step = Motion::OnDevice(DeviceMotion::Step([memory[0].rows(), memory[1].rows()]));
     let mut detector = OneQuery::new(device, scene, query(QueryKind::Continuous)).expect("a detector");
     detector.frame(&[(id, step)]).expect("an answer");
-    assert!(detector.scene().bodies()[0].is_away() && detector.scene().bodies()[0].is_moving());
-    let added = detector.add(Body::still(soup(40, 9).0)).expect("room");
+    assert!(detector.scene().bodies()[0].is_device_resident() && detector.scene().bodies()[0].is_moving());
+    let added = detector.add(Body::deformable(soup(40, 9).0)).expect("room");
     let body = &detector.scene().bodies()[0];
     assert_eq!(body.ends().map(number), [&t0, &t1].map(|p| number(&Positions::F32(p.clone()))));
     let found = detector.detect().expect("an answer");
@@ -151,11 +151,11 @@ fn bodies_that_are_away_come_back_for_changes() {
     assert_eq!(found.rows, fresh.rows);
     // Another body in doubles: all go over, where they are.
     detector.frame(&[(id, step)]).expect("an answer");
-    let other = detector.add(Body::still(soup(20, 11).0)).expect("room");
+    let other = detector.add(Body::deformable(soup(20, 11).0)).expect("room");
     detector.frame(&[(id, step)]).expect("an answer");
     let wide = soup(20, 11).1.map(Positions::F32).map(|p| Positions::F64(number(&p)));
     let found = detector.frame(&[(other, Motion::step(&wide[0], &wide[0]))]).expect("an answer");
-    detector.fetch().expect("positions");
+    detector.download_positions().expect("positions");
     assert_eq!(number(detector.scene().bodies()[0].positions_t0()), number(&Positions::F32(t1)));
     let fresh = support::ask_scene(engine(), detector.scene().clone(), *detector.query());
     assert_eq!(found.rows, fresh.rows);
@@ -174,7 +174,7 @@ fn memory_of_the_caller_is_read_in_every_slice() {
     let wanted = [0, 1, 2].map(&mut asked);
     let mut sliced = 0;
     for part in (10..40).rev() {
-        let device = engine().limited(whole.bytes().1 * part / 40);
+        let device = engine().with_memory_limit(whole.bytes().1 * part / 40);
         let Ok(mut detector) = OneQuery::new(device.clone(), scene.clone(), query) else { continue };
         // The caller's own memory is not of the detector's device.
         let mut memory = ends.each_ref().map(|points| Points::new(&engine(), points));

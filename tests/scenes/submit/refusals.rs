@@ -55,7 +55,7 @@ fn a_vertex_that_is_no_point_is_refused_every_time() {
                 let is_bad = !points[17][1].is_finite();
                 assert!(seen(&device, detector).is_none_or(|invalid| invalid == is_bad), "{query:?}");
                 if fetches {
-                    let fetched = detector.fetch();
+                    let fetched = detector.download_positions();
                     assert_eq!(fetched.is_err(), is_bad, "{query:?}: {fetched:?}");
                 }
                 detector.collect()
@@ -68,7 +68,7 @@ fn a_vertex_that_is_no_point_is_refused_every_time() {
                 let found = again(&mut detector, &t0, false).expect("an answer");
                 assert_eq!(found.rows, good.rows, "{name}");
                 if turn % 2 == 1 {
-                    detector.fetch().expect("positions");
+                    detector.download_positions().expect("positions");
                 }
             }
             // Recorded and launched again is not told: whoever asks next finds it.
@@ -88,7 +88,7 @@ fn a_vertex_that_is_no_point_is_refused_every_time() {
 fn a_pose_that_is_none_is_refused_every_time() {
     let mut scene = Scene::new();
     let rigid = scene.add(Body::rigid(soup(20, 5).0));
-    scene.add(Body::still(soup(20, 6).0));
+    scene.add(Body::deformable(soup(20, 6).0));
     let good = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0f32];
     let wrong = [[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.2], [0.0, f32::NAN, 0.0, 0.0, 0.0, 0.0, 1.0]];
     for (query, device) in queries_on_machines() {
@@ -107,7 +107,7 @@ fn a_pose_that_is_none_is_refused_every_time() {
             buffer.write(&good).expect("written");
             detector.submit().expect("submitted");
             assert_eq!(detector.collect().expect("an answer").rows, first.rows, "{query:?}");
-            detector.fetch().expect("a pose");
+            detector.download_positions().expect("a pose");
         }
     }
 }
@@ -122,7 +122,7 @@ fn what_singles_cannot_hold_is_answered_in_doubles_every_time() {
         let input = DeviceMotion::Step([memory[0].rows(), memory[1].rows()]);
         let mut detector = OneQuery::new(device.clone(), scene.clone(), query).expect("a detector");
         detector.prepare(&[(id, input)]).expect("an answer");
-        detector.fetch().expect("positions");
+        detector.download_positions().expect("positions");
         memory[0].write(&large(&t0));
         memory[1].write(&large(&t1));
         detector.submit().expect("submitted");
@@ -142,6 +142,6 @@ fn an_answer_instead_of_a_refusal_is_named() {
     let mut detector = OneQuery::new(engine(), scene, query(QueryKind::Earliest)).expect("a detector");
     let fault = lost("planted", detector.detect(), "vertex 17");
     assert!(fault.is_some_and(|fault| fault.starts_with("planted: 0 contacts")));
-    let other = Error::Choice { what: "another".into(), advice: "reason".into() };
+    let other = Error::InvalidArgument { what: "another".into(), advice: "reason".into() };
     assert!(lost("planted", Err(other), "vertex 17").is_some_and(|fault| fault.contains("another")));
 }

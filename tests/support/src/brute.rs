@@ -66,8 +66,8 @@ pub fn fault(found: &[Contact], near: &BTreeMap<Row, Verdict>, meet: &[Row]) -> 
     for c in found {
         let row = (c.kind, c.a, c.b);
         let Some(v) = near.get(&row) else { return Some(format!("{c:?} is apart")) };
-        let status = if v.is_contact() { Status::Certified } else { Status::Unresolved };
-        let same = [c.toi, c.toi_hi].map(f64::to_bits) == [v.toi, v.toi_hi].map(f64::to_bits);
+        let status = if v.is_contact() { Status::Certified } else { Status::Undecided };
+        let same = [c.toi, c.toi_upper].map(f64::to_bits) == [v.toi, v.toi_upper].map(f64::to_bits);
         if !same || c.status != status || listed.insert(row, ()).is_some() {
             return Some(format!("{c:?} is {v:?}"));
         }

@@ -21,7 +21,7 @@ use nearmiss::device::Backend;
 use nearmiss::device::emulator::{Emulator, Mode, Order};
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Broad, Bv, FrontShape, QueryKind, QueueShape, Refit, Search, StealShape, Traversal};
-use nearmiss::scene::{Meets, Scene};
+use nearmiss::scene::{CollisionFilter, Scene};
 use nearmiss::{Device, Error, Query};
 use nearmiss_io::MeshFile;
 use nearmiss_lab::OneQuery;
@@ -99,8 +99,8 @@ pub fn judged(bodies: Vec<Body>) -> Vec<Body> {
 /// These bodies, none tested against itself.
 pub fn between(bodies: Vec<Body>) -> Vec<Body> {
     let other = |body: Body| {
-        let meets = Meets { self_contact: Some(false), ..*body.meets() };
-        body.with(meets)
+        let meets = CollisionFilter { self_collision: Some(false), ..*body.filter() };
+        body.with_filter(meets)
     };
     bodies.into_iter().map(other).collect()
 }
@@ -115,7 +115,7 @@ pub fn ask_scene(device: Device, scene: impl Into<Scene>, query: Query) -> nearm
 
 /// A still body of triangles given by their vertices.
 pub fn still(points: &[[f32; 3]], faces: &[[u32; 3]]) -> Body {
-    Body::still(Mesh::new("test", Positions::F32(points.to_vec()), faces.to_vec()).expect("a mesh"))
+    Body::deformable(Mesh::new("test", Positions::F32(points.to_vec()), faces.to_vec()).expect("a mesh"))
 }
 
 /// A body that moves from `t0` to `t1`.

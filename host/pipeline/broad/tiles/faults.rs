@@ -5,7 +5,7 @@ use crate::device::emulator::{Emulator, Mode};
 use crate::mesh::{Mesh, Positions};
 use crate::query::QueryKind;
 use crate::samples::soup;
-use crate::scene::{Body, Meets};
+use crate::scene::{Body, CollisionFilter};
 use nearmiss_kernels::abi::{self, LEAF, Point};
 use nearmiss_kernels::bv::{Aabb, Volume};
 
@@ -16,7 +16,7 @@ type Fault = fn(&mut Tiles<Aabb>);
 fn checked(fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), Error> {
     let bodies = [
         soup(700, 5, false),
-        soup(1_000, 6, false).with(Meets::others()),
+        soup(1_000, 6, false).with_filter(CollisionFilter::without_self_collision()),
         Body::fixed(soup(900, 7, false).frames().swap_remove(0)),
     ];
     checked_of(&bodies, fault)
@@ -28,7 +28,7 @@ fn checked_rims(fault: impl Fn(&mut Tiles<Aabb>)) -> Result<(), Error> {
     let on_rim = |k: u32| [(k % 64) as f32, (k / 64) as f32, 1.0];
     let points = std::iter::once([0.0; 3]).chain((0..n).map(on_rim)).collect();
     let faces = (0..n).map(|k| [1 + k, 0, 1 + (k + 1) % n]).collect();
-    checked_of(&[Body::still(Mesh::new("fan", Positions::F32(points), faces)?)], fault)
+    checked_of(&[Body::deformable(Mesh::new("fan", Positions::F32(points), faces)?)], fault)
 }
 
 /// The checker's verdict on tiles over these bodies after `fault`.

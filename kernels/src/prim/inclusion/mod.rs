@@ -15,8 +15,8 @@
 //! distances are Euclidean.
 //! 1. [`Answer::Separated`]: nowhere in `[0, end]` are the features within the separation.
 //! 2. Otherwise the first contact, if there is one, is not before `toi`.
-//! 3. [`Answer::Contact`]: there is a contact, and the first is in `[toi, toi_hi]`.
-//! 4. [`Answer::Unresolved`] and [`Answer::Contact`], unless [`Verdict::exhausted`]: at `toi` the
+//! 3. [`Answer::Contact`]: there is a contact, and the first is in `[toi, toi_upper]`.
+//! 4. [`Answer::Undecided`] and [`Answer::Contact`], unless [`Verdict::exhausted`]: at `toi` the
 //!    features are within `separation + sqrt(3) (3 tolerance + 2 E)`. `E` is at most `20 u` of the
 //!    largest difference of positions. A tolerance below `64 u` of that counts as `64 u`.
 //!

@@ -95,7 +95,7 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
             return Err((Verdict::TOUCHING, true));
         }
         if !m.finite || p.budget == 0 {
-            return Err((Verdict::unresolved(0.0, p.end, 0, true), false));
+            return Err((Verdict::undecided(0.0, p.end, 0, true), false));
         }
         let known = Known { accepted: S::NEVER, skipped: S::NEVER, certain: S::NEVER };
         Ok(Search { m, known, cell: Cell::whole(m.end), stack, depth: 0, boxes: 0, exhausted: false })
@@ -177,7 +177,7 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
         if known.certain < S::NEVER {
             Verdict::contact(toi, known.certain.wide(), boxes, exhausted)
         } else {
-            Verdict::unresolved(toi, p.end, boxes, exhausted)
+            Verdict::undecided(toi, p.end, boxes, exhausted)
         }
     }
 }

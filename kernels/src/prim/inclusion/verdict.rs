@@ -27,7 +27,7 @@ impl Params {
         Params { tolerance, separation: 0.0, end: 1.0, budget: Self::BUDGET, pad: 0 }
     }
 
-    /// Default number of boxes after which a pair is left unresolved: ten times the number for the
+    /// Default number of boxes after which a pair is left undecided: ten times the number for the
     /// hardest public scenes.
     pub const BUDGET: u32 = 4096;
 }
@@ -39,8 +39,8 @@ pub struct Verdict {
     /// No contact before; in [0, 1], never -0.0 or NaN.
     pub toi: f64,
     /// The first contact is not after; the end of the step, if there need be none.
-    pub toi_hi: f64,
-    /// 0 separated, 1 contact, 2 unresolved; plus 4 if the budget or the stack ended.
+    pub toi_upper: f64,
+    /// 0 separated, 1 contact, 2 undecided; plus 4 if the budget or the stack ended.
     pub state: u32,
     /// Boxes looked at.
     pub boxes: u32,
@@ -51,47 +51,47 @@ pub struct Verdict {
 pub enum Answer {
     /// No contact, certainly.
     Separated,
-    /// A contact, certainly; the first in `[toi, toi_hi]`.
+    /// A contact, certainly; the first in `[toi, toi_upper]`.
     Contact {
         /// Not before.
         toi: f64,
         /// Not after.
-        toi_hi: f64,
+        toi_upper: f64,
     },
     /// Near contact, or in it; no contact before `toi`, certainly.
-    Unresolved {
+    Undecided {
         /// Not before.
         toi: f64,
         /// The end of the step.
-        toi_hi: f64,
+        toi_upper: f64,
     },
 }
 
 const SEPARATED: u32 = 0;
 const CONTACT: u32 = 1;
-const UNRESOLVED: u32 = 2;
+const UNDECIDED: u32 = 2;
 const EXHAUSTED: u32 = 4;
 
 impl Verdict {
     /// No contact until `end`.
     #[inline]
     pub fn separated(end: f64, boxes: u32) -> Self {
-        Verdict { toi: end, toi_hi: end, state: SEPARATED, boxes }
+        Verdict { toi: end, toi_upper: end, state: SEPARATED, boxes }
     }
 
     /// A contact at the start.
     pub const TOUCHING: Verdict = Verdict::contact(0.0, 0.0, 0, false);
 
-    /// A contact, the first in `[toi, toi_hi]`.
+    /// A contact, the first in `[toi, toi_upper]`.
     #[inline]
-    pub const fn contact(toi: f64, toi_hi: f64, boxes: u32, exhausted: bool) -> Self {
-        Verdict { toi, toi_hi, state: CONTACT | if exhausted { EXHAUSTED } else { 0 }, boxes }
+    pub const fn contact(toi: f64, toi_upper: f64, boxes: u32, exhausted: bool) -> Self {
+        Verdict { toi, toi_upper, state: CONTACT | if exhausted { EXHAUSTED } else { 0 }, boxes }
     }
 
     /// No contact before `toi`.
     #[inline]
-    pub fn unresolved(toi: f64, end: f64, boxes: u32, exhausted: bool) -> Self {
-        Verdict { toi, toi_hi: end, state: UNRESOLVED | if exhausted { EXHAUSTED } else { 0 }, boxes }
+    pub fn undecided(toi: f64, end: f64, boxes: u32, exhausted: bool) -> Self {
+        Verdict { toi, toi_upper: end, state: UNDECIDED | if exhausted { EXHAUSTED } else { 0 }, boxes }
     }
 
     /// The same with no time before `begin`, before which there is no contact.
@@ -105,11 +105,11 @@ impl Verdict {
     /// The answer.
     #[inline]
     pub fn answer(&self) -> Answer {
-        let Verdict { toi, toi_hi, state, .. } = *self;
+        let Verdict { toi, toi_upper, state, .. } = *self;
         match state & !EXHAUSTED {
             SEPARATED => Answer::Separated,
-            CONTACT => Answer::Contact { toi, toi_hi },
-            _ => Answer::Unresolved { toi, toi_hi },
+            CONTACT => Answer::Contact { toi, toi_upper },
+            _ => Answer::Undecided { toi, toi_upper },
         }
     }
 
@@ -135,7 +135,8 @@ impl Verdict {
     /// `time_tolerance` is the time in which the features move by the tolerance.
     #[inline]
     pub(super) fn is_settled(&self, time_tolerance: f64) -> bool {
-        let known = self.is_contact() && !self.exhausted() && self.toi_hi - self.toi <= 2.0 * time_tolerance;
+        let known =
+            self.is_contact() && !self.exhausted() && self.toi_upper - self.toi <= 2.0 * time_tolerance;
         self.is_separated() || known
     }
 }

@@ -80,12 +80,12 @@ pub fn isolated<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, last: bo
     let look = CellResult { around: time_tolerance * S::of(AROUND[0]), steps: STEPS[0], again, near };
     let verdict = match pair.isolate(pair.with_margin(window), look) {
         Found::Apart => Some(Verdict::separated(p.end, 0)),
-        Found::Meets { from, to }
+        Found::CollisionFilter { from, to }
             if last || (from > S::ZERO && to - from <= time_tolerance + time_tolerance) =>
         {
             met(from, to, p)
         }
-        Found::Near { from } => Some(Verdict::unresolved(from.wide(), p.end, 0, false)),
+        Found::Near { from } => Some(Verdict::undecided(from.wide(), p.end, 0, false)),
         // Motion in one plane, of a body that moves as a whole for example, has no signs. A
         // direction decides it.
         Found::Open { from, flat: true } if pair.misses_throughout(from, window.1) => {
@@ -121,7 +121,7 @@ pub enum Slice {
     /// No contact.
     Apart,
     /// The first contact of the slice.
-    Meets(Verdict),
+    CollisionFilter(Verdict),
     /// Near, and not decided; no contact in the slice before that time.
     Near(f64),
     /// Not decided; no contact in the slice before that time.
@@ -152,7 +152,9 @@ pub fn sliced<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), i: 
     };
     match pair.isolate((from, to), look) {
         Found::Apart => Slice::Apart,
-        Found::Meets { from, to } => met(from, to, p).map_or(Slice::Open(from), Slice::Meets),
+        Found::CollisionFilter { from, to } => {
+            met(from, to, p).map_or(Slice::Open(from), Slice::CollisionFilter)
+        }
         Found::Near { from } => Slice::Near(from),
         Found::Open { .. } if pair.misses_throughout(from, to) => Slice::Apart,
         Found::Open { from, .. } => Slice::Open(from),
@@ -178,7 +180,7 @@ fn near_enough<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params) -> S {
 const NEARER: f64 = 1.0 / 8.0;
 
 /// The last rung without a search. Separated, if the features stay farther apart than the
-/// separation and such a part of half the tolerance. Else unresolved, from the time when they come
+/// separation and such a part of half the tolerance. Else undecided, from the time when they come
 /// within that.
 #[inline(always)]
 pub fn near<const N: usize>(pair: &Pair<f64, N>, (begin, end): (f64, f64), part: f64, p: &Params) -> Verdict {
@@ -203,26 +205,26 @@ pub(super) fn nearly(told: Advanced<f64>, steps: u32, p: &Params) -> Verdict {
     match told {
         Advanced::Apart => Verdict::separated(p.end, 0),
         Advanced::Within { from, .. } | Advanced::Near { from } => {
-            Verdict::unresolved(from.min(p.end), p.end, 0, false)
+            Verdict::undecided(from.min(p.end), p.end, 0, false)
         }
         Advanced::Open { from } => {
-            Verdict::unresolved(from.min(p.end), p.end, 0, steps >= p.budget.max(ADVANCES))
+            Verdict::undecided(from.min(p.end), p.end, 0, steps >= p.budget.max(ADVANCES))
         }
     }
 }
 
-/// Searches by boxes a pair that [`near`] left unresolved, from its time on: the surer of both
+/// Searches by boxes a pair that [`near`] left undecided, from its time on: the surer of both
 /// answers.
 #[inline]
-pub fn searched<const N: usize>(local: inclusion::Local<f64, N>, unresolved: Verdict, p: &Params) -> Verdict {
+pub fn searched<const N: usize>(local: inclusion::Local<f64, N>, undecided: Verdict, p: &Params) -> Verdict {
     let mut stack = [const { MaybeUninit::uninit() }; STACK];
-    let mut search = match Search::from(local, p, &mut stack, unresolved.toi) {
+    let mut search = match Search::from(local, p, &mut stack, undecided.toi) {
         Ok(search) => search,
-        Err((verdict, _)) => return later(verdict, unresolved, p),
+        Err((verdict, _)) => return later(verdict, undecided, p),
     };
     loop {
         if let Some((verdict, _)) = search.step(p) {
-            return later(verdict, unresolved, p);
+            return later(verdict, undecided, p);
         }
     }
 }
@@ -234,9 +236,9 @@ fn later(found: Verdict, known: Verdict, p: &Params) -> Verdict {
     if found.is_separated() {
         found
     } else if found.is_contact() {
-        Verdict::contact(toi, found.toi_hi, found.boxes, found.exhausted())
+        Verdict::contact(toi, found.toi_upper, found.boxes, found.exhausted())
     } else {
-        Verdict::unresolved(toi, p.end, found.boxes, found.exhausted())
+        Verdict::undecided(toi, p.end, found.boxes, found.exhausted())
     }
 }
 
@@ -272,7 +274,7 @@ fn climb<const N: usize>(
         };
         let first = if rungs == Rungs::Double { None } else { in_single() };
         let last = || stepped(Double::begin(double(), p), p);
-        return first.or_else(last).unwrap_or_else(|| Verdict::unresolved(0.0, p.end, 0, true));
+        return first.or_else(last).unwrap_or_else(|| Verdict::undecided(0.0, p.end, 0, true));
     }
     if rejected(&single()) {
         return Verdict::separated(p.end, 0);
@@ -333,8 +335,8 @@ pub fn decided<const N: usize>(
 ) -> Verdict {
     let verdict = match first {
         Slice::Apart => Verdict::separated(p.end, 0),
-        Slice::Meets(verdict) => verdict,
-        Slice::Near(from) => Verdict::unresolved(from, p.end, 0, false),
+        Slice::CollisionFilter(verdict) => verdict,
+        Slice::Near(from) => Verdict::undecided(from, p.end, 0, false),
         Slice::Open(from) => {
             let verdict = near(pair, (from, window.1), 1.0, p);
             if verdict.is_separated() { verdict } else { search(verdict) }

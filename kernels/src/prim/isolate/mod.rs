@@ -13,13 +13,13 @@
 //! | [`cubic`] | the cubic; signs of Bernstein coefficients prove that there is no root |
 //! | [`find`] | cuts the window, finds suspect times |
 //! | [`suspect`] | the certificate around a suspect time |
-//! | [`ladder`] | rungs, from f32 to f64, for pairs that signs leave undecided |
+//! | [`ladder`] | rungs, from f32 to f64, for pairs that signs leave uncertain |
 //! | [`separation`] | rungs of a minimum separation |
 //! | [`advance`], [`nearest`] | supporting planes, for a separation |
 //! | [`turning`], [`normal`] | planes that turn with the features |
 //!
 //! The answers and their proofs are those of [`crate::prim::inclusion`]. No pair that meets is
-//! separated, and no time is late. A contact is one. An unresolved pair comes within the tolerance.
+//! separated, and no time is late. A contact is one. An undecided pair comes within the tolerance.
 //! All bounds are in [`crate::math::tolerance`] (`ISOLATE_*`, `ADVANCE_*`).
 //!
 //! Only `+ - * /`, the square root and conversions are used, so every machine gives the same bits.

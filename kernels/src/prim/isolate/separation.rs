@@ -109,10 +109,10 @@ impl<const N: usize> Rung<N> for Double<N> {
         if self.nearness {
             return Some(Some(nearly(told, self.advance.steps, p)));
         }
-        let unresolved = |from: f64| Some(Some(Verdict::unresolved(from.min(p.end), p.end, 0, false)));
+        let undecided = |from: f64| Some(Some(Verdict::undecided(from.min(p.end), p.end, 0, false)));
         let from = match told {
             Advanced::Apart => return Some(Some(Verdict::separated(p.end, 0))),
-            Advanced::Near { from } => return unresolved(from),
+            Advanced::Near { from } => return undecided(from),
             Advanced::Within { from, to } => match met(from, to, p) {
                 Some(verdict) => return Some(Some(verdict)),
                 None => from,

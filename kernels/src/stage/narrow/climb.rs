@@ -8,11 +8,11 @@
 //!          size strides.
 //! Reads    pairs, faces or edges, positions of both frames (four vertices); tolerances of bodies,
 //!          if they differ.
-//! Writes   contacts and unresolved pairs with bounds of toi; or one number, for an earliest query.
+//! Writes   contacts and undecided pairs with bounds of toi; or one number, for an earliest query.
 //!          The rest, in its own list.
 //! Before   candidates are complete.
 //! After    {pairs that meet} ⊆ listed ∪ left; no time is late. See [`crate::prim::isolate`].
-//!          earliest = min {(toi, undecided) of each pair of the continuous query}.
+//!          earliest = min {(toi, uncertain) of each pair of the continuous query}.
 //!          A pair is skipped if none of its verdicts could begin before a known time
 //!          ([`Pair::not_before`](isolate::Pair::not_before)).
 //!          So the result is the same in any order.
@@ -127,7 +127,7 @@ fn rung<R: Real, B: Block>(
     each(block, args, &args.ee, blocks - 1 - first, ee);
 }
 
-/// Tests each pair of one kind. Lists unresolved pairs and contacts; leaves pairs without an answer
+/// Tests each pair of one kind. Lists undecided pairs and contacts; leaves pairs without an answer
 /// to the next rung.
 #[inline(always)]
 fn each<R: Real, B: Block>(
@@ -194,7 +194,7 @@ pub(super) fn emit<R: Real, L: Lane>(
     }
 }
 
-/// Whether to list a verdict. Counts the unresolved, or lowers the earliest time if only that is
+/// Whether to list a verdict. Counts the undecided, or lowers the earliest time if only that is
 /// wanted. Then the pairs with a verdict depend on the order, so none is counted.
 #[inline(always)]
 fn keep<R: Real, L: Lane>(lane: &L, args: &RungArgs<R>, verdict: Verdict) -> bool {
@@ -206,11 +206,11 @@ fn keep<R: Real, L: Lane>(lane: &L, args: &RungArgs<R>, verdict: Verdict) -> boo
         return false;
     }
     if !verdict.is_contact() {
-        args.counters.add(lane, counter::UNRESOLVED, 1);
+        args.counters.add(lane, counter::UNDECIDED, 1);
     }
     if verdict.exhausted() {
         args.counters.add(lane, counter::ENDED, 1);
-        args.counters.add(lane, counter::ENDED_UNRESOLVED, !verdict.is_contact() as u64);
+        args.counters.add(lane, counter::ENDED_UNDECIDED, !verdict.is_contact() as u64);
     }
     true
 }

@@ -2,12 +2,12 @@
 //! Paper    the thesis, section 6.2.5, for [`moller()`]. [`filter`] and [`exact`], the default, are
 //!          not in the paper.
 //! Launch   a lane a pair; a grid of any size strides. `filter` over the candidates.
-//!          With f32 positions `wide` over its undecided pairs. `exact` over those that are still
-//!          undecided.
+//!          With f32 positions `wide` over its uncertain pairs. `exact` over those that are still
+//!          uncertain.
 //!          [`Still`] at rest; [`Start`] at the start of a step, over the candidates of the whole
 //!          step. Each is a kernel of its own.
 //! Reads    candidates, faces, positions.
-//! Writes   contacts; `filter` and `wide` also the undecided pairs.
+//! Writes   contacts; `filter` and `wide` also the uncertain pairs.
 //! Before   candidates are complete. Positions are finite.
 //! After    filter, wide, exact  contacts = {(a, b) in candidates : closed triangles share a
 //!          point}. With a common vertex: beyond it.
@@ -19,7 +19,7 @@
 //!          A horizon is above 0, and a volume cut at it keeps its start. A separation only adds
 //!          candidates.
 //!          So the list of an earliest query, after its sample, is complete in this sense.
-//! Room     contacts, undecided: counted past the end, grown, run again.
+//! Room     contacts, uncertain: counted past the end, grown, run again.
 //!          `Start` has room for no contact: their number is the answer.
 //! Cost     8 B pair, 24 B faces, 96 B positions (gathered). About 100 operations for a pair that a
 //!          plane separates.
@@ -135,9 +135,9 @@ impl<B: Block> Verdicts<B> {
         *self.verdicts.of(lane) = verdict;
     }
 
-    /// Those that meet go to the contacts, those without an answer to the undecided.
+    /// Those that meet go to the contacts, those without an answer to the uncertain.
     fn sort_out<R: Real>(&mut self, block: &mut B, args: &DiscreteArgs<R>) {
-        for (verdict, list) in [(Some(true), args.contacts), (None, args.undecided)] {
+        for (verdict, list) in [(Some(true), args.contacts), (None, args.uncertain)] {
             block.phase(|lane| {
                 let mine = *self.verdicts.of(lane) == verdict;
                 self.entries.set(lane, mine.then_some(*self.pairs.of(lane)));
@@ -167,7 +167,7 @@ pub const fn shared_bytes(lanes: u32) -> u32 {
     2 * lanes * size_of::<Pair>() as u32
 }
 
-/// Signs with an error bound, in the precision of the positions: contacts, and undecided pairs.
+/// Signs with an error bound, in the precision of the positions: contacts, and uncertain pairs.
 /// Most pairs are separated by a plane, without a branch. The others are collected until there is
 /// one a lane.
 pub fn filter<R: Real, F: Frame<R>, B: Block>(block: &mut B, args: &DiscreteArgs<R>) {
@@ -259,7 +259,7 @@ fn decide<R: Real, F: Frame<R>, B: Block>(
     verdicts.sort_out(block, args);
 }
 
-/// The same in f64, for pairs that f32 left undecided.
+/// The same in f64, for pairs that f32 left uncertain.
 pub fn wide<F: Frame<f32>, B: Block>(block: &mut B, args: &DiscreteArgs<f32>) {
     let count = args.pairs.listed(block);
     let mut verdicts = Verdicts::new(block);
@@ -296,7 +296,7 @@ const LANES_A_PAIR: u32 = SIGNS.next_power_of_two();
 /// Shared memory of `exact`: signs.
 pub const EXACT_SHARED: u32 = 4 * TOGETHER * LANES_A_PAIR;
 
-/// Exact signs, for the pairs that the filters left undecided: some thousand operations each, in
+/// Exact signs, for the pairs that the filters left uncertain: some thousand operations each, in
 /// sequence.
 pub fn exact<R: Real, F: Frame<R>, B: Block>(block: &mut B, args: &DiscreteArgs<R>) {
     let count = args.pairs.listed(block);

@@ -79,7 +79,7 @@ fn each<R: Real, B: Block, M: RowMap<Row = [Vec3<R>; 4]>>(
                 let hit = kept.and_then(|pair| {
                     let near = measure(gather(lane, pair))?;
                     if !near.certain {
-                        args.counters.add(lane, counter::UNRESOLVED, 1);
+                        args.counters.add(lane, counter::UNDECIDED, 1);
                     }
                     Some(NearHit { a: pair.a, b: pair.b, squared: near.squared, at: near.at })
                 });

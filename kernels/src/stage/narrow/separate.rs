@@ -8,12 +8,12 @@
 //!          A block's pairs are a grid apart. The kinds begin at opposite ends of the grid.
 //! Reads    pairs, faces or edges, positions of both frames (four vertices); tolerances of bodies,
 //!          if they differ.
-//! Writes   contacts and unresolved pairs with bounds of toi; or the earliest. In f32 the rest, in
+//! Writes   contacts and undecided pairs with bounds of toi; or the earliest. In f32 the rest, in
 //!          its own list.
 //! Before   pairs are complete.
 //! After    {pairs that come within the separation} ⊆ listed ∪ left; no time is late. See
 //!          [`crate::prim::isolate::advance`].
-//!          A pair whose steps run out in f64 is listed as unresolved.
+//!          A pair whose steps run out in f64 is listed as undecided.
 //! Room     hits, left: counted past the end, grown, run again.
 //! Cost     8 B pair, 12 B indices, 128 B positions (gathered). 300 to 600 operations a step,
 //!          mostly two to fifteen steps.

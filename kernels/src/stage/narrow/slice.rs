@@ -5,7 +5,7 @@
 //!          A grid of any size strides.
 //! Reads    pairs, faces or edges, positions of both frames (four vertices); tolerances of bodies,
 //!          if they differ.
-//! Writes   contacts and unresolved pairs; or the earliest.
+//! Writes   contacts and undecided pairs; or the earliest.
 //! Before   no pair touches at the start: `climb::settle` has decided these.
 //! After    {pairs that meet} ⊆ listed; no time is late. The first slice that is not apart decides.
 //!          One lane decides a slice that is left open: by nearness, then by a search of boxes. A

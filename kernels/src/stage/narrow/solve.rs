@@ -50,7 +50,7 @@ fn contact<S: Real>(toi: S) -> Verdict {
     Verdict::contact(toi.wide(), toi.wide(), 0, false)
 }
 
-/// Solves each candidate. Keeps every contact, or only the smallest time. Counts the unresolved.
+/// Solves each candidate. Keeps every contact, or only the smallest time. Counts the undecided.
 fn solve<R: Real, B: Block>(
     block: &mut B,
     args: &SolveArgs<R>,
@@ -65,7 +65,7 @@ fn solve<R: Real, B: Block>(
             return None;
         }
         if !verdict.is_contact() {
-            args.counters.add(lane, counter::UNRESOLVED, 1);
+            args.counters.add(lane, counter::UNDECIDED, 1);
         }
         Some(Hit { a: pair.a, b: pair.b, verdict })
     });

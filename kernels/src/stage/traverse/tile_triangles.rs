@@ -68,7 +68,7 @@ impl Two {
         }
         let [p, q] = [tiles.a, tiles.b].map(|tile| block.load(filters, tile));
         // Pairs of tiles were tested when they were listed.
-        let refused = same && !p.meets_itself();
+        let refused = same && !p.self_collides();
         (!refused).then_some(Two { tiles, untested: if (p.who | q.who) & MIXED != 0 { UNTESTED } else { 0 } })
     }
 }

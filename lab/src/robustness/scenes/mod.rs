@@ -13,7 +13,7 @@ use nearmiss::contacts::{Contacts, Kind};
 use nearmiss::error::Error;
 use nearmiss::mesh::{Body, Mesh, Positions};
 use nearmiss::query::{Discrete, Query, TriangleTest};
-use nearmiss::scene::Meets;
+use nearmiss::scene::CollisionFilter;
 
 /// A body's numbers. In f32 where that holds them all, unless `wide`.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -57,7 +57,7 @@ impl Numbers {
             Mesh::new("extreme", positions, self.faces.clone())
         };
         let t0 = mesh(&self.t0)?;
-        if self.t1.is_empty() { Ok(Body::still(t0)) } else { Body::moving(t0, mesh(&self.t1)?) }
+        if self.t1.is_empty() { Ok(Body::deformable(t0)) } else { Body::moving(t0, mesh(&self.t1)?) }
     }
 
     fn triangle(&self, face: usize) -> Triangle {
@@ -126,8 +126,12 @@ impl Scene {
     /// # Errors
     /// [`Error::Input`] where a mesh is refused.
     pub fn bodies(&self) -> Result<Vec<Body>, Error> {
-        let meets = if self.bodies.len() > 1 { Meets::others() } else { Meets::default() };
-        self.bodies.iter().map(|numbers| Ok(numbers.body()?.with(meets))).collect()
+        let meets = if self.bodies.len() > 1 {
+            CollisionFilter::without_self_collision()
+        } else {
+            CollisionFilter::default()
+        };
+        self.bodies.iter().map(|numbers| Ok(numbers.body()?.with_filter(meets))).collect()
     }
 
     /// The triangle pairs of a discrete scene, by the list or the oracle.
@@ -159,8 +163,8 @@ impl Scene {
     /// What is missed and what is wrong in an answer; nothing where it is right.
     pub fn judge(&self, found: &Contacts) -> Option<String> {
         match &self.finds {
-            Finds::OracleByFilter if found.stats.undecided > 0 => {
-                Some(format!("{} pairs needed exact signs", found.stats.undecided))
+            Finds::OracleByFilter if found.stats.uncertain > 0 => {
+                Some(format!("{} pairs needed exact signs", found.stats.uncertain))
             }
             Finds::Pairs(_) | Finds::Oracle | Finds::OracleByFilter => {
                 differ(&found.triangles(), &self.pairs())
@@ -169,7 +173,7 @@ impl Scene {
             Finds::Includes(truth, first) => includes(found, truth, *first),
             Finds::EachVertex(vertices, time) => vertices.iter().find_map(|v| {
                 let mut own = found.contacts().iter().filter(|c| c.kind == Kind::Vf && c.a == *v);
-                let hit = own.any(|c| c.toi <= *time && *time <= c.toi_hi && c.toi >= time - EARLY);
+                let hit = own.any(|c| c.toi <= *time && *time <= c.toi_upper && c.toi >= time - EARLY);
                 (!hit).then(|| format!("missed: vertex {v} falls through"))
             }),
             Finds::AtOnce(count) => {
@@ -195,7 +199,7 @@ fn contacts(found: &Contacts, truth: &[(Kind, u32, u32, f64)]) -> Option<String>
     let wrong = truth.iter().find_map(|&(kind, a, b, t)| match of(kind, a, b) {
         None => Some(format!("missed: {kind:?} {a} {b} at {t}")),
         Some(c) if c.toi > t => Some(format!("late: {c:?}, not {t}")),
-        Some(c) if c.toi_hi < t || c.toi < t - EARLY => Some(format!("at another time: {c:?}, not {t}")),
+        Some(c) if c.toi_upper < t || c.toi < t - EARLY => Some(format!("at another time: {c:?}, not {t}")),
         Some(_) => None,
     });
     let known = |c: &nearmiss::Contact| truth.iter().any(|k| (k.0, k.1, k.2) == (c.kind, c.a, c.b));

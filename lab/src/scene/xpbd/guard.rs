@@ -55,7 +55,7 @@ impl Guard {
     /// Watches a mesh from positions `x` on, which it rounds to floats: what is checked is what is written.
     ///
     /// # Errors
-    /// [`Error::Choice`] if triangles meet already; those of detection.
+    /// [`Error::InvalidArgument`] if triangles meet already; those of detection.
     pub fn new(name: &str, x: &mut [V], faces: &[[u32; 3]]) -> Result<Guard, Error> {
         round(x);
         let edges = Topology::new(faces, x.len()).edges;
@@ -70,13 +70,13 @@ impl Guard {
         let mut guard = Guard {
             name: name.into(),
             continuous: OneQuery::new(device.clone(), vec![moving], passing())?,
-            discrete: OneQuery::new(device, vec![Body::still(still)], meeting())?,
+            discrete: OneQuery::new(device, vec![Body::deformable(still)], meeting())?,
             faces: faces.to_vec(),
             edges,
             gap,
         };
         if !guard.is_free(x)? {
-            return Err(Error::Choice {
+            return Err(Error::InvalidArgument {
                 what: format!("{name}: triangles meet in the first frame, so nothing can keep them apart"),
                 advice: "ask for the scene without contact".into(),
             });
@@ -126,7 +126,7 @@ impl Guard {
     }
 
     fn is_free(&mut self, x: &[V]) -> Result<bool, Error> {
-        self.discrete.move_to(0, Body::still(frame(&self.name, x, &self.faces)?))?;
+        self.discrete.move_to(0, Body::deformable(frame(&self.name, x, &self.faces)?))?;
         Ok(self.discrete.detect()?.is_empty())
     }
 

@@ -53,16 +53,16 @@ pub fn ask(bytes: &[u8], lie: impl Fn(Verdict) -> Verdict) -> Result<(), String>
 
 /// What is wrong with a verdict that should be certain.
 pub fn fault(verdict: &Verdict, truth: Option<&Toi>) -> Option<&'static str> {
-    let Verdict { toi, toi_hi, .. } = *verdict;
-    if !(0.0 <= toi && toi <= toi_hi && toi_hi <= 1.0) {
+    let Verdict { toi, toi_upper, .. } = *verdict;
+    if !(0.0 <= toi && toi <= toi_upper && toi_upper <= 1.0) {
         return Some("times that are none");
     }
     match truth {
         None => verdict.is_contact().then_some("a false certificate"),
         Some(_) if verdict.is_separated() => Some("missed"),
         Some(truth) if truth.cmp_f64(toi).is_lt() => Some("late"),
-        Some(truth) => (verdict.is_contact() && truth.cmp_f64(toi_hi).is_gt())
-            .then_some("a false certificate: the contact is after toi_hi"),
+        Some(truth) => (verdict.is_contact() && truth.cmp_f64(toi_upper).is_gt())
+            .then_some("a false certificate: the contact is after toi_upper"),
     }
 }
 

@@ -56,7 +56,7 @@ pub fn detect(device: &Device, bodies: &[Body], query: Query) -> Result<Contacts
             detector.collect(&query)
         }
         // A walk that needs the host.
-        Err(Error::Choice { .. }) => {
+        Err(Error::InvalidArgument { .. }) => {
             let inputs: Vec<_> = inputs.iter().map(|(id, input)| (*id, Motion::OnDevice(*input))).collect();
             detector.step(&inputs, &query)
         }

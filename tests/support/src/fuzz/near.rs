@@ -35,7 +35,7 @@ pub fn ask(bytes: &[u8], lie: impl Fn(&mut Rows)) -> Result<(), String> {
 pub fn at_start(bodies: &[Body]) -> Result<Vec<Body>, Error> {
     let still = |body: &Body| {
         let mesh = Mesh::new("fuzz", body.positions_t0().clone(), body.faces().to_vec());
-        mesh.map(Body::still)
+        mesh.map(Body::deformable)
     };
     bodies.iter().map(still).collect()
 }

@@ -8,7 +8,7 @@ use nearmiss::mesh::{Body, Mesh, Positions, Topology};
 use nearmiss::query::{
     Broad, Bv, FrontShape, Order, QueryKind, QueueShape, Refit, Search, StealShape, Traversal,
 };
-use nearmiss::scene::Meets;
+use nearmiss::scene::CollisionFilter;
 use nearmiss::{Contacts, Detector, Device, Error, Query};
 use nearmiss_lab::oracle::{Toi, first_contact, triangles_meet};
 use nearmiss_lab::{Case, Features};
@@ -65,7 +65,7 @@ fn body(b: &mut Bytes) -> Result<Body, Error> {
         Mesh::new("fuzz", positions, faces.clone())
     };
     let first = mesh(&points[..vertices])?;
-    if moves { Body::moving(first, mesh(&points[vertices..])?) } else { Ok(Body::still(first)) }
+    if moves { Body::moving(first, mesh(&points[vertices..])?) } else { Ok(Body::deformable(first)) }
 }
 
 thread_local! {
@@ -98,8 +98,12 @@ pub fn ask(bytes: &[u8], lie: impl Fn(&mut Rows)) -> Result<(), String> {
 
 /// The bodies as the judges ask them: one against itself, two against each other alone.
 pub fn asked(bodies: &[Body]) -> Vec<Body> {
-    let meets = if bodies.len() == 1 { Meets::and_itself() } else { Meets::others() };
-    bodies.iter().map(|body| body.clone().with(meets)).collect()
+    let meets = if bodies.len() == 1 {
+        CollisionFilter::with_self_collision()
+    } else {
+        CollisionFilter::without_self_collision()
+    };
+    bodies.iter().map(|body| body.clone().with_filter(meets)).collect()
 }
 
 /// One answer.
@@ -167,7 +171,7 @@ pub fn judge(bodies: &[Body], query: &Query, answer: &Rows) -> Result<(), String
 
 fn judge_one(c: &Contact, all: &BTreeMap<Key, Option<Toi>>, certain: bool) -> Result<(), String> {
     let Some(truth) = all.get(&(c.kind, c.a, c.b)) else { return Err(format!("{c:?} is no pair")) };
-    if !(0.0 <= c.toi && c.toi <= c.toi_hi && c.toi_hi <= 1.0) {
+    if !(0.0 <= c.toi && c.toi <= c.toi_upper && c.toi_upper <= 1.0) {
         return Err(format!("{c:?}: times that are none"));
     }
     let sure = c.status == Status::Certified;
@@ -176,7 +180,7 @@ fn judge_one(c: &Contact, all: &BTreeMap<Key, Option<Toi>>, certain: bool) -> Re
         Some(truth) if certain && truth.cmp_f64(c.toi).is_lt() => {
             Err(format!("{c:?}: late, truly {:?}", truth.bracket()))
         }
-        Some(truth) if sure && truth.cmp_f64(c.toi_hi).is_gt() => {
+        Some(truth) if sure && truth.cmp_f64(c.toi_upper).is_gt() => {
             Err(format!("{c:?}: a false certificate, truly {:?}", truth.bracket()))
         }
         _ => Ok(()),

@@ -56,7 +56,7 @@ impl Motion {
 }
 
 impl Motion {
-    /// Whether the certified solver lists it: as a contact or as unresolved.
+    /// Whether the certified solver lists it: as a contact or as undecided.
     pub fn certified(&self, face: bool, params: &Params) -> bool {
         let p = |i: usize| Moving { t0: Vec3(self.points[i]), t1: Vec3(self.points[i + 4]) };
         let verdict = if face {

@@ -6,7 +6,7 @@ use support::shrinking::SHRINKING;
 
 #[test]
 fn the_program_tells() {
-    let folder = Folder::new("degraded");
+    let folder = Folder::new("caveats");
     let [t0, t1] = [0, 1].map(|end| {
         let corners = SHRINKING[end].map(|[x, y, z]| format!("v {x} {y} {z}\n")).concat();
         folder.write(&format!("t{end}.obj"), &(corners + "f 1 2 3\nf 4 5 6\n"))
@@ -22,23 +22,20 @@ fn the_program_tells() {
     let all = json(&["--boxes", "1"]);
     let shrinking = asked(&[&t0, &t1], &["--boxes", "1", "--tolerance", "4e-3", "--json"]);
     let shrinking: serde_json::Value = serde_json::from_str(&shrinking).expect("JSON");
-    let boxes = shrinking["degraded"].as_array().expect("a list").iter().find(|r| r["reason"] == "boxes");
+    let boxes = shrinking["caveats"].as_array().expect("a list").iter().find(|r| r["reason"] == "boxes");
     assert!(boxes.is_some_and(|r| r["pairs"].as_u64().is_some_and(|n| n > 0)), "{shrinking}");
     assert_eq!(all["separation"], 0.0);
     let plain = json(&["--discrete"]);
-    assert_eq!(
-        (&plain["degraded"], &plain["separation"]),
-        (&serde_json::json!([]), &serde_json::Value::Null)
-    );
+    assert_eq!((&plain["caveats"], &plain["separation"]), (&serde_json::json!([]), &serde_json::Value::Null));
     let text = asked(&[&t0, &t1], &["--boxes", "1", "--tolerance", "4e-3"]);
-    assert!(text.contains("  degraded: ") && text.contains("raise their number"), "{text}");
-    assert!(!run(&["--discrete"]).contains("degraded"));
+    assert!(text.contains("  caveats: ") && text.contains("raise their number"), "{text}");
+    assert!(!run(&["--discrete"]).contains("caveats"));
     // Lists that grow make no answer less.
     let grown = asked(&["--scene", "identical", "--triangles", "400"], &["--json"]);
     let grown: serde_json::Value = serde_json::from_str(&grown).expect("JSON");
-    assert!(grown["reruns"].as_u64() > Some(0) && grown["degraded"] == serde_json::json!([]), "{grown}");
+    assert!(grown["reruns"].as_u64() > Some(0) && grown["caveats"] == serde_json::json!([]), "{grown}");
     let grown = asked(&["--scene", "identical", "--triangles", "400"], &[]);
-    assert!(grown.contains("  lists grew") && !grown.contains("degraded"), "{grown}");
+    assert!(grown.contains("  lists grew") && !grown.contains("caveats"), "{grown}");
     assert!(plain["reruns"] == 0 && !run(&["--discrete"]).contains("lists grew"));
     let apart = json(&["--separation", "0.01"]);
     assert!(apart["separation"] == 0.01 && apart["contacts"].as_u64() > all["contacts"].as_u64(), "{apart}");

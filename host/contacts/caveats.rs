@@ -8,20 +8,20 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(tag = "reason", rename_all = "kebab-case"))]
 #[non_exhaustive]
-pub enum Degraded {
+pub enum Caveat {
     /// Pairs nearer than the tolerance that are neither certain to meet nor certain to stay apart.
-    /// Not of an earliest query: see [`Degraded::EarliestUnresolved`].
-    Unresolved {
+    /// Not of an earliest query: see [`Caveat::EarliestUndecided`].
+    Undecided {
         /// How many.
         pairs: u64,
     },
     /// The earliest time is that of a pair that is neither certain to meet nor certain to stay
     /// apart, and no contact begins then. An earliest query does not test pairs that begin later,
     /// so it cannot count them.
-    EarliestUnresolved,
+    EarliestUndecided,
     /// Pairs whose budget of boxes ended ([`Certified::budget`](crate::query::Certified::budget)): listed, but their times may be far too
     /// early. Not counted by an earliest query.
-    Boxes {
+    Iterations {
         /// How many.
         pairs: u64,
     },
@@ -56,65 +56,65 @@ pub enum Degraded {
 /// vertex is at most 3.5 % of its distance from the axis off its arc: `1 - cos(15 degrees)`.
 pub const TURN_DEGREES: f64 = 30.0;
 
-impl Degraded {
+impl Caveat {
     /// Whether the answer itself is less than was asked, not only the time that it took.
-    pub fn touches_answer(&self) -> bool {
-        !matches!(self, Degraded::FrontDropped)
+    pub fn affects_answer(&self) -> bool {
+        !matches!(self, Caveat::FrontDropped)
     }
 
     /// The same reason of two parts of a frame; `None` of two reasons.
-    pub(super) fn and(&self, other: Degraded) -> Option<Degraded> {
+    pub(super) fn and(&self, other: Caveat) -> Option<Caveat> {
         Some(match (*self, other) {
-            (Degraded::Unresolved { pairs: a }, Degraded::Unresolved { pairs: b }) => {
-                Degraded::Unresolved { pairs: a + b }
+            (Caveat::Undecided { pairs: a }, Caveat::Undecided { pairs: b }) => {
+                Caveat::Undecided { pairs: a + b }
             }
-            (Degraded::Boxes { pairs: a }, Degraded::Boxes { pairs: b }) => Degraded::Boxes { pairs: a + b },
-            (
-                Degraded::ToleranceBelowPrecision { pairs: a },
-                Degraded::ToleranceBelowPrecision { pairs: b },
-            ) => Degraded::ToleranceBelowPrecision { pairs: a.zip(b).map(|(a, b)| a + b) },
-            (
-                Degraded::DistanceBelowPrecision { pairs: a },
-                Degraded::DistanceBelowPrecision { pairs: b },
-            ) => Degraded::DistanceBelowPrecision { pairs: a + b },
-            (Degraded::EarliestUnresolved, Degraded::EarliestUnresolved) => Degraded::EarliestUnresolved,
-            (Degraded::FrontDropped, Degraded::FrontDropped) => Degraded::FrontDropped,
-            (Degraded::Turned { body: a, .. }, Degraded::Turned { body: b, .. }) if a == b => other,
+            (Caveat::Iterations { pairs: a }, Caveat::Iterations { pairs: b }) => {
+                Caveat::Iterations { pairs: a + b }
+            }
+            (Caveat::ToleranceBelowPrecision { pairs: a }, Caveat::ToleranceBelowPrecision { pairs: b }) => {
+                Caveat::ToleranceBelowPrecision { pairs: a.zip(b).map(|(a, b)| a + b) }
+            }
+            (Caveat::DistanceBelowPrecision { pairs: a }, Caveat::DistanceBelowPrecision { pairs: b }) => {
+                Caveat::DistanceBelowPrecision { pairs: a + b }
+            }
+            (Caveat::EarliestUndecided, Caveat::EarliestUndecided) => Caveat::EarliestUndecided,
+            (Caveat::FrontDropped, Caveat::FrontDropped) => Caveat::FrontDropped,
+            (Caveat::Turned { body: a, .. }, Caveat::Turned { body: b, .. }) if a == b => other,
             _ => return None,
         })
     }
 }
 
-impl fmt::Display for Degraded {
+impl fmt::Display for Caveat {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Degraded::Unresolved { pairs } => {
+            Caveat::Undecided { pairs } => {
                 let pairs = counted(*pairs, "pair", "pairs");
                 write!(f, "{pairs} nearer than the tolerance, neither certain to meet nor to stay apart")
             }
-            Degraded::EarliestUnresolved => {
+            Caveat::EarliestUndecided => {
                 write!(f, "the earliest time is that of a pair neither certain to meet nor to stay apart")
             }
-            Degraded::Boxes { pairs } => {
+            Caveat::Iterations { pairs } => {
                 let pairs = counted(*pairs, "pair", "pairs");
                 write!(f, "{pairs} whose boxes ended, with times that may be too early; raise their number")
             }
-            Degraded::ToleranceBelowPrecision { pairs } => {
+            Caveat::ToleranceBelowPrecision { pairs } => {
                 let pairs = pairs.map_or("some pairs".to_owned(), |n| counted(n, "pair", "pairs"));
                 write!(f, "{pairs} too large for the tolerance in the solver's precision")
             }
-            Degraded::DistanceBelowPrecision { pairs } => {
+            Caveat::DistanceBelowPrecision { pairs } => {
                 let pairs = counted(*pairs, "pair", "pairs");
                 write!(f, "{pairs} listed, within the distance or by a rounding of doubles beyond it")
             }
-            Degraded::Turned { body, degrees, bulge } => {
+            Caveat::Turned { body, degrees, bulge } => {
                 write!(
                     f,
                     "body {body} turns by {degrees:.1} degrees; its vertices move in straight lines, up to {bulge:e} off their arcs; \
                      divide the step"
                 )
             }
-            Degraded::FrontDropped => write!(f, "the front did not pay and was dropped; the answer is whole"),
+            Caveat::FrontDropped => write!(f, "the front did not pay and was dropped; the answer is whole"),
         }
     }
 }

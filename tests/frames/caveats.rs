@@ -1,6 +1,6 @@
 //! Every way in which an answer can be less than was asked is forced here, and must say so: by its reason, with a count. None of them may lose a contact.
 
-use nearmiss::contacts::{Contact, Degraded, Status};
+use nearmiss::contacts::{Caveat, Contact, Status};
 use nearmiss::mesh::{Body, Mesh};
 use nearmiss::query::{FrontShape, QueryKind, Solver, Traversal};
 use nearmiss::{Contacts, Device, Error, Query};
@@ -28,7 +28,7 @@ fn none_is_lost(truth: &Contacts, other: &Contacts) {
     let listed: BTreeMap<_, _> = other.contacts().iter().map(|c| ((c.kind, c.a, c.b), c.toi)).collect();
     for c in truth.contacts().iter().filter(|c| c.status == Status::Certified) {
         let toi = listed.get(&(c.kind, c.a, c.b)).unwrap_or_else(|| panic!("{c:?} is lost"));
-        assert!(*toi <= c.toi_hi, "{c:?} is late: {toi}");
+        assert!(*toi <= c.toi_upper, "{c:?} is late: {toi}");
     }
 }
 
@@ -40,13 +40,13 @@ fn count(all: &[Contact], is: impl Fn(&Contact) -> bool) -> u64 {
 fn an_answer_that_is_all_that_was_asked_says_nothing() {
     for query in Query::every().filter(|query| query.solver() != Solver::CertifiedF32) {
         let contacts = ask(engine(), vec![scene::draped(300).expect("a scene")], query);
-        assert_eq!(contacts.degraded(), [], "{query:?}");
+        assert_eq!(contacts.caveats(), [], "{query:?}");
         // A distance is that of two bodies.
         let asks = query.kind().is_within_bodies();
-        assert!(contacts.unresolved == 0 && contacts.is_empty() != asks, "{query:?}");
+        assert!(contacts.undecided == 0 && contacts.is_empty() != asks, "{query:?}");
     }
     let none = ask(engine(), vec![support::still(&[], &[])], by(Solver::Certified));
-    assert_eq!(none.degraded(), []);
+    assert_eq!(none.caveats(), []);
 }
 
 #[test]
@@ -54,7 +54,7 @@ fn a_budget_that_ends_is_told() {
     let by = |solver| with_tolerance(by(solver), 4e-3);
     let truth = ask(engine(), shrinking(), by(Solver::Certified));
     let met =
-        |all: &Contacts| all.contacts().iter().filter(|c| c.toi <= 0.0625 && c.toi_hi >= 0.0625).count();
+        |all: &Contacts| all.contacts().iter().filter(|c| c.toi <= 0.0625 && c.toi_upper >= 0.0625).count();
     assert!(met(&truth) > 0, "{:?}", truth.contacts());
     // In f32 alone nothing is searched by boxes.
     for solver in [Solver::Certified, Solver::CertifiedF64] {
@@ -63,26 +63,26 @@ fn a_budget_that_ends_is_told() {
                 let all = ask(device, shrinking(), certified(by(solver), |all| all.budget = Some(boxes)));
                 none_is_lost(&truth, &all);
                 assert!(met(&all) > 0, "{:?}", all.contacts());
-                let ended = all.degraded().iter().find_map(|reason| match reason {
-                    Degraded::Boxes { pairs } => Some(*pairs),
+                let ended = all.caveats().iter().find_map(|reason| match reason {
+                    Caveat::Iterations { pairs } => Some(*pairs),
                     _ => None,
                 });
                 let ended = ended.expect("a budget of a box or two ends");
-                let touching = all.degraded().iter().find_map(|reason| match reason {
-                    Degraded::Unresolved { pairs } => Some(*pairs),
+                let touching = all.caveats().iter().find_map(|reason| match reason {
+                    Caveat::Undecided { pairs } => Some(*pairs),
                     _ => None,
                 });
-                assert!(ended >= all.unresolved - touching.unwrap_or(0), "{solver:?}, {boxes}: {ended}");
+                assert!(ended >= all.undecided - touching.unwrap_or(0), "{solver:?}, {boxes}: {ended}");
                 assert!(ended > 0, "{solver:?}, {boxes}: {ended}");
-                assert!(all.degraded().iter().any(Degraded::touches_answer));
+                assert!(all.caveats().iter().any(Caveat::affects_answer));
             }
         }
         // An earliest query counts none: its time says whether it is certain.
         let first = with_tolerance(support::asked::by(QueryKind::Earliest, solver), 4e-3);
         let first = certified(first, |all| all.budget = Some(1));
         let first = ask(engine(), shrinking(), first);
-        assert_eq!(first.degraded(), [Degraded::EarliestUnresolved]);
-        assert!(first.unresolved == 1 && first.earliest_toi() <= truth.earliest_toi());
+        assert_eq!(first.caveats(), [Caveat::EarliestUndecided]);
+        assert!(first.undecided == 1 && first.earliest_toi() <= truth.earliest_toi());
     }
 }
 
@@ -94,13 +94,13 @@ fn what_touches_without_passing_is_told() {
     let frame = |x: f32| [still, slides(x)].concat();
     let body = support::moving(&frame(-1.0), &frame(1.0), &[[0, 1, 2], [3, 4, 5]]);
     let all = ask(engine(), vec![body], by(Solver::Certified));
-    let unresolved = count(all.contacts(), |c| c.status == Status::Unresolved);
-    assert!(unresolved > 0 && all.unresolved == unresolved);
-    let told = all.degraded().iter().map(|reason| match reason {
-        Degraded::Unresolved { pairs } | Degraded::Boxes { pairs } => *pairs,
+    let undecided = count(all.contacts(), |c| c.status == Status::Undecided);
+    assert!(undecided > 0 && all.undecided == undecided);
+    let told = all.caveats().iter().map(|reason| match reason {
+        Caveat::Undecided { pairs } | Caveat::Iterations { pairs } => *pairs,
         other => panic!("{other:?}"),
     });
-    assert_eq!(told.sum::<u64>(), unresolved, "{:?}", all.degraded());
+    assert_eq!(told.sum::<u64>(), undecided, "{:?}", all.caveats());
 }
 
 #[test]
@@ -108,8 +108,8 @@ fn a_tolerance_below_the_precision_is_told() {
     let told_by = |device, solver, motion, tolerance| {
         let query = with_tolerance(support::asked::by(motion, solver), tolerance);
         let all = ask(device, soup(), query);
-        let told = all.degraded().iter().find_map(|reason| match reason {
-            Degraded::ToleranceBelowPrecision { pairs } => Some(*pairs),
+        let told = all.caveats().iter().find_map(|reason| match reason {
+            Caveat::ToleranceBelowPrecision { pairs } => Some(*pairs),
             _ => None,
         });
         (told, all.len() as u64)
@@ -146,9 +146,9 @@ fn lists_that_grew_are_counted_once_and_degrade_nothing() {
         let times = detector.reruns();
         assert!(times > 0, "the scene no longer overflows the first room: make it larger");
         assert_eq!((first.stats.reruns, detector.summary(&first).reruns), (times, times));
-        assert_eq!(first.degraded(), [], "the answer is whole");
+        assert_eq!(first.caveats(), [], "the answer is whole");
         let second = detector.detect().expect("an answer");
-        assert!(second.stats.reruns == 0 && second.degraded().is_empty() && second.rows == first.rows);
+        assert!(second.stats.reruns == 0 && second.caveats().is_empty() && second.rows == first.rows);
     }
 }
 
@@ -163,8 +163,8 @@ fn a_front_that_is_dropped_is_told() {
         let frames = (0..4).map(|i| {
             let points = bodies[i % 2].positions_t0().clone();
             let mesh = Mesh::new("soup", points, bodies[0].faces().to_vec()).expect("a mesh");
-            detector.move_to(0, Body::still(mesh)).expect("the same mesh");
-            detector.detect().expect("an answer").degraded().contains(&Degraded::FrontDropped)
+            detector.move_to(0, Body::deformable(mesh)).expect("the same mesh");
+            detector.detect().expect("an answer").caveats().contains(&Caveat::FrontDropped)
         });
         frames.collect::<Vec<_>>()
     };
@@ -183,10 +183,10 @@ fn each_frame_is_told_by_itself() {
     for frame in frames.map(|frame| frame.expect("a scene")) {
         detector.move_to(0, frame.clone()).expect("a frame");
         let alone = ask(engine(), vec![frame], query);
-        assert!(!alone.degraded().is_empty());
-        told.push(alone.degraded().to_vec());
+        assert!(!alone.caveats().is_empty());
+        told.push(alone.caveats().to_vec());
         for _ in 0..2 {
-            assert_eq!(detector.detect().expect("an answer").degraded(), alone.degraded());
+            assert_eq!(detector.detect().expect("an answer").caveats(), alone.caveats());
         }
     }
     assert!(told[0] != told[1] && told[0] == told[2], "{told:?}");
@@ -208,7 +208,7 @@ fn memory_that_ends_is_an_error() {
         let (_, peak) = device.bytes();
         let (mut answered, mut sliced, mut built, mut refused) = (0, 0, 0, 0);
         for part in 0..=40 {
-            let limited = engine().limited(peak * part / 40);
+            let limited = engine().with_memory_limit(peak * part / 40);
             let mut detector = match OneQuery::new(limited.clone(), bodies.clone(), query) {
                 Ok(detector) => detector,
                 Err(error) => {

@@ -37,7 +37,7 @@ impl DeviceRows {
     /// So many rows, the first one at `address`, each `stride` bytes behind the one before. On a CPU the address is the host's.
     ///
     /// # Errors
-    /// [`Error::Choice`] for an address or a stride that is no multiple of the number's size, and for rows that end beyond 2^32
+    /// [`Error::InvalidArgument`] for an address or a stride that is no multiple of the number's size, and for rows that end beyond 2^32
     /// numbers.
     ///
     /// # Safety
@@ -47,7 +47,8 @@ impl DeviceRows {
     /// input or the end of the detector.
     pub unsafe fn new(address: u64, rows: usize, stride: usize, number: Number) -> Result<DeviceRows, Error> {
         let size = number.bytes();
-        let refused = |what: String, advice: &str| Err(Error::Choice { what, advice: advice.to_owned() });
+        let refused =
+            |what: String, advice: &str| Err(Error::InvalidArgument { what, advice: advice.to_owned() });
         if !address.is_multiple_of(size as u64) || !stride.is_multiple_of(size) {
             let what = format!("rows of {size} byte numbers at {address:#x}, {stride} bytes apart");
             return refused(what, "give an address and a stride that are multiples of the number's size");
@@ -222,7 +223,7 @@ mod tests {
             rows(64, usize::MAX, 16, Number::F32),
         ] {
             let error = wrong.expect_err("refused");
-            assert!(matches!(error, Error::Choice { .. }), "{error}");
+            assert!(matches!(error, Error::InvalidArgument { .. }), "{error}");
         }
     }
 
