@@ -161,8 +161,8 @@ impl NearmissQuery {
         };
         if let Some(certified) = query.certified_mut() {
             certified.tolerance = (self.tolerance != -1.0).then_some(self.tolerance);
-            certified.budget = (self.budget > 0).then_some(self.budget);
-            certified.separation = self.separation;
+            certified.max_iterations = (self.budget > 0).then_some(self.budget);
+            certified.min_separation = self.separation;
         }
         Ok(query.with_search(search))
     }

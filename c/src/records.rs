@@ -12,9 +12,8 @@ pub enum NearmissKind {
     /// `a` is a vertex, `b` a face of the same body or of one with a larger number.
     NEARMISS_VF = 0,
     /// `a` is a face, `b` a vertex of a body with a larger number.
-    NEARMISS_FV = 1,
     /// Two edges, numbered by (larger vertex, smaller vertex), ascending.
-    NEARMISS_EE = 2,
+    NEARMISS_EE = 1,
 }
 
 /// How sure an answer is.
@@ -92,9 +91,8 @@ pub struct NearmissNearPair {
     /// Their squared distance: its root is off by 192 half ulps of their extent at most. A square
     /// below 2^-1022 has fewer digits, one below 2^-1075 is 0, though the features may be apart.
     pub squared_distance: f64,
-    /// Of a vertex and a face the weights of the face's corners; of two edges how far along `a` and along `b`, from the end of the larger
-    /// index (0) to the other (1), and 0.
-    pub weights: [f64; 3],
+    /// Weights of the four vertices in the nearest points, in the order of `NearmissGeometry`.
+    pub weights: [f64; 4],
 }
 
 /// The two triangles of different bodies that are nearest, and where.
@@ -120,12 +118,14 @@ pub struct NearmissNearest {
 pub struct NearmissGeometry {
     /// The bodies of both.
     pub bodies: [u32; 2],
-    /// How many of the vertices are the first feature's: 1 of a vertex, 2 of an edge, 3 of a face. The others are the second one's.
-    pub first: u32,
+    /// Body of each vertex.
+    pub owners: [u32; 4],
     /// The vertices, by their indices in their bodies.
     pub vertices: [u32; 4],
     /// How much of each vertex is in its feature's point.
     pub weights: [f64; 4],
+    /// The same with a minus for the second feature.
+    pub signed_weights: [f64; 4],
     /// The nearest points of both at the time of contact.
     pub points: [[f64; 3]; 2],
     /// How far those are apart.
@@ -170,7 +170,6 @@ impl From<Kind> for NearmissKind {
     fn from(kind: Kind) -> NearmissKind {
         match kind {
             Kind::Vf => NearmissKind::NEARMISS_VF,
-            Kind::Fv => NearmissKind::NEARMISS_FV,
             Kind::Ee => NearmissKind::NEARMISS_EE,
         }
     }
@@ -178,7 +177,7 @@ impl From<Kind> for NearmissKind {
 
 impl From<&Contact> for NearmissContact {
     fn from(contact: &Contact) -> NearmissContact {
-        let Contact { kind, bodies, a, b, toi, toi_upper, status } = *contact;
+        let Contact { kind, bodies, feature_a: a, feature_b: b, toi, toi_upper, status } = *contact;
         let status = match status {
             Status::Unverified => NearmissStatus::NEARMISS_CONTACT,
             Status::Certified => NearmissStatus::NEARMISS_CERTIFIED,
@@ -196,7 +195,7 @@ impl From<&TrianglePair> for NearmissTrianglePair {
 
 impl From<&NearPair> for NearmissNearPair {
     fn from(pair: &NearPair) -> NearmissNearPair {
-        let NearPair { kind, bodies, a, b, squared_distance, weights, closest } = *pair;
+        let NearPair { kind, bodies, feature_a: a, feature_b: b, squared_distance, weights, closest } = *pair;
         let closest = match closest {
             Closest::VertexFace => NearmissClosest::NEARMISS_VERTEX_FACE,
             Closest::VertexEdge => NearmissClosest::NEARMISS_VERTEX_EDGE,
@@ -217,9 +216,20 @@ impl From<&NearestTriangles> for NearmissNearest {
 
 impl From<&ContactGeometry> for NearmissGeometry {
     fn from(geometry: &ContactGeometry) -> NearmissGeometry {
-        let ContactGeometry { bodies, first, vertices, weights, points, distance, normal } = *geometry;
-        let (bodies, first) = (numbers(bodies), first as u32);
-        NearmissGeometry { bodies, first, vertices, weights, points, distance, normal }
+        let ContactGeometry {
+            kind: _,
+            bodies,
+            owners,
+            vertices,
+            weights,
+            signed_weights,
+            points,
+            distance,
+            normal,
+        } = *geometry;
+        let bodies = numbers(bodies);
+        let owners = owners.map(|body| body.index() as u32);
+        NearmissGeometry { bodies, owners, vertices, weights, signed_weights, points, distance, normal }
     }
 }
 

@@ -110,7 +110,7 @@ struct Met {
 impl Met {
     fn add(&mut self, of: &ContactGeometry, undecided: bool, starts: &[(u32, usize)]) {
         let [a, b] = of.bodies.map(|body| starts[body.index()].0);
-        let (first, second) = of.vertices.split_at(of.first);
+        let (first, second) = of.vertices.split_at(of.kind.vertices_of_a());
         for (vertices, start) in [(first, a), (second, b)] {
             let mut own: Vec<u32> = vertices.iter().map(|vertex| vertex + start).collect();
             own.sort_unstable();

@@ -56,12 +56,11 @@ impl FileFaces {
             }
             Rows::Contacts(all) => {
                 let faces = |c: &Contact| match c.kind {
-                    Kind::Vf => Contact { b: self.face(c.bodies[1], c.b), ..*c },
-                    Kind::Fv => Contact { a: self.face(c.bodies[0], c.a), ..*c },
+                    Kind::Vf => Contact { feature_b: self.face(c.bodies[1], c.feature_b), ..*c },
                     Kind::Ee => *c,
                 };
                 let mut all: Vec<_> = all.iter().map(faces).collect();
-                let key = |c: &Contact| (c.kind, c.bodies, c.a, c.b);
+                let key = |c: &Contact| (c.kind, c.bodies, c.feature_a, c.feature_b);
                 all.sort_by(|c, d| key(c).cmp(&key(d)).then(c.toi.total_cmp(&d.toi)));
                 all.dedup_by_key(|c| key(c));
                 Rows::Contacts(all)

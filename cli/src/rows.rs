@@ -26,10 +26,10 @@ impl Columns<'_> {
         let triangles = if self.faces { ["face_a", "face_b"] } else { ["tri_a", "tri_b"] };
         let (own, bodies): (&[&str], bool) = match answer {
             Rows::Pairs(_) => (&triangles, true),
-            Rows::Contacts(_) => (&["kind", "a", "b", "toi", "toi_upper", "status"], true),
+            Rows::Contacts(_) => (&["kind", "feature_a", "feature_b", "toi", "toi_upper", "status"], true),
             Rows::Earliest(_) => (&["earliest_toi"], false),
             Rows::Distance(_) => (&NEAREST, true),
-            Rows::Near(_) => (&["kind", "a", "b", "squared_distance", "w0", "w1", "w2", "closest"], true),
+            Rows::Near(_) => (&NEAR, true),
         };
         let step = self.step.map(|_| "step");
         let bodies = Some(())
@@ -88,48 +88,43 @@ impl Columns<'_> {
     }
 }
 
-/// The columns of where a contact is. The first `vertices_of_a` of the vertices are those of the first feature, the others the second's.
-const GEOMETRY: [&str; 19] = [
-    "vertices_of_a",
-    "vertex_0",
-    "vertex_1",
-    "vertex_2",
-    "vertex_3",
-    "weight_0",
-    "weight_1",
-    "weight_2",
-    "weight_3",
-    "x_a",
-    "y_a",
-    "z_a",
-    "x_b",
-    "y_b",
-    "z_b",
-    "distance",
-    "normal_x",
-    "normal_y",
-    "normal_z",
+/// The columns of where a contact is: of a `vf` row the vertex and the face's corners, of an `ee` row the ends of both edges.
+const GEOMETRY: [&str; 18] = [
+    "vertex_0", "vertex_1", "vertex_2", "vertex_3", "weight_0", "weight_1", "weight_2", "weight_3", "x_a",
+    "y_a", "z_a", "x_b", "y_b", "z_b", "distance", "normal_x", "normal_y", "normal_z",
 ];
 
 fn place(g: &ContactGeometry) -> impl Iterator<Item = String> + use<> {
     let numbers = g.weights.into_iter().chain(g.points.into_iter().flatten());
     let numbers = numbers.chain([g.distance]).chain(g.normal).map(|x| x.to_string());
-    [g.first.to_string()].into_iter().chain(g.vertices.map(|vertex| vertex.to_string())).chain(numbers)
+    g.vertices.map(|vertex| vertex.to_string()).into_iter().chain(numbers)
 }
 
 fn kind(kind: Kind) -> String {
     match kind {
         Kind::Vf => "vf".into(),
-        Kind::Fv => "fv".into(),
         Kind::Ee => "ee".into(),
     }
 }
 
-fn near(pair: &NearPair) -> [String; 8] {
-    let [a, b] = [pair.a, pair.b].map(|i| i.to_string());
-    let [x, y, z] = pair.weights.map(|weight| weight.to_string());
-    [kind(pair.kind), a, b, pair.squared_distance.to_string(), x, y, z, pair.closest.name().into()]
+fn near(pair: &NearPair) -> [String; 9] {
+    let [a, b] = [pair.feature_a, pair.feature_b].map(|i| i.to_string());
+    let [w, x, y, z] = pair.weights.map(|weight| weight.to_string());
+    [kind(pair.kind), a, b, pair.squared_distance.to_string(), w, x, y, z, pair.closest.name().into()]
 }
+
+/// The columns of a near pair.
+const NEAR: [&str; 9] = [
+    "kind",
+    "feature_a",
+    "feature_b",
+    "squared_distance",
+    "weight_0",
+    "weight_1",
+    "weight_2",
+    "weight_3",
+    "closest",
+];
 
 /// The columns of the nearest triangles.
 const NEAREST: [&str; 9] = ["tri_a", "tri_b", "distance", "x_a", "y_a", "z_a", "x_b", "y_b", "z_b"];
@@ -142,11 +137,11 @@ fn nearest(n: &NearestTriangles) -> [String; 9] {
 
 fn contact(c: &Contact) -> [String; 6] {
     let status = match c.status {
-        Status::Unverified => "contact",
+        Status::Unverified => "unverified",
         Status::Certified => "certified",
         Status::Undecided => "undecided",
     };
-    let [a, b] = [c.a, c.b].map(|i| i.to_string());
+    let [a, b] = [c.feature_a, c.feature_b].map(|i| i.to_string());
     [kind(c.kind), a, b, c.toi.to_string(), c.toi_upper.to_string(), status.into()]
 }
 
@@ -187,8 +182,8 @@ struct Triangles {
 #[derive(Serialize)]
 struct Meeting {
     kind: Kind,
-    a: u32,
-    b: u32,
+    feature_a: u32,
+    feature_b: u32,
     toi: f64,
     toi_upper: f64,
     status: Status,
@@ -197,10 +192,10 @@ struct Meeting {
 #[derive(Serialize)]
 struct Nearness {
     kind: Kind,
-    a: u32,
-    b: u32,
+    feature_a: u32,
+    feature_b: u32,
     squared_distance: f64,
-    weights: [f64; 3],
+    weights: [f64; 4],
     closest: nearmiss::contacts::Closest,
 }
 
@@ -232,8 +227,8 @@ impl Serialize for JsonRows<'_> {
                 Named { body_a: of_a(bodies), body_b: of_b(bodies), row: Triangles { triangles } }
             })),
             Rows::Contacts(all) => to.collect_seq(all.iter().map(|c| {
-                let &Contact { kind, bodies, a, b, toi, toi_upper, status } = c;
-                let row = Meeting { kind, a, b, toi, toi_upper, status };
+                let &Contact { kind, bodies, feature_a, feature_b, toi, toi_upper, status } = c;
+                let row = Meeting { kind, feature_a, feature_b, toi, toi_upper, status };
                 Named { body_a: of_a(bodies), body_b: of_b(bodies), row }
             })),
             Rows::Earliest(toi) => toi.serialize(to),
@@ -243,8 +238,9 @@ impl Serialize for JsonRows<'_> {
                 Named { body_a: of_a(bodies), body_b: of_b(bodies), row }
             })),
             Rows::Near(near) => to.collect_seq(near.iter().map(|pair| {
-                let &NearPair { kind, bodies, a, b, squared_distance, weights, closest } = pair;
-                let row = Nearness { kind, a, b, squared_distance, weights, closest };
+                let &NearPair { kind, bodies, feature_a, feature_b, squared_distance, weights, closest } =
+                    pair;
+                let row = Nearness { kind, feature_a, feature_b, squared_distance, weights, closest };
                 Named { body_a: of_a(bodies), body_b: of_b(bodies), row }
             })),
         }

@@ -149,7 +149,7 @@ impl Truths {
 /// Every question with every solver, and what comes within a separation: about a hundredth of the mean edge.
 fn questions(bodies: &[Body]) -> impl Iterator<Item = (String, Query)> {
     let hundredth = 0.01 / Certified::TOLERANCE * of_edges(bodies);
-    let apart = Continuous::by(Certified { separation: hundredth, ..Certified::default() });
+    let apart = Continuous::by(Certified { min_separation: hundredth, ..Certified::default() });
     let every = Query::every().map(|query| (query, false));
     every.chain([(apart.into(), true)]).map(move |(query, is_apart)| {
         // About a tenth of the mean edge, which a scene of points has not.

@@ -47,14 +47,13 @@ impl Vtp {
             normal: g.normal,
         };
         match answer {
-            Rows::Contacts(all) => self.entries.extend(
-                all.iter()
-                    .zip(geometry)
-                    .map(|(c, g)| entry(c.kind, [c.a, c.b], Some(([c.toi, c.toi_upper], c.status as u8)), g)),
-            ),
+            Rows::Contacts(all) => self.entries.extend(all.iter().zip(geometry).map(|(c, g)| {
+                entry(c.kind, [c.feature_a, c.feature_b], Some(([c.toi, c.toi_upper], c.status as u8)), g)
+            })),
             Rows::Near(all) => {
-                self.entries
-                    .extend(all.iter().zip(geometry).map(|(p, g)| entry(p.kind, [p.a, p.b], None, g)));
+                self.entries.extend(
+                    all.iter().zip(geometry).map(|(p, g)| entry(p.kind, [p.feature_a, p.feature_b], None, g)),
+                );
             }
             Rows::Distance(Some(nearest)) => self.entries.push(of_triangles(step, nearest)),
             // `args` refuses these.

@@ -8,19 +8,23 @@ use nearmiss_kernels::prim::near::{corner_weights, edge_edge, vertex_face};
 
 /// Where the two features of a contact, or of a pair within a distance, are nearest: see [`Detector::geometry`](crate::Detector::geometry).
 ///
-/// Vertices are those of the first feature, then those of the second: one of a vertex, two of an edge (the larger index first), three of a
-/// face in its own order. [`ContactGeometry::first`] says how many are the first one's.
+/// Four vertices: a vertex and the three corners of a face in its own order, or the ends of two edges, the larger index of each first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ContactGeometry {
-    /// The bodies of both.
+    /// Kind of the row.
+    pub kind: Kind,
+    /// Bodies of both features, as in the row.
     pub bodies: [BodyId; 2],
-    /// How many of the vertices are the first feature's.
-    pub first: usize,
-    /// The vertices, by their indices in their bodies.
+    /// Body of each vertex.
+    pub owners: [BodyId; 4],
+    /// The vertices: their indices in their bodies.
     pub vertices: [u32; 4],
-    /// How much of each vertex is in its feature's point: none negative, and of each feature their sum is 1 but for a rounding.
+    /// Weight of each vertex in the nearest point of its feature, at least 0. Those of each feature sum to 1, up to rounding.
     pub weights: [f64; 4],
+    /// The same with a minus for the second feature: `sum(signed_weights[i] * x[i])` is the difference of the nearest points, and
+    /// `signed_weights[i] * normal` the gradient of their distance by vertex `i`.
+    pub signed_weights: [f64; 4],
     /// The nearest points of both at the time of contact, in the unit of the positions.
     pub points: [[f64; 3]; 2],
     /// How far those are apart.
@@ -51,15 +55,15 @@ pub struct Named {
 
 impl From<&Contact> for Named {
     fn from(contact: &Contact) -> Named {
-        let Contact { kind, bodies, a, b, toi, .. } = *contact;
-        Named { kind, bodies, features: [a, b], time: toi }
+        let Contact { kind, bodies, feature_a, feature_b, toi, .. } = *contact;
+        Named { kind, bodies, features: [feature_a, feature_b], time: toi }
     }
 }
 
 impl From<&NearPair> for Named {
     fn from(pair: &NearPair) -> Named {
-        let NearPair { kind, bodies, a, b, .. } = *pair;
-        Named { kind, bodies, features: [a, b], time: 0.0 }
+        let NearPair { kind, bodies, feature_a, feature_b, .. } = *pair;
+        Named { kind, bodies, features: [feature_a, feature_b], time: 0.0 }
     }
 }
 
@@ -68,7 +72,7 @@ impl ContactGeometry {
     pub fn of(named: &Named, vertices: [u32; 4], corners: &Corners) -> ContactGeometry {
         let at = |t: f64| corners.map(|[t0, t1]| Vector3::from(t0).lerp(&Vector3::from(t1), t));
         let (now, start, end) = (at(named.time), at(0.0), at(1.0));
-        let (first, weights) = weights(named.kind, now);
+        let (first, weights) = (named.kind.vertices_of_a(), weights(named.kind, now));
         let point = |corners: &[Vector3<f64>; 4], range: std::ops::Range<usize>| -> Vector3<f64> {
             range.map(|i| corners[i] * weights[i]).sum()
         };
@@ -77,7 +81,6 @@ impl ContactGeometry {
         let sides = |a: usize, b: usize| unit(now[b] - now[a]);
         let across = match named.kind {
             Kind::Vf => sides(1, 2).cross(&sides(1, 3)),
-            Kind::Fv => sides(0, 1).cross(&sides(0, 2)),
             Kind::Ee => sides(0, 1).cross(&sides(2, 3)),
         };
         let extent = now.iter().map(|p| length(&(p - now[0]))).fold(0.0, f64::max);
@@ -97,10 +100,12 @@ impl ContactGeometry {
             if side < 0.0 { -across } else { across }
         };
         ContactGeometry {
+            kind: named.kind,
             bodies: named.bodies,
-            first,
+            owners: [0, 1, 2, 3].map(|at| named.bodies[usize::from(at >= first)]),
             vertices,
             weights,
+            signed_weights: [0, 1, 2, 3].map(|at| if at < first { weights[at] } else { -weights[at] }),
             points: [point(&now, 0..first).into(), point(&now, first..4).into()],
             distance: length(&apart),
             normal: unit(normal).into(),
@@ -120,8 +125,13 @@ fn unit(v: Vector3<f64>) -> Vector3<f64> {
     if length > 0.0 { v / length } else { Vector3::zeros() }
 }
 
-/// How many vertices are the first feature's, and the weights of the nearest points.
-fn weights(kind: Kind, at: [Vector3<f64>; 4]) -> (usize, [f64; 4]) {
+/// Weights of the ends of two edges, the larger index first, at these places along them.
+pub(crate) fn edge_weights([s, t]: [f64; 2]) -> [f64; 4] {
+    [1.0 - s, s, 1.0 - t, t]
+}
+
+/// Weights of the nearest points.
+fn weights(kind: Kind, at: [Vector3<f64>; 4]) -> [f64; 4] {
     let [a, b, c, d] = at.map(|p| Vec3(p.into()));
     // However far apart they are.
     let far = f64::INFINITY;
@@ -129,17 +139,9 @@ fn weights(kind: Kind, at: [Vector3<f64>; 4]) -> (usize, [f64; 4]) {
         Kind::Vf => {
             let [x, y, z] =
                 vertex_face(a, [b, c, d], far).map_or([1.0, 0.0, 0.0], |near| corner_weights(near.at));
-            (1, [1.0, x, y, z])
+            [1.0, x, y, z]
         }
-        Kind::Fv => {
-            let [x, y, z] =
-                vertex_face(d, [a, b, c], far).map_or([1.0, 0.0, 0.0], |near| corner_weights(near.at));
-            (3, [x, y, z, 1.0])
-        }
-        Kind::Ee => {
-            let [s, t] = edge_edge([a, b], [c, d], far).map_or([0.0, 0.0], |near| near.at);
-            (2, [1.0 - s, s, 1.0 - t, t])
-        }
+        Kind::Ee => edge_weights(edge_edge([a, b], [c, d], far).map_or([0.0, 0.0], |near| near.at)),
     }
 }
 
@@ -165,12 +167,9 @@ mod tests {
             let falls = [[1.0, 2.0, side], [1.0, 2.0, -side]];
             let [a, b, c] = FACE.map(still);
             let vf = geometry(Kind::Vf, 0.5, [falls, a, b, c]);
-            assert_eq!((vf.first, vf.weights, vf.distance), (1, [1.0, 0.25, 0.25, 0.5], 0.0));
+            assert_eq!((vf.weights, vf.distance), ([1.0, 0.25, 0.25, 0.5], 0.0));
             assert_eq!((vf.points, vf.normal), ([[1.0, 2.0, 0.0]; 2], [0.0, 0.0, side]));
-            // The face's turn: it would go the other way.
-            let fv = geometry(Kind::Fv, 0.5, [a, b, c, falls]);
-            assert_eq!((fv.first, fv.weights), (3, [0.25, 0.25, 0.5, 1.0]));
-            assert_eq!(fv.normal, [0.0, 0.0, -side]);
+            assert_eq!(vf.signed_weights, [1.0, -0.25, -0.25, -0.5]);
             // It touches at the start, and goes on.
             let through = geometry(Kind::Vf, 0.0, [[[1.0, 2.0, 0.0], [1.0, 2.0, -side]], a, b, c]);
             assert_eq!(through.normal, [0.0, 0.0, side]);
@@ -182,7 +181,8 @@ mod tests {
         let [a, b] = [[-1.0, 0.0, 0.0], [3.0, 0.0, 0.0]].map(still);
         let [c, d] = [[0.0, -1.0], [0.0, 1.0]].map(|[x, y]| [[x, y, 2.0], [x, y, -2.0]]);
         let ee = geometry(Kind::Ee, 0.5, [a, b, c, d]);
-        assert_eq!((ee.first, ee.weights, ee.points), (2, [0.75, 0.25, 0.5, 0.5], [[0.0; 3]; 2]));
+        assert_eq!((ee.weights, ee.points), ([0.75, 0.25, 0.5, 0.5], [[0.0; 3]; 2]));
+        assert_eq!(ee.signed_weights, [0.75, 0.25, -0.5, -0.5]);
         assert_eq!(ee.normal, [0.0, 0.0, -1.0]);
         // Before that they are apart, and their points say in which direction.
         let early = geometry(Kind::Ee, 0.25, [a, b, c, d]);

@@ -1,7 +1,17 @@
 //! The hash of an answer.
 
-use super::{Contacts, Rows};
+use super::{Contacts, Kind, Rows};
 use crate::scene::BodyId;
+
+impl Kind {
+    /// The kind's number in hashes. Edges keep the 2 of the first recorded hashes, so that those stay comparable.
+    pub(super) fn in_hash(self) -> u8 {
+        match self {
+            Kind::Vf => 0,
+            Kind::Ee => 2,
+        }
+    }
+}
 
 impl Contacts {
     /// xxh3 over the canonical answer: the same for equal answers on every machine. Each contact adds its kind, its
@@ -22,9 +32,9 @@ impl Contacts {
                     if told {
                         c.bodies.iter().for_each(|body| hash.update(&body.0.to_le_bytes()));
                     }
-                    hash.update(&[c.kind as u8, c.status as u8]);
-                    hash.update(&c.a.to_le_bytes());
-                    hash.update(&c.b.to_le_bytes());
+                    hash.update(&[c.kind.in_hash(), c.status as u8]);
+                    hash.update(&c.feature_a.to_le_bytes());
+                    hash.update(&c.feature_b.to_le_bytes());
                     hash.update(&c.toi.to_le_bytes());
                     hash.update(&c.toi_upper.to_le_bytes());
                 }

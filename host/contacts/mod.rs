@@ -19,6 +19,7 @@ mod work;
 pub use caveats::{Caveat, TURN_DEGREES};
 pub use first::FirstContact;
 pub use geometry::ContactGeometry;
+pub(crate) use geometry::edge_weights;
 pub use located::Located;
 pub use near::{Closest, NearPair};
 pub use nearest::NearestTriangles;
@@ -33,17 +34,25 @@ use crate::query::{Query, TypedQuery};
 use crate::scene::BodyId;
 use nearmiss_kernels::prim::inclusion::Verdict;
 
-/// Which features meet. Its number (`as u8`) stands for it in the hash, in files and in other languages.
+/// Kind of a pair of features. Its number (`as u8`) is used in files and in other languages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 #[repr(u8)]
 pub enum Kind {
-    /// `a` is a vertex, `b` a face of the same body or of one with a larger number.
+    /// A vertex and a face. The vertex is `feature_a`, whichever body has it.
     Vf = 0,
-    /// `a` is a face, `b` a vertex of a body with a larger number.
-    Fv = 1,
     /// Two edges, numbered by (larger vertex, smaller vertex), ascending.
-    Ee = 2,
+    Ee = 1,
+}
+
+impl Kind {
+    /// Number of vertices of `feature_a`: the first of the four of [`ContactGeometry`].
+    pub const fn vertices_of_a(self) -> usize {
+        match self {
+            Kind::Vf => 1,
+            Kind::Ee => 2,
+        }
+    }
 }
 
 /// How sure an answer is. Its number (`as u8`) stands for it in the hash, in files and in other languages.
@@ -77,12 +86,12 @@ impl Status {
 pub struct Contact {
     /// Which features.
     pub kind: Kind,
-    /// The bodies of both, the smaller number first.
+    /// Bodies of both features, in their order. Of two edges the smaller number comes first.
     pub bodies: [BodyId; 2],
-    /// The first feature's index in its body.
-    pub a: u32,
-    /// The second feature's index in its body.
-    pub b: u32,
+    /// The vertex, or the first edge: its index in its body.
+    pub feature_a: u32,
+    /// The face, or the second edge: its index in its body.
+    pub feature_b: u32,
     /// First time of contact, or of coming as near as the separation, in [0, 1]; by a certified solver not after it.
     pub toi: f64,
     /// The time by which they have met, in [toi, 1]; of an undecided pair the end of the step.
@@ -312,6 +321,6 @@ impl TrianglePair {
 impl Contact {
     /// What contacts are ordered by.
     pub(crate) fn key(&self) -> (Kind, [(BodyId, u32); 2]) {
-        (self.kind, [(self.bodies[0], self.a), (self.bodies[1], self.b)])
+        (self.kind, [(self.bodies[0], self.feature_a), (self.bodies[1], self.feature_b)])
     }
 }

@@ -29,14 +29,13 @@ impl Closest {
         }
     }
 
-    /// Of a pair of that kind, by the weights of [`NearPair::weights`]: a corner of weight 0 and an end of an edge have no part.
-    pub fn of(kind: Kind, [x, y, z]: [f64; 3]) -> Closest {
-        let inside = |t: f64| u32::from(t > 0.0 && t < 1.0);
-        let corner = |w: f64| u32::from(w > 0.0);
-        match (kind, inside(x) + inside(y), corner(x) + corner(y) + corner(z)) {
-            (Kind::Ee, 2, _) => Closest::EdgeEdge,
-            (Kind::Ee, 1, _) | (Kind::Vf | Kind::Fv, _, 2) => Closest::VertexEdge,
-            (Kind::Vf | Kind::Fv, _, 3) => Closest::VertexFace,
+    /// Closest parts of a pair with these [weights](NearPair::weights): a vertex of weight 0 has no part.
+    pub fn of(kind: Kind, weights: [f64; 4]) -> Closest {
+        let with_a_part = weights.iter().filter(|&&weight| weight > 0.0).count();
+        match (kind, with_a_part) {
+            (Kind::Ee, 4) => Closest::EdgeEdge,
+            (Kind::Vf, 4) => Closest::VertexFace,
+            (_, 3) => Closest::VertexEdge,
             _ => Closest::VertexVertex,
         }
     }
@@ -48,36 +47,37 @@ impl Closest {
 pub struct NearPair {
     /// Which features.
     pub kind: Kind,
-    /// The bodies of both, the smaller number first.
+    /// Bodies of both features, in their order. Of two edges the smaller number comes first.
     pub bodies: [BodyId; 2],
-    /// The first feature's index in its body.
-    pub a: u32,
-    /// The second feature's index in its body.
-    pub b: u32,
+    /// The vertex, or the first edge: its index in its body.
+    pub feature_a: u32,
+    /// The face, or the second edge: its index in its body.
+    pub feature_b: u32,
     /// Their squared distance: its root is off by 192 half ulps of their extent at most. A square below 2^-1022 has fewer digits,
     /// one below 2^-1075 is 0, though the features may be apart.
     pub squared_distance: f64,
-    /// Where they are nearest. Of a vertex and a face the weights of the face's corners, in the order in which the face names
-    /// them; of two edges how far along `a` and along `b`, from the end of the larger index (0) to the other (1), and 0.
-    pub weights: [f64; 3],
-    /// What is nearest of the two: that of them for which the weights are neither 0 nor 1.
+    /// Weights of the four vertices in the two nearest points, in the order of [`ContactGeometry`](super::ContactGeometry): the
+    /// vertex and the three corners of the face, or the ends of both edges, the larger index first. Those of each feature sum to 1.
+    pub weights: [f64; 4],
+    /// Nearest parts of both features: those whose weights are neither 0 nor 1.
     pub closest: Closest,
 }
 
 impl NearPair {
     /// What pairs are ordered by.
     pub(crate) fn key(&self) -> (Kind, [(BodyId, u32); 2]) {
-        (self.kind, [(self.bodies[0], self.a), (self.bodies[1], self.b)])
+        (self.kind, [(self.bodies[0], self.feature_a), (self.bodies[1], self.feature_b)])
     }
 
-    /// What a hash is told.
+    /// Bytes of the pair in a hash.
     pub(super) fn bytes(&self) -> [u8; 42] {
         let mut bytes = [0; 42];
-        bytes[0] = self.kind as u8;
+        bytes[0] = self.kind.in_hash();
         bytes[1] = self.closest as u8;
-        bytes[2..6].copy_from_slice(&self.a.to_le_bytes());
-        bytes[6..10].copy_from_slice(&self.b.to_le_bytes());
-        let [x, y, z] = self.weights;
+        bytes[2..6].copy_from_slice(&self.feature_a.to_le_bytes());
+        bytes[6..10].copy_from_slice(&self.feature_b.to_le_bytes());
+        let [_, x, y, z] = self.weights;
+        let [x, y, z] = if self.kind == Kind::Ee { [x, z, 0.0] } else { [x, y, z] };
         for (to, from) in bytes[10..].chunks_exact_mut(8).zip([self.squared_distance, x, y, z]) {
             to.copy_from_slice(&from.to_le_bytes());
         }

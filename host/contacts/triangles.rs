@@ -53,14 +53,12 @@ pub fn triangle_contacts(contacts: &[Contact], bodies: &[Body]) -> Vec<TriangleC
     let incidences: Vec<Incidence> = bodies.iter().map(Incidence::new).collect();
     let mut earliest: HashMap<TrianglePair, f64> = HashMap::new();
     for contact in contacts {
-        let (a, b) = (contact.a as usize, contact.b as usize);
+        let (a, b) = (contact.feature_a as usize, contact.feature_b as usize);
         let [first, second] = contact.bodies.map(|body| incidences.get(body.index()));
         let (Some(first), Some(second)) = (first, second) else { continue };
         let within = contact.bodies[0] == contact.bodies[1];
-        let whole = |face: u32| vec![face];
         let (of_a, of_b) = match contact.kind {
-            Kind::Vf => (first.of_vertex[a].clone(), whole(contact.b)),
-            Kind::Fv => (whole(contact.a), second.of_vertex[b].clone()),
+            Kind::Vf => (first.of_vertex[a].clone(), vec![contact.feature_b]),
             Kind::Ee => (first.of_edge[a].clone(), second.of_edge[b].clone()),
         };
         for &p in &of_a {
@@ -69,8 +67,9 @@ pub fn triangle_contacts(contacts: &[Contact], bodies: &[Body]) -> Vec<TriangleC
                 if within && p_face.iter().any(|v| q_face.contains(v)) {
                     continue;
                 }
-                let triangles = if within { [p.min(q), p.max(q)] } else { [p, q] };
-                let pair = TrianglePair { bodies: contact.bodies, triangles };
+                let mut ends = [(contact.bodies[0], p), (contact.bodies[1], q)];
+                ends.sort_unstable();
+                let pair = TrianglePair { bodies: ends.map(|end| end.0), triangles: ends.map(|end| end.1) };
                 let toi = earliest.entry(pair).or_insert(contact.toi);
                 *toi = toi.min(contact.toi);
             }

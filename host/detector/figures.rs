@@ -58,7 +58,7 @@ impl Detector {
             largest_tolerance: tolerances
                 .filter(|tolerances| tolerances.least < tolerances.largest)
                 .map(|tolerances| tolerances.largest),
-            separation: query.certified().map(|certified| certified.params().separation),
+            separation: query.certified().map(|certified| certified.params().min_separation),
             distance: if let Query::Near(near) = query { Some(near.distance) } else { None },
             nearest: contacts.nearest().copied(),
             earliest_toi: contacts.earliest_toi(),

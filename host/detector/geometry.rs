@@ -70,10 +70,6 @@ fn corners(layout: &Layout, named: &Named) -> Option<([u32; 4], [u32; 4])> {
             let [x, y, z] = face(b.triangle, q)?;
             ([a.vertex, b.vertex, b.vertex, b.vertex], [a.vertex.checked_add(p)?, x, y, z])
         }
-        Kind::Fv => {
-            let [x, y, z] = face(a.triangle, p)?;
-            ([a.vertex, a.vertex, a.vertex, b.vertex], [x, y, z, b.vertex.checked_add(q)?])
-        }
         Kind::Ee => {
             let ([w, x], [y, z]) = (edge(a.edge, p)?, edge(b.edge, q)?);
             ([a.vertex, a.vertex, b.vertex, b.vertex], [w, x, y, z])

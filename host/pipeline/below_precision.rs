@@ -75,7 +75,7 @@ impl BelowPrecision {
         let boxes: Vec<Bounds> = bodies.iter().map(bounds).collect();
         let large = (0..bodies.len()).filter(|&i| is_long(extent(&boxes[i]), least));
         let long: Vec<(usize, f64)> = large.map(|i| (i, longest_side(&bodies[i]))).collect();
-        let within = certified.separation + certified.tolerance.unwrap_or(0.0);
+        let within = certified.min_separation + certified.tolerance.unwrap_or(0.0);
         let meets = |i: usize, j: usize| may_meet(bodies, [i, j]) && are_near([&boxes[i], &boxes[j]], within);
         let has_partner = |(i, side): (usize, f64)| {
             let mut others = (0..bodies.len()).filter(|&j| is_long(side, tolerance(&bodies[i], &bodies[j])));

@@ -6,7 +6,7 @@ use super::counts::Counts;
 use super::{Found, Hits, Layout, Listed, Stages};
 use crate::contacts::{
     Caveat, Closest, Contact, Contacts, Front, Kind, NearPair, NearestTriangles, Queues, Rows, Stats, Status,
-    TrianglePair, sort,
+    TrianglePair, edge_weights, sort,
 };
 use crate::error::Error;
 use crate::memory;
@@ -82,7 +82,15 @@ fn rows(found: &Found, layout: &Layout, looks: &Looks) -> Rows {
         Listed::Hits { hits, certified } => {
             let contact = |(kind, bodies, [a, b]): Features, verdict: &Verdict| {
                 let status = Status::of(*certified, verdict);
-                Contact { kind, bodies, a, b, toi: verdict.toi, toi_upper: verdict.toi_upper, status }
+                Contact {
+                    kind,
+                    bodies,
+                    feature_a: a,
+                    feature_b: b,
+                    toi: verdict.toi,
+                    toi_upper: verdict.toi_upper,
+                    status,
+                }
             };
             let [of_vf, of_ee] = hits.each();
             let vf = |hit: &Hit| contact(vertex_face(layout, [hit.a, hit.b]), &hit.verdict);
@@ -114,9 +122,14 @@ fn near_pairs(hits: &Hits<NearHit>, ordered: bool, layout: &Layout, looks: &Look
 
 /// Two features within a distance.
 fn near_pair((kind, bodies, [a, b]): Features, hit: &NearHit) -> NearPair {
-    let weights = if kind == Kind::Ee { [hit.at[0], hit.at[1], 0.0] } else { corner_weights(hit.at) };
+    let weights = if kind == Kind::Ee {
+        edge_weights(hit.at)
+    } else {
+        let [x, y, z] = corner_weights(hit.at);
+        [1.0, x, y, z]
+    };
     let closest = Closest::of(kind, weights);
-    NearPair { kind, bodies, a, b, squared_distance: hit.squared, weights, closest }
+    NearPair { kind, bodies, feature_a: a, feature_b: b, squared_distance: hit.squared, weights, closest }
 }
 
 /// The nearest triangles, in the numbering of the bodies.

@@ -8,9 +8,9 @@ use crate::device::{Buffer, Device, View};
 use crate::error::Error;
 use crate::pipeline::{launch, purpose};
 use bytemuck::Pod;
-use nearmiss_kernels::abi::{BodyRecord, Counters, Named, OrderArgs, Output, Span, counter};
+use nearmiss_kernels::abi::{Counters, Named, OrderArgs, Output, Span, counter};
 use nearmiss_kernels::entry::{self, Entry};
-use nearmiss_kernels::stage::order::KIND_BITS;
+use nearmiss_kernels::stage::order::LIST_BITS;
 
 /// A kind of contact that the device can order.
 pub trait Ordered: Pod + Named {
@@ -91,7 +91,7 @@ impl<T: Ordered> Order<T> {
     /// Whether names and places share a word, a place having 32 bits at most. Else the lists stay as they are, and the host
     /// orders them.
     pub fn fits(&self) -> bool {
-        KIND_BITS + 2 * self.bits + self.number_bits() <= 64
+        LIST_BITS + 2 * self.bits + self.number_bits() <= 64
     }
 
     /// The entries of the lists in order, if they were ordered.
@@ -103,8 +103,7 @@ impl<T: Ordered> Order<T> {
         (self.list.demand(counters) == all).then(|| self.list.view(counters)).transpose()
     }
 
-    /// Orders one list or two; what does not fit is counted and left. `bodies` tells of vertices and faces which is of the earlier
-    /// body; empty where that does not matter.
+    /// Orders one list or two. Entries beyond the capacity are counted and left out.
     ///
     /// # Errors
     /// Those of the device.
@@ -113,7 +112,7 @@ impl<T: Ordered> Order<T> {
         device: &Device,
         first: &List<T>,
         second: Option<&List<T>>,
-        (bodies, counters): (Span<BodyRecord>, Counters),
+        counters: Counters,
     ) -> Result<(), Error> {
         // Without an answer nothing is counted as ordered.
         if !self.fits() {
@@ -121,7 +120,7 @@ impl<T: Ordered> Order<T> {
         }
         let capacity = self.list.capacity();
         let bytes: Vec<u32> =
-            (0..KIND_BITS + 2 * self.bits).step_by(8).map(|at| at + self.number_bits()).collect();
+            (0..LIST_BITS + 2 * self.bits).step_by(8).map(|at| at + self.number_bits()).collect();
         let words = bytes.len() * words(device, capacity as u32);
         if self.items[0].len() != capacity || self.counts.len() != words {
             let keys = device.of(purpose::ORDER);
@@ -137,7 +136,6 @@ impl<T: Ordered> Order<T> {
             out,
             items: items.span(),
             tiles: counted(device, counts, capacity as u32, 0),
-            bodies,
             bits: self.bits,
             number_bits: self.number_bits(),
         };
@@ -192,13 +190,10 @@ mod tests {
     }
 
     /// Orders two lists on a device, with so much room.
-    fn ordered<T: Ordered>(device: &Device, lists: [&[T]; 2], turn: u32, capacity: usize) -> Outcome<T> {
+    fn ordered<T: Ordered>(device: &Device, lists: [&[T]; 2], capacity: usize) -> Outcome<T> {
         let at = |n| Offsets { vertex: n, triangle: n, edge: n };
         let layout = Layout { starts: vec![at(0), at(OF_A_BODY), at(2 * OF_A_BODY)], ..Layout::default() };
         let mut order = Order::<T>::new(device, &layout, capacity).expect("memory");
-        let body = |n| BodyRecord { triangle: n, vertex: n, ..BodyRecord::default() };
-        let bodies: &[BodyRecord] = &[body(0), body(turn)];
-        let bodies = device.upload(if turn == u32::MAX { &[] } else { bodies }).expect("memory");
         let mut counts = Counts::default();
         let lists = [(counter::VF_HITS, lists[0]), (counter::EE_HITS, lists[1])].map(|(at, entries)| {
             let mut list = List::new(device, "contacts", at, entries.len()).expect("memory");
@@ -210,8 +205,7 @@ mod tests {
         for _ in 0..2 {
             counts[counter::ORDERED] = 0;
             counters.write(&counts).expect("written");
-            let given = (bodies.span(), counters.counters());
-            order.run(device, &lists[0], Some(&lists[1]), given).expect("no rule is broken");
+            order.run(device, &lists[0], Some(&lists[1]), counters.counters()).expect("no rule is broken");
             counts = counters.read().expect("read");
         }
         let demand = order.list.demand(&counts);
@@ -221,16 +215,11 @@ mod tests {
         (all, demand)
     }
 
-    /// What they should become: by the first body's features, by the second's, then edges.
-    fn wanted<T: Ordered>(lists: [&[T]; 2], turn: u32) -> Vec<T> {
-        let key = |list: usize, [a, b]: [u32; 2]| match list {
-            // A vertex of the second body and a face of the first.
-            0 if a >= turn && b < turn => (1, b, a),
-            _ => (2 * list, a, b),
-        };
+    /// The expected order: the first list, then the second, each by both features.
+    fn wanted<T: Ordered>(lists: [&[T]; 2]) -> Vec<T> {
         let mut all: Vec<(usize, T)> =
             (0..2).flat_map(|i| lists[i].iter().map(move |&contact| (i, contact))).collect();
-        all.sort_by_key(|(list, contact)| key(*list, contact.name()));
+        all.sort_by_key(|(list, contact)| (*list, contact.name()));
         all.into_iter().map(|(_, contact)| contact).collect()
     }
 
@@ -239,15 +228,15 @@ mod tests {
         for device in machines() {
             for (vf, ee) in [(0, 0), (1, 0), (0, 1), (300, 0), (700, 900), (3, 2_500)] {
                 let (vf, ee) = (hits(5, vf), hits(6, ee));
-                for (turn, capacity) in [(OF_A_BODY, 4_096), (u32::MAX, vf.len() + ee.len())] {
+                for capacity in [4_096, vf.len() + ee.len()] {
                     let lists = [&vf[..], &ee[..]];
-                    let (found, demand) = ordered(&device, lists, turn, capacity);
+                    let (found, demand) = ordered(&device, lists, capacity);
                     assert_eq!(demand, (vf.len() + ee.len()) as u64);
-                    assert!(found.expect("capacity") == wanted(lists, turn), "{}: {lists:?}", device.name());
+                    assert!(found.expect("capacity") == wanted(lists), "{}: {lists:?}", device.name());
                 }
             }
             let pairs: Vec<Pair> = hits(7, 400).iter().map(|hit| Pair { a: hit.a, b: hit.b }).collect();
-            let (found, _) = ordered(&device, [&pairs, &[]], u32::MAX, 500);
+            let (found, _) = ordered(&device, [&pairs, &[]], 500);
             assert_eq!(found, Some(wanted([&pairs, &[]], u32::MAX)));
         }
     }
@@ -265,8 +254,8 @@ mod tests {
     fn more_contacts_than_room_are_counted() {
         for device in machines() {
             let all = hits(9, 300);
-            assert_eq!(ordered(&device, [&all[..100], &all[100..]], OF_A_BODY, 299), (None, 300));
-            assert_eq!(ordered(&device, [&all[..], &[]], OF_A_BODY, 0), (None, 300));
+            assert_eq!(ordered(&device, [&all[..100], &all[100..]], 299), (None, 300));
+            assert_eq!(ordered(&device, [&all[..], &[]], 0), (None, 300));
         }
     }
 
@@ -282,7 +271,7 @@ mod tests {
         list.put(&[Pair { a: 1, b: 2 }], &mut counts).expect("written");
         let counters = FrameCounters::new(&device).expect("memory");
         let launches = device.launches();
-        order.run(&device, &list, None, (Span::EMPTY, counters.counters())).expect("nothing to do");
+        order.run(&device, &list, None, counters.counters()).expect("nothing to do");
         assert_eq!(device.launches(), launches);
         assert!(order.view(&counts, &[&list]).expect("read").is_none());
     }

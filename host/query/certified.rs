@@ -22,10 +22,10 @@ pub struct Certified {
     /// [`Certified::TOLERANCE`] of a body's mean edge.
     pub tolerance: Option<f64>,
     /// The most boxes that are looked at for a pair before it is left undecided; `None` for
-    /// [`Certified::BUDGET`]. Refused in f32 alone without a separation, where no boxes are tested.
-    pub budget: Option<u32>,
+    /// [`Certified::MAX_ITERATIONS`]. Refused in f32 alone without a separation, where no boxes are tested.
+    pub max_iterations: Option<u32>,
     /// Features that come this near are in contact, a length; times are then of coming so near. 0 for touching.
-    pub separation: f64,
+    pub min_separation: f64,
 }
 
 /// What a certified solver computes in. None misses; they differ in what they leave undecided, and in cost.
@@ -52,11 +52,11 @@ impl Certified {
     /// order in which edges are summed. Smaller costs more; larger takes more near misses for contacts.
     pub const TOLERANCE: f64 = 1e-4;
     /// The budget when none is named: ten times what the hardest pairs of public scenes take.
-    pub const BUDGET: u32 = Params::BUDGET;
+    pub const MAX_ITERATIONS: u32 = Params::MAX_ITERATIONS;
 
     /// In that precision, all other choices at their defaults.
     pub const fn by(precision: CertifiedPrecision) -> Certified {
-        Certified { precision, tolerance: None, budget: None, separation: 0.0 }
+        Certified { precision, tolerance: None, max_iterations: None, min_separation: 0.0 }
     }
 
     /// Its name.
@@ -71,14 +71,14 @@ impl Certified {
     /// Whether the lengths are lengths, and there is a budget.
     pub(super) fn check(&self) -> Result<(), Error> {
         let is_length = |x: f64| (0.0..f64::INFINITY).contains(&x);
-        let (what, advice) = if !is_length(self.separation) {
+        let (what, advice) = if !is_length(self.min_separation) {
             ("a separation that is no length", "give a length from 0")
-        } else if self.tolerance.is_some_and(|t| !is_length(t)) || self.budget == Some(0) {
+        } else if self.tolerance.is_some_and(|t| !is_length(t)) || self.max_iterations == Some(0) {
             (
                 "a tolerance that is no length, or a budget of no boxes",
                 "give a tolerance from 0, and at least 1 box",
             )
-        } else if self.budget.is_some() && !self.tests_boxes() {
+        } else if self.max_iterations.is_some() && !self.tests_boxes() {
             (
                 "a budget of boxes for certified-f32 without a separation, which tests no boxes",
                 "leave it out, or choose certified or certified-f64",
@@ -97,7 +97,7 @@ impl Certified {
     /// Whether a separation above 0 is asked for.
     #[doc(hidden)]
     pub fn is_apart(&self) -> bool {
-        self.separation > 0.0
+        self.min_separation > 0.0
     }
 
     /// Within what distance of each other two features may be listed: the separation and the tolerance. The volumes bring it
@@ -105,15 +105,19 @@ impl Certified {
     pub(crate) fn listed_within(&self) -> f64 {
         let p = self.params();
         // Above 0 also where nothing was asked for: what precision cannot tell has its own part of the growth.
-        (p.separation + p.tolerance).max(f64::MIN_POSITIVE)
+        (p.min_separation + p.tolerance).max(f64::MIN_POSITIVE)
     }
 
     /// What the test is asked; `tolerance` must have been chosen.
     #[doc(hidden)]
     pub fn params(&self) -> Params {
-        let budget = self.budget.unwrap_or(Certified::BUDGET);
+        let budget = self.max_iterations.unwrap_or(Certified::MAX_ITERATIONS);
         // Adding zero turns -0.0 into 0.0.
-        let separation = self.separation + 0.0;
-        Params { budget, separation, ..Params::new(self.tolerance.unwrap_or(0.0)) }
+        let separation = self.min_separation + 0.0;
+        Params {
+            max_iterations: budget,
+            min_separation: separation,
+            ..Params::new(self.tolerance.unwrap_or(0.0))
+        }
     }
 }

@@ -177,7 +177,7 @@ fn of_contacts(solver: &ContinuousSolver) -> Option<ListedRows> {
         Some(_) => "use a smaller separation or tolerance",
         None => "use a shorter step or a smaller scene, or query the earliest contact alone",
     };
-    let within = apart.map(|certified| certified.separation);
+    let within = apart.map(|certified| certified.min_separation);
     Some(ListedRows { bytes: size_of::<Contact>(), within, advice })
 }
 

@@ -111,8 +111,8 @@ impl Contacts {
                 nearmiss::Rows::Pairs(pairs) => pairs.iter().map(|pair| pair.triangles).collect(),
                 _ => self.of_rows(
                     "indices",
-                    Some(|c| [c.a, c.b]),
-                    Some(|c| [c.a, c.b]),
+                    Some(|c| [c.feature_a, c.feature_b]),
+                    Some(|c| [c.feature_a, c.feature_b]),
                     Some(|c| c.triangles),
                 )?,
             };

@@ -31,10 +31,17 @@ impl Geometry {
         self.rows.len()
     }
 
-    /// (k,) uint8: how many of the four vertices are the first feature's: 1, 2 or 3.
+    /// (k, 4) uint32: the body of each vertex.
     #[getter]
-    fn first<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, "first", || Ok(PyArray1::from_vec(py, self.column(|at| at.first as u8))))
+    fn owner<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let owners = || self.column(|at| at.owners.map(|body| body.index() as u32));
+        self.columns.get(py, "owner", || Ok(rows(py, &owners())))
+    }
+
+    /// (k, 4) float64: weights, negative for the second feature.
+    #[getter]
+    fn signed_weights<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.columns.get(py, "signed_weights", || Ok(rows(py, &self.column(|at| at.signed_weights))))
     }
 
     /// (k, 4) uint32: the vertices of the first feature, then those of the second, by their numbers in their bodies.

@@ -64,8 +64,8 @@ impl Query {
         }
         if let Some(certified) = certified {
             set(&choices, "tolerance", certified.tolerance)?;
-            set(&choices, "separation", Some(certified.separation).filter(|&length| length != 0.0))?;
-            set(&choices, "budget", certified.budget)?;
+            set(&choices, "separation", Some(certified.min_separation).filter(|&length| length != 0.0))?;
+            set(&choices, "budget", certified.max_iterations)?;
         }
         set(&choices, "solver", Some(self.query.solver().name()).filter(|&name| name != usual))?;
         let search = self.query.search();
@@ -168,7 +168,8 @@ fn in_motion(
         Some(ContinuousSolver::Certified(certified)) => {
             // Adding zero turns -0.0 into 0.0.
             let (tolerance, separation) = (tolerance.map(|length| length + 0.0), separation + 0.0);
-            Ok(Certified { tolerance, separation, budget, ..certified }.into())
+            Ok(Certified { tolerance, min_separation: separation, max_iterations: budget, ..certified }
+                .into())
         }
         Some(other) if tolerance.is_none() && separation == 0.0 && budget.is_none() => Ok(other),
         Some(_) => Err(choice(

@@ -95,7 +95,6 @@ fn named(body: &Body, contacts: &[Contact], vertex: impl Fn(u32) -> u32) -> BTre
     for c in contacts {
         let name = match c.kind {
             Kind::Vf => (Kind::Vf, sorted(&[c.a]), sorted(&body.faces()[c.b as usize])),
-            Kind::Fv => (Kind::Fv, sorted(&body.faces()[c.a as usize]), sorted(&[c.b])),
             Kind::Ee => {
                 let mut ends = [c.a, c.b].map(|e| sorted(&edges[e as usize]));
                 ends.sort();

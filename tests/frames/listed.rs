@@ -132,12 +132,13 @@ fn brute(bodies: &[Body], p: &Params) -> BTreeMap<Row, Verdict> {
     let seen: Vec<Seen> = bodies.iter().map(Seen::of).collect();
     let (one, other, own) = (&seen[0], &seen[seen.len() - 1], seen.len() == 1);
     let mut near = BTreeMap::new();
-    let mut put = |kind, a: usize, b: usize, x: [Moving<f64>; 4]| {
+    let last = bodies.len() - 1;
+    let mut put = |kind, of: [usize; 2], a: usize, b: usize, x: [Moving<f64>; 4]| {
         let split = if kind == Kind::Ee { 2 } else { 1 };
         if meets(&x[..split], &x[split..]) {
             let v = verdict(Solver::Certified, kind, x, p);
             if !v.is_separated() {
-                near.insert((kind, a as u32, b as u32), v);
+                near.insert((kind, of, [a as u32, b as u32]), v);
             }
         }
     };
@@ -148,17 +149,17 @@ fn brute(bodies: &[Body], p: &Params) -> BTreeMap<Row, Verdict> {
     for &v in &one.used {
         for (f, face) in other.faces.iter().enumerate().filter(|(_, face)| !(own && face.contains(&v))) {
             debug_assert!(!face.is_empty());
-            put(Kind::Vf, v as usize, f, against(v, one, f, other));
+            put(Kind::Vf, [0, last], v as usize, f, against(v, one, f, other));
         }
     }
     for &v in other.used.iter().filter(|_| !own) {
-        (0..one.faces.len()).for_each(|f| put(Kind::Fv, f, v as usize, against(v, other, f, one)));
+        (0..one.faces.len()).for_each(|f| put(Kind::Vf, [last, 0], v as usize, f, against(v, other, f, one)));
     }
     for (i, a) in one.edges.iter().enumerate() {
         for (j, b) in other.edges.iter().enumerate() {
             if !own || i < j && !a.iter().any(|v| b.contains(v)) {
                 let ([a, b], [c, d]) = (one.at(*a), other.at(*b));
-                put(Kind::Ee, i, j, [a, b, c, d]);
+                put(Kind::Ee, [0, last], i, j, [a, b, c, d]);
             }
         }
     }
@@ -205,7 +206,7 @@ fn near_misses_are_listed_by_every_way_or_by_none() {
             let query = asking(tolerance, budget);
             let what = format!("{name}, {tolerance:e}, {budget:?}");
             let answer = differs(&bodies, query).unwrap_or_else(|odd| panic!("{what}: {odd}"));
-            let p = Params { budget: budget.unwrap_or(Params::BUDGET), ..Params::new(tolerance) };
+            let p = Params { budget: budget.unwrap_or(Params::MAX_ITERATIONS), ..Params::new(tolerance) };
             assert_eq!(fault(answer.contacts(), &brute(&bodies, &p), &[]), None, "{what}");
             println!("{what}: {} listed, {} of them undecided", answer.len(), near_misses(&answer));
             counts.push((name.clone(), near_misses(&answer)));

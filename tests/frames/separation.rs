@@ -30,10 +30,11 @@ fn brute(bodies: &[Body], solver: Solver, separation: f64) -> BTreeMap<Row, Verd
     let seen: Vec<Seen> = bodies.iter().map(Seen::of).collect();
     let (one, other, own) = (&seen[0], &seen[seen.len() - 1], seen.len() == 1);
     let mut near = BTreeMap::new();
-    let mut put = |kind, a: usize, b: usize, x| {
+    let last = bodies.len() - 1;
+    let mut put = |kind, of: [usize; 2], a: usize, b: usize, x| {
         let v = verdict(solver, kind, x, &p);
         if !v.is_separated() {
-            near.insert((kind, a as u32, b as u32), v);
+            near.insert((kind, of, [a as u32, b as u32]), v);
         }
     };
     let against = |v: u32, of: &Seen, f: usize, faces: &Seen| {
@@ -43,18 +44,18 @@ fn brute(bodies: &[Body], solver: Solver, separation: f64) -> BTreeMap<Row, Verd
     for &v in &one.used {
         for (f, face) in other.faces.iter().enumerate() {
             if !(own && face.contains(&v)) {
-                put(Kind::Vf, v as usize, f, against(v, one, f, other));
+                put(Kind::Vf, [0, last], v as usize, f, against(v, one, f, other));
             }
         }
     }
     for &v in other.used.iter().filter(|_| !own) {
-        (0..one.faces.len()).for_each(|f| put(Kind::Fv, f, v as usize, against(v, other, f, one)));
+        (0..one.faces.len()).for_each(|f| put(Kind::Vf, [last, 0], v as usize, f, against(v, other, f, one)));
     }
     for (i, a) in one.edges.iter().enumerate() {
         for (j, b) in other.edges.iter().enumerate() {
             if !own || i < j && !a.iter().any(|v| b.contains(v)) {
                 let ([a, b], [c, d]) = (one.at(*a), other.at(*b));
-                put(Kind::Ee, i, j, [a, b, c, d]);
+                put(Kind::Ee, [0, last], i, j, [a, b, c, d]);
             }
         }
     }

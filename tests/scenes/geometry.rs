@@ -62,16 +62,14 @@ fn fault(
     let first = match kind {
         Kind::Vf => 1,
         Kind::Ee => 2,
-        Kind::Fv => 3,
     };
-    if told.first != first || told.bodies != bodies {
-        return Some(format!("{} vertices of the first of {:?}", told.first, told.bodies));
-    }
     let owner = |i: usize| bodies[usize::from(i >= first)];
+    if told.owners != [0, 1, 2, 3].map(owner) || told.bodies != bodies {
+        return Some(format!("owners {:?} of {:?}", told.owners, told.bodies));
+    }
     let faces = |body: BodyId, face: u32| detector.scene().bodies()[body.index()].faces()[face as usize];
     let named = match kind {
         Kind::Vf => told.vertices[0] == a && told.vertices[1..] == faces(bodies[1], b),
-        Kind::Fv => told.vertices[..3] == faces(bodies[0], a) && told.vertices[3] == b,
         Kind::Ee => told.vertices[0] > told.vertices[1] && told.vertices[2] > told.vertices[3],
     };
     if !named {
@@ -88,6 +86,10 @@ fn fault(
     let sums = [&told.weights[..first], &told.weights[first..]].map(|w| w.iter().sum::<f64>());
     if sums.iter().any(|sum| (sum - 1.0).abs() > 1e-12) || told.weights.iter().any(|w| *w < 0.0) {
         return Some(format!("weights {:?}", told.weights));
+    }
+    let signed = |i: usize| if i < first { told.weights[i] } else { -told.weights[i] };
+    if told.signed_weights.map(f64::to_bits) != [0, 1, 2, 3].map(signed).map(f64::to_bits) {
+        return Some(format!("signed weights {:?} of {:?}", told.signed_weights, told.weights));
     }
     for (range, told) in [0..first, first..4].into_iter().zip(told.points) {
         let off = minus(point(range, time), told);
@@ -119,7 +121,7 @@ fn contacts_are_where_their_geometry_says() {
         let all = detector.geometry(&found).expect("geometry");
         assert_eq!(all.len(), found.len());
         for (contact, told) in found.contacts().iter().zip(&all) {
-            let names = (contact.kind, contact.bodies, [contact.a, contact.b]);
+            let names = (contact.kind, contact.bodies, [contact.feature_a, contact.feature_b]);
             assert_eq!(fault(&detector, names, contact.toi, told), None, "{contact:?}, {told:?}");
             // Early by what it takes to come nearer by the tolerance, or less.
             assert!(told.distance < 2e-4, "{contact:?}, {told:?}");
@@ -136,7 +138,7 @@ fn near_pairs_are_where_their_geometry_says() {
         let all = detector.geometry(&found).expect("geometry");
         assert!(found.len() > 100);
         for (pair, told) in found.near().iter().zip(&all) {
-            let names = (pair.kind, pair.bodies, [pair.a, pair.b]);
+            let names = (pair.kind, pair.bodies, [pair.feature_a, pair.feature_b]);
             assert_eq!(fault(&detector, names, 0.0, told), None, "{pair:?}, {told:?}");
             assert!((told.distance - pair.squared_distance.sqrt()).abs() < 1e-12, "{pair:?}, {told:?}");
         }
@@ -157,9 +159,10 @@ fn a_wrong_geometry_is_noticed() {
         .zip(&all)
         .find(|(c, _)| c.toi > 0.1 && c.kind == Kind::Vf)
         .expect("a contact");
-    let names = (contact.kind, contact.bodies, [contact.a, contact.b]);
-    let faults: [(Plant, &str); 7] = [
-        (|g| g.first = 2, "vertices of the first"),
+    let names = (contact.kind, contact.bodies, [contact.feature_a, contact.feature_b]);
+    let faults: [(Plant, &str); 9] = [
+        (|g| g.owners[0] = g.owners[1], "owners"),
+        (|g| g.signed_weights[1] *= -1.0, "signed weights"),
         (|g| g.vertices.swap(1, 2), "vertices ["),
         (|g| g.weights[1] += 1e-3, "weights"),
         (|g| (g.weights[1], g.weights[2]) = (g.weights[1] + 1.0, g.weights[2] - 1.0), "weights"),

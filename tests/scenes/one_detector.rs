@@ -13,7 +13,7 @@ use support::engine;
 
 /// Queries of every kind; the numbers of some differ.
 fn queries() -> Vec<Query> {
-    let apart = Certified { separation: 0.02, tolerance: Some(1e-3), ..Certified::default() };
+    let apart = Certified { min_separation: 0.02, tolerance: Some(1e-3), ..Certified::default() };
     vec![
         Near::within(0.02).into(),
         Earliest::default().into(),
@@ -193,7 +193,8 @@ fn numbers_of_a_query_change_from_frame_to_frame_and_build_nothing() {
     let device = engine();
     let mut detector = Detector::new(device.clone(), bodies.scene.clone()).expect("a detector");
     let certified = |separation: f64, tolerance: f64| {
-        let numbers = Certified { separation, tolerance: Some(tolerance), ..Certified::default() };
+        let numbers =
+            Certified { min_separation: separation, tolerance: Some(tolerance), ..Certified::default() };
         Query::from(Continuous::by(numbers))
     };
     let largest = [Query::near(0.2), certified(0.1, 1e-2)];

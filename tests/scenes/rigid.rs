@@ -81,7 +81,7 @@ fn queries(tolerance: f64, distance: f64) -> Vec<Query> {
     }
     let apart = |query: Query| {
         let separated = query.certified().is_some();
-        separated.then(|| support::asked::certified(query, |one| one.separation = distance))
+        separated.then(|| support::asked::certified(query, |one| one.min_separation = distance))
     };
     let separated: Vec<Query> = all.iter().filter_map(|&query| apart(query)).collect();
     all.extend(separated);

@@ -82,7 +82,7 @@ fn random_scene(seed: u64) -> Scene {
 /// Every query in motion, with a tolerance that does not hang on the bodies; with and without a
 /// separation.
 fn queries() -> impl Iterator<Item = Query> {
-    let apart = Certified { tolerance: Some(1e-4), separation: 0.02, ..Certified::default() };
+    let apart = Certified { tolerance: Some(1e-4), min_separation: 0.02, ..Certified::default() };
     let every = Query::every().filter(|query| !query.kind().is_at_rest());
     every
         .map(|query| support::asked::with_tolerance(query, 1e-4))

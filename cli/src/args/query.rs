@@ -130,8 +130,8 @@ impl DetectArgs {
             ContinuousSolver::Certified(Certified { precision, .. }) => Certified {
                 precision,
                 tolerance: self.tolerance,
-                budget: self.boxes,
-                separation: self.separation.unwrap_or(0.0),
+                max_iterations: self.boxes,
+                min_separation: self.separation.unwrap_or(0.0),
             }
             .into(),
             other => other,

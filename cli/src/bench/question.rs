@@ -59,7 +59,7 @@ impl Question {
             Question::Discrete => Query::discrete(),
             Question::Continuous => Query::continuous(),
             Question::Separation => {
-                Continuous::by(Certified { separation: 0.01 * edge(), ..Certified::default() }).into()
+                Continuous::by(Certified { min_separation: 0.01 * edge(), ..Certified::default() }).into()
             }
             Question::Earliest => Query::earliest(),
             Question::Near => Query::near(0.1 * edge()),

@@ -95,7 +95,7 @@ pub fn of(args: &ExplainArgs) -> Result<Subject, Error> {
 
 fn params(args: &ExplainArgs, default: f64) -> Params {
     let tolerance = args.tolerance.unwrap_or(default);
-    Params { budget: args.boxes.unwrap_or(Certified::BUDGET), ..Params::new(tolerance) }
+    Params { max_iterations: args.boxes.unwrap_or(Certified::MAX_ITERATIONS), ..Params::new(tolerance) }
 }
 
 fn from_file(args: &ExplainArgs, path: &Path, row: usize) -> Result<Subject, Error> {

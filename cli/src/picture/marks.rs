@@ -25,8 +25,8 @@ pub fn of(
     let mark = |of: &ContactGeometry| {
         let [mut first, mut second] = [[0.0; 3]; 2];
         for (at, (vertex, weight)) in of.vertices.iter().zip(of.weights).enumerate() {
-            let is_first = at < of.first;
-            let body = of.bodies[usize::from(!is_first)].index();
+            let is_first = at < of.kind.vertices_of_a();
+            let body = of.owners[at].index();
             let point = points[(starts[body].0 + *vertex) as usize];
             let sum = if is_first { &mut first } else { &mut second };
             (0..3).for_each(|k| sum[k] += weight * point[k]);

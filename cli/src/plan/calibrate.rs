@@ -60,7 +60,7 @@ fn scaled(query: &Query, by: f64) -> Query {
     let mut query = *query;
     if let Some(certified) = query.certified_mut() {
         certified.tolerance = certified.tolerance.map(|tolerance| tolerance * by);
-        certified.separation *= by;
+        certified.min_separation *= by;
     }
     if let Query::Near(near) = &mut query {
         near.distance *= by;

@@ -171,13 +171,13 @@ fn choices(detector: &mut OneQuery, device: &Device) -> String {
         let largest = tolerances[1].filter(|largest| *largest != tolerance);
         let largest =
             largest.map_or(String::new(), |largest| format!(" to {largest:e} by the bodies of a pair"));
-        let boxes = certified.budget.unwrap_or(Certified::BUDGET);
+        let boxes = certified.max_iterations.unwrap_or(Certified::MAX_ITERATIONS);
         let _ = writeln!(
             text,
             "tolerance  {tolerance:e}{largest}, {why}; at most {} a pair",
             counted(boxes.into(), "box", "boxes")
         );
-        let separation = (certified.separation > 0.0).then_some(certified.separation);
+        let separation = (certified.min_separation > 0.0).then_some(certified.min_separation);
         let _ = writeln!(
             text,
             "separation {}",

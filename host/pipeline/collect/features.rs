@@ -7,15 +7,11 @@ use crate::scene::BodyId;
 /// Two features: their kind, their bodies and their indices there.
 pub type Features = (Kind, [BodyId; 2], [u32; 2]);
 
-/// A vertex and a face, by their numbers of all: the one of the smaller body first.
+/// A vertex and a face, by their numbers of all.
 pub fn vertex_face(layout: &Layout, [vertex, face]: [u32; 2]) -> Features {
     let (of_vertex, vertex) = layout.locate(vertex, |at| at.vertex);
     let (of_face, face) = layout.locate(face, |at| at.triangle);
-    if of_face < of_vertex {
-        (Kind::Fv, [of_face, of_vertex], [face, vertex])
-    } else {
-        (Kind::Vf, [of_vertex, of_face], [vertex, face])
-    }
+    (Kind::Vf, [of_vertex, of_face], [vertex, face])
 }
 
 /// Two edges, by their numbers of all.

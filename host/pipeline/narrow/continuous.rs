@@ -340,7 +340,7 @@ impl<R: Precision> Narrow<R> for ContinuousNarrow {
 
     fn order(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
         let Some(order) = &mut self.ordered else { return Ok(()) };
-        order.run(given.device, &self.vf_hits, Some(&self.ee_hits), (given.bodies, given.counters))
+        order.run(given.device, &self.vf_hits, Some(&self.ee_hits), given.counters)
     }
 
     fn ahead(&self, last: &Counts) -> Vec<Ahead<'_>> {

@@ -11,7 +11,7 @@ use crate::pipeline::order::{Order, Ordering};
 use crate::pipeline::precision::Precision;
 use crate::pipeline::typed::{Listed, in_order};
 use crate::query::TriangleTest;
-use nearmiss_kernels::abi::{DiscreteArgs, DiscreteFlags, Output, Pair, Span, counter};
+use nearmiss_kernels::abi::{DiscreteArgs, DiscreteFlags, Output, Pair, counter};
 
 /// The lists of a discrete query.
 pub struct DiscreteNarrow {
@@ -108,7 +108,7 @@ impl<R: Precision> Narrow<R> for DiscreteNarrow {
 
     fn order(&mut self, given: &NarrowContext<R>) -> Result<(), Error> {
         let Some(order) = &mut self.ordered else { return Ok(()) };
-        order.run(given.device, &self.contacts, None, (Span::EMPTY, given.counters))
+        order.run(given.device, &self.contacts, None, given.counters)
     }
 
     fn ahead(&self, last: &Counts) -> Vec<Ahead<'_>> {

@@ -25,7 +25,7 @@ fn certain(query: Query, told: bool) -> usize {
 #[test]
 fn volumes_without_the_separation_lose_pairs() {
     let certified =
-        Certified { tolerance: Some(1e-3), separation: 0.1, ..Certified::by(CertifiedPrecision::F64) };
+        Certified { tolerance: Some(1e-3), min_separation: 0.1, ..Certified::by(CertifiedPrecision::F64) };
     let query = Query::from(Continuous::by(certified));
     let all = certain(query.with_refit(Refit::Levels), true);
     for refit in [Refit::Levels, Refit::Treelets, Refit::BottomUp] {

@@ -1,6 +1,6 @@
 //! Contacts into canonical order: their sort key, and the argument block.
 
-use super::{BodyRecord, Hit, NearHit, Output, Pair, Span, Tiles};
+use super::{Hit, NearHit, Output, Pair, Span, Tiles};
 use bytemuck::{Pod, Zeroable};
 
 /// The sort key of a contact.
@@ -37,8 +37,6 @@ arguments! {
         items: Span<u64>,
         /// Counts of the keys' lowest bytes.
         tiles: Tiles,
-        /// The bodies; empty if no contact has a first feature of a later body than its second's.
-        bodies: Span<BodyRecord>,
         /// Bits of a feature.
         bits: u32,
         /// Bits of a number.

@@ -3,24 +3,21 @@
 //! Launch   `keys` (a grid of any size strides), a pass of [`crate::sort`] for each byte of a name,
 //!          `gather` (strides).
 //! Reads    one or two lists of contacts.
-//! Writes   one list of all, by kind, first and second feature.
+//! Writes   one list of all, by list, first and second feature.
 //! Before   the lists are complete; counts of the keys' bytes = 0; names and numbers fit 64 bits.
-//! After    out = first ∪ second, ascending by (kind, x, y).
-//!          Kind 0: {(vertex, face) : body(vertex) ≤ body(face)}. Kind 1: {(face, vertex) :
-//!          body(face) < body(vertex)}.
-//!          Kind 2: the second list. Names are unique, so the order is unique.
+//! After    out = first ∪ second, ascending by (list, x, y). Names are unique in a list, so the order
+//!          is unique.
 //! Room     the list and the items: counted past the end, grown, run again. The host gives both the
 //!          same capacity.
 //! Cost     a contact in (twice, once gathered) and out, 8 B an item and pass in and out; launches.
 
 use crate::abi::{Named, OrderArgs, Output};
-use crate::bvh::filter::holder;
 use crate::exec::{BINS, Block, Lane};
 use crate::sort;
 use bytemuck::Pod;
 
-/// Bits of a kind.
-pub const KIND_BITS: u32 = 2;
+/// Bits of the number of a list.
+pub const LIST_BITS: u32 = 1;
 
 /// How many contacts the first list has, and both.
 fn counts<T: Pod, B: Block>(block: &B, args: &OrderArgs<T>) -> (u32, u64) {
@@ -34,14 +31,7 @@ fn contact<T: Pod, L: Lane>(lane: &L, args: &OrderArgs<T>, first: u32, i: u32) -
     if i < first { args.first.get(lane, i) } else { args.second.get(lane, i - first) }
 }
 
-/// Whether a vertex is of a later body than a face.
-fn turned<T: Pod, L: Lane>(lane: &L, args: &OrderArgs<T>, [vertex, face]: [u32; 2]) -> bool {
-    !args.bodies.is_empty()
-        && holder(args.bodies.len(), face, |k| lane.read(args.bodies, k).triangle)
-            < holder(args.bodies.len(), vertex, |k| lane.read(args.bodies, k).vertex)
-}
-
-/// A key of each contact: its kind and its name, above its number.
+/// A key of each contact: its list and its name, above its number.
 pub fn keys<T: Pod + Named, B: Block>(block: &mut B, args: &OrderArgs<T>) {
     let (first, all) = counts(block, args);
     let count = all.min(args.items.len()) as u32;
@@ -53,12 +43,8 @@ pub fn keys<T: Pod + Named, B: Block>(block: &mut B, args: &OrderArgs<T>) {
         }
         while i < count {
             let [x, y] = contact(lane, args, first, i).name();
-            let (kind, x, y) = match (i < first, i < first && turned(lane, args, [x, y])) {
-                (true, false) => (0u64, x, y),
-                (true, true) => (1, y, x),
-                (false, _) => (2, x, y),
-            };
-            let name = (kind << args.bits | x as u64) << args.bits | y as u64;
+            let list = (i >= first) as u64;
+            let name = (list << args.bits | x as u64) << args.bits | y as u64;
             lane.write(args.items, i, name << args.number_bits | i as u64);
             sort::tally(lane, &args.tiles, i, name as u32 & (BINS - 1));
             i = i.saturating_add(stride);

@@ -68,7 +68,7 @@ impl Scene {
         let finest = Certified { tolerance: Some(FINEST * edge), ..Certified::by(CertifiedPrecision::F64) };
         let found = scene.asked(device, Continuous::by(finest).into())?;
         let bounds = |c: &Contact| Truth::Meet { not_before: c.toi, by: c.toi_upper };
-        let of = |c: &Contact| (c.kind, c.a, c.b);
+        let of = |c: &Contact| (c.kind, c.feature_a, c.feature_b);
         scene.truths = match list {
             None => {
                 let undecided = found.contacts().iter().filter(|c| c.status == Status::Undecided).count();
@@ -145,7 +145,7 @@ impl Scene {
                 let (p, q) = (self.edges[a as usize], self.edges[b as usize]);
                 (Features::EdgeEdge, [p[0], p[1], q[0], q[1]])
             }
-            Kind::Vf | Kind::Fv => {
+            Kind::Vf => {
                 let [p, q, r] = self.body.faces()[b as usize];
                 (Features::VertexFace, [a, p, q, r])
             }
@@ -160,7 +160,7 @@ impl Scene {
     /// Undecided contacts whose budget ended: a frame does not say, so they are asked again, each by itself.
     fn exhausted(&self, device: &Device, query: &Query, found: &[Contact]) -> Result<Vec<Key>, Error> {
         let undecided = found.iter().filter(|c| c.status == Status::Undecided);
-        let keys: Vec<Key> = undecided.map(|c| (c.kind, c.a, c.b)).collect();
+        let keys: Vec<Key> = undecided.map(|c| (c.kind, c.feature_a, c.feature_b)).collect();
         let cases: Vec<Case> = keys.iter().map(|key| self.case(*key)).collect();
         let answers = ask(device, &cases, query, Options::default())?;
         let ended = answers.verdicts.iter().map(|met| met.is_some_and(|met| met.exhausted));
@@ -172,7 +172,7 @@ impl Scene {
         let mut judge = Judge::new(solver, tolerance, self.edge);
         let mut known = self.truths.iter().peekable();
         for contact in found {
-            let key = (contact.kind, contact.a, contact.b);
+            let key = (contact.kind, contact.feature_a, contact.feature_b);
             while let Some((missed, truth)) = known.next_if(|(k, _)| *k < key) {
                 judge.note(&self.case(*missed), *truth, None);
             }
@@ -238,20 +238,21 @@ mod tests {
         assert_eq!(of(&late).late, 1);
         let mut invented = found.contacts().to_vec();
         let Some(free) = (0..120).find(|&f| {
-            invented.binary_search_by_key(&(Kind::Vf, 0, f), |c| (c.kind, c.a, c.b)).is_err() && f > 60
+            invented.binary_search_by_key(&(Kind::Vf, 0, f), |c| (c.kind, c.feature_a, c.feature_b)).is_err()
+                && f > 60
         }) else {
             panic!("vertex 0 meets every face");
         };
         invented.push(Contact {
             bodies: Default::default(),
             kind: Kind::Vf,
-            a: 0,
-            b: free,
+            feature_a: 0,
+            feature_b: free,
             toi: 0.0,
             toi_upper: 0.0,
             status: Status::Certified,
         });
-        invented.sort_by_key(|c| (c.kind, c.a, c.b));
+        invented.sort_by_key(|c| (c.kind, c.feature_a, c.feature_b));
         let of_invented = of(&invented);
         assert_eq!(
             (of_invented.false_alarms, of_invented.false_certificates, of_invented.violations),

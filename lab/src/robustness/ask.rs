@@ -51,7 +51,8 @@ pub(super) fn answers(
         let alike = |q: &Question| (q.tolerance, q.separation) == (tolerance, separation);
         let (now, later): (Vec<_>, Vec<_>) = left.into_iter().partition(|i| alike(&questions[*i]));
         let cases: Vec<Case> = now.iter().map(|i| questions[*i].case).collect();
-        let certified = Certified { tolerance: Some(tolerance), separation, ..Certified::by(solver) };
+        let certified =
+            Certified { tolerance: Some(tolerance), min_separation: separation, ..Certified::by(solver) };
         let query = Continuous::by(certified).into();
         for (i, met) in now.into_iter().zip(ask(device, &cases, &query, how)?.verdicts) {
             all[i] = Some(verdict(met, 1.0));

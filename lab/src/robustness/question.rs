@@ -81,7 +81,7 @@ impl Question {
 
     /// What a certified test is asked.
     pub fn params(&self) -> Params {
-        Params { separation: self.separation, end: self.end, ..Params::new(self.tolerance) }
+        Params { min_separation: self.separation, end: self.end, ..Params::new(self.tolerance) }
     }
 
     /// What is wrong with an answer; `narrow`: it was made in f32 alone.

@@ -30,7 +30,7 @@ fn brute(body: &Body, solver: Solver, p: &Params) -> (BTreeMap<Row, Verdict>, Ve
             let ([m], c) = (seen.at([v]), seen.at(*face));
             if boxes_meet(&[m], &c) {
                 put(
-                    (Kind::Vf, v, f as u32),
+                    (Kind::Vf, [0, 0], [v, f as u32]),
                     verdict(solver, Kind::Vf, [m, c[0], c[1], c[2]], p),
                     vf_toi::<f64, f64>(m, c).is_some(),
                 );
@@ -41,7 +41,7 @@ fn brute(body: &Body, solver: Solver, p: &Params) -> (BTreeMap<Row, Verdict>, Ve
         for (j, b) in seen.edges.iter().enumerate().skip(i + 1) {
             let (m, c) = (seen.at(*a), seen.at(*b));
             if !a.iter().any(|v| b.contains(v)) && boxes_meet(&m, &c) {
-                let row = (Kind::Ee, i as u32, j as u32);
+                let row = (Kind::Ee, [0, 0], [i as u32, j as u32]);
                 put(
                     row,
                     verdict(solver, Kind::Ee, [m[0], m[1], c[0], c[1]], p),

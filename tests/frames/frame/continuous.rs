@@ -9,7 +9,7 @@ use nearmiss_kernels::math::Real;
 use nearmiss_kernels::prim::cubic::{Moving, ee_toi, vf_toi};
 use nearmiss_lab::scene::{self, Rng};
 use support::asked::by;
-use support::brute::Seen;
+use support::brute::{Seen, row};
 use support::{ask, engine, machines, moving, still};
 
 /// Whether the closed boxes of two sets of moving vertices overlap: two features whose boxes are apart never meet,
@@ -42,13 +42,14 @@ fn brute<S: Real>(bodies: &[Body]) -> Vec<Contact> {
     let seen: Vec<Seen> = bodies.iter().map(Seen::of).collect();
     let (one, other, own) = (&seen[0], &seen[seen.len() - 1], seen.len() == 1);
     let mut all = Vec::new();
-    let mut found = |kind, a: usize, b: usize, toi: Option<f64>| {
-        let (a, b) = (a as u32, b as u32);
+    let last = bodies.len() - 1;
+    let scene = nearmiss::Scene::from(bodies.to_vec());
+    let mut found = |kind, of: [usize; 2], a: usize, b: usize, toi: Option<f64>| {
         all.extend(toi.map(|toi| Contact {
             kind,
-            bodies: Default::default(),
-            a,
-            b,
+            bodies: of.map(|body| scene.id(body).expect("a body")),
+            feature_a: a as u32,
+            feature_b: b as u32,
             toi,
             toi_upper: toi,
             status: Status::Unverified,
@@ -57,29 +58,29 @@ fn brute<S: Real>(bodies: &[Body]) -> Vec<Contact> {
     for &v in &one.used {
         for (f, face) in other.faces.iter().enumerate() {
             if !(own && face.contains(&v)) {
-                found(Kind::Vf, v as usize, f, vf::<S>(one, v, other, *face));
+                found(Kind::Vf, [0, last], v as usize, f, vf::<S>(one, v, other, *face));
             }
         }
     }
-    for (f, face) in one.faces.iter().enumerate().filter(|_| !own) {
-        for &v in &other.used {
-            found(Kind::Fv, f, v as usize, vf::<S>(other, v, one, *face));
+    for &v in other.used.iter().filter(|_| !own) {
+        for (f, face) in one.faces.iter().enumerate() {
+            found(Kind::Vf, [last, 0], v as usize, f, vf::<S>(other, v, one, *face));
         }
     }
     for (a, ea) in one.edges.iter().enumerate() {
         for (b, eb) in other.edges.iter().enumerate().skip(if own { a + 1 } else { 0 }) {
             if !(own && ea.iter().any(|v| eb.contains(v))) {
-                found(Kind::Ee, a, b, ee::<S>(one, *ea, other, *eb));
+                found(Kind::Ee, [0, last], a, b, ee::<S>(one, *ea, other, *eb));
             }
         }
     }
-    all.sort_by_key(|c| (c.kind, c.a, c.b));
+    all.sort_by_key(|c| (c.kind, c.bodies[0], c.feature_a, c.bodies[1], c.feature_b));
     all
 }
 
 /// The first thing in which two lists differ: times to the bit.
 fn difference(found: &[Contact], truth: &[Contact]) -> Option<String> {
-    let bits = |c: &Contact| (c.kind, c.a, c.b, c.toi.to_bits(), c.toi_upper.to_bits());
+    let bits = |c: &Contact| (row(c), c.toi.to_bits(), c.toi_upper.to_bits());
     let differs = found.iter().map(bits).zip(truth.iter().map(bits)).position(|(a, b)| a != b);
     match differs {
         Some(at) => Some(format!("{:?} is found, {:?} is true", found[at], truth[at])),
@@ -140,8 +141,13 @@ pub fn crowded(seed: u64, vertices: u32, count: usize) -> Body {
     moving(&t0, &t1, &faces)
 }
 
+/// How many vertices of the first body meet faces of the second, vertices of the second faces of the first, and edges edges.
 fn kinds(contacts: &Contacts) -> [usize; 3] {
-    [Kind::Vf, Kind::Fv, Kind::Ee].map(|kind| contacts.contacts().iter().filter(|c| c.kind == kind).count())
+    let of = |kind, turned| {
+        let is = |c: &&Contact| c.kind == kind && (c.bodies[0] > c.bodies[1]) == turned;
+        contacts.contacts().iter().filter(is).count()
+    };
+    [of(Kind::Vf, false), of(Kind::Vf, true), of(Kind::Ee, false)]
 }
 
 #[test]
@@ -262,7 +268,7 @@ fn the_comparison_can_fail() {
         |all| all.insert(1, all[1]),
         |all| all[1].toi = f64::from_bits(all[1].toi.to_bits() + 1),
         |all| all[0].b += 1,
-        |all| all[0].kind = Kind::Fv,
+        |all| all[0].kind = Kind::Ee,
     ];
     assert!(faults.into_iter().all(|fault| with(fault).is_some()));
 }

@@ -120,19 +120,21 @@ fn bodies_exchanged() {
         let there = found(&[one.clone(), two.clone()], QueryKind::Continuous);
         let back = found(&[two.clone(), one.clone()], QueryKind::Continuous);
         // A vertex/face pair is the same query to the solver: same bits. Of two edges the first one changes.
-        let of = |contacts: &Contacts, kind| -> BTreeMap<[u32; 2], Times> {
-            let all = contacts.contacts().iter().filter(|c| c.kind == kind);
-            all.map(|c| ([c.a, c.b], [c.toi, c.toi_upper].map(f64::to_bits))).collect()
+        let of = |contacts: &Contacts, kind, turned| -> BTreeMap<[u32; 2], Times> {
+            let is = |c: &&Contact| c.kind == kind && (c.bodies[0] > c.bodies[1]) == turned;
+            let all = contacts.contacts().iter().filter(is);
+            all.map(|c| ([c.feature_a, c.feature_b], [c.toi, c.toi_upper].map(f64::to_bits))).collect()
         };
-        let turned = |kind| -> BTreeMap<[u32; 2], Times> {
-            of(&back, kind).into_iter().map(|([a, b], toi)| ([b, a], toi)).collect()
+        assert_eq!(of(&back, Kind::Vf, true), of(&there, Kind::Vf, false));
+        assert_eq!(of(&back, Kind::Vf, false), of(&there, Kind::Vf, true));
+        let exchanged = |all: BTreeMap<[u32; 2], Times>| -> BTreeMap<[u32; 2], Times> {
+            all.into_iter().map(|([a, b], times)| ([b, a], times)).collect()
         };
-        assert_eq!(turned(Kind::Fv), of(&there, Kind::Vf));
-        assert_eq!(turned(Kind::Vf), of(&there, Kind::Fv));
         let edges = |of: BTreeMap<[u32; 2], Times>| -> BTreeMap<Named, Times> {
             of.into_iter().map(|([a, b], times)| ((Kind::Ee, vec![a], vec![b]), times)).collect()
         };
-        assert!(of(&there, Kind::Vf).len() > 3 && of(&there, Kind::Ee).len() > 3);
-        assert_close(&edges(turned(Kind::Ee)), &edges(of(&there, Kind::Ee)), "edges");
+        let of_edges = of(&there, Kind::Ee, false);
+        assert!(of(&there, Kind::Vf, false).len() > 3 && of_edges.len() > 3);
+        assert_close(&edges(exchanged(of(&back, Kind::Ee, false))), &edges(of_edges), "edges");
     }
 }

@@ -155,16 +155,15 @@ fn the_order_of_bodies_only_renames() {
     let of = |bodies: [&Body; 2]| {
         ask(engine(), bodies.map(Body::clone).to_vec(), Query::near(0.1)).near().to_vec()
     };
-    let row = |p: &NearPair| (p.kind as u8, p.a, p.b, p.squared_distance.to_bits());
-    let mine: BTreeSet<_> = of([&one, &other]).iter().filter(|p| p.kind != Kind::Ee).map(row).collect();
-    let theirs: BTreeSet<_> = of([&other, &one])
-        .iter()
-        .filter(|p| p.kind != Kind::Ee)
-        .map(|p| {
-            let kind = if p.kind == Kind::Vf { Kind::Fv } else { Kind::Vf };
-            row(&NearPair { kind, a: p.b, b: p.a, ..*p })
-        })
-        .collect();
+    let rows = |pairs: Vec<NearPair>, exchanged: bool| -> BTreeSet<_> {
+        let of_vertices = pairs.into_iter().filter(|p| p.kind == Kind::Vf);
+        let row = |p: NearPair| {
+            let of = p.bodies.map(|body| (body.index() == 1) != exchanged);
+            (of, [p.feature_a, p.feature_b], p.squared_distance.to_bits())
+        };
+        of_vertices.map(row).collect()
+    };
+    let (mine, theirs) = (rows(of([&one, &other]), false), rows(of([&other, &one]), true));
     assert!(mine.len() > 20);
     assert_eq!(mine, theirs);
     let edges = |near: Vec<NearPair>| near.into_iter().filter(|p| p.kind == Kind::Ee).collect::<Vec<_>>();

@@ -130,7 +130,9 @@ fn two_bodies() {
     let over = |z: f32| loose(&[[[0.0, 0.0, z], [4.0, 0.0, z], [0.0, 4.0, z]]]);
     let found = near(vec![over(0.0), over(0.5)], 0.5);
     let count = |kind: Kind, closest| found.iter().filter(|p| (p.kind, p.closest) == (kind, closest)).count();
-    assert_eq!([count(Kind::Vf, Closest::VertexVertex), count(Kind::Fv, Closest::VertexVertex)], [3, 3]);
+    assert_eq!(count(Kind::Vf, Closest::VertexVertex), 6);
+    let of_the_first = |p: &&NearPair| p.kind == Kind::Vf && p.bodies[0] < p.bodies[1];
+    assert_eq!(found.iter().filter(of_the_first).count(), 3);
     assert!(found.iter().all(|pair| pair.squared_distance == 0.25));
     assert_eq!(found.iter().filter(|pair| pair.kind == Kind::Ee).count(), 9);
     assert_eq!(near(vec![over(0.0), over(0.5)], 0.499), []);

@@ -216,7 +216,7 @@ fn what_is_far_from_a_collapsed_face_is_separated() {
         let turned = |p: Points| [p[0], p[1 + turn], p[1 + (turn + 1) % 3], p[1 + (turn + 2) % 3]];
         let case = case(VF, [turned(from), turned(to)]);
         for rungs in [Rungs::All, Rungs::Single, Rungs::Double] {
-            let p = Params { separation: 0.25, ..Params::new(1e-2) };
+            let p = Params { min_separation: 0.25, ..Params::new(1e-2) };
             let said = certified::<f64>(&case, rungs, &p);
             assert!(said.is_separated(), "{turn}, {rungs:?}: {said:?}");
         }

@@ -37,7 +37,7 @@ pub fn in_passes<R: Real>(x: [Moving<R>; 4], face: bool, params: &Params) -> Ver
 fn well_formed(v: &Verdict, params: &Params) {
     assert!((0.0..=1.0).contains(&v.toi) && v.toi.is_sign_positive(), "{v:?}");
     assert!(v.toi <= v.toi_upper && v.toi_upper <= params.end, "{v:?}");
-    assert!(v.boxes <= params.budget, "{v:?}");
+    assert!(v.boxes <= params.max_iterations, "{v:?}");
 }
 
 /// What was wrong with answers to motions that meet at a known time, or before.
@@ -138,15 +138,16 @@ fn searched<S: Grid>(
         m.reach = planted(m.reach);
         to_its_end(Search::unfiltered(m, params, &mut stack), params)
     };
-    assert!(v.boxes <= params.budget);
+    assert!(v.boxes <= params.max_iterations);
     v
 }
 
 #[test]
 fn small_budgets_and_stacks_are_early_never_wrong() {
     for (k, budget) in [0, 1, 2, 3, 5, 8, 20].into_iter().enumerate() {
-        let judges =
-            built(60 + k as u64, 40, |x, face, p| certified::<f64, f32>(x, face, &Params { budget, ..*p }));
+        let judges = built(60 + k as u64, 40, |x, face, p| {
+            certified::<f64, f32>(x, face, &Params { max_iterations: budget, ..*p })
+        });
         assert!(judges.iter().map(|(_, j)| j.exhausted).sum::<u32>() > 100);
         all_right(judges);
     }
@@ -170,7 +171,7 @@ fn planted_faults_are_noticed() {
     println!("wrong without the bound {none}, with a twentieth {little}");
     assert!(none > 100 && little > 0);
     let forgetful = built(81, 40, |x, face, p| {
-        let v = certified::<f64, f64>(x, face, &Params { budget: 2, ..*p });
+        let v = certified::<f64, f64>(x, face, &Params { max_iterations: 2, ..*p });
         if v.exhausted() && !v.is_contact() { Verdict::separated(p.end, v.boxes) } else { v }
     });
     assert!(wrong(forgetful) > 100);
@@ -188,20 +189,22 @@ fn laws() {
     for i in 0..3000 {
         let (kind, face) = (i % FAMILIES.len(), i % 2 == 0);
         let m = motion(&mut r, kind, face, [5, 0, 16][i % 3], 8);
-        let p = Params { separation: [0.0, 3.0][i / 7 % 2], ..Params::new([1e-3, 1e-7, 0.0][i / 3 % 3]) };
+        let p = Params { min_separation: [0.0, 3.0][i / 7 % 2], ..Params::new([1e-3, 1e-7, 0.0][i / 3 % 3]) };
         let (double, single) = (
             certified::<f64, f64>(points(&m, 1.0), face, &p),
             certified::<f64, f32>(points(&m, 1.0), face, &p),
         );
         for k in [-900, -300, 3, 400] {
             let scale = 2f64.powi(k);
-            let scaled = Params { tolerance: p.tolerance * scale, separation: p.separation * scale, ..p };
+            let scaled =
+                Params { tolerance: p.tolerance * scale, min_separation: p.min_separation * scale, ..p };
             assert_eq!(double, certified::<f64, f64>(points(&m, scale), face, &scaled), "{k}");
             assert_eq!(single, certified::<f64, f32>(points(&m, scale), face, &scaled), "{k}");
         }
         for k in [-100, -60, 3, 40] {
             let scale = 2f64.powi(k);
-            let scaled = Params { tolerance: p.tolerance * scale, separation: p.separation * scale, ..p };
+            let scaled =
+                Params { tolerance: p.tolerance * scale, min_separation: p.min_separation * scale, ..p };
             assert_eq!(single, certified::<f32, f32>(points(&m, scale), face, &scaled), "{k}");
             assert_eq!(double, certified::<f32, f64>(points(&m, scale), face, &scaled), "{k}");
         }

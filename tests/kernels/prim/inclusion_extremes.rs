@@ -70,7 +70,7 @@ fn any_bits() {
         }
         let far = moving(&with([2.0, 2.0, 3.0], FACE), &with([2.0, 2.0, 1.0], FACE));
         assert!(!certified::<f64, f32>(far, true, &Params::new(bad.abs())).is_contact());
-        let p = Params { separation: bad.abs(), ..Params::new(1e-3) };
+        let p = Params { min_separation: bad.abs(), ..Params::new(1e-3) };
         let x = moving(&with([2.0, 2.0, 3.0], FACE), &with([2.0, 2.0, 5.0], FACE));
         assert!(!certified::<f64, f32>(x, true, &p).is_separated());
     }
@@ -122,7 +122,7 @@ fn stops_near_contact_only() {
         let x: [Moving<f64>; 4] = std::array::from_fn(|_| Moving { t0: point(), t1: point() });
         let separation = [0.0, 0.05, 0.3][i / 2 % 3];
         let finest = if separation > 0.0 { 1e-6 } else { 1e-9 };
-        let p = Params { separation, ..Params::new([1e-2, 1e-4, finest][i / 6 % 3]) };
+        let p = Params { min_separation: separation, ..Params::new([1e-2, 1e-4, finest][i / 6 % 3]) };
         let at = |t: f64| x.map(|m| m.t0 * (1.0 - t) + m.t1 * t);
         for (v, u) in [
             (certified::<f64, f64>(x, face, &p), 2f64.powi(-53)),
@@ -130,10 +130,10 @@ fn stops_near_contact_only() {
         ] {
             let reach = 4.0;
             let promised =
-                p.separation + 3f64.sqrt() * (3.0 * p.tolerance.max(64.0 * u * reach) + 40.0 * u * reach);
+                p.min_separation + 3f64.sqrt() * (3.0 * p.tolerance.max(64.0 * u * reach) + 40.0 * u * reach);
             if v.is_separated() {
                 for k in 0..33 {
-                    assert!(distance(at(k as f64 / 32.0), face) > p.separation, "{v:?}");
+                    assert!(distance(at(k as f64 / 32.0), face) > p.min_separation, "{v:?}");
                 }
                 apart += 1;
             } else {
@@ -144,7 +144,10 @@ fn stops_near_contact_only() {
                 met += 1;
                 let before = (0..if v.toi > 0.0 { 32 } else { 0 }).map(|k| v.toi * k as f64 / 32.0);
                 for t in before {
-                    assert!(distance(at(t), face) > p.separation - 1e-12, "a contact at {t} before {v:?}");
+                    assert!(
+                        distance(at(t), face) > p.min_separation - 1e-12,
+                        "a contact at {t} before {v:?}"
+                    );
                 }
             }
         }

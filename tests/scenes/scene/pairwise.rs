@@ -35,8 +35,8 @@ pub fn two_by_two(scene: &Scene, query: Query) -> Truth {
         }
     }
     pairs.sort_unstable_by_key(|pair| (pair.bodies[0], pair.triangles[0], pair.bodies[1], pair.triangles[1]));
-    contacts.sort_unstable_by_key(|c| (c.kind, c.bodies[0], c.a, c.bodies[1], c.b));
-    near.sort_unstable_by_key(|c| (c.kind, c.bodies[0], c.a, c.bodies[1], c.b));
+    contacts.sort_unstable_by_key(|c| (c.kind, c.bodies[0], c.feature_a, c.bodies[1], c.feature_b));
+    near.sort_unstable_by_key(|c| (c.kind, c.bodies[0], c.feature_a, c.bodies[1], c.feature_b));
     (pairs, contacts, near)
 }
 

@@ -34,7 +34,7 @@ fn sized(seed: u64, f64s: bool) -> Scene {
 
 /// By default, and with a separation.
 fn queries() -> [Query; 2] {
-    let apart = Certified { separation: 0.01, ..Certified::default() };
+    let apart = Certified { min_separation: 0.01, ..Certified::default() };
     [Query::continuous(), Continuous::by(apart).into()]
 }
 

@@ -12,8 +12,13 @@ use std::collections::BTreeMap;
 /// The certified solvers.
 pub const SOLVERS: [Solver; 3] = [Solver::Certified, Solver::CertifiedF32, Solver::CertifiedF64];
 
-/// A pair as it is listed.
-pub type Row = (Kind, u32, u32);
+/// A pair as it is listed: its kind, the bodies of both features, and the features.
+pub type Row = (Kind, [usize; 2], [u32; 2]);
+
+/// The row of a contact.
+pub fn row(c: &Contact) -> Row {
+    (c.kind, c.bodies.map(|body| body.index()), [c.feature_a, c.feature_b])
+}
 
 /// A body as the brute force sees it. Its vertices are doubles: exact, and what the cubic in f64 works with.
 pub struct Seen {
@@ -64,7 +69,7 @@ pub fn verdict(solver: Solver, kind: Kind, [a, b, c, d]: [Moving<f64>; 4], p: &P
 pub fn fault(found: &[Contact], near: &BTreeMap<Row, Verdict>, meet: &[Row]) -> Option<String> {
     let mut listed = BTreeMap::new();
     for c in found {
-        let row = (c.kind, c.a, c.b);
+        let row = row(c);
         let Some(v) = near.get(&row) else { return Some(format!("{c:?} is apart")) };
         let status = if v.is_contact() { Status::Certified } else { Status::Undecided };
         let same = [c.toi, c.toi_upper].map(f64::to_bits) == [v.toi, v.toi_upper].map(f64::to_bits);

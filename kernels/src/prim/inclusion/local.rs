@@ -79,10 +79,10 @@ impl<S: Grid, const N: usize> Local<S, N> {
         Local {
             w,
             reach,
-            finite: finite && !p.separation.is_nan(),
+            finite: finite && !p.min_separation.is_nan(),
             tolerance,
             below_precision: asked < finest,
-            separation: S::of(p.separation.max(0.0) * scale) * S::INCLUSION_UP,
+            separation: S::of(p.min_separation.max(0.0) * scale) * S::INCLUSION_UP,
             time_tolerance: if time_tolerance < S::ONE { S::down(time_tolerance) } else { S::ONE },
             end,
             beyond,

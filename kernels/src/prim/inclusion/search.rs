@@ -94,7 +94,7 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
         if m.still_together() {
             return Err((Verdict::TOUCHING, true));
         }
-        if !m.finite || p.budget == 0 {
+        if !m.finite || p.max_iterations == 0 {
             return Err((Verdict::undecided(0.0, p.end, 0, true), false));
         }
         let known = Known { accepted: S::NEVER, skipped: S::NEVER, certain: S::NEVER };
@@ -147,7 +147,7 @@ impl<'a, S: Grid, const N: usize> Search<'a, S, N> {
                 if !(start > self.known.certain) {
                     self.known.skipped = self.known.skipped.min(start);
                 }
-            } else if self.boxes >= p.budget {
+            } else if self.boxes >= p.max_iterations {
                 self.exhausted = true;
                 self.accept(start);
             } else {

@@ -12,11 +12,11 @@ pub struct Params {
     /// Features this near are in contact, a length; 0 for touching. With a separation a tolerance
     /// below a millionth of it mostly ends as exhausted: the first contact of round shapes is
     /// tangent to them.
-    pub separation: f64,
+    pub min_separation: f64,
     /// The end of the step, in (0, 1].
     pub end: f64,
     /// The most boxes that are looked at.
-    pub budget: u32,
+    pub max_iterations: u32,
     /// Zero.
     pub pad: u32,
 }
@@ -24,12 +24,12 @@ pub struct Params {
 impl Params {
     /// Touching, within the whole step, with the usual budget.
     pub fn new(tolerance: f64) -> Self {
-        Params { tolerance, separation: 0.0, end: 1.0, budget: Self::BUDGET, pad: 0 }
+        Params { tolerance, min_separation: 0.0, end: 1.0, max_iterations: Self::MAX_ITERATIONS, pad: 0 }
     }
 
     /// Default number of boxes after which a pair is left undecided: ten times the number for the
     /// hardest public scenes.
-    pub const BUDGET: u32 = 4096;
+    pub const MAX_ITERATIONS: u32 = 4096;
 }
 
 /// An answer in words of fixed size, as kernels write it.

@@ -196,8 +196,8 @@ pub(super) fn nearness<const N: usize>(
     p: &Params,
 ) -> Advance<f64, N> {
     let near = 0.5 * (pair.scaled(p.tolerance) * part).max(NEAR_FINEST * pair.reach);
-    let distance = Distance::of(pair, pair.scaled(p.separation) + near, near);
-    Advance::new(*pair, window, distance, p.budget.max(ADVANCES))
+    let distance = Distance::of(pair, pair.scaled(p.min_separation) + near, near);
+    Advance::new(*pair, window, distance, p.max_iterations.max(ADVANCES))
 }
 
 #[inline(always)]
@@ -208,7 +208,7 @@ pub(super) fn nearly(told: Advanced<f64>, steps: u32, p: &Params) -> Verdict {
             Verdict::undecided(from.min(p.end), p.end, 0, false)
         }
         Advanced::Open { from } => {
-            Verdict::undecided(from.min(p.end), p.end, 0, steps >= p.budget.max(ADVANCES))
+            Verdict::undecided(from.min(p.end), p.end, 0, steps >= p.max_iterations.max(ADVANCES))
         }
     }
 }
@@ -267,7 +267,7 @@ fn climb<const N: usize>(
     rungs: Rungs,
     p: &Params,
 ) -> Verdict {
-    if p.separation > 0.0 {
+    if p.min_separation > 0.0 {
         let in_single = || {
             let pair = single();
             at_once(&pair, p).or_else(|| stepped(Single::begin(pair, p), p))

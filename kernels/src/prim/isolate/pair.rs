@@ -74,7 +74,7 @@ impl<S: Grid, const N: usize> Pair<S, N> {
             speed = speed.greater((end - start).map(S::abs));
         }
         let (reach, speed) = (most(reach), most(speed));
-        let finite = finite && !p.separation.is_nan();
+        let finite = finite && !p.min_separation.is_nan();
         let together = together & ((1 << N) - 1) != 0;
         Pair { w, edges, reach, speed, finite, together, scale, end: S::end(p.end).0 }
     }

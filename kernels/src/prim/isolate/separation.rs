@@ -17,7 +17,7 @@ pub(super) const ADVANCES: u32 = 32;
 #[inline(always)]
 fn separating<S: Grid, const N: usize>(pair: &Pair<S, N>, p: &Params, most: u32) -> Advance<S, N> {
     let slack = pair.scaled(p.tolerance).max(S::ADVANCE_FINEST * pair.reach);
-    let distance = Distance::of(pair, pair.scaled(p.separation), slack);
+    let distance = Distance::of(pair, pair.scaled(p.min_separation), slack);
     Advance::new(*pair, (S::ZERO, pair.end), distance, most)
 }
 

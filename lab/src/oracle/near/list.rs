@@ -12,9 +12,8 @@ pub struct Shape {
     pub faces: Vec<[u32; 3]>,
 }
 
-/// A kind, `vf`, `fv` (between two: a face of the first, a vertex of the second) or `ee`, and both features. Edges are numbered by larger, then
-/// smaller vertex.
-pub type Row = (&'static str, u32, u32);
+/// Kind, `vf` or `ee`, the shapes of both features, and the features. Edges are numbered by larger, then smaller vertex.
+pub type Row = (&'static str, [usize; 2], [u32; 2]);
 
 impl Shape {
     /// Its vertices that some face uses.
@@ -31,15 +30,15 @@ impl Shape {
         self.points[vertex as usize]
     }
     /// The points of a row's pair, in [`Features`]' order: of one mesh, or of two.
-    pub fn pair(one: &Shape, other: &Shape, row: Row) -> (Features, [[f64; 3]; 4]) {
-        let (kind, a, b) = row;
+    pub fn pair(shapes: &[Shape], row: Row) -> (Features, [[f64; 3]; 4]) {
+        let (kind, of, [a, b]) = row;
+        let [one, other] = of.map(|at| &shapes[at]);
         let face = |of: &Shape, v: [f64; 3], face: u32| {
             let [x, y, z] = of.faces[face as usize].map(|corner| of.at(corner));
             [v, x, y, z]
         };
         match kind {
             "vf" => (Features::VertexFace, face(other, one.at(a), b)),
-            "fv" => (Features::VertexFace, face(one, other.at(b), a)),
             _ => {
                 let [x, y] = one.edges()[a as usize].map(|v| one.at(v));
                 let [z, w] = other.edges()[b as usize].map(|v| other.at(v));
@@ -63,7 +62,8 @@ fn apart(one: &[[f64; 3]], other: &[[f64; 3]], distance: f64) -> bool {
 
 /// All pairs of features without a common vertex whose distance is at most `distance`, and its square: of one mesh, or between two.
 pub fn all_within(shapes: &[Shape], distance: f64) -> BTreeMap<Row, Squared> {
-    let (one, other) = (&shapes[0], &shapes[shapes.len() - 1]);
+    let last = shapes.len() - 1;
+    let (one, other) = (&shapes[0], &shapes[last]);
     let own = shapes.len() == 1;
     let mut found = BTreeMap::new();
     let mut ask = |row: Row, features, points: [[f64; 3]; 4]| {
@@ -79,13 +79,13 @@ pub fn all_within(shapes: &[Shape], distance: f64) -> BTreeMap<Row, Squared> {
     for v in one.used() {
         for (f, _) in other.faces.iter().enumerate().filter(|(_, face)| !(own && face.contains(&v))) {
             let [x, y, z] = corners(other, f);
-            ask(("vf", v, f as u32), Features::VertexFace, [one.at(v), x, y, z]);
+            ask(("vf", [0, last], [v, f as u32]), Features::VertexFace, [one.at(v), x, y, z]);
         }
     }
     for v in other.used().into_iter().filter(|_| !own) {
         for f in 0..one.faces.len() {
             let [x, y, z] = corners(one, f);
-            ask(("fv", f as u32, v), Features::VertexFace, [other.at(v), x, y, z]);
+            ask(("vf", [last, 0], [v, f as u32]), Features::VertexFace, [other.at(v), x, y, z]);
         }
     }
     let (mine, theirs) = (one.edges(), other.edges());
@@ -93,7 +93,7 @@ pub fn all_within(shapes: &[Shape], distance: f64) -> BTreeMap<Row, Squared> {
         for (j, b) in theirs.iter().enumerate() {
             if !own || (i < j && !a.iter().any(|v| b.contains(v))) {
                 let ([x, y], [z, w]) = (a.map(|v| one.at(v)), b.map(|v| other.at(v)));
-                ask(("ee", i as u32, j as u32), Features::EdgeEdge, [x, y, z, w]);
+                ask(("ee", [0, last], [i as u32, j as u32]), Features::EdgeEdge, [x, y, z, w]);
             }
         }
     }

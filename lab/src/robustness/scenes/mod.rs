@@ -65,6 +65,9 @@ impl Numbers {
     }
 }
 
+/// A pair of features: their kind, their bodies and themselves.
+pub type Pair = (Kind, [usize; 2], u32, u32);
+
 /// What must be found.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Finds {
@@ -76,8 +79,8 @@ pub enum Finds {
     OracleByFilter,
     /// These feature pairs with their first times, and no others that are certain.
     Contacts(Vec<(Kind, u32, u32, f64)>),
-    /// At least these feature pairs, none before the time.
-    Includes(Vec<(Kind, u32, u32)>, f64),
+    /// At least these feature pairs, of these bodies, none before the time.
+    Includes(Vec<Pair>, f64),
     /// For each of these vertices a vertex/face contact with first time `.1`.
     EachVertex(Vec<u32>, f64),
     /// So many feature pairs, all from the start.
@@ -172,7 +175,7 @@ impl Scene {
             Finds::Contacts(truth) => contacts(found, truth),
             Finds::Includes(truth, first) => includes(found, truth, *first),
             Finds::EachVertex(vertices, time) => vertices.iter().find_map(|v| {
-                let mut own = found.contacts().iter().filter(|c| c.kind == Kind::Vf && c.a == *v);
+                let mut own = found.contacts().iter().filter(|c| c.kind == Kind::Vf && c.feature_a == *v);
                 let hit = own.any(|c| c.toi <= *time && *time <= c.toi_upper && c.toi >= time - EARLY);
                 (!hit).then(|| format!("missed: vertex {v} falls through"))
             }),
@@ -195,20 +198,24 @@ fn differ(found: &[[u32; 2]], truth: &[[u32; 2]]) -> Option<String> {
 
 /// Each contact within its time, and no certificate more.
 fn contacts(found: &Contacts, truth: &[(Kind, u32, u32, f64)]) -> Option<String> {
-    let of = |kind, a, b| found.contacts().iter().find(move |c| (c.kind, c.a, c.b) == (kind, a, b));
+    let of = |kind, a, b| {
+        found.contacts().iter().find(move |c| (c.kind, c.feature_a, c.feature_b) == (kind, a, b))
+    };
     let wrong = truth.iter().find_map(|&(kind, a, b, t)| match of(kind, a, b) {
         None => Some(format!("missed: {kind:?} {a} {b} at {t}")),
         Some(c) if c.toi > t => Some(format!("late: {c:?}, not {t}")),
         Some(c) if c.toi_upper < t || c.toi < t - EARLY => Some(format!("at another time: {c:?}, not {t}")),
         Some(_) => None,
     });
-    let known = |c: &nearmiss::Contact| truth.iter().any(|k| (k.0, k.1, k.2) == (c.kind, c.a, c.b));
+    let known =
+        |c: &nearmiss::Contact| truth.iter().any(|k| (k.0, k.1, k.2) == (c.kind, c.feature_a, c.feature_b));
     wrong.or_else(|| found.contacts().iter().find(|c| !known(c)).map(|c| format!("invented: {c:?}")))
 }
 
 /// At least these, none before.
-fn includes(found: &Contacts, truth: &[(Kind, u32, u32)], first: f64) -> Option<String> {
-    let has = |k: &&(Kind, u32, u32)| found.contacts().iter().any(|c| (c.kind, c.a, c.b) == **k);
+fn includes(found: &Contacts, truth: &[Pair], first: f64) -> Option<String> {
+    let row = |c: &nearmiss::Contact| (c.kind, c.bodies.map(|body| body.index()), c.feature_a, c.feature_b);
+    let has = |k: &&Pair| found.contacts().iter().any(|c| row(c) == **k);
     let missed = truth.iter().find(|k| !has(k)).map(|k| format!("missed: {k:?}"));
     let earliest = found.earliest_toi();
     missed.or_else(|| match earliest {

@@ -3,7 +3,7 @@
 use super::Finds::{AtOnce, Contacts, EachVertex, Includes};
 use super::still::cuboid;
 use super::{Numbers, Scene};
-use nearmiss::contacts::Kind::{Ee, Fv, Vf};
+use nearmiss::contacts::Kind::{Ee, Vf};
 
 /// A square floor of `n` by `n` unit squares in z = 0, two triangles each, cut along the diagonal from (0, 0) to (1, 1).
 fn floor(n: u32) -> Numbers {
@@ -58,7 +58,7 @@ pub fn scenes() -> Vec<Scene> {
             "X36",
             "a tip on the edge of two triangles",
             vec![tips(&[[0.5, 0.5]]), floor(1)],
-            Includes(vec![(Vf, 0, 0), (Vf, 0, 1)], 0.75),
+            Includes(vec![(Vf, [0, 1], 0, 0), (Vf, [0, 1], 0, 1)], 0.75),
         ),
         Scene::new(
             "X36",
@@ -108,17 +108,22 @@ fn head_on() -> Vec<Scene> {
     // The near side of the small box, x = 1, meets the side x = 1/2 of the large one at a half: corner 4 with
     // the upper triangle of that side, corner 2 with the lower.
     let scene = |what, common: f64| {
-        Scene::new("FCL#555", what, boxes(common), Includes(vec![(Fv, 10, 4), (Fv, 11, 2)], 0.5))
+        Scene::new(
+            "FCL#555",
+            what,
+            boxes(common),
+            Includes(vec![(Vf, [1, 0], 4, 10), (Vf, [1, 0], 2, 11)], 0.5),
+        )
     };
     let static_one = |swapped: bool| {
         let fall = tips(&[[0.25, 0.125]]);
         let bodies = if swapped { vec![floor(1), fall] } else { vec![fall, floor(1)] };
-        let hit = if swapped { (Fv, 0, 0) } else { (Vf, 0, 0) };
+        let of = if swapped { [1, 0] } else { [0, 1] };
         Scene::new(
             "X24",
             if swapped { "one at rest, exchanged" } else { "one at rest" },
             bodies,
-            Includes(vec![hit], 0.75),
+            Includes(vec![(Vf, of, 0, 0)], 0.75),
         )
     };
     vec![
@@ -154,7 +159,7 @@ fn together() -> Vec<Scene> {
             "X30",
             "segments end to end, leaving",
             vec![edges, aside.by([3.0, 0.0, 0.0])],
-            Includes(vec![(Ee, 0, 0), (Vf, 1, 0), (Fv, 0, 0)], 0.0),
+            Includes(vec![(Ee, [0, 1], 0, 0), (Vf, [0, 1], 1, 0), (Vf, [1, 0], 0, 0)], 0.0),
         ),
     ]
 }

@@ -133,7 +133,7 @@ impl Guard {
     /// The four vertices of a contact and the weights that make its two points' difference when they meet: positive on
     /// the first feature, negative on the second.
     fn stencil(&self, contact: &Contact, before: &[V], x: &[V]) -> ([usize; 4], [f64; 4]) {
-        let (a, b) = (contact.a as usize, contact.b as usize);
+        let (a, b) = (contact.feature_a as usize, contact.feature_b as usize);
         let at = |v: usize| before[v] + (x[v] - before[v]) * contact.toi;
         if contact.kind == Kind::Ee {
             let v =

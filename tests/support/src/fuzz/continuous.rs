@@ -28,10 +28,10 @@ pub fn decode(bytes: &[u8]) -> (Case, Params, bool) {
         points.push(point.map(|x| x.clamp(-limit, limit)));
     }
     let tolerance = [1e-6, 0.0, 1e-3, 1e-9][usize::from(shape >> 4 & 3)];
-    let budget = [Params::BUDGET, 64][usize::from(shape >> 6 & 1)];
+    let budget = [Params::MAX_ITERATIONS, 64][usize::from(shape >> 6 & 1)];
     let at = |from: usize| [0, 1, 2, 3].map(|i| points[from + i]);
     let case = Case { features, positions_t0: at(0), positions_t1: at(4) };
-    (case, Params { budget, ..Params::new(tolerance) }, b.is_single())
+    (case, Params { max_iterations: budget, ..Params::new(tolerance) }, b.is_single())
 }
 
 /// Asks, and judges the certified answers as `lie` passes them on.

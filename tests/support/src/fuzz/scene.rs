@@ -2,6 +2,7 @@
 
 use super::bytes::Bytes;
 use super::lent;
+use crate::brute::{Row, row};
 use nearmiss::contacts::{Contact, Kind, Rows, Status};
 use nearmiss::device::emulator::{Emulator, Mode};
 use nearmiss::mesh::{Body, Mesh, Positions, Topology};
@@ -144,7 +145,7 @@ pub fn judge(bodies: &[Body], query: &Query, answer: &Rows) -> Result<(), String
         Rows::Contacts(found) => {
             let all = every_pair(bodies);
             found.iter().try_for_each(|contact| judge_one(contact, &all, certain))?;
-            let listed = |key: &Key| found.iter().any(|c| (c.kind, c.a, c.b) == *key);
+            let listed = |key: &Row| found.iter().any(|c| row(c) == *key);
             match all.iter().find(|(key, toi)| certain && toi.is_some() && !listed(key)) {
                 Some((key, toi)) => Err(format!("missed {key:?} at {:?}", toi.as_ref().map(Toi::bracket))),
                 None => Ok(()),
@@ -169,8 +170,8 @@ pub fn judge(bodies: &[Body], query: &Query, answer: &Rows) -> Result<(), String
     }
 }
 
-fn judge_one(c: &Contact, all: &BTreeMap<Key, Option<Toi>>, certain: bool) -> Result<(), String> {
-    let Some(truth) = all.get(&(c.kind, c.a, c.b)) else { return Err(format!("{c:?} is no pair")) };
+fn judge_one(c: &Contact, all: &BTreeMap<Row, Option<Toi>>, certain: bool) -> Result<(), String> {
+    let Some(truth) = all.get(&row(c)) else { return Err(format!("{c:?} is no pair")) };
     if !(0.0 <= c.toi && c.toi <= c.toi_upper && c.toi_upper <= 1.0) {
         return Err(format!("{c:?}: times that are none"));
     }
@@ -187,11 +188,8 @@ fn judge_one(c: &Contact, all: &BTreeMap<Key, Option<Toi>>, certain: bool) -> Re
     }
 }
 
-/// A pair of features as contacts name them.
-type Key = (Kind, u32, u32);
-
 /// Every pair of features that detect should ask about, and when first they meet.
-fn every_pair(bodies: &[Body]) -> BTreeMap<Key, Option<Toi>> {
+fn every_pair(bodies: &[Body]) -> BTreeMap<Row, Option<Toi>> {
     let ends: Vec<[Vec<[f64; 3]>; 2]> = bodies
         .iter()
         .map(|body| {
@@ -206,28 +204,27 @@ fn every_pair(bodies: &[Body]) -> BTreeMap<Key, Option<Toi>> {
     let mut all = BTreeMap::new();
     let (a, b) = (0, bodies.len() - 1);
     let one = a == b;
-    let mut faces_of = |kind: Kind, v_of: usize, f_of: usize| {
+    let mut faces_of = |v_of: usize, f_of: usize| {
         for v in used(&bodies[v_of]) {
             for (f, corners) in
                 bodies[f_of].faces().iter().enumerate().filter(|(_, c)| !one || !c.contains(&v))
             {
                 let [i, j, k] = corners.map(|c| (f_of, c));
                 let toi = ask(Features::VertexFace, [(v_of, v), i, j, k]);
-                let key = if kind == Kind::Vf { (kind, v, f as u32) } else { (kind, f as u32, v) };
-                all.insert(key, toi);
+                all.insert((Kind::Vf, [v_of, f_of], [v, f as u32]), toi);
             }
         }
     };
-    faces_of(Kind::Vf, a, b);
+    faces_of(a, b);
     if !one {
-        faces_of(Kind::Fv, b, a);
+        faces_of(b, a);
     }
     let edges = [a, b].map(|i| Topology::new(bodies[i].faces(), bodies[i].vertex_count()).edges);
     for (i, e) in edges[0].iter().enumerate() {
         let rest = edges[1].iter().enumerate().skip(if one { i + 1 } else { 0 });
         for (j, g) in rest.filter(|(_, g)| !one || !e.iter().any(|v| g.contains(v))) {
             let toi = ask(Features::EdgeEdge, [(a, e[0]), (a, e[1]), (b, g[0]), (b, g[1])]);
-            all.insert((Kind::Ee, i as u32, j as u32), toi);
+            all.insert((Kind::Ee, [a, b], [i as u32, j as u32]), toi);
         }
     }
     all

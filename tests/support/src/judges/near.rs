@@ -38,6 +38,14 @@ pub fn weights(features: Features, at: [f64; 2]) -> [f64; 3] {
     }
 }
 
+/// The weights of a face, or the places on two edges, that four vertices' weights mean; `None` if they disagree.
+pub fn places(features: Features, [a, b, c, d]: [f64; 4]) -> Option<[f64; 3]> {
+    match features {
+        Features::VertexFace => (a == 1.0).then_some([b, c, d]),
+        Features::EdgeEdge => ([a, c] == [1.0 - b, 1.0 - d]).then_some([b, d, 0.0]),
+    }
+}
+
 /// What is wrong with a listed pair.
 pub fn wrong(
     (features, points): (Features, Points),
@@ -105,26 +113,31 @@ impl Truth {
         let row = |pair: &NearPair| {
             let kind = match pair.kind {
                 Kind::Vf => "vf",
-                Kind::Fv => "fv",
                 Kind::Ee => "ee",
             };
-            (kind, pair.a, pair.b)
+            (kind, pair.bodies.map(|body| body.index()), [pair.feature_a, pair.feature_b])
         };
-        if !found.is_sorted_by(|a, b| (a.kind, a.a, a.b) < (b.kind, b.a, b.b)) {
+        let key = |pair: &NearPair| {
+            let [of_a, of_b] = pair.bodies;
+            (pair.kind, (of_a, pair.feature_a), (of_b, pair.feature_b))
+        };
+        if !found.is_sorted_by(|a, b| key(a) < key(b)) {
             return Err("not in order, or twice".into());
         }
         let mut beyond = 0;
         for pair in found {
-            let (one, other) = (&self.shapes[0], &self.shapes[self.shapes.len() - 1]);
-            let asked = Shape::pair(one, other, row(pair));
+            let asked = Shape::pair(&self.shapes, row(pair));
             let known = self.within.get(&row(pair)).cloned();
             beyond += usize::from(known.is_none());
             let truth = known.unwrap_or_else(|| distance_squared(asked.0, asked.1));
-            let said = (pair.squared_distance, pair.weights);
+            let Some(places) = places(asked.0, pair.weights) else {
+                return Err(format!("{pair:?}: weights that do not sum to 1"));
+            };
+            let said = (pair.squared_distance, places);
             if let Some(what) = wrong(asked, said, self.distance, &truth) {
                 return Err(format!("{pair:?}: {what}"));
             }
-            if pair.closest != named(asked.0, pair.weights) {
+            if pair.closest != named(asked.0, places) {
                 return Err(format!("{pair:?}: another feature is nearest"));
             }
         }

@@ -72,7 +72,7 @@ impl Scene {
 
 /// The rows of an answer, ascending.
 pub fn found(contacts: &Contacts) -> Vec<Row> {
-    contacts.contacts().iter().map(|c| (c.kind, c.a, c.b)).collect()
+    contacts.contacts().iter().map(|c| (c.kind, c.feature_a, c.feature_b)).collect()
 }
 
 /// What two ascending lists do not share.
@@ -97,7 +97,9 @@ pub fn later(one: &Contacts, other: &Contacts, margin: f64) -> (usize, f64) {
     let (mut count, mut most) = (0, 0f64);
     let reference = other.contacts();
     for c in one.contacts() {
-        if let Ok(at) = reference.binary_search_by_key(&(c.kind, c.a, c.b), |c| (c.kind, c.a, c.b)) {
+        if let Ok(at) = reference
+            .binary_search_by_key(&(c.kind, c.feature_a, c.feature_b), |c| (c.kind, c.feature_a, c.feature_b))
+        {
             let by = c.toi - reference[at].toi;
             count += (by > margin) as usize;
             most = most.max(by);
