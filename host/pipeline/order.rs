@@ -8,7 +8,7 @@ use crate::device::{Buffer, Device, View};
 use crate::error::Error;
 use crate::pipeline::{launch, purpose};
 use bytemuck::Pod;
-use nearmiss_kernels::abi::{Counters, Named, OrderArgs, Output, Span, counter};
+use nearmiss_kernels::abi::{Counters, Named, OrderArgs, Output, counter};
 use nearmiss_kernels::entry::{self, Entry};
 use nearmiss_kernels::stage::order::LIST_BITS;
 

@@ -262,8 +262,8 @@ fn the_hash_notices_every_fault_of_a_list_of_contacts() {
     let faults: [(&str, Fault); 8] = [
         ("a bit of a time", |all| all[2].toi = f64::from_bits(all[2].toi.to_bits() ^ 1)),
         ("a bit of a bound", |all| all[2].toi_upper = f64::from_bits(all[2].toi_upper.to_bits() ^ 1)),
-        ("a first index", |all| all[4].a ^= 1),
-        ("a second index", |all| all[4].b ^= 1),
+        ("a first index", |all| all[4].feature_a ^= 1),
+        ("a second index", |all| all[4].feature_b ^= 1),
         ("a kind", |all| all[0].kind = if all[0].kind == Kind::Vf { Kind::Ee } else { Kind::Vf }),
         ("dropped", |all| all.truncate(all.len() - 1)),
         ("twice", |all| all.insert(1, all[1])),
