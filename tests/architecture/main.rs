@@ -3,6 +3,7 @@
 
 mod book;
 mod choices;
+mod comments;
 mod figures;
 mod licences;
 mod package;

@@ -98,7 +98,7 @@ fn shown(text: &str) -> String {
 }
 
 /// Sentences with the line at which their paragraph begins.
-fn sentences(text: &str) -> Vec<(usize, String)> {
+pub fn sentences(text: &str) -> Vec<(usize, String)> {
     let mut paragraphs: Vec<(usize, String)> = Vec::new();
     let mut is_open = false;
     for (at, line) in lines(text) {
@@ -152,8 +152,7 @@ fn badly_worded((name, text): &Source, median: usize) -> Vec<String> {
         if count > LONGEST_SENTENCE {
             found.push(format!("{place}: {count} words: {sentence}"));
         }
-        let first = sentence.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
-        found.extend(OPENINGS.contains(&first).then(|| format!("{place}: begins with {first}")));
+        found.extend(opening(&sentence).map(|first| format!("{place}: begins with {first}")));
         found.extend(banned(&sentence).map(|word| format!("{place}: {word}")));
         counts.extend((count >= 3).then_some(count));
     }
@@ -174,7 +173,14 @@ fn badly_worded((name, text): &Source, median: usize) -> Vec<String> {
     found
 }
 
-fn banned(text: &str) -> impl Iterator<Item = &'static str> {
+/// The word that a sentence must not begin with, if it does.
+pub fn opening(sentence: &str) -> Option<&str> {
+    let first = sentence.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
+    OPENINGS.contains(&first).then_some(first)
+}
+
+/// Words of the list in a text.
+pub fn banned(text: &str) -> impl Iterator<Item = &'static str> {
     let text = text.to_lowercase();
     BANNED.into_iter().filter(move |word| says(&text, word))
 }
