@@ -25,9 +25,10 @@ fn by(solver: Solver) -> Query {
 
 /// All contacts of the one are in the other, as early or earlier.
 fn none_is_lost(truth: &Contacts, other: &Contacts) {
-    let listed: BTreeMap<_, _> = other.contacts().iter().map(|c| ((c.kind, c.a, c.b), c.toi)).collect();
+    let listed: BTreeMap<_, _> =
+        other.contacts().iter().map(|c| ((c.kind, c.feature_a, c.feature_b), c.toi)).collect();
     for c in truth.contacts().iter().filter(|c| c.status == Status::Certified) {
-        let toi = listed.get(&(c.kind, c.a, c.b)).unwrap_or_else(|| panic!("{c:?} is lost"));
+        let toi = listed.get(&(c.kind, c.feature_a, c.feature_b)).unwrap_or_else(|| panic!("{c:?} is lost"));
         assert!(*toi <= c.toi_upper, "{c:?} is late: {toi}");
     }
 }
@@ -60,7 +61,8 @@ fn a_budget_that_ends_is_told() {
     for solver in [Solver::Certified, Solver::CertifiedF64] {
         for boxes in [1, 2] {
             for device in [engine(), sanitizer(support::ORDERS[2])] {
-                let all = ask(device, shrinking(), certified(by(solver), |all| all.budget = Some(boxes)));
+                let all =
+                    ask(device, shrinking(), certified(by(solver), |all| all.max_iterations = Some(boxes)));
                 none_is_lost(&truth, &all);
                 assert!(met(&all) > 0, "{:?}", all.contacts());
                 let ended = all.caveats().iter().find_map(|reason| match reason {
@@ -79,7 +81,7 @@ fn a_budget_that_ends_is_told() {
         }
         // An earliest query counts none: its time says whether it is certain.
         let first = with_tolerance(support::asked::by(QueryKind::Earliest, solver), 4e-3);
-        let first = certified(first, |all| all.budget = Some(1));
+        let first = certified(first, |all| all.max_iterations = Some(1));
         let first = ask(engine(), shrinking(), first);
         assert_eq!(first.caveats(), [Caveat::EarliestUndecided]);
         assert!(first.undecided == 1 && first.earliest_toi() <= truth.earliest_toi());

@@ -44,7 +44,9 @@ fn certified(scene: &Scene, body: &Body, truth: &[Row], solver: Solver, cubic: &
     assert_eq!(later(&answer, cubic, ROUNDING).0, 0, "late");
     let mut others = cubic.contacts().iter();
     for c in answer.contacts().iter().filter(|c| c.status == Status::Certified) {
-        let same = others.find(|o| (o.kind, o.a, o.b) == (c.kind, c.a, c.b)).expect("the cubic finds all");
+        let same = others
+            .find(|o| (o.kind, o.feature_a, o.feature_b) == (c.kind, c.feature_a, c.feature_b))
+            .expect("the cubic finds all");
         assert!(c.toi <= c.toi_upper && same.toi <= c.toi_upper + ROUNDING, "{c:?}, {}", same.toi);
     }
     answer
@@ -55,7 +57,12 @@ const ROUNDING: f64 = 1e-9;
 
 /// The rows of an answer with that status.
 fn rows(answer: &Contacts, status: impl Fn(Status) -> bool) -> Vec<Row> {
-    answer.contacts().iter().filter(|c| status(c.status)).map(|c| (c.kind, c.a, c.b)).collect()
+    answer
+        .contacts()
+        .iter()
+        .filter(|c| status(c.status))
+        .map(|c| (c.kind, c.feature_a, c.feature_b))
+        .collect()
 }
 
 /// The earliest by a certified solver is the least of all, not late, and early by little.
@@ -72,7 +79,7 @@ fn starved(scene: &Scene, body: &Body, truth: &[Row]) {
     // In f32 alone there are no boxes, and no budget of them.
     for solver in [Solver::Certified, Solver::CertifiedF64] {
         let query = support::asked::certified(by(QueryKind::Continuous, solver), |certified| {
-            certified.budget = Some(2)
+            certified.max_iterations = Some(2)
         });
         let answer = ask(engine(), vec![body.clone()], query);
         assert_eq!(difference(&found(&answer), truth).missed, [], "{}, {solver:?}", scene.name);

@@ -156,7 +156,7 @@ fn same(
 ) -> First {
     let choose = |kind| {
         let query = with_tolerance(by(kind, solver), tolerance);
-        if separation > 0.0 { certified(query, |all| all.separation = separation) } else { query }
+        if separation > 0.0 { certified(query, |all| all.min_separation = separation) } else { query }
     };
     let wanted = least(&ask(engine(), vec![body.clone()], choose(QueryKind::Continuous)));
     let mut hashes = Vec::new();

@@ -45,12 +45,12 @@ fn fault(truth: &Contacts, found: &Contacts) -> Option<String> {
         return Some(format!("{} pairs, not {}", found.triangles().len(), truth.triangles().len()));
     }
     let rows = |all: &Contacts| -> BTreeMap<_, Contact> {
-        all.contacts().iter().map(|c| ((c.kind, c.a, c.b), *c)).collect()
+        all.contacts().iter().map(|c| ((c.kind, c.feature_a, c.feature_b), *c)).collect()
     };
     let (truth, found) = (rows(truth), rows(found));
     let sure = |c: &&Contact| c.status == Status::Certified;
     let missed = |one: &BTreeMap<_, Contact>, other: &BTreeMap<_, Contact>| {
-        one.values().filter(sure).find_map(|c| match other.get(&(c.kind, c.a, c.b)) {
+        one.values().filter(sure).find_map(|c| match other.get(&(c.kind, c.feature_a, c.feature_b)) {
             None => Some(format!("{c:?} is only in one")),
             Some(o) if o.toi > c.toi_upper || o.status == Status::Certified && c.toi > o.toi_upper => {
                 Some(format!("{c:?} and {o:?}"))
@@ -103,7 +103,8 @@ fn in_doubles_the_times_are_the_same_bits() {
 #[test]
 fn a_separation_of_any_size() {
     let body = soup(true);
-    let apart = |separation| certified(Query::continuous(), |certified| certified.separation = separation);
+    let apart =
+        |separation| certified(Query::continuous(), |certified| certified.min_separation = separation);
     let near = |power: i32| apart(2f64.powi(power - 6));
     let truth = ask(engine(), vec![body.clone()], near(0));
     for power in POWERS {
@@ -163,6 +164,6 @@ fn the_comparison_can_fail() {
     let truth = ask(engine(), vec![body.clone()], Query::continuous());
     let other = ask(engine(), vec![soup(false)], Query::discrete());
     assert!(fault(&truth, &other).is_some());
-    let nearer = certified(Query::continuous(), |certified| certified.separation = 0.125);
+    let nearer = certified(Query::continuous(), |certified| certified.min_separation = 0.125);
     assert!(fault(&truth, &ask(engine(), vec![body], nearer)).is_some());
 }

@@ -94,9 +94,9 @@ fn named(body: &Body, contacts: &[Contact], vertex: impl Fn(u32) -> u32) -> BTre
     let mut all = BTreeMap::new();
     for c in contacts {
         let name = match c.kind {
-            Kind::Vf => (Kind::Vf, sorted(&[c.a]), sorted(&body.faces()[c.b as usize])),
+            Kind::Vf => (Kind::Vf, sorted(&[c.feature_a]), sorted(&body.faces()[c.feature_b as usize])),
             Kind::Ee => {
-                let mut ends = [c.a, c.b].map(|e| sorted(&edges[e as usize]));
+                let mut ends = [c.feature_a, c.feature_b].map(|e| sorted(&edges[e as usize]));
                 ends.sort();
                 let [a, b] = ends;
                 (Kind::Ee, a, b)

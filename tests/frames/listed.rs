@@ -124,7 +124,8 @@ fn scenes() -> Vec<(String, Vec<Body>)> {
 }
 
 fn asking(tolerance: f64, boxes: Option<u32>) -> Query {
-    Continuous::by(Certified { tolerance: Some(tolerance), budget: boxes, ..Certified::default() }).into()
+    Continuous::by(Certified { tolerance: Some(tolerance), max_iterations: boxes, ..Certified::default() })
+        .into()
 }
 
 /// All pairs whose swept boxes meet and that the solver does not say to be apart.
@@ -206,7 +207,8 @@ fn near_misses_are_listed_by_every_way_or_by_none() {
             let query = asking(tolerance, budget);
             let what = format!("{name}, {tolerance:e}, {budget:?}");
             let answer = differs(&bodies, query).unwrap_or_else(|odd| panic!("{what}: {odd}"));
-            let p = Params { budget: budget.unwrap_or(Params::MAX_ITERATIONS), ..Params::new(tolerance) };
+            let p =
+                Params { max_iterations: budget.unwrap_or(Params::MAX_ITERATIONS), ..Params::new(tolerance) };
             assert_eq!(fault(answer.contacts(), &brute(&bodies, &p), &[]), None, "{what}");
             println!("{what}: {} listed, {} of them undecided", answer.len(), near_misses(&answer));
             counts.push((name.clone(), near_misses(&answer)));
@@ -228,7 +230,8 @@ fn what_once_differed_is_alike() {
         for tolerance in [None, Some(1e-1), Some(1e-3), Some(1e-6), Some(1e-9), Some(0.0)] {
             for boxes in [None, Some(1)] {
                 let query =
-                    Continuous::by(Certified { tolerance, budget: boxes, ..Certified::default() }).into();
+                    Continuous::by(Certified { tolerance, max_iterations: boxes, ..Certified::default() })
+                        .into();
                 let said = differs(&bodies, query);
                 assert_eq!(said.err(), None, "{}, {tolerance:?}, {boxes:?}", folder.display());
             }
@@ -241,7 +244,7 @@ fn what_once_differed_is_alike() {
 fn what_is_near_a_separation_is_listed_by_every_way_or_by_none() {
     for (name, bodies) in scenes().into_iter().step_by(3) {
         for (tolerance, separation) in [(1e-2, 0.02), (1e-3, 1e-3), (0.0, 1.0 / 1024.0)] {
-            let query = certified(asking(tolerance, None), |all| all.separation = separation);
+            let query = certified(asking(tolerance, None), |all| all.min_separation = separation);
             let said = differs(&bodies, query);
             assert_eq!(said.err(), None, "{name}, {tolerance:e}, {separation}");
         }

@@ -20,13 +20,13 @@ const TOLERANCE: f64 = 1e-3;
 
 fn asking(motion: QueryKind, solver: Solver, separation: f64) -> Query {
     certified(by(motion, solver), |certified| {
-        (certified.tolerance, certified.separation) = (Some(TOLERANCE), separation);
+        (certified.tolerance, certified.min_separation) = (Some(TOLERANCE), separation);
     })
 }
 
 /// All pairs without a common vertex that the solver does not say to be apart: of one body, or of two.
 fn brute(bodies: &[Body], solver: Solver, separation: f64) -> BTreeMap<Row, Verdict> {
-    let p = Params { separation, ..Params::new(TOLERANCE) };
+    let p = Params { min_separation: separation, ..Params::new(TOLERANCE) };
     let seen: Vec<Seen> = bodies.iter().map(Seen::of).collect();
     let (one, other, own) = (&seen[0], &seen[seen.len() - 1], seen.len() == 1);
     let mut near = BTreeMap::new();

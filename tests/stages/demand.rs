@@ -44,7 +44,7 @@ fn near_within_a_huge_distance_is_refused_by_what_is_certain() {
 
 #[test]
 fn a_huge_separation_is_refused() {
-    let apart = Certified { separation: 30.0, ..Certified::default() };
+    let apart = Certified { min_separation: 30.0, ..Certified::default() };
     let body = || vec![scene::soup(6_000, 1, true).expect("a scene")];
     let (_, text, looks) = refused(engine().limited_answers(1 << 26), body(), Continuous::by(apart).into());
     assert!(text.contains("use a smaller separation or tolerance") && looks < 20_000_000, "{text}: {looks}");

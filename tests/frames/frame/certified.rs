@@ -57,7 +57,7 @@ fn asking(motion: QueryKind, solver: Solver, p: &Params) -> Query {
     certified(by(motion, solver), |certified| {
         certified.tolerance = Some(p.tolerance);
         // In f32 alone no boxes are tested, so a budget is refused.
-        certified.budget = (solver != Solver::CertifiedF32).then_some(p.budget);
+        certified.max_iterations = (solver != Solver::CertifiedF32).then_some(p.max_iterations);
     })
 }
 
@@ -73,7 +73,7 @@ fn nothing_is_lost_at_any_tolerance_and_budget() {
             // The budget is the last rung's: a small one can but leave more of what comes to it.
             let mut ample = 0;
             for (tolerance, budget) in [(1e-4, 4096), (0.0, 200), (0.1, 4096), (1e-4, 1)] {
-                let p = Params { budget, ..Params::new(tolerance) };
+                let p = Params { max_iterations: budget, ..Params::new(tolerance) };
                 let (near, meet) = brute(&body, solver, &p);
                 let all = ask(engine(), vec![body.clone()], asking(QueryKind::Continuous, solver, &p));
                 let what = format!("{}, {solver:?}, {p:?}", body.name());
@@ -95,7 +95,7 @@ fn nothing_is_lost_at_any_tolerance_and_budget() {
 #[test]
 fn every_machine_escalates_the_same() {
     let body = crowded(4, 40, 24);
-    let p = Params { budget: 2, ..Params::new(1e-3) };
+    let p = Params { max_iterations: 2, ..Params::new(1e-3) };
     let print = |device, motion| {
         let mut detector = OneQuery::new(device, vec![body.clone()], asking(motion, Solver::Certified, &p))
             .expect("a detector");
@@ -131,7 +131,7 @@ fn the_comparison_can_fail() {
         |all| all.truncate(all.len() / 2),
         |all| all.insert(1, all[1]),
         |all| all[0].toi_upper += 1e-9,
-        |all| all[0].b += 1000,
+        |all| all[0].feature_b += 1000,
     ];
     assert!(faults.into_iter().all(|fault| with(fault).is_some()));
 }

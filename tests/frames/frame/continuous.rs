@@ -245,8 +245,12 @@ fn bodies_of_few_triangles_in_motion() {
     let falling = moving(&t0, &t1, &[[0, 1, 2], [3, 4, 5]]);
     let found = everywhere("falling", &[falling]);
     // The lowest corner starts one above the face and falls by two: it meets it half way. The other two end on it.
-    let times: Vec<_> =
-        found.contacts().iter().filter(|c| c.kind == Kind::Vf).map(|c| (c.a, c.b, c.toi)).collect();
+    let times: Vec<_> = found
+        .contacts()
+        .iter()
+        .filter(|c| c.kind == Kind::Vf)
+        .map(|c| (c.feature_a, c.feature_b, c.toi))
+        .collect();
     assert_eq!(times, [(3, 0, 0.5), (4, 0, 1.0), (5, 0, 1.0)]);
     assert!(everywhere("single", &[scene::single().expect("a scene")]).is_empty());
     let none = still(&[], &[]);
@@ -267,7 +271,7 @@ fn the_comparison_can_fail() {
         |all| all.truncate(all.len() - 1),
         |all| all.insert(1, all[1]),
         |all| all[1].toi = f64::from_bits(all[1].toi.to_bits() + 1),
-        |all| all[0].b += 1,
+        |all| all[0].feature_b += 1,
         |all| all[0].kind = Kind::Ee,
     ];
     assert!(faults.into_iter().all(|fault| with(fault).is_some()));

@@ -169,7 +169,9 @@ fn the_order_of_bodies_only_renames() {
     let edges = |near: Vec<NearPair>| near.into_iter().filter(|p| p.kind == Kind::Ee).collect::<Vec<_>>();
     let (mine, theirs) = (edges(of([&one, &other])), edges(of([&other, &one])));
     assert_eq!(mine.len(), theirs.len());
-    assert!(mine.iter().all(|p| theirs.iter().any(|q| (q.a, q.b) == (p.b, p.a))));
+    assert!(
+        mine.iter().all(|p| theirs.iter().any(|q| (q.feature_a, q.feature_b) == (p.feature_b, p.feature_a)))
+    );
 }
 
 /// The continuous query of two equal frames with that separation is another road to the same set, up to its tolerance.
@@ -179,18 +181,25 @@ fn a_step_without_motion_comes_to_the_same() {
         let tolerance = 1e-6;
         let asked = |precision| -> Query {
             let certified = Certified::by(precision);
-            Continuous::by(Certified { tolerance: Some(tolerance), separation: distance, ..certified }).into()
+            Continuous::by(Certified { tolerance: Some(tolerance), min_separation: distance, ..certified })
+                .into()
         };
-        let rows = |near: &[NearPair]| near.iter().map(|p| (p.kind, p.a, p.b)).collect::<BTreeSet<_>>();
+        let rows = |near: &[NearPair]| {
+            near.iter().map(|p| (p.kind, p.feature_a, p.feature_b)).collect::<BTreeSet<_>>()
+        };
         let near = ask(engine(), bodies.clone(), Query::near(distance));
         let farther = ask(engine(), bodies.clone(), Query::near(distance + 2.0 * tolerance));
         for solver in [CertifiedPrecision::Mixed, CertifiedPrecision::F64] {
             let step = ask(engine(), bodies.clone(), asked(solver));
-            let all: BTreeSet<_> = step.contacts().iter().map(|c| (c.kind, c.a, c.b)).collect();
+            let all: BTreeSet<_> =
+                step.contacts().iter().map(|c| (c.kind, c.feature_a, c.feature_b)).collect();
             let certain = step.contacts().iter().filter(|c| c.status == Status::Certified);
             assert!(rows(near.near()).is_subset(&all), "{solver:?}: missed by the step");
             assert!(all.is_subset(&rows(farther.near())), "{solver:?}: missed by near");
-            assert!(certain.clone().all(|c| rows(near.near()).contains(&(c.kind, c.a, c.b))), "{solver:?}");
+            assert!(
+                certain.clone().all(|c| rows(near.near()).contains(&(c.kind, c.feature_a, c.feature_b))),
+                "{solver:?}"
+            );
             assert!(certain.count() * 10 > 9 * near.len() || near.undecided > 0, "{solver:?}");
         }
     }
@@ -243,8 +252,8 @@ fn a_hash_tells_answers_apart() {
     };
     assert_eq!(with(&|_| ()), all.hash());
     let plants: [&dyn Fn(&mut NearPair); 6] = [
-        &|pair| pair.a ^= 1,
-        &|pair| pair.b ^= 1,
+        &|pair| pair.feature_a ^= 1,
+        &|pair| pair.feature_b ^= 1,
         &|pair| pair.kind = if pair.kind == Kind::Ee { Kind::Vf } else { Kind::Ee },
         &|pair| pair.squared_distance = pair.squared_distance.next_up(),
         &|pair| pair.weights[1] = pair.weights[1].next_up(),
@@ -265,10 +274,10 @@ fn real_cloth_agrees_with_the_step_without_motion() {
     let body = Body::deformable(mesh("cloth-ball/cloth_ball92.ply"));
     let distance = 0.01;
     let near = ask(engine(), vec![body.clone()], Query::near(distance));
-    let separation = Certified { separation: distance, tolerance: Some(1e-7), ..Certified::default() };
+    let separation = Certified { min_separation: distance, tolerance: Some(1e-7), ..Certified::default() };
     let step = ask(engine(), vec![body], Continuous::by(separation).into());
-    let rows: BTreeSet<_> = near.near().iter().map(|p| (p.kind, p.a, p.b)).collect();
-    let all: BTreeSet<_> = step.contacts().iter().map(|c| (c.kind, c.a, c.b)).collect();
+    let rows: BTreeSet<_> = near.near().iter().map(|p| (p.kind, p.feature_a, p.feature_b)).collect();
+    let all: BTreeSet<_> = step.contacts().iter().map(|c| (c.kind, c.feature_a, c.feature_b)).collect();
     println!("{} near, {} by the step", rows.len(), all.len());
     assert!(rows.len() > 10_000 && rows.is_subset(&all));
     // What the step lists beyond is nearer than the distance and its tolerance.

@@ -88,6 +88,7 @@ fn near(bodies: Vec<nearmiss::mesh::Body>, distance: f64) -> Vec<NearPair> {
     ask(engine(), bodies, Query::near(distance)).near().to_vec()
 }
 
+/// A pair with the weights of the face's corners, or the places on both edges.
 fn pair(
     kind: Kind,
     [a, b]: [u32; 2],
@@ -95,7 +96,17 @@ fn pair(
     weights: [f64; 3],
     closest: Closest,
 ) -> NearPair {
-    NearPair { kind, bodies: Default::default(), a, b, squared_distance, weights, closest }
+    let [x, y, z] = weights;
+    let weights = if kind == Kind::Ee { [1.0 - x, x, 1.0 - y, y] } else { [1.0, x, y, z] };
+    NearPair {
+        kind,
+        bodies: Default::default(),
+        feature_a: a,
+        feature_b: b,
+        squared_distance,
+        weights,
+        closest,
+    }
 }
 
 /// A rod and a point of their own, beside a triangle: each pair of them once.

@@ -118,7 +118,7 @@ fn bodies(pairs: &[Pair], scale: f64, at: f64, wide: bool) -> Vec<Body> {
 /// What was found of pair `i`'s nearest features. Edge 0 of a triangle of three new vertices joins its first two.
 fn found(all: &Contacts, i: u32, near: Near) -> Option<&Contact> {
     let is = |c: &&Contact| match near {
-        Near::Edges => c.kind == Kind::Ee && (c.a, c.b) == (3 * i, 3 * i),
+        Near::Edges => c.kind == Kind::Ee && (c.feature_a, c.feature_b) == (3 * i, 3 * i),
         _ => c.kind == Kind::Vf && c.bodies[0] > c.bodies[1] && (c.feature_a, c.feature_b) == (3 * i, i),
     };
     all.contacts().iter().find(is)
