@@ -20,8 +20,8 @@ pub enum Error {
         problem: Problem,
     },
     /// An argument that does not exist or does not fit the others, independent of the data. It is
-    /// an option, a name, a kind, the number of a body, the shape or type of an array, or a pointer.
-    /// Pass another one.
+    /// an option, a name, a kind, the number of a body, the shape or type of an array, or a
+    /// pointer. Pass another one.
     #[error("{what}; {advice}")]
     InvalidArgument {
         /// The argument, and the fault.
