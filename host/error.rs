@@ -1,8 +1,8 @@
 //! The one error type: grouped by who must act. Each message states the remedy.
 //!
 //! The rule in every language: numbers that describe meshes, positions and poses are *input*, in
-//! files and in arrays. All else that a caller passes is an *argument*: options, names, kinds,
-//! numbers of bodies, shapes and types of arrays, pointers.
+//! files and in arrays. All else is an *argument*: options, names, kinds, numbers of bodies, shapes
+//! and types of arrays, pointers.
 
 use crate::mesh::Problem;
 
@@ -10,7 +10,7 @@ use crate::mesh::Problem;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// Data that cannot be used: a file, or numbers of a mesh, of positions or of a pose, from any
+    /// Data that cannot be used: a file, or numbers of a mesh, positions or a pose, from any
     /// source. Correct the data.
     #[error("{file}: {problem}")]
     Input {
@@ -20,8 +20,8 @@ pub enum Error {
         problem: Problem,
     },
     /// An argument that does not exist or does not fit the others, independent of the data. It is
-    /// an option, a name, a kind, the number of a body, the shape or type of an array, or a
-    /// pointer. Pass another one.
+    /// an option, name, kind, number of a body, shape or type of an array, or pointer. Pass another
+    /// one.
     #[error("{what}; {advice}")]
     InvalidArgument {
         /// The argument, and the fault.

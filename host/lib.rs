@@ -50,9 +50,9 @@
 //! ([`Motion::OnDevice`](scene::Motion::OnDevice)). It submits frames that neither allocate nor
 //! wait ([`Detector::submit`]).
 //!
-//! The folder `examples` of the repository has programs of some twenty lines. They show a cloth, a
-//! cloth with an obstacle, a rigid pile, 1,000 environments, near pairs, a step limited by
-//! `earliest`, and device-resident bodies.
+//! The folder `examples` of the repository has programs of some twenty lines. They show a cloth
+//! alone and with an obstacle, a rigid pile, and 1,000 environments. Others show near pairs,
+//! distances, a step limited by `earliest`, and device-resident bodies.
 
 // A new variant shows every place that must handle it.
 #![warn(clippy::wildcard_enum_match_arm)]

@@ -21,9 +21,8 @@ pub fn require(what: &str, bytes: u64) -> Result<(), Error> {
     }
 }
 
-/// Bytes that this program may still allocate. They are the least of the machine's free memory, the
-/// limit of its group of processes, and its own address space. `None` if the system reports none of
-/// these.
+/// Bytes that this program may still allocate. The least of the machine's free memory, its control
+/// group's limit and its own address space counts. `None` if the system reports none of these.
 pub fn free() -> Option<u64> {
     let machine = read_to_string("/proc/meminfo").ok().and_then(|text| kilobytes(&text, "MemAvailable:"));
     let ways = [

@@ -273,9 +273,9 @@ impl MultiDetector {
         division.map_or_else(Vec::new, of)
     }
 
-    /// Returns for each share the tiles of 32 triangles that it met in the last frame of a query,
-    /// beyond its own. A device without all positions would need them sent. Reads all pairs of
-    /// tiles back, for measurements. Only the last slice of a share is counted.
+    /// Returns for each share the number of tiles beyond its own that it met in a query's last
+    /// frame. A tile has 32 triangles. A device without all positions would need them sent. Reads
+    /// all pairs of tiles back, for measurements. Only the last slice of a share is counted.
     ///
     /// # Errors
     /// Those of the device.

@@ -8,8 +8,8 @@ use nearmiss_kernels::prim::near::{corner_weights, edge_edge, vertex_face};
 
 /// Geometry of a contact or a near pair: see [`Detector::geometry`](crate::Detector::geometry).
 ///
-/// The four vertices are a vertex and the face's three corners in the face's order, or the ends of
-/// two edges. The end with the larger index comes first.
+/// The four vertices are a vertex and the face's corners in their order, or the ends of two edges.
+/// The end with the larger index comes first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ContactGeometry {
@@ -34,7 +34,7 @@ pub struct ContactGeometry {
     pub distance: f64,
     /// Unit vector from the second feature towards the first: the direction that separates them. If
     /// the points are apart, it is along their difference. If they touch, it is the normal of the
-    /// face or of both edges, on the side from which they came. Zeros if no direction is defined.
+    /// face or of both edges, on their side of approach. Zeros if no direction is defined.
     pub normal: [f64; 3],
 }
 

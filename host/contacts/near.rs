@@ -58,9 +58,8 @@ pub struct NearPair {
     /// below 2^-1022 has fewer digits. One below 2^-1075 is 0, even if the features are apart.
     pub squared_distance: f64,
     /// Weights of the four vertices in the two nearest points, in the order of
-    /// [`ContactGeometry`](super::ContactGeometry). That is the vertex and the three corners of the
-    /// face, or the ends of both edges, the larger index first. The weights of each feature sum to
-    /// 1.
+    /// [`ContactGeometry`](super::ContactGeometry). That is the vertex and the face's corners, or
+    /// the ends of both edges, the larger index first. The weights of each feature sum to 1.
     pub weights: [f64; 4],
     /// Nearest parts of both features: those with weights other than 0 and 1.
     pub closest: Closest,

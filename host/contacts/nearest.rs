@@ -13,7 +13,8 @@ pub struct NearestTriangles {
     pub triangles: [u32; 2],
     /// Distance of the triangles: 0 if and only if they share a point, by exact signs. Otherwise it
     /// is off by at most 192 half ulps of their extent. No two triangles are nearer by more than
-    /// 192 half ulps of the larger extent: theirs, or that of the truly nearest pair.
+    /// 192 half ulps of the larger extent. The extents are theirs and that of the truly nearest
+    /// pair.
     pub distance: f64,
     /// Weights of each triangle's corners in its nearest point, in the order of the face. If the
     /// triangles share a point, the nearest points are such a point, up to rounding.

@@ -16,8 +16,7 @@ pub enum Note {
         /// Text of the note.
         text: String,
     },
-    /// A query in motion of bodies at rest: no body has positions or another pose for the end of
-    /// the step.
+    /// A query in motion of bodies at rest: none has positions or another pose for the step's end.
     OneFrame,
     /// A query in motion of bodies with equal start and end.
     SameFrames,

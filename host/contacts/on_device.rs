@@ -44,7 +44,7 @@ pub struct DeviceAnswer {
     /// Address of the [`FrameStatus`]: the number of entries, and whether the answer is complete.
     pub status: u64,
     /// Address of an earliest query's time: an f64, all bits set if nothing meets. The next 8 bytes
-    /// are twice those bits, plus 1 if the time is that of an undecided pair and of no contact.
+    /// are twice those bits, plus 1 if only an undecided pair has that time.
     pub earliest: Option<u64>,
     /// The two vertices of every edge, 8 bytes each; none for a discrete query.
     pub edges: DeviceList,

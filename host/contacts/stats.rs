@@ -4,7 +4,7 @@ use super::{Front, Queues};
 use crate::stages::Stages;
 
 /// Statistics of an answer's computation. They are diagnostic and may change between versions.
-/// Counts of an earliest query may differ between runs: pairs that cannot be earlier are skipped,
+/// Counts of an earliest query may differ between runs. Pairs that cannot be earlier are skipped,
 /// and the order decides which.
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
@@ -22,8 +22,8 @@ pub struct Stats {
     pub survivors_vf_ee: [u64; 2],
     /// Candidates escalated from f32 to f64: vertex/face, edge/edge.
     pub escalated_vf_ee: [u64; 2],
-    /// Candidates whose roots could not be isolated; with a minimum separation, those that the
-    /// first step did not decide: vertex/face, edge/edge.
+    /// Candidates whose roots could not be isolated: vertex/face, edge/edge. With a minimum
+    /// separation, those that the first step did not decide.
     pub open_vf_ee: [u64; 2],
     /// Open candidates that were cut into slices: vertex/face, edge/edge.
     pub sliced_vf_ee: [u64; 2],

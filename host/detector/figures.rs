@@ -94,9 +94,9 @@ impl Detector {
         self.engine.pipeline.as_ref().map_or(0, |pipeline| pipeline.reruns())
     }
 
-    /// Returns hashes of the device's memory by stage, after a last frame of this query: trees to
-    /// the bit, lists as sets. Two machines with equal hashes agree on every kernel. For tests and
-    /// `selftest`.
+    /// Returns hashes of the device's memory by stage, after a last frame of this query. Trees are
+    /// compared to the bit, lists as sets. Two machines with equal hashes agree on every kernel.
+    /// For tests and `selftest`.
     ///
     /// # Errors
     /// Those of the device.

@@ -29,8 +29,8 @@ impl Detector {
     /// step ended. Cost: an upload of the named positions, and one launch that places them.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] for a body that is not in the scene or is named twice, and for a
-    /// motion of another kind. [`Error::Input`] for positions that no mesh may have. On these
+    /// [`Error::InvalidArgument`] for a body that is missing from the scene or named twice, and for
+    /// a motion of another kind. [`Error::Input`] for positions that no mesh may have. On these
     /// errors nothing has moved. Others are those of the device.
     ///
     /// Positions in device memory are checked when a query reads them. If the query refuses them,
@@ -50,9 +50,9 @@ impl Detector {
     /// same.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] for invalid numbers, and for a query in motion if the last update
-    /// named bodies but none with two ends. [`Error::OutOfMemory`] if slices do not fit either.
-    /// Others are those of the device. There is no partial answer.
+    /// [`Error::InvalidArgument`] for invalid numbers. Also for a query in motion if the last
+    /// update named bodies, but none with two ends. [`Error::OutOfMemory`] if slices do not fit
+    /// either. Others are those of the device. There is no partial answer.
     pub fn query<Q: TypedQuery>(&mut self, query: &Q) -> Result<Answer<Q::Rows>, Error> {
         self.device.work();
         let answered =

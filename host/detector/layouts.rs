@@ -9,8 +9,7 @@ use crate::query::Query;
 use crate::scene::{Body, Scene};
 use std::sync::Arc;
 
-/// Fewest bytes of host memory for a triangle of a detector: its topology, and on a CPU its tree
-/// and first lists.
+/// Fewest bytes of host memory for a triangle: its topology, and on a CPU its tree and first lists.
 const OF_A_TRIANGLE: u64 = 300;
 
 /// Properties of a query that its layout depends on.

@@ -59,7 +59,7 @@ impl Detector {
     }
 
     /// Moves bodies on the device. At the first frame in f64 a pipeline in f32 changes to f64, with
-    /// trees built again; it does not change back.
+    /// trees built again. It does not change back.
     fn moved(&mut self, moved: &[Moved]) -> Result<(), Error> {
         if moved.is_empty() {
             return Ok(());

@@ -66,8 +66,8 @@ impl Detector {
         }
     }
 
-    /// Returns the cost of each tile of its share in the last frame of a query; empty if nothing
-    /// can meet.
+    /// Returns the cost of each tile of its share in a query's last frame; empty if nothing can
+    /// meet.
     ///
     /// # Errors
     /// Those of the device.
@@ -78,8 +78,8 @@ impl Detector {
         self.of_query(query, Vec::new(), |pipeline, at| pipeline.work(at))
     }
 
-    /// Returns the number of tiles beyond its share that it met in the last frame of a query, in
-    /// one slice.
+    /// Returns the number of tiles beyond its share that it met in a query's last frame, in one
+    /// slice.
     ///
     /// # Errors
     /// Those of the device.

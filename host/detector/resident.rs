@@ -87,7 +87,7 @@ impl Detector {
     /// Copies these positions to the bodies.
     fn bring(&mut self, places: &Places) {
         for (i, body) in self.scene.bodies_mut().iter_mut().enumerate() {
-            // A body in memory of the caller has moved since.
+            // Bodies in memory of the caller are skipped: they have moved since.
             if body.is_device_resident() && body.lent().is_none() {
                 let (ends, poses) = places.of(i);
                 body.bring(&ends, poses);
@@ -162,8 +162,8 @@ impl Detector {
     /// run again: false.
     ///
     /// # Errors
-    /// [`Error::Input`] and [`Error::InvalidArgument`] for values that no precision can compute
-    /// with, naming the body and the vertex; those of the device.
+    /// [`Error::Input`] and [`Error::InvalidArgument`] for values that no precision can hold. They
+    /// name the body and the vertex. Others are those of the device.
     pub(super) fn check_seen(&mut self, seen: Option<Seen>) -> Result<bool, Error> {
         if !seen.is_some_and(|seen| seen.invalid) {
             return Ok(true);

@@ -1,5 +1,4 @@
-//! Runs a frame: at once, or in slices of the tiles if the lists of a whole frame would exceed the
-//! memory.
+//! Runs a frame: at once, or in slices of the tiles if its lists would exceed the memory.
 
 use super::Detector;
 use super::frame::Answered;

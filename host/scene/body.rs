@@ -190,8 +190,8 @@ impl Body {
         self.faces.len()
     }
 
-    /// Returns the body with vertices merged that coincide in all of its frames, and the number of
-    /// merged vertices; as [`Mesh::weld`].
+    /// Returns the body with vertices merged that coincide in all of its frames, and their number;
+    /// as [`Mesh::weld`].
     pub fn weld(&self) -> (Body, usize) {
         self.weld_through(&[])
     }

@@ -24,8 +24,8 @@ impl Number {
     }
 }
 
-/// Rows of numbers in device memory that the caller owns: three numbers a row for positions, or one
-/// row of a pose.
+/// Rows of numbers in device memory that the caller owns. Positions have three numbers a row; a
+/// pose has one row each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DeviceRows {
     address: u64,
@@ -177,8 +177,8 @@ impl DeviceMotion {
         }
     }
 
-    /// Reads positions of a deformable body, or poses of a rigid one, on the host, at both ends or
-    /// at one.
+    /// Reads positions of a deformable body, or poses of a rigid one, on the host: both ends or
+    /// one.
     ///
     /// # Safety
     /// As of [`DeviceRows::new`], for memory that the host can read: a CPU's.
