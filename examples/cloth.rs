@@ -1,4 +1,4 @@
-//! Self-collision of a cloth: which of its triangles touch, frame after frame.
+//! Self-collision of a cloth: triangle pairs that touch, frame after frame.
 
 mod shapes;
 

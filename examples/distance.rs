@@ -1,4 +1,4 @@
-//! How far apart two bodies are, and where: what a planner asks of a robot and its surroundings.
+//! Distance between two bodies and their nearest points: a robot and its surroundings.
 
 mod shapes;
 

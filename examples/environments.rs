@@ -1,4 +1,4 @@
-//! A thousand small worlds that never meet, all in one place, in one submission.
+//! 1,000 separate environments in the same space, in one submission.
 
 mod shapes;
 
@@ -9,9 +9,9 @@ fn main() -> Result<(), Error> {
     let mut scene = Scene::new();
     let mut arms = Vec::new();
     for world in 0..1_000 {
-        let meets = CollisionFilter::in_environment(world);
-        arms.push(scene.add(Body::rigid(shapes::sheet(16, |x, y| [x, y, 0.1 * x])?).with_filter(meets)));
-        scene.add(Body::fixed(shapes::sheet(16, |x, y| [2.0 * x, 2.0 * y, 0.0])?).with_filter(meets));
+        let filter = CollisionFilter::in_environment(world);
+        arms.push(scene.add(Body::rigid(shapes::sheet(16, |x, y| [x, y, 0.1 * x])?).with_filter(filter)));
+        scene.add(Body::fixed(shapes::sheet(16, |x, y| [2.0 * x, 2.0 * y, 0.0])?).with_filter(filter));
     }
     let mut detector = Detector::new(Device::open(Backend::Auto, None)?, scene)?;
     for frame in 0..5 {

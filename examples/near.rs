@@ -1,4 +1,4 @@
-//! Pairs of features nearer than a distance: what a contact model of barriers or penalties begins with.
+//! Feature pairs within a distance: the input of a barrier or penalty contact model.
 
 mod shapes;
 
@@ -19,7 +19,7 @@ fn main() -> Result<(), Error> {
         let found = detector.step(&[(cloth, Motion::positions(&positions))], &Near::within(0.01))?;
         let of_both = found.iter().filter(|pair| pair.bodies.contains(&obstacle));
         let least = of_both.clone().map(|pair| pair.squared_distance.sqrt()).min_by(f64::total_cmp);
-        println!("frame {frame}: {} pairs with the obstacle, the nearest {least:.5?} away", of_both.count());
+        println!("frame {frame}: {} pairs with the obstacle, least distance {least:.5?}", of_both.count());
     }
     Ok(())
 }

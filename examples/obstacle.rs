@@ -1,4 +1,4 @@
-//! A cloth that falls on an obstacle: what its vertices, edges and faces meet in each step, and when.
+//! A cloth that falls on an obstacle: features that meet in each step, and their times.
 
 mod shapes;
 

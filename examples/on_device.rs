@@ -1,4 +1,4 @@
-//! A simulator whose vertices lie on the device: frames that are submitted, and neither copied nor waited for.
+//! A simulator with vertices on the device: frames are submitted without copies or waits.
 
 mod shapes;
 
@@ -21,16 +21,16 @@ fn main() -> Result<(), Error> {
     // With your own context and stream: `unsafe { Device::from_stream(context, stream) }`.
     let device = Device::open(Backend::Auto, None)?;
     let mut vertices = device.upload(&at(0))?;
-    // SAFETY: the buffer outlives the detector, and is written between frames alone.
+    // SAFETY: the buffer outlives the detector, and is written only between frames.
     let rows = unsafe { DeviceRows::new(vertices.span().addr(), vertices.len(), 12, Number::F32) }?;
     let mut detector = Detector::new(device, scene)?;
     let query = Near::within(0.01);
     detector.prepare(&[(cloth, DeviceMotion::Positions(rows))], &[query.into()])?;
     for frame in 0..5 {
         vertices.write(&at(frame))?; // your kernels
-        detector.submit()?; // or record it, once, and launch the graph
-        let answer = detector.on_device(&query.into()).map(|answer| answer.lists[0].address); // for your kernels behind it
-        let found = detector.collect(&query)?; // where the host wants it, too
+        detector.submit()?; // or record it once and launch the graph
+        let answer = detector.on_device(&query.into()).map(|answer| answer.lists[0].address); // for kernels that follow
+        let found = detector.collect(&query)?; // if the host needs it too
         println!("frame {frame}: {} pairs, at {:#x}", found.len(), answer.unwrap_or(0));
         if !detector.is_prepared() {
             detector.prepare(&[(cloth, DeviceMotion::Positions(rows))], &[query.into()])?; // a list has grown

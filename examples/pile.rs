@@ -1,4 +1,4 @@
-//! A pile of rigid bodies on static ground: a body costs its poses, and the ground nothing.
+//! A pile of rigid bodies on fixed ground: each body costs its poses, and the ground nothing.
 
 mod shapes;
 

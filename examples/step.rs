@@ -1,4 +1,4 @@
-//! A time step limited by `earliest`: a cloth goes as far as it can without touching.
+//! A time step limited by `earliest`: a cloth moves as far as it can without touching.
 
 mod shapes;
 
@@ -17,7 +17,7 @@ fn main() -> Result<(), Error> {
     while z > 0.2 {
         let wanted = z - 0.3;
         let [t0, t1] = [z, wanted].map(|z| shapes::points(60, at(z)));
-        // No contact is before the time told: nine tenths of the way to it nothing touches.
+        // No contact is earlier than `toi`: nothing touches in the first nine tenths of it.
         let toi =
             detector.step(&[(cloth, Motion::step(&t0, &t1))], &Earliest::default())?.map(|first| first.toi);
         let Some(toi) = toi else {

@@ -1,105 +1,104 @@
-//! The one error type: grouped by who must act, each message saying what to do.
+//! The one error type: grouped by who must act. Each message states the remedy.
 //!
-//! The rule in every language: numbers that describe meshes, positions and poses, in files and in
-//! arrays, are *input*; all else that a caller passes (options, names, kinds, numbers of bodies,
-//! shapes and types of arrays, pointers) is a *choice*.
+//! The rule in every language: numbers that describe meshes, positions and poses are *input*, in
+//! files and in arrays. All else is an *argument*: options, names, kinds, numbers of bodies, shapes
+//! and types of arrays, pointers.
 
 use crate::mesh::Problem;
 
-/// Everything that can go wrong. [`Error::exit_code`] groups the variants as the command line reports them.
+/// Error of any call. [`Error::exit_code`] groups the variants as the command line reports them.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// Data that cannot be used: a file, or numbers of a mesh, of positions or of a pose, wherever
-    /// they come from. Correct the data.
+    /// Data that cannot be used: a file, or numbers of a mesh, positions or a pose, from any
+    /// source. Correct the data.
     #[error("{file}: {problem}")]
     Input {
-        /// The file, scene or caller's name of the mesh.
+        /// File, scene or caller's name of the mesh.
         file: String,
-        /// What is wrong with it, and where.
+        /// The problem and its place.
         problem: Problem,
     },
-    /// An argument that does not exist or does not go with the others, whatever the data: an
-    /// option, a name, a kind, the number of a body, the shape or type of an array, a pointer.
-    /// Choose again.
+    /// An argument that does not exist or does not fit the others, independent of the data. It is
+    /// an option, name, kind, number of a body, shape or type of an array, or pointer. Pass another
+    /// one.
     #[error("{what}; {advice}")]
     InvalidArgument {
-        /// What was asked for.
+        /// The argument, and the fault.
         what: String,
-        /// What there is instead.
+        /// The remedy.
         advice: String,
     },
-    /// A result could not be written. Mend the path or the disk.
+    /// A result could not be written. Check the path and the disk.
     #[error("{file}: cannot be written: {text}")]
     Output {
         /// The file.
         file: String,
-        /// The system's or the writer's text.
+        /// Text of the system or the writer.
         text: String,
     },
-    /// The machine refused. See what its driver says.
+    /// The machine refused a request. See the text of its driver.
     #[error("{what}: {text}; {advice}")]
     Device {
-        /// What was tried.
+        /// The request.
         what: String,
-        /// The driver's or the system's text.
+        /// Text of the driver or the system.
         text: String,
-        /// What to do.
+        /// The remedy.
         advice: &'static str,
     },
-    /// A measurement is worse than the earlier one that it was compared with. Find the change, or measure anew.
+    /// A measurement is worse than the earlier one that it was compared with. Find the change, or
+    /// measure again.
     #[error("{what}: {text}; {advice}")]
     Regression {
-        /// What was measured.
+        /// The measured quantity.
         what: String,
-        /// Now, and in which file before.
+        /// The value now, and the earlier value with its file.
         text: String,
-        /// What to do.
+        /// The remedy.
         advice: &'static str,
     },
-    /// Memory ran out. Nothing was lost in silence: there is no answer.
+    /// Memory ran out. There is no answer.
     #[error(
         "{what}: {asked} bytes were needed and {given} were free; use a smaller scene or a larger machine"
     )]
     OutOfMemory {
-        /// Which memory, for what.
+        /// The memory and its purpose.
         what: String,
         /// Bytes needed.
         asked: u64,
-        /// Bytes there were.
+        /// Bytes available.
         given: u64,
     },
     /// An [`Interrupt`](crate::Interrupt) has ended the call. There is no answer; the detector can
     /// be used again.
     #[error("interrupted; there is no answer, and the detector can be used again")]
     Interrupted,
-    /// The answer has more rows than memory has room for. It was refused by its count, before it
-    /// was made.
+    /// The answer has more rows than fit in memory. It was refused by its count, before it was
+    /// made.
     #[error("the answer has at least {pairs} pairs: {asked} bytes are needed and {given} are free; {advice}")]
     AnswerTooLarge {
-        /// Rows that were counted.
+        /// Number of rows that were counted.
         pairs: u64,
         /// Bytes that they need.
         asked: u64,
-        /// Bytes that there are for them.
+        /// Bytes available for them.
         given: u64,
-        /// What to do.
+        /// The remedy.
         advice: &'static str,
     },
-    /// The GPU's kernels were made from other sources than this program. Build again.
-    #[error(
-        "the kernels carry the stamp {found}, this program was built from {wanted}; run `cargo build` again"
-    )]
+    /// The GPU's kernels were built from other sources than this program. Build again.
+    #[error("the kernels have the stamp {found}, this program expects {wanted}; run `cargo build` again")]
     KernelMismatch {
-        /// What the PTX exports.
+        /// Stamp of the PTX.
         found: String,
-        /// What the program expects.
+        /// Stamp that the program expects.
         wanted: String,
     },
-    /// A fault of nearmiss itself. Tell us.
+    /// A fault of nearmiss itself. Report it.
     #[error("a fault of nearmiss itself: {what}; please report it with the output of `nearmiss selftest`")]
     Bug {
-        /// What was found.
+        /// The fault.
         what: String,
     },
 }
@@ -110,13 +109,11 @@ impl From<nearmiss_emulator::Error> for Error {
         use nearmiss_emulator::Error as E;
         match error {
             E::Threads { threads, text } => {
-                Error::Device { what: format!("starting {threads} threads"), text, advice: "ask for fewer" }
+                Error::Device { what: format!("starting {threads} threads"), text, advice: "use fewer" }
             }
             E::Forked => Error::InvalidArgument {
-                what: error.to_string(),
-                advice:
-                    "they are not here: start processes by spawn, or fork before the first device or detector"
-                        .into(),
+                what: "nearmiss cannot be used in a forked process: its threads are gone".into(),
+                advice: "start processes by spawn, or fork before the first device or detector".into(),
             },
             E::Memory { bytes } => {
                 Error::OutOfMemory { what: "host memory".into(), asked: bytes as u64, given: 0 }

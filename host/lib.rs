@@ -1,7 +1,8 @@
 //! nearmiss: collision detection for deformable triangle meshes.
 //!
-//! A [`Detector`] takes a [`Scene`] of bodies to a [`Device`], moves them, and answers queries: on the CPU or on an NVIDIA GPU, to the
-//! same bit. [`Error`] names the fault and the remedy.
+//! A [`Detector`] puts a [`Scene`] of bodies on a [`Device`], moves them and answers queries.
+//! Answers on a CPU and on an NVIDIA GPU are bit-identical. [`Error`] names the fault and the
+//! remedy.
 //!
 //! A cloth that sinks onto a table. One detector answers several queries of each step:
 //!
@@ -20,7 +21,10 @@
 //!     detector.update(&[(cloth, Motion::step(&t0, &t1))])?;
 //!     for contact in detector.query(&Continuous::default())?.iter() {
 //!         assert_eq!(contact.bodies, [cloth, table]);
-//!         println!("step {step}: {:?} {} and {} at {:.3}", contact.kind, contact.a, contact.b, contact.toi);
+//!         println!(
+//!             "step {step}: {:?} {} and {} at {:.3}",
+//!             contact.kind, contact.feature_a, contact.feature_b, contact.toi
+//!         );
 //!     }
 //!     let near = detector.query(&Near::within(0.2))?;
 //!     println!("step {step}: {} pairs within 0.2", near.len());
@@ -32,22 +36,25 @@
 //! | query | rows of its answer |
 //! | --- | --- |
 //! | [`Discrete`] | triangles that share a point now |
-//! | [`Continuous`] | features that meet in a step, and when first |
-//! | [`Earliest`] | the first contact of a step: how far the step may go |
-//! | [`Near`] | features within a distance, how far and where |
-//! | [`Distance`] | the two nearest bodies, how far and where |
+//! | [`Continuous`] | features that meet in a step, and their first times |
+//! | [`Earliest`] | the first contact of a step: the limit of the step |
+//! | [`Near`] | features within a distance, their distance and nearest points |
+//! | [`Distance`] | the two nearest bodies, their distance and nearest points |
 //!
 //! [`Query`] holds any of these, for programs that choose at run time.
 //!
-//! [`MultiDetector`] divides a scene among several devices. [`Detector::geometry`] computes vertices, weights, points and normals of contacts.
+//! [`MultiDetector`] divides a scene among several devices. [`Detector::geometry`] computes
+//! vertices, weights, points and normals of contacts.
 //!
-//! A simulator whose data lie on the GPU lends its stream ([`Device::from_stream`]) and its arrays
-//! ([`Motion::OnDevice`](scene::Motion::OnDevice)), and submits frames that neither allocate nor wait ([`Detector::submit`]).
+//! A simulator with data on the GPU passes its stream ([`Device::from_stream`]) and its arrays
+//! ([`Motion::OnDevice`](scene::Motion::OnDevice)). It submits frames that neither allocate nor
+//! wait ([`Detector::submit`]).
 //!
-//! The folder `examples` of the repository has a program of some twenty lines for each of: a cloth, a cloth with an obstacle, a rigid
-//! pile, 1,000 environments, near pairs, a step limited by `earliest`, and frames of what lies on the device.
+//! The folder `examples` of the repository has programs of some twenty lines. They show a cloth
+//! alone and with an obstacle, a rigid pile, and 1,000 environments. Others show near pairs,
+//! distances, a step limited by `earliest`, and device-resident bodies.
 
-// A new variant shows every place that must know of it.
+// A new variant shows every place that must handle it.
 #![warn(clippy::wildcard_enum_match_arm)]
 
 pub mod contacts;
@@ -77,7 +84,7 @@ pub use scene::{Body, Scene};
 pub use several::{DeviceShare, MultiDetector};
 pub use stages::{Stage, Stages};
 
-/// The front page's program is a test.
+/// The program of the README is a test.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 pub struct Readme;

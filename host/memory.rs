@@ -1,16 +1,16 @@
-//! Memory that the machine has left, for callers that take much: check before they take it.
+//! Free memory of the machine, for callers that check it before a large allocation.
 //!
-//! An allocation that fails ends a program without a message. On Linux one that cannot be kept does
-//! not even fail: the system ends the process later.
+//! An allocation that fails ends a program without a message. On Linux an allocation without memory
+//! behind it does not even fail: the system ends the process later.
 
 use crate::error::Error;
 use std::fs::read_to_string;
 
-/// Less than this is taken without asking, in bytes.
+/// Smallest size that is checked, in bytes.
 const LITTLE: u64 = 16 << 20;
 
-/// Refuses what the machine has no memory for, before it is taken. Where the system does not tell how much there is, and for
-/// a few megabytes, nothing is refused.
+/// Refuses an allocation that exceeds the free memory, before it is made. A few megabytes are never
+/// refused, and nothing is if the system does not report its free memory.
 ///
 /// # Errors
 /// [`Error::OutOfMemory`].
@@ -21,8 +21,8 @@ pub fn require(what: &str, bytes: u64) -> Result<(), Error> {
     }
 }
 
-/// Bytes that this program may still take: what the machine has, what the group of processes may have, and what the process
-/// itself may address. `None` where the system tells none of these.
+/// Bytes that this program may still allocate. The least of the machine's free memory, its control
+/// group's limit and its own address space counts. `None` if the system reports none of these.
 pub fn free() -> Option<u64> {
     let machine = read_to_string("/proc/meminfo").ok().and_then(|text| kilobytes(&text, "MemAvailable:"));
     let ways = [
@@ -44,13 +44,14 @@ pub fn free() -> Option<u64> {
     machine.into_iter().chain(group).chain(process).min()
 }
 
-/// The number behind a name in a text of lines `name number kB`, in bytes.
+/// The number after `name` in a text of lines `name number kB`, in bytes.
 fn kilobytes(text: &str, name: &str) -> Option<u64> {
-    let rest = text.lines().find_map(|line| line.strip_prefix(name))?;
-    rest.split_whitespace().next()?.parse::<u64>().ok().map(|k| k.saturating_mul(1024))
+    let value = text.lines().find_map(|line| line.strip_prefix(name))?;
+    value.split_whitespace().next()?.parse::<u64>().ok().map(|k| k.saturating_mul(1024))
 }
 
-/// What a group of processes has left of its limit; pages of files that can be dropped are not in use.
+/// Bytes that a group of processes has left of its limit. Pages of files that can be dropped are
+/// not in use.
 fn of_group(limit: &str, used: &str, parts: &str) -> Option<u64> {
     let [limit, used] = [limit, used].map(|text| text.trim().parse::<u64>().ok());
     let dropped = parts.lines().find_map(|line| line.strip_prefix("inactive_file "));
@@ -58,10 +59,10 @@ fn of_group(limit: &str, used: &str, parts: &str) -> Option<u64> {
     Some(limit?.saturating_sub(used?.saturating_sub(dropped)))
 }
 
-/// What a process has left of the addresses that it may use.
+/// Bytes that a process has left of its address space.
 fn of_process(limits: &str, status: &str) -> Option<u64> {
-    let rest = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
-    let limit: u64 = rest.split_whitespace().next()?.parse().ok()?;
+    let row = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
+    let limit: u64 = row.split_whitespace().next()?.parse().ok()?;
     Some(limit.saturating_sub(kilobytes(status, "VmSize:")?))
 }
 

@@ -1,4 +1,4 @@
-//! One scene on several devices: every one has all positions, and finds what is its share of the tiles.
+//! One scene on several devices: each has all positions, and finds its share of the tiles.
 
 mod cuts;
 mod interrupted;
@@ -14,15 +14,16 @@ use crate::scene::{Body, BodyId, Motion, Scene};
 use cuts::cuts;
 use std::time::Instant;
 
-/// A frame is uneven where the slowest share takes more than this many times the mean: then the next one is cut anew, by what each tile
-/// cost. Above what equal frames differ by, some hundredths.
+/// A frame is uneven if the slowest share takes more than this many times the mean. The next frame
+/// is then divided again, by the cost of each tile. Equal frames differ by less, some hundredths.
 const UNEVEN: f64 = 1.05;
 
-/// One scene on several devices of one host: each is told all positions, finds the pairs of its share of the tiles and asks them all
-/// that one device asks; the answers are put together in canonical order. The answer is that of a [`Detector`], to the bit and with
-/// the same hash, however the work is divided.
+/// One scene on several devices of one host. Each has all positions, finds the pairs of its share
+/// of the tiles and tests them as one device does. The answers are merged in canonical order. The
+/// answer and its hash are those of a [`Detector`], to the bit, for any division of the work.
 ///
-/// The first frame is divided by the number of tiles; the following by what each tile cost in the last one, where that was uneven.
+/// The first frame is divided by the number of tiles. The following are divided by the cost of each
+/// tile in the last one, if that was uneven.
 ///
 /// ```
 /// use nearmiss::device::{Backend, Device};
@@ -39,22 +40,22 @@ pub struct MultiDetector {
     parts: Vec<Detector>,
     divisions: Vec<Division>,
     in_turn: bool,
-    /// The handle that ends the work of all.
+    /// Handle that ends the work of all devices.
     interrupt: Interrupt,
 }
 
-/// How the work of a query is divided.
+/// Division of a query's work.
 struct Division {
-    /// The shape of the query.
+    /// Shape of the query.
     shape: Query,
     shares: Vec<Share>,
-    /// Milliseconds of the last frame, on each device's own clock.
+    /// Milliseconds of the last frame, by each device's own clock.
     ms: Vec<f64>,
     wear: Wear,
 }
 
 impl Division {
-    /// As many tiles for each of so many devices.
+    /// Equal numbers of tiles for `count` devices.
     fn even(shape: Query, count: usize) -> Division {
         let part = |k: usize| k as u64 * Share::ALL / count as u64;
         let shares = (0..count).map(|k| Share { from: part(k), to: part(k + 1) }).collect();
@@ -62,28 +63,29 @@ impl Division {
     }
 }
 
-/// What a device did of a frame.
+/// Work of a device in a frame.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct DeviceShare {
-    /// What the machine calls itself.
+    /// Name of the machine.
     pub device: String,
     /// Its part of the tiles, 0 to 1, in the last frame.
     pub tiles: f64,
-    /// Milliseconds of that frame, on its own clock; 0 before there was one.
+    /// Milliseconds of that frame, by its own clock; 0 before the first frame.
     pub ms: f64,
 }
 
 impl MultiDetector {
-    /// Takes the scene to every device; several find candidates by tiles, whatever volume is chosen, and clones of one device are asked
-    /// [in turn](MultiDetector::in_turn). Cost: on each that of a [`Detector`]; lists are as long as the shares.
+    /// Puts the scene on every device. Several devices find candidates by tiles, for any volume.
+    /// Clones of one device are queried [in turn](MultiDetector::in_turn). Cost: on each that of a
+    /// [`Detector`]; lists are as long as the shares.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] for no devices; those of a [`Detector`].
+    /// [`Error::InvalidArgument`] without devices; those of a [`Detector`].
     pub fn new(devices: Vec<Device>, scene: impl Into<Scene>) -> Result<MultiDetector, Error> {
         let scene = scene.into();
         if devices.is_empty() {
-            return Err(refused("a scene on no device", "name at least one"));
+            return Err(refused("a scene on no device", "give at least one device"));
         }
         // One thread at a time uses a machine.
         let in_turn =
@@ -97,11 +99,12 @@ impl MultiDetector {
         Ok(MultiDetector { parts, divisions: Vec::new(), in_turn, interrupt })
     }
 
-    /// The query as each device runs it: by tiles, which are built on all devices together, or on none.
+    /// Returns the query as each device runs it: by tiles, which are built on all devices together,
+    /// or on none.
     fn divisible(&self, query: Query) -> Result<Query, Error> {
         let several = self.parts.len() > 1;
         if several && !query.kind().takes_traversals() {
-            return Err(refused("a distance on several devices", "ask one device: its walk is not divided"));
+            return Err(refused("a distance on several devices", "use one device: its walk is not divided"));
         }
         let search = query.search();
         let by_tiles = several && search.broad.is_none() && !search.is_of_trees();
@@ -109,7 +112,8 @@ impl MultiDetector {
         Ok(query.with_rebuild(Rebuild::Manual))
     }
 
-    /// Asks the devices one after another: where they are one machine in truth, and each is to be timed as if it were alone.
+    /// Queries the devices one after another: for devices that are one machine, if each is to be
+    /// timed alone.
     pub fn in_turn(self) -> MultiDetector {
         MultiDetector { in_turn: true, ..self }
     }
@@ -126,13 +130,13 @@ impl MultiDetector {
         if let Some((id, _)) = motions.iter().find(|(_, input)| matches!(input, Motion::OnDevice(_))) {
             return Err(Error::InvalidArgument {
                 what: format!("positions of body {id} in the memory of one device, for several"),
-                advice: "give positions of the host".into(),
+                advice: "give positions in host memory".into(),
             });
         }
         let is_first = self.parts[0].is_first_of(motions);
         let updated = self.each(|detector| detector.apply(motions, query)).map(drop);
         if is_first && updated.is_ok() {
-            // All are built where the first update of a body puts it.
+            // All devices build their tiles after the first update of a body.
             self.divisions.iter_mut().for_each(|division| division.wear.add_new_place());
         }
         self.ended(updated)
@@ -141,7 +145,7 @@ impl MultiDetector {
     /// As [`Detector::query`].
     ///
     /// # Errors
-    /// As there; [`Error::InvalidArgument`] for a distance and for candidates by trees, which cannot be divided.
+    /// As there; [`Error::InvalidArgument`] for a distance and for trees, which cannot be divided.
     pub fn query<Q: TypedQuery>(&mut self, query: &Q) -> Result<Answer<Q::Rows>, Error> {
         let answered = self.answer((*query).into(), Instant::now());
         self.ended(answered).map(Contacts::typed::<Q>)
@@ -190,7 +194,7 @@ impl MultiDetector {
         Ok(())
     }
 
-    /// As [`Detector::builds`], of the device that made its tiles most often.
+    /// As [`Detector::builds`], for the device with the most builds.
     pub fn builds(&self) -> u64 {
         self.builds_now().into_iter().max().unwrap_or_default()
     }
@@ -254,7 +258,7 @@ impl MultiDetector {
         self.parts[0].largest_tolerance()
     }
 
-    /// Each device's part of the last frame of a query; nothing before there was one.
+    /// Returns each device's part of the last frame of a query; empty before the first frame.
     pub fn shares(&self, query: &Query) -> Vec<DeviceShare> {
         let shape = self.divisible(*query).ok().map(|query| query.shape());
         let division = self.divisions.iter().find(|division| shape == Some(division.shape));
@@ -269,8 +273,9 @@ impl MultiDetector {
         division.map_or_else(Vec::new, of)
     }
 
-    /// How many tiles of 32 triangles each share has met in the last frame of a query that are not its: what would have to be sent to it if it did not
-    /// have all positions. Reads all pairs of tiles back, for measurements. Of a share in slices the last one alone is counted.
+    /// Returns for each share the number of tiles beyond its own that it met in a query's last
+    /// frame. A tile has 32 triangles. A device without all positions would need them sent. Reads
+    /// all pairs of tiles back, for measurements. Only the last slice of a share is counted.
     ///
     /// # Errors
     /// Those of the device.
@@ -279,7 +284,7 @@ impl MultiDetector {
         self.each(|detector| detector.met_beyond(&query))
     }
 
-    /// One frame, and how its work is divided next.
+    /// Runs one frame, and records the times that divide the next.
     fn answer(&mut self, whole: Query, start: Instant) -> Result<Contacts, Error> {
         let (query, wears) = (self.divisible(whole)?, whole.search().rebuilds());
         let at = self.division(&query);
@@ -287,7 +292,8 @@ impl MultiDetector {
             self.renew()?;
         }
         self.divide(at, &query)?;
-        // A device that takes memory again builds its tiles again, and a share is of the same tiles on all.
+        // A device that takes memory again builds its tiles again. Shares need the same tiles on
+        // all.
         let mut answers = loop {
             self.each(|detector| detector.begin(&query))?;
             let builds = self.builds_now();
@@ -306,7 +312,7 @@ impl MultiDetector {
         Ok(whole)
     }
 
-    /// The place of a query's division, even at first.
+    /// Returns the index of a query's division, which is even at first.
     fn division(&mut self, query: &Query) -> usize {
         let shape = query.shape();
         self.divisions.iter().position(|division| division.shape == shape).unwrap_or_else(|| {
@@ -315,8 +321,8 @@ impl MultiDetector {
         })
     }
 
-    /// Does the same on every device, at the same time unless in turn. All do it, whatever becomes
-    /// of one.
+    /// Calls a function on every device, at the same time unless in turn. All devices run it, even
+    /// if one fails.
     fn each<T: Send>(
         &mut self,
         what: impl Fn(&mut Detector) -> Result<T, Error> + Sync,
@@ -334,7 +340,7 @@ impl MultiDetector {
         })
     }
 
-    /// Gives every device its share, cut again if the last frame was uneven.
+    /// Gives every device its share, divided again if the last frame was uneven.
     fn divide(&mut self, at: usize, query: &Query) -> Result<(), Error> {
         let Division { shares, ms, .. } = &mut self.divisions[at];
         let (sum, most) = (ms.iter().sum::<f64>(), ms.iter().copied().fold(0.0, f64::max));
@@ -357,7 +363,7 @@ impl MultiDetector {
     }
 }
 
-/// An argument that several devices do not take.
+/// Error for an argument that several devices do not take.
 fn refused(what: &str, advice: &str) -> Error {
     Error::InvalidArgument { what: what.into(), advice: advice.into() }
 }
@@ -366,7 +372,7 @@ fn refused(what: &str, advice: &str) -> Error {
 mod tests {
     use super::*;
 
-    /// A share that ends too early loses pairs, one that begins too early finds some twice, and both are noticed.
+    /// A share that ends too early loses pairs; one that begins too early finds some twice.
     #[test]
     fn a_hole_and_an_overlap_are_noticed() {
         use crate::device::emulator::{Emulator, Mode};

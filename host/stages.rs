@@ -15,45 +15,48 @@ named! {
         Traverse = "traverse",
         /// Contacts.
         Narrow = "narrow",
-        /// Contacts in canonical order, on a GPU; a CPU has none: the host orders them.
+        /// Contacts in canonical order, on a GPU; on a CPU the host orders them.
         Order = "order",
     }
 }
 
-/// Milliseconds of each stage of a frame, on the device's own clock, and of the caller's wait. `construct` is that of the
-/// last build.
+/// Milliseconds of each stage of a frame, by the device's clock, and of the whole call. `construct`
+/// is that of the last build.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Stages {
-    /// Vertices of the bodies that were moved, with what was uploaded for them; 0 where none were, and where the frame was asked
-    /// again.
+    /// Placing of the bodies that moved, with their uploads; 0 if none moved, or the frame is
+    /// queried again.
     pub place: f64,
     /// Positions to level-ordered tree, all bodies.
     pub construct: f64,
-    /// Volumes of the leaves; 0 by treelets, whose one launch makes all volumes.
+    /// Volumes of the leaves; 0 with treelets, whose one launch computes all volumes.
     pub fit: f64,
-    /// All other volumes; by treelets all volumes.
+    /// All other volumes; with treelets all volumes.
     pub refit: f64,
     /// Candidates, without balancing.
     pub traverse: f64,
-    /// Evening out the queues of work between the rounds of the traversal, where that is a step of its own.
+    /// Balancing of the work queues between rounds of the traversal, if it is a step of its own.
     pub balance: f64,
     /// Contacts.
     pub narrow: f64,
-    /// Contacts in canonical order, on a GPU. Zero where the host orders them, and where there is nothing to order.
+    /// Contacts in canonical order, on a GPU. Zero if the host orders them, or if there is nothing
+    /// to order.
     pub order: f64,
-    /// From positions to contacts, runs that were repeated for want of room included; placing, construction and ordering not.
+    /// From positions to contacts, with reruns after a list grew. Placing, construction and
+    /// ordering are not included.
     pub total: f64,
-    /// The host's own time until a GPU had the frame to do, the placing of what was moved not included. Zero where the host does it.
+    /// Host time until a GPU has the whole frame, without placing. Zero if the host computes the
+    /// frame.
     pub launch: f64,
-    /// The wait of a caller of [`Detector::step`](crate::Detector::step) or [`Detector::query`](crate::Detector::query),
-    /// on the clock of the host: placing, `total`, ordering, launching, and reading the
-    /// contacts.
+    /// Time of a call of [`Detector::step`](crate::Detector::step) or
+    /// [`Detector::query`](crate::Detector::query), by the host's clock: placing, `total`,
+    /// ordering, launching, and reading the contacts.
     pub wall: f64,
 }
 
 impl Stages {
-    /// Each stage put through `of`, which is given the stage's getter: for means and medians over many frames.
+    /// Applies `of` to the getter of each stage: for means and medians over many frames.
     pub fn each(of: impl Fn(fn(&Stages) -> f64) -> f64) -> Stages {
         Stages {
             place: of(|s| s.place),

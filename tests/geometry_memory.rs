@@ -52,7 +52,7 @@ fn geometry_without_memory_is_refused() {
     let refused = within(8 << 20, || detector.geometry(&found));
     let Err(Error::OutOfMemory { what, asked, given }) = refused else { panic!("not refused") };
     assert!(
-        what == "where contacts are" && asked > 16 << 20 && given <= 8 << 20,
+        what == "geometry of contacts" && asked > 16 << 20 && given <= 8 << 20,
         "{what}: {asked} of {given}"
     );
     assert_eq!(detector.geometry(&found).expect("room again").len(), found.len());

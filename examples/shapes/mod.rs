@@ -1,9 +1,9 @@
-//! Meshes for the examples; your own come from `Mesh::read`, or from memory as these do.
+//! Meshes for the examples. Other sources are `Mesh::read` and arrays in memory.
 #![allow(dead_code, reason = "each example uses some of them")]
 
 use nearmiss::{Error, Mesh, mesh::Positions};
 
-/// Vertices of a sheet of `n` by `n` squares over the unit square, put where `at` says.
+/// Vertices of a sheet of `n` by `n` squares over the unit square, at positions `at(x, y)`.
 pub fn points(n: u32, at: impl Fn(f32, f32) -> [f32; 3]) -> Positions {
     let side = |i: u32| i as f32 / n as f32;
     Positions::F32(
@@ -11,7 +11,7 @@ pub fn points(n: u32, at: impl Fn(f32, f32) -> [f32; 3]) -> Positions {
     )
 }
 
-/// That sheet as a mesh.
+/// The sheet as a mesh.
 pub fn sheet(n: u32, at: impl Fn(f32, f32) -> [f32; 3]) -> Result<Mesh, Error> {
     let square = |i: u32| {
         let low = i / n * (n + 1) + i % n;
@@ -20,7 +20,7 @@ pub fn sheet(n: u32, at: impl Fn(f32, f32) -> [f32; 3]) -> Result<Mesh, Error> {
     Mesh::new("sheet", points(n, at), (0..n * n).flat_map(square).collect())
 }
 
-/// A cube of that side, its centre at the origin.
+/// A cube with sides of this length, centred at the origin.
 pub fn cube(side: f32) -> Result<Mesh, Error> {
     let corner = |k: u32| [0, 1, 2].map(|axis| side * ((k >> axis & 1) as f32 - 0.5));
     let quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];

@@ -1,68 +1,70 @@
-//! What an answer, or its making, owes to a limit: said aloud, each by its reason.
+//! Caveats: limits that affected an answer or its cost.
 
 use crate::scene::BodyId;
 use crate::words::counted;
 use std::fmt;
 
-/// A way in which a frame came to less than all that was asked. Nothing is ever missed for any of them.
+/// Limit that affected an answer or its cost. No contact of the straight motion is missed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(tag = "reason", rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Caveat {
-    /// Pairs nearer than the tolerance that are neither certain to meet nor certain to stay apart.
-    /// Not of an earliest query: see [`Caveat::EarliestUndecided`].
+    /// Pairs that come nearer than the tolerance, with neither contact nor separation proven.
+    /// Earliest queries report [`Caveat::EarliestUndecided`] instead.
     Undecided {
-        /// How many.
+        /// Number of pairs.
         pairs: u64,
     },
-    /// The earliest time is that of a pair that is neither certain to meet nor certain to stay
-    /// apart, and no contact begins then. An earliest query does not test pairs that begin later,
-    /// so it cannot count them.
+    /// The earliest time is that of an undecided pair, and no contact begins then. An earliest
+    /// query does not test pairs that begin later, so it cannot count them.
     EarliestUndecided,
-    /// Pairs whose budget of boxes ended ([`Certified::budget`](crate::query::Certified::budget)): listed, but their times may be far too
-    /// early. Not counted by an earliest query.
+    /// Pairs that reached [`Certified::max_iterations`](crate::query::Certified::max_iterations).
+    /// They are listed, and their times may be far too early. An earliest query does not count
+    /// them.
     Iterations {
-        /// How many.
+        /// Number of pairs.
         pairs: u64,
     },
-    /// Listed pairs so large that the solver's precision cannot tell as little as the tolerance: there a larger one counts,
-    /// 64 roundings of their extent. A tolerance of 0 asks for no more than that, and is never below.
+    /// Listed pairs so large that rounding in the solver's precision exceeds the tolerance. A
+    /// larger tolerance applies to them: 64 roundings of their extent. A tolerance of 0 means
+    /// exactly that bound, and never gives this caveat.
     ToleranceBelowPrecision {
-        /// How many; `None` where pairs are not listed.
+        /// Number of pairs; `None` if pairs are not listed.
         pairs: Option<u64>,
     },
-    /// Listed pairs of a near query that rounding cannot tell from such that are farther apart than the distance.
+    /// Listed pairs of a near query that may exceed its distance, by rounding alone.
     DistanceBelowPrecision {
-        /// How many.
+        /// Number of pairs.
         pairs: u64,
     },
     /// A rigid body that turns by more than [`TURN_DEGREES`] between the two poses of a step. Its
-    /// vertices move in straight lines, which leave their arcs: contacts of the turning body itself
-    /// may be missed or early by as much as the bulge.
+    /// vertices move in straight lines, which leave their arcs. Contacts along the arcs may be
+    /// missed or early, by up to the bulge.
     Turned {
         /// The body.
         body: BodyId,
-        /// The angle, in degrees up to 180.
+        /// Angle, in degrees up to 180.
         degrees: f64,
-        /// Largest distance of a vertex from its arc, a length: `r (1 - cos(angle / 2))`, with r
-        /// the distance of the farthest vertex from the axis of the turn.
+        /// Largest distance of a vertex from its arc, in scene units: `r (1 - cos(angle / 2))`. `r`
+        /// is the distance of the farthest vertex from the axis of the turn.
         bulge: f64,
     },
-    /// The front did not pay: dropped, or not yet taken up again. The answer is whole.
+    /// The front cost more than it saved: it was dropped, or is not in use again yet. The answer is
+    /// complete.
     FrontDropped,
 }
 
-/// Largest turn of a rigid body in a step of which an answer says nothing, in degrees. There a
-/// vertex is at most 3.5 % of its distance from the axis off its arc: `1 - cos(15 degrees)`.
+/// Largest turn of a rigid body in a step without a caveat, in degrees. At this turn a vertex
+/// leaves its arc by at most 3.5 % of its distance from the axis: `1 - cos(15 degrees)`.
 pub const TURN_DEGREES: f64 = 30.0;
 
 impl Caveat {
-    /// Whether the answer itself is less than was asked, not only the time that it took.
+    /// Whether the caveat concerns the answer itself, not only its cost.
     pub fn affects_answer(&self) -> bool {
         !matches!(self, Caveat::FrontDropped)
     }
 
-    /// The same reason of two parts of a frame; `None` of two reasons.
+    /// Merges the same caveat of two parts of a frame; `None` if the caveats differ.
     pub(super) fn and(&self, other: Caveat) -> Option<Caveat> {
         Some(match (*self, other) {
             (Caveat::Undecided { pairs: a }, Caveat::Undecided { pairs: b }) => {
@@ -90,14 +92,17 @@ impl fmt::Display for Caveat {
         match self {
             Caveat::Undecided { pairs } => {
                 let pairs = counted(*pairs, "pair", "pairs");
-                write!(f, "{pairs} nearer than the tolerance, neither certain to meet nor to stay apart")
+                write!(f, "{pairs} nearer than the tolerance, with neither contact nor separation proven")
             }
             Caveat::EarliestUndecided => {
-                write!(f, "the earliest time is that of a pair neither certain to meet nor to stay apart")
+                write!(f, "the earliest time is that of an undecided pair")
             }
             Caveat::Iterations { pairs } => {
                 let pairs = counted(*pairs, "pair", "pairs");
-                write!(f, "{pairs} whose boxes ended, with times that may be too early; raise their number")
+                write!(
+                    f,
+                    "{pairs} whose iterations ended, with times that may be too early; raise their number"
+                )
             }
             Caveat::ToleranceBelowPrecision { pairs } => {
                 let pairs = pairs.map_or("some pairs".to_owned(), |n| counted(n, "pair", "pairs"));
@@ -114,7 +119,9 @@ impl fmt::Display for Caveat {
                      divide the step"
                 )
             }
-            Caveat::FrontDropped => write!(f, "the front did not pay and was dropped; the answer is whole"),
+            Caveat::FrontDropped => {
+                write!(f, "the front cost more than it saved and was dropped; the answer is complete")
+            }
         }
     }
 }

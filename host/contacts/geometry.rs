@@ -1,4 +1,4 @@
-//! Where two features touch, or are nearest: their vertices, weights, points and normal.
+//! Geometry of contacts and near pairs: vertices, weights, nearest points and normal.
 
 use super::{Contact, Kind, NearPair};
 use crate::scene::BodyId;
@@ -6,9 +6,10 @@ use nalgebra::Vector3;
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::near::{corner_weights, edge_edge, vertex_face};
 
-/// Where the two features of a contact, or of a pair within a distance, are nearest: see [`Detector::geometry`](crate::Detector::geometry).
+/// Geometry of a contact or a near pair: see [`Detector::geometry`](crate::Detector::geometry).
 ///
-/// Four vertices: a vertex and the three corners of a face in its own order, or the ends of two edges, the larger index of each first.
+/// The four vertices are a vertex and the face's corners in their order, or the ends of two edges.
+/// The end with the larger index comes first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct ContactGeometry {
@@ -18,38 +19,41 @@ pub struct ContactGeometry {
     pub bodies: [BodyId; 2],
     /// Body of each vertex.
     pub owners: [BodyId; 4],
-    /// The vertices: their indices in their bodies.
+    /// Indices of the vertices in their bodies.
     pub vertices: [u32; 4],
-    /// Weight of each vertex in the nearest point of its feature, at least 0. Those of each feature sum to 1, up to rounding.
+    /// Weight of each vertex in the nearest point of its feature, at least 0. The weights of each
+    /// feature sum to 1, up to rounding.
     pub weights: [f64; 4],
-    /// The same with a minus for the second feature: `sum(signed_weights[i] * x[i])` is the difference of the nearest points, and
-    /// `signed_weights[i] * normal` the gradient of their distance by vertex `i`.
+    /// The same weights, negative for the second feature. `sum(signed_weights[i] * x[i])` is the
+    /// difference of the nearest points. `signed_weights[i] * normal` is the gradient of their
+    /// distance by vertex `i`.
     pub signed_weights: [f64; 4],
-    /// The nearest points of both at the time of contact, in the unit of the positions.
+    /// Nearest points of both features at the time of contact, in scene units.
     pub points: [[f64; 3]; 2],
-    /// How far those are apart.
+    /// Distance of the nearest points, in scene units.
     pub distance: f64,
-    /// From the second feature towards the first, of length 1: the way in which the first would go to get away. Where the points are
-    /// apart that is their difference; where they touch, the face's normal or that of both edges, on the side from which they came. Zeros
-    /// where nothing tells a direction.
+    /// Unit vector from the second feature towards the first: the direction that separates them. If
+    /// the points are apart, it is along their difference. If they touch, it is the normal of the
+    /// face or of both edges, on their side of approach. Zeros if no direction is defined.
     pub normal: [f64; 3],
 }
 
-/// Of the length of the features: where their points are farther apart than this part of it, the difference of these is a direction.
-/// Distances err by `192u` of it (`DISTANCE_ERROR`, 2e-14), so the direction errs by 2e-6 at most. Of two sides the sine, above which their
-/// product is one. Ratio.
+/// Threshold of a direction, a ratio. The difference of the nearest points is a direction if it
+/// exceeds this part of the features' extent. Distances err by `192u` of the extent
+/// (`DISTANCE_ERROR`, 2e-14), so the direction errs by 2e-6 at most. The product of two sides is a
+/// direction if the sine of their angle exceeds it.
 const DIRECTION: f64 = 1e-8;
 
-/// The four vertices of a contact at both ends of the step.
+/// Four vertices of a contact at both ends of the step.
 pub type Corners = [[[f64; 3]; 2]; 4];
 
-/// Two features, as a contact or a near pair names them.
+/// Two features, named as in a contact or a near pair.
 #[derive(Clone, Copy, Debug)]
 pub struct Named {
     pub kind: Kind,
     pub bodies: [BodyId; 2],
     pub features: [u32; 2],
-    /// When they are looked at.
+    /// Time at which the features are evaluated.
     pub time: f64,
 }
 
@@ -68,7 +72,7 @@ impl From<&NearPair> for Named {
 }
 
 impl ContactGeometry {
-    /// Of features whose vertices are there; `corners` in the order of `vertices`.
+    /// Computes the geometry of two features; `corners` are in the order of `vertices`.
     pub fn of(named: &Named, vertices: [u32; 4], corners: &Corners) -> ContactGeometry {
         let at = |t: f64| corners.map(|[t0, t1]| Vector3::from(t0).lerp(&Vector3::from(t1), t));
         let (now, start, end) = (at(named.time), at(0.0), at(1.0));
@@ -88,7 +92,8 @@ impl ContactGeometry {
         let normal = if length(&apart) > DIRECTION * extent {
             apart
         } else {
-            // Where it came from; if it was there already, against its way.
+            // The side from which the first feature came. If it started in contact, against its
+            // motion.
             let way = came - gap(&end);
             let across = match (length(&across) > DIRECTION, came == Vector3::zeros()) {
                 (true, _) => across,
@@ -113,27 +118,27 @@ impl ContactGeometry {
     }
 }
 
-/// The length of a vector; squares of its parts need not be numbers.
+/// Length of a vector, scaled so that the squares of its components cannot overflow.
 fn length(v: &Vector3<f64>) -> f64 {
     let most = v.amax();
     if most == 0.0 { 0.0 } else { most * (v / most).dot(&(v / most)).sqrt() }
 }
 
-/// The vector of length 1 in that direction; zeros have none.
+/// Unit vector of this direction; zeros for zeros.
 fn unit(v: Vector3<f64>) -> Vector3<f64> {
     let length = length(&v);
     if length > 0.0 { v / length } else { Vector3::zeros() }
 }
 
-/// Weights of the ends of two edges, the larger index first, at these places along them.
+/// Weights of the ends of two edges at these parameters, the larger index first.
 pub(crate) fn edge_weights([s, t]: [f64; 2]) -> [f64; 4] {
     [1.0 - s, s, 1.0 - t, t]
 }
 
-/// Weights of the nearest points.
+/// Weights of the four vertices in the nearest points.
 fn weights(kind: Kind, at: [Vector3<f64>; 4]) -> [f64; 4] {
     let [a, b, c, d] = at.map(|p| Vec3(p.into()));
-    // However far apart they are.
+    // Distances are not limited.
     let far = f64::INFINITY;
     match kind {
         Kind::Vf => {
@@ -184,12 +189,12 @@ mod tests {
         assert_eq!((ee.weights, ee.points), ([0.75, 0.25, 0.5, 0.5], [[0.0; 3]; 2]));
         assert_eq!(ee.signed_weights, [0.75, 0.25, -0.5, -0.5]);
         assert_eq!(ee.normal, [0.0, 0.0, -1.0]);
-        // Before that they are apart, and their points say in which direction.
+        // Earlier the edges are apart, and the nearest points define the direction.
         let early = geometry(Kind::Ee, 0.25, [a, b, c, d]);
         assert_eq!((early.distance, early.normal), (1.0, [0.0, 0.0, -1.0]));
     }
 
-    /// What has no direction has none; what has no area has that of the way.
+    /// Points at rest have no direction; if one moves, the direction is that of the motion.
     #[test]
     fn degenerate_features_have_the_direction_that_there_is() {
         let none = geometry(Kind::Vf, 0.0, [still([0.0; 3]); 4]);

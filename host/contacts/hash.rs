@@ -1,10 +1,11 @@
-//! The hash of an answer.
+//! Hash of an answer.
 
 use super::{Contacts, Kind, Rows};
 use crate::scene::BodyId;
 
 impl Kind {
-    /// The kind's number in hashes. Edges keep the 2 of the first recorded hashes, so that those stay comparable.
+    /// Number of the kind in hashes. Edges keep the 2 of the first recorded hashes, so that those
+    /// stay comparable.
     pub(super) fn in_hash(self) -> u8 {
         match self {
             Kind::Vf => 0,
@@ -14,22 +15,25 @@ impl Kind {
 }
 
 impl Contacts {
-    /// xxh3 over the canonical answer: the same for equal answers on every machine. Each contact adds its kind, its
-    /// indices and the bits of its times (a near pair of its squared distance and weights, the nearest triangles of their distance, weights and points), little-endian; in front of these its bodies, unless all contacts are of the first body alone, or of the first two.
+    /// xxh3 over the canonical answer, little-endian: equal answers have equal hashes on every
+    /// machine. A contact adds its kind, status, indices and times. A near pair adds its squared
+    /// distance and weights instead of times. The nearest triangles add their distance, weights and
+    /// points. Bodies come first in each row. They are left out if all rows are within body 0, or
+    /// all are between bodies 0 and 1.
     pub fn hash(&self) -> u64 {
         let mut hash = xxhash_rust::xxh3::Xxh3::new();
         match &self.rows {
             Rows::Pairs(pairs) => {
-                let told = need_bodies(pairs.iter().map(|pair| pair.bodies));
+                let has_bodies = need_bodies(pairs.iter().map(|pair| pair.bodies));
                 for pair in pairs {
-                    let bodies = pair.bodies.iter().map(|body| body.0).filter(|_| told);
+                    let bodies = pair.bodies.iter().map(|body| body.0).filter(|_| has_bodies);
                     bodies.chain(pair.triangles).for_each(|i| hash.update(&i.to_le_bytes()));
                 }
             }
             Rows::Contacts(contacts) => {
-                let told = need_bodies(contacts.iter().map(|contact| contact.bodies));
+                let has_bodies = need_bodies(contacts.iter().map(|contact| contact.bodies));
                 for c in contacts {
-                    if told {
+                    if has_bodies {
                         c.bodies.iter().for_each(|body| hash.update(&body.0.to_le_bytes()));
                     }
                     hash.update(&[c.kind.in_hash(), c.status as u8]);
@@ -40,9 +44,9 @@ impl Contacts {
                 }
             }
             Rows::Near(near) => {
-                let told = need_bodies(near.iter().map(|pair| pair.bodies));
+                let has_bodies = need_bodies(near.iter().map(|pair| pair.bodies));
                 for pair in near {
-                    if told {
+                    if has_bodies {
                         pair.bodies.iter().for_each(|body| hash.update(&body.0.to_le_bytes()));
                     }
                     hash.update(&pair.bytes());
@@ -55,7 +59,7 @@ impl Contacts {
     }
 }
 
-/// Whether contacts do not all lie in the first body, nor all between the first and the second.
+/// Whether rows need their bodies: not all are within body 0, nor all between bodies 0 and 1.
 fn need_bodies(mut bodies: impl Iterator<Item = [BodyId; 2]>) -> bool {
     let first = bodies.next().unwrap_or_default();
     let plain = [0, 1].map(|second| [BodyId(0), BodyId(second)]);

@@ -1,10 +1,10 @@
-//! Rows of features, whose places a detector can compute.
+//! Rows of feature pairs, which have a geometry.
 
 use super::geometry::Named;
 use super::{Contact, NearPair, Rows};
 use crate::error::Error;
 
-/// Rows of features: see [`Detector::geometry`](crate::Detector::geometry).
+/// Rows of feature pairs: see [`Detector::geometry`](crate::Detector::geometry).
 pub trait Located: sealed::Rows {}
 
 impl<T: sealed::Rows> Located for T {}
@@ -13,12 +13,12 @@ mod sealed {
     use super::{Error, Named};
 
     pub trait Rows {
-        /// How many there are.
+        /// Returns the number of rows.
         ///
         /// # Errors
-        /// [`Error::InvalidArgument`] for rows without pairs of features.
+        /// [`Error::InvalidArgument`] for rows without feature pairs.
         fn count(&self) -> Result<usize, Error>;
-        /// Their features.
+        /// Returns the features of each row.
         fn named(&self) -> Vec<Named>;
     }
 }
@@ -48,9 +48,9 @@ impl sealed::Rows for Rows {
         let (query, advice) = match self {
             Rows::Contacts(_) | Rows::Near(_) => return Ok(self.len()),
             Rows::Pairs(_) => {
-                ("a discrete", "use a near or a continuous query; this answer has triangle pairs alone")
+                ("a discrete", "use a near or a continuous query; this answer has only triangle pairs")
             }
-            Rows::Earliest(_) => ("an earliest", "use a continuous query; this answer has a time alone"),
+            Rows::Earliest(_) => ("an earliest", "use a continuous query; this answer has only a time"),
             Rows::Distance(_) => {
                 ("a distance", "read `points` and `weights` of this answer's nearest triangles")
             }

@@ -1,16 +1,16 @@
-//! Answers to parts of one question, by several devices or one after another, as one.
+//! Merges the answers to parts of a query, from several devices or slices.
 
 use super::{Caveat, Contact, Contacts, Rows, TrianglePair, near, sort};
 use crate::stages::Stages;
 use nearmiss_emulator::Looks;
 
 impl Contacts {
-    /// The answer to the whole, of those to its shares, of which there is at least one: lists together in canonical order, counts
-    /// added, and of each stage what `of` makes of two: the longer of those at the same time, the sum of those one after another.
-    /// No answer if a look ends it.
+    /// Merges the answers of shares: lists in canonical order, counts added. `combine` makes one
+    /// time of two: the longer for concurrent shares, the sum for sequential ones. `None` without
+    /// shares, or if an interrupt ends the work.
     pub(crate) fn merged(
         shares: Vec<Contacts>,
-        of: impl Fn(f64, f64) -> f64,
+        combine: impl Fn(f64, f64) -> f64,
         looks: &Looks,
     ) -> Option<Contacts> {
         let ordered = shares.len() < 2;
@@ -18,11 +18,11 @@ impl Contacts {
         let mut whole = all.next()?;
         for share in all {
             let (own, other) = (whole.stats.stages, share.stats.stages);
-            whole.stats.stages = Stages::each(|stage| of(stage(&own), stage(&other)));
+            whole.stats.stages = Stages::each(|stage| combine(stage(&own), stage(&other)));
             whole.add(share);
         }
         if !ordered {
-            // Each share is in order: a sort that merges.
+            // Each share is sorted, so a merging sort suffices.
             match &mut whole.rows {
                 Rows::Pairs(pairs) => sort::merge(pairs, TrianglePair::key, looks),
                 Rows::Contacts(contacts) => sort::merge(contacts, Contact::key, looks),
@@ -33,7 +33,7 @@ impl Contacts {
         Some(whole)
     }
 
-    /// What another share found, behind this one.
+    /// Appends the rows and counts of another share.
     fn add(&mut self, mut share: Contacts) {
         match (&mut self.rows, share.rows) {
             (Rows::Pairs(own), Rows::Pairs(other)) => own.extend(other),
@@ -44,11 +44,11 @@ impl Contacts {
                 let both = [first(*own, self.undecided), first(other, share.undecided)];
                 let least = both.into_iter().flatten().min_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
                 *own = least.map(|(toi, _)| toi);
-                // Of the earliest time alone.
+                // The count and the caveat are those of the earliest time alone.
                 (self.undecided, share.undecided) = (least.map_or(0, |(_, undecided)| undecided), 0);
-                let of_the_other = |reason: &Caveat| *reason != Caveat::EarliestUndecided;
-                self.caveats.retain(of_the_other);
-                share.caveats.retain(of_the_other);
+                let is_other = |reason: &Caveat| *reason != Caveat::EarliestUndecided;
+                self.caveats.retain(is_other);
+                share.caveats.retain(is_other);
                 self.caveats.extend((self.undecided > 0).then_some(Caveat::EarliestUndecided));
             }
             (Rows::Distance(own), Rows::Distance(other)) => {
@@ -59,7 +59,7 @@ impl Contacts {
                     (a, b) => a.or(b),
                 };
             }
-            // One question has answers of one kind.
+            // All shares answer the same query, so their rows have the same kind.
             (
                 Rows::Pairs(_) | Rows::Contacts(_) | Rows::Near(_) | Rows::Earliest(_) | Rows::Distance(_),
                 _,

@@ -46,7 +46,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Number of vertices of `feature_a`: the first of the four of [`ContactGeometry`].
+    /// Number of vertices of `feature_a`: the first ones of [`ContactGeometry`].
     pub const fn vertices_of_a(self) -> usize {
         match self {
             Kind::Vf => 1,
@@ -55,21 +55,23 @@ impl Kind {
     }
 }
 
-/// How sure an answer is. Its number (`as u8`) stands for it in the hash, in files and in other languages.
+/// Certainty of a contact. Its number (`as u8`) is used in the hash, in files and in other
+/// languages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 #[repr(u8)]
 pub enum Status {
-    /// A solver that can be wrong says so.
+    /// Found by a solver that can be wrong.
     Unverified = 0,
-    /// They meet, proven, first in `[toi, toi_upper]`.
+    /// Contact proven, first in `[toi, toi_upper]`.
     Certified = 1,
-    /// They come nearer than the tolerance, or the budget ended; if they meet, not before `toi`. Proven as well.
+    /// The pair comes nearer than the tolerance, or its iterations ended. Proven: no contact before
+    /// `toi`.
     Undecided = 2,
 }
 
 impl Status {
-    /// Of what a solver listed, certified or not.
+    /// Returns the status of a pair listed by a solver, certified or not.
     #[doc(hidden)]
     pub fn of(certified: bool, verdict: &Verdict) -> Status {
         match (certified, verdict.is_contact()) {
@@ -80,23 +82,24 @@ impl Status {
     }
 }
 
-/// Two features that meet within the step, or, of a query with a separation, that come so near.
+/// Two features that meet within the step, or come as near as the minimum separation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Contact {
-    /// Which features.
+    /// Kind of the pair.
     pub kind: Kind,
-    /// Bodies of both features, in their order. Of two edges the smaller number comes first.
+    /// Bodies of both features, in their order. Between two edges the smaller number comes first.
     pub bodies: [BodyId; 2],
-    /// The vertex, or the first edge: its index in its body.
+    /// Index of the vertex, or of the first edge, in its body.
     pub feature_a: u32,
-    /// The face, or the second edge: its index in its body.
+    /// Index of the face, or of the second edge, in its body.
     pub feature_b: u32,
-    /// First time of contact, or of coming as near as the separation, in [0, 1]; by a certified solver not after it.
+    /// First time of contact, or of reaching the minimum separation, in [0, 1]. A certified
+    /// solver's time is never later.
     pub toi: f64,
-    /// The time by which they have met, in [toi, 1]; of an undecided pair the end of the step.
+    /// Time by which the features have met, in [toi, 1]; the end of the step for an undecided pair.
     pub toi_upper: f64,
-    /// How sure that is.
+    /// Certainty of the contact.
     pub status: Status,
 }
 
@@ -104,13 +107,13 @@ pub struct Contact {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct TrianglePair {
-    /// Their bodies, the smaller number first.
+    /// Bodies of the triangles, the smaller number first.
     pub bodies: [BodyId; 2],
-    /// Their indices in those; of one body the smaller first.
+    /// Indices of the triangles in their bodies; within one body the smaller first.
     pub triangles: [u32; 2],
 }
 
-/// By indices alone.
+/// Compares indices, not bodies.
 impl PartialEq<[u32; 2]> for TrianglePair {
     fn eq(&self, triangles: &[u32; 2]) -> bool {
         self.triangles == *triangles
@@ -123,25 +126,27 @@ impl PartialEq<TrianglePair> for [u32; 2] {
     }
 }
 
-/// The rows of an answer to any query: [`Query`] has these. Each type of query has rows of its own type.
+/// Rows of the answer to any [`Query`]. Each type of query has rows of its own type.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Rows {
-    /// Triangle pairs that share a point, ascending by the first triangle and its body, then by the second.
+    /// Triangle pairs that share a point, ascending by the first triangle and its body, then by the
+    /// second.
     Pairs(Vec<TrianglePair>),
-    /// Feature pairs that meet, ascending by kind, then by the first feature and its body, then by the second.
+    /// Feature pairs that meet, ascending by kind, then by the first feature and its body, then by
+    /// the second.
     Contacts(Vec<Contact>),
-    /// The smallest time of contact.
+    /// Smallest time of contact; `None` if nothing meets.
     Earliest(Option<f64>),
-    /// Feature pairs within the distance, ascending by kind, a, b.
+    /// Feature pairs within the distance, in the order of contacts.
     Near(Vec<NearPair>),
-    /// The nearest triangles of different bodies; none where no two may meet.
+    /// Nearest triangles of different bodies; `None` if no two bodies may meet.
     Distance(Option<NearestTriangles>),
 }
 
-/// The answer to any query: see [`Answer`].
+/// Answer to any query: see [`Answer`].
 pub type Contacts = Answer<Rows>;
 
-/// The answer to a query: its rows, caveats, and figures of its making. It can be used as its rows:
+/// Answer to a query: its rows, caveats and statistics. It dereferences to its rows:
 ///
 /// ```
 /// use nearmiss::{Body, Detector, Device, Discrete, Mesh, device::Backend, mesh::Positions};
@@ -158,18 +163,20 @@ pub type Contacts = Answer<Rows>;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Answer<T> {
-    /// The rows.
+    /// Rows of the answer.
     pub rows: T,
-    /// The query.
+    /// Query of the answer.
     pub query: Query,
-    /// Triangle pairs that share a point at the start of the step, by the exact signs of a discrete query: as many as
-    /// [`Query::discrete`] lists at t = 0. Such a pair need not have a time of contact: an edge that is through a face stays
-    /// there. `None` if the start was not checked: of a query at rest, and of one that assumes a free start.
+    /// Triangle pairs that share a point at the start of the step, by the exact signs of a discrete
+    /// query. [`Query::discrete`] lists as many at t = 0. Such a pair need not have a time of
+    /// contact: an edge that crosses a face stays there. `None` if the start was not checked: for
+    /// queries at rest, and for those that assume a free start.
     pub starts_crossing: Option<u64>,
-    /// How many contacts are [`Status::Undecided`]; of a near query, how many of the listed pairs rounding cannot tell from such
-    /// that are farther apart; of an earliest query 1 if its time is that of such a pair and of no contact, else 0.
+    /// Number of undecided rows. Contacts: those with [`Status::Undecided`]. Near pairs: those that
+    /// may exceed the distance by rounding. Earliest: 1 if its time is that of an undecided pair
+    /// and of no contact, else 0.
     pub undecided: u64,
-    /// Figures of its making.
+    /// Statistics of the computation.
     pub stats: Stats,
     pub(crate) caveats: Vec<Caveat>,
     pub(crate) is_free: bool,
@@ -184,20 +191,24 @@ impl<T> std::ops::Deref for Answer<T> {
 }
 
 impl<T> Answer<T> {
-    /// In what the frame came to less than all that was asked, each by its reason; empty where nothing did.
+    /// Limits that affected the answer or its cost; empty if there were none.
     pub fn caveats(&self) -> &[Caveat] {
         &self.caveats
     }
 
-    /// Whether the answer proves that nothing touches. Continuous and earliest: the start was checked, no triangles share a point
-    /// there, and nothing meets within the step. Discrete: no pair of triangles shares a point; pairs with a common vertex are not
-    /// tested. Distance: it is above 0, or no two bodies may meet. Near: always false, since features within a distance do not
-    /// say what crosses. As certain as the solver: see [`Solver::is_certain`](crate::query::Solver::is_certain).
+    /// Whether the answer proves that nothing touches. It is as certain as the solver: see
+    /// [`Solver::is_certain`](crate::query::Solver::is_certain).
+    ///
+    /// - Continuous and earliest: the start was checked, no triangles share a point there, and
+    ///   nothing meets within the step.
+    /// - Discrete: no pair of triangles shares a point. Pairs with a common vertex are not tested.
+    /// - Distance: it exceeds 0, or no two bodies may meet.
+    /// - Near: always false, since features within a distance do not show if anything crosses.
     ///
     /// ```
     /// use nearmiss::{Body, Detector, Device, Earliest, Mesh, device::Backend, mesh::Positions};
     ///
-    /// // The second triangle is through the first, and both rest: no pair of features ever meets.
+    /// // The second triangle crosses the first and both rest: no pair of features ever meets.
     /// let corners = vec![[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [9.0, 9.0, 1.0]];
     /// let mesh = Mesh::new("two triangles", Positions::F32(corners), vec![[0, 1, 2], [3, 4, 5]])?;
     /// let mut detector = Detector::new(Device::open(Backend::Cpu, None)?, Body::deformable(mesh))?;
@@ -211,14 +222,14 @@ impl<T> Answer<T> {
 }
 
 impl Contacts {
-    /// The answer with the rows of its query's own type.
+    /// Converts the rows to the type of the query.
     pub(crate) fn typed<Q: TypedQuery>(self) -> Answer<Q::Rows> {
         let Answer { rows, query, starts_crossing, undecided, stats, caveats, is_free } = self;
         let rows = Q::rows(rows, undecided > 0);
         Answer { rows, query, starts_crossing, undecided, stats, caveats, is_free }
     }
 
-    /// An answer with these rows.
+    /// Makes an answer with these rows.
     pub(crate) fn new(rows: Rows, query: Query, starts_crossing: Option<u64>) -> Contacts {
         let is_free = rows.is_free(starts_crossing);
         Answer {
@@ -232,7 +243,7 @@ impl Contacts {
         }
     }
 
-    /// No contacts, of bodies of which no two may meet.
+    /// Answer without contacts, for bodies of which no two may meet.
     pub fn none(query: Query) -> Contacts {
         let rows = match query {
             Query::Discrete(_) => Rows::Pairs(Vec::new()),
@@ -255,7 +266,7 @@ impl Rows {
         }
     }
 
-    /// How many contacts there are; of an earliest query, and of a distance, 1 or 0.
+    /// Number of rows; at most 1 for earliest and distance queries.
     pub fn len(&self) -> usize {
         match self {
             Rows::Pairs(pairs) => pairs.len(),
@@ -266,42 +277,43 @@ impl Rows {
         }
     }
 
-    /// Whether nothing meets.
+    /// Whether there are no rows.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Triangle pairs, if that was asked.
+    /// Triangle pairs of a discrete query; empty for other queries.
     pub fn pairs(&self) -> &[TrianglePair] {
         if let Rows::Pairs(pairs) = self { pairs } else { &[] }
     }
 
-    /// The triangle pairs without their bodies: for a scene of one body, or of two of which neither is tested against itself.
+    /// Triangle pairs without their bodies: for one body, or two bodies without self-collision.
     pub fn triangles(&self) -> Vec<[u32; 2]> {
         self.pairs().iter().map(|pair| pair.triangles).collect()
     }
 
-    /// Feature pairs, if that was asked.
+    /// Contacts of a continuous query; empty for other queries.
     pub fn contacts(&self) -> &[Contact] {
         if let Rows::Contacts(contacts) = self { contacts } else { &[] }
     }
 
-    /// Feature pairs within a distance, if that was asked.
+    /// Pairs of a near query; empty for other queries.
     pub fn near(&self) -> &[NearPair] {
         if let Rows::Near(near) = self { near } else { &[] }
     }
 
-    /// The nearest triangles of different bodies, if that was asked and any two may meet.
+    /// Nearest triangles of a distance query; `None` for other queries, or if no two bodies may
+    /// meet.
     pub fn nearest(&self) -> Option<&NearestTriangles> {
         if let Rows::Distance(nearest) = self { nearest.as_ref() } else { None }
     }
 
-    /// How far apart those are: 0 if and only if they share a point.
+    /// Distance of the nearest triangles, in scene units: 0 if and only if they share a point.
     pub fn distance(&self) -> Option<f64> {
         self.nearest().map(|nearest| nearest.distance)
     }
 
-    /// The smallest time of contact of a continuous or earliest query.
+    /// Smallest time of contact of a continuous or earliest query.
     pub fn earliest_toi(&self) -> Option<f64> {
         match self {
             Rows::Pairs(_) | Rows::Near(_) | Rows::Distance(_) => None,
@@ -312,14 +324,14 @@ impl Rows {
 }
 
 impl TrianglePair {
-    /// What pairs are ordered by.
+    /// Sort key of pairs.
     pub(crate) fn key(&self) -> [(BodyId, u32); 2] {
         [0, 1].map(|k| (self.bodies[k], self.triangles[k]))
     }
 }
 
 impl Contact {
-    /// What contacts are ordered by.
+    /// Sort key of contacts.
     pub(crate) fn key(&self) -> (Kind, [(BodyId, u32); 2]) {
         (self.kind, [(self.bodies[0], self.feature_a), (self.bodies[1], self.feature_b)])
     }

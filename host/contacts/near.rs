@@ -3,18 +3,18 @@
 use super::Kind;
 use crate::scene::BodyId;
 
-/// What is nearest of two features. Its number (`as u8`) stands for it in other languages.
+/// Nearest parts of two features. Its number (`as u8`) is used in other languages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "kebab-case"))]
 #[repr(u8)]
 pub enum Closest {
-    /// A vertex and the inside of a face.
+    /// A vertex and the interior of a face.
     VertexFace = 0,
-    /// A vertex and the inside of an edge.
+    /// A vertex and the interior of an edge.
     VertexEdge = 1,
     /// Two vertices.
     VertexVertex = 2,
-    /// The insides of two edges.
+    /// The interiors of two edges.
     EdgeEdge = 3,
 }
 
@@ -29,7 +29,8 @@ impl Closest {
         }
     }
 
-    /// Closest parts of a pair with these [weights](NearPair::weights): a vertex of weight 0 has no part.
+    /// Returns the nearest parts of a pair with these [weights](NearPair::weights). A vertex of
+    /// weight 0 has no part.
     pub fn of(kind: Kind, weights: [f64; 4]) -> Closest {
         let with_a_part = weights.iter().filter(|&&weight| weight > 0.0).count();
         match (kind, with_a_part) {
@@ -41,30 +42,31 @@ impl Closest {
     }
 }
 
-/// Two features that are within a distance of each other, and where they are nearest.
+/// Two features within a distance of each other, and their nearest points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct NearPair {
-    /// Which features.
+    /// Kind of the pair.
     pub kind: Kind,
-    /// Bodies of both features, in their order. Of two edges the smaller number comes first.
+    /// Bodies of both features, in their order. Between two edges the smaller number comes first.
     pub bodies: [BodyId; 2],
-    /// The vertex, or the first edge: its index in its body.
+    /// Index of the vertex, or of the first edge, in its body.
     pub feature_a: u32,
-    /// The face, or the second edge: its index in its body.
+    /// Index of the face, or of the second edge, in its body.
     pub feature_b: u32,
-    /// Their squared distance: its root is off by 192 half ulps of their extent at most. A square below 2^-1022 has fewer digits,
-    /// one below 2^-1075 is 0, though the features may be apart.
+    /// Squared distance. Its root is off by at most 192 half ulps of the features' extent. A square
+    /// below 2^-1022 has fewer digits. One below 2^-1075 is 0, even if the features are apart.
     pub squared_distance: f64,
-    /// Weights of the four vertices in the two nearest points, in the order of [`ContactGeometry`](super::ContactGeometry): the
-    /// vertex and the three corners of the face, or the ends of both edges, the larger index first. Those of each feature sum to 1.
+    /// Weights of the four vertices in the two nearest points, in the order of
+    /// [`ContactGeometry`](super::ContactGeometry). That is the vertex and the face's corners, or
+    /// the ends of both edges, the larger index first. The weights of each feature sum to 1.
     pub weights: [f64; 4],
-    /// Nearest parts of both features: those whose weights are neither 0 nor 1.
+    /// Nearest parts of both features: those with weights other than 0 and 1.
     pub closest: Closest,
 }
 
 impl NearPair {
-    /// What pairs are ordered by.
+    /// Sort key of pairs.
     pub(crate) fn key(&self) -> (Kind, [(BodyId, u32); 2]) {
         (self.kind, [(self.bodies[0], self.feature_a), (self.bodies[1], self.feature_b)])
     }

@@ -2,29 +2,29 @@
 
 use crate::scene::BodyId;
 
-/// The two triangles of different bodies that are nearest, and where. Of several pairs at the least distance, as it is computed, the
-/// first by its triangles and their bodies.
+/// The two nearest triangles of different bodies, and their nearest points. Among pairs of equal
+/// computed distance it is the first by triangles and bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct NearestTriangles {
-    /// Their bodies, the smaller number first.
+    /// Bodies of the triangles, the smaller number first.
     pub bodies: [BodyId; 2],
-    /// Their indices in those.
+    /// Indices of the triangles in their bodies.
     pub triangles: [u32; 2],
-    /// How far apart they are: 0 if and only if they share a point, which exact signs decide. Else
-    /// it is off from theirs by 192 half ulps of their extent at most, and no two triangles are
-    /// nearer by more than 192 half ulps of the larger of their extent and that of the truly
-    /// nearest ones.
+    /// Distance of the triangles: 0 if and only if they share a point, by exact signs. Otherwise it
+    /// is off by at most 192 half ulps of their extent. No two triangles are nearer by more than
+    /// 192 half ulps of the larger extent. The extents are theirs and that of the truly nearest
+    /// pair.
     pub distance: f64,
-    /// Where they are nearest: of each the weights of its corners, in the order in which the face names them. Where they share a point
-    /// that is one of those, up to roundings.
+    /// Weights of each triangle's corners in its nearest point, in the order of the face. If the
+    /// triangles share a point, the nearest points are such a point, up to rounding.
     pub weights: [[f64; 3]; 2],
-    /// Those points.
+    /// Nearest points, in scene units.
     pub points: [[f64; 3]; 2],
 }
 
 impl NearestTriangles {
-    /// What a hash is told.
+    /// Bytes of the row in a hash.
     pub(super) fn bytes(&self) -> Vec<u8> {
         let indices = self.bodies.iter().map(|body| body.0).chain(self.triangles);
         let numbers = std::iter::once(&self.distance)

@@ -1,4 +1,4 @@
-//! Notes beside an answer: what a user should know of it.
+//! Notes with an answer: facts that its user should know.
 
 use super::{Contacts, Rows};
 use crate::query::Query;
@@ -6,43 +6,42 @@ use crate::scene::{Body, BodyKind};
 use crate::words::counted;
 use std::fmt;
 
-/// A note beside an answer. Its text is the same in every language:
+/// Note with an answer. Its text is the same in every language:
 /// [`Summary::notes`](super::Summary::notes).
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Note {
-    /// A note of the reader of a mesh file, made by the package `nearmiss-io`.
+    /// Note of a mesh file's reader, made by the package `nearmiss-io`.
     File {
-        /// Its text.
+        /// Text of the note.
         text: String,
     },
-    /// A query in motion of bodies that rest: no body was given positions or another pose for the
-    /// end of the step.
+    /// A query in motion of bodies at rest: none has positions or another pose for the step's end.
     OneFrame,
-    /// A query in motion of bodies whose start and end are the same.
+    /// A query in motion of bodies with equal start and end.
     SameFrames,
     /// A distance query of bodies of which no two may meet.
     NoTwoBodies,
     /// Triangle pairs that share a point at the start of the step.
     StartsCrossing {
-        /// How many.
+        /// Number of pairs.
         pairs: u64,
     },
     /// An earliest time of 0.
     ContactAtStart,
-    /// Vertices that share their place with another, beside at least [`Note::MANY`] contacts.
+    /// Vertices that coincide with another, with at least [`Note::MANY`] contacts.
     Coincident {
-        /// How many.
+        /// Number of vertices.
         vertices: u64,
     },
 }
 
 impl Note {
-    /// Contacts from which on vertices that coincide are counted.
+    /// Number of contacts from which on coincident vertices are counted.
     pub const MANY: usize = 1_000;
 
-    /// The notes of an answer, of bodies where they were. Cost: a pass over positions that do not
-    /// move; with [`Note::MANY`] contacts a sort of all vertices.
+    /// Returns the notes of an answer; bodies are still in the answer's positions. Cost: a pass
+    /// over positions that do not move; with [`Note::MANY`] contacts a sort of all vertices.
     #[doc(hidden)]
     pub fn of(bodies: &[Body], query: &Query, contacts: &Contacts) -> Vec<Note> {
         let rests = || (!query.kind().is_at_rest()).then(|| resting(bodies)).flatten();
@@ -58,8 +57,8 @@ impl Note {
     }
 }
 
-/// Why nothing moves, if nothing does. A body whose place only the device has moves if it was given
-/// two ends.
+/// Returns why nothing moves; `None` if something does. A device-resident body moves if it was
+/// given two ends.
 fn resting(bodies: &[Body]) -> Option<Note> {
     let moves = |body: &Body| {
         let [start, end] = body.poses();
@@ -84,7 +83,7 @@ impl fmt::Display for Note {
             ),
             Note::SameFrames => write!(f, "nothing moves: both frames are the same"),
             Note::NoTwoBodies => {
-                write!(f, "no two bodies may meet: give a second one, or bodies whose groups meet")
+                write!(f, "no two bodies may meet: give a second one, or filters that allow a pair")
             }
             Note::StartsCrossing { pairs } => {
                 let meet = counted(*pairs, "triangle pair meets", "triangle pairs meet");
@@ -94,7 +93,7 @@ impl fmt::Display for Note {
                 )
             }
             Note::ContactAtStart => {
-                write!(f, "in contact at the start of the step, or too near to tell: no step can be taken")
+                write!(f, "in contact at the start of the step, or undecided there: no step can be taken")
             }
             Note::Coincident { vertices } => {
                 let share = counted(*vertices, "vertex shares its", "vertices share their");

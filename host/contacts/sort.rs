@@ -1,13 +1,13 @@
-//! Long lists of the host, made and sorted so that an interrupt ends it.
+//! Builds and sorts long lists on the host; an interrupt ends the work.
 
 use nearmiss_emulator::Looks;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 
-/// Entries between two looks.
+/// Entries between two checks for an interrupt.
 const CHUNK: usize = 1 << 18;
 
-/// Appends what becomes of each entry; less if the work ends early.
+/// Appends the mapped entries; fewer if an interrupt ends the work.
 pub fn extend<T: Sync, U: Send>(to: &mut Vec<U>, from: &[T], map: impl Fn(&T) -> U + Sync, looks: &Looks) {
     to.reserve_exact(from.len());
     for chunk in from.chunks(CHUNK) {
@@ -18,17 +18,17 @@ pub fn extend<T: Sync, U: Send>(to: &mut Vec<U>, from: &[T], map: impl Fn(&T) ->
     }
 }
 
-/// Compares by a key; all are equal once the work has ended, so that a sort ends soon.
+/// Compares by a key. After an interrupt all entries are equal, so that a sort ends soon.
 fn compare<T, K: Ord>(key: impl Fn(&T) -> K, looks: &Looks) -> impl Fn(&T, &T) -> Ordering {
     move |a, b| if looks.ends() { Ordering::Equal } else { key(a).cmp(&key(b)) }
 }
 
-/// Sorts entries of which no two have the same key; any order if the work ends early.
+/// Sorts entries with distinct keys; any order if an interrupt ends the work.
 pub fn sort<T: Send, K: Ord>(list: &mut [T], key: impl Fn(&T) -> K + Sync, looks: &Looks) {
     list.par_sort_unstable_by(compare(key, looks));
 }
 
-/// The same of a list that is made of few sorted ones.
+/// Sorts a list of few sorted runs with distinct keys; any order if an interrupt ends the work.
 pub fn merge<T: Send, K: Ord>(list: &mut [T], key: impl Fn(&T) -> K + Sync, looks: &Looks) {
     list.par_sort_by(compare(key, looks));
 }

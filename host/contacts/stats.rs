@@ -1,10 +1,11 @@
-//! Figures of an answer's making.
+//! Statistics of an answer's computation.
 
 use super::{Front, Queues};
 use crate::stages::Stages;
 
-/// Figures of an answer's making: diagnostic, they may change from version to version. Counts of an earliest query may differ from
-/// run to run: pairs that cannot be earlier are skipped, and the order decides which.
+/// Statistics of an answer's computation. They are diagnostic and may change between versions.
+/// Counts of an earliest query may differ between runs. Pairs that cannot be earlier are skipped,
+/// and the order decides which.
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
 pub struct Stats {
@@ -12,34 +13,37 @@ pub struct Stats {
     pub stages: Stages,
     /// Triangle pairs whose volumes overlap.
     pub triangle_pairs: u64,
-    /// Pairs of the narrow test: of triangles (discrete), of vertices and faces or two edges (other queries).
+    /// Pairs of the narrow phase: triangles (discrete), or vertex/face and edge/edge pairs (other
+    /// queries).
     pub candidates: u64,
     /// Candidates by kind: vertex/face, edge/edge. Zero for discrete queries.
     pub candidates_vf_ee: [u64; 2],
     /// Candidates that signs alone could not reject: vertex/face, edge/edge.
     pub survivors_vf_ee: [u64; 2],
-    /// Candidates that f32 left to f64: vertex/face, edge/edge.
+    /// Candidates escalated from f32 to f64: vertex/face, edge/edge.
     pub escalated_vf_ee: [u64; 2],
-    /// Candidates whose roots could not be isolated; with a separation, those that the first step did not decide: vertex/face,
-    /// edge/edge.
+    /// Candidates whose roots could not be isolated: vertex/face, edge/edge. With a minimum
+    /// separation, those that the first step did not decide.
     pub open_vf_ee: [u64; 2],
-    /// Those of them that were cut into slices: vertex/face, edge/edge.
+    /// Open candidates that were cut into slices: vertex/face, edge/edge.
     pub sliced_vf_ee: [u64; 2],
-    /// Triangle pairs that the filter in the precision of the positions left uncertain; of a query in motion, at the start of the step.
+    /// Triangle pairs left uncertain by the filter in the precision of the positions. A query in
+    /// motion tests them at the start of the step.
     pub uncertain: u64,
-    /// Those of them that f64 left uncertain too; none of f64 positions, which go straight to exact signs.
+    /// Uncertain pairs that f64 left uncertain too; none for f64 positions, which go straight to
+    /// exact signs.
     pub uncertain_wide: u64,
     /// Pairs of sibling nodes that the traversal tested.
     pub steps: u64,
-    /// Work units that long walks gave away.
+    /// Work units given up by long walks.
     pub spilled: u64,
-    /// How often a list was too short and grew, and a part of the frame ran again: it took longer, and the answer is whole.
+    /// Reruns of a part of the frame after a list grew. They cost time; the answer is complete.
     pub reruns: u64,
-    /// Slices of the frame: 1, or more if the lists of a whole one would exceed the memory.
+    /// Slices of the frame: more than 1 if the lists of a whole one would exceed the memory.
     pub slices: u32,
-    /// Work queues.
+    /// Statistics of the work queues.
     pub queues: Queues,
-    /// The front of a walk.
+    /// Statistics of the front.
     pub front: Front,
 }
 
@@ -49,7 +53,7 @@ impl Stats {
         2 * self.steps + self.front.tests
     }
 
-    /// Adds those of another share of the frame, apart from its times.
+    /// Adds the statistics of another share of the frame, except its times.
     pub(super) fn add(&mut self, share: &Stats) {
         let pairs =
             |own: &mut [u64; 2], other: [u64; 2]| own.iter_mut().zip(other).for_each(|(own, n)| *own += n);

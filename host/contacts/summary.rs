@@ -1,10 +1,10 @@
-//! What is printed of a result.
+//! Summary of a result, for reports.
 
 use super::{Caveat, Front, NearestTriangles, Note, Queues};
 use crate::query::{Broad, QueryKind, Refit, Solver, Traversal};
 use crate::stages::Stages;
 
-/// What the command line prints of a result, as JSON or for people.
+/// Summary of a result, as the command line prints it in JSON or as text.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Summary {
@@ -12,66 +12,66 @@ pub struct Summary {
     pub triangles: usize,
     /// Vertices of all bodies.
     pub vertices: usize,
-    /// Frames: 1 still, 2 moving.
+    /// Frames: 1 at rest, 2 in motion.
     pub frames: usize,
-    /// What was asked.
+    /// Kind of the query.
     pub query: QueryKind,
-    /// The bounding volume.
+    /// Name of the bounding volume.
     pub bv: &'static str,
-    /// What found candidates.
+    /// Broad phase.
     pub broad: Broad,
-    /// The refit, of trees.
+    /// Refit of trees; `None` for tiles.
     pub refit: Option<Refit>,
-    /// The walk, of trees.
+    /// Traversal of trees; `None` for tiles.
     pub traversal: Option<Traversal>,
-    /// The test.
+    /// Solver of the narrow phase.
     pub solver: Solver,
     /// `cpu` or `cuda`.
     pub backend: &'static str,
-    /// The machine's name.
+    /// Name of the machine.
     pub device: String,
-    /// Triangle pairs that the volumes let through.
+    /// Triangle pairs whose volumes overlap.
     pub triangle_pairs: u64,
-    /// Pairs that the narrow test was asked.
+    /// Pairs of the narrow phase.
     pub candidates: u64,
-    /// Contacts found.
+    /// Number of contacts.
     pub contacts: usize,
-    /// How many of the contacts are neither confirmed nor refuted; of an earliest query 1 if its
-    /// time is that of such a pair, else 0.
+    /// Number of undecided contacts; for an earliest query 1 if its time is that of an undecided
+    /// pair, else 0.
     pub undecided: u64,
-    /// In what the frame came to less than all that was asked; empty where nothing did.
+    /// Limits that affected the answer or its cost; empty if there were none.
     pub caveats: Vec<Caveat>,
-    /// The tolerance of a certified solver, a length: the smallest, if pairs have several.
+    /// Tolerance of a certified solver, in scene units: the smallest, if pairs have several.
     pub tolerance: Option<f64>,
-    /// The largest of them, if pairs have several.
+    /// Largest tolerance, if pairs have several.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub largest_tolerance: Option<f64>,
-    /// The separation of a certified solver, a length; 0 for touching.
+    /// Minimum separation of a certified solver, in scene units; 0 for touching.
     pub separation: Option<f64>,
-    /// The distance of a near query, a length.
+    /// Distance of a near query, in scene units.
     pub distance: Option<f64>,
-    /// Of a distance query the nearest triangles, how far apart they are, and where.
+    /// Nearest triangles of a distance query, their distance and nearest points.
     pub nearest: Option<NearestTriangles>,
-    /// The smallest time of contact.
+    /// Smallest time of contact.
     pub earliest_toi: Option<f64>,
-    /// Triangle pairs that share a point at the start of the step; none of a query that does not
+    /// Triangle pairs that share a point at the start of the step; `None` if the query does not
     /// check it.
     pub starts_crossing: Option<u64>,
     /// Hash of the canonical answer, sixteen hexadecimal digits.
     pub hash: String,
-    /// How often a list was too short and grew, and a part of the frame ran again; the answer is whole.
+    /// Reruns of a part of the frame after a list grew; the answer is complete.
     pub reruns: u64,
-    /// In how many slices the frame was asked, for want of memory; 1 is the whole at once.
+    /// Slices of the frame; more than 1 if memory was short.
     pub slices: u32,
-    /// How often tiles or trees have been made, see [`Detector::builds`](crate::Detector::builds).
+    /// Number of builds of tiles or trees: see [`Detector::builds`](crate::Detector::builds).
     pub builds: u64,
-    /// What the traversal's work queues did.
+    /// Statistics of the traversal's work queues.
     pub queues: Queues,
-    /// What the traversal's front saved or cost.
+    /// Statistics of the traversal's front.
     pub front: Front,
     /// Milliseconds by stage.
     pub ms: Stages,
-    /// Most device memory held at once.
+    /// Peak of device memory, in bytes.
     pub bytes: u64,
     /// Notes for the user, a sentence each; mostly none.
     pub notes: Vec<Note>,

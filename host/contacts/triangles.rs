@@ -1,4 +1,4 @@
-//! From features to triangles: which triangle pairs meet in a step, and when first.
+//! Converts contacts of features to triangle pairs with their first times.
 
 use super::{Contact, Kind, TrianglePair};
 use crate::mesh::Topology;
@@ -8,13 +8,13 @@ use std::collections::HashMap;
 /// Two triangles without a common vertex whose features meet during the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleContact {
-    /// The triangles, and their bodies; of one body the smaller index first.
+    /// The triangles and their bodies; within one body the smaller index first.
     pub pair: TrianglePair,
     /// First time at which a feature of one meets a feature of the other, in [0, 1].
     pub toi: f64,
 }
 
-/// Which triangles each vertex and each edge belongs to.
+/// Triangles of each vertex and of each edge.
 struct Incidence<'a> {
     faces: &'a [[u32; 3]],
     of_vertex: Vec<Vec<u32>>,
@@ -47,8 +47,9 @@ impl<'a> Incidence<'a> {
     }
 }
 
-/// Triangle pairs of `contacts`, ascending; of `bodies` as they are in the scene, by their numbers. Pairs that share
-/// a vertex are left out, as in a discrete query. Cost: the product of both features' triangles for each contact.
+/// Returns the triangle pairs of `contacts`, ascending. `bodies` are those of the scene, by number.
+/// Pairs that share a vertex are left out, as in a discrete query. Cost: for each contact, the
+/// product of the numbers of both features' triangles.
 pub fn triangle_contacts(contacts: &[Contact], bodies: &[Body]) -> Vec<TriangleContact> {
     let incidences: Vec<Incidence> = bodies.iter().map(Incidence::new).collect();
     let mut earliest: HashMap<TrianglePair, f64> = HashMap::new();

@@ -1,32 +1,32 @@
-//! What a traversal did: figures, not answers.
+//! Statistics of a traversal.
 
-/// The front of a frame. All zero where there was none.
+/// Statistics of a frame's front. All zero if there was none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Front {
     /// Pairs of nodes at which this frame's descent ended.
     pub pairs: u64,
-    /// Overlap tests of the last frame's pairs and, where it was pruned, of their ancestors. Those of the pairs below them
-    /// are counted as those of any traversal: two a step.
+    /// Overlap tests of the last frame's pairs and, if it was pruned, of their ancestors. Tests
+    /// below these pairs count as steps of the traversal: two a step.
     pub tests: u64,
-    /// Pairs that gave way to an ancestor.
+    /// Pairs replaced by an ancestor.
     pub pruned: u64,
 }
 
-/// What the work queues of a traversal did. All zero where it had none.
+/// Statistics of a traversal's work queues. All zero if it had none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Queues {
-    /// Rounds with work: launches.
+    /// Rounds with work, one launch each.
     pub rounds: u64,
-    /// How often a queue ran dry.
+    /// Number of times that a queue ran empty.
     pub idle_exits: u64,
-    /// Units that a queue on chip had no room for.
+    /// Units that did not fit a queue on chip.
     pub spills: u64,
-    /// Units that a balance moved.
+    /// Units moved by balancing.
     pub moves: u64,
     /// Units that a block took from those that others offered.
     pub stolen: u64,
-    /// Most units that waited in a segment, or in the list of all.
+    /// Most units at once in a segment, or in the shared list.
     pub longest: u64,
 }

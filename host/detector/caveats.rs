@@ -1,4 +1,5 @@
-//! Caveats beside an answer that follow from where bodies are: a turn too far for straight lines, a tolerance below the precision.
+//! Caveats that follow from positions: a turn too far for straight lines, a tolerance below the
+//! precision.
 
 use super::Detector;
 use super::question::Question;
@@ -9,8 +10,8 @@ use crate::query::{Certified, Query};
 use crate::scene::{Body, BodyKind};
 
 impl Detector {
-    /// Adds a caveat for each rigid body that turns far in the step: [`Caveat::Turned`]. Poses that only the device knows are copied
-    /// from it, if there are any.
+    /// Adds a caveat for each rigid body that turns far in the step: [`Caveat::Turned`]. Poses that
+    /// only the device has are copied from it.
     ///
     /// # Errors
     /// Those of the device.
@@ -39,8 +40,9 @@ impl Detector {
         Ok(())
     }
 
-    /// An earliest query lists no pairs, so whether they are too large for the tolerance hangs on where bodies are: of those that are
-    /// away on the largest of their coordinates and, where that leaves it open, on themselves.
+    /// Adds the caveat of a tolerance below the precision to an earliest query. Such a query lists
+    /// no pairs, so positions decide. For device-resident bodies the largest coordinate may
+    /// suffice; if not, their positions are downloaded.
     pub(super) fn tell_below_precision(
         &mut self,
         question: &Question,
@@ -55,7 +57,7 @@ impl Detector {
         let own = tolerances.least < tolerances.largest;
         let certified = Certified { tolerance: Some(tolerances.largest), ..certified };
         let unlisted = Caveat::ToleranceBelowPrecision { pairs: None };
-        // If no body came from memory of the caller the pipeline has looked at all.
+        // If no body came from memory of the caller, the pipeline has examined all.
         let is_looked_at =
             self.resident.largest == 0.0 && !self.scene.bodies().iter().any(Body::is_device_resident);
         if is_looked_at || contacts.caveats.contains(&unlisted) {

@@ -1,4 +1,4 @@
-//! Bodies come, go and change between frames.
+//! Bodies are added, replaced and removed between frames.
 
 use super::Detector;
 use super::engine::fits;
@@ -6,12 +6,13 @@ use crate::error::Error;
 use crate::scene::{Body, BodyId};
 
 impl Detector {
-    /// Puts another body, of any mesh, in the place of one: under its number, from the next frame on. Cost: as of
-    /// [`Detector::new`], at the next frame.
+    /// Replaces a body by another, of any mesh, under its number, from the next frame on. Cost: as
+    /// of [`Detector::new`], at the next frame.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] for a body that is not in the scene and for self-collision of a static body, [`Error::Input`] for more triangles
-    /// than indices reach: then nothing has changed.
+    /// [`Error::InvalidArgument`] for a body that is not in the scene, and for self-collision of a
+    /// fixed body. [`Error::Input`] for more triangles than indices reach. On an error nothing has
+    /// changed.
     pub fn replace(&mut self, id: BodyId, body: Body) -> Result<(), Error> {
         let old = self.scene.get(id).ok_or_else(|| nobody(id))?;
         body.check_filter()?;
@@ -23,11 +24,12 @@ impl Detector {
         Ok(())
     }
 
-    /// Adds a body to the scene, from the next frame on. Cost: as of [`Detector::new`], at the next frame.
+    /// Adds a body to the scene, from the next frame on. Cost: as of [`Detector::new`], at the next
+    /// frame.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] for self-collision of a static body, [`Error::Input`] for more triangles than indices reach: then nothing has
-    /// changed.
+    /// [`Error::InvalidArgument`] for self-collision of a fixed body. [`Error::Input`] for more
+    /// triangles than indices reach. On an error nothing has changed.
     pub fn add(&mut self, body: Body) -> Result<BodyId, Error> {
         body.check_filter()?;
         self.fits(None, &body)?;
@@ -38,8 +40,8 @@ impl Detector {
         Ok(id)
     }
 
-    /// Takes a body out of the scene, from the next frame on; other bodies keep their numbers. Cost: as of
-    /// [`Detector::new`], at the next frame.
+    /// Removes a body from the scene, from the next frame on; other bodies keep their numbers.
+    /// Cost: as of [`Detector::new`], at the next frame.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`] for a body that is not in the scene.
@@ -51,16 +53,16 @@ impl Detector {
         Ok(body)
     }
 
-    /// Whether there is room for a body, in the place of another.
+    /// Checks that there is room for a body, in place of an old one if there is one.
     fn fits(&self, old: Option<&Body>, new: &Body) -> Result<(), Error> {
-        let all = |of: fn(&Body) -> usize| {
-            let others: usize = self.scene.bodies().iter().map(of).sum();
-            others - old.map_or(0, of) + of(new)
+        let all = |count: fn(&Body) -> usize| {
+            let others: usize = self.scene.bodies().iter().map(count).sum();
+            others - old.map_or(0, count) + count(new)
         };
         fits(all(Body::face_count), all(Body::vertex_count))
     }
 
-    /// The next frame begins anew.
+    /// Drops all that depends on the bodies: the next frame builds it again.
     fn changed(&mut self) {
         self.engine.drop_all();
         self.portion.forget_slices();
@@ -68,10 +70,10 @@ impl Detector {
     }
 }
 
-/// There is no such body.
+/// Error for a body that is not in the scene.
 pub(super) fn nobody(id: BodyId) -> Error {
     Error::InvalidArgument {
         what: format!("there is no body {id} in the scene"),
-        advice: "name a body by what adding it gave, until it is removed".into(),
+        advice: "name a body by the number that adding it returned, until it is removed".into(),
     }
 }

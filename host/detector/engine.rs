@@ -1,4 +1,5 @@
-//! The engine of a detector: the pipeline with its memory, and the cost of building and of frames so far.
+//! The engine of a detector: the pipeline with its memory, and the cost of builds and frames so
+//! far.
 
 use super::layouts::Layouts;
 use crate::device::{Device, Work};
@@ -9,33 +10,34 @@ use crate::query::Query;
 use crate::scene::{Body, Scene};
 use std::sync::Arc;
 
-/// A pipeline, and its account.
+/// A pipeline, and the record of its builds and frames.
 #[derive(Default)]
 pub struct Engine {
-    /// Empty after bodies came, went or changed.
+    /// Layouts by query; empty after bodies were added, removed or replaced.
     pub layouts: Layouts,
-    /// `None` before the first query, if nothing can meet, and after memory ended: then the next query makes it again.
+    /// `None` before the first query, if nothing can meet, and after memory ran out. The next query
+    /// makes it again.
     pub pipeline: Option<Box<dyn Pipeline>>,
-    /// Whether the pipeline holds positions in f64: if any body has them so, so that nothing is rounded.
+    /// Whether the pipeline holds positions in f64: if any body does, so that nothing is rounded.
     pub holds_f64: bool,
     /// Whether it holds both ends of the step: from the first query in motion on.
     pub has_ends: bool,
-    /// The query of which the device holds the answer, for bodies where they are.
+    /// Query whose answer the device holds, for the current positions.
     pub answered: Option<Query>,
-    /// Milliseconds of the last building of tiles or trees.
+    /// Milliseconds of the last build of tiles or trees.
     pub construct_ms: f64,
-    /// How often tiles or trees were made.
+    /// Number of builds of tiles or trees.
     pub builds: u64,
-    /// Frames of the last query in a row, since tiles or trees were first made for it.
+    /// Consecutive frames of the last query, since tiles or trees were first built for it.
     pub frames: u64,
     last: Option<Query>,
-    /// The device's work in the last building, and in the last frame.
+    /// The device's work in the last build, and in the last frame.
     pub build_work: Work,
     pub frame_work: Work,
 }
 
 impl Engine {
-    /// Makes the pipeline, with memory for the bodies where they are.
+    /// Makes the pipeline, with memory for the bodies at their current positions.
     ///
     /// # Errors
     /// Those of the device.
@@ -47,12 +49,12 @@ impl Engine {
         Ok(())
     }
 
-    /// Tiles or trees were made for a query, in so many milliseconds.
+    /// Records a build of tiles or trees, and its milliseconds.
     pub fn count_build(&mut self, ms: f64) {
         (self.builds, self.construct_ms, self.answered) = (self.builds + 1, ms, None);
     }
 
-    /// A frame of a query was run, with this work.
+    /// Records a frame of a query, and its work.
     pub fn count_frame(&mut self, query: &Query, work: Work) {
         let is_same = self.last == Some(*query);
         self.frames = if is_same { self.frames + 1 } else { 1 };
@@ -69,7 +71,7 @@ impl Engine {
         self.pipeline.as_ref().is_some_and(|pipeline| pipeline.is_prepared())
     }
 
-    /// Drops the pipeline and the layouts: bodies are others.
+    /// Drops the pipeline and the layouts, after the bodies changed.
     pub fn drop_all(&mut self) {
         self.drop_pipeline();
         self.layouts = Layouts::default();
@@ -81,7 +83,8 @@ impl Engine {
     }
 }
 
-/// Whether indices of 32 bits reach all triangles, vertices and edges (at most three a triangle) of all bodies together.
+/// Checks that 32-bit indices reach all triangles, vertices and edges (at most three a triangle) of
+/// all bodies together.
 pub fn fits(triangles: usize, vertices: usize) -> Result<(), Error> {
     let all = [("triangles", triangles, MAX_FACES), ("vertices", vertices, MAX_VERTICES)];
     match all.into_iter().find(|(_, count, limit)| count > limit) {

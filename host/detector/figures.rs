@@ -1,4 +1,4 @@
-//! Figures of a detector and of its answers.
+//! Statistics of a detector and of its answers.
 
 use super::Detector;
 use crate::contacts::{Contacts, Note, Summary};
@@ -9,23 +9,24 @@ use crate::scene::Body;
 use std::sync::Arc;
 
 impl Detector {
-    /// Smallest tolerance of a pair of bodies by a certified solver without a named one, a length: a pair has the smaller default
-    /// of its two bodies: [`Certified::TOLERANCE`](crate::query::Certified::TOLERANCE) of the mean
-    /// edge of the mesh that a body was made of, rounded down to a power of two. It stays when bodies move. Cost: a root a side of bodies
-    /// of which it is not known yet.
+    /// Smallest default tolerance of a pair of bodies for a certified solver, in scene units. A
+    /// pair has the smaller default of its two bodies. That is
+    /// [`Certified::TOLERANCE`](crate::query::Certified::TOLERANCE) of the mean edge of the body's
+    /// original mesh, rounded down to a power of two. It stays when bodies move. Cost: a square
+    /// root for each side of a triangle, once a body.
     pub fn tolerance(&mut self) -> f64 {
         self.default_tolerances().least
     }
 
-    /// Largest tolerance of a pair of bodies by a certified solver without a named one, a length: that of [`Detector::tolerance`] if all
-    /// pairs have the same.
+    /// Largest default tolerance of a pair of bodies for a certified solver, in scene units. It is
+    /// [`Detector::tolerance`] if all pairs have the same.
     pub fn largest_tolerance(&mut self) -> f64 {
         self.default_tolerances().largest
     }
 
-    /// The figures of an answer and the notes beside it, as the command line prints them. Cost: a hash of the answer, and the notes:
-    /// a comparison of both ends of the step if nothing moves, a sort of all vertices if there are [`Note::MANY`](crate::contacts::Note::MANY)
-    /// contacts.
+    /// Returns the statistics and notes of an answer, as the command line prints them. Cost: a hash
+    /// of the answer, and the notes. Notes compare both ends of the step if nothing moves. They
+    /// sort all vertices if there are [`Note::MANY`](crate::contacts::Note::MANY) contacts.
     pub fn summary(&mut self, contacts: &Contacts) -> Summary {
         let query = contacts.query;
         let named = query.certified().map(|certified| certified.tolerance);
@@ -75,23 +76,27 @@ impl Detector {
         }
     }
 
-    /// The notes beside an answer, of bodies where they were: those of [`Detector::summary`], at the same cost.
+    /// Returns the notes of an answer; bodies are still in the answer's positions. Notes and cost
+    /// are those of [`Detector::summary`].
     pub fn notes(&self, contacts: &Contacts) -> Vec<Note> {
         Note::of(self.scene.bodies(), &contacts.query, contacts)
     }
 
-    /// Levels of the tree of a query over moving bodies, and of that over static ones, if there are any.
+    /// Returns the number of levels of a query's trees: over moving bodies, and over fixed ones if
+    /// there are any.
     pub fn depths(&mut self, query: &Query) -> Vec<usize> {
         self.of_query(query, Vec::new(), |pipeline, at| Ok(pipeline.depths(at))).unwrap_or_default()
     }
 
-    /// How often a list was too short and a frame was run again within itself, since the bodies were last replaced.
+    /// Number of frames that were rerun because a list was too short, since the bodies were last
+    /// replaced.
     pub fn reruns(&self) -> u64 {
         self.engine.pipeline.as_ref().map_or(0, |pipeline| pipeline.reruns())
     }
 
-    /// Content of the device's memory after the last frame, which was of this query, as hashes by stage: trees to
-    /// the bit, lists as sets. Two machines that agree on these agree on every kernel. For tests and `selftest`.
+    /// Returns hashes of the device's memory by stage, after a last frame of this query. Trees are
+    /// compared to the bit, lists as sets. Two machines with equal hashes agree on every kernel.
+    /// For tests and `selftest`.
     ///
     /// # Errors
     /// Those of the device.
@@ -99,7 +104,7 @@ impl Detector {
         self.of_query(query, Vec::new(), |pipeline, at| pipeline.fingerprints(at))
     }
 
-    /// Checks every tree of a query in the device's memory; volumes too, which a frame sets.
+    /// Checks every tree of a query in device memory, with the volumes that a frame sets.
     ///
     /// # Errors
     /// [`Error::Bug`] with the first violation; those of the device.

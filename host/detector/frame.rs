@@ -3,11 +3,11 @@
 //! | step | does | in |
 //! | --- | --- | --- |
 //! | `apply` | checks the motions, moves bodies on the host and on the device | `moves.rs` |
-//! | `ready` | the place of every body is known; topology of the query | `ready.rs` |
-//! | `run` | memory, tiles or trees, and the stages; slice by slice if memory is short | `slices.rs` |
-//! | `check_seen` | finds coordinates in memory of the caller that no answer can have | `resident.rs` |
+//! | `ready` | checks that all positions are known; topology of the query | `ready.rs` |
+//! | `run` | memory, tiles or trees, and the stages; in slices if memory is short | `slices.rs` |
+//! | `check_seen` | finds invalid coordinates in memory of the caller | `resident.rs` |
 //! | `collect_answer` | caveats (`caveats.rs`) and times | here |
-//! | `ended` | a call that was interrupted leaves no answer | `interrupted.rs` |
+//! | `ended` | leaves no answer after an interrupt | `interrupted.rs` |
 
 use super::Detector;
 use super::question::Question;
@@ -18,36 +18,41 @@ use crate::query::{Query, TypedQuery};
 use crate::scene::{BodyId, Motion};
 use std::time::Instant;
 
-/// The answer of a frame, and what placing saw of positions in memory of the caller.
+/// The answer of a frame, and the placing's checks of positions in memory of the caller.
 pub struct Answered {
     pub contacts: Contacts,
     pub seen: Option<Seen>,
 }
 
 impl Detector {
-    /// Moves bodies for the next queries. A body that is not named rests where it was, or where its step
-    /// ended, wherever its positions came from. Cost: an upload of positions that are named, and one launch that places them.
+    /// Moves bodies for the next queries. A body that is not named rests where it is, or where its
+    /// step ended. Cost: an upload of the named positions, and one launch that places them.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] for a body that is not in the scene, or named twice, or given a motion that its kind does not take;
-    /// [`Error::Input`] for positions that no mesh may have: then nothing has moved. Positions in a GPU's memory are checked when a query
-    /// reads them: after one that is refused for that, the next update must name the same bodies, since their earlier positions are gone.
-    /// Those of the device.
+    /// [`Error::InvalidArgument`] for a body that is missing from the scene or named twice, and for
+    /// a motion of another kind. [`Error::Input`] for positions that no mesh may have. On these
+    /// errors nothing has moved. Others are those of the device.
+    ///
+    /// Positions in device memory are checked when a query reads them. If the query refuses them,
+    /// their earlier positions are gone: the next update must name the same bodies.
     pub fn update(&mut self, motions: &[(BodyId, Motion)]) -> Result<(), Error> {
         self.device.work();
         let applied = self.apply(motions, None);
         self.ended(applied)
     }
 
-    /// Queries the bodies where they are. The answer has all rows, in canonical order, and depends on the query and on positions alone. If
-    /// the lists of a frame exceed the memory, or an index, candidates by tiles are found slice by slice, and the answer is the same:
-    /// [`Stats::slices`](crate::contacts::Stats::slices) counts them.
+    /// Queries the bodies at their current positions. The answer has all rows, in canonical order,
+    /// and depends only on the query and on positions. If the lists of a frame exceed the memory or
+    /// an index, candidates of tiles are found slice by slice. The answer is the same;
+    /// [`Stats::slices`](crate::contacts::Stats::slices) counts the slices.
     ///
-    /// Memory of a query is taken when it is first asked; another query of its kind with other numbers uses it as it is.
+    /// The first query of a kind takes memory; another one of its kind with other numbers uses the
+    /// same.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] for numbers that mean nothing, and for a query in motion if the last update named bodies of which none has two
-    /// ends; those of the device: [`Error::OutOfMemory`] if memory ends all the same. There is no partial answer.
+    /// [`Error::InvalidArgument`] for invalid numbers. Also for a query in motion if the last
+    /// update named bodies, but none with two ends. [`Error::OutOfMemory`] if slices do not fit
+    /// either. Others are those of the device. There is no partial answer.
     pub fn query<Q: TypedQuery>(&mut self, query: &Q) -> Result<Answer<Q::Rows>, Error> {
         self.device.work();
         let answered =
@@ -58,7 +63,7 @@ impl Detector {
     /// [Moves](Detector::update) bodies and [queries](Detector::query) them, in one submission.
     ///
     /// # Errors
-    /// As of both; an error of the motions or of the query's numbers has moved nothing.
+    /// As of both. On an error of the motions or of the query's numbers nothing has moved.
     pub fn step<Q: TypedQuery>(
         &mut self,
         motions: &[(BodyId, Motion)],
@@ -85,7 +90,8 @@ impl Detector {
         self.answer(&question, start)
     }
 
-    /// The answer of a frame that began then, with the bodies where they are. A frame that needs doubles, and had singles, runs again.
+    /// Answers a query at the current positions; `start` is when the call began. A frame that needs
+    /// f64 and had f32 runs again.
     pub(super) fn answer(&mut self, question: &Question, start: Instant) -> Result<Contacts, Error> {
         self.placed.check_ends(&question.query)?;
         loop {
@@ -99,7 +105,7 @@ impl Detector {
         }
     }
 
-    /// The answer, with its caveats and its times.
+    /// Completes an answer with its caveats and times.
     pub(super) fn collect_answer(
         &mut self,
         question: &Question,
@@ -122,7 +128,7 @@ impl Detector {
     }
 }
 
-/// No body of the last update has two ends.
+/// Error for a query in motion after an update without two ends.
 pub fn without_ends(query: &Query) -> Error {
     Error::InvalidArgument {
         what: format!("no body of the frame has two ends, and the query is {}", query.kind()),

@@ -1,4 +1,4 @@
-//! Where contacts are.
+//! Geometry of contacts.
 
 use super::Detector;
 use crate::contacts::geometry::{Corners, Named};
@@ -10,24 +10,25 @@ use crate::scene::Body;
 use rayon::prelude::*;
 
 impl Detector {
-    /// Vertices, weights, points and normal of every contact, or of every pair within a distance, in their order: of the answer to a
-    /// continuous or a near query. The bodies must be where they were when `found` was. Cost: a copy of all vertices from the
-    /// device, and a wait; 300 operations a contact.
+    /// Computes vertices, weights, points and normal of every row of a continuous or near answer,
+    /// in order. The bodies must be in the answer's positions. Cost: a copy of all vertices from
+    /// the device, and a wait; 300 operations a row.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] for the answer to a discrete, an earliest or a distance query, and for contacts of other bodies than there are now; [`Error::OutOfMemory`]; those of the device.
+    /// [`Error::InvalidArgument`] for answers to discrete, earliest and distance queries, and for
+    /// contacts of bodies that have changed since. [`Error::OutOfMemory`]; those of the device.
     pub fn geometry<T: Located>(&mut self, found: &Answer<T>) -> Result<Vec<ContactGeometry>, Error> {
         let count = found.rows.count()?;
         if count == 0 {
             return Ok(Vec::new());
         }
         self.none_lost()?;
-        // The list in pieces and in one, what it is made of, and all vertices at both ends.
-        let of_one = 2 * size_of::<ContactGeometry>() + size_of::<Named>();
+        // The list in pieces and in one, its inputs, and all vertices at both ends.
+        let row_bytes = 2 * size_of::<ContactGeometry>() + size_of::<Named>();
         let vertices: usize = self.scene.bodies().iter().map(Body::vertex_count).sum();
         memory::require(
-            "where contacts are",
-            (count * of_one + vertices * size_of::<[[f64; 3]; 2]>()) as u64,
+            "geometry of contacts",
+            (count * row_bytes + vertices * size_of::<[[f64; 3]; 2]>()) as u64,
         )?;
         // After an interrupted call there is no pipeline.
         let question = self.question(found.query)?;
@@ -58,7 +59,8 @@ impl Detector {
     }
 }
 
-/// The four vertices of a contact, by their numbers of all, and the first vertex of the body of each; `None` where there are no such features.
+/// Returns the first vertex of the body of each corner, and the four vertices by their numbers
+/// through all bodies. `None` if there are no such features.
 fn corners(layout: &Layout, named: &Named) -> Option<([u32; 4], [u32; 4])> {
     let [a, b] = named.bodies.map(|body| layout.starts.get(body.index()).copied());
     let (a, b) = (a?, b?);
@@ -77,10 +79,10 @@ fn corners(layout: &Layout, named: &Named) -> Option<([u32; 4], [u32; 4])> {
     })
 }
 
-/// The contacts are not of these bodies.
+/// Error for contacts of other bodies.
 fn of_others() -> Error {
     Error::InvalidArgument {
         what: "contacts of other bodies than the scene has now".into(),
-        advice: "ask for their geometry before bodies come, go or change".into(),
+        advice: "compute their geometry before bodies are added, removed or replaced".into(),
     }
 }

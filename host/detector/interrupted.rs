@@ -1,4 +1,4 @@
-//! Calls that end early, and what is left of them.
+//! Calls that end early, and the state that they leave.
 
 use super::Detector;
 use crate::device::Interrupt;
@@ -6,20 +6,22 @@ use crate::error::Error;
 use crate::scene::Body;
 
 impl Detector {
-    /// The handle that ends this detector's calls from another thread, or from a signal handler: [`Interrupt::trigger`]. It is
-    /// the handle of [`Device::with_interrupt`](crate::Device::with_interrupt), if the device has one.
+    /// Returns the handle that ends this detector's calls from another thread, or from a signal
+    /// handler: [`Interrupt::trigger`]. It is the handle of
+    /// [`Device::with_interrupt`](crate::Device::with_interrupt), if the device has one.
     ///
-    /// A call that it ends returns [`Error::Interrupted`], clears the handle and leaves no answer. Its input was taken: bodies
-    /// that it named are where it said, the others rest. The next call builds tiles or trees again and answers as a new detector
-    /// would. A detector that was [prepared](Detector::prepare) is no longer.
+    /// An interrupted call returns [`Error::Interrupted`], clears the handle and leaves no answer.
+    /// Its input was taken: bodies that it named have moved, the others rest. The next call builds
+    /// tiles or trees again and answers as a new detector would. A detector that was
+    /// [prepared](Detector::prepare) no longer is.
     ///
-    /// On a CPU a call ends within milliseconds. A GPU finishes the launch that runs, or the graph of one frame; the host's part
-    /// ends between launches, slices and reruns.
+    /// On a CPU a call ends within milliseconds. A GPU finishes the launch that runs, or the graph
+    /// of one frame. The host's part ends between launches, slices and reruns.
     pub fn interrupter(&self) -> Interrupt {
         self.device.interrupt().cloned().unwrap_or_default()
     }
 
-    /// Ends a call: after one that was interrupted the next begins again.
+    /// Ends a call. After an interrupt the next call builds its memory again.
     ///
     /// # Errors
     /// That of the call.
@@ -33,14 +35,14 @@ impl Detector {
         done
     }
 
-    /// One of several that a [`MultiDetector`](crate::MultiDetector) runs, which clears their handle.
+    /// Marks a part of a [`MultiDetector`](crate::MultiDetector), which clears the common handle.
     pub(crate) fn of_several(mut self) -> Detector {
         self.portion.is_part = true;
         self
     }
 
-    /// Drops the device's memory, of which kernels may have written a half. Placing is never interrupted, so positions that
-    /// only the device has are whole: they come to the host first.
+    /// Drops the device's memory, which kernels may have written in part. Placing is never
+    /// interrupted, so device-resident positions are complete: they are downloaded first.
     fn begin_again(&mut self) {
         self.engine.answered = None;
         if self.engine.pipeline.is_some() && self.scene.bodies().iter().any(Body::is_device_resident) {

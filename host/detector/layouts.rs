@@ -1,4 +1,4 @@
-//! Where every body lies in the memory that all share, as each query sees it.
+//! Layouts: the place of every body in the shared memory, by query.
 
 use super::engine::fits;
 use crate::device::Device;
@@ -9,10 +9,10 @@ use crate::query::Query;
 use crate::scene::{Body, Scene};
 use std::sync::Arc;
 
-/// Fewest bytes of the host's memory that a triangle takes in a detector: its topology, and on a CPU its tree and first lists.
+/// Fewest bytes of host memory for a triangle: its topology, and on a CPU its tree and first lists.
 const OF_A_TRIANGLE: u64 = 300;
 
-/// A query as layouts see it.
+/// Properties of a query that its layout depends on.
 #[derive(Clone, Copy, PartialEq)]
 struct View {
     has_features: bool,
@@ -30,15 +30,16 @@ impl View {
     }
 }
 
-/// The layouts of a scene, made when a query first needs them; they share what is the same.
+/// Layouts of a scene, made when a query first needs them; equal parts are shared.
 #[derive(Default)]
 pub struct Layouts(Vec<(View, Arc<Layout>)>);
 
 impl Layouts {
-    /// The layout of a query.
+    /// Returns the layout of a query.
     ///
     /// # Errors
-    /// [`Error::Input`] for more triangles than indices reach, [`Error::OutOfMemory`], [`Error::Interrupted`].
+    /// [`Error::Input`] for more triangles than indices reach, [`Error::OutOfMemory`],
+    /// [`Error::Interrupted`].
     pub fn of(&mut self, device: &Device, scene: &Scene, query: &Query) -> Result<Arc<Layout>, Error> {
         let view = View::of(query);
         if let Some((_, layout)) = self.0.iter().find(|(own, _)| *own == view) {
@@ -48,7 +49,7 @@ impl Layouts {
         let triangles: usize = bodies.iter().map(Body::face_count).sum();
         fits(triangles, bodies.iter().map(Body::vertex_count).sum())?;
         memory::require("trees and lists", triangles as u64 * OF_A_TRIANGLE)?;
-        // One with features first: they take longest to make.
+        // One with features is preferred: they take longest to make.
         let known = self.0.iter().find(|(own, _)| own.has_features).or_else(|| self.0.first());
         let made = match known {
             Some((_, known)) => {
@@ -65,7 +66,7 @@ impl Layouts {
         Ok(layout)
     }
 
-    /// The layout that was made last, if bodies are those of then.
+    /// Returns the layout that was made last, if the bodies are unchanged.
     pub fn last(&self) -> Option<&Arc<Layout>> {
         self.0.last().map(|(_, layout)| layout)
     }

@@ -34,8 +34,9 @@ use std::sync::Arc;
 
 /// A scene on a device, which answers queries.
 ///
-/// All queries share one memory: positions are uploaded once a step, for any number of queries. A step is one submission, whatever the
-/// number of bodies. Static bodies are built and fitted once, a rigid body costs its poses, and what no body does costs nothing.
+/// All queries share one memory: positions are uploaded once a step, for any number of queries. A
+/// step is one submission, for any number of bodies. Fixed bodies are built and fitted once, and a
+/// rigid body costs its poses. Kinds without bodies cost nothing.
 ///
 /// ```
 /// use nearmiss::{Body, Detector, Device, Discrete, Earliest, Mesh, Near, device::Backend, mesh::Positions, scene::Motion};
@@ -69,23 +70,25 @@ pub struct Detector {
 }
 
 impl Detector {
-    /// A detector for a scene: of a single body, or of a list of bodies, too. Memory of the device is taken when the first query needs
-    /// it. A scene without bodies has empty answers, until a body is [added](Detector::add).
+    /// A detector for a scene, a single body or a list of bodies. Memory of the device is taken
+    /// when the first query needs it. A scene without bodies has empty answers until a body is
+    /// [added](Detector::add).
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] for self-collision of a static body; [`Error::Input`] for more triangles than indices reach.
+    /// [`Error::InvalidArgument`] for self-collision of a fixed body; [`Error::Input`] for more
+    /// triangles than indices reach.
     pub fn new(device: Device, scene: impl Into<Scene>) -> Result<Detector, Error> {
         Detector::with_share(device, scene.into(), Share::WHOLE)
     }
 
-    /// The same, for a share of the work.
+    /// Makes a detector for a share of the work.
     ///
     /// # Errors
-    /// As there.
+    /// As of [`Detector::new`].
     pub(crate) fn with_share(device: Device, scene: Scene, share: Share) -> Result<Detector, Error> {
         start_threads()?;
         scene.bodies().iter().try_for_each(Body::check_filter)?;
-        let all = |of: fn(&Body) -> usize| scene.bodies().iter().map(of).sum();
+        let all = |count: fn(&Body) -> usize| scene.bodies().iter().map(count).sum();
         fits(all(Body::face_count), all(Body::vertex_count))?;
         Ok(Detector {
             device: device.for_one(),
@@ -98,12 +101,12 @@ impl Detector {
         })
     }
 
-    /// The bodies, where they are now.
+    /// The bodies at their current positions; those of device-resident bodies are stale.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// A query with the tolerances of its pairs.
+    /// Combines a query with the tolerances of its pairs.
     fn question(&mut self, query: Query) -> Result<Question, Error> {
         query.check()?;
         let tolerances = match query.certified().map(|certified| certified.tolerance) {
@@ -114,7 +117,7 @@ impl Detector {
         Ok(Question { query, tolerances })
     }
 
-    /// The default tolerances of the bodies that there are now.
+    /// Default tolerances of the current bodies.
     fn default_tolerances(&mut self) -> Arc<Tolerances> {
         let bodies = self.scene.bodies_mut();
         let made = || {

@@ -10,10 +10,11 @@ use crate::query::Query;
 use crate::scene::{BodyId, Motion};
 
 impl Detector {
-    /// Moves bodies to where the inputs say; the others rest where they are, or where their step ended.
+    /// Moves bodies to their inputs; the others rest where they are, or where their step ended.
     ///
     /// # Errors
-    /// As of [`Detector::update`], and of a query that will read them: then nothing has moved.
+    /// As of [`Detector::update`], and of a query that will read them. On an error nothing has
+    /// moved.
     pub(crate) fn apply(&mut self, inputs: &[(BodyId, Motion)], query: Option<&Query>) -> Result<(), Error> {
         let named = self.put(inputs, query)?;
         let mut moved = Vec::with_capacity(inputs.len());
@@ -25,7 +26,7 @@ impl Detector {
         self.moved(&moved)
     }
 
-    /// Moves bodies on the host, all or none; of each body of the scene, whether it was named.
+    /// Moves bodies on the host, all or none. Returns for each body of the scene if it was named.
     fn put(&mut self, inputs: &[(BodyId, Motion)], query: Option<&Query>) -> Result<Vec<bool>, Error> {
         let mut named = vec![false; self.scene.bodies().len()];
         for (id, input) in inputs {
@@ -33,12 +34,13 @@ impl Detector {
             if std::mem::replace(&mut named[id.index()], true) {
                 return Err(Error::InvalidArgument {
                     what: format!("two inputs for body {id}, {}", body.name()),
-                    advice: "give one a frame".into(),
+                    advice: "give one input for each body".into(),
                 });
             }
             body.check(input)?;
             if let (false, Motion::OnDevice(lent)) = (self.device.is_gpu(), input) {
-                // SAFETY: its maker has promised that the detector's device can read it during this call, and that is a CPU.
+                // SAFETY: the maker of the rows promised that the detector's device can read them
+                // during this call. That device is a CPU.
                 let (ends, poses) = unsafe { lent.read() };
                 body.check_found(&ends, &poses)?;
             }
@@ -56,8 +58,8 @@ impl Detector {
         Ok(named)
     }
 
-    /// Moves bodies on the device. At the first frame in double precision a pipeline in single precision goes over to it, with
-    /// trees built anew; it does not go back.
+    /// Moves bodies on the device. At the first frame in f64 a pipeline in f32 changes to f64, with
+    /// trees built again. It does not change back.
     fn moved(&mut self, moved: &[Moved]) -> Result<(), Error> {
         if moved.is_empty() {
             return Ok(());
@@ -72,7 +74,8 @@ impl Detector {
         if widens && self.engine.pipeline.is_some() {
             self.download_positions()?;
         }
-        // What was held makes room first. Where placing fails there is nothing left to ask of the old positions.
+        // A pipeline that widens frees its memory first. If placing fails, the old positions are of
+        // no use.
         let placed = match self.engine.pipeline.take().filter(|_| !widens) {
             Some(mut pipeline) => {
                 pipeline.place(self.scene.bodies(), moved).map(|()| self.engine.pipeline = Some(pipeline))
@@ -85,9 +88,10 @@ impl Detector {
         for body in self.scene.bodies_mut() {
             let lent = body.lent().copied();
             body.placed();
-            // Where nothing can meet nothing holds it.
+            // If nothing can meet, no pipeline holds the positions: the host reads them.
             if let (false, Some(lent)) = (is_held, lent) {
-                // SAFETY: its maker has promised that the detector's device can read it during this call, and that is a CPU.
+                // SAFETY: the maker of the rows promised that the detector's device can read them
+                // during this call. That device is a CPU.
                 let (ends, poses) = unsafe { lent.read() };
                 body.bring(&ends, &poses);
             }

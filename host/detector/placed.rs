@@ -1,4 +1,4 @@
-//! Which bodies frames have placed: ever, in the last frame, and in every submission.
+//! Record of the bodies that frames have placed: ever, in the last frame, and in every submission.
 
 use super::Detector;
 use super::frame::without_ends;
@@ -7,18 +7,18 @@ use crate::pipeline::Moved;
 use crate::query::Query;
 use crate::scene::{BodyId, DeviceMotion, Motion};
 
-/// A record of who was placed.
+/// Record of placed bodies.
 #[derive(Default)]
 pub struct Placed {
     /// Whether a frame has placed each body since it was added.
     ever: Vec<bool>,
     /// Whether the last update named each body.
     pub named: Vec<bool>,
-    /// Whether the last update named bodies, and none with two ends.
+    /// Whether the last update named bodies, but none with two ends.
     lacks_ends: bool,
-    /// The bodies that a submission reads; up to date while the pipeline is prepared.
+    /// Bodies that a submission reads; up to date while the pipeline is prepared.
     pub submitted: Vec<Submitted>,
-    /// Its queries; the same.
+    /// Queries of a submission; up to date while the pipeline is prepared.
     queries: Vec<Query>,
 }
 
@@ -31,7 +31,8 @@ pub struct Submitted {
 }
 
 impl Placed {
-    /// A frame places these, of so many bodies; whether one of them was never placed before.
+    /// Records that a frame places these bodies. Returns whether one of them was never placed
+    /// before.
     pub fn mark(&mut self, bodies: usize, moved: &[Moved]) -> bool {
         self.ever.resize(bodies, false);
         let mut any_first = false;
@@ -41,12 +42,13 @@ impl Placed {
         any_first
     }
 
-    /// An update names bodies, of which one has two ends, or none; `has_ends` if it names none.
+    /// Records the bodies that an update names. `has_ends` if one of them has two ends, or none is
+    /// named.
     pub fn name(&mut self, named: &[bool], has_ends: bool) {
         (self.named, self.lacks_ends) = (named.to_vec(), !has_ends);
     }
 
-    /// Refuses a query in motion after an update that named bodies, and none with two ends.
+    /// Refuses a query in motion if the last update named bodies, but none with two ends.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`].
@@ -64,19 +66,19 @@ impl Placed {
         self.named.get(body).is_some_and(|is_named| *is_named)
     }
 
-    /// Another body has that number: no frame has placed it.
+    /// Forgets the placing of a number, which another body has now.
     pub fn forget(&mut self, body: BodyId) {
         if let Some(was_placed) = self.ever.get_mut(body.index()) {
             *was_placed = false;
         }
     }
 
-    /// Whether a submission answers a query, with these numbers.
+    /// Whether a submission answers a query with these numbers.
     pub fn answers(&self, query: &Query) -> bool {
         self.queries.contains(query)
     }
 
-    /// Submissions read these, and answer those.
+    /// Records the bodies and the queries of submissions.
     pub fn submit(&mut self, inputs: &[(BodyId, DeviceMotion)], queries: &[Query]) {
         self.queries = queries.to_vec();
         let submitted = inputs.iter().map(|&(body, input)| Submitted { body, moves: input.is_moving() });
@@ -85,7 +87,7 @@ impl Placed {
 }
 
 impl Detector {
-    /// Whether a frame of these places a body for the first time.
+    /// Whether a frame of these inputs places a body for the first time.
     pub(crate) fn is_first_of(&self, inputs: &[(BodyId, Motion)]) -> bool {
         inputs.iter().any(|&(body, _)| !self.placed.was_placed(body))
     }

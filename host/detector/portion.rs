@@ -1,57 +1,57 @@
-//! A part of the work, if other devices do the rest.
+//! Part of the work, if other devices do the rest.
 
 use super::Detector;
 use crate::error::Error;
 use crate::pipeline::Share;
 use crate::query::Query;
 
-/// A detector's part of the work, and in how many slices each query runs.
+/// A detector's part of the work, and the number of slices of each query.
 pub struct Portion {
-    /// Its share, if other devices do the rest.
+    /// Share of the tiles, if other devices do the rest.
     pub share: Share,
-    /// Slices of a frame, by the shape of queries that need more than one.
+    /// Slices of a frame, for shapes of queries that need more than one.
     slices: Vec<(Query, u32)>,
-    /// The cost of each tile in the last frame in several slices, if there are several shares.
+    /// Cost of each tile in the last frame in several slices, if there are several shares.
     pub work_of_tiles: Vec<u64>,
     /// Whether a [`MultiDetector`](crate::MultiDetector) runs it.
     pub is_part: bool,
 }
 
 impl Portion {
-    /// A share, at once.
+    /// A share without slices.
     pub fn new(share: Share) -> Portion {
         Portion { share, slices: Vec::new(), work_of_tiles: Vec::new(), is_part: false }
     }
 
-    /// How many slices a frame of a query has.
+    /// Number of slices of a query's frame.
     pub fn slices(&self, query: &Query) -> u32 {
         let shape = query.shape();
         self.slices.iter().find(|(own, _)| *own == shape).map_or(1, |(_, slices)| *slices)
     }
 
-    /// Twice as many slices of that query.
+    /// Doubles the number of slices of a query.
     pub fn slice_finer(&mut self, query: &Query) {
         let (shape, slices) = (query.shape(), 2 * self.slices(query));
         self.slices.retain(|(own, _)| *own != shape);
         self.slices.push((shape, slices));
     }
 
-    /// Every query at once again: bodies are others.
+    /// Forgets all slices, after the bodies changed.
     pub fn forget_slices(&mut self) {
         self.slices.clear();
     }
 
-    /// The share of a query's first slice.
+    /// Share of a query's first slice.
     pub fn first_slice(&self, query: &Query) -> Share {
         self.slice(query, 0)
     }
 
-    /// The share of a slice.
+    /// Share of a slice.
     pub fn slice(&self, query: &Query, slice: u32) -> Share {
         self.share.slice(slice, self.slices(query))
     }
 
-    /// Adds the cost of a slice's tiles.
+    /// Adds the costs of a slice's tiles.
     pub fn add_work(&mut self, work: Vec<u64>) {
         self.work_of_tiles.resize(work.len(), 0);
         self.work_of_tiles.iter_mut().zip(work).for_each(|(all, slice)| *all += slice);
@@ -59,14 +59,15 @@ impl Portion {
 }
 
 impl Detector {
-    /// From the next frame on it finds its share alone.
+    /// Sets the share that the next frames find.
     pub(crate) fn take(&mut self, share: Share) {
         if self.portion.share != share {
             (self.portion.share, self.engine.answered) = (share, None);
         }
     }
 
-    /// The cost of each tile of its share in the last frame of a query, by tile; empty if nothing can meet.
+    /// Returns the cost of each tile of its share in a query's last frame; empty if nothing can
+    /// meet.
     ///
     /// # Errors
     /// Those of the device.
@@ -77,7 +78,8 @@ impl Detector {
         self.of_query(query, Vec::new(), |pipeline, at| pipeline.work(at))
     }
 
-    /// How many tiles beyond its share it met in the last frame of a query, in one slice.
+    /// Returns the number of tiles beyond its share that it met in a query's last frame, in one
+    /// slice.
     ///
     /// # Errors
     /// Those of the device.
@@ -85,12 +87,12 @@ impl Detector {
         self.of_query(query, 0, |pipeline, at| pipeline.met_beyond(at))
     }
 
-    /// Triangles of bodies that move.
+    /// Number of triangles of bodies that move.
     pub(crate) fn moving_triangles(&self) -> usize {
         self.engine.layouts.last().map_or(0, |layout| layout.moving_triangles())
     }
 
-    /// The name of its machine.
+    /// Name of its machine.
     pub(crate) fn machine(&self) -> String {
         self.device.name()
     }

@@ -4,7 +4,7 @@ use crate::pipeline::{Layout, QueryParts, Share, Tolerances};
 use crate::query::Query;
 use std::sync::Arc;
 
-/// A query, with the tolerances of a certified solver for the bodies of a scene.
+/// A query with the tolerances of a certified solver for the bodies of a scene.
 #[derive(Clone)]
 pub struct Question {
     pub query: Query,
@@ -13,14 +13,14 @@ pub struct Question {
 }
 
 impl Question {
-    /// A part of it, over bodies of that layout.
+    /// Returns the part of a share, for the bodies of a layout.
     pub fn parts(&self, layout: Arc<Layout>, share: Share) -> QueryParts {
         let tolerances = self.tolerances.as_ref();
         let records = tolerances.map_or_else(Vec::new, |tolerances| tolerances.records(&layout.starts));
         QueryParts { query: self.with_largest_tolerance(), tolerances: records, layout, share }
     }
 
-    /// The query, with the largest tolerance of its pairs: volumes grow by it.
+    /// Returns the query with the largest tolerance of its pairs: volumes grow by it.
     fn with_largest_tolerance(&self) -> Query {
         let mut query = self.query;
         if let (Some(certified), Some(tolerances)) = (query.certified_mut(), &self.tolerances) {

@@ -1,4 +1,4 @@
-//! The engine is made ready: memory for the bodies and for a query, or for a slice of it, and tiles or trees that are worth keeping.
+//! Prepares the engine: memory for the bodies and for a query or its slice, and tiles or trees.
 
 use super::Detector;
 use super::question::Question;
@@ -12,18 +12,19 @@ use nearmiss_kernels::bvh::tiles::TILE;
 use std::sync::Arc;
 
 impl Detector {
-    /// Takes the memory that a query needs and builds its tiles or trees, before the first [`Detector::query`] does it.
+    /// Takes the memory that a query needs and builds its tiles or trees, ahead of the first
+    /// [`Detector::query`].
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] for numbers that mean nothing; those of the device.
+    /// [`Error::InvalidArgument`] for invalid numbers; those of the device.
     pub fn begin(&mut self, query: &Query) -> Result<(), Error> {
         let question = self.question(*query)?;
         let begun = self.begun(&question).map(drop);
         self.ended(begun)
     }
 
-    /// Builds tiles and trees over moving bodies again: pays when bodies have moved far from where they were built. With
-    /// [`Rebuild::Auto`], the default, a query does it by itself.
+    /// Rebuilds tiles and trees over moving bodies. It pays when bodies have moved far since the
+    /// last build. With [`Rebuild::Auto`], the default, queries rebuild when it pays.
     ///
     /// # Errors
     /// Those of the device.
@@ -45,16 +46,17 @@ impl Detector {
         Ok(())
     }
 
-    /// How often tiles or trees were built: for the first query that needs them, on request, by themselves if the query allows it, and
-    /// after memory was taken again.
+    /// Number of builds of tiles or trees. They are built for the first query that needs them, on
+    /// request, and after memory was taken again. With [`Rebuild::Auto`] they are also built if it
+    /// pays.
     pub fn builds(&self) -> u64 {
         self.engine.builds
     }
 
-    /// Readies the engine for a frame of the bodies where they are: every body's place is known.
+    /// Prepares the engine for a frame at the current positions, all of which are known.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] for a body that nobody can place; those of the device.
+    /// [`Error::InvalidArgument`] for a body with an unknown position; those of the device.
     pub(super) fn ready(&mut self, query: &Query) -> Result<Arc<Layout>, Error> {
         self.engine.answered = None;
         self.read_again(false);
@@ -62,14 +64,14 @@ impl Detector {
         self.layout(query)
     }
 
-    /// Where every body lies in the memory that all share, as a query sees it. Every call begins here, so a process that was forked is
-    /// refused here.
+    /// Returns the layout of a query: the place of every body in the shared memory. Every call
+    /// begins here, so a forked process is refused here.
     pub(super) fn layout(&mut self, query: &Query) -> Result<Arc<Layout>, Error> {
         start_threads()?;
         self.engine.layouts.of(&self.device, &self.scene, query)
     }
 
-    /// Any layout of the bodies where they are.
+    /// Returns any layout of the current bodies.
     pub(super) fn any_layout(&mut self) -> Result<Arc<Layout>, Error> {
         match self.engine.layouts.last() {
             Some(layout) => Ok(layout.clone()),
@@ -77,11 +79,12 @@ impl Detector {
         }
     }
 
-    /// The place of a query in the pipeline, made if there is none, with memory for a slice if there is none for all. None is made if
-    /// nothing can meet: that costs no memory and no launch.
+    /// Returns the place of a query in the pipeline, and makes one if there is none. It has memory
+    /// for a slice if all does not fit. `None` if nothing can meet: that costs no memory and no
+    /// launch.
     ///
     /// # Errors
-    /// [`Error::OutOfMemory`] without memory for a tile at once; those of the device.
+    /// [`Error::OutOfMemory`] if a single tile does not fit; those of the device.
     pub(super) fn begun(&mut self, question: &Question) -> Result<Option<usize>, Error> {
         loop {
             match self.begin_query(question) {
@@ -130,10 +133,11 @@ impl Detector {
         self.engine.begin(&self.device, &self.scene, layout)
     }
 
-    /// Twice as many slices of a query, with memory for one of them, if that is what is short.
+    /// Doubles the slices of a query, with memory for one of them, if memory is short.
     ///
     /// # Errors
-    /// The one before, if it is another, and if work cannot be divided further; those of the device.
+    /// The given error, if it is another, or if work cannot be divided further; those of the
+    /// device.
     pub(super) fn slice_finer(&mut self, error: Error, query: &Query) -> Result<(), Error> {
         let tiles = self.layout(query)?.moving_triangles().div_ceil(TILE as usize) as u64;
         let by_tiles = query.broad_on(self.device.is_gpu()) == Broad::Tiles;
@@ -142,7 +146,7 @@ impl Detector {
             return Err(error);
         }
         if self.engine.pipeline.is_some() {
-            // Positions that only the device has come back before its memory goes.
+            // Positions that only the device has are downloaded before its memory is freed.
             self.download_positions()?;
             self.engine.drop_pipeline();
         }

@@ -1,4 +1,4 @@
-//! Bodies of which only the device knows where they are.
+//! Device-resident bodies: only the device has their positions.
 
 use super::Detector;
 use crate::error::Error;
@@ -7,12 +7,12 @@ use crate::pipeline::{Layout, Seen, Whereabouts};
 use crate::scene::{Body, Pose};
 use std::sync::Arc;
 
-/// Knowledge of the bodies that are on the device.
+/// Record of device-resident bodies.
 #[derive(Default)]
 pub struct Resident {
-    /// The largest coordinate that was seen in memory of the caller so far.
+    /// Largest coordinate in memory of the caller so far.
     pub largest: f64,
-    /// Whether the last frame that placed each body was refused: its earlier position is not known either.
+    /// Whether the last frame that placed each body was refused: its position is unknown.
     lost: Vec<bool>,
 }
 
@@ -22,7 +22,7 @@ impl Resident {
         self.lost.get(body).is_some_and(|is_lost| *is_lost)
     }
 
-    /// Whether nobody knows where a body is; one that is placed again is not lost.
+    /// Records whether a body's position is unknown; a body that is placed again is known.
     pub fn set_lost(&mut self, body: usize, is_lost: bool) {
         if is_lost {
             self.lost.resize(self.lost.len().max(body + 1), false);
@@ -32,18 +32,19 @@ impl Resident {
         }
     }
 
-    /// A frame saw this.
+    /// Records the largest coordinate of a frame.
     pub fn saw(&mut self, seen: Option<Seen>) {
         self.largest = seen.map_or(self.largest, |seen| seen.largest.max(self.largest));
     }
 }
 
 impl Detector {
-    /// Brings the bodies to the host of which only the device knows where they are ([`Body::is_device_resident`]), so that
-    /// [`Detector::scene`] has them. Cost: a copy of all vertices, and a wait.
+    /// Downloads the bodies that only the device has ([`Body::is_device_resident`]), so that
+    /// [`Detector::scene`] has their positions. Cost: a copy of all vertices, and a wait.
     ///
     /// # Errors
-    /// [`Error::Input`] and [`Error::InvalidArgument`] for positions and poses of the caller that cannot be computed with; those of the device.
+    /// [`Error::Input`] and [`Error::InvalidArgument`] for invalid positions and poses of the
+    /// caller; those of the device.
     pub fn download_positions(&mut self) -> Result<(), Error> {
         self.read_again(false);
         if !self.scene.bodies().iter().any(Body::is_device_resident) {
@@ -59,9 +60,9 @@ impl Detector {
         Ok(())
     }
 
-    /// Bodies that a submission reads are where their memory says, however often that was read: by a submission, or by one
-    /// that was recorded and launched again, of which nobody tells the detector. Those of one that was refused only if there
-    /// is another.
+    /// Marks bodies that a submission reads as placed: they are where their memory says. The
+    /// detector does not know how often a recorded submission was launched. Bodies of a refused
+    /// submission are marked only if there is another.
     pub(super) fn read_again(&mut self, is_another: bool) {
         if !self.engine.is_prepared() {
             return;
@@ -75,17 +76,18 @@ impl Detector {
         }
     }
 
-    /// Where the device has placed all bodies; `None` where nothing can meet, and nothing was placed.
+    /// Returns the positions of all bodies on the device; `None` if nothing can meet, and nothing
+    /// was placed.
     fn places(&mut self) -> Result<Option<Places>, Error> {
         let layout = self.any_layout()?;
         let Some(pipeline) = &self.engine.pipeline else { return Ok(None) };
         Ok(Some(Places { all: pipeline.whereabouts()?, layout }))
     }
 
-    /// Brings bodies back from there.
+    /// Copies these positions to the bodies.
     fn bring(&mut self, places: &Places) {
         for (i, body) in self.scene.bodies_mut().iter_mut().enumerate() {
-            // Who is lent has another place now.
+            // Bodies in memory of the caller are skipped: they have moved since.
             if body.is_device_resident() && body.lent().is_none() {
                 let (ends, poses) = places.of(i);
                 body.bring(&ends, poses);
@@ -94,22 +96,22 @@ impl Detector {
         }
     }
 
-    /// Nobody knows where a body is.
+    /// Records that a body's position is unknown.
     fn lose(&mut self, body: usize) {
         self.resident.set_lost(body, true);
         self.scene.bodies_mut()[body].placed_again(false);
     }
 
-    /// Brings every body to the host, before the device's memory goes. Bodies of the last frame whose positions no mesh may
-    /// have are lost: they have to be named again.
+    /// Downloads every body before the device's memory is freed. If positions of the last frame are
+    /// invalid, its bodies are lost: they must be named again.
     pub(super) fn bring_all(&mut self) {
         let lost: Vec<bool> =
             (0..self.scene.bodies().len()).map(|body| self.resident.is_lost(body)).collect();
         let places = self.places().ok().flatten();
         let is_valid = places.as_ref().is_some_and(|places| {
-            let mut away =
+            let mut residents =
                 self.scene.bodies().iter().enumerate().filter(|(_, body)| body.is_device_resident());
-            away.all(|(i, body)| {
+            residents.all(|(i, body)| {
                 let (ends, poses) = places.of(i);
                 body.check_found(&ends, poses).is_ok()
             })
@@ -124,40 +126,44 @@ impl Detector {
         }
     }
 
-    /// Whether every body is where the host or a pipeline knows it to be.
+    /// Checks that the host or a pipeline has the position of every body.
     pub(super) fn all_known(&self) -> Result<(), Error> {
         self.none_lost()?;
         let gone = |body: &&Body| body.is_device_resident() && body.lent().is_none();
         match self.scene.bodies().iter().find(gone) {
             Some(body) if self.engine.pipeline.is_none() => Err(Error::InvalidArgument {
-                what: format!("only the device knew where {} was, and that memory is gone", body.name()),
-                advice: "say again where it is".into(),
+                what: format!(
+                    "the position of {} is unknown: only the device had it, and that memory is gone",
+                    body.name()
+                ),
+                advice: "pass its positions or its pose again".into(),
             }),
             _ => Ok(()),
         }
     }
 
-    /// Whether no body was placed in a frame that was refused, and in none since.
+    /// Checks that no body is lost: placed in a frame that was refused, and in none since.
     pub(super) fn none_lost(&self) -> Result<(), Error> {
         let mut bodies = self.scene.bodies().iter().enumerate();
         match bodies.find(|(body, _)| self.resident.is_lost(*body)) {
             Some((_, body)) => Err(Error::InvalidArgument {
                 what: format!(
-                    "nobody knows where {} is: the frame that named it last was refused, and has overwritten where it was",
+                    "the position of {} is unknown: the frame that named it last was refused and has overwritten it",
                     body.name()
                 ),
-                advice: "name it again, and all others of that frame".into(),
+                advice: "name it again, and all other bodies of that frame".into(),
             }),
             None => Ok(()),
         }
     }
 
-    /// Whether the answer holds, by what placing saw of positions in memory of the caller. Where these need doubles and the pipeline has
-    /// singles, the pipeline goes and the frame is to be run again: false.
+    /// Returns whether the answer holds, by the placing's checks of positions in memory of the
+    /// caller. If these need f64 and the pipeline has f32, the pipeline is dropped. The frame must
+    /// run again: false.
     ///
     /// # Errors
-    /// [`Error::Input`] and [`Error::InvalidArgument`] for what no precision can compute with, naming the body and the vertex; those of the
-    /// device.
+    /// [`Error::Input`] and [`Error::InvalidArgument`] for values that no precision can hold. They
+    /// name the body and the vertex. Others are those of the device.
     pub(super) fn check_seen(&mut self, seen: Option<Seen>) -> Result<bool, Error> {
         if !seen.is_some_and(|seen| seen.invalid) {
             return Ok(true);
@@ -165,7 +171,7 @@ impl Detector {
         let Some(places) = self.places()? else { return Ok(true) };
         let are_single = self.check_places(&places)?;
         if self.engine.holds_f64 || are_single {
-            // Only vertices that no face uses.
+            // Only vertices that no face uses are invalid.
             return Ok(true);
         }
         self.bring(&places);
@@ -173,14 +179,14 @@ impl Detector {
         Ok(false)
     }
 
-    /// Whether singles can compute with what was placed from memory of the caller. If nothing can, nobody knows where the bodies of
-    /// that frame are.
+    /// Returns whether f32 can compute with positions in memory of the caller. If f64 cannot
+    /// either, the positions of that frame's bodies are unknown.
     ///
     /// # Errors
     /// [`Error::Input`] and [`Error::InvalidArgument`], naming the body and the vertex.
     fn check_places(&mut self, places: &Places) -> Result<bool, Error> {
-        let away = self.scene.bodies().iter().enumerate().filter(|(_, body)| body.is_device_resident());
-        let checked = away.map(|(i, body)| {
+        let residents = self.scene.bodies().iter().enumerate().filter(|(_, body)| body.is_device_resident());
+        let checked = residents.map(|(i, body)| {
             let (ends, poses) = places.of(i);
             body.check_found(&ends, poses)
         });
@@ -194,14 +200,14 @@ impl Detector {
     }
 }
 
-/// Where all bodies are, by body.
+/// Positions of all bodies, by body.
 struct Places {
     all: Whereabouts,
     layout: Arc<Layout>,
 }
 
 impl Places {
-    /// A body's vertices at both ends or at the only one, and the poses that it was found in.
+    /// Returns a body's vertices at both ends or at the only one, and its poses.
     fn of(&self, i: usize) -> (Vec<Positions>, &[Pose]) {
         let range = self.layout.starts[i].vertex as usize..self.layout.starts[i + 1].vertex as usize;
         let part = |positions: &Positions| match positions {

@@ -1,4 +1,4 @@
-//! A frame runs: at once, or in slices where the lists of a whole one would outgrow the memory, share after share of the tiles.
+//! Runs a frame: at once, or in slices of the tiles if its lists would exceed the memory.
 
 use super::Detector;
 use super::frame::Answered;
@@ -8,11 +8,11 @@ use crate::error::Error;
 use crate::pipeline::collect::collect;
 use crate::pipeline::{Layout, Share};
 
-/// Why slices stopped.
+/// Reason why slices stopped.
 enum Stopped {
-    /// The device said so: finer slices may do.
+    /// An error of the device: finer slices may fit.
     Device(Error),
-    /// The answer could not be brought to the host.
+    /// An error of the host: the answer could not be downloaded.
     Host(Error),
 }
 
@@ -23,7 +23,7 @@ impl From<Error> for Stopped {
 }
 
 impl Detector {
-    /// A frame, slice after slice; `None` if nothing can meet.
+    /// Runs a frame, slice after slice; `None` if nothing can meet.
     ///
     /// # Errors
     /// As of [`Detector::begun`].
@@ -43,7 +43,7 @@ impl Detector {
         Ok(answered)
     }
 
-    /// All slices, merged.
+    /// Runs all slices and merges them.
     fn every_slice(
         &mut self,
         at: usize,

@@ -1,4 +1,4 @@
-//! Stages of a frame that run once more, alone: for profilers.
+//! Stages of a frame that run again alone, for profilers.
 
 use super::Detector;
 use super::question::Question;
@@ -9,10 +9,11 @@ use crate::query::Query;
 use std::time::Instant;
 
 impl Detector {
-    /// Runs one stage of a query's frame `times` times, on the device alone, and returns the milliseconds of each run: for profilers,
-    /// and for figures of one stage. What the stage needs runs before, once, if it has not yet: the leaves' volumes for
-    /// [`Stage::Refit`], a whole frame for [`Stage::Traverse`], [`Stage::Narrow`] and
-    /// [`Stage::Order`]. No answer changes by it. If nothing can meet there are no stages, and a CPU orders nothing: no runs.
+    /// Runs one stage of a query's frame `times` times on the device, for profilers and for figures
+    /// of one stage. Returns the milliseconds of each run. Inputs of the stage are computed first,
+    /// once, if they are missing. [`Stage::Refit`] needs the leaves' volumes; [`Stage::Traverse`],
+    /// [`Stage::Narrow`] and [`Stage::Order`] need a whole frame. No answer changes. There are no
+    /// runs if nothing can meet, and none of ordering on a CPU.
     ///
     /// # Errors
     /// Those of the device.
@@ -39,8 +40,8 @@ impl Detector {
         Ok(milliseconds)
     }
 
-    /// Runs the narrow stage of a query's frame once more, step by step: each step's name and milliseconds on the device's own
-    /// clock. If nothing can meet there are no steps.
+    /// Runs the narrow stage of a query's frame again, step by step. Returns each step's name and
+    /// milliseconds by the device's clock; no steps if nothing can meet.
     ///
     /// # Errors
     /// Those of the device.
@@ -60,7 +61,7 @@ impl Detector {
         self.answer(question, Instant::now()).map(drop)
     }
 
-    /// Does something with a query's place in the pipeline; `none` if it has no place.
+    /// Calls a function with a query's place in the pipeline; returns `none` if it has no place.
     pub(super) fn of_query<T>(
         &mut self,
         query: &Query,

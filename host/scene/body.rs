@@ -1,4 +1,4 @@
-//! A body: one mesh at one frame, or at the two ends of a step, and what it does in a scene.
+//! A body: one mesh at one frame or at both ends of a step, with its kind and filter.
 
 use super::place::radius;
 use super::{BodyKind, CollisionFilter, DeviceMotion, Pose};
@@ -7,8 +7,8 @@ use crate::Error;
 use crate::mesh::Problem;
 use crate::mesh::{Mesh, Positions, Vertices, difference, rename};
 
-/// Faces with the positions of one frame (still), or of the two ends of a step (moving). Vertices move in straight
-/// lines from `positions_t0` to `positions_t1`, both of the same length and precision.
+/// Faces with the positions of one frame, or of both ends of a step. Vertices move in straight
+/// lines from `positions_t0` to `positions_t1`, which have the same length and precision.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
     pub(super) name: String,
@@ -17,17 +17,18 @@ pub struct Body {
     pub(super) positions_t1: Option<Positions>,
     pub(super) kind: BodyKind,
     pub(super) filter: CollisionFilter,
-    /// Of a rigid body: at both ends of the step.
+    /// Poses of a rigid body at both ends of the step.
     pub(super) poses: [Pose; 2],
-    /// Of a rigid body: no vertex of a face is farther from where it turns.
+    /// Radius of a rigid body: no vertex of a face is farther from the centre of rotation.
     pub(super) radius: f64,
-    /// The default tolerance of the mesh that it was made of, once it was computed.
+    /// Default tolerance of the original mesh, once it was computed.
     pub(super) tolerance: Kept,
-    /// Where it is, if positions and poses are old.
+    /// Place of the body, if positions and poses are stale.
     pub(super) away: Option<Away>,
 }
 
-/// A number that follows from the mesh that a body was made of: bodies are equal whether or not it was computed.
+/// A number that follows from the body's original mesh. Bodies are equal whether or not it was
+/// computed.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Kept(pub(super) Option<f64>);
 
@@ -37,20 +38,20 @@ impl PartialEq for Kept {
     }
 }
 
-/// Where a body is, of which positions and poses are old.
+/// Place of a body with stale positions and poses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Away {
-    /// Where memory of the caller says.
+    /// In memory of the caller.
     Lent(DeviceMotion),
-    /// On a device, at two ends or at one.
+    /// On a device, at both ends or at one.
     Placed {
-        /// Whether those are two.
+        /// Whether there are two ends.
         moving: bool,
     },
 }
 
 impl Body {
-    /// A body at one frame.
+    /// A deformable body at one frame.
     pub fn deformable(mesh: Mesh) -> Body {
         let Mesh { name, positions, faces } = mesh;
         Body {
@@ -72,30 +73,30 @@ impl Body {
         Body { kind: BodyKind::Fixed, ..Body::deformable(mesh) }
     }
 
-    /// A body that moves as one; without a pose it is where its mesh is.
+    /// A body that moves as a whole; without a pose it is in the position of its mesh.
     pub fn rigid(mesh: Mesh) -> Body {
         let points = mesh.faces.iter().flatten().filter_map(|&v| mesh.positions.get_f64(v as usize));
         let radius = radius(points);
         Body { kind: BodyKind::Rigid, radius, ..Body::deformable(mesh) }
     }
 
-    /// No vertices, no triangles: what a body leaves that was taken out of a scene.
+    /// A body without vertices and triangles: the remainder of one that was removed from a scene.
     pub(crate) fn none() -> Body {
         let nothing = Positions::F32(Vec::new());
         Body::deformable(Mesh { name: "nothing".into(), positions: nothing, faces: Vec::new() })
     }
 
-    /// The body, meeting those.
+    /// Sets the collision filter.
     pub fn with_filter(self, filter: CollisionFilter) -> Body {
         Body { filter, ..self }
     }
 
-    /// What the body does from frame to frame.
+    /// Kind of the body: its motion from frame to frame.
     pub fn kind(&self) -> BodyKind {
         self.kind
     }
 
-    /// Which bodies it may meet.
+    /// Collision filter: the bodies that it may meet.
     pub fn filter(&self) -> &CollisionFilter {
         &self.filter
     }
@@ -105,7 +106,8 @@ impl Body {
         self.filter.self_collides(self.kind)
     }
 
-    /// Refuses self-collision of a static body, which would do nothing. Detectors check it, and whoever reads bodies may.
+    /// Refuses self-collision of a fixed body, which would do nothing. Detectors check it, and
+    /// readers of bodies may.
     ///
     /// # Errors
     /// [`Error::InvalidArgument`], naming the body.
@@ -119,7 +121,8 @@ impl Body {
         Ok(())
     }
 
-    /// The poses of a rigid body at both ends of the step; old ones where it [is away](Body::is_device_resident).
+    /// Poses of a rigid body at both ends of the step; stale if it [is
+    /// device-resident](Body::is_device_resident).
     pub fn poses(&self) -> [Pose; 2] {
         self.poses
     }
@@ -128,9 +131,9 @@ impl Body {
     /// precision, both become double, exactly.
     ///
     /// # Errors
-    /// [`Problem::FrameVertices`], [`Problem::FrameFaces`] or [`Problem::FrameFace`] (the first face that
-    /// differs), against the second frame and naming the first. A vertex must be finite in both frames if a face uses it, which
-    /// [`Mesh`] has seen to.
+    /// [`Problem::FrameVertices`], [`Problem::FrameFaces`] or [`Problem::FrameFace`] (the first
+    /// face that differs), against the second frame and naming the first. [`Mesh`] has checked that
+    /// a vertex is finite in both frames if a face uses it.
     pub fn moving(t0: Mesh, t1: Mesh) -> Result<Body, Error> {
         if let Some(problem) = difference(&t0, &t1) {
             return Err(Error::Input { file: t1.name, problem });
@@ -143,33 +146,36 @@ impl Body {
         Ok(Body { positions_t1: Some(positions_t1), ..still })
     }
 
-    /// The name of the mesh, or of its first frame.
+    /// Name of the mesh, or of its first frame.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Three vertex indices a triangle.
+    /// Three vertex indices for each triangle.
     pub fn faces(&self) -> &[[u32; 3]] {
         &self.faces
     }
 
-    /// Whether only the device knows where the body is: it was put there by [`Motion::OnDevice`](crate::scene::Motion::OnDevice), and
-    /// positions and poses here are those from before. [`Detector::download_positions`](crate::Detector::download_positions) brings them.
+    /// Whether only the device has the body's place:
+    /// [`Motion::OnDevice`](crate::scene::Motion::OnDevice) put it there, and positions and poses
+    /// here are stale. [`Detector::download_positions`](crate::Detector::download_positions)
+    /// updates them.
     pub fn is_device_resident(&self) -> bool {
         self.away.is_some()
     }
 
-    /// Positions at the start of the step, or of the only frame; old ones where the body [is away](Body::is_device_resident).
+    /// Positions at the start of the step, or of the only frame; stale if the body [is
+    /// device-resident](Body::is_device_resident).
     pub fn positions_t0(&self) -> &Positions {
         &self.positions_t0
     }
 
-    /// Positions at the end of the step; `None` for a still body.
+    /// Positions at the end of the step; `None` for a body at one frame.
     pub fn positions_t1(&self) -> Option<&Positions> {
         self.positions_t1.as_ref()
     }
 
-    /// Positions at both ends of the step: twice the same of a still body.
+    /// Positions at both ends of the step; twice the same for a body at one frame.
     pub fn ends(&self) -> [&Positions; 2] {
         [&self.positions_t0, self.positions_t1.as_ref().unwrap_or(&self.positions_t0)]
     }
@@ -184,12 +190,13 @@ impl Body {
         self.faces.len()
     }
 
-    /// The body with vertices merged that coincide in all of its frames, and how many were merged; as [`Mesh::weld`].
+    /// Returns the body with vertices merged that coincide in all of its frames, and their number;
+    /// as [`Mesh::weld`].
     pub fn weld(&self) -> (Body, usize) {
         self.weld_through(&[])
     }
 
-    /// The same of a body that goes on: merged are vertices that coincide in those frames too.
+    /// As [`Body::weld`], for vertices that coincide in `frames` too.
     pub fn weld_through(&self, frames: &[Positions]) -> (Body, usize) {
         let own = std::iter::once(&self.positions_t0).chain(&self.positions_t1);
         let vertices = Vertices::of(&own.chain(frames).collect::<Vec<_>>(), &self.faces);
@@ -198,8 +205,8 @@ impl Body {
         (welded, vertices.merged)
     }
 
-    /// How many vertices that a face uses share their place, in all frames, with an earlier one; as
-    /// [`Mesh::coincident`].
+    /// Number of vertices that a face uses and that coincide, in all frames, with an earlier one;
+    /// as [`Mesh::coincident`].
     pub fn coincident(&self) -> usize {
         self.vertices().merged
     }
@@ -214,7 +221,7 @@ impl Body {
         self.positions_t1.is_some() || matches!(self.away, Some(Away::Placed { moving: true }))
     }
 
-    /// The frames as meshes, to be written or handed on: one, or two. Copies.
+    /// Copies the frames to meshes: one, or two.
     pub fn frames(&self) -> Vec<Mesh> {
         let mesh = |positions: &Positions| Mesh {
             name: self.name.clone(),
@@ -224,7 +231,8 @@ impl Body {
         std::iter::once(&self.positions_t0).chain(&self.positions_t1).map(mesh).collect()
     }
 
-    /// xxh3 of the faces and of the bits of every position, in little-endian order: the same on every machine.
+    /// xxh3 of the faces and of the bits of every position, little-endian: the same on every
+    /// machine.
     pub fn fingerprint(&self) -> u64 {
         let mut hash = xxhash_rust::xxh3::Xxh3::new();
         self.faces.iter().flatten().for_each(|i| hash.update(&i.to_le_bytes()));

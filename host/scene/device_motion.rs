@@ -1,11 +1,11 @@
-//! Positions and poses that lie in the device's memory already.
+//! Positions and poses in device memory.
 
 use super::Pose;
 use crate::error::Error;
 use crate::mesh::Positions;
 use nearmiss_kernels::abi::Lent;
 
-/// The kind of numbers that lie in a memory.
+/// Precision of numbers in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Number {
     /// Single precision.
@@ -15,7 +15,7 @@ pub enum Number {
 }
 
 impl Number {
-    /// Bytes of one.
+    /// Bytes of one number.
     pub const fn bytes(self) -> usize {
         match self {
             Number::F32 => 4,
@@ -24,7 +24,8 @@ impl Number {
     }
 }
 
-/// Rows of numbers in the memory of a device, which somebody else owns: positions, three numbers a row, or one row of a pose.
+/// Rows of numbers in device memory that the caller owns. Positions have three numbers a row; a
+/// pose has one row each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DeviceRows {
     address: u64,
@@ -34,62 +35,65 @@ pub struct DeviceRows {
 }
 
 impl DeviceRows {
-    /// So many rows, the first one at `address`, each `stride` bytes behind the one before. On a CPU the address is the host's.
+    /// Describes rows: the first one at `address`, each `stride` bytes after the one before. On a
+    /// CPU the address is the host's.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] for an address or a stride that is no multiple of the number's size, and for rows that end beyond 2^32
-    /// numbers.
+    /// [`Error::InvalidArgument`] for an address or a stride that is no multiple of the number's
+    /// size. Also for rows that end beyond 2^32 numbers.
     ///
     /// # Safety
-    /// At `address` and behind each stride lie three numbers of that kind (four of a rotation), in memory that the detector's device
-    /// can read. They stay there, and nobody writes them while work of the detector may read them: from a
-    /// call that is given the rows until that call's work is done, and of a prepared frame in every submission until another
-    /// input or the end of the detector.
+    /// At `address` and after each stride there are three numbers of that kind (four for a
+    /// rotation). The detector's device can read that memory. It stays there, and is not written
+    /// while work of the detector may read it. A call may read it until its work is done. A
+    /// prepared frame may read it in every submission, until another input or the end of the
+    /// detector.
     pub unsafe fn new(address: u64, rows: usize, stride: usize, number: Number) -> Result<DeviceRows, Error> {
         let size = number.bytes();
         let refused =
             |what: String, advice: &str| Err(Error::InvalidArgument { what, advice: advice.to_owned() });
         if !address.is_multiple_of(size as u64) || !stride.is_multiple_of(size) {
-            let what = format!("rows of {size} byte numbers at {address:#x}, {stride} bytes apart");
+            let what =
+                format!("rows of {size} byte numbers at {address:#x}, {stride} bytes apart, are not aligned");
             return refused(what, "give an address and a stride that are multiples of the number's size");
         }
         let last = rows.saturating_sub(1).checked_mul(stride / size).and_then(|at| at.checked_add(4));
         if last.is_none_or(|end| end > u32::MAX as usize) {
-            let what = format!("{rows} rows, {stride} bytes apart");
-            return refused(what, "rows may span 2^32 numbers: pack them closer");
+            let what = format!("{rows} rows, {stride} bytes apart, span more than 2^32 numbers");
+            return refused(what, "pack the rows closer");
         }
         Ok(DeviceRows { address, rows, stride, number })
     }
 
-    /// How many rows.
+    /// Number of rows.
     pub fn len(&self) -> usize {
         self.rows
     }
 
-    /// Whether there are none.
+    /// Whether there are no rows.
     pub fn is_empty(&self) -> bool {
         self.rows == 0
     }
 
-    /// The kind of its numbers.
+    /// Precision of its numbers.
     pub fn number(&self) -> Number {
         self.number
     }
 
-    /// Rows of `N` numbers.
+    /// Reads rows of `N` numbers.
     ///
     /// # Safety
-    /// As of [`DeviceRows::new`], of memory that the host can read.
+    /// As of [`DeviceRows::new`], for memory that the host can read.
     unsafe fn read<const N: usize, T: bytemuck::Pod>(&self) -> Vec<[T; N]> {
         let row = |row: usize| {
             let start = (self.address as usize + row * self.stride) as *const T;
-            // SAFETY: the caller's promise: there lie N numbers, at a multiple of their size.
+            // SAFETY: the caller's promise: there are N numbers, at a multiple of their size.
             std::array::from_fn(|k| unsafe { start.add(k).read() })
         };
         (0..self.rows).map(row).collect()
     }
 
-    /// Three numbers a row.
+    /// Reads three numbers a row.
     ///
     /// # Safety
     /// As of [`DeviceRows::read`].
@@ -103,7 +107,7 @@ impl DeviceRows {
         }
     }
 
-    /// So many numbers of the first row; zeros where there is none.
+    /// Reads `N` numbers of the first row; zeros if there is none.
     ///
     /// # Safety
     /// As of [`DeviceRows::read`].
@@ -119,9 +123,9 @@ impl DeviceRows {
         doubles.first().copied().unwrap_or([0.0; N])
     }
 
-    /// As a kernel reads it, with rows of that many numbers.
+    /// Record for kernels, with `width` numbers a row.
     pub(crate) fn record(&self, width: u32) -> Lent {
-        // Checked when it was made.
+        // Checked by `DeviceRows::new`.
         let stride = (self.stride / self.number.bytes()) as u32;
         Lent {
             address: self.address,
@@ -133,22 +137,24 @@ impl DeviceRows {
     }
 }
 
-/// A pose in the memory of a device: see [`Pose`](super::Pose).
+/// A pose in device memory: see [`Pose`](super::Pose).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DevicePose {
-    /// One row: what is added.
+    /// One row: the translation.
     pub translation: DeviceRows,
-    /// One row: a unit quaternion x, y, z, w, off unit length by at most 1.2e-4 and normalised, as [`Pose::rotation`](super::Pose::rotation).
+    /// One row: a unit quaternion x, y, z, w. It may be off unit length by at most 1.2e-4 and is
+    /// normalised, as [`Pose::rotation`](super::Pose::rotation).
     pub rotation: DeviceRows,
 }
 
-/// What a frame tells of a body by what lies in the device's memory. Nothing of it passes through the host; it is read on
-/// the device's stream, behind all work that was put there before.
+/// Motion of a body in device memory. It does not pass through the host. The device's stream reads
+/// it, after all work that was put there before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DeviceMotion {
     /// A deformable body stands at these positions.
     Positions(DeviceRows),
-    /// A deformable body moves from the first positions to the second, each vertex in a straight line.
+    /// A deformable body moves from the first positions to the second, each vertex in a straight
+    /// line.
     Step([DeviceRows; 2]),
     /// A rigid body stands in this pose.
     Pose(DevicePose),
@@ -162,7 +168,7 @@ impl DeviceMotion {
         matches!(self, DeviceMotion::Step(_) | DeviceMotion::PoseStep(_))
     }
 
-    /// Whether any of its positions are doubles.
+    /// Whether any of its positions are in f64.
     pub(crate) fn has_f64(&self) -> bool {
         match self {
             DeviceMotion::Positions(rows) => rows.number == Number::F64,
@@ -171,10 +177,11 @@ impl DeviceMotion {
         }
     }
 
-    /// Positions of a deformable body, poses of a rigid one, at both ends or at the only one, as the host reads them.
+    /// Reads positions of a deformable body, or poses of a rigid one, on the host: both ends or
+    /// one.
     ///
     /// # Safety
-    /// As of [`DeviceRows::new`], of memory that the host can read: a CPU's.
+    /// As of [`DeviceRows::new`], for memory that the host can read: a CPU's.
     pub(crate) unsafe fn read(&self) -> (Vec<Positions>, Vec<Pose>) {
         // SAFETY: the caller's promise.
         let ends = |rows: &[DeviceRows]| rows.iter().map(|rows| unsafe { rows.positions() }).collect();
@@ -190,7 +197,8 @@ impl DeviceMotion {
         }
     }
 
-    /// As a kernel reads it, at both ends or at the only one: of positions a record an end, of poses two.
+    /// Records for kernels, at both ends or at the only one: one an end for positions, two for
+    /// poses.
     pub(crate) fn records(&self, ends: usize) -> Vec<Lent> {
         let pose = |pose: &DevicePose| [pose.translation.record(3), pose.rotation.record(4)];
         match self {
@@ -207,7 +215,7 @@ mod tests {
     use super::*;
 
     fn rows(address: u64, rows: usize, stride: usize, number: Number) -> Result<DeviceRows, Error> {
-        // SAFETY: nobody reads them.
+        // SAFETY: nothing reads them.
         unsafe { DeviceRows::new(address, rows, stride, number) }
     }
 

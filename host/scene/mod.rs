@@ -1,6 +1,7 @@
-//! Scenes: which bodies there are, what each does, and which of them may meet.
+//! Scenes: bodies, their kinds, and the filters that decide which of them may meet.
 //!
-//! A [`Scene`] is made on the host, once; a [`Detector`](crate::Detector) takes it to a device and asks it frame after frame.
+//! A [`Scene`] is made on the host, once. A [`Detector`](crate::Detector) puts it on a device and
+//! queries it frame after frame.
 
 mod body;
 mod device_motion;
@@ -19,13 +20,14 @@ pub use sides::{mean_side, of_edges};
 
 use std::fmt;
 
-/// A body of a scene: it stays with the body until that is removed.
+/// Number of a body in a scene; it stays with the body until that is removed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(transparent))]
 pub struct BodyId(pub(crate) u32);
 
 impl BodyId {
-    /// The number of the body: those of a new scene are counted from 0, in the order in which they were added.
+    /// Index of the body. Bodies of a new scene are counted from 0, in the order in which they were
+    /// added.
     pub fn index(self) -> usize {
         self.0 as usize
     }
@@ -37,62 +39,66 @@ impl fmt::Display for BodyId {
     }
 }
 
-/// What a body does from frame to frame. A scene pays for what its bodies do, and for nothing else.
+/// Motion of a body from frame to frame. A scene costs only the motions of its bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 #[non_exhaustive]
 pub enum BodyKind {
-    /// It stands where it was made: its tree is built and fitted once, and it is never tested against what is static too.
+    /// It never moves. Its tree is built and fitted once, and it is never tested against fixed
+    /// bodies.
     Fixed,
-    /// It moves as one: 7 numbers a frame and end of a step, applied on the device.
+    /// It moves as a whole: 7 numbers for a frame or an end of a step, applied on the device.
     Rigid,
     /// Each vertex moves by itself.
     #[default]
     Deformable,
 }
 
-/// Which bodies a body may meet: see [`Body::with_filter`].
+/// Bodies that a body may meet: see [`Body::with_filter`].
 ///
-/// Two bodies are tested against each other if they are of one environment, or one of them is of every, and if each is in a
-/// group that the other meets. Deformable bodies are tested against themselves by default, rigid bodies if
-/// `self_collision` is true, static bodies never.
+/// Two bodies are tested against each other if environments and groups allow it. Environments allow
+/// it if they are equal or one is `None`. Groups allow it if each body is in a group that the
+/// other's mask has. Deformable bodies are tested against themselves by default, rigid bodies if
+/// `self_collision` is true, fixed bodies never.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CollisionFilter {
-    /// The environment; `None` for a body that is in every one. Bodies of different environments never meet.
+    /// Environment; `None` for a body that is in every one. Bodies of different environments never
+    /// meet.
     pub environment: Option<u32>,
     /// Bits of the groups that the body is in.
     pub group: u32,
-    /// Bits of the groups that it meets.
+    /// Bits of the groups that the body meets.
     pub mask: u32,
-    /// Whether it is tested against itself; `None` for the default of its kind: see [`CollisionFilter::self_collides`].
+    /// Whether the body is tested against itself; `None` for the default of its kind: see
+    /// [`CollisionFilter::self_collides`].
     pub self_collision: Option<bool>,
 }
 
 impl CollisionFilter {
-    /// All other bodies, and itself.
+    /// All other bodies, and the body itself.
     pub fn with_self_collision() -> CollisionFilter {
         CollisionFilter { self_collision: Some(true), ..CollisionFilter::default() }
     }
 
-    /// All other bodies, not itself.
+    /// All other bodies, not the body itself.
     pub fn without_self_collision() -> CollisionFilter {
         CollisionFilter { self_collision: Some(false), ..CollisionFilter::default() }
     }
 
-    /// All other bodies of that environment.
+    /// All other bodies of an environment.
     pub fn in_environment(environment: u32) -> CollisionFilter {
         CollisionFilter { environment: Some(environment), ..CollisionFilter::default() }
     }
 
-    /// Whether environments and groups let two different bodies meet.
+    /// Whether environments and groups allow two different bodies to meet.
     pub(crate) fn allows(&self, other: &CollisionFilter) -> bool {
         let is_everywhere = self.environment.is_none() || other.environment.is_none();
         let is_together = is_everywhere || self.environment == other.environment;
         is_together && self.group & other.mask != 0 && other.group & self.mask != 0
     }
 
-    /// Whether a body of that kind is tested against itself. Deformable bodies are by default, rigid bodies if
-    /// `self_collision` is true, static bodies never.
+    /// Whether a body of this kind is tested against itself. Deformable bodies are by default,
+    /// rigid bodies if `self_collision` is true, fixed bodies never.
     pub fn self_collides(&self, kind: BodyKind) -> bool {
         match kind {
             BodyKind::Fixed => false,
@@ -103,13 +109,13 @@ impl CollisionFilter {
 }
 
 impl Default for CollisionFilter {
-    /// All other bodies, in environment 0; itself if it is deformable.
+    /// All other bodies in environment 0; the body itself if it is deformable.
     fn default() -> CollisionFilter {
         CollisionFilter { environment: Some(0), group: u32::MAX, mask: u32::MAX, self_collision: None }
     }
 }
 
-/// Bodies, by their numbers.
+/// Bodies, by number.
 ///
 /// ```
 /// use nearmiss::scene::Scene;
@@ -129,19 +135,19 @@ impl Default for CollisionFilter {
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     bodies: Vec<Body>,
-    /// Of each number, whether its body was removed.
+    /// Whether the body of each number was removed.
     removed: Vec<bool>,
-    /// Those numbers.
+    /// Numbers of removed bodies.
     free: Vec<u32>,
 }
 
 impl Scene {
-    /// No bodies.
+    /// A scene without bodies.
     pub fn new() -> Scene {
         Scene::default()
     }
 
-    /// Adds a body: under the number of one that was removed, where there is one.
+    /// Adds a body, under the number of a removed one if there is one.
     pub fn add(&mut self, body: Body) -> BodyId {
         match self.free.pop() {
             Some(id) => {
@@ -157,7 +163,7 @@ impl Scene {
         }
     }
 
-    /// Takes a body out; `None` where there is none of that number.
+    /// Removes a body; `None` if there is none of that number.
     pub fn remove(&mut self, id: BodyId) -> Option<Body> {
         self.get(id)?;
         self.free.push(id.0);
@@ -165,23 +171,23 @@ impl Scene {
         Some(std::mem::replace(&mut self.bodies[id.index()], Body::none()))
     }
 
-    /// The body of a number; `None` where it was removed or never was.
+    /// Body of a number; `None` if it was removed or never existed.
     pub fn get(&self, id: BodyId) -> Option<&Body> {
         self.bodies.get(id.index()).filter(|_| !self.removed[id.index()])
     }
 
-    /// The same, to be changed.
+    /// Body of a number, to be changed.
     pub(crate) fn get_mut(&mut self, id: BodyId) -> Option<&mut Body> {
         self.bodies.get_mut(id.index()).filter(|_| !self.removed[id.index()])
     }
 
-    /// The body with that number; `None` where it was removed or never was.
+    /// Number of the body at an index; `None` if it was removed or never existed.
     pub fn id(&self, index: usize) -> Option<BodyId> {
         let id = BodyId(u32::try_from(index).ok()?);
         self.get(id).map(|_| id)
     }
 
-    /// Every body by its number; those that were removed are bodies without vertices.
+    /// All bodies by number; removed ones have no vertices.
     pub fn bodies(&self) -> &[Body] {
         &self.bodies
     }
@@ -190,21 +196,21 @@ impl Scene {
         &mut self.bodies
     }
 
-    /// The numbers of all bodies, ascending.
+    /// Numbers of all bodies, ascending.
     pub fn ids(&self) -> impl Iterator<Item = BodyId> + '_ {
         (0..self.bodies.len() as u32).map(BodyId).filter(|id| !self.removed[id.index()])
     }
 }
 
 impl From<Vec<Body>> for Scene {
-    /// These bodies, numbered in that order.
+    /// Numbers bodies in their order.
     fn from(bodies: Vec<Body>) -> Scene {
         Scene { removed: vec![false; bodies.len()], bodies, free: Vec::new() }
     }
 }
 
 impl From<Body> for Scene {
-    /// A body alone.
+    /// A scene of one body.
     fn from(body: Body) -> Scene {
         Scene::from(vec![body])
     }

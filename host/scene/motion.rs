@@ -1,12 +1,14 @@
-//! The motion of a body in a step.
+//! Motion of a body in a step.
 
 use super::{DeviceMotion, Pose};
 use crate::mesh::Points;
 
-/// Where a body is at a frame, or at the two ends of a step. Borrowed: nothing of a body's topology is copied or looked at.
+/// Place of a body at a frame, or at both ends of a step. It borrows positions. The body's topology
+/// is neither copied nor checked.
 ///
-/// Every query takes both. Discrete, near and distance queries test a body that steps where its step begins, at t = 0; from the
-/// next update on it rests where its step ended, unless that update names it.
+/// Every query takes both. Discrete, near and distance queries test a moving body at the start of
+/// its step, t = 0. From the next update on it rests at the end of its step, unless that update
+/// names it.
 ///
 /// ```
 /// use nearmiss::scene::{Motion, Pose};
@@ -20,24 +22,27 @@ use crate::mesh::Points;
 pub enum Motion<'a> {
     /// A deformable body stands at these positions.
     Positions(Points<'a>),
-    /// A deformable body moves from the first positions to the second, each vertex in a straight line.
+    /// A deformable body moves from the first positions to the second, each vertex in a straight
+    /// line.
     Step([Points<'a>; 2]),
     /// A rigid body stands in this pose.
     Pose(Pose),
-    /// A rigid body moves from the first pose to the second, **each vertex in a straight line**: between the poses it is not
-    /// rigid. Give steps in which it turns little.
+    /// A rigid body moves from the first pose to the second, **each vertex in a straight line**.
+    /// Between the poses it is not rigid. Use steps in which it turns little.
     PoseStep([Pose; 2]),
-    /// Positions or poses in the device's memory.
+    /// Positions or poses in device memory.
     OnDevice(DeviceMotion),
 }
 
 impl<'a> Motion<'a> {
-    /// A deformable body stands at these positions: an array, a vector or a slice of points, or [`Positions`](crate::mesh::Positions).
+    /// A deformable body stands at these positions: an array, a vector or a slice of points, or
+    /// [`Positions`](crate::mesh::Positions).
     pub fn positions(at: impl Into<Points<'a>>) -> Motion<'a> {
         Motion::Positions(at.into())
     }
 
-    /// A deformable body moves from the first positions to the second, each vertex in a straight line.
+    /// A deformable body moves from the first positions to the second, each vertex in a straight
+    /// line.
     pub fn step(start: impl Into<Points<'a>>, end: impl Into<Points<'a>>) -> Motion<'a> {
         Motion::Step([start.into(), end.into()])
     }

@@ -1,4 +1,4 @@
-//! Where a body is put from frame to frame.
+//! Placing of a body from frame to frame.
 
 use super::body::{Away, Kept};
 use super::{Body, BodyKind, DeviceMotion, Motion, Pose, of_edges};
@@ -6,11 +6,11 @@ use crate::Error;
 use crate::mesh::{self, MAX_ABS_F64, Points, Positions, Problem};
 use nalgebra::Vector3;
 
-/// The lower and the upper corner of a box.
+/// Lower and upper corner of a box.
 pub type Bounds = [[f64; 3]; 2];
 
 impl Body {
-    /// The body, where a frame says: for scenes that begin there.
+    /// Returns the body after a motion: for scenes that begin there.
     ///
     /// ```
     /// use nearmiss::scene::{Motion, Pose};
@@ -24,18 +24,19 @@ impl Body {
     /// ```
     ///
     /// # Errors
-    /// As [`Body::check`].
+    /// As of [`Body::check`].
     pub fn at(mut self, input: &Motion) -> Result<Body, Error> {
         self.check(input)?;
         self.put(input);
         Ok(self)
     }
 
-    /// Whether the body can be where a frame says. Cost: a pass over the positions of a deformable body.
+    /// Checks that the body can take a motion. Cost: a pass over the positions of a deformable
+    /// body.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] for what its kind does not take; [`Error::Input`] for positions that no mesh may have, and for a pose
-    /// that is none.
+    /// [`Error::InvalidArgument`] for a motion of another kind. [`Error::Input`] for positions that
+    /// no mesh may have, and for an invalid pose.
     pub fn check(&self, input: &Motion) -> Result<(), Error> {
         match (self.kind, input) {
             (BodyKind::Deformable, Motion::Positions(t0)) => self.check_vertices(&[*t0]),
@@ -50,7 +51,7 @@ impl Body {
             (BodyKind::Deformable, Motion::OnDevice(DeviceMotion::Step(ends))) => {
                 self.check_rows(&ends.map(|rows| rows.len()))
             }
-            // Of a pose one row of each is read, which its maker has promised.
+            // One row of each is read for a pose: the rows' maker has promised that it is there.
             (BodyKind::Rigid, Motion::OnDevice(DeviceMotion::Pose(_) | DeviceMotion::PoseStep(_))) => Ok(()),
             (kind, input) => {
                 let (given, advice) = match (kind, input) {
@@ -77,7 +78,7 @@ impl Body {
         Ok(())
     }
 
-    /// Whether these are as many as there are vertices.
+    /// Checks that each end has as many rows as there are vertices.
     fn check_rows(&self, ends: &[usize]) -> Result<(), Error> {
         let ours = self.vertex_count();
         match ends.iter().find(|&&theirs| theirs != ours) {
@@ -89,7 +90,7 @@ impl Body {
         }
     }
 
-    /// Whether positions can be computed with in single precision, or at all.
+    /// Returns whether f32 can compute with positions; an error if f64 cannot either.
     pub(crate) fn is_single(&self, points: Points) -> Result<bool, Error> {
         let wrong = |problem| Error::Input { file: self.name.clone(), problem };
         mesh::is_single(points, &self.faces).map_err(wrong)
@@ -109,8 +110,9 @@ impl Body {
         Ok(())
     }
 
-    /// The default tolerance of a certified solver for the mesh that the body was made of: it stays when the body moves. 0 if no
-    /// side of its triangles has a length. Cost: a root a side, once.
+    /// Default tolerance of a certified solver for the body's original mesh, in scene units. It
+    /// stays when the body moves. 0 if no side of a triangle has a length. Cost: a square root for
+    /// each side, once.
     pub fn default_tolerance(&self) -> f64 {
         self.tolerance.0.unwrap_or_else(|| of_edges(std::slice::from_ref(self)))
     }
@@ -120,7 +122,7 @@ impl Body {
         self.tolerance = Kept(Some(self.default_tolerance()));
     }
 
-    /// Puts the body where a frame says, which [`Body::check`] has let pass. Cost: a copy of the positions.
+    /// Applies a motion that [`Body::check`] accepts. Cost: a copy of the positions.
     pub(crate) fn put(&mut self, input: &Motion) {
         self.away = None;
         match input {
@@ -146,24 +148,26 @@ impl Body {
         }
     }
 
-    /// What places the body from the caller's memory, if that is where it is.
+    /// Motion in memory of the caller, if the body's place is there.
     pub(crate) fn lent(&self) -> Option<&DeviceMotion> {
         if let Some(Away::Lent(input)) = &self.away { Some(input) } else { None }
     }
 
-    /// The caller's memory was read.
+    /// Records that memory of the caller was read.
     pub(crate) fn placed(&mut self) {
         if let Some(Away::Lent(input)) = self.away {
             self.away = Some(Away::Placed { moving: input.is_moving() });
         }
     }
 
-    /// The caller's memory was read again, or may have been: whatever was known of the body's place is out of date.
+    /// Records that memory of the caller was read again, or may have been: known positions are
+    /// stale.
     pub(crate) fn placed_again(&mut self, moving: bool) {
         self.away = Some(Away::Placed { moving });
     }
 
-    /// Whether a body can be where it was found: at both ends or at the only one.
+    /// Checks the place in which the device has put the body, at both ends or at the only one.
+    /// Returns whether f32 can compute with it.
     ///
     /// # Errors
     /// [`Error::Input`], as of [`Body::check`].
@@ -178,8 +182,8 @@ impl Body {
         Ok(are_single)
     }
 
-    /// Brings the body back from the device: where it was found there, at both ends or at the only one. One that rests is at
-    /// the later end, whether or not that has been told to the device.
+    /// Copies the body's place from the device, at both ends or at the only one. A body at rest is
+    /// at the later end, even if the device does not know yet that it rests.
     pub(crate) fn bring(&mut self, ends: &[Positions], poses: &[Pose]) {
         let moving = self.is_moving();
         self.away = None;
@@ -192,7 +196,8 @@ impl Body {
         }
     }
 
-    /// A body that moved in the last step rests where that ended; whether it had moved.
+    /// Rests a body that moved in the last step at the end of that step. Returns whether it had
+    /// moved.
     pub(crate) fn rest(&mut self) -> bool {
         if self.is_device_resident() {
             let moved = self.is_moving();
@@ -217,26 +222,28 @@ impl Body {
         }
     }
 
-    /// Whether its coordinates need f64: those that are f64, and the placed vertices of every rigid body, which f32 holds exactly in
-    /// no pose but a few. A pose of the caller's memory is known too late to decide by.
+    /// Whether the body's coordinates need f64: those in f64, and the placed vertices of every
+    /// rigid body. f32 holds these exactly in a few poses only. A pose in memory of the caller is
+    /// known too late to decide by.
     pub(crate) fn needs_f64(&self) -> bool {
         self.positions_t0.is_f64()
             || self.lent().is_some_and(DeviceMotion::has_f64)
             || (self.kind == BodyKind::Rigid && !self.faces.is_empty())
     }
 
-    /// The angle by which the body turns from one pose to another, in degrees, and how far a vertex leaves its arc when it moves in a
-    /// straight line; `None` for a turn up to so many degrees. Cost: a pass over the faces of a body that turns farther.
+    /// Returns the angle of the turn between two poses, in degrees, and the bulge. That is the
+    /// largest distance of a vertex in straight motion from its arc. `None` for a turn up to
+    /// `least` degrees. Cost: a pass over the faces of a body that turns farther.
     pub(crate) fn turn_beyond(&self, least: f64, [start, end]: [Pose; 2]) -> Option<[f64; 2]> {
         let (angle, axis) = start.turn_to(&end);
         let degrees = angle.to_degrees();
-        // A NaN is of a pose that another check refuses.
+        // A NaN comes from a pose that another check refuses.
         if degrees.is_nan() || degrees <= least {
             return None;
         }
         let axis = axis / axis.dot(&axis).sqrt();
         let from_axis = |&v: &u32| {
-            // Faces were checked when the mesh was made: every vertex is there.
+            // Faces were checked when the mesh was made: every vertex exists.
             let point = Vector3::from(self.positions_t0.get_f64(v as usize).unwrap_or_default());
             let across = point.cross(&axis);
             across.dot(&across).sqrt()
@@ -246,20 +253,21 @@ impl Body {
         Some([degrees, farthest * 2.0 * (angle / 4.0).sin().powi(2)])
     }
 
-    /// A box that holds a rigid body at both ends of the step, where the host knows it; none of others.
+    /// Box around a rigid body at both ends of the step, if the host has its poses; `None` for
+    /// others.
     pub(crate) fn posed_box(&self) -> Option<Bounds> {
         let rigid = self.kind == BodyKind::Rigid && !self.faces.is_empty() && !self.is_device_resident();
         rigid.then(|| union(self.around(&self.poses[0]), self.around(&self.poses[1])))
     }
 
-    /// A box that holds a rigid body in a pose: around the ball in which it turns.
+    /// Box around a rigid body in a pose: around the ball in which it turns.
     fn around(&self, pose: &Pose) -> Bounds {
         [-self.radius, self.radius].map(|radius| pose.translation.map(|t| t + radius))
     }
 }
 
 impl BodyKind {
-    /// Its name.
+    /// Name of the kind.
     pub(crate) fn name(self) -> &'static str {
         match self {
             BodyKind::Fixed => "static",
@@ -269,22 +277,22 @@ impl BodyKind {
     }
 }
 
-/// Around both. Comparisons drop what is NaN.
+/// Box around both. Comparisons drop NaN.
 pub fn union(a: Bounds, b: Bounds) -> Bounds {
     [[0, 1, 2].map(|k| a[0][k].min(b[0][k])), [0, 1, 2].map(|k| a[1][k].max(b[1][k]))]
 }
 
-/// Around nothing.
+/// Empty box.
 pub const NOTHING: Bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
 
-/// How far the farthest of points is from where a body turns, rounded up: with what the rounding of a pose and of the placed
-/// points may add.
+/// Bound on the distance of points from the centre of rotation. It covers the rounding of a pose
+/// and of the placed points.
 pub fn radius(points: impl Iterator<Item = [f64; 3]>) -> f64 {
-    // The largest coordinate times the root of 3: squares of large ones may not be numbers.
+    // The largest coordinate times the root of 3: squares of large coordinates may overflow.
     2.0 * points.flatten().fold(0.0_f64, |most, x| most.max(x.abs()))
 }
 
-/// The largest coordinate's size.
+/// Largest absolute coordinate.
 fn size(bounds: &Bounds) -> f64 {
     bounds.iter().flatten().fold(0.0, |most, x| most.max(x.abs()))
 }

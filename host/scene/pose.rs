@@ -1,4 +1,4 @@
-//! Where a rigid body is: a rotation and a translation.
+//! Pose of a rigid body: a rotation and a translation.
 
 use crate::error::Error;
 use crate::mesh::Problem;
@@ -8,10 +8,10 @@ use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::math::tolerance::POSE_UNIT;
 use nearmiss_kernels::stage::place::moved;
 
-/// A rigid motion of the points of a body: turned first, then moved.
+/// Rigid motion of a body's points: a rotation, then a translation.
 ///
-/// A placed vertex is `R v + t`, computed in doubles ([`Pose::apply`]), also of meshes in single precision; every answer is about these
-/// vertices. So a scene with a rigid body has positions in doubles.
+/// A placed vertex is `R v + t`, computed in f64 ([`Pose::apply`]), also for meshes in f32. Every
+/// answer is about these vertices, so a scene with a rigid body has positions in f64.
 ///
 /// ```
 /// use nearmiss::scene::Pose;
@@ -23,15 +23,15 @@ use nearmiss_kernels::stage::place::moved;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// Unit quaternion: x, y, z, w. It may be off unit length by up to 2^-13, 1.2e-4 (a quaternion rounded to f32 is off by 1e-7), and
-    /// is then normalised; one that is farther off is refused.
+    /// Unit quaternion: x, y, z, w. It may be off unit length by up to 2^-13, 1.2e-4, and is then
+    /// normalised. A quaternion rounded to f32 is off by 1e-7. One that is farther off is refused.
     pub rotation: [f64; 4],
-    /// What is added, in the unit of the positions.
+    /// Translation, in scene units.
     pub translation: [f64; 3],
 }
 
 impl Default for Pose {
-    /// Where the points are.
+    /// No motion.
     fn default() -> Pose {
         Pose { rotation: [0.0, 0.0, 0.0, 1.0], translation: [0.0; 3] }
     }
@@ -44,23 +44,25 @@ impl From<Isometry3<f64>> for Pose {
 }
 
 impl Pose {
-    /// Only moved.
+    /// A translation without rotation.
     pub fn at(translation: [f64; 3]) -> Pose {
         Pose { translation, ..Pose::default() }
     }
 
-    /// Placed point `R v + t`, computed in doubles with the operations of every machine: its bits are those of the vertices that a
-    /// [`Detector`](crate::Detector) places, and that its answers are about. The quaternion is normalised first.
+    /// Returns the placed point `R v + t`, computed in f64 with the operations of every machine.
+    /// Its bits are those of the vertices that a [`Detector`](crate::Detector) places and that its
+    /// answers are about. The quaternion is normalised first.
     pub fn apply(&self, point: [f64; 3]) -> [f64; 3] {
         moved(&self.record(), Vec3(point)).0
     }
 
-    /// Whether it is one.
+    /// Checks the pose.
     ///
     /// # Errors
-    /// [`Error::Input`], naming `body`, for a rotation that is no unit quaternion and for what is not finite.
+    /// [`Error::Input`], naming `body`, for a rotation that is no unit quaternion and for numbers
+    /// that are not finite.
     pub(crate) fn check(&self, body: &str) -> Result<(), Error> {
-        // NaN is not.
+        // False for NaN.
         let unit = (self.length() - 1.0).abs() <= POSE_UNIT;
         if unit && self.translation.iter().all(|t| t.is_finite()) {
             return Ok(());
@@ -69,8 +71,9 @@ impl Pose {
         Err(Error::Input { file: body.into(), problem })
     }
 
-    /// The turn from this pose to another: its angle in [0, pi], and its axis in the frame of the body's points, not of length 1.
-    /// Quaternions of opposite sign are the same rotation.
+    /// Returns the turn from this pose to another: its angle in [0, pi] and its axis. The axis is
+    /// in the frame of the body's points, not of length 1. Quaternions of opposite sign are the
+    /// same rotation.
     pub(crate) fn turn_to(&self, other: &Pose) -> (f64, Vector3<f64>) {
         let parts = |pose: &Pose| {
             let [x, y, z, w] = pose.record().rotation;
@@ -87,7 +90,7 @@ impl Pose {
         (x * x + y * y + z * z + w * w).sqrt()
     }
 
-    /// As a kernel reads it.
+    /// Record for kernels.
     pub(crate) fn record(&self) -> PoseRecord {
         let length = self.length();
         PoseRecord { rotation: self.rotation.map(|q| q / length), translation: self.translation, pad: 0.0 }

@@ -3,13 +3,13 @@
 use super::Body;
 use crate::query::Certified;
 
-/// [`Certified::TOLERANCE`] of the mean side of the triangles at t = 0, rounded down to a power of two; 0 where there is no
-/// side of a length. Cost: a root a side, on the host.
+/// [`Certified::TOLERANCE`] of the mean side of the triangles at t = 0, rounded down to a power of
+/// two. 0 if no side has a length. Cost: a square root for each side, on the host.
 pub fn of_edges(bodies: &[Body]) -> f64 {
     power_below(Certified::TOLERANCE * mean_side(bodies))
 }
 
-/// Mean side of the triangles at t = 0, each triangle's own three; 0 where there are none.
+/// Mean side of the triangles at t = 0, over each triangle's own three; 0 if there are none.
 pub fn mean_side(bodies: &[Body]) -> f64 {
     let (mut sum, mut count) = (0.0, 0u64);
     for body in bodies {
@@ -26,9 +26,9 @@ pub fn mean_side(bodies: &[Body]) -> f64 {
     sum / count.max(1) as f64
 }
 
-/// The largest power of two not above `x`; 0 for what is not a normal number above 0.
+/// Largest power of two that is at most `x`; 0 if `x` is not a positive normal number.
 fn power_below(x: f64) -> f64 {
-    // Without the mantissa.
+    // Clears the mantissa.
     if x.is_normal() && x > 0.0 { f64::from_bits(x.to_bits() >> 52 << 52) } else { 0.0 }
 }
 

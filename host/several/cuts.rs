@@ -1,12 +1,12 @@
-//! How work is divided among devices.
+//! Division of work among devices.
 
 use crate::pipeline::Share;
 
-/// What a tile costs at least, of the mean: so that none is nothing.
+/// Least cost of a tile, relative to the mean, so that no tile is free.
 const LEAST: f64 = 0.01;
 
-/// Where tiles of those costs are cut into so many parts of about the same: one more than parts,
-/// ascending, from none to all.
+/// Cuts tiles of these costs into parts of about the same cost. Returns the cuts, one more than
+/// parts, ascending, from none to all.
 pub fn cuts(costs: &[f64], parts: usize) -> Vec<u64> {
     let tiles = costs.len() as u64;
     let sum: f64 = costs.iter().sum();
@@ -38,7 +38,7 @@ mod tests {
     fn work_is_cut_where_it_is_even() {
         assert_eq!(tiles(&cuts(&[1.0; 12], 3), 12), [0..4, 4..8, 8..12]);
         assert_eq!(tiles(&cuts(&[9.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0], 2), 10), [0..1, 1..10]);
-        // More devices than tiles, tiles that cost nothing, and none.
+        // More devices than tiles, tiles without cost, and no tiles.
         assert_eq!(tiles(&cuts(&[1.0], 3), 1).iter().map(|share| share.len()).sum::<usize>(), 1);
         assert_eq!(tiles(&cuts(&[0.0; 4], 2), 4), [0..0, 0..4]);
         assert_eq!(tiles(&cuts(&[], 2), 0), [0..0, 0..0]);

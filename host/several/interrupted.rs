@@ -13,20 +13,20 @@ impl MultiDetector {
         self.interrupt.clone()
     }
 
-    /// Ends a call. Every device has taken its input, so all agree where bodies are.
+    /// Ends a call. Every device has taken its input, so all agree on the positions.
     ///
     /// # Errors
-    /// That of the call.
+    /// The error of the call.
     pub(super) fn ended<T>(&mut self, done: Result<T, Error>) -> Result<T, Error> {
         if let Err(Error::Interrupted) = done {
             self.interrupt.clear();
-            // Work is divided by what the next frame costs.
+            // The times of the next frame divide the work again.
             self.divisions.iter_mut().for_each(|division| division.ms.fill(0.0));
         }
         done
     }
 
-    /// The answers of all devices as one.
+    /// Merges the answers of all devices.
     ///
     /// # Errors
     /// [`Error::Interrupted`].

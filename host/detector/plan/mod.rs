@@ -1,4 +1,5 @@
-//! What a frame of a detector launches, holds and moves, and what there is not: told by what the device counted.
+//! Plan of a frame: its launches, memory and transfers, and the parts left out, by the device's
+//! counts.
 
 mod left_out;
 mod words;
@@ -12,40 +13,41 @@ pub use left_out::LeftOut;
 use nearmiss_kernels::entry::TABLE;
 use std::collections::BTreeMap;
 
-/// What a detector does for a frame: [`Detector::plan`].
+/// Work of a detector for a frame: [`Detector::plan`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Plan {
-    /// What is counted by body.
+    /// Counts of bodies.
     pub bodies: Bodies,
-    /// What the last building of the trees launched: once, until bodies come or go or [`Detector::rebuild`].
+    /// Launches of the last build of the trees: once, until bodies are added or removed, or
+    /// [`Detector::rebuild`].
     pub build: Vec<PlannedStage>,
-    /// What the frame launched, stage by stage.
+    /// Launches of the frame, stage by stage.
     pub frame: Vec<PlannedStage>,
-    /// Memory of the device that is held, by what it is for.
+    /// Device memory, by purpose.
     pub buffers: Vec<Buffer>,
-    /// What the frame copied to the device and brought back.
+    /// Copies of the frame to the device and back.
     pub transfers: Vec<Transfer>,
     /// Memory that the frame set to zero.
     pub clears: Count,
-    /// What there is not, and why.
+    /// Parts that were left out, and why.
     pub left_out: Vec<LeftOut>,
 }
 
-/// How many bodies there are of each kind, and their triangles.
+/// Number of bodies of each kind, and of their triangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Bodies {
-    /// Static ones, and their triangles.
+    /// Fixed bodies, and their triangles.
     pub fixed: [usize; 2],
-    /// Rigid ones, and their triangles.
+    /// Rigid bodies, and their triangles.
     pub rigid: [usize; 2],
-    /// Deformable ones, and their triangles.
+    /// Deformable bodies, and their triangles.
     pub deformable: [usize; 2],
-    /// Vertices of all.
+    /// Vertices of all bodies.
     pub vertices: usize,
-    /// Those of bodies that may move.
+    /// Vertices of bodies that may move.
     pub moving_vertices: usize,
 }
 
@@ -55,7 +57,7 @@ pub struct Bodies {
 pub struct PlannedStage {
     /// Its name: `place`, `construct`, `fit`, `refit`, `traverse`, `balance`, `narrow`, `order`.
     pub stage: &'static str,
-    /// What it is for.
+    /// Its purpose.
     pub what: &'static str,
     /// Launches of all of its kernels.
     pub launches: u64,
@@ -67,49 +69,50 @@ pub struct PlannedStage {
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PlannedKernel {
-    /// Its name: that of the PTX entry and of a profiler's row.
+    /// Its name: that of the PTX entry, and of a profiler's row.
     pub kernel: &'static str,
-    /// What it does.
+    /// Its purpose.
     pub what: &'static str,
-    /// How often it is launched.
+    /// Number of launches.
     pub launches: u64,
 }
 
-/// Memory of the device.
+/// Device memory of one purpose.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Buffer {
-    /// What it is for.
+    /// Its purpose.
     pub what: &'static str,
-    /// How many pieces, and the bytes of all.
+    /// Number of allocations, and the bytes of all.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub held: Count,
 }
 
-/// What goes between the host and memory of the device in a frame.
+/// Copies between the host and device memory in a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Transfer {
-    /// What the memory is for.
+    /// Purpose of the memory.
     pub what: &'static str,
     /// Copies from the host.
     pub to_device: Count,
-    /// Copies to the host; on a CPU also what the host looks at where it lies.
+    /// Copies to the host; on a CPU also memory that the host reads in place.
     pub to_host: Count,
 }
 
 impl Plan {
     fn new(bodies: &[Body], (build, frame): (&Work, &Work), held: BTreeMap<&'static str, Count>) -> Plan {
-        let mut of = Bodies { vertices: bodies.iter().map(Body::vertex_count).sum(), ..Bodies::default() };
+        let vertices = bodies.iter().map(Body::vertex_count).sum();
+        let mut counts = Bodies { vertices, ..Bodies::default() };
         for body in bodies.iter().filter(|body| body.face_count() > 0) {
             let own = match body.kind() {
-                BodyKind::Fixed => &mut of.fixed,
-                BodyKind::Rigid => &mut of.rigid,
-                BodyKind::Deformable => &mut of.deformable,
+                BodyKind::Fixed => &mut counts.fixed,
+                BodyKind::Rigid => &mut counts.rigid,
+                BodyKind::Deformable => &mut counts.deformable,
             };
             own[0] += 1;
             own[1] += body.face_count();
-            of.moving_vertices += if body.kind() == BodyKind::Fixed { 0 } else { body.vertex_count() };
+            counts.moving_vertices += if body.kind() == BodyKind::Fixed { 0 } else { body.vertex_count() };
         }
         let mut transfers: BTreeMap<&'static str, [Count; 2]> = BTreeMap::new();
         for (way, all) in [&frame.writes, &frame.reads].into_iter().enumerate() {
@@ -121,7 +124,7 @@ impl Plan {
         });
         let transfer = |(what, [to_device, to_host]): (_, [Count; 2])| Transfer { what, to_device, to_host };
         Plan {
-            bodies: of,
+            bodies: counts,
             build: stages(build, true),
             frame: stages(frame, false),
             buffers: held.into_iter().map(|(what, held)| Buffer { what, held }).collect(),
@@ -136,7 +139,7 @@ impl Plan {
         self.frame.iter().map(|stage| stage.launches).sum()
     }
 
-    /// Bytes of the device that are held.
+    /// Bytes of device memory.
     pub fn bytes(&self) -> u64 {
         self.buffers.iter().map(|buffer| buffer.held.bytes).sum()
     }
@@ -151,12 +154,12 @@ impl Plan {
         self.transfers.iter().map(|transfer| transfer.to_host.bytes).sum()
     }
 
-    /// The stage of that name in the frame, where it has launches.
+    /// Returns the stage of that name in the frame, if it has launches.
     pub fn stage(&self, name: &str) -> Option<&PlannedStage> {
         self.frame.iter().find(|stage| stage.stage == name)
     }
 
-    /// The memory for that, where there is any.
+    /// Returns the memory of that purpose, if there is any.
     pub fn buffer(&self, what: &str) -> Option<&Buffer> {
         self.buffers.iter().find(|buffer| buffer.what == what)
     }
@@ -166,7 +169,7 @@ impl Plan {
 fn stages(work: &Work, building: bool) -> Vec<PlannedStage> {
     let mut all: BTreeMap<usize, PlannedStage> = BTreeMap::new();
     let mut launched: Vec<_> = work.launches.iter().collect();
-    // As data flows.
+    // In the order of the data flow.
     launched.sort_by_key(|(kernel, _)| TABLE.iter().position(|(name, _)| name == *kernel));
     for (&kernel, &launches) in launched {
         let (stage, what) = words::of(kernel, building);
@@ -180,10 +183,11 @@ fn stages(work: &Work, building: bool) -> Vec<PlannedStage> {
 }
 
 impl Detector {
-    /// Launches, memory and transfers of a frame of a query: counts of the device in the last one. If the last two frames were not of this
-    /// query they run now, with the bodies where they are: the first one finds out how long lists are, and waits
-    /// step by step. Uploads and placing of [`Detector::step`] are in the plan if that was the last call. Memory is that of all queries
-    /// so far.
+    /// Returns the launches, memory and transfers of a query's frame, as the device counted them in
+    /// the last one. If the last two frames were not of this query, they run now, at the current
+    /// positions. The first of them finds the lengths of lists, and waits step by step. Uploads and
+    /// placing of [`Detector::step`] are included if that was the last call. Memory is that of all
+    /// queries so far.
     ///
     /// ```
     /// use nearmiss::{Body, Detector, Device, Mesh, Query, device::Backend, mesh::Positions};

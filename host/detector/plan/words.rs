@@ -1,65 +1,65 @@
-//! What each kernel is for.
+//! Purpose of each kernel.
 
-/// The stages of a frame, in their order, and what each is for.
+/// Stages of a frame, in their order, and the purpose of each.
 pub const STAGES: [(&str, &str); 9] = [
     ("place", "vertices where the frame puts them"),
     ("construct", "the level-ordered tree"),
     ("fit", "volumes of the leaves"),
     ("refit", "volumes of all other nodes"),
     ("traverse", "candidate triangle pairs"),
-    ("balance", "work queues made even"),
+    ("balance", "work queues of equal length"),
     ("narrow", "contacts of the candidates"),
     ("order", "contacts in canonical order"),
-    ("status", "whether a submitted frame is whole"),
+    ("status", "whether a submitted frame is complete"),
 ];
 
-/// Where what no stage names is told.
+/// Stage of kernels that no stage names.
 const ORDER: usize = 7;
 
-/// Kernels by how their names begin, the longer beginnings first, and what each does.
+/// Kernels by the beginnings of their names, the longer ones first, and the purpose of each.
 const KERNELS: [(&str, &str); 60] = [
-    ("place_starts", "positions at t = 0, apart from those at the end"),
-    ("place", "poses applied, uploads put in place, the rest at rest"),
+    ("place_starts", "positions at t = 0, stored apart from those at the end"),
+    ("place", "poses applied, uploads put in place, other bodies at rest"),
     ("construct_bounds", "the box of each body's centres"),
     ("construct_halves_bounds", "the box of each stretch of triangles"),
-    ("construct_halves", "where a triangle lies along the longest axis of its stretch"),
+    ("construct_halves", "position of a triangle along the longest axis of its stretch"),
     ("construct_runs", "runs of 16 tiles in halves of halves, on chip"),
-    ("construct_morton", "a code a triangle along a curve, behind its body's prefix"),
-    ("construct_tile_filters", "whose triangles lie below each tile and above"),
-    ("construct_treelets", "which leaves are refitted together"),
+    ("construct_morton", "a code along a curve for each triangle, after its body's prefix"),
+    ("construct_tile_filters", "bodies of the triangles below each tile and node"),
+    ("construct_treelets", "groups of leaves that are refitted together"),
     ("construct_tree", "the radix tree"),
     ("construct_depth", "each node's depth"),
     ("construct_places", "each node's place in its level"),
     ("construct_emit", "nodes in level order"),
-    ("construct_graft", "the static tree behind the other, once"),
+    ("construct_graft", "the static tree after the other, once"),
     ("sort_pass", "a pass of the radix sort"),
-    ("fit_tiles", "a volume a triangle, a tile, and 16 tiles"),
-    ("fit_rims", "edges opposite to hubs, a volume a tile and above"),
+    ("fit_tiles", "a volume for each triangle, tile, and 16 tiles"),
+    ("fit_rims", "edges opposite to hubs: a volume for each tile and node"),
     ("fit_groups", "nodes of few leaves, from their points"),
-    ("fit", "a volume a leaf"),
+    ("fit", "a volume for each leaf"),
     ("refit_levels", "the volumes of a level"),
     ("refit_treelets", "leaves and all other volumes in one launch"),
-    ("refit_tiles", "a volume 16 nodes, for each further level"),
-    ("refit_bottom_up", "all volumes: of two siblings the second goes on"),
-    ("traverse_leaves", "a walk a leaf"),
-    ("traverse_units", "what long walks gave away"),
-    ("traverse_sample", "a few leaves seek their nearest, for a bound"),
-    ("traverse_within", "a walk a leaf into what is not farther"),
+    ("refit_tiles", "a volume for 16 nodes, for each further level"),
+    ("refit_bottom_up", "all volumes: the second of two siblings goes on"),
+    ("traverse_leaves", "a walk for each leaf"),
+    ("traverse_units", "work units given up by long walks"),
+    ("traverse_sample", "the nearest of a few leaves, for a bound"),
+    ("traverse_within", "a walk for each leaf, within the bound"),
     ("traverse_queue", "pairs of nodes from work queues"),
-    ("traverse_steal", "pairs of nodes from queues that help each other"),
-    ("traverse_front", "from where the last frame's descent ended"),
-    ("traverse_tiles_before", "pairs of tiles that meet in time"),
-    ("traverse_triangles_before", "their triangles, all against all, that meet in time"),
+    ("traverse_steal", "pairs of nodes from queues with stealing"),
+    ("traverse_front", "pairs of nodes from the end of the last frame's descent"),
+    ("traverse_tiles_before", "pairs of tiles that meet before the earliest time"),
+    ("traverse_triangles_before", "their triangles, all against all, before the earliest time"),
     ("traverse_tiles", "pairs of tiles"),
     ("traverse_triangles", "triangles of pairs of tiles, all against all"),
-    ("balance_copy", "as many units in each queue"),
+    ("balance_copy", "equally many units in each queue"),
     ("narrow_moller", "the float test of two triangles"),
     ("narrow_filter", "signs in the positions' precision"),
-    ("narrow_wide", "signs in f64 of what that left"),
-    ("narrow_exact", "exact signs of what is left"),
+    ("narrow_wide", "signs in f64, of pairs left uncertain"),
+    ("narrow_exact", "exact signs, of pairs left uncertain"),
     ("narrow_start_filter", "triangles that share a point at the start: boxes and signs"),
-    ("narrow_start_wide", "the same in f64 of what that left"),
-    ("narrow_start_exact", "the same by exact signs of what is left"),
+    ("narrow_start_wide", "the same in f64, of pairs left uncertain"),
+    ("narrow_start_exact", "the same by exact signs, of pairs left uncertain"),
     ("narrow_features_at_rest", "vertex/face and edge/edge pairs by their boxes"),
     ("narrow_features", "vertex/face and edge/edge pairs by their boxes in motion"),
     ("narrow_cull", "pairs that signs reject"),
@@ -72,15 +72,16 @@ const KERNELS: [(&str, &str); 60] = [
     ("narrow_separate_first", "fixed supporting planes"),
     ("narrow_separate", "supporting planes"),
     ("narrow_least", "the least distance of triangles"),
-    ("narrow_witness", "the first pair that has it"),
-    ("narrow_nearest", "where that is nearest"),
-    ("narrow_near", "distances measured"),
-    ("order_keys", "a key a contact"),
-    ("order_gather", "contacts where their keys are"),
-    ("status_frame", "counts beside the room of each list"),
+    ("narrow_witness", "the first pair with the least distance"),
+    ("narrow_nearest", "nearest points of that pair"),
+    ("narrow_near", "distances of feature pairs"),
+    ("order_keys", "a key for each contact"),
+    ("order_gather", "contacts in the order of their keys"),
+    ("status_frame", "count and capacity of each list"),
 ];
 
-/// Which of the stages a kernel belongs to, and what it does; `building` tells what the radix sort sorts.
+/// Returns the stage of a kernel, and its purpose. `building` decides if the radix sort is part of
+/// construction or of ordering.
 pub fn of(kernel: &str, building: bool) -> (usize, &'static str) {
     let what = KERNELS.iter().find(|(start, _)| kernel.starts_with(start)).map_or("", |(_, what)| what);
     let own = kernel.split('_').next().unwrap_or_default();

@@ -161,7 +161,7 @@ fn two_detectors_of_a_device_have_plans_of_their_own() {
 #[test]
 fn what_cannot_meet_is_not_there() {
     for (scene, why) in [
-        (pile(3, Body::fixed, false), "what is static is not asked about what is static"),
+        (pile(3, Body::fixed, false), "fixed bodies are not tested against each other"),
         (pile(1, Body::rigid, false), "a body alone is not tested against itself"),
     ] {
         let device = engine();

@@ -254,7 +254,7 @@ fn a_body_that_is_away_is_not_taken_along() {
     detector.frame(&[(id, Motion::OnDevice(DeviceMotion::Positions(memory.rows())))]).expect("an answer");
     let away = detector.scene().clone();
     let Err(error) = OneQuery::new(engine(), away, query(QueryKind::Discrete)) else { panic!("it is away") };
-    assert!(error.to_string().contains("say again where it is"), "{error}");
+    assert!(error.to_string().contains("pass its positions or its pose again"), "{error}");
     detector.download_positions().expect("positions");
     let there = support::ask_scene(engine(), detector.scene().clone(), query(QueryKind::Discrete));
     assert_eq!(there.rows, detector.detect().expect("an answer").rows);
