@@ -74,6 +74,9 @@ mod stages;
 #[doc(hidden)]
 pub mod words;
 
+#[cfg(feature = "nalgebra")]
+pub use nalgebra;
+
 pub use contacts::{Answer, Contact, Contacts, Rows};
 pub use detector::{Detector, plan};
 pub use device::{Device, Interrupt};

@@ -2,7 +2,6 @@
 
 use super::{Contact, Kind, NearPair};
 use crate::scene::BodyId;
-use nalgebra::Vector3;
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::prim::near::{corner_weights, edge_edge, vertex_face};
 
@@ -74,34 +73,34 @@ impl From<&NearPair> for Named {
 impl ContactGeometry {
     /// Computes the geometry of two features; `corners` are in the order of `vertices`.
     pub fn of(named: &Named, vertices: [u32; 4], corners: &Corners) -> ContactGeometry {
-        let at = |t: f64| corners.map(|[t0, t1]| Vector3::from(t0).lerp(&Vector3::from(t1), t));
+        let at = |t: f64| corners.map(|[t0, t1]| Vec3(t0) * (1.0 - t) + Vec3(t1) * t);
         let (now, start, end) = (at(named.time), at(0.0), at(1.0));
         let (first, weights) = (named.kind.vertices_of_a(), weights(named.kind, now));
-        let point = |corners: &[Vector3<f64>; 4], range: std::ops::Range<usize>| -> Vector3<f64> {
-            range.map(|i| corners[i] * weights[i]).sum()
+        let point = |corners: &[Vec3<f64>; 4], range: std::ops::Range<usize>| -> Vec3<f64> {
+            range.map(|i| corners[i] * weights[i]).fold(NONE, |sum, part| sum + part)
         };
-        let gap = |corners: &[Vector3<f64>; 4]| point(corners, 0..first) - point(corners, first..4);
+        let gap = |corners: &[Vec3<f64>; 4]| point(corners, 0..first) - point(corners, first..4);
         let apart = gap(&now);
         let sides = |a: usize, b: usize| unit(now[b] - now[a]);
         let across = match named.kind {
-            Kind::Vf => sides(1, 2).cross(&sides(1, 3)),
-            Kind::Ee => sides(0, 1).cross(&sides(2, 3)),
+            Kind::Vf => sides(1, 2).cross(sides(1, 3)),
+            Kind::Ee => sides(0, 1).cross(sides(2, 3)),
         };
-        let extent = now.iter().map(|p| length(&(p - now[0]))).fold(0.0, f64::max);
+        let extent = now.iter().map(|p| length(*p - now[0])).fold(0.0, f64::max);
         let came = gap(&start);
-        let normal = if length(&apart) > DIRECTION * extent {
+        let normal = if length(apart) > DIRECTION * extent {
             apart
         } else {
             // The side from which the first feature came. If it started in contact, against its
             // motion.
             let way = came - gap(&end);
-            let across = match (length(&across) > DIRECTION, came == Vector3::zeros()) {
+            let across = match (length(across) > DIRECTION, came == NONE) {
                 (true, _) => across,
                 (false, false) => came,
                 (false, true) => way,
             };
-            let side = across.dot(&came);
-            let side = if side == 0.0 { across.dot(&way) } else { side };
+            let side = across.dot(came);
+            let side = if side == 0.0 { across.dot(way) } else { side };
             if side < 0.0 { -across } else { across }
         };
         ContactGeometry {
@@ -111,23 +110,31 @@ impl ContactGeometry {
             vertices,
             weights,
             signed_weights: [0, 1, 2, 3].map(|at| if at < first { weights[at] } else { -weights[at] }),
-            points: [point(&now, 0..first).into(), point(&now, first..4).into()],
-            distance: length(&apart),
-            normal: unit(normal).into(),
+            points: [point(&now, 0..first).0, point(&now, first..4).0],
+            distance: length(apart),
+            normal: unit(normal).0,
         }
     }
 }
 
+/// The zero vector.
+const NONE: Vec3<f64> = Vec3([0.0; 3]);
+
+/// A vector divided by a number.
+fn over(v: Vec3<f64>, by: f64) -> Vec3<f64> {
+    v.map(|x| x / by)
+}
+
 /// Length of a vector, scaled so that the squares of its components cannot overflow.
-fn length(v: &Vector3<f64>) -> f64 {
-    let most = v.amax();
-    if most == 0.0 { 0.0 } else { most * (v / most).dot(&(v / most)).sqrt() }
+fn length(v: Vec3<f64>) -> f64 {
+    let most = v.0.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    if most == 0.0 { 0.0 } else { most * over(v, most).dot(over(v, most)).sqrt() }
 }
 
 /// Unit vector of this direction; zeros for zeros.
-fn unit(v: Vector3<f64>) -> Vector3<f64> {
-    let length = length(&v);
-    if length > 0.0 { v / length } else { Vector3::zeros() }
+fn unit(v: Vec3<f64>) -> Vec3<f64> {
+    let length = length(v);
+    if length > 0.0 { over(v, length) } else { NONE }
 }
 
 /// Weights of the ends of two edges at these parameters, the larger index first.
@@ -136,8 +143,8 @@ pub(crate) fn edge_weights([s, t]: [f64; 2]) -> [f64; 4] {
 }
 
 /// Weights of the four vertices in the nearest points.
-fn weights(kind: Kind, at: [Vector3<f64>; 4]) -> [f64; 4] {
-    let [a, b, c, d] = at.map(|p| Vec3(p.into()));
+fn weights(kind: Kind, at: [Vec3<f64>; 4]) -> [f64; 4] {
+    let [a, b, c, d] = at;
     // Distances are not limited.
     let far = f64::INFINITY;
     match kind {

@@ -105,6 +105,14 @@ impl<'a, T: Coordinate> From<&'a [[T; 3]]> for Points<'a> {
     }
 }
 
+#[cfg(feature = "nalgebra")]
+impl<'a, T: Coordinate + nalgebra::Scalar> From<&'a [nalgebra::Point3<T>]> for Points<'a> {
+    fn from(points: &'a [nalgebra::Point3<T>]) -> Points<'a> {
+        // Three numbers without padding, which `Pod` of nalgebra proves.
+        T::points(bytemuck::cast_slice(points))
+    }
+}
+
 impl<'a, T: Coordinate> From<&'a Vec<[T; 3]>> for Points<'a> {
     fn from(points: &'a Vec<[T; 3]>) -> Points<'a> {
         T::points(points)

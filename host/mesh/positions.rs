@@ -9,12 +9,14 @@ pub enum Positions {
     F64(Vec<[f64; 3]>),
 }
 
+#[cfg(feature = "nalgebra")]
 impl From<Vec<nalgebra::Point3<f32>>> for Positions {
     fn from(points: Vec<nalgebra::Point3<f32>>) -> Self {
         Positions::F32(points.into_iter().map(Into::into).collect())
     }
 }
 
+#[cfg(feature = "nalgebra")]
 impl From<Vec<nalgebra::Point3<f64>>> for Positions {
     fn from(points: Vec<nalgebra::Point3<f64>>) -> Self {
         Positions::F64(points.into_iter().map(Into::into).collect())

@@ -114,7 +114,7 @@ impl Body {
     pub fn check_filter(&self) -> Result<(), Error> {
         if self.kind == BodyKind::Fixed && self.filter.self_collision == Some(true) {
             return Err(Error::InvalidArgument {
-                what: format!("self-collision of {}, which is static and never meets itself", self.name),
+                what: format!("self-collision of {}, which is fixed and never meets itself", self.name),
                 advice: "leave self-collision out, or make the body rigid or deformable".into(),
             });
         }

@@ -255,11 +255,11 @@ mod tests {
     }
 
     #[test]
-    fn self_contact_of_a_static_body_is_refused_by_name() {
+    fn self_collision_of_a_fixed_body_is_refused_by_name() {
         let body = |meets| Body::fixed(soup(3, 1, false).frames().remove(0)).with_filter(meets);
         let text =
             body(CollisionFilter::with_self_collision()).check_filter().expect_err("refused").to_string();
-        assert!(text.contains("self-collision of") && text.contains("static"), "{text}");
+        assert!(text.contains("self-collision of") && text.contains("fixed"), "{text}");
         assert!(
             body(CollisionFilter::without_self_collision()).check_filter().is_ok()
                 && body(CollisionFilter::default()).check_filter().is_ok()

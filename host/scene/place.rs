@@ -4,7 +4,7 @@ use super::body::{Away, Kept};
 use super::{Body, BodyKind, DeviceMotion, Motion, Pose, of_edges};
 use crate::Error;
 use crate::mesh::{self, MAX_ABS_F64, Points, Positions, Problem};
-use nalgebra::Vector3;
+use nearmiss_kernels::math::Vec3;
 
 /// Lower and upper corner of a box.
 pub type Bounds = [[f64; 3]; 2];
@@ -241,12 +241,13 @@ impl Body {
         if degrees.is_nan() || degrees <= least {
             return None;
         }
-        let axis = axis / axis.dot(&axis).sqrt();
+        let length = axis.dot(axis).sqrt();
+        let axis = axis.map(|x| x / length);
         let from_axis = |&v: &u32| {
             // Faces were checked when the mesh was made: every vertex exists.
-            let point = Vector3::from(self.positions_t0.get_f64(v as usize).unwrap_or_default());
-            let across = point.cross(&axis);
-            across.dot(&across).sqrt()
+            let point = Vec3(self.positions_t0.get_f64(v as usize).unwrap_or_default());
+            let across = point.cross(axis);
+            across.dot(across).sqrt()
         };
         let farthest = self.faces.iter().flatten().map(from_axis).fold(0.0, f64::max);
         // 1 - cos(angle / 2), without its cancellation.
@@ -270,7 +271,7 @@ impl BodyKind {
     /// Name of the kind.
     pub(crate) fn name(self) -> &'static str {
         match self {
-            BodyKind::Fixed => "static",
+            BodyKind::Fixed => "fixed",
             BodyKind::Rigid => "rigid",
             BodyKind::Deformable => "deformable",
         }

@@ -2,7 +2,6 @@
 
 use crate::error::Error;
 use crate::mesh::Problem;
-use nalgebra::{Isometry3, Vector3};
 use nearmiss_kernels::abi::PoseRecord;
 use nearmiss_kernels::math::Vec3;
 use nearmiss_kernels::math::tolerance::POSE_UNIT;
@@ -37,8 +36,9 @@ impl Default for Pose {
     }
 }
 
-impl From<Isometry3<f64>> for Pose {
-    fn from(motion: Isometry3<f64>) -> Pose {
+#[cfg(feature = "nalgebra")]
+impl From<nalgebra::Isometry3<f64>> for Pose {
+    fn from(motion: nalgebra::Isometry3<f64>) -> Pose {
         Pose { rotation: motion.rotation.coords.into(), translation: motion.translation.vector.into() }
     }
 }
@@ -74,15 +74,15 @@ impl Pose {
     /// Returns the turn from this pose to another: its angle in [0, pi] and its axis. The axis is
     /// in the frame of the body's points, not of length 1. Quaternions of opposite sign are the
     /// same rotation.
-    pub(crate) fn turn_to(&self, other: &Pose) -> (f64, Vector3<f64>) {
+    pub(crate) fn turn_to(&self, other: &Pose) -> (f64, Vec3<f64>) {
         let parts = |pose: &Pose| {
             let [x, y, z, w] = pose.record().rotation;
-            (Vector3::new(x, y, z), w)
+            (Vec3([x, y, z]), w)
         };
         let ((u, a), (v, b)) = (parts(self), parts(other));
         // The conjugate of the first, times the second.
-        let axis = v * a - u * b - u.cross(&v);
-        (2.0 * axis.dot(&axis).sqrt().atan2((a * b + u.dot(&v)).abs()), axis)
+        let axis = v * a - u * b - u.cross(v);
+        (2.0 * axis.dot(axis).sqrt().atan2((a * b + u.dot(v)).abs()), axis)
     }
 
     fn length(&self) -> f64 {
@@ -100,7 +100,6 @@ impl Pose {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::{Quaternion, Translation3, UnitQuaternion};
 
     #[test]
     fn a_pose_is_a_quaternion_of_length_1() {
@@ -110,14 +109,20 @@ mod tests {
         assert!((x * x + y * y + z * z + w * w - 1.0).abs() < 1e-15);
         // No rotation is no change, to the bit.
         assert_eq!(Pose::default().record().rotation, [0.0, 0.0, 0.0, 1.0]);
-        let rotation = UnitQuaternion::new_unchecked(Quaternion::new(1.0, 0.0, 0.0, 0.0));
-        let motion = Isometry3 { rotation, translation: Translation3::new(1.0, 2.0, 3.0) };
-        assert_eq!(Pose::from(motion), Pose::at([1.0, 2.0, 3.0]));
         // A quarter turn about z, and 2 up: x goes to y.
         let half = 0.5_f64.sqrt();
         let quarter = Pose { rotation: [0.0, 0.0, half, half], translation: [0.0, 0.0, 2.0] };
         let there = quarter.apply([1.0, 0.0, 0.0]);
         assert!(there.iter().zip([0.0, 1.0, 2.0]).all(|(x, y)| (x - y).abs() < 1e-15), "{there:?}");
+    }
+
+    #[cfg(feature = "nalgebra")]
+    #[test]
+    fn an_isometry_is_a_pose() {
+        use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion};
+        let rotation = UnitQuaternion::new_unchecked(Quaternion::new(1.0, 0.0, 0.0, 0.0));
+        let motion = Isometry3 { rotation, translation: Translation3::new(1.0, 2.0, 3.0) };
+        assert_eq!(Pose::from(motion), Pose::at([1.0, 2.0, 3.0]));
     }
 
     #[test]

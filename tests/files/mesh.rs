@@ -284,9 +284,14 @@ fn a_format_is_known_by_its_extension() {
 
 #[test]
 fn points_of_nalgebra_keep_their_precision() {
-    use nalgebra::Point3;
+    use nearmiss::mesh::Points;
+    use nearmiss::nalgebra::Point3;
     let single = Positions::from(vec![Point3::new(0.1f32, 2.0, -3.0)]);
     assert_eq!(single, Positions::F32(vec![[0.1, 2.0, -3.0]]));
     let double = Positions::from(vec![Point3::new(0.1f64, 2.0, -3.0)]);
     assert_eq!(double, Positions::F64(vec![[0.1, 2.0, -3.0]]));
+    let points = [Point3::new(0.1f32, 2.0, -3.0), Point3::new(4.0, 5.0, 6.0)];
+    assert_eq!(Points::from(&points[..]), Points::F32(&[[0.1, 2.0, -3.0], [4.0, 5.0, 6.0]]));
+    let points = [Point3::new(0.1f64, 2.0, -3.0)];
+    assert_eq!(Points::from(&points[..]), Points::F64(&[[0.1, 2.0, -3.0]]));
 }
