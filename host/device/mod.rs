@@ -88,8 +88,8 @@ impl Device {
     /// only wait for each other. [`Backend::Auto`] uses `threads` if there is no GPU.
     ///
     /// # Errors
-    /// [`Error::InvalidArgument`] for threads of [`Backend::Cuda`]; [`Error::Device`], with the
-    /// driver's text, if there is none; [`Error::KernelMismatch`] for kernels of other sources.
+    /// [`Error::InvalidArgument`] for threads of a GPU; [`Error::Device`], with the driver's text,
+    /// if there is none or it refuses; [`Error::KernelMismatch`] for kernels of other sources.
     pub fn open(backend: Backend, threads: Option<usize>) -> Result<Device, Error> {
         if let (Backend::Cuda, Some(threads)) = (backend, threads) {
             return Err(Error::InvalidArgument {
