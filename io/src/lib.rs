@@ -2,9 +2,8 @@
 //! written.
 //!
 //! [`MeshFile`] is a file as it was read: a [`Mesh`](nearmiss::Mesh) of triangles, the faces of the
-//! file behind them ([`Polygons`]), and notes of everything that was not taken as it stands
-//! ([`Note`]). A caller with arrays needs none of this: [`Mesh::new`](nearmiss::Mesh::new) takes
-//! them.
+//! file ([`Polygons`]), and notes of all parts that differ from the file ([`Note`]). Arrays need
+//! none of this: pass them to [`Mesh::new`](nearmiss::Mesh::new).
 //!
 //! ```
 //! use nearmiss::Body;
