@@ -69,9 +69,9 @@ pub enum Mode {
     /// without a GPU.
     #[default]
     Engine,
-    /// Blocks in sequence, each to its end, blocks and lanes in the given order (or interleaved,
-    /// see [`Emulator::with_interleave`]). Races, bounds, unwritten memory and endless waits are
-    /// detected.
+    /// Blocks in sequence, each to its end, with blocks and lanes in this order (or interleaved,
+    /// see [`Emulator::with_interleave`]). Detects races, accesses out of bounds, reads of
+    /// unwritten memory and endless waits.
     Sanitizer(Order),
 }
 

@@ -40,7 +40,7 @@ impl Usage {
     /// Checks that this thread may do more than launch now.
     ///
     /// # Errors
-    /// [`Error::Bug`], with `what` was done, if it may not.
+    /// [`Error::Bug`] with `what`, which was done, if it may not.
     pub fn allows(&self, what: &str) -> Result<(), Error> {
         if is_held(self) {
             return Err(Error::Bug { what: format!("{what} in a frame that only launches") });

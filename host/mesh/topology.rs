@@ -21,8 +21,8 @@ pub struct Topology {
     pub edges: Vec<[u32; 2]>,
     /// Ids of each face's edges (0, 1), (1, 2), (2, 0), or [`NO_EDGE`].
     pub face_edges: Vec<[u32; 3]>,
-    /// Bits of each face: bit `k` (0 to 2) if it owns the vertex of corner `k`; bit `3 + k` if it
-    /// owns its edge `k`.
+    /// Owner bits of each face: bit `k` (0 to 2) for the vertex of corner `k`; bit `3 + k` for its
+    /// edge `k`.
     pub owners: Vec<u32>,
 }
 
@@ -83,7 +83,7 @@ fn pieces<'a>(
     pieces.map(|(at, piece)| (!looks.ends()).then_some((at * PIECE, piece)))
 }
 
-/// A range (`starts[v]..starts[v + 1]`) of edges for each vertex `v`: those whose larger end it is,
+/// A range (`starts[v]..starts[v + 1]`) of edges for each vertex `v`: those with larger end `v`,
 /// packed as smaller end and corner, `3 face + k`.
 fn by_larger_vertex(faces: &[[u32; 3]], vertex_count: usize, looks: &Looks) -> Option<(Vec<u32>, Vec<u64>)> {
     let ends = |face: &[u32; 3], k: usize| {

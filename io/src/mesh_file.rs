@@ -47,8 +47,8 @@ impl MeshFile {
     /// Reads a `.ply` or `.obj` file, also with `.gz` after the name.
     ///
     /// A polygon of n corners becomes n - 2 triangles, in file order; [`MeshFile::file_face`]
-    /// returns the face of a triangle. A polygon is projected along the axis of its normal's
-    /// largest component, and cut with exact signs: into the fan around its first corner if that
+    /// returns the face of a triangle. It is projected along the axis of its normal's largest
+    /// component, and cut with exact signs. The cut is the fan around its first corner if that
     /// covers it once (every convex polygon), else by ears.
     /// A polygon without area, on a line or there and back, keeps its fan, which has all its edges.
     /// So does one that is not flat (a corner off the plane by a thousandth of its extent) and
@@ -65,11 +65,12 @@ impl MeshFile {
     /// temporarily at most a small multiple of the file, for any header.
     ///
     /// # Errors
-    /// [`Error::Input`], with the file, the element and the value: a file that cannot be read or is
-    /// not regular, an unknown extension, a malformed file, a mesh that fails [`Mesh::new`], one
-    /// without triangles, or a polygon of more than 131,072 corners whose fan is wrong
-    /// ([`Problem::FaceCorners`]). [`Error::OutOfMemory`] for a file that is too large for the
-    /// memory.
+    /// [`Error::Input`], with the file, the element and the value, for:
+    /// - a file that cannot be read or is not regular, an unknown extension, a malformed file;
+    /// - a mesh that fails [`Mesh::new`], or has no triangles;
+    /// - a polygon of more than 131,072 corners whose fan is wrong ([`Problem::FaceCorners`]).
+    ///
+    /// [`Error::OutOfMemory`] for a file that is too large for the memory.
     pub fn read(path: &Path) -> Result<MeshFile, Error> {
         let (file, format, bytes) = open(path)?;
         MeshFile::parse(file, format, &bytes)
@@ -78,8 +79,8 @@ impl MeshFile {
     /// Reads another frame of this mesh: a file with the same faces. They are cut as here, even if
     /// their corners have moved.
     ///
-    /// Frames that are read separately may be cut differently, if a polygon is no longer visible
-    /// whole from its first corner; [`MeshFile::cut_as`] makes them alike.
+    /// Frames that are read separately may be cut differently: a polygon may no longer be visible
+    /// whole from its first corner. [`MeshFile::cut_as`] makes them alike.
     ///
     /// # Errors
     /// As [`MeshFile::read`], except for polygons, which are cut as here; and those of
@@ -182,7 +183,7 @@ impl MeshFile {
     /// Refuses a mesh whose reader left [notes](MeshFile::notes); returns any other as it is.
     ///
     /// # Errors
-    /// [`Error::Input`] with the first part of the first note: [`Problem::FaceCrosses`],
+    /// [`Error::Input`] with the first part of the first note. It is [`Problem::FaceCrosses`],
     /// [`Problem::FaceFolds`], a face of fewer than three corners, or a line or an element that no
     /// reader supports.
     pub fn strict(self) -> Result<MeshFile, Error> {

@@ -15,7 +15,7 @@ pub struct Line {
 
 impl Line {
     /// The best of three lines: both axes, and the one across most of the edges' length. On it the
-    /// edges of a polygon, given by its corners in turn, cover the smallest multiple of the whole.
+    /// polygon's edges cover the smallest multiple of the whole. `corners` are in turn.
     pub fn across(at: &[Point], corners: &[u32]) -> Line {
         let from = at[corners[0] as usize];
         let size =

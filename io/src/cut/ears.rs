@@ -133,8 +133,8 @@ impl Ears<'_> {
         !near.copied().any(|p| !outside(self.at[p as usize]) && self.is_within(p, corners))
     }
 
-    /// Whether corner `p` keeps the triangle from being an ear: it is in or on the triangle, or
-    /// coincides with a corner and has an edge that goes into it.
+    /// Whether corner `p` keeps the triangle from being an ear. It does if it is in or on the
+    /// triangle, or coincides with a corner and has an edge that goes into it.
     fn is_within(&self, p: u32, corners: [u32; 3]) -> bool {
         if self.next[p as usize] == GONE || corners.contains(&p) {
             return false;

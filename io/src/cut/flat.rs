@@ -16,8 +16,8 @@ pub fn is_line(points: &[[f64; 3]], axis: usize) -> bool {
     points.iter().all(|p| turn([from[i], from[j]], [other[i], other[j]], [p[i], p[j]]) == 0)
 }
 
-/// Whether a walk around the polygon takes each edge there and back, so that it encloses nothing:
-/// without steps that are undone at once, a point remains.
+/// Whether a walk around the polygon takes each edge there and back, so that it encloses nothing.
+/// Steps that are undone at once are removed; a point must remain.
 pub fn returns(points: &[[f64; 3]]) -> bool {
     let mut walk: Vec<&[f64; 3]> = Vec::with_capacity(points.len());
     for p in points.iter().chain(&points[..1]) {
@@ -30,8 +30,8 @@ pub fn returns(points: &[[f64; 3]]) -> bool {
     walk.len() == 1
 }
 
-/// Whether all corners are nearly in the plane of three that span it well: the first, the one
-/// farthest from it, and the one farthest from their line.
+/// Whether all corners are nearly in the plane of three that span it well. These are the first, the
+/// one farthest from it, and the one farthest from their line.
 pub fn is_flat(points: &[[f64; 3]]) -> bool {
     let largest = points.iter().flatten().fold(0.0f64, |most, x| most.max(x.abs()));
     if largest == 0.0 {

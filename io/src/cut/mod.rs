@@ -2,14 +2,14 @@
 //!
 //! A face is projected along the axis of the largest component of its normal (Newell's, the vector
 //! area). All signs are exact.
-//! A cut is right by its parts: another triangle adds one to the cover of its points. So if every
-//! triangle turns as the face does, each point is covered as often as the face winds around it:
-//! once, if the face does not cross itself.
+//! A cut is right by its parts: another triangle adds one to the cover of its points. If every
+//! triangle turns as the face does, each point is covered as often as the face winds around it.
+//! That is once, if the face does not cross itself.
 //!
 //! Every edge of a face is an edge of a triangle in any cut. So the fan of a face without area
 //! covers it whole.
-//! The fan of a face that crosses itself covers every point that the face winds around: the winding
-//! number is the sum over the triangles of the fan, so if it is not 0, a triangle covers the point.
+//! The fan of a face that crosses itself covers every point that the face winds around. The winding
+//! number is the sum over the triangles of the fan: if it is not 0, a triangle covers the point.
 //! The fan may cover more: triangles that turn differently may overlap.
 
 mod cross;
@@ -35,10 +35,10 @@ const MOST_CORNERS: usize = 1 << 17;
 /// [`Problem::FaceCrosses`] or [`Problem::FaceFolds`].
 ///
 /// Cost: O(corners) for faces whose fan is right. Otherwise ears and crossings are searched among
-/// edges and corners whose extents along a line overlap: O(n log n) for a face that winds little,
-/// O(n^2) at worst.
-/// Combs, spirals and stars of 100,000 corners took 8 to 33 s, of 10,000 a hundredth of that;
-/// beyond [`MOST_CORNERS`] a face is refused.
+/// corners and edges whose extents along a line overlap. That is O(n log n) for a face that winds
+/// little, O(n^2) at worst.
+/// Combs, spirals and stars of 100,000 corners took 8 to 33 s, of 10,000 a hundredth of that.
+/// Beyond [`MOST_CORNERS`] a face is refused.
 ///
 /// # Errors
 /// [`Problem::FaceCorners`], for the first such face.
@@ -126,9 +126,9 @@ fn see(points: &[[f64; 3]], axis: usize) -> Vec<Point> {
     points.iter().map(|p| [p[i], p[j]]).collect()
 }
 
-/// Whether the fan around the first corner covers the polygon once: from there, the other corners
-/// follow in the sense of the polygon, at most once around. True for convex polygons, and all that
-/// are visible whole from the first corner.
+/// Whether the fan around the first corner covers the polygon once. From there, the other corners
+/// must follow in the sense of the polygon, at most once around. True for convex polygons, and all
+/// that are visible whole from the first corner.
 fn is_fan(at: &[Point], sign: i32) -> bool {
     let from = at[0];
     let mut others = at.iter().copied().filter(|p| *p != from);

@@ -22,8 +22,8 @@ pub fn read(path: &Path, multiple: u64) -> Result<Vec<u8>, Error> {
     if is_packed(path) { unpack::unpack(&file, &bytes, multiple) } else { Ok(bytes) }
 }
 
-/// A file's text, from bytes as by [`read`]: without a byte order mark, its lines ended by LF or CR
-/// LF, also if the file ends them by CR.
+/// A file's text, without a byte order mark. Lines end in LF or CR LF, even if the file ends them
+/// by CR. The bytes are those of [`read`].
 ///
 /// # Errors
 /// Errors of [`read`], [`Problem::Encoding`] for UTF-16 and UTF-32, and [`Problem::Unreadable`] for

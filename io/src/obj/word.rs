@@ -16,9 +16,9 @@ pub(super) enum Word {
     Unknown,
 }
 
-/// Statements without geometry, by the chapters of the specification: vertex data, attributes of
-/// free-form curves and surfaces, the parts of one, connectivity, grouping, display, and superseded
-/// ones.
+/// Statements without geometry, by the chapters of the specification. These are vertex data,
+/// attributes and parts of free-form curves and surfaces, connectivity, grouping, display, and
+/// superseded ones.
 const QUIET: [&[u8]; 32] = [
     b"vt",
     b"vn",

@@ -1,7 +1,7 @@
 //! PLY files to positions and faces.
 //!
-//! This is our own reader: other crates either allocate by the counts in the header, which a
-//! damaged file may have at any size, or lose the number of the bad element.
+//! This is our own reader. Other crates allocate by the counts in the header, which a damaged file
+//! may have at any size, or lose the number of the bad element.
 
 use super::header::{Element, Encoding, Header, Kind, Property, is_corners};
 use super::source::{Failure, Scalar, Source, Value};
@@ -96,7 +96,7 @@ fn coordinates<T: Copy + Default>(
     Ok(points)
 }
 
-/// Exact: used only where every column fits (`Scalar::fits_f32`).
+/// Exact: used only if every column fits (`Scalar::fits_f32`).
 fn to_f32(value: Value) -> f32 {
     match value {
         Value::Int(i) => i as f32,
